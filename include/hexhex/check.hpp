@@ -1,0 +1,76 @@
+// What a map is, what its mesh will be, and what is wrong with it.
+#pragma once
+
+#include <hexhex/context.hpp>
+#include <hexhex/error.hpp>
+#include <hexhex/types.hpp>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace hexhex {
+
+/// One violated condition: how often, how badly, and the worst places.
+struct Defect {
+  struct Occurrence {
+    Place place;
+    double amount = 0;  ///< in parameter units (distance, or signed volume of a flipped tet)
+  };
+  ErrorCode code = ErrorCode::Internal;
+  std::string sentence;           ///< what is wrong and what to do
+  std::uint64_t count = 0;        ///< all occurrences
+  std::vector<Occurrence> worst;  ///< at most ten, worst first
+};
+
+/// What follows from a map without extracting it: the mesh can be checked against this.
+struct Expectation {
+  std::uint64_t cells = 0;          ///< parametric volume
+  std::uint64_t boundaryQuads = 0;  ///< parametric area of the boundary
+  /// Number of singular hex edges by valence: parametric length of singular tet edges.
+  std::map<int, std::uint64_t> innerSingularEdges;
+  std::map<int, std::uint64_t> boundarySingularEdges;
+  std::int64_t eulerCharacteristic = 0;  ///< V - E + F - C
+  std::uint64_t components = 0;
+  std::uint64_t boundaryComponents = 0;
+};
+
+struct CheckReport {
+  std::uint64_t points = 0;
+  std::uint64_t tets = 0;
+  std::uint64_t edges = 0;
+  std::uint64_t faces = 0;
+  std::uint64_t boundaryFaces = 0;
+  std::uint64_t innerFaces = 0;
+  std::uint64_t chartJumps = 0;           ///< inner faces with a non-identity transition
+  std::uint64_t isolatedVertices = 0;     ///< vertices without a tet: ignored, a warning
+  std::uint64_t tetsInvertedInSpace = 0;  ///< a warning
+  bool mirrored = false;                  ///< the map reverses orientation: a notice
+  bool cornersReversed = false;           ///< tets list their corners in negative order: a notice
+  double maxTransitionResidual = 0;
+  double maxDisplacement = 0;  ///< by sanitization
+  /// Number of singular tet edges by valence (hexahedra around them).
+  std::map<int, std::uint64_t> innerSingularTetEdges;
+  std::map<int, std::uint64_t> boundarySingularTetEdges;
+  std::uint64_t singularNodes = 0;
+  /// Genus of each boundary component, in descending order.
+  std::vector<std::int64_t> boundaryGenus;
+  std::vector<Defect> defects;  ///< empty for a valid map
+  Expectation expected;         ///< meaningful if there are no defects
+
+  [[nodiscard]] bool valid() const noexcept { return defects.empty(); }
+};
+
+struct CheckOptions {
+  double tolerance = 1e-2;  ///< as in ExtractOptions
+  int scale = 1;            ///< for the expectation
+};
+
+/// Examines a map and collects every violated condition instead of stopping at the first. Throws
+/// only for arguments out of range and for cancellation.
+[[nodiscard]] CheckReport check(const TetMapView& map, const CheckOptions& options,
+                                Context& context);
+[[nodiscard]] CheckReport check(const TetMapView& map, const CheckOptions& options = {});
+
+}  // namespace hexhex

@@ -1,0 +1,59 @@
+// From an integer-grid map to a hexahedral mesh.
+//
+// The algorithm is that of Kohler, Heistermann and Bommes, "HexHex: Highspeed Extraction of
+// Hexahedral Meshes", ACM Transactions on Graphics 44 (2025).
+#pragma once
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
+
+#include <array>
+#include <cstdint>
+
+namespace hexhex {
+
+struct ExtractOptions {
+  /// Multiplies all parameters before extraction: scale^3 times as many cells. At least 1.
+  int scale = 1;
+  /// Enlargement of tets while candidates of lattice points are enumerated, in parameter units;
+  /// never changes the result, only the time. 0 and infinity are legal. (Section 5.2.3)
+  double epsilon = 1e-6;
+  /// How far the input may be from fulfilling its integer conditions (transitions, boundary,
+  /// singularities), in parameter units before scaling. Below 0.25.
+  double tolerance = 1e-2;
+};
+
+/// What happened on the way.
+struct ExtractStatistics {
+  double seconds = 0;                     ///< from input arrays to finished arrays
+  int threads = 0;                        ///< used
+  double epsilon = 0;                     ///< used in the end (infinity after a fall-back)
+  bool epsilonFallback = false;           ///< epsilon was too small and became infinity
+  bool mirrored = false;                  ///< the map reverses orientation
+  std::uint64_t tetsInvertedInSpace = 0;  ///< harmless for the extraction, a warning
+  double maxDisplacement = 0;             ///< by sanitization, in unscaled parameter units
+  double maxTransitionResidual = 0;       ///< of the input, unscaled
+  std::uint64_t chartJumps = 0;           ///< inner faces with a non-identity transition
+  std::uint64_t innerFaces = 0;
+  std::uint64_t singularEdges = 0;            ///< of the tet mesh, inner and boundary
+  std::array<std::uint64_t, 4> generators{};  ///< simplices with hex vertices, by kind
+  std::array<std::uint64_t, 4> vertices{};    ///< hex vertices by generator kind
+  std::uint64_t localPropellers = 0;          ///< extracted, i.e. without the constant cases
+  std::uint64_t globalPropellers = 0;         ///< directed hex edges
+};
+
+/// Extracts the hexahedral mesh that the map implies. Linear in the number of tets plus the number
+/// of hexahedra. The result does not depend on the number of threads.
+///
+/// Tets may have either orientation in space, as long as neighbours agree; a map that reverses
+/// orientation everywhere is mirrored first.
+///
+/// @throws Error  for every violated condition of an integer-grid map, with its place
+/// @param[out] statistics  filled if not null
+[[nodiscard]] HexMesh extract(const TetMapView& map, const ExtractOptions& options,
+                              Context& context, ExtractStatistics* statistics = nullptr);
+
+/// The same with all cores and without progress.
+[[nodiscard]] HexMesh extract(const TetMapView& map, const ExtractOptions& options = {});
+
+}  // namespace hexhex

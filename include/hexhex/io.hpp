@@ -1,0 +1,34 @@
+// Files. The format follows from the file name's extension (letter case does not matter).
+#pragma once
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
+
+#include <filesystem>
+
+namespace hexhex {
+
+/// Reads a tetrahedral mesh with an integer-grid map: `.hexex`.
+/// @throws Error FileNotFound, FileSyntax (with line), FileUnsupported
+[[nodiscard]] TetMap readMap(const std::filesystem::path& file, Context& context);
+[[nodiscard]] TetMap readMap(const std::filesystem::path& file);
+
+/// Writes a map: `.hexex`. Each number has the fewest digits that read back to the same double.
+/// The file appears complete or not at all.
+void writeMap(const TetMap& map, const std::filesystem::path& file);
+
+/// Reads a hexahedral mesh: `.mesh` (MEDIT ASCII), `.vtu` (as this library writes it). Other cells
+/// and sections are ignored; generators are not restored.
+[[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file, Context& context);
+[[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file);
+
+/// Writes a hexahedral mesh: `.mesh` (vertices, boundary quads, hexahedra) or `.vtu` (binary
+/// appended; point array `generator_kind`, cell array `scaled_jacobian`). The file appears complete
+/// or not at all.
+void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file, Context& context);
+void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file);
+
+/// Throws FileUnsupported unless writeHexMesh knows the extension: to fail before long work.
+void requireHexMeshFormat(const std::filesystem::path& file);
+
+}  // namespace hexhex

@@ -1,0 +1,65 @@
+// Integer-grid maps with known answers, generated from block structures.
+#pragma once
+
+#include <hexhex/check.hpp>
+#include <hexhex/types.hpp>
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace hexhex {
+
+enum class SampleKind {
+  Box,          ///< 2 x 2 x 2 blocks, regular
+  Cylinder,     ///< 5-block O-grid, four inner edges of valence 3
+  Sphere,       ///< 7-block O-grid, valence 3 along the inner cube's edges and its rays
+  Star,         ///< column with one inner edge of any valence from 3
+  Tetrahedron,  ///< 4 blocks, four edges of valence 3 that meet in the centre
+  Torus,        ///< solid torus (genus 1), O-grid section
+  Shell,        ///< spherical shell, 6 blocks: a cavity, two boundary components
+  HandleBody    ///< plate with holes, genus 2
+};
+
+enum class ChartStyle {
+  Aligned,  ///< one frame per block, turned so that as many transitions as possible are identities
+  Blocks,   ///< a random rotation and integer translation per block
+  Random    ///< a random rotation and integer translation per tet: hardly any identity is left
+};
+
+struct SampleOptions {
+  int cells = 4;    ///< hexahedra along each block edge, at least 1
+  int refine = 2;   ///< tet sub-blocks along each block edge, at least 1 (12 tets per sub-block)
+  int valence = 5;  ///< of SampleKind::Star, 3 to 12
+  ChartStyle charts = ChartStyle::Aligned;
+  double jitter = 0;     ///< moves free tet vertices by up to this share of a sub-block, 0 to 1
+  double onLattice = 0;  ///< share of free tet coordinates put exactly on integers, 0 to 1
+  double noise = 0;      ///< added to every corner on its own, uniform in [-noise, noise]
+  double offset = 0;     ///< chart translations are drawn from [-offset, offset]; up to 1e9
+  std::uint64_t seed = 1;
+};
+
+/// What is known about the mesh of a sample.
+struct SampleAnswer {
+  Expectation expected;
+  std::uint64_t vertices = 0;  ///< hex vertices
+};
+
+struct Sample {
+  TetMap map;
+  SampleAnswer answer;  ///< at scale 1
+};
+
+/// Every kind with its name on the command line ("box", "cylinder", ...).
+struct SampleKindName {
+  SampleKind kind;
+  std::string_view name;
+  std::string_view description;
+};
+[[nodiscard]] std::span<const SampleKindName> sampleKinds() noexcept;
+
+/// Generates a map. Same options, same map, on every machine.
+/// @throws Error InvalidArgument
+[[nodiscard]] Sample generateSample(SampleKind kind, const SampleOptions& options = {});
+
+}  // namespace hexhex

@@ -1,0 +1,112 @@
+// Plain types of the public face: what goes into an extraction and what comes out.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace hexhex {
+
+/// A point or vector: x, y, z (in space) or u, v, w (a parameter, in units of one hexahedron).
+using Vec3 = std::array<double, 3>;
+
+/// Index of an element of an input mesh, or of a hex vertex. 0-based.
+using Index = std::uint32_t;
+
+/// "No such element".
+inline constexpr Index kNone = std::numeric_limits<Index>::max();
+
+/// Corner indices of one tetrahedron, of one hexahedron (VTK order), and of one quadrilateral.
+using Tet = std::array<Index, 4>;
+using Hex = std::array<Index, 8>;
+using Quad = std::array<Index, 4>;
+
+/// The four parameters of one tetrahedron: entry i belongs to corner i of the tet.
+using TetParameters = std::array<Vec3, 4>;
+
+/// Allocator that leaves trivial elements uninitialized, so that large arrays are touched once, by
+/// the thread that fills them.
+template <class T>
+struct UninitializedAllocator : std::allocator<T> {
+  UninitializedAllocator() = default;
+  template <class U>
+  UninitializedAllocator(const UninitializedAllocator<U>& /*other*/) noexcept {}
+  template <class U>
+  struct rebind {
+    using other = UninitializedAllocator<U>;
+  };
+  template <class U>
+  void construct(U* place) noexcept(std::is_nothrow_default_constructible_v<U>) {
+    ::new (static_cast<void*>(place)) U;
+  }
+  template <class U, class... Args>
+  void construct(U* place, Args&&... args) {
+    ::new (static_cast<void*>(place)) U(std::forward<Args>(args)...);
+  }
+};
+
+/// A std::vector whose resize() does not clear memory.
+template <class T>
+using Array = std::vector<T, UninitializedAllocator<T>>;
+
+/// The valence offset of one tet edge, as frame-field tools store it (`edge_valance`): the number
+/// of hexahedra around the edge minus the regular number (4 inside, 2 on the boundary).
+struct EdgeValence {
+  Index vertex0 = 0;
+  Index vertex1 = 0;
+  int offset = 0;
+};
+
+/// A tetrahedral mesh with an integer-grid map; owns its arrays.
+struct TetMap {
+  std::vector<Vec3> points;               ///< one per vertex
+  std::vector<Tet> tets;                  ///< four different vertices each
+  std::vector<TetParameters> parameters;  ///< one per tet, in the tet's own chart
+};
+
+/// The same as a view on the caller's arrays, plus what the caller may know already.
+struct TetMapView {
+  std::span<const Vec3> points;
+  std::span<const Tet> tets;
+  std::span<const TetParameters> parameters;
+
+  /// Optional: edges with their valence offsets. Empty: computed from angle sums. Otherwise edges
+  /// that are not listed are regular.
+  std::span<const EdgeValence> edgeValences = {};
+
+  /// Optional: for face f (opposite corner f) of each tet the index 0..23 of the rotation across
+  /// it, in the numbering of AlgoHex's `HalffaceTransiton`; -1 where unknown. Empty: computed.
+  std::span<const std::array<std::int8_t, 4>> rotations = {};
+
+  TetMapView() = default;
+  TetMapView(std::span<const Vec3> points_, std::span<const Tet> tets_,
+             std::span<const TetParameters> parameters_)
+      : points(points_), tets(tets_), parameters(parameters_) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): a map converts to a view of itself.
+  TetMapView(const TetMap& map) : points(map.points), tets(map.tets), parameters(map.parameters) {}
+};
+
+/// Dimension of the simplex of the tet mesh whose interior holds a hex vertex (its generator).
+enum class GeneratorKind : std::uint8_t { Vertex = 0, Edge = 1, Face = 2, Cell = 3 };
+
+/// A hexahedral mesh. Corners of a cell are in VTK_HEXAHEDRON order: 0 1 2 3 around one face, 4 5 6
+/// 7 above them, with positive orientation: det(p1-p0, p3-p0, p4-p0) > 0 for undistorted cells.
+struct HexMesh {
+  Array<Vec3> points;  ///< one per hex vertex
+  Array<Hex> cells;    ///< eight vertex indices each
+
+  // Where each vertex came from. Empty for meshes that were read from a file.
+  Array<GeneratorKind> generatorKind;  ///< per vertex: kind of simplex
+  Array<Index> generatorIndex;  ///< per vertex: index of the simplex. Vertices and tets: as in the
+                                ///< input. Edges: in lexicographic order of (smaller, larger)
+                                ///< vertex. Faces: in order of (smaller tet, corner opposite).
+  Array<Index> generatorTet;    ///< per vertex: the tet that owns it (smallest around the simplex)
+};
+
+}  // namespace hexhex

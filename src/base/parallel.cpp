@@ -1,0 +1,63 @@
+#include <algorithm>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+
+#if HEXHEX_HAS_TBB
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+#endif
+
+namespace hexhex {
+
+namespace detail {
+
+void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
+               const BlockFunction& function) {
+  const std::size_t blocks = blockCount(n, grain);
+  const auto runBlock = [&](std::size_t block) {
+    const std::size_t begin = block * grain;
+    const std::size_t end = std::min(n, begin + grain);
+    function(begin, end, block);
+    if (progress != nullptr) progress->advance(end - begin);
+  };
+#if HEXHEX_HAS_TBB
+  if (blocks > 1) {
+    oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, blocks, 1),
+                              [&](const oneapi::tbb::blocked_range<std::size_t>& range) {
+                                for (std::size_t block = range.begin(); block < range.end();
+                                     ++block) {
+                                  runBlock(block);
+                                }
+                              });
+    return;
+  }
+#endif
+  for (std::size_t block = 0; block < blocks; ++block) runBlock(block);
+}
+
+void runWithThreads(int threads, const void* object, void (*call)(const void*)) {
+#if HEXHEX_HAS_TBB
+  oneapi::tbb::task_arena arena(effectiveThreads(threads));
+  arena.execute([&] { call(object); });
+#else
+  static_cast<void>(threads);
+  call(object);
+#endif
+}
+
+}  // namespace detail
+
+int effectiveThreads(int threads) {
+#if HEXHEX_HAS_TBB
+  return threads > 0 ? threads : oneapi::tbb::info::default_concurrency();
+#else
+  static_cast<void>(threads);
+  return 1;
+#endif
+}
+
+}  // namespace hexhex

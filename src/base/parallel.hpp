@@ -1,0 +1,83 @@
+// Parallel loops over index ranges. All of the project's use of oneTBB is in parallel.cpp; without
+// oneTBB the same functions run on the calling thread.
+//
+// Determinism: the blocks of a loop depend on the grain alone, never on the number of threads, so a
+// loop whose blocks write to disjoint places gives the same result on any machine.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <base/stage.hpp>
+
+namespace hexhex {
+
+/// A reference to a callable void(std::size_t begin, std::size_t end, std::size_t block).
+class BlockFunction {
+ public:
+  template <class F>
+  explicit BlockFunction(const F& function)
+      : object_(&function), call_([](const void* object, std::size_t begin, std::size_t end,
+                                     std::size_t block) {
+          (*static_cast<const F*>(object))(begin, end, block);
+        }) {}
+  void operator()(std::size_t begin, std::size_t end, std::size_t block) const {
+    call_(object_, begin, end, block);
+  }
+
+ private:
+  const void* object_;
+  void (*call_)(const void*, std::size_t, std::size_t, std::size_t);
+};
+
+/// Number of blocks that a loop over n elements with this grain has.
+[[nodiscard]] constexpr std::size_t blockCount(std::size_t n, std::size_t grain) noexcept {
+  return (n + grain - 1) / grain;
+}
+
+namespace detail {
+void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
+               const BlockFunction& function);
+void runWithThreads(int threads, const void* object, void (*call)(const void*));
+}  // namespace detail
+
+/// Calls f(begin, end, block) for consecutive blocks of `grain` elements of [0, n), in parallel, and
+/// checks for cancellation between blocks. The first exception ends the loop and is rethrown.
+template <class F>
+void parallelBlocks(Stage& stage, std::size_t n, std::size_t grain, const F& f) {
+  LoopProgress progress(stage, n);
+  detail::runBlocks(n, grain, &progress, BlockFunction(f));
+}
+
+/// Calls f(i) for every i in [0, n), in parallel.
+template <class F>
+void parallelFor(Stage& stage, std::size_t n, std::size_t grain, const F& f) {
+  parallelBlocks(stage, n, grain, [&f](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+    for (std::size_t i = begin; i < end; ++i) f(i);
+  });
+}
+
+/// Runs f() so that all parallel loops inside use at most this many threads (0: all cores).
+template <class F>
+void withThreads(int threads, const F& f) {
+  detail::runWithThreads(threads, &f, [](const void* object) { (*static_cast<const F*>(object))(); });
+}
+
+/// The number of threads that `threads` (0: all cores) stands for; 1 without oneTBB.
+[[nodiscard]] int effectiveThreads(int threads);
+
+/// Replaces counts by their exclusive prefix sums; the last element, an unused slot, receives the
+/// total, which is returned. Sequential: it runs at the speed of memory.
+template <class T>
+T exclusiveScan(std::span<T> counts) {
+  T sum{};
+  for (T& entry : counts) {
+    const T count = entry;
+    entry = sum;
+    sum = static_cast<T>(sum + count);
+  }
+  return sum;
+}
+
+}  // namespace hexhex
