@@ -38,8 +38,16 @@ enum class ErrorCode {
 /// The name of a code, e.g. "FlippedTet".
 [[nodiscard]] std::string_view name(ErrorCode code) noexcept;
 
+// GCC reports a scoped enumerator that is named like a type as shadowing it, which it cannot.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
+#endif
 /// What an error is about.
 enum class PlaceKind : std::uint8_t { None, Tet, Face, Edge, Vertex, Line, Cell };
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 /// Where: a tet; a face (tet, corner opposite); an edge (two vertices); a vertex; a line of a file
 /// (1-based); a hex cell.

@@ -24,18 +24,21 @@ enum class SampleKind {
 enum class ChartStyle {
   Aligned,  ///< one frame per block, turned so that as many transitions as possible are identities
   Blocks,   ///< a random rotation and integer translation per block
-  Random    ///< a random rotation and integer translation per tet: hardly any identity is left
+  Random    ///< a random rotation and integer translation per tet, and a random (even) order of
+            ///< its corners: hardly any identity is left
 };
 
 struct SampleOptions {
-  int cells = 4;    ///< hexahedra along each block edge, at least 1
-  int refine = 2;   ///< tet sub-blocks along each block edge, at least 1 (12 tets per sub-block)
+  int cells = 4;    ///< hexahedra along each block edge, 1 to 10000
+  int refine = 2;   ///< tet sub-blocks along each block edge, 1 to 500 (12 tets per sub-block)
   int valence = 5;  ///< of SampleKind::Star, 3 to 12
   ChartStyle charts = ChartStyle::Aligned;
   double jitter = 0;     ///< moves free tet vertices by up to this share of a sub-block, 0 to 1
   double onLattice = 0;  ///< share of free tet coordinates put exactly on integers, 0 to 1
-  double noise = 0;      ///< added to every corner on its own, uniform in [-noise, noise]
-  double offset = 0;     ///< chart translations are drawn from [-offset, offset]; up to 1e9
+  double noise = 0;   ///< added to every corner on its own, uniform in [-noise, noise]; below 0.25
+                      ///< and at most cells / (72 refine), so that the answer stays true
+  double offset = 0;  ///< chart translations are integers from [-offset, offset], up to 1e9; one
+                      ///< for all blocks if aligned. Below 1: none if aligned, else up to 20
   std::uint64_t seed = 1;
 };
 
@@ -59,7 +62,7 @@ struct SampleKindName {
 [[nodiscard]] std::span<const SampleKindName> sampleKinds() noexcept;
 
 /// Generates a map. Same options, same map, on every machine.
-/// @throws Error InvalidArgument
+/// @throws Error InvalidArgument; TooLarge for more tets than 32-bit indices; OutOfMemory
 [[nodiscard]] Sample generateSample(SampleKind kind, const SampleOptions& options = {});
 
 }  // namespace hexhex

@@ -1,0 +1,21 @@
+// The subcommands: each adds its options to the parser and says what to do afterwards.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+
+namespace hexhex::command {
+
+struct Command {
+  CLI::App* parser = nullptr;  ///< true after parsing if this subcommand was given
+  std::function<int()> run;    ///< returns the exit code; throws hexhex::Error
+};
+
+[[nodiscard]] Command addExtract(CLI::App& app);
+[[nodiscard]] Command addCheck(CLI::App& app);
+[[nodiscard]] Command addVerify(CLI::App& app);
+[[nodiscard]] Command addGenerate(CLI::App& app);
+[[nodiscard]] Command addInfo(CLI::App& app);
+
+}  // namespace hexhex::command

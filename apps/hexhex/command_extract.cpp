@@ -1,0 +1,158 @@
+// `hexhex extract`: from a map to a verified hexahedral mesh.
+#include <hexhex/error.hpp>
+#include <hexhex/extract.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/quality.hpp>
+#include <hexhex/verify.hpp>
+
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "command.hpp"
+#include "exit_codes.hpp"
+#include "interrupt.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include "shared_options.hpp"
+
+namespace hexhex::command {
+namespace {
+
+struct Arguments {
+  std::string input;
+  std::string output;
+  std::string report;
+  ExtractOptions options;
+  int threads = 0;
+  bool noVerify = false;
+  bool quiet = false;
+};
+
+/// Everything that can be known to fail before long work.
+void requireOutputs(const Arguments& arguments) {
+  requireHexMeshFormat(arguments.output);
+  requireWritable(arguments.output);
+  if (!arguments.report.empty()) requireWritable(arguments.report);
+}
+
+void printWarnings(const ExtractStatistics& statistics) {
+  if (statistics.tetsInvertedInSpace > 0) {
+    printWarning(counted(statistics.tetsInvertedInSpace, "tet") +
+                 " of the input are inverted in space. The mesh has the right connectivity, but "
+                 "cells there may be inverted, too.");
+  }
+  if (statistics.mirrored) {
+    printWarning("The map reverses orientation; it was mirrored before the extraction.");
+  }
+  if (statistics.epsilonFallback) {
+    printWarning(
+        "Epsilon was too small, so that the whole bounding boxes were searched: the "
+        "result is right but took longer. Try a larger --epsilon.");
+  }
+}
+
+void printSummary(const ExtractionRecord& record) {
+  const ExtractStatistics& statistics = record.statistics;
+  fmt::print("{} -> {}\n", record.input.file.string(), record.output.file.string());
+  printLine("map", fmt::format("{}, {}, {} of {} with a chart jump", counted(record.tets, "tet"),
+                               counted(record.points, "point"), statistics.chartJumps,
+                               counted(statistics.innerFaces, "inner face")));
+  printLine(
+      "mesh",
+      fmt::format("{}, {}", counted(record.cells, "cell"),
+                  record.vertices == 1 ? "1 vertex" : fmt::format("{} vertices", record.vertices)));
+  printLine("extraction",
+            fmt::format("{:.3f} s on {}, peak memory {}", statistics.seconds,
+                        counted(static_cast<std::uint64_t>(statistics.threads), "thread"),
+                        bytesAsText(peakMemory())));
+  printLine("scaled Jacobian", qualityAsText(record.quality));
+  printLine("verification",
+            record.verification
+                ? fmt::format("passed, {}", counted(record.verification->items.size(), "check"))
+                : "skipped");
+  printLine("file", bytesAsText(record.output.bytes));
+}
+
+/// Throws if the mesh does not agree with the map, naming what does not.
+void requirePassed(const VerifyReport& report) {
+  if (report.passed()) return;
+  std::string sentence = "The mesh does not agree with the map and was not written:";
+  for (const VerifyItem& item : report.items) {
+    if (item.passed) continue;
+    sentence += fmt::format(" {}: expected {}, found {};", item.name, item.expected, item.found);
+  }
+  throw Error(ErrorCode::VerificationFailed, sentence + " please report this with the map.");
+}
+
+int run(const Arguments& arguments) {
+  requireOutputs(arguments);
+  ProgressDisplay progress(arguments.quiet);
+  Context context(arguments.threads, progress.callback());
+  const CancelOnSignal cancelOnSignal(context);
+
+  const TetMap map = readMap(arguments.input, context);
+  ExtractionRecord record;
+  const HexMesh mesh = extract(map, arguments.options, context, &record.statistics);
+  if (!arguments.noVerify) {
+    record.verification =
+        verify(map, mesh, {arguments.options.scale, arguments.options.tolerance}, context);
+    requirePassed(*record.verification);
+  }
+  record.quality = summarize(scaledJacobians(mesh, context));
+  writeHexMesh(mesh, arguments.output, context);
+  progress.clear();
+
+  std::error_code unknown;  // the size of a pipe
+  record.input = {arguments.input, std::filesystem::file_size(arguments.input, unknown)};
+  record.output = {arguments.output, std::filesystem::file_size(arguments.output, unknown)};
+  record.scale = arguments.options.scale;
+  record.points = map.points.size();
+  record.tets = map.tets.size();
+  record.vertices = mesh.points.size();
+  record.cells = mesh.cells.size();
+  record.stages = context.stageTimes();
+  if (!arguments.report.empty()) writeTextFile(arguments.report, reportAsJson(record));
+  if (!arguments.quiet) {
+    printWarnings(record.statistics);
+    printSummary(record);
+  }
+  return kSuccess;
+}
+
+}  // namespace
+
+Command addExtract(CLI::App& app) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const parser = app.add_subcommand("extract", "Extract the hexahedral mesh of a map");
+  parser->add_option("MAP", arguments->input, "The map, .hexex")
+      ->required()
+      ->option_text("FILE REQUIRED");
+  parser->add_option("-o,--output", arguments->output, "The mesh to write, .mesh or .vtu")
+      ->required()
+      ->option_text("FILE REQUIRED");
+  addScale(*parser, arguments->options.scale,
+           "Multiply all parameters by this integer: its cube as\nmany cells");
+  addThreads(*parser, arguments->threads);
+  parser
+      ->add_option("--epsilon", arguments->options.epsilon,
+                   "Enlargement of tets while lattice points are\n"
+                   "searched, in parameter units; inf is legal. Never\n"
+                   "changes the result, only the time")
+      ->option_text("NUMBER [1e-6]");
+  addTolerance(*parser, arguments->options.tolerance);
+  parser->add_flag("--no-verify", arguments->noVerify, "Write the mesh without verifying it");
+  parser
+      ->add_option("--report", arguments->report,
+                   "Write a report in JSON: times, counts, quality,\nverification")
+      ->option_text("FILE");
+  parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  parser->footer(
+      "The mesh is verified against the map before it is written. The same input gives the same\n"
+      "bytes with any number of threads.\n\nExample:\n"
+      "  hexhex extract sphere.hexex -o sphere.vtu --scale 2 --report sphere.json");
+  return {parser, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace hexhex::command

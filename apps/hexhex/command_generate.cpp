@@ -1,0 +1,128 @@
+// `hexhex generate`: maps with known answers.
+#include <hexhex/io.hpp>
+#include <hexhex/samples.hpp>
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "check_text.hpp"
+#include "command.hpp"
+#include "exit_codes.hpp"
+#include "output.hpp"
+#include "shared_options.hpp"
+
+namespace hexhex::command {
+namespace {
+
+struct Arguments {
+  std::string kind;
+  std::string charts = "aligned";
+  std::string output;
+  SampleOptions options;
+  bool quiet = false;
+};
+
+constexpr std::array<std::pair<std::string_view, ChartStyle>, 3> kChartStyles = {
+    {{"aligned", ChartStyle::Aligned},
+     {"blocks", ChartStyle::Blocks},
+     {"random", ChartStyle::Random}}};
+
+// The parser has checked both names.
+ChartStyle chartStyleNamed(std::string_view styleName) {
+  const auto found = std::find_if(kChartStyles.begin(), kChartStyles.end(),
+                                  [&](const auto& entry) { return entry.first == styleName; });
+  return found->second;
+}
+
+SampleKind kindNamed(std::string_view kindName) {
+  const auto kinds = sampleKinds();
+  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const SampleKindName& entry) {
+    return entry.name == kindName;
+  });
+  return found->kind;
+}
+
+std::vector<std::string> kindNames() {
+  std::vector<std::string> names;
+  for (const SampleKindName& entry : sampleKinds()) names.emplace_back(entry.name);
+  return names;
+}
+
+int run(const Arguments& arguments) {
+  requireWritable(arguments.output);
+  SampleOptions options = arguments.options;
+  options.charts = chartStyleNamed(arguments.charts);
+  const Sample sample = generateSample(kindNamed(arguments.kind), options);
+  writeMap(sample.map, arguments.output);
+  if (arguments.quiet) return kSuccess;
+  fmt::print("{}\n", arguments.output);
+  printLine("map", fmt::format("{}, {}", counted(sample.map.tets.size(), "tet"),
+                               counted(sample.map.points.size(), "point")));
+  fmt::print("Mesh to expect at scale 1\n");
+  printLine("vertices", std::to_string(sample.answer.vertices));
+  printExpectation(sample.answer.expected);
+  return kSuccess;
+}
+
+std::string describeKinds() {
+  std::string text = "Kinds:\n";
+  for (const SampleKindName& entry : sampleKinds()) {
+    text += fmt::format("  {:<14}{}\n", entry.name, entry.description);
+  }
+  return text +
+         "\nExample:\n"
+         "  hexhex generate star --valence 7 --charts random --jitter 0.5 -o star.hexex";
+}
+
+void addSampleOptions(CLI::App& parser, SampleOptions& options) {
+  const auto add = [&parser](const char* optionName, auto& value, const char* description) {
+    return parser.add_option(optionName, value, description)
+        ->option_text(fmt::format("NUMBER [{}]", value));
+  };
+  add("--cells", options.cells, "Hexahedra along each block edge, at least 1")
+      ->check(wholeNumberFrom(1));
+  add("--refine", options.refine, "Tet sub-blocks along each block edge, at least 1")
+      ->check(wholeNumberFrom(1));
+  add("--valence", options.valence, "Hexahedra around the inner edge of a star, 3 to 12")
+      ->check(wholeNumberFrom(3));
+  add("--jitter", options.jitter, "Move free tet vertices by this share of a sub-block,\n0 to 1");
+  add("--on-lattice", options.onLattice,
+      "Share of free tet coordinates to put exactly on\nintegers, 0 to 1");
+  add("--noise", options.noise, "Add up to this to every corner on its own");
+  add("--offset", options.offset, "Draw chart translations up to this size, at most 1e9");
+  add("--seed", options.seed, "Another seed, another map");
+}
+
+}  // namespace
+
+Command addGenerate(CLI::App& app) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const parser =
+      app.add_subcommand("generate", "Generate a map whose mesh is known in advance");
+  parser->add_option("KIND", arguments->kind, "What to generate: one of the kinds below")
+      ->required()
+      ->check(CLI::IsMember(kindNames()))
+      ->option_text("REQUIRED");
+  parser->add_option("-o,--output", arguments->output, "The map to write, .hexex")
+      ->required()
+      ->option_text("FILE REQUIRED");
+  parser
+      ->add_option("--charts", arguments->charts,
+                   "aligned: as many identities as possible; blocks: a\n"
+                   "random rotation and integer translation per block;\nrandom: per tet")
+      ->check(CLI::IsMember({"aligned", "blocks", "random"}))
+      ->option_text("STYLE [aligned]");
+  addSampleOptions(*parser, arguments->options);
+  parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  parser->footer(describeKinds());
+  return {parser, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace hexhex::command

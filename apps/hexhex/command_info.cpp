@@ -1,0 +1,112 @@
+// `hexhex info`: what a file holds.
+#include <hexhex/error.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/quality.hpp>
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "command.hpp"
+#include "exit_codes.hpp"
+#include "interrupt.hpp"
+#include "output.hpp"
+
+namespace hexhex::command {
+namespace {
+
+struct Arguments {
+  std::string file;
+};
+
+bool isHexMeshFile(const std::string& file) {
+  try {
+    requireHexMeshFormat(file);
+    return true;
+  } catch (const Error&) {
+    return false;  // then it must be a map, and reading it tells if it is none
+  }
+}
+
+void printBoundingBox(std::span<const Vec3> points) {
+  if (points.empty()) return;
+  Vec3 lower = points.front();
+  Vec3 upper = points.front();
+  for (const Vec3& point : points) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], point[axis]);
+      upper[axis] = std::max(upper[axis], point[axis]);
+    }
+  }
+  printLine("bounding box",
+            fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", lower[0], lower[1],
+                        lower[2], upper[0], upper[1], upper[2]));
+}
+
+void printMap(const TetMap& map) {
+  fmt::print("a tetrahedral mesh with an integer-grid map\n");
+  printLine("tets", std::to_string(map.tets.size()));
+  printLine("points", std::to_string(map.points.size()));
+  printBoundingBox(map.points);
+  double largest = 0;
+  for (const TetParameters& corners : map.parameters) {
+    for (const Vec3& corner : corners) {
+      for (const double parameter : corner) largest = std::max(largest, std::abs(parameter));
+    }
+  }
+  printLine("parameters", fmt::format("up to {:.6g} in size", largest));
+}
+
+void printHistogram(const QualitySummary& quality) {
+  constexpr double kLowest = -1;
+  const double step = 2.0 / static_cast<double>(quality.histogram.size());
+  for (std::size_t i = 0; i < quality.histogram.size(); ++i) {
+    if (quality.histogram[i] == 0) continue;
+    const double from = kLowest + step * static_cast<double>(i);
+    printLine(fmt::format("  {:4.1f} to {:4.1f}", from, from + step),
+              counted(quality.histogram[i], "cell"));
+  }
+}
+
+void printMesh(const HexMesh& mesh, Context& context) {
+  fmt::print("a hexahedral mesh\n");
+  printLine("cells", std::to_string(mesh.cells.size()));
+  printLine("vertices", std::to_string(mesh.points.size()));
+  printBoundingBox(mesh.points);
+  if (mesh.cells.empty()) return;
+  const QualitySummary quality = summarize(scaledJacobians(mesh, context));
+  printLine("scaled Jacobian", qualityAsText(quality));
+  printHistogram(quality);
+}
+
+int run(const Arguments& arguments) {
+  Context context;
+  const CancelOnSignal cancelOnSignal(context);
+  if (isHexMeshFile(arguments.file)) {
+    const HexMesh mesh = readHexMesh(arguments.file, context);
+    fmt::print("{}: ", arguments.file);
+    printMesh(mesh, context);
+  } else {
+    const TetMap map = readMap(arguments.file, context);
+    fmt::print("{}: ", arguments.file);
+    printMap(map);
+  }
+  return kSuccess;
+}
+
+}  // namespace
+
+Command addInfo(CLI::App& app) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const parser = app.add_subcommand("info", "Tell what a file holds");
+  parser->add_option("FILE", arguments->file, "A map (.hexex) or a mesh (.mesh, .vtu)")
+      ->required()
+      ->option_text("REQUIRED");
+  parser->footer("Example:\n  hexhex info sphere.vtu");
+  return {parser, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace hexhex::command

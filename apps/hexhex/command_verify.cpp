@@ -1,0 +1,86 @@
+// `hexhex verify`: does a mesh agree with its map?
+#include <hexhex/io.hpp>
+#include <hexhex/verify.hpp>
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <string_view>
+
+#include "command.hpp"
+#include "exit_codes.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+#include "shared_options.hpp"
+
+namespace hexhex::command {
+namespace {
+
+struct Arguments {
+  std::string map;
+  std::string mesh;
+  VerifyOptions options;
+  int threads = 0;
+  bool quiet = false;
+};
+
+/// One row per check, columns as wide as their longest entry.
+void printTable(const VerifyReport& report) {
+  const VerifyItem head{"check", "expected", "found", true};
+  std::size_t nameWidth = head.name.size();
+  std::size_t expectedWidth = head.expected.size();
+  std::size_t foundWidth = head.found.size();
+  for (const VerifyItem& item : report.items) {
+    nameWidth = std::max(nameWidth, item.name.size());
+    expectedWidth = std::max(expectedWidth, item.expected.size());
+    foundWidth = std::max(foundWidth, item.found.size());
+  }
+  const auto printRow = [&](const VerifyItem& item, std::string_view result) {
+    fmt::print("{:<{}}  {:<{}}  {:<{}}  {}\n", item.name, nameWidth, item.expected, expectedWidth,
+               item.found, foundWidth, result);
+  };
+  printRow(head, "result");
+  for (const VerifyItem& item : report.items) printRow(item, item.passed ? "ok" : "FAILED");
+  fmt::print("{}\n", report.passed() ? "The mesh agrees with the map."
+                                     : "The mesh does not agree with the map.");
+}
+
+VerifyReport compare(const Arguments& arguments) {
+  ProgressDisplay progress(arguments.quiet);
+  Context context(arguments.threads, progress.callback());
+  const CancelOnSignal cancelOnSignal(context);
+  const TetMap map = readMap(arguments.map, context);
+  const HexMesh mesh = readHexMesh(arguments.mesh, context);
+  return verify(map, mesh, arguments.options, context);
+}
+
+int run(const Arguments& arguments) {
+  const VerifyReport report = compare(arguments);
+  if (!arguments.quiet) printTable(report);
+  return report.passed() ? kSuccess : kFailure;
+}
+
+}  // namespace
+
+Command addVerify(CLI::App& app) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const parser =
+      app.add_subcommand("verify", "Compare a hexahedral mesh with the map that it came from");
+  parser->add_option("MAP", arguments->map, "The map, .hexex")
+      ->required()
+      ->option_text("FILE REQUIRED");
+  parser->add_option("MESH", arguments->mesh, "The mesh, .mesh or .vtu")
+      ->required()
+      ->option_text("FILE REQUIRED");
+  addScale(*parser, arguments->options.scale, "The scale that the mesh was extracted with");
+  addTolerance(*parser, arguments->options.tolerance);
+  addThreads(*parser, arguments->threads);
+  parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors: the exit code tells");
+  parser->footer(
+      "Exit code 0: they agree; 4: they do not.\n\nExample:\n"
+      "  hexhex verify sphere.hexex sphere.vtu --scale 2");
+  return {parser, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace hexhex::command

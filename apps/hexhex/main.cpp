@@ -1,0 +1,110 @@
+// `hexhex`: parses the command line, runs the subcommand, and turns errors into a sentence and an
+// exit code.
+#include <hexhex/error.hpp>
+#include <hexhex/version.hpp>
+
+#include <fmt/core.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "command.hpp"
+#include "exit_codes.hpp"
+
+namespace hexhex::command {
+namespace {
+
+constexpr const char* kDescription =
+    "Extracts hexahedral meshes from integer-grid maps on tetrahedral meshes.";
+
+constexpr const char* kFooter = R"(Examples:
+  hexhex generate sphere -o sphere.hexex         a map to play with
+  hexhex check sphere.hexex                      is it valid, and what will come out?
+  hexhex extract sphere.hexex -o sphere.vtu      the mesh, verified, for ParaView
+  hexhex extract sphere.hexex -o fine.mesh --scale 4 --report fine.json
+  hexhex verify sphere.hexex fine.mesh --scale 4
+  hexhex info fine.mesh
+
+`hexhex SUBCOMMAND --help` explains the options of a subcommand.
+
+Files: maps .hexex; hexahedral meshes .mesh (MEDIT) and .vtu (VTK).
+
+Exit codes:
+    0  success
+    1  the map is invalid
+    2  bad usage: wrong options or arguments
+    3  a file cannot be read, understood, or written
+    4  the result failed its verification, memory was exhausted, or an internal error
+  130  interrupted
+Output files appear complete or not at all.)";
+
+std::string usageProblem(const CLI::App* app, const CLI::Error& error) {
+  return fmt::format("hexhex: error: {}\nRun `{} --help` for the options and examples.\n",
+                     error.what(), app->get_display_name());
+}
+
+/// The sentence, and in brackets what a script or a bug report wants to know.
+void printError(const Error& error) {
+  const std::string place = toString(error.place());
+  fmt::print(stderr, "hexhex: error: {} [{}{}{}]\n", error.what(), name(error.code()),
+             place.empty() ? "" : ", ", place);
+}
+
+/// Runs a subcommand; every error ends here.
+int runGuarded(const Command& command) {
+  try {
+    return command.run();
+  } catch (const Error& error) {
+    printError(error);
+    return exitCodeOf(error.code());
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr,
+               "hexhex: error: The memory of this machine does not suffice; nothing was written. "
+               "Try a smaller scale. [{}]\n",
+               name(ErrorCode::OutOfMemory));
+    return kFailure;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "hexhex: error: Unexpected: {} Please report this. [{}]\n", error.what(),
+               name(ErrorCode::Internal));
+    return kFailure;
+  }
+}
+
+int run(int argc, char** argv) {
+  CLI::App app(kDescription, "hexhex");
+  app.set_version_flag("--version", "hexhex " HEXHEX_VERSION, "Print the version and exit");
+  app.footer(kFooter);
+  app.require_subcommand(1);
+  app.failure_message(usageProblem);
+  const std::array commands = {addExtract(app), addCheck(app), addVerify(app), addGenerate(app),
+                               addInfo(app)};
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // --help and --version arrive here, too.
+    return app.exit(error) == 0 ? kSuccess : kBadUsage;
+  }
+  for (const Command& command : commands) {
+    if (command.parser->parsed()) return runGuarded(command);
+  }
+  return kBadUsage;
+}
+
+}  // namespace
+}  // namespace hexhex::command
+
+int main(int argc, char** argv) {
+  using namespace hexhex::command;
+#ifdef SIGXFSZ
+  // A limit on the size of files shall be an error like a full disk, not the end of the process.
+  std::signal(SIGXFSZ, SIG_IGN);
+#endif
+  const int code = run(argc, argv);
+  if (std::fflush(stdout) == 0 || code != kSuccess) return code;
+  fmt::print(stderr, "hexhex: error: The standard output cannot be written.\n");
+  return kFileProblem;
+}

@@ -1,0 +1,41 @@
+// How the command prints: warnings, labelled lines, sizes; and files of its own.
+#pragma once
+
+#include <hexhex/quality.hpp>
+#include <hexhex/types.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace hexhex::command {
+
+/// "  label      value" on the standard output.
+void printLine(std::string_view label, std::string_view value);
+
+/// "hexhex: warning: <sentence>" on the standard error output.
+void printWarning(std::string_view sentence);
+
+/// "1 cell", "12 cells".
+[[nodiscard]] std::string counted(std::uint64_t count, std::string_view noun);
+
+/// "12.3 MB"
+[[nodiscard]] std::string bytesAsText(std::uint64_t bytes);
+
+/// "12 of valence 3, 4 of valence 5", or "none".
+[[nodiscard]] std::string valencesAsText(const std::map<int, std::uint64_t>& countByValence);
+
+/// "at least 0.3, 0.9 on average; 2 cells not positive"
+[[nodiscard]] std::string qualityAsText(const QualitySummary& quality);
+
+/// Throws FileWrite if the file is a folder, or the folder that it will be in does not exist or
+/// cannot be written: to fail before long work.
+void requireWritable(const std::filesystem::path& file);
+
+/// Writes a text so that the file appears complete or not at all.
+/// @throws Error FileWrite
+void writeTextFile(const std::filesystem::path& file, std::string_view text);
+
+}  // namespace hexhex::command

@@ -1,0 +1,106 @@
+#include "report.hpp"
+
+#include <hexhex/version.hpp>
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace hexhex::command {
+namespace {
+
+// Keys in the order in which they are added: easier to read than alphabetical.
+using Json = nlohmann::ordered_json;
+
+Json fileAsJson(const FileSize& file) {
+  return {{"file", file.file.string()}, {"bytes", file.bytes}};
+}
+
+Json stagesAsJson(const std::vector<StageTime>& stages) {
+  double total = 0;
+  for (const StageTime& stage : stages) total += stage.seconds;
+  Json list = Json::array();
+  for (const StageTime& stage : stages) {
+    list.push_back({{"name", stage.stage},
+                    {"seconds", stage.seconds},
+                    {"share", total > 0 ? stage.seconds / total : 0}});
+  }
+  return list;
+}
+
+Json byKind(const std::array<std::uint64_t, 4>& counts) {
+  return {{"vertex", counts[0]}, {"edge", counts[1]}, {"face", counts[2]}, {"cell", counts[3]}};
+}
+
+Json qualityAsJson(const QualitySummary& quality) {
+  return {{"minimum", quality.minimum},
+          {"mean", quality.mean},
+          {"not_positive", quality.notPositive},
+          {"histogram", quality.histogram}};
+}
+
+Json verificationAsJson(const std::optional<VerifyReport>& verification) {
+  if (!verification) return nullptr;
+  Json items = Json::array();
+  for (const VerifyItem& item : verification->items) {
+    items.push_back({{"name", item.name},
+                     {"expected", item.expected},
+                     {"found", item.found},
+                     {"passed", item.passed}});
+  }
+  return {{"passed", verification->passed()}, {"items", std::move(items)}};
+}
+
+/// JSON knows no infinity.
+Json finiteOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+}  // namespace
+
+std::string reportAsJson(const ExtractionRecord& record) {
+  const ExtractStatistics& statistics = record.statistics;
+  const Json report = {{"hexhex_version", HEXHEX_VERSION},
+                       {"input", fileAsJson(record.input)},
+                       {"output", fileAsJson(record.output)},
+                       {"extract_seconds", statistics.seconds},
+                       {"cells", record.cells},
+                       {"vertices", record.vertices},
+                       {"tets", record.tets},
+                       {"points", record.points},
+                       {"scale", record.scale},
+                       {"threads", statistics.threads},
+                       {"epsilon", finiteOrNull(statistics.epsilon)},
+                       {"epsilon_fallback", statistics.epsilonFallback},
+                       {"stages", stagesAsJson(record.stages)},
+                       {"peak_memory_bytes", peakMemory()},
+                       {"generators", byKind(statistics.generators)},
+                       {"vertices_by_generator", byKind(statistics.vertices)},
+                       {"local_propellers", statistics.localPropellers},
+                       {"global_propellers", statistics.globalPropellers},
+                       {"singular_edges", statistics.singularEdges},
+                       {"chart_jumps", statistics.chartJumps},
+                       {"inner_faces", statistics.innerFaces},
+                       {"max_displacement", statistics.maxDisplacement},
+                       {"max_transition_residual", statistics.maxTransitionResidual},
+                       {"mirrored", statistics.mirrored},
+                       {"tets_inverted_in_space", statistics.tetsInvertedInSpace},
+                       {"quality", qualityAsJson(record.quality)},
+                       {"verification", verificationAsJson(record.verification)}};
+  // File names need not be valid UTF-8; bytes that are not are replaced.
+  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::uint64_t peakMemory() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+  constexpr std::uint64_t kUnit = 1;
+#else
+  constexpr std::uint64_t kUnit = 1024;
+#endif
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * kUnit;
+}
+
+}  // namespace hexhex::command

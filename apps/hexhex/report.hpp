@@ -1,0 +1,42 @@
+// The machine-readable report of an extraction. docs/report.md explains every key.
+#pragma once
+
+#include <hexhex/extract.hpp>
+#include <hexhex/quality.hpp>
+#include <hexhex/verify.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hexhex::command {
+
+struct FileSize {
+  std::filesystem::path file;
+  std::uint64_t bytes = 0;
+};
+
+/// Everything that is known at the end of an extraction.
+struct ExtractionRecord {
+  FileSize input;
+  FileSize output;
+  int scale = 1;
+  std::uint64_t points = 0;
+  std::uint64_t tets = 0;
+  std::uint64_t vertices = 0;
+  std::uint64_t cells = 0;
+  ExtractStatistics statistics;
+  std::vector<StageTime> stages;
+  QualitySummary quality;
+  std::optional<VerifyReport> verification;  ///< empty if it was skipped
+};
+
+/// The report as JSON text, ending with a line break.
+[[nodiscard]] std::string reportAsJson(const ExtractionRecord& record);
+
+/// The largest amount of memory that this process has used so far, in bytes.
+[[nodiscard]] std::uint64_t peakMemory();
+
+}  // namespace hexhex::command

@@ -1,0 +1,17 @@
+// Options that several subcommands have, and checks with messages that people understand.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace hexhex::command {
+
+/// Accepts whole numbers from `minimum` that fit in an int.
+[[nodiscard]] CLI::Validator wholeNumberFrom(int minimum);
+
+void addScale(CLI::App& parser, int& scale, const std::string& description);
+void addThreads(CLI::App& parser, int& threads);
+void addTolerance(CLI::App& parser, double& tolerance);
+
+}  // namespace hexhex::command

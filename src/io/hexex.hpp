@@ -1,0 +1,33 @@
+// `.hexex`: the exchange format of parametrized tetrahedral meshes. Text, separated by white space:
+//
+//     <number of vertices>
+//     x y z                                                (per vertex)
+//     <number of tets>
+//     v0 v1 v2 v3  u v w  u v w  u v w  u v w              (per tet: 0-based corners, parameters)
+//
+// Some programs append walls (`W`, then W times `v v v distance`) or features (`vertices edges
+// faces`, then that many vertices, pairs, and triples). They are checked and ignored.
+#pragma once
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace hexhex {
+
+/// @throws Error FileNotFound, FileSyntax, IndexOutOfRange, NotFinite, TooLarge
+[[nodiscard]] TetMap readHexex(const std::filesystem::path& file, Context& context);
+
+/// The same from memory.
+/// @param fileName  for error messages
+[[nodiscard]] TetMap parseHexex(std::string_view text, const std::string& fileName,
+                                Context& context);
+
+/// Writes numbers with the fewest digits (at most 17) that read back to the same double.
+/// @throws Error FileWrite; InvalidArgument if arrays disagree; NotFinite
+void writeHexex(const TetMap& map, const std::filesystem::path& file);
+
+}  // namespace hexhex

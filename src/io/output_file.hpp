@@ -1,0 +1,77 @@
+// Files that appear complete or not at all.
+#pragma once
+
+#include <charconv>
+#include <concepts>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace hexhex {
+
+/// A buffered file that is written to a temporary beside its target and renamed by commit().
+/// Without commit() the temporary vanishes and the target stays as it was. A target that exists and
+/// is no regular file (a device, a pipe) is written directly.
+///
+/// Every function throws Error FileWrite, with the target and the system's reason, if it fails.
+class OutputFile {
+ public:
+  explicit OutputFile(const std::filesystem::path& target);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  OutputFile& write(char character) {
+    makeRoom(1);
+    buffer_[used_++] = character;
+    return *this;
+  }
+  OutputFile& write(std::string_view text) {
+    writeBytes(text.data(), text.size());
+    return *this;
+  }
+  // Without it a string literal would convert to a number.
+  OutputFile& write(const char* text) { return write(std::string_view(text)); }
+  /// In decimal; a double with the fewest digits (at most 17) that read back to the same value.
+  OutputFile& write(double number) { return writeNumber(number); }
+  OutputFile& write(std::unsigned_integral auto number) { return writeNumber(number); }
+
+  /// Writes memory as it is.
+  void writeBytes(const void* bytes, std::size_t size);
+
+  /// Writes what is buffered, closes the file, and gives it its name.
+  void commit();
+
+ private:
+  // The longest number, -1.2345678901234567e-308, has 24 characters.
+  static constexpr std::size_t kMaxNumberLength = 32;
+  // Large enough that system calls cost nothing, small enough for the cache.
+  static constexpr std::size_t kBufferSize = std::size_t{1} << 18;
+
+  template <class Number>
+  OutputFile& writeNumber(Number number) {
+    makeRoom(kMaxNumberLength);
+    char* const place = buffer_.get() + used_;
+    used_ += static_cast<std::size_t>(std::to_chars(place, place + kMaxNumberLength, number).ptr -
+                                      place);
+    return *this;
+  }
+  void makeRoom(std::size_t size) {
+    if (used_ + size > kBufferSize) flush();
+  }
+  void openTemporary();
+  void flush();
+  void writeThrough(const char* bytes, std::size_t size);
+  void discard() noexcept;
+  [[noreturn]] void fail(const std::string& what, int error) const;
+
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;  ///< empty if the target is written directly
+  int descriptor_ = -1;
+  std::unique_ptr<char[]> buffer_;
+  std::size_t used_ = 0;
+};
+
+}  // namespace hexhex

@@ -1,0 +1,128 @@
+#include <hexhex/error.hpp>
+#include <hexhex/io.hpp>
+
+#include <algorithm>
+#include <array>
+#include <base/stage.hpp>
+#include <cmath>
+#include <io/hexex.hpp>
+#include <io/medit.hpp>
+#include <io/registry.hpp>
+#include <io/vtu.hpp>
+#include <mesh/vertex_cells.hpp>
+#include <span>
+#include <string>
+
+namespace hexhex {
+namespace {
+
+constexpr std::array<MapFormat, 1> kMapFormats = {{{".hexex", readHexex, writeHexex}}};
+
+constexpr std::array<HexMeshFormat, 2> kHexMeshFormats = {
+    {{".mesh", readMedit, writeMedit}, {".vtu", readVtu, writeVtu}}};
+
+std::string lowerCaseExtension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return extension;
+}
+
+/// ".mesh, .vtu"
+template <class Format>
+std::string listExtensions(std::span<const Format> formats) {
+  std::string list;
+  for (const Format& format : formats) {
+    list += (list.empty() ? "" : ", ") + std::string(format.extension);
+  }
+  return list;
+}
+
+template <class Format>
+const Format& findFormat(std::span<const Format> formats, const std::filesystem::path& file,
+                         const std::string& what) {
+  const std::string extension = lowerCaseExtension(file);
+  const auto found = std::find_if(formats.begin(), formats.end(), [&](const Format& format) {
+    return format.extension == extension;
+  });
+  if (found != formats.end()) return *found;
+  const std::string problem = extension.empty()
+                                  ? "the file name has no extension"
+                                  : "the extension \"" + extension + "\" is no format of " + what;
+  throw Error(ErrorCode::FileUnsupported,
+              file.string() + ": " + problem + ". Maps: " + listExtensions<MapFormat>(kMapFormats) +
+                  "; hexahedral meshes: " + listExtensions<HexMeshFormat>(kHexMeshFormats) + ".");
+}
+
+/// Refuses meshes that would crash a writer or could not be read back.
+void requireWritable(const HexMesh& mesh, Context& context) {
+  Stage stage(context, "write mesh");
+  const std::size_t cell = firstCellOutOfRange(mesh, stage);
+  if (cell < mesh.cells.size()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "A corner of cell " + std::to_string(cell) + " is not a vertex of the mesh.",
+                Place{PlaceKind::Cell, cell});
+  }
+  if (!mesh.generatorKind.empty() && mesh.generatorKind.size() != mesh.points.size()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "The mesh has " + std::to_string(mesh.points.size()) + " vertices but " +
+                    std::to_string(mesh.generatorKind.size()) + " kinds of generators.");
+  }
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    const Vec3& p = mesh.points[i];
+    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) continue;
+    throw Error(ErrorCode::NotFinite,
+                "A coordinate of vertex " + std::to_string(i) + " is not finite.",
+                Place{PlaceKind::Vertex, i});
+  }
+}
+
+}  // namespace
+
+const MapFormat& mapFormat(const std::filesystem::path& file) {
+  return findFormat<MapFormat>(kMapFormats, file, "maps");
+}
+
+const HexMeshFormat& hexMeshFormat(const std::filesystem::path& file) {
+  return findFormat<HexMeshFormat>(kHexMeshFormats, file, "hexahedral meshes");
+}
+
+TetMap readMap(const std::filesystem::path& file, Context& context) {
+  return mapFormat(file).read(file, context);
+}
+
+TetMap readMap(const std::filesystem::path& file) {
+  Context context;
+  return readMap(file, context);
+}
+
+void writeMap(const TetMap& map, const std::filesystem::path& file) {
+  mapFormat(file).write(map, file);
+}
+
+HexMesh readHexMesh(const std::filesystem::path& file, Context& context) {
+  return hexMeshFormat(file).read(file, context);
+}
+
+HexMesh readHexMesh(const std::filesystem::path& file) {
+  Context context;
+  return readHexMesh(file, context);
+}
+
+void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file, Context& context) {
+  const HexMeshFormat& format = hexMeshFormat(file);
+  requireWritable(mesh, context);
+  format.write(mesh, file, context);
+}
+
+void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file) {
+  Context context;
+  writeHexMesh(mesh, file, context);
+}
+
+void requireHexMeshFormat(const std::filesystem::path& file) {
+  static_cast<void>(hexMeshFormat(file));
+}
+
+}  // namespace hexhex

@@ -1,0 +1,30 @@
+// The table of file formats by extension. A new format is one file beside this one and one line in
+// registry.cpp.
+#pragma once
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
+
+#include <filesystem>
+#include <string_view>
+
+namespace hexhex {
+
+struct MapFormat {
+  std::string_view extension;  ///< in lower case, with the dot
+  TetMap (*read)(const std::filesystem::path& file, Context& context);
+  void (*write)(const TetMap& map, const std::filesystem::path& file);
+};
+
+struct HexMeshFormat {
+  std::string_view extension;  ///< in lower case, with the dot
+  HexMesh (*read)(const std::filesystem::path& file, Context& context);
+  void (*write)(const HexMesh& mesh, const std::filesystem::path& file, Context& context);
+};
+
+/// The format of a file by its extension.
+/// @throws Error FileUnsupported, naming the extensions that are known
+[[nodiscard]] const MapFormat& mapFormat(const std::filesystem::path& file);
+[[nodiscard]] const HexMeshFormat& hexMeshFormat(const std::filesystem::path& file);
+
+}  // namespace hexhex

@@ -1,0 +1,30 @@
+// `.vtu`: VTK XML unstructured grid. Written with raw binary data appended, which ParaView and VTK
+// read without conversion.
+#pragma once
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace hexhex {
+
+/// Reads points and hexahedra (cell type 12); other cells and arrays are ignored. Data may be raw
+/// appended or ascii; compressed and base64 files are not supported.
+/// @throws Error FileNotFound, FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite
+[[nodiscard]] HexMesh readVtu(const std::filesystem::path& file, Context& context);
+
+/// The same from memory.
+/// @param fileName  for error messages
+[[nodiscard]] HexMesh parseVtu(std::string_view text, const std::string& fileName,
+                               Context& context);
+
+/// Writes points (Float64), hexahedra, the cell array `scaled_jacobian` (Float64) and, if the mesh
+/// knows where its vertices came from, the point array `generator_kind` (UInt8: 0 vertex, 1 edge,
+/// 2 face, 3 cell).
+/// @throws Error FileWrite
+void writeVtu(const HexMesh& mesh, const std::filesystem::path& file, Context& context);
+
+}  // namespace hexhex

@@ -1,0 +1,104 @@
+// The 24 rotations of the integer grid.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <lattice/direction.hpp>
+
+namespace hexhex {
+
+/// One of the 24 orientation-preserving symmetries of the cube, as an index into constant tables.
+/// Rotation 0 is the identity.
+class Rotation {
+ public:
+  static constexpr int kCount = 24;
+
+  constexpr Rotation() = default;
+  constexpr explicit Rotation(int index) : index_(static_cast<std::uint8_t>(index)) {}
+  /// The rotation that sends +x to `x` and +y to `y` (perpendicular directions).
+  static constexpr Rotation fromAxes(Direction x, Direction y);
+
+  [[nodiscard]] constexpr int index() const noexcept { return index_; }
+  [[nodiscard]] constexpr bool isIdentity() const noexcept { return index_ == 0; }
+  [[nodiscard]] constexpr bool operator==(const Rotation&) const = default;
+
+  [[nodiscard]] constexpr Direction operator()(Direction d) const noexcept;
+  template <class Number>
+  [[nodiscard]] constexpr std::array<Number, 3> operator()(
+      const std::array<Number, 3>& v) const noexcept;
+
+  [[nodiscard]] constexpr Rotation inverse() const noexcept;
+  /// Composition: (a * b)(v) = a(b(v)).
+  [[nodiscard]] friend constexpr Rotation operator*(Rotation a, Rotation b) noexcept;
+
+ private:
+  std::uint8_t index_ = 0;
+};
+
+namespace detail {
+
+struct RotationTables {
+  /// image[r][d]: where rotation r sends direction d.
+  std::array<std::array<Direction, kDirections>, Rotation::kCount> image{};
+  /// byAxes[x][y]: the rotation that sends +x to x and +y to y.
+  std::array<std::array<std::uint8_t, kDirections>, kDirections> byAxes{};
+};
+
+constexpr RotationTables makeRotationTables() {
+  RotationTables tables;
+  std::uint8_t count = 0;
+  for (Direction x = 0; x < kDirections; ++x) {
+    for (Direction y = 0; y < kDirections; ++y) {
+      if (axisOf(x) == axisOf(y)) continue;
+      const Direction z = cross(x, y);
+      tables.image[count] = {x, opposite(x), y, opposite(y), z, opposite(z)};
+      tables.byAxes[x][y] = count;
+      ++count;
+    }
+  }
+  return tables;
+}
+
+inline constexpr RotationTables kRotationTables = makeRotationTables();
+
+}  // namespace detail
+
+constexpr Rotation Rotation::fromAxes(Direction x, Direction y) {
+  return Rotation(detail::kRotationTables.byAxes[x][y]);
+}
+
+constexpr Direction Rotation::operator()(Direction d) const noexcept {
+  return detail::kRotationTables.image[index_][d];
+}
+
+template <class Number>
+constexpr std::array<Number, 3> Rotation::operator()(
+    const std::array<Number, 3>& v) const noexcept {
+  std::array<Number, 3> rotated{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Direction d = detail::kRotationTables.image[index_][2 * axis];
+    rotated[static_cast<std::size_t>(axisOf(d))] = signOf(d) < 0 ? -v[axis] : v[axis];
+  }
+  return rotated;
+}
+
+constexpr Rotation operator*(Rotation a, Rotation b) noexcept {
+  return Rotation::fromAxes(a(b(Direction{0})), a(b(Direction{2})));
+}
+
+constexpr Rotation Rotation::inverse() const noexcept {
+  Direction x = 0;
+  Direction y = 0;
+  for (Direction d = 0; d < kDirections; ++d) {
+    if ((*this)(d) == 0) x = d;
+    if ((*this)(d) == 2) y = d;
+  }
+  return fromAxes(x, y);
+}
+
+/// The parameter rotation across a half-face that AlgoHex stores as index 0..23 in its property
+/// `HalffaceTransiton`: the inverse of the rotation by its unit quaternion of that index.
+[[nodiscard]] Rotation rotationFromAlgoHex(int index);
+
+}  // namespace hexhex

@@ -1,0 +1,115 @@
+// One tet in its chart, on the dyadic lattice: corners, faces, and the exact predicates of
+// Appendix A.
+//
+// Coordinates are 64-bit integers: parameters times a power of two, `unit`. They stay below 2^60 in
+// magnitude, so differences fit 61 bits, components of face normals (2x2 minors) 124 bits, and
+// orientation determinants 187 bits.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <lattice/direction.hpp>
+#include <lattice/wide_int.hpp>
+
+namespace hexhex {
+
+/// A parameter times `unit`.
+using LatticePoint = std::array<std::int64_t, 3>;
+using LatticeTet = std::array<LatticePoint, 4>;
+
+/// A simplex of a tet as the set of its corners: bit i for corner i. 0 is no simplex, 15 the tet.
+using CornerMask = std::uint8_t;
+inline constexpr CornerMask kNoSimplex = 0;
+inline constexpr CornerMask kWholeTet = 15;
+
+[[nodiscard]] constexpr int dimension(CornerMask mask) noexcept {
+  return std::popcount(static_cast<unsigned>(mask)) - 1;
+}
+[[nodiscard]] constexpr bool contains(CornerMask mask, int corner) noexcept {
+  return ((mask >> corner) & 1) != 0;
+}
+[[nodiscard]] constexpr CornerMask cornerBit(int corner) noexcept {
+  return static_cast<CornerMask>(1 << corner);
+}
+/// The face opposite a corner.
+[[nodiscard]] constexpr CornerMask faceMask(int opposite) noexcept {
+  return static_cast<CornerMask>(kWholeTet ^ (1 << opposite));
+}
+
+/// Corners of the face opposite corner f, in the order in which the right-hand normal points to
+/// corner f, i.e. into the (positive) tet.
+inline constexpr std::array<std::array<int, 3>, 4> kFaceCorners = {
+    {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
+
+[[nodiscard]] constexpr LatticePoint operator-(const LatticePoint& a,
+                                               const LatticePoint& b) noexcept {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+/// Component `axis` of the cross product a x b, exact.
+[[nodiscard]] constexpr Int128 crossComponent(const LatticePoint& a, const LatticePoint& b,
+                                              std::size_t axis) noexcept {
+  const std::size_t j = axis == 2 ? 0 : axis + 1;
+  const std::size_t k = axis == 0 ? 2 : axis - 1;
+  return static_cast<Int128>(a[j]) * b[k] - static_cast<Int128>(a[k]) * b[j];
+}
+
+/// det(b - a, c - a, d - a), exact: six times the signed volume, times unit^3. Positive if d lies
+/// on the side of the triangle a b c to which its right-hand normal points (ori3D of the paper,
+/// with the sign that makes tets of a valid map positive).
+[[nodiscard]] Int192 orientationDeterminant(const LatticePoint& a, const LatticePoint& b,
+                                            const LatticePoint& c, const LatticePoint& d) noexcept;
+
+/// Sign of the same: a floating-point filter, then exact arithmetic.
+[[nodiscard]] int orientation(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c,
+                              const LatticePoint& d) noexcept;
+
+/// Signs of the components of the four inward face normals of a tet. They decide exactly how
+/// directions lie to faces, which is all that Holder (A.2) and Casing (A.3) ask.
+class NormalSigns {
+ public:
+  NormalSigns() = default;
+  explicit NormalSigns(const LatticeTet& corners) noexcept;
+
+  /// Sign of the scalar product of the inward normal of face f with a direction.
+  [[nodiscard]] constexpr int dot(int face, Direction d) const noexcept {
+    const unsigned bits = (packed_ >> (2 * (3 * face + axisOf(d)))) & 3U;
+    return (static_cast<int>(bits) - 1) * signOf(d);
+  }
+
+ private:
+  std::uint32_t packed_ = 0;  // 2 bits each: sign + 1
+};
+
+/// The simplex of the tet into which the ray from an inner point of simplex `generator` in
+/// direction d1 leads, or kNoSimplex if the ray leaves the tet at once. (Algorithm 4)
+[[nodiscard]] CornerMask holder(const NormalSigns& signs, CornerMask generator,
+                                Direction d1) noexcept;
+
+/// The simplex of the tet into which the quarter plane spanned by d1 and d2 leads, close to the ray
+/// in direction d1, from an inner point of simplex `generator`; kNoSimplex if it leaves the tet.
+/// (Algorithm 5, for holder and casing in one)
+[[nodiscard]] CornerMask casing(const NormalSigns& signs, CornerMask generator, Direction d1,
+                                Direction d2) noexcept;
+
+/// Result of the exit searches below: no face is crossed.
+inline constexpr int kStaysInside = -1;
+/// ... or the search fails, which a valid map excludes.
+inline constexpr int kNoExit = -2;
+
+/// Turning from direction d1 to the perpendicular direction d2 around an inner point of `simplex`,
+/// where d1 (and the beginning of the turn) lies in the tet: the face through which the turn leaves
+/// the tet before it reaches d2, or kStaysInside. A turn that leaves through an edge may take
+/// either of its faces. (Algorithm 7)
+[[nodiscard]] int exitOfTurn(const LatticeTet& corners, const NormalSigns& signs,
+                             CornerMask simplex, Direction d1, Direction d2) noexcept;
+
+/// Going from grid point z in direction d1, shifted infinitesimally in direction d2: the face
+/// through which the line leaves the tet, or kNoExit if it does not pass through the tet. Must not
+/// go back through face `entered` (-1: none). (Algorithm 9)
+[[nodiscard]] int exitOfLine(const LatticeTet& corners, const NormalSigns& signs,
+                             const GridPoint& z, std::int64_t unit, Direction d1, Direction d2,
+                             int entered) noexcept;
+
+}  // namespace hexhex

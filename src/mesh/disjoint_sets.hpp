@@ -1,0 +1,71 @@
+// Connected components by union-find, from many threads at once.
+#pragma once
+
+#include <hexhex/types.hpp>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+
+namespace hexhex {
+
+/// Sets of elements 0 .. n-1, each element in its own set at first. The representative of a set is
+/// its smallest element, whatever the order of calls, so results do not depend on threads.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t n) : parents_(n) {
+    std::iota(parents_.begin(), parents_.end(), Index{0});
+  }
+
+  /// The smallest element of the set of `element`. Thread-safe.
+  [[nodiscard]] Index find(Index element) {
+    Index parent = load(element);
+    while (parent != element) {
+      // Halve the path: the grandparent is in the same set, so skipping to it is always right.
+      const Index grandparent = load(parent);
+      if (grandparent != parent) {
+        std::atomic_ref(parents_[element])
+            .compare_exchange_weak(parent, grandparent, std::memory_order_relaxed);
+      }
+      element = grandparent;
+      parent = load(element);
+    }
+    return element;
+  }
+
+  /// Merges the sets of two elements. Thread-safe.
+  void unite(Index a, Index b) {
+    while (true) {
+      a = find(a);
+      b = find(b);
+      if (a == b) return;
+      if (a < b) std::swap(a, b);
+      // Parents are always smaller, so there are no cycles; if `a` lost its root status to another
+      // thread in the meantime, the exchange fails and we look again.
+      Index expected = a;
+      if (std::atomic_ref(parents_[a])
+              .compare_exchange_strong(expected, b, std::memory_order_relaxed)) {
+        return;
+      }
+    }
+  }
+
+  /// Number of sets. Not while others call unite().
+  [[nodiscard]] std::uint64_t count() const noexcept {
+    std::uint64_t roots = 0;
+    for (std::size_t i = 0; i < parents_.size(); ++i) {
+      if (parents_[i] == i) ++roots;
+    }
+    return roots;
+  }
+
+ private:
+  [[nodiscard]] Index load(Index element) {
+    return std::atomic_ref(parents_[element]).load(std::memory_order_relaxed);
+  }
+
+  Array<Index> parents_;
+};
+
+}  // namespace hexhex

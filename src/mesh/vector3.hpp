@@ -1,0 +1,28 @@
+// The little vector arithmetic that measuring a mesh takes.
+#pragma once
+
+#include <hexhex/types.hpp>
+
+#include <cmath>
+
+namespace hexhex {
+
+[[nodiscard]] constexpr Vec3 minus(const Vec3& a, const Vec3& b) noexcept {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+[[nodiscard]] constexpr Vec3 plus(const Vec3& a, const Vec3& b) noexcept {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+[[nodiscard]] constexpr double dot(const Vec3& a, const Vec3& b) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+[[nodiscard]] constexpr Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+[[nodiscard]] inline double length(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }
+
+}  // namespace hexhex

@@ -1,0 +1,76 @@
+// A counting sort of all cell corners by their vertex.
+#include <hexhex/error.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <base/parallel.hpp>
+#include <mesh/vertex_cells.hpp>
+#include <string>
+
+namespace hexhex {
+namespace {
+
+/// Elements per block: enough to make the cost of a block's start negligible.
+constexpr std::size_t kGrain = 4096;
+
+/// Throws unless every corner is a vertex and cell numbers fit an Index.
+void requireIndexable(const HexMesh& mesh, Stage& stage) {
+  if (mesh.cells.size() >= kNone) {
+    throw Error(ErrorCode::TooLarge,
+                "The mesh has " + std::to_string(mesh.cells.size()) +
+                    " cells, but its faces can be found for fewer than 2^32 - 1 cells only. Split "
+                    "the mesh or use a smaller scale.");
+  }
+  const std::size_t bad = firstCellOutOfRange(mesh, stage);
+  if (bad < mesh.cells.size()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "Cell " + std::to_string(bad) +
+                    " of the hexahedral mesh names a vertex that does not exist (the mesh has " +
+                    std::to_string(mesh.points.size()) + " vertices). Correct the cell.",
+                Place{PlaceKind::Cell, bad, 0});
+  }
+}
+
+}  // namespace
+
+std::size_t firstCellOutOfRange(const HexMesh& mesh, Stage& stage) {
+  std::atomic<std::size_t> first{mesh.cells.size()};
+  parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
+    const Hex& cell = mesh.cells[c];
+    if (*std::max_element(cell.begin(), cell.end()) < mesh.points.size()) return;
+    std::size_t known = first.load(std::memory_order_relaxed);
+    while (c < known && !first.compare_exchange_weak(known, c, std::memory_order_relaxed)) {
+    }
+  });
+  return first.load();
+}
+
+VertexCells::VertexCells(const HexMesh& mesh, Stage& stage) {
+  requireIndexable(mesh, stage);
+  const std::size_t vertices = mesh.points.size();
+  // Slot v + 1 counts the cells of v, becomes their beginning, and while they are filled in moves
+  // on to their end, which is what stays there.
+  ends_.resize(vertices + 1);
+  std::fill(ends_.begin(), ends_.end(), 0);
+  parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
+    for (const Index v : mesh.cells[c]) {
+      std::atomic_ref(ends_[v + std::size_t{1}]).fetch_add(1, std::memory_order_relaxed);
+    }
+  });
+  exclusiveScan(std::span(ends_).subspan(1));
+  cells_.resize(8 * mesh.cells.size());
+  parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
+    for (const Index v : mesh.cells[c]) {
+      const std::uint64_t place =
+          std::atomic_ref(ends_[v + std::size_t{1}]).fetch_add(1, std::memory_order_relaxed);
+      cells_[place] = static_cast<Index>(c);
+    }
+  });
+  // Threads fill in any order; sorting makes the table the same for any number of them.
+  parallelFor(stage, vertices, kGrain, [&](std::size_t v) {
+    std::sort(cells_.begin() + static_cast<std::ptrdiff_t>(ends_[v]),
+              cells_.begin() + static_cast<std::ptrdiff_t>(ends_[v + 1]));
+  });
+}
+
+}  // namespace hexhex

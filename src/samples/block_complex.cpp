@@ -1,0 +1,208 @@
+// Builds the coarse complex: cells first, then what each of them knows about its surroundings.
+#include <hexhex/error.hpp>
+
+#include <algorithm>
+#include <map>
+#include <samples/block_complex.hpp>
+#include <utility>
+
+namespace hexhex::samples {
+
+namespace {
+
+/// The coordinates of a corner of the unit cube.
+Int3 cornerPoint(std::size_t corner) {
+  return {static_cast<std::int64_t>(corner & 1), static_cast<std::int64_t>(corner >> 1 & 1),
+          static_cast<std::int64_t>(corner >> 2 & 1)};
+}
+
+/// The axis across a face.
+std::size_t normalAxis(const BlockPart& face) {
+  return static_cast<std::size_t>(
+      std::find_if(face.digits.begin(), face.digits.end(),
+                   [](int digit) { return digit != BlockPart::kAlong; }) -
+      face.digits.begin());
+}
+
+/// The motion across a face, between the frames of two blocks that are unit cubes. The cell's own
+/// frame is common to both; what points out of one block points into the other.
+Motion motionAcross(const Occurrence& from, const Occurrence& to) {
+  Motion motion;
+  const auto turn = [&motion](const Direction& before, const Direction& after) {
+    motion.rotation.image[before.axis] = {after.axis, before.sign * after.sign};
+  };
+  turn(from.axes[0], to.axes[0]);
+  turn(from.axes[1], to.axes[1]);
+  const std::size_t normalFrom = normalAxis(from.part);
+  const std::size_t normalTo = normalAxis(to.part);
+  turn({normalFrom, from.part.digits[normalFrom] == 1 ? 1 : -1},
+       {normalTo, to.part.digits[normalTo] == 1 ? -1 : 1});
+  if (determinant(motion.rotation) != 1) {
+    throw Error(ErrorCode::Internal,
+                "Two neighbouring blocks of a sample have opposite orientation; please report this "
+                "as a bug.");
+  }
+  motion.translation = cornerPoint(to.origin) - motion.rotation(cornerPoint(from.origin));
+  return motion;
+}
+
+}  // namespace
+
+BlockPart BlockPart::fromCode(std::size_t code) {
+  const int digits = static_cast<int>(code);
+  return {{digits % 3, digits / 3 % 3, digits / 9}};
+}
+
+BlockPart BlockPart::face(std::size_t axis, int side) {
+  BlockPart part{{kAlong, kAlong, kAlong}};
+  part.digits[axis] = side;
+  return part;
+}
+
+std::size_t BlockPart::code() const {
+  return static_cast<std::size_t>(digits[0] + 3 * digits[1] + 9 * digits[2]);
+}
+
+std::size_t BlockPart::dimension() const {
+  return static_cast<std::size_t>(std::count(digits.begin(), digits.end(), kAlong));
+}
+
+bool BlockPart::contains(const BlockPart& part) const {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (digits[a] != kAlong && digits[a] != part.digits[a]) return false;
+  }
+  return true;
+}
+
+std::vector<std::size_t> BlockPart::corners() const {
+  std::vector<std::size_t> result;
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const Int3 point = cornerPoint(corner);
+    const BlockPart cornerPart{
+        {static_cast<int>(point[0]), static_cast<int>(point[1]), static_cast<int>(point[2])}};
+    if (contains(cornerPart)) result.push_back(corner);
+  }
+  return result;
+}
+
+BlockComplex::BlockComplex(std::vector<BlockCorners> blocks) : blocks_(std::move(blocks)) {
+  collectCells();
+  markBoundary();
+  turnStars();
+  restrictFreeAxes();
+}
+
+/// The occurrence with the frame of its cell: the origin is the corner with the smallest vertex,
+/// the axes are in order of the vertices that they lead to. Inside a block: the block's own frame.
+Occurrence BlockComplex::frameOf(std::size_t block, const BlockPart& part) const {
+  const BlockCorners& vertices = blocks_[block];
+  const std::size_t dimension = part.dimension();
+  Occurrence occurrence{block, part, 0, {}, {}};
+  if (dimension < 3) {
+    const std::vector<std::size_t> corners = part.corners();
+    occurrence.origin = *std::min_element(
+        corners.begin(), corners.end(),
+        [&vertices](std::size_t a, std::size_t b) { return vertices[a] < vertices[b]; });
+  }
+  std::vector<std::pair<Index, Direction>> axes;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (part.digits[a] != BlockPart::kAlong) continue;
+    const std::size_t end = occurrence.origin ^ (std::size_t{1} << a);
+    const Index rank = dimension < 3 ? vertices[end] : static_cast<Index>(a);
+    axes.emplace_back(rank, Direction{a, end > occurrence.origin ? 1 : -1});
+  }
+  std::sort(axes.begin(), axes.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t a = 0; a < axes.size(); ++a) occurrence.axes[a] = axes[a].second;
+  return occurrence;
+}
+
+void BlockComplex::collectCells() {
+  references_.resize(blocks_.size());
+  std::map<std::vector<Index>, std::size_t> cellOfVertices;
+  for (std::size_t dimension = 0; dimension <= 3; ++dimension) {
+    for (std::size_t block = 0; block < blocks_.size(); ++block) {
+      for (std::size_t code = 0; code < BlockPart::kCount; ++code) {
+        const BlockPart part = BlockPart::fromCode(code);
+        if (part.dimension() != dimension) continue;
+        std::vector<Index> vertices;
+        for (const std::size_t corner : part.corners()) vertices.push_back(blocks_[block][corner]);
+        std::sort(vertices.begin(), vertices.end());
+        const auto [entry, isNew] = cellOfVertices.try_emplace(vertices, cells_.size());
+        if (isNew) cells_.emplace_back().dimension = dimension;
+        CoarseCell& cell = cells_[entry->second];
+        references_[block][code] = {entry->second, cell.occurrences.size()};
+        cell.occurrences.push_back(frameOf(block, part));
+      }
+    }
+  }
+}
+
+void BlockComplex::markBoundary() {
+  for (const CoarseCell& face : cells_) {
+    if (face.dimension != 2 || face.valence() != 1) continue;
+    const Occurrence& occurrence = face.occurrences.front();
+    for (std::size_t code = 0; code < BlockPart::kCount; ++code) {
+      if (!occurrence.part.contains(BlockPart::fromCode(code))) continue;
+      cells_[references_[occurrence.block][code].cell].boundary = true;
+    }
+  }
+}
+
+std::optional<Neighbour> BlockComplex::neighbour(std::size_t block, std::size_t axis,
+                                                 int side) const {
+  const CellReference face = find(block, BlockPart::face(axis, side));
+  const std::vector<Occurrence>& sides = cells_[face.cell].occurrences;
+  if (sides.size() < 2) return std::nullopt;
+  const Occurrence& here = sides[face.occurrence];
+  const Occurrence& there = sides[1 - face.occurrence];
+  return Neighbour{there.block, motionAcross(here, there)};
+}
+
+/// Carries the frame of the first block around each cell to the others, through faces at the cell.
+/// (Around a singular edge the result depends on the way, but only in axes that are not free.)
+void BlockComplex::turnStars() {
+  for (CoarseCell& cell : cells_) {
+    std::vector<std::size_t> reached = {0};
+    std::vector<bool> seen(cell.occurrences.size(), false);
+    seen[0] = true;
+    for (std::size_t next = 0; next < reached.size(); ++next) {
+      const Occurrence from = cell.occurrences[reached[next]];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int side = from.part.digits[axis];
+        if (side == BlockPart::kAlong) continue;
+        const std::optional<Neighbour> other = neighbour(from.block, axis, side);
+        if (!other) continue;
+        for (std::size_t to = 0; to < cell.occurrences.size(); ++to) {
+          if (seen[to] || cell.occurrences[to].block != other->block) continue;
+          seen[to] = true;
+          cell.occurrences[to].fromFirst = compose(other->motion.rotation, from.fromFirst);
+          reached.push_back(to);
+        }
+      }
+    }
+  }
+}
+
+/// Points of the boundary stay on their integer plane; points of singular edges on their integer
+/// line; and so does every point where such planes and lines meet.
+void BlockComplex::restrictFreeAxes() {
+  for (CoarseCell& cell : cells_) {
+    for (const Occurrence& occurrence : cell.occurrences) {
+      const Rotation toFirst = inverse(occurrence.fromFirst);
+      for (std::size_t code = 0; code < BlockPart::kCount; ++code) {
+        const BlockPart around = BlockPart::fromCode(code);
+        if (!around.contains(occurrence.part)) continue;
+        const CoarseCell& other = cells_[references_[occurrence.block][code].cell];
+        const bool fixing =
+            (other.dimension == 2 && other.boundary) || (other.dimension == 1 && other.singular());
+        if (!fixing) continue;
+        for (std::size_t a = 0; a < 3; ++a) {
+          if (around.digits[a] != BlockPart::kAlong) cell.free[toFirst.image[a].axis] = false;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace hexhex::samples

@@ -1,0 +1,137 @@
+// The public functions of the samples: checks the options and chains the steps.
+#include <hexhex/error.hpp>
+#include <hexhex/samples.hpp>
+
+#include <algorithm>
+#include <array>
+#include <new>
+#include <samples/charts.hpp>
+#include <samples/expected_answer.hpp>
+#include <samples/kinds.hpp>
+#include <samples/perturbation.hpp>
+#include <samples/tet_grid.hpp>
+#include <string>
+#include <utility>
+
+namespace hexhex {
+
+namespace {
+
+constexpr std::array<SampleKindName, 8> kKinds = {{
+    {SampleKind::Box, "box", "2 x 2 x 2 blocks, regular"},
+    {SampleKind::Cylinder, "cylinder", "5-block O-grid, four inner edges of valence 3"},
+    {SampleKind::Sphere, "sphere",
+     "7-block O-grid, valence 3 along the inner cube's edges and its rays"},
+    {SampleKind::Star, "star", "column with one inner edge of any valence from 3"},
+    {SampleKind::Tetrahedron, "tetrahedron",
+     "4 blocks, four edges of valence 3 that meet in the centre"},
+    {SampleKind::Torus, "torus", "solid torus (genus 1), O-grid section"},
+    {SampleKind::Shell, "shell", "spherical shell, 6 blocks: a cavity, two boundary components"},
+    {SampleKind::HandleBody, "handle-body", "plate with two holes, genus 2"},
+}};
+
+/// Beyond, the number of hexahedra of a sample would hardly mean anything; the parameters inside a
+/// block stay below 2^30 units.
+constexpr int kMaxCells = 10000;
+/// See kUnitsPerCell.
+constexpr int kMaxRefine = 500;
+constexpr int kMinValence = 3;
+constexpr int kMaxValence = 12;
+constexpr double kMaxOffset = 1e9;
+constexpr double kNoiseEnd = 0.25;
+/// With sides h of a sub-block and differences of corners that change by d, the determinant h^3 / 2
+/// of its tets changes by at most 3 d h^2 + 7 d^2 h + 4 d^3. That leaves them positive for d = h /
+/// 8, so for noise of h / 16; divided by kNoiseReserve, and something for the rounding of h to
+/// units.
+constexpr double kNoisePerSubBlock = 1 / (18 * samples::kNoiseReserve);
+
+void requireInteger(const char* option, int value, int least, int greatest) {
+  if (value >= least && value <= greatest) return;
+  throw Error(ErrorCode::InvalidArgument, std::string("The option '") + option +
+                                              "' of a sample is " + std::to_string(value) +
+                                              "; choose a number from " + std::to_string(least) +
+                                              " to " + std::to_string(greatest) + ".");
+}
+
+/// @param legal  written so that it is false for NaN
+void requireReal(const char* option, double value, bool legal, const char* range) {
+  if (legal) return;
+  throw Error(ErrorCode::InvalidArgument, std::string("The option '") + option +
+                                              "' of a sample is " + std::to_string(value) +
+                                              "; choose a number " + range + ".");
+}
+
+void requireLegal(SampleKind kind, const SampleOptions& options) {
+  const bool known = std::any_of(kKinds.begin(), kKinds.end(), [kind](const SampleKindName& entry) {
+    return entry.kind == kind;
+  });
+  const bool styleKnown = options.charts == ChartStyle::Aligned ||
+                          options.charts == ChartStyle::Blocks ||
+                          options.charts == ChartStyle::Random;
+  if (!known || !styleKnown) {
+    throw Error(ErrorCode::InvalidArgument,
+                "The kind or the chart style of a sample is not one of the enumerators; choose one "
+                "of those declared in hexhex/samples.hpp.");
+  }
+  requireInteger("cells", options.cells, 1, kMaxCells);
+  requireInteger("refine", options.refine, 1, kMaxRefine);
+  if (kind == SampleKind::Star) {
+    requireInteger("valence", options.valence, kMinValence, kMaxValence);
+  }
+  const auto within = [](double value, double end) { return value >= 0 && value <= end; };
+  requireReal("jitter", options.jitter, within(options.jitter, 1), "from 0 to 1");
+  requireReal("onLattice", options.onLattice, within(options.onLattice, 1), "from 0 to 1");
+  requireReal("offset", options.offset, within(options.offset, kMaxOffset), "from 0 to 1e9");
+  requireReal("noise", options.noise, options.noise >= 0 && options.noise < kNoiseEnd,
+              "from 0 to below 0.25");
+  const double limit = kNoisePerSubBlock * options.cells / options.refine;
+  if (options.noise > limit) {
+    throw Error(ErrorCode::InvalidArgument,
+                "The option 'noise' of a sample is " + std::to_string(options.noise) +
+                    ", which could flip tets; with " + std::to_string(options.cells) +
+                    " cells and refine " + std::to_string(options.refine) +
+                    " choose a number from 0 to " + std::to_string(limit) +
+                    ", or more cells, or a smaller refine.");
+  }
+}
+
+void requireIndexable(std::size_t blocks, int refine) {
+  const auto perEdge = static_cast<std::uint64_t>(refine);
+  const std::uint64_t tets = 12 * blocks * perEdge * perEdge * perEdge;
+  if (tets < kNone) return;
+  throw Error(ErrorCode::TooLarge, "A sample of " + std::to_string(blocks) +
+                                       " blocks with refine " + std::to_string(refine) +
+                                       " would have " + std::to_string(tets) +
+                                       " tets, more than 32-bit indices can count; choose a "
+                                       "smaller refine.");
+}
+
+}  // namespace
+
+std::span<const SampleKindName> sampleKinds() noexcept { return kKinds; }
+
+Sample generateSample(SampleKind kind, const SampleOptions& options) try {
+  requireLegal(kind, options);
+  const samples::BlockModel model = samples::blockModel(kind, options.valence);
+  requireIndexable(model.blocks.size(), options.refine);
+  const samples::BlockComplex complex(model.blocks);
+
+  samples::TetGrid grid(model, complex, options.cells, options.refine);
+  if (options.jitter > 0) {
+    samples::jitter(grid, complex, options.jitter, options.noise, options.seed);
+  }
+  if (options.onLattice > 0) {
+    samples::roundToLattice(grid, complex, options.onLattice, options.noise, options.seed);
+  }
+
+  Sample sample;
+  sample.answer = samples::expectedAnswer(complex, static_cast<std::uint64_t>(options.cells));
+  sample.map = samples::mapWithCharts(std::move(grid), complex, options);
+  return sample;
+} catch (const std::bad_alloc&) {
+  throw Error(
+      ErrorCode::OutOfMemory,
+      "The memory of this machine does not suffice for the sample; choose a smaller refine.");
+}
+
+}  // namespace hexhex

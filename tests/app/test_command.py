@@ -1,0 +1,360 @@
+#!/usr/bin/env python3
+"""End-to-end test of the hexhex command: exit codes, messages, files, reports.
+
+    test_command.py PATH-OF-HEXHEX [unittest options]
+
+Needs nothing but Python's standard library.
+"""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+SUCCESS, INVALID_MAP, BAD_USAGE, FILE_PROBLEM, FAILURE, INTERRUPTED = 0, 1, 2, 3, 4, 130
+
+# One tet: the map is valid as a file, but its boundary is not on integer planes.
+ONE_TET = """4
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+1
+0 1 2 3 0 0 0 1 0 0 0 1 0 0 0 1
+"""
+
+KINDS = ["box", "cylinder", "sphere", "star", "tetrahedron", "torus", "shell", "handle-body"]
+
+REPORT_KEYS = {
+    "hexhex_version", "input", "output", "extract_seconds", "cells", "vertices", "tets", "points",
+    "scale", "threads", "epsilon", "epsilon_fallback", "stages", "peak_memory_bytes", "generators",
+    "vertices_by_generator", "local_propellers", "global_propellers", "singular_edges",
+    "chart_jumps", "inner_faces", "max_displacement", "max_transition_residual", "mirrored",
+    "tets_inverted_in_space", "quality", "verification",
+}
+
+
+class CommandTest(unittest.TestCase):
+    """Runs the command in an empty folder."""
+
+    command = None
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="hexhex-test-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def run_command(self, *arguments, expect=SUCCESS, **options):
+        result = subprocess.run([self.command, *map(str, arguments)], cwd=self.folder, text=True,
+                                capture_output=True, timeout=600, check=False, **options)
+        self.assertEqual(result.returncode, expect,
+                         f"{arguments}\n{result.stdout}\n{result.stderr}")
+        return result
+
+    def assert_fails(self, *arguments, expect, words=(), code=None):
+        """The command fails with one sentence, and the folder stays as it was."""
+        before = self.files()
+        result = self.run_command(*arguments, "--quiet", expect=expect)
+        self.assertEqual(self.files(), before)
+        self.assertEqual(result.stdout, "")
+        self.assertTrue(result.stderr.startswith("hexhex: error: "), result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+        if code:
+            self.assertRegex(result.stderr.rstrip(), rf"\[{code}(, [^\]]+)?\]$")
+
+    def files(self):
+        return {path.name: path.read_bytes() for path in self.folder.iterdir() if path.is_file()}
+
+    def write(self, name, text):
+        data = text if isinstance(text, bytes) else text.encode()
+        (self.folder / name).write_bytes(data)
+        return name
+
+    def generate(self, kind, *options, name="map.hexex"):
+        self.run_command("generate", kind, "-o", name, "--quiet", *options)
+        return name
+
+
+class Help(CommandTest):
+    def test_help_and_version(self):
+        text = self.run_command("--help").stdout
+        for word in ["extract", "check", "verify", "generate", "info", "Exit codes", "Examples"]:
+            self.assertIn(word, text)
+        self.assertRegex(self.run_command("--version").stdout, r"^hexhex \d+\.\d+\.\d+\n$")
+        for subcommand in ["extract", "check", "verify", "generate", "info"]:
+            self.assertIn("Example", self.run_command(subcommand, "--help").stdout)
+
+    def test_help_lists_every_kind(self):
+        text = self.run_command("generate", "--help").stdout
+        for kind in KINDS:
+            self.assertIn(f"\n  {kind} ", text)
+
+
+class BadUsage(CommandTest):
+    def test_wrong_options(self):
+        self.write("map.hexex", ONE_TET)
+        for arguments in [
+            [], ["explode"], ["extract"], ["extract", "map.hexex"],
+            ["extract", "map.hexex", "-o", "a.vtu", "--colour", "red"],
+            ["extract", "map.hexex", "-o", "a.vtu", "--scale", "0"],
+            ["extract", "map.hexex", "-o", "a.vtu", "--scale", "1.5"],
+            ["extract", "map.hexex", "-o", "a.vtu", "--threads", "-1"],
+            ["extract", "map.hexex", "-o", "a.vtu", "--epsilon", "small"],
+            ["extract", "map.hexex", "-o", "a.vtu", "--epsilon", "-1"],
+            ["extract", "map.hexex", "-o", "a.vtu", "--tolerance", "0.25"],
+            ["check", "map.hexex", "--tolerance", "nan"],
+            ["generate", "pyramid", "-o", "a.hexex"],
+            ["generate", "box", "-o", "a.hexex", "--charts", "odd"],
+            ["generate", "box", "-o", "a.hexex", "--cells", "0"],
+            ["generate", "star", "-o", "a.hexex", "--valence", "2"],
+            ["generate", "star", "-o", "a.hexex", "--valence", "13"],
+            ["generate", "box", "-o", "a.hexex", "--jitter", "2"],
+            ["verify", "map.hexex"], ["info"],
+        ]:
+            with self.subTest(arguments=arguments):
+                result = self.run_command(*arguments, expect=BAD_USAGE)
+                self.assertIn("hexhex: error: ", result.stderr)
+                self.assertEqual(set(self.files()), {"map.hexex"})
+
+
+class FileProblems(CommandTest):
+    def test_missing_input(self):
+        words = ["missing.hexex", "No such file"]
+        for arguments in [["extract", "missing.hexex", "-o", "a.vtu"], ["check", "missing.hexex"]]:
+            self.assert_fails(*arguments, expect=FILE_PROBLEM, words=words, code="FileNotFound")
+
+    def test_broken_input(self):
+        broken = {
+            "empty": (b"", "FileSyntax"),
+            "garbage": (bytes(range(256)), "FileSyntax"),
+            "short": (ONE_TET[:40].encode(), "FileSyntax"),
+            "letters": (ONE_TET.replace("0 1 0\n", "0 one 0\n").encode(), "FileSyntax"),
+            "huge": (b"999999999999\n0 0 0\n", "FileSyntax"),
+            "infinite": (ONE_TET.replace("0 1 0\n", "0 inf 0\n").encode(), "NotFinite"),
+            "index": (ONE_TET.replace("0 1 2 3", "0 1 2 4").encode(), "IndexOutOfRange"),
+        }
+        for name, (content, code) in broken.items():
+            with self.subTest(name=name):
+                file = self.write(f"{name}.hexex", content)
+                self.assert_fails("extract", file, "-o", "a.vtu", expect=FILE_PROBLEM,
+                                  words=[f"{name}.hexex, line "], code=code)
+
+    def test_folder_as_input(self):
+        (self.folder / "folder.hexex").mkdir()
+        self.assert_fails("check", "folder.hexex", expect=FILE_PROBLEM, words=["folder"],
+                          code="FileNotFound")
+
+    def test_unknown_extensions(self):
+        self.write("map.hexex", ONE_TET)
+        words = [".mesh, .vtu"]
+        self.assert_fails("extract", "map.hexex", "-o", "a.obj", expect=FILE_PROBLEM, words=words,
+                          code="FileUnsupported")
+        self.assert_fails("extract", "map.hexex", "-o", "a", expect=FILE_PROBLEM, words=words,
+                          code="FileUnsupported")
+        self.assert_fails("generate", "box", "-o", "a.vtu", expect=FILE_PROBLEM,
+                          words=[".hexex"], code="FileUnsupported")
+        self.run_command("info", self.write("a.png", ""), expect=FILE_PROBLEM)
+
+    def test_unwritable_output(self):
+        map_file = self.generate("box", "--cells", "1", "--refine", "1")
+        (self.folder / "taken.vtu").mkdir()
+        for output in ["missing/a.vtu", "map.hexex/a.vtu", "taken.vtu"]:
+            with self.subTest(output=output):
+                self.assert_fails("extract", map_file, "-o", output, expect=FILE_PROBLEM,
+                                  words=[output], code="FileWrite")
+        self.assert_fails("extract", map_file, "-o", "a.vtu", "--report", "missing/r.json",
+                          expect=FILE_PROBLEM, words=["missing/r.json"], code="FileWrite")
+        self.assert_fails("generate", "box", "-o", "missing/a.hexex", expect=FILE_PROBLEM,
+                          words=["missing"], code="FileWrite")
+
+    @unittest.skipIf(os.geteuid() == 0, "the superuser may write anywhere")
+    def test_folder_without_permission(self):
+        map_file = self.generate("box", "--cells", "1", "--refine", "1")
+        locked = self.folder / "locked"
+        locked.mkdir(mode=0o555)
+        self.assert_fails("extract", map_file, "-o", "locked/a.vtu", expect=FILE_PROBLEM,
+                          words=["Permission denied"], code="FileWrite")
+
+    def test_full_disk(self):
+        map_file = self.generate("box", "--cells", "8", "--refine", "1")
+
+        def limit_file_size():
+            import resource
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+
+        for output in ["a.vtu", "a.mesh"]:
+            before = self.files()
+            result = self.run_command("extract", map_file, "-o", output, expect=FILE_PROBLEM,
+                                      preexec_fn=limit_file_size)
+            self.assertIn("File too large. [FileWrite]", result.stderr)
+            self.assertEqual(self.files(), before)
+
+    def test_old_output_survives_failure(self):
+        map_file = self.write("map.hexex", ONE_TET)
+        self.write("a.vtu", "old")
+        self.assert_fails("extract", map_file, "-o", "a.vtu", expect=INVALID_MAP)
+        self.assertEqual((self.folder / "a.vtu").read_text(), "old")
+
+    def test_standard_output_that_is_full(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("no /dev/full")
+        map_file = self.write("map.hexex", ONE_TET)
+        with open("/dev/full", "w", encoding="ascii") as full:
+            process = subprocess.run([self.command, "info", map_file], cwd=self.folder,
+                                     stdout=full, stderr=subprocess.PIPE, check=False, text=True)
+        self.assertEqual(process.returncode, FILE_PROBLEM)
+        self.assertIn("standard output", process.stderr)
+
+
+class InvalidMaps(CommandTest):
+    def test_boundary_off_the_lattice(self):
+        map_file = self.write("map.hexex", ONE_TET)
+        self.assert_fails("extract", map_file, "-o", "a.vtu", expect=INVALID_MAP,
+                          code="BoundaryOffLattice")
+        result = self.run_command("check", map_file, expect=INVALID_MAP)
+        self.assertIn("BoundaryOffLattice", result.stdout)
+
+    def test_flipped_tet(self):
+        lines = (self.folder / self.generate("box")).read_text().splitlines()
+        first = 1 + int(lines[0]) + 1
+        numbers = lines[first].split()
+        # Exchanging the parameters of two corners turns the tet inside out.
+        numbers[4:7], numbers[7:10] = numbers[7:10], numbers[4:7]
+        lines[first] = " ".join(numbers)
+        map_file = self.write("flipped.hexex", "\n".join(lines) + "\n")
+        self.assert_fails("extract", map_file, "-o", "a.vtu", expect=INVALID_MAP)
+        result = self.run_command("check", map_file, "--json", expect=INVALID_MAP)
+        report = json.loads(result.stdout)
+        self.assertFalse(report["valid"])
+        self.assertIsNone(report["expected"])
+        self.assertTrue(report["defects"])
+        for defect in report["defects"]:
+            self.assertEqual(set(defect), {"code", "sentence", "count", "worst"})
+
+    def test_no_tets(self):
+        map_file = self.write("map.hexex", "1\n0 0 0\n0\n")
+        self.assert_fails("extract", map_file, "-o", "a.vtu", expect=INVALID_MAP,
+                          code="EmptyMesh")
+
+
+class Pipeline(CommandTest):
+    def test_every_kind_from_map_to_verified_mesh(self):
+        for kind in KINDS:
+            with self.subTest(kind=kind):
+                map_file = self.generate(kind, "--cells", "2", "--charts", "random", "--jitter",
+                                         "0.3", "--offset", "1000")
+                expected = json.loads(self.run_command("check", map_file, "--json").stdout)
+                self.assertTrue(expected["valid"])
+                for mesh in ["a.vtu", "a.mesh"]:
+                    self.run_command("extract", map_file, "-o", mesh, "--report", "r.json")
+                    report = json.loads((self.folder / "r.json").read_text())
+                    self.assertEqual(report["cells"], expected["expected"]["cells"])
+                    self.assertTrue(report["verification"]["passed"])
+                    table = self.run_command("verify", map_file, mesh).stdout
+                    self.assertIn("The mesh agrees with the map.", table)
+                    self.assertNotIn("FAILED", table)
+                    information = self.run_command("info", mesh).stdout
+                    self.assertRegex(information, rf"cells +{report['cells']}\n")
+
+    def test_generate_prints_the_answer_that_check_computes(self):
+        answer = self.run_command("generate", "star", "-o", "map.hexex", "--valence", "7").stdout
+        check = self.run_command("check", "map.hexex").stdout
+        for label in ["cells", "boundary quads", "inner singular edges",
+                      "boundary singular edges", "Euler characteristic"]:
+            line = next(line for line in answer.splitlines() if line.strip().startswith(label))
+            self.assertIn(line, check)
+        self.assertIn("of valence 7", answer)
+
+    def test_report(self):
+        map_file = self.generate("sphere")
+        self.run_command("extract", map_file, "-o", "a.vtu", "--report", "r.json", "--threads",
+                         "2", "--epsilon", "inf")
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(set(report), REPORT_KEYS)
+        self.assertEqual(report["input"]["bytes"], (self.folder / map_file).stat().st_size)
+        self.assertEqual(report["output"]["bytes"], (self.folder / "a.vtu").stat().st_size)
+        self.assertEqual(report["threads"], 2)
+        self.assertIsNone(report["epsilon"])
+        self.assertGreater(report["extract_seconds"], 0)
+        self.assertGreater(report["peak_memory_bytes"], 1_000_000)
+        self.assertAlmostEqual(sum(stage["share"] for stage in report["stages"]), 1, places=6)
+        self.assertEqual(sum(report["vertices_by_generator"].values()), report["vertices"])
+        self.assertEqual(sum(report["quality"]["histogram"]), report["cells"])
+        self.assertEqual(len(report["quality"]["histogram"]), 20)
+
+    def test_without_verification(self):
+        map_file = self.generate("box")
+        result = self.run_command("extract", map_file, "-o", "a.mesh", "--no-verify", "--report",
+                                  "r.json")
+        self.assertIn("skipped", result.stdout)
+        self.assertIsNone(json.loads((self.folder / "r.json").read_text())["verification"])
+
+    def test_same_bytes_with_any_number_of_threads(self):
+        map_file = self.generate("torus", "--charts", "blocks", "--cells", "5")
+        for extension in ["vtu", "mesh"]:
+            for threads in [1, 2, 3]:
+                self.run_command("extract", map_file, "-o", f"{threads}.{extension}",
+                                 "--threads", threads, "--quiet")
+            files = self.files()
+            self.assertEqual(files[f"1.{extension}"], files[f"2.{extension}"])
+            self.assertEqual(files[f"1.{extension}"], files[f"3.{extension}"])
+
+    def test_scale(self):
+        map_file = self.generate("cylinder", "--cells", "2")
+        cells = []
+        for scale in [1, 2]:
+            self.run_command("extract", map_file, "-o", "a.vtu", "--scale", scale, "--report",
+                             "r.json")
+            self.run_command("verify", map_file, "a.vtu", "--scale", scale)
+            cells.append(json.loads((self.folder / "r.json").read_text())["cells"])
+        self.assertEqual(cells[1], 8 * cells[0])
+        # The mesh at scale 2 does not agree with the map at scale 1.
+        result = self.run_command("verify", map_file, "a.vtu", expect=FAILURE)
+        self.assertIn("FAILED", result.stdout)
+
+    def test_quiet_is_silent(self):
+        map_file = self.generate("box")
+        for arguments in [["generate", "box", "-o", "b.hexex"], ["check", map_file],
+                          ["extract", map_file, "-o", "a.vtu"], ["verify", map_file, "a.vtu"]]:
+            result = self.run_command(*arguments, "--quiet")
+            self.assertEqual(result.stdout + result.stderr, "")
+
+    def test_progress_is_plain_without_a_terminal(self):
+        result = self.run_command("extract", self.generate("box"), "-o", "a.vtu")
+        self.assertNotIn("\r", result.stderr)
+        self.assertIn("hexhex: read map\n", result.stderr)
+
+    def test_nothing_but_the_outputs_is_left(self):
+        map_file = self.generate("box")
+        self.run_command("extract", map_file, "-o", "a.vtu", "--report", "r.json")
+        self.assertEqual(set(self.files()), {"map.hexex", "a.vtu", "r.json"})
+
+
+class Interruption(CommandTest):
+    def test_interrupt_ends_with_a_sentence_and_no_file(self):
+        map_file = self.generate("box", "--cells", "40", "--refine", "8")
+        with subprocess.Popen([self.command, "extract", map_file, "-o", "a.mesh", "--scale", "2"],
+                              cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True) as process:
+            # The first line of progress: the handler is in place, and the work takes seconds.
+            line = process.stderr.readline()
+            time.sleep(0.05)
+            process.send_signal(signal.SIGINT)
+            _, errors = process.communicate(timeout=600)
+        self.assertIn("hexhex: ", line)
+        self.assertEqual(process.returncode, INTERRUPTED, errors)
+        self.assertIn("[Cancelled]", errors)
+        self.assertEqual(set(self.files()), {"map.hexex"})
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    CommandTest.command = os.path.abspath(sys.argv.pop(1))
+    unittest.main()

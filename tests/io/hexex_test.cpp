@@ -1,0 +1,176 @@
+// `.hexex` files: lossless round trips, tolerance, and an error with its line for everything else.
+#include <hexhex/io.hpp>
+
+#include <gtest/gtest.h>
+
+#include <io/hexex.hpp>
+#include <io/io_test_support.hpp>
+#include <string>
+#include <vector>
+
+namespace hexhex::test {
+namespace {
+
+// Lines 1 to 6: four vertices; line 7: one tet.
+const std::string kPoints = "4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+const std::string kTet = "0 1 2 3  0 0 0  1 0 0  0 1 0  0 0 1\n";
+const std::string kOneTet = kPoints + "1\n" + kTet;
+
+TetMap parse(const std::string& text) {
+  Context context;
+  return parseHexex(text, "m.hexex", context);
+}
+
+void expectSame(const TetMap& a, const TetMap& b) {
+  expectSameBits(a.points, b.points);
+  EXPECT_EQ(a.tets, b.tets);
+  ASSERT_EQ(a.parameters.size(), b.parameters.size());
+  for (std::size_t i = 0; i < a.parameters.size(); ++i) {
+    expectSameBits(a.parameters[i], b.parameters[i]);
+  }
+}
+
+TEST(Hexex, RoundTripIsLossless) {
+  const TemporaryFolder folder;
+  TetMap map = smallMap();
+  Random random(1);
+  for (int i = 0; i < 5000; ++i) {
+    map.points.push_back({random.anyDouble(), random.anyDouble(), random.anyDouble()});
+    map.tets.push_back({0, 1, 2, static_cast<Index>(map.points.size() - 1)});
+    map.parameters.push_back(map.parameters.front());
+    map.parameters.back()[3] = {random.anyDouble(), random.anyDouble(), random.anyDouble()};
+  }
+  writeMap(map, folder / "map.hexex");
+  expectSame(map, readMap(folder / "map.hexex"));
+  EXPECT_EQ(folder.fileCount(), 1U);
+}
+
+TEST(Hexex, WritesWhatOthersRead) {
+  const TemporaryFolder folder;
+  TetMap map = parse(kOneTet);
+  map.points[1][0] = 0.1;
+  writeMap(map, folder / "map.hexex");
+  EXPECT_EQ(contentOf(folder / "map.hexex"),
+            "4\n0 0 0\n0.1 0 0\n0 1 0\n0 0 1\n1\n0 1 2 3 0 0 0 1 0 0 0 1 0 0 0 1\n");
+}
+
+TEST(Hexex, AnyWhiteSpaceWillDo) {
+  std::string spaced = kOneTet;
+  for (char& c : spaced) {
+    if (c == '\n') c = '\t';
+  }
+  expectSame(parse(spaced), parse(kOneTet));
+  std::string windows;
+  for (const char c : kOneTet) windows += c == '\n' ? std::string("\r\n\r\n") : std::string(1, c);
+  expectSame(parse(windows), parse(kOneTet));
+  EXPECT_EQ(parse(kOneTet.substr(0, kOneTet.size() - 1)).tets.size(), 1U);
+}
+
+TEST(Hexex, RationalsAndSigns) {
+  const TetMap map = parse(kPoints + "1\n0 1 2 +3  1/3 -2/6 0  +1 -0 .5  1 0 0/5  1e2 3/-4 7\n");
+  EXPECT_EQ(map.parameters[0][0], (Vec3{1.0 / 3, -1.0 / 3, 0}));
+  EXPECT_EQ(map.parameters[0][1], (Vec3{1, 0, 0.5}));
+  EXPECT_EQ(map.parameters[0][3], (Vec3{100, -0.75, 7}));
+}
+
+TEST(Hexex, EmptyMapsAreReadable) { EXPECT_TRUE(parse("0\n0\n").tets.empty()); }
+
+TEST(Hexex, TrailingSectionsAreTolerated) {
+  const std::string features = "1 2 1\n3\n0 1\n1 2\n0 1 2\n";
+  const std::string walls = "2\n0 1 2 0.5\n1 2 3 1/2\n";
+  for (const std::string& rest :
+       {features, walls, walls + features, std::string("0\n"), std::string("0 0 0\n"),
+        std::string("\n\n \n") + walls + "\n" + features, walls + "0 0 0"}) {
+    EXPECT_EQ(parse(kOneTet + rest).tets.size(), 1U) << rest;
+  }
+}
+
+struct BadFile {
+  std::string text;
+  ErrorCode code;
+  std::uint64_t line;
+  std::string words;  ///< part of the sentence
+};
+
+TEST(Hexex, EveryDefectIsNamedWithItsLine) {
+  const std::vector<BadFile> files = {
+      {"", ErrorCode::FileSyntax, 1, "found the end of the file"},
+      {" \n\n", ErrorCode::FileSyntax, 1, "found the end of the file"},
+      {"\x7f"
+       "ELF\x02\x01",
+       ErrorCode::FileSyntax, 1, "the number of vertices, found \"?ELF??\""},
+      {"-4\n", ErrorCode::FileSyntax, 1, "negative"},
+      {"4.0\n", ErrorCode::FileSyntax, 1, "not a whole number"},
+      {"1000000000000\n0 0 0\n", ErrorCode::FileSyntax, 1, "room for at most 1:"},
+      {"99999999999999999999999\n0 0 0\n", ErrorCode::FileSyntax, 1, "room"},
+      {"2\n0.1234567 0 0\n", ErrorCode::FileSyntax, 2, "ends after 1 of 2 vertices"},
+      {"2\n0.1234567 0 0\n1", ErrorCode::FileSyntax, 3, "of vertex 1, found the end of the file"},
+      {"2\n0 0 0\n1 x 0\n1\n", ErrorCode::FileSyntax, 3, "of vertex 1, found \"x\""},
+      {"1\n0 inf 0\n0\n", ErrorCode::NotFinite, 2, "not finite"},
+      {"1\n0 nan 0\n0\n", ErrorCode::NotFinite, 2, "not finite"},
+      {"1\n0 1e999 0\n0\n", ErrorCode::NotFinite, 2, "exceeds"},
+      {"1\n0 1/0 0\n0\n", ErrorCode::FileSyntax, 2, "divides by zero"},
+      {"1\n0 0 1.2.3\n0\n", ErrorCode::FileSyntax, 2, "not a number"},
+      {kPoints, ErrorCode::FileSyntax, 5, "the number of tets, found the end"},
+      {kPoints + "2\n" + kTet, ErrorCode::FileSyntax, 6, "room for at most 1:"},
+      {kPoints + "2\n" + kTet + std::string(40, ' '), ErrorCode::FileSyntax, 7, "1 of 2 tets"},
+      {kPoints + "1\n0 1 2 3.5" + std::string(40, ' '), ErrorCode::FileSyntax, 7, "\"3.5\""},
+      {kPoints + "1\n0 1 2 3 0 0 0 1 0 0 0 1 0 0 0 /", ErrorCode::FileSyntax, 7, "\"/\""},
+      {kPoints + "1\n0 1 2 3 0 0 0 1 0 0 0 1 0 0 0    ", ErrorCode::FileSyntax, 7, "the end"},
+      {kOneTet + "tail\n", ErrorCode::FileSyntax, 8, "\"tail\""},
+      {kOneTet + "1 2\n", ErrorCode::FileSyntax, 8, "expected the end of the file"},
+      {kOneTet + "2\n0 1 2 0.5\n", ErrorCode::FileSyntax, 8, "room"},
+      {kOneTet + "1\n0 1 2 x   \n", ErrorCode::FileSyntax, 9, "distance"},
+      {kOneTet + "1 0 0\n3\n4\n", ErrorCode::FileSyntax, 10, "expected the end of the file"},
+      {kOneTet + "1 0 0\n", ErrorCode::FileSyntax, 8, "a feature vertex, found the end"},
+      {kOneTet + "0 0 999999999\n", ErrorCode::FileSyntax, 8, "room"},
+  };
+  for (const BadFile& file : files) {
+    const Failure failure = failureOf([&] { static_cast<void>(parse(file.text)); });
+    const std::string where = "m.hexex, line " + std::to_string(file.line) + ": ";
+    EXPECT_EQ(name(failure.code), name(file.code)) << failure.sentence;
+    EXPECT_TRUE(failure.sentence.starts_with(where)) << where << " | " << failure.sentence;
+    EXPECT_NE(failure.sentence.find(file.words), std::string::npos)
+        << file.words << " | " << failure.sentence;
+    EXPECT_EQ(failure.place.kind, PlaceKind::Line);
+    EXPECT_EQ(failure.place.index, file.line);
+  }
+}
+
+TEST(Hexex, VerticesOutOfRangeAreNamedWithTetAndLine) {
+  for (const char* vertex : {"4", "-1", "4294967295", "99999999999999999999999"}) {
+    const std::string text = kPoints + "2\n" + kTet + "0 1 " + vertex + kTet.substr(5);
+    const Failure failure = failureOf([&] { static_cast<void>(parse(text)); });
+    EXPECT_EQ(failure.code, ErrorCode::IndexOutOfRange);
+    EXPECT_NE(failure.sentence.find("m.hexex, line 8: tet 1 names vertex " + std::string(vertex)),
+              std::string::npos)
+        << failure.sentence;
+    EXPECT_EQ(toString(failure.place), "tet 1");
+  }
+}
+
+TEST(Hexex, CancellationEndsReading) {
+  Context context;
+  context.cancel();
+  EXPECT_EQ(failureOf([&] { static_cast<void>(parseHexex(kOneTet, "m", context)); }).code,
+            ErrorCode::Cancelled);
+}
+
+TEST(Hexex, WriterRefusesWhatCannotBeReadBack) {
+  const TemporaryFolder folder;
+  TetMap map = smallMap();
+  map.parameters.pop_back();
+  EXPECT_EQ(failureOf([&] { writeMap(map, folder / "m.hexex"); }).code, ErrorCode::InvalidArgument);
+  map = smallMap();
+  map.parameters[1][2][0] = std::numeric_limits<double>::quiet_NaN();
+  const Failure failure = failureOf([&] { writeMap(map, folder / "m.hexex"); });
+  EXPECT_EQ(failure.code, ErrorCode::NotFinite);
+  EXPECT_EQ(toString(failure.place), "tet 1");
+  map = smallMap();
+  map.points[2][1] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(toString(failureOf([&] { writeMap(map, folder / "m.hexex"); }).place), "vertex 2");
+  EXPECT_EQ(folder.fileCount(), 0U);
+}
+
+}  // namespace
+}  // namespace hexhex::test

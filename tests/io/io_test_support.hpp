@@ -1,0 +1,145 @@
+// What the tests of files share: a folder of their own, small meshes, a generator of random
+// numbers, and a way to look at errors.
+#pragma once
+
+#include <hexhex/error.hpp>
+#include <hexhex/types.hpp>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace hexhex::test {
+
+/// An empty folder that vanishes with the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "hexhex-test-XXXXXX").string();
+    path_ = ::mkdtemp(pattern.data());
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
+    return path_ / name;
+  }
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  [[nodiscard]] std::size_t fileCount() const {
+    std::size_t count = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(path_)) ++count;
+    return count;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string contentOf(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::stringstream content;
+  content << stream.rdbuf();
+  return content.str();
+}
+
+inline void writeText(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+/// What a call threw.
+struct Failure {
+  ErrorCode code = ErrorCode::Internal;
+  std::string sentence;
+  Place place;
+};
+
+/// Calls f, which must throw an Error.
+template <class F>
+Failure failureOf(const F& f) {
+  try {
+    f();
+  } catch (const Error& error) {
+    return {error.code(), error.what(), error.place()};
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return {};
+}
+
+/// Splitmix64: the same numbers on every machine.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t next() {
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15U;
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
+    return z ^ (z >> 31U);
+  }
+  /// Uniform enough in [0, n).
+  std::size_t below(std::size_t n) { return next() % n; }
+  /// Any finite double, each bit pattern equally likely.
+  double anyDouble() {
+    while (true) {
+      const auto value = std::bit_cast<double>(next());
+      if (value - value == 0) return value;
+    }
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Two tets that share a face, with awkward numbers.
+inline TetMap smallMap() {
+  TetMap map;
+  map.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1.0 / 3}, {-0.1, 1e-300, 6.02e23}};
+  map.tets = {{0, 1, 2, 3}, {1, 2, 3, 4}};
+  map.parameters = {{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+                    {{{0.1, -0.2, 5e-324}, {1e9, 2, -3}, {0, -0.0, 1}, {1e100, 0.7, 2}}}};
+  return map;
+}
+
+/// A grid of nx by ny by nz hexahedra with coordinates of many digits.
+inline HexMesh gridMesh(Index nx, Index ny, Index nz) {
+  HexMesh mesh;
+  const auto vertex = [&](Index x, Index y, Index z) { return x + (nx + 1) * (y + (ny + 1) * z); };
+  for (Index z = 0; z <= nz; ++z) {
+    for (Index y = 0; y <= ny; ++y) {
+      for (Index x = 0; x <= nx; ++x) mesh.points.push_back({x / 3.0, y / 7.0, z * 1.1});
+    }
+  }
+  for (Index z = 0; z < nz; ++z) {
+    for (Index y = 0; y < ny; ++y) {
+      for (Index x = 0; x < nx; ++x) {
+        mesh.cells.push_back({vertex(x, y, z), vertex(x + 1, y, z), vertex(x + 1, y + 1, z),
+                              vertex(x, y + 1, z), vertex(x, y, z + 1), vertex(x + 1, y, z + 1),
+                              vertex(x + 1, y + 1, z + 1), vertex(x, y + 1, z + 1)});
+      }
+    }
+  }
+  return mesh;
+}
+
+/// Equal bit for bit (the sign of zero counts).
+inline bool sameBits(const Vec3& a, const Vec3& b) {
+  return std::bit_cast<std::array<std::uint64_t, 3>>(a) ==
+         std::bit_cast<std::array<std::uint64_t, 3>>(b);
+}
+
+template <class Points>
+void expectSameBits(const Points& a, const Points& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(sameBits(a[i], b[i])) << "at " << i;
+}
+
+}  // namespace hexhex::test

@@ -1,0 +1,136 @@
+// Damaged files: truncated at every byte, and with random bytes changed. Whatever happens, a reader
+// returns a consistent mesh or throws an Error, and never asks for memory out of proportion.
+#include <hexhex/io.hpp>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <io/hexex.hpp>
+#include <io/io_test_support.hpp>
+#include <io/medit.hpp>
+#include <io/vtu.hpp>
+#include <new>
+#include <string>
+
+namespace {
+std::atomic<std::size_t> largestAllocation{0};
+}  // namespace
+
+// All memory of this program comes from here, so that the largest request is known.
+void* operator new(std::size_t size) {
+  std::size_t largest = largestAllocation.load();
+  while (size > largest && !largestAllocation.compare_exchange_weak(largest, size)) {
+  }
+  if (void* const memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
+
+namespace hexhex::test {
+namespace {
+
+// The files here have a few kilobytes; a reader may want a small multiple of that.
+constexpr std::size_t kReasonableAllocation = 1 << 18;
+
+bool isConsistent(const TetMap& map) {
+  if (map.parameters.size() != map.tets.size()) return false;
+  for (const Tet& tet : map.tets) {
+    for (const Index corner : tet) {
+      if (corner >= map.points.size()) return false;
+    }
+  }
+  return true;
+}
+
+bool isConsistent(const HexMesh& mesh) {
+  for (const Hex& cell : mesh.cells) {
+    for (const Index corner : cell) {
+      if (corner >= mesh.points.size()) return false;
+    }
+  }
+  return true;
+}
+
+template <class Parse>
+void expectNoCrash(const std::string& text, const Parse& parse) {
+  try {
+    Context context;
+    EXPECT_TRUE(isConsistent(parse(text, "damaged", context)));
+  } catch (const Error& error) {
+    EXPECT_NE(error.code(), ErrorCode::Internal) << error.what();
+  }
+}
+
+/// Replaces, removes or inserts a few bytes, preferring those that mean something in the format.
+std::string mutated(std::string text, Random& random) {
+  constexpr std::string_view kTelling = "0123456789-+./eE \n\t\"<>=_#xn\0\xff";
+  const std::size_t changes = 1 + random.below(4);
+  for (std::size_t i = 0; i < changes && !text.empty(); ++i) {
+    const std::size_t place = random.below(text.size());
+    const char byte = random.below(4) == 0 ? static_cast<char>(random.below(256))
+                                           : kTelling[random.below(kTelling.size())];
+    switch (random.below(4)) {
+      case 0:
+        text.erase(place, 1 + random.below(3));
+        break;
+      case 1:
+        text.insert(place, 1 + random.below(12), byte);
+        break;
+      default:
+        text[place] = byte;
+    }
+  }
+  return text;
+}
+
+template <class Parse>
+void damage(const std::string& text, const Parse& parse) {
+  largestAllocation = 0;
+  for (std::size_t size = 0; size <= text.size(); ++size) {
+    expectNoCrash(text.substr(0, size), parse);
+  }
+  Random random(7);
+  for (int i = 0; i < 5000; ++i) expectNoCrash(mutated(text, random), parse);
+  EXPECT_LT(largestAllocation.load(), kReasonableAllocation);
+}
+
+TEST(DamagedFiles, Hexex) {
+  const TemporaryFolder folder;
+  writeMap(smallMap(), folder / "a.hexex");
+  damage(contentOf(folder / "a.hexex") + "1\n0 1 2 1/3\n1 1 1\n0\n1 2\n1 2 3\n", parseHexex);
+}
+
+TEST(DamagedFiles, Medit) {
+  const TemporaryFolder folder;
+  writeHexMesh(gridMesh(2, 2, 1), folder / "a.mesh");
+  damage(contentOf(folder / "a.mesh"), parseMedit);
+}
+
+TEST(DamagedFiles, Vtu) {
+  const TemporaryFolder folder;
+  writeHexMesh(gridMesh(2, 2, 1), folder / "a.vtu");
+  damage(contentOf(folder / "a.vtu"), parseVtu);
+}
+
+TEST(DamagedFiles, TruncatedAtEveryByteOnDiskToo) {
+  const TemporaryFolder folder;
+  writeMap(smallMap(), folder / "a.hexex");
+  const std::string text = contentOf(folder / "a.hexex");
+  std::size_t refused = 0;
+  for (std::size_t size = 0; size < text.size(); ++size) {
+    writeText(folder / "cut.hexex", text.substr(0, size));
+    try {
+      EXPECT_TRUE(isConsistent(readMap(folder / "cut.hexex")));
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::FileSyntax) << error.what();
+      ++refused;
+    }
+  }
+  // Only a cut within or right after the last number goes unnoticed.
+  EXPECT_GE(refused + 3, text.size());
+}
+
+}  // namespace
+}  // namespace hexhex::test
