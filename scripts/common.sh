@@ -60,10 +60,8 @@ run_logged() {
   return 1
 }
 
-# configure_and_build PRESET [cmake --build argument...]
-configure_and_build() {
-  local preset=$1
-  shift
-  run_logged "$preset-configure" cmake --preset "$preset" &&
-    run_logged "$preset-build" cmake --build --preset "$preset" "$@"
-}
+# configure PRESET [cmake argument...]
+configure() { run_logged "$1-configure" cmake --preset "$@"; }
+
+# build PRESET [cmake --build argument...]
+build() { run_logged "$1-build" cmake --build --preset "$@"; }

@@ -1,8 +1,8 @@
-#include <algorithm>
-#include <utility>
-
 #include <hexhex/context.hpp>
 #include <hexhex/error.hpp>
+
+#include <algorithm>
+#include <utility>
 
 namespace hexhex {
 

@@ -1,7 +1,7 @@
-#include <algorithm>
-
 #include <hexhex/error.hpp>
 
+#include <algorithm>
+#include <atomic>
 #include <base/parallel.hpp>
 
 #if HEXHEX_HAS_TBB
@@ -14,6 +14,33 @@
 namespace hexhex {
 
 namespace detail {
+#if HEXHEX_HAS_TBB
+namespace {
+
+// oneTBB guarantees that what was written before a loop is seen in it, and what the loop wrote is
+// seen after it. The thread sanitizer cannot look into oneTBB, but it understands the same stated
+// with these two. Global, so that a thread needs nothing from the caller's stack to get there.
+std::atomic<std::size_t> loopsBegun{0};
+std::atomic<std::size_t> rangesEnded{0};
+
+/// Lives while a thread works on a range of blocks.
+struct RangeOrder {
+  RangeOrder() noexcept { static_cast<void>(loopsBegun.load(std::memory_order_acquire)); }
+  ~RangeOrder() { rangesEnded.fetch_add(1, std::memory_order_release); }
+  RangeOrder(const RangeOrder&) = delete;
+  RangeOrder& operator=(const RangeOrder&) = delete;
+};
+
+/// Lives while the caller waits for a loop.
+struct LoopOrder {
+  LoopOrder() noexcept { loopsBegun.fetch_add(1, std::memory_order_release); }
+  ~LoopOrder() { static_cast<void>(rangesEnded.load(std::memory_order_acquire)); }
+  LoopOrder(const LoopOrder&) = delete;
+  LoopOrder& operator=(const LoopOrder&) = delete;
+};
+
+}  // namespace
+#endif
 
 void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
                const BlockFunction& function) {
@@ -26,8 +53,10 @@ void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
   };
 #if HEXHEX_HAS_TBB
   if (blocks > 1) {
+    const LoopOrder loopOrder;
     oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, blocks, 1),
                               [&](const oneapi::tbb::blocked_range<std::size_t>& range) {
+                                const RangeOrder rangeOrder;
                                 for (std::size_t block = range.begin(); block < range.end();
                                      ++block) {
                                   runBlock(block);

@@ -5,11 +5,10 @@
 // loop whose blocks write to disjoint places gives the same result on any machine.
 #pragma once
 
+#include <base/stage.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-
-#include <base/stage.hpp>
 
 namespace hexhex {
 
@@ -18,8 +17,8 @@ class BlockFunction {
  public:
   template <class F>
   explicit BlockFunction(const F& function)
-      : object_(&function), call_([](const void* object, std::size_t begin, std::size_t end,
-                                     std::size_t block) {
+      : object_(&function),
+        call_([](const void* object, std::size_t begin, std::size_t end, std::size_t block) {
           (*static_cast<const F*>(object))(begin, end, block);
         }) {}
   void operator()(std::size_t begin, std::size_t end, std::size_t block) const {
@@ -42,8 +41,8 @@ void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
 void runWithThreads(int threads, const void* object, void (*call)(const void*));
 }  // namespace detail
 
-/// Calls f(begin, end, block) for consecutive blocks of `grain` elements of [0, n), in parallel, and
-/// checks for cancellation between blocks. The first exception ends the loop and is rethrown.
+/// Calls f(begin, end, block) for consecutive blocks of `grain` elements of [0, n), in parallel,
+/// and checks for cancellation between blocks. The first exception ends the loop and is rethrown.
 template <class F>
 void parallelBlocks(Stage& stage, std::size_t n, std::size_t grain, const F& f) {
   LoopProgress progress(stage, n);
@@ -61,7 +60,8 @@ void parallelFor(Stage& stage, std::size_t n, std::size_t grain, const F& f) {
 /// Runs f() so that all parallel loops inside use at most this many threads (0: all cores).
 template <class F>
 void withThreads(int threads, const F& f) {
-  detail::runWithThreads(threads, &f, [](const void* object) { (*static_cast<const F*>(object))(); });
+  detail::runWithThreads(threads, &f,
+                         [](const void* object) { (*static_cast<const F*>(object))(); });
 }
 
 /// The number of threads that `threads` (0: all cores) stands for; 1 without oneTBB.

@@ -1,12 +1,12 @@
 // A stage of the pipeline as the caller sees it: a name, progress, cancellation, and its time.
 #pragma once
 
+#include <hexhex/context.hpp>
+
 #include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <string_view>
-
-#include <hexhex/context.hpp>
 
 namespace hexhex {
 
@@ -18,12 +18,17 @@ class Stage {
     context_.throwIfCancelled();
     context_.report(name_, 0.0);
   }
-  ~Stage() {
+  ~Stage() { finish(); }
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+  /// Ends the stage before its scope does.
+  void finish() {
+    if (finished_) return;
+    finished_ = true;
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
     context_.addStageTime(name_, seconds.count());
   }
-  Stage(const Stage&) = delete;
-  Stage& operator=(const Stage&) = delete;
 
   [[nodiscard]] Context& context() const noexcept { return context_; }
   [[nodiscard]] std::string_view name() const noexcept { return name_; }
@@ -32,6 +37,7 @@ class Stage {
   Context& context_;
   std::string_view name_;
   std::chrono::steady_clock::time_point begin_;
+  bool finished_ = false;
 };
 
 /// Progress of a loop over `total` elements, reported at most a hundred times; also the place where

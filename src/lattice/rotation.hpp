@@ -30,7 +30,7 @@ class Rotation {
 
   [[nodiscard]] constexpr Rotation inverse() const noexcept;
   /// Composition: (a * b)(v) = a(b(v)).
-  [[nodiscard]] friend constexpr Rotation operator*(Rotation a, Rotation b) noexcept;
+  friend constexpr Rotation operator*(Rotation a, Rotation b) noexcept;
 
  private:
   std::uint8_t index_ = 0;

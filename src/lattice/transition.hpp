@@ -37,7 +37,7 @@ struct Transition {
   }
 
   /// Composition: (a * b)(u) = a(b(u)).
-  [[nodiscard]] friend constexpr Transition operator*(const Transition& a,
+  friend constexpr Transition operator*(const Transition& a,
                                                       const Transition& b) noexcept {
     return {a.rotation * b.rotation, a(b.translation)};
   }

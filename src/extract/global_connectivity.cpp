@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <atomic>
+#include <extract/global_connectivity.hpp>
+
+namespace hexhex {
+
+namespace {
+
+constexpr std::size_t kGrain = 64;
+
+/// A hex edge on its way: in the chart of a tet, from grid point z in direction `along`, beside it
+/// the blade in direction `beside`.
+struct Trace {
+  Index tet;
+  GridPoint z;
+  Direction along;
+  Direction beside;
+};
+
+class Tracer {
+ public:
+  Tracer(const PreparedMap& map, const Array<NormalSigns>& signs, const HexVertices& vertices,
+         const LocalConnectivity& local, GlobalConnectivity& global)
+      : topology_(map.topology),
+        exact_(map.exact),
+        signs_(signs),
+        vertices_(vertices),
+        local_(local),
+        global_(global) {}
+
+  /// Traces every propeller whose first blade's casing lies in this tet.
+  void run(Index tet) {
+    if (vertices_.lines.empty(tet)) return;
+    vertices_.lines.forEachPoint(tet, [&](const GridPoint& z, CornerMask /*simplex*/, Index point) {
+      const Index vertex = vertices_.lines.vertices[point];
+      if (vertex == kNone) throw MissingVertex{tet};
+      const Index generator = vertices_.generatorOf[vertex];
+      const Configuration& configuration = local_.configuration(generator);
+      const bool constant = local_.configurationOf[generator] < kConstantConfigurations;
+      for (std::size_t p = 0; p < configuration.propellerCount; ++p) {
+        const Propeller& propeller = local_.propeller(configuration, p);
+        const Slot& slot = local_.slot(propeller, 0);
+        if (!constant && slot.tet != tet) continue;
+        trace(vertex, generator, p, {tet, z, propeller.direction, slot.direction});
+      }
+    });
+  }
+
+ private:
+  [[nodiscard]] std::atomic_ref<std::uint64_t> entry(Index vertex, Index generator,
+                                                     std::size_t propeller) const {
+    const std::uint64_t count = local_.configuration(generator).propellerCount;
+    const std::uint64_t rank = vertex - vertices_.generators[generator].firstVertex;
+    return std::atomic_ref(global_.opposites[global_.begin[generator] + rank * count + propeller]);
+  }
+
+  void trace(Index vertex, Index generator, std::size_t propeller, Trace at) {
+    // Two threads may trace an edge from both ends at once. They write the same values, so relaxed
+    // accesses suffice, and the result is the same in any order.
+    const auto here = entry(vertex, generator, propeller);
+    if (here.load(std::memory_order_relaxed) != GlobalConnectivity::kUntraced) return;
+    const Index end = follow(at);
+    const Index endGenerator = vertices_.generatorOf[end];
+    const Slot key = casingKey(at, endGenerator);
+    const std::size_t opposite = oppositePropeller(at, endGenerator);
+    const Propeller& arrived = local_.propeller(local_.configuration(endGenerator), opposite);
+    std::uint16_t offset = 0;
+    for (;; ++offset) {
+      if (offset == arrived.slotCount) throw MissingVertex{at.tet};
+      const Slot& slot = local_.slot(arrived, offset);
+      if (slot.tet == key.tet && slot.direction == key.direction) break;
+    }
+    here.store(GlobalConnectivity::pack({end, static_cast<std::uint16_t>(opposite), offset}),
+               std::memory_order_relaxed);
+    entry(end, endGenerator, opposite)
+        .store(GlobalConnectivity::pack({vertex, static_cast<std::uint16_t>(propeller), offset}),
+               std::memory_order_relaxed);
+  }
+
+  /// Goes from tet to tet until the next grid point along the edge is reached, and the tet holds
+  /// the blade's quarter plane there; returns the hex vertex.
+  Index follow(Trace& at) const {
+    int entered = -1;
+    for (;;) {
+      const Index found = vertices_.lines.find(at.tet, step(at.z, at.along));
+      if (found != kNone && arrived(at, found)) return found;
+      if (passed(at)) throw MissingVertex{at.tet};
+      const int exit = exitOfLine(exact_.corners[at.tet], signs_[at.tet], at.z, exact_.unit,
+                                  at.along, at.beside, entered);
+      if (exit == kNoExit) throw MissingVertex{at.tet};
+      const HalfFace halfFace = halfFaceOf(at.tet, exit);
+      const HalfFace mate = topology_.mate[halfFace];
+      if (mate == kNone) throw MissingVertex{at.tet};
+      entered = localOf(mate);
+      const Transition& transition = exact_.transitions.across(halfFace);
+      at = {tetOf(mate), transition(at.z), transition(at.along), transition(at.beside)};
+    }
+  }
+
+  /// Whether the tet, which contains the edge's end, holds the blade's quarter plane there. The
+  /// edge may run inside a face of this tet while the blade lies on the other side of it.
+  [[nodiscard]] bool arrived(const Trace& at, Index vertex) const {
+    const Index g = vertices_.generatorOf[vertex];
+    const Generator& generator = vertices_.generators[g];
+    if (generator.simplex == kWholeTet) return true;
+    const CornerMask simplex = vertices_.incidenceOf(at.tet, g).simplex;
+    const NormalSigns& signs = signs_[at.tet];
+    for (int face = 0; face < 4; ++face) {
+      if (!contains(simplex, face) && signs.dot(face, at.along) == 0 &&
+          signs.dot(face, at.beside) < 0) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Whether the whole tet lies beyond the edge's end, which then must have been overlooked.
+  [[nodiscard]] bool passed(const Trace& at) const {
+    const auto axis = static_cast<std::size_t>(axisOf(at.along));
+    const std::int64_t end = (at.z[axis] + signOf(at.along)) * exact_.unit;
+    const LatticeTet& corners = exact_.corners[at.tet];
+    return std::all_of(corners.begin(), corners.end(), [&](const LatticePoint& corner) {
+      return signOf(at.along) > 0 ? corner[axis] > end : corner[axis] < end;
+    });
+  }
+
+  [[nodiscard]] std::size_t oppositePropeller(const Trace& at, Index generator) const {
+    const Direction back = hexhex::opposite(at.along);
+    const Index configuration = local_.configurationOf[generator];
+    if (configuration == 0) return back;
+    if (configuration < kConstantConfigurations) {
+      // Propellers of a boundary face: all directions but the one that leads outside.
+      const Direction outward = hexhex::opposite(static_cast<Direction>(configuration - 1));
+      return back > outward ? back - std::size_t{1} : back;
+    }
+    const std::uint8_t propeller = vertices_.incidenceOf(at.tet, generator).propeller[back];
+    if (propeller == kNoPropeller) throw MissingVertex{at.tet};
+    return propeller;
+  }
+
+  /// Names the blade's casing at the end of the edge as the slots there do.
+  [[nodiscard]] Slot casingKey(const Trace& at, Index generator) const {
+    if (local_.configurationOf[generator] < kConstantConfigurations) {
+      return {kNone, at.beside, 0, 0, 0};
+    }
+    const CornerMask simplex =
+        casing(signs_[at.tet], vertices_.incidenceOf(at.tet, generator).simplex,
+               hexhex::opposite(at.along), at.beside);
+    if (dimension(simplex) == 2) {
+      const int face = std::countr_zero(static_cast<unsigned>(kWholeTet ^ simplex));
+      const HalfFace halfFace = halfFaceOf(at.tet, face);
+      const HalfFace mate = topology_.mate[halfFace];
+      if (mate != kNone && tetOf(mate) < at.tet) {
+        return {tetOf(mate), exact_.transitions.across(halfFace)(at.beside), 0, 0, 0};
+      }
+    }
+    return {at.tet, at.beside, 0, 0, 0};
+  }
+
+  const TetTopology& topology_;
+  const ExactMap& exact_;
+  const Array<NormalSigns>& signs_;
+  const HexVertices& vertices_;
+  const LocalConnectivity& local_;
+  GlobalConnectivity& global_;
+};
+
+}  // namespace
+
+GlobalConnectivity traceOpposites(const PreparedMap& map, const Array<NormalSigns>& signs,
+                                  const HexVertices& vertices, const LocalConnectivity& local,
+                                  Stage& stage) {
+  GlobalConnectivity global;
+  global.begin.resize(vertices.generators.size());
+  std::uint64_t total = 0;
+  for (std::size_t g = 0; g < vertices.generators.size(); ++g) {
+    global.begin[g] = total;
+    total += std::uint64_t{vertices.generators[g].vertexCount} *
+             local.configuration(static_cast<Index>(g)).propellerCount;
+  }
+  global.opposites.resize(total);
+  parallelBlocks(stage, total, 1 << 16, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::fill(global.opposites.begin() + static_cast<std::ptrdiff_t>(begin),
+              global.opposites.begin() + static_cast<std::ptrdiff_t>(end),
+              GlobalConnectivity::kUntraced);
+  });
+  Tracer tracer(map, signs, vertices, local, global);
+  parallelFor(stage, map.topology.tetCount(), kGrain,
+              [&](std::size_t t) { tracer.run(static_cast<Index>(t)); });
+  return global;
+}
+
+}  // namespace hexhex

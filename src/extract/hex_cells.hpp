@@ -1,0 +1,20 @@
+// Hex cells: the eight corners of each, collected by walking from propeller to opposite
+// (Section 5.4, end).
+#pragma once
+
+#include <hexhex/types.hpp>
+
+#include <cstdint>
+#include <extract/global_connectivity.hpp>
+
+namespace hexhex {
+
+/// Number of cells that the hex corners of all vertices make up.
+[[nodiscard]] std::uint64_t countCells(const HexVertices& vertices, const LocalConnectivity& local);
+
+/// All cells in VTK order, numbered by their first corner: smallest vertex, then smallest hex
+/// corner there.
+[[nodiscard]] Array<Hex> collectCells(const HexVertices& vertices, const LocalConnectivity& local,
+                                      const GlobalConnectivity& global, Stage& stage);
+
+}  // namespace hexhex

@@ -1,0 +1,40 @@
+// Collects violated conditions from parallel loops: all are counted, the ten worst of each kind are
+// kept, and the outcome does not depend on the order in which they arrive.
+#pragma once
+
+#include <hexhex/check.hpp>
+#include <hexhex/error.hpp>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <vector>
+
+namespace hexhex {
+
+class DefectCollector {
+ public:
+  /// Thread-safe. `amount` in parameter units; larger is worse.
+  void add(ErrorCode code, Place place, double amount);
+
+  /// From now on, corners 2 and 3 of tets are swapped with respect to the caller's, in whose terms
+  /// faces are to be reported.
+  void setCornersReversed(bool reversed) { cornersReversed_ = reversed; }
+
+  [[nodiscard]] bool empty() const { return defects_.empty(); }
+  [[nodiscard]] bool has(ErrorCode code) const { return defects_.contains(code); }
+
+  /// All defects, in the order of the codes.
+  [[nodiscard]] std::vector<Defect> defects() const;
+
+  /// Throws the first defect, if any, as an Error whose sentence names its worst place.
+  void throwIfAny() const;
+
+ private:
+  std::mutex mutex_;
+  std::map<ErrorCode, Defect> defects_;
+  bool cornersReversed_ = false;
+};
+
+}  // namespace hexhex

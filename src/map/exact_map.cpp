@@ -1,0 +1,330 @@
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <map/exact_map.hpp>
+#include <utility>
+
+namespace hexhex {
+
+namespace {
+
+constexpr std::size_t kGrain = 1024;
+
+/// Unscaled lattice coordinates stay below 2^52 and scaled ones below 2^60, which the predicates
+/// rely on (tet_geometry.hpp).
+constexpr int kLatticeBits = 52;
+constexpr int kScaledLatticeBits = 60;
+/// Grid coordinates and translations between charts stay below 2^30 after scaling: they are 32-bit.
+constexpr int kGridBits = 29;
+/// Fewer fractional bits than this would move parameters noticeably.
+constexpr int kMinFractionBits = 16;
+
+/// A set of coordinate axes: bit k for axis k.
+using AxisSet = unsigned;
+constexpr AxisSet kAllAxes = 7;
+
+/// The axis of the largest component.
+std::size_t dominantAxis(const Vec3& v) {
+  std::size_t axis = std::abs(v[1]) > std::abs(v[0]) ? 1 : 0;
+  if (std::abs(v[2]) > std::abs(v[axis])) axis = 2;
+  return axis;
+}
+
+AxisSet rotated(AxisSet axes, Rotation rotation) {
+  AxisSet image = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if ((axes >> axis) & 1U) image |= 1U << axisOf(rotation(direction(axis, 1)));
+  }
+  return image;
+}
+
+/// What a vertex must fulfil, and its corners, while it is being sanitized. Reused between
+/// vertices.
+class VertexSanitizer {
+ public:
+  VertexSanitizer(const TetTopology& topology, const LocalParameters& parameters,
+                  const Singularities& singularities, double tolerance, DefectCollector& defects,
+                  ExactMap& map)
+      : topology_(topology),
+        parameters_(parameters),
+        singularities_(singularities),
+        tolerance_(tolerance),
+        defects_(defects),
+        map_(map) {}
+
+  void run(Index v) {
+    star_ = topology_.star(v);
+    if (star_.empty()) return;
+    const bool oneChart = !hasJump();
+    if (oneChart) {
+      toStar_.assign(star_.size(), Transition{});
+    } else {
+      unfold();
+    }
+    const LatticePoint value = snapped(v, fixedAxes(v));
+    for (std::size_t i = 0; i < star_.size(); ++i) assign(v, i, toStar_[i](value, map_.unit));
+    if (!oneChart) checkLoops(v);
+  }
+
+  [[nodiscard]] double maxDisplacement() const noexcept { return maxDisplacement_; }
+
+ private:
+  /// Whether the star has a face at the vertex with a non-identity transition.
+  [[nodiscard]] bool hasJump() const {
+    for (const CornerIndex corner : star_) {
+      for (int face = 0; face < 4; ++face) {
+        if (face == localOf(corner)) continue;
+        const HalfFace halfFace = halfFaceOf(corner / 4, face);
+        if (!topology_.isBoundary(halfFace) && map_.transitions.isJump(halfFace)) return true;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::size_t positionInStar(Index tet) const {
+    return static_cast<std::size_t>(std::lower_bound(star_.begin(), star_.end(), 4 * tet) -
+                                    star_.begin());
+  }
+
+  /// Transitions from the representative's chart, that of the first corner, into all others, along
+  /// a breadth-first tree of the star.
+  void unfold() {
+    toStar_.resize(star_.size());
+    visited_.assign(star_.size(), false);
+    queue_.assign(1, 0);
+    visited_[0] = true;
+    toStar_[0] = {};
+    for (std::size_t head = 0; head < queue_.size(); ++head) {
+      const std::size_t i = queue_[head];
+      forEachNeighbour(i, [&](HalfFace halfFace, std::size_t neighbour) {
+        if (visited_[neighbour]) return;
+        visited_[neighbour] = true;
+        toStar_[neighbour] = map_.transitions.across(halfFace) * toStar_[i];
+        queue_.push_back(neighbour);
+      });
+    }
+  }
+
+  template <class Visit>
+  void forEachNeighbour(std::size_t i, const Visit& visit) const {
+    const CornerIndex corner = star_[i];
+    for (int face = 0; face < 4; ++face) {
+      if (face == localOf(corner)) continue;
+      const HalfFace halfFace = halfFaceOf(corner / 4, face);
+      const HalfFace mate = topology_.mate[halfFace];
+      if (mate != kNone) visit(halfFace, positionInStar(tetOf(mate)));
+    }
+  }
+
+  /// All constraints of the star, in the representative's chart.
+  [[nodiscard]] AxisSet fixedAxes(Index v) const {
+    if (singularities_.isNode(v)) return kAllAxes;
+    AxisSet fixed = 0;
+    for (std::size_t i = 0; i < star_.size(); ++i) {
+      const CornerIndex corner = star_[i];
+      for (int face = 0; face < 4; ++face) {
+        const HalfFace halfFace = halfFaceOf(corner / 4, face);
+        if (face == localOf(corner) || !topology_.isBoundary(halfFace)) continue;
+        fixed |= rotated(1U << boundaryAxis(parameters_, halfFace), toStar_[i].rotation.inverse());
+      }
+    }
+    for (const Singularities::Incidence& incidence : singularities_.at(v)) {
+      const SingularEdge& edge = singularities_.edges[incidence.edge];
+      const AxisSet across = kAllAxes & ~(1U << edgeAxis(parameters_, edge));
+      fixed |= rotated(across, toStar_[positionInStar(edge.tet)].rotation.inverse());
+    }
+    return fixed;
+  }
+
+  [[nodiscard]] LatticePoint snapped(Index /*v*/, AxisSet fixed) const {
+    const Vec3 u = parameters_(star_[0] / 4, localOf(star_[0]));
+    const auto unit = static_cast<double>(map_.unit);
+    LatticePoint value{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      value[k] = (fixed >> k) & 1U ? std::llrint(u[k]) * map_.unit : std::llrint(u[k] * unit);
+    }
+    return value;
+  }
+
+  void assign(Index v, std::size_t i, const LatticePoint& value) {
+    const CornerIndex corner = star_[i];
+    map_.corners[corner / 4][corner % 4] = value;
+    const Vec3 before = parameters_(corner / 4, localOf(corner));
+    double displacement = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      displacement = std::max(
+          displacement,
+          std::abs(static_cast<double>(value[k]) / static_cast<double>(map_.unit) - before[k]));
+    }
+    maxDisplacement_ = std::max(maxDisplacement_, displacement);
+    if (displacement > tolerance_) {
+      defects_.add(ErrorCode::TransitionResidual, {PlaceKind::Vertex, v}, displacement);
+    }
+  }
+
+  /// The loops of the star must reproduce the value.
+  void checkLoops(Index v) {
+    for (std::size_t i = 0; i < star_.size(); ++i) {
+      const LatticePoint& here = map_.corners[star_[i] / 4][star_[i] % 4];
+      bool closed = true;
+      forEachNeighbour(i, [&](HalfFace halfFace, std::size_t neighbour) {
+        const LatticePoint& there = map_.corners[star_[neighbour] / 4][star_[neighbour] % 4];
+        closed = closed && map_.transitions.across(halfFace)(here, map_.unit) == there;
+      });
+      if (!closed) {
+        defects_.add(ErrorCode::HalfIntegerFixedPoint, {PlaceKind::Vertex, v}, 0);
+        return;
+      }
+    }
+  }
+
+ public:
+  /// The axis along which a boundary triangle is constant.
+  static std::size_t boundaryAxis(const LocalParameters& parameters, HalfFace halfFace) {
+    const std::array<int, 3>& face = kFaceCorners[halfFace % 4];
+    const Vec3 p = parameters(tetOf(halfFace), face[0]);
+    const Vec3 q = parameters(tetOf(halfFace), face[1]);
+    const Vec3 r = parameters(tetOf(halfFace), face[2]);
+    Vec3 normal{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t i = (k + 1) % 3;
+      const std::size_t j = (k + 2) % 3;
+      normal[k] = (q[i] - p[i]) * (r[j] - p[j]) - (q[j] - p[j]) * (r[i] - p[i]);
+    }
+    return dominantAxis(normal);
+  }
+
+  /// The axis along which a singular edge runs, in the chart of its tet.
+  static std::size_t edgeAxis(const LocalParameters& parameters, const SingularEdge& edge) {
+    const Vec3 p = parameters(edge.tet, edge.corner0);
+    const Vec3 q = parameters(edge.tet, edge.corner1);
+    return dominantAxis({q[0] - p[0], q[1] - p[1], q[2] - p[2]});
+  }
+
+ private:
+  const TetTopology& topology_;
+  const LocalParameters& parameters_;
+  const Singularities& singularities_;
+  double tolerance_;
+  DefectCollector& defects_;
+  ExactMap& map_;
+  double maxDisplacement_ = 0;
+  std::span<const CornerIndex> star_;
+  std::vector<Transition> toStar_;
+  std::vector<std::size_t> queue_;
+  std::vector<bool> visited_;
+};
+
+double distanceToInteger(double x) { return std::abs(x - std::nearbyint(x)); }
+
+/// (IGM2) up to the tolerance: what snapping may repair.
+void checkBoundary(const TetTopology& topology, const LocalParameters& parameters, double tolerance,
+                   Stage& stage, DefectCollector& defects) {
+  parallelFor(stage, topology.tetCount(), kGrain, [&](std::size_t t) {
+    for (int face = 0; face < 4; ++face) {
+      const HalfFace halfFace = halfFaceOf(static_cast<Index>(t), face);
+      if (!topology.isBoundary(halfFace)) continue;
+      const std::size_t axis = VertexSanitizer::boundaryAxis(parameters, halfFace);
+      std::array<double, 3> x{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        x[k] = parameters(static_cast<Index>(t), kFaceCorners[halfFace % 4][k])[axis];
+      }
+      const double plane = std::nearbyint((x[0] + x[1] + x[2]) / 3);
+      const double off =
+          std::max({std::abs(x[0] - plane), std::abs(x[1] - plane), std::abs(x[2] - plane)});
+      if (off > tolerance) {
+        defects.add(ErrorCode::BoundaryOffLattice,
+                    {PlaceKind::Face, t, static_cast<std::uint64_t>(face)}, off);
+      }
+    }
+  });
+}
+
+/// (IGM3) up to the tolerance.
+void checkSingularities(const Singularities& singularities, const LocalParameters& parameters,
+                        double tolerance, DefectCollector& defects) {
+  for (const SingularEdge& edge : singularities.edges) {
+    const std::size_t along = VertexSanitizer::edgeAxis(parameters, edge);
+    const Vec3 p = parameters(edge.tet, edge.corner0);
+    const Vec3 q = parameters(edge.tet, edge.corner1);
+    double off = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (k == along) continue;
+      const double line = std::nearbyint((p[k] + q[k]) / 2);
+      off = std::max({off, std::abs(p[k] - line), std::abs(q[k] - line)});
+    }
+    if (off > tolerance) {
+      defects.add(ErrorCode::SingularityOffLattice, {PlaceKind::Edge, edge.vertex0, edge.vertex1},
+                  off);
+    }
+    for (const auto& [vertex, u] : {std::pair(edge.vertex0, p), std::pair(edge.vertex1, q)}) {
+      if (!singularities.isNode(vertex) || distanceToInteger(u[along]) <= tolerance) continue;
+      defects.add(ErrorCode::SingularityOffLattice, {PlaceKind::Vertex, vertex},
+                  distanceToInteger(u[along]));
+    }
+  }
+}
+
+/// Number of fractional bits of the lattice: as many as the largest coordinate allows.
+int fractionBits(double largest, int maxScale, DefectCollector& defects) {
+  const int wholeBits = std::ilogb(largest + 1) + 1;  // largest + rounding < 2^wholeBits
+  const int scaleBits = static_cast<int>(std::bit_width(static_cast<unsigned>(maxScale)));
+  const int bits = std::min(kLatticeBits - wholeBits, kScaledLatticeBits - wholeBits - scaleBits);
+  if (wholeBits + scaleBits > kGridBits || bits < kMinFractionBits) {
+    defects.add(ErrorCode::TooLarge, {}, largest * maxScale);
+    return 0;
+  }
+  return bits;
+}
+
+}  // namespace
+
+ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters,
+                  Transitions transitions, const Singularities& singularities, double tolerance,
+                  int maxScale, Stage& stage, DefectCollector& defects) {
+  ExactMap map;
+  map.transitions = std::move(transitions);
+  checkBoundary(topology, parameters, tolerance, stage, defects);
+  checkSingularities(singularities, parameters, tolerance, defects);
+  map.unit = std::int64_t{1} << fractionBits(parameters.largest(), maxScale, defects);
+  if (defects.has(ErrorCode::TooLarge)) return map;
+  map.corners.resize(topology.tetCount());
+  std::vector<double> displacements(blockCount(topology.pointCount, kGrain));
+  parallelBlocks(stage, topology.pointCount, kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   VertexSanitizer sanitizer(topology, parameters, singularities, tolerance,
+                                             defects, map);
+                   for (std::size_t v = begin; v < end; ++v) sanitizer.run(static_cast<Index>(v));
+                   displacements[block] = sanitizer.maxDisplacement();
+                 });
+  for (const double displacement : displacements) {
+    map.maxDisplacement = std::max(map.maxDisplacement, displacement);
+  }
+  return map;
+}
+
+void scaleMap(ExactMap& map, int scale, Stage& stage) {
+  if (scale == 1) return;
+  parallelFor(stage, map.corners.size(), kGrain, [&](std::size_t t) {
+    for (LatticePoint& corner : map.corners[t]) {
+      for (std::int64_t& coordinate : corner) coordinate *= scale;
+    }
+  });
+  for (Transition& transition : map.transitions.table) {
+    for (std::int32_t& component : transition.translation) component *= scale;
+  }
+}
+
+void checkPositive(const ExactMap& map, Stage& stage, DefectCollector& defects) {
+  parallelFor(stage, map.corners.size(), kGrain, [&](std::size_t t) {
+    const LatticeTet& c = map.corners[t];
+    if (orientation(c[0], c[1], c[2], c[3]) > 0) return;
+    const auto unit = static_cast<double>(map.unit);
+    const double volume =
+        orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() / (6 * unit * unit * unit);
+    defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, -volume);
+  });
+}
+
+}  // namespace hexhex

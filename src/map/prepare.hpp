@@ -1,0 +1,29 @@
+// The preprocessing of Section 5.1 as one chain: from the caller's arrays to an exact map.
+#pragma once
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
+
+#include <map/exact_map.hpp>
+#include <map/input.hpp>
+#include <map/singularities.hpp>
+#include <map/tet_topology.hpp>
+
+namespace hexhex {
+
+/// Everything that the stages behind need to know about a map. Refers to the caller's arrays.
+struct PreparedMap {
+  OrientedMap input;
+  TetTopology topology;
+  Singularities singularities;
+  ExactMap exact;  ///< not scaled
+};
+
+/// Stops early when a stage finds defects that the next one could not stand; the result must be
+/// used only if `defects` is empty, except for those parts that the stages before have finished.
+/// @param maxScale  the map is going to be scaled by at most this
+/// @throws Error InvalidArgument for a tolerance or scale out of range
+[[nodiscard]] PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale,
+                                     Context& context, DefectCollector& defects);
+
+}  // namespace hexhex

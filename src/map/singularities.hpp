@@ -1,0 +1,50 @@
+// Singular edges and vertices of a map, from the sums of parametric dihedral angles
+// (Section 5.1.2).
+#pragma once
+
+#include <hexhex/types.hpp>
+
+#include <cstdint>
+#include <map/transitions.hpp>
+#include <vector>
+
+namespace hexhex {
+
+/// A tet edge with another number of hexahedra around it than 4 (inside) or 2 (on the boundary).
+struct SingularEdge {
+  Index vertex0;  ///< smaller
+  Index vertex1;
+  Index tet;  ///< the smallest at the edge
+  std::uint8_t corner0;
+  std::uint8_t corner1;
+  bool boundary;
+  std::int32_t valence;
+};
+
+struct Singularities {
+  std::vector<SingularEdge> edges;  ///< in lexicographic order of vertices
+
+  /// Singular edges at each vertex, saturated at 255.
+  Array<std::uint8_t> degree;
+
+  /// The same incidence as a list, by vertex.
+  struct Incidence {
+    Index vertex;
+    Index edge;
+  };
+  std::vector<Incidence> incidences;
+
+  [[nodiscard]] std::span<const Incidence> at(Index vertex) const noexcept;
+
+  /// A singular vertex is incident to other than zero or two singular edges. (Section 3.2)
+  [[nodiscard]] bool isNode(Index vertex) const noexcept {
+    return degree[vertex] != 0 && degree[vertex] != 2;
+  }
+};
+
+/// @param known  valence offsets that the caller gave, or empty
+[[nodiscard]] Singularities computeSingularities(const TetTopology& topology,
+                                                 const LocalParameters& parameters,
+                                                 std::span<const EdgeValence> known, Stage& stage);
+
+}  // namespace hexhex

@@ -1,0 +1,243 @@
+#include <atomic>
+#include <map/tet_topology.hpp>
+
+namespace hexhex {
+
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+
+/// Lists the corners of each vertex (counting sort; sorted afterwards, as threads fill in any
+/// order).
+void buildStars(TetTopology& topology, Stage& stage) {
+  const std::size_t vertices = topology.pointCount;
+  topology.cornerBegin.assign(vertices + 1, 0);
+  Array<Index>& begin = topology.cornerBegin;
+  parallelFor(stage, topology.tetCount(), kGrain, [&](std::size_t t) {
+    for (const Index v : topology.tets[t]) {
+      std::atomic_ref(begin[v]).fetch_add(1, std::memory_order_relaxed);
+    }
+  });
+  exclusiveScan(std::span(begin));
+  topology.corners.resize(4 * topology.tetCount());
+  // begin[v] serves as the cursor of v and ends at the begin of v + 1.
+  parallelFor(stage, topology.tetCount(), kGrain, [&](std::size_t t) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Index place =
+          std::atomic_ref(begin[topology.tets[t][i]]).fetch_add(1, std::memory_order_relaxed);
+      topology.corners[place] = static_cast<CornerIndex>(4 * t + i);
+    }
+  });
+  for (std::size_t v = vertices; v > 0; --v) begin[v] = begin[v - 1];
+  begin[0] = 0;
+  parallelFor(stage, vertices, kGrain, [&](std::size_t v) {
+    std::sort(topology.corners.begin() + begin[v], topology.corners.begin() + begin[v + 1]);
+  });
+}
+
+/// A half-face at its smallest vertex.
+struct FaceKey {
+  Index middle;
+  Index largest;
+  HalfFace halfFace;
+};
+
+/// Whether two tets see their common triangle with opposite orientation, as neighbours must.
+bool oppositeOrientation(const TetTopology& topology, HalfFace a, HalfFace b) {
+  const auto corners = [&](HalfFace f) {
+    const std::array<int, 3>& local = kFaceCorners[f % 4];
+    const Tet& tet = topology.tets[f / 4];
+    return std::array<Index, 3>{tet[static_cast<std::size_t>(local[0])],
+                                tet[static_cast<std::size_t>(local[1])],
+                                tet[static_cast<std::size_t>(local[2])]};
+  };
+  const std::array<Index, 3> left = corners(a);
+  const std::array<Index, 3> right = corners(b);
+  const std::size_t shift =
+      static_cast<std::size_t>(std::find(right.begin(), right.end(), left[0]) - right.begin());
+  return right[(shift + 1) % 3] == left[2];
+}
+
+/// Matches half-faces; each triangle is found at its smallest vertex.
+void matchFaces(TetTopology& topology, Stage& stage, DefectCollector& defects) {
+  topology.mate.resize(4 * topology.tetCount());
+  const auto matchAt = [&](Index v, std::vector<FaceKey>& faces) {
+    faces.clear();
+    for (const CornerIndex corner : topology.star(v)) {
+      const Tet& tet = topology.tets[corner / 4];
+      for (std::size_t opposite = 0; opposite < 4; ++opposite) {
+        if (opposite == corner % 4) continue;
+        const std::size_t i =
+            0 == corner % 4 || 0 == opposite ? (1 == corner % 4 || 1 == opposite ? 2U : 1U) : 0U;
+        const std::size_t j = 6 - corner % 4 - opposite - i;
+        if (tet[i] < v || tet[j] < v) continue;
+        faces.push_back({std::min(tet[i], tet[j]), std::max(tet[i], tet[j]),
+                         halfFaceOf(corner / 4, static_cast<int>(opposite))});
+      }
+    }
+    std::sort(faces.begin(), faces.end(), [](const FaceKey& a, const FaceKey& b) {
+      if (a.middle != b.middle) return a.middle < b.middle;
+      return a.largest != b.largest ? a.largest < b.largest : a.halfFace < b.halfFace;
+    });
+    for (std::size_t begin = 0; begin < faces.size();) {
+      std::size_t end = begin + 1;
+      while (end < faces.size() && faces[end].middle == faces[begin].middle &&
+             faces[end].largest == faces[begin].largest) {
+        ++end;
+      }
+      const HalfFace first = faces[begin].halfFace;
+      const Place place{PlaceKind::Face, tetOf(first), first % 4};
+      for (std::size_t k = begin; k < end; ++k) topology.mate[faces[k].halfFace] = kNone;
+      if (end - begin == 2) {
+        const HalfFace second = faces[begin + 1].halfFace;
+        topology.mate[first] = second;
+        topology.mate[second] = first;
+        if (!oppositeOrientation(topology, first, second)) {
+          defects.add(ErrorCode::Orientation, place, 0);
+        }
+      } else if (end - begin > 2) {
+        defects.add(ErrorCode::NonManifoldFace, place, 0);
+      }
+      begin = end;
+    }
+  };
+  parallelBlocks(stage, topology.pointCount, kGrain / 4,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::vector<FaceKey> faces;
+                   for (std::size_t v = begin; v < end; ++v) matchAt(static_cast<Index>(v), faces);
+                 });
+}
+
+/// Lists the edges and counts them at both ends; an edge with more than two boundary faces has more
+/// than one fan.
+void buildEdges(TetTopology& topology, Array<Index>& degree, Stage& stage,
+                DefectCollector& defects) {
+  const std::size_t vertices = topology.pointCount;
+  topology.edgeBegin.assign(vertices + 1, 0);
+  const std::size_t grain = kGrain / 4;
+  const auto forBlock = [&](std::size_t begin, std::size_t end, const auto& visit) {
+    std::vector<EdgeCorner> scratch;
+    for (std::size_t v = begin; v < end; ++v) {
+      forEachEdge(
+          topology, static_cast<Index>(v), scratch,
+          [&](Index w, std::span<const EdgeCorner> fan) { visit(static_cast<Index>(v), w, fan); });
+    }
+  };
+  // Blocks gather their edges in order, so that joining them in order is the lexicographic list.
+  std::vector<std::vector<Index>> ends(blockCount(vertices, grain));
+  parallelBlocks(stage, vertices, grain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   forBlock(begin, end, [&](Index v, Index w, std::span<const EdgeCorner> fan) {
+                     ends[block].push_back(w);
+                     ++topology.edgeBegin[v];
+                     std::atomic_ref(degree[v]).fetch_add(1, std::memory_order_relaxed);
+                     std::atomic_ref(degree[w]).fetch_add(1, std::memory_order_relaxed);
+                     if (boundaryFacesAt(topology, fan) > 2) {
+                       defects.add(ErrorCode::NonManifoldEdge, {PlaceKind::Edge, v, w}, 0);
+                     }
+                   });
+                 });
+  const std::uint64_t total = exclusiveScan(std::span(topology.edgeBegin));
+  topology.edgeEnd.resize(total);
+  parallelFor(stage, ends.size(), 1, [&](std::size_t block) {
+    std::copy(
+        ends[block].begin(), ends[block].end(),
+        topology.edgeEnd.begin() + static_cast<std::ptrdiff_t>(topology.edgeBegin[block * grain]));
+  });
+}
+
+/// The link of a vertex must be a sphere (inside) or a disk (on the boundary). As its triangles are
+/// glued edge to edge and its boundary is free of branching (checked at edges), the Euler
+/// characteristic tells.
+void checkLinks(const TetTopology& topology, const Array<Index>& degree, Stage& stage,
+                DefectCollector& defects) {
+  parallelFor(stage, topology.pointCount, kGrain, [&](std::size_t v) {
+    const std::span<const CornerIndex> star = topology.star(static_cast<Index>(v));
+    if (star.empty()) return;  // isolated: reported by check(), harmless
+    std::int64_t boundary = 0;
+    for (const CornerIndex corner : star) {
+      for (int face = 0; face < 4; ++face) {
+        if (face != localOf(corner) && topology.isBoundary(halfFaceOf(corner / 4, face))) {
+          ++boundary;
+        }
+      }
+    }
+    const auto triangles = static_cast<std::int64_t>(star.size());
+    const std::int64_t sides = (3 * triangles + boundary) / 2;
+    const std::int64_t euler = std::int64_t{degree[v]} - sides + triangles;
+    if (euler != (boundary > 0 ? 1 : 2)) {
+      defects.add(ErrorCode::NonManifoldVertex, {PlaceKind::Vertex, v}, 0);
+    }
+  });
+}
+
+}  // namespace
+
+std::size_t boundaryFacesAt(const TetTopology& topology, std::span<const EdgeCorner> fan) {
+  std::size_t count = 0;
+  for (const EdgeCorner& at : fan) {
+    for (int face = 0; face < 4; ++face) {
+      if (face == at.corner0 || face == at.corner1) continue;
+      if (topology.isBoundary(halfFaceOf(at.tet, face))) ++count;
+    }
+  }
+  return count;
+}
+
+std::uint64_t TetTopology::edgeIndex(Index a, Index b) const noexcept {
+  const Index v = std::min(a, b);
+  const auto first = edgeEnd.begin() + static_cast<std::ptrdiff_t>(edgeBegin[v]);
+  const auto last = edgeEnd.begin() + static_cast<std::ptrdiff_t>(edgeBegin[v + 1]);
+  return static_cast<std::uint64_t>(std::lower_bound(first, last, std::max(a, b)) -
+                                    edgeEnd.begin());
+}
+
+TetTopology buildTopology(const TetMapView& map, Stage& stage, DefectCollector& defects) {
+  TetTopology topology;
+  topology.tets = map.tets;
+  topology.pointCount = map.points.size();
+  buildStars(topology, stage);
+  matchFaces(topology, stage, defects);
+  if (defects.has(ErrorCode::NonManifoldFace)) return topology;
+  Array<Index> degree(topology.pointCount, 0);
+  buildEdges(topology, degree, stage, defects);
+  if (!defects.has(ErrorCode::NonManifoldEdge)) checkLinks(topology, degree, stage, defects);
+  return topology;
+}
+
+Index ownerTet(const TetTopology& topology, Index tet, CornerMask simplex) noexcept {
+  switch (dimension(simplex)) {
+    case 3:
+      return tet;
+    case 2: {
+      const int opposite = std::countr_zero(static_cast<unsigned>(kWholeTet ^ simplex));
+      const HalfFace mate = topology.mate[halfFaceOf(tet, opposite)];
+      return mate == kNone ? tet : std::min(tet, tetOf(mate));
+    }
+    case 1: {
+      Index owner = tet;
+      const int first = otherFaceAtEdge(simplex, -1);
+      for (const int start : {first, otherFaceAtEdge(simplex, first)}) {
+        Index current = tet;
+        CornerMask edge = simplex;
+        int exit = start;
+        for (;;) {
+          const HalfFace mate = topology.mate[halfFaceOf(current, exit)];
+          if (mate == kNone) break;
+          edge = topology.translated(edge, current, tetOf(mate));
+          current = tetOf(mate);
+          if (current == tet) return owner;  // all the way round
+          owner = std::min(owner, current);
+          exit = otherFaceAtEdge(edge, localOf(mate));
+        }
+      }
+      return owner;
+    }
+    default:
+      return topology.star(topology.tets[tet][static_cast<std::size_t>(
+                 std::countr_zero(static_cast<unsigned>(simplex)))])[0] /
+             4;
+  }
+}
+
+}  // namespace hexhex

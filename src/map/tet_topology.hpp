@@ -1,0 +1,126 @@
+// Who touches whom in a tet mesh.
+#pragma once
+
+#include <hexhex/types.hpp>
+
+#include <algorithm>
+#include <array>
+#include <base/parallel.hpp>
+#include <cstdint>
+#include <lattice/tet_geometry.hpp>
+#include <map/defects.hpp>
+#include <span>
+#include <vector>
+
+namespace hexhex {
+
+/// Index 4 * tet + corner of a corner of a tet, or of the face opposite that corner (a half-face).
+using CornerIndex = std::uint32_t;
+using HalfFace = std::uint32_t;
+
+[[nodiscard]] constexpr Index tetOf(HalfFace halfFace) noexcept { return halfFace / 4; }
+[[nodiscard]] constexpr int localOf(HalfFace halfFace) noexcept {
+  return static_cast<int>(halfFace % 4);
+}
+[[nodiscard]] constexpr HalfFace halfFaceOf(Index tet, int opposite) noexcept {
+  return 4 * tet + static_cast<HalfFace>(opposite);
+}
+
+struct TetTopology {
+  std::span<const Tet> tets;  ///< the caller's array
+  std::size_t pointCount = 0;
+  Array<HalfFace> mate;            ///< per half-face: the same triangle in the neighbour, or kNone
+  Array<Index> cornerBegin;        ///< per vertex (+1): its range in `corners`
+  Array<CornerIndex> corners;      ///< corners by vertex, ascending: the star of each vertex
+  Array<std::uint64_t> edgeBegin;  ///< per vertex (+1): its range in `edgeEnd`
+  Array<Index> edgeEnd;            ///< edges (v, w) with v < w, by v: the w, ascending
+
+  [[nodiscard]] std::size_t tetCount() const noexcept { return tets.size(); }
+  [[nodiscard]] std::size_t edgeCount() const noexcept { return edgeEnd.size(); }
+  [[nodiscard]] Index vertex(CornerIndex corner) const noexcept {
+    return tets[corner / 4][corner % 4];
+  }
+  [[nodiscard]] std::span<const CornerIndex> star(Index vertex) const noexcept {
+    return std::span(corners).subspan(cornerBegin[vertex],
+                                      cornerBegin[vertex + 1] - cornerBegin[vertex]);
+  }
+  [[nodiscard]] bool isBoundary(HalfFace halfFace) const noexcept {
+    return mate[halfFace] == kNone;
+  }
+  /// Position of a vertex in a tet that contains it.
+  [[nodiscard]] int localCorner(Index tet, Index vertex) const noexcept {
+    const Tet& t = tets[tet];
+    return t[0] == vertex ? 0 : (t[1] == vertex ? 1 : (t[2] == vertex ? 2 : 3));
+  }
+  /// The same simplex (given by corners of tet `from`) as corners of tet `to`, which contains it.
+  [[nodiscard]] CornerMask translated(CornerMask mask, Index from, Index to) const noexcept {
+    CornerMask result = 0;
+    for (int i = 0; i < 4; ++i) {
+      if (contains(mask, i)) {
+        result = static_cast<CornerMask>(
+            result | cornerBit(localCorner(to, tets[from][static_cast<std::size_t>(i)])));
+      }
+    }
+    return result;
+  }
+  /// Index of the edge between two vertices.
+  [[nodiscard]] std::uint64_t edgeIndex(Index a, Index b) const noexcept;
+};
+
+/// Builds adjacency; defects (non-manifold, inconsistent orientation) are collected. After a defect
+/// the result must not be used.
+/// @param map  has passed checkInput()
+[[nodiscard]] TetTopology buildTopology(const TetMapView& map, Stage& stage,
+                                        DefectCollector& defects);
+
+/// One tet at an edge: its corners at the edge's ends.
+struct EdgeCorner {
+  Index other;  ///< the edge's larger vertex
+  Index tet;
+  std::uint8_t corner0;  ///< at the smaller vertex
+  std::uint8_t corner1;  ///< at the larger vertex
+};
+
+/// Calls visit(w, span of EdgeCorner) for each edge (v, w), v < w, in ascending order of w, with
+/// all tets at the edge in ascending order.
+/// @param scratch  reused between calls
+template <class Visit>
+void forEachEdge(const TetTopology& topology, Index v, std::vector<EdgeCorner>& scratch,
+                 const Visit& visit) {
+  scratch.clear();
+  for (const CornerIndex corner : topology.star(v)) {
+    const Tet& tet = topology.tets[corner / 4];
+    for (std::uint8_t i = 0; i < 4; ++i) {
+      if (tet[i] > v) {
+        scratch.push_back({tet[i], corner / 4, static_cast<std::uint8_t>(corner % 4), i});
+      }
+    }
+  }
+  std::sort(scratch.begin(), scratch.end(), [](const EdgeCorner& a, const EdgeCorner& b) {
+    return a.other != b.other ? a.other < b.other : a.tet < b.tet;
+  });
+  for (std::size_t begin = 0; begin < scratch.size();) {
+    std::size_t end = begin + 1;
+    while (end < scratch.size() && scratch[end].other == scratch[begin].other) ++end;
+    visit(scratch[begin].other, std::span<const EdgeCorner>(&scratch[begin], end - begin));
+    begin = end;
+  }
+}
+
+/// The boundary faces among the two faces of each tet at an edge: 0 inside, 2 on the boundary.
+[[nodiscard]] std::size_t boundaryFacesAt(const TetTopology& topology,
+                                          std::span<const EdgeCorner> fan);
+
+/// The half-face of a tet through which a walk around the edge (two corners) leaves that came in
+/// through half-face `entered`: the other face at the edge.
+[[nodiscard]] constexpr int otherFaceAtEdge(CornerMask edge, int entered) noexcept {
+  for (int face = 0; face < 4; ++face) {
+    if (!contains(edge, face) && face != entered) return face;
+  }
+  return entered;
+}
+
+/// The smallest tet that contains a simplex of a tet: the simplex's owner (ParentTet of the paper).
+[[nodiscard]] Index ownerTet(const TetTopology& topology, Index tet, CornerMask simplex) noexcept;
+
+}  // namespace hexhex

@@ -1,0 +1,434 @@
+// The rasterizer against brute force: every grid point of the bounding box, located by the oracle.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <lattice/rasterize.hpp>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "oracle.hpp"
+#include "random.hpp"
+
+namespace hexhex::testing {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::int64_t size(const GridRange& range) { return std::int64_t{range.last} - range.first + 1; }
+
+/// A simplex (or kNoSimplex) for every grid point of a box.
+class SimplexGrid {
+ public:
+  explicit SimplexGrid(const GridBox& box) : box_(box) {
+    if (!box.empty()) {
+      simplices_.resize(
+          static_cast<std::size_t>(size(box.range[0]) * size(box.range[1]) * size(box.range[2])));
+    }
+  }
+  [[nodiscard]] bool covers(const GridPoint& z) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (z[k] < box_.range[k].first || z[k] > box_.range[k].last) return false;
+    }
+    return true;
+  }
+  CornerMask& operator[](const GridPoint& z) {
+    std::int64_t index = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      index = index * size(box_.range[k]) + z[k] - box_.range[k].first;
+    }
+    return simplices_[static_cast<std::size_t>(index)];
+  }
+  template <class Function>
+  void forAllPoints(const Function& function) {
+    GridPoint z;
+    for (z[0] = box_.range[0].first; z[0] <= box_.range[0].last; ++z[0]) {
+      for (z[1] = box_.range[1].first; z[1] <= box_.range[1].last; ++z[1]) {
+        for (z[2] = box_.range[2].first; z[2] <= box_.range[2].last; ++z[2]) function(z);
+      }
+    }
+  }
+  [[nodiscard]] const std::vector<CornerMask>& simplices() const { return simplices_; }
+
+ private:
+  GridBox box_;
+  std::vector<CornerMask> simplices_;
+};
+
+struct Map {
+  LatticeTet corners;
+  std::int64_t unit;
+};
+
+/// Int128 holds the determinants of tets that extend over less than 2^40.
+template <class Integer>
+SimplexGrid bruteForce(const Map& map) {
+  const Tet<Integer> tet = [&] {
+    LatticeTet relative = map.corners;
+    for (LatticePoint& p : relative) p = p - map.corners[0];
+    return widened<Integer>(relative);
+  }();
+  SimplexGrid grid(gridBox(map.corners, map.unit));
+  grid.forAllPoints([&](const GridPoint& z) {
+    grid[z] = locate<Integer>(tet, widened<Integer>(latticePoint(z, map.unit) - map.corners[0]));
+  });
+  return grid;
+}
+
+/// Takes what the rasterizer reports, point by point.
+class Collector {
+ public:
+  Collector(const GridBox& box, SweepAxes axes)
+      : grid_(box), axes_(axes()), level_(box.range[axes_[0]].first - 1) {}
+
+  void plane(std::int32_t y0) {
+    ++level_;
+    y_ = y0;
+  }
+  void line(const GridLine& line) {
+    GridPoint z{};
+    z[axes_[0]] = level_;
+    z[axes_[1]] = y_++;
+    for (std::int32_t i = 0; i < line.count; ++i) {
+      z[axes_[2]] = line.first + i;
+      if (grid_.covers(z) && line.simplex(i) != kNoSimplex) {
+        grid_[z] = line.simplex(i);
+      } else {
+        ADD_FAILURE() << "reported a point outside the tet";
+      }
+    }
+  }
+  [[nodiscard]] std::int32_t level() const { return level_; }
+  [[nodiscard]] const std::vector<CornerMask>& simplices() const { return grid_.simplices(); }
+
+ private:
+  SimplexGrid grid_;
+  std::array<std::uint8_t, 3> axes_;
+  std::int32_t level_;
+  std::int32_t y_ = 0;
+};
+
+std::vector<CornerMask> rasterized(const Map& map, SweepAxes axes, double epsilon) {
+  const GridBox box = gridBox(map.corners, map.unit);
+  const TetRasterizer rasterizer(map.corners, map.unit, box, axes, epsilon);
+  Collector collector(box, axes);
+  rasterizer.run(collector);
+  EXPECT_EQ(collector.level(), std::max(box.range[axes()[0]].last, box.range[axes()[0]].first - 1));
+  return collector.simplices();
+}
+
+std::string describe(const Map& map) {
+  std::string text = "unit " + std::to_string(map.unit);
+  for (const LatticePoint& p : map.corners) {
+    text += " (" + std::to_string(p[0]) + ", " + std::to_string(p[1]) + ", " +
+            std::to_string(p[2]) + ")";
+  }
+  return text;
+}
+
+/// What must be found without any enlargement.
+enum class WithoutEpsilon { kNothing, kInnerPoints, kEverything };
+
+/// Rasterizes with every kind of epsilon and compares with brute force.
+template <class Integer>
+void expectAgreement(const Map& map, SweepAxes axes, WithoutEpsilon withoutEpsilon) {
+  const std::vector<CornerMask> expected = bruteForce<Integer>(map).simplices();
+  for (const double epsilon : {1e-6, 1e-2, 1e9, kInfinity}) {
+    ASSERT_EQ(rasterized(map, axes, epsilon), expected) << describe(map) << " epsilon " << epsilon;
+  }
+  const std::vector<CornerMask> found = rasterized(map, axes, 0);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const bool mayMiss =
+        withoutEpsilon == WithoutEpsilon::kNothing ||
+        (withoutEpsilon == WithoutEpsilon::kInnerPoints && expected[i] != kWholeTet);
+    ASSERT_TRUE(found[i] == expected[i] || (mayMiss && found[i] == kNoSimplex)) << describe(map);
+  }
+}
+
+/// Random tets of one kind, positive, with many grid points on their corners, edges and faces.
+class TetSource {
+ public:
+  explicit TetSource(std::uint64_t seed) : random_(seed) {}
+
+  enum Kind { kGeneral, kGridCorners, kHalves, kThirds, kSliver, kAligned, kNeedle, kKinds };
+
+  /// The largest number of grid cells a tet extends over, in each direction.
+  std::array<std::int64_t, 3> extent = {3, 3, 3};
+
+  Map operator()(Kind kind, std::int64_t unit) {
+    for (;;) {
+      Map map{{}, unit};
+      for (LatticePoint& p : map.corners) p = corner(kind, unit);
+      if (kind == kSliver) flatten(map.corners, unit);
+      if (kind == kAligned) align(map.corners, unit);
+      const int s = signum(determinant<Integer256>(widened<Integer256>(map.corners)));
+      if (s < 0) std::swap(map.corners[2], map.corners[3]);
+      if (s != 0) return map;
+    }
+  }
+  Random& random() { return random_; }
+
+ private:
+  LatticePoint corner(Kind kind, std::int64_t unit) {
+    LatticePoint p;
+    const std::int64_t parts = kind == kGridCorners ? 1 : (kind == kHalves ? 2 : 3);
+    const bool anywhere = kind == kGeneral || kind == kSliver || kind == kNeedle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = anywhere ? random_.between(0, extent[k] * unit)
+                      : random_.between(0, extent[k] * parts) * unit / parts;
+    }
+    return p;
+  }
+  /// Moves the last corner next to a point of the plane of the others, which may be grid points.
+  void flatten(LatticeTet& t, std::int64_t unit) {
+    if (random_.oneIn(2)) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) t[i][k] = random_.between(0, extent[k]) * unit;
+      }
+    }
+    for (std::size_t k = 0; k < 3; ++k) t[3][k] = t[0][k] + (t[1][k] - t[0][k]) / 2;
+    for (std::size_t k = 0; k < 3; ++k) t[3][k] += (t[2][k] - t[0][k]) / 4;
+    t[3][random_.index(3)] += random_.oneIn(2) ? 1 : -1;
+    std::swap(t[3], t[random_.index(4)]);
+  }
+  /// Puts a face onto a grid plane, an edge of it onto a grid line, a corner onto a grid point.
+  void align(LatticeTet& t, std::int64_t unit) {
+    const std::size_t axis = random_.index(3);
+    const std::int64_t plane = random_.between(0, extent[axis]) * unit;
+    for (std::size_t i = 0; i < 3; ++i) t[i][axis] = plane;
+    const std::size_t next = (axis + 1) % 3;
+    if (random_.oneIn(2)) t[0][next] = t[1][next] = random_.between(0, extent[next]) * unit;
+    const std::size_t last = (axis + 2) % 3;
+    if (random_.oneIn(2)) t[0][last] = random_.between(0, extent[last]) * unit;
+    std::swap(t[3], t[random_.index(4)]);
+  }
+
+  Random random_;
+};
+
+void translate(Map& map, const GridPoint& offset) {
+  for (LatticePoint& p : map.corners) {
+    for (std::size_t k = 0; k < 3; ++k) p[k] += offset[k] * map.unit;
+  }
+}
+
+GridPoint anyOffset(Random& random, std::int64_t range) {
+  const LatticePoint p = random.point(-range, range);
+  return {static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[1]),
+          static_cast<std::int32_t>(p[2])};
+}
+
+SweepAxes anyAxes(const Map& map, Random& random) {
+  if (random.oneIn(2)) return chooseSweepAxes(gridBox(map.corners, map.unit));
+  return {static_cast<std::uint8_t>(random.index(6))};
+}
+
+class RasterizeKinds : public ::testing::TestWithParam<TetSource::Kind> {};
+
+TEST_P(RasterizeKinds, SmallTetsWithFewBits) {
+  TetSource source(31 + static_cast<std::uint64_t>(GetParam()));
+  Random& random = source.random();
+  for (int i = cases(90'000); i > 0; --i) {
+    for (std::int64_t& e : source.extent) e = random.between(1, 6);
+    Map map = source(GetParam(), std::int64_t{1} << random.between(0, 8));
+    translate(map, anyOffset(random, 100));
+    // Interior points are farther from the faces than any rounding error.
+    ASSERT_NO_FATAL_FAILURE(
+        expectAgreement<Int128>(map, anyAxes(map, random), WithoutEpsilon::kInnerPoints));
+  }
+}
+
+TEST_P(RasterizeKinds, SmallTetsFarFromTheOrigin) {
+  TetSource source(41 + static_cast<std::uint64_t>(GetParam()));
+  Random& random = source.random();
+  for (int i = cases(50'000); i > 0; --i) {
+    for (std::int64_t& e : source.extent) e = random.between(1, 3);
+    Map map = source(GetParam(), std::int64_t{1} << random.between(3, 29));
+    translate(map, anyOffset(random, 1'000'000'000));
+    ASSERT_NO_FATAL_FAILURE(
+        expectAgreement<Int128>(map, anyAxes(map, random), WithoutEpsilon::kNothing));
+  }
+}
+
+TEST_P(RasterizeKinds, CoordinatesOfSixtyBits) {
+  TetSource source(51 + static_cast<std::uint64_t>(GetParam()));
+  Random& random = source.random();
+  for (int i = cases(8'000); i > 0; --i) {
+    for (std::int64_t& e : source.extent) e = random.between(1, 3);
+    Map map = source(GetParam(), std::int64_t{1} << random.between(30, 52));
+    translate(map, anyOffset(random, 100));
+    ASSERT_NO_FATAL_FAILURE(
+        expectAgreement<Integer256>(map, anyAxes(map, random), WithoutEpsilon::kNothing));
+  }
+}
+
+TEST_P(RasterizeKinds, LargeAndLongTets) {
+  TetSource source(61 + static_cast<std::uint64_t>(GetParam()));
+  Random& random = source.random();
+  for (int i = cases(1'000); i > 0; --i) {
+    for (std::int64_t& e : source.extent) e = random.between(2, 16);
+    if (GetParam() == TetSource::kNeedle) source.extent[random.index(3)] *= 50;
+    Map map = source(GetParam(), std::int64_t{1} << random.between(3, 20));
+    translate(map, anyOffset(random, random.oneIn(2) ? 10 : 1'000'000));
+    ASSERT_NO_FATAL_FAILURE(
+        expectAgreement<Int128>(map, anyAxes(map, random), WithoutEpsilon::kNothing));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, RasterizeKinds,
+                         ::testing::Range(TetSource::kGeneral, TetSource::kKinds));
+
+TEST(Rasterize, KuhnTetsOfPowerOfTwoCubesNeedNoEpsilon) {
+  // All quotients are exact: rises are powers of two, slopes 0 and 1.
+  for (std::int64_t edge = 1; edge <= 8; edge *= 2) {
+    for (const auto& order : SweepAxes::kPermutations) {
+      Map map{{}, 4};
+      for (std::size_t i = 0; i < 3; ++i) {
+        map.corners[i + 1] = map.corners[i];
+        map.corners[i + 1][order[i]] += edge * map.unit;
+      }
+      if (determinant<Int128>(widened<Int128>(map.corners)) < 0) {
+        std::swap(map.corners[1], map.corners[2]);
+      }
+      for (std::uint8_t axes = 0; axes < 6; ++axes) {
+        ASSERT_NO_FATAL_FAILURE(expectAgreement<Int128>(map, {axes}, WithoutEpsilon::kEverything));
+      }
+    }
+  }
+}
+
+TEST(Rasterize, NamesTheSimplexOfEveryPoint) {
+  // The corner tet of a cube of edge 2: a line along an edge, and one across the slanted face.
+  const Map map = {{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}}}, 2};
+  SimplexGrid grid = bruteForce<Int128>(map);
+  const std::vector<CornerMask> found = rasterized(map, {0}, 1e-6);
+  ASSERT_EQ(found, grid.simplices());
+  EXPECT_EQ((grid[{0, 0, 0}]), cornerBit(0));
+  EXPECT_EQ((grid[{0, 0, 1}]), cornerBit(0) | cornerBit(3));
+  EXPECT_EQ((grid[{0, 0, 2}]), cornerBit(3));
+  EXPECT_EQ((grid[{0, 1, 1}]), cornerBit(2) | cornerBit(3));
+  EXPECT_EQ((grid[{1, 1, 1}]), kNoSimplex);
+}
+
+TEST(GridLine, SimplexByPosition) {
+  const GridLine line = {7, 4, 1, 3, 2};
+  EXPECT_EQ(line.simplex(0), 1);
+  EXPECT_EQ(line.simplex(1), 3);
+  EXPECT_EQ(line.simplex(2), 3);
+  EXPECT_EQ(line.simplex(3), 2);
+  EXPECT_EQ((GridLine{7, 1, 5, 5, 5}.simplex(0)), 5);
+  EXPECT_EQ((GridLine{7, 2, 1, 3, 2}.simplex(1)), 2);
+}
+
+TEST(GridBox, HoldsTheGridPointsOfTheBoundingBox) {
+  Random random(71);
+  for (int i = cases(100'000); i > 0; --i) {
+    const std::int64_t unit = std::int64_t{1} << random.index(30);
+    LatticeTet t;
+    const std::int64_t range = std::min(unit << random.index(30), std::int64_t{1} << 58);
+    for (LatticePoint& p : t) p = random.point(-range, range);
+    if (random.oneIn(2)) t[0][0] = unit * (t[0][0] / unit);
+    const GridBox box = gridBox(t, unit);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int64_t low = std::min({t[0][k], t[1][k], t[2][k], t[3][k]});
+      const std::int64_t high = std::max({t[0][k], t[1][k], t[2][k], t[3][k]});
+      const GridRange r = box.range[k];
+      // The smallest grid coordinate not below, the largest not above.
+      ASSERT_TRUE(r.first * unit >= low && (std::int64_t{r.first} - 1) * unit < low);
+      ASSERT_TRUE(r.last * unit <= high && (std::int64_t{r.last} + 1) * unit > high);
+    }
+  }
+}
+
+TEST(GridBox, IsEmptyBetweenGridPlanes) {
+  const GridBox box = gridBox({{{1, 0, 0}, {2, 8, 0}, {3, 0, 8}, {3, 0, 0}}}, 4);
+  EXPECT_TRUE(box.empty());
+  EXPECT_FALSE(gridBox({{{0, 0, 0}, {2, 8, 0}, {3, 0, 8}, {3, 0, 0}}}, 4).empty());
+}
+
+TEST(SweepAxes, FewestPlanesFirstLongestLinesLast) {
+  const auto axes = [](std::int32_t x, std::int32_t y, std::int32_t z) {
+    return chooseSweepAxes({{{{5, 5 + x}, {-3, -3 + y}, {0, z}}}})();
+  };
+  using Axes = std::array<std::uint8_t, 3>;
+  EXPECT_EQ(axes(1, 2, 3), (Axes{0, 1, 2}));
+  EXPECT_EQ(axes(1, 3, 2), (Axes{0, 2, 1}));
+  EXPECT_EQ(axes(2, 1, 3), (Axes{1, 0, 2}));
+  EXPECT_EQ(axes(3, 1, 2), (Axes{1, 2, 0}));
+  EXPECT_EQ(axes(2, 3, 1), (Axes{2, 0, 1}));
+  EXPECT_EQ(axes(3, 2, 1), (Axes{2, 1, 0}));
+  EXPECT_EQ(axes(2, 2, 2), (Axes{0, 1, 2}));
+  EXPECT_EQ(axes(2, 1, 2), (Axes{1, 0, 2}));
+  constexpr std::int32_t kLargest = 2'000'000'000;
+  EXPECT_EQ(axes(kLargest, 1, 0), (Axes{2, 1, 0}));
+}
+
+TEST(TetPlanes, LocatesPointsInsideAndOutside) {
+  TetSource source(81);
+  Random& random = source.random();
+  for (int i = cases(200'000); i > 0; --i) {
+    const auto kind = static_cast<TetSource::Kind>(random.index(TetSource::kKinds));
+    Map map = source(kind, std::int64_t{1} << random.between(3, 29));
+    translate(map, anyOffset(random, random.oneIn(2) ? 3 : 1'000'000'000));
+    const GridBox box = gridBox(map.corners, map.unit);
+    GridPoint z;
+    for (std::size_t k = 0; k < 3; ++k) {
+      z[k] =
+          static_cast<std::int32_t>(random.between(box.range[k].first - 2, box.range[k].last + 2));
+    }
+    const TetPlanes planes(map.corners, map.unit);
+    ASSERT_EQ(planes.generator(z), locate(widened<Integer256>(map.corners),
+                                          widened<Integer256>(latticePoint(z, map.unit))))
+        << describe(map);
+  }
+}
+
+/// An upper bound of what is summed up in a barycentric coordinate of face f's corner.
+BigInteger sizeOfTerms(const Map& map, const LatticePoint& p, int f) {
+  const Tet<BigInteger> tet = widened<BigInteger>(map.corners);
+  const int origin = kFaceCorners[static_cast<std::size_t>(f)][0];
+  const LatticePoint offset = p - map.corners[static_cast<std::size_t>(origin)];
+  BigInteger sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const BigInteger slope =
+        barycentricSlopes<BigInteger>(tet, direction(axis, 1))[static_cast<std::size_t>(f)];
+    sum += abs(BigInteger(slope * offset[static_cast<std::size_t>(axis)]));
+  }
+  return sum;
+}
+
+TEST(TetPlanes, WeightsAreBarycentricCoordinatesTimesTheDeterminant) {
+  TetSource source(82);
+  Random& random = source.random();
+  for (int i = cases(10'000); i > 0; --i) {
+    const auto kind = static_cast<TetSource::Kind>(random.index(TetSource::kKinds));
+    Map map = source(kind, std::int64_t{1} << random.between(3, 29));
+    translate(map, anyOffset(random, random.oneIn(2) ? 3 : 1'000'000'000));
+    const TetPlanes planes(map.corners, map.unit);
+    SimplexGrid grid = bruteForce<Int128>(map);
+    grid.forAllPoints([&](const GridPoint& z) {
+      if (grid[z] == kNoSimplex) return;
+      const LatticePoint p = latticePoint(z, map.unit);
+      const auto exact = barycentric(widened<BigInteger>(map.corners), widened<BigInteger>(p));
+      const std::array<double, 4> weights = planes.weights(z);
+      for (std::size_t f = 0; f < 4; ++f) {
+        EXPECT_GE(weights[f], 0);
+        // Five roundings of relative size 2^-53, with room for their products. Doubles of this size
+        // are integers.
+        const BigInteger error = abs(BigInteger(BigInteger(std::floor(weights[f])) - exact[f]));
+        EXPECT_LE(BigInteger(error << 50), sizeOfTerms(map, p, static_cast<int>(f)));
+      }
+    });
+    ASSERT_FALSE(HasFailure()) << describe(map);
+  }
+}
+
+TEST(TetPlanes, WeightsOfSimplePoints) {
+  const TetPlanes planes({{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {0, 0, 8}}}, 2);
+  EXPECT_EQ(planes.weights({0, 0, 0}), (std::array<double, 4>{512, 0, 0, 0}));
+  EXPECT_EQ(planes.weights({1, 1, 1}), (std::array<double, 4>{128, 128, 128, 128}));
+  EXPECT_EQ(planes.weights({0, 3, 1}), (std::array<double, 4>{0, 0, 384, 128}));
+}
+
+}  // namespace
+}  // namespace hexhex::testing
