@@ -1,10 +1,9 @@
 #include "check_text.hpp"
 
-#include <fmt/core.h>
-
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include "output.hpp"
 

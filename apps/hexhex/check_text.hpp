@@ -1,9 +1,9 @@
 // A CheckReport and an Expectation for people and for programs.
 #pragma once
 
-#include <hexhex/check.hpp>
-
 #include <string>
+
+#include <hexhex/check.hpp>
 
 namespace hexhex::command {
 

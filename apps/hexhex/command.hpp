@@ -1,9 +1,9 @@
 // The subcommands: each adds its options to the parser and says what to do afterwards.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <functional>
+
+#include <CLI/CLI.hpp>
 
 namespace hexhex::command {
 

@@ -1,10 +1,10 @@
 // `hexhex check`: what a map is and what is wrong with it.
-#include <hexhex/check.hpp>
-#include <hexhex/io.hpp>
+#include <memory>
 
 #include <fmt/core.h>
 
-#include <memory>
+#include <hexhex/check.hpp>
+#include <hexhex/io.hpp>
 
 #include "check_text.hpp"
 #include "command.hpp"

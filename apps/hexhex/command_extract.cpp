@@ -1,13 +1,13 @@
 // `hexhex extract`: from a map to a verified hexahedral mesh.
+#include <memory>
+
+#include <fmt/core.h>
+
 #include <hexhex/error.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/verify.hpp>
-
-#include <fmt/core.h>
-
-#include <memory>
 
 #include "command.hpp"
 #include "exit_codes.hpp"

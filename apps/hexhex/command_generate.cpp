@@ -1,9 +1,4 @@
 // `hexhex generate`: maps with known answers.
-#include <hexhex/io.hpp>
-#include <hexhex/samples.hpp>
-
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -11,6 +6,11 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include <fmt/core.h>
+
+#include <hexhex/io.hpp>
+#include <hexhex/samples.hpp>
 
 #include "check_text.hpp"
 #include "command.hpp"

@@ -1,14 +1,14 @@
 // `hexhex info`: what a file holds.
-#include <hexhex/error.hpp>
-#include <hexhex/io.hpp>
-#include <hexhex/quality.hpp>
-
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <limits>
 #include <memory>
 #include <span>
+
+#include <fmt/core.h>
+
+#include <hexhex/error.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/quality.hpp>
 
 #include "command.hpp"
 #include "exit_codes.hpp"

@@ -1,12 +1,12 @@
 // `hexhex verify`: does a mesh agree with its map?
-#include <hexhex/io.hpp>
-#include <hexhex/verify.hpp>
-
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <memory>
 #include <string_view>
+
+#include <fmt/core.h>
+
+#include <hexhex/io.hpp>
+#include <hexhex/verify.hpp>
 
 #include "command.hpp"
 #include "exit_codes.hpp"

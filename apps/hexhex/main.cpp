@@ -1,16 +1,16 @@
 // `hexhex`: parses the command line, runs the subcommand, and turns errors into a sentence and an
 // exit code.
-#include <hexhex/error.hpp>
-#include <hexhex/version.hpp>
-
-#include <fmt/core.h>
-
 #include <array>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
+
+#include <fmt/core.h>
+
+#include <hexhex/error.hpp>
+#include <hexhex/version.hpp>
 
 #include "command.hpp"
 #include "exit_codes.hpp"

@@ -1,15 +1,15 @@
 #include "output.hpp"
 
-#include <hexhex/error.hpp>
-
-#include <fcntl.h>
-#include <fmt/core.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstdio>
+#include <fcntl.h>
 #include <fstream>
 #include <system_error>
+#include <unistd.h>
+
+#include <fmt/core.h>
+
+#include <hexhex/error.hpp>
 
 namespace hexhex::command {
 namespace {

@@ -1,14 +1,14 @@
 // How the command prints: warnings, labelled lines, sizes; and files of its own.
 #pragma once
 
-#include <hexhex/quality.hpp>
-#include <hexhex/types.hpp>
-
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
+
+#include <hexhex/quality.hpp>
+#include <hexhex/types.hpp>
 
 namespace hexhex::command {
 

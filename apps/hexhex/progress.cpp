@@ -1,10 +1,10 @@
 #include "progress.hpp"
 
-#include <fmt/core.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
+#include <unistd.h>
+
+#include <fmt/core.h>
 
 namespace hexhex::command {
 namespace {

@@ -1,11 +1,11 @@
 // Progress on the standard error output: a bar on a terminal, a line per stage elsewhere.
 #pragma once
 
-#include <hexhex/context.hpp>
-
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <hexhex/context.hpp>
 
 namespace hexhex::command {
 

@@ -1,13 +1,12 @@
 #include "report.hpp"
 
-#include <hexhex/version.hpp>
-
+#include <array>
+#include <cmath>
 #include <sys/resource.h>
 
 #include <nlohmann/json.hpp>
 
-#include <array>
-#include <cmath>
+#include <hexhex/version.hpp>
 
 namespace hexhex::command {
 namespace {

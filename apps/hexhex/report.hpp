@@ -1,15 +1,15 @@
 // The machine-readable report of an extraction. docs/report.md explains every key.
 #pragma once
 
-#include <hexhex/extract.hpp>
-#include <hexhex/quality.hpp>
-#include <hexhex/verify.hpp>
-
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <hexhex/extract.hpp>
+#include <hexhex/quality.hpp>
+#include <hexhex/verify.hpp>
 
 namespace hexhex::command {
 

@@ -1,8 +1,8 @@
 #include "shared_options.hpp"
 
-#include <fmt/core.h>
-
 #include <charconv>
+
+#include <fmt/core.h>
 
 namespace hexhex::command {
 

@@ -1,9 +1,9 @@
 // Options that several subcommands have, and checks with messages that people understand.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <string>
+
+#include <CLI/CLI.hpp>
 
 namespace hexhex::command {
 

@@ -1,14 +1,14 @@
 // What a map is, what its mesh will be, and what is wrong with it.
 #pragma once
 
-#include <hexhex/context.hpp>
-#include <hexhex/error.hpp>
-#include <hexhex/types.hpp>
-
 #include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
+
+#include <hexhex/context.hpp>
+#include <hexhex/error.hpp>
+#include <hexhex/types.hpp>
 
 namespace hexhex {
 

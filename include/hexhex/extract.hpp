@@ -4,11 +4,11 @@
 // Hexahedral Meshes", ACM Transactions on Graphics 44 (2025).
 #pragma once
 
-#include <hexhex/context.hpp>
-#include <hexhex/types.hpp>
-
 #include <array>
 #include <cstdint>
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
 
 namespace hexhex {
 

@@ -1,10 +1,10 @@
 // Files. The format follows from the file name's extension (letter case does not matter).
 #pragma once
 
+#include <filesystem>
+
 #include <hexhex/context.hpp>
 #include <hexhex/types.hpp>
-
-#include <filesystem>
 
 namespace hexhex {
 

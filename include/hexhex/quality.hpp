@@ -1,11 +1,11 @@
 // Shape quality of hexahedra.
 #pragma once
 
-#include <hexhex/context.hpp>
-#include <hexhex/types.hpp>
-
 #include <array>
 #include <cstdint>
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
 
 namespace hexhex {
 

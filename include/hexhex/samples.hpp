@@ -1,12 +1,12 @@
 // Integer-grid maps with known answers, generated from block structures.
 #pragma once
 
-#include <hexhex/check.hpp>
-#include <hexhex/types.hpp>
-
 #include <cstdint>
 #include <span>
 #include <string_view>
+
+#include <hexhex/check.hpp>
+#include <hexhex/types.hpp>
 
 namespace hexhex {
 

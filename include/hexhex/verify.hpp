@@ -1,12 +1,12 @@
 // Does a hexahedral mesh agree with the map that it came from? Independent of how it was made.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <hexhex/check.hpp>
 #include <hexhex/context.hpp>
 #include <hexhex/types.hpp>
-
-#include <string>
-#include <vector>
 
 namespace hexhex {
 

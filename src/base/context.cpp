@@ -1,8 +1,8 @@
-#include <hexhex/context.hpp>
-#include <hexhex/error.hpp>
-
 #include <algorithm>
 #include <utility>
+
+#include <hexhex/context.hpp>
+#include <hexhex/error.hpp>
 
 namespace hexhex {
 

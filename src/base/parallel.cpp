@@ -1,7 +1,8 @@
-#include <hexhex/error.hpp>
-
 #include <algorithm>
 #include <atomic>
+
+#include <hexhex/error.hpp>
+
 #include <base/parallel.hpp>
 
 #if HEXHEX_HAS_TBB

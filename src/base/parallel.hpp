@@ -5,10 +5,11 @@
 // loop whose blocks write to disjoint places gives the same result on any machine.
 #pragma once
 
-#include <base/stage.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+
+#include <base/stage.hpp>
 
 namespace hexhex {
 

@@ -1,12 +1,12 @@
 // A stage of the pipeline as the caller sees it: a name, progress, cancellation, and its time.
 #pragma once
 
-#include <hexhex/context.hpp>
-
 #include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <string_view>
+
+#include <hexhex/context.hpp>
 
 namespace hexhex {
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <atomic>
+
 #include <extract/global_connectivity.hpp>
 
 namespace hexhex {

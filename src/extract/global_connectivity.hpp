@@ -1,9 +1,10 @@
 // Global propellers: each hex edge traced once, from vertex to vertex (Section 5.4).
 #pragma once
 
+#include <cstdint>
+
 #include <hexhex/types.hpp>
 
-#include <cstdint>
 #include <extract/local_connectivity.hpp>
 
 namespace hexhex {

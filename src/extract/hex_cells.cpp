@@ -1,7 +1,8 @@
 #include <algorithm>
+#include <vector>
+
 #include <extract/hex_cells.hpp>
 #include <extract/link_corners.hpp>
-#include <vector>
 
 namespace hexhex {
 

@@ -2,9 +2,10 @@
 // (Section 5.4, end).
 #pragma once
 
+#include <cstdint>
+
 #include <hexhex/types.hpp>
 
-#include <cstdint>
 #include <extract/global_connectivity.hpp>
 
 namespace hexhex {

@@ -1,8 +1,9 @@
 #include <algorithm>
-#include <extract/hex_vertices.hpp>
 #include <limits>
 #include <string>
 #include <vector>
+
+#include <extract/hex_vertices.hpp>
 
 namespace hexhex {
 

@@ -1,10 +1,11 @@
 // Hex vertices: grid points of the image with their generators (Section 5.2).
 #pragma once
 
-#include <hexhex/types.hpp>
-
 #include <array>
 #include <cstdint>
+
+#include <hexhex/types.hpp>
+
 #include <extract/lattice_lines.hpp>
 #include <map/prepare.hpp>
 

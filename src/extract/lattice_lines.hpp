@@ -3,9 +3,10 @@
 // planes of lines of consecutive points.
 #pragma once
 
+#include <cstdint>
+
 #include <hexhex/types.hpp>
 
-#include <cstdint>
 #include <lattice/rasterize.hpp>
 #include <map/tet_topology.hpp>
 

@@ -1,8 +1,9 @@
 // Hex corners from blades (Section 5.3.4).
 #pragma once
 
-#include <extract/local_connectivity.hpp>
 #include <vector>
+
+#include <extract/local_connectivity.hpp>
 
 namespace hexhex {
 

@@ -1,8 +1,9 @@
 #include <algorithm>
+#include <span>
+
 #include <extract/link_corners.hpp>
 #include <extract/local_connectivity.hpp>
 #include <extract/star_connectivity.hpp>
-#include <span>
 
 namespace hexhex {
 

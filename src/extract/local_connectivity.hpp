@@ -6,12 +6,13 @@
 // blade is a slot; slot i also stands for the hex corner between blades i and i + 1.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include <hexhex/types.hpp>
 
-#include <cstdint>
 #include <extract/hex_vertices.hpp>
 #include <map/prepare.hpp>
-#include <vector>
 
 namespace hexhex {
 

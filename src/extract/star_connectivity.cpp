@@ -1,7 +1,8 @@
 #include <algorithm>
+#include <string>
+
 #include <extract/link_corners.hpp>
 #include <extract/star_connectivity.hpp>
-#include <string>
 
 namespace hexhex {
 

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <array>
-#include <extract/local_connectivity.hpp>
 #include <vector>
+
+#include <extract/local_connectivity.hpp>
 
 namespace hexhex {
 

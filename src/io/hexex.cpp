@@ -1,9 +1,10 @@
-#include <hexhex/error.hpp>
-
 #include <algorithm>
-#include <base/stage.hpp>
 #include <cmath>
 #include <cstdint>
+
+#include <hexhex/error.hpp>
+
+#include <base/stage.hpp>
 #include <io/hexex.hpp>
 #include <io/input_file.hpp>
 #include <io/output_file.hpp>

@@ -9,12 +9,12 @@
 // faces`, then that many vertices, pairs, and triples). They are checked and ignored.
 #pragma once
 
-#include <hexhex/context.hpp>
-#include <hexhex/types.hpp>
-
 #include <filesystem>
 #include <string>
 #include <string_view>
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
 
 namespace hexhex {
 

@@ -1,14 +1,14 @@
-#include <hexhex/error.hpp>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
-#include <io/input_file.hpp>
+#include <fcntl.h>
 #include <string>
+#include <sys/stat.h>
 #include <system_error>
+#include <unistd.h>
+
+#include <hexhex/error.hpp>
+
+#include <io/input_file.hpp>
 
 namespace hexhex {
 namespace {

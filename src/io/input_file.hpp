@@ -1,10 +1,10 @@
 // Reads a whole file into memory, which is the fastest way to parse it.
 #pragma once
 
-#include <hexhex/types.hpp>
-
 #include <filesystem>
 #include <string_view>
+
+#include <hexhex/types.hpp>
 
 namespace hexhex {
 

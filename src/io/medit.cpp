@@ -1,8 +1,9 @@
+#include <algorithm>
+#include <cstdint>
+
 #include <hexhex/error.hpp>
 
-#include <algorithm>
 #include <base/stage.hpp>
-#include <cstdint>
 #include <io/input_file.hpp>
 #include <io/medit.hpp>
 #include <io/output_file.hpp>

@@ -2,12 +2,12 @@
 // number that this library writes as 0 (vertices) or 1 and ignores when it reads.
 #pragma once
 
-#include <hexhex/context.hpp>
-#include <hexhex/types.hpp>
-
 #include <filesystem>
 #include <string>
 #include <string_view>
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
 
 namespace hexhex {
 

@@ -2,10 +2,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <io/number_parsing.hpp>
-#include <io/rational.hpp>
 #include <limits>
 #include <system_error>
+
+#include <io/number_parsing.hpp>
+#include <io/rational.hpp>
 
 namespace hexhex {
 namespace {

@@ -1,15 +1,15 @@
-#include <hexhex/error.hpp>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <io/output_file.hpp>
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <system_error>
+#include <unistd.h>
+
+#include <hexhex/error.hpp>
+
+#include <io/output_file.hpp>
 
 namespace hexhex {
 namespace {

@@ -3,8 +3,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <io/rational.hpp>
 #include <vector>
+
+#include <io/rational.hpp>
 
 namespace hexhex {
 namespace {

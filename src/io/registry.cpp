@@ -1,17 +1,18 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 
-#include <algorithm>
-#include <array>
 #include <base/stage.hpp>
-#include <cmath>
 #include <io/hexex.hpp>
 #include <io/medit.hpp>
 #include <io/registry.hpp>
 #include <io/vtu.hpp>
 #include <mesh/vertex_cells.hpp>
-#include <span>
-#include <string>
 
 namespace hexhex {
 namespace {

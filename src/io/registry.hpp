@@ -2,11 +2,11 @@
 // registry.cpp.
 #pragma once
 
-#include <hexhex/context.hpp>
-#include <hexhex/types.hpp>
-
 #include <filesystem>
 #include <string_view>
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
 
 namespace hexhex {
 

@@ -1,6 +1,7 @@
+#include <algorithm>
+
 #include <hexhex/types.hpp>
 
-#include <algorithm>
 #include <io/number_parsing.hpp>
 #include <io/text_scanner.hpp>
 

@@ -1,8 +1,6 @@
 // A fast scanner over a text file in memory: tokens between white space, numbers, and clear errors.
 #pragma once
 
-#include <hexhex/error.hpp>
-
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -10,6 +8,8 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+
+#include <hexhex/error.hpp>
 
 namespace hexhex {
 

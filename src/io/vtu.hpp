@@ -2,12 +2,12 @@
 // read without conversion.
 #pragma once
 
-#include <hexhex/context.hpp>
-#include <hexhex/types.hpp>
-
 #include <filesystem>
 #include <string>
 #include <string_view>
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
 
 namespace hexhex {
 

@@ -2,17 +2,18 @@
 // Every size and offset is checked against the file before memory is allocated for it.
 #include <algorithm>
 #include <array>
-#include <base/stage.hpp>
 #include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <optional>
+
+#include <base/stage.hpp>
 #include <io/input_file.hpp>
 #include <io/text_scanner.hpp>
 #include <io/vtu.hpp>
 #include <io/xml_tags.hpp>
-#include <optional>
 
 namespace hexhex {
 namespace {

@@ -1,17 +1,18 @@
 // The writing half of vtu.hpp. Arrays are described first, in a table; the XML head and the data
 // behind it both follow from that table, so they cannot disagree.
-#include <hexhex/quality.hpp>
-
 #include <algorithm>
-#include <base/stage.hpp>
 #include <bit>
 #include <cstdint>
 #include <functional>
-#include <io/output_file.hpp>
-#include <io/vtu.hpp>
 #include <limits>
 #include <string>
 #include <vector>
+
+#include <hexhex/quality.hpp>
+
+#include <base/stage.hpp>
+#include <io/output_file.hpp>
+#include <io/vtu.hpp>
 
 namespace hexhex {
 namespace {

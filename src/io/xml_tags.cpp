@@ -1,4 +1,5 @@
 #include <algorithm>
+
 #include <io/xml_tags.hpp>
 
 namespace hexhex {

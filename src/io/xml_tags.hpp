@@ -1,11 +1,11 @@
 // Just enough XML to find tags and their attributes. No entities, no validation.
 #pragma once
 
-#include <hexhex/error.hpp>
-
 #include <cstddef>
 #include <string>
 #include <string_view>
+
+#include <hexhex/error.hpp>
 
 namespace hexhex {
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+
 #include <lattice/rasterize.hpp>
 
 namespace hexhex {

@@ -6,8 +6,9 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <lattice/tet_geometry.hpp>
 #include <limits>
+
+#include <lattice/tet_geometry.hpp>
 
 namespace hexhex {
 
@@ -93,7 +94,7 @@ class EpsilonPolygon {
     std::array<double, 2> center;
     std::array<double, 2> halfSize;
   };
-  void add(const Point& point) noexcept { points_[size_++] = point; }
+  void add(const Point& point) noexcept { points_[static_cast<std::size_t>(size_++)] = point; }
 
   /// Conservative range of the polygon's first coordinate.
   [[nodiscard]] std::array<double, 2> extent(double epsilon) const noexcept;

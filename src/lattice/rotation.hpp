@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+
 #include <lattice/direction.hpp>
 
 namespace hexhex {

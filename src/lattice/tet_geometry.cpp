@@ -1,4 +1,5 @@
 #include <cmath>
+
 #include <lattice/tet_geometry.hpp>
 
 namespace hexhex {

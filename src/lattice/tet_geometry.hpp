@@ -9,6 +9,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+
 #include <lattice/direction.hpp>
 #include <lattice/wide_int.hpp>
 

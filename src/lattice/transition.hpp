@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+
 #include <lattice/rotation.hpp>
 
 namespace hexhex {
@@ -37,8 +38,7 @@ struct Transition {
   }
 
   /// Composition: (a * b)(u) = a(b(u)).
-  friend constexpr Transition operator*(const Transition& a,
-                                                      const Transition& b) noexcept {
+  friend constexpr Transition operator*(const Transition& a, const Transition& b) noexcept {
     return {a.rotation * b.rotation, a(b.translation)};
   }
 };

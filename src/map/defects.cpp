@@ -1,8 +1,9 @@
 #include <algorithm>
-#include <map/defects.hpp>
 #include <sstream>
 #include <string>
 #include <tuple>
+
+#include <map/defects.hpp>
 
 namespace hexhex {
 

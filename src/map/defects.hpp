@@ -2,14 +2,14 @@
 // kept, and the outcome does not depend on the order in which they arrive.
 #pragma once
 
-#include <hexhex/check.hpp>
-#include <hexhex/error.hpp>
-
 #include <array>
 #include <cstdint>
 #include <map>
 #include <mutex>
 #include <vector>
+
+#include <hexhex/check.hpp>
+#include <hexhex/error.hpp>
 
 namespace hexhex {
 

@@ -2,8 +2,9 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <map/exact_map.hpp>
 #include <utility>
+
+#include <map/exact_map.hpp>
 
 namespace hexhex {
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+
 #include <map/singularities.hpp>
 #include <map/transitions.hpp>
 

@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <map/input.hpp>
 #include <string>
 #include <vector>
+
+#include <map/input.hpp>
 
 namespace hexhex {
 

@@ -1,10 +1,11 @@
 // The input as the pipeline wants it: plausible, and positively oriented.
 #pragma once
 
+#include <cstdint>
+
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
-#include <cstdint>
 #include <map/defects.hpp>
 
 namespace hexhex {

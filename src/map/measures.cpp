@@ -2,8 +2,9 @@
 #include <bit>
 #include <cstdlib>
 #include <functional>
-#include <map/measures.hpp>
 #include <numeric>
+
+#include <map/measures.hpp>
 
 namespace hexhex {
 

@@ -1,11 +1,12 @@
 // What a map measures, exactly: the mesh that it implies must have as many cells, quads and edges.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include <hexhex/check.hpp>
 
-#include <cstdint>
 #include <map/prepare.hpp>
-#include <vector>
 
 namespace hexhex {
 

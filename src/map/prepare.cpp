@@ -1,6 +1,7 @@
-#include <map/prepare.hpp>
 #include <string>
 #include <utility>
+
+#include <map/prepare.hpp>
 
 namespace hexhex {
 

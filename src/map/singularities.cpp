@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+
 #include <map/singularities.hpp>
 
 namespace hexhex {

@@ -2,11 +2,12 @@
 // (Section 5.1.2).
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include <hexhex/types.hpp>
 
-#include <cstdint>
 #include <map/transitions.hpp>
-#include <vector>
 
 namespace hexhex {
 

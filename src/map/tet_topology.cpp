@@ -1,4 +1,5 @@
 #include <atomic>
+
 #include <map/tet_topology.hpp>
 
 namespace hexhex {

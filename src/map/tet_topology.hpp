@@ -1,16 +1,17 @@
 // Who touches whom in a tet mesh.
 #pragma once
 
-#include <hexhex/types.hpp>
-
 #include <algorithm>
 #include <array>
-#include <base/parallel.hpp>
 #include <cstdint>
-#include <lattice/tet_geometry.hpp>
-#include <map/defects.hpp>
 #include <span>
 #include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <base/parallel.hpp>
+#include <lattice/tet_geometry.hpp>
+#include <map/defects.hpp>
 
 namespace hexhex {
 

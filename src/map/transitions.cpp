@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+
 #include <map/transitions.hpp>
 
 namespace hexhex {

@@ -1,12 +1,13 @@
 // Charts: where they are, and how those of neighbouring tets differ (Section 5.1.1).
 #pragma once
 
+#include <cmath>
+#include <vector>
+
 #include <hexhex/types.hpp>
 
-#include <cmath>
 #include <lattice/transition.hpp>
 #include <map/tet_topology.hpp>
-#include <vector>
 
 namespace hexhex {
 

@@ -1,12 +1,12 @@
 // Connected components by union-find, from many threads at once.
 #pragma once
 
-#include <hexhex/types.hpp>
-
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+
+#include <hexhex/types.hpp>
 
 namespace hexhex {
 

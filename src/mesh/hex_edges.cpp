@@ -1,14 +1,15 @@
 // Edges of a hexahedral mesh: how many cells each has, and how they join the boundary quads.
-#include <hexhex/error.hpp>
-
 #include <algorithm>
-#include <base/parallel.hpp>
 #include <bit>
 #include <compare>
-#include <mesh/disjoint_sets.hpp>
-#include <mesh/hex_topology.hpp>
 #include <string>
 #include <vector>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+#include <mesh/disjoint_sets.hpp>
+#include <mesh/hex_topology.hpp>
 
 namespace hexhex {
 namespace {

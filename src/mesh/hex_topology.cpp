@@ -1,12 +1,13 @@
 // Faces of a hexahedral mesh and what follows from them (see hex_edges.cpp for the edges).
 #include <algorithm>
 #include <atomic>
-#include <base/parallel.hpp>
 #include <bit>
 #include <compare>
+#include <vector>
+
+#include <base/parallel.hpp>
 #include <mesh/disjoint_sets.hpp>
 #include <mesh/hex_topology.hpp>
-#include <vector>
 
 namespace hexhex {
 namespace {

@@ -5,12 +5,13 @@
 // Faces are the same if they have the same four vertices, edges if they have the same two.
 #pragma once
 
-#include <hexhex/types.hpp>
-
 #include <array>
-#include <base/stage.hpp>
 #include <cstdint>
 #include <map>
+
+#include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
 #include <mesh/vertex_cells.hpp>
 
 namespace hexhex {

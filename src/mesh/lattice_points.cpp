@@ -1,9 +1,10 @@
 // First the tets that the mesh itself names are tried. Only if that leaves vertices, a search tree
 // over all tets is built.
 #include <algorithm>
-#include <base/parallel.hpp>
 #include <cmath>
 #include <limits>
+
+#include <base/parallel.hpp>
 #include <mesh/lattice_points.hpp>
 #include <mesh/tet_locator.hpp>
 #include <mesh/vector3.hpp>

@@ -2,10 +2,11 @@
 // located in the tets, and the parameters of the tet are interpolated at it.
 #pragma once
 
+#include <cstdint>
+
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
-#include <cstdint>
 
 namespace hexhex {
 

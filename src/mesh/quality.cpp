@@ -1,10 +1,11 @@
 // The scaled Jacobian, as defined by Knupp et al., "The Verdict Geometric Quality Library",
 // Sandia Report SAND2007-1751 (2006).
+#include <algorithm>
+#include <cmath>
+
 #include <hexhex/quality.hpp>
 
-#include <algorithm>
 #include <base/parallel.hpp>
-#include <cmath>
 #include <mesh/vector3.hpp>
 
 namespace hexhex {

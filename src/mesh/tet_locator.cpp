@@ -1,9 +1,10 @@
 // Builds the tree bottom-up: each box encloses the next few boxes of the level below.
 #include <array>
-#include <base/parallel.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+
+#include <base/parallel.hpp>
 #include <mesh/tet_locator.hpp>
 
 namespace hexhex {

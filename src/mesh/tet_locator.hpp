@@ -2,12 +2,13 @@
 // space-filling curve. Unlike a grid, it takes linear memory whatever the sizes of the tets.
 #pragma once
 
-#include <hexhex/types.hpp>
-
 #include <algorithm>
-#include <base/stage.hpp>
 #include <cstddef>
 #include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
 
 namespace hexhex {
 

@@ -1,9 +1,9 @@
 // The little vector arithmetic that measuring a mesh takes.
 #pragma once
 
-#include <hexhex/types.hpp>
-
 #include <cmath>
+
+#include <hexhex/types.hpp>
 
 namespace hexhex {
 

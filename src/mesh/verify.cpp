@@ -1,12 +1,13 @@
 // What is expected of a mesh follows from check(), which knows nothing of extraction.
+#include <algorithm>
+#include <string>
+
 #include <hexhex/check.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/verify.hpp>
 
-#include <algorithm>
 #include <base/parallel.hpp>
 #include <mesh/verify_against.hpp>
-#include <string>
 
 namespace hexhex {
 namespace {

@@ -3,13 +3,14 @@
 // A cell with repeated vertices is no fault in itself: where a map is coarse, a cell may well meet
 // itself. It shows in the counts if it is wrong.
 #include <algorithm>
+#include <string>
+#include <utility>
+
 #include <base/parallel.hpp>
 #include <mesh/hex_topology.hpp>
 #include <mesh/lattice_points.hpp>
 #include <mesh/verify_against.hpp>
 #include <mesh/vertex_cells.hpp>
-#include <string>
-#include <utility>
 
 namespace hexhex {
 namespace {

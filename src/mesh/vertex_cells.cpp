@@ -1,11 +1,12 @@
 // A counting sort of all cell corners by their vertex.
-#include <hexhex/error.hpp>
-
 #include <algorithm>
 #include <atomic>
+#include <string>
+
+#include <hexhex/error.hpp>
+
 #include <base/parallel.hpp>
 #include <mesh/vertex_cells.hpp>
-#include <string>
 
 namespace hexhex {
 namespace {

@@ -1,12 +1,13 @@
 // The cells around each vertex of a hex mesh: the one table from which faces and edges follow.
 #pragma once
 
-#include <hexhex/types.hpp>
-
-#include <base/stage.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+
+#include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
 
 namespace hexhex {
 

@@ -1,10 +1,11 @@
 // Builds the coarse complex: cells first, then what each of them knows about its surroundings.
-#include <hexhex/error.hpp>
-
 #include <algorithm>
 #include <map>
-#include <samples/block_complex.hpp>
 #include <utility>
+
+#include <hexhex/error.hpp>
+
+#include <samples/block_complex.hpp>
 
 namespace hexhex::samples {
 

@@ -3,12 +3,13 @@
 // depend on the options of a sample, so it is built with maps and nested vectors.
 #pragma once
 
-#include <hexhex/types.hpp>
-
 #include <array>
 #include <optional>
-#include <samples/rotation.hpp>
 #include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <samples/rotation.hpp>
 
 namespace hexhex::samples {
 

@@ -2,10 +2,11 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <samples/charts.hpp>
-#include <samples/random.hpp>
 #include <utility>
 #include <vector>
+
+#include <samples/charts.hpp>
+#include <samples/random.hpp>
 
 namespace hexhex::samples {
 

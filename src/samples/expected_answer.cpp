@@ -1,7 +1,8 @@
 // Counts cells of the coarse complex; everything scales with powers of the cells per block edge.
 #include <numeric>
-#include <samples/expected_answer.hpp>
 #include <vector>
+
+#include <samples/expected_answer.hpp>
 
 namespace hexhex::samples {
 

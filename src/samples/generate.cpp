@@ -1,17 +1,18 @@
 // The public functions of the samples: checks the options and chains the steps.
-#include <hexhex/error.hpp>
-#include <hexhex/samples.hpp>
-
 #include <algorithm>
 #include <array>
 #include <new>
+#include <string>
+#include <utility>
+
+#include <hexhex/error.hpp>
+#include <hexhex/samples.hpp>
+
 #include <samples/charts.hpp>
 #include <samples/expected_answer.hpp>
 #include <samples/kinds.hpp>
 #include <samples/perturbation.hpp>
 #include <samples/tet_grid.hpp>
-#include <string>
-#include <utility>
 
 namespace hexhex {
 

@@ -1,9 +1,10 @@
 // Most kinds are sections in the plane, extruded; the round ones become round by a warp.
 #include <algorithm>
 #include <cmath>
-#include <samples/kinds.hpp>
 #include <set>
 #include <utility>
+
+#include <samples/kinds.hpp>
 
 namespace hexhex::samples {
 

@@ -1,12 +1,13 @@
 // The block structure and the shape in space of every kind of sample.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include <hexhex/samples.hpp>
 #include <hexhex/types.hpp>
 
-#include <array>
 #include <samples/block_complex.hpp>
-#include <vector>
 
 namespace hexhex::samples {
 

@@ -2,9 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
+
 #include <samples/perturbation.hpp>
 #include <samples/random.hpp>
-#include <vector>
 
 namespace hexhex::samples {
 

@@ -1,5 +1,6 @@
 // Numbers and places the vertices of the grid; all by index arithmetic, without look-ups.
 #include <algorithm>
+
 #include <samples/tet_grid.hpp>
 
 namespace hexhex::samples {

@@ -2,13 +2,14 @@
 // around a vertex at its centre. Vertices know their parameters in the chart of each block.
 #pragma once
 
-#include <hexhex/types.hpp>
-
 #include <array>
 #include <cstddef>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
 #include <samples/block_complex.hpp>
 #include <samples/kinds.hpp>
-#include <vector>
 
 namespace hexhex::samples {
 

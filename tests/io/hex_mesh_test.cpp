@@ -1,16 +1,17 @@
 // `.mesh` and `.vtu` files: lossless round trips, tolerance, errors.
-#include <hexhex/io.hpp>
-
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/io.hpp>
+
 #include <io/io_test_support.hpp>
 #include <io/medit.hpp>
 #include <io/vtu.hpp>
-#include <string>
-#include <vector>
 
 namespace hexhex::test {
 namespace {

@@ -1,12 +1,13 @@
 // `.hexex` files: lossless round trips, tolerance, and an error with its line for everything else.
-#include <hexhex/io.hpp>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include <hexhex/io.hpp>
+
 #include <io/hexex.hpp>
 #include <io/io_test_support.hpp>
-#include <string>
-#include <vector>
 
 namespace hexhex::test {
 namespace {

@@ -2,18 +2,18 @@
 // numbers, and a way to look at errors.
 #pragma once
 
-#include <hexhex/error.hpp>
-#include <hexhex/types.hpp>
-
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/error.hpp>
+#include <hexhex/types.hpp>
 
 namespace hexhex::test {
 

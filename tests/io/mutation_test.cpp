@@ -1,17 +1,18 @@
 // Damaged files: truncated at every byte, and with random bytes changed. Whatever happens, a reader
 // returns a consistent mesh or throws an Error, and never asks for memory out of proportion.
-#include <hexhex/io.hpp>
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <string>
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
+#include <hexhex/io.hpp>
+
 #include <io/hexex.hpp>
 #include <io/io_test_support.hpp>
 #include <io/medit.hpp>
 #include <io/vtu.hpp>
-#include <new>
-#include <string>
 
 namespace {
 std::atomic<std::size_t> largestAllocation{0};

@@ -1,16 +1,16 @@
 // Numbers in files: decimals of any length and rationals, both rounded to the nearest double.
-#include <gtest/gtest.h>
-
-#include <boost/multiprecision/cpp_int.hpp>
-
 #include <cmath>
 #include <cstdio>
-#include <io/io_test_support.hpp>
-#include <io/number_parsing.hpp>
-#include <io/rational.hpp>
 #include <limits>
 #include <string>
 #include <vector>
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <gtest/gtest.h>
+
+#include <io/io_test_support.hpp>
+#include <io/number_parsing.hpp>
+#include <io/rational.hpp>
 
 namespace hexhex::test {
 namespace {

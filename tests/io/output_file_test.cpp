@@ -1,15 +1,16 @@
 // Files appear complete or not at all, whatever goes wrong.
-#include <hexhex/io.hpp>
-
-#include <gtest/gtest.h>
+#include <csignal>
+#include <string>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <csignal>
+#include <gtest/gtest.h>
+
+#include <hexhex/io.hpp>
+
 #include <io/io_test_support.hpp>
 #include <io/output_file.hpp>
-#include <string>
 
 namespace hexhex::test {
 namespace {

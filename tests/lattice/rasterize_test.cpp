@@ -4,6 +4,7 @@
 #include <cmath>
 #include <lattice/rasterize.hpp>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -55,22 +56,24 @@ class SimplexGrid {
   std::vector<CornerMask> simplices_;
 };
 
-struct Map {
+/// A tet and the lattice units per grid cell.
+struct ScaledTet {
   LatticeTet corners;
   std::int64_t unit;
 };
 
 /// Int128 holds the determinants of tets that extend over less than 2^40.
 template <class Integer>
-SimplexGrid bruteForce(const Map& map) {
+SimplexGrid bruteForce(const ScaledTet& scaled) {
   const Tet<Integer> tet = [&] {
-    LatticeTet relative = map.corners;
-    for (LatticePoint& p : relative) p = p - map.corners[0];
+    LatticeTet relative = scaled.corners;
+    for (LatticePoint& p : relative) p = p - scaled.corners[0];
     return widened<Integer>(relative);
   }();
-  SimplexGrid grid(gridBox(map.corners, map.unit));
+  SimplexGrid grid(gridBox(scaled.corners, scaled.unit));
   grid.forAllPoints([&](const GridPoint& z) {
-    grid[z] = locate<Integer>(tet, widened<Integer>(latticePoint(z, map.unit) - map.corners[0]));
+    grid[z] =
+        locate<Integer>(tet, widened<Integer>(latticePoint(z, scaled.unit) - scaled.corners[0]));
   });
   return grid;
 }
@@ -108,18 +111,18 @@ class Collector {
   std::int32_t y_ = 0;
 };
 
-std::vector<CornerMask> rasterized(const Map& map, SweepAxes axes, double epsilon) {
-  const GridBox box = gridBox(map.corners, map.unit);
-  const TetRasterizer rasterizer(map.corners, map.unit, box, axes, epsilon);
+std::vector<CornerMask> rasterized(const ScaledTet& scaled, SweepAxes axes, double epsilon) {
+  const GridBox box = gridBox(scaled.corners, scaled.unit);
+  const TetRasterizer rasterizer(scaled.corners, scaled.unit, box, axes, epsilon);
   Collector collector(box, axes);
   rasterizer.run(collector);
   EXPECT_EQ(collector.level(), std::max(box.range[axes()[0]].last, box.range[axes()[0]].first - 1));
   return collector.simplices();
 }
 
-std::string describe(const Map& map) {
-  std::string text = "unit " + std::to_string(map.unit);
-  for (const LatticePoint& p : map.corners) {
+std::string describe(const ScaledTet& scaled) {
+  std::string text = "unit " + std::to_string(scaled.unit);
+  for (const LatticePoint& p : scaled.corners) {
     text += " (" + std::to_string(p[0]) + ", " + std::to_string(p[1]) + ", " +
             std::to_string(p[2]) + ")";
   }
@@ -131,17 +134,18 @@ enum class WithoutEpsilon { kNothing, kInnerPoints, kEverything };
 
 /// Rasterizes with every kind of epsilon and compares with brute force.
 template <class Integer>
-void expectAgreement(const Map& map, SweepAxes axes, WithoutEpsilon withoutEpsilon) {
-  const std::vector<CornerMask> expected = bruteForce<Integer>(map).simplices();
+void expectAgreement(const ScaledTet& scaled, SweepAxes axes, WithoutEpsilon withoutEpsilon) {
+  const std::vector<CornerMask> expected = bruteForce<Integer>(scaled).simplices();
   for (const double epsilon : {1e-6, 1e-2, 1e9, kInfinity}) {
-    ASSERT_EQ(rasterized(map, axes, epsilon), expected) << describe(map) << " epsilon " << epsilon;
+    ASSERT_EQ(rasterized(scaled, axes, epsilon), expected)
+        << describe(scaled) << " epsilon " << epsilon;
   }
-  const std::vector<CornerMask> found = rasterized(map, axes, 0);
+  const std::vector<CornerMask> found = rasterized(scaled, axes, 0);
   for (std::size_t i = 0; i < found.size(); ++i) {
     const bool mayMiss =
         withoutEpsilon == WithoutEpsilon::kNothing ||
         (withoutEpsilon == WithoutEpsilon::kInnerPoints && expected[i] != kWholeTet);
-    ASSERT_TRUE(found[i] == expected[i] || (mayMiss && found[i] == kNoSimplex)) << describe(map);
+    ASSERT_TRUE(found[i] == expected[i] || (mayMiss && found[i] == kNoSimplex)) << describe(scaled);
   }
 }
 
@@ -150,20 +154,21 @@ class TetSource {
  public:
   explicit TetSource(std::uint64_t seed) : random_(seed) {}
 
-  enum Kind { kGeneral, kGridCorners, kHalves, kThirds, kSliver, kAligned, kNeedle, kKinds };
+  enum Kind { kGeneral, kGridCorners, kHalves, kThirds, kSliver, kAligned, kFlat, kNeedle, kKinds };
 
   /// The largest number of grid cells a tet extends over, in each direction.
   std::array<std::int64_t, 3> extent = {3, 3, 3};
 
-  Map operator()(Kind kind, std::int64_t unit) {
+  ScaledTet operator()(Kind kind, std::int64_t unit) {
     for (;;) {
-      Map map{{}, unit};
-      for (LatticePoint& p : map.corners) p = corner(kind, unit);
-      if (kind == kSliver) flatten(map.corners, unit);
-      if (kind == kAligned) align(map.corners, unit);
-      const int s = signum(determinant<Integer256>(widened<Integer256>(map.corners)));
-      if (s < 0) std::swap(map.corners[2], map.corners[3]);
-      if (s != 0) return map;
+      ScaledTet scaled{{}, unit};
+      for (LatticePoint& p : scaled.corners) p = corner(kind, unit);
+      if (kind == kSliver) flatten(scaled.corners, unit);
+      if (kind == kAligned) align(scaled.corners, unit);
+      if (kind == kFlat) press(scaled.corners, unit);
+      const int s = signum(determinant<Integer256>(widened<Integer256>(scaled.corners)));
+      if (s < 0) std::swap(scaled.corners[2], scaled.corners[3]);
+      if (s != 0) return scaled;
     }
   }
   Random& random() { return random_; }
@@ -172,7 +177,7 @@ class TetSource {
   LatticePoint corner(Kind kind, std::int64_t unit) {
     LatticePoint p;
     const std::int64_t parts = kind == kGridCorners ? 1 : (kind == kHalves ? 2 : 3);
-    const bool anywhere = kind == kGeneral || kind == kSliver || kind == kNeedle;
+    const bool anywhere = kind == kGeneral || kind == kSliver || kind == kFlat || kind == kNeedle;
     for (std::size_t k = 0; k < 3; ++k) {
       p[k] = anywhere ? random_.between(0, extent[k] * unit)
                       : random_.between(0, extent[k] * parts) * unit / parts;
@@ -202,13 +207,21 @@ class TetSource {
     if (random_.oneIn(2)) t[0][last] = random_.between(0, extent[last]) * unit;
     std::swap(t[3], t[random_.index(4)]);
   }
+  /// Presses the tet against a grid plane, which it still crosses: cuts by other planes are thin,
+  /// their slopes steep.
+  void press(LatticeTet& t, std::int64_t unit) {
+    const std::size_t axis = random_.index(3);
+    const std::int64_t plane = random_.between(0, extent[axis]) * unit;
+    const std::int64_t thickness = std::max(unit >> random_.index(24), std::int64_t{1});
+    for (LatticePoint& p : t) p[axis] = plane + random_.between(-thickness, thickness);
+  }
 
   Random random_;
 };
 
-void translate(Map& map, const GridPoint& offset) {
-  for (LatticePoint& p : map.corners) {
-    for (std::size_t k = 0; k < 3; ++k) p[k] += offset[k] * map.unit;
+void translate(ScaledTet& scaled, const GridPoint& offset) {
+  for (LatticePoint& p : scaled.corners) {
+    for (std::size_t k = 0; k < 3; ++k) p[k] += offset[k] * scaled.unit;
   }
 }
 
@@ -218,8 +231,8 @@ GridPoint anyOffset(Random& random, std::int64_t range) {
           static_cast<std::int32_t>(p[2])};
 }
 
-SweepAxes anyAxes(const Map& map, Random& random) {
-  if (random.oneIn(2)) return chooseSweepAxes(gridBox(map.corners, map.unit));
+SweepAxes anyAxes(const ScaledTet& scaled, Random& random) {
+  if (random.oneIn(2)) return chooseSweepAxes(gridBox(scaled.corners, scaled.unit));
   return {static_cast<std::uint8_t>(random.index(6))};
 }
 
@@ -230,11 +243,11 @@ TEST_P(RasterizeKinds, SmallTetsWithFewBits) {
   Random& random = source.random();
   for (int i = cases(90'000); i > 0; --i) {
     for (std::int64_t& e : source.extent) e = random.between(1, 6);
-    Map map = source(GetParam(), std::int64_t{1} << random.between(0, 8));
-    translate(map, anyOffset(random, 100));
+    ScaledTet scaled = source(GetParam(), std::int64_t{1} << random.between(0, 8));
+    translate(scaled, anyOffset(random, 100));
     // Interior points are farther from the faces than any rounding error.
     ASSERT_NO_FATAL_FAILURE(
-        expectAgreement<Int128>(map, anyAxes(map, random), WithoutEpsilon::kInnerPoints));
+        expectAgreement<Int128>(scaled, anyAxes(scaled, random), WithoutEpsilon::kInnerPoints));
   }
 }
 
@@ -243,10 +256,10 @@ TEST_P(RasterizeKinds, SmallTetsFarFromTheOrigin) {
   Random& random = source.random();
   for (int i = cases(50'000); i > 0; --i) {
     for (std::int64_t& e : source.extent) e = random.between(1, 3);
-    Map map = source(GetParam(), std::int64_t{1} << random.between(3, 29));
-    translate(map, anyOffset(random, 1'000'000'000));
+    ScaledTet scaled = source(GetParam(), std::int64_t{1} << random.between(3, 29));
+    translate(scaled, anyOffset(random, 1'000'000'000));
     ASSERT_NO_FATAL_FAILURE(
-        expectAgreement<Int128>(map, anyAxes(map, random), WithoutEpsilon::kNothing));
+        expectAgreement<Int128>(scaled, anyAxes(scaled, random), WithoutEpsilon::kNothing));
   }
 }
 
@@ -255,10 +268,10 @@ TEST_P(RasterizeKinds, CoordinatesOfSixtyBits) {
   Random& random = source.random();
   for (int i = cases(8'000); i > 0; --i) {
     for (std::int64_t& e : source.extent) e = random.between(1, 3);
-    Map map = source(GetParam(), std::int64_t{1} << random.between(30, 52));
-    translate(map, anyOffset(random, 100));
+    ScaledTet scaled = source(GetParam(), std::int64_t{1} << random.between(30, 52));
+    translate(scaled, anyOffset(random, 100));
     ASSERT_NO_FATAL_FAILURE(
-        expectAgreement<Integer256>(map, anyAxes(map, random), WithoutEpsilon::kNothing));
+        expectAgreement<Integer256>(scaled, anyAxes(scaled, random), WithoutEpsilon::kNothing));
   }
 }
 
@@ -268,30 +281,61 @@ TEST_P(RasterizeKinds, LargeAndLongTets) {
   for (int i = cases(1'000); i > 0; --i) {
     for (std::int64_t& e : source.extent) e = random.between(2, 16);
     if (GetParam() == TetSource::kNeedle) source.extent[random.index(3)] *= 50;
-    Map map = source(GetParam(), std::int64_t{1} << random.between(3, 20));
-    translate(map, anyOffset(random, random.oneIn(2) ? 10 : 1'000'000));
+    ScaledTet scaled = source(GetParam(), std::int64_t{1} << random.between(3, 20));
+    translate(scaled, anyOffset(random, random.oneIn(2) ? 10 : 1'000'000));
     ASSERT_NO_FATAL_FAILURE(
-        expectAgreement<Int128>(map, anyAxes(map, random), WithoutEpsilon::kNothing));
+        expectAgreement<Int128>(scaled, anyAxes(scaled, random), WithoutEpsilon::kNothing));
   }
 }
 
+std::string kindName(const ::testing::TestParamInfo<TetSource::Kind>& info) {
+  constexpr std::array<const char*, TetSource::kKinds> kNames = {
+      "General", "GridCorners", "Halves", "Thirds", "Sliver", "Aligned", "Flat", "Needle"};
+  return kNames[static_cast<std::size_t>(info.param)];
+}
+
 INSTANTIATE_TEST_SUITE_P(, RasterizeKinds,
-                         ::testing::Range(TetSource::kGeneral, TetSource::kKinds));
+                         ::testing::Values(TetSource::kGeneral, TetSource::kGridCorners,
+                                           TetSource::kHalves, TetSource::kThirds,
+                                           TetSource::kSliver, TetSource::kAligned,
+                                           TetSource::kFlat, TetSource::kNeedle),
+                         kindName);
+
+TEST(Rasterize, SteepCutsFarFromTheOrigin) {
+  // Tets pressed against a grid plane y, cut at constant x into polygons with slopes up to a
+  // million, which multiply the rounding error of y.
+  Random random(71);
+  constexpr std::int64_t kUnit = std::int64_t{1} << 29;
+  for (int i = cases(20'000); i > 0; --i) {
+    ScaledTet scaled{{}, kUnit};
+    const std::int64_t thickness = kUnit >> random.between(10, 17);
+    for (LatticePoint& p : scaled.corners) {
+      p = {random.between(0, 2 * kUnit), random.between(-thickness, thickness),
+           random.between(0, 20 * kUnit)};
+    }
+    const int s = signum(determinant<Int128>(widened<Int128>(scaled.corners)));
+    if (s == 0) continue;
+    if (s < 0) std::swap(scaled.corners[0], scaled.corners[1]);
+    translate(scaled, anyOffset(random, 1'000'000'000));
+    ASSERT_NO_FATAL_FAILURE(expectAgreement<Int128>(scaled, {0}, WithoutEpsilon::kNothing));
+  }
+}
 
 TEST(Rasterize, KuhnTetsOfPowerOfTwoCubesNeedNoEpsilon) {
   // All quotients are exact: rises are powers of two, slopes 0 and 1.
   for (std::int64_t edge = 1; edge <= 8; edge *= 2) {
     for (const auto& order : SweepAxes::kPermutations) {
-      Map map{{}, 4};
+      ScaledTet scaled{{}, 4};
       for (std::size_t i = 0; i < 3; ++i) {
-        map.corners[i + 1] = map.corners[i];
-        map.corners[i + 1][order[i]] += edge * map.unit;
+        scaled.corners[i + 1] = scaled.corners[i];
+        scaled.corners[i + 1][order[i]] += edge * scaled.unit;
       }
-      if (determinant<Int128>(widened<Int128>(map.corners)) < 0) {
-        std::swap(map.corners[1], map.corners[2]);
+      if (determinant<Int128>(widened<Int128>(scaled.corners)) < 0) {
+        std::swap(scaled.corners[1], scaled.corners[2]);
       }
       for (std::uint8_t axes = 0; axes < 6; ++axes) {
-        ASSERT_NO_FATAL_FAILURE(expectAgreement<Int128>(map, {axes}, WithoutEpsilon::kEverything));
+        ASSERT_NO_FATAL_FAILURE(
+            expectAgreement<Int128>(scaled, {axes}, WithoutEpsilon::kEverything));
       }
     }
   }
@@ -299,9 +343,9 @@ TEST(Rasterize, KuhnTetsOfPowerOfTwoCubesNeedNoEpsilon) {
 
 TEST(Rasterize, NamesTheSimplexOfEveryPoint) {
   // The corner tet of a cube of edge 2: a line along an edge, and one across the slanted face.
-  const Map map = {{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}}}, 2};
-  SimplexGrid grid = bruteForce<Int128>(map);
-  const std::vector<CornerMask> found = rasterized(map, {0}, 1e-6);
+  const ScaledTet scaled = {{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}}}, 2};
+  SimplexGrid grid = bruteForce<Int128>(scaled);
+  const std::vector<CornerMask> found = rasterized(scaled, {0}, 1e-6);
   ASSERT_EQ(found, grid.simplices());
   EXPECT_EQ((grid[{0, 0, 0}]), cornerBit(0));
   EXPECT_EQ((grid[{0, 0, 1}]), cornerBit(0) | cornerBit(3));
@@ -321,7 +365,7 @@ TEST(GridLine, SimplexByPosition) {
 }
 
 TEST(GridBox, HoldsTheGridPointsOfTheBoundingBox) {
-  Random random(71);
+  Random random(72);
   for (int i = cases(100'000); i > 0; --i) {
     const std::int64_t unit = std::int64_t{1} << random.index(30);
     LatticeTet t;
@@ -368,26 +412,26 @@ TEST(TetPlanes, LocatesPointsInsideAndOutside) {
   Random& random = source.random();
   for (int i = cases(200'000); i > 0; --i) {
     const auto kind = static_cast<TetSource::Kind>(random.index(TetSource::kKinds));
-    Map map = source(kind, std::int64_t{1} << random.between(3, 29));
-    translate(map, anyOffset(random, random.oneIn(2) ? 3 : 1'000'000'000));
-    const GridBox box = gridBox(map.corners, map.unit);
+    ScaledTet scaled = source(kind, std::int64_t{1} << random.between(3, 29));
+    translate(scaled, anyOffset(random, random.oneIn(2) ? 3 : 1'000'000'000));
+    const GridBox box = gridBox(scaled.corners, scaled.unit);
     GridPoint z;
     for (std::size_t k = 0; k < 3; ++k) {
       z[k] =
           static_cast<std::int32_t>(random.between(box.range[k].first - 2, box.range[k].last + 2));
     }
-    const TetPlanes planes(map.corners, map.unit);
-    ASSERT_EQ(planes.generator(z), locate(widened<Integer256>(map.corners),
-                                          widened<Integer256>(latticePoint(z, map.unit))))
-        << describe(map);
+    const TetPlanes planes(scaled.corners, scaled.unit);
+    ASSERT_EQ(planes.generator(z), locate(widened<Integer256>(scaled.corners),
+                                          widened<Integer256>(latticePoint(z, scaled.unit))))
+        << describe(scaled);
   }
 }
 
 /// An upper bound of what is summed up in a barycentric coordinate of face f's corner.
-BigInteger sizeOfTerms(const Map& map, const LatticePoint& p, int f) {
-  const Tet<BigInteger> tet = widened<BigInteger>(map.corners);
+BigInteger sizeOfTerms(const ScaledTet& scaled, const LatticePoint& p, int f) {
+  const Tet<BigInteger> tet = widened<BigInteger>(scaled.corners);
   const int origin = kFaceCorners[static_cast<std::size_t>(f)][0];
-  const LatticePoint offset = p - map.corners[static_cast<std::size_t>(origin)];
+  const LatticePoint offset = p - scaled.corners[static_cast<std::size_t>(origin)];
   BigInteger sum = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const BigInteger slope =
@@ -402,24 +446,24 @@ TEST(TetPlanes, WeightsAreBarycentricCoordinatesTimesTheDeterminant) {
   Random& random = source.random();
   for (int i = cases(10'000); i > 0; --i) {
     const auto kind = static_cast<TetSource::Kind>(random.index(TetSource::kKinds));
-    Map map = source(kind, std::int64_t{1} << random.between(3, 29));
-    translate(map, anyOffset(random, random.oneIn(2) ? 3 : 1'000'000'000));
-    const TetPlanes planes(map.corners, map.unit);
-    SimplexGrid grid = bruteForce<Int128>(map);
+    ScaledTet scaled = source(kind, std::int64_t{1} << random.between(3, 29));
+    translate(scaled, anyOffset(random, random.oneIn(2) ? 3 : 1'000'000'000));
+    const TetPlanes planes(scaled.corners, scaled.unit);
+    SimplexGrid grid = bruteForce<Int128>(scaled);
     grid.forAllPoints([&](const GridPoint& z) {
       if (grid[z] == kNoSimplex) return;
-      const LatticePoint p = latticePoint(z, map.unit);
-      const auto exact = barycentric(widened<BigInteger>(map.corners), widened<BigInteger>(p));
+      const LatticePoint p = latticePoint(z, scaled.unit);
+      const auto exact = barycentric(widened<BigInteger>(scaled.corners), widened<BigInteger>(p));
       const std::array<double, 4> weights = planes.weights(z);
       for (std::size_t f = 0; f < 4; ++f) {
         EXPECT_GE(weights[f], 0);
         // Five roundings of relative size 2^-53, with room for their products. Doubles of this size
         // are integers.
         const BigInteger error = abs(BigInteger(BigInteger(std::floor(weights[f])) - exact[f]));
-        EXPECT_LE(BigInteger(error << 50), sizeOfTerms(map, p, static_cast<int>(f)));
+        EXPECT_LE(BigInteger(error << 50), sizeOfTerms(scaled, p, static_cast<int>(f)));
       }
     });
-    ASSERT_FALSE(HasFailure()) << describe(map);
+    ASSERT_FALSE(HasFailure()) << describe(scaled);
   }
 }
 

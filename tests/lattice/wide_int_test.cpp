@@ -133,10 +133,10 @@ TEST(Int192, ShiftedRightTellsTheRemainder) {
     const BigInteger expected = valueOf(value);
     for (int shift = 0; shift <= 191; ++shift) {
       const BigInteger quotient = expected >> shift;
-      if (quotient >> 128 != 0) continue;
+      if ((quotient >> 128) != 0) continue;
       bool exact = true;
       ASSERT_EQ(toBigUnsigned(value.shiftedRight(shift, exact)), quotient) << "shift " << shift;
-      ASSERT_EQ(exact, quotient << shift == expected) << "shift " << shift;
+      ASSERT_EQ(exact, (quotient << shift) == expected) << "shift " << shift;
       exact = false;
       static_cast<void>(value.shiftedRight(shift, exact));
       ASSERT_FALSE(exact) << "an earlier remainder must not be forgotten";

@@ -1,13 +1,13 @@
 // Small meshes with known properties: grids of hexahedra, and tets with a map that is the identity.
 #pragma once
 
-#include <hexhex/types.hpp>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <utility>
+
+#include <hexhex/types.hpp>
 
 namespace hexhex::testing {
 

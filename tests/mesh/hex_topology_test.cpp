@@ -1,11 +1,12 @@
 // Faces, edges and components of small meshes whose numbers are known.
-#include <hexhex/error.hpp>
+#include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <hexhex/error.hpp>
+
 #include <base/parallel.hpp>
-#include <cmath>
 #include <mesh/grid_meshes.hpp>
 #include <mesh/hex_topology.hpp>
 

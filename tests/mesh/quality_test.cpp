@@ -1,10 +1,11 @@
 // The scaled Jacobian of cells for which it is known, and its summary.
-#include <hexhex/quality.hpp>
+#include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
+#include <hexhex/quality.hpp>
+
 #include <mesh/grid_meshes.hpp>
 
 namespace hexhex {

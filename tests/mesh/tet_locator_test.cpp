@@ -1,10 +1,11 @@
 // Points in tets, found by the tree and by brute force.
+#include <cmath>
+#include <set>
+
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <mesh/grid_meshes.hpp>
 #include <mesh/tet_locator.hpp>
-#include <set>
 
 namespace hexhex {
 namespace {

@@ -1,16 +1,17 @@
 // Every kind of damage to a mesh is noticed, by the items that are about it and by no others.
-#include <hexhex/error.hpp>
-
-#include <gtest/gtest.h>
-#include <rapidcheck.h>
-
 #include <algorithm>
-#include <base/parallel.hpp>
 #include <cmath>
-#include <mesh/grid_meshes.hpp>
-#include <mesh/verify_against.hpp>
+#include <rapidcheck.h>
 #include <set>
 #include <string>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+#include <mesh/grid_meshes.hpp>
+#include <mesh/verify_against.hpp>
 
 namespace hexhex {
 namespace {

@@ -4,9 +4,10 @@
 #include <functional>
 #include <limits>
 #include <numeric>
-#include <samples/inspection.hpp>
 #include <set>
 #include <vector>
+
+#include <samples/inspection.hpp>
 
 namespace hexhex::test {
 

@@ -2,10 +2,10 @@
 // tests of samples compare with the known answers.
 #pragma once
 
-#include <hexhex/types.hpp>
-
 #include <cstdint>
 #include <map>
+
+#include <hexhex/types.hpp>
 
 namespace hexhex::test {
 

@@ -1,16 +1,17 @@
 // Every sample is a valid integer-grid map with the answer that it claims.
-#include <hexhex/error.hpp>
-#include <hexhex/samples.hpp>
-
-#include <gtest/gtest.h>
-#include <rapidcheck.h>
-
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <samples/inspection.hpp>
+#include <rapidcheck.h>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/error.hpp>
+#include <hexhex/samples.hpp>
+
+#include <samples/inspection.hpp>
 
 namespace hexhex {
 namespace {

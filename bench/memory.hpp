@@ -1,0 +1,25 @@
+// Resident memory of this process, so that benchmarks can tell how much a call needed at its peak.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace hexhex::bench {
+
+/// Gives freed memory back to the system, so that what comes next starts like a fresh process: it
+/// neither profits from resident pages nor hides its growth in them.
+void releaseFreeMemory();
+
+/// Measures the growth of the resident set from construction on, at its peak. Linux counts resident
+/// pages (VmHWM), so arrays count as far as they are touched, and the allocator's waste counts too.
+class PeakMemory {
+ public:
+  PeakMemory();
+  /// Bytes; nothing if the system does not tell.
+  [[nodiscard]] std::optional<std::uint64_t> growth() const;
+
+ private:
+  std::optional<std::uint64_t> before_;
+};
+
+}  // namespace hexhex::bench
