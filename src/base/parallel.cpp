@@ -7,6 +7,7 @@
 
 #if HEXHEX_HAS_TBB
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -71,7 +72,11 @@ void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
 
 void runWithThreads(int threads, const void* object, void (*call)(const void*)) {
 #if HEXHEX_HAS_TBB
-  oneapi::tbb::task_arena arena(effectiveThreads(threads));
+  const int count = effectiveThreads(threads);
+  // Without this, more threads than cores would be asked for in vain.
+  const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
+                                          static_cast<std::size_t>(count));
+  oneapi::tbb::task_arena arena(count);
   arena.execute([&] { call(object); });
 #else
   static_cast<void>(threads);

@@ -1,7 +1,7 @@
 // The public entry: options and errors around the paper's pipeline.
 #include <chrono>
-#include <limits>
-#include <optional>
+#include <cmath>
+#include <new>
 #include <string>
 
 #include <hexhex/extract.hpp>
@@ -22,6 +22,19 @@ void checkOptions(const ExtractOptions& options) {
   }
 }
 
+/// cells * scale^3, if it can be numbered in 32 bits.
+std::uint64_t scaledCells(std::uint64_t cells, int scale) {
+  const double estimate = static_cast<double>(cells) * std::pow(scale, 3);
+  if (estimate >= kNone) {
+    throw Error(ErrorCode::TooLarge,
+                "The mesh would have about " + std::to_string(std::llround(estimate / 1e6)) +
+                    " million cells, more than the 4,294 million that 32-bit indices can number. "
+                    "Lower the scale.");
+  }
+  const auto s = static_cast<std::uint64_t>(scale);
+  return cells * s * s * s;
+}
+
 HexMesh extractInArena(const TetMapView& map, const ExtractOptions& options, Context& context,
                        ExtractStatistics& statistics) {
   DefectCollector defects;
@@ -34,11 +47,10 @@ HexMesh extractInArena(const TetMapView& map, const ExtractOptions& options, Con
   statistics.chartJumps = prepared.exact.transitions.jumps;
   statistics.innerFaces = prepared.exact.transitions.innerFaces;
   statistics.singularEdges = prepared.singularities.edges.size();
-  const auto s = static_cast<std::uint64_t>(options.scale);
   std::uint64_t expectedCells = 0;
   {
     Stage stage(context, "scaling");
-    expectedCells = parametricVolume(prepared.exact, stage) * s * s * s;
+    expectedCells = scaledCells(parametricVolume(prepared.exact, stage), options.scale);
     scaleMap(prepared.exact, options.scale, stage);
   }
   return runPipeline(prepared, expectedCells, options.epsilon, context, statistics);

@@ -33,12 +33,6 @@ struct GlobalConnectivity {
   static constexpr std::uint64_t kUntraced = ~std::uint64_t{0};
 };
 
-/// Thrown when tracing finds no hex vertex where the map must have one: the rasterization's epsilon
-/// was too small (Section 5.2.3).
-struct MissingVertex {
-  Index tet;
-};
-
 /// Traces all propellers. (Algorithm 8)
 /// @throws MissingVertex
 [[nodiscard]] GlobalConnectivity traceOpposites(const PreparedMap& map,

@@ -217,9 +217,11 @@ class Numbering {
   };
 
   [[nodiscard]] Index findGenerator(Index owner, CornerMask simplex) const {
-    Index g = result_.generatorBegin[owner];
-    while (result_.generators[g].simplex != simplex) ++g;
-    return g;
+    const Index end = result_.generatorBegin[owner + 1];
+    for (Index g = result_.generatorBegin[owner]; g < end; ++g) {
+      if (result_.generators[g].simplex == simplex) return g;
+    }
+    throw MissingVertex{owner};  // the owner overlooked what its neighbour saw
   }
 
   [[nodiscard]] Counter makeCounter(Index tet, CornerMask simplex) const {
@@ -268,6 +270,8 @@ class Numbering {
       }
       if (counter.foreignFace) return;
       const Index vertex = counter.backward ? counter.next-- : counter.next++;
+      const Generator& generator = result_.generators[counter.generator];
+      if (vertex - generator.firstVertex >= generator.vertexCount) throw MissingVertex{tet};
       result_.lines.vertices[point] = vertex;
       if (!counter.owned) return;
       result_.generatorOf[vertex] = counter.generator;

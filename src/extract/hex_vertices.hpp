@@ -57,11 +57,18 @@ struct HexVertices {
   }
 };
 
+/// Thrown by this and later stages where the map must have a hex vertex and none was found: the
+/// rasterization's epsilon was too small (Section 5.2.3).
+struct MissingVertex {
+  Index tet;
+};
+
 /// Rasterizes all tets. Vertices are numbered by owner, generator, and position: along an edge from
 /// its smaller vertex on, otherwise in the order of the owner's sweep.
 /// @param map      scaled
 /// @param epsilon  as in ExtractOptions
 /// @throws Error TooLarge if the vertices cannot be numbered in 32 bits
+/// @throws MissingVertex
 [[nodiscard]] HexVertices extractVertices(const PreparedMap& map, double epsilon, Stage& stage);
 
 }  // namespace hexhex

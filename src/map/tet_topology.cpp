@@ -147,29 +147,65 @@ void buildEdges(TetTopology& topology, Array<Index>& degree, Stage& stage,
   });
 }
 
+/// V - E + F of the link of a vertex: the triangles opposite it in the tets of its star.
+std::int64_t linkCharacteristic(std::span<const CornerIndex> star, std::int64_t edgesAtVertex,
+                                std::int64_t boundaryFaces) {
+  const auto triangles = static_cast<std::int64_t>(star.size());
+  const std::int64_t sides = (3 * triangles + boundaryFaces) / 2;
+  return edgesAtVertex - sides + triangles;
+}
+
+std::int64_t boundaryFacesAt(const TetTopology& topology, std::span<const CornerIndex> star) {
+  std::int64_t count = 0;
+  for (const CornerIndex corner : star) {
+    for (int face = 0; face < 4; ++face) {
+      if (face != localOf(corner) && topology.isBoundary(halfFaceOf(corner / 4, face))) ++count;
+    }
+  }
+  return count;
+}
+
+/// Whether faces at the vertex connect all tets of its star.
+/// @param reached, queue  reused between calls
+bool isConnected(const TetTopology& topology, std::span<const CornerIndex> star,
+                 std::vector<bool>& reached, std::vector<CornerIndex>& queue) {
+  reached.assign(star.size(), false);
+  reached[0] = true;
+  queue.assign(1, star[0]);
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    const CornerIndex corner = queue[head];
+    for (int face = 0; face < 4; ++face) {
+      const HalfFace mate = topology.mate[halfFaceOf(corner / 4, face)];
+      if (face == localOf(corner) || mate == kNone) continue;
+      const auto neighbour = std::lower_bound(star.begin(), star.end(), 4 * tetOf(mate));
+      const auto position = static_cast<std::size_t>(neighbour - star.begin());
+      if (reached[position]) continue;
+      reached[position] = true;
+      queue.push_back(*neighbour);
+    }
+  }
+  return queue.size() == star.size();
+}
+
 /// The link of a vertex must be a sphere (inside) or a disk (on the boundary). As its triangles are
-/// glued edge to edge and its boundary is free of branching (checked at edges), the Euler
-/// characteristic tells.
+/// glued edge to edge and its boundary is free of branching (checked at edges), that is so if it is
+/// connected and has the right Euler characteristic.
 void checkLinks(const TetTopology& topology, const Array<Index>& degree, Stage& stage,
                 DefectCollector& defects) {
-  parallelFor(stage, topology.pointCount, kGrain, [&](std::size_t v) {
-    const std::span<const CornerIndex> star = topology.star(static_cast<Index>(v));
-    if (star.empty()) return;  // isolated: reported by check(), harmless
-    std::int64_t boundary = 0;
-    for (const CornerIndex corner : star) {
-      for (int face = 0; face < 4; ++face) {
-        if (face != localOf(corner) && topology.isBoundary(halfFaceOf(corner / 4, face))) {
-          ++boundary;
-        }
-      }
-    }
-    const auto triangles = static_cast<std::int64_t>(star.size());
-    const std::int64_t sides = (3 * triangles + boundary) / 2;
-    const std::int64_t euler = std::int64_t{degree[v]} - sides + triangles;
-    if (euler != (boundary > 0 ? 1 : 2)) {
-      defects.add(ErrorCode::NonManifoldVertex, {PlaceKind::Vertex, v}, 0);
-    }
-  });
+  parallelBlocks(stage, topology.pointCount, kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::vector<bool> reached;
+                   std::vector<CornerIndex> queue;
+                   for (std::size_t v = begin; v < end; ++v) {
+                     const std::span<const CornerIndex> star = topology.star(static_cast<Index>(v));
+                     if (star.empty()) continue;  // isolated: reported by check(), harmless
+                     const std::int64_t boundary = boundaryFacesAt(topology, star);
+                     if (linkCharacteristic(star, degree[v], boundary) != (boundary > 0 ? 1 : 2) ||
+                         !isConnected(topology, star, reached, queue)) {
+                       defects.add(ErrorCode::NonManifoldVertex, {PlaceKind::Vertex, v}, 0);
+                     }
+                   }
+                 });
 }
 
 }  // namespace

@@ -16,6 +16,10 @@ constexpr double kMinChartGrid = 1024;
 /// Beyond, a double has no fractional bits worth the name.
 constexpr double kMaxParameter = 0x1p48;
 
+/// Translations between charts are 32-bit integers: with coordinates below this they, and twice
+/// them, fit. (Sanitization, which knows the scale, allows no more either.)
+constexpr double kMaxLocalParameter = 0x1p28;
+
 /// Largest coordinate, and largest extent of a tet along an axis.
 struct Sizes {
   double coordinate = 0;
@@ -135,6 +139,7 @@ LocalParameters::LocalParameters(const TetMapView& map, Stage& stage, DefectColl
   while (grid_ < 4 * sizes.extent) grid_ *= 2;
   moved_ = sizes.coordinate > grid_ / 2;
   largest_ = moved_ ? grid_ / 2 + sizes.extent : sizes.coordinate;
+  if (largest_ > kMaxLocalParameter) defects.add(ErrorCode::TooLarge, {}, largest_);
 }
 
 Transitions computeTransitions(const TetTopology& topology, const LocalParameters& parameters,

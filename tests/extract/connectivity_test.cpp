@@ -1,0 +1,151 @@
+// The stages' own invariants: propellers, blades and corners form small spheres and disks;
+// opposites are mutual; a rasterization that misses vertices is noticed and repaired.
+#include <gtest/gtest.h>
+
+#include <extract/global_connectivity.hpp>
+#include <extract/hex_cells.hpp>
+#include <extract/pipeline.hpp>
+#include <map/measures.hpp>
+
+#include "extract/support.hpp"
+
+namespace hexhex::test {
+
+namespace {
+
+/// All stages of one map, kept.
+struct Stages {
+  Context context;
+  DefectCollector defects;
+  PreparedMap map;
+  Array<NormalSigns> signs;
+  HexVertices vertices;
+  LocalConnectivity local;
+  GlobalConnectivity global;
+
+  explicit Stages(const TetMapView& input, double epsilon = 1e-6) {
+    map = prepareMap(input, 1e-2, 1, context, defects);
+    defects.throwIfAny();
+    Stage stage(context, "test");
+    signs.resize(map.exact.corners.size());
+    for (std::size_t t = 0; t < signs.size(); ++t) signs[t] = NormalSigns(map.exact.corners[t]);
+    vertices = extractVertices(map, epsilon, stage);
+    local = extractLocalConnectivity(map, signs, vertices, stage);
+    global = traceOpposites(map, signs, vertices, local, stage);
+  }
+};
+
+Sample sampleOf(SampleKind kind) {
+  SampleOptions o;
+  o.cells = 4;
+  o.refine = 3;
+  o.charts = ChartStyle::Random;
+  o.jitter = 0.5;
+  o.onLattice = 0.5;
+  return generateSample(kind, o);
+}
+
+class Connectivity : public ::testing::TestWithParam<SampleKind> {};
+
+TEST_P(Connectivity, LocalStructureIsASphereOrADisk) {
+  const Sample sample = sampleOf(GetParam());
+  const Stages stages(sample.map);
+  const LocalConnectivity& local = stages.local;
+  for (std::size_t c = 0; c < local.configurations.size(); ++c) {
+    const Configuration& configuration = local.configurations[c];
+    std::size_t slots = 0;
+    bool closed = true;
+    for (std::size_t p = 0; p < configuration.propellerCount; ++p) {
+      const Propeller& propeller = local.propeller(configuration, p);
+      slots += propeller.slotCount;
+      closed = closed && propeller.closed;
+      for (std::size_t i = 0; i < propeller.slotCount; ++i) {
+        const Slot& slot = local.slot(propeller, i);
+        const Slot& back = local.slot(local.propeller(configuration, slot.blade), slot.back);
+        EXPECT_EQ(back.blade, p);
+        EXPECT_EQ(back.back, i);
+        EXPECT_EQ(slot.corner == kNoCorner, !propeller.closed && i + 1 == propeller.slotCount);
+      }
+    }
+    // Euler characteristic of the small surface around the vertex.
+    const auto euler = static_cast<int>(configuration.propellerCount) -
+                       static_cast<int>(slots / 2) + static_cast<int>(configuration.cornerCount);
+    EXPECT_EQ(euler, closed ? 2 : 1) << "configuration " << c;
+  }
+}
+
+TEST_P(Connectivity, OppositesAreMutual) {
+  const Sample sample = sampleOf(GetParam());
+  const Stages stages(sample.map);
+  const auto entry = [&](Index vertex, std::size_t propeller) {
+    const Index g = stages.vertices.generatorOf[vertex];
+    const std::size_t count = stages.local.configuration(g).propellerCount;
+    return GlobalConnectivity::unpack(
+        stages.global
+            .opposites[stages.global.begin[g] +
+                       (vertex - stages.vertices.generators[g].firstVertex) * count + propeller]);
+  };
+  for (Index v = 0; v < stages.vertices.positions.size(); ++v) {
+    const Configuration& configuration = stages.local.configuration(stages.vertices.generatorOf[v]);
+    for (std::uint16_t p = 0; p < configuration.propellerCount; ++p) {
+      const Opposite there = entry(v, p);
+      const Opposite back = entry(there.vertex, there.propeller);
+      ASSERT_EQ(back.vertex, v);
+      ASSERT_EQ(back.propeller, p);
+      ASSERT_EQ(back.offset, there.offset);
+      // Both ends see the same number of faces around the edge.
+      const Configuration& other =
+          stages.local.configuration(stages.vertices.generatorOf[there.vertex]);
+      ASSERT_EQ(stages.local.propeller(other, there.propeller).slotCount,
+                stages.local.propeller(configuration, p).slotCount);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Connectivity,
+                         ::testing::Values(SampleKind::Box, SampleKind::Sphere, SampleKind::Star,
+                                           SampleKind::Tetrahedron, SampleKind::Torus,
+                                           SampleKind::HandleBody));
+
+TEST(ConstantConfigurations, AreThoseOfTheRegularGrid) {
+  const Sample sample = generateSample(SampleKind::Box);
+  const Stages stages(sample.map);
+  ASSERT_GE(stages.local.configurations.size(), kConstantConfigurations);
+  EXPECT_EQ(stages.local.configurations[0].propellerCount, 6);
+  EXPECT_EQ(stages.local.configurations[0].cornerCount, 8);
+  for (std::size_t c = 1; c < kConstantConfigurations; ++c) {
+    EXPECT_EQ(stages.local.configurations[c].propellerCount, 5);
+    EXPECT_EQ(stages.local.configurations[c].cornerCount, 4);
+  }
+}
+
+// A negative epsilon shrinks the tets, so that vertices near their boundaries are overlooked.
+TEST(EpsilonFallback, MissedVerticesAreNoticedAndFound) {
+  const Sample sample = sampleOf(SampleKind::Sphere);
+  Context context;
+  DefectCollector defects;
+  const PreparedMap map = prepareMap(sample.map, 1e-2, 1, context, defects);
+  const HexMesh right = extract(sample.map);
+  for (const double epsilon : {-1e-3, -0.05, -0.2, -0.6}) {
+    ExtractStatistics statistics;
+    const HexMesh mesh =
+        runPipeline(map, sample.answer.expected.cells, epsilon, context, statistics);
+    EXPECT_TRUE(statistics.epsilonFallback) << epsilon;
+    EXPECT_TRUE(sameBits(mesh, right)) << epsilon;
+  }
+}
+
+TEST(EpsilonFallback, IsNotNeededOtherwise) {
+  const Sample sample = sampleOf(SampleKind::Sphere);
+  Context context;
+  ExtractStatistics statistics;
+  const HexMesh mesh = extract(sample.map, {}, context, &statistics);
+  EXPECT_FALSE(statistics.epsilonFallback);
+  EXPECT_EQ(statistics.epsilon, 1e-6);
+  EXPECT_EQ(statistics.vertices[0] + statistics.vertices[1] + statistics.vertices[2] +
+                statistics.vertices[3],
+            mesh.points.size());
+}
+
+}  // namespace
+}  // namespace hexhex::test

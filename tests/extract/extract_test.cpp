@@ -1,0 +1,297 @@
+// The public function: orientation, generators, what the caller may give along, errors,
+// cancellation.
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/quality.hpp>
+
+#include <extract/pipeline.hpp>
+
+#include "extract/support.hpp"
+
+namespace hexhex::test {
+
+namespace {
+
+Sample sphere() {
+  SampleOptions o;
+  o.cells = 4;
+  o.refine = 3;
+  o.charts = ChartStyle::Random;
+  o.jitter = 0.05;  // all cells of the right mesh stay positive in space
+  return generateSample(SampleKind::Sphere, o);
+}
+
+void reverseCorners(TetMap& map) {
+  for (std::size_t t = 0; t < map.tets.size(); ++t) {
+    std::swap(map.tets[t][2], map.tets[t][3]);
+    std::swap(map.parameters[t][2], map.parameters[t][3]);
+  }
+}
+
+void mirror(TetMap& map) {
+  for (TetParameters& parameters : map.parameters) {
+    for (Vec3& u : parameters) u[1] = -u[1];
+  }
+}
+
+void expectPositive(const HexMesh& mesh) {
+  Context context;
+  EXPECT_EQ(summarize(scaledJacobians(mesh, context)).notPositive, 0U);
+}
+
+TEST(Extract, EitherOrientationGivesTheSameMesh) {
+  const Sample sample = sphere();
+  const HexMesh plain = verifiedExtraction(sample.map);
+  expectPositive(plain);
+  for (int variant = 1; variant < 4; ++variant) {
+    TetMap map = sample.map;
+    if (variant & 1) reverseCorners(map);
+    if (variant & 2) mirror(map);
+    Context context;
+    ExtractStatistics statistics;
+    const HexMesh mesh = extract(map, {}, context, &statistics);
+    EXPECT_EQ(statistics.mirrored, (variant & 2) != 0);
+    expectPositive(mesh);
+    EXPECT_TRUE(sameUpToNumbering(plain, mesh)) << "variant " << variant;
+    EXPECT_TRUE(verify(map, mesh).passed());
+  }
+}
+
+TEST(Extract, NumberingOfTheInputDoesNotMatter) {
+  const Sample sample = sphere();
+  const HexMesh plain = verifiedExtraction(sample.map);
+  TetMap map = sample.map;
+  std::reverse(map.points.begin(), map.points.end());
+  const auto last = static_cast<Index>(map.points.size() - 1);
+  for (Tet& tet : map.tets) {
+    for (Index& v : tet) v = last - v;
+  }
+  std::reverse(map.tets.begin(), map.tets.end());
+  std::reverse(map.parameters.begin(), map.parameters.end());
+  EXPECT_TRUE(sameUpToNumbering(plain, verifiedExtraction(map)));
+}
+
+// An independent look at cells: where all eight corners lie inside one tet, the tet's affine map
+// must send them to a unit cube, in VTK order.
+TEST(Extract, CellsInsideOneTetAreUnitCubes) {
+  SampleOptions o;
+  o.cells = 14;
+  o.refine = 1;
+  o.charts = ChartStyle::Random;
+  const Sample sample = generateSample(SampleKind::Cylinder, o);
+  const HexMesh mesh = verifiedExtraction(sample.map);
+  constexpr int kCorner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                 {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  std::size_t seen = 0;
+  for (const Hex& cell : mesh.cells) {
+    const Index tet = mesh.generatorTet[cell[0]];
+    const bool inside = std::all_of(cell.begin(), cell.end(), [&](Index v) {
+      return mesh.generatorTet[v] == tet && mesh.generatorKind[v] == GeneratorKind::Cell;
+    });
+    if (!inside) continue;
+    ++seen;
+    // Solve for the parameters by Cramer's rule.
+    const auto parameter = [&](const Vec3& p) {
+      const auto det = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+        return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+               a[2] * (b[0] * c[1] - b[1] * c[0]);
+      };
+      const auto corner = [&](std::size_t i) { return sample.map.points[sample.map.tets[tet][i]]; };
+      const auto minus = [](const Vec3& a, const Vec3& b) {
+        return Vec3{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+      };
+      const Vec3 a = minus(corner(1), corner(0));
+      const Vec3 b = minus(corner(2), corner(0));
+      const Vec3 c = minus(corner(3), corner(0));
+      const Vec3 d = minus(p, corner(0));
+      const double whole = det(a, b, c);
+      const double w[3] = {det(d, b, c) / whole, det(a, d, c) / whole, det(a, b, d) / whole};
+      const TetParameters& u = sample.map.parameters[tet];
+      Vec3 result = u[0];
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) result[k] += w[i] * (u[i + 1][k] - u[0][k]);
+      }
+      return result;
+    };
+    const Vec3 origin = parameter(mesh.points[cell[0]]);
+    Vec3 axes[3];
+    const std::size_t along[3] = {1, 3, 4};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 u = parameter(mesh.points[cell[along[i]]]);
+      for (std::size_t k = 0; k < 3; ++k) axes[i][k] = u[k] - origin[k];
+    }
+    for (std::size_t i = 0; i < 8; ++i) {
+      const Vec3 u = parameter(mesh.points[cell[i]]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        double expected = origin[k];
+        for (std::size_t j = 0; j < 3; ++j) expected += kCorner[i][j] * axes[j][k];
+        ASSERT_NEAR(u[k], expected, 1e-9);
+        ASSERT_NEAR(u[k], std::nearbyint(u[k]), 1e-9);
+      }
+    }
+    const double volume = axes[0][0] * (axes[1][1] * axes[2][2] - axes[1][2] * axes[2][1]) +
+                          axes[0][1] * (axes[1][2] * axes[2][0] - axes[1][0] * axes[2][2]) +
+                          axes[0][2] * (axes[1][0] * axes[2][1] - axes[1][1] * axes[2][0]);
+    ASSERT_NEAR(volume, 1, 1e-9);
+  }
+  EXPECT_GT(seen, 500U);
+}
+
+TEST(Extract, GeneratorsNameSimplicesOfTheInput) {
+  SampleOptions o;
+  o.cells = 4;
+  o.refine = 4;
+  const Sample sample = generateSample(SampleKind::Cylinder, o);
+  const HexMesh mesh = verifiedExtraction(sample.map);
+  std::set<std::pair<Index, Index>> edges;
+  std::set<std::array<Index, 3>> faces;
+  for (const Tet& tet : sample.map.tets) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::array<Index, 3> face = {tet[(i + 1) % 4], tet[(i + 2) % 4], tet[(i + 3) % 4]};
+      std::sort(face.begin(), face.end());
+      faces.insert(face);
+      for (std::size_t j = 0; j < i; ++j) {
+        edges.insert({std::min(tet[i], tet[j]), std::max(tet[i], tet[j])});
+      }
+    }
+  }
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const Index index = mesh.generatorIndex[v];
+    switch (mesh.generatorKind[v]) {
+      case GeneratorKind::Vertex:
+        ASSERT_EQ(mesh.points[v], sample.map.points[index]);
+        break;
+      case GeneratorKind::Edge: {
+        ASSERT_LT(index, edges.size());
+        const auto [a, b] = *std::next(edges.begin(), static_cast<std::ptrdiff_t>(index));
+        const Vec3& p = sample.map.points[a];
+        const Vec3& q = sample.map.points[b];
+        const Vec3& x = mesh.points[v];
+        const double length = std::hypot(q[0] - p[0], q[1] - p[1], q[2] - p[2]);
+        const double detour = std::hypot(x[0] - p[0], x[1] - p[1], x[2] - p[2]) +
+                              std::hypot(x[0] - q[0], x[1] - q[1], x[2] - q[2]);
+        ASSERT_NEAR(detour, length, 1e-9);
+        break;
+      }
+      case GeneratorKind::Face:
+        ASSERT_LT(index, faces.size());
+        break;
+      case GeneratorKind::Cell:
+        ASSERT_EQ(index, mesh.generatorTet[v]);
+        break;
+    }
+  }
+}
+
+TEST(Extract, GivenValencesAreUsed) {
+  const Sample sample = sphere();
+  const HexMesh plain = verifiedExtraction(sample.map);
+  Context context;
+  DefectCollector defects;
+  const PreparedMap prepared = prepareMap(sample.map, 1e-2, 1, context, defects);
+  std::vector<EdgeValence> known;
+  for (const SingularEdge& edge : prepared.singularities.edges) {
+    known.push_back({edge.vertex1, edge.vertex0, edge.valence - (edge.boundary ? 2 : 4)});
+  }
+  ASSERT_FALSE(known.empty());
+  TetMapView view(sample.map);
+  view.edgeValences = known;
+  EXPECT_TRUE(sameBits(plain, extract(view)));
+}
+
+template <class F>
+ErrorCode codeOf(const F& f) {
+  try {
+    f();
+  } catch (const Error& error) {
+    EXPECT_GT(std::string(error.what()).size(), 20U) << "a sentence, please";
+    return error.code();
+  }
+  ADD_FAILURE() << "no error";
+  return ErrorCode::Internal;
+}
+
+TEST(ExtractErrors, HaveTheirCodes) {
+  const Sample sample = sphere();
+  EXPECT_EQ(codeOf([] { static_cast<void>(extract(TetMap{})); }), ErrorCode::EmptyMesh);
+  const auto with = [&](auto change) {
+    TetMap map = sample.map;
+    change(map);
+    return codeOf([&] { static_cast<void>(extract(map)); });
+  };
+  EXPECT_EQ(with([](TetMap& m) { m.tets[5][1] = 1000000; }), ErrorCode::IndexOutOfRange);
+  EXPECT_EQ(with([](TetMap& m) { m.tets[5][1] = m.tets[5][0]; }), ErrorCode::RepeatedVertex);
+  EXPECT_EQ(with([](TetMap& m) { m.parameters[5][1][2] = NAN; }), ErrorCode::NotFinite);
+  EXPECT_EQ(with([](TetMap& m) { m.points[0][0] = INFINITY; }), ErrorCode::NotFinite);
+  EXPECT_EQ(with([](TetMap& m) { m.parameters[5][1][2] = 1e30; }), ErrorCode::TooLarge);
+  EXPECT_EQ(with([](TetMap& m) {
+              m.tets.push_back(m.tets[0]);
+              m.parameters.push_back(m.parameters[0]);
+            }),
+            ErrorCode::NonManifoldFace);
+  EXPECT_EQ(with([](TetMap& m) {
+              for (TetParameters& u : m.parameters) {
+                for (Vec3& p : u) p[0] += 0.1;
+              }
+            }),
+            ErrorCode::TransitionResidual);
+  EXPECT_EQ(with([](TetMap& m) { m.parameters.pop_back(); }), ErrorCode::InvalidArgument);
+  const auto option = [&](auto change) {
+    ExtractOptions o;
+    change(o);
+    return codeOf([&] { static_cast<void>(extract(sample.map, o)); });
+  };
+  EXPECT_EQ(option([](ExtractOptions& o) { o.scale = 0; }), ErrorCode::InvalidArgument);
+  EXPECT_EQ(option([](ExtractOptions& o) { o.epsilon = -1; }), ErrorCode::InvalidArgument);
+  EXPECT_EQ(option([](ExtractOptions& o) { o.epsilon = NAN; }), ErrorCode::InvalidArgument);
+  EXPECT_EQ(option([](ExtractOptions& o) { o.tolerance = 0.25; }), ErrorCode::InvalidArgument);
+  EXPECT_EQ(option([](ExtractOptions& o) { o.scale = 2000000000; }), ErrorCode::TooLarge);
+}
+
+TEST(ExtractErrors, MoreVerticesThanIndicesAreRefused) {
+  const Sample sample = generateSample(SampleKind::Box);
+  ExtractOptions o;
+  o.scale = 2000;  // 2^3 blocks of (4 * 2000)^3 cells
+  EXPECT_EQ(codeOf([&] { static_cast<void>(extract(sample.map, o)); }), ErrorCode::TooLarge);
+}
+
+TEST(ExtractContext, ReportsStagesAndProgress) {
+  const Sample sample = sphere();
+  std::vector<std::string> stages;
+  Context context(2, [&](std::string_view stage, double share) {
+    EXPECT_GE(share, 0);
+    EXPECT_LE(share, 1);
+    if (stages.empty() || stages.back() != stage) stages.emplace_back(stage);
+  });
+  ExtractStatistics statistics;
+  static_cast<void>(extract(sample.map, {}, context, &statistics));
+  const std::set<std::string> unique(stages.begin(), stages.end());
+  for (const char* stage : {"topology", "transitions", "singularities", "sanitization", "vertices",
+                            "local connectivity", "global connectivity", "cells"}) {
+    EXPECT_TRUE(unique.contains(stage)) << stage;
+  }
+  double total = 0;
+  for (const StageTime& time : context.stageTimes()) total += time.seconds;
+  EXPECT_LE(total, statistics.seconds * 1.001);
+}
+
+TEST(ExtractContext, CanBeCancelledInEveryStage) {
+  const Sample sample = sphere();
+  for (const char* where : {"input", "topology", "transitions", "singularities", "sanitization",
+                            "vertices", "local connectivity", "global connectivity", "cells"}) {
+    Context* running = nullptr;
+    Context context(2, [&](std::string_view stage, double /*share*/) {
+      if (stage == where) running->cancel();
+    });
+    running = &context;
+    EXPECT_EQ(codeOf([&] { static_cast<void>(extract(sample.map, {}, context)); }),
+              ErrorCode::Cancelled)
+        << where;
+  }
+}
+
+}  // namespace
+}  // namespace hexhex::test
