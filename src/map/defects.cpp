@@ -105,12 +105,14 @@ std::vector<Defect> DefectCollector::defects() const {
   std::vector<Defect> list;
   list.reserve(defects_.size());
   for (const auto& [code, defect] : defects_) list.push_back(defect);
+  std::stable_partition(list.begin(), list.end(),
+                        [&](const Defect& defect) { return defect.code == rootCause_; });
   return list;
 }
 
 void DefectCollector::throwIfAny() const {
   if (defects_.empty()) return;
-  const Defect& defect = defects_.begin()->second;
+  const Defect defect = defects().front();
   const Defect::Occurrence& worst = defect.worst.front();
   std::string message = defect.sentence;
   const std::string where = toString(worst.place);

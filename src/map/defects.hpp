@@ -25,16 +25,20 @@ class DefectCollector {
   [[nodiscard]] bool empty() const { return defects_.empty(); }
   [[nodiscard]] bool has(ErrorCode code) const { return defects_.contains(code); }
 
-  /// All defects, in the order of the codes.
+  /// Where this defect occurs, others follow from it: report it first.
+  void setRootCause(ErrorCode code) { rootCause_ = code; }
+
+  /// All defects: the root cause, then the others in the order of the codes.
   [[nodiscard]] std::vector<Defect> defects() const;
 
-  /// Throws the first defect, if any, as an Error whose sentence names its worst place.
+  /// Throws the first of defects(), if any, as an Error whose sentence names its worst place.
   void throwIfAny() const;
 
  private:
   std::mutex mutex_;
   std::map<ErrorCode, Defect> defects_;
   bool cornersReversed_ = false;
+  ErrorCode rootCause_ = ErrorCode::Internal;
 };
 
 }  // namespace hexhex

@@ -63,8 +63,15 @@ class VertexSanitizer {
     } else {
       unfold();
     }
-    const LatticePoint value = snapped(v, fixedAxes(v));
-    for (std::size_t i = 0; i < star_.size(); ++i) assign(v, i, toStar_[i](value, map_.unit));
+    const LatticePoint value = snapped(fixedAxes(v));
+    double displacement = 0;
+    for (std::size_t i = 0; i < star_.size(); ++i) {
+      displacement = std::max(displacement, assign(i, toStar_[i](value, map_.unit)));
+    }
+    maxDisplacement_ = std::max(maxDisplacement_, displacement);
+    if (displacement > tolerance_) {
+      defects_.add(causeOfDisplacement(v), {PlaceKind::Vertex, v}, displacement);
+    }
     if (!oneChart) checkLoops(v);
   }
 
@@ -138,7 +145,7 @@ class VertexSanitizer {
     return fixed;
   }
 
-  [[nodiscard]] LatticePoint snapped(Index /*v*/, AxisSet fixed) const {
+  [[nodiscard]] LatticePoint snapped(AxisSet fixed) const {
     const Vec3 u = parameters_(star_[0] / 4, localOf(star_[0]));
     const auto unit = static_cast<double>(map_.unit);
     LatticePoint value{};
@@ -148,20 +155,30 @@ class VertexSanitizer {
     return value;
   }
 
-  void assign(Index v, std::size_t i, const LatticePoint& value) {
+  /// Sets one corner; returns by how much it moves.
+  double assign(std::size_t i, const LatticePoint& value) {
     const CornerIndex corner = star_[i];
     map_.corners[corner / 4][corner % 4] = value;
     const Vec3 before = parameters_(corner / 4, localOf(corner));
     double displacement = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      displacement = std::max(
-          displacement,
-          std::abs(static_cast<double>(value[k]) / static_cast<double>(map_.unit) - before[k]));
+      const double after = static_cast<double>(value[k]) / static_cast<double>(map_.unit);
+      displacement = std::max(displacement, std::abs(after - before[k]));
     }
-    maxDisplacement_ = std::max(maxDisplacement_, displacement);
-    if (displacement > tolerance_) {
-      defects_.add(ErrorCode::TransitionResidual, {PlaceKind::Vertex, v}, displacement);
+    return displacement;
+  }
+
+  /// The condition that a vertex which had to move too far violates.
+  [[nodiscard]] ErrorCode causeOfDisplacement(Index v) const {
+    if (singularities_.degree[v] > 0) return ErrorCode::SingularityOffLattice;
+    for (const CornerIndex corner : star_) {
+      for (int face = 0; face < 4; ++face) {
+        if (face != localOf(corner) && topology_.isBoundary(halfFaceOf(corner / 4, face))) {
+          return ErrorCode::BoundaryOffLattice;
+        }
+      }
     }
+    return ErrorCode::TransitionResidual;
   }
 
   /// The loops of the star must reproduce the value.
@@ -217,8 +234,6 @@ class VertexSanitizer {
   std::vector<bool> visited_;
 };
 
-double distanceToInteger(double x) { return std::abs(x - std::nearbyint(x)); }
-
 /// (IGM2) up to the tolerance: what snapping may repair.
 void checkBoundary(const TetTopology& topology, const LocalParameters& parameters, double tolerance,
                    Stage& stage, DefectCollector& defects) {
@@ -242,7 +257,7 @@ void checkBoundary(const TetTopology& topology, const LocalParameters& parameter
   });
 }
 
-/// (IGM3) up to the tolerance.
+/// (IGM3) up to the tolerance, for edges; nodes are noticed when they are snapped.
 void checkSingularities(const Singularities& singularities, const LocalParameters& parameters,
                         double tolerance, DefectCollector& defects) {
   for (const SingularEdge& edge : singularities.edges) {
@@ -258,11 +273,6 @@ void checkSingularities(const Singularities& singularities, const LocalParameter
     if (off > tolerance) {
       defects.add(ErrorCode::SingularityOffLattice, {PlaceKind::Edge, edge.vertex0, edge.vertex1},
                   off);
-    }
-    for (const auto& [vertex, u] : {std::pair(edge.vertex0, p), std::pair(edge.vertex1, q)}) {
-      if (!singularities.isNode(vertex) || distanceToInteger(u[along]) <= tolerance) continue;
-      defects.add(ErrorCode::SingularityOffLattice, {PlaceKind::Vertex, vertex},
-                  distanceToInteger(u[along]));
     }
   }
 }
@@ -324,7 +334,7 @@ void checkPositive(const ExactMap& map, Stage& stage, DefectCollector& defects) 
     const auto unit = static_cast<double>(map.unit);
     const double volume =
         orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() / (6 * unit * unit * unit);
-    defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, -volume);
+    defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, volume < 0 ? -volume : 0.0);
   });
 }
 

@@ -123,6 +123,7 @@ OrientedMap orientMap(const TetMapView& map, Stage& stage) {
   oriented.view = map;
   oriented.cornersReversed = spaceReversed;
   oriented.mirrored = spaceReversed != mapReversed;
+  oriented.flippedTets = std::max(counts.mapPositive, counts.mapNegative) < map.tets.size();
   oriented.tetsInvertedInSpace = std::min(counts.spaceNegative, counts.spacePositive);
   if (!oriented.cornersReversed && !oriented.mirrored) return oriented;
 

@@ -29,6 +29,7 @@ struct OrientedMap {
   bool cornersReversed = false;
   bool mirrored = false;
   std::uint64_t tetsInvertedInSpace = 0;
+  bool flippedTets = false;  ///< some tets are (nearly) flipped or degenerate in the map as given
 
   Array<Tet> tets;
   Array<TetParameters> parameters;

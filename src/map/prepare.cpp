@@ -35,6 +35,8 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
   }
   const TetMapView& view = prepared.input.view;
   defects.setCornersReversed(prepared.input.cornersReversed);
+  // Flipped tets falsify angles, hence singularities, hence what is snapped where.
+  if (prepared.input.flippedTets) defects.setRootCause(ErrorCode::FlippedTet);
   {
     Stage stage(context, "topology");
     prepared.topology = buildTopology(view, stage, defects);
