@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <base/vector3.hpp>
 #include <map/exact_map.hpp>
 
 namespace hexhex {
@@ -204,20 +205,14 @@ class VertexSanitizer {
     const Vec3 p = parameters(tetOf(halfFace), face[0]);
     const Vec3 q = parameters(tetOf(halfFace), face[1]);
     const Vec3 r = parameters(tetOf(halfFace), face[2]);
-    Vec3 normal{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t i = (k + 1) % 3;
-      const std::size_t j = (k + 2) % 3;
-      normal[k] = (q[i] - p[i]) * (r[j] - p[j]) - (q[j] - p[j]) * (r[i] - p[i]);
-    }
-    return dominantAxis(normal);
+    return dominantAxis(cross(minus(q, p), minus(r, p)));
   }
 
   /// The axis along which a singular edge runs, in the chart of its tet.
   static std::size_t edgeAxis(const LocalParameters& parameters, const SingularEdge& edge) {
     const Vec3 p = parameters(edge.tet, edge.corner0);
     const Vec3 q = parameters(edge.tet, edge.corner1);
-    return dominantAxis({q[0] - p[0], q[1] - p[1], q[2] - p[2]});
+    return dominantAxis(minus(q, p));
   }
 
  private:

@@ -2,8 +2,8 @@
 #include <bit>
 #include <cstdlib>
 #include <functional>
-#include <numeric>
 
+#include <base/disjoint_sets.hpp>
 #include <map/measures.hpp>
 
 namespace hexhex {
@@ -25,30 +25,6 @@ std::uint64_t exactQuotient(const Int192& sum, int shift, unsigned divisor, cons
   }
   return static_cast<std::uint64_t>(quotient / divisor);
 }
-
-/// Disjoint sets of elements numbered from 0.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size) {
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-  }
-  Index find(Index element) {
-    while (parent_[element] != element) {
-      parent_[element] = parent_[parent_[element]];
-      element = parent_[element];
-    }
-    return element;
-  }
-  void unite(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    // The smaller root wins: the outcome does not depend on the order.
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 /// The boundary half-face across an edge of a boundary half-face, around the tets between them.
 HalfFace acrossBoundaryEdge(const TetTopology& topology, HalfFace halfFace, CornerMask edge) {
@@ -109,9 +85,7 @@ std::uint64_t componentCount(const TetTopology& topology) {
     const HalfFace mate = topology.mate[halfFace];
     if (mate != kNone && mate > halfFace) sets.unite(tetOf(halfFace), tetOf(mate));
   }
-  std::uint64_t count = 0;
-  for (Index t = 0; t < topology.tetCount(); ++t) count += sets.find(t) == t ? 1 : 0;
-  return count;
+  return sets.count();
 }
 
 std::vector<std::int64_t> boundaryGenus(const TetTopology& topology) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <base/vector3.hpp>
 #include <map/singularities.hpp>
 
 namespace hexhex {
@@ -8,12 +9,6 @@ namespace hexhex {
 namespace {
 
 constexpr std::size_t kGrain = 1024;
-
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// Sum of angles in [0, pi], without trigonometry: a complex number of the sum's argument modulo
 /// pi, kept in the upper half plane, and the number of half turns.
@@ -61,7 +56,7 @@ int valence(const LocalParameters& parameters, std::span<const EdgeCorner> fan) 
     const Vec3 toRight = minus(parameters(at.tet, right), origin);
     const Vec3 b = cross(edge, toRight);
     // |a x b| = |edge| |det(edge, left, right)|
-    sum.add(dot(a, b), std::sqrt(dot(edge, edge)) * std::abs(dot(a, toRight)));
+    sum.add(dot(a, b), length(edge) * std::abs(dot(a, toRight)));
   }
   return sum.rightAngles();
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include <base/vector3.hpp>
 #include <map/transitions.hpp>
 
 namespace hexhex {
@@ -53,9 +54,7 @@ double distance(const Vec3& a, const Vec3& b) {
   return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
 }
 
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-
-double squaredNorm(const Vec3& a) { return a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; }
+double squaredNorm(const Vec3& a) { return dot(a, a); }
 
 /// The three corners of a triangle in the charts of both its tets.
 struct SharedTriangle {

@@ -7,8 +7,8 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/disjoint_sets.hpp>
 #include <base/parallel.hpp>
-#include <mesh/disjoint_sets.hpp>
 #include <mesh/hex_topology.hpp>
 
 namespace hexhex {

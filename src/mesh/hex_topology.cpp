@@ -5,8 +5,8 @@
 #include <compare>
 #include <vector>
 
+#include <base/disjoint_sets.hpp>
 #include <base/parallel.hpp>
-#include <mesh/disjoint_sets.hpp>
 #include <mesh/hex_topology.hpp>
 
 namespace hexhex {

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include <base/parallel.hpp>
+#include <base/vector3.hpp>
 #include <mesh/lattice_points.hpp>
 #include <mesh/tet_locator.hpp>
-#include <mesh/vector3.hpp>
 
 namespace hexhex {
 namespace {

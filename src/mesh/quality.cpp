@@ -6,7 +6,7 @@
 #include <hexhex/quality.hpp>
 
 #include <base/parallel.hpp>
-#include <mesh/vector3.hpp>
+#include <base/vector3.hpp>
 
 namespace hexhex {
 namespace {

@@ -1,4 +1,4 @@
-// The little vector arithmetic that measuring a mesh takes.
+// The little vector arithmetic that measuring takes.
 #pragma once
 
 #include <cmath>
