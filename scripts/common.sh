@@ -63,5 +63,15 @@ run_logged() {
 # configure PRESET [cmake argument...]
 configure() { run_logged "$1-configure" cmake --preset "$@"; }
 
+# configure_release PART: the release build, at least with PART (COMMAND or BENCH). What takes more
+# packages stays off, unless an earlier run of run-tests has switched it on.
+configure_release() {
+  local options=()
+  if [[ ! -f build/release/CMakeCache.txt ]]; then
+    options=(-DHEXHEX_BUILD_TESTS=OFF -DHEXHEX_BUILD_BENCH=OFF)
+  fi
+  configure release "${options[@]}" "-DHEXHEX_BUILD_$1=ON"
+}
+
 # build PRESET [cmake --build argument...]
 build() { run_logged "$1-build" cmake --build --preset "$@"; }

@@ -17,7 +17,7 @@ TetPlanes::TetPlanes(const LatticeTet& corners, std::int64_t unit) noexcept : un
   }
 }
 
-int TetPlanes::side(const Plane& plane, const LatticePoint& z) const noexcept {
+int TetPlanes::side(const Plane& plane, const LatticePoint& z) noexcept {
   const LatticePoint offset = z - plane.origin;
   double sum = 0;
   double magnitude = 0;

@@ -31,7 +31,7 @@ class TetPlanes {
     std::array<Int128, 3> normal;
     std::array<double, 3> roundedNormal;
   };
-  [[nodiscard]] int side(const Plane& plane, const LatticePoint& z) const noexcept;
+  [[nodiscard]] static int side(const Plane& plane, const LatticePoint& z) noexcept;
 
   std::array<Plane, 4> planes_;
   std::int64_t unit_;

@@ -31,7 +31,7 @@ std::array<SurfaceTriangle, 12> surfaceTriangles(const std::array<Index, 8>& ver
 
 TetGrid::TetGrid(const BlockModel& model, const BlockComplex& complex, int cells, int refine)
     : cells_(cells), refine_(refine), blockCount_(complex.blockCount()) {
-  const auto row = static_cast<Slot>(refine + 1);
+  const auto row = static_cast<Slot>(refine) + 1;
   for (std::size_t corner = 0; corner < 8; ++corner) {
     cornerOffsets_[corner] = (corner & 1) + (corner >> 1 & 1) * row + (corner >> 2 & 1) * row * row;
   }

@@ -19,15 +19,17 @@ std::atomic<std::size_t> largestAllocation{0};
 }  // namespace
 
 // All memory of this program comes from here, so that the largest request is known.
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
   std::size_t largest = largestAllocation.load();
   while (size > largest && !largestAllocation.compare_exchange_weak(largest, size)) {
   }
   if (void* const memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept {
+  std::free(memory);
+}
 
 namespace hexhex::test {
 namespace {

@@ -1,9 +1,10 @@
 // exitOfTurn and exitOfLine: every answer against the oracle, and walks from tet to tet that must
 // reach their target, through edges, vertices and along faces too.
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include <lattice/rasterize.hpp>
-#include <utility>
 
 #include "oracle.hpp"
 #include "random.hpp"

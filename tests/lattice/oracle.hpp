@@ -2,10 +2,11 @@
 // enough to judge the fast ones.
 #pragma once
 
-#include <boost/multiprecision/cpp_int.hpp>
-
 #include <array>
 #include <cstdint>
+
+#include <boost/multiprecision/cpp_int.hpp>
+
 #include <lattice/tet_geometry.hpp>
 
 namespace hexhex::testing {

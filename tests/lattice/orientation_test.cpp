@@ -1,9 +1,10 @@
 // Orientation, normal signs, holder and casing against the oracle, mostly where rounding would
 // decide wrongly: (nearly) coplanar points and directions along edges and faces.
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include <lattice/tet_geometry.hpp>
-#include <utility>
 
 #include "oracle.hpp"
 #include "random.hpp"

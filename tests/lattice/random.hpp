@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+
 #include <lattice/direction.hpp>
 #include <lattice/tet_geometry.hpp>
 

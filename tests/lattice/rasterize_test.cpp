@@ -1,12 +1,13 @@
 // The rasterizer against brute force: every grid point of the bounding box, located by the oracle.
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <lattice/rasterize.hpp>
 #include <limits>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <gtest/gtest.h>
+
+#include <lattice/rasterize.hpp>
 
 #include "oracle.hpp"
 #include "random.hpp"

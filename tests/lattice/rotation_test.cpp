@@ -1,9 +1,10 @@
 // The 24 rotations: a group, acting alike on directions and vectors; AlgoHex's numbering.
+#include <cmath>
+#include <set>
+
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <lattice/rotation.hpp>
-#include <set>
 
 namespace hexhex {
 namespace {

@@ -1,6 +1,7 @@
 // Transition functions: a group, acting on grid points, lattice points and directions alike.
-#include <gtest/gtest.h>
 #include <rapidcheck.h>
+
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <lattice/tet_geometry.hpp>

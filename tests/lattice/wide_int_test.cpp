@@ -1,10 +1,11 @@
 // Int192 against integers of any width.
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <lattice/wide_int.hpp>
 #include <limits>
 #include <vector>
+
+#include <gtest/gtest.h>
+
+#include <lattice/wide_int.hpp>
 
 #include "oracle.hpp"
 #include "random.hpp"
