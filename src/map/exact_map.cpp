@@ -110,9 +110,18 @@ class VertexSanitizer {
         if (visited_[neighbour]) return;
         visited_[neighbour] = true;
         toStar_[neighbour] = map_.transitions.across(halfFace) * toStar_[i];
+        // Only contradictory transitions lead out of range; checkLoops() will report them.
+        if (outOfRange(toStar_[neighbour])) toStar_[neighbour] = {};
         queue_.push_back(neighbour);
       });
     }
+  }
+
+  /// Local coordinates stay below 2^28, so transitions between them stay below 2^29, and sums of
+  /// two of those fit 32 bits.
+  [[nodiscard]] static bool outOfRange(const Transition& transition) {
+    return std::any_of(transition.translation.begin(), transition.translation.end(),
+                       [](std::int32_t t) { return std::abs(t) > (1 << 29); });
   }
 
   template <class Visit>

@@ -279,14 +279,21 @@ TEST(Check, FindsTheBoundaryOffTheLattice) {
   const CheckReport report = check(map);
   const Defect* defect = find(report, ErrorCode::BoundaryOffLattice);
   ASSERT_NE(defect, nullptr);
-  EXPECT_EQ(defect->count, faces);
+  EXPECT_EQ(defect->count, faces + 1);  // its triangles, and the vertex itself
+  std::size_t vertices = 0;
   for (const Defect::Occurrence& found : defect->worst) {
     EXPECT_NEAR(found.amount, 0.1, 1e-12);
+    if (found.place.kind == PlaceKind::Vertex) {
+      EXPECT_EQ(found.place.index, vertex);
+      ++vertices;
+      continue;
+    }
     ASSERT_EQ(found.place.kind, PlaceKind::Face);
     EXPECT_NE(map.tets[found.place.index][found.place.second], vertex);
     EXPECT_TRUE(
         topology.isBoundary(static_cast<HalfFace>(4 * found.place.index + found.place.second)));
   }
+  EXPECT_EQ(vertices, 1U);
   EXPECT_TRUE(check(map, {.tolerance = 0.11}).valid());
 }
 
@@ -391,7 +398,7 @@ TEST(Check, FindsASingularLineAtHalfIntegers) {
     EXPECT_EQ(find(report, ErrorCode::BoundaryOffLattice), nullptr);
     const Defect* defect = find(report, ErrorCode::SingularityOffLattice);
     ASSERT_NE(defect, nullptr);
-    EXPECT_EQ(defect->count, 2U);  // both tet edges of the line
+    EXPECT_EQ(defect->count, 5U);  // both tet edges of the line, and their three vertices
     EXPECT_DOUBLE_EQ(defect->worst[0].amount, 0.5);
     EXPECT_NE(find(report, ErrorCode::HalfIntegerFixedPoint), nullptr);
   }
