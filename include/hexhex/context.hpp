@@ -24,7 +24,9 @@ class Context {
   using Progress = std::function<void(std::string_view stage, double share)>;
 
   Context() = default;
-  /// @param threads  number of threads, 0 = all cores of this machine
+  /// @param threads  number of threads, 0 = all cores of this machine; more than 64 are used only
+  /// on
+  ///                 machines with more cores
   explicit Context(int threads, Progress progress = {})
       : threads_(threads), progress_(std::move(progress)) {}
 

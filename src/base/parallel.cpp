@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <atomic>
+#include <optional>
 
 #include <hexhex/error.hpp>
 
@@ -73,9 +74,13 @@ void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
 void runWithThreads(int threads, const void* object, void (*call)(const void*)) {
 #if HEXHEX_HAS_TBB
   const int count = effectiveThreads(threads);
-  // Without this, more threads than cores would be asked for in vain.
-  const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
-                                          static_cast<std::size_t>(count));
+  // More threads than cores have to be allowed first. The permission holds for the whole process,
+  // so it is not touched without need.
+  std::optional<oneapi::tbb::global_control> permission;
+  if (count > oneapi::tbb::info::default_concurrency()) {
+    permission.emplace(oneapi::tbb::global_control::max_allowed_parallelism,
+                       static_cast<std::size_t>(count));
+  }
   oneapi::tbb::task_arena arena(count);
   arena.execute([&] { call(object); });
 #else
@@ -88,7 +93,8 @@ void runWithThreads(int threads, const void* object, void (*call)(const void*)) 
 
 int effectiveThreads(int threads) {
 #if HEXHEX_HAS_TBB
-  return threads > 0 ? threads : oneapi::tbb::info::default_concurrency();
+  const int cores = oneapi::tbb::info::default_concurrency();
+  return threads > 0 ? std::min(threads, std::max(kMaxThreads, cores)) : cores;
 #else
   static_cast<void>(threads);
   return 1;

@@ -278,6 +278,15 @@ TEST(ExtractContext, ReportsStagesAndProgress) {
   EXPECT_LE(total, statistics.seconds * 1.001);
 }
 
+TEST(ExtractContext, AbsurdNumbersOfThreadsAreBounded) {
+  const Sample sample = sphere();
+  Context context(1000000);
+  ExtractStatistics statistics;
+  const HexMesh mesh = extract(sample.map, {}, context, &statistics);
+  EXPECT_TRUE(sameBits(mesh, extract(sample.map)));
+  EXPECT_LT(statistics.threads, 10000);
+}
+
 TEST(ExtractContext, CanBeCancelledInEveryStage) {
   const Sample sample = sphere();
   for (const char* where : {"input", "topology", "transitions", "singularities", "sanitization",

@@ -1,6 +1,7 @@
 // Real models with known counts, if the folder with them is there.
 #include <cstdlib>
 #include <filesystem>
+#include <ostream>
 
 #include <gtest/gtest.h>
 
@@ -17,6 +18,9 @@ struct RealMap {
   std::size_t cells;
   std::size_t vertices;
 };
+
+/// In names of tests.
+void PrintTo(const RealMap& map, std::ostream* out) { *out << map.name; }
 
 constexpr RealMap kRealMaps[] = {
     {"s17c_sphere_r0.1", 372, 488},
