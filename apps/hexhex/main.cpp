@@ -103,8 +103,12 @@ int main(int argc, char** argv) {
   // A limit on the size of files shall be an error like a full disk, not the end of the process.
   std::signal(SIGXFSZ, SIG_IGN);
 #endif
-  const int code = run(argc, argv);
-  if (std::fflush(stdout) == 0 || code != kSuccess) return code;
-  fmt::print(stderr, "hexhex: error: The standard output cannot be written.\n");
+  try {
+    const int code = run(argc, argv);
+    if (std::fflush(stdout) == 0 || code != kSuccess) return code;
+  } catch (...) {
+    // What remains can only come from printing, e.g. to a closed pipe.
+  }
+  static_cast<void>(std::fputs("hexhex: error: The standard output cannot be written.\n", stderr));
   return kFileProblem;
 }

@@ -65,7 +65,8 @@ void withThreads(int threads, const F& f) {
                          [](const void* object) { (*static_cast<const F*>(object))(); });
 }
 
-/// More threads than this, or than cores, are not used, whatever is asked for: they would only cost.
+/// More threads than this, or than cores, are not used, whatever is asked for: they would only
+/// cost.
 inline constexpr int kMaxThreads = 64;
 
 /// The number of threads that `threads` (0: all cores) stands for; 1 without oneTBB.

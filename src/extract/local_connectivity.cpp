@@ -21,12 +21,12 @@ class ConstantConfiguration {
   }
 
   void appendTo(LocalConnectivity& local) {
-    for (std::size_t p = 0; p < propellers_.size(); ++p) {
-      for (std::size_t i = 0; i < propellers_[p].slotCount; ++i) {
-        Slot& slot = slots_[propellers_[p].slotBegin + i];
+    for (const Propeller& propeller : propellers_) {
+      for (std::size_t i = 0; i < propeller.slotCount; ++i) {
+        Slot& slot = slots_[propeller.slotBegin + i];
         slot.blade = static_cast<std::uint16_t>(indexOf(slot.direction));
         const Propeller& blade = propellers_[slot.blade];
-        while (slots_[blade.slotBegin + slot.back].direction != propellers_[p].direction) {
+        while (slots_[blade.slotBegin + slot.back].direction != propeller.direction) {
           ++slot.back;
         }
       }

@@ -57,10 +57,10 @@ StarConnectivity::StarTet& StarConnectivity::inStar(Index tet) {
 }
 
 void StarConnectivity::findPropellers() {
-  for (std::size_t i = 0; i < star_.size(); ++i) {
-    const Index tet = star_[i].tet;
+  for (const StarTet& entry : star_) {
+    const Index tet = entry.tet;
     for (Direction d = 0; d < kDirections; ++d) {
-      const CornerMask simplex = holder(signs_[tet], star_[i].simplex, d);
+      const CornerMask simplex = holder(signs_[tet], entry.simplex, d);
       if (simplex == kNoSimplex || ownerTet(topology_, tet, simplex) != tet) continue;
       if (holders_.size() == kNoPropeller) {
         throw Error(ErrorCode::TooLarge,

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
 
 #include <hexhex/error.hpp>
 
@@ -29,8 +30,8 @@ std::filesystem::path folderOf(const std::filesystem::path& file) {
 
 }  // namespace
 
-OutputFile::OutputFile(const std::filesystem::path& target)
-    : target_(target), buffer_(new char[kBufferSize]) {
+OutputFile::OutputFile(std::filesystem::path target)
+    : target_(std::move(target)), buffer_(new char[kBufferSize]) {
   std::error_code error;
   // Renaming onto a link would replace the link, not what it points to.
   if (std::filesystem::is_symlink(target_, error)) {

@@ -18,7 +18,7 @@ namespace hexhex {
 /// Every function throws Error FileWrite, with the target and the system's reason, if it fails.
 class OutputFile {
  public:
-  explicit OutputFile(const std::filesystem::path& target);
+  explicit OutputFile(std::filesystem::path target);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;

@@ -31,7 +31,7 @@ double filteredDeterminant(const LatticePoint& u, const LatticePoint& v,
     const std::size_t k = axis == 0 ? 2 : axis - 1;
     const double first = static_cast<double>(u[j]) * static_cast<double>(v[k]);
     const double second = static_cast<double>(u[k]) * static_cast<double>(v[j]);
-    const double third = static_cast<double>(w[axis]);
+    const auto third = static_cast<double>(w[axis]);
     sum += (first - second) * third;
     magnitude += (std::abs(first) + std::abs(second)) * std::abs(third);
   }

@@ -54,51 +54,63 @@ bool oppositeOrientation(const TetTopology& topology, HalfFace a, HalfFace b) {
   };
   const std::array<Index, 3> left = corners(a);
   const std::array<Index, 3> right = corners(b);
-  const std::size_t shift =
+  const auto shift =
       static_cast<std::size_t>(std::find(right.begin(), right.end(), left[0]) - right.begin());
   return right[(shift + 1) % 3] == left[2];
+}
+
+/// The half-faces whose smallest vertex is v, so that equal triangles follow each other.
+void collectFaces(const TetTopology& topology, Index v, std::vector<FaceKey>& faces) {
+  faces.clear();
+  for (const CornerIndex corner : topology.star(v)) {
+    const Tet& tet = topology.tets[corner / 4];
+    // Of the three other corners, two belong to each face at v.
+    for (std::uint32_t opposite = 0; opposite < 4; ++opposite) {
+      if (opposite == corner % 4) continue;
+      std::uint32_t i = 0;
+      while (i == corner % 4 || i == opposite) ++i;
+      const std::uint32_t j = 6 - corner % 4 - opposite - i;
+      if (tet[i] < v || tet[j] < v) continue;
+      faces.push_back({std::min(tet[i], tet[j]), std::max(tet[i], tet[j]),
+                       halfFaceOf(corner / 4, static_cast<int>(opposite))});
+    }
+  }
+  std::sort(faces.begin(), faces.end(), [](const FaceKey& a, const FaceKey& b) {
+    if (a.middle != b.middle) return a.middle < b.middle;
+    return a.largest != b.largest ? a.largest < b.largest : a.halfFace < b.halfFace;
+  });
+}
+
+/// Makes the half-faces of one triangle mates, or boundary if there is only one.
+void joinMates(TetTopology& topology, std::span<const FaceKey> same, DefectCollector& defects) {
+  for (const FaceKey& face : same) topology.mate[face.halfFace] = kNone;
+  if (same.size() == 1) return;
+  const HalfFace first = same[0].halfFace;
+  const HalfFace second = same[1].halfFace;
+  const Place place{PlaceKind::Face, tetOf(first), first % 4};
+  if (same.size() > 2) {
+    defects.add(ErrorCode::NonManifoldFace, place, 0);
+    return;
+  }
+  topology.mate[first] = second;
+  topology.mate[second] = first;
+  if (!oppositeOrientation(topology, first, second)) {
+    defects.add(ErrorCode::Orientation, place, 0);
+  }
 }
 
 /// Matches half-faces; each triangle is found at its smallest vertex.
 void matchFaces(TetTopology& topology, Stage& stage, DefectCollector& defects) {
   topology.mate.resize(4 * topology.tetCount());
   const auto matchAt = [&](Index v, std::vector<FaceKey>& faces) {
-    faces.clear();
-    for (const CornerIndex corner : topology.star(v)) {
-      const Tet& tet = topology.tets[corner / 4];
-      for (std::size_t opposite = 0; opposite < 4; ++opposite) {
-        if (opposite == corner % 4) continue;
-        const std::size_t i =
-            0 == corner % 4 || 0 == opposite ? (1 == corner % 4 || 1 == opposite ? 2U : 1U) : 0U;
-        const std::size_t j = 6 - corner % 4 - opposite - i;
-        if (tet[i] < v || tet[j] < v) continue;
-        faces.push_back({std::min(tet[i], tet[j]), std::max(tet[i], tet[j]),
-                         halfFaceOf(corner / 4, static_cast<int>(opposite))});
-      }
-    }
-    std::sort(faces.begin(), faces.end(), [](const FaceKey& a, const FaceKey& b) {
-      if (a.middle != b.middle) return a.middle < b.middle;
-      return a.largest != b.largest ? a.largest < b.largest : a.halfFace < b.halfFace;
-    });
+    collectFaces(topology, v, faces);
     for (std::size_t begin = 0; begin < faces.size();) {
       std::size_t end = begin + 1;
       while (end < faces.size() && faces[end].middle == faces[begin].middle &&
              faces[end].largest == faces[begin].largest) {
         ++end;
       }
-      const HalfFace first = faces[begin].halfFace;
-      const Place place{PlaceKind::Face, tetOf(first), first % 4};
-      for (std::size_t k = begin; k < end; ++k) topology.mate[faces[k].halfFace] = kNone;
-      if (end - begin == 2) {
-        const HalfFace second = faces[begin + 1].halfFace;
-        topology.mate[first] = second;
-        topology.mate[second] = first;
-        if (!oppositeOrientation(topology, first, second)) {
-          defects.add(ErrorCode::Orientation, place, 0);
-        }
-      } else if (end - begin > 2) {
-        defects.add(ErrorCode::NonManifoldFace, place, 0);
-      }
+      joinMates(topology, std::span(&faces[begin], end - begin), defects);
       begin = end;
     }
   };

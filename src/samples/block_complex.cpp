@@ -61,7 +61,8 @@ BlockPart BlockPart::face(std::size_t axis, int side) {
 }
 
 std::size_t BlockPart::code() const {
-  return static_cast<std::size_t>(digits[0] + 3 * digits[1] + 9 * digits[2]);
+  const int code = digits[0] + 3 * digits[1] + 9 * digits[2];
+  return static_cast<std::size_t>(code);
 }
 
 std::size_t BlockPart::dimension() const {

@@ -57,6 +57,7 @@ std::vector<Motion> alignedCharts(const BlockComplex& complex, std::int64_t cell
     }
   }
   std::vector<Motion> result;
+  result.reserve(charts.size());
   for (const std::optional<Motion>& chart : charts) result.push_back(*chart);
   return result;
 }
