@@ -15,6 +15,7 @@
 #include "check_text.hpp"
 #include "command.hpp"
 #include "exit_codes.hpp"
+#include "interrupt.hpp"
 #include "output.hpp"
 #include "shared_options.hpp"
 
@@ -59,7 +60,11 @@ int run(const Arguments& arguments) {
   requireWritable(arguments.output);
   SampleOptions options = arguments.options;
   options.charts = chartStyleNamed(arguments.charts);
+  // A signal takes effect between the two steps: a file is written whole or not at all.
+  Context context;
+  const CancelOnSignal cancelOnSignal(context);
   const Sample sample = generateSample(kindNamed(arguments.kind), options);
+  context.throwIfCancelled();
   writeMap(sample.map, arguments.output);
   if (arguments.quiet) return kSuccess;
   fmt::print("{}\n", arguments.output);

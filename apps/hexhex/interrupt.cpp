@@ -20,11 +20,17 @@ CancelOnSignal::CancelOnSignal(Context& context) {
   contextToCancel = &context;
   std::signal(SIGINT, cancelContext);
   std::signal(SIGTERM, cancelContext);
+#ifdef SIGHUP
+  std::signal(SIGHUP, cancelContext);
+#endif
 }
 
 CancelOnSignal::~CancelOnSignal() {
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
+#ifdef SIGHUP
+  std::signal(SIGHUP, SIG_DFL);
+#endif
   contextToCancel = nullptr;
 }
 

@@ -5,7 +5,8 @@
 
 namespace hexhex::command {
 
-/// While it lives, SIGINT and SIGTERM cancel the context. A second signal ends the process at once.
+/// While it lives, SIGINT, SIGTERM and SIGHUP cancel the context. A second signal ends the process
+/// at once.
 class CancelOnSignal {
  public:
   explicit CancelOnSignal(Context& context);

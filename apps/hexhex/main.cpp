@@ -14,6 +14,7 @@
 
 #include "command.hpp"
 #include "exit_codes.hpp"
+#include "output.hpp"
 
 namespace hexhex::command {
 namespace {
@@ -50,8 +51,8 @@ std::string usageProblem(const CLI::App* app, const CLI::Error& error) {
 /// The sentence, and in brackets what a script or a bug report wants to know.
 void printError(const Error& error) {
   const std::string place = toString(error.place());
-  fmt::print(stderr, "hexhex: error: {} [{}{}{}]\n", error.what(), name(error.code()),
-             place.empty() ? "" : ", ", place);
+  printToStderr("hexhex: error: {} [{}{}{}]\n", error.what(), name(error.code()),
+                place.empty() ? "" : ", ", place);
 }
 
 /// Runs a subcommand; every error ends here.
@@ -62,14 +63,14 @@ int runGuarded(const Command& command) {
     printError(error);
     return exitCodeOf(error.code());
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr,
-               "hexhex: error: The memory of this machine does not suffice; nothing was written. "
-               "Try a smaller scale. [{}]\n",
-               name(ErrorCode::OutOfMemory));
+    printToStderr(
+        "hexhex: error: The memory of this machine does not suffice; nothing was written. "
+        "Try a smaller scale. [{}]\n",
+        name(ErrorCode::OutOfMemory));
     return kFailure;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "hexhex: error: Unexpected: {} Please report this. [{}]\n", error.what(),
-               name(ErrorCode::Internal));
+    printToStderr("hexhex: error: Unexpected: {} Please report this. [{}]\n", error.what(),
+                  name(ErrorCode::Internal));
     return kFailure;
   }
 }

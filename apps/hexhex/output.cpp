@@ -26,9 +26,7 @@ void printLine(std::string_view label, std::string_view value) {
   fmt::print("  {:<26}{}\n", label, value);
 }
 
-void printWarning(std::string_view sentence) {
-  fmt::print(stderr, "hexhex: warning: {}\n", sentence);
-}
+void printWarning(std::string_view sentence) { printToStderr("hexhex: warning: {}\n", sentence); }
 
 std::string counted(std::uint64_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");

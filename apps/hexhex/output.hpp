@@ -2,15 +2,27 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
+
+#include <fmt/core.h>
 
 #include <hexhex/quality.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex::command {
+
+/// Prints to the standard error output. What cannot be printed there is lost, and nothing else: a
+/// closed terminal must not cost the result.
+template <class... Args>
+void printToStderr(fmt::format_string<Args...> format, Args&&... args) {
+  const std::string text = fmt::format(format, std::forward<Args>(args)...);
+  static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
+}
 
 /// "  label      value" on the standard output.
 void printLine(std::string_view label, std::string_view value);

@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "output.hpp"
+
 namespace hexhex::command {
 namespace {
 
@@ -24,20 +26,19 @@ Context::Progress ProgressDisplay::callback() {
 }
 
 void ProgressDisplay::clear() {
-  if (barIsVisible_) fmt::print(stderr, "\r\033[K");
+  if (barIsVisible_) printToStderr("\r\033[K");
   barIsVisible_ = false;
 }
 
 void ProgressDisplay::show(std::string_view stage, double share) {
   if (onTerminal_) {
     const int done = static_cast<int>(share * kBarWidth);
-    fmt::print(stderr, "\r\033[K[{}{}] {:3.0f} % {}",
-               std::string(static_cast<std::size_t>(done), '#'),
-               std::string(static_cast<std::size_t>(kBarWidth - done), ' '), share * 100, stage);
+    printToStderr("\r\033[K[{}{}] {:3.0f} % {}", std::string(static_cast<std::size_t>(done), '#'),
+                  std::string(static_cast<std::size_t>(kBarWidth - done), ' '), share * 100, stage);
     std::fflush(stderr);
     barIsVisible_ = true;
   } else if (std::find(printed_.begin(), printed_.end(), stage) == printed_.end()) {
-    fmt::print(stderr, "hexhex: {}\n", stage);
+    printToStderr("hexhex: {}\n", stage);
     printed_.emplace_back(stage);
   }
 }

@@ -95,11 +95,12 @@ class LatticeDistance {
       : map_(map), scale_(scale), allowed_(allowed) {}
 
   /// Distance of p from the lattice in hex edges (largest coordinate difference) as tet t sees it,
-  /// 0 if within what is allowed; infinite if p is not in the tet or the tet is degenerate.
-  [[nodiscard]] double inTet(Index t, const Vec3& p) const {
+  /// 0 if within what is allowed; infinite if p is not in the tet.
+  /// @param ifFlat  returned for a point in the bounding box of a tet that is too flat in space to
+  ///                tell
+  [[nodiscard]] double inTet(Index t, const Vec3& p, double ifFlat) const {
     const TetInSpace tet(map_, map_.tets[t]);
     const std::array<double, 4> weights = tet.weights(p);
-    if (!tet.contains(weights)) return kInfinity;
     const TetParameters& parameters = map_.parameters[t];
     Vec3 position{};
     double noise = 0;
@@ -112,13 +113,28 @@ class LatticeDistance {
       noise += length(tet.gradient(i)) * length(corner);
     }
     noise *= tet.positionError();
-    if (!(noise <= kLargestNoise)) return kInfinity;
+    if (!(noise <= kLargestNoise)) return inBox(t, tet, p) ? ifFlat : kInfinity;
+    if (!tet.contains(weights)) return kInfinity;
     double distance = 0;
     for (const double u : position) distance = std::max(distance, std::abs(u - std::round(u)));
     return distance <= allowed_ + noise ? 0 : distance;
   }
 
  private:
+  [[nodiscard]] bool inBox(Index t, const TetInSpace& tet, const Vec3& p) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      double low = kInfinity;
+      double high = -kInfinity;
+      for (const Index corner : map_.tets[t]) {
+        low = std::min(low, map_.points[corner][k]);
+        high = std::max(high, map_.points[corner][k]);
+      }
+      const double slack = kContainment * (high - low) + tet.positionError();
+      if (!(p[k] >= low - slack && p[k] <= high + slack)) return false;
+    }
+    return true;
+  }
+
   const TetMapView& map_;
   double scale_;
   double allowed_;
@@ -131,7 +147,8 @@ Array<double> distancesByHints(const LatticeDistance& lattice, const TetMapView&
   const bool hints = mesh.generatorTet.size() == mesh.points.size();
   parallelFor(stage, distances.size(), kGrain, [&](std::size_t v) {
     const Index tet = hints ? mesh.generatorTet[v] : kNone;
-    distances[v] = tet < map.tets.size() ? lattice.inTet(tet, mesh.points[v]) : kInfinity;
+    // Flat tets are legal, and a point that a flat tet is said to own cannot be checked: it passes.
+    distances[v] = tet < map.tets.size() ? lattice.inTet(tet, mesh.points[v], 0) : kInfinity;
   });
   return distances;
 }
@@ -144,7 +161,7 @@ void searchTets(const LatticeDistance& lattice, const TetMapView& map, const Hex
     double best = distances[v];
     if (best == 0) return;
     (void)locator.anyAround(mesh.points[v], [&](Index tet) {
-      best = std::min(best, lattice.inTet(tet, mesh.points[v]));
+      best = std::min(best, lattice.inTet(tet, mesh.points[v], kInfinity));
       return best == 0;
     });
     distances[v] = best;

@@ -97,6 +97,20 @@ class Help(CommandTest):
 
 
 class BadUsage(CommandTest):
+    def test_files_that_are_the_same(self):
+        self.generate("box")
+        (self.folder / "link.mesh").symlink_to(self.folder / "map.hexex")
+        before = (self.folder / "map.hexex").read_bytes()
+        for arguments in [
+            ["-o", "a.mesh", "--report", "map.hexex"],
+            ["-o", "a.mesh", "--report", "./a.mesh"],
+            ["-o", "link.mesh"],
+        ]:
+            run = self.run_command("extract", "map.hexex", *arguments, expect=2)
+            self.assertIn("same file", run.stderr)
+        self.assertEqual((self.folder / "map.hexex").read_bytes(), before)
+        self.assertFalse((self.folder / "a.mesh").exists())
+
     def test_wrong_options(self):
         self.write("map.hexex", ONE_TET)
         for arguments in [

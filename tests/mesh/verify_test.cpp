@@ -373,6 +373,25 @@ TEST(VerifyPositions, FlatTetsAreIgnored) {
   EXPECT_EQ(failedItems(verified(boxExpectation(3), map, mesh)), Names());
 }
 
+TEST(VerifyPositions, PointsOwnedByFlatTetsCannotBeChecked) {
+  // All points in one plane: a legal map, in which no position tells anything.
+  TetMap map = identityMap(2);
+  HexMesh mesh = gridMesh(2);
+  for (Vec3& p : map.points) p[2] = 0;
+  for (Vec3& p : mesh.points) p[2] = 0;
+  mesh.generatorTet.resize(mesh.points.size());
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    for (Index t = 0; t < map.tets.size(); ++t) {
+      for (const Index corner : map.tets[t]) {
+        if (map.points[corner] == mesh.points[v]) mesh.generatorTet[v] = t;
+      }
+    }
+  }
+  EXPECT_EQ(failedItems(verified(boxExpectation(2), map, mesh)), Names());
+  mesh.points[5][0] += 10;  // outside of everything
+  EXPECT_EQ(failedItems(verified(boxExpectation(2), map, mesh)), Names({"vertices_off_lattice"}));
+}
+
 TEST(VerifyPositions, FlatTetsBetweenOthersDoNotMatter) {
   // A point in a nearly flat tet is found in its neighbours: split the tets around one diagonal by
   // a point just beside the diagonal, with lattice points on the diagonal.
