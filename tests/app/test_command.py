@@ -293,7 +293,7 @@ class Pipeline(CommandTest):
         self.assertEqual(set(report), REPORT_KEYS)
         self.assertEqual(report["input"]["bytes"], (self.folder / map_file).stat().st_size)
         self.assertEqual(report["output"]["bytes"], (self.folder / "a.vtu").stat().st_size)
-        self.assertEqual(report["threads"], 2)
+        self.assertIn(report["threads"], (1, 2))  # 1 where built without oneTBB
         self.assertIsNone(report["epsilon"])
         self.assertGreater(report["extract_seconds"], 0)
         self.assertGreater(report["peak_memory_bytes"], 1_000_000)
