@@ -37,8 +37,8 @@ void describeGenerators(const PreparedMap& map, const HexVertices& vertices, Hex
     return index;
   };
   const auto indexOf = [&](const Generator& generator) -> Index {
-    const auto low = static_cast<std::size_t>(std::countr_zero(unsigned{generator.simplex}));
-    const auto high = static_cast<std::size_t>(std::bit_width(unsigned{generator.simplex}) - 1);
+    const std::size_t low = firstCorner(generator.simplex);
+    const std::size_t high = lastCorner(generator.simplex);
     const Tet& tet = topology.tets[generator.tet];
     switch (generator.kind()) {
       case GeneratorKind::Vertex:
@@ -46,7 +46,7 @@ void describeGenerators(const PreparedMap& map, const HexVertices& vertices, Hex
       case GeneratorKind::Edge:
         return static_cast<Index>(topology.edgeIndex(tet[low], tet[high]));
       case GeneratorKind::Face:
-        return faceIndex(generator.tet, std::countr_zero(unsigned{kWholeTet} ^ generator.simplex));
+        return faceIndex(generator.tet, oppositeCorner(generator.simplex));
       case GeneratorKind::Cell:
         return generator.tet;
     }

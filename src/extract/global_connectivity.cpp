@@ -148,7 +148,7 @@ class Tracer {
         casing(signs_[at.tet], vertices_.incidenceOf(at.tet, generator).simplex,
                hexhex::opposite(at.along), at.beside);
     if (dimension(simplex) == 2) {
-      const int face = std::countr_zero(static_cast<unsigned>(kWholeTet ^ simplex));
+      const int face = oppositeCorner(simplex);
       const HalfFace halfFace = halfFaceOf(at.tet, face);
       const HalfFace mate = topology_.mate[halfFace];
       if (mate != kNone && tetOf(mate) < at.tet) {

@@ -241,8 +241,8 @@ class Numbering {
 
   /// Whether the tet's sweep meets the points of an edge from the larger vertex to the smaller.
   [[nodiscard]] bool sweepsBackward(Index tet, CornerMask edge) const {
-    const auto a = static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(edge)));
-    const auto b = static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(edge)) - 1);
+    const std::size_t a = firstCorner(edge);
+    const std::size_t b = lastCorner(edge);
     const LatticeTet& corners = map_.exact.corners[tet];
     LatticePoint along = corners[b] - corners[a];
     if (map_.topology.tets[tet][a] > map_.topology.tets[tet][b]) along = corners[a] - corners[b];
@@ -284,7 +284,7 @@ class Numbering {
       const GeneratorIncidence& incidence = result_.incidences[i];
       const Index owner = result_.generators[incidence.generator].tet;
       if (dimension(incidence.simplex) != 2 || owner == tet) continue;
-      const int face = std::countr_zero(static_cast<unsigned>(kWholeTet ^ incidence.simplex));
+      const int face = oppositeCorner(incidence.simplex);
       const Transition& toOwner = map_.exact.transitions.across(halfFaceOf(tet, face));
       result_.lines.forEachPoint(tet, [&](const GridPoint& z, CornerMask simplex, Index point) {
         if (simplex != incidence.simplex) return;
@@ -300,7 +300,7 @@ class Numbering {
     std::array<double, 4> weights{};
     switch (dimension(simplex)) {
       case 0:
-        weights[static_cast<std::size_t>(std::countr_zero(unsigned{simplex}))] = 1;
+        weights[firstCorner(simplex)] = 1;
         break;
       case 1:
         weights = edgeWeights(tet, simplex, z);
@@ -325,8 +325,8 @@ class Numbering {
   /// Weights of a point of an edge from its largest extent: the same in every chart.
   [[nodiscard]] std::array<double, 4> edgeWeights(Index tet, CornerMask edge,
                                                   const GridPoint& z) const {
-    const auto a = static_cast<std::size_t>(std::countr_zero(unsigned{edge}));
-    const auto b = static_cast<std::size_t>(std::bit_width(unsigned{edge}) - 1);
+    const std::size_t a = firstCorner(edge);
+    const std::size_t b = lastCorner(edge);
     const LatticeTet& corners = map_.exact.corners[tet];
     std::size_t axis = 0;
     for (std::size_t k = 1; k < 3; ++k) {

@@ -88,7 +88,7 @@ Index constantConfiguration(const PreparedMap& map, const Array<NormalSigns>& si
                             const Generator& generator) {
   if (generator.simplex == kWholeTet) return 0;
   if (dimension(generator.simplex) != 2) return kNone;
-  const int face = std::countr_zero(static_cast<unsigned>(kWholeTet ^ generator.simplex));
+  const int face = oppositeCorner(generator.simplex);
   if (!map.topology.isBoundary(halfFaceOf(generator.tet, face))) return kNone;
   for (Direction d = 0; d < kDirections; ++d) {
     if (signs[generator.tet].dot(face, d) > 0) return 1 + Index{d};

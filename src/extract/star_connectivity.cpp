@@ -36,8 +36,7 @@ void StarConnectivity::collectStar(Index tet, CornerMask simplex) {
     entry.propeller.fill(kNoPropeller);
   };
   if (dimension(simplex) == 0) {
-    const Index vertex =
-        topology_.tets[tet][static_cast<std::size_t>(std::countr_zero(unsigned{simplex}))];
+    const Index vertex = topology_.tets[tet][firstCorner(simplex)];
     for (const CornerIndex corner : topology_.star(vertex)) {
       add(corner / 4, cornerBit(localOf(corner)));
     }
@@ -144,7 +143,7 @@ StarConnectivity::Quadrant StarConnectivity::canonical(const Quadrant& quadrant)
       casing(signs_[quadrant.tet], inStar(quadrant.tet).simplex, quadrant.first, quadrant.second);
   if (simplex == kNoSimplex) fail("a quarter plane does not lead into the tet it was traced to");
   if (simplex == kWholeTet) return quadrant;
-  const int face = std::countr_zero(static_cast<unsigned>(kWholeTet ^ simplex));
+  const int face = oppositeCorner(simplex);
   const HalfFace halfFace = halfFaceOf(quadrant.tet, face);
   const HalfFace mate = topology_.mate[halfFace];
   if (mate == kNone || tetOf(mate) > quadrant.tet) return quadrant;

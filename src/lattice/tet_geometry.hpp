@@ -38,6 +38,18 @@ inline constexpr CornerMask kWholeTet = 15;
   return static_cast<CornerMask>(kWholeTet ^ (1 << opposite));
 }
 
+/// The corner opposite a face.
+[[nodiscard]] constexpr int oppositeCorner(CornerMask face) noexcept {
+  return std::countr_zero(unsigned{kWholeTet} ^ face);
+}
+/// The first and last corner of a simplex: the only one of a vertex, the two ends of an edge.
+[[nodiscard]] constexpr std::size_t firstCorner(CornerMask simplex) noexcept {
+  return static_cast<std::size_t>(std::countr_zero(unsigned{simplex}));
+}
+[[nodiscard]] constexpr std::size_t lastCorner(CornerMask simplex) noexcept {
+  return static_cast<std::size_t>(std::bit_width(unsigned{simplex}) - 1);
+}
+
 /// Corners of the face opposite corner f, in the order in which the right-hand normal points to
 /// corner f, i.e. into the (positive) tet.
 inline constexpr std::array<std::array<int, 3>, 4> kFaceCorners = {

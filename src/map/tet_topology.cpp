@@ -259,7 +259,7 @@ Index ownerTet(const TetTopology& topology, Index tet, CornerMask simplex) noexc
     case 3:
       return tet;
     case 2: {
-      const int opposite = std::countr_zero(static_cast<unsigned>(kWholeTet ^ simplex));
+      const int opposite = oppositeCorner(simplex);
       const HalfFace mate = topology.mate[halfFaceOf(tet, opposite)];
       return mate == kNone ? tet : std::min(tet, tetOf(mate));
     }
@@ -283,9 +283,7 @@ Index ownerTet(const TetTopology& topology, Index tet, CornerMask simplex) noexc
       return owner;
     }
     default:
-      return topology.star(topology.tets[tet][static_cast<std::size_t>(
-                 std::countr_zero(static_cast<unsigned>(simplex)))])[0] /
-             4;
+      return topology.star(topology.tets[tet][firstCorner(simplex)])[0] / 4;
   }
 }
 
