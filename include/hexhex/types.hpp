@@ -2,10 +2,11 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
+#include <new>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -30,17 +31,35 @@ using Quad = std::array<Index, 4>;
 /// The four parameters of one tetrahedron: entry i belongs to corner i of the tet.
 using TetParameters = std::array<Vec3, 4>;
 
+namespace detail {
+/// Memory for arrays. Large ones ask the system for huge pages: the first touch of a fresh array
+/// costs mostly page faults, and those come per page.
+[[nodiscard]] void* allocateArray(std::size_t bytes);
+void freeArray(void* memory, std::size_t bytes) noexcept;
+}  // namespace detail
+
 /// Allocator that leaves trivial elements uninitialized, so that large arrays are touched once, by
 /// the thread that fills them.
 template <class T>
-struct UninitializedAllocator : std::allocator<T> {
+struct UninitializedAllocator {
+  using value_type = T;
   UninitializedAllocator() = default;
   template <class U>
   UninitializedAllocator(const UninitializedAllocator<U>& /*other*/) noexcept {}
+
+  [[nodiscard]] T* allocate(std::size_t count) {
+    static_assert(alignof(T) <= alignof(std::max_align_t));
+    if (count > std::numeric_limits<std::size_t>::max() / sizeof(T))
+      throw std::bad_array_new_length();
+    return static_cast<T*>(detail::allocateArray(count * sizeof(T)));
+  }
+  void deallocate(T* memory, std::size_t count) noexcept {
+    detail::freeArray(memory, count * sizeof(T));
+  }
   template <class U>
-  struct rebind {
-    using other = UninitializedAllocator<U>;
-  };
+  [[nodiscard]] bool operator==(const UninitializedAllocator<U>& /*other*/) const noexcept {
+    return true;
+  }
   template <class U>
   void construct(U* place) noexcept(std::is_nothrow_default_constructible_v<U>) {
     ::new (static_cast<void*>(place)) U;
@@ -95,18 +114,24 @@ struct TetMapView {
 /// Dimension of the simplex of the tet mesh whose interior holds a hex vertex (its generator).
 enum class GeneratorKind : std::uint8_t { Vertex = 0, Edge = 1, Face = 2, Cell = 3 };
 
+/// A simplex of a tet, by its corners: bit i for corner i. 1, 2, 4, 8 are the tet's vertices, 15 is
+/// the tet itself.
+using CornerSet = std::uint8_t;
+
+[[nodiscard]] constexpr GeneratorKind generatorKind(CornerSet corners) noexcept {
+  return static_cast<GeneratorKind>(std::popcount(corners) - 1);
+}
+
 /// A hexahedral mesh. Corners of a cell are in VTK_HEXAHEDRON order: 0 1 2 3 around one face, 4 5 6
 /// 7 above them, with positive orientation: det(p1-p0, p3-p0, p4-p0) > 0 for undistorted cells.
 struct HexMesh {
   Array<Vec3> points;  ///< one per hex vertex
   Array<Hex> cells;    ///< eight vertex indices each
 
-  // Where each vertex came from. Empty for meshes that were read from a file.
-  Array<GeneratorKind> generatorKind;  ///< per vertex: kind of simplex
-  Array<Index> generatorIndex;  ///< per vertex: index of the simplex. Vertices and tets: as in the
-                                ///< input. Edges: in lexicographic order of (smaller, larger)
-                                ///< vertex. Faces: in order of (smaller tet, corner opposite).
-  Array<Index> generatorTet;    ///< per vertex: the tet that owns it (smallest around the simplex)
+  // Where each vertex came from: the simplex of the tet mesh (its generator) in whose interior it
+  // lies. Empty for meshes that were read from a file.
+  Array<Index> generatorTet;          ///< per vertex: the smallest tet that contains the simplex
+  Array<CornerSet> generatorCorners;  ///< per vertex: the simplex, by corners of that tet
 };
 
 }  // namespace hexhex

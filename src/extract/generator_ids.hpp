@@ -7,7 +7,7 @@
 
 namespace hexhex {
 
-/// Fills generatorKind, generatorIndex and generatorTet of a mesh.
+/// Fills generatorTet and generatorCorners of a mesh.
 void describeGenerators(const PreparedMap& map, const HexVertices& vertices, HexMesh& mesh,
                         Stage& stage);
 

@@ -65,10 +65,10 @@ void requireWritable(const HexMesh& mesh, Context& context) {
                 "A corner of cell " + std::to_string(cell) + " is not a vertex of the mesh.",
                 Place{PlaceKind::Cell, cell});
   }
-  if (!mesh.generatorKind.empty() && mesh.generatorKind.size() != mesh.points.size()) {
+  if (!mesh.generatorCorners.empty() && mesh.generatorCorners.size() != mesh.points.size()) {
     throw Error(ErrorCode::InvalidArgument,
                 "The mesh has " + std::to_string(mesh.points.size()) + " vertices but " +
-                    std::to_string(mesh.generatorKind.size()) + " kinds of generators.");
+                    std::to_string(mesh.generatorCorners.size()) + " generators.");
   }
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     const Vec3& p = mesh.points[i];

@@ -98,8 +98,11 @@ Section cellsSection(const HexMesh& mesh) {
 
 std::vector<Section> describe(const HexMesh& mesh, const Array<double>& quality) {
   Section pointData{"PointData", {}};
-  if (!mesh.generatorKind.empty()) {
-    pointData.arrays.push_back(fromMemory("UInt8", "generator_kind", 1, mesh.generatorKind));
+  if (!mesh.generatorCorners.empty()) {
+    pointData.arrays.push_back(computed<std::uint8_t>(
+        "UInt8", "generator_kind", mesh.points.size(), [&mesh](std::size_t v) {
+          return static_cast<std::uint8_t>(generatorKind(mesh.generatorCorners[v]));
+        }));
   }
   return {std::move(pointData),
           {"CellData", {fromMemory("Float64", "scaled_jacobian", 1, quality)}},

@@ -1,12 +1,13 @@
 // The public function: orientation, generators, what the caller may give along, errors,
 // cancellation.
+#include <algorithm>
 #include <cmath>
-#include <set>
 
 #include <gtest/gtest.h>
 
 #include <hexhex/quality.hpp>
 
+#include <base/vector3.hpp>
 #include <extract/pipeline.hpp>
 
 #include "extract/support.hpp"
@@ -89,7 +90,7 @@ TEST(Extract, CellsInsideOneTetAreUnitCubes) {
   for (const Hex& cell : mesh.cells) {
     const Index tet = mesh.generatorTet[cell[0]];
     const bool inside = std::all_of(cell.begin(), cell.end(), [&](Index v) {
-      return mesh.generatorTet[v] == tet && mesh.generatorKind[v] == GeneratorKind::Cell;
+      return mesh.generatorTet[v] == tet && mesh.generatorCorners[v] == 15;
     });
     if (!inside) continue;
     ++seen;
@@ -140,50 +141,49 @@ TEST(Extract, CellsInsideOneTetAreUnitCubes) {
   EXPECT_GT(seen, 500U);
 }
 
+double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return dot(cross(minus(b, a), minus(c, a)), minus(d, a));
+}
+
 TEST(Extract, GeneratorsNameSimplicesOfTheInput) {
   SampleOptions o;
   o.cells = 4;
   o.refine = 4;
   const Sample sample = generateSample(SampleKind::Cylinder, o);
   const HexMesh mesh = verifiedExtraction(sample.map);
-  std::set<std::pair<Index, Index>> edges;
-  std::set<std::array<Index, 3>> faces;
-  for (const Tet& tet : sample.map.tets) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      std::array<Index, 3> face = {tet[(i + 1) % 4], tet[(i + 2) % 4], tet[(i + 3) % 4]};
-      std::sort(face.begin(), face.end());
-      faces.insert(face);
-      for (std::size_t j = 0; j < i; ++j) {
-        edges.insert({std::min(tet[i], tet[j]), std::max(tet[i], tet[j])});
-      }
-    }
-  }
+  std::array<std::size_t, 4> seen{};
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    const Index index = mesh.generatorIndex[v];
-    switch (mesh.generatorKind[v]) {
-      case GeneratorKind::Vertex:
-        ASSERT_EQ(mesh.points[v], sample.map.points[index]);
-        break;
-      case GeneratorKind::Edge: {
-        ASSERT_LT(index, edges.size());
-        const auto [a, b] = *std::next(edges.begin(), static_cast<std::ptrdiff_t>(index));
-        const Vec3& p = sample.map.points[a];
-        const Vec3& q = sample.map.points[b];
-        const Vec3& x = mesh.points[v];
-        const double length = std::hypot(q[0] - p[0], q[1] - p[1], q[2] - p[2]);
-        const double detour = std::hypot(x[0] - p[0], x[1] - p[1], x[2] - p[2]) +
-                              std::hypot(x[0] - q[0], x[1] - q[1], x[2] - q[2]);
-        ASSERT_NEAR(detour, length, 1e-9);
-        break;
+    const Index tet = mesh.generatorTet[v];
+    const CornerSet corners = mesh.generatorCorners[v];
+    ASSERT_LT(tet, sample.map.tets.size());
+    ASSERT_GE(corners, 1);
+    ASSERT_LE(corners, 15);
+    ++seen[static_cast<std::size_t>(generatorKind(corners))];
+    // Volumes of the tets that the point makes with the faces tell where it lies.
+    const auto corner = [&](std::size_t i) { return sample.map.points[sample.map.tets[tet][i]]; };
+    const double whole = volume(corner(0), corner(1), corner(2), corner(3));
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::array<Vec3, 4> part = {corner(0), corner(1), corner(2), corner(3)};
+      part[i] = mesh.points[v];
+      const double weight = volume(part[0], part[1], part[2], part[3]) / whole;
+      if (contains(corners, static_cast<int>(i))) {
+        ASSERT_GT(weight, 0);
+      } else {
+        ASSERT_NEAR(weight, 0, 1e-9);
       }
-      case GeneratorKind::Face:
-        ASSERT_LT(index, faces.size());
-        break;
-      case GeneratorKind::Cell:
-        ASSERT_EQ(index, mesh.generatorTet[v]);
-        break;
+    }
+    // The owner is the smallest tet at the simplex.
+    for (Index t = 0; t < tet; ++t) {
+      const Tet& other = sample.map.tets[t];
+      bool all = true;
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (!contains(corners, static_cast<int>(i))) continue;
+        all = all && std::find(other.begin(), other.end(), sample.map.tets[tet][i]) != other.end();
+      }
+      ASSERT_FALSE(all);
     }
   }
+  for (const std::size_t count : seen) EXPECT_GT(count, 0U);
 }
 
 TEST(Extract, GivenValencesAreUsed) {

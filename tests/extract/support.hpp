@@ -41,8 +41,8 @@ inline HexMesh verifiedExtraction(const TetMapView& map, const ExtractOptions& o
 }
 
 inline bool sameBits(const HexMesh& a, const HexMesh& b) {
-  return a.points == b.points && a.cells == b.cells && a.generatorKind == b.generatorKind &&
-         a.generatorIndex == b.generatorIndex && a.generatorTet == b.generatorTet;
+  return a.points == b.points && a.cells == b.cells && a.generatorTet == b.generatorTet &&
+         a.generatorCorners == b.generatorCorners;
 }
 
 /// A name on the command line, e.g. for SCOPED_TRACE.

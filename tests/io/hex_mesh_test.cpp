@@ -69,7 +69,7 @@ TEST(HexMeshFiles, WriterRefusesInconsistentMeshes) {
     EXPECT_EQ(failure.code, ErrorCode::InvalidArgument);
     EXPECT_EQ(toString(failure.place), "cell 1");
     broken = gridMesh(2, 1, 1);
-    broken.generatorKind.resize(3, GeneratorKind::Cell);
+    broken.generatorCorners.resize(3, 15);
     EXPECT_EQ(failureOf([&] { writeHexMesh(broken, folder / name); }).code,
               ErrorCode::InvalidArgument);
     broken = gridMesh(2, 1, 1);
@@ -225,7 +225,7 @@ TEST(Vtu, HoldsGeneratorsAndQuality) {
   HexMesh grid = gridMesh(2, 1, 1);
   writeHexMesh(grid, folder / "a.vtu");
   EXPECT_EQ(contentOf(folder / "a.vtu").find("generator_kind"), std::string::npos);
-  grid.generatorKind.resize(grid.points.size(), GeneratorKind::Face);
+  grid.generatorCorners.resize(grid.points.size(), 7);
   writeHexMesh(grid, folder / "a.vtu");
   const std::string text = contentOf(folder / "a.vtu");
   EXPECT_NE(text.find("<DataArray type=\"UInt8\" Name=\"generator_kind\" "
