@@ -1,5 +1,6 @@
 // `hexhex extract`: from a map to a verified hexahedral mesh.
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include <fmt/core.h>
@@ -134,6 +135,7 @@ int run(const Arguments& arguments) {
   record.input = {arguments.input, std::filesystem::file_size(arguments.input, unknown)};
   record.output = {arguments.output, std::filesystem::file_size(arguments.output, unknown)};
   record.scale = arguments.options.scale;
+  record.engine = arguments.options.engine;
   record.points = map.points.size();
   record.tets = map.tets.size();
   record.vertices = mesh.points.size();
@@ -162,9 +164,17 @@ Command addExtract(CLI::App& app) {
            "Multiply all parameters by this integer: its cube as\nmany cells");
   addThreads(*parser, arguments->threads);
   parser
+      ->add_option("--engine", arguments->options.engine,
+                   "atlas: reads cells off a picture of the map and traces\n"
+                   "few; propeller: the algorithm of the paper. Both give\n"
+                   "the same mesh, bit for bit")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Engine>{
+          {"atlas", Engine::Atlas}, {"propeller", Engine::Propeller}}))
+      ->option_text("ENGINE [atlas]");
+  parser
       ->add_option("--epsilon", arguments->options.epsilon,
-                   "Enlargement of tets while lattice points are\n"
-                   "searched, in parameter units; inf is legal. Never\n"
+                   "Enlargement of tets while the propeller engine searches\n"
+                   "lattice points, in parameter units; inf is legal. Never\n"
                    "changes the result, only the time")
       ->option_text("NUMBER [1e-6]");
   addTolerance(*parser, arguments->options.tolerance);

@@ -23,6 +23,7 @@ struct ExtractionRecord {
   FileSize input;
   FileSize output;
   int scale = 1;
+  Engine engine = Engine::Atlas;
   std::uint64_t points = 0;
   std::uint64_t tets = 0;
   std::uint64_t vertices = 0;

@@ -12,11 +12,19 @@
 
 namespace hexhex {
 
+/// Two ways to the same mesh, bit for bit.
+enum class Engine : std::uint8_t {
+  Atlas,     ///< reads cells off a picture of the map, and traces only those that a cut meets
+  Propeller  ///< the paper's algorithm: traces every edge
+};
+
 struct ExtractOptions {
+  Engine engine = Engine::Atlas;
   /// Multiplies all parameters before extraction: scale^3 times as many cells. At least 1.
   int scale = 1;
   /// Enlargement of tets while candidates of lattice points are enumerated, in parameter units;
-  /// never changes the result, only the time. 0 and infinity are legal. (Section 5.2.3)
+  /// never changes the result, only the time. 0 and infinity are legal. Of the propeller engine;
+  /// the atlas engine enumerates no candidates. (Section 5.2.3)
   double epsilon = 1e-6;
   /// How far the input may be from fulfilling its integer conditions (transitions, boundary,
   /// singularities), in parameter units before scaling. Below 0.25.
@@ -38,8 +46,15 @@ struct ExtractStatistics {
   std::uint64_t singularEdges = 0;            ///< of the tet mesh, inner and boundary
   std::array<std::uint64_t, 4> generators{};  ///< simplices with hex vertices, by kind
   std::array<std::uint64_t, 4> vertices{};    ///< hex vertices by generator kind
-  std::uint64_t localPropellers = 0;          ///< extracted, i.e. without the constant cases
-  std::uint64_t globalPropellers = 0;         ///< directed hex edges
+  // Of the propeller engine:
+  std::uint64_t localPropellers = 0;   ///< extracted, i.e. without the constant cases
+  std::uint64_t globalPropellers = 0;  ///< directed hex edges
+
+  // Of the atlas engine:
+  std::uint64_t charts = 0;           ///< of the atlas
+  std::uint64_t cutFaces = 0;         ///< inner faces of the tet mesh at which its picture ends
+  std::uint64_t overlappingTets = 0;  ///< that did not fit their first chart
+  std::uint64_t tracedCells = 0;      ///< cells that met a cut
 };
 
 /// Extracts the hexahedral mesh that the map implies. Linear in the number of tets plus the number

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 
 #include <hexhex/context.hpp>
 #include <hexhex/types.hpp>
@@ -15,6 +16,7 @@ namespace hexhex {
 
 /// Writes a map: `.hexex`. Each number has the fewest digits that read back to the same double.
 /// The file appears complete or not at all.
+void writeMap(const TetMap& map, const std::filesystem::path& file, Context& context);
 void writeMap(const TetMap& map, const std::filesystem::path& file);
 
 /// Reads a hexahedral mesh: `.mesh` (MEDIT ASCII), `.vtu` (as this library writes it). Other cells
@@ -22,9 +24,21 @@ void writeMap(const TetMap& map, const std::filesystem::path& file);
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file, Context& context);
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file);
 
+/// What a writer may be told beside the mesh.
+struct WriteOptions {
+  /// What scaledJacobians() returned for this mesh, if the caller has it anyway. Empty: computed by
+  /// writers whose format holds it.
+  std::span<const double> scaledJacobians = {};
+};
+
 /// Writes a hexahedral mesh: `.mesh` (vertices, boundary quads, hexahedra) or `.vtu` (binary
-/// appended; point array `generator_kind`, cell array `scaled_jacobian`). The file appears complete
-/// or not at all.
+/// appended; cell array `scaled_jacobian`; for meshes that know where their vertices came from, the
+/// point arrays `generator_kind` (UInt8), `generator_tet` (UInt32), `generator_corners` (UInt8)).
+/// The file appears complete or not at all.
+/// @throws Error FileUnsupported, FileWrite; InvalidArgument if arrays disagree or a cell names a
+///         vertex that does not exist; NotFinite
+void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
+                  const WriteOptions& options, Context& context);
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file, Context& context);
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file);
 

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include <hexhex/features.hpp>  // IWYU pragma: export
+
 namespace hexhex {
 
 /// A point or vector: x, y, z (in space) or u, v, w (a parameter, in units of one hexahedron).
@@ -87,6 +89,11 @@ struct TetMap {
   std::vector<Vec3> points;               ///< one per vertex
   std::vector<Tet> tets;                  ///< four different vertices each
   std::vector<TetParameters> parameters;  ///< one per tet, in the tet's own chart
+
+  // What files may know beyond the map itself; empty where they do not. See TetMapView.
+  std::vector<EdgeValence> edgeValences = {};
+  std::vector<std::array<std::int8_t, 4>> rotations = {};
+  Features features = {};  ///< tagged vertices, edges and triangles of the tets
 };
 
 /// The same as a view on the caller's arrays, plus what the caller may know already.
@@ -108,7 +115,12 @@ struct TetMapView {
              std::span<const TetParameters> parameters_)
       : points(points_), tets(tets_), parameters(parameters_) {}
   // NOLINTNEXTLINE(google-explicit-constructor): a map converts to a view of itself.
-  TetMapView(const TetMap& map) : points(map.points), tets(map.tets), parameters(map.parameters) {}
+  TetMapView(const TetMap& map)
+      : points(map.points),
+        tets(map.tets),
+        parameters(map.parameters),
+        edgeValences(map.edgeValences),
+        rotations(map.rotations) {}
 };
 
 /// Dimension of the simplex of the tet mesh whose interior holds a hex vertex (its generator).
@@ -132,6 +144,8 @@ struct HexMesh {
   // lies. Empty for meshes that were read from a file.
   Array<Index> generatorTet;          ///< per vertex: the smallest tet that contains the simplex
   Array<CornerSet> generatorCorners;  ///< per vertex: the simplex, by corners of that tet
+
+  HexFeatures features = {};  ///< tagged vertices, edges and quads, where they are known
 };
 
 }  // namespace hexhex

@@ -101,4 +101,12 @@ int effectiveThreads(int threads) {
 #endif
 }
 
+int currentThreads() {
+#if HEXHEX_HAS_TBB
+  return std::max(1, oneapi::tbb::this_task_arena::max_concurrency());
+#else
+  return 1;
+#endif
+}
+
 }  // namespace hexhex

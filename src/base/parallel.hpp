@@ -72,6 +72,10 @@ inline constexpr int kMaxThreads = 64;
 /// The number of threads that `threads` (0: all cores) stands for; 1 without oneTBB.
 [[nodiscard]] int effectiveThreads(int threads);
 
+/// The number of threads that a loop called from here may use: for work that is divided among
+/// threads by hand. No result may depend on it.
+[[nodiscard]] int currentThreads();
+
 /// Replaces counts by their exclusive prefix sums; the last element, an unused slot, receives the
 /// total, which is returned. Sequential: it runs at the speed of memory.
 template <class T>

@@ -4,6 +4,8 @@
 #include <new>
 #include <string>
 
+#include <atlas/atlas.hpp>
+
 #include <hexhex/extract.hpp>
 
 #include <extract/global_connectivity.hpp>
@@ -50,8 +52,15 @@ HexMesh extractInArena(const TetMapView& map, const ExtractOptions& options, Con
   std::uint64_t expectedCells = 0;
   {
     Stage stage(context, "scaling");
-    expectedCells = scaledCells(parametricVolume(prepared.exact, stage), options.scale);
+    expectedCells = scaledCells(parametricVolume(prepared.exact), options.scale);
     scaleMap(prepared.exact, options.scale, stage);
+  }
+  if (options.engine == Engine::Atlas) {
+    return runAtlas(prepared, expectedCells, context, statistics);
+  }
+  {
+    Stage stage(context, "stars");
+    addStars(prepared.topology, stage);
   }
   return runPipeline(prepared, expectedCells, options.epsilon, context, statistics);
 }

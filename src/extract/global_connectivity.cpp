@@ -2,6 +2,7 @@
 #include <atomic>
 
 #include <extract/global_connectivity.hpp>
+#include <extract/slot_finder.hpp>
 
 namespace hexhex {
 
@@ -27,6 +28,7 @@ class Tracer {
         signs_(signs),
         vertices_(vertices),
         local_(local),
+        finder_(map, signs, vertices, local),
         global_(global) {}
 
   /// Traces every propeller whose first blade's casing lies in this tet.
@@ -62,18 +64,13 @@ class Tracer {
     if (here.load(std::memory_order_relaxed) != GlobalConnectivity::kUntraced) return;
     const Index end = follow(at);
     const Index endGenerator = vertices_.generatorOf[end];
-    const Slot key = casingKey(at, endGenerator);
-    const std::size_t opposite = oppositePropeller(at, endGenerator);
-    const Propeller& arrived = local_.propeller(local_.configuration(endGenerator), opposite);
-    std::uint16_t offset = 0;
-    for (;; ++offset) {
-      if (offset == arrived.slotCount) throw MissingVertex{at.tet};
-      const Slot& slot = local_.slot(arrived, offset);
-      if (slot.tet == key.tet && slot.direction == key.direction) break;
-    }
-    here.store(GlobalConnectivity::pack({end, static_cast<std::uint16_t>(opposite), offset}),
-               std::memory_order_relaxed);
-    entry(end, endGenerator, opposite)
+    const SlotName arrived =
+        finder_.find(at.tet, endGenerator, hexhex::opposite(at.along), at.beside);
+    const auto offset = static_cast<std::uint16_t>(arrived.slot);
+    here.store(
+        GlobalConnectivity::pack({end, static_cast<std::uint16_t>(arrived.propeller), offset}),
+        std::memory_order_relaxed);
+    entry(end, endGenerator, arrived.propeller)
         .store(GlobalConnectivity::pack({vertex, static_cast<std::uint16_t>(propeller), offset}),
                std::memory_order_relaxed);
   }
@@ -125,44 +122,12 @@ class Tracer {
     });
   }
 
-  [[nodiscard]] std::size_t oppositePropeller(const Trace& at, Index generator) const {
-    const Direction back = hexhex::opposite(at.along);
-    const Index configuration = local_.configurationOf[generator];
-    if (configuration == 0) return back;
-    if (configuration < kConstantConfigurations) {
-      // Propellers of a boundary face: all directions but the one that leads outside.
-      const Direction outward = hexhex::opposite(static_cast<Direction>(configuration - 1));
-      return back > outward ? back - std::size_t{1} : back;
-    }
-    const std::uint8_t propeller = vertices_.incidenceOf(at.tet, generator).propeller[back];
-    if (propeller == kNoPropeller) throw MissingVertex{at.tet};
-    return propeller;
-  }
-
-  /// Names the blade's casing at the end of the edge as the slots there do.
-  [[nodiscard]] Slot casingKey(const Trace& at, Index generator) const {
-    if (local_.configurationOf[generator] < kConstantConfigurations) {
-      return {kNone, at.beside, 0, 0, 0};
-    }
-    const CornerMask simplex =
-        casing(signs_[at.tet], vertices_.incidenceOf(at.tet, generator).simplex,
-               hexhex::opposite(at.along), at.beside);
-    if (dimension(simplex) == 2) {
-      const int face = oppositeCorner(simplex);
-      const HalfFace halfFace = halfFaceOf(at.tet, face);
-      const HalfFace mate = topology_.mate[halfFace];
-      if (mate != kNone && tetOf(mate) < at.tet) {
-        return {tetOf(mate), exact_.transitions.across(halfFace)(at.beside), 0, 0, 0};
-      }
-    }
-    return {at.tet, at.beside, 0, 0, 0};
-  }
-
   const TetTopology& topology_;
   const ExactMap& exact_;
   const Array<NormalSigns>& signs_;
   const HexVertices& vertices_;
   const LocalConnectivity& local_;
+  SlotFinder finder_;
   GlobalConnectivity& global_;
 };
 

@@ -1,14 +1,13 @@
-#include <algorithm>
-#include <vector>
+#include <sweep/cell_seeds.hpp>
+#include <sweep/cell_tracer.hpp>
 
 #include <extract/hex_cells.hpp>
 #include <extract/link_corners.hpp>
+#include <extract/slot_finder.hpp>
 
 namespace hexhex {
 
 namespace {
-
-constexpr std::size_t kGrain = 4096;
 
 class CellWalker {
  public:
@@ -16,14 +15,23 @@ class CellWalker {
              const GlobalConnectivity& global)
       : vertices_(vertices), local_(local), global_(global) {}
 
-  /// Appends the cells whose first corner is at this vertex.
-  void run(Index vertex, std::vector<Hex>& cells) const {
-    const Configuration& configuration = configurationAt(vertex);
-    for (std::uint16_t c = 0; c < configuration.cornerCount; ++c) {
-      const HexCorner& corner = local_.corners[configuration.cornerBegin + c];
-      Hex cell;
-      if (walk({vertex, {corner.propeller, corner.slot}}, c, cell)) cells.push_back(cell);
-    }
+  /// The cell with a hex corner at a vertex, whose propellers x, y, z become the cell's axes: seen
+  /// from x, it lies between blades y and z.
+  ///
+  /// Moving along one of the propellers swaps the order of the other two, so after a move along x
+  /// the corner is seen from x with z before y.
+  [[nodiscard]] Hex walk(Index vertex, const SlotName& slot) const {
+    const At v0{vertex, slot};
+    const At v1 = across(v0);                // (x; z, y)
+    const At alongY = rotate(v0);            // (y; z, x)
+    const At v3 = across(alongY);            // (y; x, z)
+    const At v4 = across(rotate(alongY));    // (z; y, x)
+    const At v1AlongZ = rotate(v1);          // (z; y, x)
+    const At v2 = across(rotate(v1AlongZ));  // along y: (y; z, x)
+    const At v5 = across(v1AlongZ);
+    const At v6 = across(rotate(v2));          // along z
+    const At v7 = across(rotate(rotate(v3)));  // along z
+    return {v0.vertex, v1.vertex, v2.vertex, v3.vertex, v4.vertex, v5.vertex, v6.vertex, v7.vertex};
   }
 
  private:
@@ -58,38 +66,6 @@ class CellWalker {
             {opposite.propeller, (opposite.offset + 2 * count - at.slot.slot - 1) % count}};
   }
 
-  /// Whether the cell's corner at `at` comes after its corner number `corner` at vertex `first`.
-  [[nodiscard]] bool comesAfter(const At& at, Index first, std::uint16_t corner) const {
-    if (at.vertex != first) return at.vertex > first;
-    const Propeller& propeller = local_.propeller(configurationAt(first), at.slot.propeller);
-    return local_.slot(propeller, at.slot.slot).corner > corner;
-  }
-
-  /// Collects the cell's vertices; false, early, if this corner is not the cell's first one.
-  ///
-  /// The corner's propellers x, y, z become the cell's axes. Moving along one of them swaps the
-  /// order of the other two, so after a move along x the corner is seen from x with z before y.
-  bool walk(const At& v0, std::uint16_t corner, Hex& cell) const {
-    const auto visit = [&](std::size_t i, const At& at) {
-      cell[i] = at.vertex;
-      return comesAfter(at, v0.vertex, corner);
-    };
-    cell[0] = v0.vertex;
-    const At v1 = across(v0);  // (x; z, y)
-    if (!visit(1, v1)) return false;
-    const At alongY = rotate(v0);  // (y; z, x)
-    const At v3 = across(alongY);  // (y; x, z)
-    if (!visit(3, v3)) return false;
-    const At v4 = across(rotate(alongY));  // (z; y, x)
-    if (!visit(4, v4)) return false;
-    const At v1AlongZ = rotate(v1);          // (z; y, x)
-    const At v2 = across(rotate(v1AlongZ));  // along y: (y; z, x)
-    if (!visit(2, v2)) return false;
-    if (!visit(5, across(v1AlongZ))) return false;
-    if (!visit(6, across(rotate(v2)))) return false;  // along z
-    return visit(7, across(rotate(rotate(v3))));      // along z
-  }
-
   const HexVertices& vertices_;
   const LocalConnectivity& local_;
   const GlobalConnectivity& global_;
@@ -106,25 +82,38 @@ std::uint64_t countCells(const HexVertices& vertices, const LocalConnectivity& l
   return corners / 8;
 }
 
-Array<Hex> collectCells(const HexVertices& vertices, const LocalConnectivity& local,
+Array<Hex> collectCells(const PreparedMap& map, const Array<NormalSigns>& signs,
+                        const HexVertices& vertices, const LocalConnectivity& local,
                         const GlobalConnectivity& global, Stage& stage) {
-  const std::size_t vertexCount = vertices.positions.size();
-  std::vector<std::vector<Hex>> blocks(blockCount(vertexCount, kGrain));
+  const std::size_t tets = map.topology.tetCount();
+  TetLines lines(tets);
+  const Array<std::uint64_t> cellBegin = numberCells(map, lines, stage);
+  Array<Hex> cells(cellBegin[tets]);
   const CellWalker walker(vertices, local, global);
-  parallelBlocks(stage, vertexCount, kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   blocks[block].reserve(end - begin);  // about one cell per vertex
-                   for (std::size_t v = begin; v < end; ++v) {
-                     walker.run(static_cast<Index>(v), blocks[block]);
-                   }
-                 });
-  std::vector<std::size_t> offsets(blocks.size() + 1, 0);
-  for (std::size_t b = 0; b < blocks.size(); ++b) offsets[b + 1] = offsets[b] + blocks[b].size();
-  Array<Hex> cells(offsets.back());
-  parallelFor(stage, blocks.size(), 1, [&](std::size_t b) {
-    std::copy(blocks[b].begin(), blocks[b].end(),
-              cells.begin() + static_cast<std::ptrdiff_t>(offsets[b]));
-    std::vector<Hex>().swap(blocks[b]);
+  const SlotFinder finder(map, signs, vertices, local);
+  const auto enter = [&](CellTracer& tracer, Index tet, const GridPoint& z, CornerMask generator) {
+    const CornerPlace place = tracer.trace(tet, z, generator, {0, 0, 0});
+    const Index vertex = vertices.lines.find(place.tet, place.z);
+    if (vertex == kNone) throw MissingVertex{place.tet};
+    return walker.walk(
+        vertex, finder.find(place.tet, vertices.generatorOf[vertex],
+                            place.rotation(direction(0, 1)), place.rotation(direction(1, 1))));
+  };
+  parallelBlocks(stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t) {
+    CellTracer tracer(map);
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto tet = static_cast<Index>(t);
+      std::uint64_t next = cellBegin[t];
+      if (next == cellBegin[t + 1]) continue;
+      const TetSweep sweep(map.exact, tet, SweptGrid::Centers);
+      CenterOwner owner(map.topology, tet);
+      for (const SweptLine& line : lines.of(tet)) {
+        const auto [first, count] = owner.owned(line);
+        for (std::uint32_t i = first; i < first + count; ++i) {
+          cells[next++] = enter(tracer, tet, sweep.point(line, i), line.simplex(i));
+        }
+      }
+    }
   });
   return cells;
 }

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <sweep/tet_positions.hpp>
+
 #include <extract/hex_vertices.hpp>
 
 namespace hexhex {
@@ -256,7 +258,8 @@ class Numbering {
     if (result_.lines.empty(tet)) return;
     std::array<Counter, 16> counters{};
     Index incidence = result_.incidenceBegin[tet];
-    const TetPlanes planes(map_.exact.corners[tet], map_.exact.unit);
+    const TetPositions positions(map_, tet, gridBox(map_.exact.corners[tet], map_.exact.unit),
+                                 result_.lines.sweeps[tet].axes);
     result_.lines.forEachPoint(tet, [&](const GridPoint& z, CornerMask simplex, Index point) {
       Counter& counter = counters[simplex];
       if (!counter.known) {
@@ -275,7 +278,7 @@ class Numbering {
       result_.lines.vertices[point] = vertex;
       if (!counter.owned) return;
       result_.generatorOf[vertex] = counter.generator;
-      result_.positions[vertex] = position(tet, simplex, planes, z);
+      result_.positions[vertex] = positions.at(simplex, z);
     });
   }
 
@@ -291,54 +294,6 @@ class Numbering {
         result_.lines.vertices[point] = result_.lines.find(owner, toOwner(z));
       });
     }
-  }
-
-  /// The preimage of a grid point: exact at vertices, on the segment at edges, otherwise
-  /// barycentric.
-  [[nodiscard]] Vec3 position(Index tet, CornerMask simplex, const TetPlanes& planes,
-                              const GridPoint& z) const {
-    std::array<double, 4> weights{};
-    switch (dimension(simplex)) {
-      case 0:
-        weights[firstCorner(simplex)] = 1;
-        break;
-      case 1:
-        weights = edgeWeights(tet, simplex, z);
-        break;
-      default:
-        weights = planes.weights(z);
-        for (int i = 0; i < 4; ++i) {
-          if (!contains(simplex, i)) weights[static_cast<std::size_t>(i)] = 0;
-        }
-    }
-    const double sum = weights[0] + weights[1] + weights[2] + weights[3];
-    Vec3 p{};
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Vec3& corner = map_.input.view.points[map_.topology.tets[tet][i]];
-      const double weight = weights[i] / sum;
-      if (weight == 0) continue;
-      for (std::size_t k = 0; k < 3; ++k) p[k] += weight * corner[k];
-    }
-    return p;
-  }
-
-  /// Weights of a point of an edge from its largest extent: the same in every chart.
-  [[nodiscard]] std::array<double, 4> edgeWeights(Index tet, CornerMask edge,
-                                                  const GridPoint& z) const {
-    const std::size_t a = firstCorner(edge);
-    const std::size_t b = lastCorner(edge);
-    const LatticeTet& corners = map_.exact.corners[tet];
-    std::size_t axis = 0;
-    for (std::size_t k = 1; k < 3; ++k) {
-      if (std::abs(corners[b][k] - corners[a][k]) > std::abs(corners[b][axis] - corners[a][axis])) {
-        axis = k;
-      }
-    }
-    const std::int64_t at = z[axis] * map_.exact.unit;
-    std::array<double, 4> weights{};
-    weights[a] = std::abs(static_cast<double>(corners[b][axis] - at));
-    weights[b] = std::abs(static_cast<double>(at - corners[a][axis]));
-    return weights;
   }
 
   const PreparedMap& map_;

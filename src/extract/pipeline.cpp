@@ -49,13 +49,11 @@ class Extraction {
     {
       Stage stage(context_, "global connectivity");
       global = traceOpposites(map_, signs, vertices, local, stage);
-      vertices.lines = {};
-      signs = {};
     }
     HexMesh mesh;
     {
       Stage stage(context_, "cells");
-      mesh.cells = collectCells(vertices, local, global, stage);
+      mesh.cells = collectCells(map_, signs, vertices, local, global, stage);
       if (mesh.cells.size() != expectedCells_) throw MissingVertex{0};
       describeGenerators(map_, vertices, mesh, stage);
       count(vertices, local, global);

@@ -4,11 +4,15 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/hexex.hpp>
 #include <io/input_file.hpp>
+#include <io/line_writer.hpp>
 #include <io/output_file.hpp>
+#include <io/text_elements.hpp>
 #include <io/text_scanner.hpp>
+#include <io/token_index.hpp>
 
 namespace hexhex {
 namespace {
@@ -18,14 +22,22 @@ namespace {
 constexpr std::size_t kMinimumVertexBytes = 6;
 constexpr std::size_t kMinimumTetBytes = 32;
 
-// Elements between two reports of progress: a fraction of a millisecond's work.
-constexpr std::size_t kProgressGrain = 4096;
+// A coordinate or corner or parameter each.
+constexpr std::size_t kTokensOfVertex = 3;
+constexpr std::size_t kTokensOfTet = 16;
+
+void failIfAtEnd(TextScanner& scanner, std::size_t done, std::size_t count, const char* what) {
+  if (scanner.skipSpace()) return;
+  scanner.fail(ErrorCode::FileSyntax, "the file ends after " + std::to_string(done) + " of " +
+                                          std::to_string(count) + " " + what +
+                                          ": it is incomplete.");
+}
 
 /// Reads one file from top to bottom.
 class HexexReader {
  public:
   HexexReader(std::string_view text, const std::string& fileName, Stage& stage)
-      : scanner_(text, fileName), stage_(stage) {}
+      : scanner_(text, fileName), index_(text, stage), stage_(stage) {}
 
   TetMap read() {
     readPoints();
@@ -37,37 +49,31 @@ class HexexReader {
  private:
   void readPoints();
   void readTets();
-  void readCorners(std::size_t tet);
-  void readParameters(std::size_t tet);
+  void readPoint(TextScanner& scanner, std::size_t vertex);
+  void readCorners(TextScanner& scanner, std::size_t tet);
+  void readParameters(TextScanner& scanner, std::size_t tet);
   void skipTrailingSections();
   void skipWalls();
   void skipFeatures();
   void skipIndices(std::size_t count, const char* what);
-  void failIfAtEnd(std::size_t done, std::size_t count, const char* what);
 
   TextScanner scanner_;
+  TokenIndex index_;
   Stage& stage_;
   TetMap map_;
 };
 
-void HexexReader::failIfAtEnd(std::size_t done, std::size_t count, const char* what) {
-  if (scanner_.skipSpace()) return;
-  scanner_.fail(ErrorCode::FileSyntax, "the file ends after " + std::to_string(done) + " of " +
-                                           std::to_string(count) + " " + what +
-                                           ": it is incomplete.");
+void HexexReader::readPoints() {
+  map_.points.resize(scanner_.readCount("vertices", kMinimumVertexBytes));
+  readElements(scanner_, &index_, stage_, map_.points.size(), kTokensOfVertex,
+               [this](TextScanner& scanner, std::size_t i) { readPoint(scanner, i); });
 }
 
-void HexexReader::readPoints() {
-  const std::size_t count = scanner_.readCount("vertices", kMinimumVertexBytes);
-  map_.points.resize(count);
-  LoopProgress progress(stage_, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i % kProgressGrain == 0) progress.advance(std::min(kProgressGrain, count - i));
-    failIfAtEnd(i, count, "vertices");
-    for (double& coordinate : map_.points[i]) {
-      if (!scanner_.readNumber(coordinate)) {
-        scanner_.failNumber("a coordinate of vertex " + std::to_string(i));
-      }
+void HexexReader::readPoint(TextScanner& scanner, std::size_t vertex) {
+  failIfAtEnd(scanner, vertex, map_.points.size(), "vertices");
+  for (double& coordinate : map_.points[vertex]) {
+    if (!scanner.readNumber(coordinate)) {
+      scanner.failNumber("a coordinate of vertex " + std::to_string(vertex));
     }
   }
 }
@@ -76,38 +82,37 @@ void HexexReader::readTets() {
   const std::size_t count = scanner_.readCount("tets", kMinimumTetBytes);
   map_.tets.resize(count);
   map_.parameters.resize(count);
-  LoopProgress progress(stage_, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i % kProgressGrain == 0) progress.advance(std::min(kProgressGrain, count - i));
-    failIfAtEnd(i, count, "tets");
-    readCorners(i);
-    readParameters(i);
-  }
+  readElements(scanner_, &index_, stage_, count, kTokensOfTet,
+               [this](TextScanner& scanner, std::size_t i) {
+                 failIfAtEnd(scanner, i, map_.tets.size(), "tets");
+                 readCorners(scanner, i);
+                 readParameters(scanner, i);
+               });
 }
 
-void HexexReader::readCorners(std::size_t tet) {
+void HexexReader::readCorners(TextScanner& scanner, std::size_t tet) {
   const auto vertices = static_cast<std::int64_t>(map_.points.size());
   for (Index& corner : map_.tets[tet]) {
     std::int64_t vertex = 0;
-    if (!scanner_.readInteger(vertex)) {
-      scanner_.failInteger("a vertex of tet " + std::to_string(tet));
+    if (!scanner.readInteger(vertex)) {
+      scanner.failInteger("a vertex of tet " + std::to_string(tet));
     }
     if (vertex < 0 || vertex >= vertices) {
-      scanner_.fail(ErrorCode::IndexOutOfRange,
-                    "tet " + std::to_string(tet) + " names vertex " +
-                        std::string(scanner_.currentToken()) + ", but the " +
-                        std::to_string(vertices) + " vertices are numbered from 0.",
-                    Place{PlaceKind::Tet, tet});
+      scanner.fail(ErrorCode::IndexOutOfRange,
+                   "tet " + std::to_string(tet) + " names vertex " +
+                       std::string(scanner.currentToken()) + ", but the " +
+                       std::to_string(vertices) + " vertices are numbered from 0.",
+                   Place{PlaceKind::Tet, tet});
     }
     corner = static_cast<Index>(vertex);
   }
 }
 
-void HexexReader::readParameters(std::size_t tet) {
+void HexexReader::readParameters(TextScanner& scanner, std::size_t tet) {
   for (Vec3& corner : map_.parameters[tet]) {
     for (double& parameter : corner) {
-      if (!scanner_.readNumber(parameter)) {
-        scanner_.failNumber("a parameter of tet " + std::to_string(tet));
+      if (!scanner.readNumber(parameter)) {
+        scanner.failNumber("a parameter of tet " + std::to_string(tet));
       }
     }
   }
@@ -180,32 +185,47 @@ void requireWritable(const TetMap& map) {
 
 TetMap parseHexex(std::string_view text, const std::string& fileName, Context& context) {
   Stage stage(context, "read map");
-  return HexexReader(text, fileName, stage).read();
+  TetMap map;
+  withThreads(context.threads(), [&] { map = HexexReader(text, fileName, stage).read(); });
+  return map;
 }
 
 TetMap readHexex(const std::filesystem::path& file, Context& context) {
   Stage stage(context, "read map");
-  const Array<char> bytes = readWholeFile(file);
-  return HexexReader(asText(bytes), file.string(), stage).read();
+  TetMap map;
+  withThreads(context.threads(), [&] {
+    const Array<char> bytes = readWholeFile(file, stage);
+    map = HexexReader(asText(bytes), file.string(), stage).read();
+  });
+  return map;
 }
 
-void writeHexex(const TetMap& map, const std::filesystem::path& file) {
+void writeHexex(const TetMap& map, const std::filesystem::path& file, Context& context) {
+  Stage stage(context, "write map");
   requireWritable(map);
   OutputFile output(file);
+  LineWriter lines(output, context.threads());
+  LoopProgress progress(stage, map.points.size() + map.tets.size());
   output.write(map.points.size()).write('\n');
-  for (const Vec3& point : map.points) {
-    output.write(point[0]).write(' ').write(point[1]).write(' ').write(point[2]).write('\n');
-  }
+  lines.write(
+      map.points.size(), kTokensOfVertex * (kNumberRoom + 1),
+      [&map](char* place, std::size_t i) {
+        place = putNumbers(place, map.points[i]);
+        return put(place, '\n');
+      },
+      &progress);
   output.write(map.tets.size()).write('\n');
-  for (std::size_t i = 0; i < map.tets.size(); ++i) {
-    const Tet& tet = map.tets[i];
-    output.write(tet[0]);
-    for (const std::size_t corner : {1U, 2U, 3U}) output.write(' ').write(tet[corner]);
-    for (const Vec3& corner : map.parameters[i]) {
-      for (const double parameter : corner) output.write(' ').write(parameter);
-    }
-    output.write('\n');
-  }
+  lines.write(
+      map.tets.size(), kTokensOfTet * (kNumberRoom + 1),
+      [&map](char* place, std::size_t i) {
+        place = putNumbers(place, map.tets[i]);
+        for (const Vec3& corner : map.parameters[i]) {
+          place = put(place, ' ');
+          place = putNumbers(place, corner);
+        }
+        return put(place, '\n');
+      },
+      &progress);
   output.commit();
 }
 

@@ -28,6 +28,6 @@ namespace hexhex {
 
 /// Writes numbers with the fewest digits (at most 17) that read back to the same double.
 /// @throws Error FileWrite; InvalidArgument if arrays disagree; NotFinite
-void writeHexex(const TetMap& map, const std::filesystem::path& file);
+void writeHexex(const TetMap& map, const std::filesystem::path& file, Context& context);
 
 }  // namespace hexhex

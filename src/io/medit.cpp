@@ -1,14 +1,20 @@
-#include <algorithm>
 #include <cstdint>
+#include <optional>
+#include <span>
 
 #include <hexhex/error.hpp>
 
+#include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/boundary_faces.hpp>
 #include <io/input_file.hpp>
+#include <io/line_writer.hpp>
 #include <io/medit.hpp>
+#include <io/medit_text.hpp>
 #include <io/output_file.hpp>
+#include <io/text_elements.hpp>
 #include <io/text_scanner.hpp>
-#include <mesh/hex_topology.hpp>
+#include <io/token_index.hpp>
 
 namespace hexhex {
 namespace {
@@ -17,14 +23,29 @@ namespace {
 constexpr std::size_t kMinimumVertexBytes = 8;
 constexpr std::size_t kMinimumHexBytes = 18;
 
-// Elements between two reports of progress: a fraction of a millisecond's work.
-constexpr std::size_t kProgressGrain = 4096;
+// Coordinates or corners, and a reference.
+constexpr std::size_t kTokensOfVertex = 4;
+constexpr std::size_t kTokensOfHexahedron = 9;
+
+void failIfAtEnd(TextScanner& scanner, std::size_t done, std::size_t count, const char* what) {
+  if (scanner.skipSpace()) return;
+  scanner.fail(ErrorCode::FileSyntax, "the file ends after " + std::to_string(done) + " of " +
+                                          std::to_string(count) + " " + what +
+                                          ": it is incomplete.");
+}
+
+void readReference(TextScanner& scanner, const char* what) {
+  std::int64_t reference = 0;
+  if (!scanner.readInteger(reference)) scanner.failInteger(what);
+}
 
 /// Reads one file from top to bottom.
 class MeditReader {
  public:
   MeditReader(std::string_view text, const std::string& fileName, Stage& stage)
-      : scanner_(text, fileName, TextScanner::Comments::Hash), stage_(stage) {}
+      : scanner_(text, fileName, TextScanner::Comments::Hash), stage_(stage) {
+    if (text.find('#') == std::string_view::npos) index_.emplace(text, stage);
+  }
 
   HexMesh read();
 
@@ -33,13 +54,14 @@ class MeditReader {
   void readDimension();
   void readVertices();
   void readHexahedra();
-  void readHexahedron(std::size_t index);
-  void readReference(const char* what);
+  void readVertex(TextScanner& scanner, std::size_t index);
+  void readHexahedron(TextScanner& scanner, std::size_t index);
   void skipSection();
   void failIfRepeated(bool present, const char* keyword);
-  void failIfAtEnd(std::size_t done, std::size_t count, const char* what);
+  [[nodiscard]] const TokenIndex* index() const { return index_ ? &*index_ : nullptr; }
 
   TextScanner scanner_;
+  std::optional<TokenIndex> index_;  ///< only for a text without comments
   Stage& stage_;
   HexMesh mesh_;
   bool hasVertices_ = false;
@@ -90,34 +112,22 @@ void MeditReader::failIfRepeated(bool present, const char* keyword) {
                 "the section " + std::string(keyword) + " occurs a second time.");
 }
 
-void MeditReader::failIfAtEnd(std::size_t done, std::size_t count, const char* what) {
-  if (scanner_.skipSpace()) return;
-  scanner_.fail(ErrorCode::FileSyntax, "the file ends after " + std::to_string(done) + " of " +
-                                           std::to_string(count) + " " + what +
-                                           ": it is incomplete.");
-}
-
-void MeditReader::readReference(const char* what) {
-  std::int64_t reference = 0;
-  if (!scanner_.readInteger(reference)) scanner_.failInteger(what);
-}
-
 void MeditReader::readVertices() {
   failIfRepeated(hasVertices_, "Vertices");
   hasVertices_ = true;
-  const std::size_t count = scanner_.readCount("vertices", kMinimumVertexBytes);
-  mesh_.points.resize(count);
-  LoopProgress progress(stage_, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i % kProgressGrain == 0) progress.advance(std::min(kProgressGrain, count - i));
-    failIfAtEnd(i, count, "vertices");
-    for (double& coordinate : mesh_.points[i]) {
-      if (!scanner_.readNumber(coordinate)) {
-        scanner_.failNumber("a coordinate of vertex " + std::to_string(i + 1));
-      }
+  mesh_.points.resize(scanner_.readCount("vertices", kMinimumVertexBytes));
+  readElements(scanner_, index(), stage_, mesh_.points.size(), kTokensOfVertex,
+               [this](TextScanner& scanner, std::size_t i) { readVertex(scanner, i); });
+}
+
+void MeditReader::readVertex(TextScanner& scanner, std::size_t index) {
+  failIfAtEnd(scanner, index, mesh_.points.size(), "vertices");
+  for (double& coordinate : mesh_.points[index]) {
+    if (!scanner.readNumber(coordinate)) {
+      scanner.failNumber("a coordinate of vertex " + std::to_string(index + 1));
     }
-    readReference("the reference of a vertex");
   }
+  readReference(scanner, "the reference of a vertex");
 }
 
 void MeditReader::readHexahedra() {
@@ -127,33 +137,29 @@ void MeditReader::readHexahedra() {
     scanner_.fail(ErrorCode::FileUnsupported,
                   "the section Hexahedra stands before the section Vertices; exchange them.");
   }
-  const std::size_t count = scanner_.readCount("hexahedra", kMinimumHexBytes);
-  mesh_.cells.resize(count);
-  LoopProgress progress(stage_, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i % kProgressGrain == 0) progress.advance(std::min(kProgressGrain, count - i));
-    failIfAtEnd(i, count, "hexahedra");
-    readHexahedron(i);
-  }
+  mesh_.cells.resize(scanner_.readCount("hexahedra", kMinimumHexBytes));
+  readElements(scanner_, index(), stage_, mesh_.cells.size(), kTokensOfHexahedron,
+               [this](TextScanner& scanner, std::size_t i) { readHexahedron(scanner, i); });
 }
 
-void MeditReader::readHexahedron(std::size_t index) {
+void MeditReader::readHexahedron(TextScanner& scanner, std::size_t index) {
+  failIfAtEnd(scanner, index, mesh_.cells.size(), "hexahedra");
   const auto vertices = static_cast<std::int64_t>(mesh_.points.size());
   for (Index& corner : mesh_.cells[index]) {
     std::int64_t vertex = 0;
-    if (!scanner_.readInteger(vertex)) {
-      scanner_.failInteger("a vertex of hexahedron " + std::to_string(index + 1));
+    if (!scanner.readInteger(vertex)) {
+      scanner.failInteger("a vertex of hexahedron " + std::to_string(index + 1));
     }
     if (vertex < 1 || vertex > vertices) {
-      scanner_.fail(ErrorCode::IndexOutOfRange,
-                    "hexahedron " + std::to_string(index + 1) + " names vertex " +
-                        std::string(scanner_.currentToken()) + ", but the " +
-                        std::to_string(vertices) + " vertices are numbered from 1.",
-                    Place{PlaceKind::Cell, index});
+      scanner.fail(ErrorCode::IndexOutOfRange,
+                   "hexahedron " + std::to_string(index + 1) + " names vertex " +
+                       std::string(scanner.currentToken()) + ", but the " +
+                       std::to_string(vertices) + " vertices are numbered from 1.",
+                   Place{PlaceKind::Cell, index});
     }
     corner = static_cast<Index>(vertex - 1);
   }
-  readReference("the reference of a hexahedron");
+  readReference(scanner, "the reference of a hexahedron");
 }
 
 /// Skips everything up to the next keyword, which is the next token that begins with a letter.
@@ -162,49 +168,39 @@ void MeditReader::skipSection() {
   while (scanner_.skipSpace() && !isLetter(scanner_.peekToken().front())) scanner_.readToken();
 }
 
-/// Writes one element: 1-based vertices, then the reference.
-template <std::size_t corners>
-void writeElement(OutputFile& output, const std::array<Index, corners>& vertices) {
-  // 64 bits: 32 would wrap for the last vertex of the largest mesh.
-  for (const Index vertex : vertices) output.write(std::uint64_t{vertex} + 1).write(' ');
-  output.write("1\n");
-}
-
 }  // namespace
 
 HexMesh parseMedit(std::string_view text, const std::string& fileName, Context& context) {
   Stage stage(context, "read mesh");
-  return MeditReader(text, fileName, stage).read();
+  HexMesh mesh;
+  withThreads(context.threads(), [&] { mesh = MeditReader(text, fileName, stage).read(); });
+  return mesh;
 }
 
 HexMesh readMedit(const std::filesystem::path& file, Context& context) {
   Stage stage(context, "read mesh");
-  const Array<char> bytes = readWholeFile(file);
-  return MeditReader(asText(bytes), file.string(), stage).read();
+  HexMesh mesh;
+  withThreads(context.threads(), [&] {
+    const Array<char> bytes = readWholeFile(file, stage);
+    mesh = MeditReader(asText(bytes), file.string(), stage).read();
+  });
+  return mesh;
 }
 
-void writeMedit(const HexMesh& mesh, const std::filesystem::path& file, Context& context) {
+void writeMedit(const HexMesh& mesh, const std::filesystem::path& file,
+                const WriteOptions& /*options*/, Context& context) {
   Stage stage(context, "write mesh");
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  const Array<Quad> quads = boundaryQuads(mesh, stage);
+  Array<Quad> quads;
+  withThreads(context.threads(), [&] { quads = findBoundaryQuads(mesh, stage); });
+  LineWriter lines(output, context.threads());
   LoopProgress progress(stage, mesh.points.size() + quads.size() + mesh.cells.size());
-  const auto forEach = [&progress](const auto& elements, const auto& write) {
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-      if (i % kProgressGrain == 0) progress.advance(std::min(kProgressGrain, elements.size() - i));
-      write(elements[i]);
-    }
-  };
-
-  output.write("MeshVersionFormatted 2\nDimension 3\n");
-  output.write("Vertices\n").write(mesh.points.size()).write('\n');
-  forEach(mesh.points, [&output](const Vec3& point) {
-    for (const double coordinate : point) output.write(coordinate).write(' ');
-    output.write("0\n");
-  });
+  output.write(kMeditHead).write(mesh.points.size()).write('\n');
+  writeMeditVertices(lines, mesh.points, &progress);
   output.write("Quadrilaterals\n").write(quads.size()).write('\n');
-  forEach(quads, [&output](const Quad& quad) { writeElement(output, quad); });
+  writeMeditElements(lines, std::span<const Quad>(quads), &progress);
   output.write("Hexahedra\n").write(mesh.cells.size()).write('\n');
-  forEach(mesh.cells, [&output](const Hex& cell) { writeElement(output, cell); });
+  writeMeditElements(lines, std::span<const Hex>(mesh.cells), &progress);
   output.write("End\n");
   output.commit();
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <hexhex/context.hpp>
+#include <hexhex/io.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex {
@@ -23,6 +24,7 @@ namespace hexhex {
 /// Writes the sections Vertices, Quadrilaterals (the boundary, facing outwards), Hexahedra. Numbers
 /// have the fewest digits (at most 17) that read back to the same double.
 /// @throws Error FileWrite
-void writeMedit(const HexMesh& mesh, const std::filesystem::path& file, Context& context);
+void writeMedit(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+                Context& context);
 
 }  // namespace hexhex

@@ -89,6 +89,18 @@ void OutputFile::writeThrough(const char* bytes, std::size_t size) {
   }
 }
 
+void OutputFile::writeBytesAt(std::uint64_t position, const void* bytes, std::size_t size) const {
+  const char* data = static_cast<const char*>(bytes);
+  while (size > 0) {
+    const ssize_t written = ::pwrite(descriptor_, data, size, static_cast<off_t>(position));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("it cannot be written completely", errno);
+    data += written;
+    position += static_cast<std::uint64_t>(written);
+    size -= static_cast<std::size_t>(written);
+  }
+}
+
 void OutputFile::commit() {
   flush();
   // Some file systems report a full disk only here.

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -40,6 +41,12 @@ class OutputFile {
 
   /// Writes memory as it is.
   void writeBytes(const void* bytes, std::size_t size);
+
+  /// Whether the target can be written at any position: not if it is a device or a pipe.
+  [[nodiscard]] bool hasPositions() const noexcept { return !temporary_.empty(); }
+  /// Writes memory at a position, whatever is written elsewhere in whatever order; only if
+  /// hasPositions(). The buffered functions above go on where they were. Thread-safe.
+  void writeBytesAt(std::uint64_t position, const void* bytes, std::size_t size) const;
 
   /// Writes what is buffered, closes the file, and gives it its name.
   void commit();

@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 #include <string>
 
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 
+#include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/finite_points.hpp>
 #include <io/hexex.hpp>
 #include <io/medit.hpp>
 #include <io/registry.hpp>
@@ -56,27 +57,30 @@ const Format& findFormat(std::span<const Format> formats, const std::filesystem:
                   "; hexahedral meshes: " + listExtensions<HexMeshFormat>(kHexMeshFormats) + ".");
 }
 
+/// Refuses an optional array that is there but has another size than what it describes.
+void requireSize(std::size_t size, std::size_t expected, const char* elements, const char* values) {
+  if (size == 0 || size == expected) return;
+  throw Error(ErrorCode::InvalidArgument, "The mesh has " + std::to_string(expected) + " " +
+                                              elements + " but " + std::to_string(size) + " " +
+                                              values + ".");
+}
+
 /// Refuses meshes that would crash a writer or could not be read back.
-void requireWritable(const HexMesh& mesh, Context& context) {
-  Stage stage(context, "write mesh");
+void requireWritable(const HexMesh& mesh, const WriteOptions& options, Stage& stage) {
   const std::size_t cell = firstCellOutOfRange(mesh, stage);
   if (cell < mesh.cells.size()) {
     throw Error(ErrorCode::InvalidArgument,
                 "A corner of cell " + std::to_string(cell) + " is not a vertex of the mesh.",
                 Place{PlaceKind::Cell, cell});
   }
-  if (!mesh.generatorCorners.empty() && mesh.generatorCorners.size() != mesh.points.size()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "The mesh has " + std::to_string(mesh.points.size()) + " vertices but " +
-                    std::to_string(mesh.generatorCorners.size()) + " generators.");
-  }
-  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-    const Vec3& p = mesh.points[i];
-    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) continue;
-    throw Error(ErrorCode::NotFinite,
-                "A coordinate of vertex " + std::to_string(i) + " is not finite.",
-                Place{PlaceKind::Vertex, i});
-  }
+  requireSize(mesh.generatorCorners.size(), mesh.points.size(), "vertices", "generators");
+  requireSize(mesh.generatorTet.size(), mesh.points.size(), "vertices", "generators");
+  requireSize(options.scaledJacobians.size(), mesh.cells.size(), "cells", "scaled Jacobians");
+  const std::size_t vertex = firstNotFinite(mesh.points, stage);
+  if (vertex == mesh.points.size()) return;
+  throw Error(ErrorCode::NotFinite,
+              "A coordinate of vertex " + std::to_string(vertex) + " is not finite.",
+              Place{PlaceKind::Vertex, vertex});
 }
 
 }  // namespace
@@ -98,8 +102,13 @@ TetMap readMap(const std::filesystem::path& file) {
   return readMap(file, context);
 }
 
+void writeMap(const TetMap& map, const std::filesystem::path& file, Context& context) {
+  mapFormat(file).write(map, file, context);
+}
+
 void writeMap(const TetMap& map, const std::filesystem::path& file) {
-  mapFormat(file).write(map, file);
+  Context context;
+  writeMap(map, file, context);
 }
 
 HexMesh readHexMesh(const std::filesystem::path& file, Context& context) {
@@ -111,10 +120,18 @@ HexMesh readHexMesh(const std::filesystem::path& file) {
   return readHexMesh(file, context);
 }
 
-void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file, Context& context) {
+void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
+                  const WriteOptions& options, Context& context) {
   const HexMeshFormat& format = hexMeshFormat(file);
-  requireWritable(mesh, context);
-  format.write(mesh, file, context);
+  {
+    Stage stage(context, "write mesh");
+    withThreads(context.threads(), [&] { requireWritable(mesh, options, stage); });
+  }
+  format.write(mesh, file, options, context);
+}
+
+void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file, Context& context) {
+  writeHexMesh(mesh, file, {}, context);
 }
 
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file) {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include <hexhex/context.hpp>
+#include <hexhex/io.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex {
@@ -13,13 +14,14 @@ namespace hexhex {
 struct MapFormat {
   std::string_view extension;  ///< in lower case, with the dot
   TetMap (*read)(const std::filesystem::path& file, Context& context);
-  void (*write)(const TetMap& map, const std::filesystem::path& file);
+  void (*write)(const TetMap& map, const std::filesystem::path& file, Context& context);
 };
 
 struct HexMeshFormat {
   std::string_view extension;  ///< in lower case, with the dot
   HexMesh (*read)(const std::filesystem::path& file, Context& context);
-  void (*write)(const HexMesh& mesh, const std::filesystem::path& file, Context& context);
+  void (*write)(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+                Context& context);
 };
 
 /// The format of a file by its extension.

@@ -11,6 +11,8 @@
 
 #include <hexhex/error.hpp>
 
+#include <io/token_index.hpp>
+
 namespace hexhex {
 
 /// Reads tokens one after the other. Functions that read return false, and stay before the token,
@@ -35,6 +37,11 @@ class TextScanner {
 
   /// Goes on from the i-th character of the text.
   void moveTo(std::size_t i) { position_ = token_ = begin_ + i; }
+  /// How many characters of the text are behind.
+  [[nodiscard]] std::size_t position() const noexcept {
+    return static_cast<std::size_t>(position_ - begin_);
+  }
+  [[nodiscard]] std::string_view text() const noexcept { return {begin_, end_}; }
 
   /// Moves to the next token; false at the end of the text.
   bool skipSpace() {
@@ -103,7 +110,6 @@ class TextScanner {
   [[noreturn]] void failInteger(std::string_view what) const;
 
  private:
-  static bool isSpace(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
   [[nodiscard]] bool isComment(char c) const { return c == '#' && comments_ == Comments::Hash; }
   [[nodiscard]] bool endsToken(const char* place) const {
     return place == end_ || isSpace(*place) || isComment(*place);

@@ -7,6 +7,8 @@
 #include <string_view>
 
 #include <hexhex/context.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex {
@@ -21,10 +23,18 @@ namespace hexhex {
 [[nodiscard]] HexMesh parseVtu(std::string_view text, const std::string& fileName,
                                Context& context);
 
+/// Whether a file can be read in pieces: its data are appended, and it is no pipe.
+[[nodiscard]] bool canReadVtuInPieces(const std::filesystem::path& file);
+
+/// Reads the same as readVtu(), but hands it over in pieces, with little memory. Arrays
+/// generator_tet and generator_corners are handed over, too.
+void readVtuTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
+
 /// Writes points (Float64), hexahedra, the cell array `scaled_jacobian` (Float64) and, if the mesh
-/// knows where its vertices came from, the point array `generator_kind` (UInt8: 0 vertex, 1 edge,
-/// 2 face, 3 cell).
+/// knows where its vertices came from, the point arrays `generator_kind` (UInt8: 0 vertex, 1 edge,
+/// 2 face, 3 cell), `generator_tet` (UInt32) and `generator_corners` (UInt8), as in HexMesh.
 /// @throws Error FileWrite
-void writeVtu(const HexMesh& mesh, const std::filesystem::path& file, Context& context);
+void writeVtu(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+              Context& context);
 
 }  // namespace hexhex

@@ -1,161 +1,111 @@
-// The writing half of vtu.hpp. Arrays are described first, in a table; the XML head and the data
-// behind it both follow from that table, so they cannot disagree.
+// The writing half of vtu.hpp: one thread, straight from the mesh's arrays. That is as fast as the
+// file system takes bytes, which lets one thread at a time write to a file.
 #include <algorithm>
-#include <bit>
 #include <cstdint>
-#include <functional>
-#include <limits>
-#include <string>
-#include <vector>
+#include <span>
 
 #include <hexhex/quality.hpp>
 
 #include <base/stage.hpp>
 #include <io/output_file.hpp>
 #include <io/vtu.hpp>
+#include <io/vtu_content.hpp>
+#include <io/vtu_layout.hpp>
 
 namespace hexhex {
 namespace {
 
-constexpr std::uint8_t kVtkHexahedron = 12;
-constexpr std::size_t kCornersPerCell = 8;
-
 // What is written between two looks at the caller's wish to cancel: some milliseconds' work.
 constexpr std::size_t kSliceBytes = std::size_t{1} << 22;
 
-/// One array of the file.
-struct DataArray {
-  std::string type;  ///< VTK's name of the number type
-  std::string name;
-  std::size_t components = 1;
-  std::uint64_t bytes = 0;
-  std::function<void(OutputFile&, LoopProgress&)> write;
-};
+/// Writes the arrays of one mesh.
+class ArrayWriter {
+ public:
+  ArrayWriter(OutputFile& output, const HexMesh& mesh, std::span<const double> quality,
+              const VtuLayout& layout, Stage& stage)
+      : output_(output),
+        mesh_(mesh),
+        quality_(quality),
+        layout_(layout),
+        progress_(stage, layout.tailPosition()) {}
 
-/// One of the four parts of a piece, e.g. "PointData".
-struct Section {
-  std::string name;
-  std::vector<DataArray> arrays;
-};
-
-/// An array that lies in memory exactly as it goes into the file.
-template <class T>
-DataArray fromMemory(std::string type, std::string name, std::size_t components,
-                     const Array<T>& values) {
-  const auto* const data = reinterpret_cast<const char*>(values.data());
-  const std::size_t bytes = values.size() * sizeof(T);
-  return {std::move(type), std::move(name), components, bytes,
-          [data, bytes](OutputFile& output, LoopProgress& progress) {
-            for (std::size_t begin = 0; begin < bytes; begin += kSliceBytes) {
-              const std::size_t size = std::min(kSliceBytes, bytes - begin);
-              output.writeBytes(data + begin, size);
-              progress.advance(size);
-            }
-          }};
-}
-
-/// An array whose i-th number is computed while it is written.
-template <class T, class F>
-DataArray computed(std::string type, std::string name, std::size_t count, const F& valueOf) {
-  return {std::move(type), std::move(name), 1, count * sizeof(T),
-          [count, valueOf](OutputFile& output, LoopProgress& progress) {
-            for (std::size_t i = 0; i < count; ++i) {
-              const T value = static_cast<T>(valueOf(i));
-              output.writeBytes(&value, sizeof(T));
-              if (i % kSliceBytes == 0) progress.advance(0);
-            }
-            progress.advance(count * sizeof(T));
-          }};
-}
-
-/// An array of integers: 32-bit if they fit, since every reader takes those.
-template <class F>
-DataArray computedIntegers(std::string name, std::size_t count, std::uint64_t largest,
-                           const F& valueOf) {
-  if (largest <= static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max())) {
-    return computed<std::int32_t>("Int32", std::move(name), count, valueOf);
-  }
-  return computed<std::int64_t>("Int64", std::move(name), count, valueOf);
-}
-
-Section cellsSection(const HexMesh& mesh) {
-  const std::size_t cells = mesh.cells.size();
-  const std::size_t corners = cells * kCornersPerCell;
-  // Vertex indices that fit in 31 bits have the same bytes with and without a sign.
-  DataArray connectivity =
-      mesh.points.size() <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())
-          ? fromMemory("Int32", "connectivity", 1, mesh.cells)
-          : computed<std::int64_t>("Int64", "connectivity", corners, [&mesh](std::size_t i) {
-              return mesh.cells[i / kCornersPerCell][i % kCornersPerCell];
-            });
-  return {"Cells",
-          {std::move(connectivity),
-           computedIntegers("offsets", cells, corners,
-                            [](std::size_t i) { return (i + 1) * kCornersPerCell; }),
-           computed<std::uint8_t>("UInt8", "types", cells,
-                                  [](std::size_t /*cell*/) { return kVtkHexahedron; })}};
-}
-
-std::vector<Section> describe(const HexMesh& mesh, const Array<double>& quality) {
-  Section pointData{"PointData", {}};
-  if (!mesh.generatorCorners.empty()) {
-    pointData.arrays.push_back(computed<std::uint8_t>(
-        "UInt8", "generator_kind", mesh.points.size(), [&mesh](std::size_t v) {
-          return static_cast<std::uint8_t>(generatorKind(mesh.generatorCorners[v]));
-        }));
-  }
-  return {std::move(pointData),
-          {"CellData", {fromMemory("Float64", "scaled_jacobian", 1, quality)}},
-          {"Points", {fromMemory("Float64", "Points", 3, mesh.points)}},
-          cellsSection(mesh)};
-}
-
-/// The head, up to where the data begin.
-std::string xmlHead(const HexMesh& mesh, const std::vector<Section>& sections) {
-  const bool little = std::endian::native == std::endian::little;
-  std::string xml = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\"";
-  xml += std::string(" byte_order=\"") + (little ? "LittleEndian" : "BigEndian") + "\"";
-  xml += " header_type=\"UInt64\">\n  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" +
-         std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
-         std::to_string(mesh.cells.size()) + "\">\n";
-  std::uint64_t offset = 0;
-  for (const Section& section : sections) {
-    xml += "      <" + section.name + ">\n";
-    for (const DataArray& array : section.arrays) {
-      // Left out where it is 1: some readers would make a matrix with one column of it.
-      const std::string components =
-          array.components == 1
-              ? ""
-              : " NumberOfComponents=\"" + std::to_string(array.components) + "\"";
-      xml += "        <DataArray type=\"" + array.type + "\" Name=\"" + array.name + "\"" +
-             components + " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
-      offset += sizeof(array.bytes) + array.bytes;
+  void write(const VtuArray& array) {
+    output_.writeBytes(&array.bytes, sizeof(array.bytes));
+    switch (array.content) {
+      case VtuContent::GeneratorTet:
+        return fromMemory(mesh_.generatorTet.data(), array.bytes);
+      case VtuContent::GeneratorCorners:
+        return fromMemory(mesh_.generatorCorners.data(), array.bytes);
+      case VtuContent::ScaledJacobian:
+        return fromMemory(quality_.data(), array.bytes);
+      case VtuContent::Points:
+        return fromMemory(mesh_.points.data(), array.bytes);
+      case VtuContent::GeneratorKind:
+      case VtuContent::Connectivity:
+      case VtuContent::Offsets:
+      case VtuContent::Types:
+        computed(array);
     }
-    xml += "      </" + section.name + ">\n";
   }
-  return xml + "    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n    _";
-}
+
+ private:
+  void fromMemory(const void* values, std::uint64_t bytes) {
+    const char* const data = static_cast<const char*>(values);
+    for (std::uint64_t begin = 0; begin < bytes; begin += kSliceBytes) {
+      const std::size_t size = std::min<std::uint64_t>(kSliceBytes, bytes - begin);
+      output_.writeBytes(data + begin, size);
+      progress_.advance(size);
+    }
+  }
+
+  void computed(const VtuArray& array) {
+    const bool ofPoints = array.content == VtuContent::GeneratorKind;
+    const std::size_t count = ofPoints ? mesh_.points.size() : mesh_.cells.size();
+    if (count == 0) return;
+    const std::size_t bytesEach = array.bytes / count;
+    const std::size_t slice = kSliceBytes / bytesEach;
+    for (std::size_t begin = 0; begin < count; begin += slice) {
+      const std::size_t size = std::min(slice, count - begin);
+      writeSlice(array.content, begin, size);
+      progress_.advance(size * bytesEach);
+    }
+  }
+
+  void writeSlice(VtuContent content, std::size_t begin, std::size_t size) {
+    if (content == VtuContent::GeneratorKind) {
+      writeGeneratorKinds(output_, std::span(mesh_.generatorCorners).subspan(begin, size));
+    } else if (content == VtuContent::Connectivity) {
+      writeConnectivity(output_, std::span<const Hex>(mesh_.cells).subspan(begin, size),
+                        layout_.wideConnectivity());
+    } else if (content == VtuContent::Offsets) {
+      writeOffsets(output_, begin, size, layout_.wideOffsets());
+    } else {
+      writeTypes(output_, size);
+    }
+  }
+
+  OutputFile& output_;
+  const HexMesh& mesh_;
+  std::span<const double> quality_;
+  const VtuLayout& layout_;
+  LoopProgress progress_;
+};
 
 }  // namespace
 
-void writeVtu(const HexMesh& mesh, const std::filesystem::path& file, Context& context) {
+void writeVtu(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+              Context& context) {
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  const Array<double> quality = scaledJacobians(mesh, context);
+  Array<double> computedQuality;
+  std::span<const double> quality = options.scaledJacobians;
+  if (quality.empty()) quality = computedQuality = scaledJacobians(mesh, context);
   Stage stage(context, "write mesh");
-  const std::vector<Section> sections = describe(mesh, quality);
-  std::uint64_t total = 0;
-  for (const Section& section : sections) {
-    for (const DataArray& array : section.arrays) total += array.bytes;
-  }
-  LoopProgress progress(stage, total);
-  output.write(xmlHead(mesh, sections));
-  for (const Section& section : sections) {
-    for (const DataArray& array : section.arrays) {
-      output.writeBytes(&array.bytes, sizeof(array.bytes));
-      array.write(output, progress);
-    }
-  }
-  output.write("\n  </AppendedData>\n</VTKFile>\n");
+  const VtuLayout layout({mesh.points.size(), mesh.cells.size(), !mesh.generatorTet.empty(),
+                          !mesh.generatorCorners.empty(), true});
+  ArrayWriter writer(output, mesh, quality, layout, stage);
+  output.write(layout.head());
+  for (const VtuArray& array : layout.arrays()) writer.write(array);
+  output.write(VtuLayout::tail());
   output.commit();
 }
 

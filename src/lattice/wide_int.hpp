@@ -15,14 +15,15 @@ __extension__ using UInt128 = unsigned __int128;
 class Int192 {
  public:
   constexpr void addProduct(Int128 a, std::int64_t b) noexcept {
-    const bool negative = (a < 0) != (b < 0);
-    const UInt128 magnitudeA = a < 0 ? -static_cast<UInt128>(a) : static_cast<UInt128>(a);
-    const std::uint64_t magnitudeB =
-        b < 0 ? -static_cast<std::uint64_t>(b) : static_cast<std::uint64_t>(b);
-    const UInt128 low = static_cast<UInt128>(static_cast<std::uint64_t>(magnitudeA)) * magnitudeB;
-    const UInt128 high = (magnitudeA >> 64) * magnitudeB + (low >> 64);
-    const Int192 product(static_cast<std::uint64_t>(low), high);
-    *this += negative ? -product : product;
+    // a = high * 2^64 + low, high signed and low not; low * b stays below 2^127.
+    const auto low = static_cast<std::uint64_t>(a);
+    const auto high = static_cast<std::int64_t>(a >> 64);
+    UInt128 lowProduct = static_cast<UInt128>(low) * static_cast<std::uint64_t>(b);
+    // As an unsigned factor, a negative b was 2^64 too large.
+    if (b < 0) lowProduct -= static_cast<UInt128>(low) << 64;
+    const Int128 carried = static_cast<Int128>(lowProduct) >> 64;
+    const Int128 highProduct = static_cast<Int128>(high) * b + carried;
+    *this += Int192(static_cast<std::uint64_t>(lowProduct), static_cast<UInt128>(highProduct));
   }
 
   constexpr Int192() = default;

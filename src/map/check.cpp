@@ -12,7 +12,7 @@ void countElements(const TetTopology& topology, CheckReport& report) {
   report.innerFaces = (4 * topology.tetCount() - report.boundaryFaces) / 2;
   report.faces = report.innerFaces + report.boundaryFaces;
   for (Index v = 0; v < topology.pointCount; ++v) {
-    report.isolatedVertices += topology.star(v).empty() ? 1 : 0;
+    report.isolatedVertices += topology.isIsolated(v) ? 1 : 0;
   }
 }
 
@@ -34,8 +34,7 @@ CheckReport check(const TetMapView& map, const CheckOptions& options, Context& c
   report.tets = map.tets.size();
   withThreads(context.threads(), [&] {
     DefectCollector defects;
-    const PreparedMap prepared =
-        prepareMap(map, options.tolerance, options.scale, context, defects);
+    PreparedMap prepared = prepareMap(map, options.tolerance, options.scale, context, defects);
     Stage stage(context, "measures");
     report.defects = defects.defects();
     report.mirrored = prepared.input.mirrored;
@@ -43,13 +42,14 @@ CheckReport check(const TetMapView& map, const CheckOptions& options, Context& c
     report.tetsInvertedInSpace = prepared.input.tetsInvertedInSpace;
     // What a defect kept from being computed stays empty, and is counted as nothing.
     if (prepared.singularities.degree.empty()) return;
+    addEdges(prepared.topology, stage);
     countElements(prepared.topology, report);
     report.chartJumps = prepared.exact.transitions.jumps;
     report.maxTransitionResidual = prepared.exact.transitions.maxResidual;
     report.maxDisplacement = prepared.exact.maxDisplacement;
     countSingularities(prepared.singularities, report);
     report.boundaryGenus = boundaryGenus(prepared.topology);
-    if (report.valid()) report.expected = computeExpectation(prepared, options.scale, stage);
+    if (report.valid()) report.expected = computeExpectation(prepared, options.scale);
   });
   return report;
 }

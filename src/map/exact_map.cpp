@@ -6,12 +6,15 @@
 
 #include <base/vector3.hpp>
 #include <map/exact_map.hpp>
+#include <map/vertex_star.hpp>
 
 namespace hexhex {
 
 namespace {
 
 constexpr std::size_t kGrain = 1024;
+/// Most vertices are plain, and a special one takes long.
+constexpr std::size_t kVertexGrain = 128;
 
 /// Unscaled lattice coordinates stay below 2^52 and scaled ones below 2^60, which the predicates
 /// rely on (tet_geometry.hpp).
@@ -41,6 +44,24 @@ AxisSet rotated(AxisSet axes, Rotation rotation) {
   return image;
 }
 
+/// By how much a coordinate changes at most.
+/// @param resolution  1 / unit, exact
+double displacementOf(const Vec3& before, const LatticePoint& after, double resolution) {
+  double displacement = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    displacement =
+        std::max(displacement, std::abs(static_cast<double>(after[k]) * resolution - before[k]));
+  }
+  return displacement;
+}
+
+/// Nearest integer (even if there are two) of a number below 2^52 in magnitude, as std::llrint
+/// gives it, but without a call.
+std::int64_t nearestInteger(double x) {
+  const double large = std::copysign(0x1p52, x);
+  return static_cast<std::int64_t>((x + large) - large);
+}
+
 /// What a vertex must fulfil, and its corners, while it is being sanitized. Reused between
 /// vertices.
 class VertexSanitizer {
@@ -56,8 +77,8 @@ class VertexSanitizer {
         map_(map) {}
 
   void run(Index v) {
-    star_ = topology_.star(v);
-    if (star_.empty()) return;
+    walk_.collect(topology_, v);
+    star_ = walk_.members();
     const bool oneChart = !hasJump();
     if (oneChart) {
       toStar_.assign(star_.size(), Transition{});
@@ -81,38 +102,30 @@ class VertexSanitizer {
  private:
   /// Whether the star has a face at the vertex with a non-identity transition.
   [[nodiscard]] bool hasJump() const {
-    for (const CornerIndex corner : star_) {
+    return std::any_of(star_.begin(), star_.end(), [&](const VertexStar::Member& member) {
       for (int face = 0; face < 4; ++face) {
-        if (face == localOf(corner)) continue;
-        const HalfFace halfFace = halfFaceOf(corner / 4, face);
-        if (!topology_.isBoundary(halfFace) && map_.transitions.isJump(halfFace)) return true;
+        if (face != localOf(member.corner) &&
+            map_.transitions.isJump(halfFaceOf(tetOf(member.corner), face))) {
+          return true;
+        }
       }
-    }
-    return false;
-  }
-
-  [[nodiscard]] std::size_t positionInStar(Index tet) const {
-    return static_cast<std::size_t>(std::lower_bound(star_.begin(), star_.end(), 4 * tet) -
-                                    star_.begin());
+      return false;
+    });
   }
 
   /// Transitions from the representative's chart, that of the first corner, into all others, along
-  /// a breadth-first tree of the star.
+  /// the walk through the star.
   void unfold() {
     toStar_.resize(star_.size());
-    visited_.assign(star_.size(), false);
-    queue_.assign(1, 0);
-    visited_[0] = true;
     toStar_[0] = {};
-    for (std::size_t head = 0; head < queue_.size(); ++head) {
-      const std::size_t i = queue_[head];
+    std::size_t reached = 1;
+    for (std::size_t i = 0; i < star_.size(); ++i) {
       forEachNeighbour(i, [&](HalfFace halfFace, std::size_t neighbour) {
-        if (visited_[neighbour]) return;
-        visited_[neighbour] = true;
+        if (neighbour != reached) return;
+        ++reached;
         toStar_[neighbour] = map_.transitions.across(halfFace) * toStar_[i];
         // Only contradictory transitions lead out of range; checkLoops() will report them.
         if (outOfRange(toStar_[neighbour])) toStar_[neighbour] = {};
-        queue_.push_back(neighbour);
       });
     }
   }
@@ -126,12 +139,9 @@ class VertexSanitizer {
 
   template <class Visit>
   void forEachNeighbour(std::size_t i, const Visit& visit) const {
-    const CornerIndex corner = star_[i];
     for (int face = 0; face < 4; ++face) {
-      if (face == localOf(corner)) continue;
-      const HalfFace halfFace = halfFaceOf(corner / 4, face);
-      const HalfFace mate = topology_.mate[halfFace];
-      if (mate != kNone) visit(halfFace, positionInStar(tetOf(mate)));
+      const Index neighbour = star_[i].neighbour[static_cast<std::size_t>(face)];
+      if (neighbour != kNone) visit(halfFaceOf(tetOf(star_[i].corner), face), neighbour);
     }
   }
 
@@ -140,7 +150,7 @@ class VertexSanitizer {
     if (singularities_.isNode(v)) return kAllAxes;
     AxisSet fixed = 0;
     for (std::size_t i = 0; i < star_.size(); ++i) {
-      const CornerIndex corner = star_[i];
+      const CornerIndex corner = star_[i].corner;
       for (int face = 0; face < 4; ++face) {
         const HalfFace halfFace = halfFaceOf(corner / 4, face);
         if (face == localOf(corner) || !topology_.isBoundary(halfFace)) continue;
@@ -150,13 +160,13 @@ class VertexSanitizer {
     for (const Singularities::Incidence& incidence : singularities_.at(v)) {
       const SingularEdge& edge = singularities_.edges[incidence.edge];
       const AxisSet across = kAllAxes & ~(1U << edgeAxis(parameters_, edge));
-      fixed |= rotated(across, toStar_[positionInStar(edge.tet)].rotation.inverse());
+      fixed |= rotated(across, toStar_[walk_.memberOf(edge.tet)].rotation.inverse());
     }
     return fixed;
   }
 
   [[nodiscard]] LatticePoint snapped(AxisSet fixed) const {
-    const Vec3 u = parameters_(star_[0] / 4, localOf(star_[0]));
+    const Vec3 u = parameters_(tetOf(star_[0].corner), localOf(star_[0].corner));
     const auto unit = static_cast<double>(map_.unit);
     LatticePoint value{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -167,23 +177,19 @@ class VertexSanitizer {
 
   /// Sets one corner; returns by how much it moves.
   double assign(std::size_t i, const LatticePoint& value) {
-    const CornerIndex corner = star_[i];
+    const CornerIndex corner = star_[i].corner;
     map_.corners[corner / 4][corner % 4] = value;
     const Vec3 before = parameters_(corner / 4, localOf(corner));
-    double displacement = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double after = static_cast<double>(value[k]) / static_cast<double>(map_.unit);
-      displacement = std::max(displacement, std::abs(after - before[k]));
-    }
-    return displacement;
+    return displacementOf(before, value, 1 / static_cast<double>(map_.unit));
   }
 
   /// The condition that a vertex which had to move too far violates.
   [[nodiscard]] ErrorCode causeOfDisplacement(Index v) const {
     if (singularities_.degree[v] > 0) return ErrorCode::SingularityOffLattice;
-    for (const CornerIndex corner : star_) {
+    for (const VertexStar::Member& member : star_) {
       for (int face = 0; face < 4; ++face) {
-        if (face != localOf(corner) && topology_.isBoundary(halfFaceOf(corner / 4, face))) {
+        if (face != localOf(member.corner) &&
+            topology_.isBoundary(halfFaceOf(tetOf(member.corner), face))) {
           return ErrorCode::BoundaryOffLattice;
         }
       }
@@ -191,14 +197,18 @@ class VertexSanitizer {
     return ErrorCode::TransitionResidual;
   }
 
+  [[nodiscard]] const LatticePoint& cornerOf(std::size_t i) const {
+    return map_.corners[tetOf(star_[i].corner)][star_[i].corner % 4];
+  }
+
   /// The loops of the star must reproduce the value.
   void checkLoops(Index v) {
     for (std::size_t i = 0; i < star_.size(); ++i) {
-      const LatticePoint& here = map_.corners[star_[i] / 4][star_[i] % 4];
+      const LatticePoint& here = cornerOf(i);
       bool closed = true;
       forEachNeighbour(i, [&](HalfFace halfFace, std::size_t neighbour) {
-        const LatticePoint& there = map_.corners[star_[neighbour] / 4][star_[neighbour] % 4];
-        closed = closed && map_.transitions.across(halfFace)(here, map_.unit) == there;
+        closed =
+            closed && map_.transitions.across(halfFace)(here, map_.unit) == cornerOf(neighbour);
       });
       if (!closed) {
         defects_.add(ErrorCode::HalfIntegerFixedPoint, {PlaceKind::Vertex, v}, 0);
@@ -232,10 +242,9 @@ class VertexSanitizer {
   DefectCollector& defects_;
   ExactMap& map_;
   double maxDisplacement_ = 0;
-  std::span<const CornerIndex> star_;
+  VertexStar walk_;
+  std::span<const VertexStar::Member> star_;
   std::vector<Transition> toStar_;
-  std::vector<std::size_t> queue_;
-  std::vector<bool> visited_;
 };
 
 /// (IGM2) up to the tolerance: what snapping may repair.
@@ -293,11 +302,83 @@ int fractionBits(double largest, int maxScale, DefectCollector& defects) {
   return bits;
 }
 
+/// Rounds corners at plain vertices, and looks at the finished tets.
+class TetFinisher {
+ public:
+  TetFinisher(const TetTopology& topology, const LocalParameters& parameters,
+              const PlainVertices& plain, double tolerance, DefectCollector& defects, ExactMap& map)
+      : topology_(topology),
+        parameters_(parameters),
+        plain_(plain),
+        tolerance_(tolerance),
+        defects_(defects),
+        map_(map),
+        unit_(static_cast<double>(map.unit)),
+        resolution_(1 / unit_) {}
+
+  void run(Index t) {
+    const Tet& tet = topology_.tets[t];
+    const TetParameters u = parameters_(t);
+    LatticeTet& corners = map_.corners[t];
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (plain_.special[tet[i]] != 0) continue;
+      for (std::size_t k = 0; k < 3; ++k) corners[i][k] = nearestInteger(u[i][k] * unit_);
+      const double displacement = displacementOf(u[i], corners[i], resolution_);
+      maxDisplacement_ = std::max(maxDisplacement_, displacement);
+      // The same at all corners of the vertex, and to be reported once.
+      if (displacement > tolerance_ && topology_.vertexTet[tet[i]] == t) {
+        defects_.add(ErrorCode::TransitionResidual, {PlaceKind::Vertex, tet[i]}, displacement);
+      }
+    }
+    const Int192 volume = orientationDeterminant(corners[0], corners[1], corners[2], corners[3]);
+    sixfoldVolume_ += volume;
+    if (volume.sign() > 0) return;
+    const double amount = volume.toDouble() / (6 * unit_ * unit_ * unit_);
+    defects_.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, amount < 0 ? -amount : 0.0);
+  }
+
+  [[nodiscard]] double maxDisplacement() const noexcept { return maxDisplacement_; }
+  [[nodiscard]] const Int192& sixfoldVolume() const noexcept { return sixfoldVolume_; }
+
+ private:
+  const TetTopology& topology_;
+  const LocalParameters& parameters_;
+  const PlainVertices& plain_;
+  double tolerance_;
+  DefectCollector& defects_;
+  ExactMap& map_;
+  double unit_;
+  double resolution_;
+  double maxDisplacement_ = 0;
+  Int192 sixfoldVolume_;
+};
+
+void finishTets(const TetTopology& topology, const LocalParameters& parameters,
+                const PlainVertices& plain, double tolerance, Stage& stage,
+                DefectCollector& defects, ExactMap& map) {
+  struct Result {
+    double maxDisplacement = 0;
+    Int192 sixfoldVolume;
+  };
+  std::vector<Result> blocks(blockCount(topology.tetCount(), kGrain));
+  parallelBlocks(stage, topology.tetCount(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   TetFinisher finisher(topology, parameters, plain, tolerance, defects, map);
+                   for (std::size_t t = begin; t < end; ++t) finisher.run(static_cast<Index>(t));
+                   blocks[block] = {finisher.maxDisplacement(), finisher.sixfoldVolume()};
+                 });
+  for (const Result& block : blocks) {
+    map.maxDisplacement = std::max(map.maxDisplacement, block.maxDisplacement);
+    map.sixfoldVolume += block.sixfoldVolume;
+  }
+}
+
 }  // namespace
 
 ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters,
-                  Transitions transitions, const Singularities& singularities, double tolerance,
-                  int maxScale, Stage& stage, DefectCollector& defects) {
+                  Transitions transitions, const PlainVertices& plain,
+                  const Singularities& singularities, double tolerance, int maxScale, Stage& stage,
+                  DefectCollector& defects) {
   ExactMap map;
   map.transitions = std::move(transitions);
   checkBoundary(topology, parameters, tolerance, stage, defects);
@@ -305,17 +386,20 @@ ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters
   map.unit = std::int64_t{1} << fractionBits(parameters.largest(), maxScale, defects);
   if (defects.has(ErrorCode::TooLarge)) return map;
   map.corners.resize(topology.tetCount());
-  std::vector<double> displacements(blockCount(topology.pointCount, kGrain));
-  parallelBlocks(stage, topology.pointCount, kGrain,
+  std::vector<double> displacements(blockCount(topology.pointCount, kVertexGrain));
+  parallelBlocks(stage, topology.pointCount, kVertexGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    VertexSanitizer sanitizer(topology, parameters, singularities, tolerance,
                                              defects, map);
-                   for (std::size_t v = begin; v < end; ++v) sanitizer.run(static_cast<Index>(v));
+                   for (std::size_t v = begin; v < end; ++v) {
+                     if (plain.special[v] != 0) sanitizer.run(static_cast<Index>(v));
+                   }
                    displacements[block] = sanitizer.maxDisplacement();
                  });
   for (const double displacement : displacements) {
     map.maxDisplacement = std::max(map.maxDisplacement, displacement);
   }
+  finishTets(topology, parameters, plain, tolerance, stage, defects, map);
   return map;
 }
 
@@ -329,17 +413,6 @@ void scaleMap(ExactMap& map, int scale, Stage& stage) {
   for (Transition& transition : map.transitions.table) {
     for (std::int32_t& component : transition.translation) component *= scale;
   }
-}
-
-void checkPositive(const ExactMap& map, Stage& stage, DefectCollector& defects) {
-  parallelFor(stage, map.corners.size(), kGrain, [&](std::size_t t) {
-    const LatticeTet& c = map.corners[t];
-    if (orientation(c[0], c[1], c[2], c[3]) > 0) return;
-    const auto unit = static_cast<double>(map.unit);
-    const double volume =
-        orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() / (6 * unit * unit * unit);
-    defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, volume < 0 ? -volume : 0.0);
-  });
 }
 
 }  // namespace hexhex

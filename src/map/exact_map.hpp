@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include <map/plain_vertices.hpp>
 #include <map/singularities.hpp>
 #include <map/transitions.hpp>
 
@@ -14,26 +15,25 @@ struct ExactMap {
   Array<LatticeTet> corners;  ///< per tet
   std::int64_t unit = 1;      ///< a power of two
   Transitions transitions;
+  Int192 sixfoldVolume;        ///< of all tets before scaling, times unit^3
   double maxDisplacement = 0;  ///< largest change of a coordinate, in parameter units
 };
 
-/// Makes conditions (IGM1) to (IGM3) hold exactly. Per vertex, one corner is the representative:
+/// Makes conditions (IGM1) to (IGM3) hold exactly, and collects tets that are not positive then
+/// (IGM4). Per vertex, one corner is the representative:
 /// all constraints of the vertex's star are brought into its chart; a boundary triangle fixes the
 /// coordinate along its normal to an integer, a singular edge the two across it, a singular node
 /// all three; the other coordinates are rounded to the lattice; then the value is carried to all
 /// other corners by the exact transitions. Vertices are independent of each other, so the result
-/// depends neither on their order nor on threads.
+/// depends neither on their order nor on threads. Plain vertices are only rounded.
 /// @param tolerance  larger displacements are defects
 /// @param maxScale   the map is going to be scaled by at most this
 [[nodiscard]] ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters,
-                                Transitions transitions, const Singularities& singularities,
-                                double tolerance, int maxScale, Stage& stage,
-                                DefectCollector& defects);
+                                Transitions transitions, const PlainVertices& plain,
+                                const Singularities& singularities, double tolerance, int maxScale,
+                                Stage& stage, DefectCollector& defects);
 
 /// Multiplies all parameters by an integer, exactly.
 void scaleMap(ExactMap& map, int scale, Stage& stage);
-
-/// Collects tets that are not positive. (IGM4)
-void checkPositive(const ExactMap& map, Stage& stage, DefectCollector& defects);
 
 }  // namespace hexhex

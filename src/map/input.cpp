@@ -9,7 +9,7 @@ namespace hexhex {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kGrain = 1024;
 
 /// Determinant of the edge vectors from corner 0, or 0 if it is too small for its sign to be
 /// trusted.
@@ -27,45 +27,7 @@ double safeDeterminant(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec
   return std::abs(determinant) > 1e-12 * magnitude ? determinant : 0;
 }
 
-/// How many tets are positive and negative, in space and in the map.
-struct SignCounts {
-  std::uint64_t spacePositive = 0;
-  std::uint64_t spaceNegative = 0;
-  std::uint64_t mapPositive = 0;
-  std::uint64_t mapNegative = 0;
-};
-
-SignCounts countSigns(const TetMapView& map, Stage& stage) {
-  std::vector<SignCounts> blocks(blockCount(map.tets.size(), kGrain));
-  parallelBlocks(stage, map.tets.size(), kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   SignCounts counts;
-                   for (std::size_t t = begin; t < end; ++t) {
-                     const Tet& tet = map.tets[t];
-                     const TetParameters& u = map.parameters[t];
-                     const double space = safeDeterminant(map.points[tet[0]], map.points[tet[1]],
-                                                          map.points[tet[2]], map.points[tet[3]]);
-                     const double parametric = safeDeterminant(u[0], u[1], u[2], u[3]);
-                     counts.spacePositive += space > 0 ? 1 : 0;
-                     counts.spaceNegative += space < 0 ? 1 : 0;
-                     counts.mapPositive += parametric > 0 ? 1 : 0;
-                     counts.mapNegative += parametric < 0 ? 1 : 0;
-                   }
-                   blocks[block] = counts;
-                 });
-  SignCounts total;
-  for (const SignCounts& counts : blocks) {
-    total.spacePositive += counts.spacePositive;
-    total.spaceNegative += counts.spaceNegative;
-    total.mapPositive += counts.mapPositive;
-    total.mapNegative += counts.mapNegative;
-  }
-  return total;
-}
-
-}  // namespace
-
-void checkInput(const TetMapView& map, Stage& stage, DefectCollector& defects) {
+void checkSizes(const TetMapView& map) {
   if (map.parameters.size() != map.tets.size()) {
     throw Error(ErrorCode::InvalidArgument, "The map has " + std::to_string(map.parameters.size()) +
                                                 " parameter quadruples for " +
@@ -84,49 +46,86 @@ void checkInput(const TetMapView& map, Stage& stage, DefectCollector& defects) {
                   {PlaceKind::Edge, edge.vertex0, edge.vertex1});
     }
   }
-  if (map.tets.empty()) defects.add(ErrorCode::EmptyMesh, {}, 0);
-  if (map.tets.size() > kMaxTets || map.points.size() >= kNone) {
-    defects.add(ErrorCode::TooLarge, {}, 0);
-    return;
-  }
-  const auto finite = [](const Vec3& p) {
-    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-  };
-  parallelFor(stage, map.points.size(), kGrain, [&](std::size_t v) {
-    if (!finite(map.points[v])) defects.add(ErrorCode::NotFinite, {PlaceKind::Vertex, v}, 0);
-  });
-  parallelFor(stage, map.tets.size(), kGrain, [&](std::size_t t) {
-    const Tet& tet = map.tets[t];
-    const Place place{PlaceKind::Tet, t};
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (tet[i] >= map.points.size()) {
-        defects.add(ErrorCode::IndexOutOfRange, place, 0);
-        return;
-      }
-      if (!finite(map.parameters[t][i])) {
-        defects.add(ErrorCode::NotFinite, place, 0);
-        return;
-      }
-    }
-    if (tet[0] == tet[1] || tet[0] == tet[2] || tet[0] == tet[3] || tet[1] == tet[2] ||
-        tet[1] == tet[3] || tet[2] == tet[3]) {
-      defects.add(ErrorCode::RepeatedVertex, place, 0);
-    }
-  });
 }
 
-OrientedMap orientMap(const TetMapView& map, Stage& stage) {
-  const SignCounts counts = countSigns(map, stage);
-  const bool spaceReversed = counts.spaceNegative > counts.spacePositive;
-  const bool mapReversed = counts.mapNegative > counts.mapPositive;
-  OrientedMap oriented;
-  oriented.view = map;
-  oriented.cornersReversed = spaceReversed;
-  oriented.mirrored = spaceReversed != mapReversed;
-  oriented.flippedTets = std::max(counts.mapPositive, counts.mapNegative) < map.tets.size();
-  oriented.tetsInvertedInSpace = std::min(counts.spaceNegative, counts.spacePositive);
-  if (!oriented.cornersReversed && !oriented.mirrored) return oriented;
+/// 0 for finite coordinates, otherwise not a number.
+double finiteness(const Vec3& p) { return p[0] * 0 + p[1] * 0 + p[2] * 0; }
 
+bool isFinite(const TetParameters& u) {
+  return finiteness(u[0]) + finiteness(u[1]) + (finiteness(u[2]) + finiteness(u[3])) == 0;
+}
+
+bool hasRepeatedVertex(const Tet& tet) {
+  return tet[0] == tet[1] || tet[0] == tet[2] || tet[0] == tet[3] || tet[1] == tet[2] ||
+         tet[1] == tet[3] || tet[2] == tet[3];
+}
+
+/// What a pass over all tets finds out: how many are positive and negative, in space and in the
+/// map, and how large they are.
+struct Measures {
+  std::uint64_t spacePositive = 0;
+  std::uint64_t spaceNegative = 0;
+  std::uint64_t mapPositive = 0;
+  std::uint64_t mapNegative = 0;
+  double largestCoordinate = 0;
+  double largestExtent = 0;
+
+  void add(const Measures& other) {
+    spacePositive += other.spacePositive;
+    spaceNegative += other.spaceNegative;
+    mapPositive += other.mapPositive;
+    mapNegative += other.mapNegative;
+    largestCoordinate = std::max(largestCoordinate, other.largestCoordinate);
+    largestExtent = std::max(largestExtent, other.largestExtent);
+  }
+
+  void addTet(const TetMapView& map, std::size_t t) {
+    const Tet& tet = map.tets[t];
+    const TetParameters& u = map.parameters[t];
+    const double space = safeDeterminant(map.points[tet[0]], map.points[tet[1]], map.points[tet[2]],
+                                         map.points[tet[3]]);
+    const double parametric = safeDeterminant(u[0], u[1], u[2], u[3]);
+    spacePositive += space > 0 ? 1 : 0;
+    spaceNegative += space < 0 ? 1 : 0;
+    mapPositive += parametric > 0 ? 1 : 0;
+    mapNegative += parametric < 0 ? 1 : 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double low = std::min(std::min(u[0][k], u[1][k]), std::min(u[2][k], u[3][k]));
+      const double high = std::max(std::max(u[0][k], u[1][k]), std::max(u[2][k], u[3][k]));
+      largestCoordinate = std::max(largestCoordinate, std::max(-low, high));
+      largestExtent = std::max(largestExtent, high - low);
+    }
+  }
+};
+
+/// Measures the tets; those that cannot be measured are defects.
+Measures measureTets(const TetMapView& map, Stage& stage, DefectCollector& defects) {
+  std::vector<Measures> blocks(blockCount(map.tets.size(), kGrain));
+  parallelBlocks(stage, map.tets.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   Measures measures;
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const Tet& tet = map.tets[t];
+                     const Place place{PlaceKind::Tet, t};
+                     if (*std::max_element(tet.begin(), tet.end()) >= map.points.size()) {
+                       defects.add(ErrorCode::IndexOutOfRange, place, 0);
+                     } else if (!isFinite(map.parameters[t])) {
+                       defects.add(ErrorCode::NotFinite, place, 0);
+                     } else if (hasRepeatedVertex(tet)) {
+                       defects.add(ErrorCode::RepeatedVertex, place, 0);
+                     } else {
+                       measures.addTet(map, t);
+                     }
+                   }
+                   blocks[block] = measures;
+                 });
+  Measures total;
+  for (const Measures& measures : blocks) total.add(measures);
+  return total;
+}
+
+/// Reverses the corners of all tets, and mirrors all charts, as far as `oriented` says so.
+void reorient(OrientedMap& oriented, const TetMapView& map, Stage& stage) {
   oriented.tets.resize(map.tets.size());
   oriented.parameters.resize(map.tets.size());
   parallelFor(stage, map.tets.size(), kGrain, [&](std::size_t t) {
@@ -145,6 +144,36 @@ OrientedMap orientMap(const TetMapView& map, Stage& stage) {
   oriented.view.tets = oriented.tets;
   oriented.view.parameters = oriented.parameters;
   oriented.view.rotations = {};  // redundant, and given for the charts as they were
+}
+
+}  // namespace
+
+OrientedMap readInput(const TetMapView& map, Stage& stage, DefectCollector& defects) {
+  OrientedMap oriented;
+  checkSizes(map);
+  if (map.tets.empty()) defects.add(ErrorCode::EmptyMesh, {}, 0);
+  if (map.tets.size() > kMaxTets || map.points.size() >= kNone) {
+    defects.add(ErrorCode::TooLarge, {}, 0);
+    return oriented;
+  }
+  parallelFor(stage, map.points.size(), kGrain, [&](std::size_t v) {
+    if (finiteness(map.points[v]) != 0) {
+      defects.add(ErrorCode::NotFinite, {PlaceKind::Vertex, v}, 0);
+    }
+  });
+  const Measures measures = measureTets(map, stage, defects);
+  const bool spaceReversed = measures.spaceNegative > measures.spacePositive;
+  const bool mapReversed = measures.mapNegative > measures.mapPositive;
+  oriented.view = map;
+  oriented.cornersReversed = spaceReversed;
+  oriented.mirrored = spaceReversed != mapReversed;
+  oriented.flippedTets = std::max(measures.mapPositive, measures.mapNegative) < map.tets.size();
+  oriented.tetsInvertedInSpace = std::min(measures.spaceNegative, measures.spacePositive);
+  oriented.largestCoordinate = measures.largestCoordinate;
+  oriented.largestExtent = measures.largestExtent;
+  if (defects.empty() && (oriented.cornersReversed || oriented.mirrored)) {
+    reorient(oriented, map, stage);
+  }
   return oriented;
 }
 

@@ -13,9 +13,6 @@ namespace hexhex {
 /// More tets than this cannot be indexed by corner in 32 bits.
 inline constexpr std::size_t kMaxTets = (std::size_t{1} << 30) - 1;
 
-/// Array sizes, indices in range, no vertex twice in a tet, all numbers finite.
-void checkInput(const TetMapView& map, Stage& stage, DefectCollector& defects);
-
 /// A view of a map whose tets are positive in the map and (but for a minority) in space, with
 /// copies of the arrays where they had to change.
 ///
@@ -30,6 +27,8 @@ struct OrientedMap {
   bool mirrored = false;
   std::uint64_t tetsInvertedInSpace = 0;
   bool flippedTets = false;  ///< some tets are (nearly) flipped or degenerate in the map as given
+  double largestCoordinate = 0;  ///< of a parameter, in magnitude
+  double largestExtent = 0;      ///< of a tet in the map, along an axis
 
   Array<Tet> tets;
   Array<TetParameters> parameters;
@@ -48,7 +47,10 @@ struct OrientedMap {
   }
 };
 
-/// @param map  has passed checkInput()
-[[nodiscard]] OrientedMap orientMap(const TetMapView& map, Stage& stage);
+/// Checks indices and numbers, and orients the map. After a defect (indices out of range, a vertex
+/// twice in a tet, numbers that are not finite, no tets or too many) the result must not be used.
+/// @throws Error InvalidArgument for arrays whose sizes do not match, and edge valences of vertices
+/// that do not exist
+[[nodiscard]] OrientedMap readInput(const TetMapView& map, Stage& stage, DefectCollector& defects);
 
 }  // namespace hexhex

@@ -10,8 +10,6 @@ namespace hexhex {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
-
 int unitBits(const ExactMap& map) { return std::countr_zero(static_cast<std::uint64_t>(map.unit)); }
 
 /// sum / (divisor * 2^shift) as an integer.
@@ -41,18 +39,8 @@ HalfFace acrossBoundaryEdge(const TetTopology& topology, HalfFace halfFace, Corn
 
 }  // namespace
 
-std::uint64_t parametricVolume(const ExactMap& map, Stage& stage) {
-  std::vector<Int192> blocks(blockCount(map.corners.size(), kGrain));
-  parallelBlocks(stage, map.corners.size(), kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   for (std::size_t t = begin; t < end; ++t) {
-                     const LatticeTet& c = map.corners[t];
-                     blocks[block] += orientationDeterminant(c[0], c[1], c[2], c[3]);
-                   }
-                 });
-  Int192 sum;
-  for (const Int192& block : blocks) sum += block;
-  return exactQuotient(sum, 3 * unitBits(map), 6, "volume");
+std::uint64_t parametricVolume(const ExactMap& map) {
+  return exactQuotient(map.sixfoldVolume, 3 * unitBits(map), 6, "volume");
 }
 
 std::uint64_t boundaryArea(const TetTopology& topology, const ExactMap& map) {
@@ -120,10 +108,10 @@ std::vector<std::int64_t> boundaryGenus(const TetTopology& topology) {
   return genus;
 }
 
-Expectation computeExpectation(const PreparedMap& map, int scale, Stage& stage) {
+Expectation computeExpectation(const PreparedMap& map, int scale) {
   const auto s = static_cast<std::uint64_t>(scale);
   Expectation expected;
-  expected.cells = parametricVolume(map.exact, stage) * s * s * s;
+  expected.cells = parametricVolume(map.exact) * s * s * s;
   expected.boundaryQuads = boundaryArea(map.topology, map.exact) * s * s;
   std::map<int, std::int64_t> inner;
   std::map<int, std::int64_t> boundary;
@@ -138,7 +126,7 @@ Expectation computeExpectation(const PreparedMap& map, int scale, Stage& stage) 
         static_cast<std::uint64_t>(length / map.exact.unit) * s;
   }
   std::int64_t used = 0;
-  for (Index v = 0; v < map.topology.pointCount; ++v) used += map.topology.star(v).empty() ? 0 : 1;
+  for (Index v = 0; v < map.topology.pointCount; ++v) used += map.topology.isIsolated(v) ? 0 : 1;
   std::int64_t boundaryFaces = 0;
   for (const HalfFace mate : map.topology.mate) boundaryFaces += mate == kNone ? 1 : 0;
   const auto tets = static_cast<std::int64_t>(map.topology.tetCount());

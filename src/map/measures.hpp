@@ -10,9 +10,9 @@
 
 namespace hexhex {
 
-/// Parametric volume in unit cubes: the number of cells of the mesh at scale 1.
+/// Parametric volume in unit cubes before scaling: the number of cells of the mesh at scale 1.
 /// @throws Error Internal if it is not an integer, which a valid map excludes
-[[nodiscard]] std::uint64_t parametricVolume(const ExactMap& map, Stage& stage);
+[[nodiscard]] std::uint64_t parametricVolume(const ExactMap& map);
 
 /// Parametric area of the boundary in unit squares.
 [[nodiscard]] std::uint64_t boundaryArea(const TetTopology& topology, const ExactMap& map);
@@ -27,7 +27,8 @@ namespace hexhex {
 [[nodiscard]] std::vector<std::int64_t> boundaryGenus(const TetTopology& topology);
 
 /// Everything that follows from a valid map about its mesh.
+/// @param map  needs addEdges()
 /// @param scale  of the mesh; `map` itself is not scaled
-[[nodiscard]] Expectation computeExpectation(const PreparedMap& map, int scale, Stage& stage);
+[[nodiscard]] Expectation computeExpectation(const PreparedMap& map, int scale);
 
 }  // namespace hexhex

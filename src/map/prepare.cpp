@@ -1,7 +1,11 @@
+#include <optional>
 #include <string>
 #include <utility>
 
+#include <map/local_parameters.hpp>
+#include <map/plain_vertices.hpp>
 #include <map/prepare.hpp>
+#include <map/topology_defects.hpp>
 
 namespace hexhex {
 
@@ -21,6 +25,12 @@ void checkArguments(double tolerance, int scale) {
   }
 }
 
+[[noreturn]] void throwContradiction() {
+  throw Error(ErrorCode::Internal,
+              "The mesh failed a check of its topology, but nothing is wrong with it. This is a "
+              "bug; please report it with the map.");
+}
+
 }  // namespace
 
 PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Context& context,
@@ -29,34 +39,45 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
   PreparedMap prepared;
   {
     Stage stage(context, "input");
-    checkInput(map, stage, defects);
+    prepared.input = readInput(map, stage, defects);
     if (!defects.empty()) return prepared;
-    prepared.input = orientMap(map, stage);
   }
   const TetMapView& view = prepared.input.view;
+  const LocalParameters parameters(prepared.input);
   defects.setCornersReversed(prepared.input.cornersReversed);
   // Flipped tets falsify angles, hence singularities, hence what is snapped where.
   if (prepared.input.flippedTets) defects.setRootCause(ErrorCode::FlippedTet);
+  PlainVertices plain;
   {
     Stage stage(context, "topology");
     prepared.topology = buildTopology(view, stage, defects);
     if (!defects.empty()) return prepared;
+    plain = findPlainVertices(prepared.topology, parameters, stage);
   }
-  Stage localStage(context, "transitions");
-  const LocalParameters parameters(view, localStage, defects);
-  if (!defects.empty()) return prepared;
-  Transitions transitions = computeTransitions(prepared.topology, parameters, view.rotations,
-                                               tolerance, localStage, defects);
-  localStage.finish();
   {
     Stage stage(context, "singularities");
-    prepared.singularities =
-        computeSingularities(prepared.topology, parameters, view.edgeValences, stage);
+    std::optional<Singularities> singularities =
+        computeSingularities(prepared.topology, parameters, plain, view.edgeValences, stage);
+    if (!singularities) {
+      collectTopologyDefects(prepared.topology, stage, defects);
+      if (defects.empty()) throwContradiction();
+      return prepared;
+    }
+    if (parameters.tooLarge()) {
+      defects.add(ErrorCode::TooLarge, {}, parameters.largest());
+      return prepared;
+    }
+    prepared.singularities = std::move(*singularities);
+  }
+  Transitions transitions;
+  {
+    Stage stage(context, "transitions");
+    transitions = computeTransitions(prepared.topology, parameters, plain, view.rotations,
+                                     tolerance, stage, defects);
   }
   Stage stage(context, "sanitization");
-  prepared.exact = sanitize(prepared.topology, parameters, std::move(transitions),
+  prepared.exact = sanitize(prepared.topology, parameters, std::move(transitions), plain,
                             prepared.singularities, tolerance, maxScale, stage, defects);
-  if (!defects.has(ErrorCode::TooLarge)) checkPositive(prepared.exact, stage, defects);
   return prepared;
 }
 

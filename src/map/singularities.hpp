@@ -3,11 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include <hexhex/types.hpp>
 
-#include <map/transitions.hpp>
+#include <map/local_parameters.hpp>
+#include <map/plain_vertices.hpp>
+#include <map/tet_topology.hpp>
 
 namespace hexhex {
 
@@ -43,9 +47,13 @@ struct Singularities {
   }
 };
 
+/// Looks at the stars of special vertices; those at which the caller claims a singularity become
+/// special. Nothing if an edge or vertex turns out not to be that of a manifold.
 /// @param known  valence offsets that the caller gave, or empty
-[[nodiscard]] Singularities computeSingularities(const TetTopology& topology,
-                                                 const LocalParameters& parameters,
-                                                 std::span<const EdgeValence> known, Stage& stage);
+[[nodiscard]] std::optional<Singularities> computeSingularities(const TetTopology& topology,
+                                                                const LocalParameters& parameters,
+                                                                PlainVertices& plain,
+                                                                std::span<const EdgeValence> known,
+                                                                Stage& stage);
 
 }  // namespace hexhex

@@ -30,28 +30,29 @@ using HalfFace = std::uint32_t;
 struct TetTopology {
   std::span<const Tet> tets;  ///< the caller's array
   std::size_t pointCount = 0;
-  Array<HalfFace> mate;            ///< per half-face: the same triangle in the neighbour, or kNone
-  Array<Index> cornerBegin;        ///< per vertex (+1): its range in `corners`
-  Array<CornerIndex> corners;      ///< corners by vertex, ascending: the star of each vertex
+  Array<HalfFace> mate;    ///< per half-face: the same triangle in the neighbour, or kNone
+  Array<Index> vertexTet;  ///< per vertex: the smallest tet at it, or kNone
+
+  // Empty until addStars().
+  Array<Index> cornerBegin;    ///< per vertex (+1): its range in `corners`
+  Array<CornerIndex> corners;  ///< corners by vertex, ascending: the star of each vertex
+
+  // Empty until addEdges().
   Array<std::uint64_t> edgeBegin;  ///< per vertex (+1): its range in `edgeEnd`
   Array<Index> edgeEnd;            ///< edges (v, w) with v < w, by v: the w, ascending
 
   [[nodiscard]] std::size_t tetCount() const noexcept { return tets.size(); }
-  [[nodiscard]] std::size_t edgeCount() const noexcept { return edgeEnd.size(); }
   [[nodiscard]] Index vertex(CornerIndex corner) const noexcept {
     return tets[corner / 4][corner % 4];
-  }
-  [[nodiscard]] std::span<const CornerIndex> star(Index vertex) const noexcept {
-    return std::span(corners).subspan(cornerBegin[vertex],
-                                      cornerBegin[vertex + 1] - cornerBegin[vertex]);
   }
   [[nodiscard]] bool isBoundary(HalfFace halfFace) const noexcept {
     return mate[halfFace] == kNone;
   }
+  [[nodiscard]] bool isIsolated(Index vertex) const noexcept { return vertexTet[vertex] == kNone; }
   /// Position of a vertex in a tet that contains it.
   [[nodiscard]] int localCorner(Index tet, Index vertex) const noexcept {
     const Tet& t = tets[tet];
-    return t[0] == vertex ? 0 : (t[1] == vertex ? 1 : (t[2] == vertex ? 2 : 3));
+    return (t[1] == vertex ? 1 : 0) + (t[2] == vertex ? 2 : 0) + (t[3] == vertex ? 3 : 0);
   }
   /// The same simplex (given by corners of tet `from`) as corners of tet `to`, which contains it.
   [[nodiscard]] CornerMask translated(CornerMask mask, Index from, Index to) const noexcept {
@@ -64,15 +65,28 @@ struct TetTopology {
     }
     return result;
   }
-  /// Index of the edge between two vertices.
+  /// Needs addStars().
+  [[nodiscard]] std::span<const CornerIndex> star(Index vertex) const noexcept {
+    return std::span(corners).subspan(cornerBegin[vertex],
+                                      cornerBegin[vertex + 1] - cornerBegin[vertex]);
+  }
+  /// Number of edges, and index of the edge between two vertices. Need addEdges().
+  [[nodiscard]] std::size_t edgeCount() const noexcept { return edgeEnd.size(); }
   [[nodiscard]] std::uint64_t edgeIndex(Index a, Index b) const noexcept;
 };
 
-/// Builds adjacency; defects (non-manifold, inconsistent orientation) are collected. After a defect
-/// the result must not be used.
+/// Builds adjacency through faces; defects are collected. After a defect the result must not be
+/// used. Faces are checked here (non-manifold, inconsistent orientation); that edges and vertices
+/// are manifold is for computeSingularities() to find out.
 /// @param map  has passed checkInput()
 [[nodiscard]] TetTopology buildTopology(const TetMapView& map, Stage& stage,
                                         DefectCollector& defects);
+
+/// Lists the corners at each vertex. Does nothing if they are listed.
+void addStars(TetTopology& topology, Stage& stage);
+
+/// Lists the edges, and the stars.
+void addEdges(TetTopology& topology, Stage& stage);
 
 /// One tet at an edge: its corners at the edge's ends.
 struct EdgeCorner {
@@ -83,7 +97,7 @@ struct EdgeCorner {
 };
 
 /// Calls visit(w, span of EdgeCorner) for each edge (v, w), v < w, in ascending order of w, with
-/// all tets at the edge in ascending order.
+/// all tets at the edge in ascending order. Needs addStars().
 /// @param scratch  reused between calls
 template <class Visit>
 void forEachEdge(const TetTopology& topology, Index v, std::vector<EdgeCorner>& scratch,

@@ -2,53 +2,12 @@
 #include <limits>
 
 #include <base/vector3.hpp>
+#include <map/plain_vertices.hpp>
 #include <map/transitions.hpp>
 
 namespace hexhex {
 
 namespace {
-
-constexpr std::size_t kGrain = 4096;
-
-/// The smallest step by which charts are moved: maps whose coordinates stay below half of it,
-/// nearly all, are not moved at all. It costs ten of the 52 bits of a coordinate.
-constexpr double kMinChartGrid = 1024;
-
-/// Beyond, a double has no fractional bits worth the name.
-constexpr double kMaxParameter = 0x1p48;
-
-/// Translations between charts are 32-bit integers: with coordinates below this they, and twice
-/// them, fit. (Sanitization, which knows the scale, allows no more either.)
-constexpr double kMaxLocalParameter = 0x1p28;
-
-/// Largest coordinate, and largest extent of a tet along an axis.
-struct Sizes {
-  double coordinate = 0;
-  double extent = 0;
-};
-
-Sizes measure(std::span<const TetParameters> parameters, Stage& stage) {
-  std::vector<Sizes> blocks(blockCount(parameters.size(), kGrain));
-  parallelBlocks(stage, parameters.size(), kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   Sizes sizes;
-                   for (std::size_t t = begin; t < end; ++t) {
-                     const TetParameters& u = parameters[t];
-                     for (std::size_t k = 0; k < 3; ++k) {
-                       const auto [low, high] = std::minmax({u[0][k], u[1][k], u[2][k], u[3][k]});
-                       sizes.coordinate = std::max({sizes.coordinate, -low, high});
-                       sizes.extent = std::max(sizes.extent, high - low);
-                     }
-                   }
-                   blocks[block] = sizes;
-                 });
-  Sizes total;
-  for (const Sizes& sizes : blocks) {
-    total.coordinate = std::max(total.coordinate, sizes.coordinate);
-    total.extent = std::max(total.extent, sizes.extent);
-  }
-  return total;
-}
 
 double distance(const Vec3& a, const Vec3& b) {
   return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
@@ -122,72 +81,84 @@ struct FoundJump {
 struct BlockResult {
   std::vector<FoundJump> jumps;
   double maxResidual = 0;
-  std::uint64_t innerFaces = 0;
+  Index firstJump = 0;  ///< index of its first jump in the table
+};
+
+/// Fits transitions to the triangles on which tets do not agree.
+class TransitionFitter {
+ public:
+  TransitionFitter(const TetTopology& topology, const LocalParameters& parameters,
+                   std::span<const std::array<std::int8_t, 4>> rotations, double tolerance,
+                   DefectCollector& defects)
+      : topology_(topology),
+        parameters_(parameters),
+        rotations_(rotations),
+        tolerance_(tolerance),
+        defects_(defects) {}
+
+  [[nodiscard]] BlockResult run(std::span<const HalfFace> halfFaces) const {
+    BlockResult block;
+    for (const HalfFace here : halfFaces) {
+      const SharedTriangle triangle =
+          sharedTriangle(topology_, parameters_, here, topology_.mate[here]);
+      double residual = 0;
+      const Transition transition = fitTranslation(triangle, rotation(here, triangle), residual);
+      block.maxResidual = std::max(block.maxResidual, residual);
+      if (residual > tolerance_) {
+        defects_.add(ErrorCode::TransitionResidual, {PlaceKind::Face, tetOf(here), here % 4},
+                     residual);
+      }
+      if (!transition.isIdentity()) block.jumps.push_back({here, transition});
+    }
+    return block;
+  }
+
+ private:
+  [[nodiscard]] Rotation rotation(HalfFace here, const SharedTriangle& triangle) const {
+    const int known = rotations_.empty() ? -1 : rotations_[tetOf(here)][here % 4];
+    return known >= 0 && known < Rotation::kCount ? rotationFromAlgoHex(known)
+                                                  : bestRotation(triangle);
+  }
+
+  const TetTopology& topology_;
+  const LocalParameters& parameters_;
+  std::span<const std::array<std::int8_t, 4>> rotations_;
+  double tolerance_;
+  DefectCollector& defects_;
 };
 
 }  // namespace
 
-LocalParameters::LocalParameters(const TetMapView& map, Stage& stage, DefectCollector& defects)
-    : parameters_(map.parameters) {
-  const Sizes sizes = measure(map.parameters, stage);
-  if (sizes.coordinate > kMaxParameter) {
-    defects.add(ErrorCode::TooLarge, {}, sizes.coordinate);
-    return;
-  }
-  grid_ = kMinChartGrid;
-  while (grid_ < 4 * sizes.extent) grid_ *= 2;
-  moved_ = sizes.coordinate > grid_ / 2;
-  largest_ = moved_ ? grid_ / 2 + sizes.extent : sizes.coordinate;
-  if (largest_ > kMaxLocalParameter) defects.add(ErrorCode::TooLarge, {}, largest_);
-}
-
 Transitions computeTransitions(const TetTopology& topology, const LocalParameters& parameters,
+                               const PlainVertices& plain,
                                std::span<const std::array<std::int8_t, 4>> rotations,
                                double tolerance, Stage& stage, DefectCollector& defects) {
   Transitions result;
   result.jump.resize(4 * topology.tetCount());
-  result.table.push_back({});
-  const auto across = [&](HalfFace here, HalfFace there, BlockResult& block) {
-    const SharedTriangle triangle = sharedTriangle(topology, parameters, here, there);
-    if (triangle.here == triangle.there) return;
-    const int known = rotations.empty() ? -1 : rotations[tetOf(here)][here % 4];
-    const Rotation rotation = known >= 0 && known < Rotation::kCount ? rotationFromAlgoHex(known)
-                                                                     : bestRotation(triangle);
-    double residual = 0;
-    const Transition transition = fitTranslation(triangle, rotation, residual);
-    block.maxResidual = std::max(block.maxResidual, residual);
-    if (residual > tolerance) {
-      defects.add(ErrorCode::TransitionResidual, {PlaceKind::Face, tetOf(here), here % 4},
-                  residual);
-    }
-    if (!transition.isIdentity()) block.jumps.push_back({here, transition});
-  };
-  std::vector<BlockResult> blocks(blockCount(topology.tetCount(), kGrain));
-  parallelBlocks(stage, topology.tetCount(), kGrain,
+  result.innerFaces = plain.innerFaces;
+  const TransitionFitter fitter(topology, parameters, rotations, tolerance, defects);
+  std::vector<BlockResult> blocks(plain.unequalFaces.size());
+  parallelBlocks(stage, topology.tetCount(), PlainVertices::kBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   for (std::size_t h = 4 * begin; h < 4 * end; ++h) {
-                     const auto here = static_cast<HalfFace>(h);
-                     const HalfFace there = topology.mate[here];
-                     result.jump[here] = 0;
-                     if (there == kNone || there < here) continue;
-                     ++blocks[block].innerFaces;
-                     across(here, there, blocks[block]);
-                   }
+                   std::fill(&result.jump[4 * begin], &result.jump[4 * begin] + 4 * (end - begin),
+                             Index{0});
+                   blocks[block] = fitter.run(plain.unequalFaces[block]);
                  });
-  for (const BlockResult& block : blocks) {
+  for (BlockResult& block : blocks) {
+    block.firstJump = static_cast<Index>(1 + 2 * result.jumps);
     result.maxResidual = std::max(result.maxResidual, block.maxResidual);
-    result.innerFaces += block.innerFaces;
     result.jumps += block.jumps.size();
   }
-  result.table.reserve(1 + 2 * result.jumps);
-  for (const BlockResult& block : blocks) {
-    for (const FoundJump& found : block.jumps) {
-      result.jump[found.halfFace] = static_cast<Index>(result.table.size());
-      result.table.push_back(found.transition);
-      result.jump[topology.mate[found.halfFace]] = static_cast<Index>(result.table.size());
-      result.table.push_back(found.transition.inverse());
+  result.table.resize(1 + 2 * result.jumps);
+  parallelFor(stage, blocks.size(), 1, [&](std::size_t block) {
+    Index index = blocks[block].firstJump;
+    for (const FoundJump& found : blocks[block].jumps) {
+      result.jump[found.halfFace] = index;
+      result.table[index++] = found.transition;
+      result.jump[topology.mate[found.halfFace]] = index;
+      result.table[index++] = found.transition.inverse();
     }
-  }
+  });
   return result;
 }
 

@@ -27,6 +27,7 @@ struct Stages {
     map = prepareMap(input, 1e-2, 1, context, defects);
     defects.throwIfAny();
     Stage stage(context, "test");
+    addStars(map.topology, stage);
     signs.resize(map.exact.corners.size());
     for (std::size_t t = 0; t < signs.size(); ++t) signs[t] = NormalSigns(map.exact.corners[t]);
     vertices = extractVertices(map, epsilon, stage);
@@ -124,7 +125,11 @@ TEST(EpsilonFallback, MissedVerticesAreNoticedAndFound) {
   const Sample sample = sampleOf(SampleKind::Sphere);
   Context context;
   DefectCollector defects;
-  const PreparedMap map = prepareMap(sample.map, 1e-2, 1, context, defects);
+  PreparedMap map = prepareMap(sample.map, 1e-2, 1, context, defects);
+  {
+    Stage stage(context, "test");
+    addStars(map.topology, stage);
+  }
   const HexMesh right = extract(sample.map);
   for (const double epsilon : {-1e-3, -0.05, -0.2, -0.6}) {
     ExtractStatistics statistics;

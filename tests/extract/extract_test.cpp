@@ -147,8 +147,9 @@ double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 
 TEST(Extract, GeneratorsNameSimplicesOfTheInput) {
   SampleOptions o;
-  o.cells = 4;
-  o.refine = 4;
+  o.cells = 5;
+  o.refine = 2;
+  o.jitter = 0.05;
   const Sample sample = generateSample(SampleKind::Cylinder, o);
   const HexMesh mesh = verifiedExtraction(sample.map);
   std::array<std::size_t, 4> seen{};

@@ -97,6 +97,7 @@ TEST_P(SampleExtraction, EpsilonDoesNotMatter) {
   const HexMesh usual = verifiedExtraction(sample.map);
   for (const double epsilon : {0.0, 1e-12, 1e-2, 1.0, 1e300, HUGE_VAL}) {
     ExtractOptions o;
+    o.engine = Engine::Propeller;
     o.epsilon = epsilon;
     EXPECT_TRUE(sameBits(usual, extract(sample.map, o))) << "epsilon " << epsilon;
   }
@@ -154,6 +155,8 @@ void checkRandomSample() {
   const VerifyReport report = verify(sample.map, mesh, verifyOptions);
   RC_LOG() << failures(report) << '\n';
   RC_ASSERT(report.passed());
+  Context threads(*rc::gen::inRange(1, 4));
+  RC_ASSERT(sameBits(mesh, extract(sample.map, withOtherEngine(extractOptions), threads)));
   if (extractOptions.scale == 1) RC_ASSERT(mesh.points.size() == sample.answer.vertices);
 }
 

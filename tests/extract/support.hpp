@@ -27,7 +27,18 @@ inline std::string failures(const VerifyReport& report) {
   return text;
 }
 
-/// Extracts and verifies against the map itself.
+inline bool sameBits(const HexMesh& a, const HexMesh& b) {
+  return a.points == b.points && a.cells == b.cells && a.generatorTet == b.generatorTet &&
+         a.generatorCorners == b.generatorCorners;
+}
+
+/// The same with the other engine.
+inline ExtractOptions withOtherEngine(ExtractOptions options) {
+  options.engine = options.engine == Engine::Atlas ? Engine::Propeller : Engine::Atlas;
+  return options;
+}
+
+/// Extracts with both engines, which must agree in every bit, and verifies against the map itself.
 inline HexMesh verifiedExtraction(const TetMapView& map, const ExtractOptions& options = {},
                                   int threads = 0) {
   Context context(threads);
@@ -37,12 +48,9 @@ inline HexMesh verifiedExtraction(const TetMapView& map, const ExtractOptions& o
   verifyOptions.tolerance = options.tolerance;
   const VerifyReport report = verify(map, mesh, verifyOptions);
   EXPECT_TRUE(report.passed()) << failures(report);
+  Context other(threads);
+  EXPECT_TRUE(sameBits(mesh, extract(map, withOtherEngine(options), other)));
   return mesh;
-}
-
-inline bool sameBits(const HexMesh& a, const HexMesh& b) {
-  return a.points == b.points && a.cells == b.cells && a.generatorTet == b.generatorTet &&
-         a.generatorCorners == b.generatorCorners;
 }
 
 /// A name on the command line, e.g. for SCOPED_TRACE.

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <lattice/line_rasterizer.hpp>
 #include <lattice/rasterize.hpp>
 
 #include "oracle.hpp"
@@ -121,6 +122,35 @@ std::vector<CornerMask> rasterized(const ScaledTet& scaled, SweepAxes axes, doub
   return collector.simplices();
 }
 
+/// The same by LineRasterizer.
+std::vector<CornerMask> rasterizedByLines(const ScaledTet& scaled, SweepAxes axes) {
+  const GridBox box = gridBox(scaled.corners, scaled.unit);
+  SimplexGrid grid(box);
+  if (box.empty()) return grid.simplices();
+  bool found = false;
+  std::array<std::int32_t, 2> previous = {box.range[axes()[0]].first,
+                                          box.range[axes()[1]].first - 1};
+  LineRasterizer(scaled.corners, scaled.unit, box, axes).run([&](const SweptLine& line) {
+    found = true;
+    EXPECT_LT(previous, (std::array<std::int32_t, 2>{line.level, line.row}));
+    previous = {line.level, line.row};
+    EXPECT_GT(line.count, 0U);
+    GridPoint z{};
+    z[axes()[0]] = line.level;
+    z[axes()[1]] = line.row;
+    for (std::uint32_t i = 0; i < line.count; ++i) {
+      z[axes()[2]] = line.first + static_cast<std::int32_t>(i);
+      if (!grid.covers(z)) {
+        ADD_FAILURE() << "reported a point outside the box";
+        return;
+      }
+      grid[z] = i == 0 ? line.left : (i + 1 == line.count ? line.right : line.inner());
+    }
+  });
+  EXPECT_FALSE(found && certainlyMisses(scaled.corners, scaled.unit, box));
+  return grid.simplices();
+}
+
 std::string describe(const ScaledTet& scaled) {
   std::string text = "unit " + std::to_string(scaled.unit);
   for (const LatticePoint& p : scaled.corners) {
@@ -141,6 +171,7 @@ void expectAgreement(const ScaledTet& scaled, SweepAxes axes, WithoutEpsilon wit
     ASSERT_EQ(rasterized(scaled, axes, epsilon), expected)
         << describe(scaled) << " epsilon " << epsilon;
   }
+  ASSERT_EQ(rasterizedByLines(scaled, axes), expected) << describe(scaled);
   const std::vector<CornerMask> found = rasterized(scaled, axes, 0);
   for (std::size_t i = 0; i < found.size(); ++i) {
     const bool mayMiss =

@@ -20,7 +20,11 @@ class Prepared {
   explicit Prepared(const TetMapView& view, double tolerance = 1e-2, int maxScale = 1,
                     int threads = 1) {
     Context context(threads);
-    withThreads(threads, [&] { map_ = prepareMap(view, tolerance, maxScale, context, defects_); });
+    withThreads(threads, [&] {
+      map_ = prepareMap(view, tolerance, maxScale, context, defects_);
+      Stage stage(context, "edges");
+      if (!map_.singularities.degree.empty()) addEdges(map_.topology, stage);
+    });
   }
   [[nodiscard]] const TetTopology& topology() const { return map_.topology; }
   [[nodiscard]] const Singularities& singularities() const { return map_.singularities; }

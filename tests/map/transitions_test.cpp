@@ -58,10 +58,7 @@ TEST_P(TransitionsOfKind, CarryParametersOver) {
   for (const SampleOptions& options : chartOptions()) {
     const TetMap map = generateSample(kind(), options).map;
     const Prepared prepared(map);
-    Context context;
-    Stage stage(context, "test");
-    DefectCollector defects;
-    const LocalParameters parameters(map, stage, defects);
+    const LocalParameters parameters(prepared.map().input);
     EXPECT_TRUE(prepared.defects().empty());
     EXPECT_LE(worstImage(prepared.topology(), parameters, prepared.transitions()), kResolution);
     EXPECT_LE(prepared.transitions().maxResidual, kResolution);

@@ -1,0 +1,64 @@
+// Tagged simplices of a tet mesh, and tagged vertices, edges and quads of a hex mesh: sharp edges,
+// surface patches, corners of a CAD model. They travel beside the mesh and never change it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace hexhex {
+
+/// A tagged vertex. Tags are chosen by whoever made the mesh; 0 means "no feature", so elements
+/// with that tag are not listed.
+struct FeatureVertex {
+  std::uint32_t vertex = 0;
+  std::int32_t tag = 0;
+  bool operator==(const FeatureVertex&) const = default;
+};
+
+/// A tagged edge by its two vertices, in any order.
+struct FeatureEdge {
+  std::array<std::uint32_t, 2> vertices{};
+  std::int32_t tag = 0;
+  bool operator==(const FeatureEdge&) const = default;
+};
+
+/// A tagged triangle by its three vertices, in any order.
+struct FeatureFace {
+  std::array<std::uint32_t, 3> vertices{};
+  std::int32_t tag = 0;
+  bool operator==(const FeatureFace&) const = default;
+};
+
+/// A tagged quad by its four vertices, in order around it (starting anywhere, either direction).
+struct FeatureQuad {
+  std::array<std::uint32_t, 4> vertices{};
+  std::int32_t tag = 0;
+  bool operator==(const FeatureQuad&) const = default;
+};
+
+/// Features of a tet mesh; each element is listed at most once.
+struct Features {
+  std::vector<FeatureVertex> vertices;
+  std::vector<FeatureEdge> edges;
+  std::vector<FeatureFace> faces;
+
+  [[nodiscard]] bool empty() const noexcept {
+    return vertices.empty() && edges.empty() && faces.empty();
+  }
+  bool operator==(const Features&) const = default;
+};
+
+/// Features of a hex mesh; each element is listed at most once.
+struct HexFeatures {
+  std::vector<FeatureVertex> vertices;
+  std::vector<FeatureEdge> edges;
+  std::vector<FeatureQuad> quads;
+
+  [[nodiscard]] bool empty() const noexcept {
+    return vertices.empty() && edges.empty() && quads.empty();
+  }
+  bool operator==(const HexFeatures&) const = default;
+};
+
+}  // namespace hexhex

@@ -1,0 +1,32 @@
+// The atlas engine: the regular part of a map is read off a picture of it, chart by chart; only
+// cells that meet a cut of the atlas are traced.
+//
+// Why that is right: take a cell whose centre lies in a tet of chart C, such that no face that is
+// not glued in C meets the cell's open cube. The part of the mesh around the centre that maps onto
+// the open cube does so one to one, and it is never left through an unglued face; so all its tets
+// are in C, and their points, the cell's corners among them, are in C's grid. As every point of
+// these tets belongs to their own vertices there (VertexGrid), the grid shows the cell's corners.
+#pragma once
+
+#include <cstdint>
+
+#include <hexhex/context.hpp>
+#include <hexhex/extract.hpp>
+#include <hexhex/stream.hpp>
+#include <hexhex/types.hpp>
+
+#include <map/prepare.hpp>
+
+namespace hexhex {
+
+/// Extracts the mesh of a map that has passed all checks and is scaled.
+/// @param expectedCells  the map's parametric volume
+[[nodiscard]] HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells,
+                               Context& context, ExtractStatistics& statistics);
+
+/// The same in pieces.
+/// @param wideIds  numbers vertices with 64 bits even if 32 would do (for tests)
+void streamAtlas(const PreparedMap& map, std::uint64_t expectedCells, MeshSink& sink,
+                 Context& context, ExtractStatistics& statistics, bool wideIds = false);
+
+}  // namespace hexhex

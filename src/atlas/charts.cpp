@@ -1,0 +1,110 @@
+#include <vector>
+
+#include <atlas/charts.hpp>
+
+#include <base/disjoint_sets.hpp>
+
+namespace hexhex {
+
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+
+/// Joins tets across identity transitions, and numbers the resulting patches.
+class Patches {
+ public:
+  Patches(const PreparedMap& map, Stage& stage) : of_(map.topology.tetCount()) {
+    const std::size_t tets = map.topology.tetCount();
+    const Array<HalfFace>& mate = map.topology.mate;
+    DisjointSets sets(tets);
+    parallelFor(stage, 4 * tets, kGrain, [&](std::size_t h) {
+      const auto halfFace = static_cast<HalfFace>(h);
+      if (mate[h] == kNone || mate[h] < halfFace) return;
+      if (!map.exact.transitions.isJump(halfFace)) sets.unite(tetOf(halfFace), tetOf(mate[h]));
+    });
+    parallelFor(stage, tets, kGrain,
+                [&](std::size_t t) { of_[t] = sets.find(static_cast<Index>(t)); });
+    // The representative is the smallest tet, so its number is known before the others need it.
+    for (std::size_t t = 0; t < tets; ++t) of_[t] = of_[t] == t ? count_++ : of_[of_[t]];
+  }
+  [[nodiscard]] Index of(Index tet) const noexcept { return of_[tet]; }
+  [[nodiscard]] Index count() const noexcept { return count_; }
+  [[nodiscard]] Array<Index> release() && noexcept { return std::move(of_); }
+
+ private:
+  Array<Index> of_;
+  Index count_ = 0;
+};
+
+/// The half-faces through which one patch borders on another, by patch.
+struct Borders {
+  std::vector<HalfFace> halfFaces;
+  std::vector<std::size_t> begin;  ///< per patch (+1)
+};
+
+Borders findBorders(const PreparedMap& map, const Patches& patches, Stage& stage) {
+  const Array<HalfFace>& mate = map.topology.mate;
+  std::vector<std::vector<HalfFace>> blocks(blockCount(mate.size(), kGrain));
+  parallelBlocks(stage, mate.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   for (std::size_t h = begin; h < end; ++h) {
+                     const auto halfFace = static_cast<HalfFace>(h);
+                     if (mate[h] == kNone || !map.exact.transitions.isJump(halfFace)) continue;
+                     if (patches.of(tetOf(halfFace)) != patches.of(tetOf(mate[h]))) {
+                       blocks[block].push_back(halfFace);
+                     }
+                   }
+                 });
+  Borders borders;
+  borders.begin.assign(std::size_t{patches.count()} + 1, 0);
+  std::size_t total = 0;
+  for (const std::vector<HalfFace>& block : blocks) {
+    total += block.size();
+    for (const HalfFace halfFace : block) ++borders.begin[patches.of(tetOf(halfFace))];
+  }
+  exclusiveScan(std::span(borders.begin));
+  borders.halfFaces.resize(total);
+  std::vector<std::size_t> next(borders.begin.begin(), borders.begin.end() - 1);
+  for (const std::vector<HalfFace>& block : blocks) {
+    for (const HalfFace halfFace : block) {
+      borders.halfFaces[next[patches.of(tetOf(halfFace))]++] = halfFace;
+    }
+  }
+  return borders;
+}
+
+}  // namespace
+
+Charts buildCharts(const PreparedMap& map, Stage& stage) {
+  Patches patches(map, stage);
+  const Borders borders = findBorders(map, patches, stage);
+  Charts charts;
+  charts.gauges.resize(patches.count());
+  std::vector<Index> chartOfPatch(patches.count(), kNone);
+  std::vector<Index> queue;
+  for (Index root = 0; root < patches.count(); ++root) {
+    if (chartOfPatch[root] != kNone) continue;
+    chartOfPatch[root] = charts.count;
+    charts.gauges[root] = {};
+    queue.assign(1, root);
+    for (std::size_t head = 0; head < queue.size(); ++head) {
+      const Index patch = queue[head];
+      for (std::size_t i = borders.begin[patch]; i < borders.begin[patch + 1]; ++i) {
+        const HalfFace mate = map.topology.mate[borders.halfFaces[i]];
+        const Index neighbour = patches.of(tetOf(mate));
+        if (chartOfPatch[neighbour] != kNone) continue;
+        chartOfPatch[neighbour] = charts.count;
+        charts.gauges[neighbour] = charts.gauges[patch] * map.exact.transitions.across(mate);
+        queue.push_back(neighbour);
+      }
+    }
+    ++charts.count;
+  }
+  charts.gaugeOf = std::move(patches).release();
+  charts.chart.resize(charts.gaugeOf.size());
+  parallelFor(stage, charts.chart.size(), kGrain,
+              [&](std::size_t t) { charts.chart[t] = chartOfPatch[charts.gaugeOf[t]]; });
+  return charts;
+}
+
+}  // namespace hexhex

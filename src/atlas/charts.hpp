@@ -1,0 +1,52 @@
+// The atlas: tets glued to charts, in which the map is one picture.
+#pragma once
+
+#include <cstdint>
+
+#include <atlas/gauge.hpp>
+
+#include <hexhex/types.hpp>
+
+#include <map/prepare.hpp>
+
+namespace hexhex {
+
+/// Every tet belongs to a chart and has a gauge that takes its own chart there.
+struct Charts {
+  /// A tet that no chart could take without overlap: its cells are traced.
+  static constexpr Index kNoChart = kNone;
+
+  Array<Index> chart;    ///< per tet
+  Array<Index> gaugeOf;  ///< per tet: index in `gauges`
+  Array<Gauge> gauges;
+  Index count = 0;  ///< charts
+
+  [[nodiscard]] const Gauge& gauge(Index tet) const noexcept { return gauges[gaugeOf[tet]]; }
+
+  /// Whether the picture continues across a half-face (with a mate): both tets are in one chart,
+  /// and both gauges agree on the face.
+  [[nodiscard]] bool isGlued(const TetTopology& topology, const Transitions& transitions,
+                             HalfFace halfFace) const noexcept {
+    const Index here = tetOf(halfFace);
+    const Index there = tetOf(topology.mate[halfFace]);
+    return chart[here] == chart[there] && chart[here] != kNoChart &&
+           gaugesAgree(topology, transitions, halfFace);
+  }
+
+  /// Whether both gauges agree on a half-face (with a mate), whatever the charts.
+  [[nodiscard]] bool gaugesAgree(const TetTopology& topology, const Transitions& transitions,
+                                 HalfFace halfFace) const noexcept {
+    const Index here = tetOf(halfFace);
+    const Index there = tetOf(topology.mate[halfFace]);
+    if (!transitions.isJump(halfFace)) {
+      return gaugeOf[here] == gaugeOf[there] || gauge(here) == gauge(there);
+    }
+    return gauge(there) * transitions.across(halfFace) == gauge(here);
+  }
+};
+
+/// One chart for every connected component. Tets connected by identity transitions share a gauge;
+/// these patches are joined along a breadth-first tree.
+[[nodiscard]] Charts buildCharts(const PreparedMap& map, Stage& stage);
+
+}  // namespace hexhex

@@ -1,0 +1,414 @@
+#include <algorithm>
+
+#include <atlas/vertex_grid.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// A simplex of a tet in terms of the caller's order of corners.
+CornerSet callersCorners(const OrientedMap& input, CornerMask simplex) {
+  if (!input.cornersReversed) return simplex;
+  CornerSet corners = 0;
+  for (int i = 0; i < 4; ++i) {
+    if (contains(simplex, i)) {
+      corners = static_cast<CornerSet>(corners | cornerBit(input.callersCorner(i)));
+    }
+  }
+  return corners;
+}
+
+/// Forgets most keys that it has seen before.
+class KeyFilter {
+ public:
+  KeyFilter() { seen_.fill(kNoBrick); }
+  [[nodiscard]] bool isNew(BrickKey key, const ChartPoint& c) noexcept {
+    BrickKey& entry = seen_[(c[0] / kBrickSide % 8) | (c[1] / kBrickSide % 8) << 3 |
+                            (c[2] / kBrickSide % 8) << 6];
+    if (entry == key) return false;
+    entry = key;
+    return true;
+  }
+
+ private:
+  std::array<BrickKey, 512> seen_;
+};
+
+template <class Id>
+std::atomic_ref<Id> entry(Brick<Id>& brick, std::size_t place, std::ptrdiff_t offset) {
+  return std::atomic_ref(
+      brick.ids[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(place) + offset)]);
+}
+
+}  // namespace
+
+template <class Id>
+std::span<const SweptLine> VertexGrid<Id>::linesOf(Index tet, const TetSweep& sweep,
+                                                   std::vector<SweptLine>& scratch) const {
+  if (stored_) return stored_->of(tet);
+  scratch.clear();
+  sweep.run(map_.exact.unit, scratch);
+  return scratch;
+}
+
+template <class Id>
+void VertexGrid<Id>::sweep(Stage& stage) {
+  const std::size_t tets = map_.topology.tetCount();
+  VertexCounter counter(map_, numbers_);
+  std::vector<std::vector<BrickKey>> keys(blockCount(tets, kSweepBlock));
+  parallelBlocks(
+      stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t block) {
+        std::vector<SweptLine> lines;
+        std::vector<Index> begins;
+        KeyFilter filter;
+        for (std::size_t t = begin; t < end; ++t) {
+          const auto tet = static_cast<Index>(t);
+          if (!stored_) lines.clear();
+          const std::size_t before = lines.size();
+          begins.push_back(static_cast<Index>(before));
+          const TetSweep sweep(map_.exact, tet, SweptGrid::Vertices);
+          sweep.run(map_.exact.unit, lines);
+          const auto added = std::span<const SweptLine>(lines).subspan(before);
+          counter.count(block, tet, added);
+          if (added.empty()) continue;
+          const Gauge& gauge = charts_.gauge(tet);
+          const Index chart = charts_.chart[tet];
+          const Direction along = gauge.rotation(direction(sweep.axes()[2], 1));
+          for (const SweptLine& line : added) {
+            const ChartRow row{chart, gauge(sweep.point(line, 0)), along, line.count};
+            row.forEachPart([&](const ChartPoint& c, std::uint32_t, std::uint32_t, std::ptrdiff_t) {
+              const BrickKey key = brickKey(chart, c);
+              if (filter.isNew(key, c)) keys[block].push_back(key);
+            });
+          }
+        }
+        if (stored_) stored_->store(block, lines, begins);
+      });
+  counter.finish();
+  grid_.build(keys, stage);
+}
+
+template <class Id>
+template <class VisitRun, class VisitRow>
+void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, const VisitRun& visitRun,
+                                  const VisitRow& visitRow) const {
+  if (!hasLines(tet)) return;
+  const TetSweep sweep(map_.exact, tet, SweptGrid::Vertices);
+  std::vector<SweptLine> scratch;
+  const std::span<const SweptLine> lines = linesOf(tet, sweep, scratch);
+  if (lines.empty()) return;
+  const Gauge& gauge = charts_.gauge(tet);
+  const Index chart = charts_.chart[tet];
+  const Direction along = gauge.rotation(direction(sweep.axes()[2], 1));
+  TetNumbering numbering(map_, numbers_, tet, sweep.axes);
+  numbering.run(lines, [&](const VertexRun& run) {
+    visitRun(sweep, run);
+    visitRow(ChartRow{chart, gauge(sweep.point(*run.line, run.offset)), along, run.count},
+             run.first);
+  });
+  if (faces == Faces::Owned) return;
+  for (int face = 0; face < 4; ++face) {
+    if (((numbering.foreignFaces() >> face) & 1U) == 0) continue;
+    // The owner enters the points of a glued face at the same places.
+    if (faces == Faces::All ||
+        !charts_.isGlued(map_.topology, map_.exact.transitions, halfFaceOf(tet, face))) {
+      forEachForeignClaim(tet, face, visitRow);
+    }
+  }
+}
+
+/// The points of a face that another tet owns are numbered in the order of the owner's sweep.
+template <class Id>
+template <class VisitRow>
+void VertexGrid<Id>::forEachForeignClaim(Index tet, int face, const VisitRow& visitRow) const {
+  const HalfFace ownersHalfFace = map_.topology.mate[halfFaceOf(tet, face)];
+  const Index owner = tetOf(ownersHalfFace);
+  const Gauge gauge = charts_.gauge(tet) * map_.exact.transitions.across(ownersHalfFace);
+  const TetSweep sweep(map_.exact, owner, SweptGrid::Vertices);
+  std::vector<SweptLine> scratch;
+  const Direction along = gauge.rotation(direction(sweep.axes()[2], 1));
+  TetNumbering(map_, numbers_, owner, sweep.axes)
+      .run(linesOf(owner, sweep, scratch), [&](const VertexRun& run) {
+        if (run.simplex != faceMask(localOf(ownersHalfFace))) return;
+        visitRow(ChartRow{charts_.chart[tet], gauge(sweep.point(*run.line, run.offset)), along,
+                          run.count},
+                 run.first);
+      });
+}
+
+template <class Id>
+void VertexGrid<Id>::write(const TetSweep& sweep, const VertexRun& run, Index tet,
+                           std::optional<TetPositions>& positions,
+                           const VertexArrays& arrays) const {
+  if (!run.owned || arrays.points == nullptr) return;
+  if (!positions) positions.emplace(map_, tet, sweep.box, sweep.axes);
+  const std::size_t at = run.first - arrays.first;
+  const SweptLine& line = *run.line;
+  if (run.simplex == kWholeTet) {
+    positions->alongLine(line.level, line.row, line.first + static_cast<std::int32_t>(run.offset),
+                         run.count, arrays.points + at);
+  } else {
+    for (std::uint32_t i = 0; i < run.count; ++i) {
+      arrays.points[at + i] = positions->at(run.simplex, sweep.point(line, run.offset + i));
+    }
+  }
+  std::fill_n(arrays.tets + at, run.count, tet);
+  std::fill_n(arrays.corners + at, run.count, callersCorners(map_.input, run.simplex));
+}
+
+template <class Id>
+void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
+  parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t) {
+                   BrickCache<Id> cache(grid_);
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     std::optional<TetPositions> positions;
+                     forEachClaim(
+                         tet, Faces::OwnedAndCut,
+                         [&](const TetSweep& sweep, const VertexRun& run) {
+                           write(sweep, run, tet, positions, arrays);
+                         },
+                         [&](const ChartRow& row, std::uint64_t first) {
+                           row.forEachPart([&](const ChartPoint& c, std::uint32_t offset,
+                                               std::uint32_t count, std::ptrdiff_t stride) {
+                             Bricks& brick = *cache.find(row.chart, c);
+                             const std::size_t place = placeInBrick(c);
+                             for (std::uint32_t i = 0; i < count; ++i) {
+                               entry(brick, place, i * stride)
+                                   .store(static_cast<Id>(first + offset + i),
+                                          std::memory_order_relaxed);
+                             }
+                           });
+                         });
+                   }
+                 });
+}
+
+template <class Id>
+void VertexGrid<Id>::describe(Index tet, const VertexArrays& arrays) const {
+  std::optional<TetPositions> positions;
+  forEachClaim(
+      tet, Faces::Owned,
+      [&](const TetSweep& sweep, const VertexRun& run) {
+        write(sweep, run, tet, positions, arrays);
+      },
+      [](const ChartRow&, std::uint64_t) {});
+}
+
+/// Whether any point was claimed by two vertices. Entries are only ever replaced by "contested", so
+/// it does not matter who looks first.
+template <class Id>
+bool VertexGrid<Id>::markContested(Stage& stage) {
+  std::atomic<bool> found{false};
+  parallelBlocks(
+      stage, map_.topology.tetCount(), kSweepBlock,
+      [&](std::size_t begin, std::size_t end, std::size_t) {
+        BrickCache<Id> cache(grid_);
+        bool foundHere = false;
+        for (std::size_t t = begin; t < end; ++t) {
+          forEachClaim(
+              static_cast<Index>(t), Faces::OwnedAndCut, [](const TetSweep&, const VertexRun&) {},
+              [&](const ChartRow& row, std::uint64_t first) {
+                row.forEachPart([&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count,
+                                    std::ptrdiff_t stride) {
+                  Bricks& brick = *cache.find(row.chart, c);
+                  const std::size_t place = placeInBrick(c);
+                  for (std::uint32_t i = 0; i < count; ++i) {
+                    const auto at = entry(brick, place, i * stride);
+                    if (at.load(std::memory_order_relaxed) == static_cast<Id>(first + offset + i)) {
+                      continue;
+                    }
+                    at.store(Bricks::kContested, std::memory_order_relaxed);
+                    foundHere = true;
+                  }
+                });
+              });
+        }
+        if (foundHere) found.store(true, std::memory_order_relaxed);
+      });
+  return found.load();
+}
+
+template <class Id>
+std::vector<Index> VertexGrid<Id>::tetsWithContestedPoints(Stage& stage) const {
+  const std::size_t tets = map_.topology.tetCount();
+  std::vector<std::vector<Index>> blocks(blockCount(tets, kSweepBlock));
+  parallelBlocks(
+      stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t block) {
+        BrickCache<Id> cache(grid_);
+        for (std::size_t t = begin; t < end; ++t) {
+          bool contested = false;
+          forEachClaim(
+              static_cast<Index>(t), Faces::All, [](const TetSweep&, const VertexRun&) {},
+              [&](const ChartRow& row, std::uint64_t) {
+                row.forEachPart([&](const ChartPoint& c, std::uint32_t, std::uint32_t count,
+                                    std::ptrdiff_t stride) {
+                  Bricks& brick = *cache.find(row.chart, c);
+                  const std::size_t place = placeInBrick(c);
+                  for (std::uint32_t i = 0; i < count; ++i) {
+                    contested = contested ||
+                                entry(brick, place, i * stride).load(std::memory_order_relaxed) ==
+                                    Bricks::kContested;
+                  }
+                });
+              });
+          if (contested) blocks[block].push_back(static_cast<Index>(t));
+        }
+      });
+  std::vector<Index> all;
+  for (const std::vector<Index>& block : blocks) all.insert(all.end(), block.begin(), block.end());
+  return all;
+}
+
+template <class Id>
+void VertexGrid<Id>::clearContested(const std::vector<Index>& tets) {
+  for (const Index tet : tets) {
+    forEachClaim(
+        tet, Faces::All, [](const TetSweep&, const VertexRun&) {},
+        [&](const ChartRow& row, std::uint64_t) {
+          row.forEachPart(
+              [&](const ChartPoint& c, std::uint32_t, std::uint32_t count, std::ptrdiff_t stride) {
+                Bricks& brick = *grid_.find(brickKey(row.chart, c));
+                const std::size_t place = placeInBrick(c);
+                for (std::uint32_t i = 0; i < count; ++i) {
+                  const auto at = entry(brick, place, i * stride);
+                  if (at.load(std::memory_order_relaxed) == Bricks::kContested) {
+                    at.store(Bricks::kEmpty, std::memory_order_relaxed);
+                  }
+                }
+              });
+        });
+  }
+}
+
+/// Claims all points of a tet in a chart if none of them belongs to another vertex.
+template <class Id>
+bool VertexGrid<Id>::tryClaim(Index tet, Index chart) {
+  bool free = true;
+  const auto forEachEntry = [&](const auto& visit) {
+    forEachClaim(
+        tet, Faces::All, [](const TetSweep&, const VertexRun&) {},
+        [&](const ChartRow& row, std::uint64_t first) {
+          row.forEachPart([&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count,
+                              std::ptrdiff_t stride) { visit(c, first + offset, count, stride); });
+        });
+  };
+  forEachEntry(
+      [&](const ChartPoint& c, std::uint64_t first, std::uint32_t count, std::ptrdiff_t stride) {
+        Bricks* const brick = free ? grid_.find(brickKey(chart, c)) : nullptr;
+        if (brick == nullptr) return;
+        const std::size_t place = placeInBrick(c);
+        for (std::uint32_t i = 0; i < count; ++i) {
+          const Id found = entry(*brick, place, i * stride).load(std::memory_order_relaxed);
+          free = free && (found == Bricks::kEmpty || found == static_cast<Id>(first + i));
+        }
+      });
+  if (!free) return false;
+  forEachEntry([&](const ChartPoint& c, std::uint64_t first, std::uint32_t count,
+                   std::ptrdiff_t stride) {
+    Bricks& brick = grid_.add(brickKey(chart, c));
+    const std::size_t place = placeInBrick(c);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      entry(brick, place, i * stride).store(static_cast<Id>(first + i), std::memory_order_relaxed);
+    }
+  });
+  return true;
+}
+
+/// Takes pending tets into a chart, breadth first, as long as they fit.
+template <class Id>
+void VertexGrid<Id>::grow(Index seed, Index chart, Array<std::uint8_t>& pending) {
+  if (!tryClaim(seed, chart)) return;
+  std::vector<Index> queue(1, seed);
+  pending[seed] = 0;
+  charts_.chart[seed] = chart;
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    for (int face = 0; face < 4; ++face) {
+      const HalfFace halfFace = halfFaceOf(queue[head], face);
+      const HalfFace mate = map_.topology.mate[halfFace];
+      if (mate == kNone || pending[tetOf(mate)] == 0) continue;
+      if (!charts_.gaugesAgree(map_.topology, map_.exact.transitions, halfFace)) continue;
+      if (!tryClaim(tetOf(mate), chart)) continue;
+      pending[tetOf(mate)] = 0;
+      charts_.chart[tetOf(mate)] = chart;
+      queue.push_back(tetOf(mate));
+    }
+  }
+}
+
+template <class Id>
+OverlapCounts VertexGrid<Id>::resolveOverlaps(Stage& stage) {
+  OverlapCounts counts;
+  if (!markContested(stage)) return counts;
+  const std::vector<Index> tets = tetsWithContestedPoints(stage);
+  counts.tets = tets.size();
+  clearContested(tets);
+  Array<std::uint8_t> pending(map_.topology.tetCount(), 0);
+  std::vector<Index> before;
+  for (const Index tet : tets) {
+    pending[tet] = 1;
+    before.push_back(charts_.chart[tet]);
+    charts_.chart[tet] = Charts::kNoChart;
+  }
+  // One sheet after the other: the first may stay, so that the border of the others is all that is
+  // cut anew.
+  for (std::size_t i = 0; i < tets.size(); ++i) {
+    if (pending[tets[i]] != 0) grow(tets[i], before[i], pending);
+  }
+  for (const Index tet : tets) {
+    if (pending[tet] == 0) continue;
+    grow(tet, charts_.count, pending);
+    ++charts_.count;
+    ++counts.charts;
+    // Only a tet that overlaps itself (modulo 2^19 grid units) does not fit an empty chart.
+    if (pending[tet] != 0) ++counts.homelessTets;
+    pending[tet] = 0;
+  }
+  return counts;
+}
+
+template <class Id>
+Id VertexGrid<Id>::vertexAt(Index tet, const GridPoint& z, BrickCache<Id>& cache) const {
+  if (charts_.chart[tet] != Charts::kNoChart) {
+    const ChartPoint c = charts_.gauge(tet)(z);
+    Bricks* const brick = cache.find(charts_.chart[tet], c);
+    if (brick != nullptr) {
+      const Id id = brick->ids[placeInBrick(c)];
+      if (Bricks::isVertex(id)) return id;
+    }
+  }
+  return static_cast<Id>(exactNumber(tet, z));
+}
+
+template <class Id>
+std::uint64_t VertexGrid<Id>::exactNumber(Index tet, const GridPoint& z) const {
+  const TetSweep sweep(map_.exact, tet, SweptGrid::Vertices);
+  std::vector<SweptLine> scratch;
+  const std::array<std::uint8_t, 3>& axes = sweep.axes();
+  std::optional<std::uint64_t> found;
+  TetNumbering numbering(map_, numbers_, tet, sweep.axes);
+  numbering.run(linesOf(tet, sweep, scratch), [&](const VertexRun& run) {
+    if (run.line->level != z[axes[0]] || run.line->row != z[axes[1]]) return;
+    const auto offset = static_cast<std::uint32_t>(z[axes[2]] - run.line->first) - run.offset;
+    if (offset < run.count) found = run.first + offset;
+  });
+  if (found) return *found;
+  for (int face = 0; face < 4; ++face) {
+    if (((numbering.foreignFaces() >> face) & 1U) == 0) continue;
+    const HalfFace halfFace = halfFaceOf(tet, face);
+    const Index owner = tetOf(map_.topology.mate[halfFace]);
+    if (TetPlanes(map_.exact.corners[tet], map_.exact.unit).generator(z) != faceMask(face))
+      continue;
+    return exactNumber(owner, map_.exact.transitions.across(halfFace)(z));
+  }
+  throw Error(ErrorCode::Internal,
+              "A corner of a cell is no hex vertex. The map passed all checks, so this is a bug; "
+              "please report it with the map.",
+              {PlaceKind::Tet, tet});
+}
+
+template class VertexGrid<std::uint32_t>;
+template class VertexGrid<std::uint64_t>;
+
+}  // namespace hexhex

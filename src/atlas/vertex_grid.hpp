@@ -1,0 +1,102 @@
+// All hex vertices in the charts of the atlas.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <atlas/brick_grid.hpp>
+#include <atlas/charts.hpp>
+#include <sweep/tet_positions.hpp>
+#include <sweep/vertex_numbers.hpp>
+
+#include <hexhex/types.hpp>
+
+#include <map/prepare.hpp>
+
+namespace hexhex {
+
+/// Where vertices are written: arrays from the vertex number `first` on; none if null.
+struct VertexArrays {
+  std::uint64_t first = 0;
+  Vec3* points = nullptr;
+  Index* tets = nullptr;
+  CornerSet* corners = nullptr;
+};
+
+/// What became of places that several vertices claimed.
+struct OverlapCounts {
+  std::uint64_t tets = 0;          ///< with contested points at first
+  std::uint64_t charts = 0;        ///< opened for them
+  std::uint64_t homelessTets = 0;  ///< that no chart could take
+};
+
+/// Owns the numbers of all hex vertices and the grid that finds them again.
+///
+/// Every tet claims its lattice points (those of its closure) in its chart for the vertices there.
+/// Then it looks at them again: a point that now belongs to another vertex is contested, and the
+/// tets that claim it move to other charts. In the end, all points of a tet that has a chart belong
+/// to its own vertices there.
+template <class Id>
+class VertexGrid {
+ public:
+  /// @param charts     may receive further charts
+  /// @param keepLines  whether to store lines between the steps or to sweep again
+  VertexGrid(const PreparedMap& map, Charts& charts, bool keepLines) : map_(map), charts_(charts) {
+    if (keepLines) stored_.emplace(map.topology.tetCount());
+  }
+
+  /// Sweeps all tets, numbers the vertices, and allocates bricks.
+  void sweep(Stage& stage);
+  /// Enters all vertices into the grid and writes them to `arrays`.
+  void fill(const VertexArrays& arrays, Stage& stage);
+  /// Finds and resolves overlaps.
+  OverlapCounts resolveOverlaps(Stage& stage);
+  /// Frees what only the steps above need.
+  void dropLines() noexcept { stored_.reset(); }
+
+  /// Writes the vertices that a tet owns.
+  void describe(Index tet, const VertexArrays& arrays) const;
+
+  /// The hex vertex at a grid point of a closed tet.
+  [[nodiscard]] Id vertexAt(Index tet, const GridPoint& z, BrickCache<Id>& cache) const;
+
+  [[nodiscard]] const VertexNumbers& numbers() const noexcept { return numbers_; }
+  [[nodiscard]] const BrickGrid<Id>& grid() const noexcept { return grid_; }
+  [[nodiscard]] const Charts& charts() const noexcept { return charts_; }
+
+ private:
+  using Bricks = Brick<Id>;
+  enum class Faces : std::uint8_t { Owned, OwnedAndCut, All };
+
+  [[nodiscard]] std::span<const SweptLine> linesOf(Index tet, const TetSweep& sweep,
+                                                   std::vector<SweptLine>& scratch) const;
+  [[nodiscard]] bool hasLines(Index tet) const { return !stored_ || !stored_->of(tet).empty(); }
+
+  template <class VisitRun, class VisitRow>
+  void forEachClaim(Index tet, Faces faces, const VisitRun& visitRun,
+                    const VisitRow& visitRow) const;
+  template <class VisitRow>
+  void forEachForeignClaim(Index tet, int face, const VisitRow& visitRow) const;
+
+  void write(const TetSweep& sweep, const VertexRun& run, Index tet,
+             std::optional<TetPositions>& positions, const VertexArrays& arrays) const;
+  [[nodiscard]] std::uint64_t exactNumber(Index tet, const GridPoint& z) const;
+
+  [[nodiscard]] bool markContested(Stage& stage);
+  [[nodiscard]] std::vector<Index> tetsWithContestedPoints(Stage& stage) const;
+  void clearContested(const std::vector<Index>& tets);
+  [[nodiscard]] bool tryClaim(Index tet, Index chart);
+  void grow(Index seed, Index chart, Array<std::uint8_t>& pending);
+
+  const PreparedMap& map_;
+  Charts& charts_;
+  std::optional<TetLines> stored_;
+  VertexNumbers numbers_;
+  BrickGrid<Id> grid_;
+};
+
+extern template class VertexGrid<std::uint32_t>;
+extern template class VertexGrid<std::uint64_t>;
+
+}  // namespace hexhex

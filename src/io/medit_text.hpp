@@ -1,0 +1,45 @@
+// The lines of a `.mesh` file, for whoever writes one: at once or in pieces.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
+#include <io/line_writer.hpp>
+
+namespace hexhex {
+
+inline constexpr std::string_view kMeditHead = "MeshVersionFormatted 2\nDimension 3\nVertices\n";
+
+/// Writes vertices: coordinates and the reference 0.
+inline void writeMeditVertices(LineWriter& lines, std::span<const Vec3> points,
+                               LoopProgress* progress = nullptr) {
+  constexpr std::size_t kRoom = 3 * (kNumberRoom + 1) + 2;
+  lines.write(
+      points.size(), kRoom,
+      [points](char* place, std::size_t i) { return put(putNumbers(place, points[i]), " 0\n"); },
+      progress);
+}
+
+/// Writes elements: 1-based vertices and the reference 1.
+template <class Vertex, std::size_t corners>
+void writeMeditElements(LineWriter& lines, std::span<const std::array<Vertex, corners>> elements,
+                        LoopProgress* progress = nullptr) {
+  constexpr std::size_t kRoom = corners * (kNumberRoom + 1) + 2;
+  lines.write(
+      elements.size(), kRoom,
+      [elements](char* place, std::size_t i) {
+        // 64 bits: 32 would wrap for the last vertex of the largest mesh.
+        for (const Vertex vertex : elements[i]) {
+          place = put(put(place, std::uint64_t{vertex} + 1), ' ');
+        }
+        return put(place, "1\n");
+      },
+      progress);
+}
+
+}  // namespace hexhex

@@ -1,0 +1,130 @@
+// From a hex mesh to a polyhedral mesh (see ovm_output.hpp).
+#include <algorithm>
+#include <atomic>
+#include <bit>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+#include <io/ovm_cells.hpp>
+#include <io/ovm_features.hpp>
+#include <io/ovm_output.hpp>
+#include <io/ovm_topology.hpp>
+
+namespace hexhex {
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kReversed = 4;  // the order of a cell that begins alike but turns the other way
+
+std::int32_t orderOf(const Hex& listed, const Hex& assembled) {
+  std::size_t order = 0;
+  while (order < kHexOrders && inHexOrder(assembled, order) != listed) ++order;
+  return static_cast<std::int32_t>(order);
+}
+
+void setCornerOrder(OvmOutput& output, const HexMesh& mesh, const OvmLoops<4>& loops,
+                    Stage& stage) {
+  Array<std::int32_t> orders(mesh.cells.size());
+  std::atomic<bool> any{false};
+  parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
+    std::array<std::array<Index, 4>, 6> cell;
+    for (std::size_t s = 0; s < 6; ++s) {
+      cell[s] = loops.ofHalfFace(output.topology.cells.handles[6 * c + s]);
+    }
+    Hex hex;
+    static_cast<void>(assembleHex(cell, hex));  // built so that it succeeds
+    orders[c] = orderOf(mesh.cells[c], hex);
+    if (orders[c] != 0) any.store(true, std::memory_order_relaxed);
+  });
+  if (any) output.properties[OvmInteger::CornerOrder] = std::move(orders);
+}
+
+void setGenerators(OvmOutput& output, const HexMesh& mesh, Stage& stage) {
+  if (mesh.generatorCorners.empty()) return;
+  const std::size_t vertices = mesh.points.size();
+  Array<std::int32_t>& types = output.properties[OvmInteger::GeneratorType];
+  Array<std::int32_t>& tets = output.properties[OvmInteger::GeneratorTet];
+  Array<std::int32_t>& corners = output.properties[OvmInteger::GeneratorCorners];
+  types.resize(vertices);
+  corners.resize(vertices);
+  const bool haveTets = mesh.generatorTet.size() == vertices;
+  if (haveTets) tets.resize(vertices);
+  parallelFor(stage, vertices, kGrain, [&](std::size_t v) {
+    types[v] = static_cast<std::int32_t>(generatorKind(mesh.generatorCorners[v]));
+    corners[v] = mesh.generatorCorners[v];
+    if (haveTets) tets[v] = static_cast<std::int32_t>(mesh.generatorTet[v]);
+  });
+}
+
+/// The index of the simplex of a tet, in the tet mesh as this library writes it.
+class GeneratorIndices {
+ public:
+  GeneratorIndices(const TetMap& map, Stage& stage)
+      : map_(map), written_(toOvm(map, stage)), edges_(written_.topology), loops_(written_.topology, stage) {}
+
+  [[nodiscard]] Index of(Index tet, CornerSet corners) const {
+    const Tet& t = map_.tets[tet];
+    const auto corner = [&](CornerSet set) { return t[static_cast<std::size_t>(std::countr_zero(set))]; };
+    switch (generatorKind(corners)) {
+      case GeneratorKind::Vertex:
+        return corner(corners);
+      case GeneratorKind::Edge:
+        return edges_.find(corner(corners), corner(static_cast<CornerSet>(corners & (corners - 1))));
+      case GeneratorKind::Face:
+        return faceWithout(tet, corner(static_cast<CornerSet>(15 & ~corners)));
+      case GeneratorKind::Cell:
+        break;
+    }
+    return tet;
+  }
+
+ private:
+  [[nodiscard]] Index faceWithout(Index tet, Index vertex) const {
+    for (const Index halfFace : written_.topology.cells[tet]) {
+      const std::array<Index, 3>& loop = loops_.ofFace(halfFace / 2);
+      if (std::find(loop.begin(), loop.end(), vertex) == loop.end()) return halfFace / 2;
+    }
+    return kNone;
+  }
+
+  const TetMap& map_;
+  OvmOutput written_;
+  OvmEdgeFinder edges_;
+  OvmLoops<3> loops_;
+};
+
+void setGeneratorIndices(OvmOutput& output, const HexMesh& mesh, const TetMap& map, Stage& stage) {
+  if (mesh.generatorCorners.empty() || mesh.generatorTet.size() != mesh.points.size()) return;
+  const GeneratorIndices indices(map, stage);
+  Array<std::int32_t>& values = output.properties[OvmInteger::GeneratorIndex];
+  values.resize(mesh.points.size());
+  parallelFor(stage, values.size(), kGrain, [&](std::size_t v) {
+    const Index tet = mesh.generatorTet[v];
+    const Index index = tet < map.tets.size() ? indices.of(tet, mesh.generatorCorners[v]) : kNone;
+    values[v] = static_cast<std::int32_t>(index);  // kNone is -1
+  });
+}
+
+}  // namespace
+
+OvmOutput toOvm(const HexMesh& mesh, const TetMap* map, Stage& stage) {
+  Array<Hex> turned;
+  if (isMostlyNegative(mesh.points, mesh.cells, stage)) {
+    turned.resize(mesh.cells.size());
+    parallelFor(stage, turned.size(), kGrain,
+                [&](std::size_t c) { turned[c] = inHexOrder(mesh.cells[c], kReversed); });
+  }
+  const std::span<const Hex> cells = turned.empty() ? std::span<const Hex>(mesh.cells) : turned;
+  OvmOutput output{mesh.points, buildOvmTopology(mesh.points.size(), cells, stage), {}};
+  const OvmLoops<4> loops(output.topology, stage);
+  setCornerOrder(output, mesh, loops, stage);
+  setGenerators(output, mesh, stage);
+  if (map != nullptr) setGeneratorIndices(output, mesh, *map, stage);
+  setOvmVertexTags(output, mesh.features.vertices);
+  setOvmEdgeTags(output, mesh.features.edges);
+  setOvmFaceTags(output, mesh.features.quads, loops);
+  return output;
+}
+
+}  // namespace hexhex

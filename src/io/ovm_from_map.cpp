@@ -1,0 +1,156 @@
+// From a map to a polyhedral mesh (see ovm_output.hpp).
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include <hexhex/error.hpp>
+
+#include <base/vector3.hpp>
+#include <io/ovm_cells.hpp>
+#include <io/ovm_features.hpp>
+#include <io/ovm_first_fault.hpp>
+#include <io/ovm_output.hpp>
+#include <io/ovm_topology.hpp>
+
+namespace hexhex {
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+
+/// How corners are exchanged where most tets are inside out.
+constexpr std::array<std::uint8_t, 4> kAsListed = {0, 1, 2, 3};
+constexpr std::array<std::uint8_t, 4> kTurned = {0, 2, 1, 3};
+
+bool isFinite(const Vec3& v) {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+/// Refuses what could not be read back.
+void requireWritable(const TetMap& map, Stage& stage) {
+  const auto requireSize = [&map](std::size_t size, const char* what) {
+    if (size == map.tets.size()) return;
+    throw Error(ErrorCode::InvalidArgument, "The map has " + std::to_string(map.tets.size()) +
+                                                " tets but " + what + " for " +
+                                                std::to_string(size) + ".");
+  };
+  requireSize(map.parameters.size(), "parameters");
+  if (!map.rotations.empty()) requireSize(map.rotations.size(), "rotations");
+  const std::size_t point =
+      firstFault(stage, map.points.size(), [&](std::size_t v) { return isFinite(map.points[v]); });
+  if (point < map.points.size()) {
+    throw Error(ErrorCode::NotFinite,
+                "A coordinate of vertex " + std::to_string(point) + " is not finite.",
+                Place{PlaceKind::Vertex, point});
+  }
+  const auto inRange = [&map](Index v) { return v < map.points.size(); };
+  const std::size_t tet = firstFault(stage, map.tets.size(), [&](std::size_t t) {
+    return std::all_of(map.tets[t].begin(), map.tets[t].end(), inRange) &&
+           std::all_of(map.parameters[t].begin(), map.parameters[t].end(), isFinite);
+  });
+  if (tet == map.tets.size()) return;
+  const bool range = std::all_of(map.tets[tet].begin(), map.tets[tet].end(), inRange);
+  throw Error(range ? ErrorCode::NotFinite : ErrorCode::IndexOutOfRange,
+              range ? "A parameter of tet " + std::to_string(tet) + " is not finite."
+                    : "Tet " + std::to_string(tet) + " names a vertex that does not exist.",
+              Place{PlaceKind::Tet, tet});
+}
+
+bool isMostlyNegative(const TetMap& map, Stage& stage) {
+  std::atomic<std::int64_t> balance{0};
+  parallelBlocks(stage, map.tets.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::int64_t local = 0;
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const Tet& tet = map.tets[t];
+                     const Vec3& origin = map.points[tet[0]];
+                     const double volume = dot(cross(minus(map.points[tet[1]], origin),
+                                                     minus(map.points[tet[2]], origin)),
+                                               minus(map.points[tet[3]], origin));
+                     local += volume > 0 ? 1 : (volume < 0 ? -1 : 0);
+                   }
+                   balance.fetch_add(local, std::memory_order_relaxed);
+                 });
+  return balance.load() < 0;
+}
+
+/// How the corners of a tet were listed, which a reader finds in order of `assembled`.
+std::int32_t orderOf(const Tet& listed, const Tet& assembled) {
+  const auto* const found = std::find_if(
+      kTetOrders.begin(), kTetOrders.end(), [&](const std::array<std::uint8_t, 4>& order) {
+        for (std::size_t i = 0; i < 4; ++i) {
+          if (listed[i] != assembled[order[i]]) return false;
+        }
+        return true;
+      });
+  return static_cast<std::int32_t>(found - kTetOrders.begin());
+}
+
+void setCornerOrder(OvmOutput& output, const TetMap& map, const OvmLoops<3>& loops, Stage& stage) {
+  Array<std::int32_t> orders(map.tets.size());
+  std::atomic<bool> any{false};
+  parallelFor(stage, map.tets.size(), kGrain, [&](std::size_t t) {
+    std::array<std::array<Index, 3>, 4> cell;
+    for (std::size_t s = 0; s < 4; ++s) {
+      cell[s] = loops.ofHalfFace(output.topology.cells.handles[4 * t + s]);
+    }
+    OvmTet tet;
+    static_cast<void>(assembleTet(cell, tet));  // built so that it succeeds
+    orders[t] = orderOf(map.tets[t], tet.corners);
+    if (orders[t] != 0) any.store(true, std::memory_order_relaxed);
+  });
+  if (any) output.properties[OvmInteger::CornerOrder] = std::move(orders);
+}
+
+/// Parameters and rotations, which half-faces carry for the corners opposite them.
+void setHalfFaceValues(OvmOutput& output, const TetMap& map,
+                       const std::array<std::uint8_t, 4>& exchanged, Stage& stage) {
+  Array<Vec3>& parameters = output.properties.parametrization;
+  parameters.resize(2 * output.topology.faces.size());
+  Array<std::int32_t>& rotations = output.properties[OvmInteger::Transition];
+  if (!map.rotations.empty()) rotations.resize(parameters.size());
+  // The half-faces at the boundary have no cell; all others are overwritten.
+  parallelFor(stage, parameters.size(), kGrain, [&](std::size_t h) { parameters[h] = {}; });
+  std::fill(rotations.begin(), rotations.end(), -1);
+  parallelFor(stage, map.tets.size(), kGrain, [&](std::size_t t) {
+    for (std::size_t s = 0; s < 4; ++s) {
+      const Index halfFace = output.topology.cells.handles[4 * t + s];
+      const std::size_t corner = exchanged[kOvmTetOpposite[s]];
+      parameters[halfFace] = map.parameters[t][corner];
+      if (!rotations.empty()) rotations[halfFace] = map.rotations[t][corner];
+    }
+  });
+}
+
+void setEdgeValences(OvmOutput& output, const TetMap& map) {
+  if (map.edgeValences.empty()) return;
+  Array<std::int32_t>& offsets = output.properties[OvmInteger::EdgeValence];
+  offsets.assign(output.topology.edges.size(), 0);
+  const OvmEdgeFinder finder(output.topology);
+  for (const EdgeValence& edge : map.edgeValences) {
+    const Place place{PlaceKind::Edge, edge.vertex0, edge.vertex1};
+    setOvmValue(offsets, finder.find(edge.vertex0, edge.vertex1), edge.offset,
+                toString(place) + " with a known valence", place);
+  }
+}
+
+}  // namespace
+
+OvmOutput toOvm(const TetMap& map, Stage& stage) {
+  requireWritable(map, stage);
+  const auto& exchanged = isMostlyNegative(map, stage) ? kTurned : kAsListed;
+  Array<Tet> tets(map.tets.size());
+  parallelFor(stage, tets.size(), kGrain, [&](std::size_t t) {
+    for (std::size_t i = 0; i < 4; ++i) tets[t][i] = map.tets[t][exchanged[i]];
+  });
+  OvmOutput output{map.points, buildOvmTopology(map.points.size(), tets, stage), {}};
+  const OvmLoops<3> loops(output.topology, stage);
+  setCornerOrder(output, map, loops, stage);
+  setHalfFaceValues(output, map, exchanged, stage);
+  setEdgeValences(output, map);
+  setOvmVertexTags(output, map.features.vertices);
+  setOvmEdgeTags(output, map.features.edges);
+  setOvmFaceTags(output, map.features.faces, loops);
+  return output;
+}
+
+}  // namespace hexhex

@@ -1,0 +1,130 @@
+// What `.ovm` and `.ovmb` files hold: a polyhedral mesh of vertices, edges, faces and cells, and the
+// properties of them that this library knows.
+//
+// Half-edge 2e is edge e as stored, 2e + 1 the same edge reversed. Half-face 2f is face f as stored
+// (a closed loop of half-edges), 2f + 1 the reversed loop.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include <hexhex/types.hpp>
+
+namespace hexhex {
+
+/// What a property belongs to; the numbers are those of `.ovmb`.
+enum class OvmEntity : std::uint8_t { Vertex, Edge, Face, Cell, HalfEdge, HalfFace, Mesh };
+
+/// Indices of half-entities have to fit into 32 bits, so there are at most this many entities of a
+/// kind. It is also the limit of OpenVolumeMesh.
+inline constexpr std::uint64_t kMaxOvmEntities = (std::uint64_t{1} << 31) - 1;
+
+/// Lists of handles, one after the other.
+struct OvmLists {
+  Array<Index> handles;
+  std::size_t length = 0;        ///< of each list, if all have the same; else 0
+  Array<std::uint64_t> offsets;  ///< if they have not: list i is [offsets[i], offsets[i + 1])
+
+  [[nodiscard]] std::size_t size() const noexcept {
+    if (length > 0) return handles.size() / length;
+    return offsets.empty() ? 0 : offsets.size() - 1;
+  }
+  [[nodiscard]] std::span<const Index> operator[](std::size_t i) const noexcept {
+    if (length > 0) return {handles.data() + i * length, length};
+    return {handles.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
+  }
+};
+
+struct OvmTopology {
+  std::size_t vertexCount = 0;
+  Array<std::array<Index, 2>> edges;  ///< from, to
+  OvmLists faces;                     ///< half-edges in loop order
+  OvmLists cells;                     ///< half-faces
+
+  [[nodiscard]] std::size_t count(OvmEntity entity) const noexcept {
+    switch (entity) {
+      case OvmEntity::Vertex:
+        return vertexCount;
+      case OvmEntity::Edge:
+        return edges.size();
+      case OvmEntity::Face:
+        return faces.size();
+      case OvmEntity::Cell:
+        return cells.size();
+      case OvmEntity::HalfEdge:
+        return 2 * edges.size();
+      case OvmEntity::HalfFace:
+        return 2 * faces.size();
+      case OvmEntity::Mesh:
+        break;
+    }
+    return 1;
+  }
+  /// The vertex that a half-edge comes from.
+  [[nodiscard]] Index from(Index halfEdge) const noexcept {
+    return edges[halfEdge / 2][halfEdge % 2];
+  }
+  /// The vertex that a half-edge goes to.
+  [[nodiscard]] Index to(Index halfEdge) const noexcept { return from(halfEdge ^ 1U); }
+};
+
+/// The map: for each half-face the parameters of the vertex opposite it in its cell, in the cell's
+/// chart. Half-faces without a cell have values without meaning.
+inline constexpr std::string_view kParametrizationName = "HexHex::Parametrization";
+
+/// Properties of integers (C++ `int`) that are read and written, in the order of OvmEntity.
+enum class OvmInteger : std::uint8_t {
+  FeatureVertices,
+  GeneratorType,     ///< of hex meshes: dimension of the simplex of the tets that holds the vertex
+  GeneratorIndex,    ///< its index in the tet mesh
+  GeneratorTet,      ///< the same as HexMesh has it, so that it comes back as it was
+  GeneratorCorners,  ///< likewise
+  EdgeValence,
+  FeatureEdges,
+  FeatureFaces,
+  CornerOrder,  ///< of cells: how their corners were listed, which the format does not say
+  Transition
+};
+
+struct OvmIntegerName {
+  OvmEntity entity;
+  std::string_view name;  ///< some are misspelt, and known so
+};
+inline constexpr std::array<OvmIntegerName, 10> kOvmIntegers = {
+    {{OvmEntity::Vertex, "AlgoHex::FeatureVertices"},
+     {OvmEntity::Vertex, "v_tet_generator_type"},
+     {OvmEntity::Vertex, "v_tet_generator_index"},
+     {OvmEntity::Vertex, "hexhex::generator_tet"},
+     {OvmEntity::Vertex, "hexhex::generator_corners"},
+     {OvmEntity::Edge, "edge_valance"},
+     {OvmEntity::Edge, "AlgoHex::FeatureEdges"},
+     {OvmEntity::Face, "AlgoHex::FeatureFaces"},
+     {OvmEntity::Cell, "hexhex::corner_order"},
+     {OvmEntity::HalfFace, "HalffaceTransiton"}}};
+
+/// Values of properties, one per element of the entity; empty if there is no such property.
+struct OvmProperties {
+  Array<Vec3> parametrization;  ///< per half-face
+  std::array<Array<std::int32_t>, kOvmIntegers.size()> integers;
+
+  [[nodiscard]] Array<std::int32_t>& operator[](OvmInteger property) noexcept {
+    return integers[static_cast<std::size_t>(property)];
+  }
+  [[nodiscard]] const Array<std::int32_t>& operator[](OvmInteger property) const noexcept {
+    return integers[static_cast<std::size_t>(property)];
+  }
+};
+
+/// A mesh as it was read.
+struct OvmMesh {
+  Array<Vec3> points;
+  OvmTopology topology;
+  OvmProperties properties;
+  /// Whether the file has a property of the map's name that is no map, for error messages.
+  bool hasForeignParametrization = false;
+};
+
+}  // namespace hexhex

@@ -1,0 +1,80 @@
+// Little-endian numbers in memory, and a cursor that reads them one after the other.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include <hexhex/error.hpp>
+
+namespace hexhex {
+
+/// The number at a place of any alignment.
+template <class T>
+[[nodiscard]] T loadLittle(const char* place) noexcept {
+  std::array<char, sizeof(T)> bytes;  // NOLINT(*-member-init): all of it is copied to
+  std::memcpy(bytes.data(), place, sizeof(T));
+  if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
+  return std::bit_cast<T>(bytes);
+}
+
+/// The bytes of a number.
+template <class T>
+[[nodiscard]] std::array<char, sizeof(T)> littleBytes(T value) noexcept {
+  auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
+  return bytes;
+}
+
+/// Reads a part of a file from front to back; what is missing is an error with its place.
+class ByteCursor {
+ public:
+  /// @param part  of `file`; both must outlive the cursor, and so must the name
+  ByteCursor(std::string_view part, std::string_view file, const std::string& fileName)
+      : rest_(part), file_(file), fileName_(fileName) {}
+
+  [[nodiscard]] std::size_t remaining() const noexcept { return rest_.size(); }
+  /// Position in the file of what is read next.
+  [[nodiscard]] std::size_t position() const noexcept {
+    return static_cast<std::size_t>(rest_.data() - file_.data());
+  }
+
+  /// @param what  for the message, e.g. "the name of a property"
+  [[nodiscard]] std::string_view take(std::uint64_t size, std::string_view what) {
+    if (size > rest_.size()) {
+      fail(ErrorCode::FileSyntax, std::string(what) + " needs " + std::to_string(size) +
+                                      " bytes, but only " + std::to_string(rest_.size()) +
+                                      " are left.");
+    }
+    const std::string_view taken = rest_.substr(0, static_cast<std::size_t>(size));
+    rest_.remove_prefix(taken.size());
+    return taken;
+  }
+  template <class T>
+  [[nodiscard]] T read(std::string_view what) {
+    return loadLittle<T>(take(sizeof(T), what).data());
+  }
+
+  /// Throws an error about what is read next: "<file>, byte 48: <sentence>".
+  [[noreturn]] void fail(ErrorCode code, std::string_view sentence) const {
+    failAt(position(), code, sentence);
+  }
+  [[noreturn]] void failAt(std::size_t position, ErrorCode code, std::string_view sentence,
+                           Place place = {}) const {
+    throw Error(code,
+                fileName_ + ", byte " + std::to_string(position) + ": " + std::string(sentence),
+                place);
+  }
+
+ private:
+  std::string_view rest_;
+  std::string_view file_;
+  const std::string& fileName_;
+};
+
+}  // namespace hexhex

@@ -1,0 +1,91 @@
+// The parts of a `.vtu` file follow each other array by array, but a mesh in pieces brings some of
+// each. So all arrays are written side by side, each from its own position on.
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include <hexhex/error.hpp>
+
+#include <io/file_part.hpp>
+#include <io/file_sink.hpp>
+#include <io/mesh_sink.hpp>
+#include <io/vtu_content.hpp>
+#include <io/vtu_layout.hpp>
+
+namespace hexhex {
+namespace {
+
+class VtuSink final : public FileSink {
+ public:
+  VtuSink(const std::filesystem::path& file, Context& context) : FileSink(file, context) {
+    if (output().hasPositions()) return;
+    throw Error(ErrorCode::FileWrite,
+                file.string() +
+                    ": the file was not written because it is a device or a pipe, but the arrays "
+                    "of a .vtu file that comes in pieces are written side by side. Name a file.");
+  }
+
+ private:
+  void writeBegin() override {}
+
+  void writePoints(const PointPiece& piece) override {
+    if (piece.first == 0) layOut(!piece.generatorTet.empty(), !piece.generatorCorners.empty());
+    part(VtuContent::Points).writeBytes(piece.points.data(), piece.points.size_bytes());
+    if (!piece.generatorTet.empty()) {
+      part(VtuContent::GeneratorTet)
+          .writeBytes(piece.generatorTet.data(), piece.generatorTet.size_bytes());
+    }
+    if (!piece.generatorCorners.empty()) {
+      part(VtuContent::GeneratorCorners)
+          .writeBytes(piece.generatorCorners.data(), piece.generatorCorners.size_bytes());
+      writeGeneratorKinds(part(VtuContent::GeneratorKind), piece.generatorCorners);
+    }
+  }
+
+  void writeCellsBegin() override {
+    if (!layout_) layOut(false, false);  // there are no vertices
+  }
+  void writeCells(std::uint64_t first, std::span<const Hex> cells) override {
+    writeAnyCells(first, cells);
+  }
+  void writeCells(std::uint64_t first, std::span<const Hex64> cells) override {
+    writeAnyCells(first, cells);
+  }
+
+  template <class Cell>
+  void writeAnyCells(std::uint64_t first, std::span<const Cell> cells) {
+    writeConnectivity(part(VtuContent::Connectivity), cells, layout_->wideConnectivity());
+    writeOffsets(part(VtuContent::Offsets), first, cells.size(), layout_->wideOffsets());
+    writeTypes(part(VtuContent::Types), cells.size());
+  }
+
+  void writeEnd() override {
+    for (auto& [content, part] : parts_) part.flush();
+    const std::string_view tail = VtuLayout::tail();
+    output().writeBytesAt(layout_->tailPosition(), tail.data(), tail.size());
+  }
+
+  /// Only the first piece tells which arrays there are, and so where they begin.
+  void layOut(bool generatorTets, bool generatorCorners) {
+    layout_.emplace(VtuShape{pointCount(), cellCount(), generatorTets, generatorCorners, false});
+    output().writeBytesAt(0, layout_->head().data(), layout_->head().size());
+    for (const VtuArray& array : layout_->arrays()) {
+      output().writeBytesAt(array.position - sizeof(array.bytes), &array.bytes,
+                            sizeof(array.bytes));
+      parts_.emplace(array.content, FilePart(output(), array.position));
+    }
+  }
+
+  FilePart& part(VtuContent content) { return parts_.at(content); }
+
+  std::optional<VtuLayout> layout_;
+  std::map<VtuContent, FilePart> parts_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshSink> openVtuSink(const std::filesystem::path& file, Context& context) {
+  return std::make_unique<VtuSink>(file, context);
+}
+
+}  // namespace hexhex

@@ -1,0 +1,59 @@
+// The parameters that all stages work with, whatever charts the caller chose.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include <hexhex/types.hpp>
+
+#include <base/vector3.hpp>
+#include <map/input.hpp>
+
+namespace hexhex {
+
+/// Parameters near the origin. Charts may sit far away (translations of 1e9 occur), which would
+/// cost fractional bits: each tet's chart is therefore moved by a multiple of `grid`, exactly. The
+/// grid is coarse, so that neighbours in one chart nearly always move alike and identity
+/// transitions stay identities.
+class LocalParameters {
+ public:
+  /// @param map  must outlive this
+  explicit LocalParameters(const OrientedMap& map) noexcept;
+
+  /// Whether coordinates are too large for the arithmetic behind. Nothing but comparisons may then
+  /// be done with parameters.
+  [[nodiscard]] bool tooLarge() const noexcept { return tooLarge_; }
+
+  [[nodiscard]] Vec3 operator()(Index tet, int corner) const noexcept {
+    const TetParameters& parameters = parameters_[tet];
+    const Vec3& u = parameters[static_cast<std::size_t>(corner)];
+    return moved_ ? minus(u, move(parameters)) : u;
+  }
+  /// All corners of a tet.
+  [[nodiscard]] TetParameters operator()(Index tet) const noexcept {
+    TetParameters parameters = parameters_[tet];
+    if (moved_) {
+      const Vec3 by = move(parameters);
+      for (Vec3& u : parameters) u = minus(u, by);
+    }
+    return parameters;
+  }
+  /// Largest magnitude of a coordinate.
+  [[nodiscard]] double largest() const noexcept { return largest_; }
+
+ private:
+  [[nodiscard]] Vec3 move(const TetParameters& parameters) const noexcept {
+    Vec3 by{};
+    for (std::size_t k = 0; k < 3; ++k) by[k] = std::nearbyint(parameters[0][k] / grid_) * grid_;
+    return by;
+  }
+
+  std::span<const TetParameters> parameters_;
+  double grid_ = 0;
+  double largest_ = 0;
+  bool moved_ = false;
+  bool tooLarge_ = false;
+};
+
+}  // namespace hexhex

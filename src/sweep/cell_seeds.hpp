@@ -1,0 +1,65 @@
+// The canonical numbers of hex cells: by the tet that owns the cell's centre (the smallest of those
+// that contain it), there in the order of the tet's sweep over centres. The corners of a cell are
+// in VTK order with respect to the axes of the owner's chart.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <sweep/tet_lines.hpp>
+
+#include <hexhex/types.hpp>
+
+#include <map/prepare.hpp>
+
+namespace hexhex {
+
+/// Offsets of the corners of a cell from its smallest corner, in VTK order.
+inline constexpr std::array<GridPoint, 8> kCellCorners = {
+    {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
+
+/// Decides which centres a tet owns.
+class CenterOwner {
+ public:
+  CenterOwner(const TetTopology& topology, Index tet) noexcept : topology_(topology), tet_(tet) {}
+
+  struct Range {
+    std::uint32_t first;
+    std::uint32_t count;
+  };
+  /// The owned centres of one of the tet's lines; they are consecutive, because the owner of a
+  /// simplex owns no less than that of a face of it.
+  [[nodiscard]] Range owned(const SweptLine& line) {
+    if (line.allInside()) return {0, line.count};
+    const bool left = owns(line.left);
+    const bool right = owns(line.right);
+    if (line.count == 1) return {0, left ? 1U : 0U};
+    if (line.count > 2 && !owns(line.inner())) return {0, 0};
+    if (line.count == 2 && !left) return {1, right ? 1U : 0U};
+    const std::uint32_t first = left ? 0 : 1;
+    return {first, line.count - first - (right ? 0U : 1U)};
+  }
+
+ private:
+  [[nodiscard]] bool owns(CornerMask simplex) {
+    if (simplex == kWholeTet) return true;
+    const auto bit = 1U << simplex;
+    if ((known_ & bit) == 0) {
+      known_ |= bit;
+      if (ownerTet(topology_, tet_, simplex) == tet_) owned_ |= bit;
+    }
+    return (owned_ & bit) != 0;
+  }
+
+  const TetTopology& topology_;
+  Index tet_;
+  unsigned known_ = 0;
+  unsigned owned_ = 0;
+};
+
+/// Sweeps the centres of all tets and stores their lines.
+/// @return per tet (+1) the first cell that it owns
+[[nodiscard]] Array<std::uint64_t> numberCells(const PreparedMap& map, TetLines& lines,
+                                               Stage& stage);
+
+}  // namespace hexhex

@@ -1,0 +1,43 @@
+// Where the grid points of one tet lie in space. Both engines take positions from here, so they
+// agree in every bit.
+#pragma once
+
+#include <hexhex/types.hpp>
+
+#include <lattice/rasterize.hpp>
+#include <map/prepare.hpp>
+
+namespace hexhex {
+
+/// The inverse of the map in one tet.
+class TetPositions {
+ public:
+  /// @param box, axes  of the tet's sweep; the box is not empty
+  TetPositions(const PreparedMap& map, Index tet, const GridBox& box, SweepAxes axes);
+
+  /// The preimage of a grid point in the interior of a simplex of the tet: a vertex itself, on the
+  /// segment at edges, in the plane of the three corners at faces.
+  [[nodiscard]] Vec3 at(CornerMask simplex, const GridPoint& z) const;
+
+  /// Preimages of `count` grid points in the interior of the tet, along the third sweep axis.
+  void alongLine(std::int32_t level, std::int32_t row, std::int32_t first, std::uint32_t count,
+                 Vec3* positions) const;
+
+ private:
+  [[nodiscard]] Vec3 inside(std::int32_t level, std::int32_t row, std::int32_t point) const;
+  [[nodiscard]] Vec3 insideExactly(const GridPoint& z) const;
+  [[nodiscard]] Vec3 onFace(CornerMask face, const GridPoint& z) const;
+  [[nodiscard]] Vec3 onEdge(CornerMask edge, const GridPoint& z) const;
+  [[nodiscard]] Vec3 combine(const std::array<double, 4>& weights) const;
+
+  const LatticeTet& corners_;
+  std::int64_t unit_;
+  std::array<std::uint8_t, 3> axes_;
+  std::array<std::int32_t, 3> first_;  ///< of the box, by sweep axis
+  std::array<Vec3, 4> points_;
+  Vec3 origin_{};                ///< preimage of the box's first point
+  std::array<Vec3, 3> steps_{};  ///< change of the preimage along each sweep axis
+  bool illConditioned_ = false;  ///< nearly flat in the map: the affine form would lose digits
+};
+
+}  // namespace hexhex

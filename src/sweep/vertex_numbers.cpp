@@ -1,0 +1,128 @@
+#include <numeric>
+
+#include <sweep/vertex_numbers.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// The proper simplices of a tet's boundary, by dimension, then corners.
+constexpr std::array<CornerMask, 14> kBoundarySimplices = {1, 2,  4,  8, 3,  5,  6,
+                                                           9, 10, 12, 7, 11, 13, 14};
+
+}  // namespace
+
+std::uint64_t VertexNumbers::firstOf(Index owner, CornerMask simplex) const {
+  std::uint64_t first = begin[owner];
+  for (Index g = generatorBegin[owner]; g < generatorBegin[owner + 1]; ++g) {
+    if (generators[g].simplex == simplex) return first;
+    first += generators[g].count;
+  }
+  if (simplex == kWholeTet) return first;
+  throw Error(ErrorCode::Internal,
+              "A hex vertex is missing in the tet that owns it. The map passed all checks, so this "
+              "is a bug; please report it with the map.",
+              {PlaceKind::Tet, owner});
+}
+
+VertexCounter::VertexCounter(const PreparedMap& map, VertexNumbers& numbers)
+    : map_(map), numbers_(numbers), blocks_(blockCount(map.topology.tetCount(), kSweepBlock)) {
+  numbers.begin.resize(map.topology.tetCount() + 1);
+  numbers.generatorBegin.resize(map.topology.tetCount() + 1);
+  numbers.begin.back() = 0;
+  numbers.generatorBegin.back() = 0;
+}
+
+void VertexCounter::count(std::size_t block, Index tet, std::span<const SweptLine> lines) {
+  Block& counts = blocks_[block];
+  const std::size_t generatorsBefore = counts.generators.size();
+  std::uint64_t inside = 0;
+  bool boundary = false;
+  for (const SweptLine& line : lines) {
+    if (line.allInside()) {
+      inside += line.count;
+    } else {
+      boundary = true;
+      if (line.left == kWholeTet) ++inside;
+      if (line.count > 1 && line.right == kWholeTet) ++inside;
+      if (line.count > 2 && line.inner() == kWholeTet) inside += line.count - 2;
+    }
+  }
+  if (inside > 0) {
+    ++counts.generatorCounts[3];
+    counts.vertexCounts[3] += inside;
+  }
+  std::uint64_t owned = inside;
+  if (boundary) {
+    countBoundary(counts, tet, lines);
+    for (std::size_t g = generatorsBefore; g < counts.generators.size(); ++g) {
+      owned += counts.generators[g].count;
+    }
+  }
+  numbers_.begin[tet] = owned;
+  numbers_.generatorBegin[tet] = static_cast<Index>(counts.generators.size() - generatorsBefore);
+}
+
+void VertexCounter::countBoundary(Block& block, Index tet, std::span<const SweptLine> lines) {
+  std::array<Index, 16> counts{};
+  for (const SweptLine& line : lines) {
+    ++counts[line.left];
+    if (line.count > 1) ++counts[line.right];
+    if (line.count > 2) counts[line.inner()] += line.count - 2;
+  }
+  for (const CornerMask simplex : kBoundarySimplices) {
+    if (counts[simplex] == 0 || ownerTet(map_.topology, tet, simplex) != tet) continue;
+    block.generators.push_back({counts[simplex], simplex});
+    const auto kind = static_cast<std::size_t>(dimension(simplex));
+    ++block.generatorCounts[kind];
+    block.vertexCounts[kind] += counts[simplex];
+  }
+}
+
+void VertexCounter::finish() {
+  exclusiveScan(std::span(numbers_.begin));
+  exclusiveScan(std::span(numbers_.generatorBegin));
+  numbers_.generators.resize(numbers_.generatorBegin.back());
+  auto place = numbers_.generators.begin();
+  for (Block& block : blocks_) {
+    place = std::copy(block.generators.begin(), block.generators.end(), place);
+    for (std::size_t kind = 0; kind < 4; ++kind) {
+      numbers_.generatorCounts[kind] += block.generatorCounts[kind];
+      numbers_.vertexCounts[kind] += block.vertexCounts[kind];
+    }
+  }
+  blocks_ = {};
+}
+
+void TetNumbering::start(Counter& counter, CornerMask simplex) {
+  const Index owner = ownerTet(map_.topology, tet_, simplex);
+  counter.known = true;
+  counter.owned = owner == tet_;
+  if (dimension(simplex) == 2 && !counter.owned) {
+    counter.foreignFace = true;
+    foreignFaces_ |= 1U << oppositeCorner(simplex);
+    return;
+  }
+  const CornerMask there = counter.owned ? simplex : map_.topology.translated(simplex, tet_, owner);
+  counter.next = numbers_.firstOf(owner, there);
+  if (dimension(simplex) != 1 || !sweepsBackward(simplex)) return;
+  counter.backward = true;
+  for (Index g = numbers_.generatorBegin[owner]; g < numbers_.generatorBegin[owner + 1]; ++g) {
+    if (numbers_.generators[g].simplex == there) counter.next += numbers_.generators[g].count - 1;
+  }
+}
+
+/// Whether the sweep meets the points of an edge from the larger vertex to the smaller.
+bool TetNumbering::sweepsBackward(CornerMask edge) const noexcept {
+  const std::size_t a = firstCorner(edge);
+  const std::size_t b = lastCorner(edge);
+  const LatticeTet& corners = map_.exact.corners[tet_];
+  const Tet& tet = map_.topology.tets[tet_];
+  const LatticePoint along = tet[a] < tet[b] ? corners[b] - corners[a] : corners[a] - corners[b];
+  for (const std::uint8_t axis : axes_()) {
+    if (along[axis] != 0) return along[axis] < 0;
+  }
+  return false;
+}
+
+}  // namespace hexhex

@@ -1,0 +1,137 @@
+// The canonical numbers of hex vertices: by owner tet (the smallest around the generator); there by
+// generator, in order of dimension, then corners; there by position: along an edge from its smaller
+// vertex on, otherwise in the order of the owner's sweep.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <sweep/tet_lines.hpp>
+
+#include <hexhex/types.hpp>
+
+#include <map/prepare.hpp>
+
+namespace hexhex {
+
+/// A simplex with hex vertices on the boundary of its owner.
+struct BoundaryGenerator {
+  Index count;  ///< hex vertices
+  CornerMask simplex;
+};
+
+struct VertexNumbers {
+  Array<std::uint64_t> begin;           ///< per tet (+1): the first hex vertex that it owns
+  Array<Index> generatorBegin;          ///< per tet (+1): its range in `generators`
+  Array<BoundaryGenerator> generators;  ///< owned, in order
+  std::array<std::uint64_t, 4> generatorCounts{};  ///< simplices with hex vertices, by kind
+  std::array<std::uint64_t, 4> vertexCounts{};     ///< hex vertices, by kind of generator
+
+  [[nodiscard]] std::uint64_t count() const noexcept { return begin.back(); }
+
+  /// The first hex vertex in the interior of a simplex, by its owner and corners there.
+  /// @throws Error Internal if the owner has none
+  [[nodiscard]] std::uint64_t firstOf(Index owner, CornerMask simplex) const;
+};
+
+/// What a block of tets owns; collected while it is swept.
+class VertexCounter {
+ public:
+  VertexCounter(const PreparedMap& map, VertexNumbers& numbers);
+
+  /// Counts one tet's lines; tets of a block in order, blocks in any order and in parallel.
+  void count(std::size_t block, Index tet, std::span<const SweptLine> lines);
+  /// Turns counts into numbers.
+  void finish();
+
+ private:
+  struct Block {
+    std::vector<BoundaryGenerator> generators;
+    std::array<std::uint64_t, 4> generatorCounts{};
+    std::array<std::uint64_t, 4> vertexCounts{};
+  };
+  void countBoundary(Block& block, Index tet, std::span<const SweptLine> lines);
+
+  const PreparedMap& map_;
+  VertexNumbers& numbers_;
+  std::vector<Block> blocks_;
+};
+
+/// Consecutive points of one line in the interior of one simplex, with consecutive numbers.
+struct VertexRun {
+  const SweptLine* line;
+  std::uint32_t offset;  ///< of the first point in the line
+  std::uint32_t count;
+  CornerMask simplex;
+  bool owned;           ///< by the tet
+  std::uint64_t first;  ///< number of the first point
+};
+
+/// Numbers the vertices of one tet: all but those in faces that another tet owns.
+class TetNumbering {
+ public:
+  TetNumbering(const PreparedMap& map, const VertexNumbers& numbers, Index tet,
+               SweepAxes axes) noexcept
+      : map_(map), numbers_(numbers), tet_(tet), axes_(axes) {}
+
+  /// Calls visit(VertexRun) in sweep order.
+  template <class Visit>
+  void run(std::span<const SweptLine> lines, const Visit& visit) {
+    Counter& inside = counter(kWholeTet);
+    for (const SweptLine& line : lines) {
+      if (line.allInside()) {
+        visit(VertexRun{&line, 0, line.count, kWholeTet, true, inside.next});
+        inside.next += line.count;
+        continue;
+      }
+      piece(line, 0, 1, line.left, visit);
+      if (line.count > 2) piece(line, 1, line.count - 2, line.inner(), visit);
+      if (line.count > 1) piece(line, line.count - 1, 1, line.right, visit);
+    }
+  }
+
+  /// Faces with hex vertices that another tet owns: a set of opposite corners. After run().
+  [[nodiscard]] unsigned foreignFaces() const noexcept { return foreignFaces_; }
+
+ private:
+  struct Counter {
+    std::uint64_t next = 0;
+    bool known = false;
+    bool owned = false;
+    bool backward = false;  ///< the sweep runs against the order along an edge
+    bool foreignFace = false;
+  };
+
+  Counter& counter(CornerMask simplex) {
+    Counter& counter = counters_[simplex];
+    if (!counter.known) start(counter, simplex);
+    return counter;
+  }
+  void start(Counter& counter, CornerMask simplex);
+  [[nodiscard]] bool sweepsBackward(CornerMask edge) const noexcept;
+
+  template <class Visit>
+  void piece(const SweptLine& line, std::uint32_t offset, std::uint32_t count, CornerMask simplex,
+             const Visit& visit) {
+    Counter& c = counter(simplex);
+    if (c.foreignFace) return;
+    if (!c.backward) {
+      visit(VertexRun{&line, offset, count, simplex, c.owned, c.next});
+      c.next += count;
+      return;
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+      visit(VertexRun{&line, offset + i, 1, simplex, c.owned, c.next--});
+    }
+  }
+
+  const PreparedMap& map_;
+  const VertexNumbers& numbers_;
+  Index tet_;
+  SweepAxes axes_;
+  unsigned foreignFaces_ = 0;
+  std::array<Counter, 16> counters_{};
+};
+
+}  // namespace hexhex
