@@ -45,25 +45,78 @@ void addGenerated(std::vector<BenchMap>& maps) {
   }
 }
 
-void addReal(std::vector<BenchMap>& maps) {
+/// Slightly more than a million tets, 0.1 hexahedra for each.
+void addMillionTets(std::vector<BenchMap>& maps) {
+  maps.push_back(
+      generated("sphere_blocks_million", SampleKind::Sphere, ChartStyle::Blocks, 24, 23));
+  maps.push_back(
+      generated("cylinder_random_million", SampleKind::Cylinder, ChartStyle::Random, 28, 26));
+}
+
+/// @return nothing if the file is missing
+std::optional<BenchMap> real(const std::string& name, int scale) {
   const char* fromEnvironment = std::getenv("HEXHEX_DATA");
   const std::filesystem::path folder =
       fromEnvironment != nullptr ? fromEnvironment : HEXHEX_DATA_DIR;
+  BenchMap map;
+  map.name = name;
+  map.file = folder / "maps" / (name + ".hexex");
+  map.scale = scale;
+  if (!std::filesystem::exists(map.file)) return std::nullopt;
+  return map;
+}
+
+void addReal(std::vector<BenchMap>& maps) {
   struct Real {
     const char* name;
     int scale;
   };
   constexpr std::array<Real, 4> kReal = {
       {{"s17c_sphere_r0.1", 1}, {"s17c_sphere_r10", 1}, {"s17c_sphere_r100", 2}, {"rockerarm", 8}}};
-  for (const Real& real : kReal) {
-    const std::filesystem::path file = folder / "maps" / (std::string(real.name) + ".hexex");
-    if (!std::filesystem::exists(file)) continue;
-    BenchMap map;
-    map.name = std::string(real.name) + "_x" + std::to_string(real.scale);
-    map.file = file;
-    map.scale = real.scale;
-    maps.push_back(map);
+  for (const Real& r : kReal) {
+    std::optional<BenchMap> map = real(r.name, r.scale);
+    if (!map) continue;
+    map->name += "_x" + std::to_string(r.scale);
+    maps.push_back(*map);
   }
+}
+
+BenchMap scalableSphere() {
+  return generated("sphere_blocks", SampleKind::Sphere, ChartStyle::Blocks, 9, 4);
+}
+
+std::vector<BenchMap> makeScalable() {
+  std::vector<BenchMap> maps = {scalableSphere()};
+  for (const char* name : {"s17c_sphere_r1", "rockerarm"}) {
+    if (const std::optional<BenchMap> map = real(name, 1)) maps.push_back(*map);
+  }
+  return maps;
+}
+
+std::vector<BenchMap> makeDensities() {
+  struct Density {
+    const char* name;  ///< about as many hexahedra per tet
+    int cells;
+    int refine;
+  };
+  // As many tets as keep both the map and its mesh within a few million elements.
+  constexpr std::array<Density, 11> kDensities = {{{"0.01", 10, 20},
+                                                   {"0.03", 14, 20},
+                                                   {"0.1", 21, 20},
+                                                   {"0.3", 28, 18},
+                                                   {"1", 37, 16},
+                                                   {"3", 40, 12},
+                                                   {"10", 49, 10},
+                                                   {"30", 57, 8},
+                                                   {"100", 64, 6},
+                                                   {"300", 61, 4},
+                                                   {"1000", 69, 3}}};
+  std::vector<BenchMap> maps;
+  for (const Density& d : kDensities) {
+    maps.push_back(generated(std::string("sphere_blocks_d") + d.name, SampleKind::Sphere,
+                             ChartStyle::Blocks, d.cells, d.refine));
+  }
+  return maps;
 }
 
 }  // namespace
@@ -72,9 +125,20 @@ const std::vector<BenchMap>& benchMaps() {
   static const std::vector<BenchMap> maps = [] {
     std::vector<BenchMap> all;
     addGenerated(all);
+    addMillionTets(all);
     addReal(all);
     return all;
   }();
+  return maps;
+}
+
+const std::vector<BenchMap>& scalableMaps() {
+  static const std::vector<BenchMap> maps = makeScalable();
+  return maps;
+}
+
+const std::vector<BenchMap>& densityMaps() {
+  static const std::vector<BenchMap> maps = makeDensities();
   return maps;
 }
 
@@ -84,12 +148,21 @@ const BenchMap& middleMap() {
   return map;
 }
 
+const BenchMap& sphereMap() {
+  static const BenchMap map = real("s17c_sphere_r1", 1).value_or(scalableSphere());
+  return map;
+}
+
+TetMap makeMap(const BenchMap& map) {
+  return map.file.empty() ? generateSample(map.kind, map.options).map : readMap(map.file);
+}
+
 const TetMap& load(const BenchMap& map) {
   static std::string loadedName;
   static std::optional<TetMap> loaded;
   if (!loaded || loadedName != map.name) {
     loaded.reset();
-    loaded = map.file.empty() ? generateSample(map.kind, map.options).map : readMap(map.file);
+    loaded = makeMap(map);
     loadedName = map.name;
   }
   return *loaded;

@@ -1,15 +1,25 @@
-// What main registers.
+// What main registers. Names are FAMILY/MAP/KEY:VALUE/...; bench/evaluation reads them.
 #pragma once
 
 namespace hexhex::bench {
 
-/// The whole extraction and its stages on every map, with one and two threads.
+/// extract/: the whole extraction and its stages on every map, with one and two threads; on some
+/// maps also with 3, 4, 6, 8, ... up to all cores.
 void registerExtraction();
+
+/// scale/: the same on few maps at many scales.
+void registerScales();
+
+/// density/: the same from few to many hexahedra per tet.
+void registerDensities();
+
+/// epsilon/: the propeller engine for different enlargements of tets.
+void registerEpsilon();
 
 /// Quality and verification of a finished mesh.
 void registerMesh();
 
-/// Reading maps.
+/// Reading and writing maps and meshes.
 void registerFiles();
 
 }  // namespace hexhex::bench

@@ -1,11 +1,22 @@
-// Reading a map from a .hexex file that the system holds in its cache.
+// Files: reading and writing, beside the yardstick of plainly writing as many bytes. All files are
+// in the system's cache.
+#include <algorithm>
+#include <chrono>
+#include <fcntl.h>
+#include <limits>
+#include <memory>
 #include <random>
 #include <string>
 #include <system_error>
+#include <unistd.h>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 
+#include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/quality.hpp>
+#include <hexhex/survey.hpp>
 
 #include "bench_maps.hpp"
 #include "benchmarks.hpp"
@@ -14,41 +25,218 @@ namespace hexhex::bench {
 
 namespace {
 
-/// A map in the folder for temporary files; it lives as long as this object.
-class TemporaryMap {
+/// A folder for temporary files; it lives as long as this object.
+class TemporaryFolder {
  public:
-  TemporaryMap()
+  TemporaryFolder()
       : path_(std::filesystem::temp_directory_path() /
-              ("hexhex_bench_" + std::to_string(std::random_device()()) + ".hexex")) {
-    writeMap(load(middleMap()), path_);
+              ("hexhex_bench_" + std::to_string(std::random_device()()))) {
+    std::filesystem::create_directory(path_);
   }
-  ~TemporaryMap() {
+  ~TemporaryFolder() {
     std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
+    std::filesystem::remove_all(path_, ignored);
   }
-  TemporaryMap(const TemporaryMap&) = delete;
-  TemporaryMap& operator=(const TemporaryMap&) = delete;
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
+    return path_ / name;
+  }
 
  private:
   std::filesystem::path path_;
 };
 
-void reading(benchmark::State& state) {
-  static const TemporaryMap file;
-  for (auto _ : state) benchmark::DoNotOptimize(readMap(file.path()).tets.data());
+const TemporaryFolder& folder() {
+  static const TemporaryFolder folder;
+  return folder;
+}
+
+double secondsSince(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// A dense mesh, its scaled Jacobians, and how long its extraction took with so many threads.
+struct DenseMesh {
+  HexMesh mesh;
+  Array<double> quality;
+  std::vector<double> extractionSeconds;  ///< by number of threads
+};
+
+/// The densest of the maps: a real one if there is one, else generated.
+const BenchMap& denseMap() {
+  const std::vector<BenchMap>& maps = benchMaps();
+  const auto find = [&maps](std::string_view name) {
+    return std::find_if(maps.begin(), maps.end(),
+                        [name](const BenchMap& map) { return map.name == name; });
+  };
+  const auto real = find("s17c_sphere_r100_x2");
+  return real != maps.end() ? *real : *find("sphere_blocks_high");
+}
+
+const DenseMesh& denseMesh() {
+  static const DenseMesh dense = [] {
+    DenseMesh result;
+    result.extractionSeconds.push_back(0);
+    ExtractOptions options;
+    options.scale = denseMap().scale;
+    for (const int threads : {1, 2}) {
+      double best = std::numeric_limits<double>::max();
+      for (int run = 0; run < 2; ++run) {  // the first one finds its memory cold
+        Context context(threads);
+        result.mesh = {};
+        const auto begin = std::chrono::steady_clock::now();
+        result.mesh = extract(load(denseMap()), options, context);
+        best = std::min(best, secondsSince(begin));
+      }
+      result.extractionSeconds.push_back(best);
+    }
+    Context context;
+    result.quality = scaledJacobians(result.mesh, context);
+    return result;
+  }();
+  return dense;
+}
+
+/// Seconds for writing as many bytes from memory that is in use already, with one thread.
+double secondsOfPlainWrite(std::uint64_t bytes) {
+  constexpr std::size_t kSlice = std::size_t{1} << 22;
+  static const std::vector<char> slice(kSlice, 'x');
+  const std::filesystem::path file = folder() / "plain";
+  const auto begin = std::chrono::steady_clock::now();
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  while (bytes > 0) {
+    const ssize_t written =
+        ::write(descriptor, slice.data(), std::min<std::uint64_t>(bytes, kSlice));
+    if (written <= 0) break;
+    bytes -= static_cast<std::uint64_t>(written);
+  }
+  ::close(descriptor);
+  const double seconds = secondsSince(begin);
+  std::filesystem::remove(file);
+  return seconds;
+}
+
+/// Times f(file) for a file that does not exist before.
+template <class F>
+void timeWriting(benchmark::State& state, const std::string& name, double extractionSeconds,
+                 const F& f) {
+  const std::filesystem::path file = folder() / name;
+  double total = 0;
+  double plain = 0;
+  std::uint64_t bytes = 0;
+  for (auto _ : state) {
+    std::filesystem::remove(file);
+    const auto begin = std::chrono::steady_clock::now();
+    f(file);
+    const double seconds = secondsSince(begin);
+    state.SetIterationTime(seconds);
+    total += seconds;
+    bytes = std::filesystem::file_size(file);
+    plain += secondsOfPlainWrite(bytes);
+  }
+  std::filesystem::remove(file);
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes));
+  state.counters["ratio_to_plain_write"] = total / plain;
+  if (extractionSeconds == 0) return;
+  state.counters["ratio_to_extraction"] =
+      total / static_cast<double>(state.iterations()) / extractionSeconds;
+}
+
+void writing(benchmark::State& state, const std::string& extension, int threads) {
+  const DenseMesh& dense = denseMesh();
+  timeWriting(state, "mesh" + extension, dense.extractionSeconds[static_cast<std::size_t>(threads)],
+              [&](const std::filesystem::path& file) {
+                Context context(threads);
+                writeHexMesh(dense.mesh, file, {dense.quality}, context);
+              });
+}
+
+/// Through a sink: reads the mesh piece by piece from a file that a benchmark before has written.
+void copyingInPieces(benchmark::State& state, int threads) {
+  const std::filesystem::path source = folder() / "source.vtu";
+  if (!std::filesystem::exists(source)) writeHexMesh(denseMesh().mesh, source);
+  timeWriting(state, "copy.vtu", 0, [&](const std::filesystem::path& file) {
+    Context context(threads);
+    readHexMeshTo(*openMeshSink(file, context), source, context);
+  });
+}
+
+/// Times f(file) for a file that exists.
+template <class F>
+void timeReading(benchmark::State& state, const std::filesystem::path& file, const F& f) {
+  for (auto _ : state) f(file);
   state.SetBytesProcessed(state.iterations() *
-                          static_cast<std::int64_t>(std::filesystem::file_size(file.path())));
-  state.counters["tets"] = static_cast<double>(load(middleMap()).tets.size());
+                          static_cast<std::int64_t>(std::filesystem::file_size(file)));
+}
+
+void readingMap(benchmark::State& state, int threads) {
+  const std::filesystem::path file = folder() / "map.hexex";
+  if (!std::filesystem::exists(file)) writeMap(load(middleMap()), file);
+  timeReading(state, file, [threads](const std::filesystem::path& path) {
+    Context context(threads);
+    benchmark::DoNotOptimize(readMap(path, context).tets.data());
+  });
+}
+
+void writingMap(benchmark::State& state, int threads) {
+  const TetMap& map = load(middleMap());
+  timeWriting(state, "written.hexex", 0, [&](const std::filesystem::path& file) {
+    Context context(threads);
+    writeMap(map, file, context);
+  });
+}
+
+void readingMesh(benchmark::State& state, const std::string& extension, int threads) {
+  const std::filesystem::path file = folder() / ("source" + extension);
+  if (!std::filesystem::exists(file)) writeHexMesh(denseMesh().mesh, file);
+  timeReading(state, file, [threads](const std::filesystem::path& path) {
+    Context context(threads);
+    benchmark::DoNotOptimize(readHexMesh(path, context).cells.data());
+  });
+}
+
+void surveying(benchmark::State& state, int threads) {
+  const std::filesystem::path file = folder() / "source.vtu";
+  if (!std::filesystem::exists(file)) writeHexMesh(denseMesh().mesh, file);
+  timeReading(state, file, [threads](const std::filesystem::path& path) {
+    Context context(threads);
+    benchmark::DoNotOptimize(surveyFile(path, context).pointChecksum);
+  });
+}
+
+/// @param manual  the benchmark reports its times itself
+template <class F>
+void add(const std::string& what, const BenchMap& map, bool manual, const F& f) {
+  for (const int threads : {1, 2}) {
+    const std::string name = what + "/" + map.name + "/threads:" + std::to_string(threads);
+    auto* const registered = benchmark::RegisterBenchmark(
+        name.c_str(), [f, threads](benchmark::State& state) { f(state, threads); });
+    registered->Unit(benchmark::kMillisecond);
+    if (manual) {
+      registered->UseManualTime();
+    } else {
+      registered->UseRealTime();
+    }
+  }
 }
 
 }  // namespace
 
 void registerFiles() {
-  benchmark::RegisterBenchmark(("read_hexex/" + middleMap().name).c_str(), reading)
-      ->UseRealTime()
-      ->Unit(benchmark::kMillisecond);
+  add("read_hexex", middleMap(), false, readingMap);
+  add("write_hexex", middleMap(), true, writingMap);
+  for (const std::string extension : {".vtu", ".mesh"}) {
+    const std::string format = extension.substr(1);
+    add("write_" + format, denseMap(), true,
+        [extension](benchmark::State& state, int threads) { writing(state, extension, threads); });
+    add("read_" + format, denseMap(), false, [extension](benchmark::State& state, int threads) {
+      readingMesh(state, extension, threads);
+    });
+  }
+  add("copy_vtu_in_pieces", denseMap(), true, copyingInPieces);
+  add("survey_vtu", denseMap(), false, surveying);
 }
 
 }  // namespace hexhex::bench

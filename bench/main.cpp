@@ -1,4 +1,4 @@
-// Benchmarks of the engine. See docs/performance.md; bench/run makes the table there.
+// Benchmarks of the engines through the public face. See docs/performance.md.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks.hpp"
@@ -7,6 +7,9 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   hexhex::bench::registerExtraction();
+  hexhex::bench::registerScales();
+  hexhex::bench::registerDensities();
+  hexhex::bench::registerEpsilon();
   hexhex::bench::registerMesh();
   hexhex::bench::registerFiles();
   benchmark::RunSpecifiedBenchmarks();

@@ -11,14 +11,18 @@ namespace hexhex::bench {
 
 namespace {
 
-/// A line of /proc/self/status, e.g. "VmHWM:   1234 kB", in bytes.
-std::optional<std::uint64_t> statusBytes(const std::string& key) {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;) {
+/// A line like "VmHWM:   1234 kB" of a file of /proc, in bytes.
+std::optional<std::uint64_t> bytesIn(const char* file, const std::string& key) {
+  std::ifstream lines(file);
+  for (std::string word; lines >> word;) {
     std::uint64_t kibibytes = 0;
-    if (word == key && status >> kibibytes) return kibibytes * 1024;
+    if (word == key && lines >> kibibytes) return kibibytes * 1024;
   }
   return std::nullopt;
+}
+
+std::optional<std::uint64_t> statusBytes(const std::string& key) {
+  return bytesIn("/proc/self/status", key);
 }
 
 /// Makes the peak of the resident set start again from its present size.
@@ -35,6 +39,8 @@ void releaseFreeMemory() {
   static_cast<void>(malloc_trim(0));
 #endif
 }
+
+std::optional<std::uint64_t> availableMemory() { return bytesIn("/proc/meminfo", "MemAvailable:"); }
 
 PeakMemory::PeakMemory() {
   releaseFreeMemory();

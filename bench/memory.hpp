@@ -10,6 +10,9 @@ namespace hexhex::bench {
 /// neither profits from resident pages nor hides its growth in them.
 void releaseFreeMemory();
 
+/// Bytes that this process could still use without swapping; nothing if the system does not tell.
+[[nodiscard]] std::optional<std::uint64_t> availableMemory();
+
 /// Measures the growth of the resident set from construction on, at its peak. Linux counts resident
 /// pages (VmHWM), so arrays count as far as they are touched, and the allocator's waste counts too.
 class PeakMemory {

@@ -127,8 +127,9 @@ int run(const Arguments& arguments) {
         verify(map, mesh, {arguments.options.scale, arguments.options.tolerance}, context);
     requirePassed(*record.verification);
   }
-  record.quality = summarize(scaledJacobians(mesh, context));
-  writeHexMesh(mesh, arguments.output, context);
+  const Array<double> quality = scaledJacobians(mesh, context);
+  record.quality = summarize(quality);
+  writeHexMesh(mesh, arguments.output, {quality}, context);
   progress.clear();
 
   std::error_code unknown;  // the size of a pipe

@@ -9,6 +9,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/quality.hpp>
+#include <hexhex/survey.hpp>
 
 #include "command.hpp"
 #include "exit_codes.hpp"
@@ -20,6 +21,7 @@ namespace {
 
 struct Arguments {
   std::string file;
+  bool pieces = false;
 };
 
 bool isHexMeshFile(const std::string& file) {
@@ -29,6 +31,12 @@ bool isHexMeshFile(const std::string& file) {
   } catch (const Error&) {
     return false;  // then it must be a map, and reading it tells if it is none
   }
+}
+
+void printBox(const Vec3& lower, const Vec3& upper) {
+  printLine("bounding box",
+            fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", lower[0], lower[1],
+                        lower[2], upper[0], upper[1], upper[2]));
 }
 
 void printBoundingBox(std::span<const Vec3> points) {
@@ -41,9 +49,7 @@ void printBoundingBox(std::span<const Vec3> points) {
       upper[axis] = std::max(upper[axis], point[axis]);
     }
   }
-  printLine("bounding box",
-            fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", lower[0], lower[1],
-                        lower[2], upper[0], upper[1], upper[2]));
+  printBox(lower, upper);
 }
 
 void printMap(const TetMap& map) {
@@ -82,10 +88,25 @@ void printMesh(const HexMesh& mesh, Context& context) {
   printHistogram(quality);
 }
 
+/// What is known without the whole mesh in memory.
+void printSurvey(const MeshSurvey& survey) {
+  fmt::print("a hexahedral mesh\n");
+  printLine("cells", std::to_string(survey.cells));
+  printLine("vertices", std::to_string(survey.points));
+  if (survey.points > 0) printBox(survey.lower, survey.upper);
+  printLine("checksum of cells", fmt::format("{:016x}", survey.cellChecksum));
+  printLine("checksum of vertices", fmt::format("{:016x}", survey.pointChecksum));
+}
+
 int run(const Arguments& arguments) {
   Context context;
   const CancelOnSignal cancelOnSignal(context);
-  if (isHexMeshFile(arguments.file)) {
+  if (arguments.pieces) {
+    requireHexMeshFormat(arguments.file);
+    const MeshSurvey survey = surveyFile(arguments.file, context);
+    fmt::print("{}: ", arguments.file);
+    printSurvey(survey);
+  } else if (isHexMeshFile(arguments.file)) {
     const HexMesh mesh = readHexMesh(arguments.file, context);
     fmt::print("{}: ", arguments.file);
     printMesh(mesh, context);
@@ -105,6 +126,9 @@ Command addInfo(CLI::App& app) {
   parser->add_option("FILE", arguments->file, "A map (.hexex) or a mesh (.mesh, .vtu)")
       ->required()
       ->option_text("REQUIRED");
+  parser->add_flag("--pieces", arguments->pieces,
+                   "Read a mesh piece by piece, which needs hardly any\n"
+                   "memory for .vtu; with checksums instead of quality");
   parser->footer("Example:\n  hexhex info sphere.vtu");
   return {parser, [arguments] { return run(*arguments); }};
 }

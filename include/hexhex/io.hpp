@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <span>
 
 #include <hexhex/context.hpp>
+#include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex {
@@ -41,6 +43,24 @@ void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
                   const WriteOptions& options, Context& context);
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file, Context& context);
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file);
+
+/// Opens a file for a mesh that comes in pieces: `.vtu` or `.mesh`, as writeHexMesh() writes them
+/// but without the array `scaled_jacobian` and without boundary quads. Memory: a few megabytes. The
+/// file appears, complete, when the sink's end() returns; a sink that is destroyed before leaves
+/// nothing.
+///
+/// The sink refuses calls in the wrong order, vertices that do not exist and coordinates that are
+/// not finite. It takes both kinds of cells in meshes of any size.
+/// @param context  outlives the sink
+/// @throws Error FileUnsupported; FileWrite, now and later
+[[nodiscard]] std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file,
+                                                     Context& context);
+
+/// Reads a hexahedral mesh and hands it over in pieces. A `.vtu` file with appended data, as this
+/// library writes it, takes a few megabytes of memory, however large it is, and hands over the
+/// generators that it holds; other files are read as a whole first.
+/// @throws Error  as readHexMesh(), and whatever the sink throws
+void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
 
 /// Throws FileUnsupported unless writeHexMesh knows the extension: to fail before long work.
 void requireHexMeshFormat(const std::filesystem::path& file);

@@ -52,7 +52,8 @@ class Atlas {
       statistics.overlappingTets = overlaps.tets;
     }
     Stage stage(context_, "cuts");
-    statistics.cutFaces = markCutCells(map_, charts_, vertices_.grid(), stage);
+    crossings_ = markCutCells(map_, charts_, vertices_.grid(), stage);
+    statistics.cutFaces = crossings_.cutFaces;
     vertices_.dropLines();
     statistics.charts = charts_.count;
     statistics.generators = vertices_.numbers().generatorCounts;
@@ -60,17 +61,19 @@ class Atlas {
   }
 
   [[nodiscard]] const VertexGrid<Id>& vertices() const noexcept { return vertices_; }
+  [[nodiscard]] const Crossings& crossings() const noexcept { return crossings_; }
 
  private:
   const PreparedMap& map_;
   Charts charts_;
   VertexGrid<Id> vertices_;
+  Crossings crossings_;
   Context& context_;
 };
 
 /// All cells at once.
-Array<Hex> emitCells(const PreparedMap& map, const VertexGrid<Index>& vertices,
-                     std::uint64_t expectedCells, Context& context, ExtractStatistics& statistics) {
+Array<Hex> emitCells(const PreparedMap& map, const Atlas<Index>& atlas, std::uint64_t expectedCells,
+                     Context& context, ExtractStatistics& statistics) {
   TetLines lines(map.topology.tetCount());
   Array<std::uint64_t> begin;
   {
@@ -84,7 +87,7 @@ Array<Hex> emitCells(const PreparedMap& map, const VertexGrid<Index>& vertices,
   parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
                  [&](std::size_t first, std::size_t end, std::size_t) {
                    if (begin[first] == begin[end]) return;
-                   CellEmitter<Index> emitter(map, vertices);
+                   CellEmitter<Index> emitter(map, atlas.vertices(), atlas.crossings());
                    for (std::size_t t = first; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
                      emitter.emit(tet, lines.of(tet),
@@ -114,7 +117,7 @@ HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& c
   mesh.generatorCorners.resize(count);
   atlas.fill({0, mesh.points.data(), mesh.generatorTet.data(), mesh.generatorCorners.data()},
              statistics);
-  mesh.cells = emitCells(map, atlas.vertices(), expectedCells, context, statistics);
+  mesh.cells = emitCells(map, atlas, expectedCells, context, statistics);
   return mesh;
 }
 

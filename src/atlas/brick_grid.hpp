@@ -48,22 +48,30 @@ struct Brick {
   std::array<Id, kBrickPoints> ids;
   /// Per cell, named by its smallest corner: whether a cut face may meet its open interior.
   std::array<std::uint64_t, kBrickPoints / 64> marks;
-  std::uint64_t marked;  ///< not 0 if any mark is set
+  /// The range of the brick's entries in the list of crossings (cut_marks.hpp).
+  std::uint32_t crossingBegin;
+  std::uint32_t crossingEnd;
+  std::uint32_t contested;  ///< not 0 if a point is
 
   void clear() noexcept {
     ids.fill(kEmpty);
     marks.fill(0);
-    marked = 0;
+    crossingBegin = 0;
+    crossingEnd = 0;
+    contested = 0;
   }
-  /// Thread-safe.
+  /// Marks a cell and counts a crossing. Thread-safe.
   void mark(std::size_t place) noexcept {
     std::atomic_ref(marks[place / 64])
         .fetch_or(std::uint64_t{1} << (place % 64), std::memory_order_relaxed);
-    std::atomic_ref(marked).store(1, std::memory_order_relaxed);
+    std::atomic_ref(crossingEnd).fetch_add(1, std::memory_order_relaxed);
   }
-  [[nodiscard]] bool isMarked(std::size_t place) const noexcept {
-    return ((marks[place / 64] >> (place % 64)) & 1U) != 0;
+  /// The marks of a row of points along x: bit i for point i.
+  /// @param row  8 z + y
+  [[nodiscard]] std::uint8_t marksOfRow(std::size_t row) const noexcept {
+    return static_cast<std::uint8_t>(marks[row / 8] >> (row % 8 * 8));
   }
+  [[nodiscard]] bool hasMarks() const noexcept { return crossingEnd > crossingBegin; }
 };
 
 /// Bricks by key. Filled in two steps: build() from all threads' keys at once, then add() for
@@ -109,7 +117,12 @@ class BrickGrid {
     return brick;
   }
 
-  [[nodiscard]] std::size_t brickCount() const noexcept { return used_; }
+  /// Calls visit(Brick&) for all bricks, in no particular order.
+  template <class Visit>
+  void forEachBrick(const Visit& visit) {
+    for (Brick<Id>& brick : bricks_) visit(brick);
+    for (Brick<Id>& brick : added_) visit(brick);
+  }
 
  private:
   struct Slot {

@@ -1,33 +1,10 @@
 #include <algorithm>
+#include <cstdlib>
+#include <limits>
 
 #include <atlas/cell_emitter.hpp>
 
 namespace hexhex {
-
-namespace {
-
-/// Where the corners of a cell stand in the four rows around its line, for each order of axes.
-struct CornerTable {
-  std::array<std::array<std::uint8_t, 8>, 6> row{};
-  std::array<std::array<std::uint8_t, 8>, 6> step{};
-};
-
-constexpr CornerTable makeCornerTable() {
-  CornerTable table;
-  for (std::size_t order = 0; order < 6; ++order) {
-    const std::array<std::uint8_t, 3>& axes = SweepAxes::kPermutations[order];
-    for (std::size_t c = 0; c < 8; ++c) {
-      table.row[order][c] =
-          static_cast<std::uint8_t>(2 * kCellCorners[c][axes[0]] + kCellCorners[c][axes[1]]);
-      table.step[order][c] = static_cast<std::uint8_t>(kCellCorners[c][axes[2]]);
-    }
-  }
-  return table;
-}
-
-constexpr CornerTable kCornerTable = makeCornerTable();
-
-}  // namespace
 
 template <class Id>
 void CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines, std::span<Cell> cells) {
@@ -36,106 +13,124 @@ void CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines, std::spa
   chart_ = vertices_.charts().chart[tet];
   gauge_ = &vertices_.charts().gauge(tet);
   const TetSweep sweep(map_.exact, tet, SweptGrid::Centers);
-  const std::array<std::uint8_t, 8>& rowOf = kCornerTable.row[sweep.axes.index];
-  const std::array<std::uint8_t, 8>& stepOf = kCornerTable.step[sweep.axes.index];
-  CenterOwner owner(map_.topology, tet);
-  Cell* place = cells.data();
+  Job job{sweep, SweepFrame(*gauge_, sweep.axes()), CenterOwner(map_.topology, tet), cells.data()};
+  const bool whole = chart_ != Charts::kNoChart && loadWhole(job, cells.size());
   for (const SweptLine& line : lines) {
-    const auto [first, count] = owner.owned(line);
+    const auto [first, count] = job.owner.owned(line);
     if (count == 0) continue;
-    gather(sweep, line, first, count);
-    std::array<const Id*, 8> corners{};
-    for (std::size_t c = 0; c < 8; ++c) corners[c] = rows_[rowOf[c]].data() + stepOf[c];
-    for (std::uint32_t i = 0; i < count; ++i) {
-      for (std::size_t c = 0; c < 8; ++c) place[i][c] = corners[c][i];
-    }
-    if (anyIrregular_) {
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const bool regular = irregular_[i] == 0 &&
-                             std::all_of(place[i].begin(), place[i].end(), Brick<Id>::isVertex);
-        if (regular) continue;
-        const std::uint32_t at = first + i;
-        traceCell(sweep.point(line, at), line.simplex(at), place[i]);
+    if (chart_ == Charts::kNoChart) {
+      for (std::uint32_t i = first; i < first + count; ++i) {
+        emitIrregular(sweep.point(line, i), true, line.simplex(i), *job.place++);
       }
+      continue;
     }
-    place += count;
+    if (!whole) loadBox(job, sweep.point(line, first), sweep.point(line, first + count - 1));
+    emitLine(job, line, first, count);
   }
 }
 
+/// Loads the vertices around all of the tet's cells, unless its box is much larger than the tet.
 template <class Id>
-void CellEmitter<Id>::gather(const TetSweep& sweep, const SweptLine& line, std::uint32_t first,
-                             std::uint32_t count) {
-  const std::array<std::uint8_t, 3>& axes = sweep.axes();
-  for (std::vector<Id>& row : rows_) {
-    if (row.size() < std::size_t{count} + 1) row.resize(std::size_t{count} + 1);
+bool CellEmitter<Id>::loadWhole(const Job& job, std::size_t cells) {
+  const GridBox& box = job.sweep.box;
+  std::uint64_t points = 1;
+  for (const GridRange& range : box.range) {
+    points *= static_cast<std::uint64_t>(std::int64_t{range.last} - range.first + 2);
+    if (points > 64 * cells + 1024) return false;
   }
-  irregular_.assign(count, 0);
-  anyIrregular_ = false;
-  if (chart_ == Charts::kNoChart) {
-    irregular_.assign(count, 1);
-    anyIrregular_ = true;
-    return;
-  }
-  const Direction along = gauge_->rotation(direction(axes[2], 1));
-  const GridPoint start = sweep.point(line, first);
-  for (std::size_t r = 0; r < 4; ++r) {
-    GridPoint z = start;
-    z[axes[0]] += static_cast<std::int32_t>(r >> 1);
-    z[axes[1]] += static_cast<std::int32_t>(r & 1);
-    gatherRow({chart_, (*gauge_)(z), along, count + 1}, rows_[r].data());
-  }
-  gatherMarks({chart_, gauge_->cell(start), along, count});
+  loadBox(job, {box.range[0].first, box.range[1].first, box.range[2].first},
+          {box.range[0].last, box.range[1].last, box.range[2].last});
+  return true;
 }
 
+/// @param first, last  cells at opposite ends of a box in the tet's chart
 template <class Id>
-void CellEmitter<Id>::gatherRow(const ChartRow& row, Id* ids) {
-  row.forEachPart(
-      [&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count, std::ptrdiff_t stride) {
-        const Brick<Id>* const brick = cache_.find(row.chart, c);
-        Id* const target = ids + offset;
-        if (brick == nullptr) {
-          std::fill_n(target, count, Brick<Id>::kEmpty);
-          anyIrregular_ = true;
-          return;
-        }
-        const Id* const source = brick->ids.data() + placeInBrick(c);
-        Id largest = 0;
-        for (std::uint32_t i = 0; i < count; ++i) {
-          target[i] = source[i * stride];
-          largest = std::max(largest, target[i]);
-        }
-        if (!Brick<Id>::isVertex(largest)) anyIrregular_ = true;
-      });
-}
-
-template <class Id>
-void CellEmitter<Id>::gatherMarks(const ChartRow& row) {
-  row.forEachPart(
-      [&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count, std::ptrdiff_t stride) {
-        const Brick<Id>* const brick = cache_.find(row.chart, c);
-        if (brick == nullptr) {
-          // No vertex has its smallest corner here, which gatherRow() has noticed as well.
-          std::fill_n(irregular_.begin() + offset, count, std::uint8_t{1});
-          anyIrregular_ = true;
-          return;
-        }
-        if (brick->marked == 0) return;
-        const auto place = static_cast<std::ptrdiff_t>(placeInBrick(c));
-        for (std::uint32_t i = 0; i < count; ++i) {
-          if (!brick->isMarked(static_cast<std::size_t>(place + i * stride))) continue;
-          irregular_[offset + i] = 1;
-          anyIrregular_ = true;
-        }
-      });
-}
-
-template <class Id>
-void CellEmitter<Id>::traceCell(const GridPoint& z, CornerMask generator, Cell& cell) {
-  ++traced_;
+void CellEmitter<Id>::loadBox(const Job& job, const GridPoint& first, const GridPoint& last) {
+  const ChartPoint a = gauge_->cell(first);
+  const ChartPoint b = gauge_->cell(last);
+  ChartPoint low{};
+  std::array<std::uint32_t, 3> size{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto difference = static_cast<std::int32_t>(b[k] - a[k]);
+    low[k] = difference < 0 ? b[k] : a[k];
+    size[k] = static_cast<std::uint32_t>(std::abs(difference)) + 2;
+  }
+  block_.load(cache_, chart_, low, size);
+  const std::array<std::uint8_t, 3>& axes = job.sweep.axes();
   for (std::size_t c = 0; c < 8; ++c) {
-    const CornerPlace place = tracer_.trace(tet_, z, generator, kCellCorners[c]);
+    corners_[c] = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners_[c] += kCellCorners[c][axes[k]] * block_.stride(job.frame.along(k));
+    }
+  }
+}
+
+template <class Id>
+void CellEmitter<Id>::emitLine(Job& job, const SweptLine& line, std::uint32_t first,
+                               std::uint32_t count) {
+  const ChartPoint start =
+      job.frame(line.level, line.row, line.first + static_cast<std::int32_t>(first));
+  const std::ptrdiff_t step = block_.stride(job.frame.along(2));
+  const Id* corner = block_.ids() + block_.offset(start);
+  Cell* const cells = job.place;
+  job.place += count;
+  const std::array<std::ptrdiff_t, 8> corners = corners_;  // which the loop can hold in registers
+  Id together = 0;
+  for (std::uint32_t i = 0; i < count; ++i, corner += step) {
+    Cell cell;
+    for (std::size_t c = 0; c < 8; ++c) cell[c] = corner[corners[c]];
+    cells[i] = cell;
+    together |=
+        (cell[0] | cell[1]) | (cell[2] | cell[3]) | (cell[4] | cell[5]) | (cell[6] | cell[7]);
+  }
+  // Both special values have the highest bit set, as no vertex of a mesh of usual size has.
+  constexpr Id kHighestBit = ~(std::numeric_limits<Id>::max() >> 1);
+  if (!block_.anyMarked() && (together & kHighestBit) == 0) return;
+  // A cell is marked at its smallest corner in the chart.
+  ChartPoint smallest = start;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Direction d = job.frame.along(k);
+    if (signOf(d) < 0) --smallest[static_cast<std::size_t>(axisOf(d))];
+  }
+  auto at = static_cast<std::ptrdiff_t>(block_.offset(smallest));
+  for (std::uint32_t i = 0; i < count; ++i, at += step) {
+    const bool marked = block_.isMarked(static_cast<std::size_t>(at));
+    if (!marked && std::all_of(cells[i].begin(), cells[i].end(), Brick<Id>::isVertex)) continue;
+    emitIrregular(job.sweep.point(line, first + i), marked, line.simplex(first + i), cells[i]);
+  }
+}
+
+/// The picture shows those corners of a cell whose diagonals no cut crosses; the others are traced.
+template <class Id>
+void CellEmitter<Id>::emitIrregular(const GridPoint& z, bool marked, CornerMask generator,
+                                    Cell& cell) {
+  const unsigned hidden = marked ? hiddenCorners(z) : 0;
+  bool entered = false;
+  for (std::size_t c = 0; c < 8; ++c) {
+    if (((hidden >> c) & 1U) == 0 && Brick<Id>::isVertex(cell[c])) continue;
+    if (!entered) tracer_.enter(tet_, z, generator);
+    entered = true;
+    const CornerPlace place = tracer_.trace(kCellCorners[c]);
     cell[c] = vertices_.vertexAt(place.tet, place.z, cache_);
   }
+  if (entered) ++traced_;
+}
+
+template <class Id>
+unsigned CellEmitter<Id>::hiddenCorners(const GridPoint& z) {
+  constexpr unsigned kAll = 0xff;
+  if (chart_ == Charts::kNoChart) return kAll;
+  const ChartPoint c = gauge_->cell(z);
+  const Brick<Id>* const brick = cache_.find(chart_, c);
+  if (brick == nullptr) return kAll;  // there was no place for marks
+  const auto place = static_cast<std::uint16_t>(placeInBrick(c));
+  const std::span<const Crossing> all = crossings_.of(*brick);
+  const auto first = std::lower_bound(
+      all.begin(), all.end(), place,
+      [](const Crossing& crossing, std::uint16_t at) { return crossing.place < at; });
+  auto last = first;
+  while (last != all.end() && last->place == place) ++last;
+  return crossedDiagonals(map_, vertices_.charts(), tet_, c, {first, last});
 }
 
 template class CellEmitter<std::uint32_t>;

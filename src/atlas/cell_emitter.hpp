@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <atlas/brick_block.hpp>
+#include <atlas/cut_marks.hpp>
 #include <atlas/vertex_grid.hpp>
 #include <sweep/cell_seeds.hpp>
 #include <sweep/cell_tracer.hpp>
@@ -20,26 +22,38 @@ class CellEmitter {
  public:
   using Cell = std::array<Id, 8>;
 
-  CellEmitter(const PreparedMap& map, const VertexGrid<Id>& vertices)
-      : map_(map), vertices_(vertices), cache_(vertices.grid()), tracer_(map) {}
+  CellEmitter(const PreparedMap& map, const VertexGrid<Id>& vertices, const Crossings& crossings)
+      : map_(map),
+        vertices_(vertices),
+        crossings_(crossings),
+        cache_(vertices.grid()),
+        tracer_(map) {}
 
   /// Writes the cells whose centres the tet owns, `count` of them.
   /// @param lines  the tet's lines of centres
   void emit(Index tet, std::span<const SweptLine> lines, std::span<Cell> cells);
 
-  /// Cells that had to be traced so far.
+  /// Cells with a corner that had to be traced so far.
   [[nodiscard]] std::uint64_t traced() const noexcept { return traced_; }
 
  private:
-  /// The four rows of vertices around a line of centres, and which cells are irregular.
-  void gather(const TetSweep& sweep, const SweptLine& line, std::uint32_t first,
-              std::uint32_t count);
-  void gatherRow(const ChartRow& row, Id* ids);
-  void gatherMarks(const ChartRow& row);
-  void traceCell(const GridPoint& z, CornerMask generator, Cell& cell);
+  /// One tet on its way.
+  struct Job {
+    const TetSweep& sweep;
+    SweepFrame frame;
+    CenterOwner owner;
+    Cell* place;
+  };
+
+  [[nodiscard]] bool loadWhole(const Job& job, std::size_t cells);
+  void loadBox(const Job& job, const GridPoint& first, const GridPoint& last);
+  void emitLine(Job& job, const SweptLine& line, std::uint32_t first, std::uint32_t count);
+  void emitIrregular(const GridPoint& z, bool marked, CornerMask generator, Cell& cell);
+  [[nodiscard]] unsigned hiddenCorners(const GridPoint& z);
 
   const PreparedMap& map_;
   const VertexGrid<Id>& vertices_;
+  const Crossings& crossings_;
   BrickCache<Id> cache_;
   CellTracer tracer_;
   std::uint64_t traced_ = 0;
@@ -47,9 +61,8 @@ class CellEmitter {
   Index tet_ = 0;
   Index chart_ = 0;
   const Gauge* gauge_ = nullptr;
-  std::array<std::vector<Id>, 4> rows_;
-  std::vector<std::uint8_t> irregular_;  ///< per cell of the line
-  bool anyIrregular_ = false;
+  BrickBlock<Id> block_;                     ///< the vertices around the tet's cells
+  std::array<std::ptrdiff_t, 8> corners_{};  ///< offsets of a cell's corners there
 };
 
 extern template class CellEmitter<std::uint32_t>;

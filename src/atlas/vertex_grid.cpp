@@ -34,6 +34,12 @@ class KeyFilter {
   std::array<BrickKey, 512> seen_;
 };
 
+ChartRow rowOf(const VertexRun& run, const SweepFrame& frame, Index chart) {
+  const SweptLine& line = *run.line;
+  const std::int32_t first = line.first + static_cast<std::int32_t>(run.offset);
+  return {chart, frame(line.level, line.row, first), frame.along(2), run.count};
+}
+
 template <class Id>
 std::atomic_ref<Id> entry(Brick<Id>& brick, std::size_t place, std::ptrdiff_t offset) {
   return std::atomic_ref(
@@ -73,9 +79,10 @@ void VertexGrid<Id>::sweep(Stage& stage) {
           if (added.empty()) continue;
           const Gauge& gauge = charts_.gauge(tet);
           const Index chart = charts_.chart[tet];
-          const Direction along = gauge.rotation(direction(sweep.axes()[2], 1));
+          const SweepFrame frame(gauge, sweep.axes());
           for (const SweptLine& line : added) {
-            const ChartRow row{chart, gauge(sweep.point(line, 0)), along, line.count};
+            const ChartRow row{chart, frame(line.level, line.row, line.first), frame.along(2),
+                               line.count};
             row.forEachPart([&](const ChartPoint& c, std::uint32_t, std::uint32_t, std::ptrdiff_t) {
               const BrickKey key = brickKey(chart, c);
               if (filter.isNew(key, c)) keys[block].push_back(key);
@@ -97,14 +104,12 @@ void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, const VisitRun& visitR
   std::vector<SweptLine> scratch;
   const std::span<const SweptLine> lines = linesOf(tet, sweep, scratch);
   if (lines.empty()) return;
-  const Gauge& gauge = charts_.gauge(tet);
+  const SweepFrame frame(charts_.gauge(tet), sweep.axes());
   const Index chart = charts_.chart[tet];
-  const Direction along = gauge.rotation(direction(sweep.axes()[2], 1));
   TetNumbering numbering(map_, numbers_, tet, sweep.axes);
   numbering.run(lines, [&](const VertexRun& run) {
     visitRun(sweep, run);
-    visitRow(ChartRow{chart, gauge(sweep.point(*run.line, run.offset)), along, run.count},
-             run.first);
+    visitRow(rowOf(run, frame, chart), run.first);
   });
   if (faces == Faces::Owned) return;
   for (int face = 0; face < 4; ++face) {
@@ -126,13 +131,11 @@ void VertexGrid<Id>::forEachForeignClaim(Index tet, int face, const VisitRow& vi
   const Gauge gauge = charts_.gauge(tet) * map_.exact.transitions.across(ownersHalfFace);
   const TetSweep sweep(map_.exact, owner, SweptGrid::Vertices);
   std::vector<SweptLine> scratch;
-  const Direction along = gauge.rotation(direction(sweep.axes()[2], 1));
+  const SweepFrame frame(gauge, sweep.axes());
   TetNumbering(map_, numbers_, owner, sweep.axes)
       .run(linesOf(owner, sweep, scratch), [&](const VertexRun& run) {
         if (run.simplex != faceMask(localOf(ownersHalfFace))) return;
-        visitRow(ChartRow{charts_.chart[tet], gauge(sweep.point(*run.line, run.offset)), along,
-                          run.count},
-                 run.first);
+        visitRow(rowOf(run, frame, charts_.chart[tet]), run.first);
       });
 }
 
@@ -220,6 +223,7 @@ bool VertexGrid<Id>::markContested(Stage& stage) {
                       continue;
                     }
                     at.store(Bricks::kContested, std::memory_order_relaxed);
+                    std::atomic_ref(brick.contested).store(1, std::memory_order_relaxed);
                     foundHere = true;
                   }
                 });
@@ -230,6 +234,43 @@ bool VertexGrid<Id>::markContested(Stage& stage) {
   return found.load();
 }
 
+/// Whether a brick in the bounding box of a tet has contested points.
+template <class Id>
+bool VertexGrid<Id>::mayTouchContested(Index tet, BrickCache<Id>& cache) const {
+  if (!hasLines(tet)) return false;
+  constexpr std::uint32_t kMaxBricks = 256;
+  const TetSweep sweep(map_.exact, tet, SweptGrid::Vertices);
+  if (sweep.box.empty()) return false;
+  const Gauge& gauge = charts_.gauge(tet);
+  const GridPoint low = {sweep.box.range[0].first, sweep.box.range[1].first,
+                         sweep.box.range[2].first};
+  const GridPoint high = {sweep.box.range[0].last, sweep.box.range[1].last,
+                          sweep.box.range[2].last};
+  ChartPoint from = gauge(low);
+  ChartPoint size = gauge(high);
+  std::array<std::uint32_t, 3> bricks{};
+  std::uint64_t count = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    // Rotation may have swapped the ends.
+    if (static_cast<std::int32_t>(size[k] - from[k]) < 0) std::swap(from[k], size[k]);
+    size[k] -= from[k];
+    bricks[k] = (from[k] % kBrickSide + size[k]) / kBrickSide + 1;
+    count *= bricks[k];
+    if (count > kMaxBricks) return true;
+  }
+  for (std::uint32_t x = 0; x < bricks[0]; ++x) {
+    for (std::uint32_t y = 0; y < bricks[1]; ++y) {
+      for (std::uint32_t z = 0; z < bricks[2]; ++z) {
+        const ChartPoint c = {from[0] + x * kBrickSide, from[1] + y * kBrickSide,
+                              from[2] + z * kBrickSide};
+        const Bricks* const brick = cache.find(charts_.chart[tet], c);
+        if (brick != nullptr && brick->contested != 0) return true;
+      }
+    }
+  }
+  return false;
+}
+
 template <class Id>
 std::vector<Index> VertexGrid<Id>::tetsWithContestedPoints(Stage& stage) const {
   const std::size_t tets = map_.topology.tetCount();
@@ -238,6 +279,7 @@ std::vector<Index> VertexGrid<Id>::tetsWithContestedPoints(Stage& stage) const {
       stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t block) {
         BrickCache<Id> cache(grid_);
         for (std::size_t t = begin; t < end; ++t) {
+          if (!mayTouchContested(static_cast<Index>(t), cache)) continue;
           bool contested = false;
           forEachClaim(
               static_cast<Index>(t), Faces::All, [](const TetSweep&, const VertexRun&) {},

@@ -62,6 +62,7 @@ class VertexGrid {
   [[nodiscard]] Id vertexAt(Index tet, const GridPoint& z, BrickCache<Id>& cache) const;
 
   [[nodiscard]] const VertexNumbers& numbers() const noexcept { return numbers_; }
+  [[nodiscard]] BrickGrid<Id>& grid() noexcept { return grid_; }
   [[nodiscard]] const BrickGrid<Id>& grid() const noexcept { return grid_; }
   [[nodiscard]] const Charts& charts() const noexcept { return charts_; }
 
@@ -85,6 +86,7 @@ class VertexGrid {
 
   [[nodiscard]] bool markContested(Stage& stage);
   [[nodiscard]] std::vector<Index> tetsWithContestedPoints(Stage& stage) const;
+  [[nodiscard]] bool mayTouchContested(Index tet, BrickCache<Id>& cache) const;
   void clearContested(const std::vector<Index>& tets);
   [[nodiscard]] bool tryClaim(Index tet, Index chart);
   void grow(Index seed, Index chart, Array<std::uint8_t>& pending);

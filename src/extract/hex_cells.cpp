@@ -92,7 +92,8 @@ Array<Hex> collectCells(const PreparedMap& map, const Array<NormalSigns>& signs,
   const CellWalker walker(vertices, local, global);
   const SlotFinder finder(map, signs, vertices, local);
   const auto enter = [&](CellTracer& tracer, Index tet, const GridPoint& z, CornerMask generator) {
-    const CornerPlace place = tracer.trace(tet, z, generator, {0, 0, 0});
+    tracer.enter(tet, z, generator);
+    const CornerPlace place = tracer.trace({0, 0, 0});
     const Index vertex = vertices.lines.find(place.tet, place.z);
     if (vertex == kNone) throw MissingVertex{place.tet};
     return walker.walk(

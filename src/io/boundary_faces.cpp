@@ -33,9 +33,7 @@ struct Side {
   std::uint64_t place;  ///< 8 * cell + face
 };
 
-bool sameFace(const Side& a, const Side& b) {
-  return a.low == b.low && a.high == b.high;
-}
+bool sameFace(const Side& a, const Side& b) { return a.low == b.low && a.high == b.high; }
 
 bool before(const Side& a, const Side& b) {
   return a.low != b.low ? a.low < b.low : a.high < b.high;

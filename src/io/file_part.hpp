@@ -1,4 +1,5 @@
-// A part of a file that is written from its beginning to its end while other parts are written, too.
+// A part of a file that is written from its beginning to its end while other parts are written,
+// too.
 #pragma once
 
 #include <algorithm>

@@ -17,6 +17,7 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/output_file.hpp>
+#include <io/with_threads_here.hpp>
 
 namespace hexhex {
 
@@ -55,7 +56,7 @@ class LineWriter {
   /// @param threads  as in Context
   LineWriter(OutputFile& output, int threads)
       : output_(output), quiet_(threads), stage_(quiet_, "write lines") {
-    const auto count = static_cast<std::size_t>(kBlocksPerThread * effectiveThreads(threads));
+    const auto count = kBlocksPerThread * static_cast<std::size_t>(effectiveThreads(threads));
     for (std::size_t i = 0; i < count; ++i) blocks_.emplace_back(new char[kBlockBytes]);
     sizes_.resize(count);
   }
@@ -82,11 +83,11 @@ class LineWriter {
   // Fits in the second-level cache, and makes the cost of a block's start negligible.
   static constexpr std::size_t kBlockBytes = std::size_t{1} << 18;
   // Blocks take different times; with several for each thread no thread waits long for the others.
-  static constexpr int kBlocksPerThread = 8;
+  static constexpr std::size_t kBlocksPerThread = 8;
 
   template <class Format>
   void fillBlocks(std::size_t first, std::size_t count, std::size_t grain, const Format& format) {
-    withThreads(quiet_.threads(), [&] {
+    withThreadsHere(quiet_.threads(), [&] {
       parallelBlocks(stage_, count, grain,
                      [&](std::size_t begin, std::size_t end, std::size_t block) {
                        char* place = blocks_[block].get();

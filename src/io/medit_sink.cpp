@@ -1,31 +1,32 @@
-#include <base/stage.hpp>
-#include <io/file_sink.hpp>
+#include <io/checked_sink.hpp>
 #include <io/line_writer.hpp>
 #include <io/medit_text.hpp>
 #include <io/mesh_sink.hpp>
+#include <io/output_file.hpp>
 
 namespace hexhex {
 namespace {
 
-class MeditSink final : public FileSink {
+class MeditSink final : public CheckedSink {
  public:
   MeditSink(const std::filesystem::path& file, Context& context)
-      : FileSink(file, context), lines_(output(), threads()) {}
+      : CheckedSink(file.string(), "write mesh", context),
+        output_(file),
+        lines_(output_, threads()) {}
 
  private:
-  void writeBegin() override { output().write(kMeditHead).write(pointCount()).write('\n'); }
-  void writePoints(const PointPiece& piece) override { writeMeditVertices(lines_, piece.points); }
-  void writeCellsBegin() override {
-    output().write("Hexahedra\n").write(cellCount()).write('\n');
-  }
-  void writeCells(std::uint64_t /*first*/, std::span<const Hex> cells) override {
+  void takeBegin() override { output_.write(kMeditHead).write(pointCount()).write('\n'); }
+  void takePoints(const PointPiece& piece) override { writeMeditVertices(lines_, piece.points); }
+  void takeCellsBegin() override { output_.write("Hexahedra\n").write(cellCount()).write('\n'); }
+  void takeCells(std::uint64_t /*first*/, std::span<const Hex> cells) override {
     writeMeditElements(lines_, cells);
   }
-  void writeCells(std::uint64_t /*first*/, std::span<const Hex64> cells) override {
+  void takeCells(std::uint64_t /*first*/, std::span<const Hex64> cells) override {
     writeMeditElements(lines_, cells);
   }
-  void writeEnd() override { output().write("End\n"); }
+  void takeEnd() override { output_.write("End\n").commit(); }
 
+  OutputFile output_;
   LineWriter lines_;
 };
 

@@ -83,7 +83,8 @@ void setOvmFaceTags(OvmOutput& output, const std::vector<Feature>& features,
   tags.assign(output.topology.faces.size(), 0);
   for (const Wanted& entry : wanted) {
     std::string name = "feature face";
-    for (const Index vertex : entry.feature->vertices) name += " " + std::to_string(vertex);
+    for (const Index vertex : entry.feature->vertices)
+      name.append(1, ' ').append(std::to_string(vertex));
     setOvmValue(tags, entry.face, entry.feature->tag, name, {});
   }
 }

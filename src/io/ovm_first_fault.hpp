@@ -15,15 +15,14 @@ template <class F>
   // A block takes some tens of microseconds at least.
   constexpr std::size_t kGrain = 4096;
   std::atomic<std::size_t> first{n};
-  parallelBlocks(stage, n, kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   for (std::size_t i = begin; i < end; ++i) {
-                     if (isGood(i)) continue;
-                     std::size_t known = first.load(std::memory_order_relaxed);
-                     while (i < known && !first.compare_exchange_weak(known, i)) {
-                     }
-                   }
-                 });
+  parallelBlocks(stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (isGood(i)) continue;
+      std::size_t known = first.load(std::memory_order_relaxed);
+      while (i < known && !first.compare_exchange_weak(known, i)) {
+      }
+    }
+  });
   return first.load();
 }
 

@@ -8,6 +8,7 @@
 #include <base/parallel.hpp>
 #include <io/ovm_cells.hpp>
 #include <io/ovm_features.hpp>
+#include <io/ovm_first_fault.hpp>
 #include <io/ovm_output.hpp>
 #include <io/ovm_topology.hpp>
 
@@ -15,7 +16,8 @@ namespace hexhex {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
-constexpr std::size_t kReversed = 4;  // the order of a cell that begins alike but turns the other way
+constexpr std::size_t kReversed =
+    4;  // the order of a cell that begins alike but turns the other way
 
 std::int32_t orderOf(const Hex& listed, const Hex& assembled) {
   std::size_t order = 0;
@@ -50,27 +52,39 @@ void setGenerators(OvmOutput& output, const HexMesh& mesh, Stage& stage) {
   corners.resize(vertices);
   const bool haveTets = mesh.generatorTet.size() == vertices;
   if (haveTets) tets.resize(vertices);
-  parallelFor(stage, vertices, kGrain, [&](std::size_t v) {
+  const std::size_t fault = firstFault(stage, vertices, [&](std::size_t v) {
     types[v] = static_cast<std::int32_t>(generatorKind(mesh.generatorCorners[v]));
     corners[v] = mesh.generatorCorners[v];
     if (haveTets) tets[v] = static_cast<std::int32_t>(mesh.generatorTet[v]);
+    return corners[v] >= 1 && corners[v] <= 15;
   });
+  if (fault == vertices) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "The generator of vertex " + std::to_string(fault) + " has the corner set " +
+                  std::to_string(corners[fault]) + ", which must be from 1 to 15.",
+              Place{PlaceKind::Vertex, fault});
 }
 
 /// The index of the simplex of a tet, in the tet mesh as this library writes it.
 class GeneratorIndices {
  public:
   GeneratorIndices(const TetMap& map, Stage& stage)
-      : map_(map), written_(toOvm(map, stage)), edges_(written_.topology), loops_(written_.topology, stage) {}
+      : map_(map),
+        written_(toOvm(map, stage)),
+        edges_(written_.topology),
+        loops_(written_.topology, stage) {}
 
   [[nodiscard]] Index of(Index tet, CornerSet corners) const {
     const Tet& t = map_.tets[tet];
-    const auto corner = [&](CornerSet set) { return t[static_cast<std::size_t>(std::countr_zero(set))]; };
+    const auto corner = [&](CornerSet set) {
+      return t[static_cast<std::size_t>(std::countr_zero(set))];
+    };
     switch (generatorKind(corners)) {
       case GeneratorKind::Vertex:
         return corner(corners);
       case GeneratorKind::Edge:
-        return edges_.find(corner(corners), corner(static_cast<CornerSet>(corners & (corners - 1))));
+        return edges_.find(corner(corners),
+                           corner(static_cast<CornerSet>(corners & (corners - 1))));
       case GeneratorKind::Face:
         return faceWithout(tet, corner(static_cast<CornerSet>(15 & ~corners)));
       case GeneratorKind::Cell:

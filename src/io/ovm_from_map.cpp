@@ -75,13 +75,13 @@ bool isMostlyNegative(const TetMap& map, Stage& stage) {
 
 /// How the corners of a tet were listed, which a reader finds in order of `assembled`.
 std::int32_t orderOf(const Tet& listed, const Tet& assembled) {
-  const auto* const found = std::find_if(
-      kTetOrders.begin(), kTetOrders.end(), [&](const std::array<std::uint8_t, 4>& order) {
-        for (std::size_t i = 0; i < 4; ++i) {
-          if (listed[i] != assembled[order[i]]) return false;
-        }
-        return true;
-      });
+  const auto* const found = std::find_if(kTetOrders.begin(), kTetOrders.end(),
+                                         [&](const std::array<std::uint8_t, 4>& order) {
+                                           for (std::size_t i = 0; i < 4; ++i) {
+                                             if (listed[i] != assembled[order[i]]) return false;
+                                           }
+                                           return true;
+                                         });
   return static_cast<std::int32_t>(found - kTetOrders.begin());
 }
 
@@ -116,7 +116,9 @@ void setHalfFaceValues(OvmOutput& output, const TetMap& map,
       const Index halfFace = output.topology.cells.handles[4 * t + s];
       const std::size_t corner = exchanged[kOvmTetOpposite[s]];
       parameters[halfFace] = map.parameters[t][corner];
-      if (!rotations.empty()) rotations[halfFace] = map.rotations[t][corner];
+      if (rotations.empty()) continue;
+      const std::int8_t rotation = map.rotations[t][corner];
+      rotations[halfFace] = rotation >= 0 && rotation < 24 ? rotation : -1;
     }
   });
 }

@@ -77,8 +77,8 @@ bool HexReader::readCell(std::size_t cell) {
 
 void HexReader::readCells() {
   mesh_.cells.resize(topology_.cells.size());
-  const std::size_t fault = firstFault(stage_, mesh_.cells.size(),
-                                       [this](std::size_t cell) { return readCell(cell); });
+  const std::size_t fault =
+      firstFault(stage_, mesh_.cells.size(), [this](std::size_t cell) { return readCell(cell); });
   if (fault == mesh_.cells.size()) return;
   throw Error(ErrorCode::FileSyntax,
               fileName_ + ": the half-faces of cell " + std::to_string(fault) +
@@ -90,9 +90,8 @@ void HexReader::turnIfInsideOut() {
   if (!isMostlyNegative(mesh_.points, mesh_.cells, stage_)) return;
   constexpr std::size_t kGrain = 4096;
   constexpr std::size_t kReversed = 4;
-  parallelFor(stage_, mesh_.cells.size(), kGrain, [this](std::size_t c) {
-    mesh_.cells[c] = inHexOrder(mesh_.cells[c], kReversed);
-  });
+  parallelFor(stage_, mesh_.cells.size(), kGrain,
+              [this](std::size_t c) { mesh_.cells[c] = inHexOrder(mesh_.cells[c], kReversed); });
 }
 
 /// Restores generators that this library wrote. Those of other programs name entities of a tet mesh

@@ -1,5 +1,5 @@
-// What `.ovm` and `.ovmb` files hold: a polyhedral mesh of vertices, edges, faces and cells, and the
-// properties of them that this library knows.
+// What `.ovm` and `.ovmb` files hold: a polyhedral mesh of vertices, edges, faces and cells, and
+// the properties of them that this library knows.
 //
 // Half-edge 2e is edge e as stored, 2e + 1 the same edge reversed. Half-face 2f is face f as stored
 // (a closed loop of half-edges), 2f + 1 the reversed loop.
@@ -75,7 +75,8 @@ struct OvmTopology {
 /// chart. Half-faces without a cell have values without meaning.
 inline constexpr std::string_view kParametrizationName = "HexHex::Parametrization";
 
-/// Properties of integers (C++ `int`) that are read and written, in the order of OvmEntity.
+/// Properties of integers (C++ `int`) that are read and written, in the order in
+/// which they are written.
 enum class OvmInteger : std::uint8_t {
   FeatureVertices,
   GeneratorType,     ///< of hex meshes: dimension of the simplex of the tets that holds the vertex
@@ -85,8 +86,8 @@ enum class OvmInteger : std::uint8_t {
   EdgeValence,
   FeatureEdges,
   FeatureFaces,
-  CornerOrder,  ///< of cells: how their corners were listed, which the format does not say
-  Transition
+  Transition,
+  CornerOrder  ///< of cells: how their corners were listed, which the format does not say
 };
 
 struct OvmIntegerName {
@@ -102,8 +103,8 @@ inline constexpr std::array<OvmIntegerName, 10> kOvmIntegers = {
      {OvmEntity::Edge, "edge_valance"},
      {OvmEntity::Edge, "AlgoHex::FeatureEdges"},
      {OvmEntity::Face, "AlgoHex::FeatureFaces"},
-     {OvmEntity::Cell, "hexhex::corner_order"},
-     {OvmEntity::HalfFace, "HalffaceTransiton"}}};
+     {OvmEntity::HalfFace, "HalffaceTransiton"},
+     {OvmEntity::Cell, "hexhex::corner_order"}}};
 
 /// Values of properties, one per element of the entity; empty if there is no such property.
 struct OvmProperties {

@@ -1,11 +1,15 @@
 // Maps and hex meshes as `.ovm` and `.ovmb` hold them.
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
+#include <io/output_file.hpp>
 #include <io/ovm_mesh.hpp>
 
 namespace hexhex {
@@ -29,5 +33,23 @@ struct OvmOutput {
 ///              that this library writes for this map; or null
 /// @throws Error as for maps
 [[nodiscard]] OvmOutput toOvm(const HexMesh& mesh, const TetMap* map, Stage& stage);
+
+/// One property that is present.
+struct OvmPropertyValues {
+  OvmEntity entity = OvmEntity::Vertex;
+  std::string_view name;
+  const Array<Vec3>* points = nullptr;            ///< either this
+  const Array<std::int32_t>* integers = nullptr;  ///< or this is set
+};
+
+/// All properties that are present, in the order in which they are written.
+[[nodiscard]] std::vector<OvmPropertyValues> listProperties(const OvmProperties& properties);
+
+/// Write and commit a mesh as `.ovmb` or `.ovm`, in the layout of OpenVolumeMesh's own files: for
+/// each kind of element one chunk or section, handles without offset; numbers of `.ovm` have the
+/// fewest digits that read back to the same double.
+/// @throws Error FileWrite
+void writeOvmbFile(const OvmOutput& mesh, OutputFile& output, Stage& stage);
+void writeOvmTextFile(const OvmOutput& mesh, OutputFile& output, Stage& stage);
 
 }  // namespace hexhex

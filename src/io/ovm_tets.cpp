@@ -223,7 +223,8 @@ bool assembleTet(const std::array<std::array<Index, 3>, 4>& loops, OvmTet& tet) 
       present |= 1U << order[i];
     }
     const unsigned missing = 15U & ~present;
-    if (!std::has_single_bit(missing)) return false;
+    // Exactly one bit; std::has_single_bit is a call on many machines.
+    if (missing == 0 || (missing & (missing - 1)) != 0) return false;
     order[3] = static_cast<std::uint8_t>(std::countr_zero(missing));
     // All half-faces run the same way round, seen from inside.
     if (!isEven(order)) return false;

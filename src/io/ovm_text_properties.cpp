@@ -10,8 +10,6 @@
 #include <io/number_parsing.hpp>
 #include <io/ovm_text_properties.hpp>
 #include <io/text_elements.hpp>
-#include <io/text_scanner.hpp>
-#include <io/token_index.hpp>
 
 namespace hexhex {
 namespace {
@@ -73,10 +71,14 @@ std::optional<PropertyHeader> parseHeader(std::string_view line) {
 
 class PropertiesReader {
  public:
-  PropertiesReader(std::string_view text, std::size_t begin, const std::string& fileName,
-                   OvmMesh& mesh, Stage& stage)
-      : text_(text), scanner_(text, fileName), mesh_(mesh), stage_(stage) {
-    scanner_.moveTo(begin);
+  PropertiesReader(const TextScanner& scanner, const TokenIndex& index, OvmMesh& mesh, Stage& stage)
+      // Here, '#' may be part of a text.
+      : text_(scanner.text()),
+        scanner_(text_, scanner.fileName()),
+        index_(index),
+        mesh_(mesh),
+        stage_(stage) {
+    scanner_.moveTo(scanner.position());
   }
 
   void read();
@@ -90,6 +92,7 @@ class PropertiesReader {
 
   std::string_view text_;
   TextScanner scanner_;
+  const TokenIndex& index_;
   OvmMesh& mesh_;
   Stage& stage_;
 };
@@ -109,12 +112,12 @@ void PropertiesReader::read() {
   while (scanner_.skipSpace()) {
     const std::string_view first = scanner_.currentToken();
     const bool comment = !anythingGoes && first.front() == '#';
-    const std::optional<PropertyHeader> header = parseHeader(text_.substr(scanner_.position()).substr(
-        0, text_.substr(scanner_.position()).find('\n')));
+    const std::optional<PropertyHeader> header = parseHeader(
+        text_.substr(scanner_.position()).substr(0, text_.substr(scanner_.position()).find('\n')));
     if (!header && !comment && !anythingGoes) {
-      scanner_.fail(ErrorCode::FileSyntax,
-                    "expected a property (e.g. VProp) or the end of the file, found " +
-                        quoted(first) + ".");
+      scanner_.fail(
+          ErrorCode::FileSyntax,
+          "expected a property (e.g. VProp) or the end of the file, found " + quoted(first) + ".");
     }
     takeLine();
     if (!header) continue;
@@ -151,7 +154,6 @@ bool PropertiesReader::readWanted(const PropertyHeader& header) {
 /// Parameters of half-faces without a cell mean nothing, so not even finite numbers are demanded
 /// here.
 void PropertiesReader::readPoints() {
-  const TokenIndex index(text_, stage_);
   Array<Vec3>& values = mesh_.properties.parametrization;
   // Every number takes two bytes, so that no count can ask for more memory than the file justifies.
   const std::size_t count = mesh_.topology.count(OvmEntity::HalfFace);
@@ -160,7 +162,7 @@ void PropertiesReader::readPoints() {
                   "the values of the map are incomplete: the file ends before them.");
   }
   values.resize(count);
-  readElements(scanner_, index, stage_, count, 3, [&values](TextScanner& scanner, std::size_t i) {
+  readElements(scanner_, &index_, stage_, count, 3, [&values](TextScanner& scanner, std::size_t i) {
     for (double& parameter : values[i]) {
       if (scanner.readNumber(parameter)) continue;
       const NumberProblem problem = parseNumber(scanner.currentToken(), parameter);
@@ -217,9 +219,9 @@ bool equalsIgnoringCase(std::string_view a, std::string_view b) noexcept {
                     [&](char x, char y) { return lower(x) == lower(y); });
 }
 
-void readOvmTextProperties(std::string_view text, std::size_t begin, const std::string& fileName,
-                           OvmMesh& mesh, Stage& stage) {
-  PropertiesReader(text, begin, fileName, mesh, stage).read();
+void readOvmTextProperties(const TextScanner& scanner, const TokenIndex& index, OvmMesh& mesh,
+                           Stage& stage) {
+  PropertiesReader(scanner, index, mesh, stage).read();
 }
 
 }  // namespace hexhex

@@ -15,8 +15,8 @@ namespace {
 // A block takes some tens of microseconds at least.
 constexpr std::size_t kGrain = 2048;
 
-/// Groups numbers 0 ... n - 1 by key: the numbers with key k are those in [begins[k], begins[k + 1])
-/// of `members`, in ascending order.
+/// Groups numbers 0 ... n - 1 by key: the numbers with key k are those in [begins[k], begins[k +
+/// 1]) of `members`, in ascending order.
 struct Groups {
   Array<std::uint64_t> begins;
   Array<Index> members;
@@ -44,9 +44,8 @@ Groups groupByKey(std::size_t keys, std::size_t n, const KeyOf& keyOf, Stage& st
   for (std::size_t k = keys; k > 0; --k) groups.begins[k] = groups.begins[k - 1];
   groups.begins[0] = 0;
   // Threads came in any order.
-  parallelFor(stage, keys, kGrain, [&](std::size_t k) {
-    std::sort(groups[k].begin(), groups[k].end());
-  });
+  parallelFor(stage, keys, kGrain,
+              [&](std::size_t k) { std::sort(groups[k].begin(), groups[k].end()); });
   return groups;
 }
 
@@ -138,7 +137,11 @@ void TopologyBuilder<Cell, n, k>::collect(std::span<const Index> sides,
     scratch.push_back({vertices, side});
   }
   std::sort(scratch.begin(), scratch.end(), [](const SortedSide& a, const SortedSide& b) {
-    return a.vertices != b.vertices ? a.vertices < b.vertices : a.side < b.side;
+    // The smallest vertex is the same for all.
+    for (std::size_t i = 1; i < n; ++i) {
+      if (a.vertices[i] != b.vertices[i]) return a.vertices[i] < b.vertices[i];
+    }
+    return a.side < b.side;
   });
 }
 
@@ -147,8 +150,8 @@ template <class Cell, std::size_t n, std::size_t k>
 bool TopologyBuilder<Cell, n, k>::areOpposite(Index a, Index b) const {
   const Loop here = loopOf(a);
   const Loop there = loopOf(b);
-  const auto start = static_cast<std::size_t>(
-      std::find(there.begin(), there.end(), here[0]) - there.begin());
+  const auto start =
+      static_cast<std::size_t>(std::find(there.begin(), there.end(), here[0]) - there.begin());
   for (std::size_t i = 0; i < n; ++i) {
     if (here[i] != there[(start + n - i) % n]) return false;
   }

@@ -101,9 +101,8 @@ bool isKnown(const ChunkHeader& header, const ByteCursor& cursor) {
                      header.compression == 0;
   if (known || (header.flags & kMandatory) == 0) return known;
   cursor.failAt(header.position, ErrorCode::FileUnsupported,
-                "the chunk " + quoted(header.type) + " (version " +
-                    std::to_string(header.version) + ", compression " +
-                    std::to_string(header.compression) +
+                "the chunk " + quoted(header.type) + " (version " + std::to_string(header.version) +
+                    ", compression " + std::to_string(header.compression) +
                     ") is not supported, and marked as mandatory. Save the file with an earlier "
                     "version of OpenVolumeMesh, uncompressed.");
 }

@@ -7,13 +7,13 @@
 namespace hexhex {
 namespace {
 
-/// Singular and plural of vertices, edges, faces, cells, in the order of the file header.
+/// One and many of vertices, edges, faces, cells, in the order of the file header.
 struct ElementName {
   const char* one;
   const char* many;
 };
 constexpr std::array<ElementName, 4> kElements = {
-    {{"vertex", "vertices"}, {"edge", "edges"}, {"face", "faces"}, {"cell", "cells"}}};
+    {{"a vertex", "vertices"}, {"an edge", "edges"}, {"a face", "faces"}, {"a cell", "cells"}}};
 
 /// Adds the elements of one chunk after the other to a mesh.
 class ElementReader {
@@ -42,7 +42,7 @@ class ElementReader {
     std::uint8_t handleBytes = 0;
     std::uint64_t handleOffset = 0;
   };
-  Encoding readEncoding(ByteCursor& cursor, std::uint8_t valence) const;
+  static Encoding readEncoding(ByteCursor& cursor, std::uint8_t valence);
   template <class Stored>
   void decodeValences(ByteCursor& cursor, std::size_t entity);
   void readValences(ByteCursor& cursor, std::uint64_t count, std::size_t entity);
@@ -116,8 +116,7 @@ void ElementReader::readVertices(std::string_view payload) {
   }
 }
 
-ElementReader::Encoding ElementReader::readEncoding(ByteCursor& cursor,
-                                                    std::uint8_t valence) const {
+ElementReader::Encoding ElementReader::readEncoding(ByteCursor& cursor, std::uint8_t valence) {
   const std::size_t position = cursor.position();
   Encoding encoding;
   encoding.valence = valence;
@@ -157,15 +156,15 @@ void ElementReader::readTopology(std::string_view payload) {
     readLists(cursor, span.count, entity);
   }
   if (cursor.remaining() > 0) {
-    cursor.fail(ErrorCode::FileSyntax, "the TOPO chunk is longer than its " +
-                                           std::string(kElements[entity].many) + ".");
+    cursor.fail(ErrorCode::FileSyntax,
+                "the TOPO chunk is longer than its " + std::string(kElements[entity].many) + ".");
   }
 }
 
 void ElementReader::readEdges(ByteCursor& cursor, std::uint64_t count) {
   if (encoding_.valence != 2) {
-    cursor.fail(ErrorCode::FileSyntax, "edges must have the valence 2, found " +
-                                           std::to_string(encoding_.valence) + ".");
+    cursor.fail(ErrorCode::FileSyntax,
+                "edges must have the valence 2, found " + std::to_string(encoding_.valence) + ".");
   }
   Array<Index> handles;
   if (cursor.remaining() != 2 * count * encoding_.handleBytes) {
@@ -195,7 +194,7 @@ void ElementReader::decodeValences(ByteCursor& cursor, std::size_t entity) {
   });
   if (fault == valences_.size()) return;
   cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::FileSyntax,
-                "a " + std::string(kElements[entity].one) + " has the valence " +
+                std::string(kElements[entity].one) + " has the valence " +
                     std::to_string(valences_[fault]) + "; at least " + std::to_string(least) +
                     " is needed.");
 }
@@ -276,7 +275,7 @@ void ElementReader::decodeHandles(ByteCursor& cursor, std::span<Index> handles,
   if (fault == handles.size()) return;
   const std::uint64_t stored{loadLittle<Stored>(data + fault * sizeof(Stored))};
   cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::IndexOutOfRange,
-                "a " + std::string(kElements[entity].one) + " names " + kNamed[entity] + " " +
+                std::string(kElements[entity].one) + " names " + kNamed[entity] + " " +
                     std::to_string(stored) + " + " + std::to_string(offset) + ", but there are " +
                     std::to_string(limit) + ", numbered from 0.");
 }
@@ -284,10 +283,10 @@ void ElementReader::decodeHandles(ByteCursor& cursor, std::span<Index> handles,
 void ElementReader::requireAll() const {
   for (std::size_t entity = 0; entity < 4; ++entity) {
     if (done_[entity] == frame_.counts[entity]) continue;
-    throw Error(ErrorCode::FileSyntax,
-                frame_.fileName + ": the file header announces " +
-                    std::to_string(frame_.counts[entity]) + " " + kElements[entity].many +
-                    ", but the file holds " + std::to_string(done_[entity]) + ".");
+    throw Error(ErrorCode::FileSyntax, frame_.fileName + ": the file header announces " +
+                                           std::to_string(frame_.counts[entity]) + " " +
+                                           kElements[entity].many + ", but the file holds " +
+                                           std::to_string(done_[entity]) + ".");
   }
 }
 

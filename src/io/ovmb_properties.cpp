@@ -1,6 +1,8 @@
 #include <algorithm>
-#include <limits>
 #include <optional>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <io/ovm_first_fault.hpp>
@@ -80,37 +82,7 @@ bool isIntegerType(std::string_view type) {
   return type == kBits || (bytesOf(type) > 0 && !isPointType(type));
 }
 
-class PropertyReader {
- public:
-  PropertyReader(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage)
-      : frame_(frame), mesh_(mesh), stage_(stage) {}
-
-  void readDirectory(std::string_view payload);
-  void readProperty(std::string_view payload);
-
- private:
-  Entry readEntry(ByteCursor& cursor) const;
-  void prepare(std::size_t number);
-  template <class T, class Load>
-  void makeArray(std::size_t number, Array<T>& values, const Load& load);
-  [[nodiscard]] bool isGivenAtOnce(std::size_t number) const;
-  void decodePoints(const Entry& entry, const OvmbSpan& span, ByteCursor& cursor);
-  void decodeIntegers(const Entry& entry, const OvmbSpan& span, ByteCursor& cursor,
-                      Array<std::int32_t>& values);
-  void decodeBits(const OvmbSpan& span, ByteCursor& cursor, Array<std::int32_t>& values);
-  std::string_view takeElements(const Entry& entry, std::uint64_t bytes, ByteCursor& cursor) const;
-
-  const OvmbFrame& frame_;
-  OvmMesh& mesh_;
-  Stage& stage_;
-  bool hasDirectory_ = false;
-  std::vector<Entry> entries_;
-  // The entries that are decoded; the first of several with the same name counts.
-  std::optional<std::size_t> map_;
-  std::array<std::optional<std::size_t>, kOvmIntegers.size()> integers_;
-};
-
-Entry PropertyReader::readEntry(ByteCursor& cursor) const {
+Entry readEntry(ByteCursor& cursor) {
   const std::size_t position = cursor.position();
   const auto entity = cursor.read<std::uint8_t>("the directory of properties");
   if (entity > static_cast<std::uint8_t>(OvmEntity::Mesh)) {
@@ -128,6 +100,65 @@ Entry PropertyReader::readEntry(ByteCursor& cursor) const {
   entry.defaultValue = text("the default value of a property");
   return entry;
 }
+
+/// All that remains of a PROP chunk, which must have this size.
+std::string_view takeElements(const Entry& entry, std::uint64_t bytes, ByteCursor& cursor) {
+  if (cursor.remaining() != bytes) {
+    cursor.fail(ErrorCode::FileSyntax, "the values of the property " + quoted(entry.name) +
+                                           " have " + std::to_string(cursor.remaining()) +
+                                           " bytes instead of " + std::to_string(bytes) + ".");
+  }
+  return cursor.take(bytes, "the values of a property");
+}
+
+/// Eight elements per byte, from the lowest bit on.
+void decodeBits(const char* data, std::span<std::int32_t> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(data[i / 8]);
+    values[i] = (byte >> (i % 8)) & 1;
+  }
+}
+
+/// Whether an integer fits where this library keeps it; sets the place anyhow.
+template <class Stored>
+bool setInteger(std::int32_t& place, Stored value) {
+  place = static_cast<std::int32_t>(static_cast<std::int64_t>(value));
+  return std::in_range<std::int32_t>(value);
+}
+
+[[noreturn]] void failTooLarge(const ByteCursor& cursor, std::size_t position, const Entry& entry,
+                               const std::string& value) {
+  cursor.failAt(position, ErrorCode::FileUnsupported,
+                "the property " + quoted(entry.name) + " has the value " + value +
+                    ", which does not fit into 32 bits with a sign.");
+}
+
+class PropertyReader {
+ public:
+  PropertyReader(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage)
+      : frame_(frame), mesh_(mesh), stage_(stage) {}
+
+  void readDirectory(std::string_view payload);
+  void readProperty(std::string_view payload);
+
+ private:
+  void prepare(std::size_t number);
+  template <class T, class Load>
+  void makeArray(std::size_t number, Array<T>& values, const Load& load);
+  [[nodiscard]] bool isGivenAtOnce(std::size_t number) const;
+  void decodePoints(const Entry& entry, const OvmbSpan& span, ByteCursor& cursor);
+  void decodeIntegers(const Entry& entry, const OvmbSpan& span, ByteCursor& cursor,
+                      Array<std::int32_t>& values);
+
+  const OvmbFrame& frame_;
+  OvmMesh& mesh_;
+  Stage& stage_;
+  bool hasDirectory_ = false;
+  std::vector<Entry> entries_;
+  // The entries that are decoded; the first of several with the same name counts.
+  std::optional<std::size_t> map_;
+  std::array<std::optional<std::size_t>, kOvmIntegers.size()> integers_;
+};
 
 void PropertyReader::readDirectory(std::string_view payload) {
   ByteCursor cursor = frame_.cursor(payload);
@@ -154,12 +185,19 @@ void PropertyReader::prepare(std::size_t number) {
   }
   if (!isIntegerType(entry.type)) return;
   for (std::size_t i = 0; i < kOvmIntegers.size(); ++i) {
-    const bool wanted = entry.entity == kOvmIntegers[i].entity && entry.name == kOvmIntegers[i].name;
+    const bool wanted =
+        entry.entity == kOvmIntegers[i].entity && entry.name == kOvmIntegers[i].name;
     if (!wanted || integers_[i]) continue;
     integers_[i] = number;
     withIntegerType(entry.type, [&](const auto& load) {
-      makeArray(number, mesh_.properties.integers[i],
-                [&](const char* place) { return static_cast<std::int32_t>(load(place)); });
+      makeArray(number, mesh_.properties.integers[i], [&](const char* place) {
+        std::int32_t value = 0;
+        if (!setInteger(value, load(place))) {
+          const ByteCursor cursor = frame_.cursor(entry.defaultValue);
+          failTooLarge(cursor, cursor.position(), entry, std::to_string(load(place)));
+        }
+        return value;
+      });
     });
   }
 }
@@ -220,17 +258,6 @@ void PropertyReader::readProperty(std::string_view payload) {
   }
 }
 
-/// All that remains of a PROP chunk, which must have this size.
-std::string_view PropertyReader::takeElements(const Entry& entry, std::uint64_t bytes,
-                                              ByteCursor& cursor) const {
-  if (cursor.remaining() != bytes) {
-    cursor.fail(ErrorCode::FileSyntax, "the values of the property " + quoted(entry.name) +
-                                           " have " + std::to_string(cursor.remaining()) +
-                                           " bytes instead of " + std::to_string(bytes) + ".");
-  }
-  return cursor.take(bytes, "the values of a property");
-}
-
 void PropertyReader::decodePoints(const Entry& entry, const OvmbSpan& span, ByteCursor& cursor) {
   const std::size_t bytes = bytesOf(entry.type);
   const char* const data = takeElements(entry, span.count * bytes, cursor).data();
@@ -242,38 +269,22 @@ void PropertyReader::decodePoints(const Entry& entry, const OvmbSpan& span, Byte
   });
 }
 
-void PropertyReader::decodeBits(const OvmbSpan& span, ByteCursor& cursor,
-                                Array<std::int32_t>& values) {
-  const char* const data = cursor.take((span.count + 7) / 8, "bits").data();
-  for (std::size_t i = 0; i < span.count; ++i) {
-    const auto byte = static_cast<unsigned char>(data[i / 8]);
-    values[static_cast<std::size_t>(span.first) + i] = (byte >> (i % 8)) & 1;
-  }
-}
-
 void PropertyReader::decodeIntegers(const Entry& entry, const OvmbSpan& span, ByteCursor& cursor,
                                     Array<std::int32_t>& values) {
   const std::size_t begin = cursor.position();
   const std::size_t bytes = bytesOf(entry.type);
   const std::uint64_t size = entry.type == kBits ? (span.count + 7) / 8 : span.count * bytes;
   const char* const data = takeElements(entry, size, cursor).data();
-  if (entry.type == kBits) {
-    ByteCursor again = frame_.cursor({data, static_cast<std::size_t>(size)});
-    return decodeBits(span, again, values);
-  }
-  std::int32_t* const place = values.data() + span.first;
+  const std::span<std::int32_t> place = std::span(values).subspan(
+      static_cast<std::size_t>(span.first), static_cast<std::size_t>(span.count));
+  if (entry.type == kBits) return decodeBits(data, place);
   withIntegerType(entry.type, [&](const auto& load) {
-    const std::size_t fault =
-        firstFault(stage_, static_cast<std::size_t>(span.count), [&](std::size_t i) {
-          const auto value = load(data + i * bytes);
-          place[i] = static_cast<std::int32_t>(value);
-          return std::in_range<std::int32_t>(value);
-        });
-    if (fault == span.count) return;
-    cursor.failAt(begin + fault * bytes, ErrorCode::FileUnsupported,
-                  "the property " + quoted(entry.name) + " has the value " +
-                      std::to_string(load(data + fault * bytes)) +
-                      ", which does not fit into 32 bits with a sign.");
+    const std::size_t fault = firstFault(stage_, place.size(), [&](std::size_t i) {
+      return setInteger(place[i], load(data + i * bytes));
+    });
+    if (fault == place.size()) return;
+    const std::size_t wrong = fault * bytes;
+    failTooLarge(cursor, begin + wrong, entry, std::to_string(load(data + wrong)));
   });
 }
 

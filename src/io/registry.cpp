@@ -11,6 +11,9 @@
 #include <io/finite_points.hpp>
 #include <io/hexex.hpp>
 #include <io/medit.hpp>
+#include <io/mesh_pieces.hpp>
+#include <io/mesh_sink.hpp>
+#include <io/ovm.hpp>
 #include <io/registry.hpp>
 #include <io/vtu.hpp>
 #include <mesh/vertex_cells.hpp>
@@ -18,10 +21,15 @@
 namespace hexhex {
 namespace {
 
-constexpr std::array<MapFormat, 1> kMapFormats = {{{".hexex", readHexex, writeHexex}}};
+constexpr std::array<MapFormat, 3> kMapFormats = {{{".hexex", readHexex, writeHexex},
+                                                   {".ovm", readOvmMap, writeOvmMap},
+                                                   {".ovmb", readOvmbMap, writeOvmbMap}}};
 
-constexpr std::array<HexMeshFormat, 2> kHexMeshFormats = {
-    {{".mesh", readMedit, writeMedit}, {".vtu", readVtu, writeVtu}}};
+constexpr std::array<HexMeshFormat, 4> kHexMeshFormats = {
+    {{".mesh", readMedit, writeMedit, openMeditSink},
+     {".vtu", readVtu, writeVtu, openVtuSink, readVtuTo},
+     {".ovm", readOvmHexMesh, writeOvmHexMesh},
+     {".ovmb", readOvmbHexMesh, writeOvmbHexMesh}}};
 
 std::string lowerCaseExtension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -137,6 +145,28 @@ void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file, Contex
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file) {
   Context context;
   writeHexMesh(mesh, file, context);
+}
+
+std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file, Context& context) {
+  const HexMeshFormat& format = hexMeshFormat(file);
+  if (format.openSink != nullptr) return format.openSink(file, context);
+  std::string able;
+  for (const HexMeshFormat& each : kHexMeshFormats) {
+    if (each.openSink == nullptr) continue;
+    able += (able.empty() ? "" : ", ") + std::string(each.extension);
+  }
+  throw Error(ErrorCode::FileUnsupported,
+              file.string() +
+                  ": a mesh in pieces cannot be written in this format. Formats that can: " + able +
+                  ".");
+}
+
+void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, Context& context) {
+  const HexMeshFormat& format = hexMeshFormat(file);
+  withThreads(context.threads(), [&] {
+    if (format.readTo != nullptr) return format.readTo(sink, file, context);
+    sendTo(sink, format.read(file, context));
+  });
 }
 
 void requireHexMeshFormat(const std::filesystem::path& file) {

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string_view>
 
 #include <hexhex/context.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex {
@@ -22,6 +24,11 @@ struct HexMeshFormat {
   HexMesh (*read)(const std::filesystem::path& file, Context& context);
   void (*write)(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
                 Context& context);
+
+  // For meshes in pieces; null if the format takes a mesh as a whole only.
+  std::unique_ptr<MeshSink> (*openSink)(const std::filesystem::path& file,
+                                        Context& context) = nullptr;
+  void (*readTo)(MeshSink& sink, const std::filesystem::path& file, Context& context) = nullptr;
 };
 
 /// The format of a file by its extension.

@@ -23,12 +23,10 @@ namespace hexhex {
 [[nodiscard]] HexMesh parseVtu(std::string_view text, const std::string& fileName,
                                Context& context);
 
-/// Whether a file can be read in pieces: its data are appended, and it is no pipe.
-[[nodiscard]] bool canReadVtuInPieces(const std::filesystem::path& file);
-
-/// Reads the same as readVtu(), but hands it over in pieces, with little memory. Arrays
-/// generator_tet and generator_corners are handed over, too.
-void readVtuTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
+/// Reads the same as readVtu(), but hands it over in pieces; with little memory if the file's data
+/// are appended and it is no pipe. Then generators, as writeVtu() writes them, are handed over,
+/// too.
+void readVtuTo(MeshSink& sink, const std::filesystem::path& path, Context& context);
 
 /// Writes points (Float64), hexahedra, the cell array `scaled_jacobian` (Float64) and, if the mesh
 /// knows where its vertices came from, the point arrays `generator_kind` (UInt8: 0 vertex, 1 edge,

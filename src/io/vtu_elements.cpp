@@ -63,8 +63,7 @@ void requireVertex(const VtuFile& file, std::uint64_t cell, std::int64_t vertex)
   if (vertex >= 0 && static_cast<std::uint64_t>(vertex) < file.pointCount()) return;
   file.fail(ErrorCode::IndexOutOfRange,
             "cell " + std::to_string(cell) + " names point " + std::to_string(vertex) +
-                ", but the " + std::to_string(file.pointCount()) +
-                " points are numbered from 0.",
+                ", but the " + std::to_string(file.pointCount()) + " points are numbered from 0.",
             Place{PlaceKind::Cell, cell});
 }
 

@@ -41,6 +41,7 @@ void convert(const char* from, std::size_t count, T* to) {
   for (std::size_t i = 0; i < count; ++i) {
     Stored stored;
     std::memcpy(&stored, from + i * sizeof(Stored), sizeof(Stored));
+    // NOLINTNEXTLINE(bugprone-signed-char-misuse): numbers of 8 bits keep their sign, too.
     to[i] = static_cast<T>(stored);
   }
 }
@@ -85,8 +86,7 @@ HeadBytes readHeadBytes(const InputFile& input) {
     input.readAt(0, head.bytes.data(), size);
     const std::string_view text = asText(head.bytes);
     const std::size_t tag = text.find("<AppendedData");
-    head.complete =
-        tag != std::string_view::npos && text.find('_', tag) != std::string_view::npos;
+    head.complete = tag != std::string_view::npos && text.find('_', tag) != std::string_view::npos;
     if (head.complete || size == input.size()) break;
   }
   return head;

@@ -1,5 +1,6 @@
-// A `.vtu` file as its readers see it: what its tags say, and its arrays, a range at a time, no matter
-// whether they are in memory or on the disk. Every size and offset is checked against the file.
+// A `.vtu` file as its readers see it: what its tags say, and its arrays, a range at a time, no
+// matter whether they are in memory or on the disk. Every size and offset is checked against the
+// file.
 #pragma once
 
 #include <cstdint>
@@ -102,9 +103,9 @@ class VtuFile {
   std::uint64_t pointCount_ = 0;
   std::uint64_t cellCount_ = 0;
   bool hasFileTag_ = false;
-  std::optional<std::size_t> piece_;          ///< where its tag begins
-  std::size_t lengthBytes_ = 4;               ///< of the byte count in front of appended arrays
-  std::optional<std::uint64_t> appended_;     ///< position behind the '_' of AppendedData
+  std::optional<std::size_t> piece_;       ///< where its tag begins
+  std::size_t lengthBytes_ = 4;            ///< of the byte count in front of appended arrays
+  std::optional<std::uint64_t> appended_;  ///< position behind the '_' of AppendedData
   std::optional<ArrayTag> coordinatesTag_;
   std::optional<ArrayTag> connectivityTag_;
   std::optional<ArrayTag> endsTag_;

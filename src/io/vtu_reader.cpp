@@ -10,6 +10,7 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/input_file.hpp>
+#include <io/mesh_pieces.hpp>
 #include <io/vtu.hpp>
 #include <io/vtu_elements.hpp>
 #include <io/vtu_file.hpp>
@@ -55,8 +56,7 @@ void readPoints(const VtuFile& file, HexMesh& mesh, Stage& stage) {
   parallelBlocks(stage, mesh.points.size(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    error.guard(block, [&] {
-                     readVtuPoints(file, begin,
-                                   std::span(mesh.points).subspan(begin, end - begin));
+                     readVtuPoints(file, begin, std::span(mesh.points).subspan(begin, end - begin));
                    });
                  });
   error.rethrow();
@@ -149,14 +149,12 @@ HexMesh readVtu(const std::filesystem::path& file, Context& context) {
   return mesh;
 }
 
-bool canReadVtuInPieces(const std::filesystem::path& file) {
-  const InputFile input(file);
-  return input.isRegular() && VtuFile::hasAppendedData(input);
-}
-
 void readVtuTo(MeshSink& sink, const std::filesystem::path& path, Context& context) {
-  Stage stage(context, "read mesh");
   const InputFile input(path);
+  if (!input.isRegular() || !VtuFile::hasAppendedData(input)) {
+    return sendTo(sink, readVtu(path, context));
+  }
+  Stage stage(context, "read mesh");
   const VtuFile file(input, path.string());
   std::uint64_t hexahedra = 0;
   forEachPiece(stage, file.cellCount(), [&](std::uint64_t first, std::size_t count) {

@@ -1,24 +1,25 @@
 // The parts of a `.vtu` file follow each other array by array, but a mesh in pieces brings some of
 // each. So all arrays are written side by side, each from its own position on.
-#include <algorithm>
 #include <map>
 #include <optional>
 
 #include <hexhex/error.hpp>
 
+#include <io/checked_sink.hpp>
 #include <io/file_part.hpp>
-#include <io/file_sink.hpp>
 #include <io/mesh_sink.hpp>
+#include <io/output_file.hpp>
 #include <io/vtu_content.hpp>
 #include <io/vtu_layout.hpp>
 
 namespace hexhex {
 namespace {
 
-class VtuSink final : public FileSink {
+class VtuSink final : public CheckedSink {
  public:
-  VtuSink(const std::filesystem::path& file, Context& context) : FileSink(file, context) {
-    if (output().hasPositions()) return;
+  VtuSink(const std::filesystem::path& file, Context& context)
+      : CheckedSink(file.string(), "write mesh", context), output_(file) {
+    if (output_.hasPositions()) return;
     throw Error(ErrorCode::FileWrite,
                 file.string() +
                     ": the file was not written because it is a device or a pipe, but the arrays "
@@ -26,9 +27,9 @@ class VtuSink final : public FileSink {
   }
 
  private:
-  void writeBegin() override {}
+  void takeBegin() override {}
 
-  void writePoints(const PointPiece& piece) override {
+  void takePoints(const PointPiece& piece) override {
     if (piece.first == 0) layOut(!piece.generatorTet.empty(), !piece.generatorCorners.empty());
     part(VtuContent::Points).writeBytes(piece.points.data(), piece.points.size_bytes());
     if (!piece.generatorTet.empty()) {
@@ -42,13 +43,13 @@ class VtuSink final : public FileSink {
     }
   }
 
-  void writeCellsBegin() override {
+  void takeCellsBegin() override {
     if (!layout_) layOut(false, false);  // there are no vertices
   }
-  void writeCells(std::uint64_t first, std::span<const Hex> cells) override {
+  void takeCells(std::uint64_t first, std::span<const Hex> cells) override {
     writeAnyCells(first, cells);
   }
-  void writeCells(std::uint64_t first, std::span<const Hex64> cells) override {
+  void takeCells(std::uint64_t first, std::span<const Hex64> cells) override {
     writeAnyCells(first, cells);
   }
 
@@ -59,25 +60,26 @@ class VtuSink final : public FileSink {
     writeTypes(part(VtuContent::Types), cells.size());
   }
 
-  void writeEnd() override {
+  void takeEnd() override {
     for (auto& [content, part] : parts_) part.flush();
     const std::string_view tail = VtuLayout::tail();
-    output().writeBytesAt(layout_->tailPosition(), tail.data(), tail.size());
+    output_.writeBytesAt(layout_->tailPosition(), tail.data(), tail.size());
+    output_.commit();
   }
 
   /// Only the first piece tells which arrays there are, and so where they begin.
   void layOut(bool generatorTets, bool generatorCorners) {
     layout_.emplace(VtuShape{pointCount(), cellCount(), generatorTets, generatorCorners, false});
-    output().writeBytesAt(0, layout_->head().data(), layout_->head().size());
+    output_.writeBytesAt(0, layout_->head().data(), layout_->head().size());
     for (const VtuArray& array : layout_->arrays()) {
-      output().writeBytesAt(array.position - sizeof(array.bytes), &array.bytes,
-                            sizeof(array.bytes));
-      parts_.emplace(array.content, FilePart(output(), array.position));
+      output_.writeBytesAt(array.position - sizeof(array.bytes), &array.bytes, sizeof(array.bytes));
+      parts_.emplace(array.content, FilePart(output_, array.position));
     }
   }
 
   FilePart& part(VtuContent content) { return parts_.at(content); }
 
+  OutputFile output_;
   std::optional<VtuLayout> layout_;
   std::map<VtuContent, FilePart> parts_;
 };

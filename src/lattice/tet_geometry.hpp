@@ -25,7 +25,10 @@ inline constexpr CornerMask kNoSimplex = 0;
 inline constexpr CornerMask kWholeTet = 15;
 
 [[nodiscard]] constexpr int dimension(CornerMask mask) noexcept {
-  return std::popcount(static_cast<unsigned>(mask)) - 1;
+  // A table, as not every machine that we compile for counts bits in one instruction.
+  constexpr std::array<std::int8_t, 16> kDimensions = {-1, 0, 0, 1, 0, 1, 1, 2,
+                                                       0,  1, 1, 2, 1, 2, 2, 3};
+  return kDimensions[mask];
 }
 [[nodiscard]] constexpr bool contains(CornerMask mask, int corner) noexcept {
   return ((mask >> corner) & 1) != 0;

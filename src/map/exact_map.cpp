@@ -6,15 +6,12 @@
 
 #include <base/vector3.hpp>
 #include <map/exact_map.hpp>
-#include <map/vertex_star.hpp>
 
 namespace hexhex {
 
 namespace {
 
 constexpr std::size_t kGrain = 1024;
-/// Most vertices are plain, and a special one takes long.
-constexpr std::size_t kVertexGrain = 128;
 
 /// Unscaled lattice coordinates stay below 2^52 and scaled ones below 2^60, which the predicates
 /// rely on (tet_geometry.hpp).
@@ -36,12 +33,13 @@ std::size_t dominantAxis(const Vec3& v) {
   return axis;
 }
 
-AxisSet rotated(AxisSet axes, Rotation rotation) {
-  AxisSet image = 0;
+/// The axes that a rotation sends to these.
+AxisSet rotatedBack(AxisSet axes, Rotation rotation) {
+  AxisSet preimage = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    if ((axes >> axis) & 1U) image |= 1U << axisOf(rotation(direction(axis, 1)));
+    preimage |= ((axes >> axisOf(rotation(direction(axis, 1)))) & 1U) << axis;
   }
-  return image;
+  return preimage;
 }
 
 /// By how much a coordinate changes at most.
@@ -66,35 +64,30 @@ std::int64_t nearestInteger(double x) {
 /// vertices.
 class VertexSanitizer {
  public:
-  VertexSanitizer(const TetTopology& topology, const LocalParameters& parameters,
-                  const Singularities& singularities, double tolerance, DefectCollector& defects,
-                  ExactMap& map)
-      : topology_(topology),
-        parameters_(parameters),
+  VertexSanitizer(const LocalParameters& parameters, const Singularities& singularities,
+                  double tolerance, DefectCollector& defects, ExactMap& map)
+      : parameters_(parameters),
         singularities_(singularities),
         tolerance_(tolerance),
         defects_(defects),
-        map_(map) {}
+        map_(map),
+        resolution_(1 / static_cast<double>(map.unit)) {}
 
-  void run(Index v) {
-    walk_.collect(topology_, v);
-    star_ = walk_.members();
-    const bool oneChart = !hasJump();
-    if (oneChart) {
-      toStar_.assign(star_.size(), Transition{});
-    } else {
-      unfold();
-    }
+  void run(Index v, std::span<const VertexStar::Member> star) {
+    star_ = star;
+    oneChart_ = !hasJump();
+    if (!oneChart_) unfold();
     const LatticePoint value = snapped(fixedAxes(v));
     double displacement = 0;
     for (std::size_t i = 0; i < star_.size(); ++i) {
-      displacement = std::max(displacement, assign(i, toStar_[i](value, map_.unit)));
+      displacement =
+          std::max(displacement, assign(i, oneChart_ ? value : toStar_[i](value, map_.unit)));
     }
     maxDisplacement_ = std::max(maxDisplacement_, displacement);
     if (displacement > tolerance_) {
       defects_.add(causeOfDisplacement(v), {PlaceKind::Vertex, v}, displacement);
     }
-    if (!oneChart) checkLoops(v);
+    if (!oneChart_) checkLoops(v);
   }
 
   [[nodiscard]] double maxDisplacement() const noexcept { return maxDisplacement_; }
@@ -102,15 +95,11 @@ class VertexSanitizer {
  private:
   /// Whether the star has a face at the vertex with a non-identity transition.
   [[nodiscard]] bool hasJump() const {
-    return std::any_of(star_.begin(), star_.end(), [&](const VertexStar::Member& member) {
-      for (int face = 0; face < 4; ++face) {
-        if (face != localOf(member.corner) &&
-            map_.transitions.isJump(halfFaceOf(tetOf(member.corner), face))) {
-          return true;
-        }
-      }
-      return false;
-    });
+    Index any = 0;
+    for (const VertexStar::Member& member : star_) {
+      for (std::size_t k = 0; k < 3; ++k) any |= map_.transitions.jump[member.halfFace(k)];
+    }
+    return any != 0;
   }
 
   /// Transitions from the representative's chart, that of the first corner, into all others, along
@@ -139,9 +128,9 @@ class VertexSanitizer {
 
   template <class Visit>
   void forEachNeighbour(std::size_t i, const Visit& visit) const {
-    for (int face = 0; face < 4; ++face) {
-      const Index neighbour = star_[i].neighbour[static_cast<std::size_t>(face)];
-      if (neighbour != kNone) visit(halfFaceOf(tetOf(star_[i].corner), face), neighbour);
+    const VertexStar::Member& member = star_[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (member.neighbour[k] != kNone) visit(member.halfFace(k), member.neighbour[k]);
     }
   }
 
@@ -150,19 +139,29 @@ class VertexSanitizer {
     if (singularities_.isNode(v)) return kAllAxes;
     AxisSet fixed = 0;
     for (std::size_t i = 0; i < star_.size(); ++i) {
-      const CornerIndex corner = star_[i].corner;
-      for (int face = 0; face < 4; ++face) {
-        const HalfFace halfFace = halfFaceOf(corner / 4, face);
-        if (face == localOf(corner) || !topology_.isBoundary(halfFace)) continue;
-        fixed |= rotated(1U << boundaryAxis(parameters_, halfFace), toStar_[i].rotation.inverse());
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (star_[i].neighbour[k] != kNone) continue;
+        fixed |= inStar(1U << boundaryAxis(parameters_, star_[i].halfFace(k)), i);
       }
     }
     for (const Singularities::Incidence& incidence : singularities_.at(v)) {
       const SingularEdge& edge = singularities_.edges[incidence.edge];
       const AxisSet across = kAllAxes & ~(1U << edgeAxis(parameters_, edge));
-      fixed |= rotated(across, toStar_[walk_.memberOf(edge.tet)].rotation.inverse());
+      fixed |= inStar(across, memberOf(edge.tet));
     }
     return fixed;
+  }
+
+  [[nodiscard]] std::size_t memberOf(Index tet) const {
+    const auto found =
+        std::find_if(star_.begin(), star_.end(),
+                     [tet](const VertexStar::Member& member) { return member.tet() == tet; });
+    return static_cast<std::size_t>(found - star_.begin());
+  }
+
+  /// Axes of a member's chart in the representative's.
+  [[nodiscard]] AxisSet inStar(AxisSet axes, std::size_t member) const {
+    return oneChart_ ? axes : rotatedBack(axes, toStar_[member].rotation);
   }
 
   [[nodiscard]] LatticePoint snapped(AxisSet fixed) const {
@@ -179,21 +178,17 @@ class VertexSanitizer {
   double assign(std::size_t i, const LatticePoint& value) {
     const CornerIndex corner = star_[i].corner;
     map_.corners[corner / 4][corner % 4] = value;
-    const Vec3 before = parameters_(corner / 4, localOf(corner));
-    return displacementOf(before, value, 1 / static_cast<double>(map_.unit));
+    return displacementOf(parameters_(corner / 4, localOf(corner)), value, resolution_);
   }
 
   /// The condition that a vertex which had to move too far violates.
   [[nodiscard]] ErrorCode causeOfDisplacement(Index v) const {
     if (singularities_.degree[v] > 0) return ErrorCode::SingularityOffLattice;
-    for (const VertexStar::Member& member : star_) {
-      for (int face = 0; face < 4; ++face) {
-        if (face != localOf(member.corner) &&
-            topology_.isBoundary(halfFaceOf(tetOf(member.corner), face))) {
-          return ErrorCode::BoundaryOffLattice;
-        }
-      }
-    }
+    const bool boundary =
+        std::any_of(star_.begin(), star_.end(), [](const VertexStar::Member& member) {
+          return std::count(member.neighbour.begin(), member.neighbour.end(), kNone) > 0;
+        });
+    if (boundary) return ErrorCode::BoundaryOffLattice;
     return ErrorCode::TransitionResidual;
   }
 
@@ -207,8 +202,12 @@ class VertexSanitizer {
       const LatticePoint& here = cornerOf(i);
       bool closed = true;
       forEachNeighbour(i, [&](HalfFace halfFace, std::size_t neighbour) {
-        closed =
-            closed && map_.transitions.across(halfFace)(here, map_.unit) == cornerOf(neighbour);
+        if (neighbour < i) return;  // done from the other side
+        const LatticePoint& there = cornerOf(neighbour);
+        const bool same = map_.transitions.isJump(halfFace)
+                              ? map_.transitions.across(halfFace)(here, map_.unit) == there
+                              : here == there;
+        closed = closed && same;
       });
       if (!closed) {
         defects_.add(ErrorCode::HalfIntegerFixedPoint, {PlaceKind::Vertex, v}, 0);
@@ -235,16 +234,16 @@ class VertexSanitizer {
   }
 
  private:
-  const TetTopology& topology_;
   const LocalParameters& parameters_;
   const Singularities& singularities_;
   double tolerance_;
   DefectCollector& defects_;
   ExactMap& map_;
+  double resolution_;
   double maxDisplacement_ = 0;
-  VertexStar walk_;
   std::span<const VertexStar::Member> star_;
-  std::vector<Transition> toStar_;
+  bool oneChart_ = true;            ///< then `toStar_` is not used
+  std::vector<Transition> toStar_;  ///< from the representative's chart
 };
 
 /// (IGM2) up to the tolerance: what snapping may repair.
@@ -322,12 +321,15 @@ class TetFinisher {
     LatticeTet& corners = map_.corners[t];
     for (std::size_t i = 0; i < 4; ++i) {
       if (plain_.special[tet[i]] != 0) continue;
+      const unsigned plane = plain_.plane[tet[i]];
       for (std::size_t k = 0; k < 3; ++k) corners[i][k] = nearestInteger(u[i][k] * unit_);
+      if (plane != 0) snapToPlane(u[i], plane, corners[i]);
       const double displacement = displacementOf(u[i], corners[i], resolution_);
       maxDisplacement_ = std::max(maxDisplacement_, displacement);
       // The same at all corners of the vertex, and to be reported once.
       if (displacement > tolerance_ && topology_.vertexTet[tet[i]] == t) {
-        defects_.add(ErrorCode::TransitionResidual, {PlaceKind::Vertex, tet[i]}, displacement);
+        defects_.add(plane != 0 ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual,
+                     {PlaceKind::Vertex, tet[i]}, displacement);
       }
     }
     const Int192 volume = orientationDeterminant(corners[0], corners[1], corners[2], corners[3]);
@@ -335,6 +337,12 @@ class TetFinisher {
     if (volume.sign() > 0) return;
     const double amount = volume.toDouble() / (6 * unit_ * unit_ * unit_);
     defects_.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, amount < 0 ? -amount : 0.0);
+  }
+
+  /// @param plane  bit k: across axis k
+  void snapToPlane(const Vec3& u, unsigned plane, LatticePoint& corner) const {
+    const auto axis = static_cast<std::size_t>(std::countr_zero(plane));
+    corner[axis] = nearestInteger(u[axis]) * map_.unit;
   }
 
   [[nodiscard]] double maxDisplacement() const noexcept { return maxDisplacement_; }
@@ -377,8 +385,8 @@ void finishTets(const TetTopology& topology, const LocalParameters& parameters,
 
 ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters,
                   Transitions transitions, const PlainVertices& plain,
-                  const Singularities& singularities, double tolerance, int maxScale, Stage& stage,
-                  DefectCollector& defects) {
+                  std::span<const StarBlock> stars, const Singularities& singularities,
+                  double tolerance, int maxScale, Stage& stage, DefectCollector& defects) {
   ExactMap map;
   map.transitions = std::move(transitions);
   checkBoundary(topology, parameters, tolerance, stage, defects);
@@ -386,16 +394,14 @@ ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters
   map.unit = std::int64_t{1} << fractionBits(parameters.largest(), maxScale, defects);
   if (defects.has(ErrorCode::TooLarge)) return map;
   map.corners.resize(topology.tetCount());
-  std::vector<double> displacements(blockCount(topology.pointCount, kVertexGrain));
-  parallelBlocks(stage, topology.pointCount, kVertexGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   VertexSanitizer sanitizer(topology, parameters, singularities, tolerance,
-                                             defects, map);
-                   for (std::size_t v = begin; v < end; ++v) {
-                     if (plain.special[v] != 0) sanitizer.run(static_cast<Index>(v));
-                   }
-                   displacements[block] = sanitizer.maxDisplacement();
-                 });
+  std::vector<double> displacements(stars.size());
+  parallelFor(stage, stars.size(), 1, [&](std::size_t block) {
+    VertexSanitizer sanitizer(parameters, singularities, tolerance, defects, map);
+    for (std::size_t i = 0; i < stars[block].vertices.size(); ++i) {
+      sanitizer.run(stars[block].vertices[i], stars[block].star(i));
+    }
+    displacements[block] = sanitizer.maxDisplacement();
+  });
   for (const double displacement : displacements) {
     map.maxDisplacement = std::max(map.maxDisplacement, displacement);
   }

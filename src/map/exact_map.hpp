@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include <map/plain_vertices.hpp>
 #include <map/singularities.hpp>
@@ -26,10 +27,12 @@ struct ExactMap {
 /// all three; the other coordinates are rounded to the lattice; then the value is carried to all
 /// other corners by the exact transitions. Vertices are independent of each other, so the result
 /// depends neither on their order nor on threads. Plain vertices are only rounded.
+/// @param stars  of all special vertices
 /// @param tolerance  larger displacements are defects
 /// @param maxScale   the map is going to be scaled by at most this
 [[nodiscard]] ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters,
                                 Transitions transitions, const PlainVertices& plain,
+                                std::span<const StarBlock> stars,
                                 const Singularities& singularities, double tolerance, int maxScale,
                                 Stage& stage, DefectCollector& defects);
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 
 #include <base/vector3.hpp>
@@ -22,60 +23,81 @@ struct Survey {
   Array<std::uint32_t> cones;   ///< tets in one and the same direction from the vertex
 };
 
+/// The corner from which the direction leads into the tet, by bits 0 to 3 of its sides: it is the
+/// one whose opposite face is the only one from which the direction leads outward. 4 if there is
+/// none.
+constexpr std::array<std::uint8_t, 16> kConeCorner = [] {
+  std::array<std::uint8_t, 16> corners{};
+  corners.fill(4);
+  for (std::uint8_t corner = 0; corner < 4; ++corner) corners[faceMask(corner)] = corner;
+  return corners;
+}();
+
 /// Compares all corners with the first one of their vertex, and counts cones.
 void surveyTets(const TetTopology& topology, const LocalParameters& parameters, Survey& survey,
-                Array<std::uint8_t>& special, Stage& stage) {
+                PlainVertices& result, Stage& stage) {
   parallelFor(stage, topology.tetCount(), kGrain, [&](std::size_t t) {
     const Tet& tet = topology.tets[t];
     const TetParameters u = parameters(static_cast<Index>(t));
     for (std::size_t i = 0; i < 4; ++i) {
       if (u[i] != survey.parameter[tet[i]]) mark(survey.unequal[tet[i]]);
     }
-    const ConeCorner corner = coneCorner(u);
-    if (corner == ConeCorner::None) return;
-    if (corner == ConeCorner::Uncertain) {
-      for (const Index v : tet) mark(special[v]);
+    const TetSides sides = computeSides(u);
+    result.sides[t] = sides;
+    if (sides == kUncertainSides) {
+      for (const Index v : tet) mark(result.special[v]);
       return;
     }
-    std::atomic_ref(survey.cones[tet[static_cast<std::size_t>(corner)]])
-        .fetch_add(1, std::memory_order_relaxed);
+    const std::size_t corner = kConeCorner[sides];
+    if (corner == 4) return;
+    std::atomic_ref(survey.cones[tet[corner]]).fetch_add(1, std::memory_order_relaxed);
   });
 }
 
-/// Whether two tets agree on the parameters of the corners that they share.
+/// Whether two tets agree on the parameters of those corners of their common face where not all
+/// tets do.
 bool agree(const TetTopology& topology, const LocalParameters& parameters, HalfFace here,
-           HalfFace there) {
-  return std::all_of(kFaceCorners[here % 4].begin(), kFaceCorners[here % 4].end(), [&](int corner) {
-    const Index vertex = topology.vertex(4 * tetOf(here) + static_cast<CornerIndex>(corner));
-    return parameters(tetOf(here), corner) ==
-           parameters(tetOf(there), topology.localCorner(tetOf(there), vertex));
-  });
+           HalfFace there, CornerMask unequal) {
+  const Tet& tet = topology.tets[tetOf(here)];
+  for (CornerMask rest = unequal; rest != 0; rest = static_cast<CornerMask>(rest & (rest - 1))) {
+    const std::size_t corner = firstCorner(rest);
+    if (parameters(tetOf(here), static_cast<int>(corner)) !=
+        parameters(tetOf(there), topology.localCorner(tetOf(there), tet[corner]))) {
+      return false;
+    }
+  }
+  return true;
 }
 
 /// Looks at each face of a block of tets, from its smaller half-face.
 class FaceSurvey {
  public:
   FaceSurvey(const TetTopology& topology, const LocalParameters& parameters, const Survey& survey,
-             Array<std::uint8_t>& special, std::vector<HalfFace>& unequalFaces)
+             PlainVertices& result, std::vector<HalfFace>& unequalFaces)
       : topology_(topology),
         parameters_(parameters),
         survey_(survey),
-        special_(special),
+        result_(result),
         unequalFaces_(unequalFaces) {}
 
   void run(Index t) {
     const Tet& tet = topology_.tets[t];
-    const bool anyUnequal = (survey_.unequal[tet[0]] | survey_.unequal[tet[1]] |
-                             survey_.unequal[tet[2]] | survey_.unequal[tet[3]]) != 0;
+    CornerMask unequal = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      unequal = static_cast<CornerMask>(unequal | (survey_.unequal[tet[i]] << i));
+    }
     for (int face = 0; face < 4; ++face) {
       const HalfFace here = halfFaceOf(t, face);
       const HalfFace there = topology_.mate[here];
       if (there == kNone) {
-        markCorners(tet, face);
+        surveyBoundary(t, face);
       } else if (here < there) {
         ++innerFaces_;
-        if (!anyUnequal || agree(topology_, parameters_, here, there)) continue;
+        const auto inQuestion = static_cast<CornerMask>(unequal & faceMask(face));
+        if (agree(topology_, parameters_, here, there, inQuestion)) continue;
         markCorners(tet, face);
+        markDisagreement(here);
+        markDisagreement(there);
         unequalFaces_.push_back(here);
       }
     }
@@ -86,21 +108,77 @@ class FaceSurvey {
  private:
   void markCorners(const Tet& tet, int face) {
     for (const int corner : kFaceCorners[static_cast<std::size_t>(face)]) {
-      mark(special_[tet[static_cast<std::size_t>(corner)]]);
+      mark(result_.special[tet[static_cast<std::size_t>(corner)]]);
     }
+  }
+
+  /// Notes the plane of a boundary face at its corners; without one, they are special.
+  void surveyBoundary(Index t, int face) {
+    const std::array<int, 3>& corners = kFaceCorners[static_cast<std::size_t>(face)];
+    const Vec3 p = parameters_(t, corners[0]);
+    const Vec3 q = parameters_(t, corners[1]);
+    const Vec3 r = parameters_(t, corners[2]);
+    unsigned plane = 0;
+    for (std::size_t k = 0; k < 3; ++k) plane |= (p[k] == q[k] && p[k] == r[k] ? 1U : 0U) << k;
+    if (plane == 0) markCorners(topology_.tets[t], face);
+    for (const int corner : corners) {
+      std::uint8_t& planes = result_.plane[topology_.tets[t][static_cast<std::size_t>(corner)]];
+      std::atomic_ref(planes).fetch_or(static_cast<std::uint8_t>(plane), std::memory_order_relaxed);
+    }
+  }
+
+  void markDisagreement(HalfFace halfFace) {
+    std::atomic_ref(result_.sides[tetOf(halfFace)])
+        .fetch_or(static_cast<TetSides>(16U << localOf(halfFace)), std::memory_order_relaxed);
   }
 
   const TetTopology& topology_;
   const LocalParameters& parameters_;
   const Survey& survey_;
-  Array<std::uint8_t>& special_;
+  PlainVertices& result_;
   std::vector<HalfFace>& unequalFaces_;
   std::uint64_t innerFaces_ = 0;
 };
 
+/// Counts the cones of mirrored tets at vertices that are on one boundary plane.
+class MirrorSurvey {
+ public:
+  MirrorSurvey(const TetTopology& topology, const LocalParameters& parameters, Survey& survey,
+               PlainVertices& result)
+      : topology_(topology), parameters_(parameters), survey_(survey), result_(result) {}
+
+  void run(Index t) {
+    const Tet& tet = topology_.tets[t];
+    unsigned axes = 0;
+    for (const Index v : tet) axes |= result_.plane[v];
+    if (axes == 0) return;
+    for (unsigned axis = 1; axis <= 4; axis *= 2) {
+      if ((axes & axis) != 0) count(t, axis);
+    }
+  }
+
+ private:
+  void count(Index t, unsigned axis) {
+    const Tet& tet = topology_.tets[t];
+    const TetSides sides = computeSides(parameters_(t), axis);
+    if (sides == kUncertainSides) {
+      for (const Index v : tet) mark(result_.special[v]);
+      return;
+    }
+    const std::size_t corner = kConeCorner[sides];
+    if (corner == 4 || result_.plane[tet[corner]] != axis) return;
+    std::atomic_ref(survey_.cones[tet[corner]]).fetch_add(1, std::memory_order_relaxed);
+  }
+
+  const TetTopology& topology_;
+  const LocalParameters& parameters_;
+  Survey& survey_;
+  PlainVertices& result_;
+};
+
 }  // namespace
 
-ConeCorner coneCorner(const TetParameters& u) noexcept {
+TetSides computeSides(const TetParameters& u, unsigned mirror) noexcept {
   const Vec3 a = minus(u[1], u[0]);
   const Vec3 b = minus(u[2], u[0]);
   const Vec3 c = minus(u[3], u[0]);
@@ -110,12 +188,16 @@ ConeCorner coneCorner(const TetParameters& u) noexcept {
   }
   // In general position with respect to all that maps are made of: powers of the plastic number.
   constexpr Vec3 kDirection = {1, 0.7548776662466927, 0.5698402909980532};
+  Vec3 direction = kDirection;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if ((mirror >> k) & 1U) direction[k] = -direction[k];
+  }
   // Inward normals of the faces opposite corners 1, 2, 3; the four normals add up to zero.
   const Vec3 normal1 = cross(b, c);
   const double determinant = dot(a, normal1);
-  const double side1 = dot(kDirection, normal1);
-  const double side2 = dot(kDirection, cross(c, a));
-  const double side3 = dot(kDirection, cross(a, b));
+  const double side1 = dot(direction, normal1);
+  const double side2 = dot(direction, cross(c, a));
+  const double side3 = dot(direction, cross(a, b));
   const double side0 = -(side1 + side2 + side3);
   // With u = 2^-53: differences carry one rounding, components of normals are below 2 size^2 and
   // off by 8 u size^2, the determinant by 42 u size^3, sides 1 to 3 by 33 u size^2 and side 0 by
@@ -124,13 +206,10 @@ ConeCorner coneCorner(const TetParameters& u) noexcept {
   const double smallest =
       std::min({std::abs(side0), std::abs(side1), std::abs(side2), std::abs(side3)});
   if (!(size > 0x1p-300 && determinant > 0x1p-46 * size * size * size && smallest > uncertainty)) {
-    return ConeCorner::Uncertain;
+    return kUncertainSides;
   }
-  // Seen from corner i, the cone is bounded by the three other faces.
-  const int negative =
-      (side0 < 0 ? 1 : 0) + (side1 < 0 ? 1 : 0) + (side2 < 0 ? 1 : 0) + (side3 < 0 ? 1 : 0);
-  if (negative != 1) return ConeCorner::None;
-  return static_cast<ConeCorner>((side1 < 0 ? 1 : 0) + (side2 < 0 ? 2 : 0) + (side3 < 0 ? 3 : 0));
+  return static_cast<TetSides>((side0 > 0 ? 1 : 0) + (side1 > 0 ? 2 : 0) + (side2 > 0 ? 4 : 0) +
+                               (side3 > 0 ? 8 : 0));
 }
 
 PlainVertices findPlainVertices(const TetTopology& topology, const LocalParameters& parameters,
@@ -139,6 +218,7 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
   PlainVertices result;
   Array<std::uint8_t>& special = result.special;
   special.resize(vertices);
+  result.plane.resize(vertices);
   Survey survey;
   survey.parameter.resize(vertices);
   survey.unequal.resize(vertices);
@@ -146,25 +226,34 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
   parallelFor(stage, vertices, kGrain, [&](std::size_t i) {
     const auto v = static_cast<Index>(i);
     special[v] = 0;
+    result.plane[v] = 0;
     survey.unequal[v] = 0;
     survey.cones[v] = 0;
     if (topology.isIsolated(v)) return;
     const Index tet = topology.vertexTet[v];
     survey.parameter[v] = parameters(tet, topology.localCorner(tet, v));
   });
-  surveyTets(topology, parameters, survey, special, stage);
+  result.sides.resize(topology.tetCount());
+  surveyTets(topology, parameters, survey, result, stage);
   result.unequalFaces.resize(blockCount(topology.tetCount(), kGrain));
   std::atomic<std::uint64_t> innerFaces = 0;
   parallelBlocks(stage, topology.tetCount(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   FaceSurvey faces(topology, parameters, survey, special,
+                   FaceSurvey faces(topology, parameters, survey, result,
                                     result.unequalFaces[block]);
                    for (std::size_t t = begin; t < end; ++t) faces.run(static_cast<Index>(t));
                    innerFaces += faces.innerFaces();
                  });
   result.innerFaces = innerFaces;
+  MirrorSurvey mirror(topology, parameters, survey, result);
+  parallelFor(stage, topology.tetCount(), kGrain,
+              [&](std::size_t t) { mirror.run(static_cast<Index>(t)); });
   parallelFor(stage, vertices, kGrain, [&](std::size_t v) {
-    if (survey.cones[v] != 1 && !topology.isIsolated(static_cast<Index>(v))) special[v] = 1;
+    // On two planes, all cones are counted in vain.
+    const bool manyPlanes = std::popcount(result.plane[v]) > 1;
+    if ((survey.cones[v] != 1 || manyPlanes) && !topology.isIsolated(static_cast<Index>(v))) {
+      special[v] = 1;
+    }
   });
   return result;
 }

@@ -10,25 +10,46 @@
 
 namespace hexhex {
 
-/// A vertex is plain if its star is embedded in one chart: it has no boundary face, its tets agree
-/// on the parameters of their common corners, all are positive, and they cover the directions
-/// around the vertex once. From this follows that
+/// On which side of the faces of a tet a certain direction in general position leads, as seen from
+/// anywhere: bit f if it leads inward from face f. And faces on which the tet and its neighbour do
+/// not agree: bit 4 + f. A tet that may not be positive, or in which the direction may not be in
+/// general position, agrees with none.
+using TetSides = std::uint8_t;
+
+[[nodiscard]] constexpr unsigned leadsInward(TetSides sides, int face) noexcept {
+  return (static_cast<unsigned>(sides) >> face) & 1U;
+}
+[[nodiscard]] constexpr unsigned disagrees(TetSides sides, int face) noexcept {
+  return (static_cast<unsigned>(sides) >> (4 + face)) & 1U;
+}
+inline constexpr TetSides kUncertainSides = 0xf0;
+
+/// A vertex is plain if its star is embedded in one chart, and is cut off by one axis-parallel
+/// plane if it is on the boundary. That is: its tets agree on the parameters of their common
+/// corners, all are positive, its boundary faces, if any, are in a plane through the vertex, and
+/// the tets, together with their mirror images at this plane, cover the directions around the
+/// vertex once. From this follows that
 /// - the star is a ball, and each edge at the vertex has one fan (but its other end may be special
 ///   and be joined to the vertex by another edge, which then shows there),
 /// - all edges at the vertex are regular,
-/// - sanitization rounds the vertex to the lattice and does nothing else.
+/// - sanitization rounds the vertex to the lattice, in its plane, and does nothing else.
 ///
-/// Why once is enough: the opposite triangles form closed oriented surfaces, which radial
-/// projection from the vertex maps to the sphere of directions, as a covering branched at most at
-/// edges. The number of tets in any general direction is the sum of the surfaces' degrees; if it is
-/// one, there is one surface, and its projection is one-to-one.
+/// Why once is enough: the opposite triangles, glued to their mirror images along the boundary,
+/// form closed oriented surfaces, which radial projection from the vertex maps to the sphere of
+/// directions, as a covering branched at most at edges. The number of tets and images in any
+/// general direction is the sum of the surfaces' degrees; if it is one, there is one surface, and
+/// its projection is one-to-one. Images need not be made: the mirrored direction does as well.
 struct PlainVertices {
   Array<std::uint8_t> special;  ///< per vertex: 1 if it is not plain (and not isolated)
+  Array<std::uint8_t> plane;    ///< per plain vertex: bit k on a boundary plane across axis k, or 0
 
   /// Inner triangles on whose corners' parameters their tets do not agree, by the smaller
   /// half-face, ascending; in one list per block of kBlock tets.
   std::vector<std::vector<HalfFace>> unequalFaces;
   std::uint64_t innerFaces = 0;
+
+  /// Per tet: what its part in the fan of an edge is.
+  Array<TetSides> sides;
 
   static constexpr std::size_t kBlock = 1024;
 };
@@ -37,11 +58,9 @@ struct PlainVertices {
 [[nodiscard]] PlainVertices findPlainVertices(const TetTopology& topology,
                                               const LocalParameters& parameters, Stage& stage);
 
-/// The corner from which a direction in general position leads into the tet: of a positive tet, at
-/// most one.
-enum class ConeCorner : std::int8_t { Corner0 = 0, Corner1, Corner2, Corner3, None, Uncertain };
-
-/// @param u  Uncertain if the tet's orientation, or the answer, cannot be told in floating point
-[[nodiscard]] ConeCorner coneCorner(const TetParameters& u) noexcept;
+/// The sides of a tet, if the tet is positive and the direction in general position, so far as
+/// floating point can tell; otherwise kUncertainSides.
+/// @param mirror  bit k: the direction is mirrored along axis k
+[[nodiscard]] TetSides computeSides(const TetParameters& u, unsigned mirror = 0) noexcept;
 
 }  // namespace hexhex

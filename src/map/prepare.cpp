@@ -1,6 +1,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <map/local_parameters.hpp>
 #include <map/plain_vertices.hpp>
@@ -48,6 +49,7 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
   // Flipped tets falsify angles, hence singularities, hence what is snapped where.
   if (prepared.input.flippedTets) defects.setRootCause(ErrorCode::FlippedTet);
   PlainVertices plain;
+  std::vector<StarBlock> stars;
   {
     Stage stage(context, "topology");
     prepared.topology = buildTopology(view, stage, defects);
@@ -57,7 +59,7 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
   {
     Stage stage(context, "singularities");
     std::optional<Singularities> singularities =
-        computeSingularities(prepared.topology, parameters, plain, view.edgeValences, stage);
+        computeSingularities(prepared.topology, parameters, plain, view.edgeValences, stars, stage);
     if (!singularities) {
       collectTopologyDefects(prepared.topology, stage, defects);
       if (defects.empty()) throwContradiction();
@@ -76,7 +78,7 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
                                      tolerance, stage, defects);
   }
   Stage stage(context, "sanitization");
-  prepared.exact = sanitize(prepared.topology, parameters, std::move(transitions), plain,
+  prepared.exact = sanitize(prepared.topology, parameters, std::move(transitions), plain, stars,
                             prepared.singularities, tolerance, maxScale, stage, defects);
   return prepared;
 }

@@ -5,7 +5,6 @@
 #include <base/vector3.hpp>
 #include <map/key_table.hpp>
 #include <map/singularities.hpp>
-#include <map/vertex_star.hpp>
 
 namespace hexhex {
 
@@ -70,7 +69,7 @@ int knownOffset(const std::vector<EdgeValence>& known, Index v, Index w) {
 struct Surroundings {
   const TetTopology& topology;
   const LocalParameters& parameters;
-  const Array<std::uint8_t>& special;
+  const PlainVertices& plain;
   const std::vector<EdgeValence>& known;
   bool valencesKnown;
 };
@@ -81,11 +80,12 @@ class VertexEdges {
   explicit VertexEdges(const Surroundings& in) : in_(in) {}
 
   /// Appends singular edges to larger vertices. False if the vertex, or an edge, is not that of a
-  /// manifold; `tets` grows by the number of tets seen.
-  bool run(Index vertex, std::vector<SingularEdge>& singular, std::uint64_t& tets) {
+  /// manifold. Keeps the vertex's star.
+  bool run(Index vertex, std::vector<SingularEdge>& singular, StarBlock& stars) {
     star_.collect(in_.topology, vertex);
+    stars.add(vertex, star_.members());
     collectEdges(vertex);
-    tets += star_.members().size();
+    if (anglesNeeded_) addAngles();
     appendSingular(vertex, singular);
     return isManifold();
   }
@@ -93,109 +93,157 @@ class VertexEdges {
  private:
   struct Edge {
     Index other;
-    Index tet;  ///< the smallest
-    std::uint8_t corner0;
-    std::uint8_t corner1;
-    std::uint8_t boundaryFaces;  ///< saturated at 3: two in a manifold
-    bool wanted;                 ///< its valence matters, and is found here
-    AngleSum angles;
+    std::uint32_t boundaryFaces;  ///< two in a manifold
+    std::uint32_t turns;          ///< tets in one and the same direction from the edge
+    std::uint32_t disagreements;  ///< faces across which charts may differ
   };
 
+  /// Of one edge: the sum of dihedral angles, if its valence is wanted and turns do not tell it.
+  struct Angles {
+    bool wanted = false;
+    bool needed = false;
+    AngleSum sum;
+  };
+
+  /// One tet's edges at the vertex: their numbers in `edges_`, in the order of kOthers.
+  using EdgeNumbers = std::array<Index, 3>;
+
+  /// Without branches, as these could not be foretold.
   void collectEdges(Index vertex) {
     others_.clear();
-    edges_.clear();
+    numbers_.resize(star_.members().size());
     boundaryFaces_ = 0;
-    for (const VertexStar::Member& member : star_.members()) {
-      for (int corner = 0; corner < 4; ++corner) {
-        if (corner == localOf(member.corner)) continue;
-        addTet(edgeTo(vertex, member, corner), member, corner);
+    for (std::size_t i = 0; i < numbers_.size(); ++i) {
+      const VertexStar::Member& member = star_.members()[i];
+      const Tet& tet = in_.topology.tets[member.tet()];
+      const std::array<std::uint8_t, 3>& corners = kOthers[member.corner % 4];
+      const TetSides sides = in_.plain.sides[member.tet()];
+      std::array<std::uint32_t, 3> boundary{};
+      std::array<std::uint32_t, 3> inward{};
+      std::array<std::uint32_t, 3> disagree{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        numbers_[i][k] = edgeTo(tet[corners[k]]);
+        boundary[k] = member.neighbour[k] == kNone ? 1U : 0U;
+        inward[k] = leadsInward(sides, corners[k]);
+        disagree[k] = disagrees(sides, corners[k]);
+        boundaryFaces_ += boundary[k];
+      }
+      // The faces at the edge to corner k are those opposite the two other corners.
+      for (std::size_t k = 0; k < 3; ++k) {
+        Edge& edge = edges_[numbers_[i][k]];
+        const std::size_t l = (k + 1) % 3;
+        const std::size_t m = (k + 2) % 3;
+        edge.boundaryFaces += boundary[l] + boundary[m];
+        edge.turns += inward[l] & inward[m];
+        edge.disagreements += disagree[l] + disagree[m];
+      }
+    }
+    anglesNeeded_ = false;
+    angles_.assign(others_.size(), Angles{});
+    for (std::size_t e = 0; e < angles_.size(); ++e) {
+      // Edges at a plain vertex are regular.
+      angles_[e].wanted = edges_[e].other > vertex && in_.plain.special[edges_[e].other] != 0;
+      angles_[e].needed = angles_[e].wanted && !in_.valencesKnown &&
+                          edges_[e].boundaryFaces + edges_[e].disagreements > 0;
+      anglesNeeded_ = anglesNeeded_ || angles_[e].needed;
+    }
+  }
+
+  Index edgeTo(Index other) {
+    const std::size_t end = others_.size();
+    if (edges_.size() <= end) edges_.resize(2 * edges_.size());
+    edges_[end] = Edge{other, 0, 0, 0};
+    return others_.insert(other);
+  }
+
+  [[nodiscard]] std::span<const Edge> edges() const { return {edges_.data(), others_.size()}; }
+
+  /// Adds up dihedral angles where turns do not tell the valence.
+  void addAngles() {
+    for (std::size_t i = 0; i < numbers_.size(); ++i) {
+      const EdgeNumbers& numbers = numbers_[i];
+      if (!angles_[numbers[0]].needed && !angles_[numbers[1]].needed &&
+          !angles_[numbers[2]].needed) {
+        continue;
+      }
+      const CornerIndex corner = star_.members()[i].corner;
+      const Vec3 origin = in_.parameters(corner / 4, localOf(corner));
+      std::array<Vec3, 3> e{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        e[k] = minus(in_.parameters(corner / 4, kOthers[corner % 4][k]), origin);
+      }
+      // normals[k] belongs to the face opposite corner k.
+      const std::array<Vec3, 3> normals = {cross(e[1], e[2]), cross(e[2], e[0]), cross(e[0], e[1])};
+      const double determinant = std::abs(dot(e[0], normals[0]));
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (!angles_[numbers[k]].needed) continue;
+        // With a and b the edge's cross products with the two others,
+        // |a x b| = |edge| |det(edge, other, other)|.
+        angles_[numbers[k]].sum.add(-dot(normals[(k + 1) % 3], normals[(k + 2) % 3]),
+                                    length(e[k]) * determinant);
       }
     }
   }
 
-  Edge& edgeTo(Index vertex, const VertexStar::Member& member, int corner) {
-    const Index tet = tetOf(member.corner);
-    const Index other = in_.topology.tets[tet][static_cast<std::size_t>(corner)];
-    const Index number = others_.insert(other);
-    const auto corner0 = static_cast<std::uint8_t>(localOf(member.corner));
-    const auto corner1 = static_cast<std::uint8_t>(corner);
-    if (number == edges_.size()) {
-      // Edges at a plain vertex are regular.
-      const bool wanted = other > vertex && in_.special[other] != 0;
-      edges_.push_back({other, tet, corner0, corner1, 0, wanted, {}});
+  /// The number of hexahedra around an edge. If all tets around it lie in one chart, and are known
+  /// to be positive, they turn around it as often as they meet any direction.
+  [[nodiscard]] int valenceOf(Index vertex, std::size_t e) const {
+    const Edge& edge = edges_[e];
+    if (in_.valencesKnown) {
+      return (edge.boundaryFaces > 0 ? 2 : 4) + knownOffset(in_.known, vertex, edge.other);
     }
-    Edge& edge = edges_[number];
-    if (tet < edge.tet) {
-      edge.tet = tet;
-      edge.corner0 = corner0;
-      edge.corner1 = corner1;
-    }
-    return edge;
-  }
-
-  /// Adds a tet to an edge: its boundary faces, and its angle.
-  void addTet(Edge& edge, const VertexStar::Member& member, int corner) {
-    const int local = localOf(member.corner);
-    for (int face = 0; face < 4; ++face) {
-      if (face == local || face == corner) continue;
-      if (member.neighbour[static_cast<std::size_t>(face)] != kNone) continue;
-      if (edge.boundaryFaces < 3) ++edge.boundaryFaces;
-      ++boundaryFaces_;
-    }
-    if (edge.wanted && !in_.valencesKnown)
-      addAngle(edge.angles, tetOf(member.corner), local, corner);
-  }
-
-  /// The dihedral angle of a tet at the edge from corner0 to corner1.
-  void addAngle(AngleSum& sum, Index tet, int corner0, int corner1) const {
-    const int left =
-        otherFaceAtEdge(static_cast<CornerMask>(cornerBit(corner0) | cornerBit(corner1)), -1);
-    const int right = 6 - corner0 - corner1 - left;
-    const Vec3 origin = in_.parameters(tet, corner0);
-    const Vec3 edge = minus(in_.parameters(tet, corner1), origin);
-    const Vec3 a = cross(edge, minus(in_.parameters(tet, left), origin));
-    const Vec3 toRight = minus(in_.parameters(tet, right), origin);
-    const Vec3 b = cross(edge, toRight);
-    // |a x b| = |edge| |det(edge, left, right)|
-    sum.add(dot(a, b), length(edge) * std::abs(dot(a, toRight)));
+    return angles_[e].needed ? angles_[e].sum.rightAngles() : 4 * static_cast<int>(edge.turns);
   }
 
   void appendSingular(Index vertex, std::vector<SingularEdge>& singular) const {
     const auto first = static_cast<std::ptrdiff_t>(singular.size());
-    for (const Edge& edge : edges_) {
-      if (!edge.wanted) continue;
-      const bool boundary = edge.boundaryFaces > 0;
-      const int regular = boundary ? 2 : 4;
-      const int valence = in_.valencesKnown ? regular + knownOffset(in_.known, vertex, edge.other)
-                                            : edge.angles.rightAngles();
-      if (valence == regular) continue;
-      singular.push_back(
-          {vertex, edge.other, edge.tet, edge.corner0, edge.corner1, boundary, valence});
+    for (std::size_t e = 0; e < edges().size(); ++e) {
+      if (!angles_[e].wanted) continue;
+      const int valence = valenceOf(vertex, e);
+      const bool boundary = edges_[e].boundaryFaces > 0;
+      if (valence == (boundary ? 2 : 4)) continue;
+      singular.push_back(located(vertex, static_cast<Index>(e), boundary, valence));
     }
     std::sort(singular.begin() + first, singular.end(),
               [](const SingularEdge& a, const SingularEdge& b) { return a.vertex1 < b.vertex1; });
+  }
+
+  /// A singular edge, in the smallest tet at it.
+  [[nodiscard]] SingularEdge located(Index vertex, Index number, bool boundary, int valence) const {
+    SingularEdge edge{vertex, edges_[number].other, kNone, 0, 0, boundary, valence};
+    for (std::size_t i = 0; i < numbers_.size(); ++i) {
+      const CornerIndex corner = star_.members()[i].corner;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (numbers_[i][k] != number || corner / 4 >= edge.tet) continue;
+        edge.tet = corner / 4;
+        edge.corner0 = static_cast<std::uint8_t>(corner % 4);
+        edge.corner1 = kOthers[corner % 4][k];
+      }
+    }
+    return edge;
   }
 
   /// Whether the link, which the walk has found to be connected, is a sphere or, on the boundary, a
   /// disk: its Euler characteristic tells, with edges of the same two vertices counted as one. (If
   /// they are two, the characteristic is too small.)
   [[nodiscard]] bool isManifold() const {
-    for (const Edge& edge : edges_) {
+    for (const Edge& edge : edges()) {
       if (edge.boundaryFaces > 2) return false;
     }
     const auto triangles = static_cast<std::int64_t>(star_.members().size());
-    // Each boundary face was seen from its two edges at the vertex.
-    const std::int64_t boundaryFaces = boundaryFaces_ / 2;
-    const std::int64_t sides = (3 * triangles + boundaryFaces) / 2;
-    const auto corners = static_cast<std::int64_t>(edges_.size());
-    return corners - sides + triangles == (boundaryFaces > 0 ? 1 : 2);
+    const std::int64_t sides = (3 * triangles + boundaryFaces_) / 2;
+    const auto corners = static_cast<std::int64_t>(others_.size());
+    return corners - sides + triangles == (boundaryFaces_ > 0 ? 1 : 2);
   }
 
   Surroundings in_;
   VertexStar star_;
-  KeyTable others_;
-  std::vector<Edge> edges_;
+  KeyTable others_;                                  ///< numbers the edges by their other vertices
+  std::vector<Edge> edges_ = std::vector<Edge>(64);  ///< as many as there are numbers are in use
+  std::vector<Angles> angles_;                       ///< per edge
+  std::vector<EdgeNumbers> numbers_;                 ///< per member of the star
   std::int64_t boundaryFaces_ = 0;
+  bool anglesNeeded_ = false;
 };
 
 /// Number of corners at special vertices.
@@ -244,26 +292,27 @@ std::optional<Singularities> computeSingularities(const TetTopology& topology,
                                                   const LocalParameters& parameters,
                                                   PlainVertices& plain,
                                                   std::span<const EdgeValence> known,
-                                                  Stage& stage) {
+                                                  std::vector<StarBlock>& stars, Stage& stage) {
   const std::vector<EdgeValence> knownEdges = sorted(known);
   for (const EdgeValence& edge : knownEdges) {
     for (const Index v : {edge.vertex0, edge.vertex1}) {
       if (!topology.isIsolated(v)) plain.special[v] = 1;
     }
   }
-  const Surroundings in{topology, parameters, plain.special, knownEdges, !known.empty()};
+  const Surroundings in{topology, parameters, plain, knownEdges, !known.empty()};
   std::vector<std::vector<SingularEdge>> blocks(blockCount(topology.pointCount, kVertexGrain));
+  stars.resize(blocks.size());
   std::atomic<bool> manifold = true;
   std::atomic<std::uint64_t> cornersSeen = 0;
   parallelBlocks(stage, topology.pointCount, kVertexGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    VertexEdges edges(in);
-                   std::uint64_t seen = 0;
                    for (std::size_t v = begin; v < end; ++v) {
                      if (plain.special[v] == 0) continue;
-                     if (!edges.run(static_cast<Index>(v), blocks[block], seen)) manifold = false;
+                     if (!edges.run(static_cast<Index>(v), blocks[block], stars[block]))
+                       manifold = false;
                    }
-                   cornersSeen += seen;
+                   cornersSeen += stars[block].members.size();
                  });
   // Walks that did not see all corners of their vertices met a star in several pieces.
   if (!manifold || cornersSeen != countSpecialCorners(topology, plain.special, stage)) return {};

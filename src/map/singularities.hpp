@@ -12,6 +12,7 @@
 #include <map/local_parameters.hpp>
 #include <map/plain_vertices.hpp>
 #include <map/tet_topology.hpp>
+#include <map/vertex_star.hpp>
 
 namespace hexhex {
 
@@ -50,10 +51,9 @@ struct Singularities {
 /// Looks at the stars of special vertices; those at which the caller claims a singularity become
 /// special. Nothing if an edge or vertex turns out not to be that of a manifold.
 /// @param known  valence offsets that the caller gave, or empty
-[[nodiscard]] std::optional<Singularities> computeSingularities(const TetTopology& topology,
-                                                                const LocalParameters& parameters,
-                                                                PlainVertices& plain,
-                                                                std::span<const EdgeValence> known,
-                                                                Stage& stage);
+/// @param[out] stars  of the special vertices
+[[nodiscard]] std::optional<Singularities> computeSingularities(
+    const TetTopology& topology, const LocalParameters& parameters, PlainVertices& plain,
+    std::span<const EdgeValence> known, std::vector<StarBlock>& stars, Stage& stage);
 
 }  // namespace hexhex

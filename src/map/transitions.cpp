@@ -34,16 +34,45 @@ SharedTriangle sharedTriangle(const TetTopology& topology, const LocalParameters
   return triangle;
 }
 
-/// argmin over the 24 rotations of how badly they carry the triangle's edges over.
+/// How well each of the 24 rotations carries two vectors over: the sum of scalar products of their
+/// images with the ones wanted. A sum of three of nine products, each with either sign.
+std::array<double, Rotation::kCount> agreements(const std::array<Vec3, 2>& vectors,
+                                                const std::array<Vec3, 2>& images) {
+  // towards[d][axis]: what sending this axis to direction d contributes.
+  std::array<Vec3, kDirections> towards{};
+  for (std::size_t d = 0; d < kDirections; ++d) {
+    const double sign = signOf(static_cast<Direction>(d));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      towards[d][axis] = sign * (images[0][d / 2] * vectors[0][axis] +  //
+                                 images[1][d / 2] * vectors[1][axis]);
+    }
+  }
+  std::array<double, Rotation::kCount> sums{};
+  for (std::size_t r = 0; r < sums.size(); ++r) {
+    const Rotation rotation(static_cast<int>(r));
+    sums[r] = towards[rotation(Direction{0})][0] + towards[rotation(Direction{2})][1] +
+              towards[rotation(Direction{4})][2];
+  }
+  return sums;
+}
+
+/// argmin over the 24 rotations of how badly they carry the triangle's edges over. The squared
+/// error is a constant minus twice the agreement; as the agreement is rounded, it only tells which
+/// rotations need a closer look.
 Rotation bestRotation(const SharedTriangle& triangle) {
   const Vec3 a = minus(triangle.here[1], triangle.here[0]);
   const Vec3 b = minus(triangle.here[2], triangle.here[0]);
   const Vec3 imageA = minus(triangle.there[1], triangle.there[0]);
   const Vec3 imageB = minus(triangle.there[2], triangle.there[0]);
+  const std::array<double, Rotation::kCount> agreement = agreements({a, b}, {imageA, imageB});
+  const double size = squaredNorm(a) + squaredNorm(b) + squaredNorm(imageA) + squaredNorm(imageB);
+  // Far above rounding (a few 2^-53), far below what tells rotations apart.
+  const double enough = *std::max_element(agreement.begin(), agreement.end()) - 0x1p-40 * size;
   Rotation best;
   double bestResidual = std::numeric_limits<double>::infinity();
-  for (int index = 0; index < Rotation::kCount; ++index) {
-    const Rotation rotation(index);
+  for (std::size_t index = 0; index < agreement.size(); ++index) {
+    if (agreement[index] < enough) continue;
+    const Rotation rotation(static_cast<int>(index));
     const double residual =
         squaredNorm(minus(imageA, rotation(a))) + squaredNorm(minus(imageB, rotation(b)));
     if (residual < bestResidual) {

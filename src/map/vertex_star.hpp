@@ -10,13 +10,23 @@
 
 namespace hexhex {
 
+/// The three faces at a corner of a tet, and the three corners other than this one.
+inline constexpr std::array<std::array<std::uint8_t, 3>, 4> kOthers = {
+    {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
+
 /// The star of one vertex after the other, without any list of stars. Keeps its memory.
 class VertexStar {
  public:
   struct Member {
     CornerIndex corner;  ///< at the vertex
-    /// Per face: which member is behind it; kNone at the boundary and at the face opposite.
-    std::array<Index, 4> neighbour;
+    /// Which member is behind the face opposite corner kOthers[corner % 4][k]; kNone at the
+    /// boundary.
+    std::array<Index, 3> neighbour;
+
+    [[nodiscard]] Index tet() const noexcept { return corner / 4; }
+    [[nodiscard]] HalfFace halfFace(std::size_t k) const noexcept {
+      return 4 * tet() + kOthers[corner % 4][k];
+    }
   };
 
   /// Walks breadth first from the smallest tet at the vertex. Only what is connected through faces
@@ -24,46 +34,55 @@ class VertexStar {
   /// @param vertex  not isolated
   void collect(const TetTopology& topology, Index vertex) {
     tets_.clear();
-    members_.clear();
-    add(topology, topology.vertexTet[vertex], vertex);
-    for (std::size_t head = 0; head < members_.size(); ++head) {
-      const CornerIndex corner = members_[head].corner;
-      for (int face = 0; face < 4; ++face) {
-        if (members_[head].neighbour[static_cast<std::size_t>(face)] != kUnknown) continue;
-        const HalfFace mate = topology.mate[halfFaceOf(corner / 4, face)];
-        Index neighbour = kNone;
-        if (mate != kNone) {
-          neighbour = add(topology, tetOf(mate), vertex);
-          members_[neighbour].neighbour[mate % 4] = static_cast<Index>(head);
-        }
-        members_[head].neighbour[static_cast<std::size_t>(face)] = neighbour;
+    const Index first = topology.vertexTet[vertex];
+    tets_.insert(first);
+    members_[0].corner = cornerAt(topology, first, vertex);
+    for (std::size_t head = 0; head < tets_.size(); ++head) {
+      // Up to three more, and one that is written in vain.
+      if (members_.size() < tets_.size() + 4) members_.resize(2 * members_.size());
+      for (std::size_t k = 0; k < 3; ++k) {
+        const HalfFace mate = topology.mate[members_[head].halfFace(k)];
+        // No branch at the boundary: there, a tet stands for its neighbour.
+        const bool boundary = mate == kNone;
+        const Index tet = boundary ? members_[head].tet() : tetOf(mate);
+        const std::size_t end = tets_.size();
+        const Index neighbour = tets_.insert(tet);
+        members_[end].corner = cornerAt(topology, tet, vertex);
+        members_[head].neighbour[k] = boundary ? kNone : neighbour;
       }
     }
   }
 
-  /// In the order of the walk. Each but the first is behind the first face, in the order of
-  /// members and their faces, that leads to a member not named before.
-  [[nodiscard]] std::span<const Member> members() const noexcept { return members_; }
-
-  /// The member that is this tet, which must be in the star.
-  [[nodiscard]] Index memberOf(Index tet) const noexcept { return tets_[tet]; }
+  /// In the order of the walk: each but the first is behind the first face, in the order of members
+  /// and their faces, that leads to a member not named before.
+  [[nodiscard]] std::span<const Member> members() const noexcept {
+    return {members_.data(), tets_.size()};
+  }
 
  private:
-  static constexpr Index kUnknown = kNone - 1;
-
-  Index add(const TetTopology& topology, Index tet, Index vertex) {
-    const Index member = tets_.insert(tet);
-    if (member == members_.size()) {
-      const int local = topology.localCorner(tet, vertex);
-      Member& added = members_.emplace_back(Member{4 * tet + static_cast<CornerIndex>(local),
-                                                   {kUnknown, kUnknown, kUnknown, kUnknown}});
-      added.neighbour[static_cast<std::size_t>(local)] = kNone;
-    }
-    return member;
+  [[nodiscard]] static CornerIndex cornerAt(const TetTopology& topology, Index tet, Index vertex) {
+    return 4 * tet + static_cast<CornerIndex>(topology.localCorner(tet, vertex));
   }
 
   KeyTable tets_;
-  std::vector<Member> members_;
+  std::vector<Member> members_ = std::vector<Member>(64);
+};
+
+/// Stars that are kept: those of the special vertices among consecutive vertices.
+struct StarBlock {
+  std::vector<Index> vertices;
+  std::vector<std::size_t> ends;  ///< per vertex: where its members end
+  std::vector<VertexStar::Member> members;
+
+  void add(Index vertex, std::span<const VertexStar::Member> star) {
+    vertices.push_back(vertex);
+    members.insert(members.end(), star.begin(), star.end());
+    ends.push_back(members.size());
+  }
+  [[nodiscard]] std::span<const VertexStar::Member> star(std::size_t i) const noexcept {
+    const std::size_t begin = i == 0 ? 0 : ends[i - 1];
+    return std::span(members).subspan(begin, ends[i] - begin);
+  }
 };
 
 }  // namespace hexhex

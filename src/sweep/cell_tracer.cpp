@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include <sweep/cell_tracer.hpp>
@@ -7,7 +8,7 @@ namespace hexhex {
 
 namespace {
 
-/// The corners of a face of a tet.
+/// A face of a tet whose corners are given relative to any point.
 struct Face {
   const LatticePoint& p;
   const LatticePoint& q;
@@ -45,97 +46,152 @@ void CellTracer::fail(Index tet, const char* what) {
               {PlaceKind::Tet, tet});
 }
 
-CornerPlace CellTracer::trace(Index tet, const GridPoint& z, CornerMask generator,
-                              const GridPoint& offset) {
-  Way way{tet, {}, {}, {}, {}};
+void CellTracer::enter(Index tet, const GridPoint& z, CornerMask generator) noexcept {
+  tet_ = tet;
+  z_ = z;
+  generator_ = generator;
+  for (std::size_t k = 0; k < 3; ++k) center_[k] = z[k] * exact_.unit + half_;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners_[i][k] = static_cast<double>(exact_.corners[tet][i][k] - center_[k]);
+    }
+  }
+}
+
+CornerPlace CellTracer::trace(const GridPoint& offset) {
+  Way way = begin(offset);
+  int face = exitFromInside(way);
+  for (std::size_t steps = 0; face != kNoExit && !endsBefore(way, face); ++steps) {
+    if (topology_.isBoundary(halfFaceOf(way.tet, face))) fail(way.tet, "the way leaves the mesh");
+    if (steps > topology_.tetCount()) fail(way.tet, "the way does not end");
+    cross(way, face);
+    face = exitAfterEntry(way);
+  }
+  if (face == kNoExit) fail(way.tet, "the way leaves a tet nowhere");
+  CornerPlace place{way.tet, {}, way.rotation};
   for (std::size_t k = 0; k < 3; ++k) {
-    way.center[k] = z[k] * exact_.unit + exact_.unit / 2;
+    place.z[k] = static_cast<std::int32_t>((way.center[k] + way.along[k] * half_) >> shift_);
+  }
+  return place;
+}
+
+CellTracer::Way CellTracer::begin(const GridPoint& offset) {
+  Way way{tet_, -1, center_, {}, {}, {}, {}};
+  for (std::size_t k = 0; k < 3; ++k) {
     way.along[k] = 2 * offset[k] - 1;
     way.tilts[k] = direction(static_cast<int>(k), -way.along[k]);
   }
-  if (generator != kWholeTet) way = startAroundCenter(way);
-  for (std::size_t steps = 0;; ++steps) {
-    const int face = exitFace(way);
-    if (face == kNoExit) fail(way.tet, "the way leaves a tet nowhere");
-    LatticePoint corner = way.center;
-    for (std::size_t k = 0; k < 3; ++k) corner[k] += way.along[k] * (exact_.unit / 2);
-    if (endsBefore(way, face, corner)) {
-      CornerPlace place{way.tet, {}, way.rotation};
-      for (std::size_t k = 0; k < 3; ++k) {
-        place.z[k] = static_cast<std::int32_t>(corner[k] / exact_.unit);
-      }
-      return place;
-    }
-    if (topology_.isBoundary(halfFaceOf(way.tet, face))) fail(way.tet, "the way leaves the mesh");
-    if (steps > topology_.tetCount()) fail(way.tet, "the way does not end");
-    way = across(way, face);
+  if (generator_ == kWholeTet) {
+    for (std::size_t i = 0; i < 4; ++i) way.seen[i] = seenAs(way, corners_[i]);
+  } else {
+    way = startAroundCenter(way);
+    for (std::size_t i = 0; i < 4; ++i) look(way, i);
   }
+  return way;
 }
 
-CellTracer::Way CellTracer::across(const Way& way, int face) const {
-  const HalfFace halfFace = halfFaceOf(way.tet, face);
-  Way next = way;
-  next.tet = tetOf(topology_.mate[halfFace]);
-  if (!exact_.transitions.isJump(halfFace)) return next;
-  const Transition& transition = exact_.transitions.across(halfFace);
-  next.center = transition(way.center, exact_.unit);
-  next.along = transition.rotation(way.along);
-  for (Direction& tilt : next.tilts) tilt = transition(tilt);
-  next.rotation = transition.rotation * way.rotation;
-  return next;
+LatticePoint CellTracer::relative(const Way& way, int corner) const noexcept {
+  return exact_.corners[way.tet][static_cast<std::size_t>(corner)] - way.center;
 }
 
-/// The face through which the way leaves the tet: seen along the way, the tet's corners are points
-/// of a plane, and a face is crossed outward if the way runs on the negative side of its three
-/// edges.
-int CellTracer::exitFace(const Way& way) const {
-  const LatticeTet& c = exact_.corners[way.tet];
-  const std::array<int, 3>& d = way.along;
-  const int orientation = d[0] * d[1] * d[2];
-  LatticeTet relative{};
-  std::array<std::array<std::int64_t, 2>, 4> projected{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    relative[i] = c[i] - way.center;
-    const LatticePoint& r = relative[i];
-    projected[i] = {r[0] * d[0] - r[2] * d[2], r[1] * d[1] - r[2] * d[2]};
+LatticeTet CellTracer::relativeTet(const Way& way) const noexcept {
+  return {relative(way, 0), relative(way, 1), relative(way, 2), relative(way, 3)};
+}
+
+/// How a corner of the tet looks, from its coordinates relative to the centre.
+CellTracer::Seen CellTracer::seenAs(const Way& way, const std::array<double, 3>& r) noexcept {
+  const double x = r[0] * way.along[0];
+  const double y = r[1] * way.along[1];
+  const double z = r[2] * way.along[2];
+  return {x - z, y - z, x + y + z, std::abs(x) + std::abs(y) + std::abs(z)};
+}
+
+void CellTracer::look(Way& way, std::size_t corner) const noexcept {
+  const LatticePoint r = relative(way, static_cast<int>(corner));
+  way.seen[corner] = seenAs(
+      way, {static_cast<double>(r[0]), static_cast<double>(r[1]), static_cast<double>(r[2])});
+}
+
+/// Twice the area of the triangle between two seen corners and the way, with the sign that tells on
+/// which side of the edge the way passes; errors are below kAreaError times both sizes.
+///
+/// x and y carry a conversion and a subtraction, hence errors below 2 * 2^-53 * size; with the two
+/// products and their difference less than 12 * 2^-53 of the product of sizes.
+constexpr double kAreaError = 0x1p-49;
+
+/// Sign of det(a, b, way) for two corners a, b relative to the centre: on which side of the edge
+/// the way passes. 0 only if the edge contains the centre.
+int CellTracer::side(const Way& way, int i, int j) const noexcept {
+  const Seen& a = way.seen[static_cast<std::size_t>(i)];
+  const Seen& b = way.seen[static_cast<std::size_t>(j)];
+  const double area = a.x * b.y - a.y * b.x;
+  if (std::abs(area) <= kAreaError * a.size * b.size) return exactSide(way, i, j);
+  const int mirror = way.along[0] * way.along[1] * way.along[2];
+  return area > 0 ? mirror : -mirror;
+}
+
+int CellTracer::exactSide(const Way& way, int i, int j) const noexcept {
+  const LatticePoint p = relative(way, i);
+  const LatticePoint q = relative(way, j);
+  Int128 exact = 0;
+  for (std::size_t k = 0; k < 3; ++k) exact += crossComponent(p, q, k) * way.along[k];
+  if (exact != 0) return sign(exact);
+  for (const Direction tilt : way.tilts) {
+    const int tilted =
+        sign(crossComponent(p, q, static_cast<std::size_t>(axisOf(tilt)))) * signOf(tilt);
+    if (tilted != 0) return tilted;
   }
-  // Sign of det(a, b, way) for two corners relative to the centre.
-  const auto side = [&](std::size_t i, std::size_t j) {
-    const auto& a = projected[i];
-    const auto& b = projected[j];
-    const int untilted =
-        sign(static_cast<Int128>(a[0]) * b[1] - static_cast<Int128>(a[1]) * b[0]) * orientation;
-    if (untilted != 0) return untilted;
-    for (const Direction tilt : way.tilts) {
-      const int tilted =
-          sign(crossComponent(relative[i], relative[j], static_cast<std::size_t>(axisOf(tilt)))) *
-          signOf(tilt);
-      if (tilted != 0) return tilted;
-    }
-    return 0;  // the edge contains the centre
-  };
-  constexpr int kUnknown = 2;
-  std::array<std::array<int, 4>, 4> known{};
-  for (auto& row : known) row.fill(kUnknown);
-  const auto isNegative = [&](int i, int j) {
-    const auto a = static_cast<std::size_t>(i);
-    const auto b = static_cast<std::size_t>(j);
-    if (known[a][b] == kUnknown) {
-      known[a][b] = side(a, b);
-      known[b][a] = -known[a][b];
-    }
-    return known[a][b] < 0;
-  };
+  return 0;
+}
+
+/// The face through which the way leaves the tet in which it begins: the one of which it passes all
+/// three edges on the negative side.
+int CellTracer::exitFromInside(const Way& way) const noexcept {
   for (int face = 0; face < 4; ++face) {
     const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
-    if (isNegative(f[0], f[1]) && isNegative(f[1], f[2]) && isNegative(f[2], f[0])) return face;
+    if (side(way, f[0], f[1]) < 0 && side(way, f[1], f[2]) < 0 && side(way, f[2], f[0]) < 0) {
+      return face;
+    }
   }
   return kNoExit;
 }
 
-/// Whether the way ends before it reaches its exit face.
-bool CellTracer::endsBefore(const Way& way, int face, const LatticePoint& corner) const {
-  const Face plane(exact_.corners[way.tet], face);
+/// The same for a tet that the way entered: seen along the way, the corners a, b, c of the entry
+/// stand around the origin, and the origin lies in that one of the triangles between two of them
+/// and the fourth corner e which holds the direction opposite e.
+int CellTracer::exitAfterEntry(const Way& way) const noexcept {
+  const int e = way.entered;
+  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(e)];
+  if (side(way, f[0], e) < 0) return side(way, f[1], e) > 0 ? f[2] : f[0];
+  return side(way, f[2], e) < 0 ? f[1] : f[0];
+}
+
+/// Whether the way ends before it reaches its exit face: compares the depth of the corner with that
+/// of the face at the origin, which is the mean of its corners' depths, weighted by the areas of
+/// the triangles opposite them.
+bool CellTracer::endsBefore(const Way& way, int face) const noexcept {
+  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+  const Seen& a = way.seen[static_cast<std::size_t>(f[0])];
+  const Seen& b = way.seen[static_cast<std::size_t>(f[1])];
+  const Seen& c = way.seen[static_cast<std::size_t>(f[2])];
+  const double end = 3 * static_cast<double>(half_);
+  const double atA = b.x * c.y - b.y * c.x;
+  const double atB = c.x * a.y - c.y * a.x;
+  const double atC = a.x * b.y - a.y * b.x;
+  const double beyond = atA * (a.depth - end) + atB * (b.depth - end) + atC * (c.depth - end);
+  // Each area errs by kAreaError of the product of two sizes, each depth by 4 * 2^-53 of a size.
+  const double size = a.size + b.size + c.size;
+  if (std::abs(beyond) <= 4 * kAreaError * size * size * (size + end)) {
+    return endsExactlyBefore(way, face);
+  }
+  return (beyond > 0) == (atA + atB + atC > 0);
+}
+
+bool CellTracer::endsExactlyBefore(const Way& way, int face) const noexcept {
+  LatticePoint corner{};
+  for (std::size_t k = 0; k < 3; ++k) corner[k] = way.along[k] * half_;
+  const LatticeTet tet = relativeTet(way);
+  const Face plane(tet, face);
   const int side = plane.side(corner);
   if (side != 0) return side > 0;
   for (const Direction tilt : way.tilts) {
@@ -145,33 +201,62 @@ bool CellTracer::endsBefore(const Way& way, int face, const LatticePoint& corner
   return true;
 }
 
-/// Whether the way begins inside the tet, whose closure contains the centre: no face through the
-/// centre may have it outside.
-bool CellTracer::leadsInto(const Way& way) const {
-  for (int face = 0; face < 4; ++face) {
-    const Face plane(exact_.corners[way.tet], face);
-    if (plane.side(way.center) != 0) continue;
-    int side = plane.dot(way.along);
-    for (const Direction tilt : way.tilts) {
-      if (side == 0) side = plane.dot(tilt);
-    }
-    if (side < 0) return false;
+/// Goes on into the neighbour across a face.
+void CellTracer::cross(Way& way, int face) const {
+  const HalfFace halfFace = halfFaceOf(way.tet, face);
+  const HalfFace mate = topology_.mate[halfFace];
+  const Index before = way.tet;
+  way.tet = tetOf(mate);
+  way.entered = localOf(mate);
+  if (exact_.transitions.isJump(halfFace)) {
+    const Transition& transition = exact_.transitions.across(halfFace);
+    way.center = transition(way.center, exact_.unit);
+    way.along = transition.rotation(way.along);
+    for (Direction& tilt : way.tilts) tilt = transition(tilt);
+    way.rotation = transition.rotation * way.rotation;
+    for (std::size_t i = 0; i < 4; ++i) look(way, i);
+    return;
   }
-  return true;
+  // Three corners look as before.
+  const std::array<Seen, 4> seen = way.seen;
+  const Tet& next = topology_.tets[way.tet];
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (static_cast<int>(i) == way.entered) {
+      look(way, i);
+    } else {
+      way.seen[i] = seen[static_cast<std::size_t>(topology_.localCorner(before, next[i]))];
+    }
+  }
 }
 
-/// The tet among those around the centre into which the way leads.
+/// The tet among those around the centre into which the way leads: no face through the centre may
+/// have it outside.
 CellTracer::Way CellTracer::startAroundCenter(const Way& way) {
+  const auto leadsInto = [this](const Way& candidate) {
+    const LatticeTet tet = relativeTet(candidate);
+    for (int face = 0; face < 4; ++face) {
+      const Face plane(tet, face);
+      if (plane.side({}) != 0) continue;
+      int side = plane.dot(candidate.along);
+      for (const Direction tilt : candidate.tilts) {
+        if (side == 0) side = plane.dot(tilt);
+      }
+      if (side < 0) return false;
+    }
+    return true;
+  };
   star_.assign(1, way);
   for (std::size_t head = 0; head < star_.size(); ++head) {
     const Way here = star_[head];
     if (leadsInto(here)) return here;
+    const LatticeTet tet = relativeTet(here);
     for (int face = 0; face < 4; ++face) {
-      if (Face(exact_.corners[here.tet], face).side(here.center) != 0) continue;
+      if (Face(tet, face).side({}) != 0) continue;
       if (topology_.isBoundary(halfFaceOf(here.tet, face))) {
         fail(here.tet, "a centre lies on the boundary");
       }
-      const Way next = across(here, face);
+      Way next = here;
+      cross(next, face);
       const bool seen = std::any_of(star_.begin(), star_.end(),
                                     [&](const Way& other) { return other.tet == next.tet; });
       if (!seen) star_.push_back(next);

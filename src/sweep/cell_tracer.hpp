@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -23,38 +24,71 @@ struct CornerPlace {
   Rotation rotation;  ///< from the chart of the centre's owner to that of `tet`
 };
 
+/// Traces the corners of one cell after the other. One per thread.
 class CellTracer {
  public:
   explicit CellTracer(const PreparedMap& map) noexcept
-      : topology_(map.topology), exact_(map.exact) {}
+      : topology_(map.topology),
+        exact_(map.exact),
+        half_(map.exact.unit / 2),
+        shift_(std::countr_zero(static_cast<std::uint64_t>(map.exact.unit))) {}
 
-  /// Traces to one corner of the cell with smallest corner z in the chart of a tet that contains
-  /// the cell's centre.
+  /// Chooses the cell with smallest corner z in the chart of a tet that contains the cell's centre.
   /// @param generator  the simplex of the tet in whose interior the centre lies
-  /// @param offset     of the corner from z, each 0 or 1
-  [[nodiscard]] CornerPlace trace(Index tet, const GridPoint& z, CornerMask generator,
-                                  const GridPoint& offset);
+  void enter(Index tet, const GridPoint& z, CornerMask generator) noexcept;
+
+  /// Traces to one corner of the cell.
+  /// @param offset  of the corner from z, each 0 or 1
+  [[nodiscard]] CornerPlace trace(const GridPoint& offset);
 
  private:
+  /// A corner of a tet seen along a way: as a point (x, y) of a plane with the way at its origin,
+  /// at a depth, rounded; relative to the cell's centre, in lattice units.
+  struct Seen {
+    double x;
+    double y;
+    double depth;
+    double size;  ///< sum of magnitudes of the corner's coordinates
+  };
+
   /// A way through a tet: everything in the tet's chart, in lattice units.
   struct Way {
     Index tet;
+    int entered;  ///< face through which it came, or -1
     LatticePoint center;
     std::array<int, 3> along;        ///< from the centre to the corner: +1 or -1 in each axis
     std::array<Direction, 3> tilts;  ///< d1, d2, d3: the corner's edges
     Rotation rotation;               ///< from the first tet's chart
+    std::array<Seen, 4> seen;
   };
 
-  [[nodiscard]] Way across(const Way& way, int face) const;
+  [[nodiscard]] Way begin(const GridPoint& offset);
+  [[nodiscard]] LatticePoint relative(const Way& way, int corner) const noexcept;
+  [[nodiscard]] LatticeTet relativeTet(const Way& way) const noexcept;
+  [[nodiscard]] static Seen seenAs(const Way& way, const std::array<double, 3>& r) noexcept;
+  void look(Way& way, std::size_t corner) const noexcept;
+  [[nodiscard]] int side(const Way& way, int i, int j) const noexcept;
+  [[nodiscard]] int exactSide(const Way& way, int i, int j) const noexcept;
+  [[nodiscard]] int exitFromInside(const Way& way) const noexcept;
+  [[nodiscard]] int exitAfterEntry(const Way& way) const noexcept;
+  [[nodiscard]] bool endsBefore(const Way& way, int face) const noexcept;
+  [[nodiscard]] bool endsExactlyBefore(const Way& way, int face) const noexcept;
+  void cross(Way& way, int face) const;
   [[nodiscard]] Way startAroundCenter(const Way& way);
-  [[nodiscard]] bool leadsInto(const Way& way) const;
-  [[nodiscard]] int exitFace(const Way& way) const;
-  [[nodiscard]] bool endsBefore(const Way& way, int face, const LatticePoint& corner) const;
   [[noreturn]] static void fail(Index tet, const char* what);
 
   const TetTopology& topology_;
   const ExactMap& exact_;
-  std::vector<Way> star_;  ///< working memory
+  std::int64_t half_;  ///< of a grid unit, in lattice units
+  int shift_;          ///< the unit's binary logarithm
+
+  // The cell:
+  Index tet_ = 0;
+  GridPoint z_{};
+  CornerMask generator_ = kNoSimplex;
+  LatticePoint center_{};
+  std::array<std::array<double, 3>, 4> corners_{};  ///< of the tet, from the centre
+  std::vector<Way> star_;                           ///< working memory
 };
 
 }  // namespace hexhex

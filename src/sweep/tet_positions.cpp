@@ -76,9 +76,25 @@ Vec3 TetPositions::at(CornerMask simplex, const GridPoint& z) const {
 
 void TetPositions::alongLine(std::int32_t level, std::int32_t row, std::int32_t first,
                              std::uint32_t count, Vec3* positions) const {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    positions[i] = inside(level, row, first + static_cast<std::int32_t>(i));
+  if (illConditioned_) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      positions[i] = inside(level, row, first + static_cast<std::int32_t>(i));
+    }
+    return;
   }
+  const Vec3 base = rowOrigin(level, row);
+  auto w = static_cast<double>(first - first_[2]);
+  for (std::uint32_t i = 0; i < count; ++i, w += 1) {
+    for (std::size_t k = 0; k < 3; ++k) positions[i][k] = base[k] + w * steps_[2][k];
+  }
+}
+
+Vec3 TetPositions::rowOrigin(std::int32_t level, std::int32_t row) const {
+  const auto u = static_cast<double>(level - first_[0]);
+  const auto v = static_cast<double>(row - first_[1]);
+  Vec3 p;
+  for (std::size_t k = 0; k < 3; ++k) p[k] = (origin_[k] + u * steps_[0][k]) + v * steps_[1][k];
+  return p;
 }
 
 Vec3 TetPositions::inside(std::int32_t level, std::int32_t row, std::int32_t point) const {
@@ -89,13 +105,9 @@ Vec3 TetPositions::inside(std::int32_t level, std::int32_t row, std::int32_t poi
     z[axes_[2]] = point;
     return insideExactly(z);
   }
-  const auto u = static_cast<double>(level - first_[0]);
-  const auto v = static_cast<double>(row - first_[1]);
+  Vec3 p = rowOrigin(level, row);
   const auto w = static_cast<double>(point - first_[2]);
-  Vec3 p;
-  for (std::size_t k = 0; k < 3; ++k) {
-    p[k] = ((origin_[k] + u * steps_[0][k]) + v * steps_[1][k]) + w * steps_[2][k];
-  }
+  for (std::size_t k = 0; k < 3; ++k) p[k] += w * steps_[2][k];
   return p;
 }
 

@@ -25,6 +25,7 @@ class TetPositions {
 
  private:
   [[nodiscard]] Vec3 inside(std::int32_t level, std::int32_t row, std::int32_t point) const;
+  [[nodiscard]] Vec3 rowOrigin(std::int32_t level, std::int32_t row) const;
   [[nodiscard]] Vec3 insideExactly(const GridPoint& z) const;
   [[nodiscard]] Vec3 onFace(CornerMask face, const GridPoint& z) const;
   [[nodiscard]] Vec3 onEdge(CornerMask edge, const GridPoint& z) const;

@@ -276,6 +276,17 @@ class Pipeline(CommandTest):
                     information = self.run_command("info", mesh).stdout
                     self.assertRegex(information, rf"cells +{report['cells']}\n")
 
+    def test_info_in_pieces(self):
+        map_file = self.generate("sphere", "--jitter", "0.3")
+        sums = set()
+        for mesh in ["a.vtu", "a.mesh"]:
+            self.run_command("extract", map_file, "-o", mesh)
+            lines = self.run_command("info", mesh, "--pieces").stdout.splitlines()
+            sums.add("\n".join(lines[1:]))
+            self.assertRegex("\n".join(lines), r"(?s)cells +\d+\n.*checksum of cells +[0-9a-f]{16}\n")
+        self.assertEqual(len(sums), 1)
+        self.run_command("info", map_file, "--pieces", expect=FILE_PROBLEM)
+
     def test_generate_prints_the_answer_that_check_computes(self):
         answer = self.run_command("generate", "star", "-o", "map.hexex", "--valence", "7").stdout
         check = self.run_command("check", "map.hexex").stdout

@@ -232,18 +232,46 @@ TEST(Vtu, HoldsGeneratorsAndQuality) {
                       "format=\"appended\" offset=\"0\"/>"),
             std::string::npos);
   EXPECT_NE(text.find("Name=\"scaled_jacobian\""), std::string::npos);
-  // The first array: its length, then one byte per vertex.
-  const std::size_t data = text.find('_', text.find("<AppendedData")) + 1;
-  std::uint64_t bytes = 0;
-  std::memcpy(&bytes, text.data() + data, sizeof(bytes));
-  EXPECT_EQ(bytes, 12U);
-  EXPECT_EQ(text.substr(data + 8, 12), std::string(12, '\2'));
-  // The second: two perfect boxes.
-  std::array<double, 2> quality{};
-  std::memcpy(quality.data(), text.data() + data + 8 + 12 + 8, sizeof(quality));
+  EXPECT_EQ(arrayOf(text, "generator_kind"), std::string(12, '\2'));
+  EXPECT_EQ(arrayOf(text, "generator_corners"), std::string(12, '\7'));
+  EXPECT_EQ(text.find("generator_tet"), std::string::npos);
+  const std::vector<double> quality = numbersOf<double>(text, "scaled_jacobian");  // perfect boxes
+  ASSERT_EQ(quality.size(), 2U);
   EXPECT_NEAR(quality[0], 1, 1e-12);
   EXPECT_NEAR(quality[1], 1, 1e-12);
   EXPECT_EQ(readHexMesh(folder / "a.vtu").cells, grid.cells);
+}
+
+TEST(Vtu, HoldsWhereVerticesComeFrom) {
+  const TemporaryFolder folder;
+  HexMesh grid = gridMesh(1, 1, 1);
+  grid.generatorTet = {0, 1, 2, 3, 4, 5, 6, 4'000'000'000};
+  grid.generatorCorners = {1, 2, 3, 7, 8, 12, 15, 4};
+  writeHexMesh(grid, folder / "a.vtu");
+  const std::string text = contentOf(folder / "a.vtu");
+  EXPECT_EQ(numbersOf<std::uint32_t>(text, "generator_tet"),
+            std::vector<std::uint32_t>(grid.generatorTet.begin(), grid.generatorTet.end()));
+  EXPECT_EQ(numbersOf<std::uint8_t>(text, "generator_corners"),
+            (std::vector<std::uint8_t>{1, 2, 3, 7, 8, 12, 15, 4}));
+  EXPECT_EQ(numbersOf<std::uint8_t>(text, "generator_kind"),
+            (std::vector<std::uint8_t>{0, 0, 1, 2, 0, 1, 3, 0}));
+  grid.generatorTet.pop_back();
+  EXPECT_EQ(failureOf([&] { writeHexMesh(grid, folder / "b.vtu"); }).code,
+            ErrorCode::InvalidArgument);
+}
+
+TEST(Vtu, QualityOfTheCallerIsWrittenAndNotComputed) {
+  const TemporaryFolder folder;
+  const HexMesh grid = gridMesh(2, 1, 1);
+  const std::vector<double> quality = {0.25, -0.5};
+  Context context;
+  writeHexMesh(grid, folder / "a.vtu", {quality}, context);
+  EXPECT_EQ(numbersOf<double>(contentOf(folder / "a.vtu"), "scaled_jacobian"), quality);
+  for (const StageTime& time : context.stageTimes()) EXPECT_NE(time.stage, "quality");
+  const std::vector<double> tooMany(3);
+  EXPECT_EQ(failureOf([&] { writeHexMesh(grid, folder / "b.vtu", {tooMany}, context); }).code,
+            ErrorCode::InvalidArgument);
+  EXPECT_EQ(folder.fileCount(), 1U);
 }
 
 /// A raw file with 32-bit headers, coordinates in Float32 and unsigned corners.

@@ -2,6 +2,7 @@
 // numbers, and a way to look at errors.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <sstream>
 #include <string>
 #include <unistd.h>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -128,6 +130,27 @@ inline HexMesh gridMesh(Index nx, Index ny, Index nz) {
     }
   }
   return mesh;
+}
+
+/// The bytes of an array of a `.vtu` file as this library writes it; its tag tells the place.
+inline std::string arrayOf(const std::string& file, const std::string& name) {
+  const std::size_t tag = file.find("Name=\"" + name + "\"");
+  if (tag == std::string::npos) return "no such array";
+  const std::size_t offset = file.find("offset=\"", tag) + 8;
+  const std::size_t data = file.find('_', file.find("<AppendedData")) + 1;
+  const std::size_t place = data + std::stoull(file.substr(offset));
+  std::uint64_t bytes = 0;
+  std::copy_n(file.data() + place, sizeof(bytes), reinterpret_cast<char*>(&bytes));
+  return file.substr(place + sizeof(bytes), bytes);
+}
+
+/// The same as numbers.
+template <class T>
+std::vector<T> numbersOf(const std::string& file, const std::string& name) {
+  const std::string bytes = arrayOf(file, name);
+  std::vector<T> numbers(bytes.size() / sizeof(T));
+  std::copy_n(bytes.data(), numbers.size() * sizeof(T), reinterpret_cast<char*>(numbers.data()));
+  return numbers;
 }
 
 /// Equal bit for bit (the sign of zero counts).

@@ -1,7 +1,5 @@
 // Files appear complete or not at all, whatever goes wrong.
-#include <csignal>
 #include <string>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,31 +7,12 @@
 
 #include <hexhex/io.hpp>
 
+#include <io/file_size_limit.hpp>
 #include <io/io_test_support.hpp>
 #include <io/output_file.hpp>
 
 namespace hexhex::test {
 namespace {
-
-/// Lets no file of this process grow beyond so many bytes, like a disk that is full.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  void (*handler_)(int);
-  rlimit before_{};
-};
 
 TEST(OutputFile, AppearsOnCommitOnly) {
   const TemporaryFolder folder;

@@ -1,7 +1,9 @@
 // Adjacency of tets against brute force on samples, and every way not to be a manifold.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <rapidcheck.h>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -9,6 +11,7 @@
 #include <hexhex/check.hpp>
 
 #include <map/tet_topology.hpp>
+#include <map/topology_defects.hpp>
 
 #include "map_samples.hpp"
 
@@ -224,6 +227,133 @@ TEST(Topology, RingAndTetThatShareOnlyAVertex) {
     std::swap(map.parameters[t][2], map.parameters[t][3]);
   }
   expectDefect(map, ErrorCode::NonManifoldVertex, toString({PlaceKind::Vertex, 0}));
+}
+
+/// A ball of five tets around the edge from one pole to the other.
+void addBall(TetMap& map, Index pole0, Index pole1, double x) {
+  const auto first = static_cast<Index>(map.points.size());
+  for (int i = 0; i < 5; ++i) {
+    const double angle = 1.2566370614359172 * i;
+    map.points.push_back({x + std::cos(angle), std::sin(angle), 0.5});
+  }
+  for (Index i = 0; i < 5; ++i) map.tets.push_back({pole0, first + i, first + (i + 1) % 5, pole1});
+}
+
+TEST(Topology, BallsThatShareAnInnerEdge) {
+  TetMap map;
+  map.points = {{0, 0, 0}, {0, 0, 1}};
+  addBall(map, 0, 1, 0);
+  addBall(map, 0, 1, 0.25);
+  expectDefect(identityMap(map.points, map.tets), ErrorCode::NonManifoldVertex,
+               toString({PlaceKind::Vertex, 0}), 2);
+}
+
+/// Inside both, so that no boundary is near.
+TEST(Topology, BallsThatShareAnInnerVertex) {
+  const TetMap box = sampleOf(SampleKind::Box).map;
+  const Prepared before(box);
+  Index inner = 0;
+  const auto onBoundary = [&](Index v) {
+    return std::any_of(before.topology().star(v).begin(), before.topology().star(v).end(),
+                       [&](CornerIndex corner) {
+                         for (int face = 0; face < 4; ++face) {
+                           if (face != localOf(corner) &&
+                               before.topology().isBoundary(halfFaceOf(corner / 4, face))) {
+                             return true;
+                           }
+                         }
+                         return false;
+                       });
+  };
+  while (onBoundary(inner)) ++inner;
+  TetMap map = box;
+  const auto shift = static_cast<Index>(box.points.size());
+  map.points.insert(map.points.end(), box.points.begin(), box.points.end());
+  for (std::size_t t = 0; t < box.tets.size(); ++t) {
+    Tet tet = box.tets[t];
+    for (Index& v : tet) v = v == inner ? inner : v + shift;
+    map.tets.push_back(tet);
+    map.parameters.push_back(box.parameters[t]);
+  }
+  expectDefect(map, ErrorCode::NonManifoldVertex, toString({PlaceKind::Vertex, inner}));
+}
+
+/// What the fast checks let pass, and only that, passes the slow ones, on meshes with all sorts of
+/// pinches: samples without a random part of their tets, in random order.
+TEST(Topology, FastAndSlowChecksAgree) {
+  int manifolds = 0;
+  int others = 0;
+  const bool passed = rc::check([&] {
+    const auto kinds = sampleKinds();
+    SampleOptions options;
+    options.refine = *rc::gen::inRange(1, 3);
+    options.charts = *rc::gen::element(ChartStyle::Aligned, ChartStyle::Random);
+    const TetMap whole =
+        generateSample(kinds[*rc::gen::inRange<std::size_t>(0, kinds.size())].kind, options).map;
+    const auto kept = *rc::gen::inRange<std::size_t>(1, 40);
+    const bool fewMissing = *rc::gen::arbitrary<bool>();
+    TetMap map;
+    map.points = whole.points;
+    const std::vector<Index> order =
+        test::permutation(whole.tets.size(), *rc::gen::arbitrary<std::uint64_t>());
+    const std::size_t size = fewMissing ? whole.tets.size() - kept / 8 : kept;
+    for (std::size_t i = 0; i < size; ++i) {
+      map.tets.push_back(whole.tets[order[i]]);
+      map.parameters.push_back(whole.parameters[order[i]]);
+    }
+    Context context;
+    Stage stage(context, "test");
+    DefectCollector slow;
+    TetTopology topology;
+    topology.tets = map.tets;
+    topology.pointCount = map.points.size();
+    collectTopologyDefects(topology, stage, slow);
+
+    const CheckReport fast = check(map);
+    const std::vector<Defect> expected = slow.defects();
+    const auto isTopological = [](const Defect& defect) {
+      return defect.code == ErrorCode::NonManifoldEdge ||
+             defect.code == ErrorCode::NonManifoldVertex;
+    };
+    if (expected.empty()) {
+      ++manifolds;
+      RC_ASSERT(std::none_of(fast.defects.begin(), fast.defects.end(), isTopological));
+      return;
+    }
+    ++others;
+    RC_ASSERT(fast.defects.size() == expected.size());
+    for (std::size_t d = 0; d < expected.size(); ++d) {
+      RC_ASSERT(fast.defects[d].code == expected[d].code);
+      RC_ASSERT(fast.defects[d].count == expected[d].count);
+    }
+  });
+  EXPECT_TRUE(passed);
+  EXPECT_GT(manifolds, 0);
+  EXPECT_GT(others, 0);
+}
+
+/// So many faces at one vertex that the table for matching them has to grow.
+TEST(Topology, VertexWithManyTets) {
+  TetMap map;
+  map.points = {{0, 0, 0}, {0, 0, 1}};
+  constexpr Index kCorners = 2000;
+  for (Index i = 0; i < kCorners; ++i) {
+    const double angle = 6.283185307179586 * i / kCorners;
+    map.points.push_back({std::cos(angle), std::sin(angle), 0.5});
+  }
+  for (Index i = 0; i < kCorners; ++i) {
+    map.tets.push_back({0, 2 + i, 2 + (i + 1) % kCorners, 1});
+  }
+  map = identityMap(map.points, map.tets);
+  const Prepared prepared(map);
+  EXPECT_FALSE(prepared.defects().has(ErrorCode::NonManifoldVertex));
+  for (Index t = 0; t < kCorners; ++t) {
+    EXPECT_EQ(prepared.topology().mate[halfFaceOf(t, 1)], halfFaceOf((t + 1) % kCorners, 2));
+    EXPECT_EQ(prepared.topology().mate[halfFaceOf(t, 2)],
+              halfFaceOf((t + kCorners - 1) % kCorners, 1));
+    EXPECT_TRUE(prepared.topology().isBoundary(halfFaceOf(t, 0)));
+    EXPECT_TRUE(prepared.topology().isBoundary(halfFaceOf(t, 3)));
+  }
 }
 
 TEST(Topology, TetThatListsItsCornersInReverse) {

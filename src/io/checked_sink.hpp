@@ -1,22 +1,21 @@
-// What all sinks that write files have in common: the order of calls, checks of what comes, time and
-// cancellation.
+// What all sinks have in common: the order of calls, checks of what comes, time and cancellation.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include <hexhex/context.hpp>
 #include <hexhex/stream.hpp>
 
 #include <base/stage.hpp>
-#include <io/output_file.hpp>
 
 namespace hexhex {
 
-/// A sink that writes a file. Derived classes write; they are called in the right order only, with
-/// finite coordinates and vertices that exist. A call that throws is the last one.
-class FileSink : public MeshSink {
+/// A sink whose derived classes are called in the right order only, with finite coordinates and
+/// vertices that exist. A call that throws is the last one.
+class CheckedSink : public MeshSink {
  public:
   void begin(std::uint64_t pointCount, std::uint64_t cellCount) final;
   void points(const PointPiece& piece) final;
@@ -25,18 +24,19 @@ class FileSink : public MeshSink {
   void end() final;
 
  protected:
-  FileSink(const std::filesystem::path& file, Context& context);
+  /// @param name  what errors begin with, e.g. a file
+  /// @param stage  under which the time is noted; outlives this
+  CheckedSink(std::string name, std::string_view stage, Context& context);
 
-  virtual void writeBegin() = 0;
-  virtual void writePoints(const PointPiece& piece) = 0;
+  virtual void takeBegin() = 0;
+  /// The piece is not empty.
+  virtual void takePoints(const PointPiece& piece) = 0;
   /// Called once before the first cells, or before the end if there are none.
-  virtual void writeCellsBegin() = 0;
-  virtual void writeCells(std::uint64_t first, std::span<const Hex> cells) = 0;
-  virtual void writeCells(std::uint64_t first, std::span<const Hex64> cells) = 0;
-  /// Afterwards the file is complete.
-  virtual void writeEnd() = 0;
+  virtual void takeCellsBegin() = 0;
+  virtual void takeCells(std::uint64_t first, std::span<const Hex> cells) = 0;
+  virtual void takeCells(std::uint64_t first, std::span<const Hex64> cells) = 0;
+  virtual void takeEnd() = 0;
 
-  [[nodiscard]] OutputFile& output() noexcept { return output_; }
   [[nodiscard]] int threads() const noexcept { return context_.threads(); }
   [[nodiscard]] std::uint64_t pointCount() const noexcept { return pointCount_; }
   [[nodiscard]] std::uint64_t cellCount() const noexcept { return cellCount_; }
@@ -47,18 +47,18 @@ class FileSink : public MeshSink {
   template <class F>
   void run(const F& f);
   template <class Cell>
-  void takeCells(std::uint64_t first, std::span<const Cell> cells);
+  void checkCells(std::uint64_t first, std::span<const Cell> cells);
   void requireNext(const char* what, std::uint64_t first, std::uint64_t size, std::uint64_t next,
                    std::uint64_t count) const;
-  void requireConsistent(const PointPiece& piece) const;
+  void requireConsistent(const PointPiece& piece);
   void beginCells();
   [[noreturn]] void refuse(const std::string& sentence) const;
 
-  std::filesystem::path path_;
+  std::string name_;
+  std::string_view stage_;
   Context& context_;
   // The sink's loops are short and many: they report no progress of their own.
   Context quiet_;
-  OutputFile output_;
   State state_ = State::Fresh;
   std::uint64_t pointCount_ = 0;
   std::uint64_t cellCount_ = 0;

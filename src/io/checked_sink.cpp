@@ -2,12 +2,14 @@
 #include <atomic>
 #include <chrono>
 #include <string>
+#include <utility>
 
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
-#include <io/file_sink.hpp>
+#include <io/checked_sink.hpp>
 #include <io/finite_points.hpp>
+#include <io/with_threads_here.hpp>
 
 namespace hexhex {
 namespace {
@@ -33,12 +35,12 @@ std::string numbers(std::uint64_t first, std::uint64_t size) {
 
 }  // namespace
 
-FileSink::FileSink(const std::filesystem::path& file, Context& context)
-    : path_(file), context_(context), quiet_(context.threads()), output_(file) {}
+CheckedSink::CheckedSink(std::string name, std::string_view stage, Context& context)
+    : name_(std::move(name)), stage_(stage), context_(context), quiet_(context.threads()) {}
 
 /// Runs one call: the sink is useless after one that failed.
 template <class F>
-void FileSink::run(const F& f) {
+void CheckedSink::run(const F& f) {
   const State before = state_;
   state_ = State::Failed;
   if (before == State::Failed) refuse("a call before this one failed");
@@ -53,27 +55,27 @@ void FileSink::run(const F& f) {
     throw;
   }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-  context_.addStageTime("write mesh", seconds.count());
+  context_.addStageTime(stage_, seconds.count());
 }
 
-void FileSink::begin(std::uint64_t pointCount, std::uint64_t cellCount) {
+void CheckedSink::begin(std::uint64_t pointCount, std::uint64_t cellCount) {
   run([&] {
     if (state_ != State::Fresh) refuse("begin() was called twice");
     // So that no product of a count with the bytes of an element wraps around.
     constexpr std::uint64_t kMost = std::uint64_t{1} << 48U;
     if (std::max(pointCount, cellCount) > kMost) {
-      throw Error(ErrorCode::TooLarge, path_.string() + ": a mesh of " + std::to_string(pointCount) +
+      throw Error(ErrorCode::TooLarge, name_ + ": a mesh of " + std::to_string(pointCount) +
                                            " vertices and " + std::to_string(cellCount) +
                                            " cells is too large for a file.");
     }
     pointCount_ = pointCount;
     cellCount_ = cellCount;
-    writeBegin();
+    takeBegin();
     state_ = State::Points;
   });
 }
 
-void FileSink::points(const PointPiece& piece) {
+void CheckedSink::points(const PointPiece& piece) {
   run([&] {
     if (state_ == State::Fresh) refuse("points() was called before begin()");
     if (state_ == State::Cells) refuse("points() was called after cells()");
@@ -84,60 +86,63 @@ void FileSink::points(const PointPiece& piece) {
       hasCorners_ = !piece.generatorCorners.empty();
     }
     requireConsistent(piece);
-    writePoints(piece);
+    takePoints(piece);
     nextPoint_ += piece.points.size();
   });
 }
 
-void FileSink::cells(std::uint64_t first, std::span<const Hex> cells) { takeCells(first, cells); }
+void CheckedSink::cells(std::uint64_t first, std::span<const Hex> cells) {
+  checkCells(first, cells);
+}
 
-void FileSink::cells(std::uint64_t first, std::span<const Hex64> cells) { takeCells(first, cells); }
+void CheckedSink::cells(std::uint64_t first, std::span<const Hex64> cells) {
+  checkCells(first, cells);
+}
 
 template <class Cell>
-void FileSink::takeCells(std::uint64_t first, std::span<const Cell> cells) {
+void CheckedSink::checkCells(std::uint64_t first, std::span<const Cell> cells) {
   run([&] {
     beginCells();
     requireNext("cells", first, cells.size(), nextCell_, cellCount_);
     Stage stage(quiet_, "check");
     std::size_t wrong = 0;
-    withThreads(quiet_.threads(), [&] { wrong = firstOutOfRange(cells, pointCount_, stage); });
+    withThreadsHere(quiet_.threads(), [&] { wrong = firstOutOfRange(cells, pointCount_, stage); });
     if (wrong < cells.size()) {
       throw Error(ErrorCode::InvalidArgument,
-                  path_.string() + ": a corner of cell " + std::to_string(first + wrong) +
+                  name_ + ": a corner of cell " + std::to_string(first + wrong) +
                       " is not a vertex of the mesh.",
                   Place{PlaceKind::Cell, first + wrong});
     }
-    writeCells(first, cells);
+    takeCells(first, cells);
     nextCell_ += cells.size();
   });
 }
 
-void FileSink::beginCells() {
+void CheckedSink::beginCells() {
   if (state_ == State::Fresh) refuse("cells() or end() was called before begin()");
   if (nextPoint_ != pointCount_) {
     refuse("only " + std::to_string(nextPoint_) + " of " + std::to_string(pointCount_) +
            " vertices came before cells() or end()");
   }
   if (state_ == State::Cells) return;
-  writeCellsBegin();
+  takeCellsBegin();
   state_ = State::Cells;
 }
 
-void FileSink::end() {
+void CheckedSink::end() {
   run([&] {
     beginCells();
     if (nextCell_ != cellCount_) {
       refuse("only " + std::to_string(nextCell_) + " of " + std::to_string(cellCount_) +
              " cells came before end()");
     }
-    writeEnd();
-    output_.commit();
+    takeEnd();
     state_ = State::Ended;
   });
 }
 
-void FileSink::requireNext(const char* what, std::uint64_t first, std::uint64_t size,
-                           std::uint64_t next, std::uint64_t count) const {
+void CheckedSink::requireNext(const char* what, std::uint64_t first, std::uint64_t size,
+                              std::uint64_t next, std::uint64_t count) const {
   if (first != next) {
     refuse("number " + std::to_string(next) + " of the " + what + " has to come next, but " +
            numbers(first, size) + " came");
@@ -148,7 +153,7 @@ void FileSink::requireNext(const char* what, std::uint64_t first, std::uint64_t 
   }
 }
 
-void FileSink::requireConsistent(const PointPiece& piece) const {
+void CheckedSink::requireConsistent(const PointPiece& piece) {
   const auto fits = [&piece](std::size_t size, bool expected) {
     return size == (expected ? piece.points.size() : 0);
   };
@@ -157,20 +162,19 @@ void FileSink::requireConsistent(const PointPiece& piece) const {
     refuse("the generators of the vertices " + numbers(piece.first, piece.points.size()) +
            " are not as many as the vertices, or are missing in some pieces only");
   }
-  Context quiet(quiet_.threads());
-  Stage stage(quiet, "check");
+  Stage stage(quiet_, "check");
   std::size_t wrong = 0;
-  withThreads(quiet.threads(), [&] { wrong = firstNotFinite(piece.points, stage); });
+  withThreadsHere(quiet_.threads(), [&] { wrong = firstNotFinite(piece.points, stage); });
   if (wrong == piece.points.size()) return;
-  throw Error(ErrorCode::NotFinite,
-              path_.string() + ": a coordinate of vertex " + std::to_string(piece.first + wrong) +
-                  " is not finite.",
-              Place{PlaceKind::Vertex, piece.first + wrong});
+  throw Error(
+      ErrorCode::NotFinite,
+      name_ + ": a coordinate of vertex " + std::to_string(piece.first + wrong) + " is not finite.",
+      Place{PlaceKind::Vertex, piece.first + wrong});
 }
 
-void FileSink::refuse(const std::string& sentence) const {
+void CheckedSink::refuse(const std::string& sentence) const {
   throw Error(ErrorCode::InvalidArgument,
-              path_.string() + ": the mesh cannot be written: " + sentence +
+              name_ + ": a mesh in pieces came in the wrong way: " + sentence +
                   ". A sink takes begin(), all vertices in order, all cells in order, and end().");
 }
 

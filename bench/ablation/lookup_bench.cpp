@@ -1,0 +1,185 @@
+// How the hex vertex at a grid point of a tet is found: in the lines that the rasterization leaves
+// behind, in a hash table per tet, or in a list per tet. (The paper's Table 6)
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include <hexhex/context.hpp>
+
+#include <base/stage.hpp>
+#include <extract/hex_vertices.hpp>
+
+#include "ablation/benchmarks.hpp"
+#include "ablation/scaled_map.hpp"
+
+namespace hexhex::bench {
+
+namespace {
+
+/// The vertices of the map at one scale, and the tets in which they are looked up.
+struct Scene {
+  HexVertices vertices;
+  std::vector<Index> tets;
+  std::size_t points = 0;  ///< of these tets
+};
+
+/// @param maxPoints  of so many tets as have about so many points, evenly chosen
+std::unique_ptr<Scene> makeScene(int scale, std::size_t maxPoints) {
+  const PreparedMap& map = scaledMap(scale);
+  auto scene = std::make_unique<Scene>();
+  Context context(1);
+  Stage stage(context, "vertices");
+  constexpr double kEpsilon = 1e-6;
+  scene->vertices = extractVertices(map, kEpsilon, stage);
+  const LatticeLines& lines = scene->vertices.lines;
+  const std::size_t every = lines.vertices.size() / maxPoints + 1;
+  for (std::size_t t = 0; t < map.topology.tetCount(); t += every) {
+    const auto tet = static_cast<Index>(t);
+    if (lines.empty(tet)) continue;
+    scene->tets.push_back(tet);
+    const Index pointBegin = lines.lines[lines.planes[lines.planeBegin[tet]].lineBegin].pointBegin;
+    const Index pointEnd =
+        lines.lines[lines.planes[lines.planeBegin[tet + 1]].lineBegin].pointBegin;
+    scene->points += pointEnd - pointBegin;
+  }
+  return scene;
+}
+
+const Scene& sceneAt(int scale, std::size_t maxPoints) {
+  static std::pair<int, std::size_t> key;
+  static std::unique_ptr<Scene> scene;
+  if (key != std::pair(scale, maxPoints)) {
+    scene.reset();
+    scene = makeScene(scale, maxPoints);
+    key = {scale, maxPoints};
+  }
+  return *scene;
+}
+
+/// All points.
+constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
+
+class Table {
+ public:
+  static constexpr std::size_t kMaxPoints = kUnlimited;
+  explicit Table(const Scene& scene) : lines_(scene.vertices.lines) {}
+  [[nodiscard]] Index find(Index tet, const GridPoint& z) const { return lines_.find(tet, z); }
+
+ private:
+  const LatticeLines& lines_;
+};
+
+struct HashOfPoint {
+  [[nodiscard]] std::size_t operator()(const GridPoint& z) const noexcept {
+    std::uint64_t hash = 0;
+    for (const std::int32_t coordinate : z) {
+      hash = (hash ^ static_cast<std::uint32_t>(coordinate)) * 0x9E3779B97F4A7C15U;
+      hash ^= hash >> 32U;
+    }
+    return static_cast<std::size_t>(hash);
+  }
+};
+
+class Hash {
+ public:
+  static constexpr std::size_t kMaxPoints = kUnlimited;
+  explicit Hash(const Scene& scene) : maps_(scene.vertices.lines.sweeps.size()) {
+    const LatticeLines& lines = scene.vertices.lines;
+    for (const Index tet : scene.tets) {
+      lines.forEachPoint(tet, [&](const GridPoint& z, CornerMask /*simplex*/, Index point) {
+        maps_[tet].emplace(z, lines.vertices[point]);
+      });
+    }
+  }
+  [[nodiscard]] Index find(Index tet, const GridPoint& z) const {
+    const auto found = maps_[tet].find(z);
+    return found == maps_[tet].end() ? kNone : found->second;
+  }
+
+ private:
+  std::vector<std::unordered_map<GridPoint, Index, HashOfPoint>> maps_;
+};
+
+class List {
+ public:
+  /// Searching is quadratic in the points of a tet, so not all tets are asked at large scales.
+  static constexpr std::size_t kMaxPoints = 50'000;
+  explicit List(const Scene& scene) : lists_(scene.vertices.lines.sweeps.size()) {
+    const LatticeLines& lines = scene.vertices.lines;
+    for (const Index tet : scene.tets) {
+      lines.forEachPoint(tet, [&](const GridPoint& z, CornerMask /*simplex*/, Index point) {
+        lists_[tet].emplace_back(z, lines.vertices[point]);
+      });
+    }
+  }
+  [[nodiscard]] Index find(Index tet, const GridPoint& z) const {
+    for (const auto& [point, vertex] : lists_[tet]) {
+      if (point == z) return vertex;
+    }
+    return kNone;
+  }
+
+ private:
+  std::vector<std::vector<std::pair<GridPoint, Index>>> lists_;
+};
+
+/// As when edges are traced: from each point of each tet one step in each direction, whether that
+/// leads out of the tet or not. Sum of what is found: the same for all methods.
+template <class Method>
+std::uint64_t findAll(const Method& method, const Scene& scene) {
+  std::uint64_t sum = 0;
+  for (const Index tet : scene.tets) {
+    scene.vertices.lines.forEachPoint(
+        tet, [&](const GridPoint& z, CornerMask /*simplex*/, Index /*point*/) {
+          for (Direction d = 0; d < kDirections; ++d) sum += method.find(tet, step(z, d));
+        });
+  }
+  return sum;
+}
+
+template <class Method>
+void lookup(benchmark::State& state, int scale) {
+  const Scene& scene = sceneAt(scale, Method::kMaxPoints);
+  const Method method(scene);
+  std::uint64_t sum = 0;
+  for (auto _ : state) {
+    sum = findAll(method, scene);
+    benchmark::DoNotOptimize(sum);
+  }
+  if (sum != findAll(Table(scene), scene)) {
+    state.SkipWithError("the methods found different vertices");
+    return;
+  }
+  state.counters["tets"] = static_cast<double>(scene.tets.size());
+  state.counters["points"] = static_cast<double>(scene.points);
+  state.counters["queries"] = static_cast<double>(scene.points) * kDirections;
+}
+
+template <class Method>
+void add(const std::string& method) {
+  for (const int scale : kScales) {
+    const std::string name =
+        "lookup/" + sphereMap().name + "/scale:" + std::to_string(scale) + "/method:" + method;
+    benchmark::RegisterBenchmark(name.c_str(),
+                                 [scale](benchmark::State& state) { lookup<Method>(state, scale); })
+        ->UseRealTime()
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
+}  // namespace
+
+void registerLookup() {
+  add<Table>("table");
+  add<Hash>("hash");
+  add<List>("list");
+}
+
+}  // namespace hexhex::bench

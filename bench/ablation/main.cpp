@@ -1,0 +1,14 @@
+// Comparisons of single steps, inside the library. See docs/performance.md.
+#include <benchmark/benchmark.h>
+
+#include "ablation/benchmarks.hpp"
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  hexhex::bench::registerRasterization();
+  hexhex::bench::registerLookup();
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}

@@ -1,0 +1,136 @@
+// How the grid points of all tets are found, each with the simplex in whose interior it lies: by
+// testing every point of the bounding box, by the paper's epsilon polygons, or by lines. (The
+// paper's Figure 22)
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include <benchmark/benchmark.h>
+
+#include <lattice/line_rasterizer.hpp>
+#include <lattice/rasterize.hpp>
+
+#include "ablation/benchmarks.hpp"
+#include "ablation/scaled_map.hpp"
+
+namespace hexhex::bench {
+
+namespace {
+
+/// What must be the same for all methods: the number of points, also by simplex.
+struct Found {
+  std::uint64_t points = 0;
+  std::array<std::uint64_t, 16> bySimplex{};
+
+  void add(CornerMask simplex, std::uint64_t count) {
+    points += count;
+    bySimplex[simplex] += count;
+  }
+  /// A line of points by the simplices of its ends.
+  void addLine(CornerMask left, CornerMask inner, CornerMask right, std::uint64_t count) {
+    if (count == 0) return;
+    add(left, 1);
+    if (count > 1) add(right, 1);
+    if (count > 2) add(inner, count - 2);
+  }
+  [[nodiscard]] bool operator==(const Found&) const = default;
+};
+
+struct BoundingBox {
+  static void run(const LatticeTet& corners, std::int64_t unit, const GridBox& box, Found& found) {
+    const TetPlanes planes(corners, unit);
+    GridPoint z{};
+    for (z[0] = box.range[0].first; z[0] <= box.range[0].last; ++z[0]) {
+      for (z[1] = box.range[1].first; z[1] <= box.range[1].last; ++z[1]) {
+        for (z[2] = box.range[2].first; z[2] <= box.range[2].last; ++z[2]) {
+          const CornerMask simplex = planes.generator(z);
+          if (simplex != kNoSimplex) found.add(simplex, 1);
+        }
+      }
+    }
+  }
+};
+
+struct Polygons {
+  struct Sink {
+    Found& found;
+    static void plane(std::int32_t /*firstLine*/) {}
+    void line(const GridLine& line) {
+      found.addLine(line.left, line.inner, line.right, static_cast<std::uint64_t>(line.count));
+    }
+  };
+  static void run(const LatticeTet& corners, std::int64_t unit, const GridBox& box, Found& found) {
+    constexpr double kEpsilon = 1e-6;
+    Sink sink{found};
+    TetRasterizer(corners, unit, box, chooseSweepAxes(box), kEpsilon).run(sink);
+  }
+};
+
+struct Lines {
+  static void run(const LatticeTet& corners, std::int64_t unit, const GridBox& box, Found& found) {
+    if (certainlyMisses(corners, unit, box)) return;
+    LineRasterizer(corners, unit, box, chooseSweepAxes(box)).run([&found](const SweptLine& line) {
+      found.addLine(line.left, line.inner(), line.right, line.count);
+    });
+  }
+};
+
+template <class Method>
+Found findAll(const ExactMap& map) {
+  Found found;
+  for (const LatticeTet& corners : map.corners) {
+    const GridBox box = gridBox(corners, map.unit);
+    if (!box.empty()) Method::run(corners, map.unit, box, found);
+  }
+  return found;
+}
+
+/// What the fastest method finds; computed once per scale.
+const Found& expected(int scale) {
+  static int scaleOfFound = 0;
+  static Found found;
+  if (scaleOfFound != scale) {
+    found = findAll<Lines>(scaledMap(scale).exact);
+    scaleOfFound = scale;
+  }
+  return found;
+}
+
+template <class Method>
+void rasterization(benchmark::State& state, int scale) {
+  const PreparedMap& map = scaledMap(scale);
+  Found found;
+  for (auto _ : state) {
+    found = findAll<Method>(map.exact);
+    benchmark::DoNotOptimize(found);
+  }
+  if (found != expected(scale)) {
+    state.SkipWithError("the methods found different points");
+    return;
+  }
+  state.counters["tets"] = static_cast<double>(map.exact.corners.size());
+  state.counters["points"] = static_cast<double>(found.points);
+}
+
+template <class Method>
+void add(const std::string& method) {
+  for (const int scale : kScales) {
+    const std::string name = "rasterization/" + sphereMap().name +
+                             "/scale:" + std::to_string(scale) + "/method:" + method;
+    benchmark::RegisterBenchmark(
+        name.c_str(), [scale](benchmark::State& state) { rasterization<Method>(state, scale); })
+        ->UseRealTime()
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
+}  // namespace
+
+void registerRasterization() {
+  add<BoundingBox>("box");
+  add<Polygons>("polygons");
+  add<Lines>("lines");
+}
+
+}  // namespace hexhex::bench

@@ -1,0 +1,105 @@
+// The propeller engine's enlargement of tets: time of its vertices, summed over several maps at
+// scales 1, 2 and 4, and how often it was too small, so that the engine started over with infinity.
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include <hexhex/extract.hpp>
+
+#include "bench_maps.hpp"
+#include "benchmarks.hpp"
+
+namespace hexhex::bench {
+
+namespace {
+
+const std::vector<TetMap>& maps() {
+  static const std::vector<TetMap> all = [] {
+    std::vector<TetMap> made;
+    for (const BenchMap& map : scalableMaps()) made.push_back(makeMap(map));
+    return made;
+  }();
+  return all;
+}
+
+/// One extraction of every map at every scale.
+struct Sums {
+  double vertexSeconds = 0;  ///< of successful and failed attempts
+  double seconds = 0;
+  std::uint64_t hexes = 0;
+  std::uint64_t extractions = 0;
+  std::uint64_t fallbacks = 0;
+
+  void extractAll(double epsilon) {
+    ExtractOptions options;
+    options.engine = Engine::Propeller;
+    options.epsilon = epsilon;
+    for (const TetMap& map : maps()) {
+      for (const int scale : {1, 2, 4}) {
+        options.scale = scale;
+        extractOne(map, options);
+      }
+    }
+  }
+
+  void extractOne(const TetMap& map, const ExtractOptions& options) {
+    Context context(1);
+    ExtractStatistics statistics;
+    hexes += extract(map, options, context, &statistics).cells.size();
+    ++extractions;
+    fallbacks += statistics.epsilonFallback ? 1 : 0;
+    seconds += statistics.seconds;
+    for (const StageTime& time : context.stageTimes()) {
+      if (time.stage == "vertices") vertexSeconds += time.seconds;
+    }
+  }
+};
+
+void epsilonBenchmark(benchmark::State& state, double epsilon) {
+  Sums sums;
+  for (auto _ : state) {
+    const double before = sums.vertexSeconds;
+    sums.extractAll(epsilon);
+    state.SetIterationTime(sums.vertexSeconds - before);
+  }
+  const auto runs = static_cast<double>(state.iterations());
+  state.counters["vertex_seconds"] = sums.vertexSeconds / runs;
+  state.counters["seconds"] = sums.seconds / runs;
+  state.counters["hexes"] = static_cast<double>(sums.hexes) / runs;
+  state.counters["extractions"] = static_cast<double>(sums.extractions) / runs;
+  state.counters["fallbacks"] = static_cast<double>(sums.fallbacks) / runs;
+}
+
+}  // namespace
+
+void registerEpsilon() {
+  struct Epsilon {
+    const char* name;
+    double value;
+  };
+  constexpr std::array<Epsilon, 10> kEpsilons = {
+      {{"0", 0},
+       {"1e-16", 1e-16},
+       {"1e-12", 1e-12},
+       {"1e-9", 1e-9},
+       {"1e-6", 1e-6},
+       {"1e-3", 1e-3},
+       {"1e-2", 1e-2},
+       {"1e-1", 1e-1},
+       {"1", 1},
+       {"inf", std::numeric_limits<double>::infinity()}}};
+  for (const Epsilon& epsilon : kEpsilons) {
+    const std::string name = std::string("epsilon/all/epsilon:") + epsilon.name + "/threads:1";
+    benchmark::RegisterBenchmark(
+        name.c_str(),
+        [epsilon](benchmark::State& state) { epsilonBenchmark(state, epsilon.value); })
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
+}  // namespace hexhex::bench

@@ -1,0 +1,39 @@
+"""python3 -m evaluation: see bench/evaluate."""
+
+import argparse
+import json
+from pathlib import Path
+
+from evaluation import document, measure, results
+from evaluation import plots
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="bench/evaluate")
+    parser.add_argument("--build", type=Path, required=True, help="build directory")
+    parser.add_argument("--out", type=Path, required=True, help="folder for measured figures")
+    parser.add_argument("--docs", type=Path, required=True, help="folder of performance.md")
+    parser.add_argument("--quick", action="store_true", help="few repetitions of less")
+    parser.add_argument("--only", default="", metavar="STEP,...", help="measure these anew")
+    parser.add_argument("--no-run", action="store_true", help="measure nothing, only draw and write")
+    return parser.parse_args()
+
+
+def main() -> None:
+    arguments = _arguments()
+    if not arguments.no_run:
+        only = [name for name in arguments.only.split(",") if name]
+        measure.run(arguments.build, arguments.out, arguments.quick, only)
+    runs = results.read_folder(arguments.out)
+    about = json.loads((arguments.out / "machine.json").read_text(encoding="utf-8"))
+    for path in plots.draw_all(runs, arguments.docs / "images"):
+        print(f"  {path}")
+    text = arguments.docs / "performance.md"
+    left = document.rewrite(text, runs, about)
+    print(f"  {text}")
+    if left:
+        print(f"  Without figures, so left as they are: {', '.join(left)}")
+
+
+if __name__ == "__main__":
+    main()

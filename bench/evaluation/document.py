@@ -1,0 +1,50 @@
+"""Rewrites the generated parts of docs/performance.md: what stands between
+`<!-- begin:NAME -->` and `<!-- end -->`."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+from evaluation import tables
+from evaluation.results import Run
+
+PART = re.compile(r"(<!-- begin:([a-z-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
+
+
+def _parts(runs: list[Run], about: dict[str, str]) -> dict[str, Callable[[], str]]:
+    return {
+        "machine": lambda: tables.machine(about) + "\n" + tables.spread(runs),
+        "table-engines": lambda: tables.engines(runs),
+        "table-extraction": lambda: tables.extraction(runs, "atlas"),
+        "table-extraction-propeller": lambda: tables.extraction(runs, "propeller"),
+        "table-stages-tet": lambda: tables.stages(runs, "atlas", "tet"),
+        "table-stages-hex": lambda: tables.stages(runs, "atlas", "hex"),
+        "table-stages-propeller": lambda: tables.stages(runs, "propeller", "hex"),
+        "table-scales": lambda: tables.scales(runs),
+        "table-epsilon": lambda: tables.epsilon(runs),
+        "table-rasterization": lambda: tables.rasterization(runs),
+        "table-lookup": lambda: tables.lookup(runs),
+        "table-files": lambda: tables.others(runs),
+    }
+
+
+def rewrite(document: Path, runs: list[Run], about: dict[str, str]) -> list[str]:
+    """@return the names of parts that were left as they are, because there are no figures"""
+    parts = _parts(runs, about)
+    left = []
+
+    def replacement(match: re.Match[str]) -> str:
+        name = match.group(2)
+        if name not in parts:
+            raise SystemExit(f"{document}: nothing generates a part named {name}.")
+        text = parts.pop(name)()
+        if not text:
+            left.append(name)
+            return match.group(0)
+        return f"{match.group(1)}{text}{match.group(3)}"
+
+    text = PART.sub(replacement, document.read_text(encoding="utf-8"))
+    if parts:
+        raise SystemExit(f"{document} has no place for {', '.join(parts)}.")
+    document.write_text(text, encoding="utf-8")
+    return left

@@ -1,0 +1,327 @@
+// Maps and hex meshes through `.ovm` and `.ovmb`: back bit for bit, and the same bytes again.
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <rapidcheck.h>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/extract.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/quality.hpp>
+
+#include <io/ovm.hpp>
+
+#include "ovm_test_support.hpp"
+
+namespace hexhex::test {
+namespace {
+
+constexpr std::array<const char*, 2> kFiles = {"a.ovm", "a.ovmb"};
+
+/// Writes, reads, compares, and writes again.
+void roundTrip(const TetMap& map) {
+  const TemporaryFolder folder;
+  for (const char* name : kFiles) {
+    writeMap(map, folder / name);
+    const TetMap read = readMap(folder / name);
+    expectSameMap(map, read);
+    expectSameFeatures(map.features, read.features);
+    const std::string again = std::string("again") + name;
+    writeMap(read, folder / again);
+    EXPECT_EQ(contentOf(folder / name), contentOf(folder / again));
+  }
+}
+
+void roundTrip(const HexMesh& mesh) {
+  const TemporaryFolder folder;
+  for (const char* name : kFiles) {
+    writeHexMesh(mesh, folder / name);
+    const HexMesh read = readHexMesh(folder / name);
+    expectSameMesh(mesh, read);
+    const std::string again = std::string("again") + name;
+    writeHexMesh(read, folder / again);
+    EXPECT_EQ(contentOf(folder / name), contentOf(folder / again));
+  }
+}
+
+TEST(OvmRoundTrip, Samples) {
+  rc::check("maps come back bit for bit", [] {
+    const auto kinds = sampleKinds();
+    const SampleKind kind = kinds[*rc::gen::inRange<std::size_t>(0, kinds.size())].kind;
+    SampleOptions options;
+    options.cells = 2;
+    options.refine = *rc::gen::inRange(1, 3);
+    options.charts = *rc::gen::element(ChartStyle::Aligned, ChartStyle::Blocks, ChartStyle::Random);
+    options.jitter = *rc::gen::element(0.0, 0.5);
+    options.offset = *rc::gen::element(0.0, 1e9);
+    options.seed = *rc::gen::arbitrary<std::uint64_t>();
+    TetMap map = generateSample(kind, options).map;
+    Random random(options.seed);
+    if (*rc::gen::arbitrary<bool>()) rotateSome(map, random);
+    if (*rc::gen::arbitrary<bool>()) tagSome(map, random);
+    if (*rc::gen::arbitrary<bool>()) {
+      // Most tets inside out.
+      for (std::size_t t = 0; t < map.tets.size(); ++t) {
+        std::swap(map.tets[t][1], map.tets[t][3]);
+        std::swap(map.parameters[t][1], map.parameters[t][3]);
+      }
+    }
+    roundTrip(map);
+    RC_ASSERT(!::testing::Test::HasFailure());
+  });
+}
+
+TEST(OvmRoundTrip, AnyCornerOrder) {
+  // All 24 orders (12 for each orientation of the whole) of a tet and its neighbour.
+  const TetMap original = smallMap();
+  for (std::size_t t = 0; t < 2; ++t) {
+    std::array<std::size_t, 4> order = {0, 1, 2, 3};
+    do {
+      TetMap map = original;
+      for (std::size_t i = 0; i < 4; ++i) {
+        map.tets[t][i] = original.tets[t][order[i]];
+        map.parameters[t][i] = original.parameters[t][order[i]];
+      }
+      const TemporaryFolder folder;
+      try {
+        writeMap(map, folder / "a.ovmb");
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::Orientation) << error.what();
+        EXPECT_EQ(folder.fileCount(), 0U);
+        continue;
+      }
+      roundTrip(map);
+    } while (std::next_permutation(order.begin(), order.end()));
+  }
+}
+
+TEST(OvmRoundTrip, AwkwardNumbers) {
+  TetMap map = smallMap();
+  Random random(3);
+  for (int i = 0; i < 50; ++i) {
+    for (Vec3& point : map.points) point = {random.anyDouble(), -0.0, 5e-324};
+    for (TetParameters& tet : map.parameters) {
+      for (Vec3& corner : tet) corner = {random.anyDouble(), 1.7976931348623157e308, -0.0};
+    }
+    roundTrip(map);
+  }
+}
+
+TEST(OvmRoundTrip, HexMeshes) {
+  rc::check("hex meshes come back bit for bit", [] {
+    const auto size = [] { return *rc::gen::inRange<Index>(1, 5); };
+    HexMesh mesh = gridMesh(size(), size(), size());
+    Random random(*rc::gen::arbitrary<std::uint64_t>());
+    // A random one of the 24 orders of corners that keep the orientation; of 48 with both.
+    const bool insideOut = *rc::gen::arbitrary<bool>();
+    const bool turned = *rc::gen::arbitrary<bool>();
+    for (Hex& cell : mesh.cells) {
+      if (insideOut)
+        cell = {cell[0], cell[3], cell[2], cell[1], cell[4], cell[7], cell[6], cell[5]};
+      for (std::size_t i = 0; turned && i < random.below(4); ++i) {
+        cell = {cell[1], cell[2], cell[3], cell[0], cell[5], cell[6], cell[7], cell[4]};
+        if (random.below(2) == 0) {
+          cell = {cell[0], cell[1], cell[5], cell[4], cell[3], cell[2], cell[6], cell[7]};
+          cell = {cell[0], cell[3], cell[2], cell[1], cell[4], cell[7], cell[6], cell[5]};
+        }
+      }
+    }
+    if (*rc::gen::arbitrary<bool>()) {
+      for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+        mesh.generatorTet.push_back(random.below(9) == 0 ? kNone : static_cast<Index>(v));
+        mesh.generatorCorners.push_back(static_cast<CornerSet>(1 + random.below(15)));
+      }
+    }
+    if (*rc::gen::arbitrary<bool>()) {
+      mesh.features.vertices = {{0, 4}, {2, -1}};
+      mesh.features.edges = {{{mesh.cells[0][4], mesh.cells[0][0]}, 7}};
+      const Hex& last = mesh.cells.back();
+      mesh.features.quads = {{{last[6], last[7], last[4], last[5]}, 12}};
+    }
+    roundTrip(mesh);
+    RC_ASSERT(!::testing::Test::HasFailure());
+  });
+}
+
+TEST(OvmRoundTrip, ExtractedMeshes) {
+  for (const SampleKindName& kind : sampleKinds()) {
+    SampleOptions options;
+    options.charts = ChartStyle::Random;
+    options.jitter = 0.3;
+    roundTrip(extract(generateSample(kind.kind, options).map));
+  }
+}
+
+TEST(OvmRoundTrip, EmptyMeshes) {
+  const TemporaryFolder folder;
+  for (const char* name : kFiles) {
+    writeHexMesh(HexMesh{}, folder / name);
+    EXPECT_TRUE(readHexMesh(folder / name).cells.empty());
+    writeMap(TetMap{}, folder / name);
+    EXPECT_TRUE(readMap(folder / name).tets.empty());
+  }
+}
+
+TEST(OvmRoundTrip, NumberOfThreadsDoesNotMatter) {
+  SampleOptions options;
+  options.refine = 6;
+  options.charts = ChartStyle::Random;
+  const TetMap map = generateSample(SampleKind::Sphere, options).map;
+  const HexMesh mesh = gridMesh(30, 20, 10);
+  const TemporaryFolder folder;
+  for (const char* name : kFiles) {
+    std::array<std::string, 2> maps;
+    std::array<std::string, 2> meshes;
+    for (const int threads : {1, 2}) {
+      Context context(threads);
+      const auto i = static_cast<std::size_t>(threads - 1);
+      writeMap(map, folder / name, context);
+      maps[i] = contentOf(folder / name);
+      expectSameMap(map, readMap(folder / name, context));
+      writeHexMesh(mesh, folder / name, context);
+      meshes[i] = contentOf(folder / name);
+    }
+    EXPECT_EQ(maps[0], maps[1]);
+    EXPECT_EQ(meshes[0], meshes[1]);
+  }
+}
+
+/// What the slots of a hex cell must fulfil, told from a text file alone.
+TEST(OvmRoundTrip, HexSlotsAreAsDescribed) {
+  const TemporaryFolder folder;
+  writeHexMesh(gridMesh(1, 1, 1), folder / "a.ovm");
+  const std::string text = contentOf(folder / "a.ovm");
+  EXPECT_NE(text.find("Edges\n12\n"), std::string::npos);
+  EXPECT_NE(text.find("Polyhedra\n1\n6 0 2 4 6 8 10\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("corner_order"), std::string::npos);  // not needed
+  EXPECT_TRUE(text.starts_with("OVM ASCII\nVertices\n8\n0 0 0\n")) << text;
+}
+
+/// A cell's half-faces point into it, so the first face's loop and the opposite vertex are
+/// positive.
+TEST(OvmRoundTrip, WritesInwardHalfFaces) {
+  const TemporaryFolder folder;
+  TetMap map;
+  map.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  map.parameters = {{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+  for (const Tet& tet : {Tet{0, 1, 2, 3}, Tet{0, 2, 1, 3}}) {
+    map.tets = {tet};
+    writeMap(map, folder / "a.ovm");
+    const std::string text = contentOf(folder / "a.ovm");
+    // Edges 0: 0-1, 1: 0-2, 2: 0-3, 3: 1-2, ...; the first face is 0 -> 1 -> 2 in both cases.
+    EXPECT_NE(text.find("Edges\n6\n0 1\n0 2\n0 3\n1 2\n1 3\n2 3\nFaces\n4\n3 0 6 3\n"),
+              std::string::npos)
+        << text;
+    EXPECT_EQ(text.find("corner_order") == std::string::npos, tet[1] == 1);
+    expectSameMap(map, readMap(folder / "a.ovm"));
+  }
+}
+
+TEST(OvmRoundTrip, GeneratorsHaveTheNamesOfTheField) {
+  const TemporaryFolder folder;
+  const TetMap map = generateSample(SampleKind::Cylinder, {}).map;
+  const HexMesh mesh = extract(map);
+  Context context;
+  writeOvmHexMesh(mesh, map, folder / "mesh.ovm", context);
+  writeMap(map, folder / "map.ovm");
+  expectSameMesh(mesh, readHexMesh(folder / "mesh.ovm"));
+
+  // Positions of the simplices that the indices name in the map's file lie where the vertices are.
+  const auto numbersAfter = [](const std::string& text, const std::string& title,
+                               std::size_t skip) {
+    std::istringstream stream(text.substr(text.find(title) + title.size()));
+    std::vector<double> numbers;
+    for (double number = 0; stream >> number;) numbers.push_back(number);
+    numbers.erase(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(skip));
+    return numbers;
+  };
+  const std::string meshText = contentOf(folder / "mesh.ovm");
+  const std::string mapText = contentOf(folder / "map.ovm");
+  const auto types = numbersAfter(meshText, "VProp int \"v_tet_generator_type\"\n", 0);
+  const auto indices = numbersAfter(meshText, "VProp int \"v_tet_generator_index\"\n", 0);
+  const auto edges = numbersAfter(mapText, "Edges\n", 1);
+  ASSERT_EQ(types.size(), mesh.points.size());
+  ASSERT_EQ(indices.size(), mesh.points.size());
+  std::map<double, int> counts;
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    ++counts[types[v]];
+    const auto index = static_cast<std::size_t>(indices[v]);
+    if (types[v] == 0) {
+      EXPECT_EQ(map.points.at(index), mesh.points[v]);
+    }
+    if (types[v] == 3) {
+      EXPECT_EQ(index, mesh.generatorTet[v]);
+    }
+    if (types[v] == 1) {
+      // On the segment: the distances to its ends add up to its length.
+      const auto distance = [](const Vec3& a, const Vec3& b) {
+        return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+      };
+      const Vec3& a = map.points.at(static_cast<std::size_t>(edges.at(2 * index)));
+      const Vec3& b = map.points.at(static_cast<std::size_t>(edges.at(2 * index + 1)));
+      EXPECT_NEAR(distance(a, mesh.points[v]) + distance(mesh.points[v], b), distance(a, b), 1e-12);
+    }
+  }
+  EXPECT_GT(counts[0], 0);
+  EXPECT_GT(counts[1], 0);
+  // Without the map there are no indices.
+  writeHexMesh(mesh, folder / "mesh.ovm");
+  EXPECT_EQ(contentOf(folder / "mesh.ovm").find("v_tet_generator_index"), std::string::npos);
+}
+
+TEST(OvmRoundTrip, WhatTheFormatCannotHoldIsRefused) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const TetMap& map) {
+    const Failure failure = failureOf([&] { writeMap(map, folder / "a.ovmb"); });
+    EXPECT_EQ(folder.fileCount(), 0U);
+    return failure;
+  };
+  const TetMap good = generateSample(SampleKind::Box, {}).map;
+  TetMap bad = good;
+  bad.features.edges = {{{0, static_cast<Index>(bad.points.size() - 1)}, 1}};
+  EXPECT_EQ(refused(bad).code, ErrorCode::InvalidArgument);
+  bad.features.edges = {{{4000000000U, 1}, 1}};
+  EXPECT_EQ(refused(bad).code, ErrorCode::InvalidArgument);
+  bad = good;
+  bad.features.vertices = {{static_cast<Index>(bad.points.size()), 1}};
+  EXPECT_EQ(refused(bad).code, ErrorCode::InvalidArgument);
+  bad.features.vertices = {{1, 1}, {1, 2}};
+  EXPECT_NE(refused(bad).sentence.find("twice"), std::string::npos);
+  bad = good;
+  bad.features.faces = {{{0, 1, 999}, 1}};
+  EXPECT_NE(refused(bad).sentence.find("feature face 0 1 999"), std::string::npos);
+  bad = good;
+  bad.parameters.pop_back();
+  EXPECT_EQ(refused(bad).code, ErrorCode::InvalidArgument);
+  bad = good;
+  bad.rotations.resize(3);
+  EXPECT_EQ(refused(bad).code, ErrorCode::InvalidArgument);
+  bad = good;
+  bad.tets[3][1] = static_cast<Index>(bad.points.size());
+  EXPECT_EQ(toString(refused(bad).place), "tet 3");
+  bad = good;
+  bad.tets[3][1] = bad.tets[3][0];
+  EXPECT_EQ(refused(bad).code, ErrorCode::RepeatedVertex);
+  bad = good;
+  bad.parameters[5][2][1] = std::nan("");
+  EXPECT_EQ(refused(bad).code, ErrorCode::NotFinite);
+  bad = good;
+  bad.points[5][2] = INFINITY;
+  EXPECT_EQ(toString(refused(bad).place), "vertex 5");
+  bad = good;
+  std::swap(bad.tets[7][0], bad.tets[7][1]);
+  EXPECT_EQ(refused(bad).code, ErrorCode::Orientation);
+  bad = good;
+  for (int i = 0; i < 2; ++i) {
+    bad.points.push_back({5, 5, 5.0 + i});
+    bad.tets.push_back({bad.tets[0][0], bad.tets[0][1], bad.tets[0][2],
+                        static_cast<Index>(bad.points.size() - 1)});
+    bad.parameters.push_back(bad.parameters[0]);
+  }
+  EXPECT_EQ(refused(bad).code, ErrorCode::NonManifoldFace);
+}
+
+}  // namespace
+}  // namespace hexhex::test

@@ -1,0 +1,495 @@
+// Meshes in pieces: the files of sinks against those of the ordinary writers, reading in pieces,
+// the order of calls, and files that appear complete or not at all.
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/io.hpp>
+#include <hexhex/survey.hpp>
+
+#include <io/file_size_limit.hpp>
+#include <io/io_test_support.hpp>
+
+namespace hexhex::test {
+namespace {
+
+/// A grid with random coordinates, and generators if wanted.
+HexMesh randomMesh(Random& random, bool generators) {
+  HexMesh mesh =
+      gridMesh(static_cast<Index>(1 + random.below(12)), static_cast<Index>(1 + random.below(12)),
+               static_cast<Index>(1 + random.below(12)));
+  for (Vec3& point : mesh.points) {
+    for (double& coordinate : point) {
+      coordinate = random.below(3) == 0 ? random.anyDouble() : 1e-3 * double(random.below(1000));
+    }
+  }
+  if (!generators) return mesh;
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    mesh.generatorTet.push_back(static_cast<Index>(random.next()));
+    mesh.generatorCorners.push_back(static_cast<CornerSet>(1 + random.below(15)));
+  }
+  return mesh;
+}
+
+template <class T>
+std::span<const T> part(const Array<T>& values, std::size_t first, std::size_t count) {
+  return values.empty() ? std::span<const T>() : std::span(values).subspan(first, count);
+}
+
+Array<Hex64> widened(std::span<const Hex> cells) {
+  Array<Hex64> wide(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    std::copy(cells[i].begin(), cells[i].end(), wide[i].begin());
+  }
+  return wide;
+}
+
+/// Hands a mesh over in pieces of random sizes, some of them empty, up to `largest`.
+void send(MeshSink& sink, const HexMesh& mesh, Random& random, std::size_t largest, bool wide) {
+  sink.begin(mesh.points.size(), mesh.cells.size());
+  for (std::size_t first = 0; first < mesh.points.size();) {
+    const std::size_t count = std::min(random.below(largest + 1), mesh.points.size() - first);
+    sink.points({first, part(mesh.points, first, count), part(mesh.generatorTet, first, count),
+                 part(mesh.generatorCorners, first, count)});
+    first += count;
+  }
+  for (std::size_t first = 0; first < mesh.cells.size();) {
+    const std::size_t count = std::min(random.below(largest + 1), mesh.cells.size() - first);
+    const std::span<const Hex> cells = part(mesh.cells, first, count);
+    if (wide) {
+      sink.cells(first, std::span<const Hex64>(widened(cells)));
+    } else {
+      sink.cells(first, cells);
+    }
+    first += count;
+  }
+  sink.end();
+}
+
+/// The names of the arrays that a stream has in common with the ordinary writer.
+const std::vector<std::string> kArrays = {"generator_kind", "generator_tet", "generator_corners",
+                                          "Points",         "connectivity",  "offsets",
+                                          "types"};
+
+/// The ordinary writer's text without boundary quads.
+std::string withoutQuads(std::string text) {
+  const std::size_t begin = text.find("Quadrilaterals");
+  return text.erase(begin, text.find("Hexahedra") - begin);
+}
+
+TEST(Stream, SinksWriteWhatWritersWrite) {
+  const TemporaryFolder folder;
+  Random random(23);
+  for (int i = 0; i < 60; ++i) {
+    const HexMesh mesh = randomMesh(random, i % 2 == 0);
+    const std::size_t largest = 1 + random.below(i % 3 == 0 ? 5 : 3000);
+    for (const std::string extension : {".vtu", ".mesh"}) {
+      Context context(1 + i % 3);
+      writeHexMesh(mesh, folder / ("whole" + extension), context);
+      const std::unique_ptr<MeshSink> sink = openMeshSink(folder / ("pieces" + extension), context);
+      send(*sink, mesh, random, largest, i % 5 == 0);
+      const std::string whole = contentOf(folder / ("whole" + extension));
+      const std::string pieces = contentOf(folder / ("pieces" + extension));
+      if (extension == ".mesh") {
+        EXPECT_TRUE(pieces == withoutQuads(whole));
+        continue;
+      }
+      EXPECT_EQ(pieces.find("scaled_jacobian"), std::string::npos);
+      for (const std::string& name : kArrays) {
+        EXPECT_TRUE(arrayOf(pieces, name) == arrayOf(whole, name)) << name;
+      }
+      EXPECT_TRUE(pieces.ends_with("\n  </AppendedData>\n</VTKFile>\n"));
+      const HexMesh read = readHexMesh(folder / "pieces.vtu");
+      expectSameBits(read.points, mesh.points);
+      EXPECT_EQ(read.cells, mesh.cells);
+    }
+  }
+  EXPECT_EQ(folder.fileCount(), 4U);
+}
+
+TEST(Stream, EmptyMeshes) {
+  const TemporaryFolder folder;
+  Context context;
+  Random random(1);
+  for (const char* name : {"a.vtu", "a.mesh"}) {
+    send(*openMeshSink(folder / name, context), HexMesh{}, random, 1, false);
+    EXPECT_TRUE(readHexMesh(folder / name).cells.empty());
+    HexMesh pointsOnly;
+    pointsOnly.points = {{1, 2, 3}};
+    send(*openMeshSink(folder / name, context), pointsOnly, random, 1, false);
+    EXPECT_EQ(readHexMesh(folder / name).points.size(), 1U);
+  }
+}
+
+/// Gathers what comes into a mesh again.
+class Collector : public MeshSink {
+ public:
+  HexMesh mesh;
+  bool ended = false;
+  std::size_t largestPiece = 0;
+
+  void begin(std::uint64_t pointCount, std::uint64_t cellCount) override {
+    mesh.points.reserve(pointCount);
+    cellCount_ = cellCount;
+  }
+  void points(const PointPiece& piece) override {
+    EXPECT_EQ(piece.first, mesh.points.size());
+    largestPiece = std::max(largestPiece, piece.points.size());
+    mesh.points.insert(mesh.points.end(), piece.points.begin(), piece.points.end());
+    mesh.generatorTet.insert(mesh.generatorTet.end(), piece.generatorTet.begin(),
+                             piece.generatorTet.end());
+    mesh.generatorCorners.insert(mesh.generatorCorners.end(), piece.generatorCorners.begin(),
+                                 piece.generatorCorners.end());
+  }
+  void cells(std::uint64_t first, std::span<const Hex> cells) override {
+    EXPECT_EQ(first, mesh.cells.size());
+    mesh.cells.insert(mesh.cells.end(), cells.begin(), cells.end());
+  }
+  void cells(std::uint64_t /*first*/, std::span<const Hex64> /*cells*/) override {
+    ADD_FAILURE() << "wide cells of a small mesh";
+  }
+  void end() override {
+    EXPECT_EQ(mesh.cells.size(), cellCount_);
+    ended = true;
+  }
+
+ private:
+  std::uint64_t cellCount_ = 0;
+};
+
+TEST(Stream, ReadingInPiecesGivesTheMeshBack) {
+  const TemporaryFolder folder;
+  Random random(29);
+  for (const char* name : {"a.vtu", "a.mesh"}) {
+    HexMesh mesh = gridMesh(60, 50, 40);
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+      mesh.generatorTet.push_back(static_cast<Index>(random.next()));
+      mesh.generatorCorners.push_back(static_cast<CornerSet>(1 + random.below(15)));
+    }
+    writeHexMesh(mesh, folder / name);
+    Context context;
+    Collector collector;
+    readHexMeshTo(collector, folder / name, context);
+    EXPECT_TRUE(collector.ended);
+    expectSameBits(collector.mesh.points, mesh.points);
+    EXPECT_EQ(collector.mesh.cells, mesh.cells);
+    EXPECT_LT(collector.largestPiece, mesh.points.size());
+    if (std::string(name) == "a.mesh") continue;
+    EXPECT_EQ(collector.mesh.generatorTet, mesh.generatorTet);
+    EXPECT_EQ(collector.mesh.generatorCorners, mesh.generatorCorners);
+  }
+}
+
+/// From a file in pieces to a file in pieces and back: nothing gets lost.
+TEST(Stream, FilesAreCopiedInPieces) {
+  const TemporaryFolder folder;
+  Random random(31);
+  const HexMesh mesh = randomMesh(random, true);
+  Context context;
+  send(*openMeshSink(folder / "a.vtu", context), mesh, random, 100, false);
+  readHexMeshTo(*openMeshSink(folder / "b.vtu", context), folder / "a.vtu", context);
+  EXPECT_TRUE(contentOf(folder / "a.vtu") == contentOf(folder / "b.vtu"));
+  readHexMeshTo(*openMeshSink(folder / "b.mesh", context), folder / "b.vtu", context);
+  const HexMesh read = readHexMesh(folder / "b.mesh");
+  expectSameBits(read.points, mesh.points);
+  EXPECT_EQ(read.cells, mesh.cells);
+}
+
+TEST(Stream, OtherCellsAreSkipped) {
+  const TemporaryFolder folder;
+  writeHexMesh(gridMesh(3, 2, 2), folder / "a.vtu");
+  std::string text = contentOf(folder / "a.vtu");
+  const std::string types = arrayOf(text, "types");
+  const std::size_t place = text.rfind(types);
+  for (const std::size_t i : {0U, 4U, 5U, 11U}) text[place + i] = 11;  // voxels
+  writeText(folder / "b.vtu", text);
+  Collector collector;
+  Context context;
+  readHexMeshTo(collector, folder / "b.vtu", context);
+  EXPECT_EQ(collector.mesh.cells.size(), 8U);
+  EXPECT_EQ(collector.mesh.cells, readHexMesh(folder / "b.vtu").cells);
+  text.replace(place, 12, std::string(12, 11));
+  writeText(folder / "c.vtu", text);
+  EXPECT_EQ(failureOf([&] { readHexMeshTo(collector, folder / "c.vtu", context); }).code,
+            ErrorCode::FileUnsupported);
+}
+
+/// Damaged files give the same error in pieces as at once.
+TEST(Stream, DamagedFilesAreRefusedInPiecesToo) {
+  const TemporaryFolder folder;
+  writeHexMesh(gridMesh(3, 2, 2), folder / "a.vtu");
+  const std::string good = contentOf(folder / "a.vtu");
+  Random random(37);
+  std::size_t refused = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::string text = good;
+    for (std::size_t k = 1 + random.below(3); k > 0; --k) {
+      text[random.below(text.size())] = static_cast<char>(random.below(256));
+    }
+    if (random.below(4) == 0) text.resize(random.below(text.size()));
+    writeText(folder / "b.vtu", text);
+    const auto outcome = [&](const auto& read) -> std::string {
+      try {
+        read();
+        return "good";
+      } catch (const Error& error) {
+        return error.what();
+      }
+    };
+    const std::string whole = outcome([&] { static_cast<void>(readHexMesh(folder / "b.vtu")); });
+    const std::string pieces = outcome([&] {
+      Collector collector;
+      Context context;
+      readHexMeshTo(collector, folder / "b.vtu", context);
+    });
+    EXPECT_EQ(pieces, whole);
+    if (whole != "good") ++refused;
+  }
+  EXPECT_GT(refused, 500U);
+}
+
+struct Step {
+  const char* what;
+  void (*run)(MeshSink&);
+};
+
+constexpr Hex kCell = {0, 1, 2, 3, 4, 5, 6, 7};
+
+void sendPoints(MeshSink& sink, std::uint64_t first, std::size_t count) {
+  const std::vector<Vec3> points(count);
+  sink.points({first, points, {}, {}});
+}
+void sendCells(MeshSink& sink, std::uint64_t first, std::size_t count) {
+  const std::vector<Hex> cells(count, kCell);
+  sink.cells(first, std::span<const Hex>(cells));
+}
+
+TEST(Stream, WrongOrderIsRefused) {
+  const std::vector<Step> wrong = {
+      {"points() was called before begin()", [](MeshSink& s) { sendPoints(s, 0, 8); }},
+      {"before begin()", [](MeshSink& s) { sendCells(s, 0, 1); }},
+      {"before begin()", [](MeshSink& s) { s.end(); }},
+      {"begin() was called twice",
+       [](MeshSink& s) {
+         s.begin(8, 2);
+         s.begin(8, 2);
+       }},
+      {"number 3 of the vertices has to come next, but 5 from number 4 on came",
+       [](MeshSink& s) {
+         s.begin(9, 2);
+         sendPoints(s, 0, 3);
+         sendPoints(s, 4, 5);
+       }},
+      {"more vertices than the 8",
+       [](MeshSink& s) {
+         s.begin(8, 2);
+         sendPoints(s, 0, 9);
+       }},
+      {"only 7 of 8 vertices",
+       [](MeshSink& s) {
+         s.begin(8, 2);
+         sendPoints(s, 0, 7);
+         sendCells(s, 0, 1);
+       }},
+      {"points() was called after cells()",
+       [](MeshSink& s) {
+         s.begin(8, 2);
+         sendPoints(s, 0, 8);
+         sendCells(s, 0, 1);
+         sendPoints(s, 8, 1);
+       }},
+      {"number 1 of the cells has to come next",
+       [](MeshSink& s) {
+         s.begin(8, 2);
+         sendPoints(s, 0, 8);
+         sendCells(s, 0, 1);
+         sendCells(s, 0, 1);
+       }},
+      {"more cells than the 2",
+       [](MeshSink& s) {
+         s.begin(8, 2);
+         sendPoints(s, 0, 8);
+         sendCells(s, 0, 3);
+       }},
+      {"only 1 of 2 cells",
+       [](MeshSink& s) {
+         s.begin(8, 2);
+         sendPoints(s, 0, 8);
+         sendCells(s, 0, 1);
+         s.end();
+       }},
+      {"generators",
+       [](MeshSink& s) {
+         s.begin(8, 2);
+         const std::vector<Vec3> points(4);
+         const std::vector<Index> tets(4);
+         s.points({0, points, tets, {}});
+         s.points({4, points, {}, {}});
+       }},
+      {"generators",
+       [](MeshSink& s) {
+         s.begin(8, 2);
+         const std::vector<Vec3> points(4);
+         const std::vector<CornerSet> corners(3);
+         s.points({0, points, {}, corners});
+       }},
+  };
+  const TemporaryFolder folder;
+  Context context;
+  for (const char* name : {"a.vtu", "a.mesh"}) {
+    for (const Step& step : wrong) {
+      const std::unique_ptr<MeshSink> sink = openMeshSink(folder / name, context);
+      const Failure failure = failureOf([&] { step.run(*sink); });
+      EXPECT_EQ(failure.code, ErrorCode::InvalidArgument);
+      EXPECT_NE(failure.sentence.find(step.what), std::string::npos)
+          << step.what << " | " << failure.sentence;
+      // Nothing is accepted afterwards, as if it could still become a file.
+      EXPECT_NE(failureOf([&] { sink->end(); }).sentence.find("failed"), std::string::npos);
+    }
+  }
+  EXPECT_EQ(folder.fileCount(), 0U);
+}
+
+TEST(Stream, WrongContentIsRefused) {
+  const TemporaryFolder folder;
+  Context context;
+  for (const char* name : {"a.vtu", "a.mesh"}) {
+    std::unique_ptr<MeshSink> sink = openMeshSink(folder / name, context);
+    sink->begin(8, 3);
+    sendPoints(*sink, 0, 8);
+    sendCells(*sink, 0, 1);
+    const std::vector<Hex64> cells = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 1, 2, 3, 4, 5, 6, 8}};
+    Failure failure = failureOf([&] { sink->cells(1, std::span<const Hex64>(cells)); });
+    EXPECT_EQ(failure.code, ErrorCode::InvalidArgument);
+    EXPECT_EQ(toString(failure.place), "cell 2");
+    sink = openMeshSink(folder / name, context);
+    sink->begin(8, 3);
+    sendPoints(*sink, 0, 5);
+    const std::vector<Vec3> points = {{0, 0, 0}, {0, std::numeric_limits<double>::infinity(), 0}};
+    failure = failureOf([&] { sink->points({5, points, {}, {}}); });
+    EXPECT_EQ(failure.code, ErrorCode::NotFinite);
+    EXPECT_EQ(toString(failure.place), "vertex 6");
+  }
+  EXPECT_EQ(folder.fileCount(), 0U);
+}
+
+TEST(Stream, AbandonedSinksLeaveNothing) {
+  const TemporaryFolder folder;
+  writeText(folder / "a.vtu", "old");
+  Context context;
+  for (const char* name : {"a.vtu", "b.mesh"}) {
+    const std::unique_ptr<MeshSink> sink = openMeshSink(folder / name, context);
+    sink->begin(8, 1);
+    sendPoints(*sink, 0, 8);
+    sendCells(*sink, 0, 1);
+  }
+  EXPECT_EQ(contentOf(folder / "a.vtu"), "old");
+  EXPECT_EQ(folder.fileCount(), 1U);
+}
+
+TEST(Stream, FilesThatCannotBeMade) {
+  const TemporaryFolder folder;
+  Context context;
+  for (const char* name : {"missing/a.vtu", "missing/a.mesh"}) {
+    const Failure failure =
+        failureOf([&] { static_cast<void>(openMeshSink(folder / name, context)); });
+    EXPECT_EQ(failure.code, ErrorCode::FileWrite);
+    EXPECT_NE(failure.sentence.find(name), std::string::npos) << failure.sentence;
+  }
+  EXPECT_EQ(failureOf([&] { static_cast<void>(openMeshSink(folder / "a.png", context)); }).code,
+            ErrorCode::FileUnsupported);
+  const Failure whole =
+      failureOf([&] { static_cast<void>(openMeshSink(folder / "a.ovm", context)); });
+  EXPECT_EQ(whole.code, ErrorCode::FileUnsupported);
+  EXPECT_NE(whole.sentence.find("can: .mesh, .vtu."), std::string::npos) << whole.sentence;
+  std::filesystem::create_symlink("/dev/null", folder / "null.vtu");
+  const Failure device =
+      failureOf([&] { static_cast<void>(openMeshSink(folder / "null.vtu", context)); });
+  EXPECT_EQ(device.code, ErrorCode::FileWrite);
+  EXPECT_NE(device.sentence.find("device"), std::string::npos) << device.sentence;
+}
+
+TEST(Stream, FullDiskLeavesNothing) {
+  const TemporaryFolder folder;
+  const HexMesh mesh = gridMesh(40, 40, 40);
+  Random random(41);
+  Context context;
+  const FileSizeLimit limit(1'000'000);
+  for (const char* name : {"a.mesh", "a.vtu"}) {
+    const Failure failure =
+        failureOf([&] { send(*openMeshSink(folder / name, context), mesh, random, 5000, false); });
+    EXPECT_EQ(failure.code, ErrorCode::FileWrite);
+    EXPECT_NE(failure.sentence.find("File too large"), std::string::npos) << failure.sentence;
+    EXPECT_EQ(folder.fileCount(), 0U);
+  }
+}
+
+TEST(Stream, CancellationIsNoticed) {
+  const TemporaryFolder folder;
+  Context context;
+  const std::unique_ptr<MeshSink> sink = openMeshSink(folder / "a.vtu", context);
+  sink->begin(8, 1);
+  context.cancel();
+  EXPECT_EQ(failureOf([&] { sendPoints(*sink, 0, 8); }).code, ErrorCode::Cancelled);
+}
+
+TEST(Survey, IsTheSameHoweverAMeshComes) {
+  const TemporaryFolder folder;
+  Random random(43);
+  HexMesh mesh = gridMesh(50, 40, 30);
+  Context one(1);
+  const MeshSurvey expected = survey(mesh, one);
+  EXPECT_EQ(expected.points, mesh.points.size());
+  EXPECT_EQ(expected.cells, mesh.cells.size());
+  EXPECT_EQ(expected.lower, (Vec3{0, 0, 0}));
+  EXPECT_EQ(expected.upper, (Vec3{50 / 3.0, 40 / 7.0, 30 * 1.1}));
+  writeHexMesh(mesh, folder / "a.vtu");
+  writeHexMesh(mesh, folder / "a.mesh");
+  for (const int threads : {1, 2, 3}) {
+    Context context(threads);
+    EXPECT_EQ(surveyFile(folder / "a.vtu", context), expected);
+    EXPECT_EQ(surveyFile(folder / "a.mesh", context), expected);
+    for (const bool wide : {false, true}) {
+      SurveySink sink(context);
+      send(sink, mesh, random, 20'000, wide);
+      EXPECT_EQ(sink.result(), expected);
+    }
+  }
+}
+
+TEST(Survey, ChecksumsTellMeshesApart) {
+  const HexMesh mesh = gridMesh(3, 3, 3);
+  Context context;
+  const MeshSurvey expected = survey(mesh, context);
+  HexMesh other = mesh;
+  std::swap(other.points[1], other.points[2]);
+  EXPECT_NE(survey(other, context).pointChecksum, expected.pointChecksum);
+  EXPECT_EQ(survey(other, context).cellChecksum, expected.cellChecksum);
+  other = mesh;
+  other.points[7][1] = std::nextafter(other.points[7][1], 2);
+  EXPECT_NE(survey(other, context).pointChecksum, expected.pointChecksum);
+  other = mesh;
+  std::swap(other.cells[4][0], other.cells[4][1]);
+  EXPECT_NE(survey(other, context).cellChecksum, expected.cellChecksum);
+  EXPECT_EQ(survey(other, context).pointChecksum, expected.pointChecksum);
+  other = mesh;
+  std::swap(other.cells[0], other.cells[1]);
+  EXPECT_NE(survey(other, context).cellChecksum, expected.cellChecksum);
+  EXPECT_EQ(survey(HexMesh{}, context), MeshSurvey{});
+}
+
+/// As another program computed them, so that figures of yesterday compare with those of tomorrow.
+TEST(Survey, ChecksumsAreThoseOfTheFirstVersion) {
+  Context context;
+  const MeshSurvey sums = survey(gridMesh(2, 2, 2), context);
+  EXPECT_EQ(sums.pointChecksum, 2268866626704337417U);
+  EXPECT_EQ(sums.cellChecksum, 2959003485796918603U);
+}
+
+}  // namespace
+}  // namespace hexhex::test

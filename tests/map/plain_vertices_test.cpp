@@ -1,0 +1,234 @@
+// Plain vertices: what is concluded without a look at their stars, against a look at their stars.
+#include <cmath>
+#include <numbers>
+#include <rapidcheck.h>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <base/vector3.hpp>
+#include <map/exact_map.hpp>
+#include <map/plain_vertices.hpp>
+
+#include "map_samples.hpp"
+
+namespace hexhex {
+namespace {
+
+using test::Prepared;
+
+/// The preprocessing of a valid map up to its plain vertices.
+struct Survey {
+  Context context;
+  Stage stage{context, "test"};
+  DefectCollector defects;
+  OrientedMap input;
+  TetTopology topology;
+  LocalParameters parameters;
+  PlainVertices plain;
+
+  explicit Survey(const TetMapView& map)
+      : input(readInput(map, stage, defects)),
+        topology(buildTopology(input.view, stage, defects)),
+        parameters(input),
+        plain(findPlainVertices(topology, parameters, stage)) {
+    addStars(topology, stage);
+  }
+};
+
+/// The sum of dihedral angles around an edge in right angles, by trigonometry.
+double rightAngles(const TetMapView& map, std::span<const EdgeCorner> fan) {
+  double sum = 0;
+  for (const EdgeCorner& at : fan) {
+    const TetParameters& u = map.parameters[at.tet];
+    std::vector<Vec3> normals;
+    const Vec3 edge = minus(u[at.corner1], u[at.corner0]);
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (i != at.corner0 && i != at.corner1) {
+        normals.push_back(cross(edge, minus(u[i], u[at.corner0])));
+      }
+    }
+    const Vec3 across = cross(normals[0], normals[1]);
+    sum += std::atan2(length(across), dot(normals[0], normals[1]));
+  }
+  return sum / (std::numbers::pi / 2);
+}
+
+/// Everything that being plain promises about edges.
+std::size_t expectRegularEdges(const Survey& survey) {
+  std::vector<EdgeCorner> scratch;
+  std::size_t edges = 0;
+  for (Index v = 0; v < survey.topology.pointCount; ++v) {
+    forEachEdge(survey.topology, v, scratch, [&](Index w, std::span<const EdgeCorner> fan) {
+      if (survey.plain.special[v] != 0 && survey.plain.special[w] != 0) return;
+      const double regular = boundaryFacesAt(survey.topology, fan) > 0 ? 2 : 4;
+      EXPECT_NEAR(rightAngles(survey.input.view, fan), regular, 1e-6);
+      ++edges;
+    });
+  }
+  return edges;
+}
+
+class PlainVerticesOfKind : public test::EveryKind {};
+
+TEST_P(PlainVerticesOfKind, HaveRegularEdgesOnly) {
+  for (const ChartStyle charts : test::kChartStyles) {
+    const TetMap map =
+        generateSample(kind(), {.cells = 7, .refine = 3, .charts = charts, .jitter = 0.6}).map;
+    const Survey survey(map);
+    ASSERT_TRUE(survey.defects.empty());
+    const std::size_t edges = expectRegularEdges(survey);
+    if (charts != ChartStyle::Random) {
+      EXPECT_GT(edges, map.tets.size() / 2);
+    }
+  }
+}
+
+TEST_P(PlainVerticesOfKind, AreNeitherSingularNorBetweenPlanesNorAtJumps) {
+  for (const ChartStyle charts : test::kChartStyles) {
+    const TetMap map = generateSample(kind(), {.refine = 3, .charts = charts, .jitter = 0.6}).map;
+    const Survey survey(map);
+    const Prepared prepared(map);
+    for (Index v = 0; v < map.points.size(); ++v) {
+      if (survey.plain.special[v] != 0) continue;
+      EXPECT_EQ(prepared.singularities().degree[v], 0);
+      bool boundary = false;
+      for (const CornerIndex corner : prepared.topology().star(v)) {
+        for (int face = 0; face < 4; ++face) {
+          if (face == localOf(corner)) continue;
+          const HalfFace halfFace = halfFaceOf(corner / 4, face);
+          boundary = boundary || survey.topology.isBoundary(halfFace);
+          EXPECT_FALSE(prepared.transitions().isJump(halfFace));
+        }
+      }
+      EXPECT_EQ(survey.plain.plane[v] != 0, boundary);
+    }
+  }
+}
+
+/// Plain vertices take another path through sanitization: with all vertices declared special, the
+/// result must be the same, bit for bit.
+TEST_P(PlainVerticesOfKind, AreSanitizedAsTheirStarsAre) {
+  for (const ChartStyle charts : test::kChartStyles) {
+    for (const double noise : {0.0, 1e-4}) {
+      const TetMap map =
+          generateSample(kind(), {.refine = 3, .charts = charts, .jitter = 0.6, .noise = noise})
+              .map;
+      const auto sanitized = [&](bool allSpecial) {
+        Survey survey(map);
+        if (allSpecial) {
+          for (std::uint8_t& special : survey.plain.special) special = 1;
+        }
+        std::vector<StarBlock> stars;
+        const auto singularities = computeSingularities(survey.topology, survey.parameters,
+                                                        survey.plain, {}, stars, survey.stage);
+        Transitions transitions =
+            computeTransitions(survey.topology, survey.parameters, survey.plain, {}, 0.1,
+                               survey.stage, survey.defects);
+        ExactMap exact =
+            sanitize(survey.topology, survey.parameters, std::move(transitions), survey.plain,
+                     stars, singularities.value(), 0.1, 1, survey.stage, survey.defects);
+        EXPECT_TRUE(survey.defects.empty());
+        return std::pair(std::move(exact), singularities->edges.size());
+      };
+      const auto [fast, fastEdges] = sanitized(false);
+      const auto [slow, slowEdges] = sanitized(true);
+      EXPECT_EQ(fast.corners, slow.corners);
+      EXPECT_EQ(fast.maxDisplacement, slow.maxDisplacement);
+      EXPECT_EQ(fastEdges, slowEdges);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, PlainVerticesOfKind, testing::ValuesIn(sampleKinds()),
+                         test::kindTestName);
+
+/// A fan of tets around an edge along the third axis, closed after `turns` turns in one chart: a
+/// double cone over a polygon of 5 * turns corners.
+TetMap windingFan(int turns, double angle) {
+  TetMap map;
+  const int corners = 5 * turns;
+  map.points = {{0, 0, 0}, {0, 0, 1}};
+  std::vector<Vec3> parameters = map.points;
+  for (int i = 0; i < corners; ++i) {
+    const double phi = angle + 2 * std::numbers::pi * i / 5;
+    parameters.push_back({2 * std::cos(phi), 2 * std::sin(phi), 0.5});
+    // In space, the same corners around once.
+    const double psi = 2 * std::numbers::pi * i / corners;
+    map.points.push_back({std::cos(psi), std::sin(psi), 0.5});
+  }
+  for (Index i = 0; i < static_cast<Index>(corners); ++i) {
+    const Tet tet = {0, 2 + i, 2 + (i + 1) % static_cast<Index>(corners), 1};
+    map.tets.push_back(tet);
+    map.parameters.push_back(
+        {parameters[tet[0]], parameters[tet[1]], parameters[tet[2]], parameters[tet[3]]});
+  }
+  return map;
+}
+
+TEST(PlainVertices, TurnsInOneChartAreCounted) {
+  for (const int turns : {1, 2, 3}) {
+    for (const double angle : {0.0, 0.1, 1.0, 3.0}) {
+      const TetMap map = windingFan(turns, angle);
+      Survey survey(map);
+      ASSERT_TRUE(survey.defects.empty());
+      std::vector<StarBlock> stars;
+      const auto singularities = computeSingularities(survey.topology, survey.parameters,
+                                                      survey.plain, {}, stars, survey.stage);
+      ASSERT_TRUE(singularities.has_value());
+      int valence = 4;
+      for (const SingularEdge& edge : singularities->edges) {
+        if (edge.boundary) continue;
+        EXPECT_EQ(edge.vertex0, 0U);
+        EXPECT_EQ(edge.vertex1, 1U);
+        valence = edge.valence;
+      }
+      EXPECT_EQ(valence, 4 * turns);
+    }
+  }
+}
+
+TEST(TetSides, ConesOfACornerCoverADirectionOnce) {
+  // Any positive tet: the direction leads into it from at most one corner, inward from at least one
+  // face and outward from at least one; mirrored twice it is the same.
+  const bool passed = rc::check([] {
+    TetParameters u{};
+    for (Vec3& corner : u) {
+      for (double& x : corner) x = *rc::gen::inRange(-50, 51) * 0.125;
+    }
+    if (test::determinant(u) < 0) std::swap(u[2], u[3]);
+    const bool degenerate = test::determinant(u) == 0;
+    for (const unsigned mirror : {0U, 1U, 2U, 4U}) {
+      const TetSides sides = computeSides(u, mirror);
+      RC_ASSERT((sides == kUncertainSides) == degenerate);
+      if (degenerate) continue;
+      RC_ASSERT(sides > 0 && sides < 15);
+      // Mirroring the tet instead, which swaps its orientation, gives the same.
+      TetParameters mirrored = u;
+      for (Vec3& corner : mirrored) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          if ((mirror >> k) & 1U) corner[k] = -corner[k];
+        }
+      }
+      if (mirror == 0) continue;
+      std::swap(mirrored[2], mirrored[3]);
+      const TetSides swapped = computeSides(mirrored, 0);
+      RC_ASSERT((sides & 3) == (swapped & 3));
+      RC_ASSERT(((sides >> 2) & 1) == ((swapped >> 3) & 1));
+      RC_ASSERT(((sides >> 3) & 1) == ((swapped >> 2) & 1));
+    }
+  });
+  EXPECT_TRUE(passed);
+}
+
+TEST(TetSides, NegativeTetsAreUncertain) {
+  TetParameters u = {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  EXPECT_NE(computeSides(u), kUncertainSides);
+  std::swap(u[0], u[1]);
+  EXPECT_EQ(computeSides(u), kUncertainSides);
+  u.fill({1, 2, 3});
+  EXPECT_EQ(computeSides(u), kUncertainSides);
+}
+
+}  // namespace
+}  // namespace hexhex
