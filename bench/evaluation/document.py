@@ -24,6 +24,7 @@ def _parts(runs: list[Run], about: dict[str, str]) -> dict[str, Callable[[], str
         "table-epsilon": lambda: tables.epsilon(runs),
         "table-rasterization": lambda: tables.rasterization(runs),
         "table-lookup": lambda: tables.lookup(runs),
+        "table-reference": lambda: tables.orientation(runs),
         "table-files": lambda: tables.others(runs),
     }
 

@@ -1,6 +1,7 @@
 """The tables of docs/performance.md. Each function returns "" if there are no figures for it."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 
 from evaluation.markdown import MISSING, number, table
 from evaluation.results import Run, select
@@ -12,14 +13,24 @@ def _unique(values: Iterable[str]) -> list[str]:
     return list(dict.fromkeys(values))
 
 
+def _ns_per(count: str) -> Callable[[Run], float]:
+    return lambda run: run["seconds"] * 1e9 / run[count]
+
+
+def _bytes_per_hex(run: Run) -> float | None:
+    peak = run.get("peak_bytes")
+    return peak / run["hexes"] if peak else None
+
+
 def extraction(runs: list[Run], engine: str) -> str:
     rows = []
     for run in select(runs, "extract", engine=engine):
-        hexes, tets, peak = run["hexes"], run["tets"], run.get("peak_bytes")
-        rows.append([run.map, str(run.threads), f"{tets:,.0f}", f"{hexes * 1e-6:.3g}",
+        peak = run.get("peak_bytes")
+        rows.append([run.map, str(run.threads), f"{run['tets']:,.0f}",
+                     f"{run['hexes'] * 1e-6:.3g}",
                      number(run.density), number(run["ms"]),
-                     number(run["seconds"] * 1e9 / tets), number(run["seconds"] * 1e9 / hexes),
-                     number(peak / hexes if peak else None),
+                     number(_ns_per("tets")(run)), number(_ns_per("hexes")(run)),
+                     number(_bytes_per_hex(run)),
                      number(peak / run["bytes_of_result"] if peak else None),
                      number(run["ratio_to_yardstick"])])
     if not rows:
@@ -85,21 +96,14 @@ def _scale_row(name: str, scale: int, pair: dict[str, Run]) -> list[str]:
     def of(engine: str, value: Callable[[Run], float | None]) -> str:
         return number(value(pair[engine])) if engine in pair else MISSING
 
-    def bytes_per_hex(run: Run) -> float | None:
-        peak = run.get("peak_bytes")
-        return peak / run["hexes"] if peak else None
-
-    def ns_per_hex(run: Run) -> float:
-        return run["seconds"] * 1e9 / run["hexes"]
-
     ratio = MISSING
     if len(pair) == 2:
         ratio = f"{pair['atlas']['seconds'] / pair['propeller']['seconds']:.1%}"
     return [name, str(scale), f"{one['hexes']:,.0f}", number(one.density),
             *(of(engine, lambda run: run["seconds"]) for engine in reversed(ENGINES)), ratio,
             number(one["seconds_of_copy"]),
-            *(of(engine, ns_per_hex) for engine in reversed(ENGINES)),
-            *(of(engine, bytes_per_hex) for engine in reversed(ENGINES))]
+            *(of(engine, _ns_per("hexes")) for engine in reversed(ENGINES)),
+            *(of(engine, _bytes_per_hex) for engine in reversed(ENGINES))]
 
 
 def epsilon(runs: list[Run]) -> str:
@@ -174,6 +178,42 @@ def others(runs: list[Run]) -> str:
         return ""
     return table(["what", "map", "threads", "ms", "MB/s", "time / plain write",
                   "time / extraction"], rows, texts=2)
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A figure of the reference implementation, one core, as this project was given it."""
+
+    map: str
+    figure: str
+    value: float
+    measured: Callable[[Run], float | None]  # ours, of the same kind
+
+
+REFERENCES = (
+    Reference("s17c_sphere_r100_x2", "ns per hex", 2400, _ns_per("hexes")),
+    Reference("s17c_sphere_r100_x2", "bytes per hex", 620, _bytes_per_hex),
+    Reference("rockerarm_x8", "ns per hex", 6000, _ns_per("hexes")),
+    Reference("s17c_sphere_r10_x1", "ns per hex", 6000, _ns_per("hexes")),
+    Reference("s17c_sphere_r0.1_x1", "ns per tet", 10600, _ns_per("tets")),
+)
+
+
+def orientation(runs: list[Run]) -> str:
+    """Both engines beside the reference implementation."""
+    found = {(run.map, run.engine): run for run in select(runs, "extract", threads="1")}
+    rows = []
+    for reference in REFERENCES:
+        atlas, propeller = (reference.measured(found[reference.map, engine])
+                            if (reference.map, engine) in found else None for engine in ENGINES)
+        if atlas is None and propeller is None:
+            continue
+        rows.append([reference.map, reference.figure, number(reference.value), number(propeller),
+                     number(atlas), _ratio(reference.value, atlas)])
+    if not rows:
+        return ""
+    return table(["map", "figure", "reference", "propeller", "atlas", "reference / atlas"], rows,
+                 texts=2)
 
 
 def machine(about: dict[str, str]) -> str:

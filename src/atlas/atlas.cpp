@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -28,8 +27,8 @@ void requireExpected(std::uint64_t cells, std::uint64_t expected) {
 template <class Id>
 class Atlas {
  public:
-  Atlas(const PreparedMap& map, bool keepLines, Context& context)
-      : map_(map), vertices_(map, charts_, keepLines), context_(context) {
+  Atlas(const PreparedMap& map, bool keepLines, Context& context, const AtlasOptions& options)
+      : map_(map), vertices_(map, charts_, keepLines), context_(context), options_(options) {
     Stage stage(context, "charts");
     charts_ = buildCharts(map, stage);
   }
@@ -48,11 +47,12 @@ class Atlas {
     }
     {
       Stage stage(context_, "overlaps");
-      const OverlapCounts overlaps = vertices_.resolveOverlaps(stage);
-      statistics.overlappingTets = overlaps.tets;
+      if (options_.resolveOverlaps) {
+        statistics.overlappingTets = vertices_.resolveOverlaps(stage).tets;
+      }
     }
     Stage stage(context_, "cuts");
-    crossings_ = markCutCells(map_, charts_, vertices_.grid(), stage);
+    if (options_.markCuts) crossings_ = markCutCells(map_, charts_, vertices_.grid(), stage);
     statistics.cutFaces = crossings_.cutFaces;
     vertices_.dropLines();
     statistics.charts = charts_.count;
@@ -69,6 +69,7 @@ class Atlas {
   VertexGrid<Id> vertices_;
   Crossings crossings_;
   Context& context_;
+  AtlasOptions options_;
 };
 
 /// All cells at once.
@@ -78,7 +79,7 @@ Array<Hex> emitCells(const PreparedMap& map, const Atlas<Index>& atlas, std::uin
   Array<std::uint64_t> begin;
   {
     Stage stage(context, "centers");
-    begin = numberCells(map, lines, stage);
+    begin = numberCells(map, &lines, stage);
     requireExpected(begin.back(), expectedCells);
   }
   Stage stage(context, "cells");
@@ -99,11 +100,103 @@ Array<Hex> emitCells(const PreparedMap& map, const Atlas<Index>& atlas, std::uin
   return cells;
 }
 
+/// Consecutive tets that own about as many elements as a piece should have.
+struct Batch {
+  std::size_t firstTet;
+  std::size_t endTet;
+};
+
+Batch nextBatch(const Array<std::uint64_t>& begin, std::size_t firstTet) {
+  constexpr std::uint64_t kPiece = std::uint64_t{1} << 20;
+  std::size_t end = firstTet + 1;
+  const std::size_t tets = begin.size() - 1;
+  while (end < tets && begin[end + 1] - begin[firstTet] <= kPiece) ++end;
+  return {firstTet, end};
+}
+
+/// Tets of a batch that one thread works on at a time.
+constexpr std::size_t kBatchGrain = 64;
+
+template <class Id>
+void streamPoints(const PreparedMap& map, const VertexGrid<Id>& vertices, MeshSink& sink,
+                  Context& context) {
+  Stage stage(context, "points");
+  const Array<std::uint64_t>& begin = vertices.numbers().begin;
+  Array<Vec3> points;
+  Array<Index> tets;
+  Array<CornerSet> corners;
+  for (std::size_t t = 0; t < map.topology.tetCount();) {
+    const Batch batch = nextBatch(begin, t);
+    t = batch.endTet;
+    const std::uint64_t first = begin[batch.firstTet];
+    const auto count = static_cast<std::size_t>(begin[batch.endTet] - first);
+    if (count == 0) continue;
+    points.resize(count);
+    tets.resize(count);
+    corners.resize(count);
+    const VertexArrays arrays{first, points.data(), tets.data(), corners.data()};
+    parallelFor(stage, batch.endTet - batch.firstTet, kBatchGrain, [&](std::size_t i) {
+      vertices.describe(static_cast<Index>(batch.firstTet + i), arrays);
+    });
+    sink.points({first, points, tets, corners});
+  }
+}
+
+template <class Id>
+void streamCells(const PreparedMap& map, const Atlas<Id>& atlas, const Array<std::uint64_t>& begin,
+                 MeshSink& sink, Context& context, ExtractStatistics& statistics) {
+  Stage stage(context, "cells");
+  using Cell = typename CellEmitter<Id>::Cell;
+  std::atomic<std::uint64_t> traced{0};
+  Array<Cell> cells;
+  for (std::size_t t = 0; t < map.topology.tetCount();) {
+    const Batch batch = nextBatch(begin, t);
+    t = batch.endTet;
+    const std::uint64_t first = begin[batch.firstTet];
+    const auto count = static_cast<std::size_t>(begin[batch.endTet] - first);
+    if (count == 0) continue;
+    cells.resize(count);
+    parallelBlocks(stage, batch.endTet - batch.firstTet, kBatchGrain,
+                   [&](std::size_t from, std::size_t to, std::size_t) {
+                     CellEmitter<Id> emitter(map, atlas.vertices(), atlas.crossings());
+                     std::vector<SweptLine> lines;
+                     for (std::size_t i = batch.firstTet + from; i < batch.firstTet + to; ++i) {
+                       if (begin[i] == begin[i + 1]) continue;
+                       const auto tet = static_cast<Index>(i);
+                       lines.clear();
+                       TetSweep(map.exact, tet, SweptGrid::Centers).run(map.exact.unit, lines);
+                       emitter.emit(
+                           tet, lines,
+                           std::span(cells).subspan(begin[i] - first, begin[i + 1] - begin[i]));
+                     }
+                     traced.fetch_add(emitter.traced(), std::memory_order_relaxed);
+                   });
+    sink.cells(first, std::span<const Cell>(cells));
+  }
+  statistics.tracedCells = traced.load();
+}
+
+template <class Id>
+void streamFrom(Atlas<Id>& atlas, const PreparedMap& map, std::uint64_t expectedCells,
+                MeshSink& sink, Context& context, ExtractStatistics& statistics) {
+  Array<std::uint64_t> cellBegin;
+  {
+    Stage stage(context, "centers");
+    cellBegin = numberCells(map, nullptr, stage);
+    requireExpected(cellBegin.back(), expectedCells);
+  }
+  atlas.fill({}, statistics);
+  sink.begin(atlas.vertices().numbers().count(), expectedCells);
+  streamPoints(map, atlas.vertices(), sink, context);
+  streamCells(map, atlas, cellBegin, sink, context, statistics);
+  sink.end();
+}
+
 }  // namespace
 
 HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& context,
-                 ExtractStatistics& statistics) {
-  Atlas<Index> atlas(map, true, context);
+                 ExtractStatistics& statistics, const AtlasOptions& options) {
+  Atlas<Index> atlas(map, true, context, options);
   const std::uint64_t count = atlas.sweep();
   if (count > kMaxNarrowVertices) {
     throw Error(ErrorCode::TooLarge,
@@ -119,6 +212,20 @@ HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& c
              statistics);
   mesh.cells = emitCells(map, atlas, expectedCells, context, statistics);
   return mesh;
+}
+
+void streamAtlas(const PreparedMap& map, std::uint64_t expectedCells, MeshSink& sink,
+                 Context& context, ExtractStatistics& statistics, const AtlasOptions& options) {
+  if (!options.wideIds) {
+    Atlas<std::uint32_t> atlas(map, false, context, options);
+    if (atlas.sweep() <= kMaxNarrowVertices) {
+      streamFrom(atlas, map, expectedCells, sink, context, statistics);
+      return;
+    }
+  }
+  Atlas<std::uint64_t> atlas(map, false, context, options);
+  atlas.sweep();
+  streamFrom(atlas, map, expectedCells, sink, context, statistics);
 }
 
 }  // namespace hexhex

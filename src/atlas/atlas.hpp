@@ -19,14 +19,21 @@
 
 namespace hexhex {
 
+/// For tests: each of these must make a difference.
+struct AtlasOptions {
+  bool resolveOverlaps = true;
+  bool markCuts = true;
+  bool wideIds = false;  ///< numbers vertices with 64 bits even if 32 would do (streaming)
+};
+
 /// Extracts the mesh of a map that has passed all checks and is scaled.
 /// @param expectedCells  the map's parametric volume
 [[nodiscard]] HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells,
-                               Context& context, ExtractStatistics& statistics);
+                               Context& context, ExtractStatistics& statistics,
+                               const AtlasOptions& options = {});
 
 /// The same in pieces.
-/// @param wideIds  numbers vertices with 64 bits even if 32 would do (for tests)
 void streamAtlas(const PreparedMap& map, std::uint64_t expectedCells, MeshSink& sink,
-                 Context& context, ExtractStatistics& statistics, bool wideIds = false);
+                 Context& context, ExtractStatistics& statistics, const AtlasOptions& options = {});
 
 }  // namespace hexhex

@@ -61,7 +61,7 @@ template <class Id>
 void VertexGrid<Id>::sweep(Stage& stage) {
   const std::size_t tets = map_.topology.tetCount();
   VertexCounter counter(map_, numbers_);
-  std::vector<std::vector<BrickKey>> keys(blockCount(tets, kSweepBlock));
+  keys_.resize(blockCount(tets, kSweepBlock));
   parallelBlocks(
       stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t block) {
         std::vector<SweptLine> lines;
@@ -85,14 +85,13 @@ void VertexGrid<Id>::sweep(Stage& stage) {
                                line.count};
             row.forEachPart([&](const ChartPoint& c, std::uint32_t, std::uint32_t, std::ptrdiff_t) {
               const BrickKey key = brickKey(chart, c);
-              if (filter.isNew(key, c)) keys[block].push_back(key);
+              if (filter.isNew(key, c)) keys_[block].push_back(key);
             });
           }
         }
         if (stored_) stored_->store(block, lines, begins);
       });
   counter.finish();
-  grid_.build(keys, stage);
 }
 
 template <class Id>
@@ -161,6 +160,8 @@ void VertexGrid<Id>::write(const TetSweep& sweep, const VertexRun& run, Index te
 
 template <class Id>
 void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
+  grid_.build(keys_, stage);
+  keys_ = {};
   parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t) {
                    BrickCache<Id> cache(grid_);

@@ -46,9 +46,9 @@ class VertexGrid {
     if (keepLines) stored_.emplace(map.topology.tetCount());
   }
 
-  /// Sweeps all tets, numbers the vertices, and allocates bricks.
+  /// Sweeps all tets and numbers the vertices.
   void sweep(Stage& stage);
-  /// Enters all vertices into the grid and writes them to `arrays`.
+  /// Makes the grid, enters all vertices, and writes them to `arrays`.
   void fill(const VertexArrays& arrays, Stage& stage);
   /// Finds and resolves overlaps.
   OverlapCounts resolveOverlaps(Stage& stage);
@@ -60,6 +60,9 @@ class VertexGrid {
 
   /// The hex vertex at a grid point of a closed tet.
   [[nodiscard]] Id vertexAt(Index tet, const GridPoint& z, BrickCache<Id>& cache) const;
+
+  /// The same without the grid: slow, but right for tets without a chart, too.
+  [[nodiscard]] std::uint64_t exactNumber(Index tet, const GridPoint& z) const;
 
   [[nodiscard]] const VertexNumbers& numbers() const noexcept { return numbers_; }
   [[nodiscard]] BrickGrid<Id>& grid() noexcept { return grid_; }
@@ -82,7 +85,6 @@ class VertexGrid {
 
   void write(const TetSweep& sweep, const VertexRun& run, Index tet,
              std::optional<TetPositions>& positions, const VertexArrays& arrays) const;
-  [[nodiscard]] std::uint64_t exactNumber(Index tet, const GridPoint& z) const;
 
   [[nodiscard]] bool markContested(Stage& stage);
   [[nodiscard]] std::vector<Index> tetsWithContestedPoints(Stage& stage) const;
@@ -95,6 +97,7 @@ class VertexGrid {
   Charts& charts_;
   std::optional<TetLines> stored_;
   VertexNumbers numbers_;
+  std::vector<std::vector<BrickKey>> keys_;  ///< of the bricks that will be needed
   BrickGrid<Id> grid_;
 };
 

@@ -7,6 +7,7 @@
 #include <atlas/atlas.hpp>
 
 #include <hexhex/extract.hpp>
+#include <hexhex/stream.hpp>
 
 #include <extract/global_connectivity.hpp>
 #include <extract/pipeline.hpp>
@@ -24,24 +25,32 @@ void checkOptions(const ExtractOptions& options) {
   }
 }
 
-/// cells * scale^3, if it can be numbered in 32 bits.
-std::uint64_t scaledCells(std::uint64_t cells, int scale) {
+/// cells * scale^3
+/// @param limit  of what can be numbered
+std::uint64_t scaledCells(std::uint64_t cells, int scale, double limit) {
   const double estimate = static_cast<double>(cells) * std::pow(scale, 3);
-  if (estimate >= kNone) {
+  if (estimate >= limit) {
     throw Error(ErrorCode::TooLarge,
                 "The mesh would have about " + std::to_string(std::llround(estimate / 1e6)) +
-                    " million cells, more than the 4,294 million that 32-bit indices can number. "
-                    "Lower the scale.");
+                    " million cells, more than the " + std::to_string(std::llround(limit / 1e6)) +
+                    " million that can be numbered. Lower the scale.");
   }
   const auto s = static_cast<std::uint64_t>(scale);
   return cells * s * s * s;
 }
 
-HexMesh extractInArena(const TetMapView& map, const ExtractOptions& options, Context& context,
-                       ExtractStatistics& statistics) {
+/// A map that is ready for either engine.
+struct ScaledMap {
+  PreparedMap map;
+  std::uint64_t expectedCells = 0;
+};
+
+ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options, double cellLimit,
+                        Context& context, ExtractStatistics& statistics) {
   DefectCollector defects;
-  PreparedMap prepared = prepareMap(map, options.tolerance, options.scale, context, defects);
+  ScaledMap scaled{prepareMap(map, options.tolerance, options.scale, context, defects)};
   defects.throwIfAny();
+  PreparedMap& prepared = scaled.map;
   statistics.mirrored = prepared.input.mirrored;
   statistics.tetsInvertedInSpace = prepared.input.tetsInvertedInSpace;
   statistics.maxDisplacement = prepared.exact.maxDisplacement;
@@ -49,34 +58,36 @@ HexMesh extractInArena(const TetMapView& map, const ExtractOptions& options, Con
   statistics.chartJumps = prepared.exact.transitions.jumps;
   statistics.innerFaces = prepared.exact.transitions.innerFaces;
   statistics.singularEdges = prepared.singularities.edges.size();
-  std::uint64_t expectedCells = 0;
-  {
-    Stage stage(context, "scaling");
-    expectedCells = scaledCells(parametricVolume(prepared.exact), options.scale);
-    scaleMap(prepared.exact, options.scale, stage);
-  }
+  Stage stage(context, "scaling");
+  scaled.expectedCells = scaledCells(parametricVolume(prepared.exact), options.scale, cellLimit);
+  scaleMap(prepared.exact, options.scale, stage);
+  return scaled;
+}
+
+HexMesh extractInArena(const TetMapView& map, const ExtractOptions& options, Context& context,
+                       ExtractStatistics& statistics) {
+  ScaledMap scaled = prepareScaled(map, options, kNone, context, statistics);
   if (options.engine == Engine::Atlas) {
-    return runAtlas(prepared, expectedCells, context, statistics);
+    return runAtlas(scaled.map, scaled.expectedCells, context, statistics);
   }
   {
     Stage stage(context, "stars");
-    addStars(prepared.topology, stage);
+    addStars(scaled.map.topology, stage);
   }
-  return runPipeline(prepared, expectedCells, options.epsilon, context, statistics);
+  return runPipeline(scaled.map, scaled.expectedCells, options.epsilon, context, statistics);
 }
 
-}  // namespace
-
-HexMesh extract(const TetMapView& map, const ExtractOptions& options, Context& context,
-                ExtractStatistics* statistics) {
+/// Runs work with the context's threads; translates what may escape from it, and notes the time.
+template <class Work>
+void runExtraction(const ExtractOptions& options, Context& context, ExtractStatistics* statistics,
+                   const Work& work) {
   checkOptions(options);
   const auto begin = std::chrono::steady_clock::now();
   ExtractStatistics local;
   ExtractStatistics& filled = statistics != nullptr ? *statistics : local;
   filled = {};
-  HexMesh mesh;
   try {
-    withThreads(context.threads(), [&] { mesh = extractInArena(map, options, context, filled); });
+    withThreads(context.threads(), [&] { work(filled); });
   } catch (const MissingVertex& missing) {
     throw Error(ErrorCode::Internal,
                 "The map passed all checks, but a hex vertex is missing. This is a bug; please "
@@ -84,13 +95,32 @@ HexMesh extract(const TetMapView& map, const ExtractOptions& options, Context& c
                 {PlaceKind::Tet, missing.tet});
   } catch (const std::bad_alloc&) {
     throw Error(ErrorCode::OutOfMemory,
-                "Not enough memory for the extraction. Lower the scale, or use a machine with more "
-                "memory.");
+                "Not enough memory for the extraction. Lower the scale, extract piece by piece, or "
+                "use a machine with more memory.");
   }
   filled.threads = effectiveThreads(context.threads());
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   filled.seconds = seconds.count();
+}
+
+}  // namespace
+
+HexMesh extract(const TetMapView& map, const ExtractOptions& options, Context& context,
+                ExtractStatistics* statistics) {
+  HexMesh mesh;
+  runExtraction(options, context, statistics, [&](ExtractStatistics& filled) {
+    mesh = extractInArena(map, options, context, filled);
+  });
   return mesh;
+}
+
+void extractTo(MeshSink& sink, const TetMapView& map, const ExtractOptions& options,
+               Context& context, ExtractStatistics* statistics) {
+  runExtraction(options, context, statistics, [&](ExtractStatistics& filled) {
+    constexpr double kMaxCells = 0x1p60;
+    const ScaledMap scaled = prepareScaled(map, options, kMaxCells, context, filled);
+    streamAtlas(scaled.map, scaled.expectedCells, sink, context, filled);
+  });
 }
 
 HexMesh extract(const TetMapView& map, const ExtractOptions& options) {

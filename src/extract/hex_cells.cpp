@@ -87,7 +87,7 @@ Array<Hex> collectCells(const PreparedMap& map, const Array<NormalSigns>& signs,
                         const GlobalConnectivity& global, Stage& stage) {
   const std::size_t tets = map.topology.tetCount();
   TetLines lines(tets);
-  const Array<std::uint64_t> cellBegin = numberCells(map, lines, stage);
+  const Array<std::uint64_t> cellBegin = numberCells(map, &lines, stage);
   Array<Hex> cells(cellBegin[tets]);
   const CellWalker walker(vertices, local, global);
   const SlotFinder finder(map, signs, vertices, local);

@@ -2,7 +2,7 @@
 
 namespace hexhex {
 
-Array<std::uint64_t> numberCells(const PreparedMap& map, TetLines& lines, Stage& stage) {
+Array<std::uint64_t> numberCells(const PreparedMap& map, TetLines* lines, Stage& stage) {
   const std::size_t tets = map.topology.tetCount();
   Array<std::uint64_t> begin(tets + 1);
   begin[tets] = 0;
@@ -12,6 +12,7 @@ Array<std::uint64_t> numberCells(const PreparedMap& map, TetLines& lines, Stage&
                    std::vector<Index> begins;
                    for (std::size_t t = first; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
+                     if (lines == nullptr) blockLines.clear();
                      const std::size_t before = blockLines.size();
                      begins.push_back(static_cast<Index>(before));
                      TetSweep(map.exact, tet, SweptGrid::Centers).run(map.exact.unit, blockLines);
@@ -22,7 +23,7 @@ Array<std::uint64_t> numberCells(const PreparedMap& map, TetLines& lines, Stage&
                      }
                      begin[t] = count;
                    }
-                   lines.store(block, blockLines, begins);
+                   if (lines != nullptr) lines->store(block, blockLines, begins);
                  });
   exclusiveScan(std::span(begin));
   return begin;

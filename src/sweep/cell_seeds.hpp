@@ -57,9 +57,10 @@ class CenterOwner {
   unsigned owned_ = 0;
 };
 
-/// Sweeps the centres of all tets and stores their lines.
+/// Sweeps the centres of all tets.
+/// @param lines  receives the lines, unless it is null
 /// @return per tet (+1) the first cell that it owns
-[[nodiscard]] Array<std::uint64_t> numberCells(const PreparedMap& map, TetLines& lines,
+[[nodiscard]] Array<std::uint64_t> numberCells(const PreparedMap& map, TetLines* lines,
                                                Stage& stage);
 
 }  // namespace hexhex

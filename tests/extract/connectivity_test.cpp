@@ -144,7 +144,9 @@ TEST(EpsilonFallback, IsNotNeededOtherwise) {
   const Sample sample = sampleOf(SampleKind::Sphere);
   Context context;
   ExtractStatistics statistics;
-  const HexMesh mesh = extract(sample.map, {}, context, &statistics);
+  ExtractOptions options;
+  options.engine = Engine::Propeller;
+  const HexMesh mesh = extract(sample.map, options, context, &statistics);
   EXPECT_FALSE(statistics.epsilonFallback);
   EXPECT_EQ(statistics.epsilon, 1e-6);
   EXPECT_EQ(statistics.vertices[0] + statistics.vertices[1] + statistics.vertices[2] +

@@ -2,6 +2,7 @@
 // cancellation.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -259,7 +260,19 @@ TEST(ExtractErrors, MoreVerticesThanIndicesAreRefused) {
   EXPECT_EQ(codeOf([&] { static_cast<void>(extract(sample.map, o)); }), ErrorCode::TooLarge);
 }
 
-TEST(ExtractContext, ReportsStagesAndProgress) {
+std::vector<std::string> stagesOf(Engine engine) {
+  std::vector<std::string> stages = {"input",        "topology", "transitions", "singularities",
+                                     "sanitization", "vertices", "cells"};
+  const auto own = engine == Engine::Atlas
+                       ? std::vector<std::string>{"charts", "grid", "overlaps", "cuts", "centers"}
+                       : std::vector<std::string>{"local connectivity", "global connectivity"};
+  stages.insert(stages.end(), own.begin(), own.end());
+  return stages;
+}
+
+class ExtractStages : public ::testing::TestWithParam<Engine> {};
+
+TEST_P(ExtractStages, AreReportedWithProgress) {
   const Sample sample = sphere();
   std::vector<std::string> stages;
   Context context(2, [&](std::string_view stage, double share) {
@@ -267,17 +280,39 @@ TEST(ExtractContext, ReportsStagesAndProgress) {
     EXPECT_LE(share, 1);
     if (stages.empty() || stages.back() != stage) stages.emplace_back(stage);
   });
+  ExtractOptions options;
+  options.engine = GetParam();
   ExtractStatistics statistics;
-  static_cast<void>(extract(sample.map, {}, context, &statistics));
+  static_cast<void>(extract(sample.map, options, context, &statistics));
   const std::set<std::string> unique(stages.begin(), stages.end());
-  for (const char* stage : {"topology", "transitions", "singularities", "sanitization", "vertices",
-                            "local connectivity", "global connectivity", "cells"}) {
+  for (const std::string& stage : stagesOf(GetParam()))
     EXPECT_TRUE(unique.contains(stage)) << stage;
-  }
   double total = 0;
   for (const StageTime& time : context.stageTimes()) total += time.seconds;
   EXPECT_LE(total, statistics.seconds * 1.001);
 }
+
+TEST_P(ExtractStages, CanBeCancelled) {
+  const Sample sample = sphere();
+  ExtractOptions options;
+  options.engine = GetParam();
+  for (const std::string& where : stagesOf(GetParam())) {
+    Context* running = nullptr;
+    Context context(2, [&](std::string_view stage, double /*share*/) {
+      if (stage == where) running->cancel();
+    });
+    running = &context;
+    EXPECT_EQ(codeOf([&] { static_cast<void>(extract(sample.map, options, context)); }),
+              ErrorCode::Cancelled)
+        << where;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Engines, ExtractStages,
+                         ::testing::Values(Engine::Atlas, Engine::Propeller),
+                         [](const ::testing::TestParamInfo<Engine>& engine) {
+                           return engine.param == Engine::Atlas ? "Atlas" : "Propeller";
+                         });
 
 TEST(ExtractContext, AbsurdNumbersOfThreadsAreBounded) {
   const Sample sample = sphere();
@@ -286,21 +321,6 @@ TEST(ExtractContext, AbsurdNumbersOfThreadsAreBounded) {
   const HexMesh mesh = extract(sample.map, {}, context, &statistics);
   EXPECT_TRUE(sameBits(mesh, extract(sample.map)));
   EXPECT_LT(statistics.threads, 10000);
-}
-
-TEST(ExtractContext, CanBeCancelledInEveryStage) {
-  const Sample sample = sphere();
-  for (const char* where : {"input", "topology", "transitions", "singularities", "sanitization",
-                            "vertices", "local connectivity", "global connectivity", "cells"}) {
-    Context* running = nullptr;
-    Context context(2, [&](std::string_view stage, double /*share*/) {
-      if (stage == where) running->cancel();
-    });
-    running = &context;
-    EXPECT_EQ(codeOf([&] { static_cast<void>(extract(sample.map, {}, context)); }),
-              ErrorCode::Cancelled)
-        << where;
-  }
 }
 
 }  // namespace
