@@ -112,6 +112,7 @@ std::vector<BenchMap> makeDensities() {
                                                    {"300", 61, 4},
                                                    {"1000", 69, 3}}};
   std::vector<BenchMap> maps;
+  maps.reserve(kDensities.size());
   for (const Density& d : kDensities) {
     maps.push_back(generated(std::string("sphere_blocks_d") + d.name, SampleKind::Sphere,
                              ChartStyle::Blocks, d.cells, d.refine));

@@ -6,6 +6,9 @@
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
 
 namespace hexhex::bench {
 
@@ -37,6 +40,22 @@ bool resetPeak() {
 void releaseFreeMemory() {
 #if defined(__GLIBC__)
   static_cast<void>(malloc_trim(0));
+#endif
+}
+
+void warmFreeMemory([[maybe_unused]] std::uint64_t bytes) {
+#if defined(__linux__)
+  if (bytes == 0) return;
+  void* const memory =
+      ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) return;  // then the measurement starts from whatever there is
+#if defined(MADV_HUGEPAGE)
+  ::madvise(memory, bytes, MADV_HUGEPAGE);
+#endif
+  constexpr std::uint64_t kPage = 4096;
+  auto* const begin = static_cast<volatile char*>(memory);
+  for (std::uint64_t i = 0; i < bytes; i += kPage) begin[i] = 1;
+  ::munmap(memory, bytes);
 #endif
 }
 

@@ -15,6 +15,8 @@ def main() -> None:
         parts += [tables.stages(runs, engine, unit) for unit in ("tet", "hex")]
     parts += [tables.scales(runs), tables.epsilon(runs), tables.others(runs)]
     print("\n".join(part for part in parts if part))
+    if wrong := results.failures(runs):
+        sys.exit("FAILED: " + "; ".join(wrong))
 
 
 if __name__ == "__main__":

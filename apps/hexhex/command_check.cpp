@@ -48,7 +48,7 @@ Command addCheck(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const parser =
       app.add_subcommand("check", "Tell what a map is, and every condition that it violates");
-  parser->add_option("MAP", arguments->input, "The map, .hexex")
+  parser->add_option("MAP", arguments->input, mapDescription())
       ->required()
       ->option_text("FILE REQUIRED");
   addTolerance(*parser, arguments->options.tolerance);

@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -13,11 +15,13 @@
 
 #include "command.hpp"
 #include "exit_codes.hpp"
+#include "extract_stream.hpp"
 #include "interrupt.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "report.hpp"
 #include "shared_options.hpp"
+#include "verification.hpp"
 
 namespace hexhex::command {
 namespace {
@@ -28,6 +32,7 @@ struct Arguments {
   std::string report;
   ExtractOptions options;
   int threads = 0;
+  bool stream = false;
   bool noVerify = false;
   bool quiet = false;
 };
@@ -61,6 +66,7 @@ void requireOutputs(const Arguments& arguments) {
   }
   requireHexMeshFormat(arguments.output);
   requireWritable(arguments.output);
+  if (arguments.stream) requireStreamable(arguments.output, arguments.options);
   if (!arguments.report.empty()) requireWritable(arguments.report);
 }
 
@@ -80,6 +86,14 @@ void printWarnings(const ExtractStatistics& statistics) {
   }
 }
 
+std::string verificationAsText(const ExtractionRecord& record) {
+  if (!record.verification) return "skipped";
+  const std::string passed =
+      fmt::format("passed, {}", counted(record.verification->items.size(), "check"));
+  if (!record.streamed) return passed;
+  return passed + " of counts and checksums, in the file as it was read back";
+}
+
 void printSummary(const ExtractionRecord& record) {
   const ExtractStatistics& statistics = record.statistics;
   fmt::print("{} -> {}\n", record.input.file.string(), record.output.file.string());
@@ -90,27 +104,46 @@ void printSummary(const ExtractionRecord& record) {
       "mesh",
       fmt::format("{}, {}", counted(record.cells, "cell"),
                   record.vertices == 1 ? "1 vertex" : fmt::format("{} vertices", record.vertices)));
+  if (record.engine != Engine::Atlas) printLine("engine", engineName(record.engine));
   printLine("extraction",
-            fmt::format("{:.3f} s on {}, peak memory {}", statistics.seconds,
+            fmt::format("{:.3f} s on {}{}, peak memory {}", statistics.seconds,
                         counted(static_cast<std::uint64_t>(statistics.threads), "thread"),
-                        bytesAsText(peakMemory())));
-  printLine("scaled Jacobian", qualityAsText(record.quality));
-  printLine("verification",
-            record.verification
-                ? fmt::format("passed, {}", counted(record.verification->items.size(), "check"))
-                : "skipped");
+                        record.streamed ? ", writing included" : "", bytesAsText(peakMemory())));
+  if (record.quality) printLine("scaled Jacobian", qualityAsText(*record.quality));
+  printLine("verification", verificationAsText(record));
+  if (record.streamed) {
+    printLine("checksum of cells", checksumAsText(record.streamed->cellChecksum));
+    printLine("checksum of vertices", checksumAsText(record.streamed->pointChecksum));
+  }
   printLine("file", bytesAsText(record.output.bytes));
 }
 
-/// Throws if the mesh does not agree with the map, naming what does not.
-void requirePassed(const VerifyReport& report) {
-  if (report.passed()) return;
-  std::string sentence = "The mesh does not agree with the map and was not written:";
-  for (const VerifyItem& item : report.items) {
-    if (item.passed) continue;
-    sentence += fmt::format(" {}: expected {}, found {};", item.name, item.expected, item.found);
+/// Extracts, verifies and writes a mesh in memory.
+void extractWhole(const Arguments& arguments, const TetMap& map, Context& context,
+                  ExtractionRecord& record) {
+  const HexMesh mesh = extract(map, arguments.options, context, &record.statistics);
+  if (!arguments.noVerify) {
+    record.verification =
+        verify(map, mesh, {arguments.options.scale, arguments.options.tolerance}, context);
+    requirePassed(*record.verification, "The mesh does not agree with the map and was not written",
+                  "Please report this with the map.");
   }
-  throw Error(ErrorCode::VerificationFailed, sentence + " please report this with the map.");
+  const Array<double> quality = scaledJacobians(mesh, context);
+  record.quality = summarize(quality);
+  writeHexMesh(mesh, arguments.output, {quality}, context);
+  record.vertices = mesh.points.size();
+  record.cells = mesh.cells.size();
+}
+
+/// The same in pieces, verified after it was written.
+void extractInPieces(const Arguments& arguments, const TetMap& map, Context& context,
+                     ExtractionRecord& record) {
+  StreamedMesh mesh = extractStreamed(map, arguments.output, arguments.options, !arguments.noVerify,
+                                      context, record.statistics);
+  record.verification = std::move(mesh.verification);
+  record.vertices = mesh.written.points;
+  record.cells = mesh.written.cells;
+  record.streamed = mesh.written;
 }
 
 int run(const Arguments& arguments) {
@@ -121,15 +154,7 @@ int run(const Arguments& arguments) {
 
   const TetMap map = readMap(arguments.input, context);
   ExtractionRecord record;
-  const HexMesh mesh = extract(map, arguments.options, context, &record.statistics);
-  if (!arguments.noVerify) {
-    record.verification =
-        verify(map, mesh, {arguments.options.scale, arguments.options.tolerance}, context);
-    requirePassed(*record.verification);
-  }
-  const Array<double> quality = scaledJacobians(mesh, context);
-  record.quality = summarize(quality);
-  writeHexMesh(mesh, arguments.output, {quality}, context);
+  (arguments.stream ? extractInPieces : extractWhole)(arguments, map, context, record);
   progress.clear();
 
   std::error_code unknown;  // the size of a pipe
@@ -139,8 +164,6 @@ int run(const Arguments& arguments) {
   record.engine = arguments.options.engine;
   record.points = map.points.size();
   record.tets = map.tets.size();
-  record.vertices = mesh.points.size();
-  record.cells = mesh.cells.size();
   record.stages = context.stageTimes();
   if (!arguments.report.empty()) writeTextFile(arguments.report, reportAsJson(record));
   if (!arguments.quiet) {
@@ -150,34 +173,46 @@ int run(const Arguments& arguments) {
   return kSuccess;
 }
 
+/// Options that change how a mesh is made, but not the mesh.
+void addMethod(CLI::App& parser, Arguments& arguments) {
+  addThreads(parser, arguments.threads);
+  parser
+      .add_option("--engine", arguments.options.engine,
+                  "atlas: reads cells off a picture of the map and traces\n"
+                  "few; propeller: the algorithm of the paper. Both give\n"
+                  "the same mesh, bit for bit")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Engine>{
+          {"atlas", Engine::Atlas}, {"propeller", Engine::Propeller}}))
+      ->option_text("ENGINE [atlas]");
+  parser
+      .add_option("--epsilon", arguments.options.epsilon,
+                  "Enlargement of tets while the propeller engine searches\n"
+                  "lattice points, in parameter units; inf is legal. Never\n"
+                  "changes the result, only the time")
+      ->option_text("NUMBER [1e-6]");
+  parser.add_flag("--stream", arguments.stream,
+                  "Write the mesh piece by piece, .vtu or .mesh, for meshes\n"
+                  "larger than the memory. Nothing that takes the whole mesh:\n"
+                  "no scaled Jacobians, no boundary quads, and verified by\n"
+                  "counts and checksums, by reading the file again");
+}
+
 }  // namespace
 
 Command addExtract(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const parser = app.add_subcommand("extract", "Extract the hexahedral mesh of a map");
-  parser->add_option("MAP", arguments->input, "The map, .hexex")
+  parser->add_option("MAP", arguments->input, mapDescription())
       ->required()
       ->option_text("FILE REQUIRED");
-  parser->add_option("-o,--output", arguments->output, "The mesh to write, .mesh or .vtu")
+  parser
+      ->add_option("-o,--output", arguments->output,
+                   "The mesh to write, .mesh, .vtu, .ovm or .ovmb")
       ->required()
       ->option_text("FILE REQUIRED");
   addScale(*parser, arguments->options.scale,
            "Multiply all parameters by this integer: its cube as\nmany cells");
-  addThreads(*parser, arguments->threads);
-  parser
-      ->add_option("--engine", arguments->options.engine,
-                   "atlas: reads cells off a picture of the map and traces\n"
-                   "few; propeller: the algorithm of the paper. Both give\n"
-                   "the same mesh, bit for bit")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Engine>{
-          {"atlas", Engine::Atlas}, {"propeller", Engine::Propeller}}))
-      ->option_text("ENGINE [atlas]");
-  parser
-      ->add_option("--epsilon", arguments->options.epsilon,
-                   "Enlargement of tets while the propeller engine searches\n"
-                   "lattice points, in parameter units; inf is legal. Never\n"
-                   "changes the result, only the time")
-      ->option_text("NUMBER [1e-6]");
+  addMethod(*parser, *arguments);
   addTolerance(*parser, arguments->options.tolerance);
   parser->add_flag("--no-verify", arguments->noVerify, "Write the mesh without verifying it");
   parser
@@ -186,8 +221,10 @@ Command addExtract(CLI::App& app) {
       ->option_text("FILE");
   parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   parser->footer(
-      "The mesh is verified against the map before it is written. The same input gives the same\n"
-      "bytes with any number of threads.\n\nExample:\n"
+      "The mesh is verified against the map before it is written; with --stream, the file is read\n"
+      "again before it gets its name: it must hold what was extracted, and as many cells and\n"
+      "vertices as follow from the map. The same input gives the same bytes with any number of\n"
+      "threads.\n\nExample:\n"
       "  hexhex extract sphere.hexex -o sphere.vtu --scale 2 --report sphere.json");
   return {parser, [arguments] { return run(*arguments); }};
 }

@@ -115,7 +115,7 @@ Command addGenerate(CLI::App& app) {
       ->required()
       ->check(CLI::IsMember(kindNames()))
       ->option_text("REQUIRED");
-  parser->add_option("-o,--output", arguments->output, "The map to write, .hexex")
+  parser->add_option("-o,--output", arguments->output, "The map to write, .hexex, .ovm or .ovmb")
       ->required()
       ->option_text("FILE REQUIRED");
   parser

@@ -1,8 +1,11 @@
 // `hexhex info`: what a file holds.
 #include <algorithm>
-#include <limits>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 
 #include <fmt/core.h>
 
@@ -23,6 +26,13 @@ struct Arguments {
   std::string file;
   bool pieces = false;
 };
+
+/// Whether the format holds maps and hex meshes.
+bool mayHoldBoth(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".ovm" || extension == ".ovmb";
+}
 
 bool isHexMeshFile(const std::string& file) {
   try {
@@ -94,8 +104,30 @@ void printSurvey(const MeshSurvey& survey) {
   printLine("cells", std::to_string(survey.cells));
   printLine("vertices", std::to_string(survey.points));
   if (survey.points > 0) printBox(survey.lower, survey.upper);
-  printLine("checksum of cells", fmt::format("{:016x}", survey.cellChecksum));
-  printLine("checksum of vertices", fmt::format("{:016x}", survey.pointChecksum));
+  printLine("checksum of cells", checksumAsText(survey.cellChecksum));
+  printLine("checksum of vertices", checksumAsText(survey.pointChecksum));
+}
+
+void showMap(const std::string& file, Context& context) {
+  const TetMap map = readMap(file, context);
+  fmt::print("{}: ", file);
+  printMap(map);
+}
+
+void showMesh(const std::string& file, Context& context) {
+  const HexMesh mesh = readHexMesh(file, context);
+  fmt::print("{}: ", file);
+  printMesh(mesh, context);
+}
+
+/// A file that holds a hex mesh or, if its cells are no hexahedra, a map.
+void showEither(const std::string& file, Context& context) {
+  try {
+    showMesh(file, context);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::FileUnsupported) throw;
+    showMap(file, context);
+  }
 }
 
 int run(const Arguments& arguments) {
@@ -106,14 +138,12 @@ int run(const Arguments& arguments) {
     const MeshSurvey survey = surveyFile(arguments.file, context);
     fmt::print("{}: ", arguments.file);
     printSurvey(survey);
-  } else if (isHexMeshFile(arguments.file)) {
-    const HexMesh mesh = readHexMesh(arguments.file, context);
-    fmt::print("{}: ", arguments.file);
-    printMesh(mesh, context);
+  } else if (!isHexMeshFile(arguments.file)) {
+    showMap(arguments.file, context);
+  } else if (!mayHoldBoth(arguments.file)) {
+    showMesh(arguments.file, context);
   } else {
-    const TetMap map = readMap(arguments.file, context);
-    fmt::print("{}: ", arguments.file);
-    printMap(map);
+    showEither(arguments.file, context);
   }
   return kSuccess;
 }
@@ -123,7 +153,9 @@ int run(const Arguments& arguments) {
 Command addInfo(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const parser = app.add_subcommand("info", "Tell what a file holds");
-  parser->add_option("FILE", arguments->file, "A map (.hexex) or a mesh (.mesh, .vtu)")
+  parser
+      ->add_option("FILE", arguments->file,
+                   "A map (.hexex, .ovm, .ovmb) or a mesh (.mesh,\n.vtu, .ovm, .ovmb)")
       ->required()
       ->option_text("REQUIRED");
   parser->add_flag("--pieces", arguments->pieces,

@@ -67,10 +67,10 @@ Command addVerify(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const parser =
       app.add_subcommand("verify", "Compare a hexahedral mesh with the map that it came from");
-  parser->add_option("MAP", arguments->map, "The map, .hexex")
+  parser->add_option("MAP", arguments->map, mapDescription())
       ->required()
       ->option_text("FILE REQUIRED");
-  parser->add_option("MESH", arguments->mesh, "The mesh, .mesh or .vtu")
+  parser->add_option("MESH", arguments->mesh, "The mesh, .mesh, .vtu, .ovm or .ovmb")
       ->required()
       ->option_text("FILE REQUIRED");
   addScale(*parser, arguments->options.scale, "The scale that the mesh was extracted with");

@@ -32,7 +32,8 @@ constexpr const char* kFooter = R"(Examples:
 
 `hexhex SUBCOMMAND --help` explains the options of a subcommand.
 
-Files: maps .hexex; hexahedral meshes .mesh (MEDIT) and .vtu (VTK).
+Files: maps .hexex, .ovm, .ovmb (OpenVolumeMesh); hexahedral meshes .mesh (MEDIT), .vtu (VTK), .ovm,
+.ovmb.
 
 Exit codes:
     0  success

@@ -38,6 +38,8 @@ std::string bytesAsText(std::uint64_t bytes) {
   return fmt::format("{:.1f} MB", static_cast<double>(bytes) / kMega);
 }
 
+std::string checksumAsText(std::uint64_t checksum) { return fmt::format("{:016x}", checksum); }
+
 std::string valencesAsText(const std::map<int, std::uint64_t>& countByValence) {
   std::string text;
   for (const auto& [valence, count] : countByValence) {

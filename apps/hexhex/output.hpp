@@ -36,6 +36,9 @@ void printWarning(std::string_view sentence);
 /// "12.3 MB"
 [[nodiscard]] std::string bytesAsText(std::uint64_t bytes);
 
+/// 16 hexadecimal digits.
+[[nodiscard]] std::string checksumAsText(std::uint64_t checksum);
+
 /// "12 of valence 3, 4 of valence 5", or "none".
 [[nodiscard]] std::string valencesAsText(const std::map<int, std::uint64_t>& countByValence);
 

@@ -8,6 +8,8 @@
 
 #include <hexhex/version.hpp>
 
+#include "output.hpp"
+
 namespace hexhex::command {
 namespace {
 
@@ -34,11 +36,18 @@ Json byKind(const std::array<std::uint64_t, 4>& counts) {
   return {{"vertex", counts[0]}, {"edge", counts[1]}, {"face", counts[2]}, {"cell", counts[3]}};
 }
 
-Json qualityAsJson(const QualitySummary& quality) {
-  return {{"minimum", quality.minimum},
-          {"mean", quality.mean},
-          {"not_positive", quality.notPositive},
-          {"histogram", quality.histogram}};
+Json qualityAsJson(const std::optional<QualitySummary>& quality) {
+  if (!quality) return nullptr;
+  return {{"minimum", quality->minimum},
+          {"mean", quality->mean},
+          {"not_positive", quality->notPositive},
+          {"histogram", quality->histogram}};
+}
+
+Json checksumsAsJson(const std::optional<MeshSurvey>& streamed) {
+  if (!streamed) return nullptr;
+  return {{"cells", checksumAsText(streamed->cellChecksum)},
+          {"vertices", checksumAsText(streamed->pointChecksum)}};
 }
 
 Json verificationAsJson(const std::optional<VerifyReport>& verification) {
@@ -58,6 +67,10 @@ Json finiteOrNull(double value) { return std::isfinite(value) ? Json(value) : Js
 
 }  // namespace
 
+const char* engineName(Engine engine) noexcept {
+  return engine == Engine::Atlas ? "atlas" : "propeller";
+}
+
 std::string reportAsJson(const ExtractionRecord& record) {
   const ExtractStatistics& statistics = record.statistics;
   const Json report = {{"hexhex_version", HEXHEX_VERSION},
@@ -70,7 +83,7 @@ std::string reportAsJson(const ExtractionRecord& record) {
                        {"points", record.points},
                        {"scale", record.scale},
                        {"threads", statistics.threads},
-                       {"engine", record.engine == Engine::Atlas ? "atlas" : "propeller"},
+                       {"engine", engineName(record.engine)},
                        {"epsilon", finiteOrNull(statistics.epsilon)},
                        {"epsilon_fallback", statistics.epsilonFallback},
                        {"stages", stagesAsJson(record.stages)},
@@ -91,7 +104,9 @@ std::string reportAsJson(const ExtractionRecord& record) {
                        {"mirrored", statistics.mirrored},
                        {"tets_inverted_in_space", statistics.tetsInvertedInSpace},
                        {"quality", qualityAsJson(record.quality)},
-                       {"verification", verificationAsJson(record.verification)}};
+                       {"verification", verificationAsJson(record.verification)},
+                       {"streamed", record.streamed.has_value()},
+                       {"checksums", checksumsAsJson(record.streamed)}};
   // File names need not be valid UTF-8; bytes that are not are replaced.
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -9,6 +9,7 @@
 
 #include <hexhex/extract.hpp>
 #include <hexhex/quality.hpp>
+#include <hexhex/survey.hpp>
 #include <hexhex/verify.hpp>
 
 namespace hexhex::command {
@@ -30,9 +31,12 @@ struct ExtractionRecord {
   std::uint64_t cells = 0;
   ExtractStatistics statistics;
   std::vector<StageTime> stages;
-  QualitySummary quality;
+  std::optional<QualitySummary> quality;     ///< empty if the mesh was never whole
   std::optional<VerifyReport> verification;  ///< empty if it was skipped
+  std::optional<MeshSurvey> streamed;        ///< of a mesh that was written in pieces
 };
+
+[[nodiscard]] const char* engineName(Engine engine) noexcept;
 
 /// The report as JSON text, ending with a line break.
 [[nodiscard]] std::string reportAsJson(const ExtractionRecord& record);

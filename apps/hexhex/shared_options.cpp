@@ -17,6 +17,8 @@ CLI::Validator wholeNumberFrom(int minimum) {
   return CLI::Validator(check, fmt::format("from {}", minimum));
 }
 
+std::string mapDescription() { return "The map, .hexex, .ovm or .ovmb"; }
+
 void addScale(CLI::App& parser, int& scale, const std::string& description) {
   parser.add_option("--scale", scale, description)
       ->check(wholeNumberFrom(1))

@@ -10,6 +10,9 @@ namespace hexhex::command {
 /// Accepts whole numbers from `minimum` that fit in an int.
 [[nodiscard]] CLI::Validator wholeNumberFrom(int minimum);
 
+/// For options and arguments that name a map to read.
+[[nodiscard]] std::string mapDescription();
+
 void addScale(CLI::App& parser, int& scale, const std::string& description);
 void addThreads(CLI::App& parser, int& threads);
 void addTolerance(CLI::App& parser, double& tolerance);

@@ -69,7 +69,6 @@ struct Polygons {
 
 struct Lines {
   static void run(const LatticeTet& corners, std::int64_t unit, const GridBox& box, Found& found) {
-    if (certainlyMisses(corners, unit, box)) return;
     LineRasterizer(corners, unit, box, chooseSweepAxes(box)).run([&found](const SweptLine& line) {
       found.addLine(line.left, line.inner(), line.right, line.count);
     });

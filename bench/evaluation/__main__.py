@@ -4,8 +4,7 @@ import argparse
 import json
 from pathlib import Path
 
-from evaluation import document, measure, results
-from evaluation import plots
+from evaluation import document, measure, plots, results
 
 
 def _arguments() -> argparse.Namespace:
@@ -15,7 +14,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--docs", type=Path, required=True, help="folder of performance.md")
     parser.add_argument("--quick", action="store_true", help="few repetitions of less")
     parser.add_argument("--only", default="", metavar="STEP,...", help="measure these anew")
-    parser.add_argument("--no-run", action="store_true", help="measure nothing, only draw and write")
+    parser.add_argument("--no-run", action="store_true", help="only draw and write")
     return parser.parse_args()
 
 
@@ -29,10 +28,10 @@ def main() -> None:
     for path in plots.draw_all(runs, arguments.docs / "images"):
         print(f"  {path}")
     text = arguments.docs / "performance.md"
-    left = document.rewrite(text, runs, about)
+    missing = document.rewrite(text, runs, about)
     print(f"  {text}")
-    if left:
-        print(f"  Without figures, so left as they are: {', '.join(left)}")
+    if missing:
+        print(f"  Without figures: {', '.join(missing)}")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from evaluation import tables
+from evaluation import plot_density, tables
 from evaluation.results import Run
 
 PART = re.compile(r"(<!-- begin:([a-z-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
@@ -21,6 +21,7 @@ def _parts(runs: list[Run], about: dict[str, str]) -> dict[str, Callable[[], str
         "table-stages-hex": lambda: tables.stages(runs, "atlas", "hex"),
         "table-stages-propeller": lambda: tables.stages(runs, "propeller", "hex"),
         "table-scales": lambda: tables.scales(runs),
+        "stage-groups": lambda: plot_density.describe_groups(runs),
         "table-epsilon": lambda: tables.epsilon(runs),
         "table-rasterization": lambda: tables.rasterization(runs),
         "table-lookup": lambda: tables.lookup(runs),
@@ -30,9 +31,9 @@ def _parts(runs: list[Run], about: dict[str, str]) -> dict[str, Callable[[], str
 
 
 def rewrite(document: Path, runs: list[Run], about: dict[str, str]) -> list[str]:
-    """@return the names of parts that were left as they are, because there are no figures"""
+    """@return the names of parts for which there are no figures"""
     parts = _parts(runs, about)
-    left = []
+    missing = []
 
     def replacement(match: re.Match[str]) -> str:
         name = match.group(2)
@@ -40,12 +41,13 @@ def rewrite(document: Path, runs: list[Run], about: dict[str, str]) -> list[str]
             raise SystemExit(f"{document}: nothing generates a part named {name}.")
         text = parts.pop(name)()
         if not text:
-            left.append(name)
-            return match.group(0)
+            # Old figures must not stand beside the new description of the machine.
+            missing.append(name)
+            text = "Not measured.\n"
         return f"{match.group(1)}{text}{match.group(3)}"
 
     text = PART.sub(replacement, document.read_text(encoding="utf-8"))
     if parts:
         raise SystemExit(f"{document} has no place for {', '.join(parts)}.")
     document.write_text(text, encoding="utf-8")
-    return left
+    return missing

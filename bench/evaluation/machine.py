@@ -6,6 +6,8 @@ import platform
 import subprocess
 from pathlib import Path
 
+from evaluation.plan import FULL_TEXT, QUICK_TEXT
+
 
 def _field(path: str, key: str) -> str:
     """The value of the first line "KEY : VALUE" of a file of /proc."""
@@ -74,5 +76,5 @@ def describe(build: Path, quick: bool) -> dict[str, str]:
         "build": _cached(build, "CMAKE_BUILD_TYPE"),
         "sources": _sources(),
         "load at the start": f"{os.getloadavg()[0]:.1f}",
-        "evaluation": "quick (`--quick`)" if quick else "full",
+        "evaluation": QUICK_TEXT if quick else FULL_TEXT,
     }

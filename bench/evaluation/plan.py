@@ -18,10 +18,8 @@ class Step:
 BENCH = "hexhex_bench"
 ABLATION = "hexhex_ablation"
 
-# The propeller engine runs on the maps of a million tets only where somebody asks for them.
 FULL = [
-    Step("extract", BENCH, "^extract/.*/engine:atlas/", 5),
-    Step("extract-propeller", BENCH, "^extract/.*(low|middle|high|_x[0-9])/engine:propeller/", 5),
+    Step("extract", BENCH, "^extract/", 5),
     Step("scale", BENCH, "^scale/.*/scale:[1-8]/", 5),
     Step("scale-large", BENCH, "^scale/.*/scale:1[0-9]/", 3),
     Step("density", BENCH, "^density/", 5),
@@ -31,12 +29,12 @@ FULL = [
     Step("mesh", BENCH, "^(quality|verify)/", 5),
     Step("files", BENCH, "^(read|write|copy|survey)_", 5),
 ]
+FULL_TEXT = "full: medians of five repetitions, at scales above 8 of three"
 
-QUICK_MAPS = "(sphere_blocks_.*|s17c_.*)"
 QUICK = [
-    Step("extract", BENCH, f"^extract/{QUICK_MAPS}/engine:atlas/", 3, 0.01),
-    Step("extract-propeller", BENCH, f"^extract/{QUICK_MAPS}(high|_x[0-9])/engine:propeller/", 1),
-    Step("scale", BENCH, "^scale/(sphere|s17c).*/scale:[1-8]/", 1, 0.01),
+    Step("extract", BENCH, "^extract/(sphere_blocks|s17c|rockerarm)", 3, 0.01),
+    Step("scale", BENCH, "^scale/.*/scale:[1-8]/", 1, 0.01),
+    Step("scale-large", BENCH, "^scale/(sphere|s17c).*/scale:12/", 1, 0.01),
     Step("density", BENCH, "^density/", 1, 0.01),
     Step("epsilon", BENCH, "^epsilon/", 1, 0.01),
     Step("rasterization", ABLATION, "^rasterization/.*/scale:[1-8]/", 1, 0.01),
@@ -44,3 +42,4 @@ QUICK = [
     Step("mesh", BENCH, "^(quality|verify)/", 1, 0.01),
     Step("files", BENCH, "^(read|write|copy|survey)_", 1, 0.01),
 ]
+QUICK_TEXT = "quick (`--quick`): extraction is the median of three runs, all else ran once"

@@ -7,21 +7,20 @@ from matplotlib.axes import Axes
 from evaluation import style
 from evaluation.results import Run, select
 
-# Stages that are drawn as one, by engine: what they do, and their color. Stages of the same kind
-# have the same color in both panels.
+# Stages that are drawn as one: what they do, and their color. Stages of the same kind have the same
+# color in both panels.
+_INPUT = {
+    "topology": (("input", "topology"), style.BLACK),
+    "transitions, singularities": (("transitions", "singularities"), style.BLUE),
+    "sanitization": (("sanitization", "scaling"), style.SKY),
+}
 GROUPS: dict[str, dict[str, tuple[tuple[str, ...], str]]] = {
-    "atlas": {
-        "topology": (("input", "topology"), style.BLACK),
-        "transitions, singularities": (("transitions", "singularities"), style.BLUE),
-        "sanitization": (("sanitization", "scaling"), style.SKY),
-        "vertices": (("vertices", "grid"), style.GREEN),
+    "atlas": _INPUT | {
+        "vertices": (("sweep", "vertices", "grid"), style.GREEN),
         "charts, overlaps, cuts": (("charts", "overlaps", "cuts"), style.YELLOW),
         "cells": (("centers", "cells"), style.RED),
     },
-    "propeller": {
-        "topology": (("input", "topology"), style.BLACK),
-        "transitions, singularities": (("transitions", "singularities"), style.BLUE),
-        "sanitization": (("sanitization", "scaling"), style.SKY),
+    "propeller": _INPUT | {
         "vertices": (("vertices",), style.GREEN),
         "local connectivity": (("stars", "local connectivity"), style.YELLOW),
         "global connectivity": (("global connectivity",), style.ORANGE),
@@ -29,6 +28,24 @@ GROUPS: dict[str, dict[str, tuple[tuple[str, ...], str]]] = {
     },
 }
 REST = "everything else"
+
+
+def describe_groups(runs: list[Run]) -> str:
+    """Which of the stages that ran are in each group, in Markdown."""
+    lines = []
+    for engine, groups in GROUPS.items():
+        ran = {name for run in select(runs, "density", engine=engine) for name in run.stages}
+        parts = []
+        for label, (names, _) in groups.items():
+            inside = [name for name in names if name in ran]
+            ran -= set(inside)
+            if inside and inside != [label]:
+                parts.append(f"*{label}* are " + ", ".join(f"`{name}`" for name in inside))
+        if ran:
+            parts.append(f"*{REST}* contains " + ", ".join(f"`{name}`" for name in sorted(ran)))
+        if parts:
+            lines.append(f"- {engine}: " + "; ".join(parts) + ".\n")
+    return "".join(lines)
 
 
 def _shares(run: Run) -> dict[str, float]:
@@ -52,8 +69,7 @@ def _draw_engine(axes: Axes, engine: str, found: list[Run]) -> None:
         bottoms = [bottom + height for bottom, height in zip(bottoms, heights)]
     for i, run in enumerate(found):
         axes.text(i, 102, f"{run['seconds']:.2f} s", ha="center", fontsize=9)
-    axes.set_xticks(range(len(found)), [f"{run.density:.2g}" if run.density < 100
-                                        else f"{run.density:.0f}" for run in found])
+    axes.set_xticks(range(len(found)), [style.short(run.density) for run in found])
     axes.set_ylim(0, 108)
     axes.set_yticks(range(0, 101, 25))
     axes.grid(axis="x", visible=False)

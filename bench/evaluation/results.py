@@ -9,6 +9,7 @@ from typing import Any
 
 MILLISECONDS = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}
 STAGE_PREFIX = "stage "
+TOO_LARGE = "not enough memory for this scale"  # as bench/extract_bench.cpp says
 
 
 @dataclass
@@ -103,3 +104,9 @@ def select(runs: Iterable[Run], family: str, **keys: str) -> list[Run]:
     """The successful runs of a family whose keys have the given values."""
     return [run for run in runs if run.family == family and not run.error
             and all(run.keys.get(key) == value for key, value in keys.items())]
+
+
+def failures(runs: Iterable[Run]) -> list[str]:
+    """What went wrong, beyond scales that are too large for this machine."""
+    return [f"{run.family}/{run.map}: {run.error}" for run in runs
+            if run.error and run.error != TOO_LARGE]

@@ -46,6 +46,11 @@ pyplot.rcParams.update({
 })
 
 
+def short(value: float) -> str:
+    """Two significant digits, no exponent."""
+    return f"{value:.2g}" if value < 100 else f"{value:.0f}"
+
+
 def figure(rows: int, columns: int, size: tuple[float, float],
            same_y: bool = False) -> tuple[Figure, list[Axes]]:
     """@param size  of the whole figure, in inches"""

@@ -83,8 +83,8 @@ def scales(runs: list[Run]) -> str:
             by_place.setdefault((run.map, run.scale), {})[run.engine] = run
     if not by_place:
         return ""
-    text = table(["map", "scale", "hexes", "hexes per tet", "propeller: s", "atlas: s",
-                  "atlas / propeller", "copy: s", "propeller: ns per hex", "atlas: ns per hex",
+    text = table(["map", "scale", "hexes", "hexes per tet", "propeller: ms", "atlas: ms",
+                  "atlas / propeller", "copy: ms", "propeller: ns per hex", "atlas: ns per hex",
                   "propeller: bytes per hex", "atlas: bytes per hex"],
                  [_scale_row(*place, pair) for place, pair in sorted(by_place.items())])
     return text + "".join(f"\nLeft out: {line}.\n" for line in skipped)
@@ -100,8 +100,8 @@ def _scale_row(name: str, scale: int, pair: dict[str, Run]) -> list[str]:
     if len(pair) == 2:
         ratio = f"{pair['atlas']['seconds'] / pair['propeller']['seconds']:.1%}"
     return [name, str(scale), f"{one['hexes']:,.0f}", number(one.density),
-            *(of(engine, lambda run: run["seconds"]) for engine in reversed(ENGINES)), ratio,
-            number(one["seconds_of_copy"]),
+            *(of(engine, lambda run: run["ms"]) for engine in reversed(ENGINES)), ratio,
+            number(one["seconds_of_copy"] * 1e3),
             *(of(engine, _ns_per("hexes")) for engine in reversed(ENGINES)),
             *(of(engine, _bytes_per_hex) for engine in reversed(ENGINES))]
 

@@ -28,15 +28,20 @@ template <class Id>
 class Atlas {
  public:
   Atlas(const PreparedMap& map, bool keepLines, Context& context, const AtlasOptions& options)
-      : map_(map), vertices_(map, charts_, keepLines), context_(context), options_(options) {
+      : map_(map),
+        vertices_(map, charts_, keepLines),
+        cells_(map.topology.tetCount(), keepLines),
+        context_(context),
+        options_(options) {
     Stage stage(context, "charts");
     charts_ = buildCharts(map, stage);
   }
 
   /// @return the number of vertices
-  std::uint64_t sweep() {
-    Stage stage(context_, "vertices");
-    vertices_.sweep(stage);
+  std::uint64_t sweep(std::uint64_t expectedCells) {
+    Stage stage(context_, "sweep");
+    vertices_.sweep(cells_, stage);
+    requireExpected(cells_.count(), expectedCells);
     return vertices_.numbers().count();
   }
 
@@ -61,40 +66,48 @@ class Atlas {
   }
 
   [[nodiscard]] const VertexGrid<Id>& vertices() const noexcept { return vertices_; }
+  [[nodiscard]] const CellSeeds& cells() const noexcept { return cells_; }
   [[nodiscard]] const Crossings& crossings() const noexcept { return crossings_; }
 
  private:
   const PreparedMap& map_;
   Charts charts_;
   VertexGrid<Id> vertices_;
+  CellSeeds cells_;
   Crossings crossings_;
   Context& context_;
   AtlasOptions options_;
 };
 
-/// All cells at once.
-Array<Hex> emitCells(const PreparedMap& map, const Atlas<Index>& atlas, std::uint64_t expectedCells,
-                     Context& context, ExtractStatistics& statistics) {
-  TetLines lines(map.topology.tetCount());
-  Array<std::uint64_t> begin;
-  {
-    Stage stage(context, "centers");
-    begin = numberCells(map, &lines, stage);
-    requireExpected(begin.back(), expectedCells);
+/// Emits the cells of consecutive tets.
+/// @param first  number of the first cell in `cells`
+template <class Id>
+std::uint64_t emitCells(const PreparedMap& map, const Atlas<Id>& atlas, std::size_t firstTet,
+                        std::size_t endTet, std::uint64_t first,
+                        std::span<typename CellEmitter<Id>::Cell> cells) {
+  const Array<std::uint64_t>& begin = atlas.cells().begin;
+  if (begin[firstTet] == begin[endTet]) return 0;
+  CellEmitter<Id> emitter(map, atlas.vertices(), atlas.crossings());
+  std::vector<SweptLine> scratch;
+  for (std::size_t t = firstTet; t < endTet; ++t) {
+    if (begin[t] == begin[t + 1]) continue;
+    const auto tet = static_cast<Index>(t);
+    emitter.emit(tet, atlas.cells().linesOf(map.exact, tet, scratch),
+                 cells.subspan(begin[t] - first, begin[t + 1] - begin[t]));
   }
+  return emitter.traced();
+}
+
+/// All cells at once.
+Array<Hex> emitAllCells(const PreparedMap& map, const Atlas<Index>& atlas, Context& context,
+                        ExtractStatistics& statistics) {
   Stage stage(context, "cells");
-  Array<Hex> cells(begin.back());
+  Array<Hex> cells(atlas.cells().count());
   std::atomic<std::uint64_t> traced{0};
   parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
                  [&](std::size_t first, std::size_t end, std::size_t) {
-                   if (begin[first] == begin[end]) return;
-                   CellEmitter<Index> emitter(map, atlas.vertices(), atlas.crossings());
-                   for (std::size_t t = first; t < end; ++t) {
-                     const auto tet = static_cast<Index>(t);
-                     emitter.emit(tet, lines.of(tet),
-                                  std::span(cells).subspan(begin[t], begin[t + 1] - begin[t]));
-                   }
-                   traced.fetch_add(emitter.traced(), std::memory_order_relaxed);
+                   traced.fetch_add(emitCells(map, atlas, first, end, 0, std::span(cells)),
+                                    std::memory_order_relaxed);
                  });
   statistics.tracedCells = traced.load();
   return cells;
@@ -143,10 +156,11 @@ void streamPoints(const PreparedMap& map, const VertexGrid<Id>& vertices, MeshSi
 }
 
 template <class Id>
-void streamCells(const PreparedMap& map, const Atlas<Id>& atlas, const Array<std::uint64_t>& begin,
-                 MeshSink& sink, Context& context, ExtractStatistics& statistics) {
+void streamCells(const PreparedMap& map, const Atlas<Id>& atlas, MeshSink& sink, Context& context,
+                 ExtractStatistics& statistics) {
   Stage stage(context, "cells");
   using Cell = typename CellEmitter<Id>::Cell;
+  const Array<std::uint64_t>& begin = atlas.cells().begin;
   std::atomic<std::uint64_t> traced{0};
   Array<Cell> cells;
   for (std::size_t t = 0; t < map.topology.tetCount();) {
@@ -158,18 +172,9 @@ void streamCells(const PreparedMap& map, const Atlas<Id>& atlas, const Array<std
     cells.resize(count);
     parallelBlocks(stage, batch.endTet - batch.firstTet, kBatchGrain,
                    [&](std::size_t from, std::size_t to, std::size_t) {
-                     CellEmitter<Id> emitter(map, atlas.vertices(), atlas.crossings());
-                     std::vector<SweptLine> lines;
-                     for (std::size_t i = batch.firstTet + from; i < batch.firstTet + to; ++i) {
-                       if (begin[i] == begin[i + 1]) continue;
-                       const auto tet = static_cast<Index>(i);
-                       lines.clear();
-                       TetSweep(map.exact, tet, SweptGrid::Centers).run(map.exact.unit, lines);
-                       emitter.emit(
-                           tet, lines,
-                           std::span(cells).subspan(begin[i] - first, begin[i + 1] - begin[i]));
-                     }
-                     traced.fetch_add(emitter.traced(), std::memory_order_relaxed);
+                     traced.fetch_add(emitCells(map, atlas, batch.firstTet + from,
+                                                batch.firstTet + to, first, std::span(cells)),
+                                      std::memory_order_relaxed);
                    });
     sink.cells(first, std::span<const Cell>(cells));
   }
@@ -177,18 +182,12 @@ void streamCells(const PreparedMap& map, const Atlas<Id>& atlas, const Array<std
 }
 
 template <class Id>
-void streamFrom(Atlas<Id>& atlas, const PreparedMap& map, std::uint64_t expectedCells,
-                MeshSink& sink, Context& context, ExtractStatistics& statistics) {
-  Array<std::uint64_t> cellBegin;
-  {
-    Stage stage(context, "centers");
-    cellBegin = numberCells(map, nullptr, stage);
-    requireExpected(cellBegin.back(), expectedCells);
-  }
+void streamFrom(Atlas<Id>& atlas, const PreparedMap& map, MeshSink& sink, Context& context,
+                ExtractStatistics& statistics) {
   atlas.fill({}, statistics);
-  sink.begin(atlas.vertices().numbers().count(), expectedCells);
+  sink.begin(atlas.vertices().numbers().count(), atlas.cells().count());
   streamPoints(map, atlas.vertices(), sink, context);
-  streamCells(map, atlas, cellBegin, sink, context, statistics);
+  streamCells(map, atlas, sink, context, statistics);
   sink.end();
 }
 
@@ -197,7 +196,7 @@ void streamFrom(Atlas<Id>& atlas, const PreparedMap& map, std::uint64_t expected
 HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& context,
                  ExtractStatistics& statistics, const AtlasOptions& options) {
   Atlas<Index> atlas(map, true, context, options);
-  const std::uint64_t count = atlas.sweep();
+  const std::uint64_t count = atlas.sweep(expectedCells);
   if (count > kMaxNarrowVertices) {
     throw Error(ErrorCode::TooLarge,
                 "The mesh would have " + std::to_string(count) +
@@ -210,7 +209,7 @@ HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& c
   mesh.generatorCorners.resize(count);
   atlas.fill({0, mesh.points.data(), mesh.generatorTet.data(), mesh.generatorCorners.data()},
              statistics);
-  mesh.cells = emitCells(map, atlas, expectedCells, context, statistics);
+  mesh.cells = emitAllCells(map, atlas, context, statistics);
   return mesh;
 }
 
@@ -218,14 +217,14 @@ void streamAtlas(const PreparedMap& map, std::uint64_t expectedCells, MeshSink& 
                  Context& context, ExtractStatistics& statistics, const AtlasOptions& options) {
   if (!options.wideIds) {
     Atlas<std::uint32_t> atlas(map, false, context, options);
-    if (atlas.sweep() <= kMaxNarrowVertices) {
-      streamFrom(atlas, map, expectedCells, sink, context, statistics);
+    if (atlas.sweep(expectedCells) <= kMaxNarrowVertices) {
+      streamFrom(atlas, map, sink, context, statistics);
       return;
     }
   }
   Atlas<std::uint64_t> atlas(map, false, context, options);
-  atlas.sweep();
-  streamFrom(atlas, map, expectedCells, sink, context, statistics);
+  static_cast<void>(atlas.sweep(expectedCells));
+  streamFrom(atlas, map, sink, context, statistics);
 }
 
 }  // namespace hexhex

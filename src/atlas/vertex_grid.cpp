@@ -18,22 +18,6 @@ CornerSet callersCorners(const OrientedMap& input, CornerMask simplex) {
   return corners;
 }
 
-/// Forgets most keys that it has seen before.
-class KeyFilter {
- public:
-  KeyFilter() { seen_.fill(kNoBrick); }
-  [[nodiscard]] bool isNew(BrickKey key, const ChartPoint& c) noexcept {
-    BrickKey& entry = seen_[(c[0] / kBrickSide % 8) | (c[1] / kBrickSide % 8) << 3 |
-                            (c[2] / kBrickSide % 8) << 6];
-    if (entry == key) return false;
-    entry = key;
-    return true;
-  }
-
- private:
-  std::array<BrickKey, 512> seen_;
-};
-
 ChartRow rowOf(const VertexRun& run, const SweepFrame& frame, Index chart) {
   const SweptLine& line = *run.line;
   const std::int32_t first = line.first + static_cast<std::int32_t>(run.offset);
@@ -58,40 +42,52 @@ std::span<const SweptLine> VertexGrid<Id>::linesOf(Index tet, const TetSweep& sw
 }
 
 template <class Id>
-void VertexGrid<Id>::sweep(Stage& stage) {
+void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage) {
   const std::size_t tets = map_.topology.tetCount();
   VertexCounter counter(map_, numbers_);
   keys_.resize(blockCount(tets, kSweepBlock));
   parallelBlocks(
       stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t block) {
         std::vector<SweptLine> lines;
-        std::vector<Index> begins;
+        std::vector<SweptLine> centers;
+        std::vector<Index> lineBegins;
+        std::vector<Index> centerBegins;
         KeyFilter filter;
         for (std::size_t t = begin; t < end; ++t) {
           const auto tet = static_cast<Index>(t);
           if (!stored_) lines.clear();
-          const std::size_t before = lines.size();
-          begins.push_back(static_cast<Index>(before));
-          const TetSweep sweep(map_.exact, tet, SweptGrid::Vertices);
-          sweep.run(map_.exact.unit, lines);
-          const auto added = std::span<const SweptLine>(lines).subspan(before);
-          counter.count(block, tet, added);
-          if (added.empty()) continue;
-          const Gauge& gauge = charts_.gauge(tet);
-          const Index chart = charts_.chart[tet];
-          const SweepFrame frame(gauge, sweep.axes());
-          for (const SweptLine& line : added) {
-            const ChartRow row{chart, frame(line.level, line.row, line.first), frame.along(2),
-                               line.count};
-            row.forEachPart([&](const ChartPoint& c, std::uint32_t, std::uint32_t, std::ptrdiff_t) {
-              const BrickKey key = brickKey(chart, c);
-              if (filter.isNew(key, c)) keys_[block].push_back(key);
-            });
-          }
+          if (!cells.lines) centers.clear();
+          lineBegins.push_back(static_cast<Index>(lines.size()));
+          centerBegins.push_back(static_cast<Index>(centers.size()));
+          sweepBoth(map_.exact, tet, lines, centers);
+          const auto ownLines = std::span<const SweptLine>(lines).subspan(lineBegins.back());
+          const auto ownCenters = std::span<const SweptLine>(centers).subspan(centerBegins.back());
+          counter.count(block, tet, ownLines);
+          cells.begin[t] = ownCenters.empty() ? 0 : countOwned(map_.topology, tet, ownCenters);
+          if (ownLines.empty()) continue;
+          collectKeys(tet, TetSweep(map_.exact, tet, SweptGrid::Vertices), ownLines, filter,
+                      keys_[block]);
         }
-        if (stored_) stored_->store(block, lines, begins);
+        if (stored_) stored_->store(block, lines, lineBegins);
+        if (cells.lines) cells.lines->store(block, centers, centerBegins);
       });
   counter.finish();
+  exclusiveScan(std::span(cells.begin));
+}
+
+/// Lists the bricks that the tet's points are in.
+template <class Id>
+void VertexGrid<Id>::collectKeys(Index tet, const TetSweep& sweep, std::span<const SweptLine> lines,
+                                 KeyFilter& filter, std::vector<BrickKey>& keys) const {
+  const SweepFrame frame(charts_.gauge(tet), sweep.axes());
+  const Index chart = charts_.chart[tet];
+  for (const SweptLine& line : lines) {
+    const ChartRow row{chart, frame(line.level, line.row, line.first), frame.along(2), line.count};
+    row.forEachPart([&](const ChartPoint& c, std::uint32_t, std::uint32_t, std::ptrdiff_t) {
+      const BrickKey key = brickKey(chart, c);
+      if (filter.isNew(key, c)) keys.push_back(key);
+    });
+  }
 }
 
 template <class Id>
@@ -162,31 +158,51 @@ template <class Id>
 void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
   grid_.build(keys_, stage);
   keys_ = {};
+  // One thread alone sees every claim before its own; of several, one that exchanges does.
+  std::atomic<bool> overlaps{false};
+  const auto fillBlock = [&](std::size_t begin, std::size_t end, const auto& replace) {
+    BrickCache<Id> cache(grid_);
+    bool overlapsHere = false;
+    const auto enter = [&](const ChartRow& row, std::uint64_t first) {
+      row.forEachPart([&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count,
+                          std::ptrdiff_t stride) {
+        Bricks& brick = *cache.find(row.chart, c);
+        const std::size_t place = placeInBrick(c);
+        for (std::uint32_t i = 0; i < count; ++i) {
+          const auto id = static_cast<Id>(first + offset + i);
+          const Id before = replace(entry(brick, place, i * stride), id);
+          overlapsHere |= before != Bricks::kEmpty && before != id;
+        }
+      });
+    };
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto tet = static_cast<Index>(t);
+      std::optional<TetPositions> positions;
+      forEachClaim(
+          tet, Faces::OwnedAndCut,
+          [&](const TetSweep& sweep, const VertexRun& run) {
+            write(sweep, run, tet, positions, arrays);
+          },
+          enter);
+    }
+    if (overlapsHere) overlaps.store(true, std::memory_order_relaxed);
+  };
+  const bool alone = currentThreads() == 1;
   parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t) {
-                   BrickCache<Id> cache(grid_);
-                   for (std::size_t t = begin; t < end; ++t) {
-                     const auto tet = static_cast<Index>(t);
-                     std::optional<TetPositions> positions;
-                     forEachClaim(
-                         tet, Faces::OwnedAndCut,
-                         [&](const TetSweep& sweep, const VertexRun& run) {
-                           write(sweep, run, tet, positions, arrays);
-                         },
-                         [&](const ChartRow& row, std::uint64_t first) {
-                           row.forEachPart([&](const ChartPoint& c, std::uint32_t offset,
-                                               std::uint32_t count, std::ptrdiff_t stride) {
-                             Bricks& brick = *cache.find(row.chart, c);
-                             const std::size_t place = placeInBrick(c);
-                             for (std::uint32_t i = 0; i < count; ++i) {
-                               entry(brick, place, i * stride)
-                                   .store(static_cast<Id>(first + offset + i),
-                                          std::memory_order_relaxed);
-                             }
-                           });
-                         });
+                   if (alone) {
+                     fillBlock(begin, end, [](const std::atomic_ref<Id>& at, Id id) {
+                       const Id before = at.load(std::memory_order_relaxed);
+                       at.store(id, std::memory_order_relaxed);
+                       return before;
+                     });
+                   } else {
+                     fillBlock(begin, end, [](const std::atomic_ref<Id>& at, Id id) {
+                       return at.exchange(id, std::memory_order_relaxed);
+                     });
                    }
                  });
+  overlaps_ = overlaps.load();
 }
 
 template <class Id>
@@ -200,16 +216,14 @@ void VertexGrid<Id>::describe(Index tet, const VertexArrays& arrays) const {
       [](const ChartRow&, std::uint64_t) {});
 }
 
-/// Whether any point was claimed by two vertices. Entries are only ever replaced by "contested", so
-/// it does not matter who looks first.
+/// Marks all points that two vertices claim. Entries are only ever replaced by "contested", so it
+/// does not matter who looks first.
 template <class Id>
-bool VertexGrid<Id>::markContested(Stage& stage) {
-  std::atomic<bool> found{false};
+void VertexGrid<Id>::markContested(Stage& stage) {
   parallelBlocks(
       stage, map_.topology.tetCount(), kSweepBlock,
       [&](std::size_t begin, std::size_t end, std::size_t) {
         BrickCache<Id> cache(grid_);
-        bool foundHere = false;
         for (std::size_t t = begin; t < end; ++t) {
           forEachClaim(
               static_cast<Index>(t), Faces::OwnedAndCut, [](const TetSweep&, const VertexRun&) {},
@@ -225,14 +239,11 @@ bool VertexGrid<Id>::markContested(Stage& stage) {
                     }
                     at.store(Bricks::kContested, std::memory_order_relaxed);
                     std::atomic_ref(brick.contested).store(1, std::memory_order_relaxed);
-                    foundHere = true;
                   }
                 });
               });
         }
-        if (foundHere) found.store(true, std::memory_order_relaxed);
       });
-  return found.load();
 }
 
 /// Whether a brick in the bounding box of a tet has contested points.
@@ -383,7 +394,8 @@ void VertexGrid<Id>::grow(Index seed, Index chart, Array<std::uint8_t>& pending)
 template <class Id>
 OverlapCounts VertexGrid<Id>::resolveOverlaps(Stage& stage) {
   OverlapCounts counts;
-  if (!markContested(stage)) return counts;
+  if (!overlaps_) return counts;
+  markContested(stage);
   const std::vector<Index> tets = tetsWithContestedPoints(stage);
   counts.tets = tets.size();
   clearContested(tets);

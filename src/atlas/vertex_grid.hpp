@@ -7,6 +7,7 @@
 
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
+#include <sweep/cell_seeds.hpp>
 #include <sweep/tet_positions.hpp>
 #include <sweep/vertex_numbers.hpp>
 
@@ -15,6 +16,22 @@
 #include <map/prepare.hpp>
 
 namespace hexhex {
+
+/// Recognizes most keys that it has seen before.
+class KeyFilter {
+ public:
+  KeyFilter() { seen_.fill(kNoBrick); }
+  [[nodiscard]] bool isNew(BrickKey key, const ChartPoint& c) noexcept {
+    BrickKey& entry = seen_[(c[0] / kBrickSide % 8) | (c[1] / kBrickSide % 8) << 3 |
+                            (c[2] / kBrickSide % 8) << 6];
+    if (entry == key) return false;
+    entry = key;
+    return true;
+  }
+
+ private:
+  std::array<BrickKey, 512> seen_;
+};
 
 /// Where vertices are written: arrays from the vertex number `first` on; none if null.
 struct VertexArrays {
@@ -34,9 +51,8 @@ struct OverlapCounts {
 /// Owns the numbers of all hex vertices and the grid that finds them again.
 ///
 /// Every tet claims its lattice points (those of its closure) in its chart for the vertices there.
-/// Then it looks at them again: a point that now belongs to another vertex is contested, and the
-/// tets that claim it move to other charts. In the end, all points of a tet that has a chart belong
-/// to its own vertices there.
+/// A point that two vertices claim is contested, and the tets that claim it move to other charts.
+/// In the end, all points of a tet that has a chart belong to its own vertices there.
 template <class Id>
 class VertexGrid {
  public:
@@ -46,8 +62,8 @@ class VertexGrid {
     if (keepLines) stored_.emplace(map.topology.tetCount());
   }
 
-  /// Sweeps all tets and numbers the vertices.
-  void sweep(Stage& stage);
+  /// Sweeps all tets, for vertices and for cells, and numbers both.
+  void sweep(CellSeeds& cells, Stage& stage);
   /// Makes the grid, enters all vertices, and writes them to `arrays`.
   void fill(const VertexArrays& arrays, Stage& stage);
   /// Finds and resolves overlaps.
@@ -73,6 +89,8 @@ class VertexGrid {
   using Bricks = Brick<Id>;
   enum class Faces : std::uint8_t { Owned, OwnedAndCut, All };
 
+  void collectKeys(Index tet, const TetSweep& sweep, std::span<const SweptLine> lines,
+                   KeyFilter& filter, std::vector<BrickKey>& keys) const;
   [[nodiscard]] std::span<const SweptLine> linesOf(Index tet, const TetSweep& sweep,
                                                    std::vector<SweptLine>& scratch) const;
   [[nodiscard]] bool hasLines(Index tet) const { return !stored_ || !stored_->of(tet).empty(); }
@@ -86,7 +104,7 @@ class VertexGrid {
   void write(const TetSweep& sweep, const VertexRun& run, Index tet,
              std::optional<TetPositions>& positions, const VertexArrays& arrays) const;
 
-  [[nodiscard]] bool markContested(Stage& stage);
+  void markContested(Stage& stage);
   [[nodiscard]] std::vector<Index> tetsWithContestedPoints(Stage& stage) const;
   [[nodiscard]] bool mayTouchContested(Index tet, BrickCache<Id>& cache) const;
   void clearContested(const std::vector<Index>& tets);
@@ -99,6 +117,7 @@ class VertexGrid {
   VertexNumbers numbers_;
   std::vector<std::vector<BrickKey>> keys_;  ///< of the bricks that will be needed
   BrickGrid<Id> grid_;
+  bool overlaps_ = false;  ///< some point was claimed by two vertices
 };
 
 extern template class VertexGrid<std::uint32_t>;

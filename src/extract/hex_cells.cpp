@@ -86,9 +86,8 @@ Array<Hex> collectCells(const PreparedMap& map, const Array<NormalSigns>& signs,
                         const HexVertices& vertices, const LocalConnectivity& local,
                         const GlobalConnectivity& global, Stage& stage) {
   const std::size_t tets = map.topology.tetCount();
-  TetLines lines(tets);
-  const Array<std::uint64_t> cellBegin = numberCells(map, &lines, stage);
-  Array<Hex> cells(cellBegin[tets]);
+  const CellSeeds seeds = findCells(map, stage);
+  Array<Hex> cells(seeds.count());
   const CellWalker walker(vertices, local, global);
   const SlotFinder finder(map, signs, vertices, local);
   const auto enter = [&](CellTracer& tracer, Index tet, const GridPoint& z, CornerMask generator) {
@@ -104,11 +103,11 @@ Array<Hex> collectCells(const PreparedMap& map, const Array<NormalSigns>& signs,
     CellTracer tracer(map);
     for (std::size_t t = begin; t < end; ++t) {
       const auto tet = static_cast<Index>(t);
-      std::uint64_t next = cellBegin[t];
-      if (next == cellBegin[t + 1]) continue;
+      std::uint64_t next = seeds.begin[t];
+      if (next == seeds.begin[t + 1]) continue;
       const TetSweep sweep(map.exact, tet, SweptGrid::Centers);
       CenterOwner owner(map.topology, tet);
-      for (const SweptLine& line : lines.of(tet)) {
+      for (const SweptLine& line : seeds.lines->of(tet)) {
         const auto [first, count] = owner.owned(line);
         for (std::uint32_t i = first; i < first + count; ++i) {
           cells[next++] = enter(tracer, tet, sweep.point(line, i), line.simplex(i));

@@ -6,7 +6,6 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
-#include <io/boundary_faces.hpp>
 #include <io/input_file.hpp>
 #include <io/line_writer.hpp>
 #include <io/medit.hpp>
@@ -15,6 +14,7 @@
 #include <io/text_elements.hpp>
 #include <io/text_scanner.hpp>
 #include <io/token_index.hpp>
+#include <mesh/boundary_quads.hpp>
 
 namespace hexhex {
 namespace {
@@ -192,7 +192,7 @@ void writeMedit(const HexMesh& mesh, const std::filesystem::path& file,
   Stage stage(context, "write mesh");
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
   Array<Quad> quads;
-  withThreads(context.threads(), [&] { quads = findBoundaryQuads(mesh, stage); });
+  withThreads(context.threads(), [&] { quads = boundaryQuads(mesh, stage); });
   LineWriter lines(output, context.threads());
   LoopProgress progress(stage, mesh.points.size() + quads.size() + mesh.cells.size());
   output.write(kMeditHead).write(mesh.points.size()).write('\n');

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -56,10 +57,6 @@ double valueAtBoxOrigin(const Plane& plane) {
            plane.normal[2] * plane.origin[2]);
 }
 
-LatticePoint latticeOrigin(const GridBox& box, std::int64_t unit) {
-  return {box.range[0].first * unit, box.range[1].first * unit, box.range[2].first * unit};
-}
-
 }  // namespace
 
 LineRasterizer::LineRasterizer(const LatticeTet& corners, std::int64_t unit, const GridBox& box,
@@ -70,7 +67,7 @@ LineRasterizer::LineRasterizer(const LatticeTet& corners, std::int64_t unit, con
     size_[k] = box.range[axes_[k]].last - origin_[k];
   }
   preparePlanes();
-  prepareEdges();
+  if (size_[1] >= kFewRows) prepareEdges();
 }
 
 void LineRasterizer::preparePlanes() noexcept {
@@ -136,6 +133,7 @@ void LineRasterizer::prepareEdges() noexcept {
 }
 
 GridRange LineRasterizer::rowsAt(std::int32_t level) const noexcept {
+  if (size_[1] < kFewRows) return {0, size_[1]};
   const auto height = static_cast<double>(level);
   double first = static_cast<double>(size_[1]) + 1;
   double last = -1;
@@ -228,35 +226,60 @@ bool LineRasterizer::exactLine(std::int32_t first, std::int32_t last, SweptLine&
   return true;
 }
 
-bool certainlyMisses(const LatticeTet& corners, std::int64_t unit, const GridBox& box) noexcept {
-  constexpr std::int64_t kMaxPoints = 4;
-  std::array<std::int32_t, 3> size{};
-  std::int64_t count = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    size[k] = box.range[k].last - box.range[k].first;
-    if (size[k] >= kMaxPoints) return false;
-    count *= size[k] + 1;
-  }
-  if (count > kMaxPoints) return false;
+EmptinessTest::EmptinessTest(const LatticeTet& corners, std::int64_t unit) noexcept {
   const double scale = 1.0 / static_cast<double>(unit);
-  const LatticePoint origin = latticeOrigin(box, unit);
-  unsigned alive = (1U << count) - 1;
-  for (std::size_t f = 0; f < 4 && alive != 0; ++f) {
-    const Plane plane = makePlane(corners, f, origin, scale);
-    const double offset = valueAtBoxOrigin(plane);
-    const double error = errorBound(plane, size);
-    unsigned bit = 1;
-    for (std::int32_t x = 0; x <= size[0]; ++x) {
-      for (std::int32_t y = 0; y <= size[1]; ++y) {
-        for (std::int32_t z = 0; z <= size[2]; ++z, bit <<= 1) {
-          const double value =
-              offset + plane.normal[0] * x + plane.normal[1] * y + plane.normal[2] * z;
-          if (value < -error) alive &= ~bit;
+  const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
+  std::array<std::array<double, 3>, 4> c;
+  double size = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::int64_t grid = corners[0][k] >> shift;
+    nearby_[k] = static_cast<double>(grid);
+    for (std::size_t i = 0; i < 4; ++i) {
+      c[i][k] = static_cast<double>(corners[i][k] - grid * unit) * scale;
+      size = std::max(size, std::abs(c[i][k]));
+    }
+  }
+  corner_ = c[0];
+  std::array<std::array<double, 3>, 3> e;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) e[i][k] = c[i + 1][k] - c[0][k];
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& a = e[i == 2 ? 0 : i + 1];
+    const auto& b = e[i == 0 ? 2 : i - 1];
+    normals_[i] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  }
+  volume_ = e[0][0] * normals_[0][0] + e[0][1] * normals_[0][1] + e[0][2] * normals_[0][2];
+  // Points of the bounding box are within 2 size of corner 0 in each axis, products of three
+  // differences below 8 size^3, six of them in each volume, with a dozen roundings each.
+  error_ = 0x1p-42 * size * size * size;
+}
+
+bool EmptinessTest::certainlyMisses(const GridBox& box, double shift) const noexcept {
+  constexpr std::int64_t kMaxPoints = 4;
+  std::int64_t count = 1;
+  for (const GridRange& range : box.range) {
+    count *= std::int64_t{range.last} - range.first + 1;
+    if (count > kMaxPoints) return false;
+  }
+  for (std::int32_t x = box.range[0].first; x <= box.range[0].last; ++x) {
+    for (std::int32_t y = box.range[1].first; y <= box.range[1].last; ++y) {
+      for (std::int32_t z = box.range[2].first; z <= box.range[2].last; ++z) {
+        const std::array<double, 3> p = {x + shift - nearby_[0] - corner_[0],
+                                         y + shift - nearby_[1] - corner_[1],
+                                         z + shift - nearby_[2] - corner_[2]};
+        double least = volume_;
+        double rest = volume_;
+        for (const auto& n : normals_) {
+          const double volume = n[0] * p[0] + n[1] * p[1] + n[2] * p[2];
+          least = std::min(least, volume);
+          rest -= volume;
         }
+        if (std::min(least, rest) >= -error_) return false;
       }
     }
   }
-  return alive == 0;
+  return true;
 }
 
 }  // namespace hexhex

@@ -55,6 +55,9 @@ class LineRasterizer {
   }
 
  private:
+  /// Boxes of at most so many rows are not worth the search for the rows that meet the tet.
+  static constexpr std::int32_t kFewRows = 4;
+
   void preparePlanes() noexcept;
   void prepareEdges() noexcept;
   /// Rows of a level (relative to the box) that may meet the tet.
@@ -95,13 +98,28 @@ class LineRasterizer {
   std::array<bool, 4> constant_{};               ///< parallel to the lines
   bool hasConstant_ = false;                     ///< some plane is
   bool hasUnsure_ = false;                       ///< some plane is nearly parallel
-  std::array<Edge, 6> edges_;
-  std::optional<TetPlanes> planes_;  ///< made when first needed
+  std::array<Edge, 6> edges_;                    ///< if there are more than a few rows
+  std::optional<TetPlanes> planes_;              ///< made when first needed
 };
 
-/// Whether a tet certainly contains none of the grid points of a box; gives up on boxes of more
-/// than a few points. Most tets of a coarse map are done with this.
-[[nodiscard]] bool certainlyMisses(const LatticeTet& corners, std::int64_t unit,
-                                   const GridBox& box) noexcept;
+/// Quick answers for small boxes: whether a tet certainly contains none of their points. Most tets
+/// of a coarse map are done with this. Volumes of the four tets that a point makes with the faces
+/// are computed from one set of cross products.
+class EmptinessTest {
+ public:
+  EmptinessTest(const LatticeTet& corners, std::int64_t unit) noexcept;
+
+  /// @param box    of grid points; gives up on boxes of more than a few
+  /// @param shift  added to their coordinates: 0, or 1/2 for centres of cells
+  [[nodiscard]] bool certainlyMisses(const GridBox& box, double shift) const noexcept;
+
+ private:
+  std::array<double, 3> nearby_;  ///< grid point that coordinates are relative to
+  std::array<double, 3> corner_;  ///< corner 0, relative
+  /// Six times the gradients of the weights of corners 1 to 3, times the volume.
+  std::array<std::array<double, 3>, 3> normals_;
+  double volume_;  ///< six times
+  double error_;   ///< bound of the error of all volumes in the tet's bounding box
+};
 
 }  // namespace hexhex

@@ -61,17 +61,38 @@ std::array<double, 4> TetPlanes::weights(const GridPoint& z) const noexcept {
   return weights;
 }
 
+namespace {
+
+/// Grid coordinates in a range of lattice coordinates.
+GridRange rangeBetween(std::int64_t low, std::int64_t high, int shift) {
+  // Right shifts of signed integers round down (C++20): ceil(low) = -floor(-low).
+  return {static_cast<std::int32_t>(-((-low) >> shift)), static_cast<std::int32_t>(high >> shift)};
+}
+
+}  // namespace
+
 GridBox gridBox(const LatticeTet& corners, std::int64_t unit) noexcept {
   const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
   GridBox box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto [low, high] =
         std::minmax({corners[0][axis], corners[1][axis], corners[2][axis], corners[3][axis]});
-    // Right shifts of signed integers round down (C++20): ceil(low) = -floor(-low).
-    box.range[axis] = {static_cast<std::int32_t>(-((-low) >> shift)),
-                       static_cast<std::int32_t>(high >> shift)};
+    box.range[axis] = rangeBetween(low, high, shift);
   }
   return box;
+}
+
+GridBoxes gridBoxes(const LatticeTet& corners, std::int64_t unit) noexcept {
+  const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
+  const std::int64_t half = unit / 2;
+  GridBoxes boxes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [low, high] =
+        std::minmax({corners[0][axis], corners[1][axis], corners[2][axis], corners[3][axis]});
+    boxes.vertices.range[axis] = rangeBetween(low, high, shift);
+    boxes.centers.range[axis] = rangeBetween(low - half, high - half, shift);
+  }
+  return boxes;
 }
 
 SweepAxes chooseSweepAxes(const GridBox& box) noexcept {

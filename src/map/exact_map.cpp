@@ -301,6 +301,48 @@ int fractionBits(double largest, int maxScale, DefectCollector& defects) {
   return bits;
 }
 
+/// Rounds corners at plain vertices, and at others with flat stars.
+class CornerRounder {
+ public:
+  CornerRounder(const TetTopology& topology, double tolerance, DefectCollector& defects,
+                ExactMap& map)
+      : topology_(topology),
+        tolerance_(tolerance),
+        defects_(defects),
+        map_(map),
+        unit_(static_cast<double>(map.unit)),
+        resolution_(1 / unit_) {}
+
+  /// @param plane  of the boundary: bit k across axis k, or 0
+  void run(CornerIndex index, const Vec3& u, unsigned plane) {
+    LatticePoint& corner = map_.corners[index / 4][index % 4];
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = nearestInteger(u[k] * unit_);
+    if (plane != 0) {
+      const auto axis = static_cast<std::size_t>(std::countr_zero(plane));
+      corner[axis] = nearestInteger(u[axis]) * map_.unit;
+    }
+    const double displacement = displacementOf(u, corner, resolution_);
+    maxDisplacement_ = std::max(maxDisplacement_, displacement);
+    // The same at all corners of the vertex, and to be reported once.
+    const Index vertex = topology_.vertex(index);
+    if (displacement > tolerance_ && topology_.vertexTet[vertex] == tetOf(index)) {
+      defects_.add(plane != 0 ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual,
+                   {PlaceKind::Vertex, vertex}, displacement);
+    }
+  }
+
+  [[nodiscard]] double maxDisplacement() const noexcept { return maxDisplacement_; }
+
+ private:
+  const TetTopology& topology_;
+  double tolerance_;
+  DefectCollector& defects_;
+  ExactMap& map_;
+  double unit_;
+  double resolution_;
+  double maxDisplacement_ = 0;
+};
+
 /// Rounds corners at plain vertices, and looks at the finished tets.
 class TetFinisher {
  public:
@@ -309,55 +351,37 @@ class TetFinisher {
       : topology_(topology),
         parameters_(parameters),
         plain_(plain),
-        tolerance_(tolerance),
         defects_(defects),
         map_(map),
-        unit_(static_cast<double>(map.unit)),
-        resolution_(1 / unit_) {}
+        rounder_(topology, tolerance, defects, map) {}
 
   void run(Index t) {
     const Tet& tet = topology_.tets[t];
     const TetParameters u = parameters_(t);
-    LatticeTet& corners = map_.corners[t];
     for (std::size_t i = 0; i < 4; ++i) {
-      if (plain_.special[tet[i]] != 0) continue;
       const unsigned plane = plain_.plane[tet[i]];
-      for (std::size_t k = 0; k < 3; ++k) corners[i][k] = nearestInteger(u[i][k] * unit_);
-      if (plane != 0) snapToPlane(u[i], plane, corners[i]);
-      const double displacement = displacementOf(u[i], corners[i], resolution_);
-      maxDisplacement_ = std::max(maxDisplacement_, displacement);
-      // The same at all corners of the vertex, and to be reported once.
-      if (displacement > tolerance_ && topology_.vertexTet[tet[i]] == t) {
-        defects_.add(plane != 0 ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual,
-                     {PlaceKind::Vertex, tet[i]}, displacement);
-      }
+      if (plain_.special[tet[i]] == 1 || plane == PlainVertices::kPlaneOfStar) continue;
+      rounder_.run(4 * t + static_cast<CornerIndex>(i), u[i], plane);
     }
+    const LatticeTet& corners = map_.corners[t];
     const Int192 volume = orientationDeterminant(corners[0], corners[1], corners[2], corners[3]);
     sixfoldVolume_ += volume;
     if (volume.sign() > 0) return;
-    const double amount = volume.toDouble() / (6 * unit_ * unit_ * unit_);
+    const auto unit = static_cast<double>(map_.unit);
+    const double amount = volume.toDouble() / (6 * unit * unit * unit);
     defects_.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, amount < 0 ? -amount : 0.0);
   }
 
-  /// @param plane  bit k: across axis k
-  void snapToPlane(const Vec3& u, unsigned plane, LatticePoint& corner) const {
-    const auto axis = static_cast<std::size_t>(std::countr_zero(plane));
-    corner[axis] = nearestInteger(u[axis]) * map_.unit;
-  }
-
-  [[nodiscard]] double maxDisplacement() const noexcept { return maxDisplacement_; }
+  [[nodiscard]] double maxDisplacement() const noexcept { return rounder_.maxDisplacement(); }
   [[nodiscard]] const Int192& sixfoldVolume() const noexcept { return sixfoldVolume_; }
 
  private:
   const TetTopology& topology_;
   const LocalParameters& parameters_;
   const PlainVertices& plain_;
-  double tolerance_;
   DefectCollector& defects_;
   ExactMap& map_;
-  double unit_;
-  double resolution_;
-  double maxDisplacement_ = 0;
+  CornerRounder rounder_;
   Int192 sixfoldVolume_;
 };
 
@@ -400,7 +424,11 @@ ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters
     for (std::size_t i = 0; i < stars[block].vertices.size(); ++i) {
       sanitizer.run(stars[block].vertices[i], stars[block].star(i));
     }
-    displacements[block] = sanitizer.maxDisplacement();
+    CornerRounder rounder(topology, tolerance, defects, map);
+    for (const auto& [corner, plane] : stars[block].planeCorners) {
+      rounder.run(corner, parameters(tetOf(corner), localOf(corner)), plane);
+    }
+    displacements[block] = std::max(sanitizer.maxDisplacement(), rounder.maxDisplacement());
   });
   for (const double displacement : displacements) {
     map.maxDisplacement = std::max(map.maxDisplacement, displacement);

@@ -26,8 +26,9 @@ struct ExactMap {
 /// coordinate along its normal to an integer, a singular edge the two across it, a singular node
 /// all three; the other coordinates are rounded to the lattice; then the value is carried to all
 /// other corners by the exact transitions. Vertices are independent of each other, so the result
-/// depends neither on their order nor on threads. Plain vertices are only rounded.
-/// @param stars  of all special vertices
+/// depends neither on their order nor on threads. Corners at plain vertices, and in
+/// flat stars, are only rounded.
+/// @param stars  of all special vertices, by collectStars()
 /// @param tolerance  larger displacements are defects
 /// @param maxScale   the map is going to be scaled by at most this
 [[nodiscard]] ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters,

@@ -114,14 +114,9 @@ class FaceSurvey {
 
   /// Notes the plane of a boundary face at its corners; without one, they are special.
   void surveyBoundary(Index t, int face) {
-    const std::array<int, 3>& corners = kFaceCorners[static_cast<std::size_t>(face)];
-    const Vec3 p = parameters_(t, corners[0]);
-    const Vec3 q = parameters_(t, corners[1]);
-    const Vec3 r = parameters_(t, corners[2]);
-    unsigned plane = 0;
-    for (std::size_t k = 0; k < 3; ++k) plane |= (p[k] == q[k] && p[k] == r[k] ? 1U : 0U) << k;
+    const unsigned plane = constantAxes(parameters_, halfFaceOf(t, face));
     if (plane == 0) markCorners(topology_.tets[t], face);
-    for (const int corner : corners) {
+    for (const int corner : kFaceCorners[static_cast<std::size_t>(face)]) {
       std::uint8_t& planes = result_.plane[topology_.tets[t][static_cast<std::size_t>(corner)]];
       std::atomic_ref(planes).fetch_or(static_cast<std::uint8_t>(plane), std::memory_order_relaxed);
     }
@@ -178,6 +173,16 @@ class MirrorSurvey {
 
 }  // namespace
 
+unsigned constantAxes(const LocalParameters& parameters, HalfFace halfFace) noexcept {
+  const std::array<int, 3>& corners = kFaceCorners[halfFace % 4];
+  const Vec3 p = parameters(tetOf(halfFace), corners[0]);
+  const Vec3 q = parameters(tetOf(halfFace), corners[1]);
+  const Vec3 r = parameters(tetOf(halfFace), corners[2]);
+  unsigned axes = 0;
+  for (std::size_t k = 0; k < 3; ++k) axes |= (p[k] == q[k] && p[k] == r[k] ? 1U : 0U) << k;
+  return axes;
+}
+
 TetSides computeSides(const TetParameters& u, unsigned mirror) noexcept {
   const Vec3 a = minus(u[1], u[0]);
   const Vec3 b = minus(u[2], u[0]);
@@ -186,9 +191,7 @@ TetSides computeSides(const TetParameters& u, unsigned mirror) noexcept {
   for (std::size_t k = 0; k < 3; ++k) {
     size = std::max({size, std::abs(a[k]), std::abs(b[k]), std::abs(c[k])});
   }
-  // In general position with respect to all that maps are made of: powers of the plastic number.
-  constexpr Vec3 kDirection = {1, 0.7548776662466927, 0.5698402909980532};
-  Vec3 direction = kDirection;
+  Vec3 direction = kGeneralDirection;
   for (std::size_t k = 0; k < 3; ++k) {
     if ((mirror >> k) & 1U) direction[k] = -direction[k];
   }

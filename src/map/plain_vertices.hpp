@@ -43,6 +43,12 @@ struct PlainVertices {
   Array<std::uint8_t> special;  ///< per vertex: 1 if it is not plain (and not isolated)
   Array<std::uint8_t> plane;    ///< per plain vertex: bit k on a boundary plane across axis k, or 0
 
+  /// What `special` turns into if the vertex is special only because charts differ
+  /// (flat_stars.hpp). In `plane`, kPlaneOfStar then stands for a plane that each chart sees
+  /// otherwise.
+  static constexpr std::uint8_t kFlat = 2;
+  static constexpr std::uint8_t kPlaneOfStar = 8;
+
   /// Inner triangles on whose corners' parameters their tets do not agree, by the smaller
   /// half-face, ascending; in one list per block of kBlock tets.
   std::vector<std::vector<HalfFace>> unequalFaces;
@@ -57,6 +63,12 @@ struct PlainVertices {
 /// All decisions are safe: a vertex where rounding could matter counts as special.
 [[nodiscard]] PlainVertices findPlainVertices(const TetTopology& topology,
                                               const LocalParameters& parameters, Stage& stage);
+
+/// In general position with respect to all that maps are made of: powers of the plastic number.
+inline constexpr Vec3 kGeneralDirection = {1, 0.7548776662466927, 0.5698402909980532};
+
+/// The axes along which a triangle is constant: bit k for axis k.
+[[nodiscard]] unsigned constantAxes(const LocalParameters& parameters, HalfFace halfFace) noexcept;
 
 /// The sides of a tet, if the tet is positive and the direction in general position, so far as
 /// floating point can tell; otherwise kUncertainSides.

@@ -56,8 +56,16 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
     if (!defects.empty()) return prepared;
     plain = findPlainVertices(prepared.topology, parameters, stage);
   }
+  Transitions transitions;
+  if (!parameters.tooLarge()) {
+    Stage stage(context, "transitions");
+    transitions =
+        computeTransitions(prepared.topology, parameters, plain, view.rotations, tolerance, stage);
+  }
   {
     Stage stage(context, "singularities");
+    collectStars(prepared.topology, parameters, plain, view.edgeValences,
+                 parameters.tooLarge() ? nullptr : &transitions, stars, stage);
     std::optional<Singularities> singularities =
         computeSingularities(prepared.topology, parameters, plain, view.edgeValences, stars, stage);
     if (!singularities) {
@@ -70,12 +78,7 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
       return prepared;
     }
     prepared.singularities = std::move(*singularities);
-  }
-  Transitions transitions;
-  {
-    Stage stage(context, "transitions");
-    transitions = computeTransitions(prepared.topology, parameters, plain, view.rotations,
-                                     tolerance, stage, defects);
+    collectMisfits(transitions, defects);
   }
   Stage stage(context, "sanitization");
   prepared.exact = sanitize(prepared.topology, parameters, std::move(transitions), plain, stars,

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <base/vector3.hpp>
+#include <map/flat_stars.hpp>
 #include <map/key_table.hpp>
 #include <map/singularities.hpp>
 
@@ -80,10 +81,10 @@ class VertexEdges {
   explicit VertexEdges(const Surroundings& in) : in_(in) {}
 
   /// Appends singular edges to larger vertices. False if the vertex, or an edge, is not that of a
-  /// manifold. Keeps the vertex's star.
-  bool run(Index vertex, std::vector<SingularEdge>& singular, StarBlock& stars) {
-    star_.collect(in_.topology, vertex);
-    stars.add(vertex, star_.members());
+  /// manifold.
+  bool run(Index vertex, std::span<const VertexStar::Member> star,
+           std::vector<SingularEdge>& singular) {
+    star_ = star;
     collectEdges(vertex);
     if (anglesNeeded_) addAngles();
     appendSingular(vertex, singular);
@@ -111,10 +112,10 @@ class VertexEdges {
   /// Without branches, as these could not be foretold.
   void collectEdges(Index vertex) {
     others_.clear();
-    numbers_.resize(star_.members().size());
+    numbers_.resize(star_.size());
     boundaryFaces_ = 0;
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
-      const VertexStar::Member& member = star_.members()[i];
+      const VertexStar::Member& member = star_[i];
       const Tet& tet = in_.topology.tets[member.tet()];
       const std::array<std::uint8_t, 3>& corners = kOthers[member.corner % 4];
       const TetSides sides = in_.plain.sides[member.tet()];
@@ -142,7 +143,7 @@ class VertexEdges {
     angles_.assign(others_.size(), Angles{});
     for (std::size_t e = 0; e < angles_.size(); ++e) {
       // Edges at a plain vertex are regular.
-      angles_[e].wanted = edges_[e].other > vertex && in_.plain.special[edges_[e].other] != 0;
+      angles_[e].wanted = edges_[e].other > vertex && in_.plain.special[edges_[e].other] == 1;
       angles_[e].needed = angles_[e].wanted && !in_.valencesKnown &&
                           edges_[e].boundaryFaces + edges_[e].disagreements > 0;
       anglesNeeded_ = anglesNeeded_ || angles_[e].needed;
@@ -166,7 +167,7 @@ class VertexEdges {
           !angles_[numbers[2]].needed) {
         continue;
       }
-      const CornerIndex corner = star_.members()[i].corner;
+      const CornerIndex corner = star_[i].corner;
       const Vec3 origin = in_.parameters(corner / 4, localOf(corner));
       std::array<Vec3, 3> e{};
       for (std::size_t k = 0; k < 3; ++k) {
@@ -212,7 +213,7 @@ class VertexEdges {
   [[nodiscard]] SingularEdge located(Index vertex, Index number, bool boundary, int valence) const {
     SingularEdge edge{vertex, edges_[number].other, kNone, 0, 0, boundary, valence};
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
-      const CornerIndex corner = star_.members()[i].corner;
+      const CornerIndex corner = star_[i].corner;
       for (std::size_t k = 0; k < 3; ++k) {
         if (numbers_[i][k] != number || corner / 4 >= edge.tet) continue;
         edge.tet = corner / 4;
@@ -230,14 +231,14 @@ class VertexEdges {
     for (const Edge& edge : edges()) {
       if (edge.boundaryFaces > 2) return false;
     }
-    const auto triangles = static_cast<std::int64_t>(star_.members().size());
+    const auto triangles = static_cast<std::int64_t>(star_.size());
     const std::int64_t sides = (3 * triangles + boundaryFaces_) / 2;
     const auto corners = static_cast<std::int64_t>(others_.size());
     return corners - sides + triangles == (boundaryFaces_ > 0 ? 1 : 2);
   }
 
   Surroundings in_;
-  VertexStar star_;
+  std::span<const VertexStar::Member> star_;
   KeyTable others_;                                  ///< numbers the edges by their other vertices
   std::vector<Edge> edges_ = std::vector<Edge>(64);  ///< as many as there are numbers are in use
   std::vector<Angles> angles_;                       ///< per edge
@@ -246,7 +247,41 @@ class VertexEdges {
   bool anglesNeeded_ = false;
 };
 
-/// Number of corners at special vertices.
+/// Finds the stars of special vertices, and keeps those that are not flat.
+class StarSorter {
+ public:
+  /// @param transitions  null: no star is flat
+  StarSorter(const TetTopology& topology, const LocalParameters& parameters, PlainVertices& plain,
+             const Transitions* transitions, StarBlock& stars)
+      : topology_(topology), plain_(plain), stars_(stars) {
+    if (transitions != nullptr) flat_.emplace(topology, parameters, plain, *transitions);
+  }
+
+  void run(Index vertex) {
+    star_.collect(topology_, vertex);
+    const std::span<const VertexStar::Member> star = star_.members();
+    stars_.cornersSeen += star.size();
+    if (!flat_ || !flat_->run(star)) {
+      stars_.add(vertex, star);
+      return;
+    }
+    plain_.special[vertex] = PlainVertices::kFlat;
+    plain_.plane[vertex] = flat_->onBoundary() ? PlainVertices::kPlaneOfStar : 0;
+    if (!flat_->onBoundary()) return;
+    for (std::size_t i = 0; i < star.size(); ++i) {
+      stars_.planeCorners.push_back({star[i].corner, flat_->plane(i)});
+    }
+  }
+
+ private:
+  const TetTopology& topology_;
+  PlainVertices& plain_;
+  StarBlock& stars_;
+  VertexStar star_;
+  std::optional<FlatStarTest> flat_;
+};
+
+/// Number of corners at special vertices, with flat stars or not.
 std::uint64_t countSpecialCorners(const TetTopology& topology, const Array<std::uint8_t>& special,
                                   Stage& stage) {
   std::atomic<std::uint64_t> total = 0;
@@ -254,7 +289,7 @@ std::uint64_t countSpecialCorners(const TetTopology& topology, const Array<std::
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
                    std::uint64_t count = 0;
                    for (std::size_t t = begin; t < end; ++t) {
-                     for (const Index v : topology.tets[t]) count += special[v];
+                     for (const Index v : topology.tets[t]) count += special[v] != 0 ? 1 : 0;
                    }
                    total += count;
                  });
@@ -288,32 +323,46 @@ std::span<const Singularities::Incidence> Singularities::at(Index vertex) const 
   return {first, last};
 }
 
-std::optional<Singularities> computeSingularities(const TetTopology& topology,
-                                                  const LocalParameters& parameters,
-                                                  PlainVertices& plain,
-                                                  std::span<const EdgeValence> known,
-                                                  std::vector<StarBlock>& stars, Stage& stage) {
-  const std::vector<EdgeValence> knownEdges = sorted(known);
-  for (const EdgeValence& edge : knownEdges) {
+void collectStars(const TetTopology& topology, const LocalParameters& parameters,
+                  PlainVertices& plain, std::span<const EdgeValence> known,
+                  const Transitions* transitions, std::vector<StarBlock>& stars, Stage& stage) {
+  for (const EdgeValence& edge : known) {
     for (const Index v : {edge.vertex0, edge.vertex1}) {
       if (!topology.isIsolated(v)) plain.special[v] = 1;
     }
   }
-  const Surroundings in{topology, parameters, plain, knownEdges, !known.empty()};
-  std::vector<std::vector<SingularEdge>> blocks(blockCount(topology.pointCount, kVertexGrain));
-  stars.resize(blocks.size());
-  std::atomic<bool> manifold = true;
-  std::atomic<std::uint64_t> cornersSeen = 0;
+  // What the caller claims about edges, if anything, is to be looked up for each.
+  const bool flatAllowed = known.empty() && transitions != nullptr;
+  stars.resize(blockCount(topology.pointCount, kVertexGrain));
   parallelBlocks(stage, topology.pointCount, kVertexGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   VertexEdges edges(in);
+                   StarSorter sorter(topology, parameters, plain,
+                                     flatAllowed ? transitions : nullptr, stars[block]);
                    for (std::size_t v = begin; v < end; ++v) {
-                     if (plain.special[v] == 0) continue;
-                     if (!edges.run(static_cast<Index>(v), blocks[block], stars[block]))
-                       manifold = false;
+                     if (plain.special[v] != 0) sorter.run(static_cast<Index>(v));
                    }
-                   cornersSeen += stars[block].members.size();
                  });
+}
+
+std::optional<Singularities> computeSingularities(const TetTopology& topology,
+                                                  const LocalParameters& parameters,
+                                                  const PlainVertices& plain,
+                                                  std::span<const EdgeValence> known,
+                                                  std::span<const StarBlock> stars, Stage& stage) {
+  const std::vector<EdgeValence> knownEdges = sorted(known);
+  const Surroundings in{topology, parameters, plain, knownEdges, !known.empty()};
+  std::vector<std::vector<SingularEdge>> blocks(stars.size());
+  std::atomic<bool> manifold = true;
+  parallelFor(stage, stars.size(), 1, [&](std::size_t block) {
+    VertexEdges edges(in);
+    for (std::size_t i = 0; i < stars[block].vertices.size(); ++i) {
+      if (!edges.run(stars[block].vertices[i], stars[block].star(i), blocks[block])) {
+        manifold = false;
+      }
+    }
+  });
+  std::uint64_t cornersSeen = 0;
+  for (const StarBlock& block : stars) cornersSeen += block.cornersSeen;
   // Walks that did not see all corners of their vertices met a star in several pieces.
   if (!manifold || cornersSeen != countSpecialCorners(topology, plain.special, stage)) return {};
   Singularities result;

@@ -12,6 +12,7 @@
 #include <map/local_parameters.hpp>
 #include <map/plain_vertices.hpp>
 #include <map/tet_topology.hpp>
+#include <map/transitions.hpp>
 #include <map/vertex_star.hpp>
 
 namespace hexhex {
@@ -48,12 +49,20 @@ struct Singularities {
   }
 };
 
-/// Looks at the stars of special vertices; those at which the caller claims a singularity become
-/// special. Nothing if an edge or vertex turns out not to be that of a manifold.
+/// Finds the stars of special vertices; vertices at which the caller claims a singularity become
+/// special. Those whose stars are flat turn into PlainVertices::kFlat.
 /// @param known  valence offsets that the caller gave, or empty
+/// @param transitions  null if unknown; then no star is found to be flat
 /// @param[out] stars  of the special vertices
+void collectStars(const TetTopology& topology, const LocalParameters& parameters,
+                  PlainVertices& plain, std::span<const EdgeValence> known,
+                  const Transitions* transitions, std::vector<StarBlock>& stars, Stage& stage);
+
+/// Looks at the stars of special vertices. Nothing if an edge or vertex turns out not to be that of
+/// a manifold.
+/// @param known, stars  as in collectStars()
 [[nodiscard]] std::optional<Singularities> computeSingularities(
-    const TetTopology& topology, const LocalParameters& parameters, PlainVertices& plain,
-    std::span<const EdgeValence> known, std::vector<StarBlock>& stars, Stage& stage);
+    const TetTopology& topology, const LocalParameters& parameters, const PlainVertices& plain,
+    std::span<const EdgeValence> known, std::span<const StarBlock> stars, Stage& stage);
 
 }  // namespace hexhex

@@ -101,14 +101,36 @@ Transition fitTranslation(const SharedTriangle& triangle, Rotation rotation, dou
   return transition;
 }
 
+/// Whether a + b is c, without rounding.
+bool isSum(double a, double b, double c) {
+  const double sum = a + b;
+  const double rounded = sum - a;
+  // What rounding took away (Knuth).
+  const double rest = (a - (sum - rounded)) + (b - rounded);
+  return sum == c && rest == 0;
+}
+
+bool isExact(const SharedTriangle& triangle, const Transition& transition) {
+  bool exact = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 turned = transition.rotation(triangle.here[i]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      exact = exact && isSum(turned[k], transition.translation[k], triangle.there[i][k]);
+    }
+  }
+  return exact;
+}
+
 /// A non-identity transition, found from the side of the smaller tet.
 struct FoundJump {
   HalfFace halfFace;
   Transition transition;
+  bool isExact;
 };
 
 struct BlockResult {
   std::vector<FoundJump> jumps;
+  std::vector<Transitions::Misfit> misfits;
   double maxResidual = 0;
   Index firstJump = 0;  ///< index of its first jump in the table
 };
@@ -117,13 +139,11 @@ struct BlockResult {
 class TransitionFitter {
  public:
   TransitionFitter(const TetTopology& topology, const LocalParameters& parameters,
-                   std::span<const std::array<std::int8_t, 4>> rotations, double tolerance,
-                   DefectCollector& defects)
+                   std::span<const std::array<std::int8_t, 4>> rotations, double tolerance)
       : topology_(topology),
         parameters_(parameters),
         rotations_(rotations),
-        tolerance_(tolerance),
-        defects_(defects) {}
+        tolerance_(tolerance) {}
 
   [[nodiscard]] BlockResult run(std::span<const HalfFace> halfFaces) const {
     BlockResult block;
@@ -133,11 +153,9 @@ class TransitionFitter {
       double residual = 0;
       const Transition transition = fitTranslation(triangle, rotation(here, triangle), residual);
       block.maxResidual = std::max(block.maxResidual, residual);
-      if (residual > tolerance_) {
-        defects_.add(ErrorCode::TransitionResidual, {PlaceKind::Face, tetOf(here), here % 4},
-                     residual);
-      }
-      if (!transition.isIdentity()) block.jumps.push_back({here, transition});
+      if (residual > tolerance_) block.misfits.push_back({here, residual});
+      if (transition.isIdentity()) continue;
+      block.jumps.push_back({here, transition, isExact(triangle, transition)});
     }
     return block;
   }
@@ -153,7 +171,6 @@ class TransitionFitter {
   const LocalParameters& parameters_;
   std::span<const std::array<std::int8_t, 4>> rotations_;
   double tolerance_;
-  DefectCollector& defects_;
 };
 
 }  // namespace
@@ -161,11 +178,11 @@ class TransitionFitter {
 Transitions computeTransitions(const TetTopology& topology, const LocalParameters& parameters,
                                const PlainVertices& plain,
                                std::span<const std::array<std::int8_t, 4>> rotations,
-                               double tolerance, Stage& stage, DefectCollector& defects) {
+                               double tolerance, Stage& stage) {
   Transitions result;
   result.jump.resize(4 * topology.tetCount());
   result.innerFaces = plain.innerFaces;
-  const TransitionFitter fitter(topology, parameters, rotations, tolerance, defects);
+  const TransitionFitter fitter(topology, parameters, rotations, tolerance);
   std::vector<BlockResult> blocks(plain.unequalFaces.size());
   parallelBlocks(stage, topology.tetCount(), PlainVertices::kBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
@@ -177,18 +194,29 @@ Transitions computeTransitions(const TetTopology& topology, const LocalParameter
     block.firstJump = static_cast<Index>(1 + 2 * result.jumps);
     result.maxResidual = std::max(result.maxResidual, block.maxResidual);
     result.jumps += block.jumps.size();
+    result.misfits.insert(result.misfits.end(), block.misfits.begin(), block.misfits.end());
   }
   result.table.resize(1 + 2 * result.jumps);
+  result.isExact.resize(result.table.size());
   parallelFor(stage, blocks.size(), 1, [&](std::size_t block) {
     Index index = blocks[block].firstJump;
     for (const FoundJump& found : blocks[block].jumps) {
       result.jump[found.halfFace] = index;
-      result.table[index++] = found.transition;
-      result.jump[topology.mate[found.halfFace]] = index;
-      result.table[index++] = found.transition.inverse();
+      result.jump[topology.mate[found.halfFace]] = index + 1;
+      result.table[index] = found.transition;
+      result.table[index + 1] = found.transition.inverse();
+      result.isExact[index] = result.isExact[index + 1] = found.isExact ? 1 : 0;
+      index += 2;
     }
   });
   return result;
+}
+
+void collectMisfits(const Transitions& transitions, DefectCollector& defects) {
+  for (const Transitions::Misfit& misfit : transitions.misfits) {
+    defects.add(ErrorCode::TransitionResidual,
+                {PlaceKind::Face, tetOf(misfit.halfFace), misfit.halfFace % 4}, misfit.residual);
+  }
 }
 
 }  // namespace hexhex

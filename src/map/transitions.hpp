@@ -17,9 +17,19 @@ struct Transitions {
   /// is by far the most frequent.
   Array<Index> jump;
   std::vector<Transition> table;
+  /// Per entry of the table: 1 if it carries the triangle's parameters over without rounding. 0 for
+  /// the identity, for the sake of triangles that it fits only best.
+  std::vector<std::uint8_t> isExact;
   double maxResidual = 0;   ///< largest violation of (IGM1), in parameter units
   std::uint64_t jumps = 0;  ///< inner faces whose transition is not the identity
   std::uint64_t innerFaces = 0;
+
+  /// Triangles whose residual is above the tolerance.
+  struct Misfit {
+    HalfFace halfFace;
+    double residual;
+  };
+  std::vector<Misfit> misfits;
 
   /// From the chart of the half-face's tet to that of its mate.
   [[nodiscard]] const Transition& across(HalfFace halfFace) const noexcept {
@@ -30,12 +40,15 @@ struct Transitions {
 
 /// @param plain  knows where tets differ
 /// @param rotations  what the caller knows, as in TetMapView; may be empty
-/// @param tolerance  residuals above it are defects
+/// @param tolerance  residuals above it make misfits
 [[nodiscard]] Transitions computeTransitions(const TetTopology& topology,
                                              const LocalParameters& parameters,
                                              const PlainVertices& plain,
                                              std::span<const std::array<std::int8_t, 4>> rotations,
-                                             double tolerance, Stage& stage,
-                                             DefectCollector& defects);
+                                             double tolerance, Stage& stage);
+
+/// Reports misfits. Not done at once, as nothing is worth saying about them if the mesh is not a
+/// manifold.
+void collectMisfits(const Transitions& transitions, DefectCollector& defects);
 
 }  // namespace hexhex

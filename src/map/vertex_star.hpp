@@ -74,6 +74,16 @@ struct StarBlock {
   std::vector<std::size_t> ends;  ///< per vertex: where its members end
   std::vector<VertexStar::Member> members;
 
+  /// Of boundary vertices with flat stars, only what is in the way of rounding each corner on its
+  /// own: the boundary plane's axis in its chart, as a bit.
+  struct PlaneCorner {
+    CornerIndex corner;
+    std::uint32_t plane;
+  };
+  std::vector<PlaneCorner> planeCorners;
+
+  std::size_t cornersSeen = 0;  ///< in all stars, kept or flat
+
   void add(Index vertex, std::span<const VertexStar::Member> star) {
     vertices.push_back(vertex);
     members.insert(members.end(), star.begin(), star.end());

@@ -1,7 +1,6 @@
 // Faces of a hexahedral mesh and what follows from them (see hex_edges.cpp for the edges).
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <compare>
 #include <vector>
 
@@ -154,31 +153,6 @@ HexFaces findFaces(const HexMesh& mesh, const VertexCells& around, Stage& stage)
   faces.boundary = finder.takeBoundary();
   faces.components = finder.countComponents();
   return faces;
-}
-
-Array<Quad> boundaryQuads(const HexMesh& mesh, Stage& stage) {
-  return boundaryQuads(mesh, findFaces(mesh, VertexCells(mesh, stage), stage), stage);
-}
-
-Array<Quad> boundaryQuads(const HexMesh& mesh, const HexFaces& faces, Stage& stage) {
-  const std::size_t cells = mesh.cells.size();
-  std::vector<std::uint64_t> begins(blockCount(cells, kGrain) + 1, 0);
-  parallelBlocks(stage, cells, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    for (std::size_t c = begin; c < end; ++c) {
-      begins[block] += static_cast<std::uint64_t>(std::popcount(faces.boundary[c]));
-    }
-  });
-  Array<Quad> quads(exclusiveScan(std::span(begins)));
-  parallelBlocks(stage, cells, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    std::uint64_t next = begins[block];
-    for (std::size_t c = begin; c < end; ++c) {
-      for (std::size_t f = 0; f < 6; ++f) {
-        if ((faces.boundary[c] >> f & 1) == 0) continue;
-        quads[next++] = faceVertices(mesh.cells[c], f);
-      }
-    }
-  });
-  return quads;
 }
 
 }  // namespace hexhex

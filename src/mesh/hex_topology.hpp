@@ -67,13 +67,6 @@ struct HexFaces {
 /// Finds all faces. @param around  of the same mesh
 [[nodiscard]] HexFaces findFaces(const HexMesh& mesh, const VertexCells& around, Stage& stage);
 
-/// The faces that belong to one cell only, facing outwards, in order of (cell, face of the cell).
-/// @throws Error InvalidArgument for a corner that is not a vertex of the mesh
-[[nodiscard]] Array<Quad> boundaryQuads(const HexMesh& mesh, Stage& stage);
-
-/// The same for faces that are known already.
-[[nodiscard]] Array<Quad> boundaryQuads(const HexMesh& mesh, const HexFaces& faces, Stage& stage);
-
 /// An edge of the mesh by its vertices, vertex0 <= vertex1.
 struct MeshEdge {
   Index vertex0 = kNone;

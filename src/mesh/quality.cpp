@@ -7,6 +7,7 @@
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
+#include <mesh/hex_topology.hpp>
 
 namespace hexhex {
 namespace {
@@ -14,36 +15,72 @@ namespace {
 /// Cells per block: a block takes about a tenth of a millisecond.
 constexpr std::size_t kGrain = 1024;
 
-/// The three neighbours of each corner, so that their directions are right-handed in a cube.
-constexpr std::array<std::array<std::uint8_t, 3>, 8> kNeighbours = {
-    {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}}};
+/// An edge of kHexEdges as seen from one of its ends.
+struct EdgeEnd {
+  std::uint8_t edge;
+  bool backwards;  ///< the corner is the edge's second one
+};
 
-/// Triple product of the normalized vectors; 0 if one of them vanishes or is not finite.
-double normalizedProduct(const Vec3& a, const Vec3& b, const Vec3& c) {
+/// The three edges at each corner, so that their directions are right-handed in a cube.
+constexpr std::array<std::array<EdgeEnd, 3>, 8> edgesAtCorners() {
+  constexpr std::array<std::array<std::uint8_t, 3>, 8> kNeighbours = {
+      {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}}};
+  std::array<std::array<EdgeEnd, 3>, 8> result{};
+  for (std::uint8_t corner = 0; corner < 8; ++corner) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::uint8_t e = 0; e < kHexEdges.size(); ++e) {
+        const auto& [from, to] = kHexEdges[e];
+        if (from == corner && to == kNeighbours[corner][i]) result[corner][i] = {e, false};
+        if (to == corner && from == kNeighbours[corner][i]) result[corner][i] = {e, true};
+      }
+    }
+  }
+  return result;
+}
+
+constexpr std::array<std::array<EdgeEnd, 3>, 8> kEdgesAtCorners = edgesAtCorners();
+
+/// Triple product of vectors with these lengths, normalized; 0 if one of them vanishes or is not
+/// finite.
+double normalizedProduct(const Vec3& a, const Vec3& b, const Vec3& c, double lengthA,
+                         double lengthB, double lengthC) {
   // Lengths are multiplied one by one: a product of squares would underflow below 1e-54 already.
-  const double product = dot(a, cross(b, c)) / (length(a) * length(b) * length(c));
+  const double product = dot(a, cross(b, c)) / (lengthA * lengthB * lengthC);
   return std::isfinite(product) ? product : 0.0;
 }
 
-/// Sum of the four edges of a direction; `from` are their first corners, `to` their last.
-Vec3 principalAxis(const std::array<Vec3, 8>& p, const std::array<std::uint8_t, 4>& from,
-                   const std::array<std::uint8_t, 4>& to) {
+/// Sum of four edges of a direction.
+Vec3 principalAxis(const std::array<Vec3, 12>& edges, const std::array<std::uint8_t, 4>& parallel) {
   Vec3 sum{};
-  for (std::size_t i = 0; i < 4; ++i) sum = plus(sum, minus(p[to[i]], p[from[i]]));
+  for (const std::uint8_t e : parallel) sum = plus(sum, edges[e]);
   return sum;
+}
+
+/// The product at the centre.
+double centralProduct(const std::array<Vec3, 12>& edges) {
+  const Vec3 x = principalAxis(edges, {0, 2, 4, 6});
+  const Vec3 y = principalAxis(edges, {3, 1, 7, 5});
+  const Vec3 z = principalAxis(edges, {8, 9, 11, 10});
+  return normalizedProduct(x, y, z, length(x), length(y), length(z));
 }
 
 }  // namespace
 
 double scaledJacobian(const std::array<Vec3, 8>& corners) noexcept {
-  double smallest = normalizedProduct(principalAxis(corners, {0, 3, 4, 7}, {1, 2, 5, 6}),
-                                      principalAxis(corners, {0, 1, 4, 5}, {3, 2, 7, 6}),
-                                      principalAxis(corners, {0, 1, 2, 3}, {4, 5, 6, 7}));
-  for (std::size_t k = 0; k < 8; ++k) {
-    const auto& [i, j, l] = kNeighbours[k];
-    smallest = std::min(
-        smallest, normalizedProduct(minus(corners[i], corners[k]), minus(corners[j], corners[k]),
-                                    minus(corners[l], corners[k])));
+  // Each edge has two ends: its length is computed once.
+  std::array<Vec3, 12> edges;
+  std::array<double, 12> lengths;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    edges[e] = minus(corners[kHexEdges[e][1]], corners[kHexEdges[e][0]]);
+    lengths[e] = length(edges[e]);
+  }
+  double smallest = centralProduct(edges);
+  for (const auto& [a, b, c] : kEdgesAtCorners) {
+    const double product = normalizedProduct(edges[a.edge], edges[b.edge], edges[c.edge],
+                                             lengths[a.edge], lengths[b.edge], lengths[c.edge]);
+    // Each edge that comes in rather than goes out changes the sign.
+    const bool turned = a.backwards != (b.backwards != c.backwards);
+    smallest = std::min(smallest, turned ? -product : product);
   }
   return std::clamp(smallest, -1.0, 1.0);  // rounding may lead beyond
 }

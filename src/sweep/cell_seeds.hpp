@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include <sweep/tet_lines.hpp>
 
@@ -57,10 +58,27 @@ class CenterOwner {
   unsigned owned_ = 0;
 };
 
-/// Sweeps the centres of all tets.
-/// @param lines  receives the lines, unless it is null
-/// @return per tet (+1) the first cell that it owns
-[[nodiscard]] Array<std::uint64_t> numberCells(const PreparedMap& map, TetLines* lines,
-                                               Stage& stage);
+/// Number of centres that a tet owns.
+[[nodiscard]] std::uint64_t countOwned(const TetTopology& topology, Index tet,
+                                       std::span<const SweptLine> lines);
+
+/// Where the cells of each tet are.
+struct CellSeeds {
+  Array<std::uint64_t> begin;     ///< per tet (+1): the first cell that it owns
+  std::optional<TetLines> lines;  ///< of centres; swept again when needed if there are none
+
+  CellSeeds(std::size_t tets, bool keepLines) : begin(tets + 1) {
+    begin[tets] = 0;
+    if (keepLines) lines.emplace(tets);
+  }
+  [[nodiscard]] std::uint64_t count() const noexcept { return begin.back(); }
+
+  /// The tet's lines, in `scratch` if they are not stored.
+  [[nodiscard]] std::span<const SweptLine> linesOf(const ExactMap& map, Index tet,
+                                                   std::vector<SweptLine>& scratch) const;
+};
+
+/// Sweeps the centres of all tets, and keeps their lines.
+[[nodiscard]] CellSeeds findCells(const PreparedMap& map, Stage& stage);
 
 }  // namespace hexhex

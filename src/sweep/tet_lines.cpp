@@ -16,10 +16,27 @@ TetSweep::TetSweep(const ExactMap& map, Index tet, SweptGrid grid) noexcept
 }
 
 void TetSweep::run(std::int64_t unit, std::vector<SweptLine>& lines) const {
-  if (box.empty() || certainlyMisses(shifted, unit, box)) return;
+  if (box.empty()) return;
   LineRasterizer(shifted, unit, box, axes).run([&](const SweptLine& line) {
     lines.push_back(line);
   });
+}
+
+void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
+               std::vector<SweptLine>& centers) {
+  // Most tets of a coarse map contain no point of either grid.
+  const LatticeTet& corners = map.corners[tet];
+  const auto [vertexBox, centerBox] = gridBoxes(corners, map.unit);
+  const bool mayHaveVertices = !vertexBox.empty();
+  const bool mayHaveCenters = !centerBox.empty();
+  if (!mayHaveVertices && !mayHaveCenters) return;
+  const EmptinessTest test(corners, map.unit);
+  if (mayHaveVertices && !test.certainlyMisses(vertexBox, 0)) {
+    TetSweep(map, tet, SweptGrid::Vertices).run(map.unit, vertices);
+  }
+  if (mayHaveCenters && !test.certainlyMisses(centerBox, 0.5)) {
+    TetSweep(map, tet, SweptGrid::Centers).run(map.unit, centers);
+  }
 }
 
 void TetLines::store(std::size_t block, std::span<const SweptLine> lines,

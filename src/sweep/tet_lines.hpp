@@ -43,6 +43,10 @@ struct TetSweep {
   }
 };
 
+/// Appends the lines of both grids.
+void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
+               std::vector<SweptLine>& centers);
+
 /// The lines of all tets, stored by block.
 class TetLines {
  public:

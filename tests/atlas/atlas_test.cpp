@@ -275,7 +275,8 @@ TEST(Property, PointsOfTetsBelongToTheirOwnVertices) {
     Stage stage(context, "test");
     Charts charts = buildCharts(map, stage);
     VertexGrid<Index> grid(map, charts, true);
-    grid.sweep(stage);
+    CellSeeds cells(map.topology.tetCount(), false);
+    grid.sweep(cells, stage);
     grid.fill({}, stage);
     static_cast<void>(grid.resolveOverlaps(stage));
     BrickCache<Index> cache(grid.grid());

@@ -261,11 +261,12 @@ TEST(ExtractErrors, MoreVerticesThanIndicesAreRefused) {
 }
 
 std::vector<std::string> stagesOf(Engine engine) {
-  std::vector<std::string> stages = {"input",        "topology", "transitions", "singularities",
-                                     "sanitization", "vertices", "cells"};
-  const auto own = engine == Engine::Atlas
-                       ? std::vector<std::string>{"charts", "grid", "overlaps", "cuts", "centers"}
-                       : std::vector<std::string>{"local connectivity", "global connectivity"};
+  std::vector<std::string> stages = {"input",         "topology",     "transitions",
+                                     "singularities", "sanitization", "cells"};
+  const auto own =
+      engine == Engine::Atlas
+          ? std::vector<std::string>{"charts", "sweep", "grid", "overlaps", "cuts"}
+          : std::vector<std::string>{"vertices", "local connectivity", "global connectivity"};
   stages.insert(stages.end(), own.begin(), own.end());
   return stages;
 }

@@ -1,5 +1,4 @@
 // Text that several threads read and write: the same result and the same error as with one.
-#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -7,13 +6,11 @@
 
 #include <hexhex/io.hpp>
 
-#include <base/parallel.hpp>
-#include <io/boundary_faces.hpp>
+#include <base/stage.hpp>
 #include <io/hexex.hpp>
 #include <io/io_test_support.hpp>
 #include <io/medit.hpp>
 #include <io/token_index.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex::test {
 namespace {
@@ -176,43 +173,6 @@ TEST(ParallelText, FilesAreTheSameWithAnyNumberOfThreads) {
     EXPECT_EQ(read.tets, map.tets);
     expectSameBits(read.points, map.points);
   }
-}
-
-/// The grid's cells in random order, some of them missing, some doubled or with a vertex changed.
-HexMesh brokenGrid(Random& random, bool doubled) {
-  HexMesh mesh = gridMesh(static_cast<Index>(1 + random.below(24)), 23, 19);
-  for (std::size_t i = mesh.cells.size(); i > 1; --i) {
-    std::swap(mesh.cells[i - 1], mesh.cells[random.below(i)]);
-  }
-  mesh.cells.resize(1 + random.below(mesh.cells.size()));
-  if (!doubled) return mesh;
-  for (std::size_t i = 0; i < 20; ++i) {
-    mesh.cells.push_back(mesh.cells[random.below(mesh.cells.size())]);
-    mesh.cells[random.below(mesh.cells.size())][random.below(8)] =
-        static_cast<Index>(random.below(mesh.points.size()));
-  }
-  return mesh;
-}
-
-TEST(BoundaryFaces, AreThoseOfTheTopology) {
-  Random random(17);
-  for (int i = 0; i < 40; ++i) {
-    const HexMesh mesh = brokenGrid(random, i % 2 == 1);
-    Context context(1 + i % 3);
-    Stage stage(context, "test");
-    Array<Quad> found;
-    withThreads(context.threads(), [&] { found = findBoundaryQuads(mesh, stage); });
-    EXPECT_EQ(found, boundaryQuads(mesh, stage)) << i;
-  }
-}
-
-TEST(BoundaryFaces, OfLargeMeshes) {
-  // Several blocks and tasks, so that faces are paired across them.
-  const HexMesh mesh = gridMesh(70, 60, 50);
-  Context context(2);
-  Stage stage(context, "test");
-  EXPECT_EQ(findBoundaryQuads(mesh, stage).size(), 2U * (70 * 60 + 60 * 50 + 50 * 70));
-  EXPECT_EQ(findBoundaryQuads(mesh, stage), boundaryQuads(mesh, stage));
 }
 
 }  // namespace

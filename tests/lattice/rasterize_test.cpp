@@ -147,7 +147,7 @@ std::vector<CornerMask> rasterizedByLines(const ScaledTet& scaled, SweepAxes axe
       grid[z] = i == 0 ? line.left : (i + 1 == line.count ? line.right : line.inner());
     }
   });
-  EXPECT_FALSE(found && certainlyMisses(scaled.corners, scaled.unit, box));
+  EXPECT_FALSE(found && EmptinessTest(scaled.corners, scaled.unit).certainlyMisses(box, 0));
   return grid.simplices();
 }
 

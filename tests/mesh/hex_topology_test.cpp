@@ -1,6 +1,6 @@
 // Faces, edges and components of small meshes whose numbers are known.
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -36,14 +36,6 @@ Topology topologyOf(const HexMesh& mesh, int threads = 0) {
   result.euler = static_cast<std::int64_t>(result.faces.usedVertices + result.faces.count) -
                  static_cast<std::int64_t>(result.edges.count + mesh.cells.size());
   return result;
-}
-
-Array<Quad> quadsOf(const HexMesh& mesh, int threads = 0) {
-  Context context(threads);
-  Stage stage(context, "test");
-  Array<Quad> quads;
-  withThreads(threads, [&] { quads = boundaryQuads(mesh, stage); });
-  return quads;
 }
 
 /// A ring of `n` cells around the z axis.
@@ -117,7 +109,6 @@ TEST(HexTopology, EmptyMesh) {
   EXPECT_EQ(found.edges.count, 0U);
   EXPECT_EQ(found.faces.components, 0U);
   EXPECT_EQ(found.edges.boundaryComponents, 0U);
-  EXPECT_TRUE(quadsOf(HexMesh{}).empty());
 }
 
 TEST(HexTopology, RingIsASolidTorus) {
@@ -214,38 +205,12 @@ TEST(HexTopology, CornerOutOfRangeIsAnError) {
   mesh.cells[5][3] = 27;
   mesh.cells[6][0] = kNone;
   try {
-    (void)quadsOf(mesh);
+    (void)topologyOf(mesh);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
     EXPECT_EQ(error.place().kind, PlaceKind::Cell);
     EXPECT_EQ(error.place().index, 5U);
-  }
-}
-
-TEST(BoundaryQuads, AreSortedByCellAndFaceOutwards) {
-  const HexMesh mesh = gridMesh(4);
-  const Array<Quad> quads = quadsOf(mesh);
-  ASSERT_EQ(quads.size(), 96U);
-  std::size_t next = 0;
-  for (const Hex& cell : mesh.cells) {
-    for (std::size_t f = 0; f < 6; ++f) {
-      const Quad quad = faceVertices(cell, f);
-      if (next < quads.size() && quad == quads[next]) ++next;
-    }
-  }
-  EXPECT_EQ(next, quads.size());
-  for (const Quad& quad : quads) {
-    int sides = 0;  // of the box that hold the whole quad
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (const double side : {0.0, 4.0}) {
-        if (std::all_of(quad.begin(), quad.end(),
-                        [&](Index v) { return mesh.points[v][k] == side; })) {
-          ++sides;
-        }
-      }
-    }
-    EXPECT_EQ(sides, 1);
   }
 }
 
@@ -259,13 +224,11 @@ TEST(HexTopology, DoesNotDependOnThreads) {
   mesh.cells[555] = mesh.cells[444];
   mesh.cells[777][2] = mesh.cells[778][4];
   const Topology one = topologyOf(mesh, 1);
-  const Array<Quad> quads = quadsOf(mesh, 1);
   EXPECT_GT(one.faces.overfull.count, 0U);
   EXPECT_GT(one.faces.sameDirection.count, 0U);
   EXPECT_GT(one.edges.openCount, 0U);
   for (const int threads : {2, 5}) {
     const Topology many = topologyOf(mesh, threads);
-    EXPECT_EQ(quadsOf(mesh, threads), quads);
     EXPECT_EQ(many.faces.boundary, one.faces.boundary);
     EXPECT_EQ(many.faces.count, one.faces.count);
     EXPECT_EQ(many.faces.components, one.faces.components);

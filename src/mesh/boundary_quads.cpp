@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <base/parallel.hpp>
-#include <io/boundary_faces.hpp>
+#include <mesh/boundary_quads.hpp>
 #include <mesh/hex_topology.hpp>
 
 namespace hexhex {
@@ -227,7 +227,7 @@ class CellCounter {
 
 }  // namespace
 
-Array<Quad> findBoundaryQuads(const HexMesh& mesh, Stage& stage) {
+Array<Quad> boundaryQuads(const HexMesh& mesh, Stage& stage) {
   const OddSides sides = findOddSides(mesh, stage);
   const CellCounter counter(mesh, sides, stage);
   std::vector<std::uint64_t> places;

@@ -1,0 +1,35 @@
+// `hexhex extract --stream`: a mesh that never stands in memory as a whole, from a map into a file.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include <hexhex/context.hpp>
+#include <hexhex/extract.hpp>
+#include <hexhex/survey.hpp>
+#include <hexhex/types.hpp>
+#include <hexhex/verify.hpp>
+
+namespace hexhex::command {
+
+/// Everything that can be known to fail before long work.
+/// @throws Error InvalidArgument for an engine that cannot; FileUnsupported for a format that
+///         cannot; FileWrite
+void requireStreamable(const std::filesystem::path& output, const ExtractOptions& options);
+
+/// What is known of a mesh that was written in pieces.
+struct StreamedMesh {
+  MeshSurvey written;                        ///< of the pieces
+  std::optional<VerifyReport> verification;  ///< empty if it was not wanted
+};
+
+/// Extracts a mesh piece by piece into a file. If wanted, the file is read again, piece by piece,
+/// before it gets its name: its counts and checksums must be those of the pieces, and its numbers
+/// of cells and vertices those that follow from the map. On failure there is no new file.
+/// @throws Error  as extractTo(), openMeshSink() and surveyFile(); VerificationFailed
+[[nodiscard]] StreamedMesh extractStreamed(const TetMapView& map,
+                                           const std::filesystem::path& output,
+                                           const ExtractOptions& options, bool verified,
+                                           Context& context, ExtractStatistics& statistics);
+
+}  // namespace hexhex::command

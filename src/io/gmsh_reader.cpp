@@ -1,0 +1,446 @@
+// The reading half of gmsh.hpp.
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#include <io/gmsh.hpp>
+#include <io/number_source.hpp>
+#include <io/input_file.hpp>
+#include <io/node_tags.hpp>
+#include <io/text_scanner.hpp>
+#include <io/token_index.hpp>
+
+namespace hexhex {
+namespace {
+
+// Nodes per element by type; 0 for types without a fixed number. From Gmsh's documentation.
+constexpr std::array<std::uint8_t, 32> kNodesOfType = {0,  2,  3,  4,  4, 8,  6,  5,  3,  6, 9,
+                                                       10, 27, 18, 14, 1, 8,  20, 15, 13, 9, 10,
+                                                       12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
+constexpr std::int64_t kHexahedronOf64 = 92;
+constexpr std::int64_t kHexahedronOf125 = 93;
+
+/// The number of nodes, or 0 if it is not known.
+std::size_t nodesOfType(std::int64_t type) {
+  if (type == kHexahedronOf64) return 64;
+  if (type == kHexahedronOf125) return 125;
+  const bool known = type > 0 && type < static_cast<std::int64_t>(kNodesOfType.size());
+  return known ? kNodesOfType[static_cast<std::size_t>(type)] : 0;
+}
+
+template <class Source>
+std::size_t requireType(const Source& source, std::int64_t type) {
+  const std::size_t nodes = nodesOfType(type);
+  if (nodes > 0) return nodes;
+  source.fail(ErrorCode::FileUnsupported,
+              "elements of type " + std::to_string(type) +
+                  " have a number of nodes that is not known here, so that they cannot be skipped.");
+}
+
+template <class Source>
+void requireRoom(const Source& source, std::uint64_t n, RecordShape shape, const char* what) {
+  const std::size_t room = source.room(shape);
+  if (n <= room) return;
+  source.fail(ErrorCode::FileSyntax,
+              "announces " + std::to_string(n) + " " + what +
+                  ", but the rest of the file has room for at most " + std::to_string(room) +
+                  ": either the number is wrong or the file is incomplete.");
+}
+
+template <class Source>
+void requireIndexable(const Source& source, std::uint64_t n, const char* what) {
+  if (n <= kNone) return;
+  source.fail(ErrorCode::TooLarge, "has " + std::to_string(n) + " " + what + "; at most " +
+                                       std::to_string(kNone) + " are supported.");
+}
+
+/// Reads the sections of one file from top to bottom.
+class MshReader {
+ public:
+  MshReader(std::string_view text, const std::string& fileName, Stage& stage)
+      : text_(text), fileName_(fileName), scanner_(text, fileName), stage_(stage) {}
+
+  HexMesh read();
+
+ private:
+  void readFormat();
+  void readSection(std::string_view name);
+  void skipSection(std::string_view name);
+  void failIfRepeated(bool present, std::string_view name);
+
+  /// Calls f(source) with a source that stands at the scanner's place, and goes on behind what it
+  /// read.
+  template <class F>
+  void withSource(const F& f);
+  /// The same, with bytes beginning on the next line.
+  void skipLineBreak();
+
+  template <class Source>
+  void readNodes41(Source& source);
+  template <class Source>
+  void readElements41(Source& source);
+  template <class Source>
+  void readNodes22(Source& source, std::size_t count);
+  void readElements22(TextSource& source, std::size_t count);
+  void readElements22(BinarySource& source, std::size_t count);
+
+  template <class Source>
+  void readPoint(Source& record, std::size_t node);
+  template <class Source>
+  void readCorners(Source& record, std::size_t cell, bool wide);
+  void finishNodes();
+
+  std::string_view text_;
+  const std::string& fileName_;
+  TextScanner scanner_;
+  Stage& stage_;
+  std::optional<TokenIndex> index_;  ///< only of text
+  bool binary_ = false;
+  bool version4_ = false;
+  bool hasNodes_ = false;
+  bool hasElements_ = false;
+  bool hasOtherElements_ = false;
+  Array<std::uint64_t> tags_;
+  NodeTags nodes_;
+  HexMesh mesh_;
+};
+
+HexMesh MshReader::read() {
+  readFormat();
+  while (scanner_.skipSpace()) {
+    const std::string_view token = scanner_.readToken();
+    if (token.front() != '$') {
+      scanner_.fail(ErrorCode::FileSyntax,
+                    "a section begins with '$' and its name, found " + quoted(token) + ".");
+    }
+    readSection(token.substr(1));
+  }
+  if (!hasElements_) {
+    throw Error(ErrorCode::FileUnsupported,
+                fileName_ + ": the file holds no hexahedra: it has no section $Elements.");
+  }
+  if (mesh_.cells.empty() && hasOtherElements_) {
+    throw Error(ErrorCode::FileUnsupported,
+                fileName_ + ": the file holds no hexahedra with 8 nodes (type 5), but other "
+                            "elements only.");
+  }
+  return std::move(mesh_);
+}
+
+void MshReader::readFormat() {
+  if (scanner_.readToken() != "$MeshFormat") {
+    scanner_.fail(ErrorCode::FileSyntax, "a .msh file begins with \"$MeshFormat\", found " +
+                                             quoted(scanner_.currentToken()) + ".");
+  }
+  const std::string_view version = scanner_.readToken();
+  version4_ = version == "4.1";
+  if (!version4_ && version != "2.2" && version != "2.1" && version != "2" && version != "2.0") {
+    scanner_.fail(ErrorCode::FileUnsupported,
+                  "version " + quoted(version) +
+                      " of the format is not supported; save the mesh as version 4.1 or 2.2.");
+  }
+  std::int64_t type = 0;
+  if (!scanner_.readInteger(type)) scanner_.failInteger("the file type");
+  if (type != 0 && type != 1) {
+    scanner_.fail(ErrorCode::FileSyntax,
+                  "the file type is 0 (text) or 1 (binary), found " + std::to_string(type) + ".");
+  }
+  binary_ = type == 1;
+  std::int64_t size = 0;
+  if (!scanner_.readInteger(size)) scanner_.failInteger("the size of numbers");
+  if (size != 8) {
+    scanner_.fail(ErrorCode::FileUnsupported,
+                  "numbers of " + std::to_string(size) + " bytes are not supported, only 8.");
+  }
+  if (!binary_) index_.emplace(text_, stage_);
+  if (binary_) {
+    withSource([](auto& source) {
+      if (source.integer("the mark of the byte order") == 1) return;
+      source.fail(ErrorCode::FileUnsupported,
+                  "the bytes of numbers come in the order of another kind of computers; save the "
+                  "mesh as text.");
+    });
+  }
+  if (scanner_.readToken() != "$EndMeshFormat") {
+    scanner_.fail(ErrorCode::FileSyntax,
+                  "expected \"$EndMeshFormat\", found " + quoted(scanner_.currentToken()) + ".");
+  }
+}
+
+void MshReader::readSection(std::string_view name) {
+  if (name != "Nodes" && name != "Elements") return skipSection(name);
+  const bool nodes = name == "Nodes";
+  failIfRepeated(nodes ? hasNodes_ : hasElements_, name);
+  (nodes ? hasNodes_ : hasElements_) = true;
+  if (!hasNodes_) {
+    scanner_.fail(ErrorCode::FileUnsupported,
+                  "the section $Elements stands before the section $Nodes; exchange them.");
+  }
+  if (version4_) {
+    withSource([&](auto& source) { nodes ? readNodes41(source) : readElements41(source); });
+  } else {
+    const std::size_t count = scanner_.readCount(nodes ? "nodes" : "elements", 8);
+    withSource(
+        [&](auto& source) { nodes ? readNodes22(source, count) : readElements22(source, count); });
+  }
+  if (nodes) finishNodes();
+  const std::string_view end = scanner_.readToken();
+  if (end.starts_with("$End") && end.substr(4) == name) return;
+  scanner_.fail(ErrorCode::FileSyntax,
+                "expected \"$End" + std::string(name) + "\", found " + quoted(end) + ".");
+}
+
+void MshReader::skipSection(std::string_view name) {
+  const std::string end = "$End" + std::string(name);
+  const std::size_t place = text_.find(end, scanner_.position());
+  if (place == std::string_view::npos) {
+    scanner_.fail(ErrorCode::FileSyntax,
+                  "the section has no " + quoted(end) + ": the file is incomplete.");
+  }
+  scanner_.moveTo(place + end.size());
+}
+
+void MshReader::failIfRepeated(bool present, std::string_view name) {
+  if (!present) return;
+  scanner_.fail(ErrorCode::FileSyntax,
+                "the section $" + std::string(name) + " occurs a second time.");
+}
+
+template <class F>
+void MshReader::withSource(const F& f) {
+  if (binary_) {
+    skipLineBreak();
+    BinarySource source(text_, scanner_.position(), fileName_, stage_);
+    f(source);
+    scanner_.moveTo(source.position());
+  } else {
+    TextSource source(scanner_, *index_, stage_);
+    f(source);
+  }
+}
+
+void MshReader::skipLineBreak() {
+  std::size_t place = scanner_.position();
+  while (place < text_.size() && (text_[place] == ' ' || text_[place] == '\r')) ++place;
+  if (place == text_.size() || text_[place] != '\n') {
+    scanner_.fail(ErrorCode::FileSyntax,
+                  "the line has to end behind " + quoted(scanner_.currentToken()) +
+                      ", since the bytes of numbers begin on the next line.");
+  }
+  scanner_.moveTo(place + 1);
+}
+
+template <class Source>
+void MshReader::readPoint(Source& record, std::size_t node) {
+  for (double& coordinate : mesh_.points[node]) coordinate = record.real("a coordinate of a node");
+}
+
+template <class Source>
+void MshReader::readNodes41(Source& source) {
+  const std::uint64_t blocks = source.size("the number of blocks of nodes");
+  const std::uint64_t total = source.size("the number of nodes");
+  static_cast<void>(source.size("the smallest tag of a node"));
+  static_cast<void>(source.size("the largest tag of a node"));
+  requireRoom(source, total, {.sizes = 1, .reals = 3}, "nodes");
+  requireIndexable(source, total, "nodes");
+  mesh_.points.resize(total);
+  tags_.resize(total);
+  std::size_t done = 0;
+  for (std::uint64_t block = 0; block < blocks; ++block) {
+    const std::int64_t dimension = source.integer("the dimension of an entity");
+    static_cast<void>(source.integer("the tag of an entity"));
+    const bool parametric = source.integer("whether nodes have parameters") != 0;
+    const std::uint64_t count = source.size("the number of nodes of a block");
+    if (dimension < 0 || dimension > 3) {
+      source.fail(ErrorCode::FileSyntax,
+                  "an entity has the dimension " + std::to_string(dimension) + ".");
+    }
+    if (count > total - done) {
+      source.fail(ErrorCode::FileSyntax, "the blocks have more nodes than the " +
+                                             std::to_string(total) + " of the section.");
+    }
+    const std::size_t reals = 3 + (parametric ? static_cast<std::size_t>(dimension) : 0);
+    requireRoom(source, count, {.sizes = 1}, "nodes");
+    source.records(count, {.sizes = 1}, [&](Source& record, std::size_t i) {
+      tags_[done + i] = record.size("the tag of a node");
+    });
+    requireRoom(source, count, {.reals = reals}, "nodes");
+    source.records(count, {.reals = reals}, [&](Source& record, std::size_t i) {
+      readPoint(record, done + i);
+      for (std::size_t k = 3; k < reals; ++k) {
+        static_cast<void>(record.real("a parameter of a node"));
+      }
+    });
+    done += count;
+  }
+  if (done == total) return;
+  source.fail(ErrorCode::FileSyntax, "the blocks have " + std::to_string(done) + " of the " +
+                                         std::to_string(total) + " nodes of the section.");
+}
+
+template <class Source>
+void MshReader::readCorners(Source& record, std::size_t cell, bool wide) {
+  for (Index& corner : mesh_.cells[cell]) {
+    const char* const what = "a node of a hexahedron";
+    const std::uint64_t tag =
+        wide ? record.size(what) : static_cast<std::uint64_t>(record.integer(what));
+    corner = nodes_.find(tag);
+    if (corner != kNone) continue;
+    record.fail(ErrorCode::IndexOutOfRange,
+                "hexahedron " + std::to_string(cell) + " (counted from 0) names node " +
+                    std::to_string(static_cast<std::int64_t>(tag)) +
+                    ", which is not in the section $Nodes.",
+                Place{PlaceKind::Cell, cell});
+  }
+}
+
+template <class Source>
+void MshReader::readElements41(Source& source) {
+  struct Block {
+    std::size_t position;
+    std::size_t count;
+  };
+  std::vector<Block> hexahedra;
+  std::size_t cells = 0;
+  const std::uint64_t blocks = source.size("the number of blocks of elements");
+  const std::uint64_t total = source.size("the number of elements");
+  static_cast<void>(source.size("the smallest tag of an element"));
+  static_cast<void>(source.size("the largest tag of an element"));
+  std::uint64_t done = 0;
+  for (std::uint64_t block = 0; block < blocks; ++block) {
+    static_cast<void>(source.integer("the dimension of an entity"));
+    static_cast<void>(source.integer("the tag of an entity"));
+    const std::int64_t type = source.integer("the type of elements");
+    const std::uint64_t count = source.size("the number of elements of a block");
+    const RecordShape shape{.sizes = 1 + requireType(source, type)};
+    requireRoom(source, count, shape, "elements");
+    done += count;
+    if (type == kGmshHexahedron) {
+      hexahedra.push_back({source.position(), count});
+      cells += count;
+    } else if (count > 0) {
+      hasOtherElements_ = true;
+    }
+    source.skip(count, shape);
+  }
+  if (done != total) {
+    source.fail(ErrorCode::FileSyntax, "the blocks have " + std::to_string(done) +
+                                           " elements instead of the " + std::to_string(total) +
+                                           " of the section.");
+  }
+  requireIndexable(source, cells, "hexahedra");
+  mesh_.cells.resize(cells);
+  const std::size_t end = source.position();
+  std::size_t first = 0;
+  for (const Block& block : hexahedra) {
+    source.moveTo(block.position);
+    source.records(block.count, {.sizes = 9}, [&](Source& record, std::size_t i) {
+      static_cast<void>(record.size("the tag of an element"));
+      readCorners(record, first + i, true);
+    });
+    first += block.count;
+  }
+  source.moveTo(end);
+}
+
+template <class Source>
+void MshReader::readNodes22(Source& source, std::size_t count) {
+  const RecordShape shape{.integers = 1, .reals = 3};
+  requireRoom(source, count, shape, "nodes");
+  mesh_.points.resize(count);
+  tags_.resize(count);
+  source.records(count, shape, [&](Source& record, std::size_t i) {
+    tags_[i] = static_cast<std::uint64_t>(record.integer("the number of a node"));
+    readPoint(record, i);
+  });
+}
+
+void MshReader::readElements22(TextSource& source, std::size_t count) {
+  LoopProgress progress(stage_, count);
+  // Enough for all; lines have different lengths, so that only reading tells how many there are.
+  mesh_.cells.resize(count);
+  std::size_t cells = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % kElementGrain == 0) progress.advance(std::min(kElementGrain, count - i));
+    static_cast<void>(source.integer("the number of an element"));
+    const std::int64_t type = source.integer("the type of an element");
+    const std::size_t nodes = requireType(source, type);
+    const std::uint64_t tags = source.size("the number of tags");
+    for (std::uint64_t tag = 0; tag < tags; ++tag) static_cast<void>(source.integer("a tag"));
+    if (type == kGmshHexahedron) {
+      readCorners(source, cells++, false);
+      continue;
+    }
+    hasOtherElements_ = true;
+    for (std::size_t node = 0; node < nodes; ++node) {
+      static_cast<void>(source.integer("a node of an element"));
+    }
+  }
+  mesh_.cells.resize(cells);
+}
+
+void MshReader::readElements22(BinarySource& source, std::size_t count) {
+  mesh_.cells.resize(count);
+  std::size_t cells = 0;
+  for (std::size_t done = 0; done < count;) {
+    const std::int64_t type = source.integer("the type of elements");
+    const std::int64_t follow = source.integer("the number of elements that follow");
+    const std::int64_t tags = source.integer("the number of tags");
+    if (follow <= 0 || static_cast<std::uint64_t>(follow) > count - done || tags < 0) {
+      source.fail(ErrorCode::FileSyntax,
+                  "a block of " + std::to_string(follow) + " elements with " +
+                      std::to_string(tags) + " tags each cannot be: " +
+                      std::to_string(count - done) + " elements are left.");
+    }
+    const auto size = static_cast<std::size_t>(follow);
+    const RecordShape shape{.integers =
+                              1 + static_cast<std::size_t>(tags) + requireType(source, type)};
+    requireRoom(source, size, shape, "elements");
+    done += size;
+    if (type != kGmshHexahedron) {
+      hasOtherElements_ = true;
+      source.skip(size, shape);
+      continue;
+    }
+    source.records(size, shape, [&](BinarySource& record, std::size_t i) {
+      record.skip(1 + static_cast<std::size_t>(tags), {.integers = 1});
+      readCorners(record, cells + i, false);
+    });
+    cells += size;
+  }
+  mesh_.cells.resize(cells);
+}
+
+void MshReader::finishNodes() {
+  nodes_ = NodeTags(tags_);
+  const Index repeated = nodes_.repeated();
+  if (repeated == kNone) return;
+  scanner_.fail(ErrorCode::FileSyntax,
+                "two nodes have the tag " + std::to_string(tags_[repeated]) + ".");
+}
+
+}  // namespace
+
+HexMesh parseGmsh(std::string_view text, const std::string& fileName, Context& context) {
+  Stage stage(context, "read mesh");
+  HexMesh mesh;
+  withThreads(context.threads(), [&] { mesh = MshReader(text, fileName, stage).read(); });
+  return mesh;
+}
+
+HexMesh readGmsh(const std::filesystem::path& file, Context& context) {
+  Stage stage(context, "read mesh");
+  HexMesh mesh;
+  withThreads(context.threads(), [&] {
+    const Array<char> bytes = readWholeFile(file, stage);
+    mesh = MshReader(asText(bytes), file.string(), stage).read();
+  });
+  return mesh;
+}
+
+}  // namespace hexhex

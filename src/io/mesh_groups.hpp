@@ -1,0 +1,64 @@
+// What formats with groups of elements hold beside points and cells: the boundary and the tagged
+// vertices, edges and quads of a mesh, sorted into groups with a number and a name each.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
+
+namespace hexhex {
+
+/// "No face of a cell": see QuadGroups.
+inline constexpr std::uint64_t kNoPlace = ~std::uint64_t{0};
+
+/// Consecutive elements that have the same tag.
+struct ElementGroup {
+  /// In [1, 2^31), different within one kind of elements: the tag where all tags are positive, and
+  /// otherwise the number of the group from 1 on. Untagged boundary quads come last.
+  std::uint32_t number = 0;
+  std::string name;  ///< letters, digits and '_': "boundary", "surface_7", "curve_m2" (tag -2)
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+struct VertexGroups {
+  std::vector<ElementGroup> groups;
+  Array<std::array<Index, 1>> elements;
+};
+
+struct EdgeGroups {
+  std::vector<ElementGroup> groups;
+  Array<std::array<Index, 2>> elements;
+};
+
+/// All boundary quads, facing outwards, and the tagged quads inside.
+struct QuadGroups {
+  std::vector<ElementGroup> groups;
+  Array<Quad> elements;
+  Array<std::uint64_t> places;  ///< per quad: 8 * cell + face; kNoPlace inside the mesh
+};
+
+/// Names are "point_TAG" and "curve_TAG".
+/// @throws Error InvalidArgument for a feature with a vertex that is none of the mesh
+[[nodiscard]] VertexGroups groupVertices(const HexMesh& mesh);
+[[nodiscard]] EdgeGroups groupEdges(const HexMesh& mesh);
+
+/// Names are "surface_TAG", and "boundary" for boundary quads without a tag. Groups are in order
+/// of their tags, quads of a group in order of (cell, face), then those inside as the features list
+/// them.
+/// @throws Error InvalidArgument for a feature with a vertex that is none of the mesh
+[[nodiscard]] QuadGroups groupQuads(const HexMesh& mesh, Stage& stage);
+
+/// For formats with one reference per vertex: the number of the vertex's group, 0 without.
+[[nodiscard]] Array<std::uint32_t> vertexReferences(const HexMesh& mesh,
+                                                    const VertexGroups& groups);
+/// The number of the group of each element.
+[[nodiscard]] Array<std::uint32_t> groupNumbers(const std::vector<ElementGroup>& groups);
+
+}  // namespace hexhex
