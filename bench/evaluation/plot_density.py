@@ -39,12 +39,12 @@ def describe_groups(runs: list[Run]) -> str:
         for label, (names, _) in groups.items():
             inside = [name for name in names if name in ran]
             ran -= set(inside)
-            if inside and inside != [label]:
-                parts.append(f"*{label}* are " + ", ".join(f"`{name}`" for name in inside))
+            if inside and ", ".join(inside) != label:
+                parts.append(f"*{label}*: " + ", ".join(f"`{name}`" for name in inside))
         if ran:
-            parts.append(f"*{REST}* contains " + ", ".join(f"`{name}`" for name in sorted(ran)))
+            parts.append(f"*{REST}*: " + ", ".join(f"`{name}`" for name in sorted(ran)))
         if parts:
-            lines.append(f"- {engine}: " + "; ".join(parts) + ".\n")
+            lines.append(f"- {engine} engine: " + "; ".join(parts) + ".\n")
     return "".join(lines)
 
 

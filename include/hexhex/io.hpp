@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include <hexhex/context.hpp>
 #include <hexhex/stream.hpp>
@@ -21,13 +22,18 @@ namespace hexhex {
 void writeMap(const TetMap& map, const std::filesystem::path& file, Context& context);
 void writeMap(const TetMap& map, const std::filesystem::path& file);
 
-/// Reads a hexahedral mesh: `.mesh` (MEDIT ASCII), `.vtu` (as this library writes it). Other cells
-/// and sections are ignored; generators are not restored.
+/// Reads a hexahedral mesh: `.mesh` and `.meshb` (MEDIT ASCII and binary), `.vtu` (as this library
+/// writes it), `.vtk` (legacy VTK, ASCII and binary), `.msh` (Gmsh 4.1 and 2.x, ASCII and binary),
+/// `.ovm`, `.ovmb`. Other cells and sections are ignored; generators are not restored.
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file, Context& context);
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file);
 
 /// What a writer may be told beside the mesh.
 struct WriteOptions {
+  /// A format by its name, whatever the file's extension: "mesh", "vtu", "ovm", "ovmb", "meshb",
+  /// "vtk", "msh" (Gmsh 4.1, binary), "msh41-ascii", "msh22-ascii", "inp", "mfem". Empty: what the
+  /// extension means.
+  std::string_view format = {};
   /// What scaledJacobians() returned for this mesh, if the caller has it anyway. Empty: computed by
   /// writers whose format holds it.
   std::span<const double> scaledJacobians = {};
@@ -36,6 +42,8 @@ struct WriteOptions {
 /// Writes a hexahedral mesh: `.mesh` (vertices, boundary quads, hexahedra) or `.vtu` (binary
 /// appended; cell array `scaled_jacobian`; for meshes that know where their vertices came from, the
 /// point arrays `generator_kind` (UInt8), `generator_tet` (UInt32), `generator_corners` (UInt8)).
+/// `.vtk` holds vertices and hexahedra. `.meshb`, `.msh` (physical groups), `.inp` (node sets and
+/// surfaces) and MFEM's files (attributes) also hold boundary quads and what mesh.features tags.
 /// The file appears complete or not at all.
 /// @throws Error FileUnsupported, FileWrite; InvalidArgument if arrays disagree or a cell names a
 ///         vertex that does not exist; NotFinite
@@ -62,7 +70,8 @@ void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file);
 /// @throws Error  as readHexMesh(), and whatever the sink throws
 void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
 
-/// Throws FileUnsupported unless writeHexMesh knows the extension: to fail before long work.
-void requireHexMeshFormat(const std::filesystem::path& file);
+/// Throws FileUnsupported unless writeHexMesh knows the extension, or the format, if it is not
+/// empty: to fail before long work.
+void requireHexMeshFormat(const std::filesystem::path& file, std::string_view format = {});
 
 }  // namespace hexhex

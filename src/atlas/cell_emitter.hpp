@@ -8,6 +8,7 @@
 
 #include <atlas/brick_block.hpp>
 #include <atlas/cut_marks.hpp>
+#include <atlas/diagonals.hpp>
 #include <atlas/vertex_grid.hpp>
 #include <sweep/cell_seeds.hpp>
 #include <sweep/cell_tracer.hpp>
@@ -49,7 +50,11 @@ class CellEmitter {
   void loadBox(const Job& job, const GridPoint& first, const GridPoint& last);
   void emitLine(Job& job, const SweptLine& line, std::uint32_t first, std::uint32_t count);
   void emitIrregular(const GridPoint& z, bool marked, CornerMask generator, Cell& cell);
-  [[nodiscard]] unsigned hiddenCorners(const GridPoint& z);
+  [[nodiscard]] CellCornerSet hiddenCorners(const GridPoint& z);
+  void reveal(CellCornerSet hidden, Cell& cell);
+  [[nodiscard]] bool revealTogether(const CornerPlace& place, std::size_t traced,
+                                    CellCornerSet hidden, Cell& cell);
+  [[nodiscard]] bool see(SeenCell& cell);
 
   const PreparedMap& map_;
   const VertexGrid<Id>& vertices_;

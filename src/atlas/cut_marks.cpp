@@ -1,8 +1,7 @@
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include <atlas/cut_marks.hpp>
-#include <sweep/cell_seeds.hpp>
 
 #include <lattice/triangle_cells.hpp>
 
@@ -115,111 +114,5 @@ template Crossings markCutCells(const PreparedMap&, const Charts&, BrickGrid<std
                                 Stage&);
 template Crossings markCutCells(const PreparedMap&, const Charts&, BrickGrid<std::uint64_t>&,
                                 Stage&);
-
-namespace {
-
-using Vector = std::array<double, 3>;
-
-/// A vector with a bound of its components' errors.
-struct Bounded {
-  Vector v;
-  double error;
-};
-
-/// Signs of the diagonals' components, by axis, then corner.
-constexpr std::array<std::array<double, 8>, 3> makeDiagonals() {
-  std::array<std::array<double, 8>, 3> diagonals{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t c = 0; c < 8; ++c) diagonals[k][c] = 2.0 * kCellCorners[c][k] - 1;
-  }
-  return diagonals;
-}
-constexpr std::array<std::array<double, 8>, 3> kDiagonals = makeDiagonals();
-
-/// v . d for all eight diagonals d.
-std::array<double, 8> alongDiagonals(const Vector& v) {
-  std::array<double, 8> products;
-  for (std::size_t c = 0; c < 8; ++c) {
-    products[c] = v[0] * kDiagonals[0][c] + v[1] * kDiagonals[1][c] + v[2] * kDiagonals[2][c];
-  }
-  return products;
-}
-
-/// Which diagonals may cross a triangle: a line does only if it passes all three edges on one side,
-/// the diagonal only if its ends are on different sides of the plane.
-/// @param sides   cross products of neighbouring corners, which tell the side of the edges
-/// @param center  the plane's value at the cell's centre
-unsigned crossedBy(const std::array<Vector, 3>& sides, const Vector& normal, double error,
-                   double center, double centerError) {
-  const std::array<double, 8> a = alongDiagonals(sides[0]);
-  const std::array<double, 8> b = alongDiagonals(sides[1]);
-  const std::array<double, 8> e = alongDiagonals(sides[2]);
-  const std::array<double, 8> n = alongDiagonals(normal);
-  unsigned crossed = 0;
-  for (std::size_t c = 0; c < 8; ++c) {
-    const double most = std::max(std::max(a[c], b[c]), e[c]);
-    const double least = std::min(std::min(a[c], b[c]), e[c]);
-    const double corner = center + 0.5 * n[c];
-    const bool beside = most > error && least < -error;
-    const bool above = std::min(center, corner) > centerError;
-    const bool below = std::max(center, corner) < -centerError;
-    if (!beside && !above && !below) crossed |= 1U << c;
-  }
-  return crossed;
-}
-
-/// a x b for vectors with relative errors of 2^-52 in each component.
-Bounded crossProduct(const Vector& a, const Vector& b) {
-  Bounded result{};
-  double magnitude = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t i = k == 2 ? 0 : k + 1;
-    const std::size_t j = k == 0 ? 2 : k - 1;
-    const double first = a[i] * b[j];
-    const double second = a[j] * b[i];
-    result.v[k] = first - second;
-    magnitude += std::abs(first) + std::abs(second);
-  }
-  // Also covers the sums of components below.
-  result.error = 0x1p-48 * magnitude;
-  return result;
-}
-
-}  // namespace
-
-unsigned crossedDiagonals(const PreparedMap& map, const Charts& charts, Index tet,
-                          const ChartPoint& cell, std::span<const Crossing> crossings) noexcept {
-  const double scale = 1.0 / static_cast<double>(map.exact.unit);
-  unsigned crossed = 0;
-  for (const Crossing& crossing : crossings) {
-    const Gauge& gauge = charts.gauge(tetOf(crossing.halfFace));
-    const GridPoint z = gauge.inverseCell(cell);
-    const Triangle triangle = triangleOf(map.exact, crossing.halfFace);
-    std::array<Vector, 3> p{};  // from the cell's centre
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        p[i][k] = static_cast<double>(triangle[i][k] - z[k] * map.exact.unit - map.exact.unit / 2) *
-                  scale;
-      }
-    }
-    const std::array<Bounded, 3> sides = {crossProduct(p[0], p[1]), crossProduct(p[1], p[2]),
-                                          crossProduct(p[2], p[0])};
-    const double error = sides[0].error + sides[1].error + sides[2].error;
-    Vector normal{};
-    double center = 0;  // the plane's value at the centre
-    double centerError = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      normal[k] = sides[0].v[k] + sides[1].v[k] + sides[2].v[k];
-      center -= normal[k] * p[0][k];
-      centerError += error * std::abs(p[0][k]);
-    }
-    centerError += error;
-    // All seen from the tet's chart.
-    const Rotation rotation = (gauge.rotation.inverse() * charts.gauge(tet).rotation).inverse();
-    crossed |= crossedBy({rotation(sides[0].v), rotation(sides[1].v), rotation(sides[2].v)},
-                         rotation(normal), error, center, centerError);
-  }
-  return crossed;
-}
 
 }  // namespace hexhex

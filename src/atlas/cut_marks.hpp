@@ -37,13 +37,4 @@ template <class Id>
 [[nodiscard]] Crossings markCutCells(const PreparedMap& map, const Charts& charts,
                                      BrickGrid<Id>& grid, Stage& stage);
 
-/// Which of a cell's eight diagonals (from its centre to its corners, in VTK order of the chart of
-/// tet `tet`) may meet one of the faces: the corners behind the others are those that the picture
-/// shows. Bit i for corner i.
-/// @param crossings  faces seen from the cell's chart
-/// @param cell       the cell's smallest corner in that chart
-[[nodiscard]] unsigned crossedDiagonals(const PreparedMap& map, const Charts& charts, Index tet,
-                                        const ChartPoint& cell,
-                                        std::span<const Crossing> crossings) noexcept;
-
 }  // namespace hexhex

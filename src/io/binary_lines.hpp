@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include <hexhex/types.hpp>
+
 #include <io/line_writer.hpp>
 #include <io/ovmb_bytes.hpp>
 

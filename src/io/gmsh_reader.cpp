@@ -9,9 +9,9 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/gmsh.hpp>
-#include <io/number_source.hpp>
 #include <io/input_file.hpp>
 #include <io/node_tags.hpp>
+#include <io/number_source.hpp>
 #include <io/text_scanner.hpp>
 #include <io/token_index.hpp>
 
@@ -19,9 +19,9 @@ namespace hexhex {
 namespace {
 
 // Nodes per element by type; 0 for types without a fixed number. From Gmsh's documentation.
-constexpr std::array<std::uint8_t, 32> kNodesOfType = {0,  2,  3,  4,  4, 8,  6,  5,  3,  6, 9,
-                                                       10, 27, 18, 14, 1, 8,  20, 15, 13, 9, 10,
-                                                       12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
+constexpr std::array<std::uint8_t, 32> kNodesOfType = {0,  2,  3,  4,  4, 8, 6,  5,  3,  6, 9,
+                                                       10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10,
+                                                       12, 15, 15, 21, 4, 5, 6,  20, 35, 56};
 constexpr std::int64_t kHexahedronOf64 = 92;
 constexpr std::int64_t kHexahedronOf125 = 93;
 
@@ -37,19 +37,20 @@ template <class Source>
 std::size_t requireType(const Source& source, std::int64_t type) {
   const std::size_t nodes = nodesOfType(type);
   if (nodes > 0) return nodes;
-  source.fail(ErrorCode::FileUnsupported,
-              "elements of type " + std::to_string(type) +
-                  " have a number of nodes that is not known here, so that they cannot be skipped.");
+  source.fail(
+      ErrorCode::FileUnsupported,
+      "elements of type " + std::to_string(type) +
+          " have a number of nodes that is not known here, so that they cannot be skipped.");
 }
 
 template <class Source>
 void requireRoom(const Source& source, std::uint64_t n, RecordShape shape, const char* what) {
   const std::size_t room = source.room(shape);
   if (n <= room) return;
-  source.fail(ErrorCode::FileSyntax,
-              "announces " + std::to_string(n) + " " + what +
-                  ", but the rest of the file has room for at most " + std::to_string(room) +
-                  ": either the number is wrong or the file is incomplete.");
+  source.fail(ErrorCode::FileSyntax, "announces " + std::to_string(n) + " " + what +
+                                         ", but the rest of the file has room for at most " +
+                                         std::to_string(room) +
+                                         ": either the number is wrong or the file is incomplete.");
 }
 
 template <class Source>
@@ -126,8 +127,9 @@ HexMesh MshReader::read() {
   }
   if (mesh_.cells.empty() && hasOtherElements_) {
     throw Error(ErrorCode::FileUnsupported,
-                fileName_ + ": the file holds no hexahedra with 8 nodes (type 5), but other "
-                            "elements only.");
+                fileName_ +
+                    ": the file holds no hexahedra with 8 nodes (type 5), but other "
+                    "elements only.");
   }
   return std::move(mesh_);
 }
@@ -200,7 +202,7 @@ void MshReader::skipSection(std::string_view name) {
   const std::size_t place = text_.find(end, scanner_.position());
   if (place == std::string_view::npos) {
     scanner_.fail(ErrorCode::FileSyntax,
-                  "the section has no " + quoted(end) + ": the file is incomplete.");
+                  "the section has no " + quoted(std::string_view(end)) + ": the file is incomplete.");
   }
   scanner_.moveTo(place + end.size());
 }
@@ -392,14 +394,14 @@ void MshReader::readElements22(BinarySource& source, std::size_t count) {
     const std::int64_t follow = source.integer("the number of elements that follow");
     const std::int64_t tags = source.integer("the number of tags");
     if (follow <= 0 || static_cast<std::uint64_t>(follow) > count - done || tags < 0) {
-      source.fail(ErrorCode::FileSyntax,
-                  "a block of " + std::to_string(follow) + " elements with " +
-                      std::to_string(tags) + " tags each cannot be: " +
-                      std::to_string(count - done) + " elements are left.");
+      source.fail(
+          ErrorCode::FileSyntax,
+          "a block of " + std::to_string(follow) + " elements with " + std::to_string(tags) +
+              " tags each cannot be: " + std::to_string(count - done) + " elements are left.");
     }
     const auto size = static_cast<std::size_t>(follow);
     const RecordShape shape{.integers =
-                              1 + static_cast<std::size_t>(tags) + requireType(source, type)};
+                                1 + static_cast<std::size_t>(tags) + requireType(source, type)};
     requireRoom(source, size, shape, "elements");
     done += size;
     if (type != kGmshHexahedron) {

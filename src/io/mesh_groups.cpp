@@ -64,7 +64,10 @@ class TagOrder {
   static std::string nameOf(const std::string& kind, Tag tag) {
     if (tag == 0) return "boundary";
     const std::int64_t wide = tag;
-    return kind + (wide < 0 ? "_m" + std::to_string(-wide) : "_" + std::to_string(wide));
+    std::string name = kind;
+    name += wide < 0 ? "_m" : "_";
+    name += std::to_string(wide < 0 ? -wide : wide);
+    return name;
   }
 
   std::span<const Tag> tags_;

@@ -13,7 +13,8 @@
 namespace hexhex {
 
 /// Reads vertices and hexahedra of versions 1 to 4; other sections and references are ignored.
-/// @throws Error FileNotFound, FileSyntax (with byte), FileUnsupported (also files of computers with
+/// @throws Error FileNotFound, FileSyntax (with byte), FileUnsupported (also files of computers
+/// with
 ///         the other byte order), IndexOutOfRange, NotFinite, TooLarge
 [[nodiscard]] HexMesh readMeshb(const std::filesystem::path& file, Context& context);
 
@@ -22,11 +23,11 @@ namespace hexhex {
 [[nodiscard]] HexMesh parseMeshb(std::string_view text, const std::string& fileName,
                                  Context& context);
 
-/// Writes the sections Vertices, Edges (tagged ones), Quadrilaterals (the boundary, facing outwards,
-/// and tagged quads), Hexahedra. References are the numbers of groups of mesh_groups.hpp: 0 for
-/// vertices without a tag; 1 for cells. The version is the smallest that holds the file: 2 below
-/// 2^31 bytes, 3 (positions of 64 bits) above, 4 (all integers of 64 bits) from 2^31 vertices or
-/// elements on.
+/// Writes the sections Vertices, Edges (tagged ones), Quadrilaterals (the boundary, facing
+/// outwards, and tagged quads), Hexahedra. References are the numbers of groups of mesh_groups.hpp:
+/// 0 for vertices without a tag; 1 for cells. The version is the smallest that holds the file: 2
+/// below 2^31 bytes, 3 (positions of 64 bits) above, 4 (all integers of 64 bits) from 2^31 vertices
+/// or elements on.
 /// @throws Error FileWrite; InvalidArgument for features that are not in the mesh
 void writeMeshb(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
                 Context& context);

@@ -6,9 +6,9 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
-#include <io/number_source.hpp>
 #include <io/input_file.hpp>
 #include <io/meshb.hpp>
+#include <io/number_source.hpp>
 
 namespace hexhex {
 namespace {
@@ -70,8 +70,8 @@ void MeshbReader::readHead() {
   }
   version_ = source_.integer("the version of the format");
   if (version_ >= 1 && version_ <= 4) return;
-  source_.fail(ErrorCode::FileUnsupported, "version " + std::to_string(version_) +
-                                               " of the format is not known, only 1 to 4.");
+  source_.fail(ErrorCode::FileUnsupported,
+               "version " + std::to_string(version_) + " of the format is not known, only 1 to 4.");
 }
 
 std::uint64_t MeshbReader::readPosition() {
@@ -134,8 +134,7 @@ std::uint64_t MeshbReader::readCount(RecordShape shape, const char* what) {
   }
   if (count > kNone) {
     source_.fail(ErrorCode::TooLarge, "announces " + std::to_string(count) + " " + what +
-                                          "; at most " + std::to_string(kNone) +
-                                          " are supported.");
+                                          "; at most " + std::to_string(kNone) + " are supported.");
   }
   return count;
 }
@@ -145,9 +144,8 @@ void MeshbReader::readVertices() {
   requireDimension();
   hasVertices_ = true;
   const bool floats = version_ == 1;
-  const RecordShape shape{.sizes = wide(),
-                        .integers = 1 - wide() + (floats ? 3U : 0U),
-                        .reals = floats ? 0U : 3U};
+  const RecordShape shape{
+      .sizes = wide(), .integers = 1 - wide() + (floats ? 3U : 0U), .reals = floats ? 0U : 3U};
   const std::uint64_t count = readCount(shape, "vertices");
   mesh_.points.resize(count);
   source_.records(count, shape, [&](BinarySource& record, std::size_t i) {
@@ -172,8 +170,8 @@ void MeshbReader::readHexahedra() {
   source_.records(count, shape, [&](BinarySource& record, std::size_t i) {
     for (Index& corner : mesh_.cells[i]) {
       const char* const what = "a vertex of a hexahedron";
-      const std::uint64_t vertex = wide() != 0 ? record.size(what)
-                                               : static_cast<std::uint32_t>(record.integer(what));
+      const std::uint64_t vertex =
+          wide() != 0 ? record.size(what) : static_cast<std::uint32_t>(record.integer(what));
       if (vertex < 1 || vertex > vertices) {
         record.fail(ErrorCode::IndexOutOfRange,
                     "hexahedron " + std::to_string(i + 1) + " names vertex " +

@@ -69,8 +69,7 @@ class MeshbWriter {
     beginSection(MeshbKeyword::Dimension, 8 + widths_.position);
     writeBytesOf(output_, std::uint32_t{3});
     writeVertices();
-    writeElements(MeshbKeyword::Edges, std::span(content_.edges.elements),
-                  content_.edgeReferences);
+    writeElements(MeshbKeyword::Edges, std::span(content_.edges.elements), content_.edgeReferences);
     writeElements(MeshbKeyword::Quadrilaterals, std::span(content_.quads.elements),
                   content_.quadReferences);
     writeElements(MeshbKeyword::Hexahedra, std::span(content_.mesh.cells), {});
@@ -108,8 +107,7 @@ class MeshbWriter {
 
   /// @param references  empty: all are 1
   template <std::size_t corners>
-  void writeElements(MeshbKeyword keyword,
-                     std::span<const std::array<Index, corners>> elements,
+  void writeElements(MeshbKeyword keyword, std::span<const std::array<Index, corners>> elements,
                      std::span<const std::uint32_t> references) {
     if (elements.empty() && keyword == MeshbKeyword::Edges) return;
     beginSection(keyword, widths_.section(elements.size(), corners + 1, 0));
@@ -137,10 +135,10 @@ std::uint32_t versionFor(const MeshbContent& content) {
       {mesh.points.size(), mesh.cells.size(), content.quads.elements.size()});
   if (largest > kMost) return 4;
   const MeshbWidths widths(2);
-  const std::uint64_t bytes =
-      64 + widths.section(mesh.points.size(), 1, 3) +
-      widths.section(content.edges.elements.size(), 3, 0) +
-      widths.section(content.quads.elements.size(), 5, 0) + widths.section(mesh.cells.size(), 9, 0);
+  const std::uint64_t bytes = 64 + widths.section(mesh.points.size(), 1, 3) +
+                              widths.section(content.edges.elements.size(), 3, 0) +
+                              widths.section(content.quads.elements.size(), 5, 0) +
+                              widths.section(mesh.cells.size(), 9, 0);
   return bytes > kMost ? 3 : 2;
 }
 

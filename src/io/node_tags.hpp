@@ -18,9 +18,9 @@ class NodeTags {
   explicit NodeTags(const Array<std::uint64_t>& tags) : count_(tags.size()) {
     if (tags.empty()) return;
     first_ = tags[0];
-    for (std::size_t i = 0; i < tags.size(); ++i) {
-      if (tags[i] != first_ + i) return sortTags(tags);
-    }
+    std::size_t i = 0;
+    while (i < tags.size() && tags[i] == first_ + i) ++i;
+    if (i < tags.size()) sortTags(tags);
   }
 
   /// The node with a tag, or kNone.

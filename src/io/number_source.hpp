@@ -1,4 +1,4 @@
-// The numbers of a `.msh` file, for readers that need not know whether they are text or bytes.
+// The numbers of a file, for readers that need not know whether they are text or bytes.
 //
 // A source stands somewhere in the file; records, which are equal runs of numbers, are read in
 // parallel through a function f(record, i). Of several errors the first one is reported, for any
@@ -6,6 +6,7 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -23,9 +24,9 @@ namespace hexhex {
 
 /// How many numbers of each kind a record has.
 struct RecordShape {
-  std::size_t sizes = 0;     ///< `size_t` of the format: 8 bytes
-  std::size_t integers = 0;  ///< `int`: 4 bytes
-  std::size_t reals = 0;     ///< `double`
+  std::size_t sizes = 0;     ///< integers of 8 bytes, none negative
+  std::size_t integers = 0;  ///< integers and single precision numbers: 4 bytes
+  std::size_t reals = 0;     ///< double precision: 8 bytes
 
   [[nodiscard]] std::size_t tokens() const { return sizes + integers + reals; }
   [[nodiscard]] std::size_t bytes() const { return 8 * sizes + 4 * integers + 8 * reals; }
@@ -90,15 +91,16 @@ class TextSource {
 /// Numbers as bytes, the least first.
 class BinarySource {
  public:
-  BinarySource(std::string_view file, std::size_t position, const std::string& fileName, Stage& stage)
+  BinarySource(std::string_view file, std::size_t position, const std::string& fileName,
+               Stage& stage)
       : file_(file), position_(position), fileName_(&fileName), stage_(&stage) {}
 
   [[nodiscard]] std::uint64_t size(const char* what) { return read<std::uint64_t>(what); }
   [[nodiscard]] std::int64_t integer(const char* what) { return read<std::int32_t>(what); }
-  [[nodiscard]] double real(const char* what) {
-    const double value = read<double>(what);
-    if (value - value != 0) fail(ErrorCode::NotFinite, std::string(what) + " is not finite.");
-    return value;
+  [[nodiscard]] double real(const char* what) { return finite(read<double>(what), what); }
+  /// A number of single precision.
+  [[nodiscard]] double shortReal(const char* what) {
+    return finite(double{read<float>(what)}, what);
   }
 
   [[nodiscard]] std::size_t position() const { return position_; }
@@ -135,6 +137,12 @@ class BinarySource {
   }
 
  private:
+  [[nodiscard]] double finite(double value, const char* what) const {
+    if (!std::isfinite(value)) {
+      fail(ErrorCode::NotFinite, std::string(what) + " is not finite.");
+    }
+    return value;
+  }
   template <class T>
   T read(const char* what) {
     if (file_.size() - position_ < sizeof(T)) {

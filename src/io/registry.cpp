@@ -2,19 +2,25 @@
 #include <array>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/abaqus.hpp>
 #include <io/finite_points.hpp>
+#include <io/gmsh.hpp>
 #include <io/hexex.hpp>
 #include <io/medit.hpp>
 #include <io/mesh_pieces.hpp>
 #include <io/mesh_sink.hpp>
+#include <io/meshb.hpp>
+#include <io/mfem.hpp>
 #include <io/ovm.hpp>
 #include <io/registry.hpp>
+#include <io/vtk_legacy.hpp>
 #include <io/vtu.hpp>
 #include <mesh/vertex_cells.hpp>
 
@@ -25,11 +31,18 @@ constexpr std::array<MapFormat, 3> kMapFormats = {{{".hexex", readHexex, writeHe
                                                    {".ovm", readOvmMap, writeOvmMap},
                                                    {".ovmb", readOvmbMap, writeOvmbMap}}};
 
-constexpr std::array<HexMeshFormat, 4> kHexMeshFormats = {
-    {{".mesh", readMedit, writeMedit, openMeditSink},
-     {".vtu", readVtu, writeVtu, openVtuSink, readVtuTo},
-     {".ovm", readOvmHexMesh, writeOvmHexMesh},
-     {".ovmb", readOvmbHexMesh, writeOvmbHexMesh}}};
+constexpr std::array<HexMeshFormat, 11> kHexMeshFormats = {
+    {{"mesh", ".mesh", readMedit, writeMedit, openMeditSink},
+     {"vtu", ".vtu", readVtu, writeVtu, openVtuSink, readVtuTo},
+     {"ovm", ".ovm", readOvmHexMesh, writeOvmHexMesh},
+     {"ovmb", ".ovmb", readOvmbHexMesh, writeOvmbHexMesh},
+     {"meshb", ".meshb", readMeshb, writeMeshb},
+     {"vtk", ".vtk", readVtkLegacy, writeVtkLegacy},
+     {"msh", ".msh", readGmsh, writeGmsh41Binary},
+     {"msh41-ascii", ".msh", readGmsh, writeGmsh41Text},
+     {"msh22-ascii", ".msh", readGmsh, writeGmsh22Text},
+     {"inp", ".inp", nullptr, writeAbaqus},
+     {"mfem", "", nullptr, writeMfem}}};
 
 std::string lowerCaseExtension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -39,12 +52,15 @@ std::string lowerCaseExtension(const std::filesystem::path& file) {
   return extension;
 }
 
-/// ".mesh, .vtu"
+/// ".mesh, .vtu": those of the formats that a file name can mean.
 template <class Format>
 std::string listExtensions(std::span<const Format> formats) {
   std::string list;
+  std::string_view last;
   for (const Format& format : formats) {
-    list += (list.empty() ? "" : ", ") + std::string(format.extension);
+    if (format.extension.empty() || format.extension == last) continue;
+    last = format.extension;
+    list += (list.empty() ? "" : ", ") + std::string(last);
   }
   return list;
 }
@@ -54,7 +70,7 @@ const Format& findFormat(std::span<const Format> formats, const std::filesystem:
                          const std::string& what) {
   const std::string extension = lowerCaseExtension(file);
   const auto found = std::find_if(formats.begin(), formats.end(), [&](const Format& format) {
-    return format.extension == extension;
+    return !extension.empty() && format.extension == extension;
   });
   if (found != formats.end()) return *found;
   const std::string problem = extension.empty()
@@ -63,6 +79,26 @@ const Format& findFormat(std::span<const Format> formats, const std::filesystem:
   throw Error(ErrorCode::FileUnsupported,
               file.string() + ": " + problem + ". Maps: " + listExtensions<MapFormat>(kMapFormats) +
                   "; hexahedral meshes: " + listExtensions<HexMeshFormat>(kHexMeshFormats) + ".");
+}
+
+const HexMeshFormat& findHexMeshFormat(std::string_view name, const std::filesystem::path& file) {
+  std::string known;
+  for (const HexMeshFormat& format : kHexMeshFormats) {
+    if (format.name == name) return format;
+    known += (known.empty() ? "" : ", ") + std::string(format.name);
+  }
+  throw Error(ErrorCode::FileUnsupported,
+              file.string() + ": \"" + std::string(name) +
+                  "\" is no format of hexahedral meshes. Formats: " + known + ".");
+}
+
+/// The format of a file that is to be read.
+const HexMeshFormat& readableFormat(const std::filesystem::path& file) {
+  const HexMeshFormat& format = hexMeshFormat(file);
+  if (format.read != nullptr) return format;
+  throw Error(ErrorCode::FileUnsupported, file.string() + ": files of the format \"" +
+                                              std::string(format.name) +
+                                              "\" are written, but not read.");
 }
 
 /// Refuses an optional array that is there but has another size than what it describes.
@@ -97,7 +133,8 @@ const MapFormat& mapFormat(const std::filesystem::path& file) {
   return findFormat<MapFormat>(kMapFormats, file, "maps");
 }
 
-const HexMeshFormat& hexMeshFormat(const std::filesystem::path& file) {
+const HexMeshFormat& hexMeshFormat(const std::filesystem::path& file, std::string_view name) {
+  if (!name.empty()) return findHexMeshFormat(name, file);
   return findFormat<HexMeshFormat>(kHexMeshFormats, file, "hexahedral meshes");
 }
 
@@ -120,7 +157,7 @@ void writeMap(const TetMap& map, const std::filesystem::path& file) {
 }
 
 HexMesh readHexMesh(const std::filesystem::path& file, Context& context) {
-  return hexMeshFormat(file).read(file, context);
+  return readableFormat(file).read(file, context);
 }
 
 HexMesh readHexMesh(const std::filesystem::path& file) {
@@ -130,7 +167,7 @@ HexMesh readHexMesh(const std::filesystem::path& file) {
 
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
                   const WriteOptions& options, Context& context) {
-  const HexMeshFormat& format = hexMeshFormat(file);
+  const HexMeshFormat& format = hexMeshFormat(file, options.format);
   {
     Stage stage(context, "write mesh");
     withThreads(context.threads(), [&] { requireWritable(mesh, options, stage); });
@@ -162,15 +199,15 @@ std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file, Contex
 }
 
 void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, Context& context) {
-  const HexMeshFormat& format = hexMeshFormat(file);
+  const HexMeshFormat& format = readableFormat(file);
   withThreads(context.threads(), [&] {
     if (format.readTo != nullptr) return format.readTo(sink, file, context);
     sendTo(sink, format.read(file, context));
   });
 }
 
-void requireHexMeshFormat(const std::filesystem::path& file) {
-  static_cast<void>(hexMeshFormat(file));
+void requireHexMeshFormat(const std::filesystem::path& file, std::string_view format) {
+  static_cast<void>(hexMeshFormat(file, format));
 }
 
 }  // namespace hexhex

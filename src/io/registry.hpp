@@ -20,8 +20,11 @@ struct MapFormat {
 };
 
 struct HexMeshFormat {
-  std::string_view extension;  ///< in lower case, with the dot
-  HexMesh (*read)(const std::filesystem::path& file, Context& context);
+  std::string_view name;  ///< as in WriteOptions::format
+  /// In lower case, with the dot. Of several formats with one extension, the first is what a file
+  /// name means; empty if the format has to be asked for by name.
+  std::string_view extension;
+  HexMesh (*read)(const std::filesystem::path& file, Context& context);  ///< null: only written
   void (*write)(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
                 Context& context);
 
@@ -32,8 +35,10 @@ struct HexMeshFormat {
 };
 
 /// The format of a file by its extension.
-/// @throws Error FileUnsupported, naming the extensions that are known
+/// @param name  of a format, which overrides the extension unless it is empty
+/// @throws Error FileUnsupported, naming the extensions or the formats that are known
 [[nodiscard]] const MapFormat& mapFormat(const std::filesystem::path& file);
-[[nodiscard]] const HexMeshFormat& hexMeshFormat(const std::filesystem::path& file);
+[[nodiscard]] const HexMeshFormat& hexMeshFormat(const std::filesystem::path& file,
+                                                 std::string_view name = {});
 
 }  // namespace hexhex

@@ -144,8 +144,9 @@ HexMesh VtkReader::read() {
 void VtkReader::readHead() {
   constexpr std::string_view kMagic = "# vtk DataFile Version ";
   if (!takeLine().starts_with(kMagic)) {
-    scanner_.fail(ErrorCode::FileSyntax,
-                  "a .vtk file begins with \"# vtk DataFile Version\". If it is XML, name it .vtu.");
+    scanner_.fail(
+        ErrorCode::FileSyntax,
+        "a .vtk file begins with \"# vtk DataFile Version\". If it is XML, name it .vtu.");
   }
   static_cast<void>(takeLine());  // a title, which may be anything
   const std::string encoding = lowerCase(scanner_.readToken());
@@ -160,9 +161,8 @@ void VtkReader::readHead() {
                   "expected \"DATASET\", found " + quoted(scanner_.currentToken()) + ".");
   }
   if (lowerCase(scanner_.readToken()) != "unstructured_grid") {
-    scanner_.fail(ErrorCode::FileUnsupported,
-                  "the data set must be an UNSTRUCTURED_GRID, found " +
-                      quoted(scanner_.currentToken()) + ".");
+    scanner_.fail(ErrorCode::FileUnsupported, "the data set must be an UNSTRUCTURED_GRID, found " +
+                                                  quoted(scanner_.currentToken()) + ".");
   }
   if (!binary_) index_.emplace(text_, stage_);
 }
@@ -180,9 +180,8 @@ void VtkReader::readKeyword(const std::string& keyword) {
   if (keyword == "cell_types") return readTypes();
   if (keyword == "field") return skipField();
   if (keyword == "metadata") return skipMetadata();
-  scanner_.fail(ErrorCode::FileSyntax,
-                "expected POINTS, CELLS or CELL_TYPES, found " + quoted(scanner_.currentToken()) +
-                    ".");
+  scanner_.fail(ErrorCode::FileSyntax, "expected POINTS, CELLS or CELL_TYPES, found " +
+                                           quoted(scanner_.currentToken()) + ".");
 }
 
 void VtkReader::failIfRepeated(bool present, const char* keyword) {

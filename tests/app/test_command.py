@@ -32,10 +32,11 @@ KINDS = ["box", "cylinder", "sphere", "star", "tetrahedron", "torus", "shell", "
 
 REPORT_KEYS = {
     "hexhex_version", "input", "output", "extract_seconds", "cells", "vertices", "tets", "points",
-    "scale", "threads", "epsilon", "epsilon_fallback", "stages", "peak_memory_bytes", "generators",
-    "vertices_by_generator", "local_propellers", "global_propellers", "singular_edges",
-    "chart_jumps", "inner_faces", "max_displacement", "max_transition_residual", "mirrored",
-    "tets_inverted_in_space", "quality", "verification",
+    "scale", "threads", "engine", "epsilon", "epsilon_fallback", "stages", "peak_memory_bytes",
+    "generators", "vertices_by_generator", "local_propellers", "global_propellers", "charts",
+    "cut_faces", "overlapping_tets", "traced_cells", "singular_edges", "chart_jumps", "inner_faces",
+    "max_displacement", "max_transition_residual", "mirrored", "tets_inverted_in_space", "quality",
+    "verification", "streamed", "checksums",
 }
 
 
@@ -298,21 +299,51 @@ class Pipeline(CommandTest):
 
     def test_report(self):
         map_file = self.generate("sphere")
-        self.run_command("extract", map_file, "-o", "a.vtu", "--report", "r.json", "--threads",
-                         "2", "--epsilon", "inf")
-        report = json.loads((self.folder / "r.json").read_text())
+        for engine in ["atlas", "propeller"]:
+            with self.subTest(engine=engine):
+                self.run_command("extract", map_file, "-o", "a.vtu", "--report", "r.json",
+                                 "--threads", "2", "--engine", engine, "--epsilon", "inf")
+                report = json.loads((self.folder / "r.json").read_text())
+                self.assert_general_report(report, map_file)
+                self.assertEqual(report["engine"], engine)
+                self.assertEqual(report["charts"] > 0, engine == "atlas")
+                self.assertEqual(report["global_propellers"] > 0, engine == "propeller")
+                if engine == "propeller":
+                    self.assertIsNone(report["epsilon"])
+                self.assertEqual(sum(report["quality"]["histogram"]), report["cells"])
+                self.assertEqual(len(report["quality"]["histogram"]), 20)
+                self.assertFalse(report["streamed"])
+                self.assertIsNone(report["checksums"])
+
+    def assert_general_report(self, report, map_file):
         self.assertEqual(set(report), REPORT_KEYS)
         self.assertEqual(report["input"]["bytes"], (self.folder / map_file).stat().st_size)
         self.assertEqual(report["output"]["bytes"], (self.folder / "a.vtu").stat().st_size)
         # The build says whether it has oneTBB; without, there is one thread.
         self.assertEqual(report["threads"], int(os.environ.get("HEXHEX_TEST_THREADS", "2")))
-        self.assertIsNone(report["epsilon"])
         self.assertGreater(report["extract_seconds"], 0)
         self.assertGreater(report["peak_memory_bytes"], 1_000_000)
         self.assertAlmostEqual(sum(stage["share"] for stage in report["stages"]), 1, places=6)
         self.assertEqual(sum(report["vertices_by_generator"].values()), report["vertices"])
-        self.assertEqual(sum(report["quality"]["histogram"]), report["cells"])
-        self.assertEqual(len(report["quality"]["histogram"]), 20)
+
+    def test_summary_names_an_engine_that_is_not_the_default(self):
+        map_file = self.generate("box")
+        for arguments, named in [([], False), (["--engine", "atlas"], False),
+                                 (["--engine", "propeller"], True)]:
+            text = self.run_command("extract", map_file, "-o", "a.vtu", *arguments).stdout
+            self.assertEqual("engine" in text, named, text)
+
+    def test_info_of_files_that_hold_a_map_or_a_mesh(self):
+        for extension in ["ovm", "OVMB"]:
+            map_file = self.generate("star", "--valence", "5", name=f"map.{extension}")
+            self.run_command("extract", map_file, "-o", f"mesh.{extension}")
+            information = self.run_command("info", map_file).stdout
+            self.assertIn(f"{map_file}: a tetrahedral mesh with an integer-grid map\n", information)
+            information = self.run_command("info", f"mesh.{extension}").stdout
+            self.assertIn(f"mesh.{extension}: a hexahedral mesh\n", information)
+        # A file that is neither is an error, not the other thing.
+        self.write("map.ovm", (self.folder / "map.ovm").read_text()[:3000])
+        self.assertIn("[FileSyntax", self.run_command("info", "map.ovm", expect=FILE_PROBLEM).stderr)
 
     def test_without_verification(self):
         map_file = self.generate("box")
@@ -362,21 +393,179 @@ class Pipeline(CommandTest):
         self.assertEqual(set(self.files()), {"map.hexex", "a.vtu", "r.json"})
 
 
+class Stream(CommandTest):
+    """extract --stream"""
+
+    def test_same_mesh_as_in_memory(self):
+        for kind in KINDS:
+            map_file = self.generate(kind, "--charts", "random", "--jitter", "0.3", "--cells", "3")
+            for extension in ["vtu", "mesh"]:
+                with self.subTest(kind=kind, extension=extension):
+                    whole, pieces = f"whole.{extension}", f"pieces.{extension}"
+                    self.run_command("extract", map_file, "-o", whole, "--scale", "2")
+                    text = self.run_command("extract", map_file, "-o", pieces, "--scale", "2",
+                                            "--stream").stdout
+                    self.assertRegex(text, r"verification +passed, 7 checks of counts and checksums")
+                    self.assertNotIn("Jacobian", text)
+                    self.run_command("verify", map_file, pieces, "--scale", "2", "--quiet")
+                    surveys = [self.run_command("info", "--pieces", file).stdout.splitlines()[1:]
+                               for file in [whole, pieces]]
+                    self.assertEqual(surveys[0], surveys[1])
+
+    def test_report(self):
+        map_file = self.generate("sphere")
+        self.run_command("extract", map_file, "-o", "a.vtu", "--stream", "--report", "r.json")
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(set(report), REPORT_KEYS)
+        self.assertTrue(report["streamed"])
+        self.assertIsNone(report["quality"])
+        self.assertEqual(report["engine"], "atlas")
+        self.assertEqual(report["output"]["bytes"], (self.folder / "a.vtu").stat().st_size)
+        self.assertEqual(sum(report["vertices_by_generator"].values()), report["vertices"])
+        self.assertGreater(report["peak_memory_bytes"], 1_000_000)
+        self.assertIn("read mesh", [stage["name"] for stage in report["stages"]])
+        self.assertTrue(report["verification"]["passed"])
+        found = {item["name"]: item["found"] for item in report["verification"]["items"]}
+        self.assertEqual(set(found), {"map_valid", "cells", "vertices", "cells_read_back",
+                                      "vertices_read_back", "cell_checksum", "vertex_checksum"})
+        self.assertEqual(found["cells"], str(report["cells"]))
+        self.assertEqual(report["checksums"],
+                         {"cells": found["cell_checksum"], "vertices": found["vertex_checksum"]})
+
+    def test_without_verification(self):
+        map_file = self.generate("box")
+        text = self.run_command("extract", map_file, "-o", "a.vtu", "--stream", "--no-verify",
+                                "--report", "r.json")
+        self.assertIn("skipped", text.stdout)
+        self.assertNotIn("read mesh", text.stderr)
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertIsNone(report["verification"])
+        self.assertRegex(report["checksums"]["cells"], "^[0-9a-f]{16}$")
+
+    def test_same_bytes_with_any_number_of_threads(self):
+        map_file = self.generate("torus", "--charts", "blocks", "--cells", "5")
+        for extension in ["vtu", "mesh"]:
+            for threads in [1, 2, 3]:
+                self.run_command("extract", map_file, "-o", f"{threads}.{extension}", "--stream",
+                                 "--threads", threads, "--quiet")
+            files = self.files()
+            self.assertEqual(files[f"1.{extension}"], files[f"2.{extension}"])
+            self.assertEqual(files[f"1.{extension}"], files[f"3.{extension}"])
+
+    def test_silent_and_nothing_but_the_outputs_is_left(self):
+        map_file = self.generate("box")
+        self.write("real.vtu", "old")
+        (self.folder / "link.vtu").symlink_to("real.vtu")
+        for output in ["a.vtu", "a.mesh", "link.vtu"]:
+            result = self.run_command("extract", map_file, "-o", output, "--stream", "--quiet")
+            self.assertEqual(result.stdout + result.stderr, "")
+        self.assertEqual(set(self.files()),
+                         {"map.hexex", "a.vtu", "a.mesh", "link.vtu", "real.vtu"})
+        self.assertTrue((self.folder / "link.vtu").is_symlink())
+        self.assertEqual(self.files()["real.vtu"], self.files()["a.vtu"])
+
+    def test_refused(self):
+        map_file = self.generate("box")
+        os.mkfifo(self.folder / "pipe.mesh")
+        (self.folder / "taken.vtu").mkdir()
+        for output, expect, code, words in [
+            ("a.ovm", FILE_PROBLEM, "FileUnsupported", ["a.ovm", ".mesh, .vtu"]),
+            ("a.obj", FILE_PROBLEM, "FileUnsupported", ["a.obj"]),
+            ("pipe.mesh", FILE_PROBLEM, "FileWrite", ["pipe.mesh", "read back"]),
+            ("taken.vtu", FILE_PROBLEM, "FileWrite", ["taken.vtu"]),
+            ("missing/a.vtu", FILE_PROBLEM, "FileWrite", ["missing/a.vtu"]),
+        ]:
+            with self.subTest(output=output):
+                self.assert_fails("extract", map_file, "-o", output, "--stream", expect=expect,
+                                  code=code, words=words)
+        self.assert_fails("extract", map_file, "-o", "a.vtu", "--stream", "--engine", "propeller",
+                          expect=BAD_USAGE, code="InvalidArgument", words=["--engine"])
+
+    def test_failure_leaves_what_was_there(self):
+        self.write("a.vtu", "old")
+        map_file = self.write("map.hexex", ONE_TET)
+        self.assert_fails("extract", map_file, "-o", "a.vtu", "--stream", expect=INVALID_MAP,
+                          code="BoundaryOffLattice")
+        self.generate("box", "--cells", "8", "--refine", "1")
+
+        def limit_file_size():
+            import resource
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+
+        for output in ["a.vtu", "a.mesh"]:
+            before = self.files()
+            result = self.run_command("extract", map_file, "-o", output, "--stream",
+                                      expect=FILE_PROBLEM, preexec_fn=limit_file_size)
+            self.assertIn("File too large. [FileWrite]", result.stderr)
+            self.assertIn(f"hexhex: error: {output}: ", result.stderr)
+            self.assertEqual(self.files(), before)
+
+    def test_file_that_does_not_hold_what_was_written(self):
+        """A pipe under the name that the file has until it is verified: what is read back is not
+        what was written."""
+        map_file = self.generate("box")
+        mesh = self.folder / "a.mesh"
+        self.run_command("extract", map_file, "-o", mesh, "--stream")
+        good = mesh.read_text()
+        mesh.unlink()
+        lines = good.splitlines(keepends=True)
+        first = lines.index("Vertices\n") + 2
+        moved = "".join([*lines[:first], "7 7 7 0\n", *lines[first + 1:]])
+        fewer = good.replace("Hexahedra\n512\n", "Hexahedra\n511\n")
+        self.assertNotEqual(good, fewer)
+        for change, words in [(good, []), (moved, ["vertex_checksum"]),
+                              (fewer, ["cells", "cells_read_back", "cell_checksum"])]:
+            script = 'mkfifo ".hexhex-$$-unread.mesh" && exec "$@"'
+            with subprocess.Popen(["sh", "-c", script, "sh", self.command, "extract", map_file,
+                                   "-o", "a.mesh", "--stream", "--quiet"], cwd=self.folder,
+                                  stderr=subprocess.PIPE, text=True) as process:
+                pipe = self.folder / f".hexhex-{process.pid}-unread.mesh"
+                while not pipe.exists():
+                    self.assertIsNone(process.poll())
+                    time.sleep(0.001)
+                self.assertEqual(pipe.read_text(), good)
+                pipe.write_text(change)
+                _, errors = process.communicate(timeout=600)
+            self.assertFalse([*self.folder.glob(".hexhex*")], "renamed or removed")
+            if not words:
+                self.assertEqual((process.returncode, errors), (SUCCESS, ""))
+                mesh.unlink()
+                continue
+            self.assertEqual(process.returncode, FAILURE, errors)
+            self.assertIn("[VerificationFailed]", errors)
+            for word in ["cells", "vertices", "cells_read_back", "vertices_read_back",
+                         "cell_checksum", "vertex_checksum"]:
+                self.assertEqual(f" {word}: expected" in errors, word in words, errors)
+            self.assertFalse(mesh.exists())
+
+
 class Interruption(CommandTest):
-    def test_interrupt_ends_with_a_sentence_and_no_file(self):
+    def interrupt(self, last_line, *arguments):
+        """Ctrl-C soon after a line of progress."""
         map_file = self.generate("box", "--cells", "40", "--refine", "8")
-        with subprocess.Popen([self.command, "extract", map_file, "-o", "a.mesh", "--scale", "2"],
+        with subprocess.Popen([self.command, "extract", map_file, "-o", "a.mesh", *arguments],
                               cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               text=True) as process:
-            # The first line of progress: the handler is in place, and the work takes seconds.
-            line = process.stderr.readline()
+            # With the first line, the handler is in place.
+            for line in process.stderr:
+                self.assertIn("hexhex: ", line)
+                if line == last_line:
+                    break
             time.sleep(0.05)
             process.send_signal(signal.SIGINT)
             _, errors = process.communicate(timeout=600)
-        self.assertIn("hexhex: ", line)
         self.assertEqual(process.returncode, INTERRUPTED, errors)
         self.assertIn("[Cancelled]", errors)
         self.assertEqual(set(self.files()), {"map.hexex"})
+
+    def test_interrupt_ends_with_a_sentence_and_no_file(self):
+        self.interrupt("hexhex: read map\n", "--scale", "2")  # the work takes seconds
+
+    def test_interrupt_of_a_stream(self):
+        self.interrupt("hexhex: cells\n", "--scale", "2", "--stream")
+
+    def test_interrupt_while_a_stream_is_read_back(self):
+        self.interrupt("hexhex: read mesh\n", "--scale", "2", "--stream")
 
 
 if __name__ == "__main__":

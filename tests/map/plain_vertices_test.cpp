@@ -119,12 +119,16 @@ TEST_P(PlainVerticesOfKind, AreSanitizedAsTheirStarsAre) {
         if (allSpecial) {
           for (std::uint8_t& special : survey.plain.special) special = 1;
         }
+        Transitions transitions = computeTransitions(survey.topology, survey.parameters,
+                                                     survey.plain, {}, 0.1, survey.stage);
+        EXPECT_TRUE(transitions.misfits.empty());
         std::vector<StarBlock> stars;
+        collectStars(survey.topology, survey.parameters, survey.plain, {},
+                     allSpecial ? nullptr : &transitions, stars, survey.stage);
+        EXPECT_EQ(std::ranges::count(survey.plain.special, PlainVertices::kFlat) > 0,
+                  !allSpecial && charts != ChartStyle::Aligned && noise == 0);
         const auto singularities = computeSingularities(survey.topology, survey.parameters,
                                                         survey.plain, {}, stars, survey.stage);
-        Transitions transitions =
-            computeTransitions(survey.topology, survey.parameters, survey.plain, {}, 0.1,
-                               survey.stage, survey.defects);
         ExactMap exact =
             sanitize(survey.topology, survey.parameters, std::move(transitions), survey.plain,
                      stars, singularities.value(), 0.1, 1, survey.stage, survey.defects);
@@ -172,7 +176,11 @@ TEST(PlainVertices, TurnsInOneChartAreCounted) {
       const TetMap map = windingFan(turns, angle);
       Survey survey(map);
       ASSERT_TRUE(survey.defects.empty());
+      const Transitions transitions = computeTransitions(survey.topology, survey.parameters,
+                                                         survey.plain, {}, 0.1, survey.stage);
       std::vector<StarBlock> stars;
+      collectStars(survey.topology, survey.parameters, survey.plain, {}, &transitions, stars,
+                   survey.stage);
       const auto singularities = computeSingularities(survey.topology, survey.parameters,
                                                       survey.plain, {}, stars, survey.stage);
       ASSERT_TRUE(singularities.has_value());
@@ -186,6 +194,109 @@ TEST(PlainVertices, TurnsInOneChartAreCounted) {
       EXPECT_EQ(valence, 4 * turns);
     }
   }
+}
+
+/// Which vertices have stars that are flat, but not plain.
+std::vector<Index> flatVertices(const TetMap& map) {
+  Survey survey(map);
+  EXPECT_TRUE(survey.defects.empty());
+  const Transitions transitions =
+      computeTransitions(survey.topology, survey.parameters, survey.plain, {}, 0.1, survey.stage);
+  std::vector<StarBlock> stars;
+  collectStars(survey.topology, survey.parameters, survey.plain, {}, &transitions, stars,
+               survey.stage);
+  std::vector<Index> flat;
+  for (Index v = 0; v < map.points.size(); ++v) {
+    if (survey.plain.special[v] == PlainVertices::kFlat) flat.push_back(v);
+  }
+  return flat;
+}
+
+/// A cube of side 2 around vertex 0, in tets between the centre and halves of the faces' quarters.
+TetMap centredCube() {
+  std::vector<Vec3> points = {{0, 0, 0}};
+  const auto at = [&](int x, int y, int z) {
+    const Vec3 p = {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+    const auto found = std::find(points.begin(), points.end(), p);
+    if (found == points.end()) points.push_back(p);
+    return static_cast<Index>(std::find(points.begin(), points.end(), p) - points.begin());
+  };
+  std::vector<Tet> tets;
+  for (const int s : {-1, 1}) {
+    for (const int y : {-1, 0}) {
+      for (const int z : {-1, 0}) {
+        for (int turn = 0; turn < 3; ++turn) {
+          std::array<std::array<int, 3>, 4> quad = {
+              {{s, y, z}, {s, y + 1, z}, {s, y + 1, z + 1}, {s, y, z + 1}}};
+          for (std::array<int, 3>& p : quad) {
+            std::rotate(p.begin(), p.begin() + turn, p.end());
+          }
+          std::array<Index, 4> q{};
+          for (std::size_t i = 0; i < 4; ++i) q[i] = at(quad[i][0], quad[i][1], quad[i][2]);
+          if (s < 0) std::swap(q[1], q[3]);
+          tets.push_back({0, q[0], q[1], q[2]});
+          tets.push_back({0, q[0], q[2], q[3]});
+        }
+      }
+    }
+  }
+  return test::identityMap(points, tets);
+}
+
+/// Rotates by a quarter turn about the third axis, and translates.
+void changeChart(TetParameters& parameters, double translation) {
+  for (Vec3& u : parameters) u = {-u[1] + translation, u[0], u[2] - translation};
+}
+
+TEST(FlatStars, AreThoseOfExactTransitionsWithoutHolonomy) {
+  const TetMap plain = centredCube();
+  EXPECT_EQ(std::ranges::count(flatVertices(plain), 0U), 0);  // but plain
+
+  TetMap flat = plain;
+  for (const std::size_t t : {3U, 8U, 20U, 21U}) changeChart(flat.parameters[t], 3);
+  EXPECT_EQ(std::ranges::count(flatVertices(flat), 0U), 1);
+
+  TetMap rounded = flat;
+  rounded.parameters[8][0][0] += 0x1p-50;
+  EXPECT_EQ(std::ranges::count(flatVertices(rounded), 0U), 0);
+
+  // 0 + 3 was rounded here: the sum is right, but the numbers differ.
+  TetMap cancelled = flat;
+  for (std::size_t t = 0; t < cancelled.tets.size(); ++t) {
+    if (t != 3 && t != 8 && t != 20 && t != 21) cancelled.parameters[t][0][1] = 1e-20;
+  }
+  EXPECT_EQ(std::ranges::count(flatVertices(cancelled), 0U), 0);
+}
+
+TEST(FlatStars, OfTheBoundaryLieInOnePlane) {
+  // What is left of the star on one side of a plane, or of two.
+  const TetMap cube = centredCube();
+  const auto part = [&](auto keep) {
+    TetMap map = cube;
+    map.tets.clear();
+    map.parameters.clear();
+    for (std::size_t t = 0; t < cube.tets.size(); ++t) {
+      Vec3 mean{};
+      for (const Vec3& u : cube.parameters[t]) mean = plus(mean, u);
+      if (!keep(mean)) continue;
+      map.tets.push_back(cube.tets[t]);
+      map.parameters.push_back(cube.parameters[t]);
+      if (map.tets.size() % 3 == 0) changeChart(map.parameters.back(), 5);
+    }
+    return map;
+  };
+  const TetMap half = part([](const Vec3& u) { return u[0] > 0; });
+  EXPECT_EQ(std::ranges::count(flatVertices(half), 0U), 1);
+  const TetMap quarter = part([](const Vec3& u) { return u[0] > 0 && u[1] > 0; });
+  EXPECT_EQ(std::ranges::count(flatVertices(quarter), 0U), 0);
+  const TetMap rest = part([](const Vec3& u) { return u[0] > 0 || u[1] > 0; });
+  EXPECT_EQ(std::ranges::count(flatVertices(rest), 0U), 0);
+
+  TetMap between = half;  // halfway between two planes, where rounding depends on the chart
+  for (TetParameters& parameters : between.parameters) {
+    for (Vec3& u : parameters) u = {u[0] + 0.5, u[1] + 0.5, u[2]};
+  }
+  EXPECT_EQ(std::ranges::count(flatVertices(between), 0U), 0);
 }
 
 TEST(TetSides, ConesOfACornerCoverADirectionOnce) {

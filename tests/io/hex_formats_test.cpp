@@ -1,0 +1,238 @@
+// What all formats of hexahedral meshes have in common, and the exact text of those for
+// simulations: `.vtk`, `.inp`, MFEM.
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/io.hpp>
+
+#include <io/io_test_support.hpp>
+#include <io/mesh_groups.hpp>
+
+namespace hexhex::test {
+namespace {
+
+void write(const HexMesh& mesh, const std::filesystem::path& file, std::string_view format = {},
+           int threads = 1) {
+  Context context(threads);
+  WriteOptions options;
+  options.format = format;
+  writeHexMesh(mesh, file, options, context);
+}
+
+/// A cube with the corners 0 and 1 only.
+HexMesh cube() {
+  HexMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                 {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  mesh.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
+  return mesh;
+}
+
+struct Format {
+  const char* name;
+  const char* file;
+};
+
+/// Formats that are read and written without loss.
+constexpr std::array<Format, 5> kLossless = {{{"msh", "a.msh"},
+                                              {"msh41-ascii", "b.msh"},
+                                              {"msh22-ascii", "c.msh"},
+                                              {"meshb", "a.meshb"},
+                                              {"vtk", "a.vtk"}}};
+
+TEST(HexFormats, RoundTripIsLosslessWithAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  HexMesh original = gridMesh(17, 11, 13);
+  Random random(11);
+  for (std::size_t i = 0; i < 200; ++i) {
+    original.points[i] = {random.anyDouble(), -0.0, 5e-324 * static_cast<double>(i)};
+  }
+  for (const Format& format : kLossless) {
+    write(original, folder / format.file, format.name);
+    const std::string bytes = contentOf(folder / format.file);
+    write(original, folder / format.file, format.name, 4);
+    EXPECT_TRUE(contentOf(folder / format.file) == bytes) << format.name;
+    for (const int threads : {1, 4}) {
+      Context context(threads);
+      const HexMesh read = readHexMesh(folder / format.file, context);
+      expectSameBits(original.points, read.points);
+      EXPECT_EQ(original.cells, read.cells) << format.name;
+    }
+  }
+}
+
+TEST(HexFormats, FeaturesDoNotChangeTheMesh) {
+  const TemporaryFolder folder;
+  HexMesh original = gridMesh(2, 2, 2);
+  original.features.vertices = {{0, 4}, {2, -1}};
+  original.features.edges = {{{0, 1}, 2}, {{1, 2}, -7}};
+  original.features.quads = {{{0, 1, 4, 3}, 6}, {{1, 4, 13, 10}, 2}};
+  for (const Format& format : kLossless) {
+    write(original, folder / format.file, format.name);
+    const HexMesh read = readHexMesh(folder / format.file);
+    expectSameBits(original.points, read.points);
+    EXPECT_EQ(original.cells, read.cells) << format.name;
+  }
+}
+
+TEST(HexFormats, EmptyMeshes) {
+  const TemporaryFolder folder;
+  for (const Format& format : kLossless) {
+    write(HexMesh{}, folder / format.file, format.name);
+    EXPECT_TRUE(readHexMesh(folder / format.file).points.empty()) << format.name;
+  }
+  write(HexMesh{}, folder / "a.inp");
+  write(HexMesh{}, folder / "a.mesh", "mfem");
+}
+
+TEST(HexFormats, NamesOverrideExtensions) {
+  const TemporaryFolder folder;
+  write(cube(), folder / "a.mesh", "mfem");
+  EXPECT_TRUE(contentOf(folder / "a.mesh").starts_with("MFEM mesh v1.0\n"));
+  write(cube(), folder / "noextension", "vtk");
+  EXPECT_TRUE(contentOf(folder / "noextension").starts_with("# vtk DataFile Version 2.0\n"));
+  const Failure unknown = failureOf([&] { write(cube(), folder / "b.mesh", "nastran"); });
+  EXPECT_EQ(unknown.code, ErrorCode::FileUnsupported);
+  EXPECT_NE(unknown.sentence.find("msh41-ascii"), std::string::npos) << unknown.sentence;
+  EXPECT_NO_THROW(requireHexMeshFormat("a", "mfem"));
+  EXPECT_EQ(failureOf([] { requireHexMeshFormat("a.mesh", "nastran"); }).code,
+            ErrorCode::FileUnsupported);
+  EXPECT_EQ(folder.fileCount(), 2U);
+}
+
+TEST(HexFormats, WhatIsOnlyWrittenIsNotRead) {
+  const Failure failure = failureOf([] { static_cast<void>(readHexMesh("a.inp")); });
+  EXPECT_EQ(failure.code, ErrorCode::FileUnsupported);
+  EXPECT_NE(failure.sentence.find("written, but not read"), std::string::npos) << failure.sentence;
+}
+
+TEST(HexFormats, FeaturesWithVerticesThatDoNotExistAreRefused) {
+  const TemporaryFolder folder;
+  for (const char* format : {"msh", "msh41-ascii", "msh22-ascii", "meshb", "inp", "mfem"}) {
+    HexMesh mesh = cube();
+    mesh.features.quads = {{{0, 1, 2, 8}, 1}};
+    EXPECT_EQ(failureOf([&] { write(mesh, folder / "a", format); }).code,
+              ErrorCode::InvalidArgument)
+        << format;
+  }
+  EXPECT_EQ(folder.fileCount(), 0U);
+}
+
+TEST(HexFormats, NothingIsLeftOfAFileThatCannotBeWritten) {
+  const TemporaryFolder folder;
+  for (const char* format : {"msh", "msh41-ascii", "msh22-ascii", "meshb", "vtk", "inp", "mfem"}) {
+    EXPECT_EQ(failureOf([&] { write(cube(), folder / "no/such/folder", format); }).code,
+              ErrorCode::FileWrite)
+        << format;
+  }
+  EXPECT_EQ(folder.fileCount(), 0U);
+}
+
+TEST(MeshGroups, TagsAreNumbersOnlyIfAllArePositive) {
+  HexMesh mesh = cube();
+  const auto numbersOf = [&mesh] {
+    Context context;
+    Stage stage(context, "test");
+    std::string result;
+    for (const ElementGroup& group : groupQuads(mesh, stage).groups) {
+      result += group.name + ":" + std::to_string(group.number) + ":" +
+                std::to_string(group.end - group.begin) + " ";
+    }
+    return result;
+  };
+  EXPECT_EQ(numbersOf(), "boundary:1:6 ");
+  mesh.features.quads = {{{4, 5, 6, 7}, 9}, {{3, 2, 1, 0}, 4}, {{2, 3, 7, 6}, 0}};
+  EXPECT_EQ(numbersOf(), "surface_4:4:1 surface_9:9:1 boundary:10:4 ");
+  mesh.features.quads[0].tag = -5;
+  EXPECT_EQ(numbersOf(), "surface_m5:1:1 surface_4:2:1 boundary:3:4 ");
+  mesh.features.quads[0].tag = std::numeric_limits<std::int32_t>::max();
+  EXPECT_EQ(numbersOf(), "surface_4:1:1 surface_2147483647:2:1 boundary:3:4 ");
+}
+
+const std::string kPointLines = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n";
+
+TEST(VtkLegacy, WritesExactlyTheNarrowForm) {
+  const TemporaryFolder folder;
+  write(cube(), folder / "a.vtk");
+  EXPECT_EQ(contentOf(folder / "a.vtk"),
+            "# vtk DataFile Version 2.0\nhexahedral mesh by hexhex\nASCII\n"
+            "DATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n" +
+                kPointLines + "CELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n");
+}
+
+TEST(Mfem, WritesAttributesOfTheBoundary) {
+  const TemporaryFolder folder;
+  HexMesh mesh = cube();
+  mesh.features.quads = {{{4, 5, 6, 7}, 2}};
+  write(mesh, folder / "a.mesh", "mfem");
+  EXPECT_EQ(contentOf(folder / "a.mesh"),
+            "MFEM mesh v1.0\n\ndimension\n3\n\nelements\n1\n1 5 0 1 2 3 4 5 6 7\n\nboundary\n6\n"
+            "2 3 4 5 6 7\n3 3 0 4 7 3\n3 3 1 2 6 5\n3 3 0 1 5 4\n3 3 3 7 6 2\n3 3 0 3 2 1\n"
+            "\nvertices\n8\n3\n" +
+                kPointLines);
+}
+
+TEST(Abaqus, WritesSetsAndSurfaces) {
+  const TemporaryFolder folder;
+  HexMesh mesh = cube();
+  mesh.features.quads = {{{4, 5, 6, 7}, 2}};
+  mesh.features.vertices = {{6, -3}};
+  write(mesh, folder / "a.inp");
+  const std::string text = contentOf(folder / "a.inp");
+  EXPECT_TRUE(text.starts_with("*HEADING\nhexahedral mesh by hexhex\n*NODE\n1, 0, 0, 0\n"));
+  const std::string tail =
+      "*ELEMENT, TYPE=C3D8, ELSET=HEXAHEDRA\n1, 1, 2, 3, 4, 5, 6, 7, 8\n"
+      "*NSET, NSET=N_SURFACE_2\n5, 6, 7, 8\n*NSET, NSET=N_BOUNDARY\n1, 2, 3, 4, 5, 6, 7, 8\n"
+      "*NSET, NSET=N_POINT_M3\n7\n*SURFACE, TYPE=ELEMENT, NAME=S_SURFACE_2\n1, S2\n"
+      "*SURFACE, TYPE=ELEMENT, NAME=S_BOUNDARY\n1, S6\n1, S4\n1, S3\n1, S5\n1, S1\n";
+  EXPECT_EQ(text.substr(text.find("*ELEMENT")), tail);
+}
+
+TEST(Abaqus, FacesHaveAbaqusNumbers) {
+  // From the documentation of C3D8: S1 is 1-2-3-4, S2 5-8-7-6, S3 1-5-6-2, S4 2-6-7-3, S5 3-7-8-4,
+  // S6 4-8-5-1.
+  constexpr std::array<Quad, 6> kFaces = {
+      {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}}};
+  const TemporaryFolder folder;
+  for (std::size_t face = 0; face < 6; ++face) {
+    HexMesh mesh = cube();
+    mesh.features.quads = {{kFaces[face], 1}};
+    write(mesh, folder / "a.inp");
+    EXPECT_NE(contentOf(folder / "a.inp").find("NAME=S_SURFACE_1\n1, S" + std::to_string(face + 1)),
+              std::string::npos)
+        << face;
+  }
+}
+
+TEST(Abaqus, NumbersHaveAtMostTwentyCharacters) {
+  const TemporaryFolder folder;
+  HexMesh mesh = cube();
+  Random random(3);
+  while (mesh.points.size() < 3000) {
+    mesh.points.push_back({random.anyDouble(), random.anyDouble(), -1.2345678901234567e-308});
+  }
+  mesh.points[0] = {0.012345678901234567, -1.0 / 3, -0.1};
+  write(mesh, folder / "a.inp");
+  std::istringstream lines(contentOf(folder / "a.inp"));
+  std::string line;
+  for (int i = 0; i < 3; ++i) std::getline(lines, line);
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    ASSERT_TRUE(std::getline(lines, line));
+    std::istringstream fields(line);
+    std::string field;
+    std::getline(fields, field, ',');
+    ASSERT_EQ(field, std::to_string(i + 1));
+    for (const double expected : mesh.points[i]) {
+      std::getline(fields, field, ',');
+      ASSERT_LE(field.size(), 21U) << field;  // with the space in front
+      const double found = std::stod("0" + field == "0" ? "x" : field);
+      ASSERT_NEAR(found / expected, 1, i == 0 ? 0 : 1e-12) << field;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hexhex::test

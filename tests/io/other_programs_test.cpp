@@ -1,0 +1,113 @@
+// What other programs understand of our files: meshio, VTK, Gmsh and MFEM, all through Python, and
+// each only if it is installed (HEXHEX_PYTHON: another interpreter than python3). Coordinates are
+// compared bit for bit, cells corner by corner.
+#include <cstdlib>
+#include <string>
+#include <sys/wait.h>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/io.hpp>
+
+#include <io/io_test_support.hpp>
+
+namespace hexhex::test {
+namespace {
+
+constexpr int kNotInstalled = 77;
+
+/// A grid with tagged quads on the boundary and inside, tagged edges and vertices.
+HexMesh meshWithFeatures() {
+  HexMesh mesh = gridMesh(3, 2, 2);
+  const auto vertex = [](Index x, Index y, Index z) { return x + 4 * (y + 3 * z); };
+  const auto quadAcrossX = [&](Index x, Index y, Index z) {
+    return Quad{vertex(x, y, z), vertex(x, y + 1, z), vertex(x, y + 1, z + 1), vertex(x, y, z + 1)};
+  };
+  mesh.features.quads = {{quadAcrossX(0, 0, 0), 7}, {quadAcrossX(0, 1, 0), 7},
+                         {quadAcrossX(3, 1, 1), 3}, {quadAcrossX(1, 0, 0), 3}};
+  mesh.features.edges = {{{vertex(0, 0, 0), vertex(1, 0, 0)}, 5},
+                         {{vertex(1, 0, 0), vertex(2, 0, 0)}, 5}};
+  mesh.features.vertices = {{vertex(0, 0, 0), 1}, {vertex(3, 0, 0), 1}, {vertex(3, 2, 2), 2}};
+  return mesh;
+}
+
+std::string interpreter() {
+  const char* const chosen = std::getenv("HEXHEX_PYTHON");
+  return chosen != nullptr ? chosen : "python3";
+}
+
+struct Check {
+  std::string program;
+  std::string format;  ///< as in WriteOptions
+  std::string file;
+  std::string groups;  ///< what the program says of meshWithFeatures()
+};
+
+void PrintTo(const Check& check, std::ostream* stream) {
+  *stream << check.program << " reads " << check.format;
+}
+
+class OtherPrograms : public testing::TestWithParam<Check> {};
+
+TEST_P(OtherPrograms, ReadWhatWeWrite) {
+  const Check& check = GetParam();
+  const TemporaryFolder folder;
+  const HexMesh mesh = meshWithFeatures();
+  Context context;
+  WriteOptions options;
+  options.format = check.format;
+  writeHexMesh(mesh, folder / check.file, options, context);
+
+  const std::string script =
+      (std::filesystem::path(__FILE__).parent_path() / "read_with.py").string();
+  const std::string output = (folder / "out").string();
+  const std::string command = interpreter() + " '" + script + "' " + check.program + " '" +
+                              (folder / check.file).string() + "' '" + output + "' > '" + output +
+                              ".groups' 2> '" + output + ".errors'";
+  const int status = std::system(command.c_str());
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (code == kNotInstalled || code == 127) {
+    GTEST_SKIP() << check.program << " for " << interpreter() << " is not installed";
+  }
+  ASSERT_EQ(code, 0) << contentOf(output + ".errors");
+
+  const std::string points(reinterpret_cast<const char*>(mesh.points.data()),
+                           mesh.points.size() * sizeof(Vec3));
+  EXPECT_EQ(contentOf(output + ".points"), points);
+  std::vector<std::int64_t> corners;
+  for (const Hex& cell : mesh.cells) corners.insert(corners.end(), cell.begin(), cell.end());
+  const std::string cells(reinterpret_cast<const char*>(corners.data()),
+                          corners.size() * sizeof(std::int64_t));
+  EXPECT_EQ(contentOf(output + ".cells"), cells);
+  EXPECT_EQ(contentOf(output + ".groups"), check.groups);
+}
+
+// 32 boundary quads, three of them with a tag, and one tagged quad inside.
+const std::string kNamed = "boundary 29\nsurface_3 2\nsurface_7 2\n";
+const std::string kNumbered = "3 2\n7 2\n8 29\n";
+const std::string kNodeSets =
+    "N_BOUNDARY 34\nN_CURVE_5 3\nN_POINT_1 2\nN_POINT_2 1\nN_SURFACE_3 8\nN_SURFACE_7 6\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    Formats, OtherPrograms,
+    testing::Values(Check{"meshio", "msh", "a.msh", kNamed},
+                    Check{"meshio", "msh41-ascii", "a.msh", kNamed},
+                    Check{"meshio", "msh22-ascii", "a.msh", kNamed},
+                    Check{"gmsh", "msh", "a.msh", kNamed},
+                    Check{"gmsh", "msh41-ascii", "a.msh", kNamed},
+                    Check{"gmsh", "msh22-ascii", "a.msh", kNamed},
+                    Check{"meshio", "meshb", "a.meshb", kNumbered},
+                    Check{"meshio", "vtk", "a.vtk", ""}, Check{"vtk", "vtk", "a.vtk", ""},
+                    Check{"mfem", "vtk", "a.vtk", ""},
+                    Check{"meshio", "inp", "a.inp", kNodeSets},
+                    Check{"mfem", "mfem", "a.mesh", kNumbered}),
+    [](const auto& test) {
+      std::string name = test.param.program + "_" + test.param.format;
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name;
+    });
+
+}  // namespace
+}  // namespace hexhex::test
