@@ -88,7 +88,7 @@ void printWarnings(const ExtractStatistics& statistics) {
 
 std::string verificationAsText(const ExtractionRecord& record) {
   if (!record.verification) return "skipped";
-  const std::string passed =
+  std::string passed =
       fmt::format("passed, {}", counted(record.verification->items.size(), "check"));
   if (!record.streamed) return passed;
   return passed + " of counts and checksums, in the file as it was read back";

@@ -30,13 +30,14 @@ void writeMap(const TetMap& map, const std::filesystem::path& file);
 
 /// What a writer may be told beside the mesh.
 struct WriteOptions {
+  /// What scaledJacobians() returned for this mesh, if the caller has it anyway. Empty: computed by
+  /// writers whose format holds it.
+  std::span<const double> scaledJacobians = {};
+
   /// A format by its name, whatever the file's extension: "mesh", "vtu", "ovm", "ovmb", "meshb",
   /// "vtk", "msh" (Gmsh 4.1, binary), "msh41-ascii", "msh22-ascii", "inp", "mfem". Empty: what the
   /// extension means.
   std::string_view format = {};
-  /// What scaledJacobians() returned for this mesh, if the caller has it anyway. Empty: computed by
-  /// writers whose format holds it.
-  std::span<const double> scaledJacobians = {};
 };
 
 /// Writes a hexahedral mesh: `.mesh` (vertices, boundary quads, hexahedra) or `.vtu` (binary

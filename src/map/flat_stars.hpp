@@ -32,12 +32,11 @@ class FlatStarTest {
 
   /// Whether the vertex is on the boundary.
   [[nodiscard]] bool onBoundary() const noexcept { return plane_ != 0; }
-  /// The boundary plane's axis in the chart of a member, as a bit.
-  [[nodiscard]] unsigned plane(std::size_t member) const noexcept;
+  /// The axis across which the boundary plane is in the chart of a member.
+  [[nodiscard]] std::size_t axis(std::size_t member) const noexcept;
 
  private:
   bool unfold(std::span<const VertexStar::Member> star);
-  bool cross(const VertexStar::Member& member, std::size_t i, std::size_t k, std::size_t& reached);
   bool addBoundary(HalfFace halfFace, std::size_t i);
   [[nodiscard]] bool isBetweenPlanes(CornerIndex corner) const;
   [[nodiscard]] bool coversDirectionOnce(std::span<const VertexStar::Member> star) const;

@@ -33,6 +33,49 @@ constexpr std::array<std::uint8_t, 16> kConeCorner = [] {
   return corners;
 }();
 
+/// The faces of a tet, as seen by directions.
+class TetNormals {
+ public:
+  explicit TetNormals(const TetParameters& u) {
+    const Vec3 a = minus(u[1], u[0]);
+    const Vec3 b = minus(u[2], u[0]);
+    const Vec3 c = minus(u[3], u[0]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      size_ = std::max({size_, std::abs(a[k]), std::abs(b[k]), std::abs(c[k])});
+    }
+    normals_ = {cross(b, c), cross(c, a), cross(a, b)};
+    const double determinant = dot(a, normals_[0]);
+    isPositive_ = size_ > 0x1p-300 && determinant > 0x1p-46 * size_ * size_ * size_;
+  }
+
+  /// As computeSides().
+  [[nodiscard]] TetSides sides(unsigned mirror) const noexcept {
+    Vec3 direction = kGeneralDirection;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if ((mirror >> k) & 1U) direction[k] = -direction[k];
+    }
+    const double side1 = dot(direction, normals_[0]);
+    const double side2 = dot(direction, normals_[1]);
+    const double side3 = dot(direction, normals_[2]);
+    const double side0 = -(side1 + side2 + side3);
+    // With u = 2^-53: differences carry one rounding, components of normals are below 2 size^2 and
+    // off by 8 u size^2, the determinant by 42 u size^3, sides 1 to 3 by 33 u size^2 and side 0 by
+    // 141 u size^2. Below 2^-300, products could underflow.
+    const double uncertainty = 0x1p-45 * size_ * size_;
+    const double smallest =
+        std::min({std::abs(side0), std::abs(side1), std::abs(side2), std::abs(side3)});
+    if (!(isPositive_ && smallest > uncertainty)) return kUncertainSides;
+    return static_cast<TetSides>((side0 > 0 ? 1 : 0) + (side1 > 0 ? 2 : 0) + (side2 > 0 ? 4 : 0) +
+                                 (side3 > 0 ? 8 : 0));
+  }
+
+ private:
+  /// Inward, of the faces opposite corners 1, 2, 3; the four normals add up to zero.
+  std::array<Vec3, 3> normals_{};
+  double size_ = 0;
+  bool isPositive_ = false;
+};
+
 /// Compares all corners with the first one of their vertex, and counts cones.
 void surveyTets(const TetTopology& topology, const LocalParameters& parameters, Survey& survey,
                 PlainVertices& result, Stage& stage) {
@@ -42,7 +85,7 @@ void surveyTets(const TetTopology& topology, const LocalParameters& parameters, 
     for (std::size_t i = 0; i < 4; ++i) {
       if (u[i] != survey.parameter[tet[i]]) mark(survey.unequal[tet[i]]);
     }
-    const TetSides sides = computeSides(u);
+    const TetSides sides = TetNormals(u).sides(0);
     result.sides[t] = sides;
     if (sides == kUncertainSides) {
       for (const Index v : tet) mark(result.special[v]);
@@ -143,19 +186,20 @@ class MirrorSurvey {
       : topology_(topology), parameters_(parameters), survey_(survey), result_(result) {}
 
   void run(Index t) {
-    const Tet& tet = topology_.tets[t];
     unsigned axes = 0;
-    for (const Index v : tet) axes |= result_.plane[v];
+    // On two planes, a vertex is special anyway.
+    for (const Index v : topology_.tets[t]) {
+      axes |= std::has_single_bit(result_.plane[v]) ? result_.plane[v] : 0U;
+    }
     if (axes == 0) return;
+    const TetNormals normals(parameters_(t));
     for (unsigned axis = 1; axis <= 4; axis *= 2) {
-      if ((axes & axis) != 0) count(t, axis);
+      if ((axes & axis) != 0) count(topology_.tets[t], axis, normals.sides(axis));
     }
   }
 
  private:
-  void count(Index t, unsigned axis) {
-    const Tet& tet = topology_.tets[t];
-    const TetSides sides = computeSides(parameters_(t), axis);
+  void count(const Tet& tet, unsigned axis, TetSides sides) {
     if (sides == kUncertainSides) {
       for (const Index v : tet) mark(result_.special[v]);
       return;
@@ -184,35 +228,7 @@ unsigned constantAxes(const LocalParameters& parameters, HalfFace halfFace) noex
 }
 
 TetSides computeSides(const TetParameters& u, unsigned mirror) noexcept {
-  const Vec3 a = minus(u[1], u[0]);
-  const Vec3 b = minus(u[2], u[0]);
-  const Vec3 c = minus(u[3], u[0]);
-  double size = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    size = std::max({size, std::abs(a[k]), std::abs(b[k]), std::abs(c[k])});
-  }
-  Vec3 direction = kGeneralDirection;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if ((mirror >> k) & 1U) direction[k] = -direction[k];
-  }
-  // Inward normals of the faces opposite corners 1, 2, 3; the four normals add up to zero.
-  const Vec3 normal1 = cross(b, c);
-  const double determinant = dot(a, normal1);
-  const double side1 = dot(direction, normal1);
-  const double side2 = dot(direction, cross(c, a));
-  const double side3 = dot(direction, cross(a, b));
-  const double side0 = -(side1 + side2 + side3);
-  // With u = 2^-53: differences carry one rounding, components of normals are below 2 size^2 and
-  // off by 8 u size^2, the determinant by 42 u size^3, sides 1 to 3 by 33 u size^2 and side 0 by
-  // 141 u size^2. Below 2^-300, products could underflow.
-  const double uncertainty = 0x1p-45 * size * size;
-  const double smallest =
-      std::min({std::abs(side0), std::abs(side1), std::abs(side2), std::abs(side3)});
-  if (!(size > 0x1p-300 && determinant > 0x1p-46 * size * size * size && smallest > uncertainty)) {
-    return kUncertainSides;
-  }
-  return static_cast<TetSides>((side0 > 0 ? 1 : 0) + (side1 > 0 ? 2 : 0) + (side2 > 0 ? 4 : 0) +
-                               (side3 > 0 ? 8 : 0));
+  return TetNormals(u).sides(mirror);
 }
 
 PlainVertices findPlainVertices(const TetTopology& topology, const LocalParameters& parameters,

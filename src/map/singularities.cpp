@@ -269,7 +269,7 @@ class StarSorter {
     plain_.plane[vertex] = flat_->onBoundary() ? PlainVertices::kPlaneOfStar : 0;
     if (!flat_->onBoundary()) return;
     for (std::size_t i = 0; i < star.size(); ++i) {
-      stars_.planeCorners.push_back({star[i].corner, flat_->plane(i)});
+      stars_.planeCorners.push_back({star[i].corner, 1U << flat_->axis(i)});
     }
   }
 

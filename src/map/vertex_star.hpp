@@ -36,18 +36,24 @@ class VertexStar {
     tets_.clear();
     const Index first = topology.vertexTet[vertex];
     tets_.insert(first);
-    members_[0].corner = cornerAt(topology, first, vertex);
+    members_[0] = {cornerAt(topology, first, vertex), {kUnset, kUnset, kUnset}};
     for (std::size_t head = 0; head < tets_.size(); ++head) {
       // Up to three more, and one that is written in vain.
       if (members_.size() < tets_.size() + 4) members_.resize(2 * members_.size());
       for (std::size_t k = 0; k < 3; ++k) {
+        if (members_[head].neighbour[k] != kUnset) continue;
         const HalfFace mate = topology.mate[members_[head].halfFace(k)];
         // No branch at the boundary: there, a tet stands for its neighbour.
         const bool boundary = mate == kNone;
         const Index tet = boundary ? members_[head].tet() : tetOf(mate);
         const std::size_t end = tets_.size();
         const Index neighbour = tets_.insert(tet);
-        members_[end].corner = cornerAt(topology, tet, vertex);
+        const CornerIndex corner = cornerAt(topology, tet, vertex);
+        members_[end] = {corner, {kUnset, kUnset, kUnset}};
+        // The same link from the other side, if there is one.
+        const HalfFace local = mate % 4;
+        const std::size_t back = local - (local > corner % 4 ? 1U : 0U);
+        if (!boundary) members_[neighbour].neighbour[back] = static_cast<Index>(head);
         members_[head].neighbour[k] = boundary ? kNone : neighbour;
       }
     }
@@ -63,6 +69,8 @@ class VertexStar {
   [[nodiscard]] static CornerIndex cornerAt(const TetTopology& topology, Index tet, Index vertex) {
     return 4 * tet + static_cast<CornerIndex>(topology.localCorner(tet, vertex));
   }
+
+  static constexpr Index kUnset = kNone - 1;
 
   KeyTable tets_;
   std::vector<Member> members_ = std::vector<Member>(64);

@@ -1,6 +1,7 @@
 // Damaged files: truncated at every byte, and with random bytes changed. Whatever happens, a reader
 // returns a consistent mesh or throws an Error, and never asks for memory out of proportion.
 #include <atomic>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 #include <string>
@@ -9,9 +10,12 @@
 
 #include <hexhex/io.hpp>
 
+#include <io/gmsh.hpp>
 #include <io/hexex.hpp>
 #include <io/io_test_support.hpp>
 #include <io/medit.hpp>
+#include <io/meshb.hpp>
+#include <io/vtk_legacy.hpp>
 #include <io/vtu.hpp>
 
 namespace {
@@ -115,6 +119,40 @@ TEST(DamagedFiles, Vtu) {
   const TemporaryFolder folder;
   writeHexMesh(gridMesh(2, 2, 1), folder / "a.vtu");
   damage(contentOf(folder / "a.vtu"), parseVtu);
+}
+
+TEST(DamagedFiles, Gmsh) {
+  const TemporaryFolder folder;
+  HexMesh mesh = gridMesh(2, 1, 1);
+  mesh.features.vertices = {{3, 2}};
+  mesh.features.edges = {{{0, 1}, 2}};
+  Context context;
+  for (const char* format : {"msh", "msh41-ascii", "msh22-ascii"}) {
+    WriteOptions options;
+    options.format = format;
+    writeHexMesh(mesh, folder / "a.msh", options, context);
+    damage(contentOf(folder / "a.msh"), parseGmsh);
+  }
+}
+
+TEST(DamagedFiles, Meshb) {
+  const TemporaryFolder folder;
+  Context context;
+  for (const std::uint32_t version : {2U, 4U}) {
+    writeMeshbVersion(gridMesh(2, 2, 1), folder / "a.meshb", version, context);
+    damage(contentOf(folder / "a.meshb"), parseMeshb);
+  }
+}
+
+TEST(DamagedFiles, VtkLegacy) {
+  const TemporaryFolder folder;
+  writeHexMesh(gridMesh(2, 2, 1), folder / "a.vtk");
+  const std::string text = contentOf(folder / "a.vtk");
+  damage(text, parseVtkLegacy);
+  // The same bytes mean something else.
+  std::string binary = text;
+  binary.replace(binary.find("ASCII"), 5, "BINARY");
+  damage(binary, parseVtkLegacy);
 }
 
 TEST(DamagedFiles, TruncatedAtEveryByteOnDiskToo) {

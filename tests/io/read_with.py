@@ -4,8 +4,8 @@
 usage: read_with.py PROGRAM FILE OUT
 
 PROGRAM is meshio, vtk, gmsh or mfem. OUT.points gets the coordinates (float64), OUT.cells the
-0-based corners of the hexahedra (int64); standard output gets a line for each group of quads: its
-name or number, and how many there are. Exit code 77: the program is not installed.
+0-based corners of the hexahedra (int64), OUT.groups a line for each group of quads (of `.inp`: node
+set): its name or number, and how many elements it has. Exit code 77: the program is not installed.
 """
 
 import sys
@@ -100,8 +100,9 @@ def main():
         return NOT_INSTALLED
     points.astype("<f8").tofile(out + ".points")
     cells.astype("<i8").tofile(out + ".cells")
-    for name in sorted(groups):
-        print(name, groups[name])
+    with open(out + ".groups", "w", encoding="utf-8") as listing:
+        for name in sorted(groups):
+            print(name, groups[name], file=listing)
     return 0
 
 

@@ -1,0 +1,182 @@
+// `.msh` files: exact content, what other programs write and ours does not, errors.
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/io.hpp>
+
+#include <io/gmsh.hpp>
+#include <io/io_test_support.hpp>
+
+namespace hexhex::test {
+namespace {
+
+HexMesh parse(const std::string& text) {
+  Context context;
+  return parseGmsh(text, "m.msh", context);
+}
+
+Failure failure(const std::string& text) {
+  return failureOf([&] { static_cast<void>(parse(text)); });
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t place = text.find(from);
+  EXPECT_NE(place, std::string::npos) << from;
+  return text.replace(place, from.size(), to);
+}
+
+template <class T>
+std::string bytes(T value) {
+  return {reinterpret_cast<const char*>(&value), sizeof(value)};
+}
+
+template <class T>
+std::string bytesOf(std::initializer_list<T> values) {
+  std::string result;
+  for (const T value : values) result += bytes(value);
+  return result;
+}
+
+const std::string kHead22 = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+const std::string kNodes22 =
+    "$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n"
+    "$EndNodes\n";
+const std::string kCube22 = "$Elements\n1\n1 5 2 1 1 1 2 3 4 5 6 7 8\n$EndElements\n";
+constexpr Hex kCubeCell = {0, 1, 2, 3, 4, 5, 6, 7};
+
+TEST(Gmsh, WritesExactlyTheSectionsOfVersion22) {
+  const TemporaryFolder folder;
+  HexMesh mesh = parse(kHead22 + kNodes22 + kCube22);
+  mesh.features.quads = {{{4, 5, 6, 7}, 2}};
+  mesh.features.edges = {{{0, 1}, 9}};
+  mesh.features.vertices = {{3, 6}, {0, 6}};
+  Context context;
+  writeGmsh22Text(mesh, folder / "a.msh", {}, context);
+  EXPECT_EQ(contentOf(folder / "a.msh"),
+            kHead22 +
+                "$PhysicalNames\n5\n0 6 \"point_6\"\n1 9 \"curve_9\"\n2 2 \"surface_2\"\n"
+                "2 3 \"boundary\"\n3 1 \"hexahedra\"\n$EndPhysicalNames\n" +
+                kNodes22 +
+                "$Elements\n10\n1 15 2 6 1 4\n2 15 2 6 2 1\n3 1 2 9 9 1 2\n4 3 2 2 2 5 6 7 8\n"
+                "5 3 2 3 3 1 5 8 4\n6 3 2 3 3 2 3 7 6\n7 3 2 3 3 1 2 6 5\n8 3 2 3 3 4 8 7 3\n"
+                "9 3 2 3 3 1 4 3 2\n10 5 2 1 1 1 2 3 4 5 6 7 8\n$EndElements\n");
+}
+
+TEST(Gmsh, WritesExactlyTheSectionsOfVersion41) {
+  const TemporaryFolder folder;
+  const HexMesh mesh = parse(kHead22 + kNodes22 + kCube22);
+  Context context;
+  writeGmsh41Text(mesh, folder / "a.msh", {}, context);
+  EXPECT_EQ(contentOf(folder / "a.msh"),
+            "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
+            "$PhysicalNames\n2\n2 1 \"boundary\"\n3 1 \"hexahedra\"\n$EndPhysicalNames\n"
+            "$Entities\n0 0 1 1 \n1 0 0 0 1 1 1 1 1 0 \n1 0 0 0 1 1 1 1 1 0 \n$EndEntities\n"
+            "$Nodes\n1 8 1 8 \n3 1 0 8 \n1 \n2 \n3 \n4 \n5 \n6 \n7 \n8 \n"
+            "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n$EndNodes\n"
+            "$Elements\n2 7 1 7 \n2 1 3 6 \n1 1 5 8 4 \n2 2 3 7 6 \n3 1 2 6 5 \n4 4 8 7 3 \n"
+            "5 1 4 3 2 \n6 5 6 7 8 \n3 1 5 1 \n7 1 2 3 4 5 6 7 8 \n$EndElements\n");
+}
+
+TEST(Gmsh, TagsOfNodesAreFree) {
+  std::string nodes = kNodes22;
+  nodes = replaced(nodes, "\n1 0 0 0", "\n900000000 0 0 0");
+  const HexMesh mesh =
+      parse(kHead22 + nodes + replaced(kCube22, " 1 2 3 4 5", " 900000000 2 3 4 5"));
+  EXPECT_EQ(mesh.cells[0], kCubeCell);
+  EXPECT_NE(failure(kHead22 + replaced(nodes, "\n2 1 0", "\n900000000 1 0") + kCube22)
+                .sentence.find("two nodes have the tag 900000000"),
+            std::string::npos);
+}
+
+TEST(Gmsh, OtherElementsAndSectionsAreIgnored) {
+  const HexMesh mesh = parse(kHead22 + "$Comments\n$Nodes are next\n$EndComments\n" + kNodes22 +
+                             "$Elements\n4\n1 15 0 1\n2 3 3 1 1 5 1 2 3 4\n"
+                             "3 5 2 1 1 1 2 3 4 5 6 7 8\n4 4 0 1 2 3 4\n$EndElements\n");
+  ASSERT_EQ(mesh.cells.size(), 1U);
+  EXPECT_EQ(mesh.cells[0], kCubeCell);
+  const Failure tets = failure(kHead22 + kNodes22 + "$Elements\n1\n4 4 0 1 2 3 4\n$EndElements\n");
+  EXPECT_EQ(tets.code, ErrorCode::FileUnsupported);
+}
+
+TEST(Gmsh, BlocksOfVersion41InAnyNumber) {
+  const std::string head = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+  const std::string nodes =
+      "$Nodes\n3 8 1 20\n2 5 1 2\n20\n3\n0 0 0 0.5 0.25\n1 0 0 0.5 0.75\n1 1 0 0\n"
+      "3 1 0 6\n5\n6\n7\n8\n9\n10\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n$EndNodes\n";
+  const std::string elements =
+      "$Elements\n3 4 1 4\n3 1 5 1\n1 20 3 5 6 7 8 9 10\n2 5 3 1\n2 20 3 5 6\n"
+      "3 2 5 2\n3 20 3 5 6 7 8 9 10\n4 3 20 5 6 7 8 9 10\n$EndElements\n";
+  const HexMesh mesh = parse(head + nodes + elements);
+  EXPECT_EQ(mesh.points[1], (Vec3{1, 0, 0}));
+  EXPECT_EQ(mesh.points[7], (Vec3{0, 1, 1}));
+  ASSERT_EQ(mesh.cells.size(), 3U);
+  EXPECT_EQ(mesh.cells[0], kCubeCell);
+  EXPECT_EQ(mesh.cells[1], kCubeCell);
+  EXPECT_EQ(mesh.cells[2], (Hex{1, 0, 2, 3, 4, 5, 6, 7}));
+}
+
+TEST(Gmsh, BinaryOfVersion22) {
+  std::string text = "$MeshFormat\n2.2 1 8\n" + bytes(1) + "\n$EndMeshFormat\n$Nodes\n8\n";
+  const HexMesh cube = parse(kHead22 + kNodes22 + kCube22);
+  for (int i = 0; i < 8; ++i) {
+    text += bytes(i + 1);
+    for (const double coordinate : cube.points[static_cast<std::size_t>(i)]) {
+      text += bytes(coordinate);
+    }
+  }
+  text += "\n$EndNodes\n$Elements\n3\n" + bytesOf({3, 1, 2, 1, 7, 7, 1, 2, 3, 4}) +
+          bytesOf({5, 2, 2}) + bytesOf({2, 1, 1, 1, 2, 3, 4, 5, 6, 7, 8}) +
+          bytesOf({3, 1, 1, 2, 1, 4, 3, 6, 5, 8, 7}) + "\n$EndElements\n";
+  const HexMesh mesh = parse(text);
+  EXPECT_EQ(mesh.points, cube.points);
+  ASSERT_EQ(mesh.cells.size(), 2U);
+  EXPECT_EQ(mesh.cells[0], kCubeCell);
+  EXPECT_EQ(mesh.cells[1], (Hex{1, 0, 3, 2, 5, 4, 7, 6}));
+  text[20] = 0;
+  text[23] = 1;
+  EXPECT_EQ(failure(text).code, ErrorCode::FileUnsupported);
+}
+
+TEST(Gmsh, ErrorsTellLineOrByte) {
+  const std::string good = kHead22 + kNodes22 + kCube22;
+  const auto sentence = [&](const std::string& from, const std::string& to) {
+    return failure(replaced(good, from, to)).sentence;
+  };
+  EXPECT_NE(sentence("$MeshFormat", "$Meshformat").find("m.msh, line 1:"), std::string::npos);
+  EXPECT_NE(sentence("2.2", "4.0").find("\"4.0\" of the format is not supported"),
+            std::string::npos);
+  EXPECT_NE(sentence("\n3 1 1 0", "\n3 1 x 0").find("line 8: expected a coordinate"),
+            std::string::npos);
+  EXPECT_NE(sentence("$Nodes\n8", "$Nodes\n900000000").find("has room for at most"),
+            std::string::npos);
+  EXPECT_NE(sentence("$Nodes\n8", "$Nodes\n7").find("expected \"$EndNodes\", found \"8\""),
+            std::string::npos);
+  const Failure index = failure(replaced(good, "7 8\n$EndE", "7 9\n$EndE"));
+  EXPECT_EQ(index.code, ErrorCode::IndexOutOfRange);
+  EXPECT_EQ(toString(index.place), "cell 0");
+  EXPECT_NE(index.sentence.find("m.msh, line 17:"), std::string::npos) << index.sentence;
+  EXPECT_EQ(failure(kHead22 + kCube22 + kNodes22).code, ErrorCode::FileUnsupported);
+  EXPECT_EQ(failure(kHead22 + kNodes22).code, ErrorCode::FileUnsupported);
+  EXPECT_EQ(failure(kHead22 + kNodes22 + kNodes22 + kCube22).code, ErrorCode::FileSyntax);
+
+  const TemporaryFolder folder;
+  HexMesh mesh = gridMesh(20, 20, 20);
+  writeHexMesh(mesh, folder / "a.msh");
+  std::string binary = contentOf(folder / "a.msh");
+  const std::size_t place = binary.rfind("\n$EndElements") - 72 * 50 + 8;
+  binary[place + 6] = 1;
+  binary[place + 72 * 9] = binary[place + 72 * 9 + 1] = '\xff';
+  for (const int threads : {1, 4}) {
+    Context context(threads);
+    const Failure wrong =
+        failureOf([&] { static_cast<void>(parseGmsh(binary, "m.msh", context)); });
+    EXPECT_EQ(wrong.code, ErrorCode::IndexOutOfRange);
+    EXPECT_EQ(toString(wrong.place), "cell 7950");
+    EXPECT_NE(wrong.sentence.find("byte " + std::to_string(place + 8)), std::string::npos)
+        << wrong.sentence;
+  }
+}
+
+}  // namespace
+}  // namespace hexhex::test

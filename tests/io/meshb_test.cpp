@@ -1,0 +1,120 @@
+// `.meshb` files: versions, exact bytes, errors.
+#include <cstdint>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/io.hpp>
+
+#include <io/io_test_support.hpp>
+#include <io/meshb.hpp>
+
+namespace hexhex::test {
+namespace {
+
+HexMesh parse(const std::string& text) {
+  Context context;
+  return parseMeshb(text, "m.meshb", context);
+}
+
+template <class... T>
+std::string bytes(T... values) {
+  std::string result;
+  (result.append(reinterpret_cast<const char*>(&values), sizeof(values)), ...);
+  return result;
+}
+
+HexMesh taggedMesh() {
+  HexMesh mesh = gridMesh(3, 2, 1);
+  mesh.features.vertices = {{5, 3}};
+  mesh.features.edges = {{{0, 1}, 4}, {{1, 2}, 2}};
+  mesh.features.quads = {{{0, 1, 5, 4}, 8}};
+  return mesh;
+}
+
+TEST(Meshb, AllVersionsHoldTheMesh) {
+  const TemporaryFolder folder;
+  const HexMesh mesh = taggedMesh();
+  Context context;
+  std::size_t previous = 0;
+  for (const std::uint32_t version : {2U, 3U, 4U}) {
+    writeMeshbVersion(mesh, folder / "a.meshb", version, context);
+    const std::string file = contentOf(folder / "a.meshb");
+    EXPECT_TRUE(file.starts_with(bytes(1U, version)));
+    EXPECT_GT(file.size(), previous);
+    previous = file.size();
+    const HexMesh read = readHexMesh(folder / "a.meshb");
+    expectSameBits(read.points, mesh.points);
+    EXPECT_EQ(read.cells, mesh.cells);
+  }
+  writeHexMesh(mesh, folder / "b.meshb");
+  EXPECT_TRUE(contentOf(folder / "b.meshb").starts_with(bytes(1U, 2U)));
+}
+
+TEST(Meshb, ReferencesAreNumbersOfGroups) {
+  const TemporaryFolder folder;
+  writeHexMesh(taggedMesh(), folder / "a.meshb");
+  const std::string file = contentOf(folder / "a.meshb");
+  const std::string dimension = bytes(1U, 2U, 3U, 20U, 3U);
+  EXPECT_TRUE(file.starts_with(dimension));
+  const std::size_t vertices = dimension.size();
+  EXPECT_EQ(file.substr(vertices, 12), bytes(4U, 20U + 12U + 24U * 28U, 24U));
+  EXPECT_EQ(file.substr(vertices + 12 + 4 * 28 + 24, 4), bytes(0U));
+  EXPECT_EQ(file.substr(vertices + 12 + 5 * 28 + 24, 4), bytes(3U));
+  const std::size_t edges = vertices + 12 + 24 * 28;
+  EXPECT_EQ(file.substr(edges, 36),
+            bytes(5U, static_cast<std::uint32_t>(edges) + 36U, 2U, 2U, 3U, 2U, 1U, 2U, 4U));
+  const std::size_t quads = edges + 36;
+  EXPECT_EQ(file.substr(quads, 4), bytes(7U));
+  EXPECT_EQ(file.substr(quads + 8, 24), bytes(22U, 1U, 5U, 6U, 2U, 8U));  // facing outwards
+  const std::size_t cells = quads + 12 + 22 * 20;
+  EXPECT_EQ(file.substr(cells, 12),
+            bytes(10U, static_cast<std::uint32_t>(cells) + 12U + 6U * 36U, 6U));
+  EXPECT_EQ(file.substr(cells + 12 + 6 * 36), bytes(54U, 0U));
+}
+
+TEST(Meshb, VersionOneHasSinglePrecision) {
+  std::string file = bytes(1, 1, 3, 20, 3) + bytes(4, 20 + 12 + 8 * 16, 8);
+  for (int i = 0; i < 8; ++i) {
+    file += bytes(i % 2 == 0 ? 0.1F : 2.0F, static_cast<float>(i), 0.0F, 0);
+  }
+  file += bytes(26, static_cast<int>(file.size()) + 16, 0, 0);  // a section that nobody knows
+  file += bytes(10, 0, 1, 1, 2, 3, 4, 5, 6, 7, 8, 0);
+  const HexMesh mesh = parse(file);
+  EXPECT_EQ(mesh.points[2], (Vec3{0.1F, 2, 0}));
+  EXPECT_EQ(mesh.cells[0], (Hex{0, 1, 2, 3, 4, 5, 6, 7}));
+}
+
+TEST(Meshb, ErrorsTellTheByte) {
+  const TemporaryFolder folder;
+  HexMesh grid = gridMesh(20, 10, 10);
+  writeHexMesh(grid, folder / "a.meshb");
+  const std::string good = contentOf(folder / "a.meshb");
+  const auto failure = [&](std::size_t place, const std::string& change) {
+    std::string bad = good;
+    bad.replace(place, change.size(), change);
+    return failureOf([&] { static_cast<void>(parse(bad)); });
+  };
+  EXPECT_EQ(failure(0, bytes(1U << 24U)).code, ErrorCode::FileUnsupported);
+  EXPECT_EQ(failure(0, bytes(7U)).code, ErrorCode::FileSyntax);
+  EXPECT_EQ(failure(4, bytes(5U)).code, ErrorCode::FileUnsupported);
+  EXPECT_EQ(failure(16, bytes(2U)).code, ErrorCode::FileUnsupported);
+  EXPECT_EQ(failure(8, bytes(77U)).code, ErrorCode::FileSyntax);  // no dimension
+  for (const std::uint32_t next : {1U, 20U, 0x7fffffffU, 0xffffffffU}) {
+    EXPECT_NE(failure(24, bytes(next)).sentence.find("m.meshb, byte 28:"), std::string::npos);
+  }
+  const Failure many = failure(28, bytes(0x40000000U));
+  EXPECT_NE(many.sentence.find("m.meshb, byte 32: announces 1073741824 vertices"),
+            std::string::npos)
+      << many.sentence;
+  const Failure notFinite =
+      failure(32 + 28 * 7 + 8, bytes(std::numeric_limits<double>::infinity()));
+  EXPECT_EQ(notFinite.code, ErrorCode::NotFinite);
+  const std::size_t cells = good.size() - 8 - 2000 * 36;
+  const Failure index = failure(cells + 36 * 1500 + 4, bytes(0U));
+  EXPECT_EQ(index.code, ErrorCode::IndexOutOfRange);
+  EXPECT_EQ(toString(index.place), "cell 1500");
+}
+
+}  // namespace
+}  // namespace hexhex::test

@@ -1,0 +1,131 @@
+// Legacy `.vtk` files that other programs write, and errors.
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/io.hpp>
+
+#include <io/io_test_support.hpp>
+#include <io/vtk_legacy.hpp>
+
+namespace hexhex::test {
+namespace {
+
+HexMesh parse(const std::string& text) {
+  Context context;
+  return parseVtkLegacy(text, "m.vtk", context);
+}
+
+Failure failure(const std::string& text) {
+  return failureOf([&] { static_cast<void>(parse(text)); });
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t place = text.find(from);
+  EXPECT_NE(place, std::string::npos) << from;
+  return text.replace(place, from.size(), to);
+}
+
+/// Numbers with the largest byte first.
+template <class T>
+std::string big(std::initializer_list<T> values) {
+  std::string result;
+  for (const T value : values) {
+    std::string bytes(reinterpret_cast<const char*>(&value), sizeof(value));
+    std::reverse(bytes.begin(), bytes.end());
+    result += bytes;
+  }
+  return result;
+}
+
+const std::string kHead =
+    "# vtk DataFile Version 3.0\nany title\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+const std::string kPoints = "POINTS 8 double\n0 0 0 1 0 0 1 1 0\n0 1 0 0 0 1 1 0 1\n1 1 1 0 1 1\n";
+const std::string kCells = "CELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n";
+constexpr Hex kCubeCell = {0, 1, 2, 3, 4, 5, 6, 7};
+
+std::string binaryHead(const std::string& version) {
+  return "# vtk DataFile Version " + version + "\nany title\nBINARY\nDATASET UNSTRUCTURED_GRID\n";
+}
+
+template <class T>
+std::string binaryPoints(const std::string& type) {
+  return "POINTS 8 " + type + "\n" +
+         big<T>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1}) + "\n";
+}
+
+TEST(VtkLegacyReader, OtherCellsAndArraysAreIgnored) {
+  const HexMesh mesh =
+      parse(kHead + "FIELD FieldData 2\nTIME 1 1 double\n0.5\nNAME 2 2 int\n1 2 3 4\n" + kPoints +
+            "METADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 2\n\n"
+            "CELLS 3 19\n4 0 1 2 3\n8 0 1 2 3 4 5 6 7\n4 1 2 3 4\nCELL_TYPES 3\n9 12 10\n"
+            "CELL_DATA 3\nSCALARS a double 1\nLOOKUP_TABLE default\n1 2 3\n");
+  ASSERT_EQ(mesh.cells.size(), 1U);
+  EXPECT_EQ(mesh.cells[0], kCubeCell);
+  EXPECT_EQ(failure(kHead + kPoints + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n").code,
+            ErrorCode::FileUnsupported);
+}
+
+TEST(VtkLegacyReader, OffsetsOfVersionFive) {
+  const HexMesh mesh = parse(kHead + kPoints +
+                             "CELLS 3 12\nOFFSETS vtktypeint64\n0 4 12\nCONNECTIVITY vtktypeint64\n"
+                             "0 1 2 3 0 1 2 3 4 5 6 7\nCELL_TYPES 2\n10\n12\n");
+  ASSERT_EQ(mesh.cells.size(), 1U);
+  EXPECT_EQ(mesh.cells[0], kCubeCell);
+}
+
+TEST(VtkLegacyReader, Binary) {
+  const std::string types = "\nCELL_TYPES 2\n" + big<std::int32_t>({10, 12}) + "\n";
+  const std::string field =
+      "FIELD FieldData 1\nbits 1 9 bit\n" + std::string("\n\n") + "\n";  // two bytes
+  const HexMesh old =
+      parse(binaryHead("4.2") + field + binaryPoints<float>("float") + "CELLS 2 14\n" +
+            big<std::int32_t>({4, 0, 1, 2, 3, 8, 0, 1, 2, 3, 4, 5, 6, 7}) + types);
+  const HexMesh recent = parse(binaryHead("5.1") + binaryPoints<double>("double") +
+                               "CELLS 3 12\nOFFSETS vtktypeint64\n" +
+                               big<std::int64_t>({0, 4, 12}) + "\nCONNECTIVITY vtktypeint64\n" +
+                               big<std::int64_t>({0, 1, 2, 3, 0, 1, 2, 3, 4, 5, 6, 7}) + types);
+  for (const HexMesh* mesh : {&old, &recent}) {
+    EXPECT_EQ(mesh->points[5], (Vec3{1, 0, 1}));
+    ASSERT_EQ(mesh->cells.size(), 1U);
+    EXPECT_EQ(mesh->cells[0], kCubeCell);
+  }
+}
+
+TEST(VtkLegacyReader, ErrorsTellTheLine) {
+  const std::string good = kHead + kPoints + kCells;
+  const auto sentence = [&](const std::string& from, const std::string& to) {
+    return failure(replaced(good, from, to)).sentence;
+  };
+  EXPECT_NE(sentence("# vtk", "<?xml").find("name it .vtu"), std::string::npos);
+  EXPECT_NE(sentence("UNSTRUCTURED_GRID", "POLYDATA").find("m.vtk, line 4:"), std::string::npos);
+  EXPECT_NE(
+      sentence("0 1 0 0 0 1", "0 1 0 0 zero 1").find("line 7: expected a coordinate of point 4"),
+      std::string::npos);
+  EXPECT_NE(sentence("POINTS 8", "POINTS 99999").find("has room for at most"), std::string::npos);
+  EXPECT_NE(sentence("CELLS 1 9\n8", "CELLS 1 9\n9").find("cell 0 of 1 goes beyond"),
+            std::string::npos);
+  EXPECT_NE(sentence("\nCELL_TYPES 1\n12", "").find("without the section CELL_TYPES"),
+            std::string::npos);
+  EXPECT_NE(sentence("CELL_TYPES 1\n12", "CELL_TYPES 2\n12 12").find("1 cells but 2 types"),
+            std::string::npos);
+  const Failure seven = failure(kHead + kPoints + "CELLS 1 8\n7 0 1 2 3 4 5 6\nCELL_TYPES 1\n12\n");
+  EXPECT_EQ(seven.code, ErrorCode::FileSyntax);
+  for (const char* corner : {"8", "-1"}) {
+    const Failure index =
+        failure(replaced(good, "6 7\nCELL", std::string("6 ") + corner + "\nCELL"));
+    EXPECT_EQ(index.code, ErrorCode::IndexOutOfRange);
+    EXPECT_EQ(toString(index.place), "cell 0");
+  }
+  EXPECT_EQ(failure(binaryHead("5.1") + binaryPoints<double>("double") +
+                    "CELLS 2 8\nOFFSETS vtktypeint64\n" + big<std::int64_t>({0, INT64_MIN}) +
+                    "\nCONNECTIVITY vtktypeint64\n" + std::string(64, '\0') + "\nCELL_TYPES 1\n" +
+                    big<std::int32_t>({12}) + "\n")
+                .code,
+            ErrorCode::FileSyntax);
+}
+
+}  // namespace
+}  // namespace hexhex::test
