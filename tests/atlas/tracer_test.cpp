@@ -1,0 +1,121 @@
+// What faces hide of a cell, against ways that are traced exactly.
+#include <rapidcheck.h>
+
+#include <atlas/cell_emitter.hpp>
+#include <atlas/diagonals.hpp>
+#include <gtest/gtest.h>
+#include <sweep/cell_tracer.hpp>
+
+#include "extract/support.hpp"
+
+namespace hexhex::test {
+
+namespace {
+
+struct Prepared {
+  Sample sample;
+  PreparedMap map;
+};
+
+/// Draws a map; keeps the sample, to which the prepared map refers.
+std::unique_ptr<Prepared> anyMap() {
+  SampleOptions o;
+  o.cells = *rc::gen::inRange(1, 6);
+  o.refine = *rc::gen::inRange(1, 4);
+  o.valence = *rc::gen::inRange(3, 12);
+  o.jitter = *rc::gen::element(0.0, 0.4, 0.8);
+  o.onLattice = *rc::gen::element(0.0, 0.5);
+  o.charts = *rc::gen::element(ChartStyle::Blocks, ChartStyle::Random);
+  const auto kind = *rc::gen::element(SampleKind::Star, SampleKind::Sphere, SampleKind::Cylinder,
+                                      SampleKind::Tetrahedron);
+  auto prepared = std::make_unique<Prepared>();
+  prepared->sample = generateSample(kind, o);
+  Context context(1);
+  DefectCollector defects;
+  prepared->map = prepareMap(prepared->sample.map, 1e-2, 1, context, defects);
+  RC_ASSERT(defects.empty());
+  return prepared;
+}
+
+/// Calls visit(tet, z, generator) for every cell, at the tet that owns its centre.
+template <class Visit>
+void forEachCell(const PreparedMap& map, const Visit& visit) {
+  for (Index tet = 0; tet < map.topology.tetCount(); ++tet) {
+    const TetSweep sweep(map.exact, tet, SweptGrid::Centers);
+    std::vector<SweptLine> lines;
+    sweep.run(map.exact.unit, lines);
+    CenterOwner owner(map.topology, tet);
+    for (const SweptLine& line : lines) {
+      const auto [first, count] = owner.owned(line);
+      for (std::uint32_t i = first; i < first + count; ++i) {
+        visit(tet, sweep.point(line, i), line.simplex(i));
+      }
+    }
+  }
+}
+
+/// A traced corner must be a corner of the cell: at the right place if nothing but gauges were
+/// asked.
+TEST(Property, TracedCornersAreGridPointsOfTheirTets) {
+  EXPECT_TRUE(rc::check("traced corners are grid points of their tets", [] {
+    const auto prepared = anyMap();
+    const PreparedMap& map = prepared->map;
+    CellTracer tracer(map);
+    forEachCell(map, [&](Index tet, const GridPoint& z, CornerMask generator) {
+      tracer.enter(tet, z, generator);
+      for (const GridPoint& offset : kCellCorners) {
+        const CornerPlace place = tracer.trace(offset);
+        const TetPlanes planes(map.exact.corners[place.tet], map.exact.unit);
+        RC_ASSERT(planes.generator(place.z) != kNoSimplex);
+      }
+    });
+  }));
+}
+
+/// Corners that the picture is said to show are those that exact tracing finds.
+TEST(Property, CornersInSightAreTheTracedOnes) {
+  EXPECT_TRUE(rc::check("corners in sight are the traced ones", [] {
+    const auto prepared = anyMap();
+    const PreparedMap& map = prepared->map;
+    Context context(1);
+    Stage stage(context, "test");
+    Charts charts = buildCharts(map, stage);
+    VertexGrid<Index> vertices(map, charts, true);
+    CellSeeds cells(map.topology.tetCount(), false);
+    vertices.sweep(cells, stage);
+    vertices.fill({}, stage);
+    static_cast<void>(vertices.resolveOverlaps(stage));
+    const Crossings crossings = markCutCells(map, charts, vertices.grid(), stage);
+    BrickCache<Index> cache(vertices.grid());
+    CellTracer tracer(map);
+    std::size_t inSight = 0;
+    forEachCell(map, [&](Index tet, const GridPoint& z, CornerMask generator) {
+      const Gauge& gauge = charts.gauge(tet);
+      const ChartPoint smallest = gauge.cell(z);
+      const Brick<Index>* const brick = cache.find(charts.chart[tet], smallest);
+      if (brick == nullptr) return;
+      std::vector<Crossing> ofCell;
+      for (const Crossing& crossing : crossings.of(*brick)) {
+        if (crossing.place == placeInBrick(smallest)) ofCell.push_back(crossing);
+      }
+      const CellCornerSet hidden = crossedDiagonals(map, charts, {tet, smallest, ofCell});
+      tracer.enter(tet, z, generator);
+      for (std::size_t c = 0; c < 8; ++c) {
+        if (((hidden >> c) & 1U) != 0) continue;
+        ++inSight;
+        const GridPoint& offset = kCellCorners[c];
+        const GridPoint corner = {z[0] + offset[0], z[1] + offset[1], z[2] + offset[2]};
+        const ChartPoint at = gauge(corner);
+        const Brick<Index>* const there = cache.find(charts.chart[tet], at);
+        RC_ASSERT(there != nullptr);
+        const CornerPlace place = tracer.trace(offset);
+        RC_ASSERT(std::uint64_t{there->ids[placeInBrick(at)]} ==
+                  vertices.exactNumber(place.tet, place.z));
+      }
+    });
+    RC_ASSERT(inSight > 0U);
+  }));
+}
+
+}  // namespace
+}  // namespace hexhex::test
