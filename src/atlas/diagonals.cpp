@@ -68,12 +68,12 @@ struct NearFace {
     const GridPoint z = gauge.inverseCell(cell.smallest);
     const LatticeTet& corners = map.exact.corners[tetOf(halfFace)];
     const double scale = 1.0 / static_cast<double>(map.exact.unit);
+    const std::int64_t half = map.exact.unit / 2;
     std::array<Vector, 3> p{};
     for (std::size_t i = 0; i < 3; ++i) {
       const LatticePoint& corner = corners[static_cast<std::size_t>(kFaceCorners[halfFace % 4][i])];
       for (std::size_t k = 0; k < 3; ++k) {
-        p[i][k] =
-            static_cast<double>(corner[k] - z[k] * map.exact.unit - map.exact.unit / 2) * scale;
+        p[i][k] = static_cast<double>(corner[k] - z[k] * map.exact.unit - half) * scale;
       }
     }
     const std::array<Bounded, 3> products = {crossProduct(p[0], p[1]), crossProduct(p[1], p[2]),
