@@ -70,7 +70,7 @@ class VertexStar {
     return 4 * tet + static_cast<CornerIndex>(topology.localCorner(tet, vertex));
   }
 
-  static constexpr Index kUnset = kNone - 1;
+  static constexpr Index kUnset = kNone - 1;  ///< neighbour not looked up yet
 
   KeyTable tets_;
   std::vector<Member> members_ = std::vector<Member>(64);

@@ -127,8 +127,12 @@ TEST_P(PlainVerticesOfKind, AreSanitizedAsTheirStarsAre) {
         collectStars(survey.topology, survey.parameters, survey.plain, {},
                      allSpecial ? nullptr : &transitions, stars, survey.stage);
         const bool flat = std::ranges::count(survey.plain.special, PlainVertices::kFlat) > 0;
-        if (allSpecial || noise > 0) EXPECT_FALSE(flat);
-        if (!allSpecial && noise == 0 && charts != ChartStyle::Aligned) EXPECT_TRUE(flat);
+        if (allSpecial || noise > 0) {
+          EXPECT_FALSE(flat);
+        }
+        if (!allSpecial && noise == 0 && charts != ChartStyle::Aligned) {
+          EXPECT_TRUE(flat);
+        }
         const auto singularities = computeSingularities(survey.topology, survey.parameters,
                                                         survey.plain, {}, stars, survey.stage);
         ExactMap exact =
