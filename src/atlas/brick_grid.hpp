@@ -51,7 +51,7 @@ struct Brick {
   /// The range of the brick's entries in the list of crossings (cut_marks.hpp).
   std::uint32_t crossingBegin;
   std::uint32_t crossingEnd;
-  std::uint32_t contested;  ///< not 0 if a point is
+  std::uint32_t contested;  ///< not 0 if two vertices claim one of the points
 
   void clear() noexcept {
     ids.fill(kEmpty);

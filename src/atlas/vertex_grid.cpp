@@ -171,7 +171,9 @@ void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
         for (std::uint32_t i = 0; i < count; ++i) {
           const auto id = static_cast<Id>(first + offset + i);
           const Id before = replace(entry(brick, place, i * stride), id);
-          overlapsHere |= before != Bricks::kEmpty && before != id;
+          if (before == Bricks::kEmpty || before == id) continue;
+          overlapsHere = true;
+          std::atomic_ref(brick.contested).store(1, std::memory_order_relaxed);
         }
       });
     };
@@ -225,6 +227,7 @@ void VertexGrid<Id>::markContested(Stage& stage) {
       [&](std::size_t begin, std::size_t end, std::size_t) {
         BrickCache<Id> cache(grid_);
         for (std::size_t t = begin; t < end; ++t) {
+          if (!mayTouchContested(static_cast<Index>(t), cache)) continue;
           forEachClaim(
               static_cast<Index>(t), Faces::OwnedAndCut, [](const TetSweep&, const VertexRun&) {},
               [&](const ChartRow& row, std::uint64_t first) {
@@ -238,7 +241,6 @@ void VertexGrid<Id>::markContested(Stage& stage) {
                       continue;
                     }
                     at.store(Bricks::kContested, std::memory_order_relaxed);
-                    std::atomic_ref(brick.contested).store(1, std::memory_order_relaxed);
                   }
                 });
               });

@@ -201,8 +201,8 @@ void MshReader::skipSection(std::string_view name) {
   const std::string end = "$End" + std::string(name);
   const std::size_t place = text_.find(end, scanner_.position());
   if (place == std::string_view::npos) {
-    scanner_.fail(ErrorCode::FileSyntax,
-                  "the section has no " + quoted(std::string_view(end)) + ": the file is incomplete.");
+    scanner_.fail(ErrorCode::FileSyntax, "the section has no " + quoted(std::string_view(end)) +
+                                             ": the file is incomplete.");
   }
   scanner_.moveTo(place + end.size());
 }

@@ -29,6 +29,7 @@ struct GmshEntity {
 
 std::vector<GmshEntity> entitiesOf(const std::vector<ElementGroup>& groups) {
   std::vector<GmshEntity> entities;
+  entities.reserve(groups.size());
   for (const ElementGroup& group : groups) {
     entities.push_back({group.number, group.number, group.begin, group.end});
   }
@@ -174,7 +175,8 @@ class Msh41Writer {
     Numbers::endLine(output_);
     content_.forEachKind([this](unsigned dimension, const auto& entities, const auto& elements) {
       for (const GmshEntity& entity : entities) {
-        writeEntity(dimension, entity, elements.subspan(entity.begin, entity.end - entity.begin));
+        this->writeEntity(dimension, entity,
+                          elements.subspan(entity.begin, entity.end - entity.begin));
       }
     });
     endSection("$EndEntities\n");

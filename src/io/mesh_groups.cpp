@@ -108,7 +108,7 @@ class FeatureQuadTable {
   explicit FeatureQuadTable(std::span<const FeatureQuad> quads) {
     entries_.reserve(quads.size());
     for (std::size_t i = 0; i < quads.size(); ++i) {
-      if (quads[i].tag != 0) entries_.push_back({sorted(quads[i].vertices), i});
+      if (quads[i].tag != 0) entries_.emplace_back(sorted(quads[i].vertices), i);
     }
     std::sort(entries_.begin(), entries_.end());
   }

@@ -131,7 +131,7 @@ class MeshbWriter {
 std::uint32_t versionFor(const MeshbContent& content) {
   constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
   const HexMesh& mesh = content.mesh;
-  const std::uint64_t largest = std::max<std::uint64_t>(
+  const auto largest = std::max<std::uint64_t>(
       {mesh.points.size(), mesh.cells.size(), content.quads.elements.size()});
   if (largest > kMost) return 4;
   const MeshbWidths widths(2);

@@ -144,6 +144,7 @@ HexMesh VtkReader::read() {
 void VtkReader::readHead() {
   constexpr std::string_view kMagic = "# vtk DataFile Version ";
   if (!takeLine().starts_with(kMagic)) {
+    scanner_.moveTo(0);
     scanner_.fail(
         ErrorCode::FileSyntax,
         "a .vtk file begins with \"# vtk DataFile Version\". If it is XML, name it .vtu.");

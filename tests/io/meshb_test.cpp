@@ -1,5 +1,6 @@
 // `.meshb` files: versions, exact bytes, errors.
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -85,33 +86,42 @@ TEST(Meshb, VersionOneHasSinglePrecision) {
   EXPECT_EQ(mesh.cells[0], (Hex{0, 1, 2, 3, 4, 5, 6, 7}));
 }
 
-TEST(Meshb, ErrorsTellTheByte) {
+/// Writes a grid of 2000 cells, overwrites some of its bytes, and reads it.
+Failure failureAfter(std::size_t place, const std::string& change) {
   const TemporaryFolder folder;
-  HexMesh grid = gridMesh(20, 10, 10);
-  writeHexMesh(grid, folder / "a.meshb");
-  const std::string good = contentOf(folder / "a.meshb");
-  const auto failure = [&](std::size_t place, const std::string& change) {
-    std::string bad = good;
-    bad.replace(place, change.size(), change);
-    return failureOf([&] { static_cast<void>(parse(bad)); });
-  };
-  EXPECT_EQ(failure(0, bytes(1U << 24U)).code, ErrorCode::FileUnsupported);
-  EXPECT_EQ(failure(0, bytes(7U)).code, ErrorCode::FileSyntax);
-  EXPECT_EQ(failure(4, bytes(5U)).code, ErrorCode::FileUnsupported);
-  EXPECT_EQ(failure(16, bytes(2U)).code, ErrorCode::FileUnsupported);
-  EXPECT_EQ(failure(8, bytes(77U)).code, ErrorCode::FileSyntax);  // no dimension
+  writeHexMesh(gridMesh(20, 10, 10), folder / "a.meshb");
+  std::string bad = contentOf(folder / "a.meshb");
+  bad.replace(place, change.size(), change);
+  return failureOf([&] { static_cast<void>(parse(bad)); });
+}
+
+TEST(Meshb, WrongHeads) {
+  EXPECT_EQ(failureAfter(0, bytes(1U << 24U)).code, ErrorCode::FileUnsupported);
+  EXPECT_EQ(failureAfter(0, bytes(7U)).code, ErrorCode::FileSyntax);
+  EXPECT_EQ(failureAfter(4, bytes(5U)).code, ErrorCode::FileUnsupported);
+  EXPECT_EQ(failureAfter(16, bytes(2U)).code, ErrorCode::FileUnsupported);
+  EXPECT_EQ(failureAfter(8, bytes(77U)).code, ErrorCode::FileSyntax);  // no dimension
+}
+
+TEST(Meshb, WrongPositionsAndCounts) {
   for (const std::uint32_t next : {1U, 20U, 0x7fffffffU, 0xffffffffU}) {
-    EXPECT_NE(failure(24, bytes(next)).sentence.find("m.meshb, byte 28:"), std::string::npos);
+    const Failure wrong = failureAfter(24, bytes(next));
+    EXPECT_NE(wrong.sentence.find("m.meshb, byte 28:"), std::string::npos) << wrong.sentence;
   }
-  const Failure many = failure(28, bytes(0x40000000U));
+  const Failure many = failureAfter(28, bytes(0x40000000U));
   EXPECT_NE(many.sentence.find("m.meshb, byte 32: announces 1073741824 vertices"),
             std::string::npos)
       << many.sentence;
+}
+
+TEST(Meshb, WrongElements) {
+  constexpr std::size_t kVertices = 32;
   const Failure notFinite =
-      failure(32 + 28 * 7 + 8, bytes(std::numeric_limits<double>::infinity()));
+      failureAfter(kVertices + 28 * 7 + 8, bytes(std::numeric_limits<double>::infinity()));
   EXPECT_EQ(notFinite.code, ErrorCode::NotFinite);
-  const std::size_t cells = good.size() - 8 - 2000 * 36;
-  const Failure index = failure(cells + 36 * 1500 + 4, bytes(0U));
+  const std::size_t quads = kVertices + 28 * std::size_t{21 * 11 * 11};
+  const std::size_t cells = quads + 12 + 20 * std::size_t{2 * (200 + 200 + 100)} + 12;
+  const Failure index = failureAfter(cells + 36 * 1500 + 4, bytes(0U));
   EXPECT_EQ(index.code, ErrorCode::IndexOutOfRange);
   EXPECT_EQ(toString(index.place), "cell 1500");
 }
