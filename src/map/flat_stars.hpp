@@ -21,9 +21,9 @@ namespace hexhex {
 /// corners may be rounded each in its own chart.
 class FlatStarTest {
  public:
-  FlatStarTest(const TetTopology& topology, const LocalParameters& parameters,
-               const PlainVertices& plain, const Transitions& transitions)
-      : topology_(topology), parameters_(parameters), plain_(plain), transitions_(transitions) {}
+  FlatStarTest(const LocalParameters& parameters, const PlainVertices& plain,
+               const Transitions& transitions)
+      : parameters_(parameters), plain_(plain), transitions_(transitions) {}
 
   /// A star where rounding could matter is not called flat.
   [[nodiscard]] bool run(std::span<const VertexStar::Member> star);
@@ -41,7 +41,6 @@ class FlatStarTest {
   [[nodiscard]] bool isBetweenPlanes(CornerIndex corner) const;
   [[nodiscard]] bool coversDirectionOnce(std::span<const VertexStar::Member> star) const;
 
-  const TetTopology& topology_;
   const LocalParameters& parameters_;
   const PlainVertices& plain_;
   const Transitions& transitions_;

@@ -254,7 +254,7 @@ class StarSorter {
   StarSorter(const TetTopology& topology, const LocalParameters& parameters, PlainVertices& plain,
              const Transitions* transitions, StarBlock& stars)
       : topology_(topology), plain_(plain), stars_(stars) {
-    if (transitions != nullptr) flat_.emplace(topology, parameters, plain, *transitions);
+    if (transitions != nullptr) flat_.emplace(parameters, plain, *transitions);
   }
 
   void run(Index vertex) {

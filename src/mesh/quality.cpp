@@ -28,10 +28,11 @@ constexpr std::array<std::array<EdgeEnd, 3>, 8> edgesAtCorners() {
   std::array<std::array<EdgeEnd, 3>, 8> result{};
   for (std::uint8_t corner = 0; corner < 8; ++corner) {
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::uint8_t e = 0; e < kHexEdges.size(); ++e) {
+      for (std::size_t e = 0; e < kHexEdges.size(); ++e) {
         const auto& [from, to] = kHexEdges[e];
-        if (from == corner && to == kNeighbours[corner][i]) result[corner][i] = {e, false};
-        if (to == corner && from == kNeighbours[corner][i]) result[corner][i] = {e, true};
+        const auto edge = static_cast<std::uint8_t>(e);
+        if (from == corner && to == kNeighbours[corner][i]) result[corner][i] = {edge, false};
+        if (to == corner && from == kNeighbours[corner][i]) result[corner][i] = {edge, true};
       }
     }
   }
