@@ -30,7 +30,14 @@ std::atomic<std::size_t> largestAllocation{0};
   if (void* const memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
+// Of the same kin, so that what comes from here also goes back here.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t& /*tag*/) noexcept {
+  return std::malloc(size);
+}
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, const std::nothrow_t& /*tag*/) noexcept {
+  std::free(memory);
+}
 [[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept {
   std::free(memory);
 }
