@@ -57,8 +57,9 @@ class Atlas {
       }
     }
     Stage stage(context_, "cuts");
-    if (options_.markCuts) crossings_ = markCutCells(map_, charts_, vertices_.grid(), stage);
-    statistics.cutFaces = crossings_.cutFaces;
+    if (options_.markCuts) {
+      statistics.cutFaces = markCutCells(map_, charts_, vertices_.grid(), stage);
+    }
     vertices_.dropLines();
     statistics.charts = charts_.count;
     statistics.generators = vertices_.numbers().generatorCounts;
@@ -67,14 +68,12 @@ class Atlas {
 
   [[nodiscard]] const VertexGrid<Id>& vertices() const noexcept { return vertices_; }
   [[nodiscard]] const CellSeeds& cells() const noexcept { return cells_; }
-  [[nodiscard]] const Crossings& crossings() const noexcept { return crossings_; }
 
  private:
   const PreparedMap& map_;
   Charts charts_;
   VertexGrid<Id> vertices_;
   CellSeeds cells_;
-  Crossings crossings_;
   Context& context_;
   AtlasOptions options_;
 };
@@ -87,7 +86,7 @@ std::uint64_t emitCells(const PreparedMap& map, const Atlas<Id>& atlas, std::siz
                         std::span<typename CellEmitter<Id>::Cell> cells) {
   const Array<std::uint64_t>& begin = atlas.cells().begin;
   if (begin[firstTet] == begin[endTet]) return 0;
-  CellEmitter<Id> emitter(map, atlas.vertices(), atlas.crossings());
+  CellEmitter<Id> emitter(map, atlas.vertices());
   std::vector<SweptLine> scratch;
   for (std::size_t t = firstTet; t < endTet; ++t) {
     if (begin[t] == begin[t + 1]) continue;

@@ -48,30 +48,29 @@ struct Brick {
   std::array<Id, kBrickPoints> ids;
   /// Per cell, named by its smallest corner: whether a cut face may meet its open interior.
   std::array<std::uint64_t, kBrickPoints / 64> marks;
-  /// The range of the brick's entries in the list of crossings (cut_marks.hpp).
-  std::uint32_t crossingBegin;
-  std::uint32_t crossingEnd;
+  std::uint32_t marked;     ///< not 0 if there are marks
   std::uint32_t contested;  ///< not 0 if two vertices claim one of the points
 
   void clear() noexcept {
     ids.fill(kEmpty);
     marks.fill(0);
-    crossingBegin = 0;
-    crossingEnd = 0;
+    marked = 0;
     contested = 0;
   }
-  /// Marks a cell and counts a crossing. Thread-safe.
+  /// Marks a cell. Thread-safe.
   void mark(std::size_t place) noexcept {
-    std::atomic_ref(marks[place / 64])
-        .fetch_or(std::uint64_t{1} << (place % 64), std::memory_order_relaxed);
-    std::atomic_ref(crossingEnd).fetch_add(1, std::memory_order_relaxed);
+    const std::atomic_ref word(marks[place / 64]);
+    const std::uint64_t bit = std::uint64_t{1} << (place % 64);
+    if ((word.load(std::memory_order_relaxed) & bit) != 0) return;
+    word.fetch_or(bit, std::memory_order_relaxed);
+    std::atomic_ref(marked).store(1, std::memory_order_relaxed);
   }
   /// The marks of a row of points along x: bit i for point i.
   /// @param row  8 z + y
   [[nodiscard]] std::uint8_t marksOfRow(std::size_t row) const noexcept {
     return static_cast<std::uint8_t>(marks[row / 8] >> (row % 8 * 8));
   }
-  [[nodiscard]] bool hasMarks() const noexcept { return crossingEnd > crossingBegin; }
+  [[nodiscard]] bool hasMarks() const noexcept { return marked != 0; }
 };
 
 /// Bricks by key. Filled in two steps: build() from all threads' keys at once, then add() for

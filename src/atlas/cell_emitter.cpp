@@ -10,6 +10,7 @@ template <class Id>
 void CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines, std::span<Cell> cells) {
   if (cells.empty()) return;
   tet_ = tet;
+  entered_ = false;
   chart_ = vertices_.charts().chart[tet];
   gauge_ = &vertices_.charts().gauge(tet);
   const TetSweep sweep(map_.exact, tet, SweptGrid::Centers);
@@ -20,7 +21,7 @@ void CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines, std::spa
     if (count == 0) continue;
     if (chart_ == Charts::kNoChart) {
       for (std::uint32_t i = first; i < first + count; ++i) {
-        emitIrregular(sweep.point(line, i), true, line.simplex(i), *job.place++);
+        emitIrregular(sweep.point(line, i), line.simplex(i), *job.place++);
       }
       continue;
     }
@@ -94,106 +95,39 @@ void CellEmitter<Id>::emitLine(Job& job, const SweptLine& line, std::uint32_t fi
   }
   auto at = static_cast<std::ptrdiff_t>(block_.offset(smallest));
   for (std::uint32_t i = 0; i < count; ++i, at += step) {
-    const bool marked = block_.isMarked(static_cast<std::size_t>(at));
-    if (!marked && std::all_of(cells[i].begin(), cells[i].end(), Brick<Id>::isVertex)) continue;
-    emitIrregular(job.sweep.point(line, first + i), marked, line.simplex(first + i), cells[i]);
+    if (!block_.isMarked(static_cast<std::size_t>(at)) &&
+        std::all_of(cells[i].begin(), cells[i].end(), Brick<Id>::isVertex)) {
+      continue;
+    }
+    emitIrregular(job.sweep.point(line, first + i), line.simplex(first + i), cells[i]);
   }
 }
 
-/// The picture shows those corners of a cell whose diagonals no cut crosses.
+/// Walks to the corners, and takes from the picture what a straight way without a cut leads to.
 template <class Id>
-void CellEmitter<Id>::emitIrregular(const GridPoint& z, bool marked, CornerMask generator,
-                                    Cell& cell) {
-  CellCornerSet hidden = marked ? hiddenCorners(z) : 0;
-  for (std::size_t c = 0; c < 8; ++c) {
-    if (!Brick<Id>::isVertex(cell[c])) hidden |= 1U << c;
-  }
-  if (hidden == 0) return;
-  ++traced_;
-  tracer_.enter(tet_, z, generator);
-  reveal(hidden, cell);
-}
-
-/// Finds what a cell's crossings are in the chart of its tet; false if nobody knows.
-template <class Id>
-bool CellEmitter<Id>::see(SeenCell& cell) {
-  const Index chart = vertices_.charts().chart[cell.tet];
-  if (chart == Charts::kNoChart) return false;
-  const Brick<Id>* const brick = cache_.find(chart, cell.smallest);
-  if (brick == nullptr) return false;  // there was no place for marks
-  const auto place = static_cast<std::uint16_t>(placeInBrick(cell.smallest));
-  const std::span<const Crossing> all = crossings_.of(*brick);
-  const auto first = std::lower_bound(
-      all.begin(), all.end(), place,
-      [](const Crossing& crossing, std::uint16_t at) { return crossing.place < at; });
-  auto last = first;
-  while (last != all.end() && last->place == place) ++last;
-  cell.crossings = {first, last};
-  return true;
-}
-
-template <class Id>
-CellCornerSet CellEmitter<Id>::hiddenCorners(const GridPoint& z) {
-  constexpr CellCornerSet kAll = 0xff;
-  SeenCell cell{tet_, gauge_->cell(z), {}};
-  return see(cell) ? crossedDiagonals(map_, vertices_.charts(), cell) : kAll;
-}
-
-/// Traces one hidden corner; where that arrives, the others are often in sight.
-template <class Id>
-void CellEmitter<Id>::reveal(CellCornerSet hidden, Cell& cell) {
-  bool tried = false;
-  for (std::size_t c = 0; c < 8; ++c) {
-    if (((hidden >> c) & 1U) == 0) continue;
+void CellEmitter<Id>::emitIrregular(const GridPoint& z, CornerMask generator, Cell& cell) {
+  if (!entered_) walker_.enter(tet_);
+  entered_ = true;
+  bool hidden = false;
+  const CellCornerSet missed =
+      walker_.run(z, [&](const CellWalker::Stop& stop, CellCornerSet corners) {
+        if (stop.inSight) return;
+        hidden = true;
+        for (std::size_t c = 0; c < 8; ++c) {
+          if (((corners >> c) & 1U) == 0) continue;
+          GridPoint corner = z;
+          for (std::size_t k = 0; k < 3; ++k) corner[k] += kCellCorners[c][k];
+          cell[c] = vertices_.vertexAt(stop.tet, stop.toTet(corner), cache_);
+        }
+      });
+  if (missed != 0) tracer_.enter(tet_, z, generator);
+  for (std::size_t c = 0; missed >> c != 0; ++c) {
+    if (((missed >> c) & 1U) == 0) continue;
+    hidden = true;
     const CornerPlace place = tracer_.trace(kCellCorners[c]);
     cell[c] = vertices_.vertexAt(place.tet, place.z, cache_);
-    hidden &= ~(1U << c);
-    if (hidden != 0 && !tried && revealTogether(place, c, hidden, cell)) return;
-    tried = true;
   }
-}
-
-/// Seen from the tet that a traced corner was found in, the other hidden corners are at their
-/// places in its chart, unless a cut comes between: straight ways from corner to corner stay inside
-/// the cell's cube, as the way that was traced did.
-template <class Id>
-bool CellEmitter<Id>::revealTogether(const CornerPlace& place, std::size_t traced,
-                                     CellCornerSet hidden, Cell& cell) {
-  const Charts& charts = vertices_.charts();
-  if (charts.chart[place.tet] == Charts::kNoChart) return false;
-  // All corners in the chart of that tet.
-  std::array<GridPoint, 8> corners{};
-  GridPoint smallest = place.z;
-  for (std::size_t c = 0; c < 8; ++c) {
-    GridPoint offset{};
-    for (std::size_t k = 0; k < 3; ++k) offset[k] = kCellCorners[c][k] - kCellCorners[traced][k];
-    offset = place.rotation(offset);
-    for (std::size_t k = 0; k < 3; ++k) {
-      corners[c][k] = place.z[k] + offset[k];
-      smallest[k] = std::min(smallest[k], corners[c][k]);
-    }
-  }
-  SeenCell seen{place.tet, charts.gauge(place.tet).cell(smallest), {}};
-  if (!see(seen)) return false;
-  constexpr std::array<std::uint8_t, 8> kVtkCorner = {0, 1, 3, 2, 4, 5, 7, 6};  // by x + 2 y + 4 z
-  CellCornerSet together = 0;
-  for (std::size_t c = 0; c < 8; ++c) {
-    if (c != traced && ((hidden >> c) & 1U) == 0) continue;
-    std::size_t index = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      index |= static_cast<std::size_t>(corners[c][k] - smallest[k]) << k;
-    }
-    together |= 1U << kVtkCorner[index];
-  }
-  if (!areTogether(map_, charts, seen, together)) return false;
-  for (std::size_t c = 0; c < 8; ++c) {
-    if (((hidden >> c) & 1U) == 0) continue;
-    const ChartPoint at = charts.gauge(place.tet)(corners[c]);
-    const Brick<Id>* const brick = cache_.find(charts.chart[place.tet], at);
-    if (brick == nullptr || !Brick<Id>::isVertex(brick->ids[placeInBrick(at)])) return false;
-    cell[c] = brick->ids[placeInBrick(at)];
-  }
-  return true;
+  if (hidden) ++traced_;
 }
 
 template class CellEmitter<std::uint32_t>;

@@ -1,5 +1,5 @@
-// Hex cells, tet by tet in canonical order: read from the grid where the picture is whole, traced
-// where it is not.
+// Hex cells, tet by tet in canonical order: read from the grid where the picture is whole, looked
+// up tet by tet where it is not.
 #pragma once
 
 #include <array>
@@ -7,8 +7,7 @@
 #include <vector>
 
 #include <atlas/brick_block.hpp>
-#include <atlas/cut_marks.hpp>
-#include <atlas/diagonals.hpp>
+#include <atlas/cell_walker.hpp>
 #include <atlas/vertex_grid.hpp>
 #include <sweep/cell_seeds.hpp>
 #include <sweep/cell_tracer.hpp>
@@ -23,18 +22,18 @@ class CellEmitter {
  public:
   using Cell = std::array<Id, 8>;
 
-  CellEmitter(const PreparedMap& map, const VertexGrid<Id>& vertices, const Crossings& crossings)
+  CellEmitter(const PreparedMap& map, const VertexGrid<Id>& vertices)
       : map_(map),
         vertices_(vertices),
-        crossings_(crossings),
         cache_(vertices.grid()),
+        walker_(map, vertices.charts()),
         tracer_(map) {}
 
   /// Writes the cells whose centres the tet owns, `count` of them.
   /// @param lines  the tet's lines of centres
   void emit(Index tet, std::span<const SweptLine> lines, std::span<Cell> cells);
 
-  /// Cells with a corner that had to be traced so far.
+  /// Cells so far with a corner that the picture hides.
   [[nodiscard]] std::uint64_t traced() const noexcept { return traced_; }
 
  private:
@@ -49,21 +48,17 @@ class CellEmitter {
   [[nodiscard]] bool loadWhole(const Job& job, std::size_t cells);
   void loadBox(const Job& job, const GridPoint& first, const GridPoint& last);
   void emitLine(Job& job, const SweptLine& line, std::uint32_t first, std::uint32_t count);
-  void emitIrregular(const GridPoint& z, bool marked, CornerMask generator, Cell& cell);
-  [[nodiscard]] CellCornerSet hiddenCorners(const GridPoint& z);
-  void reveal(CellCornerSet hidden, Cell& cell);
-  [[nodiscard]] bool revealTogether(const CornerPlace& place, std::size_t traced,
-                                    CellCornerSet hidden, Cell& cell);
-  [[nodiscard]] bool see(SeenCell& cell);
+  void emitIrregular(const GridPoint& z, CornerMask generator, Cell& cell);
 
   const PreparedMap& map_;
   const VertexGrid<Id>& vertices_;
-  const Crossings& crossings_;
   BrickCache<Id> cache_;
+  CellWalker walker_;
   CellTracer tracer_;
   std::uint64_t traced_ = 0;
 
   Index tet_ = 0;
+  bool entered_ = false;  ///< the walker is in the tet
   Index chart_ = 0;
   const Gauge* gauge_ = nullptr;
   BrickBlock<Id> block_;                     ///< the vertices around the tet's cells

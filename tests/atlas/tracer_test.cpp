@@ -1,8 +1,8 @@
-// What faces hide of a cell, against ways that are traced exactly.
+// Walks to all corners of a cell at once, against ways that are traced exactly one by one.
 #include <rapidcheck.h>
 
 #include <atlas/cell_emitter.hpp>
-#include <atlas/diagonals.hpp>
+#include <atlas/cell_walker.hpp>
 #include <gtest/gtest.h>
 #include <sweep/cell_tracer.hpp>
 
@@ -72,9 +72,10 @@ TEST(Property, TracedCornersAreGridPointsOfTheirTets) {
   }));
 }
 
-/// Corners that the picture is said to show are those that exact tracing finds.
-TEST(Property, CornersInSightAreTheTracedOnes) {
-  EXPECT_TRUE(rc::check("corners in sight are the traced ones", [] {
+/// The walker arrives at the vertices that exact tracing finds, and what it says to be in sight is
+/// in the picture.
+TEST(Property, WalksEndAtTheTracedCorners) {
+  EXPECT_TRUE(rc::check("walks end at the traced corners", [] {
     const auto prepared = anyMap();
     const PreparedMap& map = prepared->map;
     Context context(1);
@@ -85,35 +86,36 @@ TEST(Property, CornersInSightAreTheTracedOnes) {
     vertices.sweep(cells, stage);
     vertices.fill({}, stage);
     static_cast<void>(vertices.resolveOverlaps(stage));
-    const Crossings crossings = markCutCells(map, charts, vertices.grid(), stage);
     BrickCache<Index> cache(vertices.grid());
+    CellWalker walker(map, charts);
     CellTracer tracer(map);
-    std::size_t inSight = 0;
+    std::size_t arrived = 0;
     forEachCell(map, [&](Index tet, const GridPoint& z, CornerMask generator) {
-      const Gauge& gauge = charts.gauge(tet);
-      const ChartPoint smallest = gauge.cell(z);
-      const Brick<Index>* const brick = cache.find(charts.chart[tet], smallest);
-      if (brick == nullptr) return;
-      std::vector<Crossing> ofCell;
-      for (const Crossing& crossing : crossings.of(*brick)) {
-        if (crossing.place == placeInBrick(smallest)) ofCell.push_back(crossing);
-      }
-      const CellCornerSet hidden = crossedDiagonals(map, charts, {tet, smallest, ofCell});
+      walker.enter(tet);
       tracer.enter(tet, z, generator);
-      for (std::size_t c = 0; c < 8; ++c) {
-        if (((hidden >> c) & 1U) != 0) continue;
-        ++inSight;
-        const GridPoint& offset = kCellCorners[c];
-        const GridPoint corner = {z[0] + offset[0], z[1] + offset[1], z[2] + offset[2]};
-        const ChartPoint at = gauge(corner);
-        const Brick<Index>* const there = cache.find(charts.chart[tet], at);
-        RC_ASSERT(there != nullptr);
-        const CornerPlace place = tracer.trace(offset);
-        RC_ASSERT(std::uint64_t{there->ids[placeInBrick(at)]} ==
-                  vertices.exactNumber(place.tet, place.z));
-      }
+      CellCornerSet seen = 0;
+      const auto arrive = [&](const CellWalker::Stop& stop, CellCornerSet corners) {
+        RC_ASSERT((seen & corners) == 0U);
+        seen |= corners;
+        for (std::size_t c = 0; c < 8; ++c) {
+          if (((corners >> c) & 1U) == 0) continue;
+          ++arrived;
+          GridPoint corner = z;
+          for (std::size_t k = 0; k < 3; ++k) corner[k] += kCellCorners[c][k];
+          const CornerPlace place = tracer.trace(kCellCorners[c]);
+          const std::uint64_t vertex = vertices.exactNumber(place.tet, place.z);
+          RC_ASSERT(vertices.exactNumber(stop.tet, stop.toTet(corner)) == vertex);
+          if (!stop.inSight) continue;
+          const ChartPoint at = charts.gauge(tet)(corner);
+          const Brick<Index>* const brick = cache.find(charts.chart[tet], at);
+          RC_ASSERT(brick != nullptr);
+          RC_ASSERT(std::uint64_t{brick->ids[placeInBrick(at)]} == vertex);
+        }
+      };
+      const CellCornerSet missed = walker.run(z, arrive);
+      RC_ASSERT((seen ^ missed) == 0xffU);
     });
-    RC_ASSERT(inSight > 0U);
+    RC_ASSERT(arrived > 0U);
   }));
 }
 
