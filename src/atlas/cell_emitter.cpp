@@ -6,6 +6,62 @@
 
 namespace hexhex {
 
+namespace {
+
+/// Corners of a cell with coordinate 0 along an axis, and those next to them with coordinate 1.
+struct FacingCorners {
+  std::array<std::size_t, 4> near{};
+  std::array<std::size_t, 4> far{};
+};
+
+constexpr FacingCorners facingCorners(std::size_t axis) {
+  FacingCorners corners;
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < 8; ++c) {
+    if (kCellCorners[c][axis] != 0) continue;
+    GridPoint across = kCellCorners[c];
+    across[axis] = 1;
+    corners.near[count] = c;
+    for (std::size_t d = 0; d < 8; ++d) {
+      if (kCellCorners[d] == across) corners.far[count] = d;
+    }
+    ++count;
+  }
+  return corners;
+}
+
+/// Reads a line of cells along an axis; each shares four corners with the next.
+/// @param corner   the place of the first cell's smallest corner
+/// @param corners  how far from there the corners are
+/// @return all ids, or-ed
+template <std::size_t Axis, class Id>
+Id readCells(const Id* corner, const std::array<std::ptrdiff_t, 8>& corners, std::ptrdiff_t step,
+             std::array<Id, 8>* cells, std::uint32_t count) {
+  constexpr FacingCorners kFacing = facingCorners(Axis);
+  std::array<const Id*, 4> rows;
+  std::array<Id, 4> near;
+  Id together = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    rows[i] = corner + corners[kFacing.near[i]];
+    near[i] = *rows[i];
+    together |= near[i];
+  }
+  for (std::uint32_t n = 0; n < count; ++n) {
+    std::array<Id, 8> cell;
+    for (std::size_t i = 0; i < 4; ++i) {
+      rows[i] += step;
+      cell[kFacing.near[i]] = near[i];
+      near[i] = *rows[i];
+      cell[kFacing.far[i]] = near[i];
+      together |= near[i];
+    }
+    cells[n] = cell;
+  }
+  return together;
+}
+
+}  // namespace
+
 template <class Id>
 void CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines, std::span<Cell> cells) {
   if (cells.empty()) return;
@@ -75,15 +131,16 @@ void CellEmitter<Id>::emitLine(Job& job, const SweptLine& line, std::uint32_t fi
   const Id* corner = block_.ids() + block_.offset(start);
   Cell* const cells = job.place;
   job.place += count;
-  const std::array<std::ptrdiff_t, 8> corners = corners_;  // which the loop can hold in registers
-  Id together = 0;
-  for (std::uint32_t i = 0; i < count; ++i, corner += step) {
-    Cell cell;
-    for (std::size_t c = 0; c < 8; ++c) cell[c] = corner[corners[c]];
-    cells[i] = cell;
-    together |=
-        (cell[0] | cell[1]) | (cell[2] | cell[3]) | (cell[4] | cell[5]) | (cell[6] | cell[7]);
-  }
+  const Id together = [&] {
+    switch (job.sweep.axes()[2]) {
+      case 0:
+        return readCells<0>(corner, corners_, step, cells, count);
+      case 1:
+        return readCells<1>(corner, corners_, step, cells, count);
+      default:
+        return readCells<2>(corner, corners_, step, cells, count);
+    }
+  }();
   // Both special values have the highest bit set, as no vertex of a mesh of usual size has.
   constexpr Id kHighestBit = ~(std::numeric_limits<Id>::max() >> 1);
   if (!block_.anyMarked() && (together & kHighestBit) == 0) return;

@@ -27,6 +27,16 @@ std::array<double, 8> halfDiagonals(const Vector& v) {
   return {-plus - z, minus - z, plus - z, -minus - z, -plus + z, minus + z, plus + z, -minus + z};
 }
 
+/// Which sums of a value and the entries are negative.
+CellCornerSet negatives(const std::array<double, 8>& entries, double value) {
+  CellCornerSet set = 0;
+  for (std::size_t c = 0; c < 8; ++c) {
+    // Without branches, which nobody could predict.
+    set |= static_cast<CellCornerSet>(std::bit_cast<std::uint64_t>(entries[c] + value) >> 63) << c;
+  }
+  return set;
+}
+
 double largest(const Vector& v) {
   return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
 }
@@ -100,14 +110,12 @@ CellWalker::Sides CellWalker::look(const Node& node, const GridPoint& z,
     const Vector& p = node.corners[static_cast<std::size_t>(kFaceCorners[f][0])];
     sides.center[f] = scalarProduct(node.normals[f], difference(center, p));
     if (static_cast<int>(f) == node.entered) continue;  // all come from there
-    const std::array<double, 8> half = halfDiagonals(node.normals[f]);
-    CellCornerSet notInside = 0;
-    CellCornerSet outside = 0;
-    for (std::size_t c = 0; c < 8; ++c) {
-      const double value = sides.center[f] + half[c];
-      notInside |= static_cast<CellCornerSet>(!(value > sides.error)) << c;
-      outside |= static_cast<CellCornerSet>(value < -sides.error) << c;
-    }
+    const Vector& n = node.normals[f];
+    const double extent = 0.5 * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
+    if (sides.center[f] - extent > 2 * sides.error) continue;
+    const std::array<double, 8> half = halfDiagonals(n);
+    const CellCornerSet notInside = negatives(half, sides.center[f] - sides.error);
+    CellCornerSet outside = negatives(half, sides.center[f] + sides.error);
     outside &= corners;
     const CellCornerSet unsure = notInside & corners & ~outside;
     if (unsure != 0) outside |= signsOfUnsure(node, static_cast<int>(f), z, unsure);
