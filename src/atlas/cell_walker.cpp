@@ -93,6 +93,7 @@ void CellWalker::measure(Node& node) const noexcept {
   // Other edges are at most twice as long.
   node.error = kPlaneError * 2 * edge * node.reach;
   for (std::size_t f = 0; f < 4; ++f) {
+    if (static_cast<int>(f) == node.entered) continue;
     const Vector& p = node.corners[static_cast<std::size_t>(kFaceCorners[f][0])];
     node.normals[f] =
         crossProduct(difference(node.corners[static_cast<std::size_t>(kFaceCorners[f][1])], p),
@@ -107,10 +108,10 @@ CellWalker::Sides CellWalker::look(const Node& node, const GridPoint& z,
   Sides sides;
   sides.error = node.error * std::max(node.reach, largest(center) + 0.5);
   for (std::size_t f = 0; f < 4; ++f) {
-    const Vector& p = node.corners[static_cast<std::size_t>(kFaceCorners[f][0])];
-    sides.center[f] = scalarProduct(node.normals[f], difference(center, p));
     if (static_cast<int>(f) == node.entered) continue;  // all come from there
+    const Vector& p = node.corners[static_cast<std::size_t>(kFaceCorners[f][0])];
     const Vector& n = node.normals[f];
+    sides.center[f] = scalarProduct(n, difference(center, p));
     const double extent = 0.5 * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
     if (sides.center[f] - extent > 2 * sides.error) continue;
     const std::array<double, 8> half = halfDiagonals(n);
