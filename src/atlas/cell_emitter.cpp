@@ -71,33 +71,62 @@ void CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines, std::spa
   gauge_ = &vertices_.charts().gauge(tet);
   const TetSweep sweep(map_.exact, tet, SweptGrid::Centers);
   Job job{sweep, SweepFrame(*gauge_, sweep.axes()), CenterOwner(map_.topology, tet), cells.data()};
-  const bool whole = chart_ != Charts::kNoChart && loadWhole(job, cells.size());
-  for (const SweptLine& line : lines) {
-    const auto [first, count] = job.owner.owned(line);
-    if (count == 0) continue;
-    if (chart_ == Charts::kNoChart) {
+  while (!lines.empty()) {
+    const std::span<const SweptLine> together =
+        lines.first(chart_ == Charts::kNoChart ? lines.size() : load(job, lines));
+    for (const SweptLine& line : together) {
+      const auto [first, count] = job.owner.owned(line);
+      if (count == 0) continue;
+      if (chart_ != Charts::kNoChart) {
+        emitLine(job, line, first, count);
+        continue;
+      }
       for (std::uint32_t i = first; i < first + count; ++i) {
         emitIrregular(sweep.point(line, i), line.simplex(i), *job.place++);
       }
-      continue;
     }
-    if (!whole) loadBox(job, sweep.point(line, first), sweep.point(line, first + count - 1));
-    emitLine(job, line, first, count);
+    lines = lines.subspan(together.size());
   }
 }
 
-/// Loads the vertices around all of the tet's cells, unless its box is much larger than the tet.
+/// Loads the vertices around the first lines: those of a few levels, or one line alone if their
+/// box is much larger than they.
+/// @return the number of lines
 template <class Id>
-bool CellEmitter<Id>::loadWhole(const Job& job, std::size_t cells) {
-  const GridBox& box = job.sweep.box;
-  std::uint64_t points = 1;
-  for (const GridRange& range : box.range) {
-    points *= static_cast<std::uint64_t>(std::int64_t{range.last} - range.first + 2);
-    if (points > 64 * cells + 1024) return false;
+std::size_t CellEmitter<Id>::load(const Job& job, std::span<const SweptLine> lines) {
+  constexpr std::int32_t kLevels = kBrickSide;
+  SweptLine low = lines.front();
+  std::int32_t highRow = low.row;
+  std::int32_t highPoint = low.first;
+  std::uint64_t cells = 0;
+  std::size_t count = 0;
+  for (const SweptLine& line : lines) {
+    if (line.level >= lines.front().level + kLevels) break;
+    low.row = std::min(low.row, line.row);
+    low.first = std::min(low.first, line.first);
+    highRow = std::max(highRow, line.row);
+    highPoint = std::max(highPoint, line.first + static_cast<std::int32_t>(line.count) - 1);
+    cells += line.count;
+    ++count;
   }
-  loadBox(job, {box.range[0].first, box.range[1].first, box.range[2].first},
-          {box.range[0].last, box.range[1].last, box.range[2].last});
-  return true;
+  const std::int32_t highLevel = lines[count - 1].level;
+  const auto size = [](std::int32_t from, std::int32_t to) {
+    return static_cast<std::uint64_t>(std::int64_t{to} - from + 2);
+  };
+  // Each factor fits 32 bits; a box of that many rows is too large whatever their length.
+  const std::uint64_t rows = size(low.level, highLevel) * size(low.row, highRow);
+  const std::uint64_t most = 64 * cells + 1024;
+  if (rows > most || rows * size(low.first, highPoint) > most) {
+    const SweptLine& line = lines.front();
+    loadBox(job, job.sweep.point(line, 0), job.sweep.point(line, line.count - 1));
+    return 1;
+  }
+  SweptLine high = low;
+  high.level = highLevel;
+  high.row = highRow;
+  high.first = highPoint;
+  loadBox(job, job.sweep.point(low, 0), job.sweep.point(high, 0));
+  return count;
 }
 
 /// @param first, last  cells at opposite ends of a box in the tet's chart

@@ -45,7 +45,7 @@ class CellEmitter {
     Cell* place;
   };
 
-  [[nodiscard]] bool loadWhole(const Job& job, std::size_t cells);
+  [[nodiscard]] std::size_t load(const Job& job, std::span<const SweptLine> lines);
   void loadBox(const Job& job, const GridPoint& first, const GridPoint& last);
   void emitLine(Job& job, const SweptLine& line, std::uint32_t first, std::uint32_t count);
   void emitIrregular(const GridPoint& z, CornerMask generator, Cell& cell);
@@ -61,7 +61,7 @@ class CellEmitter {
   bool entered_ = false;  ///< the walker is in the tet
   Index chart_ = 0;
   const Gauge* gauge_ = nullptr;
-  BrickBlock<Id> block_;                     ///< the vertices around the tet's cells
+  BrickBlock<Id> block_;                     ///< the vertices around a few lines of cells
   std::array<std::ptrdiff_t, 8> corners_{};  ///< offsets of a cell's corners there
 };
 
