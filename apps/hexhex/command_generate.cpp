@@ -125,6 +125,10 @@ Command addGenerate(CLI::App& app) {
       ->check(CLI::IsMember({"aligned", "blocks", "random"}))
       ->option_text("STYLE [aligned]");
   addSampleOptions(*parser, arguments->options);
+  parser->add_flag(
+      "--features", arguments->options.features,
+      "Tag corners, curves, patches and blocks (files: .ovm,\n.ovmb; .hexex without the "
+      "numbers)");
   parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   parser->footer(describeKinds());
   return {parser, [arguments] { return run(*arguments); }};

@@ -63,7 +63,20 @@ struct ExtractStatistics {
 /// Tets may have either orientation in space, as long as neighbours agree; a map that reverses
 /// orientation everywhere is mirrored first.
 ///
-/// @throws Error  for every violated condition of an integer-grid map, with its place
+/// What map.features tags is carried over to mesh.features, in ascending order of vertices:
+///  - hex vertices at tagged tet vertices;
+///  - hex edges that start out, from one of their ends, in the interior of a tagged tet edge (their
+///    holder, Section 4.2). If tags differ, that at the edge's smaller vertex counts;
+///  - hex faces that start out, at one of their corners beside one of their edges, in the interior
+///    of a tagged triangle (their casing). If tags differ, that at the smallest vertex counts,
+///    there that beside the edge to the smaller neighbour.
+/// A tagged edge or triangle that is not in the tet mesh has no effect. Where map.regions is given,
+/// mesh.regions has for each cell the region at its centre: that of the smallest tet that contains
+/// the centre. Maps without either take no time for it.
+///
+/// @throws Error  for every violated condition of an integer-grid map, with its place;
+///                InvalidArgument for features with vertices that do not exist or that are listed
+///                twice with different tags, and for regions that are not one per tet
 /// @param[out] statistics  filled if not null
 [[nodiscard]] HexMesh extract(const TetMapView& map, const ExtractOptions& options,
                               Context& context, ExtractStatistics* statistics = nullptr);

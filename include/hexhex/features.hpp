@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hexhex {
@@ -47,6 +48,25 @@ struct Features {
     return vertices.empty() && edges.empty() && faces.empty();
   }
   bool operator==(const Features&) const = default;
+};
+
+/// The same as a view on the caller's arrays.
+struct FeaturesView {
+  std::span<const FeatureVertex> vertices = {};
+  std::span<const FeatureEdge> edges = {};
+  std::span<const FeatureFace> faces = {};
+
+  FeaturesView() = default;
+  FeaturesView(std::span<const FeatureVertex> vertices_, std::span<const FeatureEdge> edges_,
+               std::span<const FeatureFace> faces_)
+      : vertices(vertices_), edges(edges_), faces(faces_) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): features convert to a view of themselves.
+  FeaturesView(const Features& features)
+      : vertices(features.vertices), edges(features.edges), faces(features.faces) {}
+
+  [[nodiscard]] bool empty() const noexcept {
+    return vertices.empty() && edges.empty() && faces.empty();
+  }
 };
 
 /// Features of a hex mesh; each element is listed at most once.

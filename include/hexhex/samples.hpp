@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string_view>
 
@@ -39,13 +40,26 @@ struct SampleOptions {
                       ///< and at most cells / (72 refine), so that the answer stays true
   double offset = 0;  ///< chart translations are integers from [-offset, offset], up to 1e9; one
                       ///< for all blocks if aligned. Below 1: none if aligned, else up to 20
+  /// Tags corners, sharp and singular curves, and the smooth patches of the boundary between them,
+  /// each kind from 1 on, and numbers the blocks, from 1 on, as regions.
+  bool features = false;
   std::uint64_t seed = 1;
+};
+
+/// What the tags of a sample become, by tag. At scale s there are s times as many edges and s^2
+/// times as many quads.
+struct FeatureAnswer {
+  std::map<std::int32_t, std::uint64_t> vertices;  ///< hex vertices at corners: 1 each
+  std::map<std::int32_t, std::uint64_t> edges;     ///< hex edges on each curve
+  std::map<std::int32_t, std::uint64_t> quads;     ///< hex faces on each patch
+  std::uint64_t regions = 0;                       ///< blocks
 };
 
 /// What is known about the mesh of a sample.
 struct SampleAnswer {
   Expectation expected;
   std::uint64_t vertices = 0;  ///< hex vertices
+  FeatureAnswer features;      ///< empty without SampleOptions::features
 };
 
 struct Sample {

@@ -93,7 +93,8 @@ struct TetMap {
   // What files may know beyond the map itself; empty where they do not. See TetMapView.
   std::vector<EdgeValence> edgeValences = {};
   std::vector<std::array<std::int8_t, 4>> rotations = {};
-  Features features = {};  ///< tagged vertices, edges and triangles of the tets
+  Features features = {};                  ///< tagged vertices, edges and triangles of the tets
+  std::vector<std::int32_t> regions = {};  ///< per tet: material or volume, 0 without; or empty
 };
 
 /// The same as a view on the caller's arrays, plus what the caller may know already.
@@ -110,6 +111,12 @@ struct TetMapView {
   /// it, in the numbering of AlgoHex's `HalffaceTransiton`; -1 where unknown. Empty: computed.
   std::span<const std::array<std::int8_t, 4>> rotations = {};
 
+  /// Optional: tagged simplices, which tag vertices, edges and quads of the mesh. See extract().
+  FeaturesView features = {};
+
+  /// Optional: a number for each tet, which the cells inherit. Empty: none.
+  std::span<const std::int32_t> regions = {};
+
   TetMapView() = default;
   TetMapView(std::span<const Vec3> points_, std::span<const Tet> tets_,
              std::span<const TetParameters> parameters_)
@@ -120,7 +127,9 @@ struct TetMapView {
         tets(map.tets),
         parameters(map.parameters),
         edgeValences(map.edgeValences),
-        rotations(map.rotations) {}
+        rotations(map.rotations),
+        features(map.features),
+        regions(map.regions) {}
 };
 
 /// Dimension of the simplex of the tet mesh whose interior holds a hex vertex (its generator).
@@ -145,7 +154,8 @@ struct HexMesh {
   Array<Index> generatorTet;          ///< per vertex: the smallest tet that contains the simplex
   Array<CornerSet> generatorCorners;  ///< per vertex: the simplex, by corners of that tet
 
-  HexFeatures features = {};  ///< tagged vertices, edges and quads, where they are known
+  HexFeatures features = {};         ///< tagged vertices, edges and quads, where they are known
+  Array<std::int32_t> regions = {};  ///< per cell: the region that it is in; or empty
 };
 
 }  // namespace hexhex

@@ -9,6 +9,7 @@
 #include <hexhex/extract.hpp>
 #include <hexhex/stream.hpp>
 
+#include <extract/features.hpp>
 #include <extract/global_connectivity.hpp>
 #include <extract/pipeline.hpp>
 #include <map/measures.hpp>
@@ -64,9 +65,8 @@ ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options, do
   return scaled;
 }
 
-HexMesh extractInArena(const TetMapView& map, const ExtractOptions& options, Context& context,
-                       ExtractStatistics& statistics) {
-  ScaledMap scaled = prepareScaled(map, options, kNone, context, statistics);
+HexMesh runEngine(ScaledMap& scaled, const ExtractOptions& options, Context& context,
+                  ExtractStatistics& statistics) {
   if (options.engine == Engine::Atlas) {
     return runAtlas(scaled.map, scaled.expectedCells, context, statistics);
   }
@@ -75,6 +75,15 @@ HexMesh extractInArena(const TetMapView& map, const ExtractOptions& options, Con
     addStars(scaled.map.topology, stage);
   }
   return runPipeline(scaled.map, scaled.expectedCells, options.epsilon, context, statistics);
+}
+
+HexMesh extractInArena(const TetMapView& map, const ExtractOptions& options, Context& context,
+                       ExtractStatistics& statistics) {
+  requireValidTags(map);
+  ScaledMap scaled = prepareScaled(map, options, kNone, context, statistics);
+  HexMesh mesh = runEngine(scaled, options, context, statistics);
+  carryTags(map, scaled.map, mesh, context);
+  return mesh;
 }
 
 /// Runs work with the context's threads; translates what may escape from it, and notes the time.

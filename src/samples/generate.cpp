@@ -10,6 +10,7 @@
 
 #include <samples/charts.hpp>
 #include <samples/expected_answer.hpp>
+#include <samples/features.hpp>
 #include <samples/kinds.hpp>
 #include <samples/perturbation.hpp>
 #include <samples/tet_grid.hpp>
@@ -127,7 +128,15 @@ Sample generateSample(SampleKind kind, const SampleOptions& options) try {
 
   Sample sample;
   sample.answer = samples::expectedAnswer(complex, static_cast<std::uint64_t>(options.cells));
+  TetMap features;
+  if (options.features) {
+    sample.answer.features =
+        samples::expectedFeatures(complex, static_cast<std::uint64_t>(options.cells));
+    samples::addFeatures(grid, complex, features);
+  }
   sample.map = samples::mapWithCharts(std::move(grid), complex, options);
+  sample.map.features = std::move(features.features);
+  sample.map.regions = std::move(features.regions);
   return sample;
 } catch (const std::bad_alloc&) {
   throw Error(

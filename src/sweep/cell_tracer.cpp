@@ -58,8 +58,8 @@ void CellTracer::enter(Index tet, const GridPoint& z, CornerMask generator) noex
   }
 }
 
-CornerPlace CellTracer::trace(const GridPoint& offset) {
-  Way way = begin(offset);
+CornerPlace CellTracer::trace(const GridPoint& offset, const TiltOrder& tilts) {
+  Way way = begin(offset, tilts);
   int face = exitFromInside(way);
   for (std::size_t steps = 0; face != kNoExit && !endsBefore(way, face); ++steps) {
     if (topology_.isBoundary(halfFaceOf(way.tet, face))) fail(way.tet, "the way leaves the mesh");
@@ -75,11 +75,13 @@ CornerPlace CellTracer::trace(const GridPoint& offset) {
   return place;
 }
 
-CellTracer::Way CellTracer::begin(const GridPoint& offset) {
+CellTracer::Way CellTracer::begin(const GridPoint& offset, const TiltOrder& tilts) {
   Way way{tet_, -1, center_, {}, {}, {}, {}};
   for (std::size_t k = 0; k < 3; ++k) {
     way.along[k] = 2 * offset[k] - 1;
-    way.tilts[k] = direction(static_cast<int>(k), -way.along[k]);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    way.tilts[k] = direction(tilts[k], -way.along[tilts[k]]);
   }
   if (generator_ == kWholeTet) {
     for (std::size_t i = 0; i < 4; ++i) way.seen[i] = seenAs(way, corners_[i]);

@@ -17,6 +17,9 @@
 
 namespace hexhex {
 
+/// The axes of a cell in the order in which ways are tilted along them: d1, d2, d3.
+using TiltOrder = std::array<std::uint8_t, 3>;
+
 /// Where a way from a centre to a corner ends.
 struct CornerPlace {
   Index tet;          ///< contains the corner, and the way's end beside it
@@ -39,7 +42,7 @@ class CellTracer {
 
   /// Traces to one corner of the cell.
   /// @param offset  of the corner from z, each 0 or 1
-  [[nodiscard]] CornerPlace trace(const GridPoint& offset);
+  [[nodiscard]] CornerPlace trace(const GridPoint& offset, const TiltOrder& tilts = {0, 1, 2});
 
  private:
   /// A corner of a tet seen along a way: as a point (x, y) of a plane with the way at its origin,
@@ -62,7 +65,7 @@ class CellTracer {
     std::array<Seen, 4> seen;
   };
 
-  [[nodiscard]] Way begin(const GridPoint& offset);
+  [[nodiscard]] Way begin(const GridPoint& offset, const TiltOrder& tilts);
   [[nodiscard]] LatticePoint relative(const Way& way, int corner) const noexcept;
   [[nodiscard]] LatticeTet relativeTet(const Way& way) const noexcept;
   [[nodiscard]] static Seen seenAs(const Way& way, const std::array<double, 3>& r) noexcept;

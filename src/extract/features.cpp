@@ -1,0 +1,364 @@
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include <sweep/cell_seeds.hpp>
+#include <sweep/cell_tracer.hpp>
+
+#include <extract/features.hpp>
+#include <extract/tag_table.hpp>
+
+namespace hexhex {
+
+namespace {
+
+constexpr std::size_t kGrain = std::size_t{1} << 14;
+
+/// A hex vertex may begin a tagged edge, or may be the corner of a tagged face.
+using Mark = std::uint8_t;
+constexpr Mark kAtEdges = 1;
+constexpr Mark kAtFaces = 2;
+
+/// Per hex vertex: whether all vertices of its generator belong to tagged edges, or faces. A ray or
+/// quarter plane that leads into a simplex begins at a vertex in the closure of that simplex.
+class Marks {
+ public:
+  Marks(const TetMapView& given, const HexMesh& mesh, Stage& stage)
+      : ofPoint_(given.points.size(), Mark{0}), ofVertex_(mesh.points.size()) {
+    for (const FeatureEdge& edge : given.features.edges) mark(edge.vertices, edge.tag, kAtEdges);
+    for (const FeatureFace& face : given.features.faces) mark(face.vertices, face.tag, kAtFaces);
+    parallelFor(stage, mesh.points.size(), kGrain, [&](std::size_t v) {
+      const CornerSet corners = mesh.generatorCorners[v];
+      ofVertex_[v] =
+          corners == kWholeTet ? Mark{0} : common(given.tets[mesh.generatorTet[v]], corners);
+    });
+  }
+
+  [[nodiscard]] Mark operator[](Index vertex) const noexcept { return ofVertex_[vertex]; }
+
+ private:
+  template <class Vertices>
+  void mark(const Vertices& vertices, std::int32_t tag, Mark bit) {
+    if (tag == 0) return;
+    for (const Index v : vertices) ofPoint_[v] = static_cast<Mark>(ofPoint_[v] | bit);
+  }
+  [[nodiscard]] Mark common(const Tet& tet, CornerSet corners) const noexcept {
+    Mark common = kAtEdges | kAtFaces;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (contains(corners, static_cast<int>(i))) {
+        common = static_cast<Mark>(common & ofPoint_[tet[i]]);
+      }
+    }
+    return common;
+  }
+
+  std::vector<Mark> ofPoint_;
+  Array<Mark> ofVertex_;
+};
+
+/// What the cells of a block of tets see; elements that several cells share occur repeatedly.
+struct Seen {
+  /// An edge from its smaller vertex to its larger one, and from where its tag was seen.
+  struct Edge {
+    std::array<Index, 2> vertices;
+    bool fromLarger;
+    std::int32_t tag;
+  };
+  std::vector<Edge> edges;
+  std::vector<FeatureQuad> quads;
+};
+
+/// Position of the corner at an offset in kCellCorners: its inverse.
+constexpr std::array<std::uint8_t, 8> kCornerAt = {0, 1, 3, 2, 4, 5, 7, 6};
+
+constexpr std::size_t cornerAt(const GridPoint& offset) noexcept {
+  return kCornerAt[static_cast<std::size_t>(offset[0] + 2 * offset[1] + 4 * offset[2])];
+}
+
+constexpr std::size_t neighbour(std::size_t corner, std::size_t axis) noexcept {
+  GridPoint offset = kCellCorners[corner];
+  offset[axis] = 1 - offset[axis];
+  return cornerAt(offset);
+}
+
+/// Looks at one cell after the other. One per thread.
+class CellViewer {
+ public:
+  CellViewer(const TetMapView& given, const PreparedMap& prepared, const HexMesh& mesh,
+             const TagTable<2>& edgeTags, const TagTable<3>& faceTags, const Marks& marks)
+      : given_(given),
+        prepared_(prepared),
+        mesh_(mesh),
+        edgeTags_(edgeTags),
+        faceTags_(faceTags),
+        marks_(marks),
+        tracer_(prepared) {}
+
+  /// @param tet, z, generator  as for CellTracer::enter()
+  void view(const Hex& cell, Index tet, const GridPoint& z, CornerMask generator, Seen& seen) {
+    Mark any = 0;
+    for (const Index vertex : cell) any = static_cast<Mark>(any | marks_[vertex]);
+    if (any == 0) return;
+    tracer_.enter(tet, z, generator);
+    if ((any & kAtEdges) != 0) viewEdges(cell, seen);
+    if ((any & kAtFaces) != 0) viewFaces(cell, seen);
+  }
+
+ private:
+  void viewEdges(const Hex& cell, Seen& seen) {
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      for (std::uint8_t axis = 0; axis < 3; ++axis) {
+        const std::size_t other = neighbour(corner, axis);
+        if (cell[corner] > cell[other]) continue;
+        std::int32_t tag = edgeTag(cell, corner, axis);
+        const bool fromLarger = tag == 0;
+        if (fromLarger) tag = edgeTag(cell, other, axis);
+        if (tag != 0) seen.edges.push_back({{cell[corner], cell[other]}, fromLarger, tag});
+      }
+    }
+  }
+
+  /// The tag of the edge along an axis, seen from a corner.
+  std::int32_t edgeTag(const Hex& cell, std::size_t corner, std::uint8_t axis) {
+    if ((marks_[cell[corner]] & kAtEdges) == 0) return 0;
+    const auto second = static_cast<std::uint8_t>((axis + 1) % 3);
+    const auto third = static_cast<std::uint8_t>((axis + 2) % 3);
+    const Beginning at = begin(cell, corner, {axis, second, third});
+    return edgeTags_.find(prepared_.topology.tets[at.tet], holder(at.signs, at.simplex, at.first));
+  }
+
+  void viewFaces(const Hex& cell, Seen& seen) {
+    for (std::uint8_t axis = 0; axis < 3; ++axis) {
+      for (std::int32_t side = 0; side < 2; ++side) {
+        GridPoint offset{};
+        offset[axis] = side;
+        viewFace(cell, axis, cornerAt(offset), seen);
+      }
+    }
+  }
+
+  /// @param normal  axis of the face; @param corner  any of its corners
+  void viewFace(const Hex& cell, std::uint8_t normal, std::size_t corner, Seen& seen) {
+    const auto u = static_cast<std::uint8_t>((normal + 1) % 3);
+    const auto v = static_cast<std::uint8_t>((normal + 2) % 3);
+    const std::size_t next = neighbour(corner, u);
+    std::array<std::size_t, 4> corners = {corner, next, neighbour(next, v), neighbour(corner, v)};
+    const auto bySmaller = [&cell](std::size_t a, std::size_t b) { return cell[a] < cell[b]; };
+    const auto smallest = std::min_element(corners.begin(), corners.end(), bySmaller);
+    std::rotate(corners.begin(), smallest, corners.end());
+    if (cell[corners[3]] < cell[corners[1]]) std::swap(corners[1], corners[3]);
+    const Quad quad = {cell[corners[0]], cell[corners[1]], cell[corners[2]], cell[corners[3]]};
+    std::sort(corners.begin(), corners.end(), bySmaller);
+    for (const std::size_t at : corners) {
+      if ((marks_[cell[at]] & kAtFaces) == 0) continue;
+      const bool uFirst = cell[neighbour(at, u)] < cell[neighbour(at, v)];
+      std::int32_t tag = faceTag(cell, at, {uFirst ? u : v, uFirst ? v : u, normal});
+      if (tag == 0) tag = faceTag(cell, at, {uFirst ? v : u, uFirst ? u : v, normal});
+      if (tag == 0) continue;
+      seen.quads.push_back({quad, tag});
+      return;
+    }
+  }
+
+  /// The tag of the face across the third axis, seen from a corner beside the first.
+  std::int32_t faceTag(const Hex& cell, std::size_t corner, const TiltOrder& axes) {
+    const Beginning at = begin(cell, corner, axes);
+    return faceTags_.find(prepared_.topology.tets[at.tet],
+                          casing(at.signs, at.simplex, at.first, at.second));
+  }
+
+  /// Where an edge and a face of the cell begin, as seen in a tet that holds their beginnings.
+  struct Beginning {
+    Index tet;
+    NormalSigns signs;
+    CornerMask simplex;  ///< generator of the hex vertex
+    Direction first;
+    Direction second;
+  };
+
+  Beginning begin(const Hex& cell, std::size_t corner, const TiltOrder& axes) {
+    const GridPoint& offset = kCellCorners[corner];
+    const CornerPlace place = tracer_.trace(offset, axes);
+    const auto into = [&](std::uint8_t axis) {
+      return place.rotation(direction(axis, 1 - 2 * offset[axis]));
+    };
+    return {place.tet, NormalSigns(prepared_.exact.corners[place.tet]),
+            generatorIn(place.tet, cell[corner]), into(axes[0]), into(axes[1])};
+  }
+
+  [[nodiscard]] CornerMask generatorIn(Index tet, Index vertex) const {
+    const Tet& owner = given_.tets[mesh_.generatorTet[vertex]];
+    CornerMask simplex = kNoSimplex;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (!contains(mesh_.generatorCorners[vertex], static_cast<int>(i))) continue;
+      simplex = static_cast<CornerMask>(simplex |
+                                        cornerBit(prepared_.topology.localCorner(tet, owner[i])));
+    }
+    return simplex;
+  }
+
+  const TetMapView& given_;
+  const PreparedMap& prepared_;
+  const HexMesh& mesh_;
+  const TagTable<2>& edgeTags_;
+  const TagTable<3>& faceTags_;
+  const Marks& marks_;
+  CellTracer tracer_;
+};
+
+template <class Element>
+std::vector<Element> joined(std::vector<std::vector<Element>>& parts) {
+  std::size_t size = 0;
+  for (const std::vector<Element>& part : parts) size += part.size();
+  std::vector<Element> all;
+  all.reserve(size);
+  for (const std::vector<Element>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+std::vector<FeatureVertex> tagVertices(const TetMapView& given, const HexMesh& mesh, Stage& stage) {
+  std::vector<std::int32_t> tagOf(given.points.size(), 0);
+  for (const FeatureVertex& feature : given.features.vertices) {
+    tagOf[feature.vertex] = feature.tag;
+  }
+  std::vector<std::vector<FeatureVertex>> parts(blockCount(mesh.points.size(), kGrain));
+  parallelBlocks(stage, mesh.points.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   for (std::size_t v = begin; v < end; ++v) {
+                     const CornerSet corners = mesh.generatorCorners[v];
+                     if (dimension(corners) != 0) continue;
+                     const Tet& tet = given.tets[mesh.generatorTet[v]];
+                     const std::int32_t tag = tagOf[tet[firstCorner(corners)]];
+                     if (tag != 0) parts[block].push_back({static_cast<Index>(v), tag});
+                   }
+                 });
+  return joined(parts);
+}
+
+/// One entry per edge: that from the smaller vertex, if there is one.
+std::vector<FeatureEdge> uniqueEdges(std::vector<Seen::Edge> seen) {
+  std::sort(seen.begin(), seen.end(), [](const Seen::Edge& a, const Seen::Edge& b) {
+    return a.vertices != b.vertices ? a.vertices < b.vertices : a.fromLarger < b.fromLarger;
+  });
+  std::vector<FeatureEdge> edges;
+  for (const Seen::Edge& edge : seen) {
+    if (!edges.empty() && edges.back().vertices == edge.vertices) continue;
+    edges.push_back({edge.vertices, edge.tag});
+  }
+  return edges;
+}
+
+/// Both cells at a face see the same.
+std::vector<FeatureQuad> uniqueQuads(std::vector<FeatureQuad> quads) {
+  std::sort(quads.begin(), quads.end(),
+            [](const FeatureQuad& a, const FeatureQuad& b) { return a.vertices < b.vertices; });
+  quads.erase(std::unique(quads.begin(), quads.end()), quads.end());
+  return quads;
+}
+
+void tagEdgesAndQuads(const TetMapView& given, const PreparedMap& prepared, const CellSeeds& seeds,
+                      HexMesh& mesh, Stage& stage) {
+  const TagTable<2> edgeTags(given.points.size(), given.features.edges);
+  const TagTable<3> faceTags(given.points.size(), given.features.faces);
+  const Marks marks(given, mesh, stage);
+  const std::size_t tets = prepared.topology.tetCount();
+  std::vector<std::vector<Seen::Edge>> edges(blockCount(tets, kSweepBlock));
+  std::vector<std::vector<FeatureQuad>> quads(edges.size());
+  parallelBlocks(
+      stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t block) {
+        CellViewer viewer(given, prepared, mesh, edgeTags, faceTags, marks);
+        Seen seen;
+        for (std::size_t t = begin; t < end; ++t) {
+          const auto tet = static_cast<Index>(t);
+          std::uint64_t cell = seeds.begin[t];
+          if (cell == seeds.begin[t + 1]) continue;
+          const TetSweep sweep(prepared.exact, tet, SweptGrid::Centers);
+          CenterOwner owner(prepared.topology, tet);
+          for (const SweptLine& line : seeds.lines->of(tet)) {
+            const auto [first, count] = owner.owned(line);
+            for (std::uint32_t i = first; i < first + count; ++i) {
+              viewer.view(mesh.cells[cell++], tet, sweep.point(line, i), line.simplex(i), seen);
+            }
+          }
+        }
+        edges[block] = std::move(seen.edges);
+        quads[block] = std::move(seen.quads);
+      });
+  mesh.features.edges = uniqueEdges(joined(edges));
+  mesh.features.quads = uniqueQuads(joined(quads));
+}
+
+void fillRegions(const TetMapView& given, const CellSeeds& seeds, HexMesh& mesh, Stage& stage) {
+  mesh.regions.resize(mesh.cells.size());
+  parallelFor(stage, given.tets.size(), kGrain, [&](std::size_t t) {
+    std::fill(mesh.regions.begin() + static_cast<std::ptrdiff_t>(seeds.begin[t]),
+              mesh.regions.begin() + static_cast<std::ptrdiff_t>(seeds.begin[t + 1]),
+              given.regions[t]);
+  });
+}
+
+template <class Vertices>
+void requirePoints(const TetMapView& map, const Vertices& vertices, const char* what,
+                   std::size_t i) {
+  for (const Index vertex : vertices) {
+    if (vertex < map.points.size()) continue;
+    throw Error(ErrorCode::InvalidArgument,
+                std::string("Feature ") + what + " " + std::to_string(i) + " names vertex " +
+                    std::to_string(vertex) + ", but the map has " +
+                    std::to_string(map.points.size()) + " vertices, numbered from 0.");
+  }
+}
+
+void requireValidVertices(const TetMapView& map) {
+  std::vector<FeatureVertex> tagged;
+  for (std::size_t i = 0; i < map.features.vertices.size(); ++i) {
+    const FeatureVertex& feature = map.features.vertices[i];
+    requirePoints(map, std::array{feature.vertex}, "vertex", i);
+    if (feature.tag != 0) tagged.push_back(feature);
+  }
+  std::sort(tagged.begin(), tagged.end(),
+            [](const FeatureVertex& a, const FeatureVertex& b) { return a.vertex < b.vertex; });
+  const auto conflict = std::adjacent_find(tagged.begin(), tagged.end(),
+                                           [](const FeatureVertex& a, const FeatureVertex& b) {
+                                             return a.vertex == b.vertex && a.tag != b.tag;
+                                           });
+  if (conflict == tagged.end()) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "Vertex " + std::to_string(conflict->vertex) + " is tagged twice, " +
+                  std::to_string(conflict->tag) + " and " + std::to_string((conflict + 1)->tag) +
+                  ". Give each vertex one tag.",
+              {PlaceKind::Vertex, conflict->vertex});
+}
+
+}  // namespace
+
+void requireValidTags(const TetMapView& map) {
+  requireValidVertices(map);
+  for (std::size_t i = 0; i < map.features.edges.size(); ++i) {
+    requirePoints(map, map.features.edges[i].vertices, "edge", i);
+  }
+  for (std::size_t i = 0; i < map.features.faces.size(); ++i) {
+    requirePoints(map, map.features.faces[i].vertices, "face", i);
+  }
+  if (!map.features.edges.empty()) TagTable<2>(map.points.size(), map.features.edges).requireOne();
+  if (!map.features.faces.empty()) TagTable<3>(map.points.size(), map.features.faces).requireOne();
+  if (map.regions.empty() || map.regions.size() == map.tets.size()) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "The map has " + std::to_string(map.tets.size()) + " tets, but regions for " +
+                  std::to_string(map.regions.size()) + ". Give one for each tet, or none.");
+}
+
+void carryTags(const TetMapView& given, const PreparedMap& prepared, HexMesh& mesh,
+               Context& context) {
+  const bool byCells = !given.features.edges.empty() || !given.features.faces.empty();
+  if (given.features.empty() && given.regions.empty()) return;
+  Stage stage(context, "features");
+  if (!given.features.vertices.empty()) mesh.features.vertices = tagVertices(given, mesh, stage);
+  if (!byCells && given.regions.empty()) return;
+  const CellSeeds seeds = findCells(prepared, stage);
+  if (byCells) tagEdgesAndQuads(given, prepared, seeds, mesh, stage);
+  if (!given.regions.empty()) fillRegions(given, seeds, mesh, stage);
+}
+
+}  // namespace hexhex
