@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include <hexhex/error.hpp>
 
@@ -33,6 +35,21 @@ void failIfAtEnd(TextScanner& scanner, std::size_t done, std::size_t count, cons
                                           ": it is incomplete.");
 }
 
+/// Adds the walls that are not features as well, so that every triangle has one tag.
+void keepTagged(const std::vector<FeatureFace>& walls, std::vector<FeatureFace>& faces) {
+  const auto key = [](const FeatureFace& face) {
+    std::array<Index, 3> vertices = face.vertices;
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
+  };
+  std::vector<std::array<Index, 3>> taken;
+  for (const FeatureFace& face : faces) taken.push_back(key(face));
+  std::sort(taken.begin(), taken.end());
+  for (const FeatureFace& wall : walls) {
+    if (!std::binary_search(taken.begin(), taken.end(), key(wall))) faces.push_back(wall);
+  }
+}
+
 /// Reads one file from top to bottom.
 class HexexReader {
  public:
@@ -42,7 +59,7 @@ class HexexReader {
   TetMap read() {
     readPoints();
     readTets();
-    skipTrailingSections();
+    readTrailingSections();
     return std::move(map_);
   }
 
@@ -52,10 +69,12 @@ class HexexReader {
   void readPoint(TextScanner& scanner, std::size_t vertex);
   void readCorners(TextScanner& scanner, std::size_t tet);
   void readParameters(TextScanner& scanner, std::size_t tet);
-  void skipTrailingSections();
-  void skipWalls();
-  void skipFeatures();
-  void skipIndices(std::size_t count, const char* what);
+  void readTrailingSections();
+  void readWalls();
+  void readFeatures();
+  Index readVertex(const char* what);
+  template <std::size_t n>
+  std::array<Index, n> readVertices(const char* what);
 
   TextScanner scanner_;
   TokenIndex index_;
@@ -119,43 +138,85 @@ void HexexReader::readParameters(TextScanner& scanner, std::size_t tet) {
 }
 
 // No keyword announces the sections after the tets: their first line tells them apart.
-void HexexReader::skipTrailingSections() {
-  if (scanner_.countTokensOnLine() == 1) skipWalls();
+void HexexReader::readTrailingSections() {
+  std::vector<FeatureFace> walls;
+  if (scanner_.countTokensOnLine() == 1) readWalls();
+  walls.swap(map_.features.faces);
   const std::size_t tokens = scanner_.countTokensOnLine();
-  if (tokens == 0) return;
-  if (tokens == 3) skipFeatures();
-  if (!scanner_.skipSpace()) return;
-  scanner_.fail(ErrorCode::FileSyntax,
-                "expected the end of the file, found " + quoted(scanner_.currentToken()) +
-                    ". After the last tet only walls (\"W\" and W lines \"v v v distance\") and "
-                    "features (\"vertices edges faces\" and their lines) may follow.");
+  if (tokens == 3) readFeatures();
+  if (tokens != 0 && scanner_.skipSpace()) {
+    scanner_.fail(ErrorCode::FileSyntax,
+                  "expected the end of the file, found " + quoted(scanner_.currentToken()) +
+                      ". After the last tet only walls (\"W\" and W lines \"v v v distance\") and "
+                      "features (\"vertices edges faces\" and their lines) may follow.");
+  }
+  keepTagged(walls, map_.features.faces);
 }
 
-void HexexReader::skipWalls() {
+void HexexReader::readWalls() {
   constexpr std::size_t kMinimumWallBytes = 8;  // four digits with separators
   const std::size_t walls = scanner_.readCount("walls", kMinimumWallBytes);
+  map_.features.faces.reserve(walls);
   for (std::size_t i = 0; i < walls; ++i) {
-    skipIndices(3, "a vertex of a wall");
+    map_.features.faces.push_back({readVertices<3>("a vertex of a wall"), kHexexWallTag});
     double distance = 0;
     if (!scanner_.readNumber(distance)) scanner_.failNumber("the distance of a wall");
   }
 }
 
-void HexexReader::skipFeatures() {
+void HexexReader::readFeatures() {
   constexpr std::size_t kMinimumIndexBytes = 2;  // one digit with a separator
   const std::size_t vertices = scanner_.readCount("feature vertices", kMinimumIndexBytes);
   const std::size_t edges = scanner_.readCount("feature edges", 2 * kMinimumIndexBytes);
   const std::size_t faces = scanner_.readCount("feature faces", 3 * kMinimumIndexBytes);
-  skipIndices(vertices, "a feature vertex");
-  skipIndices(2 * edges, "a vertex of a feature edge");
-  skipIndices(3 * faces, "a vertex of a feature face");
+  Features& features = map_.features;
+  features.vertices.reserve(vertices);
+  features.edges.reserve(edges);
+  features.faces.reserve(faces);
+  for (std::size_t i = 0; i < vertices; ++i) {
+    features.vertices.push_back({readVertex("a feature vertex"), kHexexFeatureTag});
+  }
+  for (std::size_t i = 0; i < edges; ++i) {
+    features.edges.push_back({readVertices<2>("a vertex of a feature edge"), kHexexFeatureTag});
+  }
+  for (std::size_t i = 0; i < faces; ++i) {
+    features.faces.push_back({readVertices<3>("a vertex of a feature face"), kHexexFeatureTag});
+  }
 }
 
-void HexexReader::skipIndices(std::size_t count, const char* what) {
-  for (std::size_t i = 0; i < count; ++i) {
-    std::int64_t index = 0;
-    if (!scanner_.readInteger(index)) scanner_.failInteger(what);
+Index HexexReader::readVertex(const char* what) {
+  std::int64_t index = 0;
+  if (!scanner_.readInteger(index)) scanner_.failInteger(what);
+  const auto vertices = static_cast<std::int64_t>(map_.points.size());
+  if (index < 0 || index >= vertices) {
+    scanner_.fail(ErrorCode::IndexOutOfRange,
+                  std::string(what) + " is " + std::string(scanner_.currentToken()) + ", but the " +
+                      std::to_string(vertices) + " vertices are numbered from 0.");
   }
+  return static_cast<Index>(index);
+}
+
+template <std::size_t n>
+std::array<Index, n> HexexReader::readVertices(const char* what) {
+  std::array<Index, n> vertices{};
+  for (Index& vertex : vertices) vertex = readVertex(what);
+  return vertices;
+}
+
+void requireFeaturesInRange(const TetMap& map) {
+  Index largest = 0;
+  for (const FeatureVertex& feature : map.features.vertices) {
+    largest = std::max(largest, feature.vertex);
+  }
+  const auto look = [&largest](const auto& feature) {
+    for (const Index v : feature.vertices) largest = std::max(largest, v);
+  };
+  std::for_each(map.features.edges.begin(), map.features.edges.end(), look);
+  std::for_each(map.features.faces.begin(), map.features.faces.end(), look);
+  if (map.features.empty() || largest < map.points.size()) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "A feature names vertex " + std::to_string(largest) + ", but the map has " +
+                  std::to_string(map.points.size()) + " vertices, numbered from 0.");
 }
 
 /// Refuses what could not be read back.
@@ -174,11 +235,36 @@ void requireWritable(const TetMap& map) {
                 "A coordinate of vertex " + std::to_string(i) + " is not finite.",
                 Place{PlaceKind::Vertex, i});
   }
+  requireFeaturesInRange(map);
   for (std::size_t i = 0; i < map.parameters.size(); ++i) {
     if (std::all_of(map.parameters[i].begin(), map.parameters[i].end(), isFinite)) continue;
     throw Error(ErrorCode::NotFinite, "A parameter of tet " + std::to_string(i) + " is not finite.",
                 Place{PlaceKind::Tet, i});
   }
+}
+
+/// The format has lists, but no place for tags.
+void writeFeatures(const Features& features, LineWriter& lines, OutputFile& output) {
+  const auto isTagged = [](const auto& feature) { return feature.tag != 0; };
+  const auto count = [&](const auto& list) {
+    return static_cast<std::uint64_t>(std::count_if(list.begin(), list.end(), isTagged));
+  };
+  const std::array<std::uint64_t, 3> counts = {count(features.vertices), count(features.edges),
+                                               count(features.faces)};
+  if (counts == std::array<std::uint64_t, 3>{}) return;
+  const auto write = [&](const auto& list, const auto& verticesOf) {
+    lines.write(
+        list.size(), 3 * (kNumberRoom + 1),
+        [&](char* place, std::size_t i) {
+          if (!isTagged(list[i])) return place;
+          return put(putNumbers(place, verticesOf(list[i])), '\n');
+        },
+        nullptr);
+  };
+  output.write(counts[0]).write(' ').write(counts[1]).write(' ').write(counts[2]).write('\n');
+  write(features.vertices, [](const FeatureVertex& v) { return std::array{v.vertex}; });
+  write(features.edges, [](const FeatureEdge& e) { return e.vertices; });
+  write(features.faces, [](const FeatureFace& f) { return f.vertices; });
 }
 
 }  // namespace
@@ -226,6 +312,7 @@ void writeHexex(const TetMap& map, const std::filesystem::path& file, Context& c
         return put(place, '\n');
       },
       &progress);
+  writeFeatures(map.features, lines, output);
   output.commit();
 }
 

@@ -6,9 +6,12 @@
 //     v0 v1 v2 v3  u v w  u v w  u v w  u v w              (per tet: 0-based corners, parameters)
 //
 // Some programs append walls (`W`, then W times `v v v distance`) or features (`vertices edges
-// faces`, then that many vertices, pairs, and triples). They are checked and ignored.
+// faces`, then that many vertices, pairs, and triples), or walls and then features: a line with one
+// number alone announces walls, one with three features. Both become features of the map; as the
+// format gives them no tags, features get tag 1, and walls that are not features as well get tag 2.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -18,6 +21,9 @@
 
 namespace hexhex {
 
+inline constexpr std::int32_t kHexexFeatureTag = 1;
+inline constexpr std::int32_t kHexexWallTag = 2;
+
 /// @throws Error FileNotFound, FileSyntax, IndexOutOfRange, NotFinite, TooLarge
 [[nodiscard]] TetMap readHexex(const std::filesystem::path& file, Context& context);
 
@@ -26,7 +32,8 @@ namespace hexhex {
 [[nodiscard]] TetMap parseHexex(std::string_view text, const std::string& fileName,
                                 Context& context);
 
-/// Writes numbers with the fewest digits (at most 17) that read back to the same double.
+/// Writes numbers with the fewest digits (at most 17) that read back to the same double. Features
+/// follow the tets, without their tags.
 /// @throws Error FileWrite; InvalidArgument if arrays disagree; NotFinite
 void writeHexex(const TetMap& map, const std::filesystem::path& file, Context& context);
 

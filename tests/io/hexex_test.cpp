@@ -86,6 +86,15 @@ TEST(Hexex, TrailingSectionsAreTolerated) {
   }
 }
 
+TEST(Hexex, TrailingSectionsBecomeFeatures) {
+  const TetMap map = parse(kOneTet + "2\n2 0 1 0.5\n1 2 3 1/2\n1 2 1\n3\n0 1\n1 2\n0 1 2\n");
+  EXPECT_EQ(map.features.vertices, (std::vector<FeatureVertex>{{3, 1}}));
+  EXPECT_EQ(map.features.edges, (std::vector<FeatureEdge>{{{0, 1}, 1}, {{1, 2}, 1}}));
+  // The first wall is a feature, too.
+  EXPECT_EQ(map.features.faces, (std::vector<FeatureFace>{{{0, 1, 2}, 1}, {{1, 2, 3}, 2}}));
+  EXPECT_TRUE(parse(kOneTet + "0\n0 0 0\n").features.empty());
+}
+
 struct BadFile {
   std::string text;
   ErrorCode code;
@@ -124,6 +133,9 @@ TEST(Hexex, EveryDefectIsNamedWithItsLine) {
       {kOneTet + "1\n0 1 2 x   \n", ErrorCode::FileSyntax, 9, "distance"},
       {kOneTet + "1 0 0\n3\n4\n", ErrorCode::FileSyntax, 10, "expected the end of the file"},
       {kOneTet + "1 0 0\n", ErrorCode::FileSyntax, 8, "a feature vertex, found the end"},
+      {kOneTet + "1 0 0\n4\n", ErrorCode::IndexOutOfRange, 9, "a feature vertex is 4"},
+      {kOneTet + "0 1 0\n-1 2\n", ErrorCode::IndexOutOfRange, 9, "numbered from 0"},
+      {kOneTet + "1\n0 1 9 0.25\n", ErrorCode::IndexOutOfRange, 9, "a vertex of a wall is 9"},
       {kOneTet + "0 0 999999999\n", ErrorCode::FileSyntax, 8, "room"},
   };
   for (const BadFile& file : files) {
