@@ -1,6 +1,10 @@
 #include <algorithm>
 #include <atomic>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <hexhex/error.hpp>
 
@@ -42,6 +46,68 @@ struct LoopOrder {
   LoopOrder& operator=(const LoopOrder&) = delete;
 };
 
+/// Arenas for their next use. oneTBB keeps some kilobytes of every arena that ever was, so a
+/// process that works for long must not make a new one each time. Calls that run at the same time
+/// get different arenas: sharing one would make them wait for each other.
+class ArenaPool {
+ public:
+  using Arena = oneapi::tbb::task_arena;
+
+  /// Lives while an arena is in use.
+  class Loan {
+   public:
+    Loan(ArenaPool& pool, int threads)
+        : pool_(pool), threads_(threads), arena_(pool.take(threads)) {}
+    ~Loan() { pool_.giveBack(threads_, std::move(arena_)); }
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+    [[nodiscard]] Arena& arena() const noexcept { return *arena_; }
+
+   private:
+    ArenaPool& pool_;
+    int threads_;
+    std::unique_ptr<Arena> arena_;
+  };
+
+ private:
+  struct Idle {
+    int threads;
+    std::unique_ptr<Arena> arena;
+  };
+
+  std::unique_ptr<Arena> take(int threads) {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::find_if(idle_.begin(), idle_.end(),
+                                    [&](const Idle& idle) { return idle.threads == threads; });
+    std::unique_ptr<Arena> arena;
+    if (found == idle_.end()) {
+      // Room for all that are lent, as giving them back must not fail.
+      idle_.reserve(idle_.size() + lent_ + 1);
+      arena = std::make_unique<Arena>(threads);
+    } else {
+      arena = std::move(found->arena);
+      idle_.erase(found);
+    }
+    ++lent_;
+    return arena;
+  }
+  void giveBack(int threads, std::unique_ptr<Arena> arena) noexcept {
+    const std::lock_guard lock(mutex_);
+    --lent_;
+    idle_.push_back({threads, std::move(arena)});
+  }
+
+  std::mutex mutex_;
+  std::vector<Idle> idle_;
+  std::size_t lent_ = 0;
+};
+
+/// Never destroyed: at the end of a process, nobody knows whether oneTBB ends before.
+ArenaPool& arenaPool() {
+  static ArenaPool* const pool = new ArenaPool;
+  return *pool;
+}
+
 }  // namespace
 #endif
 
@@ -81,8 +147,8 @@ void runWithThreads(int threads, const void* object, void (*call)(const void*)) 
     permission.emplace(oneapi::tbb::global_control::max_allowed_parallelism,
                        static_cast<std::size_t>(count));
   }
-  oneapi::tbb::task_arena arena(count);
-  arena.execute([&] { call(object); });
+  const ArenaPool::Loan loan(arenaPool(), count);
+  loan.arena().execute([&] { call(object); });
 #else
   static_cast<void>(threads);
   call(object);

@@ -5,8 +5,8 @@
 
 namespace hexhex {
 
-/// withThreads(), but where that many threads are at work anyway, f() is called as it is: each call
-/// of withThreads() costs some kilobytes of memory, which matters once for each of many pieces.
+/// withThreads(), but where that many threads are at work anyway, f() is called as it is: entering
+/// takes some microseconds, which matters once for each of many pieces.
 template <class F>
 void withThreadsHere(int threads, const F& f) {
   if (currentThreads() == effectiveThreads(threads)) {

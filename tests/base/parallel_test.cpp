@@ -1,0 +1,86 @@
+// withThreads() itself; what loops compute is tested where they are used.
+#include <atomic>
+#include <cstdio>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <base/parallel.hpp>
+
+#if defined(__linux__)
+#include <unistd.h>
+#endif
+
+namespace hexhex {
+namespace {
+
+#if defined(__linux__)
+/// Bytes of this process in memory.
+long residentBytes() {
+  std::FILE* const file = std::fopen("/proc/self/statm", "r");
+  long total = 0;
+  long resident = 0;
+  if (file == nullptr) return 0;
+  const int fields = std::fscanf(file, "%ld %ld", &total, &resident);
+  std::fclose(file);
+  return fields == 2 ? resident * sysconf(_SC_PAGESIZE) : 0;
+}
+
+// Each call used to leave some seven kilobytes behind.
+TEST(WithThreads, LeavesNoMemoryBehind) {
+  const auto call = [] {
+    for (const int threads : {0, 1, 2, 5}) {
+      withThreads(threads, [] {
+        Context context;
+        Stage stage(context, "loop");
+        std::atomic<std::size_t> sum{0};
+        parallelFor(stage, 1000, 10, [&](std::size_t i) { sum += i; });
+        EXPECT_EQ(sum.load(), 999U * 1000 / 2);
+      });
+    }
+  };
+  for (int i = 0; i < 100; ++i) call();
+  const long before = residentBytes();
+  ASSERT_GT(before, 0);
+  for (int i = 0; i < 2000; ++i) call();
+  EXPECT_LT(residentBytes() - before, 8 << 20);
+}
+#endif
+
+TEST(WithThreads, NestsAndGivesBackAfterExceptions) {
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_THROW(withThreads(2,
+                             [] {
+                               withThreads(1, [] {
+                                 EXPECT_EQ(currentThreads(), 1);
+                                 throw std::runtime_error("end");
+                               });
+                             }),
+                 std::runtime_error);
+  }
+  withThreads(2, [] { EXPECT_EQ(currentThreads(), effectiveThreads(2)); });
+}
+
+// Calls from several threads with one thread each run beside each other, not one after the other:
+// each waits here until all have arrived.
+TEST(WithThreads, CallersDoNotWaitForEachOther) {
+  constexpr int kCallers = 4;
+  std::atomic<int> arrived{0};
+  std::vector<std::thread> callers;
+  callers.reserve(kCallers);
+  for (int i = 0; i < kCallers; ++i) {
+    callers.emplace_back([&] {
+      withThreads(1, [&] {
+        arrived.fetch_add(1);
+        while (arrived.load() < kCallers) std::this_thread::yield();
+      });
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
+  EXPECT_EQ(arrived.load(), kCallers);
+}
+
+}  // namespace
+}  // namespace hexhex
