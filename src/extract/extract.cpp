@@ -1,6 +1,7 @@
 // The public entry: options and errors around the paper's pipeline.
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <string>
 
@@ -12,8 +13,8 @@
 #include <extract/features.hpp>
 #include <extract/global_connectivity.hpp>
 #include <extract/pipeline.hpp>
+#include <extract/scaled_map.hpp>
 #include <map/measures.hpp>
-#include <map/prepare.hpp>
 
 namespace hexhex {
 
@@ -40,16 +41,17 @@ std::uint64_t scaledCells(std::uint64_t cells, int scale, double limit) {
   return cells * s * s * s;
 }
 
-/// A map that is ready for either engine.
-struct ScaledMap {
-  PreparedMap map;
-  std::uint64_t expectedCells = 0;
-};
+}  // namespace
 
-ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options, double cellLimit,
-                        Context& context, ExtractStatistics& statistics) {
+ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options,
+                        const ScaleLimits& limits, Context& context,
+                        ExtractStatistics& statistics) {
   DefectCollector defects;
-  ScaledMap scaled{prepareMap(map, options.tolerance, options.scale, context, defects)};
+  if (options.scale > std::numeric_limits<int>::max() / limits.furtherScale) {
+    throw Error(ErrorCode::TooLarge, "The scale is too large. Lower it.");
+  }
+  ScaledMap scaled{prepareMap(map, options.tolerance, options.scale * limits.furtherScale, context,
+                              defects)};
   defects.throwIfAny();
   PreparedMap& prepared = scaled.map;
   statistics.mirrored = prepared.input.mirrored;
@@ -60,13 +62,14 @@ ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options, do
   statistics.innerFaces = prepared.exact.transitions.innerFaces;
   statistics.singularEdges = prepared.singularities.edges.size();
   Stage stage(context, "scaling");
-  scaled.expectedCells = scaledCells(parametricVolume(prepared.exact), options.scale, cellLimit);
+  scaled.expectedCells =
+      scaledCells(parametricVolume(prepared.exact), options.scale, limits.cells);
   scaleMap(prepared.exact, options.scale, stage);
   return scaled;
 }
 
-HexMesh runEngine(ScaledMap& scaled, const ExtractOptions& options, Context& context,
-                  ExtractStatistics& statistics) {
+HexMesh extractScaled(ScaledMap& scaled, const ExtractOptions& options, Context& context,
+                      ExtractStatistics& statistics) {
   if (options.engine == Engine::Atlas) {
     return runAtlas(scaled.map, scaled.expectedCells, context, statistics);
   }
@@ -77,19 +80,8 @@ HexMesh runEngine(ScaledMap& scaled, const ExtractOptions& options, Context& con
   return runPipeline(scaled.map, scaled.expectedCells, options.epsilon, context, statistics);
 }
 
-HexMesh extractInArena(const TetMapView& map, const ExtractOptions& options, Context& context,
-                       ExtractStatistics& statistics) {
-  requireValidTags(map);
-  ScaledMap scaled = prepareScaled(map, options, kNone, context, statistics);
-  HexMesh mesh = runEngine(scaled, options, context, statistics);
-  carryTags(map, scaled.map, mesh, context);
-  return mesh;
-}
-
-/// Runs work with the context's threads; translates what may escape from it, and notes the time.
-template <class Work>
 void runExtraction(const ExtractOptions& options, Context& context, ExtractStatistics* statistics,
-                   const Work& work) {
+                   const std::function<void(ExtractStatistics&)>& work) {
   checkOptions(options);
   const auto begin = std::chrono::steady_clock::now();
   ExtractStatistics local;
@@ -112,13 +104,14 @@ void runExtraction(const ExtractOptions& options, Context& context, ExtractStati
   filled.seconds = seconds.count();
 }
 
-}  // namespace
-
 HexMesh extract(const TetMapView& map, const ExtractOptions& options, Context& context,
                 ExtractStatistics* statistics) {
   HexMesh mesh;
   runExtraction(options, context, statistics, [&](ExtractStatistics& filled) {
-    mesh = extractInArena(map, options, context, filled);
+    requireValidTags(map);
+    ScaledMap scaled = prepareScaled(map, options, {}, context, filled);
+    mesh = extractScaled(scaled, options, context, filled);
+    carryTags(map, scaled.map, mesh, context);
   });
   return mesh;
 }
@@ -127,7 +120,7 @@ void extractTo(MeshSink& sink, const TetMapView& map, const ExtractOptions& opti
                Context& context, ExtractStatistics* statistics) {
   runExtraction(options, context, statistics, [&](ExtractStatistics& filled) {
     constexpr double kMaxCells = 0x1p60;
-    const ScaledMap scaled = prepareScaled(map, options, kMaxCells, context, filled);
+    const ScaledMap scaled = prepareScaled(map, options, {1, kMaxCells}, context, filled);
     streamAtlas(scaled.map, scaled.expectedCells, sink, context, filled);
   });
 }

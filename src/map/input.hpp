@@ -45,6 +45,12 @@ struct OrientedMap {
   [[nodiscard]] int callersCorner(int i) const noexcept {
     return cornersReversed && i >= 2 ? 5 - i : i;
   }
+  /// A set of corners of a tet here, in terms of the caller's tet.
+  [[nodiscard]] CornerSet callersCorners(CornerSet corners) const noexcept {
+    if (!cornersReversed) return corners;
+    const unsigned set = corners;
+    return static_cast<CornerSet>((set & 3U) | ((set & 4U) << 1) | ((set & 8U) >> 1));
+  }
 };
 
 /// Checks indices and numbers, and orients the map. After a defect (indices out of range, a vertex

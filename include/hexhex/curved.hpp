@@ -1,0 +1,143 @@
+// Curved meshes: the exact images of integer-grid edges and faces, and hexahedra of any order.
+//
+// A map bends hex edges and faces at every tet that they cross. Arcs and patches are these images
+// as they are, piece by piece (Section 5.5 of the paper); Lagrange cells follow them with
+// polynomials through the preimages of a refined grid.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <hexhex/context.hpp>
+#include <hexhex/extract.hpp>
+#include <hexhex/quality.hpp>
+#include <hexhex/types.hpp>
+
+namespace hexhex {
+
+/// Hex edges as polylines. An inner point is where the edge leaves one simplex of the tet mesh for
+/// another; a segment lies in the interior of one simplex: a tet, or a face or edge inside which
+/// the hex edge runs. Arc e has the inner points pointBegin[e] to pointBegin[e + 1] - 1, and the
+/// segments from number pointBegin[e] + e on, one more than inner points.
+struct Arcs {
+  /// Per arc: the hex vertices at its beginning and end. Arcs of the same two vertices may be
+  /// different ones.
+  Array<std::array<Index, 2>> ends;
+  Array<std::uint64_t> pointBegin;  ///< per arc (+1)
+
+  // Per inner point:
+  Array<Vec3> points;                 ///< position
+  Array<double> parameters;           ///< place along the arc, in (0, 1), not descending
+  Array<Index> generatorTet;          ///< the simplex that is crossed there (a vertex, an edge or
+  Array<CornerSet> generatorCorners;  ///< a face): as in HexMesh
+
+  // Per segment: the simplex that it lies in (an edge, a face, or a tet), as in HexMesh.
+  Array<Index> segmentTet;
+  Array<CornerSet> segmentCorners;
+
+  [[nodiscard]] std::size_t count() const noexcept { return ends.size(); }
+  [[nodiscard]] std::uint64_t firstSegment(std::size_t arc) const noexcept {
+    return pointBegin[arc] + arc;
+  }
+};
+
+/// Hex faces as planar polygons: one per tet whose interior the open face meets, and one per
+/// triangle of the tet mesh that it contains a part of. They meet along whole sides.
+///
+/// Polygons name points of one common numbering: hex vertices, then inner points of arcs, then
+/// those of patches.
+struct Patches {
+  /// Per face: its hex vertices, at (u, v) = (0, 0), (1, 0), (1, 1), (0, 1).
+  Array<Quad> vertices;
+  /// Per face: the arc from its vertex i to vertex i + 1 (mod 4).
+  Array<std::array<Index, 4>> arcs;
+  Array<std::uint8_t> reversedArcs;  ///< per face: bit i if that arc runs from i + 1 to i
+  Array<std::uint64_t> polygonBegin;  ///< per face (+1): its polygons
+
+  // Per polygon:
+  Array<std::uint64_t> cornerBegin;  ///< (+1): its corners, counter-clockwise in (u, v)
+  Array<Index> polygonTet;           ///< the simplex whose interior it lies in (a tet or a face),
+  Array<CornerSet> polygonCorners;   ///< as in HexMesh
+
+  // Per corner of a polygon:
+  Array<Index> corners;                      ///< a point of the common numbering
+  Array<std::array<double, 2>> parameters;   ///< (u, v) in the face, in [0, 1]
+
+  // Per inner point of a face:
+  Array<Vec3> points;
+  Array<Index> generatorTet;          ///< the vertex or edge of the tet mesh that crosses the face,
+  Array<CornerSet> generatorCorners;  ///< as in HexMesh
+
+  [[nodiscard]] std::size_t count() const noexcept { return vertices.size(); }
+};
+
+/// A mesh with the exact shapes of its edges and faces.
+struct PiecewiseLinearMesh {
+  HexMesh mesh;     ///< what extract() returns, bit for bit
+  Arcs arcs;        ///< one per hex edge
+  Patches patches;  ///< one per hex face, if asked for
+
+  /// Position of a point of the common numbering.
+  [[nodiscard]] const Vec3& point(std::uint64_t number) const noexcept {
+    if (number < mesh.points.size()) return mesh.points[number];
+    number -= mesh.points.size();
+    if (number < arcs.points.size()) return arcs.points[number];
+    return patches.points[number - arcs.points.size()];
+  }
+};
+
+enum class PiecewiseLinearParts : std::uint8_t {
+  Arcs,           ///< edges only
+  ArcsAndPatches  ///< edges and faces
+};
+
+/// Extracts a mesh with its arcs and, if asked for, its patches. All combinatorial decisions are
+/// exact. The result does not depend on the number of threads; memory grows with its size.
+/// @throws Error  as extract(); TooLarge for more points than an Index can number
+[[nodiscard]] PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map,
+                                                         PiecewiseLinearParts parts,
+                                                         const ExtractOptions& options,
+                                                         Context& context,
+                                                         ExtractStatistics* statistics = nullptr);
+
+/// The highest order of Lagrange cells.
+inline constexpr int kMaxOrder = 9;
+
+/// Hexahedra of an order p: each has (p + 1)^3 nodes, the preimages of the grid refined by p.
+/// Neighbours share the nodes of their common face. Nodes 0, 1, ... are the hex vertices in the
+/// numbering of extract().
+struct LagrangeMesh {
+  int order = 1;
+  Array<Vec3> points;  ///< one per node
+  /// (p + 1)^3 per cell: node (i, j, k), which lies i / p of the way from corner 0 to corner 1, j /
+  /// p to corner 3, and k / p to corner 4, is number i + (p + 1) (j + (p + 1) k).
+  Array<Index> nodes;
+  std::uint64_t vertexCount = 0;  ///< of the nodes, those that are hex vertices
+
+  // Per node, as in HexMesh:
+  Array<Index> generatorTet;
+  Array<CornerSet> generatorCorners;
+
+  [[nodiscard]] std::size_t nodesPerCell() const noexcept {
+    const auto n = static_cast<std::size_t>(order) + 1;
+    return n * n * n;
+  }
+  [[nodiscard]] std::size_t cellCount() const noexcept { return nodes.size() / nodesPerCell(); }
+};
+
+/// Extracts cells of order `order`: those of extract() with the same options, in the same order.
+/// @param order  1 to kMaxOrder
+/// @throws Error  as extract(); InvalidArgument for other orders
+[[nodiscard]] LagrangeMesh extractLagrange(const TetMapView& map, int order,
+                                           const ExtractOptions& options, Context& context,
+                                           ExtractStatistics* statistics = nullptr);
+
+/// The straight mesh between the corners: what extract() returns.
+[[nodiscard]] HexMesh straightMesh(const LagrangeMesh& mesh);
+
+/// Per cell: the smallest determinant of the Jacobian matrix, divided by the lengths of its
+/// columns, at the nodes and at the Gauss points of order p + 1. In [-1, 1]; a bad cell has a value
+/// that is not positive; one that is bad elsewhere only is not found.
+[[nodiscard]] Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context);
+
+}  // namespace hexhex

@@ -1,0 +1,55 @@
+// Coordinates of one hex edge, face or cell, wherever it goes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <lattice/tet_geometry.hpp>
+#include <lattice/transition.hpp>
+
+namespace hexhex {
+
+/// A right-handed coordinate system of the grid, in the chart of some tet: edges run from the
+/// origin along axis 0, squares between axes 0 and 1, cubes along all three. Carried from tet to
+/// tet, it shows every corner of a tet at the same place, whatever the charts.
+struct Frame {
+  GridPoint origin{};
+  std::array<Direction, 3> axes{};
+
+  /// The frame of a grid point whose first axis is the given one, the others following cyclically.
+  [[nodiscard]] static constexpr Frame along(const GridPoint& z, int axis) noexcept {
+    return {z,
+            {direction(axis, 1), direction((axis + 1) % 3, 1), direction((axis + 2) % 3, 1)}};
+  }
+
+  [[nodiscard]] constexpr Frame carried(const Transition& transition) const noexcept {
+    return {transition(origin), {transition(axes[0]), transition(axes[1]), transition(axes[2])}};
+  }
+
+  /// The grid point at integer coordinates of the frame, in the chart.
+  [[nodiscard]] constexpr GridPoint at(const GridPoint& c) const noexcept {
+    GridPoint z = origin;
+    for (std::size_t k = 0; k < 3; ++k) {
+      z[static_cast<std::size_t>(axisOf(axes[k]))] += signOf(axes[k]) * c[k];
+    }
+    return z;
+  }
+
+  /// A lattice point in the frame's coordinates, exact.
+  [[nodiscard]] constexpr LatticePoint see(const LatticePoint& p,
+                                           std::int64_t unit) const noexcept {
+    LatticePoint seen{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(axisOf(axes[k]));
+      seen[k] = signOf(axes[k]) * (p[axis] - origin[axis] * unit);
+    }
+    return seen;
+  }
+  [[nodiscard]] constexpr LatticeTet see(const LatticeTet& tet, std::int64_t unit) const noexcept {
+    return {see(tet[0], unit), see(tet[1], unit), see(tet[2], unit), see(tet[3], unit)};
+  }
+
+  [[nodiscard]] constexpr bool operator==(const Frame&) const = default;
+};
+
+}  // namespace hexhex

@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <atomic>
+#include <string>
+
+#include <curved/cube_meets_face.hpp>
+#include <curved/lagrange.hpp>
+#include <curved/lattice_numbers.hpp>
+#include <curved/simplex_star.hpp>
+#include <sweep/cell_seeds.hpp>
+
+namespace hexhex {
+
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kCellGrain = 256;
+
+/// A cell at the tet that owns its centre.
+struct CellSeed {
+  Index tet;
+  GridPoint z;  ///< smallest corner
+};
+
+/// All cells in their canonical order.
+Array<CellSeed> listCells(const PreparedMap& map, Stage& stage) {
+  const CellSeeds seeds = findCells(map, stage);
+  Array<CellSeed> cells(seeds.count());
+  parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t) {
+                   std::vector<SweptLine> scratch;
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     const TetSweep sweep(map.exact, tet, SweptGrid::Centers);
+                     CenterOwner owner(map.topology, tet);
+                     std::uint64_t at = seeds.begin[t];
+                     for (const SweptLine& line : seeds.linesOf(map.exact, tet, scratch)) {
+                       const auto [first, count] = owner.owned(line);
+                       for (std::uint32_t i = first; i < first + count; ++i) {
+                         cells[at++] = {tet, sweep.point(line, i)};
+                       }
+                     }
+                   }
+                 });
+  return cells;
+}
+
+/// Collects the nodes of one cell after the other. One per thread.
+class NodeCollector {
+ public:
+  /// @param map  scaled for the nodes
+  NodeCollector(const PreparedMap& map, const LatticeNumbers& numbers, int order)
+      : map_(map), numbers_(numbers), order_(order) {}
+
+  /// Numbers of the nodes in the refined grid.
+  void collect(const CellSeed& cell, std::span<Index> nodes) {
+    std::fill(nodes.begin(), nodes.end(), kNone);
+    missing_ = nodes.size();
+    Frame frame = Frame::along(cell.z, 0);
+    for (std::int32_t& coordinate : frame.origin) coordinate *= order_;
+    queue_.assign(1, {cell.tet, kWholeTet, frame});
+    for (std::size_t head = 0; head < queue_.size(); ++head) {
+      const SimplexInTet here = queue_[head];
+      take(here, nodes);
+      if (missing_ == 0) return;
+      addNeighbours(here);
+    }
+    throw Error(ErrorCode::Internal,
+                "A node of a cell was not found. The map passed all checks, so this is a bug; "
+                "please report it with the map.",
+                {PlaceKind::Tet, cell.tet});
+  }
+
+ private:
+  /// Takes the nodes in a closed tet.
+  void take(const SimplexInTet& here, std::span<Index> nodes) {
+    const LatticeTet seen = here.frame.see(map_.exact.corners[here.tet], map_.exact.unit);
+    std::array<GridRange, 3> range;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax({seen[0][k], seen[1][k], seen[2][k], seen[3][k]});
+      const auto clamped = [&](std::int64_t x) {
+        return static_cast<std::int32_t>(std::clamp<std::int64_t>(x / map_.exact.unit, 0, order_));
+      };
+      range[k] = {clamped(low), clamped(high)};
+    }
+    const auto stride = static_cast<std::size_t>(order_) + 1;
+    for (std::int32_t k = range[2].first; k <= range[2].last; ++k) {
+      for (std::int32_t j = range[1].first; j <= range[1].last; ++j) {
+        for (std::int32_t i = range[0].first; i <= range[0].last; ++i) {
+          Index& node = nodes[static_cast<std::size_t>(i) +
+                              stride * (static_cast<std::size_t>(j) +
+                                        stride * static_cast<std::size_t>(k))];
+          if (node != kNone) continue;
+          node = numbers_.find(here.tet, here.frame.at({i, j, k})).vertex;
+          if (node != kNone) --missing_;
+        }
+      }
+    }
+  }
+
+  /// Goes on through the faces that meet the open cube: there, the map is one to one, and it does
+  /// not matter on which way a tet is reached.
+  void addNeighbours(const SimplexInTet& here) {
+    const LatticeTet seen = here.frame.see(map_.exact.corners[here.tet], map_.exact.unit);
+    for (int face = 0; face < 4; ++face) {
+      if (!cubeMeetsFace(seen, face, order_ * map_.exact.unit)) continue;
+      if (map_.topology.isBoundary(halfFaceOf(here.tet, face))) continue;
+      const SimplexInTet next = crossed(map_.topology, map_.exact, here, face);
+      const bool known = std::any_of(queue_.begin(), queue_.end(), [&](const SimplexInTet& other) {
+        return other.tet == next.tet && other.frame == next.frame;
+      });
+      if (!known) queue_.push_back(next);
+    }
+  }
+
+  const PreparedMap& map_;
+  const LatticeNumbers& numbers_;
+  int order_;
+  std::size_t missing_ = 0;
+  std::vector<SimplexInTet> queue_;
+};
+
+/// Place of a cell's corner among its nodes.
+std::size_t nodeOfCorner(std::size_t corner, int order) {
+  const auto stride = static_cast<std::size_t>(order) + 1;
+  const GridPoint& offset = kCellCorners[corner];
+  const auto x = static_cast<std::size_t>(offset[0] * order);
+  const auto y = static_cast<std::size_t>(offset[1] * order);
+  const auto z = static_cast<std::size_t>(offset[2] * order);
+  return x + stride * (y + stride * z);
+}
+
+/// Numbers of the refined grid, renumbered: hex vertices first, the others in the same order.
+Array<Index> renumber(const HexMesh& mesh, const LagrangeMesh& result, std::uint64_t count,
+                      Stage& stage) {
+  Array<Index> number(count);
+  parallelFor(stage, count, kGrain, [&](std::size_t i) { number[i] = kNone; });
+  const std::size_t perCell = result.nodesPerCell();
+  std::atomic<bool> contradiction{false};
+  parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      const Index node = result.nodes[c * perCell + nodeOfCorner(corner, result.order)];
+      const Index before = std::atomic_ref(number[node])
+                               .exchange(mesh.cells[c][corner], std::memory_order_relaxed);
+      if (before != kNone && before != mesh.cells[c][corner]) contradiction = true;
+    }
+  });
+  if (contradiction) {
+    throw Error(ErrorCode::Internal,
+                "Nodes do not fit the mesh. The map passed all checks, so this is a bug; please "
+                "report it with the map.");
+  }
+  auto next = static_cast<Index>(mesh.points.size());
+  for (Index& entry : number) {
+    if (entry == kNone) entry = next++;
+  }
+  return number;
+}
+
+/// Positions and generators of all nodes.
+void describeNodes(const LatticeNumbers& numbers, const HexMesh& mesh, const Array<Index>& number,
+                   LagrangeMesh& result, Stage& stage) {
+  Array<Vec3> points(number.size());
+  Array<Index> tets(number.size());
+  Array<CornerSet> corners(number.size());
+  numbers.describe({points, tets, corners}, stage);
+  result.points.resize(number.size());
+  result.generatorTet.resize(number.size());
+  result.generatorCorners.resize(number.size());
+  parallelFor(stage, number.size(), kGrain, [&](std::size_t i) {
+    const Index n = number[i];
+    // Vertices keep every bit: at another scale, rounding differs.
+    result.points[n] = n < mesh.points.size() ? mesh.points[n] : points[i];
+    result.generatorTet[n] = tets[i];
+    result.generatorCorners[n] = corners[i];
+  });
+}
+
+}  // namespace
+
+LagrangeMesh groupNodes(const HexMesh& mesh, PreparedMap& map, int order, Context& context) {
+  LagrangeMesh result;
+  result.order = order;
+  result.vertexCount = mesh.points.size();
+  Array<CellSeed> cells;
+  {
+    Stage stage(context, "cell centres");
+    cells = listCells(map, stage);
+    scaleMap(map.exact, order, stage);
+  }
+  Stage stage(context, "nodes");
+  const LatticeNumbers numbers(map, stage);
+  const std::size_t perCell = result.nodesPerCell();
+  result.nodes.resize(cells.size() * perCell);
+  parallelBlocks(stage, cells.size(), kCellGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t) {
+                   NodeCollector collector(map, numbers, order);
+                   for (std::size_t c = begin; c < end; ++c) {
+                     collector.collect(cells[c],
+                                       std::span(result.nodes).subspan(c * perCell, perCell));
+                   }
+                 });
+  const Array<Index> number = renumber(mesh, result, numbers.count(), stage);
+  parallelFor(stage, result.nodes.size(), kGrain,
+              [&](std::size_t i) { result.nodes[i] = number[result.nodes[i]]; });
+  describeNodes(numbers, mesh, number, result, stage);
+  return result;
+}
+
+}  // namespace hexhex

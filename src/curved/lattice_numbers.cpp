@@ -1,0 +1,125 @@
+#include <limits>
+#include <string>
+
+#include <curved/lattice_numbers.hpp>
+#include <sweep/tet_positions.hpp>
+
+namespace hexhex {
+
+LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : map_(map) {
+  const std::size_t tets = map.topology.tetCount();
+  axes_.resize(tets);
+  lineBegin_.resize(tets + 1);
+  lineBegin_[tets] = 0;
+  std::vector<std::vector<SweptLine>> blocks(blockCount(tets, kSweepBlock));
+  VertexCounter counter(map, numbers_);
+  parallelBlocks(stage, tets, kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   std::vector<SweptLine>& lines = blocks[block];
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     const std::size_t before = lines.size();
+                     const TetSweep sweep(map.exact, tet, SweptGrid::Vertices);
+                     axes_[t] = sweep.axes;
+                     sweep.run(map.exact.unit, lines);
+                     lineBegin_[t] = lines.size() - before;
+                     counter.count(block, tet, std::span(lines).subspan(before));
+                   }
+                 });
+  counter.finish();
+  if (numbers_.count() >= kNone) {
+    throw Error(ErrorCode::TooLarge,
+                "The mesh would have " + std::to_string(numbers_.count()) +
+                    " vertices, more than 32-bit indices can number. Lower the scale or the "
+                    "order.");
+  }
+  exclusiveScan(std::span(lineBegin_));
+  lines_.resize(lineBegin_.back());
+  parallelBlocks(stage, tets, kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   std::size_t at = lineBegin_[begin];
+                   for (const SweptLine& line : blocks[block]) lines_[at++] = {line};
+                   blocks[block] = {};
+                   for (std::size_t t = begin; t < end; ++t) number(static_cast<Index>(t));
+                 });
+}
+
+/// Enters the numbers of a tet's points.
+void LatticeNumbers::number(Index tet) {
+  const std::size_t begin = lineBegin_[tet];
+  const std::size_t end = lineBegin_[std::size_t{tet} + 1];
+  if (begin == end) return;
+  std::vector<SweptLine> swept;
+  swept.reserve(end - begin);
+  for (std::size_t i = begin; i < end; ++i) swept.push_back(lines_[i].swept);
+  TetNumbering(map_, numbers_, tet, axes_[tet])
+      .run(std::span<const SweptLine>(swept), [&](const VertexRun& run) {
+        enter(lines_[begin + static_cast<std::size_t>(run.line - swept.data())], run);
+      });
+}
+
+void LatticeNumbers::enter(Line& line, const VertexRun& run) {
+  const auto first = static_cast<Index>(run.first);
+  const std::uint32_t last = line.swept.count - 1;
+  if (run.offset == 0) line.left = first;
+  if (run.offset + run.count == line.swept.count) line.right = first + run.count - 1;
+  if (run.offset <= 1 && run.offset + run.count > 1 && last > 1) {
+    line.inner = first + (1 - run.offset);
+    line.step = 1;
+  } else if (run.offset == 2 && last > 2) {
+    // One by one: the sweep meets the points of an edge against their order.
+    line.step = static_cast<std::int32_t>(first) - static_cast<std::int32_t>(line.inner);
+  }
+}
+
+LatticeNumbers::Found LatticeNumbers::find(Index tet, const GridPoint& z) const {
+  const std::array<std::uint8_t, 3>& axes = axes_[tet]();
+  const Line* const line = findLine(linesOf(tet), z[axes[0]], z[axes[1]],
+                                    [](const Line& l) -> const SweptLine& { return l.swept; });
+  if (line == nullptr) return {};
+  const auto i = static_cast<std::uint32_t>(z[axes[2]] - line->swept.first);
+  if (i >= line->swept.count) return {};
+  const CornerMask simplex = line->swept.simplex(i);
+  Index vertex = line->left;
+  if (i + 1 == line->swept.count && i > 0) {
+    vertex = line->right;
+  } else if (i > 0 && line->inner != kNone) {
+    vertex = line->inner + static_cast<Index>(line->step * static_cast<std::int32_t>(i - 1));
+  } else if (i > 0) {
+    vertex = kNone;
+  }
+  if (vertex != kNone) return {vertex, simplex};
+  // The tet on the other side of a face owns it.
+  const HalfFace halfFace = halfFaceOf(tet, oppositeCorner(simplex));
+  const Index owner = tetOf(map_.topology.mate[halfFace]);
+  return {find(owner, map_.exact.transitions.across(halfFace)(z)).vertex, simplex};
+}
+
+void LatticeNumbers::describe(const VertexDescriptions& to, Stage& stage) const {
+  parallelBlocks(
+      stage, map_.topology.tetCount(), kSweepBlock,
+      [&](std::size_t begin, std::size_t end, std::size_t) {
+        std::vector<SweptLine> swept;
+        for (std::size_t t = begin; t < end; ++t) {
+          const auto tet = static_cast<Index>(t);
+          if (linesOf(tet).empty()) continue;
+          swept.clear();
+          for (const Line& line : linesOf(tet)) swept.push_back(line.swept);
+          const TetSweep sweep(map_.exact, tet, SweptGrid::Vertices);
+          const TetPositions positions(map_, tet, sweep.box, sweep.axes);
+          TetNumbering(map_, numbers_, tet, sweep.axes)
+              .run(std::span<const SweptLine>(swept), [&](const VertexRun& run) {
+                if (!run.owned) return;
+                for (std::uint32_t i = 0; i < run.count; ++i) {
+                  const std::uint64_t v = run.first + i;
+                  to.points[v] =
+                      positions.at(run.simplex, sweep.point(*run.line, run.offset + i));
+                  to.tets[v] = tet;
+                  to.corners[v] = map_.input.callersCorners(run.simplex);
+                }
+              });
+        }
+      });
+}
+
+}  // namespace hexhex

@@ -1,0 +1,87 @@
+// The numbers of hex vertices, found again by grid point and tet.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <map/prepare.hpp>
+#include <sweep/tet_lines.hpp>
+#include <sweep/vertex_numbers.hpp>
+
+namespace hexhex {
+
+/// Where vertices are described, by number; nothing if the spans are empty.
+struct VertexDescriptions {
+  std::span<Vec3> points;
+  std::span<Index> tets;
+  std::span<CornerSet> corners;  ///< in terms of the caller's tets
+};
+
+/// Sweeps a map for its grid points. Numbers are those of extract() at the map's scale.
+class LatticeNumbers {
+ public:
+  /// @throws Error TooLarge for more vertices than an Index can number
+  LatticeNumbers(const PreparedMap& map, Stage& stage);
+
+  [[nodiscard]] std::uint64_t count() const noexcept { return numbers_.count(); }
+
+  /// Writes position and generator of every vertex.
+  void describe(const VertexDescriptions& to, Stage& stage) const;
+
+  struct Found {
+    Index vertex = kNone;             ///< kNone if the closed tet does not contain the point
+    CornerMask simplex = kNoSimplex;  ///< of the tet, in whose interior it lies
+  };
+  /// The vertex at a grid point in the chart of a tet.
+  [[nodiscard]] Found find(Index tet, const GridPoint& z) const;
+
+ private:
+  /// A swept line with the numbers of its points.
+  struct Line {
+    SweptLine swept;
+    Index left = kNone;   ///< kNone in faces that another tet owns
+    Index right = kNone;
+    Index inner = kNone;  ///< of the second point
+    std::int32_t step = 0;  ///< from one inner point to the next
+  };
+
+  [[nodiscard]] std::span<const Line> linesOf(Index tet) const noexcept {
+    const std::size_t begin = lineBegin_[tet];
+    return std::span(lines_).subspan(begin, lineBegin_[std::size_t{tet} + 1] - begin);
+  }
+  void number(Index tet);
+  static void enter(Line& line, const VertexRun& run);
+
+  const PreparedMap& map_;
+  VertexNumbers numbers_;
+  Array<SweepAxes> axes_;           ///< per tet
+  Array<std::uint64_t> lineBegin_;  ///< per tet (+1)
+  Array<Line> lines_;
+};
+
+/// Lines in the order of a sweep: the one at a level and row, or nullptr.
+/// @param sweptOf  the SweptLine of a line
+template <class Line, class SweptOf>
+[[nodiscard]] const Line* findLine(std::span<const Line> lines, std::int32_t level,
+                                   std::int32_t row, const SweptOf& sweptOf) {
+  std::size_t low = 0;
+  std::size_t high = lines.size();
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    const SweptLine& line = sweptOf(lines[middle]);
+    const bool before = line.level != level ? line.level < level : line.row < row;
+    if (before) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  if (low == lines.size()) return nullptr;
+  const SweptLine& line = sweptOf(lines[low]);
+  return line.level == level && line.row == row ? &lines[low] : nullptr;
+}
+
+}  // namespace hexhex

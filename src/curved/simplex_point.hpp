@@ -1,0 +1,107 @@
+// Points by weights of the corners of a tet: exact comparison of their coordinates, and positions.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include <hexhex/types.hpp>
+
+#include <lattice/tet_geometry.hpp>
+
+namespace hexhex {
+
+/// A point of a tet: weights of the corners, not negative, up to a common factor. At most 124 bits
+/// each (minors of coordinates), so that products with coordinates fit 192 bits.
+struct SimplexPoint {
+  std::array<Int128, 4> weights{};
+
+  /// The simplex whose interior holds the point.
+  [[nodiscard]] constexpr CornerMask simplex() const noexcept {
+    CornerMask mask = kNoSimplex;
+    for (int i = 0; i < 4; ++i) {
+      if (weights[static_cast<std::size_t>(i)] != 0) {
+        mask = static_cast<CornerMask>(mask | cornerBit(i));
+      }
+    }
+    return mask;
+  }
+
+  [[nodiscard]] static constexpr SimplexPoint corner(std::size_t i) noexcept {
+    SimplexPoint point;
+    point.weights[i] = 1;
+    return point;
+  }
+  /// The point of the edge between corners i and j where a linear function vanishes that has the
+  /// given values of opposite signs there.
+  [[nodiscard]] static constexpr SimplexPoint between(std::size_t i, std::size_t j,
+                                                      std::int64_t atI, std::int64_t atJ) noexcept {
+    SimplexPoint point;
+    point.weights[i] = atJ < 0 ? -static_cast<Int128>(atJ) : static_cast<Int128>(atJ);
+    point.weights[j] = atI < 0 ? -static_cast<Int128>(atI) : static_cast<Int128>(atI);
+    return point;
+  }
+
+  /// Sign of (coordinate `axis` of the point) - target.
+  [[nodiscard]] int compare(const LatticeTet& corners, std::size_t axis,
+                            std::int64_t target) const noexcept {
+    // Weights and differences carry one rounding each; three products and three sums of up to four
+    // terms add at most five more: 7 * 2^-53 < 2^-50 of the sum of magnitudes, which itself is as
+    // good. 2^-49 leaves a factor of two.
+    constexpr double kRelativeError = 0x1p-49;
+    double sum = 0;
+    double magnitude = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double term =
+          static_cast<double>(weights[i]) * static_cast<double>(corners[i][axis] - target);
+      sum += term;
+      magnitude += std::abs(term);
+    }
+    if (std::abs(sum) > kRelativeError * magnitude) return sum > 0 ? 1 : -1;
+    Int192 exact;
+    for (std::size_t i = 0; i < 4; ++i) exact.addProduct(weights[i], corners[i][axis] - target);
+    return exact.sign();
+  }
+
+  /// Weights with sum 1, rounded.
+  [[nodiscard]] std::array<double, 4> normalized() const noexcept {
+    std::array<double, 4> shares{};
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) sum += shares[i] = static_cast<double>(weights[i]);
+    for (double& share : shares) share /= sum;
+    return shares;
+  }
+};
+
+/// A coordinate of a point given by normalized weights.
+[[nodiscard]] inline double coordinate(const std::array<double, 4>& shares,
+                                       const LatticeTet& corners, std::size_t axis) noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (shares[i] != 0) sum += shares[i] * static_cast<double>(corners[i][axis]);
+  }
+  return sum;
+}
+
+/// The same in space.
+[[nodiscard]] inline Vec3 position(const std::array<double, 4>& shares, const Tet& tet,
+                                   std::span<const Vec3> points) noexcept {
+  Vec3 p{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (shares[i] == 0) continue;
+    for (std::size_t k = 0; k < 3; ++k) p[k] += shares[i] * points[tet[i]][k];
+  }
+  return p;
+}
+
+/// Where a line that is parallel to axis `along` leaves the interior of a simplex of a tet, in
+/// positive direction. The line passes through coordinates 0 of the other axes, and through the
+/// interior of the simplex. All corners of the simplex are seen from there.
+[[nodiscard]] SimplexPoint exitPoint(const LatticeTet& corners, CornerMask simplex,
+                                     std::size_t along) noexcept;
+
+/// Where such a line crosses a face that it is not parallel to.
+/// @return no weights at all if it does not meet the closed face
+[[nodiscard]] SimplexPoint crossingOfFace(const LatticeTet& corners, int face,
+                                          std::size_t along) noexcept;
+
+}  // namespace hexhex

@@ -1,0 +1,183 @@
+// Cells of higher order: their nodes are those of a finer mesh, shared, and in the right places.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/curved.hpp>
+
+#include "curved/curved_maps.hpp"
+
+namespace hexhex::test {
+
+namespace {
+
+LagrangeMesh lagrange(const TetMap& map, int order, int scale = 1, int threads = 0,
+                      Engine engine = Engine::Atlas) {
+  ExtractOptions options;
+  options.scale = scale;
+  options.engine = engine;
+  Context context(threads);
+  return extractLagrange(map, order, options, context);
+}
+
+HexMesh straight(const TetMap& map, int scale) {
+  ExtractOptions options;
+  options.scale = scale;
+  return extract(map, options);
+}
+
+/// The small hexahedra between neighbouring nodes.
+HexMesh subdivided(const LagrangeMesh& mesh) {
+  HexMesh fine;
+  fine.points = mesh.points;
+  const auto p = static_cast<std::size_t>(mesh.order);
+  const std::size_t n = p + 1;
+  for (std::size_t c = 0; c < mesh.cellCount(); ++c) {
+    const Index* const nodes = mesh.nodes.data() + c * mesh.nodesPerCell();
+    for (std::size_t k = 0; k < p; ++k) {
+      for (std::size_t j = 0; j < p; ++j) {
+        for (std::size_t i = 0; i < p; ++i) {
+          const auto at = [&](std::size_t x, std::size_t y, std::size_t z) {
+            return nodes[(i + x) + n * ((j + y) + n * (k + z))];
+          };
+          fine.cells.push_back({at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0), at(0, 0, 1),
+                                at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)});
+        }
+      }
+    }
+  }
+  return fine;
+}
+
+/// All that must hold for any map.
+void examine(const TetMap& map, int order, int scale) {
+  SCOPED_TRACE("order " + std::to_string(order) + ", scale " + std::to_string(scale));
+  const LagrangeMesh mesh = lagrange(map, order, scale);
+  EXPECT_TRUE(sameBits(straightMesh(mesh), straight(map, scale)));
+  // The refined grid's own mesh has the same vertices at the same places, and the cells between
+  // nodes are its cells: so nodes are exact, in order, and shared by neighbours.
+  const HexMesh fine = straight(map, scale * order);
+  ASSERT_EQ(mesh.points.size(), fine.points.size());
+  EXPECT_TRUE(sameUpToNumbering(subdivided(mesh), fine));
+  VerifyOptions options;
+  options.scale = scale * order;
+  const VerifyReport report = verify(map, subdivided(mesh), options);
+  EXPECT_TRUE(report.passed()) << failures(report);
+}
+
+TEST(Lagrange, NodesAreThoseOfTheFinerMesh) {
+  int number = 0;
+  for (const CurvedMap& map : generatedMaps()) {
+    SCOPED_TRACE(map.name);
+    examine(map.map, 2 + number++ % 3, 1);
+  }
+}
+
+TEST(Lagrange, RealMaps) {
+  const std::vector<CurvedMap> maps = realMaps();
+  if (maps.empty()) GTEST_SKIP() << "skipped: no real maps here";
+  for (const CurvedMap& map : maps) {
+    SCOPED_TRACE(map.name);
+    const bool small = straight(map.map, 1).cells.size() < 1000;
+    examine(map.map, 2, 1);
+    if (small) examine(map.map, 3, 2);
+  }
+}
+
+TEST(Lagrange, EveryOrder) {
+  SampleOptions options;
+  options.cells = 1;
+  options.jitter = 0.5;
+  options.charts = ChartStyle::Random;
+  const TetMap map = generateSample(SampleKind::Sphere, options).map;
+  for (int order = 1; order <= kMaxOrder; ++order) examine(map, order, 1);
+}
+
+TEST(Lagrange, OrderOneIsTheOrdinaryMesh) {
+  const TetMap map = generateSample(SampleKind::Star).map;
+  const LagrangeMesh mesh = lagrange(map, 1);
+  const HexMesh expected = straight(map, 1);
+  EXPECT_TRUE(sameBits(straightMesh(mesh), expected));
+  EXPECT_EQ(mesh.points, expected.points);
+}
+
+TEST(Lagrange, SameForAnyNumberOfThreadsAndEngine) {
+  SampleOptions options;
+  options.cells = 6;
+  options.jitter = 0.5;
+  options.charts = ChartStyle::Random;
+  const TetMap map = generateSample(SampleKind::Sphere, options).map;
+  const LagrangeMesh one = lagrange(map, 3, 1, 1);
+  for (const LagrangeMesh& other :
+       {lagrange(map, 3, 1, 3), lagrange(map, 3, 1, 2, Engine::Propeller)}) {
+    EXPECT_EQ(one.points, other.points);
+    EXPECT_EQ(one.nodes, other.nodes);
+    EXPECT_EQ(one.generatorTet, other.generatorTet);
+    EXPECT_EQ(one.generatorCorners, other.generatorCorners);
+  }
+}
+
+TEST(Lagrange, RefusesOrdersOutOfRange) {
+  const TetMap map = generateSample(SampleKind::Box).map;
+  for (const int order : {-1, 0, kMaxOrder + 1}) {
+    try {
+      static_cast<void>(lagrange(map, order));
+      ADD_FAILURE() << order;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+    }
+  }
+}
+
+/// One cell with nodes where a function puts them.
+template <class F>
+LagrangeMesh oneCell(int order, const F& place) {
+  LagrangeMesh mesh;
+  mesh.order = order;
+  for (int k = 0; k <= order; ++k) {
+    for (int j = 0; j <= order; ++j) {
+      for (int i = 0; i <= order; ++i) {
+        mesh.nodes.push_back(static_cast<Index>(mesh.points.size()));
+        mesh.points.push_back(place(static_cast<double>(i) / order, static_cast<double>(j) / order,
+                                    static_cast<double>(k) / order));
+      }
+    }
+  }
+  return mesh;
+}
+
+TEST(LagrangeQuality, KnownCells) {
+  Context context;
+  for (int order = 1; order <= kMaxOrder; ++order) {
+    SCOPED_TRACE(order);
+    const auto quality = [&](const auto& place) {
+      return scaledJacobians(oneCell(order, place), context).front();
+    };
+    EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{3 * x, 2 * y, z}; }), 1,
+                1e-12);
+    // Sheared by 45 degrees everywhere.
+    EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{x + y, y, z}; }),
+                std::sqrt(0.5), 1e-12);
+    EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{-x, y, z}; }), -1, 1e-12);
+    if (order < 2) continue;
+    // x = s - s^2 turns back in the middle: the determinant at the far side is negative.
+    EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{x - x * x, y, z}; }), -1,
+                1e-12);
+    // The column of x is (1, 2 x) and its angle to y's is smallest at x = 1.
+    EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{x, y + x * x, z}; }),
+                1 / std::sqrt(5.0), 1e-12);
+  }
+}
+
+TEST(LagrangeQuality, VanishingEdgeIsNotPositive) {
+  Context context;
+  const auto flat = [](double x, double y, double) { return Vec3{x, y, 0}; };
+  EXPECT_EQ(scaledJacobians(oneCell(2, flat), context).front(), 0.0);
+}
+
+}  // namespace
+}  // namespace hexhex::test
