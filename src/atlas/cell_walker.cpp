@@ -27,14 +27,8 @@ std::array<double, 8> halfDiagonals(const Vector& v) {
   return {-plus - z, minus - z, plus - z, -minus - z, -plus + z, minus + z, plus + z, -minus + z};
 }
 
-/// Which sums of a value and the entries are negative.
-CellCornerSet negatives(const std::array<double, 8>& entries, double value) {
-  CellCornerSet set = 0;
-  for (std::size_t c = 0; c < 8; ++c) {
-    // Without branches, which nobody could predict.
-    set |= static_cast<CellCornerSet>(std::bit_cast<std::uint64_t>(entries[c] + value) >> 63) << c;
-  }
-  return set;
+CellCornerSet isNegative(double x) {
+  return static_cast<CellCornerSet>(std::bit_cast<std::uint64_t>(x) >> 63);
 }
 
 double largest(const Vector& v) {
@@ -115,10 +109,15 @@ CellWalker::Sides CellWalker::look(const Node& node, const GridPoint& z,
     const double extent = 0.5 * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
     if (sides.center[f] - extent > 2 * sides.error) continue;
     const std::array<double, 8> half = halfDiagonals(n);
-    const CellCornerSet notInside = negatives(half, sides.center[f] - sides.error);
-    CellCornerSet outside = negatives(half, sides.center[f] + sides.error);
-    outside &= corners;
-    const CellCornerSet unsure = notInside & corners & ~outside;
+    CellCornerSet notInside = 0;
+    CellCornerSet outside = 0;
+    for (CellCornerSet rest = corners; rest != 0; rest &= rest - 1) {
+      const auto c = static_cast<std::size_t>(std::countr_zero(rest));
+      // Without branches, which nobody could predict.
+      notInside |= isNegative(sides.center[f] + half[c] - sides.error) << c;
+      outside |= isNegative(sides.center[f] + half[c] + sides.error) << c;
+    }
+    const CellCornerSet unsure = notInside & ~outside;
     if (unsure != 0) outside |= signsOfUnsure(node, static_cast<int>(f), z, unsure);
     sides.outside[f] = outside;
   }
