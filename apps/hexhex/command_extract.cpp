@@ -31,6 +31,7 @@ struct Arguments {
   std::string output;
   std::string report;
   ExtractOptions options;
+  double patchAngle = WriteOptions{}.patchAngle;
   int threads = 0;
   bool stream = false;
   bool noVerify = false;
@@ -70,7 +71,12 @@ void requireOutputs(const Arguments& arguments) {
   if (!arguments.report.empty()) requireWritable(arguments.report);
 }
 
-void printWarnings(const ExtractStatistics& statistics) {
+void printWarnings(const ExtractionRecord& record, const TetMap& map) {
+  const ExtractStatistics& statistics = record.statistics;
+  if (record.streamed && !(map.features.empty() && map.regions.empty())) {
+    printWarning(
+        "The tags and regions of the map are not in the mesh; leave out --stream for them.");
+  }
   if (statistics.tetsInvertedInSpace > 0) {
     printWarning(counted(statistics.tetsInvertedInSpace, "tet") +
                  " of the input are inverted in space. The mesh has the right connectivity, but "
@@ -104,6 +110,13 @@ void printSummary(const ExtractionRecord& record) {
       "mesh",
       fmt::format("{}, {}", counted(record.cells, "cell"),
                   record.vertices == 1 ? "1 vertex" : fmt::format("{} vertices", record.vertices)));
+  if (record.tags != std::array<std::uint64_t, 3>{}) {
+    printLine(
+        "tagged",
+        fmt::format("{}, {}, {}",
+                    record.tags[0] == 1 ? "1 vertex" : fmt::format("{} vertices", record.tags[0]),
+                    counted(record.tags[1], "edge"), counted(record.tags[2], "quad")));
+  }
   if (record.engine != Engine::Atlas) printLine("engine", engineName(record.engine));
   printLine("extraction",
             fmt::format("{:.3f} s on {}{}, peak memory {}", statistics.seconds,
@@ -130,7 +143,12 @@ void extractWhole(const Arguments& arguments, const TetMap& map, Context& contex
   }
   const Array<double> quality = scaledJacobians(mesh, context);
   record.quality = summarize(quality);
-  writeHexMesh(mesh, arguments.output, {quality}, context);
+  WriteOptions options;
+  options.scaledJacobians = quality;
+  options.patchAngle = arguments.patchAngle;
+  writeHexMesh(mesh, arguments.output, options, context);
+  record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
+                 mesh.features.quads.size()};
   record.vertices = mesh.points.size();
   record.cells = mesh.cells.size();
 }
@@ -167,7 +185,7 @@ int run(const Arguments& arguments) {
   record.stages = context.stageTimes();
   if (!arguments.report.empty()) writeTextFile(arguments.report, reportAsJson(record));
   if (!arguments.quiet) {
-    printWarnings(record.statistics);
+    printWarnings(record, map);
     printSummary(record);
   }
   return kSuccess;
@@ -214,6 +232,12 @@ Command addExtract(CLI::App& app) {
            "Multiply all parameters by this integer: its cube as\nmany cells");
   addMethod(*parser, *arguments);
   addTolerance(*parser, arguments->options.tolerance);
+  parser
+      ->add_option("--patch-angle", arguments->patchAngle,
+                   "Where the map tags no faces, group boundary quads by\npatches that turn by at "
+                   "most this angle in degrees\nbetween neighbours; 0: one group")
+      ->check(CLI::Range(0, 180))
+      ->option_text("DEGREES [40]");
   parser->add_flag("--no-verify", arguments->noVerify, "Write the mesh without verifying it");
   parser
       ->add_option("--report", arguments->report,

@@ -1,6 +1,7 @@
 // The machine-readable report of an extraction. docs/report.md explains every key.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -29,6 +30,7 @@ struct ExtractionRecord {
   std::uint64_t tets = 0;
   std::uint64_t vertices = 0;
   std::uint64_t cells = 0;
+  std::array<std::uint64_t, 3> tags{};  ///< tagged vertices, edges and quads of the mesh
   ExtractStatistics statistics;
   std::vector<StageTime> stages;
   std::optional<QualitySummary> quality;     ///< empty if the mesh was never whole

@@ -6,6 +6,7 @@
 #include <hexhex/error.hpp>    // IWYU pragma: export
 #include <hexhex/extract.hpp>  // IWYU pragma: export
 #include <hexhex/io.hpp>       // IWYU pragma: export
+#include <hexhex/patches.hpp>  // IWYU pragma: export
 #include <hexhex/quality.hpp>  // IWYU pragma: export
 #include <hexhex/samples.hpp>  // IWYU pragma: export
 #include <hexhex/types.hpp>    // IWYU pragma: export

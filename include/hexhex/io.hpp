@@ -38,13 +38,19 @@ struct WriteOptions {
   /// "vtk", "msh" (Gmsh 4.1, binary), "msh41-ascii", "msh22-ascii", "inp", "mfem". Empty: what the
   /// extension means.
   std::string_view format = {};
+
+  /// For formats with groups of boundary quads, if no quad of the mesh is tagged: the angle in
+  /// degrees, up to 180, by which the boundary may turn within a group; see boundaryPatches(). 0:
+  /// one group.
+  double patchAngle = 40;
 };
 
 /// Writes a hexahedral mesh: `.mesh` (vertices, boundary quads, hexahedra) or `.vtu` (binary
 /// appended; cell array `scaled_jacobian`; for meshes that know where their vertices came from, the
 /// point arrays `generator_kind` (UInt8), `generator_tet` (UInt32), `generator_corners` (UInt8)).
-/// `.vtk` holds vertices and hexahedra. `.meshb`, `.msh` (physical groups), `.inp` (node sets and
-/// surfaces) and MFEM's files (attributes) also hold boundary quads and what mesh.features tags.
+/// `.vtk` holds vertices and hexahedra, and regions as cell data. `.meshb` and `.mesh` (references),
+/// `.msh` (physical groups), `.inp` (node sets, element sets and surfaces) and MFEM's files
+/// (attributes) also hold boundary quads, what mesh.features tags, and regions.
 /// The file appears complete or not at all.
 /// @throws Error FileUnsupported, FileWrite; InvalidArgument if arrays disagree or a cell names a
 ///         vertex that does not exist; NotFinite

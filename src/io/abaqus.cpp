@@ -60,6 +60,7 @@ class AbaqusWriter {
     output_.write("*HEADING\nhexahedral mesh by hexhex\n");
     writeNodes();
     writeElements();
+    writeElementSets();
     writeNodeSets(quads);
     writeNodeSets(edges);
     writeNodeSets(vertices);
@@ -91,6 +92,22 @@ class AbaqusWriter {
       return put(place, '\n');
     };
     lines_.write(mesh_.cells.size(), 9 * (kNumberRoom + 2), cell, &progress);
+  }
+
+  /// Regions; the set of all elements is there in any case.
+  void writeElementSets() {
+    if (mesh_.regions.empty()) return;
+    const CellGroups cells = groupCells(mesh_);
+    for (const ElementGroup& group : cells.groups) {
+      const std::size_t size = group.end - group.begin;
+      if (group.name == "hexahedra") continue;
+      output_.write("*ELSET, ELSET=E_").write(upperCase(group.name)).write('\n');
+      const auto entry = [&](char* place, std::size_t i) {
+        const bool ends = i + 1 == size || (i + 1) % kNamesPerLine == 0;
+        return put(put(place, std::uint64_t{cells.at(group.begin + i)} + 1), ends ? "\n" : ", ");
+      };
+      lines_.write(size, kNumberRoom + 2, entry, nullptr);
+    }
   }
 
   template <class Groups>
@@ -136,13 +153,13 @@ class AbaqusWriter {
 }  // namespace
 
 void writeAbaqus(const HexMesh& mesh, const std::filesystem::path& file,
-                 const WriteOptions& /*options*/, Context& context) {
+                 const WriteOptions& options, Context& context) {
   Stage stage(context, "write mesh");
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
   const VertexGroups vertices = groupVertices(mesh);
   const EdgeGroups edges = groupEdges(mesh);
   QuadGroups quads;
-  withThreads(context.threads(), [&] { quads = groupQuads(mesh, stage); });
+  withThreads(context.threads(), [&] { quads = groupQuads(mesh, options.patchAngle, stage); });
   AbaqusWriter(output, mesh, stage, context.threads()).write(vertices, edges, quads);
   output.commit();
 }

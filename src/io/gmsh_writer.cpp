@@ -19,6 +19,8 @@
 namespace hexhex {
 namespace {
 
+constexpr std::size_t kGrain = std::size_t{1} << 14;
+
 /// Elements of one kind that belong together.
 struct GmshEntity {
   std::uint32_t tag;
@@ -53,7 +55,8 @@ struct GmshContent {
   VertexGroups vertices;
   EdgeGroups edges;
   QuadGroups quads;
-  std::vector<ElementGroup> cells;
+  CellGroups cells;
+  Array<Hex> sortedCells;                           ///< by region; empty if they are that anyway
   std::array<std::vector<GmshEntity>, 4> entities;  ///< by dimension
 
   [[nodiscard]] std::size_t elementCount() const {
@@ -67,18 +70,23 @@ struct GmshContent {
     f(0U, entities[0], std::span(vertices.elements));
     f(1U, entities[1], std::span(edges.elements));
     f(2U, entities[2], std::span(quads.elements));
-    f(3U, entities[3], std::span(mesh.cells));
+    f(3U, entities[3], std::span(sortedCells.empty() ? mesh.cells : sortedCells));
   }
 };
 
 constexpr std::array<unsigned, 4> kTypes = {kGmshPoint, kGmshLine, kGmshQuad, kGmshHexahedron};
 
-GmshContent contentOf(const HexMesh& mesh, Stage& stage, int threads) {
-  GmshContent content{mesh, groupVertices(mesh), groupEdges(mesh), {}, {}, {}};
-  withThreads(threads, [&] { content.quads = groupQuads(mesh, stage); });
-  content.cells.push_back({1, "hexahedra", 0, mesh.cells.size()});
+GmshContent contentOf(const HexMesh& mesh, const WriteOptions& options, Stage& stage, int threads) {
+  GmshContent content{mesh, groupVertices(mesh), groupEdges(mesh), {}, groupCells(mesh), {}, {}};
+  withThreads(threads, [&] {
+    content.quads = groupQuads(mesh, options.patchAngle, stage);
+    if (content.cells.order.empty()) return;
+    content.sortedCells.resize(mesh.cells.size());
+    parallelFor(stage, mesh.cells.size(), kGrain,
+                [&](std::size_t i) { content.sortedCells[i] = mesh.cells[content.cells.at(i)]; });
+  });
   content.entities = {pointsOf(content.vertices.groups), entitiesOf(content.edges.groups),
-                      entitiesOf(content.quads.groups), entitiesOf(content.cells)};
+                      entitiesOf(content.quads.groups), entitiesOf(content.cells.groups)};
   return content;
 }
 
@@ -100,7 +108,7 @@ std::array<Vec3, 2> boxOf(const HexMesh& mesh, const Elements& elements) {
 
 void writePhysicalNames(OutputFile& output, const GmshContent& content) {
   const std::array groups = {&content.vertices.groups, &content.edges.groups, &content.quads.groups,
-                             &content.cells};
+                             &content.cells.groups};
   std::size_t count = 0;
   for (const auto* const kind : groups) count += kind->size();
   output.write("$PhysicalNames\n").write(count).write('\n');
@@ -279,10 +287,11 @@ class Msh41Writer {
 };
 
 template <class Numbers>
-void writeMsh41(const HexMesh& mesh, const std::filesystem::path& file, Context& context) {
+void writeMsh41(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+                Context& context) {
   Stage stage(context, "write mesh");
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  const GmshContent content = contentOf(mesh, stage, context.threads());
+  const GmshContent content = contentOf(mesh, options, stage, context.threads());
   Msh41Writer<Numbers>(output, content, stage, context.threads()).write();
   output.commit();
 }
@@ -318,20 +327,20 @@ void requireSmall(std::size_t count, const char* what) {
 }  // namespace
 
 void writeGmsh41Binary(const HexMesh& mesh, const std::filesystem::path& file,
-                       const WriteOptions& /*options*/, Context& context) {
-  writeMsh41<BinaryNumbers>(mesh, file, context);
+                       const WriteOptions& options, Context& context) {
+  writeMsh41<BinaryNumbers>(mesh, file, options, context);
 }
 
 void writeGmsh41Text(const HexMesh& mesh, const std::filesystem::path& file,
-                     const WriteOptions& /*options*/, Context& context) {
-  writeMsh41<TextNumbers>(mesh, file, context);
+                     const WriteOptions& options, Context& context) {
+  writeMsh41<TextNumbers>(mesh, file, options, context);
 }
 
 void writeGmsh22Text(const HexMesh& mesh, const std::filesystem::path& file,
-                     const WriteOptions& /*options*/, Context& context) {
+                     const WriteOptions& options, Context& context) {
   Stage stage(context, "write mesh");
   OutputFile output(file);
-  const GmshContent content = contentOf(mesh, stage, context.threads());
+  const GmshContent content = contentOf(mesh, options, stage, context.threads());
   requireSmall(mesh.points.size(), "nodes");
   requireSmall(content.elementCount(), "elements");
   LineWriter lines(output, context.threads());

@@ -36,6 +36,9 @@ inline constexpr std::size_t kNumberRoom = 24;
 [[nodiscard]] inline char* put(char* place, double number) {
   return std::to_chars(place, place + kNumberRoom, number).ptr;
 }
+[[nodiscard]] inline char* put(char* place, std::int32_t number) {
+  return std::to_chars(place, place + kNumberRoom, number).ptr;
+}
 [[nodiscard]] inline char* put(char* place, std::unsigned_integral auto number) {
   return std::to_chars(place, place + kNumberRoom, number).ptr;
 }

@@ -10,11 +10,11 @@
 #include <io/line_writer.hpp>
 #include <io/medit.hpp>
 #include <io/medit_text.hpp>
+#include <io/mesh_groups.hpp>
 #include <io/output_file.hpp>
 #include <io/text_elements.hpp>
 #include <io/text_scanner.hpp>
 #include <io/token_index.hpp>
-#include <mesh/boundary_quads.hpp>
 
 namespace hexhex {
 namespace {
@@ -187,20 +187,24 @@ HexMesh readMedit(const std::filesystem::path& file, Context& context) {
   return mesh;
 }
 
-void writeMedit(const HexMesh& mesh, const std::filesystem::path& file,
-                const WriteOptions& /*options*/, Context& context) {
+// Tagged edges stay out: viewers that read no more than what they show stumble over the section.
+void writeMedit(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+                Context& context) {
   Stage stage(context, "write mesh");
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  Array<Quad> quads;
-  withThreads(context.threads(), [&] { quads = boundaryQuads(mesh, stage); });
+  const Array<std::uint32_t> vertices = vertexReferences(mesh, groupVertices(mesh));
+  const Array<std::uint32_t> regions = cellReferences(mesh);
+  QuadGroups quads;
+  withThreads(context.threads(), [&] { quads = groupQuads(mesh, options.patchAngle, stage); });
+  const Array<std::uint32_t> references = groupNumbers(quads.groups);
   LineWriter lines(output, context.threads());
-  LoopProgress progress(stage, mesh.points.size() + quads.size() + mesh.cells.size());
+  LoopProgress progress(stage, mesh.points.size() + quads.elements.size() + mesh.cells.size());
   output.write(kMeditHead).write(mesh.points.size()).write('\n');
-  writeMeditVertices(lines, mesh.points, &progress);
-  output.write("Quadrilaterals\n").write(quads.size()).write('\n');
-  writeMeditElements(lines, std::span<const Quad>(quads), &progress);
+  writeMeditVertices(lines, mesh.points, &progress, vertices);
+  output.write("Quadrilaterals\n").write(quads.elements.size()).write('\n');
+  writeMeditElements(lines, std::span<const Quad>(quads.elements), &progress, references);
   output.write("Hexahedra\n").write(mesh.cells.size()).write('\n');
-  writeMeditElements(lines, std::span<const Hex>(mesh.cells), &progress);
+  writeMeditElements(lines, std::span<const Hex>(mesh.cells), &progress, regions);
   output.write("End\n");
   output.commit();
 }

@@ -15,29 +15,38 @@ namespace hexhex {
 
 inline constexpr std::string_view kMeditHead = "MeshVersionFormatted 2\nDimension 3\nVertices\n";
 
-/// Writes vertices: coordinates and the reference 0.
+/// Writes vertices: coordinates and a reference each.
+/// @param references  empty: all are 0
 inline void writeMeditVertices(LineWriter& lines, std::span<const Vec3> points,
-                               LoopProgress* progress = nullptr) {
-  constexpr std::size_t kRoom = 3 * (kNumberRoom + 1) + 2;
+                               LoopProgress* progress = nullptr,
+                               std::span<const std::uint32_t> references = {}) {
+  constexpr std::size_t kRoom = 4 * (kNumberRoom + 1);
   lines.write(
       points.size(), kRoom,
-      [points](char* place, std::size_t i) { return put(putNumbers(place, points[i]), " 0\n"); },
+      [=](char* place, std::size_t i) {
+        place = putNumbers(place, points[i]);
+        if (references.empty()) return put(place, " 0\n");
+        return put(put(put(place, ' '), references[i]), '\n');
+      },
       progress);
 }
 
-/// Writes elements: 1-based vertices and the reference 1.
+/// Writes elements: 1-based vertices and a reference each.
+/// @param references  empty: all are 1
 template <class Vertex, std::size_t corners>
 void writeMeditElements(LineWriter& lines, std::span<const std::array<Vertex, corners>> elements,
-                        LoopProgress* progress = nullptr) {
-  constexpr std::size_t kRoom = corners * (kNumberRoom + 1) + 2;
+                        LoopProgress* progress = nullptr,
+                        std::span<const std::uint32_t> references = {}) {
+  constexpr std::size_t kRoom = (corners + 1) * (kNumberRoom + 1);
   lines.write(
       elements.size(), kRoom,
-      [elements](char* place, std::size_t i) {
+      [=](char* place, std::size_t i) {
         // 64 bits: 32 would wrap for the last vertex of the largest mesh.
         for (const Vertex vertex : elements[i]) {
           place = put(put(place, std::uint64_t{vertex} + 1), ' ');
         }
-        return put(place, "1\n");
+        if (references.empty()) return put(place, "1\n");
+        return put(put(place, references[i]), '\n');
       },
       progress);
 }

@@ -11,6 +11,7 @@
 #include <io/mesh_groups.hpp>
 #include <mesh/boundary_quads.hpp>
 #include <mesh/hex_topology.hpp>
+#include <mesh/smooth_patches.hpp>
 
 namespace hexhex {
 namespace {
@@ -40,7 +41,9 @@ class TagOrder {
   [[nodiscard]] std::size_t operator[](std::size_t i) const { return order_[i]; }
   [[nodiscard]] std::size_t size() const { return order_.size(); }
 
-  [[nodiscard]] std::vector<ElementGroup> groups(const std::string& kind) const {
+  /// @param kind, untagged  what names are made of, for elements with a tag and without
+  [[nodiscard]] std::vector<ElementGroup> groups(const std::string& kind,
+                                                 const char* untagged = "boundary") const {
     std::vector<ElementGroup> groups;
     const bool numbersAreTags = canNumberByTags();
     std::uint32_t last = 0;
@@ -49,7 +52,7 @@ class TagOrder {
       while (end < size() && tags_[order_[end]] == tags_[order_[begin]]) ++end;
       const Tag tag = tags_[order_[begin]];
       last = numbersAreTags && tag != 0 ? static_cast<std::uint32_t>(tag) : last + 1;
-      groups.push_back({last, nameOf(kind, tag), begin, end});
+      groups.push_back({last, nameOf(kind, untagged, tag), begin, end});
       begin = end;
     }
     return groups;
@@ -61,8 +64,8 @@ class TagOrder {
     return std::all_of(tags_.begin(), tags_.end(),
                        [](Tag tag) { return tag >= 0 && tag < std::numeric_limits<Tag>::max(); });
   }
-  static std::string nameOf(const std::string& kind, Tag tag) {
-    if (tag == 0) return "boundary";
+  static std::string nameOf(const std::string& kind, const char* untagged, Tag tag) {
+    if (tag == 0) return untagged;
     const std::int64_t wide = tag;
     std::string name = kind;
     name += wide < 0 ? "_m" : "_";
@@ -147,14 +150,32 @@ struct TaggedQuads {
   Array<Quad> quads;
   Array<std::uint64_t> places;
   Array<Tag> tags;
+  const char* kind = "surface";
 };
 
-TaggedQuads findQuads(const HexMesh& mesh, Stage& stage) {
+/// Tags boundary quads by smooth patch.
+void tagPatches(const HexMesh& mesh, double angle, TaggedQuads& found, Stage& stage) {
+  const SmoothPatches patches =
+      findSmoothPatches(mesh.points, found.quads, angle, mesh.features.edges, stage);
+  if (patches.count <= 1) return;
+  found.kind = "patch";
+  for (std::size_t i = 0; i < found.quads.size(); ++i) {
+    found.tags[i] = static_cast<Tag>(patches.patchOf[i] + 1);
+  }
+}
+
+TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage) {
   const std::vector<FeatureQuad>& features = mesh.features.quads;
   TaggedQuads found;
   found.quads = boundaryQuads(mesh, stage);
   found.places = placesOf(mesh, found.quads);
   found.tags.resize(found.quads.size());
+  std::fill(found.tags.begin(), found.tags.end(), Tag{0});
+  const auto isTagged = [](const FeatureQuad& quad) { return quad.tag != 0; };
+  if (std::none_of(features.begin(), features.end(), isTagged)) {
+    if (patchAngle > 0) tagPatches(mesh, patchAngle, found, stage);
+    return found;
+  }
   const FeatureQuadTable table(features);
   std::vector<std::uint8_t> onBoundary(features.size(), 0);
   parallelFor(stage, found.quads.size(), kGrain, [&](std::size_t i) {
@@ -198,13 +219,16 @@ EdgeGroups groupEdges(const HexMesh& mesh) {
   return result;
 }
 
-QuadGroups groupQuads(const HexMesh& mesh, Stage& stage) {
+QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage) {
   for (std::size_t i = 0; i < mesh.features.quads.size(); ++i) {
     requireVertices(mesh, mesh.features.quads[i].vertices, "quad", i);
   }
-  TaggedQuads found = findQuads(mesh, stage);
+  for (std::size_t i = 0; i < mesh.features.edges.size(); ++i) {
+    requireVertices(mesh, mesh.features.edges[i].vertices, "edge", i);
+  }
+  TaggedQuads found = findQuads(mesh, patchAngle, stage);
   const TagOrder order(found.tags);
-  QuadGroups result{order.groups("surface"), {}, {}};
+  QuadGroups result{order.groups(found.kind), {}, {}};
   // The usual case: one group, in order.
   if (result.groups.size() <= 1) {
     result.elements = std::move(found.quads);
@@ -218,6 +242,27 @@ QuadGroups groupQuads(const HexMesh& mesh, Stage& stage) {
     result.places[i] = found.places[order[i]];
   });
   return result;
+}
+
+CellGroups groupCells(const HexMesh& mesh) {
+  if (mesh.regions.empty()) return {{{1, "hexahedra", 0, mesh.cells.size()}}, {}};
+  const TagOrder order(mesh.regions);
+  CellGroups result{order.groups("region", "hexahedra"), {}};
+  if (result.groups.empty()) result.groups.push_back({1, "hexahedra", 0, 0});
+  if (result.groups.size() == 1) return result;
+  result.order.resize(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) result.order[i] = static_cast<Index>(order[i]);
+  return result;
+}
+
+Array<std::uint32_t> cellReferences(const HexMesh& mesh) {
+  if (mesh.regions.empty()) return {};
+  const CellGroups groups = groupCells(mesh);
+  Array<std::uint32_t> references(mesh.cells.size());
+  for (const ElementGroup& group : groups.groups) {
+    for (std::size_t i = group.begin; i < group.end; ++i) references[groups.at(i)] = group.number;
+  }
+  return references;
 }
 
 Array<std::uint32_t> vertexReferences(const HexMesh& mesh, const VertexGroups& groups) {

@@ -1,5 +1,6 @@
 // What formats with groups of elements hold beside points and cells: the boundary and the tagged
-// vertices, edges and quads of a mesh, sorted into groups with a number and a name each.
+// vertices, edges and quads of a mesh, sorted into groups with a number and a name each; and the
+// cells by region.
 #pragma once
 
 #include <array>
@@ -49,11 +50,30 @@ struct QuadGroups {
 [[nodiscard]] VertexGroups groupVertices(const HexMesh& mesh);
 [[nodiscard]] EdgeGroups groupEdges(const HexMesh& mesh);
 
-/// Names are "surface_TAG", and "boundary" for boundary quads without a tag. Groups are in order
-/// of their tags, quads of a group in order of (cell, face), then those inside as the features list
-/// them.
+/// Names are "surface_TAG", and "boundary" for boundary quads without a tag. If no quad has a tag,
+/// the groups are the smooth patches of boundaryPatches(), "patch_1" and so on, unless there is
+/// only one. Groups are in order of their tags, quads of a group in order of (cell, face), then
+/// those inside as the features list them.
+/// @param patchAngle  in degrees; 0: no patches
 /// @throws Error InvalidArgument for a feature with a vertex that is none of the mesh
-[[nodiscard]] QuadGroups groupQuads(const HexMesh& mesh, Stage& stage);
+[[nodiscard]] QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage);
+
+/// The cells by region, for formats that list them group by group.
+struct CellGroups {
+  std::vector<ElementGroup> groups;  ///< at least one
+  Array<Index> order;                ///< the cells, group by group; empty: as they are
+
+  /// Which cell stands at place i.
+  [[nodiscard]] std::size_t at(std::size_t i) const noexcept {
+    return order.empty() ? i : order[i];
+  }
+};
+
+/// Names are "region_TAG", and "hexahedra" for cells of region 0 and in meshes without regions.
+[[nodiscard]] CellGroups groupCells(const HexMesh& mesh);
+
+/// The number of each cell's group, for formats that list cells in order. Empty: all are 1.
+[[nodiscard]] Array<std::uint32_t> cellReferences(const HexMesh& mesh);
 
 /// For formats with one reference per vertex: the number of the vertex's group, 0 without.
 [[nodiscard]] Array<std::uint32_t> vertexReferences(const HexMesh& mesh,

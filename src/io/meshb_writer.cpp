@@ -23,12 +23,18 @@ struct MeshbContent {
   Array<std::uint32_t> edgeReferences;
   QuadGroups quads;
   Array<std::uint32_t> quadReferences;
+  Array<std::uint32_t> cellReferences;  ///< empty: all are 1
 };
 
-MeshbContent contentOf(const HexMesh& mesh, Stage& stage, int threads) {
-  MeshbContent content{mesh, vertexReferences(mesh, groupVertices(mesh)), groupEdges(mesh), {}, {},
-                       {}};
-  withThreads(threads, [&] { content.quads = groupQuads(mesh, stage); });
+MeshbContent contentOf(const HexMesh& mesh, double patchAngle, Stage& stage, int threads) {
+  MeshbContent content{mesh,
+                       vertexReferences(mesh, groupVertices(mesh)),
+                       groupEdges(mesh),
+                       {},
+                       {},
+                       {},
+                       cellReferences(mesh)};
+  withThreads(threads, [&] { content.quads = groupQuads(mesh, patchAngle, stage); });
   content.edgeReferences = groupNumbers(content.edges.groups);
   content.quadReferences = groupNumbers(content.quads.groups);
   return content;
@@ -72,7 +78,7 @@ class MeshbWriter {
     writeElements(MeshbKeyword::Edges, std::span(content_.edges.elements), content_.edgeReferences);
     writeElements(MeshbKeyword::Quadrilaterals, std::span(content_.quads.elements),
                   content_.quadReferences);
-    writeElements(MeshbKeyword::Hexahedra, std::span(content_.mesh.cells), {});
+    writeElements(MeshbKeyword::Hexahedra, std::span(content_.mesh.cells), content_.cellReferences);
     writeBytesOf(output_, MeshbKeyword::End);
     writePosition(0);
   }
@@ -143,10 +149,10 @@ std::uint32_t versionFor(const MeshbContent& content) {
 }
 
 void writeFile(const HexMesh& mesh, const std::filesystem::path& file, std::uint32_t version,
-               Context& context) {
+               const WriteOptions& options, Context& context) {
   Stage stage(context, "write mesh");
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  const MeshbContent content = contentOf(mesh, stage, context.threads());
+  const MeshbContent content = contentOf(mesh, options.patchAngle, stage, context.threads());
   if (version == 0) version = versionFor(content);
   MeshbWriter(output, content, version, stage, context.threads()).write();
   output.commit();
@@ -154,14 +160,14 @@ void writeFile(const HexMesh& mesh, const std::filesystem::path& file, std::uint
 
 }  // namespace
 
-void writeMeshb(const HexMesh& mesh, const std::filesystem::path& file,
-                const WriteOptions& /*options*/, Context& context) {
-  writeFile(mesh, file, 0, context);
+void writeMeshb(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+                Context& context) {
+  writeFile(mesh, file, 0, options, context);
 }
 
 void writeMeshbVersion(const HexMesh& mesh, const std::filesystem::path& file,
                        std::uint32_t version, Context& context) {
-  writeFile(mesh, file, version, context);
+  writeFile(mesh, file, version, {}, context);
 }
 
 }  // namespace hexhex

@@ -9,20 +9,22 @@
 
 namespace hexhex {
 
-void writeMfem(const HexMesh& mesh, const std::filesystem::path& file,
-               const WriteOptions& /*options*/, Context& context) {
+void writeMfem(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+               Context& context) {
   Stage stage(context, "write mesh");
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
   QuadGroups quads;
-  withThreads(context.threads(), [&] { quads = groupQuads(mesh, stage); });
+  withThreads(context.threads(), [&] { quads = groupQuads(mesh, options.patchAngle, stage); });
   const Array<std::uint32_t> attributes = groupNumbers(quads.groups);
+  const Array<std::uint32_t> regions = cellReferences(mesh);
   LineWriter lines(output, context.threads());
   LoopProgress progress(stage, mesh.cells.size() + quads.elements.size() + mesh.points.size());
   output.write("MFEM mesh v1.0\n\ndimension\n3\n\nelements\n").write(mesh.cells.size()).write('\n');
-  const auto cell = [&mesh](char* place, std::size_t i) {
-    return put(putNumbers(put(place, "1 5 "), mesh.cells[i]), '\n');  // 5: a cube
+  const auto cell = [&](char* place, std::size_t i) {
+    place = put(put(place, regions.empty() ? 1U : regions[i]), " 5 ");  // 5: a cube
+    return put(putNumbers(place, mesh.cells[i]), '\n');
   };
-  lines.write(mesh.cells.size(), 9 * (kNumberRoom + 1), cell, &progress);
+  lines.write(mesh.cells.size(), 10 * (kNumberRoom + 1), cell, &progress);
   output.write("\nboundary\n").write(quads.elements.size()).write('\n');
   const auto quad = [&](char* place, std::size_t i) {
     place = put(put(place, attributes[i]), " 3 ");  // 3: a square

@@ -54,6 +54,18 @@ inline void setOvmEdgeTags(OvmOutput& output, const std::vector<FeatureEdge>& fe
   }
 }
 
+/// @param regions  one per cell, or none
+template <class Regions>
+void setOvmRegions(OvmOutput& output, const Regions& regions) {
+  if (regions.empty()) return;
+  if (regions.size() != output.topology.cells.size()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "The mesh has " + std::to_string(output.topology.cells.size()) +
+                    " cells, but regions for " + std::to_string(regions.size()) + ".");
+  }
+  output.properties[OvmInteger::Region].assign(regions.begin(), regions.end());
+}
+
 /// @tparam Feature  with n vertices; they need not be in the order of the face
 template <std::size_t n, class Feature>
 void setOvmFaceTags(OvmOutput& output, const std::vector<Feature>& features,

@@ -138,6 +138,7 @@ OvmOutput toOvm(const HexMesh& mesh, const TetMap* map, Stage& stage) {
   setOvmVertexTags(output, mesh.features.vertices);
   setOvmEdgeTags(output, mesh.features.edges);
   setOvmFaceTags(output, mesh.features.quads, loops);
+  setOvmRegions(output, mesh.regions);
   return output;
 }
 

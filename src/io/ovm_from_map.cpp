@@ -152,6 +152,7 @@ OvmOutput toOvm(const TetMap& map, Stage& stage) {
   setOvmVertexTags(output, map.features.vertices);
   setOvmEdgeTags(output, map.features.edges);
   setOvmFaceTags(output, map.features.faces, loops);
+  setOvmRegions(output, map.regions);
   return output;
 }
 

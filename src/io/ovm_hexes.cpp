@@ -136,6 +136,8 @@ void HexReader::readFeatures() {
     }
     mesh_.features.quads.push_back({loops_.ofFace(f), tag});
   });
+  const Array<std::int32_t>& regions = properties_[OvmInteger::Region];
+  mesh_.regions.assign(regions.begin(), regions.end());
 }
 
 }  // namespace

@@ -87,14 +87,15 @@ enum class OvmInteger : std::uint8_t {
   FeatureEdges,
   FeatureFaces,
   Transition,
-  CornerOrder  ///< of cells: how their corners were listed, which the format does not say
+  CornerOrder,  ///< of cells: how their corners were listed, which the format does not say
+  Region        ///< of cells: TetMap::regions, HexMesh::regions
 };
 
 struct OvmIntegerName {
   OvmEntity entity;
   std::string_view name;  ///< some are misspelt, and known so
 };
-inline constexpr std::array<OvmIntegerName, 10> kOvmIntegers = {
+inline constexpr std::array<OvmIntegerName, 11> kOvmIntegers = {
     {{OvmEntity::Vertex, "AlgoHex::FeatureVertices"},
      {OvmEntity::Vertex, "v_tet_generator_type"},
      {OvmEntity::Vertex, "v_tet_generator_index"},
@@ -104,7 +105,8 @@ inline constexpr std::array<OvmIntegerName, 10> kOvmIntegers = {
      {OvmEntity::Edge, "AlgoHex::FeatureEdges"},
      {OvmEntity::Face, "AlgoHex::FeatureFaces"},
      {OvmEntity::HalfFace, "HalffaceTransiton"},
-     {OvmEntity::Cell, "hexhex::corner_order"}}};
+     {OvmEntity::Cell, "hexhex::corner_order"},
+     {OvmEntity::Cell, "hexhex::region"}}};
 
 /// Values of properties, one per element of the entity; empty if there is no such property.
 struct OvmProperties {

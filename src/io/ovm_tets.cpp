@@ -200,6 +200,8 @@ void TetReader::readFeatures() {
     }
     map_.features.faces.push_back({loops_.ofFace(f), tag});
   });
+  const Array<std::int32_t>& regions = properties_[OvmInteger::Region];
+  map_.regions.assign(regions.begin(), regions.end());
 }
 
 }  // namespace

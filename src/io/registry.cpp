@@ -22,6 +22,7 @@
 #include <io/registry.hpp>
 #include <io/vtk_legacy.hpp>
 #include <io/vtu.hpp>
+#include <mesh/smooth_patches.hpp>
 #include <mesh/vertex_cells.hpp>
 
 namespace hexhex {
@@ -119,6 +120,8 @@ void requireWritable(const HexMesh& mesh, const WriteOptions& options, Stage& st
   }
   requireSize(mesh.generatorCorners.size(), mesh.points.size(), "vertices", "generators");
   requireSize(mesh.generatorTet.size(), mesh.points.size(), "vertices", "generators");
+  requireSize(mesh.regions.size(), mesh.cells.size(), "cells", "regions");
+  requirePatchAngle(options.patchAngle);
   requireSize(options.scaledJacobians.size(), mesh.cells.size(), "cells", "scaled Jacobians");
   const std::size_t vertex = firstNotFinite(mesh.points, stage);
   if (vertex == mesh.points.size()) return;

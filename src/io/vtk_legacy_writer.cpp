@@ -30,6 +30,13 @@ void writeVtkLegacy(const HexMesh& mesh, const std::filesystem::path& file,
   output.write("CELL_TYPES ").write(cells).write('\n');
   const auto type = [](char* place, std::size_t /*i*/) { return put(place, "12\n"); };
   lines.write(cells, 3, type, &progress);
+  if (!mesh.regions.empty()) {
+    output.write("CELL_DATA ").write(cells).write("\nSCALARS region int 1\nLOOKUP_TABLE default\n");
+    const auto region = [&mesh](char* place, std::size_t i) {
+      return put(put(place, mesh.regions[i]), '\n');
+    };
+    lines.write(cells, kNumberRoom + 1, region, nullptr);
+  }
   output.commit();
 }
 

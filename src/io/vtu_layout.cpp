@@ -11,8 +11,9 @@ namespace {
 constexpr std::uint64_t kLargestInt32 = std::numeric_limits<std::int32_t>::max();
 constexpr std::uint64_t kCornersPerCell = 8;
 
-/// In the order in which a file has them.
-constexpr std::string_view kSections[] = {"PointData", "CellData", "Points", "Cells"};
+/// In the order in which a file has them. The first stands in front of the piece.
+constexpr std::string_view kSections[] = {"FieldData", "PointData", "CellData", "Points", "Cells"};
+enum Section : std::uint8_t { kFieldData, kPointData, kCellData, kPoints, kCells };
 
 /// The tag of one array. `offset` counts from the beginning of the data.
 std::string tagOf(const VtuArray& array, std::uint64_t offset) {
@@ -20,8 +21,12 @@ std::string tagOf(const VtuArray& array, std::uint64_t offset) {
   const std::string components =
       array.components == 1 ? ""
                             : " NumberOfComponents=\"" + std::to_string(array.components) + "\"";
+  // Nothing else tells the length of a field array.
+  const std::string rows = array.section != kSections[kFieldData]
+                               ? ""
+                               : " NumberOfTuples=\"" + std::to_string(array.rows) + "\"";
   return "        <DataArray type=\"" + std::string(array.type) + "\" Name=\"" +
-         std::string(array.name) + "\"" + components + " format=\"appended\" offset=\"" +
+         std::string(array.name) + "\"" + components + rows + " format=\"appended\" offset=\"" +
          std::to_string(offset) + "\"/>\n";
 }
 
@@ -40,48 +45,65 @@ VtuLayout::VtuLayout(const VtuShape& shape)
 }
 
 void VtuLayout::listArrays(const VtuShape& shape) {
-  const auto add = [this](VtuContent content, std::size_t section, std::string_view name,
-                          std::string_view type, std::size_t components, std::uint64_t bytes) {
-    arrays_.push_back({content, kSections[section], name, type, components, bytes, 0});
+  const auto add = [this](VtuContent content, Section section, std::string_view name,
+                          std::string_view type, std::size_t components, std::uint64_t rows,
+                          std::uint64_t bytes) {
+    const std::uint64_t all = rows * components * bytes;
+    arrays_.push_back({content, kSections[section], name, type, components, rows, all, 0});
   };
   const std::uint64_t points = shape.points;
   const std::uint64_t cells = shape.cells;
+  // Int64 holds vertices and tags alike.
+  if (shape.edgeTags > 0) {
+    add(VtuContent::EdgeTags, kFieldData, "feature_edges", "Int64", 3, shape.edgeTags, 8);
+  }
+  if (shape.quadTags > 0) {
+    add(VtuContent::QuadTags, kFieldData, "feature_quads", "Int64", 5, shape.quadTags, 8);
+  }
   if (shape.generatorCorners) {
-    add(VtuContent::GeneratorKind, 0, "generator_kind", "UInt8", 1, points);
-    add(VtuContent::GeneratorCorners, 0, "generator_corners", "UInt8", 1, points);
+    add(VtuContent::GeneratorKind, kPointData, "generator_kind", "UInt8", 1, points, 1);
+    add(VtuContent::GeneratorCorners, kPointData, "generator_corners", "UInt8", 1, points, 1);
   }
   if (shape.generatorTets) {
-    add(VtuContent::GeneratorTet, 0, "generator_tet", "UInt32", 1, points * sizeof(Index));
+    add(VtuContent::GeneratorTet, kPointData, "generator_tet", "UInt32", 1, points, 4);
+  }
+  if (shape.vertexTags) {
+    add(VtuContent::VertexTags, kPointData, "feature_vertex", "Int32", 1, points, 4);
   }
   if (shape.scaledJacobians) {
-    add(VtuContent::ScaledJacobian, 1, "scaled_jacobian", "Float64", 1, cells * sizeof(double));
+    add(VtuContent::ScaledJacobian, kCellData, "scaled_jacobian", "Float64", 1, cells, 8);
   }
-  add(VtuContent::Points, 2, "Points", "Float64", 3, points * sizeof(Vec3));
+  if (shape.regions) add(VtuContent::Regions, kCellData, "region", "Int32", 1, cells, 4);
+  add(VtuContent::Points, kPoints, "Points", "Float64", 3, points, 8);
   const auto addIntegers = [&](VtuContent content, std::string_view name, std::uint64_t count,
                                bool wide) {
-    add(content, 3, name, wide ? "Int64" : "Int32", 1, count * (wide ? 8 : 4));
+    add(content, kCells, name, wide ? "Int64" : "Int32", 1, count, wide ? 8 : 4);
   };
   addIntegers(VtuContent::Connectivity, "connectivity", cells * kCornersPerCell, wideConnectivity_);
   addIntegers(VtuContent::Offsets, "offsets", cells, wideOffsets_);
-  add(VtuContent::Types, 3, "types", "UInt8", 1, cells);
+  add(VtuContent::Types, kCells, "types", "UInt8", 1, cells, 1);
 }
 
 void VtuLayout::composeHead(const VtuShape& shape) {
   const bool little = std::endian::native == std::endian::little;
   head_ = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\"";
   head_ += std::string(" byte_order=\"") + (little ? "LittleEndian" : "BigEndian") + "\"";
-  head_ += " header_type=\"UInt64\">\n  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" +
-           std::to_string(shape.points) + "\" NumberOfCells=\"" + std::to_string(shape.cells) +
-           "\">\n";
+  head_ += " header_type=\"UInt64\">\n  <UnstructuredGrid>\n";
+  const std::string piece = "    <Piece NumberOfPoints=\"" + std::to_string(shape.points) +
+                            "\" NumberOfCells=\"" + std::to_string(shape.cells) + "\">\n";
   std::uint64_t offset = 0;
   for (const std::string_view section : kSections) {
-    head_ += "      <" + std::string(section) + ">\n";
-    for (const VtuArray& array : arrays_) {
-      if (array.section != section) continue;
-      head_ += tagOf(array, offset);
-      offset += sizeof(array.bytes) + array.bytes;
+    const bool ofField = section == kSections[kFieldData];
+    if (!ofField || shape.edgeTags + shape.quadTags > 0) {
+      head_ += "      <" + std::string(section) + ">\n";
+      for (const VtuArray& array : arrays_) {
+        if (array.section != section) continue;
+        head_ += tagOf(array, offset);
+        offset += sizeof(array.bytes) + array.bytes;
+      }
+      head_ += "      </" + std::string(section) + ">\n";
     }
-    head_ += "      </" + std::string(section) + ">\n";
+    if (ofField) head_ += piece;
   }
   head_ += "    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n    _";
 }

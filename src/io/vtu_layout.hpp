@@ -16,6 +16,10 @@ struct VtuShape {
   bool generatorTets = false;     ///< with the point array generator_tet
   bool generatorCorners = false;  ///< with the point arrays generator_kind, generator_corners
   bool scaledJacobians = false;   ///< with the cell array scaled_jacobian
+  bool vertexTags = false;        ///< with the point array feature_vertex
+  bool regions = false;           ///< with the cell array region
+  std::uint64_t edgeTags = 0;     ///< rows of the field array feature_edges
+  std::uint64_t quadTags = 0;     ///< rows of the field array feature_quads
 };
 
 /// What an array holds.
@@ -24,6 +28,10 @@ enum class VtuContent {
   GeneratorTet,
   GeneratorCorners,
   ScaledJacobian,
+  VertexTags,
+  Regions,
+  EdgeTags,  ///< per edge: two vertices and the tag
+  QuadTags,  ///< per quad: four vertices and the tag
   Points,
   Connectivity,
   Offsets,
@@ -33,10 +41,11 @@ enum class VtuContent {
 /// One array of the file.
 struct VtuArray {
   VtuContent content = VtuContent::Points;
-  std::string_view section;  ///< one of the four parts of a piece, e.g. "PointData"
+  std::string_view section;  ///< "FieldData", or a part of the piece, e.g. "PointData"
   std::string_view name;
   std::string_view type;  ///< VTK's name of the number type
   std::size_t components = 1;
+  std::uint64_t rows = 0;
   std::uint64_t bytes = 0;
   std::uint64_t position = 0;  ///< of the data; in front of them `bytes` as 64 bits
 };

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
+#include <hexhex/error.hpp>
 #include <hexhex/quality.hpp>
 
 #include <base/stage.hpp>
@@ -17,6 +20,32 @@ namespace {
 
 // What is written between two looks at the caller's wish to cancel: some milliseconds' work.
 constexpr std::size_t kSliceBytes = std::size_t{1} << 22;
+
+Array<std::int32_t> vertexTags(const HexMesh& mesh) {
+  Array<std::int32_t> tags(mesh.points.size());
+  std::fill(tags.begin(), tags.end(), 0);
+  for (const FeatureVertex& feature : mesh.features.vertices) {
+    if (feature.vertex < tags.size()) {
+      tags[feature.vertex] = feature.tag;
+      continue;
+    }
+    throw Error(ErrorCode::InvalidArgument, "A feature names vertex " +
+                                                std::to_string(feature.vertex) +
+                                                ", which is not one of the mesh.");
+  }
+  return tags;
+}
+
+/// Elements as rows of numbers: the vertices and the tag.
+template <class Feature>
+std::vector<std::int64_t> rowsOf(const std::vector<Feature>& features) {
+  std::vector<std::int64_t> rows;
+  for (const Feature& feature : features) {
+    rows.insert(rows.end(), feature.vertices.begin(), feature.vertices.end());
+    rows.push_back(feature.tag);
+  }
+  return rows;
+}
 
 /// Writes the arrays of one mesh.
 class ArrayWriter {
@@ -38,6 +67,14 @@ class ArrayWriter {
         return fromMemory(mesh_.generatorCorners.data(), array.bytes);
       case VtuContent::ScaledJacobian:
         return fromMemory(quality_.data(), array.bytes);
+      case VtuContent::Regions:
+        return fromMemory(mesh_.regions.data(), array.bytes);
+      case VtuContent::VertexTags:
+        return fromMemory(vertexTags(mesh_).data(), array.bytes);
+      case VtuContent::EdgeTags:
+        return fromMemory(rowsOf(mesh_.features.edges).data(), array.bytes);
+      case VtuContent::QuadTags:
+        return fromMemory(rowsOf(mesh_.features.quads).data(), array.bytes);
       case VtuContent::Points:
         return fromMemory(mesh_.points.data(), array.bytes);
       case VtuContent::GeneratorKind:
@@ -100,8 +137,17 @@ void writeVtu(const HexMesh& mesh, const std::filesystem::path& file, const Writ
   std::span<const double> quality = options.scaledJacobians;
   if (quality.empty()) quality = computedQuality = scaledJacobians(mesh, context);
   Stage stage(context, "write mesh");
-  const VtuLayout layout({mesh.points.size(), mesh.cells.size(), !mesh.generatorTet.empty(),
-                          !mesh.generatorCorners.empty(), true});
+  VtuShape shape;
+  shape.points = mesh.points.size();
+  shape.cells = mesh.cells.size();
+  shape.generatorTets = !mesh.generatorTet.empty();
+  shape.generatorCorners = !mesh.generatorCorners.empty();
+  shape.scaledJacobians = true;
+  shape.vertexTags = !mesh.features.vertices.empty();
+  shape.regions = !mesh.regions.empty();
+  shape.edgeTags = mesh.features.edges.size();
+  shape.quadTags = mesh.features.quads.size();
+  const VtuLayout layout(shape);
   ArrayWriter writer(output, mesh, quality, layout, stage);
   output.write(layout.head());
   for (const VtuArray& array : layout.arrays()) writer.write(array);

@@ -67,7 +67,9 @@ TEST(Gmsh, WritesExactlyTheSectionsOfVersion41) {
   const TemporaryFolder folder;
   const HexMesh mesh = parse(kHead22 + kNodes22 + kCube22);
   Context context;
-  writeGmsh41Text(mesh, folder / "a.msh", {}, context);
+  WriteOptions options;
+  options.patchAngle = 0;
+  writeGmsh41Text(mesh, folder / "a.msh", options, context);
   EXPECT_EQ(contentOf(folder / "a.msh"),
             "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
             "$PhysicalNames\n2\n2 1 \"boundary\"\n3 1 \"hexahedra\"\n$EndPhysicalNames\n"

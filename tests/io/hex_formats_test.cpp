@@ -19,9 +19,10 @@ namespace hexhex::test {
 namespace {
 
 void write(const HexMesh& mesh, const std::filesystem::path& file, std::string_view format = {},
-           int threads = 1) {
+           int threads = 1, double patchAngle = 0) {
   Context context(threads);
   WriteOptions options;
+  options.patchAngle = patchAngle;
   options.format = format;
   writeHexMesh(mesh, file, options, context);
 }
@@ -154,7 +155,7 @@ TEST(MeshGroups, TagsAreNumbersOnlyIfAllArePositive) {
     Context context;
     Stage stage(context, "test");
     std::string result;
-    for (const ElementGroup& group : groupQuads(mesh, stage).groups) {
+    for (const ElementGroup& group : groupQuads(mesh, 0, stage).groups) {
       result += group.name + ":" + std::to_string(group.number) + ":" +
                 std::to_string(group.end - group.begin) + " ";
     }
@@ -167,6 +168,90 @@ TEST(MeshGroups, TagsAreNumbersOnlyIfAllArePositive) {
   EXPECT_EQ(numbersOf(), "surface_m5:1:1 surface_4:2:1 boundary:3:4 ");
   mesh.features.quads[0].tag = std::numeric_limits<std::int32_t>::max();
   EXPECT_EQ(numbersOf(), "surface_4:1:1 surface_2147483647:2:1 boundary:3:4 ");
+}
+
+TEST(MeshGroups, PatchesNameABoundaryWithoutTags) {
+  HexMesh mesh = gridMesh(3, 2, 1);
+  Context context;
+  Stage stage(context, "test");
+  const QuadGroups patches = groupQuads(mesh, 40, stage);
+  ASSERT_EQ(patches.groups.size(), 6U);
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const ElementGroup& group = patches.groups[i];
+    EXPECT_EQ(group.name, "patch_" + std::to_string(i + 1));
+    EXPECT_EQ(group.number, i + 1);
+    size += group.end - group.begin;
+    for (std::size_t k = group.begin; k < group.end; ++k) {
+      const std::uint64_t place = patches.places[k];
+      EXPECT_EQ(place % 8, patches.places[group.begin] % 8) << "a grid's patches are its sides";
+    }
+  }
+  EXPECT_EQ(size, 22U);
+  EXPECT_EQ(groupQuads(mesh, 0, stage).groups.size(), 1U);
+  EXPECT_EQ(groupQuads(mesh, 100, stage).groups[0].name, "boundary");
+  mesh.features.quads = {{{0, 4, 16, 12}, 3}};  // tagged quads are all that counts then
+  EXPECT_EQ(groupQuads(mesh, 40, stage).groups.size(), 2U);
+  mesh.features.quads[0].tag = 0;
+  EXPECT_EQ(groupQuads(mesh, 40, stage).groups.size(), 6U);
+}
+
+TEST(HexFormats, AnglesOutOfRangeAreRefused) {
+  const TemporaryFolder folder;
+  for (const double angle : {-1.0, 181.0, std::nan("")}) {
+    EXPECT_EQ(failureOf([&] { write(cube(), folder / "a.msh", {}, 1, angle); }).code,
+              ErrorCode::InvalidArgument);
+  }
+}
+
+/// Two cubes side by side in different regions.
+HexMesh twoRegions() {
+  HexMesh mesh = gridMesh(2, 1, 1);
+  mesh.regions = {7, -2};
+  return mesh;
+}
+
+TEST(MeshGroups, CellsByRegion) {
+  HexMesh mesh = twoRegions();
+  const CellGroups groups = groupCells(mesh);
+  ASSERT_EQ(groups.groups.size(), 2U);
+  EXPECT_EQ(groups.groups[0].name, "region_m2");
+  EXPECT_EQ(groups.groups[1].name, "region_7");
+  EXPECT_EQ(groups.at(0), 1U);
+  EXPECT_EQ(groups.at(1), 0U);
+  EXPECT_EQ(cellReferences(mesh), (Array<std::uint32_t>{2, 1}));
+  mesh.regions = {7, 0};
+  EXPECT_EQ(cellReferences(mesh), (Array<std::uint32_t>{7, 8}));
+  EXPECT_EQ(groupCells(mesh).groups[1].name, "hexahedra");
+  mesh.regions = {};
+  EXPECT_EQ(groupCells(mesh).groups[0].name, "hexahedra");
+  EXPECT_TRUE(cellReferences(mesh).empty());
+}
+
+TEST(HexFormats, RegionsInAllFormats) {
+  const TemporaryFolder folder;
+  HexMesh mesh = twoRegions();
+  mesh.regions = {7, 3};
+  const auto textOf = [&](const char* format) {
+    write(mesh, folder / "a", format);
+    return contentOf(folder / "a");
+  };
+  const auto expectIn = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << " is not in " << text;
+  };
+  expectIn(textOf("mfem"), "elements\n2\n7 5 0 1 4 3 6 7 10 9\n3 5 1 2 5 4 7 8 11 10\n");
+  expectIn(textOf("mesh"), "Hexahedra\n2\n1 2 5 4 7 8 11 10 7\n2 3 6 5 8 9 12 11 3\n");
+  expectIn(textOf("vtk"), "CELL_DATA 2\nSCALARS region int 1\nLOOKUP_TABLE default\n7\n3\n");
+  expectIn(textOf("inp"), "*ELSET, ELSET=E_REGION_3\n2\n*ELSET, ELSET=E_REGION_7\n1\n");
+  const std::string msh = textOf("msh22-ascii");
+  expectIn(msh, "3 3 \"region_3\"\n3 7 \"region_7\"\n");
+  expectIn(msh, "11 5 2 3 3 2 3 6 5 8 9 12 11\n12 5 2 7 7 1 2 5 4 7 8 11 10\n");
+  mesh.regions = {1};
+  for (const char* format : {"mfem", "mesh", "meshb", "vtk", "vtu", "inp", "msh", "ovm", "ovmb"}) {
+    EXPECT_EQ(failureOf([&] { write(mesh, folder / "b", format); }).code,
+              ErrorCode::InvalidArgument)
+        << format;
+  }
 }
 
 const std::string kPointLines = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n";

@@ -122,8 +122,8 @@ TEST(Medit, WritesExactlyTheSectionsOfTheFormat) {
   writeHexMesh(mesh(kHead + kCorners + kCube), folder / "a.mesh");
   EXPECT_EQ(contentOf(folder / "a.mesh"),
             "MeshVersionFormatted 2\nDimension 3\n" + kCorners +
-                "Quadrilaterals\n6\n1 5 8 4 1\n2 3 7 6 1\n1 2 6 5 1\n4 8 7 3 1\n1 4 3 2 1\n"
-                "5 6 7 8 1\nHexahedra\n1\n1 2 3 4 5 6 7 8 1\nEnd\n");
+                "Quadrilaterals\n6\n1 5 8 4 1\n2 3 7 6 2\n1 2 6 5 3\n4 8 7 3 4\n1 4 3 2 5\n"
+                "5 6 7 8 6\nHexahedra\n1\n1 2 3 4 5 6 7 8 1\nEnd\n");
 }
 
 TEST(Medit, BoundaryQuadsOnly) {

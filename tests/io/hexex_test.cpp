@@ -95,6 +95,22 @@ TEST(Hexex, TrailingSectionsBecomeFeatures) {
   EXPECT_TRUE(parse(kOneTet + "0\n0 0 0\n").features.empty());
 }
 
+TEST(Hexex, FeaturesAreWrittenWithoutTags) {
+  const TemporaryFolder folder;
+  TetMap map = parse(kOneTet);
+  map.features.vertices = {{2, 7}, {1, 0}, {0, 1}};
+  map.features.edges = {{{1, 0}, -3}};
+  map.features.faces = {{{3, 1, 2}, 9}, {{0, 1, 2}, 0}};
+  writeMap(map, folder / "a.hexex");
+  const TetMap read = readMap(folder / "a.hexex");
+  expectSame(read, map);
+  EXPECT_EQ(read.features.vertices, (std::vector<FeatureVertex>{{2, 1}, {0, 1}}));
+  EXPECT_EQ(read.features.edges, (std::vector<FeatureEdge>{{{1, 0}, 1}}));
+  EXPECT_EQ(read.features.faces, (std::vector<FeatureFace>{{{3, 1, 2}, 1}}));
+  map.features.edges[0].vertices[0] = 4;
+  EXPECT_EQ(failureOf([&] { writeMap(map, folder / "b.hexex"); }).code, ErrorCode::InvalidArgument);
+}
+
 struct BadFile {
   std::string text;
   ErrorCode code;

@@ -73,6 +73,34 @@ TEST(OvmRoundTrip, Samples) {
   });
 }
 
+TEST(OvmRoundTrip, FeaturesAndRegions) {
+  SampleOptions options;
+  options.features = true;
+  options.cells = 2;
+  TetMap map = generateSample(SampleKind::Cylinder, options).map;
+  map.regions[5] = -3;
+  map.regions[6] = 0;
+  const TemporaryFolder folder;
+  const HexMesh mesh = extract(map);
+  for (const char* name : kFiles) {
+    writeMap(map, folder / name);
+    const TetMap read = readMap(folder / name);
+    EXPECT_EQ(read.regions, map.regions);
+    const HexMesh again = extract(read);
+    EXPECT_EQ(again.features, mesh.features);
+    EXPECT_EQ(again.regions, mesh.regions);
+    writeHexMesh(mesh, folder / name);
+    const HexMesh readMesh = readHexMesh(folder / name);
+    EXPECT_EQ(readMesh.regions, mesh.regions);
+    EXPECT_EQ(readMesh.features.edges.size(), mesh.features.edges.size());
+    EXPECT_EQ(readMesh.features.quads.size(), mesh.features.quads.size());
+    EXPECT_EQ(readMesh.features.vertices, mesh.features.vertices);
+    TetMap tooFew = map;
+    tooFew.regions.pop_back();
+    EXPECT_THROW(writeMap(tooFew, folder / name), Error);
+  }
+}
+
 TEST(OvmRoundTrip, AnyCornerOrder) {
   // All 24 orders (12 for each orientation of the whole) of a tet and its neighbour.
   const TetMap original = smallMap();
