@@ -1,0 +1,130 @@
+// Readers against arbitrary bytes, with libFuzzer: whatever a file holds, a reader returns a mesh
+// or throws Error, soon, and without asking for much more memory than the file takes.
+//
+//     read_fuzz --reader=vtu tests/fuzz/corpus/vtu -runs=100000
+//
+// Sanitizers find what is read or computed wrongly; meshes that come back are checked here.
+#include <array>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include <sanitizer/allocator_interface.h>
+
+#include <hexhex/context.hpp>
+#include <hexhex/error.hpp>
+#include <hexhex/types.hpp>
+
+#include <io/gmsh.hpp>
+#include <io/hexex.hpp>
+#include <io/medit.hpp>
+#include <io/meshb.hpp>
+#include <io/ovm.hpp>
+#include <io/vtk_legacy.hpp>
+#include <io/vtu.hpp>
+
+namespace {
+
+using namespace hexhex;
+
+/// What one allocation may take. The constants hold tables and buffers of fixed size; the factor,
+/// the widest element over its shortest spelling: 96 bytes of a tet's parameters over 32.
+constexpr std::size_t kConstant = std::size_t{4} << 20;
+constexpr std::size_t kFactor = 64;
+
+std::atomic<std::size_t> allowed{static_cast<std::size_t>(-1)};
+
+void onAllocation(const volatile void* /*memory*/, std::size_t size) {
+  if (size <= allowed.load(std::memory_order_relaxed)) return;
+  std::fprintf(stderr, "A reader asked for %zu bytes at once.\n", size);
+  std::abort();
+}
+
+void onRelease(const volatile void* /*memory*/) {}
+
+void require(bool condition, const char* what) {
+  if (condition) return;
+  std::fprintf(stderr, "A reader returned a wrong mesh: %s.\n", what);
+  std::abort();
+}
+
+template <class Vertices>
+void requireVertices(const Vertices& vertices, std::size_t points) {
+  for (const Index vertex : vertices) require(vertex < points, "a vertex does not exist");
+}
+
+void examine(const HexMesh& mesh) {
+  const std::size_t points = mesh.points.size();
+  for (const Hex& cell : mesh.cells) requireVertices(cell, points);
+  for (const FeatureVertex& each : mesh.features.vertices) {
+    requireVertices(std::array<Index, 1>{each.vertex}, points);
+  }
+  for (const FeatureEdge& each : mesh.features.edges) requireVertices(each.vertices, points);
+  for (const FeatureQuad& each : mesh.features.quads) requireVertices(each.vertices, points);
+}
+
+void examine(const TetMap& map) {
+  const std::size_t points = map.points.size();
+  for (const Tet& tet : map.tets) requireVertices(tet, points);
+  require(map.parameters.size() == map.tets.size(), "parameters are missing");
+  for (const FeatureVertex& each : map.features.vertices) {
+    requireVertices(std::array<Index, 1>{each.vertex}, points);
+  }
+  for (const FeatureEdge& each : map.features.edges) requireVertices(each.vertices, points);
+  for (const FeatureFace& each : map.features.faces) requireVertices(each.vertices, points);
+}
+
+template <auto parse>
+void read(std::string_view text) {
+  Context context(1);
+  examine(parse(text, "input", context));
+}
+
+struct Reader {
+  std::string_view name;
+  void (*read)(std::string_view text);
+};
+
+constexpr std::array kReaders = {
+    Reader{"hexex", read<parseHexex>},      Reader{"mesh", read<parseMedit>},
+    Reader{"meshb", read<parseMeshb>},      Reader{"msh", read<parseGmsh>},
+    Reader{"vtk", read<parseVtkLegacy>},    Reader{"vtu", read<parseVtu>},
+    Reader{"ovm-map", read<parseOvmMap>},   Reader{"ovm", read<parseOvmHexMesh>},
+    Reader{"ovmb-map", read<parseOvmbMap>}, Reader{"ovmb", read<parseOvmbHexMesh>}};
+
+const Reader* chosen = nullptr;
+
+}  // namespace
+
+/// Takes the argument --reader=NAME.
+extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
+  constexpr std::string_view kOption = "--reader=";
+  for (int i = 1; i < *count; ++i) {
+    const std::string_view argument = (*arguments)[i];
+    if (!argument.starts_with(kOption)) continue;
+    for (const Reader& reader : kReaders) {
+      if (reader.name == argument.substr(kOption.size())) chosen = &reader;
+    }
+  }
+  if (chosen == nullptr) {
+    std::fprintf(stderr, "Choose a reader with --reader=NAME:");
+    for (const Reader& reader : kReaders) std::fprintf(stderr, " %s", reader.name.data());
+    std::fprintf(stderr, "\n");
+    std::exit(2);
+  }
+  __sanitizer_install_malloc_and_free_hooks(onAllocation, onRelease);
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
+  allowed = kConstant + kFactor * size;
+  try {
+    chosen->read({reinterpret_cast<const char*>(data), size});
+  } catch (const hexhex::Error&) {
+    // What most files deserve.
+  }
+  allowed = static_cast<std::size_t>(-1);
+  return 0;
+}
