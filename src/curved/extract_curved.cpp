@@ -3,10 +3,46 @@
 
 #include <hexhex/curved.hpp>
 
+#include <base/parallel.hpp>
+#include <curved/arcs.hpp>
 #include <curved/lagrange.hpp>
 #include <extract/scaled_map.hpp>
 
 namespace hexhex {
+
+namespace {
+
+constexpr std::size_t kGrain = 1 << 16;
+
+/// From the tets as the library orders their corners to the caller's.
+void toCallersCorners(const OrientedMap& input, Array<CornerSet>& corners, Stage& stage) {
+  if (!input.cornersReversed) return;
+  parallelFor(stage, corners.size(), kGrain,
+              [&](std::size_t i) { corners[i] = input.callersCorners(corners[i]); });
+}
+
+void addArcs(const PreparedMap& map, PiecewiseLinearMesh& result, Context& context) {
+  Stage stage(context, "arcs");
+  const LatticeNumbers vertices(map, stage);
+  const ElementNumbers edges(map, ElementKind::Edges, stage);
+  result.arcs = traceArcs(map, vertices, edges, stage);
+  toCallersCorners(map.input, result.arcs.generatorCorners, stage);
+  toCallersCorners(map.input, result.arcs.segmentCorners, stage);
+}
+
+}  // namespace
+
+PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map, PiecewiseLinearParts /*parts*/,
+                                           const ExtractOptions& options, Context& context,
+                                           ExtractStatistics* statistics) {
+  PiecewiseLinearMesh result;
+  runExtraction(options, context, statistics, [&](ExtractStatistics& filled) {
+    ScaledMap scaled = prepareScaled(map, options, {}, context, filled);
+    result.mesh = extractScaled(scaled, options, context, filled);
+    addArcs(scaled.map, result, context);
+  });
+  return result;
+}
 
 LagrangeMesh extractLagrange(const TetMapView& map, int order, const ExtractOptions& options,
                              Context& context, ExtractStatistics* statistics) {

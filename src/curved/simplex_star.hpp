@@ -17,12 +17,14 @@ struct SimplexInTet {
   Frame frame;
 };
 
-/// Crosses a face that is not on the boundary.
+/// Crosses a face that is not on the boundary and contains the simplex; a whole tet becomes the
+/// whole neighbour.
 [[nodiscard]] inline SimplexInTet crossed(const TetTopology& topology, const ExactMap& map,
                                           const SimplexInTet& from, int face) {
   const HalfFace halfFace = halfFaceOf(from.tet, face);
   const Index next = tetOf(topology.mate[halfFace]);
-  SimplexInTet to{next, topology.translated(from.simplex, from.tet, next), from.frame};
+  SimplexInTet to{next, kWholeTet, from.frame};
+  if (from.simplex != kWholeTet) to.simplex = topology.translated(from.simplex, from.tet, next);
   if (map.transitions.isJump(halfFace)) {
     to.frame = from.frame.carried(map.transitions.across(halfFace));
   }

@@ -1,0 +1,83 @@
+// The canonical numbers of hex edges and hex faces: by the tet that owns the midpoint (the smallest
+// of those that contain it), there by axis (along an edge, across a face), then in the order of the
+// tet's sweep over midpoints. No mesh topology is needed, and two edges of the same two vertices
+// are told apart.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <hexhex/types.hpp>
+
+#include <curved/lattice_numbers.hpp>
+#include <map/prepare.hpp>
+#include <sweep/cell_seeds.hpp>
+
+namespace hexhex {
+
+enum class ElementKind : std::uint8_t { Edges, Faces };
+
+/// One element as seen from the owner of its midpoint.
+struct Element {
+  std::uint64_t number;
+  int axis;            ///< of the owner's chart: along an edge, across a face
+  GridPoint z;         ///< smallest corner
+  CornerMask simplex;  ///< of the owner, that holds the midpoint
+};
+
+class ElementNumbers {
+ public:
+  /// @throws Error TooLarge for more elements than an Index can number
+  ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& stage);
+
+  [[nodiscard]] std::uint64_t count() const noexcept { return begin_.back(); }
+  /// The first element that a tet owns; also of the tet behind the last.
+  [[nodiscard]] std::uint64_t begin(std::size_t tet) const noexcept { return begin_[tet]; }
+
+  /// Visits all elements that a tet owns, in order.
+  template <class Visit>
+  void forEach(Index tet, const Visit& visit) const {
+    std::uint64_t number = begin_[tet];
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const Line& line : linesOf(tet, axis)) {
+        const std::uint32_t end = line.ownedFirst + line.ownedCount;
+        for (std::uint32_t i = line.ownedFirst; i < end; ++i) {
+          visit(Element{number++, axis, point(tet, axis, line, i), line.swept.simplex(i)});
+        }
+      }
+    }
+  }
+
+  /// The number of an element, by its owner.
+  /// @throws Error Internal if the tet does not own it
+  [[nodiscard]] Index find(Index owner, int axis, const GridPoint& z) const;
+
+ private:
+  struct Line {
+    SweptLine swept;
+    std::uint32_t ownedFirst;
+    std::uint32_t ownedCount;
+    Index number;  ///< of the first that is owned
+  };
+
+  [[nodiscard]] static std::size_t gridOf(Index tet, int axis) noexcept {
+    return 3 * std::size_t{tet} + static_cast<std::size_t>(axis);
+  }
+  [[nodiscard]] std::span<const Line> linesOf(Index tet, int axis) const noexcept {
+    const std::size_t grid = gridOf(tet, axis);
+    return std::span(lines_).subspan(lineBegin_[grid], lineBegin_[grid + 1] - lineBegin_[grid]);
+  }
+  [[nodiscard]] GridPoint point(Index tet, int axis, const Line& line,
+                                std::uint32_t i) const noexcept;
+  void sweep(Index tet, std::vector<SweptLine>& swept, std::vector<Line>& lines);
+
+  const ExactMap& map_;
+  const TetTopology& topology_;
+  ElementKind kind_;
+  Array<std::uint64_t> begin_;      ///< per tet (+1)
+  Array<SweepAxes> axes_;           ///< per grid: tet and axis
+  Array<std::uint64_t> lineBegin_;  ///< per grid (+1)
+  Array<Line> lines_;               ///< those with owned elements
+};
+
+}  // namespace hexhex
