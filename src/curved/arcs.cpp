@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <curved/arcs.hpp>
+#include <curved/owned_simplex.hpp>
 #include <curved/simplex_point.hpp>
 #include <curved/simplex_star.hpp>
 
@@ -11,28 +12,15 @@ namespace hexhex {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
-
 /// The largest double below 1.
 constexpr double kBelowOne = 1 - 0x1p-53;
-
-/// A simplex by its owner.
-struct Owned {
-  Index tet;
-  CornerMask corners;
-};
-
-Owned ownedBy(const TetTopology& topology, Index tet, CornerMask simplex) {
-  const Index owner = ownerTet(topology, tet, simplex);
-  return {owner, owner == tet ? simplex : topology.translated(simplex, tet, owner)};
-}
 
 /// Inner points and segments of consecutive arcs.
 struct ArcPieces {
   std::vector<Vec3> points;
   std::vector<double> parameters;
-  std::vector<Owned> crossings;
-  std::vector<Owned> segments;
+  std::vector<OwnedSimplex> crossings;
+  std::vector<OwnedSimplex> segments;
 };
 
 /// Follows hex edges from simplex to simplex. One per thread.

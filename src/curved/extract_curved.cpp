@@ -6,6 +6,7 @@
 #include <base/parallel.hpp>
 #include <curved/arcs.hpp>
 #include <curved/lagrange.hpp>
+#include <curved/patches.hpp>
 #include <extract/scaled_map.hpp>
 
 namespace hexhex {
@@ -21,25 +22,35 @@ void toCallersCorners(const OrientedMap& input, Array<CornerSet>& corners, Stage
               [&](std::size_t i) { corners[i] = input.callersCorners(corners[i]); });
 }
 
-void addArcs(const PreparedMap& map, PiecewiseLinearMesh& result, Context& context) {
-  Stage stage(context, "arcs");
-  const LatticeNumbers vertices(map, stage);
-  const ElementNumbers edges(map, ElementKind::Edges, stage);
-  result.arcs = traceArcs(map, vertices, edges, stage);
-  toCallersCorners(map.input, result.arcs.generatorCorners, stage);
-  toCallersCorners(map.input, result.arcs.segmentCorners, stage);
+/// @param map  scaled
+void addParts(const PreparedMap& map, PiecewiseLinearParts parts, PiecewiseLinearMesh& result,
+              Context& context) {
+  Stage arcStage(context, "arcs");
+  const LatticeNumbers vertices(map, arcStage);
+  const ElementNumbers edges(map, ElementKind::Edges, arcStage);
+  result.arcs = traceArcs(map, vertices, edges, arcStage);
+  arcStage.finish();
+  if (parts == PiecewiseLinearParts::ArcsAndPatches) {
+    Stage stage(context, "patches");
+    const ElementNumbers faces(map, ElementKind::Faces, stage);
+    result.patches = cutPatches({map, vertices, edges, faces, result.arcs}, stage);
+    toCallersCorners(map.input, result.patches.generatorCorners, stage);
+    toCallersCorners(map.input, result.patches.polygonCorners, stage);
+  }
+  toCallersCorners(map.input, result.arcs.generatorCorners, arcStage);
+  toCallersCorners(map.input, result.arcs.segmentCorners, arcStage);
 }
 
 }  // namespace
 
-PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map, PiecewiseLinearParts /*parts*/,
+PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map, PiecewiseLinearParts parts,
                                            const ExtractOptions& options, Context& context,
                                            ExtractStatistics* statistics) {
   PiecewiseLinearMesh result;
   runExtraction(options, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {}, context, filled);
     result.mesh = extractScaled(scaled, options, context, filled);
-    addArcs(scaled.map, result, context);
+    addParts(scaled.map, parts, result, context);
   });
   return result;
 }

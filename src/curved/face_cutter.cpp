@@ -1,0 +1,309 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <curved/face_cutter.hpp>
+
+namespace hexhex {
+
+namespace {
+
+[[noreturn]] void fail(Index tet, const char* what) {
+  throw Error(ErrorCode::Internal,
+              std::string("Cutting a hex face failed: ") + what +
+                  ". The map passed all checks, so this is a bug; please report it with the map.",
+              {PlaceKind::Tet, tet});
+}
+
+/// Corners of the square, counter-clockwise.
+constexpr std::array<GridPoint, 4> kSquareCorners = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
+
+/// The square's frame, turned so that a side of the square becomes the first axis.
+Frame alongSide(const Frame& frame, std::size_t side) {
+  Frame turned = frame;
+  turned.origin = frame.at(kSquareCorners[side]);
+  for (std::size_t i = 0; i < side; ++i) {
+    turned.axes = {turned.axes[1], opposite(turned.axes[0]), turned.axes[2]};
+  }
+  return turned;
+}
+
+/// (u, v) at a place along a side.
+std::array<double, 2> onSide(std::size_t side, double t) {
+  switch (side) {
+    case 0:
+      return {t, 0};
+    case 1:
+      return {1, t};
+    case 2:
+      return {1 - t, 1};
+    default:
+      return {0, 1 - t};
+  }
+}
+
+std::array<double, 2> ofSquareCorner(std::size_t corner) { return onSide(corner, 0); }
+
+}  // namespace
+
+std::size_t& FaceCutter::Lists::operator[](Index key) {
+  const Index number = keys.insert(key);
+  if (number == first.size()) first.push_back(kLast);
+  return first[number];
+}
+
+FaceCutter::Border FaceCutter::cut(Index tet, const Element& face) {
+  // The face's axis is its normal.
+  Frame frame = Frame::along(face.z, (face.axis + 1) % 3);
+  Border border;
+  if (cutInsideOneTet(tet, frame, border)) return border;
+  collectPieces({tet, face.simplex, frame});
+  findArcs(border);
+  setVertices(border, input_.arcs, tet);
+  for (const Piece& piece : pieces_) emit(border, piece);
+  border.polygons = static_cast<std::uint32_t>(pieces_.size());
+  return border;
+}
+
+/// A face with all corners in one closed tet is one polygon.
+bool FaceCutter::cutInsideOneTet(Index tet, const Frame& frame, Border& border) {
+  std::array<CornerMask, 4> simplices{};
+  CornerMask carrier = kNoSimplex;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const LatticeNumbers::Found found = input_.vertices.find(tet, frame.at(kSquareCorners[i]));
+    if (found.vertex == kNone) return false;
+    border.vertices[i] = found.vertex;
+    simplices[i] = found.simplex;
+    carrier = static_cast<CornerMask>(carrier | found.simplex);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto middle = static_cast<CornerMask>(simplices[i] | simplices[(i + 1) % 4]);
+    setArc(border, i, {tet, middle, alongSide(frame, i)});
+    put(border.vertices[i], ofSquareCorner(i));
+  }
+  out_.cornerCounts.push_back(4);
+  out_.carriers.push_back(ownedBy(topology_, tet, carrier));
+  border.polygons = 1;
+  return true;
+}
+
+void FaceCutter::collectPieces(const SimplexInTet& center) {
+  pieces_.clear();
+  piecesOfTet_.clear();
+  inner_.clear();
+  innerAtVertex_.clear();
+  // A tet or triangle of the plane whose closure contains the centre meets the open square.
+  const bool found = star_.visit(center, [&](const SimplexInTet& here) {
+    const CornerMask carrier = carrierOfPlane(see(here));
+    if (carrier == kNoSimplex) return false;
+    addPiece({here.tet, carrier, here.frame});
+    return true;
+  });
+  if (!found) fail(center.tet, "no tet around the centre meets the face");
+  for (std::size_t head = 0; head < pieces_.size(); ++head) addNeighbours(head);
+}
+
+/// Adds a piece if it is new.
+void FaceCutter::addPiece(SimplexInTet carrier) {
+  if (carrier.simplex != kWholeTet) {
+    // A triangle has two tets: the smaller one stands for both.
+    const int face = oppositeCorner(carrier.simplex);
+    const HalfFace mate = topology_.mate[halfFaceOf(carrier.tet, face)];
+    if (mate != kNone && tetOf(mate) < carrier.tet) {
+      carrier = crossed(topology_, exact_, carrier, face);
+    }
+  }
+  std::size_t& first = piecesOfTet_[carrier.tet];
+  for (std::size_t i = first; i != kLast; i = pieces_[i].next) {
+    const SimplexInTet& known = pieces_[i].carrier;
+    if (known.simplex == carrier.simplex && known.frame == carrier.frame) return;
+  }
+  const Slice slice = sliceSquare(see(carrier), carrier.simplex, exact_.unit);
+  if (slice.size() < 3) fail(carrier.tet, "a polygon has no area");
+  pieces_.push_back({carrier, slice, first});
+  first = pieces_.size() - 1;
+}
+
+/// Goes on across the sides that do not lie on the square's border.
+void FaceCutter::addNeighbours(std::size_t piece) {
+  const std::size_t size = pieces_[piece].slice.size();
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::uint8_t side = pieces_[piece].slice[i].side;
+    if (side >= kSquareSide) continue;
+    const SimplexInTet at{pieces_[piece].carrier.tet, side, pieces_[piece].carrier.frame};
+    if (dimension(side) == 2) {
+      const int face = oppositeCorner(side);
+      if (topology_.isBoundary(halfFaceOf(at.tet, face))) fail(at.tet, "a face leaves the mesh");
+      SimplexInTet next = crossed(topology_, exact_, at, face);
+      next.simplex = kWholeTet;
+      addPiece(next);
+      continue;
+    }
+    // Two pieces meet in an edge of the plane, somewhere around it.
+    star_.visit(at, [&](const SimplexInTet& here) {
+      const CornerMask carrier = carrierOfPlane(see(here));
+      if (carrier != kNoSimplex) addPiece({here.tet, carrier, here.frame});
+      return false;
+    });
+  }
+}
+
+/// Finds the arc along each side of the square, by its midpoint.
+void FaceCutter::findArcs(Border& border) {
+  unsigned found = 0;
+  for (const Piece& piece : pieces_) {
+    for (std::size_t i = 0; i < piece.slice.size() && found != 15U; ++i) {
+      if (piece.slice[i].side < kSquareSide) continue;
+      const std::size_t side = piece.slice[i].side - kSquareSide;
+      if (((found >> side) & 1U) != 0) continue;
+      const CornerMask simplex = simplexOfMidpoint(see(piece.carrier), side);
+      if (simplex == kNoSimplex) continue;
+      found |= 1U << side;
+      setArc(border, side, {piece.carrier.tet, simplex, alongSide(piece.carrier.frame, side)});
+    }
+  }
+  if (found != 15U) fail(pieces_.front().carrier.tet, "a side was not found");
+}
+
+/// The simplex of a tet that holds the midpoint of a side, or kNoSimplex.
+CornerMask FaceCutter::simplexOfMidpoint(const LatticeTet& corners, std::size_t side) const {
+  const std::int64_t unit = exact_.unit;
+  const std::array<LatticePoint, 4> midpoints = {
+      {{unit / 2, 0, 0}, {unit, unit / 2, 0}, {unit / 2, unit, 0}, {0, unit / 2, 0}}};
+  CornerMask simplex = kNoSimplex;
+  for (int face = 0; face < 4; ++face) {
+    const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+    const int inside = orientation(corners[static_cast<std::size_t>(f[0])],
+                                   corners[static_cast<std::size_t>(f[1])],
+                                   corners[static_cast<std::size_t>(f[2])], midpoints[side]);
+    if (inside < 0) return kNoSimplex;
+    if (inside > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(face));
+  }
+  return simplex;
+}
+
+/// Looks an arc up in the tet that owns its midpoint.
+void FaceCutter::setArc(Border& border, std::size_t side, const SimplexInTet& midpoint) {
+  const Index owner = ownerTet(topology_, midpoint.tet, midpoint.simplex);
+  Frame frame = midpoint.frame;
+  if (owner != midpoint.tet) {
+    const bool found = star_.visit(midpoint, [&](const SimplexInTet& here) {
+      frame = here.frame;
+      return here.tet == owner;
+    });
+    if (!found) fail(midpoint.tet, "the owner of an edge was not found");
+  }
+  const bool reversed = signOf(frame.axes[0]) < 0;
+  const GridPoint smaller = reversed ? frame.at({1, 0, 0}) : frame.origin;
+  border.arcs[side] = input_.edges.find(owner, axisOf(frame.axes[0]), smaller);
+  if (reversed) border.reversed = static_cast<std::uint8_t>(border.reversed | (1U << side));
+}
+
+/// Arcs know their ends; those of neighbouring sides must agree.
+void FaceCutter::setVertices(Border& border, const Arcs& arcs, Index tet) {
+  std::array<std::array<Index, 2>, 4> ends{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    ends[i] = arcs.ends[border.arcs[i]];
+    if (((border.reversed >> i) & 1U) != 0) std::swap(ends[i][0], ends[i][1]);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    border.vertices[i] = ends[i][0];
+    if (ends[i][0] != ends[(i + 3) % 4][1]) fail(tet, "its sides do not close");
+  }
+}
+
+void FaceCutter::put(std::uint64_t number, const std::array<double, 2>& parameter) {
+  out_.corners.push_back(static_cast<Index>(number));
+  out_.parameters.push_back(parameter);
+}
+
+void FaceCutter::emit(const Border& border, const Piece& piece) {
+  const LatticeTet seen = see(piece.carrier);
+  for (std::size_t i = 0; i < piece.slice.size(); ++i) {
+    const SliceCorner& corner = piece.slice[i];
+    if (corner.onBorder(0) && corner.onBorder(1)) {
+      put(border.vertices[corner.squareCorner()], ofSquareCorner(corner.squareCorner()));
+    } else if (corner.onBorder(0) || corner.onBorder(1)) {
+      emitArcPoint(border, piece, seen, corner);
+    } else {
+      emitInnerPoint(piece, seen, corner);
+    }
+  }
+  out_.cornerCounts.push_back(static_cast<std::uint32_t>(piece.slice.size()));
+  // Pieces are named by the owners of their carriers already.
+  out_.carriers.push_back({piece.carrier.tet, piece.carrier.simplex});
+}
+
+bool FaceCutter::isGenerator(std::uint64_t arcPoint, Index tet, CornerMask simplex) const {
+  const CornerMask other = input_.arcs.generatorCorners[arcPoint];
+  if (dimension(other) != dimension(simplex)) return false;
+  const Tet& mine = topology_.tets[tet];
+  const Tet& others = topology_.tets[input_.arcs.generatorTet[arcPoint]];
+  for (int i = 0; i < 4; ++i) {
+    if (!contains(other, i)) continue;
+    bool shared = false;
+    for (int j = 0; j < 4; ++j) {
+      shared = shared || (contains(simplex, j) && mine[static_cast<std::size_t>(j)] ==
+                                                      others[static_cast<std::size_t>(i)]);
+    }
+    if (!shared) return false;
+  }
+  return true;
+}
+
+/// A point of an arc is known by the simplex that the arc crosses there. (An arc that crosses one
+/// simplex twice comes back through a periodic domain; then the place along the arc decides.)
+void FaceCutter::emitArcPoint(const Border& border, const Piece& piece, const LatticeTet& seen,
+                              const SliceCorner& corner) {
+  const std::size_t side = corner.squareSide();
+  const Index arc = border.arcs[side];
+  const bool reversed = ((border.reversed >> side) & 1U) != 0;
+  const Arcs& arcs = input_.arcs;
+  const CornerMask simplex = corner.point.simplex();
+  const double along = coordinate(corner.point.normalized(), seen, side % 2) /
+                       static_cast<double>(exact_.unit);
+  const double expected = (side >= 2) == reversed ? along : 1 - along;
+  std::uint64_t best = arcs.pointBegin[arc + std::size_t{1}];
+  for (std::uint64_t i = arcs.pointBegin[arc]; i < arcs.pointBegin[arc + std::size_t{1}]; ++i) {
+    if (!isGenerator(i, piece.carrier.tet, simplex)) continue;
+    if (best == arcs.pointBegin[arc + std::size_t{1}] ||
+        std::abs(arcs.parameters[i] - expected) < std::abs(arcs.parameters[best] - expected)) {
+      best = i;
+    }
+  }
+  if (best == arcs.pointBegin[arc + std::size_t{1}]) {
+    fail(piece.carrier.tet, "a corner of a polygon is no point of its arc");
+  }
+  const double t = arcs.parameters[best];
+  put(vertexCount_ + best, onSide(side, reversed ? 1 - t : t));
+}
+
+/// A point inside the square is known by the vertex or edge of the tets that crosses the square
+/// there. Its coordinates are the same from all tets, bit for bit.
+void FaceCutter::emitInnerPoint(const Piece& piece, const LatticeTet& seen,
+                                const SliceCorner& corner) {
+  const CornerMask simplex = corner.point.simplex();
+  const Tet& tet = topology_.tets[piece.carrier.tet];
+  std::array<Index, 2> vertices = {tet[firstCorner(simplex)], tet[lastCorner(simplex)]};
+  if (vertices[1] < vertices[0]) std::swap(vertices[0], vertices[1]);
+  const std::array<double, 4> shares = corner.point.normalized();
+  const auto unit = static_cast<double>(exact_.unit);
+  const std::array<double, 2> parameter = {
+      std::clamp(coordinate(shares, seen, 0) / unit, 0.0, 1.0),
+      std::clamp(coordinate(shares, seen, 1) / unit, 0.0, 1.0)};
+  std::size_t& first = innerAtVertex_[vertices[0]];
+  for (std::size_t i = first; i != kLast; i = inner_[i].next) {
+    if (inner_[i].vertices == vertices && inner_[i].parameter == parameter) {
+      put(inner_[i].number, parameter);
+      return;
+    }
+  }
+  const std::uint64_t number = firstInnerPoint_ + out_.points.size();
+  inner_.push_back({vertices, parameter, static_cast<Index>(number), first});
+  first = inner_.size() - 1;
+  out_.points.push_back(position(shares, tet, input_.map.input.view.points));
+  out_.generators.push_back(ownedBy(topology_, piece.carrier.tet, simplex));
+  put(number, parameter);
+}
+
+}  // namespace hexhex

@@ -1,0 +1,113 @@
+// One hex face: all polygons in which it meets tets, and the points that they share.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <curved/patches.hpp>
+#include <curved/owned_simplex.hpp>
+#include <curved/simplex_star.hpp>
+#include <curved/square_slice.hpp>
+
+namespace hexhex {
+
+/// Polygons of consecutive faces. Inner points are numbered from the given number on.
+struct PatchPieces {
+  std::vector<std::uint32_t> cornerCounts;  ///< per polygon
+  std::vector<OwnedSimplex> carriers;       ///< per polygon
+  std::vector<Index> corners;
+  std::vector<std::array<double, 2>> parameters;
+  std::vector<Vec3> points;
+  std::vector<OwnedSimplex> generators;
+};
+
+/// Cuts one face after the other. One per thread.
+///
+/// A piece is what a tet's interior has of the open square, or what a triangle in the square's
+/// plane has. Pieces are convex and meet along whole sides: a face of a tet separates two of them,
+/// and so does an edge in the plane. From the piece at the centre, all others are reached across
+/// sides inside the open square.
+class FaceCutter {
+ public:
+  FaceCutter(const PatchInput& input, std::uint64_t firstInnerPoint, PatchPieces& pieces)
+      : input_(input),
+        topology_(input.map.topology),
+        exact_(input.map.exact),
+        star_(input.map.topology, input.map.exact),
+        vertexCount_(input.vertices.count()),
+        firstInnerPoint_(firstInnerPoint),
+        out_(pieces) {}
+
+  struct Border {
+    Quad vertices{};
+    std::array<Index, 4> arcs{};
+    std::uint8_t reversed = 0;
+    std::uint32_t polygons = 0;
+  };
+  /// Appends a face's polygons.
+  /// @param tet  owner of the face's centre
+  [[nodiscard]] Border cut(Index tet, const Element& face);
+
+ private:
+  struct Piece {
+    SimplexInTet carrier;
+    Slice slice;
+    std::size_t next;  ///< piece of the same tet, or kLast
+  };
+  struct InnerPoint {
+    std::array<Index, 2> vertices;  ///< of the edge; the same twice at a vertex
+    std::array<double, 2> parameter;
+    Index number;
+    std::size_t next;  ///< of those with the same first vertex, or kLast
+  };
+  /// A list per key, by the number of a KeyTable.
+  struct Lists {
+    KeyTable keys;
+    std::vector<std::size_t> first;
+
+    void clear() {
+      keys.clear();
+      first.clear();
+    }
+    /// Where the list of a key begins.
+    std::size_t& operator[](Index key);
+  };
+  static constexpr std::size_t kLast = ~std::size_t{0};
+
+  [[nodiscard]] bool cutInsideOneTet(Index tet, const Frame& frame, Border& border);
+  void collectPieces(const SimplexInTet& center);
+  void addPiece(SimplexInTet carrier);
+  void addNeighbours(std::size_t piece);
+  [[nodiscard]] LatticeTet see(const SimplexInTet& at) const {
+    return at.frame.see(exact_.corners[at.tet], exact_.unit);
+  }
+
+  void findArcs(Border& border);
+  [[nodiscard]] CornerMask simplexOfMidpoint(const LatticeTet& corners, std::size_t side) const;
+  void setArc(Border& border, std::size_t side, const SimplexInTet& midpoint);
+  static void setVertices(Border& border, const Arcs& arcs, Index tet);
+
+  void emit(const Border& border, const Piece& piece);
+  void emitArcPoint(const Border& border, const Piece& piece, const LatticeTet& seen,
+                    const SliceCorner& corner);
+  void emitInnerPoint(const Piece& piece, const LatticeTet& seen, const SliceCorner& corner);
+  [[nodiscard]] bool isGenerator(std::uint64_t arcPoint, Index tet, CornerMask simplex) const;
+  void put(std::uint64_t number, const std::array<double, 2>& parameter);
+
+  const PatchInput& input_;
+  const TetTopology& topology_;
+  const ExactMap& exact_;
+  SimplexStar star_;
+  std::uint64_t vertexCount_;
+  std::uint64_t firstInnerPoint_;
+  PatchPieces& out_;
+
+  // Of the face at hand:
+  std::vector<Piece> pieces_;
+  Lists piecesOfTet_;
+  std::vector<InnerPoint> inner_;
+  Lists innerAtVertex_;
+};
+
+}  // namespace hexhex

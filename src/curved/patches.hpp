@@ -1,0 +1,24 @@
+// Hex faces as planar polygons, tet by tet (Section 5.5).
+#pragma once
+
+#include <hexhex/curved.hpp>
+
+#include <curved/element_numbers.hpp>
+#include <curved/lattice_numbers.hpp>
+
+namespace hexhex {
+
+/// What patches are made from.
+struct PatchInput {
+  const PreparedMap& map;
+  const LatticeNumbers& vertices;
+  const ElementNumbers& edges;
+  const ElementNumbers& faces;
+  const Arcs& arcs;  ///< of the edges; generators in terms of the tets in `map`
+};
+
+/// Cuts every hex face once. Generators are in terms of the tets in the map, not of the caller's.
+/// @throws Error TooLarge for more points than an Index can number
+[[nodiscard]] Patches cutPatches(const PatchInput& input, Stage& stage);
+
+}  // namespace hexhex
