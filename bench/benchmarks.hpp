@@ -22,4 +22,7 @@ void registerMesh();
 /// Reading and writing maps and meshes.
 void registerFiles();
 
+/// arcs_and_patches/, lagrange/: curved meshes.
+void registerCurved();
+
 }  // namespace hexhex::bench

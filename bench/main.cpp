@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   hexhex::bench::registerEpsilon();
   hexhex::bench::registerMesh();
   hexhex::bench::registerFiles();
+  hexhex::bench::registerCurved();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -1,0 +1,137 @@
+// Arcs, patches and Lagrange cells: what they cost beyond the extraction that they are made with.
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <benchmark/benchmark.h>
+
+#include <hexhex/curved.hpp>
+
+#include "bench_maps.hpp"
+#include "benchmarks.hpp"
+
+namespace hexhex::bench {
+
+namespace {
+
+/// The generator that the reference's figures are for: 64,000 hexahedra in general position.
+BenchMap cube() {
+  BenchMap map;
+  map.name = "box_64000";
+  map.kind = SampleKind::Box;
+  map.options.cells = 20;
+  map.options.refine = 7;
+  map.options.jitter = 0.5;
+  return map;
+}
+
+double secondsOf(const Context& context, std::string_view stage) {
+  double sum = 0;
+  for (const StageTime& time : context.stageTimes()) {
+    if (time.stage == stage) sum += time.seconds;
+  }
+  return sum;
+}
+
+void setNanoseconds(benchmark::State& state, const std::string& what, double seconds,
+                    std::size_t count) {
+  const double perRun = seconds / static_cast<double>(state.iterations());
+  state.counters["ns_per_" + what] = 1e9 * perRun / static_cast<double>(count);
+  state.counters[what + "s"] = static_cast<double>(count);
+}
+
+/// Corners of all polylines, ends included.
+std::size_t arcPoints(const Arcs& arcs) { return arcs.points.size() + 2 * arcs.count(); }
+
+void piecewiseLinear(benchmark::State& state, const BenchMap& what, Engine engine, int threads) {
+  const TetMap& map = load(what);
+  ExtractOptions options;
+  options.engine = engine;
+  options.scale = what.scale;
+  double arcs = 0;
+  double patches = 0;
+  double extraction = 0;
+  std::size_t points = 0;
+  std::size_t polygons = 0;
+  std::size_t hexes = 0;
+  for (auto _ : state) {
+    Context context(threads);
+    ExtractStatistics statistics;
+    const PiecewiseLinearMesh mesh = extractPiecewiseLinear(
+        map, PiecewiseLinearParts::ArcsAndPatches, options, context, &statistics);
+    state.SetIterationTime(statistics.seconds);
+    const double forArcs = secondsOf(context, "arcs");
+    const double forPatches = secondsOf(context, "patches");
+    arcs += forArcs;
+    patches += forPatches;
+    extraction += statistics.seconds - forArcs - forPatches;
+    points = arcPoints(mesh.arcs);
+    polygons = mesh.patches.polygonTet.size();
+    hexes = mesh.mesh.cells.size();
+  }
+  setNanoseconds(state, "arc_point", arcs, points);
+  setNanoseconds(state, "polygon", patches, polygons);
+  state.counters["hexes"] = static_cast<double>(hexes);
+  state.counters["arcs_to_extraction"] = arcs / extraction;
+  state.counters["patches_to_extraction"] = patches / extraction;
+}
+
+void lagrange(benchmark::State& state, const BenchMap& what, int order) {
+  const TetMap& map = load(what);
+  ExtractOptions options;
+  options.scale = what.scale;
+  std::size_t nodes = 0;
+  double seconds = 0;
+  for (auto _ : state) {
+    Context context(1);
+    ExtractStatistics statistics;
+    const LagrangeMesh mesh = extractLagrange(map, order, options, context, &statistics);
+    state.SetIterationTime(statistics.seconds);
+    seconds += statistics.seconds;
+    nodes = mesh.points.size();
+  }
+  setNanoseconds(state, "node", seconds, nodes);
+}
+
+void add(const BenchMap& map) {
+  for (const Engine engine : {Engine::Atlas, Engine::Propeller}) {
+    for (const int threads : {1, 2}) {
+      const std::string name =
+          "arcs_and_patches/" + map.name +
+          (engine == Engine::Atlas ? "/engine:atlas" : "/engine:propeller") +
+          "/threads:" + std::to_string(threads);
+      benchmark::RegisterBenchmark(name.c_str(),
+                                   [map, engine, threads](benchmark::State& state) {
+                                     piecewiseLinear(state, map, engine, threads);
+                                   })
+          ->UseManualTime()
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
+}
+
+}  // namespace
+
+void registerCurved() {
+  add(cube());
+  for (const BenchMap& map : benchMaps()) {
+    // A million faces and more take gigabytes.
+    if (map.name.find("high") == std::string::npos && map.name != "s17c_sphere_r100_x2" &&
+        map.name != "rockerarm_x8") {
+      add(map);
+    }
+  }
+  for (const int order : {2, 3}) {
+    const BenchMap map = cube();
+    const std::string name = "lagrange/" + map.name + "/order:" + std::to_string(order);
+    benchmark::RegisterBenchmark(name.c_str(),
+                                 [map, order](benchmark::State& state) {
+                                   lagrange(state, map, order);
+                                 })
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
+}  // namespace hexhex::bench
