@@ -1,12 +1,10 @@
 #include <algorithm>
 #include <limits>
-#include <string>
+#include <span>
 #include <vector>
 
+#include <curved/arc_tracer.hpp>
 #include <curved/arcs.hpp>
-#include <curved/owned_simplex.hpp>
-#include <curved/simplex_point.hpp>
-#include <curved/simplex_star.hpp>
 
 namespace hexhex {
 
@@ -15,82 +13,18 @@ namespace {
 /// The largest double below 1.
 constexpr double kBelowOne = 1 - 0x1p-53;
 
-/// Inner points and segments of consecutive arcs.
-struct ArcPieces {
-  std::vector<Vec3> points;
-  std::vector<double> parameters;
-  std::vector<OwnedSimplex> crossings;
-  std::vector<OwnedSimplex> segments;
+/// An inner point of an arc.
+struct Crossing {
+  Vec3 point;
+  double parameter;
+  OwnedSimplex generator;
+  SimplexVertices vertices;
 };
 
-/// Follows hex edges from simplex to simplex. One per thread.
-///
-/// The frame has the edge along its first axis. A hex edge is straight in every tet, so inside a
-/// closed tet it stays in one simplex (its carrier), from where it enters to where it leaves.
-class ArcTracer {
- public:
-  explicit ArcTracer(const PreparedMap& map)
-      : map_(map), star_(map.topology, map.exact), topology_(map.topology) {}
-
-  /// A part of an edge: its carrier, in one of the tets around that.
-  using Part = SimplexInTet;
-
-  /// The last part of the edge that runs through the midpoint of `start`, along its frame.
-  [[nodiscard]] Part toEnd(const SimplexInTet& start) {
-    return follow(leave(start), [](const Part&, const SimplexPoint&, const LatticeTet&) {});
-  }
-
-  /// Visits every part of the edge but the first with the point at which it begins, and returns
-  /// the last one.
-  template <class Visit>
-  Part follow(Part part, const Visit& visitEnd) {
-    for (std::size_t steps = 0; steps <= topology_.tetCount(); ++steps) {
-      const LatticeTet seen = part.frame.see(map_.exact.corners[part.tet], map_.exact.unit);
-      const SimplexPoint exit = exitPoint(seen, part.simplex, 0);
-      const CornerMask at = exit.simplex();
-      if (at == kNoSimplex) fail(part.tet, "a hex edge leaves a tet nowhere");
-      if (exit.compare(seen, 0, map_.exact.unit) >= 0) return part;
-      visitEnd(part, exit, seen);
-      const bool throughFace = part.simplex == kWholeTet && dimension(at) == 2;
-      part = throughFace ? beyond(part, at) : leave({part.tet, at, part.frame});
-    }
-    fail(part.tet, "a hex edge does not end");
-  }
-
-  [[noreturn]] static void fail(Index tet, const char* what) {
-    throw Error(ErrorCode::Internal,
-                std::string("Tracing an arc failed: ") + what +
-                    ". The map passed all checks, so this is a bug; please report it with the map.",
-                {PlaceKind::Tet, tet});
-  }
-
- private:
-  /// The part of the edge behind a point of it that lies in the interior of a simplex.
-  [[nodiscard]] Part leave(const SimplexInTet& point) {
-    if (point.simplex == kWholeTet) return point;
-    Part found;
-    const bool leads = star_.visit(point, [&](const SimplexInTet& here) {
-      const LatticeTet seen = here.frame.see(map_.exact.corners[here.tet], map_.exact.unit);
-      found = here;
-      found.simplex = holder(NormalSigns(seen), here.simplex, direction(0, 1));
-      return found.simplex != kNoSimplex;
-    });
-    if (!leads) fail(point.tet, "a hex edge leaves the mesh");
-    return found;
-  }
-
-  /// The same behind a face that the edge crosses.
-  [[nodiscard]] Part beyond(const Part& part, CornerMask face) const {
-    const int opposite = oppositeCorner(face);
-    if (topology_.isBoundary(halfFaceOf(part.tet, opposite))) {
-      fail(part.tet, "a hex edge leaves the mesh");
-    }
-    return crossed(topology_, map_.exact, part, opposite);  // from tet to tet
-  }
-
-  const PreparedMap& map_;
-  SimplexStar star_;
-  const TetTopology& topology_;
+/// Inner points and segments of consecutive arcs.
+struct ArcPieces {
+  std::vector<Crossing> crossings;
+  std::vector<OwnedSimplex> segments;
 };
 
 /// Traces the edges that a block of tets owns.
@@ -108,27 +42,62 @@ class BlockTracer {
       // By convexity, all between lies in the smallest simplex that contains both ends.
       arcs_.ends[edge.number] = {from.vertex, to.vertex};
       arcs_.pointBegin[edge.number] = 0;
-      addSegment(tet, static_cast<CornerMask>(from.simplex | to.simplex));
+      addSegment({tet, static_cast<CornerMask>(from.simplex | to.simplex), {}});
       return;
     }
-    traceThroughTets(tet, edge);
+    const std::size_t before = pieces_.crossings.size();
+    const SimplexInTet middle{tet, edge.simplex, Frame::along(edge.z, edge.axis)};
+    arcs_.ends[edge.number] =
+        edge.simplex == kWholeTet ? traceBothWays(middle) : traceFromBeginning(middle);
+    arcs_.pointBegin[edge.number] = pieces_.crossings.size() - before;
+    smoothParameters(std::span(pieces_.crossings).subspan(before));
   }
 
  private:
-  void traceThroughTets(Index tet, const Element& edge) {
-    // First back to the beginning, then all the way, so that every point is seen from there.
-    ArcTracer::Part part = tracer_.toEnd({tet, edge.simplex, reversed(Frame::along(edge.z, edge.axis))});
-    part.frame = reversed(part.frame);
-    const Index from = vertexAt(part, 0);
-    const std::size_t before = pieces_.points.size();
-    part = tracer_.follow(part, [&](const ArcTracer::Part& here, const SimplexPoint& exit,
-                                    const LatticeTet& seen) {
-      addSegment(here.tet, here.simplex);
-      addPoint(here.tet, exit, seen, pieces_.points.size() == before);
-    });
-    addSegment(part.tet, part.simplex);
-    arcs_.ends[edge.number] = {from, vertexAt(part, 1)};
-    arcs_.pointBegin[edge.number] = pieces_.points.size() - before;
+  /// From a midpoint inside a tet.
+  [[nodiscard]] std::array<Index, 2> traceBothWays(const SimplexInTet& middle) {
+    back_.crossings.clear();
+    back_.segments.clear();
+    SimplexInTet turned = middle;
+    turned.frame = reversed(middle.frame);
+    const ArcPart first =
+        tracer_.follow(tracer_.behind(turned), [&](const ArcPart& part, const SimplexPoint& exit) {
+          back_.segments.push_back(carrierOf(part.carrier));
+          back_.crossings.push_back(crossingAt(part, exit));
+          back_.crossings.back().parameter = 1 - back_.crossings.back().parameter;
+        });
+    addSegment(first.carrier);
+    pieces_.segments.insert(pieces_.segments.end(), back_.segments.rbegin(),
+                            back_.segments.rend());
+    pieces_.crossings.insert(pieces_.crossings.end(), back_.crossings.rbegin(),
+                             back_.crossings.rend());
+    bool atMiddle = true;
+    const ArcPart last =
+        tracer_.follow(tracer_.behind(middle), [&](const ArcPart& part, const SimplexPoint& exit) {
+          if (!atMiddle) addSegment(part.carrier);
+          atMiddle = false;
+          pieces_.crossings.push_back(crossingAt(part, exit));
+        });
+    if (!atMiddle) addSegment(last.carrier);
+    return {vertexAt(first), vertexAt(last)};
+  }
+
+  /// From a midpoint on the boundary of tets: back to the beginning, then all the way.
+  [[nodiscard]] std::array<Index, 2> traceFromBeginning(const SimplexInTet& middle) {
+    SimplexInTet turned = middle;
+    turned.frame = reversed(middle.frame);
+    const ArcPart back =
+        tracer_.follow(tracer_.behind(turned), [](const ArcPart&, const SimplexPoint&) {});
+    ArcPart first{back.carrier, {}, -1};
+    first.carrier.frame = reversed(back.carrier.frame);
+    first.seen = first.carrier.frame.see(map_.exact.corners[first.carrier.tet], map_.exact.unit);
+    const ArcPart last =
+        tracer_.follow(first, [&](const ArcPart& part, const SimplexPoint& exit) {
+          addSegment(part.carrier);
+          pieces_.crossings.push_back(crossingAt(part, exit));
+        });
+    addSegment(last.carrier);
+    return {vertexAt(back), vertexAt(last)};
   }
 
   /// The same edge from its other end.
@@ -136,24 +105,35 @@ class BlockTracer {
     return {frame.at({1, 0, 0}), {opposite(frame.axes[0]), opposite(frame.axes[1]), frame.axes[2]}};
   }
 
-  [[nodiscard]] Index vertexAt(const ArcTracer::Part& part, std::int32_t at) const {
-    const Index vertex = vertices_.find(part.tet, part.frame.at({at, 0, 0})).vertex;
-    if (vertex == kNone) ArcTracer::fail(part.tet, "a hex edge ends where no hex vertex is");
+  /// The vertex at the end of the last part.
+  [[nodiscard]] Index vertexAt(const ArcPart& part) const {
+    const SimplexInTet& at = part.carrier;
+    const Index vertex = vertices_.find(at.tet, at.frame.at({1, 0, 0})).vertex;
+    if (vertex == kNone) ArcTracer::fail(at.tet, "a hex edge ends where no hex vertex is");
     return vertex;
   }
 
-  void addSegment(Index tet, CornerMask simplex) {
-    pieces_.segments.push_back(ownedBy(map_.topology, tet, simplex));
+  [[nodiscard]] OwnedSimplex carrierOf(const SimplexInTet& carrier) const {
+    return ownedBy(map_.topology, carrier.tet, carrier.simplex);
+  }
+  void addSegment(const SimplexInTet& carrier) { pieces_.segments.push_back(carrierOf(carrier)); }
+
+  [[nodiscard]] Crossing crossingAt(const ArcPart& part, const SimplexPoint& point) const {
+    const Index tet = part.carrier.tet;
+    const Tet& corners = map_.topology.tets[tet];
+    const CornerMask simplex = point.simplex();
+    const std::array<double, 4> shares = point.normalized();
+    return {position(shares, corners, map_.input.view.points),
+            coordinate(shares, part.seen, 0) / static_cast<double>(map_.exact.unit),
+            ownedBy(map_.topology, tet, simplex), verticesOf(corners, simplex)};
   }
 
-  void addPoint(Index tet, const SimplexPoint& point, const LatticeTet& seen, bool first) {
-    const std::array<double, 4> shares = point.normalized();
-    const double t = coordinate(shares, seen, 0) / static_cast<double>(map_.exact.unit);
-    // The exact value is in (0, 1) and ascends; rounding may not change that.
-    const double low = first ? std::numeric_limits<double>::min() : pieces_.parameters.back();
-    pieces_.parameters.push_back(std::clamp(t, low, kBelowOne));
-    pieces_.points.push_back(position(shares, map_.topology.tets[tet], map_.input.view.points));
-    pieces_.crossings.push_back(ownedBy(map_.topology, tet, point.simplex()));
+  /// Exact values are in (0, 1) and ascend; rounding may not change that.
+  static void smoothParameters(std::span<Crossing> arc) {
+    double low = std::numeric_limits<double>::min();
+    for (Crossing& crossing : arc) {
+      crossing.parameter = low = std::clamp(crossing.parameter, low, kBelowOne);
+    }
   }
 
   const PreparedMap& map_;
@@ -161,15 +141,20 @@ class BlockTracer {
   Arcs& arcs_;
   ArcPieces& pieces_;
   ArcTracer tracer_;
+  ArcPieces back_;
 };
 
 /// Moves the pieces of a block to their places.
-void join(ArcPieces& pieces, std::uint64_t firstPoint, std::uint64_t firstSegment, Arcs& arcs) {
-  for (std::size_t i = 0; i < pieces.points.size(); ++i) {
-    arcs.points[firstPoint + i] = pieces.points[i];
-    arcs.parameters[firstPoint + i] = pieces.parameters[i];
-    arcs.generatorTet[firstPoint + i] = pieces.crossings[i].tet;
-    arcs.generatorCorners[firstPoint + i] = pieces.crossings[i].corners;
+void join(ArcPieces& pieces, std::uint64_t firstPoint, std::uint64_t firstSegment,
+          TracedArcs& traced) {
+  Arcs& arcs = traced.arcs;
+  for (std::size_t i = 0; i < pieces.crossings.size(); ++i) {
+    const Crossing& crossing = pieces.crossings[i];
+    arcs.points[firstPoint + i] = crossing.point;
+    arcs.parameters[firstPoint + i] = crossing.parameter;
+    arcs.generatorTet[firstPoint + i] = crossing.generator.tet;
+    arcs.generatorCorners[firstPoint + i] = crossing.generator.corners;
+    traced.crossings[firstPoint + i] = crossing.vertices;
   }
   for (std::size_t i = 0; i < pieces.segments.size(); ++i) {
     arcs.segmentTet[firstSegment + i] = pieces.segments[i].tet;
@@ -180,9 +165,10 @@ void join(ArcPieces& pieces, std::uint64_t firstPoint, std::uint64_t firstSegmen
 
 }  // namespace
 
-Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const ElementNumbers& edges,
-               Stage& stage) {
-  Arcs arcs;
+TracedArcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices,
+                     const ElementNumbers& edges, Stage& stage) {
+  TracedArcs traced;
+  Arcs& arcs = traced.arcs;
   const std::size_t tets = map.topology.tetCount();
   arcs.ends.resize(edges.count());
   arcs.pointBegin.resize(edges.count() + 1);
@@ -202,14 +188,15 @@ Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const Ele
   arcs.parameters.resize(points);
   arcs.generatorTet.resize(points);
   arcs.generatorCorners.resize(points);
+  traced.crossings.resize(points);
   arcs.segmentTet.resize(points + edges.count());
   arcs.segmentCorners.resize(points + edges.count());
   parallelFor(stage, blocks.size(), 1, [&](std::size_t block) {
     const std::uint64_t firstArc = edges.begin(block * kSweepBlock);
     const std::uint64_t firstPoint = arcs.pointBegin[firstArc];
-    join(blocks[block], firstPoint, firstPoint + firstArc, arcs);
+    join(blocks[block], firstPoint, firstPoint + firstArc, traced);
   });
-  return arcs;
+  return traced;
 }
 
 }  // namespace hexhex

@@ -5,11 +5,17 @@
 
 #include <curved/element_numbers.hpp>
 #include <curved/lattice_numbers.hpp>
+#include <curved/owned_simplex.hpp>
 
 namespace hexhex {
 
-/// Traces every hex edge once. Generators are in terms of the tets in `map`, not of the caller's.
-[[nodiscard]] Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices,
-                             const ElementNumbers& edges, Stage& stage);
+struct TracedArcs {
+  Arcs arcs;  ///< generators in terms of the tets in the map, not of the caller's
+  Array<SimplexVertices> crossings;  ///< per inner point: its generator's vertices
+};
+
+/// Traces every hex edge once.
+[[nodiscard]] TracedArcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices,
+                                   const ElementNumbers& edges, Stage& stage);
 
 }  // namespace hexhex

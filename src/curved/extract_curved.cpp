@@ -1,5 +1,6 @@
 // The public entries of curved meshes.
 #include <string>
+#include <utility>
 
 #include <hexhex/curved.hpp>
 
@@ -28,12 +29,13 @@ void addParts(const PreparedMap& map, PiecewiseLinearParts parts, PiecewiseLinea
   Stage arcStage(context, "arcs");
   const LatticeNumbers vertices(map, arcStage);
   const ElementNumbers edges(map, ElementKind::Edges, arcStage);
-  result.arcs = traceArcs(map, vertices, edges, arcStage);
+  TracedArcs traced = traceArcs(map, vertices, edges, arcStage);
+  result.arcs = std::move(traced.arcs);
   arcStage.finish();
   if (parts == PiecewiseLinearParts::ArcsAndPatches) {
     Stage stage(context, "patches");
     const ElementNumbers faces(map, ElementKind::Faces, stage);
-    result.patches = cutPatches({map, vertices, edges, faces, result.arcs}, stage);
+    result.patches = cutPatches({map, vertices, edges, faces, result.arcs, traced.crossings}, stage);
     toCallersCorners(map.input, result.patches.generatorCorners, stage);
     toCallersCorners(map.input, result.patches.polygonCorners, stage);
   }

@@ -3,6 +3,7 @@
 #include <string>
 
 #include <curved/face_cutter.hpp>
+#include <curved/simplex_point.hpp>
 
 namespace hexhex {
 
@@ -40,6 +41,35 @@ std::array<double, 2> onSide(std::size_t side, double t) {
     default:
       return {0, 1 - t};
   }
+}
+
+/// Weights of the point where the plane crosses an edge, or of a vertex.
+std::array<double, 4> crossingOfPlane(const LatticeTet& seen, CornerMask simplex) {
+  const std::size_t i = firstCorner(simplex);
+  const std::size_t j = lastCorner(simplex);
+  if (i == j) return SimplexPoint::corner(i).normalized();
+  return SimplexPoint::between(i, j, seen[i][2], seen[j][2]).normalized();
+}
+
+/// Rounded coordinate along a side of the square of a corner of a slice on it.
+double placeOnSide(const LatticeTet& seen, const SliceCorner& corner, std::size_t side,
+                   std::int64_t unit) {
+  const std::size_t along = side % 2;
+  const std::size_t across = 1 - along;
+  LatticeTet moved = seen;
+  if (side == 1 || side == 2) {
+    for (LatticePoint& p : moved) p[across] -= unit;
+  }
+  SimplexPoint point = SimplexPoint::corner(firstCorner(corner.simplex));
+  if (dimension(corner.simplex) == 2) {
+    point = crossingOfFace(moved, oppositeCorner(corner.simplex), along);
+  } else if (dimension(corner.simplex) == 1) {
+    const std::size_t i = firstCorner(corner.simplex);
+    const std::size_t j = lastCorner(corner.simplex);
+    const std::size_t axis = moved[i][across] != moved[j][across] ? across : 2;
+    point = SimplexPoint::between(i, j, moved[i][axis], moved[j][axis]);
+  }
+  return coordinate(point.normalized(), seen, along) / static_cast<double>(unit);
 }
 
 std::array<double, 2> ofSquareCorner(std::size_t corner) { return onSide(corner, 0); }
@@ -96,7 +126,7 @@ void FaceCutter::collectPieces(const SimplexInTet& center) {
   const bool found = star_.visit(center, [&](const SimplexInTet& here) {
     const CornerMask carrier = carrierOfPlane(see(here));
     if (carrier == kNoSimplex) return false;
-    addPiece({here.tet, carrier, here.frame});
+    addPiece({here.tet, carrier, here.frame}, -1);
     return true;
   });
   if (!found) fail(center.tet, "no tet around the centre meets the face");
@@ -104,7 +134,7 @@ void FaceCutter::collectPieces(const SimplexInTet& center) {
 }
 
 /// Adds a piece if it is new.
-void FaceCutter::addPiece(SimplexInTet carrier) {
+void FaceCutter::addPiece(SimplexInTet carrier, int entered) {
   if (carrier.simplex != kWholeTet) {
     // A triangle has two tets: the smaller one stands for both.
     const int face = oppositeCorner(carrier.simplex);
@@ -118,9 +148,10 @@ void FaceCutter::addPiece(SimplexInTet carrier) {
     const SimplexInTet& known = pieces_[i].carrier;
     if (known.simplex == carrier.simplex && known.frame == carrier.frame) return;
   }
-  const Slice slice = sliceSquare(see(carrier), carrier.simplex, exact_.unit);
+  const LatticeTet seen = see(carrier);
+  const Slice slice = sliceSquare(seen, carrier.simplex, exact_.unit);
   if (slice.size() < 3) fail(carrier.tet, "a polygon has no area");
-  pieces_.push_back({carrier, slice, first});
+  pieces_.push_back({carrier, seen, slice, entered, first});
   first = pieces_.size() - 1;
 }
 
@@ -130,19 +161,20 @@ void FaceCutter::addNeighbours(std::size_t piece) {
   for (std::size_t i = 0; i < size; ++i) {
     const std::uint8_t side = pieces_[piece].slice[i].side;
     if (side >= kSquareSide) continue;
-    const SimplexInTet at{pieces_[piece].carrier.tet, side, pieces_[piece].carrier.frame};
+    SimplexInTet at{pieces_[piece].carrier.tet, side, pieces_[piece].carrier.frame};
     if (dimension(side) == 2) {
       const int face = oppositeCorner(side);
-      if (topology_.isBoundary(halfFaceOf(at.tet, face))) fail(at.tet, "a face leaves the mesh");
-      SimplexInTet next = crossed(topology_, exact_, at, face);
-      next.simplex = kWholeTet;
-      addPiece(next);
+      if (face == pieces_[piece].entered) continue;
+      const HalfFace mate = topology_.mate[halfFaceOf(at.tet, face)];
+      if (mate == kNone) fail(at.tet, "a face leaves the mesh");
+      at.simplex = kWholeTet;
+      addPiece(crossed(topology_, exact_, at, face), localOf(mate));
       continue;
     }
     // Two pieces meet in an edge of the plane, somewhere around it.
     star_.visit(at, [&](const SimplexInTet& here) {
       const CornerMask carrier = carrierOfPlane(see(here));
-      if (carrier != kNoSimplex) addPiece({here.tet, carrier, here.frame});
+      if (carrier != kNoSimplex) addPiece({here.tet, carrier, here.frame}, -1);
       return false;
     });
   }
@@ -156,7 +188,7 @@ void FaceCutter::findArcs(Border& border) {
       if (piece.slice[i].side < kSquareSide) continue;
       const std::size_t side = piece.slice[i].side - kSquareSide;
       if (((found >> side) & 1U) != 0) continue;
-      const CornerMask simplex = simplexOfMidpoint(see(piece.carrier), side);
+      const CornerMask simplex = simplexOfMidpoint(piece.seen, side);
       if (simplex == kNoSimplex) continue;
       found |= 1U << side;
       setArc(border, side, {piece.carrier.tet, simplex, alongSide(piece.carrier.frame, side)});
@@ -170,6 +202,11 @@ CornerMask FaceCutter::simplexOfMidpoint(const LatticeTet& corners, std::size_t 
   const std::int64_t unit = exact_.unit;
   const std::array<LatticePoint, 4> midpoints = {
       {{unit / 2, 0, 0}, {unit, unit / 2, 0}, {unit / 2, unit, 0}, {0, unit / 2, 0}}};
+  // Most tets at a side are elsewhere along it.
+  const std::size_t along = side % 2;
+  const auto [low, high] = std::minmax(
+      {corners[0][along], corners[1][along], corners[2][along], corners[3][along]});
+  if (low > unit / 2 || high < unit / 2) return kNoSimplex;
   CornerMask simplex = kNoSimplex;
   for (int face = 0; face < 4; ++face) {
     const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
@@ -218,15 +255,14 @@ void FaceCutter::put(std::uint64_t number, const std::array<double, 2>& paramete
 }
 
 void FaceCutter::emit(const Border& border, const Piece& piece) {
-  const LatticeTet seen = see(piece.carrier);
   for (std::size_t i = 0; i < piece.slice.size(); ++i) {
     const SliceCorner& corner = piece.slice[i];
     if (corner.onBorder(0) && corner.onBorder(1)) {
       put(border.vertices[corner.squareCorner()], ofSquareCorner(corner.squareCorner()));
     } else if (corner.onBorder(0) || corner.onBorder(1)) {
-      emitArcPoint(border, piece, seen, corner);
+      emitArcPoint(border, piece, corner);
     } else {
-      emitInnerPoint(piece, seen, corner);
+      emitInnerPoint(piece, corner);
     }
   }
   out_.cornerCounts.push_back(static_cast<std::uint32_t>(piece.slice.size()));
@@ -234,45 +270,27 @@ void FaceCutter::emit(const Border& border, const Piece& piece) {
   out_.carriers.push_back({piece.carrier.tet, piece.carrier.simplex});
 }
 
-bool FaceCutter::isGenerator(std::uint64_t arcPoint, Index tet, CornerMask simplex) const {
-  const CornerMask other = input_.arcs.generatorCorners[arcPoint];
-  if (dimension(other) != dimension(simplex)) return false;
-  const Tet& mine = topology_.tets[tet];
-  const Tet& others = topology_.tets[input_.arcs.generatorTet[arcPoint]];
-  for (int i = 0; i < 4; ++i) {
-    if (!contains(other, i)) continue;
-    bool shared = false;
-    for (int j = 0; j < 4; ++j) {
-      shared = shared || (contains(simplex, j) && mine[static_cast<std::size_t>(j)] ==
-                                                      others[static_cast<std::size_t>(i)]);
-    }
-    if (!shared) return false;
-  }
-  return true;
-}
-
 /// A point of an arc is known by the simplex that the arc crosses there. (An arc that crosses one
 /// simplex twice comes back through a periodic domain; then the place along the arc decides.)
-void FaceCutter::emitArcPoint(const Border& border, const Piece& piece, const LatticeTet& seen,
-                              const SliceCorner& corner) {
+void FaceCutter::emitArcPoint(const Border& border, const Piece& piece, const SliceCorner& corner) {
   const std::size_t side = corner.squareSide();
-  const Index arc = border.arcs[side];
+  const std::size_t arc = border.arcs[side];
   const bool reversed = ((border.reversed >> side) & 1U) != 0;
   const Arcs& arcs = input_.arcs;
-  const CornerMask simplex = corner.point.simplex();
-  const double along = coordinate(corner.point.normalized(), seen, side % 2) /
-                       static_cast<double>(exact_.unit);
-  const double expected = (side >= 2) == reversed ? along : 1 - along;
-  std::uint64_t best = arcs.pointBegin[arc + std::size_t{1}];
-  for (std::uint64_t i = arcs.pointBegin[arc]; i < arcs.pointBegin[arc + std::size_t{1}]; ++i) {
-    if (!isGenerator(i, piece.carrier.tet, simplex)) continue;
-    if (best == arcs.pointBegin[arc + std::size_t{1}] ||
-        std::abs(arcs.parameters[i] - expected) < std::abs(arcs.parameters[best] - expected)) {
+  const SimplexVertices vertices = verticesOf(topology_.tets[piece.carrier.tet], corner.simplex);
+  const std::uint64_t end = arcs.pointBegin[arc + 1];
+  const auto next = [&](std::uint64_t i) {
+    while (i < end && input_.crossings[i] != vertices) ++i;
+    return i;
+  };
+  std::uint64_t best = next(arcs.pointBegin[arc]);
+  if (best == end) fail(piece.carrier.tet, "a corner of a polygon is no point of its arc");
+  for (std::uint64_t i = next(best + 1); i < end; i = next(i + 1)) {
+    const double along = placeOnSide(piece.seen, corner, side, exact_.unit);
+    const double expected = (side >= 2) == reversed ? along : 1 - along;
+    if (std::abs(arcs.parameters[i] - expected) < std::abs(arcs.parameters[best] - expected)) {
       best = i;
     }
-  }
-  if (best == arcs.pointBegin[arc + std::size_t{1}]) {
-    fail(piece.carrier.tet, "a corner of a polygon is no point of its arc");
   }
   const double t = arcs.parameters[best];
   put(vertexCount_ + best, onSide(side, reversed ? 1 - t : t));
@@ -280,13 +298,13 @@ void FaceCutter::emitArcPoint(const Border& border, const Piece& piece, const La
 
 /// A point inside the square is known by the vertex or edge of the tets that crosses the square
 /// there. Its coordinates are the same from all tets, bit for bit.
-void FaceCutter::emitInnerPoint(const Piece& piece, const LatticeTet& seen,
-                                const SliceCorner& corner) {
-  const CornerMask simplex = corner.point.simplex();
+void FaceCutter::emitInnerPoint(const Piece& piece, const SliceCorner& corner) {
+  const CornerMask simplex = corner.simplex;
   const Tet& tet = topology_.tets[piece.carrier.tet];
   std::array<Index, 2> vertices = {tet[firstCorner(simplex)], tet[lastCorner(simplex)]};
   if (vertices[1] < vertices[0]) std::swap(vertices[0], vertices[1]);
-  const std::array<double, 4> shares = corner.point.normalized();
+  const LatticeTet& seen = piece.seen;
+  const std::array<double, 4> shares = crossingOfPlane(seen, simplex);
   const auto unit = static_cast<double>(exact_.unit);
   const std::array<double, 2> parameter = {
       std::clamp(coordinate(shares, seen, 0) / unit, 0.0, 1.0),

@@ -52,7 +52,9 @@ class FaceCutter {
  private:
   struct Piece {
     SimplexInTet carrier;
+    LatticeTet seen;  ///< the tet in the square's frame
     Slice slice;
+    int entered;       ///< face of the tet across which the piece was found, or -1
     std::size_t next;  ///< piece of the same tet, or kLast
   };
   struct InnerPoint {
@@ -77,7 +79,7 @@ class FaceCutter {
 
   [[nodiscard]] bool cutInsideOneTet(Index tet, const Frame& frame, Border& border);
   void collectPieces(const SimplexInTet& center);
-  void addPiece(SimplexInTet carrier);
+  void addPiece(SimplexInTet carrier, int entered);
   void addNeighbours(std::size_t piece);
   [[nodiscard]] LatticeTet see(const SimplexInTet& at) const {
     return at.frame.see(exact_.corners[at.tet], exact_.unit);
@@ -89,10 +91,8 @@ class FaceCutter {
   static void setVertices(Border& border, const Arcs& arcs, Index tet);
 
   void emit(const Border& border, const Piece& piece);
-  void emitArcPoint(const Border& border, const Piece& piece, const LatticeTet& seen,
-                    const SliceCorner& corner);
-  void emitInnerPoint(const Piece& piece, const LatticeTet& seen, const SliceCorner& corner);
-  [[nodiscard]] bool isGenerator(std::uint64_t arcPoint, Index tet, CornerMask simplex) const;
+  void emitArcPoint(const Border& border, const Piece& piece, const SliceCorner& corner);
+  void emitInnerPoint(const Piece& piece, const SliceCorner& corner);
   void put(std::uint64_t number, const std::array<double, 2>& parameter);
 
   const PatchInput& input_;

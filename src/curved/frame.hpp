@@ -46,7 +46,16 @@ struct Frame {
     return seen;
   }
   [[nodiscard]] constexpr LatticeTet see(const LatticeTet& tet, std::int64_t unit) const noexcept {
-    return {see(tet[0], unit), see(tet[1], unit), see(tet[2], unit), see(tet[3], unit)};
+    LatticeTet seen{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(axisOf(axes[k]));
+      const std::int64_t zero = origin[axis] * unit;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const std::int64_t offset = tet[i][axis] - zero;
+        seen[i][k] = signOf(axes[k]) < 0 ? -offset : offset;
+      }
+    }
+    return seen;
   }
 
   [[nodiscard]] constexpr bool operator==(const Frame&) const = default;

@@ -1,6 +1,9 @@
 // Simplices by the smallest tet that contains them.
 #pragma once
 
+#include <array>
+#include <utility>
+
 #include <map/tet_topology.hpp>
 
 namespace hexhex {
@@ -15,6 +18,21 @@ struct OwnedSimplex {
                                           CornerMask simplex) {
   const Index owner = ownerTet(topology, tet, simplex);
   return {owner, owner == tet ? simplex : topology.translated(simplex, tet, owner)};
+}
+
+/// The vertices of a simplex of less than four, ascending; kNone behind them.
+using SimplexVertices = std::array<Index, 3>;
+
+[[nodiscard]] inline SimplexVertices verticesOf(const Tet& tet, CornerMask simplex) noexcept {
+  SimplexVertices vertices = {kNone, kNone, kNone};
+  std::size_t count = 0;
+  for (int i = 0; i < 4; ++i) {
+    if (contains(simplex, i)) vertices[count++] = tet[static_cast<std::size_t>(i)];
+  }
+  if (vertices[1] < vertices[0]) std::swap(vertices[0], vertices[1]);
+  if (vertices[2] < vertices[1]) std::swap(vertices[1], vertices[2]);
+  if (vertices[1] < vertices[0]) std::swap(vertices[0], vertices[1]);
+  return vertices;
 }
 
 }  // namespace hexhex

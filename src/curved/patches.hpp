@@ -5,6 +5,7 @@
 
 #include <curved/element_numbers.hpp>
 #include <curved/lattice_numbers.hpp>
+#include <curved/owned_simplex.hpp>
 
 namespace hexhex {
 
@@ -14,7 +15,8 @@ struct PatchInput {
   const LatticeNumbers& vertices;
   const ElementNumbers& edges;
   const ElementNumbers& faces;
-  const Arcs& arcs;  ///< of the edges; generators in terms of the tets in `map`
+  const Arcs& arcs;  ///< of the edges
+  std::span<const SimplexVertices> crossings;  ///< simplex of each inner point of the arcs
 };
 
 /// Cuts every hex face once. Generators are in terms of the tets in the map, not of the caller's.

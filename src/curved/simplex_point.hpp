@@ -3,12 +3,19 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 
 #include <hexhex/types.hpp>
 
 #include <lattice/tet_geometry.hpp>
 
 namespace hexhex {
+
+/// A number that is not negative, rounded twice: to within 2^-52 of its value.
+[[nodiscard]] constexpr double toDouble(Int128 value) noexcept {
+  return static_cast<double>(static_cast<std::uint64_t>(value >> 64)) * 0x1p64 +
+         static_cast<double>(static_cast<std::uint64_t>(value));
+}
 
 /// A point of a tet: weights of the corners, not negative, up to a common factor. At most 124 bits
 /// each (minors of coordinates), so that products with coordinates fit 192 bits.
@@ -44,15 +51,15 @@ struct SimplexPoint {
   /// Sign of (coordinate `axis` of the point) - target.
   [[nodiscard]] int compare(const LatticeTet& corners, std::size_t axis,
                             std::int64_t target) const noexcept {
-    // Weights and differences carry one rounding each; three products and three sums of up to four
-    // terms add at most five more: 7 * 2^-53 < 2^-50 of the sum of magnitudes, which itself is as
-    // good. 2^-49 leaves a factor of two.
+    // Weights carry two roundings and differences one; products and three sums of up to four terms
+    // add at most five more: 8 * 2^-53 = 2^-50 of the sum of magnitudes, which itself is as good.
+    // 2^-49 leaves a factor of two.
     constexpr double kRelativeError = 0x1p-49;
     double sum = 0;
     double magnitude = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       const double term =
-          static_cast<double>(weights[i]) * static_cast<double>(corners[i][axis] - target);
+          toDouble(weights[i]) * static_cast<double>(corners[i][axis] - target);
       sum += term;
       magnitude += std::abs(term);
     }
@@ -66,7 +73,7 @@ struct SimplexPoint {
   [[nodiscard]] std::array<double, 4> normalized() const noexcept {
     std::array<double, 4> shares{};
     double sum = 0;
-    for (std::size_t i = 0; i < 4; ++i) sum += shares[i] = static_cast<double>(weights[i]);
+    for (std::size_t i = 0; i < 4; ++i) sum += shares[i] = toDouble(weights[i]);
     for (double& share : shares) share /= sum;
     return shares;
   }
@@ -98,6 +105,9 @@ struct SimplexPoint {
 /// interior of the simplex. All corners of the simplex are seen from there.
 [[nodiscard]] SimplexPoint exitPoint(const LatticeTet& corners, CornerMask simplex,
                                      std::size_t along) noexcept;
+
+/// The same along axis 0 for a line that came into the tet through the interior of face `entered`.
+[[nodiscard]] SimplexPoint exitAfterEntry(const LatticeTet& corners, int entered) noexcept;
 
 /// Where such a line crosses a face that it is not parallel to.
 /// @return no weights at all if it does not meet the closed face

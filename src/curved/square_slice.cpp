@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cmath>
 
+#include <curved/simplex_point.hpp>
 #include <curved/square_slice.hpp>
 
 namespace hexhex {
@@ -8,51 +10,117 @@ namespace {
 
 std::int64_t height(const LatticeTet& corners, std::size_t i) noexcept { return corners[i][2]; }
 
-SquareSide placeOf(const SimplexPoint& point, const LatticeTet& corners, std::size_t axis,
-                   std::int64_t unit) noexcept {
-  const int fromZero = point.compare(corners, axis, 0);
+SquareSide sideOf(int fromZero, int fromOne) noexcept {
   if (fromZero < 0) return SquareSide::Below;
   if (fromZero == 0) return SquareSide::AtZero;
-  const int fromOne = point.compare(corners, axis, unit);
   if (fromOne > 0) return SquareSide::Above;
   return fromOne == 0 ? SquareSide::AtOne : SquareSide::Inside;
+}
+
+SquareSide sideOf(std::int64_t x, std::int64_t unit) noexcept {
+  return sideOf(sign(Int128{x}), sign(Int128{x} - unit));
+}
+
+/// A coordinate of the point between corners i and j where a linear function vanishes that has
+/// values of opposite signs there; all products fit 124 bits.
+SquareSide sideBetween(const LatticeTet& corners, std::size_t i, std::size_t j, std::int64_t atI,
+                       std::int64_t atJ, std::size_t axis, std::int64_t unit) noexcept {
+  const std::int64_t weightI = atJ < 0 ? -atJ : atJ;
+  const std::int64_t weightJ = atI < 0 ? -atI : atI;
+  const Int128 sum = static_cast<Int128>(weightI) * corners[i][axis] +
+                     static_cast<Int128>(weightJ) * corners[j][axis];
+  const Int128 one = (static_cast<Int128>(weightI) + weightJ) * unit;
+  return sideOf(sign(sum), sum > one ? 1 : (sum < one ? -1 : 0));
+}
+
+/// Coordinate `axis` of the point in the interior of a face where both others vanish: a mean of the
+/// corners' coordinates, weighted by areas in the plane of the others.
+SquareSide sideOnFace(const LatticeTet& corners, int face, std::size_t axis,
+                      std::int64_t unit) noexcept {
+  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+  const std::size_t p = (axis + 1) % 3;
+  const std::size_t q = (axis + 2) % 3;
+  std::array<std::array<double, 3>, 3> c;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const LatticePoint& corner = corners[static_cast<std::size_t>(f[i])];
+    c[i] = {static_cast<double>(corner[p]), static_cast<double>(corner[q]),
+            static_cast<double>(corner[axis])};
+  }
+  // Areas carry at most four roundings relative to the sum of magnitudes of their products; sums
+  // and products behind them five more: 9 * 2^-53 < 2^-49. 2^-48 leaves a factor of two.
+  constexpr double kRelativeError = 0x1p-48;
+  const auto one = static_cast<double>(unit);
+  double area = 0;
+  double sum = 0;
+  double magnitude = 0;
+  double reach = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& a = c[(i + 1) % 3];
+    const auto& b = c[(i + 2) % 3];
+    const double first = a[0] * b[1];
+    const double second = a[1] * b[0];
+    area += first - second;
+    sum += (first - second) * c[i][2];
+    const double size = std::abs(first) + std::abs(second);
+    magnitude += size;
+    reach += size * (std::abs(c[i][2]) + one);
+  }
+  const double beyond = sum - area * one;
+  if (std::abs(area) > kRelativeError * magnitude && std::abs(sum) > kRelativeError * reach &&
+      std::abs(beyond) > kRelativeError * reach) {
+    const bool turned = area < 0;
+    return sideOf((sum > 0) != turned ? 1 : -1, (beyond > 0) != turned ? 1 : -1);
+  }
+  const SimplexPoint exact = crossingOfFace(corners, face, axis);
+  return sideOf(exact.compare(corners, axis, 0), exact.compare(corners, axis, unit));
 }
 
 /// The corners of a slice before it is clipped.
 class Outline {
  public:
-  Outline(const LatticeTet& corners, std::int64_t unit) : corners_(corners), unit_(unit) {}
+  Outline(const LatticeTet& corners, std::int64_t unit) : corners_(corners), unit_(unit) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      allInside_[axis] = true;
+      for (const LatticePoint& corner : corners) {
+        allInside_[axis] = allInside_[axis] && corner[axis] > 0 && corner[axis] < unit;
+      }
+    }
+  }
 
-  void addCorner(std::size_t i) { add(SimplexPoint::corner(i)); }
-  /// The point of an edge in the plane, whose ends are not both in it.
+  void addCorner(std::size_t i) {
+    const auto simplex = cornerBit(static_cast<int>(i));
+    // A corner of the tet ends several edges that the plane crosses.
+    for (std::size_t k = 0; k < slice_.size(); ++k) {
+      if (slice_[k].simplex == simplex) return;
+    }
+    slice_.add({simplex, {sideOf(corners_[i][0], unit_), sideOf(corners_[i][1], unit_)}, 0});
+  }
+  /// The point of an edge in the plane; corner i may lie in the plane, corner j does not.
   void addCrossing(std::size_t i, std::size_t j) {
-    add(SimplexPoint::between(i, j, height(corners_, i), height(corners_, j)));
+    if (height(corners_, i) == 0) return addCorner(i);
+    const auto simplex = static_cast<CornerMask>(cornerBit(static_cast<int>(i)) |
+                                                 cornerBit(static_cast<int>(j)));
+    slice_.add({simplex, {place(i, j, 0), place(i, j, 1)}, 0});
   }
 
   /// Two corners that follow each other span the simplex that their side runs in.
   [[nodiscard]] Slice finish() {
     for (std::size_t i = 0; i < slice_.size(); ++i) {
-      const CornerMask next = slice_[(i + 1) % slice_.size()].point.simplex();
-      slice_[i].side = static_cast<std::uint8_t>(slice_[i].point.simplex() | next);
+      const CornerMask next = slice_[i + 1 < slice_.size() ? i + 1 : 0].simplex;
+      slice_[i].side = static_cast<std::uint8_t>(slice_[i].simplex | next);
     }
     return slice_;
   }
 
  private:
-  void add(SimplexPoint point) {
-    // A crossing at an end of its edge is the corner there, and may be so twice.
-    const CornerMask simplex = point.simplex();
-    if (dimension(simplex) == 0) point = SimplexPoint::corner(firstCorner(simplex));
-    for (std::size_t i = 0; i < slice_.size(); ++i) {
-      if (slice_[i].point.simplex() == simplex) return;
-    }
-    slice_.add({point,
-                {placeOf(point, corners_, 0, unit_), placeOf(point, corners_, 1, unit_)},
-                kNoSimplex});
+  [[nodiscard]] SquareSide place(std::size_t i, std::size_t j, std::size_t axis) const noexcept {
+    if (allInside_[axis]) return SquareSide::Inside;
+    return sideBetween(corners_, i, j, height(corners_, i), height(corners_, j), axis, unit_);
   }
 
   const LatticeTet& corners_;
   std::int64_t unit_;
+  std::array<bool, 2> allInside_{};
   Slice slice_;
 };
 
@@ -93,7 +161,11 @@ Slice outlineOfTet(const LatticeTet& corners, std::int64_t unit) {
   const std::size_t alone = aboveCount == 1 ? above[0] : below[0];
   std::array<int, 3> f = kFaceCorners[alone];
   if (belowCount == 1) std::swap(f[1], f[2]);
-  for (const int i : f) outline.addCrossing(alone, static_cast<std::size_t>(i));
+  for (const int i : f) {
+    const auto other = static_cast<std::size_t>(i);
+    // Only corners above may lie in the plane.
+    belowCount == 1 ? outline.addCrossing(other, alone) : outline.addCrossing(alone, other);
+  }
   return outline.finish();
 }
 
@@ -114,9 +186,10 @@ struct HalfPlane {
 /// Where the border of a half plane crosses a side between its ends.
 SliceCorner crossing(const HalfPlane& plane, std::uint8_t side, const LatticeTet& corners,
                      std::int64_t unit) noexcept {
-  SliceCorner corner{{}, {plane.border, plane.border}, side};
+  SliceCorner corner{side, {plane.border, plane.border}, side};
   const std::size_t other = 1 - plane.axis;
   if (side >= kSquareSide) {  // a corner of the square; only borders of the other axis get here
+    corner.simplex = kNoSimplex;
     corner.at[other] =
         side == kSquareSide || side == kSquareSide + 3 ? SquareSide::AtZero : SquareSide::AtOne;
     return corner;
@@ -125,14 +198,15 @@ SliceCorner crossing(const HalfPlane& plane, std::uint8_t side, const LatticeTet
   if (dimension(side) == 1) {
     const std::size_t i = firstCorner(side);
     const std::size_t j = lastCorner(side);
-    corner.point = SimplexPoint::between(i, j, corners[i][plane.axis] - at,
-                                         corners[j][plane.axis] - at);
+    corner.at[other] = sideBetween(corners, i, j, corners[i][plane.axis] - at,
+                                   corners[j][plane.axis] - at, other, unit);
+  } else if (at == 0) {
+    corner.at[other] = sideOnFace(corners, oppositeCorner(side), other, unit);
   } else {
     LatticeTet moved = corners;
     for (LatticePoint& p : moved) p[plane.axis] -= at;
-    corner.point = crossingOfFace(moved, oppositeCorner(side), other);
+    corner.at[other] = sideOnFace(moved, oppositeCorner(side), other, unit);
   }
-  corner.at[other] = placeOf(corner.point, corners, other, unit);
   return corner;
 }
 
@@ -141,7 +215,7 @@ Slice clipped(const Slice& slice, const HalfPlane& plane, const LatticeTet& corn
   Slice result;
   for (std::size_t i = 0; i < slice.size(); ++i) {
     const SliceCorner& from = slice[i];
-    const SliceCorner& to = slice[(i + 1) % slice.size()];
+    const SliceCorner& to = slice[i + 1 < slice.size() ? i + 1 : 0];
     const int atFrom = plane.side(from);
     const int atTo = plane.side(to);
     if (atFrom >= 0) {

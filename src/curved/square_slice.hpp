@@ -7,7 +7,7 @@
 #include <array>
 #include <cstdint>
 
-#include <curved/simplex_point.hpp>
+#include <lattice/tet_geometry.hpp>
 
 namespace hexhex {
 
@@ -19,7 +19,8 @@ enum class SquareSide : std::uint8_t { Below, AtZero, Inside, AtOne, Above };
 inline constexpr std::uint8_t kSquareSide = 16;
 
 struct SliceCorner {
-  SimplexPoint point;  ///< has no weights at a corner of the square inside a tet or triangle
+  /// The simplex of the tet that holds the corner; of no meaning at corners of the square.
+  CornerMask simplex;
   std::array<SquareSide, 2> at;
   /// What the side from here to the next corner runs along: a simplex of the tet (a face, or an
   /// edge in the square's plane), or kSquareSide + i.
@@ -52,7 +53,7 @@ class Slice {
 
  private:
   std::array<SliceCorner, 8> corners_;
-  std::size_t size_ = 0;
+  std::uint32_t size_ = 0;
 };
 
 /// The simplex of a tet whose interior the plane meets in an area: the tet itself, a face that lies
