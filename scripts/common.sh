@@ -6,7 +6,7 @@ mkdir -p "$logs"
 
 # ccache, if there is one, makes the second build of everything fast.
 if command -v ccache >/dev/null; then
-  export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+  export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
 fi
 
 say() { printf '%s\n' "$*"; }

@@ -9,11 +9,12 @@
 #include <cstdint>
 
 #include <hexhex/context.hpp>
+#include <hexhex/export.h>
 #include <hexhex/extract.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// Hex edges as polylines. An inner point is where the edge leaves one simplex of the tet mesh for
 /// another; a segment lies in the interior of one simplex: a tet, or a face or edge inside which
@@ -51,7 +52,7 @@ struct Patches {
   Array<Quad> vertices;
   /// Per face: the arc from its vertex i to vertex i + 1 (mod 4).
   Array<std::array<Index, 4>> arcs;
-  Array<std::uint8_t> reversedArcs;  ///< per face: bit i if that arc runs from i + 1 to i
+  Array<std::uint8_t> reversedArcs;   ///< per face: bit i if that arc runs from i + 1 to i
   Array<std::uint64_t> polygonBegin;  ///< per face (+1): its polygons
 
   // Per polygon:
@@ -60,8 +61,8 @@ struct Patches {
   Array<CornerSet> polygonCorners;   ///< as in HexMesh
 
   // Per corner of a polygon:
-  Array<Index> corners;                      ///< a point of the common numbering
-  Array<std::array<double, 2>> parameters;   ///< (u, v) in the face, in [0, 1]
+  Array<Index> corners;                     ///< a point of the common numbering
+  Array<std::array<double, 2>> parameters;  ///< (u, v) in the face, in [0, 1]
 
   // Per inner point of a face:
   Array<Vec3> points;
@@ -140,4 +141,4 @@ struct LagrangeMesh {
 /// that is not positive; one that is bad elsewhere only is not found.
 [[nodiscard]] Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context);
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

@@ -7,10 +7,11 @@
 #include <string_view>
 
 #include <hexhex/context.hpp>
+#include <hexhex/export.h>
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// Reads a tetrahedral mesh with an integer-grid map: `.hexex`.
 /// @throws Error FileNotFound, FileSyntax (with line), FileUnsupported
@@ -48,7 +49,8 @@ struct WriteOptions {
 /// Writes a hexahedral mesh: `.mesh` (vertices, boundary quads, hexahedra) or `.vtu` (binary
 /// appended; cell array `scaled_jacobian`; for meshes that know where their vertices came from, the
 /// point arrays `generator_kind` (UInt8), `generator_tet` (UInt32), `generator_corners` (UInt8)).
-/// `.vtk` holds vertices and hexahedra, and regions as cell data. `.meshb` and `.mesh` (references),
+/// `.vtk` holds vertices and hexahedra, and regions as cell data. `.meshb` and `.mesh`
+/// (references),
 /// `.msh` (physical groups), `.inp` (node sets, element sets and surfaces) and MFEM's files
 /// (attributes) also hold boundary quads, what mesh.features tags, and regions.
 /// The file appears complete or not at all.
@@ -81,4 +83,4 @@ void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, Context& c
 /// empty: to fail before long work.
 void requireHexMeshFormat(const std::filesystem::path& file, std::string_view format = {});
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

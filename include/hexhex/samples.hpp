@@ -7,9 +7,10 @@
 #include <string_view>
 
 #include <hexhex/check.hpp>
+#include <hexhex/export.h>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 enum class SampleKind {
   Box,          ///< 2 x 2 x 2 blocks, regular
@@ -79,4 +80,4 @@ struct SampleKindName {
 /// @throws Error InvalidArgument; TooLarge for more tets than 32-bit indices; OutOfMemory
 [[nodiscard]] Sample generateSample(SampleKind kind, const SampleOptions& options = {});
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE
