@@ -10,6 +10,8 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/abaqus.hpp>
+#include <io/cgns.hpp>
+#include <io/exodus.hpp>
 #include <io/finite_points.hpp>
 #include <io/gmsh.hpp>
 #include <io/hexex.hpp>
@@ -18,9 +20,11 @@
 #include <io/mesh_sink.hpp>
 #include <io/meshb.hpp>
 #include <io/mfem.hpp>
+#include <io/openfoam.hpp>
 #include <io/ovm.hpp>
 #include <io/registry.hpp>
 #include <io/vtk_legacy.hpp>
+#include <io/vtkhdf.hpp>
 #include <io/vtu.hpp>
 #include <mesh/smooth_patches.hpp>
 #include <mesh/vertex_cells.hpp>
@@ -32,7 +36,30 @@ constexpr std::array<MapFormat, 3> kMapFormats = {{{".hexex", readHexex, writeHe
                                                    {".ovm", readOvmMap, writeOvmMap},
                                                    {".ovmb", readOvmbMap, writeOvmbMap}}};
 
-constexpr std::array<HexMeshFormat, 11> kHexMeshFormats = {
+/// Formats over libraries that not every build has.
+#if defined(HEXHEX_HAS_HDF5)
+constexpr HexMeshFormat kVtkHdf = {"vtkhdf", ".vtkhdf", nullptr, writeVtkHdf};
+#else
+constexpr HexMeshFormat kVtkHdf = {"vtkhdf", ".vtkhdf",           nullptr, nullptr, nullptr,
+                                   nullptr,  "HDF5 (libhdf5-dev)"};
+#endif
+#if defined(HEXHEX_HAS_CGNS)
+constexpr HexMeshFormat kCgns = {"cgns", ".cgns", nullptr, writeCgns};
+#else
+constexpr HexMeshFormat kCgns = {
+    "cgns", ".cgns", nullptr, nullptr, nullptr, nullptr, "CGNS (libcgns-dev)"};
+#endif
+#if defined(HEXHEX_HAS_EXODUS)
+constexpr HexMeshFormat kExodus = {"exodus", ".exo", nullptr, writeExodus};
+constexpr HexMeshFormat kExodusE = {"exodus", ".e", nullptr, writeExodus};
+#else
+constexpr HexMeshFormat kExodus = {
+    "exodus", ".exo", nullptr, nullptr, nullptr, nullptr, "Exodus (libexodusii-dev)"};
+constexpr HexMeshFormat kExodusE = {
+    "exodus", ".e", nullptr, nullptr, nullptr, nullptr, "Exodus (libexodusii-dev)"};
+#endif
+
+constexpr std::array<HexMeshFormat, 16> kHexMeshFormats = {
     {{"mesh", ".mesh", readMedit, writeMedit, openMeditSink},
      {"vtu", ".vtu", readVtu, writeVtu, openVtuSink, readVtuTo},
      {"ovm", ".ovm", readOvmHexMesh, writeOvmHexMesh},
@@ -43,7 +70,12 @@ constexpr std::array<HexMeshFormat, 11> kHexMeshFormats = {
      {"msh41-ascii", ".msh", readGmsh, writeGmsh41Text},
      {"msh22-ascii", ".msh", readGmsh, writeGmsh22Text},
      {"inp", ".inp", nullptr, writeAbaqus},
-     {"mfem", "", nullptr, writeMfem}}};
+     {"mfem", "", nullptr, writeMfem},
+     {"openfoam", ".foam", nullptr, writeOpenFoam},
+     kVtkHdf,
+     kCgns,
+     kExodus,
+     kExodusE}};
 
 std::string lowerCaseExtension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -137,8 +169,14 @@ const MapFormat& mapFormat(const std::filesystem::path& file) {
 }
 
 const HexMeshFormat& hexMeshFormat(const std::filesystem::path& file, std::string_view name) {
-  if (!name.empty()) return findHexMeshFormat(name, file);
-  return findFormat<HexMeshFormat>(kHexMeshFormats, file, "hexahedral meshes");
+  const HexMeshFormat& format =
+      name.empty() ? findFormat<HexMeshFormat>(kHexMeshFormats, file, "hexahedral meshes")
+                   : findHexMeshFormat(name, file);
+  if (format.missing.empty()) return format;
+  throw Error(ErrorCode::FileUnsupported, file.string() +
+                                              ": this build of hexhex cannot write the format \"" +
+                                              std::string(format.name) + "\". Install " +
+                                              std::string(format.missing) + " and build it anew.");
 }
 
 TetMap readMap(const std::filesystem::path& file, Context& context) {

@@ -32,6 +32,9 @@ struct HexMeshFormat {
   std::unique_ptr<MeshSink> (*openSink)(const std::filesystem::path& file,
                                         Context& context) = nullptr;
   void (*readTo)(MeshSink& sink, const std::filesystem::path& file, Context& context) = nullptr;
+
+  /// The library without which this build cannot write the format: then `write` is null.
+  std::string_view missing = {};
 };
 
 /// The format of a file by its extension.
