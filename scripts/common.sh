@@ -49,6 +49,14 @@ install_missing() {
   fi
 }
 
+# Libraries of optional formats: .vtkhdf, .cgns, .exo. Without them these are left out.
+optional_packages=(libhdf5-dev libcgns-dev libexodusii-dev)
+
+# The same for packages that can be done without.
+install_optional() {
+  install_missing "$@" || say "Without $*, what needs them is left out."
+}
+
 # run_logged NAME COMMAND...: runs a command quietly; shows the end of its output if it fails.
 run_logged() {
   local log="$logs/$1.log"
