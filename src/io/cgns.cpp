@@ -19,12 +19,6 @@
 namespace hexhex {
 namespace {
 
-/// The library keeps its open files in global variables.
-std::mutex& cgnsLock() {
-  static std::mutex lock;
-  return lock;
-}
-
 /// An open file of the library.
 class CgnsFile {
  public:
@@ -170,7 +164,7 @@ void requireSmall(const HexMesh& mesh, const CgnsContent& content) {
   const std::uint64_t elements = mesh.cells.size() + content.quads.elements.size() +
                                  content.edges.elements.size() + content.vertices.elements.size();
   // The library counts the numbers of a section with the same integers.
-  const std::uint64_t largest =
+  const auto largest =
       std::max<std::uint64_t>({mesh.points.size(), elements, 8 * mesh.cells.size()});
   if (largest <= static_cast<std::uint64_t>(std::numeric_limits<cgsize_t>::max())) return;
   throw Error(ErrorCode::TooLarge,
@@ -194,7 +188,7 @@ void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const Wri
               [&] { content.quads = groupQuads(mesh, options.patchAngle, stage); });
   requireSmall(mesh, content);
   {
-    const std::lock_guard lock(cgnsLock());
+    const std::lock_guard lock(libraryLock());
     CgnsWriter(target, mesh, stage).write(content);
   }
   target.commit();

@@ -22,12 +22,6 @@ namespace {
 /// Exodus' numbers of the faces of kHexFaces.
 constexpr std::array<int, 6> kSideNumbers = {4, 2, 1, 3, 5, 6};
 
-/// The library and NetCDF below it keep their state in global variables.
-std::mutex& exodusLock() {
-  static std::mutex lock;
-  return lock;
-}
-
 /// An open file of the library.
 class ExodusFile {
  public:
@@ -206,7 +200,7 @@ void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
   QuadGroups quads;
   withThreads(context.threads(), [&] { quads = groupQuads(mesh, options.patchAngle, stage); });
   {
-    const std::lock_guard lock(exodusLock());
+    const std::lock_guard lock(libraryLock());
     ExodusWriter(target, modeFor(mesh), mesh, stage).write(groupCells(mesh), quads, nodeSets);
   }
   target.commit();

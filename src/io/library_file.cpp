@@ -22,6 +22,11 @@ std::string temporaryName() {
 
 }  // namespace
 
+std::mutex& libraryLock() {
+  static std::mutex lock;
+  return lock;
+}
+
 LibraryFile::LibraryFile(std::filesystem::path target) : target_(std::move(target)) {
   std::error_code error;
   // Renaming onto a link would replace the link, not what it points to.

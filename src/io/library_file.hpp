@@ -2,9 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <mutex>
 #include <string>
 
 namespace hexhex {
+
+/// HDF5, and what is built on it, keeps its state in global variables: whoever uses one of these
+/// libraries holds this lock.
+[[nodiscard]] std::mutex& libraryLock();
 
 /// A temporary beside its target, to be written by name and renamed by commit(). Without commit()
 /// it vanishes, and the target stays as it was.

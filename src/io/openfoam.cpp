@@ -194,7 +194,7 @@ bool isMarker(const std::filesystem::path& file) {
 
 /// The folder of the mesh, which is created.
 std::filesystem::path folderFor(const std::filesystem::path& file) {
-  const std::filesystem::path folder =
+  std::filesystem::path folder =
       isMarker(file) ? file.parent_path() / "constant" / "polyMesh" : file;
   std::error_code error;
   std::filesystem::create_directories(folder, error);

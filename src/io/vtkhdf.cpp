@@ -2,7 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <hdf5.h>
-#include <initializer_list>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -232,8 +232,11 @@ void writeVtkHdf(const HexMesh& mesh, const std::filesystem::path& file,
   std::span<const double> quality = options.scaledJacobians;
   if (quality.empty()) quality = computedQuality = scaledJacobians(mesh, context);
   Stage stage(context, "write mesh");
-  const QuietHdf quiet;
-  VtkHdfWriter(target, mesh, stage).write(quality);
+  {
+    const std::lock_guard lock(libraryLock());
+    const QuietHdf quiet;
+    VtkHdfWriter(target, mesh, stage).write(quality);
+  }
   target.commit();
 }
 
