@@ -17,5 +17,6 @@ struct Command {
 [[nodiscard]] Command addVerify(CLI::App& app);
 [[nodiscard]] Command addGenerate(CLI::App& app);
 [[nodiscard]] Command addInfo(CLI::App& app);
+[[nodiscard]] Command addView(CLI::App& app);
 
 }  // namespace hexhex::command

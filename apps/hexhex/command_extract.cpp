@@ -38,26 +38,6 @@ struct Arguments {
   bool quiet = false;
 };
 
-/// Whether two names mean one file, or would once both are written.
-bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code missing;
-  if (std::filesystem::equivalent(a, b, missing)) return !std::filesystem::is_other(a, missing);
-  const auto whole = [](const std::filesystem::path& file) {
-    std::error_code error;
-    std::filesystem::path path =
-        std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
-    return error ? file : path;
-  };
-  return whole(a) == whole(b) && !std::filesystem::is_other(a, missing);
-}
-
-void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b) {
-  if (!sameFile(a, b)) return;
-  throw Error(ErrorCode::InvalidArgument, a.string() + " and " + b.string() +
-                                              " are the same file. Input, mesh and report need "
-                                              "files of their own.");
-}
-
 /// Everything that can be known to fail before long work.
 void requireOutputs(const Arguments& arguments) {
   requireDifferent(arguments.input, arguments.output);
