@@ -114,7 +114,7 @@ void main() {
     vec2 inside = min(vSquare, 1.0 - vSquare) / max(width, vec2(1e-6));
     float line = 1.0 - smoothstep(0.4, 1.3, min(inside.x, inside.y));
     // Cells of few pixels would be nothing but lines.
-    float fade = clamp(1.3 - 4.0 * max(width.x, width.y), 0.0, 1.0);
+    float fade = clamp(1.25 - 2.5 * max(width.x, width.y), 0.0, 1.0);
     shaded = mix(shaded, vec3(0.05, 0.07, 0.1), 0.75 * line * fade);
   }
   colour = vec4(shaded, 1.0);
