@@ -44,8 +44,8 @@ struct Arguments {
 };
 
 void requireAllDifferent(const Arguments& arguments) {
-  const std::array files = {&arguments.input, &arguments.output, &arguments.report,
-                            &arguments.arcs, &arguments.patches};
+  const std::array files = {&arguments.input, &arguments.output, &arguments.report, &arguments.arcs,
+                            &arguments.patches};
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t j = i + 1; j < files.size(); ++j) {
       if (!files[i]->empty() && !files[j]->empty()) requireDifferent(*files[i], *files[j]);
@@ -144,8 +144,8 @@ void printSummary(const ExtractionRecord& record) {
   if (record.order > 1) {
     printLine("order", fmt::format("{}, {} nodes", record.order, record.nodes));
   }
-  for (const auto& [what, part] : {std::pair("arcs", &record.arcs),
-                                   std::pair("patches", &record.patches)}) {
+  for (const auto& [what, part] :
+       {std::pair("arcs", &record.arcs), std::pair("patches", &record.patches)}) {
     if (part->file.empty()) continue;
     printLine(what, fmt::format("{} with {} {}, {}", part->count, part->pieces,
                                 what == std::string("arcs") ? "inner points" : "polygons",
@@ -174,8 +174,8 @@ PiecewiseLinearMesh extractParts(const Arguments& arguments, const TetMap& map, 
   if (arguments.arcs.empty() && arguments.patches.empty()) {
     return {extract(map, arguments.options, context, &record.statistics), {}, {}};
   }
-  const auto parts = arguments.patches.empty() ? PiecewiseLinearParts::Arcs
-                                               : PiecewiseLinearParts::ArcsAndPatches;
+  const auto parts =
+      arguments.patches.empty() ? PiecewiseLinearParts::Arcs : PiecewiseLinearParts::ArcsAndPatches;
   return extractPiecewiseLinear(map, parts, arguments.options, context, &record.statistics);
 }
 
@@ -292,9 +292,10 @@ void addMethod(CLI::App& parser, Arguments& arguments) {
 /// Meshes that follow the map more closely.
 void addCurved(CLI::App& parser, Arguments& arguments) {
   parser
-      .add_option("--order", arguments.order,
-                  "Write cells of this order, whose nodes are on the images\nof a finer grid: .vtu, "
-                  ".msh, or .mesh (MFEM)")
+      .add_option(
+          "--order", arguments.order,
+          "Write cells of this order, whose nodes are on the images\nof a finer grid: .vtu, "
+          ".msh, or .mesh (MFEM)")
       ->check(CLI::Range(1, kMaxOrder))
       ->option_text("P [1]");
   parser

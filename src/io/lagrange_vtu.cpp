@@ -27,10 +27,9 @@ void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& fil
   vtk.add("Points", "Points", std::span<const Vec3>(mesh.points));
   vtk.add("PointData", "generator_tet", std::span<const Index>(mesh.generatorTet));
   vtk.add("PointData", "generator_corners", std::span<const CornerSet>(mesh.generatorCorners));
-  vtk.addComputed<std::uint8_t>("PointData", "generator_kind", mesh.generatorCorners.size(),
-                                [&mesh](std::size_t i) {
-                                  return generatorKind(mesh.generatorCorners[i]);
-                                });
+  vtk.addComputed<std::uint8_t>(
+      "PointData", "generator_kind", mesh.generatorCorners.size(),
+      [&mesh](std::size_t i) { return generatorKind(mesh.generatorCorners[i]); });
   vtk.add("CellData", "scaled_jacobian", quality);
   if (!mesh.regions.empty()) {
     vtk.add("CellData", "region", std::span<const std::int32_t>(mesh.regions));

@@ -111,8 +111,8 @@ class Writer {
     constexpr std::array<std::uint8_t, 4> kKind = {1, 1, 3, 0};  // versions, dimension, polyhedral
     for (const std::uint8_t byte : kKind) put(byte);
     put(std::uint32_t{0});
-    for (const std::size_t count :
-         {content_.points.size(), content_.edges.size(), content_.valences.size(), std::size_t{0}}) {
+    for (const std::size_t count : {content_.points.size(), content_.edges.size(),
+                                    content_.valences.size(), std::size_t{0}}) {
       put(std::uint64_t{count});
     }
   }
@@ -125,8 +125,8 @@ class Writer {
     constexpr std::size_t kEntryBytes = 13;  // an entity and three lengths
     std::uint64_t payload = 0;
     for (const Property& property : content_.properties) {
-      payload += kEntryBytes + property.name.size() + typeOf(property).size() +
-                 property.bytesEach();
+      payload +=
+          kEntryBytes + property.name.size() + typeOf(property).size() + property.bytesEach();
     }
     beginChunk("DIRP", payload);
     for (const Property& property : content_.properties) {
@@ -196,10 +196,10 @@ class Writer {
   LoopProgress progress_;
 };
 
-void addGenerators(Content& content, std::uint8_t entity, std::string_view typeName,
-                   const std::vector<std::pair<std::span<const Index>, std::span<const CornerSet>>>&
-                       parts,
-                   std::size_t count) {
+void addGenerators(
+    Content& content, std::uint8_t entity, std::string_view typeName,
+    const std::vector<std::pair<std::span<const Index>, std::span<const CornerSet>>>& parts,
+    std::size_t count) {
   Property type{entity, typeName, {}, {}};
   Property tet{entity, "hexhex::generator_tet", {}, {}};
   Property corners{entity, "hexhex::generator_corners", {}, {}};
@@ -328,9 +328,10 @@ void addFace(const PiecewiseLinearMesh& mesh, std::size_t face, Content& content
 
 void requireSmall(std::uint64_t count) {
   if (count <= std::numeric_limits<std::int32_t>::max()) return;
-  throw Error(ErrorCode::TooLarge, "OpenVolumeMesh files number elements with 31 bits, which do "
-                                   "not suffice for " +
-                                       std::to_string(count) + ". Lower the scale, or write .vtu.");
+  throw Error(ErrorCode::TooLarge,
+              "OpenVolumeMesh files number elements with 31 bits, which do "
+              "not suffice for " +
+                  std::to_string(count) + ". Lower the scale, or write .vtu.");
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 namespace hexhex {
 
 /// Vertices are hex vertices and inner points of arcs, edges are segments. Properties of the field:
-/// `v_type` (0 hex vertex, 1 of an arc), `v_igm_uv` (place along the arc, 0), `v_tet_generator_type`,
-/// `e_linear_hex_edge`, `e_tet_generator_type`; and this library's `hexhex::generator_tet` and
-/// `hexhex::generator_corners` of vertices and edges.
+/// `v_type` (0 hex vertex, 1 of an arc), `v_igm_uv` (place along the arc, 0),
+/// `v_tet_generator_type`, `e_linear_hex_edge`, `e_tet_generator_type`; and this library's
+/// `hexhex::generator_tet` and `hexhex::generator_corners` of vertices and edges.
 void writeArcsOvmb(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                    Context& context);
 

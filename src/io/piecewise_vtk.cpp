@@ -13,9 +13,8 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kGridSections = {"PointData", "CellData", "Points",
                                                            "Cells"};
-constexpr std::array<std::string_view, 7> kPolySections = {"PointData", "CellData", "Points",
-                                                           "Verts",     "Lines",    "Strips",
-                                                           "Polys"};
+constexpr std::array<std::string_view, 7> kPolySections = {
+    "PointData", "CellData", "Points", "Verts", "Lines", "Strips", "Polys"};
 constexpr std::uint8_t kVtkLine = 3;
 constexpr std::uint8_t kVtkPolygon = 7;
 
@@ -114,10 +113,9 @@ void writeArcsAs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& p
   VtkXmlFile file;
   addPoints(file, mesh, false);
   const Array<std::int32_t> arcOfPoint = rowsOf(arcs.pointBegin, 0);
-  file.addComputed<std::int32_t>("PointData", "hex_edge", pointCount(mesh, false),
-                                 [&](std::size_t i) {
-                                   return i < vertices ? -1 : arcOfPoint[i - vertices];
-                                 });
+  file.addComputed<std::int32_t>(
+      "PointData", "hex_edge", pointCount(mesh, false),
+      [&](std::size_t i) { return i < vertices ? -1 : arcOfPoint[i - vertices]; });
   file.addComputed<double>("PointData", "parameter", pointCount(mesh, false), [&](std::size_t i) {
     return i < vertices ? 0.0 : arcs.parameters[i - vertices];
   });
@@ -125,8 +123,9 @@ void writeArcsAs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& p
   file.add("CellData", "hex_edge", std::span<const std::int32_t>(arcOfSegment));
   addCarriers(file, arcs.segmentTet, arcs.segmentCorners);
   const Array<std::array<std::int32_t, 2>> ends = segmentEnds(mesh);
-  file.add(elements, "connectivity", "Int32", 1, 2 * segments, sizeof(std::int32_t),
-           [&ends](OutputFile& out) { out.writeBytes(ends.data(), ends.size() * sizeof(ends[0])); });
+  file.add(
+      elements, "connectivity", "Int32", 1, 2 * segments, sizeof(std::int32_t),
+      [&ends](OutputFile& out) { out.writeBytes(ends.data(), ends.size() * sizeof(ends[0])); });
   file.addComputed<std::int64_t>(elements, "offsets", segments,
                                  [](std::size_t i) { return 2 * (i + 1); });
   const std::string points = "NumberOfPoints=\"" + std::to_string(pointCount(mesh, false)) + "\" ";
@@ -153,15 +152,13 @@ void writePatchesAs(const PiecewiseLinearMesh& mesh, const std::filesystem::path
   const std::size_t polygons = patches.polygonTet.size();
   VtkXmlFile file;
   addPoints(file, mesh, true);
-  file.addComputed<std::uint8_t>("PointData", "point_kind", pointCount(mesh, true),
-                                 [vertices, shared](std::size_t i) {
-                                   return i < vertices ? 0 : (i < shared ? 1 : 2);
-                                 });
+  file.addComputed<std::uint8_t>(
+      "PointData", "point_kind", pointCount(mesh, true),
+      [vertices, shared](std::size_t i) { return i < vertices ? 0 : (i < shared ? 1 : 2); });
   const Array<std::int32_t> faceOfPolygon = rowsOf(patches.polygonBegin, 0);
   file.add("CellData", "hex_face", std::span<const std::int32_t>(faceOfPolygon));
   addCarriers(file, patches.polygonTet, patches.polygonCorners);
-  file.add("FieldData", "corner_uv",
-           std::span<const std::array<double, 2>>(patches.parameters));
+  file.add("FieldData", "corner_uv", std::span<const std::array<double, 2>>(patches.parameters));
   file.addComputed<std::int64_t>(elements, "connectivity", patches.corners.size(),
                                  [&patches](std::size_t i) { return patches.corners[i]; });
   file.addComputed<std::int64_t>(elements, "offsets", polygons,
@@ -174,8 +171,9 @@ void writePatchesAs(const PiecewiseLinearMesh& mesh, const std::filesystem::path
                points + "NumberOfCells=\"" + std::to_string(polygons) + "\"", kGridSections, stage);
   } else {
     file.write(output, "PolyData",
-               points + "NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
-                        "NumberOfPolys=\"" +
+               points +
+                   "NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
+                   "NumberOfPolys=\"" +
                    std::to_string(polygons) + "\"",
                kPolySections, stage);
   }
