@@ -16,7 +16,8 @@ endforeach()
 
 install(DIRECTORY include/hexhex ${PROJECT_BINARY_DIR}/include/hexhex
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev
-  FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
+  FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h"
+  PATTERN "view.hpp" EXCLUDE)  # of the command; no installed library has it
 install(FILES bindings/c/include/hexhex.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 
 configure_package_config_file(cmake/hexhexConfig.cmake.in ${PROJECT_BINARY_DIR}/hexhexConfig.cmake

@@ -46,7 +46,9 @@ set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "libeigen3-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "${PROJECT_DESCRIPTION} (C++ and C headers, static library)")
 
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME hexhex)
-set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS "${exact}")
+if(NOT HEXHEX_HAS_VIEWER)  # with it, the command holds the static library
+  set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS "${exact}")
+endif()
 set(CPACK_COMPONENT_COMMAND_DESCRIPTION "${PROJECT_DESCRIPTION} (the command)")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-hexhex)
