@@ -1,5 +1,6 @@
 #include "view_page.hpp"
 
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 
@@ -11,6 +12,7 @@
 #include "mesh_collector.hpp"
 #include "output.hpp"
 #include "progress.hpp"
+#include "serve_page.hpp"
 
 namespace hexhex::command {
 namespace {
@@ -72,6 +74,27 @@ int writePage(const ViewArguments& arguments, ProgressDisplay& progress, Context
   return subject.agrees() ? kSuccess : kFailure;
 }
 
+/// Serves until Ctrl-C, which is no failure here.
+int serve(const ViewArguments& arguments, ProgressDisplay& progress, Context& context) {
+  Subject subject = readSubject(arguments, context);
+  const ServedPage page =
+      makeServedPage(subject.mesh, kMeshUrl, optionsOf(arguments, subject), context);
+  progress.clear();
+  warnUnlessAgreed(arguments, subject);
+  const bool agrees = subject.agrees();
+  subject = {};  // the page has all of it
+  const auto announce = [&arguments](const std::string& address) {
+    // The address is what --serve is for, so --quiet does not silence it.
+    if (arguments.quiet)
+      fmt::print("{}\n", address);
+    else
+      fmt::print("{} is at {} until you press Ctrl-C.\n", arguments.mesh, address);
+    std::fflush(stdout);
+  };
+  servePage(page, arguments.port, announce, context);
+  return agrees ? kSuccess : kFailure;
+}
+
 }  // namespace
 
 int view(const ViewArguments& arguments) {
@@ -79,6 +102,7 @@ int view(const ViewArguments& arguments) {
   Context context(arguments.threads, progress.callback());
   const CancelOnSignal cancelOnSignal(context);
   requireHexMeshFormat(arguments.mesh);
+  if (arguments.serve) return serve(arguments, progress, context);
   return writePage(arguments, progress, context);
 }
 

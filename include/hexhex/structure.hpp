@@ -11,18 +11,18 @@
 namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// An edge of a hex mesh with another number of cells around than 4 inside, or 2 on the boundary.
-struct SingularEdge {
+struct SingularHexEdge {
   Index vertex0 = 0;  ///< smaller than vertex1
   Index vertex1 = 0;
   std::uint32_t valence = 0;  ///< number of cells around
   bool boundary = false;      ///< an edge of a boundary quad
-  bool operator==(const SingularEdge&) const = default;
+  bool operator==(const SingularHexEdge&) const = default;
 };
 
 struct MeshStructure {
-  Array<SingularEdge> singularEdges;  ///< by vertex0, then vertex1
-  std::uint64_t faces = 0;            ///< all different faces
-  std::uint64_t edges = 0;            ///< all different edges
+  Array<SingularHexEdge> singularEdges;  ///< by vertex0, then vertex1
+  std::uint64_t faces = 0;               ///< all different faces
+  std::uint64_t edges = 0;               ///< all different edges
   std::uint64_t boundaryQuads = 0;
   std::uint64_t components = 0;          ///< of cells, connected through faces
   std::uint64_t boundaryComponents = 0;  ///< of boundary quads, connected through edges

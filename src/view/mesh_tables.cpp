@@ -52,9 +52,9 @@ PackedTable packGenerators(const HexMesh& mesh, Stage& stage) {
   return packTable("generator_kinds", mesh.generatorCorners.size(), 1, fill, stage);
 }
 
-PackedTable packSingularEdges(std::span<const SingularEdge> edges, Stage& stage) {
+PackedTable packSingularEdges(std::span<const SingularHexEdge> edges, Stage& stage) {
   const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
-    for (const SingularEdge& edge : edges.subspan(begin, end - begin)) {
+    for (const SingularHexEdge& edge : edges.subspan(begin, end - begin)) {
       *to++ = edge.vertex0;
       *to++ = edge.vertex1;
       *to++ = 2 * edge.valence + (edge.boundary ? 1U : 0U);
@@ -106,7 +106,7 @@ Quantization quantizationOf(const HexMesh& mesh) {
 
 std::vector<PackedTable> packMesh(const HexMesh& mesh, const Quantization& quantization,
                                   std::span<const double> scaledJacobians,
-                                  std::span<const SingularEdge> singularEdges, Stage& stage) {
+                                  std::span<const SingularHexEdge> singularEdges, Stage& stage) {
   std::vector<PackedTable> tables;
   tables.push_back(packPoints(mesh, quantization, stage));
   tables.push_back(packCells(mesh, stage));

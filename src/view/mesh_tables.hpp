@@ -33,7 +33,7 @@ inline constexpr double kQualitySteps = 65534;
 [[nodiscard]] std::vector<PackedTable> packMesh(const HexMesh& mesh,
                                                 const Quantization& quantization,
                                                 std::span<const double> scaledJacobians,
-                                                std::span<const SingularEdge> singularEdges,
+                                                std::span<const SingularHexEdge> singularEdges,
                                                 Stage& stage);
 
 }  // namespace hexhex

@@ -58,7 +58,7 @@ void requireShowable(const HexMesh& mesh, const ViewOptions& options) {
 /// [[valence, number of edges], ...]
 nlohmann::json countValences(const MeshStructure& structure, bool boundary) {
   std::map<std::uint32_t, std::uint64_t> counts;
-  for (const SingularEdge& edge : structure.singularEdges) {
+  for (const SingularHexEdge& edge : structure.singularEdges) {
     if (edge.boundary == boundary) ++counts[edge.valence];
   }
   nlohmann::json result = nlohmann::json::array();

@@ -106,7 +106,7 @@ void main() {
                 float(id >> 24 & 255u)) / 255.0;
 #else
   vec3 normal = normalize(vNormal);
-  float light = 0.35 + 0.65 * abs(normal.z);
+  float light = 0.45 + 0.55 * abs(normal.z);
   vec3 shaded = base() * light;
   if (vCell.x == picked) shaded = mix(shaded, vec3(1.0, 1.0, 1.0), 0.45);
   if (showGrid) {
