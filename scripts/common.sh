@@ -4,8 +4,10 @@
 logs=build/logs
 mkdir -p "$logs"
 
-# ccache, if there is one, makes the second build of everything fast.
+# ccache, if there is one, makes the second build of everything fast, and of whatever another build
+# directory has compiled with the same options.
 if command -v ccache >/dev/null; then
+  export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$PWD} CCACHE_NOHASHDIR=1
   export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
 fi
 
