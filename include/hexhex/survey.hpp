@@ -7,6 +7,7 @@
 #include <memory>
 
 #include <hexhex/context.hpp>
+#include <hexhex/io.hpp>
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
@@ -54,6 +55,8 @@ class SurveySink : public MeshSink {
 
 /// The survey of a mesh in a file, read with readHexMeshTo(): piece by piece where possible.
 /// @throws Error  as readHexMesh()
+[[nodiscard]] MeshSurvey surveyFile(const std::filesystem::path& file, const ReadOptions& options,
+                                    Context& context);
 [[nodiscard]] MeshSurvey surveyFile(const std::filesystem::path& file, Context& context);
 
 }  // namespace hexhex
