@@ -27,8 +27,9 @@ namespace hexhex::command {
 namespace {
 
 struct Arguments {
-  std::string input;
+  MapSource input;
   std::string output;
+  OutputChoice choice;
   std::string report;
   ExtractOptions options;
   double patchAngle = WriteOptions{}.patchAngle;
@@ -38,36 +39,18 @@ struct Arguments {
   bool quiet = false;
 };
 
-/// Whether two names mean one file, or would once both are written.
-bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code missing;
-  if (std::filesystem::equivalent(a, b, missing)) return !std::filesystem::is_other(a, missing);
-  const auto whole = [](const std::filesystem::path& file) {
-    std::error_code error;
-    std::filesystem::path path =
-        std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
-    return error ? file : path;
-  };
-  return whole(a) == whole(b) && !std::filesystem::is_other(a, missing);
-}
-
-void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b) {
-  if (!sameFile(a, b)) return;
-  throw Error(ErrorCode::InvalidArgument, a.string() + " and " + b.string() +
-                                              " are the same file. Input, mesh and report need "
-                                              "files of their own.");
-}
-
 /// Everything that can be known to fail before long work.
 void requireOutputs(const Arguments& arguments) {
-  requireDifferent(arguments.input, arguments.output);
-  if (!arguments.report.empty()) {
-    requireDifferent(arguments.input, arguments.report);
-    requireDifferent(arguments.output, arguments.report);
+  for (const std::filesystem::path& input : arguments.input.files()) {
+    requireDifferent(input, arguments.output);
+    if (!arguments.report.empty()) requireDifferent(input, arguments.report);
   }
-  requireHexMeshFormat(arguments.output);
+  if (!arguments.report.empty()) requireDifferent(arguments.output, arguments.report);
+  requireHexMeshFormat(arguments.output, arguments.choice.options());
   requireWritable(arguments.output);
-  if (arguments.stream) requireStreamable(arguments.output, arguments.options);
+  if (arguments.stream) {
+    requireStreamable(arguments.output, arguments.choice.options(), arguments.options);
+  };
   if (!arguments.report.empty()) requireWritable(arguments.report);
 }
 
@@ -143,10 +126,10 @@ void extractWhole(const Arguments& arguments, const TetMap& map, Context& contex
   }
   const Array<double> quality = scaledJacobians(mesh, context);
   record.quality = summarize(quality);
-  WriteOptions options;
-  options.scaledJacobians = quality;
-  options.patchAngle = arguments.patchAngle;
-  writeHexMesh(mesh, arguments.output, options, context);
+  WriteOptions writing = arguments.choice.options();
+  writing.scaledJacobians = quality;
+  writing.patchAngle = arguments.patchAngle;
+  writeHexMesh(mesh, arguments.output, writing, context);
   record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
                  mesh.features.quads.size()};
   record.vertices = mesh.points.size();
@@ -156,8 +139,9 @@ void extractWhole(const Arguments& arguments, const TetMap& map, Context& contex
 /// The same in pieces, verified after it was written.
 void extractInPieces(const Arguments& arguments, const TetMap& map, Context& context,
                      ExtractionRecord& record) {
-  StreamedMesh mesh = extractStreamed(map, arguments.output, arguments.options, !arguments.noVerify,
-                                      context, record.statistics);
+  StreamedMesh mesh =
+      extractStreamed(map, arguments.output, arguments.choice.options(), arguments.options,
+                      !arguments.noVerify, context, record.statistics);
   record.verification = std::move(mesh.verification);
   record.vertices = mesh.written.points;
   record.cells = mesh.written.cells;
@@ -176,7 +160,10 @@ int run(const Arguments& arguments) {
   progress.clear();
 
   std::error_code unknown;  // the size of a pipe
-  record.input = {arguments.input, std::filesystem::file_size(arguments.input, unknown)};
+  record.input.file = arguments.input.description();
+  for (const std::filesystem::path& file : arguments.input.files()) {
+    record.input.bytes += std::filesystem::file_size(file, unknown);
+  }
   record.output = {arguments.output, std::filesystem::file_size(arguments.output, unknown)};
   record.scale = arguments.options.scale;
   record.engine = arguments.options.engine;
@@ -209,8 +196,9 @@ void addMethod(CLI::App& parser, Arguments& arguments) {
                   "changes the result, only the time")
       ->option_text("NUMBER [1e-6]");
   parser.add_flag("--stream", arguments.stream,
-                  "Write the mesh piece by piece, .vtu or .mesh, for meshes\n"
-                  "larger than the memory. Nothing that takes the whole mesh:\n"
+                  "Write the mesh piece by piece, .vtu, .mesh, .meshb, .vtk\n"
+                  "or .msh, for meshes"
+                  " larger than the memory. Nothing that takes the whole mesh:\n"
                   "no scaled Jacobians, no boundary quads, and verified by\n"
                   "counts and checksums, by reading the file again");
 }
@@ -220,14 +208,13 @@ void addMethod(CLI::App& parser, Arguments& arguments) {
 Command addExtract(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const parser = app.add_subcommand("extract", "Extract the hexahedral mesh of a map");
-  parser->add_option("MAP", arguments->input, mapDescription())
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addMapSource(*parser, arguments->input);
   parser
       ->add_option("-o,--output", arguments->output,
-                   "The mesh to write, .mesh, .vtu, .ovm or .ovmb")
+                   "The mesh to write; `hexhex formats` lists the formats")
       ->required()
       ->option_text("FILE REQUIRED");
+  addOutputChoice(*parser, arguments->choice);
   addScale(*parser, arguments->options.scale,
            "Multiply all parameters by this integer: its cube as\nmany cells");
   addMethod(*parser, *arguments);

@@ -20,6 +20,19 @@ namespace {
                           std::generic_category().message(error)));
 }
 
+/// Whether two names mean one file, or would once both are written.
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code missing;
+  if (std::filesystem::equivalent(a, b, missing)) return !std::filesystem::is_other(a, missing);
+  const auto whole = [](const std::filesystem::path& file) {
+    std::error_code error;
+    std::filesystem::path path =
+        std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
+    return error ? file : path;
+  };
+  return whole(a) == whole(b) && !std::filesystem::is_other(a, missing);
+}
+
 }  // namespace
 
 void printLine(std::string_view label, std::string_view value) {
@@ -65,6 +78,14 @@ void requireWritable(const std::filesystem::path& file) {
   throw Error(ErrorCode::FileWrite,
               fmt::format("{}: no file can be created in the folder {}: {}.", file.string(),
                           folder.string(), std::generic_category().message(error)));
+}
+
+void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b) {
+  if (!sameFile(a, b)) return;
+  throw Error(ErrorCode::InvalidArgument,
+              a.string() + " and " + b.string() +
+                  " are the same file. What is read and what is written "
+                  "need files of their own.");
 }
 
 void writeTextFile(const std::filesystem::path& file, std::string_view text) {

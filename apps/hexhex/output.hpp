@@ -49,6 +49,9 @@ void printWarning(std::string_view sentence);
 /// cannot be written: to fail before long work.
 void requireWritable(const std::filesystem::path& file);
 
+/// Throws InvalidArgument if two names mean one file, or would once both are written.
+void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b);
+
 /// Writes a text so that the file appears complete or not at all.
 /// @throws Error FileWrite
 void writeTextFile(const std::filesystem::path& file, std::string_view text);
