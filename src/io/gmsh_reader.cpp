@@ -66,7 +66,7 @@ template <std::size_t corners>
 class MshReader {
  public:
   MshReader(std::string_view text, const std::string& fileName, Stage& stage)
-      : text_(text), fileName_(fileName), scanner_(text, fileName), stage_(stage) {}
+      : text_(text), bytes_(text), fileName_(fileName), scanner_(text, fileName), stage_(stage) {}
 
   CellMesh<corners> read();
 
@@ -101,6 +101,7 @@ class MshReader {
   void finishNodes();
 
   std::string_view text_;
+  ByteFile bytes_;
   const std::string& fileName_;
   TextScanner scanner_;
   Stage& stage_;
@@ -228,7 +229,7 @@ template <class F>
 void MshReader<corners>::withSource(const F& f) {
   if (binary_) {
     skipLineBreak();
-    BinarySource source(text_, scanner_.position(), fileName_, stage_);
+    BinarySource source(bytes_, scanner_.position(), fileName_, stage_);
     f(source);
     scanner_.moveTo(source.position());
   } else {

@@ -20,8 +20,10 @@ constexpr std::uint32_t kSwappedOne = std::uint32_t{1} << 24U;
 template <std::size_t corners>
 class MeshbReader {
  public:
-  MeshbReader(std::string_view bytes, const std::string& fileName, Stage& stage)
-      : bytes_(bytes), fileName_(fileName), source_(bytes, 0, fileName, stage) {}
+  /// @param file  the bytes of the file, or the open file, a regular one
+  template <class File>
+  MeshbReader(const File& file, const std::string& fileName, Stage& stage)
+      : bytes_(file), fileName_(fileName), source_(bytes_, 0, fileName, stage) {}
 
   CellMesh<corners> read();
 
@@ -42,7 +44,7 @@ class MeshbReader {
   /// Integers of elements: 64 bits from version 4 on.
   [[nodiscard]] std::size_t wide() const { return version_ >= 4 ? 1 : 0; }
 
-  std::string_view bytes_;
+  ByteFile bytes_;
   const std::string& fileName_;
   BinarySource source_;
   std::int64_t version_ = 0;
@@ -209,7 +211,7 @@ HexMesh parseMeshb(std::string_view text, const std::string& fileName, Context& 
 }
 
 HexMesh readMeshb(const std::filesystem::path& file, Context& context) {
-  return toHexMesh(readWith<MeshbReader<8>>(file, "read mesh", context));
+  return toHexMesh(readDirectly<MeshbReader<8>>(file, "read mesh", context));
 }
 
 TetCells parseMeshbTets(std::string_view text, const std::string& fileName, Context& context) {
@@ -217,7 +219,7 @@ TetCells parseMeshbTets(std::string_view text, const std::string& fileName, Cont
 }
 
 TetCells readMeshbTets(const std::filesystem::path& file, Context& context) {
-  return readWith<MeshbReader<4>>(file, "read tets", context);
+  return readDirectly<MeshbReader<4>>(file, "read tets", context);
 }
 
 }  // namespace hexhex

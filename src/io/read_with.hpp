@@ -38,4 +38,24 @@ template <class Reader, class... More>
   return result;
 }
 
+/// The same for readers that can be made from an open file, so that a regular file is never in
+/// memory as a whole.
+template <class Reader>
+[[nodiscard]] auto readDirectly(const std::filesystem::path& file, std::string_view stageName,
+                                Context& context) {
+  Stage stage(context, stageName);
+  const std::string fileName = file.string();
+  decltype(std::declval<Reader&>().read()) result;
+  withThreads(context.threads(), [&] {
+    const InputFile input(file);
+    if (input.isRegular()) {
+      result = Reader(input, fileName, stage).read();
+    } else {
+      const Array<char> bytes = readWholeFile(file, stage);
+      result = Reader(asText(bytes), fileName, stage).read();
+    }
+  });
+  return result;
+}
+
 }  // namespace hexhex

@@ -15,6 +15,7 @@
 #include <io/cell_mesh.hpp>
 #include <io/finite_points.hpp>
 #include <io/grid_map.hpp>
+#include <io/ovm_first_fault.hpp>
 #include <io/ovmb_bytes.hpp>
 #include <io/read_with.hpp>
 #include <io/text_elements.hpp>
@@ -115,10 +116,15 @@ class VtkReader {
   void readCells();
   void readOldCells(std::size_t cells, std::size_t numbers);
   void readNewCells(std::size_t places, std::size_t numbers);
+  [[nodiscard]] bool takePlainCells(std::size_t cells);
+  void splitCells(std::size_t numbers);
+  void splitPlainCells();
   void readTypes();
+  [[nodiscard]] bool takePlainTypes(std::size_t count);
   void skipNumbers(std::size_t count, const NumberType& type);
   void skipMetadata();
   void takeCells();
+  void copyPlainCells();
   void readAttribute(const std::string& keyword);
   void beginArrays(bool ofCells);
   void readScalars(std::string_view name, std::size_t elements);
@@ -128,7 +134,7 @@ class VtkReader {
   [[nodiscard]] Array<double> readReals(std::size_t count, const NumberType& type,
                                         const char* what);
   [[nodiscard]] bool takeCell(std::size_t cell, std::array<Index, corners>& corner) const;
-  [[noreturn]] void failAbout(std::size_t cell) const;
+  [[noreturn]] void failAbout(std::size_t cell, std::size_t count) const;
 
   const NumberType& readType();
   void skipLineBreak();
@@ -146,6 +152,10 @@ class VtkReader {
   bool hasPoints_ = false;
   bool hasCells_ = false;
   bool hasTypes_ = false;
+  std::size_t cellCount_ = 0;
+  /// The usual bytes: each cell has as many corners as are wanted. Null otherwise.
+  const char* plainCells_ = nullptr;
+  bool plainTypes_ = false;  ///< all cells are of the kind that is wanted
   Array<std::int64_t> corners_;
   Array<CellCorners> cells_;
   Array<std::int64_t> types_;
@@ -348,7 +358,35 @@ void VtkReader<corners>::readCells() {
 /// Up to version 4: each cell is its number of corners, and its corners.
 template <std::size_t corners>
 void VtkReader<corners>::readOldCells(std::size_t cells, std::size_t numbers) {
+  cellCount_ = cells;
+  if (binary_ && numbers == (corners + 1) * cells && takePlainCells(cells)) return;
   corners_ = readIntegers(numbers, kInt, "a corner of a cell");
+  splitCells(numbers);
+}
+
+/// Whether all cells have as many corners as are wanted, so that they need not be looked at one by
+/// one. If not, nothing was read.
+template <std::size_t corners>
+bool VtkReader<corners>::takePlainCells(std::size_t cells) {
+  const std::size_t before = scanner_.position();
+  skipLineBreak();
+  const char* const bytes = takeBytes((corners + 1) * cells, kInt.bytes);
+  const std::size_t fault = firstFault(stage_, cells, [&](std::size_t i) {
+    return loadBig<std::int32_t>(bytes + kInt.bytes * (corners + 1) * i) ==
+           static_cast<std::int32_t>(corners);
+  });
+  if (fault < cells) {
+    scanner_.moveTo(before);
+    return false;
+  }
+  plainCells_ = bytes;
+  return true;
+}
+
+/// Finds out where the corners of each cell are.
+template <std::size_t corners>
+void VtkReader<corners>::splitCells(std::size_t numbers) {
+  const std::size_t cells = cellCount_;
   cells_.resize(cells);
   std::size_t place = 0;
   for (std::size_t cell = 0; cell < cells; ++cell) {
@@ -375,6 +413,7 @@ void VtkReader<corners>::readNewCells(std::size_t places, std::size_t numbers) {
   }
   corners_ = readIntegers(numbers, readType(), "a corner of a cell");
   cells_.resize(std::max<std::size_t>(places, 1) - 1);
+  cellCount_ = cells_.size();
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
     const std::int64_t begin = begins[cell];
     const std::int64_t end = begins[cell + 1];
@@ -389,11 +428,25 @@ void VtkReader<corners>::readNewCells(std::size_t places, std::size_t numbers) {
   }
 }
 
+/// Whether all cells are of the kind that is wanted. If not, nothing was read.
+template <std::size_t corners>
+bool VtkReader<corners>::takePlainTypes(std::size_t count) {
+  const std::size_t before = scanner_.position();
+  skipLineBreak();
+  const char* const bytes = takeBytes(count, kInt.bytes);
+  plainTypes_ = firstFault(stage_, count, [&](std::size_t i) {
+                  return loadBig<std::int32_t>(bytes + kInt.bytes * i) == kKind.vtkType;
+                }) == count;
+  if (!plainTypes_) scanner_.moveTo(before);
+  return plainTypes_;
+}
+
 template <std::size_t corners>
 void VtkReader<corners>::readTypes() {
   failIfRepeated(hasTypes_, "CELL_TYPES");
   hasTypes_ = true;
   const std::size_t count = scanner_.readCount("types of cells", 2);
+  if (binary_ && count == cellCount_ && takePlainTypes(count)) return;
   types_ = readIntegers(count, kInt, "the type of a cell");
 }
 
@@ -424,6 +477,9 @@ void VtkReader<corners>::skipMetadata() {
 
 template <std::size_t corners>
 void VtkReader<corners>::takeCells() {
+  if (plainTypes_ && hasCells_ && plainCells_ != nullptr) return copyPlainCells();
+  if (plainCells_ != nullptr) splitPlainCells();
+  if (plainTypes_) types_.assign(cellCount_, kKind.vtkType);
   if (types_.size() != cells_.size()) {
     scanner_.fail(ErrorCode::FileSyntax, "the file has " + std::to_string(cells_.size()) +
                                              " cells but " + std::to_string(types_.size()) +
@@ -447,7 +503,35 @@ void VtkReader<corners>::takeCells() {
     while (i < known && !firstWrong.compare_exchange_weak(known, i)) {
     }
   });
-  if (firstWrong < wanted.size()) failAbout(wanted[firstWrong]);
+  if (firstWrong < wanted.size()) failAbout(wanted[firstWrong], cells_[wanted[firstWrong]].count);
+}
+
+/// Cells without anything special.
+template <std::size_t corners>
+void VtkReader<corners>::copyPlainCells() {
+  const std::uint64_t points = mesh_.points.size();
+  mesh_.cells.resize(cellCount_);
+  const std::size_t fault = firstFault(stage_, cellCount_, [&](std::size_t i) {
+    const char* const place = plainCells_ + kInt.bytes * ((corners + 1) * i + 1);
+    Index largest = 0;  // a negative number is a large one here
+    for (std::size_t k = 0; k < corners; ++k) {
+      mesh_.cells[i][k] = loadBig<Index>(place + kInt.bytes * k);
+      largest = std::max(largest, mesh_.cells[i][k]);
+    }
+    return largest < points;
+  });
+  if (fault < cellCount_) failAbout(fault, corners);
+}
+
+/// Cells that are plain but for their types.
+template <std::size_t corners>
+void VtkReader<corners>::splitPlainCells() {
+  const std::size_t numbers = (corners + 1) * cellCount_;
+  corners_.resize(numbers);
+  parallelFor(stage_, numbers, kGrain, [&](std::size_t i) {
+    corners_[i] = loadBig<std::int32_t>(plainCells_ + kInt.bytes * i);
+  });
+  splitCells(numbers);
 }
 
 /// Whether the cell has all corners, which are points.
@@ -463,14 +547,13 @@ bool VtkReader<corners>::takeCell(std::size_t cell, std::array<Index, corners>& 
 }
 
 template <std::size_t corners>
-void VtkReader<corners>::failAbout(std::size_t cell) const {
+void VtkReader<corners>::failAbout(std::size_t cell, std::size_t count) const {
   const std::string name = scanner_.fileName() + ": cell " + std::to_string(cell);
   const Place place{PlaceKind::Cell, cell};
-  if (cells_[cell].count != corners) {
+  if (count != corners) {
     throw Error(ErrorCode::FileSyntax,
-                name + " is a " + std::string(kKind.singular) + " with " +
-                    std::to_string(cells_[cell].count) + " instead of " + std::to_string(corners) +
-                    " corners.",
+                name + " is a " + std::string(kKind.singular) + " with " + std::to_string(count) +
+                    " instead of " + std::to_string(corners) + " corners.",
                 place);
   }
   throw Error(ErrorCode::IndexOutOfRange,
@@ -486,7 +569,7 @@ void VtkReader<corners>::readAttribute(const std::string& keyword) {
   if (keyword == "field") return readField();
   if (keyword == "point_data" || keyword == "cell_data") return beginArrays(keyword == "cell_data");
   const std::string_view name = scanner_.readToken();
-  const std::size_t elements = arraysOfCells_ ? cells_.size() : mesh_.points.size();
+  const std::size_t elements = arraysOfCells_ ? cellCount_ : mesh_.points.size();
   const auto array = [&](std::size_t components, const NumberType& type) {
     readArray(name, components, elements, type);
   };
@@ -514,7 +597,7 @@ void VtkReader<corners>::beginArrays(bool ofCells) {
   arraysOfCells_ = ofCells;
   std::int64_t count = 0;
   if (!scanner_.readInteger(count)) scanner_.failInteger("the number of values");
-  const std::size_t expected = ofCells ? cells_.size() : mesh_.points.size();
+  const std::size_t expected = ofCells ? cellCount_ : mesh_.points.size();
   if (count >= 0 && static_cast<std::uint64_t>(count) == expected) return;
   scanner_.fail(ErrorCode::FileSyntax, "the arrays are for " + std::to_string(count) +
                                            (ofCells ? " cells" : " points") +
@@ -560,7 +643,7 @@ void VtkReader<corners>::readArray(std::string_view name, std::size_t components
     scanner_.fail(ErrorCode::FileSyntax, "an array has more numbers than the file has bytes.");
   }
   grid_.arrays.push_back(describeArray(name, arraysOfCells_, components));
-  const std::size_t elements = arraysOfCells_ ? cells_.size() : mesh_.points.size();
+  const std::size_t elements = arraysOfCells_ ? cellCount_ : mesh_.points.size();
   const std::size_t wanted = arraysOfCells_ ? kCellMapComponents : kPointMapComponents;
   const std::size_t count = components * tuples;
   if (!(hasPoints_ && hasCells_ && hasTypes_) || nameOf(name) != mapArray_ ||

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <type_traits>
 
 #include <hexhex/stream.hpp>
 
@@ -24,6 +25,7 @@ class CellTable {
     file.copy(file.ends(), first - before, count + before, ends_.data() + 1 - before);
   }
 
+  [[nodiscard]] std::size_t size() const { return types_.size(); }
   [[nodiscard]] bool isWanted(std::size_t i) const { return types_[i] == kind_.vtkType; }
   [[nodiscard]] std::uint64_t begin(std::size_t i) const {
     return static_cast<std::uint64_t>(ends_[i]);
@@ -74,6 +76,26 @@ void requireVertex(const VtuFile& file, std::uint64_t cell, std::int64_t vertex)
             Place{PlaceKind::Cell, cell});
 }
 
+/// The usual case, which needs no conversion: all cells are wanted, and their corners are stored as
+/// they are in memory.
+/// @return false if it is not, or a corner is no point
+template <std::size_t corners>
+bool copyCells(const VtuFile& file, const CellTable& table, std::array<Index, corners>* cells) {
+  const VtuColumn& column = file.connectivity();
+  const bool narrow = column.scalar == VtuScalar::Int32 || column.scalar == VtuScalar::UInt32;
+  const std::size_t count = table.size();
+  if (!narrow || count == 0 || file.pointCount() > kNone) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!table.isWanted(i)) return false;
+  }
+  file.copy(column, table.begin(0), corners * count, cells->data());
+  // A negative number is a large one here.
+  const Index* const vertices = cells->data();
+  Index largest = 0;
+  for (std::size_t k = 0; k < corners * count; ++k) largest = std::max(largest, vertices[k]);
+  return largest < file.pointCount();
+}
+
 }  // namespace
 
 std::size_t countVtuCells(const VtuFile& file, const CellKind& kind, std::uint64_t first,
@@ -90,6 +112,12 @@ void readVtuCells(const VtuFile& file, std::uint64_t first, std::size_t count,
   std::size_t good = 0;
   while (good < count && table.isGood(good)) ++good;
 
+  if constexpr (std::is_same_v<Vertex, Index>) {
+    if (good == count && copyCells(file, table, cells)) {
+      for (std::size_t k = 0; numbers != nullptr && k < count; ++k) numbers[k] = first + k;
+      return;
+    }
+  }
   // Cells that follow each other have their corners one after the other, and are read at once.
   Array<std::int64_t> vertices;
   for (std::size_t i = 0; i < good;) {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
+#include <type_traits>
 
 #include <io/grid_map.hpp>
 #include <io/text_scanner.hpp>
@@ -72,6 +73,17 @@ void convert(VtuScalar scalar, const char* from, std::size_t count, T* to) {
     case VtuScalar::Float64:
       return convert<double>(from, count, to);
   }
+}
+
+/// Whether numbers in memory have the bytes of the stored ones, so that they need not be converted.
+template <class T>
+bool isStoredAs(VtuScalar scalar) {
+  if constexpr (std::is_same_v<T, double>) return scalar == VtuScalar::Float64;
+  if constexpr (std::is_same_v<T, std::int64_t>) return scalar == VtuScalar::Int64;
+  if constexpr (std::is_same_v<T, Index>) {
+    return scalar == VtuScalar::Int32 || scalar == VtuScalar::UInt32;
+  }
+  return false;
 }
 
 /// The beginning of a file up to its binary data; everything up to a limit if it has none.
@@ -439,6 +451,7 @@ void VtuFile::copy(const VtuColumn& column, std::uint64_t begin, std::size_t cou
   const std::uint64_t position = column.position + begin * column.bytesEach;
   if (column.inMemory) return convert(column.scalar, column.decoded.data() + position, count, to);
   if (input_ == nullptr) return convert(column.scalar, text_.data() + position, count, to);
+  if (isStoredAs<T>(column.scalar)) return input_->readAt(position, to, count * sizeof(T));
   Array<char> bytes(count * column.bytesEach);
   input_->readAt(position, bytes.data(), bytes.size());
   convert(column.scalar, bytes.data(), count, to);

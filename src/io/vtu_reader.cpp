@@ -88,12 +88,15 @@ void readCells(const VtuFile& file, Array<std::array<Index, corners>>& result,
   error.rethrow();
 }
 
-/// Reads points and cells of one kind of a whole file.
+/// Reads points and cells of one kind, from memory or, where arrays are plain bytes, from the disk
+/// straight to where they belong.
 template <std::size_t corners>
 class VtuMeshReader {
  public:
   VtuMeshReader(std::string_view text, const std::string& fileName, Stage& stage)
       : file_(text, fileName, stage), stage_(stage) {}
+  VtuMeshReader(const InputFile& input, const std::string& fileName, Stage& stage)
+      : file_(input, fileName), stage_(stage) {}
 
   CellMesh<corners> read(Array<std::size_t>* cellNumbers = nullptr) {
     file_.requireIndexable();
@@ -112,8 +115,9 @@ class VtuMeshReader {
 /// Reads a hex mesh, and generators as writeVtu() writes them.
 class VtuHexReader {
  public:
-  VtuHexReader(std::string_view text, const std::string& fileName, Stage& stage)
-      : reader_(text, fileName, stage) {}
+  template <class Source>
+  VtuHexReader(const Source& source, const std::string& fileName, Stage& stage)
+      : reader_(source, fileName, stage) {}
 
   HexMesh read() {
     HexMesh mesh = toHexMesh(reader_.read());
@@ -138,9 +142,10 @@ class VtuHexReader {
 /// Reads the tets of a file and its map.
 class VtuMapReader {
  public:
-  VtuMapReader(std::string_view text, const std::string& fileName, Stage& stage,
+  template <class Source>
+  VtuMapReader(const Source& source, const std::string& fileName, Stage& stage,
                std::string_view mapArray)
-      : reader_(text, fileName, stage), fileName_(fileName), stage_(stage), mapArray_(mapArray) {}
+      : reader_(source, fileName, stage), fileName_(fileName), stage_(stage), mapArray_(mapArray) {}
 
   TetMap read() {
     TetGrid grid;
@@ -214,6 +219,25 @@ void sendCells(const VtuFile& file, MeshSink& sink, Stage& stage) {
   });
 }
 
+/// As readWith(), but without the whole file in memory where it can be avoided.
+template <class Reader, class... More>
+auto readVtuWith(const std::filesystem::path& path, std::string_view stageName, Context& context,
+                 const More&... more) {
+  Stage stage(context, stageName);
+  const std::string fileName = path.string();
+  decltype(std::declval<Reader&>().read()) result;
+  withThreads(context.threads(), [&] {
+    const InputFile input(path);
+    if (input.isRegular() && VtuFile::hasPlainAppendedData(input)) {
+      result = Reader(input, fileName, stage, more...).read();
+      return;
+    }
+    const Array<char> bytes = readWholeFile(path, stage);
+    result = Reader(asText(bytes), fileName, stage, more...).read();
+  });
+  return result;
+}
+
 }  // namespace
 
 HexMesh parseVtu(std::string_view text, const std::string& fileName, Context& context) {
@@ -221,7 +245,7 @@ HexMesh parseVtu(std::string_view text, const std::string& fileName, Context& co
 }
 
 HexMesh readVtu(const std::filesystem::path& file, Context& context) {
-  return readWith<VtuHexReader>(file, "read mesh", context);
+  return readVtuWith<VtuHexReader>(file, "read mesh", context);
 }
 
 TetCells parseVtuTets(std::string_view text, const std::string& fileName, Context& context) {
@@ -229,7 +253,7 @@ TetCells parseVtuTets(std::string_view text, const std::string& fileName, Contex
 }
 
 TetCells readVtuTets(const std::filesystem::path& file, Context& context) {
-  return readWith<VtuMeshReader<4>>(file, "read tets", context);
+  return readVtuWith<VtuMeshReader<4>>(file, "read tets", context);
 }
 
 TetMap parseVtuMap(std::string_view text, const std::string& fileName, const ReadOptions& options,
@@ -238,7 +262,7 @@ TetMap parseVtuMap(std::string_view text, const std::string& fileName, const Rea
 }
 
 TetMap readVtuMap(const std::filesystem::path& file, const ReadOptions& options, Context& context) {
-  return readWith<VtuMapReader>(file, "read map", context, options.mapArray);
+  return readVtuWith<VtuMapReader>(file, "read map", context, options.mapArray);
 }
 
 void readVtuTo(MeshSink& sink, const std::filesystem::path& path, Context& context) {
