@@ -192,12 +192,12 @@ void writing(benchmark::State& state, const Way& way, int threads) {
 }
 
 /// Through a sink: reads the mesh piece by piece from a file that a benchmark before has written.
-void copyingInPieces(benchmark::State& state, int threads) {
+void copyingInPieces(benchmark::State& state, const Way& way, int threads) {
   const std::filesystem::path source = folder() / "source.vtu";
   if (!std::filesystem::exists(source)) writeHexMesh(denseMesh().mesh, source);
-  timeWriting(state, "copy.vtu", 0, [&](const std::filesystem::path& file) {
+  timeWriting(state, "copy", 0, [&](const std::filesystem::path& file) {
     Context context(threads);
-    readHexMeshTo(*openMeshSink(file, context), source, context);
+    readHexMeshTo(*openMeshSink(file, way.writing(), context), source, context);
   });
 }
 
@@ -266,7 +266,7 @@ void add(const std::string& what, const BenchMap& map, bool manual, const F& f) 
   }
 }
 
-/// The yardsticks: copying as many bytes in memory, and writing them to a file.
+/// The yardsticks: copying bytes in memory, touching fresh memory, and writing bytes to a file.
 void copyingInMemory(benchmark::State& state) {
   std::vector<char> from(std::size_t{1} << 28, 'x');
   std::vector<char> to(from.size(), 'y');
@@ -276,6 +276,18 @@ void copyingInMemory(benchmark::State& state) {
     benchmark::ClobberMemory();
   }
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(from.size()));
+}
+
+/// What it costs to have memory at all: the system clears each page that is touched first.
+void touchingFreshMemory(benchmark::State& state) {
+  constexpr std::size_t kBytes = std::size_t{1} << 28;
+  constexpr std::size_t kPage = 4096;
+  for (auto _ : state) {
+    Array<char> memory(kBytes);
+    for (std::size_t i = 0; i < kBytes; i += kPage) memory[i] = 1;
+    benchmark::DoNotOptimize(memory.data());
+  }
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(kBytes));
 }
 
 void writingPlainly(benchmark::State& state) {
@@ -294,6 +306,10 @@ void addFormat(const FileFormat& format, const Way& way) {
     add("read_" + name, denseMap(), false,
         [way](benchmark::State& state, int threads) { readingMesh(state, way, threads); });
   }
+  if (format.streams && !way.compress) {
+    add("copy_in_pieces_to_" + name, denseMap(), true,
+        [way](benchmark::State& state, int threads) { copyingInPieces(state, way, threads); });
+  }
   if (format.writesMaps) {
     add("write_map_" + name, middleMap(), true,
         [way](benchmark::State& state, int threads) { writingMap(state, way, threads); });
@@ -308,12 +324,12 @@ void addFormat(const FileFormat& format, const Way& way) {
 
 void registerFiles() {
   benchmark::RegisterBenchmark("memcpy", copyingInMemory)->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("fresh_memory", touchingFreshMemory)->Unit(benchmark::kMillisecond);
   benchmark::RegisterBenchmark("plain_write", writingPlainly)->Unit(benchmark::kMillisecond);
   for (const FileFormat& format : fileFormats()) {
     addFormat(format, {std::string(format.name)});
     if (format.compresses) addFormat(format, {std::string(format.name), true});
   }
-  add("copy_vtu_in_pieces", denseMap(), true, copyingInPieces);
   add("survey_vtu", denseMap(), false, surveying);
 }
 
