@@ -66,7 +66,7 @@ std::string convertWhole(const Arguments& arguments, Context& context) {
     return fmt::format("a map of {}, {}", counted(map->tets.size(), "tet"),
                        counted(map->points.size(), "point"));
   }
-  const HexMesh& mesh = std::get<HexMesh>(content);
+  const auto& mesh = std::get<HexMesh>(content);
   requireFor(arguments, "a hexahedral mesh",
              [](const std::filesystem::path& file, const WriteOptions& options) {
                requireHexMeshFormat(file, options);

@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/survey.hpp>
@@ -95,9 +96,13 @@ int run(const Arguments& arguments) {
   Context context;
   const CancelOnSignal cancelOnSignal(context);
   const std::string name = arguments.source.description();
+  if (arguments.pieces && arguments.source.isPair()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--pieces reads hexahedral meshes, but --tets and --polycube are a map.");
+  }
   if (arguments.pieces) {
-    ReadOptions options = arguments.source.options();
-    const MeshSurvey survey = surveyFile(arguments.source.file, options, context);
+    const MeshSurvey survey =
+        surveyFile(arguments.source.file, arguments.source.options(), context);
     fmt::print("{}: ", name);
     printSurvey(survey);
     return kSuccess;

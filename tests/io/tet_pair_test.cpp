@@ -186,6 +186,8 @@ TEST(TetPairs, WhatDoesNotBelongTogether) {
   EXPECT_EQ(failureOf([&] { static_cast<void>(mapFromPair(wild, wild, context)); }).code,
             ErrorCode::IndexOutOfRange);
 
+  EXPECT_NE(failureOf([] { static_cast<void>(readMap("a.mesh")); }).sentence.find("--polycube"),
+            std::string::npos);
   const TemporaryFolder folder;
   writeText(folder / "a.mesh", meditText(kTets));
   writeText(folder / "b.mesh", meditText(cube));
