@@ -226,9 +226,16 @@ const Format& findFormat(const std::filesystem::path& file, std::string_view nam
   const std::string problem =
       extension.empty() ? "the file name has no extension"
                         : "the extension \"" + extension + "\" is no format of " + purpose.what;
+  const bool tetsOnly = std::any_of(kFormats.begin(), kFormats.end(), [&](const Format& format) {
+    return purpose.fits == holdsMaps && !extension.empty() && format.extension == extension &&
+           format.readTets != nullptr;
+  });
   throw Error(ErrorCode::FileUnsupported,
               file.string() + ": " + problem + ". Maps: " + listExtensions(holdsMaps) +
-                  "; hexahedral meshes: " + listExtensions(holdsMeshes) + ".");
+                  "; hexahedral meshes: " + listExtensions(holdsMeshes) + "." +
+                  (tetsOnly ? " Tets without a map need a second mesh with their parameters "
+                              "(--tets, --polycube)."
+                            : ""));
 }
 
 [[noreturn]] void failToRead(const std::filesystem::path& file, const Format& format) {
