@@ -458,7 +458,7 @@ void VtkReader<corners>::skipNumbers(std::size_t count, const NumberType& type) 
   }
   if (type.kind == Kind::Text) {
     scanner_.fail(ErrorCode::FileUnsupported,
-                  "an array of strings stands before the cells; save the file without it.");
+                  "an array of strings has no known length in bytes; save the file without it.");
   }
   skipLineBreak();
   const bool bits = type.kind == Kind::Bits;
