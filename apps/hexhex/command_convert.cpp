@@ -24,6 +24,7 @@ struct Arguments {
   std::string output;
   OutputChoice choice;
   int threads = 0;
+  double patchAngle = WriteOptions{}.patchAngle;
   bool stream = false;
   bool quiet = false;
 };
@@ -60,6 +61,7 @@ std::string convertWhole(const Arguments& arguments, Context& context) {
   const auto content = readInput(arguments, context);
   WriteOptions writing = arguments.choice.options();
   writing.mapArray = arguments.input.mapArray;
+  writing.patchAngle = arguments.patchAngle;
   if (const auto* const map = std::get_if<TetMap>(&content)) {
     requireFor(arguments, "a map", requireMapFormat);
     writeMap(*map, arguments.output, writing, context);
@@ -119,6 +121,11 @@ Command addConvert(CLI::App& app) {
       ->add_option("--input-format", arguments->input.format,
                    "Read this format, whatever the extension")
       ->option_text("NAME");
+  parser
+      ->add_option("--patch-angle", arguments->patchAngle,
+                   "Where no faces are tagged, group boundary quads by\n"
+                   "patches that turn by at most this angle; 0: one group")
+      ->option_text("DEGREES [40]");
   addThreads(*parser, arguments->threads);
   parser->add_flag("--stream", arguments->stream,
                    "Read and write a mesh piece by piece, for meshes larger\n"
