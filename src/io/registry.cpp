@@ -307,6 +307,7 @@ const Format& hexMeshFormat(const std::filesystem::path& file, std::string_view 
 std::span<const FileFormat> fileFormats() {
   static const std::vector<FileFormat> list = [] {
     std::vector<FileFormat> result;
+    result.reserve(kFormats.size());
     for (const Format& format : kFormats) {
       result.push_back({format.name, format.extension, format.description,
                         format.readMap != nullptr, format.writeMap != nullptr,
