@@ -34,7 +34,7 @@ struct VtkText {
   }
   static char* type(char* place, std::uint32_t type) { return put(put(place, type), '\n'); }
   static char* integer(char* place, std::int32_t number) { return put(put(place, number), '\n'); }
-  static constexpr std::string_view kEndOfSection = "";
+  static constexpr std::string_view kEndOfSection = {};
 };
 
 /// Numbers as bytes, the largest first.
