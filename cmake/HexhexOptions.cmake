@@ -23,4 +23,7 @@ function(hexhex_folder name)
   target_include_directories(hexhex_${name} PUBLIC
     ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(hexhex_${name} PUBLIC hexhex_options hexhex_threads)
+  # Only what a public header declares leaves the shared library.
+  set_target_properties(hexhex_${name} PROPERTIES
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 endfunction()

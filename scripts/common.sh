@@ -6,7 +6,7 @@ mkdir -p "$logs"
 
 # ccache, if there is one, makes the second build of everything fast.
 if command -v ccache >/dev/null; then
-  export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+  export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
 fi
 
 say() { printf '%s\n' "$*"; }
@@ -66,6 +66,20 @@ install_python_programs() {
   export HEXHEX_PYTHON=$python/bin/python
 }
 
+# Libraries of optional formats: .vtkhdf, .cgns, .exo. Without them these are left out.
+optional_packages=(libhdf5-dev libcgns-dev libexodusii-dev)
+
+# The same for packages that can be done without.
+install_optional() {
+  install_missing "$@" || say "Without $*, what needs them is left out."
+}
+
+# What `hexhex view` takes beside the packages of the command. Some machines have npm from elsewhere.
+viewer_packages() {
+  printf '%s\n' zlib1g-dev pkg-config libcpp-httplib-dev
+  if ! command -v npm >/dev/null; then printf '%s\n' nodejs npm; fi
+}
+
 # run_logged NAME COMMAND...: runs a command quietly; shows the end of its output if it fails.
 run_logged() {
   local log="$logs/$1.log"
@@ -80,15 +94,18 @@ run_logged() {
 # configure PRESET [cmake argument...]
 configure() { run_logged "$1-configure" cmake --preset "$@"; }
 
-# configure_release PART: the release build, at least with PART (COMMAND or BENCH). What takes more
-# packages stays off, unless an earlier run of run-tests has switched it on.
+# configure_release PART [cmake argument...]: the release build, at least with PART (COMMAND or
+# BENCH). What takes more packages stays off, unless an earlier run of run-tests has switched it on.
 configure_release() {
-  local options=()
+  local options=("${@:2}")
   if [[ ! -f build/release/CMakeCache.txt ]]; then
-    options=(-DHEXHEX_BUILD_TESTS=OFF -DHEXHEX_BUILD_BENCH=OFF)
+    options+=(-DHEXHEX_BUILD_TESTS=OFF -DHEXHEX_BUILD_BENCH=OFF)
   fi
   configure release "${options[@]}" "-DHEXHEX_BUILD_$1=ON"
 }
 
 # build PRESET [cmake --build argument...]
 build() { run_logged "$1-build" cmake --build --preset "$@"; }
+
+# Whether the release build has the viewer page.
+has_viewer() { grep -q '^HEXHEX_HAS_VIEWER:INTERNAL=ON' build/release/CMakeCache.txt; }

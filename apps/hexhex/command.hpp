@@ -19,5 +19,6 @@ struct Command {
 [[nodiscard]] Command addInfo(CLI::App& app);
 [[nodiscard]] Command addConvert(CLI::App& app);
 [[nodiscard]] Command addFormats(CLI::App& app);
+[[nodiscard]] Command addView(CLI::App& app);
 
 }  // namespace hexhex::command

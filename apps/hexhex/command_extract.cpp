@@ -1,4 +1,5 @@
 // `hexhex extract`: from a map to a verified hexahedral mesh.
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -7,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
@@ -31,6 +33,9 @@ struct Arguments {
   std::string output;
   OutputChoice choice;
   std::string report;
+  std::string arcs;
+  std::string patches;
+  int order = 1;
   ExtractOptions options;
   double patchAngle = WriteOptions{}.patchAngle;
   int threads = 0;
@@ -39,14 +44,53 @@ struct Arguments {
   bool quiet = false;
 };
 
+void requireAllDifferent(const Arguments& arguments) {
+  std::vector<std::filesystem::path> files = arguments.input.files();
+  for (const std::string& output :
+       {arguments.output, arguments.report, arguments.arcs, arguments.patches}) {
+    for (const std::filesystem::path& file : files) {
+      if (!output.empty()) requireDifferent(file, output);
+    }
+    if (!output.empty()) files.emplace_back(output);
+  }
+}
+
+void requireCurvedOutputs(const Arguments& arguments) {
+  const bool piecewise = !arguments.arcs.empty() || !arguments.patches.empty();
+  if (arguments.stream && (piecewise || arguments.order > 1)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "Curved meshes are made as a whole. Leave out --stream, or --arcs, --patches and "
+                "--order.");
+  }
+  if (piecewise && arguments.order > 1) {
+    throw Error(ErrorCode::InvalidArgument,
+                "Arcs and patches belong to meshes of order 1. Leave out --order, or --arcs and "
+                "--patches.");
+  }
+  if (arguments.order > 1 && (!arguments.choice.format.empty() || arguments.choice.compress)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "The extension alone decides on the format of a mesh of higher order. Leave out "
+                "--format and --compress.");
+  }
+  if (!arguments.arcs.empty()) {
+    requireArcFormat(arguments.arcs);
+    requireWritable(arguments.arcs);
+  }
+  if (!arguments.patches.empty()) {
+    requirePatchFormat(arguments.patches);
+    requireWritable(arguments.patches);
+  }
+}
+
 /// Everything that can be known to fail before long work.
 void requireOutputs(const Arguments& arguments) {
-  for (const std::filesystem::path& input : arguments.input.files()) {
-    requireDifferent(input, arguments.output);
-    if (!arguments.report.empty()) requireDifferent(input, arguments.report);
+  requireAllDifferent(arguments);
+  requireCurvedOutputs(arguments);
+  if (arguments.order > 1) {
+    requireLagrangeFormat(arguments.output);
+  } else {
+    requireHexMeshFormat(arguments.output, arguments.choice.options());
   }
-  if (!arguments.report.empty()) requireDifferent(arguments.output, arguments.report);
-  requireHexMeshFormat(arguments.output, arguments.choice.options());
   requireWritable(arguments.output);
   if (arguments.stream) {
     requireStreamable(arguments.output, arguments.choice.options(), arguments.options);
@@ -106,6 +150,16 @@ void printSummary(const ExtractionRecord& record) {
                         counted(static_cast<std::uint64_t>(statistics.threads), "thread"),
                         record.streamed ? ", writing included" : "", bytesAsText(peakMemory())));
   if (record.quality) printLine("scaled Jacobian", qualityAsText(*record.quality));
+  if (record.order > 1) {
+    printLine("order", fmt::format("{}, {} nodes", record.order, record.nodes));
+  }
+  for (const auto& [what, part] :
+       {std::pair("arcs", &record.arcs), std::pair("patches", &record.patches)}) {
+    if (part->file.empty()) continue;
+    printLine(what, fmt::format("{} with {} {}, {}", part->count, part->pieces,
+                                what == std::string("arcs") ? "inner points" : "polygons",
+                                part->file.string()));
+  }
   printLine("verification", verificationAsText(record));
   if (record.streamed) {
     printLine("checksum of cells", checksumAsText(record.streamed->cellChecksum));
@@ -114,15 +168,39 @@ void printSummary(const ExtractionRecord& record) {
   printLine("file", bytesAsText(record.output.bytes));
 }
 
+void verifyMesh(const Arguments& arguments, const TetMap& map, const HexMesh& mesh,
+                Context& context, ExtractionRecord& record) {
+  if (arguments.noVerify) return;
+  record.verification =
+      verify(map, mesh, {arguments.options.scale, arguments.options.tolerance}, context);
+  requirePassed(*record.verification, "The mesh does not agree with the map and was not written",
+                "Please report this with the map.");
+}
+
+/// Extracts the mesh with the arcs and patches that are asked for.
+PiecewiseLinearMesh extractParts(const Arguments& arguments, const TetMap& map, Context& context,
+                                 ExtractionRecord& record) {
+  if (arguments.arcs.empty() && arguments.patches.empty()) {
+    return {extract(map, arguments.options, context, &record.statistics), {}, {}};
+  }
+  const auto parts =
+      arguments.patches.empty() ? PiecewiseLinearParts::Arcs : PiecewiseLinearParts::ArcsAndPatches;
+  return extractPiecewiseLinear(map, parts, arguments.options, context, &record.statistics);
+}
+
 /// Extracts, verifies and writes a mesh in memory.
 void extractWhole(const Arguments& arguments, const TetMap& map, Context& context,
                   ExtractionRecord& record) {
-  const HexMesh mesh = extract(map, arguments.options, context, &record.statistics);
-  if (!arguments.noVerify) {
-    record.verification =
-        verify(map, mesh, {arguments.options.scale, arguments.options.tolerance}, context);
-    requirePassed(*record.verification, "The mesh does not agree with the map and was not written",
-                  "Please report this with the map.");
+  const PiecewiseLinearMesh all = extractParts(arguments, map, context, record);
+  const HexMesh& mesh = all.mesh;
+  verifyMesh(arguments, map, mesh, context, record);
+  if (!arguments.arcs.empty()) {
+    writeArcs(all, arguments.arcs, context);
+    record.arcs = {arguments.arcs, all.arcs.count(), all.arcs.points.size()};
+  }
+  if (!arguments.patches.empty()) {
+    writePatches(all, arguments.patches, context);
+    record.patches = {arguments.patches, all.patches.count(), all.patches.polygonTet.size()};
   }
   const Array<double> quality = scaledJacobians(mesh, context);
   record.quality = summarize(quality);
@@ -134,6 +212,25 @@ void extractWhole(const Arguments& arguments, const TetMap& map, Context& contex
                  mesh.features.quads.size()};
   record.vertices = mesh.points.size();
   record.cells = mesh.cells.size();
+}
+
+/// Cells of higher order.
+void extractCurved(const Arguments& arguments, const TetMap& map, Context& context,
+                   ExtractionRecord& record) {
+  const LagrangeMesh mesh =
+      extractLagrange(map, arguments.order, arguments.options, context, &record.statistics);
+  verifyMesh(arguments, map, straightMesh(mesh), context, record);
+  const Array<double> quality = scaledJacobians(mesh, context);
+  record.quality = summarize(quality);
+  WriteOptions options;
+  options.scaledJacobians = quality;
+  options.patchAngle = arguments.patchAngle;
+  writeLagrangeMesh(mesh, arguments.output, options, context);
+  record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
+                 mesh.features.quads.size()};
+  record.vertices = mesh.vertexCount;
+  record.cells = mesh.cellCount();
+  record.nodes = mesh.points.size();
 }
 
 /// The same in pieces, verified after it was written.
@@ -156,7 +253,10 @@ int run(const Arguments& arguments) {
 
   const TetMap map = readMap(arguments.input, context);
   ExtractionRecord record;
-  (arguments.stream ? extractInPieces : extractWhole)(arguments, map, context, record);
+  record.order = arguments.order;
+  const auto make =
+      arguments.stream ? extractInPieces : (arguments.order > 1 ? extractCurved : extractWhole);
+  make(arguments, map, context, record);
   progress.clear();
 
   std::error_code unknown;  // the size of a pipe
@@ -203,6 +303,25 @@ void addMethod(CLI::App& parser, Arguments& arguments) {
                   "counts and checksums, by reading the file again");
 }
 
+/// Meshes that follow the map more closely.
+void addCurved(CLI::App& parser, Arguments& arguments) {
+  parser
+      .add_option(
+          "--order", arguments.order,
+          "Write cells of this order, whose nodes are on the images\nof a finer grid: .vtu, "
+          ".msh, or .mesh (MFEM)")
+      ->check(CLI::Range(1, kMaxOrder))
+      ->option_text("P [1]");
+  parser
+      .add_option("--arcs", arguments.arcs,
+                  "Also write hex edges as polylines through the tets,\n.vtu, .vtp or .ovmb")
+      ->option_text("FILE");
+  parser
+      .add_option("--patches", arguments.patches,
+                  "Also write hex faces as polygons, tet by tet: .vtu, .vtp\nor .ovmb")
+      ->option_text("FILE");
+}
+
 }  // namespace
 
 Command addExtract(CLI::App& app) {
@@ -217,6 +336,7 @@ Command addExtract(CLI::App& app) {
   addOutputChoice(*parser, arguments->choice);
   addScale(*parser, arguments->options.scale,
            "Multiply all parameters by this integer: its cube as\nmany cells");
+  addCurved(*parser, *arguments);
   addMethod(*parser, *arguments);
   addTolerance(*parser, arguments->options.tolerance);
   parser

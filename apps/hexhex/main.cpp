@@ -30,6 +30,7 @@ constexpr const char* kFooter = R"(Examples:
   hexhex verify sphere.hexex fine.mesh --scale 4
   hexhex info fine.mesh
   hexhex convert sphere.vtu sphere.msh           for Gmsh
+  hexhex view sphere.vtu --map sphere.hexex      a page that shows it in any browser
 
 `hexhex SUBCOMMAND --help` explains the options of a subcommand.
 
@@ -82,8 +83,8 @@ int run(int argc, char** argv) {
   app.footer(kFooter);
   app.require_subcommand(1);
   app.failure_message(usageProblem);
-  const std::array commands = {addExtract(app), addCheck(app),   addVerify(app), addGenerate(app),
-                               addInfo(app),    addConvert(app), addFormats(app)};
+  const std::array commands = {addExtract(app), addCheck(app),   addVerify(app),  addGenerate(app),
+                               addInfo(app),    addConvert(app), addFormats(app), addView(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -14,12 +14,6 @@
 namespace hexhex::command {
 namespace {
 
-[[noreturn]] void failToWrite(const std::filesystem::path& file, int error) {
-  throw Error(ErrorCode::FileWrite,
-              fmt::format("{}: the file cannot be written: {}.", file.string(),
-                          std::generic_category().message(error)));
-}
-
 /// Whether two names mean one file, or would once both are written.
 bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
   std::error_code missing;
@@ -31,6 +25,12 @@ bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
     return error ? file : path;
   };
   return whole(a) == whole(b) && !std::filesystem::is_other(a, missing);
+}
+
+[[noreturn]] void failToWrite(const std::filesystem::path& file, int error) {
+  throw Error(ErrorCode::FileWrite,
+              fmt::format("{}: the file cannot be written: {}.", file.string(),
+                          std::generic_category().message(error)));
 }
 
 }  // namespace
@@ -69,6 +69,13 @@ std::string qualityAsText(const QualitySummary& quality) {
                      inverted);
 }
 
+void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b) {
+  if (!sameFile(a, b)) return;
+  throw Error(ErrorCode::InvalidArgument, a.string() + " and " + b.string() +
+                                              " are the same file. Each file that is read or "
+                                              "written needs a name of its own.");
+}
+
 void requireWritable(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) failToWrite(file, EISDIR);
@@ -78,14 +85,6 @@ void requireWritable(const std::filesystem::path& file) {
   throw Error(ErrorCode::FileWrite,
               fmt::format("{}: no file can be created in the folder {}: {}.", file.string(),
                           folder.string(), std::generic_category().message(error)));
-}
-
-void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b) {
-  if (!sameFile(a, b)) return;
-  throw Error(ErrorCode::InvalidArgument,
-              a.string() + " and " + b.string() +
-                  " are the same file. What is read and what is written "
-                  "need files of their own.");
 }
 
 void writeTextFile(const std::filesystem::path& file, std::string_view text) {

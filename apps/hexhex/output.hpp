@@ -45,12 +45,12 @@ void printWarning(std::string_view sentence);
 /// "at least 0.3, 0.9 on average; 2 cells not positive"
 [[nodiscard]] std::string qualityAsText(const QualitySummary& quality);
 
+/// Throws InvalidArgument if two names mean one file, or would once both are written.
+void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b);
+
 /// Throws FileWrite if the file is a folder, or the folder that it will be in does not exist or
 /// cannot be written: to fail before long work.
 void requireWritable(const std::filesystem::path& file);
-
-/// Throws InvalidArgument if two names mean one file, or would once both are written.
-void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// Writes a text so that the file appears complete or not at all.
 /// @throws Error FileWrite

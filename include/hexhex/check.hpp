@@ -8,9 +8,10 @@
 
 #include <hexhex/context.hpp>
 #include <hexhex/error.hpp>
+#include <hexhex/export.h>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// One violated condition: how often, how badly, and the worst places.
 struct Defect {
@@ -73,4 +74,4 @@ struct CheckOptions {
                                 Context& context);
 [[nodiscard]] CheckReport check(const TetMapView& map, const CheckOptions& options = {});
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

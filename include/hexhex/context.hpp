@@ -8,7 +8,9 @@
 #include <string_view>
 #include <vector>
 
-namespace hexhex {
+#include <hexhex/export.h>
+
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// Wall-clock time of one stage.
 struct StageTime {
@@ -59,4 +61,4 @@ class Context {
   std::vector<StageTime> stageTimes_;
 };
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

@@ -7,13 +7,16 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 
 #include <hexhex/context.hpp>
+#include <hexhex/export.h>
 #include <hexhex/extract.hpp>
+#include <hexhex/io.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// Hex edges as polylines. An inner point is where the edge leaves one simplex of the tet mesh for
 /// another; a segment lies in the interior of one simplex: a tet, or a face or edge inside which
@@ -51,7 +54,7 @@ struct Patches {
   Array<Quad> vertices;
   /// Per face: the arc from its vertex i to vertex i + 1 (mod 4).
   Array<std::array<Index, 4>> arcs;
-  Array<std::uint8_t> reversedArcs;  ///< per face: bit i if that arc runs from i + 1 to i
+  Array<std::uint8_t> reversedArcs;   ///< per face: bit i if that arc runs from i + 1 to i
   Array<std::uint64_t> polygonBegin;  ///< per face (+1): its polygons
 
   // Per polygon:
@@ -60,8 +63,8 @@ struct Patches {
   Array<CornerSet> polygonCorners;   ///< as in HexMesh
 
   // Per corner of a polygon:
-  Array<Index> corners;                      ///< a point of the common numbering
-  Array<std::array<double, 2>> parameters;   ///< (u, v) in the face, in [0, 1]
+  Array<Index> corners;                     ///< a point of the common numbering
+  Array<std::array<double, 2>> parameters;  ///< (u, v) in the face, in [0, 1]
 
   // Per inner point of a face:
   Array<Vec3> points;
@@ -118,6 +121,10 @@ struct LagrangeMesh {
   Array<Index> generatorTet;
   Array<CornerSet> generatorCorners;
 
+  // Of the straight mesh, as in HexMesh:
+  HexFeatures features = {};
+  Array<std::int32_t> regions = {};
+
   [[nodiscard]] std::size_t nodesPerCell() const noexcept {
     const auto n = static_cast<std::size_t>(order) + 1;
     return n * n * n;
@@ -132,7 +139,9 @@ struct LagrangeMesh {
                                            const ExtractOptions& options, Context& context,
                                            ExtractStatistics* statistics = nullptr);
 
-/// The straight mesh between the corners: what extract() returns.
+/// The straight mesh between the corners: what extract() returns (its coordinates up to rounding if
+/// scale times order exceeds 255, which may make the lattice coarser that parameters are rounded
+/// to).
 [[nodiscard]] HexMesh straightMesh(const LagrangeMesh& mesh);
 
 /// Per cell: the smallest determinant of the Jacobian matrix, divided by the lengths of its
@@ -140,4 +149,29 @@ struct LagrangeMesh {
 /// that is not positive; one that is bad elsewhere only is not found.
 [[nodiscard]] Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context);
 
-}  // namespace hexhex
+/// Writes the arcs of a mesh. `.vtu` and `.vtp` (VTK XML, binary appended): hex vertices and inner
+/// points, and a line per segment with the number of its hex edge; arrays docs/curved.md explains.
+/// The file appears complete or not at all.
+/// @throws Error FileUnsupported, FileWrite
+void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
+               Context& context);
+
+/// Writes the patches of a mesh: `.vtu` and `.vtp`, a polygon each; or `.ovmb` (OpenVolumeMesh,
+/// polyhedral, without cells), with the property names that tools of the field use.
+/// @throws Error FileUnsupported, FileWrite; TooLarge for files that cannot number the elements
+void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
+                  Context& context);
+
+/// Writes Lagrange cells: `.vtu` (VTK_LAGRANGE_HEXAHEDRON in the node order of VTK 9), `.msh` (Gmsh
+/// 4.1), `.mesh` (MFEM, with its nodes as a discontinuous grid function).
+/// @param options  scaledJacobians: of the cells, by scaledJacobians(); empty: computed
+/// @throws Error FileUnsupported, FileWrite
+void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                       const WriteOptions& options, Context& context);
+
+/// Throw FileUnsupported unless the functions above know the extension: to fail before long work.
+void requireArcFormat(const std::filesystem::path& file);
+void requirePatchFormat(const std::filesystem::path& file);
+void requireLagrangeFormat(const std::filesystem::path& file);
+
+}  // namespace HEXHEX_API_NAMESPACE

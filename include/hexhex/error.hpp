@@ -6,7 +6,9 @@
 #include <string>
 #include <string_view>
 
-namespace hexhex {
+#include <hexhex/export.h>
+
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// What went wrong. The names are stable; docs/errors.md explains each.
 enum class ErrorCode {
@@ -74,4 +76,4 @@ class Error : public std::runtime_error {
   Place place_;
 };
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

@@ -8,9 +8,10 @@
 #include <cstdint>
 
 #include <hexhex/context.hpp>
+#include <hexhex/export.h>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// Two ways to the same mesh, bit for bit.
 enum class Engine : std::uint8_t {
@@ -84,4 +85,4 @@ struct ExtractStatistics {
 /// The same with all cores and without progress.
 [[nodiscard]] HexMesh extract(const TetMapView& map, const ExtractOptions& options = {});
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

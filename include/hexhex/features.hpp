@@ -7,7 +7,9 @@
 #include <span>
 #include <vector>
 
-namespace hexhex {
+#include <hexhex/export.h>
+
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// A tagged vertex. Tags are chosen by whoever made the mesh; 0 means "no feature", so elements
 /// with that tag are not listed.
@@ -81,4 +83,4 @@ struct HexFeatures {
   bool operator==(const HexFeatures&) const = default;
 };
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

@@ -8,10 +8,11 @@
 #include <variant>
 
 #include <hexhex/context.hpp>
+#include <hexhex/export.h>
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// What a reader may be told.
 struct ReadOptions {
@@ -156,7 +157,7 @@ struct FileFormat {
   bool compresses = false;  ///< WriteOptions::compress
 };
 
-/// All formats. Of several with one extension, the first that fits is what a file name means.
+/// All formats of this build. Of several with one extension, the first that fits is what a file name means.
 [[nodiscard]] std::span<const FileFormat> fileFormats();
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

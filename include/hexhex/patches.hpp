@@ -4,10 +4,11 @@
 #include <vector>
 
 #include <hexhex/context.hpp>
+#include <hexhex/export.h>
 #include <hexhex/features.hpp>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// The boundary quads of a mesh, facing outwards, tagged by patch. Two neighbours are in the same
 /// patch unless the boundary turns by more than `angle` degrees at their edge, in either direction,
@@ -22,4 +23,4 @@ namespace hexhex {
 [[nodiscard]] std::vector<FeatureQuad> boundaryPatches(const HexMesh& mesh, double angle,
                                                        Context& context);
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

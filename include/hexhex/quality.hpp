@@ -5,9 +5,10 @@
 #include <cstdint>
 
 #include <hexhex/context.hpp>
+#include <hexhex/export.h>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// Scaled Jacobian of one hexahedron in [-1, 1]: the smallest of the nine triple products of
 /// normalized edge vectors at the eight corners and of the principal axes at the centre (as in the
@@ -26,4 +27,4 @@ struct QualitySummary {
 
 [[nodiscard]] QualitySummary summarize(const Array<double>& scaledJacobians);
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

@@ -7,10 +7,11 @@
 #include <span>
 
 #include <hexhex/context.hpp>
+#include <hexhex/export.h>
 #include <hexhex/extract.hpp>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// Corner indices of one hexahedron of a mesh with more vertices than 32 bits can number.
 using Hex64 = std::array<std::uint64_t, 8>;
@@ -56,4 +57,4 @@ void extractToFile(const std::filesystem::path& file, const TetMapView& map,
                    const ExtractOptions& options, Context& context,
                    ExtractStatistics* statistics = nullptr);
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

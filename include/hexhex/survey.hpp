@@ -7,11 +7,12 @@
 #include <memory>
 
 #include <hexhex/context.hpp>
+#include <hexhex/export.h>
 #include <hexhex/io.hpp>
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// Sums of a mesh. Meshes with the same points in the same order, bit for bit, have the same
 /// `pointChecksum`; with the same cells in the same order, the same `cellChecksum`; however they
@@ -45,7 +46,7 @@ class SurveySink : public MeshSink {
   [[nodiscard]] const MeshSurvey& result() const noexcept;
 
  private:
-  class Adder;
+  class HEXHEX_HIDDEN Adder;
   std::unique_ptr<Adder> adder_;
 };
 
@@ -59,4 +60,4 @@ class SurveySink : public MeshSink {
                                     Context& context);
 [[nodiscard]] MeshSurvey surveyFile(const std::filesystem::path& file, Context& context);
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

@@ -12,9 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include <hexhex/export.h>
 #include <hexhex/features.hpp>  // IWYU pragma: export
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// A point or vector: x, y, z (in space) or u, v, w (a parameter, in units of one hexahedron).
 using Vec3 = std::array<double, 3>;
@@ -164,4 +165,4 @@ struct HexMesh {
   Array<std::int32_t> regions = {};  ///< per cell: the region that it is in; or empty
 };
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

@@ -6,9 +6,10 @@
 
 #include <hexhex/check.hpp>
 #include <hexhex/context.hpp>
+#include <hexhex/export.h>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// One comparison, e.g. {"cells", "4320", "4319", false}.
 struct VerifyItem {
@@ -43,4 +44,4 @@ struct VerifyOptions {
 [[nodiscard]] VerifyReport verify(const TetMapView& map, const HexMesh& mesh,
                                   const VerifyOptions& options = {});
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

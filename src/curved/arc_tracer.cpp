@@ -25,9 +25,8 @@ ArcPart ArcTracer::behind(const SimplexInTet& point) {
 }
 
 SimplexPoint ArcTracer::exitOf(const ArcPart& part) {
-  const SimplexPoint exit = part.entered >= 0
-                                ? exitAfterEntry(part.seen, part.entered)
-                                : exitPoint(part.seen, part.carrier.simplex, 0);
+  const SimplexPoint exit = part.entered >= 0 ? exitAfterEntry(part.seen, part.entered)
+                                              : exitPoint(part.seen, part.carrier.simplex, 0);
   if (exit.simplex() == kNoSimplex) fail(part.carrier.tet, "a hex edge leaves a tet nowhere");
   return exit;
 }

@@ -3,6 +3,7 @@
 
 #include <curved/simplex_point.hpp>
 #include <curved/simplex_star.hpp>
+
 #include <map/prepare.hpp>
 
 namespace hexhex {

@@ -67,8 +67,7 @@ class BlockTracer {
           back_.crossings.back().parameter = 1 - back_.crossings.back().parameter;
         });
     addSegment(first.carrier);
-    pieces_.segments.insert(pieces_.segments.end(), back_.segments.rbegin(),
-                            back_.segments.rend());
+    pieces_.segments.insert(pieces_.segments.end(), back_.segments.rbegin(), back_.segments.rend());
     pieces_.crossings.insert(pieces_.crossings.end(), back_.crossings.rbegin(),
                              back_.crossings.rend());
     bool atMiddle = true;
@@ -91,11 +90,10 @@ class BlockTracer {
     ArcPart first{back.carrier, {}, -1};
     first.carrier.frame = reversed(back.carrier.frame);
     first.seen = first.carrier.frame.see(map_.exact.corners[first.carrier.tet], map_.exact.unit);
-    const ArcPart last =
-        tracer_.follow(first, [&](const ArcPart& part, const SimplexPoint& exit) {
-          addSegment(part.carrier);
-          pieces_.crossings.push_back(crossingAt(part, exit));
-        });
+    const ArcPart last = tracer_.follow(first, [&](const ArcPart& part, const SimplexPoint& exit) {
+      addSegment(part.carrier);
+      pieces_.crossings.push_back(crossingAt(part, exit));
+    });
     addSegment(last.carrier);
     return {vertexAt(back), vertexAt(last)};
   }

@@ -1,11 +1,11 @@
 // Hex edges as polylines through the tets (Section 5.5).
 #pragma once
 
-#include <hexhex/curved.hpp>
-
 #include <curved/element_numbers.hpp>
 #include <curved/lattice_numbers.hpp>
 #include <curved/owned_simplex.hpp>
+
+#include <hexhex/curved.hpp>
 
 namespace hexhex {
 

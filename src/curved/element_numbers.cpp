@@ -51,9 +51,9 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& 
                  });
   exclusiveScan(std::span(begin_));
   if (count() >= kNone) {
-    throw Error(ErrorCode::TooLarge,
-                "The mesh would have " + std::to_string(count()) + " edges or faces, more than "
-                "32-bit indices can number. Lower the scale.");
+    throw Error(ErrorCode::TooLarge, "The mesh would have " + std::to_string(count()) +
+                                         " edges or faces, more than "
+                                         "32-bit indices can number. Lower the scale.");
   }
   exclusiveScan(std::span(lineBegin_));
   lines_.resize(lineBegin_.back());

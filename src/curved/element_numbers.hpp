@@ -7,11 +7,12 @@
 #include <cstdint>
 #include <span>
 
+#include <curved/lattice_numbers.hpp>
+#include <sweep/cell_seeds.hpp>
+
 #include <hexhex/types.hpp>
 
-#include <curved/lattice_numbers.hpp>
 #include <map/prepare.hpp>
-#include <sweep/cell_seeds.hpp>
 
 namespace hexhex {
 

@@ -2,13 +2,14 @@
 #include <string>
 #include <utility>
 
-#include <hexhex/curved.hpp>
-
-#include <base/parallel.hpp>
 #include <curved/arcs.hpp>
 #include <curved/lagrange.hpp>
 #include <curved/patches.hpp>
-#include <extract/scaled_map.hpp>
+
+#include <hexhex/curved.hpp>
+
+#include <base/parallel.hpp>
+#include <extract/steps.hpp>
 
 namespace hexhex {
 
@@ -35,7 +36,8 @@ void addParts(const PreparedMap& map, PiecewiseLinearParts parts, PiecewiseLinea
   if (parts == PiecewiseLinearParts::ArcsAndPatches) {
     Stage stage(context, "patches");
     const ElementNumbers faces(map, ElementKind::Faces, stage);
-    result.patches = cutPatches({map, vertices, edges, faces, result.arcs, traced.crossings}, stage);
+    result.patches =
+        cutPatches({map, vertices, edges, faces, result.arcs, traced.crossings}, stage);
     toCallersCorners(map.input, result.patches.generatorCorners, stage);
     toCallersCorners(map.input, result.patches.polygonCorners, stage);
   }
@@ -48,10 +50,11 @@ void addParts(const PreparedMap& map, PiecewiseLinearParts parts, PiecewiseLinea
 PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map, PiecewiseLinearParts parts,
                                            const ExtractOptions& options, Context& context,
                                            ExtractStatistics* statistics) {
+  checkOptions(options);
   PiecewiseLinearMesh result;
-  runExtraction(options, context, statistics, [&](ExtractStatistics& filled) {
+  runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {}, context, filled);
-    result.mesh = extractScaled(scaled, options, context, filled);
+    result.mesh = extractScaled(map, scaled, options, context, filled);
     addParts(scaled.map, parts, result, context);
   });
   return result;
@@ -64,11 +67,14 @@ LagrangeMesh extractLagrange(const TetMapView& map, int order, const ExtractOpti
                                                 ". Choose one from 1 to " +
                                                 std::to_string(kMaxOrder) + ".");
   }
+  checkOptions(options);
   LagrangeMesh result;
-  runExtraction(options, context, statistics, [&](ExtractStatistics& filled) {
+  runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {order}, context, filled);
-    const HexMesh mesh = extractScaled(scaled, options, context, filled);
+    HexMesh mesh = extractScaled(map, scaled, options, context, filled);
     result = groupNodes(mesh, scaled.map, order, context);
+    result.features = std::move(mesh.features);
+    result.regions = std::move(mesh.regions);
   });
   return result;
 }

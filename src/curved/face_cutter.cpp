@@ -204,8 +204,8 @@ CornerMask FaceCutter::simplexOfMidpoint(const LatticeTet& corners, std::size_t 
       {{unit / 2, 0, 0}, {unit, unit / 2, 0}, {unit / 2, unit, 0}, {0, unit / 2, 0}}};
   // Most tets at a side are elsewhere along it.
   const std::size_t along = side % 2;
-  const auto [low, high] = std::minmax(
-      {corners[0][along], corners[1][along], corners[2][along], corners[3][along]});
+  const auto [low, high] =
+      std::minmax({corners[0][along], corners[1][along], corners[2][along], corners[3][along]});
   if (low > unit / 2 || high < unit / 2) return kNoSimplex;
   CornerMask simplex = kNoSimplex;
   for (int face = 0; face < 4; ++face) {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <curved/patches.hpp>
 #include <curved/owned_simplex.hpp>
+#include <curved/patches.hpp>
 #include <curved/simplex_star.hpp>
 #include <curved/square_slice.hpp>
 

@@ -18,8 +18,7 @@ struct Frame {
 
   /// The frame of a grid point whose first axis is the given one, the others following cyclically.
   [[nodiscard]] static constexpr Frame along(const GridPoint& z, int axis) noexcept {
-    return {z,
-            {direction(axis, 1), direction((axis + 1) % 3, 1), direction((axis + 2) % 3, 1)}};
+    return {z, {direction(axis, 1), direction((axis + 1) % 3, 1), direction((axis + 2) % 3, 1)}};
   }
 
   [[nodiscard]] constexpr Frame carried(const Transition& transition) const noexcept {

@@ -86,9 +86,9 @@ class NodeCollector {
     for (std::int32_t k = range[2].first; k <= range[2].last; ++k) {
       for (std::int32_t j = range[1].first; j <= range[1].last; ++j) {
         for (std::int32_t i = range[0].first; i <= range[0].last; ++i) {
-          Index& node = nodes[static_cast<std::size_t>(i) +
-                              stride * (static_cast<std::size_t>(j) +
-                                        stride * static_cast<std::size_t>(k))];
+          Index& node =
+              nodes[static_cast<std::size_t>(i) +
+                    stride * (static_cast<std::size_t>(j) + stride * static_cast<std::size_t>(k))];
           if (node != kNone) continue;
           node = numbers_.find(here.tet, here.frame.at({i, j, k})).vertex;
           if (node != kNone) --missing_;
@@ -139,8 +139,8 @@ Array<Index> renumber(const HexMesh& mesh, const LagrangeMesh& result, std::uint
   parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
     for (std::size_t corner = 0; corner < 8; ++corner) {
       const Index node = result.nodes[c * perCell + nodeOfCorner(corner, result.order)];
-      const Index before = std::atomic_ref(number[node])
-                               .exchange(mesh.cells[c][corner], std::memory_order_relaxed);
+      const Index before =
+          std::atomic_ref(number[node]).exchange(mesh.cells[c][corner], std::memory_order_relaxed);
       if (before != kNone && before != mesh.cells[c][corner]) contradiction = true;
     }
   });
@@ -191,14 +191,13 @@ LagrangeMesh groupNodes(const HexMesh& mesh, PreparedMap& map, int order, Contex
   const LatticeNumbers numbers(map, stage);
   const std::size_t perCell = result.nodesPerCell();
   result.nodes.resize(cells.size() * perCell);
-  parallelBlocks(stage, cells.size(), kCellGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t) {
-                   NodeCollector collector(map, numbers, order);
-                   for (std::size_t c = begin; c < end; ++c) {
-                     collector.collect(cells[c],
-                                       std::span(result.nodes).subspan(c * perCell, perCell));
-                   }
-                 });
+  parallelBlocks(
+      stage, cells.size(), kCellGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        NodeCollector collector(map, numbers, order);
+        for (std::size_t c = begin; c < end; ++c) {
+          collector.collect(cells[c], std::span(result.nodes).subspan(c * perCell, perCell));
+        }
+      });
   const Array<Index> number = renumber(mesh, result, numbers.count(), stage);
   parallelFor(stage, result.nodes.size(), kGrain,
               [&](std::size_t i) { result.nodes[i] = number[result.nodes[i]]; });

@@ -4,11 +4,12 @@
 #include <numbers>
 #include <vector>
 
+#include <sweep/cell_seeds.hpp>
+
 #include <hexhex/curved.hpp>
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
-#include <sweep/cell_seeds.hpp>
 
 namespace hexhex {
 
@@ -18,7 +19,7 @@ constexpr std::size_t kGrain = 64;
 
 /// Values and derivatives of the Lagrange polynomials of an order at some places in [0, 1].
 struct Basis {
-  std::size_t nodes;   ///< order + 1
+  std::size_t nodes;  ///< order + 1
   std::size_t places;
   std::vector<double> value;       ///< of polynomial i at place q: [q * nodes + i]
   std::vector<double> derivative;  ///< likewise
@@ -164,6 +165,8 @@ Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context) {
 
 HexMesh straightMesh(const LagrangeMesh& mesh) {
   HexMesh straight;
+  straight.features = mesh.features;
+  straight.regions = mesh.regions;
   const auto vertices = static_cast<std::ptrdiff_t>(mesh.vertexCount);
   straight.points.assign(mesh.points.begin(), mesh.points.begin() + vertices);
   straight.generatorTet.assign(mesh.generatorTet.begin(), mesh.generatorTet.begin() + vertices);

@@ -96,30 +96,29 @@ LatticeNumbers::Found LatticeNumbers::find(Index tet, const GridPoint& z) const 
 }
 
 void LatticeNumbers::describe(const VertexDescriptions& to, Stage& stage) const {
-  parallelBlocks(
-      stage, map_.topology.tetCount(), kSweepBlock,
-      [&](std::size_t begin, std::size_t end, std::size_t) {
-        std::vector<SweptLine> swept;
-        for (std::size_t t = begin; t < end; ++t) {
-          const auto tet = static_cast<Index>(t);
-          if (linesOf(tet).empty()) continue;
-          swept.clear();
-          for (const Line& line : linesOf(tet)) swept.push_back(line.swept);
-          const TetSweep sweep(map_.exact, tet, SweptGrid::Vertices);
-          const TetPositions positions(map_, tet, sweep.box, sweep.axes);
-          TetNumbering(map_, numbers_, tet, sweep.axes)
-              .run(std::span<const SweptLine>(swept), [&](const VertexRun& run) {
-                if (!run.owned) return;
-                for (std::uint32_t i = 0; i < run.count; ++i) {
-                  const std::uint64_t v = run.first + i;
-                  to.points[v] =
-                      positions.at(run.simplex, sweep.point(*run.line, run.offset + i));
-                  to.tets[v] = tet;
-                  to.corners[v] = map_.input.callersCorners(run.simplex);
-                }
-              });
-        }
-      });
+  parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t) {
+                   std::vector<SweptLine> swept;
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     if (linesOf(tet).empty()) continue;
+                     swept.clear();
+                     for (const Line& line : linesOf(tet)) swept.push_back(line.swept);
+                     const TetSweep sweep(map_.exact, tet, SweptGrid::Vertices);
+                     const TetPositions positions(map_, tet, sweep.box, sweep.axes);
+                     TetNumbering(map_, numbers_, tet, sweep.axes)
+                         .run(std::span<const SweptLine>(swept), [&](const VertexRun& run) {
+                           if (!run.owned) return;
+                           for (std::uint32_t i = 0; i < run.count; ++i) {
+                             const std::uint64_t v = run.first + i;
+                             to.points[v] =
+                                 positions.at(run.simplex, sweep.point(*run.line, run.offset + i));
+                             to.tets[v] = tet;
+                             to.corners[v] = map_.input.callersCorners(run.simplex);
+                           }
+                         });
+                   }
+                 });
 }
 
 }  // namespace hexhex

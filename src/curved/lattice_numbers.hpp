@@ -5,11 +5,12 @@
 #include <span>
 #include <vector>
 
+#include <sweep/tet_lines.hpp>
+#include <sweep/vertex_numbers.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <map/prepare.hpp>
-#include <sweep/tet_lines.hpp>
-#include <sweep/vertex_numbers.hpp>
 
 namespace hexhex {
 
@@ -42,9 +43,9 @@ class LatticeNumbers {
   /// A swept line with the numbers of its points.
   struct Line {
     SweptLine swept;
-    Index left = kNone;   ///< kNone in faces that another tet owns
+    Index left = kNone;  ///< kNone in faces that another tet owns
     Index right = kNone;
-    Index inner = kNone;  ///< of the second point
+    Index inner = kNone;    ///< of the second point
     std::int32_t step = 0;  ///< from one inner point to the next
   };
 

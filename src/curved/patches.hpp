@@ -1,11 +1,11 @@
 // Hex faces as planar polygons, tet by tet (Section 5.5).
 #pragma once
 
-#include <hexhex/curved.hpp>
-
 #include <curved/element_numbers.hpp>
 #include <curved/lattice_numbers.hpp>
 #include <curved/owned_simplex.hpp>
+
+#include <hexhex/curved.hpp>
 
 namespace hexhex {
 
@@ -15,7 +15,7 @@ struct PatchInput {
   const LatticeNumbers& vertices;
   const ElementNumbers& edges;
   const ElementNumbers& faces;
-  const Arcs& arcs;  ///< of the edges
+  const Arcs& arcs;                            ///< of the edges
   std::span<const SimplexVertices> crossings;  ///< simplex of each inner point of the arcs
 };
 

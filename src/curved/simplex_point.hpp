@@ -58,8 +58,7 @@ struct SimplexPoint {
     double sum = 0;
     double magnitude = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-      const double term =
-          toDouble(weights[i]) * static_cast<double>(corners[i][axis] - target);
+      const double term = toDouble(weights[i]) * static_cast<double>(corners[i][axis] - target);
       sum += term;
       magnitude += std::abs(term);
     }

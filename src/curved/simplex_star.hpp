@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <curved/frame.hpp>
+
 #include <map/exact_map.hpp>
 #include <map/key_table.hpp>
 #include <map/tet_topology.hpp>

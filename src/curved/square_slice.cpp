@@ -98,8 +98,8 @@ class Outline {
   /// The point of an edge in the plane; corner i may lie in the plane, corner j does not.
   void addCrossing(std::size_t i, std::size_t j) {
     if (height(corners_, i) == 0) return addCorner(i);
-    const auto simplex = static_cast<CornerMask>(cornerBit(static_cast<int>(i)) |
-                                                 cornerBit(static_cast<int>(j)));
+    const auto simplex =
+        static_cast<CornerMask>(cornerBit(static_cast<int>(i)) | cornerBit(static_cast<int>(j)));
     slice_.add({simplex, {place(i, j, 0), place(i, j, 1)}, 0});
   }
 
@@ -253,8 +253,8 @@ Slice sliceSquare(const LatticeTet& corners, CornerMask carrier, std::int64_t un
                                                      {0, SquareSide::AtOne, kSquareSide + 1},
                                                      {1, SquareSide::AtOne, kSquareSide + 2},
                                                      {0, SquareSide::AtZero, kSquareSide + 3}}};
-  Slice slice = carrier == kWholeTet ? outlineOfTet(corners, unit)
-                                     : outlineOfFace(corners, carrier, unit);
+  Slice slice =
+      carrier == kWholeTet ? outlineOfTet(corners, unit) : outlineOfFace(corners, carrier, unit);
   for (const HalfPlane& plane : kHalfPlanes) {
     bool cut = false;
     for (std::size_t i = 0; i < slice.size(); ++i) cut = cut || plane.side(slice[i]) <= 0;

@@ -1,8 +1,6 @@
-// The public entry: options and errors around the paper's pipeline.
-#include <chrono>
+// The public entry: options and errors around the engines.
 #include <cmath>
 #include <limits>
-#include <new>
 #include <string>
 
 #include <atlas/atlas.hpp>
@@ -11,14 +9,11 @@
 #include <hexhex/stream.hpp>
 
 #include <extract/features.hpp>
-#include <extract/global_connectivity.hpp>
 #include <extract/pipeline.hpp>
-#include <extract/scaled_map.hpp>
+#include <extract/steps.hpp>
 #include <map/measures.hpp>
 
 namespace hexhex {
-
-namespace {
 
 void checkOptions(const ExtractOptions& options) {
   if (!(options.epsilon >= 0)) {
@@ -27,10 +22,8 @@ void checkOptions(const ExtractOptions& options) {
   }
 }
 
-/// cells * scale^3
-/// @param limit  of what can be numbered
-std::uint64_t scaledCells(std::uint64_t cells, int scale, double limit) {
-  const double estimate = static_cast<double>(cells) * std::pow(scale, 3);
+std::uint64_t scaledCells(std::uint64_t volume, int scale, double limit) {
+  const double estimate = static_cast<double>(volume) * std::pow(scale, 3);
   if (estimate >= limit) {
     throw Error(ErrorCode::TooLarge,
                 "The mesh would have about " + std::to_string(std::llround(estimate / 1e6)) +
@@ -38,22 +31,15 @@ std::uint64_t scaledCells(std::uint64_t cells, int scale, double limit) {
                     " million that can be numbered. Lower the scale.");
   }
   const auto s = static_cast<std::uint64_t>(scale);
-  return cells * s * s * s;
+  return volume * s * s * s;
 }
 
-}  // namespace
-
-ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options,
-                        const ScaleLimits& limits, Context& context,
-                        ExtractStatistics& statistics) {
+PreparedMap prepareValid(const TetMapView& map, double tolerance, int maxScale, Context& context,
+                         ExtractStatistics& statistics) {
+  requireValidTags(map);
   DefectCollector defects;
-  if (options.scale > std::numeric_limits<int>::max() / limits.furtherScale) {
-    throw Error(ErrorCode::TooLarge, "The scale is too large. Lower it.");
-  }
-  ScaledMap scaled{prepareMap(map, options.tolerance, options.scale * limits.furtherScale, context,
-                              defects)};
+  PreparedMap prepared = prepareMap(map, tolerance, maxScale, context, defects);
   defects.throwIfAny();
-  PreparedMap& prepared = scaled.map;
   statistics.mirrored = prepared.input.mirrored;
   statistics.tetsInvertedInSpace = prepared.input.tetsInvertedInSpace;
   statistics.maxDisplacement = prepared.exact.maxDisplacement;
@@ -61,66 +47,70 @@ ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options,
   statistics.chartJumps = prepared.exact.transitions.jumps;
   statistics.innerFaces = prepared.exact.transitions.innerFaces;
   statistics.singularEdges = prepared.singularities.edges.size();
+  return prepared;
+}
+
+HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells, const ExtractOptions& options,
+                  Context& context, ExtractStatistics& statistics) {
+  if (options.engine == Engine::Atlas) return runAtlas(map, expectedCells, context, statistics);
+  {
+    Stage stage(context, "stars");
+    addStars(map.topology, stage);
+  }
+  return runPipeline(map, expectedCells, options.epsilon, context, statistics);
+}
+
+void throwMissingVertex(const MissingVertex& missing) {
+  throw Error(ErrorCode::Internal,
+              "The map passed all checks, but a hex vertex is missing. This is a bug; please "
+              "report it with the map.",
+              {PlaceKind::Tet, missing.tet});
+}
+
+void throwOutOfMemory() {
+  throw Error(ErrorCode::OutOfMemory,
+              "Not enough memory for the extraction. Lower the scale, extract piece by piece, or "
+              "use a machine with more memory.");
+}
+
+ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options,
+                        const ScaleLimits& limits, Context& context,
+                        ExtractStatistics& statistics) {
+  if (options.scale > std::numeric_limits<int>::max() / limits.furtherScale) {
+    throw Error(ErrorCode::TooLarge, "The scale is too large. Lower it.");
+  }
+  ScaledMap scaled{prepareValid(map, options.tolerance, options.scale * limits.furtherScale,
+                                context, statistics)};
   Stage stage(context, "scaling");
-  scaled.expectedCells =
-      scaledCells(parametricVolume(prepared.exact), options.scale, limits.cells);
-  scaleMap(prepared.exact, options.scale, stage);
+  ExactMap& exact = scaled.map.exact;
+  scaled.expectedCells = scaledCells(parametricVolume(exact), options.scale, limits.cells);
+  scaleMap(exact, options.scale, stage);
   return scaled;
 }
 
-HexMesh extractScaled(ScaledMap& scaled, const ExtractOptions& options, Context& context,
-                      ExtractStatistics& statistics) {
-  if (options.engine == Engine::Atlas) {
-    return runAtlas(scaled.map, scaled.expectedCells, context, statistics);
-  }
-  {
-    Stage stage(context, "stars");
-    addStars(scaled.map.topology, stage);
-  }
-  return runPipeline(scaled.map, scaled.expectedCells, options.epsilon, context, statistics);
-}
-
-void runExtraction(const ExtractOptions& options, Context& context, ExtractStatistics* statistics,
-                   const std::function<void(ExtractStatistics&)>& work) {
-  checkOptions(options);
-  const auto begin = std::chrono::steady_clock::now();
-  ExtractStatistics local;
-  ExtractStatistics& filled = statistics != nullptr ? *statistics : local;
-  filled = {};
-  try {
-    withThreads(context.threads(), [&] { work(filled); });
-  } catch (const MissingVertex& missing) {
-    throw Error(ErrorCode::Internal,
-                "The map passed all checks, but a hex vertex is missing. This is a bug; please "
-                "report it with the map.",
-                {PlaceKind::Tet, missing.tet});
-  } catch (const std::bad_alloc&) {
-    throw Error(ErrorCode::OutOfMemory,
-                "Not enough memory for the extraction. Lower the scale, extract piece by piece, or "
-                "use a machine with more memory.");
-  }
-  filled.threads = effectiveThreads(context.threads());
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-  filled.seconds = seconds.count();
+HexMesh extractScaled(const TetMapView& given, ScaledMap& scaled, const ExtractOptions& options,
+                      Context& context, ExtractStatistics& statistics) {
+  HexMesh mesh = runEngine(scaled.map, scaled.expectedCells, options, context, statistics);
+  carryTags(given, scaled.map, mesh, context);
+  return mesh;
 }
 
 HexMesh extract(const TetMapView& map, const ExtractOptions& options, Context& context,
                 ExtractStatistics* statistics) {
+  checkOptions(options);
   HexMesh mesh;
-  runExtraction(options, context, statistics, [&](ExtractStatistics& filled) {
-    requireValidTags(map);
+  runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {}, context, filled);
-    mesh = extractScaled(scaled, options, context, filled);
-    carryTags(map, scaled.map, mesh, context);
+    mesh = extractScaled(map, scaled, options, context, filled);
   });
   return mesh;
 }
 
 void extractTo(MeshSink& sink, const TetMapView& map, const ExtractOptions& options,
                Context& context, ExtractStatistics* statistics) {
-  runExtraction(options, context, statistics, [&](ExtractStatistics& filled) {
-    constexpr double kMaxCells = 0x1p60;
-    const ScaledMap scaled = prepareScaled(map, options, {1, kMaxCells}, context, filled);
+  checkOptions(options);
+  runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
+    const ScaledMap scaled = prepareScaled(map, options, {1, kMaxStreamedCells}, context, filled);
     streamAtlas(scaled.map, scaled.expectedCells, sink, context, filled);
   });
 }

@@ -73,7 +73,8 @@ struct Seen {
 constexpr std::array<std::uint8_t, 8> kCornerAt = {0, 1, 3, 2, 4, 5, 7, 6};
 
 constexpr std::size_t cornerAt(const GridPoint& offset) noexcept {
-  return kCornerAt[static_cast<std::size_t>(offset[0] + 2 * offset[1] + 4 * offset[2])];
+  const std::int32_t code = offset[0] + 2 * offset[1] + 4 * offset[2];
+  return kCornerAt[static_cast<std::size_t>(code)];
 }
 
 constexpr std::size_t neighbour(std::size_t corner, std::size_t axis) noexcept {

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <hexhex/error.hpp>
@@ -35,19 +36,32 @@ void failIfAtEnd(TextScanner& scanner, std::size_t done, std::size_t count, cons
                                           ": it is incomplete.");
 }
 
-/// Adds the walls that are not features as well, so that every triangle has one tag.
-void keepTagged(const std::vector<FeatureFace>& walls, std::vector<FeatureFace>& faces) {
-  const auto key = [](const FeatureFace& face) {
-    std::array<Index, 3> vertices = face.vertices;
-    std::sort(vertices.begin(), vertices.end());
-    return vertices;
-  };
-  std::vector<std::array<Index, 3>> taken;
-  for (const FeatureFace& face : faces) taken.push_back(key(face));
-  std::sort(taken.begin(), taken.end());
-  for (const FeatureFace& wall : walls) {
-    if (!std::binary_search(taken.begin(), taken.end(), key(wall))) faces.push_back(wall);
+/// The vertices of a feature in ascending order.
+std::array<Index, 1> keyOf(const FeatureVertex& feature) { return {feature.vertex}; }
+template <class Feature>
+auto keyOf(const Feature& feature) {
+  auto vertices = feature.vertices;
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
+/// Leaves out what is listed before.
+template <class Feature>
+void removeRepeated(std::vector<Feature>& features) {
+  using Key = decltype(keyOf(features[0]));
+  std::vector<std::pair<Key, std::size_t>> keys;
+  keys.reserve(features.size());
+  for (std::size_t i = 0; i < features.size(); ++i) keys.emplace_back(keyOf(features[i]), i);
+  std::sort(keys.begin(), keys.end());
+  std::vector<bool> repeated(features.size(), false);
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    repeated[keys[i].second] = keys[i].first == keys[i - 1].first;
   }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    if (!repeated[i]) features[kept++] = features[i];
+  }
+  features.resize(kept);
 }
 
 /// Reads one file from top to bottom.
@@ -150,7 +164,12 @@ void HexexReader::readTrailingSections() {
                       ". After the last tet only walls (\"W\" and W lines \"v v v distance\") and "
                       "features (\"vertices edges faces\" and their lines) may follow.");
   }
-  keepTagged(walls, map_.features.faces);
+  // Features come first: a wall that is one as well is left out.
+  Features& features = map_.features;
+  features.faces.insert(features.faces.end(), walls.begin(), walls.end());
+  removeRepeated(features.vertices);
+  removeRepeated(features.edges);
+  removeRepeated(features.faces);
 }
 
 void HexexReader::readWalls() {

@@ -12,6 +12,8 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/abaqus.hpp>
+#include <io/cgns.hpp>
+#include <io/exodus.hpp>
 #include <io/finite_points.hpp>
 #include <io/gmsh.hpp>
 #include <io/hexex.hpp>
@@ -20,9 +22,11 @@
 #include <io/mesh_sink.hpp>
 #include <io/meshb.hpp>
 #include <io/mfem.hpp>
+#include <io/openfoam.hpp>
 #include <io/ovm.hpp>
 #include <io/registry.hpp>
 #include <io/vtk_legacy.hpp>
+#include <io/vtkhdf.hpp>
 #include <io/vtu.hpp>
 #include <io/zlib_blocks.hpp>
 #include <mesh/smooth_patches.hpp>
@@ -55,6 +59,36 @@ TetCells readHexexTets(const std::filesystem::path& file, Context& context) {
   tets.points.assign(map.points.begin(), map.points.end());
   tets.cells.assign(map.tets.begin(), map.tets.end());
   return tets;
+}
+
+/// Formats over libraries that not every build has.
+using WriteMesh = void (*)(const HexMesh& mesh, const std::filesystem::path& file,
+                           const WriteOptions& options, Context& context);
+#if defined(HEXHEX_HAS_HDF5)
+constexpr WriteMesh kWriteVtkHdf = writeVtkHdf;
+#else
+constexpr WriteMesh kWriteVtkHdf = nullptr;
+#endif
+#if defined(HEXHEX_HAS_CGNS)
+constexpr WriteMesh kWriteCgns = writeCgns;
+#else
+constexpr WriteMesh kWriteCgns = nullptr;
+#endif
+#if defined(HEXHEX_HAS_EXODUS)
+constexpr WriteMesh kWriteExodus = writeExodus;
+#else
+constexpr WriteMesh kWriteExodus = nullptr;
+#endif
+
+/// @param library  what has to be installed if there is no writer
+constexpr Format optionalFormat(std::string_view name, std::string_view extension,
+                                std::string_view description, WriteMesh write,
+                                std::string_view library) {
+  return {.name = name,
+          .extension = extension,
+          .description = description,
+          .writeMesh = write,
+          .missing = write != nullptr ? std::string_view() : library};
 }
 
 constexpr std::array kFormats = {
@@ -150,6 +184,14 @@ constexpr std::array kFormats = {
            .extension = "",
            .description = "MFEM mesh v1.0, text",
            .writeMesh = writeMfem},
+    Format{.name = "openfoam",
+           .extension = ".foam",
+           .description = "OpenFOAM polyMesh, a folder",
+           .writeMesh = writeOpenFoam},
+    optionalFormat("vtkhdf", ".vtkhdf", "VTKHDF", kWriteVtkHdf, "HDF5 (libhdf5-dev)"),
+    optionalFormat("cgns", ".cgns", "CGNS", kWriteCgns, "CGNS (libcgns-dev)"),
+    optionalFormat("exodus", ".exo", "Exodus II", kWriteExodus, "Exodus (libexodusii-dev)"),
+    optionalFormat("exodus-e", ".e", "Exodus II", kWriteExodus, "Exodus (libexodusii-dev)"),
 };
 
 /// Other names for formats.
@@ -164,7 +206,7 @@ bool holdsMaps(const Format& format) {
   return format.readMap != nullptr || format.writeMap != nullptr;
 }
 bool holdsMeshes(const Format& format) {
-  return format.readMesh != nullptr || format.writeMesh != nullptr;
+  return format.readMesh != nullptr || format.writeMesh != nullptr || !format.missing.empty();
 }
 
 /// What a format is looked for.
@@ -301,7 +343,12 @@ const Format& mapFormat(const std::filesystem::path& file, std::string_view name
 }
 
 const Format& hexMeshFormat(const std::filesystem::path& file, std::string_view name) {
-  return findFormat(file, name, kForMeshes);
+  const Format& format = findFormat(file, name, kForMeshes);
+  if (format.missing.empty()) return format;
+  throw Error(ErrorCode::FileUnsupported, file.string() +
+                                              ": this build of hexhex cannot write the format \"" +
+                                              std::string(format.name) + "\". Install " +
+                                              std::string(format.missing) + " and build it anew.");
 }
 
 std::span<const FileFormat> fileFormats() {
@@ -309,6 +356,7 @@ std::span<const FileFormat> fileFormats() {
     std::vector<FileFormat> result;
     result.reserve(kFormats.size());
     for (const Format& format : kFormats) {
+      if (!format.missing.empty()) continue;
       result.push_back({format.name, format.extension, format.description,
                         format.readMap != nullptr, format.writeMap != nullptr,
                         format.readTets != nullptr, format.readMesh != nullptr,

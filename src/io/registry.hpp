@@ -39,6 +39,8 @@ struct Format {
   void (*readMeshTo)(MeshSink& sink, const std::filesystem::path& file, Context& context) = nullptr;
 
   bool compresses = false;  ///< heeds WriteOptions::compress
+  /// The library without which this build cannot write the format: then all functions are null.
+  std::string_view missing = {};
 };
 
 /// The format of a file that holds, or will hold, a map or a hex mesh: the one of this name or, if

@@ -8,12 +8,12 @@
 #include <tuple>
 #include <vector>
 
-#include <hexhex/error.hpp>
 #include <hexhex/quality.hpp>
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/output_file.hpp>
+#include <io/tag_rows.hpp>
 #include <io/text_scanner.hpp>
 #include <io/vtu.hpp>
 #include <io/vtu_blocks.hpp>
@@ -27,32 +27,6 @@ namespace {
 
 // What is written between two looks at the caller's wish to cancel: some milliseconds' work.
 constexpr std::size_t kSliceBytes = std::size_t{1} << 22;
-
-Array<std::int32_t> vertexTags(const HexMesh& mesh) {
-  Array<std::int32_t> tags(mesh.points.size());
-  std::fill(tags.begin(), tags.end(), 0);
-  for (const FeatureVertex& feature : mesh.features.vertices) {
-    if (feature.vertex < tags.size()) {
-      tags[feature.vertex] = feature.tag;
-      continue;
-    }
-    throw Error(ErrorCode::InvalidArgument, "A feature names vertex " +
-                                                std::to_string(feature.vertex) +
-                                                ", which is not one of the mesh.");
-  }
-  return tags;
-}
-
-/// Elements as rows of numbers: the vertices and the tag.
-template <class Feature>
-std::vector<std::int64_t> rowsOf(const std::vector<Feature>& features) {
-  std::vector<std::int64_t> rows;
-  for (const Feature& feature : features) {
-    rows.insert(rows.end(), feature.vertices.begin(), feature.vertices.end());
-    rows.push_back(feature.tag);
-  }
-  return rows;
-}
 
 /// Where the arrays of a map are, and where those of a hex mesh.
 struct MapContent {

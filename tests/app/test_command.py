@@ -6,15 +6,20 @@
 Needs nothing but Python's standard library.
 """
 
+import base64
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
+import urllib.error
+import urllib.request
+import zlib
 
 SUCCESS, INVALID_MAP, BAD_USAGE, FILE_PROBLEM, FAILURE, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
@@ -60,7 +65,7 @@ REPORT_KEYS = {
     "generators", "vertices_by_generator", "local_propellers", "global_propellers", "charts",
     "cut_faces", "overlapping_tets", "traced_cells", "singular_edges", "chart_jumps", "inner_faces",
     "max_displacement", "max_transition_residual", "mirrored", "tets_inverted_in_space", "quality",
-    "verification", "streamed", "checksums",
+    "verification", "streamed", "checksums", "order", "nodes", "arcs", "patches",
 }
 
 
@@ -110,10 +115,10 @@ class CommandTest(unittest.TestCase):
 class Help(CommandTest):
     def test_help_and_version(self):
         text = self.run_command("--help").stdout
-        for word in ["extract", "check", "verify", "generate", "info", "Exit codes", "Examples"]:
+        for word in ["extract", "check", "verify", "generate", "info", "view", "Exit codes", "Examples"]:
             self.assertIn(word, text)
         self.assertRegex(self.run_command("--version").stdout, r"^hexhex \d+\.\d+\.\d+\n$")
-        for subcommand in ["extract", "check", "verify", "generate", "info"]:
+        for subcommand in ["extract", "check", "verify", "generate", "info", "view"]:
             self.assertIn("Example", self.run_command(subcommand, "--help").stdout)
 
     def test_help_lists_every_kind(self):
@@ -674,6 +679,142 @@ class Interruption(CommandTest):
 
     def test_interrupt_while_a_stream_is_read_back(self):
         self.interrupt("hexhex: read mesh\n", "--scale", "2", "--stream")
+
+
+class View(CommandTest):
+    """The page of `hexhex view`, unpacked here on its own."""
+
+    def setUp(self):
+        super().setUp()
+        self.generate("sphere", "--jitter", "0.2")
+        self.run_command("extract", "map.hexex", "-o", "a.mesh", "--scale", "2", "--quiet")
+        probe = subprocess.run([self.command, "view", "a.mesh", "-o", "probe.html", "--quiet"],
+                               cwd=self.folder, text=True, capture_output=True, check=False)
+        if "built without the viewer" in probe.stderr:
+            self.assertEqual(probe.returncode, FILE_PROBLEM)
+            self.skipTest("this hexhex was built without the viewer page")
+        self.assertEqual(probe.returncode, SUCCESS, probe.stderr)
+        (self.folder / "probe.html").unlink()
+
+    @staticmethod
+    def info(html):
+        found = re.search(r'<script id="mesh-info" type="application/json">(.*?)</script>', html)
+        return json.loads(found[1])
+
+    @staticmethod
+    def unpack(table, chunks):
+        """The rows of a table from its compressed chunks."""
+        rows = []
+        for chunk in chunks:
+            count = min(table["rowsPerChunk"], table["rows"] - len(rows))
+            columns = table["columns"]
+            data = zlib.decompress(chunk)
+            planes = [data[1 + p * count * columns:][:count * columns] for p in range(data[0])]
+            above = [0] * columns
+            for row in range(count):
+                for column in range(columns):
+                    code = sum(plane[column * count + row] << 8 * p for p, plane in enumerate(planes))
+                    above[column] += code >> 1 if code & 1 == 0 else -(code + 1 >> 1)
+                first = above[0] % 2**32
+                rows.append([first] + [(value + first) % 2**32 for value in above[1:]])
+        return rows
+
+    def tables(self, html):
+        return {table["name"]: self.unpack(table, [
+            base64.b64decode(re.search(f'id="data-{table["name"]}-{i}">(.*?)</script>', html)[1])
+            for i in range(len(table["chunkBytes"]))]) for table in self.info(html)["tables"]}
+
+    def mesh(self):
+        """Points and cells (0-based) of a.mesh."""
+        lines = (self.folder / "a.mesh").read_text().split("\n")
+        def section(name):
+            begin = lines.index(name)
+            return [line.split() for line in lines[begin + 2:begin + 2 + int(lines[begin + 1])]]
+        points = [[float(word) for word in words[:3]] for words in section("Vertices")]
+        return points, [[int(word) - 1 for word in words[:8]] for words in section("Hexahedra")]
+
+    def test_page_holds_the_mesh(self):
+        output = self.run_command("view", "a.mesh").stdout
+        self.assertIn("a.mesh -> a.html", output)
+        html = (self.folder / "a.html").read_text()
+        info, tables = self.info(html), self.tables(html)
+        points, cells = self.mesh()
+        self.assertEqual(tables["cells"], cells)
+        self.assertEqual(len(tables["points"]), len(points))
+        for stored, point in zip(tables["points"], points):
+            for axis in range(3):
+                place = info["lower"][axis] + info["step"] * stored[axis]
+                self.assertLess(abs(place - point[axis]), 0.51 * info["step"])
+        summary = self.run_command("info", "a.mesh").stdout
+        minimum = float(re.search(r"at least ([\d.]+)", summary)[1])
+        self.assertAlmostEqual(min(row[0] for row in tables["quality"]) / 65534 * 2 - 1, minimum, 3)
+        self.assertIsNone(info["verification"])
+        # Nothing in the page leads to a network.
+        self.assertNotRegex(re.sub(r"http://www\.w3\.org/\S+", "", html), r"(src|href)=.https?:")
+
+    def test_page_tells_whether_mesh_and_map_agree(self):
+        self.run_command("view", "a.mesh", "--map", "map.hexex", "--scale", "2", "-o", "b.html")
+        self.assertTrue(self.info((self.folder / "b.html").read_text())["verification"]["passed"])
+        run = self.run_command("view", "a.mesh", "--map", "map.hexex", "-o", "c.html",
+                               expect=FAILURE)
+        self.assertIn("warning: The mesh does not agree with map.hexex", run.stderr)
+        self.assertFalse(self.info((self.folder / "c.html").read_text())["verification"]["passed"])
+
+    def test_page_knows_generators(self):
+        for extension in ["vtu", "ovmb"]:
+            self.run_command("extract", "map.hexex", "-o", f"b.{extension}", "--quiet")
+            self.run_command("view", f"b.{extension}", "-o", "b.html", "--quiet")
+            kinds = self.tables((self.folder / "b.html").read_text())["generator_kinds"]
+            self.assertEqual({kind for kind, in kinds}, {0, 1, 2, 3})
+
+    def test_page_problems(self):
+        self.assert_fails("view", "a.mesh", "-o", "a.mesh", expect=BAD_USAGE, words=["same file"])
+        self.assert_fails("view", "none.mesh", expect=FILE_PROBLEM, code="FileNotFound")
+        self.assert_fails("view", "map.hexex", expect=FILE_PROBLEM, code="FileUnsupported")
+        self.assert_fails("view", "a.mesh", "-o", "no/folder/a.html", expect=FILE_PROBLEM,
+                          code="FileWrite")
+        self.write("empty.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n0\nEnd\n")
+        self.assert_fails("view", "empty.mesh", expect=INVALID_MAP, code="EmptyMesh")
+        for arguments in [["--port", "80"], ["--serve", "-o", "a.html"], ["--scale", "0"],
+                          ["--serve", "--port", "70000"]]:
+            self.run_command("view", "a.mesh", *arguments, expect=BAD_USAGE)
+
+    def test_serve(self):
+        with subprocess.Popen([self.command, "view", "a.mesh", "--serve", "--quiet"],
+                              cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True) as process:
+            address = process.stdout.readline().strip()
+            if not address and "without a server" in process.stderr.read():
+                self.skipTest("this hexhex was built without a server")
+            try:
+                self.assertRegex(address, r"^http://127\.0\.0\.1:\d+/$")
+                with urllib.request.urlopen(address, timeout=60) as page:
+                    info = self.info(page.read().decode())
+                with urllib.request.urlopen(address + info["data"].lstrip("/"), timeout=60) as mesh:
+                    data = mesh.read()
+                self.assertEqual(len(data), sum(sum(t["chunkBytes"]) for t in info["tables"]))
+                at = sum(info["tables"][0]["chunkBytes"])
+                cells = info["tables"][1]
+                chunks = []
+                for size in cells["chunkBytes"]:
+                    chunks.append(data[at:at + size])
+                    at += size
+                self.assertEqual(self.unpack(cells, chunks), self.mesh()[1])
+                # A page from elsewhere that has got hold of this address may not read it.
+                request = urllib.request.Request(address, headers={"Host": "example.org"})
+                with self.assertRaises(urllib.error.HTTPError) as refused:
+                    urllib.request.urlopen(request, timeout=60)
+                self.assertEqual(refused.exception.code, 403)
+                refused.exception.close()
+                port = address.rstrip("/").rsplit(":", 1)[1]
+                run = self.run_command("view", "a.mesh", "--serve", "--port", port,
+                                       expect=BAD_USAGE)
+                self.assertIn("cannot be used", run.stderr)
+            finally:
+                process.send_signal(signal.SIGINT)
+                _, errors = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, SUCCESS, errors)
+        self.assertEqual(set(self.files()), {"map.hexex", "a.mesh"})
 
 
 if __name__ == "__main__":

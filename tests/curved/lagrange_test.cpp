@@ -157,18 +157,26 @@ TEST(LagrangeQuality, KnownCells) {
     const auto quality = [&](const auto& place) {
       return scaledJacobians(oneCell(order, place), context).front();
     };
-    EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{3 * x, 2 * y, z}; }), 1,
-                1e-12);
+    EXPECT_NEAR(quality([](double x, double y, double z) {
+                  return Vec3{3 * x, 2 * y, z};
+                }),
+                1, 1e-12);
     // Sheared by 45 degrees everywhere.
-    EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{x + y, y, z}; }),
+    EXPECT_NEAR(quality([](double x, double y, double z) {
+                  return Vec3{x + y, y, z};
+                }),
                 std::sqrt(0.5), 1e-12);
     EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{-x, y, z}; }), -1, 1e-12);
     if (order < 2) continue;
     // x = s - s^2 turns back in the middle: the determinant at the far side is negative.
-    EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{x - x * x, y, z}; }), -1,
-                1e-12);
+    EXPECT_NEAR(quality([](double x, double y, double z) {
+                  return Vec3{x - x * x, y, z};
+                }),
+                -1, 1e-12);
     // The column of x is (1, 2 x) and its angle to y's is smallest at x = 1.
-    EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{x, y + x * x, z}; }),
+    EXPECT_NEAR(quality([](double x, double y, double z) {
+                  return Vec3{x, y + x * x, z};
+                }),
                 1 / std::sqrt(5.0), 1e-12);
   }
 }

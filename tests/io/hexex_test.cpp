@@ -93,6 +93,11 @@ TEST(Hexex, TrailingSectionsBecomeFeatures) {
   // The first wall is a feature, too.
   EXPECT_EQ(map.features.faces, (std::vector<FeatureFace>{{{0, 1, 2}, 1}, {{1, 2, 3}, 2}}));
   EXPECT_TRUE(parse(kOneTet + "0\n0 0 0\n").features.empty());
+  // What is listed twice is kept once.
+  const Features once = parse(kOneTet + "2 2 2\n3\n3\n0 1\n1 0\n0 1 2\n1 2 0\n").features;
+  EXPECT_EQ(once.vertices.size(), 1U);
+  EXPECT_EQ(once.edges, (std::vector<FeatureEdge>{{{0, 1}, 1}}));
+  EXPECT_EQ(once.faces.size(), 1U);
 }
 
 TEST(Hexex, FeaturesAreWrittenWithoutTags) {

@@ -1,0 +1,57 @@
+#include <string>
+
+#include "handles.hpp"
+
+namespace {
+
+hexhex::Context::Progress asFunction(hexhex_context& context, hexhex_progress progress,
+                                     void* user) {
+  if (progress == nullptr) return {};
+  return [&context, progress, user](std::string_view stage, double share) {
+    if (progress(user, std::string(stage).c_str(), share) != 0) context.context.cancel();
+  };
+}
+
+}  // namespace
+
+hexhex_context::hexhex_context(int threads, hexhex_progress progress, void* user)
+    : context(threads, asFunction(*this, progress, user)) {}
+
+hexhex_status hexhex_context_create(const hexhex_context_options* options, hexhex_context** context,
+                                    hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex_context_options given =
+        readStruct(options, HEXHEX_CONTEXT_OPTIONS_INIT, "options");
+    if (given.threads < 0) {
+      throw hexhex::Error(hexhex::ErrorCode::InvalidArgument,
+                          "The number of threads is " + std::to_string(given.threads) +
+                              ". Choose it from 1, or 0 for all cores.");
+    }
+    require(context, "context") = new hexhex_context(given.threads, given.progress, given.user);
+  });
+}
+
+void hexhex_context_destroy(hexhex_context* context) { delete context; }
+
+void hexhex_context_cancel(hexhex_context* context) {
+  if (context != nullptr) context->context.cancel();
+}
+
+size_t hexhex_context_stage_count(const hexhex_context* context) {
+  return context != nullptr ? context->context.stageTimes().size() : 0;
+}
+
+hexhex_status hexhex_context_stage(const hexhex_context* context, size_t stage, const char** name,
+                                   double* seconds, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const auto& times = require(context, "context").context.stageTimes();
+    if (stage >= times.size()) {
+      throw hexhex::Error(hexhex::ErrorCode::InvalidArgument,
+                          "There is no stage " + std::to_string(stage) + ".");
+    }
+    if (name != nullptr) *name = times[stage].stage.c_str();
+    if (seconds != nullptr) *seconds = times[stage].seconds;
+  });
+}

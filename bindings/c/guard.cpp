@@ -1,0 +1,79 @@
+#include "guard.hpp"
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include <hexhex/version.hpp>
+
+static_assert(hexhex::c::statusOf(hexhex::ErrorCode::InvalidArgument) == HEXHEX_INVALID_ARGUMENT);
+static_assert(hexhex::c::statusOf(hexhex::ErrorCode::FlippedTet) == HEXHEX_FLIPPED_TET);
+static_assert(hexhex::c::statusOf(hexhex::ErrorCode::Internal) == HEXHEX_INTERNAL);
+static_assert(static_cast<int>(hexhex::PlaceKind::Cell) == HEXHEX_PLACE_CELL);
+
+namespace hexhex::c {
+
+namespace {
+
+/// Needs no memory, so that it works when there is none.
+hexhex_status describe(hexhex_error* error, ErrorCode code, const char* message,
+                       const Place& place = {}) noexcept {
+  const hexhex_status status = statusOf(code);
+  if (error != nullptr) {
+    error->status = status;
+    error->place = placeOf(place);
+    static_cast<void>(std::snprintf(error->message, sizeof error->message, "%s", message));
+  }
+  return status;
+}
+
+}  // namespace
+
+hexhex_place placeOf(const Place& place) noexcept {
+  return {static_cast<hexhex_place_kind>(place.kind), place.index, place.second};
+}
+
+hexhex_status describeException(hexhex_error* error) noexcept {
+  constexpr const char* kNoMemory =
+      "Memory is exhausted. Use a smaller scale, or a machine with more memory.";
+  try {
+    throw;
+  } catch (const Error& e) {
+    return describe(error, e.code(), e.what(), e.place());
+  } catch (const std::bad_alloc&) {
+    return describe(error, ErrorCode::OutOfMemory, kNoMemory);
+  } catch (const std::length_error&) {
+    return describe(error, ErrorCode::OutOfMemory, kNoMemory);
+  } catch (const std::exception& e) {
+    return describe(error, ErrorCode::Internal, e.what());
+  } catch (...) {
+    return describe(error, ErrorCode::Internal,
+                    "Something unknown was thrown. This is a bug; please report it with the map.");
+  }
+}
+
+void throwNull(const char* argument) {
+  throw Error(ErrorCode::InvalidArgument,
+              std::string("The argument `") + argument + "` is NULL. Give something.");
+}
+
+void throwSize(const char* argument) {
+  throw Error(ErrorCode::InvalidArgument,
+              std::string("The member `size` of `") + argument +
+                  "` is wrong, or something is set that this version of the library does not "
+                  "know. Make the struct with its _INIT macro.");
+}
+
+}  // namespace hexhex::c
+
+const char* hexhex_version() { return hexhex::version(); }
+
+const char* hexhex_status_name(hexhex_status status) {
+  const int number = static_cast<int>(status);
+  if (number == 0) return "Ok";
+  if (number < 0 || number > static_cast<int>(hexhex::ErrorCode::Internal) + 1) return "Unknown";
+  // Names are literals, so they end with a zero.
+  return hexhex::name(static_cast<hexhex::ErrorCode>(number - 1)).data();
+}

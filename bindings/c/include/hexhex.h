@@ -1,0 +1,535 @@
+/* hexhex for C: hexahedral meshes from integer-grid maps.
+ *
+ * Conventions of this header
+ *
+ * - Functions that can fail return a hexhex_status and take a hexhex_error* as their last argument,
+ *   which may be NULL. It receives the code, a sentence and the place; nothing else keeps them, so
+ *   there is no global state. docs/errors.md explains each code.
+ * - What such a function makes, it writes to an out parameter, only if it succeeds. Handles are
+ *   opaque; each hexhex_..._create or similar has its hexhex_..._destroy, and destroying NULL is
+ *   fine.
+ * - Structs that may grow begin with `size`, the number of bytes that the caller knows. Make them
+ *   with their _INIT macro; a program that was compiled with an older or newer header works with
+ *   this library, and gets HEXHEX_INVALID_ARGUMENT if it sets what the library does not know.
+ *   Options may be NULL for all defaults.
+ * - No exception leaves the library, exhausted memory is HEXHEX_OUT_OF_MEMORY, and nothing is ever
+ *   printed.
+ * - Threads: functions may run at the same time as long as no two of them use the same handle,
+ *   unless both only read it (parameters that are pointers to const). hexhex_context_cancel() may
+ * be called at any time.
+ *
+ * Corners of a hexahedron are in the order of VTK_HEXAHEDRON: 0 1 2 3 around one face, 4 5 6 7
+ * above them, so that 0-4, 1-5, 2-6, 3-7 are edges:
+ *
+ *          7--------6
+ *         /|       /|
+ *        4--------5 |        w
+ *        | |      | |        |  v
+ *        | 3------|-2        | /
+ *        |/       |/         |/
+ *        0--------1          0-----u
+ *
+ * with positive orientation: det(p1 - p0, p3 - p0, p4 - p0) > 0 for undistorted cells.
+ */
+#ifndef HEXHEX_H
+#define HEXHEX_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <hexhex/export.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Version and errors -------------------------------------------------------------------- */
+
+/** The version of the library that runs, e.g. "0.1.0". */
+HEXHEX_API const char* hexhex_version(void);
+
+/** What went wrong. Numbers never change their meaning; new ones may come. */
+typedef enum hexhex_status {
+  HEXHEX_OK = 0,
+  HEXHEX_INVALID_ARGUMENT = 1,
+  HEXHEX_FILE_NOT_FOUND = 2,
+  HEXHEX_FILE_SYNTAX = 3,
+  HEXHEX_FILE_UNSUPPORTED = 4,
+  HEXHEX_FILE_WRITE = 5,
+  HEXHEX_EMPTY_MESH = 6,
+  HEXHEX_INDEX_OUT_OF_RANGE = 7,
+  HEXHEX_REPEATED_VERTEX = 8,
+  HEXHEX_NOT_FINITE = 9,
+  HEXHEX_NON_MANIFOLD_FACE = 10,
+  HEXHEX_NON_MANIFOLD_EDGE = 11,
+  HEXHEX_NON_MANIFOLD_VERTEX = 12,
+  HEXHEX_ORIENTATION = 13,
+  HEXHEX_TRANSITION_RESIDUAL = 14,
+  HEXHEX_BOUNDARY_OFF_LATTICE = 15,
+  HEXHEX_SINGULARITY_OFF_LATTICE = 16,
+  HEXHEX_FLIPPED_TET = 17,
+  HEXHEX_HALF_INTEGER_FIXED_POINT = 18,
+  HEXHEX_TOO_LARGE = 19,
+  HEXHEX_CANCELLED = 20,
+  HEXHEX_OUT_OF_MEMORY = 21,
+  HEXHEX_VERIFICATION_FAILED = 22,
+  HEXHEX_INTERNAL = 23
+} hexhex_status;
+
+/** The name of a status as in docs/errors.md, e.g. "FlippedTet"; "Ok"; "Unknown". Never NULL. */
+HEXHEX_API const char* hexhex_status_name(hexhex_status status);
+
+/** What a place is: see hexhex_place. */
+typedef enum hexhex_place_kind {
+  HEXHEX_PLACE_NONE = 0,
+  HEXHEX_PLACE_TET = 1,    /**< index: the tet */
+  HEXHEX_PLACE_FACE = 2,   /**< index: a tet; second: the corner opposite the face, 0 to 3 */
+  HEXHEX_PLACE_EDGE = 3,   /**< index, second: its vertices */
+  HEXHEX_PLACE_VERTEX = 4, /**< index: the vertex */
+  HEXHEX_PLACE_LINE = 5,   /**< index: a line of a file, from 1 */
+  HEXHEX_PLACE_CELL = 6    /**< index: the hexahedron */
+} hexhex_place_kind;
+
+typedef struct hexhex_place {
+  hexhex_place_kind kind;
+  uint64_t index;
+  uint64_t second;
+} hexhex_place;
+
+/** An error, complete in itself. Belongs to the caller. */
+typedef struct hexhex_error {
+  hexhex_status status;
+  hexhex_place place;
+  char message[1024]; /**< what is wrong, where, what to do; UTF-8, cut off if longer */
+} hexhex_error;
+
+/* ---- Context: threads, progress, cancellation ------------------------------------------------ */
+
+/** What long work gets from its caller. Functions accept NULL: all cores, no progress.
+ * One context serves one call at a time. */
+typedef struct hexhex_context hexhex_context;
+
+/** Called with the name of the stage and its finished share in [0, 1], at most a hundred times a
+ * stage, from one thread at a time, which may be another one than the caller's. Returns 0 to go on,
+ * anything else to cancel. Must return normally: no longjmp(), no exception. */
+typedef int (*hexhex_progress)(void* user, const char* stage, double share);
+
+typedef struct hexhex_context_options {
+  size_t size;
+  int threads;              /**< 0: all cores */
+  hexhex_progress progress; /**< or NULL */
+  void* user;               /**< given to progress */
+} hexhex_context_options;
+#define HEXHEX_CONTEXT_OPTIONS_INIT \
+  { sizeof(hexhex_context_options), 0, NULL, NULL }
+
+HEXHEX_API hexhex_status hexhex_context_create(const hexhex_context_options* options,
+                                               hexhex_context** context, hexhex_error* error);
+HEXHEX_API void hexhex_context_destroy(hexhex_context* context);
+
+/** Asks running and later work of this context to end soon with HEXHEX_CANCELLED. From any thread,
+ * and from a signal handler. */
+HEXHEX_API void hexhex_context_cancel(hexhex_context* context);
+
+/** The stages that have run through this context so far: their number, and the name and wall-clock
+ * seconds of one. The name lives as long as the context, until its next call. */
+HEXHEX_API size_t hexhex_context_stage_count(const hexhex_context* context);
+HEXHEX_API hexhex_status hexhex_context_stage(const hexhex_context* context, size_t stage,
+                                              const char** name, double* seconds,
+                                              hexhex_error* error);
+
+/* ---- Maps ------------------------------------------------------------------------------------ */
+
+/** The valence offset of an edge: hexahedra around it minus 4 (inside) or 2 (on the boundary). */
+typedef struct hexhex_edge_valence {
+  uint32_t vertex0;
+  uint32_t vertex1;
+  int offset;
+} hexhex_edge_valence;
+
+/** The arrays of a tetrahedral mesh with an integer-grid map. */
+typedef struct hexhex_map_arrays {
+  size_t size;
+  const double* points; /**< x, y, z of each vertex */
+  size_t point_count;
+  const uint32_t* tets; /**< four vertices of each tet, from 0 */
+  size_t tet_count;
+  const double* parameters; /**< u, v, w of corner 0, 1, 2, 3 of each tet, in the tet's own chart */
+  const hexhex_edge_valence* edge_valences; /**< or NULL: computed. Edges not listed are regular */
+  size_t edge_valence_count;
+  const int8_t*
+      rotations; /**< or NULL: computed. Four per tet: index 0 to 23 of the rotation across
+                      the face opposite each corner, as in AlgoHex; -1 where unknown */
+} hexhex_map_arrays;
+#define HEXHEX_MAP_ARRAYS_INIT \
+  { sizeof(hexhex_map_arrays), NULL, 0, NULL, 0, NULL, NULL, 0, NULL }
+
+/** A tetrahedral mesh with an integer-grid map. */
+typedef struct hexhex_map hexhex_map;
+
+/** A map of the caller's arrays, without a copy: they must outlive the map and may not change. */
+HEXHEX_API hexhex_status hexhex_map_borrow(const hexhex_map_arrays* arrays, hexhex_map** map,
+                                           hexhex_error* error);
+/** A map from a file: .hexex, .ovm, .ovmb. */
+HEXHEX_API hexhex_status hexhex_map_read(const char* file, hexhex_context* context,
+                                         hexhex_map** map, hexhex_error* error);
+/** Writes a map; the file appears complete or not at all. */
+HEXHEX_API hexhex_status hexhex_map_write(const hexhex_map* map, const char* file,
+                                          hexhex_context* context, hexhex_error* error);
+
+typedef enum hexhex_chart_style {
+  HEXHEX_CHARTS_ALIGNED = 0, /**< as many identity transitions as possible */
+  HEXHEX_CHARTS_BLOCKS = 1,  /**< a random chart per block */
+  HEXHEX_CHARTS_RANDOM = 2   /**< a random chart per tet */
+} hexhex_chart_style;
+
+/** See SampleOptions in <hexhex/samples.hpp> for the ranges. */
+typedef struct hexhex_sample_options {
+  size_t size;
+  int cells;   /**< hexahedra along each block edge */
+  int refine;  /**< tet sub-blocks along each block edge */
+  int valence; /**< of "star" */
+  hexhex_chart_style charts;
+  double jitter;
+  double on_lattice;
+  double noise;
+  double offset;
+  uint64_t seed;
+} hexhex_sample_options;
+#define HEXHEX_SAMPLE_OPTIONS_INIT \
+  { sizeof(hexhex_sample_options), 4, 2, 5, HEXHEX_CHARTS_ALIGNED, 0, 0, 0, 0, 1 }
+
+/** A map whose mesh is known in advance.
+ * @param kind  "box", "cylinder", "sphere", "star", "tetrahedron", "torus", "shell", "handle-body"
+ */
+HEXHEX_API hexhex_status hexhex_map_generate(const char* kind, const hexhex_sample_options* options,
+                                             hexhex_map** map, hexhex_error* error);
+
+/** The arrays of a map; they belong to it.
+ * @param[in,out] arrays  made with HEXHEX_MAP_ARRAYS_INIT */
+HEXHEX_API hexhex_status hexhex_map_get_arrays(const hexhex_map* map, hexhex_map_arrays* arrays,
+                                               hexhex_error* error);
+HEXHEX_API void hexhex_map_destroy(hexhex_map* map);
+
+/* ---- Meshes ---------------------------------------------------------------------------------- */
+
+/** The arrays of a hexahedral mesh. */
+typedef struct hexhex_mesh_arrays {
+  size_t size;
+  const double* points; /**< x, y, z of each vertex */
+  size_t point_count;
+  const uint32_t* cells; /**< eight vertices of each cell, from 0, order as above */
+  size_t cell_count;
+  const uint32_t* generator_tet;    /**< per vertex, or NULL: a tet that contains its generator */
+  const uint8_t* generator_corners; /**< per vertex, or NULL: the generator (the vertex, edge, face
+                                         or tet in whose interior the vertex lies) by corners of
+                                         that tet: bit i for corner i */
+} hexhex_mesh_arrays;
+#define HEXHEX_MESH_ARRAYS_INIT \
+  { sizeof(hexhex_mesh_arrays), NULL, 0, NULL, 0, NULL, NULL }
+
+/** A hexahedral mesh. */
+typedef struct hexhex_mesh hexhex_mesh;
+
+/** A mesh with copies of the arrays, e.g. to write or verify it. */
+HEXHEX_API hexhex_status hexhex_mesh_copy(const hexhex_mesh_arrays* arrays, hexhex_mesh** mesh,
+                                          hexhex_error* error);
+/** A mesh from a file: .mesh, .meshb, .vtu, .vtk, .msh, .ovm, .ovmb. */
+HEXHEX_API hexhex_status hexhex_mesh_read(const char* file, hexhex_context* context,
+                                          hexhex_mesh** mesh, hexhex_error* error);
+/** Writes a mesh; the file appears complete or not at all.
+ * @param format  as in WriteOptions of <hexhex/io.hpp>; NULL: what the extension means */
+HEXHEX_API hexhex_status hexhex_mesh_write(const hexhex_mesh* mesh, const char* file,
+                                           const char* format, hexhex_context* context,
+                                           hexhex_error* error);
+
+/** The arrays of a mesh, borrowed: they belong to it. Empty ones are NULL.
+ * @param[in,out] arrays  made with HEXHEX_MESH_ARRAYS_INIT */
+HEXHEX_API hexhex_status hexhex_mesh_get_arrays(const hexhex_mesh* mesh, hexhex_mesh_arrays* arrays,
+                                                hexhex_error* error);
+
+/** What keeps an array alive that was taken out of a mesh. */
+typedef struct hexhex_buffer hexhex_buffer;
+
+typedef enum hexhex_mesh_array {
+  HEXHEX_POINTS = 0,           /**< double, 3 per vertex */
+  HEXHEX_CELLS = 1,            /**< uint32_t, 8 per cell */
+  HEXHEX_GENERATOR_TET = 2,    /**< uint32_t, 1 per vertex */
+  HEXHEX_GENERATOR_CORNERS = 3 /**< uint8_t, 1 per vertex */
+} hexhex_mesh_array;
+
+/** Takes an array over, without a copy: the mesh has none afterwards, and the array lives until
+ * hexhex_buffer_destroy(), whatever happens to the mesh. */
+HEXHEX_API hexhex_status hexhex_mesh_take(hexhex_mesh* mesh, hexhex_mesh_array array,
+                                          hexhex_buffer** buffer, hexhex_error* error);
+/** The array's first element (NULL if it is empty), and its size in bytes. It may be written to. */
+HEXHEX_API void* hexhex_buffer_data(hexhex_buffer* buffer);
+HEXHEX_API size_t hexhex_buffer_bytes(const hexhex_buffer* buffer);
+HEXHEX_API void hexhex_buffer_destroy(hexhex_buffer* buffer);
+
+HEXHEX_API void hexhex_mesh_destroy(hexhex_mesh* mesh);
+
+/* ---- Extraction ------------------------------------------------------------------------------ */
+
+typedef enum hexhex_engine {
+  HEXHEX_ENGINE_ATLAS = 0,    /**< the fast one */
+  HEXHEX_ENGINE_PROPELLER = 1 /**< the paper's algorithm: the same mesh, bit for bit */
+} hexhex_engine;
+
+typedef struct hexhex_extract_options {
+  size_t size;
+  hexhex_engine engine;
+  int scale;        /**< multiplies all parameters: scale^3 times as many cells; at least 1 */
+  double epsilon;   /**< of the propeller engine; changes the time, never the result */
+  double tolerance; /**< how far the map may be from its integer conditions, below 0.25 */
+} hexhex_extract_options;
+#define HEXHEX_EXTRACT_OPTIONS_INIT \
+  { sizeof(hexhex_extract_options), HEXHEX_ENGINE_ATLAS, 1, 1e-6, 1e-2 }
+
+/** What happened on the way. ExtractStatistics in <hexhex/extract.hpp> explains the fields; array
+ * indices are kinds of generators: vertex, edge, face, cell. */
+typedef struct hexhex_statistics {
+  size_t size;
+  double seconds;
+  int threads;
+  double epsilon;
+  int epsilon_fallback;
+  int mirrored;
+  uint64_t tets_inverted_in_space;
+  double max_displacement;
+  double max_transition_residual;
+  uint64_t chart_jumps;
+  uint64_t inner_faces;
+  uint64_t singular_edges;
+  uint64_t generators[4];
+  uint64_t vertices[4];
+  uint64_t local_propellers;
+  uint64_t global_propellers;
+  uint64_t charts;
+  uint64_t cut_faces;
+  uint64_t overlapping_tets;
+  uint64_t traced_cells;
+} hexhex_statistics;
+#define HEXHEX_STATISTICS_INIT \
+  { sizeof(hexhex_statistics), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0, 0, 0, 0, 0, 0 }
+
+/** Extracts the hexahedral mesh of a map.
+ * @param[out] statistics  made with HEXHEX_STATISTICS_INIT, or NULL */
+HEXHEX_API hexhex_status hexhex_extract(const hexhex_map* map,
+                                        const hexhex_extract_options* options,
+                                        hexhex_context* context, hexhex_mesh** mesh,
+                                        hexhex_statistics* statistics, hexhex_error* error);
+
+/** A prepared map, for several meshes of it. See <hexhex/extractor.hpp>. */
+typedef struct hexhex_extractor hexhex_extractor;
+
+/** @param map        must outlive the extractor
+ *  @param tolerance  as in hexhex_extract_options
+ *  @param max_scale  the largest scale that will be asked for; below 256, meshes are the same as
+ *                    those of hexhex_extract(), bit for bit */
+HEXHEX_API hexhex_status hexhex_extractor_create(const hexhex_map* map, double tolerance,
+                                                 int max_scale, hexhex_context* context,
+                                                 hexhex_extractor** extractor, hexhex_error* error);
+/** As hexhex_extract(); options->tolerance is ignored. */
+HEXHEX_API hexhex_status hexhex_extractor_extract(hexhex_extractor* extractor,
+                                                  const hexhex_extract_options* options,
+                                                  hexhex_context* context, hexhex_mesh** mesh,
+                                                  hexhex_statistics* statistics,
+                                                  hexhex_error* error);
+HEXHEX_API void hexhex_extractor_destroy(hexhex_extractor* extractor);
+
+/* ---- Extraction in pieces -------------------------------------------------------------------- */
+
+/** Receives a mesh in pieces: begin, then all points in order, then all cells in order, then end;
+ * from one thread at a time. Each returns 0 to go on, anything else to cancel, and must return
+ * normally. Pointers are valid during the call. Members may be NULL. */
+typedef struct hexhex_sink {
+  size_t size;
+  void* user; /**< given to all */
+  int (*begin)(void* user, uint64_t point_count, uint64_t cell_count);
+  /** Vertices from number `first` on; generator arrays as in hexhex_mesh_arrays, or NULL. */
+  int (*points)(void* user, uint64_t first, size_t count, const double* points,
+                const uint32_t* generator_tet, const uint8_t* generator_corners);
+  /** Cells from number `first` on, in meshes of up to 2^32 - 2 vertices. */
+  int (*cells)(void* user, uint64_t first, size_t count, const uint32_t* cells);
+  /** The same in larger meshes. If NULL, these are HEXHEX_TOO_LARGE. */
+  int (*cells64)(void* user, uint64_t first, size_t count, const uint64_t* cells);
+  int (*end)(void* user);
+} hexhex_sink;
+#define HEXHEX_SINK_INIT \
+  { sizeof(hexhex_sink), NULL, NULL, NULL, NULL, NULL, NULL }
+
+/** Extracts the same mesh as hexhex_extract(), bit for bit, with the atlas engine, but never holds
+ * all of it. */
+HEXHEX_API hexhex_status hexhex_extract_to(const hexhex_sink* sink, const hexhex_map* map,
+                                           const hexhex_extract_options* options,
+                                           hexhex_context* context, hexhex_statistics* statistics,
+                                           hexhex_error* error);
+/** The same into a file, .vtu or .mesh. */
+HEXHEX_API hexhex_status hexhex_extract_to_file(const char* file, const hexhex_map* map,
+                                                const hexhex_extract_options* options,
+                                                hexhex_context* context,
+                                                hexhex_statistics* statistics, hexhex_error* error);
+/** Reads a mesh from a file and hands it over in pieces. */
+HEXHEX_API hexhex_status hexhex_mesh_read_to(const hexhex_sink* sink, const char* file,
+                                             hexhex_context* context, hexhex_error* error);
+
+/** What a mesh adds up to: see MeshSurvey in <hexhex/survey.hpp>. */
+typedef struct hexhex_survey {
+  size_t size;
+  uint64_t points;
+  uint64_t cells;
+  double lower[3]; /**< of the bounding box */
+  double upper[3];
+  uint64_t point_checksum;
+  uint64_t cell_checksum;
+} hexhex_survey;
+#define HEXHEX_SURVEY_INIT \
+  { sizeof(hexhex_survey), 0, 0, {0}, {0}, 0, 0 }
+
+HEXHEX_API hexhex_status hexhex_mesh_survey(const hexhex_mesh* mesh, hexhex_context* context,
+                                            hexhex_survey* survey, hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_file_survey(const char* file, hexhex_context* context,
+                                            hexhex_survey* survey, hexhex_error* error);
+
+/* ---- Checking maps --------------------------------------------------------------------------- */
+
+/** What a map is, what its mesh will be, and what is wrong with it. */
+typedef struct hexhex_check_report hexhex_check_report;
+
+/** Collects every violated condition instead of stopping at the first; a map that violates some is
+ * no error of this function.
+ * @param tolerance  as in hexhex_extract_options
+ * @param scale      of the mesh to expect */
+HEXHEX_API hexhex_status hexhex_check(const hexhex_map* map, double tolerance, int scale,
+                                      hexhex_context* context, hexhex_check_report** report,
+                                      hexhex_error* error);
+HEXHEX_API void hexhex_check_report_destroy(hexhex_check_report* report);
+
+/** The numbers of a report: see CheckReport and Expectation in <hexhex/check.hpp>. */
+typedef struct hexhex_check_summary {
+  size_t size;
+  int valid; /**< 1 if there are no defects */
+  size_t defect_count;
+  uint64_t points;
+  uint64_t tets;
+  uint64_t edges;
+  uint64_t faces;
+  uint64_t boundary_faces;
+  uint64_t inner_faces;
+  uint64_t chart_jumps;
+  uint64_t isolated_vertices;
+  uint64_t tets_inverted_in_space;
+  int mirrored;
+  int corners_reversed;
+  double max_transition_residual;
+  double max_displacement;
+  uint64_t singular_nodes;
+  /* Of the mesh to expect, if valid: */
+  uint64_t cells;
+  uint64_t boundary_quads;
+  int64_t euler_characteristic;
+  uint64_t components;
+  uint64_t boundary_components;
+} hexhex_check_summary;
+#define HEXHEX_CHECK_SUMMARY_INIT \
+  { sizeof(hexhex_check_summary), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+
+HEXHEX_API hexhex_status hexhex_check_get_summary(const hexhex_check_report* report,
+                                                  hexhex_check_summary* summary,
+                                                  hexhex_error* error);
+
+/** One violated condition; what it points to belongs to the report. */
+typedef struct hexhex_defect {
+  size_t size;
+  hexhex_status code;
+  const char* sentence; /**< what is wrong and what to do */
+  uint64_t count;       /**< all occurrences */
+  size_t worst_count;   /**< places that can be asked for: at most ten, worst first */
+} hexhex_defect;
+#define HEXHEX_DEFECT_INIT \
+  { sizeof(hexhex_defect), HEXHEX_OK, NULL, 0, 0 }
+
+HEXHEX_API hexhex_status hexhex_check_get_defect(const hexhex_check_report* report, size_t defect,
+                                                 hexhex_defect* out, hexhex_error* error);
+/** @param[out] amount  in parameter units: a distance, or the volume of a flipped tet */
+HEXHEX_API hexhex_status hexhex_check_get_occurrence(const hexhex_check_report* report,
+                                                     size_t defect, size_t occurrence,
+                                                     hexhex_place* place, double* amount,
+                                                     hexhex_error* error);
+
+/** Tables of edges by valence (hexahedra around an edge). */
+typedef enum hexhex_valence_table {
+  HEXHEX_INNER_HEX_EDGES = 0, /**< expected singular edges of the mesh */
+  HEXHEX_BOUNDARY_HEX_EDGES = 1,
+  HEXHEX_INNER_TET_EDGES = 2, /**< singular edges of the map */
+  HEXHEX_BOUNDARY_TET_EDGES = 3
+} hexhex_valence_table;
+
+/** The number of edges of a valence; 0 if there are none. */
+HEXHEX_API uint64_t hexhex_check_edges_of_valence(const hexhex_check_report* report,
+                                                  hexhex_valence_table table, int valence);
+/** The smallest valence in the table above `valence` (begin with -1), or -1 if there is none. */
+HEXHEX_API int hexhex_check_next_valence(const hexhex_check_report* report,
+                                         hexhex_valence_table table, int valence);
+
+/* ---- Verifying meshes ------------------------------------------------------------------------ */
+
+/** Whether a mesh agrees with its map, check by check. */
+typedef struct hexhex_verify_report hexhex_verify_report;
+
+/** A mesh that does not agree is no error of this function.
+ * @param tolerance  of the map, as in hexhex_extract_options
+ * @param scale      that the mesh was extracted with */
+HEXHEX_API hexhex_status hexhex_verify(const hexhex_map* map, const hexhex_mesh* mesh,
+                                       double tolerance, int scale, hexhex_context* context,
+                                       hexhex_verify_report** report, hexhex_error* error);
+HEXHEX_API void hexhex_verify_report_destroy(hexhex_verify_report* report);
+
+/** 1 if all checks passed. */
+HEXHEX_API int hexhex_verify_passed(const hexhex_verify_report* report);
+HEXHEX_API size_t hexhex_verify_item_count(const hexhex_verify_report* report);
+
+/** One check; strings belong to the report. */
+typedef struct hexhex_verify_item {
+  size_t size;
+  const char* name;     /**< stable key */
+  const char* expected; /**< from the map */
+  const char* found;    /**< in the mesh */
+  int passed;
+} hexhex_verify_item;
+#define HEXHEX_VERIFY_ITEM_INIT \
+  { sizeof(hexhex_verify_item), NULL, NULL, NULL, 0 }
+
+HEXHEX_API hexhex_status hexhex_verify_get_item(const hexhex_verify_report* report, size_t item,
+                                                hexhex_verify_item* out, hexhex_error* error);
+
+/* ---- Quality --------------------------------------------------------------------------------- */
+
+/** Scaled Jacobian of one hexahedron in [-1, 1]: see <hexhex/quality.hpp>.
+ * @param corners  x, y, z of the eight corners */
+HEXHEX_API double hexhex_scaled_jacobian(const double corners[24]);
+
+typedef struct hexhex_quality {
+  size_t size;
+  double minimum;
+  double mean;
+  uint64_t not_positive;  /**< cells with scaled Jacobian <= 0 */
+  uint64_t histogram[20]; /**< of [-1, 1] in steps of 0.1 */
+} hexhex_quality;
+#define HEXHEX_QUALITY_INIT                \
+  {                                        \
+    sizeof(hexhex_quality), 0, 0, 0, { 0 } \
+  }
+
+/** @param[out] scaled_jacobians  one per cell, or NULL
+ *  @param[out] quality           made with HEXHEX_QUALITY_INIT, or NULL */
+HEXHEX_API hexhex_status hexhex_mesh_quality(const hexhex_mesh* mesh, hexhex_context* context,
+                                             double* scaled_jacobians, hexhex_quality* quality,
+                                             hexhex_error* error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

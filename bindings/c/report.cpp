@@ -1,0 +1,158 @@
+#include <string>
+#include <utility>
+
+#include "handles.hpp"
+
+using hexhex::Error;
+using hexhex::ErrorCode;
+
+namespace {
+
+/// Element i of a report's list.
+template <class List>
+const auto& at(const List& list, std::size_t i, const char* what) {
+  if (i >= list.size()) {
+    throw Error(ErrorCode::InvalidArgument, "The report has " + std::to_string(list.size()) + " " +
+                                                what + "; there is no number " + std::to_string(i) +
+                                                ".");
+  }
+  return list[i];
+}
+
+const std::map<int, std::uint64_t>* tableOf(const hexhex_check_report* report,
+                                            hexhex_valence_table table) {
+  if (report == nullptr) return nullptr;
+  const hexhex::CheckReport& r = report->report;
+  switch (table) {
+    case HEXHEX_INNER_HEX_EDGES:
+      return &r.expected.innerSingularEdges;
+    case HEXHEX_BOUNDARY_HEX_EDGES:
+      return &r.expected.boundarySingularEdges;
+    case HEXHEX_INNER_TET_EDGES:
+      return &r.innerSingularTetEdges;
+    case HEXHEX_BOUNDARY_TET_EDGES:
+      return &r.boundarySingularTetEdges;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+hexhex_status hexhex_check(const hexhex_map* map, double tolerance, int scale,
+                           hexhex_context* context, hexhex_check_report** report,
+                           hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(report, "report");
+    ContextOrDefault used(context);
+    *report = new hexhex_check_report{
+        hexhex::check(require(map, "map").view, {.tolerance = tolerance, .scale = scale}, *used)};
+  });
+}
+
+void hexhex_check_report_destroy(hexhex_check_report* report) { delete report; }
+
+hexhex_status hexhex_check_get_summary(const hexhex_check_report* report,
+                                       hexhex_check_summary* summary, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex::CheckReport& r = require(report, "report").report;
+    const hexhex_check_summary result = {.size = sizeof(hexhex_check_summary),
+                                         .valid = r.valid() ? 1 : 0,
+                                         .defect_count = r.defects.size(),
+                                         .points = r.points,
+                                         .tets = r.tets,
+                                         .edges = r.edges,
+                                         .faces = r.faces,
+                                         .boundary_faces = r.boundaryFaces,
+                                         .inner_faces = r.innerFaces,
+                                         .chart_jumps = r.chartJumps,
+                                         .isolated_vertices = r.isolatedVertices,
+                                         .tets_inverted_in_space = r.tetsInvertedInSpace,
+                                         .mirrored = r.mirrored ? 1 : 0,
+                                         .corners_reversed = r.cornersReversed ? 1 : 0,
+                                         .max_transition_residual = r.maxTransitionResidual,
+                                         .max_displacement = r.maxDisplacement,
+                                         .singular_nodes = r.singularNodes,
+                                         .cells = r.expected.cells,
+                                         .boundary_quads = r.expected.boundaryQuads,
+                                         .euler_characteristic = r.expected.eulerCharacteristic,
+                                         .components = r.expected.components,
+                                         .boundary_components = r.expected.boundaryComponents};
+    writeStruct(result, require(summary, "summary"), "summary");
+  });
+}
+
+hexhex_status hexhex_check_get_defect(const hexhex_check_report* report, size_t defect,
+                                      hexhex_defect* out, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex::Defect& d = at(require(report, "report").report.defects, defect, "defects");
+    const hexhex_defect result = {sizeof(hexhex_defect), statusOf(d.code), d.sentence.c_str(),
+                                  d.count, d.worst.size()};
+    writeStruct(result, require(out, "out"), "out");
+  });
+}
+
+hexhex_status hexhex_check_get_occurrence(const hexhex_check_report* report, size_t defect,
+                                          size_t occurrence, hexhex_place* place, double* amount,
+                                          hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex::Defect& d = at(require(report, "report").report.defects, defect, "defects");
+    const hexhex::Defect::Occurrence& found = at(d.worst, occurrence, "places of that defect");
+    if (place != nullptr) *place = placeOf(found.place);
+    if (amount != nullptr) *amount = found.amount;
+  });
+}
+
+uint64_t hexhex_check_edges_of_valence(const hexhex_check_report* report,
+                                       hexhex_valence_table table, int valence) {
+  const auto* const edges = tableOf(report, table);
+  if (edges == nullptr) return 0;
+  const auto found = edges->find(valence);
+  return found != edges->end() ? found->second : 0;
+}
+
+int hexhex_check_next_valence(const hexhex_check_report* report, hexhex_valence_table table,
+                              int valence) {
+  const auto* const edges = tableOf(report, table);
+  if (edges == nullptr) return -1;
+  const auto next = edges->upper_bound(valence);
+  return next != edges->end() ? next->first : -1;
+}
+
+hexhex_status hexhex_verify(const hexhex_map* map, const hexhex_mesh* mesh, double tolerance,
+                            int scale, hexhex_context* context, hexhex_verify_report** report,
+                            hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(report, "report");
+    ContextOrDefault used(context);
+    *report = new hexhex_verify_report{
+        hexhex::verify(require(map, "map").view, require(mesh, "mesh").mesh,
+                       {.scale = scale, .tolerance = tolerance}, *used)};
+  });
+}
+
+void hexhex_verify_report_destroy(hexhex_verify_report* report) { delete report; }
+
+int hexhex_verify_passed(const hexhex_verify_report* report) {
+  return report != nullptr && report->report.passed() ? 1 : 0;
+}
+
+size_t hexhex_verify_item_count(const hexhex_verify_report* report) {
+  return report != nullptr ? report->report.items.size() : 0;
+}
+
+hexhex_status hexhex_verify_get_item(const hexhex_verify_report* report, size_t item,
+                                     hexhex_verify_item* out, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex::VerifyItem& found = at(require(report, "report").report.items, item, "items");
+    const hexhex_verify_item result = {sizeof(hexhex_verify_item), found.name.c_str(),
+                                       found.expected.c_str(), found.found.c_str(),
+                                       found.passed ? 1 : 0};
+    writeStruct(result, require(out, "out"), "out");
+  });
+}

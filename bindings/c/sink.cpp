@@ -1,0 +1,88 @@
+#include <hexhex/io.hpp>
+#include <hexhex/stream.hpp>
+
+#include "options.hpp"
+
+namespace {
+
+using hexhex::Error;
+using hexhex::ErrorCode;
+
+/// Hands pieces to the caller's functions.
+class CallbackSink : public hexhex::MeshSink {
+ public:
+  explicit CallbackSink(const hexhex_sink* sink)
+      : sink_(hexhex::c::readStruct(&hexhex::c::require(sink, "sink"), HEXHEX_SINK_INIT, "sink")) {}
+
+  void begin(std::uint64_t pointCount, std::uint64_t cellCount) override {
+    if (sink_.begin != nullptr) goOn(sink_.begin(sink_.user, pointCount, cellCount));
+  }
+  void points(const hexhex::PointPiece& piece) override {
+    if (sink_.points == nullptr) return;
+    goOn(sink_.points(sink_.user, piece.first, piece.points.size(),
+                      reinterpret_cast<const double*>(piece.points.data()),
+                      piece.generatorTet.empty() ? nullptr : piece.generatorTet.data(),
+                      piece.generatorCorners.empty() ? nullptr : piece.generatorCorners.data()));
+  }
+  void cells(std::uint64_t first, std::span<const hexhex::Hex> cells) override {
+    if (sink_.cells == nullptr) return;
+    goOn(sink_.cells(sink_.user, first, cells.size(),
+                     reinterpret_cast<const std::uint32_t*>(cells.data())));
+  }
+  void cells(std::uint64_t first, std::span<const hexhex::Hex64> cells) override {
+    if (sink_.cells64 == nullptr) {
+      throw Error(ErrorCode::TooLarge,
+                  "The mesh has more vertices than 32 bits can number, and the sink has no "
+                  "function cells64.");
+    }
+    goOn(sink_.cells64(sink_.user, first, cells.size(),
+                       reinterpret_cast<const std::uint64_t*>(cells.data())));
+  }
+  void end() override {
+    if (sink_.end != nullptr) goOn(sink_.end(sink_.user));
+  }
+
+ private:
+  static void goOn(int answer) {
+    if (answer != 0) throw Error(ErrorCode::Cancelled, "The sink asked to stop.");
+  }
+  hexhex_sink sink_;
+};
+
+}  // namespace
+
+hexhex_status hexhex_extract_to(const hexhex_sink* sink, const hexhex_map* map,
+                                const hexhex_extract_options* options, hexhex_context* context,
+                                hexhex_statistics* statistics, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    CallbackSink callbacks(sink);
+    ContextOrDefault used(context);
+    hexhex::ExtractStatistics filled;
+    hexhex::extractTo(callbacks, require(map, "map").view, extractOptions(options), *used, &filled);
+    writeStatistics(filled, statistics);
+  });
+}
+
+hexhex_status hexhex_extract_to_file(const char* file, const hexhex_map* map,
+                                     const hexhex_extract_options* options, hexhex_context* context,
+                                     hexhex_statistics* statistics, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    ContextOrDefault used(context);
+    hexhex::ExtractStatistics filled;
+    hexhex::extractToFile(&require(file, "file"), require(map, "map").view, extractOptions(options),
+                          *used, &filled);
+    writeStatistics(filled, statistics);
+  });
+}
+
+hexhex_status hexhex_mesh_read_to(const hexhex_sink* sink, const char* file,
+                                  hexhex_context* context, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    CallbackSink callbacks(sink);
+    ContextOrDefault used(context);
+    hexhex::readHexMeshTo(callbacks, &require(file, "file"), *used);
+  });
+}

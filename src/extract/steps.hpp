@@ -1,0 +1,87 @@
+// The steps of an extraction, as the public functions combine them.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <new>
+
+#include <hexhex/extract.hpp>
+#include <hexhex/stream.hpp>
+
+#include <base/parallel.hpp>
+#include <extract/global_connectivity.hpp>
+#include <map/prepare.hpp>
+
+namespace hexhex {
+
+/// As many cells as 32-bit indices can number, and as pieces can.
+inline constexpr double kMaxCells = kNone;
+inline constexpr double kMaxStreamedCells = 0x1p60;
+
+/// @throws Error InvalidArgument for an epsilon out of range
+void checkOptions(const ExtractOptions& options);
+
+/// Checks tags, prepares a map, throws its first defect if it has any, and notes what is known
+/// about it.
+[[nodiscard]] PreparedMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
+                                       Context& context, ExtractStatistics& statistics);
+
+/// The number of cells at a scale.
+/// @param volume  at scale 1
+/// @throws Error TooLarge if there were `limit` or more
+[[nodiscard]] std::uint64_t scaledCells(std::uint64_t volume, int scale, double limit);
+
+/// All stages behind the scaling. Adds to the map's topology what the engine needs.
+/// @param map  scaled
+[[nodiscard]] HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells,
+                                const ExtractOptions& options, Context& context,
+                                ExtractStatistics& statistics);
+
+/// A map that is ready for either engine.
+struct ScaledMap {
+  PreparedMap map;
+  std::uint64_t expectedCells = 0;
+};
+
+struct ScaleLimits {
+  int furtherScale = 1;      ///< the map is going to be scaled by this again
+  double cells = kMaxCells;  ///< the mesh has fewer cells
+};
+
+/// Prepares a map and scales it.
+/// @throws Error  for every violated condition; TooLarge
+[[nodiscard]] ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options,
+                                      const ScaleLimits& limits, Context& context,
+                                      ExtractStatistics& statistics);
+
+/// All further stages, with the tags of the caller's map.
+[[nodiscard]] HexMesh extractScaled(const TetMapView& given, ScaledMap& scaled,
+                                    const ExtractOptions& options, Context& context,
+                                    ExtractStatistics& statistics);
+
+[[noreturn]] void throwMissingVertex(const MissingVertex& missing);
+[[noreturn]] void throwOutOfMemory();
+
+/// Runs work(statistics) with the context's threads; translates what may escape from it, and notes
+/// the time.
+/// @param known  what the statistics begin with
+template <class Work>
+void runExtraction(const ExtractStatistics& known, Context& context, ExtractStatistics* statistics,
+                   const Work& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  ExtractStatistics local;
+  ExtractStatistics& filled = statistics != nullptr ? *statistics : local;
+  filled = known;
+  try {
+    withThreads(context.threads(), [&] { work(filled); });
+  } catch (const MissingVertex& missing) {
+    throwMissingVertex(missing);
+  } catch (const std::bad_alloc&) {
+    throwOutOfMemory();
+  }
+  filled.threads = effectiveThreads(context.threads());
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  filled.seconds = seconds.count();
+}
+
+}  // namespace hexhex

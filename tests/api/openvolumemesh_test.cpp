@@ -1,0 +1,159 @@
+// The adapter for OpenVolumeMesh, on a minimal type with the interface that OpenVolumeMesh
+// documents: handles with idx(), half-faces 2f and 2f + 1, points with three coordinates.
+#include <array>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/adapters/openvolumemesh.hpp>
+#include <hexhex/hexhex.hpp>
+
+namespace hexhex {
+namespace {
+
+template <int Kind>
+class Handle {
+ public:
+  Handle() = default;
+  explicit Handle(int idx) : idx_(idx) {}
+  [[nodiscard]] int idx() const noexcept { return idx_; }
+
+ private:
+  int idx_ = -1;
+};
+using VertexHandle = Handle<0>;
+using FaceHandle = Handle<1>;
+using HalfFaceHandle = Handle<2>;
+using CellHandle = Handle<3>;
+
+class Point {
+ public:
+  Point(double x, double y, double z) : p_{x, y, z} {}
+  double operator[](std::size_t k) const { return p_[k]; }
+
+ private:
+  std::array<double, 3> p_;
+};
+
+/// As much of a polyhedral mesh as the adapter calls.
+class LookAlike {
+ public:
+  using PointT = Point;
+
+  VertexHandle add_vertex(const PointT& point) {  // NOLINT(readability-identifier-naming)
+    points.push_back(point);
+    return VertexHandle(static_cast<int>(points.size()) - 1);
+  }
+  FaceHandle add_face(const std::vector<VertexHandle>& vertices) {  // NOLINT
+    faces.push_back(vertices);
+    return FaceHandle(static_cast<int>(faces.size()) - 1);
+  }
+  [[nodiscard]] HalfFaceHandle halfface_handle(FaceHandle face, int side) const {  // NOLINT
+    return HalfFaceHandle(2 * face.idx() + side);
+  }
+  CellHandle add_cell(const std::vector<HalfFaceHandle>& halfFaces) {  // NOLINT
+    cellFaces.push_back(halfFaces);
+    return CellHandle(static_cast<int>(cellFaces.size()) - 1);
+  }
+  CellHandle add_tet(const std::array<int, 4>& vertices) {  // NOLINT
+    tets.push_back(vertices);
+    return CellHandle(static_cast<int>(tets.size()) - 1);
+  }
+
+  [[nodiscard]] std::size_t n_vertices() const { return points.size(); }  // NOLINT
+  [[nodiscard]] const PointT& vertex(VertexHandle v) const {
+    return points[static_cast<std::size_t>(v.idx())];
+  }
+  [[nodiscard]] std::vector<VertexHandle> vertices() const { return all<VertexHandle>(points); }
+  [[nodiscard]] std::vector<CellHandle> cells() const { return all<CellHandle>(tets); }
+  [[nodiscard]] std::vector<VertexHandle> get_cell_vertices(CellHandle c) const {  // NOLINT
+    std::vector<VertexHandle> result;
+    for (const int v : tets[static_cast<std::size_t>(c.idx())]) result.emplace_back(v);
+    return result;
+  }
+
+  std::vector<Point> points;
+  std::vector<std::array<int, 4>> tets;
+  std::vector<std::vector<VertexHandle>> faces;
+  std::vector<std::vector<HalfFaceHandle>> cellFaces;
+
+ private:
+  template <class H, class List>
+  static std::vector<H> all(const List& list) {
+    std::vector<H> handles;
+    for (std::size_t i = 0; i < list.size(); ++i) handles.emplace_back(static_cast<int>(i));
+    return handles;
+  }
+};
+
+TEST(OpenVolumeMeshAdapter, ReadsAMap) {
+  const TetMap map = generateSample(SampleKind::Sphere).map;
+  LookAlike tets;
+  for (const Vec3& p : map.points) tets.add_vertex(Point(p[0], p[1], p[2]));
+  for (const Tet& t : map.tets) {
+    tets.add_tet({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2]),
+                  static_cast<int>(t[3])});
+  }
+  const auto parameter = [&](CellHandle c, VertexHandle v) {
+    const auto cell = static_cast<std::size_t>(c.idx());
+    std::size_t corner = 0;
+    while (map.tets[cell][corner] != static_cast<Index>(v.idx())) ++corner;
+    return map.parameters[cell][corner];
+  };
+  const TetMap read = fromOpenVolumeMesh(tets, parameter);
+  EXPECT_EQ(read.points, map.points);
+  EXPECT_EQ(read.tets, map.tets);
+  EXPECT_EQ(read.parameters, map.parameters);
+}
+
+/// Volume of the cell from its half-faces alone, each taken as two triangles. Half-faces of
+/// OpenVolumeMesh look inwards.
+double volume(const LookAlike& mesh, std::size_t cell) {
+  double sum = 0;
+  for (const HalfFaceHandle h : mesh.cellFaces[cell]) {
+    const auto& face = mesh.faces[static_cast<std::size_t>(h.idx() / 2)];
+    const auto at = [&](std::size_t i) {
+      const VertexHandle v = face[h.idx() % 2 == 0 ? i : face.size() - 1 - i];
+      return mesh.vertex(v);
+    };
+    for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+      const Point a = at(0);
+      const Point b = at(i);
+      const Point c = at(i + 1);
+      sum -= a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+             a[2] * (b[0] * c[1] - b[1] * c[0]);
+    }
+  }
+  return sum / 6;
+}
+
+TEST(OpenVolumeMeshAdapter, AddsAMesh) {
+  const Sample sample = generateSample(SampleKind::Sphere);
+  const HexMesh mesh = extract(sample.map);
+  LookAlike out;
+  toOpenVolumeMesh(mesh, out);
+  EXPECT_EQ(out.points.size(), mesh.points.size());
+  ASSERT_EQ(out.cellFaces.size(), mesh.cells.size());
+  // Every face once, from each side at most once.
+  EXPECT_EQ(out.faces.size(), (6 * mesh.cells.size() + sample.answer.expected.boundaryQuads) / 2);
+  std::vector<int> uses(2 * out.faces.size(), 0);
+  for (std::size_t c = 0; c < out.cellFaces.size(); ++c) {
+    ASSERT_EQ(out.cellFaces[c].size(), 6U);
+    for (const HalfFaceHandle h : out.cellFaces[c]) {
+      EXPECT_EQ(uses[static_cast<std::size_t>(h.idx())]++, 0);
+    }
+    EXPECT_GT(volume(out, c), 0);
+  }
+  for (std::size_t f = 0; f < out.faces.size(); ++f) EXPECT_EQ(uses[2 * f], 1);
+}
+
+TEST(OpenVolumeMeshAdapter, RefusesAFaceOfThreeCells) {
+  HexMesh mesh;
+  mesh.points.resize(8, Vec3{});
+  mesh.cells.resize(3, Hex{0, 1, 2, 3, 4, 5, 6, 7});
+  LookAlike out;
+  EXPECT_THROW(toOpenVolumeMesh(mesh, out), Error);
+}
+
+}  // namespace
+}  // namespace hexhex

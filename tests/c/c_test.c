@@ -1,0 +1,514 @@
+/* The C functions, used from C. Prints what fails; exit code 0 if nothing does. */
+#include <float.h>
+#include <hexhex.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static int failures = 0;
+
+#define CHECK(condition)                                                      \
+  do {                                                                        \
+    if (!(condition)) {                                                       \
+      fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, #condition); \
+      ++failures;                                                             \
+    }                                                                         \
+  } while (0)
+#define CHECK_OK(call) CHECK((call) == HEXHEX_OK)
+
+static hexhex_map* sphere(int refine) {
+  hexhex_sample_options options = HEXHEX_SAMPLE_OPTIONS_INIT;
+  hexhex_map* map = NULL;
+  hexhex_error error;
+  options.refine = refine;
+  options.charts = HEXHEX_CHARTS_RANDOM;
+  CHECK_OK(hexhex_map_generate("sphere", &options, &map, &error));
+  return map;
+}
+
+static double corner_determinant(const double* p, const uint32_t* cell) {
+  const double* o = p + 3 * cell[0];
+  double e[3][3];
+  static const int ends[3] = {1, 3, 4};
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) e[i][k] = p[3 * cell[ends[i]] + k] - o[k];
+  }
+  return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
+         e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+         e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+}
+
+/* The corner order that hexhex.h documents: orientation, and that 0-4, 1-5, 2-6, 3-7 are edges. A
+ * unit cube from its own coordinates has edges of length 1/2 at scale 2 and no others. */
+static void test_corner_order(void) {
+  double points[24];
+  static const uint32_t tets[] = {0, 1, 3, 7, 0, 3, 2, 7, 0, 2, 6, 7,
+                                  0, 6, 4, 7, 0, 4, 5, 7, 0, 5, 1, 7};
+  double parameters[72];
+  for (int v = 0; v < 8; ++v) {
+    for (int k = 0; k < 3; ++k) points[3 * v + k] = v >> k & 1;
+  }
+  for (int i = 0; i < 24; ++i) {
+    memcpy(parameters + 3 * i, points + 3 * tets[i], 3 * sizeof(double));
+  }
+  hexhex_map_arrays arrays = HEXHEX_MAP_ARRAYS_INIT;
+  arrays.points = points;
+  arrays.point_count = 8;
+  arrays.tets = tets;
+  arrays.tet_count = 6;
+  arrays.parameters = parameters;
+  hexhex_map* map = NULL;
+  hexhex_mesh* mesh = NULL;
+  hexhex_error error;
+  CHECK_OK(hexhex_map_borrow(&arrays, &map, &error));
+  hexhex_map_arrays seen = HEXHEX_MAP_ARRAYS_INIT;
+  CHECK_OK(hexhex_map_get_arrays(map, &seen, NULL));
+  CHECK(seen.points == points && seen.tets == tets && seen.parameters == parameters);
+  hexhex_extract_options options = HEXHEX_EXTRACT_OPTIONS_INIT;
+  options.scale = 2;
+  CHECK_OK(hexhex_extract(map, &options, NULL, &mesh, NULL, &error));
+  hexhex_mesh_arrays m = HEXHEX_MESH_ARRAYS_INIT;
+  CHECK_OK(hexhex_mesh_get_arrays(mesh, &m, &error));
+  CHECK(m.cell_count == 8 && m.point_count == 27);
+  CHECK(m.generator_tet != NULL && m.generator_corners != NULL);
+  for (size_t c = 0; c < m.cell_count; ++c) {
+    const uint32_t* cell = m.cells + 8 * c;
+    CHECK(corner_determinant(m.points, cell) > 0);
+    for (int i = 0; i < 8; ++i) {
+      const int next = i < 4 ? (i + 1) % 4 : 4 + (i + 1) % 4;
+      const int ends[2] = {next, (i + 4) % 8};
+      for (int j = 0; j < 2; ++j) {
+        double length = 0;
+        for (int k = 0; k < 3; ++k) {
+          length += fabs(m.points[3 * cell[i] + k] - m.points[3 * cell[ends[j]] + k]);
+        }
+        CHECK(length == 0.5);
+      }
+    }
+  }
+  double corners[24];
+  for (int i = 0; i < 24; ++i) corners[i] = m.points[3 * m.cells[i / 3] + i % 3];
+  CHECK(fabs(hexhex_scaled_jacobian(corners) - 1) < 1e-12);
+  hexhex_mesh_destroy(mesh);
+  hexhex_map_destroy(map);
+}
+
+static void test_everything_once(const char* folder) {
+  hexhex_error error;
+  char file[512];
+  hexhex_map* map = sphere(2);
+  snprintf(file, sizeof file, "%s/map.hexex", folder);
+  CHECK_OK(hexhex_map_write(map, file, NULL, &error));
+  hexhex_map_destroy(map);
+  CHECK_OK(hexhex_map_read(file, NULL, &map, &error));
+  /* A borrowed map writes the same file. */
+  hexhex_map_arrays arrays = HEXHEX_MAP_ARRAYS_INIT;
+  hexhex_map* borrowed = NULL;
+  CHECK_OK(hexhex_map_get_arrays(map, &arrays, &error));
+  CHECK_OK(hexhex_map_borrow(&arrays, &borrowed, &error));
+  CHECK_OK(hexhex_map_write(borrowed, file, NULL, &error));
+
+  hexhex_check_report* report = NULL;
+  hexhex_check_summary summary = HEXHEX_CHECK_SUMMARY_INIT;
+  CHECK_OK(hexhex_check(borrowed, 1e-2, 2, NULL, &report, &error));
+  CHECK_OK(hexhex_check_get_summary(report, &summary, &error));
+  CHECK(summary.valid && summary.defect_count == 0 && summary.cells == 3584);
+  CHECK(hexhex_check_edges_of_valence(report, HEXHEX_INNER_HEX_EDGES, 3) == 160);
+  CHECK(hexhex_check_edges_of_valence(report, HEXHEX_INNER_HEX_EDGES, 5) == 0);
+  CHECK(hexhex_check_next_valence(report, HEXHEX_INNER_TET_EDGES, -1) == 3);
+  CHECK(hexhex_check_next_valence(report, HEXHEX_INNER_TET_EDGES, 3) == -1);
+  hexhex_check_report_destroy(report);
+
+  hexhex_extract_options options = HEXHEX_EXTRACT_OPTIONS_INIT;
+  options.scale = 2;
+  hexhex_statistics statistics = HEXHEX_STATISTICS_INIT;
+  hexhex_mesh* mesh = NULL;
+  CHECK_OK(hexhex_extract(map, &options, NULL, &mesh, &statistics, &error));
+  CHECK(statistics.charts > 0 && statistics.seconds > 0 && statistics.singular_edges > 0);
+  hexhex_verify_report* verified = NULL;
+  CHECK_OK(hexhex_verify(map, mesh, 1e-2, 2, NULL, &verified, &error));
+  CHECK(hexhex_verify_passed(verified) && hexhex_verify_item_count(verified) > 10);
+  hexhex_verify_item item = HEXHEX_VERIFY_ITEM_INIT;
+  CHECK_OK(hexhex_verify_get_item(verified, 2, &item, &error));
+  CHECK(strcmp(item.name, "cells") == 0 && strcmp(item.found, "3584") == 0 && item.passed);
+  CHECK(hexhex_verify_get_item(verified, 999, &item, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_verify_report_destroy(verified);
+  CHECK_OK(hexhex_verify(map, mesh, 1e-2, 3, NULL, &verified, &error));
+  CHECK(!hexhex_verify_passed(verified));
+  hexhex_verify_report_destroy(verified);
+
+  hexhex_mesh_arrays m = HEXHEX_MESH_ARRAYS_INIT;
+  CHECK_OK(hexhex_mesh_get_arrays(mesh, &m, &error));
+  double* jacobians = malloc(m.cell_count * sizeof(double));
+  hexhex_quality quality = HEXHEX_QUALITY_INIT;
+  CHECK_OK(hexhex_mesh_quality(mesh, NULL, jacobians, &quality, &error));
+  double minimum = 1;
+  for (size_t c = 0; c < m.cell_count; ++c) minimum = fmin(minimum, jacobians[c]);
+  CHECK(minimum == quality.minimum && quality.not_positive == 0);
+  free(jacobians);
+
+  hexhex_survey survey = HEXHEX_SURVEY_INIT;
+  hexhex_survey other = HEXHEX_SURVEY_INIT;
+  CHECK_OK(hexhex_mesh_survey(mesh, NULL, &survey, &error));
+  snprintf(file, sizeof file, "%s/mesh.vtu", folder);
+  CHECK_OK(hexhex_mesh_write(mesh, file, NULL, NULL, &error));
+  CHECK_OK(hexhex_file_survey(file, NULL, &other, &error));
+  CHECK(survey.cells == 3584 && memcmp(&survey, &other, sizeof survey) == 0);
+  CHECK_OK(hexhex_extract_to_file(file, map, &options, NULL, NULL, &error));
+  CHECK_OK(hexhex_file_survey(file, NULL, &other, &error));
+  CHECK(memcmp(&survey, &other, sizeof survey) == 0);
+  hexhex_mesh* copy = NULL;
+  CHECK_OK(hexhex_mesh_copy(&m, &copy, &error));
+  CHECK_OK(hexhex_mesh_survey(copy, NULL, &other, &error));
+  CHECK(memcmp(&survey, &other, sizeof survey) == 0);
+  hexhex_mesh_destroy(copy);
+  CHECK_OK(hexhex_mesh_read(file, NULL, &copy, &error));
+  hexhex_mesh_destroy(copy);
+
+  /* Several scales of one map. */
+  hexhex_extractor* extractor = NULL;
+  CHECK_OK(hexhex_extractor_create(map, 1e-2, 3, NULL, &extractor, &error));
+  for (int scale = 3; scale > 0; --scale) {
+    options.scale = scale;
+    CHECK_OK(hexhex_extractor_extract(extractor, &options, NULL, &copy, &statistics, &error));
+    CHECK_OK(hexhex_mesh_survey(copy, NULL, &other, &error));
+    CHECK((scale == 2) == (other.point_checksum == survey.point_checksum));
+    hexhex_mesh_destroy(copy);
+  }
+  options.scale = 4;
+  CHECK(hexhex_extractor_extract(extractor, &options, NULL, &copy, NULL, &error) ==
+        HEXHEX_INVALID_ARGUMENT);
+  hexhex_extractor_destroy(extractor);
+
+  /* An array outlives its mesh. */
+  hexhex_buffer* buffer = NULL;
+  CHECK_OK(hexhex_mesh_take(mesh, HEXHEX_POINTS, &buffer, &error));
+  CHECK(hexhex_buffer_data(buffer) == m.points);
+  CHECK(hexhex_buffer_bytes(buffer) == 24 * m.point_count);
+  hexhex_mesh_arrays left = HEXHEX_MESH_ARRAYS_INIT;
+  CHECK_OK(hexhex_mesh_get_arrays(mesh, &left, &error));
+  CHECK(left.points == NULL && left.point_count == 0 && left.cells == m.cells);
+  hexhex_mesh_destroy(mesh);
+  CHECK(isfinite(((double*)hexhex_buffer_data(buffer))[0]));
+  hexhex_buffer_destroy(buffer);
+  hexhex_map_destroy(borrowed);
+  hexhex_map_destroy(map);
+}
+
+static void test_errors(const char* folder) {
+  hexhex_error error;
+  char file[512];
+  hexhex_map* map = NULL;
+  CHECK(hexhex_map_read("/nowhere/at/all.hexex", NULL, &map, &error) == HEXHEX_FILE_NOT_FOUND);
+  CHECK(map == NULL && error.status == HEXHEX_FILE_NOT_FOUND && strlen(error.message) > 20);
+  snprintf(file, sizeof file, "%s/bad.hexex", folder);
+  FILE* out = fopen(file, "w");
+  fputs("2\n0 0 0\n0 x 0\n", out);
+  fclose(out);
+  CHECK(hexhex_map_read(file, NULL, &map, &error) == HEXHEX_FILE_SYNTAX);
+  CHECK(error.place.kind == HEXHEX_PLACE_LINE && error.place.index == 3);
+  CHECK(hexhex_map_generate("banana", NULL, &map, &error) == HEXHEX_INVALID_ARGUMENT);
+  CHECK(strstr(error.message, "banana") != NULL);
+  CHECK(hexhex_map_generate(NULL, NULL, &map, NULL) == HEXHEX_INVALID_ARGUMENT);
+  CHECK(hexhex_map_read("x", NULL, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+  CHECK(hexhex_extract(NULL, NULL, NULL, NULL, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+
+  /* A flat tet: found by extraction with its place, and by the check with all places. */
+  hexhex_map* good = sphere(1);
+  hexhex_map_arrays arrays = HEXHEX_MAP_ARRAYS_INIT;
+  CHECK_OK(hexhex_map_get_arrays(good, &arrays, &error));
+  double* parameters = malloc(12 * arrays.tet_count * sizeof(double));
+  memcpy(parameters, arrays.parameters, 12 * arrays.tet_count * sizeof(double));
+  memcpy(parameters + 12 * 5, parameters + 12 * 5 + 3, 3 * sizeof(double));
+  arrays.parameters = parameters;
+  CHECK_OK(hexhex_map_borrow(&arrays, &map, &error));
+  hexhex_mesh* mesh = NULL;
+  CHECK(hexhex_extract(map, NULL, NULL, &mesh, NULL, &error) == HEXHEX_FLIPPED_TET);
+  CHECK(mesh == NULL && error.place.kind == HEXHEX_PLACE_TET);
+  const uint64_t flipped = error.place.index;
+  CHECK(flipped < arrays.tet_count);
+  CHECK(strcmp(hexhex_status_name(error.status), "FlippedTet") == 0);
+  hexhex_check_report* report = NULL;
+  hexhex_check_summary summary = HEXHEX_CHECK_SUMMARY_INIT;
+  hexhex_defect defect = HEXHEX_DEFECT_INIT;
+  hexhex_place place;
+  double amount = -1;
+  CHECK_OK(hexhex_check(map, 1e-2, 1, NULL, &report, &error));
+  CHECK_OK(hexhex_check_get_summary(report, &summary, &error));
+  CHECK(!summary.valid && summary.defect_count > 0);
+  CHECK_OK(hexhex_check_get_defect(report, 0, &defect, &error));
+  CHECK(defect.code == HEXHEX_FLIPPED_TET && defect.worst_count > 0 && strlen(defect.sentence) > 0);
+  CHECK_OK(hexhex_check_get_occurrence(report, 0, 0, &place, &amount, &error));
+  CHECK(place.kind == HEXHEX_PLACE_TET && place.index == flipped && amount >= 0);
+  CHECK(hexhex_check_get_defect(report, 99, &defect, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_check_report_destroy(report);
+  hexhex_map_destroy(map);
+  free(parameters);
+
+  /* Structs of other versions. */
+  struct {
+    hexhex_extract_options known;
+    uint64_t unknown;
+  } newer = {HEXHEX_EXTRACT_OPTIONS_INIT, 0};
+  newer.known.size = sizeof newer;
+  CHECK_OK(hexhex_extract(good, &newer.known, NULL, &mesh, NULL, &error));
+  hexhex_mesh_destroy(mesh);
+  newer.unknown = 1;
+  CHECK(hexhex_extract(good, &newer.known, NULL, &mesh, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_extract_options older = {0, HEXHEX_ENGINE_ATLAS, 1, -1, -1};
+  older.size = offsetof(hexhex_extract_options, epsilon); /* so those two are defaults */
+  CHECK_OK(hexhex_extract(good, &older, NULL, &mesh, NULL, &error));
+  hexhex_mesh_destroy(mesh);
+  older.size = 0;
+  CHECK(hexhex_extract(good, &older, NULL, &mesh, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_statistics small = HEXHEX_STATISTICS_INIT;
+  small.size = offsetof(hexhex_statistics, epsilon);
+  small.epsilon = 77; /* beyond what the caller says it knows */
+  CHECK_OK(hexhex_extract(good, NULL, NULL, &mesh, &small, &error));
+  CHECK(small.threads > 0 && small.epsilon == 77);
+  hexhex_mesh_destroy(mesh);
+  hexhex_map_destroy(good);
+
+  /* Names of all numbers, and of those that are none. */
+  for (int s = 0; s <= HEXHEX_INTERNAL; ++s) {
+    CHECK(strcmp(hexhex_status_name((hexhex_status)s), "Unknown") != 0);
+  }
+  CHECK(strcmp(hexhex_status_name((hexhex_status)(HEXHEX_INTERNAL + 1)), "Unknown") == 0);
+  /* Destroying nothing. */
+  hexhex_map_destroy(NULL);
+  hexhex_mesh_destroy(NULL);
+  hexhex_buffer_destroy(NULL);
+  hexhex_context_destroy(NULL);
+  hexhex_extractor_destroy(NULL);
+  hexhex_check_report_destroy(NULL);
+  hexhex_verify_report_destroy(NULL);
+}
+
+struct progress {
+  int calls;
+  int stop_after;
+  double last;
+};
+
+static int on_progress(void* user, const char* stage, double share) {
+  struct progress* p = user;
+  CHECK(stage != NULL && strlen(stage) > 0 && share >= 0 && share <= 1);
+  p->last = share;
+  return ++p->calls > p->stop_after;
+}
+
+static void test_context(void) {
+  hexhex_error error;
+  hexhex_map* map = sphere(2);
+  hexhex_mesh* mesh = NULL;
+  struct progress progress = {0, 1000000, -1};
+  hexhex_context_options options = HEXHEX_CONTEXT_OPTIONS_INIT;
+  hexhex_context* context = NULL;
+  options.threads = 1;
+  options.progress = on_progress;
+  options.user = &progress;
+  CHECK_OK(hexhex_context_create(&options, &context, &error));
+  CHECK_OK(hexhex_extract(map, NULL, context, &mesh, NULL, &error));
+  CHECK(progress.calls > 5);
+  hexhex_mesh_destroy(mesh);
+  mesh = NULL;
+  const char* name = NULL;
+  double seconds = -1;
+  CHECK(hexhex_context_stage_count(context) > 5);
+  CHECK_OK(hexhex_context_stage(context, 0, &name, &seconds, &error));
+  CHECK(strcmp(name, "input") == 0 && seconds >= 0);
+  CHECK(hexhex_context_stage(context, 999, &name, &seconds, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_context_destroy(context);
+
+  progress.calls = 0;
+  progress.stop_after = 3;
+  CHECK_OK(hexhex_context_create(&options, &context, &error));
+  CHECK(hexhex_extract(map, NULL, context, &mesh, NULL, &error) == HEXHEX_CANCELLED);
+  CHECK(mesh == NULL);
+  hexhex_context_destroy(context);
+
+  CHECK_OK(hexhex_context_create(NULL, &context, &error));
+  hexhex_context_cancel(context);
+  CHECK(hexhex_extract(map, NULL, context, &mesh, NULL, &error) == HEXHEX_CANCELLED);
+  hexhex_context_destroy(context);
+  options.threads = -1;
+  CHECK(hexhex_context_create(&options, &context, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_map_destroy(map);
+}
+
+struct counts {
+  uint64_t points;
+  uint64_t cells;
+  uint64_t stop_at;
+  int ended;
+};
+static int on_begin(void* user, uint64_t points, uint64_t cells) {
+  (void)user;
+  CHECK(points > 0);
+  CHECK(cells == 3584);
+  return 0;
+}
+static int on_points(void* user, uint64_t first, size_t count, const double* points,
+                     const uint32_t* tets, const uint8_t* corners) {
+  struct counts* c = user;
+  CHECK(first == c->points && isfinite(points[3 * count - 1]));
+  CHECK(tets != NULL && corners[count - 1] >= 1 && corners[count - 1] <= 15);
+  c->points += count;
+  return 0;
+}
+static int on_cells(void* user, uint64_t first, size_t count, const uint32_t* cells) {
+  struct counts* c = user;
+  CHECK(first == c->cells && cells[8 * count - 1] < c->points);
+  c->cells += count;
+  return c->cells >= c->stop_at;
+}
+static int on_end(void* user) {
+  ((struct counts*)user)->ended = 1;
+  return 0;
+}
+
+static void test_sink(const char* folder) {
+  hexhex_error error;
+  char file[512];
+  hexhex_map* map = sphere(2);
+  struct counts counts = {0, 0, UINT64_MAX, 0};
+  hexhex_sink sink = HEXHEX_SINK_INIT;
+  sink.user = &counts;
+  sink.begin = on_begin;
+  sink.points = on_points;
+  sink.cells = on_cells;
+  sink.end = on_end;
+  hexhex_extract_options options = HEXHEX_EXTRACT_OPTIONS_INIT;
+  options.scale = 2;
+  CHECK_OK(hexhex_extract_to(&sink, map, &options, NULL, NULL, &error));
+  CHECK(counts.cells == 3584 && counts.points > 3584 && counts.ended);
+  struct counts stopped = {0, 0, 1, 0};
+  sink.user = &stopped;
+  CHECK(hexhex_extract_to(&sink, map, &options, NULL, NULL, &error) == HEXHEX_CANCELLED);
+  CHECK(!stopped.ended);
+  struct counts read = {0, 0, UINT64_MAX, 0};
+  sink.user = &read;
+  snprintf(file, sizeof file, "%s/sink.vtu", folder);
+  CHECK_OK(hexhex_extract_to_file(file, map, &options, NULL, NULL, &error));
+  CHECK_OK(hexhex_mesh_read_to(&sink, file, NULL, &error));
+  CHECK(read.cells == counts.cells && read.points == counts.points && read.ended);
+  hexhex_map_destroy(map);
+}
+
+/* One map, read by several threads at once, each with a context and an error of its own. */
+static void* extract_in_thread(void* argument) {
+  const hexhex_map* map = argument;
+  hexhex_error error;
+  for (int i = 0; i < 5; ++i) {
+    hexhex_mesh* mesh = NULL;
+    hexhex_mesh_arrays arrays = HEXHEX_MESH_ARRAYS_INIT;
+    if (hexhex_extract(map, NULL, NULL, &mesh, NULL, &error) != HEXHEX_OK ||
+        hexhex_mesh_get_arrays(mesh, &arrays, &error) != HEXHEX_OK || arrays.cell_count != 448) {
+      return argument;
+    }
+    hexhex_mesh_destroy(mesh);
+    if (hexhex_map_read("/nowhere.hexex", NULL, NULL, &error) == HEXHEX_OK) return argument;
+  }
+  return NULL;
+}
+
+static void test_threads(void) {
+  hexhex_map* map = sphere(2);
+  pthread_t threads[4];
+  for (int i = 0; i < 4; ++i) {
+    CHECK(pthread_create(&threads[i], NULL, extract_in_thread, map) == 0);
+  }
+  for (int i = 0; i < 4; ++i) {
+    void* result = map;
+    pthread_join(threads[i], &result);
+    CHECK(result == NULL);
+  }
+  hexhex_map_destroy(map);
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SANITIZED 1
+#else
+#define SANITIZED 0
+#endif
+
+/* Kilobytes of address space that this process has. */
+static long address_space(void) {
+  long pages = 0;
+  FILE* file = fopen("/proc/self/statm", "r");
+  if (file == NULL || fscanf(file, "%ld", &pages) != 1) pages = 0;
+  if (file != NULL) fclose(file);
+  return pages * (sysconf(_SC_PAGESIZE) / 1024);
+}
+
+/* Extracts in ever less address space: each attempt ends with a mesh or with OutOfMemory, and the
+ * process lives. */
+static int run_out_of_memory(void) {
+  hexhex_error error;
+  hexhex_map* map = sphere(4);
+  hexhex_mesh* mesh = NULL;
+  hexhex_extract_options options = HEXHEX_EXTRACT_OPTIONS_INIT;
+  hexhex_context_options context_options = HEXHEX_CONTEXT_OPTIONS_INIT;
+  int exhausted = 0;
+  context_options.threads = 1;
+  options.scale = 4;
+  for (long extra = 4; extra <= 256; extra *= 2) {
+    hexhex_context* context = NULL;
+    CHECK_OK(hexhex_context_create(&context_options, &context, &error));
+    struct rlimit limit;
+    getrlimit(RLIMIT_AS, &limit);
+    limit.rlim_cur = (rlim_t)(address_space() + extra * 1024) * 1024;
+    CHECK(setrlimit(RLIMIT_AS, &limit) == 0);
+    mesh = NULL;
+    const hexhex_status status = hexhex_extract(map, &options, context, &mesh, NULL, &error);
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(RLIMIT_AS, &limit);
+    CHECK(status == HEXHEX_OK || status == HEXHEX_OUT_OF_MEMORY);
+    CHECK((status == HEXHEX_OK) == (mesh != NULL));
+    if (status == HEXHEX_OUT_OF_MEMORY) {
+      ++exhausted;
+      CHECK(strlen(error.message) > 20);
+    }
+    hexhex_mesh_destroy(mesh);
+    hexhex_context_destroy(context);
+  }
+  CHECK(exhausted > 0);
+  /* With all memory again, all is well. */
+  CHECK_OK(hexhex_extract(map, &options, NULL, &mesh, NULL, &error));
+  hexhex_mesh_destroy(mesh);
+  hexhex_map_destroy(map);
+  return failures;
+}
+
+static void test_memory(void) {
+  if (SANITIZED) return; /* sanitizers need their address space, and replace malloc() */
+  const pid_t child = fork();
+  if (child == 0) _exit(run_out_of_memory());
+  int status = -1;
+  CHECK(waitpid(child, &status, 0) == child);
+  CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+int main(void) {
+  char folder[] = "/tmp/hexhex-c-XXXXXX";
+  if (mkdtemp(folder) == NULL) return 1;
+  /* First: oneTBB has no threads yet, which would not survive the fork. */
+  test_memory();
+  test_corner_order();
+  test_everything_once(folder);
+  test_errors(folder);
+  test_context();
+  test_sink(folder);
+  test_threads();
+  char command[64];
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  CHECK(system(command) == 0);
+  if (failures > 0) fprintf(stderr, "%d failures\n", failures);
+  return failures > 0;
+}
