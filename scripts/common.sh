@@ -51,6 +51,23 @@ install_missing() {
   fi
 }
 
+# Other programs that read and write our files, for the tests: a Python of their own in build/python,
+# which tests find through HEXHEX_PYTHON. Without a network, the tests that need them are skipped.
+install_python_programs() {
+  if [[ -n "${HEXHEX_PYTHON:-}" ]]; then return 0; fi
+  local python=$PWD/build/python wanted=tests/io/requirements.txt
+  if ! cmp -s "$wanted" "$python/installed.txt"; then
+    say "Installing meshio, gmsh, vtk and mfem from PyPI ..."
+    if ! { rm -rf "$python" && python3 -m venv "$python" &&
+           "$python/bin/pip" install --quiet --disable-pip-version-check -r "$wanted" &&
+           cp "$wanted" "$python/installed.txt"; } >"$logs/python.log" 2>&1; then
+      say "They could not be installed, and tests with them are skipped; see $logs/python.log."
+      return 0
+    fi
+  fi
+  export HEXHEX_PYTHON=$python/bin/python
+}
+
 # Libraries of optional formats: .vtkhdf, .cgns, .exo. Without them these are left out.
 optional_packages=(libhdf5-dev libcgns-dev libexodusii-dev)
 

@@ -29,8 +29,9 @@ namespace hexhex::command {
 namespace {
 
 struct Arguments {
-  std::string input;
+  MapSource input;
   std::string output;
+  OutputChoice choice;
   std::string report;
   std::string arcs;
   std::string patches;
@@ -44,12 +45,13 @@ struct Arguments {
 };
 
 void requireAllDifferent(const Arguments& arguments) {
-  const std::array files = {&arguments.input, &arguments.output, &arguments.report, &arguments.arcs,
-                            &arguments.patches};
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    for (std::size_t j = i + 1; j < files.size(); ++j) {
-      if (!files[i]->empty() && !files[j]->empty()) requireDifferent(*files[i], *files[j]);
+  std::vector<std::filesystem::path> files = arguments.input.files();
+  for (const std::string& output :
+       {arguments.output, arguments.report, arguments.arcs, arguments.patches}) {
+    for (const std::filesystem::path& file : files) {
+      if (!output.empty()) requireDifferent(file, output);
     }
+    if (!output.empty()) files.emplace_back(output);
   }
 }
 
@@ -64,6 +66,11 @@ void requireCurvedOutputs(const Arguments& arguments) {
     throw Error(ErrorCode::InvalidArgument,
                 "Arcs and patches belong to meshes of order 1. Leave out --order, or --arcs and "
                 "--patches.");
+  }
+  if (arguments.order > 1 && (!arguments.choice.format.empty() || arguments.choice.compress)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "The extension alone decides on the format of a mesh of higher order. Leave out "
+                "--format and --compress.");
   }
   if (!arguments.arcs.empty()) {
     requireArcFormat(arguments.arcs);
@@ -82,10 +89,12 @@ void requireOutputs(const Arguments& arguments) {
   if (arguments.order > 1) {
     requireLagrangeFormat(arguments.output);
   } else {
-    requireHexMeshFormat(arguments.output);
+    requireHexMeshFormat(arguments.output, arguments.choice.options());
   }
   requireWritable(arguments.output);
-  if (arguments.stream) requireStreamable(arguments.output, arguments.options);
+  if (arguments.stream) {
+    requireStreamable(arguments.output, arguments.choice.options(), arguments.options);
+  };
   if (!arguments.report.empty()) requireWritable(arguments.report);
 }
 
@@ -195,10 +204,10 @@ void extractWhole(const Arguments& arguments, const TetMap& map, Context& contex
   }
   const Array<double> quality = scaledJacobians(mesh, context);
   record.quality = summarize(quality);
-  WriteOptions options;
-  options.scaledJacobians = quality;
-  options.patchAngle = arguments.patchAngle;
-  writeHexMesh(mesh, arguments.output, options, context);
+  WriteOptions writing = arguments.choice.options();
+  writing.scaledJacobians = quality;
+  writing.patchAngle = arguments.patchAngle;
+  writeHexMesh(mesh, arguments.output, writing, context);
   record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
                  mesh.features.quads.size()};
   record.vertices = mesh.points.size();
@@ -227,8 +236,9 @@ void extractCurved(const Arguments& arguments, const TetMap& map, Context& conte
 /// The same in pieces, verified after it was written.
 void extractInPieces(const Arguments& arguments, const TetMap& map, Context& context,
                      ExtractionRecord& record) {
-  StreamedMesh mesh = extractStreamed(map, arguments.output, arguments.options, !arguments.noVerify,
-                                      context, record.statistics);
+  StreamedMesh mesh =
+      extractStreamed(map, arguments.output, arguments.choice.options(), arguments.options,
+                      !arguments.noVerify, context, record.statistics);
   record.verification = std::move(mesh.verification);
   record.vertices = mesh.written.points;
   record.cells = mesh.written.cells;
@@ -250,7 +260,10 @@ int run(const Arguments& arguments) {
   progress.clear();
 
   std::error_code unknown;  // the size of a pipe
-  record.input = {arguments.input, std::filesystem::file_size(arguments.input, unknown)};
+  record.input.file = arguments.input.description();
+  for (const std::filesystem::path& file : arguments.input.files()) {
+    record.input.bytes += std::filesystem::file_size(file, unknown);
+  }
   record.output = {arguments.output, std::filesystem::file_size(arguments.output, unknown)};
   record.scale = arguments.options.scale;
   record.engine = arguments.options.engine;
@@ -283,8 +296,9 @@ void addMethod(CLI::App& parser, Arguments& arguments) {
                   "changes the result, only the time")
       ->option_text("NUMBER [1e-6]");
   parser.add_flag("--stream", arguments.stream,
-                  "Write the mesh piece by piece, .vtu or .mesh, for meshes\n"
-                  "larger than the memory. Nothing that takes the whole mesh:\n"
+                  "Write the mesh piece by piece, .vtu, .mesh, .meshb, .vtk\n"
+                  "or .msh, for meshes"
+                  " larger than the memory. Nothing that takes the whole mesh:\n"
                   "no scaled Jacobians, no boundary quads, and verified by\n"
                   "counts and checksums, by reading the file again");
 }
@@ -313,14 +327,13 @@ void addCurved(CLI::App& parser, Arguments& arguments) {
 Command addExtract(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const parser = app.add_subcommand("extract", "Extract the hexahedral mesh of a map");
-  parser->add_option("MAP", arguments->input, mapDescription())
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addMapSource(*parser, arguments->input);
   parser
       ->add_option("-o,--output", arguments->output,
-                   "The mesh to write, .mesh, .vtu, .ovm or .ovmb")
+                   "The mesh to write; `hexhex formats` lists the formats")
       ->required()
       ->option_text("FILE REQUIRED");
+  addOutputChoice(*parser, arguments->choice);
   addScale(*parser, arguments->options.scale,
            "Multiply all parameters by this integer: its cube as\nmany cells");
   addCurved(*parser, *arguments);

@@ -33,6 +33,30 @@ ONE_TET = """4
 0 1 2 3 0 0 0 1 0 0 0 1 0 0 0 1
 """
 
+# A cube of six tets around a diagonal, its own polycube.
+POLYCUBE = """MeshVersionFormatted 2
+Dimension 3
+Vertices
+8
+0 0 0 0
+1 0 0 0
+0 1 0 0
+1 1 0 0
+0 0 1 0
+1 0 1 0
+0 1 1 0
+1 1 1 0
+Tetrahedra
+6
+1 2 4 8 1
+1 4 3 8 1
+1 3 7 8 1
+1 7 5 8 1
+1 5 6 8 1
+1 6 2 8 1
+End
+"""
+
 KINDS = ["box", "cylinder", "sphere", "star", "tetrahedron", "torus", "shell", "handle-body"]
 
 REPORT_KEYS = {
@@ -58,8 +82,9 @@ class CommandTest(unittest.TestCase):
     def run_command(self, *arguments, expect=SUCCESS, **options):
         result = subprocess.run([self.command, *map(str, arguments)], cwd=self.folder, text=True,
                                 capture_output=True, timeout=600, check=False, **options)
-        self.assertEqual(result.returncode, expect,
-                         f"{arguments}\n{result.stdout}\n{result.stderr}")
+        if expect is not None:
+            self.assertEqual(result.returncode, expect,
+                             f"{arguments}\n{result.stdout}\n{result.stderr}")
         return result
 
     def assert_fails(self, *arguments, expect, words=(), code=None):
@@ -172,12 +197,12 @@ class FileProblems(CommandTest):
 
     def test_unknown_extensions(self):
         self.write("map.hexex", ONE_TET)
-        words = [".mesh, .vtu"]
+        words = [".mesh, .meshb, .vtu"]
         self.assert_fails("extract", "map.hexex", "-o", "a.obj", expect=FILE_PROBLEM, words=words,
                           code="FileUnsupported")
         self.assert_fails("extract", "map.hexex", "-o", "a", expect=FILE_PROBLEM, words=words,
                           code="FileUnsupported")
-        self.assert_fails("generate", "box", "-o", "a.vtu", expect=FILE_PROBLEM,
+        self.assert_fails("generate", "box", "-o", "a.msh", expect=FILE_PROBLEM,
                           words=[".hexex"], code="FileUnsupported")
         self.run_command("info", self.write("a.png", ""), expect=FILE_PROBLEM)
 
@@ -398,6 +423,89 @@ class Pipeline(CommandTest):
         self.assertEqual(set(self.files()), {"map.hexex", "a.vtu", "r.json"})
 
 
+class Convert(CommandTest):
+    """Other formats, and maps as two meshes."""
+
+    def test_maps_through_all_formats_and_back(self):
+        self.generate("sphere", "--charts", "random", "--jitter", "0.3")
+        files = self.files()
+        steps = [("a.vtu",), ("b.vtu", "--compress"), ("c.vtk",), ("d.vtk", "--format", "vtk-binary"),
+                 ("e.ovm",), ("f.dat", "--format", "ovmb")]
+        last, reading = "map.hexex", []
+        for name, *options in steps:
+            run = self.run_command("convert", last, name, *options)
+            self.assertIn("a map of", run.stdout)
+            last = name
+        reading = ["--input-format", "ovmb"]
+        self.run_command("convert", last, "back.hexex", *reading, "--quiet")
+        self.assertEqual(self.files()["back.hexex"], files["map.hexex"])
+
+    def test_meshes_through_all_formats(self):
+        map_file = self.generate("star")
+        self.run_command("extract", map_file, "-o", "a.vtu", "--quiet")
+        last = "a.vtu"
+        for name in ("b.msh", "c.meshb", "d.vtk", "e.ovmb", "f.mesh", "g.vtu"):
+            run = self.run_command("convert", last, name)
+            self.assertIn("a mesh of", run.stdout)
+            last = name
+        self.run_command("verify", map_file, last)
+        checksums = {self.run_command("info", name, "--pieces").stdout.split(":", 1)[1]
+                     for name in ("a.vtu", "c.meshb", "g.vtu")}
+        self.assertEqual(len(checksums), 1)
+        self.run_command("convert", "a.vtu", "h.msh", "--stream", "--quiet")
+        self.run_command("verify", map_file, "h.msh")
+
+    def test_two_meshes_are_a_map(self):
+        self.generate("box", "--cells", "2")
+        self.run_command("convert", "map.hexex", "a.vtu", "--quiet")
+        pair = ["--tets", "a.vtu", "--polycube", "a.vtu"]
+        run = self.run_command("info", *pair)
+        self.assertIn("a.vtu and a.vtu: a tetrahedral mesh with an integer-grid map", run.stdout)
+        self.run_command("convert", *pair, "b.hexex", "--quiet")
+        same = self.run_command("check", *pair, expect=None).stdout
+        self.assertEqual(same, self.run_command("check", "b.hexex", expect=None).stdout)
+        self.generate("star", name="c.hexex")
+        self.assert_fails("check", "--tets", "a.vtu", "--polycube", "c.hexex", expect=FILE_PROBLEM,
+                          words=["a.vtu has", "c.hexex has"], code="FileUnsupported")
+        self.assert_fails("check", "map.hexex", *pair, expect=BAD_USAGE, words=["MAP"])
+        self.assert_fails("check", "--tets", "a.vtu", expect=BAD_USAGE, words=["--polycube"])
+        self.assert_fails("convert", *pair, expect=BAD_USAGE, words=["OUTPUT"])
+
+    def test_pairs_are_extracted_and_verified(self):
+        self.write("tets.mesh", POLYCUBE)
+        pair = ["--tets", "tets.mesh", "--polycube", "tets.mesh"]
+        self.run_command("extract", *pair, "-o", "a.mesh", "--quiet", "--scale", "3")
+        run = self.run_command("verify", *pair, "a.mesh", "--scale", "3")
+        self.assertIn("cells                                27", run.stdout)
+
+    def test_map_array_of_another_name(self):
+        self.run_command("generate", "box", "-o", "a.vtu", "--map-array", "my map", "--quiet")
+        self.assert_fails("check", "a.vtu", expect=FILE_PROBLEM, code="FileUnsupported",
+                          words=["no map", '"my map" (cells, 12 components)', "--map-array"])
+        self.run_command("check", "a.vtu", "--map-array", "my map")
+
+    def test_refused(self):
+        map_file = self.generate("box")
+        self.run_command("extract", map_file, "-o", "a.mesh", "--quiet")
+        fails = [(["map.hexex", "b.inp"], "holds a map"),
+                 (["a.mesh", "b.hexex"], "holds a hexahedral mesh"),
+                 (["a.mesh", "b.vtk", "--compress"], "no compression"),
+                 (["a.mesh", "b.vtu", "--format", "stl"], '"stl"'),
+                 (["a.mesh", "b.png"], ".png"),
+                 (["missing.mesh", "b.vtu"], "missing.mesh")]
+        for arguments, word in fails:
+            self.assert_fails("convert", *arguments, expect=FILE_PROBLEM, words=[word])
+        self.assert_fails("convert", "a.mesh", "./a.mesh", expect=BAD_USAGE, words=["same file"])
+        self.assert_fails("extract", map_file, "-o", "b.mesh", "--compress", expect=FILE_PROBLEM,
+                          words=["no compression"])
+
+    def test_formats(self):
+        run = self.run_command("formats")
+        for name in ("hexex", "mesh", "meshb", "vtu", "vtk", "vtk-binary", "ovm", "ovmb", "msh",
+                     "msh22-ascii", "inp", "mfem"):
+            self.assertRegex(run.stdout, rf"(?m)^{name} ")
+
+
 class Stream(CommandTest):
     """extract --stream"""
 
@@ -474,7 +582,7 @@ class Stream(CommandTest):
         os.mkfifo(self.folder / "pipe.mesh")
         (self.folder / "taken.vtu").mkdir()
         for output, expect, code, words in [
-            ("a.ovm", FILE_PROBLEM, "FileUnsupported", ["a.ovm", ".mesh, .vtu"]),
+            ("a.ovm", FILE_PROBLEM, "FileUnsupported", ["a.ovm", "mesh, "]),
             ("a.obj", FILE_PROBLEM, "FileUnsupported", ["a.obj"]),
             ("pipe.mesh", FILE_PROBLEM, "FileWrite", ["pipe.mesh", "read back"]),
             ("taken.vtu", FILE_PROBLEM, "FileWrite", ["taken.vtu"]),
