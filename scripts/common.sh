@@ -70,6 +70,8 @@ install_python_programs() {
 
 # Libraries of optional formats: .vtkhdf, .cgns, .exo. Without them these are left out.
 optional_packages=(libhdf5-dev libcgns-dev libexodusii-dev)
+# ... and what only tests need, which skip without it: VTK reads curved meshes.
+test_packages=(python3-vtk9 python3-numpy)
 
 # The same for packages that can be done without.
 install_optional() {

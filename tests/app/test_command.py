@@ -289,6 +289,48 @@ class InvalidMaps(CommandTest):
 
 
 class Pipeline(CommandTest):
+    def test_curved_meshes(self):
+        map_file = self.generate("sphere", "--cells", "1", "--charts", "random")
+        self.run_command("extract", map_file, "-o", "a.vtu", "--arcs", "arcs.vtp", "--patches",
+                         "patches.ovmb", "--report", "r.json")
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual((report["order"], report["nodes"]), (1, report["vertices"]))
+        # Seven cells of a ball: 32 edges, 24 faces.
+        self.assertEqual(report["arcs"]["count"], 32)
+        self.assertEqual(report["patches"]["count"], 24)
+        self.assertGreater(report["patches"]["polygons"], 24)
+        for name in ["c.vtu", "c.msh", "c.mesh"]:
+            self.run_command("extract", map_file, "-o", name, "--order", "3", "--report", "r.json")
+            report = json.loads((self.folder / "r.json").read_text())
+            self.assertEqual((report["cells"], report["vertices"]), (7, 16))
+            self.assertEqual(report["nodes"], 16 + 32 * 2 + 24 * 4 + 7 * 8)
+            self.assertEqual(report["order"], 3)
+            self.assertTrue(report["verification"]["passed"])
+        self.run_command("extract", map_file, "-o", "first.mesh")
+        self.run_command("extract", map_file, "-o", "again.mesh", "--order", "1")
+        files = self.files()
+        self.assertEqual(files["first.mesh"], files["again.mesh"])
+        self.assertIn(b"L2_T4_3D_P3", files["c.mesh"])
+
+    def test_curved_meshes_that_are_refused(self):
+        map_file = self.generate("box", "--cells", "1", "--refine", "1")
+        for arguments, code in [
+            (["--order", "3", "--arcs", "b.vtu"], BAD_USAGE),
+            (["--stream", "--arcs", "b.vtu"], BAD_USAGE),
+            (["--stream", "--order", "2"], BAD_USAGE),
+            (["--arcs", "a.vtu"], BAD_USAGE),
+            (["--arcs", "b.vtu", "--patches", "b.vtu"], BAD_USAGE),
+            (["--arcs", "b.mesh"], FILE_PROBLEM),
+            (["--patches", "missing/b.vtu"], FILE_PROBLEM),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.assert_fails("extract", map_file, "-o", "a.vtu", *arguments, expect=code)
+        self.assert_fails("extract", map_file, "-o", "a.ovm", "--order", "2", expect=FILE_PROBLEM,
+                          code="FileUnsupported")
+        for order in ["0", "10", "x"]:
+            self.run_command("extract", map_file, "-o", "a.vtu", "--order", order,
+                             expect=BAD_USAGE)
+
     def test_every_kind_from_map_to_verified_mesh(self):
         for kind in KINDS:
             with self.subTest(kind=kind):

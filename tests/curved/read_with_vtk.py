@@ -7,16 +7,22 @@ Exit code 77, "skipped", without VTK (Debian: python3-vtk9; PyPI: vtk).
 """
 
 import json
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
+
+DEBIANS_PYTHON = "/usr/bin/python3"
 
 try:
     import numpy
     import vtk
     from vtk.util.numpy_support import vtk_to_numpy
 except ImportError:
+    # Debian's packages are for Debian's Python, which need not be the first one.
+    if sys.executable != DEBIANS_PYTHON and os.access(DEBIANS_PYTHON, os.X_OK):
+        os.execv(DEBIANS_PYTHON, [DEBIANS_PYTHON, *sys.argv])
     print("skipped: VTK for Python is missing")
     sys.exit(77)
 
