@@ -89,7 +89,7 @@ std::vector<Point> squareInTet(const LatticeTet& tet) {
 TEST(SquareSlice, AsManyCornersAsTheClippedSquare) {
   std::mt19937 random(7);
   int withArea = 0;
-  for (int i = 0; i < cases(20000); ++i) {
+  for (int i = 0; i < cases(3000); ++i) {
     const LatticeTet tet = anyTet(random);
     const CornerMask carrier = carrierOfPlane(tet);
     const std::vector<Point> expected = squareInTet(tet);
@@ -134,7 +134,7 @@ TEST(SquareSlice, AsManyCornersAsTheClippedSquare) {
 TEST(CubeMeetsFace, AsTheClippedTriangle) {
   std::mt19937 random(11);
   int met = 0;
-  for (int i = 0; i < cases(20000); ++i) {
+  for (int i = 0; i < cases(3000); ++i) {
     const LatticeTet tet = anyTet(random);
     for (int face = 0; face < 4; ++face) {
       std::vector<Point> polygon;
