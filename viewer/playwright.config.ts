@@ -6,10 +6,10 @@ export default defineConfig({
   outputDir: process.env.HEXHEX_VIEWER_RESULTS ?? "test-results",
   globalSetup: "./tests/make_pages.ts",
   workers: 1,
-  timeout: 60_000,
+  timeout: 120_000,
   reporter: [["list"], ["junit", { outputFile: process.env.HEXHEX_VIEWER_JUNIT ?? "junit.xml" }]],
   use: {
-    viewport: { width: 900, height: 600 },
+    viewport: { width: 800, height: 560 },
     colorScheme: "light",
     acceptDownloads: true,
     launchOptions: {

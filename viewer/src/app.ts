@@ -104,11 +104,11 @@ export class App {
     this.saveFragment();
   }
 
-  /** Another click on the direction of a slice switches it off. */
+  /** Slices through the middle; another click on the same direction switches the slice off. */
   slice(direction: SliceDirection): void {
     if (direction === "off" || direction === this.state.slice) return this.change({ slice: "off" });
     const normal = direction === "view" ? this.viewport.viewDirection() : kAxes[direction];
-    this.change({ slice: direction, normal });
+    this.change({ slice: direction, normal, position: 0.5 });
   }
 
   flip(): void {

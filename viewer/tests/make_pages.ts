@@ -24,7 +24,7 @@ function invertCell(file: string, cell: number): void {
 export default function makePages(): void {
   rmSync(kPages, { recursive: true, force: true });
   mkdirSync(kPages, { recursive: true });
-  hexhex("generate", "sphere", "--cells", "6", "--refine", "3", "--jitter", "0.05", "--seed", "1",
+  hexhex("generate", "sphere", "--cells", "4", "--refine", "2", "--jitter", "0.05", "--seed", "1",
     "-o", "sphere.hexex", "--quiet");
   hexhex("extract", "sphere.hexex", "-o", "sphere.vtu", "--scale", "2", "--quiet");
   hexhex("view", "sphere.vtu", "--map", "sphere.hexex", "--scale", "2", "--quiet");

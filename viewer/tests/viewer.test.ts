@@ -7,16 +7,17 @@ const kPictures = process.env.HEXHEX_VIEWER_PICTURES ?? join(kPages, "../picture
 mkdirSync(kPictures, { recursive: true });
 const shot = (name: string) => ({ path: join(kPictures, `${name}.png`) });
 
-/** 7 blocks of 12^3 cells. */
-const kSphereCells = 7 * 12 ** 3;
+/** 7 blocks of 8^3 cells. */
+const kSide = 8;
+const kSphereCells = 7 * kSide ** 3;
 
 test("loads and draws", async ({ page }) => {
   await open(page, "sphere.html");
   expect(await kept(page)).toBe(kSphereCells);
-  expect(await quads(page)).toBe(6 * 12 ** 2);
-  await expect(page.locator("#stat-boundary-quads")).toHaveText(String(6 * 12 ** 2));
+  expect(await quads(page)).toBe(6 * kSide ** 2);
+  await expect(page.locator("#stat-boundary-quads")).toHaveText(String(6 * kSide ** 2));
   await expect(page.locator("#stat-not-positive")).toHaveText("0");
-  await expect(page.locator("#stat-inner")).toHaveText(`${20 * 12} of valence 3`);
+  await expect(page.locator("#stat-inner")).toHaveText(`${20 * kSide} of valence 3`);
   await expect(page.locator("#stat-verification")).toContainText("agrees with sphere.hexex");
   expect(await coloursOnCanvas(page)).toBeGreaterThan(50);
   await page.screenshot(shot("sphere"));
@@ -52,10 +53,9 @@ test("peels layers", async ({ page }) => {
   expect(await kept(page)).toBe(64);
 
   await open(page, "sphere.html");
-  // The surface of each outer block is one layer; the ball is 18 cells deep.
   await page.locator("#peel").fill("2");
   await settle(page);
-  expect(await kept(page)).toBe(12 ** 3 + 6 * 12 ** 2 * 10);
+  expect(await kept(page)).toBe(kSide ** 3 + 6 * kSide ** 2 * (kSide - 2));
   await page.screenshot(shot("peeled"));
 });
 
@@ -140,7 +140,7 @@ test("colours, and says in the legend how", async ({ page }) => {
   await open(page, "sphere.html");
   const legend = page.locator("#legend");
   await expect(legend).toContainText("scaled Jacobian");
-  await expect(legend).toContainText(`3 (${20 * 12})`);
+  await expect(legend).toContainText(`3 (${20 * kSide})`);
   await page.locator("#colour").selectOption("generator");
   await expect(legend).toContainText("vertex lies in a");
   await settle(page);
@@ -204,6 +204,7 @@ test("lists the keys, and is dark on request", async ({ page }) => {
   await expect(page.locator("#shortcuts")).toBeVisible();
   await expect(page.locator("#shortcut-list dt")).toHaveCount(26);
   await page.keyboard.press("Escape");
+  await expect(page.locator("#shortcuts")).toBeHidden();
   const back = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   const light = await back();
   await press(page, "d");

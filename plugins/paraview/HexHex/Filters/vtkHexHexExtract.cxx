@@ -9,6 +9,7 @@
 #include <hexhex/structure.hpp>
 #include <hexhex/verify.hpp>
 
+#include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
@@ -131,7 +132,12 @@ int vtkHexHexExtract::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkUnstructuredGrid* const input = vtkUnstructuredGrid::GetData(inputs[0], 0);
-  vtkDataArray* const parameters = this->GetInputArrayToProcess(0, inputs);
+  vtkDataArray* parameters = this->GetInputArrayToProcess(0, inputs);
+  if (!parameters)
+  {
+    // Scripts that build a pipeline before they run it have no list to choose from yet.
+    parameters = input->GetCellData()->GetArray(hexhex::paraview::kParameters);
+  }
   Request request;
   request.options.engine = this->Engine == 0 ? hexhex::Engine::Atlas : hexhex::Engine::Propeller;
   request.options.scale = this->Scale;
