@@ -143,6 +143,9 @@ def check_errors():
 
 def take_picture(filter_, name):
     """A clip through the middle, cells by scaled Jacobian, singular edges as tubes."""
+    if not os.environ.get("DISPLAY"):
+        print("no X server here: no picture")
+        return
     view = CreateView("RenderView")
     view.ViewSize = [1000, 800]
     view.Background = [1, 1, 1]
