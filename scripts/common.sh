@@ -84,6 +84,14 @@ viewer_packages() {
   if ! command -v npm >/dev/null; then printf '%s\n' nodejs npm; fi
 }
 
+# Whether all of these Debian packages are installed.
+has_packages() {
+  local package
+  for package in "$@"; do
+    [[ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" == installed ]] || return 1
+  done
+}
+
 # run_logged NAME COMMAND...: runs a command quietly; shows the end of its output if it fails.
 run_logged() {
   local log="$logs/$1.log"
