@@ -25,6 +25,7 @@ namespace {
 struct Arguments {
   std::string kind;
   std::string charts = "aligned";
+  std::string defectKind = "interior";
   std::string output;
   SampleOptions options;
   bool quiet = false;
@@ -35,7 +36,7 @@ constexpr std::array<std::pair<std::string_view, ChartStyle>, 3> kChartStyles = 
      {"blocks", ChartStyle::Blocks},
      {"random", ChartStyle::Random}}};
 
-// The parser has checked both names.
+// The parser has checked all names.
 ChartStyle chartStyleNamed(std::string_view styleName) {
   const auto found = std::find_if(kChartStyles.begin(), kChartStyles.end(),
                                   [&](const auto& entry) { return entry.first == styleName; });
@@ -50,6 +51,20 @@ SampleKind kindNamed(std::string_view kindName) {
   return found->kind;
 }
 
+DefectKind defectKindNamed(std::string_view defectName) {
+  const auto kinds = defectKinds();
+  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const DefectKindName& entry) {
+    return entry.name == defectName;
+  });
+  return found->kind;
+}
+
+std::vector<std::string> defectNames() {
+  std::vector<std::string> names;
+  for (const DefectKindName& entry : defectKinds()) names.emplace_back(entry.name);
+  return names;
+}
+
 std::vector<std::string> kindNames() {
   std::vector<std::string> names;
   for (const SampleKindName& entry : sampleKinds()) names.emplace_back(entry.name);
@@ -60,6 +75,7 @@ int run(const Arguments& arguments) {
   requireWritable(arguments.output);
   SampleOptions options = arguments.options;
   options.charts = chartStyleNamed(arguments.charts);
+  options.defectKind = defectKindNamed(arguments.defectKind);
   // A signal takes effect between the two steps: a file is written whole or not at all.
   Context context;
   const CancelOnSignal cancelOnSignal(context);
@@ -129,6 +145,17 @@ Command addGenerate(CLI::App& app) {
       "--features", arguments->options.features,
       "Tag corners, curves, patches and blocks (files: .ovm,\n.ovmb; .hexex without the "
       "numbers)");
+  parser
+      ->add_option("--defects", arguments->options.defects,
+                   "Damage the map: flip or flatten at least so many tets,\nin one place")
+      ->check(wholeNumberFrom(0))
+      ->option_text("NUMBER [0]");
+  parser
+      ->add_option("--defect-kind", arguments->defectKind,
+                   "Which vertices are moved: interior, singular, boundary\n"
+                   "(until tets flip), or sliver (until they collapse)")
+      ->check(CLI::IsMember(defectNames()))
+      ->option_text("KIND [interior]");
   parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   parser->footer(describeKinds());
   return {parser, [arguments] { return run(*arguments); }};

@@ -30,6 +30,14 @@ enum class ChartStyle {
             ///< its corners: hardly any identity is left
 };
 
+/// Which vertices are moved to damage a sample, and how.
+enum class DefectKind {
+  Interior,  ///< inner vertices, so that tets flip
+  Singular,  ///< vertices on inner and boundary singular edges, along them
+  Boundary,  ///< vertices on the boundary, in its planes
+  Sliver     ///< inner vertices, onto others or between them, so that tets collapse
+};
+
 struct SampleOptions {
   int cells = 4;    ///< hexahedra along each block edge, 1 to 10000
   int refine = 2;   ///< tet sub-blocks along each block edge, 1 to 500 (12 tets per sub-block)
@@ -45,6 +53,9 @@ struct SampleOptions {
   /// each kind from 1 on, and numbers the blocks, from 1 on, as regions.
   bool features = false;
   std::uint64_t seed = 1;
+  int defects = 0;  ///< damage the map in one place: at least so many tets are flipped or flat, if
+                    ///< the sample has enough vertices of the kind; 0 to 10000. 0: a valid map
+  DefectKind defectKind = DefectKind::Interior;
 };
 
 /// What the tags of a sample become, by tag. At scale s there are s times as many edges and s^2
@@ -76,7 +87,15 @@ struct SampleKindName {
 };
 [[nodiscard]] std::span<const SampleKindName> sampleKinds() noexcept;
 
-/// Generates a map. Same options, same map, on every machine.
+/// Every kind of defect with its name on the command line ("interior", ...).
+struct DefectKindName {
+  DefectKind kind;
+  std::string_view name;
+};
+[[nodiscard]] std::span<const DefectKindName> defectKinds() noexcept;
+
+/// Generates a map. Same options, same map, on every machine. The answer is that of the undamaged
+/// map.
 /// @throws Error InvalidArgument; TooLarge for more tets than 32-bit indices; OutOfMemory
 [[nodiscard]] Sample generateSample(SampleKind kind, const SampleOptions& options = {});
 

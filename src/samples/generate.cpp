@@ -9,6 +9,7 @@
 #include <hexhex/samples.hpp>
 
 #include <samples/charts.hpp>
+#include <samples/damage.hpp>
 #include <samples/expected_answer.hpp>
 #include <samples/features.hpp>
 #include <samples/kinds.hpp>
@@ -32,6 +33,15 @@ constexpr std::array<SampleKindName, 8> kKinds = {{
     {SampleKind::HandleBody, "handle-body", "plate with two holes, genus 2"},
 }};
 
+constexpr std::array<DefectKindName, 4> kDefectKinds = {{
+    {DefectKind::Interior, "interior"},
+    {DefectKind::Singular, "singular"},
+    {DefectKind::Boundary, "boundary"},
+    {DefectKind::Sliver, "sliver"},
+}};
+
+/// Damage on purpose is to be local.
+constexpr int kMaxDefects = 10000;
 /// Beyond, the number of hexahedra of a sample would hardly mean anything; the parameters inside a
 /// block stay below 2^30 units.
 constexpr int kMaxCells = 10000;
@@ -67,19 +77,24 @@ void requireLegal(SampleKind kind, const SampleOptions& options) {
   const bool known = std::any_of(kKinds.begin(), kKinds.end(), [kind](const SampleKindName& entry) {
     return entry.kind == kind;
   });
+  const bool defectKnown =
+      std::any_of(kDefectKinds.begin(), kDefectKinds.end(),
+                  [&](const DefectKindName& entry) { return entry.kind == options.defectKind; });
   const bool styleKnown = options.charts == ChartStyle::Aligned ||
                           options.charts == ChartStyle::Blocks ||
                           options.charts == ChartStyle::Random;
-  if (!known || !styleKnown) {
-    throw Error(ErrorCode::InvalidArgument,
-                "The kind or the chart style of a sample is not one of the enumerators; choose one "
-                "of those declared in hexhex/samples.hpp.");
+  if (!known || !styleKnown || !defectKnown) {
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "The kind, chart style or defect of a sample is none of the enumerators; choose one "
+        "of those declared in hexhex/samples.hpp.");
   }
   requireInteger("cells", options.cells, 1, kMaxCells);
   requireInteger("refine", options.refine, 1, kMaxRefine);
   if (kind == SampleKind::Star) {
     requireInteger("valence", options.valence, kMinValence, kMaxValence);
   }
+  requireInteger("defects", options.defects, 0, kMaxDefects);
   const auto within = [](double value, double end) { return value >= 0 && value <= end; };
   requireReal("jitter", options.jitter, within(options.jitter, 1), "from 0 to 1");
   requireReal("onLattice", options.onLattice, within(options.onLattice, 1), "from 0 to 1");
@@ -112,6 +127,8 @@ void requireIndexable(std::size_t blocks, int refine) {
 
 std::span<const SampleKindName> sampleKinds() noexcept { return kKinds; }
 
+std::span<const DefectKindName> defectKinds() noexcept { return kDefectKinds; }
+
 Sample generateSample(SampleKind kind, const SampleOptions& options) try {
   requireLegal(kind, options);
   const samples::BlockModel model = samples::blockModel(kind, options.valence);
@@ -124,6 +141,9 @@ Sample generateSample(SampleKind kind, const SampleOptions& options) try {
   }
   if (options.onLattice > 0) {
     samples::roundToLattice(grid, complex, options.onLattice, options.noise, options.seed);
+  }
+  if (options.defects > 0) {
+    samples::damage(grid, complex, options.defectKind, options.defects, options.seed);
   }
 
   Sample sample;
