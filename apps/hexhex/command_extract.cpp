@@ -19,6 +19,7 @@
 #include "interrupt.hpp"
 #include "output.hpp"
 #include "progress.hpp"
+#include "repair_text.hpp"
 #include "report.hpp"
 #include "shared_options.hpp"
 #include "verification.hpp"
@@ -77,6 +78,7 @@ void printWarnings(const ExtractionRecord& record, const TetMap& map) {
     printWarning(
         "The tags and regions of the map are not in the mesh; leave out --stream for them.");
   }
+  if (statistics.repair.changed) printWarning(repairNotice(statistics.repair));
   if (statistics.tetsInvertedInSpace > 0) {
     printWarning(counted(statistics.tetsInvertedInSpace, "tet") +
                  " of the input are inverted in space. The mesh has the right connectivity, but "
@@ -122,6 +124,10 @@ void printSummary(const ExtractionRecord& record) {
             fmt::format("{:.3f} s on {}{}, peak memory {}", statistics.seconds,
                         counted(static_cast<std::uint64_t>(statistics.threads), "thread"),
                         record.streamed ? ", writing included" : "", bytesAsText(peakMemory())));
+  if (statistics.repair.changed) {
+    printLine("repair", fmt::format("{:.3f} s, {}", statistics.repair.seconds,
+                                    counted(statistics.repair.regions.size(), "place")));
+  }
   if (record.quality) printLine("scaled Jacobian", qualityAsText(*record.quality));
   printLine("verification", verificationAsText(record));
   if (record.streamed) {
@@ -135,9 +141,10 @@ void printSummary(const ExtractionRecord& record) {
 void extractWhole(const Arguments& arguments, const TetMap& map, Context& context,
                   ExtractionRecord& record) {
   const HexMesh mesh = extract(map, arguments.options, context, &record.statistics);
+  const TetMapView extracted = extractedMap(map, record.statistics);
   if (!arguments.noVerify) {
     record.verification =
-        verify(map, mesh, {arguments.options.scale, arguments.options.tolerance}, context);
+        verify(extracted, mesh, {arguments.options.scale, arguments.options.tolerance}, context);
     requirePassed(*record.verification, "The mesh does not agree with the map and was not written",
                   "Please report this with the map.");
   }
@@ -191,6 +198,18 @@ int run(const Arguments& arguments) {
   return kSuccess;
 }
 
+/// What happens to maps that are not valid.
+void addRepairOptions(CLI::App& parser, Arguments& arguments) {
+  parser
+      .add_option("--repair", arguments.options.repair,
+                  "auto: mend flipped and flat tets of the map first, with a\n"
+                  "notice; off: they are an error. Valid maps pay nothing")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, RepairMode>{{"auto", RepairMode::Auto}, {"off", RepairMode::Off}}))
+      ->option_text("MODE [auto]");
+  addRound(parser, arguments.options.round);
+}
+
 /// Options that change how a mesh is made, but not the mesh.
 void addMethod(CLI::App& parser, Arguments& arguments) {
   addThreads(parser, arguments.threads);
@@ -238,6 +257,7 @@ Command addExtract(CLI::App& app) {
                    "most this angle in degrees\nbetween neighbours; 0: one group")
       ->check(CLI::Range(0, 180))
       ->option_text("DEGREES [40]");
+  addRepairOptions(*parser, *arguments);
   parser->add_flag("--no-verify", arguments->noVerify, "Write the mesh without verifying it");
   parser
       ->add_option("--report", arguments->report,

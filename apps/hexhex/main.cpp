@@ -82,8 +82,8 @@ int run(int argc, char** argv) {
   app.footer(kFooter);
   app.require_subcommand(1);
   app.failure_message(usageProblem);
-  const std::array commands = {addExtract(app), addCheck(app), addVerify(app), addGenerate(app),
-                               addInfo(app)};
+  const std::array commands = {addExtract(app),  addCheck(app),  addVerify(app),
+                               addGenerate(app), addRepair(app), addInfo(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

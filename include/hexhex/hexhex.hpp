@@ -11,6 +11,7 @@
 #include <hexhex/io.hpp>         // IWYU pragma: export
 #include <hexhex/patches.hpp>    // IWYU pragma: export
 #include <hexhex/quality.hpp>    // IWYU pragma: export
+#include <hexhex/repair.hpp>     // IWYU pragma: export
 #include <hexhex/samples.hpp>    // IWYU pragma: export
 #include <hexhex/stream.hpp>     // IWYU pragma: export
 #include <hexhex/survey.hpp>     // IWYU pragma: export
