@@ -47,6 +47,18 @@ bool isBad(const TetParameters& u) noexcept {
   return !(determinantOf(u) > kRounding * a * b * c + noise);
 }
 
+bool isThin(const TetParameters& u, double noise) noexcept {
+  // The determinant is the height over a face times twice the area of the face.
+  double largest = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 a = minus(u[(i + 1) % 4], u[i]);
+    const Vec3 b = minus(u[(i + 2) % 4], u[i]);
+    largest = std::max(largest, length(cross(a, b)));
+  }
+  // Each of four corners moves by up to sqrt(3) times the noise.
+  return !(determinantOf(u) > 7 * noise * largest);
+}
+
 std::vector<Index> findBadTets(std::size_t tets, const LocalParameters& parameters, Stage& stage) {
   return select(tets, stage, [&](Index t) { return isBad(parameters(t)); });
 }

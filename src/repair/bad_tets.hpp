@@ -17,6 +17,10 @@ namespace hexhex {
 /// Whether a tet is flipped or flat, so far as floating point can tell.
 [[nodiscard]] bool isBad(const TetParameters& u) noexcept;
 
+/// Whether moving corners by up to `noise` along each axis could make a tet bad: the angles of such
+/// a tet mean nothing.
+[[nodiscard]] bool isThin(const TetParameters& u, double noise) noexcept;
+
 /// The bad tets among all, ascending.
 [[nodiscard]] std::vector<Index> findBadTets(std::size_t tets, const LocalParameters& parameters,
                                              Stage& stage);

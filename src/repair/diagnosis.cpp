@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <repair/bad_tets.hpp>
 #include <repair/diagnosis.hpp>
 
 namespace hexhex {
@@ -24,8 +25,12 @@ class Examiner {
       : map_(map), parameters_(parameters), tolerance_(tolerance), limit_(limit) {
     touched_.assign(map.topology.pointCount, 0);
     boundary_.assign(map.topology.pointCount, 0);
-    for (const Index t : bad) {
-      for (const Index v : map.topology.tets[t]) touched_[v] = 1;
+    for (const Index t : bad) touch(t);
+    // Inexact maps have flat tets that count as positive as given: no angles are known there.
+    const double noise = std::min(tolerance, map.exact.transitions.maxResidual);
+    if (!(noise > 0)) return;
+    for (std::size_t t = 0; t < map.topology.tetCount(); ++t) {
+      if (isThin(parameters(static_cast<Index>(t)), noise)) touch(static_cast<Index>(t));
     }
   }
 
@@ -86,6 +91,10 @@ class Examiner {
   }
 
  private:
+  void touch(Index tet) {
+    for (const Index v : map_.topology.tets[tet]) touched_[v] = 1;
+  }
+
   [[nodiscard]] ErrorCode causeAt(Index v) const {
     if (map_.singularities.degree[v] > 0) return ErrorCode::SingularityOffLattice;
     return boundary_[v] != 0 ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual;

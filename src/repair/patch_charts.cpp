@@ -259,7 +259,7 @@ void PatchCharts::walkFan(PatchEdge& edge, Fan& fan) const {
                      parameters_(tet, topology_.localCorner(tet, edge.vertex0)));
   edge.sound = true;
   while (true) {
-    if (isBad(parameters_(tet))) edge.sound = false;
+    if (isThin(parameters_(tet), fitLimit_)) edge.sound = false;
     const HalfFace leaving = halfFaceOf(tet, otherFaceAtEdge(edgeMask(tet), entered));
     const HalfFace mate = topology_.mate[leaving];
     if (mate == kNone) {
