@@ -3,6 +3,7 @@
 
 #include <repair/bad_tets.hpp>
 #include <repair/diagnosis.hpp>
+#include <repair/face_fit.hpp>
 
 namespace hexhex {
 
@@ -76,8 +77,14 @@ class Examiner {
       }
     });
     for (const Transitions::Misfit& misfit : map_.exact.transitions.misfits) {
-      if (isTouched(misfit.halfFace) || misfit.residual <= tolerance_) continue;
-      if (misfit.residual <= limit_) {
+      // A triangle's own corners tell whether it fits, even where its tets are flipped. The nearest
+      // rotation need not be the one that fits best with an integer translation.
+      const double residual =
+          fitAllTransitions(facingTriangles(topology, parameters_, misfit.halfFace))
+              .front()
+              .residual;
+      if (residual <= tolerance_) continue;
+      if (residual <= limit_) {
         for (const int c : kFaceCorners[misfit.halfFace % 4]) {
           diagnosis.roundable.push_back(
               topology.tets[tetOf(misfit.halfFace)][static_cast<std::size_t>(c)]);
@@ -85,7 +92,7 @@ class Examiner {
       } else {
         diagnosis.hopeless.add(ErrorCode::TransitionResidual,
                                {PlaceKind::Face, tetOf(misfit.halfFace), misfit.halfFace % 4},
-                               misfit.residual);
+                               residual);
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <repair/bad_tets.hpp>
+#include <repair/face_fit.hpp>
 #include <repair/patch_charts.hpp>
 
 #include <base/vector3.hpp>
@@ -19,47 +20,6 @@ constexpr double kHalfTurn = 2.5;
 constexpr double kImpossible = 100;
 /// Ties are broken towards the choice that fits best.
 constexpr double kPerChoice = 1e-4;
-
-double largestDifference(const Vec3& a, const Vec3& b) {
-  return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
-}
-
-struct SharedTriangle {
-  std::array<Vec3, 3> here;
-  std::array<Vec3, 3> there;
-};
-
-SharedTriangle sharedTriangle(const TetTopology& topology, const LocalParameters& parameters,
-                              HalfFace here) {
-  SharedTriangle triangle;
-  const Index tet = tetOf(here);
-  const Index other = tetOf(topology.mate[here]);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const int corner = kFaceCorners[here % 4][k];
-    triangle.here[k] = parameters(tet, corner);
-    triangle.there[k] = parameters(
-        other, topology.localCorner(other, topology.tets[tet][static_cast<std::size_t>(corner)]));
-  }
-  return triangle;
-}
-
-/// The integer translation that fits a rotation best, and what remains.
-std::pair<double, Transition> fit(const SharedTriangle& triangle, Rotation rotation) {
-  Transition transition{rotation, {}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    double mean = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      mean += (triangle.there[i][k] - rotation(triangle.here[i])[k]) / 3;
-    }
-    transition.translation[k] = static_cast<std::int32_t>(std::nearbyint(mean));
-  }
-  double residual = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    residual =
-        std::max(residual, largestDifference(triangle.there[i], transition(triangle.here[i], 1.0)));
-  }
-  return {residual, transition};
-}
 
 std::size_t dominantAxis(const Vec3& v) {
   std::size_t axis = std::abs(v[1]) > std::abs(v[0]) ? 1 : 0;
@@ -143,28 +103,26 @@ std::size_t PatchCharts::faceIndex(HalfFace halfFace) const {
 void PatchCharts::findCandidates() {
   // How well rotations fit here, where nothing is wrong: as exact as the map is.
   double noise = 1e-9;
-  std::vector<std::vector<std::pair<double, Transition>>> fits(faces_.size());
+  std::vector<std::vector<FittedTransition>> fits(faces_.size());
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     if (faces_[f].boundary) continue;
     const HalfFace halfFace = faces_[f].halfFace;
-    const SharedTriangle triangle = sharedTriangle(topology_, parameters_, halfFace);
+    const FacingTriangles triangles = facingTriangles(topology_, parameters_, halfFace);
     const int known = map_.rotations.empty() ? -1 : map_.rotations[tetOf(halfFace)][halfFace % 4];
     if (known >= 0 && known < Rotation::kCount) {
-      fits[f].push_back(fit(triangle, rotationFromAlgoHex(known)));
+      fits[f].push_back(fitTransition(triangles, rotationFromAlgoHex(known)));
       continue;
     }
-    for (int r = 0; r < Rotation::kCount; ++r) fits[f].push_back(fit(triangle, Rotation(r)));
-    std::stable_sort(fits[f].begin(), fits[f].end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    fits[f] = fitAllTransitions(triangles);
     const bool healthy = !isBad(parameters_(tetOf(halfFace))) &&
                          !isBad(parameters_(tetOf(topology_.mate[halfFace])));
-    if (healthy) noise = std::max(noise, fits[f].front().first);
+    if (healthy) noise = std::max(noise, fits[f].front().residual);
   }
   fitLimit_ = std::min(2 * noise, tolerance_);
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     Face& face = faces_[f];
     if (!face.boundary) {
-      const double limit = std::max(fitLimit_, 2 * fits[f].front().first);
+      const double limit = std::max(fitLimit_, 2 * fits[f].front().residual);
       for (const auto& [residual, transition] : fits[f]) {
         if (residual <= limit) face.candidates.push_back(transition);
       }

@@ -158,27 +158,34 @@ class Repairer {
     return tets;
   }
 
+  /// Transitions first, since what they are off shows elsewhere, too.
   [[noreturn]] void throwHopeless(const DefectCollector& hopeless, std::size_t badTets) const {
     const std::vector<Defect> list = hopeless.defects();
-    const auto worst =
-        std::max_element(list.begin(), list.end(),
-                         [](const Defect& a, const Defect& b) { return a.count < b.count; });
-    double smallest = worst->worst.back().amount;
-    std::string message = worst->sentence + " Found " + std::to_string(worst->count) +
-                          (worst->count == 1 ? " time" : " times") +
-                          " where no flipped tet is near, worst at " +
-                          toString(worst->worst.front().place) + " (by " +
-                          shortNumber(worst->worst.front().amount) + ").";
+    const Defect& first = list.front();
+    const Defect::Occurrence& worst = first.worst.front();
+    std::string message = first.sentence + " Found " + timesAsText(first.count) +
+                          ", and not because of flipped tets; worst at " + toString(worst.place) +
+                          (worst.amount > 0 ? " (by " + shortNumber(worst.amount) + ")" : "") + ".";
+    double largest = worst.amount;
+    for (std::size_t i = 1; i < list.size(); ++i) {
+      message += (i == 1 ? " Also " : ", ") + std::string(name(list[i].code)) + " " +
+                 timesAsText(list[i].count);
+      largest = std::max(largest, list[i].worst.front().amount);
+    }
+    if (list.size() > 1) message += ".";
     if (badTets > 0) {
-      message += " The map also has " + std::to_string(badTets) +
-                 " flipped or flat tets; mending them would not make it valid, so nothing was "
-                 "repaired.";
+      message += " The map has " + std::to_string(badTets) +
+                 " flipped or flat tets as well; mending them would not make it valid.";
     }
-    message += " What the integers were meant to be would be a guess.";
-    if (!options_.round && smallest > 0 && worst->worst.front().amount <= kRoundingLimit) {
-      message += " All amounts are below 0.1: rounding (--round) can be asked for.";
-    }
-    throw Error(worst->code, message, worst->worst.front().place);
+    message += " What the integers were meant to be would be a guess, so nothing was repaired";
+    message += largest > 0 && largest <= kRoundingLimit && !options_.round
+                   ? ": all amounts are below 0.1, so rounding (--round) can be asked for."
+                   : ". `hexhex check` lists the places.";
+    throw Error(first.code, message, worst.place);
+  }
+
+  static std::string timesAsText(std::uint64_t count) {
+    return count == 1 ? "once" : std::to_string(count) + " times";
   }
 
   static std::string shortNumber(double value) {

@@ -36,7 +36,7 @@ REPORT_KEYS = {
     "generators", "vertices_by_generator", "local_propellers", "global_propellers", "charts",
     "cut_faces", "overlapping_tets", "traced_cells", "singular_edges", "chart_jumps", "inner_faces",
     "max_displacement", "max_transition_residual", "mirrored", "tets_inverted_in_space", "quality",
-    "verification", "streamed", "checksums",
+    "verification", "streamed", "checksums", "repair",
 }
 
 
