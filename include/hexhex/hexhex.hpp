@@ -9,6 +9,7 @@
 #include <hexhex/extractor.hpp>  // IWYU pragma: export
 #include <hexhex/features.hpp>   // IWYU pragma: export
 #include <hexhex/io.hpp>         // IWYU pragma: export
+#include <hexhex/partial.hpp>    // IWYU pragma: export
 #include <hexhex/patches.hpp>    // IWYU pragma: export
 #include <hexhex/quality.hpp>    // IWYU pragma: export
 #include <hexhex/repair.hpp>     // IWYU pragma: export

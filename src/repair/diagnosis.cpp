@@ -4,6 +4,7 @@
 #include <repair/bad_tets.hpp>
 #include <repair/diagnosis.hpp>
 #include <repair/face_fit.hpp>
+#include <repair/valid_tets.hpp>
 
 namespace hexhex {
 
@@ -71,7 +72,7 @@ class Examiner {
       for (int f = 0; f < 4; ++f) {
         const HalfFace halfFace = halfFaceOf(static_cast<Index>(t), f);
         if (topology.mate[halfFace] == kNone || topology.mate[halfFace] < halfFace) continue;
-        if (isTouched(halfFace) || isCarried(halfFace)) continue;
+        if (isTouched(halfFace) || isCarriedOver(map_, halfFace)) continue;
         diagnosis.hopeless.add(ErrorCode::HalfIntegerFixedPoint,
                                {PlaceKind::Face, t, static_cast<std::uint64_t>(f)}, 0);
       }
@@ -111,20 +112,6 @@ class Examiner {
     const Tet& tet = map_.topology.tets[tetOf(halfFace)];
     return std::any_of(kFaceCorners[halfFace % 4].begin(), kFaceCorners[halfFace % 4].end(),
                        [&](int c) { return touched_[tet[static_cast<std::size_t>(c)]] != 0; });
-  }
-
-  [[nodiscard]] bool isCarried(HalfFace halfFace) const {
-    const HalfFace mate = map_.topology.mate[halfFace];
-    for (const int c : kFaceCorners[halfFace % 4]) {
-      const auto corner = static_cast<std::size_t>(c);
-      const Index v = map_.topology.tets[tetOf(halfFace)][corner];
-      const LatticePoint& here = map_.exact.corners[tetOf(halfFace)][corner];
-      const LatticePoint& there =
-          map_.exact.corners[tetOf(mate)]
-                            [static_cast<std::size_t>(map_.topology.localCorner(tetOf(mate), v))];
-      if (map_.exact.transitions.across(halfFace)(here, map_.exact.unit) != there) return false;
-    }
-    return true;
   }
 
   const PreparedMap& map_;
