@@ -49,8 +49,8 @@ install_missing() {
   fi
 }
 
-# Libraries of optional formats: .vtkhdf, .cgns, .exo. Without them these are left out.
-optional_packages=(libhdf5-dev libcgns-dev libexodusii-dev)
+# Libraries of optional parts: .vtkhdf, .cgns, .exo, repair. Without them these are left out.
+optional_packages=(liblbfgs-dev libhdf5-dev libcgns-dev libexodusii-dev)
 
 # The same for packages that can be done without.
 install_optional() {

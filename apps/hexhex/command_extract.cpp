@@ -1,4 +1,5 @@
 // `hexhex extract`: from a map to a verified hexahedral mesh.
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/partial.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/verify.hpp>
 
@@ -35,6 +37,7 @@ struct Arguments {
   double patchAngle = WriteOptions{}.patchAngle;
   int threads = 0;
   bool stream = false;
+  bool partial = false;
   bool noVerify = false;
   bool quiet = false;
 };
@@ -68,6 +71,11 @@ void requireOutputs(const Arguments& arguments) {
   }
   requireHexMeshFormat(arguments.output);
   requireWritable(arguments.output);
+  if (arguments.partial && arguments.stream) {
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "--partial needs the whole mesh in memory. Leave out one of --stream and --partial.");
+  }
   if (arguments.stream) requireStreamable(arguments.output, arguments.options);
   if (!arguments.report.empty()) requireWritable(arguments.report);
 }
@@ -171,6 +179,48 @@ void extractInPieces(const Arguments& arguments, const TetMap& map, Context& con
   record.streamed = mesh.written;
 }
 
+void printHoles(const PartialMesh& partial) {
+  constexpr std::size_t kMaxListed = 20;
+  for (std::size_t i = 0; i < std::min(partial.holes.size(), kMaxListed); ++i) {
+    const Hole& hole = partial.holes[i];
+    printLine(fmt::format("hole at tet {}", hole.tet),
+              fmt::format("about {:.2f} cells missing near ({:.4g}, {:.4g}, {:.4g}), in {}, {} of "
+                          "them invalid",
+                          hole.missingCells, hole.position[0], hole.position[1], hole.position[2],
+                          counted(hole.tets, "tet"), hole.invalidTets));
+  }
+  if (partial.holes.size() > kMaxListed) {
+    printLine("and", fmt::format("{} smaller holes", partial.holes.size() - kMaxListed));
+  }
+}
+
+/// What is left of a map beyond repair. Always an invalid map, by its exit code.
+int extractWhatIsValid(const Arguments& arguments, const TetMap& map, const Error& problem,
+                       Context& context, ProgressDisplay& progress) {
+  const PartialMesh partial =
+      extractPartial(map, {arguments.options.scale, arguments.options.tolerance}, context);
+  WriteOptions options;
+  options.patchAngle = arguments.patchAngle;
+  writeHexMesh(partial.mesh, arguments.output, options, context);
+  progress.clear();
+  printError(problem);
+  if (arguments.quiet) return kInvalidMap;
+  printWarning("Only a part of the mesh was extracted, as --partial asks for.");
+  fmt::print("{} -> {}\n", arguments.input, arguments.output);
+  const auto atHole =
+      std::count(partial.mesh.regions.begin(), partial.mesh.regions.end(), std::int32_t{1});
+  printLine("mesh", fmt::format("{}, {} of them at holes (region 1)",
+                                counted(partial.mesh.cells.size(), "cell"), atHole));
+  printLine("missing", fmt::format("about {:.1f} cells, at {} with {}", partial.missingCells,
+                                   counted(partial.holes.size(), "hole"),
+                                   counted(partial.invalidTets, "invalid tet")));
+  printLine("local verification",
+            fmt::format("every cell is filled by valid tets; {} do not fit together",
+                        counted(partial.faceConflicts, "face")));
+  printHoles(partial);
+  return kInvalidMap;
+}
+
 int run(const Arguments& arguments) {
   requireOutputs(arguments);
   ProgressDisplay progress(arguments.quiet);
@@ -179,7 +229,12 @@ int run(const Arguments& arguments) {
 
   const TetMap map = readMap(arguments.input, context);
   ExtractionRecord record;
-  (arguments.stream ? extractInPieces : extractWhole)(arguments, map, context, record);
+  try {
+    (arguments.stream ? extractInPieces : extractWhole)(arguments, map, context, record);
+  } catch (const Error& error) {
+    if (!arguments.partial || exitCodeOf(error.code()) != kInvalidMap) throw;
+    return extractWhatIsValid(arguments, map, error, context, progress);
+  }
   progress.clear();
 
   std::error_code unknown;  // the size of a pipe
@@ -208,6 +263,9 @@ void addRepairOptions(CLI::App& parser, Arguments& arguments) {
           std::map<std::string, RepairMode>{{"auto", RepairMode::Auto}, {"off", RepairMode::Off}}))
       ->option_text("MODE [auto]");
   addRound(parser, arguments.options.round);
+  parser.add_flag("--partial", arguments.partial,
+                  "Write what can be extracted of a map beyond repair, cells\n"
+                  "at holes as region 1, and list the holes; exit code 1");
 }
 
 /// Options that change how a mesh is made, but not the mesh.
@@ -238,6 +296,7 @@ void addMethod(CLI::App& parser, Arguments& arguments) {
 
 Command addExtract(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
+  arguments->options.repair = RepairMode::Auto;
   CLI::App* const parser = app.add_subcommand("extract", "Extract the hexahedral mesh of a map");
   parser->add_option("MAP", arguments->input, mapDescription())
       ->required()

@@ -49,13 +49,6 @@ std::string usageProblem(const CLI::App* app, const CLI::Error& error) {
                      error.what(), app->get_display_name());
 }
 
-/// The sentence, and in brackets what a script or a bug report wants to know.
-void printError(const Error& error) {
-  const std::string place = toString(error.place());
-  printToStderr("hexhex: error: {} [{}{}{}]\n", error.what(), name(error.code()),
-                place.empty() ? "" : ", ", place);
-}
-
 /// Runs a subcommand; every error ends here.
 int runGuarded(const Command& command) {
   try {

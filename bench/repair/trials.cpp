@@ -117,7 +117,9 @@ Tally run(const Trial& trial) {
   ExtractStatistics statistics;
   bool extracted = false;
   try {
-    const HexMesh mesh = extract(damaged.map, {}, context, &statistics);
+    ExtractOptions options;
+    options.repair = RepairMode::Auto;
+    const HexMesh mesh = extract(damaged.map, options, context, &statistics);
     extracted = true;
     if (statistics.repair.changed) {
       tally.right = test::sameConnectivity(mesh, wanted) ? 1 : 0;

@@ -5,9 +5,10 @@
 #include <vector>
 
 #include <hexhex/context.hpp>
+#include <hexhex/export.h>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 struct PartialOptions {
   int scale = 1;            ///< as in ExtractOptions
@@ -25,10 +26,10 @@ struct Hole {
 };
 
 struct PartialMesh {
-  HexMesh mesh;                      ///< without generators
-  std::vector<std::uint8_t> atHole;  ///< per cell: 1 if it has a face that neither another cell
-                                     ///< nor the boundary of the tets is behind
-  std::vector<Hole> holes;           ///< most missing cells first
+  /// Without generators and tags. mesh.regions is 1 for each cell at a hole, which has a face that
+  /// neither another cell nor the boundary of the tets is behind, and 0 for the others.
+  HexMesh mesh;
+  std::vector<Hole> holes;  ///< most missing cells first
   std::uint64_t invalidTets = 0;
   double missingCells = 0;          ///< of all holes
   std::uint64_t faceConflicts = 0;  ///< faces that do not fit: with more than two cells, or two in
@@ -46,4 +47,4 @@ struct PartialMesh {
 [[nodiscard]] PartialMesh extractPartial(const TetMapView& map, const PartialOptions& options,
                                          Context& context);
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

@@ -7,9 +7,10 @@
 
 #include <hexhex/context.hpp>
 #include <hexhex/error.hpp>
+#include <hexhex/export.h>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex HEXHEX_API_NAMESPACE {
 
 struct RepairOptions {
   double tolerance = 1e-2;  ///< as in ExtractOptions
@@ -62,4 +63,4 @@ struct RepairReport {
 /// The same with all cores and without progress.
 [[nodiscard]] TetMap repair(const TetMap& map, const RepairOptions& options = {});
 
-}  // namespace hexhex
+}  // namespace HEXHEX_API_NAMESPACE

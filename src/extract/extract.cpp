@@ -4,6 +4,7 @@
 #include <string>
 
 #include <atlas/atlas.hpp>
+#include <repair/repair_map.hpp>
 
 #include <hexhex/extract.hpp>
 #include <hexhex/stream.hpp>
@@ -12,7 +13,6 @@
 #include <extract/pipeline.hpp>
 #include <extract/steps.hpp>
 #include <map/measures.hpp>
-#include <repair/repair_map.hpp>
 
 namespace hexhex {
 
@@ -60,8 +60,7 @@ TetMap ownedCopy(const TetMapView& map) {
 
 /// Prepares the map, or what a repair makes of it; that stays in `statistics`.
 PreparedMap prepareMended(const TetMapView& map, double tolerance, int maxScale,
-                          const Mending& mending, Context& context,
-                          ExtractStatistics& statistics) {
+                          const Mending& mending, Context& context, ExtractStatistics& statistics) {
   {
     DefectCollector defects;
     PreparedMap prepared = prepareMap(map, tolerance, maxScale, context, defects);
@@ -72,8 +71,7 @@ PreparedMap prepareMended(const TetMapView& map, double tolerance, int maxScale,
   statistics.repairedMap = std::make_shared<const TetMap>(
       repairInArena(ownedCopy(map), options, context, statistics.repair));
   DefectCollector defects;
-  PreparedMap prepared =
-      prepareMap(*statistics.repairedMap, tolerance, maxScale, context, defects);
+  PreparedMap prepared = prepareMap(*statistics.repairedMap, tolerance, maxScale, context, defects);
   defects.throwIfAny();
   return prepared;
 }
@@ -135,8 +133,7 @@ ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options,
 HexMesh extractScaled(const TetMapView& given, ScaledMap& scaled, const ExtractOptions& options,
                       Context& context, ExtractStatistics& statistics) {
   HexMesh mesh = runEngine(scaled.map, scaled.expectedCells, options, context, statistics);
-  const TetMapView tagged =
-      statistics.repairedMap ? TetMapView(*statistics.repairedMap) : given;
+  const TetMapView tagged = statistics.repairedMap ? TetMapView(*statistics.repairedMap) : given;
   carryTags(tagged, scaled.map, mesh, context);
   return mesh;
 }

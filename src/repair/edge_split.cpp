@@ -34,6 +34,7 @@ void splitTet(TetMap& map, Index tet, const std::array<Index, 2>& edge, Index ve
   map.parameters[tet][b] = between;
   map.tets.push_back(second);
   map.parameters.push_back(secondParameters);
+  if (!map.regions.empty()) map.regions.push_back(map.regions[tet]);
   if (map.rotations.empty()) return;
   // The triangle between both halves: opposite a in the first, opposite b in the second. Where
   // nothing is known, the rotation is computed.

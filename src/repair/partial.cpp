@@ -143,13 +143,13 @@ void matchFaces(const std::vector<std::uint8_t>& boundaryWalls, PartialMesh& res
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
     return a.sorted != b.sorted ? a.sorted < b.sorted : a.cell < b.cell;
   });
-  result.atHole.assign(result.mesh.cells.size(), 0);
+  result.mesh.regions.assign(result.mesh.cells.size(), 0);
   for (std::size_t begin = 0; begin < sides.size();) {
     std::size_t end = begin + 1;
     while (end < sides.size() && sides[end].sorted == sides[begin].sorted) ++end;
     const Side& first = sides[begin];
     if (end - begin == 1) {
-      if ((boundaryWalls[first.cell] >> first.wall & 1) == 0) result.atHole[first.cell] = 1;
+      if ((boundaryWalls[first.cell] >> first.wall & 1) == 0) result.mesh.regions[first.cell] = 1;
     } else if (end - begin > 2 || first.even == sides[begin + 1].even) {
       ++result.faceConflicts;
     }

@@ -362,6 +362,19 @@ double PatchCharts::signedAngle(const PatchEdge& edge, const Fan& fan) const {
   return sum / (std::numbers::pi / 2);
 }
 
+/// Whether both ends of an edge are on one line of the integer grid, as singular edges are.
+bool PatchCharts::isOnGridLine(Index tet, const PatchEdge& edge) const {
+  const Vec3 a = parameters_(tet, topology_.localCorner(tet, edge.vertex0));
+  const Vec3 b = parameters_(tet, topology_.localCorner(tet, edge.vertex1));
+  const std::size_t along = dominantAxis(minus(b, a));
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (k == along) continue;
+    const double line = std::nearbyint(a[k]);
+    if (std::abs(a[k] - line) > tolerance_ || std::abs(b[k] - line) > tolerance_) return false;
+  }
+  return true;
+}
+
 void PatchCharts::setValence(std::size_t e) {
   PatchEdge& edge = edges_[e];
   if (!map_.edgeValences.empty()) {
@@ -377,7 +390,10 @@ void PatchCharts::setValence(std::size_t e) {
   const bool clear = std::abs(angle - turns) < 0.25;
   // Where tets are bad, only what the holonomy confirms, and what is not a mere fold, counts.
   if (edge.sound) edge.valence = turns;
-  if (!edge.sound && !edge.boundary && clear && turns >= 3 && turns != 4) edge.valence = turns;
+  if (!edge.sound && !edge.boundary && clear && turns >= 3 && turns != 4 &&
+      isOnGridLine(edge.tet, edge)) {
+    edge.valence = turns;
+  }
 }
 
 void PatchCharts::classify() {

@@ -88,6 +88,7 @@ class PatchCharts {
   bool improve(std::span<const std::uint32_t> faces, double& cost);
   void classify();
   void setValence(std::size_t e);
+  [[nodiscard]] bool isOnGridLine(Index tet, const PatchEdge& edge) const;
   [[nodiscard]] double signedAngle(const PatchEdge& edge, const Fan& fan) const;
   [[nodiscard]] std::size_t faceIndex(HalfFace halfFace) const;
   [[nodiscard]] Rotation holonomy(const Fan& fan) const;

@@ -70,15 +70,17 @@ class Repairer {
     std::vector<Index> bad = findSeeds();
     report_.badTets = bad.size();
     prepareExpectation(bad);
-    std::vector<Index> toRound = refuseOtherDefects(bad);
+    const std::vector<Index> toRound = refuseOtherDefects(bad);
+    bool fresh = true;  // nothing has been moved yet
     for (int refinement = 0;; ++refinement) {
       for (const int rings : kRings) {
-        solve(bad, toRound, rings);
-        toRound.clear();
+        solve(bad, fresh ? toRound : std::vector<Index>{}, rings);
         look();
-        if (now_->defects.empty()) return finish();
+        if (now_->defects.empty() && isWhatWasMeant()) return finish();
         bad = findSeeds();
-        if (bad.empty()) throwRemaining(0);
+        // All positive and yet wrong, wound around an edge twice, say: a larger patch from scratch.
+        fresh = bad.empty();
+        if (fresh) bad = startOver();
         if (!locked_.empty()) break;
       }
       if (refinement == kMaxRefinements || !options_.refine || !refine(bad)) {
@@ -92,6 +94,19 @@ class Repairer {
   void look() {
     now_ = std::make_unique<Snapshot>();
     now_->prepared = prepareMap(map_, options_.tolerance, options_.scale, context_, now_->defects);
+  }
+
+  std::vector<Index> startOver() {
+    map_ = original_;
+    locked_.clear();
+    candidates_.clear();
+    moved_.clear();
+    valences_.clear();
+    report_.regions.clear();
+    report_.splitEdges = 0;
+    report_.addedTets = 0;
+    look();
+    return findSeeds();
   }
 
   [[nodiscard]] LocalParameters parameters() const { return LocalParameters(now_->prepared.input); }
@@ -198,6 +213,7 @@ class Repairer {
   void solve(const std::vector<Index>& bad, const std::vector<Index>& toRound, int rings) {
     Stage stage(context_, "repair");
     locked_.clear();
+    candidates_.clear();
     std::vector<Index> seeds = bad;
     seeds.insert(seeds.end(), toRound.begin(), toRound.end());
     std::sort(seeds.begin(), seeds.end());
@@ -307,7 +323,6 @@ class Repairer {
 
   /// Should all patches fail: the inner edges of bad tets.
   void noteSplitCandidates(const Patch& patch, const PatchCharts& charts) {
-    candidates_.clear();
     for (const Index t : patch.seeds) addEdgesOf(t, kWholeTet, charts, false, candidates_);
   }
 
@@ -376,46 +391,45 @@ class Repairer {
     return report_.regions.size() - 1;
   }
 
-  /// The map is valid: is it also the one that was meant?
   TetMap finish() {
+    describeMoves();
+    report_.changed = true;
+    return std::move(map_);
+  }
+
+  /// The map is valid: is it also the one that was meant? If not, complaint_ says why.
+  [[nodiscard]] bool isWhatWasMeant() {
+    complaint_.clear();
     const std::uint64_t cells = parametricVolume(now_->prepared.exact);
     // Sanitization moves the boundary, and nothing else changes the volume.
     const double slack = kVolumeSlack + 2 * now_->prepared.exact.maxDisplacement *
                                             static_cast<double>(boundaryArea(
                                                 now_->prepared.topology, now_->prepared.exact));
     if (!options_.round && !(std::abs(volume_ - static_cast<double>(cells)) <= slack)) {
-      throw Error(ErrorCode::FlippedTet,
-                  "A repair made all tets positive, but changed the volume of the map to " +
-                      std::to_string(cells) + " cells from " + shortNumber(volume_) +
-                      ": it is not the map that was meant, and was given up. Compute the map "
-                      "again.");
+      complaint_ = "the volume of the map changed to " + std::to_string(cells) + " cells from " +
+                   shortNumber(volume_);
+      return false;
     }
-    requireExpectedValences();
-    describeMoves();
-    report_.changed = true;
-    return std::move(map_);
+    return hasExpectedValences();
   }
 
-  void requireExpectedValences() const {
+  [[nodiscard]] bool hasExpectedValences() {
     std::map<EdgeKey, int> found;
     for (const SingularEdge& edge : now_->prepared.singularities.edges) {
       found[{edge.vertex0, edge.vertex1}] = edge.valence;
     }
-    const TetTopology& topology = now_->prepared.topology;
     for (const auto& [key, valence] : valences_) {
-      if (!isEdge(topology, key)) continue;  // was split
+      if (!isEdge(now_->prepared.topology, key)) continue;  // was split
       const auto entry = found.find(key);
       // Without an entry, the edge is regular. Zero stands for singular, but unknown how.
       const bool same = entry == found.end() ? valence == 2 || valence == 4
                                              : valence == 0 || entry->second == valence;
       if (same) continue;
-      throw Error(ErrorCode::FlippedTet,
-                  "A repair made all tets positive, but edge " + std::to_string(key.first) + "-" +
-                      std::to_string(key.second) +
-                      " has become another singularity than it was: it is not the map that was "
-                      "meant, and was given up. Compute the map again.",
-                  {PlaceKind::Edge, key.first, key.second});
+      complaint_ = "edge " + std::to_string(key.first) + "-" + std::to_string(key.second) +
+                   " became another singularity than it was";
+      return false;
     }
+    return true;
   }
 
   static bool isEdge(const TetTopology& topology, const EdgeKey& key) {
@@ -453,16 +467,23 @@ class Repairer {
   }
 
   [[noreturn]] void throwRemaining(std::size_t badTets) const {
-    if (badTets == 0) now_->defects.throwIfAny();
-    const Defect first = now_->defects.defects().front();
-    throw Error(ErrorCode::FlippedTet,
-                "The map could not be repaired: of " + std::to_string(report_.badTets) +
-                    " flipped or flat tets, " + std::to_string(badTets) +
-                    " remained, after patches of up to " + std::to_string(kRings.back()) +
-                    " rings and " + std::to_string(report_.splitEdges) +
-                    " split edges. Compute the map again with more tets there, or extract what "
-                    "can be extracted (--partial).",
-                first.worst.empty() ? Place{} : first.worst.front().place);
+    std::string message = "The map could not be repaired: ";
+    if (!complaint_.empty()) {
+      message += "all tets became positive, but " + complaint_ +
+                 ", so that it is not the map that was meant";
+    } else {
+      message += "of " + std::to_string(report_.badTets) + " flipped or flat tets, " +
+                 std::to_string(badTets) + " remained";
+    }
+    message += ", after patches of up to " + std::to_string(kRings.back()) + " rings and " +
+               std::to_string(report_.splitEdges) +
+               " split edges. Compute the map again with more tets there, or extract what can be "
+               "extracted (--partial).";
+    const std::vector<Defect> defects = now_->defects.defects();
+    throw Error(ErrorCode::FlippedTet, message,
+                defects.empty() || defects.front().worst.empty()
+                    ? Place{}
+                    : defects.front().worst.front().place);
   }
 
   TetMap map_;
@@ -472,7 +493,8 @@ class Repairer {
   RepairReport& report_;
   double limit_;  ///< how far coordinates may be off integers
   std::unique_ptr<Snapshot> now_;
-  double volume_ = 0;  ///< of the defective map
+  double volume_ = 0;      ///< of the defective map
+  std::string complaint_;  ///< why the last valid map was not accepted
   std::map<EdgeKey, int> valences_;
   std::map<Index, std::size_t> moved_;            ///< vertices, and the region of the report
   std::vector<std::array<Index, 2>> locked_;      ///< edges whose splitting unlocks tets

@@ -163,14 +163,14 @@ TEST_F(Repairs, AreDoneByTheExtraction) {
   const TetMap map = damaged();
   Context context;
   ExtractStatistics statistics;
-  const HexMesh mesh = extract(map, {}, context, &statistics);
+  ExtractOptions automatic;
+  automatic.repair = RepairMode::Auto;
+  const HexMesh mesh = extract(map, automatic, context, &statistics);
   EXPECT_TRUE(statistics.repair.changed);
   ASSERT_NE(statistics.repairedMap, nullptr);
   EXPECT_TRUE(verify(*statistics.repairedMap, mesh).passed());
-  ExtractOptions off;
-  off.repair = RepairMode::Off;
   try {
-    static_cast<void>(extract(map, off));
+    static_cast<void>(extract(map));
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::FlippedTet);
