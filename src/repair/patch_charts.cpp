@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <repair/bad_tets.hpp>
-#include <repair/face_fit.hpp>
 #include <repair/patch_charts.hpp>
 
 #include <base/vector3.hpp>
@@ -107,13 +106,7 @@ void PatchCharts::findCandidates() {
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     if (faces_[f].boundary) continue;
     const HalfFace halfFace = faces_[f].halfFace;
-    const FacingTriangles triangles = facingTriangles(topology_, parameters_, halfFace);
-    const int known = map_.rotations.empty() ? -1 : map_.rotations[tetOf(halfFace)][halfFace % 4];
-    if (known >= 0 && known < Rotation::kCount) {
-      fits[f].push_back(fitTransition(triangles, rotationFromAlgoHex(known)));
-      continue;
-    }
-    fits[f] = fitAllTransitions(triangles);
+    fits[f] = fitsOf(halfFace);
     const bool healthy = !isBad(parameters_(tetOf(halfFace))) &&
                          !isBad(parameters_(tetOf(topology_.mate[halfFace])));
     if (healthy) noise = std::max(noise, fits[f].front().residual);
@@ -121,35 +114,50 @@ void PatchCharts::findCandidates() {
   fitLimit_ = std::min(2 * noise, tolerance_);
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     Face& face = faces_[f];
-    if (!face.boundary) {
+    if (face.boundary) {
+      face.axes = planesOf(face.halfFace);
+    } else {
       const double limit = std::max(fitLimit_, 2 * fits[f].front().residual);
       for (const auto& [residual, transition] : fits[f]) {
         if (residual <= limit) face.candidates.push_back(transition);
       }
-    } else {
-      const std::array<int, 3>& corners = kFaceCorners[face.halfFace % 4];
-      std::array<Vec3, 3> u{};
-      for (std::size_t k = 0; k < 3; ++k) u[k] = parameters_(tetOf(face.halfFace), corners[k]);
-      const Vec3 a = minus(u[1], u[0]);
-      const Vec3 b = minus(u[2], u[0]);
-      const Vec3 normal = cross(a, b);
-      const double size = std::max({length(a), length(b), length(minus(b, a))});
-      face.axes.push_back(static_cast<int>(dominantAxis(normal)));
-      // Flat: any integer plane that holds all three corners.
-      if (length(normal) <= (1e-9 * size + 2 * fitLimit_) * size) {
-        face.axes.clear();
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          const double plane = std::nearbyint(u[0][axis]);
-          const bool inPlane = std::all_of(u.begin(), u.end(), [&](const Vec3& corner) {
-            return std::abs(corner[axis] - plane) <= tolerance_;
-          });
-          if (inPlane) face.axes.push_back(static_cast<int>(axis));
-        }
-        if (face.axes.empty()) face.axes.push_back(static_cast<int>(dominantAxis(normal)));
-      }
     }
     if (face.choices() > 1) ambiguous_.push_back(static_cast<std::uint32_t>(f));
   }
+}
+
+/// All rotations, or the one that the caller knows.
+std::vector<FittedTransition> PatchCharts::fitsOf(HalfFace halfFace) const {
+  const FacingTriangles triangles = facingTriangles(topology_, parameters_, halfFace);
+  const int known = map_.rotations.empty() ? -1 : map_.rotations[tetOf(halfFace)][halfFace % 4];
+  if (known >= 0 && known < Rotation::kCount) {
+    return {fitTransition(triangles, rotationFromAlgoHex(known))};
+  }
+  return fitAllTransitions(triangles);
+}
+
+/// The axes across which a boundary triangle may lie: one, unless it is flat.
+std::vector<int> PatchCharts::planesOf(HalfFace halfFace) const {
+  const std::array<int, 3>& corners = kFaceCorners[halfFace % 4];
+  std::array<Vec3, 3> u{};
+  for (std::size_t k = 0; k < 3; ++k) u[k] = parameters_(tetOf(halfFace), corners[k]);
+  const Vec3 a = minus(u[1], u[0]);
+  const Vec3 b = minus(u[2], u[0]);
+  const Vec3 normal = cross(a, b);
+  const double size = std::max({length(a), length(b), length(minus(b, a))});
+  std::vector<int> axes;
+  if (length(normal) <= (1e-9 * size + 2 * fitLimit_) * size) {
+    // Any integer plane that holds all three corners.
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double plane = std::nearbyint(u[0][axis]);
+      const bool inPlane = std::all_of(u.begin(), u.end(), [&](const Vec3& corner) {
+        return std::abs(corner[axis] - plane) <= tolerance_;
+      });
+      if (inPlane) axes.push_back(static_cast<int>(axis));
+    }
+  }
+  if (axes.empty()) axes.push_back(static_cast<int>(dominantAxis(normal)));
+  return axes;
 }
 
 void PatchCharts::collectEdges(const Patch& patch) {
@@ -256,31 +264,31 @@ Rotation PatchCharts::holonomy(const Fan& fan) const {
   return total;
 }
 
+/// The axes across the first and the last boundary face of a fan, both in the chart of its first
+/// tet.
+std::pair<int, int> PatchCharts::planesAt(const Fan& fan) const {
+  const Face& first = faces_[fan.firstBoundary];
+  const Face& last = faces_[fan.lastBoundary];
+  const Direction normal = direction(last.axes[last.chosen], 1);
+  return {first.axes[first.chosen], axisOf(holonomy(fan).inverse()(normal))};
+}
+
 double PatchCharts::edgeCost(std::size_t e) const {
   const Fan& fan = fans_[e];
-  const Rotation total = holonomy(fan);
   if (edges_[e].boundary) {
-    const Face& first = faces_[fan.firstBoundary];
-    const Face& last = faces_[fan.lastBoundary];
-    const int from = first.axes[first.chosen];
-    const int to = axisOf(total.inverse()(direction(last.axes[last.chosen], 1)));
+    const auto [from, to] = planesAt(fan);
     if (from == to) return 0;
     return isAlong(fan.vector, 3 - from - to, tolerance_) ? kSingular : kImpossible;
   }
+  const Rotation total = holonomy(fan);
   if (total.isIdentity()) return 0;
   const int axis = fixedAxis(total);
   if (axis < 0 || !isAlong(fan.vector, axis, tolerance_)) return kImpossible;
   return isHalfTurn(total) ? kHalfTurn : kSingular;
 }
 
-double PatchCharts::totalCost() const {
-  double cost = 0;
-  for (std::size_t e = 0; e < edges_.size(); ++e) cost += edgeCost(e);
-  return cost;
-}
-
 /// Tries all choices of one or two faces together; keeps the best.
-bool PatchCharts::improve(std::span<const std::uint32_t> faces, double& cost) {
+bool PatchCharts::improve(std::span<const std::uint32_t> faces) {
   std::vector<std::uint32_t> around;
   for (const std::uint32_t f : faces) {
     around.insert(around.end(), faces_[f].edges.begin(), faces_[f].edges.end());
@@ -312,37 +320,36 @@ bool PatchCharts::improve(std::span<const std::uint32_t> faces, double& cost) {
   }
   first.chosen = bestChoice[0];
   last.chosen = bestChoice[1];
-  cost += best - start;
   return best < start;
 }
 
 /// Coordinate descent over single faces, then over pairs of faces with a common edge, until nothing
 /// gets better.
 void PatchCharts::resolve() {
-  if (ambiguous_.empty()) return;
-  double cost = totalCost();
-  bool improved = true;
+  bool improved = !ambiguous_.empty();
   while (improved) {
     improved = false;
-    for (const std::uint32_t f : ambiguous_) {
-      improved = improve(std::array{f}, cost) || improved;
-    }
+    for (const std::uint32_t f : ambiguous_) improved = improve(std::array{f}) || improved;
     if (improved) continue;
-    for (const std::uint32_t f : ambiguous_) {
-      for (const std::uint32_t e : faces_[f].edges) {
-        std::vector<std::uint32_t> partners;
-        for (const Crossing& crossing : fans_[e].crossings) partners.push_back(crossing.face);
-        if (edges_[e].boundary) {
-          partners.push_back(fans_[e].firstBoundary);
-          partners.push_back(fans_[e].lastBoundary);
-        }
-        for (const std::uint32_t g : partners) {
-          if (g <= f || faces_[g].choices() < 2) continue;
-          improved = improve(std::array{f, g}, cost) || improved;
-        }
-      }
+    for (const std::uint32_t f : ambiguous_) improved = improvePairs(f) || improved;
+  }
+}
+
+/// A face, and one after the other of its ambiguous neighbours at edges.
+bool PatchCharts::improvePairs(std::uint32_t f) {
+  bool improved = false;
+  for (const std::uint32_t e : faces_[f].edges) {
+    std::vector<std::uint32_t> partners;
+    for (const Crossing& crossing : fans_[e].crossings) partners.push_back(crossing.face);
+    if (edges_[e].boundary) {
+      partners.push_back(fans_[e].firstBoundary);
+      partners.push_back(fans_[e].lastBoundary);
+    }
+    for (const std::uint32_t g : partners) {
+      if (g > f && faces_[g].choices() > 1) improved = improve(std::array{f, g}) || improved;
     }
   }
+  return improved;
 }
 
 /// The sum of dihedral angles in right angles, flipped tets counting negative.
@@ -398,39 +405,45 @@ void PatchCharts::setValence(std::size_t e) {
 
 void PatchCharts::classify() {
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    PatchEdge& edge = edges_[e];
-    const Fan& fan = fans_[e];
-    const Rotation total = holonomy(fan);
-    const int regular = edge.boundary ? 2 : 4;
     setValence(e);
-    if (edge.boundary) {
-      const Face& first = faces_[fan.firstBoundary];
-      const Face& last = faces_[fan.lastBoundary];
-      const int from = first.axes[first.chosen];
-      const int to = axisOf(total.inverse()(direction(last.axes[last.chosen], 1)));
-      if (from != to) {
-        edge.singular = true;
-        edge.axis = 3 - from - to;
-        if (edge.valence % 2 == 0) edge.valence = 0;
-        continue;
-      }
-      if (edge.valence % 2 != 0) edge.valence = 0;
-    } else {
-      if (!total.isIdentity()) {
-        const int axis = fixedAxis(total);
-        edge.singular = true;
-        edge.axis = axis >= 0 ? axis : static_cast<int>(dominantAxis(fan.vector));
-        const bool confirmed = isHalfTurn(total) ? edge.valence % 4 == 2 : edge.valence % 2 == 1;
-        if (!confirmed) edge.valence = 0;
-        continue;
-      }
-      if (edge.valence % 4 != 0) edge.valence = 0;
-    }
-    // No holonomy: regular, unless known better (hexahedra all around twice, say).
-    if (edge.valence == 0) edge.valence = regular;
-    edge.singular = edge.valence != regular;
-    edge.axis = static_cast<int>(dominantAxis(fan.vector));
+    if (!(edges_[e].boundary ? classifyByPlanes(e) : classifyByHolonomy(e))) classifyByValence(e);
   }
+}
+
+/// A boundary edge between two planes is singular. Its valence is odd, if known.
+bool PatchCharts::classifyByPlanes(std::size_t e) {
+  PatchEdge& edge = edges_[e];
+  const auto [from, to] = planesAt(fans_[e]);
+  const bool even = edge.valence % 2 == 0;
+  if (even != (from == to)) edge.valence = 0;
+  if (from == to) return false;
+  edge.singular = true;
+  edge.axis = 3 - from - to;
+  return true;
+}
+
+/// So is an inner edge around which charts turn. Its valence fits the turn, if known.
+bool PatchCharts::classifyByHolonomy(std::size_t e) {
+  PatchEdge& edge = edges_[e];
+  const Rotation total = holonomy(fans_[e]);
+  const int rest = edge.valence % 4;
+  const bool confirmed =
+      total.isIdentity() ? rest == 0 : (isHalfTurn(total) ? rest == 2 : rest % 2 == 1);
+  if (!confirmed) edge.valence = 0;
+  if (total.isIdentity()) return false;
+  const int axis = fixedAxis(total);
+  edge.singular = true;
+  edge.axis = axis >= 0 ? axis : static_cast<int>(dominantAxis(fans_[e].vector));
+  return true;
+}
+
+/// All others are regular, unless known better: with hexahedra all around twice, say.
+void PatchCharts::classifyByValence(std::size_t e) {
+  PatchEdge& edge = edges_[e];
+  const int regular = edge.boundary ? 2 : 4;
+  if (edge.valence == 0) edge.valence = regular;
+  edge.singular = edge.valence != regular;
+  edge.axis = static_cast<int>(dominantAxis(fans_[e].vector));
 }
 
 const PatchEdge* PatchCharts::impossibleEdge() const {

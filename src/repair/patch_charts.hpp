@@ -11,8 +11,10 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include <repair/face_fit.hpp>
 #include <repair/patch.hpp>
 
 #include <hexhex/types.hpp>
@@ -82,18 +84,24 @@ class PatchCharts {
 
   void collectFaces(const Patch& patch);
   void findCandidates();
+  [[nodiscard]] std::vector<FittedTransition> fitsOf(HalfFace halfFace) const;
+  [[nodiscard]] std::vector<int> planesOf(HalfFace halfFace) const;
   void collectEdges(const Patch& patch);
   void walkFan(PatchEdge& edge, Fan& fan) const;
   void resolve();
-  bool improve(std::span<const std::uint32_t> faces, double& cost);
+  bool improve(std::span<const std::uint32_t> faces);
+  bool improvePairs(std::uint32_t f);
   void classify();
+  bool classifyByPlanes(std::size_t e);
+  bool classifyByHolonomy(std::size_t e);
+  void classifyByValence(std::size_t e);
+  [[nodiscard]] std::pair<int, int> planesAt(const Fan& fan) const;
   void setValence(std::size_t e);
   [[nodiscard]] bool isOnGridLine(Index tet, const PatchEdge& edge) const;
   [[nodiscard]] double signedAngle(const PatchEdge& edge, const Fan& fan) const;
   [[nodiscard]] std::size_t faceIndex(HalfFace halfFace) const;
   [[nodiscard]] Rotation holonomy(const Fan& fan) const;
   [[nodiscard]] double edgeCost(std::size_t e) const;
-  [[nodiscard]] double totalCost() const;
 
   const TetMapView& map_;
   const TetTopology& topology_;
