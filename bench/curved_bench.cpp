@@ -97,10 +97,9 @@ void lagrange(benchmark::State& state, const BenchMap& what, int order) {
 void add(const BenchMap& map) {
   for (const Engine engine : {Engine::Atlas, Engine::Propeller}) {
     for (const int threads : {1, 2}) {
-      const std::string name =
-          "arcs_and_patches/" + map.name +
-          (engine == Engine::Atlas ? "/engine:atlas" : "/engine:propeller") +
-          "/threads:" + std::to_string(threads);
+      const std::string name = "arcs_and_patches/" + map.name +
+                               (engine == Engine::Atlas ? "/engine:atlas" : "/engine:propeller") +
+                               "/threads:" + std::to_string(threads);
       benchmark::RegisterBenchmark(name.c_str(),
                                    [map, engine, threads](benchmark::State& state) {
                                      piecewiseLinear(state, map, engine, threads);
@@ -125,10 +124,8 @@ void registerCurved() {
   for (const int order : {2, 3}) {
     const BenchMap map = cube();
     const std::string name = "lagrange/" + map.name + "/order:" + std::to_string(order);
-    benchmark::RegisterBenchmark(name.c_str(),
-                                 [map, order](benchmark::State& state) {
-                                   lagrange(state, map, order);
-                                 })
+    benchmark::RegisterBenchmark(
+        name.c_str(), [map, order](benchmark::State& state) { lagrange(state, map, order); })
         ->UseManualTime()
         ->Unit(benchmark::kMillisecond);
   }

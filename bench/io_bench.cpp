@@ -2,6 +2,7 @@
 // in the system's cache.
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <fcntl.h>
 #include <limits>
 #include <memory>
@@ -55,6 +56,18 @@ const TemporaryFolder& folder() {
 
 double secondsSince(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Time of all threads of this process together: what others do on this machine is not in it.
+double cpuSeconds() {
+  return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
+}
+
+/// @param cpu  seconds of all iterations, together
+void setMegabytesPerCore(benchmark::State& state, std::uint64_t bytes, double cpu) {
+  constexpr double kMega = 1e6;
+  state.counters["mb_per_core_second"] =
+      static_cast<double>(bytes) * static_cast<double>(state.iterations()) / kMega / cpu;
 }
 
 /// A dense mesh, its scaled Jacobians, and how long its extraction took with so many threads.
@@ -125,12 +138,15 @@ void timeWriting(benchmark::State& state, const std::string& name, double extrac
   const std::filesystem::path file = folder() / name;
   double total = 0;
   double plain = 0;
+  double cpu = 0;
   std::uint64_t bytes = 0;
   for (auto _ : state) {
     std::filesystem::remove(file);
+    const double cpuBegin = cpuSeconds();
     const auto begin = std::chrono::steady_clock::now();
     f(file);
     const double seconds = secondsSince(begin);
+    cpu += cpuSeconds() - cpuBegin;
     state.SetIterationTime(seconds);
     total += seconds;
     bytes = std::filesystem::file_size(file);
@@ -139,61 +155,89 @@ void timeWriting(benchmark::State& state, const std::string& name, double extrac
   std::filesystem::remove(file);
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes));
   state.counters["ratio_to_plain_write"] = total / plain;
+  setMegabytesPerCore(state, bytes, cpu);
   if (extractionSeconds == 0) return;
   state.counters["ratio_to_extraction"] =
       total / static_cast<double>(state.iterations()) / extractionSeconds;
 }
 
-void writing(benchmark::State& state, const std::string& extension, int threads) {
+/// A format and how it is written.
+struct Way {
+  std::string format;
+  bool compress = false;
+
+  [[nodiscard]] std::string name() const { return format + (compress ? "-zlib" : ""); }
+  [[nodiscard]] WriteOptions writing() const {
+    WriteOptions options;
+    options.format = format;
+    options.compress = compress;
+    return options;
+  }
+  [[nodiscard]] ReadOptions reading() const {
+    ReadOptions options;
+    options.format = format;
+    return options;
+  }
+};
+
+void writing(benchmark::State& state, const Way& way, int threads) {
   const DenseMesh& dense = denseMesh();
-  timeWriting(state, "mesh" + extension, dense.extractionSeconds[static_cast<std::size_t>(threads)],
+  timeWriting(state, "mesh", dense.extractionSeconds[static_cast<std::size_t>(threads)],
               [&](const std::filesystem::path& file) {
                 Context context(threads);
-                writeHexMesh(dense.mesh, file, {dense.quality}, context);
+                WriteOptions options = way.writing();
+                options.scaledJacobians = dense.quality;
+                writeHexMesh(dense.mesh, file, options, context);
               });
 }
 
 /// Through a sink: reads the mesh piece by piece from a file that a benchmark before has written.
-void copyingInPieces(benchmark::State& state, int threads) {
+void copyingInPieces(benchmark::State& state, const Way& way, int threads) {
   const std::filesystem::path source = folder() / "source.vtu";
   if (!std::filesystem::exists(source)) writeHexMesh(denseMesh().mesh, source);
-  timeWriting(state, "copy.vtu", 0, [&](const std::filesystem::path& file) {
+  timeWriting(state, "copy", 0, [&](const std::filesystem::path& file) {
     Context context(threads);
-    readHexMeshTo(*openMeshSink(file, context), source, context);
+    readHexMeshTo(*openMeshSink(file, way.writing(), context), source, context);
   });
 }
 
 /// Times f(file) for a file that exists.
 template <class F>
 void timeReading(benchmark::State& state, const std::filesystem::path& file, const F& f) {
+  const double begin = cpuSeconds();
   for (auto _ : state) f(file);
-  state.SetBytesProcessed(state.iterations() *
-                          static_cast<std::int64_t>(std::filesystem::file_size(file)));
+  const std::uint64_t bytes = std::filesystem::file_size(file);
+  setMegabytesPerCore(state, bytes, cpuSeconds() - begin);
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes));
 }
 
-void readingMap(benchmark::State& state, int threads) {
-  const std::filesystem::path file = folder() / "map.hexex";
-  if (!std::filesystem::exists(file)) writeMap(load(middleMap()), file);
-  timeReading(state, file, [threads](const std::filesystem::path& path) {
+void readingMap(benchmark::State& state, const Way& way, int threads) {
+  const std::filesystem::path file = folder() / ("map-" + way.name());
+  Context writing;
+  if (!std::filesystem::exists(file)) writeMap(load(middleMap()), file, way.writing(), writing);
+  timeReading(state, file, [&](const std::filesystem::path& path) {
     Context context(threads);
-    benchmark::DoNotOptimize(readMap(path, context).tets.data());
+    benchmark::DoNotOptimize(readMap(path, way.reading(), context).tets.data());
   });
 }
 
-void writingMap(benchmark::State& state, int threads) {
+void writingMap(benchmark::State& state, const Way& way, int threads) {
   const TetMap& map = load(middleMap());
-  timeWriting(state, "written.hexex", 0, [&](const std::filesystem::path& file) {
+  timeWriting(state, "map", 0, [&](const std::filesystem::path& file) {
     Context context(threads);
-    writeMap(map, file, context);
+    writeMap(map, file, way.writing(), context);
   });
 }
 
-void readingMesh(benchmark::State& state, const std::string& extension, int threads) {
-  const std::filesystem::path file = folder() / ("source" + extension);
-  if (!std::filesystem::exists(file)) writeHexMesh(denseMesh().mesh, file);
-  timeReading(state, file, [threads](const std::filesystem::path& path) {
+void readingMesh(benchmark::State& state, const Way& way, int threads) {
+  const std::filesystem::path file = folder() / ("source-" + way.name());
+  Context writing;
+  if (!std::filesystem::exists(file)) {
+    writeHexMesh(denseMesh().mesh, file, way.writing(), writing);
+  }
+  timeReading(state, file, [&](const std::filesystem::path& path) {
     Context context(threads);
-    benchmark::DoNotOptimize(readHexMesh(path, context).cells.data());
+    benchmark::DoNotOptimize(readHexMesh(path, way.reading(), context).cells.data());
   });
 }
 
@@ -222,20 +266,70 @@ void add(const std::string& what, const BenchMap& map, bool manual, const F& f) 
   }
 }
 
+/// The yardsticks: copying bytes in memory, touching fresh memory, and writing bytes to a file.
+void copyingInMemory(benchmark::State& state) {
+  std::vector<char> from(std::size_t{1} << 28, 'x');
+  std::vector<char> to(from.size(), 'y');
+  for (auto _ : state) {
+    std::copy(from.begin(), from.end(), to.begin());
+    benchmark::DoNotOptimize(to.data());
+    benchmark::ClobberMemory();
+  }
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(from.size()));
+}
+
+/// What it costs to have memory at all: the system clears each page that is touched first.
+void touchingFreshMemory(benchmark::State& state) {
+  constexpr std::size_t kBytes = std::size_t{1} << 28;
+  constexpr std::size_t kPage = 4096;
+  for (auto _ : state) {
+    Array<char> memory(kBytes);
+    for (std::size_t i = 0; i < kBytes; i += kPage) memory[i] = 1;
+    benchmark::DoNotOptimize(memory.data());
+  }
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(kBytes));
+}
+
+void writingPlainly(benchmark::State& state) {
+  constexpr std::uint64_t kBytes = std::uint64_t{1} << 28;
+  for (auto _ : state) benchmark::DoNotOptimize(secondsOfPlainWrite(kBytes));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(kBytes));
+}
+
+void addFormat(const FileFormat& format, const Way& way) {
+  const std::string name = way.name();
+  if (format.writesHexMeshes) {
+    add("write_" + name, denseMap(), true,
+        [way](benchmark::State& state, int threads) { writing(state, way, threads); });
+  }
+  if (format.readsHexMeshes && format.writesHexMeshes) {
+    add("read_" + name, denseMap(), false,
+        [way](benchmark::State& state, int threads) { readingMesh(state, way, threads); });
+  }
+  if (format.streams && !way.compress) {
+    add("copy_in_pieces_to_" + name, denseMap(), true,
+        [way](benchmark::State& state, int threads) { copyingInPieces(state, way, threads); });
+  }
+  if (format.writesMaps) {
+    add("write_map_" + name, middleMap(), true,
+        [way](benchmark::State& state, int threads) { writingMap(state, way, threads); });
+  }
+  if (format.readsMaps && format.writesMaps) {
+    add("read_map_" + name, middleMap(), false,
+        [way](benchmark::State& state, int threads) { readingMap(state, way, threads); });
+  }
+}
+
 }  // namespace
 
 void registerFiles() {
-  add("read_hexex", middleMap(), false, readingMap);
-  add("write_hexex", middleMap(), true, writingMap);
-  for (const std::string extension : {".vtu", ".mesh"}) {
-    const std::string format = extension.substr(1);
-    add("write_" + format, denseMap(), true,
-        [extension](benchmark::State& state, int threads) { writing(state, extension, threads); });
-    add("read_" + format, denseMap(), false, [extension](benchmark::State& state, int threads) {
-      readingMesh(state, extension, threads);
-    });
+  benchmark::RegisterBenchmark("memcpy", copyingInMemory)->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("fresh_memory", touchingFreshMemory)->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("plain_write", writingPlainly)->Unit(benchmark::kMillisecond);
+  for (const FileFormat& format : fileFormats()) {
+    addFormat(format, {std::string(format.name)});
+    if (format.compresses) addFormat(format, {std::string(format.name), true});
   }
-  add("copy_vtu_in_pieces", denseMap(), true, copyingInPieces);
   add("survey_vtu", denseMap(), false, surveying);
 }
 

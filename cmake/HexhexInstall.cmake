@@ -16,7 +16,8 @@ endforeach()
 
 install(DIRECTORY include/hexhex ${PROJECT_BINARY_DIR}/include/hexhex
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev
-  FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
+  FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h"
+  PATTERN "view.hpp" EXCLUDE)  # of the command; no installed library has it
 install(FILES bindings/c/include/hexhex.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 
 configure_package_config_file(cmake/hexhexConfig.cmake.in ${PROJECT_BINARY_DIR}/hexhexConfig.cmake
@@ -47,6 +48,10 @@ set(HEXHEX_PC_LIBS_PRIVATE "-lstdc++ -lm -pthread")
 if(HEXHEX_HAS_TBB)
   string(PREPEND HEXHEX_PC_LIBS_PRIVATE "-ltbb ")
 endif()
+get_property(component_libraries GLOBAL PROPERTY HEXHEX_COMPONENT_LIBRARIES)
+foreach(library IN LISTS component_libraries)
+  string(PREPEND HEXHEX_PC_LIBS_PRIVATE "${library} ")
+endforeach()
 configure_file(cmake/hexhex.pc.in ${PROJECT_BINARY_DIR}/hexhex.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/hexhex.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
   COMPONENT dev)

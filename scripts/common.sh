@@ -4,8 +4,10 @@
 logs=build/logs
 mkdir -p "$logs"
 
-# ccache, if there is one, makes the second build of everything fast.
+# ccache, if there is one, makes the second build of everything fast, and of whatever another build
+# directory has compiled with the same options.
 if command -v ccache >/dev/null; then
+  export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$PWD} CCACHE_NOHASHDIR=1
   export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
 fi
 
@@ -49,12 +51,45 @@ install_missing() {
   fi
 }
 
+# Other programs that read and write our files, for the tests: a Python of their own in build/python,
+# which tests find through HEXHEX_PYTHON. Without a network, the tests that need them are skipped.
+install_python_programs() {
+  if [[ -n "${HEXHEX_PYTHON:-}" ]]; then return 0; fi
+  local python=$PWD/build/python wanted=tests/io/requirements.txt
+  if ! cmp -s "$wanted" "$python/installed.txt"; then
+    say "Installing meshio, gmsh, vtk and mfem from PyPI ..."
+    if ! { rm -rf "$python" && python3 -m venv "$python" &&
+           "$python/bin/pip" install --quiet --disable-pip-version-check -r "$wanted" &&
+           cp "$wanted" "$python/installed.txt"; } >"$logs/python.log" 2>&1; then
+      say "They could not be installed, and tests with them are skipped; see $logs/python.log."
+      return 0
+    fi
+  fi
+  export HEXHEX_PYTHON=$python/bin/python
+}
+
 # Libraries of optional parts: .vtkhdf, .cgns, .exo, repair. Without them these are left out.
 optional_packages=(liblbfgs-dev libhdf5-dev libcgns-dev libexodusii-dev)
+# ... and what only tests need, which skip without it: VTK reads curved meshes.
+test_packages=(python3-vtk9 python3-numpy)
 
 # The same for packages that can be done without.
 install_optional() {
   install_missing "$@" || say "Without $*, what needs them is left out."
+}
+
+# What `hexhex view` takes beside the packages of the command. Some machines have npm from elsewhere.
+viewer_packages() {
+  printf '%s\n' zlib1g-dev pkg-config libcpp-httplib-dev
+  if ! command -v npm >/dev/null; then printf '%s\n' nodejs npm; fi
+}
+
+# Whether all of these Debian packages are installed.
+has_packages() {
+  local package
+  for package in "$@"; do
+    [[ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" == installed ]] || return 1
+  done
 }
 
 # run_logged NAME COMMAND...: runs a command quietly; shows the end of its output if it fails.
@@ -71,15 +106,18 @@ run_logged() {
 # configure PRESET [cmake argument...]
 configure() { run_logged "$1-configure" cmake --preset "$@"; }
 
-# configure_release PART: the release build, at least with PART (COMMAND or BENCH). What takes more
-# packages stays off, unless an earlier run of run-tests has switched it on.
+# configure_release PART [cmake argument...]: the release build, at least with PART (COMMAND or
+# BENCH). What takes more packages stays off, unless an earlier run of run-tests has switched it on.
 configure_release() {
-  local options=()
+  local options=("${@:2}")
   if [[ ! -f build/release/CMakeCache.txt ]]; then
-    options=(-DHEXHEX_BUILD_TESTS=OFF -DHEXHEX_BUILD_BENCH=OFF)
+    options+=(-DHEXHEX_BUILD_TESTS=OFF -DHEXHEX_BUILD_BENCH=OFF)
   fi
   configure release "${options[@]}" "-DHEXHEX_BUILD_$1=ON"
 }
 
 # build PRESET [cmake --build argument...]
 build() { run_logged "$1-build" cmake --build --preset "$@"; }
+
+# Whether the release build has the viewer page.
+has_viewer() { grep -q '^HEXHEX_HAS_VIEWER:INTERNAL=ON' build/release/CMakeCache.txt; }

@@ -18,5 +18,8 @@ struct Command {
 [[nodiscard]] Command addGenerate(CLI::App& app);
 [[nodiscard]] Command addRepair(CLI::App& app);
 [[nodiscard]] Command addInfo(CLI::App& app);
+[[nodiscard]] Command addConvert(CLI::App& app);
+[[nodiscard]] Command addFormats(CLI::App& app);
+[[nodiscard]] Command addView(CLI::App& app);
 
 }  // namespace hexhex::command

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <hexhex/check.hpp>
-#include <hexhex/io.hpp>
 
 #include "check_text.hpp"
 #include "command.hpp"
@@ -17,7 +16,7 @@ namespace hexhex::command {
 namespace {
 
 struct Arguments {
-  std::string input;
+  MapSource input;
   CheckOptions options;
   int threads = 0;
   bool json = false;
@@ -48,9 +47,7 @@ Command addCheck(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const parser =
       app.add_subcommand("check", "Tell what a map is, and every condition that it violates");
-  parser->add_option("MAP", arguments->input, mapDescription())
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addMapSource(*parser, arguments->input);
   addTolerance(*parser, arguments->options.tolerance);
   addScale(*parser, arguments->options.scale, "Tell what to expect at this scale");
   addThreads(*parser, arguments->threads);

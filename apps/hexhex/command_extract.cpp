@@ -1,5 +1,6 @@
 // `hexhex extract`: from a map to a verified hexahedral mesh.
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -8,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
@@ -30,9 +32,13 @@ namespace hexhex::command {
 namespace {
 
 struct Arguments {
-  std::string input;
+  MapSource input;
   std::string output;
+  OutputChoice choice;
   std::string report;
+  std::string arcs;
+  std::string patches;
+  int order = 1;
   ExtractOptions options;
   double patchAngle = WriteOptions{}.patchAngle;
   int threads = 0;
@@ -42,41 +48,62 @@ struct Arguments {
   bool quiet = false;
 };
 
-/// Whether two names mean one file, or would once both are written.
-bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code missing;
-  if (std::filesystem::equivalent(a, b, missing)) return !std::filesystem::is_other(a, missing);
-  const auto whole = [](const std::filesystem::path& file) {
-    std::error_code error;
-    std::filesystem::path path =
-        std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
-    return error ? file : path;
-  };
-  return whole(a) == whole(b) && !std::filesystem::is_other(a, missing);
+void requireAllDifferent(const Arguments& arguments) {
+  std::vector<std::filesystem::path> files = arguments.input.files();
+  for (const std::string& output :
+       {arguments.output, arguments.report, arguments.arcs, arguments.patches}) {
+    for (const std::filesystem::path& file : files) {
+      if (!output.empty()) requireDifferent(file, output);
+    }
+    if (!output.empty()) files.emplace_back(output);
+  }
 }
 
-void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b) {
-  if (!sameFile(a, b)) return;
-  throw Error(ErrorCode::InvalidArgument, a.string() + " and " + b.string() +
-                                              " are the same file. Input, mesh and report need "
-                                              "files of their own.");
+void requireCurvedOutputs(const Arguments& arguments) {
+  const bool piecewise = !arguments.arcs.empty() || !arguments.patches.empty();
+  if (arguments.stream && (piecewise || arguments.order > 1)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "Curved meshes are made as a whole. Leave out --stream, or --arcs, --patches and "
+                "--order.");
+  }
+  if (piecewise && arguments.order > 1) {
+    throw Error(ErrorCode::InvalidArgument,
+                "Arcs and patches belong to meshes of order 1. Leave out --order, or --arcs and "
+                "--patches.");
+  }
+  if (arguments.order > 1 && (!arguments.choice.format.empty() || arguments.choice.compress)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "The extension alone decides on the format of a mesh of higher order. Leave out "
+                "--format and --compress.");
+  }
+  if (!arguments.arcs.empty()) {
+    requireArcFormat(arguments.arcs);
+    requireWritable(arguments.arcs);
+  }
+  if (!arguments.patches.empty()) {
+    requirePatchFormat(arguments.patches);
+    requireWritable(arguments.patches);
+  }
 }
 
 /// Everything that can be known to fail before long work.
 void requireOutputs(const Arguments& arguments) {
-  requireDifferent(arguments.input, arguments.output);
-  if (!arguments.report.empty()) {
-    requireDifferent(arguments.input, arguments.report);
-    requireDifferent(arguments.output, arguments.report);
+  requireAllDifferent(arguments);
+  requireCurvedOutputs(arguments);
+  if (arguments.order > 1) {
+    requireLagrangeFormat(arguments.output);
+  } else {
+    requireHexMeshFormat(arguments.output, arguments.choice.options());
   }
-  requireHexMeshFormat(arguments.output);
   requireWritable(arguments.output);
   if (arguments.partial && arguments.stream) {
     throw Error(
         ErrorCode::InvalidArgument,
         "--partial needs the whole mesh in memory. Leave out one of --stream and --partial.");
   }
-  if (arguments.stream) requireStreamable(arguments.output, arguments.options);
+  if (arguments.stream) {
+    requireStreamable(arguments.output, arguments.choice.options(), arguments.options);
+  }
   if (!arguments.report.empty()) requireWritable(arguments.report);
 }
 
@@ -137,6 +164,16 @@ void printSummary(const ExtractionRecord& record) {
                                     counted(statistics.repair.regions.size(), "place")));
   }
   if (record.quality) printLine("scaled Jacobian", qualityAsText(*record.quality));
+  if (record.order > 1) {
+    printLine("order", fmt::format("{}, {} nodes", record.order, record.nodes));
+  }
+  for (const auto& [what, part] :
+       {std::pair("arcs", &record.arcs), std::pair("patches", &record.patches)}) {
+    if (part->file.empty()) continue;
+    printLine(what, fmt::format("{} with {} {}, {}", part->count, part->pieces,
+                                what == std::string("arcs") ? "inner points" : "polygons",
+                                part->file.string()));
+  }
   printLine("verification", verificationAsText(record));
   if (record.streamed) {
     printLine("checksum of cells", checksumAsText(record.streamed->cellChecksum));
@@ -145,34 +182,77 @@ void printSummary(const ExtractionRecord& record) {
   printLine("file", bytesAsText(record.output.bytes));
 }
 
+void verifyMesh(const Arguments& arguments, const TetMap& map, const HexMesh& mesh,
+                Context& context, ExtractionRecord& record) {
+  if (arguments.noVerify) return;
+  record.verification = verify(extractedMap(map, record.statistics), mesh,
+                               {arguments.options.scale, arguments.options.tolerance}, context);
+  requirePassed(*record.verification, "The mesh does not agree with the map and was not written",
+                "Please report this with the map.");
+}
+
+/// Extracts the mesh with the arcs and patches that are asked for.
+PiecewiseLinearMesh extractParts(const Arguments& arguments, const TetMap& map, Context& context,
+                                 ExtractionRecord& record) {
+  if (arguments.arcs.empty() && arguments.patches.empty()) {
+    return {extract(map, arguments.options, context, &record.statistics), {}, {}};
+  }
+  const auto parts =
+      arguments.patches.empty() ? PiecewiseLinearParts::Arcs : PiecewiseLinearParts::ArcsAndPatches;
+  return extractPiecewiseLinear(map, parts, arguments.options, context, &record.statistics);
+}
+
 /// Extracts, verifies and writes a mesh in memory.
 void extractWhole(const Arguments& arguments, const TetMap& map, Context& context,
                   ExtractionRecord& record) {
-  const HexMesh mesh = extract(map, arguments.options, context, &record.statistics);
-  const TetMapView extracted = extractedMap(map, record.statistics);
-  if (!arguments.noVerify) {
-    record.verification =
-        verify(extracted, mesh, {arguments.options.scale, arguments.options.tolerance}, context);
-    requirePassed(*record.verification, "The mesh does not agree with the map and was not written",
-                  "Please report this with the map.");
+  const PiecewiseLinearMesh all = extractParts(arguments, map, context, record);
+  const HexMesh& mesh = all.mesh;
+  verifyMesh(arguments, map, mesh, context, record);
+  if (!arguments.arcs.empty()) {
+    writeArcs(all, arguments.arcs, context);
+    record.arcs = {arguments.arcs, all.arcs.count(), all.arcs.points.size()};
+  }
+  if (!arguments.patches.empty()) {
+    writePatches(all, arguments.patches, context);
+    record.patches = {arguments.patches, all.patches.count(), all.patches.polygonTet.size()};
   }
   const Array<double> quality = scaledJacobians(mesh, context);
   record.quality = summarize(quality);
-  WriteOptions options;
-  options.scaledJacobians = quality;
-  options.patchAngle = arguments.patchAngle;
-  writeHexMesh(mesh, arguments.output, options, context);
+  WriteOptions writing = arguments.choice.options();
+  writing.scaledJacobians = quality;
+  writing.patchAngle = arguments.patchAngle;
+  writeHexMesh(mesh, arguments.output, writing, context);
   record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
                  mesh.features.quads.size()};
   record.vertices = mesh.points.size();
   record.cells = mesh.cells.size();
 }
 
+/// Cells of higher order.
+void extractCurved(const Arguments& arguments, const TetMap& map, Context& context,
+                   ExtractionRecord& record) {
+  const LagrangeMesh mesh =
+      extractLagrange(map, arguments.order, arguments.options, context, &record.statistics);
+  verifyMesh(arguments, map, straightMesh(mesh), context, record);
+  const Array<double> quality = scaledJacobians(mesh, context);
+  record.quality = summarize(quality);
+  WriteOptions options;
+  options.scaledJacobians = quality;
+  options.patchAngle = arguments.patchAngle;
+  writeLagrangeMesh(mesh, arguments.output, options, context);
+  record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
+                 mesh.features.quads.size()};
+  record.vertices = mesh.vertexCount;
+  record.cells = mesh.cellCount();
+  record.nodes = mesh.points.size();
+}
+
 /// The same in pieces, verified after it was written.
 void extractInPieces(const Arguments& arguments, const TetMap& map, Context& context,
                      ExtractionRecord& record) {
-  StreamedMesh mesh = extractStreamed(map, arguments.output, arguments.options, !arguments.noVerify,
-                                      context, record.statistics);
+  StreamedMesh mesh =
+      extractStreamed(map, arguments.output, arguments.choice.options(), arguments.options,
+                      !arguments.noVerify, context, record.statistics);
   record.verification = std::move(mesh.verification);
   record.vertices = mesh.written.points;
   record.cells = mesh.written.cells;
@@ -199,14 +279,14 @@ int extractWhatIsValid(const Arguments& arguments, const TetMap& map, const Erro
                        Context& context, ProgressDisplay& progress) {
   const PartialMesh partial =
       extractPartial(map, {arguments.options.scale, arguments.options.tolerance}, context);
-  WriteOptions options;
+  WriteOptions options = arguments.choice.options();
   options.patchAngle = arguments.patchAngle;
   writeHexMesh(partial.mesh, arguments.output, options, context);
   progress.clear();
   printError(problem);
   if (arguments.quiet) return kInvalidMap;
   printWarning("Only a part of the mesh was extracted, as --partial asks for.");
-  fmt::print("{} -> {}\n", arguments.input, arguments.output);
+  fmt::print("{} -> {}\n", arguments.input.description(), arguments.output);
   const auto atHole =
       std::count(partial.mesh.regions.begin(), partial.mesh.regions.end(), std::int32_t{1});
   printLine("mesh", fmt::format("{}, {} of them at holes (region 1)",
@@ -229,8 +309,11 @@ int run(const Arguments& arguments) {
 
   const TetMap map = readMap(arguments.input, context);
   ExtractionRecord record;
+  record.order = arguments.order;
+  const auto make =
+      arguments.stream ? extractInPieces : (arguments.order > 1 ? extractCurved : extractWhole);
   try {
-    (arguments.stream ? extractInPieces : extractWhole)(arguments, map, context, record);
+    make(arguments, map, context, record);
   } catch (const Error& error) {
     if (!arguments.partial || exitCodeOf(error.code()) != kInvalidMap) throw;
     return extractWhatIsValid(arguments, map, error, context, progress);
@@ -238,7 +321,10 @@ int run(const Arguments& arguments) {
   progress.clear();
 
   std::error_code unknown;  // the size of a pipe
-  record.input = {arguments.input, std::filesystem::file_size(arguments.input, unknown)};
+  record.input.file = arguments.input.description();
+  for (const std::filesystem::path& file : arguments.input.files()) {
+    record.input.bytes += std::filesystem::file_size(file, unknown);
+  }
   record.output = {arguments.output, std::filesystem::file_size(arguments.output, unknown)};
   record.scale = arguments.options.scale;
   record.engine = arguments.options.engine;
@@ -286,10 +372,30 @@ void addMethod(CLI::App& parser, Arguments& arguments) {
                   "changes the result, only the time")
       ->option_text("NUMBER [1e-6]");
   parser.add_flag("--stream", arguments.stream,
-                  "Write the mesh piece by piece, .vtu or .mesh, for meshes\n"
-                  "larger than the memory. Nothing that takes the whole mesh:\n"
+                  "Write the mesh piece by piece, .vtu, .mesh, .meshb, .vtk\n"
+                  "or .msh, for meshes"
+                  " larger than the memory. Nothing that takes the whole mesh:\n"
                   "no scaled Jacobians, no boundary quads, and verified by\n"
                   "counts and checksums, by reading the file again");
+}
+
+/// Meshes that follow the map more closely.
+void addCurved(CLI::App& parser, Arguments& arguments) {
+  parser
+      .add_option(
+          "--order", arguments.order,
+          "Write cells of this order, whose nodes are on the images\nof a finer grid: .vtu, "
+          ".msh, or .mesh (MFEM)")
+      ->check(CLI::Range(1, kMaxOrder))
+      ->option_text("P [1]");
+  parser
+      .add_option("--arcs", arguments.arcs,
+                  "Also write hex edges as polylines through the tets,\n.vtu, .vtp or .ovmb")
+      ->option_text("FILE");
+  parser
+      .add_option("--patches", arguments.patches,
+                  "Also write hex faces as polygons, tet by tet: .vtu, .vtp\nor .ovmb")
+      ->option_text("FILE");
 }
 
 }  // namespace
@@ -298,16 +404,16 @@ Command addExtract(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   arguments->options.repair = RepairMode::Auto;
   CLI::App* const parser = app.add_subcommand("extract", "Extract the hexahedral mesh of a map");
-  parser->add_option("MAP", arguments->input, mapDescription())
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addMapSource(*parser, arguments->input);
   parser
       ->add_option("-o,--output", arguments->output,
-                   "The mesh to write, .mesh, .vtu, .ovm or .ovmb")
+                   "The mesh to write; `hexhex formats` lists the formats")
       ->required()
       ->option_text("FILE REQUIRED");
+  addOutputChoice(*parser, arguments->choice);
   addScale(*parser, arguments->options.scale,
            "Multiply all parameters by this integer: its cube as\nmany cells");
+  addCurved(*parser, *arguments);
   addMethod(*parser, *arguments);
   addTolerance(*parser, arguments->options.tolerance);
   parser

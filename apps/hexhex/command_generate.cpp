@@ -27,6 +27,7 @@ struct Arguments {
   std::string charts = "aligned";
   std::string defectKind = "interior";
   std::string output;
+  OutputChoice choice;
   SampleOptions options;
   bool quiet = false;
 };
@@ -72,6 +73,8 @@ std::vector<std::string> kindNames() {
 }
 
 int run(const Arguments& arguments) {
+  const WriteOptions writing = arguments.choice.options();
+  requireMapFormat(arguments.output, writing);
   requireWritable(arguments.output);
   SampleOptions options = arguments.options;
   options.charts = chartStyleNamed(arguments.charts);
@@ -81,7 +84,7 @@ int run(const Arguments& arguments) {
   const CancelOnSignal cancelOnSignal(context);
   const Sample sample = generateSample(kindNamed(arguments.kind), options);
   context.throwIfCancelled();
-  writeMap(sample.map, arguments.output);
+  writeMap(sample.map, arguments.output, writing, context);
   if (arguments.quiet) return kSuccess;
   fmt::print("{}\n", arguments.output);
   printLine("map", fmt::format("{}, {}", counted(sample.map.tets.size(), "tet"),
@@ -131,9 +134,16 @@ Command addGenerate(CLI::App& app) {
       ->required()
       ->check(CLI::IsMember(kindNames()))
       ->option_text("REQUIRED");
-  parser->add_option("-o,--output", arguments->output, "The map to write, .hexex, .ovm or .ovmb")
+  parser
+      ->add_option("-o,--output", arguments->output,
+                   "The map to write, .hexex, .ovm, .ovmb, .vtu or .vtk")
       ->required()
       ->option_text("FILE REQUIRED");
+  addOutputChoice(*parser, arguments->choice);
+  parser
+      ->add_option("--map-array", arguments->choice.mapArray,
+                   "The name of the map's array in .vtu and .vtk files")
+      ->option_text("NAME [igm]");
   parser
       ->add_option("--charts", arguments->charts,
                    "aligned: as many identities as possible; blocks: a\n"

@@ -1,11 +1,10 @@
 // `hexhex info`: what a file holds.
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
+#include <variant>
 
 #include <fmt/core.h>
 
@@ -18,30 +17,15 @@
 #include "exit_codes.hpp"
 #include "interrupt.hpp"
 #include "output.hpp"
+#include "shared_options.hpp"
 
 namespace hexhex::command {
 namespace {
 
 struct Arguments {
-  std::string file;
+  MapSource source;
   bool pieces = false;
 };
-
-/// Whether the format holds maps and hex meshes.
-bool mayHoldBoth(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".ovm" || extension == ".ovmb";
-}
-
-bool isHexMeshFile(const std::string& file) {
-  try {
-    requireHexMeshFormat(file);
-    return true;
-  } catch (const Error&) {
-    return false;  // then it must be a map, and reading it tells if it is none
-  }
-}
 
 void printBox(const Vec3& lower, const Vec3& upper) {
   printLine("bounding box",
@@ -108,42 +92,33 @@ void printSurvey(const MeshSurvey& survey) {
   printLine("checksum of vertices", checksumAsText(survey.pointChecksum));
 }
 
-void showMap(const std::string& file, Context& context) {
-  const TetMap map = readMap(file, context);
-  fmt::print("{}: ", file);
-  printMap(map);
-}
-
-void showMesh(const std::string& file, Context& context) {
-  const HexMesh mesh = readHexMesh(file, context);
-  fmt::print("{}: ", file);
-  printMesh(mesh, context);
-}
-
-/// A file that holds a hex mesh or, if its cells are no hexahedra, a map.
-void showEither(const std::string& file, Context& context) {
-  try {
-    showMesh(file, context);
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::FileUnsupported) throw;
-    showMap(file, context);
-  }
-}
-
 int run(const Arguments& arguments) {
   Context context;
   const CancelOnSignal cancelOnSignal(context);
+  const std::string name = arguments.source.description();
+  if (arguments.pieces && arguments.source.isPair()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--pieces reads hexahedral meshes, but --tets and --polycube are a map.");
+  }
   if (arguments.pieces) {
-    requireHexMeshFormat(arguments.file);
-    const MeshSurvey survey = surveyFile(arguments.file, context);
-    fmt::print("{}: ", arguments.file);
+    const MeshSurvey survey =
+        surveyFile(arguments.source.file, arguments.source.options(), context);
+    fmt::print("{}: ", name);
     printSurvey(survey);
-  } else if (!isHexMeshFile(arguments.file)) {
-    showMap(arguments.file, context);
-  } else if (!mayHoldBoth(arguments.file)) {
-    showMesh(arguments.file, context);
+    return kSuccess;
+  }
+  if (arguments.source.isPair()) {
+    const TetMap map = readMap(arguments.source, context);
+    fmt::print("{}: ", name);
+    printMap(map);
+    return kSuccess;
+  }
+  const auto content = readMapOrHexMesh(arguments.source.file, arguments.source.options(), context);
+  fmt::print("{}: ", name);
+  if (const auto* const map = std::get_if<TetMap>(&content)) {
+    printMap(*map);
   } else {
-    showEither(arguments.file, context);
+    printMesh(std::get<HexMesh>(content), context);
   }
   return kSuccess;
 }
@@ -153,11 +128,12 @@ int run(const Arguments& arguments) {
 Command addInfo(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const parser = app.add_subcommand("info", "Tell what a file holds");
+  addMapSource(*parser, arguments->source, "FILE",
+               "A map or a hexahedral mesh; `hexhex formats` lists the\nformats");
   parser
-      ->add_option("FILE", arguments->file,
-                   "A map (.hexex, .ovm, .ovmb) or a mesh (.mesh,\n.vtu, .ovm, .ovmb)")
-      ->required()
-      ->option_text("REQUIRED");
+      ->add_option("--input-format", arguments->source.format,
+                   "Read this format, whatever the extension")
+      ->option_text("NAME");
   parser->add_flag("--pieces", arguments->pieces,
                    "Read a mesh piece by piece, which needs hardly any\n"
                    "memory for .vtu; with checksums instead of quality");

@@ -21,8 +21,9 @@ namespace hexhex::command {
 namespace {
 
 struct Arguments {
-  std::string input;
+  MapSource input;
   std::string output;
+  OutputChoice choice;
   std::string report;
   RepairOptions options;
   int threads = 0;
@@ -31,6 +32,8 @@ struct Arguments {
 };
 
 int run(const Arguments& arguments) {
+  const WriteOptions writing = arguments.choice.options();
+  requireMapFormat(arguments.output, writing);
   requireWritable(arguments.output);
   if (!arguments.report.empty()) requireWritable(arguments.report);
   ProgressDisplay progress(arguments.quiet);
@@ -40,13 +43,13 @@ int run(const Arguments& arguments) {
   options.refine = !arguments.noRefine;
   RepairReport report;
   const TetMap map = repair(readMap(arguments.input, context), options, context, &report);
-  writeMap(map, arguments.output, context);
+  writeMap(map, arguments.output, writing, context);
   progress.clear();
   if (!arguments.report.empty()) {
     writeTextFile(arguments.report, repairAsJson(report).dump(2) + "\n");
   }
   if (arguments.quiet) return kSuccess;
-  fmt::print("{} -> {}\n", arguments.input, arguments.output);
+  fmt::print("{} -> {}\n", arguments.input.description(), arguments.output);
   if (!report.changed) {
     fmt::print("The map is valid; it was written as it is.\n");
     return kSuccess;
@@ -63,12 +66,11 @@ Command addRepair(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const parser =
       app.add_subcommand("repair", "Mend flipped and flat tets of a map by moving parameters");
-  parser->add_option("MAP", arguments->input, mapDescription())
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addMapSource(*parser, arguments->input);
   parser->add_option("-o,--output", arguments->output, "The map to write, .hexex, .ovm or .ovmb")
       ->required()
       ->option_text("FILE REQUIRED");
+  addOutputChoice(*parser, arguments->choice);
   addTolerance(*parser, arguments->options.tolerance);
   addScale(*parser, arguments->options.scale, "The largest scale that the map is going to have");
   addRound(*parser, arguments->options.round);

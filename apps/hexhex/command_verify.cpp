@@ -18,7 +18,7 @@ namespace hexhex::command {
 namespace {
 
 struct Arguments {
-  std::string map;
+  MapSource map;
   std::string mesh;
   VerifyOptions options;
   int threads = 0;
@@ -51,7 +51,8 @@ VerifyReport compare(const Arguments& arguments) {
   Context context(arguments.threads, progress.callback());
   const CancelOnSignal cancelOnSignal(context);
   const TetMap map = readMap(arguments.map, context);
-  const HexMesh mesh = readHexMesh(arguments.mesh, context);
+  HexMesh mesh = readHexMesh(arguments.mesh, context);
+  mesh.generatorTet.clear();  // what a file says about itself is not to be trusted here
   return verify(map, mesh, arguments.options, context);
 }
 
@@ -67,12 +68,8 @@ Command addVerify(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const parser =
       app.add_subcommand("verify", "Compare a hexahedral mesh with the map that it came from");
-  parser->add_option("MAP", arguments->map, mapDescription())
-      ->required()
-      ->option_text("FILE REQUIRED");
-  parser->add_option("MESH", arguments->mesh, "The mesh, .mesh, .vtu, .ovm or .ovmb")
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addMapSourceBefore(*parser, arguments->map, "MAP", arguments->mesh, "MESH",
+                     "The mesh, in any format that is read");
   addScale(*parser, arguments->options.scale, "The scale that the mesh was extracted with");
   addTolerance(*parser, arguments->options.tolerance);
   addThreads(*parser, arguments->threads);

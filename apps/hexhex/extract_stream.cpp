@@ -83,7 +83,8 @@ VerifyReport compare(const CheckReport& map, const MeshSurvey& written, const Me
 
 }  // namespace
 
-void requireStreamable(const std::filesystem::path& output, const ExtractOptions& options) {
+void requireStreamable(const std::filesystem::path& output, const WriteOptions& writing,
+                       const ExtractOptions& options) {
   if (options.engine != Engine::Atlas) {
     throw Error(ErrorCode::InvalidArgument,
                 "--stream works with the engine atlas only; the engine propeller needs the whole "
@@ -92,24 +93,26 @@ void requireStreamable(const std::filesystem::path& output, const ExtractOptions
   requireReadableBack(output);
   // A sink that is destroyed at once leaves nothing, but says what is wrong.
   Context context;
-  static_cast<void>(openMeshSink(output, context));
+  static_cast<void>(openMeshSink(output, writing, context));
 }
 
 StreamedMesh extractStreamed(const TetMapView& map, const std::filesystem::path& output,
-                             const ExtractOptions& options, bool verified, Context& context,
-                             ExtractStatistics& statistics) {
+                             const WriteOptions& writing, const ExtractOptions& options,
+                             bool verified, Context& context, ExtractStatistics& statistics) {
   PendingFile pending(output);
   StreamedMesh result;
+  ReadOptions reading;
+  reading.format = writing.format;
   try {
     SurveySink survey(context);
     {
-      const std::unique_ptr<MeshSink> file = openMeshSink(pending.path(), context);
+      const std::unique_ptr<MeshSink> file = openMeshSink(pending.path(), writing, context);
       TwoSinks both(*file, survey);
       extractTo(both, map, options, context, &statistics);
     }
     result.written = survey.result();
     if (verified) {
-      const MeshSurvey read = surveyFile(pending.path(), context);
+      const MeshSurvey read = surveyFile(pending.path(), reading, context);
       const CheckReport expected =
           check(extractedMap(map, statistics), {options.tolerance, options.scale}, context);
       result.verification = compare(expected, result.written, read);

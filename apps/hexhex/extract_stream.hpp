@@ -6,6 +6,7 @@
 
 #include <hexhex/context.hpp>
 #include <hexhex/extract.hpp>
+#include <hexhex/io.hpp>
 #include <hexhex/survey.hpp>
 #include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
@@ -15,7 +16,8 @@ namespace hexhex::command {
 /// Everything that can be known to fail before long work.
 /// @throws Error InvalidArgument for an engine that cannot; FileUnsupported for a format that
 ///         cannot; FileWrite
-void requireStreamable(const std::filesystem::path& output, const ExtractOptions& options);
+void requireStreamable(const std::filesystem::path& output, const WriteOptions& writing,
+                       const ExtractOptions& options);
 
 /// What is known of a mesh that was written in pieces.
 struct StreamedMesh {
@@ -29,6 +31,7 @@ struct StreamedMesh {
 /// @throws Error  as extractTo(), openMeshSink() and surveyFile(); VerificationFailed
 [[nodiscard]] StreamedMesh extractStreamed(const TetMapView& map,
                                            const std::filesystem::path& output,
+                                           const WriteOptions& writing,
                                            const ExtractOptions& options, bool verified,
                                            Context& context, ExtractStatistics& statistics);
 

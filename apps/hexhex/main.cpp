@@ -29,11 +29,12 @@ constexpr const char* kFooter = R"(Examples:
   hexhex extract sphere.hexex -o fine.mesh --scale 4 --report fine.json
   hexhex verify sphere.hexex fine.mesh --scale 4
   hexhex info fine.mesh
+  hexhex convert sphere.vtu sphere.msh           for Gmsh
+  hexhex view sphere.vtu --map sphere.hexex      a page that shows it in any browser
 
 `hexhex SUBCOMMAND --help` explains the options of a subcommand.
 
-Files: maps .hexex, .ovm, .ovmb (OpenVolumeMesh); hexahedral meshes .mesh (MEDIT), .vtu (VTK), .ovm,
-.ovmb.
+`hexhex formats` lists the files that are read and written.
 
 Exit codes:
     0  success
@@ -75,8 +76,9 @@ int run(int argc, char** argv) {
   app.footer(kFooter);
   app.require_subcommand(1);
   app.failure_message(usageProblem);
-  const std::array commands = {addExtract(app),  addCheck(app),  addVerify(app),
-                               addGenerate(app), addRepair(app), addInfo(app)};
+  const std::array commands = {addExtract(app),  addCheck(app),   addVerify(app),
+                               addGenerate(app), addRepair(app),  addInfo(app),
+                               addConvert(app),  addFormats(app), addView(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

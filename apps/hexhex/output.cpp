@@ -14,6 +14,19 @@
 namespace hexhex::command {
 namespace {
 
+/// Whether two names mean one file, or would once both are written.
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code missing;
+  if (std::filesystem::equivalent(a, b, missing)) return !std::filesystem::is_other(a, missing);
+  const auto whole = [](const std::filesystem::path& file) {
+    std::error_code error;
+    std::filesystem::path path =
+        std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
+    return error ? file : path;
+  };
+  return whole(a) == whole(b) && !std::filesystem::is_other(a, missing);
+}
+
 [[noreturn]] void failToWrite(const std::filesystem::path& file, int error) {
   throw Error(ErrorCode::FileWrite,
               fmt::format("{}: the file cannot be written: {}.", file.string(),
@@ -60,6 +73,13 @@ std::string qualityAsText(const QualitySummary& quality) {
                                    : counted(quality.notPositive, "cell") + " not positive";
   return fmt::format("at least {:.4g}, {:.4g} on average; {}", quality.minimum, quality.mean,
                      inverted);
+}
+
+void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b) {
+  if (!sameFile(a, b)) return;
+  throw Error(ErrorCode::InvalidArgument, a.string() + " and " + b.string() +
+                                              " are the same file. Each file that is read or "
+                                              "written needs a name of its own.");
 }
 
 void requireWritable(const std::filesystem::path& file) {

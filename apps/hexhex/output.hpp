@@ -50,6 +50,9 @@ void printError(const Error& error);
 /// "at least 0.3, 0.9 on average; 2 cells not positive"
 [[nodiscard]] std::string qualityAsText(const QualitySummary& quality);
 
+/// Throws InvalidArgument if two names mean one file, or would once both are written.
+void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b);
+
 /// Throws FileWrite if the file is a folder, or the folder that it will be in does not exist or
 /// cannot be written: to fail before long work.
 void requireWritable(const std::filesystem::path& file);

@@ -63,6 +63,11 @@ Json verificationAsJson(const std::optional<VerifyReport>& verification) {
   return {{"passed", verification->passed()}, {"items", std::move(items)}};
 }
 
+Json partsAsJson(const PartsRecord& parts, const char* pieces) {
+  if (parts.file.empty()) return nullptr;
+  return {{"file", parts.file.string()}, {"count", parts.count}, {pieces, parts.pieces}};
+}
+
 /// JSON knows no infinity.
 Json finiteOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -83,6 +88,10 @@ std::string reportAsJson(const ExtractionRecord& record) {
                        {"tets", record.tets},
                        {"points", record.points},
                        {"scale", record.scale},
+                       {"order", record.order},
+                       {"nodes", record.order > 1 ? record.nodes : record.vertices},
+                       {"arcs", partsAsJson(record.arcs, "inner_points")},
+                       {"patches", partsAsJson(record.patches, "polygons")},
                        {"threads", statistics.threads},
                        {"engine", engineName(record.engine)},
                        {"epsilon", finiteOrNull(statistics.epsilon)},

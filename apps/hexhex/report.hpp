@@ -20,12 +20,23 @@ struct FileSize {
   std::uint64_t bytes = 0;
 };
 
+/// Arcs or patches that were written.
+struct PartsRecord {
+  std::filesystem::path file;  ///< empty if there are none
+  std::uint64_t count = 0;     ///< arcs, or patches
+  std::uint64_t pieces = 0;    ///< inner points, or polygons
+};
+
 /// Everything that is known at the end of an extraction.
 struct ExtractionRecord {
   FileSize input;
   FileSize output;
   int scale = 1;
   Engine engine = Engine::Atlas;
+  int order = 1;
+  std::uint64_t nodes = 0;  ///< of cells of higher order
+  PartsRecord arcs;
+  PartsRecord patches;
   std::uint64_t points = 0;
   std::uint64_t tets = 0;
   std::uint64_t vertices = 0;

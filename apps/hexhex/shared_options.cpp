@@ -1,6 +1,7 @@
 #include "shared_options.hpp"
 
 #include <charconv>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -17,7 +18,92 @@ CLI::Validator wholeNumberFrom(int minimum) {
   return CLI::Validator(check, fmt::format("from {}", minimum));
 }
 
-std::string mapDescription() { return "The map, .hexex, .ovm or .ovmb"; }
+std::string MapSource::description() const { return isPair() ? tets + " and " + polycube : file; }
+
+std::vector<std::filesystem::path> MapSource::files() const {
+  if (isPair()) return {tets, polycube};
+  return {file};
+}
+
+ReadOptions MapSource::options() const {
+  ReadOptions options;
+  options.format = format;
+  options.mapArray = mapArray;
+  return options;
+}
+
+void addMapOptions(CLI::App& parser, MapSource& source) {
+  CLI::Option* const tets =
+      parser
+          .add_option("--tets", source.tets,
+                      "Instead of MAP: a tet mesh, .mesh, .meshb, .msh, .vtk,\n"
+                      ".vtu, .ovm or .ovmb ...")
+          ->option_text("FILE");
+  CLI::Option* const polycube =
+      parser
+          .add_option("--polycube", source.polycube,
+                      "... and the same tets with the parameters as vertices")
+          ->option_text("FILE");
+  tets->needs(polycube);
+  polycube->needs(tets);
+  parser
+      .add_option("--map-array", source.mapArray,
+                  "The array of .vtu and .vtk files that holds the map:\n"
+                  "12 numbers per cell, or 3 per point")
+      ->option_text("NAME [igm]");
+}
+
+namespace {
+
+/// Either a file or two.
+void requireOneSource(const MapSource& source, const std::string& argument) {
+  if (source.file.empty() && !source.isPair()) throw CLI::RequiredError(argument);
+  if (source.file.empty() || !source.isPair()) return;
+  throw CLI::ValidationError(argument, "cannot be given beside --tets and --polycube");
+}
+
+}  // namespace
+
+void addMapSource(CLI::App& parser, MapSource& source, const std::string& argument,
+                  const std::string& description) {
+  parser.add_option(argument, source.file, description)->option_text("FILE");
+  addMapOptions(parser, source);
+  parser.parse_complete_callback([&source, argument] { requireOneSource(source, argument); });
+}
+
+void addMapSourceBefore(CLI::App& parser, MapSource& source, const std::string& argument,
+                        std::string& other, const std::string& otherArgument,
+                        const std::string& otherDescription) {
+  parser.add_option(argument, source.file, kMapDescription)->option_text("FILE");
+  parser.add_option(otherArgument, other, otherDescription)->option_text("FILE REQUIRED");
+  addMapOptions(parser, source);
+  parser.parse_complete_callback([&source, &other, argument, otherArgument] {
+    if (source.isPair() && other.empty()) std::swap(source.file, other);
+    requireOneSource(source, argument);
+    if (other.empty()) throw CLI::RequiredError(otherArgument);
+  });
+}
+
+TetMap readMap(const MapSource& source, Context& context) {
+  if (source.isPair()) return readMapPair(source.tets, source.polycube, context);
+  return hexhex::readMap(source.file, source.options(), context);
+}
+
+WriteOptions OutputChoice::options() const {
+  WriteOptions options;
+  options.format = format;
+  options.compress = compress;
+  options.mapArray = mapArray;
+  return options;
+}
+
+void addOutputChoice(CLI::App& parser, OutputChoice& choice) {
+  parser
+      .add_option("--format", choice.format,
+                  "Write this format, whatever the extension;\n`hexhex formats` lists them")
+      ->option_text("NAME");
+  parser.add_flag("--compress", choice.compress, "Compress a .vtu file with zlib");
+}
 
 void addScale(CLI::App& parser, int& scale, const std::string& description) {
   parser.add_option("--scale", scale, description)

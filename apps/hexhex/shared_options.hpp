@@ -1,17 +1,66 @@
 // Options that several subcommands have, and checks with messages that people understand.
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
+
+#include <hexhex/context.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/types.hpp>
 
 namespace hexhex::command {
 
 /// Accepts whole numbers from `minimum` that fit in an int.
 [[nodiscard]] CLI::Validator wholeNumberFrom(int minimum);
 
-/// For options and arguments that name a map to read.
-[[nodiscard]] std::string mapDescription();
+/// Where a subcommand has its map from: a file, or two meshes.
+struct MapSource {
+  std::string file;
+  std::string tets;
+  std::string polycube;
+  std::string mapArray = "igm";
+  std::string format;
+
+  [[nodiscard]] bool isPair() const noexcept { return !tets.empty(); }
+  /// "sphere.hexex", "tets.mesh and polycube.mesh"
+  [[nodiscard]] std::string description() const;
+  /// All files that are read.
+  [[nodiscard]] std::vector<std::filesystem::path> files() const;
+  [[nodiscard]] ReadOptions options() const;
+};
+
+/// For arguments that name a map to read.
+inline constexpr const char* kMapDescription = "The map, .hexex, .ovm, .ovmb, .vtu or .vtk";
+
+/// Adds --tets, --polycube and --map-array.
+void addMapOptions(CLI::App& parser, MapSource& source);
+/// Adds an argument and the same options; one of both has to be given.
+void addMapSource(CLI::App& parser, MapSource& source, const std::string& argument = "MAP",
+                  const std::string& description = kMapDescription);
+/// For subcommands with another argument behind MAP: where two meshes are given instead, the first
+/// argument is that other one.
+/// @param argument, otherArgument  their names
+void addMapSourceBefore(CLI::App& parser, MapSource& source, const std::string& argument,
+                        std::string& other, const std::string& otherArgument,
+                        const std::string& otherDescription);
+
+/// @throws Error  as readMap() and readMapPair()
+[[nodiscard]] TetMap readMap(const MapSource& source, Context& context);
+
+/// How a subcommand writes its result.
+struct OutputChoice {
+  std::string format;
+  std::string mapArray = "igm";
+  bool compress = false;
+
+  [[nodiscard]] WriteOptions options() const;
+};
+
+/// Adds --format and --compress.
+void addOutputChoice(CLI::App& parser, OutputChoice& choice);
 
 void addScale(CLI::App& parser, int& scale, const std::string& description);
 void addThreads(CLI::App& parser, int& threads);

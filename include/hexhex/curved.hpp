@@ -7,10 +7,12 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 
 #include <hexhex/context.hpp>
 #include <hexhex/export.h>
 #include <hexhex/extract.hpp>
+#include <hexhex/io.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/types.hpp>
 
@@ -119,6 +121,10 @@ struct LagrangeMesh {
   Array<Index> generatorTet;
   Array<CornerSet> generatorCorners;
 
+  // Of the straight mesh, as in HexMesh:
+  HexFeatures features = {};
+  Array<std::int32_t> regions = {};
+
   [[nodiscard]] std::size_t nodesPerCell() const noexcept {
     const auto n = static_cast<std::size_t>(order) + 1;
     return n * n * n;
@@ -133,12 +139,39 @@ struct LagrangeMesh {
                                            const ExtractOptions& options, Context& context,
                                            ExtractStatistics* statistics = nullptr);
 
-/// The straight mesh between the corners: what extract() returns.
+/// The straight mesh between the corners: what extract() returns (its coordinates up to rounding if
+/// scale times order exceeds 255, which may make the lattice coarser that parameters are rounded
+/// to).
 [[nodiscard]] HexMesh straightMesh(const LagrangeMesh& mesh);
 
 /// Per cell: the smallest determinant of the Jacobian matrix, divided by the lengths of its
 /// columns, at the nodes and at the Gauss points of order p + 1. In [-1, 1]; a bad cell has a value
 /// that is not positive; one that is bad elsewhere only is not found.
 [[nodiscard]] Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context);
+
+/// Writes the arcs of a mesh. `.vtu` and `.vtp` (VTK XML, binary appended): hex vertices and inner
+/// points, and a line per segment with the number of its hex edge; arrays docs/curved.md explains.
+/// The file appears complete or not at all.
+/// @throws Error FileUnsupported, FileWrite
+void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
+               Context& context);
+
+/// Writes the patches of a mesh: `.vtu` and `.vtp`, a polygon each; or `.ovmb` (OpenVolumeMesh,
+/// polyhedral, without cells), with the property names that tools of the field use.
+/// @throws Error FileUnsupported, FileWrite; TooLarge for files that cannot number the elements
+void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
+                  Context& context);
+
+/// Writes Lagrange cells: `.vtu` (VTK_LAGRANGE_HEXAHEDRON in the node order of VTK 9), `.msh` (Gmsh
+/// 4.1), `.mesh` (MFEM, with its nodes as a discontinuous grid function).
+/// @param options  scaledJacobians: of the cells, by scaledJacobians(); empty: computed
+/// @throws Error FileUnsupported, FileWrite
+void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                       const WriteOptions& options, Context& context);
+
+/// Throw FileUnsupported unless the functions above know the extension: to fail before long work.
+void requireArcFormat(const std::filesystem::path& file);
+void requirePatchFormat(const std::filesystem::path& file);
+void requireLagrangeFormat(const std::filesystem::path& file);
 
 }  // namespace HEXHEX_API_NAMESPACE

@@ -15,6 +15,7 @@
 #include <hexhex/repair.hpp>     // IWYU pragma: export
 #include <hexhex/samples.hpp>    // IWYU pragma: export
 #include <hexhex/stream.hpp>     // IWYU pragma: export
+#include <hexhex/structure.hpp>  // IWYU pragma: export
 #include <hexhex/survey.hpp>     // IWYU pragma: export
 #include <hexhex/types.hpp>      // IWYU pragma: export
 #include <hexhex/verify.hpp>     // IWYU pragma: export

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <variant>
 
 #include <hexhex/context.hpp>
 #include <hexhex/export.h>
@@ -13,21 +14,57 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// Reads a tetrahedral mesh with an integer-grid map: `.hexex`.
+/// What a reader may be told.
+struct ReadOptions {
+  /// A format by its name (see fileFormats()), whatever the file's extension. Empty: what the
+  /// extension means.
+  std::string_view format = {};
+  /// The name of the array that holds the map in `.vtu` and `.vtk` files: of cells, with 12
+  /// components (u0 v0 w0 u1 ... w3: the parameters of the corners in their order), or of points,
+  /// with 3, for maps without jumps.
+  std::string_view mapArray = "igm";
+};
+
+/// Reads a tetrahedral mesh with an integer-grid map: `.hexex`, `.ovm`, `.ovmb`, `.vtu`, `.vtk`.
 /// @throws Error FileNotFound, FileSyntax (with line), FileUnsupported
+[[nodiscard]] TetMap readMap(const std::filesystem::path& file, const ReadOptions& options,
+                             Context& context);
 [[nodiscard]] TetMap readMap(const std::filesystem::path& file, Context& context);
 [[nodiscard]] TetMap readMap(const std::filesystem::path& file);
 
-/// Writes a map: `.hexex`. Each number has the fewest digits that read back to the same double.
-/// The file appears complete or not at all.
-void writeMap(const TetMap& map, const std::filesystem::path& file, Context& context);
-void writeMap(const TetMap& map, const std::filesystem::path& file);
+/// Reads a tetrahedral mesh, without a map, whether there is one or not: the formats above,
+/// `.mesh`,
+/// `.meshb` and `.msh`.
+/// @throws Error  as readMap()
+[[nodiscard]] TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& options,
+                                  Context& context);
 
-/// Reads a hexahedral mesh: `.mesh` and `.meshb` (MEDIT ASCII and binary), `.vtu` (as this library
-/// writes it), `.vtk` (legacy VTK, ASCII and binary), `.msh` (Gmsh 4.1 and 2.x, ASCII and binary),
-/// `.ovm`, `.ovmb`. Other cells and sections are ignored; generators are not restored.
+/// The map of two meshes of the same tets, as polycube tools deliver it: the vertices of the second
+/// one are the parameters of the first one's. There are no jumps then. The corners of a tet may be
+/// listed in another order.
+/// @throws Error InvalidArgument if the numbers of vertices or tets differ, or a tet (the place)
+/// has
+///         other vertices; IndexOutOfRange
+[[nodiscard]] TetMap mapFromPair(const TetMesh& tets, const TetMesh& polycube, Context& context);
+
+/// The same from two files that readTetMesh() reads.
+/// @throws Error  as readTetMesh(); FileUnsupported if the two do not belong together
+[[nodiscard]] TetMap readMapPair(const std::filesystem::path& tets,
+                                 const std::filesystem::path& polycube, Context& context);
+
+/// Reads a hexahedral mesh: `.mesh` and `.meshb` (MEDIT ASCII and binary), `.vtu`, `.vtk` (legacy
+/// VTK, ASCII and binary), `.msh` (Gmsh 4.1 and 2.x, ASCII and binary), `.ovm`, `.ovmb`. Other
+/// cells and sections are ignored; generators are restored from `.vtu`, `.ovm` and `.ovmb`.
+[[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file, const ReadOptions& options,
+                                  Context& context);
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file, Context& context);
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file);
+
+/// Reads what a file holds: a hexahedral mesh or, where there are no hexahedra, a map.
+/// @throws Error  as readHexMesh() and readMap()
+[[nodiscard]] std::variant<TetMap, HexMesh> readMapOrHexMesh(const std::filesystem::path& file,
+                                                             const ReadOptions& options,
+                                                             Context& context);
 
 /// What a writer may be told beside the mesh.
 struct WriteOptions {
@@ -35,8 +72,7 @@ struct WriteOptions {
   /// writers whose format holds it.
   std::span<const double> scaledJacobians = {};
 
-  /// A format by its name, whatever the file's extension: "mesh", "vtu", "ovm", "ovmb", "meshb",
-  /// "vtk", "msh" (Gmsh 4.1, binary), "msh41-ascii", "msh22-ascii", "inp", "mfem". Empty: what the
+  /// A format by its name (see fileFormats()), whatever the file's extension. Empty: what the
   /// extension means.
   std::string_view format = {};
 
@@ -44,7 +80,24 @@ struct WriteOptions {
   /// degrees, up to 180, by which the boundary may turn within a group; see boundaryPatches(). 0:
   /// one group.
   double patchAngle = 40;
+
+  /// Compresses the arrays of `.vtu` files with zlib. Other formats refuse it, and so does a
+  /// library that was built without zlib.
+  bool compress = false;
+
+  /// The name of the cell array that holds a map in `.vtu` and `.vtk` files; not empty.
+  std::string_view mapArray = "igm";
 };
+
+/// Writes a map: `.hexex`, `.ovm`, `.ovmb`, and as a cell array `.vtu`, `.vtk`. Each number of a
+/// text has the fewest digits that read back to the same double. The file appears complete or not
+/// at all.
+/// @throws Error FileUnsupported, FileWrite; InvalidArgument if arrays disagree; IndexOutOfRange,
+///         NotFinite
+void writeMap(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
+              Context& context);
+void writeMap(const TetMap& map, const std::filesystem::path& file, Context& context);
+void writeMap(const TetMap& map, const std::filesystem::path& file);
 
 /// Writes a hexahedral mesh: `.mesh` (vertices, boundary quads, hexahedra) or `.vtu` (binary
 /// appended; cell array `scaled_jacobian`; for meshes that know where their vertices came from, the
@@ -61,8 +114,9 @@ void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file, Context& context);
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file);
 
-/// Opens a file for a mesh that comes in pieces: `.vtu` or `.mesh`, as writeHexMesh() writes them
-/// but without the array `scaled_jacobian` and without boundary quads. Memory: a few megabytes. The
+/// Opens a file for a mesh that comes in pieces: `.vtu`, `.mesh`, `.meshb`, `.vtk` or `.msh` (Gmsh
+/// 4.1, binary), as writeHexMesh() writes them but without the array `scaled_jacobian` and without
+/// boundary quads. Of the options, the format counts. Memory: a few megabytes. The
 /// file appears, complete, when the sink's end() returns; a sink that is destroyed before leaves
 /// nothing.
 ///
@@ -71,16 +125,39 @@ void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file);
 /// @param context  outlives the sink
 /// @throws Error FileUnsupported; FileWrite, now and later
 [[nodiscard]] std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file,
+                                                     const WriteOptions& options, Context& context);
+[[nodiscard]] std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file,
                                                      Context& context);
 
 /// Reads a hexahedral mesh and hands it over in pieces. A `.vtu` file with appended data, as this
 /// library writes it, takes a few megabytes of memory, however large it is, and hands over the
 /// generators that it holds; other files are read as a whole first.
 /// @throws Error  as readHexMesh(), and whatever the sink throws
+void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, const ReadOptions& options,
+                   Context& context);
 void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
 
-/// Throws FileUnsupported unless writeHexMesh knows the extension, or the format, if it is not
-/// empty: to fail before long work.
+/// Throw FileUnsupported unless writeHexMesh() or writeMap() knows the file's extension, or the
+/// format of the options, and can do what they say: to fail before long work.
+void requireHexMeshFormat(const std::filesystem::path& file, const WriteOptions& options);
 void requireHexMeshFormat(const std::filesystem::path& file, std::string_view format = {});
+void requireMapFormat(const std::filesystem::path& file, const WriteOptions& options);
+
+/// A file format and what this library does with it.
+struct FileFormat {
+  std::string_view name;         ///< for ReadOptions and WriteOptions
+  std::string_view extension;    ///< with the dot; empty: has to be asked for by name
+  std::string_view description;  ///< a few words
+  bool readsMaps = false;
+  bool writesMaps = false;
+  bool readsTets = false;  ///< readTetMesh()
+  bool readsHexMeshes = false;
+  bool writesHexMeshes = false;
+  bool streams = false;     ///< openMeshSink()
+  bool compresses = false;  ///< WriteOptions::compress
+};
+
+/// All formats of this build. Of several with one extension, the first that fits is what a file name means.
+[[nodiscard]] std::span<const FileFormat> fileFormats();
 
 }  // namespace HEXHEX_API_NAMESPACE

@@ -8,6 +8,7 @@
 
 #include <hexhex/context.hpp>
 #include <hexhex/export.h>
+#include <hexhex/io.hpp>
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
@@ -55,6 +56,8 @@ class SurveySink : public MeshSink {
 
 /// The survey of a mesh in a file, read with readHexMeshTo(): piece by piece where possible.
 /// @throws Error  as readHexMesh()
+[[nodiscard]] MeshSurvey surveyFile(const std::filesystem::path& file, const ReadOptions& options,
+                                    Context& context);
 [[nodiscard]] MeshSurvey surveyFile(const std::filesystem::path& file, Context& context);
 
 }  // namespace HEXHEX_API_NAMESPACE

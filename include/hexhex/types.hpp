@@ -98,7 +98,13 @@ struct TetMap {
   std::vector<std::int32_t> regions = {};  ///< per tet: material or volume, 0 without; or empty
 };
 
-/// The same as a view on the caller's arrays, plus what the caller may know already.
+/// A tetrahedral mesh without a map.
+struct TetMesh {
+  std::vector<Vec3> points;
+  std::vector<Tet> tets;
+};
+
+/// A map as a view on the caller's arrays, plus what the caller may know already.
 struct TetMapView {
   std::span<const Vec3> points;
   std::span<const Tet> tets;

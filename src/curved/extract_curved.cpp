@@ -71,8 +71,10 @@ LagrangeMesh extractLagrange(const TetMapView& map, int order, const ExtractOpti
   LagrangeMesh result;
   runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {order}, context, filled);
-    const HexMesh mesh = runEngine(scaled.map, scaled.expectedCells, options, context, filled);
+    HexMesh mesh = extractScaled(map, scaled, options, context, filled);
     result = groupNodes(mesh, scaled.map, order, context);
+    result.features = std::move(mesh.features);
+    result.regions = std::move(mesh.regions);
   });
   return result;
 }

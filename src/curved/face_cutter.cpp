@@ -280,7 +280,7 @@ void FaceCutter::emitArcPoint(const Border& border, const Piece& piece, const Sl
   const SimplexVertices vertices = verticesOf(topology_.tets[piece.carrier.tet], corner.simplex);
   const std::uint64_t end = arcs.pointBegin[arc + 1];
   const auto next = [&](std::uint64_t i) {
-    while (i < end && input_.crossings[i] != vertices) ++i;
+    while (i < end && !sameVertices(input_.crossings[i], vertices)) ++i;
     return i;
   };
   std::uint64_t best = next(arcs.pointBegin[arc]);

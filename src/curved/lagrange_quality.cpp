@@ -165,6 +165,8 @@ Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context) {
 
 HexMesh straightMesh(const LagrangeMesh& mesh) {
   HexMesh straight;
+  straight.features = mesh.features;
+  straight.regions = mesh.regions;
   const auto vertices = static_cast<std::ptrdiff_t>(mesh.vertexCount);
   straight.points.assign(mesh.points.begin(), mesh.points.begin() + vertices);
   straight.generatorTet.assign(mesh.generatorTet.begin(), mesh.generatorTet.begin() + vertices);

@@ -35,4 +35,10 @@ using SimplexVertices = std::array<Index, 3>;
   return vertices;
 }
 
+/// Whether two simplices are the same; unlike ==, which compares memory, this takes no call.
+[[nodiscard]] inline bool sameVertices(const SimplexVertices& a,
+                                       const SimplexVertices& b) noexcept {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 }  // namespace hexhex

@@ -10,6 +10,8 @@
 #include <hexhex/io.hpp>
 #include <hexhex/types.hpp>
 
+#include <io/cell_mesh.hpp>
+
 namespace hexhex {
 
 /// Reads nodes and hexahedra (element type 5) of MSH 2.x and 4.1, ASCII and binary. Other elements
@@ -22,6 +24,11 @@ namespace hexhex {
 /// @param fileName  for error messages
 [[nodiscard]] HexMesh parseGmsh(std::string_view text, const std::string& fileName,
                                 Context& context);
+
+/// The same for tetrahedra instead of hexahedra.
+[[nodiscard]] TetCells readGmshTets(const std::filesystem::path& file, Context& context);
+[[nodiscard]] TetCells parseGmshTets(std::string_view text, const std::string& fileName,
+                                     Context& context);
 
 // Node i has the tag i + 1. Elements are tagged vertices (type 15), tagged edges (type 1), boundary
 // and tagged quads (type 3), then all cells (type 5), numbered from 1 in this order. Each group of

@@ -8,10 +8,11 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/cell_mesh.hpp>
 #include <io/gmsh.hpp>
-#include <io/input_file.hpp>
 #include <io/node_tags.hpp>
 #include <io/number_source.hpp>
+#include <io/read_with.hpp>
 #include <io/text_scanner.hpp>
 #include <io/token_index.hpp>
 
@@ -54,21 +55,24 @@ void requireRoom(const Source& source, std::uint64_t n, RecordShape shape, const
 }
 
 template <class Source>
-void requireIndexable(const Source& source, std::uint64_t n, const char* what) {
+void requireIndexable(const Source& source, std::uint64_t n, std::string_view what) {
   if (n <= kNone) return;
-  source.fail(ErrorCode::TooLarge, "has " + std::to_string(n) + " " + what + "; at most " +
-                                       std::to_string(kNone) + " are supported.");
+  source.fail(ErrorCode::TooLarge, "has " + std::to_string(n) + " " + std::string(what) +
+                                       "; at most " + std::to_string(kNone) + " are supported.");
 }
 
 /// Reads the sections of one file from top to bottom.
+template <std::size_t corners>
 class MshReader {
  public:
   MshReader(std::string_view text, const std::string& fileName, Stage& stage)
-      : text_(text), fileName_(fileName), scanner_(text, fileName), stage_(stage) {}
+      : text_(text), bytes_(text), fileName_(fileName), scanner_(text, fileName), stage_(stage) {}
 
-  HexMesh read();
+  CellMesh<corners> read();
 
  private:
+  static constexpr CellKind kKind = kCellKind<corners>;
+
   void readFormat();
   void readSection(std::string_view name);
   void skipSection(std::string_view name);
@@ -97,6 +101,7 @@ class MshReader {
   void finishNodes();
 
   std::string_view text_;
+  ByteFile bytes_;
   const std::string& fileName_;
   TextScanner scanner_;
   Stage& stage_;
@@ -108,10 +113,11 @@ class MshReader {
   bool hasOtherElements_ = false;
   Array<std::uint64_t> tags_;
   NodeTags nodes_;
-  HexMesh mesh_;
+  CellMesh<corners> mesh_;
 };
 
-HexMesh MshReader::read() {
+template <std::size_t corners>
+CellMesh<corners> MshReader<corners>::read() {
   readFormat();
   while (scanner_.skipSpace()) {
     const std::string_view token = scanner_.readToken();
@@ -122,19 +128,21 @@ HexMesh MshReader::read() {
     readSection(token.substr(1));
   }
   if (!hasElements_) {
-    throw Error(ErrorCode::FileUnsupported,
-                fileName_ + ": the file holds no hexahedra: it has no section $Elements.");
+    throw Error(ErrorCode::FileUnsupported, fileName_ + ": the file holds no " +
+                                                std::string(kKind.plural) +
+                                                ": it has no section $Elements.");
   }
   if (mesh_.cells.empty() && hasOtherElements_) {
     throw Error(ErrorCode::FileUnsupported,
-                fileName_ +
-                    ": the file holds no hexahedra with 8 nodes (type 5), but other "
-                    "elements only.");
+                fileName_ + ": the file holds no " + std::string(kKind.plural) + " with " +
+                    std::to_string(corners) + " nodes (type " + std::to_string(kKind.gmshType) +
+                    "), but other elements only.");
   }
   return std::move(mesh_);
 }
 
-void MshReader::readFormat() {
+template <std::size_t corners>
+void MshReader<corners>::readFormat() {
   if (scanner_.readToken() != "$MeshFormat") {
     scanner_.fail(ErrorCode::FileSyntax, "a .msh file begins with \"$MeshFormat\", found " +
                                              quoted(scanner_.currentToken()) + ".");
@@ -174,7 +182,8 @@ void MshReader::readFormat() {
   }
 }
 
-void MshReader::readSection(std::string_view name) {
+template <std::size_t corners>
+void MshReader<corners>::readSection(std::string_view name) {
   if (name != "Nodes" && name != "Elements") return skipSection(name);
   const bool nodes = name == "Nodes";
   failIfRepeated(nodes ? hasNodes_ : hasElements_, name);
@@ -197,7 +206,8 @@ void MshReader::readSection(std::string_view name) {
                 "expected \"$End" + std::string(name) + "\", found " + quoted(end) + ".");
 }
 
-void MshReader::skipSection(std::string_view name) {
+template <std::size_t corners>
+void MshReader<corners>::skipSection(std::string_view name) {
   const std::string end = "$End" + std::string(name);
   const std::size_t place = text_.find(end, scanner_.position());
   if (place == std::string_view::npos) {
@@ -207,17 +217,19 @@ void MshReader::skipSection(std::string_view name) {
   scanner_.moveTo(place + end.size());
 }
 
-void MshReader::failIfRepeated(bool present, std::string_view name) {
+template <std::size_t corners>
+void MshReader<corners>::failIfRepeated(bool present, std::string_view name) {
   if (!present) return;
   scanner_.fail(ErrorCode::FileSyntax,
                 "the section $" + std::string(name) + " occurs a second time.");
 }
 
+template <std::size_t corners>
 template <class F>
-void MshReader::withSource(const F& f) {
+void MshReader<corners>::withSource(const F& f) {
   if (binary_) {
     skipLineBreak();
-    BinarySource source(text_, scanner_.position(), fileName_, stage_);
+    BinarySource source(bytes_, scanner_.position(), fileName_, stage_);
     f(source);
     scanner_.moveTo(source.position());
   } else {
@@ -226,7 +238,8 @@ void MshReader::withSource(const F& f) {
   }
 }
 
-void MshReader::skipLineBreak() {
+template <std::size_t corners>
+void MshReader<corners>::skipLineBreak() {
   std::size_t place = scanner_.position();
   while (place < text_.size() && (text_[place] == ' ' || text_[place] == '\r')) ++place;
   if (place == text_.size() || text_[place] != '\n') {
@@ -237,13 +250,15 @@ void MshReader::skipLineBreak() {
   scanner_.moveTo(place + 1);
 }
 
+template <std::size_t corners>
 template <class Source>
-void MshReader::readPoint(Source& record, std::size_t node) {
+void MshReader<corners>::readPoint(Source& record, std::size_t node) {
   for (double& coordinate : mesh_.points[node]) coordinate = record.real("a coordinate of a node");
 }
 
+template <std::size_t corners>
 template <class Source>
-void MshReader::readNodes41(Source& source) {
+void MshReader<corners>::readNodes41(Source& source) {
   const std::uint64_t blocks = source.size("the number of blocks of nodes");
   const std::uint64_t total = source.size("the number of nodes");
   static_cast<void>(source.size("the smallest tag of a node"));
@@ -285,29 +300,32 @@ void MshReader::readNodes41(Source& source) {
                                          std::to_string(total) + " nodes of the section.");
 }
 
+template <std::size_t corners>
 template <class Source>
-void MshReader::readCorners(Source& record, std::size_t cell, bool wide) {
+void MshReader<corners>::readCorners(Source& record, std::size_t cell, bool wide) {
   for (Index& corner : mesh_.cells[cell]) {
-    const char* const what = "a node of a hexahedron";
+    const char* const what = "a node of a cell";
     const std::uint64_t tag =
         wide ? record.size(what) : static_cast<std::uint64_t>(record.integer(what));
     corner = nodes_.find(tag);
     if (corner != kNone) continue;
     record.fail(ErrorCode::IndexOutOfRange,
-                "hexahedron " + std::to_string(cell) + " (counted from 0) names node " +
+                std::string(kKind.singular) + " " + std::to_string(cell) +
+                    " (counted from 0) names node " +
                     std::to_string(static_cast<std::int64_t>(tag)) +
                     ", which is not in the section $Nodes.",
-                Place{PlaceKind::Cell, cell});
+                Place{kKind.place, cell});
   }
 }
 
+template <std::size_t corners>
 template <class Source>
-void MshReader::readElements41(Source& source) {
+void MshReader<corners>::readElements41(Source& source) {
   struct Block {
     std::size_t position;
     std::size_t count;
   };
-  std::vector<Block> hexahedra;
+  std::vector<Block> wanted;
   std::size_t cells = 0;
   const std::uint64_t blocks = source.size("the number of blocks of elements");
   const std::uint64_t total = source.size("the number of elements");
@@ -322,8 +340,8 @@ void MshReader::readElements41(Source& source) {
     const RecordShape shape{.sizes = 1 + requireType(source, type)};
     requireRoom(source, count, shape, "elements");
     done += count;
-    if (type == kGmshHexahedron) {
-      hexahedra.push_back({source.position(), count});
+    if (type == kKind.gmshType) {
+      wanted.push_back({source.position(), count});
       cells += count;
     } else if (count > 0) {
       hasOtherElements_ = true;
@@ -335,13 +353,13 @@ void MshReader::readElements41(Source& source) {
                                            " elements instead of the " + std::to_string(total) +
                                            " of the section.");
   }
-  requireIndexable(source, cells, "hexahedra");
+  requireIndexable(source, cells, kKind.plural);
   mesh_.cells.resize(cells);
   const std::size_t end = source.position();
   std::size_t first = 0;
-  for (const Block& block : hexahedra) {
+  for (const Block& block : wanted) {
     source.moveTo(block.position);
-    source.records(block.count, {.sizes = 9}, [&](Source& record, std::size_t i) {
+    source.records(block.count, {.sizes = corners + 1}, [&](Source& record, std::size_t i) {
       static_cast<void>(record.size("the tag of an element"));
       readCorners(record, first + i, true);
     });
@@ -350,8 +368,9 @@ void MshReader::readElements41(Source& source) {
   source.moveTo(end);
 }
 
+template <std::size_t corners>
 template <class Source>
-void MshReader::readNodes22(Source& source, std::size_t count) {
+void MshReader<corners>::readNodes22(Source& source, std::size_t count) {
   const RecordShape shape{.integers = 1, .reals = 3};
   requireRoom(source, count, shape, "nodes");
   mesh_.points.resize(count);
@@ -362,7 +381,8 @@ void MshReader::readNodes22(Source& source, std::size_t count) {
   });
 }
 
-void MshReader::readElements22(TextSource& source, std::size_t count) {
+template <std::size_t corners>
+void MshReader<corners>::readElements22(TextSource& source, std::size_t count) {
   LoopProgress progress(stage_, count);
   // Enough for all; lines have different lengths, so that only reading tells how many there are.
   mesh_.cells.resize(count);
@@ -374,7 +394,7 @@ void MshReader::readElements22(TextSource& source, std::size_t count) {
     const std::size_t nodes = requireType(source, type);
     const std::uint64_t tags = source.size("the number of tags");
     for (std::uint64_t tag = 0; tag < tags; ++tag) static_cast<void>(source.integer("a tag"));
-    if (type == kGmshHexahedron) {
+    if (type == kKind.gmshType) {
       readCorners(source, cells++, false);
       continue;
     }
@@ -386,7 +406,8 @@ void MshReader::readElements22(TextSource& source, std::size_t count) {
   mesh_.cells.resize(cells);
 }
 
-void MshReader::readElements22(BinarySource& source, std::size_t count) {
+template <std::size_t corners>
+void MshReader<corners>::readElements22(BinarySource& source, std::size_t count) {
   mesh_.cells.resize(count);
   std::size_t cells = 0;
   for (std::size_t done = 0; done < count;) {
@@ -404,7 +425,7 @@ void MshReader::readElements22(BinarySource& source, std::size_t count) {
                                 1 + static_cast<std::size_t>(tags) + requireType(source, type)};
     requireRoom(source, size, shape, "elements");
     done += size;
-    if (type != kGmshHexahedron) {
+    if (type != kKind.gmshType) {
       hasOtherElements_ = true;
       source.skip(size, shape);
       continue;
@@ -418,7 +439,8 @@ void MshReader::readElements22(BinarySource& source, std::size_t count) {
   mesh_.cells.resize(cells);
 }
 
-void MshReader::finishNodes() {
+template <std::size_t corners>
+void MshReader<corners>::finishNodes() {
   nodes_ = NodeTags(tags_);
   const Index repeated = nodes_.repeated();
   if (repeated == kNone) return;
@@ -429,20 +451,19 @@ void MshReader::finishNodes() {
 }  // namespace
 
 HexMesh parseGmsh(std::string_view text, const std::string& fileName, Context& context) {
-  Stage stage(context, "read mesh");
-  HexMesh mesh;
-  withThreads(context.threads(), [&] { mesh = MshReader(text, fileName, stage).read(); });
-  return mesh;
+  return toHexMesh(parseWith<MshReader<8>>(text, fileName, "read mesh", context));
 }
 
 HexMesh readGmsh(const std::filesystem::path& file, Context& context) {
-  Stage stage(context, "read mesh");
-  HexMesh mesh;
-  withThreads(context.threads(), [&] {
-    const Array<char> bytes = readWholeFile(file, stage);
-    mesh = MshReader(asText(bytes), file.string(), stage).read();
-  });
-  return mesh;
+  return toHexMesh(readWith<MshReader<8>>(file, "read mesh", context));
+}
+
+TetCells parseGmshTets(std::string_view text, const std::string& fileName, Context& context) {
+  return parseWith<MshReader<4>>(text, fileName, "read tets", context);
+}
+
+TetCells readGmshTets(const std::filesystem::path& file, Context& context) {
+  return readWith<MshReader<4>>(file, "read tets", context);
 }
 
 }  // namespace hexhex

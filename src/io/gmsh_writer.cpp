@@ -90,18 +90,31 @@ GmshContent contentOf(const HexMesh& mesh, const WriteOptions& options, Stage& s
   return content;
 }
 
+void extend(std::array<Vec3, 2>& box, const Vec3& point) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box[0][axis] = std::min(box[0][axis], point[axis]);
+    box[1][axis] = std::max(box[1][axis], point[axis]);
+  }
+}
+
+constexpr std::array<Vec3, 2> emptyBox() {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  return {Vec3{kFar, kFar, kFar}, Vec3{-kFar, -kFar, -kFar}};
+}
+
+/// The smallest box around all vertices.
+std::array<Vec3, 2> boxOf(const HexMesh& mesh) {
+  std::array<Vec3, 2> box = emptyBox();
+  for (const Vec3& point : mesh.points) extend(box, point);
+  return mesh.points.empty() ? std::array<Vec3, 2>{} : box;
+}
+
 /// The smallest box around the vertices of elements.
 template <class Elements>
 std::array<Vec3, 2> boxOf(const HexMesh& mesh, const Elements& elements) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  std::array<Vec3, 2> box{Vec3{kFar, kFar, kFar}, Vec3{-kFar, -kFar, -kFar}};
+  std::array<Vec3, 2> box = emptyBox();
   for (const auto& element : elements) {
-    for (const Index vertex : element) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        box[0][axis] = std::min(box[0][axis], mesh.points[vertex][axis]);
-        box[1][axis] = std::max(box[1][axis], mesh.points[vertex][axis]);
-      }
-    }
+    for (const Index vertex : element) extend(box, mesh.points[vertex]);
   }
   return elements.empty() ? std::array<Vec3, 2>{} : box;
 }
@@ -192,7 +205,9 @@ class Msh41Writer {
 
   template <class Elements>
   void writeEntity(unsigned dimension, const GmshEntity& entity, const Elements& elements) {
-    const std::array<Vec3, 2> box = boxOf(content_.mesh, elements);
+    // The volume has all vertices, each of which is looked at once then.
+    const std::array<Vec3, 2> box =
+        dimension == 3 ? boxOf(content_.mesh) : boxOf(content_.mesh, elements);
     Numbers::integer(output_, entity.tag);
     // A point has a position instead of a box.
     for (std::size_t corner = 0; corner < (dimension == 0 ? 1U : 2U); ++corner) {

@@ -34,6 +34,15 @@ inline constexpr std::size_t kNumberRoom = 24;
 }
 /// With the fewest digits (at most 17) that read back to the same value.
 [[nodiscard]] inline char* put(char* place, double number) {
+  // Whole numbers, which maps are full of, take a fifth of the time as integers. Of up to five
+  // digits, none has a shorter form with an exponent; 0 may be negative.
+  constexpr double kMost = 99999;
+  if (number >= -kMost && number <= kMost && number != 0) {
+    const auto whole = static_cast<std::int32_t>(number);
+    if (static_cast<double>(whole) == number) {
+      return std::to_chars(place, place + kNumberRoom, whole).ptr;
+    }
+  }
   return std::to_chars(place, place + kNumberRoom, number).ptr;
 }
 [[nodiscard]] inline char* put(char* place, std::int32_t number) {

@@ -6,12 +6,13 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
-#include <io/input_file.hpp>
+#include <io/cell_mesh.hpp>
 #include <io/line_writer.hpp>
 #include <io/medit.hpp>
 #include <io/medit_text.hpp>
 #include <io/mesh_groups.hpp>
 #include <io/output_file.hpp>
+#include <io/read_with.hpp>
 #include <io/text_elements.hpp>
 #include <io/text_scanner.hpp>
 #include <io/token_index.hpp>
@@ -19,18 +20,16 @@
 namespace hexhex {
 namespace {
 
-// The shortest lines: three coordinates and a reference, eight vertices and a reference.
+// The shortest line of a vertex: three coordinates and a reference.
 constexpr std::size_t kMinimumVertexBytes = 8;
-constexpr std::size_t kMinimumHexBytes = 18;
 
-// Coordinates or corners, and a reference.
+// Coordinates and a reference.
 constexpr std::size_t kTokensOfVertex = 4;
-constexpr std::size_t kTokensOfHexahedron = 9;
 
-void failIfAtEnd(TextScanner& scanner, std::size_t done, std::size_t count, const char* what) {
+void failIfAtEnd(TextScanner& scanner, std::size_t done, std::size_t count, std::string_view what) {
   if (scanner.skipSpace()) return;
   scanner.fail(ErrorCode::FileSyntax, "the file ends after " + std::to_string(done) + " of " +
-                                          std::to_string(count) + " " + what +
+                                          std::to_string(count) + " " + std::string(what) +
                                           ": it is incomplete.");
 }
 
@@ -40,6 +39,7 @@ void readReference(TextScanner& scanner, const char* what) {
 }
 
 /// Reads one file from top to bottom.
+template <std::size_t corners>
 class MeditReader {
  public:
   MeditReader(std::string_view text, const std::string& fileName, Stage& stage)
@@ -47,28 +47,32 @@ class MeditReader {
     if (text.find('#') == std::string_view::npos) index_.emplace(text, stage);
   }
 
-  HexMesh read();
+  CellMesh<corners> read();
 
  private:
+  static constexpr CellKind kKind = kCellKind<corners>;
+  static constexpr std::size_t kTokensOfCell = corners + 1;  // and a reference
+
   void readHeader();
   void readDimension();
   void readVertices();
-  void readHexahedra();
+  void readCells();
   void readVertex(TextScanner& scanner, std::size_t index);
-  void readHexahedron(TextScanner& scanner, std::size_t index);
+  void readCell(TextScanner& scanner, std::size_t index);
   void skipSection();
-  void failIfRepeated(bool present, const char* keyword);
+  void failIfRepeated(bool present, std::string_view keyword);
   [[nodiscard]] const TokenIndex* index() const { return index_ ? &*index_ : nullptr; }
 
   TextScanner scanner_;
   std::optional<TokenIndex> index_;  ///< only for a text without comments
   Stage& stage_;
-  HexMesh mesh_;
+  CellMesh<corners> mesh_;
   bool hasVertices_ = false;
-  bool hasHexahedra_ = false;
+  bool hasCells_ = false;
 };
 
-HexMesh MeditReader::read() {
+template <std::size_t corners>
+CellMesh<corners> MeditReader<corners>::read() {
   readHeader();
   while (scanner_.skipSpace()) {
     const std::string_view keyword = scanner_.readToken();
@@ -77,18 +81,20 @@ HexMesh MeditReader::read() {
       readDimension();
     } else if (keyword == "Vertices") {
       readVertices();
-    } else if (keyword == "Hexahedra") {
-      readHexahedra();
+    } else if (keyword == kKind.meditKeyword) {
+      readCells();
     } else {
       skipSection();
     }
   }
-  if (hasHexahedra_) return std::move(mesh_);
-  throw Error(ErrorCode::FileUnsupported,
-              scanner_.fileName() + ": the file holds no hexahedra: it has no section Hexahedra.");
+  if (hasCells_) return std::move(mesh_);
+  throw Error(ErrorCode::FileUnsupported, scanner_.fileName() + ": the file holds no " +
+                                              std::string(kKind.plural) + ": it has no section " +
+                                              std::string(kKind.meditKeyword) + ".");
 }
 
-void MeditReader::readHeader() {
+template <std::size_t corners>
+void MeditReader<corners>::readHeader() {
   if (scanner_.readToken() != "MeshVersionFormatted") {
     scanner_.fail(ErrorCode::FileSyntax,
                   "a MEDIT file begins with \"MeshVersionFormatted\", found " +
@@ -98,7 +104,8 @@ void MeditReader::readHeader() {
   if (!scanner_.readInteger(version)) scanner_.failInteger("the version of the format");
 }
 
-void MeditReader::readDimension() {
+template <std::size_t corners>
+void MeditReader<corners>::readDimension() {
   std::int64_t dimension = 0;
   if (!scanner_.readInteger(dimension)) scanner_.failInteger("the dimension");
   if (dimension == 3) return;
@@ -106,13 +113,15 @@ void MeditReader::readDimension() {
                 "the dimension must be 3, found " + std::to_string(dimension) + ".");
 }
 
-void MeditReader::failIfRepeated(bool present, const char* keyword) {
+template <std::size_t corners>
+void MeditReader<corners>::failIfRepeated(bool present, std::string_view keyword) {
   if (!present) return;
   scanner_.fail(ErrorCode::FileSyntax,
                 "the section " + std::string(keyword) + " occurs a second time.");
 }
 
-void MeditReader::readVertices() {
+template <std::size_t corners>
+void MeditReader<corners>::readVertices() {
   failIfRepeated(hasVertices_, "Vertices");
   hasVertices_ = true;
   mesh_.points.resize(scanner_.readCount("vertices", kMinimumVertexBytes));
@@ -120,7 +129,8 @@ void MeditReader::readVertices() {
                [this](TextScanner& scanner, std::size_t i) { readVertex(scanner, i); });
 }
 
-void MeditReader::readVertex(TextScanner& scanner, std::size_t index) {
+template <std::size_t corners>
+void MeditReader<corners>::readVertex(TextScanner& scanner, std::size_t index) {
   failIfAtEnd(scanner, index, mesh_.points.size(), "vertices");
   for (double& coordinate : mesh_.points[index]) {
     if (!scanner.readNumber(coordinate)) {
@@ -130,40 +140,45 @@ void MeditReader::readVertex(TextScanner& scanner, std::size_t index) {
   readReference(scanner, "the reference of a vertex");
 }
 
-void MeditReader::readHexahedra() {
-  failIfRepeated(hasHexahedra_, "Hexahedra");
-  hasHexahedra_ = true;
+template <std::size_t corners>
+void MeditReader<corners>::readCells() {
+  failIfRepeated(hasCells_, kKind.meditKeyword);
+  hasCells_ = true;
   if (!hasVertices_) {
     scanner_.fail(ErrorCode::FileUnsupported,
-                  "the section Hexahedra stands before the section Vertices; exchange them.");
+                  "the section " + std::string(kKind.meditKeyword) +
+                      " stands before the section Vertices; exchange them.");
   }
-  mesh_.cells.resize(scanner_.readCount("hexahedra", kMinimumHexBytes));
-  readElements(scanner_, index(), stage_, mesh_.cells.size(), kTokensOfHexahedron,
-               [this](TextScanner& scanner, std::size_t i) { readHexahedron(scanner, i); });
+  mesh_.cells.resize(scanner_.readCount(kKind.plural, 2 * kTokensOfCell));
+  readElements(scanner_, index(), stage_, mesh_.cells.size(), kTokensOfCell,
+               [this](TextScanner& scanner, std::size_t i) { readCell(scanner, i); });
 }
 
-void MeditReader::readHexahedron(TextScanner& scanner, std::size_t index) {
-  failIfAtEnd(scanner, index, mesh_.cells.size(), "hexahedra");
+template <std::size_t corners>
+void MeditReader<corners>::readCell(TextScanner& scanner, std::size_t index) {
+  failIfAtEnd(scanner, index, mesh_.cells.size(), kKind.plural);
   const auto vertices = static_cast<std::int64_t>(mesh_.points.size());
   for (Index& corner : mesh_.cells[index]) {
     std::int64_t vertex = 0;
     if (!scanner.readInteger(vertex)) {
-      scanner.failInteger("a vertex of hexahedron " + std::to_string(index + 1));
+      scanner.failInteger("a vertex of " + std::string(kKind.singular) + " " +
+                          std::to_string(index + 1));
     }
     if (vertex < 1 || vertex > vertices) {
       scanner.fail(ErrorCode::IndexOutOfRange,
-                   "hexahedron " + std::to_string(index + 1) + " names vertex " +
-                       std::string(scanner.currentToken()) + ", but the " +
+                   std::string(kKind.singular) + " " + std::to_string(index + 1) +
+                       " names vertex " + std::string(scanner.currentToken()) + ", but the " +
                        std::to_string(vertices) + " vertices are numbered from 1.",
-                   Place{PlaceKind::Cell, index});
+                   Place{kKind.place, index});
     }
     corner = static_cast<Index>(vertex - 1);
   }
-  readReference(scanner, "the reference of a hexahedron");
+  readReference(scanner, "the reference of a cell");
 }
 
 /// Skips everything up to the next keyword, which is the next token that begins with a letter.
-void MeditReader::skipSection() {
+template <std::size_t corners>
+void MeditReader<corners>::skipSection() {
   const auto isLetter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   while (scanner_.skipSpace() && !isLetter(scanner_.peekToken().front())) scanner_.readToken();
 }
@@ -171,20 +186,19 @@ void MeditReader::skipSection() {
 }  // namespace
 
 HexMesh parseMedit(std::string_view text, const std::string& fileName, Context& context) {
-  Stage stage(context, "read mesh");
-  HexMesh mesh;
-  withThreads(context.threads(), [&] { mesh = MeditReader(text, fileName, stage).read(); });
-  return mesh;
+  return toHexMesh(parseWith<MeditReader<8>>(text, fileName, "read mesh", context));
 }
 
 HexMesh readMedit(const std::filesystem::path& file, Context& context) {
-  Stage stage(context, "read mesh");
-  HexMesh mesh;
-  withThreads(context.threads(), [&] {
-    const Array<char> bytes = readWholeFile(file, stage);
-    mesh = MeditReader(asText(bytes), file.string(), stage).read();
-  });
-  return mesh;
+  return toHexMesh(readWith<MeditReader<8>>(file, "read mesh", context));
+}
+
+TetCells parseMeditTets(std::string_view text, const std::string& fileName, Context& context) {
+  return parseWith<MeditReader<4>>(text, fileName, "read tets", context);
+}
+
+TetCells readMeditTets(const std::filesystem::path& file, Context& context) {
+  return readWith<MeditReader<4>>(file, "read tets", context);
 }
 
 // Tagged edges stay out: viewers that read no more than what they show stumble over the section.

@@ -10,6 +10,8 @@
 #include <hexhex/io.hpp>
 #include <hexhex/types.hpp>
 
+#include <io/cell_mesh.hpp>
+
 namespace hexhex {
 
 /// Reads vertices and hexahedra; other sections and comments ('#') are ignored.
@@ -20,6 +22,11 @@ namespace hexhex {
 /// @param fileName  for error messages
 [[nodiscard]] HexMesh parseMedit(std::string_view text, const std::string& fileName,
                                  Context& context);
+
+/// The same for tetrahedra instead of hexahedra.
+[[nodiscard]] TetCells readMeditTets(const std::filesystem::path& file, Context& context);
+[[nodiscard]] TetCells parseMeditTets(std::string_view text, const std::string& fileName,
+                                      Context& context);
 
 /// Writes the sections Vertices, Quadrilaterals (the boundary, facing outwards), Hexahedra. Numbers
 /// have the fewest digits (at most 17) that read back to the same double.

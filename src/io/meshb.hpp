@@ -10,6 +10,8 @@
 #include <hexhex/io.hpp>
 #include <hexhex/types.hpp>
 
+#include <io/cell_mesh.hpp>
+
 namespace hexhex {
 
 /// Reads vertices and hexahedra of versions 1 to 4; other sections and references are ignored.
@@ -22,6 +24,11 @@ namespace hexhex {
 /// @param fileName  for error messages
 [[nodiscard]] HexMesh parseMeshb(std::string_view text, const std::string& fileName,
                                  Context& context);
+
+/// The same for tetrahedra instead of hexahedra.
+[[nodiscard]] TetCells readMeshbTets(const std::filesystem::path& file, Context& context);
+[[nodiscard]] TetCells parseMeshbTets(std::string_view text, const std::string& fileName,
+                                      Context& context);
 
 /// Writes the sections Vertices, Edges (tagged ones), Quadrilaterals (the boundary, facing
 /// outwards, and tagged quads), Hexahedra. References are the numbers of groups of mesh_groups.hpp:

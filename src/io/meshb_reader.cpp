@@ -6,9 +6,10 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
-#include <io/input_file.hpp>
+#include <io/cell_mesh.hpp>
 #include <io/meshb.hpp>
 #include <io/number_source.hpp>
+#include <io/read_with.hpp>
 
 namespace hexhex {
 namespace {
@@ -16,48 +17,56 @@ namespace {
 constexpr std::uint32_t kSwappedOne = std::uint32_t{1} << 24U;
 
 /// Reads one file, section by section.
+template <std::size_t corners>
 class MeshbReader {
  public:
-  MeshbReader(std::string_view bytes, const std::string& fileName, Stage& stage)
-      : bytes_(bytes), fileName_(fileName), source_(bytes, 0, fileName, stage) {}
+  /// @param file  the bytes of the file, or the open file, a regular one
+  template <class File>
+  MeshbReader(const File& file, const std::string& fileName, Stage& stage)
+      : bytes_(file), fileName_(fileName), source_(bytes_, 0, fileName, stage) {}
 
-  HexMesh read();
+  CellMesh<corners> read();
 
  private:
+  static constexpr CellKind kKind = kCellKind<corners>;
+
   void readHead();
   /// @return whether another section follows
   bool readSection();
   void readDimension();
   void readVertices();
-  void readHexahedra();
-  void failIfRepeated(bool present, const char* keyword) const;
+  void readCells();
+  void failIfRepeated(bool present, std::string_view keyword) const;
   void requireDimension() const;
 
   [[nodiscard]] std::uint64_t readPosition();
-  [[nodiscard]] std::uint64_t readCount(RecordShape shape, const char* what);
+  [[nodiscard]] std::uint64_t readCount(RecordShape shape, std::string_view what);
   /// Integers of elements: 64 bits from version 4 on.
   [[nodiscard]] std::size_t wide() const { return version_ >= 4 ? 1 : 0; }
 
-  std::string_view bytes_;
+  ByteFile bytes_;
   const std::string& fileName_;
   BinarySource source_;
   std::int64_t version_ = 0;
   bool hasDimension_ = false;
   bool hasVertices_ = false;
-  bool hasHexahedra_ = false;
-  HexMesh mesh_;
+  bool hasCells_ = false;
+  CellMesh<corners> mesh_;
 };
 
-HexMesh MeshbReader::read() {
+template <std::size_t corners>
+CellMesh<corners> MeshbReader<corners>::read() {
   readHead();
   while (readSection()) {
   }
-  if (hasHexahedra_) return std::move(mesh_);
-  throw Error(ErrorCode::FileUnsupported,
-              fileName_ + ": the file holds no hexahedra: it has no section Hexahedra.");
+  if (hasCells_) return std::move(mesh_);
+  throw Error(ErrorCode::FileUnsupported, fileName_ + ": the file holds no " +
+                                              std::string(kKind.plural) + ": it has no section " +
+                                              std::string(kKind.meditKeyword) + ".");
 }
 
-void MeshbReader::readHead() {
+template <std::size_t corners>
+void MeshbReader<corners>::readHead() {
   const std::int64_t one = source_.integer("the mark of the byte order");
   if (one == kSwappedOne) {
     source_.fail(ErrorCode::FileUnsupported,
@@ -74,12 +83,14 @@ void MeshbReader::readHead() {
                "version " + std::to_string(version_) + " of the format is not known, only 1 to 4.");
 }
 
-std::uint64_t MeshbReader::readPosition() {
+template <std::size_t corners>
+std::uint64_t MeshbReader<corners>::readPosition() {
   const char* const what = "the position of the next section";
   return version_ >= 3 ? source_.size(what) : static_cast<std::uint64_t>(source_.integer(what));
 }
 
-bool MeshbReader::readSection() {
+template <std::size_t corners>
+bool MeshbReader<corners>::readSection() {
   const std::size_t begin = source_.position();
   const std::int64_t code = source_.integer("the keyword of a section");
   const auto keyword = static_cast<MeshbKeyword>(code);
@@ -95,12 +106,13 @@ bool MeshbReader::readSection() {
   }
   if (keyword == MeshbKeyword::Dimension) readDimension();
   if (keyword == MeshbKeyword::Vertices) readVertices();
-  if (keyword == MeshbKeyword::Hexahedra) readHexahedra();
+  if (code == kKind.meshbKeyword) readCells();
   if (next != 0) source_.moveTo(static_cast<std::size_t>(next));
   return next != 0;
 }
 
-void MeshbReader::readDimension() {
+template <std::size_t corners>
+void MeshbReader<corners>::readDimension() {
   hasDimension_ = true;
   const std::int64_t dimension = source_.integer("the dimension");
   if (dimension == 3) return;
@@ -108,19 +120,22 @@ void MeshbReader::readDimension() {
                "the dimension must be 3, found " + std::to_string(dimension) + ".");
 }
 
-void MeshbReader::requireDimension() const {
+template <std::size_t corners>
+void MeshbReader<corners>::requireDimension() const {
   if (hasDimension_) return;
   source_.fail(ErrorCode::FileSyntax,
                "the section Dimension has to stand before the other sections.");
 }
 
-void MeshbReader::failIfRepeated(bool present, const char* keyword) const {
+template <std::size_t corners>
+void MeshbReader<corners>::failIfRepeated(bool present, std::string_view keyword) const {
   if (!present) return;
   source_.fail(ErrorCode::FileSyntax,
                "the section " + std::string(keyword) + " occurs a second time.");
 }
 
-std::uint64_t MeshbReader::readCount(RecordShape shape, const char* what) {
+template <std::size_t corners>
+std::uint64_t MeshbReader<corners>::readCount(RecordShape shape, std::string_view what) {
   const std::string name = "the number of " + std::string(what);
   const std::uint64_t count = wide() != 0
                                   ? source_.size(name.c_str())
@@ -128,18 +143,20 @@ std::uint64_t MeshbReader::readCount(RecordShape shape, const char* what) {
   const std::size_t room = source_.room(shape);
   if (count > room) {
     source_.fail(ErrorCode::FileSyntax,
-                 "announces " + std::to_string(count) + " " + what +
+                 "announces " + std::to_string(count) + " " + std::string(what) +
                      ", but the rest of the file has room for at most " + std::to_string(room) +
                      ": either the number is wrong or the file is incomplete.");
   }
   if (count > kNone) {
-    source_.fail(ErrorCode::TooLarge, "announces " + std::to_string(count) + " " + what +
-                                          "; at most " + std::to_string(kNone) + " are supported.");
+    source_.fail(ErrorCode::TooLarge, "announces " + std::to_string(count) + " " +
+                                          std::string(what) + "; at most " + std::to_string(kNone) +
+                                          " are supported.");
   }
   return count;
 }
 
-void MeshbReader::readVertices() {
+template <std::size_t corners>
+void MeshbReader<corners>::readVertices() {
   failIfRepeated(hasVertices_, "Vertices");
   requireDimension();
   hasVertices_ = true;
@@ -156,28 +173,31 @@ void MeshbReader::readVertices() {
   });
 }
 
-void MeshbReader::readHexahedra() {
-  failIfRepeated(hasHexahedra_, "Hexahedra");
+template <std::size_t corners>
+void MeshbReader<corners>::readCells() {
+  failIfRepeated(hasCells_, kKind.meditKeyword);
   if (!hasVertices_) {
     source_.fail(ErrorCode::FileUnsupported,
-                 "the section Hexahedra stands before the section Vertices; exchange them.");
+                 "the section " + std::string(kKind.meditKeyword) +
+                     " stands before the section Vertices; exchange them.");
   }
-  hasHexahedra_ = true;
-  const RecordShape shape{.sizes = 9 * wide(), .integers = 9 * (1 - wide())};
-  const std::uint64_t count = readCount(shape, "hexahedra");
+  hasCells_ = true;
+  const RecordShape shape{.sizes = (corners + 1) * wide(),
+                          .integers = (corners + 1) * (1 - wide())};
+  const std::uint64_t count = readCount(shape, kKind.plural);
   mesh_.cells.resize(count);
   const std::uint64_t vertices = mesh_.points.size();
   source_.records(count, shape, [&](BinarySource& record, std::size_t i) {
     for (Index& corner : mesh_.cells[i]) {
-      const char* const what = "a vertex of a hexahedron";
+      const char* const what = "a vertex of a cell";
       const std::uint64_t vertex =
           wide() != 0 ? record.size(what) : static_cast<std::uint32_t>(record.integer(what));
       if (vertex < 1 || vertex > vertices) {
         record.fail(ErrorCode::IndexOutOfRange,
-                    "hexahedron " + std::to_string(i + 1) + " names vertex " +
+                    std::string(kKind.singular) + " " + std::to_string(i + 1) + " names vertex " +
                         std::to_string(vertex) + ", but the " + std::to_string(vertices) +
                         " vertices are numbered from 1.",
-                    Place{PlaceKind::Cell, i});
+                    Place{kKind.place, i});
       }
       corner = static_cast<Index>(vertex - 1);
     }
@@ -187,20 +207,19 @@ void MeshbReader::readHexahedra() {
 }  // namespace
 
 HexMesh parseMeshb(std::string_view text, const std::string& fileName, Context& context) {
-  Stage stage(context, "read mesh");
-  HexMesh mesh;
-  withThreads(context.threads(), [&] { mesh = MeshbReader(text, fileName, stage).read(); });
-  return mesh;
+  return toHexMesh(parseWith<MeshbReader<8>>(text, fileName, "read mesh", context));
 }
 
 HexMesh readMeshb(const std::filesystem::path& file, Context& context) {
-  Stage stage(context, "read mesh");
-  HexMesh mesh;
-  withThreads(context.threads(), [&] {
-    const Array<char> bytes = readWholeFile(file, stage);
-    mesh = MeshbReader(asText(bytes), file.string(), stage).read();
-  });
-  return mesh;
+  return toHexMesh(readDirectly<MeshbReader<8>>(file, "read mesh", context));
+}
+
+TetCells parseMeshbTets(std::string_view text, const std::string& fileName, Context& context) {
+  return parseWith<MeshbReader<4>>(text, fileName, "read tets", context);
+}
+
+TetCells readMeshbTets(const std::filesystem::path& file, Context& context) {
+  return readDirectly<MeshbReader<4>>(file, "read tets", context);
 }
 
 }  // namespace hexhex

@@ -1,7 +1,6 @@
 // The writing half of meshb.hpp.
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include <base/parallel.hpp>
@@ -10,6 +9,7 @@
 #include <io/line_writer.hpp>
 #include <io/mesh_groups.hpp>
 #include <io/meshb.hpp>
+#include <io/meshb_layout.hpp>
 #include <io/output_file.hpp>
 
 namespace hexhex {
@@ -39,21 +39,6 @@ MeshbContent contentOf(const HexMesh& mesh, double patchAngle, Stage& stage, int
   content.quadReferences = groupNumbers(content.quads.groups);
   return content;
 }
-
-/// Sizes of numbers, which depend on the version.
-struct MeshbWidths {
-  std::uint64_t position;
-  std::uint64_t integer;
-
-  explicit MeshbWidths(std::uint32_t version)
-      : position(version >= 3 ? 8 : 4), integer(version >= 4 ? 8 : 4) {}
-
-  /// Bytes of a section of n elements, with its head.
-  [[nodiscard]] std::uint64_t section(std::uint64_t n, std::uint64_t integers,
-                                      std::uint64_t doubles) const {
-    return 4 + position + integer + n * (integers * integer + 8 * doubles);
-  }
-};
 
 /// Writes one file front to back.
 class MeshbWriter {
@@ -135,17 +120,8 @@ class MeshbWriter {
 };
 
 std::uint32_t versionFor(const MeshbContent& content) {
-  constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
-  const HexMesh& mesh = content.mesh;
-  const auto largest = std::max<std::uint64_t>(
-      {mesh.points.size(), mesh.cells.size(), content.quads.elements.size()});
-  if (largest > kMost) return 4;
-  const MeshbWidths widths(2);
-  const std::uint64_t bytes = 64 + widths.section(mesh.points.size(), 1, 3) +
-                              widths.section(content.edges.elements.size(), 3, 0) +
-                              widths.section(content.quads.elements.size(), 5, 0) +
-                              widths.section(mesh.cells.size(), 9, 0);
-  return bytes > kMost ? 3 : 2;
+  return meshbVersionFor({content.mesh.points.size(), content.edges.elements.size(),
+                          content.quads.elements.size(), content.mesh.cells.size()});
 }
 
 void writeFile(const HexMesh& mesh, const std::filesystem::path& file, std::uint32_t version,

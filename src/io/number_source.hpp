@@ -5,16 +5,19 @@
 // number of threads.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
+#include <io/input_file.hpp>
 #include <io/ovmb_bytes.hpp>
 #include <io/text_elements.hpp>
 #include <io/text_scanner.hpp>
@@ -88,12 +91,40 @@ class TextSource {
   Stage* stage_;
 };
 
+/// Bytes of a file, in memory or on the disk.
+class ByteFile {
+ public:
+  explicit ByteFile(std::string_view bytes) : bytes_(bytes), size_(bytes.size()) {}
+  /// @param input  a regular file; outlives this
+  explicit ByteFile(const InputFile& input) : input_(&input), size_(input.size()) {}
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  /// Bytes of the file, for which there is room if they are not in memory. Thread-safe.
+  [[nodiscard]] std::string_view view(std::size_t position, std::size_t size, char* room) const {
+    if (input_ == nullptr) return bytes_.substr(position, size);
+    input_->readAt(position, room, size);
+    return {room, size};
+  }
+  /// Everything if it is in memory, else nothing.
+  [[nodiscard]] std::string_view inMemory() const noexcept { return bytes_; }
+
+ private:
+  const InputFile* input_ = nullptr;
+  std::string_view bytes_;
+  std::size_t size_;
+};
+
 /// Numbers as bytes, the least first.
 class BinarySource {
  public:
-  BinarySource(std::string_view file, std::size_t position, const std::string& fileName,
+  /// @param file  outlives this, and so does the name
+  BinarySource(const ByteFile& file, std::size_t position, const std::string& fileName,
                Stage& stage)
-      : file_(file), position_(position), fileName_(&fileName), stage_(&stage) {}
+      : file_(&file),
+        window_(file.inMemory()),
+        position_(position),
+        fileName_(&fileName),
+        stage_(&stage) {}
 
   [[nodiscard]] std::uint64_t size(const char* what) { return read<std::uint64_t>(what); }
   [[nodiscard]] std::int64_t integer(const char* what) { return read<std::int32_t>(what); }
@@ -107,28 +138,35 @@ class BinarySource {
   void moveTo(std::size_t position) { position_ = position; }
 
   [[nodiscard]] std::size_t room(RecordShape shape) const {
-    return (file_.size() - position_) / shape.bytes();
+    return (file_->size() - position_) / shape.bytes();
   }
   void skip(std::size_t n, RecordShape shape) { position_ += n * shape.bytes(); }
   template <class F>
   void records(std::size_t n, RecordShape shape, const F& f) {
     const std::size_t begin = position_;
-    const auto readOne = [&](std::size_t i) {
-      BinarySource record(file_, begin + i * shape.bytes(), *fileName_, *stage_);
-      f(record, i);
-    };
     std::atomic<std::size_t> firstWrong{n};
-    parallelFor(*stage_, n, kElementGrain, [&](std::size_t i) {
-      if (i > firstWrong.load(std::memory_order_relaxed)) return;
-      try {
-        readOne(i);
-      } catch (const Error&) {
-        std::size_t known = firstWrong.load(std::memory_order_relaxed);
-        while (i < known && !firstWrong.compare_exchange_weak(known, i)) {
-        }
-      }
-    });
-    if (firstWrong < n) readOne(firstWrong);  // throws again
+    parallelBlocks(*stage_, n, kElementGrain,
+                   [&](std::size_t from, std::size_t to, std::size_t /*block*/) {
+                     if (from > firstWrong.load(std::memory_order_relaxed)) return;
+                     const std::size_t size = (to - from) * shape.bytes();
+                     const std::unique_ptr<char[]> room(window_.empty() ? new char[size] : nullptr);
+                     BinarySource source(*this, begin + from * shape.bytes(), size, room.get());
+                     std::size_t i = from;
+                     try {
+                       for (; i < to; ++i) {
+                         source.position_ = begin + i * shape.bytes();
+                         f(source, i);
+                       }
+                     } catch (const Error&) {
+                       std::size_t known = firstWrong.load(std::memory_order_relaxed);
+                       while (i < known && !firstWrong.compare_exchange_weak(known, i)) {
+                       }
+                     }
+                   });
+    if (firstWrong < n) {  // throws again
+      BinarySource source(*file_, begin + firstWrong * shape.bytes(), *fileName_, *stage_);
+      f(source, firstWrong);
+    }
     skip(n, shape);
   }
 
@@ -137,6 +175,15 @@ class BinarySource {
   }
 
  private:
+  /// A source that has a part of the file at hand.
+  BinarySource(const BinarySource& whole, std::size_t position, std::size_t size, char* room)
+      : file_(whole.file_),
+        window_(whole.file_->view(position, size, room)),
+        windowBegin_(position),
+        position_(position),
+        fileName_(whole.fileName_),
+        stage_(whole.stage_) {}
+
   [[nodiscard]] double finite(double value, const char* what) const {
     if (!std::isfinite(value)) {
       fail(ErrorCode::NotFinite, std::string(what) + " is not finite.");
@@ -145,15 +192,26 @@ class BinarySource {
   }
   template <class T>
   T read(const char* what) {
-    if (file_.size() - position_ < sizeof(T)) {
+    const std::size_t place = position_ - windowBegin_;
+    if (window_.size() < sizeof(T) || place > window_.size() - sizeof(T)) return readAlone<T>(what);
+    const T value = loadLittle<T>(window_.data() + place);
+    position_ += sizeof(T);
+    return value;
+  }
+  template <class T>
+  T readAlone(const char* what) {
+    if (position_ > file_->size() || file_->size() - position_ < sizeof(T)) {
       fail(ErrorCode::FileSyntax, std::string("the file ends within ") + what + ".");
     }
-    const T value = loadLittle<T>(file_.data() + position_);
+    std::array<char, sizeof(T)> room{};
+    const T value = loadLittle<T>(file_->view(position_, sizeof(T), room.data()).data());
     position_ += sizeof(T);
     return value;
   }
 
-  std::string_view file_;
+  const ByteFile* file_;
+  std::string_view window_;  ///< what is at hand
+  std::size_t windowBegin_ = 0;
   std::size_t position_;
   const std::string* fileName_;
   Stage* stage_;

@@ -48,6 +48,9 @@ class OutputFile {
   /// hasPositions(). The buffered functions above go on where they were. Thread-safe.
   void writeBytesAt(std::uint64_t position, const void* bytes, std::size_t size) const;
 
+  /// Writes what is buffered; afterwards, writeBytesAt() may replace it.
+  void flush();
+
   /// Writes what is buffered, closes the file, and gives it its name.
   void commit();
 
@@ -69,7 +72,6 @@ class OutputFile {
     if (used_ + size > kBufferSize) flush();
   }
   void openTemporary();
-  void flush();
   void writeThrough(const char* bytes, std::size_t size);
   void discard() noexcept;
   [[noreturn]] void fail(const std::string& what, int error) const;

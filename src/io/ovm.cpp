@@ -52,6 +52,12 @@ TetMap readMapWith(const std::filesystem::path& file, Context& context, Parse pa
   return parse<TetMap>(asText(bytes), file.string(), stage, parseFile, toTetMap);
 }
 
+TetCells readTetsWith(const std::filesystem::path& file, Context& context, Parse parseFile) {
+  Stage stage(context, "read tets");
+  const Array<char> bytes = readWholeFile(file, stage);
+  return parse<TetCells>(asText(bytes), file.string(), stage, parseFile, toTetCells);
+}
+
 HexMesh readMeshWith(const std::filesystem::path& file, Context& context, Parse parseFile) {
   Stage stage(context, "read mesh");
   const Array<char> bytes = readWholeFile(file, stage);
@@ -81,6 +87,12 @@ TetMap readOvmMap(const std::filesystem::path& file, Context& context) {
 }
 TetMap readOvmbMap(const std::filesystem::path& file, Context& context) {
   return readMapWith(file, context, parseOvmb);
+}
+TetCells readOvmTets(const std::filesystem::path& file, Context& context) {
+  return readTetsWith(file, context, parseOvmText);
+}
+TetCells readOvmbTets(const std::filesystem::path& file, Context& context) {
+  return readTetsWith(file, context, parseOvmb);
 }
 HexMesh readOvmHexMesh(const std::filesystem::path& file, Context& context) {
   return readMeshWith(file, context, parseOvmText);

@@ -19,6 +19,8 @@
 #include <hexhex/io.hpp>
 #include <hexhex/types.hpp>
 
+#include <io/cell_mesh.hpp>
+
 namespace hexhex {
 
 /// Read maps.
@@ -34,6 +36,11 @@ namespace hexhex {
 /// @throws Error as above
 [[nodiscard]] HexMesh readOvmHexMesh(const std::filesystem::path& file, Context& context);
 [[nodiscard]] HexMesh readOvmbHexMesh(const std::filesystem::path& file, Context& context);
+
+/// Read tets without a map, whether there is one or not.
+/// @throws Error as above
+[[nodiscard]] TetCells readOvmTets(const std::filesystem::path& file, Context& context);
+[[nodiscard]] TetCells readOvmbTets(const std::filesystem::path& file, Context& context);
 
 /// The same from memory.
 /// @param fileName  for error messages

@@ -10,6 +10,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
+#include <io/cell_mesh.hpp>
 #include <io/ovm_mesh.hpp>
 
 namespace hexhex {
@@ -19,6 +20,9 @@ namespace hexhex {
 /// @throws Error FileUnsupported if a cell is no tet or there is no map; FileSyntax if cells are
 ///         wrong; NotFinite
 [[nodiscard]] TetMap toTetMap(OvmMesh&& mesh, const std::string& fileName, Stage& stage);
+
+/// The same tets without a map, whether there is one or not.
+[[nodiscard]] TetCells toTetCells(OvmMesh&& mesh, const std::string& fileName, Stage& stage);
 
 /// The cells of a hex mesh. Half-faces may come in any order; if most cells are inside out, all are
 /// turned.

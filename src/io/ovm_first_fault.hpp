@@ -9,13 +9,13 @@
 namespace hexhex {
 
 /// Calls isGood(i) for all i in [0, n), in parallel.
+/// @param grain  of the loop; a block takes some tens of microseconds at least
 /// @return the smallest i for which it is false, or n
 template <class F>
-[[nodiscard]] std::size_t firstFault(Stage& stage, std::size_t n, const F& isGood) {
-  // A block takes some tens of microseconds at least.
-  constexpr std::size_t kGrain = 4096;
+[[nodiscard]] std::size_t firstFault(Stage& stage, std::size_t n, const F& isGood,
+                                     std::size_t grain = 4096) {
   std::atomic<std::size_t> first{n};
-  parallelBlocks(stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+  parallelBlocks(stage, n, grain, [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
     for (std::size_t i = begin; i < end; ++i) {
       if (isGood(i)) continue;
       std::size_t known = first.load(std::memory_order_relaxed);

@@ -32,6 +32,7 @@ class TetReader {
         loops_(topology_, stage) {}
 
   TetMap read();
+  TetCells readWithoutMap();
 
  private:
   void requireMap() const;
@@ -68,18 +69,30 @@ TetMap TetReader::read() {
   return std::move(map_);
 }
 
+TetCells TetReader::readWithoutMap() {
+  requireProperCells(topology_, loops_, 4, fileName_, "tetrahedra");
+  mesh_.properties.parametrization.clear();
+  readTets();
+  TetCells result;
+  result.points = std::move(mesh_.points);
+  result.cells.assign(map_.tets.begin(), map_.tets.end());
+  return result;
+}
+
 void TetReader::requireMap() const {
   if (!properties_.parametrization.empty() || topology_.cells.size() == 0) return;
   const std::string name = "\"" + std::string(kParametrizationName) + "\"";
-  throw Error(ErrorCode::FileUnsupported,
-              fileName_ + ": the file holds " + std::to_string(topology_.cells.size()) +
-                  " tets, but no map: " +
-                  (mesh_.hasForeignParametrization
-                       ? "its property " + name +
-                             " is not one of half-faces with three numbers each (3d, vec3d)."
-                       : "it has no property " + name + " of half-faces (3d, vec3d).") +
-                  " Save the map under this name, the value of a half-face being the parameters "
-                  "of the vertex opposite it in its cell, or save it as .hexex.");
+  throw Error(
+      ErrorCode::FileUnsupported,
+      fileName_ + ": the file holds " + std::to_string(topology_.cells.size()) +
+          " tets, but no map: " +
+          (mesh_.hasForeignParametrization
+               ? "its property " + name +
+                     " is not one of half-faces with three numbers each (3d, vec3d)."
+               : "it has no property " + name + " of half-faces (3d, vec3d).") +
+          " Save the map under this name, the value of a half-face being the parameters "
+          "of the vertex opposite it in its cell, or save it as .hexex; or give the map as a "
+          "second mesh (--polycube).");
 }
 
 bool TetReader::readTet(std::size_t cell) {
@@ -104,6 +117,7 @@ bool TetReader::readTet(std::size_t cell) {
   for (std::size_t s = 0; s < 4; ++s) {
     const unsigned corner = place[tet.opposite[s]];
     opposites |= corner << (2 * s);
+    if (properties_.parametrization.empty()) continue;  // only the tets are wanted
     map_.parameters[cell][corner] = properties_.parametrization[halfFaces[s]];
   }
   opposites_[cell] = static_cast<std::uint8_t>(opposites);
@@ -238,6 +252,10 @@ bool assembleTet(const std::array<std::array<Index, 3>, 4>& loops, OvmTet& tet) 
 
 TetMap toTetMap(OvmMesh&& mesh, const std::string& fileName, Stage& stage) {
   return TetReader(std::move(mesh), fileName, stage).read();
+}
+
+TetCells toTetCells(OvmMesh&& mesh, const std::string& fileName, Stage& stage) {
+  return TetReader(std::move(mesh), fileName, stage).readWithoutMap();
 }
 
 }  // namespace hexhex

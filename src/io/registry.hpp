@@ -1,4 +1,4 @@
-// The table of file formats by extension. A new format is one file beside this one and one line in
+// The table of file formats. A new format is one file beside this one and one entry in
 // registry.cpp.
 #pragma once
 
@@ -11,37 +11,44 @@
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
+#include <io/cell_mesh.hpp>
+
 namespace hexhex {
 
-struct MapFormat {
-  std::string_view extension;  ///< in lower case, with the dot
-  TetMap (*read)(const std::filesystem::path& file, Context& context);
-  void (*write)(const TetMap& map, const std::filesystem::path& file, Context& context);
-};
-
-struct HexMeshFormat {
-  std::string_view name;  ///< as in WriteOptions::format
-  /// In lower case, with the dot. Of several formats with one extension, the first is what a file
-  /// name means; empty if the format has to be asked for by name.
+/// A format and what is done with it; functions are null where nothing is.
+struct Format {
+  std::string_view name;  ///< as in ReadOptions::format and WriteOptions::format
+  /// In lower case, with the dot. Of several formats with one extension, the first that can do what
+  /// is asked for is what a file name means; empty if the format has to be asked for by name.
   std::string_view extension;
-  HexMesh (*read)(const std::filesystem::path& file, Context& context);  ///< null: only written
-  void (*write)(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
-                Context& context);
+  std::string_view description;
 
+  TetMap (*readMap)(const std::filesystem::path& file, const ReadOptions& options,
+                    Context& context) = nullptr;
+  void (*writeMap)(const TetMap& map, const std::filesystem::path& file,
+                   const WriteOptions& options, Context& context) = nullptr;
+  /// Tets without a map, whether there is one or not.
+  TetCells (*readTets)(const std::filesystem::path& file, Context& context) = nullptr;
+
+  HexMesh (*readMesh)(const std::filesystem::path& file, Context& context) = nullptr;
+  void (*writeMesh)(const HexMesh& mesh, const std::filesystem::path& file,
+                    const WriteOptions& options, Context& context) = nullptr;
   // For meshes in pieces; null if the format takes a mesh as a whole only.
   std::unique_ptr<MeshSink> (*openSink)(const std::filesystem::path& file,
                                         Context& context) = nullptr;
-  void (*readTo)(MeshSink& sink, const std::filesystem::path& file, Context& context) = nullptr;
+  void (*readMeshTo)(MeshSink& sink, const std::filesystem::path& file, Context& context) = nullptr;
 
-  /// The library without which this build cannot write the format: then `write` is null.
+  bool compresses = false;  ///< heeds WriteOptions::compress
+  /// The library without which this build cannot write the format: then all functions are null.
   std::string_view missing = {};
 };
 
-/// The format of a file by its extension.
-/// @param name  of a format, which overrides the extension unless it is empty
+/// The format of a file that holds, or will hold, a map or a hex mesh: the one of this name or, if
+/// it is empty, what the extension means. It reads or writes such files, if not both.
 /// @throws Error FileUnsupported, naming the extensions or the formats that are known
-[[nodiscard]] const MapFormat& mapFormat(const std::filesystem::path& file);
-[[nodiscard]] const HexMeshFormat& hexMeshFormat(const std::filesystem::path& file,
-                                                 std::string_view name = {});
+[[nodiscard]] const Format& mapFormat(const std::filesystem::path& file,
+                                      std::string_view name = {});
+[[nodiscard]] const Format& hexMeshFormat(const std::filesystem::path& file,
+                                          std::string_view name = {});
 
 }  // namespace hexhex

@@ -127,10 +127,15 @@ MeshSurvey survey(const HexMesh& mesh, Context& context) {
   return sink.result();
 }
 
-MeshSurvey surveyFile(const std::filesystem::path& file, Context& context) {
+MeshSurvey surveyFile(const std::filesystem::path& file, const ReadOptions& options,
+                      Context& context) {
   SurveySink sink(context);
-  readHexMeshTo(sink, file, context);
+  readHexMeshTo(sink, file, options, context);
   return sink.result();
+}
+
+MeshSurvey surveyFile(const std::filesystem::path& file, Context& context) {
+  return surveyFile(file, {}, context);
 }
 
 }  // namespace hexhex

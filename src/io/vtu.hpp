@@ -11,10 +11,13 @@
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
+#include <io/cell_mesh.hpp>
+
 namespace hexhex {
 
-/// Reads points and hexahedra (cell type 12); other cells and arrays are ignored. Data may be raw
-/// appended or ascii; compressed and base64 files are not supported.
+/// Reads points and hexahedra (cell type 12), and the generators of writeVtu(); other cells and
+/// arrays are ignored. Data may be appended (raw or base64), inline base64 or ascii, and compressed
+/// with zlib, if the library was built with it.
 /// @throws Error FileNotFound, FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite
 [[nodiscard]] HexMesh readVtu(const std::filesystem::path& file, Context& context);
 
@@ -22,6 +25,24 @@ namespace hexhex {
 /// @param fileName  for error messages
 [[nodiscard]] HexMesh parseVtu(std::string_view text, const std::string& fileName,
                                Context& context);
+
+/// The same for tetrahedra instead of hexahedra.
+[[nodiscard]] TetCells readVtuTets(const std::filesystem::path& file, Context& context);
+[[nodiscard]] TetCells parseVtuTets(std::string_view text, const std::string& fileName,
+                                    Context& context);
+
+/// Reads the map of tets from an array, in one of the two forms of grid_map.hpp.
+/// @throws Error as above; FileUnsupported without such an array
+[[nodiscard]] TetMap readVtuMap(const std::filesystem::path& file, const ReadOptions& options,
+                                Context& context);
+[[nodiscard]] TetMap parseVtuMap(std::string_view text, const std::string& fileName,
+                                 const ReadOptions& options, Context& context);
+
+/// Writes points, tets, and the map as the cell array WriteOptions::mapArray (Float64, 12
+/// components).
+/// @throws Error FileWrite; InvalidArgument, IndexOutOfRange, NotFinite
+void writeVtuMap(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
+                 Context& context);
 
 /// Reads the same as readVtu(), but hands it over in pieces; with little memory if the file's data
 /// are appended and it is no pipe. Then generators, as writeVtu() writes them, are handed over,

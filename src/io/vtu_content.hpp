@@ -12,6 +12,7 @@
 
 namespace hexhex {
 
+inline constexpr std::uint8_t kVtkTet = 10;
 inline constexpr std::uint8_t kVtkHexahedron = 12;
 
 /// Writes valueOf(i) for every i in [0, count).
@@ -32,25 +33,27 @@ void writeGeneratorKinds(Output& output, std::span<const CornerSet> corners) {
 }
 
 /// @param wide  as Int64, not Int32
-template <class Output, class Vertex>
-void writeConnectivity(Output& output, std::span<const std::array<Vertex, 8>> cells, bool wide) {
+template <class Output, class Vertex, std::size_t corners>
+void writeConnectivity(Output& output, std::span<const std::array<Vertex, corners>> cells,
+                       bool wide) {
   // Indices that fit have the same bytes with and without a sign.
   if (wide == (sizeof(Vertex) == sizeof(std::int64_t))) {
     output.writeBytes(cells.data(), cells.size_bytes());
     return;
   }
-  const auto vertex = [cells](std::size_t i) { return cells[i / 8][i % 8]; };
+  const auto vertex = [cells](std::size_t i) { return cells[i / corners][i % corners]; };
   if (wide) {
-    writeValues<std::int64_t>(output, 8 * cells.size(), vertex);
+    writeValues<std::int64_t>(output, corners * cells.size(), vertex);
   } else {
-    writeValues<std::int32_t>(output, 8 * cells.size(), vertex);
+    writeValues<std::int32_t>(output, corners * cells.size(), vertex);
   }
 }
 
 /// The ends of the corners of cells from number `first` on.
 template <class Output>
-void writeOffsets(Output& output, std::uint64_t first, std::size_t count, bool wide) {
-  const auto end = [first](std::size_t i) { return 8 * (first + i + 1); };
+void writeOffsets(Output& output, std::uint64_t first, std::size_t count, bool wide,
+                  std::uint64_t corners = 8) {
+  const auto end = [first, corners](std::size_t i) { return corners * (first + i + 1); };
   if (wide) {
     writeValues<std::int64_t>(output, count, end);
   } else {
@@ -59,8 +62,8 @@ void writeOffsets(Output& output, std::uint64_t first, std::size_t count, bool w
 }
 
 template <class Output>
-void writeTypes(Output& output, std::size_t count) {
-  writeValues<std::uint8_t>(output, count, [](std::size_t /*cell*/) { return kVtkHexahedron; });
+void writeTypes(Output& output, std::size_t count, std::uint8_t type = kVtkHexahedron) {
+  writeValues<std::uint8_t>(output, count, [type](std::size_t /*cell*/) { return type; });
 }
 
 }  // namespace hexhex

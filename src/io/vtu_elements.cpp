@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <type_traits>
 
 #include <hexhex/stream.hpp>
 
@@ -7,20 +8,25 @@
 namespace hexhex {
 namespace {
 
-constexpr std::uint64_t kCorners = 8;
-
 /// Types and ends of the corners of consecutive cells.
 class CellTable {
  public:
-  CellTable(const VtuFile& file, std::uint64_t first, std::size_t count)
-      : file_(file), first_(first), types_(count), ends_(count + 1, 0) {
+  CellTable(const VtuFile& file, const CellKind& kind, std::size_t corners, std::uint64_t first,
+            std::size_t count)
+      : file_(file),
+        kind_(kind),
+        corners_(corners),
+        first_(first),
+        types_(count),
+        ends_(count + 1, 0) {
     file.copy(file.types(), first, count, types_.data());
     // The end of the cell before is the beginning of the first one.
     const std::size_t before = first > 0 ? 1 : 0;
     file.copy(file.ends(), first - before, count + before, ends_.data() + 1 - before);
   }
 
-  [[nodiscard]] bool isHexahedron(std::size_t i) const { return types_[i] == kVtuHexahedron; }
+  [[nodiscard]] std::size_t size() const { return types_.size(); }
+  [[nodiscard]] bool isWanted(std::size_t i) const { return types_[i] == kind_.vtkType; }
   [[nodiscard]] std::uint64_t begin(std::size_t i) const {
     return static_cast<std::uint64_t>(ends_[i]);
   }
@@ -28,7 +34,7 @@ class CellTable {
     return static_cast<std::uint64_t>(ends_[i + 1]);
   }
   [[nodiscard]] bool isGood(std::size_t i) const {
-    return isOrdered(i) && (!isHexahedron(i) || end(i) - begin(i) == kCorners);
+    return isOrdered(i) && (!isWanted(i) || end(i) - begin(i) == corners_);
   }
 
   /// Throws what is wrong with a cell that is not good.
@@ -43,8 +49,9 @@ class CellTable {
                  place);
     }
     file_.fail(ErrorCode::FileSyntax,
-               "cell " + cell + " is a hexahedron with " + std::to_string(end(i) - begin(i)) +
-                   " instead of 8 corners.",
+               "cell " + cell + " is a " + std::string(kind_.singular) + " with " +
+                   std::to_string(end(i) - begin(i)) + " instead of " + std::to_string(corners_) +
+                   " corners.",
                place);
   }
 
@@ -54,6 +61,8 @@ class CellTable {
   }
 
   const VtuFile& file_;
+  const CellKind& kind_;
+  std::size_t corners_;
   std::uint64_t first_;
   Array<std::int64_t> types_;
   Array<std::int64_t> ends_;
@@ -67,45 +76,75 @@ void requireVertex(const VtuFile& file, std::uint64_t cell, std::int64_t vertex)
             Place{PlaceKind::Cell, cell});
 }
 
+/// The usual case, which needs no conversion: all cells are wanted, and their corners are stored as
+/// they are in memory.
+/// @return false if it is not, or a corner is no point
+template <std::size_t corners>
+bool copyCells(const VtuFile& file, const CellTable& table, std::array<Index, corners>* cells) {
+  const VtuColumn& column = file.connectivity();
+  const bool narrow = column.scalar == VtuScalar::Int32 || column.scalar == VtuScalar::UInt32;
+  const std::size_t count = table.size();
+  if (!narrow || count == 0 || file.pointCount() > kNone) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!table.isWanted(i)) return false;
+  }
+  file.copy(column, table.begin(0), corners * count, cells->data());
+  // A negative number is a large one here.
+  const Index* const vertices = cells->data();
+  Index largest = 0;
+  for (std::size_t k = 0; k < corners * count; ++k) largest = std::max(largest, vertices[k]);
+  return largest < file.pointCount();
+}
+
 }  // namespace
 
-std::size_t countVtuHexahedra(const VtuFile& file, std::uint64_t first, std::size_t count) {
+std::size_t countVtuCells(const VtuFile& file, const CellKind& kind, std::uint64_t first,
+                          std::size_t count) {
   Array<std::int64_t> types(count);
   file.copy(file.types(), first, count, types.data());
-  return static_cast<std::size_t>(std::count(types.begin(), types.end(), kVtuHexahedron));
+  return static_cast<std::size_t>(std::count(types.begin(), types.end(), kind.vtkType));
 }
 
-template <class Vertex>
-void readVtuHexahedra(const VtuFile& file, std::uint64_t first, std::size_t count,
-                      std::array<Vertex, 8>* hexahedra) {
-  const CellTable cells(file, first, count);
+template <class Vertex, std::size_t corners>
+void readVtuCells(const VtuFile& file, std::uint64_t first, std::size_t count,
+                  std::array<Vertex, corners>* cells, std::size_t* numbers) {
+  const CellTable table(file, kCellKind<corners>, corners, first, count);
   std::size_t good = 0;
-  while (good < count && cells.isGood(good)) ++good;
+  while (good < count && table.isGood(good)) ++good;
 
-  // Hexahedra that follow each other have their corners one after the other, and are read at once.
-  Array<std::int64_t> corners;
+  if constexpr (std::is_same_v<Vertex, Index>) {
+    if (good == count && copyCells(file, table, cells)) {
+      for (std::size_t k = 0; numbers != nullptr && k < count; ++k) numbers[k] = first + k;
+      return;
+    }
+  }
+  // Cells that follow each other have their corners one after the other, and are read at once.
+  Array<std::int64_t> vertices;
   for (std::size_t i = 0; i < good;) {
     std::size_t end = i;
-    while (end < good && cells.isHexahedron(end)) ++end;
-    corners.resize(kCorners * (end - i));
-    file.copy(file.connectivity(), cells.begin(i), corners.size(), corners.data());
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      requireVertex(file, first + i + k / kCorners, corners[k]);
-      hexahedra[k / kCorners][k % kCorners] = static_cast<Vertex>(corners[k]);
+    while (end < good && table.isWanted(end)) ++end;
+    vertices.resize(corners * (end - i));
+    if (end > i) file.copy(file.connectivity(), table.begin(i), vertices.size(), vertices.data());
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      requireVertex(file, first + i + k / corners, vertices[k]);
+      cells[k / corners][k % corners] = static_cast<Vertex>(vertices[k]);
     }
-    hexahedra += end - i;
+    for (std::size_t k = i; numbers != nullptr && k < end; ++k) *numbers++ = first + k;
+    cells += end - i;
     i = std::max(end, i + 1);
   }
-  if (good < count) cells.fail(good);
+  if (good < count) table.fail(good);
 }
 
-template void readVtuHexahedra(const VtuFile&, std::uint64_t, std::size_t, Hex*);
-template void readVtuHexahedra(const VtuFile&, std::uint64_t, std::size_t, Hex64*);
+template void readVtuCells(const VtuFile&, std::uint64_t, std::size_t, Tet*, std::size_t*);
+template void readVtuCells(const VtuFile&, std::uint64_t, std::size_t, Hex*, std::size_t*);
+template void readVtuCells(const VtuFile&, std::uint64_t, std::size_t, Hex64*, std::size_t*);
 
-void failWithoutHexahedra(const VtuFile& file) {
-  file.fail(ErrorCode::FileUnsupported, "the file holds no hexahedra: none of its " +
-                                            std::to_string(file.cellCount()) +
-                                            " cells has the type 12.");
+void failWithoutCells(const VtuFile& file, const CellKind& kind) {
+  file.fail(ErrorCode::FileUnsupported, "the file holds no " + std::string(kind.plural) +
+                                            ": none of its " + std::to_string(file.cellCount()) +
+                                            " cells has the type " + std::to_string(kind.vtkType) +
+                                            ".");
 }
 
 }  // namespace hexhex

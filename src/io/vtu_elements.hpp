@@ -1,4 +1,4 @@
-// Points and hexahedra of a `.vtu` file, a range at a time, checked.
+// Points and cells of one kind of a `.vtu` file, a range at a time, checked.
 #pragma once
 
 #include <array>
@@ -9,11 +9,10 @@
 
 #include <hexhex/types.hpp>
 
+#include <io/cell_mesh.hpp>
 #include <io/vtu_file.hpp>
 
 namespace hexhex {
-
-inline constexpr std::int64_t kVtuHexahedron = 12;
 
 /// Reads points from number `first` on.
 /// @throws Error NotFinite
@@ -29,18 +28,20 @@ inline void readVtuPoints(const VtuFile& file, std::uint64_t first, std::span<Ve
   }
 }
 
-/// Number of hexahedra among `count` cells from number `first` on.
-[[nodiscard]] std::size_t countVtuHexahedra(const VtuFile& file, std::uint64_t first,
-                                            std::size_t count);
+/// Number of cells of a kind among `count` cells from number `first` on.
+[[nodiscard]] std::size_t countVtuCells(const VtuFile& file, const CellKind& kind,
+                                        std::uint64_t first, std::size_t count);
 
-/// Reads the hexahedra among `count` cells from number `first` on.
-/// @param hexahedra  room for as many as countVtuHexahedra() says
+/// Reads the cells with so many corners, hexahedra or tets, among `count` cells from number `first`
+/// on.
+/// @param cells  room for as many as countVtuCells() says
+/// @param numbers  if not null, room for as many: which cells of the file they are
 /// @throws Error FileSyntax, IndexOutOfRange
-template <class Vertex>
-void readVtuHexahedra(const VtuFile& file, std::uint64_t first, std::size_t count,
-                      std::array<Vertex, 8>* hexahedra);
+template <class Vertex, std::size_t corners>
+void readVtuCells(const VtuFile& file, std::uint64_t first, std::size_t count,
+                  std::array<Vertex, corners>* cells, std::size_t* numbers = nullptr);
 
-/// Throws the error of a file with cells but no hexahedra among them.
-[[noreturn]] void failWithoutHexahedra(const VtuFile& file);
+/// Throws the error of a file with cells but none of a kind among them.
+[[noreturn]] void failWithoutCells(const VtuFile& file, const CellKind& kind);
 
 }  // namespace hexhex

@@ -4,15 +4,18 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
+#include <type_traits>
 
+#include <io/grid_map.hpp>
 #include <io/text_scanner.hpp>
+#include <io/vtu_decoding.hpp>
 #include <io/vtu_file.hpp>
+#include <io/zlib_blocks.hpp>
 
 namespace hexhex {
 namespace {
 
-constexpr std::string_view kSaveDifferently =
-    " Save it uncompressed, with raw appended or ascii data.";
+constexpr std::string_view kZlibCompressor = "vtkZLibDataCompressor";
 
 // How much of a file is searched for the end of its head: first this, then more, at most that. A
 // head takes some kilobytes; one with more holds arrays as text.
@@ -72,6 +75,17 @@ void convert(VtuScalar scalar, const char* from, std::size_t count, T* to) {
   }
 }
 
+/// Whether numbers in memory have the bytes of the stored ones, so that they need not be converted.
+template <class T>
+bool isStoredAs(VtuScalar scalar) {
+  if constexpr (std::is_same_v<T, double>) return scalar == VtuScalar::Float64;
+  if constexpr (std::is_same_v<T, std::int64_t>) return scalar == VtuScalar::Int64;
+  if constexpr (std::is_same_v<T, Index>) {
+    return scalar == VtuScalar::Int32 || scalar == VtuScalar::UInt32;
+  }
+  return false;
+}
+
 /// The beginning of a file up to its binary data; everything up to a limit if it has none.
 struct HeadBytes {
   Array<char> bytes;
@@ -94,8 +108,12 @@ HeadBytes readHeadBytes(const InputFile& input) {
 
 }  // namespace
 
-VtuFile::VtuFile(std::string_view text, const std::string& fileName)
-    : text_(text), fileSize_(text.size()), fileName_(fileName), tags_(text, fileName) {
+VtuFile::VtuFile(std::string_view text, const std::string& fileName, Stage& stage)
+    : stage_(&stage),
+      text_(text),
+      fileSize_(text.size()),
+      fileName_(fileName),
+      tags_(text, fileName) {
   readHead();
   findColumns();
 }
@@ -111,7 +129,13 @@ VtuFile::VtuFile(const InputFile& input, const std::string& fileName)
   findColumns();
 }
 
-bool VtuFile::hasAppendedData(const InputFile& input) { return readHeadBytes(input).complete; }
+bool VtuFile::hasPlainAppendedData(const InputFile& input) {
+  const HeadBytes head = readHeadBytes(input);
+  const std::string_view text = asText(head.bytes);
+  if (!head.complete || text.find("compressor=") != std::string_view::npos) return false;
+  const std::string_view tag = text.substr(text.find("<AppendedData"));
+  return tag.substr(0, tag.find('_')).find("base64") == std::string_view::npos;
+}
 
 void VtuFile::readHead() {
   XmlTag tag;
@@ -142,9 +166,13 @@ void VtuFile::readFileTag(const XmlTag& tag) {
                    ", only UnstructuredGrid is supported.",
                tag.begin);
   }
-  if (!tag.attribute("compressor").empty()) {
+  const std::string_view compressor = tag.attribute("compressor");
+  compressed_ = !compressor.empty();
+  if (compressed_ && compressor != kZlibCompressor) {
     tags_.fail(ErrorCode::FileUnsupported,
-               "the file is compressed." + std::string(kSaveDifferently), tag.begin);
+               "the file is compressed with " + quoted(compressor) +
+                   ". Save it uncompressed or with zlib (vtkZLibDataCompressor).",
+               tag.begin);
   }
   const bool little = std::endian::native == std::endian::little;
   const std::string_view order = tag.attribute("byte_order");
@@ -176,8 +204,9 @@ std::uint64_t VtuFile::readCount(const XmlTag& tag, std::string_view attribute) 
         "expected a whole number as " + std::string(attribute) + ", found " + quoted(value) + ".",
         tag.begin);
   }
-  // Each point or cell takes some bytes. Besides, products of this count cannot overflow then.
-  if (count > fileSize_) {
+  // Each point or cell takes some bytes, which zlib makes smaller at most by its ratio. Besides,
+  // products of this count cannot overflow then.
+  if (count / (compressed_ ? kLargestZlibRatio : 1) > fileSize_) {
     tags_.fail(ErrorCode::FileSyntax,
                std::string(attribute) + " is " + std::to_string(count) +
                    ", more than the file has room for: it is wrong or the file is incomplete.",
@@ -190,6 +219,9 @@ void VtuFile::readArrayTag(const XmlTag& tag, std::string_view section) {
   const std::size_t next = std::min(text_.find('<', tag.end), text_.size());
   const ArrayTag array{tag, text_.substr(tag.end, next - tag.end)};
   const std::string_view name = tag.attribute("Name");
+  if (section == "PointData" || section == "CellData") {
+    dataArrays_.push_back({array, section == "CellData"});
+  }
   if (section == "Points") coordinatesTag_ = array;
   if (section == "Cells" && name == "connectivity") connectivityTag_ = array;
   if (section == "Cells" && name == "offsets") endsTag_ = array;
@@ -199,10 +231,12 @@ void VtuFile::readArrayTag(const XmlTag& tag, std::string_view section) {
 }
 
 void VtuFile::readAppendedTag(const XmlTag& tag) {
-  if (tag.attribute("encoding") != "raw") {
+  const std::string_view encoding = tag.attribute("encoding");
+  appendedBase64_ = encoding == "base64";
+  if (!appendedBase64_ && encoding != "raw") {
     tags_.fail(ErrorCode::FileUnsupported,
-               "the appended data are encoded as " + quoted(tag.attribute("encoding")) + "." +
-                   std::string(kSaveDifferently),
+               "the appended data are encoded as " + quoted(encoding) +
+                   ", which is neither raw nor base64.",
                tag.begin);
   }
   const std::size_t mark = text_.find('_', tag.end);
@@ -244,13 +278,13 @@ VtuColumn VtuFile::column(const std::optional<ArrayTag>& array, const char* what
   }
   const std::string_view format = array->tag.attribute("format");
   if (format == "ascii") return parsedColumn(*array, kind, count);
-  if (format != "appended") {
-    tags_.fail(
-        ErrorCode::FileUnsupported,
-        "the data format " + quoted(format) + " is not supported." + std::string(kSaveDifferently),
-        array->tag.begin);
+  if (format != "appended" && format != "binary") {
+    tags_.fail(ErrorCode::FileUnsupported,
+               "the data format " + quoted(format) + " is none of appended, binary and ascii.",
+               array->tag.begin);
   }
-  VtuColumn column = appendedColumn(*array, kind);
+  const bool plain = format == "appended" && !appendedBase64_ && !compressed_;
+  VtuColumn column = plain ? appendedColumn(*array, kind) : decodedColumn(*array, kind);
   if (count && column.count != *count) {
     tags_.fail(ErrorCode::FileSyntax,
                "this array should hold " + std::to_string(*count) + " numbers, but it holds " +
@@ -260,7 +294,8 @@ VtuColumn VtuFile::column(const std::optional<ArrayTag>& array, const char* what
   return column;
 }
 
-VtuColumn VtuFile::appendedColumn(const ArrayTag& array, Kind kind) const {
+/// An array without its numbers.
+VtuColumn VtuFile::typedColumn(const ArrayTag& array, Kind kind) const {
   const std::string_view type = array.tag.attribute("type");
   const auto scalar = std::find_if(kScalars.begin(), kScalars.end(),
                                    [type](const ScalarName& entry) { return entry.name == type; });
@@ -270,6 +305,14 @@ VtuColumn VtuFile::appendedColumn(const ArrayTag& array, Kind kind) const {
                "the number type " + quoted(type) + " is not supported for this array.",
                array.tag.begin);
   }
+  VtuColumn column;
+  column.scalar = scalar->scalar;
+  column.bytesEach = scalar->bytes;
+  return column;
+}
+
+VtuColumn VtuFile::appendedColumn(const ArrayTag& array, Kind kind) const {
+  VtuColumn column = typedColumn(array, kind);
   const std::uint64_t offset = readCount(array.tag, "offset");
   const auto incomplete = [this, &array]() {
     tags_.fail(ErrorCode::FileSyntax,
@@ -278,9 +321,6 @@ VtuColumn VtuFile::appendedColumn(const ArrayTag& array, Kind kind) const {
   };
   const std::uint64_t room = appended_ ? fileSize_ - *appended_ : 0;
   if (offset > room || room - offset < lengthBytes_) incomplete();
-  VtuColumn column;
-  column.scalar = scalar->scalar;
-  column.bytesEach = scalar->bytes;
   column.position = *appended_ + offset + lengthBytes_;
   std::array<char, sizeof(std::uint64_t)> length{};
   readBytes(column.position - lengthBytes_, lengthBytes_, length.data());
@@ -288,8 +328,67 @@ VtuColumn VtuFile::appendedColumn(const ArrayTag& array, Kind kind) const {
   convert(lengthBytes_ == sizeof(std::uint64_t) ? VtuScalar::UInt64 : VtuScalar::UInt32,
           length.data(), 1, &bytes);
   if (bytes > room - offset - lengthBytes_) incomplete();
-  column.count = bytes / scalar->bytes;
+  column.count = bytes / column.bytesEach;
   return column;
+}
+
+/// An array that is base64 in its tag or appended, or compressed.
+VtuColumn VtuFile::decodedColumn(const ArrayTag& array, Kind kind) const {
+  VtuColumn column = typedColumn(array, kind);
+  std::string_view text = array.content;
+  bool base64 = true;
+  if (array.tag.attribute("format") == "appended") {
+    const std::uint64_t offset = readCount(array.tag, "offset");
+    const std::uint64_t room = appended_ ? text_.size() - *appended_ : 0;
+    if (offset > room) {
+      tags_.fail(ErrorCode::FileSyntax,
+                 "the data of this array lie beyond the end of the file: it is incomplete.",
+                 array.tag.begin);
+    }
+    text = text_.substr(appended_ ? *appended_ + offset : text_.size());
+    base64 = appendedBase64_;
+  }
+  std::string problem;
+  std::optional<Array<char>> bytes =
+      decodeVtuArray(text, {base64, compressed_, lengthBytes_}, stage_, problem);
+  if (!bytes) {
+    tags_.fail(compressed_ && !hasZlib() ? ErrorCode::FileUnsupported : ErrorCode::FileSyntax,
+               problem, array.tag.begin);
+  }
+  column.inMemory = true;
+  column.count = bytes->size() / column.bytesEach;
+  column.decoded = std::move(*bytes);
+  return column;
+}
+
+std::size_t VtuFile::componentsOf(const ArrayTag& array) {
+  const std::string_view value = array.tag.attribute("NumberOfComponents");
+  std::size_t components = 1;
+  std::from_chars(value.data(), value.data() + value.size(), components);
+  return components;
+}
+
+std::optional<VtuColumn> VtuFile::findReals(std::string_view name, bool ofCells,
+                                            std::size_t components) const {
+  for (const DataArray& data : dataArrays_) {
+    const XmlTag& tag = data.array.tag;
+    if (data.ofCells != ofCells || tag.attribute("Name") != name ||
+        componentsOf(data.array) != components || !tag.attribute("type").starts_with("Float")) {
+      continue;
+    }
+    const std::uint64_t tuples = ofCells ? cellCount_ : pointCount_;
+    return column(data.array, "the map", Kind::Reals, components * tuples);
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> VtuFile::describeArrays() const {
+  std::vector<std::string> list;
+  for (const DataArray& data : dataArrays_) {
+    list.push_back(
+        describeArray(data.array.tag.attribute("Name"), data.ofCells, componentsOf(data.array)));
+  }
+  return list;
 }
 
 /// An array that is used if it is as this library writes it.
@@ -297,7 +396,9 @@ std::optional<VtuColumn> VtuFile::generatorColumn(const std::optional<ArrayTag>&
                                                   VtuScalar scalar) const {
   if (!array || array->tag.attribute("format") != "appended") return std::nullopt;
   if (!array->tag.attribute("type").starts_with("UInt")) return std::nullopt;
-  VtuColumn column = appendedColumn(*array, Kind::Integers);
+  const bool plain = !appendedBase64_ && !compressed_;
+  VtuColumn column =
+      plain ? appendedColumn(*array, Kind::Integers) : decodedColumn(*array, Kind::Integers);
   if (column.scalar != scalar || column.count != pointCount_) return std::nullopt;
   return column;
 }
@@ -317,11 +418,11 @@ VtuColumn VtuFile::parsedColumn(const ArrayTag& array, Kind kind,
                array.tag.begin);
   }
   VtuColumn values;
-  values.isText = true;
+  values.inMemory = true;
   values.scalar = kind == Kind::Reals ? VtuScalar::Float64 : VtuScalar::Int64;
   values.bytesEach = 8;
-  values.parsed.resize((count ? *count : room) * values.bytesEach);
-  for (char* place = values.parsed.data(); count ? values.count < *count : scanner.skipSpace();
+  values.decoded.resize((count ? *count : room) * values.bytesEach);
+  for (char* place = values.decoded.data(); count ? values.count < *count : scanner.skipSpace();
        ++values.count, place += values.bytesEach) {
     double real = 0;
     std::int64_t integer = 0;
@@ -348,8 +449,9 @@ void VtuFile::readBytes(std::uint64_t position, std::size_t size, char* to) cons
 template <class T>
 void VtuFile::copy(const VtuColumn& column, std::uint64_t begin, std::size_t count, T* to) const {
   const std::uint64_t position = column.position + begin * column.bytesEach;
-  if (column.isText) return convert(column.scalar, column.parsed.data() + position, count, to);
+  if (column.inMemory) return convert(column.scalar, column.decoded.data() + position, count, to);
   if (input_ == nullptr) return convert(column.scalar, text_.data() + position, count, to);
+  if (isStoredAs<T>(column.scalar)) return input_->readAt(position, to, count * sizeof(T));
   Array<char> bytes(count * column.bytesEach);
   input_->readAt(position, bytes.data(), bytes.size());
   convert(column.scalar, bytes.data(), count, to);

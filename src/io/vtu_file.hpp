@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
@@ -26,19 +27,21 @@ struct VtuColumn {
   VtuScalar scalar = VtuScalar::Float64;
   std::size_t bytesEach = 1;
   std::uint64_t count = 0;
-  std::uint64_t position = 0;  ///< in the file, or in `parsed`
-  bool isText = false;
-  Array<char> parsed;  ///< the numbers of an array that the file holds as text
+  std::uint64_t position = 0;  ///< in the file, or in `decoded`
+  bool inMemory = false;
+  Array<char> decoded;  ///< the numbers of an array that the file does not hold as plain bytes
 };
 
 /// An open file. Functions throw Error FileSyntax, FileUnsupported or FileNotFound.
 class VtuFile {
  public:
-  /// @param text  the whole file; outlives this
-  VtuFile(std::string_view text, const std::string& fileName);
-  /// Whether a file's arrays are appended to its head, so that it can be read in pieces.
-  [[nodiscard]] static bool hasAppendedData(const InputFile& input);
-  /// Reads the head of a file with appended data.
+  /// @param text   the whole file; outlives this
+  /// @param stage  for parallel decoding; outlives this
+  VtuFile(std::string_view text, const std::string& fileName, Stage& stage);
+  /// Whether a file's arrays are appended to its head as plain bytes, so that it can be read in
+  /// pieces.
+  [[nodiscard]] static bool hasPlainAppendedData(const InputFile& input);
+  /// Reads the head of a file with plain appended data.
   /// @param input  outlives this; a regular file
   VtuFile(const InputFile& input, const std::string& fileName);
 
@@ -59,6 +62,13 @@ class VtuFile {
     return generatorCorners_;
   }
 
+  /// The first array of cells or points with this name, this many components per tuple and
+  /// floating-point numbers, which must have a tuple for each cell or point.
+  [[nodiscard]] std::optional<VtuColumn> findReals(std::string_view name, bool ofCells,
+                                                   std::size_t components) const;
+  /// All arrays of points and cells, each with its name and number of components.
+  [[nodiscard]] std::vector<std::string> describeArrays() const;
+
   /// Copies numbers [begin, begin + count) of a column. T is double, std::int64_t, or the very type
   /// of the column. Thread-safe.
   template <class T>
@@ -75,6 +85,11 @@ class VtuFile {
     XmlTag tag;
     std::string_view content;
   };
+  /// An array of points or cells.
+  struct DataArray {
+    ArrayTag array;
+    bool ofCells = false;
+  };
   enum class Kind { Integers, Reals };
 
   void readHead();
@@ -86,7 +101,10 @@ class VtuFile {
   void findColumns();
   [[nodiscard]] VtuColumn column(const std::optional<ArrayTag>& array, const char* what, Kind kind,
                                  std::optional<std::uint64_t> count) const;
+  [[nodiscard]] VtuColumn typedColumn(const ArrayTag& array, Kind kind) const;
   [[nodiscard]] VtuColumn appendedColumn(const ArrayTag& array, Kind kind) const;
+  [[nodiscard]] VtuColumn decodedColumn(const ArrayTag& array, Kind kind) const;
+  [[nodiscard]] static std::size_t componentsOf(const ArrayTag& array);
   [[nodiscard]] VtuColumn parsedColumn(const ArrayTag& array, Kind kind,
                                        std::optional<std::uint64_t> count) const;
   [[nodiscard]] std::optional<VtuColumn> generatorColumn(const std::optional<ArrayTag>& array,
@@ -94,6 +112,7 @@ class VtuFile {
   void readBytes(std::uint64_t position, std::size_t size, char* to) const;
 
   const InputFile* input_ = nullptr;
+  Stage* stage_ = nullptr;
   Array<char> headBytes_;   ///< of a file that is not in memory
   std::string_view text_;   ///< the file, or its head
   std::uint64_t fileSize_;  ///< of the whole file
@@ -103,9 +122,12 @@ class VtuFile {
   std::uint64_t pointCount_ = 0;
   std::uint64_t cellCount_ = 0;
   bool hasFileTag_ = false;
-  std::optional<std::size_t> piece_;       ///< where its tag begins
-  std::size_t lengthBytes_ = 4;            ///< of the byte count in front of appended arrays
+  std::optional<std::size_t> piece_;  ///< where its tag begins
+  std::size_t lengthBytes_ = 4;       ///< of the numbers in front of encoded arrays
+  bool compressed_ = false;
+  bool appendedBase64_ = false;
   std::optional<std::uint64_t> appended_;  ///< position behind the '_' of AppendedData
+  std::vector<DataArray> dataArrays_;
   std::optional<ArrayTag> coordinatesTag_;
   std::optional<ArrayTag> connectivityTag_;
   std::optional<ArrayTag> endsTag_;

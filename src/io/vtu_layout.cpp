@@ -9,7 +9,6 @@ namespace hexhex {
 namespace {
 
 constexpr std::uint64_t kLargestInt32 = std::numeric_limits<std::int32_t>::max();
-constexpr std::uint64_t kCornersPerCell = 8;
 
 /// In the order in which a file has them. The first stands in front of the piece.
 constexpr std::string_view kSections[] = {"FieldData", "PointData", "CellData", "Points", "Cells"};
@@ -33,10 +32,18 @@ std::string tagOf(const VtuArray& array, std::uint64_t offset) {
 }  // namespace
 
 VtuLayout::VtuLayout(const VtuShape& shape)
-    : wideConnectivity_(shape.points > kLargestInt32),
-      wideOffsets_(shape.cells > kLargestInt32 / kCornersPerCell) {
+    : points_(shape.points),
+      cells_(shape.cells),
+      wideConnectivity_(shape.points > kLargestInt32),
+      wideOffsets_(shape.cells > kLargestInt32 / shape.corners) {
   listArrays(shape);
-  composeHead(shape);
+  std::vector<std::uint64_t> offsets;
+  std::uint64_t offset = 0;
+  for (const VtuArray& array : arrays_) {
+    offsets.push_back(offset);
+    offset += sizeof(array.bytes) + array.bytes;
+  }
+  head_ = composeHead(offsets, false);
   std::uint64_t position = head_.size();
   for (VtuArray& array : arrays_) {
     array.position = position + sizeof(array.bytes);
@@ -74,38 +81,47 @@ void VtuLayout::listArrays(const VtuShape& shape) {
     add(VtuContent::ScaledJacobian, kCellData, "scaled_jacobian", "Float64", 1, cells, 8);
   }
   if (shape.regions) add(VtuContent::Regions, kCellData, "region", "Int32", 1, cells, 4);
+  if (!shape.map.empty()) add(VtuContent::Map, kCellData, shape.map, "Float64", 12, cells, 8);
   add(VtuContent::Points, kPoints, "Points", "Float64", 3, points, 8);
   const auto addIntegers = [&](VtuContent content, std::string_view name, std::uint64_t count,
                                bool wide) {
     add(content, kCells, name, wide ? "Int64" : "Int32", 1, count, wide ? 8 : 4);
   };
-  addIntegers(VtuContent::Connectivity, "connectivity", cells * kCornersPerCell, wideConnectivity_);
+  addIntegers(VtuContent::Connectivity, "connectivity", cells * shape.corners, wideConnectivity_);
   addIntegers(VtuContent::Offsets, "offsets", cells, wideOffsets_);
   add(VtuContent::Types, kCells, "types", "UInt8", 1, cells, 1);
 }
 
-void VtuLayout::composeHead(const VtuShape& shape) {
+std::string VtuLayout::composeHead(std::span<const std::uint64_t> offsets, bool compressed) const {
   const bool little = std::endian::native == std::endian::little;
-  head_ = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\"";
-  head_ += std::string(" byte_order=\"") + (little ? "LittleEndian" : "BigEndian") + "\"";
-  head_ += " header_type=\"UInt64\">\n  <UnstructuredGrid>\n";
-  const std::string piece = "    <Piece NumberOfPoints=\"" + std::to_string(shape.points) +
-                            "\" NumberOfCells=\"" + std::to_string(shape.cells) + "\">\n";
-  std::uint64_t offset = 0;
+  std::string head = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\"";
+  head += std::string(" byte_order=\"") + (little ? "LittleEndian" : "BigEndian") + "\"";
+  head += " header_type=\"UInt64\"";
+  if (compressed) head += " compressor=\"vtkZLibDataCompressor\"";
+  head += ">\n  <UnstructuredGrid>\n";
+  const std::string piece = "    <Piece NumberOfPoints=\"" + std::to_string(points_) +
+                            "\" NumberOfCells=\"" + std::to_string(cells_) + "\">\n";
   for (const std::string_view section : kSections) {
     const bool ofField = section == kSections[kFieldData];
-    if (!ofField || shape.edgeTags + shape.quadTags > 0) {
-      head_ += "      <" + std::string(section) + ">\n";
-      for (const VtuArray& array : arrays_) {
-        if (array.section != section) continue;
-        head_ += tagOf(array, offset);
-        offset += sizeof(array.bytes) + array.bytes;
+    if (!ofField || arrays_.front().section == section) {
+      head += "      <" + std::string(section) + ">\n";
+      for (std::size_t i = 0; i < arrays_.size(); ++i) {
+        if (arrays_[i].section == section) head += tagOf(arrays_[i], offsets[i]);
       }
-      head_ += "      </" + std::string(section) + ">\n";
+      head += "      </" + std::string(section) + ">\n";
     }
-    if (ofField) head_ += piece;
+    if (ofField) head += piece;
   }
-  head_ += "    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n    _";
+  return head + "    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n    _";
+}
+
+std::string VtuLayout::compressedHead(std::span<const std::uint64_t> offsets) const {
+  const std::vector<std::uint64_t> largest(arrays_.size(), ~std::uint64_t{0});
+  const std::size_t size = composeHead(largest, true).size();
+  std::string head = composeHead(offsets, true);
+  // Space in front of the mark of the data means nothing.
+  head.insert(head.size() - 1, size - head.size(), ' ');
+  return head;
 }
 
 std::uint64_t VtuLayout::tailPosition() const noexcept {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,8 @@ struct VtuShape {
   bool regions = false;           ///< with the cell array region
   std::uint64_t edgeTags = 0;     ///< rows of the field array feature_edges
   std::uint64_t quadTags = 0;     ///< rows of the field array feature_quads
+  std::size_t corners = 8;        ///< of each cell
+  std::string_view map = {};      ///< the name of the map's cell array; empty: there is none
 };
 
 /// What an array holds.
@@ -32,6 +35,7 @@ enum class VtuContent {
   Regions,
   EdgeTags,  ///< per edge: two vertices and the tag
   QuadTags,  ///< per quad: four vertices and the tag
+  Map,
   Points,
   Connectivity,
   Offsets,
@@ -65,6 +69,10 @@ class VtuLayout {
   }
   [[nodiscard]] std::uint64_t tailPosition() const noexcept;
 
+  /// The same beginning for compressed arrays, with an offset for each of them. It has the same
+  /// number of bytes whatever they are.
+  [[nodiscard]] std::string compressedHead(std::span<const std::uint64_t> offsets) const;
+
   /// Whether vertex indices and offsets take 64 bits: 32-bit ones are signed, since every reader
   /// takes those.
   [[nodiscard]] bool wideConnectivity() const noexcept { return wideConnectivity_; }
@@ -72,8 +80,11 @@ class VtuLayout {
 
  private:
   void listArrays(const VtuShape& shape);
-  void composeHead(const VtuShape& shape);
+  [[nodiscard]] std::string composeHead(std::span<const std::uint64_t> offsets,
+                                        bool compressed) const;
 
+  std::uint64_t points_;
+  std::uint64_t cells_;
   bool wideConnectivity_;
   bool wideOffsets_;
   std::vector<VtuArray> arrays_;

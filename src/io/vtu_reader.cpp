@@ -9,8 +9,10 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/grid_map.hpp>
 #include <io/input_file.hpp>
 #include <io/mesh_pieces.hpp>
+#include <io/read_with.hpp>
 #include <io/vtu.hpp>
 #include <io/vtu_elements.hpp>
 #include <io/vtu_file.hpp>
@@ -50,44 +52,131 @@ class FirstError {
   std::exception_ptr error_;
 };
 
-void readPoints(const VtuFile& file, HexMesh& mesh, Stage& stage) {
-  mesh.points.resize(file.pointCount());
+void readPoints(const VtuFile& file, Array<Vec3>& points, Stage& stage) {
+  points.resize(file.pointCount());
   FirstError error;
-  parallelBlocks(stage, mesh.points.size(), kGrain,
+  parallelBlocks(stage, points.size(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    error.guard(block, [&] {
-                     readVtuPoints(file, begin, std::span(mesh.points).subspan(begin, end - begin));
+                     readVtuPoints(file, begin, std::span(points).subspan(begin, end - begin));
                    });
                  });
   error.rethrow();
 }
 
-void readCells(const VtuFile& file, HexMesh& mesh, Stage& stage) {
+/// @param[out] numbers  if not null: which cells of the file they are
+template <std::size_t corners>
+void readCells(const VtuFile& file, Array<std::array<Index, corners>>& result,
+               Array<std::size_t>* numbers, Stage& stage) {
+  const CellKind& kind = kCellKind<corners>;
   const std::size_t cells = file.cellCount();
   std::vector<std::size_t> begins(blockCount(cells, kGrain) + 1, 0);
   parallelBlocks(stage, cells, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    begins[block] = countVtuHexahedra(file, begin, end - begin);
+    begins[block] = countVtuCells(file, kind, begin, end - begin);
   });
-  const std::size_t hexahedra = exclusiveScan(std::span(begins));
-  if (cells > 0 && hexahedra == 0) failWithoutHexahedra(file);
-  mesh.cells.resize(hexahedra);
+  const std::size_t count = exclusiveScan(std::span(begins));
+  if (cells > 0 && count == 0) failWithoutCells(file, kind);
+  result.resize(count);
+  if (numbers != nullptr) numbers->resize(count);
   FirstError error;
   parallelBlocks(stage, cells, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
     error.guard(block, [&] {
-      readVtuHexahedra(file, begin, end - begin, mesh.cells.data() + begins[block]);
+      readVtuCells(file, begin, end - begin, result.data() + begins[block],
+                   numbers != nullptr ? numbers->data() + begins[block] : nullptr);
     });
   });
   error.rethrow();
 }
 
-HexMesh readMesh(std::string_view text, const std::string& fileName, Stage& stage) {
-  const VtuFile file(text, fileName);
-  file.requireIndexable();
-  HexMesh mesh;
-  readPoints(file, mesh, stage);
-  readCells(file, mesh, stage);
-  return mesh;
-}
+/// Reads points and cells of one kind, from memory or, where arrays are plain bytes, from the disk
+/// straight to where they belong.
+template <std::size_t corners>
+class VtuMeshReader {
+ public:
+  VtuMeshReader(std::string_view text, const std::string& fileName, Stage& stage)
+      : file_(text, fileName, stage), stage_(stage) {}
+  VtuMeshReader(const InputFile& input, const std::string& fileName, Stage& stage)
+      : file_(input, fileName), stage_(stage) {}
+
+  CellMesh<corners> read(Array<std::size_t>* cellNumbers = nullptr) {
+    file_.requireIndexable();
+    CellMesh<corners> mesh;
+    readPoints(file_, mesh.points, stage_);
+    readCells(file_, mesh.cells, cellNumbers, stage_);
+    return mesh;
+  }
+  [[nodiscard]] const VtuFile& file() const noexcept { return file_; }
+
+ private:
+  VtuFile file_;
+  Stage& stage_;
+};
+
+/// Reads a hex mesh, and generators as writeVtu() writes them.
+class VtuHexReader {
+ public:
+  template <class Source>
+  VtuHexReader(const Source& source, const std::string& fileName, Stage& stage)
+      : reader_(source, fileName, stage) {}
+
+  HexMesh read() {
+    HexMesh mesh = toHexMesh(reader_.read());
+    const VtuFile& file = reader_.file();
+    if (!file.generatorTets() || !file.generatorCorners()) return mesh;
+    mesh.generatorTet.resize(mesh.points.size());
+    mesh.generatorCorners.resize(mesh.points.size());
+    file.copy(*file.generatorTets(), 0, mesh.points.size(), mesh.generatorTet.data());
+    file.copy(*file.generatorCorners(), 0, mesh.points.size(), mesh.generatorCorners.data());
+    const auto isSimplex = [](CornerSet corners) { return corners >= 1 && corners <= 15; };
+    if (!std::all_of(mesh.generatorCorners.begin(), mesh.generatorCorners.end(), isSimplex)) {
+      mesh.generatorTet.clear();  // arrays of the same names, but something else
+      mesh.generatorCorners.clear();
+    }
+    return mesh;
+  }
+
+ private:
+  VtuMeshReader<8> reader_;
+};
+
+/// Reads the tets of a file and its map.
+class VtuMapReader {
+ public:
+  template <class Source>
+  VtuMapReader(const Source& source, const std::string& fileName, Stage& stage,
+               std::string_view mapArray)
+      : reader_(source, fileName, stage), fileName_(fileName), stage_(stage), mapArray_(mapArray) {}
+
+  TetMap read() {
+    TetGrid grid;
+    grid.mesh = reader_.read(&grid.cellInFile);
+    const VtuFile& file = reader_.file();
+    grid.arrays = file.describeArrays();
+    for (const bool ofCells : {true, false}) {
+      const std::size_t components = ofCells ? kCellMapComponents : kPointMapComponents;
+      const std::optional<VtuColumn> column = file.findReals(mapArray_, ofCells, components);
+      if (!column) continue;
+      grid.map = GridMap{ofCells, Array<double>(column->count)};
+      copyAll(*column, grid.map->values);
+      break;
+    }
+    return toTetMap(std::move(grid), mapArray_, fileName_, stage_);
+  }
+
+ private:
+  void copyAll(const VtuColumn& column, Array<double>& values) {
+    constexpr std::size_t kNumbers = std::size_t{1} << 16;
+    parallelBlocks(stage_, values.size(), kNumbers,
+                   [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                     reader_.file().copy(column, begin, end - begin, values.data() + begin);
+                   });
+  }
+
+  VtuMeshReader<4> reader_;
+  const std::string& fileName_;
+  Stage& stage_;
+  std::string_view mapArray_;
+};
 
 /// Calls f(first, count) for consecutive ranges of n elements, and reports progress.
 template <class F>
@@ -123,44 +212,71 @@ void sendCells(const VtuFile& file, MeshSink& sink, Stage& stage) {
   Array<Cell> cells;
   std::uint64_t sent = 0;
   forEachPiece(stage, file.cellCount(), [&](std::uint64_t first, std::size_t count) {
-    cells.resize(countVtuHexahedra(file, first, count));
-    readVtuHexahedra(file, first, count, cells.data());
+    cells.resize(countVtuCells(file, kCellKind<8>, first, count));
+    readVtuCells(file, first, count, cells.data());
     if (!cells.empty()) sink.cells(sent, std::span<const Cell>(cells));
     sent += cells.size();
   });
 }
 
+/// As readWith(), but without the whole file in memory where it can be avoided.
+template <class Reader, class... More>
+auto readVtuWith(const std::filesystem::path& path, std::string_view stageName, Context& context,
+                 const More&... more) {
+  Stage stage(context, stageName);
+  const std::string fileName = path.string();
+  decltype(std::declval<Reader&>().read()) result;
+  withThreads(context.threads(), [&] {
+    const InputFile input(path);
+    if (input.isRegular() && VtuFile::hasPlainAppendedData(input)) {
+      result = Reader(input, fileName, stage, more...).read();
+      return;
+    }
+    const Array<char> bytes = readWholeFile(path, stage);
+    result = Reader(asText(bytes), fileName, stage, more...).read();
+  });
+  return result;
+}
+
 }  // namespace
 
 HexMesh parseVtu(std::string_view text, const std::string& fileName, Context& context) {
-  Stage stage(context, "read mesh");
-  HexMesh mesh;
-  withThreads(context.threads(), [&] { mesh = readMesh(text, fileName, stage); });
-  return mesh;
+  return parseWith<VtuHexReader>(text, fileName, "read mesh", context);
 }
 
 HexMesh readVtu(const std::filesystem::path& file, Context& context) {
-  Stage stage(context, "read mesh");
-  HexMesh mesh;
-  withThreads(context.threads(), [&] {
-    const Array<char> bytes = readWholeFile(file, stage);
-    mesh = readMesh(asText(bytes), file.string(), stage);
-  });
-  return mesh;
+  return readVtuWith<VtuHexReader>(file, "read mesh", context);
+}
+
+TetCells parseVtuTets(std::string_view text, const std::string& fileName, Context& context) {
+  return parseWith<VtuMeshReader<4>>(text, fileName, "read tets", context);
+}
+
+TetCells readVtuTets(const std::filesystem::path& file, Context& context) {
+  return readVtuWith<VtuMeshReader<4>>(file, "read tets", context);
+}
+
+TetMap parseVtuMap(std::string_view text, const std::string& fileName, const ReadOptions& options,
+                   Context& context) {
+  return parseWith<VtuMapReader>(text, fileName, "read map", context, options.mapArray);
+}
+
+TetMap readVtuMap(const std::filesystem::path& file, const ReadOptions& options, Context& context) {
+  return readVtuWith<VtuMapReader>(file, "read map", context, options.mapArray);
 }
 
 void readVtuTo(MeshSink& sink, const std::filesystem::path& path, Context& context) {
   const InputFile input(path);
-  if (!input.isRegular() || !VtuFile::hasAppendedData(input)) {
+  if (!input.isRegular() || !VtuFile::hasPlainAppendedData(input)) {
     return sendTo(sink, readVtu(path, context));
   }
   Stage stage(context, "read mesh");
   const VtuFile file(input, path.string());
   std::uint64_t hexahedra = 0;
   forEachPiece(stage, file.cellCount(), [&](std::uint64_t first, std::size_t count) {
-    hexahedra += countVtuHexahedra(file, first, count);
+    hexahedra += countVtuCells(file, kCellKind<8>, first, count);
   });
-  if (file.cellCount() > 0 && hexahedra == 0) failWithoutHexahedra(file);
+  if (file.cellCount() > 0 && hexahedra == 0) failWithoutCells(file, kCellKind<8>);
   sink.begin(file.pointCount(), hexahedra);
   sendPoints(file, sink, stage);
   if (file.pointCount() < kNone) {

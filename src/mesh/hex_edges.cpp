@@ -132,6 +132,10 @@ class EdgeFinder {
       }
     }
     const int valence = static_cast<int>(wedges.size());
+    if (valence != (quads == 0 ? 4 : 2)) {
+      edges.singular.push_back(
+          {vertex, wedges.front().other, static_cast<std::uint32_t>(valence), quads != 0});
+    }
     if (quads == 0) {
       if (valence != 4) ++edges.innerSingular[valence];
       return;
@@ -163,6 +167,7 @@ HexEdges findEdges(const HexMesh& mesh, const VertexCells& around, const HexFace
     edges.count += part.count;
     edges.boundaryCount += part.boundaryCount;
     edges.openCount += part.openCount;
+    edges.singular.insert(edges.singular.end(), part.singular.begin(), part.singular.end());
     for (const auto& [valence, count] : part.innerSingular) edges.innerSingular[valence] += count;
     for (const auto& [valence, count] : part.boundarySingular) {
       edges.boundarySingular[valence] += count;

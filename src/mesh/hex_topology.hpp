@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 
+#include <hexhex/structure.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
@@ -81,6 +82,7 @@ struct HexEdges {
   /// boundary).
   std::map<int, std::uint64_t> innerSingular;
   std::map<int, std::uint64_t> boundarySingular;
+  Array<SingularHexEdge> singular;       ///< the same edges one by one, in lexicographic order
   std::uint64_t openCount = 0;           ///< boundary edges not in exactly two boundary quads
   MeshEdge firstOpen;                    ///< the lexicographically first of them
   std::uint64_t boundaryComponents = 0;  ///< of boundary quads, connected through edges

@@ -6,15 +6,20 @@
 Needs nothing but Python's standard library.
 """
 
+import base64
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
+import urllib.error
+import urllib.request
+import zlib
 
 SUCCESS, INVALID_MAP, BAD_USAGE, FILE_PROBLEM, FAILURE, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
@@ -28,6 +33,30 @@ ONE_TET = """4
 0 1 2 3 0 0 0 1 0 0 0 1 0 0 0 1
 """
 
+# A cube of six tets around a diagonal, its own polycube.
+POLYCUBE = """MeshVersionFormatted 2
+Dimension 3
+Vertices
+8
+0 0 0 0
+1 0 0 0
+0 1 0 0
+1 1 0 0
+0 0 1 0
+1 0 1 0
+0 1 1 0
+1 1 1 0
+Tetrahedra
+6
+1 2 4 8 1
+1 4 3 8 1
+1 3 7 8 1
+1 7 5 8 1
+1 5 6 8 1
+1 6 2 8 1
+End
+"""
+
 KINDS = ["box", "cylinder", "sphere", "star", "tetrahedron", "torus", "shell", "handle-body"]
 
 REPORT_KEYS = {
@@ -36,7 +65,7 @@ REPORT_KEYS = {
     "generators", "vertices_by_generator", "local_propellers", "global_propellers", "charts",
     "cut_faces", "overlapping_tets", "traced_cells", "singular_edges", "chart_jumps", "inner_faces",
     "max_displacement", "max_transition_residual", "mirrored", "tets_inverted_in_space", "quality",
-    "verification", "streamed", "checksums", "repair",
+    "verification", "streamed", "checksums", "repair", "order", "nodes", "arcs", "patches",
 }
 
 
@@ -53,8 +82,9 @@ class CommandTest(unittest.TestCase):
     def run_command(self, *arguments, expect=SUCCESS, **options):
         result = subprocess.run([self.command, *map(str, arguments)], cwd=self.folder, text=True,
                                 capture_output=True, timeout=600, check=False, **options)
-        self.assertEqual(result.returncode, expect,
-                         f"{arguments}\n{result.stdout}\n{result.stderr}")
+        if expect is not None:
+            self.assertEqual(result.returncode, expect,
+                             f"{arguments}\n{result.stdout}\n{result.stderr}")
         return result
 
     def assert_fails(self, *arguments, expect, words=(), code=None):
@@ -85,10 +115,10 @@ class CommandTest(unittest.TestCase):
 class Help(CommandTest):
     def test_help_and_version(self):
         text = self.run_command("--help").stdout
-        for word in ["extract", "check", "verify", "generate", "info", "Exit codes", "Examples"]:
+        for word in ["extract", "check", "verify", "generate", "info", "view", "Exit codes", "Examples"]:
             self.assertIn(word, text)
         self.assertRegex(self.run_command("--version").stdout, r"^hexhex \d+\.\d+\.\d+\n$")
-        for subcommand in ["extract", "check", "verify", "generate", "repair", "info"]:
+        for subcommand in ["extract", "check", "verify", "generate", "repair", "info", "view"]:
             self.assertIn("Example", self.run_command(subcommand, "--help").stdout)
 
     def test_help_lists_every_kind(self):
@@ -167,12 +197,12 @@ class FileProblems(CommandTest):
 
     def test_unknown_extensions(self):
         self.write("map.hexex", ONE_TET)
-        words = [".mesh, .vtu"]
+        words = [".mesh, .meshb, .vtu"]
         self.assert_fails("extract", "map.hexex", "-o", "a.obj", expect=FILE_PROBLEM, words=words,
                           code="FileUnsupported")
         self.assert_fails("extract", "map.hexex", "-o", "a", expect=FILE_PROBLEM, words=words,
                           code="FileUnsupported")
-        self.assert_fails("generate", "box", "-o", "a.vtu", expect=FILE_PROBLEM,
+        self.assert_fails("generate", "box", "-o", "a.msh", expect=FILE_PROBLEM,
                           words=[".hexex"], code="FileUnsupported")
         self.run_command("info", self.write("a.png", ""), expect=FILE_PROBLEM)
 
@@ -259,6 +289,48 @@ class InvalidMaps(CommandTest):
 
 
 class Pipeline(CommandTest):
+    def test_curved_meshes(self):
+        map_file = self.generate("sphere", "--cells", "1", "--charts", "random")
+        self.run_command("extract", map_file, "-o", "a.vtu", "--arcs", "arcs.vtp", "--patches",
+                         "patches.ovmb", "--report", "r.json")
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual((report["order"], report["nodes"]), (1, report["vertices"]))
+        # Seven cells of a ball: 32 edges, 24 faces.
+        self.assertEqual(report["arcs"]["count"], 32)
+        self.assertEqual(report["patches"]["count"], 24)
+        self.assertGreater(report["patches"]["polygons"], 24)
+        for name in ["c.vtu", "c.msh", "c.mesh"]:
+            self.run_command("extract", map_file, "-o", name, "--order", "3", "--report", "r.json")
+            report = json.loads((self.folder / "r.json").read_text())
+            self.assertEqual((report["cells"], report["vertices"]), (7, 16))
+            self.assertEqual(report["nodes"], 16 + 32 * 2 + 24 * 4 + 7 * 8)
+            self.assertEqual(report["order"], 3)
+            self.assertTrue(report["verification"]["passed"])
+        self.run_command("extract", map_file, "-o", "first.mesh")
+        self.run_command("extract", map_file, "-o", "again.mesh", "--order", "1")
+        files = self.files()
+        self.assertEqual(files["first.mesh"], files["again.mesh"])
+        self.assertIn(b"L2_T4_3D_P3", files["c.mesh"])
+
+    def test_curved_meshes_that_are_refused(self):
+        map_file = self.generate("box", "--cells", "1", "--refine", "1")
+        for arguments, code in [
+            (["--order", "3", "--arcs", "b.vtu"], BAD_USAGE),
+            (["--stream", "--arcs", "b.vtu"], BAD_USAGE),
+            (["--stream", "--order", "2"], BAD_USAGE),
+            (["--arcs", "a.vtu"], BAD_USAGE),
+            (["--arcs", "b.vtu", "--patches", "b.vtu"], BAD_USAGE),
+            (["--arcs", "b.mesh"], FILE_PROBLEM),
+            (["--patches", "missing/b.vtu"], FILE_PROBLEM),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.assert_fails("extract", map_file, "-o", "a.vtu", *arguments, expect=code)
+        self.assert_fails("extract", map_file, "-o", "a.ovm", "--order", "2", expect=FILE_PROBLEM,
+                          code="FileUnsupported")
+        for order in ["0", "10", "x"]:
+            self.run_command("extract", map_file, "-o", "a.vtu", "--order", order,
+                             expect=BAD_USAGE)
+
     def test_every_kind_from_map_to_verified_mesh(self):
         for kind in KINDS:
             with self.subTest(kind=kind):
@@ -452,6 +524,89 @@ class Repair(CommandTest):
                           expect=BAD_USAGE, code="InvalidArgument")
 
 
+class Convert(CommandTest):
+    """Other formats, and maps as two meshes."""
+
+    def test_maps_through_all_formats_and_back(self):
+        self.generate("sphere", "--charts", "random", "--jitter", "0.3")
+        files = self.files()
+        steps = [("a.vtu",), ("b.vtu", "--compress"), ("c.vtk",), ("d.vtk", "--format", "vtk-binary"),
+                 ("e.ovm",), ("f.dat", "--format", "ovmb")]
+        last, reading = "map.hexex", []
+        for name, *options in steps:
+            run = self.run_command("convert", last, name, *options)
+            self.assertIn("a map of", run.stdout)
+            last = name
+        reading = ["--input-format", "ovmb"]
+        self.run_command("convert", last, "back.hexex", *reading, "--quiet")
+        self.assertEqual(self.files()["back.hexex"], files["map.hexex"])
+
+    def test_meshes_through_all_formats(self):
+        map_file = self.generate("star")
+        self.run_command("extract", map_file, "-o", "a.vtu", "--quiet")
+        last = "a.vtu"
+        for name in ("b.msh", "c.meshb", "d.vtk", "e.ovmb", "f.mesh", "g.vtu"):
+            run = self.run_command("convert", last, name)
+            self.assertIn("a mesh of", run.stdout)
+            last = name
+        self.run_command("verify", map_file, last)
+        checksums = {self.run_command("info", name, "--pieces").stdout.split(":", 1)[1]
+                     for name in ("a.vtu", "c.meshb", "g.vtu")}
+        self.assertEqual(len(checksums), 1)
+        self.run_command("convert", "a.vtu", "h.msh", "--stream", "--quiet")
+        self.run_command("verify", map_file, "h.msh")
+
+    def test_two_meshes_are_a_map(self):
+        self.generate("box", "--cells", "2")
+        self.run_command("convert", "map.hexex", "a.vtu", "--quiet")
+        pair = ["--tets", "a.vtu", "--polycube", "a.vtu"]
+        run = self.run_command("info", *pair)
+        self.assertIn("a.vtu and a.vtu: a tetrahedral mesh with an integer-grid map", run.stdout)
+        self.run_command("convert", *pair, "b.hexex", "--quiet")
+        same = self.run_command("check", *pair, expect=None).stdout
+        self.assertEqual(same, self.run_command("check", "b.hexex", expect=None).stdout)
+        self.generate("star", name="c.hexex")
+        self.assert_fails("check", "--tets", "a.vtu", "--polycube", "c.hexex", expect=FILE_PROBLEM,
+                          words=["a.vtu has", "c.hexex has"], code="FileUnsupported")
+        self.assert_fails("check", "map.hexex", *pair, expect=BAD_USAGE, words=["MAP"])
+        self.assert_fails("check", "--tets", "a.vtu", expect=BAD_USAGE, words=["--polycube"])
+        self.assert_fails("convert", *pair, expect=BAD_USAGE, words=["OUTPUT"])
+
+    def test_pairs_are_extracted_and_verified(self):
+        self.write("tets.mesh", POLYCUBE)
+        pair = ["--tets", "tets.mesh", "--polycube", "tets.mesh"]
+        self.run_command("extract", *pair, "-o", "a.mesh", "--quiet", "--scale", "3")
+        run = self.run_command("verify", *pair, "a.mesh", "--scale", "3")
+        self.assertIn("cells                                27", run.stdout)
+
+    def test_map_array_of_another_name(self):
+        self.run_command("generate", "box", "-o", "a.vtu", "--map-array", "my map", "--quiet")
+        self.assert_fails("check", "a.vtu", expect=FILE_PROBLEM, code="FileUnsupported",
+                          words=["no map", '"my map" (cells, 12 components)', "--map-array"])
+        self.run_command("check", "a.vtu", "--map-array", "my map")
+
+    def test_refused(self):
+        map_file = self.generate("box")
+        self.run_command("extract", map_file, "-o", "a.mesh", "--quiet")
+        fails = [(["map.hexex", "b.inp"], "holds a map"),
+                 (["a.mesh", "b.hexex"], "holds a hexahedral mesh"),
+                 (["a.mesh", "b.vtk", "--compress"], "no compression"),
+                 (["a.mesh", "b.vtu", "--format", "stl"], '"stl"'),
+                 (["a.mesh", "b.png"], ".png"),
+                 (["missing.mesh", "b.vtu"], "missing.mesh")]
+        for arguments, word in fails:
+            self.assert_fails("convert", *arguments, expect=FILE_PROBLEM, words=[word])
+        self.assert_fails("convert", "a.mesh", "./a.mesh", expect=BAD_USAGE, words=["same file"])
+        self.assert_fails("extract", map_file, "-o", "b.mesh", "--compress", expect=FILE_PROBLEM,
+                          words=["no compression"])
+
+    def test_formats(self):
+        run = self.run_command("formats")
+        for name in ("hexex", "mesh", "meshb", "vtu", "vtk", "vtk-binary", "ovm", "ovmb", "msh",
+                     "msh22-ascii", "inp", "mfem"):
+            self.assertRegex(run.stdout, rf"(?m)^{name} ")
+
+
 class Stream(CommandTest):
     """extract --stream"""
 
@@ -528,7 +683,7 @@ class Stream(CommandTest):
         os.mkfifo(self.folder / "pipe.mesh")
         (self.folder / "taken.vtu").mkdir()
         for output, expect, code, words in [
-            ("a.ovm", FILE_PROBLEM, "FileUnsupported", ["a.ovm", ".mesh, .vtu"]),
+            ("a.ovm", FILE_PROBLEM, "FileUnsupported", ["a.ovm", "mesh, "]),
             ("a.obj", FILE_PROBLEM, "FileUnsupported", ["a.obj"]),
             ("pipe.mesh", FILE_PROBLEM, "FileWrite", ["pipe.mesh", "read back"]),
             ("taken.vtu", FILE_PROBLEM, "FileWrite", ["taken.vtu"]),
@@ -625,6 +780,140 @@ class Interruption(CommandTest):
 
     def test_interrupt_while_a_stream_is_read_back(self):
         self.interrupt("hexhex: read mesh\n", "--scale", "2", "--stream")
+
+
+class View(CommandTest):
+    """The page of `hexhex view`, unpacked here on its own."""
+
+    def setUp(self):
+        super().setUp()
+        self.generate("sphere", "--jitter", "0.2")
+        self.run_command("extract", "map.hexex", "-o", "a.mesh", "--scale", "2", "--quiet")
+        probe = subprocess.run([self.command, "view", "a.mesh", "-o", "probe.html", "--quiet"],
+                               cwd=self.folder, text=True, capture_output=True, check=False)
+        if "built without the viewer" in probe.stderr:
+            self.assertEqual(probe.returncode, FILE_PROBLEM)
+            self.skipTest("this hexhex was built without the viewer page")
+        self.assertEqual(probe.returncode, SUCCESS, probe.stderr)
+        (self.folder / "probe.html").unlink()
+
+    @staticmethod
+    def info(html):
+        found = re.search(r'<script id="mesh-info" type="application/json">(.*?)</script>', html)
+        return json.loads(found[1])
+
+    @staticmethod
+    def unpack(table, chunks):
+        """The rows of a table from its compressed chunks."""
+        rows = []
+        for chunk in chunks:
+            count = min(table["rowsPerChunk"], table["rows"] - len(rows))
+            columns = table["columns"]
+            data = zlib.decompress(chunk)
+            planes = [data[1 + p * count * columns:][:count * columns] for p in range(data[0])]
+            above = [0] * columns
+            for row in range(count):
+                for column in range(columns):
+                    code = sum(plane[column * count + row] << 8 * p for p, plane in enumerate(planes))
+                    above[column] += code >> 1 if code & 1 == 0 else -(code + 1 >> 1)
+                first = above[0] % 2**32
+                rows.append([first] + [(value + first) % 2**32 for value in above[1:]])
+        return rows
+
+    def tables(self, html):
+        return {table["name"]: self.unpack(table, [
+            base64.b64decode(re.search(f'id="data-{table["name"]}-{i}">(.*?)</script>', html)[1])
+            for i in range(len(table["chunkBytes"]))]) for table in self.info(html)["tables"]}
+
+    def mesh(self):
+        """Points and cells (0-based) of a.mesh."""
+        lines = (self.folder / "a.mesh").read_text().split("\n")
+        def section(name):
+            begin = lines.index(name)
+            return [line.split() for line in lines[begin + 2:begin + 2 + int(lines[begin + 1])]]
+        points = [[float(word) for word in words[:3]] for words in section("Vertices")]
+        return points, [[int(word) - 1 for word in words[:8]] for words in section("Hexahedra")]
+
+    def test_page_holds_the_mesh(self):
+        output = self.run_command("view", "a.mesh").stdout
+        self.assertIn("a.mesh -> a.html", output)
+        html = (self.folder / "a.html").read_text()
+        info, tables = self.info(html), self.tables(html)
+        points, cells = self.mesh()
+        self.assertEqual(tables["cells"], cells)
+        self.assertEqual(len(tables["points"]), len(points))
+        for stored, point in zip(tables["points"], points):
+            for axis in range(3):
+                place = info["lower"][axis] + info["step"] * stored[axis]
+                self.assertLess(abs(place - point[axis]), 0.51 * info["step"])
+        summary = self.run_command("info", "a.mesh").stdout
+        minimum = float(re.search(r"at least (-?[\d.]+)", summary)[1])
+        self.assertAlmostEqual(min(row[0] for row in tables["quality"]) / 65534 * 2 - 1, minimum, 3)
+        self.assertIsNone(info["verification"])
+        # Nothing in the page leads to a network.
+        self.assertNotRegex(re.sub(r"http://www\.w3\.org/\S+", "", html), r"(src|href)=.https?:")
+
+    def test_page_tells_whether_mesh_and_map_agree(self):
+        self.run_command("view", "a.mesh", "--map", "map.hexex", "--scale", "2", "-o", "b.html")
+        self.assertTrue(self.info((self.folder / "b.html").read_text())["verification"]["passed"])
+        run = self.run_command("view", "a.mesh", "--map", "map.hexex", "-o", "c.html",
+                               expect=FAILURE)
+        self.assertIn("warning: The mesh does not agree with map.hexex", run.stderr)
+        self.assertFalse(self.info((self.folder / "c.html").read_text())["verification"]["passed"])
+
+    def test_page_knows_generators(self):
+        for extension in ["vtu", "ovmb"]:
+            self.run_command("extract", "map.hexex", "-o", f"b.{extension}", "--quiet")
+            self.run_command("view", f"b.{extension}", "-o", "b.html", "--quiet")
+            kinds = self.tables((self.folder / "b.html").read_text())["generator_kinds"]
+            self.assertEqual({kind for kind, in kinds}, {0, 1, 2, 3})
+
+    def test_page_problems(self):
+        self.assert_fails("view", "a.mesh", "-o", "a.mesh", expect=BAD_USAGE, words=["same file"])
+        self.assert_fails("view", "none.mesh", expect=FILE_PROBLEM, code="FileNotFound")
+        self.assert_fails("view", "map.hexex", expect=FILE_PROBLEM, code="FileUnsupported")
+        self.assert_fails("view", "a.mesh", "-o", "no/folder/a.html", expect=FILE_PROBLEM,
+                          code="FileWrite")
+        for arguments in [["--port", "80"], ["--serve", "-o", "a.html"], ["--scale", "0"],
+                          ["--serve", "--port", "70000"]]:
+            self.run_command("view", "a.mesh", *arguments, expect=BAD_USAGE)
+
+    def test_serve(self):
+        with subprocess.Popen([self.command, "view", "a.mesh", "--serve", "--quiet"],
+                              cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True) as process:
+            address = process.stdout.readline().strip()
+            if not address and "without a server" in process.stderr.read():
+                self.skipTest("this hexhex was built without a server")
+            try:
+                self.assertRegex(address, r"^http://127\.0\.0\.1:\d+/$")
+                with urllib.request.urlopen(address, timeout=60) as page:
+                    info = self.info(page.read().decode())
+                with urllib.request.urlopen(address + info["data"].lstrip("/"), timeout=60) as mesh:
+                    data = mesh.read()
+                self.assertEqual(len(data), sum(sum(t["chunkBytes"]) for t in info["tables"]))
+                at = sum(info["tables"][0]["chunkBytes"])
+                cells = info["tables"][1]
+                chunks = []
+                for size in cells["chunkBytes"]:
+                    chunks.append(data[at:at + size])
+                    at += size
+                self.assertEqual(self.unpack(cells, chunks), self.mesh()[1])
+                # A page from elsewhere that has got hold of this address may not read it.
+                request = urllib.request.Request(address, headers={"Host": "example.org"})
+                with self.assertRaises(urllib.error.HTTPError) as refused:
+                    urllib.request.urlopen(request, timeout=60)
+                self.assertEqual(refused.exception.code, 403)
+                refused.exception.close()
+                port = address.rstrip("/").rsplit(":", 1)[1]
+                run = self.run_command("view", "a.mesh", "--serve", "--port", port,
+                                       expect=BAD_USAGE)
+                self.assertIn("cannot be used", run.stderr)
+            finally:
+                process.send_signal(signal.SIGINT)
+                _, errors = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, SUCCESS, errors)
+        self.assertEqual(set(self.files()), {"map.hexex", "a.mesh"})
 
 
 if __name__ == "__main__":

@@ -32,8 +32,9 @@ std::set<std::array<Index, 2>> edgesOf(const HexMesh& mesh) {
   std::set<std::array<Index, 2>> edges;
   for (const Hex& cell : mesh.cells) {
     for (const auto& [a, b] : kEdges) {
-      edges.insert({std::min(cell[static_cast<std::size_t>(a)], cell[static_cast<std::size_t>(b)]),
-                    std::max(cell[static_cast<std::size_t>(a)], cell[static_cast<std::size_t>(b)])});
+      edges.insert(
+          {std::min(cell[static_cast<std::size_t>(a)], cell[static_cast<std::size_t>(b)]),
+           std::max(cell[static_cast<std::size_t>(a)], cell[static_cast<std::size_t>(b)])});
     }
   }
   return edges;

@@ -2,6 +2,7 @@
 // position, and the real ones that are not too large.
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -49,29 +50,44 @@ inline std::vector<SampleOptions> curvedOptions() {
   return all;
 }
 
+/// All kinds with all options; fewer, in turn, where effort is scaled down.
 inline std::vector<CurvedMap> generatedMaps() {
   std::vector<CurvedMap> maps;
+  const std::vector<SampleOptions> options = curvedOptions();
+  const auto count = static_cast<std::size_t>(cases(static_cast<int>(options.size())));
+  std::size_t turn = 0;
   for (const SampleKindName& kind : sampleKinds()) {
-    int number = 0;
-    for (const SampleOptions& options : curvedOptions()) {
-      maps.push_back({std::string(kind.name) + " " + std::to_string(number++),
-                      generateSample(kind.kind, options).map});
+    for (std::size_t i = 0; i < std::min(count, options.size()); ++i) {
+      const std::size_t number = (turn + i) % options.size();
+      maps.push_back({std::string(kind.name) + " " + std::to_string(number),
+                      generateSample(kind.kind, options[number]).map});
     }
+    ++turn;
   }
   return maps;
 }
 
-/// Real maps that exist here, those of less than about ten thousand cells.
+/// Real maps that exist here, those of less than about ten thousand cells; the first ones where
+/// effort is scaled down.
 inline std::vector<CurvedMap> realMaps() {
   const char* chosen = std::getenv("HEXHEX_DATA");
   const auto folder = std::filesystem::path(chosen != nullptr ? chosen : HEXHEX_DATA_DIR) / "maps";
+  const std::vector<const char*> names = {"fandisk_r0.01",
+                                          "s15c_cylinder_r0.01",
+                                          "fanpart_r0.1",
+                                          "s17c_sphere_r0.1",
+                                          "s01c_cube_r1",
+                                          "rockerarm",
+                                          "double-torus_r1",
+                                          "fandisk_r1",
+                                          "s17c_sphere_r1",
+                                          "prisma_r1",
+                                          "n04c_transition_prism_r1"};
+  const auto count = static_cast<std::size_t>(cases(static_cast<int>(names.size())));
   std::vector<CurvedMap> maps;
-  for (const char* name :
-       {"s17c_sphere_r0.1", "s17c_sphere_r1", "s15c_cylinder_r0.01", "fanpart_r0.1", "prisma_r1",
-        "double-torus_r1", "n04c_transition_prism_r1", "s01c_cube_r1", "fandisk_r0.01",
-        "fandisk_r1", "rockerarm"}) {
-    const std::filesystem::path file = folder / (std::string(name) + ".hexex");
-    if (std::filesystem::exists(file)) maps.push_back({name, readMap(file)});
+  for (std::size_t i = 0; i < std::min(count, names.size()); ++i) {
+    const std::filesystem::path file = folder / (std::string(names[i]) + ".hexex");
+    if (std::filesystem::exists(file)) maps.push_back({names[i], readMap(file)});
   }
   return maps;
 }

@@ -73,7 +73,7 @@ TEST(Lagrange, NodesAreThoseOfTheFinerMesh) {
   int number = 0;
   for (const CurvedMap& map : generatedMaps()) {
     SCOPED_TRACE(map.name);
-    examine(map.map, 2 + number++ % 3, 1);
+    examine(map.map, 2 + number++ % 2, 1);
   }
 }
 
@@ -82,9 +82,9 @@ TEST(Lagrange, RealMaps) {
   if (maps.empty()) GTEST_SKIP() << "skipped: no real maps here";
   for (const CurvedMap& map : maps) {
     SCOPED_TRACE(map.name);
-    const bool small = straight(map.map, 1).cells.size() < 1000;
-    examine(map.map, 2, 1);
-    if (small) examine(map.map, 3, 2);
+    const std::size_t cells = straight(map.map, 1).cells.size();
+    if (cells < 3000) examine(map.map, 2, 1);
+    if (cells < 300) examine(map.map, 3, 2);
   }
 }
 
@@ -157,18 +157,26 @@ TEST(LagrangeQuality, KnownCells) {
     const auto quality = [&](const auto& place) {
       return scaledJacobians(oneCell(order, place), context).front();
     };
-    EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{3 * x, 2 * y, z}; }), 1,
-                1e-12);
+    EXPECT_NEAR(quality([](double x, double y, double z) {
+                  return Vec3{3 * x, 2 * y, z};
+                }),
+                1, 1e-12);
     // Sheared by 45 degrees everywhere.
-    EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{x + y, y, z}; }),
+    EXPECT_NEAR(quality([](double x, double y, double z) {
+                  return Vec3{x + y, y, z};
+                }),
                 std::sqrt(0.5), 1e-12);
     EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{-x, y, z}; }), -1, 1e-12);
     if (order < 2) continue;
     // x = s - s^2 turns back in the middle: the determinant at the far side is negative.
-    EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{x - x * x, y, z}; }), -1,
-                1e-12);
+    EXPECT_NEAR(quality([](double x, double y, double z) {
+                  return Vec3{x - x * x, y, z};
+                }),
+                -1, 1e-12);
     // The column of x is (1, 2 x) and its angle to y's is smallest at x = 1.
-    EXPECT_NEAR(quality([](double x, double y, double z) { return Vec3{x, y + x * x, z}; }),
+    EXPECT_NEAR(quality([](double x, double y, double z) {
+                  return Vec3{x, y + x * x, z};
+                }),
                 1 / std::sqrt(5.0), 1e-12);
   }
 }

@@ -24,6 +24,7 @@
 #include <io/ovm.hpp>
 #include <io/vtk_legacy.hpp>
 #include <io/vtu.hpp>
+#include <io/zlib_blocks.hpp>
 
 namespace {
 
@@ -33,6 +34,8 @@ using namespace hexhex;
 /// the widest element over its shortest spelling: 96 bytes of a tet's parameters over 32.
 constexpr std::size_t kConstant = std::size_t{4} << 20;
 constexpr std::size_t kFactor = 64;
+// A compressed file takes up to this many times as much.
+constexpr std::string_view kCompressed = "vtkZLibDataCompressor";
 
 std::atomic<std::size_t> allowed{static_cast<std::size_t>(-1)};
 
@@ -82,6 +85,14 @@ void read(std::string_view text) {
   examine(parse(text, "input", context));
 }
 
+// Maps in arrays of the usual name.
+TetMap parseVtkMap(std::string_view text, const std::string& fileName, Context& context) {
+  return parseVtkLegacyMap(text, fileName, {}, context);
+}
+TetMap parseVtuMapOf(std::string_view text, const std::string& fileName, Context& context) {
+  return parseVtuMap(text, fileName, {}, context);
+}
+
 struct Reader {
   std::string_view name;
   void (*read)(std::string_view text);
@@ -91,6 +102,7 @@ constexpr std::array kReaders = {
     Reader{"hexex", read<parseHexex>},      Reader{"mesh", read<parseMedit>},
     Reader{"meshb", read<parseMeshb>},      Reader{"msh", read<parseGmsh>},
     Reader{"vtk", read<parseVtkLegacy>},    Reader{"vtu", read<parseVtu>},
+    Reader{"vtk-map", read<parseVtkMap>},   Reader{"vtu-map", read<parseVtuMapOf>},
     Reader{"ovm-map", read<parseOvmMap>},   Reader{"ovm", read<parseOvmHexMesh>},
     Reader{"ovmb-map", read<parseOvmbMap>}, Reader{"ovmb", read<parseOvmbHexMesh>}};
 
@@ -119,9 +131,11 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
-  allowed = kConstant + kFactor * size;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const bool compressed = text.find(kCompressed) != std::string_view::npos;
+  allowed = kConstant + kFactor * (compressed ? kLargestZlibRatio : 1) * size;
   try {
-    chosen->read({reinterpret_cast<const char*>(data), size});
+    chosen->read(text);
   } catch (const hexhex::Error&) {
     // What most files deserve.
   }

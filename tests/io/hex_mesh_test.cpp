@@ -83,13 +83,13 @@ TEST(HexMeshFiles, UnknownExtensionsNameTheKnownOnes) {
   for (const char* name : {"a.stl", "a", "a.", ".mesh", "a.hexex"}) {
     const Failure failure = failureOf([&] { requireHexMeshFormat(name); });
     EXPECT_EQ(failure.code, ErrorCode::FileUnsupported);
-    EXPECT_NE(failure.sentence.find(".mesh, .vtu"), std::string::npos) << failure.sentence;
+    EXPECT_NE(failure.sentence.find(".mesh, .meshb, .vtu"), std::string::npos) << failure.sentence;
     EXPECT_EQ(failureOf([&] { writeHexMesh(HexMesh{}, name); }).code, ErrorCode::FileUnsupported);
     EXPECT_EQ(failureOf([&] { static_cast<void>(readHexMesh(name)); }).code,
               ErrorCode::FileUnsupported);
   }
   EXPECT_NO_THROW(requireHexMeshFormat("some.folder/a.b.MESH"));
-  const Failure failure = failureOf([] { static_cast<void>(readMap("a.vtu")); });
+  const Failure failure = failureOf([] { static_cast<void>(readMap("a.msh")); });
   EXPECT_EQ(failure.code, ErrorCode::FileUnsupported);
   EXPECT_NE(failure.sentence.find(".hexex"), std::string::npos);
   EXPECT_EQ(failureOf([] { writeMap(TetMap{}, "a.mesh"); }).code, ErrorCode::FileUnsupported);
@@ -309,7 +309,7 @@ TEST(Vtu, UnsupportedAndBrokenFilesSaySo) {
       {good.substr(0, good.find("<Piece")), ErrorCode::FileSyntax, 0, "no tag Piece"},
       {replaced(good, "'UnstructuredGrid'", "'PolyData'"), ErrorCode::FileUnsupported, 3,
        "\"PolyData\""},
-      {replaced(good, "version=\"0.1\"", "compressor=\"vtkZLibDataCompressor\""),
+      {replaced(good, "version=\"0.1\"", "compressor=\"vtkLZ4DataCompressor\""),
        ErrorCode::FileUnsupported, 3, "compressed"},
       {replaced(good, "Little", "Middle"), ErrorCode::FileUnsupported, 3, "byte order"},
       {replaced(good, "</Piece>", "</Piece><Piece>"), ErrorCode::FileUnsupported, 14, "pieces"},
@@ -321,7 +321,9 @@ TEST(Vtu, UnsupportedAndBrokenFilesSaySo) {
       {replaced(good, ".5 .5", ".5 x"), ErrorCode::FileSyntax, 7, "\"x\""},
       {replaced(good, ".5 .5", ".5 nan"), ErrorCode::NotFinite, 7, "not finite"},
       {replaced(good, "\"types\" format=\"ascii\"", "\"types\" format=\"binary\""),
-       ErrorCode::FileUnsupported, 12, "\"binary\""},
+       ErrorCode::FileSyntax, 12, "incomplete"},
+      {replaced(good, "\"types\" format=\"ascii\"", "\"types\" format=\"packed\""),
+       ErrorCode::FileUnsupported, 12, "\"packed\""},
       {replaced(good, "\"types\"", "\"kinds\""), ErrorCode::FileSyntax, 0,
        "no array of cell types"},
       {replaced(good, "10 12<", "10 11<"), ErrorCode::FileUnsupported, 0, "no hexahedra"},
@@ -331,8 +333,8 @@ TEST(Vtu, UnsupportedAndBrokenFilesSaySo) {
       {replaced(good, "6 7<", "6 9<"), ErrorCode::IndexOutOfRange, 0, "cell 1 names point 9"},
       {replaced(good, "6 7<", "6 -7<"), ErrorCode::IndexOutOfRange, 0, "cell 1 names point -7"},
       {replaced(good, "6 7<", "6 7.5<"), ErrorCode::FileSyntax, 10, "\"7.5\""},
-      {replaced(good, "</VTKFile>", "<AppendedData encoding=\"base64\">_"),
-       ErrorCode::FileUnsupported, 16, "base64"},
+      {replaced(good, "</VTKFile>", "<AppendedData encoding=\"base65\">_"),
+       ErrorCode::FileUnsupported, 16, "base65"},
   };
   for (const BadFile& file : files) {
     const Failure failure = failureOf([&] { static_cast<void>(vtu(file.text)); });

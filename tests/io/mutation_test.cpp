@@ -17,6 +17,7 @@
 #include <io/meshb.hpp>
 #include <io/vtk_legacy.hpp>
 #include <io/vtu.hpp>
+#include <io/zlib_blocks.hpp>
 
 namespace {
 std::atomic<std::size_t> largestAllocation{0};
@@ -160,6 +161,29 @@ TEST(DamagedFiles, VtkLegacy) {
   std::string binary = text;
   binary.replace(binary.find("ASCII"), 5, "BINARY");
   damage(binary, parseVtkLegacy);
+}
+
+TEST(DamagedFiles, MapsInVtkFiles) {
+  const TemporaryFolder folder;
+  Context context;
+  for (const char* format : {"vtk", "vtk-binary"}) {
+    WriteOptions options;
+    options.format = format;
+    writeMap(smallMap(), folder / "a.vtk", options, context);
+    damage(contentOf(folder / "a.vtk"),
+           [](const std::string& text, const std::string& name, Context& reading) {
+             return parseVtkLegacyMap(text, name, {}, reading);
+           });
+  }
+  for (const bool compress : {false, hasZlib()}) {
+    WriteOptions options;
+    options.compress = compress;
+    writeMap(smallMap(), folder / "a.vtu", options, context);
+    damage(contentOf(folder / "a.vtu"),
+           [](const std::string& text, const std::string& name, Context& reading) {
+             return parseVtuMap(text, name, {}, reading);
+           });
+  }
 }
 
 TEST(DamagedFiles, TruncatedAtEveryByteOnDiskToo) {

@@ -10,8 +10,10 @@
 #include <gtest/gtest.h>
 
 #include <hexhex/io.hpp>
+#include <hexhex/samples.hpp>
 
 #include <io/io_test_support.hpp>
+#include <io/zlib_blocks.hpp>
 
 namespace hexhex::test {
 namespace {
@@ -40,9 +42,21 @@ std::string interpreter() {
   return chosen != nullptr ? chosen : "python3";
 }
 
+/// Runs a script of this folder.
+/// @return its exit code
+int runScript(const std::string& name, const std::string& arguments, const std::string& errors) {
+  const std::filesystem::path script = std::filesystem::path(__FILE__).parent_path() / name;
+  const std::string command = interpreter() + " '" + script.string() + "' " + arguments +
+                              " > /dev/null 2> '" + errors + "'";
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+bool isMissing(int code) { return code == kNotInstalled || code == 127; }
+
 struct Check {
   std::string program;
-  std::string format;  ///< as in WriteOptions
+  std::string format;  ///< as in WriteOptions; "-zlib" behind it: compressed
   std::string file;
   std::string groups;  ///< what the program says of meshWithFeatures()
 };
@@ -59,18 +73,16 @@ TEST_P(OtherPrograms, ReadWhatWeWrite) {
   const HexMesh mesh = meshWithFeatures();
   Context context;
   WriteOptions options;
-  options.format = check.format;
+  options.compress = check.format.ends_with("-zlib");
+  options.format = std::string_view(check.format).substr(0, check.format.find("-zlib"));
+  if (options.compress && !hasZlib()) GTEST_SKIP() << "built without zlib";
   writeHexMesh(mesh, folder / check.file, options, context);
 
-  const std::string script =
-      (std::filesystem::path(__FILE__).parent_path() / "read_with.py").string();
   const std::string output = (folder / "out").string();
-  const std::string command = interpreter() + " '" + script + "' " + check.program + " '" +
-                              (folder / check.file).string() + "' '" + output +
-                              "' > /dev/null 2> '" + output + ".errors'";
-  const int status = std::system(command.c_str());
-  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  if (code == kNotInstalled || code == 127) {
+  const int code = runScript(
+      "read_with.py", check.program + " '" + (folder / check.file).string() + "' '" + output + "'",
+      output + ".errors");
+  if (isMissing(code)) {
     GTEST_SKIP() << check.program << " for " << interpreter() << " is not installed";
   }
   ASSERT_EQ(code, 0) << contentOf(output + ".errors");
@@ -92,24 +104,94 @@ const std::string kNumbered = "3 2\n7 2\n8 29\n";
 const std::string kNodeSets =
     "N_BOUNDARY 34\nN_CURVE_5 3\nN_POINT_1 2\nN_POINT_2 1\nN_SURFACE_3 8\nN_SURFACE_7 6\n";
 
-INSTANTIATE_TEST_SUITE_P(Formats, OtherPrograms,
-                         testing::Values(Check{"meshio", "msh", "a.msh", kNamed},
-                                         Check{"meshio", "msh41-ascii", "a.msh", kNamed},
-                                         Check{"meshio", "msh22-ascii", "a.msh", kNamed},
-                                         Check{"gmsh", "msh", "a.msh", kNamed},
-                                         Check{"gmsh", "msh41-ascii", "a.msh", kNamed},
-                                         Check{"gmsh", "msh22-ascii", "a.msh", kNamed},
-                                         Check{"meshio", "meshb", "a.meshb", kNumbered},
-                                         Check{"meshio", "vtk", "a.vtk", ""},
-                                         Check{"vtk", "vtk", "a.vtk", ""},
-                                         Check{"mfem", "vtk", "a.vtk", "1 32\n"},
-                                         Check{"meshio", "inp", "a.inp", kNodeSets},
-                                         Check{"mfem", "mfem", "a.mesh", kNumbered}),
-                         [](const auto& test) {
-                           std::string name = test.param.program + "_" + test.param.format;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Formats, OtherPrograms,
+    testing::Values(
+        Check{"meshio", "msh", "a.msh", kNamed}, Check{"meshio", "msh41-ascii", "a.msh", kNamed},
+        Check{"meshio", "msh22-ascii", "a.msh", kNamed}, Check{"gmsh", "msh", "a.msh", kNamed},
+        Check{"gmsh", "msh41-ascii", "a.msh", kNamed},
+        Check{"gmsh", "msh22-ascii", "a.msh", kNamed},
+        Check{"meshio", "meshb", "a.meshb", kNumbered}, Check{"meshio", "vtk", "a.vtk", ""},
+        Check{"meshio", "vtk-binary", "a.vtk", ""}, Check{"vtk", "vtk-binary", "a.vtk", ""},
+        Check{"vtk", "vtu", "a.vtu", ""}, Check{"vtk", "vtu-zlib", "a.vtu", ""},
+        Check{"meshio", "vtu", "a.vtu", ""}, Check{"meshio", "vtu-zlib", "a.vtu", ""},
+        Check{"vtk", "vtk", "a.vtk", ""}, Check{"mfem", "vtk", "a.vtk", "1 32\n"},
+        Check{"meshio", "inp", "a.inp", kNodeSets}, Check{"mfem", "mfem", "a.mesh", kNumbered}),
+    [](const auto& test) {
+      std::string name = test.param.program + "_" + test.param.format;
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name;
+    });
+
+TEST(OtherProgramsAndPieces, GmshReadsWhatIsWrittenInPieces) {
+  const TemporaryFolder folder;
+  const HexMesh mesh = gridMesh(3, 2, 2);
+  Context context;
+  writeHexMesh(mesh, folder / "a.vtu");
+  readHexMeshTo(*openMeshSink(folder / "a.msh", context), folder / "a.vtu", context);
+  const std::string output = (folder / "out").string();
+  const int code =
+      runScript("read_with.py", "gmsh '" + (folder / "a.msh").string() + "' '" + output + "'",
+                output + ".errors");
+  if (isMissing(code)) GTEST_SKIP() << "Gmsh for " << interpreter() << " is not installed";
+  ASSERT_EQ(code, 0) << contentOf(output + ".errors");
+  const std::string points(reinterpret_cast<const char*>(mesh.points.data()),
+                           mesh.points.size() * sizeof(Vec3));
+  EXPECT_EQ(contentOf(output + ".points"), points);
+}
+
+/// Maps that were read and written again by another program.
+class OtherProgramsAndMaps : public testing::TestWithParam<std::string> {};
+
+TEST_P(OtherProgramsAndMaps, GiveBackWhatTheyGot) {
+  const TemporaryFolder folder;
+  const std::filesystem::path written = folder / "written";
+  std::filesystem::create_directory(written);
+  SampleOptions sample;
+  sample.charts = ChartStyle::Random;
+  sample.jitter = 0.3;
+  const TetMap map = generateSample(SampleKind::Sphere, sample).map;
+  std::string arguments = GetParam() + " '" + written.string() + "'";
+  for (const std::string format : {"vtk", "vtk-binary", "vtu", "vtu-zlib"}) {
+    Context context;
+    WriteOptions options;
+    options.compress = format == "vtu-zlib" && hasZlib();
+    const std::string_view name = std::string_view(format).substr(0, format.find("-zlib"));
+    options.format = name;
+    const std::filesystem::path file =
+        folder / (format + "." + std::string(name.substr(0, name.find('-'))));
+    writeMap(map, file, options, context);
+    arguments += " '" + file.string() + "'";
+  }
+  const int code = runScript("maps_with.py", arguments, (folder / "errors").string());
+  if (isMissing(code)) {
+    GTEST_SKIP() << GetParam() << " for " << interpreter() << " is not installed";
+  }
+  ASSERT_EQ(code, 0) << contentOf(folder / "errors");
+  std::size_t files = 0;
+  Context context;
+  for (const auto& entry : std::filesystem::directory_iterator(written)) {
+    const std::filesystem::path& file = entry.path();
+    SCOPED_TRACE(file.filename().string());
+    ++files;
+    if (file.filename().string().starts_with("tets")) {
+      const TetMesh tets = readTetMesh(file, {}, context);
+      // As text, meshio writes 16 digits.
+      if (file.extension() != ".mesh") expectSameBits(tets.points, map.points);
+      EXPECT_EQ(tets.tets, map.tets);
+      continue;
+    }
+    if (!hasZlib() && file.filename().string().find("None") == std::string::npos) continue;
+    const TetMap read = readMap(file);
+    expectSameBits(read.points, map.points);
+    EXPECT_EQ(read.tets, map.tets);
+    EXPECT_EQ(read.parameters, map.parameters);
+  }
+  EXPECT_GE(files, 6U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Programs, OtherProgramsAndMaps, testing::Values("vtk", "meshio"),
+                         [](const auto& test) { return test.param; });
 
 }  // namespace
 }  // namespace hexhex::test

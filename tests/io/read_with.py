@@ -39,8 +39,10 @@ def read_with_meshio(file):
 def read_with_vtk(file):
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOLegacy import vtkUnstructuredGridReader
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-    reader = vtkUnstructuredGridReader()
+    xml = file.endswith(".vtu")
+    reader = vtkXMLUnstructuredGridReader() if xml else vtkUnstructuredGridReader()
     reader.SetFileName(file)
     reader.Update()
     grid = reader.GetOutput()

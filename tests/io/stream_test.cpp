@@ -88,7 +88,7 @@ TEST(Stream, SinksWriteWhatWritersWrite) {
   for (int i = 0; i < 60; ++i) {
     const HexMesh mesh = randomMesh(random, i % 2 == 0);
     const std::size_t largest = 1 + random.below(i % 3 == 0 ? 5 : 3000);
-    for (const std::string extension : {".vtu", ".mesh"}) {
+    for (const std::string extension : {".vtu", ".mesh", ".vtk"}) {
       Context context(1 + i % 3);
       writeHexMesh(mesh, folder / ("whole" + extension), context);
       const std::unique_ptr<MeshSink> sink = openMeshSink(folder / ("pieces" + extension), context);
@@ -97,6 +97,10 @@ TEST(Stream, SinksWriteWhatWritersWrite) {
       const std::string pieces = contentOf(folder / ("pieces" + extension));
       if (extension == ".mesh") {
         EXPECT_TRUE(pieces == withoutQuads(whole));
+        continue;
+      }
+      if (extension == ".vtk") {
+        EXPECT_TRUE(pieces == whole);
         continue;
       }
       EXPECT_EQ(pieces.find("scaled_jacobian"), std::string::npos);
@@ -109,14 +113,36 @@ TEST(Stream, SinksWriteWhatWritersWrite) {
       EXPECT_EQ(read.cells, mesh.cells);
     }
   }
-  EXPECT_EQ(folder.fileCount(), 4U);
+  EXPECT_EQ(folder.fileCount(), 6U);
+}
+
+TEST(Stream, EveryFormatThatStreamsGivesTheMeshBack) {
+  const TemporaryFolder folder;
+  Random random(29);
+  for (const FileFormat& format : fileFormats()) {
+    if (!format.streams) continue;
+    SCOPED_TRACE(std::string(format.name));
+    WriteOptions writing;
+    writing.format = format.name;
+    ReadOptions reading;
+    reading.format = format.name;
+    for (int i = 0; i < 12; ++i) {
+      Context context(1 + i % 3);
+      const HexMesh mesh = randomMesh(random, i % 2 == 0);
+      send(*openMeshSink(folder / "a", writing, context), mesh, random, 1 + random.below(2000),
+           i % 4 == 0);
+      const HexMesh read = readHexMesh(folder / "a", reading, context);
+      expectSameBits(read.points, mesh.points);
+      EXPECT_EQ(read.cells, mesh.cells);
+    }
+  }
 }
 
 TEST(Stream, EmptyMeshes) {
   const TemporaryFolder folder;
   Context context;
   Random random(1);
-  for (const char* name : {"a.vtu", "a.mesh"}) {
+  for (const char* name : {"a.vtu", "a.mesh", "a.meshb", "a.msh", "a.vtk"}) {
     send(*openMeshSink(folder / name, context), HexMesh{}, random, 1, false);
     EXPECT_TRUE(readHexMesh(folder / name).cells.empty());
     HexMesh pointsOnly;
@@ -406,7 +432,8 @@ TEST(Stream, FilesThatCannotBeMade) {
   const Failure whole =
       failureOf([&] { static_cast<void>(openMeshSink(folder / "a.ovm", context)); });
   EXPECT_EQ(whole.code, ErrorCode::FileUnsupported);
-  EXPECT_NE(whole.sentence.find("can: .mesh, .vtu."), std::string::npos) << whole.sentence;
+  EXPECT_NE(whole.sentence.find("can: mesh, meshb, vtu, vtk, vtk-binary, msh."), std::string::npos)
+      << whole.sentence;
   std::filesystem::create_symlink("/dev/null", folder / "null.vtu");
   const Failure device =
       failureOf([&] { static_cast<void>(openMeshSink(folder / "null.vtu", context)); });

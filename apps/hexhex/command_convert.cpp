@@ -1,0 +1,143 @@
+// `hexhex convert`: a map or a hexahedral mesh into another format.
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include <fmt/core.h>
+
+#include <hexhex/error.hpp>
+#include <hexhex/io.hpp>
+
+#include "command.hpp"
+#include "exit_codes.hpp"
+#include "interrupt.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "shared_options.hpp"
+
+namespace hexhex::command {
+namespace {
+
+struct Arguments {
+  MapSource input;
+  std::string output;
+  OutputChoice choice;
+  int threads = 0;
+  double patchAngle = WriteOptions{}.patchAngle;
+  bool stream = false;
+  bool quiet = false;
+};
+
+/// That neither maps nor hex meshes can be written is known before anything is read.
+void requireAnyFormat(const Arguments& arguments) {
+  try {
+    requireHexMeshFormat(arguments.output, arguments.choice.options());
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::FileUnsupported) throw;
+    requireMapFormat(arguments.output, arguments.choice.options());
+  }
+}
+
+/// Calls require(), and says of its error what the input is.
+template <class F>
+void requireFor(const Arguments& arguments, const char* content, const F& require) {
+  try {
+    require(arguments.output, arguments.choice.options());
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::FileUnsupported) throw;
+    throw Error(error.code(), fmt::format("{} holds {}, which cannot be written so. {}",
+                                          arguments.input.description(), content, error.what()));
+  }
+}
+
+std::variant<TetMap, HexMesh> readInput(const Arguments& arguments, Context& context) {
+  if (arguments.input.isPair()) return readMap(arguments.input, context);
+  return readMapOrHexMesh(arguments.input.file, arguments.input.options(), context);
+}
+
+/// What was converted.
+std::string convertWhole(const Arguments& arguments, Context& context) {
+  const auto content = readInput(arguments, context);
+  WriteOptions writing = arguments.choice.options();
+  writing.mapArray = arguments.input.mapArray;
+  writing.patchAngle = arguments.patchAngle;
+  if (const auto* const map = std::get_if<TetMap>(&content)) {
+    requireFor(arguments, "a map", requireMapFormat);
+    writeMap(*map, arguments.output, writing, context);
+    return fmt::format("a map of {}, {}", counted(map->tets.size(), "tet"),
+                       counted(map->points.size(), "point"));
+  }
+  const auto& mesh = std::get<HexMesh>(content);
+  requireFor(arguments, "a hexahedral mesh",
+             [](const std::filesystem::path& file, const WriteOptions& options) {
+               requireHexMeshFormat(file, options);
+             });
+  writeHexMesh(mesh, arguments.output, writing, context);
+  return fmt::format("a mesh of {}, {} vertices", counted(mesh.cells.size(), "cell"),
+                     mesh.points.size());
+}
+
+std::string convertInPieces(const Arguments& arguments, Context& context) {
+  const std::unique_ptr<MeshSink> sink =
+      openMeshSink(arguments.output, arguments.choice.options(), context);
+  readHexMeshTo(*sink, arguments.input.file, arguments.input.options(), context);
+  return "a mesh, piece by piece";
+}
+
+int run(const Arguments& arguments) {
+  for (const std::filesystem::path& input : arguments.input.files()) {
+    requireDifferent(input, arguments.output);
+  }
+  if (arguments.stream && arguments.input.isPair()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--stream converts hexahedral meshes, but --tets and --polycube are a map.");
+  }
+  requireAnyFormat(arguments);
+  requireWritable(arguments.output);
+  ProgressDisplay progress(arguments.quiet);
+  Context context(arguments.threads, progress.callback());
+  const CancelOnSignal cancelOnSignal(context);
+  const std::string what = (arguments.stream ? convertInPieces : convertWhole)(arguments, context);
+  progress.clear();
+  if (arguments.quiet) return kSuccess;
+  std::error_code unknown;  // the size of a pipe
+  const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
+  fmt::print("{} -> {}: {}{}\n", arguments.input.description(), arguments.output, what,
+             unknown ? "" : ", " + bytesAsText(bytes));
+  return kSuccess;
+}
+
+}  // namespace
+
+Command addConvert(CLI::App& app) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const parser =
+      app.add_subcommand("convert", "Write a map or a hexahedral mesh in another format");
+  addMapSourceBefore(*parser, arguments->input, "INPUT", arguments->output, "OUTPUT",
+                     "The file to write");
+  addOutputChoice(*parser, arguments->choice);
+  parser
+      ->add_option("--input-format", arguments->input.format,
+                   "Read this format, whatever the extension")
+      ->option_text("NAME");
+  parser
+      ->add_option("--patch-angle", arguments->patchAngle,
+                   "Where no faces are tagged, group boundary quads by\n"
+                   "patches that turn by at most this angle; 0: one group")
+      ->option_text("DEGREES [40]");
+  addThreads(*parser, arguments->threads);
+  parser->add_flag("--stream", arguments->stream,
+                   "Read and write a mesh piece by piece, for meshes larger\n"
+                   "than the memory, from .vtu to .vtu, .mesh, .meshb, .vtk\n"
+                   "or .msh; without boundary quads and quality");
+  parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  parser->footer(
+      "Maps become maps, and hexahedral meshes become hexahedral meshes: the input's content "
+      "decides.\n`hexhex formats` lists the formats.\n\nExamples:\n"
+      "  hexhex convert sphere.vtu sphere.msh\n"
+      "  hexhex convert --tets ball.mesh --polycube cube.mesh ball.hexex");
+  return {parser, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace hexhex::command

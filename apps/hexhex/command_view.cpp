@@ -1,0 +1,48 @@
+// `hexhex view`: a page that shows a mesh in any browser.
+#include <memory>
+
+#include "command.hpp"
+#include "shared_options.hpp"
+#include "view_page.hpp"
+
+namespace hexhex::command {
+
+Command addView(CLI::App& app) {
+  const auto arguments = std::make_shared<ViewArguments>();
+  CLI::App* const parser =
+      app.add_subcommand("view", "Write a page that shows a mesh in any browser");
+  parser
+      ->add_option("MESH", arguments->mesh,
+                   "The mesh, in any format that `hexhex info` reads;\n.vtu, .ovm and .ovmb also "
+                   "tell where vertices\ncame from")
+      ->required()
+      ->option_text("FILE REQUIRED");
+  CLI::Option* const output =
+      parser->add_option("-o,--output", arguments->page, "The page [the mesh's name with .html]")
+          ->option_text("FILE");
+  parser
+      ->add_option("--map", arguments->map,
+                   "The map that the mesh came from: the page tells\nwhether they agree")
+      ->option_text("FILE");
+  addScale(*parser, arguments->options.scale, "The scale that the mesh was extracted with");
+  addTolerance(*parser, arguments->options.tolerance);
+  addThreads(*parser, arguments->threads);
+  CLI::Option* const serve =
+      parser
+          ->add_flag("--serve", arguments->serve,
+                     "Serve the page to browsers of this machine only, until\nCtrl-C, instead of "
+                     "writing it: for very large meshes")
+          ->excludes(output);
+  parser->add_option("--port", arguments->port, "Port of --serve; 0 = any free one")
+      ->check(wholeNumberFrom(0))
+      ->check(CLI::Range(0, 65535))
+      ->needs(serve)
+      ->option_text("INTEGER [0]");
+  parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  parser->footer(
+      "Exit code 4: the mesh does not agree with the map; the page is written and says so.\n\n"
+      "Example:\n  hexhex view sphere.vtu --map sphere.hexex --scale 2");
+  return {parser, [arguments] { return view(*arguments); }};
+}
+
+}  // namespace hexhex::command

@@ -1,0 +1,25 @@
+// What `hexhex view` does after its options are known.
+#pragma once
+
+#include <string>
+
+#include <hexhex/verify.hpp>
+
+namespace hexhex::command {
+
+struct ViewArguments {
+  std::string mesh;
+  std::string page;  ///< empty: the mesh's name with .html
+  std::string map;   ///< empty: none
+  VerifyOptions options;
+  int threads = 0;
+  bool serve = false;
+  int port = 0;  ///< 0: any free one
+  bool quiet = false;
+};
+
+/// Writes or serves the page; returns the exit code.
+/// @throws Error  FileUnsupported if the command was built without the viewer
+int view(const ViewArguments& arguments);
+
+}  // namespace hexhex::command

@@ -1,0 +1,15 @@
+# Can the viewer page be built here? Sets HEXHEX_HAS_VIEWER, HEXHEX_NPM and HEXHEX_NODE.
+set(has_viewer OFF)
+if(HEXHEX_BUILD_VIEWER)
+  find_program(HEXHEX_NPM npm)
+  find_program(HEXHEX_NODE NAMES node nodejs)
+  find_package(ZLIB QUIET)
+  find_package(nlohmann_json QUIET)
+  if(HEXHEX_NPM AND HEXHEX_NODE AND ZLIB_FOUND AND nlohmann_json_FOUND)
+    set(has_viewer ON)
+  else()
+    message(STATUS "hexhex: without `hexhex view`, which takes npm, node, zlib and nlohmann-json")
+  endif()
+endif()
+# In the cache, where scripts find it.
+set(HEXHEX_HAS_VIEWER ${has_viewer} CACHE INTERNAL "The viewer page is built")

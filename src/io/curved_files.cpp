@@ -1,0 +1,85 @@
+// The table of formats for curved meshes, by extension.
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <hexhex/curved.hpp>
+#include <hexhex/error.hpp>
+
+#include <io/lagrange_files.hpp>
+#include <io/piecewise_ovmb.hpp>
+#include <io/piecewise_vtk.hpp>
+
+namespace hexhex {
+
+namespace {
+
+using PiecewiseWriter = void (*)(const PiecewiseLinearMesh&, const std::filesystem::path&,
+                                 Context&);
+using LagrangeWriter = void (*)(const LagrangeMesh&, const std::filesystem::path&,
+                                const WriteOptions&, Context&);
+
+template <class Writer>
+struct Format {
+  std::string_view extension;
+  Writer write;
+};
+
+constexpr std::array<Format<PiecewiseWriter>, 3> kArcFormats = {
+    {{".vtu", writeArcsVtu}, {".vtp", writeArcsVtp}, {".ovmb", writeArcsOvmb}}};
+constexpr std::array<Format<PiecewiseWriter>, 3> kPatchFormats = {
+    {{".vtu", writePatchesVtu}, {".vtp", writePatchesVtp}, {".ovmb", writePatchesOvmb}}};
+constexpr std::array<Format<LagrangeWriter>, 3> kLagrangeFormats = {
+    {{".vtu", writeLagrangeVtu}, {".msh", writeLagrangeGmsh}, {".mesh", writeLagrangeMfem}}};
+
+template <class Formats>
+auto find(const Formats& formats, const std::filesystem::path& file, const char* what) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  std::string known;
+  for (const auto& format : formats) {
+    if (format.extension == extension) return format.write;
+    known += (known.empty() ? "" : ", ") + std::string(format.extension);
+  }
+  throw Error(ErrorCode::FileUnsupported, file.string() + ": the extension \"" + extension +
+                                              "\" is no format of " + what + ". Formats: " + known +
+                                              ".");
+}
+
+constexpr const char* kArcs = "arcs";
+constexpr const char* kPatches = "patches";
+constexpr const char* kCells = "cells of higher order";
+
+}  // namespace
+
+void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
+               Context& context) {
+  find(kArcFormats, file, kArcs)(mesh, file, context);
+}
+
+void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
+                  Context& context) {
+  find(kPatchFormats, file, kPatches)(mesh, file, context);
+}
+
+void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                       const WriteOptions& options, Context& context) {
+  find(kLagrangeFormats, file, kCells)(mesh, file, options, context);
+}
+
+void requireArcFormat(const std::filesystem::path& file) {
+  static_cast<void>(find(kArcFormats, file, kArcs));
+}
+
+void requirePatchFormat(const std::filesystem::path& file) {
+  static_cast<void>(find(kPatchFormats, file, kPatches));
+}
+
+void requireLagrangeFormat(const std::filesystem::path& file) {
+  static_cast<void>(find(kLagrangeFormats, file, kCells));
+}
+
+}  // namespace hexhex

@@ -1,0 +1,23 @@
+// Lagrange cells in files.
+#pragma once
+
+#include <filesystem>
+
+#include <hexhex/curved.hpp>
+
+namespace hexhex {
+
+/// `.vtu`: cell type 72, with the arrays of straight meshes.
+void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                      const WriteOptions& options, Context& context);
+
+/// MSH 4.1 as text: one volume with all hexahedra, without boundary.
+void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                       const WriteOptions& options, Context& context);
+
+/// MFEM: boundary quads with attributes as in straight meshes; nodes as a grid function of the
+/// space L2 with equidistant nodes, ends included, which lists them cell by cell.
+void writeLagrangeMfem(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                       const WriteOptions& options, Context& context);
+
+}  // namespace hexhex

@@ -1,0 +1,14 @@
+// The order in which formats list the nodes of a Lagrange hexahedron.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace hexhex {
+
+/// Entry i: the place in LagrangeMesh's order, i + (p + 1) (j + (p + 1) k), of the node that the
+/// format lists at place i.
+[[nodiscard]] std::vector<std::uint32_t> vtkNodeOrder(int order);
+[[nodiscard]] std::vector<std::uint32_t> gmshNodeOrder(int order);
+
+}  // namespace hexhex

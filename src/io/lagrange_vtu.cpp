@@ -1,0 +1,51 @@
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <io/lagrange_files.hpp>
+#include <io/lagrange_order.hpp>
+#include <io/vtk_xml.hpp>
+
+namespace hexhex {
+
+void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                      const WriteOptions& options, Context& context) {
+  constexpr std::array<std::string_view, 4> kSections = {"PointData", "CellData", "Points",
+                                                         "Cells"};
+  constexpr std::uint8_t kVtkLagrangeHexahedron = 72;
+  OutputFile output(file);  // first, so that a folder that is not writable shows at once
+  Array<double> computed;
+  std::span<const double> quality = options.scaledJacobians;
+  if (quality.empty()) quality = computed = scaledJacobians(mesh, context);
+  Stage stage(context, "write mesh");
+  const std::size_t cells = mesh.cellCount();
+  const std::size_t perCell = mesh.nodesPerCell();
+  const std::vector<std::uint32_t> order = vtkNodeOrder(mesh.order);
+  VtkXmlFile vtk;
+  vtk.add("Points", "Points", std::span<const Vec3>(mesh.points));
+  vtk.add("PointData", "generator_tet", std::span<const Index>(mesh.generatorTet));
+  vtk.add("PointData", "generator_corners", std::span<const CornerSet>(mesh.generatorCorners));
+  vtk.addComputed<std::uint8_t>(
+      "PointData", "generator_kind", mesh.generatorCorners.size(),
+      [&mesh](std::size_t i) { return generatorKind(mesh.generatorCorners[i]); });
+  vtk.add("CellData", "scaled_jacobian", quality);
+  if (!mesh.regions.empty()) {
+    vtk.add("CellData", "region", std::span<const std::int32_t>(mesh.regions));
+  }
+  vtk.addComputed<std::int64_t>("Cells", "connectivity", mesh.nodes.size(), [&](std::size_t i) {
+    const std::size_t cell = i / perCell;
+    return mesh.nodes[cell * perCell + order[i - cell * perCell]];
+  });
+  vtk.addComputed<std::int64_t>("Cells", "offsets", cells,
+                                [perCell](std::size_t i) { return perCell * (i + 1); });
+  vtk.addComputed<std::uint8_t>("Cells", "types", cells,
+                                [](std::size_t) { return kVtkLagrangeHexahedron; });
+  vtk.write(output, "UnstructuredGrid",
+            "NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
+                std::to_string(cells) + "\"",
+            kSections, stage);
+}
+
+}  // namespace hexhex

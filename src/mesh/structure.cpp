@@ -1,0 +1,30 @@
+// The structure of a mesh, from its faces and edges.
+#include <hexhex/structure.hpp>
+
+#include <base/parallel.hpp>
+#include <mesh/hex_topology.hpp>
+
+namespace hexhex {
+
+MeshStructure findStructure(const HexMesh& mesh, Context& context) {
+  Stage stage(context, "structure");
+  MeshStructure result;
+  withThreads(context.threads(), [&] {
+    const VertexCells around(mesh, stage);
+    const HexFaces faces = findFaces(mesh, around, stage);
+    HexEdges edges = findEdges(mesh, around, faces, stage);
+    result.singularEdges = std::move(edges.singular);
+    result.faces = faces.count;
+    result.edges = edges.count;
+    result.boundaryQuads = faces.boundaryCount;
+    result.components = faces.components;
+    result.boundaryComponents = edges.boundaryComponents;
+    // Signed: more edges than vertices is the rule.
+    result.eulerCharacteristic =
+        static_cast<std::int64_t>(faces.usedVertices) - static_cast<std::int64_t>(edges.count) +
+        static_cast<std::int64_t>(faces.count) - static_cast<std::int64_t>(mesh.cells.size());
+  });
+  return result;
+}
+
+}  // namespace hexhex

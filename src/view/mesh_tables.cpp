@@ -1,0 +1,126 @@
+// Which numbers of a mesh go into which table.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <view/mesh_tables.hpp>
+
+#include <hexhex/error.hpp>
+
+namespace hexhex {
+namespace {
+
+/// 20 bits: in a mesh of a hundred cells along a side, a ten-thousandth of a cell.
+constexpr double kPositionSteps = (1U << 20U) - 1U;
+
+PackedTable packPoints(const HexMesh& mesh, const Quantization& quantization, Stage& stage) {
+  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
+    for (std::size_t v = begin; v < end; ++v) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double offset = mesh.points[v][axis] - quantization.lower[axis];
+        *to++ = static_cast<std::uint32_t>(std::lround(offset / quantization.step));
+      }
+    }
+  };
+  return packTable("points", mesh.points.size(), 3, fill, stage);
+}
+
+PackedTable packCells(const HexMesh& mesh, Stage& stage) {
+  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
+    for (std::size_t c = begin; c < end; ++c) to = std::ranges::copy(mesh.cells[c], to).out;
+  };
+  return packTable("cells", mesh.cells.size(), 8, fill, stage);
+}
+
+PackedTable packQuality(std::span<const double> scaledJacobians, Stage& stage) {
+  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const double share = (std::clamp(scaledJacobians[c], -1.0, 1.0) + 1) / 2;
+      *to++ = static_cast<std::uint32_t>(std::lround(share * kQualitySteps));
+    }
+  };
+  return packTable("quality", scaledJacobians.size(), 1, fill, stage);
+}
+
+PackedTable packGenerators(const HexMesh& mesh, Stage& stage) {
+  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
+    for (std::size_t v = begin; v < end; ++v) {
+      *to++ = static_cast<std::uint32_t>(generatorKind(mesh.generatorCorners[v]));
+    }
+  };
+  return packTable("generator_kinds", mesh.generatorCorners.size(), 1, fill, stage);
+}
+
+PackedTable packSingularEdges(std::span<const SingularHexEdge> edges, Stage& stage) {
+  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
+    for (const SingularHexEdge& edge : edges.subspan(begin, end - begin)) {
+      *to++ = edge.vertex0;
+      *to++ = edge.vertex1;
+      *to++ = 2 * edge.valence + (edge.boundary ? 1U : 0U);
+    }
+  };
+  return packTable("singular_edges", edges.size(), 3, fill, stage);
+}
+
+/// Tagged edges or quads: their vertices and the tag.
+template <class Feature>
+PackedTable packFeatures(std::string_view name, const std::vector<Feature>& features,
+                         Stage& stage) {
+  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
+    for (std::size_t i = begin; i < end; ++i) {
+      to = std::ranges::copy(features[i].vertices, to).out;
+      *to++ = static_cast<std::uint32_t>(features[i].tag);
+    }
+  };
+  return packTable(name, features.size(), Feature{}.vertices.size() + 1, fill, stage);
+}
+
+}  // namespace
+
+Quantization quantizationOf(const HexMesh& mesh) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Quantization result{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}, 1};
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double coordinate = mesh.points[v][axis];
+      if (!std::isfinite(coordinate)) {
+        throw Error(ErrorCode::NotFinite,
+                    "A coordinate of hex vertex " + std::to_string(v) +
+                        " is no finite number. The mesh cannot be shown.",
+                    {PlaceKind::Vertex, v, 0});
+      }
+      result.lower[axis] = std::min(result.lower[axis], coordinate);
+      result.upper[axis] = std::max(result.upper[axis], coordinate);
+    }
+  }
+  double longest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // Divided before they are subtracted: the box of huge coordinates may have an infinite side.
+    const double side = result.upper[axis] / kPositionSteps - result.lower[axis] / kPositionSteps;
+    longest = std::max(longest, side);
+  }
+  if (longest > 0) result.step = longest;
+  return result;
+}
+
+std::vector<PackedTable> packMesh(const HexMesh& mesh, const Quantization& quantization,
+                                  std::span<const double> scaledJacobians,
+                                  std::span<const SingularHexEdge> singularEdges, Stage& stage) {
+  std::vector<PackedTable> tables;
+  tables.push_back(packPoints(mesh, quantization, stage));
+  tables.push_back(packCells(mesh, stage));
+  tables.push_back(packQuality(scaledJacobians, stage));
+  if (!mesh.generatorCorners.empty()) tables.push_back(packGenerators(mesh, stage));
+  if (!singularEdges.empty()) tables.push_back(packSingularEdges(singularEdges, stage));
+  const HexFeatures& features = mesh.features;
+  if (!features.edges.empty()) {
+    tables.push_back(packFeatures("feature_edges", features.edges, stage));
+  }
+  if (!features.quads.empty()) {
+    tables.push_back(packFeatures("feature_quads", features.quads, stage));
+  }
+  return tables;
+}
+
+}  // namespace hexhex

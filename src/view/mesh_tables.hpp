@@ -1,0 +1,39 @@
+// A mesh as the tables of a page.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <view/table_codec.hpp>
+
+#include <hexhex/structure.hpp>
+#include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
+
+namespace hexhex {
+
+/// Where quantized coordinates are: coordinate = lower + step * number, the same step on all axes.
+struct Quantization {
+  Vec3 lower{};
+  Vec3 upper{};
+  double step = 1;
+};
+
+/// The smallest box around the points, in 2^20 - 1 steps along its longest side.
+/// @throws Error NotFinite
+[[nodiscard]] Quantization quantizationOf(const HexMesh& mesh);
+
+/// Scaled Jacobians in 16 bits: 0 stands for -1, this for 1. As in viewer/src/format.ts.
+inline constexpr double kQualitySteps = 65534;
+
+/// Tables `points` (3 columns), `cells` (8), `quality` (1) and, where the mesh has them,
+/// `generator_kinds` (1), `singular_edges` (vertex, vertex, 2 * valence + (1 on the boundary)),
+/// `feature_edges` (vertex, vertex, tag) and `feature_quads` (4 vertices, tag).
+[[nodiscard]] std::vector<PackedTable> packMesh(const HexMesh& mesh,
+                                                const Quantization& quantization,
+                                                std::span<const double> scaledJacobians,
+                                                std::span<const SingularHexEdge> singularEdges,
+                                                Stage& stage);
+
+}  // namespace hexhex

@@ -1,0 +1,249 @@
+// Pages that show a mesh: the packed tables, and what the page holds and refuses.
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <unistd.h>
+#include <vector>
+#include <zlib.h>
+
+#include <gtest/gtest.h>
+#include <view/mesh_tables.hpp>
+#include <view/table_codec.hpp>
+
+#include <hexhex/error.hpp>
+#include <hexhex/quality.hpp>
+#include <hexhex/structure.hpp>
+#include <hexhex/view.hpp>
+
+#include <base/parallel.hpp>
+#include <mesh/grid_meshes.hpp>
+
+namespace hexhex {
+namespace {
+
+using testing::gridMesh;
+
+std::string inflated(const std::string& packed) {
+  std::string bytes(std::size_t{1} << 21U, '\0');
+  uLongf size = bytes.size();
+  EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(bytes.data()), &size,
+                       reinterpret_cast<const Bytef*>(packed.data()), packed.size()),
+            Z_OK);
+  bytes.resize(size);
+  return bytes;
+}
+
+/// The numbers of a table, unpacked as the page does it.
+std::vector<std::uint32_t> unpacked(const PackedTable& table) {
+  std::vector<std::uint32_t> numbers;
+  for (const std::string& chunk : table.chunks) {
+    const std::string bytes = inflated(chunk);
+    const std::size_t begin = numbers.size();
+    const std::size_t rows = std::min(table.rowsPerChunk, table.rows - begin / table.columns);
+    const auto planes = static_cast<std::size_t>(bytes.at(0));
+    EXPECT_EQ(bytes.size(), 1 + planes * rows * table.columns);
+    numbers.resize(begin + rows * table.columns);
+    for (std::size_t column = 0; column < table.columns; ++column) {
+      std::uint32_t value = 0;
+      for (std::size_t row = 0; row < rows; ++row) {
+        std::uint32_t code = 0;
+        for (std::size_t plane = 0; plane < planes; ++plane) {
+          const std::size_t at = 1 + plane * rows * table.columns + column * rows + row;
+          code |= std::uint32_t{static_cast<unsigned char>(bytes.at(at))} << (8 * plane);
+        }
+        value += (code >> 1U) ^ (0U - (code & 1U));
+        std::uint32_t* const here = numbers.data() + begin + row * table.columns;
+        here[column] = column == 0 ? value : value + here[0];
+      }
+    }
+  }
+  return numbers;
+}
+
+PackedTable packed(const std::vector<std::uint32_t>& numbers, std::size_t columns, int threads) {
+  Context context(threads);
+  Stage stage(context, "test");
+  PackedTable table;
+  withThreads(threads, [&] {
+    table = packTable(
+        "test", numbers.size() / columns, columns,
+        [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
+          std::copy(numbers.begin() + static_cast<std::ptrdiff_t>(begin * columns),
+                    numbers.begin() + static_cast<std::ptrdiff_t>(end * columns), to);
+        },
+        stage);
+  });
+  return table;
+}
+
+TEST(TableCodec, KeepsAllNumbers) {
+  const std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
+  const std::vector<std::uint32_t> extremes = {0, most, most, 0, 1, most - 1, 1U << 31U, 7};
+  for (const std::size_t columns : {1U, 2U, 4U, 8U}) {
+    EXPECT_EQ(unpacked(packed(extremes, columns, 1)), extremes) << columns;
+  }
+  EXPECT_TRUE(unpacked(packed({}, 3, 1)).empty());
+}
+
+TEST(TableCodec, KeepsTablesOfSeveralChunksWithAnyNumberOfThreads) {
+  std::vector<std::uint32_t> numbers(3 * 250001);
+  std::uint32_t state = 1;
+  for (std::uint32_t& number : numbers) number = (state = state * 1664525U + 1013904223U) >> 7U;
+  const PackedTable one = packed(numbers, 3, 1);
+  EXPECT_GT(one.chunks.size(), 2U);
+  EXPECT_EQ(unpacked(one), numbers);
+  EXPECT_EQ(packed(numbers, 3, 4).chunks, one.chunks);
+}
+
+TEST(Base64, FollowsItsStandard) {
+  // The test vectors of RFC 4648.
+  const std::array<std::array<const char*, 2>, 7> known = {{{"", ""},
+                                                            {"f", "Zg=="},
+                                                            {"fo", "Zm8="},
+                                                            {"foo", "Zm9v"},
+                                                            {"foob", "Zm9vYg=="},
+                                                            {"fooba", "Zm9vYmE="},
+                                                            {"foobar", "Zm9vYmFy"}}};
+  for (const auto& [bytes, text] : known) EXPECT_EQ(toBase64(bytes), text);
+  EXPECT_EQ(toBase64("\xff\xff\xfe"), "///+");
+}
+
+TEST(Quantization, RoundsToAMillionthOfTheLongestSide) {
+  HexMesh mesh = gridMesh(3);
+  for (Vec3& point : mesh.points) {
+    point = {1e6 + 0.1 * point[0], -7 + point[1] / 3, 1e-3 * point[2]};
+  }
+  const Quantization quantization = quantizationOf(mesh);
+  EXPECT_NEAR(quantization.step, 1e-6, 1e-7);
+  Context context;
+  Stage stage(context, "test");
+  const Array<double> quality = scaledJacobians(mesh, context);
+  const std::vector<PackedTable> tables = packMesh(mesh, quantization, quality, {}, stage);
+  const std::vector<std::uint32_t> stored = unpacked(tables.at(0));
+  ASSERT_EQ(stored.size(), 3 * mesh.points.size());
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    const double place = quantization.lower[i % 3] + quantization.step * stored[i];
+    EXPECT_NEAR(place, mesh.points[i / 3][i % 3], 0.501 * quantization.step);
+  }
+  const std::vector<std::uint32_t> values = unpacked(tables.at(2));
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    EXPECT_NEAR(values[c] / kQualitySteps * 2 - 1, quality[c], 2e-5);
+  }
+}
+
+TEST(Quantization, TakesPointsAtOnePlaceAndHugeOnes) {
+  HexMesh mesh = gridMesh(1);
+  for (Vec3& point : mesh.points) point = {3, 3, 3};
+  EXPECT_EQ(quantizationOf(mesh).step, 1);
+  mesh.points[0] = {-1.7e308, 0, 0};
+  mesh.points[1] = {1.7e308, 0, 0};
+  EXPECT_TRUE(std::isfinite(quantizationOf(mesh).step));
+}
+
+/// A page in a file of its own.
+class Page : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("hexhex-view-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string write(const HexMesh& mesh, const ViewOptions& options = {}, int threads = 0) {
+    Context context(threads);
+    writeViewPage(mesh, folder_ / "page.html", options, context);
+    std::ostringstream text;
+    text << std::ifstream(folder_ / "page.html").rdbuf();
+    return text.str();
+  }
+
+  void expectRefused(const HexMesh& mesh, ErrorCode code, const ViewOptions& options = {}) {
+    try {
+      write(mesh, options);
+      ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), code) << error.what();
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(folder_));
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST_F(Page, HoldsCountsAndForbidsTheNetwork) {
+  const std::string page = write(gridMesh(3));
+  EXPECT_TRUE(contains(page, "\"cells\":27,"));
+  EXPECT_TRUE(contains(page, "\"boundaryQuads\":54,"));
+  // A cube of 3^3 cells has 12 edges of 3 hex edges with one cell each.
+  EXPECT_TRUE(contains(page, "\"boundary\":[[1,36]],\"inner\":[]"));
+  EXPECT_TRUE(contains(page, "default-src 'none'"));
+  EXPECT_TRUE(contains(page, "connect-src 'none'"));
+  EXPECT_TRUE(contains(page, "id=\"data-cells-0\""));
+  EXPECT_TRUE(page.ends_with("</html>\n"));
+}
+
+TEST_F(Page, DoesNotDependOnTheNumberOfThreads) {
+  const HexMesh mesh = gridMesh(40);
+  EXPECT_EQ(write(mesh, {}, 1), write(mesh, {}, 4));
+}
+
+TEST_F(Page, TakesAnyTitle) {
+  ViewOptions options;
+  options.title = "</script><script>alert(1)</script>&\xff";
+  const std::string page = write(gridMesh(1), options);
+  EXPECT_FALSE(contains(page, "<script>alert"));
+  EXPECT_TRUE(contains(page, "&lt;script>alert"));
+}
+
+TEST_F(Page, TellsOfTheVerification) {
+  const VerifyReport report{{{"cells", "28", "27", false}}};
+  ViewOptions options;
+  options.verification = &report;
+  options.mapName = "a.hexex";
+  const std::string page = write(gridMesh(3), options);
+  EXPECT_TRUE(contains(page, "\"expected\":\"28\",\"found\":\"27\""));
+  EXPECT_TRUE(contains(page, "\"map\":\"a.hexex\",\"passed\":false"));
+}
+
+TEST_F(Page, RefusesWhatCannotBeShown) {
+  expectRefused({}, ErrorCode::EmptyMesh);
+  HexMesh mesh = gridMesh(2);
+  mesh.cells[3][2] = 1000;
+  expectRefused(mesh, ErrorCode::InvalidArgument);
+  mesh = gridMesh(2);
+  mesh.points[5][1] = std::nan("");
+  expectRefused(mesh, ErrorCode::NotFinite);
+  mesh = gridMesh(2);
+  const std::array<double, 3> tooFew = {1, 1, 1};
+  ViewOptions options;
+  options.scaledJacobians = tooFew;
+  expectRefused(mesh, ErrorCode::InvalidArgument, options);
+  mesh.generatorCorners.resize(1);
+  expectRefused(mesh, ErrorCode::InvalidArgument);
+  mesh = gridMesh(1);
+  mesh.points.resize(std::size_t{1} << 24U);  // memory that nobody touches
+  expectRefused(mesh, ErrorCode::TooLarge);
+}
+
+TEST(ServedPage, HasTheMeshApart) {
+  Context context;
+  const HexMesh mesh = gridMesh(2);
+  const ServedPage page = makeServedPage(mesh, "/mesh", {}, context);
+  EXPECT_TRUE(contains(page.html, "connect-src 'self'"));
+  EXPECT_TRUE(contains(page.html, "\"data\":\"/mesh\""));
+  EXPECT_FALSE(contains(page.html, "id=\"data-cells-0\""));
+  EXPECT_EQ(page.data.size(), 4U);  // points, cells, quality, singular edges
+}
+
+}  // namespace
+}  // namespace hexhex

@@ -1,0 +1,25 @@
+// The page in a real browser: Debian's chromium, headless, drawing in software.
+import { defineConfig } from "@playwright/test";
+
+export default defineConfig({
+  testDir: "tests",
+  outputDir: process.env.HEXHEX_VIEWER_RESULTS ?? "test-results",
+  globalSetup: "./tests/make_pages.ts",
+  workers: 1,
+  timeout: 120_000,
+  reporter: [["list"], ["junit", { outputFile: process.env.HEXHEX_VIEWER_JUNIT ?? "junit.xml" }]],
+  use: {
+    viewport: { width: 800, height: 560 },
+    colorScheme: "light",
+    acceptDownloads: true,
+    launchOptions: {
+      executablePath: process.env.HEXHEX_CHROMIUM ?? "/usr/bin/chromium",
+      args: [
+        "--no-sandbox",
+        "--use-gl=angle",
+        "--use-angle=swiftshader",
+        "--enable-unsafe-swiftshader",
+      ],
+    },
+  },
+});

@@ -1,0 +1,351 @@
+// The loaded page: one state; what changes it, and what it changes.
+import { Vector3 } from "three";
+import { featureColour, valenceColour } from "./colours";
+import { type MeshInfo, qualityOf, storedQuality } from "./format";
+import type { MeshWorker } from "./load";
+import { kCellEdges, thinLines, type Segments, wideLines } from "./scene/lines";
+import { type ColourMode, kColourModes, Surface } from "./scene/surface";
+import { Viewport } from "./scene/viewport";
+import { sceneOf } from "./scene_box";
+import { fromFragment, kStart, type SliceDirection, toFragment, type ViewState } from "./state";
+import { element, grouped } from "./ui/dom";
+import { Histogram } from "./ui/histogram";
+import { Legend } from "./ui/legend";
+import { showPicked } from "./ui/statistics";
+import type { LoadedMesh } from "./worker/messages";
+import type { Filter, Visible } from "./worker/visible";
+
+const kAxes: Record<"x" | "y" | "z", [number, number, number]> = {
+  x: [1, 0, 0],
+  y: [0, 1, 0],
+  z: [0, 0, 1],
+};
+
+/** A share of a cell of a mesh of 100 cells per side: steps of the slice by keys. */
+const kSliceStep = 0.01;
+
+function singularSegments(edges: Uint32Array, boundary: boolean): Segments {
+  const segments: Segments = { vertices: [], colours: [] };
+  for (let i = 0; i < edges.length; i += 3) {
+    const code = edges[i + 2]!;
+    if ((code & 1) !== Number(boundary)) continue;
+    segments.vertices.push(edges[i]!, edges[i + 1]!);
+    segments.colours.push(valenceColour(code >> 1, boundary));
+  }
+  return segments;
+}
+
+function featureSegments(edges: Uint32Array): Segments {
+  const tags = new Map<number, number>();
+  const segments: Segments = { vertices: [], colours: [] };
+  for (let i = 0; i < edges.length; i += 3) {
+    const tag = edges[i + 2]!;
+    if (!tags.has(tag)) tags.set(tag, tags.size);
+    segments.vertices.push(edges[i]!, edges[i + 1]!);
+    segments.colours.push(featureColour(tags.get(tag)!));
+  }
+  return segments;
+}
+
+export class App {
+  private state: ViewState;
+  private readonly viewport: Viewport;
+  private readonly surface: Surface;
+  private readonly histogram: Histogram;
+  private readonly legend = new Legend(element("legend"));
+  private readonly lines;
+  private pickedOutline = wideLines({ vertices: [], colours: [] }, new Float32Array(0), 1);
+  private readonly colourRange: [number, number];
+  private fragmentTimer = 0;
+
+  constructor(
+    private readonly info: MeshInfo,
+    private readonly mesh: LoadedMesh,
+    private readonly worker: MeshWorker,
+  ) {
+    this.state = fromFragment(location.hash);
+    if (this.state.picked !== null && this.state.picked >= info.cells) this.state.picked = null;
+    // Down to a tenth below the worst cell; what is not positive has a colour of its own.
+    this.colourRange = [Math.max(0, Math.floor(info.quality.minimum * 10) / 10), 1];
+    if (this.colourRange[0] >= 1) this.colourRange[0] = 0;
+
+    const { half } = sceneOf(info);
+    const canvas = element<HTMLCanvasElement>("canvas");
+    this.viewport = new Viewport(canvas, new Vector3(...half).length(), () => this.saveFragment());
+    this.surface = new Surface(mesh);
+    this.viewport.setSurface(this.surface);
+    const { positions } = mesh;
+    this.lines = {
+      inner: wideLines(singularSegments(mesh.singularEdges, false), positions, 3),
+      boundary: wideLines(singularSegments(mesh.singularEdges, true), positions, 2),
+      features: wideLines(featureSegments(mesh.featureEdges), positions, 2.5),
+      outline: thinLines(mesh.boundaryEdges, positions),
+    };
+    for (const object of Object.values(this.lines)) this.viewport.add(object);
+    this.histogram = new Histogram(
+      element<HTMLCanvasElement>("histogram"),
+      info.quality.minimum,
+      () => this.colourRange,
+      (range) => this.change({ quality: range }),
+    );
+    worker.onVisible = (visible, milliseconds) => this.showVisible(visible, milliseconds);
+    this.fillControls();
+    if (this.state.camera) this.viewport.cameraState = this.state.camera;
+    this.applyTheme();
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.applyTheme());
+    window.addEventListener("hashchange", () => this.restore(location.hash));
+    this.update();
+  }
+
+  /** Changes the state and all that follows from it. */
+  change(part: Partial<ViewState>): void {
+    this.state = { ...this.state, ...part };
+    this.update();
+    this.saveFragment();
+  }
+
+  /** Slices through the middle; another click on the same direction switches the slice off. */
+  slice(direction: SliceDirection): void {
+    if (direction === "off" || direction === this.state.slice) return this.change({ slice: "off" });
+    const normal = direction === "view" ? this.viewport.viewDirection() : kAxes[direction];
+    this.change({ slice: direction, normal, position: 0.5 });
+  }
+
+  flip(): void {
+    const [x, y, z] = this.state.normal;
+    this.change({ normal: [-x, -y, -z], position: 1 - this.state.position });
+  }
+
+  moveSlice(steps: number): void {
+    if (this.state.slice === "off") return;
+    const position = this.state.position + steps * kSliceStep;
+    this.change({ position: Math.min(Math.max(position, 0), 1) });
+  }
+
+  peel(layers: number): void {
+    this.change({ peel: Math.min(Math.max(layers, 0), this.mesh.deepestLayer) });
+  }
+
+  morePeel(by: number): void {
+    this.peel(this.state.peel + by);
+  }
+
+  nextColour(): void {
+    const next = kColourModes.indexOf(this.state.colour) + 1;
+    this.change({ colour: kColourModes[next % kColourModes.length]! });
+  }
+
+  toggle(flag: "grid" | "inner" | "boundary" | "outline" | "features"): void {
+    this.change({ [flag]: !this.state[flag] });
+  }
+
+  look(direction: "home" | "x" | "y" | "z"): void {
+    this.viewport.look(direction === "home" ? [1, -1.6, 0.9] : kAxes[direction]);
+    this.saveFragment();
+  }
+
+  toggleTheme(): void {
+    this.state = { ...this.state, theme: this.isDark() ? "light" : "dark" };
+    this.applyTheme();
+    this.saveFragment();
+  }
+
+  pickAt(x: number, y: number): void {
+    this.change({ picked: this.viewport.pick(x, y) });
+  }
+
+  unpick(): void {
+    this.change({ picked: null });
+  }
+
+  /** Picks the worst of the cells that the filter keeps, and turns to it. */
+  pickWorst(): void {
+    const [from, to] = this.storedRange();
+    const { quality, layers } = this.mesh;
+    const side = this.filter().plane;
+    let worst: number | null = null;
+    for (let cell = 0; cell < quality.length; ++cell) {
+      const value = quality[cell]!;
+      if (value < from || value > to || layers[cell]! < this.state.peel) continue;
+      if (worst !== null && value >= quality[worst]!) continue;
+      if (side) {
+        const [x, y, z] = this.centreOf(cell);
+        const along = side.normal[0] * x + side.normal[1] * y + side.normal[2] * z;
+        if (along > side.offset) continue;
+      }
+      worst = cell;
+    }
+    if (worst === null) return;
+    this.viewport.lookAt(this.centreOf(worst));
+    this.change({ picked: worst });
+  }
+
+  /** Saves what is on the canvas, with the legend. */
+  async savePicture(): Promise<void> {
+    const picture = this.viewport.picture();
+    const ratio = picture.width / element("canvas").clientWidth;
+    const text = getComputedStyle(document.documentElement).getPropertyValue("--text");
+    this.legend.draw(picture, ratio, text);
+    const blob = await new Promise<Blob | null>((resolve) => picture.toBlob(resolve));
+    if (!blob) throw new Error("The browser could not make a picture.");
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(blob);
+    link.download = `${this.info.title.replace(/\.[^.]*$/, "")}.png`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+  }
+
+  async copyLink(): Promise<void> {
+    this.writeFragment();
+    // Pages of files have no clipboard in some browsers; the address bar has the link anyway.
+    await navigator.clipboard?.writeText(location.href).catch(() => undefined);
+    const button = element("share");
+    button.textContent = "Link is in the address bar";
+    setTimeout(() => (button.textContent = "Link"), 2000);
+  }
+
+  private restore(fragment: string): void {
+    if (fragment.replace(/^#/, "") === toFragment(this.state)) return;
+    this.state = fromFragment(fragment);
+    if (this.state.picked !== null && this.state.picked >= this.info.cells) this.state.picked = null;
+    if (this.state.camera) this.viewport.cameraState = this.state.camera;
+    else this.viewport.look([1, -1.6, 0.9]);
+    this.applyTheme();
+    this.update();
+  }
+
+  private centreOf(cell: number): [number, number, number] {
+    const sum: [number, number, number] = [0, 0, 0];
+    for (let k = 0; k < 8; ++k) {
+      const at = 4 * this.mesh.cells[8 * cell + k]!;
+      for (let axis = 0; axis < 3; ++axis) sum[axis]! += this.mesh.positions[at + axis]! / 8;
+    }
+    return sum;
+  }
+
+  private storedRange(): [number, number] {
+    return [storedQuality(this.state.quality[0]), storedQuality(this.state.quality[1])];
+  }
+
+  private filter(): Filter {
+    const { slice, normal, position, peel } = this.state;
+    const { half } = sceneOf(this.info);
+    const reach = normal.reduce((sum, n, axis) => sum + Math.abs(n) * half[axis]!, 0);
+    return {
+      plane: slice === "off" ? null : { normal, offset: (2 * position - 1) * reach },
+      firstLayer: peel,
+      quality: this.storedRange(),
+    };
+  }
+
+  private update(): void {
+    const { state } = this;
+    state.peel = Math.min(state.peel, this.mesh.deepestLayer);
+    this.worker.show(this.filter());
+    document.body.dataset.busy = "true";
+    this.surface.setColouring(state.colour, this.colourRange);
+    this.surface.showGrid(state.grid);
+    this.surface.setPicked(state.picked);
+    this.lines.inner.visible = state.inner;
+    this.lines.boundary.visible = state.boundary;
+    this.lines.features.visible = state.features;
+    this.lines.outline.visible = state.outline;
+    this.outlinePicked();
+    this.showControls();
+    this.histogram.setRange(state.quality);
+    const { quadTags, deepestLayer } = this.mesh;
+    this.legend.update(state, this.info, quadTags, deepestLayer, this.colourRange);
+    showPicked(state.picked, this.info, this.mesh);
+    this.viewport.redraw();
+  }
+
+  private outlinePicked(): void {
+    this.viewport.scene.remove(this.pickedOutline);
+    const cell = this.state.picked;
+    const vertices =
+      cell === null ? [] : kCellEdges.map((corner) => this.mesh.cells[8 * cell + corner]!);
+    const colours = vertices.slice(0, vertices.length / 2).map(() => 0xff3b30);
+    this.pickedOutline = wideLines({ vertices, colours }, this.mesh.positions, 2.5);
+    this.viewport.add(this.pickedOutline);
+  }
+
+  private showVisible(visible: Visible, milliseconds: number): void {
+    this.surface.setQuads(visible.quads);
+    element("kept-cells").textContent = grouped(visible.kept);
+    element("drawn-quads").textContent = grouped(visible.quads.length / 6);
+    this.histogram.set(visible.histogramCandidates, visible.histogramKept);
+    document.body.dataset.busy = String(!this.worker.idle);
+    document.body.dataset.milliseconds = milliseconds.toFixed(1);
+    this.viewport.redraw();
+  }
+
+  /** What does not change any more. */
+  private fillControls(): void {
+    element("all-cells").textContent = grouped(this.info.cells);
+    element("peel-most").textContent = String(this.mesh.deepestLayer);
+    element<HTMLInputElement>("peel").max = String(this.mesh.deepestLayer);
+    const colours = element<HTMLSelectElement>("colour");
+    colours.querySelector<HTMLOptionElement>('[value="generator"]')!.disabled =
+      !this.info.hasGenerators;
+    colours.querySelector<HTMLOptionElement>('[value="feature"]')!.disabled =
+      this.mesh.quadTags.length === 0;
+    const noFeatures = this.mesh.featureEdges.length === 0;
+    element("show-features").closest("label")!.hidden = noFeatures;
+    element("controls").inert = false;
+  }
+
+  private showControls(): void {
+    const { state } = this;
+    for (const button of document.querySelectorAll<HTMLElement>("[data-slice]")) {
+      button.setAttribute("aria-pressed", String(button.dataset.slice === state.slice));
+    }
+    const slider = element<HTMLInputElement>("slice-position");
+    slider.disabled = state.slice === "off";
+    slider.value = String(state.position * 1000);
+    element<HTMLInputElement>("peel").value = String(state.peel);
+    element("peel-value").textContent = String(state.peel);
+    const lowest = Math.max(state.quality[0], Math.floor(qualityOf(0)));
+    element<HTMLInputElement>("quality-from").value = String(Number(lowest.toFixed(4)));
+    element<HTMLInputElement>("quality-to").value = String(Number(state.quality[1].toFixed(4)));
+    element<HTMLSelectElement>("colour").value = state.colour;
+    for (const flag of ["grid", "inner", "boundary", "outline", "features"] as const) {
+      element<HTMLInputElement>(`show-${flag}`).checked = state[flag];
+    }
+  }
+
+  private isDark(): boolean {
+    if (this.state.theme !== "system") return this.state.theme === "dark";
+    return matchMedia("(prefers-color-scheme: dark)").matches;
+  }
+
+  private applyTheme(): void {
+    const root = document.documentElement;
+    if (this.state.theme === "system") delete root.dataset.theme;
+    else root.dataset.theme = this.state.theme;
+    this.viewport.setBackground(getComputedStyle(root).getPropertyValue("--back").trim());
+    this.histogram.draw();
+  }
+
+  private saveFragment(): void {
+    // Browsers refuse to be told of a new address too often.
+    clearTimeout(this.fragmentTimer);
+    this.fragmentTimer = window.setTimeout(() => this.writeFragment(), 250);
+  }
+
+  private writeFragment(): void {
+    this.state.camera = this.viewport.cameraState;
+    history.replaceState(null, "", `#${toFragment(this.state)}`);
+  }
+
+  setQuality(range: [number, number]): void {
+    if (!range.every(Number.isFinite)) return this.update();
+    const clamp = (x: number) => Math.min(Math.max(x, -1), 1);
+    this.change({ quality: [clamp(range[0]), clamp(range[1])] });
+  }
+
+  setColour(mode: string): void {
+    this.change({ colour: kColourModes.find((each) => each === mode) ?? kStart.colour });
+  }
+}
+
+export type { ColourMode };

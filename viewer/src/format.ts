@@ -1,0 +1,102 @@
+// What the page holds, as src/view/ writes it: a JSON text with counts and statistics, and tables of
+// whole numbers in compressed chunks.
+
+/** A table of `rows` times `columns` 32-bit numbers, in chunks of consecutive rows. */
+export interface TableInfo {
+  name: string;
+  rows: number;
+  columns: number;
+  /** Rows per chunk; the last chunk has what is left. */
+  rowsPerChunk: number;
+  /** Compressed bytes of each chunk. */
+  chunkBytes: number[];
+}
+
+export interface CheckItem {
+  name: string;
+  expected: string;
+  found: string;
+  passed: boolean;
+}
+
+export interface MeshInfo {
+  format: number;
+  title: string;
+  program: string;
+  vertices: number;
+  cells: number;
+  /** Lower corner of the bounding box. */
+  lower: [number, number, number];
+  upper: [number, number, number];
+  /** Length of one unit of the quantized coordinates. */
+  step: number;
+  quality: { minimum: number; mean: number; notPositive: number };
+  topology: {
+    boundaryQuads: number;
+    boundaryComponents: number;
+    components: number;
+    eulerCharacteristic: number;
+  };
+  /** Number of singular edges by valence. */
+  singular: { inner: [number, number][]; boundary: [number, number][] };
+  hasGenerators: boolean;
+  verification: { map: string; passed: boolean; items: CheckItem[] } | null;
+  tables: TableInfo[];
+  /** Where the chunks are if they are not in the page. */
+  data?: string;
+}
+
+/** Scaled Jacobians are stored in 16 bits: 0 stands for -1, kQualitySteps for 1. */
+export const kQualitySteps = 65534;
+
+export function qualityOf(stored: number): number {
+  return (stored / kQualitySteps) * 2 - 1;
+}
+
+export function storedQuality(quality: number): number {
+  return Math.round(((quality + 1) / 2) * kQualitySteps);
+}
+
+/**
+ * Decodes one chunk: a byte with the number of byte planes, then the planes of all its numbers,
+ * column by column. A number is the zigzag code of the difference to the row above (0 above the
+ * first), after column 0 was subtracted from the other columns, modulo 2^32.
+ */
+export function decodeChunk(
+  bytes: Uint8Array,
+  rows: number,
+  columns: number,
+  to: Uint32Array,
+  firstRow: number,
+): void {
+  const planes = bytes[0]!;
+  const count = rows * columns;
+  if (bytes.length !== 1 + planes * count) throw new Error("The data of this page is damaged.");
+  const first = firstRow * columns;
+  for (let column = 0; column < columns; ++column) {
+    let value = 0;
+    const begin = 1 + column * rows;
+    for (let row = 0; row < rows; ++row) {
+      let code = 0;
+      for (let plane = 0; plane < planes; ++plane) {
+        code |= bytes[begin + row + plane * count]! << (8 * plane);
+      }
+      value = (value + ((code >>> 1) ^ -(code & 1))) | 0;
+      const place = first + row * columns;
+      to[place + column] = column === 0 ? value : value + to[place]!;
+    }
+  }
+}
+
+/** Inflates zlib data with the browser's own decoder. */
+export async function inflate(bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+export function decodeBase64(text: string): Uint8Array<ArrayBuffer> {
+  const binary = atob(text);
+  const bytes = new Uint8Array(binary.length);
+  for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);
+  return bytes;
+}

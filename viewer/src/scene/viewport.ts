@@ -1,0 +1,160 @@
+// The canvas: camera, drawing on demand, picking, pictures.
+import {
+  Color,
+  LinearSRGBColorSpace,
+  type Object3D,
+  PerspectiveCamera,
+  Scene,
+  Vector3,
+  WebGLRenderer,
+  WebGLRenderTarget,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { Surface } from "./surface";
+
+export interface CameraState {
+  position: [number, number, number];
+  target: [number, number, number];
+}
+
+const kFieldOfView = 35;
+
+export class Viewport {
+  readonly scene = new Scene();
+  private readonly pickScene = new Scene();
+  private readonly camera = new PerspectiveCamera(kFieldOfView, 1, 0.001, 100);
+  private readonly renderer: WebGLRenderer;
+  private readonly controls: OrbitControls;
+  private readonly pickTarget = new WebGLRenderTarget(1, 1);
+  private frame = 0;
+  private picking: Surface | null = null;
+
+  /** @throws if the browser has no WebGL 2 */
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly radius: number,
+    onMoved: () => void,
+  ) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true });
+    // Colours are written as they are: those of the legend are those on the screen.
+    this.renderer.outputColorSpace = LinearSRGBColorSpace;
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.zoomToCursor = true;
+    this.controls.minDistance = 0.005;
+    this.controls.maxDistance = 20;
+    this.look([1, -1.6, 0.9]);
+    this.controls.addEventListener("change", () => this.redraw());
+    this.controls.addEventListener("end", onMoved);
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.resize();
+  }
+
+  add(object: Object3D): void {
+    this.scene.add(object);
+  }
+
+  setSurface(surface: Surface): void {
+    this.picking = surface;
+    this.scene.add(surface.mesh);
+    this.pickScene.add(surface.pickMesh);
+  }
+
+  setBackground(colour: string): void {
+    this.scene.background = new Color().setStyle(colour, LinearSRGBColorSpace);
+    this.redraw();
+  }
+
+  /** Looks at the whole mesh from a direction. */
+  look(from: [number, number, number]): void {
+    const narrow = Math.min(1, this.camera.aspect);
+    const half = (kFieldOfView / 2) * (Math.PI / 180);
+    const distance = (0.95 * this.radius) / Math.sin(Math.atan(Math.tan(half) * narrow));
+    // A camera straight above would not know which way is up.
+    const direction = new Vector3(...from).normalize();
+    if (Math.abs(direction.z) > 0.999) direction.y -= 1e-4;
+    this.controls.target.set(0, 0, 0);
+    this.camera.position.copy(direction.multiplyScalar(distance));
+    this.controls.update();
+    this.redraw();
+  }
+
+  /** Turns the camera to a place without changing the direction of view. */
+  lookAt(place: [number, number, number]): void {
+    const shift = new Vector3(...place).sub(this.controls.target);
+    this.controls.target.add(shift);
+    this.camera.position.add(shift);
+    this.controls.update();
+    this.redraw();
+  }
+
+  /** From the scene towards the camera, of length 1. */
+  viewDirection(): [number, number, number] {
+    const direction = this.camera.position.clone().sub(this.controls.target).normalize();
+    return [direction.x, direction.y, direction.z];
+  }
+
+  get cameraState(): CameraState {
+    const { position } = this.camera;
+    const { target } = this.controls;
+    return { position: [position.x, position.y, position.z], target: [target.x, target.y, target.z] };
+  }
+
+  set cameraState(state: CameraState) {
+    this.camera.position.set(...state.position);
+    this.controls.target.set(...state.target);
+    this.controls.update();
+    this.redraw();
+  }
+
+  /** Draws before the next frame; several calls draw once. */
+  redraw(): void {
+    if (this.frame !== 0) return;
+    this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      this.draw();
+    });
+  }
+
+  /** The cell under a point of the canvas in CSS pixels, or null. */
+  pick(x: number, y: number): number | null {
+    if (!this.picking?.pickMesh.visible) return null;
+    const { clientWidth, clientHeight } = this.canvas;
+    this.camera.setViewOffset(clientWidth, clientHeight, x, y, 1, 1);
+    this.renderer.setRenderTarget(this.pickTarget);
+    this.renderer.setClearColor(0, 0);
+    this.renderer.clear();
+    this.renderer.render(this.pickScene, this.camera);
+    const bytes = new Uint8Array(4);
+    this.renderer.readRenderTargetPixels(this.pickTarget, 0, 0, 1, 1, bytes);
+    this.renderer.setRenderTarget(null);
+    this.camera.clearViewOffset();
+    const id = bytes[0]! + 256 * (bytes[1]! + 256 * (bytes[2]! + 256 * bytes[3]!));
+    return id === 0 ? null : id - 1;
+  }
+
+  /** What is on the canvas, at once. */
+  picture(): HTMLCanvasElement {
+    this.draw();
+    const copy = document.createElement("canvas");
+    copy.width = this.canvas.width;
+    copy.height = this.canvas.height;
+    copy.getContext("2d")!.drawImage(this.canvas, 0, 0);
+    return copy;
+  }
+
+  private draw(): void {
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    // More pixels than two per CSS pixel cost time and show nothing.
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    this.redraw();
+  }
+}

@@ -1,0 +1,134 @@
+// The legend: as elements of the page, and drawn into saved pictures.
+import {
+  cssOf, featureColour, kBadColour, kGeneratorColours, kGeneratorNames, valenceColour, viridis,
+} from "../colours";
+import type { MeshInfo } from "../format";
+import type { ViewState } from "../state";
+import { grouped, make } from "./dom";
+
+interface Chip {
+  colour: string;
+  text: string;
+  edge: boolean;
+}
+
+interface Part {
+  title: string;
+  /** Both ends of the colour map, if there is one. */
+  scale?: [string, string];
+  chips: Chip[];
+}
+
+const chip = (hex: number, text: string, edge = false): Chip => ({ colour: cssOf(hex), text, edge });
+
+function cellPart(state: ViewState, info: MeshInfo, quadTags: number[], deepest: number,
+                  range: [number, number]): Part | null {
+  switch (state.colour) {
+    case "quality":
+      return {
+        title: "scaled Jacobian",
+        scale: [range[0].toFixed(2), range[1].toFixed(2)],
+        chips: info.quality.notPositive > 0 ? [chip(kBadColour, "not positive")] : [],
+      };
+    case "generator":
+      return {
+        title: info.hasGenerators ? "vertex lies in a ... of the tets" : "generators are not known",
+        chips: info.hasGenerators ? kGeneratorNames.map((n, i) => chip(kGeneratorColours[i]!, n)) : [],
+      };
+    case "feature":
+      return {
+        title: quadTags.length > 0 ? "tag of the face" : "no tagged faces",
+        chips: quadTags.slice(0, 12).map((tag, i) => chip(featureColour(i), String(tag))),
+      };
+    case "layer":
+      return { title: "layer from the boundary", scale: ["0", String(deepest)], chips: [] };
+    case "plain":
+      return null;
+  }
+}
+
+function edgePart(title: string, counts: [number, number][], boundary: boolean): Part | null {
+  if (counts.length === 0) return null;
+  return {
+    title,
+    chips: counts.map(([valence, count]) =>
+      chip(valenceColour(valence, boundary), `${valence} (${grouped(count)})`, true)),
+  };
+}
+
+export class Legend {
+  private parts: Part[] = [];
+
+  constructor(private readonly box: HTMLElement) {}
+
+  update(state: ViewState, info: MeshInfo, quadTags: number[], deepest: number,
+         range: [number, number]): void {
+    const parts = [
+      cellPart(state, info, quadTags, deepest, range),
+      state.inner ? edgePart("valence of singular edges inside", info.singular.inner, false) : null,
+      state.boundary
+        ? edgePart("valence of singular edges on the boundary", info.singular.boundary, true)
+        : null,
+    ];
+    this.parts = parts.filter((part) => part !== null);
+    this.box.replaceChildren(...this.parts.flatMap((part) => this.elementsOf(part)));
+  }
+
+  private elementsOf(part: Part): HTMLElement[] {
+    const made: HTMLElement[] = [make("h3", part.title)];
+    if (part.scale) {
+      const bar = make("div", "", "bar");
+      const stops = Array.from({ length: 11 }, (_, i) => `rgb(${viridis(i / 10).join()})`);
+      bar.style.background = `linear-gradient(to right, ${stops.join()})`;
+      const ticks = make("div", "", "ticks");
+      ticks.append(make("span", part.scale[0]), make("span", part.scale[1]));
+      made.push(bar, ticks);
+    }
+    const list = make("ul");
+    for (const { colour, text, edge } of part.chips) {
+      const item = make("li");
+      const mark = make("i", "", edge ? "edge" : "");
+      mark.style.background = colour;
+      item.append(mark, text);
+      list.append(item);
+    }
+    if (part.chips.length > 0) made.push(list);
+    return made;
+  }
+
+  /** Draws the legend into the lower left corner of a picture. */
+  draw(picture: HTMLCanvasElement, ratio: number, text: string): void {
+    const context = picture.getContext("2d")!;
+    context.scale(ratio, ratio);
+    context.fillStyle = text;
+    context.font = "12px system-ui, sans-serif";
+    const rows = this.parts.reduce((n, p) => n + 1 + (p.scale ? 2 : 0) + (p.chips.length ? 1 : 0), 0);
+    let y = picture.height / ratio - 16 * rows;
+    for (const part of this.parts) {
+      context.fillText(part.title, 12, y);
+      y += 16;
+      if (part.scale) {
+        for (let i = 0; i < 200; ++i) {
+          context.fillStyle = `rgb(${viridis(i / 199).join()})`;
+          context.fillRect(12 + i, y - 9, 1.5, 10);
+        }
+        context.fillStyle = text;
+        y += 16;
+        context.fillText(part.scale[0], 12, y - 2);
+        context.textAlign = "right";
+        context.fillText(part.scale[1], 212, y - 2);
+        context.textAlign = "left";
+        y += 16;
+      }
+      let x = 12;
+      for (const item of part.chips) {
+        context.fillStyle = item.colour;
+        context.fillRect(x, item.edge ? y - 6 : y - 10, 14, item.edge ? 4 : 12);
+        context.fillStyle = text;
+        context.fillText(item.text, x + 18, y);
+        x += 30 + context.measureText(item.text).width;
+      }
+      if (part.chips.length > 0) y += 16;
+    }
+  }
+}

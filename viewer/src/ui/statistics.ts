@@ -1,0 +1,76 @@
+// What the mesh adds up to, whether it agrees with its map, and what a picked cell is.
+import { type MeshInfo, qualityOf } from "../format";
+import { kTextureWidth, sceneOf } from "../scene_box";
+import type { LoadedMesh } from "../worker/messages";
+import { element, fillFacts, grouped, make } from "./dom";
+
+const valences = (counts: [number, number][]) =>
+  counts.length === 0 ? "none" : counts.map(([v, n]) => `${grouped(n)} of valence ${v}`).join(", ");
+
+const place = (p: number[]) => p.map((x) => Number(x.toPrecision(6))).join(", ");
+
+export function showStatistics(info: MeshInfo, pageBytes: number): void {
+  const { topology, quality } = info;
+  fillFacts(element("statistics"), [
+    ["cells", grouped(info.cells), "stat-cells"],
+    ["vertices", grouped(info.vertices), "stat-vertices"],
+    ["boundary quads", grouped(topology.boundaryQuads), "stat-boundary-quads"],
+    ["components", grouped(topology.components)],
+    ["boundary components", grouped(topology.boundaryComponents)],
+    ["Euler characteristic", String(topology.eulerCharacteristic)],
+    ["scaled Jacobian, least", quality.minimum.toFixed(4), "stat-minimum"],
+    ["mean", quality.mean.toFixed(4), "stat-mean"],
+    ["not positive", grouped(quality.notPositive), "stat-not-positive"],
+    ["singular edges inside", valences(info.singular.inner), "stat-inner"],
+    ["on the boundary", valences(info.singular.boundary), "stat-boundary"],
+    ["from", place(info.lower)],
+    ["to", place(info.upper)],
+    ["data in the page", `${(pageBytes / 1e6).toFixed(1)} MB`],
+    ["made by", info.program],
+  ]);
+  showVerification(info);
+}
+
+function showVerification(info: MeshInfo): void {
+  const box = element("verification");
+  const report = info.verification;
+  if (!report) return;
+  const good = report.items.filter((item) => item.passed).length;
+  const text = report.passed ? `agrees with ${report.map}` : `does not agree with ${report.map}`;
+  const head = make("p", `The mesh ${text}: ${good} of ${report.items.length} checks passed.`,
+                    report.passed ? "" : "bad");
+  head.id = "stat-verification";
+  box.replaceChildren(head);
+  for (const item of report.items.filter((each) => !each.passed)) {
+    box.append(make("p", `${item.name}: expected ${item.expected}, found ${item.found}`, "bad"));
+  }
+}
+
+export function showPicked(cell: number | null, info: MeshInfo, mesh: LoadedMesh): void {
+  const box = element("picked");
+  box.hidden = cell === null;
+  if (cell === null) return;
+  element("picked-cell").textContent = String(cell);
+  fillFacts(element("picked-facts"), [
+    ["scaled Jacobian", qualityOf(mesh.quality[cell]!).toFixed(4), "picked-quality"],
+    ["layer", String(mesh.layers[cell]!)],
+  ]);
+  const { scale, centre } = sceneOf(info);
+  // Not more digits than the quantization has left.
+  const digits = Math.max(0, Math.ceil(-Math.log10(info.step)));
+  const rows = Array.from({ length: 8 }, (_, k) => {
+    const vertex = mesh.cells[8 * cell + k]!;
+    const at = [0, 1, 2].map((axis) =>
+      (mesh.positions[4 * vertex + axis]! / scale + centre[axis]!).toFixed(Math.min(digits, 12)));
+    const row = make("tr");
+    for (const text of [String(k), String(vertex), ...at]) row.append(make("td", text));
+    return row;
+  });
+  element("picked-corners").querySelector("tbody")!.replaceChildren(...rows);
+}
+
+/** Bytes of memory that a mesh takes in the browser, the worker included. */
+export function memoryEstimate(info: MeshInfo): number {
+  const textures = Math.ceil(info.vertices / kTextureWidth) * kTextureWidth * 32;
+  return textures + info.cells * (2 * 32 + 3 * 24 + 12 + 12);
+}

@@ -1,0 +1,129 @@
+// Who touches whom: the cell across each face, and how deep inside each cell lies.
+
+/** Corners of the faces of a cell, counter-clockwise seen from outside, in VTK's order. */
+export const kFaceCorners = [
+  0, 4, 7, 3, 1, 2, 6, 5, 0, 1, 5, 4, 3, 7, 6, 2, 0, 3, 2, 1, 4, 5, 6, 7,
+] as const;
+
+export const kNone = 0xffffffff;
+
+/** Corner numbers of the smallest vertex of a face, of the next, the opposite and the previous. */
+function smallestCorner(cells: Uint32Array, face: number): number {
+  const cell = Math.floor(face / 6) * 8;
+  const corners = (face % 6) * 4;
+  let best = 0;
+  let smallest = cells[cell + kFaceCorners[corners]!]!;
+  for (let i = 1; i < 4; ++i) {
+    const vertex = cells[cell + kFaceCorners[corners + i]!]!;
+    if (vertex < smallest) {
+      smallest = vertex;
+      best = i;
+    }
+  }
+  return best;
+}
+
+function faceVertex(cells: Uint32Array, face: number, i: number): number {
+  return cells[Math.floor(face / 6) * 8 + kFaceCorners[(face % 6) * 4 + (i & 3)]!]!;
+}
+
+/** Whether two faces with the same smallest vertex have the same vertices. */
+function sameFace(cells: Uint32Array, a: number, b: number): boolean {
+  const i = smallestCorner(cells, a);
+  const j = smallestCorner(cells, b);
+  if (faceVertex(cells, a, i + 2) !== faceVertex(cells, b, j + 2)) return false;
+  const next = faceVertex(cells, a, i + 1);
+  const previous = faceVertex(cells, a, i + 3);
+  const otherNext = faceVertex(cells, b, j + 1);
+  const otherPrevious = faceVertex(cells, b, j + 3);
+  return (
+    (next === otherPrevious && previous === otherNext) ||
+    (next === otherNext && previous === otherPrevious)
+  );
+}
+
+/**
+ * The neighbour of each cell across each face (6 per cell), kNone on the boundary. Linear time:
+ * equal faces have the same smallest vertex, and few faces share it.
+ */
+export function findNeighbours(cells: Uint32Array, vertexCount: number): Uint32Array {
+  const faceCount = (cells.length / 8) * 6;
+  const neighbours = new Uint32Array(faceCount).fill(kNone);
+  const ends = new Uint32Array(vertexCount + 1);
+  const keyOf = (face: number) => faceVertex(cells, face, smallestCorner(cells, face));
+  for (let face = 0; face < faceCount; ++face) ++ends[keyOf(face)]!;
+  let sum = 0;
+  for (let v = 0; v <= vertexCount; ++v) {
+    const count = ends[v]!;
+    ends[v] = sum;
+    sum += count;
+  }
+  const faces = new Uint32Array(faceCount);
+  for (let face = 0; face < faceCount; ++face) faces[ends[keyOf(face)]!++] = face;
+
+  let begin = 0;
+  for (let v = 0; v < vertexCount; ++v) {
+    const end = ends[v]!;
+    for (let i = begin; i < end; ++i) {
+      const face = faces[i]!;
+      if (neighbours[face] !== kNone) continue;
+      for (let j = i + 1; j < end; ++j) {
+        const other = faces[j]!;
+        if (neighbours[other] !== kNone || !sameFace(cells, face, other)) continue;
+        neighbours[face] = Math.floor(other / 6);
+        neighbours[other] = Math.floor(face / 6);
+        break;
+      }
+    }
+    begin = end;
+  }
+  return neighbours;
+}
+
+/** Layer of each cell: 0 at the boundary, otherwise one more than its outermost neighbour's. */
+export function findLayers(neighbours: Uint32Array): { layers: Uint16Array<ArrayBuffer>; deepest: number } {
+  const cellCount = neighbours.length / 6;
+  const layers = new Uint16Array(cellCount).fill(0xffff);
+  const queue = new Uint32Array(cellCount);
+  let queued = 0;
+  for (let cell = 0; cell < cellCount; ++cell) {
+    for (let f = 0; f < 6; ++f) {
+      if (neighbours[cell * 6 + f] !== kNone) continue;
+      layers[cell] = 0;
+      queue[queued++] = cell;
+      break;
+    }
+  }
+  let deepest = 0;
+  for (let i = 0; i < queued; ++i) {
+    const cell = queue[i]!;
+    deepest = layers[cell]!;
+    for (let f = 0; f < 6; ++f) {
+      const next = neighbours[cell * 6 + f]!;
+      if (next === kNone || layers[next] !== 0xffff) continue;
+      layers[next] = deepest + 1;
+      queue[queued++] = next;
+    }
+  }
+  return { layers, deepest };
+}
+
+/**
+ * The edges of the boundary, two vertices each. Neighbouring quads run through their common edge in
+ * opposite directions, so taking it where it ascends takes it once.
+ */
+export function findBoundaryEdges(
+  cells: Uint32Array,
+  neighbours: Uint32Array,
+): Uint32Array<ArrayBuffer> {
+  const edges: number[] = [];
+  for (let face = 0; face < neighbours.length; ++face) {
+    if (neighbours[face] !== kNone) continue;
+    for (let i = 0; i < 4; ++i) {
+      const a = faceVertex(cells, face, i);
+      const b = faceVertex(cells, face, i + 1);
+      if (a < b) edges.push(a, b);
+    }
+  }
+  return new Uint32Array(edges);
+}

@@ -1,0 +1,166 @@
+// The worker: decodes the mesh, and finds the faces to draw while the page stays fluid.
+import { decodeBase64, decodeChunk, inflate, type MeshInfo, type TableInfo } from "../format";
+import { kTextureWidth, sceneOf } from "../scene_box";
+import type { FromWorker, LoadedMesh, ToWorker } from "./messages";
+import { findBoundaryEdges, findLayers, findNeighbours, kFaceCorners } from "./topology";
+import { findVisible, type Mesh } from "./visible";
+
+// The library for pages types `self` as a window; this is all that is used of it.
+const worker = self as unknown as {
+  onmessage: ((event: MessageEvent<ToWorker>) => void) | null;
+  postMessage(message: FromWorker, transfer?: Transferable[]): void;
+};
+
+let info: MeshInfo;
+const tables = new Map<string, Uint32Array<ArrayBuffer>>();
+let pending: Promise<void> = Promise.resolve();
+let received = 0;
+let mesh: Mesh;
+let kept: Uint8Array;
+
+function tell(message: FromWorker, transfer: Transferable[] = []): void {
+  worker.postMessage(message, transfer);
+}
+
+function tableInfo(name: string): TableInfo | undefined {
+  return info.tables.find((table) => table.name === name);
+}
+
+/** The numbers of a table; without elements if the page does not have it. */
+function takeTable(name: string): Uint32Array<ArrayBuffer> {
+  const table = tables.get(name) ?? new Uint32Array(0);
+  tables.delete(name);
+  return table;
+}
+
+async function decode(name: string, chunk: number, data: string | ArrayBuffer): Promise<void> {
+  const table = tableInfo(name)!;
+  const packed = typeof data === "string" ? decodeBase64(data) : new Uint8Array(data);
+  if (packed.length !== table.chunkBytes[chunk]) throw new Error("The page is incomplete.");
+  const first = chunk * table.rowsPerChunk;
+  const rows = Math.min(table.rowsPerChunk, table.rows - first);
+  decodeChunk(await inflate(packed), rows, table.columns, tables.get(name)!, first);
+  const total = info.tables.reduce((sum, each) => sum + each.chunkBytes.length, 0);
+  tell({ kind: "progress", what: "Unpacking", share: ++received / total });
+}
+
+function decodePositions(): Float32Array<ArrayBuffer> {
+  const stored = takeTable("points");
+  const kinds = takeTable("generator_kinds");
+  const { scale, centre } = sceneOf(info);
+  // Rows of the texture are full.
+  const positions = new Float32Array(4 * kTextureWidth * Math.ceil(info.vertices / kTextureWidth));
+  for (let v = 0; v < info.vertices; ++v) {
+    for (let axis = 0; axis < 3; ++axis) {
+      const place = info.lower[axis]! + stored[3 * v + axis]! * info.step;
+      positions[4 * v + axis] = (place - centre[axis]!) * scale;
+    }
+    positions[4 * v + 3] = kinds.length > 0 ? kinds[v]! : 0;
+  }
+  return positions;
+}
+
+function findCentres(cells: Uint32Array, positions: Float32Array): Float32Array {
+  const centres = new Float32Array((cells.length / 8) * 3);
+  for (let cell = 0; cell < cells.length / 8; ++cell) {
+    for (let axis = 0; axis < 3; ++axis) {
+      let sum = 0;
+      for (let k = 0; k < 8; ++k) sum += positions[4 * cells[8 * cell + k]! + axis]!;
+      centres[3 * cell + axis] = sum / 8;
+    }
+  }
+  return centres;
+}
+
+/** The tagged quads as numbers of features at the faces of the cells. */
+function placeQuadFeatures(cells: Uint32Array): { places: Uint16Array | null; tags: number[] } {
+  const stored = takeTable("feature_quads");
+  if (stored.length === 0) return { places: null, tags: [] };
+  const signed = Int32Array.from(stored);
+  const tags: number[] = [];
+  const numbers = new Map<number, number>();
+  const byVertices = new Map<string, number>();
+  const keyOf = (vertices: number[]) => vertices.sort((a, b) => a - b).join();
+  for (let i = 0; i < stored.length; i += 5) {
+    const tag = signed[i + 4]!;
+    if (!numbers.has(tag)) numbers.set(tag, tags.push(tag));
+    byVertices.set(keyOf([...stored.subarray(i, i + 4)]), numbers.get(tag)!);
+  }
+  // Only faces whose vertices all belong to tagged quads need the slow look-up.
+  const tagged = new Uint8Array(info.vertices);
+  for (let i = 0; i < stored.length; ++i) if (i % 5 < 4) tagged[stored[i]!] = 1;
+  const places = new Uint16Array((cells.length / 8) * 6);
+  for (let face = 0; face < places.length; ++face) {
+    const base = Math.floor(face / 6) * 8;
+    const vertices = [0, 1, 2, 3].map((i) => cells[base + kFaceCorners[(face % 6) * 4 + i]!]!);
+    if (vertices.some((vertex) => tagged[vertex] === 0)) continue;
+    places[face] = byVertices.get(keyOf(vertices)) ?? 0;
+  }
+  return { places, tags };
+}
+
+function finish(): void {
+  const cells = takeTable("cells");
+  const quality = Uint16Array.from(takeTable("quality"));
+  const positions = decodePositions();
+  tell({ kind: "progress", what: "Finding neighbours", share: 0 });
+  const neighbours = findNeighbours(cells, info.vertices);
+  tell({ kind: "progress", what: "Finding layers", share: 0.7 });
+  const { layers, deepest } = findLayers(neighbours);
+  const features = placeQuadFeatures(cells);
+  mesh = {
+    cells,
+    quality,
+    layers,
+    neighbours,
+    centres: findCentres(cells, positions),
+    quadFeatures: features.places,
+  };
+  kept = new Uint8Array(info.cells);
+  const loaded: LoadedMesh = {
+    positions,
+    cells,
+    quality,
+    layers,
+    deepestLayer: deepest,
+    boundaryEdges: findBoundaryEdges(cells, neighbours),
+    singularEdges: takeTable("singular_edges"),
+    featureEdges: takeTable("feature_edges"),
+    quadTags: features.tags,
+  };
+  tell({ kind: "loaded", mesh: loaded }, [
+    loaded.positions.buffer,
+    loaded.boundaryEdges.buffer,
+    loaded.singularEdges.buffer,
+    loaded.featureEdges.buffer,
+  ]);
+}
+
+function handle(message: ToWorker): void | Promise<void> {
+  switch (message.kind) {
+    case "begin":
+      info = message.info;
+      for (const table of info.tables) {
+        tables.set(table.name, new Uint32Array(table.rows * table.columns));
+      }
+      return;
+    case "chunk":
+      return decode(message.table, message.chunk, message.data);
+    case "end":
+      return finish();
+    case "show": {
+      const begin = performance.now();
+      const visible = findVisible(mesh, message.filter, kept);
+      tell({ kind: "visible", visible, milliseconds: performance.now() - begin }, [
+        visible.quads.buffer,
+      ]);
+    }
+  }
+}
+
+worker.onmessage = (event) => {
+  // One after the other, although unpacking is asynchronous.
+  pending = pending
+    .then(() => handle(event.data))
+    .catch((error: unknown) => tell({ kind: "failed", message: String(error) }));
+};

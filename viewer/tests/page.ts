@@ -1,0 +1,76 @@
+// What the tests do with a page: open it, watch it, read its panel.
+import { type Page, test as base, expect } from "@playwright/test";
+import { join } from "node:path";
+import { kPages } from "./make_pages";
+
+/** Messages and requests of a page that shall not be. */
+const complaints = new WeakMap<Page, string[]>();
+
+/** Every test fails if the console says anything, or the page asks for anything but itself. */
+export const test = base.extend<{ page: Page }>({
+  page: async ({ page }, use) => {
+    const seen: string[] = [];
+    complaints.set(page, seen);
+    page.on("console", (message) => {
+      // Software drawing is slow at reading back, and says so: a property of this test alone.
+      if (/GPU stall due to ReadPixels/.test(message.text())) return;
+      seen.push(`${message.type()}: ${message.text()}`);
+    });
+    page.on("pageerror", (error) => seen.push(`error: ${error.message}`));
+    page.on("request", (request) => {
+      const url = request.url();
+      // A worker from the page's own text is no request to anyone.
+      if (url.startsWith("blob:") || url.startsWith("data:")) return;
+      if (request.isNavigationRequest()) return;
+      seen.push(`request: ${url}`);
+    });
+    await use(page);
+    expect(seen).toEqual([]);
+  },
+});
+
+export const complaintsOf = (page: Page) => complaints.get(page)!;
+
+/** Waits until the worker has answered and the answer is on the canvas. */
+export async function settle(page: Page): Promise<void> {
+  await page.waitForSelector('body[data-loaded="true"][data-busy="false"]');
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+}
+
+export async function open(page: Page, name: string, fragment = ""): Promise<void> {
+  await page.goto(`file://${join(kPages, name)}${fragment}`);
+  await settle(page);
+}
+
+async function count(page: Page, id: string): Promise<number> {
+  return Number((await page.locator(id).textContent())!.replaceAll(",", ""));
+}
+
+export const kept = (page: Page) => count(page, "#kept-cells");
+export const quads = (page: Page) => count(page, "#drawn-quads");
+
+export async function press(page: Page, keys: string): Promise<void> {
+  for (const key of keys) {
+    await page.keyboard.press(key);
+    await settle(page);
+  }
+}
+
+/** The number of different colours on the canvas: 1 if nothing is drawn. */
+export async function coloursOnCanvas(page: Page): Promise<number> {
+  const bytes = (await page.locator("#canvas").screenshot()).toString("base64");
+  return page.evaluate(async (png) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${png}`;
+    await image.decode();
+    const canvas = document.createElement("canvas");
+    canvas.width = image.width;
+    canvas.height = image.height;
+    const context = canvas.getContext("2d")!;
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+    return new Set(new Uint32Array(data.buffer)).size;
+  }, bytes);
+}
+
+export { expect };

@@ -1,0 +1,247 @@
+import { mkdirSync, readFileSync, statSync } from "node:fs";
+import { join } from "node:path";
+import { kPages } from "./make_pages";
+import { coloursOnCanvas, expect, kept, open, press, quads, settle, test } from "./page";
+
+const kPictures = process.env.HEXHEX_VIEWER_PICTURES ?? join(kPages, "../pictures");
+mkdirSync(kPictures, { recursive: true });
+const shot = (name: string) => ({ path: join(kPictures, `${name}.png`) });
+
+/** 7 blocks of 8^3 cells. */
+const kSide = 8;
+const kSphereCells = 7 * kSide ** 3;
+
+test("loads and draws", async ({ page }) => {
+  await open(page, "sphere.html");
+  expect(await kept(page)).toBe(kSphereCells);
+  expect(await quads(page)).toBe(6 * kSide ** 2);
+  await expect(page.locator("#stat-boundary-quads")).toHaveText(String(6 * kSide ** 2));
+  await expect(page.locator("#stat-not-positive")).toHaveText("0");
+  await expect(page.locator("#stat-inner")).toHaveText(`${20 * kSide} of valence 3`);
+  await expect(page.locator("#stat-verification")).toContainText("agrees with sphere.hexex");
+  expect(await coloursOnCanvas(page)).toBeGreaterThan(50);
+  await page.screenshot(shot("sphere"));
+});
+
+test("slices with whole cells, on either side", async ({ page }) => {
+  await open(page, "box.html");
+  expect([await kept(page), await quads(page)]).toEqual([64, 96]);
+  for (const key of "xyz") {
+    await press(page, key);
+    expect([await kept(page), await quads(page)]).toEqual([32, 64]);
+  }
+  await page.locator("#slice-position").fill("250");
+  await settle(page);
+  expect([await kept(page), await quads(page)]).toEqual([16, 48]);
+  await press(page, "f");
+  expect(await kept(page)).toBe(48);
+  await page.locator('[data-slice="off"]').click();
+  await settle(page);
+  expect(await kept(page)).toBe(64);
+  await press(page, "v");
+  const half = await kept(page);
+  expect(half).toBeGreaterThan(16);
+  expect(half).toBeLessThan(48);
+});
+
+test("peels layers", async ({ page }) => {
+  await open(page, "box.html");
+  await expect(page.locator("#peel-most")).toHaveText("1");
+  await press(page, "]");
+  expect([await kept(page), await quads(page)]).toEqual([8, 24]);
+  await press(page, "[");
+  expect(await kept(page)).toBe(64);
+
+  await open(page, "sphere.html");
+  await page.locator("#peel").fill("2");
+  await settle(page);
+  expect(await kept(page)).toBe(kSide ** 3 + 6 * kSide ** 2 * (kSide - 2));
+  await page.screenshot(shot("peeled"));
+});
+
+test("filters by quality with numbers and the brush", async ({ page }) => {
+  await open(page, "sphere.html");
+  await page.locator("#quality-to").fill("0.8");
+  await page.locator("#quality-to").press("Enter");
+  await settle(page);
+  const below = await kept(page);
+  expect(below).toBeGreaterThan(0);
+  expect(below).toBeLessThan(kSphereCells);
+  await page.locator("#quality-from").fill("0.8");
+  await page.locator("#quality-to").fill("1");
+  await page.locator("#quality-to").press("Enter");
+  await settle(page);
+  // Nothing is lost, and only cells of that very value are there twice.
+  expect(Math.abs((await kept(page)) + below - kSphereCells)).toBeLessThan(5);
+  await page.locator("#quality-all").click();
+  await settle(page);
+  expect(await kept(page)).toBe(kSphereCells);
+
+  const box = (await page.locator("#histogram").boundingBox())!;
+  await page.mouse.move(box.x + 1, box.y + 20);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2, box.y + 20, { steps: 4 });
+  await page.mouse.up();
+  await settle(page);
+  const brushed = await kept(page);
+  expect(brushed).toBeGreaterThan(0);
+  expect(brushed).toBeLessThan(kSphereCells / 2);
+  await page.screenshot(shot("brushed"));
+});
+
+test("finds cells that are not positive", async ({ page }) => {
+  await open(page, "broken.html");
+  await expect(page.locator("#stat-not-positive")).toHaveText("1");
+  await expect(page.locator("#legend")).toContainText("not positive");
+  await press(page, "w");
+  await expect(page.locator("#picked-cell")).toHaveText("21");
+  expect(Number(await page.locator("#picked-quality").textContent())).toBeLessThanOrEqual(0);
+  await page.locator("#quality-to").fill("0");
+  await page.locator("#quality-to").press("Enter");
+  await settle(page);
+  expect(await kept(page)).toBe(1);
+});
+
+test("tells about a cell that is clicked", async ({ page }) => {
+  await open(page, "box.html");
+  await expect(page.locator("#picked")).toBeHidden();
+  await page.locator('[data-look="z"]').click();
+  await settle(page);
+  const box = (await page.locator("#canvas").boundingBox())!;
+  // A little beside the middle, where four cells meet: the cell at x, y in [0.5, 0.75].
+  await page.mouse.click(box.x + box.width / 2 + 25, box.y + box.height / 2 - 25);
+  await settle(page);
+  await expect(page.locator("#picked")).toBeVisible();
+  await expect(page.locator("#picked-quality")).toHaveText("1.0000");
+  const number = Number(await page.locator("#picked-cell").textContent());
+
+  // The corners are those of the file, and the cell is at the top.
+  const lines = readFileSync(join(kPages, "box.mesh"), "utf8").split("\n");
+  const corners = lines[lines.indexOf("Hexahedra") + 2 + number]!.split(" ").slice(0, 8);
+  const rows = await page.locator("#picked-corners tbody tr").allInnerTexts();
+  const cells = rows.map((row) => row.split(/\s+/));
+  expect(cells.map((row) => Number(row[1]) + 1)).toEqual(corners.map(Number));
+  for (const axis of [2, 3, 4]) {
+    const values = cells.map((row) => Number(row[axis]));
+    const place = lines.indexOf("Vertices") + 2;
+    const wanted = corners.map((c) => Number(lines[place + Number(c) - 1]!.split(" ")[axis - 2]));
+    values.forEach((value, k) => expect(value).toBeCloseTo(wanted[k]!, 4));
+  }
+  const highest = Math.max(...cells.map((row) => Number(row[4])));
+  expect(highest).toBeCloseTo(Number(await page.evaluate(() =>
+    JSON.parse(document.getElementById("mesh-info")!.textContent!).upper[2])), 4);
+
+  await page.mouse.click(box.x + 5, box.y + 5);
+  await settle(page);
+  await expect(page.locator("#picked")).toBeHidden();
+});
+
+test("colours, and says in the legend how", async ({ page }) => {
+  await open(page, "sphere.html");
+  const legend = page.locator("#legend");
+  await expect(legend).toContainText("scaled Jacobian");
+  await expect(legend).toContainText(`3 (${20 * kSide})`);
+  await page.locator("#colour").selectOption("generator");
+  await expect(legend).toContainText("vertex lies in a");
+  await settle(page);
+  await page.screenshot(shot("generators"));
+  await page.locator("#colour").selectOption("layer");
+  await expect(legend).toContainText("layer from the boundary");
+  // This mesh has no features, so that colouring is not on offer.
+  await expect(page.locator('#colour option[value="feature"]')).toBeDisabled();
+  await page.locator("#show-inner").uncheck();
+  await expect(legend).not.toContainText("valence");
+});
+
+test("shows what is tagged", async ({ page }) => {
+  await open(page, "features.html");
+  await expect(page.locator("#show-features")).toBeVisible();
+  const plain = await coloursOnCanvas(page);
+  await page.locator("#colour").selectOption("feature");
+  await settle(page);
+  await expect(page.locator("#legend")).toContainText("tag of the face");
+  expect(await page.locator("#legend i:not(.edge)").count()).toBeGreaterThan(2);
+  expect(await coloursOnCanvas(page)).not.toBe(plain);
+  await page.screenshot(shot("features"));
+});
+
+test("saves a picture", async ({ page }) => {
+  await open(page, "sphere.html");
+  const download = page.waitForEvent("download");
+  await page.locator("#picture").click();
+  const file = await download;
+  expect(file.suggestedFilename()).toBe("sphere.png");
+  const path = join(kPictures, "saved.png");
+  await file.saveAs(path);
+  expect(readFileSync(path).subarray(1, 4).toString()).toBe("PNG");
+  expect(statSync(path).size).toBeGreaterThan(20000);
+});
+
+test("keeps the view in the address", async ({ page, context }) => {
+  await open(page, "sphere.html");
+  await press(page, "z..]c");
+  await page.locator("#share").click();
+  const address = page.url();
+  expect(address).toContain("slice=z");
+  const before = [await kept(page), await quads(page)];
+
+  const other = await context.newPage();
+  await other.goto(address);
+  await settle(other);
+  expect([await kept(other), await quads(other)]).toEqual(before);
+  await expect(other.locator("#colour")).toHaveValue("generator");
+  expect(other.url()).toBe(address);
+
+  // Nonsense in the address is no reason to fail.
+  await open(page, "box.html", "#slice=q,1&peel=900&cell=77777&camera=1,2&quality=a,b");
+  expect(await kept(page)).toBe(8);
+  await expect(page.locator("#picked")).toBeHidden();
+});
+
+test("lists the keys, and is dark on request", async ({ page }) => {
+  await open(page, "sphere.html");
+  await press(page, "?");
+  await expect(page.locator("#shortcuts")).toBeVisible();
+  await expect(page.locator("#shortcut-list dt")).toHaveCount(26);
+  await page.keyboard.press("Escape");
+  await expect(page.locator("#shortcuts")).toBeHidden();
+  const back = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const light = await back();
+  await press(page, "d");
+  expect(await back()).not.toBe(light);
+  await press(page, "x");
+  await page.screenshot(shot("dark"));
+});
+
+test("works on a phone", async ({ browser }) => {
+  const context = await browser.newContext({
+    viewport: { width: 390, height: 800 },
+    hasTouch: true,
+    isMobile: true,
+    deviceScaleFactor: 2,
+  });
+  const page = await context.newPage();
+  await open(page, "sphere.html");
+  const canvas = (await page.locator("#canvas").boundingBox())!;
+  const panel = (await page.locator("#panel").boundingBox())!;
+  expect(canvas.width).toBe(390);
+  expect(panel.y).toBeGreaterThanOrEqual(canvas.y + canvas.height - 1);
+  expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(390);
+  await page.locator('[data-slice="x"]').tap();
+  await settle(page);
+  expect(await kept(page)).toBe(kSphereCells / 2);
+  await page.touchscreen.tap(canvas.x + canvas.width / 2, canvas.y + canvas.height / 2);
+  await settle(page);
+  await expect(page.locator("#picked-cell")).toHaveText(/^\d+$/);
+  await page.screenshot(shot("phone"));
+  await page.locator("#panel-toggle").tap();
+  await expect(page.locator("#controls")).toBeHidden();
+  await context.close();
+});
+
+test("says so if its data is damaged", async ({ page }) => {
+  // The last character of the first chunk before its padding.
+  const html = readFileSync(join(kPages, "box.html"), "utf8");
+  await page.setContent(html.replace(/(id="data-cells-0">)(....)/, "$1AAAA"));
+  await expect(page.locator("#problem")).toBeVisible();
+});
