@@ -68,8 +68,8 @@ install_python_programs() {
   export HEXHEX_PYTHON=$python/bin/python
 }
 
-# Libraries of optional formats: .vtkhdf, .cgns, .exo. Without them these are left out.
-optional_packages=(libhdf5-dev libcgns-dev libexodusii-dev)
+# Libraries of optional parts: .vtkhdf, .cgns, .exo, repair. Without them these are left out.
+optional_packages=(liblbfgs-dev libhdf5-dev libcgns-dev libexodusii-dev)
 # ... and what only tests need, which skip without it: VTK reads curved meshes.
 test_packages=(python3-vtk9 python3-numpy)
 

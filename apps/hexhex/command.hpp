@@ -16,6 +16,7 @@ struct Command {
 [[nodiscard]] Command addCheck(CLI::App& app);
 [[nodiscard]] Command addVerify(CLI::App& app);
 [[nodiscard]] Command addGenerate(CLI::App& app);
+[[nodiscard]] Command addRepair(CLI::App& app);
 [[nodiscard]] Command addInfo(CLI::App& app);
 [[nodiscard]] Command addConvert(CLI::App& app);
 [[nodiscard]] Command addFormats(CLI::App& app);

@@ -1,4 +1,5 @@
 // `hexhex extract`: from a map to a verified hexahedral mesh.
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <map>
@@ -12,6 +13,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/partial.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/verify.hpp>
 
@@ -21,6 +23,7 @@
 #include "interrupt.hpp"
 #include "output.hpp"
 #include "progress.hpp"
+#include "repair_text.hpp"
 #include "report.hpp"
 #include "shared_options.hpp"
 #include "verification.hpp"
@@ -40,6 +43,7 @@ struct Arguments {
   double patchAngle = WriteOptions{}.patchAngle;
   int threads = 0;
   bool stream = false;
+  bool partial = false;
   bool noVerify = false;
   bool quiet = false;
 };
@@ -92,9 +96,14 @@ void requireOutputs(const Arguments& arguments) {
     requireHexMeshFormat(arguments.output, arguments.choice.options());
   }
   requireWritable(arguments.output);
+  if (arguments.partial && arguments.stream) {
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "--partial needs the whole mesh in memory. Leave out one of --stream and --partial.");
+  }
   if (arguments.stream) {
     requireStreamable(arguments.output, arguments.choice.options(), arguments.options);
-  };
+  }
   if (!arguments.report.empty()) requireWritable(arguments.report);
 }
 
@@ -104,6 +113,7 @@ void printWarnings(const ExtractionRecord& record, const TetMap& map) {
     printWarning(
         "The tags and regions of the map are not in the mesh; leave out --stream for them.");
   }
+  if (statistics.repair.changed) printWarning(repairNotice(statistics.repair));
   if (statistics.tetsInvertedInSpace > 0) {
     printWarning(counted(statistics.tetsInvertedInSpace, "tet") +
                  " of the input are inverted in space. The mesh has the right connectivity, but "
@@ -149,6 +159,10 @@ void printSummary(const ExtractionRecord& record) {
             fmt::format("{:.3f} s on {}{}, peak memory {}", statistics.seconds,
                         counted(static_cast<std::uint64_t>(statistics.threads), "thread"),
                         record.streamed ? ", writing included" : "", bytesAsText(peakMemory())));
+  if (statistics.repair.changed) {
+    printLine("repair", fmt::format("{:.3f} s, {}", statistics.repair.seconds,
+                                    counted(statistics.repair.regions.size(), "place")));
+  }
   if (record.quality) printLine("scaled Jacobian", qualityAsText(*record.quality));
   if (record.order > 1) {
     printLine("order", fmt::format("{}, {} nodes", record.order, record.nodes));
@@ -171,8 +185,8 @@ void printSummary(const ExtractionRecord& record) {
 void verifyMesh(const Arguments& arguments, const TetMap& map, const HexMesh& mesh,
                 Context& context, ExtractionRecord& record) {
   if (arguments.noVerify) return;
-  record.verification =
-      verify(map, mesh, {arguments.options.scale, arguments.options.tolerance}, context);
+  record.verification = verify(extractedMap(map, record.statistics), mesh,
+                               {arguments.options.scale, arguments.options.tolerance}, context);
   requirePassed(*record.verification, "The mesh does not agree with the map and was not written",
                 "Please report this with the map.");
 }
@@ -245,6 +259,48 @@ void extractInPieces(const Arguments& arguments, const TetMap& map, Context& con
   record.streamed = mesh.written;
 }
 
+void printHoles(const PartialMesh& partial) {
+  constexpr std::size_t kMaxListed = 20;
+  for (std::size_t i = 0; i < std::min(partial.holes.size(), kMaxListed); ++i) {
+    const Hole& hole = partial.holes[i];
+    printLine(fmt::format("hole at tet {}", hole.tet),
+              fmt::format("about {:.2f} cells missing near ({:.4g}, {:.4g}, {:.4g}), in {}, {} of "
+                          "them invalid",
+                          hole.missingCells, hole.position[0], hole.position[1], hole.position[2],
+                          counted(hole.tets, "tet"), hole.invalidTets));
+  }
+  if (partial.holes.size() > kMaxListed) {
+    printLine("and", fmt::format("{} smaller holes", partial.holes.size() - kMaxListed));
+  }
+}
+
+/// What is left of a map beyond repair. Always an invalid map, by its exit code.
+int extractWhatIsValid(const Arguments& arguments, const TetMap& map, const Error& problem,
+                       Context& context, ProgressDisplay& progress) {
+  const PartialMesh partial =
+      extractPartial(map, {arguments.options.scale, arguments.options.tolerance}, context);
+  WriteOptions options = arguments.choice.options();
+  options.patchAngle = arguments.patchAngle;
+  writeHexMesh(partial.mesh, arguments.output, options, context);
+  progress.clear();
+  printError(problem);
+  if (arguments.quiet) return kInvalidMap;
+  printWarning("Only a part of the mesh was extracted, as --partial asks for.");
+  fmt::print("{} -> {}\n", arguments.input.description(), arguments.output);
+  const auto atHole =
+      std::count(partial.mesh.regions.begin(), partial.mesh.regions.end(), std::int32_t{1});
+  printLine("mesh", fmt::format("{}, {} of them at holes (region 1)",
+                                counted(partial.mesh.cells.size(), "cell"), atHole));
+  printLine("missing", fmt::format("about {:.1f} cells, at {} with {}", partial.missingCells,
+                                   counted(partial.holes.size(), "hole"),
+                                   counted(partial.invalidTets, "invalid tet")));
+  printLine("local verification",
+            fmt::format("every cell is filled by valid tets; {} do not fit together",
+                        counted(partial.faceConflicts, "face")));
+  printHoles(partial);
+  return kInvalidMap;
+}
+
 int run(const Arguments& arguments) {
   requireOutputs(arguments);
   ProgressDisplay progress(arguments.quiet);
@@ -256,7 +312,12 @@ int run(const Arguments& arguments) {
   record.order = arguments.order;
   const auto make =
       arguments.stream ? extractInPieces : (arguments.order > 1 ? extractCurved : extractWhole);
-  make(arguments, map, context, record);
+  try {
+    make(arguments, map, context, record);
+  } catch (const Error& error) {
+    if (!arguments.partial || exitCodeOf(error.code()) != kInvalidMap) throw;
+    return extractWhatIsValid(arguments, map, error, context, progress);
+  }
   progress.clear();
 
   std::error_code unknown;  // the size of a pipe
@@ -276,6 +337,21 @@ int run(const Arguments& arguments) {
     printSummary(record);
   }
   return kSuccess;
+}
+
+/// What happens to maps that are not valid.
+void addRepairOptions(CLI::App& parser, Arguments& arguments) {
+  parser
+      .add_option("--repair", arguments.options.repair,
+                  "auto: mend flipped and flat tets of the map first, with a\n"
+                  "notice; off: they are an error. Valid maps pay nothing")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, RepairMode>{{"auto", RepairMode::Auto}, {"off", RepairMode::Off}}))
+      ->option_text("MODE [auto]");
+  addRound(parser, arguments.options.round);
+  parser.add_flag("--partial", arguments.partial,
+                  "Write what can be extracted of a map beyond repair, cells\n"
+                  "at holes as region 1, and list the holes; exit code 1");
 }
 
 /// Options that change how a mesh is made, but not the mesh.
@@ -326,6 +402,7 @@ void addCurved(CLI::App& parser, Arguments& arguments) {
 
 Command addExtract(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
+  arguments->options.repair = RepairMode::Auto;
   CLI::App* const parser = app.add_subcommand("extract", "Extract the hexahedral mesh of a map");
   addMapSource(*parser, arguments->input);
   parser
@@ -345,6 +422,7 @@ Command addExtract(CLI::App& app) {
                    "most this angle in degrees\nbetween neighbours; 0: one group")
       ->check(CLI::Range(0, 180))
       ->option_text("DEGREES [40]");
+  addRepairOptions(*parser, *arguments);
   parser->add_flag("--no-verify", arguments->noVerify, "Write the mesh without verifying it");
   parser
       ->add_option("--report", arguments->report,

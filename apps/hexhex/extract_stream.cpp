@@ -113,7 +113,8 @@ StreamedMesh extractStreamed(const TetMapView& map, const std::filesystem::path&
     result.written = survey.result();
     if (verified) {
       const MeshSurvey read = surveyFile(pending.path(), reading, context);
-      const CheckReport expected = check(map, {options.tolerance, options.scale}, context);
+      const CheckReport expected =
+          check(extractedMap(map, statistics), {options.tolerance, options.scale}, context);
       result.verification = compare(expected, result.written, read);
       requirePassed(*result.verification,
                     "The file, as it was read back, does not hold the mesh that was extracted, or "

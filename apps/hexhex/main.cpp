@@ -50,13 +50,6 @@ std::string usageProblem(const CLI::App* app, const CLI::Error& error) {
                      error.what(), app->get_display_name());
 }
 
-/// The sentence, and in brackets what a script or a bug report wants to know.
-void printError(const Error& error) {
-  const std::string place = toString(error.place());
-  printToStderr("hexhex: error: {} [{}{}{}]\n", error.what(), name(error.code()),
-                place.empty() ? "" : ", ", place);
-}
-
 /// Runs a subcommand; every error ends here.
 int runGuarded(const Command& command) {
   try {
@@ -83,8 +76,9 @@ int run(int argc, char** argv) {
   app.footer(kFooter);
   app.require_subcommand(1);
   app.failure_message(usageProblem);
-  const std::array commands = {addExtract(app), addCheck(app),   addVerify(app),  addGenerate(app),
-                               addInfo(app),    addConvert(app), addFormats(app), addView(app)};
+  const std::array commands = {addExtract(app),  addCheck(app),   addVerify(app),
+                               addGenerate(app), addRepair(app),  addInfo(app),
+                               addConvert(app),  addFormats(app), addView(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

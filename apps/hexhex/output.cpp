@@ -41,6 +41,12 @@ void printLine(std::string_view label, std::string_view value) {
 
 void printWarning(std::string_view sentence) { printToStderr("hexhex: warning: {}\n", sentence); }
 
+void printError(const Error& error) {
+  const std::string place = toString(error.place());
+  printToStderr("hexhex: error: {} [{}{}{}]\n", error.what(), name(error.code()),
+                place.empty() ? "" : ", ", place);
+}
+
 std::string counted(std::uint64_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }

@@ -11,6 +11,7 @@
 
 #include <fmt/core.h>
 
+#include <hexhex/error.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/types.hpp>
 
@@ -35,6 +36,10 @@ void printWarning(std::string_view sentence);
 
 /// "12.3 MB"
 [[nodiscard]] std::string bytesAsText(std::uint64_t bytes);
+
+/// The sentence, and in brackets what a script or a bug report wants to know, on the standard error
+/// output.
+void printError(const Error& error);
 
 /// 16 hexadecimal digits.
 [[nodiscard]] std::string checksumAsText(std::uint64_t checksum);

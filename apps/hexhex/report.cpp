@@ -9,6 +9,7 @@
 #include <hexhex/version.hpp>
 
 #include "output.hpp"
+#include "repair_text.hpp"
 
 namespace hexhex::command {
 namespace {
@@ -114,6 +115,7 @@ std::string reportAsJson(const ExtractionRecord& record) {
                        {"tets_inverted_in_space", statistics.tetsInvertedInSpace},
                        {"quality", qualityAsJson(record.quality)},
                        {"verification", verificationAsJson(record.verification)},
+                       {"repair", repairAsJson(statistics.repair)},
                        {"streamed", record.streamed.has_value()},
                        {"checksums", checksumsAsJson(record.streamed)}};
   // File names need not be valid UTF-8; bytes that are not are replaced.

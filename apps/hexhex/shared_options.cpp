@@ -125,4 +125,10 @@ void addTolerance(CLI::App& parser, double& tolerance) {
       ->option_text("NUMBER [0.01]");
 }
 
+void addRound(CLI::App& parser, bool& round) {
+  parser.add_flag("--round", round,
+                  "Move boundary and singularities that are off integers by\n"
+                  "less than 0.1 onto them, and repair what that flips");
+}
+
 }  // namespace hexhex::command

@@ -65,5 +65,6 @@ void addOutputChoice(CLI::App& parser, OutputChoice& choice);
 void addScale(CLI::App& parser, int& scale, const std::string& description);
 void addThreads(CLI::App& parser, int& threads);
 void addTolerance(CLI::App& parser, double& tolerance);
+void addRound(CLI::App& parser, bool& round);
 
 }  // namespace hexhex::command

@@ -6,9 +6,11 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include <hexhex/context.hpp>
 #include <hexhex/export.h>
+#include <hexhex/repair.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex HEXHEX_API_NAMESPACE {
@@ -17,6 +19,12 @@ namespace hexhex HEXHEX_API_NAMESPACE {
 enum class Engine : std::uint8_t {
   Atlas,     ///< reads cells off a picture of the map, and traces only those that a cut meets
   Propeller  ///< the paper's algorithm: traces every edge
+};
+
+/// What to do with a map that has flipped or flat tets.
+enum class RepairMode : std::uint8_t {
+  Off,  ///< it is an error
+  Auto  ///< it is repaired first, if this build can
 };
 
 struct ExtractOptions {
@@ -30,6 +38,8 @@ struct ExtractOptions {
   /// How far the input may be from fulfilling its integer conditions (transitions, boundary,
   /// singularities), in parameter units before scaling. Below 0.25.
   double tolerance = 1e-2;
+  RepairMode repair = RepairMode::Off;
+  bool round = false;  ///< as RepairOptions::round, if there is a repair
 };
 
 /// What happened on the way.
@@ -56,6 +66,11 @@ struct ExtractStatistics {
   std::uint64_t cutFaces = 0;         ///< inner faces of the tet mesh at which its picture ends
   std::uint64_t overlappingTets = 0;  ///< that did not fit their first chart
   std::uint64_t tracedCells = 0;      ///< cells that met a cut
+
+  RepairReport repair;  ///< changed is false for a map that was valid
+  /// The map that was extracted instead, whose mesh it is, and whose tets `generatorTet` means;
+  /// null if the map was valid.
+  std::shared_ptr<const TetMap> repairedMap;
 };
 
 /// Extracts the hexahedral mesh that the map implies. Linear in the number of tets plus the number
@@ -74,6 +89,9 @@ struct ExtractStatistics {
 /// A tagged edge or triangle that is not in the tet mesh has no effect. Where map.regions is given,
 /// mesh.regions has for each cell the region at its centre: that of the smallest tet that contains
 /// the centre. Maps without either take no time for it.
+///
+/// If options.repair is Auto, a map with flipped or flat tets is repaired first (repair.hpp), and
+/// the result belongs to statistics->repairedMap. A valid map takes no time for it.
 ///
 /// @throws Error  for every violated condition of an integer-grid map, with its place;
 ///                InvalidArgument for features with vertices that do not exist or that are listed

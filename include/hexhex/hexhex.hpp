@@ -9,8 +9,10 @@
 #include <hexhex/extractor.hpp>  // IWYU pragma: export
 #include <hexhex/features.hpp>   // IWYU pragma: export
 #include <hexhex/io.hpp>         // IWYU pragma: export
+#include <hexhex/partial.hpp>    // IWYU pragma: export
 #include <hexhex/patches.hpp>    // IWYU pragma: export
 #include <hexhex/quality.hpp>    // IWYU pragma: export
+#include <hexhex/repair.hpp>     // IWYU pragma: export
 #include <hexhex/samples.hpp>    // IWYU pragma: export
 #include <hexhex/stream.hpp>     // IWYU pragma: export
 #include <hexhex/structure.hpp>  // IWYU pragma: export

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <atlas/atlas.hpp>
+#include <repair/repair_map.hpp>
 
 #include <hexhex/extract.hpp>
 #include <hexhex/stream.hpp>
@@ -34,12 +35,53 @@ std::uint64_t scaledCells(std::uint64_t volume, int scale, double limit) {
   return volume * s * s * s;
 }
 
-PreparedMap prepareValid(const TetMapView& map, double tolerance, int maxScale, Context& context,
-                         ExtractStatistics& statistics) {
-  requireValidTags(map);
+namespace {
+
+/// Whether a repair is to be tried. Other defects than flipped and flat tets are its business only
+/// if rounding was asked for.
+bool isToBeRepaired(const DefectCollector& defects, const Mending& mending) {
+  if (mending.mode == RepairMode::Off || !canRepair()) return false;
+  return defects.has(ErrorCode::FlippedTet) || mending.round;
+}
+
+TetMap ownedCopy(const TetMapView& map) {
+  TetMap copy;
+  copy.points.assign(map.points.begin(), map.points.end());
+  copy.tets.assign(map.tets.begin(), map.tets.end());
+  copy.parameters.assign(map.parameters.begin(), map.parameters.end());
+  copy.edgeValences.assign(map.edgeValences.begin(), map.edgeValences.end());
+  copy.rotations.assign(map.rotations.begin(), map.rotations.end());
+  copy.features.vertices.assign(map.features.vertices.begin(), map.features.vertices.end());
+  copy.features.edges.assign(map.features.edges.begin(), map.features.edges.end());
+  copy.features.faces.assign(map.features.faces.begin(), map.features.faces.end());
+  copy.regions.assign(map.regions.begin(), map.regions.end());
+  return copy;
+}
+
+/// Prepares the map, or what a repair makes of it; that stays in `statistics`.
+PreparedMap prepareMended(const TetMapView& map, double tolerance, int maxScale,
+                          const Mending& mending, Context& context, ExtractStatistics& statistics) {
+  {
+    DefectCollector defects;
+    PreparedMap prepared = prepareMap(map, tolerance, maxScale, context, defects);
+    if (defects.empty()) return prepared;
+    if (!isToBeRepaired(defects, mending)) defects.throwIfAny();
+  }
+  const RepairOptions options{tolerance, maxScale, mending.round, true};
+  statistics.repairedMap = std::make_shared<const TetMap>(
+      repairInArena(ownedCopy(map), options, context, statistics.repair));
   DefectCollector defects;
-  PreparedMap prepared = prepareMap(map, tolerance, maxScale, context, defects);
+  PreparedMap prepared = prepareMap(*statistics.repairedMap, tolerance, maxScale, context, defects);
   defects.throwIfAny();
+  return prepared;
+}
+
+}  // namespace
+
+PreparedMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
+                         const Mending& mending, Context& context, ExtractStatistics& statistics) {
+  requireValidTags(map);
+  PreparedMap prepared = prepareMended(map, tolerance, maxScale, mending, context, statistics);
   statistics.mirrored = prepared.input.mirrored;
   statistics.tetsInvertedInSpace = prepared.input.tetsInvertedInSpace;
   statistics.maxDisplacement = prepared.exact.maxDisplacement;
@@ -80,7 +122,7 @@ ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options,
     throw Error(ErrorCode::TooLarge, "The scale is too large. Lower it.");
   }
   ScaledMap scaled{prepareValid(map, options.tolerance, options.scale * limits.furtherScale,
-                                context, statistics)};
+                                {options.repair, options.round}, context, statistics)};
   Stage stage(context, "scaling");
   ExactMap& exact = scaled.map.exact;
   scaled.expectedCells = scaledCells(parametricVolume(exact), options.scale, limits.cells);
@@ -91,7 +133,8 @@ ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options,
 HexMesh extractScaled(const TetMapView& given, ScaledMap& scaled, const ExtractOptions& options,
                       Context& context, ExtractStatistics& statistics) {
   HexMesh mesh = runEngine(scaled.map, scaled.expectedCells, options, context, statistics);
-  carryTags(given, scaled.map, mesh, context);
+  const TetMapView tagged = statistics.repairedMap ? TetMapView(*statistics.repairedMap) : given;
+  carryTags(tagged, scaled.map, mesh, context);
   return mesh;
 }
 

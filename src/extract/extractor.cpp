@@ -17,7 +17,7 @@ class Extractor::Prepared {
   Prepared(const TetMapView& map, const ExtractorOptions& options, Context& context)
       : given_(map), maxScale_(options.maxScale) {
     runExtraction({}, context, &known_, [&](ExtractStatistics& filled) {
-      map_ = prepareValid(map, options.tolerance, options.maxScale, context, filled);
+      map_ = prepareValid(map, options.tolerance, options.maxScale, {}, context, filled);
       volume_ = parametricVolume(map_.exact);
     });
   }

@@ -21,10 +21,17 @@ inline constexpr double kMaxStreamedCells = 0x1p60;
 /// @throws Error InvalidArgument for an epsilon out of range
 void checkOptions(const ExtractOptions& options);
 
-/// Checks tags, prepares a map, throws its first defect if it has any, and notes what is known
-/// about it.
+/// What may be done to maps that are not valid, as in ExtractOptions.
+struct Mending {
+  RepairMode mode = RepairMode::Off;
+  bool round = false;
+};
+
+/// Checks tags, prepares a map, or the repaired one, throws its first defect if it has any, and
+/// notes what is known about it. A repaired map stays in `statistics`, which the result refers to.
 [[nodiscard]] PreparedMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
-                                       Context& context, ExtractStatistics& statistics);
+                                       const Mending& mending, Context& context,
+                                       ExtractStatistics& statistics);
 
 /// The number of cells at a scale.
 /// @param volume  at scale 1

@@ -65,7 +65,7 @@ REPORT_KEYS = {
     "generators", "vertices_by_generator", "local_propellers", "global_propellers", "charts",
     "cut_faces", "overlapping_tets", "traced_cells", "singular_edges", "chart_jumps", "inner_faces",
     "max_displacement", "max_transition_residual", "mirrored", "tets_inverted_in_space", "quality",
-    "verification", "streamed", "checksums", "order", "nodes", "arcs", "patches",
+    "verification", "streamed", "checksums", "repair", "order", "nodes", "arcs", "patches",
 }
 
 
@@ -118,7 +118,7 @@ class Help(CommandTest):
         for word in ["extract", "check", "verify", "generate", "info", "view", "Exit codes", "Examples"]:
             self.assertIn(word, text)
         self.assertRegex(self.run_command("--version").stdout, r"^hexhex \d+\.\d+\.\d+\n$")
-        for subcommand in ["extract", "check", "verify", "generate", "info", "view"]:
+        for subcommand in ["extract", "check", "verify", "generate", "repair", "info", "view"]:
             self.assertIn("Example", self.run_command(subcommand, "--help").stdout)
 
     def test_help_lists_every_kind(self):
@@ -463,6 +463,65 @@ class Pipeline(CommandTest):
         map_file = self.generate("box")
         self.run_command("extract", map_file, "-o", "a.vtu", "--report", "r.json")
         self.assertEqual(set(self.files()), {"map.hexex", "a.vtu", "r.json"})
+
+
+class Repair(CommandTest):
+    def damaged(self, *options):
+        return self.generate("sphere", "--refine", "4", "--defects", "5", *options)
+
+    def can_repair(self):
+        """Whether the command was built with the solver; one that was not says so."""
+        map_file = self.damaged()
+        result = subprocess.run([self.command, "repair", map_file, "-o", "probe.hexex", "--quiet"],
+                                cwd=self.folder, text=True, capture_output=True, check=False)
+        (self.folder / "probe.hexex").unlink(missing_ok=True)
+        if result.returncode == SUCCESS:
+            return True
+        self.assertIn("libLBFGS", result.stderr)
+        return False
+
+    def test_extract_repairs_with_a_notice(self):
+        if not self.can_repair():
+            self.skipTest("built without libLBFGS")
+        for kind in ["interior", "singular", "boundary", "sliver"]:
+            map_file = self.damaged("--defect-kind", kind)
+            self.run_command("check", map_file, "--quiet", expect=INVALID_MAP)
+            run = self.run_command("extract", map_file, "-o", "mesh.vtu", "--report", "r.json")
+            self.assertIn("It was repaired", run.stderr)
+            report = json.loads((self.folder / "r.json").read_text())
+            self.assertGreaterEqual(report["repair"]["bad_tets"], 1)
+            self.assertEqual(len(report["repair"]["regions"]), 1)
+            self.assertTrue(report["verification"]["passed"])
+            self.assert_fails("extract", map_file, "-o", "off.vtu", "--repair", "off",
+                              expect=INVALID_MAP, code="FlippedTet")
+            self.run_command("extract", map_file, "-o", "s.vtu", "--stream", "--quiet")
+
+    def test_repair_writes_a_valid_map(self):
+        if not self.can_repair():
+            self.skipTest("built without libLBFGS")
+        map_file = self.damaged()
+        run = self.run_command("repair", map_file, "-o", "mended.hexex", "--report", "r.json")
+        self.assertIn("It was repaired", run.stdout)
+        self.run_command("check", "mended.hexex", "--quiet")
+        self.assertGreater(json.loads((self.folder / "r.json").read_text())["moved_vertices"], 0)
+        self.run_command("repair", "mended.hexex", "-o", "same.hexex", "--report", "n.json")
+        self.assertEqual((self.folder / "same.hexex").read_bytes(),
+                         (self.folder / "mended.hexex").read_bytes())
+        self.assertIsNone(json.loads((self.folder / "n.json").read_text()))
+
+    def test_partial(self):
+        map_file = self.damaged()
+        run = self.run_command("extract", map_file, "-o", "part.vtu", "--repair", "off",
+                               "--partial", expect=INVALID_MAP)
+        self.assertIn("[FlippedTet", run.stderr)
+        self.assertIn("hole at tet", run.stdout)
+        self.assertIn(b'Name="region"', (self.folder / "part.vtu").read_bytes())
+        self.run_command("info", "part.vtu")
+        # A valid map is extracted as ever.
+        self.generate("box", name="box.hexex")
+        self.run_command("extract", "box.hexex", "-o", "box.vtu", "--partial")
+        self.assert_fails("extract", "box.hexex", "-o", "b.vtu", "--partial", "--stream",
+                          expect=BAD_USAGE, code="InvalidArgument")
 
 
 class Convert(CommandTest):

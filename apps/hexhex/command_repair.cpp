@@ -1,0 +1,95 @@
+// `hexhex repair`: from a defective map to a valid one.
+#include <memory>
+#include <string>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include <hexhex/error.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/repair.hpp>
+
+#include "command.hpp"
+#include "exit_codes.hpp"
+#include "interrupt.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "repair_text.hpp"
+#include "shared_options.hpp"
+
+namespace hexhex::command {
+namespace {
+
+struct Arguments {
+  MapSource input;
+  std::string output;
+  OutputChoice choice;
+  std::string report;
+  RepairOptions options;
+  int threads = 0;
+  bool noRefine = false;
+  bool quiet = false;
+};
+
+int run(const Arguments& arguments) {
+  const WriteOptions writing = arguments.choice.options();
+  requireMapFormat(arguments.output, writing);
+  requireWritable(arguments.output);
+  if (!arguments.report.empty()) requireWritable(arguments.report);
+  ProgressDisplay progress(arguments.quiet);
+  Context context(arguments.threads, progress.callback());
+  const CancelOnSignal cancelOnSignal(context);
+  RepairOptions options = arguments.options;
+  options.refine = !arguments.noRefine;
+  RepairReport report;
+  const TetMap map = repair(readMap(arguments.input, context), options, context, &report);
+  writeMap(map, arguments.output, writing, context);
+  progress.clear();
+  if (!arguments.report.empty()) {
+    writeTextFile(arguments.report, repairAsJson(report).dump(2) + "\n");
+  }
+  if (arguments.quiet) return kSuccess;
+  fmt::print("{} -> {}\n", arguments.input.description(), arguments.output);
+  if (!report.changed) {
+    fmt::print("The map is valid; it was written as it is.\n");
+    return kSuccess;
+  }
+  fmt::print("{}\n", repairNotice(report));
+  printRegions(report);
+  printLine("time", fmt::format("{:.3f} s", report.seconds));
+  return kSuccess;
+}
+
+}  // namespace
+
+Command addRepair(CLI::App& app) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const parser =
+      app.add_subcommand("repair", "Mend flipped and flat tets of a map by moving parameters");
+  addMapSource(*parser, arguments->input);
+  parser->add_option("-o,--output", arguments->output, "The map to write, .hexex, .ovm or .ovmb")
+      ->required()
+      ->option_text("FILE REQUIRED");
+  addOutputChoice(*parser, arguments->choice);
+  addTolerance(*parser, arguments->options.tolerance);
+  addScale(*parser, arguments->options.scale, "The largest scale that the map is going to have");
+  addRound(*parser, arguments->options.round);
+  parser->add_flag("--no-refine", arguments->noRefine,
+                   "Never split edges of the tet mesh, not even where\n"
+                   "moving parameters cannot work");
+  addThreads(*parser, arguments->threads);
+  parser
+      ->add_option("--report", arguments->report,
+                   "Write in JSON what was moved, where, and by how much")
+      ->option_text("FILE");
+  parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  parser->footer(
+      "A valid map is written as it is. Exit code 1: the map cannot be repaired; the message says\n"
+      "why, and nothing is written. docs/defects.md explains what can be repaired and how.\n\n"
+      "Example:\n"
+      "  hexhex generate sphere --defects 10 --defect-kind singular -o broken.hexex\n"
+      "  hexhex repair broken.hexex -o mended.hexex");
+  return {parser, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace hexhex::command

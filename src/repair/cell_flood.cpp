@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <cmath>
+
+#include <repair/cell_flood.hpp>
+#include <repair/cube_clip.hpp>
+#include <repair/valid_tets.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// Parts of triangles smaller than this are touches.
+constexpr double kLeastArea = 1e-12;
+/// Nearer to a wall than this is in it.
+constexpr double kWall = 1e-9;
+
+/// Corners of a cell in VTK's order.
+constexpr std::array<std::array<int, 3>, 8> kCorners = {
+    {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
+
+/// The wall that a point is in (2 * axis, and 1 more for the high one), or -1.
+int wallOf(const Vec3& point) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double x = point[static_cast<std::size_t>(axis)];
+    if (x < kWall) return 2 * axis;
+    if (x > 1 - kWall) return 2 * axis + 1;
+  }
+  return -1;
+}
+
+LatticeTet carried(const LatticeTet& corners, const Transition& transition, std::int64_t unit) {
+  LatticeTet image{};
+  for (std::size_t i = 0; i < 4; ++i) image[i] = transition(corners[i], unit);
+  return image;
+}
+
+/// The four weights of a point in a tet, times the tet's determinant.
+std::array<Int192, 4> weightsOf(const LatticeTet& c, const LatticePoint& at) {
+  return {
+      orientationDeterminant(at, c[1], c[2], c[3]), orientationDeterminant(c[0], at, c[2], c[3]),
+      orientationDeterminant(c[0], c[1], at, c[3]), orientationDeterminant(c[0], c[1], c[2], at)};
+}
+
+Int128 squaredDistance(const LatticePoint& a, const LatticePoint& b) {
+  Int128 sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Int128 d = static_cast<Int128>(a[k]) - b[k];
+    sum += d * d;
+  }
+  return sum;
+}
+
+}  // namespace
+
+bool CellFlood::run(Index tet, const GridPoint& low) {
+  low_ = low;
+  pieces_.clear();
+  wallArea_ = {};
+  if (!visit(tet, {})) return false;
+  for (std::size_t head = 0; head < pieces_.size(); ++head) {
+    if (!spread(head)) return false;
+  }
+  double volume = 0;
+  for (const Piece& piece : pieces_) volume += piece.volume;
+  return std::abs(volume - 1) < kSlack;
+}
+
+std::array<Vec3, 4> CellFlood::relative(const LatticeTet& corners) const {
+  const auto unit = static_cast<double>(map_.exact.unit);
+  std::array<Vec3, 4> result{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      result[i][k] =
+          static_cast<double>(corners[i][k] - std::int64_t{low_[k]} * map_.exact.unit) / unit;
+    }
+  }
+  return result;
+}
+
+/// False if the tet has been met in another place of the chart: the cell is wrapped around
+/// something.
+bool CellFlood::visit(Index tet, const Transition& fromFirst) {
+  for (const Piece& piece : pieces_) {
+    if (piece.tet == tet) return piece.fromFirst == fromFirst;
+  }
+  Piece piece{tet, fromFirst, map_.exact.corners[tet], 0};
+  if (!fromFirst.isIdentity()) {
+    piece.corners = carried(piece.corners, fromFirst.inverse(), map_.exact.unit);
+  }
+  piece.volume = volumeInCube(relative(piece.corners));
+  pieces_.push_back(piece);
+  return true;
+}
+
+bool CellFlood::spread(std::size_t index) {
+  const Piece piece = pieces_[index];
+  const std::array<Vec3, 4> corners = relative(piece.corners);
+  for (int f = 0; f < 4; ++f) {
+    const std::array<int, 3>& face = kFaceCorners[static_cast<std::size_t>(f)];
+    const ClippedTriangle part = clipToCube({corners[static_cast<std::size_t>(face[0])],
+                                             corners[static_cast<std::size_t>(face[1])],
+                                             corners[static_cast<std::size_t>(face[2])]});
+    if (part.area < kLeastArea) continue;
+    const HalfFace halfFace = halfFaceOf(piece.tet, f);
+    const HalfFace mate = map_.topology.mate[halfFace];
+    const int wall = wallOf(part.centre);
+    if (wall >= 0) {
+      if (mate == kNone) wallArea_[static_cast<std::size_t>(wall)] += part.area;
+      continue;
+    }
+    if (mate == kNone || valid_[tetOf(mate)] == 0 || !isCarriedOver(map_, halfFace)) return false;
+    if (!visit(tetOf(mate), map_.exact.transitions.across(halfFace) * piece.fromFirst)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+CellFlood::Corner CellFlood::corner(std::size_t i) const {
+  LatticePoint at{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    at[k] = (std::int64_t{low_[k]} + kCorners[i][k]) * map_.exact.unit;
+  }
+  // Every piece that touches the corner has the same answer.
+  for (const Piece& piece : pieces_) {
+    const std::array<Int192, 4> weights = weightsOf(piece.corners, at);
+    CornerMask simplex = 0;
+    bool inside = true;
+    double sum = 0;
+    for (int c = 0; c < 4; ++c) {
+      const Int192& weight = weights[static_cast<std::size_t>(c)];
+      inside = inside && weight.sign() >= 0;
+      if (weight.sign() > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(c));
+      sum += weight.toDouble();
+    }
+    if (!inside) continue;
+    Corner corner{nameOf(piece, simplex, at), {}};
+    const Tet& tet = map_.topology.tets[piece.tet];
+    for (std::size_t c = 0; c < 4; ++c) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        corner.position[k] += weights[c].toDouble() / sum * map_.input.view.points[tet[c]][k];
+      }
+    }
+    return corner;
+  }
+  throw Error(ErrorCode::Internal,
+              "A cell of a partial extraction has no tet at one of its corners. This is a bug; "
+              "please report it with the map.",
+              {PlaceKind::Tet, pieces_.front().tet});
+}
+
+VertexName CellFlood::nameOf(const Piece& piece, CornerMask simplex, const LatticePoint& at) const {
+  const Tet& tet = map_.topology.tets[piece.tet];
+  VertexName name;
+  std::vector<int> corners;
+  for (int c = 0; c < 4; ++c) {
+    if (contains(simplex, c)) corners.push_back(c);
+  }
+  std::sort(corners.begin(), corners.end(), [&](int a, int b) {
+    return tet[static_cast<std::size_t>(a)] < tet[static_cast<std::size_t>(b)];
+  });
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto c = static_cast<std::size_t>(corners[i]);
+    name.simplex[i] = tet[c];
+    if (corners.size() == 2 || corners.size() == 3) {
+      name.place[i] = squaredDistance(piece.corners[c], at);
+    }
+  }
+  if (simplex == kWholeTet) {
+    const LatticePoint own = piece.fromFirst(at, map_.exact.unit);
+    for (std::size_t k = 0; k < 3; ++k) name.place[k] = own[k];
+  }
+  return name;
+}
+
+}  // namespace hexhex

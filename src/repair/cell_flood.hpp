@@ -1,0 +1,78 @@
+// One cell of a partial extraction: the pieces of tets in its unit cube.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <lattice/wide_int.hpp>
+#include <map/prepare.hpp>
+
+namespace hexhex {
+
+/// A hex vertex, whatever the chart: the simplex of the tet mesh that holds it, by its vertices in
+/// ascending order (the rest kNone), and its squared distances from up to three of them, which tell
+/// where it is in an edge or triangle. In a tet, the coordinates in the tet's chart.
+struct VertexName {
+  std::array<Index, 4> simplex = {kNone, kNone, kNone, kNone};
+  std::array<Int128, 3> place{};
+  [[nodiscard]] bool operator==(const VertexName&) const = default;
+  [[nodiscard]] bool operator<(const VertexName& other) const {
+    return simplex != other.simplex ? simplex < other.simplex : place < other.place;
+  }
+};
+
+class CellFlood {
+ public:
+  /// A tet that meets the cube, in the chart of the first one.
+  struct Piece {
+    Index tet;
+    Transition fromFirst;
+    LatticeTet corners;
+    double volume;  ///< of its part in the cube
+  };
+
+  /// @param valid  per tet
+  /// @param scaled  the map's lattice is already scaled
+  CellFlood(const PreparedMap& map, std::span<const std::uint8_t> valid)
+      : map_(map), valid_(valid) {}
+
+  /// Spreads from a valid tet over all tets that meet the open unit cube above a grid point of its
+  /// chart. False if something is in the way: the cell is not whole.
+  bool run(Index tet, const GridPoint& low);
+
+  [[nodiscard]] std::span<const Piece> pieces() const { return pieces_; }
+
+  /// Corner i of the cell in VTK's order.
+  struct Corner {
+    VertexName name;
+    Vec3 position{};
+  };
+  [[nodiscard]] Corner corner(std::size_t i) const;
+
+  /// Whether a face of the cell, in the order of hexFaces in partial.cpp, is on the boundary of the
+  /// tets.
+  [[nodiscard]] bool isOnBoundary(std::size_t wall) const { return wallArea_[wall] > 1 - kSlack; }
+
+  /// Far above rounding of areas and volumes near 1.
+  static constexpr double kSlack = 1e-6;
+
+ private:
+  bool visit(Index tet, const Transition& fromFirst);
+  bool spread(std::size_t piece);
+  [[nodiscard]] std::array<Vec3, 4> relative(const LatticeTet& corners) const;
+  [[nodiscard]] VertexName nameOf(const Piece& piece, CornerMask simplex,
+                                  const LatticePoint& at) const;
+
+  const PreparedMap& map_;
+  std::span<const std::uint8_t> valid_;
+  GridPoint low_{};
+  std::vector<Piece> pieces_;
+  std::array<double, 6> wallArea_{};  ///< of the tets' boundary in each wall: axis 0 low, high, ...
+};
+
+}  // namespace hexhex

@@ -1,0 +1,138 @@
+#include <algorithm>
+#include <cmath>
+
+#include <repair/bad_tets.hpp>
+#include <repair/diagnosis.hpp>
+#include <repair/face_fit.hpp>
+#include <repair/valid_tets.hpp>
+
+namespace hexhex {
+
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+
+double displacementOf(const Vec3& before, const LatticePoint& after, double unit) {
+  double largest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    largest = std::max(largest, std::abs(static_cast<double>(after[k]) / unit - before[k]));
+  }
+  return largest;
+}
+
+class Examiner {
+ public:
+  Examiner(const PreparedMap& map, const LocalParameters& parameters, const std::vector<Index>& bad,
+           double tolerance, double limit)
+      : map_(map), parameters_(parameters), tolerance_(tolerance), limit_(limit) {
+    touched_.assign(map.topology.pointCount, 0);
+    boundary_.assign(map.topology.pointCount, 0);
+    for (const Index t : bad) touch(t);
+    // Inexact maps have flat tets that count as positive as given: no angles are known there.
+    const double noise = std::min(tolerance, map.exact.transitions.maxResidual);
+    if (!(noise > 0)) return;
+    for (std::size_t t = 0; t < map.topology.tetCount(); ++t) {
+      if (isThin(parameters(static_cast<Index>(t)), noise)) touch(static_cast<Index>(t));
+    }
+  }
+
+  /// How far sanitization moves each vertex.
+  void examineVertices(Stage& stage, Diagnosis& diagnosis) {
+    const TetTopology& topology = map_.topology;
+    const auto unit = static_cast<double>(map_.exact.unit);
+    Array<double> displacement(topology.pointCount);
+    std::fill(displacement.begin(), displacement.end(), 0.0);
+    for (std::size_t t = 0; t < topology.tetCount(); ++t) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        const Index v = topology.tets[t][c];
+        displacement[v] = std::max(
+            displacement[v], displacementOf(parameters_(static_cast<Index>(t), static_cast<int>(c)),
+                                            map_.exact.corners[t][c], unit));
+        if (topology.mate[4 * t + c] != kNone) continue;
+        for (std::size_t k = 0; k < 4; ++k) {
+          if (k != c) boundary_[topology.tets[t][k]] = 1;
+        }
+      }
+    }
+    stage.context().throwIfCancelled();
+    for (Index v = 0; v < displacement.size(); ++v) {
+      if (touched_[v] != 0 || displacement[v] <= tolerance_) continue;
+      if (displacement[v] <= limit_) {
+        diagnosis.roundable.push_back(v);
+      } else {
+        diagnosis.hopeless.add(causeAt(v), {PlaceKind::Vertex, v}, displacement[v]);
+      }
+    }
+  }
+
+  /// Whether transitions carry triangles over.
+  void examineFaces(Stage& stage, Diagnosis& diagnosis) {
+    const TetTopology& topology = map_.topology;
+    parallelFor(stage, topology.tetCount(), kGrain, [&](std::size_t t) {
+      for (int f = 0; f < 4; ++f) {
+        const HalfFace halfFace = halfFaceOf(static_cast<Index>(t), f);
+        if (topology.mate[halfFace] == kNone || topology.mate[halfFace] < halfFace) continue;
+        if (isTouched(halfFace) || isCarriedOver(map_, halfFace)) continue;
+        diagnosis.hopeless.add(ErrorCode::HalfIntegerFixedPoint,
+                               {PlaceKind::Face, t, static_cast<std::uint64_t>(f)}, 0);
+      }
+    });
+    for (const Transitions::Misfit& misfit : map_.exact.transitions.misfits) {
+      // A triangle's own corners tell whether it fits, even where its tets are flipped. The nearest
+      // rotation need not be the one that fits best with an integer translation.
+      const double residual =
+          fitAllTransitions(facingTriangles(topology, parameters_, misfit.halfFace))
+              .front()
+              .residual;
+      if (residual <= tolerance_) continue;
+      if (residual <= limit_) {
+        for (const int c : kFaceCorners[misfit.halfFace % 4]) {
+          diagnosis.roundable.push_back(
+              topology.tets[tetOf(misfit.halfFace)][static_cast<std::size_t>(c)]);
+        }
+      } else {
+        diagnosis.hopeless.add(ErrorCode::TransitionResidual,
+                               {PlaceKind::Face, tetOf(misfit.halfFace), misfit.halfFace % 4},
+                               residual);
+      }
+    }
+  }
+
+ private:
+  void touch(Index tet) {
+    for (const Index v : map_.topology.tets[tet]) touched_[v] = 1;
+  }
+
+  [[nodiscard]] ErrorCode causeAt(Index v) const {
+    if (map_.singularities.degree[v] > 0) return ErrorCode::SingularityOffLattice;
+    return boundary_[v] != 0 ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual;
+  }
+
+  [[nodiscard]] bool isTouched(HalfFace halfFace) const {
+    const Tet& tet = map_.topology.tets[tetOf(halfFace)];
+    return std::any_of(kFaceCorners[halfFace % 4].begin(), kFaceCorners[halfFace % 4].end(),
+                       [&](int c) { return touched_[tet[static_cast<std::size_t>(c)]] != 0; });
+  }
+
+  const PreparedMap& map_;
+  const LocalParameters& parameters_;
+  double tolerance_;
+  double limit_;
+  std::vector<std::uint8_t> touched_;  ///< per vertex: a bad tet is at it
+  std::vector<std::uint8_t> boundary_;
+};
+
+}  // namespace
+
+void diagnose(const PreparedMap& map, const LocalParameters& parameters,
+              const std::vector<Index>& bad, double tolerance, double limit, Stage& stage,
+              Diagnosis& diagnosis) {
+  Examiner examiner(map, parameters, bad, tolerance, limit);
+  examiner.examineVertices(stage, diagnosis);
+  examiner.examineFaces(stage, diagnosis);
+  std::sort(diagnosis.roundable.begin(), diagnosis.roundable.end());
+  diagnosis.roundable.erase(std::unique(diagnosis.roundable.begin(), diagnosis.roundable.end()),
+                            diagnosis.roundable.end());
+}
+
+}  // namespace hexhex

@@ -1,0 +1,236 @@
+// Cells one by one, wherever a cube is filled by valid tets.
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string>
+
+#include <repair/bad_tets.hpp>
+#include <repair/cell_flood.hpp>
+#include <repair/valid_tets.hpp>
+
+#include <hexhex/partial.hpp>
+
+#include <base/disjoint_sets.hpp>
+
+namespace hexhex {
+
+namespace {
+
+constexpr std::size_t kTetGrain = 64;
+
+/// Corners of the faces of a cell, in the order of walls: axis 0 low, high, axis 1 low, ...
+constexpr std::array<std::array<std::size_t, 4>, 6> kHexFaces = {
+    {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
+
+struct FoundCell {
+  std::array<CellFlood::Corner, 8> corners;
+  std::uint8_t boundaryWalls = 0;  ///< bit per wall
+};
+
+struct Found {
+  std::vector<FoundCell> cells;
+  std::vector<std::pair<Index, double>> covered;  ///< tets, and how much of them a cell covers
+};
+
+/// Finds the cells whose centres a tet owns.
+class CellFinder {
+ public:
+  CellFinder(const PreparedMap& map, std::span<const std::uint8_t> valid)
+      : map_(map), valid_(valid), flood_(map, valid) {}
+
+  void run(Index tet, Found& found) {
+    const LatticeTet& corners = map_.exact.corners[tet];
+    GridPoint low{};
+    GridPoint high{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [least, greatest] =
+          std::minmax({corners[0][k], corners[1][k], corners[2][k], corners[3][k]});
+      low[k] = static_cast<std::int32_t>(floorDivided(least));
+      high[k] = static_cast<std::int32_t>(floorDivided(greatest));
+    }
+    GridPoint z{};
+    for (z[0] = low[0]; z[0] <= high[0]; ++z[0]) {
+      for (z[1] = low[1]; z[1] <= high[1]; ++z[1]) {
+        for (z[2] = low[2]; z[2] <= high[2]; ++z[2]) tryCell(tet, z, found);
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] std::int64_t floorDivided(std::int64_t x) const {
+    const std::int64_t unit = map_.exact.unit;
+    return x >= 0 ? x / unit : -((-x + unit - 1) / unit);
+  }
+
+  void tryCell(Index tet, const GridPoint& z, Found& found) {
+    LatticePoint centre{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      centre[k] = std::int64_t{z[k]} * map_.exact.unit + map_.exact.unit / 2;
+    }
+    if (!holds(map_.exact.corners[tet], centre) || !flood_.run(tet, z)) return;
+    // A centre between tets belongs to the smallest of them.
+    for (const CellFlood::Piece& piece : flood_.pieces()) {
+      if (piece.tet < tet && holds(piece.corners, centre)) return;
+    }
+    FoundCell cell;
+    for (std::size_t i = 0; i < 8; ++i) cell.corners[i] = flood_.corner(i);
+    for (std::size_t wall = 0; wall < 6; ++wall) {
+      if (flood_.isOnBoundary(wall)) {
+        cell.boundaryWalls = static_cast<std::uint8_t>(cell.boundaryWalls | (1U << wall));
+      }
+    }
+    found.cells.push_back(cell);
+    for (const CellFlood::Piece& piece : flood_.pieces()) {
+      found.covered.emplace_back(piece.tet, piece.volume);
+    }
+  }
+
+  [[nodiscard]] static bool holds(const LatticeTet& c, const LatticePoint& at) {
+    return orientation(at, c[1], c[2], c[3]) >= 0 && orientation(c[0], at, c[2], c[3]) >= 0 &&
+           orientation(c[0], c[1], at, c[3]) >= 0 && orientation(c[0], c[1], c[2], at) >= 0;
+  }
+
+  const PreparedMap& map_;
+  std::span<const std::uint8_t> valid_;
+  CellFlood flood_;
+};
+
+/// Numbers the vertices of all cells by their names.
+void assemble(const std::vector<Found>& blocks, PartialMesh& result,
+              std::vector<std::uint8_t>& boundaryWalls) {
+  std::vector<std::pair<VertexName, std::size_t>> names;  // and their places in the mesh
+  std::vector<Vec3> positions;
+  for (const Found& block : blocks) {
+    for (const FoundCell& cell : block.cells) {
+      for (const CellFlood::Corner& corner : cell.corners) {
+        names.emplace_back(corner.name, names.size());
+        positions.push_back(corner.position);
+      }
+      boundaryWalls.push_back(cell.boundaryWalls);
+    }
+  }
+  std::sort(names.begin(), names.end());
+  result.mesh.cells.resize(boundaryWalls.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i == 0 || !(names[i].first == names[i - 1].first)) {
+      result.mesh.points.push_back(positions[names[i].second]);
+    }
+    result.mesh.cells[names[i].second / 8][names[i].second % 8] =
+        static_cast<Index>(result.mesh.points.size() - 1);
+  }
+}
+
+/// Compares faces of cells with each other.
+void matchFaces(const std::vector<std::uint8_t>& boundaryWalls, PartialMesh& result) {
+  struct Side {
+    Quad sorted;
+    std::size_t cell;
+    std::size_t wall;
+    bool even;  ///< parity of the order in which the face lists its corners
+  };
+  std::vector<Side> sides;
+  sides.reserve(6 * result.mesh.cells.size());
+  for (std::size_t c = 0; c < result.mesh.cells.size(); ++c) {
+    for (std::size_t wall = 0; wall < 6; ++wall) {
+      Quad quad{};
+      for (std::size_t i = 0; i < 4; ++i) quad[i] = result.mesh.cells[c][kHexFaces[wall][i]];
+      std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
+      const bool even = quad[1] < quad[3];
+      std::sort(quad.begin(), quad.end());
+      sides.push_back({quad, c, wall, even});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return a.sorted != b.sorted ? a.sorted < b.sorted : a.cell < b.cell;
+  });
+  result.mesh.regions.assign(result.mesh.cells.size(), 0);
+  for (std::size_t begin = 0; begin < sides.size();) {
+    std::size_t end = begin + 1;
+    while (end < sides.size() && sides[end].sorted == sides[begin].sorted) ++end;
+    const Side& first = sides[begin];
+    if (end - begin == 1) {
+      if ((boundaryWalls[first.cell] >> first.wall & 1) == 0) result.mesh.regions[first.cell] = 1;
+    } else if (end - begin > 2 || first.even == sides[begin + 1].even) {
+      ++result.faceConflicts;
+    }
+    begin = end;
+  }
+}
+
+double volumeOf(const ExactMap& map, std::size_t t) {
+  const LatticeTet& c = map.corners[t];
+  const auto unit = static_cast<double>(map.unit);
+  return orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() / (6 * unit * unit * unit);
+}
+
+/// Connected tets that are not covered.
+void collectHoles(const PreparedMap& map, std::span<const std::uint8_t> valid,
+                  const std::vector<Found>& blocks, PartialMesh& result) {
+  const TetTopology& topology = map.topology;
+  std::vector<double> missing(topology.tetCount());
+  for (std::size_t t = 0; t < missing.size(); ++t) missing[t] = volumeOf(map.exact, t);
+  for (const Found& block : blocks) {
+    for (const auto& [tet, volume] : block.covered) missing[tet] -= volume;
+  }
+  const auto isOpen = [&](Index t) { return valid[t] == 0 || missing[t] > CellFlood::kSlack; };
+  DisjointSets sets(topology.tetCount());
+  for (HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
+    const HalfFace mate = topology.mate[halfFace];
+    if (mate == kNone || mate < halfFace) continue;
+    if (isOpen(tetOf(halfFace)) && isOpen(tetOf(mate))) sets.unite(tetOf(halfFace), tetOf(mate));
+  }
+  std::map<Index, Hole> holes;
+  for (Index t = 0; t < topology.tetCount(); ++t) {
+    if (!isOpen(t)) continue;
+    Hole& hole = holes[sets.find(t)];
+    hole.tet = std::min(hole.tet, t);
+    ++hole.tets;
+    hole.invalidTets += valid[t] == 0 ? 1 : 0;
+    hole.missingCells += missing[t];
+    for (const Index v : topology.tets[t]) {
+      for (std::size_t k = 0; k < 3; ++k) hole.position[k] += map.input.view.points[v][k] / 4;
+    }
+  }
+  for (auto& [root, hole] : holes) {
+    for (double& x : hole.position) x /= static_cast<double>(hole.tets);
+    result.invalidTets += hole.invalidTets;
+    result.missingCells += hole.missingCells;
+    result.holes.push_back(hole);
+  }
+  std::sort(result.holes.begin(), result.holes.end(), [](const Hole& a, const Hole& b) {
+    return a.missingCells != b.missingCells ? a.missingCells > b.missingCells : a.tet < b.tet;
+  });
+}
+
+}  // namespace
+
+PartialMesh extractPartial(const TetMapView& map, const PartialOptions& options, Context& context) {
+  PartialMesh result;
+  withThreads(context.threads(), [&] {
+    DefectCollector defects;
+    PreparedMap prepared = prepareMap(map, options.tolerance, options.scale, context, defects);
+    if (prepared.exact.corners.empty()) defects.throwIfAny();
+    std::vector<std::uint8_t> valid;
+    {
+      Stage stage(context, "valid tets");
+      valid = findValidTets(prepared, LocalParameters(prepared.input), options.tolerance, stage);
+      scaleMap(prepared.exact, options.scale, stage);
+    }
+    std::vector<Found> blocks(blockCount(valid.size(), kTetGrain));
+    Stage stage(context, "cells");
+    parallelBlocks(stage, valid.size(), kTetGrain,
+                   [&](std::size_t begin, std::size_t end, std::size_t block) {
+                     CellFinder finder(prepared, valid);
+                     for (std::size_t t = begin; t < end; ++t) {
+                       if (valid[t] != 0) finder.run(static_cast<Index>(t), blocks[block]);
+                     }
+                   });
+    std::vector<std::uint8_t> boundaryWalls;
+    assemble(blocks, result, boundaryWalls);
+    matchFaces(boundaryWalls, result);
+    collectHoles(prepared, valid, blocks, result);
+  });
+  return result;
+}
+
+}  // namespace hexhex

@@ -1,0 +1,32 @@
+// The tets around a defect whose parameters a repair may change.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <map/tet_topology.hpp>
+#include <map/vertex_star.hpp>
+
+namespace hexhex {
+
+struct Patch {
+  std::vector<Index> seeds;     ///< the bad tets, ascending
+  std::vector<Index> vertices;  ///< ascending; with their whole stars in the patch: they may move
+  std::vector<Index> tets;      ///< ascending: the tets at these vertices
+  /// Per entry of `vertices`: its star.
+  std::vector<std::vector<VertexStar::Member>> stars;
+
+  [[nodiscard]] const std::vector<VertexStar::Member>* starOf(Index vertex) const;
+};
+
+/// The vertices of the seeds, and `rings - 1` times those of the tets around.
+/// @param seeds  ascending
+/// @param rings  at least 1
+[[nodiscard]] Patch growPatch(const TetTopology& topology, std::span<const Index> seeds, int rings);
+
+/// Splits bad tets into groups whose patches of so many rings have no tet in common.
+[[nodiscard]] std::vector<std::vector<Index>> separateRegions(const TetTopology& topology,
+                                                              std::span<const Index> bad,
+                                                              int rings);
+
+}  // namespace hexhex

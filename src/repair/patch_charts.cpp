@@ -1,0 +1,456 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <repair/bad_tets.hpp>
+#include <repair/patch_charts.hpp>
+
+#include <base/vector3.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// What an edge adds to the cost of a choice. An impossible edge outweighs any number of singular
+/// ones around one defect; singular edges with two hexahedra too few or too many are rare.
+constexpr double kSingular = 1;
+constexpr double kHalfTurn = 2.5;
+constexpr double kImpossible = 100;
+/// Ties are broken towards the choice that fits best.
+constexpr double kPerChoice = 1e-4;
+
+std::size_t dominantAxis(const Vec3& v) {
+  std::size_t axis = std::abs(v[1]) > std::abs(v[0]) ? 1 : 0;
+  if (std::abs(v[2]) > std::abs(v[axis])) axis = 2;
+  return axis;
+}
+
+/// The axis that a rotation leaves as it is; -1 for the identity and for those about diagonals.
+int fixedAxis(Rotation rotation) {
+  if (rotation.isIdentity()) return -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Direction d = direction(axis, 1);
+    if (rotation(d) == d) return axis;
+  }
+  return -1;
+}
+
+bool isHalfTurn(Rotation rotation) { return (rotation * rotation).isIdentity(); }
+
+/// Whether a vector is parallel to an axis, or too short to tell.
+bool isAlong(const Vec3& v, int axis, double tolerance) {
+  for (int k = 0; k < 3; ++k) {
+    if (k != axis && std::abs(v[static_cast<std::size_t>(k)]) > 2 * tolerance) return false;
+  }
+  return true;
+}
+
+/// The angle of a tet at the edge between two of its corners: negative if the tet is flipped.
+double dihedralAngle(const TetParameters& u, int corner0, int corner1) {
+  std::array<Vec3, 2> others{};
+  std::size_t count = 0;
+  for (int k = 0; k < 4; ++k) {
+    if (k != corner0 && k != corner1) others[count++] = u[static_cast<std::size_t>(k)];
+  }
+  const Vec3& origin = u[static_cast<std::size_t>(corner0)];
+  const Vec3 e = minus(u[static_cast<std::size_t>(corner1)], origin);
+  const Vec3 a = cross(e, minus(others[0], origin));
+  const Vec3 b = cross(e, minus(others[1], origin));
+  const double angle = std::atan2(length(cross(a, b)), dot(a, b));
+  return determinantOf(u) < 0 ? -angle : angle;
+}
+
+}  // namespace
+
+PatchCharts::PatchCharts(const TetMapView& map, const TetTopology& topology,
+                         const LocalParameters& parameters, const Patch& patch, double tolerance)
+    : map_(map), topology_(topology), parameters_(parameters), tolerance_(tolerance) {
+  collectFaces(patch);
+  findCandidates();
+  collectEdges(patch);
+  resolve();
+  classify();
+}
+
+void PatchCharts::collectFaces(const Patch& patch) {
+  std::vector<HalfFace> halfFaces;
+  for (const std::vector<VertexStar::Member>& star : patch.stars) {
+    for (const VertexStar::Member& member : star) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const HalfFace halfFace = member.halfFace(k);
+        const HalfFace mate = topology_.mate[halfFace];
+        halfFaces.push_back(mate == kNone ? halfFace : std::min(halfFace, mate));
+      }
+    }
+  }
+  std::sort(halfFaces.begin(), halfFaces.end());
+  halfFaces.erase(std::unique(halfFaces.begin(), halfFaces.end()), halfFaces.end());
+  faces_.reserve(halfFaces.size());
+  for (const HalfFace halfFace : halfFaces) {
+    faces_.push_back({halfFace, topology_.isBoundary(halfFace), {}, {}, 0, {}});
+  }
+}
+
+std::size_t PatchCharts::faceIndex(HalfFace halfFace) const {
+  const auto found =
+      std::lower_bound(faces_.begin(), faces_.end(), halfFace,
+                       [](const Face& face, HalfFace wanted) { return face.halfFace < wanted; });
+  return static_cast<std::size_t>(found - faces_.begin());
+}
+
+void PatchCharts::findCandidates() {
+  // How well rotations fit here, where nothing is wrong: as exact as the map is.
+  double noise = 1e-9;
+  std::vector<std::vector<FittedTransition>> fits(faces_.size());
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    if (faces_[f].boundary) continue;
+    const HalfFace halfFace = faces_[f].halfFace;
+    fits[f] = fitsOf(halfFace);
+    const bool healthy = !isBad(parameters_(tetOf(halfFace))) &&
+                         !isBad(parameters_(tetOf(topology_.mate[halfFace])));
+    if (healthy) noise = std::max(noise, fits[f].front().residual);
+  }
+  fitLimit_ = std::min(2 * noise, tolerance_);
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    Face& face = faces_[f];
+    if (face.boundary) {
+      face.axes = planesOf(face.halfFace);
+    } else {
+      const double limit = std::max(fitLimit_, 2 * fits[f].front().residual);
+      for (const auto& [residual, transition] : fits[f]) {
+        if (residual <= limit) face.candidates.push_back(transition);
+      }
+    }
+    if (face.choices() > 1) ambiguous_.push_back(static_cast<std::uint32_t>(f));
+  }
+}
+
+/// All rotations, or the one that the caller knows.
+std::vector<FittedTransition> PatchCharts::fitsOf(HalfFace halfFace) const {
+  const FacingTriangles triangles = facingTriangles(topology_, parameters_, halfFace);
+  const int known = map_.rotations.empty() ? -1 : map_.rotations[tetOf(halfFace)][halfFace % 4];
+  if (known >= 0 && known < Rotation::kCount) {
+    return {fitTransition(triangles, rotationFromAlgoHex(known))};
+  }
+  return fitAllTransitions(triangles);
+}
+
+/// The axes across which a boundary triangle may lie: one, unless it is flat.
+std::vector<int> PatchCharts::planesOf(HalfFace halfFace) const {
+  const std::array<int, 3>& corners = kFaceCorners[halfFace % 4];
+  std::array<Vec3, 3> u{};
+  for (std::size_t k = 0; k < 3; ++k) u[k] = parameters_(tetOf(halfFace), corners[k]);
+  const Vec3 a = minus(u[1], u[0]);
+  const Vec3 b = minus(u[2], u[0]);
+  const Vec3 normal = cross(a, b);
+  const double size = std::max({length(a), length(b), length(minus(b, a))});
+  std::vector<int> axes;
+  if (length(normal) <= (1e-9 * size + 2 * fitLimit_) * size) {
+    // Any integer plane that holds all three corners.
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double plane = std::nearbyint(u[0][axis]);
+      const bool inPlane = std::all_of(u.begin(), u.end(), [&](const Vec3& corner) {
+        return std::abs(corner[axis] - plane) <= tolerance_;
+      });
+      if (inPlane) axes.push_back(static_cast<int>(axis));
+    }
+  }
+  if (axes.empty()) axes.push_back(static_cast<int>(dominantAxis(normal)));
+  return axes;
+}
+
+void PatchCharts::collectEdges(const Patch& patch) {
+  for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
+    const Index v = patch.vertices[i];
+    for (const VertexStar::Member& member : patch.stars[i]) {
+      for (const std::uint8_t c : kOthers[member.corner % 4]) {
+        const Index w = topology_.tets[member.tet()][c];
+        PatchEdge edge;
+        edge.vertex0 = std::min(v, w);
+        edge.vertex1 = std::max(v, w);
+        edge.tet = member.tet();
+        edges_.push_back(edge);
+      }
+    }
+  }
+  const auto key = [](const PatchEdge& e) { return std::pair(e.vertex0, e.vertex1); };
+  std::stable_sort(edges_.begin(), edges_.end(),
+                   [&](const PatchEdge& a, const PatchEdge& b) { return key(a) < key(b); });
+  edges_.erase(
+      std::unique(edges_.begin(), edges_.end(),
+                  [&](const PatchEdge& a, const PatchEdge& b) { return key(a) == key(b); }),
+      edges_.end());
+  fans_.resize(edges_.size());
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    walkFan(edges_[e], fans_[e]);
+    const auto list = [&](std::uint32_t face) {
+      std::vector<std::uint32_t>& at = faces_[face].edges;
+      if (at.empty() || at.back() != e) at.push_back(static_cast<std::uint32_t>(e));
+    };
+    for (const Crossing& crossing : fans_[e].crossings) list(crossing.face);
+    if (edges_[e].boundary) {
+      list(fans_[e].firstBoundary);
+      list(fans_[e].lastBoundary);
+    }
+  }
+}
+
+void PatchCharts::walkFan(PatchEdge& edge, Fan& fan) const {
+  const auto edgeMask = [&](Index tet) {
+    return static_cast<CornerMask>(cornerBit(topology_.localCorner(tet, edge.vertex0)) |
+                                   cornerBit(topology_.localCorner(tet, edge.vertex1)));
+  };
+  // Back to the boundary, if there is one.
+  Index tet = edge.tet;
+  int entered = otherFaceAtEdge(edgeMask(tet), -1);
+  while (true) {
+    const HalfFace mate = topology_.mate[halfFaceOf(tet, entered)];
+    if (mate == kNone) {
+      edge.boundary = true;
+      edge.tet = tet;
+      break;
+    }
+    tet = tetOf(mate);
+    if (tet == edge.tet) break;
+    entered = otherFaceAtEdge(edgeMask(tet), localOf(mate));
+  }
+  tet = edge.tet;
+  if (edge.boundary) {
+    fan.firstBoundary = static_cast<std::uint32_t>(faceIndex(halfFaceOf(tet, entered)));
+  } else {
+    entered = otherFaceAtEdge(edgeMask(tet), -1);
+  }
+  fan.vector = minus(parameters_(tet, topology_.localCorner(tet, edge.vertex1)),
+                     parameters_(tet, topology_.localCorner(tet, edge.vertex0)));
+  edge.sound = true;
+  while (true) {
+    if (isThin(parameters_(tet), fitLimit_)) edge.sound = false;
+    const HalfFace leaving = halfFaceOf(tet, otherFaceAtEdge(edgeMask(tet), entered));
+    const HalfFace mate = topology_.mate[leaving];
+    if (mate == kNone) {
+      fan.lastBoundary = static_cast<std::uint32_t>(faceIndex(leaving));
+      return;
+    }
+    const bool forward = leaving < mate;
+    fan.crossings.push_back(
+        {static_cast<std::uint32_t>(faceIndex(forward ? leaving : mate)), forward});
+    tet = tetOf(mate);
+    entered = localOf(mate);
+    if (tet == edge.tet) return;
+  }
+}
+
+Transition PatchCharts::across(HalfFace halfFace) const {
+  const HalfFace mate = topology_.mate[halfFace];
+  const Face& face = faces_[faceIndex(std::min(halfFace, mate))];
+  const Transition& transition = face.candidates[face.chosen];
+  return halfFace < mate ? transition : transition.inverse();
+}
+
+int PatchCharts::boundaryAxis(HalfFace halfFace) const {
+  const Face& face = faces_[faceIndex(halfFace)];
+  return face.axes[face.chosen];
+}
+
+/// Of the whole fan: back to the first tet's chart, or on the boundary from the first to the last.
+Rotation PatchCharts::holonomy(const Fan& fan) const {
+  Rotation total;
+  for (const Crossing& crossing : fan.crossings) {
+    const Face& face = faces_[crossing.face];
+    const Rotation rotation = face.candidates[face.chosen].rotation;
+    total = (crossing.forward ? rotation : rotation.inverse()) * total;
+  }
+  return total;
+}
+
+/// The axes across the first and the last boundary face of a fan, both in the chart of its first
+/// tet.
+std::pair<int, int> PatchCharts::planesAt(const Fan& fan) const {
+  const Face& first = faces_[fan.firstBoundary];
+  const Face& last = faces_[fan.lastBoundary];
+  const Direction normal = direction(last.axes[last.chosen], 1);
+  return {first.axes[first.chosen], axisOf(holonomy(fan).inverse()(normal))};
+}
+
+double PatchCharts::edgeCost(std::size_t e) const {
+  const Fan& fan = fans_[e];
+  if (edges_[e].boundary) {
+    const auto [from, to] = planesAt(fan);
+    if (from == to) return 0;
+    return isAlong(fan.vector, 3 - from - to, tolerance_) ? kSingular : kImpossible;
+  }
+  const Rotation total = holonomy(fan);
+  if (total.isIdentity()) return 0;
+  const int axis = fixedAxis(total);
+  if (axis < 0 || !isAlong(fan.vector, axis, tolerance_)) return kImpossible;
+  return isHalfTurn(total) ? kHalfTurn : kSingular;
+}
+
+/// Tries all choices of one or two faces together; keeps the best.
+bool PatchCharts::improve(std::span<const std::uint32_t> faces) {
+  std::vector<std::uint32_t> around;
+  for (const std::uint32_t f : faces) {
+    around.insert(around.end(), faces_[f].edges.begin(), faces_[f].edges.end());
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  const auto localCost = [&] {
+    double sum = 0;
+    for (const std::uint32_t e : around) sum += edgeCost(e);
+    for (const std::uint32_t f : faces) sum += kPerChoice * static_cast<double>(faces_[f].chosen);
+    return sum;
+  };
+  Face& first = faces_[faces.front()];
+  Face& last = faces_[faces.back()];
+  const std::array<std::size_t, 2> before = {first.chosen, last.chosen};
+  const double start = localCost();
+  double best = start;
+  std::array<std::size_t, 2> bestChoice = before;
+  for (std::size_t i = 0; i < first.choices(); ++i) {
+    first.chosen = i;
+    for (std::size_t j = 0; j < last.choices(); ++j) {
+      if (faces.size() == 1 && j != i) continue;
+      last.chosen = j;
+      const double now = localCost();
+      if (now >= best - kPerChoice / 2) continue;
+      best = now;
+      bestChoice = {i, j};
+    }
+  }
+  first.chosen = bestChoice[0];
+  last.chosen = bestChoice[1];
+  return best < start;
+}
+
+/// Coordinate descent over single faces, then over pairs of faces with a common edge, until nothing
+/// gets better.
+void PatchCharts::resolve() {
+  bool improved = !ambiguous_.empty();
+  while (improved) {
+    improved = false;
+    for (const std::uint32_t f : ambiguous_) improved = improve(std::array{f}) || improved;
+    if (improved) continue;
+    for (const std::uint32_t f : ambiguous_) improved = improvePairs(f) || improved;
+  }
+}
+
+/// A face, and one after the other of its ambiguous neighbours at edges.
+bool PatchCharts::improvePairs(std::uint32_t f) {
+  bool improved = false;
+  for (const std::uint32_t e : faces_[f].edges) {
+    std::vector<std::uint32_t> partners;
+    for (const Crossing& crossing : fans_[e].crossings) partners.push_back(crossing.face);
+    if (edges_[e].boundary) {
+      partners.push_back(fans_[e].firstBoundary);
+      partners.push_back(fans_[e].lastBoundary);
+    }
+    for (const std::uint32_t g : partners) {
+      if (g > f && faces_[g].choices() > 1) improved = improve(std::array{f, g}) || improved;
+    }
+  }
+  return improved;
+}
+
+/// The sum of dihedral angles in right angles, flipped tets counting negative.
+double PatchCharts::signedAngle(const PatchEdge& edge, const Fan& fan) const {
+  double sum = 0;
+  const auto add = [&](Index tet) {
+    sum += dihedralAngle(parameters_(tet), topology_.localCorner(tet, edge.vertex0),
+                         topology_.localCorner(tet, edge.vertex1));
+  };
+  Index tet = edge.tet;
+  for (const Crossing& crossing : fan.crossings) {
+    add(tet);
+    const HalfFace halfFace = faces_[crossing.face].halfFace;
+    tet = tetOf(crossing.forward ? topology_.mate[halfFace] : halfFace);
+  }
+  if (edge.boundary) add(tet);
+  return sum / (std::numbers::pi / 2);
+}
+
+/// Whether both ends of an edge are on one line of the integer grid, as singular edges are.
+bool PatchCharts::isOnGridLine(Index tet, const PatchEdge& edge) const {
+  const Vec3 a = parameters_(tet, topology_.localCorner(tet, edge.vertex0));
+  const Vec3 b = parameters_(tet, topology_.localCorner(tet, edge.vertex1));
+  const std::size_t along = dominantAxis(minus(b, a));
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (k == along) continue;
+    const double line = std::nearbyint(a[k]);
+    if (std::abs(a[k] - line) > tolerance_ || std::abs(b[k] - line) > tolerance_) return false;
+  }
+  return true;
+}
+
+void PatchCharts::setValence(std::size_t e) {
+  PatchEdge& edge = edges_[e];
+  if (!map_.edgeValences.empty()) {
+    edge.valence = edge.boundary ? 2 : 4;
+    for (const EdgeValence& known : map_.edgeValences) {
+      const auto [low, high] = std::minmax(known.vertex0, known.vertex1);
+      if (low == edge.vertex0 && high == edge.vertex1) edge.valence += known.offset;
+    }
+    return;
+  }
+  const double angle = signedAngle(edge, fans_[e]);
+  const int turns = static_cast<int>(std::lround(angle));
+  const bool clear = std::abs(angle - turns) < 0.25;
+  // Where tets are bad, only what the holonomy confirms, and what is not a mere fold, counts.
+  if (edge.sound) edge.valence = turns;
+  if (!edge.sound && !edge.boundary && clear && turns >= 3 && turns != 4 &&
+      isOnGridLine(edge.tet, edge)) {
+    edge.valence = turns;
+  }
+}
+
+void PatchCharts::classify() {
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    setValence(e);
+    if (!(edges_[e].boundary ? classifyByPlanes(e) : classifyByHolonomy(e))) classifyByValence(e);
+  }
+}
+
+/// A boundary edge between two planes is singular. Its valence is odd, if known.
+bool PatchCharts::classifyByPlanes(std::size_t e) {
+  PatchEdge& edge = edges_[e];
+  const auto [from, to] = planesAt(fans_[e]);
+  const bool even = edge.valence % 2 == 0;
+  if (even != (from == to)) edge.valence = 0;
+  if (from == to) return false;
+  edge.singular = true;
+  edge.axis = 3 - from - to;
+  return true;
+}
+
+/// So is an inner edge around which charts turn. Its valence fits the turn, if known.
+bool PatchCharts::classifyByHolonomy(std::size_t e) {
+  PatchEdge& edge = edges_[e];
+  const Rotation total = holonomy(fans_[e]);
+  const int rest = edge.valence % 4;
+  const bool confirmed =
+      total.isIdentity() ? rest == 0 : (isHalfTurn(total) ? rest == 2 : rest % 2 == 1);
+  if (!confirmed) edge.valence = 0;
+  if (total.isIdentity()) return false;
+  const int axis = fixedAxis(total);
+  edge.singular = true;
+  edge.axis = axis >= 0 ? axis : static_cast<int>(dominantAxis(fans_[e].vector));
+  return true;
+}
+
+/// All others are regular, unless known better: with hexahedra all around twice, say.
+void PatchCharts::classifyByValence(std::size_t e) {
+  PatchEdge& edge = edges_[e];
+  const int regular = edge.boundary ? 2 : 4;
+  if (edge.valence == 0) edge.valence = regular;
+  edge.singular = edge.valence != regular;
+  edge.axis = static_cast<int>(dominantAxis(fans_[e].vector));
+}
+
+const PatchEdge* PatchCharts::impossibleEdge() const {
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    if (edgeCost(e) >= kImpossible) return &edges_[e];
+  }
+  return nullptr;
+}
+
+}  // namespace hexhex

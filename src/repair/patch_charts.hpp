@@ -1,0 +1,117 @@
+// How the charts of a patch fit together, and what is singular in it: from what its triangles allow
+// and its edges make plausible, since angles tell nothing where tets are flipped or flat.
+//
+// A triangle that is flat in the map on an axis-parallel line, say, fits four rotations equally
+// well, and a flat boundary triangle lies in two integer planes. Moving a choice from one to
+// another moves singular edges across that triangle, from one side of it to the two others. Of all
+// choices that give every edge a sensible holonomy, the one with the fewest singular edges is
+// taken: it leaves most vertices free.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <repair/face_fit.hpp>
+#include <repair/patch.hpp>
+
+#include <hexhex/types.hpp>
+
+#include <lattice/transition.hpp>
+#include <map/local_parameters.hpp>
+#include <map/tet_topology.hpp>
+
+namespace hexhex {
+
+/// A set of coordinate axes: bit k for axis k.
+using AxisSet = unsigned;
+inline constexpr AxisSet kAllAxes = 7;
+
+/// What a repair knows about one edge of a patch.
+struct PatchEdge {
+  Index vertex0 = 0;  ///< smaller
+  Index vertex1 = 0;
+  Index tet = 0;  ///< where its fan begins; on the boundary, one with a boundary face at the edge
+  bool boundary = false;
+  bool sound = false;  ///< no bad tet at it: angles can be trusted
+  bool singular = false;
+  int axis = 0;     ///< of a singular edge: the one along which it runs, in the chart of `tet`
+  int valence = 0;  ///< number of hexahedra around it where that is known, else 0
+};
+
+class PatchCharts {
+ public:
+  /// @param map  the topology's view, for known rotations and valences
+  /// @param tolerance  how far triangles may be from integer conditions
+  PatchCharts(const TetMapView& map, const TetTopology& topology, const LocalParameters& parameters,
+              const Patch& patch, double tolerance);
+
+  /// Of an inner half-face at a vertex of the patch: from its tet's chart to its mate's.
+  [[nodiscard]] Transition across(HalfFace halfFace) const;
+  /// Of a boundary half-face at a vertex of the patch: the axis across it.
+  [[nodiscard]] int boundaryAxis(HalfFace halfFace) const;
+  /// All edges at vertices of the patch, by vertices.
+  [[nodiscard]] std::span<const PatchEdge> edges() const { return edges_; }
+  /// Triangles that fit more than one choice.
+  [[nodiscard]] std::size_t ambiguousFaces() const { return ambiguous_.size(); }
+  /// Whether some edge has a holonomy that no integer-grid map has: the first such edge.
+  [[nodiscard]] const PatchEdge* impossibleEdge() const;
+
+ private:
+  struct Face {
+    HalfFace halfFace;  ///< inner: the smaller of the two
+    bool boundary;
+    std::vector<Transition> candidates;  ///< inner: best first
+    std::vector<int> axes;               ///< boundary: best first
+    std::size_t chosen = 0;
+    std::vector<std::uint32_t> edges;  ///< that it belongs to
+
+    [[nodiscard]] std::size_t choices() const { return boundary ? axes.size() : candidates.size(); }
+  };
+  /// One step around an edge: through which face, and in which direction.
+  struct Crossing {
+    std::uint32_t face;
+    bool forward;
+  };
+  struct Fan {
+    std::vector<Crossing> crossings;
+    std::uint32_t firstBoundary = 0;  ///< faces where a fan on the boundary begins and ends
+    std::uint32_t lastBoundary = 0;
+    Vec3 vector{};  ///< the edge in the chart of its first tet
+  };
+
+  void collectFaces(const Patch& patch);
+  void findCandidates();
+  [[nodiscard]] std::vector<FittedTransition> fitsOf(HalfFace halfFace) const;
+  [[nodiscard]] std::vector<int> planesOf(HalfFace halfFace) const;
+  void collectEdges(const Patch& patch);
+  void walkFan(PatchEdge& edge, Fan& fan) const;
+  void resolve();
+  bool improve(std::span<const std::uint32_t> faces);
+  bool improvePairs(std::uint32_t f);
+  void classify();
+  bool classifyByPlanes(std::size_t e);
+  bool classifyByHolonomy(std::size_t e);
+  void classifyByValence(std::size_t e);
+  [[nodiscard]] std::pair<int, int> planesAt(const Fan& fan) const;
+  void setValence(std::size_t e);
+  [[nodiscard]] bool isOnGridLine(Index tet, const PatchEdge& edge) const;
+  [[nodiscard]] double signedAngle(const PatchEdge& edge, const Fan& fan) const;
+  [[nodiscard]] std::size_t faceIndex(HalfFace halfFace) const;
+  [[nodiscard]] Rotation holonomy(const Fan& fan) const;
+  [[nodiscard]] double edgeCost(std::size_t e) const;
+
+  const TetMapView& map_;
+  const TetTopology& topology_;
+  const LocalParameters& parameters_;
+  double tolerance_;
+  double fitLimit_ = 0;      ///< up to which residual a rotation fits a triangle
+  std::vector<Face> faces_;  ///< by half-face
+  std::vector<PatchEdge> edges_;
+  std::vector<Fan> fans_;
+  std::vector<std::uint32_t> ambiguous_;
+};
+
+}  // namespace hexhex

@@ -1,0 +1,174 @@
+#include <algorithm>
+#include <cmath>
+
+#include <repair/bad_tets.hpp>
+#include <repair/problem.hpp>
+
+#include <base/vector3.hpp>
+
+namespace hexhex {
+
+namespace {
+
+constexpr std::size_t kNotInPatch = static_cast<std::size_t>(-1);
+
+/// Tets in space with less of their longest edge's cube than this, six times their volume, are no
+/// shape to aim at (0.7 for the regular tet).
+constexpr double kThin = 0.02;
+
+using Edges = std::array<Vec3, 3>;
+
+double determinant(const Edges& e) { return dot(e[0], cross(e[1], e[2])); }
+
+/// Rows of the inverse of the matrix whose columns are given.
+std::array<Vec3, 3> inverseOf(const Edges& columns) {
+  const double det = determinant(columns);
+  std::array<Vec3, 3> rows = {cross(columns[1], columns[2]), cross(columns[2], columns[0]),
+                              cross(columns[0], columns[1])};
+  for (Vec3& row : rows) {
+    for (double& x : row) x /= det;
+  }
+  return rows;
+}
+
+Edges edgesInSpace(const TetMapView& map, Index tet) {
+  const Tet& t = map.tets[tet];
+  const Vec3& origin = map.points[t[0]];
+  return {minus(map.points[t[1]], origin), minus(map.points[t[2]], origin),
+          minus(map.points[t[3]], origin)};
+}
+
+/// A regular tet with six times the volume given.
+Edges regularTet(double sixfoldVolume) {
+  const double a = std::cbrt(sixfoldVolume * std::sqrt(2.0));
+  return {Vec3{a, 0, 0}, Vec3{a / 2, a * std::sqrt(3.0) / 2, 0},
+          Vec3{a / 2, a / std::sqrt(12.0), a * std::sqrt(2.0 / 3.0)}};
+}
+
+}  // namespace
+
+PatchProblem::PatchProblem(const TetMapView& map, const TetTopology& topology,
+                           const LocalParameters& parameters, const Patch& patch,
+                           std::span<const PatchVertex> vertices)
+    : map_(map), topology_(topology), parameters_(parameters), vertices_(vertices) {
+  unknowns_.resize(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool fixed = ((vertices[i].fixed >> k) & 1U) != 0;
+      unknowns_[i][k] = fixed ? -1 : static_cast<int>(problem_.x.size());
+      if (!fixed) problem_.x.push_back(vertices[i].parameter[k]);
+    }
+  }
+  const double scale = parametricScale(patch);
+  problem_.tets.reserve(patch.tets.size());
+  for (const Index t : patch.tets) addTet(t, scale);
+}
+
+/// Parametric volume per volume in space, over the whole patch: what is flipped counts negative,
+/// and so the sum is that of the map as it should be.
+double PatchProblem::parametricScale(const Patch& patch) const {
+  double inMap = 0;
+  double inSpace = 0;
+  for (const Index t : patch.tets) {
+    inMap += determinantOf(parameters_(t));
+    inSpace += std::abs(determinant(edgesInSpace(map_, t)));
+  }
+  // A patch that is flipped as a whole, or flat in space, is hopeless; any scale will do.
+  return inMap > 0 && inSpace > 0 ? inMap / inSpace : 1;
+}
+
+void PatchProblem::addTet(Index tet, double scale) {
+  UntangleTet entry;
+  for (int c = 0; c < 4; ++c) entry.corners[static_cast<std::size_t>(c)] = cornerOf(tet, c);
+  Edges ideal = edgesInSpace(map_, tet);
+  const double stretch = std::cbrt(scale);
+  double longest = 0;
+  for (Vec3& edge : ideal) {
+    for (double& x : edge) x *= stretch;
+    longest = std::max(longest, length(edge));
+  }
+  const double det = determinant(ideal);
+  if (!(det > kThin * longest * longest * longest)) {
+    const double least = 1e-12;
+    ideal = regularTet(std::max({std::abs(det), kThin * longest * longest * longest, least}));
+  }
+  entry.inverseShape = inverseOf(ideal);
+  problem_.tets.push_back(entry);
+}
+
+std::size_t PatchProblem::patchVertexOf(Index vertex) const {
+  const auto found = std::lower_bound(
+      vertices_.begin(), vertices_.end(), vertex,
+      [](const PatchVertex& candidate, Index wanted) { return candidate.vertex < wanted; });
+  if (found == vertices_.end() || found->vertex != vertex) return kNotInPatch;
+  return static_cast<std::size_t>(found - vertices_.begin());
+}
+
+UntangleCorner PatchProblem::cornerOf(Index tet, int corner) const {
+  UntangleCorner result;
+  const std::size_t i = patchVertexOf(topology_.tets[tet][static_cast<std::size_t>(corner)]);
+  if (i == kNotInPatch) {
+    result.constant = parameters_(tet, corner);
+    return result;
+  }
+  const PatchVertex& vertex = vertices_[i];
+  const auto copy =
+      std::find_if(vertex.corners.begin(), vertex.corners.end(),
+                   [&](const PatchVertex::Copy& c) { return tetOf(c.corner) == tet; });
+  for (int axis = 0; axis < 3; ++axis) {
+    const Direction image = copy->fromFirst.rotation(direction(axis, 1));
+    const auto own = static_cast<std::size_t>(axisOf(image));
+    const auto k = static_cast<std::size_t>(axis);
+    result.constant[own] = copy->fromFirst.translation[own];
+    result.sign[own] = signOf(image);
+    result.unknown[own] = unknowns_[i][k];
+    if (unknowns_[i][k] < 0) result.constant[own] += signOf(image) * vertex.parameter[k];
+  }
+  return result;
+}
+
+std::vector<LockedTet> PatchProblem::lockedTets(const Patch& patch) const {
+  std::vector<LockedTet> locked;
+  for (const Index t : patch.seeds) {
+    std::array<UntangleCorner, 4> corners{};
+    for (int c = 0; c < 4; ++c) corners[static_cast<std::size_t>(c)] = cornerOf(t, c);
+    // Along how many axes all corners of a simplex are bound to the same coordinate.
+    const auto commonBonds = [&](CornerMask simplex) {
+      const UntangleCorner& first = corners[firstCorner(simplex)];
+      int bonds = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        bool common = true;
+        for (int c = 0; c < 4; ++c) {
+          if (!contains(simplex, c)) continue;
+          const UntangleCorner& corner = corners[static_cast<std::size_t>(c)];
+          common = common && corner.unknown[k] < 0 && corner.constant[k] == first.constant[k];
+        }
+        bonds += common ? 1 : 0;
+      }
+      return bonds;
+    };
+    CornerMask found = commonBonds(kWholeTet) > 0 ? kWholeTet : kNoSimplex;
+    for (int f = 0; f < 4; ++f) {
+      if (commonBonds(faceMask(f)) >= 2) found = faceMask(f);
+    }
+    if (found != kNoSimplex) locked.push_back({t, found});
+  }
+  return locked;
+}
+
+Vec3 PatchProblem::parameterOf(std::size_t vertex, double quantum) const {
+  Vec3 u = vertices_[vertex].parameter;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int unknown = unknowns_[vertex][k];
+    if (unknown < 0) continue;
+    u[k] = std::nearbyint(problem_.x[static_cast<std::size_t>(unknown)] / quantum) * quantum;
+  }
+  return u;
+}
+
+bool PatchProblem::mayMove(std::size_t vertex) const {
+  const std::array<int, 3>& unknowns = unknowns_[vertex];
+  return std::any_of(unknowns.begin(), unknowns.end(), [](int unknown) { return unknown >= 0; });
+}
+
+}  // namespace hexhex

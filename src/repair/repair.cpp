@@ -1,0 +1,541 @@
+// Rounds of patches around what is bad: larger ones where smaller ones do not suffice, then a finer
+// tet mesh. The exact check decides at the end.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <repair/bad_tets.hpp>
+#include <repair/diagnosis.hpp>
+#include <repair/edge_split.hpp>
+#include <repair/freedom.hpp>
+#include <repair/patch.hpp>
+#include <repair/patch_charts.hpp>
+#include <repair/problem.hpp>
+#include <repair/repair_map.hpp>
+#include <repair/untangle.hpp>
+
+#include <hexhex/repair.hpp>
+
+#include <base/vector3.hpp>
+#include <map/measures.hpp>
+#include <map/prepare.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// Rings of tets around bad ones that are tried one after the other.
+constexpr std::array<int, 4> kRings = {2, 3, 5, 8};
+/// How often edges are split.
+constexpr int kMaxRefinements = 5;
+/// What --round may move.
+constexpr double kRoundingLimit = 0.1;
+/// More bad tets than this share of all, and than this number, are no local defect: the map, or a
+/// whole region of it, is inverted or was never finished.
+constexpr double kMaxBadShare = 0.2;
+constexpr std::size_t kMaxBadTets = 200;
+
+/// Volumes of maps without noise differ by less than this: far above rounding, far below a cell.
+constexpr double kVolumeSlack = 0.05;
+
+/// One look at the map as it is at the moment.
+struct Snapshot {
+  DefectCollector defects;
+  PreparedMap prepared;
+};
+
+/// What must be as before: singular edges around the patches.
+using EdgeKey = std::pair<Index, Index>;
+
+class Repairer {
+ public:
+  Repairer(TetMap map, const RepairOptions& options, Context& context, RepairReport& report)
+      : map_(std::move(map)),
+        options_(options),
+        context_(context),
+        report_(report),
+        limit_(options.round ? std::max(kRoundingLimit, options.tolerance) : options.tolerance) {}
+
+  TetMap run() {
+    look();
+    if (now_->defects.empty()) return std::move(map_);
+    refuseBrokenTopology();
+    if (!canRepair()) refuseWithoutSolver();
+    original_ = map_;
+    std::vector<Index> bad = findSeeds();
+    report_.badTets = bad.size();
+    prepareExpectation(bad);
+    const std::vector<Index> toRound = refuseOtherDefects(bad);
+    bool fresh = true;  // nothing has been moved yet
+    for (int refinement = 0;; ++refinement) {
+      for (const int rings : kRings) {
+        solve(bad, fresh ? toRound : std::vector<Index>{}, rings);
+        look();
+        if (now_->defects.empty() && isWhatWasMeant()) return finish();
+        bad = findSeeds();
+        // All positive and yet wrong, wound around an edge twice, say: a larger patch from scratch.
+        fresh = bad.empty();
+        if (fresh) bad = startOver();
+        if (!locked_.empty()) break;
+      }
+      if (refinement == kMaxRefinements || !options_.refine || !refine(bad)) {
+        throwRemaining(bad.size());
+      }
+      look();
+    }
+  }
+
+ private:
+  void look() {
+    now_ = std::make_unique<Snapshot>();
+    now_->prepared = prepareMap(map_, options_.tolerance, options_.scale, context_, now_->defects);
+  }
+
+  std::vector<Index> startOver() {
+    map_ = original_;
+    locked_.clear();
+    candidates_.clear();
+    moved_.clear();
+    valences_.clear();
+    report_.regions.clear();
+    report_.splitEdges = 0;
+    report_.addedTets = 0;
+    look();
+    return findSeeds();
+  }
+
+  [[nodiscard]] LocalParameters parameters() const { return LocalParameters(now_->prepared.input); }
+
+  /// Nothing that parameters could mend.
+  void refuseBrokenTopology() const {
+    if (now_->prepared.exact.corners.empty()) now_->defects.throwIfAny();
+  }
+
+  void refuseWithoutSolver() const {
+    const Defect first = now_->defects.defects().front();
+    throw Error(first.code,
+                first.sentence +
+                    " This build of hexhex cannot repair maps: build it with libLBFGS "
+                    "(liblbfgs-dev).",
+                first.worst.empty() ? Place{} : first.worst.front().place);
+  }
+
+  /// Bad tets; if none are, those that sanitization flattens.
+  std::vector<Index> findSeeds() {
+    Stage stage(context_, "defects");
+    std::vector<Index> bad = findBadTets(map_.tets.size(), parameters(), stage);
+    if (bad.empty()) bad = findExactlyBadTets(now_->prepared.exact, stage);
+    return bad;
+  }
+
+  /// Moving parameters along free coordinates changes no volume, so that of the defective map,
+  /// where flipped tets count negative, is that of the repaired one.
+  void prepareExpectation(const std::vector<Index>& bad) {
+    const LocalParameters u = parameters();
+    volume_ = 0;
+    for (std::size_t t = 0; t < map_.tets.size(); ++t) {
+      volume_ += determinantOf(u(static_cast<Index>(t))) / 6;
+    }
+    if (bad.size() <= kMaxBadTets ||
+        static_cast<double>(bad.size()) <= kMaxBadShare * static_cast<double>(map_.tets.size())) {
+      return;
+    }
+    throw Error(ErrorCode::FlippedTet,
+                std::to_string(bad.size()) + " of " + std::to_string(map_.tets.size()) +
+                    " tets are flipped or flat in the map: whole regions of it are inverted or "
+                    "collapsed. That is no local defect and is not repaired; compute the map "
+                    "again.",
+                {PlaceKind::Tet, bad.front()});
+  }
+
+  /// Conditions that are violated where no bad tet is near. Returns tets at vertices that are to be
+  /// rounded.
+  std::vector<Index> refuseOtherDefects(const std::vector<Index>& bad) {
+    Diagnosis diagnosis;
+    {
+      Stage stage(context_, "diagnosis");
+      diagnosis.hopeless.setCornersReversed(now_->prepared.input.cornersReversed);
+      diagnose(now_->prepared, parameters(), bad, options_.tolerance, limit_, stage, diagnosis);
+    }
+    if (!diagnosis.hopeless.empty()) throwHopeless(diagnosis.hopeless, bad.size());
+    if (bad.empty() && diagnosis.roundable.empty()) now_->defects.throwIfAny();
+    report_.roundedVertices = diagnosis.roundable.size();
+    std::vector<Index> tets;
+    tets.reserve(diagnosis.roundable.size());
+    for (const Index v : diagnosis.roundable) {
+      tets.push_back(now_->prepared.topology.vertexTet[v]);
+    }
+    return tets;
+  }
+
+  /// Transitions first, since what they are off shows elsewhere, too.
+  [[noreturn]] void throwHopeless(const DefectCollector& hopeless, std::size_t badTets) const {
+    const std::vector<Defect> list = hopeless.defects();
+    const Defect& first = list.front();
+    const Defect::Occurrence& worst = first.worst.front();
+    std::string message = first.sentence + " Found " + timesAsText(first.count) +
+                          ", and not because of flipped tets; worst at " + toString(worst.place) +
+                          (worst.amount > 0 ? " (by " + shortNumber(worst.amount) + ")" : "") + ".";
+    double largest = worst.amount;
+    for (std::size_t i = 1; i < list.size(); ++i) {
+      message += (i == 1 ? " Also " : ", ") + std::string(name(list[i].code)) + " " +
+                 timesAsText(list[i].count);
+      largest = std::max(largest, list[i].worst.front().amount);
+    }
+    if (list.size() > 1) message += ".";
+    if (badTets > 0) {
+      message += " The map has " + std::to_string(badTets) +
+                 " flipped or flat tets as well; mending them would not make it valid.";
+    }
+    message += " What the integers were meant to be would be a guess, so nothing was repaired";
+    message += largest > 0 && largest <= kRoundingLimit && !options_.round
+                   ? ": all amounts are below 0.1, so rounding (--round) can be asked for."
+                   : ". `hexhex check` lists the places.";
+    throw Error(first.code, message, worst.place);
+  }
+
+  static std::string timesAsText(std::uint64_t count) {
+    return count == 1 ? "once" : std::to_string(count) + " times";
+  }
+
+  static std::string shortNumber(double value) {
+    std::array<char, 32> text{};
+    static_cast<void>(std::snprintf(text.data(), text.size(), "%.3g", value));
+    return text.data();
+  }
+
+  /// Optimizes the patches around bad tets, one after the other.
+  void solve(const std::vector<Index>& bad, const std::vector<Index>& toRound, int rings) {
+    Stage stage(context_, "repair");
+    locked_.clear();
+    candidates_.clear();
+    std::vector<Index> seeds = bad;
+    seeds.insert(seeds.end(), toRound.begin(), toRound.end());
+    std::sort(seeds.begin(), seeds.end());
+    seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
+    const LocalParameters u = parameters();
+    for (const std::vector<Index>& region :
+         separateRegions(now_->prepared.topology, seeds, rings)) {
+      context_.throwIfCancelled();
+      solveRegion(region, u, rings, stage);
+    }
+  }
+
+  void solveRegion(const std::vector<Index>& region, const LocalParameters& u, int rings,
+                   Stage& stage) {
+    const TetMapView& view = now_->prepared.input.view;
+    const TetTopology& topology = now_->prepared.topology;
+    const Patch patch = growPatch(topology, region, rings);
+    const PatchCharts charts(view, topology, u, patch, limit_);
+    if (const PatchEdge* edge = charts.impossibleEdge()) throwImpossible(*edge);
+    std::vector<PatchVertex> vertices = findFreedom(u, patch, charts);
+    refuseOffLattice(vertices);
+    PatchProblem problem(view, topology, u, patch, vertices);
+    noteEdges(charts);
+    const std::vector<LockedTet> locked = problem.lockedTets(patch);
+    if (!locked.empty() && options_.refine) {
+      noteLocked(locked, charts);
+      // What is locked stays so; there is no use in moving anything yet.
+      if (!locked_.empty()) return;
+    }
+    static_cast<void>(untangle(problem.problem(), stage));
+    noteSplitCandidates(patch, charts);
+    write(problem, vertices, patch);
+  }
+
+  [[noreturn]] void throwImpossible(const PatchEdge& edge) const {
+    throw Error(ErrorCode::TransitionResidual,
+                "The charts around edge " + std::to_string(edge.vertex0) + "-" +
+                    std::to_string(edge.vertex1) +
+                    " are related in a way that no integer-grid map has: going around it turns "
+                    "the grid, but not about the edge. It is close to flipped or flat tets, but "
+                    "cannot be repaired without guessing. Compute the map again, or align this "
+                    "edge to the grid.",
+                {PlaceKind::Edge, edge.vertex0, edge.vertex1});
+  }
+
+  void refuseOffLattice(const std::vector<PatchVertex>& vertices) const {
+    const auto worst =
+        std::max_element(vertices.begin(), vertices.end(),
+                         [](const PatchVertex& a, const PatchVertex& b) { return a.off < b.off; });
+    if (worst == vertices.end() || worst->off <= limit_) return;
+    std::string message = std::string("Vertex ") + std::to_string(worst->vertex) + " is " +
+                          (worst->singular ? "on a singular edge" : "on the boundary") + " and " +
+                          shortNumber(worst->off) +
+                          " off the integer grid, near flipped or flat tets. What the integers "
+                          "were meant to be would be a guess, so nothing was repaired. Snap it in "
+                          "the program that made the map";
+    message +=
+        worst->off <= kRoundingLimit && !options_.round ? ", or allow rounding (--round)." : ".";
+    throw Error(worst->singular ? ErrorCode::SingularityOffLattice : ErrorCode::BoundaryOffLattice,
+                message, {PlaceKind::Vertex, worst->vertex});
+  }
+
+  /// The valences that edges of a patch must have in the end, by the latest patch.
+  void noteEdges(const PatchCharts& charts) {
+    for (const PatchEdge& edge : charts.edges()) {
+      valences_.insert_or_assign({edge.vertex0, edge.vertex1},
+                                 edge.singular ? edge.valence : (edge.boundary ? 2 : 4));
+    }
+  }
+
+  [[nodiscard]] static const PatchEdge* find(const PatchCharts& charts, Index v, Index w) {
+    const EdgeKey key = std::minmax(v, w);
+    const auto edges = charts.edges();
+    const auto found = std::lower_bound(edges.begin(), edges.end(), key,
+                                        [](const PatchEdge& edge, const EdgeKey& wanted) {
+                                          return EdgeKey(edge.vertex0, edge.vertex1) < wanted;
+                                        });
+    if (found == edges.end() || EdgeKey(found->vertex0, found->vertex1) != key) return nullptr;
+    return &*found;
+  }
+
+  /// Of locked tets, the edges whose middle has more freedom than their ends: inner regular ones,
+  /// else regular ones on the boundary.
+  void noteLocked(const std::vector<LockedTet>& locked, const PatchCharts& charts) {
+    for (const LockedTet& tet : locked) {
+      for (const bool boundary : {false, true}) {
+        const std::size_t before = locked_.size();
+        addEdgesOf(tet.tet, tet.corners, charts, boundary, locked_);
+        if (locked_.size() > before) break;
+      }
+    }
+  }
+
+  void addEdgesOf(Index t, CornerMask corners, const PatchCharts& charts, bool boundary,
+                  std::vector<std::array<Index, 2>>& list) const {
+    const Tet& tet = now_->prepared.topology.tets[t];
+    for (int a = 0; a < 4; ++a) {
+      for (int b = a + 1; b < 4; ++b) {
+        if (!contains(corners, a) || !contains(corners, b)) continue;
+        const PatchEdge* const edge =
+            find(charts, tet[static_cast<std::size_t>(a)], tet[static_cast<std::size_t>(b)]);
+        if (edge == nullptr || edge->singular || edge->boundary != boundary) continue;
+        list.push_back({edge->vertex0, edge->vertex1});
+      }
+    }
+  }
+
+  /// Should all patches fail: the inner edges of bad tets.
+  void noteSplitCandidates(const Patch& patch, const PatchCharts& charts) {
+    for (const Index t : patch.seeds) addEdgesOf(t, kWholeTet, charts, false, candidates_);
+  }
+
+  bool refine(const std::vector<Index>& bad) {
+    std::vector<std::array<Index, 2>> edges = locked_.empty() ? candidates_ : locked_;
+    if (edges.empty() || bad.empty()) return false;
+    const std::size_t tets = map_.tets.size();
+    const std::size_t count = splitEdges(map_, now_->prepared.topology, edges);
+    report_.splitEdges += count;
+    report_.addedTets += map_.tets.size() - tets;
+    return count > 0;
+  }
+
+  /// Enters the new parameters of a patch into the caller's charts.
+  void write(const PatchProblem& problem, const std::vector<PatchVertex>& vertices,
+             const Patch& patch) {
+    const OrientedMap& input = now_->prepared.input;
+    const LocalParameters u = parameters();
+    // Fine, but such that no chart, however far from the origin, rounds it.
+    const int bits = std::clamp(50 - (std::ilogb(input.largestCoordinate + 1) + 1), 16, 40);
+    const double quantum = std::ldexp(1.0, -bits);
+    const std::size_t region = regionOf(patch);
+    // All of them first: the local parameters look at the arrays that are going to change.
+    std::vector<std::pair<Vec3*, Vec3>> changes;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      if (!problem.mayMove(i) && vertices[i].off <= options_.tolerance) continue;
+      const Vec3 first = problem.parameterOf(i, quantum);
+      for (const PatchVertex::Copy& copy : vertices[i].corners) {
+        changes.push_back(changeOf(input, u, copy.corner, copy.fromFirst(first, 1.0)));
+      }
+      moved_.try_emplace(vertices[i].vertex, region);
+    }
+    for (const auto& [target, value] : changes) *target = value;
+  }
+
+  /// Which of the caller's parameters a corner has, and its new value in the caller's chart.
+  std::pair<Vec3*, Vec3> changeOf(const OrientedMap& input, const LocalParameters& u,
+                                  CornerIndex corner, const Vec3& local) {
+    const int c = localOf(corner);
+    const Index t = tetOf(corner);
+    const Vec3 chart = minus(input.view.parameters[t][static_cast<std::size_t>(c)], u(t, c));
+    Vec3 value = plus(local, chart);
+    if (input.mirrored) value[0] = -value[0];
+    return {&map_.parameters[t][static_cast<std::size_t>(input.callersCorner(c))], value};
+  }
+
+  /// The entry of the report for a patch: one that has moved some of its vertices before, or a new
+  /// one.
+  std::size_t regionOf(const Patch& patch) {
+    for (const Index v : patch.vertices) {
+      const auto found = moved_.find(v);
+      if (found != moved_.end()) return found->second;
+    }
+    RepairedRegion region;
+    region.place = {PlaceKind::Tet, patch.seeds.front()};
+    for (const Index t : patch.seeds) {
+      for (const Index v : now_->prepared.topology.tets[t]) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          region.position[k] += map_.points[v][k] / static_cast<double>(4 * patch.seeds.size());
+        }
+      }
+    }
+    region.badTets = patch.seeds.size();
+    region.tets = patch.tets.size();
+    report_.regions.push_back(region);
+    return report_.regions.size() - 1;
+  }
+
+  TetMap finish() {
+    describeMoves();
+    report_.changed = true;
+    return std::move(map_);
+  }
+
+  /// The map is valid: is it also the one that was meant? If not, complaint_ says why.
+  [[nodiscard]] bool isWhatWasMeant() {
+    complaint_.clear();
+    const std::uint64_t cells = parametricVolume(now_->prepared.exact);
+    // Sanitization moves the boundary, and nothing else changes the volume.
+    const double slack = kVolumeSlack + 2 * now_->prepared.exact.maxDisplacement *
+                                            static_cast<double>(boundaryArea(
+                                                now_->prepared.topology, now_->prepared.exact));
+    if (!options_.round && !(std::abs(volume_ - static_cast<double>(cells)) <= slack)) {
+      complaint_ = "the volume of the map changed to " + std::to_string(cells) + " cells from " +
+                   shortNumber(volume_);
+      return false;
+    }
+    return hasExpectedValences();
+  }
+
+  [[nodiscard]] bool hasExpectedValences() {
+    std::map<EdgeKey, int> found;
+    for (const SingularEdge& edge : now_->prepared.singularities.edges) {
+      found[{edge.vertex0, edge.vertex1}] = edge.valence;
+    }
+    for (const auto& [key, valence] : valences_) {
+      if (!isEdge(now_->prepared.topology, key)) continue;  // was split
+      const auto entry = found.find(key);
+      // Without an entry, the edge is regular. Zero stands for singular, but unknown how.
+      const bool same = entry == found.end() ? valence == 2 || valence == 4
+                                             : valence == 0 || entry->second == valence;
+      if (same) continue;
+      complaint_ = "edge " + std::to_string(key.first) + "-" + std::to_string(key.second) +
+                   " became another singularity than it was";
+      return false;
+    }
+    return true;
+  }
+
+  static bool isEdge(const TetTopology& topology, const EdgeKey& key) {
+    VertexStar star;
+    star.collect(topology, key.first);
+    return std::any_of(star.members().begin(), star.members().end(),
+                       [&](const VertexStar::Member& member) {
+                         const Tet& tet = topology.tets[member.tet()];
+                         return std::find(tet.begin(), tet.end(), key.second) != tet.end();
+                       });
+  }
+
+  void describeMoves() {
+    const OrientedMap& input = now_->prepared.input;
+    VertexStar star;
+    for (const auto& [vertex, region] : moved_) {
+      if (vertex >= original_.points.size()) continue;
+      star.collect(now_->prepared.topology, vertex);
+      double move = 0;
+      for (const VertexStar::Member& member : star.members()) {
+        if (member.tet() >= original_.tets.size()) continue;
+        const auto c = static_cast<std::size_t>(input.callersCorner(localOf(member.corner)));
+        for (std::size_t k = 0; k < 3; ++k) {
+          move = std::max(move, std::abs(map_.parameters[member.tet()][c][k] -
+                                         original_.parameters[member.tet()][c][k]));
+        }
+      }
+      if (move == 0) continue;
+      RepairedRegion& entry = report_.regions[region];
+      ++entry.movedVertices;
+      entry.largestMove = std::max(entry.largestMove, move);
+      ++report_.movedVertices;
+      report_.largestMove = std::max(report_.largestMove, move);
+    }
+  }
+
+  [[noreturn]] void throwRemaining(std::size_t badTets) const {
+    std::string message = "The map could not be repaired: ";
+    if (!complaint_.empty()) {
+      message += "all tets became positive, but " + complaint_ +
+                 ", so that it is not the map that was meant";
+    } else {
+      message += "of " + std::to_string(report_.badTets) + " flipped or flat tets, " +
+                 std::to_string(badTets) + " remained";
+    }
+    message += ", after patches of up to " + std::to_string(kRings.back()) + " rings and " +
+               std::to_string(report_.splitEdges) +
+               " split edges. Compute the map again with more tets there, or extract what can be "
+               "extracted (--partial).";
+    const std::vector<Defect> defects = now_->defects.defects();
+    throw Error(ErrorCode::FlippedTet, message,
+                defects.empty() || defects.front().worst.empty()
+                    ? Place{}
+                    : defects.front().worst.front().place);
+  }
+
+  TetMap map_;
+  TetMap original_;
+  const RepairOptions& options_;
+  Context& context_;
+  RepairReport& report_;
+  double limit_;  ///< how far coordinates may be off integers
+  std::unique_ptr<Snapshot> now_;
+  double volume_ = 0;      ///< of the defective map
+  std::string complaint_;  ///< why the last valid map was not accepted
+  std::map<EdgeKey, int> valences_;
+  std::map<Index, std::size_t> moved_;            ///< vertices, and the region of the report
+  std::vector<std::array<Index, 2>> locked_;      ///< edges whose splitting unlocks tets
+  std::vector<std::array<Index, 2>> candidates_;  ///< edges to split when all else failed
+};
+
+}  // namespace
+
+bool canRepair() noexcept { return canUntangle(); }
+
+TetMap repairInArena(TetMap map, const RepairOptions& options, Context& context,
+                     RepairReport& report) {
+  report = {};
+  const auto begin = std::chrono::steady_clock::now();
+  const auto stop = [&] {
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    report.seconds = seconds.count();
+  };
+  try {
+    TetMap repaired = Repairer(std::move(map), options, context, report).run();
+    stop();
+    return repaired;
+  } catch (...) {
+    stop();
+    throw;
+  }
+}
+
+TetMap repair(const TetMap& map, const RepairOptions& options, Context& context,
+              RepairReport* report) {
+  RepairReport local;
+  TetMap repaired;
+  withThreads(context.threads(), [&] {
+    repaired = repairInArena(map, options, context, report != nullptr ? *report : local);
+  });
+  return repaired;
+}
+
+TetMap repair(const TetMap& map, const RepairOptions& options) {
+  Context context;
+  return repair(map, options, context);
+}
+
+}  // namespace hexhex

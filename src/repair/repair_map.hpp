@@ -1,0 +1,12 @@
+// The repair as the extraction calls it.
+#pragma once
+
+#include <hexhex/repair.hpp>
+
+namespace hexhex {
+
+/// As repair(), inside of withThreads().
+[[nodiscard]] TetMap repairInArena(TetMap map, const RepairOptions& options, Context& context,
+                                   RepairReport& report);
+
+}  // namespace hexhex
