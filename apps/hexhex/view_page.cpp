@@ -85,10 +85,11 @@ int serve(const ViewArguments& arguments, ProgressDisplay& progress, Context& co
   subject = {};  // the page has all of it
   const auto announce = [&arguments](const std::string& address) {
     // The address is what --serve is for, so --quiet does not silence it.
-    if (arguments.quiet)
+    if (arguments.quiet) {
       fmt::print("{}\n", address);
-    else
+    } else {
       fmt::print("{} is at {} until you press Ctrl-C.\n", arguments.mesh, address);
+    }
     std::fflush(stdout);
   };
   servePage(page, arguments.port, announce, context);
