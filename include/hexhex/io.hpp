@@ -157,7 +157,8 @@ struct FileFormat {
   bool compresses = false;  ///< WriteOptions::compress
 };
 
-/// All formats of this build. Of several with one extension, the first that fits is what a file name means.
+/// All formats of this build. Of several with one extension, the first that fits is what a file
+/// name means.
 [[nodiscard]] std::span<const FileFormat> fileFormats();
 
 }  // namespace HEXHEX_API_NAMESPACE

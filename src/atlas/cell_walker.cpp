@@ -76,7 +76,7 @@ CellWalker::Vector CellWalker::relative(const Node& node, int corner) const noex
 }
 
 /// Fills in all that follows from the corners.
-void CellWalker::measure(Node& node) const noexcept {
+void CellWalker::measure(Node& node) noexcept {
   node.next.fill(kUnknown);
   double edge = 0;
   node.reach = largest(node.corners[0]);
@@ -180,7 +180,7 @@ CellCornerSet CellWalker::leave(const Group& group, const Sides& sides) {
 
 /// The face through which the way to a corner outside of several faces leaves; -1 if that is not
 /// certain.
-int CellWalker::firstExit(const Node& node, const Sides& sides, std::size_t corner) const {
+int CellWalker::firstExit(const Node& node, const Sides& sides, std::size_t corner) {
   // The plane of face f is reached at the fraction center / (center - value) of the way.
   int first = -1;
   double firstCenter = 0;

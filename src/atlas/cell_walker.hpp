@@ -92,10 +92,10 @@ class CellWalker {
   [[nodiscard]] CellCornerSet signsOfUnsure(const Node& node, int face, const GridPoint& z,
                                             CellCornerSet unsure) const;
   [[nodiscard]] CellCornerSet leave(const Group& group, const Sides& sides);
-  [[nodiscard]] int firstExit(const Node& node, const Sides& sides, std::size_t corner) const;
+  [[nodiscard]] static int firstExit(const Node& node, const Sides& sides, std::size_t corner);
   [[nodiscard]] std::uint32_t behind(std::uint32_t node, int face);
   [[nodiscard]] Vector relative(const Node& node, int corner) const noexcept;
-  void measure(Node& node) const noexcept;
+  static void measure(Node& node) noexcept;
 
   const PreparedMap& map_;
   const Charts& charts_;

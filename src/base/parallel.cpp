@@ -104,7 +104,7 @@ class ArenaPool {
 
 /// Never destroyed: at the end of a process, nobody knows whether oneTBB ends before.
 ArenaPool& arenaPool() {
-  static ArenaPool* const pool = new ArenaPool;
+  static auto* const pool = new ArenaPool;
   return *pool;
 }
 

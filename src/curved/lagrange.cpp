@@ -58,6 +58,7 @@ class NodeCollector {
     Frame frame = Frame::along(cell.z, 0);
     for (std::int32_t& coordinate : frame.origin) coordinate *= order_;
     queue_.assign(1, {cell.tet, kWholeTet, frame});
+    // NOLINTNEXTLINE(modernize-loop-convert): the queue grows on the way.
     for (std::size_t head = 0; head < queue_.size(); ++head) {
       const SimplexInTet here = queue_[head];
       take(here, nodes);
@@ -121,11 +122,12 @@ class NodeCollector {
 
 /// Place of a cell's corner among its nodes.
 std::size_t nodeOfCorner(std::size_t corner, int order) {
-  const auto stride = static_cast<std::size_t>(order) + 1;
+  const auto last = static_cast<std::size_t>(order);
+  const std::size_t stride = last + 1;
   const GridPoint& offset = kCellCorners[corner];
-  const auto x = static_cast<std::size_t>(offset[0] * order);
-  const auto y = static_cast<std::size_t>(offset[1] * order);
-  const auto z = static_cast<std::size_t>(offset[2] * order);
+  const std::size_t x = static_cast<std::size_t>(offset[0]) * last;
+  const std::size_t y = static_cast<std::size_t>(offset[1]) * last;
+  const std::size_t z = static_cast<std::size_t>(offset[2]) * last;
   return x + stride * (y + stride * z);
 }
 

@@ -39,6 +39,7 @@ std::vector<Node> between(const Node& from, const Node& to, int count) {
 /// Places in lexicographic order, x first.
 std::vector<std::uint32_t> placesOf(const std::vector<Node>& nodes, int order) {
   std::vector<std::uint32_t> places;
+  places.reserve(nodes.size());
   for (const Node& n : nodes) {
     places.push_back(static_cast<std::uint32_t>(n[0] + (order + 1) * (n[1] + (order + 1) * n[2])));
   }

@@ -25,6 +25,7 @@ namespace {
 constexpr std::size_t kMostElements = (std::size_t{1} << 24U) - 1;
 
 /// Packed mesh and JSON text: all of the page that depends on the mesh.
+// NOLINTNEXTLINE(bugprone-exception-escape): moving JSON does not throw, however it is declared.
 struct PageContent {
   nlohmann::json info;
   std::vector<PackedTable> tables;
@@ -136,12 +137,13 @@ PageContent makeContent(const HexMesh& mesh, const ViewOptions& options, Context
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
-    if (c == '<')
+    if (c == '<') {
       result += "&lt;";
-    else if (c == '&')
+    } else if (c == '&') {
       result += "&amp;";
-    else
+    } else {
       result += c;
+    }
   }
   return result;
 }
@@ -152,10 +154,11 @@ std::string scriptText(const nlohmann::json& value) {
   const std::string text = value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
   std::string result;
   for (const char c : text) {
-    if (c == '<')
+    if (c == '<') {
       result += "\\u003c";
-    else
+    } else {
       result += c;
+    }
   }
   return result;
 }
