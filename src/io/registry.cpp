@@ -66,29 +66,42 @@ using WriteMesh = void (*)(const HexMesh& mesh, const std::filesystem::path& fil
                            const WriteOptions& options, Context& context);
 #if defined(HEXHEX_HAS_HDF5)
 constexpr WriteMesh kWriteVtkHdf = writeVtkHdf;
+constexpr bool kHasHdf5 = true;
 #else
 constexpr WriteMesh kWriteVtkHdf = nullptr;
+constexpr bool kHasHdf5 = false;
 #endif
 #if defined(HEXHEX_HAS_CGNS)
 constexpr WriteMesh kWriteCgns = writeCgns;
+constexpr bool kHasCgns = true;
 #else
 constexpr WriteMesh kWriteCgns = nullptr;
+constexpr bool kHasCgns = false;
 #endif
 #if defined(HEXHEX_HAS_EXODUS)
 constexpr WriteMesh kWriteExodus = writeExodus;
+constexpr bool kHasExodus = true;
 #else
 constexpr WriteMesh kWriteExodus = nullptr;
+constexpr bool kHasExodus = false;
 #endif
+
+/// A writer that may be missing. (That a function is not null is no constant expression to GCC's
+/// sanitizers.)
+struct OptionalWriter {
+  WriteMesh write;
+  bool isThere;
+};
 
 /// @param library  what has to be installed if there is no writer
 constexpr Format optionalFormat(std::string_view name, std::string_view extension,
-                                std::string_view description, WriteMesh write,
+                                std::string_view description, OptionalWriter writer,
                                 std::string_view library) {
   return {.name = name,
           .extension = extension,
           .description = description,
-          .writeMesh = write,
-          .missing = write != nullptr ? std::string_view() : library};
+          .writeMesh = writer.write,
+          .missing = writer.isThere ? std::string_view() : library};
 }
 
 constexpr std::array kFormats = {
@@ -188,10 +201,12 @@ constexpr std::array kFormats = {
            .extension = ".foam",
            .description = "OpenFOAM polyMesh, a folder",
            .writeMesh = writeOpenFoam},
-    optionalFormat("vtkhdf", ".vtkhdf", "VTKHDF", kWriteVtkHdf, "HDF5 (libhdf5-dev)"),
-    optionalFormat("cgns", ".cgns", "CGNS", kWriteCgns, "CGNS (libcgns-dev)"),
-    optionalFormat("exodus", ".exo", "Exodus II", kWriteExodus, "Exodus (libexodusii-dev)"),
-    optionalFormat("exodus-e", ".e", "Exodus II", kWriteExodus, "Exodus (libexodusii-dev)"),
+    optionalFormat("vtkhdf", ".vtkhdf", "VTKHDF", {kWriteVtkHdf, kHasHdf5}, "HDF5 (libhdf5-dev)"),
+    optionalFormat("cgns", ".cgns", "CGNS", {kWriteCgns, kHasCgns}, "CGNS (libcgns-dev)"),
+    optionalFormat("exodus", ".exo", "Exodus II", {kWriteExodus, kHasExodus},
+                   "Exodus (libexodusii-dev)"),
+    optionalFormat("exodus-e", ".e", "Exodus II", {kWriteExodus, kHasExodus},
+                   "Exodus (libexodusii-dev)"),
 };
 
 /// Other names for formats.

@@ -63,7 +63,7 @@ class CellFlood {
 
  private:
   bool visit(Index tet, const Transition& fromFirst);
-  bool spread(std::size_t piece);
+  bool spread(std::size_t index);
   [[nodiscard]] std::array<Vec3, 4> relative(const LatticeTet& corners) const;
   [[nodiscard]] VertexName nameOf(const Piece& piece, CornerMask simplex,
                                   const LatticePoint& at) const;
