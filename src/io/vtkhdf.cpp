@@ -19,6 +19,12 @@
 namespace hexhex {
 namespace {
 
+/// All numbers of an array of tuples, one after the other; null if there are none.
+template <class Tuple>
+const typename Tuple::value_type* numbersOf(const Array<Tuple>& tuples) {
+  return tuples.empty() ? nullptr : tuples.front().data();
+}
+
 /// Keeps HDF5 from printing its errors, in its scope.
 class QuietHdf {
  public:
@@ -111,7 +117,7 @@ class VtkHdfWriter {
     count("NumberOfPoints", points);
     count("NumberOfCells", cells);
     count("NumberOfConnectivityIds", 8 * cells);
-    rows<double>(grid_, "Points", mesh_.points.data()->data(), mesh_.points.size(), 3);
+    rows<double>(grid_, "Points", numbersOf(mesh_.points), mesh_.points.size(), 3);
     progress_.advance(mesh_.points.size());
     writeCells();
     writePointData();
@@ -169,8 +175,7 @@ class VtkHdfWriter {
 
   void writeCells() {
     const std::size_t cells = mesh_.cells.size();
-    rows<std::uint32_t>(grid_, "Connectivity", mesh_.cells.data()->data(), 8 * cells, 1,
-                        H5T_STD_I64LE);
+    rows<std::uint32_t>(grid_, "Connectivity", numbersOf(mesh_.cells), 8 * cells, 1, H5T_STD_I64LE);
     Array<std::int64_t> offsets(cells + 1);
     for (std::size_t i = 0; i <= cells; ++i) offsets[i] = static_cast<std::int64_t>(8 * i);
     rows(grid_, "Offsets", offsets.data(), offsets.size(), 1);
