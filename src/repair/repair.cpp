@@ -248,7 +248,7 @@ class Repairer {
     write(problem, vertices, patch);
   }
 
-  [[noreturn]] void throwImpossible(const PatchEdge& edge) const {
+  [[noreturn]] static void throwImpossible(const PatchEdge& edge) {
     throw Error(ErrorCode::TransitionResidual,
                 "The charts around edge " + std::to_string(edge.vertex0) + "-" +
                     std::to_string(edge.vertex1) +
