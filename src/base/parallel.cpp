@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -8,6 +7,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/loop_order.hpp>
 #include <base/parallel.hpp>
 
 #if HEXHEX_HAS_TBB
@@ -23,28 +23,6 @@ namespace hexhex {
 namespace detail {
 #if HEXHEX_HAS_TBB
 namespace {
-
-// oneTBB guarantees that what was written before a loop is seen in it, and what the loop wrote is
-// seen after it. The thread sanitizer cannot look into oneTBB, but it understands the same stated
-// with these two. Global, so that a thread needs nothing from the caller's stack to get there.
-std::atomic<std::size_t> loopsBegun{0};
-std::atomic<std::size_t> rangesEnded{0};
-
-/// Lives while a thread works on a range of blocks.
-struct RangeOrder {
-  RangeOrder() noexcept { static_cast<void>(loopsBegun.load(std::memory_order_acquire)); }
-  ~RangeOrder() { rangesEnded.fetch_add(1, std::memory_order_release); }
-  RangeOrder(const RangeOrder&) = delete;
-  RangeOrder& operator=(const RangeOrder&) = delete;
-};
-
-/// Lives while the caller waits for a loop.
-struct LoopOrder {
-  LoopOrder() noexcept { loopsBegun.fetch_add(1, std::memory_order_release); }
-  ~LoopOrder() { static_cast<void>(rangesEnded.load(std::memory_order_acquire)); }
-  LoopOrder(const LoopOrder&) = delete;
-  LoopOrder& operator=(const LoopOrder&) = delete;
-};
 
 /// Arenas for their next use. oneTBB keeps some kilobytes of every arena that ever was, so a
 /// process that works for long must not make a new one each time. Calls that run at the same time
