@@ -15,9 +15,7 @@ std::atomic<std::size_t> rangesEnded{0};
 LoopOrder::LoopOrder() noexcept { loopsBegun.fetch_add(1, std::memory_order_release); }
 LoopOrder::~LoopOrder() { static_cast<void>(rangesEnded.load(std::memory_order_acquire)); }
 
-RangeOrder::RangeOrder() noexcept {
-  static_cast<void>(loopsBegun.load(std::memory_order_acquire));
-}
+RangeOrder::RangeOrder() noexcept { static_cast<void>(loopsBegun.load(std::memory_order_acquire)); }
 RangeOrder::~RangeOrder() { rangesEnded.fetch_add(1, std::memory_order_release); }
 
 }  // namespace hexhex::detail

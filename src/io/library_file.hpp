@@ -5,33 +5,31 @@
 #include <mutex>
 #include <string>
 
+#include <io/output_file.hpp>
+
 namespace hexhex {
 
 /// HDF5, and what is built on it, keeps its state in global variables: whoever uses one of these
 /// libraries holds this lock.
 [[nodiscard]] std::mutex& libraryLock();
 
-/// A temporary beside its target, to be written by name and renamed by commit(). Without commit()
-/// it vanishes, and the target stays as it was.
+/// An OutputFile whose temporary is written by name.
 ///
 /// Functions throw Error FileWrite, with the target and the reason, if they fail. A target that is
 /// no regular file is refused: these libraries write at any position.
 class LibraryFile {
  public:
   /// Creates the temporary, empty.
-  explicit LibraryFile(std::filesystem::path target);
-  ~LibraryFile();
-  LibraryFile(const LibraryFile&) = delete;
-  LibraryFile& operator=(const LibraryFile&) = delete;
+  explicit LibraryFile(const std::filesystem::path& target);
 
   /// What the library is to write; it is closed before commit().
-  [[nodiscard]] const std::string& name() const noexcept { return temporary_; }
-  void commit();
-  [[noreturn]] void fail(const std::string& reason) const;
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  void commit() { file_.commit(); }
+  [[noreturn]] void fail(const std::string& reason) const { file_.fail(reason); }
 
  private:
-  std::filesystem::path target_;
-  std::string temporary_;
+  OutputFile file_;
+  std::string name_;
 };
 
 }  // namespace hexhex

@@ -121,8 +121,12 @@ void OutputFile::discard() noexcept {
 }
 
 void OutputFile::fail(const std::string& what, int error) const {
-  throw Error(ErrorCode::FileWrite, target_.string() + ": the file was not written because " +
-                                        what + ": " + std::generic_category().message(error) + ".");
+  fail(what + ": " + std::generic_category().message(error));
+}
+
+void OutputFile::fail(const std::string& reason) const {
+  throw Error(ErrorCode::FileWrite,
+              target_.string() + ": the file was not written because " + reason + ".");
 }
 
 }  // namespace hexhex

@@ -54,6 +54,12 @@ class OutputFile {
   /// Writes what is buffered, closes the file, and gives it its name.
   void commit();
 
+  /// What is renamed by commit(); empty if the target is written directly.
+  [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
+  /// Throws Error FileWrite.
+  /// @param reason  why the file was not written
+  [[noreturn]] void fail(const std::string& reason) const;
+
  private:
   // The longest number, -1.2345678901234567e-308, has 24 characters.
   static constexpr std::size_t kMaxNumberLength = 32;

@@ -2,13 +2,11 @@
 // they are installed (HEXHEX_PYTHON: another interpreter than python3), and the rules of polyMesh.
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <set>
 #include <sstream>
 #include <string>
-#include <sys/wait.h>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -16,27 +14,15 @@
 #include <hexhex/io.hpp>
 
 #include <io/io_test_support.hpp>
+#include <io/other_programs.hpp>
 #include <mesh/hex_topology.hpp>
 
 namespace hexhex::test {
 namespace {
 
-constexpr int kNotInstalled = 77;
-
-/// A grid with two regions, tagged quads on the boundary and inside, tagged edges and vertices.
+/// With two regions.
 HexMesh meshWithTags() {
-  HexMesh mesh = gridMesh(3, 2, 2);
-  const auto vertex = [](Index x, Index y, Index z) { return x + 4 * (y + 3 * z); };
-  const auto quadAcrossX = [&](Index x, Index y, Index z) {
-    return Quad{vertex(x, y, z), vertex(x, y + 1, z), vertex(x, y + 1, z + 1), vertex(x, y, z + 1)};
-  };
-  mesh.features.quads = {{quadAcrossX(0, 0, 0), 7},
-                         {quadAcrossX(0, 1, 0), 7},
-                         {quadAcrossX(3, 1, 1), 3},
-                         {quadAcrossX(1, 0, 0), 3}};
-  mesh.features.edges = {{{vertex(0, 0, 0), vertex(1, 0, 0)}, 5},
-                         {{vertex(1, 0, 0), vertex(2, 0, 0)}, 5}};
-  mesh.features.vertices = {{vertex(0, 0, 0), 1}, {vertex(3, 0, 0), 1}, {vertex(3, 2, 2), 2}};
+  HexMesh mesh = taggedGrid();
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) mesh.regions.push_back(c % 3 == 1 ? 2 : 4);
   return mesh;
 }
@@ -66,11 +52,6 @@ bool write(const HexMesh& mesh, const std::filesystem::path& file, std::string_v
     EXPECT_EQ(error.code(), ErrorCode::FileUnsupported);
     return false;
   }
-}
-
-int run(const std::string& command) {
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 template <class T>
@@ -107,14 +88,12 @@ TEST_P(OptionalFormats, VtkReadsWhatWeWrite) {
   const TemporaryFolder folder;
   const HexMesh mesh = meshWithTags();
   if (!write(mesh, folder / check.file)) GTEST_SKIP() << check.format << " is not built in";
-  const char* const chosen = std::getenv("HEXHEX_PYTHON");
-  const std::string script =
-      (std::filesystem::path(__FILE__).parent_path() / "read_optional.py").string();
   const std::string output = (folder / "out").string();
-  const int code = run(std::string(chosen != nullptr ? chosen : "python3") + " '" + script + "' " +
-                       check.format + " '" + (folder / check.file).string() + "' '" + output +
-                       "' > /dev/null 2> '" + output + ".errors'");
-  if (code == kNotInstalled || code == 127) GTEST_SKIP() << "VTK for Python is not installed";
+  const int code =
+      runScript("read_optional.py",
+                check.format + " '" + (folder / check.file).string() + "' '" + output + "'",
+                output + ".errors");
+  if (isMissing(code)) GTEST_SKIP() << "VTK for Python is not installed";
   ASSERT_EQ(code, 0) << contentOf(output + ".errors");
   expectPoints(contentOf(output + ".points"), mesh, check.format == "openfoam");
   const Array<Hex> cells = check.sortedByRegion ? byRegion(mesh) : mesh.cells;
@@ -201,7 +180,7 @@ TEST(OpenFoam, CheckMeshIsContent) {
   const char* const configured = std::getenv("WM_PROJECT_DIR");
   const std::filesystem::path project =
       configured != nullptr ? configured : "/usr/share/openfoam";  // Debian's
-  if (run("command -v checkMesh > /dev/null") != 0 || !std::filesystem::exists(project)) {
+  if (runCommand("command -v checkMesh > /dev/null") != 0 || !std::filesystem::exists(project)) {
     GTEST_SKIP() << "OpenFOAM is not installed";
   }
   const TemporaryFolder folder;
@@ -215,8 +194,8 @@ TEST(OpenFoam, CheckMeshIsContent) {
            "laplacianSchemes {} interpolationSchemes {} snGradSchemes {} ddtSchemes {}\n";
   }
   const std::string log = (folder / "log").string();
-  EXPECT_EQ(run("WM_PROJECT_DIR='" + project.string() + "' checkMesh -allTopology -case '" +
-                (folder / "").string() + "' > '" + log + "' 2>&1"),
+  EXPECT_EQ(runCommand("WM_PROJECT_DIR='" + project.string() + "' checkMesh -allTopology -case '" +
+                       (folder / "").string() + "' > '" + log + "' 2>&1"),
             0);
   EXPECT_NE(contentOf(log).find("\nMesh OK."), std::string::npos) << contentOf(log);
 }

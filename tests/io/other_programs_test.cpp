@@ -1,9 +1,7 @@
 // What other programs understand of our files: meshio, VTK, Gmsh and MFEM, all through Python, and
 // each only if it is installed (HEXHEX_PYTHON: another interpreter than python3). Coordinates are
 // compared bit for bit, cells corner by corner.
-#include <cstdlib>
 #include <string>
-#include <sys/wait.h>
 #include <utility>
 #include <vector>
 
@@ -13,52 +11,17 @@
 #include <hexhex/samples.hpp>
 
 #include <io/io_test_support.hpp>
+#include <io/other_programs.hpp>
 #include <io/zlib_blocks.hpp>
 
 namespace hexhex::test {
 namespace {
 
-constexpr int kNotInstalled = 77;
-
-/// A grid with tagged quads on the boundary and inside, tagged edges and vertices.
-HexMesh meshWithFeatures() {
-  HexMesh mesh = gridMesh(3, 2, 2);
-  const auto vertex = [](Index x, Index y, Index z) { return x + 4 * (y + 3 * z); };
-  const auto quadAcrossX = [&](Index x, Index y, Index z) {
-    return Quad{vertex(x, y, z), vertex(x, y + 1, z), vertex(x, y + 1, z + 1), vertex(x, y, z + 1)};
-  };
-  mesh.features.quads = {{quadAcrossX(0, 0, 0), 7},
-                         {quadAcrossX(0, 1, 0), 7},
-                         {quadAcrossX(3, 1, 1), 3},
-                         {quadAcrossX(1, 0, 0), 3}};
-  mesh.features.edges = {{{vertex(0, 0, 0), vertex(1, 0, 0)}, 5},
-                         {{vertex(1, 0, 0), vertex(2, 0, 0)}, 5}};
-  mesh.features.vertices = {{vertex(0, 0, 0), 1}, {vertex(3, 0, 0), 1}, {vertex(3, 2, 2), 2}};
-  return mesh;
-}
-
-std::string interpreter() {
-  const char* const chosen = std::getenv("HEXHEX_PYTHON");
-  return chosen != nullptr ? chosen : "python3";
-}
-
-/// Runs a script of this folder.
-/// @return its exit code
-int runScript(const std::string& name, const std::string& arguments, const std::string& errors) {
-  const std::filesystem::path script = std::filesystem::path(__FILE__).parent_path() / name;
-  const std::string command = interpreter() + " '" + script.string() + "' " + arguments +
-                              " > /dev/null 2> '" + errors + "'";
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-bool isMissing(int code) { return code == kNotInstalled || code == 127; }
-
 struct Check {
   std::string program;
   std::string format;  ///< as in WriteOptions; "-zlib" behind it: compressed
   std::string file;
-  std::string groups;  ///< what the program says of meshWithFeatures()
+  std::string groups;  ///< what the program says of taggedGrid()
 };
 
 void PrintTo(const Check& check, std::ostream* stream) {
@@ -70,7 +33,7 @@ class OtherPrograms : public testing::TestWithParam<Check> {};
 TEST_P(OtherPrograms, ReadWhatWeWrite) {
   const Check& check = GetParam();
   const TemporaryFolder folder;
-  const HexMesh mesh = meshWithFeatures();
+  const HexMesh mesh = taggedGrid();
   Context context;
   WriteOptions options;
   options.compress = check.format.ends_with("-zlib");

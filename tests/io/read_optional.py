@@ -11,7 +11,7 @@ installed. (VTK reads coordinates of openfoam as float32.)
 
 import sys
 
-NOT_INSTALLED = 77
+from handover import hand_over
 
 
 def arrays_of(grid):
@@ -112,20 +112,12 @@ def read_openfoam(file):
     return points, numpy.sort(corners, axis=1), groups
 
 
-def main():
-    kind, file, out = sys.argv[1:]
-    try:
-        points, cells, groups = globals()["read_" + kind](file)
-    except ImportError as error:
-        print(error, file=sys.stderr)
-        return NOT_INSTALLED
-    points.astype("<f8").tofile(out + ".points")
-    cells.astype("<i8").tofile(out + ".cells")
-    with open(out + ".groups", "w", encoding="utf-8") as listing:
-        for name in sorted(groups):
-            print(name, groups[name], file=listing)
-    return 0
-
+READERS = {
+    "vtkhdf": read_vtkhdf,
+    "exodus": read_exodus,
+    "cgns": read_cgns,
+    "openfoam": read_openfoam,
+}
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(hand_over(READERS))

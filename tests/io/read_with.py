@@ -10,7 +10,7 @@ set): its name or number, and how many elements it has. Exit code 77: the progra
 
 import sys
 
-NOT_INSTALLED = 77
+from handover import hand_over
 
 
 def read_with_meshio(file):
@@ -92,21 +92,12 @@ def read_with_mfem(file):
     return points, corners, groups
 
 
-def main():
-    program, file, out = sys.argv[1:]
-    read = globals()["read_with_" + program]
-    try:
-        points, cells, groups = read(file)
-    except ImportError as error:
-        print(error, file=sys.stderr)
-        return NOT_INSTALLED
-    points.astype("<f8").tofile(out + ".points")
-    cells.astype("<i8").tofile(out + ".cells")
-    with open(out + ".groups", "w", encoding="utf-8") as listing:
-        for name in sorted(groups):
-            print(name, groups[name], file=listing)
-    return 0
-
+READERS = {
+    "meshio": read_with_meshio,
+    "vtk": read_with_vtk,
+    "gmsh": read_with_gmsh,
+    "mfem": read_with_mfem,
+}
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(hand_over(READERS))
