@@ -21,7 +21,7 @@ endif()
 function(hexhex_folder name)
   add_library(hexhex_${name} OBJECT ${ARGN})
   target_include_directories(hexhex_${name} PUBLIC
-    ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+    ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(hexhex_${name} PUBLIC hexhex_options hexhex_threads)
   # Only what a public header declares leaves the shared library.
   set_target_properties(hexhex_${name} PROPERTIES
