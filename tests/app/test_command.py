@@ -868,14 +868,39 @@ class View(CommandTest):
             kinds = self.tables((self.folder / "b.html").read_text())["generator_kinds"]
             self.assertEqual({kind for kind, in kinds}, {0, 1, 2, 3})
 
+    def test_page_of_a_map(self):
+        self.run_command("view", "map.hexex", "--scale", "2", "-o", "b.html")
+        info = self.info((self.folder / "b.html").read_text())
+        self.assertEqual((info["cells"], info["order"]), (len(self.mesh()[1]), 1))
+        self.assertTrue(info["verification"]["passed"])
+
+    def test_page_of_curved_cells(self):
+        """The same, whether they come from a file or a map."""
+        self.run_command("extract", "map.hexex", "-o", "c.vtu", "--order", "3", "--quiet")
+        self.run_command("view", "c.vtu", "--map", "map.hexex", "-o", "c.html")
+        self.run_command("view", "map.hexex", "--order", "3", "-o", "d.html")
+        file, map_ = [(self.folder / page).read_text() for page in ["c.html", "d.html"]]
+        self.assertTrue(self.info(file)["verification"]["passed"])
+        self.assertEqual(self.info(file)["order"], 3)
+        tables, others = self.tables(file), self.tables(map_)
+        for name in ["points", "cells", "nodes", "quality", "generator_kinds"]:
+            self.assertEqual(tables[name], others[name], name)
+        # Two nodes on each of 12 edges, four on each of 6 faces.
+        self.assertEqual({len(row) for row in tables["nodes"]}, {48})
+        vertices, points = self.info(file)["vertices"], self.info(file)["points"]
+        self.assertEqual({n for row in tables["nodes"] for n in row}, set(range(vertices, points)))
+
     def test_page_problems(self):
         self.assert_fails("view", "a.mesh", "-o", "a.mesh", expect=BAD_USAGE, words=["same file"])
         self.assert_fails("view", "none.mesh", expect=FILE_PROBLEM, code="FileNotFound")
-        self.assert_fails("view", "map.hexex", expect=FILE_PROBLEM, code="FileUnsupported")
+        self.assert_fails("view", "map.hexex", "--map", "map.hexex", "-o", "c.html",
+                          expect=BAD_USAGE, code="InvalidArgument")
+        self.assert_fails("view", "a.mesh", "--order", "2", expect=BAD_USAGE,
+                          code="InvalidArgument")
         self.assert_fails("view", "a.mesh", "-o", "no/folder/a.html", expect=FILE_PROBLEM,
                           code="FileWrite")
         for arguments in [["--port", "80"], ["--serve", "-o", "a.html"], ["--scale", "0"],
-                          ["--serve", "--port", "70000"]]:
+                          ["--serve", "--port", "70000"], ["--order", "10"]]:
             self.run_command("view", "a.mesh", *arguments, expect=BAD_USAGE)
 
     def test_serve(self):
@@ -905,6 +930,12 @@ class View(CommandTest):
                     urllib.request.urlopen(request, timeout=60)
                 self.assertEqual(refused.exception.code, 403)
                 refused.exception.close()
+                for path in ["../../etc/passwd", "%2e%2e/%2e%2e/etc/passwd", "a.mesh", "mesh/",
+                             "//etc/passwd"]:
+                    with self.assertRaises(urllib.error.HTTPError) as missing:
+                        urllib.request.urlopen(address + path, timeout=60)
+                    self.assertEqual(missing.exception.code, 404, path)
+                    missing.exception.close()
                 port = address.rstrip("/").rsplit(":", 1)[1]
                 run = self.run_command("view", "a.mesh", "--serve", "--port", port,
                                        expect=BAD_USAGE)
