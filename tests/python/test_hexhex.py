@@ -22,8 +22,9 @@ def address(array):
 
 
 def test_doctests():
-    result = doctest.testmod(hexhex, extraglobs={"hexhex": hexhex})
-    assert result.attempted > 10 and result.failed == 0
+    for module, least in ((hexhex, 30), (hexhex._types, 3)):
+        result = doctest.testmod(module, extraglobs={"hexhex": hexhex})
+        assert result.attempted >= least and result.failed == 0
 
 
 def test_extract_and_verify(sphere):

@@ -366,8 +366,8 @@ def extract_partial(map: Map, *, scale: int = 1, tolerance: float = 1e-2,
     Raises:
         MapError: if not even the mesh of tets is valid.
 
-    >>> part = hexhex.extract_partial(hexhex.generate("sphere", cells=8, defects=2))
-    >>> len(part.holes) > 0, part.missing_cells > 0
+    >>> part = hexhex.extract_partial(hexhex.generate("sphere", cells=8, refine=4, defects=2))
+    >>> len(part.holes) > 0, len(part.mesh.cells) < 3584
     (True, True)
     """
     handle, holes, *rest = _hexhex.extract_partial(map._arrays(), scale, tolerance,
@@ -547,8 +547,8 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
 def formats() -> list[FileFormat]:
     """The file formats of this build.
 
-    >>> [f.extension for f in hexhex.formats() if f.streams]
-    ['.vtu', '.vtk', '.mesh', '.meshb', '.msh']
+    >>> sorted({f.extension for f in hexhex.formats() if f.streams})
+    ['.mesh', '.meshb', '.msh', '.vtk', '.vtu']
     """
     return [FileFormat(*row) for row in _hexhex.formats()]
 
