@@ -208,7 +208,7 @@ test("lists the keys, and is dark on request", async ({ page }) => {
   const back = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   const light = await back();
   await press(page, "d");
-  expect(await back()).not.toBe(light);
+  await expect.poll(back).not.toBe(light);
   await press(page, "x");
   await page.screenshot(shot("dark"));
 });
