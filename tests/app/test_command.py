@@ -477,7 +477,12 @@ class Repair(CommandTest):
         (self.folder / "probe.hexex").unlink(missing_ok=True)
         if result.returncode == SUCCESS:
             return True
-        self.assertIn("libLBFGS", result.stderr)
+        self.assertEqual(result.returncode, INVALID_MAP)
+        self.assertIn("liblbfgs-dev", result.stderr)
+        extraction = subprocess.run([self.command, "extract", map_file, "-o", "probe.vtu"],
+                                    cwd=self.folder, text=True, capture_output=True, check=False)
+        self.assertEqual(extraction.returncode, INVALID_MAP)
+        self.assertIn("liblbfgs-dev", extraction.stderr)
         return False
 
     def test_extract_repairs_with_a_notice(self):
@@ -508,20 +513,43 @@ class Repair(CommandTest):
         self.assertEqual((self.folder / "same.hexex").read_bytes(),
                          (self.folder / "mended.hexex").read_bytes())
         self.assertIsNone(json.loads((self.folder / "n.json").read_text()))
+        for options in [["-o", map_file], ["-o", "x.hexex", "--report", map_file],
+                        ["-o", "x.hexex", "--report", "x.hexex"]]:
+            self.assert_fails("repair", map_file, *options, expect=BAD_USAGE,
+                              code="InvalidArgument")
+
+    def test_repair_follows_higher_orders_and_arcs(self):
+        if not self.can_repair():
+            self.skipTest("built without libLBFGS")
+        map_file = self.damaged()
+        run = self.run_command("extract", map_file, "-o", "curved.vtu", "--order", "2")
+        self.assertIn("It was repaired", run.stderr)
+        self.run_command("extract", map_file, "-o", "mesh.vtu", "--arcs", "arcs.vtu", "--quiet")
 
     def test_partial(self):
         map_file = self.damaged()
         run = self.run_command("extract", map_file, "-o", "part.vtu", "--repair", "off",
-                               "--partial", expect=INVALID_MAP)
+                               "--partial", "--report", "part.json", expect=INVALID_MAP)
         self.assertIn("[FlippedTet", run.stderr)
         self.assertIn("hole at tet", run.stdout)
         self.assertIn(b'Name="region"', (self.folder / "part.vtu").read_bytes())
         self.run_command("info", "part.vtu")
+        report = json.loads((self.folder / "part.json").read_text())
+        self.assertTrue(report["partial"])
+        self.assertEqual(report["error"]["code"], "FlippedTet")
+        self.assertIn(f"{report['cells']} cells, {report['cells_at_holes']} of them", run.stdout)
+        self.assertAlmostEqual(sum(hole["missing_cells"] for hole in report["holes"]),
+                               report["missing_cells"])
+        self.assertGreater(report["missing_cells"], 0)
         # A valid map is extracted as ever.
         self.generate("box", name="box.hexex")
         self.run_command("extract", "box.hexex", "-o", "box.vtu", "--partial")
-        self.assert_fails("extract", "box.hexex", "-o", "b.vtu", "--partial", "--stream",
-                          expect=BAD_USAGE, code="InvalidArgument")
+        # Straight cells in memory only, said before anything is extracted or written.
+        for options in [["--stream"], ["--order", "2"], ["--arcs", "arcs.vtu"],
+                        ["--patches", "patches.vtu"]]:
+            self.assert_fails("extract", "box.hexex", "-o", "b.vtu", "--partial", *options,
+                              expect=BAD_USAGE, code="InvalidArgument")
+        self.assertNotIn("arcs.vtu", self.files())
 
 
 class Convert(CommandTest):
