@@ -25,4 +25,7 @@ void registerFiles();
 /// arcs_and_patches/, lagrange/: curved meshes.
 void registerCurved();
 
+/// repair/: repair of damaged maps, and check and extraction of the undamaged ones.
+void registerRepair();
+
 }  // namespace hexhex::bench

@@ -1,6 +1,8 @@
-// Arcs, patches and Lagrange cells: what they cost beyond the extraction that they are made with.
-#include <chrono>
+// Arcs, patches and Lagrange cells: what they cost beyond the extraction that they are made with,
+// in CPU time.
 #include <cstdint>
+#include <ctime>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -26,13 +28,37 @@ BenchMap cube() {
   return map;
 }
 
-double secondsOf(const Context& context, std::string_view stage) {
-  double sum = 0;
-  for (const StageTime& time : context.stageTimes()) {
-    if (time.stage == stage) sum += time.seconds;
+/// CPU time of stages, of all threads together, from where each begins to where the next does:
+/// other work on the machine does not count.
+class StageClock {
+ public:
+  /// What a Context is to be made with.
+  [[nodiscard]] Context::Progress listener() {
+    return [this](std::string_view stage, double share) {
+      if (share == 0) begin(stage);
+    };
   }
-  return sum;
-}
+  void begin(std::string_view stage) {
+    const std::clock_t now = std::clock();
+    seconds_[stage_] += static_cast<double>(now - since_) / CLOCKS_PER_SEC;
+    stage_ = stage;
+    since_ = now;
+  }
+  [[nodiscard]] double seconds(const std::string& stage) const {
+    const auto found = seconds_.find(stage);
+    return found == seconds_.end() ? 0 : found->second;
+  }
+  [[nodiscard]] double total() const {
+    double sum = 0;
+    for (const auto& [stage, seconds] : seconds_) sum += seconds;
+    return sum;
+  }
+
+ private:
+  std::map<std::string, double> seconds_;
+  std::string stage_;
+  std::clock_t since_ = std::clock();
+};
 
 void setNanoseconds(benchmark::State& state, const std::string& what, double seconds,
                     std::size_t count) {
@@ -56,16 +82,16 @@ void piecewiseLinear(benchmark::State& state, const BenchMap& what, Engine engin
   std::size_t polygons = 0;
   std::size_t hexes = 0;
   for (auto _ : state) {
-    Context context(threads);
+    StageClock clock;
+    Context context(threads, clock.listener());
     ExtractStatistics statistics;
     const PiecewiseLinearMesh mesh = extractPiecewiseLinear(
         map, PiecewiseLinearParts::ArcsAndPatches, options, context, &statistics);
     state.SetIterationTime(statistics.seconds);
-    const double forArcs = secondsOf(context, "arcs");
-    const double forPatches = secondsOf(context, "patches");
-    arcs += forArcs;
-    patches += forPatches;
-    extraction += statistics.seconds - forArcs - forPatches;
+    clock.begin("end");
+    arcs += clock.seconds("arcs");
+    patches += clock.seconds("patches");
+    extraction += clock.total() - clock.seconds("arcs") - clock.seconds("patches");
     points = arcPoints(mesh.arcs);
     polygons = mesh.patches.polygonTet.size();
     hexes = mesh.mesh.cells.size();

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   hexhex::bench::registerMesh();
   hexhex::bench::registerFiles();
   hexhex::bench::registerCurved();
+  hexhex::bench::registerRepair();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

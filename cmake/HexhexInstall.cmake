@@ -14,7 +14,7 @@ foreach(kind IN ITEMS shared static)
     FILE hexhex-${kind}.cmake COMPONENT dev)
 endforeach()
 
-install(DIRECTORY include/hexhex ${PROJECT_BINARY_DIR}/include/hexhex
+install(DIRECTORY include/hexhex
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev
   FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h"
   PATTERN "view.hpp" EXCLUDE)  # of the command; no installed library has it

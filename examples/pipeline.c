@@ -19,7 +19,7 @@ static int on_progress(void* user, const char* stage, double share) {
 int main(int argc, char** argv) {
   hexhex_error error;
   hexhex_map* map = NULL;
-  hexhex_status status = argc > 1 ? hexhex_map_read(argv[1], NULL, &map, &error)
+  hexhex_status status = argc > 1 ? hexhex_map_read(argv[1], NULL, NULL, &map, &error)
                                   : hexhex_map_generate("sphere", NULL, &map, &error);
   if (status != HEXHEX_OK) return fail(&error);
 

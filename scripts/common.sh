@@ -70,12 +70,28 @@ install_python_programs() {
 
 # Libraries of optional parts: .vtkhdf, .cgns, .exo, repair. Without them these are left out.
 optional_packages=(liblbfgs-dev libhdf5-dev libcgns-dev libexodusii-dev)
-# ... and what only tests need, which skip without it: VTK reads curved meshes.
-test_packages=(python3-vtk9 python3-numpy)
+# ... and what only tests need, which skip without it: VTK reads curved meshes. ParaView's Python has
+# VTK, too, and Debian has either of them installed.
+vtk_packages=(python3-vtk9)
+# What builds the ParaView plugin (its CMake files look for the three libraries), and what tests it:
+# Debian's ParaView draws with X only.
+paraview_packages=(paraview-dev python3-paraview libopenmpi-dev liblz4-dev libdouble-conversion-dev
+  xvfb xauth)
 
 # The same for packages that can be done without.
 install_optional() {
   install_missing "$@" || say "Without $*, what needs them is left out."
+}
+
+# Whether these packages are installed or can be. Fresh machines have no package lists yet.
+can_install() {
+  local try=(apt-get install --simulate --no-install-recommends "$@")
+  has_packages "$@" && return 0
+  command -v apt-get >/dev/null || return 1
+  "${try[@]}" >/dev/null 2>&1 && return 0
+  local as_root=()
+  if ((EUID != 0)); then as_root=(sudo); fi
+  "${as_root[@]}" apt-get update >"$logs/install.log" 2>&1 && "${try[@]}" >/dev/null 2>&1
 }
 
 # What `hexhex view` takes beside the packages of the command. Some machines have npm from elsewhere.

@@ -1,5 +1,4 @@
 // `hexhex extract`: from a map to a verified hexahedral mesh.
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <map>
@@ -22,6 +21,7 @@
 #include "extract_stream.hpp"
 #include "interrupt.hpp"
 #include "output.hpp"
+#include "partial_text.hpp"
 #include "progress.hpp"
 #include "repair_text.hpp"
 #include "report.hpp"
@@ -86,21 +86,32 @@ void requireCurvedOutputs(const Arguments& arguments) {
   }
 }
 
+/// What is left of a map beyond repair is a straight mesh in memory.
+void requirePartialOutputs(const Arguments& arguments) {
+  if (!arguments.partial) return;
+  if (arguments.stream) {
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "--partial needs the whole mesh in memory. Leave out one of --stream and --partial.");
+  }
+  if (arguments.order > 1 || !arguments.arcs.empty() || !arguments.patches.empty()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--partial writes straight cells only: beside holes, there is no map for curved "
+                "ones to follow. Leave out --partial, or --order, --arcs and --patches.");
+  }
+}
+
 /// Everything that can be known to fail before long work.
 void requireOutputs(const Arguments& arguments) {
   requireAllDifferent(arguments);
   requireCurvedOutputs(arguments);
+  requirePartialOutputs(arguments);
   if (arguments.order > 1) {
     requireLagrangeFormat(arguments.output);
   } else {
     requireHexMeshFormat(arguments.output, arguments.choice.options());
   }
   requireWritable(arguments.output);
-  if (arguments.partial && arguments.stream) {
-    throw Error(
-        ErrorCode::InvalidArgument,
-        "--partial needs the whole mesh in memory. Leave out one of --stream and --partial.");
-  }
   if (arguments.stream) {
     requireStreamable(arguments.output, arguments.choice.options(), arguments.options);
   }
@@ -259,21 +270,6 @@ void extractInPieces(const Arguments& arguments, const TetMap& map, Context& con
   record.streamed = mesh.written;
 }
 
-void printHoles(const PartialMesh& partial) {
-  constexpr std::size_t kMaxListed = 20;
-  for (std::size_t i = 0; i < std::min(partial.holes.size(), kMaxListed); ++i) {
-    const Hole& hole = partial.holes[i];
-    printLine(fmt::format("hole at tet {}", hole.tet),
-              fmt::format("about {:.2f} cells missing near ({:.4g}, {:.4g}, {:.4g}), in {}, {} of "
-                          "them invalid",
-                          hole.missingCells, hole.position[0], hole.position[1], hole.position[2],
-                          counted(hole.tets, "tet"), hole.invalidTets));
-  }
-  if (partial.holes.size() > kMaxListed) {
-    printLine("and", fmt::format("{} smaller holes", partial.holes.size() - kMaxListed));
-  }
-}
-
 /// What is left of a map beyond repair. Always an invalid map, by its exit code.
 int extractWhatIsValid(const Arguments& arguments, const TetMap& map, const Error& problem,
                        Context& context, ProgressDisplay& progress) {
@@ -282,22 +278,15 @@ int extractWhatIsValid(const Arguments& arguments, const TetMap& map, const Erro
   WriteOptions options = arguments.choice.options();
   options.patchAngle = arguments.patchAngle;
   writeHexMesh(partial.mesh, arguments.output, options, context);
+  if (!arguments.report.empty()) {
+    writeTextFile(arguments.report, partialReportAsJson(partial, problem, arguments.options.scale));
+  }
   progress.clear();
   printError(problem);
   if (arguments.quiet) return kInvalidMap;
   printWarning("Only a part of the mesh was extracted, as --partial asks for.");
   fmt::print("{} -> {}\n", arguments.input.description(), arguments.output);
-  const auto atHole =
-      std::count(partial.mesh.regions.begin(), partial.mesh.regions.end(), std::int32_t{1});
-  printLine("mesh", fmt::format("{}, {} of them at holes (region 1)",
-                                counted(partial.mesh.cells.size(), "cell"), atHole));
-  printLine("missing", fmt::format("about {:.1f} cells, at {} with {}", partial.missingCells,
-                                   counted(partial.holes.size(), "hole"),
-                                   counted(partial.invalidTets, "invalid tet")));
-  printLine("local verification",
-            fmt::format("every cell is filled by valid tets; {} do not fit together",
-                        counted(partial.faceConflicts, "face")));
-  printHoles(partial);
+  printPartial(partial);
   return kInvalidMap;
 }
 

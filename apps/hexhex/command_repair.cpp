@@ -1,4 +1,5 @@
 // `hexhex repair`: from a defective map to a valid one.
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -31,9 +32,18 @@ struct Arguments {
   bool quiet = false;
 };
 
+void requireAllDifferent(const Arguments& arguments) {
+  for (const std::filesystem::path& input : arguments.input.files()) {
+    requireDifferent(input, arguments.output);
+    if (!arguments.report.empty()) requireDifferent(input, arguments.report);
+  }
+  if (!arguments.report.empty()) requireDifferent(arguments.output, arguments.report);
+}
+
 int run(const Arguments& arguments) {
   const WriteOptions writing = arguments.choice.options();
   requireMapFormat(arguments.output, writing);
+  requireAllDifferent(arguments);
   requireWritable(arguments.output);
   if (!arguments.report.empty()) requireWritable(arguments.report);
   ProgressDisplay progress(arguments.quiet);

@@ -1,6 +1,8 @@
 // `hexhex view`: a page that shows a mesh in any browser.
 #include <memory>
 
+#include <hexhex/curved.hpp>
+
 #include "command.hpp"
 #include "shared_options.hpp"
 #include "view_page.hpp"
@@ -12,9 +14,10 @@ Command addView(CLI::App& app) {
   CLI::App* const parser =
       app.add_subcommand("view", "Write a page that shows a mesh in any browser");
   parser
-      ->add_option("MESH", arguments->mesh,
-                   "The mesh, in any format that `hexhex info` reads;\n.vtu, .ovm and .ovmb also "
-                   "tell where vertices\ncame from")
+      ->add_option(
+          "MESH", arguments->mesh,
+          "The mesh, in any format that `hexhex info` reads, .vtu also\nwith cells of higher "
+          "order; or a map, whose mesh is\nextracted")
       ->required()
       ->option_text("FILE REQUIRED");
   CLI::Option* const output =
@@ -24,7 +27,14 @@ Command addView(CLI::App& app) {
       ->add_option("--map", arguments->map,
                    "The map that the mesh came from: the page tells\nwhether they agree")
       ->option_text("FILE");
-  addScale(*parser, arguments->options.scale, "The scale that the mesh was extracted with");
+  addScale(*parser, arguments->options.scale,
+           "The scale that the mesh was extracted with, or shall be");
+  parser
+      ->add_option("--order", arguments->order,
+                   "Order of the cells that are extracted: curved from 2 on,\nup to 9")
+      ->check(wholeNumberFrom(1))
+      ->check(CLI::Range(1, kMaxOrder))
+      ->option_text("INTEGER [1]");
   addTolerance(*parser, arguments->options.tolerance);
   addThreads(*parser, arguments->threads);
   CLI::Option* const serve =
@@ -41,7 +51,8 @@ Command addView(CLI::App& app) {
   addQuiet(*parser, arguments->quiet);
   parser->footer(
       "Exit code 4: the mesh does not agree with the map; the page is written and says so.\n\n"
-      "Example:\n  hexhex view sphere.vtu --map sphere.hexex --scale 2");
+      "Examples:\n  hexhex view sphere.vtu --map sphere.hexex --scale 2\n"
+      "  hexhex view sphere.hexex --order 3");
   return {parser, [arguments] { return view(*arguments); }};
 }
 

@@ -3,34 +3,96 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <utility>
+#include <variant>
 
+#include <hexhex/curved.hpp>
+#include <hexhex/error.hpp>
+#include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/view.hpp>
 
 #include "exit_codes.hpp"
 #include "interrupt.hpp"
-#include "mesh_collector.hpp"
 #include "output.hpp"
 #include "progress.hpp"
+#include "repair_text.hpp"
 #include "serve_page.hpp"
+#include "verification.hpp"
 
 namespace hexhex::command {
 namespace {
 
 /// Mesh and what is known about it.
 struct Subject {
-  HexMesh mesh;
+  std::variant<HexMesh, LagrangeMesh> mesh;
   std::optional<VerifyReport> verification;
+  std::string map;     ///< that it was compared with
+  std::string notice;  ///< of a repair; empty: none
 
   [[nodiscard]] bool agrees() const { return !verification || verification->passed(); }
+  [[nodiscard]] std::size_t cellCount() const {
+    if (const auto* const curved = std::get_if<LagrangeMesh>(&mesh)) return curved->cellCount();
+    return std::get<HexMesh>(mesh).cells.size();
+  }
 };
+
+VerifyReport compare(const TetMapView& map, const Subject& subject, const VerifyOptions& options,
+                     Context& context) {
+  if (const auto* const curved = std::get_if<LagrangeMesh>(&subject.mesh)) {
+    return verify(map, straightMesh(*curved), options, context);
+  }
+  return verify(map, std::get<HexMesh>(subject.mesh), options, context);
+}
+
+/// The mesh of a map.
+Subject extractSubject(const ViewArguments& arguments, const TetMap& map, Context& context) {
+  if (!arguments.map.empty()) {
+    throw Error(ErrorCode::InvalidArgument,
+                arguments.mesh +
+                    " is a map itself, and its mesh is compared with it anyway. Leave "
+                    "out --map.");
+  }
+  ExtractOptions options;
+  options.scale = arguments.options.scale;
+  options.tolerance = arguments.options.tolerance;
+  options.repair = RepairMode::Auto;
+  ExtractStatistics statistics;
+  Subject subject;
+  if (arguments.order == 1) {
+    subject.mesh = extract(map, options, context, &statistics);
+  } else {
+    subject.mesh = extractLagrange(map, arguments.order, options, context, &statistics);
+  }
+  subject.map = arguments.mesh;
+  subject.verification =
+      compare(extractedMap(map, statistics), subject, arguments.options, context);
+  if (statistics.repair.changed) subject.notice = repairNotice(statistics.repair);
+  return subject;
+}
 
 Subject readSubject(const ViewArguments& arguments, Context& context) {
   Subject subject;
-  subject.mesh = readWithGenerators(arguments.mesh, context);
+  if (holdsLagrangeCells(arguments.mesh, context)) {
+    subject.mesh = readLagrangeMesh(arguments.mesh, context);
+  } else {
+    auto content = readMapOrHexMesh(arguments.mesh, {}, context);
+    if (const auto* const map = std::get_if<TetMap>(&content)) {
+      return extractSubject(arguments, *map, context);
+    }
+    subject.mesh = std::move(std::get<HexMesh>(content));
+  }
+  if (arguments.order > 1) {
+    throw Error(ErrorCode::InvalidArgument,
+                arguments.mesh +
+                    " is a mesh, whose cells are what they are. Leave out --order, or "
+                    "name the map.");
+  }
   if (!arguments.map.empty()) {
-    const TetMap map = readMap(arguments.map, context);
-    subject.verification = verify(map, subject.mesh, arguments.options, context);
+    subject.map = arguments.map;
+    subject.verification =
+        compare(readMap(arguments.map, context), subject, arguments.options, context);
   }
   return subject;
 }
@@ -40,7 +102,7 @@ ViewOptions optionsOf(const ViewArguments& arguments, const Subject& subject) {
   options.title = std::filesystem::path(arguments.mesh).filename().string();
   if (subject.verification) {
     options.verification = &*subject.verification;
-    options.mapName = std::filesystem::path(arguments.map).filename().string();
+    options.mapName = std::filesystem::path(subject.map).filename().string();
   }
   return options;
 }
@@ -50,9 +112,10 @@ std::filesystem::path pageOf(const ViewArguments& arguments) {
   return std::filesystem::path(arguments.mesh).replace_extension(".html");
 }
 
-void warnUnlessAgreed(const ViewArguments& arguments, const Subject& subject) {
+void printWarnings(const Subject& subject) {
+  if (!subject.notice.empty()) printWarning(subject.notice);
   if (subject.agrees()) return;
-  printWarning("The mesh does not agree with " + arguments.map +
+  printWarning("The mesh does not agree with " + subject.map +
                "; the page lists the checks that failed.");
 }
 
@@ -62,12 +125,14 @@ int writePage(const ViewArguments& arguments, ProgressDisplay& progress, Context
   if (!arguments.map.empty()) requireDifferent(arguments.map, page);
   requireWritable(page);
   const Subject subject = readSubject(arguments, context);
-  writeViewPage(subject.mesh, page, optionsOf(arguments, subject), context);
+  std::visit(
+      [&](const auto& mesh) { writeViewPage(mesh, page, optionsOf(arguments, subject), context); },
+      subject.mesh);
   progress.clear();
-  warnUnlessAgreed(arguments, subject);
+  printWarnings(subject);
   if (!arguments.quiet) {
     fmt::print("{} -> {}\n", arguments.mesh, page.string());
-    printLine("mesh", counted(subject.mesh.cells.size(), "cell"));
+    printLine("mesh", counted(subject.cellCount(), "cell"));
     printLine("page", bytesAsText(std::filesystem::file_size(page)));
     printLine("to see it", "open the page in a browser; no network is needed");
   }
@@ -77,10 +142,13 @@ int writePage(const ViewArguments& arguments, ProgressDisplay& progress, Context
 /// Serves until Ctrl-C, which is no failure here.
 int serve(const ViewArguments& arguments, ProgressDisplay& progress, Context& context) {
   Subject subject = readSubject(arguments, context);
-  const ServedPage page =
-      makeServedPage(subject.mesh, kMeshUrl, optionsOf(arguments, subject), context);
+  const ServedPage page = std::visit(
+      [&](const auto& mesh) {
+        return makeServedPage(mesh, kMeshUrl, optionsOf(arguments, subject), context);
+      },
+      subject.mesh);
   progress.clear();
-  warnUnlessAgreed(arguments, subject);
+  printWarnings(subject);
   const bool agrees = subject.agrees();
   subject = {};  // the page has all of it
   const auto announce = [&arguments](const std::string& address) {
@@ -102,7 +170,6 @@ int view(const ViewArguments& arguments) {
   ProgressDisplay progress(arguments.quiet);
   Context context(arguments.threads, progress.callback());
   const CancelOnSignal cancelOnSignal(context);
-  requireHexMeshFormat(arguments.mesh);
   if (arguments.serve) return serve(arguments, progress, context);
   return writePage(arguments, progress, context);
 }

@@ -8,10 +8,11 @@
 namespace hexhex::command {
 
 struct ViewArguments {
-  std::string mesh;
+  std::string mesh;  ///< or a map, whose mesh is extracted
   std::string page;  ///< empty: the mesh's name with .html
   std::string map;   ///< empty: none
   VerifyOptions options;
+  int order = 1;  ///< of the cells that are extracted
   int threads = 0;
   bool serve = false;
   int port = 0;  ///< 0: any free one

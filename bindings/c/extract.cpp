@@ -13,7 +13,9 @@ ExtractOptions extractOptions(const hexhex_extract_options* options) {
   return {.engine = static_cast<Engine>(given.engine),
           .scale = given.scale,
           .epsilon = given.epsilon,
-          .tolerance = given.tolerance};
+          .tolerance = given.tolerance,
+          .repair = given.repair != 0 ? RepairMode::Auto : RepairMode::Off,
+          .round = given.round != 0};
 }
 
 void writeStatistics(const ExtractStatistics& statistics, hexhex_statistics* out) {
@@ -38,6 +40,7 @@ void writeStatistics(const ExtractStatistics& statistics, hexhex_statistics* out
   result.cut_faces = statistics.cutFaces;
   result.overlapping_tets = statistics.overlappingTets;
   result.traced_cells = statistics.tracedCells;
+  result.repaired = statistics.repair.changed ? 1 : 0;
   writeStruct(result, *out, "statistics");
 }
 
@@ -54,8 +57,10 @@ hexhex_status runExtract(const hexhex_extract_options* options, hexhex_context* 
     ContextOrDefault used(context);
     ExtractStatistics filled;
     auto handle = std::make_unique<hexhex_mesh>();
-    handle->mesh = extract(given, *used, filled);
+    handle->own = extract(given, *used, filled);
     writeStatistics(filled, statistics);
+    handle->repair = std::move(filled.repair);
+    handle->repairedMap = std::move(filled.repairedMap);
     *mesh = handle.release();
   });
 }
@@ -91,12 +96,17 @@ hexhex_status hexhex_extractor_extract(hexhex_extractor* extractor,
                                        hexhex_context* context, hexhex_mesh** mesh,
                                        hexhex_statistics* statistics, hexhex_error* error) {
   using namespace hexhex::c;
-  return runExtract(
-      options, context, mesh, statistics, error,
-      [&](const hexhex::ExtractOptions& given, hexhex::Context& used,
-          hexhex::ExtractStatistics& filled) {
-        return require(extractor, "extractor").extractor.extract(given, used, &filled);
-      });
+  return runExtract(options, context, mesh, statistics, error,
+                    [&](const hexhex::ExtractOptions& given, hexhex::Context& used,
+                        hexhex::ExtractStatistics& filled) {
+                      hexhex_extractor& prepared = require(extractor, "extractor");
+                      const Occupied occupied(prepared.busy, "extractor");
+                      return prepared.extractor.extract(given, used, &filled);
+                    });
 }
 
 void hexhex_extractor_destroy(hexhex_extractor* extractor) { delete extractor; }
+
+uint64_t hexhex_extractor_cells(const hexhex_extractor* extractor) {
+  return extractor != nullptr ? extractor->extractor.cellsAtScaleOne() : 0;
+}

@@ -5,6 +5,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include <hexhex/version.hpp>
 
@@ -46,6 +47,9 @@ hexhex_status describeException(hexhex_error* error) noexcept {
     return describe(error, ErrorCode::OutOfMemory, kNoMemory);
   } catch (const std::length_error&) {
     return describe(error, ErrorCode::OutOfMemory, kNoMemory);
+  } catch (const std::system_error& e) {
+    // A lock or a thread that the system refuses.
+    return describe(error, ErrorCode::OutOfMemory, e.what());
   } catch (const std::exception& e) {
     return describe(error, ErrorCode::Internal, e.what());
   } catch (...) {
@@ -64,6 +68,12 @@ void throwSize(const char* argument) {
               std::string("The member `size` of `") + argument +
                   "` is wrong, or something is set that this version of the library does not "
                   "know. Make the struct with its _INIT macro.");
+}
+
+void throwBusy(const char* argument) {
+  throw Error(ErrorCode::InvalidArgument,
+              std::string("The argument `") + argument +
+                  "` is in use by another call. Give each call one of its own.");
 }
 
 }  // namespace hexhex::c

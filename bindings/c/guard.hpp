@@ -32,6 +32,7 @@ hexhex_status guarded(hexhex_error* error, const Work& work) noexcept {
 
 [[noreturn]] void throwNull(const char* argument);
 [[noreturn]] void throwSize(const char* argument);
+[[noreturn]] void throwBusy(const char* argument);
 
 /// A pointer that may not be null.
 template <class T>

@@ -16,13 +16,9 @@ static_assert(sizeof(hexhex::Tet) == 4 * sizeof(std::uint32_t));
 static_assert(sizeof(hexhex::TetParameters) == 12 * sizeof(double));
 static_assert(sizeof(std::array<std::int8_t, 4>) == 4);
 static_assert(sizeof(hexhex::EdgeValence) == sizeof(hexhex_edge_valence));
-
-/// `count` elements of T in the caller's flat array.
-template <class T, class Scalar>
-std::span<const T> borrowed(const Scalar* data, std::size_t count, const char* argument) {
-  if (count != 0 && data == nullptr) hexhex::c::throwNull(argument);
-  return {reinterpret_cast<const T*>(data), count};
-}
+static_assert(sizeof(hexhex::FeatureVertex) == sizeof(hexhex_feature_vertex));
+static_assert(sizeof(hexhex::FeatureEdge) == sizeof(hexhex_feature_edge));
+static_assert(sizeof(hexhex::FeatureFace) == sizeof(hexhex_feature_face));
 
 hexhex::SampleKind kindNamed(const char* kind) {
   for (const hexhex::SampleKindName& entry : hexhex::sampleKinds()) {
@@ -38,6 +34,10 @@ hexhex::SampleOptions sampleOptions(const hexhex_sample_options* given) {
   if (options.charts < HEXHEX_CHARTS_ALIGNED || options.charts > HEXHEX_CHARTS_RANDOM) {
     throw Error(ErrorCode::InvalidArgument, "There is no such style of charts.");
   }
+  if (options.defect_kind < HEXHEX_DEFECTS_INTERIOR ||
+      options.defect_kind > HEXHEX_DEFECTS_SLIVER) {
+    throw Error(ErrorCode::InvalidArgument, "There is no such kind of defect.");
+  }
   return {.cells = options.cells,
           .refine = options.refine,
           .valence = options.valence,
@@ -46,14 +46,10 @@ hexhex::SampleOptions sampleOptions(const hexhex_sample_options* given) {
           .onLattice = options.on_lattice,
           .noise = options.noise,
           .offset = options.offset,
-          .seed = options.seed};
-}
-
-void give(hexhex::TetMap&& map, hexhex_map** out) {
-  auto handle = std::make_unique<hexhex_map>();
-  handle->owned = std::move(map);
-  handle->view = handle->owned;
-  *out = handle.release();
+          .features = options.features != 0,
+          .seed = options.seed,
+          .defects = options.defects,
+          .defectKind = static_cast<hexhex::DefectKind>(options.defect_kind)};
 }
 
 /// For the writer, which wants a map of its own.
@@ -62,10 +58,62 @@ hexhex::TetMap copied(const hexhex::TetMapView& view) {
           .tets = {view.tets.begin(), view.tets.end()},
           .parameters = {view.parameters.begin(), view.parameters.end()},
           .edgeValences = {view.edgeValences.begin(), view.edgeValences.end()},
-          .rotations = {view.rotations.begin(), view.rotations.end()}};
+          .rotations = {view.rotations.begin(), view.rotations.end()},
+          .features = {.vertices = {view.features.vertices.begin(), view.features.vertices.end()},
+                       .edges = {view.features.edges.begin(), view.features.edges.end()},
+                       .faces = {view.features.faces.begin(), view.features.faces.end()}},
+          .regions = {view.regions.begin(), view.regions.end()}};
+}
+
+hexhex::TetMapView viewOf(const hexhex_map_arrays& given) {
+  using hexhex::c::borrowed;
+  hexhex::TetMapView view(
+      borrowed<hexhex::Vec3>(given.points, given.point_count, "points"),
+      borrowed<hexhex::Tet>(given.tets, given.tet_count, "tets"),
+      borrowed<hexhex::TetParameters>(given.parameters, given.tet_count, "parameters"));
+  view.edgeValences =
+      borrowed<hexhex::EdgeValence>(given.edge_valences, given.edge_valence_count, "edge_valences");
+  if (given.rotations != nullptr) {
+    view.rotations =
+        borrowed<std::array<std::int8_t, 4>>(given.rotations, given.tet_count, "rotations");
+  }
+  view.features = {
+      borrowed<hexhex::FeatureVertex>(given.feature_vertices, given.feature_vertex_count,
+                                      "feature_vertices"),
+      borrowed<hexhex::FeatureEdge>(given.feature_edges, given.feature_edge_count, "feature_edges"),
+      borrowed<hexhex::FeatureFace>(given.feature_faces, given.feature_face_count,
+                                    "feature_faces")};
+  if (given.regions != nullptr) view.regions = {given.regions, given.tet_count};
+  return view;
+}
+
+hexhex::TetMesh tetMeshOf(const hexhex_map_arrays* arrays, const char* argument) {
+  using namespace hexhex::c;
+  const hexhex_map_arrays given =
+      readStruct(&require(arrays, argument), HEXHEX_MAP_ARRAYS_INIT, argument);
+  const auto points = borrowed<hexhex::Vec3>(given.points, given.point_count, "points");
+  const auto tets = borrowed<hexhex::Tet>(given.tets, given.tet_count, "tets");
+  return {.points = {points.begin(), points.end()}, .tets = {tets.begin(), tets.end()}};
 }
 
 }  // namespace
+
+namespace hexhex::c {
+
+void give(std::shared_ptr<const TetMap> map, hexhex_map** out) {
+  auto handle = std::make_unique<hexhex_map>();
+  handle->view = *map;
+  handle->owned = std::move(map);
+  *out = handle.release();
+}
+
+void give(TetMap&& map, hexhex_map** out) {
+  give(std::make_shared<const TetMap>(std::move(map)), out);
+}
+
+TetMap copyOf(const hexhex_map& map) { return map.owned ? *map.owned : copied(map.view); }
+
+}  // namespace hexhex::c
 
 hexhex_status hexhex_map_borrow(const hexhex_map_arrays* arrays, hexhex_map** map,
                                 hexhex_error* error) {
@@ -75,38 +123,8 @@ hexhex_status hexhex_map_borrow(const hexhex_map_arrays* arrays, hexhex_map** ma
         readStruct(&require(arrays, "arrays"), HEXHEX_MAP_ARRAYS_INIT, "arrays");
     require(map, "map");
     auto handle = std::make_unique<hexhex_map>();
-    handle->view = {
-        borrowed<hexhex::Vec3>(given.points, given.point_count, "points"),
-        borrowed<hexhex::Tet>(given.tets, given.tet_count, "tets"),
-        borrowed<hexhex::TetParameters>(given.parameters, given.tet_count, "parameters")};
-    handle->view.edgeValences = borrowed<hexhex::EdgeValence>(
-        given.edge_valences, given.edge_valence_count, "edge_valences");
-    if (given.rotations != nullptr) {
-      handle->view.rotations =
-          borrowed<std::array<std::int8_t, 4>>(given.rotations, given.tet_count, "rotations");
-    }
+    handle->view = viewOf(given);
     *map = handle.release();
-  });
-}
-
-hexhex_status hexhex_map_read(const char* file, hexhex_context* context, hexhex_map** map,
-                              hexhex_error* error) {
-  using namespace hexhex::c;
-  return guarded(error, [&] {
-    require(map, "map");
-    ContextOrDefault used(context);
-    give(hexhex::readMap(&require(file, "file"), *used), map);
-  });
-}
-
-hexhex_status hexhex_map_write(const hexhex_map* map, const char* file, hexhex_context* context,
-                               hexhex_error* error) {
-  using namespace hexhex::c;
-  return guarded(error, [&] {
-    const hexhex_map& given = require(map, "map");
-    ContextOrDefault used(context);
-    const bool own = given.view.tets.data() == given.owned.tets.data();
-    hexhex::writeMap(own ? given.owned : copied(given.view), &require(file, "file"), *used);
   });
 }
 
@@ -120,21 +138,37 @@ hexhex_status hexhex_map_generate(const char* kind, const hexhex_sample_options*
   });
 }
 
+hexhex_status hexhex_map_from_pair(const hexhex_map_arrays* tets, const hexhex_map_arrays* polycube,
+                                   hexhex_context* context, hexhex_map** map, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(map, "map");
+    ContextOrDefault used(context);
+    give(hexhex::mapFromPair(tetMeshOf(tets, "tets"), tetMeshOf(polycube, "polycube"), *used), map);
+  });
+}
+
 hexhex_status hexhex_map_get_arrays(const hexhex_map* map, hexhex_map_arrays* arrays,
                                     hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
     const hexhex::TetMapView& view = require(map, "map").view;
-    const hexhex_map_arrays result = {
-        sizeof(hexhex_map_arrays),
-        reinterpret_cast<const double*>(view.points.data()),
-        view.points.size(),
-        reinterpret_cast<const std::uint32_t*>(view.tets.data()),
-        view.tets.size(),
-        reinterpret_cast<const double*>(view.parameters.data()),
-        reinterpret_cast<const hexhex_edge_valence*>(view.edgeValences.data()),
-        view.edgeValences.size(),
-        reinterpret_cast<const std::int8_t*>(view.rotations.data())};
+    hexhex_map_arrays result = HEXHEX_MAP_ARRAYS_INIT;
+    result.points = flat<double>(view.points);
+    result.point_count = view.points.size();
+    result.tets = flat<std::uint32_t>(view.tets);
+    result.tet_count = view.tets.size();
+    result.parameters = flat<double>(view.parameters);
+    result.edge_valences = flat<hexhex_edge_valence>(view.edgeValences);
+    result.edge_valence_count = view.edgeValences.size();
+    result.rotations = flat<std::int8_t>(view.rotations);
+    result.feature_vertices = flat<hexhex_feature_vertex>(view.features.vertices);
+    result.feature_vertex_count = view.features.vertices.size();
+    result.feature_edges = flat<hexhex_feature_edge>(view.features.edges);
+    result.feature_edge_count = view.features.edges.size();
+    result.feature_faces = flat<hexhex_feature_face>(view.features.faces);
+    result.feature_face_count = view.features.faces.size();
+    result.regions = flat<std::int32_t>(view.regions);
     writeStruct(result, require(arrays, "arrays"), "arrays");
   });
 }

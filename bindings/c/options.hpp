@@ -2,12 +2,18 @@
 #pragma once
 
 #include <hexhex/extract.hpp>
+#include <hexhex/io.hpp>
 
 #include "handles.hpp"
 
 namespace hexhex::c {
 
 [[nodiscard]] ExtractOptions extractOptions(const hexhex_extract_options* options);
+
+/// The strings are the caller's.
+[[nodiscard]] ReadOptions readOptions(const hexhex_read_options* options);
+/// @param cells  as many scaled Jacobians are there, if any
+[[nodiscard]] WriteOptions writeOptions(const hexhex_write_options* options, std::size_t cells);
 
 /// @param out  may be null
 void writeStatistics(const ExtractStatistics& statistics, hexhex_statistics* out);

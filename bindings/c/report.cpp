@@ -3,21 +3,7 @@
 
 #include "handles.hpp"
 
-using hexhex::Error;
-using hexhex::ErrorCode;
-
 namespace {
-
-/// Element i of a report's list.
-template <class List>
-const auto& at(const List& list, std::size_t i, const char* what) {
-  if (i >= list.size()) {
-    throw Error(ErrorCode::InvalidArgument, "The report has " + std::to_string(list.size()) + " " +
-                                                what + "; there is no number " + std::to_string(i) +
-                                                ".");
-  }
-  return list[i];
-}
 
 const std::map<int, std::uint64_t>* tableOf(const hexhex_check_report* report,
                                             hexhex_valence_table table) {
@@ -106,6 +92,13 @@ hexhex_status hexhex_check_get_occurrence(const hexhex_check_report* report, siz
   });
 }
 
+void hexhex_check_boundary_genus(const hexhex_check_report* report, size_t component,
+                                 int64_t* genus) {
+  if (genus == nullptr) return;
+  const bool known = report != nullptr && component < report->report.boundaryGenus.size();
+  *genus = known ? report->report.boundaryGenus[component] : -1;
+}
+
 uint64_t hexhex_check_edges_of_valence(const hexhex_check_report* report,
                                        hexhex_valence_table table, int valence) {
   const auto* const edges = tableOf(report, table);
@@ -130,7 +123,7 @@ hexhex_status hexhex_verify(const hexhex_map* map, const hexhex_mesh* mesh, doub
     require(report, "report");
     ContextOrDefault used(context);
     *report = new hexhex_verify_report{
-        hexhex::verify(require(map, "map").view, require(mesh, "mesh").mesh,
+        hexhex::verify(require(map, "map").view, require(mesh, "mesh").mesh(),
                        {.scale = scale, .tolerance = tolerance}, *used)};
   });
 }

@@ -64,6 +64,22 @@ hexhex_status hexhex_extract_to(const hexhex_sink* sink, const hexhex_map* map,
   });
 }
 
+hexhex_status hexhex_extractor_extract_to(hexhex_extractor* extractor, const hexhex_sink* sink,
+                                          const hexhex_extract_options* options,
+                                          hexhex_context* context, hexhex_statistics* statistics,
+                                          hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    CallbackSink callbacks(sink);
+    ContextOrDefault used(context);
+    hexhex_extractor& prepared = require(extractor, "extractor");
+    const Occupied occupied(prepared.busy, "extractor");
+    hexhex::ExtractStatistics filled;
+    prepared.extractor.extractTo(callbacks, extractOptions(options), *used, &filled);
+    writeStatistics(filled, statistics);
+  });
+}
+
 hexhex_status hexhex_extract_to_file(const char* file, const hexhex_map* map,
                                      const hexhex_extract_options* options, hexhex_context* context,
                                      hexhex_statistics* statistics, hexhex_error* error) {
@@ -86,3 +102,61 @@ hexhex_status hexhex_mesh_read_to(const hexhex_sink* sink, const char* file,
     hexhex::readHexMeshTo(callbacks, &require(file, "file"), *used);
   });
 }
+
+hexhex_status hexhex_mesh_writer_create(const char* file, const hexhex_write_options* options,
+                                        hexhex_context* context, hexhex_mesh_writer** writer,
+                                        hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(writer, "writer");
+    auto handle = std::make_unique<hexhex_mesh_writer>();
+    hexhex::Context& used = context != nullptr ? context->context : handle->own;
+    handle->sink = hexhex::openMeshSink(&require(file, "file"), writeOptions(options, 0), used);
+    *writer = handle.release();
+  });
+}
+
+hexhex_status hexhex_mesh_writer_begin(hexhex_mesh_writer* writer, uint64_t point_count,
+                                       uint64_t cell_count, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] { require(writer, "writer").sink->begin(point_count, cell_count); });
+}
+
+hexhex_status hexhex_mesh_writer_points(hexhex_mesh_writer* writer, uint64_t first, size_t count,
+                                        const double* points, const uint32_t* generator_tet,
+                                        const uint8_t* generator_corners, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    hexhex::PointPiece piece;
+    piece.first = first;
+    piece.points = borrowed<hexhex::Vec3>(points, count, "points");
+    if (generator_tet != nullptr && generator_corners != nullptr) {
+      piece.generatorTet = {generator_tet, count};
+      piece.generatorCorners = {generator_corners, count};
+    }
+    require(writer, "writer").sink->points(piece);
+  });
+}
+
+hexhex_status hexhex_mesh_writer_cells(hexhex_mesh_writer* writer, uint64_t first, size_t count,
+                                       const uint32_t* cells, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(writer, "writer").sink->cells(first, borrowed<hexhex::Hex>(cells, count, "cells"));
+  });
+}
+
+hexhex_status hexhex_mesh_writer_cells64(hexhex_mesh_writer* writer, uint64_t first, size_t count,
+                                         const uint64_t* cells, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(writer, "writer").sink->cells(first, borrowed<hexhex::Hex64>(cells, count, "cells"));
+  });
+}
+
+hexhex_status hexhex_mesh_writer_end(hexhex_mesh_writer* writer, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] { require(writer, "writer").sink->end(); });
+}
+
+void hexhex_mesh_writer_destroy(hexhex_mesh_writer* writer) { delete writer; }

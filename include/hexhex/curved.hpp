@@ -169,6 +169,17 @@ void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& 
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context);
 
+/// Whether a file is a `.vtu` file with cells of type VTK_LAGRANGE_HEXAHEDRON.
+/// @throws Error FileNotFound, FileSyntax, FileUnsupported
+[[nodiscard]] bool holdsLagrangeCells(const std::filesystem::path& file, Context& context);
+
+/// Reads the Lagrange hexahedra of a `.vtu` file, all of one order, with their nodes in the order
+/// of VTK 9; other cells are ignored. What writeLagrangeMesh() wrote comes back node by node, with
+/// its generators, but without regions; of other files, nodes at corners get the first numbers.
+/// @throws Error FileNotFound, FileSyntax, IndexOutOfRange, NotFinite; FileUnsupported without such
+///         cells, for orders that differ or exceed kMaxOrder, and for other extensions; TooLarge
+[[nodiscard]] LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& context);
+
 /// Throw FileUnsupported unless the functions above know the extension: to fail before long work.
 void requireArcFormat(const std::filesystem::path& file);
 void requirePatchFormat(const std::filesystem::path& file);

@@ -1,22 +1,23 @@
 // Everything at once.
 #pragma once
 
-#include <hexhex/check.hpp>      // IWYU pragma: export
-#include <hexhex/context.hpp>    // IWYU pragma: export
-#include <hexhex/curved.hpp>     // IWYU pragma: export
-#include <hexhex/error.hpp>      // IWYU pragma: export
-#include <hexhex/extract.hpp>    // IWYU pragma: export
-#include <hexhex/extractor.hpp>  // IWYU pragma: export
-#include <hexhex/features.hpp>   // IWYU pragma: export
-#include <hexhex/io.hpp>         // IWYU pragma: export
-#include <hexhex/partial.hpp>    // IWYU pragma: export
-#include <hexhex/patches.hpp>    // IWYU pragma: export
-#include <hexhex/quality.hpp>    // IWYU pragma: export
-#include <hexhex/repair.hpp>     // IWYU pragma: export
-#include <hexhex/samples.hpp>    // IWYU pragma: export
-#include <hexhex/stream.hpp>     // IWYU pragma: export
-#include <hexhex/structure.hpp>  // IWYU pragma: export
-#include <hexhex/survey.hpp>     // IWYU pragma: export
-#include <hexhex/types.hpp>      // IWYU pragma: export
-#include <hexhex/verify.hpp>     // IWYU pragma: export
-#include <hexhex/version.hpp>    // IWYU pragma: export
+#include <hexhex/check.hpp>          // IWYU pragma: export
+#include <hexhex/context.hpp>        // IWYU pragma: export
+#include <hexhex/curved.hpp>         // IWYU pragma: export
+#include <hexhex/error.hpp>          // IWYU pragma: export
+#include <hexhex/extract.hpp>        // IWYU pragma: export
+#include <hexhex/extractor.hpp>      // IWYU pragma: export
+#include <hexhex/features.hpp>       // IWYU pragma: export
+#include <hexhex/io.hpp>             // IWYU pragma: export
+#include <hexhex/map_structure.hpp>  // IWYU pragma: export
+#include <hexhex/partial.hpp>        // IWYU pragma: export
+#include <hexhex/patches.hpp>        // IWYU pragma: export
+#include <hexhex/quality.hpp>        // IWYU pragma: export
+#include <hexhex/repair.hpp>         // IWYU pragma: export
+#include <hexhex/samples.hpp>        // IWYU pragma: export
+#include <hexhex/stream.hpp>         // IWYU pragma: export
+#include <hexhex/structure.hpp>      // IWYU pragma: export
+#include <hexhex/survey.hpp>         // IWYU pragma: export
+#include <hexhex/types.hpp>          // IWYU pragma: export
+#include <hexhex/verify.hpp>         // IWYU pragma: export
+#include <hexhex/version.hpp>        // IWYU pragma: export

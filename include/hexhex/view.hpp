@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <hexhex/context.hpp>
+#include <hexhex/curved.hpp>
 #include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
 
@@ -30,10 +31,17 @@ struct ViewOptions {
 /// to 16 bits. About 3 to 10 bytes per cell.
 ///
 /// The file appears complete or not at all.
-/// @throws Error EmptyMesh without cells; InvalidArgument if arrays disagree or a cell names a
-///         vertex that does not exist; NotFinite; TooLarge beyond 2^24 - 1 cells or vertices, which
-///         browsers do not hold; FileWrite
+/// @throws Error EmptyMesh without cells; InvalidArgument if arrays disagree, or a cell or a
+///         feature names a vertex that does not exist; NotFinite; TooLarge beyond 2^24 - 1 cells or
+///         vertices, which browsers do not hold, and for a box that no double measures; FileWrite
 void writeViewPage(const HexMesh& mesh, const std::filesystem::path& file,
+                   const ViewOptions& options, Context& context);
+
+/// The same for cells of higher order: the page draws them curved or straight. It holds the nodes
+/// on faces of cells: about 120 bytes per cell of order 2, and 260 of order 3.
+/// @throws Error  the same; TooLarge also for more than 2^24 - 1 vertices and nodes on faces
+///         together; InvalidArgument for nodes that do not fit the order
+void writeViewPage(const LagrangeMesh& mesh, const std::filesystem::path& file,
                    const ViewOptions& options, Context& context);
 
 /// A page whose mesh comes separately, for programs that serve it.
@@ -44,6 +52,8 @@ struct ServedPage {
 
 /// The page in two parts. @throws Error as writeViewPage(), but FileWrite
 [[nodiscard]] ServedPage makeServedPage(const HexMesh& mesh, const std::string& dataUrl,
+                                        const ViewOptions& options, Context& context);
+[[nodiscard]] ServedPage makeServedPage(const LagrangeMesh& mesh, const std::string& dataUrl,
                                         const ViewOptions& options, Context& context);
 
 }  // namespace hexhex

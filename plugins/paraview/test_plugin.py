@@ -44,6 +44,12 @@ def run(*arguments, expect=0):
     return result.stderr
 
 
+def run_for_text(*arguments):
+    """What the command prints."""
+    return subprocess.run([COMMAND, *arguments], cwd=OUT, text=True, capture_output=True,
+                          check=True).stdout
+
+
 def cells(source, port=0):
     return source.GetDataInformation(port).GetNumberOfCells()
 
@@ -118,27 +124,109 @@ def check_curved():
     require(inner == [3] * 80, f"other singular edges: {len(inner)}")
 
 
+def rows(grid, name):
+    """The values of a cell array, a tuple each."""
+    array = grid.GetCellData().GetArray(name)
+    return [array.GetTuple(i) for i in range(array.GetNumberOfTuples())]
+
+
+def check_map_blocks():
+    """Chart jumps, singular edges and features of a map, beside its tets."""
+    run("generate", "sphere", "--cells", "2", "--refine", "2", "--charts", "blocks", "--features",
+        "--jitter", "0.1", "-o", "blocks.ovmb")
+    expected = json.loads(run_for_text("check", "blocks.ovmb", "--json"))
+    reader = OpenDataFile(os.path.join(OUT, "blocks.ovmb"))
+    reader.UpdatePipeline()
+    tets = fetch(reader, 0)
+    parameters = rows(tets, "hexhex_parameters")
+    jumps = fetch(reader, 1)
+    require(jumps.GetNumberOfCells() == expected["chart_jumps"] > 0, "another number of jumps")
+    sides, rotations = rows(jumps, "tets"), rows(jumps, "rotation")
+    translations = rows(jumps, "translation")
+    for j in range(jumps.GetNumberOfCells()):
+        for k in range(3):
+            vertex = jumps.GetCell(j).GetPointId(k)
+            u, v = (parameter_at(tets, parameters, int(t), vertex) for t in sides[j])
+            for axis in range(3):
+                image = translations[j][axis] + sum(
+                    rotations[j][3 * axis + i] * u[i] for i in range(3))
+                require(abs(image - v[axis]) < 1e-6, f"jump {j} does not carry parameters over")
+    lines = fetch(reader, 2)
+    inner = [int(v) for (v,), (b,) in zip(rows(lines, "valence"), rows(lines, "boundary")) if b == 0]
+    counts = {str(v): inner.count(v) for v in set(inner)}
+    require(counts == expected["inner_singular_tet_edges"], f"other singular edges: {counts}")
+    features = fetch(reader, 3)
+    dimensions = [int(d) for d, in rows(features, "dimension")]
+    require(all(dimensions.count(d) > 0 for d in range(3)), "features are missing")
+    types = [features.GetCell(i).GetCellDimension() for i in range(features.GetNumberOfCells())]
+    require(types == dimensions, "features of another dimension")
+    require(len({tag for tag, in rows(features, "tag")}) > 3, "features without their tags")
+
+
+def parameter_at(tets, parameters, tet, vertex):
+    corners = [tets.GetCell(tet).GetPointId(k) for k in range(4)]
+    first = 3 * corners.index(vertex)
+    return parameters[tet][first:first + 3]
+
+
+def check_cancel():
+    """Progress is told, and who aborts gets nothing, without an error."""
+    reader = OpenDataFile(os.path.join(OUT, "sphere.hexex"))
+    filter_ = HexHexExtract(Input=OutputPort(reader, 0), Scale=24)
+    algorithm = filter_.GetClientSideObject()
+    told = []
+
+    def abort(caller, _event):
+        told.append(caller.GetProgress())
+        caller.SetAbortExecute(1)
+
+    observer = algorithm.AddObserver("ProgressEvent", abort)
+    filter_.UpdatePipeline()
+    require(told and all(0 <= share <= 1 for share in told), "no progress")
+    require(cells(filter_) == 0, "cells of an extraction that was cancelled")
+    algorithm.RemoveObserver(observer)
+
+
+def check_repair():
+    """A few flipped tets are mended; or they are an error."""
+    run("generate", "box", "--cells", "4", "--refine", "4", "--defects", "2", "-o", "flipped.hexex")
+    reader = OpenDataFile(os.path.join(OUT, "flipped.hexex"))
+    filter_ = HexHexExtract(Input=OutputPort(reader, 0))
+    filter_.UpdatePipeline()
+    run("extract", "flipped.hexex", "-o", "flipped.vtu", "--report", "flipped.json")
+    with open(os.path.join(OUT, "flipped.json"), encoding="utf-8") as file:
+        require(cells(filter_) == json.load(file)["cells"], "another number of cells after repair")
+    require(messages_of(HexHexExtract(Input=OutputPort(reader, 0), Repair=0), "FlippedTet"),
+            "no error without repair")
+
+
 def check_errors():
     """Errors have code and place, in ParaView's own message window."""
     with open(os.path.join(OUT, "bad.hexex"), "w", encoding="utf-8") as file:
         file.write(ONE_TET)
     command = run("extract", "bad.hexex", "-o", "bad.vtu", expect=1)
     code = command.rsplit("[", 1)[1].split("]")[0]
+    reader = OpenDataFile(os.path.join(OUT, "bad.hexex"))
+    filter_ = HexHexExtract(Input=OutputPort(reader, 0))
+    require(messages_of(filter_, code), f"no message with {code}")
+    require(cells(filter_) == 0, "cells of a map that is no map")
+
+
+def messages_of(filter_, code):
+    """The error message with a code, and with its place, that an update of a filter leads to."""
     log = os.path.join(OUT, "messages.txt")
     output = vtkFileOutputWindow()
     output.SetFileName(log)
     output.FlushOn()
     vtkOutputWindow.SetInstance(output)
-    reader = OpenDataFile(os.path.join(OUT, "bad.hexex"))
-    filter_ = HexHexExtract(Input=OutputPort(reader, 0))
     try:
         filter_.UpdatePipeline()
     except RuntimeError:
         pass
     vtkOutputWindow.SetInstance(None)
     with open(log, encoding="utf-8") as file:
-        require(f"[{code}]" in file.read(), f"no message with {code}")
-    require(cells(filter_) == 0, "cells of a map that is no map")
+        lines = file.read().splitlines()
+    return [line for line in lines if "vtkHexHexExtract" in line and f"[{code}" in line]
 
 
 def take_picture(filter_, name):
@@ -191,6 +279,9 @@ run("generate", "sphere", "--cells", "4", "--refine", "2", "--jitter", "0.05", "
 sphere = compare("sphere.hexex", 3)
 check_writer(sphere)
 check_curved()
+check_map_blocks()
+check_cancel()
+check_repair()
 check_errors()
 take_picture(sphere, "sphere.png")
 real = os.path.join(DATA, "maps", "s17c_sphere_r1.hexex")

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include <hexhex/context.hpp>
@@ -28,7 +29,11 @@ void Context::addStageTime(std::string_view stage, double seconds) {
       return;
     }
   }
-  stageTimes_.push_back({std::string(stage), seconds});
+  try {
+    stageTimes_.push_back({std::string(stage), seconds});
+  } catch (const std::bad_alloc&) {
+    // Stages end while exceptions pass, also those about memory; nobody will miss this time then.
+  }
 }
 
 }  // namespace hexhex

@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <atomic>
+#include <exception>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -9,12 +12,14 @@
 
 #include <base/loop_order.hpp>
 #include <base/parallel.hpp>
+#include <base/spare_threads.hpp>
 
 #if HEXHEX_HAS_TBB
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 #endif
 
@@ -62,6 +67,9 @@ class ArenaPool {
       // Room for all that are lent, as giving them back must not fail.
       idle_.reserve(idle_.size() + lent_ + 1);
       arena = std::make_unique<Arena>(threads);
+      // Not when it is first used: an arena for which there was no memory then waits for itself for
+      // ever when it is used again. This one is destroyed.
+      arena->initialize();
     } else {
       arena = std::move(found->arena);
       idle_.erase(found);
@@ -86,6 +94,71 @@ ArenaPool& arenaPool() {
   return *pool;
 }
 
+/// How a loop that runs on several threads fares. Exceptions do not travel through oneTBB: it loses
+/// them when there is no memory to note them, and the loop would seem complete.
+class LoopOutcome {
+ public:
+  [[nodiscard]] bool failed() const noexcept { return failed_.load(std::memory_order_relaxed); }
+  /// Keeps the exception that is being handled, if it is the first.
+  void fail() noexcept {
+    if (!failed_.exchange(true)) failure_ = std::current_exception();
+  }
+  void complete(std::size_t blocks) noexcept {
+    completed_.fetch_add(blocks, std::memory_order_relaxed);
+  }
+  /// To be called when the loop has ended.
+  void rethrow(std::size_t blocks) const {
+    if (failure_) std::rethrow_exception(failure_);
+    // oneTBB had no memory for its own tasks, or to tell so.
+    if (completed_.load(std::memory_order_relaxed) != blocks) throw std::bad_alloc();
+  }
+
+ private:
+  std::atomic<bool> failed_{false};
+  std::exception_ptr failure_;
+  std::atomic<std::size_t> completed_{0};
+};
+
+/// Makes oneTBB start its threads now, by a loop whose blocks wait for each other. It starts them
+/// when they are first needed, and has no way to go on if the system refuses one then.
+void startWorkers(ArenaPool::Arena& arena, int threads) {
+  Gathering gathering(threads);
+  arena.execute([&] {
+    oneapi::tbb::parallel_for(
+        oneapi::tbb::blocked_range<int>(0, threads, 1),
+        [&](const oneapi::tbb::blocked_range<int>& /*one*/) { gathering.arriveAndWait(); },
+        oneapi::tbb::simple_partitioner());
+  });
+}
+
+/// How many threads this process can have.
+class Workforce {
+ public:
+  /// `wanted`, or as many as have worked before if the system does not have enough more to spare.
+  int hire(int wanted) {
+    const std::lock_guard lock(mutex_);
+    if (wanted <= hired_) return wanted;
+    // All or none, and a few to spare: oneTBB may start a thread more while another is about to
+    // sleep. The stacks of those that were tried stay in the system's cache for oneTBB's.
+    const int more = wanted - hired_ + kSpare;
+    if (spareThreads(more) < more) return hired_;
+    const ArenaPool::Loan loan(arenaPool(), wanted);
+    startWorkers(loan.arena(), wanted);
+    hired_ = wanted;
+    return hired_;
+  }
+
+ private:
+  static constexpr int kSpare = 2;
+  std::mutex mutex_;
+  int hired_ = 1;
+};
+
+Workforce& workforce() {
+  static auto* const force = new Workforce;  // as above
+  return *force;
+}
+
 }  // namespace
 #endif
 
@@ -100,15 +173,25 @@ void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
   };
 #if HEXHEX_HAS_TBB
   if (blocks > 1) {
-    const LoopOrder loopOrder;
-    oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, blocks, 1),
-                              [&](const oneapi::tbb::blocked_range<std::size_t>& range) {
-                                const RangeOrder rangeOrder;
-                                for (std::size_t block = range.begin(); block < range.end();
-                                     ++block) {
-                                  runBlock(block);
-                                }
-                              });
+    LoopOutcome outcome;
+    {
+      const LoopOrder loopOrder;
+      oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, blocks, 1),
+                                [&](const oneapi::tbb::blocked_range<std::size_t>& range) {
+                                  const RangeOrder rangeOrder;
+                                  try {
+                                    for (std::size_t block = range.begin(); block < range.end();
+                                         ++block) {
+                                      if (outcome.failed()) return;
+                                      runBlock(block);
+                                    }
+                                    outcome.complete(range.size());
+                                  } catch (...) {
+                                    outcome.fail();
+                                  }
+                                });
+    }
+    outcome.rethrow(blocks);
     return;
   }
 #endif
@@ -125,7 +208,7 @@ void runWithThreads(int threads, const void* object, void (*call)(const void*)) 
     permission.emplace(oneapi::tbb::global_control::max_allowed_parallelism,
                        static_cast<std::size_t>(count));
   }
-  const ArenaPool::Loan loan(arenaPool(), count);
+  const ArenaPool::Loan loan(arenaPool(), workforce().hire(count));
   loan.arena().execute([&] { call(object); });
 #else
   static_cast<void>(threads);

@@ -5,6 +5,7 @@
 
 #include <curved/arc_tracer.hpp>
 #include <curved/arcs.hpp>
+#include <curved/output_waves.hpp>
 
 namespace hexhex {
 
@@ -25,6 +26,11 @@ struct Crossing {
 struct ArcPieces {
   std::vector<Crossing> crossings;
   std::vector<OwnedSimplex> segments;
+
+  void clear() {
+    crossings.clear();
+    segments.clear();
+  }
 };
 
 /// Traces the edges that a block of tets owns.
@@ -36,8 +42,8 @@ class BlockTracer {
   void trace(Index tet, const Element& edge) {
     GridPoint end = edge.z;
     ++end[static_cast<std::size_t>(edge.axis)];
-    const LatticeNumbers::Found from = vertices_.find(tet, edge.z);
-    const LatticeNumbers::Found to = vertices_.find(tet, end);
+    const LatticeNumbers::Found from = vertices_.find(tet, edge.z, fromHint_);
+    const LatticeNumbers::Found to = vertices_.find(tet, end, toHint_);
     if (from.vertex != kNone && to.vertex != kNone) {
       // By convexity, all between lies in the smallest simplex that contains both ends.
       arcs_.ends[edge.number] = {from.vertex, to.vertex};
@@ -56,8 +62,7 @@ class BlockTracer {
  private:
   /// From a midpoint inside a tet.
   [[nodiscard]] std::array<Index, 2> traceBothWays(const SimplexInTet& middle) {
-    back_.crossings.clear();
-    back_.segments.clear();
+    back_.clear();
     SimplexInTet turned = middle;
     turned.frame = reversed(middle.frame);
     const ArcPart first =
@@ -106,7 +111,8 @@ class BlockTracer {
   /// The vertex at the end of the last part.
   [[nodiscard]] Index vertexAt(const ArcPart& part) const {
     const SimplexInTet& at = part.carrier;
-    const Index vertex = vertices_.find(at.tet, at.frame.at({1, 0, 0})).vertex;
+    LineHint hint;
+    const Index vertex = vertices_.find(at.tet, at.frame.at({1, 0, 0}), hint).vertex;
     if (vertex == kNone) ArcTracer::fail(at.tet, "a hex edge ends where no hex vertex is");
     return vertex;
   }
@@ -140,10 +146,12 @@ class BlockTracer {
   ArcPieces& pieces_;
   ArcTracer tracer_;
   ArcPieces back_;
+  LineHint fromHint_;
+  LineHint toHint_;
 };
 
-/// Moves the pieces of a block to their places.
-void join(ArcPieces& pieces, std::uint64_t firstPoint, std::uint64_t firstSegment,
+/// Copies the pieces of a block to their places.
+void join(const ArcPieces& pieces, std::uint64_t firstPoint, std::uint64_t firstSegment,
           TracedArcs& traced) {
   Arcs& arcs = traced.arcs;
   for (std::size_t i = 0; i < pieces.crossings.size(); ++i) {
@@ -158,7 +166,18 @@ void join(ArcPieces& pieces, std::uint64_t firstPoint, std::uint64_t firstSegmen
     arcs.segmentTet[firstSegment + i] = pieces.segments[i].tet;
     arcs.segmentCorners[firstSegment + i] = pieces.segments[i].corners;
   }
-  pieces = {};
+}
+
+/// Makes room.
+/// @param share  of all arcs whose pieces have room then
+void lengthenAll(TracedArcs& traced, std::uint64_t points, std::uint64_t segments, double share) {
+  lengthen(traced.arcs.points, points, share);
+  lengthen(traced.arcs.parameters, points, share);
+  lengthen(traced.arcs.generatorTet, points, share);
+  lengthen(traced.arcs.generatorCorners, points, share);
+  lengthen(traced.crossings, points, share);
+  lengthen(traced.arcs.segmentTet, segments, share);
+  lengthen(traced.arcs.segmentCorners, segments, share);
 }
 
 }  // namespace
@@ -167,33 +186,39 @@ TracedArcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices,
                      const ElementNumbers& edges, Stage& stage) {
   TracedArcs traced;
   Arcs& arcs = traced.arcs;
-  const std::size_t tets = map.topology.tetCount();
   arcs.ends.resize(edges.count());
   arcs.pointBegin.resize(edges.count() + 1);
   arcs.pointBegin.back() = 0;
-  std::vector<ArcPieces> blocks(blockCount(tets, kSweepBlock));
-  parallelBlocks(stage, tets, kSweepBlock,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   blocks[block].segments.reserve(edges.begin(end) - edges.begin(begin));
-                   BlockTracer tracer(map, vertices, arcs, blocks[block]);
-                   for (std::size_t t = begin; t < end; ++t) {
-                     const auto tet = static_cast<Index>(t);
-                     edges.forEach(tet, [&](const Element& edge) { tracer.trace(tet, edge); });
-                   }
-                 });
-  const std::uint64_t points = exclusiveScan(std::span(arcs.pointBegin));
-  arcs.points.resize(points);
-  arcs.parameters.resize(points);
-  arcs.generatorTet.resize(points);
-  arcs.generatorCorners.resize(points);
-  traced.crossings.resize(points);
-  arcs.segmentTet.resize(points + edges.count());
-  arcs.segmentCorners.resize(points + edges.count());
-  parallelFor(stage, blocks.size(), 1, [&](std::size_t block) {
-    const std::uint64_t firstArc = edges.begin(block * kSweepBlock);
-    const std::uint64_t firstPoint = arcs.pointBegin[firstArc];
-    join(blocks[block], firstPoint, firstPoint + firstArc, traced);
-  });
+  const std::size_t tets = map.topology.tetCount();
+  const std::size_t grain = tetsPerBlock(edges.count(), tets);
+  std::vector<ArcPieces> pieces(std::min(kWaveBlocks, blockCount(tets, grain)));
+  std::vector<std::uint64_t> firstPoints(pieces.size());
+  std::uint64_t points = 0;
+  parallelWaves(
+      stage, tets, grain,
+      [&](std::size_t begin, std::size_t end, std::size_t block) {
+        pieces[block % kWaveBlocks].clear();
+        BlockTracer tracer(map, vertices, arcs, pieces[block % kWaveBlocks]);
+        for (std::size_t t = begin; t < end; ++t) {
+          const auto tet = static_cast<Index>(t);
+          edges.forEach(tet, [&](const Element& edge) { tracer.trace(tet, edge); });
+        }
+      },
+      [&](std::size_t firstBlock, std::size_t endBlock) {
+        for (std::size_t block = firstBlock; block < endBlock; ++block) {
+          firstPoints[block % kWaveBlocks] = points;
+          points += pieces[block % kWaveBlocks].crossings.size();
+        }
+        const std::uint64_t done = edges.begin(std::min(endBlock * grain, tets));
+        lengthenAll(traced, points, points + done,
+                    static_cast<double>(done) / static_cast<double>(edges.count()));
+      },
+      [&](std::size_t block) {
+        const std::uint64_t firstPoint = firstPoints[block % kWaveBlocks];
+        join(pieces[block % kWaveBlocks], firstPoint, firstPoint + edges.begin(block * grain),
+             traced);
+      });
+  exclusiveScan(std::span(arcs.pointBegin));
   return traced;
 }
 

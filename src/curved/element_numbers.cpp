@@ -1,3 +1,4 @@
+#include <optional>
 #include <string>
 
 #include <curved/element_numbers.hpp>
@@ -6,28 +7,32 @@ namespace hexhex {
 
 namespace {
 
-/// A tet, moved so that the midpoints of elements become grid points.
-struct ShiftedTet {
-  LatticeTet corners;
-  GridBox box;
-  SweepAxes axes;
+/// The midpoints of edges along an axis, or of faces across it: the grid, moved by one half along
+/// some axes.
+struct ShiftedGrid {
+  std::array<bool, 3> moved{};
 
-  ShiftedTet(const ExactMap& map, Index tet, ElementKind kind, std::size_t axis) noexcept
-      : corners(map.corners[tet]) {
-    for (LatticePoint& corner : corners) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        if ((k == axis) == (kind == ElementKind::Edges)) corner[k] -= map.unit / 2;
-      }
-    }
-    box = gridBox(corners, map.unit);
-    axes = chooseSweepAxes(box);
+  ShiftedGrid(ElementKind kind, std::size_t axis) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) moved[k] = (k == axis) == (kind == ElementKind::Edges);
   }
 
-  void run(std::int64_t unit, std::vector<SweptLine>& lines) const {
-    if (box.empty() || EmptinessTest(corners, unit).certainlyMisses(box, 0)) return;
-    LineRasterizer(corners, unit, box, axes).run([&](const SweptLine& line) {
-      lines.push_back(line);
-    });
+  [[nodiscard]] GridBox box(const GridBoxes& boxes) const noexcept {
+    GridBox box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.range[k] = (moved[k] ? boxes.centers : boxes.vertices).range[k];
+    }
+    return box;
+  }
+  [[nodiscard]] std::array<double, 3> shift() const noexcept {
+    return {moved[0] ? 0.5 : 0, moved[1] ? 0.5 : 0, moved[2] ? 0.5 : 0};
+  }
+  /// The tet, moved so that the midpoints become grid points.
+  [[nodiscard]] LatticeTet movedBack(const LatticeTet& corners, std::int64_t unit) const noexcept {
+    LatticeTet result = corners;
+    for (LatticePoint& corner : result) {
+      for (std::size_t k = 0; k < 3; ++k) corner[k] -= moved[k] ? unit / 2 : 0;
+    }
+    return result;
   }
 };
 
@@ -44,9 +49,8 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& 
   std::vector<std::vector<Line>> blocks(blockCount(tets, kSweepBlock));
   parallelBlocks(stage, tets, kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   std::vector<SweptLine> swept;
                    for (std::size_t t = begin; t < end; ++t) {
-                     sweep(static_cast<Index>(t), swept, blocks[block]);
+                     sweep(static_cast<Index>(t), blocks[block]);
                    }
                  });
   exclusiveScan(std::span(begin_));
@@ -71,21 +75,29 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& 
 }
 
 /// Appends the lines with elements that a tet owns, and counts both.
-void ElementNumbers::sweep(Index tet, std::vector<SweptLine>& swept, std::vector<Line>& lines) {
+void ElementNumbers::sweep(Index tet, std::vector<Line>& lines) {
+  const LatticeTet& corners = map_.corners[tet];
+  const GridBoxes boxes = gridBoxes(corners, map_.unit);
+  std::optional<EmptinessTest> test;
   CenterOwner owner(topology_, tet);
   begin_[tet] = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    swept.clear();
-    const ShiftedTet shifted(map_, tet, kind_, static_cast<std::size_t>(axis));
-    shifted.run(map_.unit, swept);
-    axes_[gridOf(tet, axis)] = shifted.axes;
+    const ShiftedGrid grid(kind_, static_cast<std::size_t>(axis));
+    const GridBox box = grid.box(boxes);
+    const SweepAxes axes = chooseSweepAxes(box);
+    axes_[gridOf(tet, axis)] = axes;
+    lineBegin_[gridOf(tet, axis)] = 0;
+    if (box.empty()) continue;
+    if (!test) test.emplace(corners, map_.unit);
+    if (test->certainlyMisses(box, grid.shift())) continue;
     const std::size_t before = lines.size();
-    for (const SweptLine& line : swept) {
+    const LatticeTet moved = grid.movedBack(corners, map_.unit);
+    LineRasterizer(moved, map_.unit, box, axes).run([&](const SweptLine& line) {
       const auto [first, count] = owner.owned(line);
-      if (count == 0) continue;
+      if (count == 0) return;
       lines.push_back({line, first, count, kNone});
       begin_[tet] += count;
-    }
+    });
     lineBegin_[gridOf(tet, axis)] = lines.size() - before;
   }
 }
@@ -100,10 +112,11 @@ GridPoint ElementNumbers::point(Index tet, int axis, const Line& line,
   return z;
 }
 
-Index ElementNumbers::find(Index owner, int axis, const GridPoint& z) const {
+Index ElementNumbers::find(Index owner, int axis, const GridPoint& z, LineHint& hint) const {
   const std::array<std::uint8_t, 3>& a = axes_[gridOf(owner, axis)]();
-  const Line* const line = findLine(linesOf(owner, axis), z[a[0]], z[a[1]],
-                                    [](const Line& l) -> const SweptLine& { return l.swept; });
+  const Line* const line = findLine(
+      linesOf(owner, axis), z[a[0]], z[a[1]],
+      [](const Line& l) -> const SweptLine& { return l.swept; }, hint);
   if (line != nullptr) {
     const auto i = static_cast<std::uint32_t>(z[a[2]] - line->swept.first) - line->ownedFirst;
     if (i < line->ownedCount) return line->number + i;

@@ -51,7 +51,7 @@ class ElementNumbers {
 
   /// The number of an element, by its owner.
   /// @throws Error Internal if the tet does not own it
-  [[nodiscard]] Index find(Index owner, int axis, const GridPoint& z) const;
+  [[nodiscard]] Index find(Index owner, int axis, const GridPoint& z, LineHint& hint) const;
 
  private:
   struct Line {
@@ -70,7 +70,7 @@ class ElementNumbers {
   }
   [[nodiscard]] GridPoint point(Index tet, int axis, const Line& line,
                                 std::uint32_t i) const noexcept;
-  void sweep(Index tet, std::vector<SweptLine>& swept, std::vector<Line>& lines);
+  void sweep(Index tet, std::vector<Line>& lines);
 
   const ExactMap& map_;
   const TetTopology& topology_;

@@ -100,7 +100,8 @@ bool FaceCutter::cutInsideOneTet(Index tet, const Frame& frame, Border& border) 
   std::array<CornerMask, 4> simplices{};
   CornerMask carrier = kNoSimplex;
   for (std::size_t i = 0; i < 4; ++i) {
-    const LatticeNumbers::Found found = input_.vertices.find(tet, frame.at(kSquareCorners[i]));
+    const LatticeNumbers::Found found =
+        input_.vertices.find(tet, frame.at(kSquareCorners[i]), vertexHints_[i]);
     if (found.vertex == kNone) return false;
     border.vertices[i] = found.vertex;
     simplices[i] = found.simplex;
@@ -232,7 +233,7 @@ void FaceCutter::setArc(Border& border, std::size_t side, const SimplexInTet& mi
   }
   const bool reversed = signOf(frame.axes[0]) < 0;
   const GridPoint smaller = reversed ? frame.at({1, 0, 0}) : frame.origin;
-  border.arcs[side] = input_.edges.find(owner, axisOf(frame.axes[0]), smaller);
+  border.arcs[side] = input_.edges.find(owner, axisOf(frame.axes[0]), smaller, arcHints_[side]);
   if (reversed) border.reversed = static_cast<std::uint8_t>(border.reversed | (1U << side));
 }
 
@@ -297,30 +298,31 @@ void FaceCutter::emitArcPoint(const Border& border, const Piece& piece, const Sl
 }
 
 /// A point inside the square is known by the vertex or edge of the tets that crosses the square
-/// there. Its coordinates are the same from all tets, bit for bit.
+/// there, and by where the square's frame shows that, which is the same from all tets around. (An
+/// edge that crosses a face twice comes back through a periodic domain.)
 void FaceCutter::emitInnerPoint(const Piece& piece, const SliceCorner& corner) {
-  const CornerMask simplex = corner.simplex;
   const Tet& tet = topology_.tets[piece.carrier.tet];
-  std::array<Index, 2> vertices = {tet[firstCorner(simplex)], tet[lastCorner(simplex)]};
-  if (vertices[1] < vertices[0]) std::swap(vertices[0], vertices[1]);
+  std::size_t i = firstCorner(corner.simplex);
+  std::size_t j = lastCorner(corner.simplex);
+  if (tet[j] < tet[i]) std::swap(i, j);
   const LatticeTet& seen = piece.seen;
-  const std::array<double, 4> shares = crossingOfPlane(seen, simplex);
+  std::size_t& first = innerAtVertex_[tet[i]];
+  for (std::size_t k = first; k != kLast; k = inner_[k].next) {
+    const InnerPoint& known = inner_[k];
+    if (known.end == tet[j] && known.seen[0] == seen[i] && known.seen[1] == seen[j]) {
+      return put(known.number, known.parameter);
+    }
+  }
+  const std::array<double, 4> shares = crossingOfPlane(seen, corner.simplex);
   const auto unit = static_cast<double>(exact_.unit);
   const std::array<double, 2> parameter = {
       std::clamp(coordinate(shares, seen, 0) / unit, 0.0, 1.0),
       std::clamp(coordinate(shares, seen, 1) / unit, 0.0, 1.0)};
-  std::size_t& first = innerAtVertex_[vertices[0]];
-  for (std::size_t i = first; i != kLast; i = inner_[i].next) {
-    if (inner_[i].vertices == vertices && inner_[i].parameter == parameter) {
-      put(inner_[i].number, parameter);
-      return;
-    }
-  }
   const std::uint64_t number = firstInnerPoint_ + out_.points.size();
-  inner_.push_back({vertices, parameter, static_cast<Index>(number), first});
+  inner_.push_back({tet[j], {seen[i], seen[j]}, parameter, static_cast<Index>(number), first});
   first = inner_.size() - 1;
   out_.points.push_back(position(shares, tet, input_.map.input.view.points));
-  out_.generators.push_back(ownedBy(topology_, piece.carrier.tet, simplex));
+  out_.generators.push_back(ownedBy(topology_, piece.carrier.tet, corner.simplex));
   put(number, parameter);
 }
 

@@ -12,7 +12,8 @@
 
 namespace hexhex {
 
-/// Polygons of consecutive faces. Inner points are numbered from the given number on.
+/// Polygons of consecutive faces. Their inner points are numbered from the first number on that
+/// inner points have.
 struct PatchPieces {
   std::vector<std::uint32_t> cornerCounts;  ///< per polygon
   std::vector<OwnedSimplex> carriers;       ///< per polygon
@@ -20,6 +21,15 @@ struct PatchPieces {
   std::vector<std::array<double, 2>> parameters;
   std::vector<Vec3> points;
   std::vector<OwnedSimplex> generators;
+
+  void clear() {
+    cornerCounts.clear();
+    carriers.clear();
+    corners.clear();
+    parameters.clear();
+    points.clear();
+    generators.clear();
+  }
 };
 
 /// Cuts one face after the other. One per thread.
@@ -30,13 +40,13 @@ struct PatchPieces {
 /// sides inside the open square.
 class FaceCutter {
  public:
-  FaceCutter(const PatchInput& input, std::uint64_t firstInnerPoint, PatchPieces& pieces)
+  FaceCutter(const PatchInput& input, PatchPieces& pieces)
       : input_(input),
         topology_(input.map.topology),
         exact_(input.map.exact),
         star_(input.map.topology, input.map.exact),
         vertexCount_(input.vertices.count()),
-        firstInnerPoint_(firstInnerPoint),
+        firstInnerPoint_(input.firstInnerPoint()),
         out_(pieces) {}
 
   struct Border {
@@ -58,7 +68,8 @@ class FaceCutter {
     std::size_t next;  ///< piece of the same tet, or kLast
   };
   struct InnerPoint {
-    std::array<Index, 2> vertices;  ///< of the edge; the same twice at a vertex
+    Index end;                         ///< larger vertex of the edge, or the vertex itself
+    std::array<LatticePoint, 2> seen;  ///< both ends in the square's frame
     std::array<double, 2> parameter;
     Index number;
     std::size_t next;  ///< of those with the same first vertex, or kLast
@@ -102,6 +113,8 @@ class FaceCutter {
   std::uint64_t vertexCount_;
   std::uint64_t firstInnerPoint_;
   PatchPieces& out_;
+  std::array<LineHint, 4> vertexHints_;  ///< per corner of the square
+  std::array<LineHint, 4> arcHints_;     ///< per side
 
   // Of the face at hand:
   std::vector<Piece> pieces_;

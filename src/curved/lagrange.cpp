@@ -55,6 +55,7 @@ class NodeCollector {
   void collect(const CellSeed& cell, std::span<Index> nodes) {
     std::fill(nodes.begin(), nodes.end(), kNone);
     missing_ = nodes.size();
+    hints_.resize(nodes.size());
     Frame frame = Frame::along(cell.z, 0);
     for (std::int32_t& coordinate : frame.origin) coordinate *= order_;
     queue_.assign(1, {cell.tet, kWholeTet, frame});
@@ -87,12 +88,12 @@ class NodeCollector {
     for (std::int32_t k = range[2].first; k <= range[2].last; ++k) {
       for (std::int32_t j = range[1].first; j <= range[1].last; ++j) {
         for (std::int32_t i = range[0].first; i <= range[0].last; ++i) {
-          Index& node =
-              nodes[static_cast<std::size_t>(i) +
-                    stride * (static_cast<std::size_t>(j) + stride * static_cast<std::size_t>(k))];
-          if (node != kNone) continue;
-          node = numbers_.find(here.tet, here.frame.at({i, j, k})).vertex;
-          if (node != kNone) --missing_;
+          const std::size_t n =
+              static_cast<std::size_t>(i) +
+              stride * (static_cast<std::size_t>(j) + stride * static_cast<std::size_t>(k));
+          if (nodes[n] != kNone) continue;
+          nodes[n] = numbers_.find(here.tet, here.frame.at({i, j, k}), hints_[n]).vertex;
+          if (nodes[n] != kNone) --missing_;
         }
       }
     }
@@ -118,6 +119,7 @@ class NodeCollector {
   int order_;
   std::size_t missing_ = 0;
   std::vector<SimplexInTet> queue_;
+  std::vector<LineHint> hints_;  ///< per node
 };
 
 /// Place of a cell's corner among its nodes.

@@ -169,9 +169,11 @@ HexMesh straightMesh(const LagrangeMesh& mesh) {
   straight.regions = mesh.regions;
   const auto vertices = static_cast<std::ptrdiff_t>(mesh.vertexCount);
   straight.points.assign(mesh.points.begin(), mesh.points.begin() + vertices);
-  straight.generatorTet.assign(mesh.generatorTet.begin(), mesh.generatorTet.begin() + vertices);
-  straight.generatorCorners.assign(mesh.generatorCorners.begin(),
-                                   mesh.generatorCorners.begin() + vertices);
+  if (!mesh.generatorCorners.empty()) {  // files of others have none
+    straight.generatorTet.assign(mesh.generatorTet.begin(), mesh.generatorTet.begin() + vertices);
+    straight.generatorCorners.assign(mesh.generatorCorners.begin(),
+                                     mesh.generatorCorners.begin() + vertices);
+  }
   straight.cells.resize(mesh.cellCount());
   const auto stride = static_cast<std::size_t>(mesh.order) + 1;
   const auto p = static_cast<std::size_t>(mesh.order);

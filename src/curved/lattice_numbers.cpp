@@ -6,6 +6,16 @@
 
 namespace hexhex {
 
+namespace {
+
+/// Most tets of a coarse map contain no grid point.
+bool mayHavePoints(const ExactMap& map, Index tet, const TetSweep& sweep) {
+  return !sweep.box.empty() &&
+         !EmptinessTest(map.corners[tet], map.unit).certainlyMisses(sweep.box, 0);
+}
+
+}  // namespace
+
 LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : map_(map) {
   const std::size_t tets = map.topology.tetCount();
   axes_.resize(tets);
@@ -21,7 +31,7 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : map_(map)
                      const std::size_t before = lines.size();
                      const TetSweep sweep(map.exact, tet, SweptGrid::Vertices);
                      axes_[t] = sweep.axes;
-                     sweep.run(map.exact.unit, lines);
+                     if (mayHavePoints(map.exact, tet, sweep)) sweep.run(map.exact.unit, lines);
                      lineBegin_[t] = lines.size() - before;
                      counter.count(block, tet, std::span(lines).subspan(before));
                    }
@@ -40,17 +50,19 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : map_(map)
                    std::size_t at = lineBegin_[begin];
                    for (const SweptLine& line : blocks[block]) lines_[at++] = {line};
                    blocks[block] = {};
-                   for (std::size_t t = begin; t < end; ++t) number(static_cast<Index>(t));
+                   std::vector<SweptLine> scratch;
+                   for (std::size_t t = begin; t < end; ++t) {
+                     number(static_cast<Index>(t), scratch);
+                   }
                  });
 }
 
 /// Enters the numbers of a tet's points.
-void LatticeNumbers::number(Index tet) {
+void LatticeNumbers::number(Index tet, std::vector<SweptLine>& swept) {
   const std::size_t begin = lineBegin_[tet];
   const std::size_t end = lineBegin_[std::size_t{tet} + 1];
   if (begin == end) return;
-  std::vector<SweptLine> swept;
-  swept.reserve(end - begin);
+  swept.clear();
   for (std::size_t i = begin; i < end; ++i) swept.push_back(lines_[i].swept);
   TetNumbering(map_, numbers_, tet, axes_[tet])
       .run(std::span<const SweptLine>(swept), [&](const VertexRun& run) {
@@ -72,10 +84,11 @@ void LatticeNumbers::enter(Line& line, const VertexRun& run) {
   }
 }
 
-LatticeNumbers::Found LatticeNumbers::find(Index tet, const GridPoint& z) const {
+LatticeNumbers::Found LatticeNumbers::find(Index tet, const GridPoint& z, LineHint& hint) const {
   const std::array<std::uint8_t, 3>& axes = axes_[tet]();
-  const Line* const line = findLine(linesOf(tet), z[axes[0]], z[axes[1]],
-                                    [](const Line& l) -> const SweptLine& { return l.swept; });
+  const Line* const line = findLine(
+      linesOf(tet), z[axes[0]], z[axes[1]],
+      [](const Line& l) -> const SweptLine& { return l.swept; }, hint);
   if (line == nullptr) return {};
   const auto i = static_cast<std::uint32_t>(z[axes[2]] - line->swept.first);
   if (i >= line->swept.count) return {};
@@ -92,7 +105,8 @@ LatticeNumbers::Found LatticeNumbers::find(Index tet, const GridPoint& z) const 
   // The tet on the other side of a face owns it.
   const HalfFace halfFace = halfFaceOf(tet, oppositeCorner(simplex));
   const Index owner = tetOf(map_.topology.mate[halfFace]);
-  return {find(owner, map_.exact.transitions.across(halfFace)(z)).vertex, simplex};
+  LineHint there;
+  return {find(owner, map_.exact.transitions.across(halfFace)(z), there).vertex, simplex};
 }
 
 void LatticeNumbers::describe(const VertexDescriptions& to, Stage& stage) const {

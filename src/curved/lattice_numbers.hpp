@@ -21,6 +21,12 @@ struct VertexDescriptions {
   std::span<CornerSet> corners;  ///< in terms of the caller's tets
 };
 
+/// Where a line was found the last time: a guess where the next one is. One for each of several
+/// searches that go side by side.
+struct LineHint {
+  std::size_t line = 0;
+};
+
 /// Sweeps a map for its grid points. Numbers are those of extract() at the map's scale.
 class LatticeNumbers {
  public:
@@ -37,7 +43,7 @@ class LatticeNumbers {
     CornerMask simplex = kNoSimplex;  ///< of the tet, in whose interior it lies
   };
   /// The vertex at a grid point in the chart of a tet.
-  [[nodiscard]] Found find(Index tet, const GridPoint& z) const;
+  [[nodiscard]] Found find(Index tet, const GridPoint& z, LineHint& hint) const;
 
  private:
   /// A swept line with the numbers of its points.
@@ -53,7 +59,7 @@ class LatticeNumbers {
     const std::size_t begin = lineBegin_[tet];
     return std::span(lines_).subspan(begin, lineBegin_[std::size_t{tet} + 1] - begin);
   }
-  void number(Index tet);
+  void number(Index tet, std::vector<SweptLine>& swept);
   static void enter(Line& line, const VertexRun& run);
 
   const PreparedMap& map_;
@@ -65,9 +71,17 @@ class LatticeNumbers {
 
 /// Lines in the order of a sweep: the one at a level and row, or nullptr.
 /// @param sweptOf  the SweptLine of a line
+/// @param hint     moves along
 template <class Line, class SweptOf>
 [[nodiscard]] const Line* findLine(std::span<const Line> lines, std::int32_t level,
-                                   std::int32_t row, const SweptOf& sweptOf) {
+                                   std::int32_t row, const SweptOf& sweptOf, LineHint& hint) {
+  const auto isAt = [&](std::size_t i) {
+    const SweptLine& line = sweptOf(lines[i]);
+    return line.level == level && line.row == row;
+  };
+  // Elements come in the order of a sweep, so most searches repeat the one before.
+  if (hint.line < lines.size() && isAt(hint.line)) return &lines[hint.line];
+  if (hint.line + 1 < lines.size() && isAt(hint.line + 1)) return &lines[++hint.line];
   std::size_t low = 0;
   std::size_t high = lines.size();
   while (low < high) {
@@ -80,9 +94,9 @@ template <class Line, class SweptOf>
       high = middle;
     }
   }
-  if (low == lines.size()) return nullptr;
-  const SweptLine& line = sweptOf(lines[low]);
-  return line.level == level && line.row == row ? &lines[low] : nullptr;
+  if (low == lines.size() || !isAt(low)) return nullptr;
+  hint.line = low;
+  return &lines[low];
 }
 
 }  // namespace hexhex

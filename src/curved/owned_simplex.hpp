@@ -1,8 +1,9 @@
 // Simplices by the smallest tet that contains them.
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <utility>
+#include <cstddef>
 
 #include <map/tet_topology.hpp>
 
@@ -24,15 +25,19 @@ struct OwnedSimplex {
 using SimplexVertices = std::array<Index, 3>;
 
 [[nodiscard]] inline SimplexVertices verticesOf(const Tet& tet, CornerMask simplex) noexcept {
-  SimplexVertices vertices = {kNone, kNone, kNone};
+  // Without branches, as the order of vertices is as good as random.
+  std::array<Index, 4> found{};
   std::size_t count = 0;
   for (int i = 0; i < 4; ++i) {
-    if (contains(simplex, i)) vertices[count++] = tet[static_cast<std::size_t>(i)];
+    found[count] = tet[static_cast<std::size_t>(i)];
+    count += contains(simplex, i) ? 1 : 0;
   }
-  if (vertices[1] < vertices[0]) std::swap(vertices[0], vertices[1]);
-  if (vertices[2] < vertices[1]) std::swap(vertices[1], vertices[2]);
-  if (vertices[1] < vertices[0]) std::swap(vertices[0], vertices[1]);
-  return vertices;
+  const Index a = found[0];
+  const Index b = count > 1 ? found[1] : kNone;
+  const Index c = count > 2 ? found[2] : kNone;
+  const Index low = std::min(a, b);
+  const Index high = std::max(a, b);
+  return {std::min(low, c), std::max(low, std::min(high, c)), std::max(high, c)};
 }
 
 /// Whether two simplices are the same; unlike ==, which compares memory, this takes no call.

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include <curved/face_cutter.hpp>
+#include <curved/output_waves.hpp>
 #include <curved/patches.hpp>
 
 namespace hexhex {
@@ -15,8 +17,8 @@ struct PiecePlaces {
   std::uint64_t point = 0;
 };
 
-/// Moves the pieces of a block to their places.
-void join(PatchPieces& pieces, const PiecePlaces& to, std::uint64_t firstInnerPoint,
+/// Copies the pieces of a block to their places.
+void join(const PatchPieces& pieces, const PiecePlaces& to, std::uint64_t firstInnerPoint,
           Patches& patches) {
   std::uint64_t corner = to.corner;
   for (std::size_t i = 0; i < pieces.carriers.size(); ++i) {
@@ -36,7 +38,6 @@ void join(PatchPieces& pieces, const PiecePlaces& to, std::uint64_t firstInnerPo
     patches.generatorTet[to.point + i] = pieces.generators[i].tet;
     patches.generatorCorners[to.point + i] = pieces.generators[i].corners;
   }
-  pieces = {};
 }
 
 void requireIndexable(std::uint64_t points) {
@@ -47,66 +48,83 @@ void requireIndexable(std::uint64_t points) {
                                        "scale.");
 }
 
-/// Places of all blocks; the last entry has the totals.
-std::vector<PiecePlaces> placesOf(const std::vector<PatchPieces>& blocks) {
-  std::vector<PiecePlaces> places(1);
-  for (const PatchPieces& block : blocks) {
-    PiecePlaces next = places.back();
-    next.polygon += block.carriers.size();
-    next.corner += block.corners.size();
-    next.point += block.points.size();
-    places.push_back(next);
-  }
-  return places;
+PiecePlaces behind(const PiecePlaces& place, const PatchPieces& pieces) {
+  return {place.polygon + pieces.carriers.size(), place.corner + pieces.corners.size(),
+          place.point + pieces.points.size()};
 }
 
-void reserve(Patches& patches, const PiecePlaces& totals) {
-  patches.cornerBegin.resize(totals.polygon + 1);
+/// Makes room.
+/// @param share  of all faces whose pieces have room then
+void lengthenAll(Patches& patches, const PiecePlaces& totals, double share) {
+  lengthen(patches.cornerBegin, totals.polygon + 1, share);
+  lengthen(patches.polygonTet, totals.polygon, share);
+  lengthen(patches.polygonCorners, totals.polygon, share);
+  lengthen(patches.corners, totals.corner, share);
+  lengthen(patches.parameters, totals.corner, share);
+  lengthen(patches.points, totals.point, share);
+  lengthen(patches.generatorTet, totals.point, share);
+  lengthen(patches.generatorCorners, totals.point, share);
   patches.cornerBegin.back() = totals.corner;
-  patches.polygonTet.resize(totals.polygon);
-  patches.polygonCorners.resize(totals.polygon);
-  patches.corners.resize(totals.corner);
-  patches.parameters.resize(totals.corner);
-  patches.points.resize(totals.point);
-  patches.generatorTet.resize(totals.point);
-  patches.generatorCorners.resize(totals.point);
 }
 
-}  // namespace
-
-Patches cutPatches(const PatchInput& input, Stage& stage) {
-  const std::uint64_t firstInnerPoint = input.vertices.count() + input.arcs.points.size();
-  requireIndexable(firstInnerPoint);
+Patches ofFaces(std::uint64_t faces) {
   Patches patches;
-  const std::size_t faces = input.faces.count();
   patches.vertices.resize(faces);
   patches.arcs.resize(faces);
   patches.reversedArcs.resize(faces);
   patches.polygonBegin.resize(faces + 1);
   patches.polygonBegin.back() = 0;
+  return patches;
+}
+
+/// Cuts the faces that some tets own.
+void cutFaces(const PatchInput& input, std::size_t begin, std::size_t end, Patches& patches,
+              PatchPieces& pieces) {
+  pieces.clear();
+  FaceCutter cutter(input, pieces);
+  for (std::size_t t = begin; t < end; ++t) {
+    const auto tet = static_cast<Index>(t);
+    input.faces.forEach(tet, [&](const Element& face) {
+      const FaceCutter::Border border = cutter.cut(tet, face);
+      patches.vertices[face.number] = border.vertices;
+      patches.arcs[face.number] = border.arcs;
+      patches.reversedArcs[face.number] = border.reversed;
+      patches.polygonBegin[face.number] = border.polygons;
+    });
+  }
+}
+
+}  // namespace
+
+Patches cutPatches(const PatchInput& input, Stage& stage) {
+  const std::uint64_t firstInnerPoint = input.firstInnerPoint();
+  requireIndexable(firstInnerPoint);
+  Patches patches = ofFaces(input.faces.count());
+  lengthenAll(patches, {}, 1);
   const std::size_t tets = input.map.topology.tetCount();
-  std::vector<PatchPieces> blocks(blockCount(tets, kSweepBlock));
-  parallelBlocks(stage, tets, kSweepBlock,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   FaceCutter cutter(input, firstInnerPoint, blocks[block]);
-                   for (std::size_t t = begin; t < end; ++t) {
-                     const auto tet = static_cast<Index>(t);
-                     input.faces.forEach(tet, [&](const Element& face) {
-                       const FaceCutter::Border border = cutter.cut(tet, face);
-                       patches.vertices[face.number] = border.vertices;
-                       patches.arcs[face.number] = border.arcs;
-                       patches.reversedArcs[face.number] = border.reversed;
-                       patches.polygonBegin[face.number] = border.polygons;
-                     });
-                   }
-                 });
+  const std::size_t grain = tetsPerBlock(input.faces.count(), tets);
+  std::vector<PatchPieces> pieces(std::min(kWaveBlocks, blockCount(tets, grain)));
+  std::vector<PiecePlaces> places(pieces.size());
+  PiecePlaces totals;
+  parallelWaves(
+      stage, tets, grain,
+      [&](std::size_t begin, std::size_t end, std::size_t block) {
+        cutFaces(input, begin, end, patches, pieces[block % kWaveBlocks]);
+      },
+      [&](std::size_t firstBlock, std::size_t endBlock) {
+        for (std::size_t block = firstBlock; block < endBlock; ++block) {
+          places[block % kWaveBlocks] = totals;
+          totals = behind(totals, pieces[block % kWaveBlocks]);
+        }
+        requireIndexable(firstInnerPoint + totals.point);
+        const std::uint64_t done = input.faces.begin(std::min(endBlock * grain, tets));
+        lengthenAll(patches, totals,
+                    static_cast<double>(done) / static_cast<double>(input.faces.count()));
+      },
+      [&](std::size_t block) {
+        join(pieces[block % kWaveBlocks], places[block % kWaveBlocks], firstInnerPoint, patches);
+      });
   exclusiveScan(std::span(patches.polygonBegin));
-  const std::vector<PiecePlaces> places = placesOf(blocks);
-  requireIndexable(firstInnerPoint + places.back().point);
-  reserve(patches, places.back());
-  parallelFor(stage, blocks.size(), 1, [&](std::size_t block) {
-    join(blocks[block], places[block], firstInnerPoint, patches);
-  });
   return patches;
 }
 

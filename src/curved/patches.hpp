@@ -17,6 +17,11 @@ struct PatchInput {
   const ElementNumbers& faces;
   const Arcs& arcs;                            ///< of the edges
   std::span<const SimplexVertices> crossings;  ///< simplex of each inner point of the arcs
+
+  /// In the numbering that polygons use, behind hex vertices and points of arcs.
+  [[nodiscard]] std::uint64_t firstInnerPoint() const noexcept {
+    return vertices.count() + arcs.points.size();
+  }
 };
 
 /// Cuts every hex face once. Generators are in terms of the tets in the map, not of the caller's.

@@ -10,15 +10,19 @@ namespace {
 
 std::int64_t height(const LatticeTet& corners, std::size_t i) noexcept { return corners[i][2]; }
 
+/// Codes ascend with the coordinate, so that they are sums of answers: nothing is for the processor
+/// to guess.
+SquareSide sideOf(bool atLeastZero, bool aboveZero, bool atLeastOne, bool aboveOne) noexcept {
+  return static_cast<SquareSide>(int{atLeastZero} + int{aboveZero} + int{atLeastOne} +
+                                 int{aboveOne});
+}
+
 SquareSide sideOf(int fromZero, int fromOne) noexcept {
-  if (fromZero < 0) return SquareSide::Below;
-  if (fromZero == 0) return SquareSide::AtZero;
-  if (fromOne > 0) return SquareSide::Above;
-  return fromOne == 0 ? SquareSide::AtOne : SquareSide::Inside;
+  return sideOf(fromZero >= 0, fromZero > 0, fromOne >= 0, fromOne > 0);
 }
 
 SquareSide sideOf(std::int64_t x, std::int64_t unit) noexcept {
-  return sideOf(sign(Int128{x}), sign(Int128{x} - unit));
+  return sideOf(x >= 0, x > 0, x >= unit, x > unit);
 }
 
 /// A coordinate of the point between corners i and j where a linear function vanishes that has
@@ -29,8 +33,8 @@ SquareSide sideBetween(const LatticeTet& corners, std::size_t i, std::size_t j, 
   const std::int64_t weightJ = atI < 0 ? -atI : atI;
   const Int128 sum = static_cast<Int128>(weightI) * corners[i][axis] +
                      static_cast<Int128>(weightJ) * corners[j][axis];
-  const Int128 one = (static_cast<Int128>(weightI) + weightJ) * unit;
-  return sideOf(sign(sum), sum > one ? 1 : (sum < one ? -1 : 0));
+  const Int128 one = static_cast<Int128>(weightI + weightJ) * unit;
+  return sideOf(sum >= 0, sum > 0, sum >= one, sum > one);
 }
 
 /// Coordinate `axis` of the point in the interior of a face where both others vanish: a mean of the
@@ -175,13 +179,29 @@ struct HalfPlane {
   SquareSide border;  ///< AtZero from below, AtOne from above
   std::uint8_t label;
 
-  /// 1 inside, 0 on the border, -1 outside.
+  /// Positive inside, 0 on the border, negative outside.
   [[nodiscard]] int side(const SliceCorner& corner) const noexcept {
-    const SquareSide at = corner.at[axis];
-    if (at == border) return 0;
-    return border == SquareSide::AtZero ? (at > border ? 1 : -1) : (at < border ? 1 : -1);
+    const int beyond = static_cast<int>(corner.at[axis]) - static_cast<int>(border);
+    return border == SquareSide::AtZero ? beyond : -beyond;
   }
 };
+
+constexpr std::array<HalfPlane, 4> kHalfPlanes = {{{1, SquareSide::AtZero, kSquareSide},
+                                                   {0, SquareSide::AtOne, kSquareSide + 1},
+                                                   {1, SquareSide::AtOne, kSquareSide + 2},
+                                                   {0, SquareSide::AtZero, kSquareSide + 3}}};
+
+/// The half planes (a bit each) that a slice does not lie in the interior of.
+unsigned halfPlanesToClip(const Slice& slice) noexcept {
+  constexpr std::array<std::array<unsigned, 5>, 2> kBits = {{{8, 8, 0, 2, 2}, {1, 1, 0, 4, 4}}};
+  unsigned bits = 0;
+  for (std::size_t i = 0; i < slice.size(); ++i) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      bits |= kBits[axis][static_cast<std::size_t>(slice[i].at[axis])];
+    }
+  }
+  return bits;
+}
 
 /// Where the border of a half plane crosses a side between its ends.
 SliceCorner crossing(const HalfPlane& plane, std::uint8_t side, const LatticeTet& corners,
@@ -213,20 +233,20 @@ SliceCorner crossing(const HalfPlane& plane, std::uint8_t side, const LatticeTet
 Slice clipped(const Slice& slice, const HalfPlane& plane, const LatticeTet& corners,
               std::int64_t unit) noexcept {
   Slice result;
+  const int atFirst = plane.side(slice[0]);
+  int atFrom = atFirst;
   for (std::size_t i = 0; i < slice.size(); ++i) {
-    const SliceCorner& from = slice[i];
-    const SliceCorner& to = slice[i + 1 < slice.size() ? i + 1 : 0];
-    const int atFrom = plane.side(from);
-    const int atTo = plane.side(to);
+    const int atTo = i + 1 < slice.size() ? plane.side(slice[i + 1]) : atFirst;
     if (atFrom >= 0) {
-      result.add(from);
+      result.add(slice[i]);
       // What is cut off behind a corner on the border leaves a side along the border.
       if (atFrom == 0 && atTo <= 0) result[result.size() - 1].side = plane.label;
     }
     if (atFrom * atTo < 0) {
-      result.add(crossing(plane, from.side, corners, unit));
+      result.add(crossing(plane, slice[i].side, corners, unit));
       if (atTo < 0) result[result.size() - 1].side = plane.label;
     }
+    atFrom = atTo;
   }
   return result;
 }
@@ -249,16 +269,12 @@ CornerMask carrierOfPlane(const LatticeTet& corners) noexcept {
 }
 
 Slice sliceSquare(const LatticeTet& corners, CornerMask carrier, std::int64_t unit) noexcept {
-  constexpr std::array<HalfPlane, 4> kHalfPlanes = {{{1, SquareSide::AtZero, kSquareSide},
-                                                     {0, SquareSide::AtOne, kSquareSide + 1},
-                                                     {1, SquareSide::AtOne, kSquareSide + 2},
-                                                     {0, SquareSide::AtZero, kSquareSide + 3}}};
   Slice slice =
       carrier == kWholeTet ? outlineOfTet(corners, unit) : outlineOfFace(corners, carrier, unit);
-  for (const HalfPlane& plane : kHalfPlanes) {
-    bool cut = false;
-    for (std::size_t i = 0; i < slice.size(); ++i) cut = cut || plane.side(slice[i]) <= 0;
-    if (cut) slice = clipped(slice, plane, corners, unit);
+  if (halfPlanesToClip(slice) == 0) return slice;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (((halfPlanesToClip(slice) >> i) & 1U) == 0) continue;
+    slice = clipped(slice, kHalfPlanes[i], corners, unit);
     if (slice.size() < 3) return slice;
   }
   return slice;

@@ -37,10 +37,10 @@ std::uint64_t scaledCells(std::uint64_t volume, int scale, double limit) {
 
 namespace {
 
-/// Whether a repair is to be tried. Other defects than flipped and flat tets are its business only
-/// if rounding was asked for.
+/// Whether a repair is to be tried, even if this build can only say that it cannot. Other defects
+/// than flipped and flat tets are its business only if rounding was asked for.
 bool isToBeRepaired(const DefectCollector& defects, const Mending& mending) {
-  if (mending.mode == RepairMode::Off || !canRepair()) return false;
+  if (mending.mode == RepairMode::Off) return false;
   return defects.has(ErrorCode::FlippedTet) || mending.round;
 }
 

@@ -33,12 +33,17 @@ constexpr std::array<Format<PiecewiseWriter>, 3> kPatchFormats = {
 constexpr std::array<Format<LagrangeWriter>, 3> kLagrangeFormats = {
     {{".vtu", writeLagrangeVtu}, {".msh", writeLagrangeGmsh}, {".mesh", writeLagrangeMfem}}};
 
-template <class Formats>
-auto find(const Formats& formats, const std::filesystem::path& file, const char* what) {
+std::string lowerExtension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   for (char& c : extension) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
+  return extension;
+}
+
+template <class Formats>
+auto find(const Formats& formats, const std::filesystem::path& file, const char* what) {
+  const std::string extension = lowerExtension(file);
   std::string known;
   for (const auto& format : formats) {
     if (format.extension == extension) return format.write;
@@ -68,6 +73,18 @@ void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& 
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context) {
   find(kLagrangeFormats, file, kCells)(mesh, file, options, context);
+}
+
+bool holdsLagrangeCells(const std::filesystem::path& file, Context& context) {
+  return lowerExtension(file) == ".vtu" && holdsLagrangeVtu(file, context);
+}
+
+LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& context) {
+  if (lowerExtension(file) != ".vtu") {
+    throw Error(ErrorCode::FileUnsupported,
+                file.string() + ": cells of higher order are read from .vtu files only.");
+  }
+  return readLagrangeVtu(file, context);
 }
 
 void requireArcFormat(const std::filesystem::path& file) {

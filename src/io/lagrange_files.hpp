@@ -7,6 +7,12 @@
 
 namespace hexhex {
 
+/// Whether a `.vtu` file has cells of type 72, which is VTK_LAGRANGE_HEXAHEDRON.
+[[nodiscard]] bool holdsLagrangeVtu(const std::filesystem::path& file, Context& context);
+
+/// Reads them, and generators as writeLagrangeVtu() writes them; other cells are ignored.
+[[nodiscard]] LagrangeMesh readLagrangeVtu(const std::filesystem::path& file, Context& context);
+
 /// `.vtu`: cell type 72, with the arrays of straight meshes.
 void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& file,
                       const WriteOptions& options, Context& context);

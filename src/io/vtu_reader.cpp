@@ -12,6 +12,7 @@
 #include <io/grid_map.hpp>
 #include <io/input_file.hpp>
 #include <io/mesh_pieces.hpp>
+#include <io/read_vtu_with.hpp>
 #include <io/read_with.hpp>
 #include <io/vtu.hpp>
 #include <io/vtu_elements.hpp>
@@ -232,25 +233,6 @@ void sendCells(const VtuFile& file, MeshSink& sink, Stage& stage) {
     if (!cells.empty()) sink.cells(sent, std::span<const Cell>(cells));
     sent += cells.size();
   });
-}
-
-/// As readWith(), but without the whole file in memory where it can be avoided.
-template <class Reader, class... More>
-auto readVtuWith(const std::filesystem::path& path, std::string_view stageName, Context& context,
-                 const More&... more) {
-  Stage stage(context, stageName);
-  const std::string fileName = path.string();
-  decltype(std::declval<Reader&>().read()) result;
-  withThreads(context.threads(), [&] {
-    const InputFile input(path);
-    if (input.isRegular() && VtuFile::hasPlainAppendedData(input)) {
-      result = Reader(input, fileName, stage, more...).read();
-      return;
-    }
-    const Array<char> bytes = readWholeFile(path, stage);
-    result = Reader(asText(bytes), fileName, stage, more...).read();
-  });
-  return result;
 }
 
 }  // namespace

@@ -255,7 +255,8 @@ EmptinessTest::EmptinessTest(const LatticeTet& corners, std::int64_t unit) noexc
   error_ = 0x1p-42 * size * size * size;
 }
 
-bool EmptinessTest::certainlyMisses(const GridBox& box, double shift) const noexcept {
+bool EmptinessTest::certainlyMisses(const GridBox& box,
+                                    const std::array<double, 3>& shift) const noexcept {
   constexpr std::int64_t kMaxPoints = 4;
   std::int64_t count = 1;
   for (const GridRange& range : box.range) {
@@ -265,9 +266,9 @@ bool EmptinessTest::certainlyMisses(const GridBox& box, double shift) const noex
   for (std::int32_t x = box.range[0].first; x <= box.range[0].last; ++x) {
     for (std::int32_t y = box.range[1].first; y <= box.range[1].last; ++y) {
       for (std::int32_t z = box.range[2].first; z <= box.range[2].last; ++z) {
-        const std::array<double, 3> p = {x + shift - nearby_[0] - corner_[0],
-                                         y + shift - nearby_[1] - corner_[1],
-                                         z + shift - nearby_[2] - corner_[2]};
+        const std::array<double, 3> p = {x + shift[0] - nearby_[0] - corner_[0],
+                                         y + shift[1] - nearby_[1] - corner_[1],
+                                         z + shift[2] - nearby_[2] - corner_[2]};
         double least = volume_;
         double rest = volume_;
         for (const auto& n : normals_) {

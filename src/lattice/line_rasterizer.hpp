@@ -111,7 +111,12 @@ class EmptinessTest {
 
   /// @param box    of grid points; gives up on boxes of more than a few
   /// @param shift  added to their coordinates: 0, or 1/2 for centres of cells
-  [[nodiscard]] bool certainlyMisses(const GridBox& box, double shift) const noexcept;
+  [[nodiscard]] bool certainlyMisses(const GridBox& box, double shift) const noexcept {
+    return certainlyMisses(box, {shift, shift, shift});
+  }
+  /// The same with a shift for each coordinate.
+  [[nodiscard]] bool certainlyMisses(const GridBox& box,
+                                     const std::array<double, 3>& shift) const noexcept;
 
  private:
   std::array<double, 3> nearby_;  ///< grid point that coordinates are relative to

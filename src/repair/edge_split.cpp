@@ -112,10 +112,12 @@ std::vector<Fan> disjointFans(const TetTopology& topology,
 }  // namespace
 
 std::size_t splitEdges(TetMap& map, const TetTopology& topology,
-                       std::span<const std::array<Index, 2>> edges) {
+                       std::span<const std::array<Index, 2>> edges, MapBackup& backup) {
   // All of them first: the topology sees the map's own array, which is going to grow.
   const std::vector<Fan> fans = disjointFans(topology, edges);
+  if (!fans.empty()) backup.keepLists(map);
   for (const Fan& fan : fans) {
+    for (const Index t : fan.tets) backup.keep(map, t);
     const auto vertex = static_cast<Index>(map.points.size());
     map.points.push_back(middle(map.points[fan.edge[0]], map.points[fan.edge[1]]));
     for (const Index t : fan.tets) splitTet(map, t, fan.edge, vertex);

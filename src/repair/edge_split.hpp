@@ -4,6 +4,8 @@
 #include <array>
 #include <span>
 
+#include <repair/map_backup.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <map/tet_topology.hpp>
@@ -15,8 +17,9 @@ namespace hexhex {
 /// One of the two tets keeps its number, the others, and the vertices, are appended; what is known
 /// about the map (rotations, valences, features) is carried over.
 /// @param topology  of the map; must not be used afterwards
+/// @param backup  keeps what is changed
 /// @return the number of edges that were split
 std::size_t splitEdges(TetMap& map, const TetTopology& topology,
-                       std::span<const std::array<Index, 2>> edges);
+                       std::span<const std::array<Index, 2>> edges, MapBackup& backup);
 
 }  // namespace hexhex

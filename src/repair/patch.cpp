@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <unordered_map>
 #include <utility>
 
 #include <repair/patch.hpp>
@@ -52,17 +53,31 @@ Patch growPatch(const TetTopology& topology, std::span<const Index> seeds, int r
 
 std::vector<std::vector<Index>> separateRegions(const TetTopology& topology,
                                                 std::span<const Index> bad, int rings) {
-  // Seeds whose patches share a tet get the same root.
-  std::vector<std::pair<Index, Index>> claims;  // tet, seed
-  for (Index i = 0; i < bad.size(); ++i) {
-    for (const Index t : growPatch(topology, bad.subspan(i, 1), rings).tets) {
-      claims.emplace_back(t, i);
-    }
-  }
-  std::sort(claims.begin(), claims.end());
+  // All patches grow together, ring by ring, and each tet and vertex gets the first patch that
+  // reaches it. Where another one comes to it within its rings, both are one region.
   DisjointSets sets(bad.size());
-  for (std::size_t k = 1; k < claims.size(); ++k) {
-    if (claims[k].first == claims[k - 1].first) sets.unite(claims[k - 1].second, claims[k].second);
+  std::unordered_map<Index, Index> ownerOfTet;
+  std::unordered_map<Index, Index> ownerOfVertex;
+  std::vector<Index> front(bad.begin(), bad.end());  // tets
+  for (Index i = 0; i < bad.size(); ++i) ownerOfTet.emplace(bad[i], i);
+  VertexStar star;
+  for (int ring = 0; ring < rings; ++ring) {
+    std::vector<Index> next;
+    for (const Index t : front) {
+      const Index owner = ownerOfTet.at(t);
+      for (const Index v : topology.tets[t]) {
+        const auto [before, isNew] = ownerOfVertex.emplace(v, owner);
+        sets.unite(before->second, owner);
+        if (!isNew) continue;
+        star.collect(topology, v);
+        for (const VertexStar::Member& member : star.members()) {
+          const auto [known, reached] = ownerOfTet.emplace(member.tet(), owner);
+          sets.unite(known->second, owner);
+          if (reached) next.push_back(member.tet());
+        }
+      }
+    }
+    front = std::move(next);
   }
   std::vector<std::vector<Index>> regions(bad.size());
   for (Index i = 0; i < bad.size(); ++i) regions[sets.find(i)].push_back(bad[i]);

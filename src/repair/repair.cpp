@@ -13,11 +13,13 @@
 #include <repair/diagnosis.hpp>
 #include <repair/edge_split.hpp>
 #include <repair/freedom.hpp>
+#include <repair/map_backup.hpp>
 #include <repair/patch.hpp>
 #include <repair/patch_charts.hpp>
 #include <repair/problem.hpp>
 #include <repair/repair_map.hpp>
 #include <repair/untangle.hpp>
+#include <repair/whole_regions.hpp>
 
 #include <hexhex/repair.hpp>
 
@@ -35,11 +37,6 @@ constexpr std::array<int, 4> kRings = {2, 3, 5, 8};
 constexpr int kMaxRefinements = 5;
 /// What --round may move.
 constexpr double kRoundingLimit = 0.1;
-/// More bad tets than this share of all, and than this number, are no local defect: the map, or a
-/// whole region of it, is inverted or was never finished.
-constexpr double kMaxBadShare = 0.2;
-constexpr std::size_t kMaxBadTets = 200;
-
 /// Volumes of maps without noise differ by less than this: far above rounding, far below a cell.
 constexpr double kVolumeSlack = 0.05;
 
@@ -66,11 +63,12 @@ class Repairer {
     if (now_->defects.empty()) return std::move(map_);
     refuseBrokenTopology();
     if (!canRepair()) refuseWithoutSolver();
-    original_ = map_;
+    original_ = MapBackup(map_);
     std::vector<Index> bad = findSeeds();
     report_.badTets = bad.size();
     prepareExpectation(bad);
     const std::vector<Index> toRound = refuseOtherDefects(bad);
+    refuseInvertedRegions(now_->prepared.topology, bad);
     bool fresh = true;  // nothing has been moved yet
     for (int refinement = 0;; ++refinement) {
       for (const int rings : kRings) {
@@ -97,7 +95,7 @@ class Repairer {
   }
 
   std::vector<Index> startOver() {
-    map_ = original_;
+    original_.restore(map_);
     locked_.clear();
     candidates_.clear();
     moved_.clear();
@@ -118,11 +116,13 @@ class Repairer {
 
   void refuseWithoutSolver() const {
     const Defect first = now_->defects.defects().front();
-    throw Error(first.code,
-                first.sentence +
-                    " This build of hexhex cannot repair maps: build it with libLBFGS "
-                    "(liblbfgs-dev).",
-                first.worst.empty() ? Place{} : first.worst.front().place);
+    throw Error(
+        first.code,
+        first.sentence +
+            " A repair might help, but this build of hexhex cannot repair maps: it was made "
+            "without libLBFGS. Build it again where that is installed (on Debian "
+            "liblbfgs-dev), or compute the map again.",
+        first.worst.empty() ? Place{} : first.worst.front().place);
   }
 
   /// Bad tets; if none are, those that sanitization flattens.
@@ -141,16 +141,7 @@ class Repairer {
     for (std::size_t t = 0; t < map_.tets.size(); ++t) {
       volume_ += determinantOf(u(static_cast<Index>(t))) / 6;
     }
-    if (bad.size() <= kMaxBadTets ||
-        static_cast<double>(bad.size()) <= kMaxBadShare * static_cast<double>(map_.tets.size())) {
-      return;
-    }
-    throw Error(ErrorCode::FlippedTet,
-                std::to_string(bad.size()) + " of " + std::to_string(map_.tets.size()) +
-                    " tets are flipped or flat in the map: whole regions of it are inverted or "
-                    "collapsed. That is no local defect and is not repaired; compute the map "
-                    "again.",
-                {PlaceKind::Tet, bad.front()});
+    refuseInvertedParts(now_->prepared.topology, u, bad);
   }
 
   /// Conditions that are violated where no bad tet is near. Returns tets at vertices that are to be
@@ -330,7 +321,7 @@ class Repairer {
     std::vector<std::array<Index, 2>> edges = locked_.empty() ? candidates_ : locked_;
     if (edges.empty() || bad.empty()) return false;
     const std::size_t tets = map_.tets.size();
-    const std::size_t count = splitEdges(map_, now_->prepared.topology, edges);
+    const std::size_t count = splitEdges(map_, now_->prepared.topology, edges, original_);
     report_.splitEdges += count;
     report_.addedTets += map_.tets.size() - tets;
     return count > 0;
@@ -351,6 +342,7 @@ class Repairer {
       if (!problem.mayMove(i) && vertices[i].off <= options_.tolerance) continue;
       const Vec3 first = problem.parameterOf(i, quantum);
       for (const PatchVertex::Copy& copy : vertices[i].corners) {
+        original_.keep(map_, tetOf(copy.corner));
         changes.push_back(changeOf(input, u, copy.corner, copy.fromFirst(first, 1.0)));
       }
       moved_.try_emplace(vertices[i].vertex, region);
@@ -446,15 +438,16 @@ class Repairer {
     const OrientedMap& input = now_->prepared.input;
     VertexStar star;
     for (const auto& [vertex, region] : moved_) {
-      if (vertex >= original_.points.size()) continue;
+      if (vertex >= original_.pointCount()) continue;
       star.collect(now_->prepared.topology, vertex);
       double move = 0;
       for (const VertexStar::Member& member : star.members()) {
-        if (member.tet() >= original_.tets.size()) continue;
+        const TetParameters* const before = original_.parametersOf(member.tet());
+        if (before == nullptr) continue;
         const auto c = static_cast<std::size_t>(input.callersCorner(localOf(member.corner)));
+        const TetParameters& after = map_.parameters[member.tet()];
         for (std::size_t k = 0; k < 3; ++k) {
-          move = std::max(move, std::abs(map_.parameters[member.tet()][c][k] -
-                                         original_.parameters[member.tet()][c][k]));
+          move = std::max(move, std::abs(after[c][k] - (*before)[c][k]));
         }
       }
       if (move == 0) continue;
@@ -472,8 +465,8 @@ class Repairer {
       message += "all tets became positive, but " + complaint_ +
                  ", so that it is not the map that was meant";
     } else {
-      message += "of " + std::to_string(report_.badTets) + " flipped or flat tets, " +
-                 std::to_string(badTets) + " remained";
+      message += std::to_string(badTets) + " flipped or flat tets remained of " +
+                 std::to_string(report_.badTets) + " and what came of splitting them";
     }
     message += ", after patches of up to " + std::to_string(kRings.back()) + " rings and " +
                std::to_string(report_.splitEdges) +
@@ -487,7 +480,7 @@ class Repairer {
   }
 
   TetMap map_;
-  TetMap original_;
+  MapBackup original_;
   const RepairOptions& options_;
   Context& context_;
   RepairReport& report_;

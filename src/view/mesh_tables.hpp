@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <view/surface_nodes.hpp>
 #include <view/table_codec.hpp>
 
 #include <hexhex/structure.hpp>
@@ -20,20 +21,21 @@ struct Quantization {
   double step = 1;
 };
 
-/// The smallest box around the points, in 2^20 - 1 steps along its longest side.
-/// @throws Error NotFinite
-[[nodiscard]] Quantization quantizationOf(const HexMesh& mesh);
+/// The smallest box around vertices and nodes, in 2^20 - 1 steps along its longest side.
+/// @throws Error NotFinite; TooLarge if the longest side exceeds the largest double
+[[nodiscard]] Quantization quantizationOf(const HexMesh& mesh, const SurfaceNodes& nodes = {});
 
 /// Scaled Jacobians in 16 bits: 0 stands for -1, this for 1. As in viewer/src/format.ts.
 inline constexpr double kQualitySteps = 65534;
 
-/// Tables `points` (3 columns), `cells` (8), `quality` (1) and, where the mesh has them,
-/// `generator_kinds` (1), `singular_edges` (vertex, vertex, 2 * valence + (1 on the boundary)),
-/// `feature_edges` (vertex, vertex, tag) and `feature_quads` (4 vertices, tag).
+/// Tables `points` (3 columns: vertices, then nodes), `cells` (8), `quality` (1) and, where the
+/// mesh has them, `nodes` (SurfaceNodes::perCell), `generator_kinds` (1), `regions` (1),
+/// `singular_edges` (vertex, vertex, 2 * valence + (1 on the boundary)), `feature_edges` (vertex,
+/// vertex, tag) and `feature_quads` (4 vertices, tag).
 [[nodiscard]] std::vector<PackedTable> packMesh(const HexMesh& mesh,
                                                 const Quantization& quantization,
                                                 std::span<const double> scaledJacobians,
                                                 std::span<const SingularHexEdge> singularEdges,
-                                                Stage& stage);
+                                                Stage& stage, const SurfaceNodes& nodes = {});
 
 }  // namespace hexhex

@@ -1,6 +1,8 @@
 // The page: the template with title, a JSON text, and the packed mesh.
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -8,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <view/mesh_tables.hpp>
 #include <view/page_template.hpp>
+#include <view/surface_nodes.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/quality.hpp>
@@ -24,6 +27,9 @@ namespace {
 /// Textures of 4096 by 4096 texels, which phones have, too; and their memory ends about here.
 constexpr std::size_t kMostElements = (std::size_t{1} << 24U) - 1;
 
+/// Numbers of nodes: half a gigabyte in a browser.
+constexpr std::size_t kMostNodeNumbers = std::size_t{1} << 27U;
+
 /// Packed mesh and JSON text: all of the page that depends on the mesh.
 // NOLINTNEXTLINE(bugprone-exception-escape): moving JSON does not throw, however it is declared.
 struct PageContent {
@@ -31,29 +37,59 @@ struct PageContent {
   std::vector<PackedTable> tables;
 };
 
-void requireShowable(const HexMesh& mesh, const ViewOptions& options) {
+/// A mesh as it is shown: the straight one between the corners, and how its faces bend.
+struct Subject {
+  const HexMesh& mesh;
+  const SurfaceNodes& nodes;
+};
+
+void requireSize(const Subject& subject) {
+  const HexMesh& mesh = subject.mesh;
   if (mesh.cells.empty()) {
     throw Error(ErrorCode::EmptyMesh, "The mesh has no cells: there is nothing to show.");
   }
-  if (std::max(mesh.cells.size(), mesh.points.size()) > kMostElements) {
-    throw Error(ErrorCode::TooLarge,
-                "The mesh has " + std::to_string(mesh.cells.size()) + " cells and " +
-                    std::to_string(mesh.points.size()) +
-                    " vertices, but browsers do not hold more than 16 million. Extract it with a "
-                    "smaller scale to look at it, or open it in ParaView.");
+  const std::size_t points = mesh.points.size() + subject.nodes.points.size();
+  if (std::max(mesh.cells.size(), points) <= kMostElements &&
+      subject.nodes.numbers.size() <= kMostNodeNumbers) {
+    return;
   }
-  const std::size_t given = options.scaledJacobians.size();
-  if (given != 0 && given != mesh.cells.size()) {
-    throw Error(ErrorCode::InvalidArgument, "There are " + std::to_string(given) +
-                                                " scaled Jacobians for " +
-                                                std::to_string(mesh.cells.size()) + " cells.");
+  throw Error(
+      ErrorCode::TooLarge,
+      "The mesh has " + std::to_string(mesh.cells.size()) + " cells of order " +
+          std::to_string(subject.nodes.order) + " and " + std::to_string(points) +
+          " vertices and nodes on faces, but browsers do not hold more than 16 million. "
+          "Extract it with a smaller scale or order to look at it, or open it in ParaView.");
+}
+
+void requireOnePer(const char* what, std::size_t given, const char* of, std::size_t wanted) {
+  if (given == 0 || given == wanted) return;
+  throw Error(ErrorCode::InvalidArgument, "There are " + std::to_string(given) + " " + what +
+                                              " for " + std::to_string(wanted) + " " + of + ".");
+}
+
+void requireVertices(std::span<const Index> vertices, std::size_t count) {
+  for (const Index vertex : vertices) {
+    if (vertex < count) continue;
+    throw Error(ErrorCode::InvalidArgument, "A tagged edge or quad names hex vertex " +
+                                                std::to_string(vertex) + ", but there are " +
+                                                std::to_string(count) + ".");
   }
-  const std::size_t generators = mesh.generatorCorners.size();
-  if (generators != 0 && generators != mesh.points.size()) {
-    throw Error(ErrorCode::InvalidArgument, "There are " + std::to_string(generators) +
-                                                " generators for " +
-                                                std::to_string(mesh.points.size()) + " vertices.");
+}
+
+void requireShowable(const Subject& subject, const ViewOptions& options) {
+  requireSize(subject);
+  const HexMesh& mesh = subject.mesh;
+  requireOnePer("scaled Jacobians", options.scaledJacobians.size(), "cells", mesh.cells.size());
+  for (std::size_t c = 0; c < options.scaledJacobians.size(); ++c) {
+    if (std::isfinite(options.scaledJacobians[c])) continue;
+    throw Error(ErrorCode::NotFinite,
+                "The scaled Jacobian of cell " + std::to_string(c) + " is no finite number.",
+                {PlaceKind::Cell, c, 0});
   }
+  requireOnePer("generators", mesh.generatorCorners.size(), "vertices", mesh.points.size());
+  requireOnePer("regions", mesh.regions.size(), "cells", mesh.cells.size());
+  for (const auto& edge : mesh.features.edges) requireVertices(edge.vertices, mesh.points.size());
+  for (const auto& quad : mesh.features.quads) requireVertices(quad.vertices, mesh.points.size());
 }
 
 /// [[valence, number of edges], ...]
@@ -95,25 +131,28 @@ nlohmann::json tablesAsJson(const std::vector<PackedTable>& tables) {
   return result;
 }
 
-PageContent makeContent(const HexMesh& mesh, const ViewOptions& options, Context& context) {
-  requireShowable(mesh, options);
-  const Quantization quantization = quantizationOf(mesh);
+/// @param quality  scaled Jacobian of each cell
+PageContent makeContent(const Subject& subject, const Array<double>& quality,
+                        const ViewOptions& options, Context& context) {
+  const HexMesh& mesh = subject.mesh;
+  const Quantization quantization = quantizationOf(mesh, subject.nodes);
   const MeshStructure structure = findStructure(mesh, context);
-  Array<double> quality(options.scaledJacobians.begin(), options.scaledJacobians.end());
-  if (quality.empty()) quality = scaledJacobians(mesh, context);
   const QualitySummary summary = summarize(quality);
 
   PageContent content;
   withThreads(context.threads(), [&] {
     Stage stage(context, "pack mesh");
-    content.tables = packMesh(mesh, quantization, quality, structure.singularEdges, stage);
+    content.tables =
+        packMesh(mesh, quantization, quality, structure.singularEdges, stage, subject.nodes);
   });
   content.info = {
       {"format", 1},
       {"title", options.title},
       {"program", "hexhex " HEXHEX_VERSION},
       {"vertices", mesh.points.size()},
+      {"points", mesh.points.size() + subject.nodes.points.size()},
       {"cells", mesh.cells.size()},
+      {"order", subject.nodes.order},
       {"lower", quantization.lower},
       {"upper", quantization.upper},
       {"step", quantization.step},
@@ -132,6 +171,28 @@ PageContent makeContent(const HexMesh& mesh, const ViewOptions& options, Context
       {"verification", verificationAsJson(options)},
       {"tables", tablesAsJson(content.tables)}};
   return content;
+}
+
+/// The quality that the caller gave, or what `compute` returns.
+template <class Compute>
+Array<double> qualityOf(const ViewOptions& options, const Compute& compute) {
+  if (options.scaledJacobians.empty()) return compute();
+  return {options.scaledJacobians.begin(), options.scaledJacobians.end()};
+}
+
+PageContent makeContent(const HexMesh& mesh, const ViewOptions& options, Context& context) {
+  const SurfaceNodes straight;
+  requireShowable({mesh, straight}, options);
+  const auto quality = qualityOf(options, [&] { return scaledJacobians(mesh, context); });
+  return makeContent({mesh, straight}, quality, options, context);
+}
+
+PageContent makeContent(const LagrangeMesh& mesh, const ViewOptions& options, Context& context) {
+  const SurfaceNodes nodes = surfaceNodesOf(mesh);
+  const HexMesh corners = straightMesh(mesh);
+  requireShowable({corners, nodes}, options);
+  const auto quality = qualityOf(options, [&] { return scaledJacobians(mesh, context); });
+  return makeContent({corners, nodes}, quality, options, context);
 }
 
 std::string escaped(std::string_view text) {
@@ -177,10 +238,9 @@ std::string pageHead(const PageContent& content, const ViewOptions& options,
   return head;
 }
 
-}  // namespace
-
-void writeViewPage(const HexMesh& mesh, const std::filesystem::path& file,
-                   const ViewOptions& options, Context& context) {
+template <class Mesh>
+void writePage(const Mesh& mesh, const std::filesystem::path& file, const ViewOptions& options,
+               Context& context) {
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
   const PageContent content = makeContent(mesh, options, context);
   const Stage stage(context, "write page");
@@ -196,8 +256,9 @@ void writeViewPage(const HexMesh& mesh, const std::filesystem::path& file,
   output.commit();
 }
 
-ServedPage makeServedPage(const HexMesh& mesh, const std::string& dataUrl,
-                          const ViewOptions& options, Context& context) {
+template <class Mesh>
+ServedPage makePage(const Mesh& mesh, const std::string& dataUrl, const ViewOptions& options,
+                    Context& context) {
   PageContent content = makeContent(mesh, options, context);
   content.info["data"] = dataUrl;
   ServedPage served;
@@ -207,6 +268,28 @@ ServedPage makeServedPage(const HexMesh& mesh, const std::string& dataUrl,
     for (std::string& chunk : table.chunks) served.data.push_back(std::move(chunk));
   }
   return served;
+}
+
+}  // namespace
+
+void writeViewPage(const HexMesh& mesh, const std::filesystem::path& file,
+                   const ViewOptions& options, Context& context) {
+  writePage(mesh, file, options, context);
+}
+
+void writeViewPage(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                   const ViewOptions& options, Context& context) {
+  writePage(mesh, file, options, context);
+}
+
+ServedPage makeServedPage(const HexMesh& mesh, const std::string& dataUrl,
+                          const ViewOptions& options, Context& context) {
+  return makePage(mesh, dataUrl, options, context);
+}
+
+ServedPage makeServedPage(const LagrangeMesh& mesh, const std::string& dataUrl,
+                          const ViewOptions& options, Context& context) {
+  return makePage(mesh, dataUrl, options, context);
 }
 
 }  // namespace hexhex

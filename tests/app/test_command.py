@@ -477,7 +477,12 @@ class Repair(CommandTest):
         (self.folder / "probe.hexex").unlink(missing_ok=True)
         if result.returncode == SUCCESS:
             return True
-        self.assertIn("libLBFGS", result.stderr)
+        self.assertEqual(result.returncode, INVALID_MAP)
+        self.assertIn("liblbfgs-dev", result.stderr)
+        extraction = subprocess.run([self.command, "extract", map_file, "-o", "probe.vtu"],
+                                    cwd=self.folder, text=True, capture_output=True, check=False)
+        self.assertEqual(extraction.returncode, INVALID_MAP)
+        self.assertIn("liblbfgs-dev", extraction.stderr)
         return False
 
     def test_extract_repairs_with_a_notice(self):
@@ -508,20 +513,43 @@ class Repair(CommandTest):
         self.assertEqual((self.folder / "same.hexex").read_bytes(),
                          (self.folder / "mended.hexex").read_bytes())
         self.assertIsNone(json.loads((self.folder / "n.json").read_text()))
+        for options in [["-o", map_file], ["-o", "x.hexex", "--report", map_file],
+                        ["-o", "x.hexex", "--report", "x.hexex"]]:
+            self.assert_fails("repair", map_file, *options, expect=BAD_USAGE,
+                              code="InvalidArgument")
+
+    def test_repair_follows_higher_orders_and_arcs(self):
+        if not self.can_repair():
+            self.skipTest("built without libLBFGS")
+        map_file = self.damaged()
+        run = self.run_command("extract", map_file, "-o", "curved.vtu", "--order", "2")
+        self.assertIn("It was repaired", run.stderr)
+        self.run_command("extract", map_file, "-o", "mesh.vtu", "--arcs", "arcs.vtu", "--quiet")
 
     def test_partial(self):
         map_file = self.damaged()
         run = self.run_command("extract", map_file, "-o", "part.vtu", "--repair", "off",
-                               "--partial", expect=INVALID_MAP)
+                               "--partial", "--report", "part.json", expect=INVALID_MAP)
         self.assertIn("[FlippedTet", run.stderr)
         self.assertIn("hole at tet", run.stdout)
         self.assertIn(b'Name="region"', (self.folder / "part.vtu").read_bytes())
         self.run_command("info", "part.vtu")
+        report = json.loads((self.folder / "part.json").read_text())
+        self.assertTrue(report["partial"])
+        self.assertEqual(report["error"]["code"], "FlippedTet")
+        self.assertIn(f"{report['cells']} cells, {report['cells_at_holes']} of them", run.stdout)
+        self.assertAlmostEqual(sum(hole["missing_cells"] for hole in report["holes"]),
+                               report["missing_cells"])
+        self.assertGreater(report["missing_cells"], 0)
         # A valid map is extracted as ever.
         self.generate("box", name="box.hexex")
         self.run_command("extract", "box.hexex", "-o", "box.vtu", "--partial")
-        self.assert_fails("extract", "box.hexex", "-o", "b.vtu", "--partial", "--stream",
-                          expect=BAD_USAGE, code="InvalidArgument")
+        # Straight cells in memory only, said before anything is extracted or written.
+        for options in [["--stream"], ["--order", "2"], ["--arcs", "arcs.vtu"],
+                        ["--patches", "patches.vtu"]]:
+            self.assert_fails("extract", "box.hexex", "-o", "b.vtu", "--partial", *options,
+                              expect=BAD_USAGE, code="InvalidArgument")
+        self.assertNotIn("arcs.vtu", self.files())
 
 
 class Convert(CommandTest):
@@ -868,14 +896,39 @@ class View(CommandTest):
             kinds = self.tables((self.folder / "b.html").read_text())["generator_kinds"]
             self.assertEqual({kind for kind, in kinds}, {0, 1, 2, 3})
 
+    def test_page_of_a_map(self):
+        self.run_command("view", "map.hexex", "--scale", "2", "-o", "b.html")
+        info = self.info((self.folder / "b.html").read_text())
+        self.assertEqual((info["cells"], info["order"]), (len(self.mesh()[1]), 1))
+        self.assertTrue(info["verification"]["passed"])
+
+    def test_page_of_curved_cells(self):
+        """The same, whether they come from a file or a map."""
+        self.run_command("extract", "map.hexex", "-o", "c.vtu", "--order", "3", "--quiet")
+        self.run_command("view", "c.vtu", "--map", "map.hexex", "-o", "c.html")
+        self.run_command("view", "map.hexex", "--order", "3", "-o", "d.html")
+        file, map_ = [(self.folder / page).read_text() for page in ["c.html", "d.html"]]
+        self.assertTrue(self.info(file)["verification"]["passed"])
+        self.assertEqual(self.info(file)["order"], 3)
+        tables, others = self.tables(file), self.tables(map_)
+        for name in ["points", "cells", "nodes", "quality", "generator_kinds"]:
+            self.assertEqual(tables[name], others[name], name)
+        # Two nodes on each of 12 edges, four on each of 6 faces.
+        self.assertEqual({len(row) for row in tables["nodes"]}, {48})
+        vertices, points = self.info(file)["vertices"], self.info(file)["points"]
+        self.assertEqual({n for row in tables["nodes"] for n in row}, set(range(vertices, points)))
+
     def test_page_problems(self):
         self.assert_fails("view", "a.mesh", "-o", "a.mesh", expect=BAD_USAGE, words=["same file"])
         self.assert_fails("view", "none.mesh", expect=FILE_PROBLEM, code="FileNotFound")
-        self.assert_fails("view", "map.hexex", expect=FILE_PROBLEM, code="FileUnsupported")
+        self.assert_fails("view", "map.hexex", "--map", "map.hexex", "-o", "c.html",
+                          expect=BAD_USAGE, code="InvalidArgument")
+        self.assert_fails("view", "a.mesh", "--order", "2", expect=BAD_USAGE,
+                          code="InvalidArgument")
         self.assert_fails("view", "a.mesh", "-o", "no/folder/a.html", expect=FILE_PROBLEM,
                           code="FileWrite")
         for arguments in [["--port", "80"], ["--serve", "-o", "a.html"], ["--scale", "0"],
-                          ["--serve", "--port", "70000"]]:
+                          ["--serve", "--port", "70000"], ["--order", "10"]]:
             self.run_command("view", "a.mesh", *arguments, expect=BAD_USAGE)
 
     def test_serve(self):
@@ -905,6 +958,12 @@ class View(CommandTest):
                     urllib.request.urlopen(request, timeout=60)
                 self.assertEqual(refused.exception.code, 403)
                 refused.exception.close()
+                for path in ["../../etc/passwd", "%2e%2e/%2e%2e/etc/passwd", "a.mesh", "mesh/",
+                             "//etc/passwd"]:
+                    with self.assertRaises(urllib.error.HTTPError) as missing:
+                        urllib.request.urlopen(address + path, timeout=60)
+                    self.assertEqual(missing.exception.code, 404, path)
+                    missing.exception.close()
                 port = address.rstrip("/").rsplit(":", 1)[1]
                 run = self.run_command("view", "a.mesh", "--serve", "--port", port,
                                        expect=BAD_USAGE)

@@ -104,15 +104,15 @@ static void test_everything_once(const char* folder) {
   char file[512];
   hexhex_map* map = sphere(2);
   snprintf(file, sizeof file, "%s/map.hexex", folder);
-  CHECK_OK(hexhex_map_write(map, file, NULL, &error));
+  CHECK_OK(hexhex_map_write(map, file, NULL, NULL, &error));
   hexhex_map_destroy(map);
-  CHECK_OK(hexhex_map_read(file, NULL, &map, &error));
+  CHECK_OK(hexhex_map_read(file, NULL, NULL, &map, &error));
   /* A borrowed map writes the same file. */
   hexhex_map_arrays arrays = HEXHEX_MAP_ARRAYS_INIT;
   hexhex_map* borrowed = NULL;
   CHECK_OK(hexhex_map_get_arrays(map, &arrays, &error));
   CHECK_OK(hexhex_map_borrow(&arrays, &borrowed, &error));
-  CHECK_OK(hexhex_map_write(borrowed, file, NULL, &error));
+  CHECK_OK(hexhex_map_write(borrowed, file, NULL, NULL, &error));
 
   hexhex_check_report* report = NULL;
   hexhex_check_summary summary = HEXHEX_CHECK_SUMMARY_INIT;
@@ -168,7 +168,7 @@ static void test_everything_once(const char* folder) {
   CHECK_OK(hexhex_mesh_survey(copy, NULL, &other, &error));
   CHECK(memcmp(&survey, &other, sizeof survey) == 0);
   hexhex_mesh_destroy(copy);
-  CHECK_OK(hexhex_mesh_read(file, NULL, &copy, &error));
+  CHECK_OK(hexhex_mesh_read(file, NULL, NULL, &copy, &error));
   hexhex_mesh_destroy(copy);
 
   /* Several scales of one map. */
@@ -205,18 +205,19 @@ static void test_errors(const char* folder) {
   hexhex_error error;
   char file[512];
   hexhex_map* map = NULL;
-  CHECK(hexhex_map_read("/nowhere/at/all.hexex", NULL, &map, &error) == HEXHEX_FILE_NOT_FOUND);
+  CHECK(hexhex_map_read("/nowhere/at/all.hexex", NULL, NULL, &map, &error) ==
+        HEXHEX_FILE_NOT_FOUND);
   CHECK(map == NULL && error.status == HEXHEX_FILE_NOT_FOUND && strlen(error.message) > 20);
   snprintf(file, sizeof file, "%s/bad.hexex", folder);
   FILE* out = fopen(file, "w");
   fputs("2\n0 0 0\n0 x 0\n", out);
   fclose(out);
-  CHECK(hexhex_map_read(file, NULL, &map, &error) == HEXHEX_FILE_SYNTAX);
+  CHECK(hexhex_map_read(file, NULL, NULL, &map, &error) == HEXHEX_FILE_SYNTAX);
   CHECK(error.place.kind == HEXHEX_PLACE_LINE && error.place.index == 3);
   CHECK(hexhex_map_generate("banana", NULL, &map, &error) == HEXHEX_INVALID_ARGUMENT);
   CHECK(strstr(error.message, "banana") != NULL);
   CHECK(hexhex_map_generate(NULL, NULL, &map, NULL) == HEXHEX_INVALID_ARGUMENT);
-  CHECK(hexhex_map_read("x", NULL, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+  CHECK(hexhex_map_read("x", NULL, NULL, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
   CHECK(hexhex_extract(NULL, NULL, NULL, NULL, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
 
   /* A flat tet: found by extraction with its place, and by the check with all places. */
@@ -261,7 +262,7 @@ static void test_errors(const char* folder) {
   hexhex_mesh_destroy(mesh);
   newer.unknown = 1;
   CHECK(hexhex_extract(good, &newer.known, NULL, &mesh, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
-  hexhex_extract_options older = {0, HEXHEX_ENGINE_ATLAS, 1, -1, -1};
+  hexhex_extract_options older = {0, HEXHEX_ENGINE_ATLAS, 1, -1, -1, 0, 0};
   older.size = offsetof(hexhex_extract_options, epsilon); /* so those two are defaults */
   CHECK_OK(hexhex_extract(good, &older, NULL, &mesh, NULL, &error));
   hexhex_mesh_destroy(mesh);
@@ -288,6 +289,12 @@ static void test_errors(const char* folder) {
   hexhex_extractor_destroy(NULL);
   hexhex_check_report_destroy(NULL);
   hexhex_verify_report_destroy(NULL);
+  hexhex_repair_report_destroy(NULL);
+  hexhex_holes_destroy(NULL);
+  hexhex_piecewise_mesh_destroy(NULL);
+  hexhex_lagrange_mesh_destroy(NULL);
+  hexhex_mesh_writer_destroy(NULL);
+  CHECK(hexhex_piecewise_mesh_straight(NULL) == NULL && hexhex_extractor_cells(NULL) == 0);
 }
 
 struct progress {
@@ -340,6 +347,295 @@ static void test_context(void) {
   options.threads = -1;
   CHECK(hexhex_context_create(&options, &context, &error) == HEXHEX_INVALID_ARGUMENT);
   hexhex_map_destroy(map);
+}
+
+/* Tags and regions go in and come out, and options reach writers. */
+static void test_features(const char* folder) {
+  hexhex_error error;
+  char file[512];
+  hexhex_sample_options sample = HEXHEX_SAMPLE_OPTIONS_INIT;
+  sample.features = 1;
+  hexhex_map* map = NULL;
+  hexhex_map* borrowed = NULL;
+  hexhex_mesh* mesh = NULL;
+  CHECK_OK(hexhex_map_generate("box", &sample, &map, &error));
+  hexhex_map_arrays arrays = HEXHEX_MAP_ARRAYS_INIT;
+  CHECK_OK(hexhex_map_get_arrays(map, &arrays, &error));
+  CHECK(arrays.feature_vertex_count == 8 && arrays.feature_edge_count == 12 * 4);
+  CHECK(arrays.feature_faces != NULL && arrays.regions != NULL);
+  CHECK_OK(hexhex_map_borrow(&arrays, &borrowed, &error));
+  CHECK_OK(hexhex_extract(borrowed, NULL, NULL, &mesh, NULL, &error));
+  hexhex_mesh_arrays m = HEXHEX_MESH_ARRAYS_INIT;
+  CHECK_OK(hexhex_mesh_get_arrays(mesh, &m, &error));
+  CHECK(m.feature_vertex_count == 8 && m.feature_edge_count == 12 * 8);
+  CHECK(m.feature_quad_count == 6 * 64 && m.regions != NULL);
+  for (size_t c = 0; c < m.cell_count; ++c) CHECK(m.regions[c] >= 1 && m.regions[c] <= 8);
+  hexhex_mesh* copy = NULL;
+  hexhex_mesh_arrays copied = HEXHEX_MESH_ARRAYS_INIT;
+  CHECK_OK(hexhex_mesh_copy(&m, &copy, &error));
+  CHECK_OK(hexhex_mesh_get_arrays(copy, &copied, &error));
+  CHECK(memcmp(copied.feature_quads, m.feature_quads,
+               m.feature_quad_count * sizeof(*m.feature_quads)) == 0);
+  CHECK(memcmp(copied.regions, m.regions, m.cell_count * sizeof(*m.regions)) == 0);
+  hexhex_buffer* taken = NULL;
+  CHECK_OK(hexhex_mesh_take(copy, HEXHEX_FEATURE_QUADS, &taken, &error));
+  CHECK(hexhex_buffer_data(taken) == copied.feature_quads);
+  hexhex_buffer_destroy(taken);
+  CHECK(hexhex_mesh_take(copy, (hexhex_mesh_array)99, &taken, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_mesh_destroy(copy);
+  /* A region that is not there for each tet cannot be said in C; a vertex that is not there can. */
+  const hexhex_feature_vertex nowhere = {4000000000U, 1};
+  hexhex_map* bad = NULL;
+  arrays.feature_vertices = &nowhere;
+  arrays.feature_vertex_count = 1;
+  CHECK_OK(hexhex_map_borrow(&arrays, &bad, &error));
+  copy = NULL;
+  CHECK(hexhex_extract(bad, NULL, NULL, &copy, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+  CHECK(copy == NULL);
+  hexhex_map_destroy(bad);
+  arrays.feature_vertices = NULL;
+  CHECK(hexhex_map_borrow(&arrays, &bad, &error) == HEXHEX_INVALID_ARGUMENT);
+
+  hexhex_buffer* quads = NULL;
+  CHECK_OK(hexhex_mesh_boundary_patches(mesh, 40, NULL, &quads, &error));
+  CHECK(hexhex_buffer_bytes(quads) == 6 * 64 * sizeof(hexhex_feature_quad));
+  hexhex_buffer_destroy(quads);
+  CHECK(hexhex_mesh_boundary_patches(mesh, 500, NULL, &quads, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_structure structure = HEXHEX_STRUCTURE_INIT;
+  CHECK_OK(hexhex_mesh_structure(mesh, NULL, &structure, &quads, &error));
+  CHECK(structure.boundary_quads == 6 * 64 && structure.euler_characteristic == 1);
+  hexhex_buffer_destroy(quads);
+
+  hexhex_write_options write = HEXHEX_WRITE_OPTIONS_INIT;
+  write.format = "no such format";
+  snprintf(file, sizeof file, "%s/features.vtu", folder);
+  CHECK(hexhex_mesh_write(mesh, file, &write, NULL, &error) == HEXHEX_FILE_UNSUPPORTED);
+  CHECK(hexhex_require_format(HEXHEX_OUTPUT_MESH, file, &write, &error) == HEXHEX_FILE_UNSUPPORTED);
+  CHECK_OK(hexhex_require_format(HEXHEX_OUTPUT_MESH, file, NULL, &error));
+  CHECK(hexhex_require_format(HEXHEX_OUTPUT_PATCHES, "x.stl", NULL, &error) ==
+        HEXHEX_FILE_UNSUPPORTED);
+  write.format = NULL;
+  write.map_array = "theirs";
+  hexhex_read_options read = HEXHEX_READ_OPTIONS_INIT;
+  CHECK_OK(hexhex_map_write(map, file, &write, NULL, &error));
+  CHECK(hexhex_map_read(file, NULL, NULL, &bad, &error) != HEXHEX_OK);
+  read.map_array = "theirs";
+  CHECK_OK(hexhex_map_read(file, &read, NULL, &bad, &error));
+  hexhex_map_destroy(bad);
+  hexhex_mesh* none = NULL;
+  CHECK_OK(hexhex_read(file, &read, NULL, &bad, &none, &error));
+  CHECK(bad != NULL && none == NULL);
+  hexhex_map_destroy(bad);
+  CHECK_OK(hexhex_map_read_tets(file, &read, NULL, &bad, &error));
+  hexhex_map_arrays tets = HEXHEX_MAP_ARRAYS_INIT;
+  CHECK_OK(hexhex_map_get_arrays(bad, &tets, &error));
+  CHECK(tets.tet_count == arrays.tet_count && tets.parameters == NULL);
+  /* As they are, they are no map, which is an error and no crash. */
+  CHECK(hexhex_extract(bad, NULL, NULL, &copy, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+  /* With points for parameters, which here is one. */
+  hexhex_map* pair = NULL;
+  CHECK_OK(hexhex_map_from_pair(&tets, &tets, NULL, &pair, &error));
+  hexhex_map_destroy(pair);
+  hexhex_map_destroy(bad);
+  CHECK(hexhex_format_count() > 5);
+  hexhex_file_format format = HEXHEX_FILE_FORMAT_INIT;
+  CHECK_OK(hexhex_get_format(0, &format, &error));
+  CHECK(strlen(format.name) > 0 && format.description != NULL);
+  CHECK(hexhex_get_format(999, &format, &error) == HEXHEX_INVALID_ARGUMENT);
+
+  /* A file from pieces of the caller's. */
+  hexhex_mesh_writer* writer = NULL;
+  CHECK_OK(hexhex_mesh_writer_create(file, NULL, NULL, &writer, &error));
+  CHECK_OK(hexhex_mesh_writer_begin(writer, m.point_count, m.cell_count, &error));
+  CHECK_OK(hexhex_mesh_writer_points(writer, 0, m.point_count, m.points, m.generator_tet,
+                                     m.generator_corners, &error));
+  CHECK_OK(hexhex_mesh_writer_cells(writer, 0, m.cell_count, m.cells, &error));
+  CHECK_OK(hexhex_mesh_writer_end(writer, &error));
+  hexhex_mesh_writer_destroy(writer);
+  writer = NULL;
+  hexhex_mesh_writer* early = NULL;
+  char other[512];
+  snprintf(other, sizeof other, "%s/early.vtu", folder);
+  CHECK_OK(hexhex_mesh_writer_create(other, NULL, NULL, &early, &error));
+  CHECK_OK(hexhex_mesh_writer_begin(early, m.point_count, m.cell_count, &error));
+  CHECK(hexhex_mesh_writer_points(early, 0, 1, NULL, NULL, NULL, &error) ==
+        HEXHEX_INVALID_ARGUMENT);
+  CHECK(hexhex_mesh_writer_end(early, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_mesh_writer_destroy(early);
+  CHECK(access(other, F_OK) != 0);
+  hexhex_survey mine = HEXHEX_SURVEY_INIT;
+  hexhex_survey theirs = HEXHEX_SURVEY_INIT;
+  CHECK_OK(hexhex_file_survey(file, NULL, &mine, &error));
+  CHECK_OK(hexhex_mesh_survey(mesh, NULL, &theirs, &error));
+  CHECK(memcmp(&mine, &theirs, sizeof mine) == 0);
+  hexhex_mesh_destroy(mesh);
+  hexhex_map_destroy(borrowed);
+  hexhex_map_destroy(map);
+}
+
+static void test_repair(void) {
+  hexhex_error error;
+  hexhex_sample_options sample = HEXHEX_SAMPLE_OPTIONS_INIT;
+  sample.cells = 8;
+  sample.refine = 4;
+  sample.defects = 2;
+  hexhex_map* map = NULL;
+  hexhex_mesh* mesh = NULL;
+  CHECK_OK(hexhex_map_generate("sphere", &sample, &map, &error));
+  CHECK(hexhex_extract(map, NULL, NULL, &mesh, NULL, &error) == HEXHEX_FLIPPED_TET);
+  CHECK(mesh == NULL);
+
+  hexhex_holes* holes = NULL;
+  CHECK_OK(hexhex_extract_partial(map, NULL, NULL, &mesh, &holes, &error));
+  hexhex_holes_summary lost = HEXHEX_HOLES_SUMMARY_INIT;
+  CHECK_OK(hexhex_holes_get_summary(holes, &lost, &error));
+  CHECK(lost.hole_count > 0 && lost.missing_cells > 0 && lost.invalid_tets >= 2);
+  hexhex_hole hole = HEXHEX_HOLE_INIT;
+  CHECK_OK(hexhex_holes_get(holes, 0, &hole, &error));
+  CHECK(hole.invalid_tets > 0 && isfinite(hole.position[2]));
+  CHECK(hexhex_holes_get(holes, lost.hole_count, &hole, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_mesh_arrays m = HEXHEX_MESH_ARRAYS_INIT;
+  CHECK_OK(hexhex_mesh_get_arrays(mesh, &m, &error));
+  CHECK(m.cell_count > 0 && m.cell_count < 3584 && m.regions != NULL);
+  hexhex_mesh_destroy(mesh);
+  hexhex_holes_destroy(holes);
+
+  hexhex_map* repaired = NULL;
+  hexhex_repair_report* report = NULL;
+  if (hexhex_can_repair()) {
+    CHECK_OK(hexhex_repair(map, NULL, NULL, &repaired, &report, &error));
+    hexhex_repair_summary summary = HEXHEX_REPAIR_SUMMARY_INIT;
+    hexhex_repaired_region region = HEXHEX_REPAIRED_REGION_INIT;
+    CHECK_OK(hexhex_repair_get_summary(report, &summary, &error));
+    CHECK(summary.changed && summary.bad_tets >= 2 && summary.region_count > 0);
+    CHECK_OK(hexhex_repair_get_region(report, 0, &region, &error));
+    CHECK(region.place.kind == HEXHEX_PLACE_TET && region.bad_tets > 0 && region.largest_move > 0);
+    CHECK(hexhex_repair_get_region(report, 999, &region, &error) == HEXHEX_INVALID_ARGUMENT);
+    hexhex_repair_report_destroy(report);
+    CHECK_OK(hexhex_extract(repaired, NULL, NULL, &mesh, NULL, &error));
+    hexhex_mesh_destroy(mesh);
+    hexhex_map_destroy(repaired);
+    /* In one go; the map is that of the mesh, and outlives it. */
+    hexhex_extract_options options = HEXHEX_EXTRACT_OPTIONS_INIT;
+    hexhex_statistics statistics = HEXHEX_STATISTICS_INIT;
+    hexhex_verify_report* verified = NULL;
+    options.repair = 1;
+    CHECK_OK(hexhex_extract(map, &options, NULL, &mesh, &statistics, &error));
+    CHECK(statistics.repaired);
+    CHECK_OK(hexhex_mesh_get_repair(mesh, &repaired, &report, &error));
+    CHECK(repaired != NULL && report != NULL);
+    CHECK_OK(hexhex_verify(repaired, mesh, 1e-2, 1, NULL, &verified, &error));
+    CHECK(hexhex_verify_passed(verified));
+    hexhex_verify_report_destroy(verified);
+    hexhex_mesh_destroy(mesh);
+    hexhex_map_arrays arrays = HEXHEX_MAP_ARRAYS_INIT;
+    CHECK_OK(hexhex_map_get_arrays(repaired, &arrays, &error));
+    CHECK(arrays.tet_count > 0 && isfinite(arrays.parameters[0]));
+    hexhex_map_destroy(repaired);
+    hexhex_repair_report_destroy(report);
+  } else {
+    CHECK(hexhex_repair(map, NULL, NULL, &repaired, &report, &error) == HEXHEX_INVALID_ARGUMENT);
+  }
+  hexhex_map_destroy(map);
+}
+
+static void test_curved(const char* folder) {
+  hexhex_error error;
+  char file[512];
+  hexhex_map* map = sphere(2);
+  hexhex_piecewise_mesh* pieces = NULL;
+  CHECK_OK(hexhex_extract_piecewise(map, 1, NULL, NULL, &pieces, NULL, &error));
+  hexhex_arc_arrays arcs = HEXHEX_ARC_ARRAYS_INIT;
+  hexhex_patch_arrays patches = HEXHEX_PATCH_ARRAYS_INIT;
+  hexhex_mesh_arrays straight = HEXHEX_MESH_ARRAYS_INIT;
+  CHECK_OK(hexhex_piecewise_mesh_get_arcs(pieces, &arcs, &error));
+  CHECK_OK(hexhex_piecewise_mesh_get_patches(pieces, &patches, &error));
+  CHECK_OK(hexhex_mesh_get_arrays(hexhex_piecewise_mesh_straight(pieces), &straight, &error));
+  CHECK(straight.cell_count == 448 && arcs.point_begin[arcs.arc_count] == arcs.point_count);
+  CHECK(arcs.segment_count == arcs.point_count + arcs.arc_count);
+  CHECK(patches.face_count > 3 * 448 &&
+        patches.polygon_begin[patches.face_count] == patches.polygon_count);
+  CHECK(patches.corner_begin[patches.polygon_count] == patches.corner_count);
+  for (size_t i = 0; i < patches.corner_count; ++i) {
+    CHECK(patches.corners[i] < straight.point_count + arcs.point_count + patches.point_count);
+  }
+  snprintf(file, sizeof file, "%s/arcs.vtu", folder);
+  CHECK_OK(hexhex_piecewise_mesh_write_arcs(pieces, file, NULL, &error));
+  CHECK_OK(hexhex_piecewise_mesh_write_patches(pieces, file, NULL, &error));
+  CHECK(hexhex_piecewise_mesh_write_arcs(pieces, "x.stl", NULL, &error) == HEXHEX_FILE_UNSUPPORTED);
+  hexhex_piecewise_mesh_destroy(pieces);
+  CHECK_OK(hexhex_extract_piecewise(map, 0, NULL, NULL, &pieces, NULL, &error));
+  CHECK_OK(hexhex_piecewise_mesh_get_patches(pieces, &patches, &error));
+  CHECK(patches.face_count == 0);
+  hexhex_piecewise_mesh_destroy(pieces);
+
+  hexhex_lagrange_mesh* curved = NULL;
+  CHECK(hexhex_extract_lagrange(map, 0, NULL, NULL, &curved, NULL, &error) ==
+        HEXHEX_INVALID_ARGUMENT);
+  CHECK(hexhex_extract_lagrange(map, 10, NULL, NULL, &curved, NULL, &error) ==
+        HEXHEX_INVALID_ARGUMENT);
+  CHECK_OK(hexhex_extract_lagrange(map, 2, NULL, NULL, &curved, NULL, &error));
+  hexhex_lagrange_arrays nodes = HEXHEX_LAGRANGE_ARRAYS_INIT;
+  CHECK_OK(hexhex_lagrange_mesh_get_arrays(curved, &nodes, &error));
+  CHECK(nodes.order == 2 && nodes.cell_count == 448 && nodes.vertex_count == straight.point_count);
+  double* jacobians = malloc(nodes.cell_count * sizeof(double));
+  hexhex_quality quality = HEXHEX_QUALITY_INIT;
+  CHECK_OK(hexhex_lagrange_mesh_quality(curved, NULL, jacobians, &quality, &error));
+  CHECK(quality.minimum <= jacobians[0]);
+  free(jacobians);
+  snprintf(file, sizeof file, "%s/curved.vtu", folder);
+  CHECK_OK(hexhex_lagrange_mesh_write(curved, file, NULL, NULL, &error));
+  hexhex_mesh* corners = NULL;
+  CHECK_OK(hexhex_lagrange_mesh_straight(curved, &corners, &error));
+  CHECK_OK(hexhex_mesh_get_arrays(corners, &straight, &error));
+  CHECK(straight.cell_count == 448);
+  hexhex_mesh_destroy(corners);
+  hexhex_buffer* buffer = NULL;
+  CHECK(hexhex_lagrange_mesh_take(curved, HEXHEX_REGIONS, &buffer, &error) ==
+        HEXHEX_INVALID_ARGUMENT);
+  CHECK_OK(hexhex_lagrange_mesh_take(curved, HEXHEX_CELLS, &buffer, &error));
+  CHECK(hexhex_buffer_bytes(buffer) == 27 * 448 * sizeof(uint32_t));
+  hexhex_lagrange_mesh_destroy(curved);
+  CHECK(((uint32_t*)hexhex_buffer_data(buffer))[0] < nodes.point_count);
+  hexhex_buffer_destroy(buffer);
+  hexhex_map_destroy(map);
+}
+
+/* A progress function that uses the library itself, and misuses it. */
+struct reentry {
+  hexhex_map* map;
+  hexhex_context* context;
+  int done;
+};
+static int on_reentry(void* user, const char* stage, double share) {
+  struct reentry* r = user;
+  hexhex_error error;
+  hexhex_mesh* mesh = NULL;
+  (void)stage;
+  (void)share;
+  if (r->done) return 0;
+  r->done = 1;
+  CHECK_OK(hexhex_extract(r->map, NULL, NULL, &mesh, NULL, &error));
+  hexhex_mesh_destroy(mesh);
+  mesh = NULL;
+  CHECK(hexhex_extract(r->map, NULL, r->context, &mesh, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+  CHECK(mesh == NULL && strstr(error.message, "in use") != NULL);
+  return 0;
+}
+
+static void test_reentry(void) {
+  hexhex_error error;
+  struct reentry reentry = {sphere(2), NULL, 0};
+  hexhex_context_options options = HEXHEX_CONTEXT_OPTIONS_INIT;
+  options.progress = on_reentry;
+  options.user = &reentry;
+  CHECK_OK(hexhex_context_create(&options, &reentry.context, &error));
+  hexhex_mesh* mesh = NULL;
+  CHECK_OK(hexhex_extract(reentry.map, NULL, reentry.context, &mesh, NULL, &error));
+  CHECK(reentry.done);
+  hexhex_mesh_destroy(mesh);
+  hexhex_context_destroy(reentry.context);
+  hexhex_map_destroy(reentry.map);
 }
 
 struct counts {
@@ -413,7 +709,7 @@ static void* extract_in_thread(void* argument) {
       return argument;
     }
     hexhex_mesh_destroy(mesh);
-    if (hexhex_map_read("/nowhere.hexex", NULL, NULL, &error) == HEXHEX_OK) return argument;
+    if (hexhex_map_read("/nowhere.hexex", NULL, NULL, NULL, &error) == HEXHEX_OK) return argument;
   }
   return NULL;
 }
@@ -447,23 +743,24 @@ static long address_space(void) {
   return pages * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
-/* Extracts in ever less address space: each attempt ends with a mesh or with OutOfMemory, and the
- * process lives. */
-static int run_out_of_memory(void) {
+/* Extracts with ever more address space, from hardly any: each attempt ends with a mesh or with
+ * OutOfMemory, soon, and the process lives and works when it has memory again. */
+static int run_out_of_memory(int threads, hexhex_engine engine, long first) {
   hexhex_error error;
   hexhex_map* map = sphere(4);
   hexhex_mesh* mesh = NULL;
   hexhex_extract_options options = HEXHEX_EXTRACT_OPTIONS_INIT;
   hexhex_context_options context_options = HEXHEX_CONTEXT_OPTIONS_INIT;
   int exhausted = 0;
-  context_options.threads = 1;
-  options.scale = 4;
-  for (long extra = 4; extra <= 256; extra *= 2) {
+  context_options.threads = threads;
+  options.scale = 3;
+  options.engine = engine;
+  for (long extra = first; extra <= 64 * 1024; extra = extra * 2 + 500) {
     hexhex_context* context = NULL;
     CHECK_OK(hexhex_context_create(&context_options, &context, &error));
     struct rlimit limit;
     getrlimit(RLIMIT_AS, &limit);
-    limit.rlim_cur = (rlim_t)(address_space() + extra * 1024) * 1024;
+    limit.rlim_cur = (rlim_t)(address_space() + extra) * 1024;
     CHECK(setrlimit(RLIMIT_AS, &limit) == 0);
     mesh = NULL;
     const hexhex_status status = hexhex_extract(map, &options, context, &mesh, NULL, &error);
@@ -478,21 +775,35 @@ static int run_out_of_memory(void) {
     hexhex_mesh_destroy(mesh);
     hexhex_context_destroy(context);
   }
-  CHECK(exhausted > 0);
-  /* With all memory again, all is well. */
+  CHECK(exhausted > 0 || first > 4000);
   CHECK_OK(hexhex_extract(map, &options, NULL, &mesh, NULL, &error));
   hexhex_mesh_destroy(mesh);
   hexhex_map_destroy(map);
   return failures;
 }
 
+/* Each in a process of its own, as what fails first differs: an arena of oneTBB, a thread, an
+ * array. A process that hangs ends by its alarm. */
 static void test_memory(void) {
+  static const int threads[] = {1, 2, 8};
+  static const long first[] = {0, 1000, 3000, 8000, 24000};
   if (SANITIZED) return; /* sanitizers need their address space, and replace malloc() */
-  const pid_t child = fork();
-  if (child == 0) _exit(run_out_of_memory());
-  int status = -1;
-  CHECK(waitpid(child, &status, 0) == child);
-  CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  for (int t = 0; t < 3; ++t) {
+    for (int f = 0; f < 5; ++f) {
+      const pid_t child = fork();
+      if (child == 0) {
+        failures = 0;
+        alarm(100);
+        _exit(run_out_of_memory(threads[t], (hexhex_engine)((t + f) % 2), first[f]));
+      }
+      int status = -1;
+      CHECK(waitpid(child, &status, 0) == child);
+      if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+        fprintf(stderr, "%d threads, from %ld KB: status %d\n", threads[t], first[f], status);
+        ++failures;
+      }
+    }
+  }
 }
 
 int main(void) {
@@ -505,6 +816,10 @@ int main(void) {
   test_errors(folder);
   test_context();
   test_sink(folder);
+  test_features(folder);
+  test_repair();
+  test_curved(folder);
+  test_reentry();
   test_threads();
   char command[64];
   snprintf(command, sizeof command, "rm -r %s", folder);

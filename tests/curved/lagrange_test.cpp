@@ -2,8 +2,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
+#include <string>
+#include <unistd.h>
 
 #include <gtest/gtest.h>
 
@@ -148,6 +152,81 @@ LagrangeMesh oneCell(int order, const F& place) {
     }
   }
   return mesh;
+}
+
+/// A file of its own, with a text in it.
+class LagrangeFile {
+ public:
+  explicit LagrangeFile(const std::string& name)
+      : path_(std::filesystem::temp_directory_path() / (std::to_string(::getpid()) + name)) {}
+  ~LagrangeFile() { std::filesystem::remove(path_); }
+  LagrangeFile(const LagrangeFile&) = delete;
+  LagrangeFile& operator=(const LagrangeFile&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  void write(const std::string& text) const { std::ofstream(path_) << text; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+TEST(LagrangeReader, GivesBackWhatWasWritten) {
+  const LagrangeFile file("-lagrange.vtu");
+  Context context;
+  for (const int order : {1, 2, 3, 5}) {
+    SCOPED_TRACE(order);
+    const LagrangeMesh mesh = lagrange(generateSample(SampleKind::Sphere).map, order);
+    writeLagrangeMesh(mesh, file.path(), {}, context);
+    EXPECT_TRUE(holdsLagrangeCells(file.path(), context));
+    const LagrangeMesh read = readLagrangeMesh(file.path(), context);
+    EXPECT_EQ(read.order, mesh.order);
+    EXPECT_EQ(read.points, mesh.points);
+    EXPECT_EQ(read.nodes, mesh.nodes);
+    EXPECT_EQ(read.vertexCount, mesh.vertexCount);
+    EXPECT_EQ(read.generatorTet, mesh.generatorTet);
+    EXPECT_EQ(read.generatorCorners, mesh.generatorCorners);
+  }
+}
+
+/// A file with one cell of order 1, whose nodes have these numbers.
+std::string vtuOfOneCell(const std::string& connectivity, int end, int type, const char* point) {
+  return "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid>"
+         "<Piece NumberOfPoints=\"9\" NumberOfCells=\"1\"><Points><DataArray type=\"Float64\" "
+         "NumberOfComponents=\"3\" format=\"ascii\">9 9 9 " +
+         std::string(point) +
+         " 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1</DataArray></Points><Cells>"
+         "<DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">" +
+         connectivity + "</DataArray><DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">" +
+         std::to_string(end) +
+         "</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">" +
+         std::to_string(type) + "</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>";
+}
+
+TEST(LagrangeReader, PutsCornersFirstAndRefusesWhatIsWrong) {
+  const LagrangeFile file("-one.vtu");
+  Context context;
+  file.write(vtuOfOneCell("1 2 3 4 5 6 7 8", 8, 72, "0 0 0"));
+  const LagrangeMesh mesh = readLagrangeMesh(file.path(), context);
+  EXPECT_EQ(mesh.vertexCount, 8U);
+  EXPECT_EQ(mesh.points.back(), (Vec3{9, 9, 9}));  // of no cell
+  EXPECT_EQ(mesh.points[mesh.nodes[0]], (Vec3{0, 0, 0}));
+  EXPECT_EQ(mesh.points[mesh.nodes[3]], (Vec3{1, 1, 0}));
+  const auto expectRefused = [&](const std::string& text, ErrorCode code) {
+    file.write(text);
+    try {
+      static_cast<void>(readLagrangeMesh(file.path(), context));
+      ADD_FAILURE() << "no error " << name(code);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), code) << error.what();
+    }
+  };
+  expectRefused(vtuOfOneCell("1 2 3 4 5 6 7 9", 8, 72, "0 0 0"), ErrorCode::IndexOutOfRange);
+  expectRefused(vtuOfOneCell("1 2 3 4 5 6 7 -1", 8, 72, "0 0 0"), ErrorCode::IndexOutOfRange);
+  expectRefused(vtuOfOneCell("1 2 3 4 5 6 7 8", 9, 72, "0 0 0"), ErrorCode::FileSyntax);
+  expectRefused(vtuOfOneCell("1 2 3 4 5 6 7 8", -3, 72, "0 0 0"), ErrorCode::FileSyntax);
+  expectRefused(vtuOfOneCell("1 2 3 4 5 6 7 8", 7, 72, "0 0 0"), ErrorCode::FileUnsupported);
+  expectRefused(vtuOfOneCell("1 2 3 4 5 6 7 8", 8, 12, "0 0 0"), ErrorCode::FileUnsupported);
+  EXPECT_FALSE(holdsLagrangeCells(file.path(), context));
+  expectRefused(vtuOfOneCell("1 2 3 4 5 6 7 8", 8, 72, "nan 0 0"), ErrorCode::NotFinite);
 }
 
 TEST(LagrangeQuality, KnownCells) {

@@ -22,8 +22,9 @@ def address(array):
 
 
 def test_doctests():
-    result = doctest.testmod(hexhex, extraglobs={"hexhex": hexhex})
-    assert result.attempted > 10 and result.failed == 0
+    for module, least in ((hexhex, 30), (hexhex._types, 3)):
+        result = doctest.testmod(module, extraglobs={"hexhex": hexhex})
+        assert result.attempted >= least and result.failed == 0
 
 
 def test_extract_and_verify(sphere):
@@ -214,6 +215,207 @@ def test_meshio(sphere, tmp_path):
     read = meshio.read(tmp_path / "m.vtk")
     assert np.array_equal(read.cells_dict["hexahedron"], mesh.cells)
     assert np.array_equal(read.points, mesh.points)
+
+
+def test_features():
+    box = hexhex.generate("box", features=True)
+    used = hexhex.Map(box.points, box.tets, box.igm, features=box.features, regions=box.regions)
+    assert address(used.features.faces) == address(box.features.faces)
+    assert address(used.regions) == address(box.regions)
+    mesh = hexhex.extract(used)
+    assert len(mesh.features.vertices) == 8 and len(mesh.features.edges) == 12 * 8
+    assert sorted(np.unique(mesh.features.faces[:, 4])) == [1, 2, 3, 4, 5, 6]
+    assert address(mesh.features.faces) == address(mesh.features.faces)
+    assert (np.bincount(mesh.regions)[1:] == 64).all()
+    copy = hexhex.Mesh(mesh.points, mesh.cells, features=mesh.features, regions=mesh.regions)
+    assert np.array_equal(copy.features.faces, mesh.features.faces)
+    for bad in ([[1, 2, 3]], [["a", "b"]], [[2**40, 1]], [0.5], 7):
+        with pytest.raises(hexhex.ArgumentError):
+            hexhex.Features(vertices=bad)
+    for bad in ({"features": hexhex.Features(vertices=[[10**6, 1]])}, {"regions": [1, 2]}):
+        with pytest.raises(hexhex.HexhexError):
+            hexhex.extract(hexhex.Map(box.points, box.tets, box.igm, **bad))
+
+
+def test_curved(sphere, tmp_path):
+    mesh = hexhex.extract(sphere, order=3, arcs=True, patches=True)
+    straight = hexhex.extract(sphere)
+    assert np.array_equal(mesh.points, straight.points)
+    curved, arcs, patches = mesh.curved, mesh.arcs, mesh.patches
+    assert curved.nodes.shape == (448, 64) and curved.vertex_count == len(mesh.points)
+    corners = curved.nodes[:, [0, 3, 15, 12, 48, 51, 63, 60]]
+    assert np.array_equal(corners, mesh.cells)
+    assert arcs.point_begin[-1] == len(arcs.points) and len(arcs) == mesh.structure()["edges"]
+    assert len(patches) == mesh.structure()["faces"]
+    assert patches.corner_begin[-1] == len(patches.corners)
+    total = patches.points.sum()
+    address_of_nodes = address(curved.nodes)
+    del mesh  # arrays keep what they show alive
+    assert patches.points.sum() == total and address(curved.nodes) == address_of_nodes
+    assert hexhex.quality(curved).scaled_jacobians.shape == (448,)
+    for what, name in ((curved, "c.vtu"), (curved, "c.msh"), (arcs, "a.vtp"), (patches, "p.ovmb")):
+        hexhex.write(what, tmp_path / name)
+        assert (tmp_path / name).stat().st_size > 1000
+    with pytest.raises(hexhex.FileError):
+        hexhex.write(arcs, tmp_path / "a.stl")
+    with pytest.raises(hexhex.ArgumentError):
+        hexhex.write(arcs, tmp_path / "a.vtu", compress=True)
+    assert hexhex.extract(sphere, order=2).arcs is None
+    for order in (0, 10, -1):
+        with pytest.raises(hexhex.ArgumentError):
+            hexhex.extract(sphere, order=order)
+
+
+def test_repair():
+    bad = hexhex.generate("sphere", cells=8, refine=4, defects=2)
+    with pytest.raises(hexhex.MapError):
+        hexhex.extract(bad)
+    part = hexhex.extract_partial(bad)
+    assert 0 < len(part.mesh.cells) < 3584 and part.missing_cells > 0 and part.holes[0].tets > 0
+    assert set(part.mesh.regions.tolist()) == {0, 1}
+    if not hexhex.can_repair():
+        pytest.skip("without libLBFGS")
+    good, report = hexhex.repair(bad)
+    assert report.changed and report.bad_tets >= 2 and report.regions[0].place.startswith("tet")
+    mesh = hexhex.extract(bad, repair=True)
+    assert mesh.repair.changed and np.array_equal(mesh.repaired_map.igm, good.igm)
+    assert hexhex.verify(mesh.repaired_map, mesh)
+    assert hexhex.extract(good, repair=True).repair is None
+
+
+def test_pieces(sphere, tmp_path):
+    class Sink:
+        def __init__(self):
+            self.parts, self.ended = [], False
+
+        def begin(self, points, cells):
+            self.expected = points, cells
+
+        def points(self, first, points, tets, corners):
+            assert len(points) == len(tets) == len(corners)
+
+        def cells(self, first, cells):
+            self.parts.append(cells)
+
+        def end(self):
+            self.ended = True
+
+    mesh = hexhex.extract(sphere, scale=2)
+    for extract in (lambda sink: hexhex.extract_to(sink, sphere, scale=2),
+                    lambda sink: hexhex.Extractor(sphere).extract_to(sink, scale=2)):
+        sink = Sink()
+        extract(sink)
+        assert sink.ended and sink.expected == (3817, 3584)
+        assert np.array_equal(np.concatenate(sink.parts), mesh.cells)
+
+    class Broken(Sink):
+        def cells(self, first, cells):
+            raise LookupError("full")
+
+    with pytest.raises(LookupError, match="full"):
+        hexhex.extract_to(Broken(), sphere)
+    with pytest.raises(AttributeError):
+        hexhex.extract_to(object(), sphere)
+    hexhex.extract_to_file(tmp_path / "m.vtu", sphere, scale=2)
+    assert hexhex.survey(tmp_path / "m.vtu") == hexhex.survey(mesh)
+    writer = hexhex.MeshWriter(tmp_path / "w.vtu")
+    with pytest.raises(hexhex.HexhexError):
+        writer.end()
+    del writer
+    assert not (tmp_path / "w.vtu").exists()
+
+
+def test_odd_arguments(sphere):
+    """Layouts that have to be converted give the same; what is no map is an error."""
+    expected = hexhex.extract(sphere)
+    wide = np.zeros((2 * len(sphere.points), 6))
+    wide[::2, ::2] = sphere.points
+    strided = hexhex.extract(wide[::2, ::2], np.asfortranarray(sphere.tets)[:, :],
+                             sphere.igm[::-1][::-1])
+    assert np.array_equal(strided.points, expected.points)
+    big = hexhex.extract(sphere.points.astype(">f8"), sphere.tets.astype(">i8"), sphere.igm)
+    assert np.array_equal(big.cells, expected.cells)
+    none = np.empty((0, 3)), np.empty((0, 4), np.uint32), np.empty((0, 4, 3))
+    nan = np.array(sphere.points)
+    nan[3, 1] = np.nan
+    infinite = np.array(sphere.igm)
+    infinite[0, 0, 0] = np.inf
+    negative = np.array(sphere.tets, dtype=np.int64)
+    negative[3, 1] = -1
+    bad = [none, (nan, sphere.tets, sphere.igm), (sphere.points, sphere.tets, infinite),
+           (sphere.points, negative, sphere.igm), (sphere.points, sphere.tets, sphere.igm[1:]),
+           (sphere.points, sphere.tets[:, :3], sphere.igm), (sphere.points[:-1], *none[1:]),
+           (sphere.points, sphere.tets.astype(float), sphere.igm), (None, None, None),
+           (sphere.points[:, 0], sphere.tets, sphere.igm)]
+    for arrays in bad:
+        with pytest.raises((hexhex.ArgumentError, hexhex.MapError)):
+            hexhex.extract(*arrays)
+    reassigned = hexhex.Map(sphere.points, sphere.tets, sphere.igm)
+    reassigned.igm = sphere.igm[1:]
+    with pytest.raises(hexhex.HexhexError):
+        hexhex.extract(reassigned)
+
+
+def test_reentry(sphere):
+    """Progress functions may use the library; an extractor serves one call at a time."""
+    inner = []
+
+    def extract_again(stage, share):
+        if not inner:
+            inner.append(hexhex.extract(sphere, progress=lambda stage, share: None))
+
+    outer = hexhex.extract(sphere, progress=extract_again)
+    assert np.array_equal(inner[0].cells, outer.cells)
+    extractor = hexhex.Extractor(sphere)
+    with pytest.raises(hexhex.ArgumentError, match="in use"):
+        extractor.extract(progress=lambda stage, share: extractor.extract())
+    assert len(extractor.extract().cells) == 448
+
+
+MEMORY = """
+import resource, sys, hexhex
+map = hexhex.generate("sphere", cells=4, refine=4)
+pages = int(open("/proc/self/statm").read().split()[0])
+for extra in (2, 12, 40):
+    space = pages * resource.getpagesize() + extra * 2**20
+    resource.setrlimit(resource.RLIMIT_AS, (space, resource.RLIM_INFINITY))
+    try:
+        print(len(hexhex.extract(map, scale=4, threads=int(sys.argv[1])).cells))
+    except MemoryError as error:
+        print("MemoryError", getattr(error, "code", ""))
+resource.setrlimit(resource.RLIMIT_AS, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+print(len(hexhex.extract(map, scale=4).cells))
+"""
+
+
+@pytest.mark.parametrize("threads", [1, 8])
+def test_memory(threads):
+    result = subprocess.run([sys.executable, "-c", MEMORY, str(threads)], capture_output=True,
+                            text=True, timeout=120, check=False)
+    lines = result.stdout.split("\n")
+    assert result.returncode == 0 and lines[3] == "28672", result.stdout + result.stderr
+    assert "MemoryError" in lines[0]
+
+
+def test_vtk_alone(sphere):
+    """to_vtk() takes vtk and no pyvista; curved cells are in VTK's order of nodes."""
+    pytest.importorskip("vtkmodules")
+    code = """
+import sys
+sys.modules["pyvista"] = None
+import hexhex
+mesh = hexhex.extract(hexhex.generate("sphere"), order=3)
+grid, curved = mesh.to_vtk(), mesh.curved.to_vtk()
+from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
+for g in (grid, curved):
+    sizes = vtkCellSizeFilter()
+    sizes.SetInputData(g)
+    sizes.Update()
+    volumes = sizes.GetOutput().GetCellData().GetArray("Volume")
+    values = [volumes.GetValue(i) for i in range(448)]
+    assert min(values) > 0 and 3 < sum(values) < 4.2, (min(values), sum(values))
+"""
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
 
 
 def test_pyvista(sphere):

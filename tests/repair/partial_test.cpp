@@ -55,7 +55,7 @@ TEST(Partial, IsTheWholeMeshOfAValidMap) {
 TEST(Partial, LeavesHolesAtDefects) {
   SampleOptions options;
   options.cells = 6;
-  options.refine = 4;
+  options.refine = 3;
   options.charts = ChartStyle::Blocks;
   const std::size_t wanted = extract(generateSample(SampleKind::Sphere, options).map).cells.size();
   options.defects = 4;

@@ -1,4 +1,5 @@
 // Pages that show a mesh: the packed tables, and what the page holds and refuses.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -12,8 +13,10 @@
 
 #include <gtest/gtest.h>
 #include <view/mesh_tables.hpp>
+#include <view/surface_nodes.hpp>
 #include <view/table_codec.hpp>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/structure.hpp>
@@ -139,9 +142,12 @@ TEST(Quantization, TakesPointsAtOnePlaceAndHugeOnes) {
   HexMesh mesh = gridMesh(1);
   for (Vec3& point : mesh.points) point = {3, 3, 3};
   EXPECT_EQ(quantizationOf(mesh).step, 1);
-  mesh.points[0] = {-1.7e308, 0, 0};
-  mesh.points[1] = {1.7e308, 0, 0};
+  mesh.points[0] = {-8e307, 0, 0};
+  mesh.points[1] = {8e307, 0, 0};
   EXPECT_TRUE(std::isfinite(quantizationOf(mesh).step));
+  for (Vec3& point : mesh.points) point = {0, 0, 0};
+  mesh.points[0] = {4e-320, 0, 0};
+  EXPECT_GT(quantizationOf(mesh).step, 0);
 }
 
 /// A page in a file of its own.
@@ -224,6 +230,16 @@ TEST_F(Page, RefusesWhatCannotBeShown) {
   mesh.points[5][1] = std::nan("");
   expectRefused(mesh, ErrorCode::NotFinite);
   mesh = gridMesh(2);
+  mesh.points[0][0] = -1.7e308;  // the box is longer than the largest double
+  mesh.points[1][0] = 1.7e308;
+  expectRefused(mesh, ErrorCode::TooLarge);
+  mesh = gridMesh(2);
+  mesh.features.quads.push_back({{0, 1, 2, 1000}, 7});
+  expectRefused(mesh, ErrorCode::InvalidArgument);
+  mesh = gridMesh(2);
+  mesh.regions.resize(3);
+  expectRefused(mesh, ErrorCode::InvalidArgument);
+  mesh = gridMesh(2);
   const std::array<double, 3> tooFew = {1, 1, 1};
   ViewOptions options;
   options.scaledJacobians = tooFew;
@@ -233,6 +249,86 @@ TEST_F(Page, RefusesWhatCannotBeShown) {
   mesh = gridMesh(1);
   mesh.points.resize(std::size_t{1} << 24U);  // memory that nobody touches
   expectRefused(mesh, ErrorCode::TooLarge);
+}
+
+TEST_F(Page, TakesHugeAndTinyMeshes) {
+  for (const double factor : {1e300, 1e150, 1e-150, 1e-300}) {
+    HexMesh mesh = gridMesh(2);
+    for (Vec3& point : mesh.points) {
+      for (double& coordinate : point) coordinate *= factor;
+    }
+    const std::string page = write(mesh);
+    // JSON knows no NaN: it would be null here.
+    EXPECT_FALSE(contains(page, "null,\"notPositive\"")) << factor;
+    EXPECT_FALSE(contains(page, "\"mean\":null")) << factor;
+    EXPECT_FALSE(contains(page, "\"minimum\":null")) << factor;
+  }
+}
+
+/// A grid of side^3 cells with nodes halfway between vertices.
+LagrangeMesh quadraticGrid(std::size_t side) {
+  const std::size_t n = 2 * side + 1;
+  LagrangeMesh mesh;
+  mesh.order = 2;
+  // The grid's vertices come first.
+  Array<Index> numberOf(n * n * n);
+  for (const bool corners : {true, false}) {
+    for (std::size_t v = 0; v < numberOf.size(); ++v) {
+      const std::array<std::size_t, 3> place = {v % n, v / n % n, v / n / n};
+      const bool isCorner = std::ranges::all_of(place, [](auto k) { return k % 2 == 0; });
+      if (isCorner != corners) continue;
+      numberOf[v] = static_cast<Index>(mesh.points.size());
+      mesh.points.push_back({static_cast<double>(place[0]), static_cast<double>(place[1]),
+                             static_cast<double>(place[2])});
+    }
+    if (corners) mesh.vertexCount = mesh.points.size();
+  }
+  for (std::size_t cell = 0; cell < side * side * side; ++cell) {
+    const std::size_t begin =
+        2 * (cell % side + n * (cell / side % side + n * (cell / side / side)));
+    for (std::size_t place = 0; place < 27; ++place) {
+      mesh.nodes.push_back(numberOf[begin + place % 3 + n * (place / 3 % 3 + n * (place / 9))]);
+    }
+  }
+  return mesh;
+}
+
+TEST(SurfaceNodes, AreThoseOnFaces) {
+  const LagrangeMesh mesh = quadraticGrid(2);
+  const SurfaceNodes nodes = surfaceNodesOf(mesh);
+  EXPECT_EQ(nodes.perCell, 27U - 8U - 1U);
+  ASSERT_EQ(nodes.numbers.size(), 8 * nodes.perCell);
+  // Of 5^3 nodes, 3^3 are vertices and 2^3 are inside cells.
+  EXPECT_EQ(nodes.points.size(), 125U - 27U - 8U);
+  std::vector<bool> named(nodes.points.size(), false);
+  for (const Index number : nodes.numbers) named.at(number - mesh.vertexCount) = true;
+  EXPECT_EQ(std::count(named.begin(), named.end(), true), 90);
+  // The first one of a cell is halfway from its corner 0 to corner 1.
+  const HexMesh corners = straightMesh(mesh);
+  for (std::size_t c = 0; c < 8; ++c) {
+    const Vec3& place = nodes.points[nodes.numbers[c * nodes.perCell] - mesh.vertexCount];
+    const Vec3& a = corners.points[corners.cells[c][0]];
+    const Vec3& b = corners.points[corners.cells[c][1]];
+    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(place[axis], (a[axis] + b[axis]) / 2);
+  }
+}
+
+TEST_F(Page, HoldsCurvedCells) {
+  Context context;
+  const LagrangeMesh mesh = quadraticGrid(2);
+  const ServedPage page = makeServedPage(mesh, "/mesh", {}, context);
+  EXPECT_TRUE(contains(page.html, "\"order\":2,"));
+  EXPECT_TRUE(contains(page.html, "\"points\":117,"));
+  EXPECT_TRUE(contains(page.html, "\"vertices\":27"));
+  LagrangeMesh broken = mesh;
+  broken.nodes[13] = 1000;
+  EXPECT_THROW(makeServedPage(broken, "/mesh", {}, context), Error);
+  broken = mesh;
+  broken.vertexCount = 5;
+  EXPECT_THROW(makeServedPage(broken, "/mesh", {}, context), Error);
+  broken = mesh;
+  broken.nodes.pop_back();
+  EXPECT_THROW(makeServedPage(broken, "/mesh", {}, context), Error);
 }
 
 TEST(ServedPage, HasTheMeshApart) {

@@ -1,18 +1,20 @@
 // The loaded page: one state; what changes it, and what it changes.
 import { Vector3 } from "three";
 import { featureColour, valenceColour } from "./colours";
+import { EdgeCurves, kCellEdges } from "./curves";
 import { type MeshInfo, qualityOf, storedQuality } from "./format";
 import type { MeshWorker } from "./load";
-import { kCellEdges, thinLines, type Segments, wideLines } from "./scene/lines";
+import { thinLines, type Segments, wideLines } from "./scene/lines";
 import { type ColourMode, kColourModes, Surface } from "./scene/surface";
 import { Viewport } from "./scene/viewport";
 import { sceneOf } from "./scene_box";
-import { fromFragment, kStart, type SliceDirection, toFragment, type ViewState } from "./state";
+import { type Flag, fromFragment, kFlags, kStart, type SliceDirection, toFragment, type ViewState } from "./state";
 import { element, grouped } from "./ui/dom";
 import { Histogram } from "./ui/histogram";
 import { Legend } from "./ui/legend";
 import { showPicked } from "./ui/statistics";
 import type { LoadedMesh } from "./worker/messages";
+import type { CurvedFaces } from "./worker/curved_faces";
 import type { Filter, Visible } from "./worker/visible";
 
 const kAxes: Record<"x" | "y" | "z", [number, number, number]> = {
@@ -53,8 +55,11 @@ export class App {
   private readonly surface: Surface;
   private readonly histogram: Histogram;
   private readonly legend = new Legend(element("legend"));
-  private readonly lines;
-  private pickedOutline = wideLines({ vertices: [], colours: [] }, new Float32Array(0), 1);
+  private readonly curves: EdgeCurves | null;
+  private lines;
+  /** Whether the lines are those of curved cells. */
+  private curvedLines: boolean;
+  private pickedOutline = wideLines({ vertices: [], colours: [] }, new Float32Array(0), null, 1);
   private readonly colourRange: [number, number];
   private fragmentTimer = 0;
 
@@ -74,21 +79,16 @@ export class App {
     this.viewport = new Viewport(canvas, new Vector3(...half).length(), () => this.saveFragment());
     this.surface = new Surface(mesh);
     this.viewport.setSurface(this.surface);
-    const { positions } = mesh;
-    this.lines = {
-      inner: wideLines(singularSegments(mesh.singularEdges, false), positions, 3),
-      boundary: wideLines(singularSegments(mesh.singularEdges, true), positions, 2),
-      features: wideLines(featureSegments(mesh.featureEdges), positions, 2.5),
-      outline: thinLines(mesh.boundaryEdges, positions),
-    };
-    for (const object of Object.values(this.lines)) this.viewport.add(object);
+    this.curves = mesh.order > 1 ? new EdgeCurves(mesh) : null;
+    this.curvedLines = this.curved();
+    this.lines = this.makeLines();
     this.histogram = new Histogram(
       element<HTMLCanvasElement>("histogram"),
       info.quality.minimum,
       () => this.colourRange,
       (range) => this.change({ quality: range }),
     );
-    worker.onVisible = (visible, milliseconds) => this.showVisible(visible, milliseconds);
+    worker.onVisible = (visible, curved, milliseconds) => this.showVisible(visible, curved, milliseconds);
     this.fillControls();
     if (this.state.camera) this.viewport.cameraState = this.state.camera;
     this.applyTheme();
@@ -131,11 +131,12 @@ export class App {
   }
 
   nextColour(): void {
-    const next = kColourModes.indexOf(this.state.colour) + 1;
-    this.change({ colour: kColourModes[next % kColourModes.length]! });
+    const modes = kColourModes.filter((mode) => this.hasColour(mode));
+    const next = modes.indexOf(this.state.colour) + 1;
+    this.change({ colour: modes[next % modes.length]! });
   }
 
-  toggle(flag: "grid" | "inner" | "boundary" | "outline" | "features"): void {
+  toggle(flag: Flag): void {
     this.change({ [flag]: !this.state[flag] });
   }
 
@@ -241,7 +242,8 @@ export class App {
   private update(): void {
     const { state } = this;
     state.peel = Math.min(state.peel, this.mesh.deepestLayer);
-    this.worker.show(this.filter());
+    this.worker.show(this.filter(), this.curved());
+    if (this.curvedLines !== this.curved()) this.remakeLines();
     document.body.dataset.busy = "true";
     this.surface.setColouring(state.colour, this.colourRange);
     this.surface.showGrid(state.grid);
@@ -253,24 +255,58 @@ export class App {
     this.outlinePicked();
     this.showControls();
     this.histogram.setRange(state.quality);
-    const { quadTags, deepestLayer } = this.mesh;
-    this.legend.update(state, this.info, quadTags, deepestLayer, this.colourRange);
+    this.legend.update(state, this.info, this.mesh, this.colourRange);
     showPicked(state.picked, this.info, this.mesh);
     this.viewport.redraw();
   }
 
+  /** Whether cells are drawn curved. */
+  private curved(): boolean {
+    return this.curves !== null && this.state.curved;
+  }
+
+  private makeLines() {
+    const { positions, singularEdges, featureEdges, boundaryEdges } = this.mesh;
+    const curves = this.curvedLines ? this.curves : null;
+    const lines = {
+      inner: wideLines(singularSegments(singularEdges, false), positions, curves, 3),
+      boundary: wideLines(singularSegments(singularEdges, true), positions, curves, 2),
+      features: wideLines(featureSegments(featureEdges), positions, curves, 2.5),
+      outline: thinLines(boundaryEdges, positions, curves),
+    };
+    for (const object of Object.values(lines)) this.viewport.add(object);
+    return lines;
+  }
+
+  private remakeLines(): void {
+    for (const object of Object.values(this.lines)) this.viewport.remove(object);
+    this.curvedLines = this.curved();
+    this.lines = this.makeLines();
+  }
+
+  /** Whether the mesh has what a colouring shows. */
+  private hasColour(mode: ColourMode): boolean {
+    if (mode === "generator") return this.info.hasGenerators;
+    if (mode === "feature") return this.mesh.quadTags.length > 0;
+    if (mode === "region") return this.mesh.regionTags.length > 0;
+    return true;
+  }
+
   private outlinePicked(): void {
-    this.viewport.scene.remove(this.pickedOutline);
+    this.viewport.remove(this.pickedOutline);
     const cell = this.state.picked;
     const vertices =
       cell === null ? [] : kCellEdges.map((corner) => this.mesh.cells[8 * cell + corner]!);
     const colours = vertices.slice(0, vertices.length / 2).map(() => 0xff3b30);
-    this.pickedOutline = wideLines({ vertices, colours }, this.mesh.positions, 2.5);
+    const curves = this.curved() ? this.curves : null;
+    this.pickedOutline = wideLines({ vertices, colours }, this.mesh.positions, curves, 2.5);
     this.viewport.add(this.pickedOutline);
   }
 
-  private showVisible(visible: Visible, milliseconds: number): void {
-    this.surface.setQuads(visible.quads);
+  private showVisible(visible: Visible, curved: CurvedFaces | null, milliseconds: number): void {
+    this.surface.setQuads(visible.quads, curved);
+    element("curved-pieces").hidden = curved === null;
+    element("drawn-pieces").textContent = String((curved?.pieces ?? 1) ** 2);
     element("kept-cells").textContent = grouped(visible.kept);
     element("drawn-quads").textContent = grouped(visible.quads.length / 6);
     this.histogram.set(visible.histogramCandidates, visible.histogramKept);
@@ -285,10 +321,10 @@ export class App {
     element("peel-most").textContent = String(this.mesh.deepestLayer);
     element<HTMLInputElement>("peel").max = String(this.mesh.deepestLayer);
     const colours = element<HTMLSelectElement>("colour");
-    colours.querySelector<HTMLOptionElement>('[value="generator"]')!.disabled =
-      !this.info.hasGenerators;
-    colours.querySelector<HTMLOptionElement>('[value="feature"]')!.disabled =
-      this.mesh.quadTags.length === 0;
+    for (const option of colours.options) {
+      option.disabled = !this.hasColour(option.value as ColourMode);
+    }
+    element("show-curved").closest("label")!.hidden = this.mesh.order === 1;
     const noFeatures = this.mesh.featureEdges.length === 0;
     element("show-features").closest("label")!.hidden = noFeatures;
     element("controls").inert = false;
@@ -308,7 +344,7 @@ export class App {
     element<HTMLInputElement>("quality-from").value = String(Number(lowest.toFixed(4)));
     element<HTMLInputElement>("quality-to").value = String(Number(state.quality[1].toFixed(4)));
     element<HTMLSelectElement>("colour").value = state.colour;
-    for (const flag of ["grid", "inner", "boundary", "outline", "features"] as const) {
+    for (const flag of kFlags) {
       element<HTMLInputElement>(`show-${flag}`).checked = state[flag];
     }
   }

@@ -24,7 +24,11 @@ export interface MeshInfo {
   title: string;
   program: string;
   vertices: number;
+  /** Vertices, then nodes of cells of higher order. */
+  points: number;
   cells: number;
+  /** 1: straight cells. */
+  order: number;
   /** Lower corner of the bounding box. */
   lower: [number, number, number];
   upper: [number, number, number];

@@ -3,6 +3,7 @@ import type { MeshInfo } from "./format";
 import { element, grouped, make } from "./ui/dom";
 import { memoryEstimate } from "./ui/statistics";
 import type { FromWorker, LoadedMesh, ToWorker } from "./worker/messages";
+import type { CurvedFaces } from "./worker/curved_faces";
 import type { Filter, Visible } from "./worker/visible";
 
 /** From here on a browser may run out of memory, so the page asks before it loads. */
@@ -11,10 +12,10 @@ const kManyCells = 5e6;
 declare const WORKER_SOURCE: string;
 
 export class MeshWorker {
-  onVisible: (visible: Visible, milliseconds: number) => void = () => {};
+  onVisible: (visible: Visible, curved: CurvedFaces | null, milliseconds: number) => void = () => {};
   private readonly worker: Worker;
   private running = false;
-  private next: Filter | null = null;
+  private next: [Filter, boolean] | null = null;
 
   constructor(
     private readonly onProgress: (what: string, share: number) => void,
@@ -32,13 +33,13 @@ export class MeshWorker {
   }
 
   /** Asks for the faces of a filter. While one is being worked on, only the last one waits. */
-  show(filter: Filter): void {
+  show(filter: Filter, curved: boolean): void {
     if (this.running) {
-      this.next = filter;
+      this.next = [filter, curved];
       return;
     }
     this.running = true;
-    this.send({ kind: "show", filter });
+    this.send({ kind: "show", filter, curved });
   }
 
   /** Whether no answer is awaited. */
@@ -58,8 +59,8 @@ export class MeshWorker {
         this.running = false;
         const next = this.next;
         this.next = null;
-        if (next) this.show(next);
-        this.onVisible(message.visible, message.milliseconds);
+        if (next) this.show(...next);
+        this.onVisible(message.visible, message.curved, message.milliseconds);
       }
     }
   }

@@ -14,7 +14,7 @@ export interface SceneBox {
 export function sceneOf(info: MeshInfo): SceneBox {
   const sides = [0, 1, 2].map((axis) => info.upper[axis]! - info.lower[axis]!);
   const longest = Math.max(...sides) || 1;
-  const centre = [0, 1, 2].map((axis) => (info.upper[axis]! + info.lower[axis]!) / 2);
+  const centre = [0, 1, 2].map((axis) => info.upper[axis]! / 2 + info.lower[axis]! / 2);
   return {
     centre: centre as [number, number, number],
     scale: 1 / longest,

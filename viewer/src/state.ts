@@ -19,6 +19,8 @@ export interface ViewState {
   boundary: boolean;
   outline: boolean;
   features: boolean;
+  /** Whether cells of higher order are drawn as they are. */
+  curved: boolean;
   picked: number | null;
   theme: "system" | "dark" | "light";
   camera: CameraState | null;
@@ -36,12 +38,14 @@ export const kStart: ViewState = {
   boundary: false,
   outline: false,
   features: true,
+  curved: true,
   picked: null,
   theme: "system",
   camera: null,
 };
 
-const kFlags = ["grid", "inner", "boundary", "outline", "features"] as const;
+export const kFlags = ["grid", "inner", "boundary", "outline", "features", "curved"] as const;
+export type Flag = (typeof kFlags)[number];
 const short = (x: number) => String(Number(x.toPrecision(6)));
 const list = (numbers: number[]) => numbers.map(short).join(",");
 
@@ -67,6 +71,12 @@ function numbers(text: string | null, count: number): number[] | null {
   return values.length === count && values.every(Number.isFinite) ? values : null;
 }
 
+/** Whether a camera looks anywhere, from a place where the mesh can be seen. */
+function isCamera(numbers: number[]): boolean {
+  const distance = Math.hypot(...[0, 1, 2].map((k) => numbers[k]! - numbers[k + 3]!));
+  return distance > 1e-6 && numbers.every((x) => Math.abs(x) < 1000);
+}
+
 /** What a fragment says; what it says wrongly is left as it is at the start. */
 export function fromFragment(fragment: string): ViewState {
   const state: ViewState = { ...kStart };
@@ -80,7 +90,10 @@ export function fromFragment(fragment: string): ViewState {
   }
   state.peel = Math.max(0, Math.floor(numbers(parts.get("peel"), 1)?.[0] ?? 0));
   const quality = numbers(parts.get("quality"), 2);
-  if (quality) state.quality = [quality[0]!, quality[1]!];
+  if (quality) {
+    const [from, to] = quality.map((value) => Math.min(Math.max(value, -1), 1)).sort((a, b) => a - b);
+    state.quality = [from!, to!];
+  }
   const colour = kColourModes.find((mode) => mode === parts.get("colour"));
   if (colour) state.colour = colour;
   for (const flag of kFlags) if (parts.has(flag)) state[flag] = parts.get(flag) === "1";
@@ -89,7 +102,7 @@ export function fromFragment(fragment: string): ViewState {
   const theme = parts.get("theme");
   if (theme === "dark" || theme === "light") state.theme = theme;
   const camera = numbers(parts.get("camera"), 6);
-  if (camera) {
+  if (camera && isCamera(camera)) {
     state.camera = {
       position: [camera[0]!, camera[1]!, camera[2]!],
       target: [camera[3]!, camera[4]!, camera[5]!],

@@ -5,6 +5,9 @@ import { join } from "node:path";
 
 export const kPages = process.env.HEXHEX_VIEWER_PAGES ?? join(import.meta.dirname, "../pages");
 
+/** Would run if it got into the page as HTML, as a script, or as JSON that ends its element. */
+export const kHostileName = `"'<img src=x onerror=stolen=1><!--&lt;\u2028.html`;
+
 export function hexhex(...args: string[]): string {
   const command = process.env.HEXHEX_COMMAND;
   if (!command) throw new Error("HEXHEX_COMMAND shall name the hexhex command");
@@ -38,6 +41,21 @@ export default function makePages(): void {
   hexhex("extract", "box.hexex", "-o", "broken.mesh", "--quiet");
   invertCell("broken.mesh", 21);
   hexhex("view", "broken.mesh", "--quiet");
+
+  // Few cells over many tets, so that they are curved; read from a file, and made from a map.
+  hexhex("generate", "sphere", "--cells", "2", "--refine", "6", "--features", "-o", "ball.ovmb",
+    "--quiet");
+  hexhex("extract", "ball.ovmb", "-o", "curved.vtu", "--order", "3", "--quiet");
+  hexhex("view", "curved.vtu", "--quiet");
+  hexhex("view", "ball.ovmb", "--order", "2", "-o", "map.html", "--quiet");
+
+  // One cell, in a file that somebody has named who means harm.
+  const mesh = kHostileName.replace(/html$/, "mesh");
+  const corners = ["0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 0 1", "1 0 1", "1 1 1", "0 1 1"];
+  writeFileSync(join(kPages, mesh), ["MeshVersionFormatted 2", "Dimension 3", "Vertices", "8",
+    ...corners.map((corner) => `${corner} 0`), "Hexahedra", "1", "1 2 3 4 5 6 7 8 0", "End", ""]
+    .join("\n"));
+  hexhex("view", mesh, "--quiet");
 
   // A mesh that has tagged edges and faces.
   hexhex("generate", "cylinder", "--cells", "4", "--refine", "2", "--features", "-o",

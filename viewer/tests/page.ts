@@ -56,8 +56,9 @@ export async function press(page: Page, keys: string): Promise<void> {
   }
 }
 
-/** The number of different colours on the canvas: 1 if nothing is drawn. */
-export async function coloursOnCanvas(page: Page): Promise<number> {
+/** Of the canvas: the number of different colours, 1 if nothing is drawn; and of pixels that are not
+ * as the one in the corner. */
+export async function lookAtCanvas(page: Page): Promise<{ colours: number; covered: number }> {
   const bytes = (await page.locator("#canvas").screenshot()).toString("base64");
   return page.evaluate(async (png) => {
     const image = new Image();
@@ -69,8 +70,14 @@ export async function coloursOnCanvas(page: Page): Promise<number> {
     const context = canvas.getContext("2d")!;
     context.drawImage(image, 0, 0);
     const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
-    return new Set(new Uint32Array(data.buffer)).size;
+    const pixels = new Uint32Array(data.buffer);
+    return {
+      colours: new Set(pixels).size,
+      covered: pixels.reduce((sum, pixel) => sum + Number(pixel !== pixels[0]), 0),
+    };
   }, bytes);
 }
+
+export const coloursOnCanvas = async (page: Page) => (await lookAtCanvas(page)).colours;
 
 export { expect };

@@ -1,7 +1,7 @@
 import { mkdirSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
-import { kPages } from "./make_pages";
-import { coloursOnCanvas, expect, kept, open, press, quads, settle, test } from "./page";
+import { kHostileName, kPages } from "./make_pages";
+import { coloursOnCanvas, expect, kept, lookAtCanvas, open, press, quads, settle, test } from "./page";
 
 const kPictures = process.env.HEXHEX_VIEWER_PICTURES ?? join(kPages, "../pictures");
 mkdirSync(kPictures, { recursive: true });
@@ -165,6 +165,61 @@ test("shows what is tagged", async ({ page }) => {
   await page.screenshot(shot("features"));
 });
 
+test("draws cells of higher order curved or straight", async ({ page }) => {
+  await open(page, "curved.html");
+  const [cells, side] = [7 * 2 ** 3, 2];
+  const boundary = 6 * side ** 2;
+  expect([await kept(page), await quads(page)]).toEqual([cells, boundary]);
+  await expect(page.locator("#stat-order")).toHaveText("3");
+  // Two nodes on each edge, four on each face; Euler's formula counts the edges.
+  const vertices = Number(await page.locator("#stat-vertices").textContent());
+  const faces = (6 * cells + boundary) / 2;
+  const edges = vertices + faces - cells - 1;
+  await expect(page.locator("#stat-nodes")).toHaveText((2 * edges + 4 * faces).toLocaleString("en"));
+  await expect(page.locator("#drawn-pieces")).toHaveText("36");
+  for (const line of ["inner", "boundary", "features"]) await page.locator(`#show-${line}`).uncheck();
+  await settle(page);
+  const curved = await lookAtCanvas(page);
+  await page.screenshot(shot("curved"));
+
+  await press(page, "u");
+  await expect(page.locator("#show-curved")).not.toBeChecked();
+  await expect(page.locator("#curved-pieces")).toBeHidden();
+  expect([await kept(page), await quads(page)]).toEqual([cells, boundary]);
+  // A ball is larger than the polyhedron inside it.
+  const straight = await lookAtCanvas(page);
+  expect(straight.covered).toBeGreaterThan(0.5 * curved.covered);
+  expect(straight.covered).toBeLessThan(0.98 * curved.covered);
+  await page.locator("#share").click();
+  expect(page.url()).toContain("curved=0");
+  await press(page, "u");
+  expect((await lookAtCanvas(page)).covered).toBe(curved.covered);
+
+  await press(page, "x");
+  expect(await kept(page)).toBe(cells / 2);
+  const box = (await page.locator("#canvas").boundingBox())!;
+  await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+  await settle(page);
+  await expect(page.locator("#picked-cell")).toHaveText(/^\d+$/);
+  await press(page, "ebo");
+  await page.screenshot(shot("curved-cut"));
+});
+
+test("shows the mesh of a map", async ({ page }) => {
+  await open(page, "map.html");
+  expect(await kept(page)).toBe(56);
+  await expect(page.locator("#drawn-pieces")).toHaveText("16");
+  await expect(page.locator("#stat-verification")).toContainText("agrees with ball.ovmb");
+  await page.locator("#colour").selectOption("region");
+  await expect(page.locator("#legend")).toContainText("region of the cell");
+  expect(await page.locator("#legend i:not(.edge)").count()).toBe(7);
+  await settle(page);
+  await page.screenshot(shot("regions"));
+  // Straight meshes have nothing to switch.
+  await open(page, "box.html");
+  await expect(page.locator("#show-curved")).toBeHidden();
+});
+
 test("saves a picture", async ({ page }) => {
   await open(page, "sphere.html");
   const download = page.waitForEvent("download");
@@ -196,19 +251,32 @@ test("keeps the view in the address", async ({ page, context }) => {
   await open(page, "box.html", "#slice=q,1&peel=900&cell=77777&camera=1,2&quality=a,b");
   expect(await kept(page)).toBe(8);
   await expect(page.locator("#picked")).toBeHidden();
+  await open(page, "broken.html", "#camera=0,0,0,0,0,0&slice=x,0,0,0,7&quality=9,-9&colour=__proto__");
+  expect([await kept(page), await quads(page)]).toEqual([64, 96]);
+  expect(await coloursOnCanvas(page)).toBeGreaterThan(10);
+});
+
+test("takes any name, and a mesh of one cell", async ({ page }) => {
+  await open(page, encodeURIComponent(kHostileName));
+  await expect(page.locator("#title")).toHaveText(kHostileName.replace(/html$/, "mesh"));
+  expect(await page.title()).toContain("<img src=x");
+  expect(await page.evaluate(() => "stolen" in window)).toBe(false);
+  expect([await kept(page), await quads(page)]).toEqual([1, 6]);
+  await press(page, "w");
+  await expect(page.locator("#picked-cell")).toHaveText("0");
 });
 
 test("lists the keys, and is dark on request", async ({ page }) => {
   await open(page, "sphere.html");
   await press(page, "?");
   await expect(page.locator("#shortcuts")).toBeVisible();
-  await expect(page.locator("#shortcut-list dt")).toHaveCount(26);
+  await expect(page.locator("#shortcut-list dt")).toHaveCount(27);
   await page.keyboard.press("Escape");
   await expect(page.locator("#shortcuts")).toBeHidden();
   const back = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   const light = await back();
   await press(page, "d");
-  expect(await back()).not.toBe(light);
+  await expect.poll(back).not.toBe(light);
   await press(page, "x");
   await page.screenshot(shot("dark"));
 });

@@ -106,7 +106,8 @@ typedef struct hexhex_error {
 /* ---- Context: threads, progress, cancellation ------------------------------------------------ */
 
 /** What long work gets from its caller. Functions accept NULL: all cores, no progress.
- * One context serves one call at a time. */
+ * One context serves one call at a time; another one, as from its own progress function, is
+ * HEXHEX_INVALID_ARGUMENT. The progress function may call whatever uses other handles. */
 typedef struct hexhex_context hexhex_context;
 
 /** Called with the name of the stage and its finished share in [0, 1], at most a hundred times a
@@ -147,6 +148,26 @@ typedef struct hexhex_edge_valence {
   int offset;
 } hexhex_edge_valence;
 
+/** Tagged vertices, edges, triangles of tet meshes and quads of hex meshes, as sharp curves and
+ * named surfaces; vertices of edges and triangles in any order, those of quads in order around
+ * them. <hexhex/extract.hpp> tells what tags of tets become, and docs/features.md more. */
+typedef struct hexhex_feature_vertex {
+  uint32_t vertex;
+  int32_t tag;
+} hexhex_feature_vertex;
+typedef struct hexhex_feature_edge {
+  uint32_t vertices[2];
+  int32_t tag;
+} hexhex_feature_edge;
+typedef struct hexhex_feature_face {
+  uint32_t vertices[3];
+  int32_t tag;
+} hexhex_feature_face;
+typedef struct hexhex_feature_quad {
+  uint32_t vertices[4];
+  int32_t tag;
+} hexhex_feature_quad;
+
 /** The arrays of a tetrahedral mesh with an integer-grid map. */
 typedef struct hexhex_map_arrays {
   size_t size;
@@ -160,9 +181,19 @@ typedef struct hexhex_map_arrays {
   const int8_t*
       rotations; /**< or NULL: computed. Four per tet: index 0 to 23 of the rotation across
                       the face opposite each corner, as in AlgoHex; -1 where unknown */
+  const hexhex_feature_vertex* feature_vertices; /**< each element at most once */
+  size_t feature_vertex_count;
+  const hexhex_feature_edge* feature_edges;
+  size_t feature_edge_count;
+  const hexhex_feature_face* feature_faces;
+  size_t feature_face_count;
+  const int32_t* regions; /**< or NULL: none. One per tet, which cells inherit */
 } hexhex_map_arrays;
-#define HEXHEX_MAP_ARRAYS_INIT \
-  { sizeof(hexhex_map_arrays), NULL, 0, NULL, 0, NULL, NULL, 0, NULL }
+#define HEXHEX_MAP_ARRAYS_INIT                                                                   \
+  {                                                                                              \
+    sizeof(hexhex_map_arrays), NULL, 0, NULL, 0, NULL, NULL, 0, NULL, NULL, 0, NULL, 0, NULL, 0, \
+        NULL                                                                                     \
+  }
 
 /** A tetrahedral mesh with an integer-grid map. */
 typedef struct hexhex_map hexhex_map;
@@ -170,18 +201,65 @@ typedef struct hexhex_map hexhex_map;
 /** A map of the caller's arrays, without a copy: they must outlive the map and may not change. */
 HEXHEX_API hexhex_status hexhex_map_borrow(const hexhex_map_arrays* arrays, hexhex_map** map,
                                            hexhex_error* error);
-/** A map from a file: .hexex, .ovm, .ovmb. */
-HEXHEX_API hexhex_status hexhex_map_read(const char* file, hexhex_context* context,
-                                         hexhex_map** map, hexhex_error* error);
-/** Writes a map; the file appears complete or not at all. */
+
+/** See ReadOptions in <hexhex/io.hpp>. */
+typedef struct hexhex_read_options {
+  size_t size;
+  const char* format; /**< by its name, see hexhex_get_format(); NULL: what the extension means */
+  const char* map_array; /**< that holds the map in .vtu and .vtk files; NULL: "igm" */
+} hexhex_read_options;
+#define HEXHEX_READ_OPTIONS_INIT \
+  { sizeof(hexhex_read_options), NULL, NULL }
+
+/** See WriteOptions in <hexhex/io.hpp>. */
+typedef struct hexhex_write_options {
+  size_t size;
+  const char* format;             /**< by its name; NULL: what the extension means */
+  const char* map_array;          /**< for .vtu and .vtk files; NULL: "igm" */
+  double patch_angle;             /**< of boundary groups, in degrees from 0 to 180 */
+  int compress;                   /**< 1: arrays of .vtu files with zlib */
+  const double* scaled_jacobians; /**< one per cell, if the caller has them; NULL: computed */
+} hexhex_write_options;
+#define HEXHEX_WRITE_OPTIONS_INIT \
+  { sizeof(hexhex_write_options), NULL, NULL, 40, 0, NULL }
+
+/** A map from a file: .hexex, .ovm, .ovmb, .vtu, .vtk. */
+HEXHEX_API hexhex_status hexhex_map_read(const char* file, const hexhex_read_options* options,
+                                         hexhex_context* context, hexhex_map** map,
+                                         hexhex_error* error);
+/** Writes a map; the file appears complete or not at all. Of the options, format and map_array. */
 HEXHEX_API hexhex_status hexhex_map_write(const hexhex_map* map, const char* file,
+                                          const hexhex_write_options* options,
                                           hexhex_context* context, hexhex_error* error);
+/** A tetrahedral mesh without a map from a file: the formats above, .mesh, .meshb and .msh. The
+ * result has no parameters. */
+HEXHEX_API hexhex_status hexhex_map_read_tets(const char* file, const hexhex_read_options* options,
+                                              hexhex_context* context, hexhex_map** map,
+                                              hexhex_error* error);
+/** The map of two files with meshes of the same tets, as polycube tools write them: points of the
+ * second are the parameters of the first. */
+HEXHEX_API hexhex_status hexhex_map_read_pair(const char* tets, const char* polycube,
+                                              hexhex_context* context, hexhex_map** map,
+                                              hexhex_error* error);
+/** The same of arrays, of which points and tets are used; copies. */
+HEXHEX_API hexhex_status hexhex_map_from_pair(const hexhex_map_arrays* tets,
+                                              const hexhex_map_arrays* polycube,
+                                              hexhex_context* context, hexhex_map** map,
+                                              hexhex_error* error);
 
 typedef enum hexhex_chart_style {
   HEXHEX_CHARTS_ALIGNED = 0, /**< as many identity transitions as possible */
   HEXHEX_CHARTS_BLOCKS = 1,  /**< a random chart per block */
   HEXHEX_CHARTS_RANDOM = 2   /**< a random chart per tet */
 } hexhex_chart_style;
+
+/** How hexhex_map_generate() damages a map: see DefectKind in <hexhex/samples.hpp>. */
+typedef enum hexhex_defect_kind {
+  HEXHEX_DEFECTS_INTERIOR = 0,
+  HEXHEX_DEFECTS_SINGULAR = 1,
+  HEXHEX_DEFECTS_BOUNDARY = 2,
+  HEXHEX_DEFECTS_SLIVER = 3
+} hexhex_defect_kind;
 
 /** See SampleOptions in <hexhex/samples.hpp> for the ranges. */
 typedef struct hexhex_sample_options {
@@ -195,9 +273,15 @@ typedef struct hexhex_sample_options {
   double noise;
   double offset;
   uint64_t seed;
+  int features; /**< 1: tags corners, curves and surfaces, and numbers the blocks as regions */
+  int defects;  /**< at least so many tets are flipped or flat */
+  hexhex_defect_kind defect_kind;
 } hexhex_sample_options;
-#define HEXHEX_SAMPLE_OPTIONS_INIT \
-  { sizeof(hexhex_sample_options), 4, 2, 5, HEXHEX_CHARTS_ALIGNED, 0, 0, 0, 0, 1 }
+#define HEXHEX_SAMPLE_OPTIONS_INIT                                                      \
+  {                                                                                     \
+    sizeof(hexhex_sample_options), 4, 2, 5, HEXHEX_CHARTS_ALIGNED, 0, 0, 0, 0, 1, 0, 0, \
+        HEXHEX_DEFECTS_INTERIOR                                                         \
+  }
 
 /** A map whose mesh is known in advance.
  * @param kind  "box", "cylinder", "sphere", "star", "tetrahedron", "torus", "shell", "handle-body"
@@ -224,9 +308,16 @@ typedef struct hexhex_mesh_arrays {
   const uint8_t* generator_corners; /**< per vertex, or NULL: the generator (the vertex, edge, face
                                          or tet in whose interior the vertex lies) by corners of
                                          that tet: bit i for corner i */
+  const hexhex_feature_vertex* feature_vertices; /**< what of the mesh is tagged */
+  size_t feature_vertex_count;
+  const hexhex_feature_edge* feature_edges;
+  size_t feature_edge_count;
+  const hexhex_feature_quad* feature_quads;
+  size_t feature_quad_count;
+  const int32_t* regions; /**< per cell, or NULL */
 } hexhex_mesh_arrays;
 #define HEXHEX_MESH_ARRAYS_INIT \
-  { sizeof(hexhex_mesh_arrays), NULL, 0, NULL, 0, NULL, NULL }
+  { sizeof(hexhex_mesh_arrays), NULL, 0, NULL, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, NULL }
 
 /** A hexahedral mesh. */
 typedef struct hexhex_mesh hexhex_mesh;
@@ -235,13 +326,54 @@ typedef struct hexhex_mesh hexhex_mesh;
 HEXHEX_API hexhex_status hexhex_mesh_copy(const hexhex_mesh_arrays* arrays, hexhex_mesh** mesh,
                                           hexhex_error* error);
 /** A mesh from a file: .mesh, .meshb, .vtu, .vtk, .msh, .ovm, .ovmb. */
-HEXHEX_API hexhex_status hexhex_mesh_read(const char* file, hexhex_context* context,
-                                          hexhex_mesh** mesh, hexhex_error* error);
-/** Writes a mesh; the file appears complete or not at all.
- * @param format  as in WriteOptions of <hexhex/io.hpp>; NULL: what the extension means */
+HEXHEX_API hexhex_status hexhex_mesh_read(const char* file, const hexhex_read_options* options,
+                                          hexhex_context* context, hexhex_mesh** mesh,
+                                          hexhex_error* error);
+/** What a file holds: a mesh or, where there are no hexahedra, a map; the other one is NULL. */
+HEXHEX_API hexhex_status hexhex_read(const char* file, const hexhex_read_options* options,
+                                     hexhex_context* context, hexhex_map** map, hexhex_mesh** mesh,
+                                     hexhex_error* error);
+/** Writes a mesh; the file appears complete or not at all. */
 HEXHEX_API hexhex_status hexhex_mesh_write(const hexhex_mesh* mesh, const char* file,
-                                           const char* format, hexhex_context* context,
+                                           const hexhex_write_options* options,
+                                           hexhex_context* context, hexhex_error* error);
+
+/** A file format: see FileFormat in <hexhex/io.hpp>. Strings live as long as the program. */
+typedef struct hexhex_file_format {
+  size_t size;
+  const char* name;
+  const char* extension; /**< with the dot; "": has to be asked for by name */
+  const char* description;
+  int reads_maps;
+  int writes_maps;
+  int reads_tets;
+  int reads_meshes;
+  int writes_meshes;
+  int streams;
+  int compresses;
+} hexhex_file_format;
+#define HEXHEX_FILE_FORMAT_INIT \
+  { sizeof(hexhex_file_format), NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0 }
+
+/** The formats of this build. */
+HEXHEX_API size_t hexhex_format_count(void);
+HEXHEX_API hexhex_status hexhex_get_format(size_t number, hexhex_file_format* format,
                                            hexhex_error* error);
+
+/** What may be written to a file. */
+typedef enum hexhex_output {
+  HEXHEX_OUTPUT_MAP = 0,
+  HEXHEX_OUTPUT_MESH = 1,
+  HEXHEX_OUTPUT_ARCS = 2,
+  HEXHEX_OUTPUT_PATCHES = 3,
+  HEXHEX_OUTPUT_LAGRANGE = 4
+} hexhex_output;
+
+/** HEXHEX_FILE_UNSUPPORTED unless the file's extension, or the format of the options, is known for
+ * this: to fail before long work. */
+HEXHEX_API hexhex_status hexhex_require_format(hexhex_output output, const char* file,
+                                               const hexhex_write_options* options,
+                                               hexhex_error* error);
 
 /** The arrays of a mesh, borrowed: they belong to it. Empty ones are NULL.
  * @param[in,out] arrays  made with HEXHEX_MESH_ARRAYS_INIT */
@@ -252,10 +384,14 @@ HEXHEX_API hexhex_status hexhex_mesh_get_arrays(const hexhex_mesh* mesh, hexhex_
 typedef struct hexhex_buffer hexhex_buffer;
 
 typedef enum hexhex_mesh_array {
-  HEXHEX_POINTS = 0,           /**< double, 3 per vertex */
-  HEXHEX_CELLS = 1,            /**< uint32_t, 8 per cell */
-  HEXHEX_GENERATOR_TET = 2,    /**< uint32_t, 1 per vertex */
-  HEXHEX_GENERATOR_CORNERS = 3 /**< uint8_t, 1 per vertex */
+  HEXHEX_POINTS = 0,            /**< double, 3 per vertex */
+  HEXHEX_CELLS = 1,             /**< uint32_t, 8 per cell */
+  HEXHEX_GENERATOR_TET = 2,     /**< uint32_t, 1 per vertex */
+  HEXHEX_GENERATOR_CORNERS = 3, /**< uint8_t, 1 per vertex */
+  HEXHEX_REGIONS = 4,           /**< int32_t, 1 per cell */
+  HEXHEX_FEATURE_VERTICES = 5,  /**< hexhex_feature_vertex */
+  HEXHEX_FEATURE_EDGES = 6,     /**< hexhex_feature_edge */
+  HEXHEX_FEATURE_QUADS = 7      /**< hexhex_feature_quad */
 } hexhex_mesh_array;
 
 /** Takes an array over, without a copy: the mesh has none afterwards, and the array lives until
@@ -268,6 +404,102 @@ HEXHEX_API size_t hexhex_buffer_bytes(const hexhex_buffer* buffer);
 HEXHEX_API void hexhex_buffer_destroy(hexhex_buffer* buffer);
 
 HEXHEX_API void hexhex_mesh_destroy(hexhex_mesh* mesh);
+
+/** The boundary quads, facing outwards, tagged by smooth patch: see <hexhex/patches.hpp>.
+ * @param angle       in degrees, 0 to 180: where the boundary turns by more, a patch ends
+ * @param[out] quads  of hexhex_feature_quad */
+HEXHEX_API hexhex_status hexhex_mesh_boundary_patches(const hexhex_mesh* mesh, double angle,
+                                                      hexhex_context* context,
+                                                      hexhex_buffer** quads, hexhex_error* error);
+
+/** A singular edge of a hex mesh. */
+typedef struct hexhex_singular_edge {
+  uint32_t vertices[2]; /**< ascending */
+  uint32_t valence;     /**< number of cells around */
+  uint32_t boundary;    /**< 1 on the boundary */
+} hexhex_singular_edge;
+
+/** See MeshStructure in <hexhex/structure.hpp>. */
+typedef struct hexhex_structure {
+  size_t size;
+  uint64_t faces;
+  uint64_t edges;
+  uint64_t boundary_quads;
+  uint64_t components;
+  uint64_t boundary_components;
+  int64_t euler_characteristic;
+} hexhex_structure;
+#define HEXHEX_STRUCTURE_INIT \
+  { sizeof(hexhex_structure), 0, 0, 0, 0, 0, 0 }
+
+/** @param[out] structure       made with HEXHEX_STRUCTURE_INIT, or NULL
+ *  @param[out] singular_edges  of hexhex_singular_edge, or NULL */
+HEXHEX_API hexhex_status hexhex_mesh_structure(const hexhex_mesh* mesh, hexhex_context* context,
+                                               hexhex_structure* structure,
+                                               hexhex_buffer** singular_edges, hexhex_error* error);
+
+/* ---- Repair ---------------------------------------------------------------------------------- */
+
+/** 1 if this build can repair (it was made with libLBFGS). */
+HEXHEX_API int hexhex_can_repair(void);
+
+/** See RepairOptions in <hexhex/repair.hpp>. */
+typedef struct hexhex_repair_options {
+  size_t size;
+  double tolerance; /**< as in hexhex_extract_options */
+  int scale;        /**< the map is going to be scaled by at most this */
+  int round;        /**< 1: moves what is off integers by up to 0.1 onto them first */
+  int refine;       /**< 1: may split edges of the tet mesh */
+} hexhex_repair_options;
+#define HEXHEX_REPAIR_OPTIONS_INIT \
+  { sizeof(hexhex_repair_options), 1e-2, 1, 0, 1 }
+
+/** What a repair did. */
+typedef struct hexhex_repair_report hexhex_repair_report;
+
+/** A valid map: the same where it was valid, bit for bit. See <hexhex/repair.hpp>.
+ * @param[out] report  or NULL; also given if the repair fails with another code than
+ *                     HEXHEX_INVALID_ARGUMENT and HEXHEX_OUT_OF_MEMORY; else it becomes NULL */
+HEXHEX_API hexhex_status hexhex_repair(const hexhex_map* map, const hexhex_repair_options* options,
+                                       hexhex_context* context, hexhex_map** repaired,
+                                       hexhex_repair_report** report, hexhex_error* error);
+HEXHEX_API void hexhex_repair_report_destroy(hexhex_repair_report* report);
+
+typedef struct hexhex_repair_summary {
+  size_t size;
+  int changed; /**< 0 for a valid map */
+  size_t region_count;
+  uint64_t bad_tets;
+  uint64_t moved_vertices;
+  double largest_move; /**< of a coordinate, in parameter units */
+  uint64_t split_edges;
+  uint64_t added_tets;
+  uint64_t rounded_vertices;
+  double seconds;
+} hexhex_repair_summary;
+#define HEXHEX_REPAIR_SUMMARY_INIT \
+  { sizeof(hexhex_repair_summary), 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+
+HEXHEX_API hexhex_status hexhex_repair_get_summary(const hexhex_repair_report* report,
+                                                   hexhex_repair_summary* summary,
+                                                   hexhex_error* error);
+
+/** What a repair did to one place. */
+typedef struct hexhex_repaired_region {
+  size_t size;
+  hexhex_place place; /**< a bad tet */
+  double position[3]; /**< in space */
+  uint64_t bad_tets;
+  uint64_t tets; /**< in the patch that was optimized */
+  uint64_t moved_vertices;
+  double largest_move;
+} hexhex_repaired_region;
+#define HEXHEX_REPAIRED_REGION_INIT \
+  { sizeof(hexhex_repaired_region), {HEXHEX_PLACE_NONE, 0, 0}, {0}, 0, 0, 0, 0 }
+
+HEXHEX_API hexhex_status hexhex_repair_get_region(const hexhex_repair_report* report, size_t number,
+                                                  hexhex_repaired_region* region,
+                                                  hexhex_error* error);
 
 /* ---- Extraction ------------------------------------------------------------------------------ */
 
@@ -282,9 +514,11 @@ typedef struct hexhex_extract_options {
   int scale;        /**< multiplies all parameters: scale^3 times as many cells; at least 1 */
   double epsilon;   /**< of the propeller engine; changes the time, never the result */
   double tolerance; /**< how far the map may be from its integer conditions, below 0.25 */
+  int repair;       /**< 1: a map with flipped or flat tets is repaired first */
+  int round;        /**< as in hexhex_repair_options, if there is a repair */
 } hexhex_extract_options;
 #define HEXHEX_EXTRACT_OPTIONS_INIT \
-  { sizeof(hexhex_extract_options), HEXHEX_ENGINE_ATLAS, 1, 1e-6, 1e-2 }
+  { sizeof(hexhex_extract_options), HEXHEX_ENGINE_ATLAS, 1, 1e-6, 1e-2, 0, 0 }
 
 /** What happened on the way. ExtractStatistics in <hexhex/extract.hpp> explains the fields; array
  * indices are kinds of generators: vertex, edge, face, cell. */
@@ -309,9 +543,10 @@ typedef struct hexhex_statistics {
   uint64_t cut_faces;
   uint64_t overlapping_tets;
   uint64_t traced_cells;
+  int repaired; /**< 1 if the map was repaired: see hexhex_mesh_get_repair() */
 } hexhex_statistics;
 #define HEXHEX_STATISTICS_INIT \
-  { sizeof(hexhex_statistics), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0, 0, 0, 0, 0, 0 }
+  { sizeof(hexhex_statistics), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0, 0, 0, 0, 0, 0, 0 }
 
 /** Extracts the hexahedral mesh of a map.
  * @param[out] statistics  made with HEXHEX_STATISTICS_INIT, or NULL */
@@ -319,6 +554,63 @@ HEXHEX_API hexhex_status hexhex_extract(const hexhex_map* map,
                                         const hexhex_extract_options* options,
                                         hexhex_context* context, hexhex_mesh** mesh,
                                         hexhex_statistics* statistics, hexhex_error* error);
+
+/** The map that was extracted instead of one that had to be repaired, and what the repair did. The
+ * mesh's generators mean its tets. Handles of their own, to be destroyed; they are NULL if nothing
+ * was repaired.
+ * @param[out] map, report  or NULL */
+HEXHEX_API hexhex_status hexhex_mesh_get_repair(const hexhex_mesh* mesh, hexhex_map** map,
+                                                hexhex_repair_report** report, hexhex_error* error);
+
+/** What can be extracted of a map that is not valid: see <hexhex/partial.hpp>. */
+typedef struct hexhex_partial_options {
+  size_t size;
+  int scale;
+  double tolerance;
+} hexhex_partial_options;
+#define HEXHEX_PARTIAL_OPTIONS_INIT \
+  { sizeof(hexhex_partial_options), 1, 1e-2 }
+
+/** Places where cells are missing. */
+typedef struct hexhex_holes hexhex_holes;
+
+/** @param[out] mesh   its regions are 1 for cells at holes, 0 for others
+ *  @param[out] holes  or NULL */
+HEXHEX_API hexhex_status hexhex_extract_partial(const hexhex_map* map,
+                                                const hexhex_partial_options* options,
+                                                hexhex_context* context, hexhex_mesh** mesh,
+                                                hexhex_holes** holes, hexhex_error* error);
+HEXHEX_API void hexhex_holes_destroy(hexhex_holes* holes);
+
+typedef struct hexhex_holes_summary {
+  size_t size;
+  size_t hole_count;
+  uint64_t invalid_tets;
+  double missing_cells;
+  uint64_t face_conflicts;
+} hexhex_holes_summary;
+#define HEXHEX_HOLES_SUMMARY_INIT \
+  { sizeof(hexhex_holes_summary), 0, 0, 0, 0 }
+
+HEXHEX_API hexhex_status hexhex_holes_get_summary(const hexhex_holes* holes,
+                                                  hexhex_holes_summary* summary,
+                                                  hexhex_error* error);
+
+/** See Hole in <hexhex/partial.hpp>. */
+typedef struct hexhex_hole {
+  size_t size;
+  uint32_t tet; /**< the smallest */
+  uint64_t tets;
+  uint64_t invalid_tets;
+  double position[3];
+  double missing_cells;
+} hexhex_hole;
+#define HEXHEX_HOLE_INIT \
+  { sizeof(hexhex_hole), 0, 0, 0, {0}, 0 }
+
+/** Most missing cells first. */
+HEXHEX_API hexhex_status hexhex_holes_get(const hexhex_holes* holes, size_t number,
+                                          hexhex_hole* hole, hexhex_error* error);
 
 /** A prepared map, for several meshes of it. See <hexhex/extractor.hpp>. */
 typedef struct hexhex_extractor hexhex_extractor;
@@ -337,6 +629,8 @@ HEXHEX_API hexhex_status hexhex_extractor_extract(hexhex_extractor* extractor,
                                                   hexhex_statistics* statistics,
                                                   hexhex_error* error);
 HEXHEX_API void hexhex_extractor_destroy(hexhex_extractor* extractor);
+/** Number of cells at scale 1; scale^3 times as many at others. 0 for NULL. */
+HEXHEX_API uint64_t hexhex_extractor_cells(const hexhex_extractor* extractor);
 
 /* ---- Extraction in pieces -------------------------------------------------------------------- */
 
@@ -365,6 +659,10 @@ HEXHEX_API hexhex_status hexhex_extract_to(const hexhex_sink* sink, const hexhex
                                            const hexhex_extract_options* options,
                                            hexhex_context* context, hexhex_statistics* statistics,
                                            hexhex_error* error);
+/** The same of a prepared map. */
+HEXHEX_API hexhex_status hexhex_extractor_extract_to(
+    hexhex_extractor* extractor, const hexhex_sink* sink, const hexhex_extract_options* options,
+    hexhex_context* context, hexhex_statistics* statistics, hexhex_error* error);
 /** The same into a file, .vtu or .mesh. */
 HEXHEX_API hexhex_status hexhex_extract_to_file(const char* file, const hexhex_map* map,
                                                 const hexhex_extract_options* options,
@@ -373,6 +671,35 @@ HEXHEX_API hexhex_status hexhex_extract_to_file(const char* file, const hexhex_m
 /** Reads a mesh from a file and hands it over in pieces. */
 HEXHEX_API hexhex_status hexhex_mesh_read_to(const hexhex_sink* sink, const char* file,
                                              hexhex_context* context, hexhex_error* error);
+
+/** A file for a mesh that comes in pieces from the caller: see openMeshSink() in <hexhex/io.hpp>.
+ */
+typedef struct hexhex_mesh_writer hexhex_mesh_writer;
+
+/** Then: begin, all points in order, all cells in order, end. The file appears, complete, with end;
+ * a writer that is destroyed before leaves nothing.
+ * @param context  serves this writer alone, which it must outlive; or NULL */
+HEXHEX_API hexhex_status hexhex_mesh_writer_create(const char* file,
+                                                   const hexhex_write_options* options,
+                                                   hexhex_context* context,
+                                                   hexhex_mesh_writer** writer,
+                                                   hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_mesh_writer_begin(hexhex_mesh_writer* writer, uint64_t point_count,
+                                                  uint64_t cell_count, hexhex_error* error);
+/** @param generator_tet, generator_corners  as in hexhex_mesh_arrays, or NULL */
+HEXHEX_API hexhex_status hexhex_mesh_writer_points(hexhex_mesh_writer* writer, uint64_t first,
+                                                   size_t count, const double* points,
+                                                   const uint32_t* generator_tet,
+                                                   const uint8_t* generator_corners,
+                                                   hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_mesh_writer_cells(hexhex_mesh_writer* writer, uint64_t first,
+                                                  size_t count, const uint32_t* cells,
+                                                  hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_mesh_writer_cells64(hexhex_mesh_writer* writer, uint64_t first,
+                                                    size_t count, const uint64_t* cells,
+                                                    hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_mesh_writer_end(hexhex_mesh_writer* writer, hexhex_error* error);
+HEXHEX_API void hexhex_mesh_writer_destroy(hexhex_mesh_writer* writer);
 
 /** What a mesh adds up to: see MeshSurvey in <hexhex/survey.hpp>. */
 typedef struct hexhex_survey {
@@ -458,6 +785,11 @@ HEXHEX_API hexhex_status hexhex_check_get_occurrence(const hexhex_check_report* 
                                                      hexhex_place* place, double* amount,
                                                      hexhex_error* error);
 
+/** Genus of each boundary component, in descending order, one by one.
+ * @param[out] genus  -1 if there is no such component */
+HEXHEX_API void hexhex_check_boundary_genus(const hexhex_check_report* report, size_t component,
+                                            int64_t* genus);
+
 /** Tables of edges by valence (hexahedra around an edge). */
 typedef enum hexhex_valence_table {
   HEXHEX_INNER_HEX_EDGES = 0, /**< expected singular edges of the mesh */
@@ -527,6 +859,134 @@ typedef struct hexhex_quality {
 HEXHEX_API hexhex_status hexhex_mesh_quality(const hexhex_mesh* mesh, hexhex_context* context,
                                              double* scaled_jacobians, hexhex_quality* quality,
                                              hexhex_error* error);
+
+/* ---- Curved meshes --------------------------------------------------------------------------- */
+
+/** A mesh with the exact shapes of its edges (arcs) and faces (patches), piece by piece: see
+ * PiecewiseLinearMesh in <hexhex/curved.hpp>. */
+typedef struct hexhex_piecewise_mesh hexhex_piecewise_mesh;
+
+/** @param patches  0: arcs only; 1: and patches */
+HEXHEX_API hexhex_status hexhex_extract_piecewise(const hexhex_map* map, int patches,
+                                                  const hexhex_extract_options* options,
+                                                  hexhex_context* context,
+                                                  hexhex_piecewise_mesh** mesh,
+                                                  hexhex_statistics* statistics,
+                                                  hexhex_error* error);
+HEXHEX_API void hexhex_piecewise_mesh_destroy(hexhex_piecewise_mesh* mesh);
+
+/** The mesh of straight cells, which belongs to this one. NULL for NULL. */
+HEXHEX_API const hexhex_mesh* hexhex_piecewise_mesh_straight(const hexhex_piecewise_mesh* mesh);
+
+/** See Arcs in <hexhex/curved.hpp>. Empty arrays are NULL. */
+typedef struct hexhex_arc_arrays {
+  size_t size;
+  size_t arc_count;
+  const uint32_t* ends;        /**< 2 per arc */
+  const uint64_t* point_begin; /**< per arc, +1: its inner points; segments from arc + this on */
+  size_t point_count;
+  const double* points;     /**< 3 per inner point */
+  const double* parameters; /**< per inner point, in (0, 1) */
+  const uint32_t* generator_tet;
+  const uint8_t* generator_corners;
+  size_t segment_count;
+  const uint32_t* segment_tet;
+  const uint8_t* segment_corners;
+} hexhex_arc_arrays;
+#define HEXHEX_ARC_ARRAYS_INIT \
+  { sizeof(hexhex_arc_arrays), 0, NULL, NULL, 0, NULL, NULL, NULL, NULL, 0, NULL, NULL }
+
+/** See Patches in <hexhex/curved.hpp>. Points are numbered: hex vertices, inner points of arcs,
+ * inner points of patches. */
+typedef struct hexhex_patch_arrays {
+  size_t size;
+  size_t face_count;
+  const uint32_t* vertices; /**< 4 per face */
+  const uint32_t* arcs;     /**< 4 per face */
+  const uint8_t* reversed_arcs;
+  const uint64_t* polygon_begin; /**< per face, +1 */
+  size_t polygon_count;
+  const uint64_t* corner_begin; /**< per polygon, +1 */
+  const uint32_t* polygon_tet;
+  const uint8_t* polygon_corners;
+  size_t corner_count;
+  const uint32_t* corners;  /**< points */
+  const double* parameters; /**< (u, v) per corner */
+  size_t point_count;
+  const double* points; /**< 3 per inner point of a face */
+  const uint32_t* generator_tet;
+  const uint8_t* generator_corners;
+} hexhex_patch_arrays;
+#define HEXHEX_PATCH_ARRAYS_INIT                                                                   \
+  {                                                                                                \
+    sizeof(hexhex_patch_arrays), 0, NULL, NULL, NULL, NULL, 0, NULL, NULL, NULL, 0, NULL, NULL, 0, \
+        NULL, NULL, NULL                                                                           \
+  }
+
+/** The arrays belong to the mesh. */
+HEXHEX_API hexhex_status hexhex_piecewise_mesh_get_arcs(const hexhex_piecewise_mesh* mesh,
+                                                        hexhex_arc_arrays* arrays,
+                                                        hexhex_error* error);
+/** Without patches, all is empty. */
+HEXHEX_API hexhex_status hexhex_piecewise_mesh_get_patches(const hexhex_piecewise_mesh* mesh,
+                                                           hexhex_patch_arrays* arrays,
+                                                           hexhex_error* error);
+/** .vtu, .vtp; patches also .ovmb. */
+HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_arcs(const hexhex_piecewise_mesh* mesh,
+                                                          const char* file, hexhex_context* context,
+                                                          hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_patches(const hexhex_piecewise_mesh* mesh,
+                                                             const char* file,
+                                                             hexhex_context* context,
+                                                             hexhex_error* error);
+
+/** Hexahedra of a higher order: see LagrangeMesh in <hexhex/curved.hpp>. */
+typedef struct hexhex_lagrange_mesh hexhex_lagrange_mesh;
+
+/** @param order  1 to 9 */
+HEXHEX_API hexhex_status hexhex_extract_lagrange(const hexhex_map* map, int order,
+                                                 const hexhex_extract_options* options,
+                                                 hexhex_context* context,
+                                                 hexhex_lagrange_mesh** mesh,
+                                                 hexhex_statistics* statistics,
+                                                 hexhex_error* error);
+HEXHEX_API void hexhex_lagrange_mesh_destroy(hexhex_lagrange_mesh* mesh);
+
+typedef struct hexhex_lagrange_arrays {
+  size_t size;
+  int order;
+  const double* points; /**< 3 per node */
+  size_t point_count;
+  size_t vertex_count;   /**< the first so many nodes are the hex vertices */
+  const uint32_t* nodes; /**< (order + 1)^3 per cell: node (i, j, k), i along 0-1, j along 0-3, k
+                              along 0-4, is number i + (order + 1) (j + (order + 1) k) */
+  size_t cell_count;
+  const uint32_t* generator_tet; /**< per node */
+  const uint8_t* generator_corners;
+} hexhex_lagrange_arrays;
+#define HEXHEX_LAGRANGE_ARRAYS_INIT \
+  { sizeof(hexhex_lagrange_arrays), 0, NULL, 0, 0, NULL, 0, NULL, NULL }
+
+HEXHEX_API hexhex_status hexhex_lagrange_mesh_get_arrays(const hexhex_lagrange_mesh* mesh,
+                                                         hexhex_lagrange_arrays* arrays,
+                                                         hexhex_error* error);
+/** Takes an array over, as hexhex_mesh_take(): points, cells (that is, nodes) and generators. */
+HEXHEX_API hexhex_status hexhex_lagrange_mesh_take(hexhex_lagrange_mesh* mesh,
+                                                   hexhex_mesh_array array, hexhex_buffer** buffer,
+                                                   hexhex_error* error);
+/** The straight mesh between the corners, with tags and regions; a copy. */
+HEXHEX_API hexhex_status hexhex_lagrange_mesh_straight(const hexhex_lagrange_mesh* mesh,
+                                                       hexhex_mesh** straight, hexhex_error* error);
+/** As hexhex_mesh_quality(), of curved cells: see scaledJacobians() in <hexhex/curved.hpp>. */
+HEXHEX_API hexhex_status hexhex_lagrange_mesh_quality(const hexhex_lagrange_mesh* mesh,
+                                                      hexhex_context* context,
+                                                      double* scaled_jacobians,
+                                                      hexhex_quality* quality, hexhex_error* error);
+/** .vtu, .msh, .mesh (MFEM). */
+HEXHEX_API hexhex_status hexhex_lagrange_mesh_write(const hexhex_lagrange_mesh* mesh,
+                                                    const char* file,
+                                                    const hexhex_write_options* options,
+                                                    hexhex_context* context, hexhex_error* error);
 
 #ifdef __cplusplus
 }

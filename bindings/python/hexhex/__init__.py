@@ -15,8 +15,9 @@ Ctrl-C cancels them.
 from __future__ import annotations
 
 import os
-import pathlib
-from typing import TYPE_CHECKING, Any, Callable, Optional, Union
+from typing import TYPE_CHECKING, Any, Callable, Optional, Protocol, Union
+
+import numpy as np
 
 from . import _hexhex
 from ._errors import (
@@ -28,7 +29,27 @@ from ._errors import (
     MapError,
     MemoryExhaustedError,
 )
-from ._types import CheckReport, Defect, Map, Mesh, Quality, VerifyItem, VerifyReport
+from ._types import (
+    Arcs,
+    CheckReport,
+    Defect,
+    Features,
+    FileFormat,
+    Hole,
+    LagrangeMesh,
+    Map,
+    Mesh,
+    PartialMesh,
+    Patches,
+    Quality,
+    RepairedRegion,
+    RepairReport,
+    Survey,
+    VerifyItem,
+    VerifyReport,
+    _floats,
+    _indices,
+)
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -39,10 +60,13 @@ if TYPE_CHECKING:
 __version__: str = _hexhex.version()
 
 __all__ = [
-    "ArgumentError", "CancelledError", "CheckReport", "Defect", "Extractor", "FileError",
-    "HexhexError", "InternalError", "Map", "MapError", "MemoryExhaustedError", "Mesh", "Quality",
-    "VerifyItem", "VerifyReport", "check", "extract", "generate", "quality", "read", "read_map",
-    "read_mesh", "verify", "write",
+    "Arcs", "ArgumentError", "CancelledError", "CheckReport", "Defect", "Extractor", "Features",
+    "FileError", "FileFormat", "HexhexError", "Hole", "InternalError", "LagrangeMesh", "Map",
+    "MapError", "MemoryExhaustedError", "Mesh", "MeshSink", "MeshWriter", "PartialMesh", "Patches",
+    "Quality", "RepairReport", "RepairedRegion", "Survey", "VerifyItem", "VerifyReport",
+    "can_repair", "check", "extract", "extract_partial", "extract_to", "extract_to_file",
+    "formats", "generate", "map_from_pair", "quality", "read", "read_map", "read_mesh",
+    "read_pair", "read_tets", "repair", "survey", "verify", "write",
 ]
 
 
@@ -57,11 +81,12 @@ def _map_of(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None,
     return Map(points, tets, igm)
 
 
-def _is_propeller(engine: str) -> bool:
+def _options(scale: int, engine: str, tolerance: float, epsilon: float, repair: bool,
+             round: bool) -> _hexhex.Options:
     if engine not in ("atlas", "propeller"):
         raise ArgumentError(f'There is no engine "{engine}". Choose "atlas" or "propeller".',
                             "InvalidArgument")
-    return engine == "propeller"
+    return _hexhex.Options(scale, engine == "propeller", tolerance, epsilon, repair, round)
 
 
 def _threads(threads: Optional[int]) -> int:
@@ -75,8 +100,9 @@ def _threads(threads: Optional[int]) -> int:
 
 def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
             igm: npt.ArrayLike | None = None, *, scale: int = 1, threads: int | None = None,
-            engine: str = "atlas", tolerance: float = 1e-2, epsilon: float = 1e-6,
-            progress: Progress | None = None) -> Mesh:
+            order: int = 1, arcs: bool = False, patches: bool = False, repair: bool = False,
+            round: bool = False, engine: str = "atlas", tolerance: float = 1e-2,
+            epsilon: float = 1e-6, progress: Progress | None = None) -> Mesh:
     """Extracts the hexahedral mesh that an integer-grid map implies.
 
     Args:
@@ -86,6 +112,12 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
             (m, 4, 3) or (m, 12).
         scale: multiplies all parameters: scale**3 times as many cells.
         threads: None for all cores. The result does not depend on it, bit for bit.
+        order: of cells, 1 to 9: above 1, ``mesh.curved`` has cells of that order, too.
+        arcs: ``mesh.arcs`` gets the exact shapes of edges.
+        patches: ``mesh.patches`` gets those of faces, and ``mesh.arcs`` those of edges.
+        repair: a map with flipped or flat tets is repaired first: see ``mesh.repair`` and
+            ``mesh.repaired_map``. Otherwise it is an error.
+        round: if there is a repair: moves what is off integers by up to 0.1 onto them first.
         engine: "atlas", or "propeller" for the algorithm of the paper; the same mesh.
         tolerance: how far the map may be from its integer conditions, below 0.25.
         epsilon: of the propeller engine; changes the time, never the result.
@@ -93,7 +125,7 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
             thread. What it raises ends the extraction and is raised here.
 
     Returns:
-        The mesh, with ``mesh.statistics`` of the extraction.
+        The mesh, with ``mesh.statistics`` of the extraction, and tags and regions of the map.
 
     Raises:
         MapError: for the first violated condition, with its place.
@@ -104,19 +136,157 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
     >>> map = hexhex.generate("box", cells=2)
     >>> hexhex.extract(map.points, map.tets, map.igm).cells.shape
     (64, 8)
+    >>> mesh = hexhex.extract(map, order=2, arcs=True)
+    >>> mesh.curved, len(mesh.arcs), mesh.patches
+    (<hexhex.LagrangeMesh: 64 cells of order 2>, 300, None)
     """
-    m = _map_of(points, tets, igm)
-    handle, statistics = _hexhex.extract(m.points, m.tets, m.igm, scale, _is_propeller(engine),
-                                         tolerance, epsilon, _threads(threads), progress)
-    return Mesh._from_handle(handle, statistics)
+    arrays = _map_of(points, tets, igm)._arrays()
+    options = _options(scale, engine, tolerance, epsilon, repair, round)
+    workers = _threads(threads)
+    if arcs or patches:
+        pieces, notes = _hexhex.extract_piecewise(arrays, patches, options, workers, progress)
+        mesh = Mesh._from_handle(pieces.mesh, notes)
+        mesh.arcs = Arcs(**pieces.arcs, _handle=pieces)
+        if patches:
+            mesh.patches = Patches(**pieces.patches, _handle=pieces)
+    if order != 1:
+        curved, notes = _hexhex.extract_lagrange(arrays, order, options, workers, progress)
+        if not (arcs or patches):
+            mesh = Mesh._from_handle(curved.straight(), notes)
+        mesh.curved = LagrangeMesh(curved)
+    elif not (arcs or patches):
+        handle, notes = _hexhex.extract(arrays, options, workers, progress)
+        mesh = Mesh._from_handle(handle, notes)
+    return mesh
+
+
+class MeshSink(Protocol):
+    """Receives a mesh in pieces, in this order, from one thread at a time (any thread). What a
+    method raises ends the extraction and is raised by it."""
+
+    def begin(self, points: int, cells: int, /) -> object:
+        """Numbers of points and cells of the whole mesh."""
+
+    def points(self, first: int, points: Any, generator_tet: Any, generator_corners: Any,
+               /) -> object:
+        """Points from number first on: float64 (n, 3), and as in Mesh uint32 (n,), uint8 (n,)."""
+
+    def cells(self, first: int, cells: Any, /) -> object:
+        """Cells from number first on: uint32 (m, 8); uint64 beyond 2**32 - 2 points."""
+
+    def end(self) -> object:
+        """That was all."""
+
+
+def extract_to(sink: MeshSink, map: Map, *, scale: int = 1, threads: int | None = None,
+               repair: bool = False, round: bool = False, tolerance: float = 1e-2,
+               progress: Progress | None = None) -> dict[str, Any]:
+    """Extracts the same mesh as extract(), bit for bit, but hands it over in pieces and never holds
+    all of it. Without tags and regions. Other arguments and errors as of extract().
+
+    Returns:
+        Statistics.
+
+    >>> class Count:
+    ...     total = 0
+    ...     def begin(self, points, cells): pass
+    ...     def points(self, first, points, generator_tet, generator_corners): pass
+    ...     def cells(self, first, cells): self.total += len(cells)
+    ...     def end(self): print(self.total)
+    >>> statistics = hexhex.extract_to(Count(), hexhex.generate("sphere"), scale=2)
+    3584
+    """
+    options = _options(scale, "atlas", tolerance, 0, repair, round)
+    statistics: dict[str, Any] = _hexhex.extract_to(sink, map._arrays(), options,
+                                                    _threads(threads), progress)[0]
+    return statistics
+
+
+def extract_to_file(file: Path, map: Map, *, scale: int = 1, format: str | None = None,
+                    threads: int | None = None, repair: bool = False, round: bool = False,
+                    tolerance: float = 1e-2, progress: Progress | None = None) -> dict[str, Any]:
+    """The same into a file, .vtu, .mesh, .meshb, .vtk or .msh, which appears complete or not at
+    all. Returns statistics.
+
+    Raises:
+        FileError: if it cannot be written; and as extract().
+
+    >>> import pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder) / "large.vtu"
+    ...     statistics = hexhex.extract_to_file(file, hexhex.generate("box"), scale=3)
+    ...     hexhex.survey(file).cells
+    13824
+    """
+    options = _options(scale, "atlas", tolerance, 0, repair, round)
+    statistics: dict[str, Any] = _hexhex.extract_to_file(
+        os.fspath(file), map._arrays(), options, format or "", _threads(threads), progress)[0]
+    return statistics
+
+
+class MeshWriter:
+    """A file, .vtu, .mesh, .meshb, .vtk or .msh, for a mesh that comes in pieces: begin(), points()
+    in order, cells() in order, end(). It appears, complete, with end(); a writer that is forgotten
+    before leaves nothing. Itself a MeshSink.
+
+    Raises:
+        FileError: if the file cannot be written.
+        ArgumentError: for calls in the wrong order, vertices that do not exist.
+
+    >>> import pathlib, tempfile
+    >>> mesh = hexhex.extract(hexhex.generate("box"))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder) / "box.vtu"
+    ...     writer = hexhex.MeshWriter(file)
+    ...     writer.begin(len(mesh.points), len(mesh.cells))
+    ...     writer.points(0, mesh.points)
+    ...     writer.cells(0, mesh.cells)
+    ...     writer.end()
+    ...     hexhex.read(file)
+    <hexhex.Mesh: 512 cells, 729 points>
+    """
+
+    def __init__(self, file: Path, *, format: str | None = None) -> None:
+        self._writer = _hexhex.MeshWriter(os.fspath(file), format or "")
+
+    def begin(self, points: int, cells: int, /) -> None:
+        """Numbers of points and cells of the whole mesh."""
+        if points < 0 or cells < 0:
+            raise ArgumentError("A mesh cannot have fewer than none.", "InvalidArgument")
+        self._writer.begin(points, cells)
+
+    def points(self, first: int, points: npt.ArrayLike,
+               generator_tet: npt.ArrayLike | None = None,
+               generator_corners: npt.ArrayLike | None = None, /) -> None:
+        """Points from number first on: float64 (n, 3), and as in Mesh uint32 (n,), uint8 (n,)."""
+        known = generator_tet is not None and generator_corners is not None
+        self._writer.points(
+            first, _floats(points, (3,), "points"),
+            np.ascontiguousarray(generator_tet if known else [], dtype=np.uint32),
+            np.ascontiguousarray(generator_corners if known else [], dtype=np.uint8))
+
+    def cells(self, first: int, cells: npt.ArrayLike, /) -> None:
+        """Cells from number first on: integers (m, 8)."""
+        array = np.asarray(cells)
+        if array.dtype == np.uint64 and array.ndim == 2 and array.shape[1] == 8:
+            self._writer.cells64(first, np.ascontiguousarray(array))
+        else:
+            self._writer.cells(first, _indices(array, 8, "cells"))
+
+    def end(self) -> None:
+        """That was all: the file appears."""
+        self._writer.end()
 
 
 class Extractor:
     """A prepared map, for several meshes of it: what does not depend on the scale is done once.
+    Serves one call at a time; another one, as from a progress function, is an ArgumentError.
 
     >>> extractor = hexhex.Extractor(hexhex.generate("box", cells=2))
     >>> [len(extractor.extract(scale=s).cells) for s in (1, 2, 3)]
     [64, 512, 1728]
+    >>> extractor.cells
+    64
 
     Args:
         points, tets, igm: as in extract(); they must not change while the extractor lives.
@@ -130,51 +300,115 @@ class Extractor:
     def __init__(self, points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
                  igm: npt.ArrayLike | None = None, *, tolerance: float = 1e-2, max_scale: int = 64,
                  threads: int | None = None, progress: Progress | None = None) -> None:
-        m = _map_of(points, tets, igm)
-        self._extractor = _hexhex.Extractor(m.points, m.tets, m.igm, tolerance, max_scale,
-                                            _threads(threads), progress)
+        self._extractor = _hexhex.Extractor(_map_of(points, tets, igm)._arrays(), tolerance,
+                                            max_scale, _threads(threads), progress)
+
+    @property
+    def cells(self) -> int:
+        """Number of cells at scale 1; scale**3 times as many at others."""
+        return self._extractor.cells()
 
     def extract(self, *, scale: int = 1, threads: int | None = None, engine: str = "atlas",
                 epsilon: float = 1e-6, progress: Progress | None = None) -> Mesh:
         """The mesh at a scale: the same as that of hexhex.extract()."""
-        handle, statistics = self._extractor.extract(scale, _is_propeller(engine), epsilon,
-                                                     _threads(threads), progress)
-        return Mesh._from_handle(handle, statistics)
+        options = _options(scale, engine, 0, epsilon, False, False)
+        handle, notes = self._extractor.extract(options, _threads(threads), progress)
+        return Mesh._from_handle(handle, notes)
+
+    def extract_to(self, sink: MeshSink, *, scale: int = 1, threads: int | None = None,
+                   progress: Progress | None = None) -> dict[str, Any]:
+        """The same in pieces, as hexhex.extract_to()."""
+        options = _options(scale, "atlas", 0, 0, False, False)
+        statistics: dict[str, Any] = self._extractor.extract_to(sink, options, _threads(threads),
+                                                                progress)[0]
+        return statistics
+
+
+def can_repair() -> bool:
+    """Whether this build can repair maps (it was made with libLBFGS).
+
+    >>> isinstance(hexhex.can_repair(), bool)
+    True
+    """
+    return _hexhex.can_repair()
+
+
+def repair(map: Map, *, tolerance: float = 1e-2, scale: int = 1, round: bool = False,
+           refine: bool = True, threads: int | None = None,
+           progress: Progress | None = None) -> tuple[Map, RepairReport]:
+    """A valid map: the same where it was valid, bit for bit. docs/defects.md tells what can be
+    repaired, and how.
+
+    Args:
+        scale: the map is going to be scaled by at most this.
+        round: moves what is off integers by up to 0.1 onto them first.
+        refine: may split edges of the tet mesh.
+        tolerance, threads, progress: as in extract().
+
+    Raises:
+        MapError: if the map has other defects, or the repair fails.
+        ArgumentError: if there is something to repair and can_repair() is False.
+
+    >>> repaired, report = hexhex.repair(hexhex.generate("sphere"))
+    >>> report.changed, report.bad_tets
+    (False, 0)
+    """
+    handle, report = _hexhex.repair(map._arrays(), tolerance, scale, round, refine,
+                                    _threads(threads), progress)
+    return Map._from_handle(handle), RepairReport._of(report)
+
+
+def extract_partial(map: Map, *, scale: int = 1, tolerance: float = 1e-2,
+                    threads: int | None = None, progress: Progress | None = None) -> PartialMesh:
+    """Extracts the cells of a map that no defect touches, and tells where others are missing.
+    Arguments as in extract().
+
+    Raises:
+        MapError: if not even the mesh of tets is valid.
+
+    >>> part = hexhex.extract_partial(hexhex.generate("sphere", cells=8, refine=4, defects=2))
+    >>> len(part.holes) > 0, len(part.mesh.cells) < 3584
+    (True, True)
+    """
+    handle, holes, *rest = _hexhex.extract_partial(map._arrays(), scale, tolerance,
+                                                   _threads(threads), progress)
+    return PartialMesh(Mesh._from_handle(handle), [Hole(*hole) for hole in holes], *rest)
 
 
 def check(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
           igm: npt.ArrayLike | None = None, *, tolerance: float = 1e-2, scale: int = 1,
-          threads: int | None = None) -> CheckReport:
+          threads: int | None = None, progress: Progress | None = None) -> CheckReport:
     """Examines a map and collects every violated condition. Arguments as in extract().
 
     >>> report = hexhex.check(hexhex.generate("sphere"), scale=2)
     >>> report.valid, report.expected["cells"], report.expected["inner_singular_edges"]
     (True, 3584, {3: 160})
     """
-    m = _map_of(points, tets, igm)
-    counts: dict[str, Any] = _hexhex.check(m.points, m.tets, m.igm, tolerance, scale,
-                                           _threads(threads))
+    counts: dict[str, Any] = _hexhex.check(_map_of(points, tets, igm)._arrays(), tolerance, scale,
+                                           _threads(threads), progress)
     defects = [Defect(*defect) for defect in counts.pop("defects")]
     return CheckReport(counts, defects, counts.pop("expected"))
 
 
 def verify(map: Map, mesh: Mesh, *, scale: int = 1, tolerance: float = 1e-2,
-           threads: int | None = None) -> VerifyReport:
-    """Whether a mesh agrees with its map: counts, singular edges, topology, and positions.
+           threads: int | None = None, progress: Progress | None = None) -> VerifyReport:
+    """Whether a mesh agrees with its map: counts, singular edges, topology, and positions. Of a
+    mesh with a ``repaired_map``, give that one.
 
     >>> map = hexhex.generate("torus")
     >>> report = hexhex.verify(map, hexhex.extract(map))
     >>> report.passed, report.items[2].name
     (True, 'cells')
     """
-    rows = _hexhex.verify(map.points, map.tets, map.igm, mesh._handle, scale, tolerance,
-                          _threads(threads))
+    rows = _hexhex.verify(map._arrays(), mesh._handle, scale, tolerance, _threads(threads),
+                          progress)
     return VerifyReport([VerifyItem(*row) for row in rows])
 
 
 def generate(kind: str, *, cells: int = 4, refine: int = 2, valence: int = 5,
              charts: str = "aligned", jitter: float = 0, on_lattice: float = 0, noise: float = 0,
-             offset: float = 0, seed: int = 1) -> Map:
+             offset: float = 0, seed: int = 1, features: bool = False, defects: int = 0,
+             defect_kind: str = "interior") -> Map:
     """A map whose mesh is known in advance.
 
     Args:
@@ -184,6 +418,9 @@ def generate(kind: str, *, cells: int = 4, refine: int = 2, valence: int = 5,
         valence: hexahedra around the inner edge of a "star", 3 to 12.
         charts: "aligned", "blocks" (a random chart per block) or "random" (per tet).
         jitter, on_lattice, noise, offset, seed: see docs/command.md.
+        features: tags corners, curves and surfaces, and numbers the blocks as regions.
+        defects: at least so many tets are flipped or flat.
+        defect_kind: "interior", "singular", "boundary" or "sliver".
 
     Raises:
         ArgumentError: for options out of range.
@@ -193,24 +430,66 @@ def generate(kind: str, *, cells: int = 4, refine: int = 2, valence: int = 5,
     """
     if charts not in ("aligned", "blocks", "random"):
         raise ArgumentError(f'There is no style of charts "{charts}".', "InvalidArgument")
-    handle = _hexhex.generate(kind, cells, refine, valence, charts, jitter, on_lattice, noise,
-                              offset, seed)
-    return Map(handle.points, handle.tets, handle.igm)
+    if seed < 0:
+        raise ArgumentError(f"The seed is {seed}. Choose it from 0.", "InvalidArgument")
+    return Map._from_handle(_hexhex.generate(kind, cells, refine, valence, charts, jitter,
+                                             on_lattice, noise, offset, seed, features, defects,
+                                             defect_kind))
 
 
-def read_map(file: Path, *, threads: int | None = None) -> Map:
-    """Reads a map: .hexex, .ovm, .ovmb. Raises FileError with the line as its place."""
-    handle = _hexhex.read_map(os.fspath(file), _threads(threads))
-    return Map(handle.points, handle.tets, handle.igm)
+def read_map(file: Path, *, format: str | None = None, map_array: str = "igm",
+             threads: int | None = None, progress: Progress | None = None) -> Map:
+    """Reads a map: .hexex, .ovm, .ovmb, .vtu, .vtk. Raises FileError with the line as its place.
+
+    Args:
+        format: whatever the extension is: see formats().
+        map_array: the name of the array that holds the map in .vtu and .vtk files.
+    """
+    return Map._from_handle(_hexhex.read_map(os.fspath(file), format or "", map_array,
+                                             _threads(threads), progress))
 
 
-def read_mesh(file: Path, *, threads: int | None = None) -> Mesh:
+def read_tets(file: Path, *, format: str | None = None, threads: int | None = None,
+              progress: Progress | None = None) -> tuple[Any, Any]:
+    """Reads a tetrahedral mesh without a map: also .mesh, .meshb, .msh. Raises FileError.
+
+    Returns:
+        Positions, float64 (n, 3), and vertices of tets, uint32 (m, 4).
+    """
+    points, tets = _hexhex.read_tets(os.fspath(file), format or "", _threads(threads), progress)
+    return points, tets
+
+
+def read_pair(tets: Path, polycube: Path, *, threads: int | None = None,
+              progress: Progress | None = None) -> Map:
+    """The map of two files with meshes of the same tets, as polycube tools write them: points of
+    the second are parameters of the first. Raises FileError."""
+    return Map._from_handle(_hexhex.read_pair(os.fspath(tets), os.fspath(polycube),
+                                              _threads(threads), progress))
+
+
+def map_from_pair(points: npt.ArrayLike, tets: npt.ArrayLike, polycube_points: npt.ArrayLike,
+                  polycube_tets: npt.ArrayLike | None = None) -> Map:
+    """The same of arrays: float64 (n, 3), integers (m, 4), float64 (n, 3), and tets with the same
+    vertices, maybe in another order (None: as they are). Raises ArgumentError."""
+    corners = _indices(tets, 4, "tets")
+    others = corners if polycube_tets is None else _indices(polycube_tets, 4, "polycube_tets")
+    return Map._from_handle(_hexhex.map_from_pair(
+        _floats(points, (3,), "points"), corners, _floats(polycube_points, (3,), "polycube_points"),
+        others, 0))
+
+
+def read_mesh(file: Path, *, format: str | None = None, threads: int | None = None,
+              progress: Progress | None = None) -> Mesh:
     """Reads a hexahedral mesh: .mesh, .meshb, .vtu, .vtk, .msh, .ovm, .ovmb. Raises FileError."""
-    return Mesh._from_handle(_hexhex.read_mesh(os.fspath(file), _threads(threads)), {})
+    return Mesh._from_handle(_hexhex.read_mesh(os.fspath(file), format or "", _threads(threads),
+                                               progress))
 
 
-def read(file: Path, *, threads: int | None = None) -> Map | Mesh:
-    """Reads what a file holds. Of .ovm and .ovmb, which may hold either: a map if it is one.
+def read(file: Path, *, format: str | None = None, map_array: str = "igm",
+         threads: int | None = None, progress: Progress | None = None) -> Map | Mesh:
+    """Reads what a file holds: a mesh or, where there are no hexahedra, a map. Arguments as of
+    read_map().
 
     Raises:
         FileError: if it can be read as neither; place and index tell the line.
@@ -221,42 +500,83 @@ def read(file: Path, *, threads: int | None = None) -> Map | Mesh:
     ...     hexhex.read(pathlib.Path(folder) / "box.hexex")
     <hexhex.Map: 768 tets, 189 points>
     """
-    extension = pathlib.Path(file).suffix.lower()
-    if extension == ".hexex":
-        return read_map(file, threads=threads)
-    if extension in (".ovm", ".ovmb"):
-        try:
-            return read_map(file, threads=threads)
-        except HexhexError as error:
-            if error.code == "FileNotFound":
-                raise
-    return read_mesh(file, threads=threads)
+    found = _hexhex.read(os.fspath(file), format or "", map_array, _threads(threads), progress)
+    return Map._from_handle(found) if isinstance(found, _hexhex.Map) else Mesh._from_handle(found)
 
 
-def write(what: Map | Mesh, file: Path, *, format: str | None = None,
-          threads: int | None = None) -> None:
-    """Writes a map (.hexex, .ovm, .ovmb) or a mesh (.vtu, .mesh, .meshb, .vtk, .msh, .inp, .ovm,
-    .ovmb). The file appears complete or not at all.
+def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
+          format: str | None = None, compress: bool = False, patch_angle: float = 40,
+          map_array: str = "igm", threads: int | None = None,
+          progress: Progress | None = None) -> None:
+    """Writes a map, a mesh, or what of it is curved; docs/formats.md has the formats. The file
+    appears complete or not at all.
 
     Args:
-        format: of a mesh, whatever the extension is: docs/formats.md lists the names.
+        what: a Map (.hexex, .ovm, .ovmb, .vtu, .vtk), a Mesh (see formats()), ``mesh.curved``
+            (.vtu, .msh, .mesh), ``mesh.arcs`` (.vtu, .vtp) or ``mesh.patches`` (also .ovmb).
+        format: of a map or mesh, whatever the extension is: see formats().
+        compress: arrays of .vtu files, with zlib; of a map or mesh.
+        patch_angle: of a mesh without tagged quads, for formats with groups: where the boundary
+            turns by more degrees, a group ends; 0 to 180.
+        map_array: the name of the array that holds the map in .vtu and .vtk files.
 
     Raises:
         FileError: if it cannot be written.
+        ArgumentError: for options out of range.
     """
+    name, workers = os.fspath(file), _threads(threads)
     if isinstance(what, Map):
-        _hexhex.write_map(what.points, what.tets, what.igm, os.fspath(file), _threads(threads))
+        _hexhex.write_map(what._arrays(), name, format or "", compress, map_array, workers,
+                          progress)
+    elif isinstance(what, Mesh):
+        _hexhex.write_mesh(what._handle, name, format or "", patch_angle, compress, workers,
+                           progress)
+    elif format is not None or compress:
+        raise ArgumentError("Curved meshes are written without format and compress.",
+                            "InvalidArgument")
+    elif isinstance(what, LagrangeMesh):
+        _hexhex.write_lagrange(what._handle, name, workers, progress)
+    elif isinstance(what, Arcs):
+        _hexhex.write_arcs(what._handle, name, workers, progress)
+    elif isinstance(what, Patches):
+        _hexhex.write_patches(what._handle, name, workers, progress)
     else:
-        _hexhex.write_mesh(what._handle, os.fspath(file), format or "", _threads(threads))
+        raise ArgumentError(f"A {type(what).__name__} cannot be written.", "InvalidArgument")
 
 
-def quality(mesh: Mesh, *, threads: int | None = None) -> Quality:
-    """Scaled Jacobian of each cell, as in the Verdict library.
+def formats() -> list[FileFormat]:
+    """The file formats of this build.
+
+    >>> sorted({f.extension for f in hexhex.formats() if f.streams})
+    ['.mesh', '.meshb', '.msh', '.vtk', '.vtu']
+    """
+    return [FileFormat(*row) for row in _hexhex.formats()]
+
+
+def quality(mesh: Mesh | LagrangeMesh, *, threads: int | None = None,
+            progress: Progress | None = None) -> Quality:
+    """Scaled Jacobian of each cell: of straight ones as in the Verdict library, of curved ones
+    (``mesh.curved``) the smallest at nodes and Gauss points.
 
     >>> hexhex.quality(hexhex.extract(hexhex.generate("box"))).minimum
     1.0
     """
-    values = _hexhex.scaled_jacobians(mesh._handle, _threads(threads))
+    values = _hexhex.scaled_jacobians(mesh._handle, _threads(threads), progress)
     if not len(values):
         return Quality(values, 0.0, 0.0, 0)
     return Quality(values, float(values.min()), float(values.mean()), int((values <= 0).sum()))
+
+
+def survey(mesh: Mesh | Path, *, threads: int | None = None,
+           progress: Progress | None = None) -> Survey:
+    """What a mesh adds up to, in memory or in a file of any size: to compare meshes.
+
+    >>> map = hexhex.generate("box")
+    >>> hexhex.survey(hexhex.extract(map)) == hexhex.survey(hexhex.extract(map, threads=1))
+    True
+    """
+    if isinstance(mesh, Mesh):
+        values = _hexhex.survey(mesh._handle, _threads(threads), progress)
+    else:
+        values = _hexhex.survey_file(os.fspath(mesh), _threads(threads), progress)
+    return Survey(**values)

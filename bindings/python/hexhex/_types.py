@@ -14,12 +14,12 @@ from ._errors import ArgumentError
 if TYPE_CHECKING:
     Floats = npt.NDArray[np.float64]
     Indices = npt.NDArray[np.uint32]
+    Ints = npt.NDArray[np.int32]
+    Corners = npt.NDArray[np.uint8]
 
-# Faces of a hexahedron in VTK's order, counter-clockwise seen from outside; its edges.
+# Faces of a hexahedron in VTK's order, counter-clockwise seen from outside.
 _FACES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [3, 7, 6, 2], [1, 2, 6, 5],
                    [0, 4, 7, 3]])
-_EDGES = np.array([[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5],
-                   [2, 6], [3, 7]])
 
 
 def _floats(values: npt.ArrayLike, shape: tuple[int, ...], name: str) -> Floats:
@@ -49,6 +49,62 @@ def _indices(values: npt.ArrayLike, width: int, name: str) -> Indices:
     return np.ascontiguousarray(array, dtype=np.uint32)
 
 
+def _ints(values: npt.ArrayLike | None, width: int, name: str,
+          dtype: type[np.signedinteger[Any]] = np.int32) -> npt.NDArray[Any]:
+    """Integers of shape (n, width), or (n,) for width 0; none for None."""
+    if values is None:
+        return np.empty((0, width) if width else (0,), dtype=dtype)
+    array = np.asarray(values)
+    if array.shape == (0,) and width:
+        array = np.empty((0, width), dtype=dtype)
+    if array.ndim != (2 if width else 1) or (width and array.shape[1] != width):
+        shape = f"(n, {width})" if width else "(n,)"
+        raise ArgumentError(f"The array {name} has shape {array.shape}; it needs one of {shape}.",
+                            "InvalidArgument")
+    if array.size and array.dtype.kind not in "iu":
+        raise ArgumentError(f"The array {name} has dtype {array.dtype}; it needs integers.",
+                            "InvalidArgument")
+    limits = np.iinfo(dtype)
+    if array.dtype != dtype and array.size and not (
+            limits.min <= int(array.min()) and int(array.max()) <= limits.max):
+        raise ArgumentError(f"The array {name} has numbers beyond {np.dtype(dtype)}.",
+                            "InvalidArgument")
+    return np.ascontiguousarray(array, dtype=dtype)
+
+
+def _kind(corners: Corners) -> Corners:
+    """Number of corners of each set, minus one."""
+    bits: Corners = np.unpackbits(corners[:, None], axis=1).sum(axis=1, dtype=np.uint8)
+    return bits - np.uint8(1)
+
+
+class Features:
+    """Tagged vertices, edges, and triangles of tets or quads of a mesh, as sharp curves and named
+    surfaces. A row has the vertices, in any order but that of quads, and then the tag.
+
+    Attributes:
+        vertices: int32 of shape (k, 2): vertex, tag.
+        edges: int32 of shape (k, 3): two vertices, tag.
+        faces: of a Map, int32 of shape (k, 4): three vertices, tag. Of a Mesh, (k, 5).
+
+    Raises:
+        ArgumentError: shapes or types that do not fit.
+    """
+
+    def __init__(self, vertices: npt.ArrayLike | None = None, edges: npt.ArrayLike | None = None,
+                 faces: npt.ArrayLike | None = None, *, corners: int = 3) -> None:
+        self.vertices: Ints = _ints(vertices, 2, "features.vertices")
+        self.edges: Ints = _ints(edges, 3, "features.edges")
+        self.faces: Ints = _ints(faces, corners + 1, "features.faces")
+
+    def __repr__(self) -> str:
+        return (f"<hexhex.Features: {len(self.vertices)} vertices, {len(self.edges)} edges, "
+                f"{len(self.faces)} faces>")
+
+    def __bool__(self) -> bool:
+        return bool(len(self.vertices) or len(self.edges) or len(self.faces))
+
+
 class Map:
     """A tetrahedral mesh with an integer-grid map.
 
@@ -58,37 +114,273 @@ class Map:
         igm: parameters (u, v, w) of the four corners of each tet, in units of one hexahedron,
             float64 of shape (m, 4, 3).
 
+        features: tagged vertices, edges and triangles: Features.
+        regions: a number for each tet, which the cells inherit: int32 (m,); empty without.
+        edge_valences: what is known of singular edges, int32 (k, 3): two vertices, and the number
+            of hexahedra around minus the regular one; empty: computed.
+        rotations: what is known of transitions, int8 (m, 4), numbers as in AlgoHex; empty: computed.
+
     Arrays of these types in C order are used without a copy, and so is ``tets`` as int32; others
     are converted. Do not change them while a function works on them.
 
     Raises:
         ArgumentError: shapes or types that do not fit.
+
+    >>> map = hexhex.generate("box", features=True)
+    >>> map.features, sorted(set(map.regions.tolist()))
+    (<hexhex.Features: 8 vertices, 48 edges, 192 faces>, [1, 2, 3, 4, 5, 6, 7, 8])
     """
 
-    def __init__(self, points: npt.ArrayLike, tets: npt.ArrayLike, igm: npt.ArrayLike) -> None:
+    def __init__(self, points: npt.ArrayLike, tets: npt.ArrayLike, igm: npt.ArrayLike, *,
+                 features: Features | None = None, regions: npt.ArrayLike | None = None,
+                 edge_valences: npt.ArrayLike | None = None,
+                 rotations: npt.ArrayLike | None = None) -> None:
         self.points: Floats = _floats(points, (3,), "points")
         self.tets: Indices = _indices(tets, 4, "tets")
         self.igm: Floats = _floats(igm, (4, 3), "igm")
+        self.features: Features = Features() if features is None else features
+        self.regions: Ints = _ints(regions, 0, "regions")
+        self.edge_valences: Ints = _ints(edge_valences, 3, "edge_valences")
+        self.rotations: npt.NDArray[np.int8] = _ints(rotations, 4, "rotations", np.int8)
+
+    @classmethod
+    def _from_handle(cls, handle: _hexhex.Map) -> Map:
+        features = Features(handle.feature_vertices, handle.feature_edges, handle.feature_faces)
+        return cls(handle.points, handle.tets, handle.igm, features=features,
+                   regions=handle.regions, edge_valences=handle.edge_valences,
+                   rotations=handle.rotations)
+
+    def _arrays(self) -> _hexhex.MapArrays:
+        """For the library: whatever the attributes are now."""
+        f = self.features
+        return _hexhex.MapArrays(
+            _floats(self.points, (3,), "points"), _indices(self.tets, 4, "tets"),
+            _floats(self.igm, (4, 3), "igm"), _ints(f.vertices, 2, "features.vertices"),
+            _ints(f.edges, 3, "features.edges"), _ints(f.faces, 4, "features.faces"),
+            _ints(self.regions, 0, "regions"), _ints(self.edge_valences, 3, "edge_valences"),
+            _ints(self.rotations, 4, "rotations", np.int8))
 
     def __repr__(self) -> str:
         return f"<hexhex.Map: {len(self.tets)} tets, {len(self.points)} points>"
 
 
+@dataclasses.dataclass(frozen=True)
+class RepairedRegion:
+    """What a repair did to one place."""
+
+    place: str  #: a bad tet
+    index: int  #: its number
+    position: tuple[float, float, float]  #: in space
+    bad_tets: int  #: flipped or flat, before
+    tets: int  #: in the patch that was optimized
+    moved_vertices: int
+    largest_move: float  #: of a coordinate, in parameter units
+
+
+@dataclasses.dataclass(frozen=True)
+class RepairReport:
+    """What a repair did; see docs/defects.md."""
+
+    changed: bool  #: False for a valid map
+    bad_tets: int
+    moved_vertices: int
+    largest_move: float  #: of a coordinate, in parameter units
+    split_edges: int
+    added_tets: int
+    rounded_vertices: int
+    seconds: float
+    regions: list[RepairedRegion]
+
+    @classmethod
+    def _of(cls, values: dict[str, Any]) -> RepairReport:
+        return cls(**{**values, "regions": [RepairedRegion(*r) for r in values["regions"]]})
+
+
+@dataclasses.dataclass(frozen=True)
+class Arcs:
+    """Hex edges as polylines: arc e has the inner points point_begin[e] to point_begin[e + 1] - 1,
+    and one segment more than inner points, from number point_begin[e] + e on."""
+
+    ends: Indices  #: hex vertices at the ends of each arc, uint32 (e, 2)
+    point_begin: npt.NDArray[np.uint64]  #: uint64 (e + 1,)
+    points: Floats  #: of inner points, float64 (n, 3)
+    parameters: Floats  #: places of inner points along their arcs, in (0, 1), float64 (n,)
+    generator_tet: Indices  #: the simplex that an inner point crosses, as in Mesh, uint32 (n,)
+    generator_corners: Corners  #: uint8 (n,)
+    segment_tet: Indices  #: the simplex that a segment lies in, uint32 (n + e,)
+    segment_corners: Corners  #: uint8 (n + e,)
+    _handle: Any = dataclasses.field(repr=False, compare=False)
+
+    def __len__(self) -> int:
+        return len(self.ends)
+
+
+@dataclasses.dataclass(frozen=True)
+class Patches:
+    """Hex faces as planar polygons. Points are numbered: hex vertices, inner points of arcs, inner
+    points of patches."""
+
+    vertices: Indices  #: of each face, uint32 (f, 4)
+    arcs: Indices  #: of each face, from vertex i to i + 1, uint32 (f, 4)
+    reversed_arcs: Corners  #: bit i: that arc runs the other way, uint8 (f,)
+    polygon_begin: npt.NDArray[np.uint64]  #: polygons of each face, uint64 (f + 1,)
+    corner_begin: npt.NDArray[np.uint64]  #: corners of each polygon, uint64 (p + 1,)
+    polygon_tet: Indices  #: the simplex whose interior a polygon lies in, uint32 (p,)
+    polygon_corners: Corners  #: uint8 (p,)
+    corners: Indices  #: points, counter-clockwise in (u, v), uint32 (c,)
+    parameters: Floats  #: (u, v) of each corner in its face, in [0, 1], float64 (c, 2)
+    points: Floats  #: of inner points of faces, float64 (n, 3)
+    generator_tet: Indices  #: uint32 (n,)
+    generator_corners: Corners  #: uint8 (n,)
+    _handle: Any = dataclasses.field(repr=False, compare=False)
+
+    def __len__(self) -> int:
+        return len(self.vertices)
+
+
+def _vtk_order(p: int) -> npt.NDArray[np.int64]:
+    """Nodes of a cell of order p in the order of VTK_LAGRANGE_HEXAHEDRON (VTK 9.1 and later)."""
+    inner = range(1, p)
+    nodes = [(0, 0, 0), (p, 0, 0), (p, p, 0), (0, p, 0), (0, 0, p), (p, 0, p), (p, p, p), (0, p, p)]
+    for k in (0, p):
+        nodes += [(i, 0, k) for i in inner] + [(p, j, k) for j in inner]
+        nodes += [(i, p, k) for i in inner] + [(0, j, k) for j in inner]
+    for i, j in ((0, 0), (p, 0), (p, p), (0, p)):
+        nodes += [(i, j, k) for k in inner]
+    nodes += [(i, j, k) for i in (0, p) for k in inner for j in inner]
+    nodes += [(i, j, k) for j in (0, p) for k in inner for i in inner]
+    nodes += [(i, j, k) for k in (0, p) for j in inner for i in inner]
+    nodes += [(i, j, k) for k in inner for j in inner for i in inner]
+    return np.array([i + (p + 1) * (j + (p + 1) * k) for i, j, k in nodes])
+
+
+def _vtk_grid(points: Floats, cells: npt.NDArray[np.int64], cell_type: int, kind: Corners,
+              regions: Ints) -> Any:
+    """A vtkUnstructuredGrid of cells of one type; needs vtk alone."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
+
+    grid = vtkUnstructuredGrid()
+    places = vtkPoints()
+    places.SetData(numpy_to_vtk(points, deep=True))
+    grid.SetPoints(places)
+    array = vtkCellArray()
+    if len(cells):
+        array.SetData(cells.shape[1], numpy_to_vtkIdTypeArray(cells.ravel(), deep=True))
+    grid.SetCells(cell_type, array)
+    for values, name, data in ((kind, "generator_kind", grid.GetPointData()),
+                               (regions, "region", grid.GetCellData())):
+        if len(values):
+            column = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+            column.SetName(name)
+            data.AddArray(column)
+    return grid
+
+
+class LagrangeMesh:
+    """Hexahedra of an order p: ``mesh.curved`` of ``extract(..., order=p)``."""
+
+    def __init__(self, handle: _hexhex.LagrangeMesh) -> None:
+        self._handle = handle
+
+    def __repr__(self) -> str:
+        return f"<hexhex.LagrangeMesh: {len(self.nodes)} cells of order {self.order}>"
+
+    @property
+    def order(self) -> int:
+        """p, 1 to 9."""
+        return self._handle.order
+
+    @property
+    def points(self) -> Floats:
+        """Positions of nodes, float64 (n, 3); the first ``vertex_count`` are the hex vertices."""
+        return self._handle.points
+
+    @property
+    def nodes(self) -> Indices:
+        """Nodes of each cell, uint32 (m, (p + 1)**3): node (i, j, k), i / p of the way from corner
+        0 to 1, j / p to corner 3, k / p to corner 4, is number i + (p + 1) (j + (p + 1) k)."""
+        return self._handle.nodes
+
+    @property
+    def vertex_count(self) -> int:
+        """Number of hex vertices."""
+        return self._handle.vertex_count
+
+    @property
+    def generator_tet(self) -> Indices:
+        """As of a Mesh, per node, uint32 (n,)."""
+        return self._handle.generator_tet
+
+    @property
+    def generator_corners(self) -> Corners:
+        """As of a Mesh, per node, uint8 (n,)."""
+        return self._handle.generator_corners
+
+    def _vtk_nodes(self) -> npt.NDArray[np.int64]:
+        return self.nodes.astype(np.int64)[:, _vtk_order(self.order)]
+
+    def to_meshio(self) -> Any:
+        """A ``meshio.Mesh`` of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without meshio."""
+        import meshio
+
+        return meshio.Mesh(self.points, [("VTK_LAGRANGE_HEXAHEDRON", self._vtk_nodes())])
+
+    def to_vtk(self) -> Any:
+        """A ``vtkUnstructuredGrid`` of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without vtk."""
+        lagrange_hexahedron = 72
+        return _vtk_grid(self.points, self._vtk_nodes(), lagrange_hexahedron,
+                         _kind(self.generator_corners), _ints(None, 0, ""))
+
+    def to_pyvista(self) -> Any:
+        """The same as a ``pyvista.UnstructuredGrid``. Raises ImportError without pyvista."""
+        import pyvista
+
+        return pyvista.wrap(self.to_vtk())
+
+
 class Mesh:
     """A hexahedral mesh.
 
-    ``Mesh(points, cells)`` copies arrays of one's own: float64 (n, 3) and integers (m, 8).
+    ``Mesh(points, cells)`` copies arrays of one's own: float64 (n, 3) and integers (m, 8), and tags
+    and regions (int32 (m,)), if given.
+
+    Attributes:
+        statistics: of the extraction, e.g. ``seconds``; empty for other meshes.
+        repair: what a repair of the map did: RepairReport, or None.
+        repaired_map: the map that this is the mesh of, if it had to be repaired; or None.
+        arcs: the exact shapes of edges: Arcs, if asked for; or None.
+        patches: the exact shapes of faces: Patches, if asked for; or None.
+        curved: the cells of higher order: LagrangeMesh, if asked for; or None.
+
+    Raises:
+        ArgumentError: shapes or types that do not fit.
     """
 
-    def __init__(self, points: npt.ArrayLike, cells: npt.ArrayLike) -> None:
-        self._handle = _hexhex.Mesh(_floats(points, (3,), "points"), _indices(cells, 8, "cells"))
-        self.statistics: dict[str, Any] = {}
+    def __init__(self, points: npt.ArrayLike, cells: npt.ArrayLike, *,
+                 features: Features | None = None, regions: npt.ArrayLike | None = None) -> None:
+        f = Features(corners=4) if features is None else features
+        self._set(_hexhex.Mesh(
+            _floats(points, (3,), "points"), _indices(cells, 8, "cells"),
+            _ints(f.vertices, 2, "features.vertices"), _ints(f.edges, 3, "features.edges"),
+            _ints(f.faces, 5, "features.faces"), _ints(regions, 0, "regions")))
+
+    def _set(self, handle: _hexhex.Mesh, notes: tuple[Any, Any, Any] = ({}, None, None)) -> None:
+        statistics, report, repaired = notes
+        self._handle = handle
+        self.statistics: dict[str, Any] = statistics
+        self.repair: RepairReport | None = None if report is None else RepairReport._of(report)
+        self.repaired_map: Map | None = None if repaired is None else Map._from_handle(repaired)
+        self.arcs: Arcs | None = None
+        self.patches: Patches | None = None
+        self.curved: LagrangeMesh | None = None
 
     @classmethod
-    def _from_handle(cls, handle: _hexhex.Mesh, statistics: dict[str, Any]) -> Mesh:
+    def _from_handle(cls, handle: _hexhex.Mesh,
+                     notes: tuple[Any, Any, Any] = ({}, None, None)) -> Mesh:
         mesh = cls.__new__(cls)
-        mesh._handle = handle
-        mesh.statistics = statistics
+        mesh._set(handle, notes)
         return mesh
 
     def __repr__(self) -> str:
@@ -117,9 +409,35 @@ class Mesh:
     @property
     def generator_kind(self) -> npt.NDArray[np.uint8]:
         """Per vertex the dimension of its generator: 0 vertex, 1 edge, 2 face, 3 tet; uint8 (n,)."""
-        corners = self.generator_corners[:, None]
-        kind: npt.NDArray[np.uint8] = np.unpackbits(corners, axis=1).sum(axis=1, dtype=np.uint8)
-        return kind - np.uint8(1)
+        return _kind(self.generator_corners)
+
+    @property
+    def features(self) -> Features:
+        """What of the mesh is tagged, with quads as faces; views."""
+        h = self._handle
+        return Features(h.feature_vertices, h.feature_edges, h.feature_quads, corners=4)
+
+    @property
+    def regions(self) -> Ints:
+        """Per cell its region, int32 (m,); empty if unknown."""
+        return self._handle.regions
+
+    def boundary_patches(self, angle: float = 40) -> Ints:
+        """Quads on the boundary, each with the number of its smooth patch, int32 (k, 5).
+
+        Args:
+            angle: in degrees: where the boundary turns by more, a patch ends.
+
+        >>> len(set(hexhex.extract(hexhex.generate("box")).boundary_patches()[:, 4].tolist()))
+        6
+        """
+        return _hexhex.boundary_patches(self._handle, angle, 0)
+
+    def structure(self) -> dict[str, int]:
+        """Numbers of faces, edges, boundary_quads, components, boundary_components, and the
+        euler_characteristic."""
+        counts: dict[str, int] = _hexhex.structure(self._handle, 0, None)[1]
+        return counts
 
     def boundary_quads(self) -> Indices:
         """Quads on the boundary, counter-clockwise seen from outside, uint32 of shape (k, 4)."""
@@ -136,20 +454,8 @@ class Mesh:
             Vertices of each edge, uint32 of shape (k, 2), the smaller first; the number of cells
             around it, int64 (k,); and whether it is on the boundary, bool (k,).
         """
-        edges, valence = np.unique(np.sort(self.cells[:, _EDGES].reshape(-1, 2), axis=1), axis=0,
-                                   return_counts=True)
-        quads = self.boundary_quads()
-        sides = np.stack([quads, np.roll(quads, -1, axis=1)], axis=-1).reshape(-1, 2)
-
-        def key(pairs: Indices) -> npt.NDArray[np.uint64]:
-            low, high = pairs.min(axis=1), pairs.max(axis=1)
-            keys: npt.NDArray[np.uint64] = low.astype(np.uint64) << np.uint64(32)
-            keys |= high.astype(np.uint64)
-            return keys
-
-        boundary = np.isin(key(edges), key(sides))
-        singular = valence != np.where(boundary, 2, 4)
-        return edges[singular], valence[singular].astype(np.int64), boundary[singular]
+        rows: Indices = _hexhex.structure(self._handle, 0, None)[0]
+        return rows[:, :2], rows[:, 2].astype(np.int64), rows[:, 3] != 0
 
     def to_meshio(self) -> Any:
         """The mesh as a ``meshio.Mesh``. Raises ImportError without meshio."""
@@ -159,19 +465,67 @@ class Mesh:
         return meshio.Mesh(self.points, [("hexahedron", self.cells.astype(np.int64))])
 
     def to_vtk(self) -> Any:
-        """The mesh as a ``vtkUnstructuredGrid``. Raises ImportError without VTK."""
-        return self.to_pyvista()
+        """The mesh as a ``vtkUnstructuredGrid``, with the arrays ``generator_kind`` (points) and
+        ``region`` (cells) if they are known. Raises ImportError without vtk."""
+        hexahedron = 12
+        kind = self.generator_kind if len(self.generator_corners) else self.generator_corners
+        return _vtk_grid(self.points, self.cells.astype(np.int64), hexahedron, kind, self.regions)
 
     def to_pyvista(self) -> Any:
-        """The mesh as a ``pyvista.UnstructuredGrid``, which is a ``vtkUnstructuredGrid``, with the
-        point array ``generator_kind`` if it is known. Raises ImportError without pyvista."""
+        """The same as a ``pyvista.UnstructuredGrid``. Raises ImportError without pyvista."""
         import pyvista
 
-        grid = pyvista.UnstructuredGrid({pyvista.CellType.HEXAHEDRON: self.cells.astype(np.int64)},
-                                        self.points)
-        if len(self.generator_corners):
-            grid.point_data["generator_kind"] = self.generator_kind
-        return grid
+        return pyvista.wrap(self.to_vtk())
+
+
+@dataclasses.dataclass(frozen=True)
+class Hole:
+    """A place where cells are missing."""
+
+    tet: int  #: the smallest
+    tets: int
+    invalid_tets: int
+    position: tuple[float, float, float]  #: in space
+    missing_cells: float  #: how many cells a valid map would have there
+
+
+@dataclasses.dataclass(frozen=True)
+class PartialMesh:
+    """What could be extracted of a map that is not valid."""
+
+    mesh: Mesh  #: its regions are 1 for cells at holes and 0 for others
+    holes: list[Hole]  #: most missing cells first
+    invalid_tets: int
+    missing_cells: float
+    face_conflicts: int
+
+
+@dataclasses.dataclass(frozen=True)
+class Survey:
+    """What a mesh adds up to; equal for meshes that are equal, bit for bit."""
+
+    points: int
+    cells: int
+    lower: tuple[float, float, float]  #: of the bounding box
+    upper: tuple[float, float, float]
+    point_checksum: int
+    cell_checksum: int
+
+
+@dataclasses.dataclass(frozen=True)
+class FileFormat:
+    """A file format, and what this build does with it."""
+
+    name: str  #: for ``format=``
+    extension: str  #: with the dot; empty: has to be asked for by name
+    description: str
+    reads_maps: bool
+    writes_maps: bool
+    reads_tets: bool
+    reads_meshes: bool
+    writes_meshes: bool
+    streams: bool
+    compresses: bool
 
 
 @dataclasses.dataclass(frozen=True)

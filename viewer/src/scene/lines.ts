@@ -4,6 +4,7 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import { rgbOf } from "../colours";
+import type { EdgeCurves } from "../curves";
 
 /** Segments between vertices, each with a colour. */
 export interface Segments {
@@ -11,7 +12,9 @@ export interface Segments {
   colours: number[];
 }
 
-function pointsOf(vertices: ArrayLike<number>, positions: Float32Array): Float32Array {
+/** Ends of segments: one per edge, or as many as a curve has pieces. */
+function pointsOf(vertices: ArrayLike<number>, positions: Float32Array, curves: EdgeCurves | null): Float32Array {
+  if (curves) return curvedPointsOf(vertices, curves);
   const points = new Float32Array(3 * vertices.length);
   for (let i = 0; i < vertices.length; ++i) {
     const at = 4 * vertices[i]!;
@@ -20,16 +23,38 @@ function pointsOf(vertices: ArrayLike<number>, positions: Float32Array): Float32
   return points;
 }
 
+function curvedPointsOf(vertices: ArrayLike<number>, curves: EdgeCurves): Float32Array {
+  curves.find(vertices);
+  const { pieces } = curves;
+  const curve = new Float32Array(3 * (pieces + 1));
+  const points = new Float32Array(3 * pieces * vertices.length);
+  let to = 0;
+  for (let i = 0; i < vertices.length; i += 2) {
+    curves.write(vertices[i]!, vertices[i + 1]!, curve, 0);
+    for (let piece = 0; piece < pieces; ++piece, to += 6) {
+      points.set(curve.subarray(3 * piece, 3 * piece + 6), to);
+    }
+  }
+  return points;
+}
+
 /** Wide lines; what lies behind the surface shines through faintly. */
-export function wideLines(segments: Segments, positions: Float32Array, width: number): Group {
+export function wideLines(
+  segments: Segments,
+  positions: Float32Array,
+  curves: EdgeCurves | null,
+  width: number,
+): Group {
   const group = new Group();
   if (segments.vertices.length === 0) return group;
   const geometry = new LineSegmentsGeometry();
-  geometry.setPositions(pointsOf(segments.vertices, positions));
-  const colours = new Float32Array(3 * segments.vertices.length);
+  const points = pointsOf(segments.vertices, positions, curves);
+  geometry.setPositions(points);
+  const pieces = curves?.pieces ?? 1;
+  const colours = new Float32Array(points.length);
   segments.colours.forEach((hex, i) => {
     const rgb = rgbOf(hex).map((channel) => channel / 255);
-    colours.set([...rgb, ...rgb], 6 * i);
+    for (let end = 0; end < 2 * pieces; ++end) colours.set(rgb, 6 * pieces * i + 3 * end);
   });
   geometry.setColors(colours);
   const behind = new LineMaterial({
@@ -50,14 +75,13 @@ export function wideLines(segments: Segments, positions: Float32Array, width: nu
 }
 
 /** Thin lines of one colour. */
-export function thinLines(vertices: Uint32Array, positions: Float32Array): LineSegments {
+export function thinLines(
+  vertices: Uint32Array,
+  positions: Float32Array,
+  curves: EdgeCurves | null,
+): LineSegments {
   const geometry = new BufferGeometry();
-  // The vertices are numbers into all positions: no copy of those that are not on any line.
-  geometry.setAttribute("position", new BufferAttribute(pointsOf(vertices, positions), 3));
+  geometry.setAttribute("position", new BufferAttribute(pointsOf(vertices, positions, curves), 3));
   const material = new LineBasicMaterial({ color: 0x8899aa, transparent: true, opacity: 0.35 });
   return new LineSegments(geometry, material);
 }
-
-export const kCellEdges = [
-  0, 1, 1, 2, 3, 2, 0, 3, 4, 5, 5, 6, 7, 6, 4, 7, 0, 4, 1, 5, 3, 7, 2, 6,
-] as const;

@@ -21,9 +21,10 @@ import {
 import { featureColour, kBadColour, kGeneratorColours, kPlainColour, rgbOf, viridis } from "../colours";
 import { kQualitySteps } from "../format";
 import { kTextureWidth } from "../scene_box";
+import type { CurvedFaces } from "../worker/curved_faces";
 import type { LoadedMesh } from "../worker/messages";
 
-export const kColourModes = ["quality", "generator", "feature", "layer", "plain"] as const;
+export const kColourModes = ["quality", "generator", "feature", "layer", "plain", "region"] as const;
 export type ColourMode = (typeof kColourModes)[number];
 
 const kVertexShader = /* glsl */ `
@@ -33,9 +34,12 @@ uniform mat4 modelViewMatrix;
 uniform mat4 projectionMatrix;
 uniform highp sampler2D positions;
 uniform highp sampler2D cellValues;
+uniform highp sampler2D surface;
+/** Squares along a side of a face; 0: straight, from corner to corner. */
+uniform int pieces;
 in uvec4 corners;
 in uvec2 cell;
-flat out vec3 vNormal;
+out vec3 vNormal;
 flat out float vQuality;
 flat out uvec2 vCell;
 flat out vec4 vKinds;
@@ -45,17 +49,36 @@ ivec2 texel(uint index) {
   return ivec2(int(index % ${kTextureWidth}u), int(index / ${kTextureWidth}u));
 }
 
+/** A point of the curved face that this instance is. */
+vec3 curvedPoint(ivec2 at) {
+  at = clamp(at, ivec2(0), ivec2(pieces));
+  int side = pieces + 1;
+  return texelFetch(surface, texel(uint(gl_InstanceID * side * side + at.y * side + at.x)), 0).xyz;
+}
+
 void main() {
   vec4 p[4];
   for (int i = 0; i < 4; ++i) p[i] = texelFetch(positions, texel(corners[i]), 0);
-  int k = gl_VertexID;
-  vSquare = vec2(k == 1 || k == 2 ? 1.0 : 0.0, k >= 2 ? 1.0 : 0.0);
-  vec3 normal = cross(p[2].xyz - p[0].xyz, p[3].xyz - p[1].xyz);
+  int side = max(pieces, 1) + 1;
+  ivec2 at = ivec2(gl_VertexID % side, gl_VertexID / side);
+  vSquare = vec2(at) / float(side - 1);
+  vec3 place;
+  vec3 normal;
+  if (pieces > 0) {
+    place = curvedPoint(at);
+    normal = cross(curvedPoint(at + ivec2(1, 0)) - curvedPoint(at - ivec2(1, 0)),
+                   curvedPoint(at + ivec2(0, 1)) - curvedPoint(at - ivec2(0, 1)));
+    // Long ones would outweigh short ones in between.
+    normal /= max(length(normal), 1e-30);
+  } else {
+    place = p[at.y == 0 ? at.x : 3 - at.x].xyz;
+    normal = cross(p[2].xyz - p[0].xyz, p[3].xyz - p[1].xyz);
+  }
   vNormal = mat3(modelViewMatrix) * normal;
   vQuality = texelFetch(cellValues, texel(cell.x), 0).r;
   vCell = cell;
   vKinds = vec4(p[0].w, p[1].w, p[2].w, p[3].w);
-  gl_Position = projectionMatrix * modelViewMatrix * vec4(p[k].xyz, 1.0);
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(place, 1.0);
 }`;
 
 const kFragmentShader = /* glsl */ `
@@ -63,12 +86,13 @@ precision highp float;
 precision highp int;
 uniform highp sampler2D colours;
 uniform highp sampler2D cellLayers;
+uniform highp sampler2D cellRegions;
 uniform int mode;
 uniform vec2 range;
 uniform float deepestLayer;
 uniform uint picked;
 uniform bool showGrid;
-flat in vec3 vNormal;
+in vec3 vNormal;
 flat in float vQuality;
 flat in uvec2 vCell;
 flat in vec4 vKinds;
@@ -91,9 +115,10 @@ vec3 base() {
     return look(1, int(vKinds[corner] + 0.5));
   }
   if (mode == 2 && vCell.y > 0u) return look(2, int((vCell.y - 1u) % 256u));
+  int index = int(vCell.x);
+  ivec2 at = ivec2(index % ${kTextureWidth}, index / ${kTextureWidth});
+  if (mode == 5) return look(2, int(texelFetch(cellRegions, at, 0).r + 0.5) % 256);
   if (mode == 3) {
-    int index = int(vCell.x);
-    ivec2 at = ivec2(index % ${kTextureWidth}, index / ${kTextureWidth});
     return scaled(texelFetch(cellLayers, at, 0).r / max(deepestLayer, 1.0));
   }
   return look(3, 0);
@@ -105,7 +130,8 @@ void main() {
   colour = vec4(float(id & 255u), float(id >> 8 & 255u), float(id >> 16 & 255u),
                 float(id >> 24 & 255u)) / 255.0;
 #else
-  vec3 normal = normalize(vNormal);
+  // A face without area has no direction.
+  vec3 normal = vNormal / max(length(vNormal), 1e-30);
   float light = 0.45 + 0.55 * abs(normal.z);
   vec3 shaded = base() * light;
   if (vCell.x == picked) shaded = mix(shaded, vec3(1.0, 1.0, 1.0), 0.45);
@@ -154,11 +180,31 @@ function valueTexture(data: Float32Array<ArrayBuffer>, rows: number, four: boole
   return texture;
 }
 
+let emptyTexture: DataTexture | null = null;
+
+/** Stands where no texture is needed. */
+function noTexture(): DataTexture {
+  emptyTexture ??= valueTexture(new Float32Array(4 * kTextureWidth), 1, true);
+  return emptyTexture;
+}
+
+/** Two triangles for each small square of a face of `pieces` times `pieces`. */
+function squares(pieces: number): number[] {
+  const side = pieces + 1;
+  const index: number[] = [];
+  for (let i = 0; i < pieces * pieces; ++i) {
+    const a = Math.floor(i / pieces) * side + (i % pieces);
+    index.push(a, a + 1, a + side + 1, a, a + side + 1, a + side);
+  }
+  return index;
+}
+
 export class Surface {
   readonly mesh: Mesh;
   /** The same, drawn with numbers of cells instead of colours. */
   readonly pickMesh: Mesh;
   private readonly material: RawShaderMaterial;
+  private curvedTexture: DataTexture | null = null;
 
   constructor(loaded: LoadedMesh) {
     const rows = loaded.positions.length / 4 / kTextureWidth;
@@ -166,6 +212,9 @@ export class Surface {
       positions: { value: valueTexture(loaded.positions, rows, true) },
       cellValues: { value: cellTexture(loaded.quality, (q) => (q / kQualitySteps) * 2 - 1) },
       cellLayers: { value: cellTexture(loaded.layers, (layer) => layer) },
+      cellRegions: { value: cellTexture(loaded.regions, (place) => place - 1) },
+      surface: { value: noTexture() },
+      pieces: { value: 0 },
       colours: { value: colourTexture() },
       mode: { value: 0 },
       range: { value: new Vector2(0, 1) },
@@ -192,10 +241,11 @@ export class Surface {
     this.pickMesh.frustumCulled = false;
   }
 
-  /** @param quads  six numbers each, as in Visible */
-  setQuads(quads: Uint32Array): void {
+  /** @param quads  six numbers each, as in Visible; curved: their points, or null for straight ones */
+  setQuads(quads: Uint32Array, curved: CurvedFaces | null): void {
     const geometry = new InstancedBufferGeometry();
-    geometry.setIndex([0, 1, 2, 0, 2, 3]);
+    geometry.setIndex(squares(curved?.pieces ?? 1));
+    this.setCurved(curved);
     const buffer = new InstancedInterleavedBuffer(quads, 6);
     geometry.setAttribute("corners", new InterleavedBufferAttribute(buffer, 4, 0));
     geometry.setAttribute("cell", new InterleavedBufferAttribute(buffer, 2, 4));
@@ -205,6 +255,16 @@ export class Surface {
     this.pickMesh.geometry = geometry;
     this.mesh.visible = quads.length > 0;
     this.pickMesh.visible = quads.length > 0;
+  }
+
+  private setCurved(curved: CurvedFaces | null): void {
+    const { surface, pieces } = this.material.uniforms;
+    pieces!.value = curved?.pieces ?? 0;
+    this.curvedTexture?.dispose();
+    this.curvedTexture = curved
+      ? valueTexture(curved.points, curved.points.length / 4 / kTextureWidth, true)
+      : null;
+    surface!.value = this.curvedTexture ?? noTexture();
   }
 
   setColouring(mode: ColourMode, range: [number, number]): void {

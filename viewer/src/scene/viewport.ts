@@ -2,6 +2,9 @@
 import {
   Color,
   LinearSRGBColorSpace,
+  LineSegments,
+  type Material,
+  Mesh,
   type Object3D,
   PerspectiveCamera,
   Scene,
@@ -52,6 +55,16 @@ export class Viewport {
 
   add(object: Object3D): void {
     this.scene.add(object);
+  }
+
+  /** Takes an object away for good. */
+  remove(object: Object3D): void {
+    this.scene.remove(object);
+    object.traverse((part) => {
+      if (!(part instanceof Mesh || part instanceof LineSegments)) return;
+      part.geometry.dispose();
+      (part.material as Material).dispose();
+    });
   }
 
   setSurface(surface: Surface): void {

@@ -1,6 +1,6 @@
 // What buttons, sliders, keys and clicks do.
 import type { App } from "../app";
-import type { SliceDirection } from "../state";
+import { kFlags, type SliceDirection } from "../state";
 import { element, make, showProblem } from "./dom";
 
 interface Shortcut {
@@ -26,6 +26,7 @@ const kShortcuts: Shortcut[] = [
   { keys: ["b"], shown: "B", what: "singular edges on the boundary", run: (app) => app.toggle("boundary") },
   { keys: ["o"], shown: "O", what: "edges of the whole boundary", run: (app) => app.toggle("outline") },
   { keys: ["t"], shown: "T", what: "tagged edges", run: (app) => app.toggle("features") },
+  { keys: ["u"], shown: "U", what: "curved or straight cells, if they are of higher order", run: (app) => app.toggle("curved") },
   { keys: ["w"], shown: "W", what: "go to the worst of the kept cells", run: (app) => app.pickWorst() },
   { keys: ["h"], shown: "H", what: "the view at the start", run: (app) => app.look("home") },
   { keys: ["1"], shown: "1", what: "look from +x", run: (app) => app.look("x") },
@@ -75,7 +76,7 @@ function bindControls(app: App): void {
   }
   const colour = element<HTMLSelectElement>("colour");
   colour.addEventListener("change", () => app.setColour(colour.value));
-  for (const flag of ["grid", "inner", "boundary", "outline", "features"] as const) {
+  for (const flag of kFlags) {
     element(`show-${flag}`).addEventListener("change", () => app.toggle(flag));
   }
   onClick("slice-flip", () => app.flip());

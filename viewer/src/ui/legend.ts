@@ -1,9 +1,11 @@
 // The legend: as elements of the page, and drawn into saved pictures.
 import {
-  cssOf, featureColour, kBadColour, kGeneratorColours, kGeneratorNames, valenceColour, viridis,
+  cssOf, featureColour, kBadColour, kGeneratorColours, kGeneratorNames, kPlainColour, valenceColour,
+  viridis,
 } from "../colours";
 import type { MeshInfo } from "../format";
 import type { ViewState } from "../state";
+import type { LoadedMesh } from "../worker/messages";
 import { grouped, make } from "./dom";
 
 interface Chip {
@@ -21,8 +23,16 @@ interface Part {
 
 const chip = (hex: number, text: string, edge = false): Chip => ({ colour: cssOf(hex), text, edge });
 
-function cellPart(state: ViewState, info: MeshInfo, quadTags: number[], deepest: number,
+/** Chips for the first of many tags. */
+function tagChips(tags: number[]): Chip[] {
+  const chips = tags.slice(0, 12).map((tag, i) => chip(featureColour(i), String(tag)));
+  if (tags.length > chips.length) chips.push(chip(kPlainColour, `${tags.length - chips.length} more`));
+  return chips;
+}
+
+function cellPart(state: ViewState, info: MeshInfo, mesh: LoadedMesh,
                   range: [number, number]): Part | null {
+  const { quadTags, regionTags, deepestLayer } = mesh;
   switch (state.colour) {
     case "quality":
       return {
@@ -38,10 +48,15 @@ function cellPart(state: ViewState, info: MeshInfo, quadTags: number[], deepest:
     case "feature":
       return {
         title: quadTags.length > 0 ? "tag of the face" : "no tagged faces",
-        chips: quadTags.slice(0, 12).map((tag, i) => chip(featureColour(i), String(tag))),
+        chips: tagChips(quadTags),
+      };
+    case "region":
+      return {
+        title: regionTags.length > 0 ? "region of the cell" : "no regions",
+        chips: tagChips(regionTags),
       };
     case "layer":
-      return { title: "layer from the boundary", scale: ["0", String(deepest)], chips: [] };
+      return { title: "layer from the boundary", scale: ["0", String(deepestLayer)], chips: [] };
     case "plain":
       return null;
   }
@@ -61,10 +76,9 @@ export class Legend {
 
   constructor(private readonly box: HTMLElement) {}
 
-  update(state: ViewState, info: MeshInfo, quadTags: number[], deepest: number,
-         range: [number, number]): void {
+  update(state: ViewState, info: MeshInfo, mesh: LoadedMesh, range: [number, number]): void {
     const parts = [
-      cellPart(state, info, quadTags, deepest, range),
+      cellPart(state, info, mesh, range),
       state.inner ? edgePart("valence of singular edges inside", info.singular.inner, false) : null,
       state.boundary
         ? edgePart("valence of singular edges on the boundary", info.singular.boundary, true)

@@ -9,11 +9,17 @@ const valences = (counts: [number, number][]) =>
 
 const place = (p: number[]) => p.map((x) => Number(x.toPrecision(6))).join(", ");
 
+const curvedFacts = (info: MeshInfo): [string, string, string][] => [
+  ["order of the cells", String(info.order), "stat-order"],
+  ["nodes on faces", grouped(info.points - info.vertices), "stat-nodes"],
+];
+
 export function showStatistics(info: MeshInfo, pageBytes: number): void {
   const { topology, quality } = info;
   fillFacts(element("statistics"), [
     ["cells", grouped(info.cells), "stat-cells"],
     ["vertices", grouped(info.vertices), "stat-vertices"],
+    ...(info.order > 1 ? curvedFacts(info) : []),
     ["boundary quads", grouped(topology.boundaryQuads), "stat-boundary-quads"],
     ["components", grouped(topology.components)],
     ["boundary components", grouped(topology.boundaryComponents)],
@@ -46,6 +52,11 @@ function showVerification(info: MeshInfo): void {
   }
 }
 
+function regionFacts(cell: number, mesh: LoadedMesh): [string, string, string][] {
+  if (mesh.regions.length === 0) return [];
+  return [["region", String(mesh.regionTags[mesh.regions[cell]! - 1]!), "picked-region"]];
+}
+
 export function showPicked(cell: number | null, info: MeshInfo, mesh: LoadedMesh): void {
   const box = element("picked");
   box.hidden = cell === null;
@@ -54,6 +65,7 @@ export function showPicked(cell: number | null, info: MeshInfo, mesh: LoadedMesh
   fillFacts(element("picked-facts"), [
     ["scaled Jacobian", qualityOf(mesh.quality[cell]!).toFixed(4), "picked-quality"],
     ["layer", String(mesh.layers[cell]!)],
+    ...regionFacts(cell, mesh),
   ]);
   const { scale, centre } = sceneOf(info);
   // Not more digits than the quantization has left.
@@ -71,6 +83,7 @@ export function showPicked(cell: number | null, info: MeshInfo, mesh: LoadedMesh
 
 /** Bytes of memory that a mesh takes in the browser, the worker included. */
 export function memoryEstimate(info: MeshInfo): number {
-  const textures = Math.ceil(info.vertices / kTextureWidth) * kTextureWidth * 32;
-  return textures + info.cells * (2 * 32 + 3 * 24 + 12 + 12);
+  const textures = Math.ceil(info.points / kTextureWidth) * kTextureWidth * 32;
+  const columns = info.tables.find((table) => table.name === "nodes")?.columns ?? 0;
+  return textures + info.cells * columns * 2 * 4 + info.cells * (2 * 32 + 3 * 24 + 12 + 12);
 }

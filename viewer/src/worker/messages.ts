@@ -1,5 +1,6 @@
 // What the page and its worker say to each other.
 import type { MeshInfo } from "../format";
+import type { CurvedFaces } from "./curved_faces";
 import type { Filter, Visible } from "./visible";
 
 export type ToWorker =
@@ -7,13 +8,18 @@ export type ToWorker =
   /** The next chunk of a table, in base64 or as bytes. */
   | { kind: "chunk"; table: string; chunk: number; data: string | ArrayBuffer }
   | { kind: "end" }
-  | { kind: "show"; filter: Filter };
+  /** @param curved  whether the points of curved faces are wanted */
+  | { kind: "show"; filter: Filter; curved: boolean };
 
 /** What the page keeps of the mesh. */
 export interface LoadedMesh {
-  /** Four numbers per vertex: a position in scene coordinates, and the kind of its generator. */
+  /** Four numbers per vertex or node: a position in scene coordinates, the kind of its generator. */
   positions: Float32Array<ArrayBuffer>;
   cells: Uint32Array<ArrayBuffer>;
+  /** 1: straight cells. */
+  order: number;
+  /** As in CurvedCells. */
+  nodes: Uint32Array<ArrayBuffer>;
   quality: Uint16Array<ArrayBuffer>;
   layers: Uint16Array<ArrayBuffer>;
   deepestLayer: number;
@@ -22,6 +28,9 @@ export interface LoadedMesh {
   singularEdges: Uint32Array<ArrayBuffer>;
   /** Three numbers per edge: two vertices, and the tag. */
   featureEdges: Uint32Array<ArrayBuffer>;
+  /** Per cell the place of its region in regionTags, plus 1; empty without regions. */
+  regions: Uint32Array<ArrayBuffer>;
+  regionTags: number[];
   /** Tags of quads; the feature f of a quad has tag quadTags[f - 1]. */
   quadTags: number[];
 }
@@ -29,5 +38,5 @@ export interface LoadedMesh {
 export type FromWorker =
   | { kind: "progress"; what: string; share: number }
   | { kind: "loaded"; mesh: LoadedMesh }
-  | { kind: "visible"; visible: Visible; milliseconds: number }
+  | { kind: "visible"; visible: Visible; curved: CurvedFaces | null; milliseconds: number }
   | { kind: "failed"; message: string };

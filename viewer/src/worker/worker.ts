@@ -1,6 +1,8 @@
 // The worker: decodes the mesh, and finds the faces to draw while the page stays fluid.
+import type { CurvedCells } from "../curves";
 import { decodeBase64, decodeChunk, inflate, type MeshInfo, type TableInfo } from "../format";
 import { kTextureWidth, sceneOf } from "../scene_box";
+import { curvedFaces } from "./curved_faces";
 import type { FromWorker, LoadedMesh, ToWorker } from "./messages";
 import { findBoundaryEdges, findLayers, findNeighbours, kFaceCorners } from "./topology";
 import { findVisible, type Mesh } from "./visible";
@@ -17,6 +19,7 @@ let pending: Promise<void> = Promise.resolve();
 let received = 0;
 let mesh: Mesh;
 let kept: Uint8Array;
+let curvedCells: CurvedCells;
 
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
   worker.postMessage(message, transfer);
@@ -49,13 +52,13 @@ function decodePositions(): Float32Array<ArrayBuffer> {
   const kinds = takeTable("generator_kinds");
   const { scale, centre } = sceneOf(info);
   // Rows of the texture are full.
-  const positions = new Float32Array(4 * kTextureWidth * Math.ceil(info.vertices / kTextureWidth));
-  for (let v = 0; v < info.vertices; ++v) {
+  const positions = new Float32Array(4 * kTextureWidth * Math.ceil(info.points / kTextureWidth));
+  for (let v = 0; v < info.points; ++v) {
     for (let axis = 0; axis < 3; ++axis) {
       const place = info.lower[axis]! + stored[3 * v + axis]! * info.step;
       positions[4 * v + axis] = (place - centre[axis]!) * scale;
     }
-    positions[4 * v + 3] = kinds.length > 0 ? kinds[v]! : 0;
+    positions[4 * v + 3] = v < kinds.length ? kinds[v]! : 0;
   }
   return positions;
 }
@@ -99,10 +102,21 @@ function placeQuadFeatures(cells: Uint32Array): { places: Uint16Array | null; ta
   return { places, tags };
 }
 
+/** The regions of cells as places in a list of their numbers. */
+function numberRegions(): { places: Uint32Array<ArrayBuffer>; tags: number[] } {
+  const stored = takeTable("regions");
+  const signed = Int32Array.from(stored);
+  const tags = [...new Set(signed)].sort((a, b) => a - b);
+  const numbers = new Map(tags.map((tag, i) => [tag, i + 1]));
+  return { places: stored.map((_, cell) => numbers.get(signed[cell]!)!), tags };
+}
+
 function finish(): void {
   const cells = takeTable("cells");
   const quality = Uint16Array.from(takeTable("quality"));
   const positions = decodePositions();
+  const nodes = takeTable("nodes");
+  const regions = numberRegions();
   tell({ kind: "progress", what: "Finding neighbours", share: 0 });
   const neighbours = findNeighbours(cells, info.vertices);
   tell({ kind: "progress", what: "Finding layers", share: 0.7 });
@@ -117,9 +131,16 @@ function finish(): void {
     quadFeatures: features.places,
   };
   kept = new Uint8Array(info.cells);
+  // The page gets the positions for good; only curved faces need them here, too.
+  const own = info.order > 1 ? positions.slice() : positions;
+  curvedCells = { order: info.order, cells, nodes, positions: own };
   const loaded: LoadedMesh = {
     positions,
     cells,
+    order: info.order,
+    nodes,
+    regions: regions.places,
+    regionTags: regions.tags,
     quality,
     layers,
     deepestLayer: deepest,
@@ -133,6 +154,7 @@ function finish(): void {
     loaded.boundaryEdges.buffer,
     loaded.singularEdges.buffer,
     loaded.featureEdges.buffer,
+    loaded.regions.buffer,
   ]);
 }
 
@@ -151,9 +173,10 @@ function handle(message: ToWorker): void | Promise<void> {
     case "show": {
       const begin = performance.now();
       const visible = findVisible(mesh, message.filter, kept);
-      tell({ kind: "visible", visible, milliseconds: performance.now() - begin }, [
-        visible.quads.buffer,
-      ]);
+      const curved = message.curved ? curvedFaces(curvedCells, visible.quads) : null;
+      const buffers = [visible.quads.buffer];
+      if (curved) buffers.push(curved.points.buffer);
+      tell({ kind: "visible", visible, curved, milliseconds: performance.now() - begin }, buffers);
     }
   }
 }

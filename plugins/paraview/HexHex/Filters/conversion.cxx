@@ -191,11 +191,13 @@ void takeCells(vtkUnstructuredGrid& grid, int type, const char* what, Cells& cel
   }
 }
 
-/// Puts tags into a cell array, and tagged elements into cells.
+/// Puts tags and dimensions into cell arrays, and tagged elements into cells.
 template <class Feature>
-void addTagged(vtkCellArray& cells, vtkIntArray& tags, const std::vector<Feature>& features) {
+void addTagged(vtkCellArray& cells, vtkIntArray& tags, vtkIntArray& dimensions,
+               const std::vector<Feature>& features) {
   for (const Feature& feature : features) {
     const auto& vertices = verticesOf(feature);
+    dimensions.InsertNextValue(static_cast<int>(vertices.size()) - 1);
     cells.InsertNextCell(static_cast<int>(vertices.size()));
     for (const auto vertex : vertices) cells.InsertCellPoint(static_cast<vtkIdType>(vertex));
     tags.InsertNextValue(feature.tag);
@@ -248,12 +250,15 @@ void fillFeatures(vtkPolyData& features, const TetMap& map) {
   vtkNew<vtkCellArray> triangles;
   vtkNew<vtkIntArray> tags;  // in the order of poly data: vertices, lines, polygons
   tags->SetName("tag");
-  addTagged(*vertices, *tags, map.features.vertices);
-  addTagged(*lines, *tags, map.features.edges);
-  addTagged(*triangles, *tags, map.features.faces);
+  vtkNew<vtkIntArray> dimensions;
+  dimensions->SetName("dimension");
+  addTagged(*vertices, *tags, *dimensions, map.features.vertices);
+  addTagged(*lines, *tags, *dimensions, map.features.edges);
+  addTagged(*triangles, *tags, *dimensions, map.features.faces);
   features.SetVerts(vertices);
   features.SetLines(lines);
   features.SetPolys(triangles);
+  features.GetCellData()->AddArray(dimensions);
   features.GetCellData()->SetScalars(tags);
 }
 
@@ -316,8 +321,28 @@ HexMesh hexesOf(vtkUnstructuredGrid& grid) {
   return mesh;
 }
 
-void fillSingularEdges(vtkPolyData& lines, const HexMesh& mesh, const MeshStructure& structure) {
-  const auto& edges = structure.singularEdges;
+void fillChartJumps(vtkPolyData& triangles, const TetMap& map, const MapStructure& structure) {
+  const auto& jumps = structure.chartJumps;
+  setPoints(triangles, map.points);
+  triangles.SetPolys(fixedCells(jumps.size(), 3, [&](std::size_t j, std::size_t k) {
+    return jumps[j].vertices[k];
+  }));
+  vtkCellData& data = *triangles.GetCellData();
+  data.AddArray(makeArray<vtkIdTypeArray>(
+      "tets", jumps.size(), 2, [&](std::size_t j, std::size_t k) { return jumps[j].tets[k]; }));
+  data.AddArray(makeArray<vtkIntArray>(
+      "rotation", jumps.size(), 9,
+      [&](std::size_t j, std::size_t k) { return jumps[j].rotation[k / 3][k % 3]; }));
+  data.AddArray(makeArray<vtkDoubleArray>(
+      "translation", jumps.size(), 3,
+      [&](std::size_t j, std::size_t k) { return jumps[j].translation[k]; }));
+}
+
+namespace {
+
+/// Edges with their valences, of tets or hexahedra.
+template <class Mesh, class Edges>
+void fillEdges(vtkPolyData& lines, const Mesh& mesh, const Edges& edges) {
   setPoints(lines, mesh.points);
   lines.SetLines(fixedCells(edges.size(), 2, [&](std::size_t e, std::size_t k) {
     return k == 0 ? edges[e].vertex0 : edges[e].vertex1;
@@ -329,6 +354,16 @@ void fillSingularEdges(vtkPolyData& lines, const HexMesh& mesh, const MeshStruct
       "boundary", edges.size(), 1,
       [&](std::size_t e, std::size_t) { return edges[e].boundary ? 1 : 0; }));
   lines.GetCellData()->SetActiveScalars("valence");
+}
+
+}  // namespace
+
+void fillSingularEdges(vtkPolyData& lines, const TetMap& map, const MapStructure& structure) {
+  fillEdges(lines, map, structure.singularEdges);
+}
+
+void fillSingularEdges(vtkPolyData& lines, const HexMesh& mesh, const MeshStructure& structure) {
+  fillEdges(lines, mesh, structure.singularEdges);
 }
 
 namespace {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <hexhex/curved.hpp>
+#include <hexhex/map_structure.hpp>
 #include <hexhex/structure.hpp>
 #include <hexhex/types.hpp>
 
@@ -26,7 +27,14 @@ void fillGrid(vtkUnstructuredGrid& grid, const TetMap& map);
 /// @throws Error InvalidArgument for cells that are no tets, or another number of components
 [[nodiscard]] TetMap mapOf(vtkUnstructuredGrid& grid, vtkDataArray* parameters);
 
-/// Tagged vertices, edges and triangles of a map, with cell array `tag`.
+/// The triangles at which charts differ, with cell arrays `tets` (2 components), `rotation` (9, by
+/// rows) and `translation` (3): u in the chart of the first tet is R u + t in that of the second.
+void fillChartJumps(vtkPolyData& triangles, const TetMap& map, const MapStructure& structure);
+
+/// The singular edges of a map as lines, with cell arrays `valence` and `boundary`.
+void fillSingularEdges(vtkPolyData& lines, const TetMap& map, const MapStructure& structure);
+
+/// Tagged vertices, edges and triangles of a map, with cell arrays `tag` and `dimension` (0 to 2).
 void fillFeatures(vtkPolyData& features, const TetMap& map);
 
 /// Points with their generators, cells with quality, regions; features as field data, and tagged

@@ -30,6 +30,7 @@ struct Extracted
   hexhex::LagrangeMesh curved;
   hexhex::Array<double> quality;
   hexhex::MeshStructure structure;
+  hexhex::ExtractStatistics statistics;
 };
 
 struct Request
@@ -42,7 +43,7 @@ struct Request
 };
 
 void requireVerified(
-  const hexhex::TetMap& map, const hexhex::HexMesh& mesh, int scale, double tolerance,
+  const hexhex::TetMapView& map, const hexhex::HexMesh& mesh, int scale, double tolerance,
   hexhex::Context& context)
 {
   const hexhex::VerifyReport report = hexhex::verify(map, mesh, { scale, tolerance }, context);
@@ -68,16 +69,21 @@ Extracted extractAll(const hexhex::TetMap& map, const Request& request, hexhex::
   {
     const auto parts = request.patches ? hexhex::PiecewiseLinearParts::ArcsAndPatches
                                        : hexhex::PiecewiseLinearParts::Arcs;
-    result.linear = hexhex::extractPiecewiseLinear(map, parts, request.options, context);
+    result.linear = hexhex::extractPiecewiseLinear(
+      map, parts, request.options, context, &result.statistics);
   }
   else
   {
-    result.linear.mesh = hexhex::extract(map, request.options, context);
+    result.linear.mesh = hexhex::extract(map, request.options, context, &result.statistics);
   }
+  // What the mesh belongs to.
+  const hexhex::TetMapView repaired = result.statistics.repairedMap
+    ? hexhex::TetMapView(*result.statistics.repairedMap)
+    : hexhex::TetMapView(map);
   const hexhex::HexMesh& mesh = result.linear.mesh;
   if (request.verify)
   {
-    requireVerified(map, mesh, request.options.scale, request.options.tolerance, context);
+    requireVerified(repaired, mesh, request.options.scale, request.options.tolerance, context);
   }
   result.structure = hexhex::findStructure(mesh, context);
   if (request.order == 1)
@@ -86,7 +92,7 @@ Extracted extractAll(const hexhex::TetMap& map, const Request& request, hexhex::
   }
   else
   {
-    result.curved = hexhex::extractLagrange(map, request.order, request.options, context);
+    result.curved = hexhex::extractLagrange(repaired, request.order, request.options, context);
     result.quality = hexhex::scaledJacobians(result.curved, context);
   }
   return result;
@@ -111,6 +117,7 @@ void vtkHexHexExtract::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Engine: " << this->Engine << "\n";
   os << indent << "Order: " << this->Order << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "Repair: " << this->Repair << "\n";
   os << indent << "Verify: " << this->Verify << "\n";
   os << indent << "Arcs: " << this->Arcs << "\n";
   os << indent << "Patches: " << this->Patches << "\n";
@@ -142,6 +149,7 @@ int vtkHexHexExtract::RequestData(
   request.options.engine = this->Engine == 0 ? hexhex::Engine::Atlas : hexhex::Engine::Propeller;
   request.options.scale = this->Scale;
   request.options.tolerance = this->Tolerance;
+  request.options.repair = this->Repair != 0 ? hexhex::RepairMode::Auto : hexhex::RepairMode::Off;
   request.order = this->Order;
   request.verify = this->Verify != 0;
   request.arcs = this->Arcs != 0;
@@ -151,10 +159,20 @@ int vtkHexHexExtract::RequestData(
     hexhex::paraview::runGuarded(*this, this->Threads, [&](hexhex::Context& context) {
       result = extractAll(hexhex::paraview::mapOf(*input, parameters), request, context);
     });
+  if (this->GetAbortExecute())
+  {
+    return 1; // empty, as the user wanted; no error
+  }
   if (!problem.empty())
   {
     vtkErrorMacro(<< problem);
     return 0;
+  }
+  const hexhex::RepairReport& repair = result.statistics.repair;
+  if (repair.changed)
+  {
+    vtkWarningMacro(<< "The map has flipped or flat tets, which were mended before the extraction, in "
+                    << repair.regions.size() << (repair.regions.size() == 1 ? " place." : " places."));
   }
   vtkUnstructuredGrid& grid = *vtkUnstructuredGrid::GetData(outputs, 0);
   if (this->Order == 1)

@@ -34,6 +34,9 @@ public:
   /** How far the map may be from its integer conditions, in parameter units. */
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
+  /** Whether flipped and flat tets of the map are mended first, with a warning. */
+  vtkSetMacro(Repair, vtkTypeBool);
+  vtkGetMacro(Repair, vtkTypeBool);
   /** Whether the mesh is compared with the map. */
   vtkSetMacro(Verify, vtkTypeBool);
   vtkGetMacro(Verify, vtkTypeBool);
@@ -60,6 +63,7 @@ private:
   int Engine = 0;
   int Order = 1;
   double Tolerance = 0.01;
+  vtkTypeBool Repair = 1;
   vtkTypeBool Verify = 1;
   vtkTypeBool Arcs = 0;
   vtkTypeBool Patches = 0;

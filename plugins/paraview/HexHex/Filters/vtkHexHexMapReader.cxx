@@ -1,6 +1,9 @@
 #include "vtkHexHexMapReader.h"
 
+#include <hexhex/error.hpp>
+#include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/map_structure.hpp>
 
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
@@ -16,7 +19,7 @@ vtkStandardNewMacro(vtkHexHexMapReader);
 vtkHexHexMapReader::vtkHexHexMapReader()
 {
   this->SetNumberOfInputPorts(0);
-  this->SetNumberOfOutputPorts(2);
+  this->SetNumberOfOutputPorts(4);
 }
 
 vtkHexHexMapReader::~vtkHexHexMapReader()
@@ -45,14 +48,30 @@ int vtkHexHexMapReader::RequestData(
     return 0;
   }
   hexhex::TetMap map;
-  const std::string problem = hexhex::paraview::runGuarded(
-    *this, 0, [&](hexhex::Context& context) { map = hexhex::readMap(this->FileName, context); });
+  hexhex::MapStructure structure;
+  const std::string problem =
+    hexhex::paraview::runGuarded(*this, 0, [&](hexhex::Context& context) {
+      map = hexhex::readMap(this->FileName, context);
+      structure = hexhex::findMapStructure(map, hexhex::ExtractOptions{}.tolerance, context);
+    });
+  if (this->GetAbortExecute())
+  {
+    return 1; // empty, as the user wanted; no error
+  }
   if (!problem.empty())
   {
     vtkErrorMacro(<< problem);
     return 0;
   }
   hexhex::paraview::fillGrid(*vtkUnstructuredGrid::GetData(outputs, 0), map);
-  hexhex::paraview::fillFeatures(*vtkPolyData::GetData(outputs, 1), map);
+  hexhex::paraview::fillChartJumps(*vtkPolyData::GetData(outputs, 1), map, structure);
+  hexhex::paraview::fillSingularEdges(*vtkPolyData::GetData(outputs, 2), map, structure);
+  hexhex::paraview::fillFeatures(*vtkPolyData::GetData(outputs, 3), map);
+  if (!structure.defects.empty())
+  {
+    const hexhex::Defect& defect = structure.defects.front();
+    vtkWarningMacro(<< "This is no valid integer-grid map. " << defect.sentence << " ["
+                    << std::string(hexhex::name(defect.code)) << "]");
+  }
   return 1;
 }

@@ -2,8 +2,9 @@
  * @class vtkHexHexMapReader
  * @brief reads tetrahedral meshes with an integer-grid map: .hexex, .ovm, .ovmb
  *
- * Port 0: the tets, with the cell array `hexhex_parameters` (12 components). Port 1: what is tagged,
- * with the cell array `tag`.
+ * Port 0: the tets, with the cell array `hexhex_parameters` (12 components). Port 1: the triangles at
+ * which charts differ, with the transitions. Port 2: singular edges with valences. Port 3: what is
+ * tagged.
  */
 #ifndef vtkHexHexMapReader_h
 #define vtkHexHexMapReader_h

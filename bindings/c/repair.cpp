@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <utility>
+
+#include <hexhex/partial.hpp>
+#include <hexhex/repair.hpp>
+
+#include "options.hpp"
+
+using hexhex::Error;
+using hexhex::ErrorCode;
+
+int hexhex_can_repair(void) { return hexhex::canRepair() ? 1 : 0; }
+
+hexhex_status hexhex_repair(const hexhex_map* map, const hexhex_repair_options* options,
+                            hexhex_context* context, hexhex_map** repaired,
+                            hexhex_repair_report** report, hexhex_error* error) {
+  using namespace hexhex::c;
+  if (report != nullptr) *report = nullptr;
+  return guarded(error, [&] {
+    require(repaired, "repaired");
+    const hexhex_map& given = require(map, "map");
+    const hexhex_repair_options o = readStruct(options, HEXHEX_REPAIR_OPTIONS_INIT, "options");
+    ContextOrDefault used(context);
+    auto made = std::make_unique<hexhex_repair_report>();
+    const auto run = [&] {
+      return hexhex::repair(given.owned ? *given.owned : copyOf(given),
+                            {.tolerance = o.tolerance,
+                             .scale = o.scale,
+                             .round = o.round != 0,
+                             .refine = o.refine != 0},
+                            *used, &made->report);
+    };
+    try {
+      give(run(), repaired);
+    } catch (const Error& failure) {
+      const bool worked = failure.code() != ErrorCode::InvalidArgument;
+      if (report != nullptr && worked) *report = made.release();
+      throw;
+    }
+    if (report != nullptr) *report = made.release();
+  });
+}
+
+void hexhex_repair_report_destroy(hexhex_repair_report* report) { delete report; }
+
+hexhex_status hexhex_repair_get_summary(const hexhex_repair_report* report,
+                                        hexhex_repair_summary* summary, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex::RepairReport& r = require(report, "report").report;
+    const hexhex_repair_summary result = {.size = sizeof(hexhex_repair_summary),
+                                          .changed = r.changed ? 1 : 0,
+                                          .region_count = r.regions.size(),
+                                          .bad_tets = r.badTets,
+                                          .moved_vertices = r.movedVertices,
+                                          .largest_move = r.largestMove,
+                                          .split_edges = r.splitEdges,
+                                          .added_tets = r.addedTets,
+                                          .rounded_vertices = r.roundedVertices,
+                                          .seconds = r.seconds};
+    writeStruct(result, require(summary, "summary"), "summary");
+  });
+}
+
+hexhex_status hexhex_repair_get_region(const hexhex_repair_report* report, size_t number,
+                                       hexhex_repaired_region* region, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex::RepairedRegion& r =
+        at(require(report, "report").report.regions, number, "regions");
+    hexhex_repaired_region result = HEXHEX_REPAIRED_REGION_INIT;
+    result.place = placeOf(r.place);
+    std::copy(r.position.begin(), r.position.end(), result.position);
+    result.bad_tets = r.badTets;
+    result.tets = r.tets;
+    result.moved_vertices = r.movedVertices;
+    result.largest_move = r.largestMove;
+    writeStruct(result, require(region, "region"), "region");
+  });
+}
+
+hexhex_status hexhex_mesh_get_repair(const hexhex_mesh* mesh, hexhex_map** map,
+                                     hexhex_repair_report** report, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex_mesh& given = require(mesh, "mesh");
+    hexhex_map* madeMap = nullptr;
+    std::unique_ptr<hexhex_repair_report> made;
+    if (given.repairedMap) {
+      if (report != nullptr) {
+        made = std::make_unique<hexhex_repair_report>(hexhex_repair_report{given.repair});
+      }
+      if (map != nullptr) give(given.repairedMap, &madeMap);
+    }
+    if (map != nullptr) *map = madeMap;
+    if (report != nullptr) *report = made.release();
+  });
+}
+
+hexhex_status hexhex_extract_partial(const hexhex_map* map, const hexhex_partial_options* options,
+                                     hexhex_context* context, hexhex_mesh** mesh,
+                                     hexhex_holes** holes, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(mesh, "mesh");
+    const hexhex_partial_options o = readStruct(options, HEXHEX_PARTIAL_OPTIONS_INIT, "options");
+    ContextOrDefault used(context);
+    hexhex::PartialMesh found = hexhex::extractPartial(
+        require(map, "map").view, {.scale = o.scale, .tolerance = o.tolerance}, *used);
+    auto made = std::make_unique<hexhex_holes>(hexhex_holes{
+        std::move(found.holes), found.invalidTets, found.missingCells, found.faceConflicts});
+    give(std::move(found.mesh), mesh);
+    if (holes != nullptr) *holes = made.release();
+  });
+}
+
+void hexhex_holes_destroy(hexhex_holes* holes) { delete holes; }
+
+hexhex_status hexhex_holes_get_summary(const hexhex_holes* holes, hexhex_holes_summary* summary,
+                                       hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex_holes& h = require(holes, "holes");
+    const hexhex_holes_summary result = {sizeof(hexhex_holes_summary), h.holes.size(),
+                                         h.invalidTets, h.missingCells, h.faceConflicts};
+    writeStruct(result, require(summary, "summary"), "summary");
+  });
+}
+
+hexhex_status hexhex_holes_get(const hexhex_holes* holes, size_t number, hexhex_hole* hole,
+                               hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex::Hole& h = at(require(holes, "holes").holes, number, "holes");
+    hexhex_hole result = HEXHEX_HOLE_INIT;
+    result.tet = h.tet;
+    result.tets = h.tets;
+    result.invalid_tets = h.invalidTets;
+    std::copy(h.position.begin(), h.position.end(), result.position);
+    result.missing_cells = h.missingCells;
+    writeStruct(result, require(hole, "hole"), "hole");
+  });
+}

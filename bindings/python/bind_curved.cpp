@@ -1,0 +1,140 @@
+// Curved meshes: arcs and patches, and cells of higher order.
+#include <nanobind/stl/string.h>
+
+#include <hexhex/curved.hpp>
+
+#include "border.hpp"
+
+using namespace nanobind::literals;
+
+namespace hexhex::python {
+namespace {
+
+nb::tuple extractPieces(const ArrayMap& map, bool patches, const Options& options, int threads,
+                        const Progress& progress) {
+  ExtractStatistics statistics;
+  PiecewiseLinearMesh mesh = run(threads, progress, [&](Context& context) {
+    return extractPiecewiseLinear(
+        map.view(), patches ? PiecewiseLinearParts::ArcsAndPatches : PiecewiseLinearParts::Arcs,
+        options.get(), context, &statistics);
+  });
+  return nb::make_tuple(std::move(mesh), asTuple(statistics));
+}
+
+nb::tuple extractOrder(const ArrayMap& map, int order, const Options& options, int threads,
+                       const Progress& progress) {
+  ExtractStatistics statistics;
+  LagrangeMesh mesh = run(threads, progress, [&](Context& context) {
+    return extractLagrange(map.view(), order, options.get(), context, &statistics);
+  });
+  return nb::make_tuple(std::move(mesh), asTuple(statistics));
+}
+
+/// Views by name, which keep the mesh alive.
+Dict arcsOf(nb::handle self) {
+  Arcs& a = unwrapped<PiecewiseLinearMesh>(self).arcs;
+  Dict d;
+  d["ends"] = viewOn<Index, 2>(a.ends, self, {a.ends.size(), 2});
+  d["point_begin"] = viewOn<std::uint64_t, 1>(a.pointBegin, self, {a.pointBegin.size()});
+  d["points"] = viewOn<double, 2>(a.points, self, {a.points.size(), 3});
+  d["parameters"] = viewOn<double, 1>(a.parameters, self, {a.parameters.size()});
+  d["generator_tet"] = viewOn<Index, 1>(a.generatorTet, self, {a.generatorTet.size()});
+  d["generator_corners"] =
+      viewOn<CornerSet, 1>(a.generatorCorners, self, {a.generatorCorners.size()});
+  d["segment_tet"] = viewOn<Index, 1>(a.segmentTet, self, {a.segmentTet.size()});
+  d["segment_corners"] = viewOn<CornerSet, 1>(a.segmentCorners, self, {a.segmentCorners.size()});
+  return d;
+}
+
+Dict patchesOf(nb::handle self) {
+  Patches& p = unwrapped<PiecewiseLinearMesh>(self).patches;
+  Dict d;
+  d["vertices"] = viewOn<Index, 2>(p.vertices, self, {p.vertices.size(), 4});
+  d["arcs"] = viewOn<Index, 2>(p.arcs, self, {p.arcs.size(), 4});
+  d["reversed_arcs"] = viewOn<std::uint8_t, 1>(p.reversedArcs, self, {p.reversedArcs.size()});
+  d["polygon_begin"] = viewOn<std::uint64_t, 1>(p.polygonBegin, self, {p.polygonBegin.size()});
+  d["corner_begin"] = viewOn<std::uint64_t, 1>(p.cornerBegin, self, {p.cornerBegin.size()});
+  d["polygon_tet"] = viewOn<Index, 1>(p.polygonTet, self, {p.polygonTet.size()});
+  d["polygon_corners"] = viewOn<CornerSet, 1>(p.polygonCorners, self, {p.polygonCorners.size()});
+  d["corners"] = viewOn<Index, 1>(p.corners, self, {p.corners.size()});
+  d["parameters"] = viewOn<double, 2>(p.parameters, self, {p.parameters.size(), 2});
+  d["points"] = viewOn<double, 2>(p.points, self, {p.points.size(), 3});
+  d["generator_tet"] = viewOn<Index, 1>(p.generatorTet, self, {p.generatorTet.size()});
+  d["generator_corners"] =
+      viewOn<CornerSet, 1>(p.generatorCorners, self, {p.generatorCorners.size()});
+  return d;
+}
+
+}  // namespace
+
+void bindCurved(nb::module_& module) {
+  nb::class_<PiecewiseLinearMesh>(module, "PiecewiseMesh")
+      .def_prop_ro(
+          "mesh", [](PiecewiseLinearMesh& self) -> HexMesh& { return self.mesh; },
+          nb::rv_policy::reference_internal)
+      .def_prop_ro("arcs", &arcsOf)
+      .def_prop_ro("patches", &patchesOf);
+
+  nb::class_<LagrangeMesh>(module, "LagrangeMesh")
+      .def_prop_ro("order", [](const LagrangeMesh& self) { return self.order; })
+      .def_prop_ro("vertex_count", [](const LagrangeMesh& self) { return self.vertexCount; })
+      .def_prop_ro("points",
+                   [](nb::handle self) {
+                     auto& points = unwrapped<LagrangeMesh>(self).points;
+                     return viewOn<double, 2>(points, self, {points.size(), 3});
+                   })
+      .def_prop_ro(
+          "nodes",
+          [](nb::handle self) {
+            auto& mesh = unwrapped<LagrangeMesh>(self);
+            return viewOn<Index, 2>(mesh.nodes, self, {mesh.cellCount(), mesh.nodesPerCell()});
+          })
+      .def_prop_ro("generator_tet",
+                   [](nb::handle self) {
+                     auto& tets = unwrapped<LagrangeMesh>(self).generatorTet;
+                     return viewOn<Index, 1>(tets, self, {tets.size()});
+                   })
+      .def_prop_ro("generator_corners",
+                   [](nb::handle self) {
+                     auto& corners = unwrapped<LagrangeMesh>(self).generatorCorners;
+                     return viewOn<CornerSet, 1>(corners, self, {corners.size()});
+                   })
+      .def("straight", [](const LagrangeMesh& self) { return straightMesh(self); });
+
+  module.def("extract_piecewise", &extractPieces, "map"_a, "patches"_a, "options"_a, "threads"_a,
+             "progress"_a.none());
+  module.def("extract_lagrange", &extractOrder, "map"_a, "order"_a, "options"_a, "threads"_a,
+             "progress"_a.none());
+  module.def(
+      "scaled_jacobians",
+      [](const LagrangeMesh& mesh, int threads, const Progress& progress) {
+        auto values = run(threads, progress,
+                          [&](Context& context) { return scaledJacobians(mesh, context); });
+        const std::size_t n = values.size();
+        return ownedArray<double, 1>(std::move(values), {n});
+      },
+      "mesh"_a, "threads"_a, "progress"_a.none());
+  module.def(
+      "write_arcs",
+      [](const PiecewiseLinearMesh& mesh, const std::string& file, int threads,
+         const Progress& progress) {
+        run(threads, progress, [&](Context& context) { writeArcs(mesh, file, context); });
+      },
+      "mesh"_a, "file"_a, "threads"_a, "progress"_a.none());
+  module.def(
+      "write_patches",
+      [](const PiecewiseLinearMesh& mesh, const std::string& file, int threads,
+         const Progress& progress) {
+        run(threads, progress, [&](Context& context) { writePatches(mesh, file, context); });
+      },
+      "mesh"_a, "file"_a, "threads"_a, "progress"_a.none());
+  module.def(
+      "write_lagrange",
+      [](const LagrangeMesh& mesh, const std::string& file, int threads, const Progress& progress) {
+        run(threads, progress,
+            [&](Context& context) { writeLagrangeMesh(mesh, file, {}, context); });
+      },
+      "mesh"_a, "file"_a, "threads"_a, "progress"_a.none());
+}
+
+}  // namespace hexhex::python

@@ -1,0 +1,145 @@
+// Files: reading, writing, and writing a mesh that comes in pieces.
+#include <memory>
+
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
+
+#include <hexhex/io.hpp>
+
+#include "border.hpp"
+
+using namespace nanobind::literals;
+
+namespace hexhex::python {
+namespace {
+
+WriteOptions writeOptions(const std::string& format, double patchAngle, bool compress,
+                          const std::string& mapArray) {
+  WriteOptions options;
+  options.format = format;
+  options.patchAngle = patchAngle;
+  options.compress = compress;
+  options.mapArray = mapArray;
+  return options;
+}
+
+/// A file that gets a mesh in pieces.
+class MeshWriter {
+ public:
+  MeshWriter(const std::string& file, const std::string& format) {
+    WriteOptions options;
+    options.format = format;
+    sink_ = openMeshSink(file, options, context_);
+  }
+  void begin(std::uint64_t points, std::uint64_t cells) { sink_->begin(points, cells); }
+  void points(std::uint64_t first, const InPoints& points, const In1<Index>& generatorTet,
+              const In1<CornerSet>& generatorCorners) {
+    sink_->points({first, elements<Vec3>(points), elements<Index>(generatorTet),
+                   elements<CornerSet>(generatorCorners)});
+  }
+  void cells(std::uint64_t first, const InCells& cells) {
+    sink_->cells(first, elements<Hex>(cells));
+  }
+  void cells64(std::uint64_t first, const In<std::uint64_t, 8>& cells) {
+    sink_->cells(first, elements<Hex64>(cells));
+  }
+  void end() { sink_->end(); }
+
+ private:
+  Context context_;
+  std::unique_ptr<MeshSink> sink_;
+};
+
+nb::list formats() {
+  nb::list list;
+  for (const FileFormat& f : fileFormats()) {
+    list.append(nb::make_tuple(std::string(f.name), std::string(f.extension),
+                               std::string(f.description), f.readsMaps, f.writesMaps, f.readsTets,
+                               f.readsHexMeshes, f.writesHexMeshes, f.streams, f.compresses));
+  }
+  return list;
+}
+
+}  // namespace
+
+void bindFiles(nb::module_& module) {
+  const nb::call_guard<nb::gil_scoped_release> released;
+  nb::class_<MeshWriter>(module, "MeshWriter")
+      .def(nb::init<const std::string&, const std::string&>(), "file"_a, "format"_a)
+      .def("begin", &MeshWriter::begin, "points"_a, "cells"_a, released)
+      .def("points", &MeshWriter::points, "first"_a, "points"_a.noconvert(),
+           "generator_tet"_a.noconvert(), "generator_corners"_a.noconvert(), released)
+      .def("cells", &MeshWriter::cells, "first"_a, "cells"_a.noconvert(), released)
+      .def("cells64", &MeshWriter::cells64, "first"_a, "cells"_a.noconvert(), released)
+      .def("end", &MeshWriter::end, released);
+  module.def(
+      "read_map",
+      [](const std::string& file, const std::string& format, const std::string& mapArray,
+         int threads, const Progress& progress) {
+        return run(threads, progress, [&](Context& context) {
+          return readMap(file, {.format = format, .mapArray = mapArray}, context);
+        });
+      },
+      "file"_a, "format"_a, "map_array"_a, "threads"_a, "progress"_a.none());
+  module.def(
+      "read_tets",
+      [](const std::string& file, const std::string& format, int threads,
+         const Progress& progress) {
+        TetMesh mesh = run(threads, progress, [&](Context& context) {
+          return readTetMesh(file, {.format = format}, context);
+        });
+        const std::size_t points = mesh.points.size();
+        const std::size_t tets = mesh.tets.size();
+        return nb::make_tuple(ownedArray<double, 2>(std::move(mesh.points), {points, 3}),
+                              ownedArray<Index, 2>(std::move(mesh.tets), {tets, 4}));
+      },
+      "file"_a, "format"_a, "threads"_a, "progress"_a.none());
+  module.def(
+      "read_pair",
+      [](const std::string& tets, const std::string& polycube, int threads,
+         const Progress& progress) {
+        return run(threads, progress,
+                   [&](Context& context) { return readMapPair(tets, polycube, context); });
+      },
+      "tets"_a, "polycube"_a, "threads"_a, "progress"_a.none());
+  module.def(
+      "read_mesh",
+      [](const std::string& file, const std::string& format, int threads,
+         const Progress& progress) {
+        return run(threads, progress, [&](Context& context) {
+          return readHexMesh(file, {.format = format}, context);
+        });
+      },
+      "file"_a, "format"_a, "threads"_a, "progress"_a.none());
+  module.def(
+      "read",
+      [](const std::string& file, const std::string& format, const std::string& mapArray,
+         int threads, const Progress& progress) {
+        return run(threads, progress, [&](Context& context) {
+          return readMapOrHexMesh(file, {.format = format, .mapArray = mapArray}, context);
+        });
+      },
+      "file"_a, "format"_a, "map_array"_a, "threads"_a, "progress"_a.none());
+  module.def(
+      "write_mesh",
+      [](const HexMesh& mesh, const std::string& file, const std::string& format, double patchAngle,
+         bool compress, int threads, const Progress& progress) {
+        run(threads, progress, [&](Context& context) {
+          writeHexMesh(mesh, file, writeOptions(format, patchAngle, compress, "igm"), context);
+        });
+      },
+      "mesh"_a, "file"_a, "format"_a, "patch_angle"_a, "compress"_a, "threads"_a,
+      "progress"_a.none());
+  module.def(
+      "write_map",
+      [](const ArrayMap& map, const std::string& file, const std::string& format, bool compress,
+         const std::string& mapArray, int threads, const Progress& progress) {
+        run(threads, progress, [&](Context& context) {
+          writeMap(map.copy(), file, writeOptions(format, 40, compress, mapArray), context);
+        });
+      },
+      "map"_a, "file"_a, "format"_a, "compress"_a, "map_array"_a, "threads"_a, "progress"_a.none());
+  module.def("formats", &formats);
+}
+
+}  // namespace hexhex::python

@@ -1,0 +1,150 @@
+// Hexahedral meshes, and what they are: quality, structure, patches, sums.
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <hexhex/curved.hpp>
+#include <hexhex/patches.hpp>
+#include <hexhex/quality.hpp>
+#include <hexhex/structure.hpp>
+#include <hexhex/survey.hpp>
+
+#include "border.hpp"
+
+using namespace nanobind::literals;
+
+namespace hexhex::python {
+namespace {
+
+template <class To, class From>
+void assign(To& to, const From& from) {
+  to.assign(from.begin(), from.end());
+}
+
+Dict asDict(const MeshSurvey& s) {
+  Dict d;
+  d["points"] = s.points;
+  d["cells"] = s.cells;
+  d["lower"] = nb::make_tuple(s.lower[0], s.lower[1], s.lower[2]);
+  d["upper"] = nb::make_tuple(s.upper[0], s.upper[1], s.upper[2]);
+  d["point_checksum"] = s.pointChecksum;
+  d["cell_checksum"] = s.cellChecksum;
+  return d;
+}
+
+/// Vertices, valence, on the boundary, and the counts.
+nb::tuple structureOf(const HexMesh& mesh, int threads, const Progress& progress) {
+  const MeshStructure s =
+      run(threads, progress, [&](Context& context) { return findStructure(mesh, context); });
+  const std::size_t n = s.singularEdges.size();
+  std::vector<Quad> rows(n);  // two vertices, valence, boundary
+  for (std::size_t e = 0; e < n; ++e) {
+    const SingularHexEdge& edge = s.singularEdges[e];
+    rows[e] = {edge.vertex0, edge.vertex1, edge.valence, edge.boundary ? 1U : 0U};
+  }
+  Dict d;
+  d["faces"] = s.faces;
+  d["edges"] = s.edges;
+  d["boundary_quads"] = s.boundaryQuads;
+  d["components"] = s.components;
+  d["boundary_components"] = s.boundaryComponents;
+  d["euler_characteristic"] = s.eulerCharacteristic;
+  return nb::make_tuple(ownedArray<Index, 2>(std::move(rows), {n, 4}), d);
+}
+
+}  // namespace
+
+void bindMesh(nb::module_& module) {
+  nb::class_<HexMesh>(module, "Mesh", "A mesh in the library's own arrays.")
+      .def(
+          "__init__",
+          [](HexMesh* self, const InPoints& points, const InCells& cells,
+             const In<std::int32_t, 2>& vertices, const In<std::int32_t, 3>& edges,
+             const In<std::int32_t, 5>& quads, const In1<std::int32_t>& regions) {
+            HexMesh mesh;
+            assign(mesh.points, elements<Vec3>(points));
+            assign(mesh.cells, elements<Hex>(cells));
+            assign(mesh.features.vertices, elements<FeatureVertex>(vertices));
+            assign(mesh.features.edges, elements<FeatureEdge>(edges));
+            assign(mesh.features.quads, elements<FeatureQuad>(quads));
+            assign(mesh.regions, elements<std::int32_t>(regions));
+            new (self) HexMesh(std::move(mesh));
+          },
+          "points"_a.noconvert(), "cells"_a.noconvert(), "feature_vertices"_a.noconvert(),
+          "feature_edges"_a.noconvert(), "feature_quads"_a.noconvert(), "regions"_a.noconvert())
+      .def_prop_ro("points",
+                   [](nb::handle self) {
+                     auto& points = unwrapped<HexMesh>(self).points;
+                     return viewOn<double, 2>(points, self, {points.size(), 3});
+                   })
+      .def_prop_ro("cells",
+                   [](nb::handle self) {
+                     auto& cells = unwrapped<HexMesh>(self).cells;
+                     return viewOn<Index, 2>(cells, self, {cells.size(), 8});
+                   })
+      .def_prop_ro("generator_tet",
+                   [](nb::handle self) {
+                     auto& tets = unwrapped<HexMesh>(self).generatorTet;
+                     return viewOn<Index, 1>(tets, self, {tets.size()});
+                   })
+      .def_prop_ro("generator_corners",
+                   [](nb::handle self) {
+                     auto& corners = unwrapped<HexMesh>(self).generatorCorners;
+                     return viewOn<CornerSet, 1>(corners, self, {corners.size()});
+                   })
+      .def_prop_ro("feature_vertices",
+                   [](nb::handle self) {
+                     auto& list = unwrapped<HexMesh>(self).features.vertices;
+                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 2});
+                   })
+      .def_prop_ro("feature_edges",
+                   [](nb::handle self) {
+                     auto& list = unwrapped<HexMesh>(self).features.edges;
+                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 3});
+                   })
+      .def_prop_ro("feature_quads",
+                   [](nb::handle self) {
+                     auto& list = unwrapped<HexMesh>(self).features.quads;
+                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 5});
+                   })
+      .def_prop_ro("regions", [](nb::handle self) {
+        auto& regions = unwrapped<HexMesh>(self).regions;
+        return viewOn<std::int32_t, 1>(regions, self, {regions.size()});
+      });
+
+  module.def(
+      "scaled_jacobians",
+      [](const HexMesh& mesh, int threads, const Progress& progress) {
+        auto values = run(threads, progress,
+                          [&](Context& context) { return scaledJacobians(mesh, context); });
+        const std::size_t n = values.size();
+        return ownedArray<double, 1>(std::move(values), {n});
+      },
+      "mesh"_a, "threads"_a, "progress"_a.none());
+  module.def("structure", &structureOf, "mesh"_a, "threads"_a, "progress"_a.none());
+  module.def(
+      "boundary_patches",
+      [](const HexMesh& mesh, double angle, int threads) {
+        auto quads = run(threads, {},
+                         [&](Context& context) { return boundaryPatches(mesh, angle, context); });
+        const std::size_t n = quads.size();
+        return ownedArray<std::int32_t, 2>(std::move(quads), {n, 5});
+      },
+      "mesh"_a, "angle"_a, "threads"_a);
+  module.def(
+      "survey",
+      [](const HexMesh& mesh, int threads, const Progress& progress) {
+        return asDict(
+            run(threads, progress, [&](Context& context) { return survey(mesh, context); }));
+      },
+      "mesh"_a, "threads"_a, "progress"_a.none());
+  module.def(
+      "survey_file",
+      [](const std::string& file, int threads, const Progress& progress) {
+        return asDict(
+            run(threads, progress, [&](Context& context) { return surveyFile(file, context); }));
+      },
+      "file"_a, "threads"_a, "progress"_a.none());
+}
+
+}  // namespace hexhex::python

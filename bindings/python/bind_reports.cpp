@@ -1,0 +1,95 @@
+// What a map is, and whether a mesh agrees with it.
+#include <string>
+#include <vector>
+
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <hexhex/check.hpp>
+#include <hexhex/verify.hpp>
+
+#include "border.hpp"
+
+using namespace nanobind::literals;
+
+namespace hexhex::python {
+namespace {
+
+Dict asDict(const Expectation& e) {
+  Dict d;
+  d["cells"] = e.cells;
+  d["boundary_quads"] = e.boundaryQuads;
+  d["inner_singular_edges"] = nb::cast(e.innerSingularEdges);
+  d["boundary_singular_edges"] = nb::cast(e.boundarySingularEdges);
+  d["euler_characteristic"] = e.eulerCharacteristic;
+  d["components"] = e.components;
+  d["boundary_components"] = e.boundaryComponents;
+  return d;
+}
+
+Dict asDict(const CheckReport& r) {
+  Dict d;
+  d["points"] = r.points;
+  d["tets"] = r.tets;
+  d["edges"] = r.edges;
+  d["faces"] = r.faces;
+  d["boundary_faces"] = r.boundaryFaces;
+  d["inner_faces"] = r.innerFaces;
+  d["chart_jumps"] = r.chartJumps;
+  d["isolated_vertices"] = r.isolatedVertices;
+  d["tets_inverted_in_space"] = r.tetsInvertedInSpace;
+  d["mirrored"] = r.mirrored;
+  d["corners_reversed"] = r.cornersReversed;
+  d["max_transition_residual"] = r.maxTransitionResidual;
+  d["max_displacement"] = r.maxDisplacement;
+  d["inner_singular_tet_edges"] = nb::cast(r.innerSingularTetEdges);
+  d["boundary_singular_tet_edges"] = nb::cast(r.boundarySingularTetEdges);
+  d["singular_nodes"] = r.singularNodes;
+  d["boundary_genus"] = nb::cast(r.boundaryGenus);
+  nb::list defects;
+  for (const Defect& defect : r.defects) {
+    nb::list worst;
+    for (const Defect::Occurrence& occurrence : defect.worst) {
+      worst.append(nb::make_tuple(toString(occurrence.place), occurrence.place.index,
+                                  occurrence.place.second, occurrence.amount));
+    }
+    defects.append(
+        nb::make_tuple(std::string(name(defect.code)), defect.sentence, defect.count, worst));
+  }
+  d["defects"] = defects;
+  d["expected"] = r.valid() ? nb::object(asDict(r.expected)) : nb::none();
+  return d;
+}
+
+using VerifyRow = std::tuple<std::string, std::string, std::string, bool>;
+
+std::vector<VerifyRow> verifyMesh(const ArrayMap& map, const HexMesh& mesh, int scale,
+                                  double tolerance, int threads, const Progress& progress) {
+  const VerifyReport report = run(threads, progress, [&](Context& context) {
+    return verify(map.view(), mesh, {.scale = scale, .tolerance = tolerance}, context);
+  });
+  std::vector<VerifyRow> rows;
+  for (const VerifyItem& item : report.items) {
+    rows.emplace_back(item.name, item.expected, item.found, item.passed);
+  }
+  return rows;
+}
+
+}  // namespace
+
+void bindReports(nb::module_& module) {
+  module.def(
+      "check",
+      [](const ArrayMap& map, double tolerance, int scale, int threads, const Progress& progress) {
+        return asDict(run(threads, progress, [&](Context& context) {
+          return check(map.view(), {.tolerance = tolerance, .scale = scale}, context);
+        }));
+      },
+      "map"_a, "tolerance"_a, "scale"_a, "threads"_a, "progress"_a.none());
+  module.def("verify", &verifyMesh, "map"_a, "mesh"_a, "scale"_a, "tolerance"_a, "threads"_a,
+             "progress"_a.none());
+}
+
+}  // namespace hexhex::python

@@ -1,0 +1,116 @@
+// The border between C++ and Python: arrays in and out without copies, long work without the GIL.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+
+#include <hexhex/context.hpp>
+#include <hexhex/extract.hpp>
+#include <hexhex/types.hpp>
+
+namespace hexhex::python {
+
+namespace nb = nanobind;
+
+template <class Scalar, int kWidth>
+using In = nb::ndarray<const Scalar, nb::shape<-1, kWidth>, nb::c_contig, nb::device::cpu>;
+template <class Scalar>
+using In1 = nb::ndarray<const Scalar, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using InPoints = In<double, 3>;
+using InTets = In<Index, 4>;
+using InCells = In<Index, 8>;
+using InIgm = nb::ndarray<const double, nb::shape<-1, 4, 3>, nb::c_contig, nb::device::cpu>;
+using Progress = std::optional<nb::typed<nb::callable, nb::object(nb::str, double)>>;
+using Dict = nb::typed<nb::dict, nb::str, nb::any>;
+
+template <class Element, class NdArray>
+std::span<const Element> elements(const NdArray& array) {
+  return {reinterpret_cast<const Element*>(array.data()), array.shape(0)};
+}
+
+/// The arrays of a map, which live as long as this does.
+struct ArrayMap {
+  InPoints points;
+  InTets tets;
+  InIgm igm;
+  In<std::int32_t, 2> featureVertices;  ///< vertex, tag
+  In<std::int32_t, 3> featureEdges;     ///< vertices, tag
+  In<std::int32_t, 4> featureFaces;     ///< vertices, tag
+  In1<std::int32_t> regions;            ///< one per tet, or none
+  In<std::int32_t, 3> edgeValences;     ///< vertices, offset
+  In<std::int8_t, 4> rotations;         ///< one per tet, or none
+
+  [[nodiscard]] TetMapView view() const;
+  [[nodiscard]] TetMap copy() const;
+};
+
+/// A numpy array on the elements of `list`, which `owner` keeps alive.
+template <class Scalar, std::size_t kRank, class List>
+auto viewOn(List& list, nb::handle owner, const std::array<std::size_t, kRank>& shape) {
+  using Element = std::conditional_t<std::is_const_v<List>, const Scalar, Scalar>;
+  using Out = nb::ndarray<nb::numpy, Element, nb::ndim<kRank>, nb::c_contig>;
+  return Out(reinterpret_cast<Element*>(list.data()), kRank, shape.data(), owner);
+}
+
+/// A numpy array that owns `list`.
+template <class Scalar, std::size_t kRank, class List>
+auto ownedArray(List&& list, const std::array<std::size_t, kRank>& shape) {
+  auto* const moved = new List(std::forward<List>(list));
+  const nb::capsule owner(moved, [](void* kept) noexcept { delete static_cast<List*>(kept); });
+  return viewOn<Scalar, kRank>(*moved, owner, shape);
+}
+
+/// Runs work(context) in a thread of its own, without the GIL. A signal (Ctrl-C) or an exception in
+/// the progress function cancels it, and is raised when it has ended.
+void runWork(int threads, const Progress& progress, const std::function<void(Context&)>& work);
+
+/// The same with a result.
+template <class Work>
+auto run(int threads, const Progress& progress, const Work& work) {
+  using Result = decltype(work(std::declval<Context&>()));
+  if constexpr (std::is_void_v<Result>) {
+    runWork(threads, progress, work);
+  } else {
+    std::optional<Result> result;
+    runWork(threads, progress, [&](Context& context) { result.emplace(work(context)); });
+    return std::move(*result);
+  }
+}
+
+/// The C++ object of a Python object, e.g. to make views that keep it alive.
+template <class T>
+T& unwrapped(nb::handle self) {
+  return *nb::inst_ptr<T>(self);
+}
+
+/// What every extraction may be told: scale, engine, tolerance, epsilon, repair, round.
+struct Options {
+  int scale = 1;
+  bool propeller = false;
+  double tolerance = 1e-2;
+  double epsilon = 1e-6;
+  bool repair = false;
+  bool round = false;
+  [[nodiscard]] ExtractOptions get() const;
+};
+
+/// (statistics, report of the repair or None, repaired map or None)
+[[nodiscard]] nb::tuple asTuple(ExtractStatistics& statistics);
+[[nodiscard]] Dict asDict(const RepairReport& report);
+
+void bindMap(nb::module_& module);
+void bindMesh(nb::module_& module);
+void bindExtract(nb::module_& module);
+void bindCurved(nb::module_& module);
+void bindFiles(nb::module_& module);
+void bindReports(nb::module_& module);
+
+}  // namespace hexhex::python

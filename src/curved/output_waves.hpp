@@ -1,0 +1,63 @@
+// Output whose size only the work itself tells: blocks of elements, some of them at a time.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include <hexhex/types.hpp>
+
+#include <base/parallel.hpp>
+
+namespace hexhex {
+
+/// Blocks that are in memory at the same time: enough for the threads of large machines, few enough
+/// to be small beside what they make together.
+inline constexpr std::size_t kWaveBlocks = 64;
+
+/// parallelBlocks() in waves of kWaveBlocks blocks. After the blocks of a wave, measure(firstBlock,
+/// endBlock) is called, and then place(block) for each of them, in parallel: so what blocks collect
+/// comes where it belongs as the loop goes, and its memory is used again by the next wave.
+template <class F, class Measure, class Place>
+void parallelWaves(Stage& stage, std::size_t n, std::size_t grain, const F& f,
+                   const Measure& measure, const Place& place) {
+  LoopProgress progress(stage, n);
+  const std::size_t blocks = blockCount(n, grain);
+  for (std::size_t first = 0; first < blocks; first += kWaveBlocks) {
+    const std::size_t count = first + kWaveBlocks < blocks ? kWaveBlocks : blocks - first;
+    const std::size_t offset = first * grain;
+    const std::size_t size = first + count < blocks ? count * grain : n - offset;
+    const auto work = [&](std::size_t begin, std::size_t end, std::size_t block) {
+      f(offset + begin, offset + end, first + block);
+    };
+    detail::runBlocks(size, grain, &progress, BlockFunction(work));
+    measure(first, first + count);
+    const auto placeOne = [&](std::size_t block, std::size_t, std::size_t) {
+      place(first + block);
+    };
+    detail::runBlocks(count, 1, nullptr, BlockFunction(placeOne));
+  }
+}
+
+/// The number of tets in a block, so that it has a few hundred of the elements that they own.
+[[nodiscard]] inline std::size_t tetsPerBlock(std::uint64_t elements, std::size_t tets) {
+  constexpr std::size_t kElements = 256;
+  constexpr std::size_t kLargestBlock = 4096;
+  return std::clamp(kElements * tets / std::max<std::uint64_t>(elements, 1), std::size_t{1},
+                    kLargestBlock);
+}
+
+/// Lengthens an array of which a share is complete then. What is reserved beyond is memory that is
+/// never written to, if the rest turns out to be smaller.
+template <class T>
+void lengthen(Array<T>& array, std::size_t size, double share) {
+  constexpr double kReserve = 1.1;
+  constexpr double kMostAhead = 16;  // a beginning may be far from what is typical
+  if (size > array.capacity()) {
+    const double factor = std::clamp(kReserve / share, kReserve, kMostAhead);
+    array.reserve(static_cast<std::size_t>(factor * static_cast<double>(size)));
+  }
+  array.resize(size);
+}
+
+}  // namespace hexhex

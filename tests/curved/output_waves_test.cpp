@@ -1,0 +1,63 @@
+// Waves of blocks: every element comes once, in its place, for any number of blocks and threads.
+#include <numeric>
+#include <vector>
+
+#include <curved/output_waves.hpp>
+#include <gtest/gtest.h>
+
+namespace hexhex::test {
+
+namespace {
+
+/// Element i makes i % 3 numbers, all of them i.
+Array<std::size_t> collectInWaves(std::size_t n, std::size_t grain, int threads) {
+  Array<std::size_t> all;
+  withThreads(threads, [&] {
+    Context context;
+    Stage stage(context, "waves");
+    std::vector<std::vector<std::size_t>> pieces(kWaveBlocks);
+    std::vector<std::size_t> places(kWaveBlocks);
+    std::size_t total = 0;
+    parallelWaves(
+        stage, n, grain,
+        [&](std::size_t begin, std::size_t end, std::size_t block) {
+          std::vector<std::size_t>& piece = pieces[block % kWaveBlocks];
+          piece.clear();
+          for (std::size_t i = begin; i < end; ++i) piece.insert(piece.end(), i % 3, i);
+        },
+        [&](std::size_t first, std::size_t end) {
+          for (std::size_t block = first; block < end; ++block) {
+            places[block % kWaveBlocks] = total;
+            total += pieces[block % kWaveBlocks].size();
+          }
+          lengthen(all, total, static_cast<double>(end) / 1000.0);
+        },
+        [&](std::size_t block) {
+          const std::vector<std::size_t>& piece = pieces[block % kWaveBlocks];
+          std::copy(piece.begin(), piece.end(),
+                    all.begin() + static_cast<std::ptrdiff_t>(places[block % kWaveBlocks]));
+        });
+  });
+  return all;
+}
+
+TEST(OutputWaves, KeepTheOrder) {
+  for (const std::size_t n : {0U, 1U, 5U, 640U, 641U, 10007U}) {
+    Array<std::size_t> expected;
+    for (std::size_t i = 0; i < n; ++i) expected.insert(expected.end(), i % 3, i);
+    for (const std::size_t grain : {1U, 10U, 4096U}) {
+      for (const int threads : {1, 2, 5}) {
+        EXPECT_EQ(collectInWaves(n, grain, threads), expected) << n << " " << grain;
+      }
+    }
+  }
+}
+
+TEST(OutputWaves, BlocksFollowTheElements) {
+  EXPECT_EQ(tetsPerBlock(0, 1000), 4096U);
+  EXPECT_EQ(tetsPerBlock(256, 1000), 1000U);
+  EXPECT_EQ(tetsPerBlock(1000000, 1000), 1U);
+}
+
+}  // namespace
+}  // namespace hexhex::test

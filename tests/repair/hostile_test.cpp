@@ -1,0 +1,177 @@
+// Maps that no repair can help, and what must hold whatever is repaired.
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/hexhex.hpp>
+
+#include "extract/support.hpp"
+#include "map/prepare.hpp"
+#include "repair/edge_split.hpp"
+#include "repair/map_backup.hpp"
+#include "repair/same_connectivity.hpp"
+
+namespace hexhex::test {
+
+namespace {
+
+TetMap sphere(int refine, int defects = 0, std::uint64_t seed = 1) {
+  SampleOptions options;
+  options.refine = refine;
+  options.cells = refine;
+  options.charts = ChartStyle::Blocks;
+  options.defects = defects;
+  options.seed = seed;
+  return generateSample(SampleKind::Sphere, options).map;
+}
+
+void mirror(TetMap& map, std::size_t begin, std::size_t end) {
+  for (std::size_t t = begin; t < end; ++t) {
+    for (Vec3& u : map.parameters[t]) u[0] = -u[0];
+  }
+}
+
+/// Both maps side by side.
+TetMap joined(TetMap first, const TetMap& second) {
+  const auto offset = static_cast<Index>(first.points.size());
+  for (const Vec3& p : second.points) first.points.push_back({p[0] + 10, p[1], p[2]});
+  for (const Tet& t : second.tets) {
+    first.tets.push_back({t[0] + offset, t[1] + offset, t[2] + offset, t[3] + offset});
+  }
+  first.parameters.insert(first.parameters.end(), second.parameters.begin(),
+                          second.parameters.end());
+  return first;
+}
+
+Error errorOf(const TetMap& map) {
+  try {
+    static_cast<void>(repair(map));
+  } catch (const Error& error) {
+    return error;
+  }
+  return {ErrorCode::Internal, "no error"};
+}
+
+class HostileMaps : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!canRepair()) GTEST_SKIP() << "skipped: built without libLBFGS";
+  }
+};
+
+TEST_F(HostileMaps, WithAnInvertedComponentAreRefused) {
+  TetMap map = joined(sphere(4), sphere(2));
+  const std::size_t first = sphere(4).tets.size();
+  mirror(map, first, map.tets.size());
+  const Error error = errorOf(map);
+  EXPECT_EQ(error.code(), ErrorCode::FlippedTet);
+  EXPECT_NE(std::string(error.what()).find("component"), std::string::npos) << error.what();
+  EXPECT_EQ(error.place().kind, PlaceKind::Tet);
+  EXPECT_EQ(error.place().index, first);
+}
+
+TEST_F(HostileMaps, WithAnInvertedBlockAreRefused) {
+  TetMap map = sphere(5);
+  mirror(map, 0, map.tets.size() / 7);
+  const Error error = errorOf(map);
+  EXPECT_EQ(error.code(), ErrorCode::FlippedTet);
+  EXPECT_NE(std::string(error.what()).find("region"), std::string::npos) << error.what();
+  EXPECT_LT(error.place().index, map.tets.size() / 7);
+}
+
+TEST_F(HostileMaps, WithoutAnySenseAreRefused) {
+  TetMap map = sphere(2);
+  for (TetParameters& corners : map.parameters) corners = {};
+  EXPECT_EQ(errorOf(map).code(), ErrorCode::FlippedTet);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> anywhere(-5, 5);
+  for (TetParameters& corners : map.parameters) {
+    for (Vec3& u : corners) u = {anywhere(random), anywhere(random), anywhere(random)};
+  }
+  EXPECT_EQ(errorOf(map).code(), ErrorCode::FlippedTet);
+  map.parameters[3][1][2] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(errorOf(map).code(), ErrorCode::NotFinite);
+  map.parameters[3][1][2] = 1e12;
+  EXPECT_EQ(errorOf(map).code(), ErrorCode::TooLarge);
+  EXPECT_EQ(errorOf({}).code(), ErrorCode::EmptyMesh);
+}
+
+TEST_F(HostileMaps, OfOneTetAreRefused) {
+  TetMap map;
+  map.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  map.tets = {{0, 1, 2, 3}};
+  map.parameters = {{Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}};
+  EXPECT_EQ(errorOf(map).code(), ErrorCode::FlippedTet);
+}
+
+/// Damage in two components, with more and less than one thread per place.
+TEST_F(HostileMaps, WithSeveralPlacesAreRepairedTheSameWithAnyNumberOfThreads) {
+  const TetMap damaged = joined(sphere(4, 8, 1), sphere(3, 5, 2));
+  Context one(1);
+  RepairReport report;
+  const TetMap expected = repair(damaged, {}, one, &report);
+  EXPECT_EQ(report.regions.size(), 2U);
+  const HexMesh mesh = verifiedExtraction(expected);
+  const HexMesh wanted = extract(joined(sphere(4), sphere(3)));
+  EXPECT_EQ(mesh.cells.size(), wanted.cells.size());
+  EXPECT_EQ(mesh.points.size(), wanted.points.size());
+  for (const int threads : {2, 8}) {
+    Context many(threads);
+    RepairReport again;
+    EXPECT_EQ(repair(damaged, {}, many, &again).parameters, expected.parameters);
+    EXPECT_EQ(again.largestMove, report.largestMove);
+    EXPECT_EQ(again.movedVertices, report.movedVertices);
+  }
+}
+
+TEST_F(HostileMaps, AreRepairedForLargeScales) {
+  const TetMap damaged = sphere(3, 6);
+  Context context;
+  RepairOptions options;
+  options.scale = 5;
+  ExtractOptions scaled;
+  scaled.scale = 5;
+  const HexMesh mesh = verifiedExtraction(repair(damaged, options, context), scaled);
+  EXPECT_TRUE(sameConnectivity(mesh, extract(sphere(3), scaled)));
+}
+
+TEST(MapBackup, RestoresEveryArray) {
+  SampleOptions options;
+  options.refine = 2;
+  options.features = true;
+  TetMap map = generateSample(SampleKind::Box, options).map;
+  map.regions.assign(map.tets.size(), 3);
+  map.rotations.assign(map.tets.size(), {-1, -1, -1, -1});
+  map.edgeValences = {{map.tets[0][0], map.tets[0][1], 1}};
+  const TetMap before = map;
+  Context context;
+  DefectCollector defects;
+  const PreparedMap prepared = prepareMap(before, 1e-2, 1, context, defects);
+  MapBackup backup(map);
+  const std::vector<std::array<Index, 2>> edges = {{map.tets[0][0], map.tets[0][1]},
+                                                   {map.tets[60][1], map.tets[60][2]}};
+  EXPECT_EQ(splitEdges(map, prepared.topology, edges, backup), 2U);
+  backup.keep(map, 5);
+  map.parameters[5][2] = {7, 8, 9};
+  EXPECT_GT(map.tets.size(), before.tets.size());
+  EXPECT_GT(map.edgeValences.size(), before.edgeValences.size());
+  ASSERT_NE(backup.parametersOf(5), nullptr);
+  EXPECT_EQ(*backup.parametersOf(5), before.parameters[5]);
+  backup.restore(map);
+  EXPECT_EQ(map.points, before.points);
+  EXPECT_EQ(map.tets, before.tets);
+  EXPECT_EQ(map.parameters, before.parameters);
+  EXPECT_EQ(map.regions, before.regions);
+  EXPECT_EQ(map.rotations, before.rotations);
+  EXPECT_EQ(map.features.edges.size(), before.features.edges.size());
+  EXPECT_EQ(map.features.faces.size(), before.features.faces.size());
+  ASSERT_EQ(map.edgeValences.size(), 1U);
+  EXPECT_EQ(map.edgeValences[0].vertex1, before.edgeValences[0].vertex1);
+}
+
+}  // namespace
+
+}  // namespace hexhex::test
