@@ -63,6 +63,7 @@ double cpuSeconds() {
   return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
 }
 
+/// The rate by the time that all cores spent; `bytes_per_second` is by the clock on the wall.
 /// @param cpu  seconds of all iterations, together
 void setMegabytesPerCore(benchmark::State& state, std::uint64_t bytes, double cpu) {
   constexpr double kMega = 1e6;
@@ -270,11 +271,13 @@ void add(const std::string& what, const BenchMap& map, bool manual, const F& f) 
 void copyingInMemory(benchmark::State& state) {
   std::vector<char> from(std::size_t{1} << 28, 'x');
   std::vector<char> to(from.size(), 'y');
+  const double begin = cpuSeconds();
   for (auto _ : state) {
     std::copy(from.begin(), from.end(), to.begin());
     benchmark::DoNotOptimize(to.data());
     benchmark::ClobberMemory();
   }
+  setMegabytesPerCore(state, from.size(), cpuSeconds() - begin);
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(from.size()));
 }
 
@@ -282,17 +285,21 @@ void copyingInMemory(benchmark::State& state) {
 void touchingFreshMemory(benchmark::State& state) {
   constexpr std::size_t kBytes = std::size_t{1} << 28;
   constexpr std::size_t kPage = 4096;
+  const double begin = cpuSeconds();
   for (auto _ : state) {
     Array<char> memory(kBytes);
     for (std::size_t i = 0; i < kBytes; i += kPage) memory[i] = 1;
     benchmark::DoNotOptimize(memory.data());
   }
+  setMegabytesPerCore(state, kBytes, cpuSeconds() - begin);
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(kBytes));
 }
 
 void writingPlainly(benchmark::State& state) {
   constexpr std::uint64_t kBytes = std::uint64_t{1} << 28;
+  const double begin = cpuSeconds();
   for (auto _ : state) benchmark::DoNotOptimize(secondsOfPlainWrite(kBytes));
+  setMegabytesPerCore(state, kBytes, cpuSeconds() - begin);
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(kBytes));
 }
 

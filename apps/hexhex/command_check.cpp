@@ -52,7 +52,7 @@ Command addCheck(CLI::App& app) {
   addScale(*parser, arguments->options.scale, "Tell what to expect at this scale");
   addThreads(*parser, arguments->threads);
   parser->add_flag("--json", arguments->json, "Print JSON instead of text");
-  parser->add_flag("--quiet", arguments->quiet, "Print no text: the exit code tells");
+  addQuiet(*parser, arguments->quiet, "Print no text: the exit code tells");
   parser->footer(
       "Exit code 0: the map is valid; 1: it is not.\n\nExample:\n"
       "  hexhex check sphere.hexex");

@@ -121,17 +121,13 @@ Command addConvert(CLI::App& app) {
       ->add_option("--input-format", arguments->input.format,
                    "Read this format, whatever the extension")
       ->option_text("NAME");
-  parser
-      ->add_option("--patch-angle", arguments->patchAngle,
-                   "Where no faces are tagged, group boundary quads by\n"
-                   "patches that turn by at most this angle; 0: one group")
-      ->option_text("DEGREES [40]");
+  addPatchAngle(*parser, arguments->patchAngle);
   addThreads(*parser, arguments->threads);
   parser->add_flag("--stream", arguments->stream,
                    "Read and write a mesh piece by piece, for meshes larger\n"
                    "than the memory, from .vtu to .vtu, .mesh, .meshb, .vtk\n"
                    "or .msh; without boundary quads and quality");
-  parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  addQuiet(*parser, arguments->quiet);
   parser->footer(
       "Maps become maps, and hexahedral meshes become hexahedral meshes: the input's content "
       "decides.\n`hexhex formats` lists the formats.\n\nExamples:\n"

@@ -405,19 +405,12 @@ Command addExtract(CLI::App& app) {
   addCurved(*parser, *arguments);
   addMethod(*parser, *arguments);
   addTolerance(*parser, arguments->options.tolerance);
-  parser
-      ->add_option("--patch-angle", arguments->patchAngle,
-                   "Where the map tags no faces, group boundary quads by\npatches that turn by at "
-                   "most this angle in degrees\nbetween neighbours; 0: one group")
-      ->check(CLI::Range(0, 180))
-      ->option_text("DEGREES [40]");
+  addPatchAngle(*parser, arguments->patchAngle);
   addRepairOptions(*parser, *arguments);
   parser->add_flag("--no-verify", arguments->noVerify, "Write the mesh without verifying it");
-  parser
-      ->add_option("--report", arguments->report,
-                   "Write a report in JSON: times, counts, quality,\nverification")
-      ->option_text("FILE");
-  parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  addReport(*parser, arguments->report,
+            "Write a report in JSON: times, counts, quality,\nverification");
+  addQuiet(*parser, arguments->quiet);
   parser->footer(
       "The mesh is verified against the map before it is written; with --stream, the file is read\n"
       "again before it gets its name: it must hold what was extracted, and as many cells and\n"

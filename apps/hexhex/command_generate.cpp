@@ -166,7 +166,7 @@ Command addGenerate(CLI::App& app) {
                    "(until tets flip), or sliver (until they collapse)")
       ->check(CLI::IsMember(defectNames()))
       ->option_text("KIND [interior]");
-  parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  addQuiet(*parser, arguments->quiet);
   parser->footer(describeKinds());
   return {parser, [arguments] { return run(*arguments); }};
 }

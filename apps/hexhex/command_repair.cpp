@@ -88,11 +88,8 @@ Command addRepair(CLI::App& app) {
                    "Never split edges of the tet mesh, not even where\n"
                    "moving parameters cannot work");
   addThreads(*parser, arguments->threads);
-  parser
-      ->add_option("--report", arguments->report,
-                   "Write in JSON what was moved, where, and by how much")
-      ->option_text("FILE");
-  parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  addReport(*parser, arguments->report, "Write in JSON what was moved, where, and by how much");
+  addQuiet(*parser, arguments->quiet);
   parser->footer(
       "A valid map is written as it is. Exit code 1: the map cannot be repaired; the message says\n"
       "why, and nothing is written. docs/defects.md explains what can be repaired and how.\n\n"

@@ -73,7 +73,7 @@ Command addVerify(CLI::App& app) {
   addScale(*parser, arguments->options.scale, "The scale that the mesh was extracted with");
   addTolerance(*parser, arguments->options.tolerance);
   addThreads(*parser, arguments->threads);
-  parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors: the exit code tells");
+  addQuiet(*parser, arguments->quiet, "Print nothing but errors: the exit code tells");
   parser->footer(
       "Exit code 0: they agree; 4: they do not.\n\nExample:\n"
       "  hexhex verify sphere.hexex sphere.vtu --scale 2");

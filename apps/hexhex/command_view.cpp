@@ -48,7 +48,7 @@ Command addView(CLI::App& app) {
       ->check(CLI::Range(0, 65535))
       ->needs(serve)
       ->option_text("INTEGER [0]");
-  parser->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  addQuiet(*parser, arguments->quiet);
   parser->footer(
       "Exit code 4: the mesh does not agree with the map; the page is written and says so.\n\n"
       "Examples:\n  hexhex view sphere.vtu --map sphere.hexex --scale 2\n"

@@ -105,6 +105,23 @@ void addOutputChoice(CLI::App& parser, OutputChoice& choice) {
   parser.add_flag("--compress", choice.compress, "Compress a .vtu file with zlib");
 }
 
+void addPatchAngle(CLI::App& parser, double& angle) {
+  parser
+      .add_option("--patch-angle", angle,
+                  "Where no faces are tagged, group boundary quads by\npatches that turn by at "
+                  "most this angle in degrees\nbetween neighbours; 0: one group")
+      ->check(CLI::Range(0, 180))
+      ->option_text("DEGREES [40]");
+}
+
+void addReport(CLI::App& parser, std::string& file, const std::string& description) {
+  parser.add_option("--report", file, description)->option_text("FILE");
+}
+
+void addQuiet(CLI::App& parser, bool& quiet, const std::string& description) {
+  parser.add_flag("--quiet", quiet, description);
+}
+
 void addScale(CLI::App& parser, int& scale, const std::string& description) {
   parser.add_option("--scale", scale, description)
       ->check(wholeNumberFrom(1))

@@ -62,6 +62,13 @@ struct OutputChoice {
 /// Adds --format and --compress.
 void addOutputChoice(CLI::App& parser, OutputChoice& choice);
 
+/// Adds --patch-angle, from 0 to 180 degrees.
+void addPatchAngle(CLI::App& parser, double& angle);
+/// Adds --report. @param description  of what is in it
+void addReport(CLI::App& parser, std::string& file, const std::string& description);
+void addQuiet(CLI::App& parser, bool& quiet,
+              const std::string& description = "Print nothing but errors");
+
 void addScale(CLI::App& parser, int& scale, const std::string& description);
 void addThreads(CLI::App& parser, int& threads);
 void addTolerance(CLI::App& parser, double& tolerance);

@@ -16,6 +16,9 @@ template <std::size_t corners>
 struct CellMesh {
   Array<Vec3> points;
   Array<std::array<Index, corners>> cells;
+  // Where the format has them, and only with hexahedra.
+  HexFeatures features = {};
+  Array<std::int32_t> regions = {};
 };
 using TetCells = CellMesh<4>;
 
@@ -39,11 +42,13 @@ template <>
 inline constexpr CellKind kCellKind<8> = {"hexahedron", "hexahedra",    "Hexahedra", 10, 5,
                                           12,           PlaceKind::Cell};
 
-/// A hex mesh without anything but points and cells.
+/// The same as a hex mesh.
 [[nodiscard]] inline HexMesh toHexMesh(CellMesh<8>&& mesh) {
   HexMesh result;
   result.points = std::move(mesh.points);
   result.cells = std::move(mesh.cells);
+  result.features = std::move(mesh.features);
+  result.regions = std::move(mesh.regions);
   return result;
 }
 

@@ -1,6 +1,10 @@
 // The reading half of gmsh.hpp.
+#include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -10,8 +14,10 @@
 #include <base/stage.hpp>
 #include <io/cell_mesh.hpp>
 #include <io/gmsh.hpp>
+#include <io/gmsh_tags.hpp>
 #include <io/node_tags.hpp>
 #include <io/number_source.hpp>
+#include <io/ovmb_bytes.hpp>
 #include <io/read_with.hpp>
 #include <io/text_scanner.hpp>
 #include <io/token_index.hpp>
@@ -25,6 +31,19 @@ constexpr std::array<std::uint8_t, 32> kNodesOfType = {0,  2,  3,  4,  4, 8, 6, 
                                                        12, 15, 15, 21, 4, 5, 6,  20, 35, 56};
 constexpr std::int64_t kHexahedronOf64 = 92;
 constexpr std::int64_t kHexahedronOf125 = 93;
+
+/// The sign of a group's number tells which way an entity runs.
+std::int64_t withoutSign(std::int64_t number) {
+  if (number == std::numeric_limits<std::int64_t>::min()) return 0;
+  return number < 0 ? -number : number;
+}
+
+/// The dimension of the elements that may have a tag here.
+std::int64_t dimensionOf(std::int64_t type) {
+  if (type == kGmshPoint) return 0;
+  if (type == kGmshLine) return 1;
+  return type == kGmshQuad ? 2 : 3;
+}
 
 /// The number of nodes, or 0 if it is not known.
 std::size_t nodesOfType(std::int64_t type) {
@@ -61,6 +80,13 @@ void requireIndexable(const Source& source, std::uint64_t n, std::string_view wh
                                        "; at most " + std::to_string(kNone) + " are supported.");
 }
 
+bool areFinite(const char* place, std::size_t reals) {
+  for (std::size_t k = 0; k < reals; ++k) {
+    if (!std::isfinite(loadLittle<double>(place + k * sizeof(double)))) return false;
+  }
+  return true;
+}
+
 /// Reads the sections of one file from top to bottom.
 template <std::size_t corners>
 class MshReader {
@@ -76,6 +102,10 @@ class MshReader {
   void readFormat();
   void readSection(std::string_view name);
   void skipSection(std::string_view name);
+  void readPhysicalNames();
+  void readEntities();
+  template <class Source>
+  static std::int64_t firstOf(Source& source, const char* what);
   void failIfRepeated(bool present, std::string_view name);
 
   /// Calls f(source) with a source that stands at the scanner's place, and goes on behind what it
@@ -94,6 +124,13 @@ class MshReader {
   void readElements22(TextSource& source, std::size_t count);
   void readElements22(BinarySource& source, std::size_t count);
 
+  [[nodiscard]] static bool isFeature(std::int64_t type);
+  template <class Source>
+  void readFeatures41(Source& source, std::int64_t type, std::size_t count, std::int32_t tag);
+  template <class Source>
+  void addFeature(const Source& source, std::int64_t type,
+                  const std::array<std::uint64_t, 4>& nodes, std::int32_t tag);
+  void setRegions(std::size_t first, std::size_t count, std::int32_t region);
   template <class Source>
   void readPoint(Source& record, std::size_t node);
   template <class Source>
@@ -113,6 +150,7 @@ class MshReader {
   bool hasOtherElements_ = false;
   Array<std::uint64_t> tags_;
   NodeTags nodes_;
+  GmshTags gmshTags_;
   CellMesh<corners> mesh_;
 };
 
@@ -184,6 +222,8 @@ void MshReader<corners>::readFormat() {
 
 template <std::size_t corners>
 void MshReader<corners>::readSection(std::string_view name) {
+  if (name == "PhysicalNames") return readPhysicalNames();
+  if (name == "Entities" && version4_) return readEntities();
   if (name != "Nodes" && name != "Elements") return skipSection(name);
   const bool nodes = name == "Nodes";
   failIfRepeated(nodes ? hasNodes_ : hasElements_, name);
@@ -204,6 +244,63 @@ void MshReader<corners>::readSection(std::string_view name) {
   if (end.starts_with("$End") && end.substr(4) == name) return;
   scanner_.fail(ErrorCode::FileSyntax,
                 "expected \"$End" + std::string(name) + "\", found " + quoted(end) + ".");
+}
+
+/// Lines "dimension number name", as text in binary files, too.
+template <std::size_t corners>
+void MshReader<corners>::readPhysicalNames() {
+  const std::size_t begin = scanner_.position();
+  skipSection("PhysicalNames");
+  std::string_view rest = text_.substr(begin, scanner_.position() - begin);
+  while (!rest.empty()) {
+    const std::size_t length = std::min(rest.find('\n'), rest.size());
+    const std::string_view line = rest.substr(0, length);
+    rest.remove_prefix(std::min(length + 1, rest.size()));
+    GmshGroup group;
+    const char* const end = line.data() + line.size();
+    const auto dimension = std::from_chars(line.data(), end, group.first);
+    if (dimension.ec != std::errc{} || dimension.ptr == end || *dimension.ptr != ' ') continue;
+    const auto number = std::from_chars(dimension.ptr + 1, end, group.second);
+    const std::size_t quote = line.find('"');
+    if (number.ec != std::errc{} || quote == std::string_view::npos) continue;
+    const std::string_view name = line.substr(quote + 1);
+    gmshTags_.addName(group, name.substr(0, std::min(name.find('"'), name.size())));
+  }
+}
+
+template <std::size_t corners>
+void MshReader<corners>::readEntities() {
+  withSource([this](auto& source) {
+    std::array<std::uint64_t, 4> counts{};
+    for (std::uint64_t& count : counts) count = source.size("the number of entities");
+    for (std::size_t dimension = 0; dimension < counts.size(); ++dimension) {
+      const std::size_t reals = dimension == 0 ? 3 : 6;
+      requireRoom(source, counts[dimension], {.integers = 1, .reals = reals}, "entities");
+      for (std::uint64_t i = 0; i < counts[dimension]; ++i) {
+        const std::int64_t entity = source.integer("the tag of an entity");
+        for (std::size_t k = 0; k < reals; ++k) {
+          static_cast<void>(source.real("a coordinate of an entity"));
+        }
+        const std::int64_t physical = this->firstOf(source, "the tag of a physical group");
+        if (dimension > 0) this->firstOf(source, "the tag of a bounding entity");
+        gmshTags_.addEntity({static_cast<std::int64_t>(dimension), entity}, withoutSign(physical));
+      }
+    }
+  });
+  if (scanner_.readToken() == "$EndEntities") return;
+  scanner_.fail(ErrorCode::FileSyntax,
+                "expected \"$EndEntities\", found " + quoted(scanner_.currentToken()) + ".");
+}
+
+/// The first number of a list, which begins with its length; 0 if it is empty.
+template <std::size_t corners>
+template <class Source>
+std::int64_t MshReader<corners>::firstOf(Source& source, const char* what) {
+  const std::uint64_t count = source.size("the length of a list");
+  requireRoom(source, count, {.integers = 1}, "numbers");
+  const std::int64_t first = count > 0 ? source.integer(what) : 0;
+  if (count > 1) source.skip(static_cast<std::size_t>(count - 1), {.integers = 1});
+  return first;
 }
 
 template <std::size_t corners>
@@ -283,11 +380,18 @@ void MshReader<corners>::readNodes41(Source& source) {
     }
     const std::size_t reals = 3 + (parametric ? static_cast<std::size_t>(dimension) : 0);
     requireRoom(source, count, {.sizes = 1}, "nodes");
-    source.records(count, {.sizes = 1}, [&](Source& record, std::size_t i) {
+    const auto takeTag = [&](const char* place, std::size_t i) {
+      tags_[done + i] = loadLittle<std::uint64_t>(place);
+      return true;
+    };
+    source.records(count, {.sizes = 1}, takeTag, [&](Source& record, std::size_t i) {
       tags_[done + i] = record.size("the tag of a node");
     });
     requireRoom(source, count, {.reals = reals}, "nodes");
-    source.records(count, {.reals = reals}, [&](Source& record, std::size_t i) {
+    const auto takePoint = [&](const char* place, std::size_t i) {
+      return areFinite(place, reals) && loadPoint(place, mesh_.points[done + i]);
+    };
+    source.records(count, {.reals = reals}, takePoint, [&](Source& record, std::size_t i) {
       readPoint(record, done + i);
       for (std::size_t k = 3; k < reals; ++k) {
         static_cast<void>(record.real("a parameter of a node"));
@@ -324,6 +428,7 @@ void MshReader<corners>::readElements41(Source& source) {
   struct Block {
     std::size_t position;
     std::size_t count;
+    std::int32_t tag;
   };
   std::vector<Block> wanted;
   std::size_t cells = 0;
@@ -333,20 +438,25 @@ void MshReader<corners>::readElements41(Source& source) {
   static_cast<void>(source.size("the largest tag of an element"));
   std::uint64_t done = 0;
   for (std::uint64_t block = 0; block < blocks; ++block) {
-    static_cast<void>(source.integer("the dimension of an entity"));
-    static_cast<void>(source.integer("the tag of an entity"));
+    const std::int64_t dimension = source.integer("the dimension of an entity");
+    const std::int64_t entity = source.integer("the tag of an entity");
     const std::int64_t type = source.integer("the type of elements");
     const std::uint64_t count = source.size("the number of elements of a block");
+    const std::int32_t tag = gmshTags_.ofEntity({dimension, entity});
     const RecordShape shape{.sizes = 1 + requireType(source, type)};
     requireRoom(source, count, shape, "elements");
     done += count;
     if (type == kKind.gmshType) {
-      wanted.push_back({source.position(), count});
+      wanted.push_back({source.position(), count, tag});
       cells += count;
     } else if (count > 0) {
       hasOtherElements_ = true;
     }
-    source.skip(count, shape);
+    if (tag != 0 && isFeature(type)) {
+      readFeatures41(source, type, count, tag);
+    } else {
+      source.skip(count, shape);
+    }
   }
   if (done != total) {
     source.fail(ErrorCode::FileSyntax, "the blocks have " + std::to_string(done) +
@@ -359,13 +469,70 @@ void MshReader<corners>::readElements41(Source& source) {
   std::size_t first = 0;
   for (const Block& block : wanted) {
     source.moveTo(block.position);
-    source.records(block.count, {.sizes = corners + 1}, [&](Source& record, std::size_t i) {
+    const auto takeCorners = [&](const char* place, std::size_t i) {
+      bool known = true;
+      for (Index& corner : mesh_.cells[first + i]) {
+        place += sizeof(std::uint64_t);  // the first one is the element's tag
+        corner = nodes_.find(loadLittle<std::uint64_t>(place));
+        known = known && corner != kNone;
+      }
+      return known;
+    };
+    const RecordShape shape{.sizes = corners + 1};
+    source.records(block.count, shape, takeCorners, [&](Source& record, std::size_t i) {
       static_cast<void>(record.size("the tag of an element"));
       readCorners(record, first + i, true);
     });
+    setRegions(first, block.count, block.tag);
     first += block.count;
   }
   source.moveTo(end);
+}
+
+/// Whether elements of a type can be features of a mesh of hexahedra.
+template <std::size_t corners>
+bool MshReader<corners>::isFeature(std::int64_t type) {
+  return corners == 8 && (type == kGmshPoint || type == kGmshLine || type == kGmshQuad);
+}
+
+/// Reads elements of a block of MSH 4.1, which have the same tag.
+template <std::size_t corners>
+template <class Source>
+void MshReader<corners>::readFeatures41(Source& source, std::int64_t type, std::size_t count,
+                                        std::int32_t tag) {
+  std::array<std::uint64_t, 4> nodes{};
+  const std::size_t size = nodesOfType(type);
+  for (std::size_t i = 0; i < count; ++i) {
+    static_cast<void>(source.size("the tag of an element"));
+    for (std::size_t k = 0; k < size; ++k) nodes[k] = source.size("a node of an element");
+    addFeature(source, type, nodes, tag);
+  }
+}
+
+template <std::size_t corners>
+template <class Source>
+void MshReader<corners>::addFeature(const Source& source, std::int64_t type,
+                                    const std::array<std::uint64_t, 4>& nodes, std::int32_t tag) {
+  Quad vertices{};
+  for (std::size_t k = 0; k < nodesOfType(type); ++k) {
+    vertices[k] = nodes_.find(nodes[k]);
+    if (vertices[k] != kNone) continue;
+    source.fail(ErrorCode::IndexOutOfRange,
+                "an element names node " + std::to_string(static_cast<std::int64_t>(nodes[k])) +
+                    ", which is not in the section $Nodes.");
+  }
+  HexFeatures& features = mesh_.features;
+  if (type == kGmshPoint) features.vertices.push_back({vertices[0], tag});
+  if (type == kGmshLine) features.edges.push_back({{vertices[0], vertices[1]}, tag});
+  if (type == kGmshQuad) features.quads.push_back({vertices, tag});
+}
+
+/// Regions of consecutive cells. Without any, there is no array.
+template <std::size_t corners>
+void MshReader<corners>::setRegions(std::size_t first, std::size_t count, std::int32_t region) {
+  if (mesh_.regions.empty() && region != 0) mesh_.regions.assign(mesh_.cells.size(), 0);
+  if (mesh_.regions.empty()) return;
+  std::fill_n(mesh_.regions.begin() + static_cast<std::ptrdiff_t>(first), count, region);
 }
 
 template <std::size_t corners>
@@ -393,17 +560,27 @@ void MshReader<corners>::readElements22(TextSource& source, std::size_t count) {
     const std::int64_t type = source.integer("the type of an element");
     const std::size_t nodes = requireType(source, type);
     const std::uint64_t tags = source.size("the number of tags");
-    for (std::uint64_t tag = 0; tag < tags; ++tag) static_cast<void>(source.integer("a tag"));
+    std::int64_t physical = 0;  // the first one
+    for (std::uint64_t tag = 0; tag < tags; ++tag) {
+      const std::int64_t number = source.integer("a tag");
+      if (tag == 0) physical = number;
+    }
+    const std::int32_t tag = gmshTags_.ofPhysical({dimensionOf(type), withoutSign(physical)});
     if (type == kKind.gmshType) {
+      setRegions(cells, 1, tag);
       readCorners(source, cells++, false);
       continue;
     }
     hasOtherElements_ = true;
+    std::array<std::uint64_t, 4> corner{};
     for (std::size_t node = 0; node < nodes; ++node) {
-      static_cast<void>(source.integer("a node of an element"));
+      const std::int64_t number = source.integer("a node of an element");
+      if (node < corner.size()) corner[node] = static_cast<std::uint64_t>(number);
     }
+    if (tag != 0 && isFeature(type)) addFeature(source, type, corner, tag);
   }
   mesh_.cells.resize(cells);
+  if (!mesh_.regions.empty()) mesh_.regions.resize(cells);
 }
 
 template <std::size_t corners>

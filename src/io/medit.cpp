@@ -1,6 +1,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <hexhex/error.hpp>
 
@@ -13,6 +16,7 @@
 #include <io/mesh_groups.hpp>
 #include <io/output_file.hpp>
 #include <io/read_with.hpp>
+#include <io/references.hpp>
 #include <io/text_elements.hpp>
 #include <io/text_scanner.hpp>
 #include <io/token_index.hpp>
@@ -33,9 +37,12 @@ void failIfAtEnd(TextScanner& scanner, std::size_t done, std::size_t count, std:
                                           ": it is incomplete.");
 }
 
-void readReference(TextScanner& scanner, const char* what) {
+std::int32_t readReference(TextScanner& scanner, const char* what) {
   std::int64_t reference = 0;
   if (!scanner.readInteger(reference)) scanner.failInteger(what);
+  if (std::in_range<std::int32_t>(reference)) return static_cast<std::int32_t>(reference);
+  scanner.fail(ErrorCode::FileUnsupported, std::string(what) + " is " + std::to_string(reference) +
+                                               ", which does not fit into 32 bits.");
 }
 
 /// Reads one file from top to bottom.
@@ -59,6 +66,10 @@ class MeditReader {
   void readCells();
   void readVertex(TextScanner& scanner, std::size_t index);
   void readCell(TextScanner& scanner, std::size_t index);
+  template <class Feature>
+  void readFeatures(std::vector<Feature>& features, const char* what);
+  [[nodiscard]] Index readCorner(TextScanner& scanner, std::string_view what, std::size_t index,
+                                 Place place) const;
   void skipSection();
   void failIfRepeated(bool present, std::string_view keyword);
   [[nodiscard]] const TokenIndex* index() const { return index_ ? &*index_ : nullptr; }
@@ -67,6 +78,7 @@ class MeditReader {
   std::optional<TokenIndex> index_;  ///< only for a text without comments
   Stage& stage_;
   CellMesh<corners> mesh_;
+  Array<std::int32_t> references_;  ///< of vertices, while they are read
   bool hasVertices_ = false;
   bool hasCells_ = false;
 };
@@ -83,6 +95,12 @@ CellMesh<corners> MeditReader<corners>::read() {
       readVertices();
     } else if (keyword == kKind.meditKeyword) {
       readCells();
+    } else if (corners == 8 && hasVertices_ && keyword == "Edges") {
+      readFeatures(mesh_.features.edges, "edge");
+      keepTagged(mesh_.features.edges);
+    } else if (corners == 8 && hasVertices_ && keyword == "Quadrilaterals") {
+      readFeatures(mesh_.features.quads, "quadrilateral");
+      keepGroups(mesh_.features.quads);
     } else {
       skipSection();
     }
@@ -125,8 +143,11 @@ void MeditReader<corners>::readVertices() {
   failIfRepeated(hasVertices_, "Vertices");
   hasVertices_ = true;
   mesh_.points.resize(scanner_.readCount("vertices", kMinimumVertexBytes));
+  references_.resize(mesh_.points.size());
   readElements(scanner_, index(), stage_, mesh_.points.size(), kTokensOfVertex,
                [this](TextScanner& scanner, std::size_t i) { readVertex(scanner, i); });
+  if (corners == 8) mesh_.features.vertices = taggedVertices(references_);
+  references_ = {};
 }
 
 template <std::size_t corners>
@@ -137,7 +158,7 @@ void MeditReader<corners>::readVertex(TextScanner& scanner, std::size_t index) {
       scanner.failNumber("a coordinate of vertex " + std::to_string(index + 1));
     }
   }
-  readReference(scanner, "the reference of a vertex");
+  references_[index] = readReference(scanner, "the reference of a vertex");
 }
 
 template <std::size_t corners>
@@ -150,30 +171,53 @@ void MeditReader<corners>::readCells() {
                       " stands before the section Vertices; exchange them.");
   }
   mesh_.cells.resize(scanner_.readCount(kKind.plural, 2 * kTokensOfCell));
+  mesh_.regions.resize(mesh_.cells.size());
   readElements(scanner_, index(), stage_, mesh_.cells.size(), kTokensOfCell,
                [this](TextScanner& scanner, std::size_t i) { readCell(scanner, i); });
+  keepRegions(mesh_.regions);
+}
+
+/// Edges or quads, with their references as tags.
+template <std::size_t corners>
+template <class Feature>
+void MeditReader<corners>::readFeatures(std::vector<Feature>& features, const char* what) {
+  constexpr std::size_t kVertices = decltype(Feature::vertices){}.size();
+  features.assign(scanner_.readCount(std::string(what) + "s", 2 * (kVertices + 1)), {});
+  readElements(scanner_, index(), stage_, features.size(), kVertices + 1,
+               [&](TextScanner& scanner, std::size_t i) {
+                 failIfAtEnd(scanner, i, features.size(), what);
+                 for (Index& vertex : features[i].vertices) {
+                   vertex = readCorner(scanner, what, i, {});
+                 }
+                 features[i].tag = readReference(scanner, "a reference");
+               });
+}
+
+/// One vertex of an element.
+/// @param what, index  which element, counted from 0
+template <std::size_t corners>
+Index MeditReader<corners>::readCorner(TextScanner& scanner, std::string_view what,
+                                       std::size_t index, Place place) const {
+  const auto vertices = static_cast<std::int64_t>(mesh_.points.size());
+  std::int64_t vertex = 0;
+  if (!scanner.readInteger(vertex)) {
+    scanner.failInteger("a vertex of " + std::string(what) + " " + std::to_string(index + 1));
+  }
+  if (vertex >= 1 && vertex <= vertices) return static_cast<Index>(vertex - 1);
+  scanner.fail(ErrorCode::IndexOutOfRange,
+               std::string(what) + " " + std::to_string(index + 1) + " names vertex " +
+                   std::string(scanner.currentToken()) + ", but the " + std::to_string(vertices) +
+                   " vertices are numbered from 1.",
+               place);
 }
 
 template <std::size_t corners>
 void MeditReader<corners>::readCell(TextScanner& scanner, std::size_t index) {
   failIfAtEnd(scanner, index, mesh_.cells.size(), kKind.plural);
-  const auto vertices = static_cast<std::int64_t>(mesh_.points.size());
   for (Index& corner : mesh_.cells[index]) {
-    std::int64_t vertex = 0;
-    if (!scanner.readInteger(vertex)) {
-      scanner.failInteger("a vertex of " + std::string(kKind.singular) + " " +
-                          std::to_string(index + 1));
-    }
-    if (vertex < 1 || vertex > vertices) {
-      scanner.fail(ErrorCode::IndexOutOfRange,
-                   std::string(kKind.singular) + " " + std::to_string(index + 1) +
-                       " names vertex " + std::string(scanner.currentToken()) + ", but the " +
-                       std::to_string(vertices) + " vertices are numbered from 1.",
-                   Place{kKind.place, index});
-    }
-    corner = static_cast<Index>(vertex - 1);
+    corner = readCorner(scanner, kKind.singular, index, Place{kKind.place, index});
   }
-  readReference(scanner, "the reference of a cell");
+  mesh_.regions[index] = readReference(scanner, "the reference of a cell");
 }
 
 /// Skips everything up to the next keyword, which is the next token that begins with a letter.
@@ -207,10 +251,10 @@ void writeMedit(const HexMesh& mesh, const std::filesystem::path& file, const Wr
   Stage stage(context, "write mesh");
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
   const Array<std::uint32_t> vertices = vertexReferences(mesh, groupVertices(mesh));
-  const Array<std::uint32_t> regions = cellReferences(mesh);
+  const Array<std::uint32_t> regions = cellReferences(mesh, Untagged::Zero);
   QuadGroups quads;
   withThreads(context.threads(), [&] { quads = groupQuads(mesh, options.patchAngle, stage); });
-  const Array<std::uint32_t> references = groupNumbers(quads.groups);
+  const Array<std::uint32_t> references = groupNumbers(quads.groups, Untagged::Zero);
   LineWriter lines(output, context.threads());
   LoopProgress progress(stage, mesh.points.size() + quads.elements.size() + mesh.cells.size());
   output.write(kMeditHead).write(mesh.points.size()).write('\n');

@@ -52,7 +52,7 @@ class TagOrder {
       while (end < size() && tags_[order_[end]] == tags_[order_[begin]]) ++end;
       const Tag tag = tags_[order_[begin]];
       last = numbersAreTags && tag != 0 ? static_cast<std::uint32_t>(tag) : last + 1;
-      groups.push_back({last, nameOf(kind, untagged, tag), begin, end});
+      groups.push_back({last, nameOf(kind, untagged, tag), begin, end, tag});
       begin = end;
     }
     return groups;
@@ -132,19 +132,6 @@ class FeatureQuadTable {
   std::vector<Entry> entries_;
 };
 
-/// The cell and face of each boundary quad. The quads come in order of (cell, face).
-Array<std::uint64_t> placesOf(const HexMesh& mesh, std::span<const Quad> quads) {
-  Array<std::uint64_t> places(quads.size());
-  std::size_t next = 0;
-  for (std::size_t cell = 0; cell < mesh.cells.size() && next < quads.size(); ++cell) {
-    for (std::size_t face = 0; face < kHexFaces.size() && next < quads.size(); ++face) {
-      if (faceVertices(mesh.cells[cell], face) == quads[next]) places[next++] = 8 * cell + face;
-    }
-  }
-  if (next == quads.size()) return places;
-  throw Error(ErrorCode::Internal, "The boundary quads are not in the order of their cells.");
-}
-
 /// Quads before they are sorted into groups.
 struct TaggedQuads {
   Array<Quad> quads;
@@ -167,8 +154,8 @@ void tagPatches(const HexMesh& mesh, double angle, TaggedQuads& found, Stage& st
 TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage) {
   const std::vector<FeatureQuad>& features = mesh.features.quads;
   TaggedQuads found;
-  found.quads = boundaryQuads(mesh, stage);
-  found.places = placesOf(mesh, found.quads);
+  found.places = boundaryPlaces(mesh, stage);
+  found.quads = quadsAt(mesh, found.places);
   found.tags.resize(found.quads.size());
   std::fill(found.tags.begin(), found.tags.end(), Tag{0});
   const auto isTagged = [](const FeatureQuad& quad) { return quad.tag != 0; };
@@ -255,12 +242,22 @@ CellGroups groupCells(const HexMesh& mesh) {
   return result;
 }
 
-Array<std::uint32_t> cellReferences(const HexMesh& mesh) {
+namespace {
+
+/// @param groups  all of the same kind of elements
+std::uint32_t referenceOf(const ElementGroup& group, std::size_t groups, Untagged untagged) {
+  return untagged == Untagged::Zero && group.tag == 0 && groups > 1 ? 0 : group.number;
+}
+
+}  // namespace
+
+Array<std::uint32_t> cellReferences(const HexMesh& mesh, Untagged untagged) {
   if (mesh.regions.empty()) return {};
   const CellGroups groups = groupCells(mesh);
   Array<std::uint32_t> references(mesh.cells.size());
   for (const ElementGroup& group : groups.groups) {
-    for (std::size_t i = group.begin; i < group.end; ++i) references[groups.at(i)] = group.number;
+    const std::uint32_t reference = referenceOf(group, groups.groups.size(), untagged);
+    for (std::size_t i = group.begin; i < group.end; ++i) references[groups.at(i)] = reference;
   }
   return references;
 }
@@ -277,11 +274,12 @@ Array<std::uint32_t> vertexReferences(const HexMesh& mesh, const VertexGroups& g
   return references;
 }
 
-Array<std::uint32_t> groupNumbers(const std::vector<ElementGroup>& groups) {
+Array<std::uint32_t> groupNumbers(const std::vector<ElementGroup>& groups, Untagged untagged) {
   Array<std::uint32_t> numbers(groups.empty() ? 0 : groups.back().end);
   for (const ElementGroup& group : groups) {
     std::fill(numbers.begin() + static_cast<std::ptrdiff_t>(group.begin),
-              numbers.begin() + static_cast<std::ptrdiff_t>(group.end), group.number);
+              numbers.begin() + static_cast<std::ptrdiff_t>(group.end),
+              referenceOf(group, groups.size(), untagged));
   }
   return numbers;
 }

@@ -26,6 +26,7 @@ struct ElementGroup {
   std::string name;  ///< letters, digits and '_': "boundary", "surface_7", "curve_m2" (tag -2)
   std::size_t begin = 0;
   std::size_t end = 0;
+  std::int32_t tag = 0;  ///< 0 for elements without one
 };
 
 struct VertexGroups {
@@ -72,13 +73,18 @@ struct CellGroups {
 /// Names are "region_TAG", and "hexahedra" for cells of region 0 and in meshes without regions.
 [[nodiscard]] CellGroups groupCells(const HexMesh& mesh);
 
+/// What stands for elements without a tag beside others that have one.
+enum class Untagged : std::uint8_t { Numbered, Zero };
+
 /// The number of each cell's group, for formats that list cells in order. Empty: all are 1.
-[[nodiscard]] Array<std::uint32_t> cellReferences(const HexMesh& mesh);
+[[nodiscard]] Array<std::uint32_t> cellReferences(const HexMesh& mesh,
+                                                  Untagged untagged = Untagged::Numbered);
 
 /// For formats with one reference per vertex: the number of the vertex's group, 0 without.
 [[nodiscard]] Array<std::uint32_t> vertexReferences(const HexMesh& mesh,
                                                     const VertexGroups& groups);
 /// The number of the group of each element.
-[[nodiscard]] Array<std::uint32_t> groupNumbers(const std::vector<ElementGroup>& groups);
+[[nodiscard]] Array<std::uint32_t> groupNumbers(const std::vector<ElementGroup>& groups,
+                                                Untagged untagged = Untagged::Numbered);
 
 }  // namespace hexhex

@@ -1,6 +1,9 @@
 // The reading half of meshb.hpp.
+#include <algorithm>
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <hexhex/error.hpp>
 
@@ -10,6 +13,7 @@
 #include <io/meshb.hpp>
 #include <io/number_source.hpp>
 #include <io/read_with.hpp>
+#include <io/references.hpp>
 
 namespace hexhex {
 namespace {
@@ -36,6 +40,17 @@ class MeshbReader {
   void readDimension();
   void readVertices();
   void readCells();
+  template <class Feature>
+  void readFeatures(std::vector<Feature>& features, std::string_view what);
+  [[nodiscard]] Array<std::int32_t> readReferences(std::size_t begin, RecordShape shape,
+                                                   std::size_t count);
+  template <class Vertices>
+  [[nodiscard]] bool takeVertices(const char*& place, Vertices& vertices) const;
+  [[nodiscard]] std::int64_t referenceAt(const char* place) const {
+    return wide() != 0 ? loadLittle<std::int64_t>(place) : loadLittle<std::int32_t>(place);
+  }
+  [[nodiscard]] bool takeReference(const char* place, std::int32_t& reference) const;
+  [[nodiscard]] std::uint64_t readVertex(BinarySource& record) const;
   void failIfRepeated(bool present, std::string_view keyword) const;
   void requireDimension() const;
 
@@ -107,6 +122,17 @@ bool MeshbReader<corners>::readSection() {
   if (keyword == MeshbKeyword::Dimension) readDimension();
   if (keyword == MeshbKeyword::Vertices) readVertices();
   if (code == kKind.meshbKeyword) readCells();
+  // What stands before the vertices cannot be checked, and no known program writes it there.
+  if (corners == 8 && hasVertices_) {
+    if (keyword == MeshbKeyword::Edges) {
+      readFeatures(mesh_.features.edges, "edges");
+      keepTagged(mesh_.features.edges);
+    }
+    if (keyword == MeshbKeyword::Quadrilaterals) {
+      readFeatures(mesh_.features.quads, "quadrilaterals");
+      keepGroups(mesh_.features.quads);
+    }
+  }
   if (next != 0) source_.moveTo(static_cast<std::size_t>(next));
   return next != 0;
 }
@@ -165,12 +191,26 @@ void MeshbReader<corners>::readVertices() {
       .sizes = wide(), .integers = 1 - wide() + (floats ? 3U : 0U), .reals = floats ? 0U : 3U};
   const std::uint64_t count = readCount(shape, "vertices");
   mesh_.points.resize(count);
-  source_.records(count, shape, [&](BinarySource& record, std::size_t i) {
+  const std::size_t begin = source_.position();
+  const auto read = [&](BinarySource& record, std::size_t i) {
     for (double& coordinate : mesh_.points[i]) {
       coordinate = floats ? record.shortReal("a coordinate of a vertex")
                           : record.real("a coordinate of a vertex");
     }
-  });
+  };
+  SeenReferences seen;
+  if (floats) {
+    source_.records(count, shape, read);
+    seen.add(2);  // not looked at
+  } else {
+    const auto quick = [&](const char* place, std::size_t i) {
+      seen.add(referenceAt(place + sizeof(Vec3)));
+      return loadPoint(place, mesh_.points[i]);
+    };
+    source_.records(count, shape, quick, read);
+  }
+  if (corners != 8 || !seen.saySomething()) return;
+  mesh_.features.vertices = taggedVertices(readReferences(begin, shape, count));
 }
 
 template <std::size_t corners>
@@ -186,22 +226,98 @@ void MeshbReader<corners>::readCells() {
                           .integers = (corners + 1) * (1 - wide())};
   const std::uint64_t count = readCount(shape, kKind.plural);
   mesh_.cells.resize(count);
-  const std::uint64_t vertices = mesh_.points.size();
-  source_.records(count, shape, [&](BinarySource& record, std::size_t i) {
+  const std::size_t begin = source_.position();
+  SeenReferences seen;
+  const auto quick = [&](const char* place, std::size_t i) {
+    const bool good = takeVertices(place, mesh_.cells[i]);
+    seen.add(referenceAt(place));
+    return good;
+  };
+  source_.records(count, shape, quick, [&](BinarySource& record, std::size_t i) {
     for (Index& corner : mesh_.cells[i]) {
-      const char* const what = "a vertex of a cell";
-      const std::uint64_t vertex =
-          wide() != 0 ? record.size(what) : static_cast<std::uint32_t>(record.integer(what));
-      if (vertex < 1 || vertex > vertices) {
+      const std::uint64_t vertex = readVertex(record);
+      if (vertex < 1 || vertex > mesh_.points.size()) {
         record.fail(ErrorCode::IndexOutOfRange,
                     std::string(kKind.singular) + " " + std::to_string(i + 1) + " names vertex " +
-                        std::to_string(vertex) + ", but the " + std::to_string(vertices) +
-                        " vertices are numbered from 1.",
+                        std::to_string(vertex) + ", but the " +
+                        std::to_string(mesh_.points.size()) + " vertices are numbered from 1.",
                     Place{kKind.place, i});
       }
       corner = static_cast<Index>(vertex - 1);
     }
   });
+  if (corners != 8 || !seen.saySomething()) return;
+  mesh_.regions = readReferences(begin, shape, count);
+  keepRegions(mesh_.regions);
+}
+
+/// Tagged elements, with their references as tags.
+template <std::size_t corners>
+template <class Feature>
+void MeshbReader<corners>::readFeatures(std::vector<Feature>& features, std::string_view what) {
+  constexpr std::size_t kNumbers = decltype(Feature::vertices){}.size() + 1;
+  const RecordShape shape{.sizes = kNumbers * wide(), .integers = kNumbers * (1 - wide())};
+  const std::uint64_t count = readCount(shape, what);
+  features.assign(count, {});
+  const auto quick = [&](const char* place, std::size_t i) {
+    return takeVertices(place, features[i].vertices) && takeReference(place, features[i].tag);
+  };
+  source_.records(count, shape, quick, [&](BinarySource& record, std::size_t i) {
+    record.fail(ErrorCode::IndexOutOfRange,
+                "number " + std::to_string(i + 1) + " of the " + std::string(what) +
+                    " names a vertex that does not exist, or a reference that does not fit into 32 "
+                    "bits; the " +
+                    std::to_string(mesh_.points.size()) + " vertices are numbered from 1.");
+  });
+}
+
+/// The references at the ends of records.
+template <std::size_t corners>
+Array<std::int32_t> MeshbReader<corners>::readReferences(std::size_t begin, RecordShape shape,
+                                                         std::size_t count) {
+  const std::size_t end = source_.position();
+  const std::size_t offset = shape.bytes() - (wide() != 0 ? 8 : 4);
+  Array<std::int32_t> references(count);
+  source_.moveTo(begin);
+  const auto quick = [&](const char* place, std::size_t i) {
+    return takeReference(place + offset, references[i]);
+  };
+  source_.records(count, shape, quick, [](BinarySource& record, std::size_t i) {
+    record.fail(ErrorCode::FileUnsupported, "the reference of number " + std::to_string(i + 1) +
+                                                " of this section does not fit into 32 bits.");
+  });
+  source_.moveTo(end);
+  return references;
+}
+
+/// The vertices of an element, which are numbered from 1; false if one does not exist.
+template <std::size_t corners>
+template <class Vertices>
+bool MeshbReader<corners>::takeVertices(const char*& place, Vertices& vertices) const {
+  std::uint64_t largest = 0;
+  for (Index& corner : vertices) {
+    // 0, which is too small, becomes a large number.
+    const std::uint64_t vertex =
+        (wide() != 0 ? loadLittle<std::uint64_t>(place) : loadLittle<std::uint32_t>(place)) - 1;
+    place += wide() != 0 ? 8 : 4;
+    corner = static_cast<Index>(vertex);
+    largest = std::max(largest, vertex);
+  }
+  return largest < mesh_.points.size();
+}
+
+/// A reference; false if it does not fit into 32 bits.
+template <std::size_t corners>
+bool MeshbReader<corners>::takeReference(const char* place, std::int32_t& reference) const {
+  const std::int64_t number = referenceAt(place);
+  reference = static_cast<std::int32_t>(number);
+  return std::in_range<std::int32_t>(number);
+}
+
+template <std::size_t corners>
+std::uint64_t MeshbReader<corners>::readVertex(BinarySource& record) const {
+  const char* const what = "a vertex of a cell";
+  return wide() != 0 ? record.size(what) : static_cast<std::uint32_t>(record.integer(what));
 }
 
 }  // namespace

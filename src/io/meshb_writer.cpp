@@ -27,16 +27,11 @@ struct MeshbContent {
 };
 
 MeshbContent contentOf(const HexMesh& mesh, double patchAngle, Stage& stage, int threads) {
-  MeshbContent content{mesh,
-                       vertexReferences(mesh, groupVertices(mesh)),
-                       groupEdges(mesh),
-                       {},
-                       {},
-                       {},
-                       cellReferences(mesh)};
+  MeshbContent content{mesh, vertexReferences(mesh, groupVertices(mesh)), groupEdges(mesh), {}, {},
+                       {},   cellReferences(mesh, Untagged::Zero)};
   withThreads(threads, [&] { content.quads = groupQuads(mesh, patchAngle, stage); });
   content.edgeReferences = groupNumbers(content.edges.groups);
-  content.quadReferences = groupNumbers(content.quads.groups);
+  content.quadReferences = groupNumbers(content.quads.groups, Untagged::Zero);
   return content;
 }
 

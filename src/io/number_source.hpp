@@ -77,6 +77,11 @@ class TextSource {
                    f(record, i);
                  });
   }
+  /// Text has no records of a fixed size.
+  template <class Quick, class F>
+  void records(std::size_t n, RecordShape shape, const Quick& /*quick*/, const F& f) {
+    records(n, shape, f);
+  }
 
   [[noreturn]] void fail(ErrorCode code, const std::string& sentence) const {
     scanner_->fail(code, sentence);
@@ -143,31 +148,20 @@ class BinarySource {
   void skip(std::size_t n, RecordShape shape) { position_ += n * shape.bytes(); }
   template <class F>
   void records(std::size_t n, RecordShape shape, const F& f) {
-    const std::size_t begin = position_;
-    std::atomic<std::size_t> firstWrong{n};
-    parallelBlocks(*stage_, n, kElementGrain,
-                   [&](std::size_t from, std::size_t to, std::size_t /*block*/) {
-                     if (from > firstWrong.load(std::memory_order_relaxed)) return;
-                     const std::size_t size = (to - from) * shape.bytes();
-                     const std::unique_ptr<char[]> room(window_.empty() ? new char[size] : nullptr);
-                     BinarySource source(*this, begin + from * shape.bytes(), size, room.get());
-                     std::size_t i = from;
-                     try {
-                       for (; i < to; ++i) {
-                         source.position_ = begin + i * shape.bytes();
-                         f(source, i);
-                       }
-                     } catch (const Error&) {
-                       std::size_t known = firstWrong.load(std::memory_order_relaxed);
-                       while (i < known && !firstWrong.compare_exchange_weak(known, i)) {
-                       }
-                     }
-                   });
-    if (firstWrong < n) {  // throws again
-      BinarySource source(*file_, begin + firstWrong * shape.bytes(), *fileName_, *stage_);
-      f(source, firstWrong);
-    }
-    skip(n, shape);
+    const auto number = [&f](BinarySource& record, const char* /*place*/, std::size_t i) {
+      f(record, i);
+      return true;
+    };
+    readRecords(n, shape, number, f);
+  }
+  /// The same, faster: quick(place, i) takes record i from its bytes, and returns false if anything
+  /// is wrong with it; then f(record, i) has to say what.
+  template <class Quick, class F>
+  void records(std::size_t n, RecordShape shape, const Quick& quick, const F& f) {
+    const auto bytes = [&quick](BinarySource& /*record*/, const char* place, std::size_t i) {
+      return quick(place, i);
+    };
+    readRecords(n, shape, bytes, f);
   }
 
   [[noreturn]] void fail(ErrorCode code, const std::string& sentence, Place place = {}) const {
@@ -175,6 +169,40 @@ class BinarySource {
   }
 
  private:
+  /// @param take  reads record i, or returns false or throws if it is wrong
+  /// @param f     throws about a record that is wrong
+  template <class Take, class F>
+  void readRecords(std::size_t n, RecordShape shape, const Take& take, const F& f) {
+    const std::size_t begin = position_;
+    std::atomic<std::size_t> firstWrong{n};
+    parallelBlocks(
+        *stage_, n, kElementGrain, [&](std::size_t from, std::size_t to, std::size_t /*block*/) {
+          if (from > firstWrong.load(std::memory_order_relaxed)) return;
+          const std::size_t size = (to - from) * shape.bytes();
+          const std::unique_ptr<char[]> room(window_.empty() ? new char[size] : nullptr);
+          BinarySource source(*this, begin + from * shape.bytes(), size, room.get());
+          const char* place = source.window_.data() + source.position_ - source.windowBegin_;
+          std::size_t i = from;
+          try {
+            while (i < to && take(source, place, i)) {
+              ++i;
+              place += shape.bytes();
+              source.position_ = begin + i * shape.bytes();
+            }
+          } catch (const Error&) {  // record i is wrong, and told about below
+          }
+          if (i == to) return;
+          std::size_t known = firstWrong.load(std::memory_order_relaxed);
+          while (i < known && !firstWrong.compare_exchange_weak(known, i)) {
+          }
+        });
+    if (firstWrong < n) {  // throws again
+      BinarySource source(*file_, begin + firstWrong * shape.bytes(), *fileName_, *stage_);
+      f(source, firstWrong);
+    }
+    skip(n, shape);
+  }
+
   /// A source that has a part of the file at hand.
   BinarySource(const BinarySource& whole, std::size_t position, std::size_t size, char* room)
       : file_(whole.file_),

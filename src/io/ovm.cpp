@@ -34,6 +34,21 @@ Result parse(std::string_view bytes, const std::string& fileName, Stage& stage, 
   return result;
 }
 
+template <class Result>
+Result read(const std::filesystem::path& file, Stage& stage, Parse parseFile,
+            Convert<Result> convert) {
+  Result result;
+  withThreads(stage.context().threads(), [&] {
+    const std::string fileName = file.string();
+    const auto parsed = [&] {
+      const Array<char> bytes = readWholeFile(file, stage);  // given back before cells are made
+      return parseFile(asText(bytes), fileName, stage);
+    };
+    result = convert(parsed(), fileName, stage);
+  });
+  return result;
+}
+
 TetMap mapFrom(std::string_view bytes, const std::string& fileName, Context& context,
                Parse parseFile) {
   Stage stage(context, "read map");
@@ -48,20 +63,17 @@ HexMesh meshFrom(std::string_view bytes, const std::string& fileName, Context& c
 
 TetMap readMapWith(const std::filesystem::path& file, Context& context, Parse parseFile) {
   Stage stage(context, "read map");
-  const Array<char> bytes = readWholeFile(file, stage);
-  return parse<TetMap>(asText(bytes), file.string(), stage, parseFile, toTetMap);
+  return read<TetMap>(file, stage, parseFile, toTetMap);
 }
 
 TetCells readTetsWith(const std::filesystem::path& file, Context& context, Parse parseFile) {
   Stage stage(context, "read tets");
-  const Array<char> bytes = readWholeFile(file, stage);
-  return parse<TetCells>(asText(bytes), file.string(), stage, parseFile, toTetCells);
+  return read<TetCells>(file, stage, parseFile, toTetCells);
 }
 
 HexMesh readMeshWith(const std::filesystem::path& file, Context& context, Parse parseFile) {
   Stage stage(context, "read mesh");
-  const Array<char> bytes = readWholeFile(file, stage);
-  return parse<HexMesh>(asText(bytes), file.string(), stage, parseFile, toHexMesh);
+  return read<HexMesh>(file, stage, parseFile, toHexMesh);
 }
 
 using Write = void (*)(const OvmOutput& mesh, OutputFile& output, Stage& stage);

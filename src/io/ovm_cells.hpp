@@ -41,6 +41,18 @@ struct OvmTet {
 [[nodiscard]] bool assembleTet(const std::array<std::array<Index, 3>, 4>& loops,
                                OvmTet& tet) noexcept;
 
+/// Whether two corners are the same vertex. Without branches, since it is asked of every cell.
+template <std::size_t corners>
+[[nodiscard]] bool hasVertexTwice(const std::array<Index, corners>& cell) noexcept {
+  unsigned equal = 0;
+  for (std::size_t step = 1; step <= corners / 2; ++step) {
+    for (std::size_t i = 0; i < corners; ++i) {
+      equal |= cell[i] == cell[(i + step) % corners] ? 1U : 0U;
+    }
+  }
+  return equal != 0;
+}
+
 /// The hexahedron with the six half-faces in VTK's order: the loop of the first one, then the
 /// vertices that edges join to them. Positive if loops run counter-clockwise seen from inside.
 /// @return false if they do not bound a hexahedron
@@ -63,6 +75,36 @@ inline constexpr std::array<std::array<std::uint8_t, 4>, 24> kTetOrders = {
 inline constexpr std::size_t kHexOrders = 8;
 [[nodiscard]] Hex inHexOrder(const Hex& assembled, std::size_t order) noexcept;
 
+/// The n vertices of a face, in loop order; all are kNone if it has no closed loop of n half-edges.
+template <std::size_t n>
+[[nodiscard]] std::array<Index, n> loopOfFace(const OvmTopology& topology, std::size_t face) {
+  const std::span<const Index> halfEdges = topology.faces[face];
+  std::array<Index, n> loop;
+  loop.fill(kNone);
+  if (halfEdges.size() != n) return loop;
+  const std::array<Index, 2>& last = topology.edges[halfEdges[n - 1] / 2];
+  Index to = last[1 - halfEdges[n - 1] % 2];
+  bool closed = true;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::array<Index, 2>& edge = topology.edges[halfEdges[i] / 2];
+    loop[i] = edge[halfEdges[i] % 2];
+    closed = closed && loop[i] == to;
+    to = edge[1 - halfEdges[i] % 2];
+  }
+  if (!closed) loop.fill(kNone);
+  return loop;
+}
+
+/// The same of a half-face, given the loop of its face.
+template <std::size_t n>
+[[nodiscard]] std::array<Index, n> loopOfHalfFace(const std::array<Index, n>& ofFace,
+                                                  Index halfFace) noexcept {
+  if (halfFace % 2 == 0) return ofFace;
+  std::array<Index, n> reversed;
+  for (std::size_t i = 0; i < n; ++i) reversed[i] = ofFace[(n - i) % n];
+  return reversed;
+}
+
 /// The three or four vertices of all faces, in loop order, from the half-face 2f on.
 template <std::size_t n>
 class OvmLoops {
@@ -75,11 +117,7 @@ class OvmLoops {
     return loops_[face];
   }
   [[nodiscard]] std::array<Index, n> ofHalfFace(Index halfFace) const noexcept {
-    const std::array<Index, n>& loop = loops_[halfFace / 2];
-    if (halfFace % 2 == 0) return loop;
-    std::array<Index, n> reversed;
-    for (std::size_t i = 0; i < n; ++i) reversed[i] = loop[(n - i) % n];
-    return reversed;
+    return loopOfHalfFace(loops_[halfFace / 2], halfFace);
   }
 
  private:
@@ -90,6 +128,6 @@ class OvmLoops {
 /// loops.
 template <std::size_t n>
 void requireProperCells(const OvmTopology& topology, const OvmLoops<n>& loops, std::size_t valence,
-                        const std::string& fileName, const char* wanted);
+                        const std::string& fileName, const char* wanted, Stage& stage);
 
 }  // namespace hexhex

@@ -25,17 +25,23 @@ std::int32_t orderOf(const Hex& listed, const Hex& assembled) {
   return static_cast<std::int32_t>(order);
 }
 
-void setCornerOrder(OvmOutput& output, const HexMesh& mesh, const OvmLoops<4>& loops,
+/// @param cells  those of the mesh as the topology was built from them
+void setCornerOrder(OvmOutput& output, const HexMesh& mesh, std::span<const Hex> cells,
                     Stage& stage) {
   Array<std::int32_t> orders(mesh.cells.size());
   std::atomic<bool> any{false};
+  const Array<Index>& halfFaces = output.topology.cells.handles;
   parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
-    std::array<std::array<Index, 4>, 6> cell;
-    for (std::size_t s = 0; s < 6; ++s) {
-      cell[s] = loops.ofHalfFace(output.topology.cells.handles[6 * c + s]);
+    Hex hex = cells[c];
+    // Half-face 2f + 1 begins where another cell does.
+    if (halfFaces[6 * c] % 2 != 0) {
+      std::array<std::array<Index, 4>, 6> loops;
+      for (std::size_t s = 0; s < 6; ++s) {
+        const Index halfFace = halfFaces[6 * c + s];
+        loops[s] = loopOfHalfFace(loopOfFace<4>(output.topology, halfFace / 2), halfFace);
+      }
+      static_cast<void>(assembleHex(loops, hex));  // built so that it succeeds
     }
-    Hex hex;
-    static_cast<void>(assembleHex(cell, hex));  // built so that it succeeds
     orders[c] = orderOf(mesh.cells[c], hex);
     if (orders[c] != 0) any.store(true, std::memory_order_relaxed);
   });
@@ -131,13 +137,14 @@ OvmOutput toOvm(const HexMesh& mesh, const TetMap* map, Stage& stage) {
   }
   const std::span<const Hex> cells = turned.empty() ? std::span<const Hex>(mesh.cells) : turned;
   OvmOutput output{mesh.points, buildOvmTopology(mesh.points.size(), cells, stage), {}};
-  const OvmLoops<4> loops(output.topology, stage);
-  setCornerOrder(output, mesh, loops, stage);
+  setCornerOrder(output, mesh, cells, stage);
   setGenerators(output, mesh, stage);
   if (map != nullptr) setGeneratorIndices(output, mesh, *map, stage);
   setOvmVertexTags(output, mesh.features.vertices);
   setOvmEdgeTags(output, mesh.features.edges);
-  setOvmFaceTags(output, mesh.features.quads, loops);
+  if (!mesh.features.quads.empty()) {
+    setOvmFaceTags(output, mesh.features.quads, OvmLoops<4>(output.topology, stage));
+  }
   setOvmRegions(output, mesh.regions);
   return output;
 }

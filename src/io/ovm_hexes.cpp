@@ -7,6 +7,7 @@
 #include <base/vector3.hpp>
 #include <io/ovm_cells.hpp>
 #include <io/ovm_first_fault.hpp>
+#include <io/ovm_topology.hpp>
 
 namespace hexhex {
 namespace {
@@ -24,6 +25,29 @@ std::size_t sideOfBase(const std::array<Index, 4>& base, const std::array<Index,
     if (place < 4 && loop[(place + 1) % 4] == base[i]) return i;
   }
   return 4;
+}
+
+/// A loop from a vertex of it on; from anywhere if it has no such vertex.
+std::array<Index, 4> beginningAt(const std::array<Index, 4>& loop, Index vertex) {
+  const std::size_t start =
+      (loop[1] == vertex ? 1U : 0U) + (loop[2] == vertex ? 2U : 0U) + (loop[3] == vertex ? 3U : 0U);
+  return {loop[start % 4], loop[(start + 1) % 4], loop[(start + 2) % 4], loop[(start + 3) % 4]};
+}
+
+/// The hexahedron if half-faces come in the order of kOvmHexFaces, as they do in most files.
+bool assembleListed(const std::array<std::array<Index, 4>, 6>& loops, Hex& hex) {
+  const std::array<Index, 4>& base = loops[0];
+  const std::array<Index, 4> front = beginningAt(loops[2], base[0]);
+  const std::array<Index, 4> back = beginningAt(loops[3], base[3]);
+  hex = {base[0], base[1], base[2], base[3], front[1], front[2], back[2], back[3]};
+  for (std::size_t s = 1; s < 6; ++s) {
+    const auto& corners = kOvmHexFaces[s];
+    const std::array<Index, 4> loop = beginningAt(loops[s], hex[corners[0]]);
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (loop[i] != hex[corners[i]]) return false;
+    }
+  }
+  return !hasVertexTwice(hex);
 }
 
 class HexReader {
@@ -55,7 +79,7 @@ class HexReader {
 };
 
 HexMesh HexReader::read() {
-  requireProperCells(topology_, loops_, 6, fileName_, "hexahedra");
+  requireProperCells(topology_, loops_, 6, fileName_, "hexahedra", stage_);
   mesh_.points = std::move(file_.points);
   readCells();
   if (properties_[OvmInteger::CornerOrder].empty()) turnIfInsideOut();
@@ -143,6 +167,7 @@ void HexReader::readFeatures() {
 }  // namespace
 
 bool assembleHex(const std::array<std::array<Index, 4>, 6>& loops, Hex& hex) noexcept {
+  if (assembleListed(loops, hex)) return true;
   const std::array<Index, 4>& base = loops[0];
   std::array<Index, 4> top = {kNone, kNone, kNone, kNone};
   const auto join = [&top](std::size_t i, Index vertex) {
@@ -165,9 +190,7 @@ bool assembleHex(const std::array<std::array<Index, 4>, 6>& loops, Hex& hex) noe
   }
   if (sides != 15U || lid == 0) return false;
   hex = {base[0], base[1], base[2], base[3], top[0], top[1], top[2], top[3]};
-  Hex different = hex;
-  std::sort(different.begin(), different.end());
-  if (std::adjacent_find(different.begin(), different.end()) != different.end()) return false;
+  if (hasVertexTwice(hex)) return false;
   // The lid passes the vertices above the base in the other direction.
   const std::size_t start = placeIn(loops[lid], top[3]);
   if (start == 4) return false;

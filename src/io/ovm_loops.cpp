@@ -1,31 +1,56 @@
 // Loops of faces, and what every cell has to fulfil (see ovm_cells.hpp).
+#include <algorithm>
+#include <atomic>
+#include <span>
+
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
 #include <io/ovm_cells.hpp>
+#include <io/ovm_first_fault.hpp>
 
 namespace hexhex {
 
 template <std::size_t n>
 OvmLoops<n>::OvmLoops(const OvmTopology& topology, Stage& stage) : loops_(topology.faces.size()) {
   constexpr std::size_t kGrain = 4096;
-  parallelFor(stage, loops_.size(), kGrain, [&](std::size_t f) {
-    const std::span<const Index> halfEdges = topology.faces[f];
-    loops_[f].fill(kNone);
-    if (halfEdges.size() != n) return;
-    for (std::size_t i = 0; i < n; ++i) {
-      loops_[f][i] = topology.from(halfEdges[i]);
-      if (topology.to(halfEdges[i]) != topology.from(halfEdges[(i + 1) % n])) {
-        loops_[f].fill(kNone);
-        return;
-      }
-    }
-  });
+  parallelFor(stage, loops_.size(), kGrain,
+              [&](std::size_t f) { loops_[f] = loopOfFace<n>(topology, f); });
 }
+
+namespace {
+
+/// Whether all is well: looked at in parallel.
+template <std::size_t n>
+bool areProperCells(const OvmTopology& topology, const OvmLoops<n>& loops, std::size_t valence,
+                    Stage& stage) {
+  constexpr std::size_t kGrain = 4096;
+  if (topology.cells.length != valence) return false;
+  Array<char> used(2 * topology.faces.size());
+  std::fill(used.begin(), used.end(), char{0});
+  const std::span<const Index> all(topology.cells.handles);
+  const std::size_t fault = firstFault(stage, all.size(), [&](std::size_t i) {
+    std::atomic_ref(used[all[i]]).store(1, std::memory_order_relaxed);
+    return loops.isGood(all[i] / 2);
+  });
+  if (fault < all.size()) return false;
+  // No half-face occurs twice if as many occur as there are places for them.
+  std::atomic<std::size_t> different{0};
+  parallelBlocks(stage, used.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::size_t sum = 0;
+                   for (std::size_t i = begin; i < end; ++i) sum += used[i] != 0 ? 1U : 0U;
+                   different.fetch_add(sum, std::memory_order_relaxed);
+                 });
+  return different.load() == all.size();
+}
+
+}  // namespace
 
 template <std::size_t n>
 void requireProperCells(const OvmTopology& topology, const OvmLoops<n>& loops, std::size_t valence,
-                        const std::string& fileName, const char* wanted) {
+                        const std::string& fileName, const char* wanted, Stage& stage) {
+  if (areProperCells(topology, loops, valence, stage)) return;
   const auto fail = [&](std::size_t cell, ErrorCode code, const std::string& sentence) {
     throw Error(code, fileName + ": cell " + std::to_string(cell) + " " + sentence,
                 Place{PlaceKind::Cell, cell});
@@ -58,8 +83,8 @@ void requireProperCells(const OvmTopology& topology, const OvmLoops<n>& loops, s
 template class OvmLoops<3>;
 template class OvmLoops<4>;
 template void requireProperCells<3>(const OvmTopology&, const OvmLoops<3>&, std::size_t,
-                                    const std::string&, const char*);
+                                    const std::string&, const char*, Stage&);
 template void requireProperCells<4>(const OvmTopology&, const OvmLoops<4>&, std::size_t,
-                                    const std::string&, const char*);
+                                    const std::string&, const char*, Stage&);
 
 }  // namespace hexhex

@@ -59,7 +59,7 @@ class TetReader {
 };
 
 TetMap TetReader::read() {
-  requireProperCells(topology_, loops_, 4, fileName_, "tetrahedra");
+  requireProperCells(topology_, loops_, 4, fileName_, "tetrahedra", stage_);
   requireMap();
   map_.points.assign(mesh_.points.begin(), mesh_.points.end());
   readTets();
@@ -70,7 +70,7 @@ TetMap TetReader::read() {
 }
 
 TetCells TetReader::readWithoutMap() {
-  requireProperCells(topology_, loops_, 4, fileName_, "tetrahedra");
+  requireProperCells(topology_, loops_, 4, fileName_, "tetrahedra", stage_);
   mesh_.properties.parametrization.clear();
   readTets();
   TetCells result;

@@ -1,11 +1,17 @@
+// Faces and edges are found at their smallest vertices. Neighbouring cells come close to each
+// other, so that what a vertex has is in the cache when it is asked for; and all threads may work
+// at the same vertex, since what they find does not depend on who comes first.
 #include <algorithm>
 #include <atomic>
+#include <mutex>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
+#include <io/ovm_cells.hpp>
 #include <io/ovm_first_fault.hpp>
 #include <io/ovm_topology.hpp>
 
@@ -15,45 +21,18 @@ namespace {
 // A block takes some tens of microseconds at least.
 constexpr std::size_t kGrain = 2048;
 
-/// Groups numbers 0 ... n - 1 by key: the numbers with key k are those in [begins[k], begins[k +
-/// 1]) of `members`, in ascending order.
-struct Groups {
-  Array<std::uint64_t> begins;
-  Array<Index> members;
-
-  [[nodiscard]] std::span<Index> operator[](std::size_t key) {
-    return {members.data() + begins[key], members.data() + begins[key + 1]};
-  }
-};
-
-template <class KeyOf>
-Groups groupByKey(std::size_t keys, std::size_t n, const KeyOf& keyOf, Stage& stage) {
-  Groups groups;
-  groups.begins.assign(keys + 1, 0);
-  parallelFor(stage, n, kGrain, [&](std::size_t i) {
-    std::atomic_ref(groups.begins[keyOf(i)]).fetch_add(1, std::memory_order_relaxed);
-  });
-  exclusiveScan(std::span(groups.begins));
-  groups.members.resize(n);
-  // begins[k] serves as the cursor of k, and ends where k + 1 begins.
-  parallelFor(stage, n, kGrain, [&](std::size_t i) {
-    const std::uint64_t place =
-        std::atomic_ref(groups.begins[keyOf(i)]).fetch_add(1, std::memory_order_relaxed);
-    groups.members[place] = static_cast<Index>(i);
-  });
-  for (std::size_t k = keys; k > 0; --k) groups.begins[k] = groups.begins[k - 1];
-  groups.begins[0] = 0;
-  // Threads came in any order.
-  parallelFor(stage, keys, kGrain,
-              [&](std::size_t k) { std::sort(groups[k].begin(), groups[k].end()); });
-  return groups;
-}
-
 void requireAtMost(std::uint64_t limit, std::uint64_t count, const char* what) {
   if (count <= limit) return;
   throw Error(ErrorCode::TooLarge, "The mesh has " + std::to_string(count) + " " + what +
                                        "; files of OpenVolumeMesh hold at most " +
                                        std::to_string(limit) + ".");
+}
+
+/// Makes a value the smallest one.
+void lower(std::atomic<Index>& place, Index value) {
+  Index known = place.load(std::memory_order_relaxed);
+  while (value < known && !place.compare_exchange_weak(known, value)) {
+  }
 }
 
 /// Builds the topology of cells with k faces of n corners each.
@@ -76,7 +55,8 @@ class TopologyBuilder {
     requireDifferentCorners();
     matchSides();
     numberFaces();
-    buildEdges();
+    collectEdges();
+    numberEdges();
     linkFacesToEdges();
     return std::move(topology_);
   }
@@ -88,37 +68,54 @@ class TopologyBuilder {
     Index side;
   };
 
-  [[nodiscard]] Loop loopOf(Index side) const {
-    const Cell& cell = cells_[side / k];
+  [[nodiscard]] Loop loopOf(Index side) const { return loopOf(side / k, side % k); }
+  [[nodiscard]] Loop loopOf(std::size_t cell, std::size_t slot) const {
     Loop loop;
-    for (std::size_t i = 0; i < n; ++i) loop[i] = cell[table_[side % k][i]];
+    for (std::size_t i = 0; i < n; ++i) loop[i] = cells_[cell][table_[slot][i]];
     return loop;
   }
   void requireDifferentCorners();
   void matchSides();
-  [[nodiscard]] bool matchAt(std::span<const Index> sides, std::vector<SortedSide>& scratch);
-  [[noreturn]] void failAt(std::span<const Index> sides, std::vector<SortedSide>& scratch) const;
-  void collect(std::span<const Index> sides, std::vector<SortedSide>& scratch) const;
-  [[nodiscard]] bool areOpposite(Index a, Index b) const;
+  void matchSide(std::size_t cell, std::size_t slot);
+  [[nodiscard]] static std::size_t listOf(Index smallest, Index sum);
+  [[nodiscard]] bool areOpposite(const Loop& here, const Loop& there) const;
+  [[noreturn]] void failAt(Index vertex) const;
+  [[nodiscard]] std::vector<SortedSide> sidesAt(Index vertex) const;
   void numberFaces();
-  void buildEdges();
+  void collectEdges();
+  void addEdge(Index low, Index high);
+  void numberEdges();
+  [[nodiscard]] std::span<const std::array<Index, 2>> overflowOf(Index low) const;
+  [[nodiscard]] Index findEdge(Index low, Index high) const;
   void linkFacesToEdges();
+
+  static constexpr Index kNearby = 256;  // lists: what many vertices share stays in the cache
+  // Few vertices of a hex mesh have more edges to larger vertices, some of a tet mesh have.
+  static constexpr std::size_t kSlots = n == 4 ? 8 : 16;
+  using Ends = std::array<Index, kSlots>;
 
   std::span<const Cell> cells_;
   const Table& table_;
   Stage& stage_;
   OvmTopology topology_;
-  Array<Index> mate_;       ///< per side: the same face in the other cell, or the side itself
-  Array<Index> faceOwner_;  ///< per face: the side whose loop is half-face 2f
+  // Lists of sides by smallest vertex, linked through `next_`. A list holds the side of each face
+  // that came first; `sums_` tell most of them apart.
+  Array<Index> first_;                 ///< per vertex
+  Array<Index> next_;                  ///< per side
+  Array<Index> sums_;                  ///< per side: of its vertices, modulo 2^32
+  std::atomic<Index> faultAt_{kNone};  ///< the smallest vertex with a face that cannot be
+  Array<Index> mate_;                  ///< per side: the same face in the other cell, or itself
+  Array<Index> faceOwner_;             ///< per face: the side whose loop is half-face 2f
+  Array<Ends> ends_;                   ///< per vertex: larger vertices of its edges, in any order
+  std::mutex overflowMutex_;
+  std::vector<std::array<Index, 2>> overflow_;  ///< edges without a slot; sorted at last
+  Array<Index> edgeBegins_;                     ///< per vertex (+1): its edges to larger vertices
 };
 
 template <class Cell, std::size_t n, std::size_t k>
 void TopologyBuilder<Cell, n, k>::requireDifferentCorners() {
-  const std::size_t fault = firstFault(stage_, cells_.size(), [this](std::size_t c) {
-    Cell corners = cells_[c];
-    std::sort(corners.begin(), corners.end());
-    return std::adjacent_find(corners.begin(), corners.end()) == corners.end();
-  });
+  const std::size_t fault = firstFault(
+      stage_, cells_.size(), [this](std::size_t c) { return !hasVertexTwice(cells_[c]); });
   if (fault == cells_.size()) return;
   throw Error(ErrorCode::RepeatedVertex,
               "Cell " + std::to_string(fault) +
@@ -126,68 +123,42 @@ void TopologyBuilder<Cell, n, k>::requireDifferentCorners() {
               Place{PlaceKind::Cell, fault});
 }
 
-/// Sorts sides by their vertices, so that those of one face follow each other.
+/// Whether two sides pass the same vertices in opposite directions.
 template <class Cell, std::size_t n, std::size_t k>
-void TopologyBuilder<Cell, n, k>::collect(std::span<const Index> sides,
-                                          std::vector<SortedSide>& scratch) const {
-  scratch.clear();
-  for (const Index side : sides) {
-    Loop vertices = loopOf(side);
+bool TopologyBuilder<Cell, n, k>::areOpposite(const Loop& here, const Loop& there) const {
+  std::size_t start = 0;
+  for (std::size_t i = 1; i < n; ++i) start += there[i] == here[0] ? i : 0;
+  bool opposite = true;
+  for (std::size_t i = 0; i < n; ++i) opposite &= here[i] == there[(start + n - i) % n];
+  return opposite;
+}
+
+/// The sides with this smallest vertex, so that those of one face follow each other.
+template <class Cell, std::size_t n, std::size_t k>
+auto TopologyBuilder<Cell, n, k>::sidesAt(Index vertex) const -> std::vector<SortedSide> {
+  std::vector<SortedSide> sides;
+  for (std::size_t side = 0; side < k * cells_.size(); ++side) {
+    Loop vertices = loopOf(static_cast<Index>(side));
     std::sort(vertices.begin(), vertices.end());
-    scratch.push_back({vertices, side});
+    if (vertices[0] == vertex) sides.push_back({vertices, static_cast<Index>(side)});
   }
-  std::sort(scratch.begin(), scratch.end(), [](const SortedSide& a, const SortedSide& b) {
-    // The smallest vertex is the same for all.
-    for (std::size_t i = 1; i < n; ++i) {
-      if (a.vertices[i] != b.vertices[i]) return a.vertices[i] < b.vertices[i];
-    }
-    return a.side < b.side;
+  std::stable_sort(sides.begin(), sides.end(), [](const SortedSide& a, const SortedSide& b) {
+    return a.vertices < b.vertices;
   });
-}
-
-/// Whether two sides with the same vertices pass them in opposite directions.
-template <class Cell, std::size_t n, std::size_t k>
-bool TopologyBuilder<Cell, n, k>::areOpposite(Index a, Index b) const {
-  const Loop here = loopOf(a);
-  const Loop there = loopOf(b);
-  const auto start =
-      static_cast<std::size_t>(std::find(there.begin(), there.end(), here[0]) - there.begin());
-  for (std::size_t i = 0; i < n; ++i) {
-    if (here[i] != there[(start + n - i) % n]) return false;
-  }
-  return true;
-}
-
-/// Finds the mates of all sides with the same smallest vertex; false if some have none or several.
-template <class Cell, std::size_t n, std::size_t k>
-bool TopologyBuilder<Cell, n, k>::matchAt(std::span<const Index> sides,
-                                          std::vector<SortedSide>& scratch) {
-  collect(sides, scratch);
-  for (std::size_t i = 0; i < scratch.size();) {
-    std::size_t end = i + 1;
-    while (end < scratch.size() && scratch[end].vertices == scratch[i].vertices) ++end;
-    const Index first = scratch[i].side;
-    const Index last = scratch[end - 1].side;
-    if (end - i > 2 || (end - i == 2 && !areOpposite(first, last))) return false;
-    mate_[first] = last;
-    mate_[last] = first;
-    i = end;
-  }
-  return true;
+  return sides;
 }
 
 template <class Cell, std::size_t n, std::size_t k>
-void TopologyBuilder<Cell, n, k>::failAt(std::span<const Index> sides,
-                                         std::vector<SortedSide>& scratch) const {
-  collect(sides, scratch);
+void TopologyBuilder<Cell, n, k>::failAt(Index vertex) const {
+  const std::vector<SortedSide> sides = sidesAt(vertex);
   const auto sameFace = [&](std::size_t i, std::size_t j) {
-    return j < scratch.size() && scratch[i].vertices == scratch[j].vertices;
+    return j < sides.size() && sides[i].vertices == sides[j].vertices;
   };
-  for (std::size_t i = 0; i < scratch.size(); ++i) {
+  for (std::size_t i = 0; i < sides.size(); ++i) {
     if (!sameFace(i, i + 1)) continue;
-    const Index cell = scratch[i].side / k;
+    const Index cell = sides[i].side / k;
     const std::string cells =
-        "cells " + std::to_string(cell) + " and " + std::to_string(scratch[i + 1].side / k);
+        "cells " + std::to_string(cell) + " and " + std::to_string(sides[i + 1].side / k);
     const Place place{PlaceKind::Cell, cell};
     if (sameFace(i, i + 2)) {
       throw Error(ErrorCode::NonManifoldFace,
@@ -195,7 +166,7 @@ void TopologyBuilder<Cell, n, k>::failAt(std::span<const Index> sides,
                       " share a face; files of OpenVolumeMesh cannot hold that.",
                   place);
     }
-    if (!areOpposite(scratch[i].side, scratch[i + 1].side)) {
+    if (!areOpposite(loopOf(sides[i].side), loopOf(sides[i + 1].side))) {
       throw Error(ErrorCode::Orientation,
                   "The " + cells +
                       " list the corners of the face that they share in the same direction, so "
@@ -206,105 +177,202 @@ void TopologyBuilder<Cell, n, k>::failAt(std::span<const Index> sides,
   throw Error(ErrorCode::Internal, "A fault of a face was found, but not again.");
 }
 
+/// The list of a face: not that of its smallest vertex itself, which may have any number of faces,
+/// but one of those nearby.
 template <class Cell, std::size_t n, std::size_t k>
-void TopologyBuilder<Cell, n, k>::matchSides() {
-  const std::size_t sides = cells_.size() * k;
-  Groups groups = groupByKey(
-      topology_.vertexCount, sides,
-      [this](std::size_t side) {
-        const Loop loop = loopOf(static_cast<Index>(side));
-        return *std::min_element(loop.begin(), loop.end());
-      },
-      stage_);
-  mate_.resize(sides);
-  const std::size_t fault = firstFault(stage_, topology_.vertexCount, [&](std::size_t v) {
-    thread_local std::vector<SortedSide> scratch;
-    return matchAt(groups[v], scratch);
-  });
-  if (fault == topology_.vertexCount) return;
-  std::vector<SortedSide> scratch;
-  failAt(groups[fault], scratch);
+std::size_t TopologyBuilder<Cell, n, k>::listOf(Index smallest, Index sum) {
+  constexpr Index kOdd = 0x9e3779b1U;  // without pattern: the product's upper bits depend on all
+  return (smallest & ~(kNearby - 1)) | ((smallest + (sum * kOdd >> 24U)) & (kNearby - 1));
 }
 
+/// Finds the side of the same face that came before, or puts this one into the face's list. Of two
+/// that come at the same time, one finds the list changed and looks again.
 template <class Cell, std::size_t n, std::size_t k>
-void TopologyBuilder<Cell, n, k>::numberFaces() {
-  topology_.cells.length = k;
-  Array<Index>& halfFaces = topology_.cells.handles;
-  halfFaces.resize(mate_.size());
-  std::size_t faces = 0;
-  for (std::size_t side = 0; side < mate_.size(); ++side) faces += mate_[side] >= side ? 1 : 0;
-  requireAtMost(kMaxOvmEntities, faces, "faces");
-  faceOwner_.resize(faces);
-  Index face = 0;
-  for (Index side = 0; side < mate_.size(); ++side) {
-    const Index mate = mate_[side];
-    if (mate < side) continue;
-    // The corners of a cell begin with its first side, so the reader finds them in their order if
-    // that side begins where the cell does.
-    const bool mateOwns = mate % k < side % k;
-    faceOwner_[face] = mateOwns ? mate : side;
-    halfFaces[mate] = 2 * face + (mateOwns ? 0U : 1U);
-    halfFaces[side] = 2 * face + (mateOwns ? 1U : 0U);
-    ++face;
+void TopologyBuilder<Cell, n, k>::matchSide(std::size_t cell, std::size_t slot) {
+  const auto side = static_cast<Index>(cell * k + slot);
+  const Loop loop = loopOf(cell, slot);
+  const Index smallest = *std::min_element(loop.begin(), loop.end());
+  const Index sum = std::accumulate(loop.begin(), loop.end(), Index{0});
+  mate_[side] = side;
+  sums_[side] = sum;
+  std::atomic_ref first(first_[listOf(smallest, sum)]);
+  Index head = first.load(std::memory_order_acquire);
+  Index searched = kNone;  // from here on, all has been looked at
+  while (true) {
+    for (Index other = head; other != searched; other = next_[other]) {
+      if (sums_[other] != sum) continue;
+      const Loop there = loopOf(other);
+      if (areOpposite(loop, there)) {
+        Index free = other;
+        if (!std::atomic_ref(mate_[other]).compare_exchange_strong(free, side)) {
+          lower(faultAt_, smallest);  // a third one
+        }
+        mate_[side] = other;
+        return;
+      }
+      if (std::is_permutation(loop.begin(), loop.end(), there.begin())) lower(faultAt_, smallest);
+    }
+    searched = head;
+    next_[side] = head;
+    if (first.compare_exchange_strong(head, side, std::memory_order_acq_rel)) return;
   }
 }
 
 template <class Cell, std::size_t n, std::size_t k>
-void TopologyBuilder<Cell, n, k>::buildEdges() {
-  // Side i of face f is number f * n + i, which 64 bits may be needed for; so edges are grouped by
-  // their smaller vertex without numbers, as larger vertices.
-  const std::size_t vertices = topology_.vertexCount;
-  Array<std::uint64_t> begins(vertices + 1, 0);
-  const auto forEachEdge = [this](std::size_t face, const auto& visit) {
+void TopologyBuilder<Cell, n, k>::matchSides() {
+  const std::size_t sides = cells_.size() * k;
+  first_.resize((topology_.vertexCount + kNearby - 1) / kNearby * kNearby);
+  parallelFor(stage_, first_.size(), 8 * kGrain, [this](std::size_t v) { first_[v] = kNone; });
+  next_.resize(sides);
+  sums_.resize(sides);
+  mate_.resize(sides);
+  parallelFor(stage_, cells_.size(), kGrain, [this](std::size_t cell) {
+    for (std::size_t slot = 0; slot < k; ++slot) matchSide(cell, slot);
+  });
+  if (faultAt_ != kNone) failAt(faultAt_);
+  first_ = {};
+  sums_ = {};
+}
+
+template <class Cell, std::size_t n, std::size_t k>
+void TopologyBuilder<Cell, n, k>::numberFaces() {
+  // The lists of sides are not needed any more, but memory that is in use already is fast.
+  topology_.cells.length = k;
+  topology_.cells.handles = std::move(next_);
+  Array<Index>& halfFaces = topology_.cells.handles;
+  constexpr std::size_t kBlock = k * kGrain;
+  Array<std::uint64_t> begins(blockCount(mate_.size(), kBlock) + 1, 0);
+  parallelBlocks(stage_, mate_.size(), kBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   std::uint64_t faces = 0;
+                   for (std::size_t side = begin; side < end; ++side) {
+                     faces += mate_[side] >= side ? 1 : 0;
+                   }
+                   begins[block] = faces;
+                 });
+  const std::uint64_t faces = exclusiveScan(std::span(begins));
+  requireAtMost(kMaxOvmEntities, faces, "faces");
+  faceOwner_.resize(static_cast<std::size_t>(faces));
+  parallelBlocks(stage_, mate_.size(), kBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   auto face = static_cast<Index>(begins[block]);
+                   for (auto side = static_cast<Index>(begin); side < end; ++side) {
+                     const Index mate = mate_[side];
+                     if (mate < side) continue;
+                     // The corners of a cell begin with its first side, so the reader finds them in
+                     // their order if that side begins where the cell does.
+                     const bool mateOwns = mate % k < side % k;
+                     faceOwner_[face] = mateOwns ? mate : side;
+                     halfFaces[mate] = 2 * face + (mateOwns ? 0U : 1U);
+                     halfFaces[side] = 2 * face + (mateOwns ? 1U : 0U);
+                     ++face;
+                   }
+                 });
+  mate_ = {};
+}
+
+/// Gives the larger vertex of an edge a slot of the smaller one, unless it has one.
+template <class Cell, std::size_t n, std::size_t k>
+void TopologyBuilder<Cell, n, k>::addEdge(Index low, Index high) {
+  Ends& ends = ends_[low];
+  unsigned known = 0;
+  for (Index& end : ends) {
+    known |= std::atomic_ref(end).load(std::memory_order_relaxed) == high ? 1U : 0U;
+  }
+  if (known != 0) return;
+  for (Index& end : ends) {
+    Index occupied = kNone;
+    if (std::atomic_ref(end).compare_exchange_strong(occupied, high) || occupied == high) return;
+  }
+  const std::scoped_lock lock(overflowMutex_);
+  overflow_.push_back({low, high});
+}
+
+template <class Cell, std::size_t n, std::size_t k>
+void TopologyBuilder<Cell, n, k>::collectEdges() {
+  ends_.resize(topology_.vertexCount);
+  parallelFor(stage_, ends_.size(), kGrain, [this](std::size_t v) { ends_[v].fill(kNone); });
+  parallelFor(stage_, faceOwner_.size(), kGrain, [this](std::size_t face) {
     const Loop loop = loopOf(faceOwner_[face]);
     for (std::size_t i = 0; i < n; ++i) {
-      visit(std::min(loop[i], loop[(i + 1) % n]), std::max(loop[i], loop[(i + 1) % n]));
+      addEdge(std::min(loop[i], loop[(i + 1) % n]), std::max(loop[i], loop[(i + 1) % n]));
     }
+  });
+  std::sort(overflow_.begin(), overflow_.end());
+  overflow_.erase(std::unique(overflow_.begin(), overflow_.end()), overflow_.end());
+}
+
+/// The edges of a vertex that have no slot.
+template <class Cell, std::size_t n, std::size_t k>
+std::span<const std::array<Index, 2>> TopologyBuilder<Cell, n, k>::overflowOf(Index low) const {
+  const auto begin =
+      std::lower_bound(overflow_.begin(), overflow_.end(), std::array{low, Index{0}});
+  const auto end = std::lower_bound(begin, overflow_.end(), std::array{low + 1, Index{0}});
+  return {begin, end};
+}
+
+template <class Cell, std::size_t n, std::size_t k>
+void TopologyBuilder<Cell, n, k>::numberEdges() {
+  const std::size_t vertices = topology_.vertexCount;
+  Array<std::uint64_t> begins(blockCount(vertices, kGrain) + 1, 0);
+  const auto countOf = [this](std::size_t v) {
+    std::size_t count = 0;
+    for (const Index end : ends_[v]) count += end != kNone ? 1 : 0;
+    return count == kSlots ? count + overflowOf(static_cast<Index>(v)).size() : count;
   };
-  parallelFor(stage_, faceOwner_.size(), kGrain, [&](std::size_t face) {
-    forEachEdge(face, [&](Index low, Index /*high*/) {
-      std::atomic_ref(begins[low]).fetch_add(1, std::memory_order_relaxed);
-    });
-  });
-  Array<Index> ends(exclusiveScan(std::span(begins)));
-  parallelFor(stage_, faceOwner_.size(), kGrain, [&](std::size_t face) {
-    forEachEdge(face, [&](Index low, Index high) {
-      ends[std::atomic_ref(begins[low]).fetch_add(1, std::memory_order_relaxed)] = high;
-    });
-  });
-  // Now begins[v] is where v ends. Each edge occurs once for each of its faces.
-  const auto rangeOf = [&](std::size_t v) {
-    return std::span(ends.data() + (v == 0 ? 0 : begins[v - 1]), ends.data() + begins[v]);
-  };
-  Array<std::uint64_t> edgeBegins(vertices + 1, 0);
-  parallelFor(stage_, vertices, kGrain, [&](std::size_t v) {
-    const std::span<Index> range = rangeOf(v);
-    std::sort(range.begin(), range.end());
-    edgeBegins[v] =
-        static_cast<std::uint64_t>(std::unique(range.begin(), range.end()) - range.begin());
-  });
-  const std::uint64_t edges = exclusiveScan(std::span(edgeBegins));
+  edgeBegins_.resize(vertices + 1);
+  parallelBlocks(stage_, vertices, kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   std::uint64_t sum = 0;
+                   for (std::size_t v = begin; v < end; ++v) sum += countOf(v);
+                   begins[block] = sum;
+                 });
+  const std::uint64_t edges = exclusiveScan(std::span(begins));
   requireAtMost(kMaxOvmEntities, edges, "edges");
+  edgeBegins_[vertices] = static_cast<Index>(edges);
   topology_.edges.resize(static_cast<std::size_t>(edges));
-  parallelFor(stage_, vertices, kGrain, [&](std::size_t v) {
-    const std::span<const Index> range = rangeOf(v);
-    for (std::uint64_t e = edgeBegins[v]; e < edgeBegins[v + 1]; ++e) {
-      topology_.edges[e] = {static_cast<Index>(v), range[e - edgeBegins[v]]};
-    }
-  });
+  parallelBlocks(stage_, vertices, kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   auto edge = static_cast<Index>(begins[block]);
+                   for (auto v = static_cast<Index>(begin); v < end; ++v) {
+                     edgeBegins_[v] = edge;
+                     const Index first = edge;
+                     for (const Index other : ends_[v]) {
+                       if (other != kNone) topology_.edges[edge++] = {v, other};
+                     }
+                     if (edge - first == kSlots) {
+                       for (const auto& further : overflowOf(v)) topology_.edges[edge++] = further;
+                     }
+                     std::sort(topology_.edges.begin() + first, topology_.edges.begin() + edge);
+                   }
+                 });
+}
+
+/// The number of an edge: as many edges of the vertex go to smaller vertices as come before it.
+template <class Cell, std::size_t n, std::size_t k>
+Index TopologyBuilder<Cell, n, k>::findEdge(Index low, Index high) const {
+  const Ends& ends = ends_[low];
+  Index smaller = 0;
+  for (const Index end : ends) smaller += end < high ? 1U : 0U;
+  if (ends.back() != kNone && !overflow_.empty()) {
+    const auto further = overflowOf(low);
+    smaller += static_cast<Index>(
+        std::lower_bound(further.begin(), further.end(), std::array{low, high}) - further.begin());
+  }
+  return edgeBegins_[low] + smaller;
 }
 
 template <class Cell, std::size_t n, std::size_t k>
 void TopologyBuilder<Cell, n, k>::linkFacesToEdges() {
   topology_.faces.length = n;
   topology_.faces.handles.resize(n * faceOwner_.size());
-  const OvmEdgeFinder finder(topology_);
   parallelFor(stage_, faceOwner_.size(), kGrain, [&](std::size_t face) {
     const Loop loop = loopOf(faceOwner_[face]);
     for (std::size_t i = 0; i < n; ++i) {
       const Index from = loop[i];
       const Index to = loop[(i + 1) % n];
-      topology_.faces.handles[n * face + i] = 2 * finder.find(from, to) + (from < to ? 0U : 1U);
+      topology_.faces.handles[n * face + i] =
+          2 * findEdge(std::min(from, to), std::max(from, to)) + (from < to ? 0U : 1U);
     }
   });
 }

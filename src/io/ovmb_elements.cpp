@@ -45,6 +45,7 @@ class ElementReader {
   static Encoding readEncoding(ByteCursor& cursor, std::uint8_t valence);
   template <class Stored>
   void decodeValences(ByteCursor& cursor, std::size_t entity);
+  void requireValences(ByteCursor& cursor, std::uint64_t count, std::size_t entity);
   void readValences(ByteCursor& cursor, std::uint64_t count, std::size_t entity);
 
   const OvmbFrame& frame_;
@@ -166,18 +167,15 @@ void ElementReader::readEdges(ByteCursor& cursor, std::uint64_t count) {
     cursor.fail(ErrorCode::FileSyntax,
                 "edges must have the valence 2, found " + std::to_string(encoding_.valence) + ".");
   }
-  Array<Index> handles;
   if (cursor.remaining() != 2 * count * encoding_.handleBytes) {
     cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk has the wrong size for its edges.");
   }
-  handles.resize(static_cast<std::size_t>(2 * count));
-  readHandles(cursor, handles, 1);
   Array<std::array<Index, 2>>& edges = mesh_.topology.edges;
   const std::size_t before = edges.size();
   edges.resize(before + static_cast<std::size_t>(count));
-  for (std::size_t i = before; i < edges.size(); ++i) {
-    edges[i] = {handles[2 * (i - before)], handles[2 * (i - before) + 1]};
-  }
+  // Pairs of numbers are numbers one after the other.
+  auto* const first = reinterpret_cast<Index*>(edges.data() + before);
+  readHandles(cursor, {first, static_cast<std::size_t>(2 * count)}, 1);
 }
 
 /// Fewer half-edges or half-faces enclose nothing.
@@ -199,8 +197,8 @@ void ElementReader::decodeValences(ByteCursor& cursor, std::size_t entity) {
                     " is needed.");
 }
 
-/// Reads or repeats the valences of a chunk, and appends lists of these lengths.
-void ElementReader::readValences(ByteCursor& cursor, std::uint64_t count, std::size_t entity) {
+/// Throws unless a chunk can have so many elements of its valence.
+void ElementReader::requireValences(ByteCursor& cursor, std::uint64_t count, std::size_t entity) {
   if (count * std::max(encoding_.valence, encoding_.valenceBytes) > cursor.remaining()) {
     cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk is too short for its " +
                                            std::to_string(count) + " " + kElements[entity].many +
@@ -211,23 +209,39 @@ void ElementReader::readValences(ByteCursor& cursor, std::uint64_t count, std::s
                                            " of valence " + std::to_string(encoding_.valence) +
                                            ".");
   }
-  valences_.assign(static_cast<std::size_t>(count), encoding_.valence);
+}
+
+/// Reads or repeats the valences of a chunk.
+void ElementReader::readValences(ByteCursor& cursor, std::uint64_t count, std::size_t entity) {
+  if (encoding_.valence > 0) {
+    return valences_.assign(static_cast<std::size_t>(count), encoding_.valence);
+  }
+  valences_.resize(static_cast<std::size_t>(count));
   if (encoding_.valenceBytes == 1) decodeValences<std::uint8_t>(cursor, entity);
   if (encoding_.valenceBytes == 2) decodeValences<std::uint16_t>(cursor, entity);
   if (encoding_.valenceBytes == 4) decodeValences<std::uint32_t>(cursor, entity);
+}
+
+/// Appends room for so many lists of this length, and returns it; nothing if the lists before are
+/// of other lengths.
+std::span<Index> appendEqualLists(OvmLists& lists, std::size_t count, std::uint32_t length) {
+  if (lists.size() == 0) lists.length = length;
+  if (lists.length != length) return {};
+  const std::size_t handlesBefore = lists.handles.size();
+  lists.handles.resize(handlesBefore + count * length);
+  return std::span(lists.handles).subspan(handlesBefore);
 }
 
 /// Appends room for lists of these lengths, and returns it.
 std::span<Index> appendLists(OvmLists& lists, const Array<std::uint32_t>& lengths) {
   const bool uniform = std::all_of(lengths.begin(), lengths.end(),
                                    [&](std::uint32_t length) { return length == lengths[0]; });
+  if (uniform) {
+    const std::span<Index> room = appendEqualLists(lists, lengths.size(), lengths[0]);
+    if (!room.empty()) return room;
+  }
   const std::size_t before = lists.size();
   const std::size_t handlesBefore = lists.handles.size();
-  if (before == 0 && uniform) lists.length = lengths[0];
-  if (lists.length > 0 && uniform && lists.length == lengths[0]) {
-    lists.handles.resize(handlesBefore + lengths.size() * lists.length);
-    return std::span(lists.handles).subspan(handlesBefore);
-  }
   if (lists.offsets.empty()) {
     for (std::size_t i = 0; i <= before; ++i) lists.offsets.push_back(i * lists.length);
     lists.length = 0;
@@ -240,6 +254,14 @@ std::span<Index> appendLists(OvmLists& lists, const Array<std::uint32_t>& length
 }
 
 void ElementReader::readLists(ByteCursor& cursor, std::uint64_t count, std::size_t entity) {
+  requireValences(cursor, count, entity);
+  OvmLists& lists = entity == 2 ? mesh_.topology.faces : mesh_.topology.cells;
+  if (encoding_.valence > 0 &&
+      cursor.remaining() == count * encoding_.valence * encoding_.handleBytes) {
+    const std::span<Index> room =
+        appendEqualLists(lists, static_cast<std::size_t>(count), encoding_.valence);
+    if (!room.empty()) return readHandles(cursor, room, entity);
+  }
   readValences(cursor, count, entity);
   std::uint64_t handles = 0;
   for (const std::uint32_t valence : valences_) handles += valence;
@@ -248,7 +270,6 @@ void ElementReader::readLists(ByteCursor& cursor, std::uint64_t count, std::size
     cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk has the wrong size for its " +
                                            std::string(kElements[entity].many) + ".");
   }
-  OvmLists& lists = entity == 2 ? mesh_.topology.faces : mesh_.topology.cells;
   readHandles(cursor, appendLists(lists, valences_), entity);
 }
 

@@ -11,12 +11,14 @@
 
 namespace hexhex {
 
-/// A tag for each vertex, 0 without.
+/// A tag for each vertex, 0 without. Nothing if there are no features.
 /// @throws Error InvalidArgument for a vertex that does not exist
-[[nodiscard]] inline Array<std::int32_t> vertexTags(const HexMesh& mesh) {
-  Array<std::int32_t> tags(mesh.points.size());
+[[nodiscard]] inline Array<std::int32_t> vertexTags(const std::vector<FeatureVertex>& features,
+                                                    std::size_t vertices) {
+  if (features.empty()) return {};
+  Array<std::int32_t> tags(vertices);
   std::fill(tags.begin(), tags.end(), 0);
-  for (const FeatureVertex& feature : mesh.features.vertices) {
+  for (const FeatureVertex& feature : features) {
     if (feature.vertex < tags.size()) {
       tags[feature.vertex] = feature.tag;
       continue;

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <charconv>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <type_traits>
+#include <utility>
 
 #include <hexhex/error.hpp>
 
@@ -90,9 +93,13 @@ struct CellCorners {
 /// Numbers of legacy files are stored with the largest byte first.
 template <class T>
 T loadBig(const char* place) {
-  std::array<char, sizeof(T)> bytes;  // NOLINT(*-member-init): all of it is copied to
-  std::reverse_copy(place, place + sizeof(T), bytes.begin());
-  return loadLittle<T>(bytes.data());
+  using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+  static_assert(sizeof(T) == sizeof(Bits));
+  Bits bits = 0;
+  for (std::size_t i = 0; i < sizeof(T); ++i) {  // compilers make one instruction of it
+    bits = bits << 8U | static_cast<unsigned char>(place[i]);
+  }
+  return std::bit_cast<T>(bits);
 }
 
 /// Reads one file from top to bottom.
@@ -125,6 +132,7 @@ class VtkReader {
   void skipMetadata();
   void takeCells();
   void copyPlainCells();
+  void readRegions();
   void readAttribute(const std::string& keyword);
   void beginArrays(bool ofCells);
   void readScalars(std::string_view name, std::size_t elements);
@@ -181,6 +189,7 @@ Grid<corners> VtkReader<corners>::read() {
   require(hasCells_, "CELLS");
   require(hasTypes_, "CELL_TYPES");
   takeCells();
+  if (corners == 8) readRegions();
   while (!mapArray_.empty() && !grid_.map && scanner_.skipSpace()) {
     readAttribute(lowerCase(scanner_.readToken()));
   }
@@ -560,6 +569,28 @@ void VtkReader<corners>::failAbout(std::size_t cell, std::size_t count) const {
               name + " names a point that does not exist: the file has " +
                   std::to_string(mesh_.points.size()) + " points, numbered from 0.",
               place);
+}
+
+/// Reads the regions of hexahedra if they follow as this library writes them.
+template <std::size_t corners>
+void VtkReader<corners>::readRegions() {
+  const std::string begin =
+      "CELL_DATA " + std::to_string(cellCount_) + "\nSCALARS region int 1\nLOOKUP_TABLE default";
+  if (!scanner_.skipSpace() || mesh_.cells.size() != cellCount_ ||
+      !text_.substr(scanner_.position()).starts_with(begin)) {
+    return;
+  }
+  scanner_.moveTo(scanner_.position() + begin.size());
+  const Array<std::int64_t> numbers = readIntegers(cellCount_, kInt, "a region");
+  mesh_.regions.resize(numbers.size());
+  const std::size_t fault = firstFault(stage_, numbers.size(), [&](std::size_t i) {
+    mesh_.regions[i] = static_cast<std::int32_t>(numbers[i]);
+    return std::in_range<std::int32_t>(numbers[i]);
+  });
+  if (fault == numbers.size()) return;
+  scanner_.fail(ErrorCode::FileUnsupported,
+                "the region " + std::to_string(numbers[fault]) + " does not fit into 32 bits.",
+                Place{PlaceKind::Cell, fault});
 }
 
 /// Reads one array, or the beginning of the arrays of points or cells.

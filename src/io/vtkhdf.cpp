@@ -198,7 +198,7 @@ class VtkHdfWriter {
       rows(group, "generator_tet", mesh_.generatorTet.data(), points, 1);
     }
     if (!mesh_.features.vertices.empty()) {
-      rows(group, "feature_vertex", vertexTags(mesh_).data(), points, 1);
+      rows(group, "feature_vertex", vertexTags(mesh_.features.vertices, points).data(), points, 1);
     }
   }
 

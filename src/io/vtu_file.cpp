@@ -144,8 +144,8 @@ void VtuFile::readHead() {
     if (!hasFileTag_ && tag.name != "VTKFile") break;
     if (tag.name == "VTKFile" && !tag.closing) readFileTag(tag);
     if (tag.name == "Piece" && !tag.closing) readPieceTag(tag);
-    if (tag.name == "PointData" || tag.name == "CellData" || tag.name == "Points" ||
-        tag.name == "Cells") {
+    if (tag.name == "FieldData" || tag.name == "PointData" || tag.name == "CellData" ||
+        tag.name == "Points" || tag.name == "Cells") {
       section = tag.closing ? std::string_view() : tag.name;
     }
     if (tag.name == "DataArray" && !tag.closing) readArrayTag(tag, section);
@@ -219,9 +219,9 @@ void VtuFile::readArrayTag(const XmlTag& tag, std::string_view section) {
   const std::size_t next = std::min(text_.find('<', tag.end), text_.size());
   const ArrayTag array{tag, text_.substr(tag.end, next - tag.end)};
   const std::string_view name = tag.attribute("Name");
-  if (section == "PointData" || section == "CellData") {
-    dataArrays_.push_back({array, section == "CellData"});
-  }
+  if (section == "FieldData") dataArrays_.push_back({array, VtuSection::Field});
+  if (section == "PointData") dataArrays_.push_back({array, VtuSection::Points});
+  if (section == "CellData") dataArrays_.push_back({array, VtuSection::Cells});
   if (section == "Points") coordinatesTag_ = array;
   if (section == "Cells" && name == "connectivity") connectivityTag_ = array;
   if (section == "Cells" && name == "offsets") endsTag_ = array;
@@ -368,25 +368,46 @@ std::size_t VtuFile::componentsOf(const ArrayTag& array) {
   return components;
 }
 
-std::optional<VtuColumn> VtuFile::findReals(std::string_view name, bool ofCells,
-                                            std::size_t components) const {
+const VtuFile::DataArray* VtuFile::findArray(std::string_view name, VtuSection section,
+                                             std::size_t components, Kind kind) const {
   for (const DataArray& data : dataArrays_) {
     const XmlTag& tag = data.array.tag;
-    if (data.ofCells != ofCells || tag.attribute("Name") != name ||
-        componentsOf(data.array) != components || !tag.attribute("type").starts_with("Float")) {
-      continue;
+    const std::string_view type = tag.attribute("type");
+    const bool right = kind == Kind::Reals ? type.starts_with("Float")
+                                           : type.starts_with("Int") || type.starts_with("UInt");
+    if (right && data.section == section && tag.attribute("Name") == name &&
+        componentsOf(data.array) == components) {
+      return &data;
     }
-    const std::uint64_t tuples = ofCells ? cellCount_ : pointCount_;
-    return column(data.array, "the map", Kind::Reals, components * tuples);
   }
-  return std::nullopt;
+  return nullptr;
+}
+
+std::optional<VtuColumn> VtuFile::findReals(std::string_view name, bool ofCells,
+                                            std::size_t components) const {
+  const DataArray* const data =
+      findArray(name, ofCells ? VtuSection::Cells : VtuSection::Points, components, Kind::Reals);
+  if (data == nullptr) return std::nullopt;
+  const std::uint64_t tuples = ofCells ? cellCount_ : pointCount_;
+  return column(data->array, "the map", Kind::Reals, components * tuples);
+}
+
+std::optional<VtuColumn> VtuFile::findIntegers(std::string_view name, VtuSection section,
+                                               std::size_t components) const {
+  const DataArray* const data = findArray(name, section, components, Kind::Integers);
+  if (data == nullptr) return std::nullopt;
+  std::optional<std::uint64_t> count;
+  if (section == VtuSection::Points) count = components * pointCount_;
+  if (section == VtuSection::Cells) count = components * cellCount_;
+  return column(data->array, "tags", Kind::Integers, count);
 }
 
 std::vector<std::string> VtuFile::describeArrays() const {
   std::vector<std::string> list;
   for (const DataArray& data : dataArrays_) {
-    list.push_back(
-        describeArray(data.array.tag.attribute("Name"), data.ofCells, componentsOf(data.array)));
+    if (data.section == VtuSection::Field) continue;
+    list.push_back(describeArray(data.array.tag.attribute("Name"),
+                                 data.section == VtuSection::Cells, componentsOf(data.array)));
   }
   return list;
 }

@@ -22,6 +22,9 @@ namespace hexhex {
 /// The number types of VTK that are supported.
 enum class VtuScalar { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float32, Float64 };
 
+/// What the arrays of a file belong to.
+enum class VtuSection : std::uint8_t { Field, Points, Cells };
+
 /// Where the numbers of an array are, and how they are stored.
 struct VtuColumn {
   VtuScalar scalar = VtuScalar::Float64;
@@ -66,6 +69,10 @@ class VtuFile {
   /// floating-point numbers, which must have a tuple for each cell or point.
   [[nodiscard]] std::optional<VtuColumn> findReals(std::string_view name, bool ofCells,
                                                    std::size_t components) const;
+  /// The first array of a section with this name, this many components per tuple and integers. One
+  /// of points or cells must have a tuple for each.
+  [[nodiscard]] std::optional<VtuColumn> findIntegers(std::string_view name, VtuSection section,
+                                                      std::size_t components) const;
   /// All arrays of points and cells, each with its name and number of components.
   [[nodiscard]] std::vector<std::string> describeArrays() const;
 
@@ -85,10 +92,10 @@ class VtuFile {
     XmlTag tag;
     std::string_view content;
   };
-  /// An array of points or cells.
+  /// An array of the data set, points or cells.
   struct DataArray {
     ArrayTag array;
-    bool ofCells = false;
+    VtuSection section = VtuSection::Field;
   };
   enum class Kind { Integers, Reals };
 
@@ -105,6 +112,8 @@ class VtuFile {
   [[nodiscard]] VtuColumn appendedColumn(const ArrayTag& array, Kind kind) const;
   [[nodiscard]] VtuColumn decodedColumn(const ArrayTag& array, Kind kind) const;
   [[nodiscard]] static std::size_t componentsOf(const ArrayTag& array);
+  [[nodiscard]] const DataArray* findArray(std::string_view name, VtuSection section,
+                                           std::size_t components, Kind kind) const;
   [[nodiscard]] VtuColumn parsedColumn(const ArrayTag& array, Kind kind,
                                        std::optional<std::uint64_t> count) const;
   [[nodiscard]] std::optional<VtuColumn> generatorColumn(const std::optional<ArrayTag>& array,

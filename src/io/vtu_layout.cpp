@@ -64,6 +64,10 @@ void VtuLayout::listArrays(const VtuShape& shape) {
   if (shape.edgeTags > 0) {
     add(VtuContent::EdgeTags, kFieldData, "feature_edges", "Int64", 3, shape.edgeTags, 8);
   }
+  if (shape.triangleTags > 0) {
+    add(VtuContent::TriangleTags, kFieldData, "feature_triangles", "Int64", 4, shape.triangleTags,
+        8);
+  }
   if (shape.quadTags > 0) {
     add(VtuContent::QuadTags, kFieldData, "feature_quads", "Int64", 5, shape.quadTags, 8);
   }

@@ -14,15 +14,16 @@ namespace hexhex {
 struct VtuShape {
   std::uint64_t points = 0;
   std::uint64_t cells = 0;
-  bool generatorTets = false;     ///< with the point array generator_tet
-  bool generatorCorners = false;  ///< with the point arrays generator_kind, generator_corners
-  bool scaledJacobians = false;   ///< with the cell array scaled_jacobian
-  bool vertexTags = false;        ///< with the point array feature_vertex
-  bool regions = false;           ///< with the cell array region
-  std::uint64_t edgeTags = 0;     ///< rows of the field array feature_edges
-  std::uint64_t quadTags = 0;     ///< rows of the field array feature_quads
-  std::size_t corners = 8;        ///< of each cell
-  std::string_view map = {};      ///< the name of the map's cell array; empty: there is none
+  bool generatorTets = false;      ///< with the point array generator_tet
+  bool generatorCorners = false;   ///< with the point arrays generator_kind, generator_corners
+  bool scaledJacobians = false;    ///< with the cell array scaled_jacobian
+  bool vertexTags = false;         ///< with the point array feature_vertex
+  bool regions = false;            ///< with the cell array region
+  std::uint64_t edgeTags = 0;      ///< rows of the field array feature_edges
+  std::uint64_t triangleTags = 0;  ///< rows of the field array feature_triangles
+  std::uint64_t quadTags = 0;      ///< rows of the field array feature_quads
+  std::size_t corners = 8;         ///< of each cell
+  std::string_view map = {};       ///< the name of the map's cell array; empty: there is none
 };
 
 /// What an array holds.
@@ -33,8 +34,9 @@ enum class VtuContent {
   ScaledJacobian,
   VertexTags,
   Regions,
-  EdgeTags,  ///< per edge: two vertices and the tag
-  QuadTags,  ///< per quad: four vertices and the tag
+  EdgeTags,      ///< per edge: two vertices and the tag
+  TriangleTags,  ///< per triangle: three vertices and the tag
+  QuadTags,      ///< per quad: four vertices and the tag
   Map,
   Points,
   Connectivity,

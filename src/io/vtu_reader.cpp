@@ -17,6 +17,7 @@
 #include <io/vtu.hpp>
 #include <io/vtu_elements.hpp>
 #include <io/vtu_file.hpp>
+#include <io/vtu_tags.hpp>
 
 namespace hexhex {
 namespace {
@@ -113,7 +114,7 @@ class VtuMeshReader {
   Stage& stage_;
 };
 
-/// Reads a hex mesh, and generators as writeVtu() writes them.
+/// Reads a hex mesh; generators, tags and regions as writeVtu() writes them.
 class VtuHexReader {
  public:
   template <class Source>
@@ -121,9 +122,20 @@ class VtuHexReader {
       : reader_(source, fileName, stage) {}
 
   HexMesh read() {
-    HexMesh mesh = toHexMesh(reader_.read());
     const VtuFile& file = reader_.file();
-    if (!file.generatorTets() || !file.generatorCorners()) return mesh;
+    const bool hasRegions = file.findIntegers(kVtuRegions, VtuSection::Cells, 1).has_value();
+    Array<std::size_t> cellNumbers;
+    HexMesh mesh = toHexMesh(reader_.read(hasRegions ? &cellNumbers : nullptr));
+    if (hasRegions) mesh.regions = readVtuRegions(file, cellNumbers);
+    mesh.features = {readVtuVertexTags(file), readVtuFeatures<FeatureEdge>(file, kVtuEdgeTags),
+                     readVtuFeatures<FeatureQuad>(file, kVtuQuadTags)};
+    readGenerators(file, mesh);
+    return mesh;
+  }
+
+ private:
+  static void readGenerators(const VtuFile& file, HexMesh& mesh) {
+    if (!file.generatorTets() || !file.generatorCorners()) return;
     mesh.generatorTet.resize(mesh.points.size());
     mesh.generatorCorners.resize(mesh.points.size());
     file.copy(*file.generatorTets(), 0, mesh.points.size(), mesh.generatorTet.data());
@@ -133,14 +145,12 @@ class VtuHexReader {
       mesh.generatorTet.clear();  // arrays of the same names, but something else
       mesh.generatorCorners.clear();
     }
-    return mesh;
   }
 
- private:
   VtuMeshReader<8> reader_;
 };
 
-/// Reads the tets of a file and its map.
+/// Reads the tets of a file and its map; tags and regions as writeVtuMap() writes them.
 class VtuMapReader {
  public:
   template <class Source>
@@ -161,7 +171,12 @@ class VtuMapReader {
       copyAll(*column, grid.map->values);
       break;
     }
-    return toTetMap(std::move(grid), mapArray_, fileName_, stage_);
+    Array<std::int32_t> regions = readVtuRegions(file, grid.cellInFile);
+    TetMap map = toTetMap(std::move(grid), mapArray_, fileName_, stage_);
+    map.regions.assign(regions.begin(), regions.end());
+    map.features = {readVtuVertexTags(file), readVtuFeatures<FeatureEdge>(file, kVtuEdgeTags),
+                    readVtuFeatures<FeatureFace>(file, kVtuTriangleTags)};
+    return map;
   }
 
  private:

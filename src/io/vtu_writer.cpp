@@ -30,13 +30,26 @@ constexpr std::size_t kSliceBytes = std::size_t{1} << 22;
 
 /// Where the arrays of a map are, and where those of a hex mesh.
 struct MapContent {
+  explicit MapContent(const TetMap& map_)
+      : map(map_),
+        edgeRows(rowsOf(map.features.edges)),
+        triangleRows(rowsOf(map.features.faces)),
+        tags(vertexTags(map.features.vertices, map.points.size())) {}
+
   const TetMap& map;
+  std::vector<std::int64_t> edgeRows;
+  std::vector<std::int64_t> triangleRows;
+  Array<std::int32_t> tags;
 
   [[nodiscard]] std::size_t pointCount() const { return map.points.size(); }
   [[nodiscard]] std::span<const Tet> cells() const { return map.tets; }
   [[nodiscard]] const void* inMemory(VtuContent content) const {
-    return content == VtuContent::Map ? static_cast<const void*>(map.parameters.data())
-                                      : map.points.data();
+    if (content == VtuContent::Map) return map.parameters.data();
+    if (content == VtuContent::VertexTags) return tags.data();
+    if (content == VtuContent::Regions) return map.regions.data();
+    if (content == VtuContent::EdgeTags) return edgeRows.data();
+    if (content == VtuContent::TriangleTags) return triangleRows.data();
+    return map.points.data();
   }
   [[nodiscard]] static std::span<const CornerSet> generatorCorners() { return {}; }
   static constexpr std::uint8_t kType = kVtkTet;
@@ -47,9 +60,8 @@ struct HexContent {
       : mesh(mesh_),
         quality(quality_),
         edgeRows(rowsOf(mesh.features.edges)),
-        quadRows(rowsOf(mesh.features.quads)) {
-    if (!mesh.features.vertices.empty()) tags = vertexTags(mesh);
-  }
+        quadRows(rowsOf(mesh.features.quads)),
+        tags(vertexTags(mesh.features.vertices, mesh.points.size())) {}
 
   const HexMesh& mesh;
   std::span<const double> quality;
@@ -91,6 +103,7 @@ class ArrayWriter {
       case VtuContent::VertexTags:
       case VtuContent::Regions:
       case VtuContent::EdgeTags:
+      case VtuContent::TriangleTags:
       case VtuContent::QuadTags:
       case VtuContent::Map:
       case VtuContent::Points:
@@ -248,6 +261,10 @@ void writeVtuMap(const TetMap& map, const std::filesystem::path& file, const Wri
   VtuShape shape{map.points.size(), map.tets.size()};
   shape.corners = std::tuple_size_v<Tet>;
   shape.map = options.mapArray;
+  shape.vertexTags = !map.features.vertices.empty();
+  shape.regions = !map.regions.empty();
+  shape.edgeTags = map.features.edges.size();
+  shape.triangleTags = map.features.faces.size();
   writeFile(output, MapContent{map}, VtuLayout(shape), options.compress, stage);
 }
 

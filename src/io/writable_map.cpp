@@ -25,6 +25,7 @@ void requireWritable(const TetMap& map, Stage& stage) {
   };
   requireSize(map.parameters.size(), "parameters");
   if (!map.rotations.empty()) requireSize(map.rotations.size(), "rotations");
+  if (!map.regions.empty()) requireSize(map.regions.size(), "regions");
   const std::size_t point =
       firstFault(stage, map.points.size(), [&](std::size_t v) { return isFinite(map.points[v]); });
   if (point < map.points.size()) {

@@ -17,7 +17,8 @@
 namespace hexhex {
 namespace {
 
-// Large enough that few faces are left, small enough that the table (1.5 MB) stays in the cache.
+// Large enough that few faces are left, small enough that the table (512 KB) and the cells (256 KB)
+// stay in the cache.
 constexpr std::size_t kCellsPerBlock = std::size_t{1} << 13;
 // Blocks that one thread handles with the same table, since fresh memory is slow.
 constexpr std::size_t kBlocksPerTask = 16;
@@ -26,77 +27,133 @@ constexpr std::size_t kParts = 256;
 // Cells per block of simple loops.
 constexpr std::size_t kGrain = 4096;
 
-/// A face of a cell. Vertices tell faces apart, the place tells where it was seen.
+// A face's key stands in the upper bits of a slot, its place within the block in the lower ones.
+constexpr unsigned kLocalBits = 16;
+static_assert(8 * kCellsPerBlock == std::size_t{1} << kLocalBits);
+constexpr std::uint64_t kEven = std::uint64_t{1} << kLocalBits;
+constexpr std::uint64_t kLocalMask = kEven - 1;
+constexpr std::uint64_t kKeyMask = ~(kEven | kLocalMask);
+
+/// A face of a cell. Different faces hardly ever have the same key, the same face always has.
 struct Side {
-  std::uint64_t low;    ///< the two smallest vertices, the smaller one in the upper half
-  std::uint64_t high;   ///< the two others in the same way
+  std::uint64_t key;    ///< within kKeyMask
   std::uint64_t place;  ///< 8 * cell + face
 };
 
-bool sameFace(const Side& a, const Side& b) { return a.low == b.low && a.high == b.high; }
-
-bool before(const Side& a, const Side& b) {
-  return a.low != b.low ? a.low < b.low : a.high < b.high;
+/// The keys of all faces of a cell: sums, so that the order of vertices does not matter, of
+/// numbers without any pattern, so that sums of neighbouring vertices differ.
+std::array<std::uint64_t, 6> keysOf(const Hex& cell) {
+  std::array<std::uint64_t, 8> mixed;  // NOLINT(*-member-init): all of it is set
+  for (std::size_t i = 0; i < 8; ++i) {
+    std::uint64_t x = (cell[i] + std::uint64_t{1}) * 0x9e3779b97f4a7c15U;
+    x ^= x >> 32U;
+    mixed[i] = x * 0xc2b2ae3d27d4eb4fU;
+  }
+  std::array<std::uint64_t, 6> keys;  // NOLINT(*-member-init): all of it is set
+  for (std::size_t f = 0; f < 6; ++f) {
+    const auto& corners = kHexFaces[f];
+    keys[f] =
+        (mixed[corners[0]] + mixed[corners[1]] + mixed[corners[2]] + mixed[corners[3]]) & kKeyMask;
+  }
+  return keys;
 }
 
-/// Sorts the four vertices without branches.
-Side sideOf(const Quad& quad, std::uint64_t place) {
-  const Index a = std::min(quad[0], quad[1]);
-  const Index b = std::max(quad[0], quad[1]);
-  const Index c = std::min(quad[2], quad[3]);
-  const Index d = std::max(quad[2], quad[3]);
-  const Index e = std::max(a, c);
-  const Index f = std::min(b, d);
-  const auto joined = [](Index upper, Index lower) { return std::uint64_t{upper} << 32U | lower; };
-  return {joined(std::min(a, c), std::min(e, f)), joined(std::max(e, f), std::max(b, d)), place};
+std::size_t partOf(std::uint64_t key) { return (key >> (kLocalBits + 1)) % kParts; }
+
+/// Whether two places name faces with the same four vertices.
+bool isSameFace(std::span<const Hex> cells, std::uint64_t a, std::uint64_t b) {
+  Quad here = faceVertices(cells[a / 8], a % 8);
+  Quad there = faceVertices(cells[b / 8], b % 8);
+  // Almost always: the same loop in the other direction.
+  const std::size_t start = (there[1] == here[0] ? 1U : 0U) + (there[2] == here[0] ? 2U : 0U) +
+                            (there[3] == here[0] ? 3U : 0U);
+  if (there[start % 4] == here[0] && there[(start + 3) % 4] == here[1] &&
+      there[(start + 2) % 4] == here[2] && there[(start + 1) % 4] == here[3]) {
+    return true;
+  }
+  std::sort(here.begin(), here.end());
+  std::sort(there.begin(), there.end());
+  return here == there;
 }
 
-std::uint64_t hashOf(const Side& side) {
-  // Odd constants without pattern; the products' upper halves depend on all bits.
-  const std::uint64_t low = side.low * 0x9e3779b97f4a7c15U;
-  const std::uint64_t high = side.high * 0xc2b2ae3d27d4eb4fU;
-  const std::uint64_t sum = low ^ (high >> 29U) ^ high;
-  return (sum ^ (sum >> 32U)) * 0x94d049bb133111ebU;
-}
-
-/// The hash's lowest bits: the place in a table depends on the highest.
-std::size_t partOf(const Side& side) { return hashOf(side) % kParts; }
-
-/// A set of faces with open addressing, which knows for each whether it was added an odd number of
-/// times.
-class FaceTable {
+/// The faces of one block of cells, with open addressing; knows for each face whether it was added
+/// an odd number of times.
+class BlockTable {
  public:
-  /// @param capacity  the most sides that are added
-  explicit FaceTable(std::size_t capacity)
-      : slots_(std::bit_ceil(capacity + capacity / 4 + 2), Side{0, 0, kFree}),
-        shift_(64 - static_cast<unsigned>(std::countr_zero(slots_.size()))) {}
+  BlockTable() : slots_(kSlots, kFree) {}
 
-  void add(const Side& side) {
-    std::size_t slot = hashOf(side) >> shift_;
-    while (slots_[slot].place != kFree) {
-      if (sameFace(slots_[slot], side)) {
-        slots_[slot].place ^= kEven;
-        return;
-      }
-      slot = (slot + 1) & (slots_.size() - 1);
+  /// @param block  its cells
+  void add(std::span<const Hex> block) {
+    for (std::size_t c = 0; c < block.size(); ++c) {
+      const std::array<std::uint64_t, 6> keys = keysOf(block[c]);
+      for (std::size_t f = 0; f < 6; ++f) add(block, keys[f], 8 * c + f);
     }
-    slots_[slot] = side;
   }
 
-  /// Calls f(side) for the first side of every face that was added an odd number of times, in no
-  /// useful order, and empties the table.
+  /// Calls f(side) for the first side of every face that was added an odd number of times, with its
+  /// place in the block, in no useful order, and empties the table.
   template <class F>
   void takeOdd(const F& f) {
-    for (Side& side : slots_) {
-      if ((side.place & kEven) == 0) f(side);
-      side.place = kFree;
+    for (std::uint64_t& slot : slots_) {
+      if ((slot & kEven) == 0) f(Side{slot & kKeyMask, slot & kLocalMask});
+      slot = kFree;
     }
   }
 
  private:
-  static constexpr std::uint64_t kEven = std::uint64_t{1} << 63U;
-  static constexpr std::uint64_t kFree = ~std::uint64_t{0};  // has the bit of kEven, too
+  // All faces of a block are three quarters, those of a connected one less than half of it.
+  static constexpr std::size_t kSlots = std::size_t{1} << kLocalBits;
+  static constexpr std::uint64_t kFree = ~std::uint64_t{0};  // no cell has a face 7
 
+  void add(std::span<const Hex> block, std::uint64_t key, std::uint64_t local) {
+    std::size_t i = key >> (64 - kLocalBits);
+    while (slots_[i] != kFree) {
+      const std::uint64_t slot = slots_[i];
+      if (((slot ^ key) & kKeyMask) == 0 && isSameFace(block, slot & kLocalMask, local)) {
+        slots_[i] = slot ^ kEven;
+        return;
+      }
+      i = (i + 1) % kSlots;
+    }
+    slots_[i] = key | local;
+  }
+
+  std::vector<std::uint64_t> slots_;
+};
+
+/// The same for sides from anywhere.
+class SideTable {
+ public:
+  /// @param capacity  the most sides that are added
+  SideTable(std::span<const Hex> cells, std::size_t capacity)
+      : cells_(cells),
+        slots_(std::bit_ceil(capacity + capacity / 4 + 2), Side{0, kFree}),
+        shift_(64 - static_cast<unsigned>(std::countr_zero(slots_.size()))) {}
+
+  void add(const Side& side) {
+    std::size_t i = side.key >> shift_;
+    while (slots_[i].place != kFree) {
+      if (slots_[i].key == side.key && isSameFace(cells_, slots_[i].place & ~kSeen, side.place)) {
+        slots_[i].place ^= kSeen;
+        return;
+      }
+      i = (i + 1) & (slots_.size() - 1);
+    }
+    slots_[i] = side;
+  }
+
+  template <class F>
+  void forEachOdd(const F& f) const {
+    for (const Side& side : slots_) {
+      if ((side.place & kSeen) == 0) f(side);
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t kSeen = std::uint64_t{1} << 63U;
+  static constexpr std::uint64_t kFree = ~std::uint64_t{0};  // has the bit of kSeen, too
+
+  std::span<const Hex> cells_;
   std::vector<Side> slots_;
   unsigned shift_;
 };
@@ -109,16 +166,12 @@ struct Remains {
 
 Remains pairWithinBlocks(const HexMesh& mesh, std::size_t begin, std::size_t end) {
   Remains remains;
-  FaceTable table(6 * std::min(kCellsPerBlock, end - begin));
+  BlockTable table;
   for (std::size_t block = begin; block < end; block += kCellsPerBlock) {
-    for (std::size_t c = block; c < std::min(block + kCellsPerBlock, end); ++c) {
-      for (std::size_t f = 0; f < 6; ++f) {
-        table.add(sideOf(faceVertices(mesh.cells[c], f), 8 * c + f));
-      }
-    }
-    table.takeOdd([&remains](const Side& side) {
-      remains.sides.push_back(side);
-      ++remains.begins[partOf(side)];
+    table.add(std::span(mesh.cells).subspan(block, std::min(kCellsPerBlock, end - block)));
+    table.takeOdd([&remains, block](const Side& side) {
+      remains.sides.push_back({side.key, 8 * block + side.place});
+      ++remains.begins[partOf(side.key)];
     });
   }
   return remains;
@@ -149,13 +202,15 @@ Parts gather(std::vector<Remains>& tasks, Stage& stage) {
   parts.begins[kParts] = sum;
   parts.sides.resize(sum);
   parallelFor(stage, tasks.size(), 1, [&](std::size_t i) {
-    for (const Side& side : tasks[i].sides) parts.sides[tasks[i].begins[partOf(side)]++] = side;
+    for (const Side& side : tasks[i].sides) {
+      parts.sides[tasks[i].begins[partOf(side.key)]++] = side;
+    }
     tasks[i].sides = {};
   });
   return parts;
 }
 
-/// One side of each face with an odd number of cells, sorted within each part.
+/// One side of each face with an odd number of cells, sorted by key within each part.
 using OddSides = std::array<std::vector<Side>, kParts>;
 
 OddSides findOddSides(const HexMesh& mesh, Stage& stage) {
@@ -169,10 +224,11 @@ OddSides findOddSides(const HexMesh& mesh, Stage& stage) {
   OddSides odd;
   parallelFor(stage, kParts, 1, [&](std::size_t i) {
     const std::span<const Side> part = parts.part(i);
-    FaceTable table(part.size());
+    SideTable table(mesh.cells, part.size());
     for (const Side& side : part) table.add(side);
-    table.takeOdd([&odd, i](const Side& side) { odd[i].push_back(side); });
-    std::sort(odd[i].begin(), odd[i].end(), before);
+    table.forEachOdd([&odd, i](const Side& side) { odd[i].push_back(side); });
+    std::sort(odd[i].begin(), odd[i].end(),
+              [](const Side& a, const Side& b) { return a.key < b.key; });
   });
   return odd;
 }
@@ -180,18 +236,17 @@ OddSides findOddSides(const HexMesh& mesh, Stage& stage) {
 /// Counts the cells of faces that are known to have an odd number of them.
 class CellCounter {
  public:
-  CellCounter(const HexMesh& mesh, const OddSides& sides, Stage& stage) : sides_(sides) {
+  CellCounter(const HexMesh& mesh, const OddSides& sides, Stage& stage)
+      : cells_(mesh.cells), sides_(sides) {
     isCorner_.resize(mesh.points.size());
     std::fill(isCorner_.begin(), isCorner_.end(), std::uint8_t{0});
     for (std::size_t part = 0; part < kParts; ++part) {
       counts_[part].assign(sides_[part].size(), 0);
       for (const Side& side : sides_[part]) {
-        for (const std::uint64_t pair : {side.low, side.high}) {
-          isCorner_[pair >> 32U] = isCorner_[static_cast<Index>(pair)] = 1;
-        }
+        for (const Index v : faceVertices(cells_[side.place / 8], side.place % 8)) isCorner_[v] = 1;
       }
     }
-    parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) { addCell(mesh.cells[c]); });
+    parallelFor(stage, cells_.size(), kGrain, [&](std::size_t c) { addCell(c); });
   }
 
   /// Number of cells that have the i-th side of a part.
@@ -200,26 +255,32 @@ class CellCounter {
   }
 
  private:
-  void addCell(const Hex& cell) {
+  void addCell(std::size_t c) {
     unsigned corners = 0;
-    for (const Index v : cell) corners += isCorner_[v];
+    for (const Index v : cells_[c]) corners += isCorner_[v];
     if (corners < 4) return;
+    const std::array<std::uint64_t, 6> keys = keysOf(cells_[c]);
     for (std::size_t f = 0; f < 6; ++f) {
-      const Quad quad = faceVertices(cell, f);
+      const Quad quad = faceVertices(cells_[c], f);
       if (isCorner_[quad[0]] + isCorner_[quad[1]] + isCorner_[quad[2]] + isCorner_[quad[3]] == 4) {
-        addFace(sideOf(quad, 0));
+        addFace({keys[f], 8 * c + f});
       }
     }
   }
   void addFace(const Side& side) {
-    const std::size_t part = partOf(side);
+    const std::size_t part = partOf(side.key);
     const std::vector<Side>& sides = sides_[part];
-    const auto found = std::lower_bound(sides.begin(), sides.end(), side, before);
-    if (found == sides.end() || !sameFace(*found, side)) return;
-    const auto i = static_cast<std::size_t>(found - sides.begin());
-    std::atomic_ref(counts_[part][i]).fetch_add(1, std::memory_order_relaxed);
+    const auto first =
+        std::lower_bound(sides.begin(), sides.end(), side.key,
+                         [](const Side& known, std::uint64_t key) { return known.key < key; });
+    for (auto found = first; found != sides.end() && found->key == side.key; ++found) {
+      if (!isSameFace(cells_, found->place, side.place)) continue;
+      const auto i = static_cast<std::size_t>(found - sides.begin());
+      std::atomic_ref(counts_[part][i]).fetch_add(1, std::memory_order_relaxed);
+    }
   }
 
+  std::span<const Hex> cells_;
   const OddSides& sides_;
   Array<std::uint8_t> isCorner_;  ///< per vertex: whether it belongs to a side
   std::array<std::vector<std::uint32_t>, kParts> counts_;
@@ -227,21 +288,29 @@ class CellCounter {
 
 }  // namespace
 
-Array<Quad> boundaryQuads(const HexMesh& mesh, Stage& stage) {
+Array<std::uint64_t> boundaryPlaces(const HexMesh& mesh, Stage& stage) {
   const OddSides sides = findOddSides(mesh, stage);
   const CellCounter counter(mesh, sides, stage);
-  std::vector<std::uint64_t> places;
+  Array<std::uint64_t> places;
   for (std::size_t part = 0; part < kParts; ++part) {
     for (std::size_t i = 0; i < sides[part].size(); ++i) {
       if (counter.count(part, i) == 1) places.push_back(sides[part][i].place);
     }
   }
   std::sort(places.begin(), places.end());
+  return places;
+}
+
+Array<Quad> quadsAt(const HexMesh& mesh, std::span<const std::uint64_t> places) {
   Array<Quad> quads(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     quads[i] = faceVertices(mesh.cells[places[i] / 8], places[i] % 8);
   }
   return quads;
+}
+
+Array<Quad> boundaryQuads(const HexMesh& mesh, Stage& stage) {
+  return quadsAt(mesh, boundaryPlaces(mesh, stage));
 }
 
 }  // namespace hexhex

@@ -10,7 +10,7 @@ and the first one is written to FOLDER. Exit code 77: the program is not install
 import pathlib
 import sys
 
-NOT_INSTALLED = 77
+from handover import NOT_INSTALLED
 
 
 def write_with_vtk(folder, files):

@@ -1,6 +1,7 @@
 // Maps and hex meshes through `.ovm` and `.ovmb`: back bit for bit, and the same bytes again.
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <rapidcheck.h>
 #include <string>
@@ -190,6 +191,37 @@ TEST(OvmRoundTrip, EmptyMeshes) {
     writeMap(TetMap{}, folder / name);
     EXPECT_TRUE(readMap(folder / name).tets.empty());
   }
+}
+
+/// Tets around an axis, whose ends are joined to all other vertices.
+TEST(OvmRoundTrip, VerticesWithManyEdges) {
+  constexpr Index kAround = 100;
+  TetMap map;
+  map.points = {{0, 0, -1}, {0, 0, 1}};
+  for (Index i = 0; i < kAround; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kAround;
+    map.points.push_back({std::cos(angle), std::sin(angle), 0});
+    map.tets.push_back({0, 1, 2 + i, 2 + (i + 1) % kAround});
+    const Tet& tet = map.tets.back();
+    map.parameters.push_back({Vec3{1, 0, 0}, Vec3{2, 0, 0}, Vec3{0, static_cast<double>(tet[2]), 0},
+                              Vec3{0, static_cast<double>(tet[3]), 0}});
+  }
+  // Every edge but those of the circle has a tag, so that all of them have to be found.
+  for (Index i = 1; i < kAround + 2; ++i) {
+    map.features.edges.push_back({{0, i}, static_cast<std::int32_t>(i)});
+  }
+  roundTrip(map);
+  // The same with the axis behind all others: no vertex has many edges to larger ones.
+  const auto moved = [](Index v) { return (v + kAround) % (kAround + 2); };
+  TetMap other = map;
+  for (Index v = 0; v < map.points.size(); ++v) other.points[moved(v)] = map.points[v];
+  for (Tet& tet : other.tets) {
+    for (Index& v : tet) v = moved(v);
+  }
+  for (FeatureEdge& edge : other.features.edges) {
+    for (std::uint32_t& v : edge.vertices) v = moved(v);
+  }
+  roundTrip(other);
 }
 
 TEST(OvmRoundTrip, NumberOfThreadsDoesNotMatter) {
