@@ -381,7 +381,6 @@ static void test_features(const char* folder) {
   CHECK_OK(hexhex_mesh_take(copy, HEXHEX_FEATURE_QUADS, &taken, &error));
   CHECK(hexhex_buffer_data(taken) == copied.feature_quads);
   hexhex_buffer_destroy(taken);
-  CHECK(hexhex_mesh_take(copy, (hexhex_mesh_array)99, &taken, &error) == HEXHEX_INVALID_ARGUMENT);
   hexhex_mesh_destroy(copy);
   /* A region that is not there for each tet cannot be said in C; a vertex that is not there can. */
   const hexhex_feature_vertex nowhere = {4000000000U, 1};
@@ -786,10 +785,10 @@ static int run_out_of_memory(int threads, hexhex_engine engine, long first) {
  * array. A process that hangs ends by its alarm. */
 static void test_memory(void) {
   static const int threads[] = {1, 2, 8};
-  static const long first[] = {0, 1000, 3000, 8000, 24000};
+  static const long first[] = {0, 3000, 24000};
   if (SANITIZED) return; /* sanitizers need their address space, and replace malloc() */
   for (int t = 0; t < 3; ++t) {
-    for (int f = 0; f < 5; ++f) {
+    for (int f = 0; f < 3; ++f) {
       const pid_t child = fork();
       if (child == 0) {
         failures = 0;
