@@ -37,11 +37,15 @@ std::uint64_t scaledCells(std::uint64_t volume, int scale, double limit) {
 
 namespace {
 
-/// Whether a repair is to be tried, even if this build can only say that it cannot. Other defects
-/// than flipped and flat tets are its business only if rounding was asked for.
+/// Whether a repair is to be tried, even if this build can only say that it cannot: for flipped and
+/// flat tets, and for what these may be the cause of, as angles around edges, and with them what is
+/// singular, are not what they seem there. Other defects are its business only if rounding was asked
+/// for.
 bool isToBeRepaired(const DefectCollector& defects, const Mending& mending) {
   if (mending.mode == RepairMode::Off) return false;
-  return defects.has(ErrorCode::FlippedTet) || mending.round;
+  const auto found = [&](ErrorCode code) { return defects.has(code); };
+  return mending.round || found(ErrorCode::FlippedTet) || found(ErrorCode::SingularityOffLattice) ||
+         found(ErrorCode::TransitionResidual) || found(ErrorCode::HalfIntegerFixedPoint);
 }
 
 TetMap ownedCopy(const TetMapView& map) {
