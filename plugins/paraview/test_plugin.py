@@ -97,6 +97,20 @@ def check_writer(filter_):
         run("extract", "sphere.hexex", "-o", "there.mesh", "--scale", filter_.Scale)
         with open(os.path.join(OUT, "there.mesh"), "rb") as there:
             require(here.read() == there.read(), "another file than the command's")
+    # By the name of a format, whatever the extension; and a folder.
+    for format_ in ["mfem", "msh22-ascii", "vtk", "vtu"]:
+        writer = servermanager.writers.HexHexWriter(
+            Input=OutputPort(filter_, 0), FileName=os.path.join(OUT, "here.txt"), Format=format_)
+        writer.UpdatePipeline()
+        run("extract", "sphere.hexex", "-o", "there.txt", "--format", format_, "--scale",
+            filter_.Scale)
+        with open(os.path.join(OUT, "here.txt"), "rb") as here, \
+             open(os.path.join(OUT, "there.txt"), "rb") as there:
+            require(here.read() == there.read(), f"another {format_} file than the command's")
+    os.makedirs(os.path.join(OUT, "case"), exist_ok=True)
+    SaveData(os.path.join(OUT, "case", "case.foam"), proxy=OutputPort(filter_, 0))
+    require(os.path.exists(os.path.join(OUT, "case", "constant", "polyMesh", "owner")),
+            "no polyMesh")
 
 
 def check_curved():

@@ -15,12 +15,15 @@ vtkStandardNewMacro(vtkHexHexWriter);
 vtkHexHexWriter::~vtkHexHexWriter()
 {
   this->SetFileName(nullptr);
+  this->SetFormat(nullptr);
 }
 
 void vtkHexHexWriter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+  os << indent << "Format: " << (this->Format ? this->Format : "(by extension)") << "\n";
+  os << indent << "PatchAngle: " << this->PatchAngle << "\n";
 }
 
 int vtkHexHexWriter::FillInputPortInformation(int, vtkInformation* info)
@@ -40,7 +43,10 @@ void vtkHexHexWriter::WriteData()
   }
   const std::string problem =
     hexhex::paraview::runGuarded(*this, 0, [&](hexhex::Context& context) {
-      hexhex::writeHexMesh(hexhex::paraview::hexesOf(*grid), this->FileName, context);
+      hexhex::WriteOptions options;
+      if (this->Format) options.format = this->Format;
+      options.patchAngle = this->PatchAngle;
+      hexhex::writeHexMesh(hexhex::paraview::hexesOf(*grid), this->FileName, options, context);
     });
   if (!problem.empty())
   {
