@@ -372,19 +372,20 @@ def test_reentry(sphere):
     assert len(extractor.extract().cells) == 448
 
 
+# Large arrays, as smaller ones fit into what malloc has set aside for threads.
 MEMORY = """
 import resource, sys, hexhex
 map = hexhex.generate("sphere", cells=4, refine=4)
 pages = int(open("/proc/self/statm").read().split()[0])
-for extra in (2, 12, 40):
+for extra in (2, 60, 200):
     space = pages * resource.getpagesize() + extra * 2**20
     resource.setrlimit(resource.RLIMIT_AS, (space, resource.RLIM_INFINITY))
     try:
-        print(len(hexhex.extract(map, scale=4, threads=int(sys.argv[1])).cells))
+        print(len(hexhex.extract(map, scale=20, threads=int(sys.argv[1])).cells))
     except MemoryError as error:
         print("MemoryError", getattr(error, "code", ""))
 resource.setrlimit(resource.RLIMIT_AS, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
-print(len(hexhex.extract(map, scale=4).cells))
+print(len(hexhex.extract(map, scale=20).cells))
 """
 
 
@@ -393,7 +394,7 @@ def test_memory(threads):
     result = subprocess.run([sys.executable, "-c", MEMORY, str(threads)], capture_output=True,
                             text=True, timeout=120, check=False)
     lines = result.stdout.split("\n")
-    assert result.returncode == 0 and lines[3] == "28672", result.stdout + result.stderr
+    assert result.returncode == 0 and lines[3] == "3584000", result.stdout + result.stderr
     assert "MemoryError" in lines[0]
 
 
