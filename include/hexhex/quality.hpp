@@ -16,6 +16,7 @@ namespace hexhex HEXHEX_API_NAMESPACE {
 [[nodiscard]] double scaledJacobian(const std::array<Vec3, 8>& corners) noexcept;
 
 /// Scaled Jacobian of every cell.
+/// @throws Error InvalidArgument for a corner that is not a vertex of the mesh
 [[nodiscard]] Array<double> scaledJacobians(const HexMesh& mesh, Context& context);
 
 struct QualitySummary {

@@ -39,8 +39,8 @@ namespace {
 
 /// Whether a repair is to be tried, even if this build can only say that it cannot: for flipped and
 /// flat tets, and for what these may be the cause of, as angles around edges, and with them what is
-/// singular, are not what they seem there. Other defects are its business only if rounding was asked
-/// for.
+/// singular, are not what they seem there. Other defects are its business only if rounding was
+/// asked for.
 bool isToBeRepaired(const DefectCollector& defects, const Mending& mending) {
   if (mending.mode == RepairMode::Off) return false;
   const auto found = [&](ErrorCode code) { return defects.has(code); };

@@ -119,6 +119,14 @@ class MshReader {
   void readNodes41(Source& source);
   template <class Source>
   void readElements41(Source& source);
+  /// Cells of one entity: where they are in the file, how many, and their region.
+  struct CellBlock {
+    std::size_t position;
+    std::size_t count;
+    std::int32_t tag;
+  };
+  template <class Source>
+  void readCells41(Source& source, const std::vector<CellBlock>& blocks);
   template <class Source>
   void readNodes22(Source& source, std::size_t count);
   void readElements22(TextSource& source, std::size_t count);
@@ -425,12 +433,7 @@ void MshReader<corners>::readCorners(Source& record, std::size_t cell, bool wide
 template <std::size_t corners>
 template <class Source>
 void MshReader<corners>::readElements41(Source& source) {
-  struct Block {
-    std::size_t position;
-    std::size_t count;
-    std::int32_t tag;
-  };
-  std::vector<Block> wanted;
+  std::vector<CellBlock> wanted;
   std::size_t cells = 0;
   const std::uint64_t blocks = source.size("the number of blocks of elements");
   const std::uint64_t total = source.size("the number of elements");
@@ -466,8 +469,15 @@ void MshReader<corners>::readElements41(Source& source) {
   requireIndexable(source, cells, kKind.plural);
   mesh_.cells.resize(cells);
   const std::size_t end = source.position();
+  readCells41(source, wanted);
+  source.moveTo(end);
+}
+
+template <std::size_t corners>
+template <class Source>
+void MshReader<corners>::readCells41(Source& source, const std::vector<CellBlock>& blocks) {
   std::size_t first = 0;
-  for (const Block& block : wanted) {
+  for (const CellBlock& block : blocks) {
     source.moveTo(block.position);
     const auto takeCorners = [&](const char* place, std::size_t i) {
       bool known = true;
@@ -486,7 +496,6 @@ void MshReader<corners>::readElements41(Source& source) {
     setRegions(first, block.count, block.tag);
     first += block.count;
   }
-  source.moveTo(end);
 }
 
 /// Whether elements of a type can be features of a mesh of hexahedra.

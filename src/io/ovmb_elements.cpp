@@ -45,7 +45,7 @@ class ElementReader {
   static Encoding readEncoding(ByteCursor& cursor, std::uint8_t valence);
   template <class Stored>
   void decodeValences(ByteCursor& cursor, std::size_t entity);
-  void requireValences(ByteCursor& cursor, std::uint64_t count, std::size_t entity);
+  void requireValences(ByteCursor& cursor, std::uint64_t count, std::size_t entity) const;
   void readValences(ByteCursor& cursor, std::uint64_t count, std::size_t entity);
 
   const OvmbFrame& frame_;
@@ -198,7 +198,8 @@ void ElementReader::decodeValences(ByteCursor& cursor, std::size_t entity) {
 }
 
 /// Throws unless a chunk can have so many elements of its valence.
-void ElementReader::requireValences(ByteCursor& cursor, std::uint64_t count, std::size_t entity) {
+void ElementReader::requireValences(ByteCursor& cursor, std::uint64_t count,
+                                    std::size_t entity) const {
   if (count * std::max(encoding_.valence, encoding_.valenceBytes) > cursor.remaining()) {
     cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk is too short for its " +
                                            std::to_string(count) + " " + kElements[entity].many +

@@ -8,6 +8,7 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <mesh/hex_topology.hpp>
+#include <mesh/vertex_cells.hpp>
 
 namespace hexhex {
 namespace {
@@ -90,6 +91,7 @@ Array<double> scaledJacobians(const HexMesh& mesh, Context& context) {
   Stage stage(context, "quality");
   Array<double> result(mesh.cells.size());
   withThreads(context.threads(), [&] {
+    requireCornersInRange(mesh, stage);
     parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
       std::array<Vec3, 8> corners;
       for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh.points[mesh.cells[c][k]];

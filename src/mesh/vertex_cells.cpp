@@ -22,17 +22,20 @@ void requireIndexable(const HexMesh& mesh, Stage& stage) {
                     " cells, but its faces can be found for fewer than 2^32 - 1 cells only. Split "
                     "the mesh or use a smaller scale.");
   }
-  const std::size_t bad = firstCellOutOfRange(mesh, stage);
-  if (bad < mesh.cells.size()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "Cell " + std::to_string(bad) +
-                    " of the hexahedral mesh names a vertex that does not exist (the mesh has " +
-                    std::to_string(mesh.points.size()) + " vertices). Correct the cell.",
-                Place{PlaceKind::Cell, bad, 0});
-  }
+  requireCornersInRange(mesh, stage);
 }
 
 }  // namespace
+
+void requireCornersInRange(const HexMesh& mesh, Stage& stage) {
+  const std::size_t bad = firstCellOutOfRange(mesh, stage);
+  if (bad == mesh.cells.size()) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "Cell " + std::to_string(bad) +
+                  " of the hexahedral mesh names a vertex that does not exist (the mesh has " +
+                  std::to_string(mesh.points.size()) + " vertices). Correct the cell.",
+              Place{PlaceKind::Cell, bad, 0});
+}
 
 std::size_t firstCellOutOfRange(const HexMesh& mesh, Stage& stage) {
   std::atomic<std::size_t> first{mesh.cells.size()};

@@ -33,4 +33,7 @@ class VertexCells {
 /// The first cell with a corner that is not a vertex of the mesh, or the number of cells.
 [[nodiscard]] std::size_t firstCellOutOfRange(const HexMesh& mesh, Stage& stage);
 
+/// @throws Error InvalidArgument, with the first cell, if a corner is not a vertex of the mesh
+void requireCornersInRange(const HexMesh& mesh, Stage& stage);
+
 }  // namespace hexhex
