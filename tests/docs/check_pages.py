@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Whether the pages of docs/ name all that they should: every error code, every function of C and every
-name of the Python package."""
+"""Whether the pages of docs/ have all that they should: every error code; and in their snippets, which
+other tests run, every function of the libraries for C++, C and Python."""
 
 import ast
 import pathlib
@@ -9,12 +9,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# Told of in words, or siblings of what a snippet shows.
-C_IN_HEADER_ONLY = re.compile(r"_destroy$|_get_(arrays|stage)$|^hexhex_context_|^hexhex_buffer_|"
-                              r"^hexhex_mesh_writer_|^hexhex_lagrange_mesh_|^hexhex_piecewise_mesh_|"
-                              r"^hexhex_(version|scaled_jacobian|extractor_cells|mesh_copy|mesh_read|"
-                              r"map_read_tets|map_read_pair|map_from_pair|check_get_occurrence|"
-                              r"holes_get|repair_get_region)$")
+# Of types.hpp, for its arrays alone.
+INTERNAL = {"allocateArray", "freeArray"}
 
 
 def text(path):
@@ -27,8 +23,18 @@ def error_codes():
 
 
 def c_functions():
-    names = re.findall(r"HEXHEX_API [^;]*?\b(hexhex_\w+)\(", text("bindings/c/include/hexhex.h"))
-    return [name for name in names if not C_IN_HEADER_ONLY.search(name)]
+    return re.findall(r"HEXHEX_API [^;]*?\b(hexhex_\w+)\(", text("bindings/c/include/hexhex.h"))
+
+
+def cpp_functions():
+    """Those that are declared at the beginning of a line, which are no members."""
+    names = set()
+    for header in (ROOT / "include/hexhex").glob("*.hpp"):
+        if header.name == "view.hpp":  # of the command
+            continue
+        names.update(re.findall(r"^(?:\[\[nodiscard\]\] )?[A-Za-z][\w:<>,&* ]*?\b([a-z]\w+)\(",
+                                header.read_text(encoding="utf-8"), re.M))
+    return sorted(names - INTERNAL)
 
 
 def python_names():
@@ -41,11 +47,15 @@ def python_names():
 
 def main():
     missing = []
-    for page, names in (("docs/errors.md", error_codes()), ("docs/troubleshooting.md", error_codes()),
-                        ("docs/api-c.md", c_functions()), ("docs/api-python.md", python_names())):
+    pages = (("docs/errors.md", error_codes(), None), ("docs/troubleshooting.md", error_codes(), None),
+             ("docs/api-c.md", c_functions(), "c"), ("docs/api-cpp.md", cpp_functions(), "cpp"),
+             ("docs/api-python.md", python_names(), "python"))
+    for page, names, language in pages:
         if len(names) < 10:
             missing.append(f"{page}: nothing found to look for")
         content = text(page)
+        if language is not None:
+            content = "\n".join(re.findall(rf"(?ms)^```{language}\n(.*?)^```$", content))
         missing += [f"{page} lacks {name}" for name in names
                     if not re.search(rf"\b{name}\b", content)]
     if missing:

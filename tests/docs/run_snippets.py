@@ -4,7 +4,8 @@
     run_snippets.py PAGE LANGUAGE [COMPILER AND FLAGS...]
 
 LANGUAGE: python (with this interpreter), sh, c or cpp. All snippets of a page are one program; those
-of C and C++ are compiled with the command, which gets the source and the program's name appended.
+of C and C++ are compiled with the command, which gets the source and the program's name appended. They
+stand in one function, except those that begin with a definition or #include, which stand before it.
 """
 
 import os
@@ -15,11 +16,16 @@ import sys
 import tempfile
 
 PREAMBLE = {
-    "c": "#include <stdio.h>\n#include <hexhex.h>\nint main(void) {\n",
-    "cpp": "#include <iostream>\n#include <hexhex/hexhex.hpp>\nint main() {\n",
+    "c": "#include <stdio.h>\n#include <hexhex.h>\n",
+    "cpp": "#include <iostream>\n#include <hexhex/hexhex.hpp>\n",
     "python": "",
     "sh": "set -euo pipefail\n",
 }
+MAIN = {"c": "int main(void) {\n", "cpp": "int main() {\n"}
+
+
+def stands_before_main(snippet):
+    return re.match(r"#include|static |struct |class ", snippet) is not None
 
 
 def main():
@@ -28,9 +34,12 @@ def main():
     snippets = re.findall(rf"(?ms)^```{language}\n(.*?)^```$", text)
     if not snippets:
         sys.exit(f"{page} has no snippet of {language}")
-    program = PREAMBLE[language] + "\n".join(snippets)
-    if language in ("c", "cpp"):
-        program += "return 0;\n}\n"
+    if language in MAIN:
+        before = [snippet for snippet in snippets if stands_before_main(snippet)]
+        inside = [snippet for snippet in snippets if not stands_before_main(snippet)]
+        program = "\n".join([PREAMBLE[language], *before, MAIN[language], *inside, "return 0;\n}\n"])
+    else:
+        program = PREAMBLE[language] + "\n".join(snippets)
     with tempfile.TemporaryDirectory(prefix="hexhex-docs-") as folder:
         source = pathlib.Path(folder) / f"page.{language}"
         source.write_text(program, encoding="utf-8")
