@@ -132,6 +132,16 @@ double secondsOfPlainWrite(std::uint64_t bytes) {
   return seconds;
 }
 
+/// Of a file, or of all files in a folder: some formats are folders.
+std::uint64_t bytesOf(const std::filesystem::path& file) {
+  if (!std::filesystem::is_directory(file)) return std::filesystem::file_size(file);
+  std::uint64_t bytes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(file)) {
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  }
+  return bytes;
+}
+
 /// Times f(file) for a file that does not exist before.
 template <class F>
 void timeWriting(benchmark::State& state, const std::string& name, double extractionSeconds,
@@ -142,7 +152,7 @@ void timeWriting(benchmark::State& state, const std::string& name, double extrac
   double cpu = 0;
   std::uint64_t bytes = 0;
   for (auto _ : state) {
-    std::filesystem::remove(file);
+    std::filesystem::remove_all(file);
     const double cpuBegin = cpuSeconds();
     const auto begin = std::chrono::steady_clock::now();
     f(file);
@@ -150,10 +160,10 @@ void timeWriting(benchmark::State& state, const std::string& name, double extrac
     cpu += cpuSeconds() - cpuBegin;
     state.SetIterationTime(seconds);
     total += seconds;
-    bytes = std::filesystem::file_size(file);
+    bytes = bytesOf(file);
     plain += secondsOfPlainWrite(bytes);
   }
-  std::filesystem::remove(file);
+  std::filesystem::remove_all(file);
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes));
   state.counters["ratio_to_plain_write"] = total / plain;
   setMegabytesPerCore(state, bytes, cpu);
@@ -207,7 +217,7 @@ template <class F>
 void timeReading(benchmark::State& state, const std::filesystem::path& file, const F& f) {
   const double begin = cpuSeconds();
   for (auto _ : state) f(file);
-  const std::uint64_t bytes = std::filesystem::file_size(file);
+  const std::uint64_t bytes = bytesOf(file);
   setMegabytesPerCore(state, bytes, cpuSeconds() - begin);
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes));
 }
