@@ -123,10 +123,14 @@ class LoopOutcome {
 /// when they are first needed, and has no way to go on if the system refuses one then.
 void startWorkers(ArenaPool::Arena& arena, int threads) {
   Gathering gathering(threads);
+  const LoopOrder loopOrder;
   arena.execute([&] {
     oneapi::tbb::parallel_for(
         oneapi::tbb::blocked_range<int>(0, threads, 1),
-        [&](const oneapi::tbb::blocked_range<int>& /*one*/) { gathering.arriveAndWait(); },
+        [&](const oneapi::tbb::blocked_range<int>& /*one*/) {
+          const RangeOrder rangeOrder;
+          gathering.arriveAndWait();
+        },
         oneapi::tbb::simple_partitioner());
   });
 }
