@@ -5,6 +5,15 @@
 
 #include "options.hpp"
 
+namespace {
+
+hexhex::PiecewiseLinearParts partsOf(int patches) {
+  return patches != 0 ? hexhex::PiecewiseLinearParts::ArcsAndPatches
+                      : hexhex::PiecewiseLinearParts::Arcs;
+}
+
+}  // namespace
+
 hexhex_status hexhex_extract_piecewise(const hexhex_map* map, int patches,
                                        const hexhex_extract_options* options,
                                        hexhex_context* context, hexhex_piecewise_mesh** mesh,
@@ -15,14 +24,34 @@ hexhex_status hexhex_extract_piecewise(const hexhex_map* map, int patches,
     ContextOrDefault used(context);
     hexhex::ExtractStatistics filled;
     auto handle = std::make_unique<hexhex_piecewise_mesh>();
-    handle->piecewise =
-        hexhex::extractPiecewiseLinear(require(map, "map").view,
-                                       patches != 0 ? hexhex::PiecewiseLinearParts::ArcsAndPatches
-                                                    : hexhex::PiecewiseLinearParts::Arcs,
-                                       extractOptions(options), *used, &filled);
+    handle->piecewise = hexhex::extractPiecewiseLinear(require(map, "map").view, partsOf(patches),
+                                                       extractOptions(options), *used, &filled);
     writeStatistics(filled, statistics);
     handle->straight.lent = &handle->piecewise.mesh;
     handle->straight.repaired = repairedBy(std::move(filled));
+    *mesh = handle.release();
+  });
+}
+
+hexhex_status hexhex_extractor_extract_piecewise(hexhex_extractor* extractor, int patches,
+                                                 const hexhex_extract_options* options,
+                                                 hexhex_context* context,
+                                                 hexhex_piecewise_mesh** mesh,
+                                                 hexhex_statistics* statistics,
+                                                 hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(mesh, "mesh");
+    const hexhex::ExtractOptions given = extractOptions(options);
+    ContextOrDefault used(context);
+    hexhex_extractor& prepared = require(extractor, "extractor");
+    const Occupied occupied(prepared.busy, "extractor");
+    hexhex::ExtractStatistics filled;
+    auto handle = std::make_unique<hexhex_piecewise_mesh>();
+    handle->piecewise =
+        prepared.extractor.extractPiecewiseLinear(partsOf(patches), given, *used, &filled);
+    writeStatistics(filled, statistics);
+    handle->straight.lent = &handle->piecewise.mesh;
     *mesh = handle.release();
   });
 }

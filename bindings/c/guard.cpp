@@ -16,7 +16,11 @@ static_assert(hexhex::c::statusOf(hexhex::ErrorCode::FlippedTet) == HEXHEX_FLIPP
 static_assert(hexhex::c::statusOf(hexhex::ErrorCode::Internal) == HEXHEX_INTERNAL);
 static_assert(static_cast<int>(hexhex::PlaceKind::Cell) == HEXHEX_PLACE_CELL);
 // Any int may come in: without an underlying type, reading another number would be undefined.
-static_assert(std::is_same_v<std::underlying_type_t<hexhex_status>, int>);
+template <class... Enumerations>
+constexpr bool kAreInts = (std::is_same_v<std::underlying_type_t<Enumerations>, int> && ...);
+static_assert(kAreInts<hexhex_status, hexhex_place_kind, hexhex_chart_style, hexhex_defect_kind,
+                       hexhex_answer_table, hexhex_output, hexhex_mesh_array, hexhex_engine,
+                       hexhex_valence_table>);
 
 namespace hexhex::c {
 

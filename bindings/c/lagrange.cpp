@@ -46,6 +46,27 @@ hexhex_status hexhex_extract_lagrange(const hexhex_map* map, int order,
   });
 }
 
+hexhex_status hexhex_extractor_extract_lagrange(hexhex_extractor* extractor, int order,
+                                                const hexhex_extract_options* options,
+                                                hexhex_context* context,
+                                                hexhex_lagrange_mesh** mesh,
+                                                hexhex_statistics* statistics,
+                                                hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(mesh, "mesh");
+    const hexhex::ExtractOptions given = extractOptions(options);
+    ContextOrDefault used(context);
+    hexhex_extractor& prepared = require(extractor, "extractor");
+    const Occupied occupied(prepared.busy, "extractor");
+    hexhex::ExtractStatistics filled;
+    auto handle = std::make_unique<hexhex_lagrange_mesh>();
+    handle->mesh = prepared.extractor.extractLagrange(order, given, *used, &filled);
+    writeStatistics(filled, statistics);
+    *mesh = handle.release();
+  });
+}
+
 void hexhex_lagrange_mesh_destroy(hexhex_lagrange_mesh* mesh) { delete mesh; }
 
 hexhex_status hexhex_lagrange_mesh_copy(const hexhex_lagrange_arrays* arrays,

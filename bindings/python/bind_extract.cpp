@@ -165,6 +165,31 @@ class PyExtractor {
     });
     return asTuple(notes);
   }
+  nb::tuple extractPieces(bool patches, const Options& options, int threads,
+                          const Progress& progress) {
+    const auto parts = patches ? PiecewiseLinearParts::ArcsAndPatches : PiecewiseLinearParts::Arcs;
+    Notes notes;
+    PiecewiseLinearMesh mesh = run(
+        threads, progress,
+        [&](Context& context) {
+          const std::unique_lock<std::mutex> lock = oneAtATime();
+          return extractor_.extractPiecewiseLinear(parts, options.get(), context,
+                                                   &notes.statistics);
+        },
+        &notes.stages);
+    return nb::make_tuple(std::move(mesh), asTuple(notes));
+  }
+  nb::tuple extractOrder(int order, const Options& options, int threads, const Progress& progress) {
+    Notes notes;
+    LagrangeMesh mesh = run(
+        threads, progress,
+        [&](Context& context) {
+          const std::unique_lock<std::mutex> lock = oneAtATime();
+          return extractor_.extractLagrange(order, options.get(), context, &notes.statistics);
+        },
+        &notes.stages);
+    return nb::make_tuple(std::move(mesh), asTuple(notes));
+  }
   [[nodiscard]] std::uint64_t cells() const { return extractor_.cellsAtScaleOne(); }
 
  private:
@@ -239,6 +264,10 @@ void bindExtract(nb::module_& module) {
            "max_scale"_a, "threads"_a, "progress"_a.none())
       .def("extract", &PyExtractor::extract, "options"_a, "threads"_a, "progress"_a.none())
       .def("extract_to", &PyExtractor::extractInto, "sink"_a, "options"_a, "threads"_a,
+           "progress"_a.none())
+      .def("extract_piecewise", &PyExtractor::extractPieces, "patches"_a, "options"_a, "threads"_a,
+           "progress"_a.none())
+      .def("extract_lagrange", &PyExtractor::extractOrder, "order"_a, "options"_a, "threads"_a,
            "progress"_a.none())
       .def("cells", &PyExtractor::cells);
   module.def("repair", &repairMap, "map"_a, "tolerance"_a, "scale"_a, "round"_a, "refine"_a,

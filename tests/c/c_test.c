@@ -782,6 +782,10 @@ static void test_numbers_that_are_none(void) {
           HEXHEX_INVALID_ARGUMENT);
     CHECK(hexhex_extractor_extract_to(extractor, &sink, &options, NULL, NULL, &error) ==
           HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_extractor_extract_lagrange(extractor, 1, &options, NULL, &no_curved, NULL,
+                                            &error) == HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_extractor_extract_piecewise(extractor, 0, &options, NULL, &no_pieces, NULL,
+                                             &error) == HEXHEX_INVALID_ARGUMENT);
     hexhex_extractor_destroy(extractor);
     CHECK(no_mesh == NULL && no_curved == NULL && no_pieces == NULL);
 
@@ -1034,6 +1038,35 @@ static void test_lagrange(const char* folder) {
   b.order = 3;
   b.cell_count = SIZE_MAX / 2;
   CHECK(hexhex_lagrange_mesh_copy(&b, &other, &error) == HEXHEX_TOO_LARGE && other == NULL);
+  /* Of an extractor, which has another scale before and after. */
+  hexhex_extractor* extractor = NULL;
+  hexhex_extract_options options = HEXHEX_EXTRACT_OPTIONS_INIT;
+  hexhex_piecewise_mesh* pieces = NULL;
+  hexhex_arc_arrays arcs = HEXHEX_ARC_ARRAYS_INIT;
+  CHECK_OK(hexhex_extractor_create(map, 1e-2, 5, NULL, &extractor, &error));
+  for (int i = 0; i < 2; ++i) {
+    b.cell_count = 0;
+    CHECK_OK(hexhex_extractor_extract_lagrange(extractor, 3, NULL, NULL, &other, NULL, &error));
+    CHECK_OK(hexhex_lagrange_mesh_get_arrays(other, &b, &error));
+    CHECK(b.point_count == a.point_count && b.cell_count == a.cell_count);
+    CHECK(memcmp(a.points, b.points, 24 * a.point_count) == 0);
+    CHECK(memcmp(a.nodes, b.nodes, 64 * 4 * a.cell_count) == 0);
+    CHECK(memcmp(a.regions, b.regions, 4 * a.cell_count) == 0);
+    hexhex_lagrange_mesh_destroy(other);
+    options.scale = 2;
+    CHECK_OK(hexhex_extractor_extract_piecewise(extractor, 0, &options, NULL, &pieces, NULL,
+                                                &error));
+    CHECK_OK(hexhex_piecewise_mesh_get_arcs(pieces, &arcs, &error));
+    CHECK(arcs.arc_count == 3 * 16 * 17 * 17);
+    hexhex_piecewise_mesh_destroy(pieces);
+  }
+  other = NULL;
+  CHECK(hexhex_extractor_extract_lagrange(extractor, 3, &options, NULL, &other, NULL, &error) ==
+        HEXHEX_INVALID_ARGUMENT);
+  CHECK(hexhex_extractor_extract_lagrange(extractor, 10, NULL, NULL, &other, NULL, &error) ==
+        HEXHEX_INVALID_ARGUMENT);
+  CHECK(other == NULL);
+  hexhex_extractor_destroy(extractor);
   hexhex_lagrange_mesh_destroy(mesh);
   hexhex_map_destroy(map);
 }

@@ -92,6 +92,19 @@ def test_extractor_keeps_its_arrays(sphere):
                               hexhex.extract(sphere, scale=scale).points)
     with pytest.raises(hexhex.ArgumentError):
         extractor.extract(scale=1000)
+    # Other orders and outputs, in any order.
+    for options in (dict(order=3), dict(scale=2, arcs=True, patches=True), dict(order=2, scale=2)):
+        mesh, expected = extractor.extract(**options), hexhex.extract(sphere, **options)
+        assert np.array_equal(mesh.points, expected.points)
+        assert (mesh.arcs is None) == (expected.arcs is None)
+        if mesh.arcs is not None:
+            assert np.array_equal(mesh.arcs.points, expected.arcs.points)
+            assert np.array_equal(mesh.patches.corners, expected.patches.corners)
+        if mesh.curved is not None:
+            assert np.array_equal(mesh.curved.points, expected.curved.points)
+            assert np.array_equal(mesh.curved.nodes, expected.curved.nodes)
+    with pytest.raises(hexhex.ArgumentError):
+        extractor.extract(scale=33, order=2)
 
 
 def test_errors(sphere, tmp_path):

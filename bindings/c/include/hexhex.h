@@ -696,7 +696,7 @@ typedef struct hexhex_extractor hexhex_extractor;
 
 /** @param map        must outlive the extractor
  *  @param tolerance  as in hexhex_extract_options
- *  @param max_scale  the largest scale that will be asked for; below 256, meshes are the same as
+ *  @param max_scale  the largest scale that will be asked for, times the order; below 256, meshes are the same as
  *                    those of hexhex_extract(), bit for bit */
 HEXHEX_API hexhex_status hexhex_extractor_create(const hexhex_map* map, double tolerance,
                                                  int max_scale, hexhex_context* context,
@@ -1096,6 +1096,16 @@ HEXHEX_API hexhex_status hexhex_extract_lagrange(const hexhex_map* map, int orde
                                                  hexhex_statistics* statistics,
                                                  hexhex_error* error);
 HEXHEX_API void hexhex_lagrange_mesh_destroy(hexhex_lagrange_mesh* mesh);
+
+/** Both of a prepared map; scale times order is at most what the extractor was made for. */
+HEXHEX_API hexhex_status hexhex_extractor_extract_piecewise(
+    hexhex_extractor* extractor, int patches, const hexhex_extract_options* options,
+    hexhex_context* context, hexhex_piecewise_mesh** mesh, hexhex_statistics* statistics,
+    hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_extractor_extract_lagrange(
+    hexhex_extractor* extractor, int order, const hexhex_extract_options* options,
+    hexhex_context* context, hexhex_lagrange_mesh** mesh, hexhex_statistics* statistics,
+    hexhex_error* error);
 
 /** As hexhex_mesh_get_repair(). */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_get_repair(const hexhex_lagrange_mesh* mesh,

@@ -147,21 +147,29 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
     (<hexhex.LagrangeMesh: 64 cells of order 2>, 300, None)
     """
     arrays = _map_of(points, tets, igm)._arrays()
-    options = _options(scale, engine, tolerance, epsilon, repair, round)
-    workers = _threads(threads)
+    last = (_options(scale, engine, tolerance, epsilon, repair, round), _threads(threads), progress)
+    return _assembled(
+        order, arcs, patches, lambda: _hexhex.extract(arrays, *last),
+        lambda: _hexhex.extract_piecewise(arrays, patches, *last),
+        lambda: _hexhex.extract_lagrange(arrays, order, *last))
+
+
+def _assembled(order: int, arcs: bool, patches: bool, extract_straight: Callable[[], Any],
+               extract_pieces: Callable[[], Any], extract_order: Callable[[], Any]) -> Mesh:
+    """A mesh of what is asked for; each function gives a handle and notes."""
     if arcs or patches:
-        pieces, notes = _hexhex.extract_piecewise(arrays, patches, options, workers, progress)
+        pieces, notes = extract_pieces()
         mesh = Mesh._from_handle(pieces.mesh, notes)
         mesh.arcs = Arcs(**pieces.arcs, _handle=pieces)
         if patches:
             mesh.patches = Patches(**pieces.patches, _handle=pieces)
     if order != 1:
-        curved, notes = _hexhex.extract_lagrange(arrays, order, options, workers, progress)
+        curved, notes = extract_order()
         if not (arcs or patches):
             mesh = Mesh._from_handle(curved.straight(), notes)
         mesh.curved = LagrangeMesh._from_handle(curved)
     elif not (arcs or patches):
-        handle, notes = _hexhex.extract(arrays, options, workers, progress)
+        handle, notes = extract_straight()
         mesh = Mesh._from_handle(handle, notes)
     return mesh
 
@@ -365,7 +373,7 @@ class Extractor:
     Args:
         points, tets, igm: as in extract(); they must not change while the extractor lives.
         tolerance, threads, progress: as in extract().
-        max_scale: the largest scale that will be asked for.
+        max_scale: the largest scale that will be asked for, times the order.
 
     Raises:
         As extract().
@@ -382,12 +390,16 @@ class Extractor:
         """Number of cells at scale 1; scale**3 times as many at others."""
         return self._extractor.cells()
 
-    def extract(self, *, scale: int = 1, threads: int | None = None, engine: str = "atlas",
+    def extract(self, *, scale: int = 1, threads: int | None = None, order: int = 1,
+                arcs: bool = False, patches: bool = False, engine: str = "atlas",
                 epsilon: float = 1e-6, progress: Progress | None = None) -> Mesh:
-        """The mesh at a scale: the same as that of hexhex.extract()."""
-        options = _options(scale, engine, 0, epsilon, False, False)
-        handle, notes = self._extractor.extract(options, _threads(threads), progress)
-        return Mesh._from_handle(handle, notes)
+        """The mesh at a scale: the same as that of hexhex.extract(). The scale times the order is at
+        most ``max_scale``."""
+        last = (_options(scale, engine, 0, epsilon, False, False), _threads(threads), progress)
+        return _assembled(
+            order, arcs, patches, lambda: self._extractor.extract(*last),
+            lambda: self._extractor.extract_piecewise(patches, *last),
+            lambda: self._extractor.extract_lagrange(order, *last))
 
     def extract_to(self, sink: MeshSink, *, scale: int = 1, threads: int | None = None,
                    progress: Progress | None = None) -> dict[str, Any]:
