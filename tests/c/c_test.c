@@ -1220,8 +1220,51 @@ static long address_space(void) {
   return pages * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
-/* Extracts with ever more address space, from hardly any: each attempt ends with a mesh or with
- * OutOfMemory, soon, and the process lives and works when it has memory again. */
+/* Everything that works on a map, once, until something fails. */
+static hexhex_status work_on(const hexhex_map* map, const hexhex_extract_options* options,
+                             hexhex_context* context, int curved, hexhex_error* error) {
+  hexhex_mesh* mesh = NULL;
+  hexhex_check_report* report = NULL;
+  hexhex_verify_report* verified = NULL;
+  hexhex_map_structure* in_map = NULL;
+  hexhex_piecewise_mesh* pieces = NULL;
+  hexhex_lagrange_mesh* lagrange = NULL;
+  hexhex_extractor* extractor = NULL;
+  hexhex_structure structure = HEXHEX_STRUCTURE_INIT;
+  hexhex_quality quality = HEXHEX_QUALITY_INIT;
+  hexhex_sink sink = HEXHEX_SINK_INIT;
+  hexhex_status status = hexhex_extract(map, options, context, &mesh, NULL, error);
+  CHECK((status == HEXHEX_OK) == (mesh != NULL));
+  if (!status) status = hexhex_check(map, 1e-2, 3, context, &report, error);
+  if (!status) status = hexhex_map_find_structure(map, 1e-2, context, &in_map, error);
+  if (!status) status = hexhex_verify(map, mesh, 1e-2, 3, context, &verified, error);
+  if (!status) status = hexhex_mesh_structure(mesh, context, &structure, NULL, error);
+  if (!status) status = hexhex_mesh_quality(mesh, context, NULL, &quality, error);
+  if (!status) status = hexhex_extract_to(&sink, map, options, context, NULL, error);
+  if (!status) status = hexhex_extractor_create(map, 1e-2, 8, context, &extractor, error);
+  if (!status && curved) {
+    status = hexhex_extractor_extract_piecewise(extractor, 1, options, context, &pieces, NULL, error);
+  }
+  if (!status && curved) {
+    status = hexhex_extractor_extract_lagrange(extractor, 2, options, context, &lagrange, NULL,
+                                               error);
+  }
+  if (!status && curved) {
+    status = hexhex_lagrange_mesh_quality(lagrange, context, NULL, &quality, error);
+  }
+  CHECK(status || hexhex_verify_passed(verified));
+  hexhex_extractor_destroy(extractor);
+  hexhex_lagrange_mesh_destroy(lagrange);
+  hexhex_piecewise_mesh_destroy(pieces);
+  hexhex_map_structure_destroy(in_map);
+  hexhex_verify_report_destroy(verified);
+  hexhex_check_report_destroy(report);
+  hexhex_mesh_destroy(mesh);
+  return status;
+}
+
+/* Works with ever more address space, from hardly any: each attempt ends well or with OutOfMemory,
+ * soon, and the process lives and works when it has memory again. */
 static int run_out_of_memory(int threads, hexhex_engine engine, long first) {
   hexhex_error error;
   hexhex_map* map = sphere(4);
@@ -1239,17 +1282,15 @@ static int run_out_of_memory(int threads, hexhex_engine engine, long first) {
     getrlimit(RLIMIT_AS, &limit);
     limit.rlim_cur = (rlim_t)(address_space() + extra) * 1024;
     CHECK(setrlimit(RLIMIT_AS, &limit) == 0);
-    mesh = NULL;
-    const hexhex_status status = hexhex_extract(map, &options, context, &mesh, NULL, &error);
+    const hexhex_status status =
+        work_on(map, &options, context, engine == HEXHEX_ENGINE_ATLAS, &error);
     limit.rlim_cur = limit.rlim_max;
     setrlimit(RLIMIT_AS, &limit);
     CHECK(status == HEXHEX_OK || status == HEXHEX_OUT_OF_MEMORY);
-    CHECK((status == HEXHEX_OK) == (mesh != NULL));
     if (status == HEXHEX_OUT_OF_MEMORY) {
       ++exhausted;
       CHECK(strlen(error.message) > 20);
     }
-    hexhex_mesh_destroy(mesh);
     hexhex_context_destroy(context);
   }
   CHECK(exhausted > 0 || first > 4000);
