@@ -310,10 +310,10 @@ typedef struct hexhex_sample_options {
 HEXHEX_API hexhex_status hexhex_map_generate(const char* kind, const hexhex_sample_options* options,
                                              hexhex_map** map, hexhex_error* error);
 
-/** The kinds of maps that can be generated: their number, and the name and a description of one.
- * Strings live as long as the program.
- * @param[out] name, description  or NULL */
+/** The number of kinds of maps that can be generated. */
 HEXHEX_API size_t hexhex_sample_kind_count(void);
+/** The name and a description of a kind of maps. Strings live as long as the program.
+ * @param[out] name, description  or NULL */
 HEXHEX_API hexhex_status hexhex_get_sample_kind(size_t number, const char** name,
                                                 const char** description, hexhex_error* error);
 /** The name of a kind of defect, e.g. "interior"; "Unknown" for numbers that are none. */
@@ -341,8 +341,8 @@ HEXHEX_API hexhex_status hexhex_map_get_answer(const hexhex_map* map, hexhex_sam
 
 /** Tables of an answer: how many elements of the mesh have a key. */
 typedef enum hexhex_answer_table HEXHEX_AS_INT {
-  HEXHEX_ANSWER_INNER_EDGES = 0,    /**< singular hex edges inside, by valence */
-  HEXHEX_ANSWER_BOUNDARY_EDGES = 1, /**< singular hex edges on the boundary, by valence */
+  HEXHEX_ANSWER_INNER_EDGES = 0,     /**< singular hex edges inside, by valence */
+  HEXHEX_ANSWER_BOUNDARY_EDGES = 1,  /**< singular hex edges on the boundary, by valence */
   HEXHEX_ANSWER_TAGGED_VERTICES = 2, /**< hex vertices, by tag */
   HEXHEX_ANSWER_TAGGED_EDGES = 3,    /**< hex edges, by tag */
   HEXHEX_ANSWER_TAGGED_QUADS = 4     /**< hex faces, by tag */
@@ -696,8 +696,8 @@ typedef struct hexhex_extractor hexhex_extractor;
 
 /** @param map        must outlive the extractor
  *  @param tolerance  as in hexhex_extract_options
- *  @param max_scale  the largest scale that will be asked for, times the order; below 256, meshes are the same as
- *                    those of hexhex_extract(), bit for bit */
+ *  @param max_scale  the largest scale that will be asked for, times the order; below 256, meshes
+ *                    are the same as those of hexhex_extract(), bit for bit */
 HEXHEX_API hexhex_status hexhex_extractor_create(const hexhex_map* map, double tolerance,
                                                  int max_scale, hexhex_context* context,
                                                  hexhex_extractor** extractor, hexhex_error* error);
@@ -1102,10 +1102,12 @@ HEXHEX_API hexhex_status hexhex_extractor_extract_piecewise(
     hexhex_extractor* extractor, int patches, const hexhex_extract_options* options,
     hexhex_context* context, hexhex_piecewise_mesh** mesh, hexhex_statistics* statistics,
     hexhex_error* error);
-HEXHEX_API hexhex_status hexhex_extractor_extract_lagrange(
-    hexhex_extractor* extractor, int order, const hexhex_extract_options* options,
-    hexhex_context* context, hexhex_lagrange_mesh** mesh, hexhex_statistics* statistics,
-    hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_extractor_extract_lagrange(hexhex_extractor* extractor, int order,
+                                                           const hexhex_extract_options* options,
+                                                           hexhex_context* context,
+                                                           hexhex_lagrange_mesh** mesh,
+                                                           hexhex_statistics* statistics,
+                                                           hexhex_error* error);
 
 /** As hexhex_mesh_get_repair(). */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_get_repair(const hexhex_lagrange_mesh* mesh,
@@ -1141,10 +1143,10 @@ typedef struct hexhex_lagrange_arrays {
   size_t feature_quad_count;
   const int32_t* regions; /**< per cell, or NULL */
 } hexhex_lagrange_arrays;
-#define HEXHEX_LAGRANGE_ARRAYS_INIT                                                            \
-  {                                                                                            \
-    sizeof(hexhex_lagrange_arrays), 0, NULL, 0, 0, NULL, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, \
-        0, NULL                                                                                \
+#define HEXHEX_LAGRANGE_ARRAYS_INIT                                                                \
+  {                                                                                                \
+    sizeof(hexhex_lagrange_arrays), 0, NULL, 0, 0, NULL, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, \
+        NULL                                                                                       \
   }
 
 /** Cells with copies of the arrays, e.g. to write them.
