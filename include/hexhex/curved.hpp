@@ -121,7 +121,7 @@ struct LagrangeMesh {
   Array<Index> generatorTet;
   Array<CornerSet> generatorCorners;
 
-  // Of the straight mesh, as in HexMesh:
+  // Of the straight mesh, as in HexMesh; a tagged edge or quad stands for all its nodes:
   HexFeatures features = {};
   Array<std::int32_t> regions = {};
 
@@ -163,9 +163,11 @@ void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& 
                   Context& context);
 
 /// Writes Lagrange cells: `.vtu` (VTK_LAGRANGE_HEXAHEDRON in the node order of VTK 9), `.msh` (Gmsh
-/// 4.1), `.mesh` (MFEM, with its nodes as a discontinuous grid function).
-/// @param options  scaledJacobians: of the cells, by scaledJacobians(); empty: computed
-/// @throws Error FileUnsupported, FileWrite
+/// 4.1), `.mesh` (MFEM, with its nodes as a discontinuous grid function). Tags, regions and groups
+/// of the boundary are written as those of straight meshes: docs/features.md tells what formats
+/// hold.
+/// @param options  scaledJacobians: of the cells, by scaledJacobians(); empty: computed. patchAngle
+/// @throws Error FileUnsupported, FileWrite; InvalidArgument for features that are not in the mesh
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context);
 
@@ -175,7 +177,8 @@ void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& fi
 
 /// Reads the Lagrange hexahedra of a `.vtu` file, all of one order, with their nodes in the order
 /// of VTK 9; other cells are ignored. What writeLagrangeMesh() wrote comes back node by node, with
-/// its generators, but without regions; of other files, nodes at corners get the first numbers.
+/// its generators, tags and regions; of other files, nodes at corners get the first numbers, and
+/// what is tagged at other nodes is left out.
 /// @throws Error FileNotFound, FileSyntax, IndexOutOfRange, NotFinite; FileUnsupported without such
 ///         cells, for orders that differ or exceed kMaxOrder, and for other extensions; TooLarge
 [[nodiscard]] LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& context);
