@@ -151,16 +151,31 @@ struct LagrangeMesh {
 
 /// Writes the arcs of a mesh. `.vtu` and `.vtp` (VTK XML, binary appended): hex vertices and inner
 /// points, and a line per segment with the number of its hex edge; arrays docs/curved.md explains.
-/// The file appears complete or not at all.
-/// @throws Error FileUnsupported, FileWrite
+/// `.ovmb` (OpenVolumeMesh, polyhedral, without faces and cells): the same, with the property names
+/// that tools of the field use. The file appears complete or not at all.
+/// @throws Error FileUnsupported, FileWrite; TooLarge for files that cannot number the elements
 void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                Context& context);
+
+/// The same with the map that the mesh was extracted from, so that `.ovmb` files tell the indices
+/// of the tet simplices that points and segments lie in: in the numbering of the file that
+/// writeMap() writes for this map as `.ovm` or `.ovmb`.
+/// @param map  after a repair, the repaired one (ExtractStatistics::repairedMap)
+/// @throws Error  also InvalidArgument if it is another map, and as writeMap() for `.ovmb`
+void writeArcs(const PiecewiseLinearMesh& mesh, const TetMapView& map,
+               const std::filesystem::path& file, Context& context);
 
 /// Writes the patches of a mesh: `.vtu` and `.vtp`, a polygon each; or `.ovmb` (OpenVolumeMesh,
 /// polyhedral, without cells), with the property names that tools of the field use.
 /// @throws Error FileUnsupported, FileWrite; TooLarge for files that cannot number the elements
 void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                   Context& context);
+
+/// The same with the map, as for arcs; then also the sides of polygons inside faces know their
+/// simplices.
+/// @throws Error  as writeArcs() with a map
+void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
+                  const std::filesystem::path& file, Context& context);
 
 /// Writes Lagrange cells: `.vtu` (VTK_LAGRANGE_HEXAHEDRON in the node order of VTK 9), `.msh` (Gmsh
 /// 4.1), `.mesh` (MFEM, with its nodes as a discontinuous grid function). Tags, regions and groups
