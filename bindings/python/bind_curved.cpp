@@ -136,11 +136,14 @@ void bindCurved(nb::module_& module) {
       "mesh"_a, "map"_a.none(), "file"_a, "threads"_a, "progress"_a.none());
   module.def(
       "write_lagrange",
-      [](const LagrangeMesh& mesh, const std::string& file, int threads, const Progress& progress) {
+      [](const LagrangeMesh& mesh, const std::string& file, double patchAngle, int threads,
+         const Progress& progress) {
+        WriteOptions options;
+        options.patchAngle = patchAngle;
         run(threads, progress,
-            [&](Context& context) { writeLagrangeMesh(mesh, file, {}, context); });
+            [&](Context& context) { writeLagrangeMesh(mesh, file, options, context); });
       },
-      "mesh"_a, "file"_a, "threads"_a, "progress"_a.none());
+      "mesh"_a, "file"_a, "patch_angle"_a, "threads"_a, "progress"_a.none());
 }
 
 }  // namespace hexhex::python

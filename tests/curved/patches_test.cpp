@@ -179,6 +179,7 @@ void examinePolygon(const PiecewiseLinearMesh& result, const TetPoints& tets, st
   const TetPoints::Simplex carrier = tets.simplex(tet, patches.polygonCorners[p]);
   const std::uint64_t begin = patches.cornerBegin[p];
   const std::uint64_t size = patches.cornerBegin[p + 1] - begin;
+  double twiceArea = 0;  // positive, so that polygons of a disk do not overlap; up to rounding
   for (std::uint64_t i = 0; i < size; ++i) {
     const TetPoints::Simplex generator = generatorOf(result, tets, patches.corners[begin + i]);
     ASSERT_TRUE(std::includes(carrier.begin(), carrier.end(), generator.begin(), generator.end()));
@@ -189,7 +190,9 @@ void examinePolygon(const PiecewiseLinearMesh& result, const TetPoints& tets, st
     const auto& b = patches.parameters[begin + (i + 1) % size];
     ASSERT_NEAR(tets.parametricDistance(tet, here, next), std::hypot(a[0] - b[0], a[1] - b[1]),
                 1e-7);
+    twiceArea += a[0] * b[1] - a[1] * b[0];
   }
+  ASSERT_GE(twiceArea, -1e-14);
 }
 
 void examine(const TetMap& map, int scale) {

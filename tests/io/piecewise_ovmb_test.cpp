@@ -16,6 +16,7 @@
 #include <hexhex/io.hpp>
 #include <hexhex/samples.hpp>
 
+#include <base/vector3.hpp>
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {
@@ -190,12 +191,15 @@ class Comparison {
     const std::size_t shared = vertices + mesh_.arcs.points.size();
     ASSERT_EQ(file.points.size(), shared + (withPatches ? mesh_.patches.points.size() : 0));
     const auto& types = file.integersOf(0, "v_type");
+    const auto& tetOf = file.integersOf(0, "hexhex::generator_tet");
     const auto& uv = file.pairs.at({0, "v_igm_uv"});
     ASSERT_EQ(uv.size(), file.points.size());
     for (std::size_t i = 0; i < file.points.size(); ++i) {
       EXPECT_EQ(file.points[i], mesh_.point(i));
       EXPECT_EQ(types[i], i < vertices ? 0 : (i < shared ? 1 : 2));
-      ASSERT_EQ(namedBy(file, 0, i), generatorOf(i));
+      const Simplex holder = namedBy(file, 0, i);
+      ASSERT_EQ(holder, generatorOf(i));
+      expectInside(file.points[i], holder, static_cast<Index>(tetOf.at(i)));
       if (i < vertices) {
         EXPECT_EQ(uv[i], (std::array<double, 2>{0, 0}));
       } else if (i < shared) {
@@ -280,6 +284,26 @@ class Comparison {
       for (const Index p : polygonsAt[e]) {
         const Simplex carrier = simplex(patches.polygonTet[p], patches.polygonCorners[p]);
         ASSERT_TRUE(std::includes(carrier.begin(), carrier.end(), here.begin(), here.end()));
+      }
+    }
+  }
+
+  /// A point lies in the interior of a simplex of a tet: its shares of corners are positive there,
+  /// and 0 elsewhere.
+  void expectInside(const Vec3& point, const Simplex& holder, Index tet) const {
+    const auto volume = [](const std::array<Vec3, 4>& p) {
+      return dot(minus(p[1], p[0]), hexhex::cross(minus(p[2], p[0]), minus(p[3], p[0])));
+    };
+    std::array<Vec3, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = map_.points[map_.tets[tet][i]];
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::array<Vec3, 4> moved = corners;
+      moved[i] = point;
+      const double share = volume(moved) / volume(corners);
+      if (holder.contains(map_.tets[tet][i])) {
+        EXPECT_GT(share, -1e-12);
+      } else {
+        EXPECT_NEAR(share, 0, 1e-9);
       }
     }
   }

@@ -516,8 +516,8 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
             (.vtu, .msh, .mesh), ``mesh.arcs`` or ``mesh.patches`` (.vtu, .vtp, .ovmb).
         format: of a map or mesh, whatever the extension is: see formats().
         compress: arrays of .vtu files, with zlib; of a map or mesh.
-        patch_angle: of a mesh without tagged quads, for formats with groups: where the boundary
-            turns by more degrees, a group ends; 0 to 180.
+        patch_angle: of a mesh, curved or not, without tagged quads, for formats with groups: where
+            the boundary turns by more degrees, a group ends; 0 to 180.
         map_array: the name of the array that holds the map in .vtu and .vtk files.
         map: of arcs and patches, the one that they were extracted from (of a mesh with a
             ``repaired_map``, that one): .ovmb files then tell the indices of the tet simplices that
@@ -539,7 +539,7 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
         raise ArgumentError("Curved meshes are written without format and compress.",
                             "InvalidArgument")
     elif isinstance(what, LagrangeMesh):
-        _hexhex.write_lagrange(what._handle, name, workers, progress)
+        _hexhex.write_lagrange(what._handle, name, patch_angle, workers, progress)
     elif isinstance(what, Arcs):
         _hexhex.write_arcs(what._handle, tets, name, workers, progress)
     elif isinstance(what, Patches):
