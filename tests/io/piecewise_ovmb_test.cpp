@@ -360,10 +360,11 @@ struct Case {
   SampleKind kind;
   SampleOptions options;
   bool mirrored = false;
+  int cellsAround = 0;  ///< of a torus, if not 0
 };
 
 std::vector<Case> cases() {
-  std::vector<Case> all(4);
+  std::vector<Case> all(5);
   all[0] = {"degenerate", SampleKind::Sphere, {}};  // aligned with the grid
   all[0].options.cells = 2;
   all[1] = {"generic", SampleKind::Torus, {}};
@@ -379,11 +380,20 @@ std::vector<Case> cases() {
   all[3] = all[1];
   all[3].name = "mirrored";
   all[3].mirrored = true;
+  all[4] = {"edges that come back", SampleKind::Torus, {}};
+  all[4].options.cells = 1;
+  all[4].options.refine = 3;
+  all[4].options.jitter = 0.3;
+  all[4].cellsAround = 1;
   return all;
 }
 
 TetMap mapOf(const Case& given) {
   TetMap map = generateSample(given.kind, given.options).map;
+  for (TetParameters& corners : map.parameters) {
+    if (given.cellsAround == 0) break;
+    for (Vec3& u : corners) u[2] *= given.cellsAround / 6.0;  // six blocks
+  }
   if (!given.mirrored) return map;
   for (Vec3& point : map.points) point[0] = -point[0];
   for (TetParameters& corners : map.parameters) {
