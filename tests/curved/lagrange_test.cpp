@@ -81,6 +81,11 @@ TEST(Lagrange, NodesAreThoseOfTheFinerMesh) {
   }
 }
 
+TEST(Lagrange, CellsThatMeetThemselves) {
+  examine(tightTorus(2), 2, 1);
+  examine(tightTorus(1), 3, 1);
+}
+
 TEST(Lagrange, RealMaps) {
   const std::vector<CurvedMap> maps = realMaps();
   if (maps.empty()) GTEST_SKIP() << "skipped: no real maps here";
