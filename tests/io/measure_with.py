@@ -5,7 +5,9 @@ usage: measure_with.py PROGRAM FILE...
 
 PROGRAM is gmsh, mfem or vtk. FILE.measures gets lines "KIND NAME COUNT MEASURE": the kinds are
 vertices, edges, quads, cells and nodes; NAME is that of a group, or "all"; the measure is length, area or
-volume, integrated over the program's own shape functions (0 where it is not known). A last line says
+volume, integrated over the program's own shape functions (0 where it is not known); that of the kind
+"flux", of groups of quads, is the flux of x / 3: that of a closed surface is the volume in it, if all
+quads face outwards. A last line says
 "jacobian MINIMUM", the smallest determinant of a cell's Jacobian matrix at the points of
 integration, where cells are unit cubes. Exit code 77: the program is not installed.
 """
@@ -64,8 +66,13 @@ def measure_with_gmsh(file):
                         groups.add(kind, name, 0, len(tags))
                         continue
                     places, weights = gauss(dimension)
-                    _, determinants, _ = gmsh.model.mesh.getJacobians(element, places, entity)
+                    columns, determinants, at = gmsh.model.mesh.getJacobians(element, places, entity)
                     determinants = determinants.reshape(-1, len(weights))
+                    if dimension == 2:
+                        columns = columns.reshape(-1, len(weights), 3, 3)
+                        normals = numpy.cross(columns[:, :, 0], columns[:, :, 1])
+                        flux = (normals * at.reshape(normals.shape)).sum(axis=2) / 3
+                        groups.add("flux", name, (flux @ weights).sum(), len(tags))
                     groups.add(kind, name, (determinants @ weights).sum(), len(tags))
                     if dimension == 3:
                         # Gmsh's cubes have edges of length 2.
@@ -81,6 +88,8 @@ def measure_with_mfem(file):
 
     mesh = mfem.Mesh(file, 0, 0, False)  # neither refined nor with corners exchanged
     assert mesh.Dimension() == 3
+    assert mesh.CheckElementOrientation(False) == 0
+    assert mesh.CheckBdrElementOrientation(False) == 0
     groups = Groups()
 
     def integrate(transformation, geometry):

@@ -316,6 +316,18 @@ void expectSame(const Measures& measured, Measures expected, bool sizesOfCellsOn
   EXPECT_EQ(measured.size(), names.size());
 }
 
+/// All quads of the boundary face outwards. Removes what says so.
+void expectOutwards(Measures& measured) {
+  double volume = 0;
+  double flux = 0;
+  for (const auto& [key, measure] : measured) {
+    if (key.first == "cells") volume += measure.size;
+    if (key.first == "flux" && key.second != "surface_9") flux += measure.size;  // 9 is inside
+  }
+  EXPECT_NEAR(flux, volume, 1e-12);
+  std::erase_if(measured, [](const auto& entry) { return entry.first.first == "flux"; });
+}
+
 struct Program {
   std::string name;
   std::string extension;
@@ -363,8 +375,9 @@ TEST_P(Measured, AgreesOnAllGroups) {
         return entry.first.first != "cells" && entry.first.first != "quads";
       });
     }
-    ASSERT_NO_FATAL_FAILURE(
-        expectSame(readMeasures(files[i], smallest), all, program.name == "vtk"));
+    Measures measured = readMeasures(files[i], smallest);
+    if (program.name == "gmsh") expectOutwards(measured);
+    ASSERT_NO_FATAL_FAILURE(expectSame(measured, all, program.name == "vtk"));
     EXPECT_NEAR(smallest, expectedSmallest, 1e-12);
     EXPECT_GT(smallest, 0);
   }
