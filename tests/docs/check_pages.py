@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Whether the pages of docs/ have all that they should: every error code; and in their snippets, which
-other tests run, every function of the libraries for C++, C and Python."""
+"""Whether the pages of docs/ have all that they should: every error code; in their snippets, which other
+tests run, every function of the libraries for C++, C and Python; and for every C function once, who may
+call it from several threads."""
 
 import ast
 import pathlib
@@ -45,8 +46,20 @@ def python_names():
     raise SystemExit("the package has no __all__")
 
 
+def threads_of_c():
+    """What the table of threads lacks, names twice, or names in vain."""
+    section = re.search(r"(?ms)^## Threads$(.*?)^## ", text("docs/api-c.md"))[1]
+    said = re.findall(r"`(hexhex_\w+)`", "\n".join(re.findall(r"(?m)^\| (`.*?) \|", section)))
+    functions = set(c_functions())
+    return ([f"docs/api-c.md says nothing of {name} and threads" for name in functions - set(said)] +
+            [f"docs/api-c.md says something of {name} and threads, which is no function"
+             for name in set(said) - functions] +
+            [f"docs/api-c.md says twice what {name} does in threads" for name in set(said)
+             if said.count(name) > 1])
+
+
 def main():
-    missing = []
+    missing = threads_of_c()
     pages = (("docs/errors.md", error_codes(), None), ("docs/troubleshooting.md", error_codes(), None),
              ("docs/api-c.md", c_functions(), "c"), ("docs/api-cpp.md", cpp_functions(), "cpp"),
              ("docs/api-python.md", python_names(), "python"))
