@@ -278,10 +278,10 @@ void FaceCutter::emitArcPoint(const Border& border, const Piece& piece, const Sl
   const std::size_t arc = border.arcs[side];
   const bool reversed = ((border.reversed >> side) & 1U) != 0;
   const Arcs& arcs = input_.arcs;
-  const SimplexVertices vertices = verticesOf(topology_.tets[piece.carrier.tet], corner.simplex);
   const std::uint64_t end = arcs.pointBegin[arc + 1];
+  const SimplexMatcher matches(topology_, piece.carrier.tet, corner.simplex);
   const auto next = [&](std::uint64_t i) {
-    while (i < end && !sameVertices(input_.crossings[i], vertices)) ++i;
+    while (i < end && !matches({arcs.generatorTet[i], arcs.generatorCorners[i]})) ++i;
     return i;
   };
   std::uint64_t best = next(arcs.pointBegin[arc]);

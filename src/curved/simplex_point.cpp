@@ -70,6 +70,19 @@ SimplexPoint exitPoint(const LatticeTet& corners, CornerMask simplex, std::size_
   return {};
 }
 
+SimplexPoint exitInside(const LatticeTet& corners, int face) noexcept {
+  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+  const auto a = static_cast<std::size_t>(f[0]);
+  const auto b = static_cast<std::size_t>(f[1]);
+  const auto c = static_cast<std::size_t>(f[2]);
+  SimplexPoint point;
+  point.weights[a] = -crossComponent(corners[b], corners[c], 0);
+  point.weights[b] = -crossComponent(corners[c], corners[a], 0);
+  point.weights[c] = -crossComponent(corners[a], corners[b], 0);
+  if (point.weights[a] > 0 && point.weights[b] > 0 && point.weights[c] > 0) return point;
+  return {};
+}
+
 SimplexPoint exitAfterEntry(const LatticeTet& corners, int entered) noexcept {
   // Seen along the line, the corners of the entry stand counter-clockwise around it. It leaves
   // through the face between two of them and the fourth corner that has the line inside.
