@@ -53,6 +53,7 @@ class ArcTracer {
     for (std::size_t steps = 0; steps <= topology_.tetCount(); ++steps) {
       const SimplexPoint exit = exitOf(part);
       const CornerMask at = exit.simplex();
+      if (at == kNoSimplex) fail(part.carrier.tet, "a hex edge leaves a tet nowhere");
       visit(std::as_const(part), exit, at);
       goOn(part, at);
       // The end is in the closed tet if and only if the edge does not leave it before.

@@ -38,11 +38,22 @@ class BlockTracer {
   BlockTracer(const PreparedMap& map, const LatticeNumbers& vertices, Arcs& arcs, ArcPieces& pieces)
       : map_(map), vertices_(vertices), arcs_(arcs), pieces_(pieces), tracer_(map, vertices) {}
 
-  void trace(Index tet, const Element& edge) {
-    GridPoint end = edge.z;
-    ++end[static_cast<std::size_t>(edge.axis)];
-    const LatticeNumbers::Found from = vertices_.find(tet, edge.z, fromHint_);
-    const LatticeNumbers::Found to = vertices_.find(tet, end, toHint_);
+  void trace(Index tet, const ElementNumbers::Row& row) {
+    const GridPoint& begin = row.front().z;
+    const int axis = row.front().axis;
+    const GridPoint end = step(begin, direction(axis, 1));
+    LatticeNumbers::OnLine beginnings(vertices_, tet, begin, row.along(), fromHint_);
+    LatticeNumbers::OnLine ends(vertices_, tet, end, row.along(), toHint_);
+    row.forEach([&](const Element& edge) {
+      trace(tet, edge, beginnings.find(edge.z), ends.find(step(edge.z, direction(axis, 1))));
+    });
+  }
+
+ private:
+  using Found = LatticeNumbers::Found;
+
+  /// @param from, to  what the tet has of the edge's ends
+  void trace(Index tet, const Element& edge, const Found& from, const Found& to) {
     if (from.vertex != kNone && to.vertex != kNone) {
       // By convexity, all between lies in the smallest simplex that contains both ends.
       arcs_.ends[edge.number] = {from.vertex, to.vertex};
@@ -57,9 +68,6 @@ class BlockTracer {
     arcs_.pointBegin[edge.number] = pieces_.crossings.size() - before;
     smoothParameters(std::span(pieces_.crossings).subspan(before));
   }
-
- private:
-  using Found = LatticeNumbers::Found;
 
   /// From a midpoint inside a tet.
   /// @param from, to  what the tet has of the edge's ends
@@ -211,7 +219,7 @@ Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const Ele
         BlockTracer tracer(map, vertices, arcs, pieces[block % kWaveBlocks]);
         for (std::size_t t = begin; t < end; ++t) {
           const auto tet = static_cast<Index>(t);
-          edges.forEach(tet, [&](const Element& edge) { tracer.trace(tet, edge); });
+          edges.forEachRow(tet, [&](const ElementNumbers::Row& row) { tracer.trace(tet, row); });
         }
       },
       [&](std::size_t firstBlock, std::size_t endBlock) {
