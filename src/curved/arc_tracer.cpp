@@ -43,43 +43,19 @@ ArcPart ArcTracer::behind(const SimplexInTet& point) {
   return part;
 }
 
-SimplexPoint ArcTracer::exitOf(const ArcPart& part) {
-  if (part.entered >= 0) return exitAfterEntry(part.seen, part.entered);
-  int& guess = exitGuesses_[part.carrier.frame.axes[0]];
-  if (part.carrier.simplex == kWholeTet) {
-    const SimplexPoint exit = exitInside(part.seen, guess);
-    if (exit.weights[static_cast<std::size_t>((guess + 1) % 4)] != 0) return exit;
-  }
-  const SimplexPoint exit = exitPoint(part.seen, part.carrier.simplex, 0);
-  const CornerMask at = exit.simplex();
-  if (dimension(at) == 2) guess = oppositeCorner(at);
-  return exit;
-}
-
-void ArcTracer::goOn(ArcPart& part, CornerMask at) {
-  if (part.carrier.simplex == kWholeTet && dimension(at) == 2) {
-    goBeyond(part, oppositeCorner(at));
-  } else {
-    part = behind({part.carrier.tet, at, part.carrier.frame});
-  }
-}
-
-/// From tet to tet through the interior of a face, whose corners look the same from there.
-void ArcTracer::goBeyond(ArcPart& part, int face) const {
+ArcExit ArcTracer::exitAt(const ArcPart& part, const SimplexPoint& point) const {
   const Index tet = part.carrier.tet;
-  const HalfFace mate = topology_.mate[halfFaceOf(tet, face)];
-  if (mate == kNone) fail(tet, "a hex edge leaves the mesh");
-  part.carrier = crossed(topology_, exact_, part.carrier, face);
-  part.entered = localOf(mate);
-  const LatticeTet before = part.seen;
-  const Tet& corners = topology_.tets[tetOf(mate)];
+  const CornerMask at = point.simplex();
+  if (at == kNoSimplex) fail(tet, "a hex edge leaves a tet nowhere");
+  ArcExit exit;
+  exit.generator = ownedBy(topology_, tet, at);
   for (std::size_t i = 0; i < 4; ++i) {
-    if (static_cast<int>(i) == part.entered) {
-      part.seen[i] = part.carrier.frame.see(exact_.corners[tetOf(mate)][i], exact_.unit);
-    } else {
-      part.seen[i] = before[static_cast<std::size_t>(topology_.localCorner(tet, corners[i]))];
-    }
+    if (point.weights[i] == 0) continue;
+    exit.vertices[exit.count] = topology_.tets[tet][i];
+    exit.weights[exit.count] = toDouble(point.weights[i]);
+    exit.places[exit.count++] = static_cast<double>(part.seen[i][0]);
   }
+  return exit;
 }
 
 }  // namespace hexhex

@@ -36,7 +36,12 @@ struct ArcPieces {
 class BlockTracer {
  public:
   BlockTracer(const PreparedMap& map, const LatticeNumbers& vertices, Arcs& arcs, ArcPieces& pieces)
-      : map_(map), vertices_(vertices), arcs_(arcs), pieces_(pieces), tracer_(map, vertices) {}
+      : map_(map),
+        vertices_(vertices),
+        arcs_(arcs),
+        pieces_(pieces),
+        unit_(static_cast<double>(map.exact.unit)),
+        tracer_(map, vertices) {}
 
   void trace(Index tet, const ElementNumbers::Row& row) {
     const GridPoint& begin = row.front().z;
@@ -81,12 +86,12 @@ class BlockTracer {
     }
     if (to.vertex != kNone) return ends;
     bool atMiddle = true;
-    const ArcEnd last = tracer_.followBeyond(
-        tracer_.in(middle), [&](const ArcPart& part, const SimplexPoint& exit, CornerMask at) {
-          if (!atMiddle) addSegment(part.carrier);
-          atMiddle = false;
-          addCrossing(pieces_, part, exit, at);
-        });
+    const ArcEnd last = tracer_.followBeyond(tracer_.in(middle),
+                                             [&](const SimplexInTet& carrier, const ArcExit& exit) {
+                                               if (!atMiddle) addSegment(carrier);
+                                               atMiddle = false;
+                                               pieces_.crossings.push_back(crossingAt(exit));
+                                             });
     addSegment(last.carrier);
     ends[1] = last.vertex;
     return ends;
@@ -96,12 +101,11 @@ class BlockTracer {
   /// @return the vertex at the beginning
   [[nodiscard]] Index traceBack(const SimplexInTet& middle) {
     back_.clear();
-    SimplexInTet turned = middle;
-    turned.frame = reversed(middle.frame);
     const ArcEnd first = tracer_.followBeyond(
-        tracer_.in(turned), [&](const ArcPart& part, const SimplexPoint& exit, CornerMask at) {
-          back_.segments.push_back(carrierOf(part.carrier));
-          addCrossing(back_, part, exit, at);
+        tracer_.in({middle.tet, middle.simplex, reversed(middle.frame)}),
+        [&](const SimplexInTet& carrier, const ArcExit& exit) {
+          back_.segments.push_back(carrierOf(carrier));
+          back_.crossings.push_back(crossingAt(exit));
           back_.crossings.back().parameter = 1 - back_.crossings.back().parameter;
         });
     addSegment(first.carrier);
@@ -118,18 +122,15 @@ class BlockTracer {
     ArcEnd first{{middle.tet, static_cast<CornerMask>(middle.simplex | from.simplex), middle.frame},
                  from.vertex};
     if (from.vertex == kNone) {
-      SimplexInTet turned = middle;
-      turned.frame = reversed(middle.frame);
-      first = tracer_.follow(tracer_.behind(turned),
-                             [](const ArcPart&, const SimplexPoint&, CornerMask) {});
+      const SimplexInTet turned{middle.tet, middle.simplex, reversed(middle.frame)};
+      first = tracer_.follow(tracer_.behind(turned), [](const SimplexInTet&, const ArcExit&) {});
       first.carrier.frame = reversed(first.carrier.frame);
     }
-    const ArcEnd last =
-        tracer_.follow(tracer_.in(first.carrier),
-                       [&](const ArcPart& part, const SimplexPoint& exit, CornerMask at) {
-                         addSegment(part.carrier);
-                         addCrossing(pieces_, part, exit, at);
-                       });
+    const ArcEnd last = tracer_.follow(tracer_.in(first.carrier),
+                                       [&](const SimplexInTet& carrier, const ArcExit& exit) {
+                                         addSegment(carrier);
+                                         pieces_.crossings.push_back(crossingAt(exit));
+                                       });
     addSegment(last.carrier);
     return {first.vertex, last.vertex};
   }
@@ -144,14 +145,18 @@ class BlockTracer {
   }
   void addSegment(const SimplexInTet& carrier) { pieces_.segments.push_back(carrierOf(carrier)); }
 
-  /// @param at  the simplex that holds the point
-  void addCrossing(ArcPieces& to, const ArcPart& part, const SimplexPoint& point,
-                   CornerMask at) const {
-    const Index tet = part.carrier.tet;
-    const SimplexShares shares(point, at);
-    to.crossings.push_back({shares.position(map_.topology.tets[tet], map_.input.view.points),
-                            shares.coordinate(part.seen, 0) / static_cast<double>(map_.exact.unit),
-                            ownedBy(map_.topology, tet, at)});
+  [[nodiscard]] Crossing crossingAt(const ArcExit& exit) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < exit.count; ++i) sum += exit.weights[i];
+    Crossing crossing{{}, 0, exit.generator};
+    for (std::size_t i = 0; i < exit.count; ++i) {
+      const double share = exit.weights[i] / sum;
+      const Vec3& corner = map_.input.view.points[exit.vertices[i]];
+      for (std::size_t k = 0; k < 3; ++k) crossing.point[k] += share * corner[k];
+      crossing.parameter += share * exit.places[i];
+    }
+    crossing.parameter /= unit_;
+    return crossing;
   }
 
   /// Exact values are in (0, 1) and ascend; rounding may not change that.
@@ -166,6 +171,7 @@ class BlockTracer {
   const LatticeNumbers& vertices_;
   Arcs& arcs_;
   ArcPieces& pieces_;
+  double unit_;
   ArcTracer tracer_;
   ArcPieces back_;
   LineHint fromHint_;

@@ -75,7 +75,7 @@ struct SimplexPoint {
     return exact.sign();
   }
 
-  /// Weights with sum 1, rounded. See SimplexShares, too.
+  /// Weights with sum 1, rounded.
   [[nodiscard]] std::array<double, 4> normalized() const noexcept {
     std::array<double, 4> shares{};
     double sum = 0;
@@ -106,69 +106,11 @@ struct SimplexPoint {
   return p;
 }
 
-/// Weights with sum 1 of the corners of a simplex of less than four, rounded: SimplexPoint::
-/// normalized() where the simplex is known.
-class SimplexShares {
- public:
-  SimplexShares(const SimplexPoint& point, CornerMask simplex) noexcept
-      : count_(static_cast<std::size_t>(dimension(simplex) + 1)), corners_(kCorners[simplex]) {
-    double sum = 0;
-    for (std::size_t i = 0; i < count_; ++i)
-      sum += shares_[i] = toDouble(point.weights[corners_[i]]);
-    for (std::size_t i = 0; i < count_; ++i) shares_[i] /= sum;
-  }
-
-  [[nodiscard]] double coordinate(const LatticeTet& corners, std::size_t axis) const noexcept {
-    double sum = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
-      sum += shares_[i] * static_cast<double>(corners[corners_[i]][axis]);
-    }
-    return sum;
-  }
-  [[nodiscard]] Vec3 position(const Tet& tet, std::span<const Vec3> points) const noexcept {
-    Vec3 p{};
-    for (std::size_t i = 0; i < count_; ++i) {
-      const Vec3& corner = points[tet[corners_[i]]];
-      for (std::size_t k = 0; k < 3; ++k) p[k] += shares_[i] * corner[k];
-    }
-    return p;
-  }
-
- private:
-  /// By simplex: its corners, ascending.
-  static constexpr std::array<std::array<std::uint8_t, 3>, 15> kCorners = {{{},
-                                                                            {0},
-                                                                            {1},
-                                                                            {0, 1},
-                                                                            {2},
-                                                                            {0, 2},
-                                                                            {1, 2},
-                                                                            {0, 1, 2},
-                                                                            {3},
-                                                                            {0, 3},
-                                                                            {1, 3},
-                                                                            {0, 1, 3},
-                                                                            {2, 3},
-                                                                            {0, 2, 3},
-                                                                            {1, 2, 3}}};
-
-  std::size_t count_;
-  const std::array<std::uint8_t, 3>& corners_;
-  std::array<double, 3> shares_{};
-};
-
 /// Where a line that is parallel to axis `along` leaves the interior of a simplex of a tet, in
 /// positive direction. The line passes through coordinates 0 of the other axes, and through the
 /// interior of the simplex. All corners of the simplex are seen from there.
 [[nodiscard]] SimplexPoint exitPoint(const LatticeTet& corners, CornerMask simplex,
                                      std::size_t along) noexcept;
-
-/// The same along axis 0 for a line that passes through the interior of the tet.
-/// @return no weights at all if it does not leave through the interior of face `face`
-[[nodiscard]] SimplexPoint exitInside(const LatticeTet& corners, int face) noexcept;
-
-/// The same along axis 0 for a line that came into the tet through the interior of face `entered`.
-[[nodiscard]] SimplexPoint exitAfterEntry(const LatticeTet& corners, int entered) noexcept;
 
 /// Where such a line crosses a face that it is not parallel to.
 /// @return no weights at all if it does not meet the closed face
