@@ -90,7 +90,7 @@ FaceCutter::Border FaceCutter::cut(Index tet, const Element& face) {
   collectPieces({tet, face.simplex, frame});
   findArcs(border);
   setVertices(border, input_.arcs, tet);
-  for (const Piece& piece : pieces_) emit(border, piece);
+  for (Piece& piece : pieces_) emit(border, piece);
   border.polygons = static_cast<std::uint32_t>(pieces_.size());
   return border;
 }
@@ -127,7 +127,7 @@ void FaceCutter::collectPieces(const SimplexInTet& center) {
   const bool found = star_.visit(center, [&](const SimplexInTet& here) {
     const CornerMask carrier = carrierOfPlane(see(here));
     if (carrier == kNoSimplex) return false;
-    addPiece({here.tet, carrier, here.frame}, -1);
+    addPiece({here.tet, carrier, here.frame});
     return true;
   });
   if (!found) fail(center.tet, "no tet around the centre meets the face");
@@ -135,7 +135,8 @@ void FaceCutter::collectPieces(const SimplexInTet& center) {
 }
 
 /// Adds a piece if it is new.
-void FaceCutter::addPiece(SimplexInTet carrier, int entered) {
+void FaceCutter::addPiece(SimplexInTet carrier, int entered, std::size_t from,
+                          std::size_t fromSide) {
   if (carrier.simplex != kWholeTet) {
     // A triangle has two tets: the smaller one stands for both.
     const int face = oppositeCorner(carrier.simplex);
@@ -152,7 +153,7 @@ void FaceCutter::addPiece(SimplexInTet carrier, int entered) {
   const LatticeTet seen = see(carrier);
   const Slice slice = sliceSquare(seen, carrier.simplex, exact_.unit);
   if (slice.size() < 3) fail(carrier.tet, "a polygon has no area");
-  pieces_.push_back({carrier, seen, slice, entered, first});
+  pieces_.push_back({carrier, seen, slice, entered, from, fromSide, first, 0});
   first = pieces_.size() - 1;
 }
 
@@ -169,13 +170,13 @@ void FaceCutter::addNeighbours(std::size_t piece) {
       const HalfFace mate = topology_.mate[halfFaceOf(at.tet, face)];
       if (mate == kNone) fail(at.tet, "a face leaves the mesh");
       at.simplex = kWholeTet;
-      addPiece(crossed(topology_, exact_, at, face), localOf(mate));
+      addPiece(crossed(topology_, exact_, at, face), localOf(mate), piece, i);
       continue;
     }
     // Two pieces meet in an edge of the plane, somewhere around it.
     star_.visit(at, [&](const SimplexInTet& here) {
       const CornerMask carrier = carrierOfPlane(see(here));
-      if (carrier != kNoSimplex) addPiece({here.tet, carrier, here.frame}, -1);
+      if (carrier != kNoSimplex) addPiece({here.tet, carrier, here.frame});
       return false;
     });
   }
@@ -250,25 +251,42 @@ void FaceCutter::setVertices(Border& border, const Arcs& arcs, Index tet) {
   }
 }
 
-void FaceCutter::put(std::uint64_t number, const std::array<double, 2>& parameter) {
+void FaceCutter::put(std::uint64_t number, std::array<double, 2> parameter) {
   out_.corners.push_back(static_cast<Index>(number));
   out_.parameters.push_back(parameter);
 }
 
-void FaceCutter::emit(const Border& border, const Piece& piece) {
-  for (std::size_t i = 0; i < piece.slice.size(); ++i) {
-    const SliceCorner& corner = piece.slice[i];
-    if (corner.onBorder(0) && corner.onBorder(1)) {
-      put(border.vertices[corner.squareCorner()], ofSquareCorner(corner.squareCorner()));
-    } else if (corner.onBorder(0) || corner.onBorder(1)) {
-      emitArcPoint(border, piece, corner);
-    } else {
-      emitInnerPoint(piece, corner);
+/// Corners that the piece shares with the one that it was found from are known.
+void FaceCutter::emit(const Border& border, Piece& piece) {
+  piece.firstCorner = out_.corners.size();
+  const std::size_t size = piece.slice.size();
+  const std::uint8_t entry = piece.entered < 0 ? kNoSimplex : faceMask(piece.entered);
+  for (std::size_t i = 0; i < size; ++i) {
+    const bool begins = piece.slice[i].side == entry;
+    const bool ends = piece.slice[i == 0 ? size - 1 : i - 1].side == entry;
+    if (!begins && !ends) {
+      emitCorner(border, piece, piece.slice[i]);
+      continue;
     }
+    // There the side runs the other way.
+    const Piece& from = pieces_[piece.from];
+    const std::size_t after = piece.fromSide + 1 < from.slice.size() ? piece.fromSide + 1 : 0;
+    const std::size_t known = from.firstCorner + (begins ? after : piece.fromSide);
+    put(out_.corners[known], out_.parameters[known]);
   }
-  out_.cornerCounts.push_back(static_cast<std::uint32_t>(piece.slice.size()));
+  out_.cornerCounts.push_back(static_cast<std::uint32_t>(size));
   // Pieces are named by the owners of their carriers already.
   out_.carriers.push_back({piece.carrier.tet, piece.carrier.simplex});
+}
+
+void FaceCutter::emitCorner(const Border& border, const Piece& piece, const SliceCorner& corner) {
+  if (corner.onBorder(0) && corner.onBorder(1)) {
+    put(border.vertices[corner.squareCorner()], ofSquareCorner(corner.squareCorner()));
+  } else if (corner.onBorder(0) || corner.onBorder(1)) {
+    emitArcPoint(border, piece, corner);
+  } else {
+    emitInnerPoint(piece, corner);
+  }
 }
 
 /// A point of an arc is known by the simplex that the arc crosses there. (An arc that crosses one

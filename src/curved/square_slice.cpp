@@ -37,17 +37,16 @@ SquareSide sideBetween(const LatticeTet& corners, std::size_t i, std::size_t j, 
   return sideOf(sum >= 0, sum > 0, sum >= one, sum > one);
 }
 
-/// Coordinate `axis` of the point in the interior of a face where both others vanish: a mean of the
-/// corners' coordinates, weighted by areas in the plane of the others.
-SquareSide sideOnFace(const LatticeTet& corners, int face, std::size_t axis,
+/// Coordinate `axis` (0 or 1) of the point in the interior of a face where the other one has a
+/// value and the third vanishes: a mean of the corners' coordinates, weighted by areas in the plane
+/// of the others.
+SquareSide sideOnFace(const LatticeTet& corners, int face, std::size_t axis, std::int64_t other,
                       std::int64_t unit) noexcept {
   const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
-  const std::size_t p = (axis + 1) % 3;
-  const std::size_t q = (axis + 2) % 3;
   std::array<std::array<double, 3>, 3> c;
   for (std::size_t i = 0; i < 3; ++i) {
     const LatticePoint& corner = corners[static_cast<std::size_t>(f[i])];
-    c[i] = {static_cast<double>(corner[p]), static_cast<double>(corner[q]),
+    c[i] = {static_cast<double>(corner[1 - axis] - other), static_cast<double>(corner[2]),
             static_cast<double>(corner[axis])};
   }
   // Areas carry at most four roundings relative to the sum of magnitudes of their products; sums
@@ -75,7 +74,9 @@ SquareSide sideOnFace(const LatticeTet& corners, int face, std::size_t axis,
     const bool turned = area < 0;
     return sideOf((sum > 0) != turned ? 1 : -1, (beyond > 0) != turned ? 1 : -1);
   }
-  const SimplexPoint exact = crossingOfFace(corners, face, axis);
+  LatticeTet moved = corners;
+  for (LatticePoint& corner : moved) corner[1 - axis] -= other;
+  const SimplexPoint exact = crossingOfFace(moved, face, axis);
   return sideOf(exact.compare(corners, axis, 0), exact.compare(corners, axis, unit));
 }
 
@@ -220,35 +221,37 @@ SliceCorner crossing(const HalfPlane& plane, std::uint8_t side, const LatticeTet
     const std::size_t j = lastCorner(side);
     corner.at[other] = sideBetween(corners, i, j, corners[i][plane.axis] - at,
                                    corners[j][plane.axis] - at, other, unit);
-  } else if (at == 0) {
-    corner.at[other] = sideOnFace(corners, oppositeCorner(side), other, unit);
   } else {
-    LatticeTet moved = corners;
-    for (LatticePoint& p : moved) p[plane.axis] -= at;
-    corner.at[other] = sideOnFace(moved, oppositeCorner(side), other, unit);
+    corner.at[other] = sideOnFace(corners, oppositeCorner(side), other, at, unit);
   }
   return corner;
 }
 
-Slice clipped(const Slice& slice, const HalfPlane& plane, const LatticeTet& corners,
-              std::int64_t unit) noexcept {
+/// Clips a slice that does not lie in the interior of a half plane.
+void clip(Slice& slice, const HalfPlane& plane, const LatticeTet& corners,
+          std::int64_t unit) noexcept {
+  std::array<int, 9> at{};
+  int least = 1;
+  const std::size_t size = slice.size();
+  for (std::size_t i = 0; i < size; ++i) {
+    at[i] = plane.side(slice[i]);
+    least = std::min(least, at[i]);
+  }
+  if (least > 0) return;
+  at[size] = at[0];
   Slice result;
-  const int atFirst = plane.side(slice[0]);
-  int atFrom = atFirst;
-  for (std::size_t i = 0; i < slice.size(); ++i) {
-    const int atTo = i + 1 < slice.size() ? plane.side(slice[i + 1]) : atFirst;
-    if (atFrom >= 0) {
+  for (std::size_t i = 0; i < size; ++i) {
+    if (at[i] >= 0) {
       result.add(slice[i]);
       // What is cut off behind a corner on the border leaves a side along the border.
-      if (atFrom == 0 && atTo <= 0) result[result.size() - 1].side = plane.label;
+      if (at[i] == 0 && at[i + 1] <= 0) result[result.size() - 1].side = plane.label;
     }
-    if (atFrom * atTo < 0) {
+    if (at[i] * at[i + 1] < 0) {
       result.add(crossing(plane, slice[i].side, corners, unit));
-      if (atTo < 0) result[result.size() - 1].side = plane.label;
+      if (at[i + 1] < 0) result[result.size() - 1].side = plane.label;
     }
-    atFrom = atTo;
   }
-  return result;
+  slice = result;
 }
 
 }  // namespace
@@ -271,11 +274,10 @@ CornerMask carrierOfPlane(const LatticeTet& corners) noexcept {
 Slice sliceSquare(const LatticeTet& corners, CornerMask carrier, std::int64_t unit) noexcept {
   Slice slice =
       carrier == kWholeTet ? outlineOfTet(corners, unit) : outlineOfFace(corners, carrier, unit);
-  if (halfPlanesToClip(slice) == 0) return slice;
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (((halfPlanesToClip(slice) >> i) & 1U) == 0) continue;
-    slice = clipped(slice, kHalfPlanes[i], corners, unit);
-    if (slice.size() < 3) return slice;
+  // Corners that clipping makes lie between others, so that no other half planes have to follow.
+  const unsigned toClip = halfPlanesToClip(slice);
+  for (std::size_t i = 0; i < 4 && slice.size() > 2; ++i) {
+    if (((toClip >> i) & 1U) != 0) clip(slice, kHalfPlanes[i], corners, unit);
   }
   return slice;
 }
