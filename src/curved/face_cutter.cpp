@@ -72,6 +72,37 @@ double placeOnSide(const LatticeTet& seen, const SliceCorner& corner, std::size_
   return coordinate(point.normalized(), seen, along) / static_cast<double>(unit);
 }
 
+/// The simplex of a tet that holds the origin, or kNoSimplex.
+CornerMask simplexOfOrigin(const LatticeTet& corners) {
+  std::array<std::array<double, 3>, 4> c;
+  std::array<double, 3> reach{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      c[i][k] = static_cast<double>(corners[i][k]);
+      reach[k] = std::max(reach[k], std::abs(c[i][k]));
+    }
+  }
+  // Each volume is a sum of six products with at most eight roundings each: an error below
+  // 6 * 8.1 * 2^-53 < 2^-47 times the largest product. 2^-46 leaves a factor of two.
+  const double error = 0x1p-46 * reach[0] * reach[1] * reach[2];
+  CornerMask simplex = kNoSimplex;
+  for (int face = 0; face < 4; ++face) {
+    const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+    const auto i = static_cast<std::size_t>(f[0]);
+    const auto j = static_cast<std::size_t>(f[1]);
+    const auto k = static_cast<std::size_t>(f[2]);
+    const double outside = c[i][2] * (c[j][0] * c[k][1] - c[j][1] * c[k][0]) +
+                           c[j][2] * (c[k][0] * c[i][1] - c[k][1] * c[i][0]) +
+                           c[k][2] * (c[i][0] * c[j][1] - c[i][1] * c[j][0]);
+    const int side = std::abs(outside) > error
+                         ? (outside < 0 ? 1 : -1)
+                         : orientation(corners[i], corners[j], corners[k], {0, 0, 0});
+    if (side < 0) return kNoSimplex;
+    if (side > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(face));
+  }
+  return simplex;
+}
+
 std::array<double, 2> ofSquareCorner(std::size_t corner) { return onSide(corner, 0); }
 
 }  // namespace
@@ -204,21 +235,18 @@ CornerMask FaceCutter::simplexOfMidpoint(const LatticeTet& corners, std::size_t 
   const std::int64_t unit = exact_.unit;
   const std::array<LatticePoint, 4> midpoints = {
       {{unit / 2, 0, 0}, {unit, unit / 2, 0}, {unit / 2, unit, 0}, {0, unit / 2, 0}}};
+  LatticeTet around = corners;
+  for (LatticePoint& corner : around) corner = corner - midpoints[side];
   // Most tets at a side are elsewhere along it.
   const std::size_t along = side % 2;
-  const auto [low, high] =
-      std::minmax({corners[0][along], corners[1][along], corners[2][along], corners[3][along]});
-  if (low > unit / 2 || high < unit / 2) return kNoSimplex;
-  CornerMask simplex = kNoSimplex;
-  for (int face = 0; face < 4; ++face) {
-    const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
-    const int inside = orientation(corners[static_cast<std::size_t>(f[0])],
-                                   corners[static_cast<std::size_t>(f[1])],
-                                   corners[static_cast<std::size_t>(f[2])], midpoints[side]);
-    if (inside < 0) return kNoSimplex;
-    if (inside > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(face));
+  bool before = true;
+  bool behind = true;
+  for (const LatticePoint& corner : around) {
+    before = before && corner[along] < 0;
+    behind = behind && corner[along] > 0;
   }
-  return simplex;
+  if (before || behind) return kNoSimplex;
+  return simplexOfOrigin(around);
 }
 
 /// Looks an arc up in the tet that owns its midpoint.
