@@ -506,25 +506,29 @@ def read(file: Path, *, format: str | None = None, map_array: str = "igm",
 
 def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
           format: str | None = None, compress: bool = False, patch_angle: float = 40,
-          map_array: str = "igm", threads: int | None = None,
+          map_array: str = "igm", map: Map | None = None, threads: int | None = None,
           progress: Progress | None = None) -> None:
     """Writes a map, a mesh, or what of it is curved; docs/formats.md has the formats. The file
     appears complete or not at all.
 
     Args:
         what: a Map (.hexex, .ovm, .ovmb, .vtu, .vtk), a Mesh (see formats()), ``mesh.curved``
-            (.vtu, .msh, .mesh), ``mesh.arcs`` (.vtu, .vtp) or ``mesh.patches`` (also .ovmb).
+            (.vtu, .msh, .mesh), ``mesh.arcs`` or ``mesh.patches`` (.vtu, .vtp, .ovmb).
         format: of a map or mesh, whatever the extension is: see formats().
         compress: arrays of .vtu files, with zlib; of a map or mesh.
-        patch_angle: of a mesh without tagged quads, for formats with groups: where the boundary
-            turns by more degrees, a group ends; 0 to 180.
+        patch_angle: of a mesh, curved or not, without tagged quads, for formats with groups: where
+            the boundary turns by more degrees, a group ends; 0 to 180.
         map_array: the name of the array that holds the map in .vtu and .vtk files.
+        map: of arcs and patches, the one that they were extracted from (of a mesh with a
+            ``repaired_map``, that one): .ovmb files then tell the indices of the tet simplices that
+            hold each point and edge.
 
     Raises:
         FileError: if it cannot be written.
         ArgumentError: for options out of range.
     """
     name, workers = os.fspath(file), _threads(threads)
+    tets = None if map is None else map._arrays()
     if isinstance(what, Map):
         _hexhex.write_map(what._arrays(), name, format or "", compress, map_array, workers,
                           progress)
@@ -535,11 +539,11 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
         raise ArgumentError("Curved meshes are written without format and compress.",
                             "InvalidArgument")
     elif isinstance(what, LagrangeMesh):
-        _hexhex.write_lagrange(what._handle, name, workers, progress)
+        _hexhex.write_lagrange(what._handle, name, patch_angle, workers, progress)
     elif isinstance(what, Arcs):
-        _hexhex.write_arcs(what._handle, name, workers, progress)
+        _hexhex.write_arcs(what._handle, tets, name, workers, progress)
     elif isinstance(what, Patches):
-        _hexhex.write_patches(what._handle, name, workers, progress)
+        _hexhex.write_patches(what._handle, tets, name, workers, progress)
     else:
         raise ArgumentError(f"A {type(what).__name__} cannot be written.", "InvalidArgument")
 
