@@ -23,6 +23,11 @@ namespace hexhex {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+/// Six times the volume of the tet that they span.
+[[nodiscard]] constexpr double tripleProduct(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+  return dot(a, cross(b, c));
+}
+
 [[nodiscard]] inline double length(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }
 
 }  // namespace hexhex

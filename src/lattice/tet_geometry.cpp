@@ -16,33 +16,15 @@ Int192 orientationDeterminant(const LatticePoint& a, const LatticePoint& b, cons
 
 namespace {
 
-/// The determinant's value in doubles if its sign is certain, otherwise 0.
-double filteredDeterminant(const LatticePoint& u, const LatticePoint& v,
-                           const LatticePoint& w) noexcept {
-  // Each of the six products of three factors carries three conversions from 64-bit integers, two
-  // multiplications, and up to three additions: at most 8 roundings of relative size 2^-53, hence
-  // an error below 8.1 * 2^-53 < 2^-49 times the sum of magnitudes, which itself is computed to
-  // within a factor 1 + 2^-49. 2^-48 leaves a factor of two.
-  constexpr double kRelativeError = 0x1p-48;
-  double sum = 0;
-  double magnitude = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t j = axis == 2 ? 0 : axis + 1;
-    const std::size_t k = axis == 0 ? 2 : axis - 1;
-    const double first = static_cast<double>(u[j]) * static_cast<double>(v[k]);
-    const double second = static_cast<double>(u[k]) * static_cast<double>(v[j]);
-    const auto third = static_cast<double>(w[axis]);
-    sum += (first - second) * third;
-    magnitude += (std::abs(first) + std::abs(second)) * std::abs(third);
-  }
-  return std::abs(sum) > kRelativeError * magnitude ? sum : 0;
+Vec3 rounded(const LatticePoint& p) noexcept {
+  return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
 }  // namespace
 
 int orientation(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c,
                 const LatticePoint& d) noexcept {
-  const double filtered = filteredDeterminant(b - a, c - a, d - a);
+  const double filtered = certainDeterminant(rounded(b - a), rounded(c - a), rounded(d - a));
   if (filtered > 0) return 1;
   if (filtered < 0) return -1;
   return orientationDeterminant(a, b, c, d).sign();

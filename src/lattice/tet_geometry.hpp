@@ -8,7 +8,10 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+
+#include <hexhex/types.hpp>
 
 #include <lattice/direction.hpp>
 #include <lattice/wide_int.hpp>
@@ -77,7 +80,29 @@ inline constexpr std::array<std::array<int, 3>, 4> kFaceCorners = {
 [[nodiscard]] Int192 orientationDeterminant(const LatticePoint& a, const LatticePoint& b,
                                             const LatticePoint& c, const LatticePoint& d) noexcept;
 
-/// Sign of the same: a floating-point filter, then exact arithmetic.
+/// det(u, v, w) in floating point if its sign is certain, otherwise 0.
+/// @param u,v,w  components may carry one rounding each
+[[nodiscard]] inline double certainDeterminant(const Vec3& u, const Vec3& v,
+                                               const Vec3& w) noexcept {
+  // Each of the six products of three factors carries three roundings of its factors, two
+  // multiplications, and up to three additions: at most 8 roundings of relative size 2^-53, hence
+  // an error below 8.1 * 2^-53 < 2^-49 times the sum of magnitudes, which itself is computed to
+  // within a factor 1 + 2^-49. 2^-48 leaves a factor of two.
+  constexpr double kRelativeError = 0x1p-48;
+  double sum = 0;
+  double magnitude = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t j = axis == 2 ? 0 : axis + 1;
+    const std::size_t k = axis == 0 ? 2 : axis - 1;
+    const double first = u[j] * v[k];
+    const double second = u[k] * v[j];
+    sum += (first - second) * w[axis];
+    magnitude += (std::abs(first) + std::abs(second)) * std::abs(w[axis]);
+  }
+  return std::abs(sum) > kRelativeError * magnitude ? sum : 0;
+}
+
+/// Sign of orientationDeterminant(): a floating-point filter, then exact arithmetic.
 [[nodiscard]] int orientation(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c,
                               const LatticePoint& d) noexcept;
 

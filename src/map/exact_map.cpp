@@ -53,11 +53,11 @@ double displacementOf(const Vec3& before, const LatticePoint& after, double reso
   return displacement;
 }
 
-/// Nearest integer (even if there are two) of a number below 2^52 in magnitude, as std::llrint
+/// Nearest integer (even if there are two) of a number below 2^52 in magnitude, as std::nearbyint
 /// gives it, but without a call.
-std::int64_t nearestInteger(double x) {
+double nearestInteger(double x) {
   const double large = std::copysign(0x1p52, x);
-  return static_cast<std::int64_t>((x + large) - large);
+  return (x + large) - large;
 }
 
 /// What a vertex must fulfil, and its corners, while it is being sanitized. Reused between
@@ -316,10 +316,12 @@ class CornerRounder {
   /// @param plane  of the boundary: bit k across axis k, or 0
   void run(CornerIndex index, const Vec3& u, unsigned plane) {
     LatticePoint& corner = map_.corners[index / 4][index % 4];
-    for (std::size_t k = 0; k < 3; ++k) corner[k] = nearestInteger(u[k] * unit_);
+    for (std::size_t k = 0; k < 3; ++k) {
+      corner[k] = static_cast<std::int64_t>(nearestInteger(u[k] * unit_));
+    }
     if (plane != 0) {
       const auto axis = static_cast<std::size_t>(std::countr_zero(plane));
-      corner[axis] = nearestInteger(u[axis]) * map_.unit;
+      corner[axis] = static_cast<std::int64_t>(nearestInteger(u[axis])) * map_.unit;
     }
     const double displacement = displacementOf(u, corner, resolution_);
     maxDisplacement_ = std::max(maxDisplacement_, displacement);
@@ -351,37 +353,108 @@ class TetFinisher {
       : topology_(topology),
         parameters_(parameters),
         plain_(plain),
+        tolerance_(tolerance),
         defects_(defects),
         map_(map),
+        unit_(static_cast<double>(map.unit)),
         rounder_(topology, tolerance, defects, map) {}
 
   void run(Index t) {
-    const Tet& tet = topology_.tets[t];
+    const LatticeTet& corners = map_.corners[t];
     const TetParameters u = parameters_(t);
+    const bool certainlyPositive = isInside(topology_.tets[t]) && roundInside(t, u);
+    if (!certainlyPositive) {
+      roundOneByOne(t, u);
+      if (orientation(corners[0], corners[1], corners[2], corners[3]) <= 0) addDefect(t);
+    }
+    addVolume(t);
+  }
+
+  [[nodiscard]] double maxDisplacement() const noexcept {
+    return std::max(maxDisplacement_, rounder_.maxDisplacement());
+  }
+  /// Of the tets so far, except that what cancels between tets may be missing from both.
+  [[nodiscard]] const Int192& sixfoldVolume() const noexcept { return sixfoldVolume_; }
+
+ private:
+  /// Whether all that happens to the corners is that they are rounded.
+  [[nodiscard]] bool isInside(const Tet& tet) const {
+    unsigned any = 0;
+    for (const Index v : tet) any |= unsigned{plain_.special[v]} | plain_.plane[v];
+    return any == 0;
+  }
+
+  /// Rounds all corners, in floating point, which is exact for integers below 2^53. Returns false
+  /// if the tet needs a closer look.
+  bool roundInside(Index t, const TetParameters& u) {
+    LatticeTet& corners = map_.corners[t];
+    const double resolution = 1 / unit_;
+    TetParameters rounded;
+    double displacement = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        rounded[i][k] = nearestInteger(u[i][k] * unit_);
+        corners[i][k] = static_cast<std::int64_t>(rounded[i][k]);
+        displacement = std::max(displacement, std::abs(rounded[i][k] * resolution - u[i][k]));
+      }
+    }
+    if (displacement > tolerance_) return false;
+    maxDisplacement_ = std::max(maxDisplacement_, displacement);
+    return certainDeterminant(minus(rounded[1], rounded[0]), minus(rounded[2], rounded[0]),
+                              minus(rounded[3], rounded[0])) > 0;
+  }
+
+  void roundOneByOne(Index t, const TetParameters& u) {
+    const Tet& tet = topology_.tets[t];
     for (std::size_t i = 0; i < 4; ++i) {
       const unsigned plane = plain_.plane[tet[i]];
       if (plain_.special[tet[i]] == 1 || plane == PlainVertices::kPlaneOfStar) continue;
       rounder_.run(4 * t + static_cast<CornerIndex>(i), u[i], plane);
     }
-    const LatticeTet& corners = map_.corners[t];
-    const Int192 volume = orientationDeterminant(corners[0], corners[1], corners[2], corners[3]);
-    sixfoldVolume_ += volume;
-    if (volume.sign() > 0) return;
-    const auto unit = static_cast<double>(map_.unit);
-    const double amount = volume.toDouble() / (6 * unit * unit * unit);
+  }
+
+  void addDefect(Index t) {
+    const LatticeTet& c = map_.corners[t];
+    const double amount =
+        orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() / (6 * unit_ * unit_ * unit_);
     defects_.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, amount < 0 ? -amount : 0.0);
   }
 
-  [[nodiscard]] double maxDisplacement() const noexcept { return rounder_.maxDisplacement(); }
-  [[nodiscard]] const Int192& sixfoldVolume() const noexcept { return sixfoldVolume_; }
+  /// The volume of a tet is the sum of those between its faces and the origin. They cancel at faces
+  /// that both tets see alike.
+  void addVolume(Index t) {
+    std::array<HalfFace, 4> uncancelled{};
+    std::size_t count = 0;
+    for (int face = 0; face < 4; ++face) {
+      const HalfFace halfFace = halfFaceOf(t, face);
+      if (topology_.isBoundary(halfFace) || map_.transitions.isJump(halfFace)) {
+        uncancelled[count++] = halfFace;
+      }
+    }
+    if (count == 0) return;
+    const LatticeTet& c = map_.corners[t];
+    if (count == 4) {
+      sixfoldVolume_ += orientationDeterminant(c[0], c[1], c[2], c[3]);
+      return;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::array<int, 3>& face = kFaceCorners[uncancelled[i] % 4];
+      // Outward: backward.
+      sixfoldVolume_ += orientationDeterminant({}, c[static_cast<std::size_t>(face[2])],
+                                               c[static_cast<std::size_t>(face[1])],
+                                               c[static_cast<std::size_t>(face[0])]);
+    }
+  }
 
- private:
   const TetTopology& topology_;
   const LocalParameters& parameters_;
   const PlainVertices& plain_;
+  double tolerance_;
   DefectCollector& defects_;
   ExactMap& map_;
+  double unit_;
   CornerRounder rounder_;
+  double maxDisplacement_ = 0;
   Int192 sixfoldVolume_;
 };
 

@@ -189,7 +189,8 @@ class MirrorSurvey {
     unsigned axes = 0;
     // On two planes, a vertex is special anyway.
     for (const Index v : topology_.tets[t]) {
-      axes |= std::has_single_bit(result_.plane[v]) ? result_.plane[v] : 0U;
+      const unsigned planes = result_.plane[v];
+      axes |= (planes & (planes - 1)) == 0 ? planes : 0U;
     }
     if (axes == 0) return;
     const TetNormals normals(parameters_(t));
@@ -269,7 +270,7 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
               [&](std::size_t t) { mirror.run(static_cast<Index>(t)); });
   parallelFor(stage, vertices, kGrain, [&](std::size_t v) {
     // On two planes, all cones are counted in vain.
-    const bool manyPlanes = std::popcount(result.plane[v]) > 1;
+    const bool manyPlanes = (result.plane[v] & (result.plane[v] - 1)) != 0;
     if ((survey.cones[v] != 1 || manyPlanes) && !topology.isIsolated(static_cast<Index>(v))) {
       special[v] = 1;
     }

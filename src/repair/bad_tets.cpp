@@ -29,7 +29,7 @@ std::vector<Index> select(std::size_t n, Stage& stage, const Test& test) {
 }  // namespace
 
 double determinantOf(const TetParameters& u) noexcept {
-  return dot(minus(u[1], u[0]), cross(minus(u[2], u[0]), minus(u[3], u[0])));
+  return tripleProduct(minus(u[1], u[0]), minus(u[2], u[0]), minus(u[3], u[0]));
 }
 
 bool isBad(const TetParameters& u) noexcept {

@@ -18,7 +18,7 @@ constexpr double kThin = 0.02;
 
 using Edges = std::array<Vec3, 3>;
 
-double determinant(const Edges& e) { return dot(e[0], cross(e[1], e[2])); }
+double determinant(const Edges& e) { return tripleProduct(e[0], e[1], e[2]); }
 
 /// Rows of the inverse of the matrix whose columns are given.
 std::array<Vec3, 3> inverseOf(const Edges& columns) {

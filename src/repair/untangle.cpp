@@ -57,8 +57,6 @@ std::array<Vec3, 4> cornersAt(const UntangleTet& tet, const double* x) {
   return u;
 }
 
-double determinant(const Columns& j) { return dot(j[0], cross(j[1], j[2])); }
-
 class Energy {
  public:
   explicit Energy(const UntangleProblem& problem) : problem_(problem) {}
@@ -68,7 +66,8 @@ class Energy {
   [[nodiscard]] double leastDeterminant(const double* x) const {
     double least = std::numeric_limits<double>::infinity();
     for (const UntangleTet& tet : problem_.tets) {
-      least = std::min(least, determinant(jacobian(tet, cornersAt(tet, x))));
+      const Columns j = jacobian(tet, cornersAt(tet, x));
+      least = std::min(least, tripleProduct(j[0], j[1], j[2]));
     }
     return least;
   }

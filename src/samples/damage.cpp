@@ -9,6 +9,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/vector3.hpp>
 #include <samples/damage.hpp>
 #include <samples/random.hpp>
 #include <samples/sites.hpp>
@@ -21,13 +22,8 @@ constexpr std::uint64_t kDamageStream = 5;
 /// How many moves of a vertex are drawn; the one that comes nearest to what is wanted is kept.
 constexpr int kDraws = 24;
 
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 double squaredDistance(const Vec3& a, const Vec3& b) {
-  const Vec3 d = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  const Vec3 d = minus(a, b);
   return dot(d, d);
 }
 
@@ -114,7 +110,7 @@ class Damager {
     for (const std::size_t sub : site.subBlocks) {
       const std::array<Vec3, 8> corners = grid_.cornersInMap(sub);
       for (const SurfaceTriangle& t : surfaceTriangles(grid_.cornerVertices(sub))) {
-        const double det = dot(corners[t[0]], cross(corners[t[1]], corners[t[2]]));
+        const double det = tripleProduct(corners[t[0]], corners[t[1]], corners[t[2]]);
         bad += det > 0 ? 0 : 1;
       }
     }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include <base/vector3.hpp>
 #include <samples/perturbation.hpp>
 #include <samples/random.hpp>
 #include <samples/sites.hpp>
@@ -21,10 +22,6 @@ constexpr int kHalvings = 4;
 constexpr std::uint64_t kJitterStream = 1;
 constexpr std::uint64_t kRoundingStream = 2;
 
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 double cube(double a) { return a * a * a; }
 double absoluteSum(const Vec3& a) { return std::abs(a[0]) + std::abs(a[1]) + std::abs(a[2]); }
 
@@ -99,7 +96,7 @@ class Mover {
         const Vec3& c = corners[t[2]];
         const double least =
             noise_ > 0 ? leastInMap_ + largestChange(a, b, c, noise_) : leastInMap_;
-        if (!(dot(a, cross(b, c)) > least)) return false;
+        if (!(tripleProduct(a, b, c) > least)) return false;
       }
       return true;
     });
@@ -109,8 +106,8 @@ class Mover {
     return std::all_of(site.subBlocks.begin(), site.subBlocks.end(), [this](std::size_t sub) {
       const std::array<Vec3, 8> corners = grid_.cornersInSpace(sub);
       for (const SurfaceTriangle& t : surfaceTriangles(grid_.cornerVertices(sub))) {
-        const double determinant = dot(corners[t[0]], cross(corners[t[1]], corners[t[2]]));
-        if (!(determinant > leastInSpace_)) return false;
+        const double det = tripleProduct(corners[t[0]], corners[t[1]], corners[t[2]]);
+        if (!(det > leastInSpace_)) return false;
       }
       return true;
     });

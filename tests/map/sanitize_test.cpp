@@ -93,9 +93,19 @@ void expectExact(const Prepared& prepared, const ExactMap& map) {
   EXPECT_EQ(boundaryOffPlanes(prepared.topology(), map), 0U);
   EXPECT_EQ(singularEdgesOffLines(prepared.singularities(), map), 0U);
   EXPECT_EQ(nodesOffPoints(prepared.topology(), prepared.singularities(), map), 0U);
+  // Where possible, tets were found positive in floating point.
   for (const LatticeTet& tet : map.corners) {
-    EXPECT_GT(orientation(tet[0], tet[1], tet[2], tet[3]), 0);
+    EXPECT_GT(orientationDeterminant(tet[0], tet[1], tet[2], tet[3]).sign(), 0);
   }
+}
+
+/// The volume was summed over faces.
+void expectVolumeOfTets(const ExactMap& map) {
+  Int192 difference = -map.sixfoldVolume;
+  for (const LatticeTet& tet : map.corners) {
+    difference += orientationDeterminant(tet[0], tet[1], tet[2], tet[3]);
+  }
+  EXPECT_EQ(difference.sign(), 0);
 }
 
 /// Samples with noise from nothing to a thousandth, in all chart styles.
@@ -114,6 +124,7 @@ TEST_P(SanitizeKind, FulfilsAllConstraintsExactly) {
     const Prepared prepared(map);
     ASSERT_TRUE(prepared.defects().empty());
     expectExact(prepared, prepared.exact());
+    expectVolumeOfTets(prepared.exact());
   });
 }
 
