@@ -142,11 +142,13 @@ struct LagrangeMesh {
 /// The straight mesh between the corners: what extract() returns (its coordinates up to rounding if
 /// scale times order exceeds 255, which may make the lattice coarser that parameters are rounded
 /// to).
+/// @throws Error InvalidArgument for arrays that do not fit each other
 [[nodiscard]] HexMesh straightMesh(const LagrangeMesh& mesh);
 
 /// Per cell: the smallest determinant of the Jacobian matrix, divided by the lengths of its
 /// columns, at the nodes and at the Gauss points of order p + 1. In [-1, 1]; a bad cell has a value
 /// that is not positive; one that is bad elsewhere only is not found.
+/// @throws Error InvalidArgument for arrays that do not fit each other
 [[nodiscard]] Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context);
 
 /// Writes the arcs of a mesh. `.vtu` and `.vtp` (VTK XML, binary appended): hex vertices and inner
@@ -182,7 +184,8 @@ void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
 /// of the boundary are written as those of straight meshes: docs/features.md tells what formats
 /// hold.
 /// @param options  scaledJacobians: of the cells, by scaledJacobians(); empty: computed. patchAngle
-/// @throws Error FileUnsupported, FileWrite; InvalidArgument for features that are not in the mesh
+/// @throws Error FileUnsupported, FileWrite; InvalidArgument for arrays that do not fit each
+///         other, and for features that are not in the mesh
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context);
 

@@ -7,6 +7,7 @@
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 
+#include <base/lagrange_check.hpp>
 #include <io/lagrange_files.hpp>
 #include <io/piecewise_ovmb.hpp>
 #include <io/piecewise_vtk.hpp>
@@ -92,7 +93,15 @@ void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
 
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context) {
-  find(kLagrangeFormats, file, kCells)(mesh, file, options, context);
+  const LagrangeWriter write = find(kLagrangeFormats, file, kCells);
+  requireConsistent(mesh);
+  if (!options.scaledJacobians.empty() && options.scaledJacobians.size() != mesh.cellCount()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "There are " + std::to_string(options.scaledJacobians.size()) +
+                    " scaled Jacobians of " + std::to_string(mesh.cellCount()) +
+                    " cells. Give one for each, or none.");
+  }
+  write(mesh, file, options, context);
 }
 
 bool holdsLagrangeCells(const std::filesystem::path& file, Context& context) {

@@ -156,6 +156,7 @@ LagrangeMesh oneCell(int order, const F& place) {
       }
     }
   }
+  mesh.vertexCount = static_cast<Index>(mesh.points.size());
   return mesh;
 }
 
@@ -210,6 +211,7 @@ TEST(LagrangeReader, RenumbersTagsAndLeavesOutThoseBetweenCorners) {
   std::reverse(mesh.points.begin(), mesh.points.end());
   for (Index& node : mesh.nodes) node = count - 1 - node;
   const auto moved = [count](Index node) { return count - 1 - node; };
+  mesh.vertexCount = count;
   mesh.generatorTet.clear();
   mesh.generatorCorners.clear();
   mesh.features.vertices = {{moved(last), 3}, {moved(middle), 4}};
