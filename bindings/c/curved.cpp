@@ -12,6 +12,13 @@ hexhex::PiecewiseLinearParts partsOf(int patches) {
                       : hexhex::PiecewiseLinearParts::Arcs;
 }
 
+/// The map that a mesh was made of: the caller's, unless it had to be repaired.
+hexhex::TetMapView extractedMap(const hexhex_piecewise_mesh& mesh, const hexhex_map* map) {
+  const hexhex::TetMapView& given = hexhex::c::require(map, "map").view;
+  const auto& repaired = mesh.straight.repaired.map;
+  return repaired ? hexhex::TetMapView(*repaired) : given;
+}
+
 }  // namespace
 
 hexhex_status hexhex_extract_piecewise(const hexhex_map* map, int patches,
@@ -127,5 +134,29 @@ hexhex_status hexhex_piecewise_mesh_write_patches(const hexhex_piecewise_mesh* m
   return guarded(error, [&] {
     ContextOrDefault used(context);
     hexhex::writePatches(require(mesh, "mesh").piecewise, &require(file, "file"), *used);
+  });
+}
+
+hexhex_status hexhex_piecewise_mesh_write_arcs_with_map(const hexhex_piecewise_mesh* mesh,
+                                                        const hexhex_map* map, const char* file,
+                                                        hexhex_context* context,
+                                                        hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex_piecewise_mesh& given = require(mesh, "mesh");
+    ContextOrDefault used(context);
+    hexhex::writeArcs(given.piecewise, extractedMap(given, map), &require(file, "file"), *used);
+  });
+}
+
+hexhex_status hexhex_piecewise_mesh_write_patches_with_map(const hexhex_piecewise_mesh* mesh,
+                                                           const hexhex_map* map, const char* file,
+                                                           hexhex_context* context,
+                                                           hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex_piecewise_mesh& given = require(mesh, "mesh");
+    ContextOrDefault used(context);
+    hexhex::writePatches(given.piecewise, extractedMap(given, map), &require(file, "file"), *used);
   });
 }

@@ -165,18 +165,24 @@ void bindCurved(nb::module_& module) {
       "mesh"_a, "threads"_a, "progress"_a.none());
   module.def(
       "write_arcs",
-      [](const PiecewiseLinearMesh& mesh, const std::string& file, int threads,
+      [](const PiecewiseLinearMesh& mesh, const ArrayMap* map, const std::string& file, int threads,
          const Progress& progress) {
-        run(threads, progress, [&](Context& context) { writeArcs(mesh, file, context); });
+        run(threads, progress, [&](Context& context) {
+          map != nullptr ? writeArcs(mesh, map->view(), file, context)
+                         : writeArcs(mesh, file, context);
+        });
       },
-      "mesh"_a, "file"_a, "threads"_a, "progress"_a.none());
+      "mesh"_a, "map"_a.none(), "file"_a, "threads"_a, "progress"_a.none());
   module.def(
       "write_patches",
-      [](const PiecewiseLinearMesh& mesh, const std::string& file, int threads,
+      [](const PiecewiseLinearMesh& mesh, const ArrayMap* map, const std::string& file, int threads,
          const Progress& progress) {
-        run(threads, progress, [&](Context& context) { writePatches(mesh, file, context); });
+        run(threads, progress, [&](Context& context) {
+          map != nullptr ? writePatches(mesh, map->view(), file, context)
+                         : writePatches(mesh, file, context);
+        });
       },
-      "mesh"_a, "file"_a, "threads"_a, "progress"_a.none());
+      "mesh"_a, "map"_a.none(), "file"_a, "threads"_a, "progress"_a.none());
   module.def(
       "write_lagrange",
       [](const LagrangeMesh& mesh, const std::string& file, double patchAngle,

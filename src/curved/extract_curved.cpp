@@ -32,14 +32,12 @@ void addParts(const PreparedMap& map, PiecewiseLinearParts parts, PiecewiseLinea
   Stage arcStage(context, "arcs");
   const LatticeNumbers vertices(map, arcStage);
   const ElementNumbers edges(map, ElementKind::Edges, arcStage);
-  TracedArcs traced = traceArcs(map, vertices, edges, arcStage);
-  result.arcs = std::move(traced.arcs);
+  result.arcs = traceArcs(map, vertices, edges, arcStage);
   arcStage.finish();
   if (parts == PiecewiseLinearParts::ArcsAndPatches) {
     Stage stage(context, "patches");
     const ElementNumbers faces(map, ElementKind::Faces, stage);
-    result.patches =
-        cutPatches({map, vertices, edges, faces, result.arcs, traced.crossings}, stage);
+    result.patches = cutPatches({map, vertices, edges, faces, result.arcs}, stage);
     toCallersCorners(map.input, result.patches.generatorCorners, stage);
     toCallersCorners(map.input, result.patches.polygonCorners, stage);
   }

@@ -16,8 +16,8 @@ namespace hexhex {
 
 namespace {
 
-using PiecewiseWriter = void (*)(const PiecewiseLinearMesh&, const std::filesystem::path&,
-                                 Context&);
+using PiecewiseWriter = void (*)(const PiecewiseLinearMesh&, const TetMapView*,
+                                 const std::filesystem::path&, Context&);
 using LagrangeWriter = void (*)(const LagrangeMesh&, const std::filesystem::path&,
                                 const WriteOptions&, Context&);
 
@@ -27,10 +27,20 @@ struct Format {
   Writer write;
 };
 
-constexpr std::array<Format<PiecewiseWriter>, 3> kArcFormats = {
-    {{".vtu", writeArcsVtu}, {".vtp", writeArcsVtp}, {".ovmb", writeArcsOvmb}}};
+/// Writers of formats that say nothing about the map.
+template <void (*write)(const PiecewiseLinearMesh&, const std::filesystem::path&, Context&)>
+void withoutMap(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/,
+                const std::filesystem::path& file, Context& context) {
+  write(mesh, file, context);
+}
+
+constexpr std::array<Format<PiecewiseWriter>, 3> kArcFormats = {{{".vtu", withoutMap<writeArcsVtu>},
+                                                                 {".vtp", withoutMap<writeArcsVtp>},
+                                                                 {".ovmb", writeArcsOvmb}}};
 constexpr std::array<Format<PiecewiseWriter>, 3> kPatchFormats = {
-    {{".vtu", writePatchesVtu}, {".vtp", writePatchesVtp}, {".ovmb", writePatchesOvmb}}};
+    {{".vtu", withoutMap<writePatchesVtu>},
+     {".vtp", withoutMap<writePatchesVtp>},
+     {".ovmb", writePatchesOvmb}}};
 constexpr std::array<Format<LagrangeWriter>, 3> kLagrangeFormats = {
     {{".vtu", writeLagrangeVtu}, {".msh", writeLagrangeGmsh}, {".mesh", writeLagrangeMfem}}};
 
@@ -63,12 +73,22 @@ constexpr const char* kCells = "cells of higher order";
 
 void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                Context& context) {
-  find(kArcFormats, file, kArcs)(mesh, file, context);
+  find(kArcFormats, file, kArcs)(mesh, nullptr, file, context);
+}
+
+void writeArcs(const PiecewiseLinearMesh& mesh, const TetMapView& map,
+               const std::filesystem::path& file, Context& context) {
+  find(kArcFormats, file, kArcs)(mesh, &map, file, context);
 }
 
 void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                   Context& context) {
-  find(kPatchFormats, file, kPatches)(mesh, file, context);
+  find(kPatchFormats, file, kPatches)(mesh, nullptr, file, context);
+}
+
+void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
+                  const std::filesystem::path& file, Context& context) {
+  find(kPatchFormats, file, kPatches)(mesh, &map, file, context);
 }
 
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,

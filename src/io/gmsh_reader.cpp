@@ -131,6 +131,9 @@ class MshReader {
   void readNodes22(Source& source, std::size_t count);
   void readElements22(TextSource& source, std::size_t count);
   void readElements22(BinarySource& source, std::size_t count);
+  static std::int64_t readPhysical22(BinarySource& record, std::size_t tags);
+  void readCells22(BinarySource& source, std::size_t first, std::size_t count, std::size_t tags);
+  void readFeatures22(BinarySource& source, std::int64_t type, std::size_t count, std::size_t tags);
 
   [[nodiscard]] static bool isFeature(std::int64_t type);
   template <class Source>
@@ -611,18 +614,67 @@ void MshReader<corners>::readElements22(BinarySource& source, std::size_t count)
                                 1 + static_cast<std::size_t>(tags) + requireType(source, type)};
     requireRoom(source, size, shape, "elements");
     done += size;
-    if (type != kKind.gmshType) {
-      hasOtherElements_ = true;
-      source.skip(size, shape);
+    const auto ownTags = static_cast<std::size_t>(tags);
+    if (type == kKind.gmshType) {
+      readCells22(source, cells, size, ownTags);
+      cells += size;
       continue;
     }
-    source.records(size, shape, [&](BinarySource& record, std::size_t i) {
-      record.skip(1 + static_cast<std::size_t>(tags), {.integers = 1});
-      readCorners(record, cells + i, false);
-    });
-    cells += size;
+    hasOtherElements_ = true;
+    if (isFeature(type)) {
+      readFeatures22(source, type, size, ownTags);
+    } else {
+      source.skip(size, shape);
+    }
   }
   mesh_.cells.resize(cells);
+  if (!mesh_.regions.empty()) mesh_.regions.resize(cells);
+}
+
+/// The physical group of an element of MSH 2, which is the first of its tags, or 0.
+template <std::size_t corners>
+std::int64_t MshReader<corners>::readPhysical22(BinarySource& record, std::size_t tags) {
+  static_cast<void>(record.integer("the number of an element"));
+  if (tags == 0) return 0;
+  const std::int64_t physical = record.integer("a tag");
+  record.skip(tags - 1, {.integers = 1});
+  return physical;
+}
+
+/// Reads cells of a block, from number `first` on.
+template <std::size_t corners>
+void MshReader<corners>::readCells22(BinarySource& source, std::size_t first, std::size_t count,
+                                     std::size_t tags) {
+  const RecordShape shape{.integers = 1 + tags + corners};
+  Array<std::int64_t> physicals(count);
+  source.records(count, shape, [&](BinarySource& record, std::size_t i) {
+    physicals[i] = readPhysical22(record, tags);
+    readCorners(record, first + i, false);
+  });
+  // Cells of a group mostly follow each other.
+  for (std::size_t begin = 0; begin < count;) {
+    std::size_t end = begin + 1;
+    while (end < count && physicals[end] == physicals[begin]) ++end;
+    setRegions(first + begin, end - begin,
+               gmshTags_.ofPhysical({3, withoutSign(physicals[begin])}));
+    begin = end;
+  }
+}
+
+/// Reads what may be features of a block.
+template <std::size_t corners>
+void MshReader<corners>::readFeatures22(BinarySource& source, std::int64_t type, std::size_t count,
+                                        std::size_t tags) {
+  std::array<std::uint64_t, 4> nodes{};
+  const std::size_t size = nodesOfType(type);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int64_t physical = readPhysical22(source, tags);
+    for (std::size_t k = 0; k < size; ++k) {
+      nodes[k] = static_cast<std::uint64_t>(source.integer("a node of an element"));
+    }
+    const std::int32_t tag = gmshTags_.ofPhysical({dimensionOf(type), withoutSign(physical)});
+    if (tag != 0) addFeature(source, type, nodes, tag);
+  }
 }
 
 template <std::size_t corners>

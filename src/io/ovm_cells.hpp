@@ -58,7 +58,8 @@ template <std::size_t corners>
 /// @return false if they do not bound a hexahedron
 [[nodiscard]] bool assembleHex(const std::array<std::array<Index, 4>, 6>& loops, Hex& hex) noexcept;
 
-/// Whether most hexahedra have a negative volume (that of their mean edge vectors).
+/// Whether most hexahedra have a negative volume (that of their mean edge vectors). Of a large
+/// mesh, some tens of thousands are asked.
 [[nodiscard]] bool isMostlyNegative(std::span<const Vec3> points, std::span<const Hex> cells,
                                     Stage& stage);
 

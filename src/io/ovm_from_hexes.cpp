@@ -1,7 +1,6 @@
 // From a hex mesh to a polyhedral mesh (see ovm_output.hpp).
 #include <algorithm>
 #include <atomic>
-#include <bit>
 
 #include <hexhex/error.hpp>
 
@@ -11,39 +10,30 @@
 #include <io/ovm_first_fault.hpp>
 #include <io/ovm_output.hpp>
 #include <io/ovm_topology.hpp>
+#include <io/simplex_indices.hpp>
+#include <io/writable_map.hpp>
 
 namespace hexhex {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
-constexpr std::size_t kReversed =
-    4;  // the order of a cell that begins alike but turns the other way
-
-std::int32_t orderOf(const Hex& listed, const Hex& assembled) {
-  std::size_t order = 0;
-  while (order < kHexOrders && inHexOrder(assembled, order) != listed) ++order;
-  return static_cast<std::int32_t>(order);
-}
+constexpr std::int32_t kReversed = 4;  // the order of a cell that begins alike but turns round
 
 /// @param cells  those of the mesh as the topology was built from them
-void setCornerOrder(OvmOutput& output, const HexMesh& mesh, std::span<const Hex> cells,
-                    Stage& stage) {
-  Array<std::int32_t> orders(mesh.cells.size());
-  std::atomic<bool> any{false};
-  const Array<Index>& halfFaces = output.topology.cells.handles;
-  parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
-    Hex hex = cells[c];
-    // Half-face 2f + 1 begins where another cell does.
-    if (halfFaces[6 * c] % 2 != 0) {
-      std::array<std::array<Index, 4>, 6> loops;
-      for (std::size_t s = 0; s < 6; ++s) {
-        const Index halfFace = halfFaces[6 * c + s];
-        loops[s] = loopOfHalfFace(loopOfFace<4>(output.topology, halfFace / 2), halfFace);
-      }
-      static_cast<void>(assembleHex(loops, hex));  // built so that it succeeds
-    }
-    orders[c] = orderOf(mesh.cells[c], hex);
-    if (orders[c] != 0) any.store(true, std::memory_order_relaxed);
+/// @param turned  whether they begin alike but turn the other way
+void setCornerOrder(OvmOutput& output, std::span<const Hex> cells, bool turned, Stage& stage) {
+  Array<std::int32_t> orders(cells.size());
+  std::atomic<bool> any{turned};
+  const OvmTopology& topology = output.topology;
+  parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+    // A reader begins where the first half-face does, which is one of the first four corners.
+    const Index firstHalfFace = topology.cells.handles[6 * c];
+    const Index begin = topology.from(topology.faces[firstHalfFace / 2][0]);
+    const Hex& cell = cells[c];
+    const std::int32_t place =
+        (cell[1] == begin ? 1 : 0) + (cell[2] == begin ? 2 : 0) + (cell[3] == begin ? 3 : 0);
+    orders[c] = (4 - place) % 4 + (turned ? kReversed : 0);
+    if (place != 0) any.store(true, std::memory_order_relaxed);
   });
   if (any) output.properties[OvmInteger::CornerOrder] = std::move(orders);
 }
@@ -71,52 +61,10 @@ void setGenerators(OvmOutput& output, const HexMesh& mesh, Stage& stage) {
               Place{PlaceKind::Vertex, fault});
 }
 
-/// The index of the simplex of a tet, in the tet mesh as this library writes it.
-class GeneratorIndices {
- public:
-  GeneratorIndices(const TetMap& map, Stage& stage)
-      : map_(map),
-        written_(toOvm(map, stage)),
-        edges_(written_.topology),
-        loops_(written_.topology, stage) {}
-
-  [[nodiscard]] Index of(Index tet, CornerSet corners) const {
-    const Tet& t = map_.tets[tet];
-    const auto corner = [&](CornerSet set) {
-      return t[static_cast<std::size_t>(std::countr_zero(set))];
-    };
-    switch (generatorKind(corners)) {
-      case GeneratorKind::Vertex:
-        return corner(corners);
-      case GeneratorKind::Edge:
-        return edges_.find(corner(corners),
-                           corner(static_cast<CornerSet>(corners & (corners - 1))));
-      case GeneratorKind::Face:
-        return faceWithout(tet, corner(static_cast<CornerSet>(15 & ~corners)));
-      case GeneratorKind::Cell:
-        break;
-    }
-    return tet;
-  }
-
- private:
-  [[nodiscard]] Index faceWithout(Index tet, Index vertex) const {
-    for (const Index halfFace : written_.topology.cells[tet]) {
-      const std::array<Index, 3>& loop = loops_.ofFace(halfFace / 2);
-      if (std::find(loop.begin(), loop.end(), vertex) == loop.end()) return halfFace / 2;
-    }
-    return kNone;
-  }
-
-  const TetMap& map_;
-  OvmOutput written_;
-  OvmEdgeFinder edges_;
-  OvmLoops<3> loops_;
-};
-
 void setGeneratorIndices(OvmOutput& output, const HexMesh& mesh, const TetMap& map, Stage& stage) {
   if (mesh.generatorCorners.empty() || mesh.generatorTet.size() != mesh.points.size()) return;
-  const GeneratorIndices indices(map, stage);
+  requireWritable(map, stage);
+  const SimplexIndices indices(map.points, map.tets, stage);
   Array<std::int32_t>& values = output.properties[OvmInteger::GeneratorIndex];
   values.resize(mesh.points.size());
   parallelFor(stage, values.size(), kGrain, [&](std::size_t v) {
@@ -132,12 +80,13 @@ OvmOutput toOvm(const HexMesh& mesh, const TetMap* map, Stage& stage) {
   Array<Hex> turned;
   if (isMostlyNegative(mesh.points, mesh.cells, stage)) {
     turned.resize(mesh.cells.size());
-    parallelFor(stage, turned.size(), kGrain,
-                [&](std::size_t c) { turned[c] = inHexOrder(mesh.cells[c], kReversed); });
+    parallelFor(stage, turned.size(), kGrain, [&](std::size_t c) {
+      turned[c] = inHexOrder(mesh.cells[c], std::size_t{kReversed});
+    });
   }
   const std::span<const Hex> cells = turned.empty() ? std::span<const Hex>(mesh.cells) : turned;
   OvmOutput output{mesh.points, buildOvmTopology(mesh.points.size(), cells, stage), {}};
-  setCornerOrder(output, mesh, cells, stage);
+  setCornerOrder(output, cells, !turned.empty(), stage);
   setGenerators(output, mesh, stage);
   if (map != nullptr) setGeneratorIndices(output, mesh, *map, stage);
   setOvmVertexTags(output, mesh.features.vertices);

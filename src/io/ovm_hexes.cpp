@@ -221,10 +221,14 @@ bool isMostlyNegative(std::span<const Vec3> points, std::span<const Hex> cells, 
   };
   std::atomic<std::int64_t> balance{0};
   constexpr std::size_t kGrain = 4096;
-  parallelBlocks(stage, cells.size(), kGrain,
+  // Of many cells, some tell: positions are far from each other in memory.
+  constexpr std::size_t kAsked = std::size_t{1} << 16;
+  const std::size_t step = cells.size() / kAsked + 1;
+  parallelBlocks(stage, blockCount(cells.size(), step), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
                    std::int64_t local = 0;
-                   for (std::size_t c = begin; c < end; ++c) {
+                   for (std::size_t c = begin * step; c < end * step && c < cells.size();
+                        c += step) {
                      const Vec3 x = sumOf(cells[c], {1, 2, 5, 6}, {0, 3, 4, 7});
                      const Vec3 y = sumOf(cells[c], {3, 2, 7, 6}, {0, 1, 4, 5});
                      const Vec3 z = sumOf(cells[c], {4, 5, 6, 7}, {0, 1, 2, 3});

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <mutex>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include <base/parallel.hpp>
 #include <io/ovm_cells.hpp>
 #include <io/ovm_first_fault.hpp>
+#include <io/ovm_hex_topology.hpp>
 #include <io/ovm_topology.hpp>
 
 namespace hexhex {
@@ -406,6 +408,11 @@ OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Tet> cells
 }
 
 OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Hex> cells, Stage& stage) {
+  if (vertexCount <= kMaxOvmEntities && cells.size() < kNone / 6) {
+    std::optional<OvmTopology> topology = buildOvmHexTopology(vertexCount, cells, stage);
+    if (topology) return std::move(*topology);
+  }
+  // Says what is wrong, if anything is.
   return TopologyBuilder<Hex, 4, 6>(vertexCount, cells, kOvmHexFaces, stage).build();
 }
 

@@ -318,12 +318,7 @@ void requireSize(std::size_t size, std::size_t expected, const char* elements, c
 
 /// Refuses meshes that would crash a writer or could not be read back.
 void requireWritable(const HexMesh& mesh, const WriteOptions& options, Stage& stage) {
-  const std::size_t cell = firstCellOutOfRange(mesh, stage);
-  if (cell < mesh.cells.size()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "A corner of cell " + std::to_string(cell) + " is not a vertex of the mesh.",
-                Place{PlaceKind::Cell, cell});
-  }
+  requireCornersInRange(mesh, stage);
   requireSize(mesh.generatorCorners.size(), mesh.points.size(), "vertices", "generators");
   requireSize(mesh.generatorTet.size(), mesh.points.size(), "vertices", "generators");
   requireSize(mesh.regions.size(), mesh.cells.size(), "cells", "regions");

@@ -84,9 +84,16 @@ class BlockTable {
 
   /// @param block  its cells
   void add(std::span<const Hex> block) {
+    std::size_t sharedBefore = 6;
     for (std::size_t c = 0; c < block.size(); ++c) {
+      // A face that two cells in a row share would be added twice, so it may as well be left out.
+      const std::size_t next = c + 1 < block.size() ? faceSharedInRow(block[c], block[c + 1]) : 6;
+      const std::size_t sharedBehind = next < 6 ? next + 1 : 6;
       const std::array<std::uint64_t, 6> keys = keysOf(block[c]);
-      for (std::size_t f = 0; f < 6; ++f) add(block, keys[f], 8 * c + f);
+      for (std::size_t f = 0; f < 6; ++f) {
+        if (f != sharedBefore && f != sharedBehind) add(block, keys[f], 8 * c + f);
+      }
+      sharedBefore = next;
     }
   }
 

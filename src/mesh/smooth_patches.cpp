@@ -137,12 +137,7 @@ std::vector<FeatureQuad> boundaryPatches(const HexMesh& mesh, double angle, Cont
   Stage stage(context, "patches");
   std::vector<FeatureQuad> tagged;
   withThreads(context.threads(), [&] {
-    const std::size_t cell = firstCellOutOfRange(mesh, stage);
-    if (cell < mesh.cells.size()) {
-      throw Error(ErrorCode::InvalidArgument,
-                  "A corner of cell " + std::to_string(cell) + " is not a vertex of the mesh.",
-                  Place{PlaceKind::Cell, cell});
-    }
+    requireCornersInRange(mesh, stage);
     for (const FeatureEdge& edge : mesh.features.edges) {
       if (std::max(edge.vertices[0], edge.vertices[1]) < mesh.points.size()) continue;
       throw Error(ErrorCode::InvalidArgument,

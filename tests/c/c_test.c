@@ -563,6 +563,15 @@ static void test_curved(const char* folder) {
   CHECK_OK(hexhex_piecewise_mesh_write_arcs(pieces, file, NULL, &error));
   CHECK_OK(hexhex_piecewise_mesh_write_patches(pieces, file, NULL, &error));
   CHECK(hexhex_piecewise_mesh_write_arcs(pieces, "x.stl", NULL, &error) == HEXHEX_FILE_UNSUPPORTED);
+  snprintf(file, sizeof file, "%s/patches.ovmb", folder);
+  CHECK_OK(hexhex_piecewise_mesh_write_arcs_with_map(pieces, map, file, NULL, &error));
+  CHECK_OK(hexhex_piecewise_mesh_write_patches_with_map(pieces, map, file, NULL, &error));
+  CHECK(hexhex_piecewise_mesh_write_arcs_with_map(pieces, NULL, file, NULL, &error) ==
+        HEXHEX_INVALID_ARGUMENT);
+  hexhex_map* other = sphere(1);
+  CHECK(hexhex_piecewise_mesh_write_patches_with_map(pieces, other, file, NULL, &error) ==
+        HEXHEX_INVALID_ARGUMENT);
+  hexhex_map_destroy(other);
   hexhex_piecewise_mesh_destroy(pieces);
   CHECK_OK(hexhex_extract_piecewise(map, 0, NULL, NULL, &pieces, NULL, &error));
   CHECK_OK(hexhex_piecewise_mesh_get_patches(pieces, &patches, &error));

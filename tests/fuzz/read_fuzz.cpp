@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <string>
 #include <string_view>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <sanitizer/allocator_interface.h>
 
@@ -19,6 +21,7 @@
 
 #include <io/gmsh.hpp>
 #include <io/hexex.hpp>
+#include <io/lagrange_files.hpp>
 #include <io/medit.hpp>
 #include <io/meshb.hpp>
 #include <io/ovm.hpp>
@@ -93,18 +96,31 @@ TetMap parseVtuMapOf(std::string_view text, const std::string& fileName, Context
   return parseVtuMap(text, fileName, {}, context);
 }
 
+/// Lagrange cells are read from files only, so the bytes become one, in memory.
+void readLagrange(std::string_view text) {
+  static const int file = ::memfd_create("input", 0);
+  require(::ftruncate(file, 0) == 0 &&
+              ::pwrite(file, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()),
+          "it was not written");
+  Context context(1);
+  const LagrangeMesh mesh = readLagrangeVtu("/proc/self/fd/" + std::to_string(file), context);
+  requireVertices(mesh.nodes, mesh.points.size());
+  require(mesh.vertexCount <= mesh.points.size(), "there are fewer points than vertices");
+}
+
 struct Reader {
   std::string_view name;
   void (*read)(std::string_view text);
 };
 
 constexpr std::array kReaders = {
-    Reader{"hexex", read<parseHexex>},      Reader{"mesh", read<parseMedit>},
-    Reader{"meshb", read<parseMeshb>},      Reader{"msh", read<parseGmsh>},
-    Reader{"vtk", read<parseVtkLegacy>},    Reader{"vtu", read<parseVtu>},
-    Reader{"vtk-map", read<parseVtkMap>},   Reader{"vtu-map", read<parseVtuMapOf>},
-    Reader{"ovm-map", read<parseOvmMap>},   Reader{"ovm", read<parseOvmHexMesh>},
-    Reader{"ovmb-map", read<parseOvmbMap>}, Reader{"ovmb", read<parseOvmbHexMesh>}};
+    Reader{"hexex", read<parseHexex>},     Reader{"mesh", read<parseMedit>},
+    Reader{"meshb", read<parseMeshb>},     Reader{"msh", read<parseGmsh>},
+    Reader{"vtk", read<parseVtkLegacy>},   Reader{"vtu", read<parseVtu>},
+    Reader{"vtk-map", read<parseVtkMap>},  Reader{"vtu-map", read<parseVtuMapOf>},
+    Reader{"vtu-lagrange", readLagrange},  Reader{"ovm-map", read<parseOvmMap>},
+    Reader{"ovm", read<parseOvmHexMesh>},  Reader{"ovmb-map", read<parseOvmbMap>},
+    Reader{"ovmb", read<parseOvmbHexMesh>}};
 
 const Reader* chosen = nullptr;
 

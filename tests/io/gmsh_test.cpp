@@ -1,9 +1,13 @@
 // `.msh` files: exact content, what other programs write and ours does not, errors.
+#include <algorithm>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include <hexhex/io.hpp>
+#include <hexhex/patches.hpp>
 
 #include <io/gmsh.hpp>
 #include <io/io_test_support.hpp>
@@ -138,9 +142,88 @@ TEST(Gmsh, BinaryOfVersion22) {
   ASSERT_EQ(mesh.cells.size(), 2U);
   EXPECT_EQ(mesh.cells[0], kCubeCell);
   EXPECT_EQ(mesh.cells[1], (Hex{1, 0, 3, 2, 5, 4, 7, 6}));
+  EXPECT_EQ(mesh.regions, (Array<std::int32_t>{1, 1}));
+  EXPECT_EQ(mesh.features.quads, (std::vector<FeatureQuad>{{{0, 1, 2, 3}, 7}}));
   text[20] = 0;
   text[23] = 1;
   EXPECT_EQ(failure(text).code, ErrorCode::FileUnsupported);
+}
+
+/// The same file of version 2.2 with bytes for the numbers of nodes and elements, and a block for
+/// each element.
+std::string inBytes22(const std::string& text) {
+  std::istringstream input(text);
+  std::string binary;
+  std::string line;
+  while (std::getline(input, line)) {
+    const bool nodes = line == "$Nodes";
+    const bool elements = line == "$Elements";
+    if (line == "2.2 0 8") line = "2.2 1 8\n" + bytes(1);
+    binary += line + "\n";
+    if (!nodes && !elements) continue;
+    std::getline(input, line);
+    binary += line + "\n";
+    for (int i = std::stoi(line); i > 0; --i) {
+      std::getline(input, line);
+      std::istringstream numbers(line);
+      int number = 0;
+      numbers >> number;
+      std::string record = bytes(number);
+      int type = 0;
+      int tags = 0;
+      if (elements) {
+        numbers >> type >> tags;
+        binary += bytes(type) + bytes(1) + bytes(tags);
+      }
+      for (double value = 0; numbers >> value;) {
+        record += nodes ? bytes(value) : bytes(static_cast<int>(value));
+      }
+      binary += record;
+    }
+    binary += "\n";
+  }
+  return binary;
+}
+
+TEST(Gmsh, BinaryOfVersion22HasTheTagsOfTheText) {
+  const std::string names =
+      "$PhysicalNames\n3\n0 2 \"point_m4\"\n2 9 \"inlet\"\n3 8 \"region_70\"\n"
+      "$EndPhysicalNames\n";
+  const std::string cube = " 1 2 3 4 5 6 7 8\n";
+  // Numbers with a sign, without a tag, with three of them, with the group 0, without a name.
+  const std::string text = kHead22 + names + kNodes22 +
+                           "$Elements\n10\n1 15 2 2 1 4\n2 15 0 5\n3 1 1 -6 1 2\n"
+                           "4 3 3 9 1 1 5 6 7 8\n5 3 2 0 1 1 2 6 5\n6 4 2 8 8 1 2 3 5\n7 5 0" +
+                           cube + "8 5 1 -8" + cube + "9 5 3 8 1 1" + cube + "10 5 2 5 5" + cube +
+                           "$EndElements\n";
+  for (const std::string& file : {text, inBytes22(text)}) {
+    const HexMesh mesh = parse(file);
+    EXPECT_EQ(mesh.cells.size(), 4U);
+    EXPECT_EQ(mesh.regions, (Array<std::int32_t>{0, 70, 70, 5}));
+    EXPECT_EQ(mesh.features.vertices, (std::vector<FeatureVertex>{{3, -4}}));
+    EXPECT_EQ(mesh.features.edges, (std::vector<FeatureEdge>{{{0, 1}, 6}}));
+    EXPECT_EQ(mesh.features.quads, (std::vector<FeatureQuad>{{{4, 5, 6, 7}, 9}}));
+  }
+  const std::string wrong = replaced(text, "1 -6 1 2\n", "1 -6 1 20\n");
+  EXPECT_EQ(failure(wrong).code, ErrorCode::IndexOutOfRange);
+  EXPECT_EQ(failure(inBytes22(wrong)).code, ErrorCode::IndexOutOfRange);
+}
+
+TEST(Gmsh, BinaryOfVersion22HasTheTagsThatWereWritten) {
+  const TemporaryFolder folder;
+  Context context;
+  HexMesh mesh = gridMesh(3, 2, 2);
+  mesh.features.vertices = {{5, 3}};
+  mesh.features.edges = {{{0, 1}, 12}};
+  mesh.features.quads = {{boundaryPatches(mesh, 40, context)[0].vertices, 4}};
+  mesh.regions.assign(mesh.cells.size(), 0);
+  std::fill_n(mesh.regions.begin(), 5, 6);
+  writeGmsh22Text(mesh, folder / "a.msh", {}, context);
+  const HexMesh read = parse(inBytes22(contentOf(folder / "a.msh")));
+  expectSameBits(read.points, mesh.points);
+  EXPECT_EQ(read.cells, mesh.cells);
+  EXPECT_EQ(read.features, mesh.features);
+  EXPECT_EQ(read.regions, mesh.regions);
 }
 
 const std::string kGood22 = kHead22 + kNodes22 + kCube22;

@@ -75,12 +75,12 @@ INSTANTIATE_TEST_SUITE_P(
         Check{"gmsh", "msh41-ascii", "a.msh", kNamed},
         Check{"gmsh", "msh22-ascii", "a.msh", kNamed},
         Check{"meshio", "meshb", "a.meshb", "0 29\n3 2\n7 2\n"},
-        Check{"meshio", "vtk", "a.vtk", ""}, Check{"meshio", "vtk-binary", "a.vtk", ""},
-        Check{"vtk", "vtk-binary", "a.vtk", ""}, Check{"vtk", "vtu", "a.vtu", ""},
-        Check{"vtk", "vtu-zlib", "a.vtu", ""}, Check{"meshio", "vtu", "a.vtu", ""},
-        Check{"meshio", "vtu-zlib", "a.vtu", ""}, Check{"vtk", "vtk", "a.vtk", ""},
-        Check{"mfem", "vtk", "a.vtk", "1 32\n"}, Check{"meshio", "inp", "a.inp", kNodeSets},
-        Check{"mfem", "mfem", "a.mesh", kNumbered}),
+        Check{"meshio", "mesh", "a.mesh", "0 29\n3 2\n7 2\n"}, Check{"meshio", "vtk", "a.vtk", ""},
+        Check{"meshio", "vtk-binary", "a.vtk", ""}, Check{"vtk", "vtk-binary", "a.vtk", ""},
+        Check{"vtk", "vtu", "a.vtu", ""}, Check{"vtk", "vtu-zlib", "a.vtu", ""},
+        Check{"meshio", "vtu", "a.vtu", ""}, Check{"meshio", "vtu-zlib", "a.vtu", ""},
+        Check{"vtk", "vtk", "a.vtk", ""}, Check{"mfem", "vtk", "a.vtk", "1 32\n"},
+        Check{"meshio", "inp", "a.inp", kNodeSets}, Check{"mfem", "mfem", "a.mesh", kNumbered}),
     [](const auto& test) {
       std::string name = test.param.program + "_" + test.param.format;
       std::replace(name.begin(), name.end(), '-', '_');

@@ -1073,7 +1073,7 @@ HEXHEX_API hexhex_status hexhex_piecewise_mesh_get_arcs(const hexhex_piecewise_m
 HEXHEX_API hexhex_status hexhex_piecewise_mesh_get_patches(const hexhex_piecewise_mesh* mesh,
                                                            hexhex_patch_arrays* arrays,
                                                            hexhex_error* error);
-/** .vtu, .vtp; patches also .ovmb. */
+/** .vtu, .vtp, .ovmb. */
 HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_arcs(const hexhex_piecewise_mesh* mesh,
                                                           const char* file, hexhex_context* context,
                                                           hexhex_error* error);
@@ -1081,6 +1081,15 @@ HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_patches(const hexhex_piecew
                                                              const char* file,
                                                              hexhex_context* context,
                                                              hexhex_error* error);
+/** The same with the map that was extracted, so that .ovmb files tell the indices of the tet
+ * simplices that points, edges and polygons lie in. A map that was repaired for the extraction is
+ * replaced by the repaired one. */
+HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_arcs_with_map(
+    const hexhex_piecewise_mesh* mesh, const hexhex_map* map, const char* file,
+    hexhex_context* context, hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_patches_with_map(
+    const hexhex_piecewise_mesh* mesh, const hexhex_map* map, const char* file,
+    hexhex_context* context, hexhex_error* error);
 
 /** Hexahedra of a higher order: see LagrangeMesh in <hexhex/curved.hpp>. */
 typedef struct hexhex_lagrange_mesh hexhex_lagrange_mesh;

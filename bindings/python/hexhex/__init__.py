@@ -660,19 +660,23 @@ def read(file: Path, *, format: str | None = None, map_array: str = "igm",
 
 def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
           format: str | None = None, compress: bool = False, patch_angle: float = 40,
-          map_array: str = "igm", scaled_jacobians: npt.ArrayLike | None = None,
-          threads: int | None = None, progress: Progress | None = None) -> None:
+          map_array: str = "igm", map: Map | None = None,
+          scaled_jacobians: npt.ArrayLike | None = None, threads: int | None = None,
+          progress: Progress | None = None) -> None:
     """Writes a map, a mesh, or what of it is curved; docs/formats.md has the formats. The file
     appears complete or not at all.
 
     Args:
         what: a Map (.hexex, .ovm, .ovmb, .vtu, .vtk), a Mesh (see formats()), ``mesh.curved``
-            (.vtu, .msh, .mesh), ``mesh.arcs`` (.vtu, .vtp) or ``mesh.patches`` (also .ovmb).
+            (.vtu, .msh, .mesh), ``mesh.arcs`` or ``mesh.patches`` (.vtu, .vtp, .ovmb).
         format: of a map or mesh, whatever the extension is: see formats().
         compress: arrays of .vtu files, with zlib; of a map or mesh.
-        patch_angle: of a mesh without tagged quads, for formats with groups: where the boundary
-            turns by more degrees, a group ends; 0 to 180.
+        patch_angle: of a mesh, curved or not, without tagged quads, for formats with groups: where
+            the boundary turns by more degrees, a group ends; 0 to 180.
         map_array: the name of the array that holds the map in .vtu and .vtk files.
+        map: of arcs and patches, the one that they were extracted from (of a mesh with a
+            ``repaired_map``, that one): .ovmb files then tell the indices of the tet simplices that
+            hold each point and edge.
         scaled_jacobians: those of quality(), if they are known: float64, one per cell of a Mesh or
             LagrangeMesh; otherwise they are computed for formats that hold them.
 
@@ -681,6 +685,7 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
         ArgumentError: for options out of range.
     """
     name, workers = os.fspath(file), _threads(threads)
+    tets = None if map is None else map._arrays()
     jacobians = _floats([] if scaled_jacobians is None else scaled_jacobians, (),
                         "scaled_jacobians")
     if isinstance(what, Map):
@@ -695,9 +700,9 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
     elif isinstance(what, LagrangeMesh):
         _hexhex.write_lagrange(what._handle, name, patch_angle, jacobians, workers, progress)
     elif isinstance(what, Arcs):
-        _hexhex.write_arcs(what._handle, name, workers, progress)
+        _hexhex.write_arcs(what._handle, tets, name, workers, progress)
     elif isinstance(what, Patches):
-        _hexhex.write_patches(what._handle, name, workers, progress)
+        _hexhex.write_patches(what._handle, tets, name, workers, progress)
     else:
         raise ArgumentError(f"A {type(what).__name__} cannot be written.", "InvalidArgument")
 
