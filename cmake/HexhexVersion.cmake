@@ -1,5 +1,5 @@
-# Sets HEXHEX_VERSION to what include/hexhex/version.hpp says.
-set(version_header ${CMAKE_CURRENT_LIST_DIR}/../include/hexhex/version.hpp)
+# Sets HEXHEX_VERSION to what include/hexhex/version.h says.
+set(version_header ${CMAKE_CURRENT_LIST_DIR}/../include/hexhex/version.h)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${version_header})
 file(STRINGS ${version_header} numbers REGEX "^#define HEXHEX_VERSION_(MAJOR|MINOR|PATCH) [0-9]+$")
 list(TRANSFORM numbers REPLACE "^.* " "")

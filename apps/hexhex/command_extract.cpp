@@ -220,11 +220,11 @@ void extractWhole(const Arguments& arguments, const TetMap& map, Context& contex
   const HexMesh& mesh = all.mesh;
   verifyMesh(arguments, map, mesh, context, record);
   if (!arguments.arcs.empty()) {
-    writeArcs(all, arguments.arcs, context);
+    writeArcs(all, extractedMap(map, record.statistics), arguments.arcs, context);
     record.arcs = {arguments.arcs, all.arcs.count(), all.arcs.points.size()};
   }
   if (!arguments.patches.empty()) {
-    writePatches(all, arguments.patches, context);
+    writePatches(all, extractedMap(map, record.statistics), arguments.patches, context);
     record.patches = {arguments.patches, all.patches.count(), all.patches.polygonTet.size()};
   }
   const Array<double> quality = scaledJacobians(mesh, context);

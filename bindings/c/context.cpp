@@ -38,6 +38,14 @@ void hexhex_context_cancel(hexhex_context* context) {
   if (context != nullptr) context->context.cancel();
 }
 
+int hexhex_context_cancelled(const hexhex_context* context) {
+  return context != nullptr && context->context.cancelled() ? 1 : 0;
+}
+
+int hexhex_context_threads(const hexhex_context* context) {
+  return context != nullptr ? context->context.threads() : 0;
+}
+
 size_t hexhex_context_stage_count(const hexhex_context* context) {
   return context != nullptr ? context->context.stageTimes().size() : 0;
 }

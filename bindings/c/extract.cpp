@@ -44,6 +44,10 @@ void writeStatistics(const ExtractStatistics& statistics, hexhex_statistics* out
   writeStruct(result, *out, "statistics");
 }
 
+Repaired repairedBy(ExtractStatistics&& statistics) {
+  return {std::move(statistics.repair), std::move(statistics.repairedMap)};
+}
+
 namespace {
 
 /// extract(options, context, statistics) is a function that returns a mesh.
@@ -59,8 +63,7 @@ hexhex_status runExtract(const hexhex_extract_options* options, hexhex_context* 
     auto handle = std::make_unique<hexhex_mesh>();
     handle->own = extract(given, *used, filled);
     writeStatistics(filled, statistics);
-    handle->repair = std::move(filled.repair);
-    handle->repairedMap = std::move(filled.repairedMap);
+    handle->repaired = repairedBy(std::move(filled));
     *mesh = handle.release();
   });
 }

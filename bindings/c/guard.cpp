@@ -1,11 +1,13 @@
 #include "guard.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <type_traits>
 
 #include <hexhex/version.hpp>
 
@@ -13,6 +15,12 @@ static_assert(hexhex::c::statusOf(hexhex::ErrorCode::InvalidArgument) == HEXHEX_
 static_assert(hexhex::c::statusOf(hexhex::ErrorCode::FlippedTet) == HEXHEX_FLIPPED_TET);
 static_assert(hexhex::c::statusOf(hexhex::ErrorCode::Internal) == HEXHEX_INTERNAL);
 static_assert(static_cast<int>(hexhex::PlaceKind::Cell) == HEXHEX_PLACE_CELL);
+// Any int may come in: without an underlying type, reading another number would be undefined.
+template <class... Enumerations>
+constexpr bool kAreInts = (std::is_same_v<std::underlying_type_t<Enumerations>, int> && ...);
+static_assert(kAreInts<hexhex_status, hexhex_place_kind, hexhex_chart_style, hexhex_defect_kind,
+                       hexhex_answer_table, hexhex_output, hexhex_mesh_array, hexhex_engine,
+                       hexhex_valence_table>);
 
 namespace hexhex::c {
 
@@ -79,6 +87,23 @@ void throwBusy(const char* argument) {
 }  // namespace hexhex::c
 
 const char* hexhex_version() { return hexhex::version(); }
+
+size_t hexhex_place_text(const hexhex_place* place, char* text, size_t size) {
+  if (text != nullptr && size > 0) *text = '\0';
+  if (place == nullptr || place->kind < HEXHEX_PLACE_NONE || place->kind > HEXHEX_PLACE_CELL) {
+    return 0;
+  }
+  size_t length = 0;
+  const hexhex_status status = hexhex::c::guarded(nullptr, [&] {
+    const std::string words = hexhex::toString(
+        {static_cast<hexhex::PlaceKind>(place->kind), place->index, place->second});
+    length = words.size();
+    if (text != nullptr && size > 0) {
+      *std::copy_n(words.begin(), std::min(length, size - 1), text) = '\0';
+    }
+  });
+  return status == HEXHEX_OK ? length : 0;
+}
 
 const char* hexhex_status_name(hexhex_status status) {
   const int number = static_cast<int>(status);

@@ -1,12 +1,6 @@
-#include <string>
-
 #include <hexhex/io.hpp>
-#include <hexhex/samples.hpp>
 
 #include "handles.hpp"
-
-using hexhex::Error;
-using hexhex::ErrorCode;
 
 namespace {
 
@@ -20,40 +14,7 @@ static_assert(sizeof(hexhex::FeatureVertex) == sizeof(hexhex_feature_vertex));
 static_assert(sizeof(hexhex::FeatureEdge) == sizeof(hexhex_feature_edge));
 static_assert(sizeof(hexhex::FeatureFace) == sizeof(hexhex_feature_face));
 
-hexhex::SampleKind kindNamed(const char* kind) {
-  for (const hexhex::SampleKindName& entry : hexhex::sampleKinds()) {
-    if (entry.name == kind) return entry.kind;
-  }
-  throw Error(ErrorCode::InvalidArgument, std::string("There is no kind of map called \"") + kind +
-                                              "\". Choose one of those in hexhex.h.");
-}
-
-hexhex::SampleOptions sampleOptions(const hexhex_sample_options* given) {
-  const hexhex_sample_options options =
-      hexhex::c::readStruct(given, HEXHEX_SAMPLE_OPTIONS_INIT, "options");
-  if (options.charts < HEXHEX_CHARTS_ALIGNED || options.charts > HEXHEX_CHARTS_RANDOM) {
-    throw Error(ErrorCode::InvalidArgument, "There is no such style of charts.");
-  }
-  if (options.defect_kind < HEXHEX_DEFECTS_INTERIOR ||
-      options.defect_kind > HEXHEX_DEFECTS_SLIVER) {
-    throw Error(ErrorCode::InvalidArgument, "There is no such kind of defect.");
-  }
-  return {.cells = options.cells,
-          .refine = options.refine,
-          .valence = options.valence,
-          .charts = static_cast<hexhex::ChartStyle>(options.charts),
-          .jitter = options.jitter,
-          .onLattice = options.on_lattice,
-          .noise = options.noise,
-          .offset = options.offset,
-          .features = options.features != 0,
-          .seed = options.seed,
-          .defects = options.defects,
-          .defectKind = static_cast<hexhex::DefectKind>(options.defect_kind)};
-}
-
-/// For the writer, which wants a map of its own.
-hexhex::TetMap copied(const hexhex::TetMapView& view) {
+hexhex::TetMap owned(const hexhex::TetMapView& view) {
   return {.points = {view.points.begin(), view.points.end()},
           .tets = {view.tets.begin(), view.tets.end()},
           .parameters = {view.parameters.begin(), view.parameters.end()},
@@ -111,7 +72,7 @@ void give(TetMap&& map, hexhex_map** out) {
   give(std::make_shared<const TetMap>(std::move(map)), out);
 }
 
-TetMap copyOf(const hexhex_map& map) { return map.owned ? *map.owned : copied(map.view); }
+TetMap copyOf(const hexhex_map& map) { return map.owned ? *map.owned : owned(map.view); }
 
 }  // namespace hexhex::c
 
@@ -128,13 +89,14 @@ hexhex_status hexhex_map_borrow(const hexhex_map_arrays* arrays, hexhex_map** ma
   });
 }
 
-hexhex_status hexhex_map_generate(const char* kind, const hexhex_sample_options* options,
-                                  hexhex_map** map, hexhex_error* error) {
+hexhex_status hexhex_map_copy(const hexhex_map_arrays* arrays, hexhex_map** map,
+                              hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
+    const hexhex_map_arrays given =
+        readStruct(&require(arrays, "arrays"), HEXHEX_MAP_ARRAYS_INIT, "arrays");
     require(map, "map");
-    give(hexhex::generateSample(kindNamed(&require(kind, "kind")), sampleOptions(options)).map,
-         map);
+    give(owned(viewOf(given)), map);
   });
 }
 

@@ -7,7 +7,7 @@
 #include <hexhex/structure.hpp>
 #include <hexhex/survey.hpp>
 
-#include "handles.hpp"
+#include "options.hpp"
 
 using hexhex::Error;
 using hexhex::ErrorCode;
@@ -16,55 +16,6 @@ namespace {
 
 static_assert(sizeof(hexhex::Hex) == 8 * sizeof(std::uint32_t));
 static_assert(sizeof(hexhex::FeatureQuad) == sizeof(hexhex_feature_quad));
-
-template <class T, class List = hexhex::Array<T>, class Scalar>
-List copied(const Scalar* data, std::size_t count, const char* argument) {
-  const auto elements = hexhex::c::borrowed<T>(data, count, argument);
-  return {elements.begin(), elements.end()};
-}
-template <class T, class Scalar>
-std::vector<T> copiedTags(const Scalar* data, std::size_t count, const char* argument) {
-  return copied<T, std::vector<T>>(data, count, argument);
-}
-
-std::unique_ptr<hexhex_buffer> take(hexhex::HexMesh& mesh, hexhex_mesh_array array) {
-  auto buffer = std::make_unique<hexhex_buffer>();
-  switch (array) {
-    case HEXHEX_POINTS:
-      buffer->array = std::exchange(mesh.points, {});
-      return buffer;
-    case HEXHEX_CELLS:
-      buffer->array = std::exchange(mesh.cells, {});
-      return buffer;
-    case HEXHEX_GENERATOR_TET:
-      buffer->array = std::exchange(mesh.generatorTet, {});
-      return buffer;
-    case HEXHEX_GENERATOR_CORNERS:
-      buffer->array = std::exchange(mesh.generatorCorners, {});
-      return buffer;
-    case HEXHEX_REGIONS:
-      buffer->array = std::exchange(mesh.regions, {});
-      return buffer;
-    case HEXHEX_FEATURE_VERTICES:
-      buffer->array = std::exchange(mesh.features.vertices, {});
-      return buffer;
-    case HEXHEX_FEATURE_EDGES:
-      buffer->array = std::exchange(mesh.features.edges, {});
-      return buffer;
-    case HEXHEX_FEATURE_QUADS:
-      buffer->array = std::exchange(mesh.features.quads, {});
-      return buffer;
-  }
-  throw Error(ErrorCode::InvalidArgument, "A mesh has no such array.");
-}
-
-void writeSurvey(const hexhex::MeshSurvey& survey, hexhex_survey* out) {
-  hexhex_survey result = {sizeof(hexhex_survey), survey.points,      survey.cells, {}, {},
-                          survey.pointChecksum,  survey.cellChecksum};
-  std::copy(survey.lower.begin(), survey.lower.end(), result.lower);
-  std::copy(survey.upper.begin(), survey.upper.end(), result.upper);
-  hexhex::c::writeStruct(result, hexhex::c::require(out, "survey"), "survey");
-}
 
 std::vector<hexhex_singular_edge> singularEdges(const hexhex::MeshStructure& structure) {
   std::vector<hexhex_singular_edge> edges;
@@ -85,6 +36,14 @@ void give(HexMesh&& mesh, hexhex_mesh** out) {
   *out = handle.release();
 }
 
+void writeSurvey(const MeshSurvey& survey, hexhex_survey* out) {
+  hexhex_survey result = {sizeof(hexhex_survey), survey.points,      survey.cells, {}, {},
+                          survey.pointChecksum,  survey.cellChecksum};
+  std::copy(survey.lower.begin(), survey.lower.end(), result.lower);
+  std::copy(survey.upper.begin(), survey.upper.end(), result.upper);
+  writeStruct(result, require(out, "survey"), "survey");
+}
+
 void writeQuality(const QualitySummary& summary, hexhex_quality& out) {
   hexhex_quality result = {
       sizeof(hexhex_quality), summary.minimum, summary.mean, summary.notPositive, {}};
@@ -102,23 +61,9 @@ hexhex_status hexhex_mesh_copy(const hexhex_mesh_arrays* arrays, hexhex_mesh** m
         readStruct(&require(arrays, "arrays"), HEXHEX_MESH_ARRAYS_INIT, "arrays");
     require(mesh, "mesh");
     hexhex::HexMesh result;
-    result.points = copied<hexhex::Vec3>(given.points, given.point_count, "points");
-    result.cells = copied<hexhex::Hex>(given.cells, given.cell_count, "cells");
-    if (given.generator_tet != nullptr && given.generator_corners != nullptr) {
-      result.generatorTet =
-          copied<hexhex::Index>(given.generator_tet, given.point_count, "generator_tet");
-      result.generatorCorners = copied<hexhex::CornerSet>(given.generator_corners,
-                                                          given.point_count, "generator_corners");
-    }
-    result.features = {.vertices = copiedTags<hexhex::FeatureVertex>(
-                           given.feature_vertices, given.feature_vertex_count, "feature_vertices"),
-                       .edges = copiedTags<hexhex::FeatureEdge>(
-                           given.feature_edges, given.feature_edge_count, "feature_edges"),
-                       .quads = copiedTags<hexhex::FeatureQuad>(
-                           given.feature_quads, given.feature_quad_count, "feature_quads")};
-    if (given.regions != nullptr) {
-      result.regions = copied<std::int32_t>(given.regions, given.cell_count, "regions");
-    }
+    result.points = copied<decltype(result.points)>(given.points, given.point_count, "points");
+    result.cells = copied<decltype(result.cells)>(given.cells, given.cell_count, "cells");
+    copyBesides(given, given.point_count, result);
     give(std::move(result), mesh);
   });
 }
@@ -151,7 +96,8 @@ hexhex_status hexhex_mesh_take(hexhex_mesh* mesh, hexhex_mesh_array array, hexhe
   using namespace hexhex::c;
   return guarded(error, [&] {
     require(buffer, "buffer");
-    *buffer = take(require(mesh, "mesh").own, array).release();
+    hexhex::HexMesh& own = require(mesh, "mesh").own;
+    *buffer = takeArray(own, own.cells, array).release();
   });
 }
 
@@ -213,16 +159,24 @@ hexhex_status hexhex_mesh_survey(const hexhex_mesh* mesh, hexhex_context* contex
   });
 }
 
-hexhex_status hexhex_file_survey(const char* file, hexhex_context* context, hexhex_survey* survey,
+hexhex_status hexhex_file_survey(const char* file, const hexhex_read_options* options,
+                                 hexhex_context* context, hexhex_survey* survey,
                                  hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
     ContextOrDefault used(context);
-    writeSurvey(hexhex::surveyFile(&require(file, "file"), *used), survey);
+    writeSurvey(hexhex::surveyFile(&require(file, "file"), readOptions(options), *used), survey);
   });
 }
 
+int hexhex_generator_kind(uint8_t corners) {
+  constexpr std::uint8_t kWholeTet = 15;
+  if (corners == 0 || corners > kWholeTet) return -1;
+  return static_cast<int>(hexhex::generatorKind(corners));
+}
+
 double hexhex_scaled_jacobian(const double corners[24]) {
+  if (corners == nullptr) return 0;
   std::array<hexhex::Vec3, 8> points{};
   for (std::size_t i = 0; i < 24; ++i) points[i / 3][i % 3] = corners[i];
   return hexhex::scaledJacobian(points);
@@ -239,5 +193,14 @@ hexhex_status hexhex_mesh_quality(const hexhex_mesh* mesh, hexhex_context* conte
       std::copy(jacobians.begin(), jacobians.end(), scaled_jacobians);
     }
     if (quality != nullptr) writeQuality(hexhex::summarize(jacobians), *quality);
+  });
+}
+
+hexhex_status hexhex_summarize_quality(const double* values, size_t count, hexhex_quality* quality,
+                                       hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const auto given = copied<hexhex::Array<double>>(values, count, "values");
+    writeQuality(hexhex::summarize(given), require(quality, "quality"));
   });
 }

@@ -15,6 +15,10 @@ namespace hexhex::c {
 /// @param cells  as many scaled Jacobians are there, if any
 [[nodiscard]] WriteOptions writeOptions(const hexhex_write_options* options, std::size_t cells);
 
+[[nodiscard]] Repaired repairedBy(ExtractStatistics&& statistics);
+/// @param map, report  may be null
+void giveRepair(const Repaired& repaired, hexhex_map** map, hexhex_repair_report** report);
+
 /// @param out  may be null
 void writeStatistics(const ExtractStatistics& statistics, hexhex_statistics* out);
 

@@ -79,22 +79,39 @@ hexhex_status hexhex_repair_get_region(const hexhex_repair_report* report, size_
   });
 }
 
+namespace hexhex::c {
+
+void giveRepair(const Repaired& repaired, hexhex_map** map, hexhex_repair_report** report) {
+  hexhex_map* madeMap = nullptr;
+  std::unique_ptr<hexhex_repair_report> made;
+  if (repaired.map) {
+    if (report != nullptr) {
+      made = std::make_unique<hexhex_repair_report>(hexhex_repair_report{repaired.report});
+    }
+    if (map != nullptr) give(repaired.map, &madeMap);
+  }
+  if (map != nullptr) *map = madeMap;
+  if (report != nullptr) *report = made.release();
+}
+
+}  // namespace hexhex::c
+
 hexhex_status hexhex_mesh_get_repair(const hexhex_mesh* mesh, hexhex_map** map,
                                      hexhex_repair_report** report, hexhex_error* error) {
   using namespace hexhex::c;
-  return guarded(error, [&] {
-    const hexhex_mesh& given = require(mesh, "mesh");
-    hexhex_map* madeMap = nullptr;
-    std::unique_ptr<hexhex_repair_report> made;
-    if (given.repairedMap) {
-      if (report != nullptr) {
-        made = std::make_unique<hexhex_repair_report>(hexhex_repair_report{given.repair});
-      }
-      if (map != nullptr) give(given.repairedMap, &madeMap);
-    }
-    if (map != nullptr) *map = madeMap;
-    if (report != nullptr) *report = made.release();
-  });
+  return guarded(error, [&] { giveRepair(require(mesh, "mesh").repaired, map, report); });
+}
+
+hexhex_status hexhex_lagrange_mesh_get_repair(const hexhex_lagrange_mesh* mesh, hexhex_map** map,
+                                              hexhex_repair_report** report, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] { giveRepair(require(mesh, "mesh").repaired, map, report); });
+}
+
+hexhex_status hexhex_context_get_repair(const hexhex_context* context, hexhex_map** map,
+                                        hexhex_repair_report** report, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] { giveRepair(require(context, "context").repaired, map, report); });
 }
 
 hexhex_status hexhex_extract_partial(const hexhex_map* map, const hexhex_partial_options* options,

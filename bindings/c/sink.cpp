@@ -1,5 +1,8 @@
+#include <utility>
+
 #include <hexhex/io.hpp>
 #include <hexhex/stream.hpp>
+#include <hexhex/survey.hpp>
 
 #include "options.hpp"
 
@@ -7,9 +10,10 @@ namespace {
 
 using hexhex::Error;
 using hexhex::ErrorCode;
+using hexhex::MeshSink;
 
 /// Hands pieces to the caller's functions.
-class CallbackSink : public hexhex::MeshSink {
+class CallbackSink : public MeshSink {
  public:
   explicit CallbackSink(const hexhex_sink* sink)
       : sink_(hexhex::c::readStruct(&hexhex::c::require(sink, "sink"), HEXHEX_SINK_INIT, "sink")) {}
@@ -41,12 +45,55 @@ class CallbackSink : public hexhex::MeshSink {
   void end() override {
     if (sink_.end != nullptr) goOn(sink_.end(sink_.user));
   }
+  [[nodiscard]] const hexhex_sink& given() const noexcept { return sink_; }
 
  private:
   static void goOn(int answer) {
     if (answer != 0) throw Error(ErrorCode::Cancelled, "The sink asked to stop.");
   }
   hexhex_sink sink_;
+};
+
+/// The functions of a writer as a sink, for callers that call them. Where the library gets them
+/// back, it goes around them, and so keeps the writer's errors.
+int writerBegin(void* writer, std::uint64_t points, std::uint64_t cells) {
+  return hexhex_mesh_writer_begin(static_cast<hexhex_mesh_writer*>(writer), points, cells, nullptr);
+}
+int writerPoints(void* writer, std::uint64_t first, std::size_t count, const double* points,
+                 const std::uint32_t* tets, const std::uint8_t* corners) {
+  return hexhex_mesh_writer_points(static_cast<hexhex_mesh_writer*>(writer), first, count, points,
+                                   tets, corners, nullptr);
+}
+int writerCells(void* writer, std::uint64_t first, std::size_t count, const std::uint32_t* cells) {
+  return hexhex_mesh_writer_cells(static_cast<hexhex_mesh_writer*>(writer), first, count, cells,
+                                  nullptr);
+}
+int writerCells64(void* writer, std::uint64_t first, std::size_t count,
+                  const std::uint64_t* cells) {
+  return hexhex_mesh_writer_cells64(static_cast<hexhex_mesh_writer*>(writer), first, count, cells,
+                                    nullptr);
+}
+int writerEnd(void* writer) {
+  return hexhex_mesh_writer_end(static_cast<hexhex_mesh_writer*>(writer), nullptr);
+}
+
+/// The caller's functions, or the writer behind them.
+class Target {
+ public:
+  explicit Target(const hexhex_sink* sink) : callbacks_(sink) {
+    if (callbacks_.given().end == &writerEnd) {
+      writer_ = static_cast<hexhex_mesh_writer*>(callbacks_.given().user);
+    }
+  }
+  MeshSink& operator*() noexcept { return writer_ != nullptr ? *writer_->sink : callbacks_; }
+  /// Nothing has failed.
+  void finish() noexcept {
+    if (writer_ != nullptr) writer_->ended = true;
+  }
+
+ private:
+  CallbackSink callbacks_;
+  hexhex_mesh_writer* writer_ = nullptr;
 };
 
 }  // namespace
@@ -56,11 +103,14 @@ hexhex_status hexhex_extract_to(const hexhex_sink* sink, const hexhex_map* map,
                                 hexhex_statistics* statistics, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    CallbackSink callbacks(sink);
+    Target target(sink);
     ContextOrDefault used(context);
+    used.keep({});
     hexhex::ExtractStatistics filled;
-    hexhex::extractTo(callbacks, require(map, "map").view, extractOptions(options), *used, &filled);
+    hexhex::extractTo(*target, require(map, "map").view, extractOptions(options), *used, &filled);
+    target.finish();
     writeStatistics(filled, statistics);
+    used.keep(repairedBy(std::move(filled)));
   });
 }
 
@@ -70,12 +120,14 @@ hexhex_status hexhex_extractor_extract_to(hexhex_extractor* extractor, const hex
                                           hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    CallbackSink callbacks(sink);
+    Target target(sink);
     ContextOrDefault used(context);
+    used.keep({});
     hexhex_extractor& prepared = require(extractor, "extractor");
     const Occupied occupied(prepared.busy, "extractor");
     hexhex::ExtractStatistics filled;
-    prepared.extractor.extractTo(callbacks, extractOptions(options), *used, &filled);
+    prepared.extractor.extractTo(*target, extractOptions(options), *used, &filled);
+    target.finish();
     writeStatistics(filled, statistics);
   });
 }
@@ -86,20 +138,67 @@ hexhex_status hexhex_extract_to_file(const char* file, const hexhex_map* map,
   using namespace hexhex::c;
   return guarded(error, [&] {
     ContextOrDefault used(context);
+    used.keep({});
     hexhex::ExtractStatistics filled;
     hexhex::extractToFile(&require(file, "file"), require(map, "map").view, extractOptions(options),
                           *used, &filled);
     writeStatistics(filled, statistics);
+    used.keep(repairedBy(std::move(filled)));
   });
 }
 
 hexhex_status hexhex_mesh_read_to(const hexhex_sink* sink, const char* file,
-                                  hexhex_context* context, hexhex_error* error) {
+                                  const hexhex_read_options* options, hexhex_context* context,
+                                  hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    CallbackSink callbacks(sink);
+    Target target(sink);
     ContextOrDefault used(context);
-    hexhex::readHexMeshTo(callbacks, &require(file, "file"), *used);
+    hexhex::readHexMeshTo(*target, &require(file, "file"), readOptions(options), *used);
+    target.finish();
+  });
+}
+
+hexhex_status hexhex_survey_writer_create(hexhex_context* context, hexhex_mesh_writer** writer,
+                                          hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(writer, "writer");
+    auto handle = std::make_unique<hexhex_mesh_writer>();
+    hexhex::Context& used = context != nullptr ? context->context : handle->own;
+    auto survey = std::make_unique<hexhex::SurveySink>(used);
+    handle->survey = survey.get();
+    handle->sink = std::move(survey);
+    *writer = handle.release();
+  });
+}
+
+hexhex_status hexhex_survey_writer_get(const hexhex_mesh_writer* writer, hexhex_survey* survey,
+                                       hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex_mesh_writer& given = require(writer, "writer");
+    if (given.survey == nullptr || !given.ended) {
+      throw Error(ErrorCode::InvalidArgument,
+                  "The writer has added nothing up: make it with hexhex_survey_writer_create(), "
+                  "and ask after its end.");
+    }
+    writeSurvey(given.survey->result(), survey);
+  });
+}
+
+hexhex_status hexhex_mesh_writer_sink(hexhex_mesh_writer* writer, hexhex_sink* sink,
+                                      hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex_sink result = {.size = sizeof(hexhex_sink),
+                                .user = &require(writer, "writer"),
+                                .begin = writerBegin,
+                                .points = writerPoints,
+                                .cells = writerCells,
+                                .cells64 = writerCells64,
+                                .end = writerEnd};
+    writeStruct(result, require(sink, "sink"), "sink");
   });
 }
 
@@ -156,7 +255,10 @@ hexhex_status hexhex_mesh_writer_cells64(hexhex_mesh_writer* writer, uint64_t fi
 
 hexhex_status hexhex_mesh_writer_end(hexhex_mesh_writer* writer, hexhex_error* error) {
   using namespace hexhex::c;
-  return guarded(error, [&] { require(writer, "writer").sink->end(); });
+  return guarded(error, [&] {
+    require(writer, "writer").sink->end();
+    writer->ended = true;
+  });
 }
 
 void hexhex_mesh_writer_destroy(hexhex_mesh_writer* writer) { delete writer; }

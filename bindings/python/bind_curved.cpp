@@ -12,22 +12,27 @@ namespace {
 
 nb::tuple extractPieces(const ArrayMap& map, bool patches, const Options& options, int threads,
                         const Progress& progress) {
-  ExtractStatistics statistics;
-  PiecewiseLinearMesh mesh = run(threads, progress, [&](Context& context) {
-    return extractPiecewiseLinear(
-        map.view(), patches ? PiecewiseLinearParts::ArcsAndPatches : PiecewiseLinearParts::Arcs,
-        options.get(), context, &statistics);
-  });
-  return nb::make_tuple(std::move(mesh), asTuple(statistics));
+  Notes notes;
+  const auto parts = patches ? PiecewiseLinearParts::ArcsAndPatches : PiecewiseLinearParts::Arcs;
+  PiecewiseLinearMesh mesh = run(
+      threads, progress,
+      [&](Context& context) {
+        return extractPiecewiseLinear(map.view(), parts, options.get(), context, &notes.statistics);
+      },
+      &notes.stages);
+  return nb::make_tuple(std::move(mesh), asTuple(notes));
 }
 
 nb::tuple extractOrder(const ArrayMap& map, int order, const Options& options, int threads,
                        const Progress& progress) {
-  ExtractStatistics statistics;
-  LagrangeMesh mesh = run(threads, progress, [&](Context& context) {
-    return extractLagrange(map.view(), order, options.get(), context, &statistics);
-  });
-  return nb::make_tuple(std::move(mesh), asTuple(statistics));
+  Notes notes;
+  LagrangeMesh mesh = run(
+      threads, progress,
+      [&](Context& context) {
+        return extractLagrange(map.view(), order, options.get(), context, &notes.statistics);
+      },
+      &notes.stages);
+  return nb::make_tuple(std::move(mesh), asTuple(notes));
 }
 
 /// Views by name, which keep the mesh alive.
@@ -76,6 +81,30 @@ void bindCurved(nb::module_& module) {
       .def_prop_ro("patches", &patchesOf);
 
   nb::class_<LagrangeMesh>(module, "LagrangeMesh")
+      .def(
+          "__init__",
+          [](LagrangeMesh* self, int order, const InPoints& points, const In<Index, -1>& nodes,
+             std::uint64_t vertexCount, const In1<Index>& generatorTet,
+             const In1<CornerSet>& generatorCorners, const In<std::int32_t, 2>& vertices,
+             const In<std::int32_t, 3>& edges, const In<std::int32_t, 5>& quads,
+             const In1<std::int32_t>& regions) {
+            LagrangeMesh mesh;
+            mesh.order = order;
+            mesh.vertexCount = vertexCount;
+            assign(mesh.points, elements<Vec3>(points));
+            assign(mesh.nodes, std::span<const Index>(nodes.data(), nodes.size()));
+            assign(mesh.generatorTet, elements<Index>(generatorTet));
+            assign(mesh.generatorCorners, elements<CornerSet>(generatorCorners));
+            assign(mesh.features.vertices, elements<FeatureVertex>(vertices));
+            assign(mesh.features.edges, elements<FeatureEdge>(edges));
+            assign(mesh.features.quads, elements<FeatureQuad>(quads));
+            assign(mesh.regions, elements<std::int32_t>(regions));
+            new (self) LagrangeMesh(std::move(mesh));
+          },
+          "order"_a, "points"_a.noconvert(), "nodes"_a.noconvert(), "vertex_count"_a,
+          "generator_tet"_a.noconvert(), "generator_corners"_a.noconvert(),
+          "feature_vertices"_a.noconvert(), "feature_edges"_a.noconvert(),
+          "feature_quads"_a.noconvert(), "regions"_a.noconvert())
       .def_prop_ro("order", [](const LagrangeMesh& self) { return self.order; })
       .def_prop_ro("vertex_count", [](const LagrangeMesh& self) { return self.vertexCount; })
       .def_prop_ro("points",
@@ -99,6 +128,26 @@ void bindCurved(nb::module_& module) {
                      auto& corners = unwrapped<LagrangeMesh>(self).generatorCorners;
                      return viewOn<CornerSet, 1>(corners, self, {corners.size()});
                    })
+      .def_prop_ro("feature_vertices",
+                   [](nb::handle self) {
+                     auto& list = unwrapped<LagrangeMesh>(self).features.vertices;
+                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 2});
+                   })
+      .def_prop_ro("feature_edges",
+                   [](nb::handle self) {
+                     auto& list = unwrapped<LagrangeMesh>(self).features.edges;
+                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 3});
+                   })
+      .def_prop_ro("feature_quads",
+                   [](nb::handle self) {
+                     auto& list = unwrapped<LagrangeMesh>(self).features.quads;
+                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 5});
+                   })
+      .def_prop_ro("regions",
+                   [](nb::handle self) {
+                     auto& regions = unwrapped<LagrangeMesh>(self).regions;
+                     return viewOn<std::int32_t, 1>(regions, self, {regions.size()});
+                   })
       .def("straight", [](const LagrangeMesh& self) { return straightMesh(self); });
 
   module.def("extract_piecewise", &extractPieces, "map"_a, "patches"_a, "options"_a, "threads"_a,
@@ -116,25 +165,49 @@ void bindCurved(nb::module_& module) {
       "mesh"_a, "threads"_a, "progress"_a.none());
   module.def(
       "write_arcs",
-      [](const PiecewiseLinearMesh& mesh, const std::string& file, int threads,
+      [](const PiecewiseLinearMesh& mesh, const ArrayMap* map, const std::string& file, int threads,
          const Progress& progress) {
-        run(threads, progress, [&](Context& context) { writeArcs(mesh, file, context); });
+        run(threads, progress, [&](Context& context) {
+          map != nullptr ? writeArcs(mesh, map->view(), file, context)
+                         : writeArcs(mesh, file, context);
+        });
       },
-      "mesh"_a, "file"_a, "threads"_a, "progress"_a.none());
+      "mesh"_a, "map"_a.none(), "file"_a, "threads"_a, "progress"_a.none());
   module.def(
       "write_patches",
-      [](const PiecewiseLinearMesh& mesh, const std::string& file, int threads,
+      [](const PiecewiseLinearMesh& mesh, const ArrayMap* map, const std::string& file, int threads,
          const Progress& progress) {
-        run(threads, progress, [&](Context& context) { writePatches(mesh, file, context); });
+        run(threads, progress, [&](Context& context) {
+          map != nullptr ? writePatches(mesh, map->view(), file, context)
+                         : writePatches(mesh, file, context);
+        });
       },
-      "mesh"_a, "file"_a, "threads"_a, "progress"_a.none());
+      "mesh"_a, "map"_a.none(), "file"_a, "threads"_a, "progress"_a.none());
   module.def(
       "write_lagrange",
-      [](const LagrangeMesh& mesh, const std::string& file, int threads, const Progress& progress) {
+      [](const LagrangeMesh& mesh, const std::string& file, double patchAngle,
+         const In1<double>& scaledJacobians, int threads, const Progress& progress) {
+        WriteOptions writing;
+        writing.patchAngle = patchAngle;
+        writing.scaledJacobians = elements<double>(scaledJacobians);
         run(threads, progress,
-            [&](Context& context) { writeLagrangeMesh(mesh, file, {}, context); });
+            [&](Context& context) { writeLagrangeMesh(mesh, file, writing, context); });
       },
-      "mesh"_a, "file"_a, "threads"_a, "progress"_a.none());
+      "mesh"_a, "file"_a, "patch_angle"_a, "scaled_jacobians"_a.noconvert(), "threads"_a,
+      "progress"_a.none());
+  module.def(
+      "read_lagrange",
+      [](const std::string& file, int threads, const Progress& progress) {
+        return run(threads, progress,
+                   [&](Context& context) { return readLagrangeMesh(file, context); });
+      },
+      "file"_a, "threads"_a, "progress"_a.none());
+  module.def(
+      "holds_lagrange",
+      [](const std::string& file) {
+        return run(0, {}, [&](Context& context) { return holdsLagrangeCells(file, context); });
+      },
+      "file"_a);
 }
 
 }  // namespace hexhex::python

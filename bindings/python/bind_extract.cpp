@@ -70,40 +70,65 @@ class PythonSink : public MeshSink {
   std::optional<nb::python_error> raised_;
 };
 
-nb::tuple extractMesh(const ArrayMap& map, const Options& options, int threads,
-                      const Progress& progress) {
-  ExtractStatistics statistics;
-  HexMesh mesh = run(threads, progress, [&](Context& context) {
-    return extract(map.view(), options.get(), context, &statistics);
-  });
-  return nb::make_tuple(std::move(mesh), asTuple(statistics));
-}
-
-nb::tuple extractInto(const nb::object& target, const ArrayMap& map, const Options& options,
-                      int threads, const Progress& progress) {
+/// work(sink), where an exception of the target is the one that comes out.
+template <class Work>
+void intoSink(const nb::object& target, const Work& work) {
   PythonSink sink(target);
-  ExtractStatistics statistics;
   try {
-    run(threads, progress, [&](Context& context) {
-      extractTo(sink, map.view(), options.get(), context, &statistics);
-    });
+    work(sink);
   } catch (const Error&) {
     sink.reraise();
     throw;
   }
-  return asTuple(statistics);
+}
+
+void readInto(const nb::object& target, const std::string& file, const std::string& format,
+              int threads, const Progress& progress) {
+  intoSink(target, [&](MeshSink& sink) {
+    run(threads, progress,
+        [&](Context& context) { readHexMeshTo(sink, file, {.format = format}, context); });
+  });
+}
+
+nb::tuple extractMesh(const ArrayMap& map, const Options& options, int threads,
+                      const Progress& progress) {
+  Notes notes;
+  HexMesh mesh = run(
+      threads, progress,
+      [&](Context& context) {
+        return extract(map.view(), options.get(), context, &notes.statistics);
+      },
+      &notes.stages);
+  return nb::make_tuple(std::move(mesh), asTuple(notes));
+}
+
+nb::tuple extractInto(const nb::object& target, const ArrayMap& map, const Options& options,
+                      int threads, const Progress& progress) {
+  Notes notes;
+  intoSink(target, [&](MeshSink& sink) {
+    run(
+        threads, progress,
+        [&](Context& context) {
+          extractTo(sink, map.view(), options.get(), context, &notes.statistics);
+        },
+        &notes.stages);
+  });
+  return asTuple(notes);
 }
 
 nb::tuple extractIntoFile(const std::string& file, const ArrayMap& map, const Options& options,
                           const std::string& format, int threads, const Progress& progress) {
-  ExtractStatistics statistics;
-  run(threads, progress, [&](Context& context) {
-    WriteOptions writing;
-    writing.format = format;
-    const std::unique_ptr<MeshSink> sink = openMeshSink(file, writing, context);
-    extractTo(*sink, map.view(), options.get(), context, &statistics);
-  });
-  return asTuple(statistics);
+  Notes notes;
+  run(
+      threads, progress,
+      [&](Context& context) {
+        WriteOptions writing;
+        writing.format = format;
+        const std::unique_ptr<MeshSink> sink = openMeshSink(file, writing, context);
+        extractTo(*sink, map.view(), options.get(), context, &notes.statistics);
+      },
+      &notes.stages);
+  return asTuple(notes);
 }
 
 /// An extractor with the arrays that it refers to.
@@ -116,27 +141,54 @@ class PyExtractor {
         })) {}
 
   nb::tuple extract(const Options& options, int threads, const Progress& progress) {
-    ExtractStatistics statistics;
-    HexMesh mesh = run(threads, progress, [&](Context& context) {
-      const std::unique_lock<std::mutex> lock = oneAtATime();
-      return extractor_.extract(options.get(), context, &statistics);
-    });
-    return nb::make_tuple(std::move(mesh), asTuple(statistics));
+    Notes notes;
+    HexMesh mesh = run(
+        threads, progress,
+        [&](Context& context) {
+          const std::unique_lock<std::mutex> lock = oneAtATime();
+          return extractor_.extract(options.get(), context, &notes.statistics);
+        },
+        &notes.stages);
+    return nb::make_tuple(std::move(mesh), asTuple(notes));
   }
   nb::tuple extractInto(const nb::object& target, const Options& options, int threads,
                         const Progress& progress) {
-    PythonSink sink(target);
-    ExtractStatistics statistics;
-    try {
-      run(threads, progress, [&](Context& context) {
-        const std::unique_lock<std::mutex> lock = oneAtATime();
-        extractor_.extractTo(sink, options.get(), context, &statistics);
-      });
-    } catch (const Error&) {
-      sink.reraise();
-      throw;
-    }
-    return asTuple(statistics);
+    Notes notes;
+    intoSink(target, [&](MeshSink& sink) {
+      run(
+          threads, progress,
+          [&](Context& context) {
+            const std::unique_lock<std::mutex> lock = oneAtATime();
+            extractor_.extractTo(sink, options.get(), context, &notes.statistics);
+          },
+          &notes.stages);
+    });
+    return asTuple(notes);
+  }
+  nb::tuple extractPieces(bool patches, const Options& options, int threads,
+                          const Progress& progress) {
+    const auto parts = patches ? PiecewiseLinearParts::ArcsAndPatches : PiecewiseLinearParts::Arcs;
+    Notes notes;
+    PiecewiseLinearMesh mesh = run(
+        threads, progress,
+        [&](Context& context) {
+          const std::unique_lock<std::mutex> lock = oneAtATime();
+          return extractor_.extractPiecewiseLinear(parts, options.get(), context,
+                                                   &notes.statistics);
+        },
+        &notes.stages);
+    return nb::make_tuple(std::move(mesh), asTuple(notes));
+  }
+  nb::tuple extractOrder(int order, const Options& options, int threads, const Progress& progress) {
+    Notes notes;
+    LagrangeMesh mesh = run(
+        threads, progress,
+        [&](Context& context) {
+          const std::unique_lock<std::mutex> lock = oneAtATime();
+          return extractor_.extractLagrange(order, options.get(), context, &notes.statistics);
+        },
+        &notes.stages);
+    return nb::make_tuple(std::move(mesh), asTuple(notes));
   }
   [[nodiscard]] std::uint64_t cells() const { return extractor_.cellsAtScaleOne(); }
 
@@ -158,12 +210,20 @@ class PyExtractor {
 nb::tuple repairMap(const ArrayMap& map, double tolerance, int scale, bool round, bool refine,
                     int threads, const Progress& progress) {
   RepairReport report;
-  TetMap repaired = run(threads, progress, [&](Context& context) {
-    return repair(map.copy(),
-                  {.tolerance = tolerance, .scale = scale, .round = round, .refine = refine},
-                  context, &report);
-  });
-  return nb::make_tuple(std::move(repaired), asDict(report));
+  try {
+    TetMap repaired = run(threads, progress, [&](Context& context) {
+      return repair(map.copy(),
+                    {.tolerance = tolerance, .scale = scale, .round = round, .refine = refine},
+                    context, &report);
+    });
+    return nb::make_tuple(std::move(repaired), asDict(report));
+  } catch (const Error& error) {
+    // An error that knows what was tried, for the package to raise.
+    return nb::make_tuple(
+        nb::make_tuple(std::string(name(error.code())), std::string(error.what()),
+                       toString(error.place()), error.place().index, error.place().second),
+        asDict(report));
+  }
 }
 
 nb::tuple extractPart(const ArrayMap& map, int scale, double tolerance, int threads,
@@ -197,11 +257,17 @@ void bindExtract(nb::module_& module) {
              "progress"_a.none());
   module.def("extract_to_file", &extractIntoFile, "file"_a, "map"_a, "options"_a, "format"_a,
              "threads"_a, "progress"_a.none());
+  module.def("read_to", &readInto, "sink"_a, "file"_a, "format"_a, "threads"_a,
+             "progress"_a.none());
   nb::class_<PyExtractor>(module, "Extractor")
       .def(nb::init<const ArrayMap&, double, int, int, const Progress&>(), "map"_a, "tolerance"_a,
            "max_scale"_a, "threads"_a, "progress"_a.none())
       .def("extract", &PyExtractor::extract, "options"_a, "threads"_a, "progress"_a.none())
       .def("extract_to", &PyExtractor::extractInto, "sink"_a, "options"_a, "threads"_a,
+           "progress"_a.none())
+      .def("extract_piecewise", &PyExtractor::extractPieces, "patches"_a, "options"_a, "threads"_a,
+           "progress"_a.none())
+      .def("extract_lagrange", &PyExtractor::extractOrder, "order"_a, "options"_a, "threads"_a,
            "progress"_a.none())
       .def("cells", &PyExtractor::cells);
   module.def("repair", &repairMap, "map"_a, "tolerance"_a, "scale"_a, "round"_a, "refine"_a,

@@ -4,6 +4,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
 
+#include <hexhex/curved.hpp>
+#include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 
 #include "border.hpp"
@@ -58,6 +60,19 @@ nb::list formats() {
                                f.readsHexMeshes, f.writesHexMeshes, f.streams, f.compresses));
   }
   return list;
+}
+
+void requireFormat(const std::string& what, const std::string& file, const std::string& format,
+                   double patchAngle, bool compress, const std::string& mapArray) {
+  const WriteOptions options = writeOptions(format, patchAngle, compress, mapArray);
+  if (what == "map") return requireMapFormat(file, options);
+  if (what == "mesh") return requireHexMeshFormat(file, options);
+  if (what == "arcs") return requireArcFormat(file);
+  if (what == "patches") return requirePatchFormat(file);
+  if (what == "curved") return requireLagrangeFormat(file);
+  throw Error(ErrorCode::InvalidArgument,
+              "A \"" + what +
+                  "\" is nothing that can be written. Choose map, mesh, arcs, patches or curved.");
 }
 
 }  // namespace
@@ -123,13 +138,14 @@ void bindFiles(nb::module_& module) {
   module.def(
       "write_mesh",
       [](const HexMesh& mesh, const std::string& file, const std::string& format, double patchAngle,
-         bool compress, int threads, const Progress& progress) {
-        run(threads, progress, [&](Context& context) {
-          writeHexMesh(mesh, file, writeOptions(format, patchAngle, compress, "igm"), context);
-        });
+         bool compress, const In1<double>& scaledJacobians, int threads, const Progress& progress) {
+        WriteOptions writing = writeOptions(format, patchAngle, compress, "igm");
+        writing.scaledJacobians = elements<double>(scaledJacobians);
+        run(threads, progress,
+            [&](Context& context) { writeHexMesh(mesh, file, writing, context); });
       },
-      "mesh"_a, "file"_a, "format"_a, "patch_angle"_a, "compress"_a, "threads"_a,
-      "progress"_a.none());
+      "mesh"_a, "file"_a, "format"_a, "patch_angle"_a, "compress"_a,
+      "scaled_jacobians"_a.noconvert(), "threads"_a, "progress"_a.none());
   module.def(
       "write_map",
       [](const ArrayMap& map, const std::string& file, const std::string& format, bool compress,
@@ -140,6 +156,8 @@ void bindFiles(nb::module_& module) {
       },
       "map"_a, "file"_a, "format"_a, "compress"_a, "map_array"_a, "threads"_a, "progress"_a.none());
   module.def("formats", &formats);
+  module.def("require_format", &requireFormat, "what"_a, "file"_a, "format"_a, "patch_angle"_a,
+             "compress"_a, "map_array"_a);
 }
 
 }  // namespace hexhex::python

@@ -1,9 +1,11 @@
 // Maps: arrays of the caller, and maps in the library's own arrays; generated ones.
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/map_structure.hpp>
 #include <hexhex/samples.hpp>
 
 #include "border.hpp"
@@ -23,10 +25,20 @@ auto kindNamed(const Table& table, const std::string& name, const char* what) {
               std::string("There is no kind of ") + what + " called \"" + name + "\".");
 }
 
-TetMap generateMap(const std::string& kind, int cells, int refine, int valence,
-                   const std::string& charts, double jitter, double onLattice, double noise,
-                   double offset, std::uint64_t seed, bool features, int defects,
-                   const std::string& defectKind) {
+Dict answerAsDict(const SampleAnswer& answer) {
+  Dict d = asDict(answer.expected);
+  d["vertices"] = answer.vertices;
+  d["tagged_vertices"] = nb::cast(answer.features.vertices);
+  d["tagged_edges"] = nb::cast(answer.features.edges);
+  d["tagged_quads"] = nb::cast(answer.features.quads);
+  d["regions"] = answer.features.regions;
+  return d;
+}
+
+nb::tuple generateMap(const std::string& kind, int cells, int refine, int valence,
+                      const std::string& charts, double jitter, double onLattice, double noise,
+                      double offset, std::uint64_t seed, bool features, int defects,
+                      const std::string& defectKind) {
   SampleOptions options;
   options.cells = cells;
   options.refine = refine;
@@ -42,7 +54,58 @@ TetMap generateMap(const std::string& kind, int cells, int refine, int valence,
   options.defects = defects;
   options.defectKind = kindNamed(defectKinds(), defectKind, "defect");
   const SampleKind sample = kindNamed(sampleKinds(), kind, "map");
-  return run(0, {}, [&](Context& /*context*/) { return generateSample(sample, options).map; });
+  Sample made = run(0, {}, [&](Context& /*context*/) { return generateSample(sample, options); });
+  return nb::make_tuple(std::move(made.map), answerAsDict(made.answer));
+}
+
+nb::list kindsOfMaps() {
+  nb::list kinds;
+  for (const SampleKindName& entry : sampleKinds()) {
+    kinds.append(nb::make_tuple(std::string(entry.name), std::string(entry.description)));
+  }
+  return kinds;
+}
+
+nb::list kindsOfDefects() {
+  nb::list kinds;
+  for (const DefectKindName& entry : defectKinds()) kinds.append(std::string(entry.name));
+  return kinds;
+}
+
+/// Arrays of jumps and edges, and the defects.
+nb::tuple structureOf(const ArrayMap& map, double tolerance, int threads,
+                      const Progress& progress) {
+  const MapStructure s = run(threads, progress, [&](Context& context) {
+    return findMapStructure(map.view(), tolerance, context);
+  });
+  const std::size_t jumps = s.chartJumps.size();
+  std::vector<std::array<Index, 2>> tets(jumps);
+  std::vector<std::array<Index, 3>> vertices(jumps);
+  std::vector<std::array<std::array<std::int8_t, 3>, 3>> rotations(jumps);
+  std::vector<Vec3> translations(jumps);
+  for (std::size_t j = 0; j < jumps; ++j) {
+    tets[j] = s.chartJumps[j].tets;
+    vertices[j] = s.chartJumps[j].vertices;
+    rotations[j] = s.chartJumps[j].rotation;
+    translations[j] = s.chartJumps[j].translation;
+  }
+  const std::size_t edges = s.singularEdges.size();
+  std::vector<std::array<Index, 2>> ends(edges);
+  std::vector<std::int32_t> valences(edges);
+  std::vector<std::uint8_t> boundary(edges);
+  for (std::size_t e = 0; e < edges; ++e) {
+    ends[e] = {s.singularEdges[e].vertex0, s.singularEdges[e].vertex1};
+    valences[e] = s.singularEdges[e].valence;
+    boundary[e] = s.singularEdges[e].boundary ? 1 : 0;
+  }
+  return nb::make_tuple(ownedArray<Index, 2>(std::move(tets), {jumps, 2}),
+                        ownedArray<Index, 2>(std::move(vertices), {jumps, 3}),
+                        ownedArray<std::int8_t, 3>(std::move(rotations), {jumps, 3, 3}),
+                        ownedArray<double, 2>(std::move(translations), {jumps, 3}),
+                        ownedArray<Index, 2>(std::move(ends), {edges, 2}),
+                        ownedArray<std::int32_t, 1>(std::move(valences), {edges}),
+                        ownedArray<std::uint8_t, 1>(std::move(boundary), {edges}),
+                        asList(s.defects));
 }
 
 TetMap pairOf(const InPoints& points, const InTets& tets, const InPoints& polycubePoints,
@@ -126,6 +189,10 @@ void bindMap(nb::module_& module) {
   module.def("generate", &generateMap, "kind"_a, "cells"_a, "refine"_a, "valence"_a, "charts"_a,
              "jitter"_a, "on_lattice"_a, "noise"_a, "offset"_a, "seed"_a, "features"_a, "defects"_a,
              "defect_kind"_a);
+  module.def("sample_kinds", &kindsOfMaps);
+  module.def("defect_kinds", &kindsOfDefects);
+  module.def("map_structure", &structureOf, "map"_a, "tolerance"_a, "threads"_a,
+             "progress"_a.none());
   module.def("map_from_pair", &pairOf, "points"_a.noconvert(), "tets"_a.noconvert(),
              "polycube_points"_a.noconvert(), "polycube_tets"_a.noconvert(), "threads"_a);
 }

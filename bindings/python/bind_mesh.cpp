@@ -1,9 +1,12 @@
 // Hexahedral meshes, and what they are: quality, structure, patches, sums.
+#include <algorithm>
+
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <hexhex/curved.hpp>
+#include <hexhex/error.hpp>
 #include <hexhex/patches.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/structure.hpp>
@@ -16,11 +19,6 @@ using namespace nanobind::literals;
 namespace hexhex::python {
 namespace {
 
-template <class To, class From>
-void assign(To& to, const From& from) {
-  to.assign(from.begin(), from.end());
-}
-
 Dict asDict(const MeshSurvey& s) {
   Dict d;
   d["points"] = s.points;
@@ -31,6 +29,27 @@ Dict asDict(const MeshSurvey& s) {
   d["cell_checksum"] = s.cellChecksum;
   return d;
 }
+
+/// A sink that adds up, with the context that it wants.
+class PySurvey {
+ public:
+  void begin(std::uint64_t points, std::uint64_t cells) { sink_.begin(points, cells); }
+  void points(std::uint64_t first, const InPoints& points) {
+    sink_.points({first, elements<Vec3>(points), {}, {}});
+  }
+  void cells(std::uint64_t first, const InCells& cells) {
+    sink_.cells(first, elements<Hex>(cells));
+  }
+  void cells64(std::uint64_t first, const In<std::uint64_t, 8>& cells) {
+    sink_.cells(first, elements<Hex64>(cells));
+  }
+  void end() { sink_.end(); }
+  [[nodiscard]] const MeshSurvey& result() const { return sink_.result(); }
+
+ private:
+  Context context_;
+  SurveySink sink_{context_};
+};
 
 /// Vertices, valence, on the boundary, and the counts.
 nb::tuple structureOf(const HexMesh& mesh, int threads, const Progress& progress) {
@@ -59,18 +78,22 @@ void bindMesh(nb::module_& module) {
       .def(
           "__init__",
           [](HexMesh* self, const InPoints& points, const InCells& cells,
+             const In1<Index>& generatorTet, const In1<CornerSet>& generatorCorners,
              const In<std::int32_t, 2>& vertices, const In<std::int32_t, 3>& edges,
              const In<std::int32_t, 5>& quads, const In1<std::int32_t>& regions) {
             HexMesh mesh;
             assign(mesh.points, elements<Vec3>(points));
             assign(mesh.cells, elements<Hex>(cells));
+            assign(mesh.generatorTet, elements<Index>(generatorTet));
+            assign(mesh.generatorCorners, elements<CornerSet>(generatorCorners));
             assign(mesh.features.vertices, elements<FeatureVertex>(vertices));
             assign(mesh.features.edges, elements<FeatureEdge>(edges));
             assign(mesh.features.quads, elements<FeatureQuad>(quads));
             assign(mesh.regions, elements<std::int32_t>(regions));
             new (self) HexMesh(std::move(mesh));
           },
-          "points"_a.noconvert(), "cells"_a.noconvert(), "feature_vertices"_a.noconvert(),
+          "points"_a.noconvert(), "cells"_a.noconvert(), "generator_tet"_a.noconvert(),
+          "generator_corners"_a.noconvert(), "feature_vertices"_a.noconvert(),
           "feature_edges"_a.noconvert(), "feature_quads"_a.noconvert(), "regions"_a.noconvert())
       .def_prop_ro("points",
                    [](nb::handle self) {
@@ -140,11 +163,45 @@ void bindMesh(nb::module_& module) {
       "mesh"_a, "threads"_a, "progress"_a.none());
   module.def(
       "survey_file",
-      [](const std::string& file, int threads, const Progress& progress) {
-        return asDict(
-            run(threads, progress, [&](Context& context) { return surveyFile(file, context); }));
+      [](const std::string& file, const std::string& format, int threads,
+         const Progress& progress) {
+        return asDict(run(threads, progress, [&](Context& context) {
+          return surveyFile(file, {.format = format}, context);
+        }));
       },
-      "file"_a, "threads"_a, "progress"_a.none());
+      "file"_a, "format"_a, "threads"_a, "progress"_a.none());
+  module.def(
+      "summarize",
+      [](const In1<double>& values) {
+        const auto given = elements<double>(values);
+        const QualitySummary s = summarize(Array<double>(given.begin(), given.end()));
+        nb::list histogram;
+        for (const std::uint64_t count : s.histogram) histogram.append(count);
+        return nb::make_tuple(s.minimum, s.mean, s.notPositive, histogram);
+      },
+      "values"_a.noconvert());
+  module.def(
+      "scaled_jacobian",
+      [](const In<double, 3>& corners) {
+        std::array<Vec3, 8> points{};
+        const auto given = elements<Vec3>(corners);
+        if (given.size() != points.size()) {
+          throw Error(ErrorCode::InvalidArgument, "A hexahedron has eight corners.");
+        }
+        std::copy(given.begin(), given.end(), points.begin());
+        return scaledJacobian(points);
+      },
+      "corners"_a.noconvert());
+
+  const nb::call_guard<nb::gil_scoped_release> released;
+  nb::class_<PySurvey>(module, "SurveySink")
+      .def(nb::init<>())
+      .def("begin", &PySurvey::begin, "points"_a, "cells"_a, released)
+      .def("points", &PySurvey::points, "first"_a, "points"_a.noconvert(), released)
+      .def("cells", &PySurvey::cells, "first"_a, "cells"_a.noconvert(), released)
+      .def("cells64", &PySurvey::cells64, "first"_a, "cells"_a.noconvert(), released)
+      .def("end", &PySurvey::end, released)
+      .def("result", [](const PySurvey& self) { return asDict(self.result()); });
 }
 
 }  // namespace hexhex::python

@@ -15,7 +15,6 @@
 using namespace nanobind::literals;
 
 namespace hexhex::python {
-namespace {
 
 Dict asDict(const Expectation& e) {
   Dict d;
@@ -28,6 +27,22 @@ Dict asDict(const Expectation& e) {
   d["boundary_components"] = e.boundaryComponents;
   return d;
 }
+
+nb::list asList(const std::vector<Defect>& defects) {
+  nb::list list;
+  for (const Defect& defect : defects) {
+    nb::list worst;
+    for (const Defect::Occurrence& occurrence : defect.worst) {
+      worst.append(nb::make_tuple(toString(occurrence.place), occurrence.place.index,
+                                  occurrence.place.second, occurrence.amount));
+    }
+    list.append(
+        nb::make_tuple(std::string(name(defect.code)), defect.sentence, defect.count, worst));
+  }
+  return list;
+}
+
+namespace {
 
 Dict asDict(const CheckReport& r) {
   Dict d;
@@ -48,18 +63,8 @@ Dict asDict(const CheckReport& r) {
   d["boundary_singular_tet_edges"] = nb::cast(r.boundarySingularTetEdges);
   d["singular_nodes"] = r.singularNodes;
   d["boundary_genus"] = nb::cast(r.boundaryGenus);
-  nb::list defects;
-  for (const Defect& defect : r.defects) {
-    nb::list worst;
-    for (const Defect::Occurrence& occurrence : defect.worst) {
-      worst.append(nb::make_tuple(toString(occurrence.place), occurrence.place.index,
-                                  occurrence.place.second, occurrence.amount));
-    }
-    defects.append(
-        nb::make_tuple(std::string(name(defect.code)), defect.sentence, defect.count, worst));
-  }
-  d["defects"] = defects;
-  d["expected"] = r.valid() ? nb::object(asDict(r.expected)) : nb::none();
+  d["defects"] = asList(r.defects);
+  d["expected"] = r.valid() ? nb::object(python::asDict(r.expected)) : nb::none();
   return d;
 }
 

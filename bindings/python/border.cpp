@@ -36,7 +36,8 @@ TetMap ArrayMap::copy() const {
           .regions = copied(from.regions)};
 }
 
-void runWork(int threads, const Progress& progress, const std::function<void(Context&)>& work) {
+void runWork(int threads, const Progress& progress, const std::function<void(Context&)>& work,
+             std::vector<StageTime>* stages) {
   std::optional<nb::python_error> raised;
   Context* running = nullptr;
   Context::Progress report;
@@ -76,6 +77,7 @@ void runWork(int threads, const Progress& progress, const std::function<void(Con
   }
   if (raised) throw std::move(*raised);
   if (failure) std::rethrow_exception(failure);
+  if (stages != nullptr) *stages = context.stageTimes();
 }
 
 ExtractOptions Options::get() const {
@@ -118,7 +120,8 @@ nb::list asList(const std::array<std::uint64_t, 4>& counts) {
 
 }  // namespace
 
-nb::tuple asTuple(ExtractStatistics& s) {
+nb::tuple asTuple(const Notes& notes) {
+  const ExtractStatistics& s = notes.statistics;
   Dict d;
   d["seconds"] = s.seconds;
   d["threads"] = s.threads;
@@ -139,6 +142,10 @@ nb::tuple asTuple(ExtractStatistics& s) {
   d["cut_faces"] = s.cutFaces;
   d["overlapping_tets"] = s.overlappingTets;
   d["traced_cells"] = s.tracedCells;
+  nb::list stages;
+  for (const StageTime& time : notes.stages)
+    stages.append(nb::make_tuple(time.stage, time.seconds));
+  d["stages"] = stages;
   if (!s.repairedMap) return nb::make_tuple(d, nb::none(), nb::none());
   // Nobody else holds it; Python has no const.
   return nb::make_tuple(d, asDict(s.repair), std::const_pointer_cast<TetMap>(s.repairedMap));

@@ -7,11 +7,13 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 
+#include <hexhex/check.hpp>
 #include <hexhex/context.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/types.hpp>
@@ -34,6 +36,11 @@ using Dict = nb::typed<nb::dict, nb::str, nb::any>;
 template <class Element, class NdArray>
 std::span<const Element> elements(const NdArray& array) {
   return {reinterpret_cast<const Element*>(array.data()), array.shape(0)};
+}
+
+template <class To, class From>
+void assign(To& to, const From& from) {
+  to.assign(from.begin(), from.end());
 }
 
 /// The arrays of a map, which live as long as this does.
@@ -70,20 +77,30 @@ auto ownedArray(List&& list, const std::array<std::size_t, kRank>& shape) {
 
 /// Runs work(context) in a thread of its own, without the GIL. A signal (Ctrl-C) or an exception in
 /// the progress function cancels it, and is raised when it has ended.
-void runWork(int threads, const Progress& progress, const std::function<void(Context&)>& work);
+/// @param stages  what ran and how long, if not null
+void runWork(int threads, const Progress& progress, const std::function<void(Context&)>& work,
+             std::vector<StageTime>* stages = nullptr);
 
 /// The same with a result.
 template <class Work>
-auto run(int threads, const Progress& progress, const Work& work) {
+auto run(int threads, const Progress& progress, const Work& work,
+         std::vector<StageTime>* stages = nullptr) {
   using Result = decltype(work(std::declval<Context&>()));
   if constexpr (std::is_void_v<Result>) {
-    runWork(threads, progress, work);
+    runWork(threads, progress, work, stages);
   } else {
     std::optional<Result> result;
-    runWork(threads, progress, [&](Context& context) { result.emplace(work(context)); });
+    runWork(
+        threads, progress, [&](Context& context) { result.emplace(work(context)); }, stages);
     return std::move(*result);
   }
 }
+
+/// What an extraction tells beside its mesh.
+struct Notes {
+  ExtractStatistics statistics = {};
+  std::vector<StageTime> stages = {};
+};
 
 /// The C++ object of a Python object, e.g. to make views that keep it alive.
 template <class T>
@@ -103,8 +120,10 @@ struct Options {
 };
 
 /// (statistics, report of the repair or None, repaired map or None)
-[[nodiscard]] nb::tuple asTuple(ExtractStatistics& statistics);
+[[nodiscard]] nb::tuple asTuple(const Notes& notes);
 [[nodiscard]] Dict asDict(const RepairReport& report);
+[[nodiscard]] Dict asDict(const Expectation& expected);
+[[nodiscard]] nb::list asList(const std::vector<Defect>& defects);
 
 void bindMap(nb::module_& module);
 void bindMesh(nb::module_& module);

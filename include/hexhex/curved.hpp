@@ -121,7 +121,7 @@ struct LagrangeMesh {
   Array<Index> generatorTet;
   Array<CornerSet> generatorCorners;
 
-  // Of the straight mesh, as in HexMesh:
+  // Of the straight mesh, as in HexMesh; a tagged edge or quad stands for all its nodes:
   HexFeatures features = {};
   Array<std::int32_t> regions = {};
 
@@ -142,19 +142,30 @@ struct LagrangeMesh {
 /// The straight mesh between the corners: what extract() returns (its coordinates up to rounding if
 /// scale times order exceeds 255, which may make the lattice coarser that parameters are rounded
 /// to).
+/// @throws Error InvalidArgument for arrays that do not fit each other
 [[nodiscard]] HexMesh straightMesh(const LagrangeMesh& mesh);
 
 /// Per cell: the smallest determinant of the Jacobian matrix, divided by the lengths of its
 /// columns, at the nodes and at the Gauss points of order p + 1. In [-1, 1]; a bad cell has a value
 /// that is not positive; one that is bad elsewhere only is not found.
+/// @throws Error InvalidArgument for arrays that do not fit each other
 [[nodiscard]] Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context);
 
 /// Writes the arcs of a mesh. `.vtu` and `.vtp` (VTK XML, binary appended): hex vertices and inner
 /// points, and a line per segment with the number of its hex edge; arrays docs/curved.md explains.
-/// The file appears complete or not at all.
-/// @throws Error FileUnsupported, FileWrite
+/// `.ovmb` (OpenVolumeMesh, polyhedral, without faces and cells): the same, with the property names
+/// that tools of the field use. The file appears complete or not at all.
+/// @throws Error FileUnsupported, FileWrite; TooLarge for files that cannot number the elements
 void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                Context& context);
+
+/// The same with the map that the mesh was extracted from, so that `.ovmb` files tell the indices
+/// of the tet simplices that points and segments lie in: in the numbering of the file that
+/// writeMap() writes for this map as `.ovm` or `.ovmb`.
+/// @param map  after a repair, the repaired one (ExtractStatistics::repairedMap)
+/// @throws Error  also InvalidArgument if it is another map, and as writeMap() for `.ovmb`
+void writeArcs(const PiecewiseLinearMesh& mesh, const TetMapView& map,
+               const std::filesystem::path& file, Context& context);
 
 /// Writes the patches of a mesh: `.vtu` and `.vtp`, a polygon each; or `.ovmb` (OpenVolumeMesh,
 /// polyhedral, without cells), with the property names that tools of the field use.
@@ -162,10 +173,19 @@ void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& fil
 void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                   Context& context);
 
+/// The same with the map, as for arcs; then also the sides of polygons inside faces know their
+/// simplices.
+/// @throws Error  as writeArcs() with a map
+void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
+                  const std::filesystem::path& file, Context& context);
+
 /// Writes Lagrange cells: `.vtu` (VTK_LAGRANGE_HEXAHEDRON in the node order of VTK 9), `.msh` (Gmsh
-/// 4.1), `.mesh` (MFEM, with its nodes as a discontinuous grid function).
-/// @param options  scaledJacobians: of the cells, by scaledJacobians(); empty: computed
-/// @throws Error FileUnsupported, FileWrite
+/// 4.1), `.mesh` (MFEM, with its nodes as a discontinuous grid function). Tags, regions and groups
+/// of the boundary are written as those of straight meshes: docs/features.md tells what formats
+/// hold.
+/// @param options  scaledJacobians: of the cells, by scaledJacobians(); empty: computed. patchAngle
+/// @throws Error FileUnsupported, FileWrite; InvalidArgument for arrays that do not fit each
+///         other, and for features that are not in the mesh
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context);
 
@@ -175,7 +195,8 @@ void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& fi
 
 /// Reads the Lagrange hexahedra of a `.vtu` file, all of one order, with their nodes in the order
 /// of VTK 9; other cells are ignored. What writeLagrangeMesh() wrote comes back node by node, with
-/// its generators, but without regions; of other files, nodes at corners get the first numbers.
+/// its generators, tags and regions; of other files, nodes at corners get the first numbers, and
+/// what is tagged at other nodes is left out.
 /// @throws Error FileNotFound, FileSyntax, IndexOutOfRange, NotFinite; FileUnsupported without such
 ///         cells, for orders that differ or exceed kMaxOrder, and for other extensions; TooLarge
 [[nodiscard]] LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& context);

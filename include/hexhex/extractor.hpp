@@ -1,4 +1,5 @@
-// Several meshes of one map: what does not depend on the scale is computed once.
+// Several meshes of one map, of different scales, orders and kinds: what does not depend on these
+// is computed once.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +7,7 @@
 
 #include <hexhex/check.hpp>
 #include <hexhex/context.hpp>
+#include <hexhex/curved.hpp>
 #include <hexhex/export.h>
 #include <hexhex/extract.hpp>
 #include <hexhex/stream.hpp>
@@ -16,7 +18,8 @@ namespace hexhex HEXHEX_API_NAMESPACE {
 struct ExtractorOptions {
   /// As in ExtractOptions.
   double tolerance = 1e-2;
-  /// The largest scale that will be asked for, at least 1. Large ones leave less room for digits
+  /// The largest scale that will be asked for, at least 1; for cells of higher order, times the
+  /// order. Large ones leave less room for digits
   /// behind the point.
   int maxScale = 64;
 };
@@ -49,6 +52,20 @@ class Extractor {
   [[nodiscard]] HexMesh extract(const ExtractOptions& options, Context& context,
                                 ExtractStatistics* statistics = nullptr);
   [[nodiscard]] HexMesh extract(int scale = 1);
+
+  /// The same with arcs and patches, as hexhex::extractPiecewiseLinear().
+  /// @throws Error  likewise
+  [[nodiscard]] PiecewiseLinearMesh extractPiecewiseLinear(PiecewiseLinearParts parts,
+                                                           const ExtractOptions& options,
+                                                           Context& context,
+                                                           ExtractStatistics* statistics = nullptr);
+
+  /// Cells of order `order`, as hexhex::extractLagrange(). options.scale times the order is at most
+  /// maxScale.
+  /// @throws Error  likewise; InvalidArgument for orders beyond kMaxOrder
+  [[nodiscard]] LagrangeMesh extractLagrange(int order, const ExtractOptions& options,
+                                             Context& context,
+                                             ExtractStatistics* statistics = nullptr);
 
   /// The same in pieces, as extractTo().
   void extractTo(MeshSink& sink, const ExtractOptions& options, Context& context,

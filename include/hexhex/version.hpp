@@ -1,22 +1,8 @@
-// The version stands here alone; CMake and pip read it from this file.
-//
-// Semantic Versioning. Until 1.0, a change of the minor version may change the source and the
-// binary interface, and the shared library's name (SONAME) changes with it; a change of the patch
-// version changes neither. From 1.0 on, the same holds for the major version.
+// The version of the library. That of the headers is HEXHEX_VERSION, in version.h.
 #pragma once
 
 #include <hexhex/export.h>
-
-#define HEXHEX_VERSION_MAJOR 0
-#define HEXHEX_VERSION_MINOR 1
-#define HEXHEX_VERSION_PATCH 0
-
-#define HEXHEX_TEXT_OF_VALUE(value) #value
-#define HEXHEX_TEXT_OF(macro) HEXHEX_TEXT_OF_VALUE(macro)
-/// The three as text: "major.minor.patch".
-#define HEXHEX_VERSION                 \
-  HEXHEX_TEXT_OF(HEXHEX_VERSION_MAJOR) \
-  "." HEXHEX_TEXT_OF(HEXHEX_VERSION_MINOR) "." HEXHEX_TEXT_OF(HEXHEX_VERSION_PATCH)
+#include <hexhex/version.h>  // IWYU pragma: export
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 

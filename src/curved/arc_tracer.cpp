@@ -11,48 +11,51 @@ void ArcTracer::fail(Index tet, const char* what) {
               {PlaceKind::Tet, tet});
 }
 
+namespace {
+
+/// The simplex of a tet into which the first axis leads from an inner point of another one, or
+/// kNoSimplex: holder() where only one direction matters. (Algorithm 4)
+CornerMask holderAhead(const LatticeTet& seen, CornerMask at) {
+  CornerMask simplex = kWholeTet;
+  for (int face = 0; face < 4; ++face) {
+    if (contains(at, face)) continue;
+    const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+    const LatticePoint& origin = seen[static_cast<std::size_t>(f[0])];
+    const Int128 ahead = crossComponent(seen[static_cast<std::size_t>(f[1])] - origin,
+                                        seen[static_cast<std::size_t>(f[2])] - origin, 0);
+    if (ahead < 0) return kNoSimplex;
+    if (ahead == 0) simplex = static_cast<CornerMask>(simplex & faceMask(face));
+  }
+  return simplex;
+}
+
+}  // namespace
+
 ArcPart ArcTracer::behind(const SimplexInTet& point) {
   ArcPart part;
   const bool leads = star_.visit(point, [&](const SimplexInTet& here) {
-    part.carrier = here;
-    part.seen = here.frame.see(exact_.corners[here.tet], exact_.unit);
+    part = in(here);
     if (here.simplex == kWholeTet) return true;
-    part.carrier.simplex = holder(NormalSigns(part.seen), here.simplex, direction(0, 1));
+    part.carrier.simplex = holderAhead(part.seen, here.simplex);
     return part.carrier.simplex != kNoSimplex;
   });
   if (!leads) fail(point.tet, "a hex edge leaves the mesh");
   return part;
 }
 
-SimplexPoint ArcTracer::exitOf(const ArcPart& part) {
-  const SimplexPoint exit = part.entered >= 0 ? exitAfterEntry(part.seen, part.entered)
-                                              : exitPoint(part.seen, part.carrier.simplex, 0);
-  if (exit.simplex() == kNoSimplex) fail(part.carrier.tet, "a hex edge leaves a tet nowhere");
-  return exit;
-}
-
-ArcPart ArcTracer::next(const ArcPart& part, CornerMask at) {
-  if (part.carrier.simplex == kWholeTet && dimension(at) == 2) {
-    return beyond(part, oppositeCorner(at));
-  }
-  return behind({part.carrier.tet, at, part.carrier.frame});
-}
-
-/// From tet to tet through the interior of a face, whose corners look the same from there.
-ArcPart ArcTracer::beyond(const ArcPart& part, int face) const {
+ArcExit ArcTracer::exitAt(const ArcPart& part, const SimplexPoint& point) const {
   const Index tet = part.carrier.tet;
-  const HalfFace mate = topology_.mate[halfFaceOf(tet, face)];
-  if (mate == kNone) fail(tet, "a hex edge leaves the mesh");
-  ArcPart next{crossed(topology_, exact_, part.carrier, face), {}, localOf(mate)};
-  const Tet& corners = topology_.tets[tetOf(mate)];
+  const CornerMask at = point.simplex();
+  if (at == kNoSimplex) fail(tet, "a hex edge leaves a tet nowhere");
+  ArcExit exit;
+  exit.generator = ownedBy(topology_, tet, at);
   for (std::size_t i = 0; i < 4; ++i) {
-    if (static_cast<int>(i) == next.entered) {
-      next.seen[i] = next.carrier.frame.see(exact_.corners[tetOf(mate)][i], exact_.unit);
-    } else {
-      next.seen[i] = part.seen[static_cast<std::size_t>(topology_.localCorner(tet, corners[i]))];
-    }
+    if (point.weights[i] == 0) continue;
+    exit.vertices[exit.count] = topology_.tets[tet][i];
+    exit.weights[exit.count] = toDouble(point.weights[i]);
+    exit.places[exit.count++] = static_cast<double>(part.seen[i][0]);
   }
-  return next;
+  return exit;
 }
 
 }  // namespace hexhex

@@ -19,7 +19,6 @@ struct Crossing {
   Vec3 point;
   double parameter;
   OwnedSimplex generator;
-  SimplexVertices vertices;
 };
 
 /// Inner points and segments of consecutive arcs.
@@ -37,13 +36,29 @@ struct ArcPieces {
 class BlockTracer {
  public:
   BlockTracer(const PreparedMap& map, const LatticeNumbers& vertices, Arcs& arcs, ArcPieces& pieces)
-      : map_(map), vertices_(vertices), arcs_(arcs), pieces_(pieces), tracer_(map) {}
+      : map_(map),
+        vertices_(vertices),
+        arcs_(arcs),
+        pieces_(pieces),
+        unit_(static_cast<double>(map.exact.unit)),
+        tracer_(map, vertices) {}
 
-  void trace(Index tet, const Element& edge) {
-    GridPoint end = edge.z;
-    ++end[static_cast<std::size_t>(edge.axis)];
-    const LatticeNumbers::Found from = vertices_.find(tet, edge.z, fromHint_);
-    const LatticeNumbers::Found to = vertices_.find(tet, end, toHint_);
+  void trace(Index tet, const ElementNumbers::Row& row) {
+    const GridPoint& begin = row.front().z;
+    const int axis = row.front().axis;
+    const GridPoint end = step(begin, direction(axis, 1));
+    LatticeNumbers::OnLine beginnings(vertices_, tet, begin, row.along(), fromHint_);
+    LatticeNumbers::OnLine ends(vertices_, tet, end, row.along(), toHint_);
+    row.forEach([&](const Element& edge) {
+      trace(tet, edge, beginnings.find(edge.z), ends.find(step(edge.z, direction(axis, 1))));
+    });
+  }
+
+ private:
+  using Found = LatticeNumbers::Found;
+
+  /// @param from, to  what the tet has of the edge's ends
+  void trace(Index tet, const Element& edge, const Found& from, const Found& to) {
     if (from.vertex != kNone && to.vertex != kNone) {
       // By convexity, all between lies in the smallest simplex that contains both ends.
       arcs_.ends[edge.number] = {from.vertex, to.vertex};
@@ -53,54 +68,71 @@ class BlockTracer {
     }
     const std::size_t before = pieces_.crossings.size();
     const SimplexInTet middle{tet, edge.simplex, Frame::along(edge.z, edge.axis)};
-    arcs_.ends[edge.number] =
-        edge.simplex == kWholeTet ? traceBothWays(middle) : traceFromBeginning(middle);
+    arcs_.ends[edge.number] = edge.simplex == kWholeTet ? traceBothWays(middle, from, to)
+                                                        : traceFromBeginning(middle, from);
     arcs_.pointBegin[edge.number] = pieces_.crossings.size() - before;
     smoothParameters(std::span(pieces_.crossings).subspan(before));
   }
 
- private:
   /// From a midpoint inside a tet.
-  [[nodiscard]] std::array<Index, 2> traceBothWays(const SimplexInTet& middle) {
+  /// @param from, to  what the tet has of the edge's ends
+  [[nodiscard]] std::array<Index, 2> traceBothWays(const SimplexInTet& middle, const Found& from,
+                                                   const Found& to) {
+    std::array<Index, 2> ends = {from.vertex, to.vertex};
+    if (from.vertex == kNone) {
+      ends[0] = traceBack(middle);
+    } else {
+      addSegment(middle);
+    }
+    if (to.vertex != kNone) return ends;
+    bool atMiddle = true;
+    const ArcEnd last = tracer_.followBeyond(tracer_.in(middle),
+                                             [&](const SimplexInTet& carrier, const ArcExit& exit) {
+                                               if (!atMiddle) addSegment(carrier);
+                                               atMiddle = false;
+                                               pieces_.crossings.push_back(crossingAt(exit));
+                                             });
+    addSegment(last.carrier);
+    ends[1] = last.vertex;
+    return ends;
+  }
+
+  /// Adds what there is from the beginning to the segment at the midpoint.
+  /// @return the vertex at the beginning
+  [[nodiscard]] Index traceBack(const SimplexInTet& middle) {
     back_.clear();
-    SimplexInTet turned = middle;
-    turned.frame = reversed(middle.frame);
-    const ArcPart first =
-        tracer_.follow(tracer_.behind(turned), [&](const ArcPart& part, const SimplexPoint& exit) {
-          back_.segments.push_back(carrierOf(part.carrier));
-          back_.crossings.push_back(crossingAt(part, exit));
+    const ArcEnd first = tracer_.followBeyond(
+        tracer_.in({middle.tet, middle.simplex, reversed(middle.frame)}),
+        [&](const SimplexInTet& carrier, const ArcExit& exit) {
+          back_.segments.push_back(carrierOf(carrier));
+          back_.crossings.push_back(crossingAt(exit));
           back_.crossings.back().parameter = 1 - back_.crossings.back().parameter;
         });
     addSegment(first.carrier);
     pieces_.segments.insert(pieces_.segments.end(), back_.segments.rbegin(), back_.segments.rend());
     pieces_.crossings.insert(pieces_.crossings.end(), back_.crossings.rbegin(),
                              back_.crossings.rend());
-    bool atMiddle = true;
-    const ArcPart last =
-        tracer_.follow(tracer_.behind(middle), [&](const ArcPart& part, const SimplexPoint& exit) {
-          if (!atMiddle) addSegment(part.carrier);
-          atMiddle = false;
-          pieces_.crossings.push_back(crossingAt(part, exit));
-        });
-    if (!atMiddle) addSegment(last.carrier);
-    return {vertexAt(first), vertexAt(last)};
+    return first.vertex;
   }
 
   /// From a midpoint on the boundary of tets: back to the beginning, then all the way.
-  [[nodiscard]] std::array<Index, 2> traceFromBeginning(const SimplexInTet& middle) {
-    SimplexInTet turned = middle;
-    turned.frame = reversed(middle.frame);
-    const ArcPart back =
-        tracer_.follow(tracer_.behind(turned), [](const ArcPart&, const SimplexPoint&) {});
-    ArcPart first{back.carrier, {}, -1};
-    first.carrier.frame = reversed(back.carrier.frame);
-    first.seen = first.carrier.frame.see(map_.exact.corners[first.carrier.tet], map_.exact.unit);
-    const ArcPart last = tracer_.follow(first, [&](const ArcPart& part, const SimplexPoint& exit) {
-      addSegment(part.carrier);
-      pieces_.crossings.push_back(crossingAt(part, exit));
-    });
+  /// @param from  what the tet has of the beginning
+  [[nodiscard]] std::array<Index, 2> traceFromBeginning(const SimplexInTet& middle,
+                                                        const Found& from) {
+    ArcEnd first{{middle.tet, static_cast<CornerMask>(middle.simplex | from.simplex), middle.frame},
+                 from.vertex};
+    if (from.vertex == kNone) {
+      const SimplexInTet turned{middle.tet, middle.simplex, reversed(middle.frame)};
+      first = tracer_.follow(tracer_.behind(turned), [](const SimplexInTet&, const ArcExit&) {});
+      first.carrier.frame = reversed(first.carrier.frame);
+    }
+    const ArcEnd last = tracer_.follow(tracer_.in(first.carrier),
+                                       [&](const SimplexInTet& carrier, const ArcExit& exit) {
+                                         addSegment(carrier);
+                                         pieces_.crossings.push_back(crossingAt(exit));
+                                       });
     addSegment(last.carrier);
-    return {vertexAt(back), vertexAt(last)};
+    return {first.vertex, last.vertex};
   }
 
   /// The same edge from its other end.
@@ -108,28 +140,23 @@ class BlockTracer {
     return {frame.at({1, 0, 0}), {opposite(frame.axes[0]), opposite(frame.axes[1]), frame.axes[2]}};
   }
 
-  /// The vertex at the end of the last part.
-  [[nodiscard]] Index vertexAt(const ArcPart& part) const {
-    const SimplexInTet& at = part.carrier;
-    LineHint hint;
-    const Index vertex = vertices_.find(at.tet, at.frame.at({1, 0, 0}), hint).vertex;
-    if (vertex == kNone) ArcTracer::fail(at.tet, "a hex edge ends where no hex vertex is");
-    return vertex;
-  }
-
   [[nodiscard]] OwnedSimplex carrierOf(const SimplexInTet& carrier) const {
     return ownedBy(map_.topology, carrier.tet, carrier.simplex);
   }
   void addSegment(const SimplexInTet& carrier) { pieces_.segments.push_back(carrierOf(carrier)); }
 
-  [[nodiscard]] Crossing crossingAt(const ArcPart& part, const SimplexPoint& point) const {
-    const Index tet = part.carrier.tet;
-    const Tet& corners = map_.topology.tets[tet];
-    const CornerMask simplex = point.simplex();
-    const std::array<double, 4> shares = point.normalized();
-    return {position(shares, corners, map_.input.view.points),
-            coordinate(shares, part.seen, 0) / static_cast<double>(map_.exact.unit),
-            ownedBy(map_.topology, tet, simplex), verticesOf(corners, simplex)};
+  [[nodiscard]] Crossing crossingAt(const ArcExit& exit) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < exit.count; ++i) sum += exit.weights[i];
+    Crossing crossing{{}, 0, exit.generator};
+    for (std::size_t i = 0; i < exit.count; ++i) {
+      const double share = exit.weights[i] / sum;
+      const Vec3& corner = map_.input.view.points[exit.vertices[i]];
+      for (std::size_t k = 0; k < 3; ++k) crossing.point[k] += share * corner[k];
+      crossing.parameter += share * exit.places[i];
+    }
+    crossing.parameter /= unit_;
+    return crossing;
   }
 
   /// Exact values are in (0, 1) and ascend; rounding may not change that.
@@ -144,6 +171,7 @@ class BlockTracer {
   const LatticeNumbers& vertices_;
   Arcs& arcs_;
   ArcPieces& pieces_;
+  double unit_;
   ArcTracer tracer_;
   ArcPieces back_;
   LineHint fromHint_;
@@ -152,15 +180,13 @@ class BlockTracer {
 
 /// Copies the pieces of a block to their places.
 void join(const ArcPieces& pieces, std::uint64_t firstPoint, std::uint64_t firstSegment,
-          TracedArcs& traced) {
-  Arcs& arcs = traced.arcs;
+          Arcs& arcs) {
   for (std::size_t i = 0; i < pieces.crossings.size(); ++i) {
     const Crossing& crossing = pieces.crossings[i];
     arcs.points[firstPoint + i] = crossing.point;
     arcs.parameters[firstPoint + i] = crossing.parameter;
     arcs.generatorTet[firstPoint + i] = crossing.generator.tet;
     arcs.generatorCorners[firstPoint + i] = crossing.generator.corners;
-    traced.crossings[firstPoint + i] = crossing.vertices;
   }
   for (std::size_t i = 0; i < pieces.segments.size(); ++i) {
     arcs.segmentTet[firstSegment + i] = pieces.segments[i].tet;
@@ -170,22 +196,20 @@ void join(const ArcPieces& pieces, std::uint64_t firstPoint, std::uint64_t first
 
 /// Makes room.
 /// @param share  of all arcs whose pieces have room then
-void lengthenAll(TracedArcs& traced, std::uint64_t points, std::uint64_t segments, double share) {
-  lengthen(traced.arcs.points, points, share);
-  lengthen(traced.arcs.parameters, points, share);
-  lengthen(traced.arcs.generatorTet, points, share);
-  lengthen(traced.arcs.generatorCorners, points, share);
-  lengthen(traced.crossings, points, share);
-  lengthen(traced.arcs.segmentTet, segments, share);
-  lengthen(traced.arcs.segmentCorners, segments, share);
+void lengthenAll(Arcs& arcs, std::uint64_t points, std::uint64_t segments, double share) {
+  lengthen(arcs.points, points, share);
+  lengthen(arcs.parameters, points, share);
+  lengthen(arcs.generatorTet, points, share);
+  lengthen(arcs.generatorCorners, points, share);
+  lengthen(arcs.segmentTet, segments, share);
+  lengthen(arcs.segmentCorners, segments, share);
 }
 
 }  // namespace
 
-TracedArcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices,
-                     const ElementNumbers& edges, Stage& stage) {
-  TracedArcs traced;
-  Arcs& arcs = traced.arcs;
+Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const ElementNumbers& edges,
+               Stage& stage) {
+  Arcs arcs;
   arcs.ends.resize(edges.count());
   arcs.pointBegin.resize(edges.count() + 1);
   arcs.pointBegin.back() = 0;
@@ -201,7 +225,7 @@ TracedArcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices,
         BlockTracer tracer(map, vertices, arcs, pieces[block % kWaveBlocks]);
         for (std::size_t t = begin; t < end; ++t) {
           const auto tet = static_cast<Index>(t);
-          edges.forEach(tet, [&](const Element& edge) { tracer.trace(tet, edge); });
+          edges.forEachRow(tet, [&](const ElementNumbers::Row& row) { tracer.trace(tet, row); });
         }
       },
       [&](std::size_t firstBlock, std::size_t endBlock) {
@@ -210,16 +234,16 @@ TracedArcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices,
           points += pieces[block % kWaveBlocks].crossings.size();
         }
         const std::uint64_t done = edges.begin(std::min(endBlock * grain, tets));
-        lengthenAll(traced, points, points + done,
+        lengthenAll(arcs, points, points + done,
                     static_cast<double>(done) / static_cast<double>(edges.count()));
       },
       [&](std::size_t block) {
         const std::uint64_t firstPoint = firstPoints[block % kWaveBlocks];
         join(pieces[block % kWaveBlocks], firstPoint, firstPoint + edges.begin(block * grain),
-             traced);
+             arcs);
       });
   exclusiveScan(std::span(arcs.pointBegin));
-  return traced;
+  return arcs;
 }
 
 }  // namespace hexhex

@@ -9,13 +9,8 @@
 
 namespace hexhex {
 
-struct TracedArcs {
-  Arcs arcs;  ///< generators in terms of the tets in the map, not of the caller's
-  Array<SimplexVertices> crossings;  ///< per inner point: its generator's vertices
-};
-
-/// Traces every hex edge once.
-[[nodiscard]] TracedArcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices,
-                                   const ElementNumbers& edges, Stage& stage);
+/// Traces every hex edge once. Generators are in terms of the tets in the map, not of the caller's.
+[[nodiscard]] Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices,
+                             const ElementNumbers& edges, Stage& stage);
 
 }  // namespace hexhex

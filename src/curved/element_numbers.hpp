@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include <curved/lattice_numbers.hpp>
 #include <sweep/cell_seeds.hpp>
@@ -35,18 +36,52 @@ class ElementNumbers {
   /// The first element that a tet owns; also of the tet behind the last.
   [[nodiscard]] std::uint64_t begin(std::size_t tet) const noexcept { return begin_[tet]; }
 
-  /// Visits all elements that a tet owns, in order.
-  template <class Visit>
-  void forEach(Index tet, const Visit& visit) const {
-    std::uint64_t number = begin_[tet];
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const Line& line : linesOf(tet, axis)) {
-        const std::uint32_t end = line.ownedFirst + line.ownedCount;
-        for (std::uint32_t i = line.ownedFirst; i < end; ++i) {
-          visit(Element{number++, axis, point(tet, axis, line, i), line.swept.simplex(i)});
-        }
+  /// Elements next to each other along an axis that a tet owns.
+  class Row {
+   public:
+    Row(const SweptLine& swept, std::uint32_t first, std::uint32_t count, const Element& element,
+        std::size_t along) noexcept
+        : swept_(swept), first_(first), count_(count), element_(element), along_(along) {}
+
+    [[nodiscard]] const Element& front() const noexcept { return element_; }
+    [[nodiscard]] std::size_t along() const noexcept { return along_; }
+
+    template <class Visit>
+    void forEach(const Visit& visit) const {
+      Element element = element_;
+      for (std::uint32_t i = first_; i < first_ + count_; ++i) {
+        element.simplex = swept_.simplex(i);
+        visit(std::as_const(element));
+        ++element.number;
+        ++element.z[along_];
       }
     }
+
+   private:
+    const SweptLine& swept_;
+    std::uint32_t first_;
+    std::uint32_t count_;
+    Element element_;
+    std::size_t along_;
+  };
+
+  /// Visits all elements that a tet owns, row by row, in order.
+  template <class Visit>
+  void forEachRow(Index tet, const Visit& visit) const {
+    std::uint64_t number = begin_[tet];
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::size_t along = axes_[gridOf(tet, axis)]()[2];
+      for (const Line& line : linesOf(tet, axis)) {
+        const Element front{number, axis, point(tet, axis, line, line.ownedFirst), kNoSimplex};
+        visit(Row(line.swept, line.ownedFirst, line.ownedCount, front, along));
+        number += line.ownedCount;
+      }
+    }
+  }
+  /// The same element by element.
+  template <class Visit>
+  void forEach(Index tet, const Visit& visit) const {
+    forEachRow(tet, [&](const Row& row) { row.forEach(visit); });
   }
 
   /// The number of an element, by its owner.

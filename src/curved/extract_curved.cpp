@@ -7,8 +7,10 @@
 #include <curved/patches.hpp>
 
 #include <hexhex/curved.hpp>
+#include <hexhex/extractor.hpp>
 
 #include <base/parallel.hpp>
+#include <extract/prepared_extractor.hpp>
 #include <extract/steps.hpp>
 
 namespace hexhex {
@@ -30,19 +32,32 @@ void addParts(const PreparedMap& map, PiecewiseLinearParts parts, PiecewiseLinea
   Stage arcStage(context, "arcs");
   const LatticeNumbers vertices(map, arcStage);
   const ElementNumbers edges(map, ElementKind::Edges, arcStage);
-  TracedArcs traced = traceArcs(map, vertices, edges, arcStage);
-  result.arcs = std::move(traced.arcs);
+  result.arcs = traceArcs(map, vertices, edges, arcStage);
   arcStage.finish();
   if (parts == PiecewiseLinearParts::ArcsAndPatches) {
     Stage stage(context, "patches");
     const ElementNumbers faces(map, ElementKind::Faces, stage);
-    result.patches =
-        cutPatches({map, vertices, edges, faces, result.arcs, traced.crossings}, stage);
+    result.patches = cutPatches({map, vertices, edges, faces, result.arcs}, stage);
     toCallersCorners(map.input, result.patches.generatorCorners, stage);
     toCallersCorners(map.input, result.patches.polygonCorners, stage);
   }
   toCallersCorners(map.input, result.arcs.generatorCorners, arcStage);
   toCallersCorners(map.input, result.arcs.segmentCorners, arcStage);
+}
+
+void requireOrder(int order) {
+  if (order >= 1 && order <= kMaxOrder) return;
+  throw Error(ErrorCode::InvalidArgument, "The order is " + std::to_string(order) +
+                                              ". Choose one from 1 to " +
+                                              std::to_string(kMaxOrder) + ".");
+}
+
+/// @param map  scaled for the mesh; receives the scale of the nodes
+LagrangeMesh withNodes(HexMesh mesh, PreparedMap& map, int order, Context& context) {
+  LagrangeMesh result = groupNodes(mesh, map, order, context);
+  result.features = std::move(mesh.features);
+  result.regions = std::move(mesh.regions);
+  return result;
 }
 
 }  // namespace
@@ -62,20 +77,39 @@ PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map, PiecewiseLinea
 
 LagrangeMesh extractLagrange(const TetMapView& map, int order, const ExtractOptions& options,
                              Context& context, ExtractStatistics* statistics) {
-  if (order < 1 || order > kMaxOrder) {
-    throw Error(ErrorCode::InvalidArgument, "The order is " + std::to_string(order) +
-                                                ". Choose one from 1 to " +
-                                                std::to_string(kMaxOrder) + ".");
-  }
+  requireOrder(order);
   checkOptions(options);
   LagrangeMesh result;
   runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {order}, context, filled);
-    HexMesh mesh = extractScaled(map, scaled, options, context, filled);
-    result = groupNodes(mesh, scaled.map, order, context);
-    result.features = std::move(mesh.features);
-    result.regions = std::move(mesh.regions);
+    result =
+        withNodes(extractScaled(map, scaled, options, context, filled), scaled.map, order, context);
   });
+  return result;
+}
+
+PiecewiseLinearMesh Extractor::extractPiecewiseLinear(PiecewiseLinearParts parts,
+                                                      const ExtractOptions& options,
+                                                      Context& context,
+                                                      ExtractStatistics* statistics) {
+  PiecewiseLinearMesh result;
+  prepared_->run(options, {}, context, statistics,
+                 [&](std::uint64_t cells, ExtractStatistics& filled) {
+                   result.mesh = prepared_->mesh(cells, options, context, filled);
+                   addParts(prepared_->map(), parts, result, context);
+                 });
+  return result;
+}
+
+LagrangeMesh Extractor::extractLagrange(int order, const ExtractOptions& options, Context& context,
+                                        ExtractStatistics* statistics) {
+  requireOrder(order);
+  LagrangeMesh result;
+  prepared_->run(options, {order}, context, statistics,
+                 [&](std::uint64_t cells, ExtractStatistics& filled) {
+                   HexMesh mesh = prepared_->mesh(cells, options, context, filled);
+                   result = withNodes(std::move(mesh), prepared_->mapToScale(), order, context);
+                 });
   return result;
 }
 

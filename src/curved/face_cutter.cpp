@@ -72,6 +72,37 @@ double placeOnSide(const LatticeTet& seen, const SliceCorner& corner, std::size_
   return coordinate(point.normalized(), seen, along) / static_cast<double>(unit);
 }
 
+/// The simplex of a tet that holds the origin, or kNoSimplex.
+CornerMask simplexOfOrigin(const LatticeTet& corners) {
+  std::array<std::array<double, 3>, 4> c;
+  std::array<double, 3> reach{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      c[i][k] = static_cast<double>(corners[i][k]);
+      reach[k] = std::max(reach[k], std::abs(c[i][k]));
+    }
+  }
+  // Each volume is a sum of six products with at most eight roundings each: an error below
+  // 6 * 8.1 * 2^-53 < 2^-47 times the largest product. 2^-46 leaves a factor of two.
+  const double error = 0x1p-46 * reach[0] * reach[1] * reach[2];
+  CornerMask simplex = kNoSimplex;
+  for (int face = 0; face < 4; ++face) {
+    const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+    const auto i = static_cast<std::size_t>(f[0]);
+    const auto j = static_cast<std::size_t>(f[1]);
+    const auto k = static_cast<std::size_t>(f[2]);
+    const double outside = c[i][2] * (c[j][0] * c[k][1] - c[j][1] * c[k][0]) +
+                           c[j][2] * (c[k][0] * c[i][1] - c[k][1] * c[i][0]) +
+                           c[k][2] * (c[i][0] * c[j][1] - c[i][1] * c[j][0]);
+    const int side = std::abs(outside) > error
+                         ? (outside < 0 ? 1 : -1)
+                         : orientation(corners[i], corners[j], corners[k], {0, 0, 0});
+    if (side < 0) return kNoSimplex;
+    if (side > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(face));
+  }
+  return simplex;
+}
+
 std::array<double, 2> ofSquareCorner(std::size_t corner) { return onSide(corner, 0); }
 
 }  // namespace
@@ -90,7 +121,7 @@ FaceCutter::Border FaceCutter::cut(Index tet, const Element& face) {
   collectPieces({tet, face.simplex, frame});
   findArcs(border);
   setVertices(border, input_.arcs, tet);
-  for (const Piece& piece : pieces_) emit(border, piece);
+  for (Piece& piece : pieces_) emit(border, piece);
   border.polygons = static_cast<std::uint32_t>(pieces_.size());
   return border;
 }
@@ -127,7 +158,7 @@ void FaceCutter::collectPieces(const SimplexInTet& center) {
   const bool found = star_.visit(center, [&](const SimplexInTet& here) {
     const CornerMask carrier = carrierOfPlane(see(here));
     if (carrier == kNoSimplex) return false;
-    addPiece({here.tet, carrier, here.frame}, -1);
+    addPiece({here.tet, carrier, here.frame});
     return true;
   });
   if (!found) fail(center.tet, "no tet around the centre meets the face");
@@ -135,7 +166,8 @@ void FaceCutter::collectPieces(const SimplexInTet& center) {
 }
 
 /// Adds a piece if it is new.
-void FaceCutter::addPiece(SimplexInTet carrier, int entered) {
+void FaceCutter::addPiece(SimplexInTet carrier, int entered, std::size_t from,
+                          std::size_t fromSide) {
   if (carrier.simplex != kWholeTet) {
     // A triangle has two tets: the smaller one stands for both.
     const int face = oppositeCorner(carrier.simplex);
@@ -152,7 +184,7 @@ void FaceCutter::addPiece(SimplexInTet carrier, int entered) {
   const LatticeTet seen = see(carrier);
   const Slice slice = sliceSquare(seen, carrier.simplex, exact_.unit);
   if (slice.size() < 3) fail(carrier.tet, "a polygon has no area");
-  pieces_.push_back({carrier, seen, slice, entered, first});
+  pieces_.push_back({carrier, seen, slice, entered, from, fromSide, first, 0});
   first = pieces_.size() - 1;
 }
 
@@ -169,13 +201,13 @@ void FaceCutter::addNeighbours(std::size_t piece) {
       const HalfFace mate = topology_.mate[halfFaceOf(at.tet, face)];
       if (mate == kNone) fail(at.tet, "a face leaves the mesh");
       at.simplex = kWholeTet;
-      addPiece(crossed(topology_, exact_, at, face), localOf(mate));
+      addPiece(crossed(topology_, exact_, at, face), localOf(mate), piece, i);
       continue;
     }
     // Two pieces meet in an edge of the plane, somewhere around it.
     star_.visit(at, [&](const SimplexInTet& here) {
       const CornerMask carrier = carrierOfPlane(see(here));
-      if (carrier != kNoSimplex) addPiece({here.tet, carrier, here.frame}, -1);
+      if (carrier != kNoSimplex) addPiece({here.tet, carrier, here.frame});
       return false;
     });
   }
@@ -203,21 +235,18 @@ CornerMask FaceCutter::simplexOfMidpoint(const LatticeTet& corners, std::size_t 
   const std::int64_t unit = exact_.unit;
   const std::array<LatticePoint, 4> midpoints = {
       {{unit / 2, 0, 0}, {unit, unit / 2, 0}, {unit / 2, unit, 0}, {0, unit / 2, 0}}};
+  LatticeTet around = corners;
+  for (LatticePoint& corner : around) corner = corner - midpoints[side];
   // Most tets at a side are elsewhere along it.
   const std::size_t along = side % 2;
-  const auto [low, high] =
-      std::minmax({corners[0][along], corners[1][along], corners[2][along], corners[3][along]});
-  if (low > unit / 2 || high < unit / 2) return kNoSimplex;
-  CornerMask simplex = kNoSimplex;
-  for (int face = 0; face < 4; ++face) {
-    const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
-    const int inside = orientation(corners[static_cast<std::size_t>(f[0])],
-                                   corners[static_cast<std::size_t>(f[1])],
-                                   corners[static_cast<std::size_t>(f[2])], midpoints[side]);
-    if (inside < 0) return kNoSimplex;
-    if (inside > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(face));
+  bool before = true;
+  bool behind = true;
+  for (const LatticePoint& corner : around) {
+    before = before && corner[along] < 0;
+    behind = behind && corner[along] > 0;
   }
-  return simplex;
+  if (before || behind) return kNoSimplex;
+  return simplexOfOrigin(around);
 }
 
 /// Looks an arc up in the tet that owns its midpoint.
@@ -250,25 +279,42 @@ void FaceCutter::setVertices(Border& border, const Arcs& arcs, Index tet) {
   }
 }
 
-void FaceCutter::put(std::uint64_t number, const std::array<double, 2>& parameter) {
+void FaceCutter::put(std::uint64_t number, std::array<double, 2> parameter) {
   out_.corners.push_back(static_cast<Index>(number));
   out_.parameters.push_back(parameter);
 }
 
-void FaceCutter::emit(const Border& border, const Piece& piece) {
-  for (std::size_t i = 0; i < piece.slice.size(); ++i) {
-    const SliceCorner& corner = piece.slice[i];
-    if (corner.onBorder(0) && corner.onBorder(1)) {
-      put(border.vertices[corner.squareCorner()], ofSquareCorner(corner.squareCorner()));
-    } else if (corner.onBorder(0) || corner.onBorder(1)) {
-      emitArcPoint(border, piece, corner);
-    } else {
-      emitInnerPoint(piece, corner);
+/// Corners that the piece shares with the one that it was found from are known.
+void FaceCutter::emit(const Border& border, Piece& piece) {
+  piece.firstCorner = out_.corners.size();
+  const std::size_t size = piece.slice.size();
+  const std::uint8_t entry = piece.entered < 0 ? kNoSimplex : faceMask(piece.entered);
+  for (std::size_t i = 0; i < size; ++i) {
+    const bool begins = piece.slice[i].side == entry;
+    const bool ends = piece.slice[i == 0 ? size - 1 : i - 1].side == entry;
+    if (!begins && !ends) {
+      emitCorner(border, piece, piece.slice[i]);
+      continue;
     }
+    // There the side runs the other way.
+    const Piece& from = pieces_[piece.from];
+    const std::size_t after = piece.fromSide + 1 < from.slice.size() ? piece.fromSide + 1 : 0;
+    const std::size_t known = from.firstCorner + (begins ? after : piece.fromSide);
+    put(out_.corners[known], out_.parameters[known]);
   }
-  out_.cornerCounts.push_back(static_cast<std::uint32_t>(piece.slice.size()));
+  out_.cornerCounts.push_back(static_cast<std::uint32_t>(size));
   // Pieces are named by the owners of their carriers already.
   out_.carriers.push_back({piece.carrier.tet, piece.carrier.simplex});
+}
+
+void FaceCutter::emitCorner(const Border& border, const Piece& piece, const SliceCorner& corner) {
+  if (corner.onBorder(0) && corner.onBorder(1)) {
+    put(border.vertices[corner.squareCorner()], ofSquareCorner(corner.squareCorner()));
+  } else if (corner.onBorder(0) || corner.onBorder(1)) {
+    emitArcPoint(border, piece, corner);
+  } else {
+    emitInnerPoint(piece, corner);
+  }
 }
 
 /// A point of an arc is known by the simplex that the arc crosses there. (An arc that crosses one
@@ -278,10 +324,10 @@ void FaceCutter::emitArcPoint(const Border& border, const Piece& piece, const Sl
   const std::size_t arc = border.arcs[side];
   const bool reversed = ((border.reversed >> side) & 1U) != 0;
   const Arcs& arcs = input_.arcs;
-  const SimplexVertices vertices = verticesOf(topology_.tets[piece.carrier.tet], corner.simplex);
   const std::uint64_t end = arcs.pointBegin[arc + 1];
+  const SimplexMatcher matches(topology_, piece.carrier.tet, corner.simplex);
   const auto next = [&](std::uint64_t i) {
-    while (i < end && !sameVertices(input_.crossings[i], vertices)) ++i;
+    while (i < end && !matches({arcs.generatorTet[i], arcs.generatorCorners[i]})) ++i;
     return i;
   };
   std::uint64_t best = next(arcs.pointBegin[arc]);

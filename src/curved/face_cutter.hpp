@@ -64,8 +64,11 @@ class FaceCutter {
     SimplexInTet carrier;
     LatticeTet seen;  ///< the tet in the square's frame
     Slice slice;
-    int entered;       ///< face of the tet across which the piece was found, or -1
-    std::size_t next;  ///< piece of the same tet, or kLast
+    int entered;              ///< face of the tet across which the piece was found, or -1
+    std::size_t from;         ///< then: the piece on the other side
+    std::size_t fromSide;     ///< and its side
+    std::size_t next;         ///< piece of the same tet, or kLast
+    std::size_t firstCorner;  ///< among the corners that are emitted
   };
   struct InnerPoint {
     Index end;                         ///< larger vertex of the edge, or the vertex itself
@@ -90,7 +93,8 @@ class FaceCutter {
 
   [[nodiscard]] bool cutInsideOneTet(Index tet, const Frame& frame, Border& border);
   void collectPieces(const SimplexInTet& center);
-  void addPiece(SimplexInTet carrier, int entered);
+  void addPiece(const SimplexInTet& carrier) { addPiece(carrier, -1, kLast, 0); }
+  void addPiece(SimplexInTet carrier, int entered, std::size_t from, std::size_t fromSide);
   void addNeighbours(std::size_t piece);
   [[nodiscard]] LatticeTet see(const SimplexInTet& at) const {
     return at.frame.see(exact_.corners[at.tet], exact_.unit);
@@ -101,10 +105,11 @@ class FaceCutter {
   void setArc(Border& border, std::size_t side, const SimplexInTet& midpoint);
   static void setVertices(Border& border, const Arcs& arcs, Index tet);
 
-  void emit(const Border& border, const Piece& piece);
+  void emit(const Border& border, Piece& piece);
+  void emitCorner(const Border& border, const Piece& piece, const SliceCorner& corner);
   void emitArcPoint(const Border& border, const Piece& piece, const SliceCorner& corner);
   void emitInnerPoint(const Piece& piece, const SliceCorner& corner);
-  void put(std::uint64_t number, const std::array<double, 2>& parameter);
+  void put(std::uint64_t number, std::array<double, 2> parameter);
 
   const PatchInput& input_;
   const TetTopology& topology_;

@@ -8,6 +8,7 @@
 
 #include <hexhex/curved.hpp>
 
+#include <base/lagrange_check.hpp>
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 
@@ -141,6 +142,7 @@ class Evaluator {
 }  // namespace
 
 Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context) {
+  requireConsistent(mesh);
   Stage stage(context, "quality");
   const Basis atNodes(mesh.order, equidistant(mesh.order));
   const Basis atGauss(mesh.order, gaussPoints(mesh.order + 1));
@@ -164,6 +166,7 @@ Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context) {
 }
 
 HexMesh straightMesh(const LagrangeMesh& mesh) {
+  requireConsistent(mesh);
   HexMesh straight;
   straight.features = mesh.features;
   straight.regions = mesh.regions;

@@ -84,22 +84,28 @@ void LatticeNumbers::enter(Line& line, const VertexRun& run) {
   }
 }
 
-LatticeNumbers::Found LatticeNumbers::find(Index tet, const GridPoint& z, LineHint& hint) const {
+const LatticeNumbers::Line* LatticeNumbers::lineAt(Index tet, const GridPoint& z,
+                                                   LineHint& hint) const {
   const std::array<std::uint8_t, 3>& axes = axes_[tet]();
-  const Line* const line = findLine(
+  return findLine(
       linesOf(tet), z[axes[0]], z[axes[1]],
       [](const Line& l) -> const SweptLine& { return l.swept; }, hint);
-  if (line == nullptr) return {};
-  const auto i = static_cast<std::uint32_t>(z[axes[2]] - line->swept.first);
-  if (i >= line->swept.count) return {};
-  const CornerMask simplex = line->swept.simplex(i);
-  Index vertex = line->left;
-  if (i + 1 == line->swept.count && i > 0) {
-    vertex = line->right;
-  } else if (i > 0 && line->inner != kNone) {
-    vertex = line->inner + static_cast<Index>(line->step * static_cast<std::int32_t>(i - 1));
-  } else if (i > 0) {
-    vertex = kNone;
+}
+
+LatticeNumbers::Found LatticeNumbers::find(Index tet, const GridPoint& z, LineHint& hint) const {
+  const Line* const line = lineAt(tet, z, hint);
+  return line == nullptr ? Found{} : foundOn(tet, *line, z, axes_[tet]()[2]);
+}
+
+/// At the end of a line, or in a face that another tet owns.
+LatticeNumbers::Found LatticeNumbers::foundAtEnd(Index tet, const Line& line, const GridPoint& z,
+                                                 std::uint32_t i) const {
+  const CornerMask simplex = line.swept.simplex(i);
+  Index vertex = kNone;
+  if (i == 0) {
+    vertex = line.left;
+  } else if (i + 1 == line.swept.count) {
+    vertex = line.right;
   }
   if (vertex != kNone) return {vertex, simplex};
   // The tet on the other side of a face owns it.
@@ -108,6 +114,15 @@ LatticeNumbers::Found LatticeNumbers::find(Index tet, const GridPoint& z, LineHi
   LineHint there;
   return {find(owner, map_.exact.transitions.across(halfFace)(z), there).vertex, simplex};
 }
+
+LatticeNumbers::OnLine::OnLine(const LatticeNumbers& numbers, Index tet, const GridPoint& z,
+                               std::size_t axis, LineHint& hint)
+    : numbers_(numbers),
+      tet_(tet),
+      axis_(axis),
+      hint_(hint),
+      swept_(numbers.axes_[tet]()[2] == axis),
+      line_(swept_ ? numbers.lineAt(tet, z, hint) : nullptr) {}
 
 void LatticeNumbers::describe(const VertexDescriptions& to, Stage& stage) const {
   parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,

@@ -46,6 +46,33 @@ class LatticeNumbers {
   [[nodiscard]] Found find(Index tet, const GridPoint& z, LineHint& hint) const;
 
  private:
+  struct Line;
+
+ public:
+  /// The vertices of a tet on a line of the grid: for searches that go along it.
+  class OnLine {
+   public:
+    /// @param z     a point of the line
+    /// @param axis  along it
+    OnLine(const LatticeNumbers& numbers, Index tet, const GridPoint& z, std::size_t axis,
+           LineHint& hint);
+
+    /// The vertex at a point of the line.
+    [[nodiscard]] Found find(const GridPoint& z) {
+      if (!swept_) return numbers_.find(tet_, z, hint_);
+      return line_ == nullptr ? Found{} : numbers_.foundOn(tet_, *line_, z, axis_);
+    }
+
+   private:
+    const LatticeNumbers& numbers_;
+    Index tet_;
+    std::size_t axis_;
+    LineHint& hint_;
+    bool swept_;        ///< whether the tet was swept along such lines
+    const Line* line_;  ///< then: the line, or nullptr if it has no vertices
+  };
+
+ private:
   /// A swept line with the numbers of its points.
   struct Line {
     SweptLine swept;
@@ -59,6 +86,20 @@ class LatticeNumbers {
     const std::size_t begin = lineBegin_[tet];
     return std::span(lines_).subspan(begin, lineBegin_[std::size_t{tet} + 1] - begin);
   }
+  [[nodiscard]] const Line* lineAt(Index tet, const GridPoint& z, LineHint& hint) const;
+  /// The vertex at a point of a line that is swept along an axis.
+  [[nodiscard]] Found foundOn(Index tet, const Line& line, const GridPoint& z,
+                              std::size_t axis) const {
+    const auto i = static_cast<std::uint32_t>(z[axis] - line.swept.first);
+    if (i >= line.swept.count) return {};
+    if (i > 0 && i + 1 < line.swept.count && line.inner != kNone) {
+      return {line.inner + static_cast<Index>(line.step * static_cast<std::int32_t>(i - 1)),
+              line.swept.inner()};
+    }
+    return foundAtEnd(tet, line, z, i);
+  }
+  [[nodiscard]] Found foundAtEnd(Index tet, const Line& line, const GridPoint& z,
+                                 std::uint32_t i) const;
   void number(Index tet, std::vector<SweptLine>& swept);
   static void enter(Line& line, const VertexRun& run);
 

@@ -14,9 +14,18 @@ struct OwnedSimplex {
   CornerMask corners;
 };
 
+/// A face of a tet, by its owner.
+[[nodiscard]] inline OwnedSimplex ownedFace(const TetTopology& topology, Index tet, int face) {
+  const HalfFace mate = topology.mate[halfFaceOf(tet, face)];
+  if (mate == kNone || tet < tetOf(mate)) return {tet, faceMask(face)};
+  return {tetOf(mate), faceMask(localOf(mate))};
+}
+
 /// A simplex of a tet, by its owner.
 [[nodiscard]] inline OwnedSimplex ownedBy(const TetTopology& topology, Index tet,
                                           CornerMask simplex) {
+  if (simplex == kWholeTet) return {tet, simplex};
+  if (dimension(simplex) == 2) return ownedFace(topology, tet, oppositeCorner(simplex));
   const Index owner = ownerTet(topology, tet, simplex);
   return {owner, owner == tet ? simplex : topology.translated(simplex, tet, owner)};
 }
@@ -40,10 +49,31 @@ using SimplexVertices = std::array<Index, 3>;
   return {std::min(low, c), std::max(low, std::min(high, c)), std::max(high, c)};
 }
 
-/// Whether two simplices are the same; unlike ==, which compares memory, this takes no call.
-[[nodiscard]] inline bool sameVertices(const SimplexVertices& a,
-                                       const SimplexVertices& b) noexcept {
-  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-}
+/// Tells a simplex of less than four corners from others that are given by their owners.
+class SimplexMatcher {
+ public:
+  SimplexMatcher(const TetTopology& topology, Index tet, CornerMask simplex)
+      : topology_(topology), isFace_(dimension(simplex) == 2) {
+    // The owner of an edge is found by a walk around it only, so edges are known by their vertices.
+    if (isFace_) {
+      face_ = ownedFace(topology, tet, oppositeCorner(simplex));
+    } else {
+      vertices_ = verticesOf(topology.tets[tet], simplex);
+    }
+  }
+
+  [[nodiscard]] bool operator()(const OwnedSimplex& other) const {
+    if (isFace_) return other.tet == face_.tet && other.corners == face_.corners;
+    const SimplexVertices v = verticesOf(topology_.tets[other.tet], other.corners);
+    // Unlike ==, which compares memory, this takes no call.
+    return v[0] == vertices_[0] && v[1] == vertices_[1] && v[2] == vertices_[2];
+  }
+
+ private:
+  const TetTopology& topology_;
+  bool isFace_;
+  OwnedSimplex face_{};
+  SimplexVertices vertices_{};
+};
 
 }  // namespace hexhex

@@ -15,8 +15,7 @@ struct PatchInput {
   const LatticeNumbers& vertices;
   const ElementNumbers& edges;
   const ElementNumbers& faces;
-  const Arcs& arcs;                            ///< of the edges
-  std::span<const SimplexVertices> crossings;  ///< simplex of each inner point of the arcs
+  const Arcs& arcs;  ///< of the edges
 
   /// In the numbering that polygons use, behind hex vertices and points of arcs.
   [[nodiscard]] std::uint64_t firstInnerPoint() const noexcept {

@@ -70,29 +70,4 @@ SimplexPoint exitPoint(const LatticeTet& corners, CornerMask simplex, std::size_
   return {};
 }
 
-SimplexPoint exitAfterEntry(const LatticeTet& corners, int entered) noexcept {
-  // Seen along the line, the corners of the entry stand counter-clockwise around it. It leaves
-  // through the face between two of them and the fourth corner that has the line inside.
-  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(entered)];
-  const auto e = static_cast<std::size_t>(entered);
-  std::array<Int128, 3> side;
-  for (std::size_t i = 0; i < 3; ++i) {
-    side[i] = crossComponent(corners[static_cast<std::size_t>(f[i])], corners[e], 0);
-  }
-  std::size_t i = 2;
-  if (side[0] <= 0 && side[1] >= 0) {
-    i = 0;
-  } else if (side[1] <= 0 && side[2] >= 0) {
-    i = 1;
-  }
-  const std::size_t j = i == 2 ? 0 : i + 1;
-  const auto a = static_cast<std::size_t>(f[i]);
-  const auto b = static_cast<std::size_t>(f[j]);
-  SimplexPoint point;
-  point.weights[e] = crossComponent(corners[a], corners[b], 0);
-  point.weights[a] = side[j];
-  point.weights[b] = -side[i];
-  return point;
-}
-
 }  // namespace hexhex

@@ -112,9 +112,6 @@ struct SimplexPoint {
 [[nodiscard]] SimplexPoint exitPoint(const LatticeTet& corners, CornerMask simplex,
                                      std::size_t along) noexcept;
 
-/// The same along axis 0 for a line that came into the tet through the interior of face `entered`.
-[[nodiscard]] SimplexPoint exitAfterEntry(const LatticeTet& corners, int entered) noexcept;
-
 /// Where such a line crosses a face that it is not parallel to.
 /// @return no weights at all if it does not meet the closed face
 [[nodiscard]] SimplexPoint crossingOfFace(const LatticeTet& corners, int face,

@@ -7,6 +7,7 @@
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 
+#include <base/lagrange_check.hpp>
 #include <io/lagrange_files.hpp>
 #include <io/piecewise_ovmb.hpp>
 #include <io/piecewise_vtk.hpp>
@@ -15,8 +16,8 @@ namespace hexhex {
 
 namespace {
 
-using PiecewiseWriter = void (*)(const PiecewiseLinearMesh&, const std::filesystem::path&,
-                                 Context&);
+using PiecewiseWriter = void (*)(const PiecewiseLinearMesh&, const TetMapView*,
+                                 const std::filesystem::path&, Context&);
 using LagrangeWriter = void (*)(const LagrangeMesh&, const std::filesystem::path&,
                                 const WriteOptions&, Context&);
 
@@ -26,10 +27,20 @@ struct Format {
   Writer write;
 };
 
-constexpr std::array<Format<PiecewiseWriter>, 3> kArcFormats = {
-    {{".vtu", writeArcsVtu}, {".vtp", writeArcsVtp}, {".ovmb", writeArcsOvmb}}};
+/// Writers of formats that say nothing about the map.
+template <void (*write)(const PiecewiseLinearMesh&, const std::filesystem::path&, Context&)>
+void withoutMap(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/,
+                const std::filesystem::path& file, Context& context) {
+  write(mesh, file, context);
+}
+
+constexpr std::array<Format<PiecewiseWriter>, 3> kArcFormats = {{{".vtu", withoutMap<writeArcsVtu>},
+                                                                 {".vtp", withoutMap<writeArcsVtp>},
+                                                                 {".ovmb", writeArcsOvmb}}};
 constexpr std::array<Format<PiecewiseWriter>, 3> kPatchFormats = {
-    {{".vtu", writePatchesVtu}, {".vtp", writePatchesVtp}, {".ovmb", writePatchesOvmb}}};
+    {{".vtu", withoutMap<writePatchesVtu>},
+     {".vtp", withoutMap<writePatchesVtp>},
+     {".ovmb", writePatchesOvmb}}};
 constexpr std::array<Format<LagrangeWriter>, 3> kLagrangeFormats = {
     {{".vtu", writeLagrangeVtu}, {".msh", writeLagrangeGmsh}, {".mesh", writeLagrangeMfem}}};
 
@@ -62,17 +73,35 @@ constexpr const char* kCells = "cells of higher order";
 
 void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                Context& context) {
-  find(kArcFormats, file, kArcs)(mesh, file, context);
+  find(kArcFormats, file, kArcs)(mesh, nullptr, file, context);
+}
+
+void writeArcs(const PiecewiseLinearMesh& mesh, const TetMapView& map,
+               const std::filesystem::path& file, Context& context) {
+  find(kArcFormats, file, kArcs)(mesh, &map, file, context);
 }
 
 void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                   Context& context) {
-  find(kPatchFormats, file, kPatches)(mesh, file, context);
+  find(kPatchFormats, file, kPatches)(mesh, nullptr, file, context);
+}
+
+void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
+                  const std::filesystem::path& file, Context& context) {
+  find(kPatchFormats, file, kPatches)(mesh, &map, file, context);
 }
 
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context) {
-  find(kLagrangeFormats, file, kCells)(mesh, file, options, context);
+  const LagrangeWriter write = find(kLagrangeFormats, file, kCells);
+  requireConsistent(mesh);
+  if (!options.scaledJacobians.empty() && options.scaledJacobians.size() != mesh.cellCount()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "There are " + std::to_string(options.scaledJacobians.size()) +
+                    " scaled Jacobians of " + std::to_string(mesh.cellCount()) +
+                    " cells. Give one for each, or none.");
+  }
+  write(mesh, file, options, context);
 }
 
 bool holdsLagrangeCells(const std::filesystem::path& file, Context& context) {

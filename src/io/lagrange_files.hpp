@@ -10,14 +10,17 @@ namespace hexhex {
 /// Whether a `.vtu` file has cells of type 72, which is VTK_LAGRANGE_HEXAHEDRON.
 [[nodiscard]] bool holdsLagrangeVtu(const std::filesystem::path& file, Context& context);
 
-/// Reads them, and generators as writeLagrangeVtu() writes them; other cells are ignored.
+/// Reads them, and generators, tags and regions as writeLagrangeVtu() writes them; other cells are
+/// ignored, and so are tags of nodes that are no corners.
 [[nodiscard]] LagrangeMesh readLagrangeVtu(const std::filesystem::path& file, Context& context);
 
 /// `.vtu`: cell type 72, with the arrays of straight meshes.
 void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& file,
                       const WriteOptions& options, Context& context);
 
-/// MSH 4.1 as text: one volume with all hexahedra, without boundary.
+/// MSH 4.1 as text, with the groups of straight meshes: edges, quads and hexahedra have the order
+/// of the cells.
+/// @throws Error FileWrite; InvalidArgument for tagged edges and quads that no cell has
 void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context);
 

@@ -151,6 +151,18 @@ std::vector<std::uint32_t> vtkNodeOrder(int order) {
   return placesOf(nodes, order);
 }
 
+std::vector<std::uint32_t> gmshEdgeOrder(int order) {
+  std::vector<Node> nodes = {{0, 0, 0}, {order, 0, 0}};
+  append(nodes, between(nodes[0], nodes[1], order - 1));
+  return placesOf(nodes, order);
+}
+
+std::vector<std::uint32_t> gmshQuadOrder(int order) {
+  std::vector<Node> nodes;
+  appendGmshQuad(nodes, {{{0, 0, 0}, {order, 0, 0}, {order, order, 0}, {0, order, 0}}}, order);
+  return placesOf(nodes, order);
+}
+
 std::vector<std::uint32_t> gmshNodeOrder(int order) {
   std::vector<Node> nodes;
   appendGmshHex(nodes, 0, order);

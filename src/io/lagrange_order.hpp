@@ -11,4 +11,9 @@ namespace hexhex {
 [[nodiscard]] std::vector<std::uint32_t> vtkNodeOrder(int order);
 [[nodiscard]] std::vector<std::uint32_t> gmshNodeOrder(int order);
 
+/// The same for Gmsh's edges, whose nodes are numbered 0 to p along them, and for its quads, whose
+/// node i steps towards corner 1 and j towards corner 3 has the place i + (p + 1) j.
+[[nodiscard]] std::vector<std::uint32_t> gmshEdgeOrder(int order);
+[[nodiscard]] std::vector<std::uint32_t> gmshQuadOrder(int order);
+
 }  // namespace hexhex

@@ -3,12 +3,29 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <io/lagrange_files.hpp>
 #include <io/lagrange_order.hpp>
+#include <io/tag_rows.hpp>
 #include <io/vtk_xml.hpp>
+#include <io/vtu_tags.hpp>
 
 namespace hexhex {
+
+namespace {
+
+/// Rows of vertices and a tag. Vertices are the first nodes, so these are numbers of points.
+void addRows(VtkXmlFile& file, std::string_view name, std::size_t components,
+             const std::vector<std::int64_t>& rows) {
+  if (rows.empty()) return;
+  file.add("FieldData", std::string(name), "Int64", components, rows.size() / components,
+           components * sizeof(std::int64_t), [&rows](OutputFile& output) {
+             output.writeBytes(rows.data(), rows.size() * sizeof(std::int64_t));
+           });
+}
+
+}  // namespace
 
 void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& file,
                       const WriteOptions& options, Context& context) {
@@ -30,9 +47,17 @@ void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& fil
   vtk.addComputed<std::uint8_t>(
       "PointData", "generator_kind", mesh.generatorCorners.size(),
       [&mesh](std::size_t i) { return generatorKind(mesh.generatorCorners[i]); });
+  const Array<std::int32_t> vertices = vertexTags(mesh.features.vertices, mesh.points.size());
+  const std::vector<std::int64_t> edges = rowsOf(mesh.features.edges);
+  const std::vector<std::int64_t> quads = rowsOf(mesh.features.quads);
+  addRows(vtk, kVtuEdgeTags, 3, edges);
+  addRows(vtk, kVtuQuadTags, 5, quads);
+  if (!vertices.empty()) {
+    vtk.add("PointData", std::string(kVtuVertexTags), std::span<const std::int32_t>(vertices));
+  }
   vtk.add("CellData", "scaled_jacobian", quality);
   if (!mesh.regions.empty()) {
-    vtk.add("CellData", "region", std::span<const std::int32_t>(mesh.regions));
+    vtk.add("CellData", std::string(kVtuRegions), std::span<const std::int32_t>(mesh.regions));
   }
   vtk.addComputed<std::int64_t>("Cells", "connectivity", mesh.nodes.size(), [&](std::size_t i) {
     const std::size_t cell = i / perCell;

@@ -14,6 +14,7 @@
 #include <io/read_vtu_with.hpp>
 #include <io/vtu_elements.hpp>
 #include <io/vtu_file.hpp>
+#include <io/vtu_tags.hpp>
 
 namespace hexhex {
 namespace {
@@ -52,20 +53,25 @@ class VtuLagrangeReader {
 
   LagrangeMesh read() {
     file_.requireIndexable();
-    const std::vector<std::uint64_t> begins = findCells();
+    Array<std::size_t> numbers;
+    const std::vector<std::uint64_t> begins = findCells(numbers);
     LagrangeMesh mesh;
     mesh.order = order_;
     mesh.points.resize(file_.pointCount());
     readVtuPoints(file_, 0, mesh.points);
     readNodes(begins, mesh);
     readGenerators(mesh);
+    mesh.regions = readVtuRegions(file_, numbers);
+    mesh.features = {readVtuVertexTags(file_), readVtuFeatures<FeatureEdge>(file_, kVtuEdgeTags),
+                     readVtuFeatures<FeatureQuad>(file_, kVtuQuadTags)};
     putCornersFirst(mesh);
     return mesh;
   }
 
  private:
   /// Where the nodes of each cell begin. Finds the order on the way.
-  std::vector<std::uint64_t> findCells() {
+  /// @param[out] numbers  which cells of the file they are
+  std::vector<std::uint64_t> findCells(Array<std::size_t>& numbers) {
     const Array<std::int64_t> types = typesOf(file_);
     Array<std::int64_t> ends(types.size());
     file_.copy(file_.ends(), 0, ends.size(), ends.data());
@@ -83,6 +89,7 @@ class VtuLagrangeReader {
       }
       requireOrder(c, static_cast<std::size_t>(ends[c] - begin), begins.empty());
       begins.push_back(static_cast<std::uint64_t>(begin));
+      numbers.push_back(c);
     }
     if (begins.empty()) {
       file_.fail(ErrorCode::FileUnsupported, "the file holds no Lagrange hexahedra: none of its " +
@@ -165,6 +172,26 @@ class VtuLagrangeReader {
     mesh.generatorTet = moved(mesh.generatorTet);
     mesh.generatorCorners = moved(mesh.generatorCorners);
     for (Index& node : mesh.nodes) node = newNumber[node];
+    renumberFeatures(isCorner, newNumber, mesh.features);
+  }
+
+  /// Only what has its vertices at corners is a part of the straight mesh.
+  static void renumberFeatures(const std::vector<bool>& isCorner, const Array<Index>& newNumber,
+                               HexFeatures& features) {
+    const auto isNoCorner = [&isCorner](Index node) { return !isCorner[node]; };
+    std::erase_if(features.vertices,
+                  [&](const FeatureVertex& feature) { return isNoCorner(feature.vertex); });
+    for (FeatureVertex& feature : features.vertices) feature.vertex = newNumber[feature.vertex];
+    const auto renumber = [&](auto& elements) {
+      std::erase_if(elements, [&](const auto& element) {
+        return std::ranges::any_of(element.vertices, isNoCorner);
+      });
+      for (auto& element : elements) {
+        for (Index& vertex : element.vertices) vertex = newNumber[vertex];
+      }
+    };
+    renumber(features.edges);
+    renumber(features.quads);
   }
 
   VtuFile file_;

@@ -1,7 +1,6 @@
 // From a hex mesh to a polyhedral mesh (see ovm_output.hpp).
 #include <algorithm>
 #include <atomic>
-#include <bit>
 
 #include <hexhex/error.hpp>
 
@@ -11,6 +10,8 @@
 #include <io/ovm_first_fault.hpp>
 #include <io/ovm_output.hpp>
 #include <io/ovm_topology.hpp>
+#include <io/simplex_indices.hpp>
+#include <io/writable_map.hpp>
 
 namespace hexhex {
 namespace {
@@ -60,52 +61,10 @@ void setGenerators(OvmOutput& output, const HexMesh& mesh, Stage& stage) {
               Place{PlaceKind::Vertex, fault});
 }
 
-/// The index of the simplex of a tet, in the tet mesh as this library writes it.
-class GeneratorIndices {
- public:
-  GeneratorIndices(const TetMap& map, Stage& stage)
-      : map_(map),
-        written_(toOvm(map, stage)),
-        edges_(written_.topology),
-        loops_(written_.topology, stage) {}
-
-  [[nodiscard]] Index of(Index tet, CornerSet corners) const {
-    const Tet& t = map_.tets[tet];
-    const auto corner = [&](CornerSet set) {
-      return t[static_cast<std::size_t>(std::countr_zero(set))];
-    };
-    switch (generatorKind(corners)) {
-      case GeneratorKind::Vertex:
-        return corner(corners);
-      case GeneratorKind::Edge:
-        return edges_.find(corner(corners),
-                           corner(static_cast<CornerSet>(corners & (corners - 1))));
-      case GeneratorKind::Face:
-        return faceWithout(tet, corner(static_cast<CornerSet>(15 & ~corners)));
-      case GeneratorKind::Cell:
-        break;
-    }
-    return tet;
-  }
-
- private:
-  [[nodiscard]] Index faceWithout(Index tet, Index vertex) const {
-    for (const Index halfFace : written_.topology.cells[tet]) {
-      const std::array<Index, 3>& loop = loops_.ofFace(halfFace / 2);
-      if (std::find(loop.begin(), loop.end(), vertex) == loop.end()) return halfFace / 2;
-    }
-    return kNone;
-  }
-
-  const TetMap& map_;
-  OvmOutput written_;
-  OvmEdgeFinder edges_;
-  OvmLoops<3> loops_;
-};
-
 void setGeneratorIndices(OvmOutput& output, const HexMesh& mesh, const TetMap& map, Stage& stage) {
   if (mesh.generatorCorners.empty() || mesh.generatorTet.size() != mesh.points.size()) return;
-  const GeneratorIndices indices(map, stage);
+  requireWritable(map, stage);
+  const SimplexIndices indices(map.points, map.tets, stage);
   Array<std::int32_t>& values = output.properties[OvmInteger::GeneratorIndex];
   values.resize(mesh.points.size());
   parallelFor(stage, values.size(), kGrain, [&](std::size_t v) {

@@ -22,22 +22,37 @@ constexpr std::size_t kGrain = 4096;
 constexpr std::array<std::uint8_t, 4> kAsListed = {0, 1, 2, 3};
 constexpr std::array<std::uint8_t, 4> kTurned = {0, 2, 1, 3};
 
-bool isMostlyNegative(const TetMap& map, Stage& stage) {
+bool isMostlyNegative(std::span<const Vec3> points, std::span<const Tet> tets, Stage& stage) {
   std::atomic<std::int64_t> balance{0};
-  parallelBlocks(stage, map.tets.size(), kGrain,
+  parallelBlocks(stage, tets.size(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
                    std::int64_t local = 0;
                    for (std::size_t t = begin; t < end; ++t) {
-                     const Tet& tet = map.tets[t];
-                     const Vec3& origin = map.points[tet[0]];
-                     const double volume = dot(cross(minus(map.points[tet[1]], origin),
-                                                     minus(map.points[tet[2]], origin)),
-                                               minus(map.points[tet[3]], origin));
+                     const Tet& tet = tets[t];
+                     const Vec3& origin = points[tet[0]];
+                     const double volume =
+                         dot(cross(minus(points[tet[1]], origin), minus(points[tet[2]], origin)),
+                             minus(points[tet[3]], origin));
                      local += volume > 0 ? 1 : (volume < 0 ? -1 : 0);
                    }
                    balance.fetch_add(local, std::memory_order_relaxed);
                  });
   return balance.load() < 0;
+}
+
+using Exchange = std::array<std::uint8_t, 4>;
+
+const Exchange& exchangeFor(std::span<const Vec3> points, std::span<const Tet> tets, Stage& stage) {
+  return isMostlyNegative(points, tets, stage) ? kTurned : kAsListed;
+}
+
+OvmTopology topologyOf(std::span<const Vec3> points, std::span<const Tet> tets,
+                       const Exchange& exchanged, Stage& stage) {
+  Array<Tet> turned(tets.size());
+  parallelFor(stage, tets.size(), kGrain, [&](std::size_t t) {
+    for (std::size_t i = 0; i < 4; ++i) turned[t][i] = tets[t][exchanged[i]];
+  });
+  return buildOvmTopology(points.size(), turned, stage);
 }
 
 /// How the corners of a tet were listed, which a reader finds in order of `assembled`.
@@ -69,8 +84,8 @@ void setCornerOrder(OvmOutput& output, const TetMap& map, const OvmLoops<3>& loo
 }
 
 /// Parameters and rotations, which half-faces carry for the corners opposite them.
-void setHalfFaceValues(OvmOutput& output, const TetMap& map,
-                       const std::array<std::uint8_t, 4>& exchanged, Stage& stage) {
+void setHalfFaceValues(OvmOutput& output, const TetMap& map, const Exchange& exchanged,
+                       Stage& stage) {
   Array<Vec3>& parameters = output.properties.parametrization;
   parameters.resize(2 * output.topology.faces.size());
   Array<std::int32_t>& rotations = output.properties[OvmInteger::Transition];
@@ -104,14 +119,14 @@ void setEdgeValences(OvmOutput& output, const TetMap& map) {
 
 }  // namespace
 
+OvmTopology ovmTopologyOf(std::span<const Vec3> points, std::span<const Tet> tets, Stage& stage) {
+  return topologyOf(points, tets, exchangeFor(points, tets, stage), stage);
+}
+
 OvmOutput toOvm(const TetMap& map, Stage& stage) {
   requireWritable(map, stage);
-  const auto& exchanged = isMostlyNegative(map, stage) ? kTurned : kAsListed;
-  Array<Tet> tets(map.tets.size());
-  parallelFor(stage, tets.size(), kGrain, [&](std::size_t t) {
-    for (std::size_t i = 0; i < 4; ++i) tets[t][i] = map.tets[t][exchanged[i]];
-  });
-  OvmOutput output{map.points, buildOvmTopology(map.points.size(), tets, stage), {}};
+  const Exchange& exchanged = exchangeFor(map.points, map.tets, stage);
+  OvmOutput output{map.points, topologyOf(map.points, map.tets, exchanged, stage), {}};
   const OvmLoops<3> loops(output.topology, stage);
   setCornerOrder(output, map, loops, stage);
   setHalfFaceValues(output, map, exchanged, stage);

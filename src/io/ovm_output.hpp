@@ -28,6 +28,11 @@ struct OvmOutput {
 ///         TooLarge
 [[nodiscard]] OvmOutput toOvm(const TetMap& map, Stage& stage);
 
+/// The topology of the same.
+/// @param tets  with vertices in range
+[[nodiscard]] OvmTopology ovmTopologyOf(std::span<const Vec3> points, std::span<const Tet> tets,
+                                        Stage& stage);
+
 /// @param mesh  with corners and generators in range
 /// @param map   where the mesh comes from, for the indices of generators, which are those of a file
 ///              that this library writes for this map; or null

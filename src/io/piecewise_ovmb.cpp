@@ -1,275 +1,122 @@
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/output_file.hpp>
-#include <io/ovmb_bytes.hpp>
-#include <io/ovmb_chunks.hpp>
+#include <io/ovm_first_fault.hpp>
+#include <io/ovmb_polygons.hpp>
 #include <io/piecewise_ovmb.hpp>
+#include <io/simplex_indices.hpp>
 
 namespace hexhex {
 
 namespace {
 
-using UV = std::array<double, 2>;
 using EdgeEnds = std::array<Index, 2>;
 
-/// Values of one property.
-struct Property {
-  std::uint8_t entity;  ///< 0 vertex, 1 edge, 2 face
-  std::string_view name;
-  std::vector<std::int32_t> integers;
-  std::vector<UV> pairs;  ///< if there are no integers
+[[noreturn]] void failAboutMap() {
+  throw Error(
+      ErrorCode::InvalidArgument,
+      "The arcs and patches do not lie in the tets of this map. Give the map that they were "
+      "extracted from: after a repair, the repaired one.");
+}
 
-  [[nodiscard]] bool isPair() const { return !pairs.empty(); }
-  [[nodiscard]] std::size_t count() const { return isPair() ? pairs.size() : integers.size(); }
-  [[nodiscard]] std::size_t bytesEach() const {
-    return isPair() ? sizeof(UV) : sizeof(std::int32_t);
-  }
-};
-
-/// A mesh without cells, as it will be written.
-struct Content {
-  std::vector<Vec3> points;
-  std::vector<EdgeEnds> edges;
-  std::vector<std::uint8_t> valences;  ///< per face
-  std::vector<Index> halfEdges;        ///< of all faces
-  std::vector<Property> properties;
-};
-
-class Writer {
+/// The tets that generators name, and how a file numbers their simplices.
+class TetSimplices {
  public:
-  Writer(const Content& content, OutputFile& output, Stage& stage)
-      : content_(content), output_(output), progress_(stage, 4) {}
+  TetSimplices(const TetMapView& map, Stage& stage)
+      : tets_(requireInRange(map, stage)), indices_(map.points, map.tets, stage) {}
 
-  void write() {
-    writeHeader();
-    writeDirectory();
-    writeVertices();
-    progress_.advance(1);
-    writeEdges();
-    progress_.advance(1);
-    writeFaces();
-    progress_.advance(1);
-    for (std::uint32_t i = 0; i < content_.properties.size(); ++i) writeProperty(i);
-    beginChunk("EOF ", 0);
-    progress_.advance(1);
-    output_.commit();
+  /// @throws Error InvalidArgument if there is no such tet
+  [[nodiscard]] std::int32_t index(Index tet, CornerSet corners) const {
+    if (tet >= tets_.size()) failAboutMap();
+    return static_cast<std::int32_t>(indices_.of(tet, corners));
+  }
+
+  /// A simplex of one tet as corners of another that has it, too.
+  /// @throws Error InvalidArgument if it has not
+  [[nodiscard]] CornerSet translated(CornerSet corners, Index from, Index to) const {
+    if (from == to) return corners;
+    if (from >= tets_.size() || to >= tets_.size()) failAboutMap();
+    unsigned result = 0;
+    for (unsigned i = 0; i < 4; ++i) {
+      if ((corners >> i & 1U) == 0) continue;
+      const auto found = std::find(tets_[to].begin(), tets_[to].end(), tets_[from][i]);
+      if (found == tets_[to].end()) failAboutMap();
+      result |= 1U << static_cast<unsigned>(found - tets_[to].begin());
+    }
+    return static_cast<CornerSet>(result);
   }
 
  private:
-  template <class T>
-  void put(T value) {
-    const auto bytes = littleBytes(value);
-    output_.writeBytes(bytes.data(), bytes.size());
-  }
-  template <class T>
-  void putAll(const std::vector<T>& values) {
-    if constexpr (std::endian::native == std::endian::little) {
-      output_.writeBytes(values.data(), values.size() * sizeof(T));
-    } else if constexpr (std::is_arithmetic_v<T>) {
-      for (const T value : values) put(value);
-    } else {
-      for (const T& value : values) {
-        for (const auto number : value) put(number);
-      }
-    }
-  }
-  void putText(std::string_view text) {
-    put(static_cast<std::uint32_t>(text.size()));
-    output_.write(text);
-  }
-  void putZeros(std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) output_.write('\0');
-  }
-  static std::uint8_t paddingOf(std::uint64_t payload) {
-    return static_cast<std::uint8_t>((8 - payload % 8) % 8);
-  }
-  void beginChunk(std::string_view type, std::uint64_t payload) {
-    output_.write(type);
-    for (const std::uint8_t byte : {std::uint8_t{0}, paddingOf(payload), std::uint8_t{0},
-                                    std::uint8_t{1}}) {  // version, padding, compression, flags
-      put(byte);
-    }
-    put(payload + paddingOf(payload));
-  }
-  void putSpan(std::size_t count) {
-    put(std::uint64_t{0});
-    put(static_cast<std::uint32_t>(count));
+  static std::span<const Tet> requireInRange(const TetMapView& map, Stage& stage) {
+    const std::size_t fault = firstFault(stage, map.tets.size(), [&map](std::size_t t) {
+      return std::all_of(map.tets[t].begin(), map.tets[t].end(),
+                         [&map](Index vertex) { return vertex < map.points.size(); });
+    });
+    if (fault == map.tets.size()) return map.tets;
+    throw Error(ErrorCode::IndexOutOfRange,
+                "Tet " + std::to_string(fault) + " names a vertex that does not exist.",
+                Place{PlaceKind::Tet, fault});
   }
 
-  void writeHeader() {
-    output_.write(kOvmbMagic);
-    constexpr std::array<std::uint8_t, 4> kKind = {1, 1, 3, 0};  // versions, dimension, polyhedral
-    for (const std::uint8_t byte : kKind) put(byte);
-    put(std::uint32_t{0});
-    for (const std::size_t count : {content_.points.size(), content_.edges.size(),
-                                    content_.valences.size(), std::size_t{0}}) {
-      put(std::uint64_t{count});
-    }
-  }
-
-  static std::string_view typeOf(const Property& property) {
-    return property.isPair() ? "2d" : "i32";
-  }
-
-  void writeDirectory() {
-    constexpr std::size_t kEntryBytes = 13;  // an entity and three lengths
-    std::uint64_t payload = 0;
-    for (const Property& property : content_.properties) {
-      payload +=
-          kEntryBytes + property.name.size() + typeOf(property).size() + property.bytesEach();
-    }
-    beginChunk("DIRP", payload);
-    for (const Property& property : content_.properties) {
-      put(property.entity);
-      putText(property.name);
-      putText(typeOf(property));
-      put(static_cast<std::uint32_t>(property.bytesEach()));
-      putZeros(property.bytesEach());
-    }
-    putZeros(paddingOf(payload));
-  }
-
-  void writeVertices() {
-    constexpr std::uint32_t kFloat64 = 2;
-    const std::uint64_t payload = 16 + content_.points.size() * sizeof(Vec3);
-    beginChunk("VERT", payload);
-    putSpan(content_.points.size());
-    put(kFloat64);
-    putAll(content_.points);
-    putZeros(paddingOf(payload));
-  }
-
-  void beginTopology(std::uint64_t payload, std::uint8_t entity, std::size_t count,
-                     std::uint8_t valence, std::uint8_t valenceBytes) {
-    beginChunk("TOPO", payload);
-    putSpan(count);
-    put(entity);
-    put(valence);
-    put(valenceBytes);
-    put(std::uint8_t{4});  // bytes of a handle
-    put(std::uint64_t{0});
-  }
-
-  void writeEdges() {
-    const std::uint64_t payload = 24 + content_.edges.size() * sizeof(EdgeEnds);
-    beginTopology(payload, 1, content_.edges.size(), 2, 0);
-    putAll(content_.edges);
-    putZeros(paddingOf(payload));
-  }
-
-  void writeFaces() {
-    if (content_.valences.empty()) return;
-    const std::uint64_t payload =
-        24 + content_.valences.size() + content_.halfEdges.size() * sizeof(Index);
-    beginTopology(payload, 2, content_.valences.size(), 0, 1);
-    putAll(content_.valences);
-    putAll(content_.halfEdges);
-    putZeros(paddingOf(payload));
-  }
-
-  void writeProperty(std::uint32_t number) {
-    const Property& property = content_.properties[number];
-    const std::uint64_t payload = 16 + property.count() * property.bytesEach();
-    beginChunk("PROP", payload);
-    putSpan(property.count());
-    put(number);
-    if (property.isPair()) {
-      putAll(property.pairs);
-    } else {
-      putAll(property.integers);
-    }
-    putZeros(paddingOf(payload));
-  }
-
-  const Content& content_;
-  OutputFile& output_;
-  LoopProgress progress_;
+  std::span<const Tet> tets_;
+  SimplexIndices indices_;
 };
 
-void addGenerators(
-    Content& content, std::uint8_t entity, std::string_view typeName,
-    const std::vector<std::pair<std::span<const Index>, std::span<const CornerSet>>>& parts,
-    std::size_t count) {
-  Property type{entity, typeName, {}, {}};
-  Property tet{entity, "hexhex::generator_tet", {}, {}};
-  Property corners{entity, "hexhex::generator_corners", {}, {}};
-  for (const auto& [tets, sets] : parts) {
-    for (std::size_t i = 0; i < sets.size(); ++i) {
-      type.integers.push_back(static_cast<std::int32_t>(generatorKind(sets[i])));
-      tet.integers.push_back(static_cast<std::int32_t>(tets[i]));
-      corners.integers.push_back(sets[i]);
+/// The simplices that hold elements, as properties.
+class CarrierProperties {
+ public:
+  /// @param simplices  null: without their indices
+  CarrierProperties(std::uint8_t entity, std::string_view typeName, std::string_view indexName,
+                    const TetSimplices* simplices)
+      : simplices_(simplices),
+        type_{entity, typeName},
+        index_{entity, indexName},
+        tet_{entity, "hexhex::generator_tet"},
+        corners_{entity, "hexhex::generator_corners"} {}
+
+  void add(Index tet, CornerSet corners) {
+    type_.integers.push_back(static_cast<std::int32_t>(generatorKind(corners)));
+    if (simplices_ != nullptr) index_.integers.push_back(simplices_->index(tet, corners));
+    tet_.integers.push_back(static_cast<std::int32_t>(tet));
+    corners_.integers.push_back(corners);
+  }
+  void add(std::span<const Index> tets, std::span<const CornerSet> corners) {
+    for (std::size_t i = 0; i < corners.size(); ++i) add(tets[i], corners[i]);
+  }
+  /// One whose simplex is not known.
+  void addUnknown() {
+    for (OvmbProperty* const property : {&type_, &tet_, &corners_}) {
+      property->integers.push_back(-1);
     }
   }
-  for (Property* const property : {&type, &tet, &corners}) {
-    property->integers.resize(count, -1);  // unknown
-    content.properties.push_back(std::move(*property));
-  }
-}
 
-/// Points, segments and what is known about them.
-Content ofArcs(const PiecewiseLinearMesh& mesh, bool withPatches) {
-  Content content;
-  Property type{0, "v_type", {}, {}};
-  Property uv{0, "v_igm_uv", {}, {}};
-  const auto addPoints = [&](std::span<const Vec3> points, std::int32_t kind) {
-    content.points.insert(content.points.end(), points.begin(), points.end());
-    type.integers.resize(content.points.size(), kind);
-  };
-  addPoints(mesh.mesh.points, 0);
-  uv.pairs.resize(content.points.size());
-  addPoints(mesh.arcs.points, 1);
-  for (const double t : mesh.arcs.parameters) uv.pairs.push_back({t, 0});
-  std::vector<std::pair<std::span<const Index>, std::span<const CornerSet>>> generators = {
-      {mesh.mesh.generatorTet, mesh.mesh.generatorCorners},
-      {mesh.arcs.generatorTet, mesh.arcs.generatorCorners}};
-  if (withPatches) {
-    const std::size_t first = content.points.size();
-    addPoints(mesh.patches.points, 2);
-    uv.pairs.resize(content.points.size());
-    for (std::size_t i = 0; i < mesh.patches.corners.size(); ++i) {
-      const Index point = mesh.patches.corners[i];
-      if (point >= first) uv.pairs[point] = mesh.patches.parameters[i];
-    }
-    generators.emplace_back(mesh.patches.generatorTet, mesh.patches.generatorCorners);
+  void moveTo(std::vector<OvmbProperty>& properties) {
+    properties.push_back(std::move(type_));
+    if (simplices_ != nullptr) properties.push_back(std::move(index_));
+    properties.push_back(std::move(tet_));
+    properties.push_back(std::move(corners_));
   }
-  content.properties.push_back(std::move(type));
-  content.properties.push_back(std::move(uv));
-  addGenerators(content, 0, "v_tet_generator_type", generators, content.points.size());
 
-  const auto vertices = static_cast<Index>(mesh.mesh.points.size());
-  for (std::size_t e = 0; e < mesh.arcs.count(); ++e) {
-    Index from = mesh.arcs.ends[e][0];
-    for (std::uint64_t i = mesh.arcs.pointBegin[e]; i < mesh.arcs.pointBegin[e + 1]; ++i) {
-      const Index to = vertices + static_cast<Index>(i);
-      content.edges.push_back({from, to});
-      from = to;
-    }
-    content.edges.push_back({from, mesh.arcs.ends[e][1]});
-  }
-  return content;
-}
-
-void addEdgeProperties(const PiecewiseLinearMesh& mesh, Content& content) {
-  const Arcs& arcs = mesh.arcs;
-  Property edge{1, "e_linear_hex_edge", {}, {}};
-  for (std::size_t e = 0; e < arcs.count(); ++e) {
-    edge.integers.resize(arcs.firstSegment(e + 1), static_cast<std::int32_t>(e));
-  }
-  edge.integers.resize(content.edges.size(), -1);
-  content.properties.push_back(std::move(edge));
-  addGenerators(content, 1, "e_tet_generator_type", {{arcs.segmentTet, arcs.segmentCorners}},
-                content.edges.size());
-}
+ private:
+  const TetSimplices* simplices_;
+  OvmbProperty type_;
+  OvmbProperty index_;
+  OvmbProperty tet_;
+  OvmbProperty corners_;
+};
 
 /// An edge by its ends in ascending order, and its number.
 struct KnownEdge {
@@ -280,51 +127,172 @@ struct KnownEdge {
 
 EdgeEnds ascending(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Adds the polygons of a face, and the sides that no arc has.
-void addFace(const PiecewiseLinearMesh& mesh, std::size_t face, Content& content,
-             std::vector<KnownEdge>& known) {
-  const Patches& patches = mesh.patches;
-  known.clear();
-  for (const Index arc : patches.arcs[face]) {
-    for (std::uint64_t s = mesh.arcs.firstSegment(arc);
-         s < mesh.arcs.firstSegment(std::size_t{arc} + 1); ++s) {
-      const EdgeEnds& ends = content.edges[s];
-      known.push_back({ascending(ends[0], ends[1]), static_cast<Index>(s)});
-    }
+/// Collects what a file will hold.
+class Collector {
+ public:
+  /// @param map  where the mesh comes from, or null
+  Collector(const PiecewiseLinearMesh& mesh, const TetMapView* map, Stage& stage) : mesh_(mesh) {
+    if (map != nullptr) simplices_.emplace(*map, stage);
   }
-  const std::uint64_t first = patches.polygonBegin[face];
-  const std::uint64_t end = patches.polygonBegin[face + 1];
-  const auto forEachSide = [&](const auto& visit) {
-    for (std::uint64_t p = first; p < end; ++p) {
+
+  OvmbPolygons arcs() {
+    addPoints(false);
+    addSegments();
+    finishEdges();
+    return std::move(content_);
+  }
+
+  OvmbPolygons patches() {
+    addPoints(true);
+    addSegments();
+    for (std::size_t f = 0; f < mesh_.patches.count(); ++f) addFace(f);
+    finishEdges();
+    OvmbProperty face{2, "f_linear_hex_face"};
+    for (std::size_t f = 0; f < mesh_.patches.count(); ++f) {
+      face.integers.resize(mesh_.patches.polygonBegin[f + 1], static_cast<std::int32_t>(f));
+    }
+    content_.properties.push_back(std::move(face));
+    OvmbProperty tet{2, "f_intersected_tet_index"};
+    tet.integers.assign(mesh_.patches.polygonTet.begin(), mesh_.patches.polygonTet.end());
+    content_.properties.push_back(std::move(tet));
+    return std::move(content_);
+  }
+
+ private:
+  [[nodiscard]] const TetSimplices* simplices() const {
+    return simplices_ ? &*simplices_ : nullptr;
+  }
+
+  void addPoints(bool withPatches) {
+    OvmbProperty type{0, "v_type"};
+    OvmbProperty uv{0, "v_igm_uv"};
+    CarrierProperties carriers(0, "v_tet_generator_type", "v_tet_generator_index", simplices());
+    const auto add = [&](const auto& part, std::int32_t kind) {
+      content_.points.insert(content_.points.end(), part.points.begin(), part.points.end());
+      type.integers.resize(content_.points.size(), kind);
+      uv.pairs.resize(content_.points.size());
+      carriers.add(part.generatorTet, part.generatorCorners);
+    };
+    add(mesh_.mesh, 0);
+    const std::size_t vertices = content_.points.size();
+    add(mesh_.arcs, 1);
+    const std::size_t shared = content_.points.size();
+    for (std::size_t i = 0; i < mesh_.arcs.parameters.size(); ++i) {
+      uv.pairs[vertices + i] = {mesh_.arcs.parameters[i], 0};
+    }
+    if (withPatches) {
+      add(mesh_.patches, 2);
+      for (std::size_t i = 0; i < mesh_.patches.corners.size(); ++i) {
+        const Index point = mesh_.patches.corners[i];
+        if (point >= shared) uv.pairs[point] = mesh_.patches.parameters[i];
+      }
+    }
+    content_.properties.push_back(std::move(type));
+    content_.properties.push_back(std::move(uv));
+    carriers.moveTo(content_.properties);
+  }
+
+  void addSegments() {
+    const Arcs& arcs = mesh_.arcs;
+    const auto vertices = static_cast<Index>(mesh_.mesh.points.size());
+    for (std::size_t e = 0; e < arcs.count(); ++e) {
+      Index from = arcs.ends[e][0];
+      for (std::uint64_t i = arcs.pointBegin[e]; i < arcs.pointBegin[e + 1]; ++i) {
+        const Index to = vertices + static_cast<Index>(i);
+        content_.edges.push_back({from, to});
+        from = to;
+      }
+      content_.edges.push_back({from, arcs.ends[e][1]});
+      hexEdge_.integers.resize(content_.edges.size(), static_cast<std::int32_t>(e));
+    }
+    edgeCarriers_.emplace(1, "e_tet_generator_type", "e_tet_generator_index", simplices());
+    edgeCarriers_->add(arcs.segmentTet, arcs.segmentCorners);
+  }
+
+  void finishEdges() {
+    content_.properties.push_back(std::move(hexEdge_));
+    edgeCarriers_->moveTo(content_.properties);
+  }
+
+  /// The simplex that holds a point, by corners of a tet that has it.
+  [[nodiscard]] CornerSet generatorIn(Index tet, std::size_t point) const {
+    const auto of = [&](const auto& part) {
+      return simplices_->translated(part.generatorCorners[point], part.generatorTet[point], tet);
+    };
+    if (point < mesh_.mesh.points.size()) return of(mesh_.mesh);
+    point -= mesh_.mesh.points.size();
+    if (point < mesh_.arcs.points.size()) return of(mesh_.arcs);
+    point -= mesh_.arcs.points.size();
+    return of(mesh_.patches);
+  }
+
+  /// A side inside a face, of a polygon in this tet. By convexity, the smallest simplex that has
+  /// the generators of both ends holds it.
+  Index addInnerSide(const EdgeEnds& ends, Index tet) {
+    content_.edges.push_back(ends);
+    hexEdge_.integers.push_back(-1);
+    if (simplices_) {
+      edgeCarriers_->add(
+          tet, static_cast<CornerSet>(generatorIn(tet, ends[0]) | generatorIn(tet, ends[1])));
+    } else {
+      edgeCarriers_->addUnknown();
+    }
+    return static_cast<Index>(content_.edges.size() - 1);
+  }
+
+  /// Calls visit(from, to, polygon) for all sides of a face's polygons.
+  template <class Visit>
+  void forEachSide(std::size_t face, const Visit& visit) const {
+    const Patches& patches = mesh_.patches;
+    for (std::uint64_t p = patches.polygonBegin[face]; p < patches.polygonBegin[face + 1]; ++p) {
       const std::uint64_t begin = patches.cornerBegin[p];
       const std::uint64_t size = patches.cornerBegin[p + 1] - begin;
       for (std::uint64_t i = 0; i < size; ++i) {
-        visit(patches.corners[begin + i], patches.corners[begin + (i + 1) % size]);
+        visit(patches.corners[begin + i], patches.corners[begin + (i + 1) % size], p);
       }
     }
-  };
-  std::sort(known.begin(), known.end());
-  const std::size_t border = known.size();
-  forEachSide([&](Index a, Index b) {
-    const KnownEdge side{ascending(a, b), kNone};
-    // Sides inside the face come twice, once in each direction.
-    const auto bordering = std::span(known).first(border);
-    if (a > b || std::binary_search(bordering.begin(), bordering.end(), side)) return;
-    known.push_back({side.ends, static_cast<Index>(content.edges.size())});
-    content.edges.push_back(side.ends);
-  });
-  std::sort(known.begin(), known.end());
-  forEachSide([&](Index a, Index b) {
-    const auto edge =
-        std::lower_bound(known.begin(), known.end(), KnownEdge{ascending(a, b), kNone});
-    const bool along = content.edges[edge->number][0] == a;
-    content.halfEdges.push_back(2 * edge->number + (along ? 0 : 1));
-  });
-  for (std::uint64_t p = first; p < end; ++p) {
-    content.valences.push_back(
-        static_cast<std::uint8_t>(patches.cornerBegin[p + 1] - patches.cornerBegin[p]));
   }
-}
+
+  /// Adds the polygons of a face, and the sides that no arc has.
+  void addFace(std::size_t face) {
+    const Patches& patches = mesh_.patches;
+    known_.clear();
+    for (const Index arc : patches.arcs[face]) {
+      for (std::uint64_t s = mesh_.arcs.firstSegment(arc);
+           s < mesh_.arcs.firstSegment(std::size_t{arc} + 1); ++s) {
+        const EdgeEnds& ends = content_.edges[s];
+        known_.push_back({ascending(ends[0], ends[1]), static_cast<Index>(s)});
+      }
+    }
+    std::sort(known_.begin(), known_.end());
+    const std::size_t border = known_.size();
+    forEachSide(face, [&](Index a, Index b, std::uint64_t polygon) {
+      const KnownEdge side{ascending(a, b), kNone};
+      // Sides inside the face come twice, once in each direction.
+      const auto bordering = std::span(known_).first(border);
+      if (a > b || std::binary_search(bordering.begin(), bordering.end(), side)) return;
+      known_.push_back({side.ends, addInnerSide(side.ends, patches.polygonTet[polygon])});
+    });
+    std::sort(known_.begin(), known_.end());
+    forEachSide(face, [&](Index a, Index b, std::uint64_t /*polygon*/) {
+      const auto edge =
+          std::lower_bound(known_.begin(), known_.end(), KnownEdge{ascending(a, b), kNone});
+      const bool along = content_.edges[edge->number][0] == a;
+      content_.halfEdges.push_back(2 * edge->number + (along ? 0 : 1));
+    });
+    for (std::uint64_t p = patches.polygonBegin[face]; p < patches.polygonBegin[face + 1]; ++p) {
+      content_.valences.push_back(
+          static_cast<std::uint8_t>(patches.cornerBegin[p + 1] - patches.cornerBegin[p]));
+    }
+  }
+
+  const PiecewiseLinearMesh& mesh_;
+  std::optional<TetSimplices> simplices_;
+  OvmbPolygons content_;
+  OvmbProperty hexEdge_{1, "e_linear_hex_edge"};
+  std::optional<CarrierProperties> edgeCarriers_;
+  std::vector<KnownEdge> known_;  ///< edges of one face
+};
 
 void requireSmall(std::uint64_t count) {
   if (count <= std::numeric_limits<std::int32_t>::max()) return;
@@ -336,34 +304,24 @@ void requireSmall(std::uint64_t count) {
 
 }  // namespace
 
-void writeArcsOvmb(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
-                   Context& context) {
+void writeArcsOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
+                   const std::filesystem::path& file, Context& context) {
   Stage stage(context, "write arcs");
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  Content content = ofArcs(mesh, false);
-  requireSmall(2 * std::max(content.points.size(), content.edges.size()));
-  addEdgeProperties(mesh, content);
-  Writer(content, output, stage).write();
+  // Twice the segments, which are more than the points that they add.
+  requireSmall(
+      2 * std::max(mesh.mesh.points.size() + mesh.arcs.points.size(), mesh.arcs.segmentTet.size()));
+  withThreads(context.threads(),
+              [&] { writeOvmbPolygons(Collector(mesh, map, stage).arcs(), output, stage); });
 }
 
-void writePatchesOvmb(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
-                      Context& context) {
+void writePatchesOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
+                      const std::filesystem::path& file, Context& context) {
   Stage stage(context, "write patches");
   OutputFile output(file);
   requireSmall(2 * mesh.patches.corners.size());
-  Content content = ofArcs(mesh, true);
-  std::vector<KnownEdge> known;
-  for (std::size_t f = 0; f < mesh.patches.count(); ++f) addFace(mesh, f, content, known);
-  addEdgeProperties(mesh, content);
-  Property face{2, "f_linear_hex_face", {}, {}};
-  for (std::size_t f = 0; f < mesh.patches.count(); ++f) {
-    face.integers.resize(mesh.patches.polygonBegin[f + 1], static_cast<std::int32_t>(f));
-  }
-  content.properties.push_back(std::move(face));
-  Property tet{2, "f_intersected_tet_index", {}, {}};
-  tet.integers.assign(mesh.patches.polygonTet.begin(), mesh.patches.polygonTet.end());
-  content.properties.push_back(std::move(tet));
-  Writer(content, output, stage).write();
+  withThreads(context.threads(),
+              [&] { writeOvmbPolygons(Collector(mesh, map, stage).patches(), output, stage); });
 }
 
 }  // namespace hexhex

@@ -1,6 +1,7 @@
 // One prepared map, several meshes.
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -45,6 +46,31 @@ TEST(Extractor, GivesTheSameBitsAsExtractAtEveryScaleInAnyOrder) {
         EXPECT_EQ(found.singularEdges, expected.singularEdges);
       }
     }
+  }
+}
+
+TEST(Extractor, GivesOtherOrdersAndOutputsLikeTheFunctions) {
+  for (const ChartStyle charts : {ChartStyle::Aligned, ChartStyle::Random}) {
+    const TetMap map = sampleMap(charts);
+    Extractor extractor(map);
+    Context context;
+    // The first call leaves the working copy scaled, without an unscaled one beside it yet.
+    for (const auto& [order, scale] : {std::pair{3, 1}, {2, 2}, {1, 1}, {3, 1}}) {
+      const ExtractOptions options{.scale = scale};
+      const LagrangeMesh found = extractor.extractLagrange(order, options, context);
+      const LagrangeMesh expected = extractLagrange(map, order, options, context);
+      EXPECT_EQ(found.points, expected.points);
+      EXPECT_EQ(found.nodes, expected.nodes);
+      EXPECT_EQ(found.generatorCorners, expected.generatorCorners);
+      EXPECT_TRUE(sameBits(extractor.extract(options, context), extract(map, options)));
+      const auto parts = PiecewiseLinearParts::ArcsAndPatches;
+      const auto pieces = extractor.extractPiecewiseLinear(parts, options, context);
+      const auto expectedPieces = extractPiecewiseLinear(map, parts, options, context);
+      EXPECT_EQ(pieces.arcs.points, expectedPieces.arcs.points);
+      EXPECT_EQ(pieces.patches.corners, expectedPieces.patches.corners);
+    }
+    EXPECT_THROW(static_cast<void>(extractor.extractLagrange(2, {.scale = 33}, context)), Error);
+    EXPECT_THROW(static_cast<void>(extractor.extractLagrange(10, {}, context)), Error);
   }
 }
 

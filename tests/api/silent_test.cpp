@@ -62,6 +62,26 @@ void useEverything(const std::filesystem::path& folder) {
       EXPECT_EQ(readHexMesh(folder / name).cells.size(), mesh.cells.size()) << name;
     }
   }
+  Context context;
+  SampleOptions damage;
+  damage.cells = 8;
+  damage.refine = 4;
+  damage.defects = 2;
+  const TetMap bad = generateSample(SampleKind::Sphere, damage).map;
+  EXPECT_GT(extractPartial(bad, {}, context).holes.size(), 0U);
+  if (canRepair()) {
+    EXPECT_TRUE(check(repair(bad)).valid());
+    broken.parameters.resize(1);
+    EXPECT_THROW(static_cast<void>(repair(broken)), Error);
+  }
+  const auto pieces =
+      extractPiecewiseLinear(map, PiecewiseLinearParts::ArcsAndPatches, {}, context);
+  writePatches(pieces, folder / "patches.vtu", context);
+  writeLagrangeMesh(extractLagrange(map, 2, {}, context), folder / "c.vtu", {}, context);
+  EXPECT_EQ(readLagrangeMesh(folder / "c.vtu", context).cellCount(), pieces.mesh.cells.size());
+  extractToFile(folder / "stream.vtu", map, {}, context);
+  EXPECT_EQ(surveyFile(folder / "stream.vtu", context), survey(pieces.mesh, context));
+  EXPECT_GT(findMapStructure(map, 1e-2, context).singularEdges.size(), 0U);
   EXPECT_THROW(static_cast<void>(readMap(folder / "m.vtu")), Error);
   EXPECT_THROW(static_cast<void>(readHexMesh(folder / "none.mesh")), Error);
 }

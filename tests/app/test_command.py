@@ -299,6 +299,8 @@ class Pipeline(CommandTest):
         self.assertEqual(report["arcs"]["count"], 32)
         self.assertEqual(report["patches"]["count"], 24)
         self.assertGreater(report["patches"]["polygons"], 24)
+        patches = (self.folder / "patches.ovmb").read_bytes()
+        self.assertIn(b"v_tet_generator_index", patches)  # takes the map
         for name in ["c.vtu", "c.msh", "c.mesh"]:
             self.run_command("extract", map_file, "-o", name, "--order", "3", "--report", "r.json")
             report = json.loads((self.folder / "r.json").read_text())

@@ -1,6 +1,7 @@
 /* The C functions, used from C. Prints what fails; exit code 0 if nothing does. */
 #include <float.h>
 #include <hexhex.h>
+#include <limits.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdint.h>
@@ -158,10 +159,10 @@ static void test_everything_once(const char* folder) {
   CHECK_OK(hexhex_mesh_survey(mesh, NULL, &survey, &error));
   snprintf(file, sizeof file, "%s/mesh.vtu", folder);
   CHECK_OK(hexhex_mesh_write(mesh, file, NULL, NULL, &error));
-  CHECK_OK(hexhex_file_survey(file, NULL, &other, &error));
+  CHECK_OK(hexhex_file_survey(file, NULL, NULL, &other, &error));
   CHECK(survey.cells == 3584 && memcmp(&survey, &other, sizeof survey) == 0);
   CHECK_OK(hexhex_extract_to_file(file, map, &options, NULL, NULL, &error));
-  CHECK_OK(hexhex_file_survey(file, NULL, &other, &error));
+  CHECK_OK(hexhex_file_survey(file, NULL, NULL, &other, &error));
   CHECK(memcmp(&survey, &other, sizeof survey) == 0);
   hexhex_mesh* copy = NULL;
   CHECK_OK(hexhex_mesh_copy(&m, &copy, &error));
@@ -464,7 +465,7 @@ static void test_features(const char* folder) {
   CHECK(access(other, F_OK) != 0);
   hexhex_survey mine = HEXHEX_SURVEY_INIT;
   hexhex_survey theirs = HEXHEX_SURVEY_INIT;
-  CHECK_OK(hexhex_file_survey(file, NULL, &mine, &error));
+  CHECK_OK(hexhex_file_survey(file, NULL, NULL, &mine, &error));
   CHECK_OK(hexhex_mesh_survey(mesh, NULL, &theirs, &error));
   CHECK(memcmp(&mine, &theirs, sizeof mine) == 0);
   hexhex_mesh_destroy(mesh);
@@ -562,6 +563,15 @@ static void test_curved(const char* folder) {
   CHECK_OK(hexhex_piecewise_mesh_write_arcs(pieces, file, NULL, &error));
   CHECK_OK(hexhex_piecewise_mesh_write_patches(pieces, file, NULL, &error));
   CHECK(hexhex_piecewise_mesh_write_arcs(pieces, "x.stl", NULL, &error) == HEXHEX_FILE_UNSUPPORTED);
+  snprintf(file, sizeof file, "%s/patches.ovmb", folder);
+  CHECK_OK(hexhex_piecewise_mesh_write_arcs_with_map(pieces, map, file, NULL, &error));
+  CHECK_OK(hexhex_piecewise_mesh_write_patches_with_map(pieces, map, file, NULL, &error));
+  CHECK(hexhex_piecewise_mesh_write_arcs_with_map(pieces, NULL, file, NULL, &error) ==
+        HEXHEX_INVALID_ARGUMENT);
+  hexhex_map* other = sphere(1);
+  CHECK(hexhex_piecewise_mesh_write_patches_with_map(pieces, other, file, NULL, &error) ==
+        HEXHEX_INVALID_ARGUMENT);
+  hexhex_map_destroy(other);
   hexhex_piecewise_mesh_destroy(pieces);
   CHECK_OK(hexhex_extract_piecewise(map, 0, NULL, NULL, &pieces, NULL, &error));
   CHECK_OK(hexhex_piecewise_mesh_get_patches(pieces, &patches, &error));
@@ -590,8 +600,6 @@ static void test_curved(const char* folder) {
   CHECK(straight.cell_count == 448);
   hexhex_mesh_destroy(corners);
   hexhex_buffer* buffer = NULL;
-  CHECK(hexhex_lagrange_mesh_take(curved, HEXHEX_REGIONS, &buffer, &error) ==
-        HEXHEX_INVALID_ARGUMENT);
   CHECK_OK(hexhex_lagrange_mesh_take(curved, HEXHEX_CELLS, &buffer, &error));
   CHECK(hexhex_buffer_bytes(buffer) == 27 * 448 * sizeof(uint32_t));
   hexhex_lagrange_mesh_destroy(curved);
@@ -691,7 +699,7 @@ static void test_sink(const char* folder) {
   sink.user = &read;
   snprintf(file, sizeof file, "%s/sink.vtu", folder);
   CHECK_OK(hexhex_extract_to_file(file, map, &options, NULL, NULL, &error));
-  CHECK_OK(hexhex_mesh_read_to(&sink, file, NULL, &error));
+  CHECK_OK(hexhex_mesh_read_to(&sink, file, NULL, NULL, &error));
   CHECK(read.cells == counts.cells && read.points == counts.points && read.ended);
   hexhex_map_destroy(map);
 }
@@ -727,6 +735,485 @@ static void test_threads(void) {
   hexhex_map_destroy(map);
 }
 
+/* Numbers that no enumeration has, in every function and every struct that takes one: never more
+ * than an error, also for the sanitizers, which watch what C++ reads. */
+static void test_numbers_that_are_none(void) {
+  static const int numbers[] = {-1, 8, 24, 1000, INT_MAX, INT_MIN};
+  hexhex_error error;
+  hexhex_map* map = sphere(1);
+  hexhex_mesh* mesh = NULL;
+  hexhex_lagrange_mesh* curved = NULL;
+  hexhex_check_report* report = NULL;
+  CHECK_OK(hexhex_extract(map, NULL, NULL, &mesh, NULL, &error));
+  CHECK_OK(hexhex_extract_lagrange(map, 2, NULL, NULL, &curved, NULL, &error));
+  CHECK_OK(hexhex_check(map, 1e-2, 1, NULL, &report, &error));
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i) {
+    const int n = numbers[i];
+    hexhex_map* none = NULL;
+    hexhex_mesh* no_mesh = NULL;
+    hexhex_lagrange_mesh* no_curved = NULL;
+    hexhex_piecewise_mesh* no_pieces = NULL;
+    hexhex_buffer* buffer = NULL;
+    hexhex_extractor* extractor = NULL;
+    size_t entries = 77;
+    char text[8] = "unused";
+    CHECK(strcmp(hexhex_status_name((hexhex_status)n), "Unknown") == 0 || n == 8);
+    CHECK(strcmp(hexhex_defect_kind_name((hexhex_defect_kind)n), "Unknown") == 0);
+    const hexhex_place place = {(hexhex_place_kind)n, 1, 2};
+    CHECK(hexhex_place_text(&place, text, sizeof text) == 0 && text[0] == 0);
+
+    hexhex_sample_options sample = HEXHEX_SAMPLE_OPTIONS_INIT;
+    sample.charts = (hexhex_chart_style)n;
+    CHECK(hexhex_map_generate("box", &sample, &none, &error) == HEXHEX_INVALID_ARGUMENT);
+    sample.charts = HEXHEX_CHARTS_ALIGNED;
+    sample.defect_kind = (hexhex_defect_kind)n;
+    CHECK(hexhex_map_generate("box", &sample, &none, &error) == HEXHEX_INVALID_ARGUMENT);
+    CHECK(none == NULL);
+    CHECK(hexhex_map_count_answer(map, (hexhex_answer_table)n, &entries, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_map_get_answer_entry(map, (hexhex_answer_table)n, 0, NULL, NULL, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+    CHECK(entries == 77);
+
+    hexhex_extract_options options = HEXHEX_EXTRACT_OPTIONS_INIT;
+    hexhex_sink sink = HEXHEX_SINK_INIT;
+    options.engine = (hexhex_engine)n;
+    CHECK(hexhex_extract(map, &options, NULL, &no_mesh, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_extract_lagrange(map, 2, &options, NULL, &no_curved, NULL, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_extract_piecewise(map, 1, &options, NULL, &no_pieces, NULL, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_extract_to(&sink, map, &options, NULL, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_extract_to_file("/nowhere/x.vtu", map, &options, NULL, NULL, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+    CHECK_OK(hexhex_extractor_create(map, 1e-2, 1, NULL, &extractor, &error));
+    CHECK(hexhex_extractor_extract(extractor, &options, NULL, &no_mesh, NULL, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_extractor_extract_to(extractor, &sink, &options, NULL, NULL, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_extractor_extract_lagrange(extractor, 1, &options, NULL, &no_curved, NULL,
+                                            &error) == HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_extractor_extract_piecewise(extractor, 0, &options, NULL, &no_pieces, NULL,
+                                             &error) == HEXHEX_INVALID_ARGUMENT);
+    hexhex_extractor_destroy(extractor);
+    CHECK(no_mesh == NULL && no_curved == NULL && no_pieces == NULL);
+
+    CHECK(hexhex_mesh_take(mesh, (hexhex_mesh_array)n, &buffer, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_lagrange_mesh_take(curved, (hexhex_mesh_array)n, &buffer, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+    CHECK(buffer == NULL);
+    CHECK(hexhex_require_format((hexhex_output)n, "x.vtu", NULL, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+    /* These have no status: nothing is in a table that there is not. */
+    CHECK(hexhex_check_edges_of_valence(report, (hexhex_valence_table)n, 3) == 0);
+    CHECK(hexhex_check_next_valence(report, (hexhex_valence_table)n, -1) == -1);
+  }
+  hexhex_check_report_destroy(report);
+  hexhex_lagrange_mesh_destroy(curved);
+  hexhex_mesh_destroy(mesh);
+  hexhex_map_destroy(map);
+}
+
+static void test_answers(void) {
+  hexhex_error error;
+  hexhex_map* map = NULL;
+  hexhex_sample_options sample = HEXHEX_SAMPLE_OPTIONS_INIT;
+  hexhex_sample_answer answer = HEXHEX_SAMPLE_ANSWER_INIT;
+  CHECK(hexhex_sample_kind_count() == 8);
+  for (size_t i = 0; i < hexhex_sample_kind_count(); ++i) {
+    const char* name = NULL;
+    const char* description = NULL;
+    hexhex_mesh* mesh = NULL;
+    hexhex_mesh_arrays m = HEXHEX_MESH_ARRAYS_INIT;
+    CHECK_OK(hexhex_get_sample_kind(i, &name, &description, &error));
+    CHECK(strlen(description) > 3);
+    sample.features = 1;
+    CHECK_OK(hexhex_map_generate(name, &sample, &map, &error));
+    CHECK_OK(hexhex_map_get_answer(map, &answer, &error));
+    CHECK_OK(hexhex_extract(map, NULL, NULL, &mesh, NULL, &error));
+    CHECK_OK(hexhex_mesh_get_arrays(mesh, &m, &error));
+    CHECK(answer.cells == m.cell_count && answer.vertices == m.point_count);
+    CHECK(answer.regions * 64 == m.cell_count);
+    /* Tables and counts are those of the mesh. */
+    hexhex_structure structure = HEXHEX_STRUCTURE_INIT;
+    hexhex_buffer* singular = NULL;
+    CHECK_OK(hexhex_mesh_structure(mesh, NULL, &structure, &singular, &error));
+    CHECK(answer.boundary_quads == structure.boundary_quads);
+    CHECK(answer.euler_characteristic == structure.euler_characteristic);
+    CHECK(answer.components == 1 && answer.boundary_components == structure.boundary_components);
+    const uint64_t in_mesh[] = {hexhex_buffer_bytes(singular) / sizeof(hexhex_singular_edge), 0,
+                                m.feature_vertex_count, m.feature_edge_count,
+                                m.feature_quad_count};
+    uint64_t sums[5] = {0};
+    for (int table = 0; table < 5; ++table) {
+      size_t entries = 0;
+      int32_t last = -1;
+      CHECK_OK(hexhex_map_count_answer(map, (hexhex_answer_table)table, &entries, &error));
+      for (size_t e = 0; e < entries; ++e) {
+        int32_t key = -1;
+        uint64_t count = 0;
+        CHECK_OK(hexhex_map_get_answer_entry(map, (hexhex_answer_table)table, e, &key, &count,
+                                             &error));
+        CHECK(key > last && count > 0);
+        last = key;
+        sums[table < 2 ? 0 : table] += count;
+      }
+      CHECK(hexhex_map_get_answer_entry(map, (hexhex_answer_table)table, entries, NULL, NULL,
+                                        &error) == HEXHEX_INVALID_ARGUMENT);
+    }
+    for (int table = 0; table < 5; ++table) CHECK(sums[table] == in_mesh[table]);
+    hexhex_buffer_destroy(singular);
+    hexhex_mesh_destroy(mesh);
+    hexhex_map_destroy(map);
+  }
+  CHECK(hexhex_get_sample_kind(8, NULL, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+  CHECK(strcmp(hexhex_defect_kind_name(HEXHEX_DEFECTS_SLIVER), "sliver") == 0);
+
+  /* A copy owns its arrays, and nobody knows its answer. */
+  double points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const uint32_t tet[4] = {0, 1, 2, 3};
+  hexhex_map_arrays arrays = HEXHEX_MAP_ARRAYS_INIT;
+  arrays.points = arrays.parameters = points;
+  arrays.point_count = 4;
+  arrays.tets = tet;
+  arrays.tet_count = 1;
+  CHECK_OK(hexhex_map_copy(&arrays, &map, &error));
+  points[3] = 7;
+  CHECK_OK(hexhex_map_get_arrays(map, &arrays, &error));
+  CHECK(arrays.points != points && arrays.points[3] == 1 && arrays.parameters[3] == 1);
+  CHECK(hexhex_map_get_answer(map, &answer, &error) == HEXHEX_INVALID_ARGUMENT);
+  CHECK(hexhex_map_copy(NULL, &map, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_map_destroy(map);
+}
+
+static void test_small_things(void) {
+  char text[32];
+  hexhex_place place = {HEXHEX_PLACE_EDGE, 3, 17};
+  CHECK(hexhex_place_text(&place, text, sizeof text) == 9 && strcmp(text, "edge 3-17") == 0);
+  CHECK(hexhex_place_text(&place, text, 5) == 9 && strcmp(text, "edge") == 0);
+  CHECK(hexhex_place_text(&place, NULL, 0) == 9 && hexhex_place_text(NULL, text, 5) == 0);
+  place.kind = HEXHEX_PLACE_NONE;
+  CHECK(hexhex_place_text(&place, text, sizeof text) == 0 && text[0] == 0);
+  static const int kinds[16] = {-1, 0, 0, 1, 0, 1, 1, 2, 0, 1, 1, 2, 1, 2, 2, 3};
+  for (int corners = 0; corners < 256; ++corners) {
+    CHECK(hexhex_generator_kind((uint8_t)corners) == (corners < 16 ? kinds[corners] : -1));
+  }
+  CHECK(strcmp(hexhex_version(), HEXHEX_VERSION) == 0 && HEXHEX_VERSION_MAJOR >= 0);
+  CHECK(hexhex_scaled_jacobian(NULL) == 0);
+  CHECK(!hexhex_context_cancelled(NULL) && hexhex_context_threads(NULL) == 0);
+  hexhex_context_options options = HEXHEX_CONTEXT_OPTIONS_INIT;
+  hexhex_context* context = NULL;
+  options.threads = 3;
+  CHECK_OK(hexhex_context_create(&options, &context, NULL));
+  CHECK(!hexhex_context_cancelled(context) && hexhex_context_threads(context) == 3);
+  hexhex_context_cancel(context);
+  CHECK(hexhex_context_cancelled(context));
+  hexhex_context_destroy(context);
+  const double values[] = {-0.5, 0, 0.25, 1};
+  hexhex_quality quality = HEXHEX_QUALITY_INIT;
+  CHECK_OK(hexhex_summarize_quality(values, 4, &quality, NULL));
+  CHECK(quality.minimum == -0.5 && quality.mean == 0.1875 && quality.not_positive == 2);
+  CHECK(quality.histogram[19] == 1);
+  CHECK(hexhex_summarize_quality(NULL, 4, &quality, NULL) == HEXHEX_INVALID_ARGUMENT);
+}
+
+static void test_map_structure(void) {
+  hexhex_error error;
+  hexhex_map* map = sphere(2);
+  hexhex_map_arrays m = HEXHEX_MAP_ARRAYS_INIT;
+  hexhex_map_structure* structure = NULL;
+  hexhex_map_structure_arrays s = HEXHEX_MAP_STRUCTURE_ARRAYS_INIT;
+  CHECK_OK(hexhex_map_get_arrays(map, &m, &error));
+  CHECK_OK(hexhex_map_find_structure(map, 1e-2, NULL, &structure, &error));
+  CHECK_OK(hexhex_map_structure_get_arrays(structure, &s, &error));
+  CHECK(s.defect_count == 0 && s.chart_jump_count > 1000);
+  hexhex_check_report* report = NULL;
+  hexhex_check_summary summary = HEXHEX_CHECK_SUMMARY_INIT;
+  CHECK_OK(hexhex_check(map, 1e-2, 1, NULL, &report, &error));
+  CHECK_OK(hexhex_check_get_summary(report, &summary, &error));
+  CHECK(s.chart_jump_count == summary.chart_jumps);
+  CHECK(s.singular_edge_count ==
+        hexhex_check_edges_of_valence(report, HEXHEX_INNER_TET_EDGES, 3));
+  hexhex_check_report_destroy(report);
+  for (size_t e = 0; e < s.singular_edge_count; ++e) {
+    const hexhex_singular_tet_edge edge = s.singular_edges[e];
+    CHECK(edge.vertices[0] < edge.vertices[1] && edge.valence == 3 && !edge.boundary);
+  }
+  /* Transitions carry the parameters of the face's corners over. */
+  for (size_t j = 0; j < s.chart_jump_count; ++j) {
+    const hexhex_chart_jump jump = s.chart_jumps[j];
+    double u[2][3] = {{0}};
+    for (int side = 0; side < 2; ++side) {
+      for (int corner = 0; corner < 4; ++corner) {
+        if (m.tets[4 * jump.tets[side] + corner] != jump.vertices[0]) continue;
+        memcpy(u[side], m.parameters + 12 * jump.tets[side] + 3 * corner, sizeof u[side]);
+      }
+    }
+    for (int row = 0; row < 3; ++row) {
+      double image = jump.translation[row];
+      for (int k = 0; k < 3; ++k) image += jump.rotation[3 * row + k] * u[0][k];
+      CHECK(fabs(image - u[1][row]) < 1e-9);
+    }
+  }
+  hexhex_map_structure_destroy(structure);
+  hexhex_map_structure_destroy(NULL);
+  CHECK(hexhex_map_find_structure(map, 7, NULL, &structure, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_map_destroy(map);
+}
+
+/* Cells of higher order of one's own, from files, and without what was taken. */
+static void test_lagrange(const char* folder) {
+  hexhex_error error;
+  char file[512];
+  hexhex_map* map = NULL;
+  hexhex_sample_options sample = HEXHEX_SAMPLE_OPTIONS_INIT;
+  hexhex_lagrange_mesh* mesh = NULL;
+  hexhex_lagrange_mesh* other = NULL;
+  hexhex_lagrange_arrays a = HEXHEX_LAGRANGE_ARRAYS_INIT;
+  hexhex_lagrange_arrays b = HEXHEX_LAGRANGE_ARRAYS_INIT;
+  int holds = -1;
+  sample.features = 1;
+  CHECK_OK(hexhex_map_generate("box", &sample, &map, &error));
+  CHECK_OK(hexhex_extract_lagrange(map, 3, NULL, NULL, &mesh, NULL, &error));
+  CHECK_OK(hexhex_lagrange_mesh_get_arrays(mesh, &a, &error));
+  CHECK(a.regions != NULL && a.feature_quad_count > 0 && a.feature_vertex_count == 8);
+  snprintf(file, sizeof file, "%s/order3.vtu", folder);
+  CHECK_OK(hexhex_lagrange_mesh_write(mesh, file, NULL, NULL, &error));
+  CHECK_OK(hexhex_file_holds_lagrange(file, NULL, &holds, &error));
+  CHECK(holds == 1);
+  CHECK_OK(hexhex_lagrange_mesh_read(file, NULL, &other, &error));
+  CHECK_OK(hexhex_lagrange_mesh_get_arrays(other, &b, &error));
+  CHECK(b.order == 3 && b.cell_count == a.cell_count && b.vertex_count == a.vertex_count);
+  CHECK(memcmp(a.points, b.points, 24 * a.point_count) == 0);
+  CHECK(memcmp(a.nodes, b.nodes, 64 * 4 * a.cell_count) == 0);
+  CHECK(memcmp(a.generator_tet, b.generator_tet, 4 * a.point_count) == 0);
+  hexhex_lagrange_mesh_destroy(other);
+  CHECK_OK(hexhex_map_write(map, file, NULL, NULL, &error));
+  CHECK_OK(hexhex_file_holds_lagrange(file, NULL, &holds, &error));
+  CHECK(holds == 0);
+  other = NULL;
+  CHECK(hexhex_lagrange_mesh_read(file, NULL, &other, &error) == HEXHEX_FILE_UNSUPPORTED);
+  CHECK(hexhex_lagrange_mesh_read("/nowhere.vtu", NULL, &other, &error) == HEXHEX_FILE_NOT_FOUND);
+  CHECK(other == NULL);
+
+  CHECK_OK(hexhex_lagrange_mesh_copy(&a, &other, &error));
+  CHECK_OK(hexhex_lagrange_mesh_get_arrays(other, &b, &error));
+  CHECK(b.nodes != a.nodes && memcmp(a.nodes, b.nodes, 64 * 4 * a.cell_count) == 0);
+  CHECK(memcmp(a.feature_quads, b.feature_quads, 20 * a.feature_quad_count) == 0);
+  CHECK(memcmp(a.regions, b.regions, 4 * a.cell_count) == 0);
+  /* Whatever is taken, the rest works, or is refused. */
+  for (int array = 0; array < 8; ++array) {
+    hexhex_buffer* buffer = NULL;
+    hexhex_mesh* straight = NULL;
+    const hexhex_status wanted =
+        array <= HEXHEX_GENERATOR_CORNERS ? HEXHEX_INVALID_ARGUMENT : HEXHEX_OK;
+    CHECK_OK(hexhex_lagrange_mesh_take(other, (hexhex_mesh_array)array, &buffer, &error));
+    CHECK(hexhex_buffer_bytes(buffer) > 0);
+    CHECK(hexhex_lagrange_mesh_straight(other, &straight, &error) == wanted);
+    CHECK(hexhex_lagrange_mesh_quality(other, NULL, NULL, NULL, &error) == wanted);
+    CHECK(hexhex_lagrange_mesh_write(other, file, NULL, NULL, &error) == wanted);
+    hexhex_mesh_destroy(straight);
+    hexhex_buffer_destroy(buffer);
+    hexhex_lagrange_mesh_destroy(other);
+    CHECK_OK(hexhex_lagrange_mesh_copy(&a, &other, &error));
+  }
+  hexhex_lagrange_mesh_destroy(other);
+
+  /* Arrays that do not fit each other. */
+  uint32_t* nodes = malloc(64 * 4 * a.cell_count);
+  for (int kind = 0; kind < 5; ++kind) {
+    b = a;
+    memcpy(nodes, a.nodes, 64 * 4 * a.cell_count);
+    b.nodes = nodes;
+    if (kind == 0) nodes[100] = (uint32_t)a.point_count;
+    if (kind == 1) nodes[64] = (uint32_t)a.vertex_count; /* a corner */
+    if (kind == 2) b.vertex_count = b.point_count + 1;
+    if (kind == 3) b.vertex_count = 8;
+    if (kind == 4) b.point_count = a.vertex_count;
+    hexhex_mesh* straight = NULL;
+    CHECK_OK(hexhex_lagrange_mesh_copy(&b, &other, &error));
+    CHECK(hexhex_lagrange_mesh_straight(other, &straight, &error) == HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_lagrange_mesh_quality(other, NULL, NULL, NULL, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_lagrange_mesh_write(other, file, NULL, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+    hexhex_lagrange_mesh_destroy(other);
+  }
+  free(nodes);
+  other = NULL;
+  b = a;
+  b.order = 10;
+  CHECK(hexhex_lagrange_mesh_copy(&b, &other, &error) == HEXHEX_INVALID_ARGUMENT);
+  b.order = 3;
+  b.cell_count = SIZE_MAX / 2;
+  CHECK(hexhex_lagrange_mesh_copy(&b, &other, &error) == HEXHEX_TOO_LARGE && other == NULL);
+  /* Of an extractor, which has another scale before and after. */
+  hexhex_extractor* extractor = NULL;
+  hexhex_extract_options options = HEXHEX_EXTRACT_OPTIONS_INIT;
+  hexhex_piecewise_mesh* pieces = NULL;
+  hexhex_arc_arrays arcs = HEXHEX_ARC_ARRAYS_INIT;
+  CHECK_OK(hexhex_extractor_create(map, 1e-2, 5, NULL, &extractor, &error));
+  for (int i = 0; i < 2; ++i) {
+    b.cell_count = 0;
+    CHECK_OK(hexhex_extractor_extract_lagrange(extractor, 3, NULL, NULL, &other, NULL, &error));
+    CHECK_OK(hexhex_lagrange_mesh_get_arrays(other, &b, &error));
+    CHECK(b.point_count == a.point_count && b.cell_count == a.cell_count);
+    CHECK(memcmp(a.points, b.points, 24 * a.point_count) == 0);
+    CHECK(memcmp(a.nodes, b.nodes, 64 * 4 * a.cell_count) == 0);
+    CHECK(memcmp(a.regions, b.regions, 4 * a.cell_count) == 0);
+    hexhex_lagrange_mesh_destroy(other);
+    options.scale = 2;
+    CHECK_OK(hexhex_extractor_extract_piecewise(extractor, 0, &options, NULL, &pieces, NULL,
+                                                &error));
+    CHECK_OK(hexhex_piecewise_mesh_get_arcs(pieces, &arcs, &error));
+    CHECK(arcs.arc_count == 3 * 16 * 17 * 17);
+    hexhex_piecewise_mesh_destroy(pieces);
+  }
+  other = NULL;
+  CHECK(hexhex_extractor_extract_lagrange(extractor, 3, &options, NULL, &other, NULL, &error) ==
+        HEXHEX_INVALID_ARGUMENT);
+  CHECK(hexhex_extractor_extract_lagrange(extractor, 10, NULL, NULL, &other, NULL, &error) ==
+        HEXHEX_INVALID_ARGUMENT);
+  CHECK(other == NULL);
+  hexhex_extractor_destroy(extractor);
+  hexhex_lagrange_mesh_destroy(mesh);
+  hexhex_map_destroy(map);
+}
+
+static void test_writer_as_sink(const char* folder) {
+  hexhex_error error;
+  char file[512];
+  char copy[512];
+  hexhex_map* map = sphere(2);
+  hexhex_extract_options options = HEXHEX_EXTRACT_OPTIONS_INIT;
+  hexhex_mesh_writer* writer = NULL;
+  hexhex_sink sink = HEXHEX_SINK_INIT;
+  hexhex_survey mine = HEXHEX_SURVEY_INIT;
+  hexhex_survey theirs = HEXHEX_SURVEY_INIT;
+  options.scale = 2;
+  snprintf(file, sizeof file, "%s/as_sink.data", folder);
+  snprintf(copy, sizeof copy, "%s/as_sink.mesh", folder);
+  hexhex_write_options writing = HEXHEX_WRITE_OPTIONS_INIT;
+  hexhex_read_options reading = HEXHEX_READ_OPTIONS_INIT;
+  writing.format = reading.format = "vtu";
+  CHECK_OK(hexhex_mesh_writer_create(file, &writing, NULL, &writer, &error));
+  CHECK_OK(hexhex_mesh_writer_sink(writer, &sink, &error));
+  CHECK_OK(hexhex_extract_to(&sink, map, &options, NULL, NULL, &error));
+  CHECK(hexhex_survey_writer_get(writer, &mine, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_mesh_writer_destroy(writer);
+  CHECK(hexhex_file_survey(file, NULL, NULL, &mine, &error) == HEXHEX_FILE_UNSUPPORTED);
+  CHECK_OK(hexhex_file_survey(file, &reading, NULL, &mine, &error));
+  CHECK(mine.cells == 3584);
+
+  CHECK_OK(hexhex_mesh_writer_create(copy, NULL, NULL, &writer, &error));
+  CHECK_OK(hexhex_mesh_writer_sink(writer, &sink, &error));
+  CHECK(hexhex_mesh_read_to(&sink, file, NULL, NULL, &error) == HEXHEX_FILE_UNSUPPORTED);
+  CHECK_OK(hexhex_mesh_read_to(&sink, file, &reading, NULL, &error));
+  hexhex_mesh_writer_destroy(writer);
+  CHECK_OK(hexhex_file_survey(copy, NULL, NULL, &theirs, &error));
+  CHECK(memcmp(&mine, &theirs, sizeof mine) == 0);
+
+  CHECK_OK(hexhex_survey_writer_create(NULL, &writer, &error));
+  CHECK(hexhex_survey_writer_get(writer, &theirs, &error) == HEXHEX_INVALID_ARGUMENT);
+  CHECK_OK(hexhex_mesh_writer_sink(writer, &sink, &error));
+  CHECK_OK(hexhex_extract_to(&sink, map, &options, NULL, NULL, &error));
+  memset(&theirs.points, 0, sizeof theirs - offsetof(hexhex_survey, points));
+  CHECK_OK(hexhex_survey_writer_get(writer, &theirs, &error));
+  CHECK(memcmp(&mine, &theirs, sizeof mine) == 0);
+  /* What the writer refuses is the error: it has had a mesh already. */
+  CHECK(hexhex_extract_to(&sink, map, &options, NULL, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_mesh_writer_destroy(writer);
+  /* Its functions work on their own, too. */
+  const double points[24] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0,
+                             0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1};
+  const uint32_t cell[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+  const uint64_t wide[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+  hexhex_survey sums[2] = {HEXHEX_SURVEY_INIT, HEXHEX_SURVEY_INIT};
+  for (int i = 0; i < 2; ++i) {
+    CHECK_OK(hexhex_survey_writer_create(NULL, &writer, &error));
+    CHECK_OK(hexhex_mesh_writer_sink(writer, &sink, &error));
+    CHECK(sink.begin(sink.user, 8, 1) == 0);
+    CHECK(sink.points(sink.user, 0, 8, points, NULL, NULL) == 0);
+    CHECK((i == 0 ? sink.cells(sink.user, 0, 1, cell) : sink.cells64(sink.user, 0, 1, wide)) == 0);
+    CHECK(sink.end(sink.user) == 0 && sink.end(sink.user) != 0);
+    CHECK_OK(hexhex_survey_writer_get(writer, &sums[i], &error));
+    hexhex_mesh_writer_destroy(writer);
+  }
+  CHECK(sums[0].cells == 1 && memcmp(&sums[0], &sums[1], sizeof *sums) == 0);
+  hexhex_map_destroy(map);
+}
+
+/* The repair of extractions that leave no mesh, or one of higher order. */
+static void test_repair_of_others(const char* folder) {
+  hexhex_error error;
+  char file[512];
+  hexhex_sample_options sample = HEXHEX_SAMPLE_OPTIONS_INIT;
+  hexhex_extract_options options = HEXHEX_EXTRACT_OPTIONS_INIT;
+  hexhex_context* context = NULL;
+  hexhex_map* map = NULL;
+  hexhex_map* good = sphere(2);
+  hexhex_map* repaired = NULL;
+  hexhex_repair_report* report = NULL;
+  if (!hexhex_can_repair()) {
+    hexhex_map_destroy(good);
+    return;
+  }
+  sample.cells = 8;
+  sample.refine = 4;
+  sample.defects = 2;
+  options.repair = 1;
+  CHECK_OK(hexhex_map_generate("sphere", &sample, &map, &error));
+  hexhex_repair_summary summary = HEXHEX_REPAIR_SUMMARY_INIT;
+  hexhex_verify_report* verified = NULL;
+
+  hexhex_lagrange_mesh* curved = NULL;
+  hexhex_mesh* straight = NULL;
+  CHECK_OK(hexhex_extract_lagrange(map, 2, &options, NULL, &curved, NULL, &error));
+  CHECK_OK(hexhex_lagrange_mesh_get_repair(curved, &repaired, &report, &error));
+  CHECK_OK(hexhex_repair_get_summary(report, &summary, &error));
+  CHECK(summary.changed && summary.bad_tets >= 2);
+  CHECK_OK(hexhex_lagrange_mesh_straight(curved, &straight, &error));
+  CHECK_OK(hexhex_verify(repaired, straight, 1e-2, 1, NULL, &verified, &error));
+  CHECK(hexhex_verify_passed(verified));
+  hexhex_verify_report_destroy(verified);
+  hexhex_repair_report_destroy(report);
+  hexhex_map_destroy(repaired);
+  CHECK_OK(hexhex_mesh_get_repair(straight, &repaired, &report, &error));
+  CHECK(repaired != NULL && report != NULL);
+  hexhex_repair_report_destroy(report);
+  hexhex_map_destroy(repaired);
+  hexhex_mesh_destroy(straight);
+  hexhex_lagrange_mesh_destroy(curved);
+
+  hexhex_sink sink = HEXHEX_SINK_INIT;
+  snprintf(file, sizeof file, "%s/repaired.vtu", folder);
+  CHECK_OK(hexhex_context_create(NULL, &context, &error));
+  CHECK_OK(hexhex_context_get_repair(context, &repaired, &report, &error));
+  CHECK(repaired == NULL && report == NULL);
+  for (int to_file = 0; to_file < 2; ++to_file) {
+    CHECK_OK(to_file ? hexhex_extract_to_file(file, map, &options, context, NULL, &error)
+                     : hexhex_extract_to(&sink, map, &options, context, NULL, &error));
+    CHECK_OK(hexhex_context_get_repair(context, &repaired, &report, &error));
+    CHECK(repaired != NULL && report != NULL);
+    hexhex_repair_report_destroy(report);
+    if (to_file) {
+      CHECK_OK(hexhex_mesh_read(file, NULL, NULL, &straight, &error));
+      CHECK_OK(hexhex_verify(repaired, straight, 1e-2, 1, NULL, &verified, &error));
+      CHECK(hexhex_verify_passed(verified));
+      hexhex_verify_report_destroy(verified);
+      hexhex_mesh_destroy(straight);
+    }
+    hexhex_map_destroy(repaired);
+    CHECK_OK(hexhex_extract_to(&sink, good, &options, context, NULL, &error));
+    CHECK_OK(hexhex_context_get_repair(context, &repaired, &report, &error));
+    CHECK(repaired == NULL && report == NULL);
+  }
+  CHECK(hexhex_context_get_repair(NULL, NULL, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+  hexhex_context_destroy(context);
+  hexhex_map_destroy(good);
+  hexhex_map_destroy(map);
+}
+
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define SANITIZED 1
 #else
@@ -742,8 +1229,51 @@ static long address_space(void) {
   return pages * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
-/* Extracts with ever more address space, from hardly any: each attempt ends with a mesh or with
- * OutOfMemory, soon, and the process lives and works when it has memory again. */
+/* Everything that works on a map, once, until something fails. */
+static hexhex_status work_on(const hexhex_map* map, const hexhex_extract_options* options,
+                             hexhex_context* context, int curved, hexhex_error* error) {
+  hexhex_mesh* mesh = NULL;
+  hexhex_check_report* report = NULL;
+  hexhex_verify_report* verified = NULL;
+  hexhex_map_structure* in_map = NULL;
+  hexhex_piecewise_mesh* pieces = NULL;
+  hexhex_lagrange_mesh* lagrange = NULL;
+  hexhex_extractor* extractor = NULL;
+  hexhex_structure structure = HEXHEX_STRUCTURE_INIT;
+  hexhex_quality quality = HEXHEX_QUALITY_INIT;
+  hexhex_sink sink = HEXHEX_SINK_INIT;
+  hexhex_status status = hexhex_extract(map, options, context, &mesh, NULL, error);
+  CHECK((status == HEXHEX_OK) == (mesh != NULL));
+  if (!status) status = hexhex_check(map, 1e-2, 3, context, &report, error);
+  if (!status) status = hexhex_map_find_structure(map, 1e-2, context, &in_map, error);
+  if (!status) status = hexhex_verify(map, mesh, 1e-2, 3, context, &verified, error);
+  if (!status) status = hexhex_mesh_structure(mesh, context, &structure, NULL, error);
+  if (!status) status = hexhex_mesh_quality(mesh, context, NULL, &quality, error);
+  if (!status) status = hexhex_extract_to(&sink, map, options, context, NULL, error);
+  if (!status) status = hexhex_extractor_create(map, 1e-2, 8, context, &extractor, error);
+  if (!status && curved) {
+    status = hexhex_extractor_extract_piecewise(extractor, 1, options, context, &pieces, NULL, error);
+  }
+  if (!status && curved) {
+    status = hexhex_extractor_extract_lagrange(extractor, 2, options, context, &lagrange, NULL,
+                                               error);
+  }
+  if (!status && curved) {
+    status = hexhex_lagrange_mesh_quality(lagrange, context, NULL, &quality, error);
+  }
+  CHECK(status || hexhex_verify_passed(verified));
+  hexhex_extractor_destroy(extractor);
+  hexhex_lagrange_mesh_destroy(lagrange);
+  hexhex_piecewise_mesh_destroy(pieces);
+  hexhex_map_structure_destroy(in_map);
+  hexhex_verify_report_destroy(verified);
+  hexhex_check_report_destroy(report);
+  hexhex_mesh_destroy(mesh);
+  return status;
+}
+
+/* Works with ever more address space, from hardly any: each attempt ends well or with OutOfMemory,
+ * soon, and the process lives and works when it has memory again. */
 static int run_out_of_memory(int threads, hexhex_engine engine, long first) {
   hexhex_error error;
   hexhex_map* map = sphere(4);
@@ -761,17 +1291,15 @@ static int run_out_of_memory(int threads, hexhex_engine engine, long first) {
     getrlimit(RLIMIT_AS, &limit);
     limit.rlim_cur = (rlim_t)(address_space() + extra) * 1024;
     CHECK(setrlimit(RLIMIT_AS, &limit) == 0);
-    mesh = NULL;
-    const hexhex_status status = hexhex_extract(map, &options, context, &mesh, NULL, &error);
+    const hexhex_status status =
+        work_on(map, &options, context, engine == HEXHEX_ENGINE_ATLAS, &error);
     limit.rlim_cur = limit.rlim_max;
     setrlimit(RLIMIT_AS, &limit);
     CHECK(status == HEXHEX_OK || status == HEXHEX_OUT_OF_MEMORY);
-    CHECK((status == HEXHEX_OK) == (mesh != NULL));
     if (status == HEXHEX_OUT_OF_MEMORY) {
       ++exhausted;
       CHECK(strlen(error.message) > 20);
     }
-    hexhex_mesh_destroy(mesh);
     hexhex_context_destroy(context);
   }
   CHECK(exhausted > 0 || first > 4000);
@@ -818,6 +1346,13 @@ int main(void) {
   test_features(folder);
   test_repair();
   test_curved(folder);
+  test_numbers_that_are_none();
+  test_answers();
+  test_small_things();
+  test_map_structure();
+  test_lagrange(folder);
+  test_writer_as_sink(folder);
+  test_repair_of_others(folder);
   test_reentry();
   test_threads();
   char command[64];

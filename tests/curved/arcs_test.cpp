@@ -40,7 +40,8 @@ std::set<std::array<Index, 2>> edgesOf(const HexMesh& mesh) {
   return edges;
 }
 
-void examine(const TetMap& map, int scale) {
+/// @param shared  how many arcs have the vertices of another one before them
+void examine(const TetMap& map, int scale, std::size_t shared = 0) {
   const PiecewiseLinearMesh result = withArcs(map, scale);
   const Arcs& arcs = result.arcs;
   ExtractOptions options;
@@ -50,7 +51,7 @@ void examine(const TetMap& map, int scale) {
   std::set<std::array<Index, 2>> edges;
   for (const auto& [a, b] : arcs.ends) edges.insert({std::min(a, b), std::max(a, b)});
   EXPECT_EQ(edges, edgesOf(result.mesh));
-  EXPECT_EQ(edges.size(), arcs.count());  // no two edges of these maps have the same vertices
+  EXPECT_EQ(edges.size() + shared, arcs.count());
 
   const TetPoints tets(map, scale);
   ASSERT_EQ(arcs.pointBegin.size(), arcs.count() + 1);
@@ -116,6 +117,22 @@ TEST(Arcs, GeneratedMaps) {
     SCOPED_TRACE(map.name);
     examine(map.map, 1 + number++ % 2);
   }
+}
+
+TEST(Arcs, EdgesWithTheSameVertices) {
+  // Of eight vertices in a section, each has two edges along the torus.
+  examine(tightTorus(2), 1, 8);
+}
+
+TEST(Arcs, EdgesThatComeBack) {
+  const PiecewiseLinearMesh result = withArcs(tightTorus(1));
+  const auto loops = std::count_if(result.arcs.ends.begin(), result.arcs.ends.end(),
+                                   [](const auto& ends) { return ends[0] == ends[1]; });
+  EXPECT_EQ(loops, 8);
+  // V - E + F - C is 0 for a solid torus; eight vertices, of twelve edges and five quads a section.
+  EXPECT_EQ(result.mesh.points.size(), 8U);
+  EXPECT_EQ(result.mesh.cells.size(), 5U);
+  EXPECT_EQ(result.arcs.count(), 8U + 12U);
 }
 
 TEST(Arcs, RealMaps) {

@@ -67,6 +67,21 @@ inline std::vector<CurvedMap> generatedMaps() {
   return maps;
 }
 
+/// A solid torus with so few cells around that different edges and faces have the same vertices
+/// (2), or that edges come back to where they begin (1).
+inline TetMap tightTorus(int cellsAround) {
+  constexpr int kBlocks = 6;  // around, along w; each one cell long
+  SampleOptions options;
+  options.cells = 1;
+  options.refine = 3;
+  options.jitter = 0.3;
+  TetMap map = generateSample(SampleKind::Torus, options).map;
+  for (TetParameters& corners : map.parameters) {
+    for (Vec3& u : corners) u[2] *= static_cast<double>(cellsAround) / kBlocks;
+  }
+  return map;
+}
+
 /// Real maps that exist here, those of less than about ten thousand cells; the first ones where
 /// effort is scaled down.
 inline std::vector<CurvedMap> realMaps() {

@@ -81,6 +81,11 @@ TEST(Lagrange, NodesAreThoseOfTheFinerMesh) {
   }
 }
 
+TEST(Lagrange, CellsThatMeetThemselves) {
+  examine(tightTorus(2), 2, 1);
+  examine(tightTorus(1), 3, 1);
+}
+
 TEST(Lagrange, RealMaps) {
   const std::vector<CurvedMap> maps = realMaps();
   if (maps.empty()) GTEST_SKIP() << "skipped: no real maps here";
@@ -151,6 +156,7 @@ LagrangeMesh oneCell(int order, const F& place) {
       }
     }
   }
+  mesh.vertexCount = static_cast<Index>(mesh.points.size());
   return mesh;
 }
 
@@ -174,7 +180,11 @@ TEST(LagrangeReader, GivesBackWhatWasWritten) {
   Context context;
   for (const int order : {1, 2, 3, 5}) {
     SCOPED_TRACE(order);
-    const LagrangeMesh mesh = lagrange(generateSample(SampleKind::Sphere).map, order);
+    SampleOptions options;
+    options.features = true;
+    const LagrangeMesh mesh = lagrange(generateSample(SampleKind::Sphere, options).map, order);
+    ASSERT_FALSE(mesh.features.vertices.empty() || mesh.features.edges.empty() ||
+                 mesh.features.quads.empty() || mesh.regions.empty());
     writeLagrangeMesh(mesh, file.path(), {}, context);
     EXPECT_TRUE(holdsLagrangeCells(file.path(), context));
     const LagrangeMesh read = readLagrangeMesh(file.path(), context);
@@ -184,7 +194,62 @@ TEST(LagrangeReader, GivesBackWhatWasWritten) {
     EXPECT_EQ(read.vertexCount, mesh.vertexCount);
     EXPECT_EQ(read.generatorTet, mesh.generatorTet);
     EXPECT_EQ(read.generatorCorners, mesh.generatorCorners);
+    EXPECT_EQ(read.features, mesh.features);
+    EXPECT_EQ(read.regions, mesh.regions);
   }
+}
+
+TEST(LagrangeReader, RenumbersTagsAndLeavesOutThoseBetweenCorners) {
+  const LagrangeFile file("-tags.vtu");
+  Context context;
+  LagrangeMesh mesh = lagrange(generateSample(SampleKind::Box).map, 2);
+  const Index* const cell = mesh.nodes.data();
+  const Index last = cell[26];  // a corner
+  const Index middle = cell[1];
+  // Corners come last in the file.
+  const auto count = static_cast<Index>(mesh.points.size());
+  std::reverse(mesh.points.begin(), mesh.points.end());
+  for (Index& node : mesh.nodes) node = count - 1 - node;
+  const auto moved = [count](Index node) { return count - 1 - node; };
+  mesh.vertexCount = count;
+  mesh.generatorTet.clear();
+  mesh.generatorCorners.clear();
+  mesh.features.vertices = {{moved(last), 3}, {moved(middle), 4}};
+  mesh.features.edges = {{{moved(last), moved(middle)}, 5}, {{cell[0], cell[2]}, -6}};
+  mesh.features.quads = {{{cell[0], cell[2], cell[8], cell[6]}, 7},
+                         {{cell[0], cell[1], cell[4], cell[3]}, 8}};
+  writeLagrangeMesh(mesh, file.path(), {}, context);
+  const LagrangeMesh read = readLagrangeMesh(file.path(), context);
+  const Index* const there = read.nodes.data();
+  ASSERT_EQ(read.features.vertices.size(), 1U);
+  EXPECT_EQ(read.features.vertices[0], (FeatureVertex{there[26], 3}));
+  ASSERT_EQ(read.features.edges.size(), 1U);
+  EXPECT_EQ(read.features.edges[0], (FeatureEdge{{there[0], there[2]}, -6}));
+  ASSERT_EQ(read.features.quads.size(), 1U);
+  EXPECT_EQ(read.features.quads[0], (FeatureQuad{{there[0], there[2], there[8], there[6]}, 7}));
+  EXPECT_LT(there[0], read.vertexCount);
+}
+
+TEST(LagrangeWriter, RefusesTagsThatNoCellHas) {
+  const LagrangeFile file("-wrong.msh");
+  Context context;
+  const LagrangeMesh good = lagrange(generateSample(SampleKind::Box).map, 2);
+  const HexMesh corners = straightMesh(good);
+  const auto expectRefused = [&](const HexFeatures& features) {
+    LagrangeMesh mesh = good;
+    mesh.features = features;
+    try {
+      writeLagrangeMesh(mesh, file.path(), {}, context);
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::InvalidArgument) << error.what();
+    }
+    EXPECT_FALSE(std::filesystem::exists(file.path()));
+  };
+  const Hex& cell = corners.cells[0];
+  expectRefused({{}, {{{cell[0], cell[2]}, 1}}, {}});                    // a diagonal
+  expectRefused({{}, {}, {{{cell[0], cell[1], cell[6], cell[7]}, 1}}});  // across the cell
+  expectRefused({{{static_cast<Index>(good.vertexCount), 1}}, {}, {}});  // no hex vertex
 }
 
 /// A file with one cell of order 1, whose nodes have these numbers.

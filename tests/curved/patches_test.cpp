@@ -35,7 +35,7 @@ Quad sorted(Quad quad) {
   return quad;
 }
 
-std::multiset<Quad> facesOf(const HexMesh& mesh) {
+std::set<Quad> facesOf(const HexMesh& mesh) {
   constexpr std::size_t kFaces[6][4] = {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4},
                                         {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
   std::set<Quad> faces;
@@ -43,7 +43,7 @@ std::multiset<Quad> facesOf(const HexMesh& mesh) {
     for (const auto& f : kFaces)
       faces.insert(sorted({cell[f[0]], cell[f[1]], cell[f[2]], cell[f[3]]}));
   }
-  return {faces.begin(), faces.end()};
+  return faces;
 }
 
 using Side = std::array<Index, 2>;
@@ -179,6 +179,7 @@ void examinePolygon(const PiecewiseLinearMesh& result, const TetPoints& tets, st
   const TetPoints::Simplex carrier = tets.simplex(tet, patches.polygonCorners[p]);
   const std::uint64_t begin = patches.cornerBegin[p];
   const std::uint64_t size = patches.cornerBegin[p + 1] - begin;
+  double twiceArea = 0;  // positive, so that polygons of a disk do not overlap; up to rounding
   for (std::uint64_t i = 0; i < size; ++i) {
     const TetPoints::Simplex generator = generatorOf(result, tets, patches.corners[begin + i]);
     ASSERT_TRUE(std::includes(carrier.begin(), carrier.end(), generator.begin(), generator.end()));
@@ -189,15 +190,19 @@ void examinePolygon(const PiecewiseLinearMesh& result, const TetPoints& tets, st
     const auto& b = patches.parameters[begin + (i + 1) % size];
     ASSERT_NEAR(tets.parametricDistance(tet, here, next), std::hypot(a[0] - b[0], a[1] - b[1]),
                 1e-7);
+    twiceArea += a[0] * b[1] - a[1] * b[0];
   }
+  ASSERT_GE(twiceArea, -1e-14);
 }
 
-void examine(const TetMap& map, int scale) {
+/// @param shared  how many faces have the vertices of another one before them
+void examine(const TetMap& map, int scale, std::size_t shared = 0) {
   const PiecewiseLinearMesh result = withPatches(map, scale);
   const Patches& patches = result.patches;
-  std::multiset<Quad> faces;
+  std::set<Quad> faces;
   for (const Quad& quad : patches.vertices) faces.insert(sorted(quad));
   EXPECT_EQ(faces, facesOf(result.mesh));
+  EXPECT_EQ(faces.size() + shared, patches.count());
   ASSERT_EQ(patches.polygonBegin.size(), patches.count() + 1);
   ASSERT_EQ(patches.polygonTet.size(), patches.polygonBegin.back());
   ASSERT_EQ(patches.corners.size(), patches.cornerBegin.back());
@@ -207,7 +212,7 @@ void examine(const TetMap& map, int scale) {
   const auto boundary = boundaryTriangles(map, tets);
   double boundaryArea = 0;
   std::map<Index, std::size_t> faceOfPoint;  // inner points of faces belong to one alone
-  const std::size_t shared = result.mesh.points.size() + result.arcs.points.size();
+  const std::size_t onArcs = result.mesh.points.size() + result.arcs.points.size();
   for (std::size_t f = 0; f < patches.count(); ++f) {
     SCOPED_TRACE("face " + std::to_string(f));
     ASSERT_TRUE(isDisk(result, f));
@@ -218,7 +223,7 @@ void examine(const TetMap& map, int scale) {
       ASSERT_NO_FATAL_FAILURE(examinePolygon(result, tets, p));
       for (std::uint64_t i = patches.cornerBegin[p]; i < patches.cornerBegin[p + 1]; ++i) {
         const Index point = patches.corners[i];
-        if (point < shared) continue;
+        if (point < onArcs) continue;
         ASSERT_EQ(faceOfPoint.emplace(point, f).first->second, f);
       }
       const auto simplex = tets.simplex(patches.polygonTet[p], patches.polygonCorners[p]);
@@ -237,6 +242,28 @@ TEST(Patches, GeneratedMaps) {
     SCOPED_TRACE(map.name);
     examine(map.map, ++number % 5 == 0 ? 2 : 1);
   }
+}
+
+TEST(Patches, FacesWithTheSameVertices) {
+  // Above each of the twelve edges of a section, two faces along the torus.
+  examine(tightTorus(2), 1, 12);
+}
+
+TEST(Patches, FacesThatMeetThemselves) {
+  const PiecewiseLinearMesh result = withPatches(tightTorus(1));
+  const Patches& patches = result.patches;
+  ASSERT_EQ(patches.count(), 5U + 12U);
+  std::size_t rings = 0;
+  for (std::size_t f = 0; f < patches.count(); ++f) {
+    EXPECT_EQ(twiceArea(patches, f), 2);
+    const auto& arcs = patches.arcs[f];
+    if (arcs[0] == arcs[2] || arcs[1] == arcs[3]) {
+      ++rings;
+    } else {
+      EXPECT_TRUE(isDisk(result, f));
+    }
+  }
+  EXPECT_EQ(rings, 12U);
 }
 
 TEST(Patches, RealMaps) {

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Whether the pages of docs/ have all that they should: every error code; and in their snippets, which
-other tests run, every function of the libraries for C++, C and Python."""
+"""Whether the pages of docs/ have all that they should: every error code; in their snippets, which other
+tests run, every function of the libraries for C++, C and Python; and for every C function once, who may
+call it from several threads."""
 
 import ast
 import pathlib
@@ -9,8 +10,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# Of types.hpp, for its arrays alone.
-INTERNAL = {"allocateArray", "freeArray"}
+# Of types.hpp, for its arrays alone; and of an adapter.
+INTERNAL = {"allocateArray", "freeArray", "allocate", "deallocate", "construct", "empty"}
 
 
 def text(path):
@@ -27,26 +28,44 @@ def c_functions():
 
 
 def cpp_functions():
-    """Those that are declared at the beginning of a line, which are no members."""
+    """Those that are declared at the beginning of a line, and members, which are indented by two."""
     names = set()
     for header in (ROOT / "include/hexhex").glob("*.hpp"):
         if header.name == "view.hpp":  # of the command
             continue
-        names.update(re.findall(r"^(?:\[\[nodiscard\]\] )?[A-Za-z][\w:<>,&* ]*?\b([a-z]\w+)\(",
-                                header.read_text(encoding="utf-8"), re.M))
+        names.update(re.findall(
+            r"^(?:  )?(?:\[\[nodiscard\]\] )?[A-Za-z][\w:<>,&* ]*?[ &*]([a-z]\w+)\(",
+            header.read_text(encoding="utf-8"), re.M))
     return sorted(names - INTERNAL)
 
 
 def python_names():
-    tree = ast.parse(text("bindings/python/hexhex/__init__.py"))
-    for node in tree.body:
-        if isinstance(node, ast.Assign) and node.targets[0].id == "__all__":
-            return [name for name in ast.literal_eval(node.value) if name[0].islower()]
-    raise SystemExit("the package has no __all__")
+    """Functions of the package, and methods and properties of its classes."""
+    names = set()
+    for file in ("__init__", "_types"):
+        for node in ast.parse(text(f"bindings/python/hexhex/{file}.py")).body:
+            if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__":
+                names.update(name for name in ast.literal_eval(node.value) if name[0].islower())
+            if isinstance(node, ast.ClassDef):
+                names.update(method.name for method in node.body
+                             if isinstance(method, ast.FunctionDef) and method.name[0] != "_")
+    return sorted(names)
+
+
+def threads_of_c():
+    """What the table of threads lacks, names twice, or names in vain."""
+    section = re.search(r"(?ms)^## Threads$(.*?)^## ", text("docs/api-c.md"))[1]
+    said = re.findall(r"`(hexhex_\w+)`", "\n".join(re.findall(r"(?m)^\| (`.*?) \|", section)))
+    functions = set(c_functions())
+    return ([f"docs/api-c.md says nothing of {name} and threads" for name in functions - set(said)] +
+            [f"docs/api-c.md says something of {name} and threads, which is no function"
+             for name in set(said) - functions] +
+            [f"docs/api-c.md says twice what {name} does in threads" for name in set(said)
+             if said.count(name) > 1])
 
 
 def main():
-    missing = []
+    missing = threads_of_c()
     pages = (("docs/errors.md", error_codes(), None), ("docs/troubleshooting.md", error_codes(), None),
              ("docs/api-c.md", c_functions(), "c"), ("docs/api-cpp.md", cpp_functions(), "cpp"),
              ("docs/api-python.md", python_names(), "python"))

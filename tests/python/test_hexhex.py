@@ -92,6 +92,19 @@ def test_extractor_keeps_its_arrays(sphere):
                               hexhex.extract(sphere, scale=scale).points)
     with pytest.raises(hexhex.ArgumentError):
         extractor.extract(scale=1000)
+    # Other orders and outputs, in any order.
+    for options in (dict(order=3), dict(scale=2, arcs=True, patches=True), dict(order=2, scale=2)):
+        mesh, expected = extractor.extract(**options), hexhex.extract(sphere, **options)
+        assert np.array_equal(mesh.points, expected.points)
+        assert (mesh.arcs is None) == (expected.arcs is None)
+        if mesh.arcs is not None:
+            assert np.array_equal(mesh.arcs.points, expected.arcs.points)
+            assert np.array_equal(mesh.patches.corners, expected.patches.corners)
+        if mesh.curved is not None:
+            assert np.array_equal(mesh.curved.points, expected.curved.points)
+            assert np.array_equal(mesh.curved.nodes, expected.curved.nodes)
+    with pytest.raises(hexhex.ArgumentError):
+        extractor.extract(scale=33, order=2)
 
 
 def test_errors(sphere, tmp_path):
@@ -184,10 +197,16 @@ except KeyboardInterrupt:
 
 
 def test_ctrl_c():
-    result = subprocess.run([sys.executable, "-c", INTERRUPTED], capture_output=True, text=True,
-                            timeout=120, check=True)
-    assert result.stdout.startswith("interrupted after"), result.stdout + result.stderr
-    assert float(result.stdout.split()[-1]) < 2
+    """Within a fraction of a second: the best of a few, as others use the machine, too."""
+    seconds = []
+    for _ in range(5):
+        result = subprocess.run([sys.executable, "-c", INTERRUPTED], capture_output=True, text=True,
+                                timeout=120, check=True)
+        assert result.stdout.startswith("interrupted after"), result.stdout + result.stderr
+        seconds.append(float(result.stdout.split()[-1]))
+        if seconds[-1] < 0.5:
+            return
+    raise AssertionError(f"Ctrl-C took {seconds} seconds")
 
 
 def test_many_threads(sphere):
@@ -396,6 +415,156 @@ def test_memory(threads):
     lines = result.stdout.split("\n")
     assert result.returncode == 0 and lines[3] == "3584000", result.stdout + result.stderr
     assert "MemoryError" in lines[0]
+
+
+def test_answers():
+    """What is known of a generated map is what its mesh has."""
+    assert len(hexhex.sample_kinds()) == 8 and all(k.description for k in hexhex.sample_kinds())
+    for kind in hexhex.sample_kinds():
+        map = hexhex.generate(kind.name, cells=2, features=True)
+        mesh, answer = hexhex.extract(map), map.answer
+        assert (len(mesh.cells), len(mesh.points)) == (answer["cells"], answer["vertices"])
+        counts = mesh.structure()
+        for name in ("boundary_quads", "euler_characteristic", "components",
+                     "boundary_components"):
+            assert counts[name] == answer[name]
+        _, valence, boundary = mesh.singular_edges()
+        assert dict(zip(*np.unique(valence[~boundary], return_counts=True))) == \
+            answer["inner_singular_edges"]
+        for rows, name in ((mesh.features.vertices, "tagged_vertices"),
+                           (mesh.features.edges, "tagged_edges"),
+                           (mesh.features.faces, "tagged_quads")):
+            assert dict(zip(*np.unique(rows[:, -1], return_counts=True))) == answer[name]
+        assert len(set(mesh.regions.tolist())) == answer["regions"]
+    for kind in hexhex.defect_kinds():
+        assert hexhex.generate("box", refine=4, defects=1, defect_kind=kind).answer["cells"] == 512
+    assert hexhex.Map(map.points, map.tets, map.igm).answer is None
+
+
+def test_map_structure(sphere):
+    structure = hexhex.map_structure(sphere)
+    counts = hexhex.check(sphere).counts
+    assert len(structure.jump_tets) == counts["chart_jumps"] and structure.defects == []
+    assert dict(zip(*np.unique(structure.valences, return_counts=True))) == \
+        counts["inner_singular_tet_edges"]
+    assert not structure.boundary.any() and (structure.edges[:, 0] < structure.edges[:, 1]).all()
+    # Transitions carry the parameters of a face's corners over.
+    u = [sphere.igm[tets][sphere.tets[tets] == structure.jump_vertices[:, :1]]
+         for tets in structure.jump_tets.T]
+    image = np.einsum("jrc,jc->jr", structure.rotations, u[0]) + structure.translations
+    assert np.abs(image - u[1]).max() < 1e-9
+    assert (structure.translations == np.rint(structure.translations)).all()
+    bad = hexhex.generate("sphere", cells=8, refine=4, defects=2)
+    assert hexhex.map_structure(bad).defects[0].code == "FlippedTet"
+    with pytest.raises(hexhex.ArgumentError):
+        hexhex.map_structure(sphere, tolerance=7)
+
+
+def test_curved_files(tmp_path):
+    box = hexhex.generate("box", features=True)
+    curved = hexhex.extract(box, order=3).curved
+    hexhex.write(curved, tmp_path / "c.vtu",
+                 scaled_jacobians=hexhex.quality(curved).scaled_jacobians)
+    assert hexhex.holds_curved(tmp_path / "c.vtu")
+    read = hexhex.read_curved(tmp_path / "c.vtu")
+    for name in ("points", "nodes", "generator_tet", "generator_corners"):
+        assert np.array_equal(getattr(read, name), getattr(curved, name))
+    assert (read.order, read.vertex_count) == (3, curved.vertex_count)
+    hexhex.write(box, tmp_path / "box.vtu")
+    assert not hexhex.holds_curved(tmp_path / "box.vtu")
+    for name in ("box.vtu", "none.vtu", "c.msh"):
+        with pytest.raises(hexhex.FileError):
+            hexhex.read_curved(tmp_path / name)
+    with pytest.raises(hexhex.ArgumentError):
+        hexhex.write(curved, tmp_path / "c.vtu", scaled_jacobians=[1.0])
+
+    assert len(curved.regions) == 512 and len(curved.features.faces) == 6 * 64
+    copy = hexhex.LagrangeMesh(3, curved.points, curved.nodes, curved.vertex_count,
+                               generator_tet=curved.generator_tet,
+                               generator_corners=curved.generator_corners,
+                               features=curved.features, regions=curved.regions)
+    straight, expected = copy.straight(), hexhex.extract(box)
+    assert np.array_equal(straight.cells, expected.cells)
+    assert np.array_equal(straight.generator_corners, expected.generator_corners)
+    assert np.array_equal(straight.features.faces, expected.features.faces)
+    assert np.array_equal(copy.regions, curved.regions)
+    nodes = np.array(curved.nodes)
+    nodes[5, 5] = 10**6
+    wrong = hexhex.LagrangeMesh(3, curved.points, nodes, curved.vertex_count)
+    for use in (hexhex.quality, hexhex.LagrangeMesh.straight,
+                lambda mesh: hexhex.write(mesh, tmp_path / "w.vtu")):
+        with pytest.raises(hexhex.ArgumentError):
+            use(wrong)
+    assert not (tmp_path / "w.vtu").exists()
+    for arguments in ((2, curved.points, curved.nodes, 8), (10, curved.points, curved.nodes, 8),
+                      (3, curved.points, curved.nodes, -1)):
+        with pytest.raises(hexhex.ArgumentError):
+            hexhex.LagrangeMesh(*arguments)
+    with pytest.raises(hexhex.ArgumentError):
+        hexhex.Mesh(expected.points, expected.cells, generator_tet=[1, 2])
+    mesh = hexhex.Mesh(expected.points, expected.cells, generator_tet=expected.generator_tet,
+                       generator_corners=expected.generator_corners)
+    assert np.array_equal(mesh.generator_kind, expected.generator_kind)
+
+
+def test_small_things(sphere, tmp_path):
+    mesh = hexhex.extract(sphere)
+    quality = hexhex.quality(mesh)
+    assert sum(quality.histogram) == 448 and quality.minimum == quality.scaled_jacobians.min()
+    assert abs(quality.mean - quality.scaled_jacobians.mean()) < 1e-12
+    one = hexhex.scaled_jacobian(mesh.points[mesh.cells[7]])
+    assert one == quality.scaled_jacobians[7]
+    for corners in (mesh.points[:7], mesh.points[:8, :2], 3):
+        with pytest.raises(hexhex.ArgumentError):
+            hexhex.scaled_jacobian(corners)
+    empty = hexhex.quality(hexhex.Mesh(np.empty((0, 3)), np.empty((0, 8), np.uint32)))
+    assert (empty.minimum, empty.not_positive, sum(empty.histogram)) == (0, 0, 0)
+    stages = mesh.statistics["stages"]
+    assert len(stages) > 5 and stages[0][0] == "input" and all(s >= 0 for _, s in stages)
+
+    hexhex.write(mesh, tmp_path / "mesh.data", format="vtu")
+    assert hexhex.survey(tmp_path / "mesh.data", format="vtu") == hexhex.survey(mesh)
+    sink = hexhex.SurveySink()
+    with pytest.raises(hexhex.ArgumentError):
+        sink.result()
+    hexhex.read_to(sink, tmp_path / "mesh.data", format="vtu")
+    assert sink.result() == hexhex.survey(mesh)
+    with pytest.raises(hexhex.ArgumentError):
+        sink.end()
+    with pytest.raises(AttributeError):
+        hexhex.read_to(object(), tmp_path / "mesh.data", format="vtu")
+    for what, file, options in (("map", "x.hexex", {}), ("mesh", "x.data", {"format": "vtu"}),
+                                ("curved", "x.msh", {}), ("arcs", "x.vtp", {}),
+                                ("patches", "x.ovmb", {})):
+        hexhex.require_format(what, file, **options)
+        with pytest.raises(hexhex.FileError):
+            hexhex.require_format(what, "x.stl")
+    with pytest.raises(hexhex.ArgumentError, match="banana"):
+        hexhex.require_format("banana", "x.vtu")
+
+
+def test_repair_of_pieces(tmp_path):
+    if not hexhex.can_repair():
+        pytest.skip("without libLBFGS")
+    bad = hexhex.generate("sphere", cells=8, refine=4, defects=2)
+    notes = hexhex.extract_to_file(tmp_path / "m.vtu", bad, repair=True)
+    assert notes["repair"].bad_tets >= 2
+    assert hexhex.verify(notes["repaired_map"], hexhex.read(tmp_path / "m.vtu"))
+    notes = hexhex.extract_to(hexhex.SurveySink(), bad, repair=True)
+    assert notes["repair"].changed and notes["repaired_map"] is not None
+    notes = hexhex.extract_to(hexhex.SurveySink(), hexhex.generate("sphere"), repair=True)
+    assert notes["repair"] is None and notes["repaired_map"] is None
+    mesh = hexhex.extract(bad, order=2, repair=True)
+    assert mesh.repair.changed and hexhex.verify(mesh.repaired_map, mesh)
+    # A repair that fails says what it has done.
+    igm = np.array(bad.igm)
+    igm[:200] = igm[:200, ::-1]
+    with pytest.raises(hexhex.MapError) as caught:
+        hexhex.repair(hexhex.Map(bad.points, bad.tets, igm))
+    assert isinstance(caught.value.repair, hexhex.RepairReport)
+    with pytest.raises(hexhex.MapError) as caught:
+        hexhex.extract(bad)
+    assert caught.value.repair is None
 
 
 def test_vtk_alone(sphere):

@@ -15,8 +15,10 @@
  * - No exception leaves the library, exhausted memory is HEXHEX_OUT_OF_MEMORY, and nothing is ever
  *   printed.
  * - Threads: functions may run at the same time as long as no two of them use the same handle,
- *   unless both only read it (parameters that are pointers to const). hexhex_context_cancel() may
- * be called at any time.
+ *   unless both only read it (parameters that are pointers to const). hexhex_context_cancel() and
+ *   hexhex_context_cancelled() may be called at any time. docs/api-c.md says it function by
+ *   function.
+ * - Enumerations are checked: a number that is none of theirs is HEXHEX_INVALID_ARGUMENT.
  *
  * Corners of a hexahedron are in the order of VTK_HEXAHEDRON: 0 1 2 3 around one face, 4 5 6 7
  * above them, so that 0-4, 1-5, 2-6, 3-7 are edges:
@@ -38,18 +40,24 @@
 #include <stdint.h>
 
 #include <hexhex/export.h>
+#include <hexhex/version.h>
 
+/* Enumerations are passed as an int, and a number that is none of theirs is an error. C++ would
+ * otherwise regard the number itself as undefined behaviour. */
 #ifdef __cplusplus
+#define HEXHEX_AS_INT : int
 extern "C" {
+#else
+#define HEXHEX_AS_INT
 #endif
 
 /* ---- Version and errors -------------------------------------------------------------------- */
 
-/** The version of the library that runs, e.g. "0.1.0". */
+/** The version of the library that runs, e.g. "0.1.0"; HEXHEX_VERSION is that of the headers. */
 HEXHEX_API const char* hexhex_version(void);
 
 /** What went wrong. Numbers never change their meaning; new ones may come. */
-typedef enum hexhex_status {
+typedef enum hexhex_status HEXHEX_AS_INT {
   HEXHEX_OK = 0,
   HEXHEX_INVALID_ARGUMENT = 1,
   HEXHEX_FILE_NOT_FOUND = 2,
@@ -80,7 +88,7 @@ typedef enum hexhex_status {
 HEXHEX_API const char* hexhex_status_name(hexhex_status status);
 
 /** What a place is: see hexhex_place. */
-typedef enum hexhex_place_kind {
+typedef enum hexhex_place_kind HEXHEX_AS_INT {
   HEXHEX_PLACE_NONE = 0,
   HEXHEX_PLACE_TET = 1,    /**< index: the tet */
   HEXHEX_PLACE_FACE = 2,   /**< index: a tet; second: the corner opposite the face, 0 to 3 */
@@ -95,6 +103,11 @@ typedef struct hexhex_place {
   uint64_t index;
   uint64_t second;
 } hexhex_place;
+
+/** A place in words: "tet 12", "edge 3-17", "line 4"; "" for none, and for kinds that are none.
+ * Writes at most `size` bytes with the final zero, like snprintf(); text may be NULL if size is 0.
+ * @return the length of the whole text, without the final zero */
+HEXHEX_API size_t hexhex_place_text(const hexhex_place* place, char* text, size_t size);
 
 /** An error, complete in itself. Belongs to the caller. */
 typedef struct hexhex_error {
@@ -131,6 +144,10 @@ HEXHEX_API void hexhex_context_destroy(hexhex_context* context);
 /** Asks running and later work of this context to end soon with HEXHEX_CANCELLED. From any thread,
  * and from a signal handler. */
 HEXHEX_API void hexhex_context_cancel(hexhex_context* context);
+/** 1 after hexhex_context_cancel(): for one's own sinks. From any thread. 0 for NULL. */
+HEXHEX_API int hexhex_context_cancelled(const hexhex_context* context);
+/** The number of threads it was made with; 0: all cores, and for NULL. */
+HEXHEX_API int hexhex_context_threads(const hexhex_context* context);
 
 /** The stages that have run through this context so far: their number, and the name and wall-clock
  * seconds of one. The name lives as long as the context, until its next call. */
@@ -202,6 +219,10 @@ typedef struct hexhex_map hexhex_map;
 HEXHEX_API hexhex_status hexhex_map_borrow(const hexhex_map_arrays* arrays, hexhex_map** map,
                                            hexhex_error* error);
 
+/** A map with copies of the arrays. */
+HEXHEX_API hexhex_status hexhex_map_copy(const hexhex_map_arrays* arrays, hexhex_map** map,
+                                         hexhex_error* error);
+
 /** See ReadOptions in <hexhex/io.hpp>. */
 typedef struct hexhex_read_options {
   size_t size;
@@ -247,14 +268,14 @@ HEXHEX_API hexhex_status hexhex_map_from_pair(const hexhex_map_arrays* tets,
                                               hexhex_context* context, hexhex_map** map,
                                               hexhex_error* error);
 
-typedef enum hexhex_chart_style {
+typedef enum hexhex_chart_style HEXHEX_AS_INT {
   HEXHEX_CHARTS_ALIGNED = 0, /**< as many identity transitions as possible */
   HEXHEX_CHARTS_BLOCKS = 1,  /**< a random chart per block */
   HEXHEX_CHARTS_RANDOM = 2   /**< a random chart per tet */
 } hexhex_chart_style;
 
 /** How hexhex_map_generate() damages a map: see DefectKind in <hexhex/samples.hpp>. */
-typedef enum hexhex_defect_kind {
+typedef enum hexhex_defect_kind HEXHEX_AS_INT {
   HEXHEX_DEFECTS_INTERIOR = 0,
   HEXHEX_DEFECTS_SINGULAR = 1,
   HEXHEX_DEFECTS_BOUNDARY = 2,
@@ -283,11 +304,59 @@ typedef struct hexhex_sample_options {
         HEXHEX_DEFECTS_INTERIOR                                                         \
   }
 
-/** A map whose mesh is known in advance.
+/** A map whose mesh is known in advance: see hexhex_map_get_answer().
  * @param kind  "box", "cylinder", "sphere", "star", "tetrahedron", "torus", "shell", "handle-body"
  */
 HEXHEX_API hexhex_status hexhex_map_generate(const char* kind, const hexhex_sample_options* options,
                                              hexhex_map** map, hexhex_error* error);
+
+/** The number of kinds of maps that can be generated. */
+HEXHEX_API size_t hexhex_sample_kind_count(void);
+/** The name and a description of a kind of maps. Strings live as long as the program.
+ * @param[out] name, description  or NULL */
+HEXHEX_API hexhex_status hexhex_get_sample_kind(size_t number, const char** name,
+                                                const char** description, hexhex_error* error);
+/** The name of a kind of defect, e.g. "interior"; "Unknown" for numbers that are none. */
+HEXHEX_API const char* hexhex_defect_kind_name(hexhex_defect_kind kind);
+
+/** What is known of the mesh of a generated map, at scale 1 and without its defects: see
+ * SampleAnswer in <hexhex/samples.hpp>. */
+typedef struct hexhex_sample_answer {
+  size_t size;
+  uint64_t cells;
+  uint64_t vertices;
+  uint64_t boundary_quads;
+  int64_t euler_characteristic;
+  uint64_t components;
+  uint64_t boundary_components;
+  uint64_t regions; /**< blocks; 0 without features */
+} hexhex_sample_answer;
+#define HEXHEX_SAMPLE_ANSWER_INIT \
+  { sizeof(hexhex_sample_answer), 0, 0, 0, 0, 0, 0, 0 }
+
+/** @param map             made by hexhex_map_generate(); others are HEXHEX_INVALID_ARGUMENT
+ *  @param[in,out] answer  made with HEXHEX_SAMPLE_ANSWER_INIT */
+HEXHEX_API hexhex_status hexhex_map_get_answer(const hexhex_map* map, hexhex_sample_answer* answer,
+                                               hexhex_error* error);
+
+/** Tables of an answer: how many elements of the mesh have a key. */
+typedef enum hexhex_answer_table HEXHEX_AS_INT {
+  HEXHEX_ANSWER_INNER_EDGES = 0,     /**< singular hex edges inside, by valence */
+  HEXHEX_ANSWER_BOUNDARY_EDGES = 1,  /**< singular hex edges on the boundary, by valence */
+  HEXHEX_ANSWER_TAGGED_VERTICES = 2, /**< hex vertices, by tag */
+  HEXHEX_ANSWER_TAGGED_EDGES = 3,    /**< hex edges, by tag */
+  HEXHEX_ANSWER_TAGGED_QUADS = 4     /**< hex faces, by tag */
+} hexhex_answer_table;
+
+/** @param[out] entries  number of entries of a table */
+HEXHEX_API hexhex_status hexhex_map_count_answer(const hexhex_map* map, hexhex_answer_table table,
+                                                 size_t* entries, hexhex_error* error);
+/** One entry, in ascending order of keys.
+ * @param[out] key, count  or NULL */
+HEXHEX_API hexhex_status hexhex_map_get_answer_entry(const hexhex_map* map,
+                                                     hexhex_answer_table table, size_t number,
+                                                     int32_t* key, uint64_t* count,
+                                                     hexhex_error* error);
 
 /** The arrays of a map; they belong to it.
  * @param[in,out] arrays  made with HEXHEX_MAP_ARRAYS_INIT */
@@ -321,6 +390,10 @@ typedef struct hexhex_mesh_arrays {
 
 /** A hexahedral mesh. */
 typedef struct hexhex_mesh hexhex_mesh;
+
+/** The dimension of a generator: 0 vertex, 1 edge, 2 face, 3 tet; -1 for what is none.
+ * @param corners  as in hexhex_mesh_arrays, 1 to 15 */
+HEXHEX_API int hexhex_generator_kind(uint8_t corners);
 
 /** A mesh with copies of the arrays, e.g. to write or verify it. */
 HEXHEX_API hexhex_status hexhex_mesh_copy(const hexhex_mesh_arrays* arrays, hexhex_mesh** mesh,
@@ -361,7 +434,7 @@ HEXHEX_API hexhex_status hexhex_get_format(size_t number, hexhex_file_format* fo
                                            hexhex_error* error);
 
 /** What may be written to a file. */
-typedef enum hexhex_output {
+typedef enum hexhex_output HEXHEX_AS_INT {
   HEXHEX_OUTPUT_MAP = 0,
   HEXHEX_OUTPUT_MESH = 1,
   HEXHEX_OUTPUT_ARCS = 2,
@@ -383,7 +456,7 @@ HEXHEX_API hexhex_status hexhex_mesh_get_arrays(const hexhex_mesh* mesh, hexhex_
 /** What keeps an array alive that was taken out of a mesh. */
 typedef struct hexhex_buffer hexhex_buffer;
 
-typedef enum hexhex_mesh_array {
+typedef enum hexhex_mesh_array HEXHEX_AS_INT {
   HEXHEX_POINTS = 0,            /**< double, 3 per vertex */
   HEXHEX_CELLS = 1,             /**< uint32_t, 8 per cell */
   HEXHEX_GENERATOR_TET = 2,     /**< uint32_t, 1 per vertex */
@@ -503,7 +576,7 @@ HEXHEX_API hexhex_status hexhex_repair_get_region(const hexhex_repair_report* re
 
 /* ---- Extraction ------------------------------------------------------------------------------ */
 
-typedef enum hexhex_engine {
+typedef enum hexhex_engine HEXHEX_AS_INT {
   HEXHEX_ENGINE_ATLAS = 0,    /**< the fast one */
   HEXHEX_ENGINE_PROPELLER = 1 /**< the paper's algorithm: the same mesh, bit for bit */
 } hexhex_engine;
@@ -561,6 +634,12 @@ HEXHEX_API hexhex_status hexhex_extract(const hexhex_map* map,
  * @param[out] map, report  or NULL */
 HEXHEX_API hexhex_status hexhex_mesh_get_repair(const hexhex_mesh* mesh, hexhex_map** map,
                                                 hexhex_repair_report** report, hexhex_error* error);
+/** The same of the last extraction in pieces with this context, hexhex_extract_to() or
+ * hexhex_extract_to_file(), which leave no mesh to ask. The context holds the map until the next
+ * one. */
+HEXHEX_API hexhex_status hexhex_context_get_repair(const hexhex_context* context, hexhex_map** map,
+                                                   hexhex_repair_report** report,
+                                                   hexhex_error* error);
 
 /** What can be extracted of a map that is not valid: see <hexhex/partial.hpp>. */
 typedef struct hexhex_partial_options {
@@ -617,8 +696,8 @@ typedef struct hexhex_extractor hexhex_extractor;
 
 /** @param map        must outlive the extractor
  *  @param tolerance  as in hexhex_extract_options
- *  @param max_scale  the largest scale that will be asked for; below 256, meshes are the same as
- *                    those of hexhex_extract(), bit for bit */
+ *  @param max_scale  the largest scale that will be asked for, times the order; below 256, meshes
+ *                    are the same as those of hexhex_extract(), bit for bit */
 HEXHEX_API hexhex_status hexhex_extractor_create(const hexhex_map* map, double tolerance,
                                                  int max_scale, hexhex_context* context,
                                                  hexhex_extractor** extractor, hexhex_error* error);
@@ -670,6 +749,7 @@ HEXHEX_API hexhex_status hexhex_extract_to_file(const char* file, const hexhex_m
                                                 hexhex_statistics* statistics, hexhex_error* error);
 /** Reads a mesh from a file and hands it over in pieces. */
 HEXHEX_API hexhex_status hexhex_mesh_read_to(const hexhex_sink* sink, const char* file,
+                                             const hexhex_read_options* options,
                                              hexhex_context* context, hexhex_error* error);
 
 /** A file for a mesh that comes in pieces from the caller: see openMeshSink() in <hexhex/io.hpp>.
@@ -700,6 +780,11 @@ HEXHEX_API hexhex_status hexhex_mesh_writer_cells64(hexhex_mesh_writer* writer, 
                                                     hexhex_error* error);
 HEXHEX_API hexhex_status hexhex_mesh_writer_end(hexhex_mesh_writer* writer, hexhex_error* error);
 HEXHEX_API void hexhex_mesh_writer_destroy(hexhex_mesh_writer* writer);
+/** The writer as a sink, for the functions above: pieces go to it directly, and what it refuses is
+ * the error of the function.
+ * @param[out] sink  made with HEXHEX_SINK_INIT; valid as long as the writer */
+HEXHEX_API hexhex_status hexhex_mesh_writer_sink(hexhex_mesh_writer* writer, hexhex_sink* sink,
+                                                 hexhex_error* error);
 
 /** What a mesh adds up to: see MeshSurvey in <hexhex/survey.hpp>. */
 typedef struct hexhex_survey {
@@ -716,8 +801,16 @@ typedef struct hexhex_survey {
 
 HEXHEX_API hexhex_status hexhex_mesh_survey(const hexhex_mesh* mesh, hexhex_context* context,
                                             hexhex_survey* survey, hexhex_error* error);
-HEXHEX_API hexhex_status hexhex_file_survey(const char* file, hexhex_context* context,
-                                            hexhex_survey* survey, hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_file_survey(const char* file, const hexhex_read_options* options,
+                                            hexhex_context* context, hexhex_survey* survey,
+                                            hexhex_error* error);
+/** A writer without a file: it adds up what comes, and is asked after its end.
+ * @param context  as of hexhex_mesh_writer_create() */
+HEXHEX_API hexhex_status hexhex_survey_writer_create(hexhex_context* context,
+                                                     hexhex_mesh_writer** writer,
+                                                     hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_survey_writer_get(const hexhex_mesh_writer* writer,
+                                                  hexhex_survey* survey, hexhex_error* error);
 
 /* ---- Checking maps --------------------------------------------------------------------------- */
 
@@ -791,7 +884,7 @@ HEXHEX_API void hexhex_check_boundary_genus(const hexhex_check_report* report, s
                                             int64_t* genus);
 
 /** Tables of edges by valence (hexahedra around an edge). */
-typedef enum hexhex_valence_table {
+typedef enum hexhex_valence_table HEXHEX_AS_INT {
   HEXHEX_INNER_HEX_EDGES = 0, /**< expected singular edges of the mesh */
   HEXHEX_BOUNDARY_HEX_EDGES = 1,
   HEXHEX_INNER_TET_EDGES = 2, /**< singular edges of the map */
@@ -804,6 +897,50 @@ HEXHEX_API uint64_t hexhex_check_edges_of_valence(const hexhex_check_report* rep
 /** The smallest valence in the table above `valence` (begin with -1), or -1 if there is none. */
 HEXHEX_API int hexhex_check_next_valence(const hexhex_check_report* report,
                                          hexhex_valence_table table, int valence);
+
+/** What one wants to see of a map: see <hexhex/map_structure.hpp>. */
+typedef struct hexhex_map_structure hexhex_map_structure;
+
+/** An inner face whose two tets have different charts: the transition takes parameters u in the
+ * chart of tets[0] to R u + t in that of tets[1]. */
+typedef struct hexhex_chart_jump {
+  uint32_t tets[2];      /**< ascending */
+  uint32_t vertices[3];  /**< of the face, in the order of the corners of tets[0] */
+  int8_t rotation[9];    /**< R by rows */
+  double translation[3]; /**< t; integers */
+} hexhex_chart_jump;
+
+/** An edge of the tets with another number of hexahedra around than 4 inside, 2 on the boundary. */
+typedef struct hexhex_singular_tet_edge {
+  uint32_t vertices[2]; /**< ascending */
+  int32_t valence;      /**< number of hexahedra around */
+  uint32_t boundary;    /**< 1 on the boundary */
+} hexhex_singular_tet_edge;
+
+/** Finds chart jumps and singular edges, also of a map with defects as far as they allow: a map
+ * that violates conditions is no error of this function.
+ * @param tolerance  as in hexhex_extract_options */
+HEXHEX_API hexhex_status hexhex_map_find_structure(const hexhex_map* map, double tolerance,
+                                                   hexhex_context* context,
+                                                   hexhex_map_structure** structure,
+                                                   hexhex_error* error);
+HEXHEX_API void hexhex_map_structure_destroy(hexhex_map_structure* structure);
+
+/** The lists, borrowed: they belong to the structure. Empty ones are NULL. */
+typedef struct hexhex_map_structure_arrays {
+  size_t size;
+  const hexhex_chart_jump* chart_jumps; /**< by tets[0], then the corner opposite the face */
+  size_t chart_jump_count;
+  const hexhex_singular_tet_edge* singular_edges; /**< by vertices */
+  size_t singular_edge_count;
+  size_t defect_count; /**< what is wrong with the map; hexhex_check() tells it */
+} hexhex_map_structure_arrays;
+#define HEXHEX_MAP_STRUCTURE_ARRAYS_INIT \
+  { sizeof(hexhex_map_structure_arrays), NULL, 0, NULL, 0, 0 }
+
+HEXHEX_API hexhex_status hexhex_map_structure_get_arrays(const hexhex_map_structure* structure,
+                                                         hexhex_map_structure_arrays* arrays,
+                                                         hexhex_error* error);
 
 /* ---- Verifying meshes ------------------------------------------------------------------------ */
 
@@ -839,7 +976,7 @@ HEXHEX_API hexhex_status hexhex_verify_get_item(const hexhex_verify_report* repo
 /* ---- Quality --------------------------------------------------------------------------------- */
 
 /** Scaled Jacobian of one hexahedron in [-1, 1]: see <hexhex/quality.hpp>.
- * @param corners  x, y, z of the eight corners */
+ * @param corners  x, y, z of the eight corners; NULL: 0 */
 HEXHEX_API double hexhex_scaled_jacobian(const double corners[24]);
 
 typedef struct hexhex_quality {
@@ -859,6 +996,11 @@ typedef struct hexhex_quality {
 HEXHEX_API hexhex_status hexhex_mesh_quality(const hexhex_mesh* mesh, hexhex_context* context,
                                              double* scaled_jacobians, hexhex_quality* quality,
                                              hexhex_error* error);
+
+/** The same of numbers that the caller has, e.g. of a part of the cells.
+ * @param values  `count` scaled Jacobians */
+HEXHEX_API hexhex_status hexhex_summarize_quality(const double* values, size_t count,
+                                                  hexhex_quality* quality, hexhex_error* error);
 
 /* ---- Curved meshes --------------------------------------------------------------------------- */
 
@@ -931,7 +1073,7 @@ HEXHEX_API hexhex_status hexhex_piecewise_mesh_get_arcs(const hexhex_piecewise_m
 HEXHEX_API hexhex_status hexhex_piecewise_mesh_get_patches(const hexhex_piecewise_mesh* mesh,
                                                            hexhex_patch_arrays* arrays,
                                                            hexhex_error* error);
-/** .vtu, .vtp; patches also .ovmb. */
+/** .vtu, .vtp, .ovmb. */
 HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_arcs(const hexhex_piecewise_mesh* mesh,
                                                           const char* file, hexhex_context* context,
                                                           hexhex_error* error);
@@ -939,11 +1081,23 @@ HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_patches(const hexhex_piecew
                                                              const char* file,
                                                              hexhex_context* context,
                                                              hexhex_error* error);
+/** The same with the map that was extracted, so that .ovmb files tell the indices of the tet
+ * simplices that points, edges and polygons lie in. A map that was repaired for the extraction is
+ * replaced by the repaired one. */
+HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_arcs_with_map(
+    const hexhex_piecewise_mesh* mesh, const hexhex_map* map, const char* file,
+    hexhex_context* context, hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_patches_with_map(
+    const hexhex_piecewise_mesh* mesh, const hexhex_map* map, const char* file,
+    hexhex_context* context, hexhex_error* error);
 
 /** Hexahedra of a higher order: see LagrangeMesh in <hexhex/curved.hpp>. */
 typedef struct hexhex_lagrange_mesh hexhex_lagrange_mesh;
 
-/** @param order  1 to 9 */
+/** The highest order. */
+#define HEXHEX_MAX_ORDER 9
+
+/** @param order  1 to HEXHEX_MAX_ORDER */
 HEXHEX_API hexhex_status hexhex_extract_lagrange(const hexhex_map* map, int order,
                                                  const hexhex_extract_options* options,
                                                  hexhex_context* context,
@@ -951,6 +1105,32 @@ HEXHEX_API hexhex_status hexhex_extract_lagrange(const hexhex_map* map, int orde
                                                  hexhex_statistics* statistics,
                                                  hexhex_error* error);
 HEXHEX_API void hexhex_lagrange_mesh_destroy(hexhex_lagrange_mesh* mesh);
+
+/** Both of a prepared map; scale times order is at most what the extractor was made for. */
+HEXHEX_API hexhex_status hexhex_extractor_extract_piecewise(
+    hexhex_extractor* extractor, int patches, const hexhex_extract_options* options,
+    hexhex_context* context, hexhex_piecewise_mesh** mesh, hexhex_statistics* statistics,
+    hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_extractor_extract_lagrange(hexhex_extractor* extractor, int order,
+                                                           const hexhex_extract_options* options,
+                                                           hexhex_context* context,
+                                                           hexhex_lagrange_mesh** mesh,
+                                                           hexhex_statistics* statistics,
+                                                           hexhex_error* error);
+
+/** As hexhex_mesh_get_repair(). */
+HEXHEX_API hexhex_status hexhex_lagrange_mesh_get_repair(const hexhex_lagrange_mesh* mesh,
+                                                         hexhex_map** map,
+                                                         hexhex_repair_report** report,
+                                                         hexhex_error* error);
+
+/** Cells of higher order from a .vtu file: see readLagrangeMesh() in <hexhex/curved.hpp>. */
+HEXHEX_API hexhex_status hexhex_lagrange_mesh_read(const char* file, hexhex_context* context,
+                                                   hexhex_lagrange_mesh** mesh,
+                                                   hexhex_error* error);
+/** @param[out] holds  1 if the file is a .vtu file with such cells, else 0 */
+HEXHEX_API hexhex_status hexhex_file_holds_lagrange(const char* file, hexhex_context* context,
+                                                    int* holds, hexhex_error* error);
 
 typedef struct hexhex_lagrange_arrays {
   size_t size;
@@ -961,20 +1141,39 @@ typedef struct hexhex_lagrange_arrays {
   const uint32_t* nodes; /**< (order + 1)^3 per cell: node (i, j, k), i along 0-1, j along 0-3, k
                               along 0-4, is number i + (order + 1) (j + (order + 1) k) */
   size_t cell_count;
-  const uint32_t* generator_tet; /**< per node */
+  const uint32_t* generator_tet; /**< per node, or NULL */
   const uint8_t* generator_corners;
+  /* Of the straight mesh, as in hexhex_mesh_arrays: */
+  const hexhex_feature_vertex* feature_vertices;
+  size_t feature_vertex_count;
+  const hexhex_feature_edge* feature_edges;
+  size_t feature_edge_count;
+  const hexhex_feature_quad* feature_quads;
+  size_t feature_quad_count;
+  const int32_t* regions; /**< per cell, or NULL */
 } hexhex_lagrange_arrays;
-#define HEXHEX_LAGRANGE_ARRAYS_INIT \
-  { sizeof(hexhex_lagrange_arrays), 0, NULL, 0, 0, NULL, 0, NULL, NULL }
+#define HEXHEX_LAGRANGE_ARRAYS_INIT                                                                \
+  {                                                                                                \
+    sizeof(hexhex_lagrange_arrays), 0, NULL, 0, 0, NULL, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, \
+        NULL                                                                                       \
+  }
+
+/** Cells with copies of the arrays, e.g. to write them.
+ * @param arrays  order, points, vertex_count and nodes at least; what uses the mesh refuses arrays
+ *                that do not fit each other with HEXHEX_INVALID_ARGUMENT */
+HEXHEX_API hexhex_status hexhex_lagrange_mesh_copy(const hexhex_lagrange_arrays* arrays,
+                                                   hexhex_lagrange_mesh** mesh,
+                                                   hexhex_error* error);
 
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_get_arrays(const hexhex_lagrange_mesh* mesh,
                                                          hexhex_lagrange_arrays* arrays,
                                                          hexhex_error* error);
-/** Takes an array over, as hexhex_mesh_take(): points, cells (that is, nodes) and generators. */
+/** Takes an array over, as hexhex_mesh_take(); HEXHEX_CELLS are the nodes. What needs the array is
+ * HEXHEX_INVALID_ARGUMENT afterwards. */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_take(hexhex_lagrange_mesh* mesh,
                                                    hexhex_mesh_array array, hexhex_buffer** buffer,
                                                    hexhex_error* error);
-/** The straight mesh between the corners, with tags and regions; a copy. */
+/** The straight mesh between the corners, with tags and regions, and the repair; a copy. */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_straight(const hexhex_lagrange_mesh* mesh,
                                                        hexhex_mesh** straight, hexhex_error* error);
 /** As hexhex_mesh_quality(), of curved cells: see scaledJacobians() in <hexhex/curved.hpp>. */
@@ -991,5 +1190,6 @@ HEXHEX_API hexhex_status hexhex_lagrange_mesh_write(const hexhex_lagrange_mesh* 
 #ifdef __cplusplus
 }
 #endif
+#undef HEXHEX_AS_INT
 
 #endif

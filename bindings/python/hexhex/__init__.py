@@ -28,6 +28,7 @@ from ._errors import (
     InternalError,
     MapError,
     MemoryExhaustedError,
+    make,
 )
 from ._types import (
     Arcs,
@@ -38,16 +39,19 @@ from ._types import (
     Hole,
     LagrangeMesh,
     Map,
+    MapStructure,
     Mesh,
     PartialMesh,
     Patches,
     Quality,
     RepairedRegion,
     RepairReport,
+    SampleKind,
     Survey,
     VerifyItem,
     VerifyReport,
     _floats,
+    _generators,
     _indices,
 )
 
@@ -62,11 +66,13 @@ __version__: str = _hexhex.version()
 __all__ = [
     "Arcs", "ArgumentError", "CancelledError", "CheckReport", "Defect", "Extractor", "Features",
     "FileError", "FileFormat", "HexhexError", "Hole", "InternalError", "LagrangeMesh", "Map",
-    "MapError", "MemoryExhaustedError", "Mesh", "MeshSink", "MeshWriter", "PartialMesh", "Patches",
-    "Quality", "RepairReport", "RepairedRegion", "Survey", "VerifyItem", "VerifyReport",
-    "can_repair", "check", "extract", "extract_partial", "extract_to", "extract_to_file",
-    "formats", "generate", "map_from_pair", "quality", "read", "read_map", "read_mesh",
-    "read_pair", "read_tets", "repair", "survey", "verify", "write",
+    "MapError", "MapStructure", "MemoryExhaustedError", "Mesh", "MeshSink", "MeshWriter",
+    "PartialMesh", "Patches", "Quality", "RepairReport", "RepairedRegion", "SampleKind", "Survey",
+    "SurveySink", "VerifyItem", "VerifyReport", "can_repair", "check", "defect_kinds", "extract",
+    "extract_partial", "extract_to", "extract_to_file", "formats", "generate", "holds_curved",
+    "map_from_pair", "map_structure", "quality", "read", "read_curved", "read_map", "read_mesh",
+    "read_pair", "read_tets", "read_to", "repair", "require_format", "sample_kinds",
+    "scaled_jacobian", "survey", "verify", "write",
 ]
 
 
@@ -141,21 +147,29 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
     (<hexhex.LagrangeMesh: 64 cells of order 2>, 300, None)
     """
     arrays = _map_of(points, tets, igm)._arrays()
-    options = _options(scale, engine, tolerance, epsilon, repair, round)
-    workers = _threads(threads)
+    last = (_options(scale, engine, tolerance, epsilon, repair, round), _threads(threads), progress)
+    return _assembled(
+        order, arcs, patches, lambda: _hexhex.extract(arrays, *last),
+        lambda: _hexhex.extract_piecewise(arrays, patches, *last),
+        lambda: _hexhex.extract_lagrange(arrays, order, *last))
+
+
+def _assembled(order: int, arcs: bool, patches: bool, extract_straight: Callable[[], Any],
+               extract_pieces: Callable[[], Any], extract_order: Callable[[], Any]) -> Mesh:
+    """A mesh of what is asked for; each function gives a handle and notes."""
     if arcs or patches:
-        pieces, notes = _hexhex.extract_piecewise(arrays, patches, options, workers, progress)
+        pieces, notes = extract_pieces()
         mesh = Mesh._from_handle(pieces.mesh, notes)
         mesh.arcs = Arcs(**pieces.arcs, _handle=pieces)
         if patches:
             mesh.patches = Patches(**pieces.patches, _handle=pieces)
     if order != 1:
-        curved, notes = _hexhex.extract_lagrange(arrays, order, options, workers, progress)
+        curved, notes = extract_order()
         if not (arcs or patches):
             mesh = Mesh._from_handle(curved.straight(), notes)
-        mesh.curved = LagrangeMesh(curved)
+        mesh.curved = LagrangeMesh._from_handle(curved)
     elif not (arcs or patches):
-        handle, notes = _hexhex.extract(arrays, options, workers, progress)
+        handle, notes = extract_straight()
         mesh = Mesh._from_handle(handle, notes)
     return mesh
 
@@ -185,7 +199,8 @@ def extract_to(sink: MeshSink, map: Map, *, scale: int = 1, threads: int | None 
     all of it. Without tags and regions. Other arguments and errors as of extract().
 
     Returns:
-        Statistics.
+        Statistics, and as there is no mesh to hold them, ``repair`` and ``repaired_map``: what a
+        repair did, and the map that was extracted instead; None if there was none.
 
     >>> class Count:
     ...     total = 0
@@ -197,8 +212,14 @@ def extract_to(sink: MeshSink, map: Map, *, scale: int = 1, threads: int | None 
     3584
     """
     options = _options(scale, "atlas", tolerance, 0, repair, round)
-    statistics: dict[str, Any] = _hexhex.extract_to(sink, map._arrays(), options,
-                                                    _threads(threads), progress)[0]
+    return _with_repair(_hexhex.extract_to(sink, map._arrays(), options, _threads(threads),
+                                           progress))
+
+
+def _with_repair(notes: tuple[dict[str, Any], Any, Any]) -> dict[str, Any]:
+    statistics, report, repaired = notes
+    statistics["repair"] = None if report is None else RepairReport._of(report)
+    statistics["repaired_map"] = None if repaired is None else Map._from_handle(repaired)
     return statistics
 
 
@@ -206,7 +227,7 @@ def extract_to_file(file: Path, map: Map, *, scale: int = 1, format: str | None 
                     threads: int | None = None, repair: bool = False, round: bool = False,
                     tolerance: float = 1e-2, progress: Progress | None = None) -> dict[str, Any]:
     """The same into a file, .vtu, .mesh, .meshb, .vtk or .msh, which appears complete or not at
-    all. Returns statistics.
+    all. Returns the same.
 
     Raises:
         FileError: if it cannot be written; and as extract().
@@ -219,9 +240,8 @@ def extract_to_file(file: Path, map: Map, *, scale: int = 1, format: str | None 
     13824
     """
     options = _options(scale, "atlas", tolerance, 0, repair, round)
-    statistics: dict[str, Any] = _hexhex.extract_to_file(
-        os.fspath(file), map._arrays(), options, format or "", _threads(threads), progress)[0]
-    return statistics
+    return _with_repair(_hexhex.extract_to_file(
+        os.fspath(file), map._arrays(), options, format or "", _threads(threads), progress))
 
 
 class MeshWriter:
@@ -259,23 +279,85 @@ class MeshWriter:
                generator_tet: npt.ArrayLike | None = None,
                generator_corners: npt.ArrayLike | None = None, /) -> None:
         """Points from number first on: float64 (n, 3), and as in Mesh uint32 (n,), uint8 (n,)."""
-        known = generator_tet is not None and generator_corners is not None
-        self._writer.points(
-            first, _floats(points, (3,), "points"),
-            np.ascontiguousarray(generator_tet if known else [], dtype=np.uint32),
-            np.ascontiguousarray(generator_corners if known else [], dtype=np.uint8))
+        places = _floats(points, (3,), "points")
+        self._writer.points(first, places, *_generators(generator_tet, generator_corners,
+                                                        len(places)))
 
     def cells(self, first: int, cells: npt.ArrayLike, /) -> None:
         """Cells from number first on: integers (m, 8)."""
-        array = np.asarray(cells)
-        if array.dtype == np.uint64 and array.ndim == 2 and array.shape[1] == 8:
-            self._writer.cells64(first, np.ascontiguousarray(array))
-        else:
-            self._writer.cells(first, _indices(array, 8, "cells"))
+        _cells_to(self._writer, first, cells)
 
     def end(self) -> None:
         """That was all: the file appears."""
         self._writer.end()
+
+
+def _cells_to(sink: _hexhex.MeshWriter | _hexhex.SurveySink, first: int,
+              cells: npt.ArrayLike) -> None:
+    array = np.asarray(cells)
+    if array.dtype == np.uint64 and array.ndim == 2 and array.shape[1] == 8:
+        sink.cells64(first, np.ascontiguousarray(array))
+    else:
+        sink.cells(first, _indices(array, 8, "cells"))
+
+
+class SurveySink:
+    """A MeshSink that adds up what comes: result() is then what survey() says of the mesh.
+
+    Raises:
+        ArgumentError: for calls in the wrong order, vertices that do not exist.
+
+    >>> sink, map = hexhex.SurveySink(), hexhex.generate("box")
+    >>> statistics = hexhex.extract_to(sink, map)
+    >>> sink.result() == hexhex.survey(hexhex.extract(map))
+    True
+    """
+
+    def __init__(self) -> None:
+        self._sink = _hexhex.SurveySink()
+        self._ended = False
+
+    def begin(self, points: int, cells: int, /) -> None:
+        """Numbers of points and cells of the whole mesh."""
+        if points < 0 or cells < 0:
+            raise ArgumentError("A mesh cannot have fewer than none.", "InvalidArgument")
+        self._sink.begin(points, cells)
+
+    def points(self, first: int, points: npt.ArrayLike, generator_tet: object = None,
+               generator_corners: object = None, /) -> None:
+        """Points from number first on: float64 (n, 3). Generators are not added up."""
+        self._sink.points(first, _floats(points, (3,), "points"))
+
+    def cells(self, first: int, cells: npt.ArrayLike, /) -> None:
+        """Cells from number first on: integers (m, 8)."""
+        _cells_to(self._sink, first, cells)
+
+    def end(self) -> None:
+        """That was all."""
+        self._sink.end()
+        self._ended = True
+
+    def result(self) -> Survey:
+        """The sums, after end(). Raises ArgumentError before."""
+        if not self._ended:
+            raise ArgumentError("The mesh has not ended yet.", "InvalidArgument")
+        return Survey(**self._sink.result())
+
+
+def read_to(sink: MeshSink, file: Path, *, format: str | None = None, threads: int | None = None,
+            progress: Progress | None = None) -> None:
+    """Reads a hexahedral mesh and hands it over in pieces; a .vtu file with appended data, as this
+    library writes it, in a few megabytes of memory. Raises FileError, and what the sink raises.
+
+    >>> import pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder) / "large.vtu"
+    ...     statistics = hexhex.extract_to_file(file, hexhex.generate("box"), scale=3)
+    ...     hexhex.read_to(hexhex.MeshWriter(file.with_suffix(".mesh")), file)
+    ...     hexhex.survey(file) == hexhex.survey(file.with_suffix(".mesh"))
+    True
+    """
+    _hexhex.read_to(sink, os.fspath(file), format or "", _threads(threads), progress)
 
 
 class Extractor:
@@ -291,7 +373,7 @@ class Extractor:
     Args:
         points, tets, igm: as in extract(); they must not change while the extractor lives.
         tolerance, threads, progress: as in extract().
-        max_scale: the largest scale that will be asked for.
+        max_scale: the largest scale that will be asked for, times the order.
 
     Raises:
         As extract().
@@ -308,20 +390,22 @@ class Extractor:
         """Number of cells at scale 1; scale**3 times as many at others."""
         return self._extractor.cells()
 
-    def extract(self, *, scale: int = 1, threads: int | None = None, engine: str = "atlas",
+    def extract(self, *, scale: int = 1, threads: int | None = None, order: int = 1,
+                arcs: bool = False, patches: bool = False, engine: str = "atlas",
                 epsilon: float = 1e-6, progress: Progress | None = None) -> Mesh:
-        """The mesh at a scale: the same as that of hexhex.extract()."""
-        options = _options(scale, engine, 0, epsilon, False, False)
-        handle, notes = self._extractor.extract(options, _threads(threads), progress)
-        return Mesh._from_handle(handle, notes)
+        """The mesh at a scale: the same as that of hexhex.extract(). The scale times the order is at
+        most ``max_scale``."""
+        last = (_options(scale, engine, 0, epsilon, False, False), _threads(threads), progress)
+        return _assembled(
+            order, arcs, patches, lambda: self._extractor.extract(*last),
+            lambda: self._extractor.extract_piecewise(patches, *last),
+            lambda: self._extractor.extract_lagrange(order, *last))
 
     def extract_to(self, sink: MeshSink, *, scale: int = 1, threads: int | None = None,
                    progress: Progress | None = None) -> dict[str, Any]:
         """The same in pieces, as hexhex.extract_to()."""
         options = _options(scale, "atlas", 0, 0, False, False)
-        statistics: dict[str, Any] = self._extractor.extract_to(sink, options, _threads(threads),
-                                                                progress)[0]
-        return statistics
+        return _with_repair(self._extractor.extract_to(sink, options, _threads(threads), progress))
 
 
 def can_repair() -> bool:
@@ -346,16 +430,23 @@ def repair(map: Map, *, tolerance: float = 1e-2, scale: int = 1, round: bool = F
         tolerance, threads, progress: as in extract().
 
     Raises:
-        MapError: if the map has other defects, or the repair fails.
+        MapError: if the map has other defects, or the repair fails; its ``repair`` tells what was
+            done until then.
         ArgumentError: if there is something to repair and can_repair() is False.
 
     >>> repaired, report = hexhex.repair(hexhex.generate("sphere"))
     >>> report.changed, report.bad_tets
     (False, 0)
     """
-    handle, report = _hexhex.repair(map._arrays(), tolerance, scale, round, refine,
+    handle, values = _hexhex.repair(map._arrays(), tolerance, scale, round, refine,
                                     _threads(threads), progress)
-    return Map._from_handle(handle), RepairReport._of(report)
+    report = RepairReport._of(values)
+    if not isinstance(handle, tuple):
+        return Map._from_handle(handle), report
+    code, message, place, index, second = handle
+    error = make(code, message, place, index, second)
+    error.repair = report
+    raise error
 
 
 def extract_partial(map: Map, *, scale: int = 1, tolerance: float = 1e-2,
@@ -390,6 +481,23 @@ def check(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
     return CheckReport(counts, defects, counts.pop("expected"))
 
 
+def map_structure(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
+                  igm: npt.ArrayLike | None = None, *, tolerance: float = 1e-2,
+                  threads: int | None = None, progress: Progress | None = None) -> MapStructure:
+    """Where the charts of a map differ, and which edges of its tets are singular; of a map with
+    defects as far as they allow. Arguments as in extract().
+
+    >>> structure = hexhex.map_structure(hexhex.generate("star", valence=5, charts="blocks"))
+    >>> len(structure.jump_tets) > 0, set(structure.valences[~structure.boundary].tolist())
+    (True, {5})
+    """
+    jump_tets, vertices, rotations, translations, edges, valences, boundary, defects = (
+        _hexhex.map_structure(_map_of(points, tets, igm)._arrays(), tolerance, _threads(threads),
+                              progress))
+    return MapStructure(jump_tets, vertices, rotations, translations, edges, valences,
+                        boundary != 0, [Defect(*defect) for defect in defects])
+
+
 def verify(map: Map, mesh: Mesh, *, scale: int = 1, tolerance: float = 1e-2,
            threads: int | None = None, progress: Progress | None = None) -> VerifyReport:
     """Whether a mesh agrees with its map: counts, singular edges, topology, and positions. Of a
@@ -409,7 +517,7 @@ def generate(kind: str, *, cells: int = 4, refine: int = 2, valence: int = 5,
              charts: str = "aligned", jitter: float = 0, on_lattice: float = 0, noise: float = 0,
              offset: float = 0, seed: int = 1, features: bool = False, defects: int = 0,
              defect_kind: str = "interior") -> Map:
-    """A map whose mesh is known in advance.
+    """A map whose mesh is known in advance: see ``answer`` of the Map.
 
     Args:
         kind: "box", "cylinder", "sphere", "star", "tetrahedron", "torus", "shell", "handle-body".
@@ -425,16 +533,38 @@ def generate(kind: str, *, cells: int = 4, refine: int = 2, valence: int = 5,
     Raises:
         ArgumentError: for options out of range.
 
-    >>> hexhex.generate("star", valence=7, charts="random")
-    <hexhex.Map: 672 tets, 185 points>
+    >>> map = hexhex.generate("star", valence=7, charts="random")
+    >>> map, map.answer["cells"], map.answer["inner_singular_edges"]
+    (<hexhex.Map: 672 tets, 185 points>, 448, {7: 4})
     """
     if charts not in ("aligned", "blocks", "random"):
         raise ArgumentError(f'There is no style of charts "{charts}".', "InvalidArgument")
     if seed < 0:
         raise ArgumentError(f"The seed is {seed}. Choose it from 0.", "InvalidArgument")
-    return Map._from_handle(_hexhex.generate(kind, cells, refine, valence, charts, jitter,
-                                             on_lattice, noise, offset, seed, features, defects,
-                                             defect_kind))
+    handle, answer = _hexhex.generate(kind, cells, refine, valence, charts, jitter, on_lattice, noise,
+                                      offset, seed, features, defects, defect_kind)
+    map = Map._from_handle(handle)
+    map.answer = answer
+    return map
+
+
+def sample_kinds() -> list[SampleKind]:
+    """The kinds of maps that generate() makes.
+
+    >>> [kind.name for kind in hexhex.sample_kinds()][:4]
+    ['box', 'cylinder', 'sphere', 'star']
+    """
+    return [SampleKind(*row) for row in _hexhex.sample_kinds()]
+
+
+def defect_kinds() -> list[str]:
+    """The kinds of defects that generate() makes.
+
+    >>> hexhex.defect_kinds()
+    ['interior', 'singular', 'boundary', 'sliver']
+    """
+    kinds: list[str] = _hexhex.defect_kinds()
+    return kinds
 
 
 def read_map(file: Path, *, format: str | None = None, map_array: str = "igm",
@@ -486,6 +616,30 @@ def read_mesh(file: Path, *, format: str | None = None, threads: int | None = No
                                                progress))
 
 
+def read_curved(file: Path, *, threads: int | None = None,
+                progress: Progress | None = None) -> LagrangeMesh:
+    """Reads the hexahedra of higher order of a .vtu file: what write() wrote of ``mesh.curved``, but
+    without regions, or cells of VTK_LAGRANGE_HEXAHEDRON of others, all of one order.
+
+    Raises:
+        FileError: without such cells; and for other files than .vtu.
+
+    >>> import pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder) / "curved.vtu"
+    ...     hexhex.write(hexhex.extract(hexhex.generate("box"), order=3).curved, file)
+    ...     hexhex.holds_curved(file), hexhex.read_curved(file)
+    (True, <hexhex.LagrangeMesh: 512 cells of order 3>)
+    """
+    return LagrangeMesh._from_handle(_hexhex.read_lagrange(os.fspath(file), _threads(threads),
+                                                           progress))
+
+
+def holds_curved(file: Path) -> bool:
+    """Whether a file is a .vtu file with hexahedra of higher order. Raises FileError."""
+    return bool(_hexhex.holds_lagrange(os.fspath(file)))
+
+
 def read(file: Path, *, format: str | None = None, map_array: str = "igm",
          threads: int | None = None, progress: Progress | None = None) -> Map | Mesh:
     """Reads what a file holds: a mesh or, where there are no hexahedra, a map. Arguments as of
@@ -506,42 +660,72 @@ def read(file: Path, *, format: str | None = None, map_array: str = "igm",
 
 def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
           format: str | None = None, compress: bool = False, patch_angle: float = 40,
-          map_array: str = "igm", threads: int | None = None,
+          map_array: str = "igm", map: Map | None = None,
+          scaled_jacobians: npt.ArrayLike | None = None, threads: int | None = None,
           progress: Progress | None = None) -> None:
     """Writes a map, a mesh, or what of it is curved; docs/formats.md has the formats. The file
     appears complete or not at all.
 
     Args:
         what: a Map (.hexex, .ovm, .ovmb, .vtu, .vtk), a Mesh (see formats()), ``mesh.curved``
-            (.vtu, .msh, .mesh), ``mesh.arcs`` (.vtu, .vtp) or ``mesh.patches`` (also .ovmb).
+            (.vtu, .msh, .mesh), ``mesh.arcs`` or ``mesh.patches`` (.vtu, .vtp, .ovmb).
         format: of a map or mesh, whatever the extension is: see formats().
         compress: arrays of .vtu files, with zlib; of a map or mesh.
-        patch_angle: of a mesh without tagged quads, for formats with groups: where the boundary
-            turns by more degrees, a group ends; 0 to 180.
+        patch_angle: of a mesh, curved or not, without tagged quads, for formats with groups: where
+            the boundary turns by more degrees, a group ends; 0 to 180.
         map_array: the name of the array that holds the map in .vtu and .vtk files.
+        map: of arcs and patches, the one that they were extracted from (of a mesh with a
+            ``repaired_map``, that one): .ovmb files then tell the indices of the tet simplices that
+            hold each point and edge.
+        scaled_jacobians: those of quality(), if they are known: float64, one per cell of a Mesh or
+            LagrangeMesh; otherwise they are computed for formats that hold them.
 
     Raises:
         FileError: if it cannot be written.
         ArgumentError: for options out of range.
     """
     name, workers = os.fspath(file), _threads(threads)
+    tets = None if map is None else map._arrays()
+    jacobians = _floats([] if scaled_jacobians is None else scaled_jacobians, (),
+                        "scaled_jacobians")
     if isinstance(what, Map):
         _hexhex.write_map(what._arrays(), name, format or "", compress, map_array, workers,
                           progress)
     elif isinstance(what, Mesh):
-        _hexhex.write_mesh(what._handle, name, format or "", patch_angle, compress, workers,
-                           progress)
+        _hexhex.write_mesh(what._handle, name, format or "", patch_angle, compress, jacobians,
+                           workers, progress)
     elif format is not None or compress:
         raise ArgumentError("Curved meshes are written without format and compress.",
                             "InvalidArgument")
     elif isinstance(what, LagrangeMesh):
-        _hexhex.write_lagrange(what._handle, name, workers, progress)
+        _hexhex.write_lagrange(what._handle, name, patch_angle, jacobians, workers, progress)
     elif isinstance(what, Arcs):
-        _hexhex.write_arcs(what._handle, name, workers, progress)
+        _hexhex.write_arcs(what._handle, tets, name, workers, progress)
     elif isinstance(what, Patches):
-        _hexhex.write_patches(what._handle, name, workers, progress)
+        _hexhex.write_patches(what._handle, tets, name, workers, progress)
     else:
         raise ArgumentError(f"A {type(what).__name__} cannot be written.", "InvalidArgument")
+
+
+def require_format(what: str, file: Path, *, format: str | None = None, compress: bool = False,
+                   patch_angle: float = 40, map_array: str = "igm") -> None:
+    """Does nothing if write() knows the file's extension, or the format, and can do what the options
+    say: to fail before long work.
+
+    Args:
+        what: "map", "mesh", "curved", "arcs" or "patches".
+
+    Raises:
+        FileError: if it does not.
+        ArgumentError: for anything else as `what`.
+
+    >>> hexhex.require_format("mesh", "later.vtu")
+    >>> hexhex.require_format("mesh", "later.stl")  # doctest: +IGNORE_EXCEPTION_DETAIL
+    Traceback (most recent call last):
+        ...
+    FileError: ...
+    """
+    _hexhex.require_format(what, os.fspath(file), format or "", patch_angle, compress, map_array)
 
 
 def formats() -> list[FileFormat]:
@@ -562,14 +746,29 @@ def quality(mesh: Mesh | LagrangeMesh, *, threads: int | None = None,
     1.0
     """
     values = _hexhex.scaled_jacobians(mesh._handle, _threads(threads), progress)
-    if not len(values):
-        return Quality(values, 0.0, 0.0, 0)
-    return Quality(values, float(values.min()), float(values.mean()), int((values <= 0).sum()))
+    return Quality(values, *_hexhex.summarize(values))
 
 
-def survey(mesh: Mesh | Path, *, threads: int | None = None,
+def scaled_jacobian(corners: npt.ArrayLike) -> float:
+    """That of one hexahedron, in [-1, 1]. Raises ArgumentError for another shape.
+
+    Args:
+        corners: positions in the order of VTK_HEXAHEDRON, float64 (8, 3).
+
+    >>> hexhex.scaled_jacobian([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0),
+    ...                         (0, 0, 2), (1, 0, 2), (1, 1, 2), (0, 1, 2)])
+    1.0
+    """
+    return float(_hexhex.scaled_jacobian(_floats(corners, (3,), "corners")))
+
+
+def survey(mesh: Mesh | Path, *, format: str | None = None, threads: int | None = None,
            progress: Progress | None = None) -> Survey:
     """What a mesh adds up to, in memory or in a file of any size: to compare meshes.
+
+    Args:
+        mesh: a Mesh, or a file.
+        format: of the file, whatever its extension is: see formats().
 
     >>> map = hexhex.generate("box")
     >>> hexhex.survey(hexhex.extract(map)) == hexhex.survey(hexhex.extract(map, threads=1))
@@ -578,5 +777,5 @@ def survey(mesh: Mesh | Path, *, threads: int | None = None,
     if isinstance(mesh, Mesh):
         values = _hexhex.survey(mesh._handle, _threads(threads), progress)
     else:
-        values = _hexhex.survey_file(os.fspath(mesh), _threads(threads), progress)
+        values = _hexhex.survey_file(os.fspath(mesh), format or "", _threads(threads), progress)
     return Survey(**values)

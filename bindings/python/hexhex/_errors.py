@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ._types import RepairReport
+
 
 class HexhexError(Exception):
     """Base of all errors of the library.
@@ -11,6 +16,7 @@ class HexhexError(Exception):
         place: where, e.g. ``"tet 12"``; empty if it is about no place.
         index: number of the tet, vertex, cell, or line of a file; 0 without a place.
         second: the second number of a place (an edge's other vertex, a face's opposite corner).
+        repair: of an error of repair(): what it had done until then, a RepairReport; else None.
     """
 
     def __init__(self, message: str, code: str = "Internal", place: str = "", index: int = 0,
@@ -20,6 +26,7 @@ class HexhexError(Exception):
         self.place = place
         self.index = index
         self.second = second
+        self.repair: RepairReport | None = None
 
 
 class ArgumentError(HexhexError, ValueError):

@@ -72,6 +72,18 @@ def _ints(values: npt.ArrayLike | None, width: int, name: str,
     return np.ascontiguousarray(array, dtype=dtype)
 
 
+def _generators(tet: npt.ArrayLike | None, corners: npt.ArrayLike | None,
+                count: int) -> tuple[Indices, Corners]:
+    """Both, one per point, or none."""
+    known = [np.asarray([] if given is None else given) for given in (tet, corners)]
+    if any(array.ndim != 1 for array in known) or not (
+            len(known[0]) == len(known[1]) and len(known[0]) in (0, count)):
+        raise ArgumentError("The arrays generator_tet and generator_corners need one number for "
+                            "each point, or both none.", "InvalidArgument")
+    return (np.ascontiguousarray(known[0], dtype=np.uint32),
+            np.ascontiguousarray(known[1], dtype=np.uint8))
+
+
 def _kind(corners: Corners) -> Corners:
     """Number of corners of each set, minus one."""
     bits: Corners = np.unpackbits(corners[:, None], axis=1).sum(axis=1, dtype=np.uint8)
@@ -119,6 +131,11 @@ class Map:
         edge_valences: what is known of singular edges, int32 (k, 3): two vertices, and the number
             of hexahedra around minus the regular one; empty: computed.
         rotations: what is known of transitions, int8 (m, 4), numbers as in AlgoHex; empty: computed.
+        answer: of a map that generate() made, what is known of its mesh at scale 1, without
+            defects: a dict with cells, vertices, boundary_quads, inner_singular_edges and
+            boundary_singular_edges (by valence), euler_characteristic, components,
+            boundary_components, tagged_vertices, tagged_edges and tagged_quads (by tag), and
+            regions; or None.
 
     Arrays of these types in C order are used without a copy, and so is ``tets`` as int32; others
     are converted. Do not change them while a function works on them.
@@ -142,6 +159,7 @@ class Map:
         self.regions: Ints = _ints(regions, 0, "regions")
         self.edge_valences: Ints = _ints(edge_valences, 3, "edge_valences")
         self.rotations: npt.NDArray[np.int8] = _ints(rotations, 4, "rotations", np.int8)
+        self.answer: dict[str, Any] | None = None
 
     @classmethod
     def _from_handle(cls, handle: _hexhex.Map) -> Map:
@@ -162,6 +180,14 @@ class Map:
 
     def __repr__(self) -> str:
         return f"<hexhex.Map: {len(self.tets)} tets, {len(self.points)} points>"
+
+
+@dataclasses.dataclass(frozen=True)
+class SampleKind:
+    """A kind of map that generate() makes."""
+
+    name: str
+    description: str
 
 
 @dataclasses.dataclass(frozen=True)
@@ -279,10 +305,46 @@ def _vtk_grid(points: Floats, cells: npt.NDArray[np.int64], cell_type: int, kind
 
 
 class LagrangeMesh:
-    """Hexahedra of an order p: ``mesh.curved`` of ``extract(..., order=p)``."""
+    """Hexahedra of an order p: ``mesh.curved`` of ``extract(..., order=p)``, from read_curved(), or of
+    arrays of one's own, which are copied.
 
-    def __init__(self, handle: _hexhex.LagrangeMesh) -> None:
-        self._handle = handle
+    Args:
+        order: p, 1 to 9.
+        points: positions of nodes, float64 (n, 3).
+        nodes: of each cell, integers (m, (p + 1)**3) in the order below.
+        vertex_count: the first so many nodes are the hex vertices.
+        generator_tet, generator_corners, features, regions: as of a Mesh; optional.
+
+    Raises:
+        ArgumentError: shapes or types that do not fit. Numbers of nodes that do not exist are one
+            where the mesh is used.
+
+    >>> curved = hexhex.extract(hexhex.generate("box", cells=1), order=2).curved
+    >>> hexhex.LagrangeMesh(2, curved.points, curved.nodes, curved.vertex_count)
+    <hexhex.LagrangeMesh: 8 cells of order 2>
+    """
+
+    def __init__(self, order: int, points: npt.ArrayLike, nodes: npt.ArrayLike, vertex_count: int,
+                 *, generator_tet: npt.ArrayLike | None = None,
+                 generator_corners: npt.ArrayLike | None = None,
+                 features: Features | None = None, regions: npt.ArrayLike | None = None) -> None:
+        highest = 9
+        if not 1 <= order <= highest or vertex_count < 0:
+            raise ArgumentError(f"The order is {order}, and {vertex_count} nodes are vertices. "
+                                "Choose the order from 1 to 9.", "InvalidArgument")
+        f = Features(corners=4) if features is None else features
+        places = _floats(points, (3,), "points")
+        self._handle = _hexhex.LagrangeMesh(
+            order, places, _indices(nodes, (order + 1)**3, "nodes"), vertex_count,
+            *_generators(generator_tet, generator_corners, len(places)),
+            _ints(f.vertices, 2, "features.vertices"), _ints(f.edges, 3, "features.edges"),
+            _ints(f.faces, 5, "features.faces"), _ints(regions, 0, "regions"))
+
+    @classmethod
+    def _from_handle(cls, handle: _hexhex.LagrangeMesh) -> LagrangeMesh:
+        mesh = cls.__new__(cls)
+        mesh._handle = handle
+        return mesh
 
     def __repr__(self) -> str:
         return f"<hexhex.LagrangeMesh: {len(self.nodes)} cells of order {self.order}>"
@@ -318,6 +380,22 @@ class LagrangeMesh:
         """As of a Mesh, per node, uint8 (n,)."""
         return self._handle.generator_corners
 
+    @property
+    def features(self) -> Features:
+        """Of the straight mesh, as of a Mesh."""
+        h = self._handle
+        return Features(h.feature_vertices, h.feature_edges, h.feature_quads, corners=4)
+
+    @property
+    def regions(self) -> Ints:
+        """Per cell its region, int32 (m,); empty if unknown."""
+        return self._handle.regions
+
+    def straight(self) -> Mesh:
+        """The straight mesh between the corners, with generators, tags and regions; a copy. Raises
+        ArgumentError for nodes that do not exist."""
+        return Mesh._from_handle(self._handle.straight())
+
     def _vtk_nodes(self) -> npt.NDArray[np.int64]:
         return self.nodes.astype(np.int64)[:, _vtk_order(self.order)]
 
@@ -343,11 +421,12 @@ class LagrangeMesh:
 class Mesh:
     """A hexahedral mesh.
 
-    ``Mesh(points, cells)`` copies arrays of one's own: float64 (n, 3) and integers (m, 8), and tags
-    and regions (int32 (m,)), if given.
+    ``Mesh(points, cells)`` copies arrays of one's own: float64 (n, 3) and integers (m, 8), and if
+    given, generators (uint32 (n,) and uint8 (n,)), tags and regions (int32 (m,)).
 
     Attributes:
-        statistics: of the extraction, e.g. ``seconds``; empty for other meshes.
+        statistics: of the extraction, e.g. ``seconds``, and ``stages``, a list of (name, seconds);
+            empty for other meshes.
         repair: what a repair of the map did: RepairReport, or None.
         repaired_map: the map that this is the mesh of, if it had to be repaired; or None.
         arcs: the exact shapes of edges: Arcs, if asked for; or None.
@@ -359,10 +438,14 @@ class Mesh:
     """
 
     def __init__(self, points: npt.ArrayLike, cells: npt.ArrayLike, *,
+                 generator_tet: npt.ArrayLike | None = None,
+                 generator_corners: npt.ArrayLike | None = None,
                  features: Features | None = None, regions: npt.ArrayLike | None = None) -> None:
         f = Features(corners=4) if features is None else features
+        places = _floats(points, (3,), "points")
         self._set(_hexhex.Mesh(
-            _floats(points, (3,), "points"), _indices(cells, 8, "cells"),
+            places, _indices(cells, 8, "cells"),
+            *_generators(generator_tet, generator_corners, len(places)),
             _ints(f.vertices, 2, "features.vertices"), _ints(f.edges, 3, "features.edges"),
             _ints(f.faces, 5, "features.faces"), _ints(regions, 0, "regions")))
 
@@ -539,6 +622,21 @@ class Defect:
 
 
 @dataclasses.dataclass(frozen=True)
+class MapStructure:
+    """Where the charts of a map differ, and where it is singular. A transition takes parameters u in
+    the chart of the first tet to R u + t in that of the second."""
+
+    jump_tets: Indices  #: of each inner face with different charts, ascending, uint32 (j, 2)
+    jump_vertices: Indices  #: of that face, in the order of the first tet's corners, uint32 (j, 3)
+    rotations: npt.NDArray[np.int8]  #: R, int8 (j, 3, 3)
+    translations: Floats  #: t, integers, float64 (j, 3)
+    edges: Indices  #: vertices of each singular edge of the tets, ascending, uint32 (k, 2)
+    valences: Ints  #: number of hexahedra around each, int32 (k,)
+    boundary: npt.NDArray[np.bool_]  #: whether it is on the boundary, bool (k,)
+    defects: list[Defect]  #: as of check(); what one keeps from being found is left out above
+
+
+@dataclasses.dataclass(frozen=True)
 class CheckReport:
     """What a map is, what its mesh will be, and what is wrong with it."""
 
@@ -585,3 +683,4 @@ class Quality:
     minimum: float  #: 0 for a mesh without cells
     mean: float
     not_positive: int  #: cells with scaled Jacobian <= 0
+    histogram: list[int]  #: of [-1, 1] in steps of 0.1

@@ -1,0 +1,186 @@
+// Cells of higher order.
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include <hexhex/curved.hpp>
+
+#include "options.hpp"
+
+using hexhex::Error;
+using hexhex::ErrorCode;
+
+namespace {
+
+static_assert(hexhex::kMaxOrder == HEXHEX_MAX_ORDER);
+
+/// Before anything is multiplied with the number of nodes of a cell.
+void requireSizes(const hexhex_lagrange_arrays& given) {
+  if (given.order < 1 || given.order > HEXHEX_MAX_ORDER) {
+    throw Error(ErrorCode::InvalidArgument,
+                "The order is " + std::to_string(given.order) + ". Choose it from 1 to 9.");
+  }
+  constexpr std::size_t kMaxPerCell = 1000;
+  if (given.cell_count > std::numeric_limits<std::size_t>::max() / kMaxPerCell) {
+    throw Error(ErrorCode::TooLarge, "So many cells cannot be.");
+  }
+}
+
+}  // namespace
+
+hexhex_status hexhex_extract_lagrange(const hexhex_map* map, int order,
+                                      const hexhex_extract_options* options,
+                                      hexhex_context* context, hexhex_lagrange_mesh** mesh,
+                                      hexhex_statistics* statistics, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(mesh, "mesh");
+    ContextOrDefault used(context);
+    hexhex::ExtractStatistics filled;
+    auto handle = std::make_unique<hexhex_lagrange_mesh>();
+    handle->mesh = hexhex::extractLagrange(require(map, "map").view, order, extractOptions(options),
+                                           *used, &filled);
+    writeStatistics(filled, statistics);
+    handle->repaired = repairedBy(std::move(filled));
+    *mesh = handle.release();
+  });
+}
+
+hexhex_status hexhex_extractor_extract_lagrange(hexhex_extractor* extractor, int order,
+                                                const hexhex_extract_options* options,
+                                                hexhex_context* context,
+                                                hexhex_lagrange_mesh** mesh,
+                                                hexhex_statistics* statistics,
+                                                hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(mesh, "mesh");
+    const hexhex::ExtractOptions given = extractOptions(options);
+    ContextOrDefault used(context);
+    hexhex_extractor& prepared = require(extractor, "extractor");
+    const Occupied occupied(prepared.busy, "extractor");
+    hexhex::ExtractStatistics filled;
+    auto handle = std::make_unique<hexhex_lagrange_mesh>();
+    handle->mesh = prepared.extractor.extractLagrange(order, given, *used, &filled);
+    writeStatistics(filled, statistics);
+    *mesh = handle.release();
+  });
+}
+
+void hexhex_lagrange_mesh_destroy(hexhex_lagrange_mesh* mesh) { delete mesh; }
+
+hexhex_status hexhex_lagrange_mesh_copy(const hexhex_lagrange_arrays* arrays,
+                                        hexhex_lagrange_mesh** mesh, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex_lagrange_arrays given =
+        readStruct(&require(arrays, "arrays"), HEXHEX_LAGRANGE_ARRAYS_INIT, "arrays");
+    require(mesh, "mesh");
+    requireSizes(given);
+    auto handle = std::make_unique<hexhex_lagrange_mesh>();
+    hexhex::LagrangeMesh& made = handle->mesh;
+    made.order = given.order;
+    made.vertexCount = given.vertex_count;
+    made.points = copied<decltype(made.points)>(given.points, given.point_count, "points");
+    made.nodes =
+        copied<decltype(made.nodes)>(given.nodes, given.cell_count * made.nodesPerCell(), "nodes");
+    copyBesides(given, given.point_count, made);
+    *mesh = handle.release();
+  });
+}
+
+hexhex_status hexhex_lagrange_mesh_read(const char* file, hexhex_context* context,
+                                        hexhex_lagrange_mesh** mesh, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(mesh, "mesh");
+    ContextOrDefault used(context);
+    auto handle = std::make_unique<hexhex_lagrange_mesh>();
+    handle->mesh = hexhex::readLagrangeMesh(&require(file, "file"), *used);
+    *mesh = handle.release();
+  });
+}
+
+hexhex_status hexhex_file_holds_lagrange(const char* file, hexhex_context* context, int* holds,
+                                         hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(holds, "holds");
+    ContextOrDefault used(context);
+    *holds = hexhex::holdsLagrangeCells(&require(file, "file"), *used) ? 1 : 0;
+  });
+}
+
+hexhex_status hexhex_lagrange_mesh_get_arrays(const hexhex_lagrange_mesh* mesh,
+                                              hexhex_lagrange_arrays* arrays, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex::LagrangeMesh& m = require(mesh, "mesh").mesh;
+    const hexhex_lagrange_arrays result = {
+        .size = sizeof(hexhex_lagrange_arrays),
+        .order = m.order,
+        .points = flat<double>(m.points),
+        .point_count = m.points.size(),
+        .vertex_count = m.vertexCount,
+        .nodes = flat<std::uint32_t>(m.nodes),
+        .cell_count = m.cellCount(),
+        .generator_tet = flat<std::uint32_t>(m.generatorTet),
+        .generator_corners = flat<std::uint8_t>(m.generatorCorners),
+        .feature_vertices = flat<hexhex_feature_vertex>(m.features.vertices),
+        .feature_vertex_count = m.features.vertices.size(),
+        .feature_edges = flat<hexhex_feature_edge>(m.features.edges),
+        .feature_edge_count = m.features.edges.size(),
+        .feature_quads = flat<hexhex_feature_quad>(m.features.quads),
+        .feature_quad_count = m.features.quads.size(),
+        .regions = flat<std::int32_t>(m.regions)};
+    writeStruct(result, require(arrays, "arrays"), "arrays");
+  });
+}
+
+hexhex_status hexhex_lagrange_mesh_take(hexhex_lagrange_mesh* mesh, hexhex_mesh_array array,
+                                        hexhex_buffer** buffer, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(buffer, "buffer");
+    hexhex::LagrangeMesh& own = require(mesh, "mesh").mesh;
+    *buffer = takeArray(own, own.nodes, array).release();
+  });
+}
+
+hexhex_status hexhex_lagrange_mesh_straight(const hexhex_lagrange_mesh* mesh,
+                                            hexhex_mesh** straight, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(straight, "straight");
+    auto handle = std::make_unique<hexhex_mesh>();
+    handle->own = hexhex::straightMesh(require(mesh, "mesh").mesh);
+    handle->repaired = mesh->repaired;
+    *straight = handle.release();
+  });
+}
+
+hexhex_status hexhex_lagrange_mesh_quality(const hexhex_lagrange_mesh* mesh,
+                                           hexhex_context* context, double* scaled_jacobians,
+                                           hexhex_quality* quality, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    ContextOrDefault used(context);
+    const auto jacobians = hexhex::scaledJacobians(require(mesh, "mesh").mesh, *used);
+    if (scaled_jacobians != nullptr) {
+      std::copy(jacobians.begin(), jacobians.end(), scaled_jacobians);
+    }
+    if (quality != nullptr) writeQuality(hexhex::summarize(jacobians), *quality);
+  });
+}
+
+hexhex_status hexhex_lagrange_mesh_write(const hexhex_lagrange_mesh* mesh, const char* file,
+                                         const hexhex_write_options* options,
+                                         hexhex_context* context, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const hexhex::LagrangeMesh& given = require(mesh, "mesh").mesh;
+    ContextOrDefault used(context);
+    hexhex::writeLagrangeMesh(given, &require(file, "file"),
+                              writeOptions(options, given.cellCount()), *used);
+  });
+}

@@ -1,0 +1,121 @@
+#include <curved/face_walk.hpp>
+#include <curved/simplex_point.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// The edges of a tet, by corners in order.
+constexpr std::array<std::array<std::uint8_t, 2>, 6> kEdges = {
+    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+
+constexpr std::size_t edgeOf(int a, int b) noexcept {
+  for (std::size_t e = 0; e < 6; ++e) {
+    if (kEdges[e][0] == (a < b ? a : b) && kEdges[e][1] == (a < b ? b : a)) return e;
+  }
+  return 6;
+}
+
+/// A face as a line sees it that leaves through it.
+struct SeenFace {
+  std::array<std::uint8_t, 3> corners{};  ///< counter-clockwise
+  std::array<std::uint8_t, 3> sides{};    ///< edge opposite each corner
+};
+
+constexpr std::array<SeenFace, 4> makeFaces() noexcept {
+  std::array<SeenFace, 4> faces;
+  for (std::size_t face = 0; face < 4; ++face) {
+    const std::array<int, 3> f = {kFaceCorners[face][0], kFaceCorners[face][2],
+                                  kFaceCorners[face][1]};
+    for (std::size_t i = 0; i < 3; ++i) {
+      faces[face].corners[i] = static_cast<std::uint8_t>(f[i]);
+      faces[face].sides[i] = static_cast<std::uint8_t>(edgeOf(f[(i + 1) % 3], f[(i + 2) % 3]));
+    }
+  }
+  return faces;
+}
+constexpr std::array<SeenFace, 4> kFaces = makeFaces();
+
+/// By the edges (a bit each) whose second corner is to the left of the first: the face that a line
+/// leaves through which none of them meets; 4 for sides that no line has.
+constexpr std::array<std::uint8_t, 64> makeExits() noexcept {
+  std::array<std::uint8_t, 64> exits{};
+  for (unsigned bits = 0; bits < 64; ++bits) {
+    exits[bits] = 4;
+    for (std::size_t face = 0; face < 4; ++face) {
+      bool inside = true;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const bool left = ((bits >> kFaces[face].sides[i]) & 1U) != 0;
+        const bool forward = kFaces[face].corners[(i + 1) % 3] < kFaces[face].corners[(i + 2) % 3];
+        inside = inside && left == forward;
+      }
+      if (inside) exits[bits] = static_cast<std::uint8_t>(face);
+    }
+  }
+  return exits;
+}
+constexpr std::array<std::uint8_t, 64> kExits = makeExits();
+
+}  // namespace
+
+bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen) {
+  std::array<Int128, 6> sides;
+  unsigned left = 0;
+  bool touches = false;
+  for (std::size_t e = 0; e < 6; ++e) {
+    sides[e] = crossComponent(seen[kEdges[e][0]], seen[kEdges[e][1]], 0);
+    left |= static_cast<unsigned>(sides[e] > 0) << e;
+    touches |= sides[e] == 0;
+  }
+  const std::size_t face = kExits[left];
+  if (touches || face == 4) return false;
+  face_ = static_cast<int>(face);
+  const SeenFace& f = kFaces[face];
+  for (std::size_t i = 0; i < 3; ++i) {
+    vertices_[i] = topology_.tets[at.tet][f.corners[i]];
+    seen_[i] = seen[f.corners[i]];
+    const Int128 side = sides[f.sides[i]];
+    weights_[i] = toDouble(side < 0 ? -side : side);
+  }
+  return true;
+}
+
+bool FaceWalk::cross(SimplexInTet& at) {
+  const HalfFace halfFace = halfFaceOf(at.tet, face_);
+  const HalfFace mate = topology_.mate[halfFace];
+  if (mate == kNone) return false;
+  at.tet = tetOf(mate);
+  face_ = localOf(mate);
+  if (exact_.transitions.isJump(halfFace)) {
+    at.frame = at.frame.carried(exact_.transitions.across(halfFace));
+  }
+  return true;
+}
+
+bool FaceWalk::leave(const SimplexInTet& at) {
+  const auto apex = static_cast<std::size_t>(face_);
+  const LatticePoint seen = at.frame.see(exact_.corners[at.tet][apex], exact_.unit);
+  // The edge leaves between two corners, and the apex, that it has inside: those where the apex is
+  // to the right of the first and to the left of the second.
+  std::array<Int128, 3> side;
+  unsigned right = 0;
+  unsigned left = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    side[i] = crossComponent(seen_[i], seen, 0);
+    right |= static_cast<unsigned>(side[i] < 0) << i;
+    left |= static_cast<unsigned>(side[i] > 0) << i;
+  }
+  constexpr std::array<std::uint8_t, 8> kFirst = {3, 0, 1, 3, 2, 3, 3, 3};
+  const std::size_t first = kFirst[right & ((left >> 1) | (left << 2)) & 7U];
+  if (first == 3) return false;
+  const std::size_t second = first == 2 ? 0 : first + 1;
+  const std::size_t third = 3 - first - second;
+  face_ = topology_.localCorner(at.tet, vertices_[third]);
+  vertices_[third] = topology_.tets[at.tet][apex];
+  seen_[third] = seen;
+  weights_[first] = toDouble(side[second]);
+  weights_[second] = toDouble(-side[first]);
+  return true;
+}
+
+}  // namespace hexhex

@@ -1,0 +1,99 @@
+// What an extractor keeps: a prepared map at scale 1, and a working copy of its parameters at the
+// scale of the last call.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hexhex/extractor.hpp>
+
+#include <extract/features.hpp>
+#include <extract/steps.hpp>
+#include <map/measures.hpp>
+
+namespace hexhex {
+
+class Extractor::Prepared {
+ public:
+  Prepared(const TetMapView& map, const ExtractorOptions& options, Context& context)
+      : given_(map), maxScale_(options.maxScale) {
+    runExtraction({}, context, &known_, [&](ExtractStatistics& filled) {
+      map_ = prepareValid(map, options.tolerance, options.maxScale, {}, context, filled);
+      volume_ = parametricVolume(map_.exact);
+    });
+  }
+
+  /// Scales the map, and runs work(number of cells, statistics).
+  template <class Work>
+  void run(const ExtractOptions& options, const ScaleLimits& limits, Context& context,
+           ExtractStatistics* statistics, const Work& work) {
+    checkOptions(options);
+    if (options.scale < 1 || options.scale > maxScale_ / limits.furtherScale) {
+      const bool curved = limits.furtherScale > 1;
+      throw Error(ErrorCode::InvalidArgument,
+                  "The scale is " + std::to_string(options.scale) +
+                      (curved ? " for cells of order " + std::to_string(limits.furtherScale) : "") +
+                      ". Choose it from 1" + (curved ? ", and its product with the order up" : "") +
+                      " to " + std::to_string(maxScale_) + ", which the extractor was made for.");
+    }
+    runExtraction(known_, context, statistics, [&](ExtractStatistics& filled) {
+      const std::uint64_t cells = scaledCells(volume_, options.scale, limits.cells);
+      setScale(options.scale, context);
+      work(cells, filled);
+    });
+  }
+
+  /// The mesh of the scaled map, with its tags.
+  [[nodiscard]] HexMesh mesh(std::uint64_t cells, const ExtractOptions& options, Context& context,
+                             ExtractStatistics& statistics) {
+    HexMesh result = runEngine(map_, cells, options, context, statistics);
+    carryTags(given_, map_, result, context);
+    return result;
+  }
+
+  [[nodiscard]] const PreparedMap& map() const noexcept { return map_; }
+  /// For who scales it further: the next call begins with the unscaled one again.
+  [[nodiscard]] PreparedMap& mapToScale() {
+    keepUnscaled();
+    scale_ = 0;
+    return map_;
+  }
+
+  [[nodiscard]] std::uint64_t volume() const noexcept { return volume_; }
+
+ private:
+  /// Copies what scaling changes, before the first time.
+  void keepUnscaled() {
+    if (!unscaledCorners_.empty()) return;
+    std::vector<Transition> transitions = map_.exact.transitions.table;
+    unscaledCorners_ = map_.exact.corners;
+    unscaledTransitions_ = std::move(transitions);
+  }
+
+  /// Leaves the parameters in map_ scaled. What is kept at scale 1 is a copy, and not obtained by
+  /// division, so that a cancelled call leaves nothing half-scaled behind.
+  void setScale(int scale, Context& context) {
+    if (scale == scale_) return;
+    Stage stage(context, "scaling");
+    keepUnscaled();
+    scale_ = 0;  // neither, until all is done
+    map_.exact.transitions.table = unscaledTransitions_;
+    constexpr std::size_t kGrain = 4096;
+    parallelFor(stage, unscaledCorners_.size(), kGrain,
+                [&](std::size_t t) { map_.exact.corners[t] = unscaledCorners_[t]; });
+    scaleMap(map_.exact, scale, stage);
+    scale_ = scale;
+  }
+
+  TetMapView given_;
+  int maxScale_;
+  ExtractStatistics known_;
+  std::uint64_t volume_ = 0;
+  PreparedMap map_;
+  int scale_ = 1;  ///< of map_
+  Array<LatticeTet> unscaledCorners_;
+  std::vector<Transition> unscaledTransitions_;
+};
+
+}  // namespace hexhex
