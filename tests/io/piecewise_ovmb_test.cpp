@@ -110,7 +110,7 @@ class OvmbContent {
   void readDirectory(std::size_t at, std::size_t end) {
     const auto text = [&] {
       const auto size = number<std::uint32_t>(at);
-      const std::string result = bytes_.substr(at + 4, size);
+      std::string result = bytes_.substr(at + 4, size);
       at += 4 + size;
       return result;
     };
