@@ -38,22 +38,18 @@ constexpr std::uint64_t kFreeWord = kFree * kBothPlaces;
 /// @return false if there is no place
 bool insert(Words& words, std::uint64_t vertex) {
   constexpr std::uint64_t kSigns = 0x80000000U * kBothPlaces;
-  std::uint64_t known = 0;
-  for (std::uint64_t& word : words) {
-    // No number has a sign, so that one appears where 1 is taken from a place that is equal.
-    known |= (std::atomic_ref(word).load(std::memory_order_relaxed) ^ (vertex * kBothPlaces)) -
-             kBothPlaces;
-  }
-  if ((known & kSigns) != 0) return true;
-  for (std::size_t i = 0; i < kPlaces; ++i) {
-    std::atomic_ref word(words[i / 2]);
-    const std::size_t shift = 32 * (i % 2);
+  for (std::uint64_t& places : words) {
+    const std::atomic_ref word(places);
     std::uint64_t before = word.load(std::memory_order_relaxed);
-    while ((before >> shift & kFree) == kFree) {
+    for (;;) {
+      // No number has a sign, so that one appears where 1 is taken from a place that is equal.
+      const std::uint64_t equal = (before ^ (vertex * kBothPlaces)) - kBothPlaces;
+      if ((equal & kSigns) != 0) return true;
+      if (before >> 32U != kFree) break;
+      const unsigned shift = (before & kFree) == kFree ? 0 : 32;
       const std::uint64_t after = before ^ ((kFree ^ vertex) << shift);
       if (word.compare_exchange_weak(before, after, std::memory_order_relaxed)) return true;
     }
-    if ((before >> shift & kFree) == vertex) return true;
   }
   return false;
 }

@@ -1,12 +1,15 @@
-// Cells come in an order in which neighbours are close. So a block of cells, small enough for a
-// table in the cache, pairs most of its faces. What is left of the blocks is divided into parts by
-// a hash and paired part by part. What is left then are the faces with an odd number of cells, and
-// those with three or more of them, which only broken meshes have, are sorted out in a last look.
+// Cells come in an order in which neighbours are close, and most neighbours number their corners
+// alike. So within a block of cells, small enough for the cache, the last cell that had a vertex at
+// a certain corner tells most neighbours; a hash table pairs others. What is left of the blocks is
+// divided into parts by the hash and paired part by part. What is left then are the faces with an
+// odd number of cells, and those with three or more of them, which only broken meshes have, are
+// sorted out in a last look.
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -17,8 +20,7 @@
 namespace hexhex {
 namespace {
 
-// Large enough that few faces are left, small enough that the table (512 KB) and the cells (256 KB)
-// stay in the cache.
+// Large enough that few faces are left, small enough that the cells (256 KB) stay in the cache.
 constexpr std::size_t kCellsPerBlock = std::size_t{1} << 13;
 // Blocks that one thread handles with the same table, since fresh memory is slow.
 constexpr std::size_t kBlocksPerTask = 16;
@@ -76,24 +78,78 @@ bool isSameFace(std::span<const Hex> cells, std::uint64_t a, std::uint64_t b) {
   return here == there;
 }
 
+/// A set of faces of a cell: bit f for row f of kHexFaces.
+using FaceSet = std::uint8_t;
+constexpr FaceSet kAllFaces = 63;
+
+/// Pairs faces of neighbours in a block that number their corners alike: the one's face 2 k + 1 is
+/// the other's face 2 k, and each of its corners is in the one what its neighbour along axis k is
+/// in the other. Corner 0 of the other, say, is corner 1, 3, or 4 of the one.
+class AlignedPairs {
+ public:
+  /// @param[out] left  per cell of the block: the faces that it found no partner for
+  void run(std::span<const Hex> block, std::array<FaceSet, kCellsPerBlock>& left) {
+    for (std::size_t c = 0; c < block.size(); ++c) {
+      left[c] = kAllFaces;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::uint16_t& lastAlong = last_[axis][slotOf(block[c][kAlong[axis]])];
+        const std::size_t before = last_[axis][slotOf(block[c][0])];
+        const std::size_t behind = last_[3][slotOf(block[c][kAlong[axis]])];
+        // What is known of cells is a guess, and may be from the block before.
+        if (before < c) pair(block, left, axis, before, c);
+        if (behind < c) pair(block, left, axis, c, behind);
+        lastAlong = static_cast<std::uint16_t>(c);
+      }
+      last_[3][slotOf(block[c][0])] = static_cast<std::uint16_t>(c);
+    }
+  }
+
+ private:
+  // Vertices of neighbours have numbers close to each other; others seldom meet here.
+  static constexpr std::size_t kSlots = std::size_t{1} << 14;
+  static_assert(kCellsPerBlock <= std::size_t{1} << 16);
+  /// The corner next to corner 0 along each axis.
+  static constexpr std::array<std::size_t, 3> kAlong = {1, 3, 4};
+  /// The corners of the faces 0, 2 and 4, and those of the faces 1, 3 and 5 across from them.
+  static constexpr std::array<std::array<std::array<std::uint8_t, 2>, 4>, 3> kAcross = {
+      {{{{0, 1}, {3, 2}, {7, 6}, {4, 5}}},
+       {{{0, 3}, {1, 2}, {5, 6}, {4, 7}}},
+       {{{0, 4}, {1, 5}, {2, 6}, {3, 7}}}}};
+
+  static std::size_t slotOf(Index vertex) { return vertex % kSlots; }
+
+  /// Pairs two faces if they are one, and neither has a partner yet.
+  static void pair(std::span<const Hex> block, std::array<FaceSet, kCellsPerBlock>& left,
+                   std::size_t axis, std::size_t before, std::size_t behind) {
+    for (const auto& [here, there] : kAcross[axis]) {
+      if (block[behind][here] != block[before][there]) return;
+    }
+    const auto first = static_cast<FaceSet>(2U << (2 * axis));
+    const auto second = static_cast<FaceSet>(1U << (2 * axis));
+    if ((left[before] & first) == 0 || (left[behind] & second) == 0) return;
+    left[before] = static_cast<FaceSet>(left[before] & ~first);
+    left[behind] = static_cast<FaceSet>(left[behind] & ~second);
+  }
+
+  /// By vertex: the last cell that had it at corner 1, 3, 4, or 0.
+  std::array<std::array<std::uint16_t, kSlots>, 4> last_{};
+};
+
 /// The faces of one block of cells, with open addressing; knows for each face whether it was added
 /// an odd number of times.
 class BlockTable {
  public:
-  BlockTable() : slots_(kSlots, kFree) {}
+  BlockTable() : slots_(kSlots, kFree) { used_.reserve(kSlots); }
 
   /// @param block  its cells
-  void add(std::span<const Hex> block) {
-    std::size_t sharedBefore = 6;
+  /// @param faces  per cell: which ones to add
+  void add(std::span<const Hex> block, const std::array<FaceSet, kCellsPerBlock>& faces) {
     for (std::size_t c = 0; c < block.size(); ++c) {
-      // A face that two cells in a row share would be added twice, so it may as well be left out.
-      const std::size_t next = c + 1 < block.size() ? faceSharedInRow(block[c], block[c + 1]) : 6;
-      const std::size_t sharedBehind = next < 6 ? next + 1 : 6;
+      if (faces[c] == 0) continue;
       const std::array<std::uint64_t, 6> keys = keysOf(block[c]);
       for (std::size_t f = 0; f < 6; ++f) {
-        if (f != sharedBefore && f != sharedBehind) add(block, keys[f], 8 * c + f);
+        if ((faces[c] >> f & 1U) != 0) add(block, keys[f], 8 * c + f);
       }
-      sharedBefore = next;
     }
   }
 
@@ -101,14 +157,16 @@ class BlockTable {
   /// place in the block, in no useful order, and empties the table.
   template <class F>
   void takeOdd(const F& f) {
-    for (std::uint64_t& slot : slots_) {
+    for (const std::uint16_t i : used_) {
+      const std::uint64_t slot = slots_[i];
       if ((slot & kEven) == 0) f(Side{slot & kKeyMask, slot & kLocalMask});
-      slot = kFree;
+      slots_[i] = kFree;
     }
+    used_.clear();
   }
 
  private:
-  // All faces of a block are three quarters, those of a connected one less than half of it.
+  // All faces of a block are three quarters of it.
   static constexpr std::size_t kSlots = std::size_t{1} << kLocalBits;
   static constexpr std::uint64_t kFree = ~std::uint64_t{0};  // no cell has a face 7
 
@@ -123,9 +181,11 @@ class BlockTable {
       i = (i + 1) % kSlots;
     }
     slots_[i] = key | local;
+    used_.push_back(static_cast<std::uint16_t>(i));
   }
 
   std::vector<std::uint64_t> slots_;
+  std::vector<std::uint16_t> used_;  ///< in the order of first use
 };
 
 /// The same for sides from anywhere.
@@ -171,13 +231,22 @@ struct Remains {
   std::array<std::uint64_t, kParts> begins{};  ///< counts by part; later where each part goes
 };
 
+/// What pairing within blocks takes, for one block after the other.
+struct BlockPairing {
+  AlignedPairs aligned;
+  std::array<FaceSet, kCellsPerBlock> left{};
+  BlockTable table;
+};
+
 Remains pairWithinBlocks(const HexMesh& mesh, std::size_t begin, std::size_t end) {
   Remains remains;
-  BlockTable table;
-  for (std::size_t block = begin; block < end; block += kCellsPerBlock) {
-    table.add(std::span(mesh.cells).subspan(block, std::min(kCellsPerBlock, end - block)));
-    table.takeOdd([&remains, block](const Side& side) {
-      remains.sides.push_back({side.key, 8 * block + side.place});
+  const auto pairing = std::make_unique<BlockPairing>();  // too large for the stack of a thread
+  for (std::size_t first = begin; first < end; first += kCellsPerBlock) {
+    const auto block = std::span(mesh.cells).subspan(first, std::min(kCellsPerBlock, end - first));
+    pairing->aligned.run(block, pairing->left);
+    pairing->table.add(block, pairing->left);
+    pairing->table.takeOdd([&remains, first](const Side& side) {
+      remains.sides.push_back({side.key, 8 * first + side.place});
       ++remains.begins[partOf(side.key)];
     });
   }
