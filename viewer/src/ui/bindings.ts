@@ -93,8 +93,8 @@ function bindKeys(app: App): void {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     const target = event.target as HTMLElement;
-    // Where people type, keys are text.
-    if (target.matches("input[type=number], select, dialog *")) return;
+    // Where people type, keys are text. A dialog that was just closed may still have the focus.
+    if (target.matches("input[type=number], select, dialog[open] *")) return;
     const shortcut = kShortcuts.find(({ keys }) =>
       keys.includes(event.key.length === 1 ? event.key.toLowerCase() : event.key));
     if (!shortcut) return;
