@@ -5,6 +5,8 @@
 #include <atlas/cell_walker.hpp>
 #include <sweep/cell_seeds.hpp>
 
+#include <base/vector3.hpp>
+
 namespace hexhex {
 
 namespace {
@@ -33,18 +35,6 @@ CellCornerSet isNegative(double x) {
 
 double largest(const Vector& v) {
   return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
-}
-
-Vector difference(const Vector& a, const Vector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-Vector crossProduct(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double scalarProduct(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 }  // namespace
@@ -82,16 +72,15 @@ void CellWalker::measure(Node& node) noexcept {
   node.reach = largest(node.corners[0]);
   for (std::size_t i = 1; i < 4; ++i) {
     node.reach = std::max(node.reach, largest(node.corners[i]));
-    edge = std::max(edge, largest(difference(node.corners[i], node.corners[0])));
+    edge = std::max(edge, largest(minus(node.corners[i], node.corners[0])));
   }
   // Other edges are at most twice as long.
   node.error = kPlaneError * 2 * edge * node.reach;
   for (std::size_t f = 0; f < 4; ++f) {
     if (static_cast<int>(f) == node.entered) continue;
     const Vector& p = node.corners[static_cast<std::size_t>(kFaceCorners[f][0])];
-    node.normals[f] =
-        crossProduct(difference(node.corners[static_cast<std::size_t>(kFaceCorners[f][1])], p),
-                     difference(node.corners[static_cast<std::size_t>(kFaceCorners[f][2])], p));
+    node.normals[f] = cross(minus(node.corners[static_cast<std::size_t>(kFaceCorners[f][1])], p),
+                            minus(node.corners[static_cast<std::size_t>(kFaceCorners[f][2])], p));
   }
 }
 
@@ -105,7 +94,7 @@ CellWalker::Sides CellWalker::look(const Node& node, const GridPoint& z,
     if (static_cast<int>(f) == node.entered) continue;  // all come from there
     const Vector& p = node.corners[static_cast<std::size_t>(kFaceCorners[f][0])];
     const Vector& n = node.normals[f];
-    sides.center[f] = scalarProduct(n, difference(center, p));
+    sides.center[f] = dot(n, minus(center, p));
     const double extent = 0.5 * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
     if (sides.center[f] - extent > 2 * sides.error) continue;
     const std::array<double, 8> half = halfDiagonals(n);

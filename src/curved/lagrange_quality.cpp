@@ -97,7 +97,7 @@ class Evaluator {
       const Vec3& a = columns_[0][q];
       const Vec3& b = columns_[1][q];
       const Vec3& c = columns_[2][q];
-      const double scaled = dot(a, hexhex::cross(b, c)) / (length(a) * length(b) * length(c));
+      const double scaled = tripleProduct(a, b, c) / (length(a) * length(b) * length(c));
       smallest = std::min(smallest, std::isfinite(scaled) ? scaled : 0.0);
     }
     return std::clamp(smallest, -1.0, 1.0);

@@ -31,8 +31,8 @@ bool isMostlyNegative(std::span<const Vec3> points, std::span<const Tet> tets, S
                      const Tet& tet = tets[t];
                      const Vec3& origin = points[tet[0]];
                      const double volume =
-                         dot(cross(minus(points[tet[1]], origin), minus(points[tet[2]], origin)),
-                             minus(points[tet[3]], origin));
+                         tripleProduct(minus(points[tet[3]], origin), minus(points[tet[1]], origin),
+                                       minus(points[tet[2]], origin));
                      local += volume > 0 ? 1 : (volume < 0 ? -1 : 0);
                    }
                    balance.fetch_add(local, std::memory_order_relaxed);

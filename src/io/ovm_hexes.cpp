@@ -232,7 +232,7 @@ bool isMostlyNegative(std::span<const Vec3> points, std::span<const Hex> cells, 
                      const Vec3 x = sumOf(cells[c], {1, 2, 5, 6}, {0, 3, 4, 7});
                      const Vec3 y = sumOf(cells[c], {3, 2, 7, 6}, {0, 1, 4, 5});
                      const Vec3 z = sumOf(cells[c], {4, 5, 6, 7}, {0, 1, 2, 3});
-                     const double determinant = dot(cross(x, y), z);
+                     const double determinant = tripleProduct(z, x, y);
                      local += determinant > 0 ? 1 : (determinant < 0 ? -1 : 0);
                    }
                    balance.fetch_add(local, std::memory_order_relaxed);

@@ -47,18 +47,6 @@ struct CellFace {
   return {cell[corners[0]], cell[corners[1]], cell[corners[2]], cell[corners[3]]};
 }
 
-/// In a row of cells, as extraction lists them, each one begins where the one before ends: the face
-/// 0, 2 or 4 of a cell that is the face 1, 3 or 5 of the one before, corner by corner. 6 if none
-/// is.
-[[nodiscard]] constexpr std::size_t faceSharedInRow(const Hex& before, const Hex& cell) noexcept {
-  const auto& a = before;
-  const auto& b = cell;
-  if (b[0] == a[1] && b[3] == a[2] && b[7] == a[6] && b[4] == a[5]) return 0;
-  if (b[0] == a[3] && b[4] == a[7] && b[5] == a[6] && b[1] == a[2]) return 2;
-  if (b[0] == a[4] && b[1] == a[5] && b[2] == a[6] && b[3] == a[7]) return 4;
-  return 6;
-}
-
 /// How often something wrong occurs, and where first (by smallest vertex, then cell).
 struct FaceFault {
   std::uint64_t count = 0;

@@ -47,7 +47,7 @@ constexpr std::array<std::array<EdgeEnd, 3>, 8> kEdgesAtCorners = edgesAtCorners
 double normalizedProduct(const Vec3& a, const Vec3& b, const Vec3& c, double lengthA,
                          double lengthB, double lengthC) {
   // Lengths are multiplied one by one: a product of squares would underflow below 1e-54 already.
-  const double product = dot(a, cross(b, c)) / (lengthA * lengthB * lengthC);
+  const double product = tripleProduct(a, b, c) / (lengthA * lengthB * lengthC);
   return std::isfinite(product) ? product : 0.0;
 }
 

@@ -72,7 +72,7 @@ double volumeOf(const Body& body, const Vec3& from) {
   double volume = 0;
   for (const Polygon& face : body) {
     for (std::size_t i = 1; i + 1 < face.size(); ++i) {
-      volume += dot(minus(face[0], from), cross(minus(face[i], from), minus(face[i + 1], from)));
+      volume += tripleProduct(minus(face[0], from), minus(face[i], from), minus(face[i + 1], from));
     }
   }
   return volume / 6;
