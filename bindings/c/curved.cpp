@@ -26,18 +26,13 @@ hexhex_status hexhex_extract_piecewise(const hexhex_map* map, int patches,
                                        hexhex_context* context, hexhex_piecewise_mesh** mesh,
                                        hexhex_statistics* statistics, hexhex_error* error) {
   using namespace hexhex::c;
-  return guarded(error, [&] {
-    require(mesh, "mesh");
-    ContextOrDefault used(context);
-    hexhex::ExtractStatistics filled;
-    auto handle = std::make_unique<hexhex_piecewise_mesh>();
-    handle->piecewise = hexhex::extractPiecewiseLinear(require(map, "map").view, partsOf(patches),
-                                                       extractOptions(options), *used, &filled);
-    writeStatistics(filled, statistics);
-    handle->straight.lent = &handle->piecewise.mesh;
-    handle->straight.repaired = repairedBy(std::move(filled));
-    *mesh = handle.release();
-  });
+  return runExtract(options, context, mesh, statistics, error,
+                    [&](hexhex_piecewise_mesh& made, const hexhex::ExtractOptions& given,
+                        hexhex::Context& used, hexhex::ExtractStatistics& filled) {
+                      made.piecewise = hexhex::extractPiecewiseLinear(
+                          require(map, "map").view, partsOf(patches), given, used, &filled);
+                      made.straight.lent = &made.piecewise.mesh;
+                    });
 }
 
 hexhex_status hexhex_extractor_extract_piecewise(hexhex_extractor* extractor, int patches,
@@ -47,20 +42,13 @@ hexhex_status hexhex_extractor_extract_piecewise(hexhex_extractor* extractor, in
                                                  hexhex_statistics* statistics,
                                                  hexhex_error* error) {
   using namespace hexhex::c;
-  return guarded(error, [&] {
-    require(mesh, "mesh");
-    const hexhex::ExtractOptions given = extractOptions(options);
-    ContextOrDefault used(context);
-    hexhex_extractor& prepared = require(extractor, "extractor");
-    const Occupied occupied(prepared.busy, "extractor");
-    hexhex::ExtractStatistics filled;
-    auto handle = std::make_unique<hexhex_piecewise_mesh>();
-    handle->piecewise =
-        prepared.extractor.extractPiecewiseLinear(partsOf(patches), given, *used, &filled);
-    writeStatistics(filled, statistics);
-    handle->straight.lent = &handle->piecewise.mesh;
-    *mesh = handle.release();
-  });
+  return runExtract(options, context, mesh, statistics, error,
+                    [&](hexhex_piecewise_mesh& made, const hexhex::ExtractOptions& given,
+                        hexhex::Context& used, hexhex::ExtractStatistics& filled) {
+                      made.piecewise = OccupiedExtractor(extractor)->extractPiecewiseLinear(
+                          partsOf(patches), given, used, &filled);
+                      made.straight.lent = &made.piecewise.mesh;
+                    });
 }
 
 void hexhex_piecewise_mesh_destroy(hexhex_piecewise_mesh* mesh) { delete mesh; }

@@ -48,27 +48,6 @@ Repaired repairedBy(ExtractStatistics&& statistics) {
   return {std::move(statistics.repair), std::move(statistics.repairedMap)};
 }
 
-namespace {
-
-/// extract(options, context, statistics) is a function that returns a mesh.
-template <class Extract>
-hexhex_status runExtract(const hexhex_extract_options* options, hexhex_context* context,
-                         hexhex_mesh** mesh, hexhex_statistics* statistics, hexhex_error* error,
-                         const Extract& extract) {
-  return guarded(error, [&] {
-    require(mesh, "mesh");
-    const ExtractOptions given = extractOptions(options);
-    ContextOrDefault used(context);
-    ExtractStatistics filled;
-    auto handle = std::make_unique<hexhex_mesh>();
-    handle->own = extract(given, *used, filled);
-    writeStatistics(filled, statistics);
-    handle->repaired = repairedBy(std::move(filled));
-    *mesh = handle.release();
-  });
-}
-
-}  // namespace
 }  // namespace hexhex::c
 
 hexhex_status hexhex_extract(const hexhex_map* map, const hexhex_extract_options* options,
@@ -76,9 +55,9 @@ hexhex_status hexhex_extract(const hexhex_map* map, const hexhex_extract_options
                              hexhex_statistics* statistics, hexhex_error* error) {
   using namespace hexhex::c;
   return runExtract(options, context, mesh, statistics, error,
-                    [&](const hexhex::ExtractOptions& given, hexhex::Context& used,
-                        hexhex::ExtractStatistics& filled) {
-                      return hexhex::extract(require(map, "map").view, given, used, &filled);
+                    [&](hexhex_mesh& made, const hexhex::ExtractOptions& given,
+                        hexhex::Context& used, hexhex::ExtractStatistics& filled) {
+                      made.own = hexhex::extract(require(map, "map").view, given, used, &filled);
                     });
 }
 
@@ -100,11 +79,9 @@ hexhex_status hexhex_extractor_extract(hexhex_extractor* extractor,
                                        hexhex_statistics* statistics, hexhex_error* error) {
   using namespace hexhex::c;
   return runExtract(options, context, mesh, statistics, error,
-                    [&](const hexhex::ExtractOptions& given, hexhex::Context& used,
-                        hexhex::ExtractStatistics& filled) {
-                      hexhex_extractor& prepared = require(extractor, "extractor");
-                      const Occupied occupied(prepared.busy, "extractor");
-                      return prepared.extractor.extract(given, used, &filled);
+                    [&](hexhex_mesh& made, const hexhex::ExtractOptions& given,
+                        hexhex::Context& used, hexhex::ExtractStatistics& filled) {
+                      made.own = OccupiedExtractor(extractor)->extract(given, used, &filled);
                     });
 }
 

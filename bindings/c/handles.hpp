@@ -112,18 +112,19 @@ struct hexhex_mesh_writer {
 
 namespace hexhex::c {
 
-/// Occupies a handle that serves one call at a time.
-class Occupied {
+/// The caller's extractor, which serves one call at a time.
+class OccupiedExtractor {
  public:
-  Occupied(std::atomic<bool>& busy, const char* argument) : busy_(busy) {
-    if (busy.exchange(true)) throwBusy(argument);
+  explicit OccupiedExtractor(hexhex_extractor* given) : given_(require(given, "extractor")) {
+    if (given_.busy.exchange(true)) throwBusy("extractor");
   }
-  ~Occupied() { busy_.store(false); }
-  Occupied(const Occupied&) = delete;
-  Occupied& operator=(const Occupied&) = delete;
+  ~OccupiedExtractor() { given_.busy.store(false); }
+  OccupiedExtractor(const OccupiedExtractor&) = delete;
+  OccupiedExtractor& operator=(const OccupiedExtractor&) = delete;
+  Extractor* operator->() noexcept { return &given_.extractor; }
 
  private:
-  std::atomic<bool>& busy_;
+  hexhex_extractor& given_;
 };
 
 /// The caller's context, or one with defaults.

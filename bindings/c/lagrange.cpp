@@ -17,8 +17,9 @@ static_assert(hexhex::kMaxOrder == HEXHEX_MAX_ORDER);
 /// Before anything is multiplied with the number of nodes of a cell.
 void requireSizes(const hexhex_lagrange_arrays& given) {
   if (given.order < 1 || given.order > HEXHEX_MAX_ORDER) {
-    throw Error(ErrorCode::InvalidArgument,
-                "The order is " + std::to_string(given.order) + ". Choose it from 1 to 9.");
+    throw Error(ErrorCode::InvalidArgument, "The order is " + std::to_string(given.order) +
+                                                ". Choose it from 1 to " +
+                                                std::to_string(HEXHEX_MAX_ORDER) + ".");
   }
   constexpr std::size_t kMaxPerCell = 1000;
   if (given.cell_count > std::numeric_limits<std::size_t>::max() / kMaxPerCell) {
@@ -33,17 +34,12 @@ hexhex_status hexhex_extract_lagrange(const hexhex_map* map, int order,
                                       hexhex_context* context, hexhex_lagrange_mesh** mesh,
                                       hexhex_statistics* statistics, hexhex_error* error) {
   using namespace hexhex::c;
-  return guarded(error, [&] {
-    require(mesh, "mesh");
-    ContextOrDefault used(context);
-    hexhex::ExtractStatistics filled;
-    auto handle = std::make_unique<hexhex_lagrange_mesh>();
-    handle->mesh = hexhex::extractLagrange(require(map, "map").view, order, extractOptions(options),
-                                           *used, &filled);
-    writeStatistics(filled, statistics);
-    handle->repaired = repairedBy(std::move(filled));
-    *mesh = handle.release();
-  });
+  return runExtract(options, context, mesh, statistics, error,
+                    [&](hexhex_lagrange_mesh& made, const hexhex::ExtractOptions& given,
+                        hexhex::Context& used, hexhex::ExtractStatistics& filled) {
+                      made.mesh = hexhex::extractLagrange(require(map, "map").view, order, given,
+                                                          used, &filled);
+                    });
 }
 
 hexhex_status hexhex_extractor_extract_lagrange(hexhex_extractor* extractor, int order,
@@ -53,18 +49,12 @@ hexhex_status hexhex_extractor_extract_lagrange(hexhex_extractor* extractor, int
                                                 hexhex_statistics* statistics,
                                                 hexhex_error* error) {
   using namespace hexhex::c;
-  return guarded(error, [&] {
-    require(mesh, "mesh");
-    const hexhex::ExtractOptions given = extractOptions(options);
-    ContextOrDefault used(context);
-    hexhex_extractor& prepared = require(extractor, "extractor");
-    const Occupied occupied(prepared.busy, "extractor");
-    hexhex::ExtractStatistics filled;
-    auto handle = std::make_unique<hexhex_lagrange_mesh>();
-    handle->mesh = prepared.extractor.extractLagrange(order, given, *used, &filled);
-    writeStatistics(filled, statistics);
-    *mesh = handle.release();
-  });
+  return runExtract(options, context, mesh, statistics, error,
+                    [&](hexhex_lagrange_mesh& made, const hexhex::ExtractOptions& given,
+                        hexhex::Context& used, hexhex::ExtractStatistics& filled) {
+                      made.mesh = OccupiedExtractor(extractor)->extractLagrange(order, given, used,
+                                                                                &filled);
+                    });
 }
 
 void hexhex_lagrange_mesh_destroy(hexhex_lagrange_mesh* mesh) { delete mesh; }

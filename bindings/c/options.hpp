@@ -22,4 +22,30 @@ void giveRepair(const Repaired& repaired, hexhex_map** map, hexhex_repair_report
 /// @param out  may be null
 void writeStatistics(const ExtractStatistics& statistics, hexhex_statistics* out);
 
+// Where the handles of results keep what was repaired.
+[[nodiscard]] inline Repaired& repairedIn(hexhex_mesh& mesh) { return mesh.repaired; }
+[[nodiscard]] inline Repaired& repairedIn(hexhex_lagrange_mesh& mesh) { return mesh.repaired; }
+[[nodiscard]] inline Repaired& repairedIn(hexhex_piecewise_mesh& mesh) {
+  return mesh.straight.repaired;
+}
+
+/// Runs an extraction and gives a handle of its result.
+/// @param extract  called with the new handle, options, context and statistics; fills the handle
+template <class Handle, class Extract>
+hexhex_status runExtract(const hexhex_extract_options* options, hexhex_context* context,
+                         Handle** result, hexhex_statistics* statistics, hexhex_error* error,
+                         const Extract& extract) {
+  return guarded(error, [&] {
+    require(result, "mesh");
+    const ExtractOptions given = extractOptions(options);
+    ContextOrDefault used(context);
+    ExtractStatistics filled;
+    auto handle = std::make_unique<Handle>();
+    extract(*handle, given, *used, filled);
+    writeStatistics(filled, statistics);
+    repairedIn(*handle) = repairedBy(std::move(filled));
+    *result = handle.release();
+  });
+}
+
 }  // namespace hexhex::c

@@ -123,10 +123,8 @@ hexhex_status hexhex_extractor_extract_to(hexhex_extractor* extractor, const hex
     Target target(sink);
     ContextOrDefault used(context);
     used.keep({});
-    hexhex_extractor& prepared = require(extractor, "extractor");
-    const Occupied occupied(prepared.busy, "extractor");
     hexhex::ExtractStatistics filled;
-    prepared.extractor.extractTo(*target, extractOptions(options), *used, &filled);
+    OccupiedExtractor(extractor)->extractTo(*target, extractOptions(options), *used, &filled);
     target.finish();
     writeStatistics(filled, statistics);
   });
