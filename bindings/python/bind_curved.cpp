@@ -3,7 +3,7 @@
 
 #include <hexhex/curved.hpp>
 
-#include "border.hpp"
+#include "mesh_arrays.hpp"
 
 using namespace nanobind::literals;
 
@@ -80,7 +80,8 @@ void bindCurved(nb::module_& module) {
       .def_prop_ro("arcs", &arcsOf)
       .def_prop_ro("patches", &patchesOf);
 
-  nb::class_<LagrangeMesh>(module, "LagrangeMesh")
+  nb::class_<LagrangeMesh> binding(module, "LagrangeMesh");
+  binding
       .def(
           "__init__",
           [](LagrangeMesh* self, int order, const InPoints& points, const In<Index, -1>& nodes,
@@ -91,14 +92,9 @@ void bindCurved(nb::module_& module) {
             LagrangeMesh mesh;
             mesh.order = order;
             mesh.vertexCount = vertexCount;
-            assign(mesh.points, elements<Vec3>(points));
             assign(mesh.nodes, std::span<const Index>(nodes.data(), nodes.size()));
-            assign(mesh.generatorTet, elements<Index>(generatorTet));
-            assign(mesh.generatorCorners, elements<CornerSet>(generatorCorners));
-            assign(mesh.features.vertices, elements<FeatureVertex>(vertices));
-            assign(mesh.features.edges, elements<FeatureEdge>(edges));
-            assign(mesh.features.quads, elements<FeatureQuad>(quads));
-            assign(mesh.regions, elements<std::int32_t>(regions));
+            GivenArrays{points, generatorTet, generatorCorners, vertices, edges, quads, regions}
+                .copyTo(mesh);
             new (self) LagrangeMesh(std::move(mesh));
           },
           "order"_a, "points"_a.noconvert(), "nodes"_a.noconvert(), "vertex_count"_a,
@@ -107,48 +103,14 @@ void bindCurved(nb::module_& module) {
           "feature_quads"_a.noconvert(), "regions"_a.noconvert())
       .def_prop_ro("order", [](const LagrangeMesh& self) { return self.order; })
       .def_prop_ro("vertex_count", [](const LagrangeMesh& self) { return self.vertexCount; })
-      .def_prop_ro("points",
-                   [](nb::handle self) {
-                     auto& points = unwrapped<LagrangeMesh>(self).points;
-                     return viewOn<double, 2>(points, self, {points.size(), 3});
-                   })
       .def_prop_ro(
           "nodes",
           [](nb::handle self) {
             auto& mesh = unwrapped<LagrangeMesh>(self);
             return viewOn<Index, 2>(mesh.nodes, self, {mesh.cellCount(), mesh.nodesPerCell()});
           })
-      .def_prop_ro("generator_tet",
-                   [](nb::handle self) {
-                     auto& tets = unwrapped<LagrangeMesh>(self).generatorTet;
-                     return viewOn<Index, 1>(tets, self, {tets.size()});
-                   })
-      .def_prop_ro("generator_corners",
-                   [](nb::handle self) {
-                     auto& corners = unwrapped<LagrangeMesh>(self).generatorCorners;
-                     return viewOn<CornerSet, 1>(corners, self, {corners.size()});
-                   })
-      .def_prop_ro("feature_vertices",
-                   [](nb::handle self) {
-                     auto& list = unwrapped<LagrangeMesh>(self).features.vertices;
-                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 2});
-                   })
-      .def_prop_ro("feature_edges",
-                   [](nb::handle self) {
-                     auto& list = unwrapped<LagrangeMesh>(self).features.edges;
-                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 3});
-                   })
-      .def_prop_ro("feature_quads",
-                   [](nb::handle self) {
-                     auto& list = unwrapped<LagrangeMesh>(self).features.quads;
-                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 5});
-                   })
-      .def_prop_ro("regions",
-                   [](nb::handle self) {
-                     auto& regions = unwrapped<LagrangeMesh>(self).regions;
-                     return viewOn<std::int32_t, 1>(regions, self, {regions.size()});
-                   })
       .def("straight", [](const LagrangeMesh& self) { return straightMesh(self); });
+  defineArrays(binding);
 
   module.def("extract_piecewise", &extractPieces, "map"_a, "patches"_a, "options"_a, "threads"_a,
              "progress"_a.none());

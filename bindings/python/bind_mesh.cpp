@@ -12,7 +12,7 @@
 #include <hexhex/structure.hpp>
 #include <hexhex/survey.hpp>
 
-#include "border.hpp"
+#include "mesh_arrays.hpp"
 
 using namespace nanobind::literals;
 
@@ -74,7 +74,8 @@ nb::tuple structureOf(const HexMesh& mesh, int threads, const Progress& progress
 }  // namespace
 
 void bindMesh(nb::module_& module) {
-  nb::class_<HexMesh>(module, "Mesh", "A mesh in the library's own arrays.")
+  nb::class_<HexMesh> binding(module, "Mesh", "A mesh in the library's own arrays.");
+  binding
       .def(
           "__init__",
           [](HexMesh* self, const InPoints& points, const InCells& cells,
@@ -82,58 +83,19 @@ void bindMesh(nb::module_& module) {
              const In<std::int32_t, 2>& vertices, const In<std::int32_t, 3>& edges,
              const In<std::int32_t, 5>& quads, const In1<std::int32_t>& regions) {
             HexMesh mesh;
-            assign(mesh.points, elements<Vec3>(points));
             assign(mesh.cells, elements<Hex>(cells));
-            assign(mesh.generatorTet, elements<Index>(generatorTet));
-            assign(mesh.generatorCorners, elements<CornerSet>(generatorCorners));
-            assign(mesh.features.vertices, elements<FeatureVertex>(vertices));
-            assign(mesh.features.edges, elements<FeatureEdge>(edges));
-            assign(mesh.features.quads, elements<FeatureQuad>(quads));
-            assign(mesh.regions, elements<std::int32_t>(regions));
+            GivenArrays{points, generatorTet, generatorCorners, vertices, edges, quads, regions}
+                .copyTo(mesh);
             new (self) HexMesh(std::move(mesh));
           },
           "points"_a.noconvert(), "cells"_a.noconvert(), "generator_tet"_a.noconvert(),
           "generator_corners"_a.noconvert(), "feature_vertices"_a.noconvert(),
           "feature_edges"_a.noconvert(), "feature_quads"_a.noconvert(), "regions"_a.noconvert())
-      .def_prop_ro("points",
-                   [](nb::handle self) {
-                     auto& points = unwrapped<HexMesh>(self).points;
-                     return viewOn<double, 2>(points, self, {points.size(), 3});
-                   })
-      .def_prop_ro("cells",
-                   [](nb::handle self) {
-                     auto& cells = unwrapped<HexMesh>(self).cells;
-                     return viewOn<Index, 2>(cells, self, {cells.size(), 8});
-                   })
-      .def_prop_ro("generator_tet",
-                   [](nb::handle self) {
-                     auto& tets = unwrapped<HexMesh>(self).generatorTet;
-                     return viewOn<Index, 1>(tets, self, {tets.size()});
-                   })
-      .def_prop_ro("generator_corners",
-                   [](nb::handle self) {
-                     auto& corners = unwrapped<HexMesh>(self).generatorCorners;
-                     return viewOn<CornerSet, 1>(corners, self, {corners.size()});
-                   })
-      .def_prop_ro("feature_vertices",
-                   [](nb::handle self) {
-                     auto& list = unwrapped<HexMesh>(self).features.vertices;
-                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 2});
-                   })
-      .def_prop_ro("feature_edges",
-                   [](nb::handle self) {
-                     auto& list = unwrapped<HexMesh>(self).features.edges;
-                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 3});
-                   })
-      .def_prop_ro("feature_quads",
-                   [](nb::handle self) {
-                     auto& list = unwrapped<HexMesh>(self).features.quads;
-                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 5});
-                   })
-      .def_prop_ro("regions", [](nb::handle self) {
-        auto& regions = unwrapped<HexMesh>(self).regions;
-        return viewOn<std::int32_t, 1>(regions, self, {regions.size()});
+      .def_prop_ro("cells", [](nb::handle self) {
+        auto& cells = unwrapped<HexMesh>(self).cells;
+        return viewOn<Index, 2>(cells, self, {cells.size(), 8});
       });
+  defineArrays(binding);
 
   module.def(
       "scaled_jacobians",
