@@ -12,6 +12,7 @@
 
 #include "bench_maps.hpp"
 #include "benchmarks.hpp"
+#include "memory.hpp"
 
 namespace hexhex::bench {
 
@@ -70,7 +71,8 @@ void setNanoseconds(benchmark::State& state, const std::string& what, double sec
 /// Corners of all polylines, ends included.
 std::size_t arcPoints(const Arcs& arcs) { return arcs.points.size() + 2 * arcs.count(); }
 
-void piecewiseLinear(benchmark::State& state, const BenchMap& what, Engine engine, int threads) {
+void piecewiseLinear(benchmark::State& state, const std::string& name, const BenchMap& what,
+                     Engine engine, int threads) {
   const TetMap& map = load(what);
   ExtractOptions options;
   options.engine = engine;
@@ -81,7 +83,14 @@ void piecewiseLinear(benchmark::State& state, const BenchMap& what, Engine engin
   std::size_t points = 0;
   std::size_t polygons = 0;
   std::size_t hexes = 0;
+  const std::uint64_t bytes = peakOf(name, [&] {
+    Context context(threads);
+    benchmark::DoNotOptimize(
+        extractPiecewiseLinear(map, PiecewiseLinearParts::ArcsAndPatches, options, context));
+  });
   for (auto _ : state) {
+    warmFreeMemory(bytes);
+    releaseFreeMemory();
     StageClock clock;
     Context context(threads, clock.listener());
     ExtractStatistics statistics;
@@ -127,8 +136,8 @@ void add(const BenchMap& map) {
                                (engine == Engine::Atlas ? "/engine:atlas" : "/engine:propeller") +
                                "/threads:" + std::to_string(threads);
       benchmark::RegisterBenchmark(name.c_str(),
-                                   [map, engine, threads](benchmark::State& state) {
-                                     piecewiseLinear(state, map, engine, threads);
+                                   [name, map, engine, threads](benchmark::State& state) {
+                                     piecewiseLinear(state, name, map, engine, threads);
                                    })
           ->UseManualTime()
           ->Unit(benchmark::kMillisecond);

@@ -45,22 +45,6 @@ double secondsOfCopy(const HexMesh& mesh) {
   return seconds(std::chrono::steady_clock::now() - begin);
 }
 
-/// Growth of resident memory by one extraction, without measuring anything else; remembered, as
-/// repetitions of a benchmark call its function anew.
-std::uint64_t peakOf(const std::string& name, const TetMap& map, const ExtractOptions& options,
-                     int threads) {
-  static std::string knownName;
-  static std::uint64_t known = 0;
-  if (knownName != name) {
-    Context context(threads);
-    const PeakMemory peak;
-    benchmark::DoNotOptimize(extract(map, options, context).cells.data());
-    known = peak.growth().value_or(0);
-    knownName = name;
-  }
-  return known;
-}
-
 /// Sums over the iterations of one benchmark.
 struct Totals {
   double extraction = 0;
@@ -122,7 +106,10 @@ void extraction(benchmark::State& state, const Case& what) {
   ExtractOptions options;
   options.engine = what.engine;
   options.scale = what.scale;
-  const std::uint64_t bytes = peakOf(what.name(), map, options, what.threads);
+  const std::uint64_t bytes = peakOf(what.name(), [&] {
+    Context context(what.threads);
+    benchmark::DoNotOptimize(extract(map, options, context).cells.data());
+  });
   Totals totals;
   for (auto _ : state) {
     warmFreeMemory(bytes);

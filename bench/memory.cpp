@@ -72,4 +72,16 @@ std::optional<std::uint64_t> PeakMemory::growth() const {
   return *peak > *before_ ? *peak - *before_ : 0;
 }
 
+std::uint64_t peakOf(const std::string& name, const std::function<void()>& work) {
+  static std::string knownName;
+  static std::uint64_t known = 0;
+  if (knownName != name) {
+    const PeakMemory peak;
+    work();
+    known = peak.growth().value_or(0);
+    knownName = name;
+  }
+  return known;
+}
+
 }  // namespace hexhex::bench

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <string>
 
 namespace hexhex::bench {
 
@@ -29,5 +31,9 @@ class PeakMemory {
  private:
   std::optional<std::uint64_t> before_;
 };
+
+/// Growth of resident memory by one run of a benchmark's work, at its peak; 0 if the system does
+/// not tell. The last name's is remembered, as repetitions of a benchmark call its function anew.
+[[nodiscard]] std::uint64_t peakOf(const std::string& name, const std::function<void()>& work);
 
 }  // namespace hexhex::bench
