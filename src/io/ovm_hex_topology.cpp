@@ -4,6 +4,11 @@
 // edges of its smallest vertex: a bit of 28, if a row has eight places. So a vertex knows its faces
 // by a word, and the number of a face is that of the first face of the vertex plus the number of
 // bits below its own. Threads set bits in any order; the result is the same.
+//
+// Most neighbours number their corners alike and find each other at once (aligned_cells.hpp). Of
+// what they share, only one of them tells: a cell leaves its faces away from corner 0, and the
+// edges of them, to the neighbours behind these faces. So most cells tell of three edges and three
+// faces instead of twelve and six.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -13,9 +18,11 @@
 #include <utility>
 
 #include <base/parallel.hpp>
+#include <base/prefetch.hpp>
 #include <io/ovm_cells.hpp>
 #include <io/ovm_hex_topology.hpp>
 #include <io/ovm_topology.hpp>
+#include <mesh/aligned_cells.hpp>
 
 namespace hexhex {
 namespace {
@@ -35,8 +42,10 @@ constexpr std::uint64_t kFreeWord = kFree * kBothPlaces;
 
 /// Puts a vertex into a row unless it is there. Places are filled in order, each only once, so
 /// that threads with the same vertex meet.
+/// @param alone  no other thread is at work, so that nothing has to be exchanged at once, which
+///               takes a processor much longer
 /// @return false if there is no place
-bool insert(Words& words, std::uint64_t vertex) {
+bool insert(Words& words, std::uint64_t vertex, bool alone) {
   constexpr std::uint64_t kSigns = 0x80000000U * kBothPlaces;
   for (std::uint64_t& places : words) {
     const std::atomic_ref word(places);
@@ -48,6 +57,10 @@ bool insert(Words& words, std::uint64_t vertex) {
       if (before >> 32U != kFree) break;
       const unsigned shift = (before & kFree) == kFree ? 0 : 32;
       const std::uint64_t after = before ^ ((kFree ^ vertex) << shift);
+      if (alone) {
+        word.store(after, std::memory_order_relaxed);
+        return true;
+      }
       if (word.compare_exchange_weak(before, after, std::memory_order_relaxed)) return true;
     }
   }
@@ -60,8 +73,19 @@ Row sorted(const Words& words) {
   for (std::size_t i = 0; i < kPlaces; ++i) {
     row[i] = static_cast<std::int32_t>(words[i / 2] >> (32 * (i % 2)) & kFree);
   }
-  // Few places are taken, so that this is quick.
-  for (std::size_t i = 1; i < kPlaces && row[i] != kFree; ++i) {
+  // Few places are taken, so that this is quick: most rows have no more than four.
+  const auto order = [&row](std::size_t i, std::size_t k) {
+    const std::int32_t a = row[i];
+    const std::int32_t b = row[k];
+    row[i] = std::min(a, b);
+    row[k] = std::max(a, b);
+  };
+  order(0, 1);
+  order(2, 3);
+  order(0, 2);
+  order(1, 3);
+  order(1, 2);
+  for (std::size_t i = 4; i < kPlaces && row[i] != kFree; ++i) {
     for (std::size_t k = i; k > 0 && row[k] < row[k - 1]; --k) std::swap(row[k], row[k - 1]);
   }
   return row;
@@ -100,6 +124,28 @@ constexpr std::array<std::uint8_t, kPlaces* kPlaces> kPairNumbers = makePairNumb
 constexpr std::uint8_t kPairMask = 31;
 constexpr std::uint8_t kBackwards = 32;
 constexpr unsigned kBeginShift = 6;
+/// The name of a side that is left to the neighbour; no pair has this number.
+constexpr std::uint8_t kOfNeighbour = kPairMask;
+
+/// By axis: the slots of the faces at corner 0 and of those across from them.
+constexpr std::array<std::size_t, 3> kNearSlots = {5, 2, 0};
+constexpr std::array<std::size_t, 3> kFarSlots = {4, 3, 1};
+
+/// An edge of a cell, by corners, and the axes whose neighbours have it, too, and tell of it.
+struct SharedEdge {
+  std::uint8_t from;
+  std::uint8_t to;
+  std::uint8_t axes;  ///< bit k for axis k
+};
+constexpr std::array<SharedEdge, 9> kSharedEdges = {{{1, 2, 1},
+                                                     {1, 5, 1},
+                                                     {3, 2, 2},
+                                                     {3, 7, 2},
+                                                     {4, 5, 4},
+                                                     {4, 7, 4},
+                                                     {2, 6, 1 | 2},
+                                                     {5, 6, 1 | 4},
+                                                     {7, 6, 2 | 4}}};
 
 // What is known of a half-face: that a side has it, and where the corners of the side's cell begin
 // in the face if it is the cell's first side.
@@ -145,6 +191,15 @@ unsigned placeIn(const Row& row, Index vertex) {
   return static_cast<unsigned>(smaller);
 }
 
+/// What a vertex knows of its edges to larger vertices and of the faces whose smallest vertex it
+/// is. Together, as they are asked for together, and vertices may be far from each other in memory.
+struct Star {
+  Words words;          ///< at last, a row as it is in memory
+  std::uint32_t faces;  ///< a bit for each pair that is a face
+  Index firstEdge;
+  Index firstFace;
+};
+
 class HexTopologyBuilder {
  public:
   HexTopologyBuilder(std::size_t vertexCount, std::span<const Hex> cells, Stage& stage)
@@ -153,58 +208,104 @@ class HexTopologyBuilder {
   }
 
   std::optional<OvmTopology> build() {
+    findNeighbours();
     if (!collectEdges()) return std::nullopt;
     if (!numberEdges()) return std::nullopt;
     collectFaces();
     if (!numberFaces()) return std::nullopt;
     nameSides();
-    if (!sidesFit()) return std::nullopt;
+    if (!copySides() || !allTaken()) return std::nullopt;
     linkFacesToEdges();
     return std::move(topology_);
   }
 
  private:
+  void findNeighbours();
   bool collectEdges();
-  [[nodiscard]] Row rowOf(std::size_t vertex) const { return std::bit_cast<Row>(words_[vertex]); }
+  bool addEdges(std::size_t c);
+  [[nodiscard]] static Row rowOf(const Star& star) { return std::bit_cast<Row>(star.words); }
   bool numberEdges();
   void collectFaces();
-  void nameFace(std::size_t c, std::size_t slot, std::size_t begin);
+  template <std::size_t slot>
+  void nameFace(std::size_t c);
   bool numberFaces();
   void nameSides();
-  [[nodiscard]] bool sidesFit() const;
+  Index nameSide(std::size_t c, std::size_t slot);
+  bool copySides();
+  Index copySide(std::size_t c, std::size_t slot);
+  [[nodiscard]] bool allTaken() const;
+  void take(Index halfFace, std::uint8_t what) {
+    std::atomic_ref(halfFaces_[halfFace]).store(what, std::memory_order_relaxed);
+  }
   [[nodiscard]] Index halfEdge(Index from, Index to) const;
   void linkFacesToEdges();
+  void fetchNeighbours(std::size_t vertex) const;
+  void linkFaces(const Star& star);
 
   std::span<const Hex> cells_;
   Stage& stage_;
   OvmTopology topology_;
-  Array<Words> words_;             ///< per vertex; at last, rows as they are in memory
-  Array<Index> edgeBegins_;        ///< per vertex: its first edge
-  Array<std::uint32_t> faces_;     ///< per vertex: a bit for each pair that is a face
-  Array<Index> faceBegins_;        ///< per vertex: its first face
+  const bool alone_ = currentThreads() == 1;
+  Array<Star> stars_;              ///< per vertex
   Array<std::uint8_t> sides_;      ///< per side: its face among those of its smallest vertex
+  Array<std::uint8_t> shared_;     ///< per cell: bit k if it has a neighbour behind along axis k
   Array<Index> opposites_;         ///< per face: the vertex opposite the smallest one
   Array<std::uint8_t> halfFaces_;  ///< per half-face: what is known of it
 };
 
-bool HexTopologyBuilder::collectEdges() {
-  words_.resize(topology_.vertexCount);
-  parallelFor(stage_, words_.size(), kGrain, [this](std::size_t v) { words_[v].fill(kFreeWord); });
-  std::atomic<bool> fits{true};
-  parallelFor(stage_, cells_.size(), kGrain, [&](std::size_t c) {
-    const Hex& cell = cells_[c];
-    bool good = !hasVertexTwice(cell);
-    const auto add = [&](std::size_t i, std::size_t j) {
-      good = insert(words_[std::min(cell[i], cell[j])], std::max(cell[i], cell[j])) && good;
-    };
-    for (std::size_t i = 0; i < 4; ++i) {
-      add(i, (i + 1) % 4);
-      add(i + 4, (i + 1) % 4 + 4);
-      add(i, i + 4);
+/// Until sides have numbers, the places of those that are left to neighbours hold the neighbours.
+void HexTopologyBuilder::findNeighbours() {
+  const AlignedCells aligned(topology_.vertexCount, cells_, stage_);
+  topology_.cells.length = 6;
+  topology_.cells.handles.resize(6 * cells_.size());
+  shared_.resize(cells_.size());
+  const auto note = [shared = shared_.data(), handles = topology_.cells.handles.data()](
+                        std::size_t c, const std::array<Index, 3>& behind) {
+    unsigned bits = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      handles[6 * c + kFarSlots[axis]] = behind[axis];
+      bits |= behind[axis] != kNone ? 1U << axis : 0U;
     }
-    if (!good) fits.store(false, std::memory_order_relaxed);
+    shared[c] = static_cast<std::uint8_t>(bits);
+  };
+  parallelBlocks(stage_, cells_.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   aligned.forEach(begin, end, note);
+                 });
+}
+
+bool HexTopologyBuilder::collectEdges() {
+  stars_.resize(topology_.vertexCount);
+  parallelFor(stage_, stars_.size(), kGrain, [stars = stars_.data()](std::size_t v) {
+    stars[v].words.fill(kFreeWord);
+    stars[v].faces = 0;
   });
+  std::atomic<bool> fits{true};
+  parallelBlocks(stage_, cells_.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   bool good = true;
+                   for (std::size_t c = begin; c < end; ++c) good = addEdges(c) && good;
+                   if (!good) fits.store(false, std::memory_order_relaxed);
+                 });
   return fits;
+}
+
+/// @return false if there is no place for an edge, or the cell has a vertex twice
+bool HexTopologyBuilder::addEdges(std::size_t c) {
+  const Hex& cell = cells_[c];
+  bool good = !hasVertexTwice(cell);
+  const auto add = [&](std::size_t i, std::size_t j) {
+    good = insert(stars_[std::min(cell[i], cell[j])].words, std::max(cell[i], cell[j]), alone_) &&
+           good;
+  };
+  add(0, 1);
+  add(0, 3);
+  add(0, 4);
+  if (shared_[c] == 7) return good;
+  for (const SharedEdge& edge : kSharedEdges) {
+    if ((shared_[c] & edge.axes) == 0) add(edge.from, edge.to);
+  }
+  return good;
 }
 
 /// Sorts rows, and lists their edges.
@@ -215,22 +316,21 @@ bool HexTopologyBuilder::numberEdges() {
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    std::size_t edges = 0;
                    for (std::size_t v = begin; v < end; ++v) {
-                     const Row row = sorted(words_[v]);
+                     const Row row = sorted(stars_[v].words);
                      for (const std::int32_t other : row) edges += other != kFree ? 1 : 0;
-                     words_[v] = std::bit_cast<Words>(row);
+                     stars_[v].words = std::bit_cast<Words>(row);
                    }
                    begins[block] = edges;
                  });
   const std::uint64_t edges = exclusiveScan(std::span(begins));
   if (edges > kMaxOvmEntities) return false;
-  edgeBegins_.resize(vertices);
   topology_.edges.resize(static_cast<std::size_t>(edges));
   parallelBlocks(stage_, vertices, kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    auto edge = static_cast<Index>(begins[block]);
                    for (auto v = static_cast<Index>(begin); v < end; ++v) {
-                     edgeBegins_[v] = edge;
-                     for (const std::int32_t other : rowOf(v)) {
+                     stars_[v].firstEdge = edge;
+                     for (const std::int32_t other : rowOf(stars_[v])) {
                        if (other == kFree) break;
                        topology_.edges[edge++] = {v, static_cast<Index>(other)};
                      }
@@ -241,28 +341,36 @@ bool HexTopologyBuilder::numberEdges() {
 
 /// Sets the bits of all faces, and names them for their sides.
 void HexTopologyBuilder::collectFaces() {
-  faces_.resize(topology_.vertexCount);
-  parallelFor(stage_, faces_.size(), 8 * kGrain, [this](std::size_t v) { faces_[v] = 0; });
   sides_.resize(6 * cells_.size());
   parallelFor(stage_, cells_.size(), kGrain, [this](std::size_t c) {
-    [&]<std::size_t... slot>(std::index_sequence<slot...> /*all*/) {
-      (nameFace(c, slot, beginOf<slot>(cells_[c])), ...);
-    }
-    (std::make_index_sequence<6>());
+    nameFace<kNearSlots[0]>(c);
+    nameFace<kNearSlots[1]>(c);
+    nameFace<kNearSlots[2]>(c);
+    for (const std::size_t slot : kFarSlots) sides_[6 * c + slot] = kOfNeighbour;
+    if (shared_[c] == 7) return;
+    if ((shared_[c] & 1U) == 0) nameFace<kFarSlots[0]>(c);
+    if ((shared_[c] & 2U) == 0) nameFace<kFarSlots[1]>(c);
+    if ((shared_[c] & 4U) == 0) nameFace<kFarSlots[2]>(c);
   });
 }
 
-void HexTopologyBuilder::nameFace(std::size_t c, std::size_t slot, std::size_t begin) {
+template <std::size_t slot>
+void HexTopologyBuilder::nameFace(std::size_t c) {
   const Hex& cell = cells_[c];
+  const std::size_t begin = beginOf<slot>(cell);
   const Index smallest = cornerOf(cell, slot, begin);
+  Star& star = stars_[smallest];
   const auto [next, previous] =
-      placesIn(rowOf(smallest), cornerOf(cell, slot, begin + 1), cornerOf(cell, slot, begin + 3));
+      placesIn(rowOf(star), cornerOf(cell, slot, begin + 1), cornerOf(cell, slot, begin + 3));
   const unsigned pair = kPairNumbers[next * kPlaces + previous];
   sides_[6 * c + slot] = static_cast<std::uint8_t>(pair | (next < previous ? 0U : kBackwards) |
                                                    (begin << kBeginShift));
-  const std::atomic_ref faces(faces_[smallest]);
+  const std::atomic_ref faces(star.faces);
+  const std::uint32_t known = faces.load(std::memory_order_relaxed);
   const std::uint32_t bit = std::uint32_t{1} << pair;
-  if ((faces.load(std::memory_order_relaxed) & bit) == 0) {
+  if (alone_) {
+    faces.store(known | bit, std::memory_order_relaxed);
+  } else if ((known & bit) == 0) {
     faces.fetch_or(bit, std::memory_order_relaxed);
   }
 }
@@ -273,18 +381,17 @@ bool HexTopologyBuilder::numberFaces() {
   parallelBlocks(stage_, vertices, kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    std::uint64_t faces = 0;
-                   for (std::size_t v = begin; v < end; ++v) faces += countBits(faces_[v]);
+                   for (std::size_t v = begin; v < end; ++v) faces += countBits(stars_[v].faces);
                    begins[block] = faces;
                  });
   const std::uint64_t faces = exclusiveScan(std::span(begins));
   if (faces > kMaxOvmEntities) return false;
-  faceBegins_.resize(vertices);
   parallelBlocks(stage_, vertices, kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    auto face = static_cast<Index>(begins[block]);
                    for (std::size_t v = begin; v < end; ++v) {
-                     faceBegins_[v] = face;
-                     face += countBits(faces_[v]);
+                     stars_[v].firstFace = face;
+                     face += countBits(stars_[v].faces);
                    }
                  });
   topology_.faces.length = 4;
@@ -299,32 +406,68 @@ void HexTopologyBuilder::nameSides() {
   halfFaces_.resize(2 * faces);
   parallelFor(stage_, faces, 8 * kGrain,
               [this](std::size_t f) { halfFaces_[2 * f] = halfFaces_[2 * f + 1] = 0; });
-  topology_.cells.length = 6;
-  Array<Index>& handles = topology_.cells.handles;
-  handles.resize(6 * cells_.size());
-  parallelFor(stage_, cells_.size(), kGrain, [&](std::size_t c) {
+  parallelFor(stage_, cells_.size(), kGrain, [this](std::size_t c) {
     for (std::size_t slot = 0; slot < 6; ++slot) {
-      const std::uint8_t name = sides_[6 * c + slot];
-      const std::size_t begin = name >> kBeginShift;
-      const Index smallest = cornerOf(cells_[c], slot, begin);
-      const std::uint32_t below = (std::uint32_t{1} << (name & kPairMask)) - 1;
-      const Index face = faceBegins_[smallest] + countBits(faces_[smallest] & below);
-      const bool reversed = (name & kBackwards) != 0;
-      // The cell's first corner is the first one of the side as listed.
-      const std::size_t first = (reversed ? begin : 4 - begin) & kBeginMask;
-      const Index halfFace = 2 * face + (reversed ? 1 : 0);
-      handles[6 * c + slot] = halfFace;
-      std::atomic_ref(halfFaces_[halfFace])
-          .store(static_cast<std::uint8_t>(slot == 0 ? kFirstSide | first : kTaken),
-                 std::memory_order_relaxed);
-      std::atomic_ref(opposites_[face])
-          .store(cornerOf(cells_[c], slot, begin + 2), std::memory_order_relaxed);
+      if (sides_[6 * c + slot] == kOfNeighbour) continue;
+      topology_.cells.handles[6 * c + slot] = nameSide(c, slot);
     }
   });
 }
 
-/// Whether each half-face belongs to one side only, and all sides of a face have its four vertices.
-bool HexTopologyBuilder::sidesFit() const {
+Index HexTopologyBuilder::nameSide(std::size_t c, std::size_t slot) {
+  const std::uint8_t name = sides_[6 * c + slot];
+  const std::size_t begin = name >> kBeginShift;
+  const Star& star = stars_[cornerOf(cells_[c], slot, begin)];
+  const std::uint32_t below = (std::uint32_t{1} << (name & kPairMask)) - 1;
+  const Index face = star.firstFace + countBits(star.faces & below);
+  const bool reversed = (name & kBackwards) != 0;
+  // The cell's first corner is the first one of the side as listed.
+  const std::size_t first = (reversed ? begin : 4 - begin) & kBeginMask;
+  const Index halfFace = 2 * face + (reversed ? 1 : 0);
+  take(halfFace, static_cast<std::uint8_t>(slot == 0 ? kFirstSide | first : kTaken));
+  std::atomic_ref(opposites_[face])
+      .store(cornerOf(cells_[c], slot, begin + 2), std::memory_order_relaxed);
+  return halfFace;
+}
+
+/// Asks neighbours for the sides that are left to them.
+/// @return whether all sides of a face have its four vertices
+bool HexTopologyBuilder::copySides() {
+  constexpr std::size_t kAhead = 16;
+  const Array<Index>& handles = topology_.cells.handles;
+  std::atomic<bool> fit{true};
+  parallelBlocks(stage_, cells_.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   Index different = 0;
+                   for (std::size_t c = begin; c < end; ++c) {
+                     if (c + kAhead < end && shared_[c + kAhead] == 7) {
+                       for (const std::size_t slot : kFarSlots) {
+                         prefetch(&handles[6 * std::size_t{handles[6 * (c + kAhead) + slot]}]);
+                       }
+                     }
+                     for (std::size_t slot = 0; slot < 6; ++slot) different |= copySide(c, slot);
+                   }
+                   if (different != 0) fit.store(false, std::memory_order_relaxed);
+                 });
+  return fit;
+}
+
+/// @return 0 if the face of the side has its vertices
+Index HexTopologyBuilder::copySide(std::size_t c, std::size_t slot) {
+  Array<Index>& handles = topology_.cells.handles;
+  Index& halfFace = handles[6 * c + slot];
+  const std::uint8_t name = sides_[6 * c + slot];
+  if (name != kOfNeighbour) {
+    return opposites_[halfFace / 2] ^ cornerOf(cells_[c], slot, (name >> kBeginShift) + 2U);
+  }
+  // The neighbour's side is in the other slot of the axis, and has the same vertices.
+  halfFace = handles[6 * std::size_t{halfFace} + (slot ^ 1U)] ^ 1U;
+  take(halfFace, kTaken);
+  return 0;
+}
+
+/// Whether each half-face belongs to one side only.
+bool HexTopologyBuilder::allTaken() const {
   std::atomic<std::size_t> taken{0};
   parallelBlocks(stage_, halfFaces_.size(), 16 * kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
@@ -332,48 +475,51 @@ bool HexTopologyBuilder::sidesFit() const {
                    for (std::size_t i = begin; i < end; ++i) sum += halfFaces_[i] != 0 ? 1U : 0U;
                    taken.fetch_add(sum, std::memory_order_relaxed);
                  });
-  if (taken != 6 * cells_.size()) return false;
-  std::atomic<bool> fit{true};
-  parallelBlocks(stage_, cells_.size(), kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   Index different = 0;
-                   for (std::size_t c = begin; c < end; ++c) {
-                     for (std::size_t slot = 0; slot < 6; ++slot) {
-                       const Index face = topology_.cells.handles[6 * c + slot] / 2;
-                       const std::size_t least = sides_[6 * c + slot] >> kBeginShift;
-                       different |= opposites_[face] ^ cornerOf(cells_[c], slot, least + 2);
-                     }
-                   }
-                   if (different != 0) fit.store(false, std::memory_order_relaxed);
-                 });
-  return fit;
+  return taken == 6 * cells_.size();
 }
 
 Index HexTopologyBuilder::halfEdge(Index from, Index to) const {
-  const Index low = std::min(from, to);
-  return 2 * (edgeBegins_[low] + placeIn(rowOf(low), std::max(from, to))) + (from < to ? 0U : 1U);
+  const Star& low = stars_[std::min(from, to)];
+  return 2 * (low.firstEdge + placeIn(rowOf(low), std::max(from, to))) + (from < to ? 0U : 1U);
 }
 
 /// Lists the half-edges of faces, from where the cell begins that has the face first in its list.
 void HexTopologyBuilder::linkFacesToEdges() {
-  parallelFor(stage_, faces_.size(), kGrain, [this](std::size_t v) {
-    const Row row = rowOf(v);
-    Index face = faceBegins_[v];
-    for (std::uint32_t bits = faces_[v]; bits != 0; bits &= bits - 1, ++face) {
-      const PlacePair& places = kPairOf[static_cast<std::size_t>(std::countr_zero(bits))];
-      const auto first = static_cast<Index>(row[places.first]);
-      const auto second = static_cast<Index>(row[places.second]);
-      const std::array<Index, 4> loop = {
-          2 * (edgeBegins_[v] + places.first), halfEdge(first, opposites_[face]),
-          halfEdge(opposites_[face], second), 2 * (edgeBegins_[v] + places.second) + 1};
-      const std::size_t f = face;
-      const bool atFirst = (halfFaces_[2 * f] & kFirstSide) != 0;
-      const std::size_t begin = halfFaces_[2 * f + (atFirst ? 0 : 1)] & kBeginMask;
-      for (std::size_t i = 0; i < 4; ++i) {
-        topology_.faces.handles[4 * f + i] = loop[(begin + i) % 4];
-      }
-    }
-  });
+  constexpr std::size_t kAhead = 16;
+  parallelBlocks(stage_, stars_.size(), kGrain,
+                 [this](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   for (std::size_t v = begin; v < end; ++v) {
+                     if (v + kAhead < end) fetchNeighbours(v + kAhead);
+                     linkFaces(stars_[v]);
+                   }
+                 });
+}
+
+/// Of the vertices that faces here lead to.
+void HexTopologyBuilder::fetchNeighbours(std::size_t vertex) const {
+  constexpr std::size_t kUsual = 3;
+  const Row row = rowOf(stars_[vertex]);
+  for (std::size_t i = 0; i < kUsual; ++i) {
+    if (row[i] != kFree) prefetch(&stars_[static_cast<std::size_t>(row[i])]);
+  }
+}
+
+void HexTopologyBuilder::linkFaces(const Star& star) {
+  const Row row = rowOf(star);
+  Index* handles = topology_.faces.handles.data() + 4 * std::size_t{star.firstFace};
+  std::size_t face = star.firstFace;
+  for (std::uint32_t bits = star.faces; bits != 0; bits &= bits - 1, ++face, handles += 4) {
+    const PlacePair& places = kPairOf[static_cast<std::size_t>(std::countr_zero(bits))];
+    const auto first = static_cast<Index>(row[places.first]);
+    const auto second = static_cast<Index>(row[places.second]);
+    const Index opposite = opposites_[face];
+    const std::array<Index, 4> loop = {2 * (star.firstEdge + places.first),
+                                       halfEdge(first, opposite), halfEdge(opposite, second),
+                                       2 * (star.firstEdge + places.second) + 1};
+    const bool atFirst = (halfFaces_[2 * face] & kFirstSide) != 0;
+    const std::size_t begin = halfFaces_[2 * face + (atFirst ? 0 : 1)] & kBeginMask;
+    for (std::size_t i = 0; i < 4; ++i) handles[i] = loop[(begin + i) % 4];
+  }
 }
 
 }  // namespace

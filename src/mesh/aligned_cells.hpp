@@ -9,6 +9,7 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/prefetch.hpp>
 #include <base/stage.hpp>
 
 namespace hexhex {
@@ -41,29 +42,24 @@ class AlignedCells {
     return different == 0 ? candidate : kNone;
   }
 
-  /// Calls f(cell, axis, behind(cell, axis)) for the cells of [begin, end) and their axes where
-  /// there is one. Quicker than asking for one after the other, as neighbours are far from each
-  /// other in memory, and some are fetched ahead.
+  /// Calls f(cell, {behind(cell, 0), behind(cell, 1), behind(cell, 2)}) for the cells of
+  /// [begin, end). Quicker than asking for one after the other, as neighbours may be far from each
+  /// other in memory: they are fetched ahead.
   template <class F>
-  void forEachPair(std::size_t begin, std::size_t end, const F& f) const {
+  void forEach(std::size_t begin, std::size_t end, const F& f) const {
     constexpr std::size_t kAhead = 16;
     for (std::size_t c = begin; c < end; ++c) {
       if (c + kAhead < end) fetch(c + kAhead);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Index found = behind(c, axis);
-        if (found != kNone) f(c, axis, found);
-      }
+      f(c, std::array<Index, 3>{behind(c, 0), behind(c, 1), behind(c, 2)});
     }
   }
 
  private:
-  void fetch([[maybe_unused]] std::size_t cell) const noexcept {
-#if defined(__GNUC__)
+  void fetch(std::size_t cell) const noexcept {
     for (const auto& corners : kAlignedCorners) {
       const Index candidate = firstCell_[cells_[cell][corners[0][1]]];
-      if (candidate != kNone) __builtin_prefetch(&cells_[candidate]);
+      if (candidate != kNone) prefetch(&cells_[candidate]);
     }
-#endif
   }
 
   std::span<const Hex> cells_;

@@ -96,13 +96,16 @@ Array<Marks> markAligned(const HexMesh& mesh, Stage& stage) {
   const auto mark = [marks](std::size_t cell, std::size_t face) {
     std::atomic_ref(marks[cell][face]).store(1, std::memory_order_relaxed);
   };
+  const auto markPairs = [&mark](std::size_t c, const std::array<Index, 3>& behind) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (behind[axis] == kNone) continue;
+      mark(c, 2 * axis + 1);
+      mark(behind[axis], 2 * axis);
+    }
+  };
   parallelBlocks(stage, marks.size(), kGrain,
-                 [&aligned, mark](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   aligned.forEachPair(begin, end,
-                                       [mark](std::size_t c, std::size_t axis, Index behind) {
-                                         mark(c, 2 * axis + 1);
-                                         mark(behind, 2 * axis);
-                                       });
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   aligned.forEach(begin, end, markPairs);
                  });
   return array;
 }
