@@ -66,7 +66,6 @@ template <class Id>
 void CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines, std::span<Cell> cells) {
   if (cells.empty()) return;
   tet_ = tet;
-  entered_ = false;
   chart_ = vertices_.charts().chart[tet];
   gauge_ = &vertices_.charts().gauge(tet);
   const TetSweep sweep(map_.exact, tet, SweptGrid::Centers);
@@ -192,11 +191,9 @@ void CellEmitter<Id>::emitLine(Job& job, const SweptLine& line, std::uint32_t fi
 /// Walks to the corners, and takes from the picture what a straight way without a cut leads to.
 template <class Id>
 void CellEmitter<Id>::emitIrregular(const GridPoint& z, CornerMask generator, Cell& cell) {
-  if (!entered_) walker_.enter(tet_);
-  entered_ = true;
   bool hidden = false;
   const CellCornerSet missed =
-      walker_.run(z, [&](const CellWalker::Stop& stop, CellCornerSet corners) {
+      walker_.run(tet_, z, [&](const CellWalker::Stop& stop, CellCornerSet corners) {
         if (stop.inSight) return;
         hidden = true;
         for (std::size_t c = 0; c < 8; ++c) {

@@ -58,7 +58,6 @@ class CellEmitter {
   std::uint64_t traced_ = 0;
 
   Index tet_ = 0;
-  bool entered_ = false;  ///< the walker is in the tet
   Index chart_ = 0;
   const Gauge* gauge_ = nullptr;
   BrickBlock<Id> block_;                     ///< the vertices around a few lines of cells
