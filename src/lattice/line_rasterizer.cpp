@@ -79,13 +79,19 @@ void LineRasterizer::preparePlanes() noexcept {
     boxOrigin[axes_[k]] = origin_[k] * unit_;
     size[axes_[k]] = size_[k];
   }
+  const unsigned limits = findLimits();
   for (std::size_t f = 0; f < 4; ++f) {
+    lowBias_[f] = -kInfinity;
+    highBias_[f] = kInfinity;
+    if (((limits >> f) & 1U) != 0) {
+      offset_[f] = 0;
+      for (std::size_t k = 0; k < 3; ++k) normal_[k][f] = 0;
+      continue;
+    }
     const Plane plane = makePlane(corners_, f, boxOrigin, scale);
     offset_[f] = valueAtBoxOrigin(plane);
     for (std::size_t k = 0; k < 3; ++k) normal_[k][f] = plane.normal[axes_[k]];
     valueError_[f] = errorBound(plane, size);
-    lowBias_[f] = -kInfinity;
-    highBias_[f] = kInfinity;
     if (plane.magnitude[axes_[2]] == 0) {  // all products are zero, exactly
       constant_[f] = true;
       hasConstant_ = true;
@@ -104,6 +110,32 @@ void LineRasterizer::preparePlanes() noexcept {
   }
   // The roundings of the zero itself and on its way to an integer.
   zeroError_ += 0x1p-48 * (static_cast<double>(size_[2]) + 8);
+}
+
+/// A face across an axis bounds the tet there: no point of the box is outside of it, and those on
+/// it are known.
+/// @return such faces, as bits
+unsigned LineRasterizer::findLimits() noexcept {
+  unsigned found = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t axis = axes_[k];
+    // Every face has both of one of these pairs.
+    if (corners_[0][axis] != corners_[1][axis] && corners_[2][axis] != corners_[3][axis]) continue;
+    for (std::size_t f = 0; f < 4; ++f) {
+      const std::int64_t p = corners_[static_cast<std::size_t>(kFaceCorners[f][0])][axis];
+      if (corners_[static_cast<std::size_t>(kFaceCorners[f][1])][axis] != p ||
+          corners_[static_cast<std::size_t>(kFaceCorners[f][2])][axis] != p) {
+        continue;
+      }
+      found |= 1U << f;
+      const bool last = corners_[f][axis] < p;
+      // Between grid points, there is none on it.
+      if (p != (origin_[k] + (last ? size_[k] : 0)) * unit_) continue;
+      limits_[k][last ? 1 : 0] = cornerBit(static_cast<int>(f));
+      hasLimits_ = true;
+    }
+  }
+  return found;
 }
 
 void LineRasterizer::prepareEdges() noexcept {
@@ -163,8 +195,9 @@ void LineRasterizer::startLevel(std::int32_t level) noexcept {
 bool LineRasterizer::lineAt(std::int32_t level, std::int32_t row, SweptLine& line) noexcept {
   // The interval between the zeros of rising and falling planes, clamped to a range that integers
   // hold; beyond the box by a little so that empty lines stay empty.
-  double low = -2;
-  double high = static_cast<double>(size_[2]) + 2;
+  // Not integers, so that no limit of the range is mistaken for a zero near one.
+  double low = -2.5;
+  double high = static_cast<double>(size_[2]) + 2.5;
   std::array<double, 4> value{};
   for (std::size_t f = 0; f < 4; ++f) value[f] = value_[f] + normal_[1][f] * row;
   for (std::size_t f = 0; f < 4; ++f) {
@@ -172,8 +205,8 @@ bool LineRasterizer::lineAt(std::int32_t level, std::int32_t row, SweptLine& lin
     low = std::max(low, zero + lowBias_[f]);
     high = std::min(high, zero + highBias_[f]);
   }
-  low = std::min(low, static_cast<double>(size_[2]) + 2);
-  high = std::max(high, -2.0);
+  low = std::min(low, static_cast<double>(size_[2]) + 2.5);
+  high = std::max(high, -2.5);
   // Adding 4 makes truncation a floor. If no integer lies within the bound of either zero, the
   // points strictly between them are all inside the tet, and no others are in it.
   const auto lowFrom = static_cast<std::int32_t>(low - zeroError_ + 4);
@@ -196,8 +229,8 @@ bool LineRasterizer::lineAt(std::int32_t level, std::int32_t row, SweptLine& lin
   if (!sure) return exactLine(first, last, line);
   line.first = origin_[2] + first;
   line.count = static_cast<std::uint32_t>(last - first + 1);
-  line.left = kWholeTet;
-  line.right = kWholeTet;
+  line.left = hasLimits_ ? insideOfLimits(level, row, first) : kWholeTet;
+  line.right = hasLimits_ ? insideOfLimits(level, row, last) : kWholeTet;
   return true;
 }
 
