@@ -70,9 +70,8 @@ void CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines, std::spa
   if (cells.empty()) return;
   tet_ = tet;
   chart_ = vertices_.charts().chart[tet];
-  const TetSweep sweep(map_.exact, tet, SweptGrid::Centers);
-  const SweepFrame frame(vertices_.charts().gauge(tet), sweep.axes());
-  Job job{sweep, frame, CenterOwner(map_.topology, tet), cells.data(), {}, {}};
+  const SweepFrame frame(vertices_.charts().gauge(tet), lines.front().axes());
+  Job job{frame, CenterOwner(map_.topology, tet), cells.data(), {}, {}};
   for (std::uint32_t r = 0; r < 4; ++r) {
     job.rows[r] = moved(moved({}, frame.along(0), r % 2), frame.along(1), r / 2);
     job.strides[r] =
@@ -86,7 +85,7 @@ void CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines, std::spa
       continue;
     }
     for (std::uint32_t i = first; i < first + count; ++i) {
-      emitIrregular(sweep.point(line, i), line.simplex(i), *job.place++);
+      emitIrregular(line.point(i), line.simplex(i), *job.place++);
     }
   }
 }
@@ -99,7 +98,7 @@ void CellEmitter<Id>::emitLine(Job& job, const SweptLine& line, std::uint32_t fi
   const std::int32_t point = line.first + static_cast<std::int32_t>(first);
   ChartRow row{chart_, job.frame(line.level, line.row, point), job.frame.along(2), count + 1};
   const Flags flags = [&] {
-    switch (job.sweep.axes.index) {
+    switch (line.axes.index) {
       case 0:
         return readLine<0>(job, row, cells);
       case 1:
@@ -189,7 +188,7 @@ void CellEmitter<Id>::mendLine(const Job& job, const SweptLine& line, std::uint3
               (!special || std::all_of(cells[i].begin(), cells[i].end(), Brick<Id>::isVertex))) {
             continue;
           }
-          emitIrregular(job.sweep.point(line, first + i), line.simplex(first + i), cells[i]);
+          emitIrregular(line.point(first + i), line.simplex(first + i), cells[i]);
         }
       });
 }

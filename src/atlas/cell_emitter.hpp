@@ -39,7 +39,6 @@ class CellEmitter {
  private:
   /// One tet on its way.
   struct Job {
-    const TetSweep& sweep;
     SweepFrame frame;
     CenterOwner owner;
     Cell* place;

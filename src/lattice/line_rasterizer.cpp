@@ -61,7 +61,7 @@ double valueAtBoxOrigin(const Plane& plane) {
 
 LineRasterizer::LineRasterizer(const LatticeTet& corners, std::int64_t unit, const GridBox& box,
                                SweepAxes axes) noexcept
-    : corners_(corners), unit_(unit), axes_(axes()) {
+    : corners_(corners), unit_(unit), sweepAxes_(axes), axes_(axes()) {
   for (std::size_t k = 0; k < 3; ++k) {
     origin_[k] = box.range[axes_[k]].first;
     size_[k] = box.range[axes_[k]].last - origin_[k];

@@ -25,12 +25,22 @@ struct SweptLine {
   std::uint32_t count;
   CornerMask left;   ///< simplex of the first point
   CornerMask right;  ///< of the last point
+  SweepAxes axes;    ///< the same for all lines of a tet
 
   /// The simplex of all points between: the smallest that contains both ends, by convexity.
   [[nodiscard]] CornerMask inner() const noexcept { return static_cast<CornerMask>(left | right); }
   /// The simplex of the i-th point.
   [[nodiscard]] CornerMask simplex(std::uint32_t i) const noexcept {
     return i == 0 ? left : (i + 1 == count ? right : inner());
+  }
+  /// The i-th point.
+  [[nodiscard]] GridPoint point(std::uint32_t i) const noexcept {
+    const std::array<std::uint8_t, 3>& a = axes();
+    GridPoint z{};
+    z[a[0]] = level;
+    z[a[1]] = row;
+    z[a[2]] = first + static_cast<std::int32_t>(i);
+    return z;
   }
   /// Whether all points lie in the interior of the tet.
   [[nodiscard]] bool allInside() const noexcept { return left == kWholeTet && right == kWholeTet; }
@@ -50,6 +60,7 @@ class LineRasterizer {
       startLevel(level);
       for (std::int32_t row = rows.first; row <= rows.last; ++row) {
         SweptLine line;
+        line.axes = sweepAxes_;
         if (lineAt(level, row, line)) visit(std::as_const(line));
       }
     }
@@ -93,7 +104,8 @@ class LineRasterizer {
 
   const LatticeTet& corners_;
   std::int64_t unit_;
-  std::array<std::uint8_t, 3> axes_;
+  SweepAxes sweepAxes_;
+  std::array<std::uint8_t, 3> axes_;    ///< the same, looked up
   std::array<std::int32_t, 3> origin_;  ///< first point of the box, by sweep axis
   std::array<std::int32_t, 3> size_;    ///< points of the box minus one, by sweep axis
 

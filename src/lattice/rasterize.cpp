@@ -63,6 +63,16 @@ std::array<double, 4> TetPlanes::weights(const GridPoint& z) const noexcept {
 
 namespace {
 
+/// Least and largest coordinate of the corners, without branches.
+std::array<std::int64_t, 2> extent(const LatticeTet& corners, std::size_t axis) {
+  const auto least = [](std::int64_t a, std::int64_t b) { return a < b ? a : b; };
+  const auto largest = [](std::int64_t a, std::int64_t b) { return a < b ? b : a; };
+  return {
+      least(least(corners[0][axis], corners[1][axis]), least(corners[2][axis], corners[3][axis])),
+      largest(largest(corners[0][axis], corners[1][axis]),
+              largest(corners[2][axis], corners[3][axis]))};
+}
+
 /// Grid coordinates in a range of lattice coordinates.
 GridRange rangeBetween(std::int64_t low, std::int64_t high, int shift) {
   // Right shifts of signed integers round down (C++20): ceil(low) = -floor(-low).
@@ -75,8 +85,7 @@ GridBox gridBox(const LatticeTet& corners, std::int64_t unit) noexcept {
   const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
   GridBox box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto [low, high] =
-        std::minmax({corners[0][axis], corners[1][axis], corners[2][axis], corners[3][axis]});
+    const auto [low, high] = extent(corners, axis);
     box.range[axis] = rangeBetween(low, high, shift);
   }
   return box;
@@ -87,8 +96,7 @@ GridBoxes gridBoxes(const LatticeTet& corners, std::int64_t unit) noexcept {
   const std::int64_t half = unit / 2;
   GridBoxes boxes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto [low, high] =
-        std::minmax({corners[0][axis], corners[1][axis], corners[2][axis], corners[3][axis]});
+    const auto [low, high] = extent(corners, axis);
     boxes.vertices.range[axis] = rangeBetween(low, high, shift);
     boxes.centers.range[axis] = rangeBetween(low - half, high - half, shift);
   }

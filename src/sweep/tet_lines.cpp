@@ -4,22 +4,33 @@
 
 namespace hexhex {
 
-TetSweep::TetSweep(const ExactMap& map, Index tet, SweptGrid grid) noexcept
-    : shifted(map.corners[tet]) {
+namespace {
+
+LatticeTet shiftedTo(SweptGrid grid, LatticeTet corners, std::int64_t unit) noexcept {
   if (grid == SweptGrid::Centers) {
-    for (LatticePoint& corner : shifted) {
-      for (std::int64_t& coordinate : corner) coordinate -= map.unit / 2;
+    for (LatticePoint& corner : corners) {
+      for (std::int64_t& coordinate : corner) coordinate -= unit / 2;
     }
   }
-  box = gridBox(shifted, map.unit);
-  axes = chooseSweepAxes(box);
+  return corners;
 }
 
-void TetSweep::run(std::int64_t unit, std::vector<SweptLine>& lines) const {
-  if (box.empty()) return;
+void appendLines(const LatticeTet& shifted, std::int64_t unit, const GridBox& box, SweepAxes axes,
+                 std::vector<SweptLine>& lines) {
   LineRasterizer(shifted, unit, box, axes).run([&](const SweptLine& line) {
     lines.push_back(line);
   });
+}
+
+}  // namespace
+
+TetSweep::TetSweep(const ExactMap& map, Index tet, SweptGrid grid) noexcept
+    : shifted(shiftedTo(grid, map.corners[tet], map.unit)),
+      box(gridBox(shifted, map.unit)),
+      axes(chooseSweepAxes(box)) {}
+
+void TetSweep::run(std::int64_t unit, std::vector<SweptLine>& lines) const {
+  if (!box.empty()) appendLines(shifted, unit, box, axes, lines);
 }
 
 void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
@@ -32,10 +43,11 @@ void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
   if (!mayHaveVertices && !mayHaveCenters) return;
   const EmptinessTest test(corners, map.unit);
   if (mayHaveVertices && !test.certainlyMisses(vertexBox, 0)) {
-    TetSweep(map, tet, SweptGrid::Vertices).run(map.unit, vertices);
+    appendLines(corners, map.unit, vertexBox, chooseSweepAxes(vertexBox), vertices);
   }
   if (mayHaveCenters && !test.certainlyMisses(centerBox, 0.5)) {
-    TetSweep(map, tet, SweptGrid::Centers).run(map.unit, centers);
+    appendLines(shiftedTo(SweptGrid::Centers, corners, map.unit), map.unit, centerBox,
+                chooseSweepAxes(centerBox), centers);
   }
 }
 

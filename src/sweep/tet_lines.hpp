@@ -31,16 +31,6 @@ struct TetSweep {
 
   /// Appends the tet's lines.
   void run(std::int64_t unit, std::vector<SweptLine>& lines) const;
-
-  /// Grid point number `i` of a line.
-  [[nodiscard]] GridPoint point(const SweptLine& line, std::uint32_t i) const noexcept {
-    const std::array<std::uint8_t, 3>& a = axes();
-    GridPoint z{};
-    z[a[0]] = line.level;
-    z[a[1]] = line.row;
-    z[a[2]] = line.first + static_cast<std::int32_t>(i);
-    return z;
-  }
 };
 
 /// Appends the lines of both grids.

@@ -48,7 +48,7 @@ void forEachCell(const PreparedMap& map, const Visit& visit) {
     for (const SweptLine& line : lines) {
       const auto [first, count] = owner.owned(line);
       for (std::uint32_t i = first; i < first + count; ++i) {
-        visit(tet, sweep.point(line, i), line.simplex(i));
+        visit(tet, line.point(i), line.simplex(i));
       }
     }
   }
