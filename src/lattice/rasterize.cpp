@@ -12,7 +12,7 @@ TetPlanes::TetPlanes(const LatticeTet& corners, std::int64_t unit) noexcept : un
     const LatticePoint b = corners[static_cast<std::size_t>(kFaceCorners[face][2])] - plane.origin;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       plane.normal[axis] = crossComponent(a, b, axis);
-      plane.roundedNormal[axis] = static_cast<double>(plane.normal[axis]);
+      plane.roundedNormal[axis] = signedToDouble(plane.normal[axis]);
     }
   }
 }
@@ -26,8 +26,9 @@ int TetPlanes::side(const Plane& plane, const LatticePoint& z) noexcept {
     sum += term;
     magnitude += std::abs(term);
   }
-  // Each term carries two conversions and one multiplication, the sum two additions: an error below
-  // 5.1 * 2^-53 times the sum of magnitudes. 2^-50 leaves room for the rounding of `magnitude`.
+  // Each term carries two conversions, one of them in two roundings, and one multiplication, the
+  // sum two additions: an error below 6.1 * 2^-53 times the sum of magnitudes. 2^-50 leaves room
+  // for the rounding of `magnitude`.
   constexpr double kRelativeError = 0x1p-50;
   if (sum > kRelativeError * magnitude) return 1;
   if (sum < -kRelativeError * magnitude) return -1;
