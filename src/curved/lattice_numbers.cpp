@@ -2,19 +2,10 @@
 #include <string>
 
 #include <curved/lattice_numbers.hpp>
+#include <lattice/half_grids.hpp>
 #include <sweep/tet_positions.hpp>
 
 namespace hexhex {
-
-namespace {
-
-/// Most tets of a coarse map contain no grid point.
-bool mayHavePoints(const ExactMap& map, Index tet, const TetSweep& sweep) {
-  return !sweep.box.empty() &&
-         !EmptinessTest(map.corners[tet], map.unit).certainlyMisses(sweep.box, 0);
-}
-
-}  // namespace
 
 LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : map_(map) {
   const std::size_t tets = map.topology.tetCount();
@@ -29,9 +20,10 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : map_(map)
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
                      const std::size_t before = lines.size();
-                     const TetSweep sweep(map.exact, tet, SweptGrid::Vertices);
-                     axes_[t] = sweep.axes;
-                     if (mayHavePoints(map.exact, tet, sweep)) sweep.run(map.exact.unit, lines);
+                     HalfGrids grids(map.exact.corners[t], map.exact.unit);
+                     axes_[t] = grids.sweep({}, [&](const SweptLine& line) {
+                       lines.push_back(line);
+                     });
                      lineBegin_[t] = lines.size() - before;
                      counter.count(block, tet, std::span(lines).subspan(before));
                    }
