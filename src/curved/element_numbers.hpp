@@ -9,11 +9,11 @@
 #include <utility>
 
 #include <curved/lattice_numbers.hpp>
-#include <lattice/half_grids.hpp>
 #include <sweep/cell_seeds.hpp>
 
 #include <hexhex/types.hpp>
 
+#include <lattice/half_grids.hpp>
 #include <map/prepare.hpp>
 
 namespace hexhex {

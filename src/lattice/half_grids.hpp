@@ -17,9 +17,9 @@ using MovedAxes = std::array<bool, 3>;
 
 /// Sweeps a tet for the points of one grid after the other.
 ///
-/// Of small boxes every point is tried, in floating point with a proven bound. That is all that most
-/// tets of a coarse map take; where a point is not certainly inside or outside, and in larger boxes,
-/// lines are found by LineRasterizer.
+/// Of small boxes every point is tried, in floating point with a proven bound. That is all that
+/// most tets of a coarse map take; where a point is not certainly inside or outside, and in larger
+/// boxes, lines are found by LineRasterizer.
 class HalfGrids {
  public:
   HalfGrids(const LatticeTet& corners, std::int64_t unit) noexcept
