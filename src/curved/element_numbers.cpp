@@ -1,4 +1,3 @@
-#include <optional>
 #include <string>
 
 #include <curved/element_numbers.hpp>
@@ -7,34 +6,13 @@ namespace hexhex {
 
 namespace {
 
-/// The midpoints of edges along an axis, or of faces across it: the grid, moved by one half along
-/// some axes.
-struct ShiftedGrid {
-  std::array<bool, 3> moved{};
-
-  ShiftedGrid(ElementKind kind, std::size_t axis) noexcept {
-    for (std::size_t k = 0; k < 3; ++k) moved[k] = (k == axis) == (kind == ElementKind::Edges);
-  }
-
-  [[nodiscard]] GridBox box(const GridBoxes& boxes) const noexcept {
-    GridBox box;
-    for (std::size_t k = 0; k < 3; ++k) {
-      box.range[k] = (moved[k] ? boxes.centers : boxes.vertices).range[k];
-    }
-    return box;
-  }
-  [[nodiscard]] std::array<double, 3> shift() const noexcept {
-    return {moved[0] ? 0.5 : 0, moved[1] ? 0.5 : 0, moved[2] ? 0.5 : 0};
-  }
-  /// The tet, moved so that the midpoints become grid points.
-  [[nodiscard]] LatticeTet movedBack(const LatticeTet& corners, std::int64_t unit) const noexcept {
-    LatticeTet result = corners;
-    for (LatticePoint& corner : result) {
-      for (std::size_t k = 0; k < 3; ++k) corner[k] -= moved[k] ? unit / 2 : 0;
-    }
-    return result;
-  }
-};
+/// The grid of midpoints of edges along an axis, or of faces across it.
+MovedAxes midpoints(ElementKind kind, int axis) noexcept {
+  const bool edges = kind == ElementKind::Edges;
+  MovedAxes moved = {!edges, !edges, !edges};
+  moved[static_cast<std::size_t>(axis)] = edges;
+  return moved;
+}
 
 }  // namespace
 
@@ -50,7 +28,8 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& 
   parallelBlocks(stage, tets, kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    for (std::size_t t = begin; t < end; ++t) {
-                     sweep(static_cast<Index>(t), blocks[block]);
+                     HalfGrids grids(map_.corners[t], map_.unit);
+                     sweep(static_cast<Index>(t), grids, blocks[block]);
                    }
                  });
   exclusiveScan(std::span(begin_));
@@ -75,31 +54,20 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& 
 }
 
 /// Appends the lines with elements that a tet owns, and counts both.
-void ElementNumbers::sweep(Index tet, std::vector<Line>& lines) {
-  const LatticeTet& corners = map_.corners[tet];
-  const GridBoxes boxes = gridBoxes(corners, map_.unit);
-  std::optional<EmptinessTest> test;
+void ElementNumbers::sweep(Index tet, HalfGrids& grids, std::vector<Line>& lines) {
   CenterOwner owner(topology_, tet);
-  begin_[tet] = 0;
+  std::uint64_t elements = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const ShiftedGrid grid(kind_, static_cast<std::size_t>(axis));
-    const GridBox box = grid.box(boxes);
-    const SweepAxes axes = chooseSweepAxes(box);
-    axes_[gridOf(tet, axis)] = axes;
-    lineBegin_[gridOf(tet, axis)] = 0;
-    if (box.empty()) continue;
-    if (!test) test.emplace(corners, map_.unit);
-    if (test->certainlyMisses(box, grid.shift())) continue;
     const std::size_t before = lines.size();
-    const LatticeTet moved = grid.movedBack(corners, map_.unit);
-    LineRasterizer(moved, map_.unit, box, axes).run([&](const SweptLine& line) {
+    axes_[gridOf(tet, axis)] = grids.sweep(midpoints(kind_, axis), [&](const SweptLine& line) {
       const auto [first, count] = owner.owned(line);
       if (count == 0) return;
       lines.push_back({line, first, count, kNone});
-      begin_[tet] += count;
+      elements += count;
     });
     lineBegin_[gridOf(tet, axis)] = lines.size() - before;
   }
+  begin_[tet] = elements;
 }
 
 GridPoint ElementNumbers::point(Index tet, int axis, const Line& line,

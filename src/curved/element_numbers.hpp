@@ -13,6 +13,7 @@
 
 #include <hexhex/types.hpp>
 
+#include <lattice/half_grids.hpp>
 #include <map/prepare.hpp>
 
 namespace hexhex {
@@ -105,7 +106,7 @@ class ElementNumbers {
   }
   [[nodiscard]] GridPoint point(Index tet, int axis, const Line& line,
                                 std::uint32_t i) const noexcept;
-  void sweep(Index tet, std::vector<Line>& lines);
+  void sweep(Index tet, HalfGrids& grids, std::vector<Line>& lines);
 
   const ExactMap& map_;
   const TetTopology& topology_;

@@ -4,17 +4,9 @@
 #include <curved/lattice_numbers.hpp>
 #include <sweep/tet_positions.hpp>
 
+#include <lattice/half_grids.hpp>
+
 namespace hexhex {
-
-namespace {
-
-/// Most tets of a coarse map contain no grid point.
-bool mayHavePoints(const ExactMap& map, Index tet, const TetSweep& sweep) {
-  return !sweep.box.empty() &&
-         !EmptinessTest(map.corners[tet], map.unit).certainlyMisses(sweep.box, 0);
-}
-
-}  // namespace
 
 LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : map_(map) {
   const std::size_t tets = map.topology.tetCount();
@@ -23,19 +15,18 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : map_(map)
   lineBegin_[tets] = 0;
   std::vector<std::vector<SweptLine>> blocks(blockCount(tets, kSweepBlock));
   VertexCounter counter(map, numbers_);
-  parallelBlocks(stage, tets, kSweepBlock,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   std::vector<SweptLine>& lines = blocks[block];
-                   for (std::size_t t = begin; t < end; ++t) {
-                     const auto tet = static_cast<Index>(t);
-                     const std::size_t before = lines.size();
-                     const TetSweep sweep(map.exact, tet, SweptGrid::Vertices);
-                     axes_[t] = sweep.axes;
-                     if (mayHavePoints(map.exact, tet, sweep)) sweep.run(map.exact.unit, lines);
-                     lineBegin_[t] = lines.size() - before;
-                     counter.count(block, tet, std::span(lines).subspan(before));
-                   }
-                 });
+  parallelBlocks(
+      stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t block) {
+        std::vector<SweptLine>& lines = blocks[block];
+        for (std::size_t t = begin; t < end; ++t) {
+          const auto tet = static_cast<Index>(t);
+          const std::size_t before = lines.size();
+          HalfGrids grids(map.exact.corners[t], map.exact.unit);
+          axes_[t] = grids.sweep({}, [&](const SweptLine& line) { lines.push_back(line); });
+          lineBegin_[t] = lines.size() - before;
+          counter.count(block, tet, std::span(lines).subspan(before));
+        }
+      });
   counter.finish();
   if (numbers_.count() >= kNone) {
     throw Error(ErrorCode::TooLarge,
