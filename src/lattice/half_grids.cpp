@@ -63,7 +63,7 @@ bool HalfGrids::tryPoints(const GridBox& box, const MovedAxes& moved, SweepAxes 
       for (std::size_t i = 0; i < 4; ++i) {
         base[i] += gradients_[axes[0]][i] * x + gradients_[axes[1]][i] * y;
       }
-      SweptLine line{level, row, 0, 0, kWholeTet, kWholeTet};
+      SweptLine line{level, row, 0, 0, kWholeTet, kWholeTet, order};
       for (std::int32_t point = ranges[2].first; point <= ranges[2].last; ++point) {
         const double z = point + zero[2] - corner_[axes[2]];
         std::array<double, 4> weight;
