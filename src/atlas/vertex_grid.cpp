@@ -96,30 +96,23 @@ void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage) {
   const std::size_t tets = map_.topology.tetCount();
   VertexCounter counter(map_, numbers_);
   keys_.resize(blockCount(tets, kSweepBlock));
-  parallelBlocks(
-      stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t block) {
-        std::vector<SweptLine> lines;
-        std::vector<SweptLine> centers;
-        std::vector<Index> lineBegins;
-        std::vector<Index> centerBegins;
-        KeyFilter filter;
-        for (std::size_t t = begin; t < end; ++t) {
-          const auto tet = static_cast<Index>(t);
-          if (!stored_) lines.clear();
-          if (!cells.lines) centers.clear();
-          lineBegins.push_back(static_cast<Index>(lines.size()));
-          centerBegins.push_back(static_cast<Index>(centers.size()));
-          sweepBoth(map_.exact, tet, lines, centers);
-          const auto ownLines = std::span<const SweptLine>(lines).subspan(lineBegins.back());
-          const auto ownCenters = std::span<const SweptLine>(centers).subspan(centerBegins.back());
-          counter.count(block, tet, ownLines);
-          cells.begin[t] = ownCenters.empty() ? 0 : countOwned(map_.topology, tet, ownCenters);
-          if (ownLines.empty()) continue;
-          collectKeys(tet, ownLines, filter, keys_[block]);
-        }
-        if (stored_) stored_->store(block, lines, lineBegins);
-        if (cells.lines) cells.lines->store(block, centers, centerBegins);
-      });
+  parallelBlocks(stage, tets, kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   BlockLines lines(stored_.has_value());
+                   BlockLines centers(cells.lines.has_value());
+                   KeyFilter filter;
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     sweepBoth(map_.exact, tet, lines.next(), centers.next());
+                     const std::span<const SweptLine> own = centers.last();
+                     cells.begin[t] = own.empty() ? 0 : countOwned(map_.topology, tet, own);
+                     counter.count(block, tet, lines.last());
+                     if (!lines.last().empty())
+                       collectKeys(tet, lines.last(), filter, keys_[block]);
+                   }
+                   if (stored_) stored_->store(block, lines);
+                   if (cells.lines) cells.lines->store(block, centers);
+                 });
   counter.finish();
   exclusiveScan(std::span(cells.begin));
 }
@@ -237,6 +230,7 @@ void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
     };
     for (std::size_t t = begin; t < end; ++t) {
       const auto tet = static_cast<Index>(t);
+      if (stored_ && stored_->areEmpty(tet)) continue;
       std::optional<TetPositions> positions;
       forEachClaim(
           tet, Faces::OwnedAndCut,

@@ -41,7 +41,11 @@ class VertexCounter {
   VertexCounter(const PreparedMap& map, VertexNumbers& numbers);
 
   /// Counts one tet's lines; tets of a block in order, blocks in any order and in parallel.
-  void count(std::size_t block, Index tet, std::span<const SweptLine> lines);
+  void count(std::size_t block, Index tet, std::span<const SweptLine> lines) {
+    numbers_.begin[tet] = 0;
+    numbers_.generatorBegin[tet] = 0;
+    if (!lines.empty()) countSome(block, tet, lines);
+  }
   /// Turns counts into numbers.
   void finish();
 
@@ -51,6 +55,7 @@ class VertexCounter {
     std::array<std::uint64_t, 4> generatorCounts{};
     std::array<std::uint64_t, 4> vertexCounts{};
   };
+  void countSome(std::size_t block, Index tet, std::span<const SweptLine> lines);
   void countBoundary(Block& block, Index tet, std::span<const SweptLine> lines);
 
   const PreparedMap& map_;
