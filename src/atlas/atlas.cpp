@@ -53,15 +53,16 @@ class Atlas {
       Stage stage(context_, "grid");
       vertices_.fill(arrays, stage);
     }
+    OverlapCounts overlaps;
     {
       Stage stage(context_, "overlaps");
-      if (options_.resolveOverlaps) {
-        statistics.overlappingTets = vertices_.resolveOverlaps(stage).tets;
-      }
+      if (options_.resolveOverlaps) overlaps = vertices_.resolveOverlaps(stage);
     }
+    statistics.overlappingTets = overlaps.tets;
     Stage stage(context_, "cuts");
     if (options_.markCuts) {
-      statistics.cutFaces = markCutCells(map_, charts_, vertices_.grid(), stage);
+      statistics.cutFaces =
+          markCutCells(map_, charts_, overlaps.tets == 0, vertices_.grid(), stage);
     }
     vertices_.dropLines();
     statistics.charts = charts_.count;

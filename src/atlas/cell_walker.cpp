@@ -17,11 +17,12 @@ using Vector = std::array<double, 3>;
 /// Errors of plane values, as a multiple of the longest edge, the largest coordinate of a corner,
 /// and the largest coordinate of a corner or of the point. With u = 2^-53, the edge e, and these
 /// coordinates R and r: corners err by u R when they are rounded, components of edges by 3 u R, of
-/// normals by 16 u e R, and centres are exact. The normal (at most 2 e^2 in each component, e being
-/// at most 2 R) times a vector of at most 2 r from corner to point errs by 96 u e R r for the
-/// normal and by 12 u e R r for the corner; roundings of the three sums of products (offset,
-/// centre, half a diagonal) add at most 48 u e R r each. This is twice as much as all that.
-constexpr double kPlaneError = 0x1p-44;
+/// normals by 16 u e R or, if they are the sum of three, by 60 u e R, and centres are exact. The
+/// normal (at most 2 e^2 in each component, e being at most 2 R) times a vector of at most 2 r from
+/// corner to point errs by 360 u e R r for the normal and by 12 u e R r for the corner; roundings
+/// of the three sums of products (offset, centre, half a diagonal) add at most 48 u e R r each.
+/// 1024 u is nearly twice as much as all that.
+constexpr double kPlaneError = 0x1p-43;
 
 /// Tets whose faces are remembered.
 constexpr std::size_t kRemembered = 2048;
@@ -82,23 +83,24 @@ void CellWalker::measure(Index tet, Faces& faces) const noexcept {
       corners[i][k] = static_cast<double>(lattice[i][k] - (origin << shift)) * scale_;
     }
   }
-  double edge = 0;
-  faces.reach = largest(corners[0]);
-  for (std::size_t i = 1; i < 4; ++i) {
-    faces.reach = std::max(faces.reach, largest(corners[i]));
-    edge = std::max(edge, largest(minus(corners[i], corners[0])));
+  // Gradients of the weights of corners 1 to 3 and, as all weights add up to one, of corner 0.
+  const std::array<Vector, 3> e = {minus(corners[1], corners[0]), minus(corners[2], corners[0]),
+                                   minus(corners[3], corners[0])};
+  std::array<Vector, 4> normals = {
+      {{}, hexhex::cross(e[1], e[2]), hexhex::cross(e[2], e[0]), hexhex::cross(e[0], e[1])}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    normals[0][k] = -(normals[1][k] + normals[2][k] + normals[3][k]);
   }
+  const double edge = std::max({largest(e[0]), largest(e[1]), largest(e[2])});
+  faces.reach = 1 + edge;  // corner 0 is less than 1 from the origin in each axis
   // Other edges are at most twice as long.
   faces.error = kPlaneError * 2 * edge * faces.reach;
   for (std::size_t f = 0; f < 4; ++f) {
-    const bool inside = !map_.topology.isBoundary(halfFaceOf(tet, static_cast<int>(f)));
-    const Vector& p = corners[static_cast<std::size_t>(kFaceCorners[f][0])];
-    const Vector n =
-        inside ? hexhex::cross(minus(corners[static_cast<std::size_t>(kFaceCorners[f][1])], p),
-                               minus(corners[static_cast<std::size_t>(kFaceCorners[f][2])], p))
-               : Vector{};
+    const bool boundary = map_.topology.isBoundary(halfFaceOf(tet, static_cast<int>(f)));
+    const Vector n = boundary ? Vector{} : normals[f];
     for (std::size_t k = 0; k < 3; ++k) faces.normal[k][f] = n[k];
-    faces.offset[f] = inside ? -dot(n, p) : std::numeric_limits<double>::infinity();
+    faces.offset[f] =
+        boundary ? std::numeric_limits<double>::infinity() : -dot(n, corners[f == 0 ? 1 : 0]);
     faces.extent[f] = 0.5 * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
   }
 }

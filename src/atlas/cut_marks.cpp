@@ -48,8 +48,8 @@ void markCut(const PreparedMap& map, const Charts& charts, HalfFace halfFace,
 }  // namespace
 
 template <class Id>
-std::uint64_t markCutCells(const PreparedMap& map, const Charts& charts, BrickGrid<Id>& grid,
-                           Stage& stage) {
+std::uint64_t markCutCells(const PreparedMap& map, const Charts& charts, bool asBuilt,
+                           BrickGrid<Id>& grid, Stage& stage) {
   const TetTopology& topology = map.topology;
   std::atomic<std::uint64_t> cuts{0};
   parallelBlocks(stage, topology.tetCount(), kGrain,
@@ -58,6 +58,7 @@ std::uint64_t markCutCells(const PreparedMap& map, const Charts& charts, BrickGr
                    std::uint64_t cutsHere = 0;
                    for (std::size_t h = 4 * begin; h < 4 * end; ++h) {
                      const auto halfFace = static_cast<HalfFace>(h);
+                     if (asBuilt && !map.exact.transitions.isJump(halfFace)) continue;
                      const HalfFace mate = topology.mate[halfFace];
                      if (mate == kNone || mate < halfFace) continue;
                      if (charts.isGlued(topology, map.exact.transitions, halfFace)) continue;
@@ -69,9 +70,9 @@ std::uint64_t markCutCells(const PreparedMap& map, const Charts& charts, BrickGr
   return cuts.load();
 }
 
-template std::uint64_t markCutCells(const PreparedMap&, const Charts&, BrickGrid<std::uint32_t>&,
-                                    Stage&);
-template std::uint64_t markCutCells(const PreparedMap&, const Charts&, BrickGrid<std::uint64_t>&,
-                                    Stage&);
+template std::uint64_t markCutCells(const PreparedMap&, const Charts&, bool,
+                                    BrickGrid<std::uint32_t>&, Stage&);
+template std::uint64_t markCutCells(const PreparedMap&, const Charts&, bool,
+                                    BrickGrid<std::uint64_t>&, Stage&);
 
 }  // namespace hexhex
