@@ -10,6 +10,7 @@
 
 #include <hexhex/types.hpp>
 
+#include <lattice/half_grids.hpp>
 #include <map/prepare.hpp>
 
 namespace hexhex {
@@ -32,6 +33,27 @@ class LatticeNumbers {
  public:
   /// @throws Error TooLarge for more vertices than an Index can number
   LatticeNumbers(const PreparedMap& map, Stage& stage);
+  /// Without numbers until a Sweep is finished.
+  explicit LatticeNumbers(const PreparedMap& map);
+
+  /// The grid of vertices.
+  static constexpr HalfGridSet kGrids = halfGridBit(0);
+
+  /// Gives numbers while others sweep the same tets.
+  class Sweep {
+   public:
+    explicit Sweep(LatticeNumbers& numbers);
+    /// Tets of a block in order, blocks in any order and in parallel.
+    /// @param grids  of the tet; with kGrids wanted
+    void add(std::size_t block, Index tet, HalfGrids& grids);
+    /// @throws Error TooLarge for more vertices than an Index can number
+    void finish(Stage& stage);
+
+   private:
+    LatticeNumbers& numbers_;
+    VertexCounter counter_;
+    std::vector<std::vector<SweptLine>> blocks_;
+  };
 
   [[nodiscard]] std::uint64_t count() const noexcept { return numbers_.count(); }
 
