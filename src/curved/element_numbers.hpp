@@ -105,6 +105,7 @@ class ElementNumbers {
   template <class Visit>
   void forEachRow(Index tet, const Visit& visit) const {
     std::uint64_t number = begin_[tet];
+    if (number == begin_[std::size_t{tet} + 1]) return;
     for (int axis = 0; axis < 3; ++axis) {
       const std::size_t along = axes_[gridOf(tet, axis)]()[2];
       for (const Line& line : linesOf(tet, axis)) {

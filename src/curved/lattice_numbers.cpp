@@ -30,7 +30,7 @@ LatticeNumbers::Sweep::Sweep(LatticeNumbers& numbers)
       counter_(numbers.map_, numbers.numbers_),
       blocks_(blockCount(numbers.map_.topology.tetCount(), kSweepBlock)) {}
 
-void LatticeNumbers::Sweep::add(std::size_t block, Index tet, HalfGrids& grids) {
+void LatticeNumbers::Sweep::sweep(std::size_t block, Index tet, HalfGrids& grids) {
   std::vector<SweptLine>& lines = blocks_[block];
   const std::size_t before = lines.size();
   numbers_.axes_[tet] = grids.sweep(0, [&](const SweptLine& line) { lines.push_back(line); });
@@ -56,7 +56,8 @@ void LatticeNumbers::Sweep::finish(Stage& stage) {
                    blocks_[block] = {};
                    std::vector<SweptLine> scratch;
                    for (std::size_t t = begin; t < end; ++t) {
-                     n.number(static_cast<Index>(t), scratch);
+                     const auto tet = static_cast<Index>(t);
+                     if (n.hasVertices(tet)) n.number(tet, scratch);
                    }
                  });
 }
@@ -65,7 +66,6 @@ void LatticeNumbers::Sweep::finish(Stage& stage) {
 void LatticeNumbers::number(Index tet, std::vector<SweptLine>& swept) {
   const std::size_t begin = lineBegin_[tet];
   const std::size_t end = lineBegin_[std::size_t{tet} + 1];
-  if (begin == end) return;
   swept.clear();
   for (std::size_t i = begin; i < end; ++i) swept.push_back(lines_[i].swept);
   TetNumbering(map_, numbers_, tet, axes_[tet])

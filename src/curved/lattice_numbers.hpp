@@ -45,11 +45,21 @@ class LatticeNumbers {
     explicit Sweep(LatticeNumbers& numbers);
     /// Tets of a block in order, blocks in any order and in parallel.
     /// @param grids  of the tet; with kGrids wanted
-    void add(std::size_t block, Index tet, HalfGrids& grids);
+    void add(std::size_t block, Index tet, HalfGrids& grids) {
+      if ((grids.occupied() & kGrids) != 0) {
+        sweep(block, tet, grids);
+      } else {
+        numbers_.axes_[tet] = {};
+        numbers_.lineBegin_[tet] = 0;
+        counter_.countNothing(tet);
+      }
+    }
     /// @throws Error TooLarge for more vertices than an Index can number
     void finish(Stage& stage);
 
    private:
+    void sweep(std::size_t block, Index tet, HalfGrids& grids);
+
     LatticeNumbers& numbers_;
     VertexCounter counter_;
     std::vector<std::vector<SweptLine>> blocks_;
@@ -59,6 +69,11 @@ class LatticeNumbers {
 
   /// Writes position and generator of every vertex.
   void describe(const VertexDescriptions& to, Stage& stage) const;
+
+  /// Whether a closed tet contains any vertices.
+  [[nodiscard]] bool hasVertices(Index tet) const noexcept {
+    return lineBegin_[tet] != lineBegin_[std::size_t{tet} + 1];
+  }
 
   struct Found {
     Index vertex = kNone;             ///< kNone if the closed tet does not contain the point

@@ -10,51 +10,73 @@ namespace {
 
 using Four = std::array<double, 4>;
 
+/// Two numbers that one instruction works on.
+using Pair = double __attribute__((vector_size(16)));
+
 /// Coordinates of a tet's corners from a grid point near corner 0, in halves, by axis.
 struct NearCorners {
   std::array<Four, 3> at;
   GridPoint nearby;
-};
 
-NearCorners nearCorners(const LatticeTet& corners, std::int64_t unit) noexcept {
-  const double perHalf = 2.0 / static_cast<double>(unit);
-  const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
-  NearCorners near;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::int64_t grid = corners[0][k] >> shift;
-    near.nearby[k] = static_cast<std::int32_t>(grid);
-    for (std::size_t i = 0; i < 4; ++i) {
-      near.at[k][i] = static_cast<double>(corners[i][k] - grid * unit) * perHalf;
+  NearCorners(const LatticeTet& corners, std::int64_t unit) noexcept {
+    const double perHalf = 2.0 / static_cast<double>(unit);
+    const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int64_t grid = corners[0][k] >> shift;
+      const std::int64_t zero = grid << shift;
+      nearby[k] = static_cast<std::int32_t>(grid);
+      for (std::size_t i = 0; i < 4; ++i) {
+        at[k][i] = static_cast<double>(corners[i][k] - zero) * perHalf;
+      }
     }
   }
-  return near;
-}
+};
 
-/// Weights of the four corners, times six volumes, as functions of a point.
+/// Weights of the four corners, times six volumes.
+struct Weights {
+  Pair of01;
+  Pair of23;
+
+  [[nodiscard]] Weights plus(const Weights& gradient, std::int32_t steps) const noexcept {
+    const auto factor = static_cast<double>(steps);
+    const Pair factors = {factor, factor};
+    return {of01 + gradient.of01 * factors, of23 + gradient.of23 * factors};
+  }
+  [[nodiscard]] bool anyBelow(double limit) const noexcept {
+    const Pair limits = {limit, limit};
+    const auto below = (of01 < limits) | (of23 < limits);
+    return (below[0] | below[1]) != 0;
+  }
+};
+
+/// The same as functions of a point.
 struct WeightPlanes {
-  std::array<Four, 3> gradient;
-  Four atOrigin;
+  std::array<Weights, 3> gradient;
+  Weights atOrigin;
 
   explicit WeightPlanes(const std::array<Four, 3>& at) noexcept {
     std::array<std::array<double, 3>, 3> e;
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) e[i][k] = at[k][i + 1] - at[k][0];
     }
+    const Pair none = {0, 0};
+    atOrigin.of01 = none;
+    atOrigin.of23 = none;
+    double volume = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t m = k == 2 ? 0 : k + 1;
       const std::size_t n = k == 0 ? 2 : k - 1;
-      Four& g = gradient[k];
-      g[1] = e[1][m] * e[2][n] - e[1][n] * e[2][m];
-      g[2] = e[2][m] * e[0][n] - e[2][n] * e[0][m];
-      g[3] = e[0][m] * e[1][n] - e[0][n] * e[1][m];
-      g[0] = -(g[1] + g[2] + g[3]);
+      const double g1 = e[1][m] * e[2][n] - e[1][n] * e[2][m];
+      const double g2 = e[2][m] * e[0][n] - e[2][n] * e[0][m];
+      const double g3 = e[0][m] * e[1][n] - e[0][n] * e[1][m];
+      volume += e[0][k] * g1;
+      gradient[k].of01 = Pair{-(g1 + g2 + g3), g1};
+      gradient[k].of23 = Pair{g2, g3};
+      const Pair corner = {at[k][0], at[k][0]};
+      atOrigin.of01 -= gradient[k].of01 * corner;
+      atOrigin.of23 -= gradient[k].of23 * corner;
     }
-    const double volume =
-        e[0][0] * gradient[0][1] + e[0][1] * gradient[1][1] + e[0][2] * gradient[2][1];
-    for (std::size_t i = 0; i < 4; ++i) {
-      atOrigin[i] = (i == 0 ? volume : 0) - (gradient[0][i] * at[0][0] + gradient[1][i] * at[1][0] +
-                                             gradient[2][i] * at[2][0]);
-    }
+    atOrigin.of01 += Pair{volume, 0};
   }
 };
 
@@ -67,13 +89,13 @@ HalfGrids::HalfGrids(const LatticeTet& corners, std::int64_t unit, HalfGridSet w
 
 /// Sets `occupied_`, `unsure_` and `inside_`.
 /// @return false if the tet is not small
-bool HalfGrids::comparePoints(HalfGridSet wanted) noexcept {
-  constexpr double kOffset = 1024;
-  const NearCorners near = nearCorners(corners_, unit_);
+bool HalfGrids::comparePoints(unsigned wanted) noexcept {
+  const NearCorners near(corners_, unit_);
   std::array<std::int32_t, 3> first;
   std::array<std::int32_t, 3> last;
   double size = 1;
   for (std::size_t k = 0; k < 3; ++k) {
+    constexpr double kOffset = 1024;
     const Four& c = near.at[k];
     const double low = std::min(std::min(c[0], c[1]), std::min(c[2], c[3]));
     const double high = std::max(std::max(c[0], c[1]), std::max(c[2], c[3]));
@@ -83,12 +105,16 @@ bool HalfGrids::comparePoints(HalfGridSet wanted) noexcept {
     // Conversions to integers truncate, which takes numbers above zero to be rounding down.
     first[k] = static_cast<std::int32_t>(kOffset) - static_cast<std::int32_t>(kOffset - low);
     last[k] = static_cast<std::int32_t>(high + kOffset) - static_cast<std::int32_t>(kOffset);
-    if (first[k] > last[k]) return true;
+    // Coordinate k is even in the grids that are not moved along it, and odd in the others.
+    constexpr std::array<unsigned, 3> kEven = {0x55, 0x33, 0x0f};
+    const bool both = first[k] < last[k];
+    const bool none = first[k] > last[k];
+    const unsigned reached = (first[k] & 1) != 0 ? ~kEven[k] : kEven[k];
+    wanted &= none ? 0U : (both ? ~0U : reached);
   }
-  if ((last[0] - first[0] + 1) * (last[1] - first[1] + 1) > kFewPoints ||
-      (last[0] - first[0] + 1) * (last[1] - first[1] + 1) * (last[2] - first[2] + 1) > kFewPoints) {
-    return false;
-  }
+  if (wanted == 0) return true;
+  const std::int32_t rows = (last[0] - first[0] + 1) * (last[1] - first[1] + 1);
+  if (rows > kFewPoints || rows * (last[2] - first[2] + 1) > kFewPoints) return false;
   const WeightPlanes planes(near.at);
   // Errors in units of 2^-53, with magnitudes: coordinates carry one rounding (size), so edges, up
   // to 2 size, are known to 4 size; their products to 20 size^2, gradients 1 to 3 (8 size^2) to
@@ -99,22 +125,20 @@ bool HalfGrids::comparePoints(HalfGridSet wanted) noexcept {
   // second order as well.
   const double error = 0x1p-40 * size * size * size;
   for (std::int32_t x = first[0]; x <= last[0]; ++x) {
-    Four atX;
-    for (std::size_t i = 0; i < 4; ++i) {
-      atX[i] = planes.atOrigin[i] + planes.gradient[0][i] * x;
-    }
+    const Weights atX = planes.atOrigin.plus(planes.gradient[0], x);
     for (std::int32_t y = first[1]; y <= last[1]; ++y) {
-      Four atY;
-      for (std::size_t i = 0; i < 4; ++i) atY[i] = atX[i] + planes.gradient[1][i] * y;
+      const auto rowGrid = static_cast<HalfGrid>((x & 1) | (y & 1) << 1);
+      const unsigned rowWanted = wanted & (halfGridBit(rowGrid) * 0x11U);
+      if (rowWanted == 0) continue;
+      const Weights atY = atX.plus(planes.gradient[1], y);
       for (std::int32_t z = first[2]; z <= last[2]; ++z) {
-        const auto grid = static_cast<HalfGrid>((x & 1) | (y & 1) << 1 | (z & 1) << 2);
-        if ((wanted & halfGridBit(grid)) == 0) continue;
-        Four w;
-        for (std::size_t i = 0; i < 4; ++i) w[i] = atY[i] + planes.gradient[2][i] * z;
-        const double least = std::min(std::min(w[0], w[1]), std::min(w[2], w[3]));
-        if (least < -error) continue;
+        const auto grid = static_cast<HalfGrid>(rowGrid | (z & 1) << 2);
+        if ((rowWanted & halfGridBit(grid)) == 0) continue;
+        const Weights weights = atY.plus(planes.gradient[2], z);
+        if (weights.anyBelow(-error)) continue;
         occupied_ = static_cast<HalfGridSet>(occupied_ | halfGridBit(grid));
-        if (!(least > error)) unsure_ = static_cast<HalfGridSet>(unsure_ | halfGridBit(grid));
+        if (weights.anyBelow(error))
+          unsure_ = static_cast<HalfGridSet>(unsure_ | halfGridBit(grid));
         inside_[insideCount_++] = {
             {near.nearby[0] + (x >> 1), near.nearby[1] + (y >> 1), near.nearby[2] + (z >> 1)},
             grid};

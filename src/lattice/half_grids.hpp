@@ -64,7 +64,7 @@ class HalfGrids {
     HalfGrid grid;
   };
 
-  [[nodiscard]] bool comparePoints(HalfGridSet wanted) noexcept;
+  [[nodiscard]] bool comparePoints(unsigned wanted) noexcept;
   void sortInside(HalfGrid grid, const std::array<std::uint8_t, 3>& axes) noexcept;
   [[nodiscard]] GridBox boxOf(HalfGrid grid) noexcept;
   /// The tet, moved so that the points of the grid become integers.
