@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include <curved/owned_simplex.hpp>
 
@@ -48,12 +49,17 @@ class ArcPieces {
 
   /// Turns the order of the last ones round.
   void reverseFrom(std::size_t firstPoint, std::size_t firstSegment) {
-    reverse(position_, firstPoint, points_);
-    reverse(parameters_, firstPoint, points_);
-    reverse(generatorTet_, firstPoint, points_);
-    reverse(generatorCorners_, firstPoint, points_);
-    reverse(segmentTet_, firstSegment, segments_);
-    reverse(segmentCorners_, firstSegment, segments_);
+    // Usually there is hardly anything to do.
+    for (std::size_t i = firstPoint, j = points_; i + 1 < j--; ++i) {
+      std::swap(position_[i], position_[j]);
+      std::swap(parameters_[i], parameters_[j]);
+      std::swap(generatorTet_[i], generatorTet_[j]);
+      std::swap(generatorCorners_[i], generatorCorners_[j]);
+    }
+    for (std::size_t i = firstSegment, j = segments_; i + 1 < j--; ++i) {
+      std::swap(segmentTet_[i], segmentTet_[j]);
+      std::swap(segmentCorners_[i], segmentCorners_[j]);
+    }
   }
 
   /// Copies all to where they belong.
@@ -81,10 +87,6 @@ class ArcPieces {
     const std::size_t size = larger(segments_);
     segmentTet_.resize(size);
     segmentCorners_.resize(size);
-  }
-  template <class T>
-  static void reverse(Array<T>& array, std::size_t first, std::size_t end) {
-    std::reverse(array.data() + first, array.data() + end);
   }
   template <class T>
   static void copy(const Array<T>& from, std::size_t count, Array<T>& to, std::uint64_t first) {

@@ -22,6 +22,10 @@ class BlockTracer {
       : map_(map), vertices_(vertices), arcs_(arcs), pieces_(pieces), tracer_(map, vertices) {}
 
   void trace(Index tet, const ElementNumbers::Row& row) {
+    if (!vertices_.hasVertices(tet)) {
+      row.forEach([&](const Element& edge) { trace(tet, edge, {}, {}); });
+      return;
+    }
     const GridPoint& begin = row.front().z;
     const int axis = row.front().axis;
     const GridPoint end = step(begin, direction(axis, 1));

@@ -1,88 +1,84 @@
 // The grid points of one tet, and those of the grid moved by one half along some axes: centres of
-// cells, midpoints of edges and faces. What these grids have in common is computed once.
+// cells, midpoints of edges and faces. All of them are points of the grid of half the width, and
+// what finding them has in common is done once.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <span>
+#include <optional>
 #include <utility>
 
 #include <lattice/line_rasterizer.hpp>
 
 namespace hexhex {
 
-/// The axes along which a grid is moved by one half. Its points are named by what they are moved
-/// from.
-using MovedAxes = std::array<bool, 3>;
+/// A grid, moved by one half along some axes: bit k for axis k. Its points are named by what they
+/// are moved from.
+using HalfGrid = std::uint8_t;
+
+/// A set of such grids: bit g for grid g.
+using HalfGridSet = std::uint8_t;
+
+[[nodiscard]] constexpr HalfGridSet halfGridBit(HalfGrid grid) noexcept {
+  return static_cast<HalfGridSet>(1U << grid);
+}
 
 /// Sweeps a tet for the points of one grid after the other.
 ///
-/// Of small boxes every point is tried, in floating point with a proven bound. That is all that
-/// most tets of a coarse map take; where a point is not certainly inside or outside, and in larger
-/// boxes, lines are found by LineRasterizer.
+/// Small tets are compared with all points of their bounding box first, in floating point with a
+/// proven bound: that is all that most tets of a coarse map take. Grids of which a point is not
+/// certainly inside or outside then, and those of larger tets, are swept by LineRasterizer.
 class HalfGrids {
  public:
-  HalfGrids(const LatticeTet& corners, std::int64_t unit) noexcept
-      : corners_(corners), unit_(unit), boxes_(gridBoxes(corners, unit)) {}
+  /// @param wanted  the grids that may be swept
+  HalfGrids(const LatticeTet& corners, std::int64_t unit, HalfGridSet wanted) noexcept;
 
-  /// Calls visit(SweptLine) for every line that meets the closed tet, in sweep order.
-  /// @return the order of the sweep
+  /// The wanted grids that may have points in the tet.
+  [[nodiscard]] HalfGridSet occupied() const noexcept { return occupied_; }
+
+  /// Calls visit(SweptLine) for every line of a wanted grid that meets the closed tet, in sweep
+  /// order.
+  /// @return the order of the sweep; any, if there are no lines
   template <class Visit>
-  SweepAxes sweep(const MovedAxes& moved, const Visit& visit) {
-    const GridBox box = boxOf(moved);
-    if (box.empty()) return {};
+  SweepAxes sweep(HalfGrid grid, const Visit& visit) {
+    if ((occupied_ & halfGridBit(grid)) == 0) return {};
+    const GridBox box = boxOf(grid);
     const SweepAxes axes = chooseSweepAxes(box);
-    if (countUpTo(box, kFewPoints) <= kFewPoints && tryPoints(box, moved, axes)) {
-      for (std::size_t i = 0; i < tried_; ++i) visit(std::as_const(lines_[i]));
-    } else {
-      const LatticeTet back = movedBack(moved);
+    if ((unsure_ & halfGridBit(grid)) == 0) {
+      sortInside(grid, axes);
+      for (std::size_t i = 0; i < lineCount_; ++i) visit(std::as_const(lines_[i]));
+    } else if (!box.empty()) {
+      const LatticeTet back = movedBack(grid);
       LineRasterizer(back, unit_, box, axes).run(visit);
     }
     return axes;
   }
 
  private:
-  /// Boxes of more points are not small.
-  static constexpr std::int64_t kFewPoints = 6;
+  /// Tets with more points of the finer grid in their boxes are not small.
+  static constexpr std::int32_t kFewPoints = 48;
 
-  [[nodiscard]] GridBox boxOf(const MovedAxes& moved) const noexcept {
-    GridBox box;
-    for (std::size_t k = 0; k < 3; ++k) {
-      box.range[k] = (moved[k] ? boxes_.centers : boxes_.vertices).range[k];
-    }
-    return box;
-  }
-  /// The number of points of a box that is not empty, or any number above the limit.
-  [[nodiscard]] static std::int64_t countUpTo(const GridBox& box, std::int64_t limit) noexcept {
-    std::int64_t count = 1;
-    for (const GridRange& range : box.range) {
-      count *= std::int64_t{range.last} - range.first + 1;
-      if (count > limit) break;
-    }
-    return count;
-  }
-  void prepare() noexcept;
-  /// Sets `lines_`.
-  /// @return false if a point is neither certainly inside nor certainly outside
-  [[nodiscard]] bool tryPoints(const GridBox& box, const MovedAxes& moved, SweepAxes axes) noexcept;
+  /// A point that is certainly inside.
+  struct Inside {
+    GridPoint z;
+    HalfGrid grid;
+  };
+
+  [[nodiscard]] bool comparePoints(unsigned wanted) noexcept;
+  void sortInside(HalfGrid grid, SweepAxes axes) noexcept;
+  [[nodiscard]] GridBox boxOf(HalfGrid grid) noexcept;
   /// The tet, moved so that the points of the grid become integers.
-  [[nodiscard]] LatticeTet movedBack(const MovedAxes& moved) const noexcept;
+  [[nodiscard]] LatticeTet movedBack(HalfGrid grid) const noexcept;
 
   const LatticeTet& corners_;
   std::int64_t unit_;
-  GridBoxes boxes_;
-
-  // Made when first needed:
-  bool prepared_ = false;
-  std::array<double, 3> nearby_{};  ///< grid point that corner 0 is relative to
-  std::array<double, 3> corner_{};  ///< corner 0
-  double volume_ = 0;               ///< six times the tet's, which is the weight of corner 0 there
-  /// Of the weight of each corner, by axis, then corner.
-  std::array<std::array<double, 4>, 3> gradients_{};
-  double error_ = 0;  ///< bound of the error of all weights in the tet's bounding box
-
-  std::array<SweptLine, kFewPoints> lines_;
-  std::size_t tried_ = 0;
+  HalfGridSet occupied_ = 0;
+  HalfGridSet unsure_ = 0;  ///< grids that take an exact sweep
+  std::size_t insideCount_ = 0;
+  std::size_t lineCount_ = 0;
+  std::optional<GridBoxes> boxes_;           ///< made when first needed
+  std::array<Inside, kFewPoints> inside_;    ///< of the grids that are not unsure
+  std::array<SweptLine, kFewPoints> lines_;  ///< of the grid that is being swept
 };
 
 }  // namespace hexhex

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -256,63 +255,6 @@ bool LineRasterizer::exactLine(std::int32_t first, std::int32_t last, SweptLine&
   if (last == first) line.right = line.left;
   line.first = origin_[2] + first;
   line.count = static_cast<std::uint32_t>(last - first + 1);
-  return true;
-}
-
-EmptinessTest::EmptinessTest(const LatticeTet& corners, std::int64_t unit) noexcept {
-  const double scale = 1.0 / static_cast<double>(unit);
-  const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
-  std::array<std::array<double, 3>, 4> c;
-  double size = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::int64_t grid = corners[0][k] >> shift;
-    nearby_[k] = static_cast<double>(grid);
-    for (std::size_t i = 0; i < 4; ++i) {
-      c[i][k] = static_cast<double>(corners[i][k] - grid * unit) * scale;
-      size = std::max(size, std::abs(c[i][k]));
-    }
-  }
-  corner_ = c[0];
-  std::array<std::array<double, 3>, 3> e;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) e[i][k] = c[i + 1][k] - c[0][k];
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto& a = e[i == 2 ? 0 : i + 1];
-    const auto& b = e[i == 0 ? 2 : i - 1];
-    normals_[i] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  }
-  volume_ = e[0][0] * normals_[0][0] + e[0][1] * normals_[0][1] + e[0][2] * normals_[0][2];
-  // Points of the bounding box are within 2 size of corner 0 in each axis, products of three
-  // differences below 8 size^3, six of them in each volume, with a dozen roundings each.
-  error_ = 0x1p-42 * size * size * size;
-}
-
-bool EmptinessTest::certainlyMisses(const GridBox& box,
-                                    const std::array<double, 3>& shift) const noexcept {
-  constexpr std::int64_t kMaxPoints = 4;
-  std::int64_t count = 1;
-  for (const GridRange& range : box.range) {
-    count *= std::int64_t{range.last} - range.first + 1;
-    if (count > kMaxPoints) return false;
-  }
-  for (std::int32_t x = box.range[0].first; x <= box.range[0].last; ++x) {
-    for (std::int32_t y = box.range[1].first; y <= box.range[1].last; ++y) {
-      for (std::int32_t z = box.range[2].first; z <= box.range[2].last; ++z) {
-        const std::array<double, 3> p = {x + shift[0] - nearby_[0] - corner_[0],
-                                         y + shift[1] - nearby_[1] - corner_[1],
-                                         z + shift[2] - nearby_[2] - corner_[2]};
-        double least = volume_;
-        double rest = volume_;
-        for (const auto& n : normals_) {
-          const double volume = n[0] * p[0] + n[1] * p[1] + n[2] * p[2];
-          least = std::min(least, volume);
-          rest -= volume;
-        }
-        if (std::min(least, rest) >= -error_) return false;
-      }
-    }
-  }
   return true;
 }
 

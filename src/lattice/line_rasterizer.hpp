@@ -128,29 +128,4 @@ class LineRasterizer {
   std::optional<TetPlanes> planes_;                  ///< made when first needed
 };
 
-/// Quick answers for small boxes: whether a tet certainly contains none of their points. Most tets
-/// of a coarse map are done with this. Volumes of the four tets that a point makes with the faces
-/// are computed from one set of cross products.
-class EmptinessTest {
- public:
-  EmptinessTest(const LatticeTet& corners, std::int64_t unit) noexcept;
-
-  /// @param box    of grid points; gives up on boxes of more than a few
-  /// @param shift  added to their coordinates: 0, or 1/2 for centres of cells
-  [[nodiscard]] bool certainlyMisses(const GridBox& box, double shift) const noexcept {
-    return certainlyMisses(box, {shift, shift, shift});
-  }
-  /// The same with a shift for each coordinate.
-  [[nodiscard]] bool certainlyMisses(const GridBox& box,
-                                     const std::array<double, 3>& shift) const noexcept;
-
- private:
-  std::array<double, 3> nearby_;  ///< grid point that coordinates are relative to
-  std::array<double, 3> corner_;  ///< corner 0, relative
-  /// Six times the gradients of the weights of corners 1 to 3, times the volume.
-  std::array<std::array<double, 3>, 3> normals_;
-  double volume_;  ///< six times
-  double error_;   ///< bound of the error of all volumes in the tet's bounding box
-};
-
 }  // namespace hexhex

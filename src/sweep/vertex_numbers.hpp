@@ -42,9 +42,13 @@ class VertexCounter {
 
   /// Counts one tet's lines; tets of a block in order, blocks in any order and in parallel.
   void count(std::size_t block, Index tet, std::span<const SweptLine> lines) {
+    countNothing(tet);
+    if (!lines.empty()) countSome(block, tet, lines);
+  }
+  /// The same for a tet without lines.
+  void countNothing(Index tet) noexcept {
     numbers_.begin[tet] = 0;
     numbers_.generatorBegin[tet] = 0;
-    if (!lines.empty()) countSome(block, tet, lines);
   }
   /// Turns counts into numbers.
   void finish();
