@@ -31,31 +31,25 @@ CornerMask holderAhead(const LatticeTet& seen, CornerMask at) {
 
 }  // namespace
 
-ArcPart ArcTracer::behind(const SimplexInTet& point) {
-  ArcPart part;
+SimplexInTet ArcTracer::behind(const SimplexInTet& point) {
+  SimplexInTet carrier;
   const bool leads = star_.visit(point, [&](const SimplexInTet& here) {
-    part = in(here);
+    carrier = here;
     if (here.simplex == kWholeTet) return true;
-    part.carrier.simplex = holderAhead(part.seen, here.simplex);
-    return part.carrier.simplex != kNoSimplex;
+    carrier.simplex = holderAhead(see(here), here.simplex);
+    return carrier.simplex != kNoSimplex;
   });
   if (!leads) fail(point.tet, "a hex edge leaves the mesh");
-  return part;
+  return carrier;
 }
 
-ArcExit ArcTracer::exitAt(const ArcPart& part, const SimplexPoint& point) const {
-  const Index tet = part.carrier.tet;
+ArcExit ArcTracer::exitAt(Index tet, const LatticeTet& seen, const SimplexPoint& point) const {
   const CornerMask at = point.simplex();
   if (at == kNoSimplex) fail(tet, "a hex edge leaves a tet nowhere");
-  ArcExit exit;
-  exit.generator = ownedBy(topology_, tet, at);
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (point.weights[i] == 0) continue;
-    exit.vertices[exit.count] = topology_.tets[tet][i];
-    exit.weights[exit.count] = toDouble(point.weights[i]);
-    exit.places[exit.count++] = static_cast<double>(part.seen[i][0]);
-  }
-  return exit;
+  const std::array<double, 4> shares = point.normalized();
+  return {ownedBy(topology_, tet, at),
+          position(shares, topology_.tets[tet], map_.input.view.points),
+          coordinate(shares, seen, 0) / static_cast<double>(exact_.unit)};
 }
 
 }  // namespace hexhex

@@ -1,4 +1,3 @@
-#include <optional>
 #include <string>
 
 #include <curved/element_numbers.hpp>
@@ -7,38 +6,21 @@ namespace hexhex {
 
 namespace {
 
-/// The midpoints of edges along an axis, or of faces across it: the grid, moved by one half along
-/// some axes.
-struct ShiftedGrid {
-  std::array<bool, 3> moved{};
-
-  ShiftedGrid(ElementKind kind, std::size_t axis) noexcept {
-    for (std::size_t k = 0; k < 3; ++k) moved[k] = (k == axis) == (kind == ElementKind::Edges);
-  }
-
-  [[nodiscard]] GridBox box(const GridBoxes& boxes) const noexcept {
-    GridBox box;
-    for (std::size_t k = 0; k < 3; ++k) {
-      box.range[k] = (moved[k] ? boxes.centers : boxes.vertices).range[k];
-    }
-    return box;
-  }
-  [[nodiscard]] std::array<double, 3> shift() const noexcept {
-    return {moved[0] ? 0.5 : 0, moved[1] ? 0.5 : 0, moved[2] ? 0.5 : 0};
-  }
-  /// The tet, moved so that the midpoints become grid points.
-  [[nodiscard]] LatticeTet movedBack(const LatticeTet& corners, std::int64_t unit) const noexcept {
-    LatticeTet result = corners;
-    for (LatticePoint& corner : result) {
-      for (std::size_t k = 0; k < 3; ++k) corner[k] -= moved[k] ? unit / 2 : 0;
-    }
-    return result;
-  }
-};
+/// The grid of midpoints of edges along an axis, or of faces across it.
+HalfGrid midpoints(ElementKind kind, int axis) noexcept {
+  const int along = 1 << axis;
+  return static_cast<HalfGrid>(kind == ElementKind::Edges ? along : 7 ^ along);
+}
 
 }  // namespace
 
-ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& stage)
+HalfGridSet ElementNumbers::gridsOf(ElementKind kind) noexcept {
+  unsigned set = 0;
+  for (int axis = 0; axis < 3; ++axis) set |= halfGridBit(midpoints(kind, axis));
+  return static_cast<HalfGridSet>(set);
+}
+
+ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind)
     : map_(map.exact), topology_(map.topology), kind_(kind) {
   const std::size_t tets = map.topology.tetCount();
   begin_.resize(tets + 1);
@@ -46,60 +28,62 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& 
   axes_.resize(3 * tets);
   lineBegin_.resize(3 * tets + 1);
   lineBegin_[3 * tets] = 0;
-  std::vector<std::vector<Line>> blocks(blockCount(tets, kSweepBlock));
-  parallelBlocks(stage, tets, kSweepBlock,
+}
+
+ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& stage)
+    : ElementNumbers(map, kind) {
+  Sweep sweep(*this);
+  parallelBlocks(stage, topology_.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    for (std::size_t t = begin; t < end; ++t) {
-                     sweep(static_cast<Index>(t), blocks[block]);
+                     HalfGrids grids(map_.corners[t], map_.unit, gridsOf(kind));
+                     sweep.add(block, static_cast<Index>(t), grids);
                    }
                  });
-  exclusiveScan(std::span(begin_));
-  if (count() >= kNone) {
-    throw Error(ErrorCode::TooLarge, "The mesh would have " + std::to_string(count()) +
+  sweep.finish(stage);
+}
+
+ElementNumbers::Sweep::Sweep(ElementNumbers& numbers)
+    : numbers_(numbers), blocks_(blockCount(numbers.topology_.tetCount(), kSweepBlock)) {}
+
+void ElementNumbers::Sweep::finish(Stage& stage) {
+  ElementNumbers& n = numbers_;
+  exclusiveScan(std::span(n.begin_));
+  if (n.count() >= kNone) {
+    throw Error(ErrorCode::TooLarge, "The mesh would have " + std::to_string(n.count()) +
                                          " edges or faces, more than "
                                          "32-bit indices can number. Lower the scale.");
   }
-  exclusiveScan(std::span(lineBegin_));
-  lines_.resize(lineBegin_.back());
-  parallelFor(stage, blocks.size(), 1, [&](std::size_t block) {
+  exclusiveScan(std::span(n.lineBegin_));
+  n.lines_.resize(n.lineBegin_.back());
+  parallelFor(stage, blocks_.size(), 1, [&](std::size_t block) {
     const std::size_t firstTet = block * kSweepBlock;
-    std::size_t at = lineBegin_[3 * firstTet];
-    auto number = static_cast<Index>(begin_[firstTet]);
-    for (const Line& line : blocks[block]) {
-      lines_[at] = line;
-      lines_[at++].number = number;
+    std::size_t at = n.lineBegin_[3 * firstTet];
+    auto number = static_cast<Index>(n.begin_[firstTet]);
+    for (const Line& line : blocks_[block]) {
+      n.lines_[at] = line;
+      n.lines_[at++].number = number;
       number += line.ownedCount;
     }
-    blocks[block] = {};
+    blocks_[block] = {};
   });
 }
 
 /// Appends the lines with elements that a tet owns, and counts both.
-void ElementNumbers::sweep(Index tet, std::vector<Line>& lines) {
-  const LatticeTet& corners = map_.corners[tet];
-  const GridBoxes boxes = gridBoxes(corners, map_.unit);
-  std::optional<EmptinessTest> test;
+void ElementNumbers::sweep(Index tet, HalfGrids& grids, std::vector<Line>& lines) {
   CenterOwner owner(topology_, tet);
-  begin_[tet] = 0;
+  std::uint64_t elements = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const ShiftedGrid grid(kind_, static_cast<std::size_t>(axis));
-    const GridBox box = grid.box(boxes);
-    const SweepAxes axes = chooseSweepAxes(box);
-    axes_[gridOf(tet, axis)] = axes;
-    lineBegin_[gridOf(tet, axis)] = 0;
-    if (box.empty()) continue;
-    if (!test) test.emplace(corners, map_.unit);
-    if (test->certainlyMisses(box, grid.shift())) continue;
     const std::size_t before = lines.size();
-    const LatticeTet moved = grid.movedBack(corners, map_.unit);
-    LineRasterizer(moved, map_.unit, box, axes).run([&](const SweptLine& line) {
+    axes_[gridOf(tet, axis)] = grids.sweep(midpoints(kind_, axis), [&](const SweptLine& line) {
       const auto [first, count] = owner.owned(line);
       if (count == 0) return;
       lines.push_back({line, first, count, kNone});
-      begin_[tet] += count;
+      elements += count;
     });
     lineBegin_[gridOf(tet, axis)] = lines.size() - before;
   }
+  begin_[tet] = elements;
 }
 
 GridPoint ElementNumbers::point(Index tet, int axis, const Line& line,
@@ -125,6 +109,25 @@ Index ElementNumbers::find(Index owner, int axis, const GridPoint& z, LineHint& 
               "An edge or face was not found in the tet that owns its midpoint. The map passed all "
               "checks, so this is a bug; please report it with the map.",
               {PlaceKind::Tet, owner});
+}
+
+GridNumbers numberVerticesAndEdges(const PreparedMap& map, Stage& stage) {
+  GridNumbers numbers{LatticeNumbers(map), ElementNumbers(map, ElementKind::Edges)};
+  LatticeNumbers::Sweep vertices(numbers.vertices);
+  ElementNumbers::Sweep edges(numbers.edges);
+  const auto wanted = static_cast<HalfGridSet>(LatticeNumbers::kGrids |
+                                               ElementNumbers::gridsOf(ElementKind::Edges));
+  parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   for (std::size_t t = begin; t < end; ++t) {
+                     HalfGrids grids(map.exact.corners[t], map.exact.unit, wanted);
+                     vertices.add(block, static_cast<Index>(t), grids);
+                     edges.add(block, static_cast<Index>(t), grids);
+                   }
+                 });
+  vertices.finish(stage);
+  edges.finish(stage);
+  return numbers;
 }
 
 }  // namespace hexhex

@@ -7,12 +7,14 @@
 #include <cstdint>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include <curved/lattice_numbers.hpp>
 #include <sweep/cell_seeds.hpp>
 
 #include <hexhex/types.hpp>
 
+#include <lattice/half_grids.hpp>
 #include <map/prepare.hpp>
 
 namespace hexhex {
@@ -28,9 +30,43 @@ struct Element {
 };
 
 class ElementNumbers {
+ private:
+  struct Line {
+    SweptLine swept;
+    std::uint32_t ownedFirst;
+    std::uint32_t ownedCount;
+    Index number;  ///< of the first that is owned
+  };
+
  public:
   /// @throws Error TooLarge for more elements than an Index can number
   ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& stage);
+  /// Without numbers until a Sweep is finished.
+  ElementNumbers(const PreparedMap& map, ElementKind kind);
+
+  /// Grids with the midpoints of such elements.
+  [[nodiscard]] static HalfGridSet gridsOf(ElementKind kind) noexcept;
+
+  /// Gives numbers while others sweep the same tets.
+  class Sweep {
+   public:
+    explicit Sweep(ElementNumbers& numbers);
+    /// Tets of a block in order, blocks in any order and in parallel.
+    /// @param grids  of the tet; with gridsOf() wanted
+    void add(std::size_t block, Index tet, HalfGrids& grids) {
+      if ((grids.occupied() & gridsOf(numbers_.kind_)) == 0) {
+        numbers_.addNothing(tet);
+      } else {
+        numbers_.sweep(tet, grids, blocks_[block]);
+      }
+    }
+    /// @throws Error TooLarge for more elements than an Index can number
+    void finish(Stage& stage);
+
+   private:
+    ElementNumbers& numbers_;
+    std::vector<std::vector<Line>> blocks_;
+  };
 
   [[nodiscard]] std::uint64_t count() const noexcept { return begin_.back(); }
   /// The first element that a tet owns; also of the tet behind the last.
@@ -69,6 +105,7 @@ class ElementNumbers {
   template <class Visit>
   void forEachRow(Index tet, const Visit& visit) const {
     std::uint64_t number = begin_[tet];
+    if (number == begin_[std::size_t{tet} + 1]) return;
     for (int axis = 0; axis < 3; ++axis) {
       const std::size_t along = axes_[gridOf(tet, axis)]()[2];
       for (const Line& line : linesOf(tet, axis)) {
@@ -89,13 +126,6 @@ class ElementNumbers {
   [[nodiscard]] Index find(Index owner, int axis, const GridPoint& z, LineHint& hint) const;
 
  private:
-  struct Line {
-    SweptLine swept;
-    std::uint32_t ownedFirst;
-    std::uint32_t ownedCount;
-    Index number;  ///< of the first that is owned
-  };
-
   [[nodiscard]] static std::size_t gridOf(Index tet, int axis) noexcept {
     return 3 * std::size_t{tet} + static_cast<std::size_t>(axis);
   }
@@ -105,7 +135,14 @@ class ElementNumbers {
   }
   [[nodiscard]] GridPoint point(Index tet, int axis, const Line& line,
                                 std::uint32_t i) const noexcept;
-  void sweep(Index tet, std::vector<Line>& lines);
+  void addNothing(Index tet) noexcept {
+    begin_[tet] = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      axes_[gridOf(tet, axis)] = {};
+      lineBegin_[gridOf(tet, axis)] = 0;
+    }
+  }
+  void sweep(Index tet, HalfGrids& grids, std::vector<Line>& lines);
 
   const ExactMap& map_;
   const TetTopology& topology_;
@@ -115,5 +152,13 @@ class ElementNumbers {
   Array<std::uint64_t> lineBegin_;  ///< per grid (+1)
   Array<Line> lines_;               ///< those with owned elements
 };
+
+/// What vertices and edges take to be numbered, in one sweep of the tets.
+struct GridNumbers {
+  LatticeNumbers vertices;
+  ElementNumbers edges;
+};
+/// @throws Error TooLarge for more than an Index can number
+[[nodiscard]] GridNumbers numberVerticesAndEdges(const PreparedMap& map, Stage& stage);
 
 }  // namespace hexhex

@@ -30,8 +30,7 @@ void toCallersCorners(const OrientedMap& input, Array<CornerSet>& corners, Stage
 void addParts(const PreparedMap& map, PiecewiseLinearParts parts, PiecewiseLinearMesh& result,
               Context& context) {
   Stage arcStage(context, "arcs");
-  const LatticeNumbers vertices(map, arcStage);
-  const ElementNumbers edges(map, ElementKind::Edges, arcStage);
+  const auto [vertices, edges] = numberVerticesAndEdges(map, arcStage);
   result.arcs = traceArcs(map, vertices, edges, arcStage);
   arcStage.finish();
   if (parts == PiecewiseLinearParts::ArcsAndPatches) {

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include <curved/face_walk.hpp>
 #include <curved/simplex_point.hpp>
 
@@ -58,25 +61,32 @@ constexpr std::array<std::uint8_t, 64> kExits = makeExits();
 
 }  // namespace
 
-bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen) {
-  std::array<Int128, 6> sides;
-  unsigned left = 0;
-  bool touches = false;
+EdgeSides::EdgeSides(const LatticeTet& seen) noexcept {
   for (std::size_t e = 0; e < 6; ++e) {
-    sides[e] = crossComponent(seen[kEdges[e][0]], seen[kEdges[e][1]], 0);
-    left |= static_cast<unsigned>(sides[e] > 0) << e;
-    touches |= sides[e] == 0;
+    products[e] = crossComponent(seen[kEdges[e][0]], seen[kEdges[e][1]], 0);
+    left |= static_cast<unsigned>(products[e] > 0) << e;
+    touches |= products[e] == 0;
   }
-  const std::size_t face = kExits[left];
-  if (touches || face == 4) return false;
+}
+
+bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen, const EdgeSides& sides,
+                     Way way) {
+  // Looking back, left is right.
+  const bool back = way == Way::Backward;
+  const std::size_t face = kExits[back ? ~sides.left & 63U : sides.left];
+  if (sides.touches || face == 4) return false;
   face_ = static_cast<int>(face);
+  look(at.frame);
+  reach_ = 0;
   const SeenFace& f = kFaces[face];
   for (std::size_t i = 0; i < 3; ++i) {
-    vertices_[i] = topology_.tets[at.tet][f.corners[i]];
-    seen_[i] = seen[f.corners[i]];
-    const Int128 side = sides[f.sides[i]];
-    weights_[i] = toDouble(side < 0 ? -side : side);
+    const LatticePoint& p = seen[f.corners[i]];
+    place(i, topology_.tets[at.tet][f.corners[i]],
+          back ? LatticePoint{exact_.unit - p[0], -p[1], p[2]} : p);
+    const Int128 product = sides.products[f.sides[i]];
+    weights_[i] = toDouble(product < 0 ? -product : product);
   }
+  measure();
   return true;
 }
 
@@ -88,13 +98,18 @@ bool FaceWalk::cross(SimplexInTet& at) {
   face_ = localOf(mate);
   if (exact_.transitions.isJump(halfFace)) {
     at.frame = at.frame.carried(exact_.transitions.across(halfFace));
+    look(at.frame);
   }
   return true;
 }
 
 bool FaceWalk::leave(const SimplexInTet& at) {
   const auto apex = static_cast<std::size_t>(face_);
-  const LatticePoint seen = at.frame.see(exact_.corners[at.tet][apex], exact_.unit);
+  const LatticePoint& corner = exact_.corners[at.tet][apex];
+  LatticePoint seen;
+  for (std::size_t k = 0; k < 3; ++k) {
+    seen[k] = ((corner[axis_[k]] - zero_[k]) ^ flip_[k]) - flip_[k];
+  }
   // The edge leaves between two corners, and the apex, that it has inside: those where the apex is
   // to the right of the first and to the left of the second.
   std::array<Int128, 3> side;
@@ -111,11 +126,36 @@ bool FaceWalk::leave(const SimplexInTet& at) {
   const std::size_t second = first == 2 ? 0 : first + 1;
   const std::size_t third = 3 - first - second;
   face_ = topology_.localCorner(at.tet, vertices_[third]);
-  vertices_[third] = topology_.tets[at.tet][apex];
-  seen_[third] = seen;
+  place(third, topology_.tets[at.tet][apex], seen);
   weights_[first] = toDouble(side[second]);
   weights_[second] = toDouble(-side[first]);
+  measure();
   return true;
+}
+
+void FaceWalk::look(const Frame& frame) noexcept {
+  for (std::size_t k = 0; k < 3; ++k) {
+    axis_[k] = static_cast<std::size_t>(axisOf(frame.axes[k]));
+    zero_[k] = frame.origin[axis_[k]] * exact_.unit;
+    flip_[k] = signOf(frame.axes[k]) < 0 ? -1 : 0;
+  }
+}
+
+void FaceWalk::place(std::size_t i, Index vertex, const LatticePoint& seen) noexcept {
+  vertices_[i] = vertex;
+  seen_[i] = seen;
+  positions_[i] = points_[vertex];
+  places_[i] = static_cast<double>(seen[0]);
+  reach_ = std::max(reach_, std::abs(places_[i]));
+}
+
+void FaceWalk::measure() noexcept {
+  const double sum = weights_[0] + weights_[1] + weights_[2];
+  place_ = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    shares_[i] = weights_[i] / sum;
+    place_ += shares_[i] * places_[i];
+  }
 }
 
 }  // namespace hexhex

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include <curved/arc_pieces.hpp>
 #include <curved/owned_simplex.hpp>
 #include <curved/simplex_star.hpp>
 
@@ -11,16 +12,18 @@
 
 namespace hexhex {
 
-/// A point at which a hex edge leaves a simplex.
-struct ArcExit {
-  /// The simplex that holds it.
-  OwnedSimplex generator{};
-  std::size_t count = 0;            ///< its vertices
-  std::array<Index, 3> vertices{};  ///< in any order
-  // Per vertex:
-  std::array<double, 3> weights{};  ///< up to a common factor: within 2^-52 of their values
-  std::array<double, 3> places{};   ///< coordinate along the edge, times unit
+/// On which side of the edges of a tet a hex edge passes, looking along it.
+struct EdgeSides {
+  /// @param seen  the tet in a frame that has the hex edge along its first axis
+  explicit EdgeSides(const LatticeTet& seen) noexcept;
+
+  /// Edge e (kEdges of face_walk.cpp) as a cross product of its corners, across the first axis.
+  std::array<Int128, 6> products;
+  unsigned left = 0;     ///< bit e: the second corner is to the left of the first
+  bool touches = false;  ///< the line of some edge is met
 };
+
+enum class Way : std::uint8_t { Forward, Backward };
 
 /// Goes from face to face.
 ///
@@ -29,20 +32,33 @@ struct ArcExit {
 /// corner that the next face lacks, and the others stay where they are.
 class FaceWalk {
  public:
-  explicit FaceWalk(const PreparedMap& map) : topology_(map.topology), exact_(map.exact) {}
+  explicit FaceWalk(const PreparedMap& map)
+      : topology_(map.topology),
+        exact_(map.exact),
+        points_(map.input.view.points),
+        unit_(static_cast<double>(map.exact.unit)),
+        perUnit_(1 / unit_) {}
 
   /// Leaves a tet.
-  /// @param at    the tet, with a frame that has the edge along its first axis; its interior meets
-  ///              the edge
-  /// @param seen  the tet in the frame
+  /// @param at     the tet, with a frame that has the edge along its first axis; its interior meets
+  ///               the edge
+  /// @param seen   the tet in the frame
+  /// @param sides  of `seen`
   /// @return false if the edge does not leave through the interior of a face, or touches the line
   ///         of an edge of the tet elsewhere
-  [[nodiscard]] bool start(const SimplexInTet& at, const LatticeTet& seen);
+  [[nodiscard]] bool start(const SimplexInTet& at, const LatticeTet& seen, const EdgeSides& sides) {
+    return start(at, seen, sides, Way::Forward);
+  }
+  /// The same from what the reverse of the frame shows, if the way is backward.
+  [[nodiscard]] bool start(const SimplexInTet& at, const LatticeTet& seen, const EdgeSides& sides,
+                           Way way);
 
   /// The point in the face at hand, on its side in the tet.
   [[nodiscard]] ArcExit exit(Index tet) const {
-    ArcExit exit{ownedFace(topology_, tet, face_), 3, vertices_, weights_, {}};
-    for (std::size_t i = 0; i < 3; ++i) exit.places[i] = static_cast<double>(seen_[i][0]);
+    ArcExit exit{ownedFace(topology_, tet, face_), {}, place_ * perUnit_};
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) exit.point[k] += shares_[i] * positions_[i][k];
+    }
     return exit;
   }
 
@@ -54,14 +70,43 @@ class FaceWalk {
   /// @return false if the edge does not leave through the interior of a face
   [[nodiscard]] bool leave(const SimplexInTet& at);
 
+  /// Whether the point in the face at hand is certainly before coordinate 1 of the frame.
+  [[nodiscard]] bool certainlyGoesOn() const noexcept {
+    // In units of 2^-53: weights carry two roundings (2), their sum two more (4), shares one more
+    // (7), places one and products one, the sum of three two (11): times `reach_`, as shares are
+    // positive and add up to 1. 2^-48 leaves a factor of almost three for the rounding of the sum
+    // here and terms of second order.
+    constexpr double kRelativeError = 0x1p-48;
+    return place_ + kRelativeError * reach_ < unit_;
+  }
+
  private:
+  void look(const Frame& frame) noexcept;
+  void place(std::size_t i, Index vertex, const LatticePoint& seen) noexcept;
+  void measure() noexcept;
+
   const TetTopology& topology_;
   const ExactMap& exact_;
+  std::span<const Vec3> points_;
+  double unit_;
+  double perUnit_;
   int face_ = 0;  ///< of the tet at hand
+
+  // The frame: coordinate k is p[axis_[k]] - zero_[k], negated if flip_[k] is -1.
+  std::array<std::size_t, 3> axis_{};
+  std::array<std::int64_t, 3> zero_{};
+  std::array<std::int64_t, 3> flip_{};
+
   // Per corner of the face:
   std::array<Index, 3> vertices_{};
   std::array<LatticePoint, 3> seen_{};
-  std::array<double, 3> weights_{};
+  std::array<double, 3> places_{};   ///< coordinate along the edge, times unit
+  std::array<double, 3> weights_{};  ///< of the point, up to a common factor
+  std::array<double, 3> shares_{};   ///< the same with sum 1
+  std::array<Vec3, 3> positions_{};
+
+  double place_ = 0;  ///< of the point, times unit
+  double reach_ = 0;  ///< magnitude of the largest place since the start
 };
 
 }  // namespace hexhex

@@ -25,6 +25,11 @@ struct Frame {
     return {transition(origin), {transition(axes[0]), transition(axes[1]), transition(axes[2])}};
   }
 
+  /// The frame of the same edge from its other end.
+  [[nodiscard]] constexpr Frame reversed() const noexcept {
+    return {at({1, 0, 0}), {opposite(axes[0]), opposite(axes[1]), axes[2]}};
+  }
+
   /// The grid point at integer coordinates of the frame, in the chart.
   [[nodiscard]] constexpr GridPoint at(const GridPoint& c) const noexcept {
     GridPoint z = origin;

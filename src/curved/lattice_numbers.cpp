@@ -6,53 +6,58 @@
 
 namespace hexhex {
 
-namespace {
-
-/// Most tets of a coarse map contain no grid point.
-bool mayHavePoints(const ExactMap& map, Index tet, const TetSweep& sweep) {
-  return !sweep.box.empty() &&
-         !EmptinessTest(map.corners[tet], map.unit).certainlyMisses(sweep.box, 0);
-}
-
-}  // namespace
-
-LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : map_(map) {
+LatticeNumbers::LatticeNumbers(const PreparedMap& map) : map_(map) {
   const std::size_t tets = map.topology.tetCount();
   axes_.resize(tets);
   lineBegin_.resize(tets + 1);
   lineBegin_[tets] = 0;
-  std::vector<std::vector<SweptLine>> blocks(blockCount(tets, kSweepBlock));
-  VertexCounter counter(map, numbers_);
-  parallelBlocks(stage, tets, kSweepBlock,
+}
+
+LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : LatticeNumbers(map) {
+  Sweep sweep(*this);
+  parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   std::vector<SweptLine>& lines = blocks[block];
                    for (std::size_t t = begin; t < end; ++t) {
-                     const auto tet = static_cast<Index>(t);
-                     const std::size_t before = lines.size();
-                     const TetSweep sweep(map.exact, tet, SweptGrid::Vertices);
-                     axes_[t] = sweep.axes;
-                     if (mayHavePoints(map.exact, tet, sweep)) sweep.run(map.exact.unit, lines);
-                     lineBegin_[t] = lines.size() - before;
-                     counter.count(block, tet, std::span(lines).subspan(before));
+                     HalfGrids grids(map.exact.corners[t], map.exact.unit, kGrids);
+                     sweep.add(block, static_cast<Index>(t), grids);
                    }
                  });
-  counter.finish();
-  if (numbers_.count() >= kNone) {
+  sweep.finish(stage);
+}
+
+LatticeNumbers::Sweep::Sweep(LatticeNumbers& numbers)
+    : numbers_(numbers),
+      counter_(numbers.map_, numbers.numbers_),
+      blocks_(blockCount(numbers.map_.topology.tetCount(), kSweepBlock)) {}
+
+void LatticeNumbers::Sweep::sweep(std::size_t block, Index tet, HalfGrids& grids) {
+  std::vector<SweptLine>& lines = blocks_[block];
+  const std::size_t before = lines.size();
+  numbers_.axes_[tet] = grids.sweep(0, [&](const SweptLine& line) { lines.push_back(line); });
+  numbers_.lineBegin_[tet] = lines.size() - before;
+  counter_.count(block, tet, std::span(lines).subspan(before));
+}
+
+void LatticeNumbers::Sweep::finish(Stage& stage) {
+  LatticeNumbers& n = numbers_;
+  counter_.finish();
+  if (n.count() >= kNone) {
     throw Error(ErrorCode::TooLarge,
-                "The mesh would have " + std::to_string(numbers_.count()) +
+                "The mesh would have " + std::to_string(n.count()) +
                     " vertices, more than 32-bit indices can number. Lower the scale or the "
                     "order.");
   }
-  exclusiveScan(std::span(lineBegin_));
-  lines_.resize(lineBegin_.back());
-  parallelBlocks(stage, tets, kSweepBlock,
+  exclusiveScan(std::span(n.lineBegin_));
+  n.lines_.resize(n.lineBegin_.back());
+  parallelBlocks(stage, n.map_.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   std::size_t at = lineBegin_[begin];
-                   for (const SweptLine& line : blocks[block]) lines_[at++] = {line};
-                   blocks[block] = {};
+                   std::size_t at = n.lineBegin_[begin];
+                   for (const SweptLine& line : blocks_[block]) n.lines_[at++] = {line};
+                   blocks_[block] = {};
                    std::vector<SweptLine> scratch;
                    for (std::size_t t = begin; t < end; ++t) {
-                     number(static_cast<Index>(t), scratch);
+                     const auto tet = static_cast<Index>(t);
+                     if (n.hasVertices(tet)) n.number(tet, scratch);
                    }
                  });
 }
@@ -61,7 +66,6 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : map_(map)
 void LatticeNumbers::number(Index tet, std::vector<SweptLine>& swept) {
   const std::size_t begin = lineBegin_[tet];
   const std::size_t end = lineBegin_[std::size_t{tet} + 1];
-  if (begin == end) return;
   swept.clear();
   for (std::size_t i = begin; i < end; ++i) swept.push_back(lines_[i].swept);
   TetNumbering(map_, numbers_, tet, axes_[tet])
@@ -141,7 +145,7 @@ void LatticeNumbers::describe(const VertexDescriptions& to, Stage& stage) const 
                            for (std::uint32_t i = 0; i < run.count; ++i) {
                              const std::uint64_t v = run.first + i;
                              to.points[v] =
-                                 positions.at(run.simplex, sweep.point(*run.line, run.offset + i));
+                                 positions.at(run.simplex, run.line->point(run.offset + i));
                              to.tets[v] = tet;
                              to.corners[v] = map_.input.callersCorners(run.simplex);
                            }

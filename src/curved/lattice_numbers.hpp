@@ -10,6 +10,7 @@
 
 #include <hexhex/types.hpp>
 
+#include <lattice/half_grids.hpp>
 #include <map/prepare.hpp>
 
 namespace hexhex {
@@ -32,11 +33,47 @@ class LatticeNumbers {
  public:
   /// @throws Error TooLarge for more vertices than an Index can number
   LatticeNumbers(const PreparedMap& map, Stage& stage);
+  /// Without numbers until a Sweep is finished.
+  explicit LatticeNumbers(const PreparedMap& map);
+
+  /// The grid of vertices.
+  static constexpr HalfGridSet kGrids = halfGridBit(0);
+
+  /// Gives numbers while others sweep the same tets.
+  class Sweep {
+   public:
+    explicit Sweep(LatticeNumbers& numbers);
+    /// Tets of a block in order, blocks in any order and in parallel.
+    /// @param grids  of the tet; with kGrids wanted
+    void add(std::size_t block, Index tet, HalfGrids& grids) {
+      if ((grids.occupied() & kGrids) != 0) {
+        sweep(block, tet, grids);
+      } else {
+        numbers_.axes_[tet] = {};
+        numbers_.lineBegin_[tet] = 0;
+        counter_.countNothing(tet);
+      }
+    }
+    /// @throws Error TooLarge for more vertices than an Index can number
+    void finish(Stage& stage);
+
+   private:
+    void sweep(std::size_t block, Index tet, HalfGrids& grids);
+
+    LatticeNumbers& numbers_;
+    VertexCounter counter_;
+    std::vector<std::vector<SweptLine>> blocks_;
+  };
 
   [[nodiscard]] std::uint64_t count() const noexcept { return numbers_.count(); }
 
   /// Writes position and generator of every vertex.
   void describe(const VertexDescriptions& to, Stage& stage) const;
+
+  /// Whether a closed tet contains any vertices.
+  [[nodiscard]] bool hasVertices(Index tet) const noexcept {
+    return lineBegin_[tet] != lineBegin_[std::size_t{tet} + 1];
+  }
 
   struct Found {
     Index vertex = kNone;             ///< kNone if the closed tet does not contain the point

@@ -1,0 +1,84 @@
+// The grid points of one tet, and those of the grid moved by one half along some axes: centres of
+// cells, midpoints of edges and faces. All of them are points of the grid of half the width, and
+// what finding them has in common is done once.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include <lattice/line_rasterizer.hpp>
+
+namespace hexhex {
+
+/// A grid, moved by one half along some axes: bit k for axis k. Its points are named by what they
+/// are moved from.
+using HalfGrid = std::uint8_t;
+
+/// A set of such grids: bit g for grid g.
+using HalfGridSet = std::uint8_t;
+
+[[nodiscard]] constexpr HalfGridSet halfGridBit(HalfGrid grid) noexcept {
+  return static_cast<HalfGridSet>(1U << grid);
+}
+
+/// Sweeps a tet for the points of one grid after the other.
+///
+/// Small tets are compared with all points of their bounding box first, in floating point with a
+/// proven bound: that is all that most tets of a coarse map take. Grids of which a point is not
+/// certainly inside or outside then, and those of larger tets, are swept by LineRasterizer.
+class HalfGrids {
+ public:
+  /// @param wanted  the grids that may be swept
+  HalfGrids(const LatticeTet& corners, std::int64_t unit, HalfGridSet wanted) noexcept;
+
+  /// The wanted grids that may have points in the tet.
+  [[nodiscard]] HalfGridSet occupied() const noexcept { return occupied_; }
+
+  /// Calls visit(SweptLine) for every line of a wanted grid that meets the closed tet, in sweep
+  /// order.
+  /// @return the order of the sweep; any, if there are no lines
+  template <class Visit>
+  SweepAxes sweep(HalfGrid grid, const Visit& visit) {
+    if ((occupied_ & halfGridBit(grid)) == 0) return {};
+    const GridBox box = boxOf(grid);
+    const SweepAxes axes = chooseSweepAxes(box);
+    if ((unsure_ & halfGridBit(grid)) == 0) {
+      sortInside(grid, axes);
+      for (std::size_t i = 0; i < lineCount_; ++i) visit(std::as_const(lines_[i]));
+    } else if (!box.empty()) {
+      const LatticeTet back = movedBack(grid);
+      LineRasterizer(back, unit_, box, axes).run(visit);
+    }
+    return axes;
+  }
+
+ private:
+  /// Tets with more points of the finer grid in their boxes are not small.
+  static constexpr std::int32_t kFewPoints = 48;
+
+  /// A point that is certainly inside.
+  struct Inside {
+    GridPoint z;
+    HalfGrid grid;
+  };
+
+  [[nodiscard]] bool comparePoints(unsigned wanted) noexcept;
+  void sortInside(HalfGrid grid, SweepAxes axes) noexcept;
+  [[nodiscard]] GridBox boxOf(HalfGrid grid) noexcept;
+  /// The tet, moved so that the points of the grid become integers.
+  [[nodiscard]] LatticeTet movedBack(HalfGrid grid) const noexcept;
+
+  const LatticeTet& corners_;
+  std::int64_t unit_;
+  HalfGridSet occupied_ = 0;
+  HalfGridSet unsure_ = 0;  ///< grids that take an exact sweep
+  std::size_t insideCount_ = 0;
+  std::size_t lineCount_ = 0;
+  std::optional<GridBoxes> boxes_;           ///< made when first needed
+  std::array<Inside, kFewPoints> inside_;    ///< of the grids that are not unsure
+  std::array<SweptLine, kFewPoints> lines_;  ///< of the grid that is being swept
+};
+
+}  // namespace hexhex
