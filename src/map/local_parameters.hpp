@@ -7,6 +7,7 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/prefetch.hpp>
 #include <base/vector3.hpp>
 #include <map/input.hpp>
 
@@ -48,9 +49,9 @@ class LocalParameters {
   [[nodiscard]] const TetParameters& given(Index tet) const noexcept { return parameters_[tet]; }
   /// Asks for the parameters of a tet that will be looked at soon.
   void prefetch(Index tet) const noexcept {
-    const char* const begin = reinterpret_cast<const char*>(&parameters_[tet]);
-    __builtin_prefetch(begin);
-    __builtin_prefetch(begin + sizeof(TetParameters) - 1);
+    const TetParameters& parameters = parameters_[tet];
+    hexhex::prefetch(&parameters.front());
+    hexhex::prefetch(&parameters.back().back());
   }
   /// All corners of a tet, without a copy if they are where the caller has put them.
   /// @param scratch  must outlive the result
