@@ -1,6 +1,9 @@
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <string>
-#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include <atlas/atlas.hpp>
 #include <atlas/cell_emitter.hpp>
@@ -50,15 +53,16 @@ class Atlas {
       Stage stage(context_, "grid");
       vertices_.fill(arrays, stage);
     }
+    OverlapCounts overlaps;
     {
       Stage stage(context_, "overlaps");
-      if (options_.resolveOverlaps) {
-        statistics.overlappingTets = vertices_.resolveOverlaps(stage).tets;
-      }
+      if (options_.resolveOverlaps) overlaps = vertices_.resolveOverlaps(stage);
     }
+    statistics.overlappingTets = overlaps.tets;
     Stage stage(context_, "cuts");
     if (options_.markCuts) {
-      statistics.cutFaces = markCutCells(map_, charts_, vertices_.grid(), stage);
+      statistics.cutFaces =
+          markCutCells(map_, charts_, overlaps.tets == 0, vertices_.grid(), stage);
     }
     vertices_.dropLines();
     statistics.charts = charts_.count;
@@ -78,37 +82,70 @@ class Atlas {
   AtlasOptions options_;
 };
 
-/// Emits the cells of consecutive tets.
-/// @param first  number of the first cell in `cells`
+/// Emits cells by as many emitters as work at the same time; they remember much of what they saw.
 template <class Id>
-std::uint64_t emitCells(const PreparedMap& map, const Atlas<Id>& atlas, std::size_t firstTet,
-                        std::size_t endTet, std::uint64_t first,
-                        std::span<typename CellEmitter<Id>::Cell> cells) {
-  const Array<std::uint64_t>& begin = atlas.cells().begin;
-  if (begin[firstTet] == begin[endTet]) return 0;
-  CellEmitter<Id> emitter(map, atlas.vertices());
-  std::vector<SweptLine> scratch;
-  for (std::size_t t = firstTet; t < endTet; ++t) {
-    if (begin[t] == begin[t + 1]) continue;
-    const auto tet = static_cast<Index>(t);
-    emitter.emit(tet, atlas.cells().linesOf(map.exact, tet, scratch),
-                 cells.subspan(begin[t] - first, begin[t + 1] - begin[t]));
+class CellEmitters {
+ public:
+  CellEmitters(const PreparedMap& map, const Atlas<Id>& atlas) : map_(map), atlas_(atlas) {}
+
+  /// Emits the cells of consecutive tets.
+  /// @param first  number of the first cell in `cells`
+  void emit(std::size_t firstTet, std::size_t endTet, std::uint64_t first,
+            std::span<typename CellEmitter<Id>::Cell> cells) {
+    const Array<std::uint64_t>& begin = atlas_.cells().begin;
+    if (begin[firstTet] == begin[endTet]) return;
+    std::unique_ptr<CellEmitter<Id>> emitter = take();
+    std::vector<SweptLine> scratch;
+    for (std::size_t t = firstTet; t < endTet; ++t) {
+      if (begin[t] == begin[t + 1]) continue;
+      const auto tet = static_cast<Index>(t);
+      emitter->emit(tet, atlas_.cells().linesOf(map_.exact, tet, scratch),
+                    cells.subspan(begin[t] - first, begin[t + 1] - begin[t]));
+    }
+    giveBack(std::move(emitter));
   }
-  return emitter.traced();
-}
+
+  /// Cells so far with a corner that the picture hides. Not while others emit.
+  [[nodiscard]] std::uint64_t traced() const noexcept {
+    std::uint64_t sum = 0;
+    for (const std::unique_ptr<CellEmitter<Id>>& emitter : idle_) sum += emitter->traced();
+    return sum;
+  }
+
+ private:
+  [[nodiscard]] std::unique_ptr<CellEmitter<Id>> take() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!idle_.empty()) {
+        std::unique_ptr<CellEmitter<Id>> emitter = std::move(idle_.back());
+        idle_.pop_back();
+        return emitter;
+      }
+    }
+    return std::make_unique<CellEmitter<Id>>(map_, atlas_.vertices());
+  }
+  void giveBack(std::unique_ptr<CellEmitter<Id>> emitter) {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(emitter));
+  }
+
+  const PreparedMap& map_;
+  const Atlas<Id>& atlas_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<CellEmitter<Id>>> idle_;
+};
 
 /// All cells at once.
 Array<Hex> emitAllCells(const PreparedMap& map, const Atlas<Index>& atlas, Context& context,
                         ExtractStatistics& statistics) {
   Stage stage(context, "cells");
   Array<Hex> cells(atlas.cells().count());
-  std::atomic<std::uint64_t> traced{0};
+  CellEmitters<Index> emitters(map, atlas);
   parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
                  [&](std::size_t first, std::size_t end, std::size_t) {
-                   traced.fetch_add(emitCells(map, atlas, first, end, 0, std::span(cells)),
-                                    std::memory_order_relaxed);
+                   emitters.emit(first, end, 0, std::span(cells));
                  });
-  statistics.tracedCells = traced.load();
+  statistics.tracedCells = emitters.traced();
   return cells;
 }
 
@@ -160,7 +197,7 @@ void streamCells(const PreparedMap& map, const Atlas<Id>& atlas, MeshSink& sink,
   Stage stage(context, "cells");
   using Cell = typename CellEmitter<Id>::Cell;
   const Array<std::uint64_t>& begin = atlas.cells().begin;
-  std::atomic<std::uint64_t> traced{0};
+  CellEmitters<Id> emitters(map, atlas);
   Array<Cell> cells;
   for (std::size_t t = 0; t < map.topology.tetCount();) {
     const Batch batch = nextBatch(begin, t);
@@ -171,13 +208,12 @@ void streamCells(const PreparedMap& map, const Atlas<Id>& atlas, MeshSink& sink,
     cells.resize(count);
     parallelBlocks(stage, batch.endTet - batch.firstTet, kBatchGrain,
                    [&](std::size_t from, std::size_t to, std::size_t) {
-                     traced.fetch_add(emitCells(map, atlas, batch.firstTet + from,
-                                                batch.firstTet + to, first, std::span(cells)),
-                                      std::memory_order_relaxed);
+                     emitters.emit(batch.firstTet + from, batch.firstTet + to, first,
+                                   std::span(cells));
                    });
     sink.cells(first, std::span<const Cell>(cells));
   }
-  statistics.tracedCells = traced.load();
+  statistics.tracedCells = emitters.traced();
 }
 
 template <class Id>

@@ -37,6 +37,12 @@ inline constexpr BrickKey kNoBrick = std::numeric_limits<BrickKey>::max();
   return (c[2] % kBrickSide * kBrickSide + c[1] % kBrickSide) * kBrickSide + c[0] % kBrickSide;
 }
 
+/// From the place of a point to that of its neighbour in a direction, in the same brick.
+[[nodiscard]] constexpr std::ptrdiff_t strideInBrick(Direction d) noexcept {
+  constexpr std::array<std::ptrdiff_t, 3> kStrides = {1, kBrickSide, kBrickSide * kBrickSide};
+  return signOf(d) * kStrides[static_cast<std::size_t>(axisOf(d))];
+}
+
 template <class Id>
 struct Brick {
   /// No hex vertex is known at a point.
@@ -65,12 +71,9 @@ struct Brick {
     word.fetch_or(bit, std::memory_order_relaxed);
     std::atomic_ref(marked).store(1, std::memory_order_relaxed);
   }
-  /// The marks of a row of points along x: bit i for point i.
-  /// @param row  8 z + y
-  [[nodiscard]] std::uint8_t marksOfRow(std::size_t row) const noexcept {
-    return static_cast<std::uint8_t>(marks[row / 8] >> (row % 8 * 8));
+  [[nodiscard]] bool isMarked(std::size_t place) const noexcept {
+    return ((marks[place / 64] >> (place % 64)) & 1U) != 0;
   }
-  [[nodiscard]] bool hasMarks() const noexcept { return marked != 0; }
 };
 
 /// Bricks by key. Filled in two steps: build() from all threads' keys at once, then add() for
@@ -213,15 +216,15 @@ struct ChartRow {
   /// point, its offset in the row, its number of points, and the distance of their places.
   template <class Visit>
   void forEachPart(const Visit& visit) const {
-    constexpr std::array<std::ptrdiff_t, 3> kStrides = {1, kBrickSide, kBrickSide * kBrickSide};
     const auto axis = static_cast<std::size_t>(axisOf(along));
+    const std::ptrdiff_t stride = strideInBrick(along);
     const bool forward = signOf(along) > 0;
     ChartPoint c = start;
     for (std::uint32_t offset = 0; offset < count;) {
       const std::uint32_t inBrick = c[axis] % kBrickSide;
       const std::uint32_t room = forward ? kBrickSide - inBrick : inBrick + 1;
       const std::uint32_t part = std::min(room, count - offset);
-      visit(std::as_const(c), offset, part, forward ? kStrides[axis] : -kStrides[axis]);
+      visit(std::as_const(c), offset, part, stride);
       offset += part;
       c[axis] += forward ? part : 0U - part;
     }

@@ -1,6 +1,7 @@
 #include <algorithm>
-#include <cstdlib>
+#include <bit>
 #include <limits>
+#include <utility>
 
 #include <atlas/cell_emitter.hpp>
 
@@ -8,56 +9,58 @@ namespace hexhex {
 
 namespace {
 
-/// Corners of a cell with coordinate 0 along an axis, and those next to them with coordinate 1.
-struct FacingCorners {
-  std::array<std::size_t, 4> near{};
-  std::array<std::size_t, 4> far{};
+/// The corners of a cell by the row of points along the third sweep axis that they are in: row r is
+/// shifted by r % 2 along the first sweep axis, and by r / 2 along the second.
+struct RowCorners {
+  std::array<std::size_t, 4> near{};  ///< with coordinate 0 along the third
+  std::array<std::size_t, 4> far{};   ///< with coordinate 1
 };
 
-constexpr FacingCorners facingCorners(std::size_t axis) {
-  FacingCorners corners;
-  std::size_t count = 0;
+constexpr RowCorners rowCorners(std::size_t permutation) {
+  const std::array<std::uint8_t, 3>& axes = SweepAxes::kPermutations[permutation];
+  RowCorners corners;
   for (std::size_t c = 0; c < 8; ++c) {
-    if (kCellCorners[c][axis] != 0) continue;
-    GridPoint across = kCellCorners[c];
-    across[axis] = 1;
-    corners.near[count] = c;
-    for (std::size_t d = 0; d < 8; ++d) {
-      if (kCellCorners[d] == across) corners.far[count] = d;
-    }
-    ++count;
+    const GridPoint& offset = kCellCorners[c];
+    const auto row = static_cast<std::size_t>(offset[axes[0]] + 2 * offset[axes[1]]);
+    (offset[axes[2]] == 0 ? corners.near : corners.far)[row] = c;
   }
   return corners;
 }
 
-/// Reads a line of cells along an axis; each shares four corners with the next.
-/// @param corner   the place of the first cell's smallest corner
-/// @param corners  how far from there the corners are
+/// Goes on along four rows of points; each cell shares four corners with the one before.
+/// @param rows  at the next point
+/// @param near  the points before
 /// @return all ids, or-ed
-template <std::size_t Axis, class Id>
-Id readCells(const Id* corner, const std::array<std::ptrdiff_t, 8>& corners, std::ptrdiff_t step,
+template <std::size_t Permutation, class Id>
+Id readCells(std::array<const Id*, 4> rows, std::ptrdiff_t stride, std::array<Id, 4>& near,
              std::array<Id, 8>* cells, std::uint32_t count) {
-  constexpr FacingCorners kFacing = facingCorners(Axis);
-  std::array<const Id*, 4> rows;
-  std::array<Id, 4> near;
+  constexpr RowCorners kCorners = rowCorners(Permutation);
   Id together = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    rows[i] = corner + corners[kFacing.near[i]];
-    near[i] = *rows[i];
-    together |= near[i];
-  }
   for (std::uint32_t n = 0; n < count; ++n) {
     std::array<Id, 8> cell;
-    for (std::size_t i = 0; i < 4; ++i) {
-      rows[i] += step;
-      cell[kFacing.near[i]] = near[i];
-      near[i] = *rows[i];
-      cell[kFacing.far[i]] = near[i];
-      together |= near[i];
+    for (std::size_t r = 0; r < 4; ++r) {
+      cell[kCorners.near[r]] = near[r];
+      near[r] = *rows[r];
+      cell[kCorners.far[r]] = near[r];
+      together |= near[r];
+      rows[r] += stride;
     }
     cells[n] = cell;
   }
   return together;
+}
+
+/// What stands for bricks that do not exist.
+template <class Id>
+const Brick<Id>& noBrick() {
+  static const Brick<Id> brick = [] {
+    Brick<Id> empty;
+    empty.clear();
+    empty.marks.fill(~std::uint64_t{0});
+    empty.marked = 1;
+    return empty;
+  }();
+  return brick;
 }
 
 }  // namespace
@@ -66,87 +69,23 @@ template <class Id>
 void CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines, std::span<Cell> cells) {
   if (cells.empty()) return;
   tet_ = tet;
-  entered_ = false;
   chart_ = vertices_.charts().chart[tet];
-  gauge_ = &vertices_.charts().gauge(tet);
-  const TetSweep sweep(map_.exact, tet, SweptGrid::Centers);
-  Job job{sweep, SweepFrame(*gauge_, sweep.axes()), CenterOwner(map_.topology, tet), cells.data()};
-  while (!lines.empty()) {
-    const std::span<const SweptLine> together =
-        lines.first(chart_ == Charts::kNoChart ? lines.size() : load(job, lines));
-    for (const SweptLine& line : together) {
-      const auto [first, count] = job.owner.owned(line);
-      if (count == 0) continue;
-      if (chart_ != Charts::kNoChart) {
-        emitLine(job, line, first, count);
-        continue;
-      }
-      for (std::uint32_t i = first; i < first + count; ++i) {
-        emitIrregular(sweep.point(line, i), line.simplex(i), *job.place++);
-      }
-    }
-    lines = lines.subspan(together.size());
+  const SweepFrame frame(vertices_.charts().gauge(tet), lines.front().axes());
+  Job job{frame, CenterOwner(map_.topology, tet), cells.data(), {}, {}};
+  for (std::uint32_t r = 0; r < 4; ++r) {
+    job.rows[r] = moved(moved({}, frame.along(0), r % 2), frame.along(1), r / 2);
+    job.strides[r] =
+        strideInBrick(frame.along(0)) * (r % 2) + strideInBrick(frame.along(1)) * (r / 2);
   }
-}
-
-/// Loads the vertices around the first lines: those of a few levels, or one line alone if their
-/// box is much larger than they.
-/// @return the number of lines
-template <class Id>
-std::size_t CellEmitter<Id>::load(const Job& job, std::span<const SweptLine> lines) {
-  constexpr std::int32_t kLevels = kBrickSide;
-  SweptLine low = lines.front();
-  std::int32_t highRow = low.row;
-  std::int32_t highPoint = low.first;
-  std::uint64_t cells = 0;
-  std::size_t count = 0;
   for (const SweptLine& line : lines) {
-    if (line.level >= lines.front().level + kLevels) break;
-    low.row = std::min(low.row, line.row);
-    low.first = std::min(low.first, line.first);
-    highRow = std::max(highRow, line.row);
-    highPoint = std::max(highPoint, line.first + static_cast<std::int32_t>(line.count) - 1);
-    cells += line.count;
-    ++count;
-  }
-  const std::int32_t highLevel = lines[count - 1].level;
-  const auto size = [](std::int32_t from, std::int32_t to) {
-    return static_cast<std::uint64_t>(std::int64_t{to} - from + 2);
-  };
-  // Each factor fits 32 bits; a box of that many rows is too large whatever their length.
-  const std::uint64_t rows = size(low.level, highLevel) * size(low.row, highRow);
-  const std::uint64_t most = 64 * cells + 1024;
-  if (rows > most || rows * size(low.first, highPoint) > most) {
-    const SweptLine& line = lines.front();
-    loadBox(job, job.sweep.point(line, 0), job.sweep.point(line, line.count - 1));
-    return 1;
-  }
-  SweptLine high = low;
-  high.level = highLevel;
-  high.row = highRow;
-  high.first = highPoint;
-  loadBox(job, job.sweep.point(low, 0), job.sweep.point(high, 0));
-  return count;
-}
-
-/// @param first, last  cells at opposite ends of a box in the tet's chart
-template <class Id>
-void CellEmitter<Id>::loadBox(const Job& job, const GridPoint& first, const GridPoint& last) {
-  const ChartPoint a = gauge_->cell(first);
-  const ChartPoint b = gauge_->cell(last);
-  ChartPoint low{};
-  std::array<std::uint32_t, 3> size{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto difference = static_cast<std::int32_t>(b[k] - a[k]);
-    low[k] = difference < 0 ? b[k] : a[k];
-    size[k] = static_cast<std::uint32_t>(std::abs(difference)) + 2;
-  }
-  block_.load(cache_, chart_, low, size);
-  const std::array<std::uint8_t, 3>& axes = job.sweep.axes();
-  for (std::size_t c = 0; c < 8; ++c) {
-    corners_[c] = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      corners_[c] += kCellCorners[c][axes[k]] * block_.stride(job.frame.along(k));
+    const auto [first, count] = job.owner.owned(line);
+    if (count == 0) continue;
+    if (chart_ != Charts::kNoChart) {
+      emitLine(job, line, first, count);
+      continue;
+    }
+    for (std::uint32_t i = first; i < first + count; ++i) {
+      emitIrregular(line.point(i), line.simplex(i), *job.place++);
     }
   }
 }
@@ -154,49 +93,112 @@ void CellEmitter<Id>::loadBox(const Job& job, const GridPoint& first, const Grid
 template <class Id>
 void CellEmitter<Id>::emitLine(Job& job, const SweptLine& line, std::uint32_t first,
                                std::uint32_t count) {
-  const ChartPoint start =
-      job.frame(line.level, line.row, line.first + static_cast<std::int32_t>(first));
-  const std::ptrdiff_t step = block_.stride(job.frame.along(2));
-  const Id* corner = block_.ids() + block_.offset(start);
   Cell* const cells = job.place;
   job.place += count;
-  const Id together = [&] {
-    switch (job.sweep.axes()[2]) {
+  const std::int32_t point = line.first + static_cast<std::int32_t>(first);
+  ChartRow row{chart_, job.frame(line.level, line.row, point), job.frame.along(2), count + 1};
+  const Flags flags = [&] {
+    switch (line.axes.index) {
       case 0:
-        return readCells<0>(corner, corners_, step, cells, count);
+        return readLine<0>(job, row, cells);
       case 1:
-        return readCells<1>(corner, corners_, step, cells, count);
+        return readLine<1>(job, row, cells);
+      case 2:
+        return readLine<2>(job, row, cells);
+      case 3:
+        return readLine<3>(job, row, cells);
+      case 4:
+        return readLine<4>(job, row, cells);
       default:
-        return readCells<2>(corner, corners_, step, cells, count);
+        return readLine<5>(job, row, cells);
     }
   }();
+  row.count = count;
+  if (flags.marked || flags.special) mendLine(job, line, first, row, flags.special, cells);
+}
+
+/// Reads the corners of a line of cells off the picture.
+/// @param row  the points of row 0: one more than there are cells
+template <class Id>
+template <std::size_t Permutation>
+typename CellEmitter<Id>::Flags CellEmitter<Id>::readLine(const Job& job, const ChartRow& row,
+                                                          Cell* cells) {
+  std::array<Id, 4> near;
+  Id together = 0;
+  std::uint32_t marked = 0;
+  row.forEachPart(
+      [&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count, std::ptrdiff_t stride) {
+        std::array<const Id*, 4> rows = rowsAt(job, c, marked);
+        if (offset == 0) {
+          for (std::size_t r = 0; r < 4; ++r) {
+            near[r] = *rows[r];
+            together |= near[r];
+            rows[r] += stride;
+          }
+          --count;
+          ++offset;
+        }
+        together |= readCells<Permutation>(rows, stride, near, cells + (offset - 1), count);
+      });
   // Both special values have the highest bit set, as no vertex of a mesh of usual size has.
   constexpr Id kHighestBit = ~(std::numeric_limits<Id>::max() >> 1);
-  if (!block_.anyMarked() && (together & kHighestBit) == 0) return;
+  return {(together & kHighestBit) != 0, marked != 0};
+}
+
+/// The places of the points of the four rows beside point c of row 0.
+/// @param marked  not 0 afterwards if a brick has marks
+template <class Id>
+std::array<const Id*, 4> CellEmitter<Id>::rowsAt(const Job& job, const ChartPoint& c,
+                                                 std::uint32_t& marked) {
+  std::array<const Id*, 4> rows;
+  const auto look = [&](std::size_t r, const ChartPoint& point) {
+    const Brick<Id>* brick = cache_.find(chart_, point);
+    if (brick == nullptr) brick = &noBrick<Id>();
+    marked |= brick->marked;
+    rows[r] = brick->ids.data() + placeInBrick(point);
+  };
+  look(0, c);
+  const ChartPoint last = plus(c, job.rows[3]);
+  if (((last[0] ^ c[0]) | (last[1] ^ c[1]) | (last[2] ^ c[2])) < kBrickSide) {
+    // All are in one brick.
+    for (std::size_t r = 1; r < 4; ++r) rows[r] = rows[0] + job.strides[r];
+    return rows;
+  }
+  for (std::size_t r = 1; r < 4; ++r) look(r, plus(c, job.rows[r]));
+  return rows;
+}
+
+/// Looks at each cell of a line that was read.
+/// @param special  whether there are corners that are no vertices
+template <class Id>
+void CellEmitter<Id>::mendLine(const Job& job, const SweptLine& line, std::uint32_t first,
+                               ChartRow row, bool special, Cell* cells) {
   // A cell is marked at its smallest corner in the chart.
-  ChartPoint smallest = start;
   for (std::size_t k = 0; k < 3; ++k) {
     const Direction d = job.frame.along(k);
-    if (signOf(d) < 0) --smallest[static_cast<std::size_t>(axisOf(d))];
+    if (signOf(d) < 0) row.start = moved(row.start, d, 1);
   }
-  auto at = static_cast<std::ptrdiff_t>(block_.offset(smallest));
-  for (std::uint32_t i = 0; i < count; ++i, at += step) {
-    if (!block_.isMarked(static_cast<std::size_t>(at)) &&
-        std::all_of(cells[i].begin(), cells[i].end(), Brick<Id>::isVertex)) {
-      continue;
-    }
-    emitIrregular(job.sweep.point(line, first + i), line.simplex(first + i), cells[i]);
-  }
+  row.forEachPart(
+      [&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count, std::ptrdiff_t stride) {
+        const Brick<Id>* brick = cache_.find(chart_, c);
+        if (brick == nullptr) brick = &noBrick<Id>();
+        auto place = static_cast<std::ptrdiff_t>(placeInBrick(c));
+        for (std::uint32_t i = offset; i < offset + count; ++i, place += stride) {
+          if (!brick->isMarked(static_cast<std::size_t>(place)) &&
+              (!special || std::all_of(cells[i].begin(), cells[i].end(), Brick<Id>::isVertex))) {
+            continue;
+          }
+          emitIrregular(line.point(first + i), line.simplex(first + i), cells[i]);
+        }
+      });
 }
 
 /// Walks to the corners, and takes from the picture what a straight way without a cut leads to.
 template <class Id>
 void CellEmitter<Id>::emitIrregular(const GridPoint& z, CornerMask generator, Cell& cell) {
-  if (!entered_) walker_.enter(tet_);
-  entered_ = true;
   bool hidden = false;
   const CellCornerSet missed =
-      walker_.run(z, [&](const CellWalker::Stop& stop, CellCornerSet corners) {
+      walker_.run(tet_, z, [&](const CellWalker::Stop& stop, CellCornerSet corners) {
         if (stop.inSight) return;
         hidden = true;
         for (std::size_t c = 0; c < 8; ++c) {

@@ -4,9 +4,9 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
+#include <span>
 
-#include <atlas/brick_block.hpp>
+#include <atlas/brick_grid.hpp>
 #include <atlas/cell_walker.hpp>
 #include <atlas/vertex_grid.hpp>
 #include <sweep/cell_seeds.hpp>
@@ -39,15 +39,26 @@ class CellEmitter {
  private:
   /// One tet on its way.
   struct Job {
-    const TetSweep& sweep;
     SweepFrame frame;
     CenterOwner owner;
     Cell* place;
+    /// From the first of the four rows of points around a line of cells to the others.
+    std::array<ChartPoint, 4> rows;
+    std::array<std::ptrdiff_t, 4> strides;  ///< the same as places in a brick
+  };
+  /// What there is to say of a line of cells that was read.
+  struct Flags {
+    bool special = false;  ///< some corner may be no vertex
+    bool marked = false;   ///< some brick around has marks
   };
 
-  [[nodiscard]] std::size_t load(const Job& job, std::span<const SweptLine> lines);
-  void loadBox(const Job& job, const GridPoint& first, const GridPoint& last);
   void emitLine(Job& job, const SweptLine& line, std::uint32_t first, std::uint32_t count);
+  template <std::size_t Permutation>
+  [[nodiscard]] Flags readLine(const Job& job, const ChartRow& row, Cell* cells);
+  [[nodiscard]] std::array<const Id*, 4> rowsAt(const Job& job, const ChartPoint& c,
+                                                std::uint32_t& marked);
+  void mendLine(const Job& job, const SweptLine& line, std::uint32_t first, ChartRow row,
+                bool special, Cell* cells);
   void emitIrregular(const GridPoint& z, CornerMask generator, Cell& cell);
 
   const PreparedMap& map_;
@@ -58,11 +69,7 @@ class CellEmitter {
   std::uint64_t traced_ = 0;
 
   Index tet_ = 0;
-  bool entered_ = false;  ///< the walker is in the tet
   Index chart_ = 0;
-  const Gauge* gauge_ = nullptr;
-  BrickBlock<Id> block_;                     ///< the vertices around a few lines of cells
-  std::array<std::ptrdiff_t, 8> corners_{};  ///< offsets of a cell's corners there
 };
 
 extern template class CellEmitter<std::uint32_t>;

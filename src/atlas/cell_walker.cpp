@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include <atlas/cell_walker.hpp>
 #include <sweep/cell_seeds.hpp>
@@ -14,12 +15,20 @@ namespace {
 using Vector = std::array<double, 3>;
 
 /// Errors of plane values, as a multiple of the longest edge, the largest coordinate of a corner,
-/// and the largest coordinate of a corner or of the point. With u = 2^-53, the edge e, and the
-/// coordinates r: coordinates err by u r when they are rounded, components of edges by 3 u r, of
-/// normals by 16 u e r, of the vector to the point by 3 u r; the product of the normal (at most
-/// 2 e^2 in each component, e being at most 2 r) and that vector (at most 2 r) errs by less than
-/// 200 u e r^2.
-constexpr double kPlaneError = 0x1p-45;
+/// and the largest coordinate of a corner or of the point. With u = 2^-53, the edge e, and these
+/// coordinates R and r: corners err by u R when they are rounded, components of edges by 3 u R, of
+/// normals by 16 u e R or, if they are the sum of three, by 60 u e R, and centres are exact. The
+/// normal (at most 2 e^2 in each component, e being at most 2 R) times a vector of at most 2 r from
+/// corner to point errs by 360 u e R r for the normal and by 12 u e R r for the corner; roundings
+/// of the three sums of products (offset, centre, half a diagonal) add at most 48 u e R r each.
+/// 1024 u is nearly twice as much as all that.
+constexpr double kPlaneError = 0x1p-43;
+
+/// Tets whose faces are remembered.
+constexpr std::size_t kRemembered = 2048;
+
+/// Ways that turn about an edge come to an end sooner than after so many tets.
+constexpr std::size_t kMaxSteps = 10000;
 
 /// Half the diagonals' products with a vector, by corner.
 std::array<double, 8> halfDiagonals(const Vector& v) {
@@ -39,91 +48,122 @@ double largest(const Vector& v) {
 
 }  // namespace
 
-void CellWalker::enter(Index tet) {
+CellWalker::CellWalker(const PreparedMap& map, const Charts& charts)
+    : map_(map),
+      charts_(charts),
+      scale_(1.0 / static_cast<double>(map.exact.unit)),
+      tetAt_(kRemembered, kNone),
+      faces_(kRemembered) {}
+
+void CellWalker::begin(Index tet, const GridPoint& z) {
+  constexpr CellCornerSet kAll = 0xff;
+  Group group{{tet, charts_.chart[tet] != Charts::kNoChart, {}}, 0, kAll, {}};
+  for (std::size_t k = 0; k < 3; ++k) group.center[k] = 2 * std::int64_t{z[k]} + 1;
+  front_.assign(1, group);
+  stepsLeft_ = kMaxSteps;
+}
+
+const CellWalker::Faces& CellWalker::facesOf(Index tet) noexcept {
+  const std::size_t place = tet % kRemembered;
+  if (tetAt_[place] != tet) {
+    tetAt_[place] = tet;
+    measure(tet, faces_[place]);
+  }
+  return faces_[place];
+}
+
+void CellWalker::measure(Index tet, Faces& faces) const noexcept {
+  const LatticeTet& lattice = map_.exact.corners[tet];
   const int shift = std::countr_zero(static_cast<std::uint64_t>(map_.exact.unit));
+  std::array<Vector, 4> corners;
   for (std::size_t k = 0; k < 3; ++k) {
-    origin_[k] = static_cast<std::int32_t>(map_.exact.corners[tet][0][k] >> shift);
+    const std::int64_t origin = lattice[0][k] >> shift;
+    faces.origin[k] = static_cast<double>(origin);
+    for (std::size_t i = 0; i < 4; ++i) {
+      corners[i][k] = static_cast<double>(lattice[i][k] - (origin << shift)) * scale_;
+    }
   }
-  nodes_.resize(1);
-  Node& first = nodes_.front();
-  first.stop = {tet, charts_.chart[tet] != Charts::kNoChart, {}};
-  first.fromTet = {};
-  first.entered = -1;
-  for (int i = 0; i < 4; ++i) first.corners[static_cast<std::size_t>(i)] = relative(first, i);
-  measure(first);
-}
-
-CellWalker::Vector CellWalker::relative(const Node& node, int corner) const noexcept {
-  const std::int64_t unit = map_.exact.unit;
-  const LatticePoint& there = map_.exact.corners[node.stop.tet][static_cast<std::size_t>(corner)];
-  const LatticePoint here = node.fromTet.isIdentity() ? there : node.fromTet(there, unit);
-  const double scale = 1.0 / static_cast<double>(unit);
-  Vector r;
+  // Gradients of the weights of corners 1 to 3 and, as all weights add up to one, of corner 0.
+  const std::array<Vector, 3> e = {minus(corners[1], corners[0]), minus(corners[2], corners[0]),
+                                   minus(corners[3], corners[0])};
+  std::array<Vector, 4> normals = {
+      {{}, hexhex::cross(e[1], e[2]), hexhex::cross(e[2], e[0]), hexhex::cross(e[0], e[1])}};
   for (std::size_t k = 0; k < 3; ++k) {
-    r[k] = static_cast<double>(here[k] - origin_[k] * unit) * scale;
+    normals[0][k] = -(normals[1][k] + normals[2][k] + normals[3][k]);
   }
-  return r;
-}
-
-/// Fills in all that follows from the corners.
-void CellWalker::measure(Node& node) noexcept {
-  node.next.fill(kUnknown);
-  double edge = 0;
-  node.reach = largest(node.corners[0]);
-  for (std::size_t i = 1; i < 4; ++i) {
-    node.reach = std::max(node.reach, largest(node.corners[i]));
-    edge = std::max(edge, largest(minus(node.corners[i], node.corners[0])));
-  }
+  const double edge = std::max({largest(e[0]), largest(e[1]), largest(e[2])});
+  faces.reach = 1 + edge;  // corner 0 is less than 1 from the origin in each axis
   // Other edges are at most twice as long.
-  node.error = kPlaneError * 2 * edge * node.reach;
+  faces.error = kPlaneError * 2 * edge * faces.reach;
   for (std::size_t f = 0; f < 4; ++f) {
-    if (static_cast<int>(f) == node.entered) continue;
-    const Vector& p = node.corners[static_cast<std::size_t>(kFaceCorners[f][0])];
-    node.normals[f] = cross(minus(node.corners[static_cast<std::size_t>(kFaceCorners[f][1])], p),
-                            minus(node.corners[static_cast<std::size_t>(kFaceCorners[f][2])], p));
+    const bool boundary = map_.topology.isBoundary(halfFaceOf(tet, static_cast<int>(f)));
+    const Vector n = boundary ? Vector{} : normals[f];
+    for (std::size_t k = 0; k < 3; ++k) faces.normal[k][f] = n[k];
+    faces.offset[f] =
+        boundary ? std::numeric_limits<double>::infinity() : -dot(n, corners[f == 0 ? 1 : 0]);
+    faces.extent[f] = 0.5 * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
   }
 }
 
-CellWalker::Sides CellWalker::look(const Node& node, const GridPoint& z,
-                                   CellCornerSet corners) const {
+CellWalker::Sides CellWalker::look(const Faces& faces, const Group& group,
+                                   const GridPoint& z) const {
   Vector center;
-  for (std::size_t k = 0; k < 3; ++k) center[k] = static_cast<double>(z[k] - origin_[k]) + 0.5;
+  for (std::size_t k = 0; k < 3; ++k) {
+    center[k] = 0.5 * static_cast<double>(group.center[k]) - faces.origin[k];
+  }
   Sides sides;
-  sides.error = node.error * std::max(node.reach, largest(center) + 0.5);
+  sides.error = faces.error * std::max(faces.reach, largest(center) + 0.5);
+  std::array<double, 4> clearance;
   for (std::size_t f = 0; f < 4; ++f) {
-    if (static_cast<int>(f) == node.entered) continue;  // all come from there
-    const Vector& p = node.corners[static_cast<std::size_t>(kFaceCorners[f][0])];
-    const Vector& n = node.normals[f];
-    sides.center[f] = dot(n, minus(center, p));
-    const double extent = 0.5 * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
-    if (sides.center[f] - extent > 2 * sides.error) continue;
-    const std::array<double, 8> half = halfDiagonals(n);
+    sides.center[f] = faces.normal[0][f] * center[0] + faces.normal[1][f] * center[1] +
+                      faces.normal[2][f] * center[2] + faces.offset[f];
+    clearance[f] = sides.center[f] - faces.extent[f] - 2 * sides.error;
+  }
+  unsigned near = 0;  // faces that corners may be outside of
+  for (std::size_t f = 0; f < 4; ++f) near |= isNegative(clearance[f]) << f;
+  for (near &= ~group.entered; near != 0; near &= near - 1) {
+    const auto f = static_cast<std::size_t>(std::countr_zero(near));
+    const std::array<double, 8> half = halfDiagonals(normalFor(faces, group, f));
     CellCornerSet notInside = 0;
     CellCornerSet outside = 0;
-    for (CellCornerSet rest = corners; rest != 0; rest &= rest - 1) {
+    for (CellCornerSet rest = group.corners; rest != 0; rest &= rest - 1) {
       const auto c = static_cast<std::size_t>(std::countr_zero(rest));
       // Without branches, which nobody could predict.
       notInside |= isNegative(sides.center[f] + half[c] - sides.error) << c;
       outside |= isNegative(sides.center[f] + half[c] + sides.error) << c;
     }
     const CellCornerSet unsure = notInside & ~outside;
-    if (unsure != 0) outside |= signsOfUnsure(node, static_cast<int>(f), z, unsure);
+    if (unsure != 0) outside |= signsOfUnsure(group.stop, f, z, unsure);
     sides.outside[f] = outside;
   }
   return sides;
 }
 
+/// A face's normal as the first tet's chart has it.
+CellWalker::Vector CellWalker::normalFor(const Faces& faces, const Group& group,
+                                         std::size_t face) noexcept {
+  const Vector n = {faces.normal[0][face], faces.normal[1][face], faces.normal[2][face]};
+  const Rotation& rotation = group.stop.toTet.rotation;
+  if (rotation.isIdentity()) return n;
+  Vector before;
+  for (std::uint8_t k = 0; k < 3; ++k) {
+    const Direction d = rotation(direction(k, 1));
+    before[k] = n[static_cast<std::size_t>(axisOf(d))] * signOf(d);
+  }
+  return before;
+}
+
 /// Which of the corners lie outside of a face, by exact arithmetic in the tet's own chart.
-CellCornerSet CellWalker::signsOfUnsure(const Node& node, int face, const GridPoint& z,
+CellCornerSet CellWalker::signsOfUnsure(const Stop& stop, std::size_t face, const GridPoint& z,
                                         CellCornerSet unsure) const {
-  const LatticeTet& tet = map_.exact.corners[node.stop.tet];
-  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+  const LatticeTet& tet = map_.exact.corners[stop.tet];
+  const std::array<int, 3>& f = kFaceCorners[face];
   CellCornerSet outside = 0;
-  for (std::size_t c = 0; c < 8; ++c) {
-    if (((unsure >> c) & 1U) == 0) continue;
+  for (; unsure != 0; unsure &= unsure - 1) {
     GridPoint corner = z;
+    const auto c = static_cast<std::size_t>(std::countr_zero(unsure));
     for (std::size_t k = 0; k < 3; ++k) corner[k] += kCellCorners[c][k];
-    corner = node.stop.toTet(corner);
+    corner = stop.toTet(corner);
     LatticePoint at{};
     for (std::size_t k = 0; k < 3; ++k) at[k] = corner[k] * map_.exact.unit;
     if (orientation(tet[static_cast<std::size_t>(f[0])], tet[static_cast<std::size_t>(f[1])],
@@ -136,7 +176,7 @@ CellCornerSet CellWalker::signsOfUnsure(const Node& node, int face, const GridPo
 
 /// Sends the corners that are not in the tet into its neighbours.
 /// @return those that cannot be sent
-CellCornerSet CellWalker::leave(const Group& group, const Sides& sides) {
+CellCornerSet CellWalker::leave(const Faces& faces, const Group& group, const Sides& sides) {
   CellCornerSet once = 0;
   CellCornerSet twice = 0;
   for (const CellCornerSet outside : sides.outside) {
@@ -146,30 +186,27 @@ CellCornerSet CellWalker::leave(const Group& group, const Sides& sides) {
   std::array<CellCornerSet, 4> through{};
   for (std::size_t f = 0; f < 4; ++f) through[f] = sides.outside[f] & ~twice;
   CellCornerSet missed = 0;
-  for (std::size_t c = 0; twice >> c != 0; ++c) {
-    const CellCornerSet corner = CellCornerSet{1} << c;
-    if ((twice & corner) == 0) continue;
-    const int face = firstExit(nodes_[group.node], sides, c);
-    (face < 0 ? missed : through[static_cast<std::size_t>(face)]) |= corner;
+  for (; twice != 0; twice &= twice - 1) {
+    const auto c = static_cast<std::size_t>(std::countr_zero(twice));
+    const int face = firstExit(faces, group, sides, c);
+    (face < 0 ? missed : through[static_cast<std::size_t>(face)]) |= CellCornerSet{1} << c;
   }
-  // Ways that turn about an edge come to an end sooner than this.
-  constexpr std::size_t kMaxNodes = 10000;
-  for (int face = 0; face < 4; ++face) {
-    const CellCornerSet corners = through[static_cast<std::size_t>(face)];
-    if (corners == 0) continue;
-    const HalfFace halfFace = halfFaceOf(nodes_[group.node].stop.tet, face);
-    if (map_.topology.isBoundary(halfFace) || nodes_.size() >= kMaxNodes) {
-      missed |= corners;
-    } else {
-      front_.push_back({behind(group.node, face), corners});
+  for (std::size_t f = 0; f < 4; ++f) {
+    if (through[f] == 0) continue;
+    if (stepsLeft_ == 0) {
+      missed |= through[f];
+      continue;
     }
+    --stepsLeft_;
+    cross(group, f, through[f]);
   }
   return missed;
 }
 
 /// The face through which the way to a corner outside of several faces leaves; -1 if that is not
 /// certain.
-int CellWalker::firstExit(const Node& node, const Sides& sides, std::size_t corner) {
+int CellWalker::firstExit(const Faces& faces, const Group& group, const Sides& sides,
+                          std::size_t corner) noexcept {
   // The plane of face f is reached at the fraction center / (center - value) of the way.
   int first = -1;
   double firstCenter = 0;
@@ -177,7 +214,7 @@ int CellWalker::firstExit(const Node& node, const Sides& sides, std::size_t corn
   for (std::size_t f = 0; f < 4; ++f) {
     if (((sides.outside[f] >> corner) & 1U) == 0) continue;
     const double center = sides.center[f];
-    const double depth = -(center + halfDiagonals(node.normals[f])[corner]);
+    const double depth = -(center + halfDiagonals(normalFor(faces, group, f))[corner]);
     if (!(center > sides.error) || !(depth > sides.error)) return -1;
     if (first >= 0) {
       const double later = center * firstDepth - firstCenter * depth;
@@ -192,37 +229,22 @@ int CellWalker::firstExit(const Node& node, const Sides& sides, std::size_t corn
   return first;
 }
 
-/// The node behind a face, which is not on the boundary.
-std::uint32_t CellWalker::behind(std::uint32_t node, int face) {
-  const auto f = static_cast<std::size_t>(face);
-  if (nodes_[node].next[f] != kUnknown) return nodes_[node].next[f];
-  const auto added = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.emplace_back();
-  Node& from = nodes_[node];
-  Node& to = nodes_.back();
-  from.next[f] = added;
+/// Sends corners through a face, which is not on the boundary.
+void CellWalker::cross(const Group& group, std::size_t face, CellCornerSet corners) {
   const TetTopology& topology = map_.topology;
   const Transitions& transitions = map_.exact.transitions;
-  const HalfFace halfFace = halfFaceOf(from.stop.tet, face);
+  const HalfFace halfFace = halfFaceOf(group.stop.tet, static_cast<int>(face));
   const HalfFace mate = topology.mate[halfFace];
-  to.stop = from.stop;
-  to.stop.tet = tetOf(mate);
-  to.fromTet = from.fromTet;
-  to.entered = localOf(mate);
-  if (from.stop.inSight) to.stop.inSight = charts_.isGlued(topology, transitions, halfFace);
+  Group& next = front_.emplace_back(group);
+  next.corners = corners;
+  next.entered = 1U << localOf(mate);
+  next.stop.tet = tetOf(mate);
+  if (next.stop.inSight) next.stop.inSight = charts_.isGlued(topology, transitions, halfFace);
   if (transitions.isJump(halfFace)) {
-    to.stop.toTet = transitions.across(halfFace) * from.stop.toTet;
-    to.fromTet = from.fromTet * transitions.across(mate);
+    const Transition& transition = transitions.across(halfFace);
+    next.stop.toTet = transition * next.stop.toTet;
+    next.center = transition(next.center, std::int64_t{2});
   }
-  const Tet& tet = topology.tets[to.stop.tet];
-  for (int i = 0; i < 4; ++i) {
-    const auto corner = static_cast<std::size_t>(i);
-    to.corners[corner] = i == to.entered ? relative(to, i)
-                                         : from.corners[static_cast<std::size_t>(
-                                               topology.localCorner(from.stop.tet, tet[corner]))];
-  }
-  measure(to);
-  return added;
 }
 
 }  // namespace hexhex

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -20,10 +21,10 @@ namespace hexhex {
 /// A set of corners of a cell, in VTK order: bit i for corner i.
 using CellCornerSet = unsigned;
 
-/// Walks to the corners of cells whose centres are in the same tet. One per thread.
+/// Walks to the corners of cells. One per thread.
 class CellWalker {
  public:
-  CellWalker(const PreparedMap& map, const Charts& charts) noexcept : map_(map), charts_(charts) {}
+  CellWalker(const PreparedMap& map, const Charts& charts);
 
   /// A tet on the way.
   struct Stop {
@@ -32,76 +33,81 @@ class CellWalker {
     Transition toTet;  ///< from the first tet's own chart
   };
 
-  /// Chooses the tet whose cells come next.
-  void enter(Index tet);
-
-  /// Walks from the centre of the cell whose smallest corner is z, in the chart of the tet, which
+  /// Walks from the centre of the cell whose smallest corner is z, in the chart of a tet that
   /// contains that centre. Calls visit(Stop, CellCornerSet) with the corners that are in the
   /// (closed) tet of the stop.
   /// @return the corners that it cannot tell
   template <class Visit>
-  [[nodiscard]] CellCornerSet run(const GridPoint& z, const Visit& visit) {
-    constexpr CellCornerSet kAll = 0xff;
+  [[nodiscard]] CellCornerSet run(Index tet, const GridPoint& z, const Visit& visit) {
     CellCornerSet missed = 0;
-    front_.assign(1, {0, kAll});
+    begin(tet, z);
     while (!front_.empty()) {
       const Group group = front_.back();
       front_.pop_back();
-      const Sides sides = look(nodes_[group.node], z, group.corners);
+      const Faces& faces = facesOf(group.stop.tet);
+      const Sides sides = look(faces, group, z);
       const CellCornerSet arrived = group.corners & ~sides.anyFace();
-      if (arrived != 0) visit(std::as_const(nodes_[group.node].stop), arrived);
-      if (arrived != group.corners) missed |= leave(group, sides);
+      if (arrived != 0) visit(group.stop, arrived);
+      if (arrived != group.corners) missed |= leave(faces, group, sides);
     }
     return missed;
   }
 
  private:
   using Vector = std::array<double, 3>;
-  static constexpr std::uint32_t kUnknown = ~std::uint32_t{0};
 
-  /// A tet as seen from the first one: coordinates in that one's chart, in grid units, relative to
-  /// `origin_`.
-  struct Node {
-    Stop stop;
-    Transition fromTet;                 ///< inverse of stop.toTet
-    int entered;                        ///< face through which the walk came, or -1
-    std::array<std::uint32_t, 4> next;  ///< node behind each face
-    std::array<Vector, 4> corners;
-    std::array<Vector, 4> normals;  ///< of the faces, inward
-    double error;                   ///< of plane values, per unit of distance from `origin_`
-    double reach;                   ///< largest coordinate of a corner
+  /// The faces of a tet as planes, in its own chart, in grid units: values are those of inward
+  /// normals. Nothing is outside of a face on the boundary.
+  struct Faces {
+    std::array<std::array<double, 4>, 3> normal;  ///< by coordinate, then face
+    std::array<double, 4> offset;                 ///< value at `origin`
+    std::array<double, 4> extent;  ///< how far a cell's corners differ from its centre
+    std::array<double, 3> origin;  ///< grid point near the tet
+    double error;                  ///< of values, per unit of distance from the origin
+    double reach;                  ///< largest coordinate of a corner, relative to the origin
   };
 
-  /// How the corners of a cell lie to the faces of a node.
+  /// Corners on their way into a tet.
+  struct Group {
+    Stop stop;
+    unsigned entered;                    ///< face through which they come, as a bit; 0 for none
+    CellCornerSet corners;               ///< in terms of the first tet's chart
+    std::array<std::int64_t, 3> center;  ///< twice the cell's centre, in the tet's chart
+  };
+
+  /// How the corners of a cell lie to the faces of a tet.
   struct Sides {
     std::array<CellCornerSet, 4> outside{};
-    std::array<double, 4> center{};  ///< the planes' values
-    double error = 0;
+    std::array<double, 4> center;  ///< the planes' values
+    double error;
     [[nodiscard]] CellCornerSet anyFace() const noexcept {
       return outside[0] | outside[1] | outside[2] | outside[3];
     }
   };
 
-  /// Corners on their way into a tet.
-  struct Group {
-    std::uint32_t node;
-    CellCornerSet corners;
-  };
-
-  [[nodiscard]] Sides look(const Node& node, const GridPoint& z, CellCornerSet corners) const;
-  [[nodiscard]] CellCornerSet signsOfUnsure(const Node& node, int face, const GridPoint& z,
+  void begin(Index tet, const GridPoint& z);
+  [[nodiscard]] const Faces& facesOf(Index tet) noexcept;
+  void measure(Index tet, Faces& faces) const noexcept;
+  [[nodiscard]] Sides look(const Faces& faces, const Group& group, const GridPoint& z) const;
+  [[nodiscard]] CellCornerSet signsOfUnsure(const Stop& stop, std::size_t face, const GridPoint& z,
                                             CellCornerSet unsure) const;
-  [[nodiscard]] CellCornerSet leave(const Group& group, const Sides& sides);
-  [[nodiscard]] static int firstExit(const Node& node, const Sides& sides, std::size_t corner);
-  [[nodiscard]] std::uint32_t behind(std::uint32_t node, int face);
-  [[nodiscard]] Vector relative(const Node& node, int corner) const noexcept;
-  static void measure(Node& node) noexcept;
+  [[nodiscard]] static Vector normalFor(const Faces& faces, const Group& group,
+                                        std::size_t face) noexcept;
+  [[nodiscard]] CellCornerSet leave(const Faces& faces, const Group& group, const Sides& sides);
+  [[nodiscard]] static int firstExit(const Faces& faces, const Group& group, const Sides& sides,
+                                     std::size_t corner) noexcept;
+  void cross(const Group& group, std::size_t face, CellCornerSet corners);
 
   const PreparedMap& map_;
   const Charts& charts_;
-  GridPoint origin_{};       ///< near the first tet
-  std::vector<Node> nodes_;  ///< a tree from the first tet on
+  double scale_;  ///< grid units per lattice unit
+
+  // Ways of neighbouring cells pass the same tets: a table of tets and their faces, by number.
+  std::vector<Index> tetAt_;
+  Array<Faces> faces_;
+
   std::vector<Group> front_;
+  std::size_t stepsLeft_ = 0;
 };
 
 }  // namespace hexhex

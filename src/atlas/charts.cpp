@@ -49,7 +49,7 @@ Borders findBorders(const PreparedMap& map, const Patches& patches, Stage& stage
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    for (std::size_t h = begin; h < end; ++h) {
                      const auto halfFace = static_cast<HalfFace>(h);
-                     if (mate[h] == kNone || !map.exact.transitions.isJump(halfFace)) continue;
+                     if (!map.exact.transitions.isJump(halfFace) || mate[h] == kNone) continue;
                      if (patches.of(tetOf(halfFace)) != patches.of(tetOf(mate[h]))) {
                        blocks[block].push_back(halfFace);
                      }

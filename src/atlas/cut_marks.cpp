@@ -19,24 +19,37 @@ Triangle triangleOf(const ExactMap& map, HalfFace halfFace) {
           corners[static_cast<std::size_t>(face[2])]};
 }
 
+/// Gauge::cell() prepared for many cells: it differs from the gauge by a constant.
+SweepFrame cellFrame(const Gauge& gauge) noexcept {
+  return {{gauge.rotation, gauge.cell({0, 0, 0})}, {0, 1, 2}};
+}
+
+/// Marks the cells that a cut may meet, in the charts on both its sides: what the triangle meets on
+/// one side are the images of what it meets on the other.
 template <class Id>
-void markFace(const PreparedMap& map, const Charts& charts, HalfFace halfFace,
-              BrickCache<Id>& cache) {
-  const Index tet = tetOf(halfFace);
-  if (charts.chart[tet] == Charts::kNoChart) return;
-  const Gauge& gauge = charts.gauge(tet);
-  TriangleCells(triangleOf(map.exact, halfFace), map.exact.unit).run([&](const GridPoint& z) {
-    const ChartPoint c = gauge.cell(z);
-    Brick<Id>* const brick = cache.find(charts.chart[tet], c);
+void markCut(const PreparedMap& map, const Charts& charts, HalfFace halfFace,
+             BrickCache<Id>& cache) {
+  const Index here = tetOf(halfFace);
+  const Index there = tetOf(map.topology.mate[halfFace]);
+  const SweepFrame frameHere = cellFrame(charts.gauge(here));
+  const SweepFrame frameThere =
+      cellFrame(charts.gauge(there) * map.exact.transitions.across(halfFace));
+  const auto mark = [&](Index chart, const ChartPoint& c) {
+    if (chart == Charts::kNoChart) return;
+    Brick<Id>* const brick = cache.find(chart, c);
     if (brick != nullptr) brick->mark(placeInBrick(c));
+  };
+  TriangleCells(triangleOf(map.exact, halfFace), map.exact.unit).run([&](const GridPoint& z) {
+    mark(charts.chart[here], frameHere(z[0], z[1], z[2]));
+    mark(charts.chart[there], frameThere(z[0], z[1], z[2]));
   });
 }
 
 }  // namespace
 
 template <class Id>
-std::uint64_t markCutCells(const PreparedMap& map, const Charts& charts, BrickGrid<Id>& grid,
-                           Stage& stage) {
+std::uint64_t markCutCells(const PreparedMap& map, const Charts& charts, bool asBuilt,
+                           BrickGrid<Id>& grid, Stage& stage) {
   const TetTopology& topology = map.topology;
   std::atomic<std::uint64_t> cuts{0};
   parallelBlocks(stage, topology.tetCount(), kGrain,
@@ -45,21 +58,21 @@ std::uint64_t markCutCells(const PreparedMap& map, const Charts& charts, BrickGr
                    std::uint64_t cutsHere = 0;
                    for (std::size_t h = 4 * begin; h < 4 * end; ++h) {
                      const auto halfFace = static_cast<HalfFace>(h);
+                     if (asBuilt && !map.exact.transitions.isJump(halfFace)) continue;
                      const HalfFace mate = topology.mate[halfFace];
                      if (mate == kNone || mate < halfFace) continue;
                      if (charts.isGlued(topology, map.exact.transitions, halfFace)) continue;
                      ++cutsHere;
-                     markFace(map, charts, halfFace, cache);
-                     markFace(map, charts, mate, cache);
+                     markCut(map, charts, halfFace, cache);
                    }
                    cuts.fetch_add(cutsHere, std::memory_order_relaxed);
                  });
   return cuts.load();
 }
 
-template std::uint64_t markCutCells(const PreparedMap&, const Charts&, BrickGrid<std::uint32_t>&,
-                                    Stage&);
-template std::uint64_t markCutCells(const PreparedMap&, const Charts&, BrickGrid<std::uint64_t>&,
-                                    Stage&);
+template std::uint64_t markCutCells(const PreparedMap&, const Charts&, bool,
+                                    BrickGrid<std::uint32_t>&, Stage&);
+template std::uint64_t markCutCells(const PreparedMap&, const Charts&, bool,
+                                    BrickGrid<std::uint64_t>&, Stage&);
 
 }  // namespace hexhex

@@ -64,6 +64,10 @@ struct Gauge {
   return c;
 }
 
+[[nodiscard]] constexpr ChartPoint plus(const ChartPoint& a, const ChartPoint& b) noexcept {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
 /// The points of one tet's sweep in its chart: as a gauge, but prepared for many points.
 class SweepFrame {
  public:

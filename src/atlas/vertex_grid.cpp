@@ -18,6 +18,56 @@ CornerSet callersCorners(const OrientedMap& input, CornerMask simplex) {
   return corners;
 }
 
+/// The bricks around the points of a tet.
+class BrickBox {
+ public:
+  /// @param lines  all lines of the tet
+  BrickBox(std::span<const SweptLine> lines, const Gauge& gauge) noexcept {
+    // Levels ascend.
+    SweptLine low = lines.front();
+    SweptLine high = lines.back();
+    high.first = low.first;
+    high.row = low.row;
+    for (const SweptLine& line : lines) {
+      low.row = std::min(low.row, line.row);
+      high.row = std::max(high.row, line.row);
+      low.first = std::min(low.first, line.first);
+      high.first = std::max(high.first, line.first + static_cast<std::int32_t>(line.count) - 1);
+    }
+    const ChartPoint a = gauge(low.point(0));
+    const ChartPoint b = gauge(high.point(0));
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Rotation may have swapped the ends.
+      const auto difference = static_cast<std::int32_t>(b[k] - a[k]);
+      first_[k] = difference < 0 ? b[k] : a[k];
+      const std::uint32_t size = difference < 0 ? 0U - static_cast<std::uint32_t>(difference)
+                                                : static_cast<std::uint32_t>(difference);
+      bricks_[k] = (first_[k] % kBrickSide + size) / kBrickSide + 1;
+    }
+  }
+  [[nodiscard]] std::uint64_t count() const noexcept {
+    // No factor exceeds 2^29; what two make is more than anyone wants.
+    const std::uint64_t layer = std::uint64_t{bricks_[0]} * bricks_[1];
+    return layer > (std::uint64_t{1} << 32) ? layer : layer * bricks_[2];
+  }
+  /// Calls visit(ChartPoint) with a point of each brick.
+  template <class Visit>
+  void forEach(const Visit& visit) const {
+    for (std::uint32_t z = 0; z < bricks_[2]; ++z) {
+      for (std::uint32_t y = 0; y < bricks_[1]; ++y) {
+        for (std::uint32_t x = 0; x < bricks_[0]; ++x) {
+          visit(ChartPoint{first_[0] + x * kBrickSide, first_[1] + y * kBrickSide,
+                           first_[2] + z * kBrickSide});
+        }
+      }
+    }
+  }
+
+ private:
+  ChartPoint first_{};
+  std::array<std::uint32_t, 3> bricks_{};
+};
+
 ChartRow rowOf(const VertexRun& run, const SweepFrame& frame, Index chart) {
   const SweptLine& line = *run.line;
   const std::int32_t first = line.first + static_cast<std::int32_t>(run.offset);
@@ -33,11 +83,11 @@ std::atomic_ref<Id> entry(Brick<Id>& brick, std::size_t place, std::ptrdiff_t of
 }  // namespace
 
 template <class Id>
-std::span<const SweptLine> VertexGrid<Id>::linesOf(Index tet, const TetSweep& sweep,
+std::span<const SweptLine> VertexGrid<Id>::linesOf(Index tet,
                                                    std::vector<SweptLine>& scratch) const {
   if (stored_) return stored_->of(tet);
   scratch.clear();
-  sweep.run(map_.exact.unit, scratch);
+  TetSweep(map_.exact, tet, SweptGrid::Vertices).run(map_.exact.unit, scratch);
   return scratch;
 }
 
@@ -46,47 +96,48 @@ void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage) {
   const std::size_t tets = map_.topology.tetCount();
   VertexCounter counter(map_, numbers_);
   keys_.resize(blockCount(tets, kSweepBlock));
-  parallelBlocks(
-      stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t block) {
-        std::vector<SweptLine> lines;
-        std::vector<SweptLine> centers;
-        std::vector<Index> lineBegins;
-        std::vector<Index> centerBegins;
-        KeyFilter filter;
-        for (std::size_t t = begin; t < end; ++t) {
-          const auto tet = static_cast<Index>(t);
-          if (!stored_) lines.clear();
-          if (!cells.lines) centers.clear();
-          lineBegins.push_back(static_cast<Index>(lines.size()));
-          centerBegins.push_back(static_cast<Index>(centers.size()));
-          sweepBoth(map_.exact, tet, lines, centers);
-          const auto ownLines = std::span<const SweptLine>(lines).subspan(lineBegins.back());
-          const auto ownCenters = std::span<const SweptLine>(centers).subspan(centerBegins.back());
-          counter.count(block, tet, ownLines);
-          cells.begin[t] = ownCenters.empty() ? 0 : countOwned(map_.topology, tet, ownCenters);
-          if (ownLines.empty()) continue;
-          collectKeys(tet, TetSweep(map_.exact, tet, SweptGrid::Vertices), ownLines, filter,
-                      keys_[block]);
-        }
-        if (stored_) stored_->store(block, lines, lineBegins);
-        if (cells.lines) cells.lines->store(block, centers, centerBegins);
-      });
+  parallelBlocks(stage, tets, kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   BlockLines lines(stored_.has_value());
+                   BlockLines centers(cells.lines.has_value());
+                   KeyFilter filter;
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     sweepBoth(map_.exact, tet, lines.next(), centers.next());
+                     const std::span<const SweptLine> own = centers.last();
+                     cells.begin[t] = own.empty() ? 0 : countOwned(map_.topology, tet, own);
+                     counter.count(block, tet, lines.last());
+                     if (!lines.last().empty())
+                       collectKeys(tet, lines.last(), filter, keys_[block]);
+                   }
+                   if (stored_) stored_->store(block, lines);
+                   if (cells.lines) cells.lines->store(block, centers);
+                 });
   counter.finish();
   exclusiveScan(std::span(cells.begin));
 }
 
-/// Lists the bricks that the tet's points are in.
+/// Lists the bricks that the tet's points are in, and some beside them.
 template <class Id>
-void VertexGrid<Id>::collectKeys(Index tet, const TetSweep& sweep, std::span<const SweptLine> lines,
-                                 KeyFilter& filter, std::vector<BrickKey>& keys) const {
-  const SweepFrame frame(charts_.gauge(tet), sweep.axes());
+void VertexGrid<Id>::collectKeys(Index tet, std::span<const SweptLine> lines, KeyFilter& filter,
+                                 std::vector<BrickKey>& keys) const {
+  constexpr std::uint64_t kMaxBricks = 8;
   const Index chart = charts_.chart[tet];
+  const auto collect = [&](const ChartPoint& c) {
+    const BrickKey key = brickKey(chart, c);
+    if (filter.isNew(key, c)) keys.push_back(key);
+  };
+  const Gauge& gauge = charts_.gauge(tet);
+  const BrickBox box(lines, gauge);
+  if (box.count() <= kMaxBricks) {
+    box.forEach(collect);
+    return;
+  }
+  const SweepFrame frame(gauge, lines.front().axes());
   for (const SweptLine& line : lines) {
     const ChartRow row{chart, frame(line.level, line.row, line.first), frame.along(2), line.count};
-    row.forEachPart([&](const ChartPoint& c, std::uint32_t, std::uint32_t, std::ptrdiff_t) {
-      const BrickKey key = brickKey(chart, c);
-      if (filter.isNew(key, c)) keys.push_back(key);
-    });
+    row.forEachPart(
+        [&](const ChartPoint& c, std::uint32_t, std::uint32_t, std::ptrdiff_t) { collect(c); });
   }
 }
 
@@ -94,16 +145,15 @@ template <class Id>
 template <class VisitRun, class VisitRow>
 void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, const VisitRun& visitRun,
                                   const VisitRow& visitRow) const {
-  if (!hasLines(tet)) return;
-  const TetSweep sweep(map_.exact, tet, SweptGrid::Vertices);
   std::vector<SweptLine> scratch;
-  const std::span<const SweptLine> lines = linesOf(tet, sweep, scratch);
+  const std::span<const SweptLine> lines = linesOf(tet, scratch);
   if (lines.empty()) return;
-  const SweepFrame frame(charts_.gauge(tet), sweep.axes());
+  const SweepAxes axes = lines.front().axes;
+  const SweepFrame frame(charts_.gauge(tet), axes());
   const Index chart = charts_.chart[tet];
-  TetNumbering numbering(map_, numbers_, tet, sweep.axes);
+  TetNumbering numbering(map_, numbers_, tet, axes);
   numbering.run(lines, [&](const VertexRun& run) {
-    visitRun(sweep, run);
+    visitRun(run);
     visitRow(rowOf(run, frame, chart), run.first);
   });
   if (faces == Faces::Owned) return;
@@ -124,30 +174,31 @@ void VertexGrid<Id>::forEachForeignClaim(Index tet, int face, const VisitRow& vi
   const HalfFace ownersHalfFace = map_.topology.mate[halfFaceOf(tet, face)];
   const Index owner = tetOf(ownersHalfFace);
   const Gauge gauge = charts_.gauge(tet) * map_.exact.transitions.across(ownersHalfFace);
-  const TetSweep sweep(map_.exact, owner, SweptGrid::Vertices);
   std::vector<SweptLine> scratch;
-  const SweepFrame frame(gauge, sweep.axes());
-  TetNumbering(map_, numbers_, owner, sweep.axes)
-      .run(linesOf(owner, sweep, scratch), [&](const VertexRun& run) {
-        if (run.simplex != faceMask(localOf(ownersHalfFace))) return;
-        visitRow(rowOf(run, frame, charts_.chart[tet]), run.first);
-      });
+  const std::span<const SweptLine> lines = linesOf(owner, scratch);
+  const SweepAxes axes = lines.front().axes;
+  const SweepFrame frame(gauge, axes());
+  TetNumbering(map_, numbers_, owner, axes).run(lines, [&](const VertexRun& run) {
+    if (run.simplex != faceMask(localOf(ownersHalfFace))) return;
+    visitRow(rowOf(run, frame, charts_.chart[tet]), run.first);
+  });
 }
 
 template <class Id>
-void VertexGrid<Id>::write(const TetSweep& sweep, const VertexRun& run, Index tet,
-                           std::optional<TetPositions>& positions,
+void VertexGrid<Id>::write(const VertexRun& run, Index tet, std::optional<TetPositions>& positions,
                            const VertexArrays& arrays) const {
   if (!run.owned || arrays.points == nullptr) return;
-  if (!positions) positions.emplace(map_, tet, sweep.box, sweep.axes);
-  const std::size_t at = run.first - arrays.first;
   const SweptLine& line = *run.line;
+  if (!positions) {
+    positions.emplace(map_, tet, gridBox(map_.exact.corners[tet], map_.exact.unit), line.axes);
+  }
+  const std::size_t at = run.first - arrays.first;
   if (run.simplex == kWholeTet) {
     positions->alongLine(line.level, line.row, line.first + static_cast<std::int32_t>(run.offset),
                          run.count, arrays.points + at);
   } else {
     for (std::uint32_t i = 0; i < run.count; ++i) {
-      arrays.points[at + i] = positions->at(run.simplex, sweep.point(line, run.offset + i));
+      arrays.points[at + i] = positions->at(run.simplex, line.point(run.offset + i));
     }
   }
   std::fill_n(arrays.tets + at, run.count, tet);
@@ -179,13 +230,11 @@ void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
     };
     for (std::size_t t = begin; t < end; ++t) {
       const auto tet = static_cast<Index>(t);
+      if (stored_ && stored_->areEmpty(tet)) continue;
       std::optional<TetPositions> positions;
       forEachClaim(
           tet, Faces::OwnedAndCut,
-          [&](const TetSweep& sweep, const VertexRun& run) {
-            write(sweep, run, tet, positions, arrays);
-          },
-          enter);
+          [&](const VertexRun& run) { write(run, tet, positions, arrays); }, enter);
     }
     if (overlapsHere) overlaps.store(true, std::memory_order_relaxed);
   };
@@ -211,10 +260,7 @@ template <class Id>
 void VertexGrid<Id>::describe(Index tet, const VertexArrays& arrays) const {
   std::optional<TetPositions> positions;
   forEachClaim(
-      tet, Faces::Owned,
-      [&](const TetSweep& sweep, const VertexRun& run) {
-        write(sweep, run, tet, positions, arrays);
-      },
+      tet, Faces::Owned, [&](const VertexRun& run) { write(run, tet, positions, arrays); },
       [](const ChartRow&, std::uint64_t) {});
 }
 
@@ -229,7 +275,7 @@ void VertexGrid<Id>::markContested(Stage& stage) {
         for (std::size_t t = begin; t < end; ++t) {
           if (!mayTouchContested(static_cast<Index>(t), cache)) continue;
           forEachClaim(
-              static_cast<Index>(t), Faces::OwnedAndCut, [](const TetSweep&, const VertexRun&) {},
+              static_cast<Index>(t), Faces::OwnedAndCut, [](const VertexRun&) {},
               [&](const ChartRow& row, std::uint64_t first) {
                 row.forEachPart([&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count,
                                     std::ptrdiff_t stride) {
@@ -251,38 +297,18 @@ void VertexGrid<Id>::markContested(Stage& stage) {
 /// Whether a brick in the bounding box of a tet has contested points.
 template <class Id>
 bool VertexGrid<Id>::mayTouchContested(Index tet, BrickCache<Id>& cache) const {
-  if (!hasLines(tet)) return false;
-  constexpr std::uint32_t kMaxBricks = 256;
-  const TetSweep sweep(map_.exact, tet, SweptGrid::Vertices);
-  if (sweep.box.empty()) return false;
-  const Gauge& gauge = charts_.gauge(tet);
-  const GridPoint low = {sweep.box.range[0].first, sweep.box.range[1].first,
-                         sweep.box.range[2].first};
-  const GridPoint high = {sweep.box.range[0].last, sweep.box.range[1].last,
-                          sweep.box.range[2].last};
-  ChartPoint from = gauge(low);
-  ChartPoint size = gauge(high);
-  std::array<std::uint32_t, 3> bricks{};
-  std::uint64_t count = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    // Rotation may have swapped the ends.
-    if (static_cast<std::int32_t>(size[k] - from[k]) < 0) std::swap(from[k], size[k]);
-    size[k] -= from[k];
-    bricks[k] = (from[k] % kBrickSide + size[k]) / kBrickSide + 1;
-    count *= bricks[k];
-    if (count > kMaxBricks) return true;
-  }
-  for (std::uint32_t x = 0; x < bricks[0]; ++x) {
-    for (std::uint32_t y = 0; y < bricks[1]; ++y) {
-      for (std::uint32_t z = 0; z < bricks[2]; ++z) {
-        const ChartPoint c = {from[0] + x * kBrickSide, from[1] + y * kBrickSide,
-                              from[2] + z * kBrickSide};
-        const Bricks* const brick = cache.find(charts_.chart[tet], c);
-        if (brick != nullptr && brick->contested != 0) return true;
-      }
-    }
-  }
-  return false;
+  constexpr std::uint64_t kMaxBricks = 256;
+  std::vector<SweptLine> scratch;
+  const std::span<const SweptLine> lines = linesOf(tet, scratch);
+  if (lines.empty()) return false;
+  const BrickBox box(lines, charts_.gauge(tet));
+  if (box.count() > kMaxBricks) return true;
+  bool contested = false;
+  box.forEach([&](const ChartPoint& c) {
+    const Bricks* const brick = cache.find(charts_.chart[tet], c);
+    contested = contested || (brick != nullptr && brick->contested != 0);
+  });
+  return contested;
 }
 
 template <class Id>
@@ -296,7 +322,7 @@ std::vector<Index> VertexGrid<Id>::tetsWithContestedPoints(Stage& stage) const {
           if (!mayTouchContested(static_cast<Index>(t), cache)) continue;
           bool contested = false;
           forEachClaim(
-              static_cast<Index>(t), Faces::All, [](const TetSweep&, const VertexRun&) {},
+              static_cast<Index>(t), Faces::All, [](const VertexRun&) {},
               [&](const ChartRow& row, std::uint64_t) {
                 row.forEachPart([&](const ChartPoint& c, std::uint32_t, std::uint32_t count,
                                     std::ptrdiff_t stride) {
@@ -321,7 +347,7 @@ template <class Id>
 void VertexGrid<Id>::clearContested(const std::vector<Index>& tets) {
   for (const Index tet : tets) {
     forEachClaim(
-        tet, Faces::All, [](const TetSweep&, const VertexRun&) {},
+        tet, Faces::All, [](const VertexRun&) {},
         [&](const ChartRow& row, std::uint64_t) {
           row.forEachPart(
               [&](const ChartPoint& c, std::uint32_t, std::uint32_t count, std::ptrdiff_t stride) {
@@ -344,7 +370,7 @@ bool VertexGrid<Id>::tryClaim(Index tet, Index chart) {
   bool free = true;
   const auto forEachEntry = [&](const auto& visit) {
     forEachClaim(
-        tet, Faces::All, [](const TetSweep&, const VertexRun&) {},
+        tet, Faces::All, [](const VertexRun&) {},
         [&](const ChartRow& row, std::uint64_t first) {
           row.forEachPart([&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count,
                               std::ptrdiff_t stride) { visit(c, first + offset, count, stride); });
@@ -440,12 +466,13 @@ Id VertexGrid<Id>::vertexAt(Index tet, const GridPoint& z, BrickCache<Id>& cache
 
 template <class Id>
 std::uint64_t VertexGrid<Id>::exactNumber(Index tet, const GridPoint& z) const {
-  const TetSweep sweep(map_.exact, tet, SweptGrid::Vertices);
   std::vector<SweptLine> scratch;
-  const std::array<std::uint8_t, 3>& axes = sweep.axes();
+  const std::span<const SweptLine> lines = linesOf(tet, scratch);
+  const SweepAxes order = lines.empty() ? SweepAxes{} : lines.front().axes;
+  const std::array<std::uint8_t, 3>& axes = order();
   std::optional<std::uint64_t> found;
-  TetNumbering numbering(map_, numbers_, tet, sweep.axes);
-  numbering.run(linesOf(tet, sweep, scratch), [&](const VertexRun& run) {
+  TetNumbering numbering(map_, numbers_, tet, order);
+  numbering.run(lines, [&](const VertexRun& run) {
     if (run.line->level != z[axes[0]] || run.line->row != z[axes[1]]) return;
     const auto offset = static_cast<std::uint32_t>(z[axes[2]] - run.line->first) - run.offset;
     if (offset < run.count) found = run.first + offset;

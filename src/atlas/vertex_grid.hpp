@@ -89,11 +89,10 @@ class VertexGrid {
   using Bricks = Brick<Id>;
   enum class Faces : std::uint8_t { Owned, OwnedAndCut, All };
 
-  void collectKeys(Index tet, const TetSweep& sweep, std::span<const SweptLine> lines,
-                   KeyFilter& filter, std::vector<BrickKey>& keys) const;
-  [[nodiscard]] std::span<const SweptLine> linesOf(Index tet, const TetSweep& sweep,
+  void collectKeys(Index tet, std::span<const SweptLine> lines, KeyFilter& filter,
+                   std::vector<BrickKey>& keys) const;
+  [[nodiscard]] std::span<const SweptLine> linesOf(Index tet,
                                                    std::vector<SweptLine>& scratch) const;
-  [[nodiscard]] bool hasLines(Index tet) const { return !stored_ || !stored_->of(tet).empty(); }
 
   template <class VisitRun, class VisitRow>
   void forEachClaim(Index tet, Faces faces, const VisitRun& visitRun,
@@ -101,8 +100,8 @@ class VertexGrid {
   template <class VisitRow>
   void forEachForeignClaim(Index tet, int face, const VisitRow& visitRow) const;
 
-  void write(const TetSweep& sweep, const VertexRun& run, Index tet,
-             std::optional<TetPositions>& positions, const VertexArrays& arrays) const;
+  void write(const VertexRun& run, Index tet, std::optional<TetPositions>& positions,
+             const VertexArrays& arrays) const;
 
   void markContested(Stage& stage);
   [[nodiscard]] std::vector<Index> tetsWithContestedPoints(Stage& stage) const;

@@ -36,7 +36,7 @@ Array<CellSeed> listCells(const PreparedMap& map, Stage& stage) {
                      for (const SweptLine& line : seeds.linesOf(map.exact, tet, scratch)) {
                        const auto [first, count] = owner.owned(line);
                        for (std::uint32_t i = first; i < first + count; ++i) {
-                         cells[at++] = {tet, sweep.point(line, i)};
+                         cells[at++] = {tet, line.point(i)};
                        }
                      }
                    }

@@ -146,7 +146,7 @@ void LatticeNumbers::describe(const VertexDescriptions& to, Stage& stage) const 
                            for (std::uint32_t i = 0; i < run.count; ++i) {
                              const std::uint64_t v = run.first + i;
                              to.points[v] =
-                                 positions.at(run.simplex, sweep.point(*run.line, run.offset + i));
+                                 positions.at(run.simplex, run.line->point(run.offset + i));
                              to.tets[v] = tet;
                              to.corners[v] = map_.input.callersCorners(run.simplex);
                            }

@@ -279,7 +279,7 @@ void tagEdgesAndQuads(const TetMapView& given, const PreparedMap& prepared, cons
           for (const SweptLine& line : seeds.lines->of(tet)) {
             const auto [first, count] = owner.owned(line);
             for (std::uint32_t i = first; i < first + count; ++i) {
-              viewer.view(mesh.cells[cell++], tet, sweep.point(line, i), line.simplex(i), seen);
+              viewer.view(mesh.cells[cell++], tet, line.point(i), line.simplex(i), seen);
             }
           }
         }

@@ -110,7 +110,7 @@ Array<Hex> collectCells(const PreparedMap& map, const Array<NormalSigns>& signs,
       for (const SweptLine& line : seeds.lines->of(tet)) {
         const auto [first, count] = owner.owned(line);
         for (std::uint32_t i = first; i < first + count; ++i) {
-          cells[next++] = enter(tracer, tet, sweep.point(line, i), line.simplex(i));
+          cells[next++] = enter(tracer, tet, line.point(i), line.simplex(i));
         }
       }
     }

@@ -167,7 +167,8 @@ bool HalfGrids::comparePoints(const HalfGridSearch& search) noexcept {
 }
 
 /// Sets `lines_`.
-void HalfGrids::sortInside(HalfGrid grid, const std::array<std::uint8_t, 3>& axes) noexcept {
+void HalfGrids::sortInside(HalfGrid grid, SweepAxes sweepAxes) noexcept {
+  const std::array<std::uint8_t, 3>& axes = sweepAxes();
   std::array<GridPoint, kMostPlaces> points;  // by sweep axis
   std::size_t count = 0;
   for (std::size_t i = 0; i < insideCount_; ++i) {
@@ -185,7 +186,7 @@ void HalfGrids::sortInside(HalfGrid grid, const std::array<std::uint8_t, 3>& axe
     if (i > 0 && p[0] == points[i - 1][0] && p[1] == points[i - 1][1]) {
       ++lines_[lineCount_ - 1].count;
     } else {
-      lines_[lineCount_++] = {p[0], p[1], p[2], 1, kWholeTet, kWholeTet};
+      lines_[lineCount_++] = {p[0], p[1], p[2], 1, kWholeTet, kWholeTet, sweepAxes};
     }
   }
 }

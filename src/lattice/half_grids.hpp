@@ -80,7 +80,7 @@ class HalfGrids {
     const GridBox box = boxOf(grid);
     const SweepAxes axes = chooseSweepAxes(box);
     if ((unsure_ & halfGridBit(grid)) == 0) {
-      sortInside(grid, axes());
+      sortInside(grid, axes);
       for (std::size_t i = 0; i < lineCount_; ++i) visit(std::as_const(lines_[i]));
     } else if (!box.empty()) {
       const LatticeTet back = movedBack(grid);
@@ -100,7 +100,7 @@ class HalfGrids {
   };
 
   [[nodiscard]] bool comparePoints(const HalfGridSearch& search) noexcept;
-  void sortInside(HalfGrid grid, const std::array<std::uint8_t, 3>& axes) noexcept;
+  void sortInside(HalfGrid grid, SweepAxes axes) noexcept;
   [[nodiscard]] GridBox boxOf(HalfGrid grid) noexcept;
   /// The tet, moved so that the points of the grid become integers.
   [[nodiscard]] LatticeTet movedBack(HalfGrid grid) const noexcept;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -61,7 +60,7 @@ double valueAtBoxOrigin(const Plane& plane) {
 
 LineRasterizer::LineRasterizer(const LatticeTet& corners, std::int64_t unit, const GridBox& box,
                                SweepAxes axes) noexcept
-    : corners_(corners), unit_(unit), axes_(axes()) {
+    : corners_(corners), unit_(unit), sweepAxes_(axes), axes_(axes()) {
   for (std::size_t k = 0; k < 3; ++k) {
     origin_[k] = box.range[axes_[k]].first;
     size_[k] = box.range[axes_[k]].last - origin_[k];
@@ -79,13 +78,19 @@ void LineRasterizer::preparePlanes() noexcept {
     boxOrigin[axes_[k]] = origin_[k] * unit_;
     size[axes_[k]] = size_[k];
   }
+  const unsigned limits = findLimits();
   for (std::size_t f = 0; f < 4; ++f) {
+    lowBias_[f] = -kInfinity;
+    highBias_[f] = kInfinity;
+    if (((limits >> f) & 1U) != 0) {
+      offset_[f] = 0;
+      for (std::size_t k = 0; k < 3; ++k) normal_[k][f] = 0;
+      continue;
+    }
     const Plane plane = makePlane(corners_, f, boxOrigin, scale);
     offset_[f] = valueAtBoxOrigin(plane);
     for (std::size_t k = 0; k < 3; ++k) normal_[k][f] = plane.normal[axes_[k]];
     valueError_[f] = errorBound(plane, size);
-    lowBias_[f] = -kInfinity;
-    highBias_[f] = kInfinity;
     if (plane.magnitude[axes_[2]] == 0) {  // all products are zero, exactly
       constant_[f] = true;
       hasConstant_ = true;
@@ -104,6 +109,32 @@ void LineRasterizer::preparePlanes() noexcept {
   }
   // The roundings of the zero itself and on its way to an integer.
   zeroError_ += 0x1p-48 * (static_cast<double>(size_[2]) + 8);
+}
+
+/// A face across an axis bounds the tet there: no point of the box is outside of it, and those on
+/// it are known.
+/// @return such faces, as bits
+unsigned LineRasterizer::findLimits() noexcept {
+  unsigned found = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t axis = axes_[k];
+    // Every face has both of one of these pairs.
+    if (corners_[0][axis] != corners_[1][axis] && corners_[2][axis] != corners_[3][axis]) continue;
+    for (std::size_t f = 0; f < 4; ++f) {
+      const std::int64_t p = corners_[static_cast<std::size_t>(kFaceCorners[f][0])][axis];
+      if (corners_[static_cast<std::size_t>(kFaceCorners[f][1])][axis] != p ||
+          corners_[static_cast<std::size_t>(kFaceCorners[f][2])][axis] != p) {
+        continue;
+      }
+      found |= 1U << f;
+      const bool last = corners_[f][axis] < p;
+      // Between grid points, there is none on it.
+      if (p != (origin_[k] + (last ? size_[k] : 0)) * unit_) continue;
+      limits_[k][last ? 1 : 0] = cornerBit(static_cast<int>(f));
+      hasLimits_ = true;
+    }
+  }
+  return found;
 }
 
 void LineRasterizer::prepareEdges() noexcept {
@@ -163,8 +194,9 @@ void LineRasterizer::startLevel(std::int32_t level) noexcept {
 bool LineRasterizer::lineAt(std::int32_t level, std::int32_t row, SweptLine& line) noexcept {
   // The interval between the zeros of rising and falling planes, clamped to a range that integers
   // hold; beyond the box by a little so that empty lines stay empty.
-  double low = -2;
-  double high = static_cast<double>(size_[2]) + 2;
+  // Not integers, so that no limit of the range is mistaken for a zero near one.
+  double low = -2.5;
+  double high = static_cast<double>(size_[2]) + 2.5;
   std::array<double, 4> value{};
   for (std::size_t f = 0; f < 4; ++f) value[f] = value_[f] + normal_[1][f] * row;
   for (std::size_t f = 0; f < 4; ++f) {
@@ -172,8 +204,8 @@ bool LineRasterizer::lineAt(std::int32_t level, std::int32_t row, SweptLine& lin
     low = std::max(low, zero + lowBias_[f]);
     high = std::min(high, zero + highBias_[f]);
   }
-  low = std::min(low, static_cast<double>(size_[2]) + 2);
-  high = std::max(high, -2.0);
+  low = std::min(low, static_cast<double>(size_[2]) + 2.5);
+  high = std::max(high, -2.5);
   // Adding 4 makes truncation a floor. If no integer lies within the bound of either zero, the
   // points strictly between them are all inside the tet, and no others are in it.
   const auto lowFrom = static_cast<std::int32_t>(low - zeroError_ + 4);
@@ -196,8 +228,8 @@ bool LineRasterizer::lineAt(std::int32_t level, std::int32_t row, SweptLine& lin
   if (!sure) return exactLine(first, last, line);
   line.first = origin_[2] + first;
   line.count = static_cast<std::uint32_t>(last - first + 1);
-  line.left = kWholeTet;
-  line.right = kWholeTet;
+  line.left = hasLimits_ ? insideOfLimits(level, row, first) : kWholeTet;
+  line.right = hasLimits_ ? insideOfLimits(level, row, last) : kWholeTet;
   return true;
 }
 
@@ -223,63 +255,6 @@ bool LineRasterizer::exactLine(std::int32_t first, std::int32_t last, SweptLine&
   if (last == first) line.right = line.left;
   line.first = origin_[2] + first;
   line.count = static_cast<std::uint32_t>(last - first + 1);
-  return true;
-}
-
-EmptinessTest::EmptinessTest(const LatticeTet& corners, std::int64_t unit) noexcept {
-  const double scale = 1.0 / static_cast<double>(unit);
-  const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
-  std::array<std::array<double, 3>, 4> c;
-  double size = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::int64_t grid = corners[0][k] >> shift;
-    nearby_[k] = static_cast<double>(grid);
-    for (std::size_t i = 0; i < 4; ++i) {
-      c[i][k] = static_cast<double>(corners[i][k] - grid * unit) * scale;
-      size = std::max(size, std::abs(c[i][k]));
-    }
-  }
-  corner_ = c[0];
-  std::array<std::array<double, 3>, 3> e;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) e[i][k] = c[i + 1][k] - c[0][k];
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto& a = e[i == 2 ? 0 : i + 1];
-    const auto& b = e[i == 0 ? 2 : i - 1];
-    normals_[i] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  }
-  volume_ = e[0][0] * normals_[0][0] + e[0][1] * normals_[0][1] + e[0][2] * normals_[0][2];
-  // Points of the bounding box are within 2 size of corner 0 in each axis, products of three
-  // differences below 8 size^3, six of them in each volume, with a dozen roundings each.
-  error_ = 0x1p-42 * size * size * size;
-}
-
-bool EmptinessTest::certainlyMisses(const GridBox& box,
-                                    const std::array<double, 3>& shift) const noexcept {
-  constexpr std::int64_t kMaxPoints = 4;
-  std::int64_t count = 1;
-  for (const GridRange& range : box.range) {
-    count *= std::int64_t{range.last} - range.first + 1;
-    if (count > kMaxPoints) return false;
-  }
-  for (std::int32_t x = box.range[0].first; x <= box.range[0].last; ++x) {
-    for (std::int32_t y = box.range[1].first; y <= box.range[1].last; ++y) {
-      for (std::int32_t z = box.range[2].first; z <= box.range[2].last; ++z) {
-        const std::array<double, 3> p = {x + shift[0] - nearby_[0] - corner_[0],
-                                         y + shift[1] - nearby_[1] - corner_[1],
-                                         z + shift[2] - nearby_[2] - corner_[2]};
-        double least = volume_;
-        double rest = volume_;
-        for (const auto& n : normals_) {
-          const double volume = n[0] * p[0] + n[1] * p[1] + n[2] * p[2];
-          least = std::min(least, volume);
-          rest -= volume;
-        }
-        if (std::min(least, rest) >= -error_) return false;
-      }
-    }
-  }
   return true;
 }
 

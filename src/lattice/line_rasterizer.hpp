@@ -4,7 +4,8 @@
 // On a line of grid points every face plane is an affine function of one integer, so the points
 // inside form the interval between the largest zero of the rising planes and the smallest zero of
 // the falling ones. These zeros are computed in doubles with a proven bound; only if an integer
-// lies within the bound of the decisive zero do the exact predicates look at it.
+// lies within the bound of the decisive zero do the exact predicates look at it. Faces in planes of
+// the grid, as all those on the boundary of a map, take no arithmetic: they are limits of the box.
 #pragma once
 
 #include <array>
@@ -24,12 +25,22 @@ struct SweptLine {
   std::uint32_t count;
   CornerMask left;   ///< simplex of the first point
   CornerMask right;  ///< of the last point
+  SweepAxes axes;    ///< the same for all lines of a tet
 
   /// The simplex of all points between: the smallest that contains both ends, by convexity.
   [[nodiscard]] CornerMask inner() const noexcept { return static_cast<CornerMask>(left | right); }
   /// The simplex of the i-th point.
   [[nodiscard]] CornerMask simplex(std::uint32_t i) const noexcept {
     return i == 0 ? left : (i + 1 == count ? right : inner());
+  }
+  /// The i-th point.
+  [[nodiscard]] GridPoint point(std::uint32_t i) const noexcept {
+    const std::array<std::uint8_t, 3>& a = axes();
+    GridPoint z{};
+    z[a[0]] = level;
+    z[a[1]] = row;
+    z[a[2]] = first + static_cast<std::int32_t>(i);
+    return z;
   }
   /// Whether all points lie in the interior of the tet.
   [[nodiscard]] bool allInside() const noexcept { return left == kWholeTet && right == kWholeTet; }
@@ -49,6 +60,7 @@ class LineRasterizer {
       startLevel(level);
       for (std::int32_t row = rows.first; row <= rows.last; ++row) {
         SweptLine line;
+        line.axes = sweepAxes_;
         if (lineAt(level, row, line)) visit(std::as_const(line));
       }
     }
@@ -59,12 +71,22 @@ class LineRasterizer {
   static constexpr std::int32_t kFewRows = 4;
 
   void preparePlanes() noexcept;
+  [[nodiscard]] unsigned findLimits() noexcept;
   void prepareEdges() noexcept;
   /// Rows of a level (relative to the box) that may meet the tet.
   [[nodiscard]] GridRange rowsAt(std::int32_t level) const noexcept;
   void startLevel(std::int32_t level) noexcept;
   /// The line at a level and row relative to the box; false if it is empty.
   bool lineAt(std::int32_t level, std::int32_t row, SweptLine& line) noexcept;
+  /// The simplex of a point relative to the box that lies inside of all faces but limits.
+  [[nodiscard]] CornerMask insideOfLimits(std::int32_t level, std::int32_t row,
+                                          std::int32_t point) const noexcept {
+    return static_cast<CornerMask>(
+        kWholeTet & ~(limits_[0][0] * unsigned{level == 0}) &
+        ~(limits_[0][1] * unsigned{level == size_[0]}) & ~(limits_[1][0] * unsigned{row == 0}) &
+        ~(limits_[1][1] * unsigned{row == size_[1]}) & ~(limits_[2][0] * unsigned{point == 0}) &
+        ~(limits_[2][1] * unsigned{point == size_[2]}));
+  }
   /// Which points relative to the box lie in the tet, by exact predicates, among points `first` to
   /// `last`.
   bool exactLine(std::int32_t first, std::int32_t last, SweptLine& line) noexcept;
@@ -82,49 +104,28 @@ class LineRasterizer {
 
   const LatticeTet& corners_;
   std::int64_t unit_;
-  std::array<std::uint8_t, 3> axes_;
+  SweepAxes sweepAxes_;
+  std::array<std::uint8_t, 3> axes_;    ///< the same, looked up
   std::array<std::int32_t, 3> origin_;  ///< first point of the box, by sweep axis
   std::array<std::int32_t, 3> size_;    ///< points of the box minus one, by sweep axis
 
   // Per plane, inward positive:
-  std::array<double, 4> offset_;                 ///< value at the box's first point
-  std::array<std::array<double, 4>, 3> normal_;  ///< by sweep axis, then plane
-  std::array<double, 4> value_{};                ///< at the first row and point of a level
-  std::array<double, 4> valueError_{};           ///< bound of the error of a value in the box
-  std::array<double, 4> toZero_{};               ///< -1 / slope along the line; 0 if unusable
-  std::array<double, 4> lowBias_{};              ///< 0 for rising planes, else -infinity
-  std::array<double, 4> highBias_{};             ///< 0 for falling planes, else infinity
-  double zeroError_ = 0;                         ///< bound of the error of all zeros
-  std::array<bool, 4> constant_{};               ///< parallel to the lines
-  bool hasConstant_ = false;                     ///< some plane is
-  bool hasUnsure_ = false;                       ///< some plane is nearly parallel
-  std::array<Edge, 6> edges_;                    ///< if there are more than a few rows
-  std::optional<TetPlanes> planes_;              ///< made when first needed
-};
-
-/// Quick answers for small boxes: whether a tet certainly contains none of their points. Most tets
-/// of a coarse map are done with this. Volumes of the four tets that a point makes with the faces
-/// are computed from one set of cross products.
-class EmptinessTest {
- public:
-  EmptinessTest(const LatticeTet& corners, std::int64_t unit) noexcept;
-
-  /// @param box    of grid points; gives up on boxes of more than a few
-  /// @param shift  added to their coordinates: 0, or 1/2 for centres of cells
-  [[nodiscard]] bool certainlyMisses(const GridBox& box, double shift) const noexcept {
-    return certainlyMisses(box, {shift, shift, shift});
-  }
-  /// The same with a shift for each coordinate.
-  [[nodiscard]] bool certainlyMisses(const GridBox& box,
-                                     const std::array<double, 3>& shift) const noexcept;
-
- private:
-  std::array<double, 3> nearby_;  ///< grid point that coordinates are relative to
-  std::array<double, 3> corner_;  ///< corner 0, relative
-  /// Six times the gradients of the weights of corners 1 to 3, times the volume.
-  std::array<std::array<double, 3>, 3> normals_;
-  double volume_;  ///< six times
-  double error_;   ///< bound of the error of all volumes in the tet's bounding box
+  std::array<double, 4> offset_;                     ///< value at the box's first point
+  std::array<std::array<double, 4>, 3> normal_;      ///< by sweep axis, then plane
+  std::array<double, 4> value_{};                    ///< at the first row and point of a level
+  std::array<double, 4> valueError_{};               ///< bound of the error of a value in the box
+  std::array<double, 4> toZero_{};                   ///< -1 / slope along the line; 0 if unusable
+  std::array<double, 4> lowBias_{};                  ///< 0 for rising planes, else -infinity
+  std::array<double, 4> highBias_{};                 ///< 0 for falling planes, else infinity
+  double zeroError_ = 0;                             ///< bound of the error of all zeros
+  std::array<bool, 4> constant_{};                   ///< parallel to the lines
+  bool hasConstant_ = false;                         ///< some plane is
+  bool hasUnsure_ = false;                           ///< some plane is nearly parallel
+  bool hasLimits_ = false;                           ///< some face is a limit of the box
+  std::array<std::array<unsigned, 2>, 3> limits_{};  ///< such faces' opposite corners, as bits, by
+                                                     ///< sweep axis: at its first, last point
+  std::array<Edge, 6> edges_;                        ///< if there are more than a few rows
+  std::optional<TetPlanes> planes_;                  ///< made when first needed
 };
 
 }  // namespace hexhex

@@ -12,7 +12,7 @@ TetPlanes::TetPlanes(const LatticeTet& corners, std::int64_t unit) noexcept : un
     const LatticePoint b = corners[static_cast<std::size_t>(kFaceCorners[face][2])] - plane.origin;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       plane.normal[axis] = crossComponent(a, b, axis);
-      plane.roundedNormal[axis] = static_cast<double>(plane.normal[axis]);
+      plane.roundedNormal[axis] = signedToDouble(plane.normal[axis]);
     }
   }
 }
@@ -26,8 +26,9 @@ int TetPlanes::side(const Plane& plane, const LatticePoint& z) noexcept {
     sum += term;
     magnitude += std::abs(term);
   }
-  // Each term carries two conversions and one multiplication, the sum two additions: an error below
-  // 5.1 * 2^-53 times the sum of magnitudes. 2^-50 leaves room for the rounding of `magnitude`.
+  // Each term carries two conversions, one of them in two roundings, and one multiplication, the
+  // sum two additions: an error below 6.1 * 2^-53 times the sum of magnitudes. 2^-50 leaves room
+  // for the rounding of `magnitude`.
   constexpr double kRelativeError = 0x1p-50;
   if (sum > kRelativeError * magnitude) return 1;
   if (sum < -kRelativeError * magnitude) return -1;
@@ -63,6 +64,16 @@ std::array<double, 4> TetPlanes::weights(const GridPoint& z) const noexcept {
 
 namespace {
 
+/// Least and largest coordinate of the corners, without branches.
+std::array<std::int64_t, 2> extent(const LatticeTet& corners, std::size_t axis) {
+  const auto least = [](std::int64_t a, std::int64_t b) { return a < b ? a : b; };
+  const auto largest = [](std::int64_t a, std::int64_t b) { return a < b ? b : a; };
+  return {
+      least(least(corners[0][axis], corners[1][axis]), least(corners[2][axis], corners[3][axis])),
+      largest(largest(corners[0][axis], corners[1][axis]),
+              largest(corners[2][axis], corners[3][axis]))};
+}
+
 /// Grid coordinates in a range of lattice coordinates.
 GridRange rangeBetween(std::int64_t low, std::int64_t high, int shift) {
   // Right shifts of signed integers round down (C++20): ceil(low) = -floor(-low).
@@ -75,8 +86,7 @@ GridBox gridBox(const LatticeTet& corners, std::int64_t unit) noexcept {
   const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
   GridBox box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto [low, high] =
-        std::minmax({corners[0][axis], corners[1][axis], corners[2][axis], corners[3][axis]});
+    const auto [low, high] = extent(corners, axis);
     box.range[axis] = rangeBetween(low, high, shift);
   }
   return box;
@@ -87,8 +97,7 @@ GridBoxes gridBoxes(const LatticeTet& corners, std::int64_t unit) noexcept {
   const std::int64_t half = unit / 2;
   GridBoxes boxes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto [low, high] =
-        std::minmax({corners[0][axis], corners[1][axis], corners[2][axis], corners[3][axis]});
+    const auto [low, high] = extent(corners, axis);
     boxes.vertices.range[axis] = rangeBetween(low, high, shift);
     boxes.centers.range[axis] = rangeBetween(low - half, high - half, shift);
   }

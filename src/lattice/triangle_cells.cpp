@@ -16,8 +16,7 @@ TriangleCells::TriangleCells(const std::array<LatticePoint, 3>& corners,
     const std::size_t i = (k + 1) % 3;
     const std::size_t j = (k + 2) % 3;
     // Exact before rounding: the slopes below are as good as doubles get, even of thin triangles.
-    normal[k] =
-        static_cast<double>(static_cast<Int128>(a[i]) * b[j] - static_cast<Int128>(a[j]) * b[i]);
+    normal[k] = signedToDouble(static_cast<Int128>(a[i]) * b[j] - static_cast<Int128>(a[j]) * b[i]);
   }
   std::uint8_t steepest = 0;
   for (std::uint8_t k = 1; k < 3; ++k) {

@@ -20,19 +20,16 @@ std::span<const SweptLine> CellSeeds::linesOf(const ExactMap& map, Index tet,
 CellSeeds findCells(const PreparedMap& map, Stage& stage) {
   const std::size_t tets = map.topology.tetCount();
   CellSeeds seeds(tets, true);
-  parallelBlocks(
-      stage, tets, kSweepBlock, [&](std::size_t first, std::size_t end, std::size_t block) {
-        std::vector<SweptLine> lines;
-        std::vector<Index> begins;
-        for (std::size_t t = first; t < end; ++t) {
-          const auto tet = static_cast<Index>(t);
-          const std::size_t before = lines.size();
-          begins.push_back(static_cast<Index>(before));
-          TetSweep(map.exact, tet, SweptGrid::Centers).run(map.exact.unit, lines);
-          seeds.begin[t] = countOwned(map.topology, tet, std::span(lines).subspan(before));
-        }
-        seeds.lines->store(block, lines, begins);
-      });
+  parallelBlocks(stage, tets, kSweepBlock,
+                 [&](std::size_t first, std::size_t end, std::size_t block) {
+                   BlockLines lines(true);
+                   for (std::size_t t = first; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     TetSweep(map.exact, tet, SweptGrid::Centers).run(map.exact.unit, lines.next());
+                     seeds.begin[t] = countOwned(map.topology, tet, lines.last());
+                   }
+                   seeds.lines->store(block, lines);
+                 });
   exclusiveScan(std::span(seeds.begin));
   return seeds;
 }

@@ -2,6 +2,7 @@
 // by one half (cell centres).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,42 +32,63 @@ struct TetSweep {
 
   /// Appends the tet's lines.
   void run(std::int64_t unit, std::vector<SweptLine>& lines) const;
-
-  /// Grid point number `i` of a line.
-  [[nodiscard]] GridPoint point(const SweptLine& line, std::uint32_t i) const noexcept {
-    const std::array<std::uint8_t, 3>& a = axes();
-    GridPoint z{};
-    z[a[0]] = line.level;
-    z[a[1]] = line.row;
-    z[a[2]] = line.first + static_cast<std::int32_t>(i);
-    return z;
-  }
 };
 
 /// Appends the lines of both grids.
 void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
                std::vector<SweptLine>& centers);
 
+/// The lines of a block of tets, one tet after the other.
+class BlockLines {
+ public:
+  /// @param keep  whether to keep the lines of all tets, or just those of the last one
+  explicit BlockLines(bool keep) noexcept : keep_(keep) {}
+
+  /// Begins the next tet. Its lines are to be appended to what this returns.
+  [[nodiscard]] std::vector<SweptLine>& next() noexcept {
+    if (!keep_) lines_.clear();
+    begins_[tets_++] = static_cast<Index>(lines_.size());
+    return lines_;
+  }
+  /// Those of the last tet.
+  [[nodiscard]] std::span<const SweptLine> last() const noexcept {
+    return std::span(lines_).subspan(begins_[tets_ - 1]);
+  }
+  [[nodiscard]] std::span<const SweptLine> all() const noexcept { return lines_; }
+  [[nodiscard]] std::span<const Index> begins() const noexcept {
+    return std::span(begins_).first(tets_);
+  }
+
+ private:
+  bool keep_;
+  std::vector<SweptLine> lines_;
+  std::array<Index, kSweepBlock> begins_;
+  std::size_t tets_ = 0;
+};
+
 /// The lines of all tets, stored by block.
 class TetLines {
  public:
   /// @param tets  number of tets
-  explicit TetLines(std::size_t tets) : lineBegin_(tets), blocks_(blockCount(tets, kSweepBlock)) {}
+  explicit TetLines(std::size_t tets)
+      : lineBegin_(tets + blockCount(tets, kSweepBlock)), blocks_(blockCount(tets, kSweepBlock)) {}
 
-  /// Stores the lines of a block of tets.
-  /// @param ends  per tet of the block, where its lines end
-  void store(std::size_t block, std::span<const SweptLine> lines, std::span<const Index> begins);
+  void store(std::size_t block, const BlockLines& lines);
 
+  [[nodiscard]] bool areEmpty(Index tet) const noexcept {
+    const std::size_t place = placeOf(tet);
+    return lineBegin_[place] == lineBegin_[place + 1];
+  }
   [[nodiscard]] std::span<const SweptLine> of(Index tet) const noexcept {
-    const Array<SweptLine>& block = blocks_[tet / kSweepBlock];
-    const std::size_t begin = lineBegin_[tet];
-    const std::size_t next = std::size_t{tet} + 1;
-    const bool last = next % kSweepBlock == 0 || next == lineBegin_.size();
-    return std::span(block).subspan(begin, (last ? block.size() : lineBegin_[next]) - begin);
+    const std::size_t place = placeOf(tet);
+    return std::span(blocks_[tet / kSweepBlock])
+        .subspan(lineBegin_[place], lineBegin_[place + 1] - lineBegin_[place]);
   }
 
  private:
-  Array<Index> lineBegin_;  ///< per tet, within its block
+  static std::size_t placeOf(Index tet) noexcept { return std::size_t{tet} + tet / kSweepBlock; }
+
+  Array<Index> lineBegin_;  ///< per tet, within its block, and at the end of each block
   std::vector<Array<SweptLine>> blocks_;
 };
 

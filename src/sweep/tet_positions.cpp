@@ -143,7 +143,7 @@ Vec3 TetPositions::onFace(CornerMask face, const GridPoint& z) const {
   std::array<double, 4> weights{};
   for (std::size_t i = 0; i < 3; ++i) {
     const Int128 area = crossComponent(relative[(i + 1) % 3], relative[(i + 2) % 3], axis);
-    weights[static_cast<std::size_t>(f[i])] = std::abs(static_cast<double>(area));
+    weights[static_cast<std::size_t>(f[i])] = toDouble(area < 0 ? -area : area);
   }
   return combine(weights);
 }

@@ -33,7 +33,7 @@ VertexCounter::VertexCounter(const PreparedMap& map, VertexNumbers& numbers)
   numbers.generatorBegin.back() = 0;
 }
 
-void VertexCounter::count(std::size_t block, Index tet, std::span<const SweptLine> lines) {
+void VertexCounter::countSome(std::size_t block, Index tet, std::span<const SweptLine> lines) {
   Block& counts = blocks_[block];
   const std::size_t generatorsBefore = counts.generators.size();
   std::uint64_t inside = 0;

@@ -41,7 +41,10 @@ class VertexCounter {
   VertexCounter(const PreparedMap& map, VertexNumbers& numbers);
 
   /// Counts one tet's lines; tets of a block in order, blocks in any order and in parallel.
-  void count(std::size_t block, Index tet, std::span<const SweptLine> lines);
+  void count(std::size_t block, Index tet, std::span<const SweptLine> lines) {
+    countNothing(tet);
+    if (!lines.empty()) countSome(block, tet, lines);
+  }
   /// The same for a tet without lines.
   void countNothing(Index tet) noexcept {
     numbers_.begin[tet] = 0;
@@ -56,6 +59,7 @@ class VertexCounter {
     std::array<std::uint64_t, 4> generatorCounts{};
     std::array<std::uint64_t, 4> vertexCounts{};
   };
+  void countSome(std::size_t block, Index tet, std::span<const SweptLine> lines);
   void countBoundary(Block& block, Index tet, std::span<const SweptLine> lines);
 
   const PreparedMap& map_;

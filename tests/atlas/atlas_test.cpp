@@ -287,7 +287,7 @@ TEST(Property, PointsOfTetsBelongToTheirOwnVertices) {
       sweep.run(map.exact.unit, lines);
       for (const SweptLine& line : lines) {
         for (std::uint32_t i = 0; i < line.count; ++i) {
-          const GridPoint z = sweep.point(line, i);
+          const GridPoint z = line.point(i);
           const ChartPoint c = charts.gauge(tet)(z);
           const Brick<Index>* const brick = cache.find(charts.chart[tet], c);
           RC_ASSERT(brick != nullptr);

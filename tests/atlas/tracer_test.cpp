@@ -48,7 +48,7 @@ void forEachCell(const PreparedMap& map, const Visit& visit) {
     for (const SweptLine& line : lines) {
       const auto [first, count] = owner.owned(line);
       for (std::uint32_t i = first; i < first + count; ++i) {
-        visit(tet, sweep.point(line, i), line.simplex(i));
+        visit(tet, line.point(i), line.simplex(i));
       }
     }
   }
@@ -91,7 +91,6 @@ TEST(Property, WalksEndAtTheTracedCorners) {
     CellTracer tracer(map);
     std::size_t arrived = 0;
     forEachCell(map, [&](Index tet, const GridPoint& z, CornerMask generator) {
-      walker.enter(tet);
       tracer.enter(tet, z, generator);
       CellCornerSet seen = 0;
       const auto arrive = [&](const CellWalker::Stop& stop, CellCornerSet corners) {
@@ -112,7 +111,7 @@ TEST(Property, WalksEndAtTheTracedCorners) {
           RC_ASSERT(std::uint64_t{brick->ids[placeInBrick(at)]} == vertex);
         }
       };
-      const CellCornerSet missed = walker.run(z, arrive);
+      const CellCornerSet missed = walker.run(tet, z, arrive);
       RC_ASSERT((seen ^ missed) == 0xffU);
     });
     RC_ASSERT(arrived > 0U);

@@ -9,6 +9,7 @@
 
 #include <lattice/line_rasterizer.hpp>
 #include <lattice/rasterize.hpp>
+#include <lattice/small_boxes.hpp>
 
 #include "oracle.hpp"
 #include "random.hpp"
@@ -122,32 +123,40 @@ std::vector<CornerMask> rasterized(const ScaledTet& scaled, SweepAxes axes, doub
   return collector.simplices();
 }
 
+/// The same by SmallBoxes, if it can tell.
+void expectTheSameOfSmallBoxes(const ScaledTet& scaled, const std::vector<CornerMask>& expected) {
+  const GridBox box = gridBox(scaled.corners, scaled.unit);
+  std::vector<SweptLine> lines;
+  if (box.empty() || !SmallBoxes(scaled.corners, scaled.unit).append(box, 0, lines)) return;
+  SimplexGrid grid(box);
+  for (const SweptLine& line : lines) {
+    ASSERT_EQ(line.axes.index, chooseSweepAxes(box).index);
+    ASSERT_TRUE(line.allInside());
+    for (std::uint32_t i = 0; i < line.count; ++i) grid[line.point(i)] = kWholeTet;
+  }
+  ASSERT_EQ(grid.simplices(), expected);
+}
+
 /// The same by LineRasterizer.
 std::vector<CornerMask> rasterizedByLines(const ScaledTet& scaled, SweepAxes axes) {
   const GridBox box = gridBox(scaled.corners, scaled.unit);
   SimplexGrid grid(box);
   if (box.empty()) return grid.simplices();
-  bool found = false;
   std::array<std::int32_t, 2> previous = {box.range[axes()[0]].first,
                                           box.range[axes()[1]].first - 1};
   LineRasterizer(scaled.corners, scaled.unit, box, axes).run([&](const SweptLine& line) {
-    found = true;
     EXPECT_LT(previous, (std::array<std::int32_t, 2>{line.level, line.row}));
     previous = {line.level, line.row};
     EXPECT_GT(line.count, 0U);
-    GridPoint z{};
-    z[axes()[0]] = line.level;
-    z[axes()[1]] = line.row;
     for (std::uint32_t i = 0; i < line.count; ++i) {
-      z[axes()[2]] = line.first + static_cast<std::int32_t>(i);
+      const GridPoint z = line.point(i);
       if (!grid.covers(z)) {
         ADD_FAILURE() << "reported a point outside the box";
         return;
       }
-      grid[z] = i == 0 ? line.left : (i + 1 == line.count ? line.right : line.inner());
+      grid[z] = line.simplex(i);
     }
   });
-  EXPECT_FALSE(found && EmptinessTest(scaled.corners, scaled.unit).certainlyMisses(box, 0));
   return grid.simplices();
 }
 
@@ -172,6 +181,7 @@ void expectAgreement(const ScaledTet& scaled, SweepAxes axes, WithoutEpsilon wit
         << describe(scaled) << " epsilon " << epsilon;
   }
   ASSERT_EQ(rasterizedByLines(scaled, axes), expected) << describe(scaled);
+  expectTheSameOfSmallBoxes(scaled, expected);
   const std::vector<CornerMask> found = rasterized(scaled, axes, 0);
   for (std::size_t i = 0; i < found.size(); ++i) {
     const bool mayMiss =
