@@ -75,7 +75,7 @@ bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen, const EdgeS
   const bool back = way == Way::Backward;
   const std::size_t face = kExits[back ? ~sides.left & 63U : sides.left];
   if (sides.touches || face == 4) return false;
-  face_ = static_cast<int>(face);
+  leaveThrough(at.tet, static_cast<int>(face));
   look(at.frame);
   reach_ = 0;
   const SeenFace& f = kFaces[face];
@@ -91,11 +91,10 @@ bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen, const EdgeS
 }
 
 bool FaceWalk::cross(SimplexInTet& at) {
+  if (mate_ == kNone) return false;
   const HalfFace halfFace = halfFaceOf(at.tet, face_);
-  const HalfFace mate = topology_.mate[halfFace];
-  if (mate == kNone) return false;
-  at.tet = tetOf(mate);
-  face_ = localOf(mate);
+  at.tet = tetOf(mate_);
+  face_ = localOf(mate_);
   if (exact_.transitions.isJump(halfFace)) {
     at.frame = at.frame.carried(exact_.transitions.across(halfFace));
     look(at.frame);
@@ -125,12 +124,23 @@ bool FaceWalk::leave(const SimplexInTet& at) {
   if (first == 3) return false;
   const std::size_t second = first == 2 ? 0 : first + 1;
   const std::size_t third = 3 - first - second;
-  face_ = topology_.localCorner(at.tet, vertices_[third]);
+  leaveThrough(at.tet, topology_.localCorner(at.tet, vertices_[third]));
   place(third, topology_.tets[at.tet][apex], seen);
   weights_[first] = toDouble(side[second]);
   weights_[second] = toDouble(-side[first]);
   measure();
   return true;
+}
+
+/// Memory takes longer to answer than all arithmetic here, so it is asked early.
+void FaceWalk::leaveThrough(Index tet, int face) noexcept {
+  face_ = face;
+  const HalfFace own = halfFaceOf(tet, face);
+  mate_ = topology_.mate[own];
+  const HalfFace next = mate_ == kNone ? own : mate_;
+  __builtin_prefetch(exact_.corners[tetOf(next)][static_cast<std::size_t>(localOf(next))].data());
+  __builtin_prefetch(topology_.tets[tetOf(next)].data());
+  __builtin_prefetch(&topology_.mate[halfFaceOf(tetOf(next), 0)]);
 }
 
 void FaceWalk::look(const Frame& frame) noexcept {

@@ -55,7 +55,8 @@ class FaceWalk {
 
   /// The point in the face at hand, on its side in the tet.
   [[nodiscard]] ArcExit exit(Index tet) const {
-    ArcExit exit{ownedFace(topology_, tet, face_), {}, place_ * perUnit_};
+    ArcExit exit{{tet, faceMask(face_)}, {}, place_ * perUnit_};
+    if (tetOf(mate_) < tet) exit.generator = {tetOf(mate_), faceMask(localOf(mate_))};
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) exit.point[k] += shares_[i] * positions_[i][k];
     }
@@ -81,6 +82,7 @@ class FaceWalk {
   }
 
  private:
+  void leaveThrough(Index tet, int face) noexcept;
   void look(const Frame& frame) noexcept;
   void place(std::size_t i, Index vertex, const LatticePoint& seen) noexcept;
   void measure() noexcept;
@@ -90,7 +92,8 @@ class FaceWalk {
   std::span<const Vec3> points_;
   double unit_;
   double perUnit_;
-  int face_ = 0;  ///< of the tet at hand
+  int face_ = 0;           ///< of the tet at hand
+  HalfFace mate_ = kNone;  ///< of that face
 
   // The frame: coordinate k is p[axis_[k]] - zero_[k], negated if flip_[k] is -1.
   std::array<std::size_t, 3> axis_{};
