@@ -82,7 +82,7 @@ void ElementNumbers::sweep(Index tet, HalfGrids& grids, std::vector<Line>& lines
       lines.push_back({line, first, count, kNone});
       elements += count;
     });
-    lineBegin_[gridOf(tet, axis)] = lines.size() - before;
+    lineBegin_[gridOf(tet, axis)] = static_cast<Index>(lines.size() - before);
   }
   begin_[tet] = elements;
 }

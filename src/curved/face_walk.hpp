@@ -12,13 +12,27 @@
 
 namespace hexhex {
 
+/// A wide number as memory should hold it: compilers write a whole one by way of vector registers,
+/// which wait for both halves to be in memory.
+struct Halves {
+  std::uint64_t low = 0;
+  std::int64_t high = 0;
+
+  constexpr Halves() = default;
+  constexpr explicit Halves(Int128 number) noexcept
+      : low(static_cast<std::uint64_t>(number)), high(static_cast<std::int64_t>(number >> 64)) {}
+  [[nodiscard]] constexpr Int128 whole() const noexcept {
+    return static_cast<Int128>(high) << 64 | static_cast<Int128>(low);
+  }
+};
+
 /// On which side of the edges of a tet a hex edge passes, looking along it.
 struct EdgeSides {
   /// @param seen  the tet in a frame that has the hex edge along its first axis
   explicit EdgeSides(const LatticeTet& seen) noexcept;
 
   /// Edge e (kEdges of face_walk.cpp) as a cross product of its corners, across the first axis.
-  std::array<Int128, 6> products;
+  std::array<Halves, 6> products;
   unsigned left = 0;     ///< bit e: the second corner is to the left of the first
   bool touches = false;  ///< the line of some edge is met
 };

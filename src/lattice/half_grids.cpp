@@ -166,29 +166,19 @@ bool HalfGrids::comparePoints(const HalfGridSearch& search) noexcept {
   return true;
 }
 
-/// Sets `lines_`.
-void HalfGrids::sortInside(HalfGrid grid, SweepAxes sweepAxes) noexcept {
+std::size_t HalfGrids::sortInside(HalfGrid grid, SweepAxes sweepAxes,
+                                  SweepPoints& points) const noexcept {
   const std::array<std::uint8_t, 3>& axes = sweepAxes();
-  std::array<GridPoint, kMostPlaces> points;  // by sweep axis
   std::size_t count = 0;
   for (std::size_t i = 0; i < insideCount_; ++i) {
     if (inside_[i].grid != grid) continue;
     const GridPoint& z = inside_[i].z;
-    const GridPoint point = {z[axes[0]], z[axes[1]], z[axes[2]]};
+    const std::array<std::int32_t, 3> point = {z[axes[0]], z[axes[1]], z[axes[2]]};
     std::size_t at = count++;
     for (; at > 0 && point < points[at - 1]; --at) points[at] = points[at - 1];
     points[at] = point;
   }
-  // Tets are convex: what they have of a line is consecutive.
-  lineCount_ = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const GridPoint& p = points[i];
-    if (i > 0 && p[0] == points[i - 1][0] && p[1] == points[i - 1][1]) {
-      ++lines_[lineCount_ - 1].count;
-    } else {
-      lines_[lineCount_++] = {p[0], p[1], p[2], 1, kWholeTet, kWholeTet, sweepAxes};
-    }
-  }
+  return count;
 }
 
 GridBox HalfGrids::boxOf(HalfGrid grid) noexcept {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -80,8 +81,8 @@ class HalfGrids {
     const GridBox box = boxOf(grid);
     const SweepAxes axes = chooseSweepAxes(box);
     if ((unsure_ & halfGridBit(grid)) == 0) {
-      sortInside(grid, axes);
-      for (std::size_t i = 0; i < lineCount_; ++i) visit(std::as_const(lines_[i]));
+      SweepPoints points;
+      visitLines(std::span(points).first(sortInside(grid, axes, points)), axes, visit);
     } else if (!box.empty()) {
       const LatticeTet back = movedBack(grid);
       LineRasterizer(back, unit_, box, axes).run(visit);
@@ -100,7 +101,23 @@ class HalfGrids {
   };
 
   [[nodiscard]] bool comparePoints(const HalfGridSearch& search) noexcept;
-  void sortInside(HalfGrid grid, SweepAxes axes) noexcept;
+  /// Coordinates of points by sweep axis, in sweep order.
+  using SweepPoints = std::array<std::array<std::int32_t, 3>, kMostPlaces>;
+  /// The points of a grid that is not unsure.
+  /// @return their number
+  std::size_t sortInside(HalfGrid grid, SweepAxes axes, SweepPoints& points) const noexcept;
+  template <class Visit>
+  static void visitLines(std::span<const std::array<std::int32_t, 3>> points, SweepAxes axes,
+                         const Visit& visit) {
+    for (std::size_t i = 0; i < points.size();) {
+      const auto& [level, row, first] = points[i];
+      // Tets are convex: what they have of a line is consecutive.
+      std::uint32_t count = 0;
+      while (i < points.size() && points[i][0] == level && points[i][1] == row) ++count, ++i;
+      const SweptLine line{level, row, first, count, kWholeTet, kWholeTet, axes};
+      visit(line);
+    }
+  }
   [[nodiscard]] GridBox boxOf(HalfGrid grid) noexcept;
   /// The tet, moved so that the points of the grid become integers.
   [[nodiscard]] LatticeTet movedBack(HalfGrid grid) const noexcept;
@@ -110,10 +127,8 @@ class HalfGrids {
   HalfGridSet occupied_ = 0;
   HalfGridSet unsure_ = 0;  ///< grids that take an exact sweep
   std::size_t insideCount_ = 0;
-  std::size_t lineCount_ = 0;
   std::optional<GridBoxes> boxes_;              ///< made when first needed
   std::array<Inside, kMostPlaces + 1> inside_;  ///< of the grids that are not unsure
-  std::array<SweptLine, kMostPlaces> lines_;    ///< of the grid that is being swept
 };
 
 }  // namespace hexhex
