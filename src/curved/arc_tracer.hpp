@@ -30,7 +30,7 @@ class ArcTracer {
         exact_(map.exact),
         topology_(map.topology),
         vertices_(vertices),
-        walk_(map),
+        beginnings_{Beginning(map), Beginning(map)},
         star_(map.topology, map.exact) {}
 
   /// The carrier of the part of the edge (the simplex that holds it) behind a point of it that
@@ -43,16 +43,23 @@ class ArcTracer {
   ///               point (ArcExit) at which it ends
   template <class Visit>
   [[nodiscard]] ArcEnd followBeyond(const SimplexInTet& at, const Visit& visit) {
-    return goOn(at, startWalk(at), visit);
+    FaceWalk& walk = beginnings_[0].walk;
+    return goOn(walk, at, startWalk(walk, at), visit);
   }
-  /// The same from a point in the interior of a tet, forward or backward along the frame.
+  /// Begins to follow an edge from a point in the interior of a tet, forward or backward along the
+  /// frame.
   /// @param seen, sides  of the tet in the frame
+  void begin(Way way, const SimplexInTet& middle, const LatticeTet& seen, const EdgeSides& sides) {
+    Beginning& beginning = beginningOf(way);
+    beginning.at = middle;
+    if (way == Way::Backward) beginning.at.frame = middle.frame.reversed();
+    beginning.walking = beginning.walk.start(beginning.at, seen, sides, way);
+  }
+  /// Goes on from there. The edge does not end in that tet.
   template <class Visit>
-  [[nodiscard]] ArcEnd followFrom(const SimplexInTet& middle, const LatticeTet& seen,
-                                  const EdgeSides& sides, Way way, const Visit& visit) {
-    SimplexInTet at = middle;
-    if (way == Way::Backward) at.frame = at.frame.reversed();
-    return goOn(at, walk_.start(at, seen, sides, way), visit);
+  [[nodiscard]] ArcEnd followBegun(Way way, const Visit& visit) {
+    Beginning& beginning = beginningOf(way);
+    return goOn(beginning.walk, beginning.at, beginning.walking, visit);
   }
   /// The same from a part that may be the last one.
   template <class Visit>
@@ -65,17 +72,27 @@ class ArcTracer {
   [[noreturn]] static void fail(Index tet, const char* what);
 
  private:
-  /// Whether the walk through the interiors of faces has begun.
-  [[nodiscard]] bool startWalk(const SimplexInTet& at) {
+  /// A walk that has been begun, and where.
+  struct Beginning {
+    explicit Beginning(const PreparedMap& map) : walk(map) {}
+    FaceWalk walk;
+    SimplexInTet at;
+    bool walking = false;
+  };
+  [[nodiscard]] Beginning& beginningOf(Way way) noexcept {
+    return beginnings_[static_cast<std::size_t>(way)];
+  }
+  /// Whether a walk through the interiors of faces begins.
+  [[nodiscard]] bool startWalk(FaceWalk& walk, const SimplexInTet& at) {
     if (at.simplex != kWholeTet) return false;
     const LatticeTet seen = see(at);
-    return walk_.start(at, seen, EdgeSides(seen));
+    return walk.start(at, seen, EdgeSides(seen));
   }
   template <class Visit>
-  [[nodiscard]] ArcEnd goOn(SimplexInTet at, bool walking, const Visit& visit) {
+  [[nodiscard]] ArcEnd goOn(FaceWalk& walk, SimplexInTet at, bool walking, const Visit& visit) {
     for (std::size_t steps = 0; steps <= topology_.tetCount(); ++steps) {
       if (walking) {
-        const Index vertex = walkOn(at, visit);
+        const Index vertex = walkOn(walk, at, visit);
         if (vertex != kNone) return {at, vertex};
       }
       const LatticeTet seen = see(at);
@@ -85,19 +102,19 @@ class ArcTracer {
       // The end is in the closed tet if and only if the edge does not leave it before.
       const Index vertex = vertexIn(at);
       if (vertex != kNone) return {at, vertex};
-      walking = startWalk(at);
+      walking = startWalk(walk, at);
     }
     fail(at.tet, "a hex edge does not end");
   }
   /// Follows the walk through the interiors of faces.
   /// @return the hex vertex at the end, or kNone if the walk comes to another exit before
   template <class Visit>
-  [[nodiscard]] Index walkOn(SimplexInTet& at, const Visit& visit) {
+  [[nodiscard]] Index walkOn(FaceWalk& walk, SimplexInTet& at, const Visit& visit) {
     for (std::size_t steps = 0; steps <= topology_.tetCount(); ++steps) {
-      visit(std::as_const(at), walk_.exit(at.tet));
-      if (!walk_.cross(at)) fail(at.tet, "a hex edge leaves the mesh");
-      const bool leaves = walk_.leave(at);
-      if (leaves && walk_.certainlyGoesOn()) continue;
+      visit(std::as_const(at), walk.exit(at.tet));
+      if (!walk.cross(at)) fail(at.tet, "a hex edge leaves the mesh");
+      const bool leaves = walk.leave(at);
+      if (leaves && walk.certainlyGoesOn()) continue;
       const Index vertex = vertexIn(at);
       if (vertex != kNone || !leaves) return vertex;
     }
@@ -117,7 +134,7 @@ class ArcTracer {
   const ExactMap& exact_;
   const TetTopology& topology_;
   const LatticeNumbers& vertices_;
-  FaceWalk walk_;
+  std::array<Beginning, 2> beginnings_;  ///< by way
   SimplexStar star_;
   /// Where the last edge ended, by direction, as edges come in the order of a sweep.
   std::array<LineHint, kDirections> endHints_;

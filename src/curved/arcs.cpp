@@ -63,19 +63,22 @@ class BlockTracer {
     const LatticeTet seen = middle.frame.see(map_.exact.corners[middle.tet], map_.exact.unit);
     const EdgeSides sides(seen);
     std::array<Index, 2> ends = {from.vertex, to.vertex};
+    // Both at once, so that memory answers to one while the other is followed.
+    if (from.vertex == kNone) tracer_.begin(Way::Backward, middle, seen, sides);
+    if (to.vertex == kNone) tracer_.begin(Way::Forward, middle, seen, sides);
     if (from.vertex == kNone) {
-      ends[0] = traceBack(middle, seen, sides);
+      ends[0] = traceBack();
     } else {
       addSegment(middle);
     }
     if (to.vertex != kNone) return ends;
     bool atMiddle = true;
-    const ArcEnd last = tracer_.followFrom(middle, seen, sides, Way::Forward,
-                                           [&](const SimplexInTet& carrier, const ArcExit& exit) {
-                                             if (!atMiddle) addSegment(carrier);
-                                             atMiddle = false;
-                                             pieces_.addPoint(exit, exit.parameter);
-                                           });
+    const ArcEnd last =
+        tracer_.followBegun(Way::Forward, [&](const SimplexInTet& carrier, const ArcExit& exit) {
+          if (!atMiddle) addSegment(carrier);
+          atMiddle = false;
+          pieces_.addPoint(exit, exit.parameter);
+        });
     addSegment(last.carrier);
     ends[1] = last.vertex;
     return ends;
@@ -83,15 +86,14 @@ class BlockTracer {
 
   /// Adds what there is from the beginning to the segment at the midpoint.
   /// @return the vertex at the beginning
-  [[nodiscard]] Index traceBack(const SimplexInTet& middle, const LatticeTet& seen,
-                                const EdgeSides& sides) {
+  [[nodiscard]] Index traceBack() {
     const std::size_t firstPoint = pieces_.points();
     const std::size_t firstSegment = pieces_.segments();
-    const ArcEnd first = tracer_.followFrom(middle, seen, sides, Way::Backward,
-                                            [&](const SimplexInTet& carrier, const ArcExit& exit) {
-                                              addSegment(carrier);
-                                              pieces_.addPoint(exit, 1 - exit.parameter);
-                                            });
+    const ArcEnd first =
+        tracer_.followBegun(Way::Backward, [&](const SimplexInTet& carrier, const ArcExit& exit) {
+          addSegment(carrier);
+          pieces_.addPoint(exit, 1 - exit.parameter);
+        });
     addSegment(first.carrier);
     pieces_.reverseFrom(firstPoint, firstSegment);
     return first.vertex;

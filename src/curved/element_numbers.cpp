@@ -33,10 +33,11 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind)
 ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& stage)
     : ElementNumbers(map, kind) {
   Sweep sweep(*this);
+  const HalfGridSearch search(gridsOf(kind));
   parallelBlocks(stage, topology_.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    for (std::size_t t = begin; t < end; ++t) {
-                     HalfGrids grids(map_.corners[t], map_.unit, gridsOf(kind));
+                     HalfGrids grids(map_.corners[t], map_.unit, search);
                      sweep.add(block, static_cast<Index>(t), grids);
                    }
                  });
@@ -81,7 +82,7 @@ void ElementNumbers::sweep(Index tet, HalfGrids& grids, std::vector<Line>& lines
       lines.push_back({line, first, count, kNone});
       elements += count;
     });
-    lineBegin_[gridOf(tet, axis)] = lines.size() - before;
+    lineBegin_[gridOf(tet, axis)] = static_cast<Index>(lines.size() - before);
   }
   begin_[tet] = elements;
 }
@@ -115,12 +116,12 @@ GridNumbers numberVerticesAndEdges(const PreparedMap& map, Stage& stage) {
   GridNumbers numbers{LatticeNumbers(map), ElementNumbers(map, ElementKind::Edges)};
   LatticeNumbers::Sweep vertices(numbers.vertices);
   ElementNumbers::Sweep edges(numbers.edges);
-  const auto wanted = static_cast<HalfGridSet>(LatticeNumbers::kGrids |
-                                               ElementNumbers::gridsOf(ElementKind::Edges));
+  const HalfGridSearch search(static_cast<HalfGridSet>(
+      LatticeNumbers::kGrids | ElementNumbers::gridsOf(ElementKind::Edges)));
   parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    for (std::size_t t = begin; t < end; ++t) {
-                     HalfGrids grids(map.exact.corners[t], map.exact.unit, wanted);
+                     HalfGrids grids(map.exact.corners[t], map.exact.unit, search);
                      vertices.add(block, static_cast<Index>(t), grids);
                      edges.add(block, static_cast<Index>(t), grids);
                    }

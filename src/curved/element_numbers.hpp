@@ -147,10 +147,10 @@ class ElementNumbers {
   const ExactMap& map_;
   const TetTopology& topology_;
   ElementKind kind_;
-  Array<std::uint64_t> begin_;      ///< per tet (+1)
-  Array<SweepAxes> axes_;           ///< per grid: tet and axis
-  Array<std::uint64_t> lineBegin_;  ///< per grid (+1)
-  Array<Line> lines_;               ///< those with owned elements
+  Array<std::uint64_t> begin_;  ///< per tet (+1)
+  Array<SweepAxes> axes_;       ///< per grid: tet and axis
+  Array<Index> lineBegin_;      ///< per grid (+1); there are no more lines than elements
+  Array<Line> lines_;           ///< those with owned elements
 };
 
 /// What vertices and edges take to be numbered, in one sweep of the tets.

@@ -63,9 +63,10 @@ constexpr std::array<std::uint8_t, 64> kExits = makeExits();
 
 EdgeSides::EdgeSides(const LatticeTet& seen) noexcept {
   for (std::size_t e = 0; e < 6; ++e) {
-    products[e] = crossComponent(seen[kEdges[e][0]], seen[kEdges[e][1]], 0);
-    left |= static_cast<unsigned>(products[e] > 0) << e;
-    touches |= products[e] == 0;
+    const Int128 product = crossComponent(seen[kEdges[e][0]], seen[kEdges[e][1]], 0);
+    products[e] = Halves(product);
+    left |= static_cast<unsigned>(product > 0) << e;
+    touches |= product == 0;
   }
 }
 
@@ -75,7 +76,7 @@ bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen, const EdgeS
   const bool back = way == Way::Backward;
   const std::size_t face = kExits[back ? ~sides.left & 63U : sides.left];
   if (sides.touches || face == 4) return false;
-  face_ = static_cast<int>(face);
+  leaveThrough(at.tet, static_cast<int>(face));
   look(at.frame);
   reach_ = 0;
   const SeenFace& f = kFaces[face];
@@ -83,7 +84,7 @@ bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen, const EdgeS
     const LatticePoint& p = seen[f.corners[i]];
     place(i, topology_.tets[at.tet][f.corners[i]],
           back ? LatticePoint{exact_.unit - p[0], -p[1], p[2]} : p);
-    const Int128 product = sides.products[f.sides[i]];
+    const Int128 product = sides.products[f.sides[i]].whole();
     weights_[i] = toDouble(product < 0 ? -product : product);
   }
   measure();
@@ -91,11 +92,10 @@ bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen, const EdgeS
 }
 
 bool FaceWalk::cross(SimplexInTet& at) {
+  if (mate_ == kNone) return false;
   const HalfFace halfFace = halfFaceOf(at.tet, face_);
-  const HalfFace mate = topology_.mate[halfFace];
-  if (mate == kNone) return false;
-  at.tet = tetOf(mate);
-  face_ = localOf(mate);
+  at.tet = tetOf(mate_);
+  face_ = localOf(mate_);
   if (exact_.transitions.isJump(halfFace)) {
     at.frame = at.frame.carried(exact_.transitions.across(halfFace));
     look(at.frame);
@@ -112,25 +112,38 @@ bool FaceWalk::leave(const SimplexInTet& at) {
   }
   // The edge leaves between two corners, and the apex, that it has inside: those where the apex is
   // to the right of the first and to the left of the second.
-  std::array<Int128, 3> side;
+  std::array<Halves, 3> side;
   unsigned right = 0;
   unsigned left = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    side[i] = crossComponent(seen_[i], seen, 0);
-    right |= static_cast<unsigned>(side[i] < 0) << i;
-    left |= static_cast<unsigned>(side[i] > 0) << i;
+    const Int128 product = crossComponent(seen_[i], seen, 0);
+    side[i] = Halves(product);
+    right |= static_cast<unsigned>(product < 0) << i;
+    left |= static_cast<unsigned>(product > 0) << i;
   }
   constexpr std::array<std::uint8_t, 8> kFirst = {3, 0, 1, 3, 2, 3, 3, 3};
   const std::size_t first = kFirst[right & ((left >> 1) | (left << 2)) & 7U];
   if (first == 3) return false;
   const std::size_t second = first == 2 ? 0 : first + 1;
   const std::size_t third = 3 - first - second;
-  face_ = topology_.localCorner(at.tet, vertices_[third]);
+  leaveThrough(at.tet, topology_.localCorner(at.tet, vertices_[third]));
   place(third, topology_.tets[at.tet][apex], seen);
-  weights_[first] = toDouble(side[second]);
-  weights_[second] = toDouble(-side[first]);
+  weights_[first] = toDouble(side[second].whole());
+  weights_[second] = toDouble(-side[first].whole());
   measure();
   return true;
+}
+
+/// Memory takes longer to answer than all arithmetic here, so it is asked early.
+void FaceWalk::leaveThrough(Index tet, int face) noexcept {
+  face_ = face;
+  const HalfFace own = halfFaceOf(tet, face);
+  mate_ = topology_.mate[own];
+  const HalfFace next = mate_ == kNone ? own : mate_;
+  __builtin_prefetch(&exact_.transitions.jump[own]);
+  __builtin_prefetch(exact_.corners[tetOf(next)][static_cast<std::size_t>(localOf(next))].data());
+  __builtin_prefetch(topology_.tets[tetOf(next)].data());
+  __builtin_prefetch(&topology_.mate[halfFaceOf(tetOf(next), 0)]);
 }
 
 void FaceWalk::look(const Frame& frame) noexcept {

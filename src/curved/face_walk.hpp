@@ -12,13 +12,27 @@
 
 namespace hexhex {
 
+/// A wide number as memory should hold it: compilers write a whole one by way of vector registers,
+/// which wait for both halves to be in memory.
+struct Halves {
+  std::uint64_t low = 0;
+  std::int64_t high = 0;
+
+  constexpr Halves() = default;
+  constexpr explicit Halves(Int128 number) noexcept
+      : low(static_cast<std::uint64_t>(number)), high(static_cast<std::int64_t>(number >> 64)) {}
+  [[nodiscard]] constexpr Int128 whole() const noexcept {
+    return static_cast<Int128>(high) << 64 | static_cast<Int128>(low);
+  }
+};
+
 /// On which side of the edges of a tet a hex edge passes, looking along it.
 struct EdgeSides {
   /// @param seen  the tet in a frame that has the hex edge along its first axis
   explicit EdgeSides(const LatticeTet& seen) noexcept;
 
   /// Edge e (kEdges of face_walk.cpp) as a cross product of its corners, across the first axis.
-  std::array<Int128, 6> products;
+  std::array<Halves, 6> products;
   unsigned left = 0;     ///< bit e: the second corner is to the left of the first
   bool touches = false;  ///< the line of some edge is met
 };
@@ -55,7 +69,8 @@ class FaceWalk {
 
   /// The point in the face at hand, on its side in the tet.
   [[nodiscard]] ArcExit exit(Index tet) const {
-    ArcExit exit{ownedFace(topology_, tet, face_), {}, place_ * perUnit_};
+    ArcExit exit{{tet, faceMask(face_)}, {}, place_ * perUnit_};
+    if (tetOf(mate_) < tet) exit.generator = {tetOf(mate_), faceMask(localOf(mate_))};
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) exit.point[k] += shares_[i] * positions_[i][k];
     }
@@ -81,6 +96,7 @@ class FaceWalk {
   }
 
  private:
+  void leaveThrough(Index tet, int face) noexcept;
   void look(const Frame& frame) noexcept;
   void place(std::size_t i, Index vertex, const LatticePoint& seen) noexcept;
   void measure() noexcept;
@@ -90,7 +106,8 @@ class FaceWalk {
   std::span<const Vec3> points_;
   double unit_;
   double perUnit_;
-  int face_ = 0;  ///< of the tet at hand
+  int face_ = 0;           ///< of the tet at hand
+  HalfFace mate_ = kNone;  ///< of that face
 
   // The frame: coordinate k is p[axis_[k]] - zero_[k], negated if flip_[k] is -1.
   std::array<std::size_t, 3> axis_{};

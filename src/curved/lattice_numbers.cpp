@@ -15,10 +15,11 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map) : map_(map) {
 
 LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : LatticeNumbers(map) {
   Sweep sweep(*this);
+  const HalfGridSearch search(kGrids);
   parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    for (std::size_t t = begin; t < end; ++t) {
-                     HalfGrids grids(map.exact.corners[t], map.exact.unit, kGrids);
+                     HalfGrids grids(map.exact.corners[t], map.exact.unit, search);
                      sweep.add(block, static_cast<Index>(t), grids);
                    }
                  });

@@ -82,18 +82,41 @@ struct WeightPlanes {
 
 }  // namespace
 
-HalfGrids::HalfGrids(const LatticeTet& corners, std::int64_t unit, HalfGridSet wanted) noexcept
+HalfGridSearch::HalfGridSearch(HalfGridSet wanted) : wanted_(wanted), places_(512) {
+  for (std::size_t key = 0; key < places_.size(); ++key) {
+    const std::array<std::size_t, 3> axes = {key / 64, key / 8 % 8, key % 8};
+    for (unsigned place = 0; place < 64; ++place) {
+      bool inBox = true;
+      unsigned grid = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t at = (place >> (2 * k)) & 3U;
+        inBox = inBox && at <= axes[k] / 2;
+        grid |= static_cast<unsigned>((axes[k] + at) & 1U) << k;
+      }
+      Places& places = places_[key];
+      // The largest boxes hold all points of a set of all grids: one more than there is room for.
+      if (inBox && ((wanted >> grid) & 1U) != 0 && places.count < places.places.size()) {
+        places.places[places.count++] = static_cast<std::uint8_t>(place);
+      }
+    }
+  }
+}
+
+HalfGrids::HalfGrids(const LatticeTet& corners, std::int64_t unit,
+                     const HalfGridSearch& search) noexcept
     : corners_(corners), unit_(unit) {
-  if (!comparePoints(wanted)) occupied_ = unsure_ = wanted;
+  if (!comparePoints(search)) occupied_ = unsure_ = search.wanted();
 }
 
 /// Sets `occupied_`, `unsure_` and `inside_`.
 /// @return false if the tet is not small
-bool HalfGrids::comparePoints(unsigned wanted) noexcept {
+bool HalfGrids::comparePoints(const HalfGridSearch& search) noexcept {
   const NearCorners near(corners_, unit_);
   std::array<std::int32_t, 3> first;
-  std::array<std::int32_t, 3> last;
+  std::array<std::int32_t, 3> steps;
   double size = 1;
+  bool large = false;
+  bool none = false;
   for (std::size_t k = 0; k < 3; ++k) {
     constexpr double kOffset = 1024;
     const Four& c = near.at[k];
@@ -104,17 +127,15 @@ bool HalfGrids::comparePoints(unsigned wanted) noexcept {
     // Rounding is monotone, so no point of the exact box is lost, neither here nor by conversions.
     // Conversions to integers truncate, which takes numbers above zero to be rounding down.
     first[k] = static_cast<std::int32_t>(kOffset) - static_cast<std::int32_t>(kOffset - low);
-    last[k] = static_cast<std::int32_t>(high + kOffset) - static_cast<std::int32_t>(kOffset);
-    // Coordinate k is even in the grids that are not moved along it, and odd in the others.
-    constexpr std::array<unsigned, 3> kEven = {0x55, 0x33, 0x0f};
-    const bool both = first[k] < last[k];
-    const bool none = first[k] > last[k];
-    const unsigned reached = (first[k] & 1) != 0 ? ~kEven[k] : kEven[k];
-    wanted &= none ? 0U : (both ? ~0U : reached);
+    steps[k] =
+        static_cast<std::int32_t>(high + kOffset) - static_cast<std::int32_t>(kOffset) - first[k];
+    none |= steps[k] < 0;
+    large |= steps[k] >= HalfGridSearch::kSide;
   }
-  if (wanted == 0) return true;
-  const std::int32_t rows = (last[0] - first[0] + 1) * (last[1] - first[1] + 1);
-  if (rows > kFewPoints || rows * (last[2] - first[2] + 1) > kFewPoints) return false;
+  if (none) return true;
+  if (large) return false;
+  const HalfGridSearch::Places& places = search.placesIn(first, steps);
+  if (places.count == 0) return true;
   const WeightPlanes planes(near.at);
   // Errors in units of 2^-53, with magnitudes: coordinates carry one rounding (size), so edges, up
   // to 2 size, are known to 4 size; their products to 20 size^2, gradients 1 to 3 (8 size^2) to
@@ -124,53 +145,40 @@ bool HalfGrids::comparePoints(unsigned wanted) noexcept {
   // additions of at most 192 size^3: 6 * 232 + 512 + 6 * 192 < 2^12 size^3. 2^13 covers terms of
   // second order as well.
   const double error = 0x1p-40 * size * size * size;
-  for (std::int32_t x = first[0]; x <= last[0]; ++x) {
-    const Weights atX = planes.atOrigin.plus(planes.gradient[0], x);
-    for (std::int32_t y = first[1]; y <= last[1]; ++y) {
-      const auto rowGrid = static_cast<HalfGrid>((x & 1) | (y & 1) << 1);
-      const unsigned rowWanted = wanted & (halfGridBit(rowGrid) * 0x11U);
-      if (rowWanted == 0) continue;
-      const Weights atY = atX.plus(planes.gradient[1], y);
-      for (std::int32_t z = first[2]; z <= last[2]; ++z) {
-        const auto grid = static_cast<HalfGrid>(rowGrid | (z & 1) << 2);
-        if ((rowWanted & halfGridBit(grid)) == 0) continue;
-        const Weights weights = atY.plus(planes.gradient[2], z);
-        if (weights.anyBelow(-error)) continue;
-        occupied_ = static_cast<HalfGridSet>(occupied_ | halfGridBit(grid));
-        if (weights.anyBelow(error))
-          unsure_ = static_cast<HalfGridSet>(unsure_ | halfGridBit(grid));
-        inside_[insideCount_++] = {
-            {near.nearby[0] + (x >> 1), near.nearby[1] + (y >> 1), near.nearby[2] + (z >> 1)},
-            grid};
-      }
-    }
+  for (std::size_t i = 0; i < places.count; ++i) {
+    const unsigned place = places.places[i];
+    const std::int32_t x = first[0] + static_cast<std::int32_t>(place & 3U);
+    const std::int32_t y = first[1] + static_cast<std::int32_t>((place >> 2) & 3U);
+    const std::int32_t z = first[2] + static_cast<std::int32_t>(place >> 4);
+    const Weights weights = planes.atOrigin.plus(planes.gradient[0], x)
+                                .plus(planes.gradient[1], y)
+                                .plus(planes.gradient[2], z);
+    const auto grid = static_cast<HalfGrid>((x & 1) | (y & 1) << 1 | (z & 1) << 2);
+    // Without branches, as what is inside is as good as random.
+    const unsigned mayBeInside = weights.anyBelow(-error) ? 0 : halfGridBit(grid);
+    const unsigned isUnsure = weights.anyBelow(error) ? mayBeInside : 0;
+    inside_[insideCount_] = {
+        {near.nearby[0] + (x >> 1), near.nearby[1] + (y >> 1), near.nearby[2] + (z >> 1)}, grid};
+    insideCount_ += mayBeInside != 0 ? 1 : 0;
+    occupied_ = static_cast<HalfGridSet>(occupied_ | mayBeInside);
+    unsure_ = static_cast<HalfGridSet>(unsure_ | isUnsure);
   }
   return true;
 }
 
-/// Sets `lines_`.
-void HalfGrids::sortInside(HalfGrid grid, SweepAxes sweepAxes) noexcept {
+std::size_t HalfGrids::sortInside(HalfGrid grid, SweepAxes sweepAxes,
+                                  SweepPoints& points) const noexcept {
   const std::array<std::uint8_t, 3>& axes = sweepAxes();
-  std::array<GridPoint, kFewPoints> points;  // by sweep axis
   std::size_t count = 0;
   for (std::size_t i = 0; i < insideCount_; ++i) {
     if (inside_[i].grid != grid) continue;
     const GridPoint& z = inside_[i].z;
-    const GridPoint point = {z[axes[0]], z[axes[1]], z[axes[2]]};
+    const std::array<std::int32_t, 3> point = {z[axes[0]], z[axes[1]], z[axes[2]]};
     std::size_t at = count++;
     for (; at > 0 && point < points[at - 1]; --at) points[at] = points[at - 1];
     points[at] = point;
   }
-  // Tets are convex: what they have of a line is consecutive.
-  lineCount_ = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const GridPoint& p = points[i];
-    if (i > 0 && p[0] == points[i - 1][0] && p[1] == points[i - 1][1]) {
-      ++lines_[lineCount_ - 1].count;
-    } else {
-      lines_[lineCount_++] = {p[0], p[1], p[2], 1, kWholeTet, kWholeTet, sweepAxes};
-    }
-  }
+  return count;
 }
 
 GridBox HalfGrids::boxOf(HalfGrid grid) noexcept {
