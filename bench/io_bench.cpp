@@ -281,7 +281,7 @@ void writing(benchmark::State& state, const Way& way, int threads) {
 
 /// The mesh as a file that can be read piece by piece.
 std::filesystem::path sourceOf(const BenchMesh& mesh) {
-  const std::filesystem::path file = folder() / (mesh.map.name + ".vtu");
+  std::filesystem::path file = folder() / (mesh.map.name + ".vtu");
   if (!std::filesystem::exists(file)) writeHexMesh(mesh.mesh, file);
   return file;
 }

@@ -27,9 +27,9 @@ FULL = [
     Step("rasterization", ABLATION, "^rasterization/", 5),
     Step("lookup", ABLATION, "^lookup/", 5),
     Step("mesh", BENCH, "^(quality|verify)/", 5),
-    Step("files", BENCH, "^(read|write|copy|survey)_", 5),
+    Step("files", BENCH, "^(read|write|copy|survey)_", 3),
 ]
-FULL_TEXT = "full: medians of five repetitions, at scales above 8 of three"
+FULL_TEXT = "full: medians of five repetitions; of three at scales above 8, and of files"
 
 QUICK = [
     Step("extract", BENCH, "^extract/(sphere_blocks|s17c|rockerarm)", 3, 0.01),

@@ -115,10 +115,10 @@ class CgnsWriter {
   template <class F>
   void writeSection(const ElementGroup& group, CGNS_ENUMT(ElementType_t) type, const F& elementAt) {
     if (group.begin == group.end) return;
-    Array<cgsize_t> vertices;
-    vertices.reserve((group.end - group.begin) * elementAt(group.begin).size());
+    Array<cgsize_t> vertices((group.end - group.begin) * elementAt(group.begin).size());
+    cgsize_t* next = vertices.data();
     for (std::size_t i = group.begin; i < group.end; ++i) {
-      for (const Index vertex : elementAt(i)) vertices.push_back(static_cast<cgsize_t>(vertex) + 1);
+      for (const Index vertex : elementAt(i)) *next++ = static_cast<cgsize_t>(vertex) + 1;
     }
     const cgsize_t first = next_;
     next_ += static_cast<cgsize_t>(group.end - group.begin);
