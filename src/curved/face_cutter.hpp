@@ -5,77 +5,58 @@
 #include <cstdint>
 #include <vector>
 
-#include <curved/owned_simplex.hpp>
+#include <curved/face_border.hpp>
+#include <curved/patch_pieces.hpp>
 #include <curved/patches.hpp>
 #include <curved/simplex_star.hpp>
 #include <curved/square_slice.hpp>
 
 namespace hexhex {
 
-/// Polygons of consecutive faces. Their inner points are numbered from the first number on that
-/// inner points have.
-struct PatchPieces {
-  std::vector<std::uint32_t> cornerCounts;  ///< per polygon
-  std::vector<OwnedSimplex> carriers;       ///< per polygon
-  std::vector<Index> corners;
-  std::vector<std::array<double, 2>> parameters;
-  std::vector<Vec3> points;
-  std::vector<OwnedSimplex> generators;
-
-  void clear() {
-    cornerCounts.clear();
-    carriers.clear();
-    corners.clear();
-    parameters.clear();
-    points.clear();
-    generators.clear();
-  }
-};
-
 /// Cuts one face after the other. One per thread.
 ///
 /// A piece is what a tet's interior has of the open square, or what a triangle in the square's
 /// plane has. Pieces are convex and meet along whole sides: a face of a tet separates two of them,
 /// and so does an edge in the plane. From the piece at the centre, all others are reached across
-/// sides inside the open square.
+/// sides inside the open square. What two pieces share is computed once: the corners of their tets,
+/// the points of their sections, and the points of their side.
 class FaceCutter {
  public:
   FaceCutter(const PatchInput& input, PatchPieces& pieces)
       : input_(input),
         topology_(input.map.topology),
         exact_(input.map.exact),
+        unit_(static_cast<double>(input.map.exact.unit)),
         star_(input.map.topology, input.map.exact),
-        vertexCount_(input.vertices.count()),
+        border_(input),
         firstInnerPoint_(input.firstInnerPoint()),
         out_(pieces) {}
 
-  struct Border {
-    Quad vertices{};
-    std::array<Index, 4> arcs{};
-    std::uint8_t reversed = 0;
-    std::uint32_t polygons = 0;
-  };
   /// Appends a face's polygons.
   /// @param tet  owner of the face's centre
-  [[nodiscard]] Border cut(Index tet, const Element& face);
+  /// @return how many
+  [[nodiscard]] std::size_t cut(Index tet, const Element& face);
+  /// The border of the face that was cut last.
+  [[nodiscard]] const FaceBorder& border() const noexcept { return border_; }
 
  private:
   struct Piece {
     SimplexInTet carrier;
-    LatticeTet seen;  ///< the tet in the square's frame
+    SeenTet seen;
+    Section section;
     Slice slice;
-    int entered;              ///< face of the tet across which the piece was found, or -1
-    std::size_t from;         ///< then: the piece on the other side
-    std::size_t fromSide;     ///< and its side
+    SectionCuts cuts;         ///< of the section
     std::size_t next;         ///< piece of the same tet, or kLast
     std::size_t firstCorner;  ///< among the corners that are emitted
+    std::size_t from;         ///< the piece across whose side it was found, or kLast
+    std::size_t fromSide;     ///< then: that side
+    std::size_t entry;        ///< and the piece's own side there, of its section, then of its slice
   };
   struct InnerPoint {
-    Index end;                         ///< larger vertex of the edge, or the vertex itself
-    std::array<LatticePoint, 2> seen;  ///< both ends in the square's frame
-    std::array<double, 2> parameter;
-    Index number;
-    std::size_t next;  ///< of those with the same first vertex, or kLast
+    std::array<Index, 2> vertices;     ///< of the edge, ascending; a vertex twice
+    std::array<LatticePoint, 2> seen;  ///< both in the square's frame
+    PatchPoint point;
+    std::size_t next;  ///< of those with the same key, or kLast
   };
   /// A list per key, by the number of a KeyTable.
   struct Lists {
@@ -87,45 +68,52 @@ class FaceCutter {
       first.clear();
     }
     /// Where the list of a key begins.
-    std::size_t& operator[](Index key);
+    std::size_t& operator[](Index key) {
+      const Index number = keys.insert(key);
+      if (number == first.size()) first.push_back(kLast);
+      return first[number];
+    }
   };
   static constexpr std::size_t kLast = ~std::size_t{0};
 
-  [[nodiscard]] bool cutInsideOneTet(Index tet, const Frame& frame, Border& border);
-  void collectPieces(const SimplexInTet& center);
-  void addPiece(const SimplexInTet& carrier) { addPiece(carrier, -1, kLast, 0); }
-  void addPiece(SimplexInTet carrier, int entered, std::size_t from, std::size_t fromSide);
+  void cutInsideOneTet(Index tet, CornerMask carrier);
+  void addFirstPiece(const SimplexInTet& center, const SeenTet& seen);
+  [[nodiscard]] SimplexInTet ownedCarrier(const SimplexInTet& carrier) const;
+  void addPiece(const SimplexInTet& carrier, const SeenTet& seen);
+  void addPieceAround(std::size_t from, std::size_t side, CornerMask edge);
+  [[nodiscard]] bool addPieceAround(std::size_t from, std::size_t side, SimplexInTet edge, int face,
+                                    std::int64_t height);
+  void addPieceAtEdge(std::size_t from, std::size_t side, SimplexInTet edge, CornerMask carrier);
+  void addPieceBehind(std::size_t from, std::size_t side, int face);
+  [[nodiscard]] bool isKnown(const SimplexInTet& carrier, std::size_t first) const;
+  [[nodiscard]] Piece& newPiece(const SimplexInTet& carrier, std::size_t& first);
+  void slice(Piece& piece, const KnownCut& known);
   void addNeighbours(std::size_t piece);
-  [[nodiscard]] LatticeTet see(const SimplexInTet& at) const {
-    return at.frame.see(exact_.corners[at.tet], exact_.unit);
+  [[nodiscard]] SeenTet see(const SimplexInTet& at) const {
+    return {at.frame.see(exact_.corners[at.tet], exact_.unit), unit_};
   }
 
-  void findArcs(Border& border);
-  [[nodiscard]] CornerMask simplexOfMidpoint(const LatticeTet& corners, std::size_t side) const;
-  void setArc(Border& border, std::size_t side, const SimplexInTet& midpoint);
-  static void setVertices(Border& border, const Arcs& arcs, Index tet);
-
-  void emit(const Border& border, Piece& piece);
-  void emitCorner(const Border& border, const Piece& piece, const SliceCorner& corner);
-  void emitArcPoint(const Border& border, const Piece& piece, const SliceCorner& corner);
-  void emitInnerPoint(const Piece& piece, const SliceCorner& corner);
-  void put(std::uint64_t number, std::array<double, 2> parameter);
+  void emit(Piece& piece);
+  [[nodiscard]] PatchPoint pointAt(const Piece& piece, const SliceCorner& corner);
+  [[nodiscard]] PatchPoint innerPoint(const Piece& piece, const SliceCorner& corner);
+  void ownInnerPoint(const Piece& piece, const SliceCorner& corner, Index number);
+  [[nodiscard]] PatchPoint newInnerPoint(const Piece& piece, const SliceCorner& corner);
 
   const PatchInput& input_;
   const TetTopology& topology_;
   const ExactMap& exact_;
+  double unit_;
   SimplexStar star_;
-  std::uint64_t vertexCount_;
+  FaceBorder border_;
   std::uint64_t firstInnerPoint_;
   PatchPieces& out_;
-  std::array<LineHint, 4> vertexHints_;  ///< per corner of the square
-  std::array<LineHint, 4> arcHints_;     ///< per side
 
   // Of the face at hand:
   std::vector<Piece> pieces_;
+  std::size_t pieceCount_ = 0;  ///< of `pieces_`, which keeps its size
   Lists piecesOfTet_;
   std::vector<InnerPoint> inner_;
-  Lists innerAtVertex_;
+  Lists innerAtEdge_;
 };
 
 }  // namespace hexhex

@@ -27,14 +27,15 @@ void join(const PatchPieces& pieces, const PiecePlaces& to, std::uint64_t firstI
     patches.polygonTet[to.polygon + i] = pieces.carriers[i].tet;
     patches.polygonCorners[to.polygon + i] = pieces.carriers[i].corners;
   }
+  const auto shift = static_cast<Index>(to.point);
   for (std::size_t i = 0; i < pieces.corners.size(); ++i) {
-    std::uint64_t number = pieces.corners[i];
-    if (number >= firstInnerPoint) number += to.point;
-    patches.corners[to.corner + i] = static_cast<Index>(number);
-    patches.parameters[to.corner + i] = pieces.parameters[i];
+    const Index number = pieces.corners[i];
+    patches.corners[to.corner + i] = number + (number >= firstInnerPoint ? shift : 0);
   }
-  for (std::size_t i = 0; i < pieces.points.size(); ++i) {
-    patches.points[to.point + i] = pieces.points[i];
+  std::copy_n(pieces.parameters.data(), pieces.parameters.size(),
+              patches.parameters.data() + to.corner);
+  std::copy_n(pieces.points.data(), pieces.points.size(), patches.points.data() + to.point);
+  for (std::size_t i = 0; i < pieces.generators.size(); ++i) {
     patches.generatorTet[to.point + i] = pieces.generators[i].tet;
     patches.generatorCorners[to.point + i] = pieces.generators[i].corners;
   }
@@ -85,11 +86,11 @@ void cutFaces(const PatchInput& input, std::size_t begin, std::size_t end, Patch
   for (std::size_t t = begin; t < end; ++t) {
     const auto tet = static_cast<Index>(t);
     input.faces.forEach(tet, [&](const Element& face) {
-      const FaceCutter::Border border = cutter.cut(tet, face);
-      patches.vertices[face.number] = border.vertices;
-      patches.arcs[face.number] = border.arcs;
-      patches.reversedArcs[face.number] = border.reversed;
-      patches.polygonBegin[face.number] = border.polygons;
+      patches.polygonBegin[face.number] = cutter.cut(tet, face);
+      const FaceBorder& border = cutter.border();
+      patches.vertices[face.number] = border.vertices();
+      patches.arcs[face.number] = border.arcs();
+      patches.reversedArcs[face.number] = border.reversed();
     });
   }
 }

@@ -1,45 +1,43 @@
 // The part of a unit square that lies in a tet, by signs of exact expressions alone.
-//
-// All coordinates are those of the square's frame: it lies in the plane where coordinate 2 is 0,
-// and coordinates 0 and 1 run from 0 to the unit.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
-#include <lattice/tet_geometry.hpp>
+#include <curved/plane_section.hpp>
 
 namespace hexhex {
 
-/// Where a coordinate is with respect to the unit interval.
-enum class SquareSide : std::uint8_t { Below, AtZero, Inside, AtOne, Above };
+/// Labels of sides of a slice: sides of its section, then sides of the square.
+inline constexpr std::uint8_t kSquareSide = 4;
 
-/// Sides of the square, counter-clockwise: side i runs from its corner i to corner i + 1. As labels
-/// of sides of a slice they stand behind the simplices of a tet.
-inline constexpr std::uint8_t kSquareSide = 16;
+/// The point of a section that a corner is, if it is one.
+inline constexpr std::uint8_t kNoPoint = 4;
 
-struct SliceCorner {
+struct alignas(4) SliceCorner {
+  std::uint8_t point;  ///< of the section, or kNoPoint: where the square's border cuts it
   /// The simplex of the tet that holds the corner; of no meaning at corners of the square.
   CornerMask simplex;
-  std::array<SquareSide, 2> at;
-  /// What the side from here to the next corner runs along: a simplex of the tet (a face, or an
-  /// edge in the square's plane), or kSquareSide + i.
+  BorderFlags borders;
+  /// What the side from here to the next corner runs along: side k of the section, or kSquareSide +
+  /// i, side i of the square.
   std::uint8_t side;
 
-  [[nodiscard]] bool onBorder(std::size_t axis) const noexcept {
-    return at[axis] == SquareSide::AtZero || at[axis] == SquareSide::AtOne;
+  [[nodiscard]] bool isOnBorder() const noexcept { return borders >= 16; }
+  /// Whether it is on two borders.
+  [[nodiscard]] bool isSquareCorner() const noexcept {
+    const unsigned on = borders >> 4;
+    return (on & (on - 1)) != 0;
   }
-  /// The corner of the square, if it is on both borders.
+  /// Then: the corner of the square, between sides i - 1 and i.
   [[nodiscard]] std::size_t squareCorner() const noexcept {
-    const bool x = at[0] == SquareSide::AtOne;
-    const bool y = at[1] == SquareSide::AtOne;
-    return y ? (x ? 2 : 3) : (x ? 1 : 0);
+    constexpr std::array<std::uint8_t, 16> kCorners = {0, 0, 0, 1, 0, 0, 2, 0,
+                                                       0, 0, 0, 0, 3, 0, 0, 0};
+    return kCorners[borders >> 4];
   }
   /// The side of the square, if it is on one border.
   [[nodiscard]] std::size_t squareSide() const noexcept {
-    if (at[1] == SquareSide::AtZero) return 0;
-    if (at[0] == SquareSide::AtOne) return 1;
-    return at[1] == SquareSide::AtOne ? 2 : 3;
+    return static_cast<std::size_t>(std::countr_zero(unsigned{borders} >> 4));
   }
 };
 
@@ -49,20 +47,72 @@ class Slice {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] const SliceCorner& operator[](std::size_t i) const noexcept { return corners_[i]; }
   [[nodiscard]] SliceCorner& operator[](std::size_t i) noexcept { return corners_[i]; }
+  [[nodiscard]] std::size_t next(std::size_t i) const noexcept { return i + 1 < size_ ? i + 1 : 0; }
+  void clear() noexcept {
+    size_ = 0;
+    borders = midpoints = possibleMidpoints = borderSides = squareCorners = 0;
+  }
   void add(const SliceCorner& corner) noexcept { corners_[size_++] = corner; }
+
+  /// Which sides of the square the section goes beyond (bit i), or touches from inside (bit 4 + i).
+  BorderFlags borders = 0;
+  /// The sides of the square (a bit each) whose midpoints are certainly in the interior of the
+  /// simplex that was sliced, and those whose midpoints may be anywhere in it.
+  std::uint8_t midpoints = 0;
+  std::uint8_t possibleMidpoints = 0;
+  /// The corners (a bit each) whose sides run along the square's.
+  std::uint8_t borderSides = 0;
+  /// The corners (a bit each) that are corners of the square.
+  std::uint8_t squareCorners = 0;
 
  private:
   std::array<SliceCorner, 8> corners_;
   std::uint32_t size_ = 0;
 };
 
-/// The simplex of a tet whose interior the plane meets in an area: the tet itself, a face that lies
-/// in the plane, or none.
-[[nodiscard]] CornerMask carrierOfPlane(const LatticeTet& corners) noexcept;
+/// Where on a side of the square, as its border runs, a point is with respect to the midpoint.
+enum class Half : std::uint8_t { First, Second, Unknown };
 
-/// The part of the square in the closure of such a simplex; less than three corners if it has no
-/// area.
-[[nodiscard]] Slice sliceSquare(const LatticeTet& corners, CornerMask carrier,
-                                std::int64_t unit) noexcept;
+/// What the open square has of a side of a section.
+struct SideCut {
+  bool exists = false;
+  // Per end: the side of the square that cuts the section's side there, or kUncut, and where.
+  std::uint8_t begin = 0;
+  std::uint8_t end = 0;
+  Half beginHalf = Half::Unknown;
+  Half endHalf = Half::Unknown;
+
+  /// The same from the other side.
+  [[nodiscard]] SideCut reversed() const noexcept {
+    return {exists, end, begin, endHalf, beginHalf};
+  }
+};
+inline constexpr std::uint8_t kUncut = 4;
+
+/// What is known about the sides of a section.
+struct SectionCuts {
+  std::array<SideCut, 4> sides;
+  std::array<std::uint8_t, 4> corner;  ///< per side that exists: the corner of the slice before it
+  bool areKnown = false;  ///< all of this; never where a corner or a crossing is on two lines
+};
+
+/// A side whose cut is known.
+struct KnownCut {
+  std::size_t side = 4;  ///< 4: none
+  SideCut cut = {};
+};
+
+/// The part of the square in a section; less than three corners if it has no area. It begins with
+/// the section's point 0, if that is in the square, and else where clipping by one side of the
+/// square after the other begins.
+/// @param known  one side of the section
+/// @param cuts   receives those of all sides, if that is how the slice was found
+/// @param slice  receives it
+void sliceSquare(const SeenTet& tet, const Section& section, std::int64_t unit,
+                 const KnownCut& known, SectionCuts& cuts, Slice& slice) noexcept;
+
+/// The same by clipping, for sections in any position.
+[[nodiscard]] Slice clipSquare(const SeenTet& tet, const Section& section,
+                               std::int64_t unit) noexcept;
 
 }  // namespace hexhex

@@ -1,0 +1,108 @@
+// The border of a hex face: its vertices, and its arcs with their points.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <curved/owned_simplex.hpp>
+#include <curved/patches.hpp>
+#include <curved/simplex_star.hpp>
+#include <curved/square_slice.hpp>
+
+namespace hexhex {
+
+/// A corner of a polygon: its number, and (u, v).
+struct PatchPoint {
+  Index number;
+  std::array<double, 2> parameter;
+};
+
+/// The border of one face after the other. One per thread. Sides of the square are numbered as in
+/// slices.
+class FaceBorder {
+ public:
+  explicit FaceBorder(const PatchInput& input)
+      : input_(input),
+        topology_(input.map.topology),
+        exact_(input.map.exact),
+        star_(input.map.topology, input.map.exact),
+        vertexCount_(input.vertices.count()) {}
+
+  /// Begins with another face.
+  /// @param tet     owner of the face's centre
+  /// @param normal  axis across the face
+  /// @param frame   of the face, in the tet
+  void begin(Index tet, int normal, const Frame& frame);
+  /// Whether a tet may contain all vertices of the face.
+  [[nodiscard]] static bool mayContainAll(const SeenTet& seen, std::int64_t unit) noexcept;
+  /// Takes the four vertices if they are all in one closed tet, and the arcs between them.
+  /// @return the smallest simplex of the tet that contains them, or kNoSimplex
+  [[nodiscard]] CornerMask setInsideOneTet(Index tet, const Frame& frame);
+
+  /// Looks for the midpoints of sides along a slice, and takes the arcs of those that it finds.
+  /// @param carrier  the simplex that was sliced, with the face's frame
+  void findArcs(const SimplexInTet& carrier, const SeenTet& seen, const Slice& slice);
+  /// To be called when all slices have been looked at.
+  /// @param tet  to be named in an error
+  void finish(Index tet);
+
+  [[nodiscard]] const Quad& vertices() const noexcept { return vertices_; }
+  [[nodiscard]] const std::array<Index, 4>& arcs() const noexcept { return arcs_; }
+  [[nodiscard]] std::uint8_t reversed() const noexcept { return reversed_; }
+
+  [[nodiscard]] PatchPoint vertex(std::size_t corner) const noexcept {
+    constexpr std::array<std::array<double, 2>, 4> kPlaces = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+    return {vertices_[corner], kPlaces[corner]};
+  }
+  /// What is known about the end of a slice's side along the border.
+  struct SideEnd {
+    bool isKnown;
+    bool isSquareCorner;
+  };
+  /// Finds those points of an arc at the ends of a slice's side that are not known. The side runs
+  /// inside the carrier, so that they are next to each other on the arc.
+  /// @param side  of the square
+  /// @return false if an arc that comes by several times leaves it open which points they are
+  [[nodiscard]] bool findEnds(const SimplexInTet& carrier, std::size_t side, const SideEnd& first,
+                              const SideEnd& second, PatchPoint& firstPoint,
+                              PatchPoint& secondPoint) const noexcept;
+  /// The point of an arc at a corner of a slice.
+  [[nodiscard]] PatchPoint pointAt(Index tet, const SeenTet& seen, const SliceCorner& corner) const;
+
+ private:
+  [[nodiscard]] bool isReversed(std::size_t side) const noexcept {
+    return ((reversed_ >> side) & 1U) != 0;
+  }
+  /// The part of an arc inside a carrier, as the number that the point at its end has among those
+  /// of all arcs; kNoPart if there are several.
+  [[nodiscard]] std::uint64_t partIn(const SimplexInTet& carrier, std::size_t side) const noexcept;
+  [[nodiscard]] PatchPoint arcPoint(std::size_t side, std::uint64_t point) const noexcept;
+  [[nodiscard]] CornerMask simplexOfMidpoint(const LatticeTet& corners, std::size_t side) const;
+  void takeSide(std::size_t side, std::size_t opposite);
+  void setArc(std::size_t side, const SimplexInTet& midpoint);
+
+  static constexpr std::uint64_t kNoPart = ~std::uint64_t{0};
+
+  const PatchInput& input_;
+  const TetTopology& topology_;
+  const ExactMap& exact_;
+  SimplexStar star_;
+  std::uint64_t vertexCount_;
+  std::array<LineHint, 4> vertexHints_;  ///< per corner of the square
+  /// Where arcs were found the last time, for several tets, axes and sides.
+  std::array<LineHint, 512> arcHints_;
+
+  // Of the face at hand:
+  Index tet_ = kNone;
+  int normal_ = 0;
+  GridPoint origin_{};
+  Quad vertices_{};
+  std::array<Index, 4> arcs_{};
+  std::uint8_t reversed_ = 0;  ///< bit per side
+  unsigned found_ = 0;         ///< bit per side
+};
+
+/// @throws Error Internal, always
+[[noreturn]] void failToCut(Index tet, const char* what);
+
+}  // namespace hexhex

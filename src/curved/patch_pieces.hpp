@@ -1,0 +1,59 @@
+// Polygons of consecutive hex faces, before it is known where in the result they belong.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <curved/owned_simplex.hpp>
+
+#include <hexhex/types.hpp>
+
+namespace hexhex {
+
+/// An array that is filled again and again, a few elements at a time.
+template <class T>
+class Column {
+ public:
+  void clear() noexcept { size_ = 0; }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] const T* data() const noexcept { return values_.data(); }
+  [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return values_[i]; }
+  [[nodiscard]] T& operator[](std::size_t i) noexcept { return values_[i]; }
+
+  /// Makes room behind the last element.
+  /// @return where to write; valid until the next call
+  [[nodiscard]] T* extend(std::size_t count) {
+    const std::size_t begin = size_;
+    size_ += count;
+    if (size_ > values_.size()) values_.resize(std::max(size_, 2 * values_.size()));
+    return values_.data() + begin;
+  }
+  void add(const T& value) { *extend(1) = value; }
+
+ private:
+  Array<T> values_;
+  std::size_t size_ = 0;
+};
+
+/// Inner points are numbered from the first number on that inner points have.
+struct PatchPieces {
+  Column<std::uint8_t> cornerCounts;  ///< per polygon
+  Column<OwnedSimplex> carriers;      ///< per polygon
+  Column<Index> corners;
+  Column<std::array<double, 2>> parameters;
+  Column<Vec3> points;
+  Column<OwnedSimplex> generators;
+
+  void clear() noexcept {
+    cornerCounts.clear();
+    carriers.clear();
+    corners.clear();
+    parameters.clear();
+    points.clear();
+    generators.clear();
+  }
+};
+
+}  // namespace hexhex
