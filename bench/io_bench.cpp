@@ -1,6 +1,8 @@
 // Files: reading and writing, beside the yardstick of plainly writing as many bytes. All files are
-// in the system's cache.
+// in the system's cache. Binary formats have a dense mesh, texts and compressed files an eighth of
+// it, as they are as large and take ten times as long.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <ctime>
 #include <fcntl.h>
@@ -21,6 +23,7 @@
 
 #include "bench_maps.hpp"
 #include "benchmarks.hpp"
+#include "memory.hpp"
 
 namespace hexhex::bench {
 
@@ -71,8 +74,9 @@ void setMegabytesPerCore(benchmark::State& state, std::uint64_t bytes, double cp
       static_cast<double>(bytes) * static_cast<double>(state.iterations()) / kMega / cpu;
 }
 
-/// A dense mesh, its scaled Jacobians, and how long its extraction took with so many threads.
-struct DenseMesh {
+/// A mesh, its scaled Jacobians, and how long its extraction took with so many threads.
+struct BenchMesh {
+  BenchMap map;
   HexMesh mesh;
   Array<double> quality;
   std::vector<double> extractionSeconds;  ///< by number of threads
@@ -89,28 +93,50 @@ const BenchMap& denseMap() {
   return real != maps.end() ? *real : *find("sphere_blocks_high");
 }
 
-const DenseMesh& denseMesh() {
-  static const DenseMesh dense = [] {
-    DenseMesh result;
-    result.extractionSeconds.push_back(0);
-    ExtractOptions options;
-    options.scale = denseMap().scale;
-    for (const int threads : {1, 2}) {
-      double best = std::numeric_limits<double>::max();
-      for (int run = 0; run < 2; ++run) {  // the first one finds its memory cold
-        Context context(threads);
-        result.mesh = {};
-        const auto begin = std::chrono::steady_clock::now();
-        result.mesh = extract(load(denseMap()), options, context);
-        best = std::min(best, secondsSince(begin));
-      }
-      result.extractionSeconds.push_back(best);
+/// The same at scale 1, if that is another one.
+const BenchMap& lessDenseMap() {
+  static const BenchMap map = [] {
+    BenchMap result = denseMap();
+    const std::string ending = "_x" + std::to_string(result.scale);
+    if (result.scale > 1 && result.name.ends_with(ending)) {
+      result.name.replace(result.name.size() - ending.size(), ending.size(), "_x1");
+      result.scale = 1;
     }
-    Context context;
-    result.quality = scaledJacobians(result.mesh, context);
     return result;
   }();
-  return dense;
+  return map;
+}
+
+BenchMesh makeMesh(const BenchMap& map) {
+  BenchMesh result;
+  result.map = map;
+  result.extractionSeconds.push_back(0);
+  ExtractOptions options;
+  options.scale = map.scale;
+  for (const int threads : {1, 2}) {
+    double best = std::numeric_limits<double>::max();
+    for (int run = 0; run < 2; ++run) {  // the first one finds its memory cold
+      Context context(threads);
+      result.mesh = {};
+      const auto begin = std::chrono::steady_clock::now();
+      result.mesh = extract(load(map), options, context);
+      best = std::min(best, secondsSince(begin));
+    }
+    result.extractionSeconds.push_back(best);
+  }
+  Context context;
+  result.quality = scaledJacobians(result.mesh, context);
+  return result;
+}
+
+const BenchMesh& denseMesh() {
+  static const BenchMesh mesh = makeMesh(denseMap());
+  return mesh;
+}
+
+const BenchMesh& lessDenseMesh() {
+  static const BenchMesh mesh = makeMesh(lessDenseMap());
+  return mesh;
 }
 
 /// Seconds for writing as many bytes from memory that is in use already, with one thread.
@@ -142,17 +168,39 @@ std::uint64_t bytesOf(const std::filesystem::path& file) {
   return bytes;
 }
 
-/// Times f(file) for a file that does not exist before.
+/// What one run takes, in bytes.
+struct Need {
+  std::uint64_t memory = 0;
+  std::uint64_t file = 0;
+};
+
+/// Runs f(file) once and looks. The last name's is remembered, as repetitions of a benchmark call
+/// its function anew.
 template <class F>
-void timeWriting(benchmark::State& state, const std::string& name, double extractionSeconds,
-                 const F& f) {
-  const std::filesystem::path file = folder() / name;
+Need needOf(const std::string& name, const std::filesystem::path& file, const F& f) {
+  static std::string knownName;
+  static Need known;
+  if (knownName != name) {
+    const PeakMemory peak;
+    f(file);
+    known = {peak.growth().value_or(0), bytesOf(file)};
+    knownName = name;
+  }
+  return known;
+}
+
+/// Times f(file), which finds as much memory as it and its file need free and warm.
+/// @param before  prepares a run; called with the size of the file
+/// @return seconds of all runs
+template <class Before, class F>
+double timeRuns(benchmark::State& state, const std::string& name, const std::filesystem::path& file,
+                const Before& before, const F& f) {
+  const Need need = needOf(name, file, f);
   double total = 0;
-  double plain = 0;
   double cpu = 0;
-  std::uint64_t bytes = 0;
   for (auto _ : state) {
-    std::filesystem::remove_all(file);
+    before(need.file);
+    warmFreeMemory(need.memory + need.file);
     const double cpuBegin = cpuSeconds();
     const auto begin = std::chrono::steady_clock::now();
     f(file);
@@ -160,22 +208,25 @@ void timeWriting(benchmark::State& state, const std::string& name, double extrac
     cpu += cpuSeconds() - cpuBegin;
     state.SetIterationTime(seconds);
     total += seconds;
-    bytes = bytesOf(file);
-    plain += secondsOfPlainWrite(bytes);
   }
-  std::filesystem::remove_all(file);
-  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes));
-  state.counters["ratio_to_plain_write"] = total / plain;
-  setMegabytesPerCore(state, bytes, cpu);
-  if (extractionSeconds == 0) return;
-  state.counters["ratio_to_extraction"] =
-      total / static_cast<double>(state.iterations()) / extractionSeconds;
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(need.file));
+  setMegabytesPerCore(state, need.file, cpu);
+  return total;
 }
 
 /// A format and how it is written.
 struct Way {
   std::string format;
   bool compress = false;
+
+  /// Whether numbers are spelt or compressed.
+  [[nodiscard]] bool isSlow() const {
+    constexpr std::array<std::string_view, 8> kTexts = {"mesh",        "vtk", "ovm",  "msh41-ascii",
+                                                        "msh22-ascii", "inp", "mfem", "openfoam"};
+    return compress || std::find(kTexts.begin(), kTexts.end(), format) != kTexts.end();
+  }
+  [[nodiscard]] const BenchMap& map() const { return isSlow() ? lessDenseMap() : denseMap(); }
+  [[nodiscard]] const BenchMesh& mesh() const { return isSlow() ? lessDenseMesh() : denseMesh(); }
 
   [[nodiscard]] std::string name() const { return format + (compress ? "-zlib" : ""); }
   [[nodiscard]] WriteOptions writing() const {
@@ -191,35 +242,57 @@ struct Way {
   }
 };
 
-void writing(benchmark::State& state, const Way& way, int threads) {
-  const DenseMesh& dense = denseMesh();
-  timeWriting(state, "mesh", dense.extractionSeconds[static_cast<std::size_t>(threads)],
-              [&](const std::filesystem::path& file) {
-                Context context(threads);
-                WriteOptions options = way.writing();
-                options.scaledJacobians = dense.quality;
-                writeHexMesh(dense.mesh, file, options, context);
-              });
-}
-
-/// Through a sink: reads the mesh piece by piece from a file that a benchmark before has written.
-void copyingInPieces(benchmark::State& state, const Way& way, int threads) {
-  const std::filesystem::path source = folder() / "source.vtu";
-  if (!std::filesystem::exists(source)) writeHexMesh(denseMesh().mesh, source);
-  timeWriting(state, "copy", 0, [&](const std::filesystem::path& file) {
-    Context context(threads);
-    readHexMeshTo(*openMeshSink(file, way.writing(), context), source, context);
-  });
+/// Times f(file) for a file that does not exist before.
+template <class F>
+void timeWriting(benchmark::State& state, const std::string& name, double extractionSeconds,
+                 const F& f) {
+  const std::filesystem::path file = folder() / "written";
+  double plain = 0;
+  const auto before = [&](std::uint64_t bytes) {
+    std::filesystem::remove_all(file);
+    plain += secondsOfPlainWrite(bytes);
+  };
+  const double total = timeRuns(state, "write " + name, file, before, f);
+  std::filesystem::remove_all(file);
+  state.counters["ratio_to_plain_write"] = total / plain;
+  if (extractionSeconds == 0) return;
+  state.counters["ratio_to_extraction"] =
+      total / static_cast<double>(state.iterations()) / extractionSeconds;
 }
 
 /// Times f(file) for a file that exists.
 template <class F>
 void timeReading(benchmark::State& state, const std::filesystem::path& file, const F& f) {
-  const double begin = cpuSeconds();
-  for (auto _ : state) f(file);
-  const std::uint64_t bytes = bytesOf(file);
-  setMegabytesPerCore(state, bytes, cpuSeconds() - begin);
-  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes));
+  timeRuns(
+      state, "read " + file.string(), file, [](std::uint64_t /*bytes*/) {}, f);
+}
+
+void writing(benchmark::State& state, const Way& way, int threads) {
+  const BenchMesh& mesh = way.mesh();
+  timeWriting(state, "mesh " + way.name(),
+              mesh.extractionSeconds[static_cast<std::size_t>(threads)],
+              [&](const std::filesystem::path& file) {
+                Context context(threads);
+                WriteOptions options = way.writing();
+                options.scaledJacobians = mesh.quality;
+                writeHexMesh(mesh.mesh, file, options, context);
+              });
+}
+
+/// The mesh as a file that can be read piece by piece.
+std::filesystem::path sourceOf(const BenchMesh& mesh) {
+  const std::filesystem::path file = folder() / (mesh.map.name + ".vtu");
+  if (!std::filesystem::exists(file)) writeHexMesh(mesh.mesh, file);
+  return file;
+}
+
+/// Through a sink: reads the mesh piece by piece from a file that a benchmark before has written.
+void copyingInPieces(benchmark::State& state, const Way& way, int threads) {
+  const std::filesystem::path source = sourceOf(way.mesh());
+  timeWriting(state, "copy " + way.name(), 0, [&](const std::filesystem::path& file) {
+    Context context(threads);
+    readHexMeshTo(*openMeshSink(file, way.writing(), context), source, context);
+  });
 }
 
 void readingMap(benchmark::State& state, const Way& way, int threads) {
@@ -234,7 +307,7 @@ void readingMap(benchmark::State& state, const Way& way, int threads) {
 
 void writingMap(benchmark::State& state, const Way& way, int threads) {
   const TetMap& map = load(middleMap());
-  timeWriting(state, "map", 0, [&](const std::filesystem::path& file) {
+  timeWriting(state, "map " + way.name(), 0, [&](const std::filesystem::path& file) {
     Context context(threads);
     writeMap(map, file, way.writing(), context);
   });
@@ -244,7 +317,7 @@ void readingMesh(benchmark::State& state, const Way& way, int threads) {
   const std::filesystem::path file = folder() / ("source-" + way.name());
   Context writing;
   if (!std::filesystem::exists(file)) {
-    writeHexMesh(denseMesh().mesh, file, way.writing(), writing);
+    writeHexMesh(way.mesh().mesh, file, way.writing(), writing);
   }
   timeReading(state, file, [&](const std::filesystem::path& path) {
     Context context(threads);
@@ -253,27 +326,20 @@ void readingMesh(benchmark::State& state, const Way& way, int threads) {
 }
 
 void surveying(benchmark::State& state, int threads) {
-  const std::filesystem::path file = folder() / "source.vtu";
-  if (!std::filesystem::exists(file)) writeHexMesh(denseMesh().mesh, file);
+  const std::filesystem::path file = sourceOf(denseMesh());
   timeReading(state, file, [threads](const std::filesystem::path& path) {
     Context context(threads);
     benchmark::DoNotOptimize(surveyFile(path, context).pointChecksum);
   });
 }
 
-/// @param manual  the benchmark reports its times itself
 template <class F>
-void add(const std::string& what, const BenchMap& map, bool manual, const F& f) {
+void add(const std::string& what, const BenchMap& map, const F& f) {
   for (const int threads : {1, 2}) {
     const std::string name = what + "/" + map.name + "/threads:" + std::to_string(threads);
     auto* const registered = benchmark::RegisterBenchmark(
         name.c_str(), [f, threads](benchmark::State& state) { f(state, threads); });
-    registered->Unit(benchmark::kMillisecond);
-    if (manual) {
-      registered->UseManualTime();
-    } else {
-      registered->UseRealTime();
-    }
+    registered->Unit(benchmark::kMillisecond)->UseManualTime();
   }
 }
 
@@ -316,23 +382,23 @@ void writingPlainly(benchmark::State& state) {
 void addFormat(const FileFormat& format, const Way& way) {
   const std::string name = way.name();
   if (format.writesHexMeshes) {
-    add("write_" + name, denseMap(), true,
+    add("write_" + name, way.map(),
         [way](benchmark::State& state, int threads) { writing(state, way, threads); });
   }
   if (format.readsHexMeshes && format.writesHexMeshes) {
-    add("read_" + name, denseMap(), false,
+    add("read_" + name, way.map(),
         [way](benchmark::State& state, int threads) { readingMesh(state, way, threads); });
   }
   if (format.streams && !way.compress) {
-    add("copy_in_pieces_to_" + name, denseMap(), true,
+    add("copy_in_pieces_to_" + name, way.map(),
         [way](benchmark::State& state, int threads) { copyingInPieces(state, way, threads); });
   }
   if (format.writesMaps) {
-    add("write_map_" + name, middleMap(), true,
+    add("write_map_" + name, middleMap(),
         [way](benchmark::State& state, int threads) { writingMap(state, way, threads); });
   }
   if (format.readsMaps && format.writesMaps) {
-    add("read_map_" + name, middleMap(), false,
+    add("read_map_" + name, middleMap(),
         [way](benchmark::State& state, int threads) { readingMap(state, way, threads); });
   }
 }
@@ -347,7 +413,7 @@ void registerFiles() {
     addFormat(format, {std::string(format.name)});
     if (format.compresses) addFormat(format, {std::string(format.name), true});
   }
-  add("survey_vtu", denseMap(), false, surveying);
+  add("survey_vtu", denseMap(), surveying);
 }
 
 }  // namespace hexhex::bench

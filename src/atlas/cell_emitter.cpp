@@ -21,7 +21,7 @@ constexpr RowCorners rowCorners(std::size_t permutation) {
   RowCorners corners;
   for (std::size_t c = 0; c < 8; ++c) {
     const GridPoint& offset = kCellCorners[c];
-    const auto row = static_cast<std::size_t>(offset[axes[0]] + 2 * offset[axes[1]]);
+    const std::size_t row = (offset[axes[0]] != 0 ? 1U : 0U) + (offset[axes[1]] != 0 ? 2U : 0U);
     (offset[axes[2]] == 0 ? corners.near : corners.far)[row] = c;
   }
   return corners;

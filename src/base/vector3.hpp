@@ -28,6 +28,13 @@ namespace hexhex {
   return dot(a, cross(b, c));
 }
 
+/// Nearest integer (even if there are two) of a number below 2^52 in magnitude, as std::nearbyint
+/// gives it, but without a call.
+[[nodiscard]] inline double nearestInteger(double x) noexcept {
+  const double large = std::copysign(0x1p52, x);
+  return (x + large) - large;
+}
+
 [[nodiscard]] inline double length(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }
 
 }  // namespace hexhex

@@ -5,6 +5,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
+#include <base/prefetch.hpp>
 #include <io/ovm_cells.hpp>
 #include <io/ovm_features.hpp>
 #include <io/ovm_first_fault.hpp>
@@ -25,16 +26,32 @@ void setCornerOrder(OvmOutput& output, std::span<const Hex> cells, bool turned, 
   Array<std::int32_t> orders(cells.size());
   std::atomic<bool> any{turned};
   const OvmTopology& topology = output.topology;
-  parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+  const Index* const halfFaces = topology.cells.handles.data();
+  const Index* const halfEdges = topology.faces.handles.data();
+  const auto firstEdge = [&](std::size_t c) { return 4 * std::size_t{halfFaces[6 * c] / 2}; };
+  const auto order = [&](std::size_t c) {
     // A reader begins where the first half-face does, which is one of the first four corners.
-    const Index firstHalfFace = topology.cells.handles[6 * c];
-    const Index begin = topology.from(topology.faces[firstHalfFace / 2][0]);
+    const Index begin = topology.from(halfEdges[firstEdge(c)]);
     const Hex& cell = cells[c];
     const std::int32_t place =
         (cell[1] == begin ? 1 : 0) + (cell[2] == begin ? 2 : 0) + (cell[3] == begin ? 3 : 0);
     orders[c] = (4 - place) % 4 + (turned ? kReversed : 0);
-    if (place != 0) any.store(true, std::memory_order_relaxed);
-  });
+    return place;
+  };
+  // Faces and edges are far from each other in memory.
+  constexpr std::size_t kAhead = 16;
+  parallelBlocks(stage, cells.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::int32_t places = 0;
+                   for (std::size_t c = begin; c < end; ++c) {
+                     if (c + 2 * kAhead < end) prefetch(&halfEdges[firstEdge(c + 2 * kAhead)]);
+                     if (c + kAhead < end) {
+                       prefetch(&topology.edges[halfEdges[firstEdge(c + kAhead)] / 2]);
+                     }
+                     places |= order(c);
+                   }
+                   if (places != 0) any.store(true, std::memory_order_relaxed);
+                 });
   if (any) output.properties[OvmInteger::CornerOrder] = std::move(orders);
 }
 

@@ -4,6 +4,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/prefetch.hpp>
 #include <base/vector3.hpp>
 #include <io/ovm_cells.hpp>
 #include <io/ovm_first_fault.hpp>
@@ -89,6 +90,13 @@ HexMesh HexReader::read() {
 }
 
 bool HexReader::readCell(std::size_t cell) {
+  // Faces of a cell may be far from each other in memory.
+  constexpr std::size_t kAhead = 12;
+  if (cell + kAhead < mesh_.cells.size()) {
+    for (const Index halfFace : topology_.cells[cell + kAhead]) {
+      prefetch(&loops_.ofFace(halfFace / 2));
+    }
+  }
   std::array<std::array<Index, 4>, 6> loops;
   for (std::size_t s = 0; s < 6; ++s) loops[s] = loops_.ofHalfFace(topology_.cells[cell][s]);
   if (!assembleHex(loops, mesh_.cells[cell])) return false;

@@ -6,6 +6,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
+#include <base/prefetch.hpp>
 #include <io/ovm_cells.hpp>
 #include <io/ovm_first_fault.hpp>
 
@@ -14,8 +15,20 @@ namespace hexhex {
 template <std::size_t n>
 OvmLoops<n>::OvmLoops(const OvmTopology& topology, Stage& stage) : loops_(topology.faces.size()) {
   constexpr std::size_t kGrain = 4096;
-  parallelFor(stage, loops_.size(), kGrain,
-              [&](std::size_t f) { loops_[f] = loopOfFace<n>(topology, f); });
+  // Edges of a face may be far from each other in memory.
+  constexpr std::size_t kAhead = 16;
+  const OvmLists& faces = topology.faces;
+  parallelBlocks(stage, loops_.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   for (std::size_t f = begin; f < end; ++f) {
+                     if (faces.length == n && f + kAhead < end) {
+                       for (const Index halfEdge : faces[f + kAhead]) {
+                         prefetch(&topology.edges[halfEdge / 2]);
+                       }
+                     }
+                     loops_[f] = loopOfFace<n>(topology, f);
+                   }
+                 });
 }
 
 namespace {
@@ -29,7 +42,12 @@ bool areProperCells(const OvmTopology& topology, const OvmLoops<n>& loops, std::
   Array<char> used(2 * topology.faces.size());
   std::fill(used.begin(), used.end(), char{0});
   const std::span<const Index> all(topology.cells.handles);
+  constexpr std::size_t kAhead = 64;  // faces of a cell may be far from each other in memory
   const std::size_t fault = firstFault(stage, all.size(), [&](std::size_t i) {
+    if (i + kAhead < all.size()) {
+      prefetch(&used[all[i + kAhead]]);
+      prefetch(&loops.ofFace(all[i + kAhead] / 2));
+    }
     std::atomic_ref(used[all[i]]).store(1, std::memory_order_relaxed);
     return loops.isGood(all[i] / 2);
   });

@@ -3,6 +3,7 @@
 // at the same vertex, since what they find does not depend on who comes first.
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -79,6 +80,7 @@ class TopologyBuilder {
   void requireDifferentCorners();
   void matchSides();
   void matchSide(std::size_t cell, std::size_t slot);
+  [[nodiscard]] bool replace(Index& place, Index expected, Index value) const;
   [[nodiscard]] static std::size_t listOf(Index smallest, Index sum);
   [[nodiscard]] bool areOpposite(const Loop& here, const Loop& there) const;
   [[noreturn]] void failAt(Index vertex) const;
@@ -91,7 +93,10 @@ class TopologyBuilder {
   [[nodiscard]] Index findEdge(Index low, Index high) const;
   void linkFacesToEdges();
 
-  static constexpr Index kNearby = 256;  // lists: what many vertices share stays in the cache
+  // So many vertices share so many lists: few enough that they stay in the cache, and so many that
+  // few lists hold several faces, of tets, too, whose vertices have a dozen faces each.
+  static constexpr std::size_t kNearby = 256;
+  static constexpr std::size_t kLists = 8 * kNearby;
   // Few vertices of a hex mesh have more edges to larger vertices, some of a tet mesh have.
   static constexpr std::size_t kSlots = n == 4 ? 8 : 16;
   using Ends = std::array<Index, kSlots>;
@@ -99,10 +104,13 @@ class TopologyBuilder {
   std::span<const Cell> cells_;
   const Table& table_;
   Stage& stage_;
+  /// No other thread is at work, so that nothing has to be exchanged at once, which takes a
+  /// processor much longer.
+  const bool alone_ = currentThreads() == 1;
   OvmTopology topology_;
   // Lists of sides by smallest vertex, linked through `next_`. A list holds the side of each face
   // that came first; `sums_` tell most of them apart.
-  Array<Index> first_;                 ///< per vertex
+  Array<Index> first_;                 ///< per list
   Array<Index> next_;                  ///< per side
   Array<Index> sums_;                  ///< per side: of its vertices, modulo 2^32
   std::atomic<Index> faultAt_{kNone};  ///< the smallest vertex with a face that cannot be
@@ -184,7 +192,18 @@ void TopologyBuilder<Cell, n, k>::failAt(Index vertex) const {
 template <class Cell, std::size_t n, std::size_t k>
 std::size_t TopologyBuilder<Cell, n, k>::listOf(Index smallest, Index sum) {
   constexpr Index kOdd = 0x9e3779b1U;  // without pattern: the product's upper bits depend on all
-  return (smallest & ~(kNearby - 1)) | ((smallest + (sum * kOdd >> 24U)) & (kNearby - 1));
+  constexpr unsigned kUnused = 32 - std::bit_width(kLists - 1);
+  const std::size_t place = 8 * std::size_t{smallest} + (sum * kOdd >> kUnused);
+  return smallest / kNearby * kLists + place % kLists;
+}
+
+/// @return whether the place had the value that it is expected to have
+template <class Cell, std::size_t n, std::size_t k>
+bool TopologyBuilder<Cell, n, k>::replace(Index& place, Index expected, Index value) const {
+  if (!alone_) return std::atomic_ref(place).compare_exchange_strong(expected, value);
+  if (place != expected) return false;
+  place = value;
+  return true;
 }
 
 /// Finds the side of the same face that came before, or puts this one into the face's list. Of two
@@ -205,10 +224,7 @@ void TopologyBuilder<Cell, n, k>::matchSide(std::size_t cell, std::size_t slot) 
       if (sums_[other] != sum) continue;
       const Loop there = loopOf(other);
       if (areOpposite(loop, there)) {
-        Index free = other;
-        if (!std::atomic_ref(mate_[other]).compare_exchange_strong(free, side)) {
-          lower(faultAt_, smallest);  // a third one
-        }
+        if (!replace(mate_[other], other, side)) lower(faultAt_, smallest);  // a third one
         mate_[side] = other;
         return;
       }
@@ -216,6 +232,7 @@ void TopologyBuilder<Cell, n, k>::matchSide(std::size_t cell, std::size_t slot) 
     }
     searched = head;
     next_[side] = head;
+    if (alone_) return first.store(side, std::memory_order_relaxed);
     if (first.compare_exchange_strong(head, side, std::memory_order_acq_rel)) return;
   }
 }
@@ -223,7 +240,7 @@ void TopologyBuilder<Cell, n, k>::matchSide(std::size_t cell, std::size_t slot) 
 template <class Cell, std::size_t n, std::size_t k>
 void TopologyBuilder<Cell, n, k>::matchSides() {
   const std::size_t sides = cells_.size() * k;
-  first_.resize((topology_.vertexCount + kNearby - 1) / kNearby * kNearby);
+  first_.resize(blockCount(topology_.vertexCount, kNearby) * kLists);
   parallelFor(stage_, first_.size(), 8 * kGrain, [this](std::size_t v) { first_[v] = kNone; });
   next_.resize(sides);
   sums_.resize(sides);
@@ -277,6 +294,21 @@ void TopologyBuilder<Cell, n, k>::numberFaces() {
 template <class Cell, std::size_t n, std::size_t k>
 void TopologyBuilder<Cell, n, k>::addEdge(Index low, Index high) {
   Ends& ends = ends_[low];
+  if (alone_) {
+    unsigned taken = 0;
+    unsigned same = 0;
+    for (const Index end : ends) {
+      taken += end != kNone ? 1U : 0U;
+      same |= end == high ? 1U : 0U;
+    }
+    if (same != 0) return;
+    if (taken < kSlots) {
+      ends[taken] = high;
+    } else {
+      overflow_.push_back({low, high});
+    }
+    return;
+  }
   unsigned known = 0;
   for (Index& end : ends) {
     known |= std::atomic_ref(end).load(std::memory_order_relaxed) == high ? 1U : 0U;

@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 
+#include <base/parallel.hpp>
 #include <io/ovm_first_fault.hpp>
 #include <io/ovmb_elements.hpp>
 
@@ -31,6 +34,9 @@ class ElementReader {
   void decodePoints(ByteCursor& cursor, const OvmbSpan& span);
   void readEdges(ByteCursor& cursor, std::uint64_t count);
   void readLists(ByteCursor& cursor, std::uint64_t count, std::size_t entity);
+  template <class Stored>
+  [[nodiscard]] bool decodeAll(const char* data, std::span<Index> handles, Index offset,
+                               std::uint64_t room);
   template <class Stored>
   void decodeHandles(ByteCursor& cursor, std::span<Index> handles, std::size_t entity);
   void readHandles(ByteCursor& cursor, std::span<Index> handles, std::size_t entity);
@@ -280,6 +286,32 @@ void ElementReader::readHandles(ByteCursor& cursor, std::span<Index> handles, st
   if (encoding_.handleBytes == 4) decodeHandles<std::uint32_t>(cursor, handles, entity);
 }
 
+/// Without a look at single ones, so that processors decode several at once.
+/// @return whether all stored numbers are below `room`
+template <class Stored>
+bool ElementReader::decodeAll(const char* data, std::span<Index> handles, Index offset,
+                              std::uint64_t room) {
+  constexpr std::uint64_t kMost = std::numeric_limits<Stored>::max();
+  if (room == 0 && !handles.empty()) return false;
+  const auto largest = static_cast<Stored>(std::min(room - 1, kMost));
+  std::atomic<bool> good{true};
+  constexpr std::size_t kGrain = 16384;
+  parallelBlocks(stage_, handles.size(), kGrain,
+                 [&](std::size_t first, std::size_t end, std::size_t /*block*/) {
+                   Index* const decoded = handles.data();
+                   const Index added = offset;
+                   const Stored most = largest;
+                   Index tooLarge = 0;
+                   for (std::size_t i = first; i < end; ++i) {
+                     const auto stored = loadLittle<Stored>(data + i * sizeof(Stored));
+                     decoded[i] = stored + added;
+                     tooLarge |= stored > most ? 1U : 0U;
+                   }
+                   if (tooLarge != 0) good.store(false, std::memory_order_relaxed);
+                 });
+  return good;
+}
+
 template <class Stored>
 void ElementReader::decodeHandles(ByteCursor& cursor, std::span<Index> handles,
                                   std::size_t entity) {
@@ -289,12 +321,10 @@ void ElementReader::decodeHandles(ByteCursor& cursor, std::span<Index> handles,
   const std::uint64_t room = limit - std::min(limit, offset);
   const std::size_t begin = cursor.position();
   const char* const data = cursor.take(handles.size() * sizeof(Stored), "the handles").data();
+  if (decodeAll<Stored>(data, handles, static_cast<Index>(offset), room)) return;
   const std::size_t fault = firstFault(stage_, handles.size(), [&](std::size_t i) {
-    const auto stored = loadLittle<Stored>(data + i * sizeof(Stored));
-    handles[i] = static_cast<Index>(stored + offset);
-    return stored < room;
+    return loadLittle<Stored>(data + i * sizeof(Stored)) < room;
   });
-  if (fault == handles.size()) return;
   const std::uint64_t stored{loadLittle<Stored>(data + fault * sizeof(Stored))};
   cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::IndexOutOfRange,
                 std::string(kElements[entity].one) + " names " + kNamed[entity] + " " +

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <base/pair.hpp>
 #include <base/vector3.hpp>
 #include <map/exact_map.hpp>
 
@@ -51,13 +52,6 @@ double displacementOf(const Vec3& before, const LatticePoint& after, double reso
         std::max(displacement, std::abs(static_cast<double>(after[k]) * resolution - before[k]));
   }
   return displacement;
-}
-
-/// Nearest integer (even if there are two) of a number below 2^52 in magnitude, as std::nearbyint
-/// gives it, but without a call.
-double nearestInteger(double x) {
-  const double large = std::copysign(0x1p52, x);
-  return (x + large) - large;
 }
 
 /// What a vertex must fulfil, and its corners, while it is being sanitized. Reused between
@@ -217,13 +211,28 @@ class VertexSanitizer {
   }
 
  public:
-  /// The axis along which a boundary triangle is constant.
+  /// The axis along which a boundary triangle is constant, or nearly so.
   static std::size_t boundaryAxis(const LocalParameters& parameters, HalfFace halfFace) {
     const std::array<int, 3>& face = kFaceCorners[halfFace % 4];
     const Vec3 p = parameters(tetOf(halfFace), face[0]);
     const Vec3 q = parameters(tetOf(halfFace), face[1]);
     const Vec3 r = parameters(tetOf(halfFace), face[2]);
     return dominantAxis(cross(minus(q, p), minus(r, p)));
+  }
+
+  /// The same, sooner.
+  static std::size_t boundaryAxis(const LocalParameters& parameters,
+                                  const PlainVertices::BoundaryFace& face) {
+    const auto axis = static_cast<std::size_t>(std::countr_zero(face.constantAxes | 8U)) % 3;
+    const std::array<int, 3>& corners = kFaceCorners[face.halfFace % 4];
+    const Vec3 p = parameters(tetOf(face.halfFace), corners[0]);
+    const Vec3 a = minus(parameters(tetOf(face.halfFace), corners[1]), p);
+    const Vec3 b = minus(parameters(tetOf(face.halfFace), corners[2]), p);
+    const std::size_t i = (axis + 1) % 3;
+    const std::size_t j = (axis + 2) % 3;
+    // All other components of the normal are zero if the triangle is constant along one axis.
+    const bool isSure = std::has_single_bit(face.constantAxes) && a[i] * b[j] - a[j] * b[i] != 0;
+    return isSure ? axis : boundaryAxis(parameters, face.halfFace);
   }
 
   /// The axis along which a singular edge runs, in the chart of its tet.
@@ -247,23 +256,22 @@ class VertexSanitizer {
 };
 
 /// (IGM2) up to the tolerance: what snapping may repair.
-void checkBoundary(const TetTopology& topology, const LocalParameters& parameters, double tolerance,
+void checkBoundary(const PlainVertices& plain, const LocalParameters& parameters, double tolerance,
                    Stage& stage, DefectCollector& defects) {
-  parallelFor(stage, topology.tetCount(), kGrain, [&](std::size_t t) {
-    for (int face = 0; face < 4; ++face) {
-      const HalfFace halfFace = halfFaceOf(static_cast<Index>(t), face);
-      if (!topology.isBoundary(halfFace)) continue;
-      const std::size_t axis = VertexSanitizer::boundaryAxis(parameters, halfFace);
+  parallelFor(stage, plain.boundaryFaces.size(), 1, [&](std::size_t block) {
+    for (const PlainVertices::BoundaryFace& face : plain.boundaryFaces[block]) {
+      const std::size_t axis = VertexSanitizer::boundaryAxis(parameters, face);
+      const HalfFace halfFace = face.halfFace;
       std::array<double, 3> x{};
       for (std::size_t k = 0; k < 3; ++k) {
-        x[k] = parameters(static_cast<Index>(t), kFaceCorners[halfFace % 4][k])[axis];
+        x[k] = parameters(tetOf(halfFace), kFaceCorners[halfFace % 4][k])[axis];
       }
-      const double plane = std::nearbyint((x[0] + x[1] + x[2]) / 3);
-      const double off =
-          std::max({std::abs(x[0] - plane), std::abs(x[1] - plane), std::abs(x[2] - plane)});
+      const double plane = nearestInteger((x[0] + x[1] + x[2]) / 3);
+      const double off = std::max(std::max(std::abs(x[0] - plane), std::abs(x[1] - plane)),
+                                  std::abs(x[2] - plane));
       if (off > tolerance) {
-        defects.add(ErrorCode::BoundaryOffLattice,
-                    {PlaceKind::Face, t, static_cast<std::uint64_t>(face)}, off);
+        defects.add(ErrorCode::BoundaryOffLattice, {PlaceKind::Face, tetOf(halfFace), halfFace % 4},
+                    off);
       }
     }
   });
@@ -345,104 +353,130 @@ class CornerRounder {
   double maxDisplacement_ = 0;
 };
 
-/// Rounds corners at plain vertices, and looks at the finished tets.
-class TetFinisher {
+/// Where the coordinate across a boundary plane is among those of all corners.
+struct Snap {
+  std::uint8_t axis = 0;
+  std::uint8_t perCorner = 0;
+  std::uint8_t offset = 12;
+};
+
+/// By PlainVertices::plane: for one axis, or in vain.
+constexpr std::array<Snap, 32> kSnaps = [] {
+  std::array<Snap, 32> snaps{};
+  for (std::uint8_t axis = 0; axis < 3; ++axis) snaps[std::size_t{1} << axis] = {axis, 3, axis};
+  return snaps;
+}();
+
+/// Of corners that are decided by their stars, and of others.
+constexpr std::array<double, 2> kWeights = {0, 1};
+
+/// Rounds corners at plain vertices, and others in vain where a star decides; tets without such
+/// corners are then finished.
+class TetRounder {
  public:
-  TetFinisher(const TetTopology& topology, const LocalParameters& parameters,
-              const PlainVertices& plain, double tolerance, DefectCollector& defects, ExactMap& map)
+  TetRounder(const TetTopology& topology, const LocalParameters& parameters,
+             const PlainVertices& plain, double tolerance, DefectCollector& defects, ExactMap& map)
       : topology_(topology),
         parameters_(parameters),
         plain_(plain),
         tolerance_(tolerance),
-        defects_(defects),
         map_(map),
         unit_(static_cast<double>(map.unit)),
+        resolution_(1 / unit_),
         rounder_(topology, tolerance, defects, map) {}
 
-  void run(Index t) {
-    const LatticeTet& corners = map_.corners[t];
-    const TetParameters u = parameters_(t);
-    const bool certainlyPositive = isInside(topology_.tets[t]) && roundInside(t, u);
-    if (!certainlyPositive) {
-      roundOneByOne(t, u);
-      if (orientation(corners[0], corners[1], corners[2], corners[3]) <= 0) addDefect(t);
+  /// Whether the tet is finished, and certainly positive.
+  bool run(Index t) {
+    const Tet& tet = topology_.tets[t];
+    TetParameters scratch;
+    const TetParameters& u = parameters_.see(t, scratch);
+    Rounded rounded;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) rounded[3 * i + k] = nearestInteger(u[i][k] * unit_);
     }
-    addVolume(t);
+    unsigned planes = 0;
+    for (const Index v : tet) planes |= plain_.plane[v];
+    if (planes != 0) snap(tet, u, rounded);
+    store(rounded, map_.corners[t]);
+    const double displacement =
+        planes == 0 ? displacementOfAll(u, rounded) : displacementOfOthers(tet, u, rounded);
+    maxDisplacement_ = std::max(maxDisplacement_, displacement);
+    if (displacement > tolerance_) report(t, u);
+    const auto corner = [&rounded](std::size_t i) {
+      return Vec3{rounded[3 * i], rounded[3 * i + 1], rounded[3 * i + 2]};
+    };
+    const Vec3 origin = corner(0);
+    const double volume = certainDeterminant(minus(corner(1), origin), minus(corner(2), origin),
+                                             minus(corner(3), origin));
+    return planes < PlainVertices::kPlaneOfStar && volume > 0;
   }
 
   [[nodiscard]] double maxDisplacement() const noexcept {
     return std::max(maxDisplacement_, rounder_.maxDisplacement());
   }
-  /// Of the tets so far, except that what cancels between tets may be missing from both.
-  [[nodiscard]] const Int192& sixfoldVolume() const noexcept { return sixfoldVolume_; }
 
  private:
-  /// Whether all that happens to the corners is that they are rounded.
-  [[nodiscard]] bool isInside(const Tet& tet) const {
-    unsigned any = 0;
-    for (const Index v : tet) any |= unsigned{plain_.special[v]} | plain_.plane[v];
-    return any == 0;
-  }
+  /// Coordinates of all corners in units of the lattice, exact for integers below 2^53, and one
+  /// entry for what is written in vain.
+  using Rounded = std::array<double, 13>;
 
-  /// Rounds all corners, in floating point, which is exact for integers below 2^53. Returns false
-  /// if the tet needs a closer look.
-  bool roundInside(Index t, const TetParameters& u) {
-    LatticeTet& corners = map_.corners[t];
-    const double resolution = 1 / unit_;
-    TetParameters rounded;
-    double displacement = 0;
+  static void store(const Rounded& rounded, LatticeTet& corners) {
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
-        rounded[i][k] = nearestInteger(u[i][k] * unit_);
-        corners[i][k] = static_cast<std::int64_t>(rounded[i][k]);
-        displacement = std::max(displacement, std::abs(rounded[i][k] * resolution - u[i][k]));
+        corners[i][k] = static_cast<std::int64_t>(rounded[3 * i + k]);
       }
     }
-    if (displacement > tolerance_) return false;
-    maxDisplacement_ = std::max(maxDisplacement_, displacement);
-    return certainDeterminant(minus(rounded[1], rounded[0]), minus(rounded[2], rounded[0]),
-                              minus(rounded[3], rounded[0])) > 0;
   }
 
-  void roundOneByOne(Index t, const TetParameters& u) {
+  /// Makes coordinates across boundary planes integers.
+  void snap(const Tet& tet, const TetParameters& u, Rounded& rounded) const {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Snap& snap = kSnaps[plain_.plane[tet[i]]];
+      rounded[i * snap.perCorner + snap.offset] = nearestInteger(u[i][snap.axis]) * unit_;
+    }
+  }
+
+  [[nodiscard]] double displacementAt(std::size_t i, const TetParameters& u,
+                                      const Rounded& rounded) const {
+    double moved = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      moved = std::max(moved, std::abs(rounded[3 * i + k] * resolution_ - u[i][k]));
+    }
+    return moved;
+  }
+
+  [[nodiscard]] double displacementOfAll(const TetParameters& u, const Rounded& rounded) const {
+    Pair moved = {0, 0};
+    for (std::size_t i = 0; i < 4; i += 2) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Pair before = {u[i][k], u[i + 1][k]};
+        const Pair after = {rounded[3 * i + k], rounded[3 * i + 3 + k]};
+        moved = larger(moved, magnitudeOf(after * resolution_ - before));
+      }
+    }
+    return std::max(moved[0], moved[1]);
+  }
+
+  /// Without corners that are decided by their stars.
+  [[nodiscard]] double displacementOfOthers(const Tet& tet, const TetParameters& u,
+                                            const Rounded& rounded) const {
+    double displacement = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double weight = kWeights[isDecidedByStar(tet[i]) ? 0 : 1];
+      displacement = std::max(displacement, displacementAt(i, u, rounded) * weight);
+    }
+    return displacement;
+  }
+
+  [[nodiscard]] bool isDecidedByStar(Index vertex) const {
+    return plain_.plane[vertex] >= PlainVertices::kPlaneOfStar;
+  }
+
+  void report(Index t, const TetParameters& u) {
     const Tet& tet = topology_.tets[t];
     for (std::size_t i = 0; i < 4; ++i) {
-      const unsigned plane = plain_.plane[tet[i]];
-      if (plain_.special[tet[i]] == 1 || plane == PlainVertices::kPlaneOfStar) continue;
-      rounder_.run(4 * t + static_cast<CornerIndex>(i), u[i], plane);
-    }
-  }
-
-  void addDefect(Index t) {
-    const LatticeTet& c = map_.corners[t];
-    const double amount =
-        orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() / (6 * unit_ * unit_ * unit_);
-    defects_.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, amount < 0 ? -amount : 0.0);
-  }
-
-  /// The volume of a tet is the sum of those between its faces and the origin. They cancel at faces
-  /// that both tets see alike.
-  void addVolume(Index t) {
-    std::array<HalfFace, 4> uncancelled{};
-    std::size_t count = 0;
-    for (int face = 0; face < 4; ++face) {
-      const HalfFace halfFace = halfFaceOf(t, face);
-      if (topology_.isBoundary(halfFace) || map_.transitions.isJump(halfFace)) {
-        uncancelled[count++] = halfFace;
-      }
-    }
-    if (count == 0) return;
-    const LatticeTet& c = map_.corners[t];
-    if (count == 4) {
-      sixfoldVolume_ += orientationDeterminant(c[0], c[1], c[2], c[3]);
-      return;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::array<int, 3>& face = kFaceCorners[uncancelled[i] % 4];
-      // Outward: backward.
-      sixfoldVolume_ += orientationDeterminant({}, c[static_cast<std::size_t>(face[2])],
-                                               c[static_cast<std::size_t>(face[1])],
-                                               c[static_cast<std::size_t>(face[0])]);
+      if (isDecidedByStar(tet[i])) continue;
+      rounder_.run(4 * t + static_cast<CornerIndex>(i), u[i], plain_.plane[tet[i]]);
     }
   }
 
@@ -450,32 +484,117 @@ class TetFinisher {
   const LocalParameters& parameters_;
   const PlainVertices& plain_;
   double tolerance_;
-  DefectCollector& defects_;
   ExactMap& map_;
   double unit_;
+  double resolution_;
   CornerRounder rounder_;
   double maxDisplacement_ = 0;
-  Int192 sixfoldVolume_;
 };
 
-void finishTets(const TetTopology& topology, const LocalParameters& parameters,
-                const PlainVertices& plain, double tolerance, Stage& stage,
-                DefectCollector& defects, ExactMap& map) {
-  struct Result {
-    double maxDisplacement = 0;
-    Int192 sixfoldVolume;
-  };
-  std::vector<Result> blocks(blockCount(topology.tetCount(), kGrain));
+/// Rounds all tets, and lists those that are not finished then.
+std::vector<std::vector<Index>> roundTets(const TetTopology& topology,
+                                          const LocalParameters& parameters,
+                                          const PlainVertices& plain, double tolerance,
+                                          Stage& stage, DefectCollector& defects, ExactMap& map) {
+  const std::size_t blocks = blockCount(topology.tetCount(), kGrain);
+  std::vector<std::vector<Index>> unfinished(blocks);
+  std::vector<double> displacements(blocks);
   parallelBlocks(stage, topology.tetCount(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   TetFinisher finisher(topology, parameters, plain, tolerance, defects, map);
-                   for (std::size_t t = begin; t < end; ++t) finisher.run(static_cast<Index>(t));
-                   blocks[block] = {finisher.maxDisplacement(), finisher.sixfoldVolume()};
+                   TetRounder rounder(topology, parameters, plain, tolerance, defects, map);
+                   std::array<Index, kGrain + 1> list;  // NOLINT: written before it is read
+                   std::size_t count = 0;
+                   for (std::size_t t = begin; t < end; ++t) {
+                     list[count] = static_cast<Index>(t);
+                     count += rounder.run(static_cast<Index>(t)) ? 0 : 1;
+                   }
+                   unfinished[block].assign(list.begin(), list.begin() + count);
+                   displacements[block] = rounder.maxDisplacement();
                  });
-  for (const Result& block : blocks) {
-    map.maxDisplacement = std::max(map.maxDisplacement, block.maxDisplacement);
-    map.sixfoldVolume += block.sixfoldVolume;
+  for (const double displacement : displacements) {
+    map.maxDisplacement = std::max(map.maxDisplacement, displacement);
   }
+  return unfinished;
+}
+
+/// (IGM4) for the tets that were not finished by rounding.
+void checkOrientations(std::span<const std::vector<Index>> tets, Stage& stage,
+                       DefectCollector& defects, const ExactMap& map) {
+  const auto unit = static_cast<double>(map.unit);
+  parallelFor(stage, tets.size(), 1, [&](std::size_t block) {
+    for (const Index t : tets[block]) {
+      const LatticeTet& c = map.corners[t];
+      if (orientation(c[0], c[1], c[2], c[3]) > 0) continue;
+      const double amount =
+          orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() / (6 * unit * unit * unit);
+      defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, amount < 0 ? -amount : 0.0);
+    }
+  });
+}
+
+/// The volume of a tet is the sum of those between its faces and the origin. They cancel at inner
+/// faces, but for what the transition makes of it: if it is a translation by t after a rotation,
+/// then the scalar product of t with the triangle's normal is left.
+class VolumeSum {
+ public:
+  explicit VolumeSum(const ExactMap& map) : map_(map) {}
+
+  void addBoundary(const PlainVertices::BoundaryFace& face) {
+    const Triangle triangle = triangleOf(face.halfFace);
+    // Outward normals are the negative ones.
+    for (std::size_t k = 0; k < 3; ++k) {
+      add(crossComponent(triangle.a, triangle.b, k), -triangle.origin[k]);
+    }
+  }
+
+  void addInner(HalfFace halfFace) {
+    const Transitions& transitions = map_.transitions;
+    const Index back = Transitions::inverse(transitions.jump[halfFace]);
+    const GridPoint& translation = transitions.table[back].translation;
+    const Triangle triangle = triangleOf(halfFace);
+    for (std::size_t k = 0; k < 3; ++k) {
+      add(crossComponent(triangle.a, triangle.b, k), -translation[k] * map_.unit);
+    }
+  }
+
+  [[nodiscard]] const Int192& get() const noexcept { return sum_; }
+
+ private:
+  struct Triangle {
+    LatticePoint origin;
+    LatticePoint a;  ///< from the origin to the second corner
+    LatticePoint b;
+  };
+  [[nodiscard]] Triangle triangleOf(HalfFace halfFace) const {
+    const LatticeTet& corners = map_.corners[tetOf(halfFace)];
+    const std::array<int, 3>& face = kFaceCorners[halfFace % 4];
+    const LatticePoint& origin = corners[static_cast<std::size_t>(face[0])];
+    return {origin, corners[static_cast<std::size_t>(face[1])] - origin,
+            corners[static_cast<std::size_t>(face[2])] - origin};
+  }
+
+  /// Adds a product. The sign of a factor is as good as random, and made positive without a branch.
+  void add(Int128 a, std::int64_t b) {
+    const std::int64_t sign = b >> 63;  // 0 or -1
+    sum_.addProduct((a ^ sign) - sign, (b ^ sign) - sign);
+  }
+
+  const ExactMap& map_;
+  Int192 sum_;
+};
+
+void addVolumes(const PlainVertices& plain, Stage& stage, ExactMap& map) {
+  const std::size_t blocks = plain.boundaryFaces.size();
+  std::vector<Int192> volumes(blocks);
+  parallelFor(stage, blocks, 1, [&](std::size_t block) {
+    VolumeSum sum(map);
+    for (const PlainVertices::BoundaryFace& face : plain.boundaryFaces[block]) {
+      sum.addBoundary(face);
+    }
+    for (const HalfFace halfFace : plain.unequalFaces[block]) sum.addInner(halfFace);
+    volumes[block] = sum.get();
+  });
+  for (const Int192& volume : volumes) map.sixfoldVolume += volume;
 }
 
 }  // namespace
@@ -486,11 +605,13 @@ ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters
                   double tolerance, int maxScale, Stage& stage, DefectCollector& defects) {
   ExactMap map;
   map.transitions = std::move(transitions);
-  checkBoundary(topology, parameters, tolerance, stage, defects);
+  checkBoundary(plain, parameters, tolerance, stage, defects);
   checkSingularities(singularities, parameters, tolerance, defects);
   map.unit = std::int64_t{1} << fractionBits(parameters.largest(), maxScale, defects);
   if (defects.has(ErrorCode::TooLarge)) return map;
   map.corners.resize(topology.tetCount());
+  const std::vector<std::vector<Index>> unfinished =
+      roundTets(topology, parameters, plain, tolerance, stage, defects, map);
   std::vector<double> displacements(stars.size());
   parallelFor(stage, stars.size(), 1, [&](std::size_t block) {
     VertexSanitizer sanitizer(parameters, singularities, tolerance, defects, map);
@@ -506,7 +627,8 @@ ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters
   for (const double displacement : displacements) {
     map.maxDisplacement = std::max(map.maxDisplacement, displacement);
   }
-  finishTets(topology, parameters, plain, tolerance, stage, defects, map);
+  checkOrientations(unfinished, stage, defects, map);
+  addVolumes(plain, stage, map);
   return map;
 }
 

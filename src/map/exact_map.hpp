@@ -16,7 +16,7 @@ struct ExactMap {
   Array<LatticeTet> corners;  ///< per tet
   std::int64_t unit = 1;      ///< a power of two
   Transitions transitions;
-  Int192 sixfoldVolume;        ///< of all tets before scaling, times unit^3
+  Int192 sixfoldVolume;        ///< of all tets of a valid map, before scaling, times unit^3
   double maxDisplacement = 0;  ///< largest change of a coordinate, in parameter units
 };
 

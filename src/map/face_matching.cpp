@@ -1,5 +1,6 @@
 #include <atomic>
 
+#include <base/branchless.hpp>
 #include <map/face_matching.hpp>
 
 namespace hexhex {
@@ -11,6 +12,10 @@ constexpr std::size_t kVertexGrain = 256;
 
 /// Tets are divided into at most as many parts: each part costs two numbers per vertex.
 constexpr std::size_t kMaxParts = 8;
+
+// As values, so that no branch is to be foretold: which one is smaller is as good as random.
+constexpr Index smaller(Index a, Index b) { return a < b ? a : b; }
+constexpr Index larger(Index a, Index b) { return a < b ? b : a; }
 
 /// Each triangle is found at its smallest vertex. In a tet, that is the tet's smallest vertex for
 /// three faces and the second smallest for the fourth: so each tet has two entries, 2 * tet and
@@ -35,10 +40,12 @@ void listFaces(FaceLists& lists, std::span<const Tet> tets, std::size_t part, st
     const Tet& tet = tets[t - 1];
     const auto index = static_cast<Index>(t - 1);
     for (const Index v : tet) smallest[v] = index;
-    const auto [low01, high01] = std::pair(std::min(tet[0], tet[1]), std::max(tet[0], tet[1]));
-    const auto [low23, high23] = std::pair(std::min(tet[2], tet[3]), std::max(tet[2], tet[3]));
-    const Index first = std::min(low01, low23);
-    const Index second = std::min(std::max(low01, low23), std::min(high01, high23));
+    const Index low01 = smaller(tet[0], tet[1]);
+    const Index low23 = smaller(tet[2], tet[3]);
+    const Index high01 = larger(tet[0], tet[1]);
+    const Index high23 = larger(tet[2], tet[3]);
+    const Index first = smaller(low01, low23);
+    const Index second = smaller(larger(low01, low23), smaller(high01, high23));
     lists.next[2 * index] = std::exchange(head[first], 2 * index);
     lists.next[2 * index + 1] = std::exchange(head[second], 2 * index + 1);
   }
@@ -87,17 +94,21 @@ constexpr std::array<std::array<std::uint8_t, 3>, 4> kFacesAt = {
 class FaceMatcher {
  public:
   FaceMatcher(TetTopology& topology, const FaceLists& lists)
-      : topology_(topology), lists_(lists), slots_(kSlots) {}
+      : topology_(topology), lists_(lists), slots_(std::size_t{1} << (64 - kInitialShift)) {}
 
   /// False if something is wrong with a triangle of this vertex.
   bool run(Index v) {
-    bool sound = true;
-    while (!tryRun(v, sound)) grow();
-    return sound;
+    for (;;) {
+      Pass pass{topology_.tets.data(), topology_.mate.data(), slots_.data(), shift_, ++group_};
+      if (tryRun(v, pass)) return pass.sound;
+      slots_.assign(2 * slots_.size(), Slot{});
+      --shift_;
+      group_ = 0;
+    }
   }
 
  private:
-  static constexpr std::size_t kSlots = 512;
+  static constexpr int kInitialShift = 55;  ///< 2^(64 - 55) slots
 
   struct Slot {
     std::uint64_t key = 0;      ///< the other two vertices, the smaller one in the upper half
@@ -106,72 +117,79 @@ class FaceMatcher {
     bool turned = false;        ///< which of the two comes first in kFaceCorners
   };
 
+  /// One vertex: what a loop should keep in registers.
+  struct Pass {
+    const Tet* tets;
+    HalfFace* mate;
+    Slot* slots;
+    int shift;
+    std::uint32_t group;
+    std::size_t used = 0;
+    bool sound = true;
+
+    void match(const Tet& tet, Index t, std::size_t corner, std::size_t face) {
+      const FaceTurn turn = kFaceTurns[corner][face];
+      const Index a = tet[turn.second];
+      const Index b = tet[turn.third];
+      const bool turned = a > b;
+      const std::uint64_t key = (std::uint64_t{smaller(a, b)} << 32) | larger(a, b);
+      const HalfFace halfFace = 4 * t + static_cast<HalfFace>(face);
+      Slot& slot = *find(key);
+      // Half of them are the first ones of their triangles, and nobody could foretell which.
+      const bool isFirst = slot.group != group;
+      if (isFirst) {
+        slot = {key, group, halfFace, turned};
+        mate[halfFace] = kNone;
+        ++used;
+        return;
+      }
+      const bool fits = allOf(slot.halfFace != kNone, slot.turned != turned);
+      sound = allOf(sound, fits);
+      const HalfFace other = fits ? slot.halfFace : halfFace;
+      mate[other] = halfFace;
+      mate[halfFace] = fits ? other : kNone;
+      slot.halfFace = kNone;
+    }
+
+    /// The slot of a key, or the one that it would get.
+    [[nodiscard]] Slot* find(std::uint64_t key) const {
+      const std::size_t last = (std::size_t{1} << (64 - shift)) - 1;
+      // The upper bits of a product with an odd constant near 2^64 / golden ratio spread well.
+      std::size_t i = (key * 0x9e3779b97f4a7c15U) >> shift;
+      // While the slot is taken by another key; without a branch on whether it is taken.
+      while (slots[i].group == group && slots[i].key != key) i = (i + 1) & last;
+      return &slots[i];
+    }
+  };
+
   /// False if the table is too small.
-  bool tryRun(Index v, bool& sound) {
-    ++group_;
-    used_ = 0;
+  bool tryRun(Index v, Pass& pass) {
+    const std::size_t limit = slots_.size() / 2;
     for (std::size_t part = 0; part < lists_.parts; ++part) {
       Index entry = lists_.head[part * lists_.vertices + v];
       for (; entry != kNone; entry = lists_.next[entry]) {
-        if (!match(v, entry, sound)) return false;
+        const Index t = entry / 2;
+        const Tet& tet = pass.tets[t];
+        const auto corner = static_cast<std::size_t>(topology_.localCorner(t, v));
+        if (entry % 2 == 0) {
+          for (const std::uint8_t face : kFacesAt[corner]) pass.match(tet, t, corner, face);
+        } else {
+          // The face opposite the one vertex that is smaller.
+          const std::size_t face =
+              (tet[1] < v ? 1U : 0U) + (tet[2] < v ? 2U : 0U) + (tet[3] < v ? 3U : 0U);
+          pass.match(tet, t, corner, face);
+        }
+        if (pass.used > limit) return false;
       }
     }
     return true;
   }
 
-  bool match(Index v, Index entry, bool& sound) {
-    const Index t = entry / 2;
-    const Tet& tet = topology_.tets[t];
-    const auto corner = static_cast<std::size_t>(topology_.localCorner(t, v));
-    if (entry % 2 == 0) {
-      for (const std::uint8_t face : kFacesAt[corner]) match(tet, t, corner, face, sound);
-    } else {
-      // The face opposite the one vertex that is smaller.
-      const std::size_t face =
-          (tet[1] < v ? 1U : 0U) + (tet[2] < v ? 2U : 0U) + (tet[3] < v ? 3U : 0U);
-      match(tet, t, corner, face, sound);
-    }
-    return 2 * used_ <= slots_.size();
-  }
-
-  void match(const Tet& tet, Index t, std::size_t corner, std::size_t face, bool& sound) {
-    const FaceTurn turn = kFaceTurns[corner][face];
-    const Index a = tet[turn.second];
-    const Index b = tet[turn.third];
-    const bool turned = a > b;
-    const std::uint64_t key = (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
-    const HalfFace halfFace = 4 * t + static_cast<HalfFace>(face);
-    // The upper bits of a product with an odd constant near 2^64 / golden ratio spread well.
-    std::size_t i =
-        static_cast<std::size_t>((key * 0x9e3779b97f4a7c15U) >> 40) & (slots_.size() - 1);
-    while (slots_[i].group == group_ && slots_[i].key != key) i = (i + 1) & (slots_.size() - 1);
-    Slot& slot = slots_[i];
-    if (slot.group != group_) {
-      slot = {key, group_, halfFace, turned};
-      topology_.mate[halfFace] = kNone;
-      ++used_;
-      return;
-    }
-    if (slot.halfFace == kNone || slot.turned == turned) {
-      topology_.mate[halfFace] = kNone;
-      sound = false;
-      return;
-    }
-    topology_.mate[halfFace] = slot.halfFace;
-    topology_.mate[slot.halfFace] = halfFace;
-    slot.halfFace = kNone;
-  }
-
-  void grow() {
-    slots_.assign(2 * slots_.size(), Slot{});
-    group_ = 0;
-  }
-
   TetTopology& topology_;
   const FaceLists& lists_;
   std::vector<Slot> slots_;
+  int shift_ = kInitialShift;
   std::uint32_t group_ = 0;
-  std::size_t used_ = 0;
 };
 
 }  // namespace

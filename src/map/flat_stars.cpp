@@ -101,7 +101,7 @@ std::size_t FlatStarTest::axis(std::size_t member) const noexcept {
 
 /// Follows the walk through the star; false if charts do not fit, or boundary faces have no plane.
 bool FlatStarTest::unfold(std::span<const VertexStar::Member> star) {
-  if (rotations_.size() < star.size()) rotations_.resize(2 * star.size());
+  if (rotations_.size() <= star.size()) rotations_.resize(2 * star.size());
   rotations_[0] = {};
   std::size_t reached = 1;
   for (std::size_t i = 0; i < star.size(); ++i) {
@@ -117,7 +117,9 @@ bool FlatStarTest::unfold(std::span<const VertexStar::Member> star) {
         if (transitions_.isExact[jump] == 0) return false;
         rotation = transitions_.table[jump].rotation * rotation;
       }
-      if (neighbour == reached) rotations_[reached++] = rotation;
+      // The one behind the last is free to be written.
+      rotations_[reached] = rotation;
+      reached += neighbour == reached ? 1 : 0;
       if (rotations_[neighbour] != rotation) return false;
     }
   }

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <base/branchless.hpp>
+#include <base/pair.hpp>
 #include <map/input.hpp>
 
 namespace hexhex {
@@ -11,20 +13,34 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;
 
-/// Determinant of the edge vectors from corner 0, or 0 if it is too small for its sign to be
-/// trusted.
-double safeDeterminant(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3) {
-  double determinant = 0;
-  double magnitude = 0;
+/// Which determinants of the edge vectors from corner 0 are positive and negative, as far as their
+/// signs are to be trusted.
+struct Signs {
+  PairMask positive;
+  PairMask negative;
+};
+
+/// The first of each pair is in space, the second in the map.
+Signs signsOf(const std::array<const Vec3*, 4>& points, const TetParameters& u) {
+  std::array<std::array<Pair, 3>, 3> edges{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Pair origin = {(*points[0])[k], u[0][k]};
+    for (std::size_t e = 0; e < 3; ++e) {
+      edges[e][k] = Pair{(*points[e + 1])[k], u[e + 1][k]} - origin;
+    }
+  }
+  Pair determinant = {0, 0};
+  Pair magnitude = {0, 0};
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t i = (k + 1) % 3;
     const std::size_t j = (k + 2) % 3;
-    const double minor = (p1[i] - p0[i]) * (p2[j] - p0[j]) - (p1[j] - p0[j]) * (p2[i] - p0[i]);
-    determinant += minor * (p3[k] - p0[k]);
-    magnitude += std::abs(minor * (p3[k] - p0[k]));
+    const Pair product = (edges[0][i] * edges[1][j] - edges[0][j] * edges[1][i]) * edges[2][k];
+    determinant += product;
+    magnitude += magnitudeOf(product);
   }
   // Far above rounding, far below any tet that matters for a majority.
-  return std::abs(determinant) > 1e-12 * magnitude ? determinant : 0;
+  const Pair enough = 1e-12 * magnitude;
+  return {determinant > enough, -determinant > enough};
 }
 
 void checkSizes(const TetMapView& map) {
@@ -52,29 +68,34 @@ void checkSizes(const TetMapView& map) {
 double finiteness(const Vec3& p) { return p[0] * 0 + p[1] * 0 + p[2] * 0; }
 
 bool isFinite(const TetParameters& u) {
+  double sum = 0;
+  for (const Vec3& corner : u) sum += (corner[0] + corner[1]) + corner[2];
+  // A finite sum has finite terms; an infinite one may have overflowed.
+  if (sum - sum == 0) return true;
   return finiteness(u[0]) + finiteness(u[1]) + (finiteness(u[2]) + finiteness(u[3])) == 0;
 }
 
+// Without branches, as nearly all tets pass all tests.
+bool hasIndexBeyond(const Tet& tet, std::size_t count) {
+  return anyOf(tet[0] >= count, tet[1] >= count, tet[2] >= count, tet[3] >= count);
+}
+
 bool hasRepeatedVertex(const Tet& tet) {
-  return tet[0] == tet[1] || tet[0] == tet[2] || tet[0] == tet[3] || tet[1] == tet[2] ||
-         tet[1] == tet[3] || tet[2] == tet[3];
+  return anyOf(tet[0] == tet[1], tet[0] == tet[2], tet[0] == tet[3], tet[1] == tet[2],
+               tet[1] == tet[3], tet[2] == tet[3]);
 }
 
 /// What a pass over all tets finds out: how many are positive and negative, in space and in the
 /// map, and how large they are.
 struct Measures {
-  std::uint64_t spacePositive = 0;
-  std::uint64_t spaceNegative = 0;
-  std::uint64_t mapPositive = 0;
-  std::uint64_t mapNegative = 0;
+  PairMask positive = {0, 0};  ///< numbers: in space, in the map
+  PairMask negative = {0, 0};
   double largestCoordinate = 0;
   double largestExtent = 0;
 
   void add(const Measures& other) {
-    spacePositive += other.spacePositive;
-    spaceNegative += other.spaceNegative;
-    mapPositive += other.mapPositive;
-    mapNegative += other.mapNegative;
+    positive += other.positive;
+    negative += other.negative;
     largestCoordinate = std::max(largestCoordinate, other.largestCoordinate);
     largestExtent = std::max(largestExtent, other.largestExtent);
   }
@@ -82,13 +103,10 @@ struct Measures {
   void addTet(const TetMapView& map, std::size_t t) {
     const Tet& tet = map.tets[t];
     const TetParameters& u = map.parameters[t];
-    const double space = safeDeterminant(map.points[tet[0]], map.points[tet[1]], map.points[tet[2]],
-                                         map.points[tet[3]]);
-    const double parametric = safeDeterminant(u[0], u[1], u[2], u[3]);
-    spacePositive += space > 0 ? 1 : 0;
-    spaceNegative += space < 0 ? 1 : 0;
-    mapPositive += parametric > 0 ? 1 : 0;
-    mapNegative += parametric < 0 ? 1 : 0;
+    const Signs signs = signsOf(
+        {&map.points[tet[0]], &map.points[tet[1]], &map.points[tet[2]], &map.points[tet[3]]}, u);
+    positive -= signs.positive;
+    negative -= signs.negative;
     for (std::size_t k = 0; k < 3; ++k) {
       const double low = std::min(std::min(u[0][k], u[1][k]), std::min(u[2][k], u[3][k]));
       const double high = std::max(std::max(u[0][k], u[1][k]), std::max(u[2][k], u[3][k]));
@@ -107,7 +125,7 @@ Measures measureTets(const TetMapView& map, Stage& stage, DefectCollector& defec
                    for (std::size_t t = begin; t < end; ++t) {
                      const Tet& tet = map.tets[t];
                      const Place place{PlaceKind::Tet, t};
-                     if (*std::max_element(tet.begin(), tet.end()) >= map.points.size()) {
+                     if (hasIndexBeyond(tet, map.points.size())) {
                        defects.add(ErrorCode::IndexOutOfRange, place, 0);
                      } else if (!isFinite(map.parameters[t])) {
                        defects.add(ErrorCode::NotFinite, place, 0);
@@ -162,13 +180,15 @@ OrientedMap readInput(const TetMapView& map, Stage& stage, DefectCollector& defe
     }
   });
   const Measures measures = measureTets(map, stage, defects);
-  const bool spaceReversed = measures.spaceNegative > measures.spacePositive;
-  const bool mapReversed = measures.mapNegative > measures.mapPositive;
+  const bool spaceReversed = measures.negative[0] > measures.positive[0];
+  const bool mapReversed = measures.negative[1] > measures.positive[1];
   oriented.view = map;
   oriented.cornersReversed = spaceReversed;
   oriented.mirrored = spaceReversed != mapReversed;
-  oriented.flippedTets = std::max(measures.mapPositive, measures.mapNegative) < map.tets.size();
-  oriented.tetsInvertedInSpace = std::min(measures.spaceNegative, measures.spacePositive);
+  const auto tets = static_cast<std::int64_t>(map.tets.size());
+  oriented.flippedTets = std::max<std::int64_t>(measures.positive[1], measures.negative[1]) < tets;
+  oriented.tetsInvertedInSpace = static_cast<std::uint64_t>(
+      std::min<std::int64_t>(measures.negative[0], measures.positive[0]));
   oriented.largestCoordinate = measures.largestCoordinate;
   oriented.largestExtent = measures.largestExtent;
   if (defects.empty() && (oriented.cornersReversed || oriented.mirrored)) {

@@ -13,6 +13,11 @@ namespace hexhex {
 /// Numbers keys (tets, vertices) in the order in which they come. Emptied in no time, and made so
 /// that nothing in it is for the processor to guess: whether a key is new is as good as random.
 class KeyTable {
+  struct Slot {
+    std::uint64_t tag = 0;  ///< generation and key; the slot is empty in all other generations
+    Index number = 0;
+  };
+
  public:
   KeyTable() : slots_(kInitialSlots) {}
 
@@ -23,55 +28,80 @@ class KeyTable {
     std::fill(slots_.begin(), slots_.end(), Slot{});
     generation_ = 1;
   }
+
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
   /// The number of a key, which is the former size() if the key is new.
   Index insert(Index key) {
-    if (2 * size_ >= slots_.size()) grow();
-    Slot& slot = slots_[find(key)];
-    const std::uint64_t tag = tagOf(key);
-    const bool isNew = slot.tag != tag;
-    const Index number = isNew ? size_ : slot.number;
-    slot = {tag, number};
-    size_ += isNew ? 1 : 0;
+    makeRoom(size_ + 1);
+    const Index number = numberer()(key, size_);
+    size_ += number == size_ ? 1 : 0;
     return number;
+  }
+
+  /// Does the work, as an object that a loop can keep in registers. The caller counts the keys, and
+  /// size() knows nothing of them.
+  class Numberer {
+   public:
+    /// The number of a key: `size` if it is new. There must be room.
+    Index operator()(Index key, Index size) const noexcept {
+      const std::uint64_t tag = generation_ | key;
+      Slot& slot = *find(slots_, shift_, tag);
+      // Chosen by arithmetic, as the compiler would make a branch of a condition.
+      const Index isKnown = slot.tag == tag ? 1 : 0;
+      const Index number = size + (slot.number - size) * isKnown;
+      slot = {tag, number};
+      return number;
+    }
+
+   private:
+    friend class KeyTable;
+    Numberer(Slot* slots, int shift, std::uint64_t generation)
+        : slots_(slots), shift_(shift), generation_(generation) {}
+    Slot* slots_;
+    int shift_;
+    std::uint64_t generation_;  ///< in the upper half
+  };
+
+  /// To be renewed after makeRoom().
+  [[nodiscard]] Numberer numberer() noexcept {
+    return {slots_.data(), shift_, std::uint64_t{generation_} << 32};
+  }
+
+  [[nodiscard]] bool hasRoom(std::size_t size) const noexcept { return 2 * size <= slots_.size(); }
+
+  /// For this many keys.
+  void makeRoom(std::size_t size) {
+    while (!hasRoom(size)) grow();
   }
 
  private:
   /// Many more than the tets or edges at nearly all vertices, so that keys hardly ever collide.
   static constexpr std::size_t kInitialSlots = 512;
-
-  struct Slot {
-    std::uint64_t tag = 0;  ///< generation and key; the slot is empty in all other generations
-    Index number = 0;
-  };
-
-  [[nodiscard]] std::uint64_t tagOf(Index key) const noexcept {
-    return (std::uint64_t{generation_} << 32) | key;
-  }
+  static constexpr int kInitialShift = 23;  ///< 2^(32 - 23) slots
 
   /// The slot of a key, or the one that it would get.
-  [[nodiscard]] std::size_t find(Index key) const noexcept {
-    const std::uint64_t tag = tagOf(key);
-    const std::size_t mask = slots_.size() - 1;
+  [[nodiscard]] static Slot* find(Slot* slots, int shift, std::uint64_t tag) noexcept {
+    const std::size_t mask = 0xffffffffU >> shift;
     // The upper bits of a product with an odd constant near 2^32 / golden ratio spread well.
-    std::size_t i = ((key * 0x9e3779b9U) >> 12) & mask;
-    while (static_cast<unsigned>(slots_[i].tag != tag) &
-           static_cast<unsigned>((slots_[i].tag >> 32) == generation_)) {
-      i = (i + 1) & mask;
-    }
-    return i;
+    std::size_t i = (static_cast<std::uint32_t>(tag) * 0x9e3779b9U) >> shift;
+    // While the slot is of this generation, but of another key: in one comparison, as two would
+    // make a branch.
+    while ((slots[i].tag ^ tag) - 1 < 0xffffffffU) i = (i + 1) & mask;
+    return &slots[i];
   }
 
   void grow() {
     std::vector<Slot> old(2 * slots_.size());
     old.swap(slots_);
+    --shift_;
     for (const Slot& slot : old) {
-      if ((slot.tag >> 32) == generation_) slots_[find(static_cast<Index>(slot.tag))] = slot;
+      if ((slot.tag >> 32) == generation_) *find(slots_.data(), shift_, slot.tag) = slot;
     }
   }
 
   std::vector<Slot> slots_;
+  int shift_ = kInitialShift;
   std::uint32_t generation_ = 1;
   Index size_ = 0;
 };

@@ -7,6 +7,7 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/prefetch.hpp>
 #include <base/vector3.hpp>
 #include <map/input.hpp>
 
@@ -26,8 +27,11 @@ class LocalParameters {
   [[nodiscard]] bool tooLarge() const noexcept { return tooLarge_; }
 
   [[nodiscard]] Vec3 operator()(Index tet, int corner) const noexcept {
+    return at(tet, static_cast<std::size_t>(corner));
+  }
+  [[nodiscard]] Vec3 at(Index tet, std::size_t corner) const noexcept {
     const TetParameters& parameters = parameters_[tet];
-    const Vec3& u = parameters[static_cast<std::size_t>(corner)];
+    const Vec3& u = parameters[corner];
     return moved_ ? minus(u, move(parameters)) : u;
   }
   /// All corners of a tet.
@@ -38,6 +42,23 @@ class LocalParameters {
       for (Vec3& u : parameters) u = minus(u, by);
     }
     return parameters;
+  }
+  /// Whether (*this)(tet) is other than what the caller gave.
+  [[nodiscard]] bool moved() const noexcept { return moved_; }
+  /// What the caller gave.
+  [[nodiscard]] const TetParameters& given(Index tet) const noexcept { return parameters_[tet]; }
+  /// Asks for the parameters of a tet that will be looked at soon.
+  void prefetch(Index tet) const noexcept {
+    const TetParameters& parameters = parameters_[tet];
+    hexhex::prefetch(&parameters.front());
+    hexhex::prefetch(&parameters.back().back());
+  }
+  /// All corners of a tet, without a copy if they are where the caller has put them.
+  /// @param scratch  must outlive the result
+  [[nodiscard]] const TetParameters& see(Index tet, TetParameters& scratch) const noexcept {
+    if (!moved_) return parameters_[tet];
+    scratch = (*this)(tet);
+    return scratch;
   }
   /// Largest magnitude of a coordinate.
   [[nodiscard]] double largest() const noexcept { return largest_; }

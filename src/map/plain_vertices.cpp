@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include <base/branchless.hpp>
 #include <base/vector3.hpp>
 #include <map/plain_vertices.hpp>
 
@@ -13,15 +14,21 @@ namespace {
 
 constexpr std::size_t kGrain = PlainVertices::kBlock;
 
+/// Faces between asking for a tet and looking at it: the memory's delay, in steps of a loop.
+constexpr std::size_t kPrefetchDistance = 12;
+
 /// Sets a flag that several threads may set.
 void mark(std::uint8_t& flag) { std::atomic_ref(flag).store(1, std::memory_order_relaxed); }
 
-/// What the passes gather about each vertex.
-struct Survey {
-  Array<Vec3> parameter;        ///< of the corner in the smallest tet
-  Array<std::uint8_t> unequal;  ///< some corner has other parameters
-  Array<std::uint32_t> cones;   ///< tets in one and the same direction from the vertex
-};
+/// Sets bits that several threads may set; nearly always, all are set already.
+void addBits(std::uint8_t& bits, unsigned added) {
+  const std::atomic_ref shared(bits);
+  if ((shared.load(std::memory_order_relaxed) & added) == added) return;
+  shared.fetch_or(static_cast<std::uint8_t>(added), std::memory_order_relaxed);
+}
+
+/// Per vertex: tets in one and the same direction from it.
+using Cones = Array<std::uint32_t>;
 
 /// The corner from which the direction leads into the tet, by bits 0 to 3 of its sides: it is the
 /// one whose opposite face is the only one from which the direction leads outward. 4 if there is
@@ -33,7 +40,7 @@ constexpr std::array<std::uint8_t, 16> kConeCorner = [] {
   return corners;
 }();
 
-/// The faces of a tet, as seen by directions.
+/// The faces of a tet, as seen by the direction in general position.
 class TetNormals {
  public:
   explicit TetNormals(const TetParameters& u) {
@@ -41,180 +48,211 @@ class TetNormals {
     const Vec3 b = minus(u[2], u[0]);
     const Vec3 c = minus(u[3], u[0]);
     for (std::size_t k = 0; k < 3; ++k) {
-      size_ = std::max({size_, std::abs(a[k]), std::abs(b[k]), std::abs(c[k])});
+      size_ = std::max(std::max(size_, std::abs(a[k])), std::max(std::abs(b[k]), std::abs(c[k])));
     }
     normals_ = {cross(b, c), cross(c, a), cross(a, b)};
     const double determinant = dot(a, normals_[0]);
-    isPositive_ = size_ > 0x1p-300 && determinant > 0x1p-46 * size_ * size_ * size_;
+    isPositive_ = allOf(size_ > 0x1p-300, determinant > 0x1p-46 * size_ * size_ * size_);
+    for (std::size_t i = 0; i < 3; ++i) sides_[i] = dot(kGeneralDirection, normals_[i]);
   }
 
   /// As computeSides().
-  [[nodiscard]] TetSides sides(unsigned mirror) const noexcept {
-    Vec3 direction = kGeneralDirection;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if ((mirror >> k) & 1U) direction[k] = -direction[k];
+  [[nodiscard]] TetSides sides() const noexcept { return packed(sides_); }
+
+  /// The same, with the direction mirrored along an axis.
+  [[nodiscard]] TetSides mirrored(std::size_t axis) const noexcept {
+    Vec3 sides = sides_;
+    for (std::size_t i = 0; i < 3; ++i) {
+      sides[i] -= 2 * kGeneralDirection[axis] * normals_[i][axis];
     }
-    const double side1 = dot(direction, normals_[0]);
-    const double side2 = dot(direction, normals_[1]);
-    const double side3 = dot(direction, normals_[2]);
-    const double side0 = -(side1 + side2 + side3);
-    // With u = 2^-53: differences carry one rounding, components of normals are below 2 size^2 and
-    // off by 8 u size^2, the determinant by 42 u size^3, sides 1 to 3 by 33 u size^2 and side 0 by
-    // 141 u size^2. Below 2^-300, products could underflow.
-    const double uncertainty = 0x1p-45 * size_ * size_;
-    const double smallest =
-        std::min({std::abs(side0), std::abs(side1), std::abs(side2), std::abs(side3)});
-    if (!(isPositive_ && smallest > uncertainty)) return kUncertainSides;
-    return static_cast<TetSides>((side0 > 0 ? 1 : 0) + (side1 > 0 ? 2 : 0) + (side2 > 0 ? 4 : 0) +
-                                 (side3 > 0 ? 8 : 0));
+    return packed(sides);
   }
 
  private:
+  /// @param sides  of faces 1 to 3
+  [[nodiscard]] TetSides packed(const Vec3& sides) const noexcept {
+    const double side0 = -(sides[0] + sides[1] + sides[2]);
+    // With u = 2^-53: differences carry one rounding, components of normals are below 2 size^2 and
+    // off by 8 u size^2, the determinant by 42 u size^3, sides 1 to 3 by 33 u size^2, or 43 u
+    // size^2 if mirrored, and side 0 by 171 u size^2. Below 2^-300, products could underflow.
+    const double uncertainty = 0x1p-45 * size_ * size_;
+    const double smallest = std::min(std::min(std::abs(side0), std::abs(sides[0])),
+                                     std::min(std::abs(sides[1]), std::abs(sides[2])));
+    if (!allOf(isPositive_, smallest > uncertainty)) return kUncertainSides;
+    return static_cast<TetSides>((side0 > 0 ? 1U : 0U) | (sides[0] > 0 ? 2U : 0U) |
+                                 (sides[1] > 0 ? 4U : 0U) | (sides[2] > 0 ? 8U : 0U));
+  }
+
   /// Inward, of the faces opposite corners 1, 2, 3; the four normals add up to zero.
   std::array<Vec3, 3> normals_{};
+  Vec3 sides_{};  ///< scalar products of the direction with them
   double size_ = 0;
   bool isPositive_ = false;
 };
 
-/// Compares all corners with the first one of their vertex, and counts cones.
-void surveyTets(const TetTopology& topology, const LocalParameters& parameters, Survey& survey,
-                PlainVertices& result, Stage& stage) {
-  parallelFor(stage, topology.tetCount(), kGrain, [&](std::size_t t) {
-    const Tet& tet = topology.tets[t];
-    const TetParameters u = parameters(static_cast<Index>(t));
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (u[i] != survey.parameter[tet[i]]) mark(survey.unequal[tet[i]]);
+void markCorners(const Tet& tet, int face, PlainVertices& result) {
+  for (const int corner : kFaceCorners[static_cast<std::size_t>(face)]) {
+    mark(result.special[tet[static_cast<std::size_t>(corner)]]);
+  }
+}
+
+/// At most four things for each of a block of tets, listed without a branch: which ones belong
+/// there is as good as random.
+class BranchlessList {
+ public:
+  void clear() { count_ = 0; }
+  void add(std::uint32_t entry, bool wanted) {
+    entries_[count_] = entry;
+    count_ += wanted ? 1 : 0;
+  }
+  [[nodiscard]] std::span<const std::uint32_t> get() const { return {entries_.data(), count_}; }
+
+ private:
+  std::array<std::uint32_t, 4 * kGrain + 1> entries_;  // NOLINT: written before it is read
+  std::size_t count_ = 0;
+};
+
+/// Lists the boundary faces of a block of tets, and notes their planes at their corners; without a
+/// plane, these are special.
+void surveyBoundary(const TetTopology& topology, const LocalParameters& parameters,
+                    std::size_t begin, std::size_t end, std::size_t block, PlainVertices& result) {
+  BranchlessList list;
+  for (auto h = static_cast<HalfFace>(4 * begin); h < 4 * end; ++h) {
+    list.add(h, topology.mate[h] == kNone);
+  }
+  std::vector<PlainVertices::BoundaryFace>& faces = result.boundaryFaces[block];
+  faces.reserve(list.get().size());
+  for (const HalfFace halfFace : list.get()) {
+    const Tet& tet = topology.tets[tetOf(halfFace)];
+    const unsigned plane = constantAxes(parameters, halfFace);
+    faces.push_back({halfFace, plane});
+    if (plane == 0) markCorners(tet, localOf(halfFace), result);
+    for (const int corner : kFaceCorners[halfFace % 4]) {
+      addBits(result.plane[tet[static_cast<std::size_t>(corner)]], plane);
     }
-    const TetSides sides = TetNormals(u).sides(0);
-    result.sides[t] = sides;
+  }
+}
+
+/// Finds out how the direction lies to tets, and counts cones: of the tets, and of their mirror
+/// images at vertices that are on one boundary plane.
+class TetSurvey {
+ public:
+  TetSurvey(const TetTopology& topology, const LocalParameters& parameters, Cones& cones,
+            PlainVertices& result)
+      : topology_(topology), parameters_(parameters), cones_(cones), result_(result) {}
+
+  void run(Index t) {
+    const Tet& tet = topology_.tets[t];
+    TetParameters scratch;
+    const TetNormals normals(parameters_.see(t, scratch));
+    const TetSides sides = normals.sides();
+    result_.sides[t] = sides;
     if (sides == kUncertainSides) {
-      for (const Index v : tet) mark(result.special[v]);
+      markAll(tet);
       return;
     }
     const std::size_t corner = kConeCorner[sides];
-    if (corner == 4) return;
-    std::atomic_ref(survey.cones[tet[corner]]).fetch_add(1, std::memory_order_relaxed);
-  });
-}
+    found_.add(tet[corner % 4], corner != 4);
+    unsigned planes = 0;
+    for (const Index v : tet) planes |= result_.plane[v];
+    if (planes != 0) addMirrored(tet, normals);
+  }
 
-/// Whether two tets agree on the parameters of those corners of their common face where not all
-/// tets do.
+  /// Adds up what run() has found, for at most kGrain tets.
+  void finish() {
+    for (const Index vertex : found_.get()) {
+      std::atomic_ref(cones_[vertex]).fetch_add(1, std::memory_order_relaxed);
+    }
+    found_.clear();
+  }
+
+ private:
+  void addMirrored(const Tet& tet, const TetNormals& normals) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const TetSides sides = normals.mirrored(axis);
+      // The mirrored direction may be in a face of the tet.
+      if (sides == kUncertainSides) {
+        markAll(tet);
+        continue;
+      }
+      // On two planes, a vertex is special anyway.
+      const std::size_t corner = kConeCorner[sides];
+      const Index vertex = tet[corner % 4];
+      found_.add(vertex, allOf(corner != 4, result_.plane[vertex] == 1U << axis));
+    }
+  }
+
+  void markAll(const Tet& tet) {
+    for (const Index v : tet) mark(result_.special[v]);
+  }
+
+  const TetTopology& topology_;
+  const LocalParameters& parameters_;
+  Cones& cones_;
+  PlainVertices& result_;
+  BranchlessList found_;  ///< vertices
+};
+
+/// Whether two tets agree on the parameters of the corners of their common face.
 bool agree(const TetTopology& topology, const LocalParameters& parameters, HalfFace here,
-           HalfFace there, CornerMask unequal) {
-  const Tet& tet = topology.tets[tetOf(here)];
-  for (CornerMask rest = unequal; rest != 0; rest = static_cast<CornerMask>(rest & (rest - 1))) {
-    const std::size_t corner = firstCorner(rest);
-    if (parameters(tetOf(here), static_cast<int>(corner)) !=
-        parameters(tetOf(there), topology.localCorner(tetOf(there), tet[corner]))) {
+           HalfFace there) {
+  const SharedFace face(topology, here, there);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (parameters.at(tetOf(here), face.here(k)) != parameters.at(tetOf(there), face.there(k))) {
       return false;
     }
   }
   return true;
 }
 
-/// Looks at each face of a block of tets, from its smaller half-face.
-class FaceSurvey {
- public:
-  FaceSurvey(const TetTopology& topology, const LocalParameters& parameters, const Survey& survey,
-             PlainVertices& result, std::vector<HalfFace>& unequalFaces)
-      : topology_(topology),
-        parameters_(parameters),
-        survey_(survey),
-        result_(result),
-        unequalFaces_(unequalFaces) {}
-
-  void run(Index t) {
-    const Tet& tet = topology_.tets[t];
-    CornerMask unequal = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      unequal = static_cast<CornerMask>(unequal | (survey_.unequal[tet[i]] << i));
-    }
-    for (int face = 0; face < 4; ++face) {
-      const HalfFace here = halfFaceOf(t, face);
-      const HalfFace there = topology_.mate[here];
-      if (there == kNone) {
-        surveyBoundary(t, face);
-      } else if (here < there) {
-        ++innerFaces_;
-        const auto inQuestion = static_cast<CornerMask>(unequal & faceMask(face));
-        if (agree(topology_, parameters_, here, there, inQuestion)) continue;
-        markCorners(tet, face);
-        markDisagreement(here);
-        markDisagreement(there);
-        unequalFaces_.push_back(here);
-      }
+/// Whether they have the same bits there: the same as agree(), if true.
+bool areSame(const TetTopology& topology, const LocalParameters& parameters, HalfFace here,
+             HalfFace there) {
+  const SharedFace face(topology, here, there);
+  const TetParameters& u = parameters.given(tetOf(here));
+  const TetParameters& v = parameters.given(tetOf(there));
+  std::uint64_t difference = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& a = u[face.here(k)];
+    const Vec3& b = v[face.there(k)];
+    for (std::size_t i = 0; i < 3; ++i) {
+      difference |= std::bit_cast<std::uint64_t>(a[i]) ^ std::bit_cast<std::uint64_t>(b[i]);
     }
   }
+  return difference == 0;
+}
 
-  [[nodiscard]] std::uint64_t innerFaces() const noexcept { return innerFaces_; }
-
- private:
-  void markCorners(const Tet& tet, int face) {
-    for (const int corner : kFaceCorners[static_cast<std::size_t>(face)]) {
-      mark(result_.special[tet[static_cast<std::size_t>(corner)]]);
-    }
+/// Looks at each inner face of a block of tets, from its larger half-face: the parameters of the
+/// other tet have then been looked at not long ago.
+void surveyFaces(const TetTopology& topology, const LocalParameters& parameters, std::size_t begin,
+                 std::size_t end, std::size_t block, PlainVertices& result) {
+  BranchlessList inner;
+  for (auto h = static_cast<HalfFace>(4 * begin); h < 4 * end; ++h) {
+    inner.add(h, topology.mate[h] < h);
   }
-
-  /// Notes the plane of a boundary face at its corners; without one, they are special.
-  void surveyBoundary(Index t, int face) {
-    const unsigned plane = constantAxes(parameters_, halfFaceOf(t, face));
-    if (plane == 0) markCorners(topology_.tets[t], face);
-    for (const int corner : kFaceCorners[static_cast<std::size_t>(face)]) {
-      std::uint8_t& planes = result_.plane[topology_.tets[t][static_cast<std::size_t>(corner)]];
-      std::atomic_ref(planes).fetch_or(static_cast<std::uint8_t>(plane), std::memory_order_relaxed);
-    }
+  BranchlessList unequal;
+  const std::span<const HalfFace> faces = inner.get();
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const std::size_t ahead = std::min(i + kPrefetchDistance, faces.size() - 1);
+    parameters.prefetch(tetOf(topology.mate[faces[ahead]]));
+    const HalfFace there = topology.mate[faces[i]];
+    unequal.add(faces[i], parameters.moved() || !areSame(topology, parameters, faces[i], there));
   }
-
-  void markDisagreement(HalfFace halfFace) {
-    std::atomic_ref(result_.sides[tetOf(halfFace)])
+  const auto disagree = [&result](HalfFace halfFace) {
+    std::atomic_ref(result.sides[tetOf(halfFace)])
         .fetch_or(static_cast<TetSides>(16U << localOf(halfFace)), std::memory_order_relaxed);
+  };
+  std::vector<HalfFace>& found = result.unequalFaces[block];
+  found.reserve(unequal.get().size());
+  for (const HalfFace here : unequal.get()) {
+    const HalfFace there = topology.mate[here];
+    if (agree(topology, parameters, here, there)) continue;
+    markCorners(topology.tets[tetOf(here)], localOf(here), result);
+    disagree(here);
+    disagree(there);
+    found.push_back(here);
   }
-
-  const TetTopology& topology_;
-  const LocalParameters& parameters_;
-  const Survey& survey_;
-  PlainVertices& result_;
-  std::vector<HalfFace>& unequalFaces_;
-  std::uint64_t innerFaces_ = 0;
-};
-
-/// Counts the cones of mirrored tets at vertices that are on one boundary plane.
-class MirrorSurvey {
- public:
-  MirrorSurvey(const TetTopology& topology, const LocalParameters& parameters, Survey& survey,
-               PlainVertices& result)
-      : topology_(topology), parameters_(parameters), survey_(survey), result_(result) {}
-
-  void run(Index t) {
-    unsigned axes = 0;
-    // On two planes, a vertex is special anyway.
-    for (const Index v : topology_.tets[t]) {
-      const unsigned planes = result_.plane[v];
-      axes |= (planes & (planes - 1)) == 0 ? planes : 0U;
-    }
-    if (axes == 0) return;
-    const TetNormals normals(parameters_(t));
-    for (unsigned axis = 1; axis <= 4; axis *= 2) {
-      if ((axes & axis) != 0) count(topology_.tets[t], axis, normals.sides(axis));
-    }
-  }
-
- private:
-  void count(const Tet& tet, unsigned axis, TetSides sides) {
-    if (sides == kUncertainSides) {
-      for (const Index v : tet) mark(result_.special[v]);
-      return;
-    }
-    const std::size_t corner = kConeCorner[sides];
-    if (corner == 4 || result_.plane[tet[corner]] != axis) return;
-    std::atomic_ref(survey_.cones[tet[corner]]).fetch_add(1, std::memory_order_relaxed);
-  }
-
-  const TetTopology& topology_;
-  const LocalParameters& parameters_;
-  Survey& survey_;
-  PlainVertices& result_;
-};
+}
 
 }  // namespace
 
@@ -224,12 +262,14 @@ unsigned constantAxes(const LocalParameters& parameters, HalfFace halfFace) noex
   const Vec3 q = parameters(tetOf(halfFace), corners[1]);
   const Vec3 r = parameters(tetOf(halfFace), corners[2]);
   unsigned axes = 0;
-  for (std::size_t k = 0; k < 3; ++k) axes |= (p[k] == q[k] && p[k] == r[k] ? 1U : 0U) << k;
+  for (std::size_t k = 0; k < 3; ++k) axes |= (allOf(p[k] == q[k], p[k] == r[k]) ? 1U : 0U) << k;
   return axes;
 }
 
-TetSides computeSides(const TetParameters& u, unsigned mirror) noexcept {
-  return TetNormals(u).sides(mirror);
+TetSides computeSides(const TetParameters& u) noexcept { return TetNormals(u).sides(); }
+
+TetSides computeMirroredSides(const TetParameters& u, std::size_t axis) noexcept {
+  return TetNormals(u).mirrored(axis);
 }
 
 PlainVertices findPlainVertices(const TetTopology& topology, const LocalParameters& parameters,
@@ -237,41 +277,31 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
   const std::size_t vertices = topology.pointCount;
   PlainVertices result;
   Array<std::uint8_t>& special = result.special;
-  special.resize(vertices);
-  result.plane.resize(vertices);
-  Survey survey;
-  survey.parameter.resize(vertices);
-  survey.unequal.resize(vertices);
-  survey.cones.resize(vertices);
-  parallelFor(stage, vertices, kGrain, [&](std::size_t i) {
-    const auto v = static_cast<Index>(i);
-    special[v] = 0;
-    result.plane[v] = 0;
-    survey.unequal[v] = 0;
-    survey.cones[v] = 0;
-    if (topology.isIsolated(v)) return;
-    const Index tet = topology.vertexTet[v];
-    survey.parameter[v] = parameters(tet, topology.localCorner(tet, v));
-  });
+  special.assign(vertices, 0);
+  result.plane.assign(vertices, 0);
+  Cones cones(vertices, 0);
   result.sides.resize(topology.tetCount());
-  surveyTets(topology, parameters, survey, result, stage);
-  result.unequalFaces.resize(blockCount(topology.tetCount(), kGrain));
-  std::atomic<std::uint64_t> innerFaces = 0;
-  parallelBlocks(stage, topology.tetCount(), kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   FaceSurvey faces(topology, parameters, survey, result,
-                                    result.unequalFaces[block]);
-                   for (std::size_t t = begin; t < end; ++t) faces.run(static_cast<Index>(t));
-                   innerFaces += faces.innerFaces();
-                 });
-  result.innerFaces = innerFaces;
-  MirrorSurvey mirror(topology, parameters, survey, result);
-  parallelFor(stage, topology.tetCount(), kGrain,
-              [&](std::size_t t) { mirror.run(static_cast<Index>(t)); });
+  const std::size_t tets = topology.tetCount();
+  result.boundaryFaces.resize(blockCount(tets, kGrain));
+  result.unequalFaces.resize(blockCount(tets, kGrain));
+  parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+    surveyBoundary(topology, parameters, begin, end, block, result);
+  });
+  std::uint64_t boundaryFaces = 0;
+  for (const auto& faces : result.boundaryFaces) boundaryFaces += faces.size();
+  result.innerFaces = (4 * tets - boundaryFaces) / 2;
+  parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+    TetSurvey tetSurvey(topology, parameters, cones, result);
+    for (std::size_t t = begin; t < end; ++t) tetSurvey.run(static_cast<Index>(t));
+    tetSurvey.finish();
+  });
+  parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+    surveyFaces(topology, parameters, begin, end, block, result);
+  });
   parallelFor(stage, vertices, kGrain, [&](std::size_t v) {
     // On two planes, all cones are counted in vain.
     const bool manyPlanes = (result.plane[v] & (result.plane[v] - 1)) != 0;
-    if ((survey.cones[v] != 1 || manyPlanes) && !topology.isIsolated(static_cast<Index>(v))) {
+    if ((cones[v] != 1 || manyPlanes) && !topology.isIsolated(static_cast<Index>(v))) {
       special[v] = 1;
     }
   });

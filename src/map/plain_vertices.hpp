@@ -44,15 +44,27 @@ struct PlainVertices {
   Array<std::uint8_t> plane;    ///< per plain vertex: bit k on a boundary plane across axis k, or 0
 
   /// What `special` turns into if the vertex is special only because charts differ
-  /// (flat_stars.hpp). In `plane`, kPlaneOfStar then stands for a plane that each chart sees
-  /// otherwise.
+  /// (flat_stars.hpp).
   static constexpr std::uint8_t kFlat = 2;
-  static constexpr std::uint8_t kPlaneOfStar = 8;
 
-  /// Inner triangles on whose corners' parameters their tets do not agree, by the smaller
-  /// half-face, ascending; in one list per block of kBlock tets.
+  /// What `plane` turns into then, if there is a plane, as each chart sees it otherwise; and what
+  /// it turns into at other special vertices: in both cases, corners are not to be rounded each on
+  /// its own.
+  static constexpr std::uint8_t kPlaneOfStar = 8;
+  static constexpr std::uint8_t kDecidedByStar = 16;
+
+  /// Inner triangles on whose corners' parameters their tets do not agree, by the larger half-face,
+  /// ascending; in one list per block of kBlock tets.
   std::vector<std::vector<HalfFace>> unequalFaces;
   std::uint64_t innerFaces = 0;
+
+  /// A boundary face, and the axes along which it is constant: bit k for axis k.
+  struct BoundaryFace {
+    HalfFace halfFace;
+    std::uint32_t constantAxes;
+  };
+  /// By half-face, ascending; in one list per block of kBlock tets.
+  std::vector<std::vector<BoundaryFace>> boundaryFaces;
 
   /// Per tet: what its part in the fan of an edge is.
   Array<TetSides> sides;
@@ -72,7 +84,9 @@ inline constexpr Vec3 kGeneralDirection = {1, 0.7548776662466927, 0.569840290998
 
 /// The sides of a tet, if the tet is positive and the direction in general position, so far as
 /// floating point can tell; otherwise kUncertainSides.
-/// @param mirror  bit k: the direction is mirrored along axis k
-[[nodiscard]] TetSides computeSides(const TetParameters& u, unsigned mirror = 0) noexcept;
+[[nodiscard]] TetSides computeSides(const TetParameters& u) noexcept;
+
+/// The same for the direction mirrored along an axis.
+[[nodiscard]] TetSides computeMirroredSides(const TetParameters& u, std::size_t axis) noexcept;
 
 }  // namespace hexhex

@@ -112,6 +112,10 @@ class VertexEdges {
   /// Without branches, as these could not be foretold.
   void collectEdges(Index vertex) {
     others_.clear();
+    others_.makeRoom(3 * star_.size());
+    if (edges_.size() <= 3 * star_.size()) edges_.resize(2 * (3 * star_.size()));
+    const KeyTable::Numberer number = others_.numberer();
+    Index count = 0;
     numbers_.resize(star_.size());
     boundaryFaces_ = 0;
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
@@ -123,7 +127,10 @@ class VertexEdges {
       std::array<std::uint32_t, 3> inward{};
       std::array<std::uint32_t, 3> disagree{};
       for (std::size_t k = 0; k < 3; ++k) {
-        numbers_[i][k] = edgeTo(tet[corners[k]]);
+        const Index other = tet[corners[k]];
+        edges_[count] = Edge{other, 0, 0, 0};
+        numbers_[i][k] = number(other, count);
+        count += numbers_[i][k] == count ? 1 : 0;
         boundary[k] = member.neighbour[k] == kNone ? 1U : 0U;
         inward[k] = leadsInward(sides, corners[k]);
         disagree[k] = disagrees(sides, corners[k]);
@@ -139,8 +146,9 @@ class VertexEdges {
         edge.disagreements += disagree[l] + disagree[m];
       }
     }
+    edgeCount_ = count;
     anglesNeeded_ = false;
-    angles_.assign(others_.size(), Angles{});
+    angles_.assign(edgeCount_, Angles{});
     for (std::size_t e = 0; e < angles_.size(); ++e) {
       // Edges at a plain vertex are regular.
       angles_[e].wanted = edges_[e].other > vertex && in_.plain.special[edges_[e].other] == 1;
@@ -150,14 +158,7 @@ class VertexEdges {
     }
   }
 
-  Index edgeTo(Index other) {
-    const std::size_t end = others_.size();
-    if (edges_.size() <= end) edges_.resize(2 * edges_.size());
-    edges_[end] = Edge{other, 0, 0, 0};
-    return others_.insert(other);
-  }
-
-  [[nodiscard]] std::span<const Edge> edges() const { return {edges_.data(), others_.size()}; }
+  [[nodiscard]] std::span<const Edge> edges() const { return {edges_.data(), edgeCount_}; }
 
   /// Adds up dihedral angles where turns do not tell the valence.
   void addAngles() {
@@ -233,16 +234,17 @@ class VertexEdges {
     }
     const auto triangles = static_cast<std::int64_t>(star_.size());
     const std::int64_t sides = (3 * triangles + boundaryFaces_) / 2;
-    const auto corners = static_cast<std::int64_t>(others_.size());
+    const auto corners = static_cast<std::int64_t>(edgeCount_);
     return corners - sides + triangles == (boundaryFaces_ > 0 ? 1 : 2);
   }
 
   Surroundings in_;
   std::span<const VertexStar::Member> star_;
-  KeyTable others_;                                  ///< numbers the edges by their other vertices
-  std::vector<Edge> edges_ = std::vector<Edge>(64);  ///< as many as there are numbers are in use
-  std::vector<Angles> angles_;                       ///< per edge
-  std::vector<EdgeNumbers> numbers_;                 ///< per member of the star
+  KeyTable others_;          ///< numbers the edges by their other vertices
+  std::vector<Edge> edges_;  ///< more than are in use
+  std::size_t edgeCount_ = 0;
+  std::vector<Angles> angles_;        ///< per edge
+  std::vector<EdgeNumbers> numbers_;  ///< per member of the star
   std::int64_t boundaryFaces_ = 0;
   bool anglesNeeded_ = false;
 };
@@ -263,6 +265,7 @@ class StarSorter {
     stars_.cornersSeen += star.size();
     if (!flat_ || !flat_->run(star)) {
       stars_.add(vertex, star);
+      plain_.plane[vertex] = PlainVertices::kDecidedByStar;
       return;
     }
     plain_.special[vertex] = PlainVertices::kFlat;

@@ -75,6 +75,45 @@ struct TetTopology {
   [[nodiscard]] std::uint64_t edgeIndex(Index a, Index b) const noexcept;
 };
 
+/// The corners of a face that two tets share, in both of them.
+class SharedFace {
+ public:
+  SharedFace(const TetTopology& topology, HalfFace here, HalfFace there) noexcept
+      : here_(kTurns[here % 4][0]) {
+    const Tet& mate = topology.tets[tetOf(there)];
+    const Index first = topology.tets[tetOf(here)][here_[0]];
+    // The mate has the corners in reverse order: only the first one is to be found.
+    const auto& turns = kTurns[there % 4];
+    there_ =
+        &turns[3 + (mate[turns[0][1]] == first ? 1U : 0U) + (mate[turns[0][2]] == first ? 2U : 0U)];
+  }
+  [[nodiscard]] std::size_t here(std::size_t k) const noexcept { return here_[k]; }
+  [[nodiscard]] std::size_t there(std::size_t k) const noexcept { return (*there_)[k]; }
+
+ private:
+  using Turn = std::array<std::uint8_t, 3>;
+
+  /// Per face: its corners beginning with each of them, then the same in reverse order.
+  static constexpr std::array<std::array<Turn, 6>, 4> kTurns = [] {
+    std::array<std::array<Turn, 6>, 4> turns{};
+    for (std::size_t face = 0; face < 4; ++face) {
+      for (std::size_t first = 0; first < 3; ++first) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto corner = [face](std::size_t i) {
+            return static_cast<std::uint8_t>(kFaceCorners[face][i % 3]);
+          };
+          turns[face][first][k] = corner(first + k);
+          turns[face][3 + first][k] = corner(first + 3 - k);
+        }
+      }
+    }
+    return turns;
+  }();
+
+  const Turn& here_;
+  const Turn* there_ = nullptr;
+};
+
 /// Builds adjacency through faces; defects are collected. After a defect the result must not be
 /// used. Faces are checked here (non-manifold, inconsistent orientation); that edges and vertices
 /// are manifold is for computeSingularities() to find out.

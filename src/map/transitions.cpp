@@ -1,19 +1,21 @@
 #include <algorithm>
-#include <limits>
 
 #include <base/vector3.hpp>
+#include <map/best_rotation.hpp>
 #include <map/plain_vertices.hpp>
 #include <map/transitions.hpp>
+#include <map/turn.hpp>
 
 namespace hexhex {
 
 namespace {
 
+/// Triangles between asking for a tet and looking at it: the memory's delay, in steps of a loop.
+constexpr std::size_t kPrefetchDistance = 4;
+
 double distance(const Vec3& a, const Vec3& b) {
   return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
 }
-
-double squaredNorm(const Vec3& a) { return dot(a, a); }
 
 /// The three corners of a triangle in the charts of both its tets.
 struct SharedTriangle {
@@ -23,102 +25,83 @@ struct SharedTriangle {
 
 SharedTriangle sharedTriangle(const TetTopology& topology, const LocalParameters& parameters,
                               HalfFace here, HalfFace there) {
+  const SharedFace face(topology, here, there);
   SharedTriangle triangle;
-  const Tet& tet = topology.tets[tetOf(here)];
   for (std::size_t k = 0; k < 3; ++k) {
-    const int corner = kFaceCorners[here % 4][k];
-    triangle.here[k] = parameters(tetOf(here), corner);
-    triangle.there[k] = parameters(
-        tetOf(there), topology.localCorner(tetOf(there), tet[static_cast<std::size_t>(corner)]));
+    triangle.here[k] = parameters.at(tetOf(here), face.here(k));
+    triangle.there[k] = parameters.at(tetOf(there), face.there(k));
   }
   return triangle;
 }
 
-/// How well each of the 24 rotations carries two vectors over: the sum of scalar products of their
-/// images with the ones wanted. A sum of three of nine products, each with either sign.
-std::array<double, Rotation::kCount> agreements(const std::array<Vec3, 2>& vectors,
-                                                const std::array<Vec3, 2>& images) {
-  // towards[d][axis]: what sending this axis to direction d contributes.
-  std::array<Vec3, kDirections> towards{};
-  for (std::size_t d = 0; d < kDirections; ++d) {
-    const double sign = signOf(static_cast<Direction>(d));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      towards[d][axis] = sign * (images[0][d / 2] * vectors[0][axis] +  //
-                                 images[1][d / 2] * vectors[1][axis]);
-    }
-  }
-  std::array<double, Rotation::kCount> sums{};
-  for (std::size_t r = 0; r < sums.size(); ++r) {
-    const Rotation rotation(static_cast<int>(r));
-    sums[r] = towards[rotation(Direction{0})][0] + towards[rotation(Direction{2})][1] +
-              towards[rotation(Direction{4})][2];
-  }
-  return sums;
+Rotation rotationOf(const SharedTriangle& triangle) {
+  return bestRotation(
+      {minus(triangle.here[1], triangle.here[0]), minus(triangle.here[2], triangle.here[0])},
+      {minus(triangle.there[1], triangle.there[0]), minus(triangle.there[2], triangle.there[0])});
 }
 
-/// argmin over the 24 rotations of how badly they carry the triangle's edges over. The squared
-/// error is a constant minus twice the agreement; as the agreement is rounded, it only tells which
-/// rotations need a closer look.
-Rotation bestRotation(const SharedTriangle& triangle) {
-  const Vec3 a = minus(triangle.here[1], triangle.here[0]);
-  const Vec3 b = minus(triangle.here[2], triangle.here[0]);
-  const Vec3 imageA = minus(triangle.there[1], triangle.there[0]);
-  const Vec3 imageB = minus(triangle.there[2], triangle.there[0]);
-  const std::array<double, Rotation::kCount> agreement = agreements({a, b}, {imageA, imageB});
-  const double size = squaredNorm(a) + squaredNorm(b) + squaredNorm(imageA) + squaredNorm(imageB);
-  // Far above rounding (a few 2^-53), far below what tells rotations apart.
-  const double enough = *std::max_element(agreement.begin(), agreement.end()) - 0x1p-40 * size;
-  Rotation best;
-  double bestResidual = std::numeric_limits<double>::infinity();
-  for (std::size_t index = 0; index < agreement.size(); ++index) {
-    if (agreement[index] < enough) continue;
-    const Rotation rotation(static_cast<int>(index));
-    const double residual =
-        squaredNorm(minus(imageA, rotation(a))) + squaredNorm(minus(imageB, rotation(b)));
-    if (residual < bestResidual) {
-      bestResidual = residual;
-      best = rotation;
-    }
+/// What remains when a transition carries corners over.
+double residualOf(const SharedTriangle& triangle, const std::array<Vec3, 3>& images,
+                  const Vec3& translation) {
+  double residual = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    residual = std::max(residual, distance(triangle.there[i], plus(images[i], translation)));
   }
-  return best;
+  return residual;
 }
 
-/// The integer translation that fits best, and what remains.
-Transition fitTranslation(const SharedTriangle& triangle, Rotation rotation, double& residual) {
-  Transition transition{rotation, {}};
+/// The integers nearest to the mean of what is left of the corners after the rotation.
+Vec3 meanTranslation(const SharedTriangle& triangle, const std::array<Vec3, 3>& images) {
   Vec3 mean{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 difference = minus(triangle.there[i], rotation(triangle.here[i]));
+    const Vec3 difference = minus(triangle.there[i], images[i]);
     for (std::size_t k = 0; k < 3; ++k) mean[k] += difference[k] / 3;
   }
-  for (std::size_t k = 0; k < 3; ++k) {
-    transition.translation[k] = static_cast<std::int32_t>(std::nearbyint(mean[k]));
-  }
-  residual = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    residual = std::max(residual, distance(triangle.there[i], transition(triangle.here[i], 1.0)));
-  }
-  return transition;
+  for (double& component : mean) component = nearestInteger(component);
+  return mean;
 }
 
-/// Whether a + b is c, without rounding.
-bool isSum(double a, double b, double c) {
-  const double sum = a + b;
-  const double rounded = sum - a;
-  // What rounding took away (Knuth).
-  const double rest = (a - (sum - rounded)) + (b - rounded);
-  return sum == c && rest == 0;
-}
-
-bool isExact(const SharedTriangle& triangle, const Transition& transition) {
-  bool exact = true;
+/// Whether nothing is rounded when corners are moved by a translation that leaves no residual. If
+/// a + b is not its rounded sum c, then c - a, with a the larger of the two, is a number other than
+/// b, and exact (Dekker).
+bool isExact(const SharedTriangle& triangle, const std::array<Vec3, 3>& images,
+             const Vec3& translation) {
+  double rest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 turned = transition.rotation(triangle.here[i]);
     for (std::size_t k = 0; k < 3; ++k) {
-      exact = exact && isSum(turned[k], transition.translation[k], triangle.there[i][k]);
+      const double sum = triangle.there[i][k];
+      rest += std::abs((sum - images[i][k]) - translation[k]) +
+              std::abs((sum - translation[k]) - images[i][k]);
     }
   }
-  return exact;
+  return rest == 0;
+}
+
+/// The transition with a given rotation, and how well it does.
+struct FittedTransition {
+  Transition transition;
+  double residual = 0;
+  bool isExact = false;
+};
+
+FittedTransition fitTranslation(const SharedTriangle& triangle, Rotation rotation) {
+  std::array<Vec3, 3> images{};
+  for (std::size_t i = 0; i < 3; ++i) images[i] = turned(rotation, triangle.here[i]);
+  Vec3 translation = minus(triangle.there[0], images[0]);
+  for (double& component : translation) component = nearestInteger(component);
+  FittedTransition fitted;
+  fitted.residual = residualOf(triangle, images, translation);
+  // If it fits each corner to within a quarter, it is what the mean is nearest to.
+  if (fitted.residual > 0.25) {
+    translation = meanTranslation(triangle, images);
+    fitted.residual = residualOf(triangle, images, translation);
+  }
+  fitted.isExact = fitted.residual == 0 && isExact(triangle, images, translation);
+  fitted.transition.rotation = rotation;
+  for (std::size_t k = 0; k < 3; ++k) {
+    fitted.transition.translation[k] = static_cast<std::int32_t>(translation[k]);
+  }
+  return fitted;
 }
 
 /// A non-identity transition, found from the side of the smaller tet.
@@ -127,6 +110,13 @@ struct FoundJump {
   Transition transition;
   bool isExact;
 };
+
+Transition inverse(const Transition& transition) {
+  Transition back{inverseOf(transition.rotation), {}};
+  back.translation = turned(back.rotation, transition.translation);
+  for (std::int32_t& component : back.translation) component = -component;
+  return back;
+}
 
 struct BlockResult {
   std::vector<FoundJump> jumps;
@@ -147,15 +137,17 @@ class TransitionFitter {
 
   [[nodiscard]] BlockResult run(std::span<const HalfFace> halfFaces) const {
     BlockResult block;
-    for (const HalfFace here : halfFaces) {
-      const SharedTriangle triangle =
-          sharedTriangle(topology_, parameters_, here, topology_.mate[here]);
-      double residual = 0;
-      const Transition transition = fitTranslation(triangle, rotation(here, triangle), residual);
-      block.maxResidual = std::max(block.maxResidual, residual);
-      if (residual > tolerance_) block.misfits.push_back({here, residual});
-      if (transition.isIdentity()) continue;
-      block.jumps.push_back({here, transition, isExact(triangle, transition)});
+    block.jumps.reserve(halfFaces.size());
+    for (std::size_t i = 0; i < halfFaces.size(); ++i) {
+      const HalfFace here = topology_.mate[halfFaces[i]];  // the smaller one
+      const std::size_t ahead = std::min(i + kPrefetchDistance, halfFaces.size() - 1);
+      parameters_.prefetch(tetOf(topology_.mate[halfFaces[ahead]]));
+      const SharedTriangle triangle = sharedTriangle(topology_, parameters_, here, halfFaces[i]);
+      const FittedTransition fitted = fitTranslation(triangle, rotation(here, triangle));
+      block.maxResidual = std::max(block.maxResidual, fitted.residual);
+      if (fitted.residual > tolerance_) block.misfits.push_back({here, fitted.residual});
+      if (fitted.transition.isIdentity()) continue;
+      block.jumps.push_back({here, fitted.transition, fitted.isExact});
     }
     return block;
   }
@@ -164,7 +156,7 @@ class TransitionFitter {
   [[nodiscard]] Rotation rotation(HalfFace here, const SharedTriangle& triangle) const {
     const int known = rotations_.empty() ? -1 : rotations_[tetOf(here)][here % 4];
     return known >= 0 && known < Rotation::kCount ? rotationFromAlgoHex(known)
-                                                  : bestRotation(triangle);
+                                                  : rotationOf(triangle);
   }
 
   const TetTopology& topology_;
@@ -204,7 +196,7 @@ Transitions computeTransitions(const TetTopology& topology, const LocalParameter
       result.jump[found.halfFace] = index;
       result.jump[topology.mate[found.halfFace]] = index + 1;
       result.table[index] = found.transition;
-      result.table[index + 1] = found.transition.inverse();
+      result.table[index + 1] = inverse(found.transition);
       result.isExact[index] = result.isExact[index + 1] = found.isExact ? 1 : 0;
       index += 2;
     }

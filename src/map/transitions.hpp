@@ -35,6 +35,10 @@ struct Transitions {
   [[nodiscard]] const Transition& across(HalfFace halfFace) const noexcept {
     return table[jump[halfFace]];
   }
+  /// The index in `table` of the inverse: both are neighbours there.
+  [[nodiscard]] static constexpr Index inverse(Index jump) noexcept {
+    return jump == 0 ? 0 : ((jump - 1) ^ 1U) + 1;
+  }
   [[nodiscard]] bool isJump(HalfFace halfFace) const noexcept { return jump[halfFace] != 0; }
 };
 

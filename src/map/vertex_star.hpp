@@ -33,36 +33,45 @@ class VertexStar {
   /// is found: everything, in a manifold.
   /// @param vertex  not isolated
   void collect(const TetTopology& topology, Index vertex) {
-    tets_.clear();
     const Index first = topology.vertexTet[vertex];
-    tets_.insert(first);
-    members_[0] = {cornerAt(topology, first, vertex), {kUnset, kUnset, kUnset}};
-    for (std::size_t head = 0; head < tets_.size(); ++head) {
+    numbers_.clear();
+    KeyTable::Numberer number = numbers_.numberer();
+    Member* members = members_.data();
+    members[0] = {cornerAt(topology, first, vertex), {kUnset, kUnset, kUnset}};
+    Index count = 1 + number(first, 0);
+    for (Index head = 0; head < count; ++head) {
       // Up to three more, and one that is written in vain.
-      if (members_.size() < tets_.size() + 4) members_.resize(2 * members_.size());
+      if (members_.size() < count + 4 || !numbers_.hasRoom(count + 4)) {
+        members_.resize(2 * members_.size());
+        numbers_.makeRoom(members_.size());
+        members = members_.data();
+        number = numbers_.numberer();
+      }
+      const CornerIndex here = members[head].corner;
       for (std::size_t k = 0; k < 3; ++k) {
-        if (members_[head].neighbour[k] != kUnset) continue;
-        const HalfFace mate = topology.mate[members_[head].halfFace(k)];
+        if (members[head].neighbour[k] != kUnset) continue;
+        const HalfFace mate = topology.mate[4 * (here / 4) + kOthers[here % 4][k]];
         // No branch at the boundary: there, a tet stands for its neighbour.
         const bool boundary = mate == kNone;
-        const Index tet = boundary ? members_[head].tet() : tetOf(mate);
-        const std::size_t end = tets_.size();
-        const Index neighbour = tets_.insert(tet);
+        const Index tet = boundary ? here / 4 : tetOf(mate);
+        const Index neighbour = number(tet, count);
         const CornerIndex corner = cornerAt(topology, tet, vertex);
-        members_[end] = {corner, {kUnset, kUnset, kUnset}};
+        members[count] = {corner, {kUnset, kUnset, kUnset}};
         // The same link from the other side, if there is one.
         const HalfFace local = mate % 4;
         const std::size_t back = local - (local > corner % 4 ? 1U : 0U);
-        if (!boundary) members_[neighbour].neighbour[back] = static_cast<Index>(head);
-        members_[head].neighbour[k] = boundary ? kNone : neighbour;
+        if (!boundary) members[neighbour].neighbour[back] = head;
+        members[head].neighbour[k] = boundary ? kNone : neighbour;
+        count += neighbour == count ? 1 : 0;
       }
     }
+    count_ = count;
   }
 
   /// In the order of the walk: each but the first is behind the first face, in the order of members
   /// and their faces, that leads to a member not named before.
   [[nodiscard]] std::span<const Member> members() const noexcept {
-    return {members_.data(), tets_.size()};
+    return {members_.data(), count_};
   }
 
  private:
@@ -72,7 +81,8 @@ class VertexStar {
 
   static constexpr Index kUnset = kNone - 1;  ///< neighbour not looked up yet
 
-  KeyTable tets_;
+  KeyTable numbers_;  ///< of tets
+  std::size_t count_ = 0;
   std::vector<Member> members_ = std::vector<Member>(64);
 };
 

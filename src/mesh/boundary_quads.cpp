@@ -1,6 +1,6 @@
-// Cells come in an order in which neighbours are close, and most neighbours number their corners
-// alike. So within a block of cells, small enough for the cache, the last cell that had a vertex at
-// a certain corner tells most neighbours; a hash table pairs others. What is left of the blocks is
+// Most neighbours number their corners alike, and find each other at once (aligned_cells.hpp). The
+// other faces are paired by a hash table: first within a block of cells, small enough for the
+// cache, as cells come in an order in which neighbours are close. What is left of the blocks is
 // divided into parts by the hash and paired part by part. What is left then are the faces with an
 // odd number of cells, and those with three or more of them, which only broken meshes have, are
 // sorted out in a last look.
@@ -9,11 +9,11 @@
 #include <atomic>
 #include <bit>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include <base/parallel.hpp>
+#include <mesh/aligned_cells.hpp>
 #include <mesh/boundary_quads.hpp>
 #include <mesh/hex_topology.hpp>
 
@@ -78,62 +78,37 @@ bool isSameFace(std::span<const Hex> cells, std::uint64_t a, std::uint64_t b) {
   return here == there;
 }
 
-/// A set of faces of a cell: bit f for row f of kHexFaces.
-using FaceSet = std::uint8_t;
-constexpr FaceSet kAllFaces = 63;
+/// Whether the faces of a cell are known to be another cell's, too; one byte each, so that threads
+/// need not wait for each other. The last two are never set.
+using Marks = std::array<std::uint8_t, 8>;
+constexpr auto kAllShared = std::bit_cast<std::uint64_t>(Marks{1, 1, 1, 1, 1, 1, 0, 0});
 
-/// Pairs faces of neighbours in a block that number their corners alike: the one's face 2 k + 1 is
-/// the other's face 2 k, and each of its corners is in the one what its neighbour along axis k is
-/// in the other. Corner 0 of the other, say, is corner 1, 3, or 4 of the one.
-class AlignedPairs {
- public:
-  /// @param[out] left  per cell of the block: the faces that it found no partner for
-  void run(std::span<const Hex> block, std::array<FaceSet, kCellsPerBlock>& left) {
-    for (std::size_t c = 0; c < block.size(); ++c) {
-      left[c] = kAllFaces;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        std::uint16_t& lastAlong = last_[axis][slotOf(block[c][kAlong[axis]])];
-        const std::size_t before = last_[axis][slotOf(block[c][0])];
-        const std::size_t behind = last_[3][slotOf(block[c][kAlong[axis]])];
-        // What is known of cells is a guess, and may be from the block before.
-        if (before < c) pair(block, left, axis, before, c);
-        if (behind < c) pair(block, left, axis, c, behind);
-        lastAlong = static_cast<std::uint16_t>(c);
-      }
-      last_[3][slotOf(block[c][0])] = static_cast<std::uint16_t>(c);
+/// Marks the faces of neighbours that number their corners alike.
+Array<Marks> markAligned(const HexMesh& mesh, Stage& stage) {
+  const AlignedCells aligned(mesh.points.size(), mesh.cells, stage);
+  Array<Marks> array(mesh.cells.size());
+  const std::span<Marks> marks(array);
+  parallelBlocks(stage, marks.size(), kGrain,
+                 [marks](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::fill(marks.begin() + static_cast<std::ptrdiff_t>(begin),
+                             marks.begin() + static_cast<std::ptrdiff_t>(end), Marks{});
+                 });
+  const auto mark = [marks](std::size_t cell, std::size_t face) {
+    std::atomic_ref(marks[cell][face]).store(1, std::memory_order_relaxed);
+  };
+  const auto markPairs = [&mark](std::size_t c, const std::array<Index, 3>& behind) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (behind[axis] == kNone) continue;
+      mark(c, 2 * axis + 1);
+      mark(behind[axis], 2 * axis);
     }
-  }
-
- private:
-  // Vertices of neighbours have numbers close to each other; others seldom meet here.
-  static constexpr std::size_t kSlots = std::size_t{1} << 14;
-  static_assert(kCellsPerBlock <= std::size_t{1} << 16);
-  /// The corner next to corner 0 along each axis.
-  static constexpr std::array<std::size_t, 3> kAlong = {1, 3, 4};
-  /// The corners of the faces 0, 2 and 4, and those of the faces 1, 3 and 5 across from them.
-  static constexpr std::array<std::array<std::array<std::uint8_t, 2>, 4>, 3> kAcross = {
-      {{{{0, 1}, {3, 2}, {7, 6}, {4, 5}}},
-       {{{0, 3}, {1, 2}, {5, 6}, {4, 7}}},
-       {{{0, 4}, {1, 5}, {2, 6}, {3, 7}}}}};
-
-  static std::size_t slotOf(Index vertex) { return vertex % kSlots; }
-
-  /// Pairs two faces if they are one, and neither has a partner yet.
-  static void pair(std::span<const Hex> block, std::array<FaceSet, kCellsPerBlock>& left,
-                   std::size_t axis, std::size_t before, std::size_t behind) {
-    for (const auto& [here, there] : kAcross[axis]) {
-      if (block[behind][here] != block[before][there]) return;
-    }
-    const auto first = static_cast<FaceSet>(2U << (2 * axis));
-    const auto second = static_cast<FaceSet>(1U << (2 * axis));
-    if ((left[before] & first) == 0 || (left[behind] & second) == 0) return;
-    left[before] = static_cast<FaceSet>(left[before] & ~first);
-    left[behind] = static_cast<FaceSet>(left[behind] & ~second);
-  }
-
-  /// By vertex: the last cell that had it at corner 1, 3, 4, or 0.
-  std::array<std::array<std::uint16_t, kSlots>, 4> last_{};
-};
+  };
+  parallelBlocks(stage, marks.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   aligned.forEach(begin, end, markPairs);
+                 });
+  return array;
+}
 
 /// The faces of one block of cells, with open addressing; knows for each face whether it was added
 /// an odd number of times.
@@ -141,14 +116,14 @@ class BlockTable {
  public:
   BlockTable() : slots_(kSlots, kFree) { used_.reserve(kSlots); }
 
-  /// @param block  its cells
-  /// @param faces  per cell: which ones to add
-  void add(std::span<const Hex> block, const std::array<FaceSet, kCellsPerBlock>& faces) {
+  /// Adds what is not marked.
+  /// @param block  its cells, with their marks
+  void add(std::span<const Hex> block, std::span<const Marks> marks) {
     for (std::size_t c = 0; c < block.size(); ++c) {
-      if (faces[c] == 0) continue;
+      if (std::bit_cast<std::uint64_t>(marks[c]) == kAllShared) continue;
       const std::array<std::uint64_t, 6> keys = keysOf(block[c]);
       for (std::size_t f = 0; f < 6; ++f) {
-        if ((faces[c] >> f & 1U) != 0) add(block, keys[f], 8 * c + f);
+        if (marks[c][f] == 0) add(block, keys[f], 8 * c + f);
       }
     }
   }
@@ -231,21 +206,14 @@ struct Remains {
   std::array<std::uint64_t, kParts> begins{};  ///< counts by part; later where each part goes
 };
 
-/// What pairing within blocks takes, for one block after the other.
-struct BlockPairing {
-  AlignedPairs aligned;
-  std::array<FaceSet, kCellsPerBlock> left{};
-  BlockTable table;
-};
-
-Remains pairWithinBlocks(const HexMesh& mesh, std::size_t begin, std::size_t end) {
+Remains pairWithinBlocks(std::span<const Hex> cells, std::span<const Marks> marks,
+                         std::size_t begin, std::size_t end) {
   Remains remains;
-  const auto pairing = std::make_unique<BlockPairing>();  // too large for the stack of a thread
+  BlockTable table;
   for (std::size_t first = begin; first < end; first += kCellsPerBlock) {
-    const auto block = std::span(mesh.cells).subspan(first, std::min(kCellsPerBlock, end - first));
-    pairing->aligned.run(block, pairing->left);
-    pairing->table.add(block, pairing->left);
-    pairing->table.takeOdd([&remains, first](const Side& side) {
+    const std::size_t count = std::min(kCellsPerBlock, end - first);
+    table.add(cells.subspan(first, count), marks.subspan(first, count));
+    table.takeOdd([&remains, first](const Side& side) {
       remains.sides.push_back({side.key, 8 * first + side.place});
       ++remains.begins[partOf(side.key)];
     });
@@ -292,9 +260,10 @@ using OddSides = std::array<std::vector<Side>, kParts>;
 OddSides findOddSides(const HexMesh& mesh, Stage& stage) {
   constexpr std::size_t kCellsPerTask = kCellsPerBlock * kBlocksPerTask;
   std::vector<Remains> tasks(blockCount(mesh.cells.size(), kCellsPerTask));
+  const Array<Marks> marks = markAligned(mesh, stage);
   parallelBlocks(stage, mesh.cells.size(), kCellsPerTask,
                  [&](std::size_t begin, std::size_t end, std::size_t task) {
-                   tasks[task] = pairWithinBlocks(mesh, begin, end);
+                   tasks[task] = pairWithinBlocks(mesh.cells, marks, begin, end);
                  });
   Parts parts = gather(tasks, stage);
   OddSides odd;
@@ -332,9 +301,11 @@ class CellCounter {
 
  private:
   void addCell(std::size_t c) {
-    unsigned corners = 0;
-    for (const Index v : cells_[c]) corners += isCorner_[v];
-    if (corners < 4) return;
+    // Each face has two of these four corners.
+    const Hex& cell = cells_[c];
+    if (isCorner_[cell[0]] + isCorner_[cell[2]] + isCorner_[cell[5]] + isCorner_[cell[7]] < 2) {
+      return;
+    }
     const std::array<std::uint64_t, 6> keys = keysOf(cells_[c]);
     for (std::size_t f = 0; f < 6; ++f) {
       const Quad quad = faceVertices(cells_[c], f);

@@ -1,12 +1,15 @@
 // Transitions between charts: they carry parameters over, and are inverse to each other.
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <hexhex/check.hpp>
 
+#include <base/vector3.hpp>
+#include <map/best_rotation.hpp>
 #include <map/transitions.hpp>
 
 #include "map_samples.hpp"
@@ -152,6 +155,67 @@ TEST(Transitions, RandomChartsJumpNearlyEverywhere) {
   const Prepared prepared(map);
   const Transitions& transitions = prepared.transitions();
   EXPECT_GT(transitions.jumps * 100, transitions.innerFaces * 99);
+}
+
+/// Whether a + b is c without rounding: 80 bits hold the sum of what samples consist of.
+bool isExactSum(double a, double b, double c) {
+  static_assert(std::numeric_limits<long double>::digits >= 64);
+  return static_cast<long double>(a) + static_cast<long double>(b) == static_cast<long double>(c);
+}
+
+TEST(Transitions, AreTheBestRotationAndTheMeanTranslation) {
+  // Noise below and above what can be seen without the mean; exact charts, and far away ones.
+  for (const double noise : {0.0, 1e-9, 1e-3, 0.2, 0.6}) {
+    SampleOptions options;
+    options.refine = 2;
+    options.jitter = 0.3;
+    options.charts = ChartStyle::Random;
+    TetMap map = generateSample(SampleKind::Cylinder, options).map;
+    std::uint64_t seed = 1;
+    for (TetParameters& u : map.parameters) {
+      for (Vec3& corner : u) {
+        for (double& x : corner) {
+          seed = seed * 6364136223846793005U + 1442695040888963407U;
+          x += noise * (static_cast<double>(seed >> 40) * 0x1p-24 - 0.5);
+        }
+      }
+    }
+    const Prepared prepared(map, 0.2);
+    const TetTopology& topology = prepared.topology();
+    const Transitions& transitions = prepared.transitions();
+    const LocalParameters parameters(prepared.map().input);
+    if (transitions.jump.empty()) continue;  // a defect of the mesh in the map
+    for (HalfFace here = 0; here < topology.mate.size(); ++here) {
+      const HalfFace there = topology.mate[here];
+      if (there == kNone || there < here) continue;
+      const SharedFace face(topology, here, there);
+      std::array<Vec3, 3> u{};
+      std::array<Vec3, 3> v{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        ASSERT_EQ(topology.tets[tetOf(here)][face.here(k)],
+                  topology.tets[tetOf(there)][face.there(k)]);
+        u[k] = parameters.at(tetOf(here), face.here(k));
+        v[k] = parameters.at(tetOf(there), face.there(k));
+      }
+      const Rotation rotation = bestRotationOfAll({minus(u[1], u[0]), minus(u[2], u[0])},
+                                                  {minus(v[1], v[0]), minus(v[2], v[0])});
+      ASSERT_EQ(transitions.across(here).rotation, rotation);
+      bool isExact = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        double mean = 0;
+        for (std::size_t i = 0; i < 3; ++i) mean += (v[i][k] - rotation(u[i])[k]) / 3;
+        ASSERT_EQ(transitions.across(here).translation[k], std::nearbyint(mean));
+        for (std::size_t i = 0; i < 3; ++i) {
+          isExact &= isExactSum(rotation(u[i])[k], std::nearbyint(mean), v[i][k]);
+        }
+      }
+      const Index jump = transitions.jump[here];
+      if (jump != 0) {
+        ASSERT_EQ(transitions.isExact[jump] != 0, isExact);
+      }
+      ASSERT_EQ(transitions.jump[there], Transitions::inverse(jump));
+    }
+  }
 }
 
 TEST(Transitions, ResidualAboveTheToleranceIsReported) {

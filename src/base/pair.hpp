@@ -1,0 +1,20 @@
+// Two doubles that are worked with at once. Each behaves as it would alone.
+#pragma once
+
+#include <cstdint>
+
+namespace hexhex {
+
+using Pair = double __attribute__((vector_size(16)));
+/// One truth value for each: 0 or -1.
+using PairMask = std::int64_t __attribute__((vector_size(16)));
+
+[[nodiscard]] inline Pair magnitudeOf(Pair x) noexcept {
+  constexpr std::int64_t kAllButSign = 0x7fffffffffffffff;
+  return reinterpret_cast<Pair>(reinterpret_cast<PairMask>(x) & PairMask{kAllButSign, kAllButSign});
+}
+
+/// As std::max.
+[[nodiscard]] inline Pair larger(Pair a, Pair b) noexcept { return a < b ? b : a; }
+
+}  // namespace hexhex
