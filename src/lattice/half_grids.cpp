@@ -94,8 +94,7 @@ HalfGridSearch::HalfGridSearch(HalfGridSet wanted) : wanted_(wanted), places_(51
         grid |= static_cast<unsigned>((axes[k] + at) & 1U) << k;
       }
       Places& places = places_[key];
-      // The largest boxes hold all points of a set of all grids: one more than there is room for.
-      if (inBox && ((wanted >> grid) & 1U) != 0 && places.count < places.places.size()) {
+      if (inBox && ((wanted >> grid) & 1U) != 0) {
         places.places[places.count++] = static_cast<std::uint8_t>(place);
       }
     }

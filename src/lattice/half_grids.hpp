@@ -40,7 +40,7 @@ class HalfGridSearch {
   /// Places in a box, relative to its first point: two bits per axis.
   struct Places {
     std::uint8_t count = 0;
-    std::array<std::uint8_t, 63> places{};
+    std::array<std::uint8_t, kSide * kSide * kSide> places{};
   };
   /// The wanted points of a box.
   /// @param first  its first point, in halves

@@ -1,0 +1,144 @@
+// Walks of hex edges through the interiors of faces, step by step against exact arithmetic.
+#include <cmath>
+
+#include <curved/element_numbers.hpp>
+#include <curved/face_walk.hpp>
+#include <curved/simplex_point.hpp>
+#include <gtest/gtest.h>
+
+#include <base/stage.hpp>
+#include <map/defects.hpp>
+
+#include "curved/curved_maps.hpp"
+
+namespace hexhex::test {
+
+namespace {
+
+/// What occurred: tests that miss a case say nothing.
+struct Counts {
+  int steps = 0;      ///< points of walks
+  int certain = 0;    ///< certainly before the end of the edge
+  int uncertain = 0;  ///< others
+  int refused = 0;    ///< tets that are not left through the interior of a face
+};
+
+class Walker {
+ public:
+  Walker(const PreparedMap& map, Counts& counts) : map_(map), walk_(map), counts_(counts) {}
+
+  /// Walks from a midpoint to the boundary or to where the walk ends, at most a few tets beyond the
+  /// end of the edge.
+  void walk(const SimplexInTet& middle, Way way) {
+    SimplexInTet at = middle;
+    const LatticeTet ahead = see(middle);
+    if (way == Way::Backward) at.frame = middle.frame.reversed();
+    bool walks = walk_.start(at, ahead, EdgeSides(ahead), way);
+    for (int i = 0; i < 6; ++i) {
+      const LatticeTet seen = see(at);
+      const SimplexPoint expected = exitPoint(seen, kWholeTet, 0);
+      if (!walks) {
+        ++counts_.refused;
+        // After the start, refusals mean that the exit is no inner point of a face.
+        if (i > 0) {
+          ASSERT_NE(dimension(expected.simplex()), 2);
+        }
+        return;
+      }
+      ASSERT_EQ(dimension(expected.simplex()), 2);
+      ASSERT_NO_FATAL_FAILURE(compare(at.tet, seen, expected));
+      const int face = oppositeCorner(expected.simplex());
+      const HalfFace mate = map_.topology.mate[halfFaceOf(at.tet, face)];
+      ASSERT_EQ(walk_.cross(at), mate != kNone);
+      if (mate == kNone) return;
+      ASSERT_EQ(at.tet, tetOf(mate));
+      walks = walk_.leave(at);
+    }
+  }
+
+ private:
+  [[nodiscard]] LatticeTet see(const SimplexInTet& at) const {
+    return at.frame.see(map_.exact.corners[at.tet], map_.exact.unit);
+  }
+
+  void compare(Index tet, const LatticeTet& seen, const SimplexPoint& expected) {
+    ++counts_.steps;
+    const ArcExit exit = walk_.exit(tet);
+    const OwnedSimplex owned = ownedBy(map_.topology, tet, expected.simplex());
+    ASSERT_EQ(exit.generator.tet, owned.tet);
+    ASSERT_EQ(exit.generator.corners, owned.corners);
+    const auto shares = expected.normalized();
+    const double parameter = coordinate(shares, seen, 0) / static_cast<double>(map_.exact.unit);
+    ASSERT_NEAR(exit.parameter, parameter, 1e-12);
+    const Vec3 point = position(shares, map_.topology.tets[tet], map_.input.view.points);
+    for (std::size_t k = 0; k < 3; ++k) ASSERT_NEAR(exit.point[k], point[k], 1e-12);
+    if (walk_.certainlyGoesOn()) {
+      ++counts_.certain;
+      ASSERT_LT(expected.compare(seen, 0, map_.exact.unit), 0);
+    } else {
+      ++counts_.uncertain;
+      ASSERT_GT(exit.parameter, 1 - 1e-12);
+    }
+  }
+
+  const PreparedMap& map_;
+  FaceWalk walk_;
+  Counts& counts_;
+};
+
+TEST(FaceWalk, GoesWhereExactArithmeticGoes) {
+  Counts counts;
+  for (const SampleOptions& options : curvedOptions()) {
+    const TetMap map = generateSample(SampleKind::Sphere, options).map;
+    Context context(1);
+    DefectCollector defects;
+    const PreparedMap prepared = prepareMap(map, 1e-3, 1, context, defects);
+    defects.throwIfAny();
+    Stage stage(context, "numbers");
+    const ElementNumbers edges(prepared, ElementKind::Edges, stage);
+    Walker walker(prepared, counts);
+    for (std::size_t t = 0; t < prepared.topology.tetCount(); ++t) {
+      const auto tet = static_cast<Index>(t);
+      edges.forEach(tet, [&](const Element& edge) {
+        if (edge.simplex != kWholeTet) return;
+        const SimplexInTet middle{tet, kWholeTet, Frame::along(edge.z, edge.axis)};
+        for (const Way way : {Way::Forward, Way::Backward}) walker.walk(middle, way);
+      });
+      if (HasFatalFailure()) return;
+    }
+  }
+  EXPECT_GT(counts.steps, 1000);
+  EXPECT_GT(counts.certain, 0);
+  EXPECT_GT(counts.uncertain, 0);
+  EXPECT_GT(counts.refused, 0);
+}
+
+/// Edges that end in a face: the point in it is at their end, and nothing rounded may tell.
+TEST(FaceWalk, NeverCertainAtTheEnd) {
+  const TetMap map = generateSample(SampleKind::Box, {}).map;
+  Context context(1);
+  DefectCollector defects;
+  PreparedMap prepared = prepareMap(map, 1e-3, 1, context, defects);
+  defects.throwIfAny();
+  const std::int64_t unit = prepared.exact.unit;
+  // The first tet, with a face across the edge at its end, or close to that.
+  const LatticePoint apex = {-3 * unit, 0, 0};
+  for (const std::int64_t beyond : {-1000, -1, 0, 1, 1000}) {
+    LatticeTet& tet = prepared.exact.corners[0];
+    const std::int64_t end = unit + beyond;
+    tet = {apex, {end, -unit, -unit}, {end, 2 * unit, -unit / 3}, {end, -unit / 5, 3 * unit}};
+    ASSERT_GT(orientation(tet[0], tet[1], tet[2], tet[3]), 0);
+    const SimplexInTet middle{0, kWholeTet, Frame::along({0, 0, 0}, 0)};
+    tet[0][1] = 1;  // beside the edge
+    FaceWalk walk(prepared);
+    const LatticeTet seen = middle.frame.see(tet, unit);
+    ASSERT_TRUE(walk.start(middle, seen, EdgeSides(seen)));
+    EXPECT_NEAR(walk.exit(0).parameter, 1, 1e-3);
+    if (beyond >= 0) {
+      EXPECT_FALSE(walk.certainlyGoesOn());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hexhex::test
