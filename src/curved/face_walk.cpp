@@ -4,6 +4,8 @@
 #include <curved/face_walk.hpp>
 #include <curved/simplex_point.hpp>
 
+#include <base/prefetch.hpp>
+
 namespace hexhex {
 
 namespace {
@@ -140,10 +142,10 @@ void FaceWalk::leaveThrough(Index tet, int face) noexcept {
   const HalfFace own = halfFaceOf(tet, face);
   mate_ = topology_.mate[own];
   const HalfFace next = mate_ == kNone ? own : mate_;
-  __builtin_prefetch(&exact_.transitions.jump[own]);
-  __builtin_prefetch(exact_.corners[tetOf(next)][static_cast<std::size_t>(localOf(next))].data());
-  __builtin_prefetch(topology_.tets[tetOf(next)].data());
-  __builtin_prefetch(&topology_.mate[halfFaceOf(tetOf(next), 0)]);
+  prefetch(&exact_.transitions.jump[own]);
+  prefetch(exact_.corners[tetOf(next)][static_cast<std::size_t>(localOf(next))].data());
+  prefetch(topology_.tets[tetOf(next)].data());
+  prefetch(&topology_.mate[halfFaceOf(tetOf(next), 0)]);
 }
 
 void FaceWalk::look(const Frame& frame) noexcept {

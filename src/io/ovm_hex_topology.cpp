@@ -14,11 +14,12 @@
 #include <atomic>
 #include <bit>
 #include <cstdint>
-#include <limits>
+#include <type_traits>
 #include <utility>
 
 #include <base/parallel.hpp>
 #include <base/prefetch.hpp>
+#include <io/edge_rows.hpp>
 #include <io/ovm_cells.hpp>
 #include <io/ovm_hex_topology.hpp>
 #include <io/ovm_topology.hpp>
@@ -31,96 +32,6 @@ constexpr std::size_t kGrain = 2048;
 /// What a cell will ask for is fetched so many cells before: vertices and neighbours may be far
 /// from each other in memory.
 constexpr std::size_t kAhead = 16;
-
-constexpr std::size_t kPlaces = 8;
-/// Larger vertices that edges lead to, in ascending order. Signed, since processors compare such
-/// numbers at once.
-using Row = std::array<std::int32_t, kPlaces>;
-constexpr std::int32_t kFree = std::numeric_limits<std::int32_t>::max();
-
-/// The same while threads fill it: two places in each word, so that a look takes few steps.
-using Words = std::array<std::uint64_t, kPlaces / 2>;
-constexpr std::uint64_t kBothPlaces = 0x0000000100000001U;
-constexpr std::uint64_t kFreeWord = kFree * kBothPlaces;
-
-/// Puts a vertex into a row unless it is there. Places are filled in order, each only once, so
-/// that threads with the same vertex meet.
-/// @param alone  no other thread is at work, so that nothing has to be exchanged at once, which
-///               takes a processor much longer
-/// @return false if there is no place
-bool insert(Words& words, std::uint64_t vertex, bool alone) {
-  constexpr std::uint64_t kSigns = 0x80000000U * kBothPlaces;
-  for (std::uint64_t& places : words) {
-    const std::atomic_ref word(places);
-    std::uint64_t before = word.load(std::memory_order_relaxed);
-    for (;;) {
-      // No number has a sign, so that one appears where 1 is taken from a place that is equal.
-      const std::uint64_t equal = (before ^ (vertex * kBothPlaces)) - kBothPlaces;
-      if ((equal & kSigns) != 0) return true;
-      if (before >> 32U != kFree) break;
-      const unsigned shift = (before & kFree) == kFree ? 0 : 32;
-      const std::uint64_t after = before ^ ((kFree ^ vertex) << shift);
-      if (alone) {
-        word.store(after, std::memory_order_relaxed);
-        return true;
-      }
-      if (word.compare_exchange_weak(before, after, std::memory_order_relaxed)) return true;
-    }
-  }
-  return false;
-}
-
-/// A row that is filled.
-Row sorted(const Words& words) {
-  Row row;
-  for (std::size_t i = 0; i < kPlaces; ++i) {
-    row[i] = static_cast<std::int32_t>(words[i / 2] >> (32 * (i % 2)) & kFree);
-  }
-  // Few places are taken, so that this is quick: most rows have no more than four.
-  const auto order = [&row](std::size_t i, std::size_t k) {
-    const std::int32_t a = row[i];
-    const std::int32_t b = row[k];
-    row[i] = std::min(a, b);
-    row[k] = std::max(a, b);
-  };
-  order(0, 1);
-  order(2, 3);
-  order(0, 2);
-  order(1, 3);
-  order(1, 2);
-  for (std::size_t i = 4; i < kPlaces && row[i] != kFree; ++i) {
-    for (std::size_t k = i; k > 0 && row[k] < row[k - 1]; --k) std::swap(row[k], row[k - 1]);
-  }
-  return row;
-}
-
-/// Two places of a row, the first one smaller.
-struct PlacePair {
-  std::uint8_t first = 0;
-  std::uint8_t second = 0;
-};
-constexpr std::size_t kPairs = kPlaces * (kPlaces - 1) / 2;
-
-constexpr std::array<PlacePair, kPairs> makePairs() {
-  std::array<PlacePair, kPairs> pairs;
-  std::size_t next = 0;
-  for (std::uint8_t i = 0; i < kPlaces; ++i) {
-    for (std::uint8_t j = i + 1; j < kPlaces; ++j) pairs[next++] = {i, j};
-  }
-  return pairs;
-}
-constexpr std::array<PlacePair, kPairs> kPairOf = makePairs();
-
-/// The number of a pair, with its places in either order.
-constexpr std::array<std::uint8_t, kPlaces * kPlaces> makePairNumbers() {
-  std::array<std::uint8_t, kPlaces * kPlaces> numbers{};
-  for (std::uint8_t pair = 0; pair < kPairs; ++pair) {
-    const PlacePair& p = kPairOf[pair];
-    numbers[p.first * kPlaces + p.second] = numbers[p.second * kPlaces + p.first] = pair;
-  }
-  return numbers;
-}
-constexpr std::array<std::uint8_t, kPlaces* kPlaces> kPairNumbers = makePairNumbers();
 
 // How a side names its face: the pair, whether it passes the second edge's vertex first, and which
 // of its corners is the smallest one.
@@ -162,13 +73,6 @@ constexpr std::uint8_t kTaken = 4;
 constexpr std::uint8_t kFirstSide = 8;
 constexpr std::uint8_t kBeginMask = 3;
 
-/// std::popcount() without a processor's instruction for it would be a call.
-unsigned countBits(std::uint32_t bits) {
-  bits -= (bits >> 1U) & 0x55555555U;
-  bits = (bits & 0x33333333U) + ((bits >> 2U) & 0x33333333U);
-  return ((bits + (bits >> 4U)) & 0x0f0f0f0fU) * 0x01010101U >> 24U;
-}
-
 /// A corner of a side.
 Index cornerOf(const Hex& cell, std::size_t slot, std::size_t i) {
   return cell[kOvmHexFaces[slot][i % 4]];
@@ -185,18 +89,10 @@ std::size_t beginOf(const Hex& cell) {
   return std::min(c, d) < std::min(a, b) ? (d < c ? 3 : 2) : (b < a ? 1 : 0);
 }
 
-/// The place of a vertex that a row has: how many entries are smaller.
-unsigned placeIn(const Row& row, Index vertex) {
-  const auto wanted = static_cast<std::int32_t>(vertex);
-  std::int32_t smaller = 0;
-  for (const std::int32_t end : row) smaller += end < wanted ? 1 : 0;
-  return static_cast<unsigned>(smaller);
-}
-
 /// What a vertex knows of its edges to larger vertices and of the faces whose smallest vertex it
 /// is. Together, as they are asked for together, and vertices may be far from each other in memory.
 struct Star {
-  Words words;          ///< at last, a row as it is in memory
+  RowWords words;       ///< at last, a row as it is in memory
   std::uint32_t faces;  ///< a bit for each pair that is a face
   std::uint32_t twice;  ///< those of them of which two cells tell
   Index firstEdge;
@@ -230,7 +126,9 @@ class HexTopologyBuilder {
   void findNeighbours();
   bool collectEdges();
   bool addEdges(std::size_t c);
-  [[nodiscard]] static Row rowOf(const Star& star) { return std::bit_cast<Row>(star.words); }
+  [[nodiscard]] static EdgeRow rowOf(const Star& star) {
+    return std::bit_cast<EdgeRow>(star.words);
+  }
   template <class Count, class Assign>
   [[nodiscard]] std::uint64_t number(const Count& count, const Assign& assign);
   bool numberEdges();
@@ -297,7 +195,7 @@ void HexTopologyBuilder::findNeighbours() {
 bool HexTopologyBuilder::collectEdges() {
   stars_.resize(topology_.vertexCount);
   parallelFor(stage_, stars_.size(), kGrain, [stars = stars_.data()](std::size_t v) {
-    stars[v].words.fill(kFreeWord);
+    stars[v].words.fill(kFreeRowWord);
     stars[v].faces = stars[v].twice = 0;
   });
   std::atomic<bool> fits{true};
@@ -325,7 +223,8 @@ bool HexTopologyBuilder::addEdges(std::size_t c) {
   const Hex& cell = cells_[c];
   bool good = !hasVertexTwice(cell);
   const auto add = [&](std::size_t i, std::size_t j) {
-    good = insert(stars_[std::min(cell[i], cell[j])].words, std::max(cell[i], cell[j]), alone_) &&
+    good = insertIntoRow(stars_[std::min(cell[i], cell[j])].words, std::max(cell[i], cell[j]),
+                         alone_) &&
            good;
   };
   add(0, 1);
@@ -387,19 +286,19 @@ std::uint64_t HexTopologyBuilder::number(const Count& count, const Assign& assig
 /// Sorts rows, and lists their edges.
 bool HexTopologyBuilder::numberEdges() {
   // More than there are; what is not used is not touched.
-  topology_.edges.resize(std::min(kPlaces * stars_.size(), 12 * cells_.size()));
+  topology_.edges.resize(std::min(kRowPlaces * stars_.size(), 12 * cells_.size()));
   const std::uint64_t edges = number(
       [](Star& star) {
-        const Row row = sorted(star.words);
-        star.words = std::bit_cast<Words>(row);
-        return static_cast<std::uint64_t>(
-            std::count_if(row.begin(), row.end(), [](std::int32_t end) { return end != kFree; }));
+        const EdgeRow row = sortedRow(star.words);
+        star.words = std::bit_cast<RowWords>(row);
+        return static_cast<std::uint64_t>(std::count_if(
+            row.begin(), row.end(), [](std::int32_t end) { return end != kFreePlace; }));
       },
       [this](Star& star, Index vertex, std::uint64_t first) {
         star.firstEdge = static_cast<Index>(first);
         std::array<Index, 2>* edge = topology_.edges.data() + first;
         for (const std::int32_t end : rowOf(star)) {
-          if (end == kFree) break;
+          if (end == kFreePlace) break;
           *edge++ = {vertex, static_cast<Index>(end)};
         }
       });
@@ -410,7 +309,7 @@ bool HexTopologyBuilder::numberEdges() {
 
 Index HexTopologyBuilder::halfEdge(Index from, Index to) const {
   const Star& low = stars_[std::min(from, to)];
-  return 2 * (low.firstEdge + placeIn(rowOf(low), std::max(from, to))) + (from < to ? 0U : 1U);
+  return 2 * (low.firstEdge + placeInRow(rowOf(low), std::max(from, to))) + (from < to ? 0U : 1U);
 }
 
 void HexTopologyBuilder::findNearEdges() {
@@ -500,7 +399,7 @@ void HexTopologyBuilder::collectFace(std::size_t c) {
   Star& star = stars_[cornerOf(cells_[c], slot, begin)];
   const Index next = loop[begin] / 2 - star.firstEdge;
   const Index previous = loop[(begin + 3) % 4] / 2 - star.firstEdge;
-  const unsigned pair = kPairNumbers[next * kPlaces + previous];
+  const unsigned pair = kRowPairNumbers[next * kRowPlaces + previous];
   sides_[6 * c + slot] = static_cast<std::uint8_t>(pair | (next < previous ? 0U : kBackwards) |
                                                    (begin << kBeginShift));
   const std::uint32_t bit = std::uint32_t{1} << pair;

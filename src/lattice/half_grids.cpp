@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 
+#include <base/pair.hpp>
 #include <lattice/half_grids.hpp>
 
 namespace hexhex {
@@ -9,9 +10,6 @@ namespace hexhex {
 namespace {
 
 using Four = std::array<double, 4>;
-
-/// Two numbers that one instruction works on.
-using Pair = double __attribute__((vector_size(16)));
 
 /// Coordinates of a tet's corners from a grid point near corner 0, in halves, by axis.
 struct NearCorners {
