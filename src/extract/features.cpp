@@ -266,26 +266,26 @@ void tagEdgesAndQuads(const TetMapView& given, const PreparedMap& prepared, cons
   const std::size_t tets = prepared.topology.tetCount();
   std::vector<std::vector<Seen::Edge>> edges(blockCount(tets, kSweepBlock));
   std::vector<std::vector<FeatureQuad>> quads(edges.size());
-  parallelBlocks(
-      stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t block) {
-        CellViewer viewer(given, prepared, mesh, edgeTags, faceTags, marks);
-        Seen seen;
-        for (std::size_t t = begin; t < end; ++t) {
-          const auto tet = static_cast<Index>(t);
-          std::uint64_t cell = seeds.begin[t];
-          if (cell == seeds.begin[t + 1]) continue;
-          const TetSweep sweep(prepared.exact, tet, SweptGrid::Centers);
-          CenterOwner owner(prepared.topology, tet);
-          for (const SweptLine& line : seeds.lines->of(tet)) {
-            const auto [first, count] = owner.owned(line);
-            for (std::uint32_t i = first; i < first + count; ++i) {
-              viewer.view(mesh.cells[cell++], tet, line.point(i), line.simplex(i), seen);
-            }
-          }
-        }
-        edges[block] = std::move(seen.edges);
-        quads[block] = std::move(seen.quads);
-      });
+  parallelBlocks(stage, tets, kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   CellViewer viewer(given, prepared, mesh, edgeTags, faceTags, marks);
+                   Seen seen;
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     std::uint64_t cell = seeds.begin[t];
+                     if (cell == seeds.begin[t + 1]) continue;
+                     const TetSweep sweep(prepared.exact, tet, SweptGrid::Centers);
+                     CenterOwner owner(prepared.topology, tet);
+                     for (const SweptLine& line : seeds.lines->of(tet)) {
+                       const auto [first, count] = owner.owned(line);
+                       for (std::uint32_t i = first; i < first + count; ++i) {
+                         viewer.view(mesh.cells[cell++], tet, line.point(i), line.simplex(i), seen);
+                       }
+                     }
+                   }
+                   edges[block] = std::move(seen.edges);
+                   quads[block] = std::move(seen.quads);
+                 });
   mesh.features.edges = uniqueEdges(joined(edges));
   mesh.features.quads = uniqueQuads(joined(quads));
 }

@@ -11,7 +11,7 @@ namespace hexhex {
 namespace {
 
 /// Triangles between asking for a tet and looking at it: the memory's delay, in steps of a loop.
-constexpr std::size_t kPrefetchDistance = 4;
+constexpr std::size_t kFacesAhead = 4;
 
 double distance(const Vec3& a, const Vec3& b) {
   return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
@@ -140,7 +140,7 @@ class TransitionFitter {
     block.jumps.reserve(halfFaces.size());
     for (std::size_t i = 0; i < halfFaces.size(); ++i) {
       const HalfFace here = topology_.mate[halfFaces[i]];  // the smaller one
-      const std::size_t ahead = std::min(i + kPrefetchDistance, halfFaces.size() - 1);
+      const std::size_t ahead = std::min(i + kFacesAhead, halfFaces.size() - 1);
       parameters_.prefetch(tetOf(topology_.mate[halfFaces[ahead]]));
       const SharedTriangle triangle = sharedTriangle(topology_, parameters_, here, halfFaces[i]);
       const FittedTransition fitted = fitTranslation(triangle, rotation(here, triangle));
