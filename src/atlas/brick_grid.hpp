@@ -119,13 +119,6 @@ class BrickGrid {
     return brick;
   }
 
-  /// Calls visit(Brick&) for all bricks, in no particular order.
-  template <class Visit>
-  void forEachBrick(const Visit& visit) {
-    for (Brick<Id>& brick : bricks_) visit(brick);
-    for (Brick<Id>& brick : added_) visit(brick);
-  }
-
  private:
   struct Slot {
     BrickKey key;

@@ -39,19 +39,6 @@ struct Gauge {
     return image;
   }
 
-  /// The cell in the tet's chart whose image is cell c: cell(inverseCell(c)) = c, for places that
-  /// the tet's chart can reach.
-  [[nodiscard]] constexpr GridPoint inverseCell(ChartPoint c) const noexcept {
-    for (std::uint8_t axis = 0; axis < 3; ++axis) {
-      const Direction d = rotation(direction(axis, 1));
-      if (signOf(d) < 0) ++c[static_cast<std::size_t>(axisOf(d))];
-    }
-    for (std::size_t k = 0; k < 3; ++k) c[k] -= translation[k];
-    const ChartPoint z = rotation.inverse()(c);
-    return {static_cast<std::int32_t>(z[0]), static_cast<std::int32_t>(z[1]),
-            static_cast<std::int32_t>(z[2])};
-  }
-
   /// (gauge * transition)(u) = gauge(transition(u)).
   friend constexpr Gauge operator*(const Gauge& gauge, const Transition& transition) noexcept {
     return {gauge.rotation * transition.rotation, gauge(transition.translation)};

@@ -6,18 +6,6 @@ namespace hexhex {
 
 namespace {
 
-/// A simplex of a tet in terms of the caller's order of corners.
-CornerSet callersCorners(const OrientedMap& input, CornerMask simplex) {
-  if (!input.cornersReversed) return simplex;
-  CornerSet corners = 0;
-  for (int i = 0; i < 4; ++i) {
-    if (contains(simplex, i)) {
-      corners = static_cast<CornerSet>(corners | cornerBit(input.callersCorner(i)));
-    }
-  }
-  return corners;
-}
-
 /// The bricks around the points of a tet.
 class BrickBox {
  public:
@@ -202,7 +190,7 @@ void VertexGrid<Id>::write(const VertexRun& run, Index tet, std::optional<TetPos
     }
   }
   std::fill_n(arrays.tets + at, run.count, tet);
-  std::fill_n(arrays.corners + at, run.count, callersCorners(map_.input, run.simplex));
+  std::fill_n(arrays.corners + at, run.count, map_.input.callersCorners(run.simplex));
 }
 
 template <class Id>

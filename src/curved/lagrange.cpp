@@ -30,15 +30,11 @@ Array<CellSeed> listCells(const PreparedMap& map, Stage& stage) {
                    std::vector<SweptLine> scratch;
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
-                     const TetSweep sweep(map.exact, tet, SweptGrid::Centers);
-                     CenterOwner owner(map.topology, tet);
                      std::uint64_t at = seeds.begin[t];
-                     for (const SweptLine& line : seeds.linesOf(map.exact, tet, scratch)) {
-                       const auto [first, count] = owner.owned(line);
-                       for (std::uint32_t i = first; i < first + count; ++i) {
-                         cells[at++] = {tet, line.point(i)};
-                       }
-                     }
+                     forEachOwnedCenter(map.topology, tet, seeds.linesOf(map.exact, tet, scratch),
+                                        [&](const SweptLine& line, std::uint32_t i) {
+                                          cells[at++] = {tet, line.point(i)};
+                                        });
                    }
                  });
   return cells;

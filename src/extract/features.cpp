@@ -274,14 +274,11 @@ void tagEdgesAndQuads(const TetMapView& given, const PreparedMap& prepared, cons
                      const auto tet = static_cast<Index>(t);
                      std::uint64_t cell = seeds.begin[t];
                      if (cell == seeds.begin[t + 1]) continue;
-                     const TetSweep sweep(prepared.exact, tet, SweptGrid::Centers);
-                     CenterOwner owner(prepared.topology, tet);
-                     for (const SweptLine& line : seeds.lines->of(tet)) {
-                       const auto [first, count] = owner.owned(line);
-                       for (std::uint32_t i = first; i < first + count; ++i) {
-                         viewer.view(mesh.cells[cell++], tet, line.point(i), line.simplex(i), seen);
-                       }
-                     }
+                     forEachOwnedCenter(prepared.topology, tet, seeds.lines->of(tet),
+                                        [&](const SweptLine& line, std::uint32_t i) {
+                                          viewer.view(mesh.cells[cell++], tet, line.point(i),
+                                                      line.simplex(i), seen);
+                                        });
                    }
                    edges[block] = std::move(seen.edges);
                    quads[block] = std::move(seen.quads);

@@ -105,14 +105,10 @@ Array<Hex> collectCells(const PreparedMap& map, const Array<NormalSigns>& signs,
       const auto tet = static_cast<Index>(t);
       std::uint64_t next = seeds.begin[t];
       if (next == seeds.begin[t + 1]) continue;
-      const TetSweep sweep(map.exact, tet, SweptGrid::Centers);
-      CenterOwner owner(map.topology, tet);
-      for (const SweptLine& line : seeds.lines->of(tet)) {
-        const auto [first, count] = owner.owned(line);
-        for (std::uint32_t i = first; i < first + count; ++i) {
-          cells[next++] = enter(tracer, tet, line.point(i), line.simplex(i));
-        }
-      }
+      forEachOwnedCenter(map.topology, tet, seeds.lines->of(tet),
+                         [&](const SweptLine& line, std::uint32_t i) {
+                           cells[next++] = enter(tracer, tet, line.point(i), line.simplex(i));
+                         });
     }
   });
   return cells;

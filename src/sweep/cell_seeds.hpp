@@ -58,6 +58,18 @@ class CenterOwner {
   unsigned owned_ = 0;
 };
 
+/// Calls visit(SweptLine, i) for each centre that a tet owns, point i of one of its lines, in the
+/// order of the cells.
+template <class Visit>
+void forEachOwnedCenter(const TetTopology& topology, Index tet, std::span<const SweptLine> lines,
+                        const Visit& visit) {
+  CenterOwner owner(topology, tet);
+  for (const SweptLine& line : lines) {
+    const auto [first, count] = owner.owned(line);
+    for (std::uint32_t i = first; i < first + count; ++i) visit(line, i);
+  }
+}
+
 /// Number of centres that a tet owns.
 [[nodiscard]] std::uint64_t countOwned(const TetTopology& topology, Index tet,
                                        std::span<const SweptLine> lines);
