@@ -95,6 +95,15 @@ class BrickGrid {
     }
   }
 
+  /// The bricks with a point that two vertices claim.
+  [[nodiscard]] std::vector<BrickKey> contested() const {
+    std::vector<BrickKey> keys;
+    for (const Slot& slot : slots_) {
+      if (slot.key != kNoBrick && slot.brick->contested != 0) keys.push_back(slot.key);
+    }
+    return keys;
+  }
+
   /// The brick of a key, added if there is none. Not while others use the grid.
   Brick<Id>& add(BrickKey key) {
     if (Brick<Id>* const brick = find(key)) return *brick;

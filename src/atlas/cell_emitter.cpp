@@ -49,9 +49,27 @@ Id readCells(std::array<const Id*, 4> rows, std::ptrdiff_t stride, std::array<Id
   return together;
 }
 
+/// Both special values of a brick have it, as no vertex of a mesh of usual size has.
+template <class Id>
+constexpr Id kHighestBit = ~(std::numeric_limits<Id>::max() >> 1);
+
+/// The first corner of a set.
+std::size_t memberOf(CellCornerSet corners) {
+  return static_cast<std::size_t>(std::countr_zero(corners));
+}
+
+/// Whether all corners of a cell are in the brick of its smallest one.
+bool isInOneBrick(const ChartPoint& c) {
+  constexpr std::uint32_t kLast = kBrickSide - 1;
+  return c[0] % kBrickSide != kLast && c[1] % kBrickSide != kLast && c[2] % kBrickSide != kLast;
+}
+
 /// The corners of a cell at which the picture shows no vertex.
 template <class Id>
 CellCornerSet withoutVertex(const std::array<Id, 8>& cell) {
+  Id together = 0;
+  for (const Id id : cell) together |= id;
+  if ((together & kHighestBit<Id>) == 0) return 0;
   CellCornerSet corners = 0;
   for (std::size_t c = 0; c < 8; ++c) {
     corners |= (Brick<Id>::isVertex(cell[c]) ? 0U : 1U) << c;
@@ -150,9 +168,7 @@ typename CellEmitter<Id>::Flags CellEmitter<Id>::readLine(const Job& job, const 
         }
         together |= readCells<Permutation>(rows, stride, near, cells + (offset - 1), count);
       });
-  // Both special values have the highest bit set, as no vertex of a mesh of usual size has.
-  constexpr Id kHighestBit = ~(std::numeric_limits<Id>::max() >> 1);
-  return {(together & kHighestBit) != 0, cut};
+  return {(together & kHighestBit<Id>) != 0, cut};
 }
 
 /// The places of the points of the four rows beside point c of row 0.
@@ -231,13 +247,15 @@ CellCornerSet CellEmitter<Id>::lookAcross(const ChartPoint& c, const CutCell& cu
       beyond->cuts->cells[placeInBrick(across)].jump != jump.inverse) {
     return left;
   }
+  const bool inOneBrick = isInOneBrick(across);
   for (CellCornerSet corners = cut.corners; corners != 0; corners &= corners - 1) {
-    const auto corner = static_cast<std::size_t>(std::countr_zero(corners));
-    const CellCornerSet own = turned(toOwn, corners & (0U - corners));
-    const ChartPoint point = jump.map(plus(c, kCellCorners[corner]));
-    const Brick<Id>* const brick = cache_.find(jump.to, point);
+    const CellCornerSet corner = corners & (0U - corners);
+    const CellCornerSet own = turned(toOwn, corner);
+    const ChartPoint point =
+        plus(across, kCellCorners[memberOf(turned(jump.map.rotation, corner))]);
+    const Brick<Id>* const brick = inOneBrick ? beyond : cache_.find(jump.to, point);
     const Id there = brick != nullptr ? brick->ids[placeInBrick(point)] : Brick<Id>::kEmpty;
-    Id& here = cell[static_cast<std::size_t>(std::countr_zero(own))];
+    Id& here = cell[memberOf(own)];
     const bool isHere = Brick<Id>::isVertex(here);
     const bool isThere = Brick<Id>::isVertex(there);
     if (isHere && isThere && here != there) continue;
@@ -263,7 +281,7 @@ bool CellEmitter<Id>::emitIrregular(const GridPoint& z, CornerMask generator, Ce
         if (stop.inSight) return;
         hidden = true;
         for (; arrived != 0; arrived &= arrived - 1) {
-          const auto c = static_cast<std::size_t>(std::countr_zero(arrived));
+          const auto c = memberOf(arrived);
           GridPoint corner = z;
           for (std::size_t k = 0; k < 3; ++k) corner[k] += kCellCorners[c][k];
           cell[c] = vertices_.vertexAt(stop.tet, stop.toTet(corner), cache_);

@@ -24,28 +24,22 @@ SweepFrame cellFrame(const Gauge& gauge) noexcept {
   return {{gauge.rotation, gauge.cell(GridPoint{})}, {0, 1, 2}};
 }
 
-/// The half-faces that are not glued, with mates and one for each face, in blocks.
+/// The half-faces that are not glued, with mates and one for each face.
 std::vector<HalfFace> findCuts(const PreparedMap& map, const Charts& charts, bool asBuilt,
                                Stage& stage) {
   const TetTopology& topology = map.topology;
   const Transitions& transitions = map.exact.transitions;
-  std::vector<std::vector<HalfFace>> blocks(blockCount(topology.tetCount(), kGrain));
-  parallelBlocks(stage, topology.tetCount(), kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   for (std::size_t h = 4 * begin; h < 4 * end; ++h) {
-                     const auto halfFace = static_cast<HalfFace>(h);
-                     if (asBuilt && !transitions.isJump(halfFace)) continue;
-                     const HalfFace mate = topology.mate[halfFace];
-                     if (mate == kNone || mate < halfFace) continue;
-                     if (!charts.isGlued(topology, transitions, halfFace)) {
-                       blocks[block].push_back(halfFace);
-                     }
-                   }
-                 });
-  std::vector<HalfFace> all;
-  for (const std::vector<HalfFace>& block : blocks)
-    all.insert(all.end(), block.begin(), block.end());
-  return all;
+  return collectFromBlocks<HalfFace>(
+      stage, topology.mate.size(), 4 * kGrain,
+      [&](std::size_t begin, std::size_t end, std::vector<HalfFace>& cuts) {
+        for (std::size_t h = begin; h < end; ++h) {
+          const auto halfFace = static_cast<HalfFace>(h);
+          if (asBuilt && !transitions.isJump(halfFace)) continue;
+          const HalfFace mate = topology.mate[halfFace];
+          if (mate == kNone || mate < halfFace) continue;
+          if (!charts.isGlued(topology, transitions, halfFace)) cuts.push_back(halfFace);
+        }
+      });
 }
 
 /// Marks what a cut may meet, in the charts on both its sides: what the triangle meets on one side

@@ -49,10 +49,9 @@ struct Gauge {
 
   /// (a / b)(b(u)) = a(u).
   friend constexpr Gauge operator/(const Gauge& a, const Gauge& b) noexcept {
-    const Rotation rotation = a.rotation * b.rotation.inverse();
-    const ChartPoint moved = rotation(b.translation);
-    Gauge quotient{rotation, a.translation};
-    for (std::size_t k = 0; k < 3; ++k) quotient.translation[k] -= moved[k];
+    Gauge quotient{a.rotation * b.rotation.inverse(), a.translation};
+    const ChartPoint image = quotient.rotation(b.translation);
+    for (std::size_t k = 0; k < 3; ++k) quotient.translation[k] -= image[k];
     return quotient;
   }
 };
