@@ -82,7 +82,7 @@ template <class Id>
 const Brick<Id>& noBrick() {
   static const Brick<Id> brick = [] {
     static CutCells everywhere;
-    everywhere.cells.fill({kAllCellCorners, kManyJumps});
+    everywhere.cells.fill(CutCell(kAllCellCorners, kManyJumps));
     Brick<Id> empty;
     empty.clear();
     empty.cuts = &everywhere;
@@ -215,7 +215,7 @@ void CellEmitter<Id>::mendLine(const Job& job, const SweptLine& line, std::uint3
           Cell& cell = cells[offset + i];
           bool hidden = false;
           CellCornerSet left = 0;
-          if (cuts != nullptr && cuts->cells[at].corners != 0) {
+          if (cuts != nullptr && cuts->cells[at].isCut()) {
             left = lookAcross(moved(c, row.along, i), cuts->cells[at], cell, hidden);
           }
           if (special) left |= withoutVertex(cell);
@@ -228,45 +228,65 @@ void CellEmitter<Id>::mendLine(const Job& job, const SweptLine& line, std::uint3
       });
 }
 
-/// Takes corners behind a cut from the picture on its other side, if there is just one cut near. A
-/// way to a corner then ends on either side; if only one of the pictures has a vertex there, it
-/// ends on that one.
+/// Takes corners behind a cut from the picture on its other side, if there is just one cut on the
+/// way. It then ends on either side; if only one of the pictures has a vertex there, on that one.
 /// @param c       the cell's smallest corner in the chart
 /// @param hidden  becomes true if a vertex is found on the other side
-/// @return those that are still in question, in terms of the tet's own chart
+/// @return the corners that are still in question, in terms of the tet's own chart
 template <class Id>
 CellCornerSet CellEmitter<Id>::lookAcross(const ChartPoint& c, const CutCell& cut, Cell& cell,
                                           bool& hidden) {
   const Rotation toOwn = vertices_.charts().gauge(tet_).rotation.inverse();
-  CellCornerSet left = turned(toOwn, cut.corners);
-  if (cut.jump == kManyJumps) return left;
-  const Jump& jump = jumps_[cut.jump];
-  const ChartPoint across = jump.map.cell(c);
-  const Brick<Id>* const beyond = cache_.find(jump.to, across);
-  if (beyond == nullptr || beyond->cuts == nullptr ||
-      beyond->cuts->cells[placeInBrick(across)].jump != jump.inverse) {
-    return left;
-  }
-  const bool inOneBrick = isInOneBrick(across);
-  for (CellCornerSet corners = cut.corners; corners != 0; corners &= corners - 1) {
-    const CellCornerSet corner = corners & (0U - corners);
-    const CellCornerSet own = turned(toOwn, corner);
-    const ChartPoint point =
-        plus(across, kCellCorners[memberOf(turned(jump.map.rotation, corner))]);
-    const Brick<Id>* const brick = inOneBrick ? beyond : cache_.find(jump.to, point);
-    const Id there = brick != nullptr ? brick->ids[placeInBrick(point)] : Brick<Id>::kEmpty;
+  CellCornerSet left = 0;
+  OtherSide other;
+  for (CellCornerSet corners = cut.corners(); corners != 0; corners &= corners - 1) {
+    const CellCornerSet bit = corners & (0U - corners);
+    const JumpId id = cut.jump(memberOf(bit));
+    const CellCornerSet own = turned(toOwn, bit);
+    if (id != other.jump) other = otherSide(c, id);
+    const Id there = vertexBeyond(other, memberOf(turned(other.rotation, bit)));
     Id& here = cell[memberOf(own)];
     const bool isHere = Brick<Id>::isVertex(here);
     const bool isThere = Brick<Id>::isVertex(there);
-    if (isHere && isThere && here != there) continue;
-    if (!isHere && !isThere) continue;
-    if (!isHere) {
+    if (there == Brick<Id>::kContested || isHere == isThere) {
+      if (here != there) left |= own;
+    } else if (isThere) {
       here = there;
       hidden = true;
     }
-    left &= ~own;
   }
   return left;
+}
+
+/// The image of a cell on the other side of a cut.
+template <class Id>
+typename CellEmitter<Id>::OtherSide CellEmitter<Id>::otherSide(const ChartPoint& c, JumpId id) {
+  OtherSide other;
+  other.jump = id;
+  if (id == kManyJumps) return other;
+  const Jump& jump = jumps_[id];
+  const ChartPoint image = jump.map.cell(c);
+  const Brick<Id>* const brick = cache_.find(jump.to, image);
+  if (brick == nullptr || brick->cuts == nullptr) return other;
+  return {id,
+          jump.inverse,
+          jump.map.rotation,
+          jump.to,
+          image,
+          brick,
+          brick->cuts->cells[placeInBrick(image)],
+          isInOneBrick(image)};
+}
+
+/// What the picture on the other side shows at a corner, of the image; "contested" if there are
+/// further cuts on the way.
+template <class Id>
+Id CellEmitter<Id>::vertexBeyond(const OtherSide& other, std::size_t corner) {
+  if (other.brick == nullptr) return Brick<Id>::kContested;
+  if (other.cut.jump(corner) != other.back) return Brick<Id>::kContested;
+  const ChartPoint point = plus(other.cell, kCellCorners[corner]);
+  const Brick<Id>* const brick = other.inOneBrick ? other.brick : cache_.find(other.chart, point);
+  return brick != nullptr ? brick->ids[placeInBrick(point)] : Brick<Id>::kEmpty;
 }
 
 /// Walks to some corners of a cell, and leaves what the picture shows of those to which a straight

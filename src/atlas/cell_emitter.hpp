@@ -53,6 +53,18 @@ class CellEmitter {
     bool cut = false;      ///< some brick around has cut cells
   };
 
+  /// A cell as the picture on the other side of a cut shows it.
+  struct OtherSide {
+    JumpId jump = kNoJump;  ///< leads there
+    JumpId back = kNoJump;
+    Rotation rotation;
+    Index chart = 0;
+    ChartPoint cell{};                 ///< its smallest corner there
+    const Brick<Id>* brick = nullptr;  ///< of that corner; null if nothing is known of cuts there
+    CutCell cut;                       ///< what is known
+    bool inOneBrick = false;           ///< and of all others
+  };
+
   void emitLine(Job& job, const SweptLine& line, std::uint32_t first, std::uint32_t count);
   template <std::size_t Permutation>
   [[nodiscard]] Flags readLine(const Job& job, const ChartRow& row, Cell* cells);
@@ -61,6 +73,8 @@ class CellEmitter {
                 bool special, Cell* cells);
   [[nodiscard]] CellCornerSet lookAcross(const ChartPoint& c, const CutCell& cut, Cell& cell,
                                          bool& hidden);
+  [[nodiscard]] OtherSide otherSide(const ChartPoint& c, JumpId id);
+  [[nodiscard]] Id vertexBeyond(const OtherSide& other, std::size_t corner);
   bool emitIrregular(const GridPoint& z, CornerMask generator, CellCornerSet corners, Cell& cell);
 
   const PreparedMap& map_;

@@ -42,13 +42,22 @@ std::vector<HalfFace> findCuts(const PreparedMap& map, const Charts& charts, boo
       });
 }
 
+/// A cut cell without a brick.
+struct LoneCut {
+  BrickKey key;
+  std::size_t place;
+  CutCell cut;
+};
+
 /// Marks what a cut may meet, in the charts on both its sides: what the triangle meets on one side
 /// are the images of what it meets on the other.
 template <class Id>
 class CutMarker {
  public:
-  CutMarker(const PreparedMap& map, const Charts& charts, const Jumps& jumps, BrickGrid<Id>& grid)
-      : map_(map), charts_(charts), jumps_(jumps), grid_(grid), cache_(grid) {}
+  /// @param lone  receives what there is no brick for
+  CutMarker(const PreparedMap& map, const Charts& charts, const Jumps& jumps, BrickGrid<Id>& grid,
+            std::vector<LoneCut>& lone)
+      : map_(map), charts_(charts), jumps_(jumps), grid_(grid), cache_(grid), lone_(lone) {}
 
   void mark(HalfFace halfFace, JumpId jump) {
     const Index here = tetOf(halfFace);
@@ -60,18 +69,22 @@ class CutMarker {
     const JumpId back = jump == kManyJumps ? kManyJumps : jumps_[jump].inverse;
     TriangleCells(triangleOf(map_.exact, halfFace), map_.exact.unit)
         .run([&](const GridPoint& z, CellCornerSet corners) {
-          add(charts_.chart[here], frameHere(z[0], z[1], z[2]), turned(gaugeHere.rotation, corners),
-              jump);
+          add(charts_.chart[here], frameHere(z[0], z[1], z[2]),
+              {turned(gaugeHere.rotation, corners), jump});
           add(charts_.chart[there], frameThere(z[0], z[1], z[2]),
-              turned(gaugeThere.rotation, corners), back);
+              {turned(gaugeThere.rotation, corners), back});
         });
   }
 
  private:
-  void add(Index chart, const ChartPoint& c, CellCornerSet corners, JumpId jump) {
+  void add(Index chart, const ChartPoint& c, const CutCell& cut) {
     if (chart == Charts::kNoChart) return;
     Brick<Id>* const brick = cache_.find(chart, c);
-    if (brick != nullptr) grid_.cutsOf(*brick).add(placeInBrick(c), corners, jump);
+    if (brick != nullptr) {
+      grid_.cutsOf(*brick).add(placeInBrick(c), cut);
+    } else {
+      lone_.push_back({brickKey(chart, c), placeInBrick(c), cut});
+    }
   }
 
   const PreparedMap& map_;
@@ -79,6 +92,7 @@ class CutMarker {
   const Jumps& jumps_;
   BrickGrid<Id>& grid_;
   BrickCache<Id> cache_;
+  std::vector<LoneCut>& lone_;
 };
 
 }  // namespace
@@ -94,11 +108,13 @@ Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool asBuilt, Br
     jumps[i] = cuts.jumps.across(map, charts, halfFaces[i]);
   }
   constexpr std::size_t kFaces = 256;
-  parallelBlocks(stage, halfFaces.size(), kFaces,
-                 [&](std::size_t begin, std::size_t end, std::size_t) {
-                   CutMarker<Id> marker(map, charts, cuts.jumps, grid);
-                   for (std::size_t i = begin; i < end; ++i) marker.mark(halfFaces[i], jumps[i]);
-                 });
+  const auto lone = collectFromBlocks<LoneCut>(
+      stage, halfFaces.size(), kFaces,
+      [&](std::size_t begin, std::size_t end, std::vector<LoneCut>& loneHere) {
+        CutMarker<Id> marker(map, charts, cuts.jumps, grid, loneHere);
+        for (std::size_t i = begin; i < end; ++i) marker.mark(halfFaces[i], jumps[i]);
+      });
+  for (const LoneCut& cell : lone) grid.cutsOf(grid.add(cell.key)).add(cell.place, cell.cut);
   return cuts;
 }
 

@@ -20,8 +20,7 @@ struct Cuts {
 };
 
 /// Marks, on both sides of every face that is not glued, the cells in which the face may meet the
-/// way from the centre to a corner. (Cells without a brick need no mark: they are found irregular
-/// without.) Faces of the boundary lie in grid planes and meet no such way.
+/// way from the centre to a corner. Faces of the boundary lie in grid planes and meet no such way.
 /// @param asBuilt  whether the charts are still those of buildCharts(), where tets that no jump
 ///                 separates share a chart
 template <class Id>

@@ -11,7 +11,7 @@
 namespace hexhex {
 
 /// Names a jump, or says that there are none or several.
-using JumpId = std::uint16_t;
+using JumpId = std::uint8_t;
 inline constexpr JumpId kNoJump = 0;
 inline constexpr JumpId kManyJumps = std::numeric_limits<JumpId>::max();
 
@@ -27,7 +27,8 @@ struct Jump {
   }
 };
 
-/// All different jumps of an atlas. There are few: one for each side of a sheet of cuts.
+/// The different jumps of an atlas. There are few: one for each side of a sheet of cuts. Of more
+/// than there are names for, those that come late have none.
 class Jumps {
  public:
   Jumps();
