@@ -2,6 +2,7 @@
 // in bricks of 8 x 8 x 8 points behind a hash table.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -123,7 +124,7 @@ class BrickGrid {
     const std::lock_guard lock(cutsMutex_);
     cuts = known.load(std::memory_order_relaxed);
     if (cuts == nullptr) {
-      cuts = &cuts_.emplace_back();
+      cuts = &freshCuts();
       known.store(cuts, std::memory_order_release);
     }
     return *cuts;
@@ -135,6 +136,15 @@ class BrickGrid {
     Brick<Id>* brick;
   };
 
+  CutCells& freshCuts() {
+    if (cutsLeft_ == 0) {
+      cutsLeft_ = cuts_.empty() ? 16 : std::min<std::size_t>(2 * cuts_.back().size(), 1024);
+      cuts_.emplace_back(cutsLeft_);
+    }
+    CutCells& fresh = cuts_.back()[--cutsLeft_];
+    fresh.clear();
+    return fresh;
+  }
   [[nodiscard]] std::size_t home(BrickKey key) const noexcept {
     return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15U) >> shift_);
   }
@@ -181,7 +191,8 @@ class BrickGrid {
   Array<Brick<Id>> bricks_;
   std::deque<Brick<Id>> added_;
   std::mutex cutsMutex_;
-  std::deque<CutCells> cuts_;
+  std::vector<Array<CutCells>> cuts_;  ///< each larger than the one before
+  std::size_t cutsLeft_ = 0;           ///< in the last
 };
 
 /// Finds bricks without the hash table while accesses stay close. One per thread.

@@ -82,7 +82,7 @@ template <class Id>
 const Brick<Id>& noBrick() {
   static const Brick<Id> brick = [] {
     static CutCells everywhere;
-    everywhere.cells.fill(CutCell(kAllCellCorners, kManyJumps));
+    everywhere.cells.fill(CutCell{}.with(kAllCellCorners, kManyJumps));
     Brick<Id> empty;
     empty.clear();
     empty.cuts = &everywhere;

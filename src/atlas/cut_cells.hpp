@@ -15,66 +15,57 @@ namespace hexhex {
 /// Points in a brick.
 inline constexpr std::size_t kBrickPoints = 512;
 
-/// What cuts may come between the centre of a cell and its corners: a jump for each corner, in
-/// terms of the chart.
-class CutCell {
+/// What cuts may come between the centre of a cell and its corners: for each corner, in terms of
+/// the chart, the jump across all cut faces that the way from the centre to the corner may meet. A
+/// cell remembers two different jumps, which is enough for nearly all.
+class alignas(4) CutCell {
  public:
-  constexpr CutCell() = default;
-  /// A cut in front of some corners.
-  constexpr CutCell(CellCornerSet corners, JumpId jump) noexcept
-      : jumps_(bytesOf(corners) & (kOnes * jump)) {}
-
-  [[nodiscard]] constexpr bool isCut() const noexcept { return jumps_ != 0; }
+  [[nodiscard]] constexpr bool isCut() const noexcept { return jumps_[0] != kNoJump; }
   /// The corners with a cut in front of them.
   [[nodiscard]] constexpr CellCornerSet corners() const noexcept {
-    // The highest bits of all bytes, moved together by a product.
-    return static_cast<CellCornerSet>(
-        ((nonzeroBytes(jumps_) & (kOnes << 7)) * 0x0002'0408'1020'4081) >> 56);
+    return CellCornerSet{corners_[0]} | corners_[1];
   }
-  /// The jump across all cut faces that the way from the centre to a corner may meet; kNoJump if
-  /// there are none, kManyJumps if they have no jump in common.
+  /// kNoJump if no cut face may be met, kManyJumps if they have no jump in common.
   [[nodiscard]] constexpr JumpId jump(std::size_t corner) const noexcept {
-    return static_cast<JumpId>(jumps_ >> (8 * corner));
+    const bool first = ((corners_[0] >> corner) & 1U) != 0;
+    const bool second = ((corners_[1] >> corner) & 1U) != 0;
+    if (first) return second ? kManyJumps : jumps_[0];
+    return second ? jumps_[1] : kNoJump;
+  }
+
+  /// With one more cut in front of some corners.
+  [[nodiscard]] constexpr CutCell with(CellCornerSet corners, JumpId jump) const noexcept {
+    CutCell after = *this;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (jumps_[i] != kNoJump && jumps_[i] != jump) continue;
+      after.jumps_[i] = jump;
+      after.corners_[i] = static_cast<std::uint8_t>(corners_[i] | corners);
+      return after;
+    }
+    // Corners with two jumps have many.
+    for (std::uint8_t& set : after.corners_) set = static_cast<std::uint8_t>(set | corners);
+    return after;
   }
 
   [[nodiscard]] constexpr bool operator==(const CutCell&) const = default;
 
-  /// What is in front of the corners with both cuts.
-  friend constexpr CutCell operator|(const CutCell& a, const CutCell& b) noexcept {
-    const std::uint64_t differ =
-        nonzeroBytes(a.jumps_) & nonzeroBytes(b.jumps_) & nonzeroBytes(a.jumps_ ^ b.jumps_);
-    CutCell both;
-    both.jumps_ = a.jumps_ | b.jumps_ | differ;  // where they differ, all bits: kManyJumps
-    return both;
-  }
-
  private:
-  static constexpr std::uint64_t kOnes = 0x0101'0101'0101'0101;
-
-  /// 255 in each byte that is not 0.
-  [[nodiscard]] static constexpr std::uint64_t nonzeroBytes(std::uint64_t x) noexcept {
-    constexpr std::uint64_t kLow = 0x7f * kOnes;
-    return ((((x & kLow) + kLow) | x) >> 7 & kOnes) * 255;
-  }
-  /// 255 in the byte of each corner of a set.
-  [[nodiscard]] static constexpr std::uint64_t bytesOf(CellCornerSet corners) noexcept {
-    // Bit i of the copy in byte i alone.
-    return nonzeroBytes(corners * kOnes & 0x8040'2010'0804'0201);
-  }
-
-  std::uint64_t jumps_ = 0;  ///< a byte for each corner
+  std::array<std::uint8_t, 2> corners_{};
+  std::array<JumpId, 2> jumps_{};
 };
 
 /// The cells of a brick, named by their smallest corners.
 struct CutCells {
-  std::array<CutCell, kBrickPoints> cells{};
+  std::array<CutCell, kBrickPoints> cells;
+
+  void clear() noexcept { cells.fill({}); }
 
   /// Adds a cut face. Thread-safe.
-  void add(std::size_t place, const CutCell& cut) noexcept {
+  void add(std::size_t place, CellCornerSet corners, JumpId jump) noexcept {
     const std::atomic_ref cell(cells[place]);
     CutCell before = cell.load(std::memory_order_relaxed);
     for (;;) {
-      const CutCell after = before | cut;
+      const CutCell after = before.with(corners, jump);
       if (after == before || cell.compare_exchange_weak(before, after, std::memory_order_relaxed)) {
         return;
       }

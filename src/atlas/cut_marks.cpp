@@ -46,7 +46,8 @@ std::vector<HalfFace> findCuts(const PreparedMap& map, const Charts& charts, boo
 struct LoneCut {
   BrickKey key;
   std::size_t place;
-  CutCell cut;
+  CellCornerSet corners;
+  JumpId jump;
 };
 
 /// Marks what a cut may meet, in the charts on both its sides: what the triangle meets on one side
@@ -69,21 +70,21 @@ class CutMarker {
     const JumpId back = jump == kManyJumps ? kManyJumps : jumps_[jump].inverse;
     TriangleCells(triangleOf(map_.exact, halfFace), map_.exact.unit)
         .run([&](const GridPoint& z, CellCornerSet corners) {
-          add(charts_.chart[here], frameHere(z[0], z[1], z[2]),
-              {turned(gaugeHere.rotation, corners), jump});
+          add(charts_.chart[here], frameHere(z[0], z[1], z[2]), turned(gaugeHere.rotation, corners),
+              jump);
           add(charts_.chart[there], frameThere(z[0], z[1], z[2]),
-              {turned(gaugeThere.rotation, corners), back});
+              turned(gaugeThere.rotation, corners), back);
         });
   }
 
  private:
-  void add(Index chart, const ChartPoint& c, const CutCell& cut) {
+  void add(Index chart, const ChartPoint& c, CellCornerSet corners, JumpId jump) {
     if (chart == Charts::kNoChart) return;
     Brick<Id>* const brick = cache_.find(chart, c);
     if (brick != nullptr) {
-      grid_.cutsOf(*brick).add(placeInBrick(c), cut);
+      grid_.cutsOf(*brick).add(placeInBrick(c), corners, jump);
     } else {
-      lone_.push_back({brickKey(chart, c), placeInBrick(c), cut});
+      lone_.push_back({brickKey(chart, c), placeInBrick(c), corners, jump});
     }
   }
 
@@ -114,7 +115,8 @@ Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool asBuilt, Br
         CutMarker<Id> marker(map, charts, cuts.jumps, grid, loneHere);
         for (std::size_t i = begin; i < end; ++i) marker.mark(halfFaces[i], jumps[i]);
       });
-  for (const LoneCut& cell : lone) grid.cutsOf(grid.add(cell.key)).add(cell.place, cell.cut);
+  for (const LoneCut& cell : lone)
+    grid.cutsOf(grid.add(cell.key)).add(cell.place, cell.corners, cell.jump);
   return cuts;
 }
 
