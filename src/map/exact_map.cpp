@@ -27,13 +27,6 @@ constexpr int kMinFractionBits = 16;
 using AxisSet = unsigned;
 constexpr AxisSet kAllAxes = 7;
 
-/// The axis of the largest component.
-std::size_t dominantAxis(const Vec3& v) {
-  std::size_t axis = std::abs(v[1]) > std::abs(v[0]) ? 1 : 0;
-  if (std::abs(v[2]) > std::abs(v[axis])) axis = 2;
-  return axis;
-}
-
 /// The axes that a rotation sends to these.
 AxisSet rotatedBack(AxisSet axes, Rotation rotation) {
   AxisSet preimage = 0;
@@ -220,21 +213,6 @@ class VertexSanitizer {
     return dominantAxis(cross(minus(q, p), minus(r, p)));
   }
 
-  /// The same, sooner.
-  static std::size_t boundaryAxis(const LocalParameters& parameters,
-                                  const PlainVertices::BoundaryFace& face) {
-    const auto axis = static_cast<std::size_t>(std::countr_zero(face.constantAxes | 8U)) % 3;
-    const std::array<int, 3>& corners = kFaceCorners[face.halfFace % 4];
-    const Vec3 p = parameters(tetOf(face.halfFace), corners[0]);
-    const Vec3 a = minus(parameters(tetOf(face.halfFace), corners[1]), p);
-    const Vec3 b = minus(parameters(tetOf(face.halfFace), corners[2]), p);
-    const std::size_t i = (axis + 1) % 3;
-    const std::size_t j = (axis + 2) % 3;
-    // All other components of the normal are zero if the triangle is constant along one axis.
-    const bool isSure = std::has_single_bit(face.constantAxes) && a[i] * b[j] - a[j] * b[i] != 0;
-    return isSure ? axis : boundaryAxis(parameters, face.halfFace);
-  }
-
   /// The axis along which a singular edge runs, in the chart of its tet.
   static std::size_t edgeAxis(const LocalParameters& parameters, const SingularEdge& edge) {
     const Vec3 p = parameters(edge.tet, edge.corner0);
@@ -260,7 +238,7 @@ void checkBoundary(const PlainVertices& plain, const LocalParameters& parameters
                    Stage& stage, DefectCollector& defects) {
   parallelFor(stage, plain.boundaryFaces.size(), 1, [&](std::size_t block) {
     for (const PlainVertices::BoundaryFace& face : plain.boundaryFaces[block]) {
-      const std::size_t axis = VertexSanitizer::boundaryAxis(parameters, face);
+      const std::size_t axis = face.axis;
       const HalfFace halfFace = face.halfFace;
       std::array<double, 3> x{};
       for (std::size_t k = 0; k < 3; ++k) {
