@@ -104,8 +104,7 @@ class FlatStarTest::Unfolding {
 };
 
 bool FlatStarTest::run(Index vertex, VertexStar& star) {
-  const Unfolding unfolding =
-      star.walk(topology_, vertex, Unfolding(plain_.passages.data()));
+  const Unfolding unfolding = star.walk(topology_, vertex, Unfolding(plain_.passages.data()));
   plane_ = unfolding.planes();
   if (!unfolding.fits()) return false;
   const std::span<const VertexStar::Member> members = star.members();

@@ -24,8 +24,8 @@ class FlatStarTest {
                const PlainVertices& plain)
       : topology_(topology), parameters_(parameters), plain_(plain) {}
 
-  /// Collects the star of a vertex, and tells whether it is flat. A star where rounding could matter
-  /// is not called flat.
+  /// Collects the star of a vertex, and tells whether it is flat. A star where rounding could
+  /// matter is not called flat.
   /// @param vertex  not isolated
   [[nodiscard]] bool run(Index vertex, VertexStar& star);
 
@@ -47,8 +47,8 @@ class FlatStarTest {
   const TetTopology& topology_;
   const LocalParameters& parameters_;
   const PlainVertices& plain_;
-  std::vector<Index> turned_;        ///< members whose charts are
-  unsigned plane_ = 0;               ///< bit k: across axis k of the first one's chart
+  std::vector<Index> turned_;  ///< members whose charts are
+  unsigned plane_ = 0;         ///< bit k: across axis k of the first one's chart
 };
 
 }  // namespace hexhex

@@ -64,8 +64,7 @@ class Passage {
   /// Makes it rough. Several threads may do so at the same time.
   void roughen() noexcept {
     const std::atomic_ref shared(code_);
-    const auto rough =
-        static_cast<std::uint8_t>(shared.load(std::memory_order_relaxed) | kRough);
+    const auto rough = static_cast<std::uint8_t>(shared.load(std::memory_order_relaxed) | kRough);
     shared.store(rough, std::memory_order_relaxed);
   }
 

@@ -14,6 +14,16 @@ namespace {
 
 constexpr std::size_t kGrain = PlainVertices::kBlock;
 
+/// Tets whose parameters, 96 bytes each, are still in the innermost cache when they are looked at
+/// for the second time.
+constexpr std::size_t kNear = 128;
+
+/// Calls f(begin, end) for parts of a block.
+template <class F>
+void forEachPart(std::size_t begin, std::size_t end, const F& f) {
+  for (std::size_t part = begin; part < end; part += kNear) f(part, std::min(end, part + kNear));
+}
+
 /// Faces between asking for a tet and looking at it: the memory's delay, in steps of a loop.
 constexpr std::size_t kPrefetchDistance = 12;
 
@@ -29,6 +39,11 @@ void addBits(std::uint8_t& bits, unsigned added) {
 
 /// Per vertex: tets in one and the same direction from it.
 using Cones = Array<std::uint32_t>;
+
+/// 1 for negative numbers; a comparison would make a branch.
+constexpr unsigned signBit(double x) {
+  return static_cast<unsigned>(std::bit_cast<std::uint64_t>(x) >> 63);
+}
 
 /// The faces of a tet, as seen by the direction in general position.
 class TetNormals {
@@ -69,12 +84,14 @@ class TetNormals {
     const double smallest = std::min(std::min(std::abs(side0), std::abs(sides[0])),
                                      std::min(std::abs(sides[1]), std::abs(sides[2])));
     if (!allOf(isPositive_, smallest > uncertainty)) return kUncertainSides;
-    return static_cast<TetSides>((side0 > 0 ? 1U : 0U) | (sides[0] > 0 ? 2U : 0U) |
-                                 (sides[1] > 0 ? 4U : 0U) | (sides[2] > 0 ? 8U : 0U));
+    const unsigned outward = signBit(side0) | (signBit(sides[0]) << 1) | (signBit(sides[1]) << 2) |
+                             (signBit(sides[2]) << 3);
+    return static_cast<TetSides>(outward ^ kAllSides);
   }
 
   /// Inward, of the faces opposite corners 1, 2, 3; the four normals add up to zero.
   std::array<Vec3, 3> normals_{};
+  static constexpr unsigned kAllSides = 15;
   Vec3 sides_{};  ///< scalar products of the direction with them
   double size_ = 0;
   bool isPositive_ = false;
@@ -86,7 +103,7 @@ void markCorners(const Tet& tet, int face, PlainVertices& result) {
   }
 }
 
-/// At most four things for each of a block of tets, listed without a branch: which ones belong
+/// At most four things for each tet of a part, listed without a branch: which ones belong
 /// there is as good as random.
 class BranchlessList {
  public:
@@ -98,7 +115,7 @@ class BranchlessList {
   [[nodiscard]] std::span<const std::uint32_t> get() const { return {entries_.data(), count_}; }
 
  private:
-  std::array<std::uint32_t, 4 * kGrain + 1> entries_;  // NOLINT: written before it is read
+  std::array<std::uint32_t, 4 * kNear + 1> entries_;  // NOLINT: written before it is read
   std::size_t count_ = 0;
 };
 
@@ -120,7 +137,7 @@ struct TrianglePlane {
   }
 };
 
-/// Lists the boundary faces of a block of tets, and notes their planes at their corners; without a
+/// Lists the boundary faces of some tets, and notes their planes at their corners; without a
 /// plane, these are special.
 void surveyBoundary(const TetTopology& topology, const LocalParameters& parameters,
                     std::size_t begin, std::size_t end, std::size_t block, PlainVertices& result) {
@@ -131,7 +148,6 @@ void surveyBoundary(const TetTopology& topology, const LocalParameters& paramete
   std::fill(&result.passages[4 * begin], &result.passages[4 * begin] + 4 * (end - begin),
             Passage());
   std::vector<PlainVertices::BoundaryFace>& faces = result.boundaryFaces[block];
-  faces.reserve(list.get().size());
   for (const HalfFace halfFace : list.get()) {
     const Tet& tet = topology.tets[tetOf(halfFace)];
     const TrianglePlane plane(parameters, halfFace);
@@ -171,7 +187,7 @@ class TetSurvey {
     if (planes != 0) addMirrored(tet, normals);
   }
 
-  /// Adds up what run() has found, for at most kGrain tets.
+  /// Adds up what run() has found, for at most kNear tets.
   void finish() {
     for (const Index vertex : found_.get()) {
       std::atomic_ref(cones_[vertex]).fetch_add(1, std::memory_order_relaxed);
@@ -235,7 +251,7 @@ bool areSame(const TetTopology& topology, const LocalParameters& parameters, Hal
   return difference == 0;
 }
 
-/// Looks at each inner face of a block of tets, from its larger half-face: the parameters of the
+/// Looks at each inner face of some tets, from its larger half-face: the parameters of the
 /// other tet have then been looked at not long ago.
 void surveyFaces(const TetTopology& topology, const LocalParameters& parameters, std::size_t begin,
                  std::size_t end, std::size_t block, PlainVertices& result) {
@@ -252,7 +268,6 @@ void surveyFaces(const TetTopology& topology, const LocalParameters& parameters,
     unequal.add(faces[i], parameters.moved() || !areSame(topology, parameters, faces[i], there));
   }
   std::vector<HalfFace>& found = result.unequalFaces[block];
-  found.reserve(unequal.get().size());
   for (const HalfFace here : unequal.get()) {
     const HalfFace there = topology.mate[here];
     if (agree(topology, parameters, here, there)) continue;
@@ -284,18 +299,21 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
   const std::size_t tets = topology.tetCount();
   result.boundaryFaces.resize(blockCount(tets, kGrain));
   result.unequalFaces.resize(blockCount(tets, kGrain));
-  parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    surveyBoundary(topology, parameters, begin, end, block, result);
+  parallelBlocks(stage, tets, kGrain, [&](std::size_t first, std::size_t last, std::size_t block) {
+    forEachPart(first, last, [&](std::size_t begin, std::size_t end) {
+      surveyBoundary(topology, parameters, begin, end, block, result);
+    });
   });
   std::uint64_t boundaryFaces = 0;
   for (const auto& faces : result.boundaryFaces) boundaryFaces += faces.size();
   result.innerFaces = (4 * tets - boundaryFaces) / 2;
-  parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+  parallelBlocks(stage, tets, kGrain, [&](std::size_t first, std::size_t last, std::size_t block) {
     TetSurvey tetSurvey(topology, parameters, cones, result);
-    for (std::size_t t = begin; t < end; ++t) tetSurvey.run(static_cast<Index>(t));
-    tetSurvey.finish();
-    // While their parameters are near.
-    surveyFaces(topology, parameters, begin, end, block, result);
+    forEachPart(first, last, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) tetSurvey.run(static_cast<Index>(t));
+      tetSurvey.finish();
+      surveyFaces(topology, parameters, begin, end, block, result);
+    });
   });
   parallelFor(stage, vertices, kGrain, [&](std::size_t v) {
     // On two planes, all cones are counted in vain.

@@ -81,8 +81,8 @@ struct PlainVertices {
 /// In general position with respect to all that maps are made of: powers of the plastic number.
 inline constexpr Vec3 kGeneralDirection = {1, 0.7548776662466927, 0.5698402909980532};
 
-/// The corner from which the direction leads into a tet: the one whose opposite face is the only one
-/// from which the direction leads outward. 4 if there is none.
+/// The corner from which the direction leads into a tet: the one whose opposite face is the only
+/// one from which the direction leads outward. 4 if there is none.
 [[nodiscard]] constexpr std::size_t coneCorner(TetSides sides) noexcept {
   constexpr std::array<std::uint8_t, 16> kCorners = [] {
     std::array<std::uint8_t, 16> corners{};

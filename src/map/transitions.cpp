@@ -199,7 +199,8 @@ Transitions computeTransitions(const TetTopology& topology, const LocalParameter
       result.table[index] = found.transition;
       result.table[index + 1] = inverse(found.transition);
       result.isExact[index] = result.isExact[index + 1] = found.isExact ? 1 : 0;
-      for (const auto& [halfFace, jump] : {std::pair(found.halfFace, index), std::pair(mate, index + 1)}) {
+      for (const auto& [halfFace, jump] :
+           {std::pair(found.halfFace, index), std::pair(mate, index + 1)}) {
         if (plain.sides[tetOf(halfFace)] == kUncertainSides) continue;
         plain.passages[halfFace] = Passage::across(result.table[jump].rotation, found.isExact);
       }

@@ -36,8 +36,9 @@ class VertexStar {
   /// is found: everything, in a manifold.
   /// @param vertex  not isolated
   void collect(const TetTopology& topology, Index vertex) {
-    static_cast<void>(walk(topology, vertex, [](HalfFace /*halfFace*/, const Member& /*here*/,
-                                                Member& /*spare*/, const Member& /*behind*/) {}));
+    static_cast<void>(walk(topology, vertex,
+                           [](HalfFace /*halfFace*/, const Member& /*here*/, Member& /*spare*/,
+                              const Member& /*behind*/) {}));
   }
 
   /// The same, and calls visit(half-face, member, spare, member behind) for the faces of each
