@@ -105,10 +105,10 @@ class FlatStarTest::Unfolding {
 
 bool FlatStarTest::run(Index vertex, VertexStar& star) {
   const Unfolding unfolding = star.walk(topology_, vertex, Unfolding(plain_.passages.data()));
-  plane_ = unfolding.planes();
+  planes_ = unfolding.planes();
   if (!unfolding.fits()) return false;
   const std::span<const VertexStar::Member> members = star.members();
-  if (plane_ != 0 && (!std::has_single_bit(plane_) || isBetweenPlanes(members[0].corner))) {
+  if (planes_ != 0 && (!std::has_single_bit(planes_) || isBetweenPlanes(members[0].corner))) {
     return false;
   }
   return coversDirectionOnce(members);
@@ -116,18 +116,18 @@ bool FlatStarTest::run(Index vertex, VertexStar& star) {
 
 std::size_t FlatStarTest::axis(const VertexStar::Member& member) const noexcept {
   const auto& images = kImagesOfAxes[static_cast<std::size_t>(member.rotation.index())];
-  return images[static_cast<std::size_t>(std::countr_zero(plane_))];
+  return images[static_cast<std::size_t>(std::countr_zero(planes_))];
 }
 
 /// Halfway between two integers, the one to snap to depends on the chart.
 bool FlatStarTest::isBetweenPlanes(CornerIndex corner) const {
-  const auto axis = static_cast<std::size_t>(std::countr_zero(plane_));
+  const auto axis = static_cast<std::size_t>(std::countr_zero(planes_));
   const double x = parameters_(tetOf(corner), localOf(corner))[axis];
   return std::abs(x - std::nearbyint(x)) == 0.5;
 }
 
 bool FlatStarTest::coversDirectionOnce(std::span<const VertexStar::Member> star) {
-  return (plane_ == 0 ? countCones(star) : countConesAndImages(star)) == 1;
+  return (planes_ == 0 ? countCones(star) : countConesAndImages(star)) == 1;
 }
 
 /// Cones that contain the direction, of a vertex inside.

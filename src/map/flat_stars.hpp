@@ -29,10 +29,13 @@ class FlatStarTest {
   /// @param vertex  not isolated
   [[nodiscard]] bool run(Index vertex, VertexStar& star);
 
+  /// The planes of the boundary faces in the chart of the star's first member: bit k across axis k.
+  [[nodiscard]] unsigned planes() const noexcept { return planes_; }
+
   // After a star was found flat:
 
   /// Whether the vertex is on the boundary.
-  [[nodiscard]] bool onBoundary() const noexcept { return plane_ != 0; }
+  [[nodiscard]] bool onBoundary() const noexcept { return planes_ != 0; }
   /// The axis across which the boundary plane is in the chart of a member.
   [[nodiscard]] std::size_t axis(const VertexStar::Member& member) const noexcept;
 
@@ -48,7 +51,7 @@ class FlatStarTest {
   const LocalParameters& parameters_;
   const PlainVertices& plain_;
   std::vector<Index> turned_;  ///< members whose charts are
-  unsigned plane_ = 0;         ///< bit k: across axis k of the first one's chart
+  unsigned planes_ = 0;        ///< bit k: across axis k of the first one's chart
 };
 
 }  // namespace hexhex

@@ -266,7 +266,7 @@ class StarSorter {
     const std::span<const VertexStar::Member> star = star_.members();
     stars_.cornersSeen += star.size();
     if (!isFlat) {
-      stars_.add(vertex, star);
+      stars_.add(vertex, star, flat_.planes());
       plain_.plane[vertex] = PlainVertices::kDecidedByStar;
       return;
     }

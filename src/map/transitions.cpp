@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include <base/branchless.hpp>
 #include <base/vector3.hpp>
 #include <map/best_rotation.hpp>
 #include <map/plain_vertices.hpp>
@@ -201,8 +202,9 @@ Transitions computeTransitions(const TetTopology& topology, const LocalParameter
       result.isExact[index] = result.isExact[index + 1] = found.isExact ? 1 : 0;
       for (const auto& [halfFace, jump] :
            {std::pair(found.halfFace, index), std::pair(mate, index + 1)}) {
-        if (plain.sides[tetOf(halfFace)] == kUncertainSides) continue;
-        plain.passages[halfFace] = Passage::across(result.table[jump].rotation, found.isExact);
+        const bool isSure = plain.sides[tetOf(halfFace)] != kUncertainSides;
+        plain.passages[halfFace] =
+            Passage::across(result.table[jump].rotation, allOf(isSure, found.isExact));
       }
       index += 2;
     }

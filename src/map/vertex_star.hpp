@@ -106,6 +106,9 @@ class VertexStar {
 /// Stars that are kept: those of the special vertices among consecutive vertices.
 struct StarBlock {
   std::vector<Index> vertices;
+  /// Per vertex: the planes of its boundary faces in the chart of its first member, bit k across
+  /// axis k.
+  std::vector<std::uint32_t> planes;
   std::vector<std::size_t> ends;  ///< per vertex: where its members end
   std::vector<VertexStar::Member> members;
 
@@ -119,8 +122,9 @@ struct StarBlock {
 
   std::size_t cornersSeen = 0;  ///< in all stars, kept or flat
 
-  void add(Index vertex, std::span<const VertexStar::Member> star) {
+  void add(Index vertex, std::span<const VertexStar::Member> star, unsigned planesOfStar) {
     vertices.push_back(vertex);
+    planes.push_back(planesOfStar);
     members.insert(members.end(), star.begin(), star.end());
     ends.push_back(members.size());
   }
