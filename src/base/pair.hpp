@@ -15,6 +15,12 @@ using PairMask = std::int64_t __attribute__((vector_size(16)));
   return reinterpret_cast<Pair>(reinterpret_cast<PairMask>(x) & PairMask{kAllButSign, kAllButSign});
 }
 
+/// The first where the mask is set, elsewhere the second.
+[[nodiscard]] inline Pair chosen(PairMask mask, Pair first, Pair second) noexcept {
+  return reinterpret_cast<Pair>((mask & reinterpret_cast<PairMask>(first)) |
+                                (~mask & reinterpret_cast<PairMask>(second)));
+}
+
 /// As nearestInteger() of vector3.hpp.
 [[nodiscard]] inline Pair nearestIntegers(Pair x) noexcept {
   constexpr std::int64_t kSign = std::numeric_limits<std::int64_t>::min();

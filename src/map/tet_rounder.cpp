@@ -12,18 +12,11 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;
 
-/// Where the coordinate across a boundary plane is among those of all corners.
-struct Snap {
-  std::uint8_t axis = 0;
-  std::uint8_t perCorner = 0;
-  std::uint8_t offset = 12;
-};
-
-/// By PlainVertices::plane: for one axis, or in vain.
-constexpr std::array<Snap, 32> kSnaps = [] {
-  std::array<Snap, 32> snaps{};
-  for (std::uint8_t axis = 0; axis < 3; ++axis) snaps[std::size_t{1} << axis] = {axis, 3, axis};
-  return snaps;
+/// By PlainVertices::plane and axis: all bits where the coordinate becomes an integer.
+constexpr std::array<std::array<std::int64_t, 3>, 32> kSnapMasks = [] {
+  std::array<std::array<std::int64_t, 3>, 32> masks{};
+  for (std::size_t axis = 0; axis < 3; ++axis) masks[std::size_t{1} << axis][axis] = -1;
+  return masks;
 }();
 
 /// Of corners that are decided by their stars, and of others.
@@ -50,11 +43,10 @@ class TetRounder {
     const Tet& tet = topology_.tets[t];
     TetParameters scratch;
     const TetParameters& u = parameters_.see(t, scratch);
-    Rounded rounded = roundedCorners(u);
     std::array<unsigned, 4> planes{};
     for (std::size_t i = 0; i < 4; ++i) planes[i] = plain_.plane[tet[i]];
     const unsigned anyPlane = planes[0] | planes[1] | planes[2] | planes[3];
-    if (anyPlane != 0) snap(planes, u, rounded);
+    const Rounded rounded = anyPlane == 0 ? roundedInside(u) : roundedAtPlanes(u, planes);
     LatticeTet& corners = map_.corners[t];
     store(rounded, corners);
     const double displacement = displacementOfAll(planes, u, rounded);
@@ -70,34 +62,45 @@ class TetRounder {
   [[nodiscard]] const Int192& sixfoldVolume() const noexcept { return sixfoldVolume_; }
 
  private:
-  /// Coordinates of all corners in units of the lattice, exact for integers below 2^53, and one
-  /// entry for what is written in vain.
-  using Rounded = std::array<double, 13>;
+  /// Coordinates in units of the lattice, exact for integers below 2^53: entry [i][k] has axis k of
+  /// corners 2 i and 2 i + 1.
+  using Rounded = std::array<std::array<Pair, 3>, 2>;
 
-  [[nodiscard]] Rounded roundedCorners(const TetParameters& u) const {
+  [[nodiscard]] static Pair coordinates(const TetParameters& u, std::size_t i, std::size_t k) {
+    return Pair{u[2 * i][k], u[2 * i + 1][k]};
+  }
+
+  [[nodiscard]] Rounded roundedInside(const TetParameters& u) const {
     Rounded rounded;
-    for (std::size_t n = 0; n < 12; n += 2) {
-      const Pair x = Pair{u[n / 3][n % 3], u[(n + 1) / 3][(n + 1) % 3]} * unit_;
-      const Pair nearest = nearestIntegers(x);
-      rounded[n] = nearest[0];
-      rounded[n + 1] = nearest[1];
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        rounded[i][k] = nearestIntegers(coordinates(u, i, k) * unit_);
+      }
+    }
+    return rounded;
+  }
+
+  /// The same, but with integers across boundary planes.
+  [[nodiscard]] Rounded roundedAtPlanes(const TetParameters& u,
+                                        const std::array<unsigned, 4>& planes) const {
+    Rounded rounded;
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Pair x = coordinates(u, i, k);
+        const PairMask isAcross = {kSnapMasks[planes[2 * i]][k], kSnapMasks[planes[2 * i + 1]][k]};
+        rounded[i][k] =
+            chosen(isAcross, nearestIntegers(x) * unit_, nearestIntegers(x * unit_));
+      }
     }
     return rounded;
   }
 
   static void store(const Rounded& rounded, LatticeTet& corners) {
-    for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t i = 0; i < 2; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
-        corners[i][k] = static_cast<std::int64_t>(rounded[3 * i + k]);
+        corners[2 * i][k] = static_cast<std::int64_t>(rounded[i][k][0]);
+        corners[2 * i + 1][k] = static_cast<std::int64_t>(rounded[i][k][1]);
       }
-    }
-  }
-
-  /// Makes coordinates across boundary planes integers.
-  void snap(const std::array<unsigned, 4>& planes, const TetParameters& u, Rounded& rounded) const {
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Snap& snap = kSnaps[planes[i]];
-      rounded[i * snap.perCorner + snap.offset] = nearestInteger(u[i][snap.axis]) * unit_;
     }
   }
 
@@ -105,14 +108,12 @@ class TetRounder {
   [[nodiscard]] double displacementOfAll(const std::array<unsigned, 4>& planes,
                                          const TetParameters& u, const Rounded& rounded) const {
     Pair displacement = {0, 0};
-    for (std::size_t i = 0; i < 4; i += 2) {
+    for (std::size_t i = 0; i < 2; ++i) {
       Pair moved = {0, 0};
       for (std::size_t k = 0; k < 3; ++k) {
-        const Pair before = {u[i][k], u[i + 1][k]};
-        const Pair after = {rounded[3 * i + k], rounded[3 * i + 3 + k]};
-        moved = larger(moved, magnitudeOf(after * resolution_ - before));
+        moved = larger(moved, magnitudeOf(rounded[i][k] * resolution_ - coordinates(u, i, k)));
       }
-      const Pair weight = {weightOf(planes[i]), weightOf(planes[i + 1])};
+      const Pair weight = {weightOf(planes[2 * i]), weightOf(planes[2 * i + 1])};
       displacement = larger(displacement, moved * weight);
     }
     return std::max(displacement[0], displacement[1]);
@@ -122,19 +123,23 @@ class TetRounder {
     return kWeights[plane >= PlainVertices::kPlaneOfStar ? 0 : 1];
   }
 
-  [[nodiscard]] bool isPositive(const Rounded& rounded, const LatticeTet& c) {
+  [[nodiscard]] bool isPositive(const Rounded& rounded, const LatticeTet& corners) {
     if (measureVolume_) {
-      const Int192 determinant = orientationDeterminant(c[0], c[1], c[2], c[3]);
+      const Int192 determinant = orientationDeterminant(corners[0], corners[1], corners[2], corners[3]);
       if (determinant.sign() <= 0) return false;
       sixfoldVolume_ += determinant;
       return true;
     }
-    const auto corner = [&rounded](std::size_t i) {
-      return Vec3{rounded[3 * i], rounded[3 * i + 1], rounded[3 * i + 2]};
-    };
-    const Vec3 origin = corner(0);
-    return certainDeterminant(minus(corner(1), origin), minus(corner(2), origin),
-                              minus(corner(3), origin)) > 0;
+    Vec3 a{};
+    Vec3 b{};
+    Vec3 c{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double origin = rounded[0][k][0];
+      a[k] = rounded[0][k][1] - origin;
+      b[k] = rounded[1][k][0] - origin;
+      c[k] = rounded[1][k][1] - origin;
+    }
+    return certainDeterminant(a, b, c) > 0;
   }
 
   void report(Index t, const TetParameters& u) {
