@@ -88,8 +88,7 @@ class TetRounder {
       for (std::size_t k = 0; k < 3; ++k) {
         const Pair x = coordinates(u, i, k);
         const PairMask isAcross = {kSnapMasks[planes[2 * i]][k], kSnapMasks[planes[2 * i + 1]][k]};
-        rounded[i][k] =
-            chosen(isAcross, nearestIntegers(x) * unit_, nearestIntegers(x * unit_));
+        rounded[i][k] = chosen(isAcross, nearestIntegers(x) * unit_, nearestIntegers(x * unit_));
       }
     }
     return rounded;
@@ -125,7 +124,8 @@ class TetRounder {
 
   [[nodiscard]] bool isPositive(const Rounded& rounded, const LatticeTet& corners) {
     if (measureVolume_) {
-      const Int192 determinant = orientationDeterminant(corners[0], corners[1], corners[2], corners[3]);
+      const Int192 determinant =
+          orientationDeterminant(corners[0], corners[1], corners[2], corners[3]);
       if (determinant.sign() <= 0) return false;
       sixfoldVolume_ += determinant;
       return true;
