@@ -239,16 +239,16 @@ CellCornerSet CellEmitter<Id>::lookAcross(const ChartPoint& c, const CutCell& cu
   CellCornerSet left = 0;
   OtherSide other;
   for (CellCornerSet corners = cut.corners(); corners != 0; corners &= corners - 1) {
-    const CellCornerSet bit = corners & (0U - corners);
-    const JumpId id = cut.jump(memberOf(bit));
-    const CellCornerSet own = turned(toOwn, bit);
+    const std::size_t corner = memberOf(corners);
+    const std::size_t own = turnedCorner(toOwn, corner);
+    const JumpId id = cut.jump(corner);
     if (id != other.jump) other = otherSide(c, id);
-    const Id there = vertexBeyond(other, memberOf(turned(other.rotation, bit)));
-    Id& here = cell[memberOf(own)];
+    const Id there = vertexBeyond(other, turnedCorner(other.rotation, corner));
+    Id& here = cell[own];
     const bool isHere = Brick<Id>::isVertex(here);
     const bool isThere = Brick<Id>::isVertex(there);
     if (there == Brick<Id>::kContested || isHere == isThere) {
-      if (here != there) left |= own;
+      if (here != there) left |= CellCornerSet{1} << own;
     } else if (isThere) {
       here = there;
       hidden = true;
