@@ -440,7 +440,7 @@ OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Tet> cells
 }
 
 OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Hex> cells, Stage& stage) {
-  if (vertexCount <= kMaxOvmEntities && cells.size() < kNone / 6) {
+  if (vertexCount <= kMaxOvmEntities && cells.size() < kNone / 12) {
     std::optional<OvmTopology> topology = buildOvmHexTopology(vertexCount, cells, stage);
     if (topology) return std::move(*topology);
   }
