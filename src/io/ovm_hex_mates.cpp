@@ -42,8 +42,11 @@ struct SeamSide {
   }
 };
 
+/// Where the mate of a side stands.
+std::size_t placeOf(Index side) { return 6 * cellOf(side) + faceOf(side); }
+
 Quad verticesOf(std::span<const Hex> cells, Index side) {
-  return faceVertices(cells[side / 6], side % 6);
+  return faceVertices(cells[cellOf(side)], faceOf(side));
 }
 
 /// Whether two quads with the same vertices pass them in opposite directions.
@@ -74,7 +77,7 @@ class MateFinder {
   void linkAligned();
   [[nodiscard]] bool link(std::size_t cell, const std::array<Index, 3>& behind);
   void findSeams();
-  [[nodiscard]] bool markSeams(std::size_t cell, std::span<std::uint8_t> onSeam) const;
+  [[nodiscard]] int markSeams(std::size_t cell, std::span<std::uint8_t> onSeam) const;
   template <class F>
   void forEachSeamSide(const F& f) const;
   void matchSeamSides();
@@ -120,12 +123,13 @@ bool MateFinder::link(std::size_t cell, const std::array<Index, 3>& behind) {
   bool good = !hasVertexTwice(here);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (behind[axis] == kNone) continue;
-    const std::size_t side = 6 * cell + 2 * axis + 1;
-    const std::size_t mate = 6 * std::size_t{behind[axis]} + 2 * axis;
     good &= cells_[behind[axis]][kNext[axis]] != here[0];
-    mates[side] = static_cast<Index>(mate);
-    // In a broken mesh, two cells may claim the same side: then one of them is disappointed.
-    std::atomic_ref(mates[mate]).store(static_cast<Index>(side), std::memory_order_relaxed);
+    const std::size_t far = 2 * axis + 1;
+    const std::size_t near = 2 * axis;
+    mates[6 * cell + far] = sideOf(behind[axis], near);
+    // In a broken mesh, two cells may claim the same side: then fewer sides are claimed than claim.
+    std::atomic_ref(mates[6 * std::size_t{behind[axis]} + near])
+        .store(sideOf(cell, far), std::memory_order_relaxed);
   }
   return good;
 }
@@ -133,11 +137,14 @@ bool MateFinder::link(std::size_t cell, const std::array<Index, 3>& behind) {
 void MateFinder::findSeams() {
   Array<std::uint8_t> onSeam(vertexCount_);
   parallelFor(stage_, onSeam.size(), 8 * kGrain, [&](std::size_t v) { onSeam[v] = 0; });
-  forEachBlock(cells_.size(), [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-    bool good = true;
-    for (std::size_t c = begin; c < end; ++c) good = markSeams(c, onSeam) && good;
-    return good;
-  });
+  std::atomic<std::int64_t> unanswered{0};
+  parallelBlocks(stage_, cells_.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::int64_t sum = 0;
+                   for (std::size_t c = begin; c < end; ++c) sum += markSeams(c, onSeam);
+                   unanswered.fetch_add(sum, std::memory_order_relaxed);
+                 });
+  if (unanswered != 0) sound_ = false;
   result_.seamCorners.resize(cells_.size());
   parallelFor(stage_, cells_.size(), kGrain, [&](std::size_t c) {
     unsigned corners = 0;
@@ -146,21 +153,20 @@ void MateFinder::findSeams() {
   });
 }
 
-/// @return whether the mates of the cell's sides have them as their mates
-bool MateFinder::markSeams(std::size_t cell, std::span<std::uint8_t> onSeam) const {
-  const Index* const mates = result_.mates.data();
-  bool good = true;
+/// @return how many more of the cell's far sides have claimed a mate than near sides are claimed
+int MateFinder::markSeams(std::size_t cell, std::span<std::uint8_t> onSeam) const {
+  const Index* const mates = result_.mates.data() + 6 * cell;
+  int balance = 0;
   for (std::size_t face = 0; face < 6; ++face) {
-    const std::size_t side = 6 * cell + face;
-    if (mates[side] != kNone) {
-      if (face % 2 == 1) good &= mates[mates[side]] == side;
+    if (mates[face] != kNone) {
+      balance += face % 2 == 1 ? 1 : -1;
       continue;
     }
     for (const Index v : faceVertices(cells_[cell], face)) {
       std::atomic_ref(onSeam[v]).store(1, std::memory_order_relaxed);
     }
   }
-  return good;
+  return balance;
 }
 
 /// Calls f(smallest vertex, side) for the sides with all vertices on seams, in parallel.
@@ -172,7 +178,7 @@ void MateFinder::forEachSeamSide(const F& f) const {
     for (std::size_t face = 0; face < 6; ++face) {
       if ((corners & kFaceCorners[face]) != kFaceCorners[face]) continue;
       const Quad quad = faceVertices(cells_[c], face);
-      f(*std::min_element(quad.begin(), quad.end()), static_cast<Index>(6 * c + face));
+      f(*std::min_element(quad.begin(), quad.end()), sideOf(c, face));
     }
   });
 }
@@ -210,8 +216,8 @@ void MateFinder::matchSeamSides() {
 bool MateFinder::match(std::span<const SeamSide> face) {
   const Index first = face.front().side;
   const Index last = face.back().side;
-  result_.mates[first] = last;
-  result_.mates[last] = first;
+  result_.mates[placeOf(first)] = last;
+  result_.mates[placeOf(last)] = first;
   return face.size() == 1 ||
          (face.size() == 2 && areOpposite(verticesOf(cells_, first), verticesOf(cells_, last)));
 }

@@ -12,14 +12,20 @@
 
 namespace hexhex {
 
-/// Side 6 * cell + face stands for a row of kHexFaces of a cell: face 2 * axis at corner 0, face
-/// 2 * axis + 1 across from it.
-///
+/// A side of a cell by its number, 8 * cell + face: face 2 * axis is at corner 0, face 2 * axis + 1
+/// across from it, as in kHexFaces.
+constexpr Index sideOf(std::size_t cell, std::size_t face) noexcept {
+  return static_cast<Index>(8 * cell + face);
+}
+constexpr std::size_t cellOf(Index side) noexcept { return side / 8; }
+constexpr std::size_t faceOf(Index side) noexcept { return side % 8; }
+
 /// *Seams* are the faces whose two cells do not number their corners alike (aligned_cells.hpp), and
 /// the boundary. A vertex that is on no seam has eight cells, each of which has it at another
 /// corner: to go from one to the next is to look up a mate.
 struct HexMates {
-  Array<Index> mates;  ///< per side: the same face in the other cell, else the side itself
+  /// Per cell and face: the side that is the same face in the other cell, else the side itself.
+  Array<Index> mates;
   Array<std::uint8_t> seamCorners;  ///< per cell: bit k if corner k is on a seam
 };
 

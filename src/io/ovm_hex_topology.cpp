@@ -33,7 +33,7 @@ constexpr std::array<std::uint8_t, 3> kNext = {1, 3, 4};
 /// By corner: bit k if it is across from corner 0 along axis k.
 constexpr std::array<std::uint8_t, 8> kSteps = {0, 1, 3, 2, 4, 5, 7, 6};
 
-/// What belongs to a cell, as bits: its edges at corner 0 by axis, and faces as in kHexFaces.
+/// What belongs to a cell, as bits: its edges at corner 0 by axis, and its faces by slot.
 struct Own {
   Index firstEdge;  ///< number of the first of them
   Index firstFace;
@@ -41,7 +41,7 @@ struct Own {
   std::uint8_t faces;
 };
 constexpr std::uint8_t kAllEdges = 7;
-constexpr std::uint8_t kNearFaces = 1 | 4 | 16;
+constexpr std::uint8_t kNearSlots = 1 | 4 | 32;
 
 /// Without a processor's instruction for it, std::popcount() would be a call.
 constexpr std::array<std::uint8_t, 64> makeBitCounts() {
@@ -60,7 +60,7 @@ Index rankOf(unsigned bits, std::size_t i) { return kBitCounts[bits & ((1U << i)
 /// the face's loop; and faces at corner 0 have edges that are at hand.
 bool owns(Index side, Index mate) {
   const auto rank = [](Index each) {
-    const unsigned face = each % 6;
+    const std::size_t face = faceOf(each);
     return face == kFaceOfSlot[0] ? 0U : 1 + face % 2;
   };
   return std::pair(rank(side), side) <= std::pair(rank(mate), mate);
@@ -94,7 +94,7 @@ class HexTopologyBuilder {
   }
   /// The neighbour across from corner 0.
   [[nodiscard]] std::size_t behind(std::size_t cell, std::size_t axis) const {
-    return matesOf(cell)[2 * axis + 1] / 6;
+    return cellOf(matesOf(cell)[2 * axis + 1]);
   }
   [[nodiscard]] Own ownOf(std::size_t cell) const;
   bool number();
@@ -120,15 +120,15 @@ class HexTopologyBuilder {
 /// Without numbers.
 Own HexTopologyBuilder::ownOf(std::size_t cell) const {
   const unsigned seams = seamCorners_[cell];
-  if (seams == 0) return {0, 0, kAllEdges, kNearFaces};
+  if (seams == 0) return {0, 0, kAllEdges, kNearSlots};
   unsigned edges = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     edges |= (seams & seams >> kNext[axis] & 1U) == 0 ? 1U << axis : 0U;
   }
   unsigned faces = 0;
-  for (std::size_t face = 0; face < 6; ++face) {
-    const auto side = static_cast<Index>(6 * cell + face);
-    faces |= owns(side, matesOf(cell)[face]) ? 1U << face : 0U;
+  for (std::size_t slot = 0; slot < 6; ++slot) {
+    const std::size_t face = kFaceOfSlot[slot];
+    faces |= owns(sideOf(cell, face), matesOf(cell)[face]) ? 1U << slot : 0U;
   }
   return {0, 0, static_cast<std::uint8_t>(edges), static_cast<std::uint8_t>(faces)};
 }
@@ -216,8 +216,8 @@ void HexTopologyBuilder::listNearFaces(std::size_t cell, Index* halfEdges) const
   const std::array<std::size_t, 3> next = {behind(cell, 0), behind(cell, 1), behind(cell, 2)};
   const Index first = 2 * own_[cell].firstEdge;
   const std::array<Index, 3> edges = {first, first + 2, first + 4};
-  // As kOvmHexFaces passes corners 0, 3, 7, 4; 0, 4, 5, 1; and 0, 1, 2, 3.
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  // As kOvmHexFaces passes corners 0, 1, 2, 3; 0, 4, 5, 1; and 0, 3, 7, 4.
+  for (const std::size_t axis : {2, 1, 0}) {
     const std::size_t a = (axis + 1) % 3;
     const std::size_t b = (axis + 2) % 3;
     *halfEdges++ = edges[a];
@@ -229,9 +229,9 @@ void HexTopologyBuilder::listNearFaces(std::size_t cell, Index* halfEdges) const
 
 /// The same of any cell.
 void HexTopologyBuilder::listOwnFaces(std::size_t cell, Index* halfEdges) const {
-  for (std::size_t face = 0; face < 6; ++face) {
-    if ((own_[cell].faces >> face & 1U) == 0) continue;
-    const std::array<std::uint8_t, 4>& corners = kOvmHexFaces[kSlotOfFace[face]];
+  for (std::size_t slot = 0; slot < 6; ++slot) {
+    if ((own_[cell].faces >> slot & 1U) == 0) continue;
+    const std::array<std::uint8_t, 4>& corners = kOvmHexFaces[slot];
     for (std::size_t i = 0; i < 4; ++i) {
       *halfEdges++ = halfEdge(cell, corners[i], corners[(i + 1) % 4]);
     }
@@ -240,18 +240,18 @@ void HexTopologyBuilder::listOwnFaces(std::size_t cell, Index* halfEdges) const 
 
 /// Replaces mates by half-faces.
 void HexTopologyBuilder::listCells() {
-  const auto faceOf = [this](std::size_t cell, std::size_t face) {
-    return own_[cell].firstFace + rankOf(own_[cell].faces, face);
+  const auto numberOf = [this](std::size_t cell, std::size_t slot) {
+    return own_[cell].firstFace + rankOf(own_[cell].faces, slot);
   };
   parallelFor(stage_, cells_.size(), kGrain, [&](std::size_t c) {
     Index* const handles = topology_.cells.handles.data() + 6 * c;
     std::array<Index, 6> mates;  // NOLINT(*-member-init): all of it is set
     std::copy_n(handles, 6, mates.begin());
     for (std::size_t slot = 0; slot < 6; ++slot) {
-      const std::size_t face = kFaceOfSlot[slot];
-      const bool isOwn = (own_[c].faces >> face & 1U) != 0;
-      handles[slot] =
-          isOwn ? 2 * faceOf(c, face) : 2 * faceOf(mates[face] / 6, mates[face] % 6) + 1;
+      const Index mate = mates[kFaceOfSlot[slot]];
+      handles[slot] = (own_[c].faces >> slot & 1U) != 0
+                          ? 2 * numberOf(c, slot)
+                          : 2 * numberOf(cellOf(mate), kSlotOfFace[faceOf(mate)]) + 1;
     }
   });
 }

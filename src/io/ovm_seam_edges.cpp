@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 
 #include <base/parallel.hpp>
 #include <io/ovm_seam_edges.hpp>
@@ -9,15 +10,27 @@ namespace {
 
 constexpr std::size_t kGrain = 2048;
 
+/// By the corners of a cell that are on seams: its edges between them, as bits.
+constexpr std::array<std::uint16_t, 256> makeEdgesBetween() {
+  std::array<std::uint16_t, 256> result{};
+  for (unsigned corners = 0; corners < 256; ++corners) {
+    for (unsigned e = 0; e < 12; ++e) {
+      const auto& [i, k] = kHexEdges[e];
+      if ((corners >> i & corners >> k & 1U) == 0) continue;
+      result[corners] = static_cast<std::uint16_t>(result[corners] | 1U << e);
+    }
+  }
+  return result;
+}
+constexpr std::array<std::uint16_t, 256> kEdgesBetween = makeEdgesBetween();
+
 /// Calls f(smaller vertex, larger vertex) for the edges of all cells between seam vertices.
 template <class F>
 void forEachSeamEdge(std::span<const Hex> cells, std::span<const std::uint8_t> seamCorners,
                      Stage& stage, const F& f) {
   parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
-    const unsigned corners = seamCorners[c];
-    if (corners == 0) return;
-    for (const auto& [i, k] : kHexEdges) {
-      if ((corners >> i & corners >> k & 1U) == 0) continue;
+    for (unsigned edges = kEdgesBetween[seamCorners[c]]; edges != 0; edges &= edges - 1) {
+      const auto& [i, k] = kHexEdges[static_cast<std::size_t>(std::countr_zero(edges))];
       f(std::min(cells[c][i], cells[c][k]), std::max(cells[c][i], cells[c][k]));
     }
   });
