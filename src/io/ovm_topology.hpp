@@ -27,9 +27,8 @@ inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kOvmHexFaces = {
 
 /// Finds the faces and edges of cells. Half-face 2f begins with the first corner of the slot of the
 /// cell that it points into; that is a cell that has the face in the first slot of its list, if
-/// there is one. Faces of tets are numbered as they first occur in the cells; edges of tets go from
-/// the smaller to the larger vertex and come in lexicographic order. Those of hexahedra are mostly
-/// as buildOvmHexTopology() says.
+/// there is one. Edges of tets go from the smaller to the larger vertex and come in the order of
+/// the smaller. Numbers of hexahedra are mostly as buildOvmHexTopology() says.
 /// @param cells  corners of tets or hexahedra, vertices in range
 /// @throws Error NonManifoldFace, Orientation if a face is shared by more than two cells, or by two
 ///         that do not run in opposite directions; RepeatedVertex; TooLarge

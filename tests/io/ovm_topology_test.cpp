@@ -118,7 +118,8 @@ TEST(OvmTopology, OfTets) {
   const TetMap map = generateSample(SampleKind::Sphere, {.cells = 2, .refine = 5}).map;
   const OvmTopology topology = topologyOf(map.points.size(), map.tets, 4);
   expectTopologyOf<3>(topology, map.tets, kOvmTetFaces);
-  EXPECT_TRUE(std::is_sorted(topology.edges.begin(), topology.edges.end()));
+  EXPECT_TRUE(std::is_sorted(topology.edges.begin(), topology.edges.end(),
+                             [](const auto& a, const auto& b) { return a[0] < b[0]; }));
   expectSame(topology, topologyOf(map.points.size(), map.tets, 1));
 }
 
