@@ -110,8 +110,8 @@ class ExodusWriter {
     define(cells, sides, nodeSets);
     writePoints();
     for (const ElementGroup& group : cells.groups) writeCells(cells, group);
-    const Array<int> numbers = elementNumbers(cells);
-    for (const SideSet& set : sides) writeSides(set, quads, numbers);
+    const Array<Index> places = placesOf(cells);
+    for (const SideSet& set : sides) writeSides(set, quads, places);
     for (std::size_t i = 0; i < nodeSets.size(); ++i) {
       file_.require(
           ex_put_set(file_.id(), EX_NODE_SET, size(i + 1), nodeSets[i].vertices.data(), nullptr));
@@ -197,18 +197,19 @@ class ExodusWriter {
     });
   }
 
-  /// The number of each cell in the order of the blocks.
-  [[nodiscard]] Array<int> elementNumbers(const CellGroups& cells) const {
-    Array<int> numbers(mesh_.cells.size());
-    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[cells.at(i)] = static_cast<int>(i) + 1;
-    return numbers;
+  /// Where each cell stands in the order of the blocks; empty: as they are.
+  static Array<Index> placesOf(const CellGroups& cells) {
+    Array<Index> places(cells.order.size());
+    for (std::size_t i = 0; i < places.size(); ++i) places[cells.at(i)] = static_cast<Index>(i);
+    return places;
   }
 
-  void writeSides(const SideSet& set, const QuadGroups& quads, const Array<int>& numbers) {
+  void writeSides(const SideSet& set, const QuadGroups& quads, const Array<Index>& places) {
     std::vector<int> elements;
     std::vector<int> sides;
     for (std::size_t i = set.group->begin; i < set.end; ++i) {
-      elements.push_back(numbers[quads.places[i] / 8]);
+      const std::size_t cell = quads.places[i] / 8;
+      elements.push_back(static_cast<int>(places.empty() ? cell : places[cell]) + 1);
       sides.push_back(kSideNumbers[quads.places[i] % 8]);
     }
     file_.require(

@@ -27,6 +27,9 @@ class AlignedCells {
   /// @param cells  with corners below vertexCount; must outlive this object
   AlignedCells(std::size_t vertexCount, std::span<const Hex> cells, Stage& stage);
 
+  /// The last cell that has a vertex at corner 0, or kNone.
+  [[nodiscard]] Index at(Index vertex) const noexcept { return cellAt_[vertex]; }
+
   /// A cell with face 2 * axis where this cell has face 2 * axis + 1, whose four corners there are
   /// what its neighbour along the axis is in this cell; or kNone. Cells that share a vertex at
   /// corner 0 with a later cell are not found.
