@@ -1,6 +1,7 @@
 // The little vector arithmetic that measuring takes.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include <hexhex/types.hpp>
@@ -26,6 +27,14 @@ namespace hexhex {
 /// Six times the volume of the tet that they span.
 [[nodiscard]] constexpr double tripleProduct(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
   return dot(a, cross(b, c));
+}
+
+/// The axis of the largest component, the first of several.
+[[nodiscard]] inline std::size_t dominantAxis(const Vec3& v) noexcept {
+  // As numbers, since which one it is would be as good as random.
+  const std::size_t first = std::abs(v[1]) > std::abs(v[0]) ? 1 : 0;
+  const std::size_t isThird = std::abs(v[2]) > std::max(std::abs(v[0]), std::abs(v[1])) ? 1 : 0;
+  return first + isThird * (2 - first);
 }
 
 /// Nearest integer (even if there are two) of a number below 2^52 in magnitude, as std::nearbyint

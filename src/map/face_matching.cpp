@@ -18,36 +18,47 @@ constexpr Index smaller(Index a, Index b) { return a < b ? a : b; }
 constexpr Index larger(Index a, Index b) { return a < b ? b : a; }
 
 /// Each triangle is found at its smallest vertex. In a tet, that is the tet's smallest vertex for
-/// three faces and the second smallest for the fourth: so each tet has two entries, 2 * tet and
-/// 2 * tet + 1, in linked lists that start at these vertices. Each thread has lists of its own.
+/// three faces and the second smallest for the fourth: so each tet is in two linked lists, one of
+/// the tets whose smallest vertex it is and one of those whose second smallest. Each thread has
+/// lists of its own.
 struct FaceLists {
+  struct Heads {
+    Index threeFaces = kNone;  ///< the first tet of whom this is the smallest vertex,
+    Index oneFace = kNone;     ///< and the second smallest
+    Index smallest = kNone;    ///< tet of all
+  };
+  struct Next {
+    Index threeFaces;
+    Index oneFace;
+  };
   std::size_t parts = 1;
   std::size_t vertices = 0;
-  Array<Index> head;      ///< per part and vertex: an entry, or kNone
-  Array<Index> next;      ///< per entry
-  Array<Index> smallest;  ///< per part and vertex: the smallest tet, or kNone
+  Array<Heads> heads;  ///< per part and vertex
+  Array<Next> next;    ///< per tet: the tet behind it in both lists, or kNone
+
+  [[nodiscard]] const Heads& at(std::size_t part, Index vertex) const {
+    return heads[part * vertices + vertex];
+  }
 };
 
 /// Enters tets [begin, end) into the lists of one part.
 void listFaces(FaceLists& lists, std::span<const Tet> tets, std::size_t part, std::size_t begin,
                std::size_t end) {
-  Index* const head = &lists.head[part * lists.vertices];
-  Index* const smallest = &lists.smallest[part * lists.vertices];
-  std::fill_n(head, lists.vertices, kNone);
-  std::fill_n(smallest, lists.vertices, kNone);
+  FaceLists::Heads* const heads = &lists.heads[part * lists.vertices];
+  std::fill_n(heads, lists.vertices, FaceLists::Heads());
   // Backwards, so that the last tet to write is the smallest.
   for (std::size_t t = end; t > begin; --t) {
     const Tet& tet = tets[t - 1];
     const auto index = static_cast<Index>(t - 1);
-    for (const Index v : tet) smallest[v] = index;
+    for (const Index v : tet) heads[v].smallest = index;
     const Index low01 = smaller(tet[0], tet[1]);
     const Index low23 = smaller(tet[2], tet[3]);
     const Index high01 = larger(tet[0], tet[1]);
     const Index high23 = larger(tet[2], tet[3]);
     const Index first = smaller(low01, low23);
     const Index second = smaller(larger(low01, low23), smaller(high01, high23));
-    lists.next[2 * index] = std::exchange(head[first], 2 * index);
-    lists.next[2 * index + 1] = std::exchange(head[second], 2 * index + 1);
+    lists.next[index] = {std::exchange(heads[first].threeFaces, index),
+                         std::exchange(heads[second].oneFace, index)};
   }
 }
 
@@ -55,9 +66,8 @@ FaceLists listFaces(TetTopology& topology, Stage& stage) {
   FaceLists lists;
   lists.parts = std::min(kMaxParts, static_cast<std::size_t>(currentThreads()));
   lists.vertices = topology.pointCount;
-  lists.head.resize(lists.parts * lists.vertices);
-  lists.smallest.resize(lists.parts * lists.vertices);
-  lists.next.resize(2 * topology.tetCount());
+  lists.heads.resize(lists.parts * lists.vertices);
+  lists.next.resize(topology.tetCount());
   const std::size_t tets = topology.tetCount();
   parallelFor(stage, lists.parts, 1, [&](std::size_t part) {
     listFaces(lists, topology.tets, part, tets * part / lists.parts,
@@ -66,128 +76,170 @@ FaceLists listFaces(TetTopology& topology, Stage& stage) {
   return lists;
 }
 
-/// How face f of a tet goes on from its corner i, in the order of kFaceCorners.
-struct FaceTurn {
-  std::uint8_t second = 0;
-  std::uint8_t third = 0;
-};
-
-constexpr std::array<std::array<FaceTurn, 4>, 4> makeFaceTurns() {
-  std::array<std::array<FaceTurn, 4>, 4> turns{};
-  for (std::size_t f = 0; f < 4; ++f) {
+/// The other corners of a tet, in the order in which kFaceCorners has the last two of them after
+/// this one, in the face opposite the first.
+constexpr std::array<std::array<std::uint8_t, 3>, 4> kTurns = [] {
+  std::array<std::array<std::uint8_t, 3>, 4> turns{};
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    const std::size_t face = corner == 0 ? 1 : 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      turns[static_cast<std::size_t>(kFaceCorners[f][k])][f] = {
-          static_cast<std::uint8_t>(kFaceCorners[f][(k + 1) % 3]),
-          static_cast<std::uint8_t>(kFaceCorners[f][(k + 2) % 3])};
+      if (kFaceCorners[face][k] != static_cast<int>(corner)) continue;
+      turns[corner] = {static_cast<std::uint8_t>(face),
+                       static_cast<std::uint8_t>(kFaceCorners[face][(k + 1) % 3]),
+                       static_cast<std::uint8_t>(kFaceCorners[face][(k + 2) % 3])};
     }
   }
   return turns;
-}
+}();
 
-constexpr std::array<std::array<FaceTurn, 4>, 4> kFaceTurns = makeFaceTurns();
-
-/// The three faces at a corner.
-constexpr std::array<std::array<std::uint8_t, 3>, 4> kFacesAt = {
-    {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
-
-/// Matches the half-faces whose smallest vertex is the same: a hash table of the triangles there.
-class FaceMatcher {
- public:
-  FaceMatcher(TetTopology& topology, const FaceLists& lists)
-      : topology_(topology), lists_(lists), slots_(std::size_t{1} << (64 - kInitialShift)) {}
-
-  /// False if something is wrong with a triangle of this vertex.
-  bool run(Index v) {
-    for (;;) {
-      Pass pass{topology_.tets.data(), topology_.mate.data(), slots_.data(), shift_, ++group_};
-      if (tryRun(v, pass)) return pass.sound;
-      slots_.assign(2 * slots_.size(), Slot{});
-      --shift_;
-      group_ = 0;
+/// By corner and face: the other two corners of the face, in the order of kFaceCorners.
+constexpr std::array<std::array<std::array<std::uint8_t, 2>, 4>, 4> kTurnsInFace = [] {
+  std::array<std::array<std::array<std::uint8_t, 2>, 4>, 4> turns{};
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      turns[corner][kTurns[corner][k]] = {kTurns[corner][(k + 1) % 3], kTurns[corner][(k + 2) % 3]};
     }
+  }
+  return turns;
+}();
+
+/// A half-face at a vertex.
+struct Entry {
+  std::uint64_t key;  ///< the triangle's other two vertices, the smaller one in the upper half
+  HalfFace halfFace;
+  std::uint32_t turned;  ///< 1 if the larger one comes first in kFaceCorners
+
+  Entry(Index a, Index b, HalfFace h)
+      : key((std::uint64_t{smaller(a, b)} << 32) | larger(a, b)),
+        halfFace(h),
+        turned(a > b ? 1 : 0) {}
+  Entry() = default;
+};
+
+/// Collects the half-faces whose smallest vertex is the same.
+class EntryList {
+ public:
+  EntryList(const TetTopology& topology, const FaceLists& lists)
+      : topology_(topology), lists_(lists) {}
+
+  std::span<const Entry> collect(Index v) {
+    const Tet* const tets = topology_.tets.data();
+    const FaceLists::Next* const next = lists_.next.data();
+    std::size_t count = 0;
+    for (std::size_t part = 0; part < lists_.parts; ++part) {
+      const FaceLists::Heads& heads = lists_.at(part, v);
+      for (Index t = heads.threeFaces; t != kNone; t = next[t].threeFaces) {
+        const Tet& tet = tets[t];
+        const std::array<std::uint8_t, 3>& turn = kTurns[localCorner(tet, v)];
+        const std::array<Index, 3> others = {tet[turn[0]], tet[turn[1]], tet[turn[2]]};
+        Entry* const added = roomFor(count, 3);
+        added[0] = Entry(others[1], others[2], 4 * t + turn[0]);
+        added[1] = Entry(others[2], others[0], 4 * t + turn[1]);
+        added[2] = Entry(others[0], others[1], 4 * t + turn[2]);
+        count += 3;
+      }
+      for (Index t = heads.oneFace; t != kNone; t = next[t].oneFace) {
+        const Tet& tet = tets[t];
+        // The face opposite the one vertex that is smaller.
+        const Index isLast = tet[3] < v ? 1 : 0;
+        const Index low = (tet[1] < v ? 1U : 0U) | isLast;
+        const Index high = (tet[2] < v ? 1U : 0U) | isLast;
+        const Index face = low | (high << 1);
+        const std::array<std::uint8_t, 2>& turn = kTurnsInFace[localCorner(tet, v)][face];
+        *roomFor(count, 1) = Entry(tet[turn[0]], tet[turn[1]], 4 * t + face);
+        ++count;
+      }
+    }
+    return {entries_.data(), count};
   }
 
  private:
-  static constexpr int kInitialShift = 55;  ///< 2^(64 - 55) slots
+  /// Behind the first `count` entries, for so many more.
+  Entry* roomFor(std::size_t count, std::size_t more) {
+    if (entries_.size() < count + more) entries_.resize(2 * (count + more));
+    return &entries_[count];
+  }
 
+  const TetTopology& topology_;
+  const FaceLists& lists_;
+  std::vector<Entry> entries_ = std::vector<Entry>(256);
+};
+
+/// Matches the half-faces at one vertex after the other by a hash table. Whether a triangle is
+/// found for the first or the second time is as good as random, so that all is done alike for both.
+class FaceMatcher {
+ public:
+  explicit FaceMatcher(HalfFace* mate) : mate_(mate) {}
+
+  /// False if a triangle is there more than twice, or twice in the same orientation.
+  [[nodiscard]] bool run(std::span<const Entry> entries) {
+    makeRoom(entries.size());
+    const Table table{slots_.data(), slots_.size() - 1, shift_, ++group_ << 1};
+    HalfFace* const mate = mate_;
+    std::uint32_t faults = 0;
+    for (const Entry& entry : entries) {
+      Slot& slot = *table.find(entry.key);
+      const std::uint32_t tag = table.tag | entry.turned;
+      const std::uint32_t difference = slot.tag ^ tag;
+      const std::uint32_t isKnown = difference < 2 ? 1 : 0;
+      const std::uint32_t isPair = isKnown & difference & (slot.halfFace != kNone ? 1U : 0U);
+      const HalfFace pairMask = 0 - isPair;
+      const HalfFace other = entry.halfFace ^ ((entry.halfFace ^ slot.halfFace) & pairMask);
+      mate[other] = entry.halfFace | ~pairMask;
+      mate[entry.halfFace] = other | ~pairMask;
+      slot = {entry.key, tag, entry.halfFace | (0 - isKnown)};
+      faults |= isKnown ^ isPair;
+    }
+    return faults == 0;
+  }
+
+ private:
   struct Slot {
-    std::uint64_t key = 0;      ///< the other two vertices, the smaller one in the upper half
-    std::uint32_t group = 0;    ///< the slot is empty for all vertices but one
+    std::uint64_t key = 0;
+    std::uint32_t tag = 0;      ///< a number per vertex, and Entry::turned
     HalfFace halfFace = kNone;  ///< kNone after both were found
-    bool turned = false;        ///< which of the two comes first in kFaceCorners
   };
 
-  /// One vertex: what a loop should keep in registers.
-  struct Pass {
-    const Tet* tets;
-    HalfFace* mate;
+  /// What a loop should keep in registers.
+  struct Table {
     Slot* slots;
+    std::size_t last;
     int shift;
-    std::uint32_t group;
-    std::size_t used = 0;
-    bool sound = true;
-
-    void match(const Tet& tet, Index t, std::size_t corner, std::size_t face) {
-      const FaceTurn turn = kFaceTurns[corner][face];
-      const Index a = tet[turn.second];
-      const Index b = tet[turn.third];
-      const bool turned = a > b;
-      const std::uint64_t key = (std::uint64_t{smaller(a, b)} << 32) | larger(a, b);
-      const HalfFace halfFace = 4 * t + static_cast<HalfFace>(face);
-      Slot& slot = *find(key);
-      // Half of them are the first ones of their triangles, and nobody could foretell which.
-      const bool isFirst = slot.group != group;
-      if (isFirst) {
-        slot = {key, group, halfFace, turned};
-        mate[halfFace] = kNone;
-        ++used;
-        return;
-      }
-      const bool fits = allOf(slot.halfFace != kNone, slot.turned != turned);
-      sound = allOf(sound, fits);
-      const HalfFace other = fits ? slot.halfFace : halfFace;
-      mate[other] = halfFace;
-      mate[halfFace] = fits ? other : kNone;
-      slot.halfFace = kNone;
-    }
+    std::uint32_t tag;
 
     /// The slot of a key, or the one that it would get.
     [[nodiscard]] Slot* find(std::uint64_t key) const {
-      const std::size_t last = (std::size_t{1} << (64 - shift)) - 1;
-      // The upper bits of a product with an odd constant near 2^64 / golden ratio spread well.
+      // Odd, and near 2^64 / golden ratio: the upper bits of products with it spread well.
       std::size_t i = (key * 0x9e3779b97f4a7c15U) >> shift;
-      // While the slot is taken by another key; without a branch on whether it is taken.
-      while (slots[i].group == group && slots[i].key != key) i = (i + 1) & last;
+      while (isTakenByOther(slots[i], key)) i = (i + 1) & last;
       return &slots[i];
+    }
+    /// By arithmetic, as of two conditions each would make a branch.
+    [[nodiscard]] bool isTakenByOther(const Slot& slot, std::uint64_t key) const {
+      const std::uint64_t otherKey = slot.key ^ key;
+      const std::uint64_t otherVertex = (slot.tag ^ tag) >> 1;
+      // The highest bit is set if the former is not zero and the latter is.
+      return static_cast<std::int64_t>((otherKey | (0 - otherKey)) & (otherVertex - 1)) < 0;
     }
   };
 
-  /// False if the table is too small.
-  bool tryRun(Index v, Pass& pass) {
-    const std::size_t limit = slots_.size() / 2;
-    for (std::size_t part = 0; part < lists_.parts; ++part) {
-      Index entry = lists_.head[part * lists_.vertices + v];
-      for (; entry != kNone; entry = lists_.next[entry]) {
-        const Index t = entry / 2;
-        const Tet& tet = pass.tets[t];
-        const auto corner = static_cast<std::size_t>(topology_.localCorner(t, v));
-        if (entry % 2 == 0) {
-          for (const std::uint8_t face : kFacesAt[corner]) pass.match(tet, t, corner, face);
-        } else {
-          // The face opposite the one vertex that is smaller.
-          const std::size_t face =
-              (tet[1] < v ? 1U : 0U) + (tet[2] < v ? 2U : 0U) + (tet[3] < v ? 3U : 0U);
-          pass.match(tet, t, corner, face);
-        }
-        if (pass.used > limit) return false;
-      }
+  /// Keeps the table, in which each number of a vertex is used once, at most half full.
+  void makeRoom(std::size_t count) {
+    const bool isUsedUp = group_ == kLastGroup;
+    if (slots_.size() >= 2 * count && !isUsedUp) return;
+    while (slots_.size() < 2 * count) {
+      slots_.resize(2 * slots_.size());
+      --shift_;
     }
-    return true;
+    std::fill(slots_.begin(), slots_.end(), Slot{});
+    group_ = 0;
   }
 
-  TetTopology& topology_;
-  const FaceLists& lists_;
-  std::vector<Slot> slots_;
+  static constexpr int kInitialShift = 55;
+  static constexpr std::uint32_t kLastGroup = 0x7fffffff;
+
+  HalfFace* mate_;
+  std::vector<Slot> slots_ = std::vector<Slot>(std::size_t{1} << (64 - kInitialShift));
   int shift_ = kInitialShift;
   std::uint32_t group_ = 0;
 };
@@ -201,15 +253,16 @@ bool matchFaces(TetTopology& topology, Stage& stage) {
   std::atomic<bool> sound = true;
   parallelBlocks(stage, topology.pointCount, kVertexGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   FaceMatcher matcher(topology, lists);
-                   for (std::size_t v = begin; v < end; ++v) {
+                   EntryList entries(topology, lists);
+                   FaceMatcher matcher(topology.mate.data());
+                   for (std::size_t i = begin; i < end; ++i) {
+                     const auto v = static_cast<Index>(i);
                      Index smallest = kNone;
-                     for (std::size_t part = lists.parts; part > 0; --part) {
-                       smallest =
-                           std::min(smallest, lists.smallest[(part - 1) * lists.vertices + v]);
+                     for (std::size_t part = 0; part < lists.parts; ++part) {
+                       smallest = std::min(smallest, lists.at(part, v).smallest);
                      }
                      topology.vertexTet[v] = smallest;
-                     if (!matcher.run(static_cast<Index>(v))) sound = false;
+                     if (!matcher.run(entries.collect(v))) sound = false;
                    }
                  });
   return sound;

@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 
+#include <base/branchless.hpp>
 #include <base/vector3.hpp>
 #include <map/flat_stars.hpp>
 
@@ -19,22 +20,15 @@ constexpr std::array<Vec3, Rotation::kCount> kTurned = [] {
 }();
 
 /// Where rotations send axes.
-struct AxisTables {
-  std::array<std::array<std::uint8_t, 3>, Rotation::kCount> image{};
-  std::array<std::array<std::uint8_t, 3>, Rotation::kCount> preimage{};
-};
-
-constexpr AxisTables kAxes = [] {
-  AxisTables axes;
+constexpr std::array<std::array<std::uint8_t, 3>, Rotation::kCount> kImagesOfAxes = [] {
+  std::array<std::array<std::uint8_t, 3>, Rotation::kCount> images{};
   for (int r = 0; r < Rotation::kCount; ++r) {
-    const auto index = static_cast<std::size_t>(r);
     for (std::uint8_t axis = 0; axis < 3; ++axis) {
-      const auto to = static_cast<std::uint8_t>(axisOf(Rotation(r)(direction(axis, 1))));
-      axes.image[index][axis] = to;
-      axes.preimage[index][to] = axis;
+      images[static_cast<std::size_t>(r)][axis] =
+          static_cast<std::uint8_t>(axisOf(Rotation(r)(direction(axis, 1))));
     }
   }
-  return axes;
+  return images;
 }();
 
 /// The other corners of a tet, such that they are in positive order as seen from inside a positive
@@ -85,72 +79,90 @@ class Cone {
 
 }  // namespace
 
-bool FlatStarTest::run(std::span<const VertexStar::Member> star) {
-  plane_ = 0;
-  if (!unfold(star)) return false;
-  if (plane_ != 0 && (!std::has_single_bit(plane_) || isBetweenPlanes(star[0].corner))) {
+/// Notes during the walk through a star how charts turn.
+class FlatStarTest::Unfolding {
+ public:
+  explicit Unfolding(const Passage* passages) : passages_(passages) {}
+
+  void operator()(HalfFace halfFace, const VertexStar::Member& here, VertexStar::Member& spare,
+                  const VertexStar::Member& behind) {
+    const Passage passage = passages_[halfFace];
+    spare.rotation = passage.after(here.rotation);
+    turns_ |= spare.rotation != behind.rotation ? 1U : 0U;
+    turns_ |= passage.isRough() ? 1U : 0U;
+    planes_ |= passage.planeBefore(here.rotation);
+  }
+
+  /// Whether charts fit, and boundary faces have planes.
+  [[nodiscard]] bool fits() const noexcept { return turns_ == 0; }
+  [[nodiscard]] unsigned planes() const noexcept { return planes_; }
+
+ private:
+  const Passage* passages_;
+  unsigned planes_ = 0;
+  unsigned turns_ = 0;
+};
+
+bool FlatStarTest::run(Index vertex, VertexStar& star) {
+  const Unfolding unfolding = star.walk(topology_, vertex, Unfolding(plain_.passages.data()));
+  planes_ = unfolding.planes();
+  if (!unfolding.fits()) return false;
+  const std::span<const VertexStar::Member> members = star.members();
+  if (planes_ != 0 && (!std::has_single_bit(planes_) || isBetweenPlanes(members[0].corner))) {
     return false;
   }
-  return coversDirectionOnce(star);
+  return coversDirectionOnce(members);
 }
 
-std::size_t FlatStarTest::axis(std::size_t member) const noexcept {
-  const auto& axes = kAxes.image[static_cast<std::size_t>(rotations_[member].index())];
-  return axes[static_cast<std::size_t>(std::countr_zero(plane_))];
-}
-
-/// Follows the walk through the star; false if charts do not fit, or boundary faces have no plane.
-bool FlatStarTest::unfold(std::span<const VertexStar::Member> star) {
-  if (rotations_.size() <= star.size()) rotations_.resize(2 * star.size());
-  rotations_[0] = {};
-  std::size_t reached = 1;
-  for (std::size_t i = 0; i < star.size(); ++i) {
-    const TetSides sides = plain_.sides[star[i].tet()];
-    if (sides == kUncertainSides) return false;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t neighbour = star[i].neighbour[k];
-      if (neighbour == kNone && !addBoundary(star[i].halfFace(k), i)) return false;
-      if (neighbour == kNone || neighbour < i) continue;  // or done from the other side
-      Rotation rotation = rotations_[i];
-      if (disagrees(sides, localOf(star[i].halfFace(k))) != 0) {
-        const Index jump = transitions_.jump[star[i].halfFace(k)];
-        if (transitions_.isExact[jump] == 0) return false;
-        rotation = transitions_.table[jump].rotation * rotation;
-      }
-      // The one behind the last is free to be written.
-      rotations_[reached] = rotation;
-      reached += neighbour == reached ? 1 : 0;
-      if (rotations_[neighbour] != rotation) return false;
-    }
-  }
-  return true;
-}
-
-bool FlatStarTest::addBoundary(HalfFace halfFace, std::size_t i) {
-  const unsigned plane = constantAxes(parameters_, halfFace);
-  if (!std::has_single_bit(plane)) return false;
-  const auto& axisBack = kAxes.preimage[static_cast<std::size_t>(rotations_[i].index())];
-  plane_ |= 1U << axisBack[static_cast<std::size_t>(std::countr_zero(plane))];
-  return true;
+std::size_t FlatStarTest::axis(const VertexStar::Member& member) const noexcept {
+  const auto& images = kImagesOfAxes[static_cast<std::size_t>(member.rotation.index())];
+  return images[static_cast<std::size_t>(std::countr_zero(planes_))];
 }
 
 /// Halfway between two integers, the one to snap to depends on the chart.
 bool FlatStarTest::isBetweenPlanes(CornerIndex corner) const {
-  const auto axis = static_cast<std::size_t>(std::countr_zero(plane_));
+  const auto axis = static_cast<std::size_t>(std::countr_zero(planes_));
   const double x = parameters_(tetOf(corner), localOf(corner))[axis];
   return std::abs(x - std::nearbyint(x)) == 0.5;
 }
 
-bool FlatStarTest::coversDirectionOnce(std::span<const VertexStar::Member> star) const {
+bool FlatStarTest::coversDirectionOnce(std::span<const VertexStar::Member> star) {
+  return (planes_ == 0 ? countCones(star) : countConesAndImages(star)) == 1;
+}
+
+/// Cones that contain the direction, of a vertex inside.
+std::size_t FlatStarTest::countCones(std::span<const VertexStar::Member> star) {
+  if (turned_.size() < star.size()) turned_.resize(2 * star.size());
+  std::size_t count = 0;
+  std::size_t turned = 0;
+  for (std::size_t i = 0; i < star.size(); ++i) {
+    // In charts that are not turned, all is known.
+    const bool isTurned = !star[i].rotation.isIdentity();
+    const bool isConeCorner = coneCorner(plain_.sides[star[i].tet()]) == star[i].corner % 4;
+    count += allOf(!isTurned, isConeCorner) ? 1 : 0;
+    turned_[turned] = static_cast<Index>(i);
+    turned += isTurned ? 1 : 0;
+  }
+  for (const Index i : std::span(turned_).first(turned)) {
+    const Vec3& direction = kTurned[static_cast<std::size_t>(star[i].rotation.index())];
+    TetParameters scratch;
+    const TetParameters& u = parameters_.see(star[i].tet(), scratch);
+    count += Cone(u, star[i].corner % 4, direction).count();
+  }
+  return count;
+}
+
+/// Cones and their mirror images, of a vertex on the boundary.
+std::size_t FlatStarTest::countConesAndImages(std::span<const VertexStar::Member> star) const {
   std::size_t count = 0;
   for (std::size_t i = 0; i < star.size(); ++i) {
-    const Vec3& direction = kTurned[static_cast<std::size_t>(rotations_[i].index())];
-    const Cone cone(parameters_(star[i].tet()), star[i].corner % 4, direction);
-    count += cone.count();
-    if (plane_ == 0) continue;
-    count += cone.countMirrored(direction, axis(i));
+    const Vec3& direction = kTurned[static_cast<std::size_t>(star[i].rotation.index())];
+    TetParameters scratch;
+    const TetParameters& u = parameters_.see(star[i].tet(), scratch);
+    const Cone cone(u, star[i].corner % 4, direction);
+    count += cone.count() + cone.countMirrored(direction, axis(star[i]));
   }
-  return count == 1;
+  return count;
 }
 
 }  // namespace hexhex

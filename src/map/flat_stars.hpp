@@ -7,7 +7,6 @@
 
 #include <map/local_parameters.hpp>
 #include <map/plain_vertices.hpp>
-#include <map/transitions.hpp>
 #include <map/vertex_star.hpp>
 
 namespace hexhex {
@@ -21,31 +20,38 @@ namespace hexhex {
 /// corners may be rounded each in its own chart.
 class FlatStarTest {
  public:
-  FlatStarTest(const LocalParameters& parameters, const PlainVertices& plain,
-               const Transitions& transitions)
-      : parameters_(parameters), plain_(plain), transitions_(transitions) {}
+  FlatStarTest(const TetTopology& topology, const LocalParameters& parameters,
+               const PlainVertices& plain)
+      : topology_(topology), parameters_(parameters), plain_(plain) {}
 
-  /// A star where rounding could matter is not called flat.
-  [[nodiscard]] bool run(std::span<const VertexStar::Member> star);
+  /// Collects the star of a vertex, and tells whether it is flat. A star where rounding could
+  /// matter is not called flat.
+  /// @param vertex  not isolated
+  [[nodiscard]] bool run(Index vertex, VertexStar& star);
+
+  /// The planes of the boundary faces in the chart of the star's first member: bit k across axis k.
+  [[nodiscard]] unsigned planes() const noexcept { return planes_; }
 
   // After a star was found flat:
 
   /// Whether the vertex is on the boundary.
-  [[nodiscard]] bool onBoundary() const noexcept { return plane_ != 0; }
+  [[nodiscard]] bool onBoundary() const noexcept { return planes_ != 0; }
   /// The axis across which the boundary plane is in the chart of a member.
-  [[nodiscard]] std::size_t axis(std::size_t member) const noexcept;
+  [[nodiscard]] std::size_t axis(const VertexStar::Member& member) const noexcept;
 
  private:
-  bool unfold(std::span<const VertexStar::Member> star);
-  bool addBoundary(HalfFace halfFace, std::size_t i);
-  [[nodiscard]] bool isBetweenPlanes(CornerIndex corner) const;
-  [[nodiscard]] bool coversDirectionOnce(std::span<const VertexStar::Member> star) const;
+  class Unfolding;
 
+  [[nodiscard]] bool isBetweenPlanes(CornerIndex corner) const;
+  [[nodiscard]] bool coversDirectionOnce(std::span<const VertexStar::Member> star);
+  [[nodiscard]] std::size_t countCones(std::span<const VertexStar::Member> star);
+  [[nodiscard]] std::size_t countConesAndImages(std::span<const VertexStar::Member> star) const;
+
+  const TetTopology& topology_;
   const LocalParameters& parameters_;
   const PlainVertices& plain_;
-  const Transitions& transitions_;
-  std::vector<Rotation> rotations_;  ///< per member: from the first one's chart
-  unsigned plane_ = 0;               ///< bit k: across axis k of the first one's chart
+  std::vector<Index> turned_;  ///< members whose charts are
+  unsigned planes_ = 0;        ///< bit k: across axis k of the first one's chart
 };
 
 }  // namespace hexhex

@@ -14,6 +14,16 @@ namespace {
 
 constexpr std::size_t kGrain = PlainVertices::kBlock;
 
+/// Tets whose parameters, 96 bytes each, are still in the innermost cache when they are looked at
+/// for the second time.
+constexpr std::size_t kNear = 128;
+
+/// Calls f(begin, end) for parts of a block.
+template <class F>
+void forEachPart(std::size_t begin, std::size_t end, const F& f) {
+  for (std::size_t part = begin; part < end; part += kNear) f(part, std::min(end, part + kNear));
+}
+
 /// Faces between asking for a tet and looking at it: the memory's delay, in steps of a loop.
 constexpr std::size_t kPrefetchDistance = 12;
 
@@ -30,15 +40,10 @@ void addBits(std::uint8_t& bits, unsigned added) {
 /// Per vertex: tets in one and the same direction from it.
 using Cones = Array<std::uint32_t>;
 
-/// The corner from which the direction leads into the tet, by bits 0 to 3 of its sides: it is the
-/// one whose opposite face is the only one from which the direction leads outward. 4 if there is
-/// none.
-constexpr std::array<std::uint8_t, 16> kConeCorner = [] {
-  std::array<std::uint8_t, 16> corners{};
-  corners.fill(4);
-  for (std::uint8_t corner = 0; corner < 4; ++corner) corners[faceMask(corner)] = corner;
-  return corners;
-}();
+/// 1 for negative numbers; a comparison would make a branch.
+constexpr unsigned signBit(double x) {
+  return static_cast<unsigned>(std::bit_cast<std::uint64_t>(x) >> 63);
+}
 
 /// The faces of a tet, as seen by the direction in general position.
 class TetNormals {
@@ -79,12 +84,14 @@ class TetNormals {
     const double smallest = std::min(std::min(std::abs(side0), std::abs(sides[0])),
                                      std::min(std::abs(sides[1]), std::abs(sides[2])));
     if (!allOf(isPositive_, smallest > uncertainty)) return kUncertainSides;
-    return static_cast<TetSides>((side0 > 0 ? 1U : 0U) | (sides[0] > 0 ? 2U : 0U) |
-                                 (sides[1] > 0 ? 4U : 0U) | (sides[2] > 0 ? 8U : 0U));
+    const unsigned outward = signBit(side0) | (signBit(sides[0]) << 1) | (signBit(sides[1]) << 2) |
+                             (signBit(sides[2]) << 3);
+    return static_cast<TetSides>(outward ^ kAllSides);
   }
 
   /// Inward, of the faces opposite corners 1, 2, 3; the four normals add up to zero.
   std::array<Vec3, 3> normals_{};
+  static constexpr unsigned kAllSides = 15;
   Vec3 sides_{};  ///< scalar products of the direction with them
   double size_ = 0;
   bool isPositive_ = false;
@@ -96,7 +103,7 @@ void markCorners(const Tet& tet, int face, PlainVertices& result) {
   }
 }
 
-/// At most four things for each of a block of tets, listed without a branch: which ones belong
+/// At most four things for each tet of a part, listed without a branch: which ones belong
 /// there is as good as random.
 class BranchlessList {
  public:
@@ -108,11 +115,29 @@ class BranchlessList {
   [[nodiscard]] std::span<const std::uint32_t> get() const { return {entries_.data(), count_}; }
 
  private:
-  std::array<std::uint32_t, 4 * kGrain + 1> entries_;  // NOLINT: written before it is read
+  std::array<std::uint32_t, 4 * kNear + 1> entries_;  // NOLINT: written before it is read
   std::size_t count_ = 0;
 };
 
-/// Lists the boundary faces of a block of tets, and notes their planes at their corners; without a
+/// The axes along which a triangle is constant, and the one across which it lies.
+struct TrianglePlane {
+  unsigned constantAxes = 0;  ///< bit k for axis k
+  std::size_t axis = 0;       ///< the normal's largest component, at least nearly
+
+  TrianglePlane(const LocalParameters& parameters, HalfFace halfFace) {
+    const std::array<int, 3>& corners = kFaceCorners[halfFace % 4];
+    const Vec3 p = parameters(tetOf(halfFace), corners[0]);
+    const Vec3 a = minus(parameters(tetOf(halfFace), corners[1]), p);
+    const Vec3 b = minus(parameters(tetOf(halfFace), corners[2]), p);
+    // A difference is zero only if there is none.
+    for (std::size_t k = 0; k < 3; ++k) {
+      constantAxes |= (allOf(a[k] == 0, b[k] == 0) ? 1U : 0U) << k;
+    }
+    axis = dominantAxis(cross(a, b));
+  }
+};
+
+/// Lists the boundary faces of some tets, and notes their planes at their corners; without a
 /// plane, these are special.
 void surveyBoundary(const TetTopology& topology, const LocalParameters& parameters,
                     std::size_t begin, std::size_t end, std::size_t block, PlainVertices& result) {
@@ -120,15 +145,18 @@ void surveyBoundary(const TetTopology& topology, const LocalParameters& paramete
   for (auto h = static_cast<HalfFace>(4 * begin); h < 4 * end; ++h) {
     list.add(h, topology.mate[h] == kNone);
   }
+  std::fill(&result.passages[4 * begin], &result.passages[4 * begin] + 4 * (end - begin),
+            Passage());
   std::vector<PlainVertices::BoundaryFace>& faces = result.boundaryFaces[block];
-  faces.reserve(list.get().size());
   for (const HalfFace halfFace : list.get()) {
     const Tet& tet = topology.tets[tetOf(halfFace)];
-    const unsigned plane = constantAxes(parameters, halfFace);
-    faces.push_back({halfFace, plane});
-    if (plane == 0) markCorners(tet, localOf(halfFace), result);
+    const TrianglePlane plane(parameters, halfFace);
+    faces.push_back({halfFace, static_cast<std::uint32_t>(plane.axis)});
+    result.passages[halfFace] =
+        Passage::boundary(plane.axis, plane.constantAxes == 1U << plane.axis);
+    if (plane.constantAxes == 0) markCorners(tet, localOf(halfFace), result);
     for (const int corner : kFaceCorners[halfFace % 4]) {
-      addBits(result.plane[tet[static_cast<std::size_t>(corner)]], plane);
+      addBits(result.plane[tet[static_cast<std::size_t>(corner)]], plane.constantAxes);
     }
   }
 }
@@ -149,16 +177,17 @@ class TetSurvey {
     result_.sides[t] = sides;
     if (sides == kUncertainSides) {
       markAll(tet);
+      for (std::size_t f = 0; f < 4; ++f) result_.passages[4 * t + f].roughen();
       return;
     }
-    const std::size_t corner = kConeCorner[sides];
+    const std::size_t corner = coneCorner(sides);
     found_.add(tet[corner % 4], corner != 4);
     unsigned planes = 0;
     for (const Index v : tet) planes |= result_.plane[v];
     if (planes != 0) addMirrored(tet, normals);
   }
 
-  /// Adds up what run() has found, for at most kGrain tets.
+  /// Adds up what run() has found, for at most kNear tets.
   void finish() {
     for (const Index vertex : found_.get()) {
       std::atomic_ref(cones_[vertex]).fetch_add(1, std::memory_order_relaxed);
@@ -176,7 +205,7 @@ class TetSurvey {
         continue;
       }
       // On two planes, a vertex is special anyway.
-      const std::size_t corner = kConeCorner[sides];
+      const std::size_t corner = coneCorner(sides);
       const Index vertex = tet[corner % 4];
       found_.add(vertex, allOf(corner != 4, result_.plane[vertex] == 1U << axis));
     }
@@ -222,7 +251,7 @@ bool areSame(const TetTopology& topology, const LocalParameters& parameters, Hal
   return difference == 0;
 }
 
-/// Looks at each inner face of a block of tets, from its larger half-face: the parameters of the
+/// Looks at each inner face of some tets, from its larger half-face: the parameters of the
 /// other tet have then been looked at not long ago.
 void surveyFaces(const TetTopology& topology, const LocalParameters& parameters, std::size_t begin,
                  std::size_t end, std::size_t block, PlainVertices& result) {
@@ -238,33 +267,18 @@ void surveyFaces(const TetTopology& topology, const LocalParameters& parameters,
     const HalfFace there = topology.mate[faces[i]];
     unequal.add(faces[i], parameters.moved() || !areSame(topology, parameters, faces[i], there));
   }
-  const auto disagree = [&result](HalfFace halfFace) {
-    std::atomic_ref(result.sides[tetOf(halfFace)])
-        .fetch_or(static_cast<TetSides>(16U << localOf(halfFace)), std::memory_order_relaxed);
-  };
   std::vector<HalfFace>& found = result.unequalFaces[block];
-  found.reserve(unequal.get().size());
   for (const HalfFace here : unequal.get()) {
     const HalfFace there = topology.mate[here];
     if (agree(topology, parameters, here, there)) continue;
     markCorners(topology.tets[tetOf(here)], localOf(here), result);
-    disagree(here);
-    disagree(there);
+    result.passages[here].roughen();
+    result.passages[there].roughen();
     found.push_back(here);
   }
 }
 
 }  // namespace
-
-unsigned constantAxes(const LocalParameters& parameters, HalfFace halfFace) noexcept {
-  const std::array<int, 3>& corners = kFaceCorners[halfFace % 4];
-  const Vec3 p = parameters(tetOf(halfFace), corners[0]);
-  const Vec3 q = parameters(tetOf(halfFace), corners[1]);
-  const Vec3 r = parameters(tetOf(halfFace), corners[2]);
-  unsigned axes = 0;
-  for (std::size_t k = 0; k < 3; ++k) axes |= (allOf(p[k] == q[k], p[k] == r[k]) ? 1U : 0U) << k;
-  return axes;
-}
 
 TetSides computeSides(const TetParameters& u) noexcept { return TetNormals(u).sides(); }
 
@@ -281,22 +295,25 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
   result.plane.assign(vertices, 0);
   Cones cones(vertices, 0);
   result.sides.resize(topology.tetCount());
+  result.passages.resize(4 * topology.tetCount());
   const std::size_t tets = topology.tetCount();
   result.boundaryFaces.resize(blockCount(tets, kGrain));
   result.unequalFaces.resize(blockCount(tets, kGrain));
-  parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    surveyBoundary(topology, parameters, begin, end, block, result);
+  parallelBlocks(stage, tets, kGrain, [&](std::size_t first, std::size_t last, std::size_t block) {
+    forEachPart(first, last, [&](std::size_t begin, std::size_t end) {
+      surveyBoundary(topology, parameters, begin, end, block, result);
+    });
   });
   std::uint64_t boundaryFaces = 0;
   for (const auto& faces : result.boundaryFaces) boundaryFaces += faces.size();
   result.innerFaces = (4 * tets - boundaryFaces) / 2;
-  parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+  parallelBlocks(stage, tets, kGrain, [&](std::size_t first, std::size_t last, std::size_t block) {
     TetSurvey tetSurvey(topology, parameters, cones, result);
-    for (std::size_t t = begin; t < end; ++t) tetSurvey.run(static_cast<Index>(t));
-    tetSurvey.finish();
-  });
-  parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    surveyFaces(topology, parameters, begin, end, block, result);
+    forEachPart(first, last, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) tetSurvey.run(static_cast<Index>(t));
+      tetSurvey.finish();
+      surveyFaces(topology, parameters, begin, end, block, result);
+    });
   });
   parallelFor(stage, vertices, kGrain, [&](std::size_t v) {
     // On two planes, all cones are counted in vain.

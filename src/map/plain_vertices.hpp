@@ -1,28 +1,26 @@
 // Tells the many vertices around which nothing happens from the few that need a closer look.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include <map/local_parameters.hpp>
+#include <map/passage.hpp>
 #include <map/tet_topology.hpp>
 
 namespace hexhex {
 
 /// On which side of the faces of a tet a certain direction in general position leads, as seen from
-/// anywhere: bit f if it leads inward from face f. And faces on which the tet and its neighbour do
-/// not agree: bit 4 + f. A tet that may not be positive, or in which the direction may not be in
-/// general position, agrees with none.
+/// anywhere: bit f if it leads inward from face f.
 using TetSides = std::uint8_t;
 
 [[nodiscard]] constexpr unsigned leadsInward(TetSides sides, int face) noexcept {
   return (static_cast<unsigned>(sides) >> face) & 1U;
 }
-[[nodiscard]] constexpr unsigned disagrees(TetSides sides, int face) noexcept {
-  return (static_cast<unsigned>(sides) >> (4 + face)) & 1U;
-}
-inline constexpr TetSides kUncertainSides = 0xf0;
+/// Of a tet that may not be positive, or in which the direction may not be in general position.
+inline constexpr TetSides kUncertainSides = 0;
 
 /// A vertex is plain if its star is embedded in one chart, and is cut off by one axis-parallel
 /// plane if it is on the boundary. That is: its tets agree on the parameters of their common
@@ -58,16 +56,20 @@ struct PlainVertices {
   std::vector<std::vector<HalfFace>> unequalFaces;
   std::uint64_t innerFaces = 0;
 
-  /// A boundary face, and the axes along which it is constant: bit k for axis k.
+  /// A boundary face, and the axis along which it is constant, or nearly so.
   struct BoundaryFace {
     HalfFace halfFace;
-    std::uint32_t constantAxes;
+    std::uint32_t axis;
   };
   /// By half-face, ascending; in one list per block of kBlock tets.
   std::vector<std::vector<BoundaryFace>> boundaryFaces;
 
   /// Per tet: what its part in the fan of an edge is.
   Array<TetSides> sides;
+
+  /// Per half-face. Rough are all of a tet with uncertain sides; and those between tets that do not
+  /// agree, until their transitions are known.
+  Array<Passage> passages;
 
   static constexpr std::size_t kBlock = 1024;
 };
@@ -79,8 +81,17 @@ struct PlainVertices {
 /// In general position with respect to all that maps are made of: powers of the plastic number.
 inline constexpr Vec3 kGeneralDirection = {1, 0.7548776662466927, 0.5698402909980532};
 
-/// The axes along which a triangle is constant: bit k for axis k.
-[[nodiscard]] unsigned constantAxes(const LocalParameters& parameters, HalfFace halfFace) noexcept;
+/// The corner from which the direction leads into a tet: the one whose opposite face is the only
+/// one from which the direction leads outward. 4 if there is none.
+[[nodiscard]] constexpr std::size_t coneCorner(TetSides sides) noexcept {
+  constexpr std::array<std::uint8_t, 16> kCorners = [] {
+    std::array<std::uint8_t, 16> corners{};
+    corners.fill(4);
+    for (std::uint8_t corner = 0; corner < 4; ++corner) corners[faceMask(corner)] = corner;
+    return corners;
+  }();
+  return kCorners[sides];
+}
 
 /// The sides of a tet, if the tet is positive and the direction in general position, so far as
 /// floating point can tell; otherwise kUncertainSides.

@@ -122,6 +122,7 @@ class VertexEdges {
       const VertexStar::Member& member = star_[i];
       const Tet& tet = in_.topology.tets[member.tet()];
       const std::array<std::uint8_t, 3>& corners = kOthers[member.corner % 4];
+      const Passage* const passages = &in_.plain.passages[4 * std::size_t{member.tet()}];
       const TetSides sides = in_.plain.sides[member.tet()];
       std::array<std::uint32_t, 3> boundary{};
       std::array<std::uint32_t, 3> inward{};
@@ -133,7 +134,7 @@ class VertexEdges {
         count += numbers_[i][k] == count ? 1 : 0;
         boundary[k] = member.neighbour[k] == kNone ? 1U : 0U;
         inward[k] = leadsInward(sides, corners[k]);
-        disagree[k] = disagrees(sides, corners[k]);
+        disagree[k] = passages[corners[k]].isPlain() ? 0U : 1U;
         boundaryFaces_ += boundary[k];
       }
       // The faces at the edge to corner k are those opposite the two other corners.
@@ -252,36 +253,37 @@ class VertexEdges {
 /// Finds the stars of special vertices, and keeps those that are not flat.
 class StarSorter {
  public:
-  /// @param transitions  null: no star is flat
+  /// @param flatAllowed  otherwise no star is called flat
   StarSorter(const TetTopology& topology, const LocalParameters& parameters, PlainVertices& plain,
-             const Transitions* transitions, StarBlock& stars)
-      : topology_(topology), plain_(plain), stars_(stars) {
-    if (transitions != nullptr) flat_.emplace(parameters, plain, *transitions);
-  }
+             bool flatAllowed, StarBlock& stars)
+      : plain_(plain),
+        stars_(stars),
+        flat_(topology, parameters, plain),
+        flatAllowed_(flatAllowed) {}
 
   void run(Index vertex) {
-    star_.collect(topology_, vertex);
+    const bool isFlat = flat_.run(vertex, star_) && flatAllowed_;
     const std::span<const VertexStar::Member> star = star_.members();
     stars_.cornersSeen += star.size();
-    if (!flat_ || !flat_->run(star)) {
-      stars_.add(vertex, star);
+    if (!isFlat) {
+      stars_.add(vertex, star, flat_.planes());
       plain_.plane[vertex] = PlainVertices::kDecidedByStar;
       return;
     }
     plain_.special[vertex] = PlainVertices::kFlat;
-    plain_.plane[vertex] = flat_->onBoundary() ? PlainVertices::kPlaneOfStar : 0;
-    if (!flat_->onBoundary()) return;
-    for (std::size_t i = 0; i < star.size(); ++i) {
-      stars_.planeCorners.push_back({star[i].corner, 1U << flat_->axis(i)});
+    plain_.plane[vertex] = flat_.onBoundary() ? PlainVertices::kPlaneOfStar : 0;
+    if (!flat_.onBoundary()) return;
+    for (const VertexStar::Member& member : star) {
+      stars_.planeCorners.push_back({member.corner, 1U << flat_.axis(member)});
     }
   }
 
  private:
-  const TetTopology& topology_;
   PlainVertices& plain_;
   StarBlock& stars_;
   VertexStar star_;
-  std::optional<FlatStarTest> flat_;
+  FlatStarTest flat_;
+  bool flatAllowed_;
 };
 
 /// Number of corners at special vertices, with flat stars or not.
@@ -339,8 +341,7 @@ void collectStars(const TetTopology& topology, const LocalParameters& parameters
   stars.resize(blockCount(topology.pointCount, kVertexGrain));
   parallelBlocks(stage, topology.pointCount, kVertexGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   StarSorter sorter(topology, parameters, plain,
-                                     flatAllowed ? transitions : nullptr, stars[block]);
+                   StarSorter sorter(topology, parameters, plain, flatAllowed, stars[block]);
                    for (std::size_t v = begin; v < end; ++v) {
                      if (plain.special[v] != 0) sorter.run(static_cast<Index>(v));
                    }

@@ -27,6 +27,15 @@ using HalfFace = std::uint32_t;
   return 4 * tet + static_cast<HalfFace>(opposite);
 }
 
+/// Position of a vertex in a tet that contains it: as a number of two bits, of which nothing is to
+/// be foretold.
+[[nodiscard]] constexpr Index localCorner(const Tet& tet, Index vertex) noexcept {
+  const Index isLast = tet[3] == vertex ? 1 : 0;
+  const Index low = (tet[1] == vertex ? 1U : 0U) | isLast;
+  const Index high = (tet[2] == vertex ? 1U : 0U) | isLast;
+  return low | (high << 1);
+}
+
 struct TetTopology {
   std::span<const Tet> tets;  ///< the caller's array
   std::size_t pointCount = 0;
@@ -51,8 +60,7 @@ struct TetTopology {
   [[nodiscard]] bool isIsolated(Index vertex) const noexcept { return vertexTet[vertex] == kNone; }
   /// Position of a vertex in a tet that contains it.
   [[nodiscard]] int localCorner(Index tet, Index vertex) const noexcept {
-    const Tet& t = tets[tet];
-    return (t[1] == vertex ? 1 : 0) + (t[2] == vertex ? 2 : 0) + (t[3] == vertex ? 3 : 0);
+    return static_cast<int>(hexhex::localCorner(tets[tet], vertex));
   }
   /// The same simplex (given by corners of tet `from`) as corners of tet `to`, which contains it.
   [[nodiscard]] CornerMask translated(CornerMask mask, Index from, Index to) const noexcept {

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include <base/branchless.hpp>
 #include <base/vector3.hpp>
 #include <map/best_rotation.hpp>
 #include <map/plain_vertices.hpp>
@@ -146,7 +147,7 @@ class TransitionFitter {
       const FittedTransition fitted = fitTranslation(triangle, rotation(here, triangle));
       block.maxResidual = std::max(block.maxResidual, fitted.residual);
       if (fitted.residual > tolerance_) block.misfits.push_back({here, fitted.residual});
-      if (fitted.transition.isIdentity()) continue;
+      if (fitted.transition.isIdentity()) continue;  // rough, as it does not fit exactly
       block.jumps.push_back({here, fitted.transition, fitted.isExact});
     }
     return block;
@@ -168,7 +169,7 @@ class TransitionFitter {
 }  // namespace
 
 Transitions computeTransitions(const TetTopology& topology, const LocalParameters& parameters,
-                               const PlainVertices& plain,
+                               PlainVertices& plain,
                                std::span<const std::array<std::int8_t, 4>> rotations,
                                double tolerance, Stage& stage) {
   Transitions result;
@@ -194,10 +195,17 @@ Transitions computeTransitions(const TetTopology& topology, const LocalParameter
     Index index = blocks[block].firstJump;
     for (const FoundJump& found : blocks[block].jumps) {
       result.jump[found.halfFace] = index;
-      result.jump[topology.mate[found.halfFace]] = index + 1;
+      const HalfFace mate = topology.mate[found.halfFace];
+      result.jump[mate] = index + 1;
       result.table[index] = found.transition;
       result.table[index + 1] = inverse(found.transition);
       result.isExact[index] = result.isExact[index + 1] = found.isExact ? 1 : 0;
+      for (const auto& [halfFace, jump] :
+           {std::pair(found.halfFace, index), std::pair(mate, index + 1)}) {
+        const bool isSure = plain.sides[tetOf(halfFace)] != kUncertainSides;
+        plain.passages[halfFace] =
+            Passage::across(result.table[jump].rotation, allOf(isSure, found.isExact));
+      }
       index += 2;
     }
   });

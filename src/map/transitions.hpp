@@ -42,12 +42,12 @@ struct Transitions {
   [[nodiscard]] bool isJump(HalfFace halfFace) const noexcept { return jump[halfFace] != 0; }
 };
 
-/// @param plain  knows where tets differ
+/// @param plain  knows where tets differ; gets to know how these faces are passed
 /// @param rotations  what the caller knows, as in TetMapView; may be empty
 /// @param tolerance  residuals above it make misfits
 [[nodiscard]] Transitions computeTransitions(const TetTopology& topology,
                                              const LocalParameters& parameters,
-                                             const PlainVertices& plain,
+                                             PlainVertices& plain,
                                              std::span<const std::array<std::int8_t, 4>> rotations,
                                              double tolerance, Stage& stage);
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <lattice/rotation.hpp>
 #include <map/key_table.hpp>
 #include <map/tet_topology.hpp>
 
@@ -22,6 +23,8 @@ class VertexStar {
     /// Which member is behind the face opposite corner kOthers[corner % 4][k]; kNone at the
     /// boundary.
     std::array<Index, 3> neighbour;
+    /// From the chart of the first member into this one's, along the walk; if it looked at charts.
+    Rotation rotation;
 
     [[nodiscard]] Index tet() const noexcept { return corner / 4; }
     [[nodiscard]] HalfFace halfFace(std::size_t k) const noexcept {
@@ -33,39 +36,54 @@ class VertexStar {
   /// is found: everything, in a manifold.
   /// @param vertex  not isolated
   void collect(const TetTopology& topology, Index vertex) {
-    const Index first = topology.vertexTet[vertex];
+    static_cast<void>(walk(topology, vertex,
+                           [](HalfFace /*halfFace*/, const Member& /*here*/, Member& /*spare*/,
+                              const Member& /*behind*/) {}));
+  }
+
+  /// The same, and calls visit(half-face, member, spare, member behind) for the faces of each
+  /// member, in order; at the boundary, a member is behind itself. What is spare becomes the member
+  /// behind if that is new. Nothing is foretold that is as good as random: whether a member is new,
+  /// or a face is on the boundary.
+  /// @returns `visit`, which is taken by value so that what it counts stays in registers
+  template <class Visit>
+  [[nodiscard]] Visit walk(const TetTopology& topology, Index vertex, Visit visit) {
+    const Tet* const tets = topology.tets.data();
+    const HalfFace* const mates = topology.mate.data();
+    const auto cornerAt = [tets, vertex](Index tet) {
+      return 4 * tet + localCorner(tets[tet], vertex);
+    };
     numbers_.clear();
     KeyTable::Numberer number = numbers_.numberer();
     Member* members = members_.data();
-    members[0] = {cornerAt(topology, first, vertex), {kUnset, kUnset, kUnset}};
+    const Index first = topology.vertexTet[vertex];
+    members[0] = {cornerAt(first), {}, {}};
     Index count = 1 + number(first, 0);
+    Index room = 0;
     for (Index head = 0; head < count; ++head) {
       // Up to three more, and one that is written in vain.
-      if (members_.size() < count + 4 || !numbers_.hasRoom(count + 4)) {
-        members_.resize(2 * members_.size());
-        numbers_.makeRoom(members_.size());
+      if (room < count + 4) {
+        makeRoom(count + 4);
+        room = static_cast<Index>(members_.size());
         members = members_.data();
         number = numbers_.numberer();
       }
       const CornerIndex here = members[head].corner;
+      const std::array<std::uint8_t, 3>& others = kOthers[here % 4];
       for (std::size_t k = 0; k < 3; ++k) {
-        if (members[head].neighbour[k] != kUnset) continue;
-        const HalfFace mate = topology.mate[4 * (here / 4) + kOthers[here % 4][k]];
-        // No branch at the boundary: there, a tet stands for its neighbour.
+        const HalfFace halfFace = 4 * (here / 4) + others[k];
+        const HalfFace mate = mates[halfFace];
         const bool boundary = mate == kNone;
-        const Index tet = boundary ? here / 4 : tetOf(mate);
-        const Index neighbour = number(tet, count);
-        const CornerIndex corner = cornerAt(topology, tet, vertex);
-        members[count] = {corner, {kUnset, kUnset, kUnset}};
-        // The same link from the other side, if there is one.
-        const HalfFace local = mate % 4;
-        const std::size_t back = local - (local > corner % 4 ? 1U : 0U);
-        if (!boundary) members[neighbour].neighbour[back] = head;
+        const Index behind = boundary ? here / 4 : tetOf(mate);
+        const Index neighbour = number(behind, count);
+        members[count].corner = cornerAt(behind);
         members[head].neighbour[k] = boundary ? kNone : neighbour;
+        visit(halfFace, members[head], members[count], members[neighbour]);
         count += neighbour == count ? 1 : 0;
       }
     }
     count_ = count;
+    return visit;
   }
 
   /// In the order of the walk: each but the first is behind the first face, in the order of members
@@ -75,11 +93,10 @@ class VertexStar {
   }
 
  private:
-  [[nodiscard]] static CornerIndex cornerAt(const TetTopology& topology, Index tet, Index vertex) {
-    return 4 * tet + static_cast<CornerIndex>(topology.localCorner(tet, vertex));
+  void makeRoom(std::size_t count) {
+    while (members_.size() < count) members_.resize(2 * members_.size());
+    numbers_.makeRoom(members_.size());
   }
-
-  static constexpr Index kUnset = kNone - 1;  ///< neighbour not looked up yet
 
   KeyTable numbers_;  ///< of tets
   std::size_t count_ = 0;
@@ -89,6 +106,9 @@ class VertexStar {
 /// Stars that are kept: those of the special vertices among consecutive vertices.
 struct StarBlock {
   std::vector<Index> vertices;
+  /// Per vertex: the planes of its boundary faces in the chart of its first member, bit k across
+  /// axis k.
+  std::vector<std::uint32_t> planes;
   std::vector<std::size_t> ends;  ///< per vertex: where its members end
   std::vector<VertexStar::Member> members;
 
@@ -102,8 +122,9 @@ struct StarBlock {
 
   std::size_t cornersSeen = 0;  ///< in all stars, kept or flat
 
-  void add(Index vertex, std::span<const VertexStar::Member> star) {
+  void add(Index vertex, std::span<const VertexStar::Member> star, unsigned planesOfStar) {
     vertices.push_back(vertex);
+    planes.push_back(planesOfStar);
     members.insert(members.end(), star.begin(), star.end());
     ends.push_back(members.size());
   }

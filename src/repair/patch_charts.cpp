@@ -20,12 +20,6 @@ constexpr double kImpossible = 100;
 /// Ties are broken towards the choice that fits best.
 constexpr double kPerChoice = 1e-4;
 
-std::size_t dominantAxis(const Vec3& v) {
-  std::size_t axis = std::abs(v[1]) > std::abs(v[0]) ? 1 : 0;
-  if (std::abs(v[2]) > std::abs(v[axis])) axis = 2;
-  return axis;
-}
-
 /// The axis that a rotation leaves as it is; -1 for the identity and for those about diagonals.
 int fixedAxis(Rotation rotation) {
   if (rotation.isIdentity()) return -1;

@@ -1,0 +1,76 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <base/vector3.hpp>
+#include <map/map_conditions.hpp>
+
+namespace hexhex {
+
+std::size_t edgeAxis(const LocalParameters& parameters, const SingularEdge& edge) noexcept {
+  return dominantAxis(
+      minus(parameters(edge.tet, edge.corner1), parameters(edge.tet, edge.corner0)));
+}
+
+void checkBoundary(const PlainVertices& plain, const LocalParameters& parameters, double tolerance,
+                   Stage& stage, DefectCollector& defects) {
+  parallelFor(stage, plain.boundaryFaces.size(), 1, [&](std::size_t block) {
+    for (const PlainVertices::BoundaryFace& face : plain.boundaryFaces[block]) {
+      const std::size_t axis = face.axis;
+      const HalfFace halfFace = face.halfFace;
+      std::array<double, 3> x{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        x[k] = parameters(tetOf(halfFace), kFaceCorners[halfFace % 4][k])[axis];
+      }
+      const double plane = nearestInteger((x[0] + x[1] + x[2]) / 3);
+      const double off = std::max(std::max(std::abs(x[0] - plane), std::abs(x[1] - plane)),
+                                  std::abs(x[2] - plane));
+      if (off > tolerance) {
+        defects.add(ErrorCode::BoundaryOffLattice, {PlaceKind::Face, tetOf(halfFace), halfFace % 4},
+                    off);
+      }
+    }
+  });
+}
+
+void checkSingularities(const Singularities& singularities, const LocalParameters& parameters,
+                        double tolerance, DefectCollector& defects) {
+  for (const SingularEdge& edge : singularities.edges) {
+    const std::size_t along = edgeAxis(parameters, edge);
+    const Vec3 p = parameters(edge.tet, edge.corner0);
+    const Vec3 q = parameters(edge.tet, edge.corner1);
+    double off = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (k == along) continue;
+      const double line = std::nearbyint((p[k] + q[k]) / 2);
+      off = std::max({off, std::abs(p[k] - line), std::abs(q[k] - line)});
+    }
+    if (off > tolerance) {
+      defects.add(ErrorCode::SingularityOffLattice, {PlaceKind::Edge, edge.vertex0, edge.vertex1},
+                  off);
+    }
+  }
+}
+
+Int192 checkOrientations(std::span<const std::vector<Index>> tets, Stage& stage,
+                         DefectCollector& defects, const ExactMap& map) {
+  const auto unit = static_cast<double>(map.unit);
+  std::vector<Int192> volumes(tets.size());
+  parallelFor(stage, tets.size(), 1, [&](std::size_t block) {
+    for (const Index t : tets[block]) {
+      const LatticeTet& c = map.corners[t];
+      const Int192 determinant = orientationDeterminant(c[0], c[1], c[2], c[3]);
+      if (determinant.sign() > 0) {
+        volumes[block] += determinant;
+      } else {
+        const double amount = determinant.toDouble() / (6 * unit * unit * unit);
+        defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, amount < 0 ? -amount : 0.0);
+      }
+    }
+  });
+  Int192 sum;
+  for (const Int192& volume : volumes) sum += volume;
+  return sum;
+}
+
+}  // namespace hexhex

@@ -1,0 +1,26 @@
+// The conditions that make a map an integer-grid map, as far as they are checked as such; the
+// others are found violated while the map is sanitized.
+#pragma once
+
+#include <map/exact_map.hpp>
+
+namespace hexhex {
+
+/// The axis along which a singular edge runs, in the chart of its tet.
+[[nodiscard]] std::size_t edgeAxis(const LocalParameters& parameters,
+                                   const SingularEdge& edge) noexcept;
+
+/// (IGM2) up to the tolerance: what snapping may repair.
+void checkBoundary(const PlainVertices& plain, const LocalParameters& parameters, double tolerance,
+                   Stage& stage, DefectCollector& defects);
+
+/// (IGM3) up to the tolerance, for edges; nodes are noticed when they are snapped.
+void checkSingularities(const Singularities& singularities, const LocalParameters& parameters,
+                        double tolerance, DefectCollector& defects);
+
+/// (IGM4) for the tets of all lists.
+/// @returns six times the volume of those that fulfil it, times unit^3
+Int192 checkOrientations(std::span<const std::vector<Index>> tets, Stage& stage,
+                         DefectCollector& defects, const ExactMap& map);
+
+}  // namespace hexhex
