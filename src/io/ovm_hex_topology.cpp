@@ -217,7 +217,7 @@ void HexTopologyBuilder::listNearFaces(std::size_t cell, Index* halfEdges) const
   const Index first = 2 * own_[cell].firstEdge;
   const std::array<Index, 3> edges = {first, first + 2, first + 4};
   // As kOvmHexFaces passes corners 0, 1, 2, 3; 0, 4, 5, 1; and 0, 3, 7, 4.
-  for (const std::size_t axis : {2, 1, 0}) {
+  for (const std::size_t axis : {2U, 1U, 0U}) {
     const std::size_t a = (axis + 1) % 3;
     const std::size_t b = (axis + 2) % 3;
     *halfEdges++ = edges[a];

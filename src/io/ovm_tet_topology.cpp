@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <base/branchless.hpp>
 #include <base/parallel.hpp>
 #include <io/ovm_tet_topology.hpp>
 #include <io/ovm_topology.hpp>
@@ -202,7 +203,7 @@ void TetTopologyBuilder::listTets() {
   };
   forEach([this](std::size_t /*t*/, const SortedTet& tet) {
     const auto& v = tet.vertices;
-    if ((v[0] == v[1]) | (v[1] == v[2]) | (v[2] == v[3])) sound_ = false;
+    if (anyOf(v[0] == v[1], v[1] == v[2], v[2] == v[3])) sound_ = false;
     for (std::size_t rank = 0; rank < 3; ++rank) lists_.count(v[rank]);
   });
   lists_.makeRoom();

@@ -12,6 +12,7 @@
 #include <io/io_test_support.hpp>
 #include <io/ovm_cells.hpp>
 #include <io/ovm_hex_topology.hpp>
+#include <io/ovm_tet_topology.hpp>
 #include <io/ovm_topology.hpp>
 
 namespace hexhex::test {
@@ -121,6 +122,25 @@ TEST(OvmTopology, OfTets) {
   EXPECT_TRUE(std::is_sorted(topology.edges.begin(), topology.edges.end(),
                              [](const auto& a, const auto& b) { return a[0] < b[0]; }));
   expectSame(topology, topologyOf(map.points.size(), map.tets, 1));
+}
+
+TEST(OvmTopology, OfTetsAroundAnEdge) {
+  for (const Index n : {3U, 200U, 300U}) {  // more than the quick way has room for
+    std::vector<Tet> tets;
+    for (Index i = 0; i < n; ++i) tets.push_back({0, 1, 2 + i, 2 + (i + 1) % n});
+    const OvmTopology topology = topologyOf(2 + n, tets, 2);
+    expectTopologyOf<3>(topology, tets, kOvmTetFaces);
+    expectSame(topology, topologyOf(2 + n, tets, 1));
+    Context context(2);
+    Stage stage(context, "test");
+    EXPECT_EQ(buildOvmTetTopology(2 + n, tets, stage).has_value(), n < 256) << n;
+    tets.push_back({2, 3, 0, 2 + n});  // at a face that has two tets
+    EXPECT_FALSE(buildOvmTetTopology(3 + n, tets, stage).has_value());
+    tets.back() = {0, 2, 3, 2 + n};
+    EXPECT_FALSE(buildOvmTetTopology(3 + n, tets, stage).has_value());
+    tets.back() = {2 + n, 3 + n, 4 + n, 2 + n};
+    EXPECT_FALSE(buildOvmTetTopology(5 + n, tets, stage).has_value());
+  }
 }
 
 TEST(OvmTopology, LoopsBeginWhereTheCellBeginsThatHasTheFaceFirst) {
