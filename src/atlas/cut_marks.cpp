@@ -8,8 +8,6 @@ namespace hexhex {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;
-
 using Triangle = std::array<LatticePoint, 3>;
 
 Triangle triangleOf(const ExactMap& map, HalfFace halfFace) {
@@ -24,20 +22,26 @@ SweepFrame cellFrame(const Gauge& gauge) noexcept {
   return {{gauge.rotation, gauge.cell(GridPoint{})}, {0, 1, 2}};
 }
 
-/// The half-faces that are not glued, with mates and one for each face.
+/// One half-face of each inner face that is cut.
+/// @param asBuilt  as in markCutCells()
 std::vector<HalfFace> findCuts(const PreparedMap& map, const Charts& charts, bool asBuilt,
                                Stage& stage) {
-  const TetTopology& topology = map.topology;
-  const Transitions& transitions = map.exact.transitions;
+  constexpr std::size_t kGrain = 4096;
+  const Array<HalfFace>& mate = map.topology.mate;
+  const std::vector<HalfFace>& jumps = map.exact.transitions.halfFaces;
+  const auto candidate = [&](std::size_t i) {
+    // Both half-faces of a jump are neighbours in the table, behind the identity.
+    if (asBuilt) return jumps[2 * i + 1];
+    return mate[i] != kNone && mate[i] > i ? static_cast<HalfFace>(i) : kNone;
+  };
   return collectFromBlocks<HalfFace>(
-      stage, topology.mate.size(), 4 * kGrain,
+      stage, asBuilt ? jumps.size() / 2 : mate.size(), kGrain,
       [&](std::size_t begin, std::size_t end, std::vector<HalfFace>& cuts) {
-        for (std::size_t h = begin; h < end; ++h) {
-          const auto halfFace = static_cast<HalfFace>(h);
-          if (asBuilt && !transitions.isJump(halfFace)) continue;
-          const HalfFace mate = topology.mate[halfFace];
-          if (mate == kNone || mate < halfFace) continue;
-          if (!charts.isGlued(topology, transitions, halfFace)) cuts.push_back(halfFace);
+        for (std::size_t i = begin; i < end; ++i) {
+          const HalfFace halfFace = candidate(i);
+          if (halfFace == kNone) continue;
+          if (charts.isGlued(map.topology, map.exact.transitions, halfFace)) continue;
+          cuts.push_back(halfFace);
         }
       });
 }
