@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -41,16 +42,25 @@ struct OvmTet {
 [[nodiscard]] bool assembleTet(const std::array<std::array<Index, 3>, 4>& loops,
                                OvmTet& tet) noexcept;
 
-/// Whether two corners are the same vertex. Without branches, since it is asked of every cell.
+/// Whether two corners are the same vertex, of fewer than 2^31. Without branches, and two pairs of
+/// corners at once, since it is asked of every cell.
 template <std::size_t corners>
 [[nodiscard]] bool hasVertexTwice(const std::array<Index, corners>& cell) noexcept {
-  unsigned equal = 0;
-  for (std::size_t step = 1; step <= corners / 2; ++step) {
-    for (std::size_t i = 0; i < corners; ++i) {
-      equal |= cell[i] == cell[(i + step) % corners] ? 1U : 0U;
+  constexpr std::uint64_t kOnes = 0x0000000100000001U;
+  constexpr std::uint64_t kSigns = 0x8000000080000000U;
+  const auto pairs = std::bit_cast<std::array<std::uint64_t, corners / 2>>(cell);
+  std::uint64_t equal = 0;
+  // No difference has a sign, so that one appears where 1 is taken from none.
+  const auto compare = [&equal](std::uint64_t a, std::uint64_t b) { equal |= (a ^ b) - kOnes; };
+  for (std::size_t i = 0; i < corners / 2; ++i) {
+    const std::uint64_t exchanged = std::rotl(pairs[i], 32);
+    compare(pairs[i], exchanged);
+    for (std::size_t k = i + 1; k < corners / 2; ++k) {
+      compare(pairs[i], pairs[k]);
+      compare(exchanged, pairs[k]);
     }
   }
-  return equal != 0;
+  return (equal & kSigns) != 0;
 }
 
 /// The hexahedron with the six half-faces in VTK's order: the loop of the first one, then the

@@ -1,11 +1,9 @@
 // From a hex mesh to a polyhedral mesh (see ovm_output.hpp).
 #include <algorithm>
-#include <atomic>
 
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
-#include <base/prefetch.hpp>
 #include <io/ovm_cells.hpp>
 #include <io/ovm_features.hpp>
 #include <io/ovm_first_fault.hpp>
@@ -20,39 +18,29 @@ namespace {
 constexpr std::size_t kGrain = 4096;
 constexpr std::int32_t kReversed = 4;  // the order of a cell that begins alike but turns round
 
+/// How a cell was listed, which a reader finds from where its first half-face begins.
 /// @param cells  those of the mesh as the topology was built from them
 /// @param turned  whether they begin alike but turn the other way
 void setCornerOrder(OvmOutput& output, std::span<const Hex> cells, bool turned, Stage& stage) {
-  Array<std::int32_t> orders(cells.size());
-  std::atomic<bool> any{turned};
   const OvmTopology& topology = output.topology;
-  const Index* const halfFaces = topology.cells.handles.data();
-  const Index* const halfEdges = topology.faces.handles.data();
-  const auto firstEdge = [&](std::size_t c) { return 4 * std::size_t{halfFaces[6 * c] / 2}; };
-  const auto order = [&](std::size_t c) {
-    // A reader begins where the first half-face does, which is one of the first four corners.
-    const Index begin = topology.from(halfEdges[firstEdge(c)]);
+  const auto firstOf = [&](std::size_t c) { return topology.cells.handles[6 * c]; };
+  // A half-face of an even number begins where its cell does.
+  const auto orderOf = [&](std::size_t c) {
+    const std::int32_t direction = turned ? kReversed : 0;
+    if (firstOf(c) % 2 == 0) return direction;
+    const Index begin = topology.from(topology.faces.handles[4 * std::size_t{firstOf(c) / 2}]);
     const Hex& cell = cells[c];
     const std::int32_t place =
         (cell[1] == begin ? 1 : 0) + (cell[2] == begin ? 2 : 0) + (cell[3] == begin ? 3 : 0);
-    orders[c] = (4 - place) % 4 + (turned ? kReversed : 0);
-    return place;
+    return (4 - place) % 4 + direction;
   };
-  // Faces and edges are far from each other in memory.
-  constexpr std::size_t kAhead = 16;
-  parallelBlocks(stage, cells.size(), kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   std::int32_t places = 0;
-                   for (std::size_t c = begin; c < end; ++c) {
-                     if (c + 2 * kAhead < end) prefetch(&halfEdges[firstEdge(c + 2 * kAhead)]);
-                     if (c + kAhead < end) {
-                       prefetch(&topology.edges[halfEdges[firstEdge(c + kAhead)] / 2]);
-                     }
-                     places |= order(c);
-                   }
-                   if (places != 0) any.store(true, std::memory_order_relaxed);
-                 });
-  if (any) output.properties[OvmInteger::CornerOrder] = std::move(orders);
+  if (firstFault(stage, cells.size(), [&](std::size_t c) { return orderOf(c) == 0; }) ==
+      cells.size()) {
+    return;
+  }
+  Array<std::int32_t>& orders = output.properties[OvmInteger::CornerOrder];
+  orders.resize(cells.size());
+  parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) { orders[c] = orderOf(c); });
 }
 
 void setGenerators(OvmOutput& output, const HexMesh& mesh, Stage& stage) {

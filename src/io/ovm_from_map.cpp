@@ -55,7 +55,7 @@ OvmTopology topologyOf(std::span<const Vec3> points, std::span<const Tet> tets,
   return buildOvmTopology(points.size(), turned, stage);
 }
 
-/// How the corners of a tet were listed, which a reader finds in order of `assembled`.
+/// How the corners of a tet were listed, which a reader finds in the order of `assembled`.
 std::int32_t orderOf(const Tet& listed, const Tet& assembled) {
   const auto* const found = std::find_if(kTetOrders.begin(), kTetOrders.end(),
                                          [&](const std::array<std::uint8_t, 4>& order) {
@@ -67,17 +67,21 @@ std::int32_t orderOf(const Tet& listed, const Tet& assembled) {
   return static_cast<std::int32_t>(found - kTetOrders.begin());
 }
 
-void setCornerOrder(OvmOutput& output, const TetMap& map, const OvmLoops<3>& loops, Stage& stage) {
+void setCornerOrder(OvmOutput& output, const TetMap& map, const Exchange& exchanged, Stage& stage) {
+  // Tets begin with their first half-face, and nearly all of those begin where the tet does.
+  const auto usual = static_cast<std::int32_t>(
+      std::find(kTetOrders.begin(), kTetOrders.end(), exchanged) - kTetOrders.begin());
+  const auto orderAt = [&](std::size_t t) {
+    const Index first = output.topology.cells.handles[4 * t];
+    if (first % 2 == 0) return usual;
+    const std::array<Index, 3> loop =
+        loopOfHalfFace(loopOfFace<3>(output.topology, first / 2), first);
+    return orderOf(map.tets[t], {loop[0], loop[1], loop[2], map.tets[t][exchanged[3]]});
+  };
   Array<std::int32_t> orders(map.tets.size());
   std::atomic<bool> any{false};
   parallelFor(stage, map.tets.size(), kGrain, [&](std::size_t t) {
-    std::array<std::array<Index, 3>, 4> cell;
-    for (std::size_t s = 0; s < 4; ++s) {
-      cell[s] = loops.ofHalfFace(output.topology.cells.handles[4 * t + s]);
-    }
-    OvmTet tet;
-    static_cast<void>(assembleTet(cell, tet));  // built so that it succeeds
-    orders[t] = orderOf(map.tets[t], tet.corners);
+    orders[t] = orderAt(t);
     if (orders[t] != 0) any.store(true, std::memory_order_relaxed);
   });
   if (any) output.properties[OvmInteger::CornerOrder] = std::move(orders);
@@ -127,13 +131,14 @@ OvmOutput toOvm(const TetMap& map, Stage& stage) {
   requireWritable(map, stage);
   const Exchange& exchanged = exchangeFor(map.points, map.tets, stage);
   OvmOutput output{map.points, topologyOf(map.points, map.tets, exchanged, stage), {}};
-  const OvmLoops<3> loops(output.topology, stage);
-  setCornerOrder(output, map, loops, stage);
+  setCornerOrder(output, map, exchanged, stage);
   setHalfFaceValues(output, map, exchanged, stage);
   setEdgeValences(output, map);
   setOvmVertexTags(output, map.features.vertices);
   setOvmEdgeTags(output, map.features.edges);
-  setOvmFaceTags(output, map.features.faces, loops);
+  if (!map.features.faces.empty()) {
+    setOvmFaceTags(output, map.features.faces, OvmLoops<3>(output.topology, stage));
+  }
   setOvmRegions(output, map.regions);
   return output;
 }

@@ -12,12 +12,11 @@
 
 namespace hexhex {
 
-/// The same as buildOvmTopology(), for meshes as they nearly always are. Faces are numbered by
-/// their smallest vertices, then by the smaller and the larger one of its two neighbours;
-/// half-face 2f passes the smaller one first.
-/// @param cells  fewer than 2^32 / 6, with vertices in range, of which there are fewer than 2^31
-/// @return nothing if a vertex has more than eight edges to larger vertices, two faces have three
-///         vertices in common, or anything is wrong with the mesh
+/// The same as buildOvmTopology(), for meshes without faults. Edges along seams (HexMates) come
+/// first, from the smaller to the larger vertex and in lexicographic order; then the others, cell
+/// by cell, away from the cell's corner 0. Faces are numbered cell by cell, slot by slot.
+/// @param cells  fewer than 2^32 / 12, with vertices in range
+/// @return nothing if there are too many elements, or something is wrong with the mesh
 [[nodiscard]] std::optional<OvmTopology> buildOvmHexTopology(std::size_t vertexCount,
                                                              std::span<const Hex> cells,
                                                              Stage& stage);

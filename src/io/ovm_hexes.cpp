@@ -157,9 +157,13 @@ void HexReader::readFeatures() {
   forEachTag(OvmInteger::FeatureVertices, [this](std::size_t v, std::int32_t tag) {
     mesh_.features.vertices.push_back({static_cast<Index>(v), tag});
   });
-  forEachTag(OvmInteger::FeatureEdges, [this](std::size_t e, std::int32_t tag) {
-    mesh_.features.edges.push_back({topology_.edges[e], tag});
+  std::vector<FeatureEdge>& edges = mesh_.features.edges;
+  forEachTag(OvmInteger::FeatureEdges, [&](std::size_t e, std::int32_t tag) {
+    const auto& [a, b] = topology_.edges[e];
+    edges.push_back({{std::min(a, b), std::max(a, b)}, tag});
   });
+  std::sort(edges.begin(), edges.end(),
+            [](const FeatureEdge& a, const FeatureEdge& b) { return a.vertices < b.vertices; });
   forEachTag(OvmInteger::FeatureFaces, [this](std::size_t f, std::int32_t tag) {
     if (!loops_.isGood(f)) {
       throw Error(ErrorCode::FileSyntax,

@@ -16,6 +16,7 @@
 #include <io/ovm_cells.hpp>
 #include <io/ovm_first_fault.hpp>
 #include <io/ovm_hex_topology.hpp>
+#include <io/ovm_tet_topology.hpp>
 #include <io/ovm_topology.hpp>
 
 namespace hexhex {
@@ -428,19 +429,21 @@ Index OvmEdgeFinder::find(Index a, Index b) const noexcept {
   if (high + std::size_t{1} >= begins_.size()) return kNone;
   const auto* const first = edges_.data() + begins_[low];
   const auto* const last = edges_.data() + begins_[low + 1];
-  const auto* const found = std::lower_bound(
-      first, last, high,
-      [](const std::array<Index, 2>& edge, Index vertex) { return edge[1] < vertex; });
-  if (found == last || (*found)[1] != high) return kNone;
-  return static_cast<Index>(found - edges_.data());
+  const auto* const found = std::find_if(
+      first, last, [high](const std::array<Index, 2>& edge) { return edge[1] == high; });
+  return found == last ? kNone : static_cast<Index>(found - edges_.data());
 }
 
 OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Tet> cells, Stage& stage) {
+  if (vertexCount <= kMaxOvmEntities && cells.size() < kNone / 4) {
+    std::optional<OvmTopology> topology = buildOvmTetTopology(vertexCount, cells, stage);
+    if (topology) return std::move(*topology);
+  }
   return TopologyBuilder<Tet, 3, 4>(vertexCount, cells, kOvmTetFaces, stage).build();
 }
 
 OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Hex> cells, Stage& stage) {
-  if (vertexCount <= kMaxOvmEntities && cells.size() < kNone / 6) {
+  if (vertexCount <= kMaxOvmEntities && cells.size() < kNone / 12) {
     std::optional<OvmTopology> topology = buildOvmHexTopology(vertexCount, cells, stage);
     if (topology) return std::move(*topology);
   }

@@ -25,10 +25,10 @@ inline constexpr std::array<std::uint8_t, 4> kOvmTetOpposite = {3, 1, 2, 0};
 inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kOvmHexFaces = {
     {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {3, 2, 6, 7}, {1, 5, 6, 2}, {0, 3, 7, 4}}};
 
-/// Finds the faces and edges of cells. Faces are numbered as they first occur in the cells, those
-/// of hexahedra mostly as buildOvmHexTopology() says. The loop of a face begins where a cell begins
-/// that has it in the first slot of its list, if there is one. Edges go from the smaller to the
-/// larger vertex, and are numbered in lexicographic order.
+/// Finds the faces and edges of cells. Half-face 2f begins with the first corner of the slot of the
+/// cell that it points into; that is a cell that has the face in the first slot of its list, if
+/// there is one. Edges of tets go from the smaller to the larger vertex and come in the order of
+/// the smaller. Numbers of hexahedra are mostly as buildOvmHexTopology() says.
 /// @param cells  corners of tets or hexahedra, vertices in range
 /// @throws Error NonManifoldFace, Orientation if a face is shared by more than two cells, or by two
 ///         that do not run in opposite directions; RepeatedVertex; TooLarge
@@ -37,7 +37,7 @@ inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kOvmHexFaces = {
 [[nodiscard]] OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Hex> cells,
                                            Stage& stage);
 
-/// Finds edges of a topology that was built here.
+/// Finds edges of a topology of tets that was built here.
 class OvmEdgeFinder {
  public:
   explicit OvmEdgeFinder(const OvmTopology& topology);

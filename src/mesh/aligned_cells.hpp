@@ -21,18 +21,21 @@ inline constexpr std::array<std::array<std::array<std::uint8_t, 2>, 4>, 3> kAlig
      {{{0, 3}, {1, 2}, {5, 6}, {4, 7}}},
      {{{0, 4}, {1, 5}, {2, 6}, {3, 7}}}}};
 
-/// Knows of each vertex one cell that has it at corner 0.
+/// Knows of each vertex the last cell that has it at corner 0.
 class AlignedCells {
  public:
   /// @param cells  with corners below vertexCount; must outlive this object
   AlignedCells(std::size_t vertexCount, std::span<const Hex> cells, Stage& stage);
 
+  /// The last cell that has a vertex at corner 0, or kNone.
+  [[nodiscard]] Index at(Index vertex) const noexcept { return cellAt_[vertex]; }
+
   /// A cell with face 2 * axis where this cell has face 2 * axis + 1, whose four corners there are
-  /// what its neighbour along the axis is in this cell; or kNone. Of several such cells of a broken
-  /// mesh, any may be found, and by different threads different ones.
+  /// what its neighbour along the axis is in this cell; or kNone. Cells that share a vertex at
+  /// corner 0 with a later cell are not found.
   [[nodiscard]] Index behind(std::size_t cell, std::size_t axis) const noexcept {
     const Hex& here = cells_[cell];
-    const Index candidate = firstCell_[here[kAlignedCorners[axis][0][1]]];
+    const Index candidate = cellAt_[here[kAlignedCorners[axis][0][1]]];
     if (candidate == kNone) return kNone;
     const Hex& there = cells_[candidate];
     Index different = 0;
@@ -57,13 +60,13 @@ class AlignedCells {
  private:
   void fetch(std::size_t cell) const noexcept {
     for (const auto& corners : kAlignedCorners) {
-      const Index candidate = firstCell_[cells_[cell][corners[0][1]]];
+      const Index candidate = cellAt_[cells_[cell][corners[0][1]]];
       if (candidate != kNone) prefetch(&cells_[candidate]);
     }
   }
 
   std::span<const Hex> cells_;
-  Array<Index> firstCell_;  ///< per vertex: a cell that has it at corner 0, or kNone
+  Array<Index> cellAt_;  ///< per vertex: the last cell that has it at corner 0, or kNone
 };
 
 }  // namespace hexhex

@@ -1,9 +1,9 @@
 // Most neighbours number their corners alike, and find each other at once (aligned_cells.hpp). The
 // other faces are paired by a hash table: first within a block of cells, small enough for the
 // cache, as cells come in an order in which neighbours are close. What is left of the blocks is
-// divided into parts by the hash and paired part by part. What is left then are the faces with an
-// odd number of cells, and those with three or more of them, which only broken meshes have, are
-// sorted out in a last look.
+// divided into parts by the hash and paired part by part. What is left then are the faces of which
+// an odd number of cells have no such neighbour. Those that other cells have as well, which only
+// broken meshes know, are sorted out in a last look.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -84,8 +84,7 @@ using Marks = std::array<std::uint8_t, 8>;
 constexpr auto kAllShared = std::bit_cast<std::uint64_t>(Marks{1, 1, 1, 1, 1, 1, 0, 0});
 
 /// Marks the faces of neighbours that number their corners alike.
-Array<Marks> markAligned(const HexMesh& mesh, Stage& stage) {
-  const AlignedCells aligned(mesh.points.size(), mesh.cells, stage);
+Array<Marks> markAligned(const HexMesh& mesh, const AlignedCells& aligned, Stage& stage) {
   Array<Marks> array(mesh.cells.size());
   const std::span<Marks> marks(array);
   parallelBlocks(stage, marks.size(), kGrain,
@@ -254,13 +253,12 @@ Parts gather(std::vector<Remains>& tasks, Stage& stage) {
   return parts;
 }
 
-/// One side of each face with an odd number of cells, sorted by key within each part.
+/// One side of each face that is unmarked an odd number of times, sorted by key within each part.
 using OddSides = std::array<std::vector<Side>, kParts>;
 
-OddSides findOddSides(const HexMesh& mesh, Stage& stage) {
+OddSides findOddSides(const HexMesh& mesh, std::span<const Marks> marks, Stage& stage) {
   constexpr std::size_t kCellsPerTask = kCellsPerBlock * kBlocksPerTask;
   std::vector<Remains> tasks(blockCount(mesh.cells.size(), kCellsPerTask));
-  const Array<Marks> marks = markAligned(mesh, stage);
   parallelBlocks(stage, mesh.cells.size(), kCellsPerTask,
                  [&](std::size_t begin, std::size_t end, std::size_t task) {
                    tasks[task] = pairWithinBlocks(mesh.cells, marks, begin, end);
@@ -278,13 +276,13 @@ OddSides findOddSides(const HexMesh& mesh, Stage& stage) {
   return odd;
 }
 
-/// Counts the cells of faces that are known to have an odd number of them.
-class CellCounter {
+/// Counts the unmarked sides of faces that are known to have an odd number of them.
+class SideCounter {
  public:
-  CellCounter(const HexMesh& mesh, const OddSides& sides, Stage& stage)
-      : cells_(mesh.cells), sides_(sides) {
-    isCorner_.resize(mesh.points.size());
-    std::fill(isCorner_.begin(), isCorner_.end(), std::uint8_t{0});
+  SideCounter(const HexMesh& mesh, std::span<const Marks> marks, const OddSides& sides,
+              Stage& stage)
+      : cells_(mesh.cells), marks_(marks), sides_(sides) {
+    isCorner_.assign(mesh.points.size(), 0);
     for (std::size_t part = 0; part < kParts; ++part) {
       counts_[part].assign(sides_[part].size(), 0);
       for (const Side& side : sides_[part]) {
@@ -294,23 +292,20 @@ class CellCounter {
     parallelFor(stage, cells_.size(), kGrain, [&](std::size_t c) { addCell(c); });
   }
 
-  /// Number of cells that have the i-th side of a part.
+  /// Number of unmarked sides that are the same face as the i-th side of a part.
   [[nodiscard]] std::uint32_t count(std::size_t part, std::size_t i) const {
     return counts_[part][i];
   }
 
  private:
   void addCell(std::size_t c) {
-    // Each face has two of these four corners.
-    const Hex& cell = cells_[c];
-    if (isCorner_[cell[0]] + isCorner_[cell[2]] + isCorner_[cell[5]] + isCorner_[cell[7]] < 2) {
-      return;
-    }
-    const std::array<std::uint64_t, 6> keys = keysOf(cells_[c]);
+    if (std::bit_cast<std::uint64_t>(marks_[c]) == kAllShared) return;
     for (std::size_t f = 0; f < 6; ++f) {
+      if (marks_[c][f] != 0) continue;
       const Quad quad = faceVertices(cells_[c], f);
+      // Most sides that are paired are not near those that are left, which take a search.
       if (isCorner_[quad[0]] + isCorner_[quad[1]] + isCorner_[quad[2]] + isCorner_[quad[3]] == 4) {
-        addFace({keys[f], 8 * c + f});
+        addFace({keysOf(cells_[c])[f], 8 * c + f});
       }
     }
   }
@@ -328,20 +323,42 @@ class CellCounter {
   }
 
   std::span<const Hex> cells_;
+  std::span<const Marks> marks_;
   const OddSides& sides_;
   Array<std::uint8_t> isCorner_;  ///< per vertex: whether it belongs to a side
   std::array<std::vector<std::uint32_t>, kParts> counts_;
 };
 
+/// Whether a side is a marked face of others: of these, one knows its corner 0 to be there.
+bool isAlignedFace(std::span<const Hex> cells, std::span<const Marks> marks,
+                   const AlignedCells& aligned, std::uint64_t place) {
+  const Quad quad = faceVertices(cells[place / 8], place % 8);
+  return std::any_of(quad.begin(), quad.end(), [&](Index vertex) {
+    const Index cell = aligned.at(vertex);
+    if (cell == kNone) return false;
+    bool found = false;
+    for (std::size_t face = 0; face < 6; face += 2) {
+      found = found ||
+              (marks[cell][face] != 0 && isSameFace(cells, 8 * std::uint64_t{cell} + face, place));
+    }
+    return found;
+  });
+}
+
 }  // namespace
 
 Array<std::uint64_t> boundaryPlaces(const HexMesh& mesh, Stage& stage) {
-  const OddSides sides = findOddSides(mesh, stage);
-  const CellCounter counter(mesh, sides, stage);
+  const AlignedCells aligned(mesh.points.size(), mesh.cells, stage);
+  const Array<Marks> marks = markAligned(mesh, aligned, stage);
+  const OddSides sides = findOddSides(mesh, marks, stage);
+  const SideCounter counter(mesh, marks, sides, stage);
   Array<std::uint64_t> places;
   for (std::size_t part = 0; part < kParts; ++part) {
     for (std::size_t i = 0; i < sides[part].size(); ++i) {
-      if (counter.count(part, i) == 1) places.push_back(sides[part][i].place);
+      const std::uint64_t place = sides[part][i].place;
+      if (counter.count(part, i) == 1 && !isAlignedFace(mesh.cells, marks, aligned, place)) {
+        places.push_back(place);
+      }
     }
   }
   std::sort(places.begin(), places.end());

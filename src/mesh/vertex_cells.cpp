@@ -38,14 +38,26 @@ void requireCornersInRange(const HexMesh& mesh, Stage& stage) {
 }
 
 std::size_t firstCellOutOfRange(const HexMesh& mesh, Stage& stage) {
+  const std::size_t vertices = std::min<std::size_t>(mesh.points.size(), kNone);
+  const auto isOutside = [limit = static_cast<Index>(vertices)](const Hex& cell) {
+    unsigned outside = 0;
+    for (const Index corner : cell) outside |= corner >= limit ? 1U : 0U;
+    return outside;
+  };
   std::atomic<std::size_t> first{mesh.cells.size()};
-  parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
-    const Hex& cell = mesh.cells[c];
-    if (*std::max_element(cell.begin(), cell.end()) < mesh.points.size()) return;
-    std::size_t known = first.load(std::memory_order_relaxed);
-    while (c < known && !first.compare_exchange_weak(known, c, std::memory_order_relaxed)) {
-    }
-  });
+  parallelBlocks(
+      stage, mesh.cells.size(), kGrain,
+      [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+        const std::span<const Hex> cells(mesh.cells.data() + begin, end - begin);
+        unsigned outside = 0;
+        for (const Hex& cell : cells) outside |= isOutside(cell);
+        if (outside == 0) return;
+        std::size_t c = begin;
+        while (isOutside(mesh.cells[c]) == 0) ++c;
+        std::size_t known = first.load(std::memory_order_relaxed);
+        while (c < known && !first.compare_exchange_weak(known, c, std::memory_order_relaxed)) {
+        }
+      });
   return first.load();
 }
 

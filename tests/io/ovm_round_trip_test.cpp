@@ -254,10 +254,10 @@ TEST(OvmRoundTrip, HexSlotsAreAsDescribed) {
   writeHexMesh(gridMesh(1, 1, 1), folder / "a.ovm");
   const std::string text = contentOf(folder / "a.ovm");
   EXPECT_NE(text.find("Edges\n12\n"), std::string::npos);
-  // Along the first loop, 0 1 3 2, lie the edges 0 1, 1 3, 2 3 and 0 2; across them the slots 2, 4,
-  // 3 and 5, i.e. the faces 1 (edges 0, 4, 8, 2), 3, 4 and 2.
-  EXPECT_NE(text.find("Faces\n6\n4 0 6 11 3\n4 0 8 17 5\n4 2 12 19 5\n4 6 14 21 9\n"
-                      "4 10 14 23 13\n4 16 20 23 19\nPolyhedra\n1\n6 0 11 3 8 7 4\n"),
+  // Along the first loop, 0 1 3 2, lie the edges 0 1, 1 3, 2 3 and 0 2 (numbers 0, 3, 5 and 1);
+  // across them the slots 2, 4, 3 and 5.
+  EXPECT_NE(text.find("Faces\n6\n4 0 6 11 3\n4 18 22 21 17\n4 4 16 9 1\n4 10 14 23 13\n"
+                      "4 8 20 15 7\n4 2 12 19 5\nPolyhedra\n1\n6 0 2 4 6 8 10\n"),
             std::string::npos)
       << text;
   EXPECT_EQ(text.find("corner_order"), std::string::npos);  // not needed

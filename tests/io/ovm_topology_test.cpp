@@ -12,6 +12,7 @@
 #include <io/io_test_support.hpp>
 #include <io/ovm_cells.hpp>
 #include <io/ovm_hex_topology.hpp>
+#include <io/ovm_tet_topology.hpp>
 #include <io/ovm_topology.hpp>
 
 namespace hexhex::test {
@@ -41,24 +42,30 @@ std::array<Index, n> fromSmallest(std::array<Index, n> loop) {
   return loop;
 }
 
-/// Every element once, and every half-face the loop of the side that it is.
+/// Every element once, and every half-face the loop of the side that it is, from its first corner
+/// on if it has an even number; a face is listed as a side in the first slot, if it is one.
 template <std::size_t n, class Cells, class Table>
 void expectTopologyOf(const OvmTopology& topology, const Cells& cells, const Table& table) {
-  EXPECT_TRUE(std::is_sorted(topology.edges.begin(), topology.edges.end()));
-  EXPECT_EQ(std::adjacent_find(topology.edges.begin(), topology.edges.end()), topology.edges.end());
   ASSERT_EQ(topology.cells.length, table.size());
   ASSERT_EQ(topology.cells.size(), cells.size());
   std::set<std::array<Index, n>> faces;
   std::set<std::array<Index, 2>> edges;
   std::vector<int> used(2 * topology.faces.size());
+  std::vector<std::size_t> slotOf(topology.faces.size());  // of half-face 2f
+  for (std::size_t i = 0; i < topology.cells.handles.size(); ++i) {
+    const Index halfFace = topology.cells.handles[i];
+    if (halfFace % 2 == 0) slotOf[halfFace / 2] = i % table.size();
+  }
   for (std::size_t c = 0; c < cells.size(); ++c) {
     for (std::size_t s = 0; s < table.size(); ++s) {
       std::array<Index, n> side{};
       for (std::size_t i = 0; i < n; ++i) side[i] = cells[c][table[s][i]];
       const Index halfFace = topology.cells[c][s];
       ++used[halfFace];
-      EXPECT_EQ(fromSmallest(side),
-                fromSmallest(loopOfHalfFace(loopOfFace<n>(topology, halfFace / 2), halfFace)));
+      const auto loop = loopOfHalfFace(loopOfFace<n>(topology, halfFace / 2), halfFace);
+      EXPECT_EQ(fromSmallest(side), fromSmallest(loop));
+      EXPECT_TRUE(halfFace % 2 == 1 || side == loop);
+      EXPECT_TRUE(s > 0 || halfFace % 2 == 0 || slotOf[halfFace / 2] == 0);
       for (std::size_t i = 0; i < n; ++i) {
         edges.insert({std::min(side[i], side[(i + 1) % n]), std::max(side[i], side[(i + 1) % n])});
       }
@@ -112,7 +119,32 @@ TEST(OvmTopology, OfTets) {
   const TetMap map = generateSample(SampleKind::Sphere, {.cells = 2, .refine = 5}).map;
   const OvmTopology topology = topologyOf(map.points.size(), map.tets, 4);
   expectTopologyOf<3>(topology, map.tets, kOvmTetFaces);
+  EXPECT_TRUE(std::is_sorted(topology.edges.begin(), topology.edges.end(),
+                             [](const auto& a, const auto& b) { return a[0] < b[0]; }));
   expectSame(topology, topologyOf(map.points.size(), map.tets, 1));
+}
+
+TEST(OvmTopology, OfTetsAroundAnEdge) {
+  for (const Index n : {3U, 200U, 300U}) {  // more than the quick way has room for
+    std::vector<Tet> tets;
+    for (Index i = 0; i < n; ++i) tets.push_back({0, 1, 2 + i, 2 + (i + 1) % n});
+    const OvmTopology topology = topologyOf(2 + n, tets, 2);
+    expectTopologyOf<3>(topology, tets, kOvmTetFaces);
+    expectSame(topology, topologyOf(2 + n, tets, 1));
+    Context context(2);
+    Stage stage(context, "test");
+    EXPECT_EQ(buildOvmTetTopology(2 + n, tets, stage).has_value(), n < 256) << n;
+    if (n > 256) continue;
+    const auto isQuick = [&](const Tet& further) {
+      std::vector<Tet> more = tets;
+      more.push_back(further);
+      return buildOvmTetTopology(3 + n, more, stage).has_value();
+    };
+    EXPECT_TRUE(isQuick({0, 2, 2 + n, 3}));
+    EXPECT_FALSE(isQuick({0, 2 + n, 2, 3})) << "inside out";
+    EXPECT_FALSE(isQuick({0, 1, 2, 2 + n})) << "a third one";
+    EXPECT_FALSE(isQuick({2 + n, 0, 2 + n, 3})) << "a vertex twice";
+  }
 }
 
 TEST(OvmTopology, LoopsBeginWhereTheCellBeginsThatHasTheFaceFirst) {
@@ -138,9 +170,9 @@ TEST(OvmTopology, VerticesOfAnyValence) {
   for (const Index n : {3U, 7U, 8U, 30U}) {
     const Array<Hex> cells = fan(n);
     const std::size_t vertices = 2 + 4 * n;
-    expectTopologyOf<4>(topologyOf(vertices, cells, 2), cells, kOvmHexFaces);
-    // The axis' smaller vertex has n edges to the ring, and one to the other vertex of the axis.
-    EXPECT_EQ(quickTopologyOf(vertices, cells).has_value(), n < 8) << n;
+    const std::optional<OvmTopology> quick = quickTopologyOf(vertices, cells);
+    ASSERT_TRUE(quick.has_value()) << n;
+    expectTopologyOf<4>(*quick, cells, kOvmHexFaces);
   }
 }
 
@@ -155,17 +187,67 @@ TEST(OvmTopology, WhatIsNotAsUsualIsLeftToTheOther) {
   EXPECT_FALSE(isQuick([](HexMesh& mesh) { mesh.cells[0][6] = mesh.cells[0][0]; }));
   EXPECT_FALSE(isQuick([](HexMesh& mesh) { mesh.cells.push_back(mesh.cells[0]); }));
   EXPECT_FALSE(isQuick([](HexMesh& mesh) { mesh.cells[1] = inHexOrder(mesh.cells[1], 4); }));
-  // One side has three vertices of the other cell's.
+  // A third cell at the face of two that number their corners alike.
   EXPECT_FALSE(isQuick([](HexMesh& mesh) {
-    for (std::size_t i = 0; i < 8; ++i) {
-      const auto& first = mesh.cells[0];
-      const bool shared = std::find(first.begin(), first.end(), mesh.cells[1][i]) != first.end();
-      if (!shared) continue;
-      Index& corner = mesh.cells[1][i];
-      const Index largest = *std::max_element(first.begin(), first.end());
-      if (corner == largest) corner = static_cast<Index>(mesh.points.size());
-    }
+    const auto next = static_cast<Index>(mesh.points.size());
+    const Hex& cell = mesh.cells[1];
+    mesh.cells.push_back({cell[4], cell[7], cell[3], cell[0], next, next + 1, next + 2, next + 3});
   }));
+}
+
+TEST(OvmTopology, FacesMayShareThreeVertices) {
+  HexMesh mesh = gridMesh(2, 1, 1);
+  const auto largest = *std::max_element(mesh.cells[0].begin(), mesh.cells[0].end());
+  const auto further = static_cast<Index>(mesh.points.size());
+  std::replace(mesh.cells[1].begin(), mesh.cells[1].end(), largest, further);
+  const auto quick = quickTopologyOf(mesh.points.size() + 1, mesh.cells);
+  ASSERT_TRUE(quick.has_value());
+  expectTopologyOf<4>(*quick, mesh.cells, kOvmHexFaces);
+}
+
+TEST(OvmTopology, SeamsBetweenAlignedCells) {
+  constexpr Index kSide = 9;
+  HexMesh mesh = gridMesh(kSide, kSide, kSide);
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    // Slabs, and a block inside that touches no slab's end but with a corner.
+    const bool slab = c / (kSide * kSide) >= 6;
+    const bool block = c % kSide < 3 && c / kSide % kSide < 3 && c / (kSide * kSide) < 3;
+    mesh.cells[c] = inHexOrder(mesh.cells[c], slab ? 1 : (block ? 2 : 0));
+  }
+  const auto quick = quickTopologyOf(mesh.points.size(), mesh.cells, 1);
+  ASSERT_TRUE(quick.has_value());
+  expectTopologyOf<4>(*quick, mesh.cells, kOvmHexFaces);
+  expectSame(*quick, *quickTopologyOf(mesh.points.size(), mesh.cells, 4));
+}
+
+/// A grid of n^3 cells whose ends are glued to each other.
+Array<Hex> periodicGrid(Index n) {
+  const auto vertex = [n](Index x, Index y, Index z) {
+    return x % n + n * (y % n) + n * n * (z % n);
+  };
+  Array<Hex> cells;
+  for (Index i = 0; i < n * n * n; ++i) {
+    const Index x = i % n;
+    const Index y = i / n % n;
+    const Index z = i / n / n;
+    cells.push_back({vertex(x, y, z), vertex(x + 1, y, z), vertex(x + 1, y + 1, z),
+                     vertex(x, y + 1, z), vertex(x, y, z + 1), vertex(x + 1, y, z + 1),
+                     vertex(x + 1, y + 1, z + 1), vertex(x, y + 1, z + 1)});
+  }
+  return cells;
+}
+
+TEST(OvmTopology, WithoutAnySeam) {
+  for (const Index n : {3U, 4U}) {
+    const Array<Hex> cells = periodicGrid(n);
+    const auto quick = quickTopologyOf(cells.size(), cells);
+    ASSERT_TRUE(quick.has_value());
+    EXPECT_EQ(quick->edges.size(), 3 * cells.size());
+    EXPECT_EQ(quick->faces.size(), 3 * cells.size());
+    expectTopologyOf<4>(*quick, cells, kOvmHexFaces);
+  }
+  // Two edges between the same vertices, and four cells at a face.
+  EXPECT_FALSE(quickTopologyOf(8, periodicGrid(2)).has_value());
 }
 
 }  // namespace
