@@ -40,11 +40,6 @@ void addBits(std::uint8_t& bits, unsigned added) {
 /// Per vertex: tets in one and the same direction from it.
 using Cones = Array<std::uint32_t>;
 
-/// 1 for negative numbers; a comparison would make a branch.
-constexpr unsigned signBit(double x) {
-  return static_cast<unsigned>(std::bit_cast<std::uint64_t>(x) >> 63);
-}
-
 /// The faces of a tet, as seen by the direction in general position.
 class TetNormals {
  public:
