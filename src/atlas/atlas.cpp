@@ -61,8 +61,9 @@ class Atlas {
     statistics.overlappingTets = overlaps.tets;
     Stage stage(context_, "cuts");
     if (options_.markCuts) {
-      statistics.cutFaces =
-          markCutCells(map_, charts_, overlaps.tets == 0, vertices_.grid(), stage);
+      Cuts cuts = markCutCells(map_, charts_, overlaps.tets == 0, vertices_.grid(), stage);
+      statistics.cutFaces = cuts.faces;
+      jumps_ = std::move(cuts.jumps);
     }
     vertices_.dropLines();
     statistics.charts = charts_.count;
@@ -72,12 +73,14 @@ class Atlas {
 
   [[nodiscard]] const VertexGrid<Id>& vertices() const noexcept { return vertices_; }
   [[nodiscard]] const CellSeeds& cells() const noexcept { return cells_; }
+  [[nodiscard]] const Jumps& jumps() const noexcept { return jumps_; }
 
  private:
   const PreparedMap& map_;
   Charts charts_;
   VertexGrid<Id> vertices_;
   CellSeeds cells_;
+  Jumps jumps_;
   Context& context_;
   AtlasOptions options_;
 };
@@ -122,7 +125,7 @@ class CellEmitters {
         return emitter;
       }
     }
-    return std::make_unique<CellEmitter<Id>>(map_, atlas_.vertices());
+    return std::make_unique<CellEmitter<Id>>(map_, atlas_.vertices(), atlas_.jumps());
   }
   void giveBack(std::unique_ptr<CellEmitter<Id>> emitter) {
     const std::lock_guard lock(mutex_);

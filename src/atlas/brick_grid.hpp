@@ -2,14 +2,17 @@
 // in bricks of 8 x 8 x 8 points behind a hash table.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <deque>
 #include <limits>
+#include <mutex>
 #include <span>
 #include <vector>
 
+#include <atlas/cut_cells.hpp>
 #include <atlas/gauge.hpp>
 
 #include <hexhex/types.hpp>
@@ -18,9 +21,8 @@
 
 namespace hexhex {
 
-/// Points along each side of a brick.
+/// Points along each side of a brick, of kBrickPoints.
 inline constexpr std::uint32_t kBrickSide = 8;
-inline constexpr std::size_t kBrickPoints = 512;
 
 /// Names a brick: chart and brick coordinates, modulo 2^16 each. Charts and places that the modulus
 /// makes equal overlap, no more (see gauge.hpp).
@@ -52,27 +54,13 @@ struct Brick {
   [[nodiscard]] static constexpr bool isVertex(Id id) noexcept { return id < kContested; }
 
   std::array<Id, kBrickPoints> ids;
-  /// Per cell, named by its smallest corner: whether a cut face may meet its open interior.
-  std::array<std::uint64_t, kBrickPoints / 64> marks;
-  std::uint32_t marked;     ///< not 0 if there are marks
+  CutCells* cuts;           ///< null if no cut may meet any cell
   std::uint32_t contested;  ///< not 0 if two vertices claim one of the points
 
   void clear() noexcept {
     ids.fill(kEmpty);
-    marks.fill(0);
-    marked = 0;
+    cuts = nullptr;
     contested = 0;
-  }
-  /// Marks a cell. Thread-safe.
-  void mark(std::size_t place) noexcept {
-    const std::atomic_ref word(marks[place / 64]);
-    const std::uint64_t bit = std::uint64_t{1} << (place % 64);
-    if ((word.load(std::memory_order_relaxed) & bit) != 0) return;
-    word.fetch_or(bit, std::memory_order_relaxed);
-    std::atomic_ref(marked).store(1, std::memory_order_relaxed);
-  }
-  [[nodiscard]] bool isMarked(std::size_t place) const noexcept {
-    return ((marks[place / 64] >> (place % 64)) & 1U) != 0;
   }
 };
 
@@ -108,6 +96,15 @@ class BrickGrid {
     }
   }
 
+  /// The bricks with a point that two vertices claim.
+  [[nodiscard]] std::vector<BrickKey> contested() const {
+    std::vector<BrickKey> keys;
+    for (const Slot& slot : slots_) {
+      if (slot.key != kNoBrick && slot.brick->contested != 0) keys.push_back(slot.key);
+    }
+    return keys;
+  }
+
   /// The brick of a key, added if there is none. Not while others use the grid.
   Brick<Id>& add(BrickKey key) {
     if (Brick<Id>* const brick = find(key)) return *brick;
@@ -119,12 +116,35 @@ class BrickGrid {
     return brick;
   }
 
+  /// What is known of cuts in a brick, made when it is first asked for. Thread-safe.
+  [[nodiscard]] CutCells& cutsOf(Brick<Id>& brick) {
+    const std::atomic_ref known(brick.cuts);
+    CutCells* cuts = known.load(std::memory_order_acquire);
+    if (cuts != nullptr) return *cuts;
+    const std::lock_guard lock(cutsMutex_);
+    cuts = known.load(std::memory_order_relaxed);
+    if (cuts == nullptr) {
+      cuts = &freshCuts();
+      known.store(cuts, std::memory_order_release);
+    }
+    return *cuts;
+  }
+
  private:
   struct Slot {
     BrickKey key;
     Brick<Id>* brick;
   };
 
+  CutCells& freshCuts() {
+    if (cutsLeft_ == 0) {
+      cutsLeft_ = cuts_.empty() ? 16 : std::min<std::size_t>(2 * cuts_.back().size(), 1024);
+      cuts_.emplace_back(cutsLeft_);
+    }
+    CutCells& fresh = cuts_.back()[--cutsLeft_];
+    fresh.clear();
+    return fresh;
+  }
   [[nodiscard]] std::size_t home(BrickKey key) const noexcept {
     return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15U) >> shift_);
   }
@@ -170,6 +190,9 @@ class BrickGrid {
   std::size_t used_ = 0;
   Array<Brick<Id>> bricks_;
   std::deque<Brick<Id>> added_;
+  std::mutex cutsMutex_;
+  std::vector<Array<CutCells>> cuts_;  ///< each larger than the one before
+  std::size_t cutsLeft_ = 0;           ///< in the last
 };
 
 /// Finds bricks without the hash table while accesses stay close. One per thread.

@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <bit>
 #include <limits>
 #include <utility>
 
@@ -49,14 +49,43 @@ Id readCells(std::array<const Id*, 4> rows, std::ptrdiff_t stride, std::array<Id
   return together;
 }
 
+/// Both special values of a brick have it, as no vertex of a mesh of usual size has.
+template <class Id>
+constexpr Id kHighestBit = ~(std::numeric_limits<Id>::max() >> 1);
+
+/// The first corner of a set.
+std::size_t memberOf(CellCornerSet corners) {
+  return static_cast<std::size_t>(std::countr_zero(corners));
+}
+
+/// Whether all corners of a cell are in the brick of its smallest one.
+bool isInOneBrick(const ChartPoint& c) {
+  constexpr std::uint32_t kLast = kBrickSide - 1;
+  return c[0] % kBrickSide != kLast && c[1] % kBrickSide != kLast && c[2] % kBrickSide != kLast;
+}
+
+/// The corners of a cell at which the picture shows no vertex.
+template <class Id>
+CellCornerSet withoutVertex(const std::array<Id, 8>& cell) {
+  Id together = 0;
+  for (const Id id : cell) together |= id;
+  if ((together & kHighestBit<Id>) == 0) return 0;
+  CellCornerSet corners = 0;
+  for (std::size_t c = 0; c < 8; ++c) {
+    corners |= (Brick<Id>::isVertex(cell[c]) ? 0U : 1U) << c;
+  }
+  return corners;
+}
+
 /// What stands for bricks that do not exist.
 template <class Id>
 const Brick<Id>& noBrick() {
   static const Brick<Id> brick = [] {
+    static CutCells everywhere;
+    everywhere.cells.fill(CutCell{}.with(kAllCellCorners, kManyJumps));
     Brick<Id> empty;
     empty.clear();
-    empty.marks.fill(~std::uint64_t{0});
-    empty.marked = 1;
+    empty.cuts = &everywhere;
     return empty;
   }();
   return brick;
@@ -84,7 +113,7 @@ void CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines, std::spa
       continue;
     }
     for (std::uint32_t i = first; i < first + count; ++i) {
-      emitIrregular(line.point(i), line.simplex(i), *job.place++);
+      if (emitIrregular(line.point(i), line.simplex(i), kAllCellCorners, *job.place++)) ++traced_;
     }
   }
 }
@@ -113,7 +142,7 @@ void CellEmitter<Id>::emitLine(Job& job, const SweptLine& line, std::uint32_t fi
     }
   }();
   row.count = count;
-  if (flags.marked || flags.special) mendLine(job, line, first, row, flags.special, cells);
+  if (flags.cut || flags.special) mendLine(job, line, first, row, flags.special, cells);
 }
 
 /// Reads the corners of a line of cells off the picture.
@@ -124,10 +153,10 @@ typename CellEmitter<Id>::Flags CellEmitter<Id>::readLine(const Job& job, const 
                                                           Cell* cells) {
   std::array<Id, 4> near;
   Id together = 0;
-  std::uint32_t marked = 0;
+  bool cut = false;
   row.forEachPart(
       [&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count, std::ptrdiff_t stride) {
-        std::array<const Id*, 4> rows = rowsAt(job, c, marked);
+        std::array<const Id*, 4> rows = rowsAt(job, c, cut);
         if (offset == 0) {
           for (std::size_t r = 0; r < 4; ++r) {
             near[r] = *rows[r];
@@ -139,21 +168,18 @@ typename CellEmitter<Id>::Flags CellEmitter<Id>::readLine(const Job& job, const 
         }
         together |= readCells<Permutation>(rows, stride, near, cells + (offset - 1), count);
       });
-  // Both special values have the highest bit set, as no vertex of a mesh of usual size has.
-  constexpr Id kHighestBit = ~(std::numeric_limits<Id>::max() >> 1);
-  return {(together & kHighestBit) != 0, marked != 0};
+  return {(together & kHighestBit<Id>) != 0, cut};
 }
 
 /// The places of the points of the four rows beside point c of row 0.
-/// @param marked  not 0 afterwards if a brick has marks
+/// @param cut  becomes true if a brick has cut cells
 template <class Id>
-std::array<const Id*, 4> CellEmitter<Id>::rowsAt(const Job& job, const ChartPoint& c,
-                                                 std::uint32_t& marked) {
+std::array<const Id*, 4> CellEmitter<Id>::rowsAt(const Job& job, const ChartPoint& c, bool& cut) {
   std::array<const Id*, 4> rows;
   const auto look = [&](std::size_t r, const ChartPoint& point) {
     const Brick<Id>* brick = cache_.find(chart_, point);
     if (brick == nullptr) brick = &noBrick<Id>();
-    marked |= brick->marked;
+    cut = cut || brick->cuts != nullptr;
     rows[r] = brick->ids.data() + placeInBrick(point);
   };
   look(0, c);
@@ -172,7 +198,7 @@ std::array<const Id*, 4> CellEmitter<Id>::rowsAt(const Job& job, const ChartPoin
 template <class Id>
 void CellEmitter<Id>::mendLine(const Job& job, const SweptLine& line, std::uint32_t first,
                                ChartRow row, bool special, Cell* cells) {
-  // A cell is marked at its smallest corner in the chart.
+  // What is cut of a cell is noted at its smallest corner in the chart.
   for (std::size_t k = 0; k < 3; ++k) {
     const Direction d = job.frame.along(k);
     if (signOf(d) < 0) row.start = moved(row.start, d, 1);
@@ -181,27 +207,101 @@ void CellEmitter<Id>::mendLine(const Job& job, const SweptLine& line, std::uint3
       [&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count, std::ptrdiff_t stride) {
         const Brick<Id>* brick = cache_.find(chart_, c);
         if (brick == nullptr) brick = &noBrick<Id>();
+        const CutCells* const cuts = brick->cuts;
+        if (cuts == nullptr && !special) return;
         auto place = static_cast<std::ptrdiff_t>(placeInBrick(c));
-        for (std::uint32_t i = offset; i < offset + count; ++i, place += stride) {
-          if (!brick->isMarked(static_cast<std::size_t>(place)) &&
-              (!special || std::all_of(cells[i].begin(), cells[i].end(), Brick<Id>::isVertex))) {
-            continue;
+        for (std::uint32_t i = 0; i < count; ++i, place += stride) {
+          const auto at = static_cast<std::size_t>(place);
+          Cell& cell = cells[offset + i];
+          bool hidden = false;
+          CellCornerSet left = 0;
+          if (cuts != nullptr && cuts->cells[at].isCut()) {
+            left = lookAcross(moved(c, row.along, i), cuts->cells[at], cell, hidden);
           }
-          emitIrregular(line.point(first + i), line.simplex(first + i), cells[i]);
+          if (special) left |= withoutVertex(cell);
+          if (left != 0) {
+            const std::uint32_t n = first + offset + i;
+            hidden |= emitIrregular(line.point(n), line.simplex(n), left, cell);
+          }
+          traced_ += hidden ? 1 : 0;
         }
       });
 }
 
-/// Walks to the corners, and takes from the picture what a straight way without a cut leads to.
+/// Takes corners behind a cut from the picture on its other side, if there is just one cut on the
+/// way. It then ends on either side; if only one of the pictures has a vertex there, on that one.
+/// @param c       the cell's smallest corner in the chart
+/// @param hidden  becomes true if a vertex is found on the other side
+/// @return the corners that are still in question, in terms of the tet's own chart
 template <class Id>
-void CellEmitter<Id>::emitIrregular(const GridPoint& z, CornerMask generator, Cell& cell) {
+CellCornerSet CellEmitter<Id>::lookAcross(const ChartPoint& c, const CutCell& cut, Cell& cell,
+                                          bool& hidden) {
+  const Rotation toOwn = vertices_.charts().gauge(tet_).rotation.inverse();
+  CellCornerSet left = 0;
+  OtherSide other;
+  for (CellCornerSet corners = cut.corners(); corners != 0; corners &= corners - 1) {
+    const CellCornerSet bit = corners & (0U - corners);
+    const JumpId id = cut.jump(memberOf(bit));
+    const CellCornerSet own = turned(toOwn, bit);
+    if (id != other.jump) other = otherSide(c, id);
+    const Id there = vertexBeyond(other, memberOf(turned(other.rotation, bit)));
+    Id& here = cell[memberOf(own)];
+    const bool isHere = Brick<Id>::isVertex(here);
+    const bool isThere = Brick<Id>::isVertex(there);
+    if (there == Brick<Id>::kContested || isHere == isThere) {
+      if (here != there) left |= own;
+    } else if (isThere) {
+      here = there;
+      hidden = true;
+    }
+  }
+  return left;
+}
+
+/// The image of a cell on the other side of a cut.
+template <class Id>
+typename CellEmitter<Id>::OtherSide CellEmitter<Id>::otherSide(const ChartPoint& c, JumpId id) {
+  OtherSide other;
+  other.jump = id;
+  if (id == kManyJumps) return other;
+  const Jump& jump = jumps_[id];
+  const ChartPoint image = jump.map.cell(c);
+  const Brick<Id>* const brick = cache_.find(jump.to, image);
+  if (brick == nullptr || brick->cuts == nullptr) return other;
+  return {id,
+          jump.inverse,
+          jump.map.rotation,
+          jump.to,
+          image,
+          brick,
+          brick->cuts->cells[placeInBrick(image)],
+          isInOneBrick(image)};
+}
+
+/// What the picture on the other side shows at a corner, of the image; "contested" if there are
+/// further cuts on the way.
+template <class Id>
+Id CellEmitter<Id>::vertexBeyond(const OtherSide& other, std::size_t corner) {
+  if (other.brick == nullptr) return Brick<Id>::kContested;
+  if (other.cut.jump(corner) != other.back) return Brick<Id>::kContested;
+  const ChartPoint point = plus(other.cell, kCellCorners[corner]);
+  const Brick<Id>* const brick = other.inOneBrick ? other.brick : cache_.find(other.chart, point);
+  return brick != nullptr ? brick->ids[placeInBrick(point)] : Brick<Id>::kEmpty;
+}
+
+/// Walks to some corners of a cell, and leaves what the picture shows of those to which a straight
+/// way without a cut leads.
+/// @return whether there are others
+template <class Id>
+bool CellEmitter<Id>::emitIrregular(const GridPoint& z, CornerMask generator, CellCornerSet corners,
+                                    Cell& cell) {
   bool hidden = false;
   const CellCornerSet missed =
-      walker_.run(tet_, z, [&](const CellWalker::Stop& stop, CellCornerSet corners) {
+      walker_.run(tet_, z, corners, [&](const CellWalker::Stop& stop, CellCornerSet arrived) {
         if (stop.inSight) return;
         hidden = true;
-        for (std::size_t c = 0; c < 8; ++c) {
-          if (((corners >> c) & 1U) == 0) continue;
+        for (; arrived != 0; arrived &= arrived - 1) {
+          const auto c = memberOf(arrived);
           GridPoint corner = z;
           for (std::size_t k = 0; k < 3; ++k) corner[k] += kCellCorners[c][k];
           cell[c] = vertices_.vertexAt(stop.tet, stop.toTet(corner), cache_);
@@ -214,7 +314,7 @@ void CellEmitter<Id>::emitIrregular(const GridPoint& z, CornerMask generator, Ce
     const CornerPlace place = tracer_.trace(kCellCorners[c]);
     cell[c] = vertices_.vertexAt(place.tet, place.z, cache_);
   }
-  if (hidden) ++traced_;
+  return hidden;
 }
 
 template class CellEmitter<std::uint32_t>;

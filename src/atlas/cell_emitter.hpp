@@ -22,9 +22,10 @@ class CellEmitter {
  public:
   using Cell = std::array<Id, 8>;
 
-  CellEmitter(const PreparedMap& map, const VertexGrid<Id>& vertices)
+  CellEmitter(const PreparedMap& map, const VertexGrid<Id>& vertices, const Jumps& jumps)
       : map_(map),
         vertices_(vertices),
+        jumps_(jumps),
         cache_(vertices.grid()),
         walker_(map, vertices.charts()),
         tracer_(map) {}
@@ -49,20 +50,36 @@ class CellEmitter {
   /// What there is to say of a line of cells that was read.
   struct Flags {
     bool special = false;  ///< some corner may be no vertex
-    bool marked = false;   ///< some brick around has marks
+    bool cut = false;      ///< some brick around has cut cells
+  };
+
+  /// A cell as the picture on the other side of a cut shows it.
+  struct OtherSide {
+    JumpId jump = kNoJump;  ///< leads there
+    JumpId back = kNoJump;
+    Rotation rotation;
+    Index chart = 0;
+    ChartPoint cell{};                 ///< its smallest corner there
+    const Brick<Id>* brick = nullptr;  ///< of that corner; null if nothing is known of cuts there
+    CutCell cut;                       ///< what is known
+    bool inOneBrick = false;           ///< and of all others
   };
 
   void emitLine(Job& job, const SweptLine& line, std::uint32_t first, std::uint32_t count);
   template <std::size_t Permutation>
   [[nodiscard]] Flags readLine(const Job& job, const ChartRow& row, Cell* cells);
-  [[nodiscard]] std::array<const Id*, 4> rowsAt(const Job& job, const ChartPoint& c,
-                                                std::uint32_t& marked);
+  [[nodiscard]] std::array<const Id*, 4> rowsAt(const Job& job, const ChartPoint& c, bool& cut);
   void mendLine(const Job& job, const SweptLine& line, std::uint32_t first, ChartRow row,
                 bool special, Cell* cells);
-  void emitIrregular(const GridPoint& z, CornerMask generator, Cell& cell);
+  [[nodiscard]] CellCornerSet lookAcross(const ChartPoint& c, const CutCell& cut, Cell& cell,
+                                         bool& hidden);
+  [[nodiscard]] OtherSide otherSide(const ChartPoint& c, JumpId id);
+  [[nodiscard]] Id vertexBeyond(const OtherSide& other, std::size_t corner);
+  bool emitIrregular(const GridPoint& z, CornerMask generator, CellCornerSet corners, Cell& cell);
 
   const PreparedMap& map_;
   const VertexGrid<Id>& vertices_;
+  const Jumps& jumps_;
   BrickCache<Id> cache_;
   CellWalker walker_;
   CellTracer tracer_;

@@ -55,9 +55,8 @@ CellWalker::CellWalker(const PreparedMap& map, const Charts& charts)
       tetAt_(kRemembered, kNone),
       faces_(kRemembered) {}
 
-void CellWalker::begin(Index tet, const GridPoint& z) {
-  constexpr CellCornerSet kAll = 0xff;
-  Group group{{tet, charts_.chart[tet] != Charts::kNoChart, {}}, 0, kAll, {}};
+void CellWalker::begin(Index tet, const GridPoint& z, CellCornerSet corners) {
+  Group group{{tet, charts_.chart[tet] != Charts::kNoChart, {}}, 0, corners, {}};
   for (std::size_t k = 0; k < 3; ++k) group.center[k] = 2 * std::int64_t{z[k]} + 1;
   front_.assign(1, group);
   stepsLeft_ = kMaxSteps;

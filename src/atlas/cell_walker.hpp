@@ -14,12 +14,10 @@
 
 #include <atlas/charts.hpp>
 
+#include <lattice/cell_corners.hpp>
 #include <map/prepare.hpp>
 
 namespace hexhex {
-
-/// A set of corners of a cell, in VTK order: bit i for corner i.
-using CellCornerSet = unsigned;
 
 /// Walks to the corners of cells. One per thread.
 class CellWalker {
@@ -34,13 +32,14 @@ class CellWalker {
   };
 
   /// Walks from the centre of the cell whose smallest corner is z, in the chart of a tet that
-  /// contains that centre. Calls visit(Stop, CellCornerSet) with the corners that are in the
-  /// (closed) tet of the stop.
+  /// contains that centre, to some of its corners. Calls visit(Stop, CellCornerSet) with those that
+  /// are in the (closed) tet of the stop.
   /// @return the corners that it cannot tell
   template <class Visit>
-  [[nodiscard]] CellCornerSet run(Index tet, const GridPoint& z, const Visit& visit) {
+  [[nodiscard]] CellCornerSet run(Index tet, const GridPoint& z, CellCornerSet corners,
+                                  const Visit& visit) {
     CellCornerSet missed = 0;
-    begin(tet, z);
+    begin(tet, z, corners);
     while (!front_.empty()) {
       const Group group = front_.back();
       front_.pop_back();
@@ -85,7 +84,7 @@ class CellWalker {
     }
   };
 
-  void begin(Index tet, const GridPoint& z);
+  void begin(Index tet, const GridPoint& z, CellCornerSet corners);
   [[nodiscard]] const Faces& facesOf(Index tet) noexcept;
   void measure(Index tet, Faces& faces) const noexcept;
   [[nodiscard]] Sides look(const Faces& faces, const Group& group, const GridPoint& z) const;

@@ -42,33 +42,20 @@ struct Borders {
   std::vector<std::size_t> begin;  ///< per patch (+1)
 };
 
-Borders findBorders(const PreparedMap& map, const Patches& patches, Stage& stage) {
+Borders findBorders(const PreparedMap& map, const Patches& patches) {
   const Array<HalfFace>& mate = map.topology.mate;
-  std::vector<std::vector<HalfFace>> blocks(blockCount(mate.size(), kGrain));
-  parallelBlocks(stage, mate.size(), kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   for (std::size_t h = begin; h < end; ++h) {
-                     const auto halfFace = static_cast<HalfFace>(h);
-                     if (!map.exact.transitions.isJump(halfFace) || mate[h] == kNone) continue;
-                     if (patches.of(tetOf(halfFace)) != patches.of(tetOf(mate[h]))) {
-                       blocks[block].push_back(halfFace);
-                     }
-                   }
-                 });
+  const auto isBorder = [&](HalfFace halfFace) {
+    return halfFace != kNone && patches.of(tetOf(halfFace)) != patches.of(tetOf(mate[halfFace]));
+  };
   Borders borders;
   borders.begin.assign(std::size_t{patches.count()} + 1, 0);
-  std::size_t total = 0;
-  for (const std::vector<HalfFace>& block : blocks) {
-    total += block.size();
-    for (const HalfFace halfFace : block) ++borders.begin[patches.of(tetOf(halfFace))];
+  for (const HalfFace halfFace : map.exact.transitions.halfFaces) {
+    if (isBorder(halfFace)) ++borders.begin[patches.of(tetOf(halfFace))];
   }
-  exclusiveScan(std::span(borders.begin));
-  borders.halfFaces.resize(total);
+  borders.halfFaces.resize(exclusiveScan(std::span(borders.begin)));
   std::vector<std::size_t> next(borders.begin.begin(), borders.begin.end() - 1);
-  for (const std::vector<HalfFace>& block : blocks) {
-    for (const HalfFace halfFace : block) {
-      borders.halfFaces[next[patches.of(tetOf(halfFace))]++] = halfFace;
-    }
+  for (const HalfFace halfFace : map.exact.transitions.halfFaces) {
+    if (isBorder(halfFace)) borders.halfFaces[next[patches.of(tetOf(halfFace))]++] = halfFace;
   }
   return borders;
 }
@@ -77,7 +64,7 @@ Borders findBorders(const PreparedMap& map, const Patches& patches, Stage& stage
 
 Charts buildCharts(const PreparedMap& map, Stage& stage) {
   Patches patches(map, stage);
-  const Borders borders = findBorders(map, patches, stage);
+  const Borders borders = findBorders(map, patches);
   Charts charts;
   charts.gauges.resize(patches.count());
   std::vector<Index> chartOfPatch(patches.count(), kNone);

@@ -1,4 +1,4 @@
-#include <atomic>
+#include <vector>
 
 #include <atlas/cut_marks.hpp>
 
@@ -7,8 +7,6 @@
 namespace hexhex {
 
 namespace {
-
-constexpr std::size_t kGrain = 1024;
 
 using Triangle = std::array<LatticePoint, 3>;
 
@@ -21,58 +19,114 @@ Triangle triangleOf(const ExactMap& map, HalfFace halfFace) {
 
 /// Gauge::cell() prepared for many cells: it differs from the gauge by a constant.
 SweepFrame cellFrame(const Gauge& gauge) noexcept {
-  return {{gauge.rotation, gauge.cell({0, 0, 0})}, {0, 1, 2}};
+  return {{gauge.rotation, gauge.cell(GridPoint{})}, {0, 1, 2}};
 }
 
-/// Marks the cells that a cut may meet, in the charts on both its sides: what the triangle meets on
-/// one side are the images of what it meets on the other.
-template <class Id>
-void markCut(const PreparedMap& map, const Charts& charts, HalfFace halfFace,
-             BrickCache<Id>& cache) {
-  const Index here = tetOf(halfFace);
-  const Index there = tetOf(map.topology.mate[halfFace]);
-  const SweepFrame frameHere = cellFrame(charts.gauge(here));
-  const SweepFrame frameThere =
-      cellFrame(charts.gauge(there) * map.exact.transitions.across(halfFace));
-  const auto mark = [&](Index chart, const ChartPoint& c) {
-    if (chart == Charts::kNoChart) return;
-    Brick<Id>* const brick = cache.find(chart, c);
-    if (brick != nullptr) brick->mark(placeInBrick(c));
+/// One half-face of each inner face that is cut.
+/// @param asBuilt  as in markCutCells()
+std::vector<HalfFace> findCuts(const PreparedMap& map, const Charts& charts, bool asBuilt,
+                               Stage& stage) {
+  constexpr std::size_t kGrain = 4096;
+  const Array<HalfFace>& mate = map.topology.mate;
+  const std::vector<HalfFace>& jumps = map.exact.transitions.halfFaces;
+  const auto candidate = [&](std::size_t i) {
+    // Both half-faces of a jump are neighbours in the table, behind the identity.
+    if (asBuilt) return jumps[2 * i + 1];
+    return mate[i] != kNone && mate[i] > i ? static_cast<HalfFace>(i) : kNone;
   };
-  TriangleCells(triangleOf(map.exact, halfFace), map.exact.unit).run([&](const GridPoint& z) {
-    mark(charts.chart[here], frameHere(z[0], z[1], z[2]));
-    mark(charts.chart[there], frameThere(z[0], z[1], z[2]));
-  });
+  return collectFromBlocks<HalfFace>(
+      stage, asBuilt ? jumps.size() / 2 : mate.size(), kGrain,
+      [&](std::size_t begin, std::size_t end, std::vector<HalfFace>& cuts) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const HalfFace halfFace = candidate(i);
+          if (halfFace == kNone) continue;
+          if (charts.isGlued(map.topology, map.exact.transitions, halfFace)) continue;
+          cuts.push_back(halfFace);
+        }
+      });
 }
+
+/// A cut cell without a brick.
+struct LoneCut {
+  BrickKey key;
+  std::size_t place;
+  CellCornerSet corners;
+  JumpId jump;
+};
+
+/// Marks what a cut may meet, in the charts on both its sides: what the triangle meets on one side
+/// are the images of what it meets on the other.
+template <class Id>
+class CutMarker {
+ public:
+  /// @param lone  receives what there is no brick for
+  CutMarker(const PreparedMap& map, const Charts& charts, const Jumps& jumps, BrickGrid<Id>& grid,
+            std::vector<LoneCut>& lone)
+      : map_(map), charts_(charts), jumps_(jumps), grid_(grid), cache_(grid), lone_(lone) {}
+
+  void mark(HalfFace halfFace, JumpId jump) {
+    const Index here = tetOf(halfFace);
+    const Index there = tetOf(map_.topology.mate[halfFace]);
+    const Gauge& gaugeHere = charts_.gauge(here);
+    const Gauge gaugeThere = charts_.gauge(there) * map_.exact.transitions.across(halfFace);
+    const SweepFrame frameHere = cellFrame(gaugeHere);
+    const SweepFrame frameThere = cellFrame(gaugeThere);
+    const JumpId back = jump == kManyJumps ? kManyJumps : jumps_[jump].inverse;
+    TriangleCells(triangleOf(map_.exact, halfFace), map_.exact.unit)
+        .run([&](const GridPoint& z, CellCornerSet corners) {
+          add(charts_.chart[here], frameHere(z[0], z[1], z[2]), turned(gaugeHere.rotation, corners),
+              jump);
+          add(charts_.chart[there], frameThere(z[0], z[1], z[2]),
+              turned(gaugeThere.rotation, corners), back);
+        });
+  }
+
+ private:
+  void add(Index chart, const ChartPoint& c, CellCornerSet corners, JumpId jump) {
+    if (chart == Charts::kNoChart) return;
+    Brick<Id>* const brick = cache_.find(chart, c);
+    if (brick != nullptr) {
+      grid_.cutsOf(*brick).add(placeInBrick(c), corners, jump);
+    } else {
+      lone_.push_back({brickKey(chart, c), placeInBrick(c), corners, jump});
+    }
+  }
+
+  const PreparedMap& map_;
+  const Charts& charts_;
+  const Jumps& jumps_;
+  BrickGrid<Id>& grid_;
+  BrickCache<Id> cache_;
+  std::vector<LoneCut>& lone_;
+};
 
 }  // namespace
 
 template <class Id>
-std::uint64_t markCutCells(const PreparedMap& map, const Charts& charts, bool asBuilt,
-                           BrickGrid<Id>& grid, Stage& stage) {
-  const TetTopology& topology = map.topology;
-  std::atomic<std::uint64_t> cuts{0};
-  parallelBlocks(stage, topology.tetCount(), kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t) {
-                   BrickCache<Id> cache(grid);
-                   std::uint64_t cutsHere = 0;
-                   for (std::size_t h = 4 * begin; h < 4 * end; ++h) {
-                     const auto halfFace = static_cast<HalfFace>(h);
-                     if (asBuilt && !map.exact.transitions.isJump(halfFace)) continue;
-                     const HalfFace mate = topology.mate[halfFace];
-                     if (mate == kNone || mate < halfFace) continue;
-                     if (charts.isGlued(topology, map.exact.transitions, halfFace)) continue;
-                     ++cutsHere;
-                     markCut(map, charts, halfFace, cache);
-                   }
-                   cuts.fetch_add(cutsHere, std::memory_order_relaxed);
-                 });
-  return cuts.load();
+Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool asBuilt, BrickGrid<Id>& grid,
+                  Stage& stage) {
+  const std::vector<HalfFace> halfFaces = findCuts(map, charts, asBuilt, stage);
+  Cuts cuts;
+  cuts.faces = halfFaces.size();
+  std::vector<JumpId> jumps(halfFaces.size());
+  for (std::size_t i = 0; i < jumps.size(); ++i) {
+    jumps[i] = cuts.jumps.across(map, charts, halfFaces[i]);
+  }
+  constexpr std::size_t kFaces = 256;
+  const auto lone = collectFromBlocks<LoneCut>(
+      stage, halfFaces.size(), kFaces,
+      [&](std::size_t begin, std::size_t end, std::vector<LoneCut>& loneHere) {
+        CutMarker<Id> marker(map, charts, cuts.jumps, grid, loneHere);
+        for (std::size_t i = begin; i < end; ++i) marker.mark(halfFaces[i], jumps[i]);
+      });
+  for (const LoneCut& cell : lone)
+    grid.cutsOf(grid.add(cell.key)).add(cell.place, cell.corners, cell.jump);
+  return cuts;
 }
 
-template std::uint64_t markCutCells(const PreparedMap&, const Charts&, bool,
-                                    BrickGrid<std::uint32_t>&, Stage&);
-template std::uint64_t markCutCells(const PreparedMap&, const Charts&, bool,
-                                    BrickGrid<std::uint64_t>&, Stage&);
+template Cuts markCutCells(const PreparedMap&, const Charts&, bool, BrickGrid<std::uint32_t>&,
+                           Stage&);
+template Cuts markCutCells(const PreparedMap&, const Charts&, bool, BrickGrid<std::uint64_t>&,
+                           Stage&);
 
 }  // namespace hexhex

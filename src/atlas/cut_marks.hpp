@@ -5,6 +5,7 @@
 
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
+#include <atlas/jumps.hpp>
 
 #include <hexhex/types.hpp>
 
@@ -12,14 +13,18 @@
 
 namespace hexhex {
 
-/// Marks, on both sides of every face that is not glued, the cells whose open interior the face may
-/// meet. (Cells without a brick need no mark: they are found irregular without.) Faces of the
-/// boundary lie in grid planes and meet no open cell.
+/// The faces that are not glued.
+struct Cuts {
+  std::uint64_t faces = 0;
+  Jumps jumps;
+};
+
+/// Marks, on both sides of every face that is not glued, the cells in which the face may meet the
+/// way from the centre to a corner. Faces of the boundary lie in grid planes and meet no such way.
 /// @param asBuilt  whether the charts are still those of buildCharts(), where tets that no jump
 ///                 separates share a chart
-/// @return the number of cut faces
 template <class Id>
-std::uint64_t markCutCells(const PreparedMap& map, const Charts& charts, bool asBuilt,
-                           BrickGrid<Id>& grid, Stage& stage);
+[[nodiscard]] Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool asBuilt,
+                                BrickGrid<Id>& grid, Stage& stage);
 
 }  // namespace hexhex

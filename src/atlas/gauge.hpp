@@ -21,16 +21,19 @@ struct Gauge {
 
   [[nodiscard]] constexpr bool operator==(const Gauge&) const = default;
 
-  [[nodiscard]] constexpr ChartPoint operator()(const GridPoint& z) const noexcept {
-    ChartPoint image =
-        rotation(ChartPoint{static_cast<std::uint32_t>(z[0]), static_cast<std::uint32_t>(z[1]),
-                            static_cast<std::uint32_t>(z[2])});
+  [[nodiscard]] constexpr ChartPoint operator()(const ChartPoint& z) const noexcept {
+    ChartPoint image = rotation(z);
     for (std::size_t k = 0; k < 3; ++k) image[k] += translation[k];
     return image;
   }
+  [[nodiscard]] constexpr ChartPoint operator()(const GridPoint& z) const noexcept {
+    return (*this)(ChartPoint{static_cast<std::uint32_t>(z[0]), static_cast<std::uint32_t>(z[1]),
+                              static_cast<std::uint32_t>(z[2])});
+  }
 
   /// The cell whose smallest corner is z, by its smallest corner in the atlas.
-  [[nodiscard]] constexpr ChartPoint cell(const GridPoint& z) const noexcept {
+  template <class Point>
+  [[nodiscard]] constexpr ChartPoint cell(const Point& z) const noexcept {
     ChartPoint image = (*this)(z);
     for (std::uint8_t axis = 0; axis < 3; ++axis) {
       const Direction d = rotation(direction(axis, 1));
@@ -43,7 +46,21 @@ struct Gauge {
   friend constexpr Gauge operator*(const Gauge& gauge, const Transition& transition) noexcept {
     return {gauge.rotation * transition.rotation, gauge(transition.translation)};
   }
+
+  /// (a / b)(b(u)) = a(u).
+  friend constexpr Gauge operator/(const Gauge& a, const Gauge& b) noexcept {
+    Gauge quotient{a.rotation * b.rotation.inverse(), a.translation};
+    const ChartPoint image = quotient.rotation(b.translation);
+    for (std::size_t k = 0; k < 3; ++k) quotient.translation[k] -= image[k];
+    return quotient;
+  }
 };
+
+/// The point at an offset.
+[[nodiscard]] constexpr ChartPoint plus(ChartPoint c, const GridPoint& offset) noexcept {
+  for (std::size_t k = 0; k < 3; ++k) c[k] += static_cast<std::uint32_t>(offset[k]);
+  return c;
+}
 
 /// Steps in a chart: the point `steps` grid units from c in a direction.
 [[nodiscard]] constexpr ChartPoint moved(ChartPoint c, Direction d, std::uint32_t steps) noexcept {

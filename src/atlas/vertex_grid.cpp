@@ -6,6 +6,9 @@ namespace hexhex {
 
 namespace {
 
+/// Tets of which each may take long.
+constexpr std::size_t kFewTets = 16;
+
 /// The bricks around the points of a tet.
 class BrickBox {
  public:
@@ -22,21 +25,28 @@ class BrickBox {
       low.first = std::min(low.first, line.first);
       high.first = std::max(high.first, line.first + static_cast<std::int32_t>(line.count) - 1);
     }
-    const ChartPoint a = gauge(low.point(0));
-    const ChartPoint b = gauge(high.point(0));
-    for (std::size_t k = 0; k < 3; ++k) {
-      // Rotation may have swapped the ends.
-      const auto difference = static_cast<std::int32_t>(b[k] - a[k]);
-      first_[k] = difference < 0 ? b[k] : a[k];
-      const std::uint32_t size = difference < 0 ? 0U - static_cast<std::uint32_t>(difference)
-                                                : static_cast<std::uint32_t>(difference);
-      bricks_[k] = (first_[k] % kBrickSide + size) / kBrickSide + 1;
-    }
+    enclose(gauge(low.point(0)), gauge(high.point(0)));
+  }
+  BrickBox(const GridBox& box, const Gauge& gauge) noexcept {
+    enclose(gauge(GridPoint{box.range[0].first, box.range[1].first, box.range[2].first}),
+            gauge(GridPoint{box.range[0].last, box.range[1].last, box.range[2].last}));
   }
   [[nodiscard]] std::uint64_t count() const noexcept {
     // No factor exceeds 2^29; what two make is more than anyone wants.
     const std::uint64_t layer = std::uint64_t{bricks_[0]} * bricks_[1];
     return layer > (std::uint64_t{1} << 32) ? layer : layer * bricks_[2];
+  }
+  /// Whether the brick of a key is in the box, if the box lies in a chart. May be true of the few
+  /// bricks with a key that stands for two.
+  [[nodiscard]] bool mayContain(Index chart, BrickKey key) const noexcept {
+    if (key == 0) return true;
+    bool contains = brickKey(chart, first_) >> 48 == key >> 48;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t steps =
+          static_cast<std::uint32_t>(key >> (16 * k)) - first_[k] / kBrickSide;
+      contains = contains && (steps & 0xffffU) < bricks_[k];
+    }
+    return contains;
   }
   /// Calls visit(ChartPoint) with a point of each brick.
   template <class Visit>
@@ -52,6 +62,18 @@ class BrickBox {
   }
 
  private:
+  /// @param a, b  opposite corners
+  void enclose(const ChartPoint& a, const ChartPoint& b) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Rotation may have swapped the ends.
+      const auto difference = static_cast<std::int32_t>(b[k] - a[k]);
+      first_[k] = difference < 0 ? b[k] : a[k];
+      const std::uint32_t size = difference < 0 ? 0U - static_cast<std::uint32_t>(difference)
+                                                : static_cast<std::uint32_t>(difference);
+      bricks_[k] = (first_[k] % kBrickSide + size) / kBrickSide + 1;
+    }
+  }
+
   ChartPoint first_{};
   std::array<std::uint32_t, 3> bricks_{};
 };
@@ -252,18 +274,46 @@ void VertexGrid<Id>::describe(Index tet, const VertexArrays& arrays) const {
       [](const ChartRow&, std::uint64_t) {});
 }
 
+/// The tets with a contested point of some brick in their bounding box.
+template <class Id>
+std::vector<Index> VertexGrid<Id>::tetsNearContested(Stage& stage) const {
+  const std::vector<BrickKey> contested = grid_.contested();
+  const auto isNear = [&](Index tet, BrickCache<Id>& cache) {
+    const GridBox points = gridBox(map_.exact.corners[tet], map_.exact.unit);
+    if (points.empty()) return false;
+    const BrickBox box(points, charts_.gauge(tet));
+    const Index chart = charts_.chart[tet];
+    if (contested.size() < box.count()) {
+      return std::any_of(contested.begin(), contested.end(),
+                         [&](BrickKey key) { return box.mayContain(chart, key); });
+    }
+    bool found = false;
+    box.forEach([&](const ChartPoint& c) {
+      const Bricks* const brick = cache.find(chart, c);
+      found = found || (brick != nullptr && brick->contested != 0);
+    });
+    return found;
+  };
+  return collectFromBlocks<Index>(
+      stage, map_.topology.tetCount(), kSweepBlock,
+      [&](std::size_t begin, std::size_t end, std::vector<Index>& tets) {
+        BrickCache<Id> cache(grid_);
+        for (std::size_t t = begin; t < end; ++t) {
+          if (isNear(static_cast<Index>(t), cache)) tets.push_back(static_cast<Index>(t));
+        }
+      });
+}
+
 /// Marks all points that two vertices claim. Entries are only ever replaced by "contested", so it
 /// does not matter who looks first.
 template <class Id>
-void VertexGrid<Id>::markContested(Stage& stage) {
+void VertexGrid<Id>::markContested(const std::vector<Index>& tets, Stage& stage) {
   parallelBlocks(
-      stage, map_.topology.tetCount(), kSweepBlock,
-      [&](std::size_t begin, std::size_t end, std::size_t) {
+      stage, tets.size(), kFewTets, [&](std::size_t begin, std::size_t end, std::size_t) {
         BrickCache<Id> cache(grid_);
         for (std::size_t t = begin; t < end; ++t) {
-          if (!mayTouchContested(static_cast<Index>(t), cache)) continue;
           forEachClaim(
-              static_cast<Index>(t), Faces::OwnedAndCut, [](const VertexRun&) {},
+              tets[t], Faces::OwnedAndCut, [](const VertexRun&) {},
               [&](const ChartRow& row, std::uint64_t first) {
                 row.forEachPart([&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count,
                                     std::ptrdiff_t stride) {
@@ -282,53 +332,25 @@ void VertexGrid<Id>::markContested(Stage& stage) {
       });
 }
 
-/// Whether a brick in the bounding box of a tet has contested points.
+/// Whether a tet has a contested point.
 template <class Id>
-bool VertexGrid<Id>::mayTouchContested(Index tet, BrickCache<Id>& cache) const {
-  constexpr std::uint64_t kMaxBricks = 256;
-  std::vector<SweptLine> scratch;
-  const std::span<const SweptLine> lines = linesOf(tet, scratch);
-  if (lines.empty()) return false;
-  const BrickBox box(lines, charts_.gauge(tet));
-  if (box.count() > kMaxBricks) return true;
+bool VertexGrid<Id>::isContested(Index tet, BrickCache<Id>& cache) const {
   bool contested = false;
-  box.forEach([&](const ChartPoint& c) {
-    const Bricks* const brick = cache.find(charts_.chart[tet], c);
-    contested = contested || (brick != nullptr && brick->contested != 0);
-  });
-  return contested;
-}
-
-template <class Id>
-std::vector<Index> VertexGrid<Id>::tetsWithContestedPoints(Stage& stage) const {
-  const std::size_t tets = map_.topology.tetCount();
-  std::vector<std::vector<Index>> blocks(blockCount(tets, kSweepBlock));
-  parallelBlocks(
-      stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t block) {
-        BrickCache<Id> cache(grid_);
-        for (std::size_t t = begin; t < end; ++t) {
-          if (!mayTouchContested(static_cast<Index>(t), cache)) continue;
-          bool contested = false;
-          forEachClaim(
-              static_cast<Index>(t), Faces::All, [](const VertexRun&) {},
-              [&](const ChartRow& row, std::uint64_t) {
-                row.forEachPart([&](const ChartPoint& c, std::uint32_t, std::uint32_t count,
-                                    std::ptrdiff_t stride) {
-                  Bricks& brick = *cache.find(row.chart, c);
-                  const std::size_t place = placeInBrick(c);
-                  for (std::uint32_t i = 0; i < count; ++i) {
-                    contested = contested ||
-                                entry(brick, place, i * stride).load(std::memory_order_relaxed) ==
-                                    Bricks::kContested;
-                  }
-                });
-              });
-          if (contested) blocks[block].push_back(static_cast<Index>(t));
-        }
+  forEachClaim(
+      tet, Faces::All, [](const VertexRun&) {},
+      [&](const ChartRow& row, std::uint64_t) {
+        row.forEachPart(
+            [&](const ChartPoint& c, std::uint32_t, std::uint32_t count, std::ptrdiff_t stride) {
+              Bricks& brick = *cache.find(row.chart, c);
+              const std::size_t place = placeInBrick(c);
+              for (std::uint32_t i = 0; i < count; ++i) {
+                contested =
+                    contested || entry(brick, place, i * stride).load(std::memory_order_relaxed) ==
+                                     Bricks::kContested;
+              }
+            });
       });
-  std::vector<Index> all;
-  for (const std::vector<Index>& block : blocks) all.insert(all.end(), block.begin(), block.end());
-  return all;
+  return contested;
 }
 
 template <class Id>
@@ -411,8 +433,16 @@ template <class Id>
 OverlapCounts VertexGrid<Id>::resolveOverlaps(Stage& stage) {
   OverlapCounts counts;
   if (!overlaps_) return counts;
-  markContested(stage);
-  const std::vector<Index> tets = tetsWithContestedPoints(stage);
+  const std::vector<Index> near = tetsNearContested(stage);
+  markContested(near, stage);
+  const auto tets = collectFromBlocks<Index>(
+      stage, near.size(), kFewTets,
+      [&](std::size_t begin, std::size_t end, std::vector<Index>& contested) {
+        BrickCache<Id> cache(grid_);
+        for (std::size_t i = begin; i < end; ++i) {
+          if (isContested(near[i], cache)) contested.push_back(near[i]);
+        }
+      });
   counts.tets = tets.size();
   clearContested(tets);
   Array<std::uint8_t> pending(map_.topology.tetCount(), 0);

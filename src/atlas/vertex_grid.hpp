@@ -103,9 +103,9 @@ class VertexGrid {
   void write(const VertexRun& run, Index tet, std::optional<TetPositions>& positions,
              const VertexArrays& arrays) const;
 
-  void markContested(Stage& stage);
-  [[nodiscard]] std::vector<Index> tetsWithContestedPoints(Stage& stage) const;
-  [[nodiscard]] bool mayTouchContested(Index tet, BrickCache<Id>& cache) const;
+  [[nodiscard]] std::vector<Index> tetsNearContested(Stage& stage) const;
+  void markContested(const std::vector<Index>& tets, Stage& stage);
+  [[nodiscard]] bool isContested(Index tet, BrickCache<Id>& cache) const;
   void clearContested(const std::vector<Index>& tets);
   [[nodiscard]] bool tryClaim(Index tet, Index chart);
   void grow(Index seed, Index chart, Array<std::uint8_t>& pending);

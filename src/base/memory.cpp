@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 
@@ -13,24 +14,43 @@ namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
 /// Below, the rounding to whole huge pages would waste too much.
-constexpr std::size_t kLarge = 8 * kHugePage;
+constexpr std::size_t kLarge = 2 * kHugePage;
+/// From here on, asking for all pages at once is cheaper than a fault for each.
+constexpr std::size_t kManyPages = std::size_t{1} << 16;
+
+#if defined(__linux__) && defined(MADV_HUGEPAGE)
+/// In huge pages. Asking is a wish, not a need: where the system has none, ordinary ones do.
+void* allocateLarge(std::size_t bytes) {
+  if (bytes > static_cast<std::size_t>(-1) / 2) throw std::bad_alloc();
+  const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
+  void* const memory = std::aligned_alloc(kHugePage, rounded);
+  if (memory == nullptr) throw std::bad_alloc();
+  static_cast<void>(madvise(memory, rounded, MADV_HUGEPAGE));
+  return memory;
+}
+#endif
+
+/// Has the system provide the pages now that will be written anyway. Where it cannot, it does so
+/// page by page as ever.
+void populate([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
+#if defined(__linux__) && defined(MADV_POPULATE_WRITE)
+  constexpr std::uintptr_t kPage = 4096;
+  const auto begin = reinterpret_cast<std::uintptr_t>(memory);
+  const std::uintptr_t first = (begin + kPage - 1) / kPage * kPage;
+  const std::uintptr_t end = (begin + bytes) / kPage * kPage;
+  static_cast<void>(madvise(reinterpret_cast<void*>(first), end - first, MADV_POPULATE_WRITE));
+#endif
+}
 
 }  // namespace
 
 void* allocateArray(std::size_t bytes) {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
-  if (bytes >= kLarge) {
-    if (bytes > static_cast<std::size_t>(-1) / 2) throw std::bad_alloc();
-    const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
-    void* const memory = std::aligned_alloc(kHugePage, rounded);
-    if (memory == nullptr) throw std::bad_alloc();
-    // A wish, not a need: where the system has no huge pages, ordinary ones do.
-    static_cast<void>(madvise(memory, rounded, MADV_HUGEPAGE));
-    return memory;
-  }
+  if (bytes >= kLarge) return allocateLarge(bytes);
 #endif
   void* const memory = std::malloc(bytes == 0 ? 1 : bytes);
   if (memory == nullptr) throw std::bad_alloc();
+  if (bytes >= kManyPages) populate(memory, bytes);
   return memory;
 }
 

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include <base/stage.hpp>
 
@@ -56,6 +58,24 @@ void parallelFor(Stage& stage, std::size_t n, std::size_t grain, const F& f) {
   parallelBlocks(stage, n, grain, [&f](std::size_t begin, std::size_t end, std::size_t /*block*/) {
     for (std::size_t i = begin; i < end; ++i) f(i);
   });
+}
+
+/// Calls f(begin, end, list) for consecutive blocks as parallelBlocks() does, each with a list of
+/// its own to append to.
+/// @return all lists, one behind the other
+template <class T, class F>
+std::vector<T> collectFromBlocks(Stage& stage, std::size_t n, std::size_t grain, const F& f) {
+  std::vector<std::vector<T>> blocks(blockCount(n, grain));
+  parallelBlocks(stage, n, grain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+    f(begin, end, blocks[block]);
+  });
+  if (blocks.size() == 1) return std::move(blocks.front());
+  std::vector<T> all;
+  std::size_t size = 0;
+  for (const std::vector<T>& block : blocks) size += block.size();
+  all.reserve(size);
+  for (const std::vector<T>& block : blocks) all.insert(all.end(), block.begin(), block.end());
+  return all;
 }
 
 /// Runs f() so that all parallel loops inside use at most this many threads (0: all cores).

@@ -44,6 +44,7 @@ struct RotationTables {
   std::array<std::array<Direction, kDirections>, Rotation::kCount> image{};
   /// byAxes[x][y]: the rotation that sends +x to x and +y to y.
   std::array<std::array<std::uint8_t, kDirections>, kDirections> byAxes{};
+  std::array<std::uint8_t, Rotation::kCount> inverse{};
 };
 
 constexpr RotationTables makeRotationTables() {
@@ -57,6 +58,11 @@ constexpr RotationTables makeRotationTables() {
       tables.byAxes[x][y] = count;
       ++count;
     }
+  }
+  for (std::size_t r = 0; r < Rotation::kCount; ++r) {
+    std::array<Direction, kDirections> source{};
+    for (Direction d = 0; d < kDirections; ++d) source[tables.image[r][d]] = d;
+    tables.inverse[r] = tables.byAxes[source[0]][source[2]];
   }
   return tables;
 }
@@ -89,13 +95,7 @@ constexpr Rotation operator*(Rotation a, Rotation b) noexcept {
 }
 
 constexpr Rotation Rotation::inverse() const noexcept {
-  Direction x = 0;
-  Direction y = 0;
-  for (Direction d = 0; d < kDirections; ++d) {
-    if ((*this)(d) == 0) x = d;
-    if ((*this)(d) == 2) y = d;
-  }
-  return fromAxes(x, y);
+  return Rotation(detail::kRotationTables.inverse[index_]);
 }
 
 /// The parameter rotation across a half-face that AlgoHex stores as index 0..23 in its property

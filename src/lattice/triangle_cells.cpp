@@ -5,6 +5,25 @@
 
 namespace hexhex {
 
+namespace {
+
+/// The first half cell of a bounding box that begins at `low`. Half cells are open at grid points,
+/// where cells border on each other, but contain the centre planes of cells, where octants do.
+std::int32_t firstHalf(std::int64_t low, int shift) {
+  const std::int64_t half = (2 * low) >> shift;
+  const bool onPlane = (half << shift) == 2 * low;
+  return static_cast<std::int32_t>(onPlane && half % 2 != 0 ? half - 1 : half);
+}
+
+/// The last half cell of a bounding box that ends at `high`.
+std::int32_t lastHalf(std::int64_t high, int shift) {
+  const std::int64_t half = (2 * high) >> shift;
+  const bool onPlane = (half << shift) == 2 * high;
+  return static_cast<std::int32_t>(onPlane && half % 2 == 0 ? half - 1 : half);
+}
+
+}  // namespace
+
 TriangleCells::TriangleCells(const std::array<LatticePoint, 3>& corners,
                              std::int64_t unit) noexcept {
   const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
@@ -29,12 +48,11 @@ TriangleCells::TriangleCells(const std::array<LatticePoint, 3>& corners,
     const std::uint8_t axis = axes_[k];
     const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
     origin_[k] = static_cast<std::int32_t>(low >> shift);
-    first_[k] = 0;
-    // Open cells below `high`: floor of it, or one less if it is an integer.
-    last_[k] = static_cast<std::int32_t>((high - 1) >> shift) - origin_[k];
+    const std::int64_t origin = std::int64_t{origin_[k]} << shift;
+    first_[k] = firstHalf(low - origin, shift);
+    last_[k] = lastHalf(high - origin, shift);
     for (std::size_t i = 0; i < 3; ++i) {
-      p_[i][k] =
-          static_cast<double>(corners[i][axis] - (std::int64_t{origin_[k]} << shift)) * scale;
+      p_[i][k] = static_cast<double>(corners[i][axis] - origin) * scale;
       extent = std::max(extent, std::abs(p_[i][k]));
     }
   }
@@ -71,10 +89,40 @@ std::array<double, 2> TriangleCells::strip(std::int32_t u) const noexcept {
   return {low - margin_, high + margin_};
 }
 
-std::array<double, 2> TriangleCells::column(std::int32_t u, std::int32_t v) const noexcept {
-  const double middle = plane_[0] + plane_[1] * (u + 0.5) + plane_[2] * (v + 0.5);
-  const double half = (std::abs(plane_[1]) + std::abs(plane_[2])) / 2 + 4 * margin_;
-  return {middle - half, middle + half};
+TriangleCells::Column TriangleCells::columnAt(std::int32_t u, std::int32_t v) const noexcept {
+  // Heights in half cells at the centre of the column, and how far they differ from it at those of
+  // the quarters, and there from what they are in the rest of the quarter.
+  const double middle = 2 * (plane_[0] + plane_[1] * (u + 0.5) + plane_[2] * (v + 0.5));
+  const double sum = (plane_[1] + plane_[2]) / 2;
+  const double difference = (plane_[1] - plane_[2]) / 2;
+  const double spread = (std::abs(plane_[1]) + std::abs(plane_[2])) / 2 + 8 * margin_;
+  const std::array<double, 4> heights = {middle - sum, middle + difference, middle + sum,
+                                         middle - difference};
+  const auto half = [](double height, std::int32_t low, std::int32_t high) {
+    return static_cast<std::int32_t>(std::min<double>(std::max<double>(height, low), high));
+  };
+  std::array<std::int32_t, 4> first;
+  std::array<std::int32_t, 4> count;
+  Column column{last_[2], 0};
+  for (std::size_t i = 0; i < 4; ++i) {
+    first[i] = half(heights[i] - spread, first_[2], last_[2] + 1);
+    count[i] = half(heights[i] + spread, first_[2] - 1, last_[2]) + 1 - first[i];
+    column.lowest = std::min(column.lowest, first[i]);
+  }
+  column.lowest >>= 1;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::int32_t halfU = 2 * u + kCellCorners[i][0];
+    const std::int32_t halfV = 2 * v + kCellCorners[i][1];
+    const bool inBox =
+        halfU >= first_[0] && halfU <= last_[0] && halfV >= first_[1] && halfV <= last_[1];
+    if (count[i] <= 0 || !inBox) continue;
+    // Four bits for each layer of half cells, one of them for this quarter. The plane rises by no
+    // more than two cells in a column, so there are less than 16 layers.
+    constexpr std::uint64_t kOnePerLayer = 0x1111'1111'1111'1111;
+    const std::uint64_t layers = kOnePerLayer >> (64 - 4 * count[i]);
+    column.octants |= layers << (4 * (first[i] - 2 * column.lowest) + static_cast<int>(i));
+  }
+  return column;
 }
 
 }  // namespace hexhex

@@ -1,11 +1,12 @@
-// The unit cells whose open interior a triangle may meet.
+// The unit cells whose open interior a triangle may meet, and the ways inside of them that it may
+// cut.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 
+#include <lattice/cell_corners.hpp>
 #include <lattice/tet_geometry.hpp>
 
 namespace hexhex {
@@ -14,39 +15,49 @@ namespace hexhex {
 /// out, some that it does not meet may be in. Cells are named by their smallest corner.
 ///
 /// Columns of cells along the axis in which the triangle is steepest are found in the projection
-/// along that axis; in each column the triangle's plane bounds the cells. Limits of the bounding
-/// box are exact, so that a triangle in a grid plane meets no cell.
+/// along that axis; in each column the triangle's plane bounds the cells, and in each quarter of a
+/// column the octants of cells. The way from the centre of a cell to a corner is the diagonal of an
+/// octant. Limits of the bounding box are exact, so that a triangle in a grid plane meets no cell.
 class TriangleCells {
  public:
   /// @param unit  a power of two
   TriangleCells(const std::array<LatticePoint, 3>& corners, std::int64_t unit) noexcept;
 
-  /// Calls visit(GridPoint) for each cell once.
+  /// Calls visit(GridPoint, CellCornerSet) once for each cell, with at least those of its corners
+  /// to which the straight way from its centre, with the centre but without the corner, meets the
+  /// triangle. Cells without such corners are left out.
   template <class Visit>
   void run(const Visit& visit) const {
     for (std::size_t k = 0; k < 3; ++k) {
       if (first_[k] > last_[k]) return;
     }
-    for (std::int32_t u = first_[0]; u <= last_[0]; ++u) {
+    const Rotation toOwn = Rotation::fromAxes(direction(axes_[0], 1), direction(axes_[1], 1));
+    for (std::int32_t u = first_[0] >> 1; u <= last_[0] >> 1; ++u) {
       const std::array<double, 2> rows = strip(u);
-      const std::int32_t firstRow = clampedFloor(rows[0], first_[1], last_[1]);
-      const std::int32_t lastRow = clampedFloor(rows[1], first_[1], last_[1]);
+      const std::int32_t firstRow = clampedFloor(rows[0], first_[1] >> 1, last_[1] >> 1);
+      const std::int32_t lastRow = clampedFloor(rows[1], first_[1] >> 1, last_[1] >> 1);
       for (std::int32_t v = firstRow; v <= lastRow; ++v) {
-        const std::array<double, 2> heights = column(u, v);
-        if (heights[1] < first_[2] || heights[0] > last_[2] + 1.0) continue;
-        const std::int32_t lowest = clampedFloor(heights[0], first_[2], last_[2]);
-        const std::int32_t highest = clampedFloor(heights[1], first_[2], last_[2]);
-        for (std::int32_t w = lowest; w <= highest; ++w) visit(cell(u, v, w));
+        Column column = columnAt(u, v);
+        for (; column.octants != 0; column.octants >>= 8, ++column.lowest) {
+          const auto octants = static_cast<CellCornerSet>(column.octants & kAllCellCorners);
+          if (octants != 0) visit(cell(u, v, column.lowest), turned(toOwn, octants));
+        }
       }
     }
   }
 
  private:
-  /// floor(x) within limits.
+  /// Consecutive cells along the third axis, with their octants that the triangle's plane may meet.
+  struct Column {
+    std::int32_t lowest;
+    std::uint64_t octants;  ///< those of the lowest cell in the lowest byte
+  };
+
+  /// floor(x) within limits that are not negative.
   [[nodiscard]] static std::int32_t clampedFloor(double x, std::int32_t low,
                                                  std::int32_t high) noexcept {
     if (!(x > low)) return low;
-    return x >= high ? high : static_cast<std::int32_t>(std::floor(x));
+    return x >= high ? high : static_cast<std::int32_t>(x);
   }
   [[nodiscard]] GridPoint cell(std::int32_t u, std::int32_t v, std::int32_t w) const noexcept {
     GridPoint z{};
@@ -57,12 +68,11 @@ class TriangleCells {
   }
   /// Range of the second coordinate where the first one is in [u, u + 1].
   [[nodiscard]] std::array<double, 2> strip(std::int32_t u) const noexcept;
-  /// Range of the third coordinate over the square [u, u + 1] x [v, v + 1].
-  [[nodiscard]] std::array<double, 2> column(std::int32_t u, std::int32_t v) const noexcept;
+  [[nodiscard]] Column columnAt(std::int32_t u, std::int32_t v) const noexcept;
 
-  std::array<std::uint8_t, 3> axes_;    ///< the last one is the steepest
+  std::array<std::uint8_t, 3> axes_;    ///< cyclic; the last one is the steepest
   std::array<std::int32_t, 3> origin_;  ///< grid point near the triangle, by axis
-  std::array<std::int32_t, 3> first_;   ///< cells of the bounding box, relative
+  std::array<std::int32_t, 3> first_;   ///< half cells of the bounding box, relative
   std::array<std::int32_t, 3> last_;
   std::array<std::array<double, 3>, 3> p_;  ///< corners, by axis, relative
   std::array<double, 3> plane_;             ///< w = plane[0] + plane[1] u + plane[2] v

@@ -190,6 +190,7 @@ Transitions computeTransitions(const TetTopology& topology, const LocalParameter
     result.misfits.insert(result.misfits.end(), block.misfits.begin(), block.misfits.end());
   }
   result.table.resize(1 + 2 * result.jumps);
+  result.halfFaces.resize(result.table.size(), kNone);
   result.isExact.resize(result.table.size());
   parallelFor(stage, blocks.size(), 1, [&](std::size_t block) {
     Index index = blocks[block].firstJump;
@@ -199,6 +200,8 @@ Transitions computeTransitions(const TetTopology& topology, const LocalParameter
       result.jump[mate] = index + 1;
       result.table[index] = found.transition;
       result.table[index + 1] = inverse(found.transition);
+      result.halfFaces[index] = found.halfFace;
+      result.halfFaces[index + 1] = mate;
       result.isExact[index] = result.isExact[index + 1] = found.isExact ? 1 : 0;
       for (const auto& [halfFace, jump] :
            {std::pair(found.halfFace, index), std::pair(mate, index + 1)}) {

@@ -17,6 +17,8 @@ struct Transitions {
   /// is by far the most frequent.
   Array<Index> jump;
   std::vector<Transition> table;
+  /// Per entry of the table: the half-face that it belongs to. kNone for the identity.
+  std::vector<HalfFace> halfFaces;
   /// Per entry of the table: 1 if it carries the triangle's parameters over without rounding. 0 for
   /// the identity, for the sake of triangles that it fits only best.
   std::vector<std::uint8_t> isExact;

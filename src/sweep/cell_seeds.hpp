@@ -11,13 +11,10 @@
 
 #include <hexhex/types.hpp>
 
+#include <lattice/cell_corners.hpp>
 #include <map/prepare.hpp>
 
 namespace hexhex {
-
-/// Offsets of the corners of a cell from its smallest corner, in VTK order.
-inline constexpr std::array<GridPoint, 8> kCellCorners = {
-    {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
 
 /// Decides which centres a tet owns.
 class CenterOwner {

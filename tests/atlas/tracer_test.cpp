@@ -111,7 +111,7 @@ TEST(Property, WalksEndAtTheTracedCorners) {
           RC_ASSERT(std::uint64_t{brick->ids[placeInBrick(at)]} == vertex);
         }
       };
-      const CellCornerSet missed = walker.run(tet, z, arrive);
+      const CellCornerSet missed = walker.run(tet, z, kAllCellCorners, arrive);
       RC_ASSERT((seen ^ missed) == 0xffU);
     });
     RC_ASSERT(arrived > 0U);
