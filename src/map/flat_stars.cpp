@@ -188,12 +188,12 @@ std::size_t FlatStarTest::countCones(std::span<const VertexStar::Member> star) {
 /// Cones and their mirror images, of a vertex on the boundary.
 std::size_t FlatStarTest::countConesAndImages(std::span<const VertexStar::Member> star) const {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < star.size(); ++i) {
-    const Vec3& direction = kTurned[rotationOf(star[i])];
+  for (const VertexStar::Member& member : star) {
+    const Vec3& direction = kTurned[rotationOf(member)];
     TetParameters scratch;
-    const TetParameters& u = parameters_.see(star[i].tet(), scratch);
-    const Cone cone(u, star[i].corner % 4, direction);
-    count += cone.count() + cone.countMirrored(direction, axis(star[i]));
+    const TetParameters& u = parameters_.see(member.tet(), scratch);
+    const Cone cone(u, member.corner % 4, direction);
+    count += cone.count() + cone.countMirrored(direction, axis(member));
   }
   return count;
 }
