@@ -99,7 +99,10 @@ void CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines, std::spa
   tet_ = tet;
   chart_ = vertices_.charts().chart[tet];
   const SweepFrame frame(vertices_.charts().gauge(tet), lines.front().axes());
-  Job job{frame, CenterOwner(map_.topology, tet), cells.data(), {}, {}};
+  Job job{frame, CenterOwner(map_.topology, tet), cells.data(), {}, {}, {}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (signOf(frame.along(k)) < 0) job.toSmallest = moved(job.toSmallest, frame.along(k), 1);
+  }
   for (std::uint32_t r = 0; r < 4; ++r) {
     job.rows[r] = moved(moved({}, frame.along(0), r % 2), frame.along(1), r / 2);
     job.strides[r] =
@@ -198,11 +201,7 @@ std::array<const Id*, 4> CellEmitter<Id>::rowsAt(const Job& job, const ChartPoin
 template <class Id>
 void CellEmitter<Id>::mendLine(const Job& job, const SweptLine& line, std::uint32_t first,
                                ChartRow row, bool special, Cell* cells) {
-  // What is cut of a cell is noted at its smallest corner in the chart.
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Direction d = job.frame.along(k);
-    if (signOf(d) < 0) row.start = moved(row.start, d, 1);
-  }
+  row.start = plus(row.start, job.toSmallest);
   row.forEachPart(
       [&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count, std::ptrdiff_t stride) {
         const Brick<Id>* brick = cache_.find(chart_, c);
@@ -240,16 +239,16 @@ CellCornerSet CellEmitter<Id>::lookAcross(const ChartPoint& c, const CutCell& cu
   CellCornerSet left = 0;
   OtherSide other;
   for (CellCornerSet corners = cut.corners(); corners != 0; corners &= corners - 1) {
-    const CellCornerSet bit = corners & (0U - corners);
-    const JumpId id = cut.jump(memberOf(bit));
-    const CellCornerSet own = turned(toOwn, bit);
+    const std::size_t corner = memberOf(corners);
+    const std::size_t own = turnedCorner(toOwn, corner);
+    const JumpId id = cut.jump(corner);
     if (id != other.jump) other = otherSide(c, id);
-    const Id there = vertexBeyond(other, memberOf(turned(other.rotation, bit)));
-    Id& here = cell[memberOf(own)];
+    const Id there = vertexBeyond(other, turnedCorner(other.rotation, corner));
+    Id& here = cell[own];
     const bool isHere = Brick<Id>::isVertex(here);
     const bool isThere = Brick<Id>::isVertex(there);
     if (there == Brick<Id>::kContested || isHere == isThere) {
-      if (here != there) left |= own;
+      if (here != there) left |= CellCornerSet{1} << own;
     } else if (isThere) {
       here = there;
       hidden = true;

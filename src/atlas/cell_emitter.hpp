@@ -46,6 +46,8 @@ class CellEmitter {
     /// From the first of the four rows of points around a line of cells to the others.
     std::array<ChartPoint, 4> rows;
     std::array<std::ptrdiff_t, 4> strides;  ///< the same as places in a brick
+    /// From the first corner of a cell to its smallest one in the chart, where cuts are noted.
+    ChartPoint toSmallest;
   };
   /// What there is to say of a line of cells that was read.
   struct Flags {

@@ -1,3 +1,4 @@
+#include <array>
 #include <vector>
 
 #include <atlas/charts.hpp>
@@ -17,10 +18,18 @@ class Patches {
     const std::size_t tets = map.topology.tetCount();
     const Array<HalfFace>& mate = map.topology.mate;
     DisjointSets sets(tets);
-    parallelFor(stage, 4 * tets, kGrain, [&](std::size_t h) {
-      const auto halfFace = static_cast<HalfFace>(h);
-      if (mate[h] == kNone || mate[h] < halfFace) return;
-      if (!map.exact.transitions.isJump(halfFace)) sets.unite(tetOf(halfFace), tetOf(mate[h]));
+    parallelFor(stage, tets, kGrain, [&](std::size_t t) {
+      // Smaller neighbours, as each face needs to be seen once; listed without branches, which
+      // nobody could predict.
+      std::array<Index, 4> smaller;
+      std::size_t count = 0;
+      for (std::size_t h = 4 * t; h < 4 * t + 4; ++h) {
+        smaller[count] = tetOf(mate[h]);
+        const bool isJump = map.exact.transitions.isJump(static_cast<HalfFace>(h));
+        count += mate[h] < h && !isJump ? 1 : 0;
+      }
+      auto patch = static_cast<Index>(t);
+      for (std::size_t i = 0; i < count; ++i) patch = sets.unite(patch, smaller[i]);
     });
     parallelFor(stage, tets, kGrain,
                 [&](std::size_t t) { of_[t] = sets.find(static_cast<Index>(t)); });

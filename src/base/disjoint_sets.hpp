@@ -35,18 +35,20 @@ class DisjointSets {
   }
 
   /// Merges the sets of two elements. Thread-safe.
-  void unite(Index a, Index b) {
+  /// @return the smallest element of both, as far as this thread knows: a good way to name the set
+  ///         when it is merged with others next
+  Index unite(Index a, Index b) {
     while (true) {
       a = find(a);
       b = find(b);
-      if (a == b) return;
+      if (a == b) return a;
       if (a < b) std::swap(a, b);
       // Parents are always smaller, so there are no cycles; if `a` lost its root status to another
       // thread in the meantime, the exchange fails and we look again.
       Index expected = a;
       if (std::atomic_ref(parents_[a])
               .compare_exchange_strong(expected, b, std::memory_order_relaxed)) {
-        return;
+        return b;
       }
     }
   }

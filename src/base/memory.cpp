@@ -34,11 +34,11 @@ void* allocateLarge(std::size_t bytes) {
 /// page by page as ever.
 void populate([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__) && defined(MADV_POPULATE_WRITE)
-  constexpr std::uintptr_t kPage = 4096;
-  const auto begin = reinterpret_cast<std::uintptr_t>(memory);
-  const std::uintptr_t first = (begin + kPage - 1) / kPage * kPage;
-  const std::uintptr_t end = (begin + bytes) / kPage * kPage;
-  static_cast<void>(madvise(reinterpret_cast<void*>(first), end - first, MADV_POPULATE_WRITE));
+  constexpr std::size_t kPage = 4096;
+  const std::size_t over = reinterpret_cast<std::uintptr_t>(memory) % kPage;
+  const std::size_t before = over == 0 ? 0 : kPage - over;
+  const std::size_t whole = (bytes - before) / kPage * kPage;
+  static_cast<void>(madvise(static_cast<char*>(memory) + before, whole, MADV_POPULATE_WRITE));
 #endif
 }
 

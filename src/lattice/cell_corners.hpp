@@ -19,44 +19,56 @@ inline constexpr CellCornerSet kAllCellCorners = 0xff;
 
 namespace detail {
 
-/// Where a rotation takes the corner of a cell, as a corner of the cell's image.
-constexpr std::size_t turnedCorner(Rotation rotation, std::size_t corner) {
+/// Where rotations take the corners of a cell, as corners of the cell's image.
+struct TurnedCorners {
+  std::array<std::array<std::uint8_t, 8>, Rotation::kCount> corner{};
+  std::array<std::array<std::uint8_t, kAllCellCorners + 1>, Rotation::kCount> set{};
+};
+
+constexpr std::uint8_t turnedByDefinition(Rotation rotation, std::size_t corner) {
   // The cell turns about its centre.
   GridPoint fromCenter{};
   for (std::size_t k = 0; k < 3; ++k) fromCenter[k] = 2 * kCellCorners[corner][k] - 1;
   const GridPoint image = rotation(fromCenter);
-  std::size_t turned = 0;
-  while (2 * kCellCorners[turned][0] - 1 != image[0] ||
-         2 * kCellCorners[turned][1] - 1 != image[1] ||
-         2 * kCellCorners[turned][2] - 1 != image[2]) {
-    ++turned;
+  std::uint8_t turned = 0;
+  for (std::uint8_t c = 0; c < 8; ++c) {
+    bool isImage = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      isImage = isImage && 2 * kCellCorners[c][k] - 1 == image[k];
+    }
+    if (isImage) turned = c;
   }
   return turned;
 }
 
-constexpr auto makeTurnedCorners() {
-  std::array<std::array<std::uint8_t, kAllCellCorners + 1>, Rotation::kCount> table{};
-  for (int r = 0; r < Rotation::kCount; ++r) {
-    auto& images = table[static_cast<std::size_t>(r)];
+constexpr TurnedCorners makeTurnedCorners() {
+  TurnedCorners tables;
+  for (std::size_t r = 0; r < Rotation::kCount; ++r) {
     for (std::size_t c = 0; c < 8; ++c) {
-      const std::size_t bit = std::size_t{1} << c;
-      const std::size_t image = std::size_t{1} << turnedCorner(Rotation(r), c);
+      const std::uint8_t image = turnedByDefinition(Rotation(static_cast<int>(r)), c);
+      tables.corner[r][c] = image;
       // A set with c as its largest member is the set without it, and c.
+      const std::size_t bit = std::size_t{1} << c;
       for (std::size_t rest = 0; rest < bit; ++rest) {
-        images[rest | bit] = static_cast<std::uint8_t>(images[rest] | image);
+        tables.set[r][rest | bit] = static_cast<std::uint8_t>(tables.set[r][rest] | (1U << image));
       }
     }
   }
-  return table;
+  return tables;
 }
 
-inline constexpr auto kTurnedCorners = makeTurnedCorners();
+inline constexpr TurnedCorners kTurnedCorners = makeTurnedCorners();
 
 }  // namespace detail
 
+/// A corner of a cell as that of its image.
+[[nodiscard]] constexpr std::size_t turnedCorner(Rotation rotation, std::size_t corner) noexcept {
+  return detail::kTurnedCorners.corner[static_cast<std::size_t>(rotation.index())][corner];
+}
+
 /// Corners of a cell as those of its image.
 [[nodiscard]] constexpr CellCornerSet turned(Rotation rotation, CellCornerSet corners) noexcept {
-  return detail::kTurnedCorners[static_cast<std::size_t>(rotation.index())][corners];
+  return detail::kTurnedCorners.set[static_cast<std::size_t>(rotation.index())][corners];
 }
 
 }  // namespace hexhex

@@ -7,7 +7,8 @@
 
 namespace hexhex {
 
-SmallBoxes::SmallBoxes(const LatticeTet& corners, std::int64_t unit) noexcept {
+SmallBoxes::SmallBoxes(const LatticeTet& corners, std::int64_t unit) noexcept
+    : lattice_(corners), unit_(unit) {
   const double scale = 1.0 / static_cast<double>(unit);
   const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
   double size = 1;
@@ -26,18 +27,45 @@ SmallBoxes::SmallBoxes(const LatticeTet& corners, std::int64_t unit) noexcept {
   error_ = 0x1p-42 * size * size * size;
 }
 
-/// By the volumes of the four tets that the point makes with the faces.
-SmallBoxes::Side SmallBoxes::sideOf(const std::array<double, 3>& point) const noexcept {
+/// The simplex whose interior contains a point of a grid, or kNoSimplex outside: by the volumes of
+/// the four tets that the point makes with the faces.
+CornerMask SmallBoxes::simplexOf(const GridPoint& z, double shift) const noexcept {
+  const Vec3 point = {z[0] + shift - nearby_[0], z[1] + shift - nearby_[1],
+                      z[2] + shift - nearby_[2]};
   const Vec3 a = minus(corners_[0], point);
   const Vec3 b = minus(corners_[1], point);
   const Vec3 c = minus(corners_[2], point);
   const Vec3 d = minus(corners_[3], point);
   const Vec3 ab = cross(a, b);
   const Vec3 cd = cross(c, d);
-  const double least =
-      std::min(std::min(dot(b, cd), -dot(a, cd)), std::min(dot(d, ab), -dot(c, ab)));
-  if (least < -error_) return Side::Outside;
-  return least > error_ ? Side::Inside : Side::Unsure;
+  const Weights weights = {dot(b, cd), -dot(a, cd), dot(d, ab), -dot(c, ab)};
+  const double least = std::min(std::min(weights[0], weights[1]), std::min(weights[2], weights[3]));
+  if (least < -error_) return kNoSimplex;
+  if (least > error_) return kWholeTet;
+  const std::int64_t half = shift == 0 ? 0 : unit_ / 2;
+  return exactSimplexOf({z[0] * unit_ + half, z[1] * unit_ + half, z[2] * unit_ + half}, weights);
+}
+
+/// The same for a point close to some face: most of them are corners.
+CornerMask SmallBoxes::exactSimplexOf(const LatticePoint& point,
+                                      const Weights& weights) const noexcept {
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (lattice_[i] == point) return cornerBit(static_cast<int>(i));
+  }
+  CornerMask simplex = kNoSimplex;
+  for (std::size_t face = 0; face < 4; ++face) {
+    int side = 1;
+    if (weights[face] <= error_) {
+      const std::array<int, 3>& f = kFaceCorners[face];
+      side = orientation(lattice_[static_cast<std::size_t>(f[0])],
+                         lattice_[static_cast<std::size_t>(f[1])],
+                         lattice_[static_cast<std::size_t>(f[2])], point);
+    }
+    if (side < 0) return kNoSimplex;
+    // A point off the face opposite a corner has a positive barycentric coordinate there.
+    if (side > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(static_cast<int>(face)));
+  }
+  return simplex;
 }
 
 bool SmallBoxes::append(const GridBox& box, double shift, std::vector<SweptLine>& lines) const {
@@ -46,15 +74,17 @@ bool SmallBoxes::append(const GridBox& box, double shift, std::vector<SweptLine>
     count *= std::int64_t{range.last} - range.first + 1;
     if (count > kFewPoints) return false;
   }
-  std::array<GridPoint, kFewPoints> inside;
+  struct Found {
+    GridPoint at;  ///< by sweep axis in the end
+    CornerMask simplex;
+  };
+  std::array<Found, kFewPoints> inside;
   std::size_t found = 0;
   for (std::int32_t x = box.range[0].first; x <= box.range[0].last; ++x) {
     for (std::int32_t y = box.range[1].first; y <= box.range[1].last; ++y) {
       for (std::int32_t z = box.range[2].first; z <= box.range[2].last; ++z) {
-        const Side side =
-            sideOf({x + shift - nearby_[0], y + shift - nearby_[1], z + shift - nearby_[2]});
-        if (side == Side::Unsure) return false;
-        if (side == Side::Inside) inside[found++] = {x, y, z};
+        const CornerMask simplex = simplexOf({x, y, z}, shift);
+        if (simplex != kNoSimplex) inside[found++] = {{x, y, z}, simplex};
       }
     }
   }
@@ -62,16 +92,19 @@ bool SmallBoxes::append(const GridBox& box, double shift, std::vector<SweptLine>
   const SweepAxes order = chooseSweepAxes(box);
   const std::array<std::uint8_t, 3>& axes = order();
   for (std::size_t i = 0; i < found; ++i) {
-    inside[i] = {inside[i][axes[0]], inside[i][axes[1]], inside[i][axes[2]]};
+    const GridPoint z = inside[i].at;
+    inside[i].at = {z[axes[0]], z[axes[1]], z[axes[2]]};
   }
-  std::sort(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(found));
+  std::sort(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(found),
+            [](const Found& a, const Found& b) { return a.at < b.at; });
   for (std::size_t i = 0; i < found; ++i) {
-    const auto& [level, row, point] = inside[i];
+    const auto& [level, row, point] = inside[i].at;
     // Tets are convex: what they have of a line is consecutive.
-    if (i > 0 && level == inside[i - 1][0] && row == inside[i - 1][1]) {
+    if (i > 0 && level == inside[i - 1].at[0] && row == inside[i - 1].at[1]) {
       ++lines.back().count;
+      lines.back().right = inside[i].simplex;
     } else {
-      lines.push_back({level, row, point, 1, kWholeTet, kWholeTet, order});
+      lines.push_back({level, row, point, 1, inside[i].simplex, inside[i].simplex, order});
     }
   }
   return true;

@@ -49,6 +49,23 @@ TEST(WithThreads, LeavesNoMemoryBehind) {
 }
 #endif
 
+TEST(CollectFromBlocks, KeepsTheOrderOfBlocks) {
+  for (const std::size_t n : {std::size_t{0}, std::size_t{7}, std::size_t{1000}}) {
+    withThreads(2, [&] {
+      Context context;
+      Stage stage(context, "loop");
+      const auto odd = collectFromBlocks<std::size_t>(
+          stage, n, 10, [](std::size_t begin, std::size_t end, std::vector<std::size_t>& list) {
+            for (std::size_t i = begin; i < end; ++i) {
+              if (i % 2 != 0) list.push_back(i);
+            }
+          });
+      ASSERT_EQ(odd.size(), n / 2);
+      for (std::size_t i = 0; i < odd.size(); ++i) EXPECT_EQ(odd[i], 2 * i + 1);
+    });
+  }
+}
+
 TEST(WithThreads, NestsAndGivesBackAfterExceptions) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_THROW(withThreads(2,
