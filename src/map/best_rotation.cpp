@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include <base/branchless.hpp>
 #include <base/vector3.hpp>
 #include <map/best_rotation.hpp>
 #include <map/turn.hpp>
@@ -123,6 +124,32 @@ Rotation proposedRotation(const VectorPair& vectors, const VectorPair& images) {
                             static_cast<Direction>(2U * order.to[1] + reversed[1]));
 }
 
+/// The only rotation that carries the first vector over, if that has components of three different
+/// sizes, none zero, and if that carries over both without rounding: all others are then worse.
+/// Nothing is foretold but that it is found.
+std::optional<Rotation> exactRotation(const VectorPair& vectors, const VectorPair& images) {
+  const Vec3 a = {std::abs(vectors[0][0]), std::abs(vectors[0][1]), std::abs(vectors[0][2])};
+  std::array<Direction, 3> from{};  // per axis: what is turned into it
+  for (std::size_t to = 0; to < 3; ++to) {
+    const double b = std::abs(images[0][to]);
+    const unsigned axis = (b == a[1] ? 1U : 0U) | (b == a[2] ? 2U : 0U);
+    const unsigned reversed = signBit(images[0][to]) ^ signBit(vectors[0][axis % 3]);
+    from[to] = static_cast<Direction>(2 * (axis % 3) + reversed);
+  }
+  // Of the inverse, these are the images of the axes.
+  if (axisOf(from[0]) == axisOf(from[1])) return std::nullopt;
+  const Rotation rotation = inverseOf(Rotation::fromAxes(from[0], from[1]));
+  const Vec3 first = turned(rotation, vectors[0]);
+  const Vec3 second = turned(rotation, vectors[1]);
+  double difference = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    difference += std::abs(first[k] - images[0][k]) + std::abs(second[k] - images[1][k]);
+  }
+  const bool isOnlyOne = allOf(a[0] != a[1], a[1] != a[2], a[2] != a[0]);
+  if (!allOf(difference == 0, isOnlyOne, a[0] > 0, a[1] > 0, a[2] > 0)) return std::nullopt;
+  return rotation;
+}
+
 }  // namespace
 
 /// The squared error is a constant minus twice the agreement; as the agreement is rounded, it only
@@ -167,6 +194,8 @@ std::optional<Rotation> certainRotation(const VectorPair& vectors,
 }
 
 Rotation bestRotation(const VectorPair& vectors, const VectorPair& images) noexcept {
+  const std::optional<Rotation> exact = exactRotation(vectors, images);
+  if (exact) return *exact;
   const std::optional<Rotation> certain = certainRotation(vectors, images);
   return certain ? *certain : bestRotationOfAll(vectors, images);
 }

@@ -76,10 +76,9 @@ ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters
   const RoundedTets rounded =
       roundTets(topology, parameters, plain, tolerance, byTets, stage, defects, map);
   sanitizeStars(topology, parameters, stars, singularities, tolerance, stage, defects, map);
-  const Int192 rest = checkOrientations(rounded.unfinished, stage, defects, map);
+  checkOrientations(rounded.unfinished, stage, defects, map);
   if (byTets) {
-    map.sixfoldVolume += rounded.sixfoldVolume;
-    map.sixfoldVolume += rest;
+    addVolume(rounded, stage, map);
   } else {
     addVolume(plain, stage, map);
   }

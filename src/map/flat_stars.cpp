@@ -69,13 +69,40 @@ class Cone {
   [[nodiscard]] std::size_t count(const Vec3& sides) const noexcept {
     const double nearest = std::min({std::abs(sides[0]), std::abs(sides[1]), std::abs(sides[2])});
     if (!(nearest > uncertainty_)) return kUncertain;
-    return std::min({sides[0], sides[1], sides[2]}) > 0 ? 1 : 0;
+    return 1U ^ (signBit(sides[0]) | signBit(sides[1]) | signBit(sides[2]));
   }
 
   std::array<Vec3, 3> normals_{};  ///< inward, of the faces at the corner
   Vec3 sides_{};                   ///< scalar products of normals and direction
   double uncertainty_ = 0;
 };
+
+std::size_t rotationOf(const VertexStar::Member& member) {
+  return static_cast<std::size_t>(member.rotation.index());
+}
+
+/// Per rotation: the signs of the components of the direction that is to be covered.
+constexpr std::array<Vec3, Rotation::kCount> kSigns = [] {
+  std::array<Vec3, Rotation::kCount> signs{};
+  for (std::size_t r = 0; r < signs.size(); ++r) {
+    for (std::size_t k = 0; k < 3; ++k) signs[r][k] = kTurned[r][k] > 0 ? 1 : -1;
+  }
+  return signs;
+}();
+
+/// Whether the edges from a corner of a tet go far enough into an octant that a direction in it can
+/// lead into the tet; exact, and soon said.
+bool reachesOctant(const TetParameters& u, std::size_t corner, const Vec3& signs) {
+  const std::array<std::uint8_t, 3>& others = kPositiveOthers[corner];
+  unsigned reaches = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double farthest =
+        std::max(std::max(signs[k] * u[others[0]][k], signs[k] * u[others[1]][k]),
+                 signs[k] * u[others[2]][k]);
+    reaches &= farthest > signs[k] * u[corner][k] ? 1U : 0U;
+  }
+  return reaches != 0;
+}
 
 }  // namespace
 
@@ -143,11 +170,17 @@ std::size_t FlatStarTest::countCones(std::span<const VertexStar::Member> star) {
     turned_[turned] = static_cast<Index>(i);
     turned += isTurned ? 1 : 0;
   }
+  std::size_t open = 0;
   for (const Index i : std::span(turned_).first(turned)) {
-    const Vec3& direction = kTurned[static_cast<std::size_t>(star[i].rotation.index())];
     TetParameters scratch;
     const TetParameters& u = parameters_.see(star[i].tet(), scratch);
-    count += Cone(u, star[i].corner % 4, direction).count();
+    turned_[open] = i;
+    open += reachesOctant(u, star[i].corner % 4, kSigns[rotationOf(star[i])]) ? 1 : 0;
+  }
+  for (const Index i : std::span(turned_).first(open)) {
+    TetParameters scratch;
+    const TetParameters& u = parameters_.see(star[i].tet(), scratch);
+    count += Cone(u, star[i].corner % 4, kTurned[rotationOf(star[i])]).count();
   }
   return count;
 }
@@ -155,12 +188,12 @@ std::size_t FlatStarTest::countCones(std::span<const VertexStar::Member> star) {
 /// Cones and their mirror images, of a vertex on the boundary.
 std::size_t FlatStarTest::countConesAndImages(std::span<const VertexStar::Member> star) const {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < star.size(); ++i) {
-    const Vec3& direction = kTurned[static_cast<std::size_t>(star[i].rotation.index())];
+  for (const VertexStar::Member& member : star) {
+    const Vec3& direction = kTurned[rotationOf(member)];
     TetParameters scratch;
-    const TetParameters& u = parameters_.see(star[i].tet(), scratch);
-    const Cone cone(u, star[i].corner % 4, direction);
-    count += cone.count() + cone.countMirrored(direction, axis(star[i]));
+    const TetParameters& u = parameters_.see(member.tet(), scratch);
+    const Cone cone(u, member.corner % 4, direction);
+    count += cone.count() + cone.countMirrored(direction, axis(member));
   }
   return count;
 }

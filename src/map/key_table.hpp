@@ -49,7 +49,7 @@ class KeyTable {
       Slot& slot = *find(slots_, shift_, tag);
       // Chosen by arithmetic, as the compiler would make a branch of a condition.
       const Index isKnown = slot.tag == tag ? 1 : 0;
-      const Index number = size + (slot.number - size) * isKnown;
+      const Index number = size ^ ((slot.number ^ size) & (0 - isKnown));
       slot = {tag, number};
       return number;
     }

@@ -52,25 +52,18 @@ void checkSingularities(const Singularities& singularities, const LocalParameter
   }
 }
 
-Int192 checkOrientations(std::span<const std::vector<Index>> tets, Stage& stage,
-                         DefectCollector& defects, const ExactMap& map) {
+void checkOrientations(std::span<const std::vector<Index>> tets, Stage& stage,
+                       DefectCollector& defects, const ExactMap& map) {
   const auto unit = static_cast<double>(map.unit);
-  std::vector<Int192> volumes(tets.size());
   parallelFor(stage, tets.size(), 1, [&](std::size_t block) {
     for (const Index t : tets[block]) {
       const LatticeTet& c = map.corners[t];
-      const Int192 determinant = orientationDeterminant(c[0], c[1], c[2], c[3]);
-      if (determinant.sign() > 0) {
-        volumes[block] += determinant;
-      } else {
-        const double amount = determinant.toDouble() / (6 * unit * unit * unit);
-        defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, amount < 0 ? -amount : 0.0);
-      }
+      if (orientation(c[0], c[1], c[2], c[3]) > 0) continue;
+      const double amount =
+          orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() / (6 * unit * unit * unit);
+      defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, amount < 0 ? -amount : 0.0);
     }
   });
-  Int192 sum;
-  for (const Int192& volume : volumes) sum += volume;
-  return sum;
 }
 
 }  // namespace hexhex

@@ -19,8 +19,7 @@ void checkSingularities(const Singularities& singularities, const LocalParameter
                         double tolerance, DefectCollector& defects);
 
 /// (IGM4) for the tets of all lists.
-/// @returns six times the volume of those that fulfil it, times unit^3
-Int192 checkOrientations(std::span<const std::vector<Index>> tets, Stage& stage,
-                         DefectCollector& defects, const ExactMap& map);
+void checkOrientations(std::span<const std::vector<Index>> tets, Stage& stage,
+                       DefectCollector& defects, const ExactMap& map);
 
 }  // namespace hexhex

@@ -14,12 +14,11 @@ class VolumeSum {
  public:
   explicit VolumeSum(const ExactMap& map) : map_(map) {}
 
+  /// A triangle in an axis-parallel plane has a normal along that axis.
   void addBoundary(const PlainVertices::BoundaryFace& face) {
     const Triangle triangle = triangleOf(face.halfFace);
     // Outward normals are the negative ones.
-    for (std::size_t k = 0; k < 3; ++k) {
-      add(crossComponent(triangle.a, triangle.b, k), -triangle.origin[k]);
-    }
+    add(crossComponent(triangle.a, triangle.b, face.axis), -triangle.origin[face.axis]);
   }
 
   void addInner(HalfFace halfFace) {
@@ -58,6 +57,10 @@ class VolumeSum {
   Int192 sum_;
 };
 
+void addAll(std::span<const Int192> volumes, Int192& sum) {
+  for (const Int192& volume : volumes) sum += volume;
+}
+
 }  // namespace
 
 void addVolume(const PlainVertices& plain, Stage& stage, ExactMap& map) {
@@ -71,7 +74,19 @@ void addVolume(const PlainVertices& plain, Stage& stage, ExactMap& map) {
     for (const HalfFace halfFace : plain.unequalFaces[block]) sum.addInner(halfFace);
     volumes[block] = sum.get();
   });
-  for (const Int192& volume : volumes) map.sixfoldVolume += volume;
+  addAll(volumes, map.sixfoldVolume);
+}
+
+void addVolume(const RoundedTets& rounded, Stage& stage, ExactMap& map) {
+  std::vector<Int192> volumes(rounded.unfinished.size());
+  parallelFor(stage, volumes.size(), 1, [&](std::size_t block) {
+    for (const Index t : rounded.unfinished[block]) {
+      const LatticeTet& c = map.corners[t];
+      volumes[block] += orientationDeterminant(c[0], c[1], c[2], c[3]);
+    }
+  });
+  map.sixfoldVolume += rounded.sixfoldVolume;
+  addAll(volumes, map.sixfoldVolume);
 }
 
 }  // namespace hexhex

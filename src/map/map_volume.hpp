@@ -2,11 +2,18 @@
 #pragma once
 
 #include <map/exact_map.hpp>
+#include <map/tet_rounder.hpp>
 
 namespace hexhex {
 
-/// Sets map.sixfoldVolume, from corners and transitions.
+// Two ways to set map.sixfoldVolume from corners and transitions, for a map without defects:
+
+/// Along the boundary and the cuts.
 /// @param plain  knows the boundary, and where tets differ
 void addVolume(const PlainVertices& plain, Stage& stage, ExactMap& map);
+
+/// Tet by tet.
+/// @param rounded  measured
+void addVolume(const RoundedTets& rounded, Stage& stage, ExactMap& map);
 
 }  // namespace hexhex

@@ -40,11 +40,6 @@ void addBits(std::uint8_t& bits, unsigned added) {
 /// Per vertex: tets in one and the same direction from it.
 using Cones = Array<std::uint32_t>;
 
-/// 1 for negative numbers; a comparison would make a branch.
-constexpr unsigned signBit(double x) {
-  return static_cast<unsigned>(std::bit_cast<std::uint64_t>(x) >> 63);
-}
-
 /// The faces of a tet, as seen by the direction in general position.
 class TetNormals {
  public:
@@ -184,7 +179,7 @@ class TetSurvey {
     found_.add(tet[corner % 4], corner != 4);
     unsigned planes = 0;
     for (const Index v : tet) planes |= result_.plane[v];
-    if (planes != 0) addMirrored(tet, normals);
+    if (planes != 0) addMirrored(tet, normals, planes);
   }
 
   /// Adds up what run() has found, for at most kNear tets.
@@ -196,8 +191,9 @@ class TetSurvey {
   }
 
  private:
-  void addMirrored(const Tet& tet, const TetNormals& normals) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+  void addMirrored(const Tet& tet, const TetNormals& normals, unsigned planes) {
+    for (unsigned rest = planes; rest != 0; rest &= rest - 1) {
+      const auto axis = static_cast<std::size_t>(std::countr_zero(rest));
       const TetSides sides = normals.mirrored(axis);
       // The mirrored direction may be in a face of the tet.
       if (sides == kUncertainSides) {
