@@ -86,12 +86,18 @@ class CutMarker {
     if (chart == Charts::kNoChart) return;
     Brick<Id>* const brick = cache_.find(chart, c);
     if (brick != nullptr) {
-      grid_.cutsOf(*brick).add(placeInBrick(c), corners, jump);
+      CutCells& cuts = grid_.cutsOf(*brick);
+      if (alone_) {
+        cuts.add(placeInBrick(c), corners, jump);
+      } else {
+        cuts.addShared(placeInBrick(c), corners, jump);
+      }
     } else {
       lone_.push_back({brickKey(chart, c), placeInBrick(c), corners, jump});
     }
   }
 
+  const bool alone_ = currentThreads() == 1;
   const PreparedMap& map_;
   const Charts& charts_;
   const Jumps& jumps_;

@@ -13,22 +13,10 @@ namespace hexhex::detail {
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
-/// Below, the rounding to whole huge pages would waste too much.
+/// Below, ordinary pages do.
 constexpr std::size_t kLarge = 2 * kHugePage;
 /// From here on, asking for all pages at once is cheaper than a fault for each.
 constexpr std::size_t kManyPages = std::size_t{1} << 16;
-
-#if defined(__linux__) && defined(MADV_HUGEPAGE)
-/// In huge pages. Asking is a wish, not a need: where the system has none, ordinary ones do.
-void* allocateLarge(std::size_t bytes) {
-  if (bytes > static_cast<std::size_t>(-1) / 2) throw std::bad_alloc();
-  const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
-  void* const memory = std::aligned_alloc(kHugePage, rounded);
-  if (memory == nullptr) throw std::bad_alloc();
-  static_cast<void>(madvise(memory, rounded, MADV_HUGEPAGE));
-  return memory;
-}
-#endif
 
 /// Has the system provide the pages now that will be written anyway. Where it cannot, it does so
 /// page by page as ever.
@@ -41,6 +29,22 @@ void populate([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes)
   static_cast<void>(madvise(static_cast<char*>(memory) + before, whole, MADV_POPULATE_WRITE));
 #endif
 }
+
+#if defined(__linux__) && defined(MADV_HUGEPAGE)
+/// In huge pages, but for a rest that would waste too much of the last one. Asking is a wish, not a
+/// need: where the system has none, ordinary ones do.
+void* allocateLarge(std::size_t bytes) {
+  if (bytes > static_cast<std::size_t>(-1) / 2) throw std::bad_alloc();
+  const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
+  void* const memory = std::aligned_alloc(kHugePage, rounded);
+  if (memory == nullptr) throw std::bad_alloc();
+  const bool wastesLittle = rounded - bytes <= bytes / 16;
+  const std::size_t huge = wastesLittle ? rounded : rounded - kHugePage;
+  static_cast<void>(madvise(memory, huge, MADV_HUGEPAGE));
+  if (!wastesLittle) populate(static_cast<char*>(memory) + huge, bytes - huge);
+  return memory;
+}
+#endif
 
 }  // namespace
 
