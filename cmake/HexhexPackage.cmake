@@ -44,6 +44,7 @@ if(HEXHEX_HAS_TBB)
 endif()
 get_property(component_libraries GLOBAL PROPERTY HEXHEX_COMPONENT_LIBRARIES)
 foreach(pair IN ITEMS "hdf5=libhdf5-dev" "cgns=libcgns-dev" "exo=libexodusii-dev"
+    "netcdf=libnetcdf-dev"
     "lbfgs=liblbfgs-dev" "z[.]=zlib1g-dev")
   string(REPLACE "=" ";" pair ${pair})
   list(GET pair 0 name)

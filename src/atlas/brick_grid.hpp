@@ -121,12 +121,10 @@ class BrickGrid {
     const std::atomic_ref known(brick.cuts);
     CutCells* cuts = known.load(std::memory_order_acquire);
     if (cuts != nullptr) return *cuts;
-    const std::lock_guard lock(cutsMutex_);
-    cuts = known.load(std::memory_order_relaxed);
-    if (cuts == nullptr) {
-      cuts = &freshCuts();
-      known.store(cuts, std::memory_order_release);
-    }
+    CutCells& made = takeCuts();
+    made.clear();
+    if (known.compare_exchange_strong(cuts, &made, std::memory_order_acq_rel)) return made;
+    giveBack(made);  // another thread was faster
     return *cuts;
   }
 
@@ -136,14 +134,21 @@ class BrickGrid {
     Brick<Id>* brick;
   };
 
-  CutCells& freshCuts() {
-    if (cutsLeft_ == 0) {
-      cutsLeft_ = cuts_.empty() ? 16 : std::min<std::size_t>(2 * cuts_.back().size(), 1024);
-      cuts_.emplace_back(cutsLeft_);
+  [[nodiscard]] CutCells& takeCuts() {
+    const std::lock_guard lock(cutsMutex_);
+    if (unusedCuts_.empty()) {
+      // In portions, so that it takes few calls and wastes little.
+      constexpr std::size_t kMost = 64;
+      cuts_.emplace_back(cuts_.empty() ? 16 : std::min(2 * cuts_.back().size(), kMost));
+      for (CutCells& cuts : cuts_.back()) unusedCuts_.push_back(&cuts);
     }
-    CutCells& fresh = cuts_.back()[--cutsLeft_];
-    fresh.clear();
-    return fresh;
+    CutCells& taken = *unusedCuts_.back();
+    unusedCuts_.pop_back();
+    return taken;
+  }
+  void giveBack(CutCells& cuts) {
+    const std::lock_guard lock(cutsMutex_);
+    unusedCuts_.push_back(&cuts);
   }
   [[nodiscard]] std::size_t home(BrickKey key) const noexcept {
     return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15U) >> shift_);
@@ -191,8 +196,8 @@ class BrickGrid {
   Array<Brick<Id>> bricks_;
   std::deque<Brick<Id>> added_;
   std::mutex cutsMutex_;
-  std::vector<Array<CutCells>> cuts_;  ///< each larger than the one before
-  std::size_t cutsLeft_ = 0;           ///< in the last
+  std::vector<Array<CutCells>> cuts_;
+  std::vector<CutCells*> unusedCuts_;
 };
 
 /// Finds bricks without the hash table while accesses stay close. One per thread.

@@ -118,7 +118,7 @@ Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool asBuilt, Br
   for (std::size_t i = 0; i < jumps.size(); ++i) {
     jumps[i] = cuts.jumps.across(map, charts, halfFaces[i]);
   }
-  constexpr std::size_t kFaces = 256;
+  constexpr std::size_t kFaces = 32;  // one may meet thousands of cells
   const auto lone = collectFromBlocks<LoneCut>(
       stage, halfFaces.size(), kFaces,
       [&](std::size_t begin, std::size_t end, std::vector<LoneCut>& loneHere) {

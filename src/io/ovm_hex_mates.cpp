@@ -20,9 +20,6 @@ namespace {
 
 constexpr std::size_t kGrain = 2048;
 
-/// By axis: the corner next to corner 0.
-constexpr std::array<std::size_t, 3> kNext = {1, 3, 4};
-
 /// By face: its corners as bits.
 constexpr std::array<unsigned, 6> makeFaceCorners() {
   std::array<unsigned, 6> result{};
@@ -123,7 +120,7 @@ bool MateFinder::link(std::size_t cell, const std::array<Index, 3>& behind) {
   bool good = !hasVertexTwice(here);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (behind[axis] == kNone) continue;
-    good &= cells_[behind[axis]][kNext[axis]] != here[0];
+    good &= cells_[behind[axis]][kNextCorner[axis]] != here[0];
     const std::size_t far = 2 * axis + 1;
     const std::size_t near = 2 * axis;
     mates[6 * cell + far] = sideOf(behind[axis], near);

@@ -1,6 +1,7 @@
 // Which sides of hexahedra are the same face.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -19,6 +20,9 @@ constexpr Index sideOf(std::size_t cell, std::size_t face) noexcept {
 }
 constexpr std::size_t cellOf(Index side) noexcept { return side / 8; }
 constexpr std::size_t faceOf(Index side) noexcept { return side % 8; }
+
+/// By axis: the corner next to corner 0.
+inline constexpr std::array<std::size_t, 3> kNextCorner = {1, 3, 4};
 
 /// *Seams* are the faces whose two cells do not number their corners alike (aligned_cells.hpp), and
 /// the boundary. A vertex that is on no seam has eight cells, each of which has it at another

@@ -27,9 +27,6 @@ constexpr std::size_t kAhead = 16;
 constexpr std::array<std::uint8_t, 6> kFaceOfSlot = {4, 5, 2, 3, 1, 0};
 constexpr std::array<std::uint8_t, 6> kSlotOfFace = {5, 4, 2, 3, 0, 1};
 
-/// By axis: the corner next to corner 0.
-constexpr std::array<std::uint8_t, 3> kNext = {1, 3, 4};
-
 /// By corner: bit k if it is across from corner 0 along axis k.
 constexpr std::array<std::uint8_t, 8> kSteps = {0, 1, 3, 2, 4, 5, 7, 6};
 
@@ -123,7 +120,7 @@ Own HexTopologyBuilder::ownOf(std::size_t cell) const {
   if (seams == 0) return {0, 0, kAllEdges, kNearSlots};
   unsigned edges = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    edges |= (seams & seams >> kNext[axis] & 1U) == 0 ? 1U << axis : 0U;
+    edges |= (seams & seams >> kNextCorner[axis] & 1U) == 0 ? 1U << axis : 0U;
   }
   unsigned faces = 0;
   for (std::size_t slot = 0; slot < 6; ++slot) {
@@ -174,7 +171,7 @@ void HexTopologyBuilder::listEdges() {
   parallelFor(stage_, cells_.size(), kGrain, [this](std::size_t c) {
     std::array<Index, 2>* edge = topology_.edges.data() + own_[c].firstEdge;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if ((own_[c].edges >> axis & 1U) != 0) *edge++ = {cells_[c][0], cells_[c][kNext[axis]]};
+      if ((own_[c].edges >> axis & 1U) != 0) *edge++ = {cells_[c][0], cells_[c][kNextCorner[axis]]};
     }
   });
 }
