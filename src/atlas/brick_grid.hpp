@@ -21,9 +21,6 @@
 
 namespace hexhex {
 
-/// Points along each side of a brick, of kBrickPoints.
-inline constexpr std::uint32_t kBrickSide = 8;
-
 /// Names a brick: chart and brick coordinates, modulo 2^16 each. Charts and places that the modulus
 /// makes equal overlap, no more (see gauge.hpp).
 using BrickKey = std::uint64_t;

@@ -77,15 +77,12 @@ CellCornerSet withoutVertex(const std::array<Id, 8>& cell) {
   return corners;
 }
 
-/// What stands for bricks that do not exist.
+/// What stands for bricks that do not exist: whatever cuts may meet has one.
 template <class Id>
 const Brick<Id>& noBrick() {
   static const Brick<Id> brick = [] {
-    static CutCells everywhere;
-    everywhere.cells.fill(CutCell{}.with(kAllCellCorners, kManyJumps));
     Brick<Id> empty;
     empty.clear();
-    empty.cuts = &everywhere;
     return empty;
   }();
   return brick;

@@ -156,7 +156,6 @@ CellWalker::Vector CellWalker::normalFor(const Faces& faces, const Group& group,
 CellCornerSet CellWalker::signsOfUnsure(const Stop& stop, std::size_t face, const GridPoint& z,
                                         CellCornerSet unsure) const {
   const LatticeTet& tet = map_.exact.corners[stop.tet];
-  const std::array<int, 3>& f = kFaceCorners[face];
   CellCornerSet outside = 0;
   for (; unsure != 0; unsure &= unsure - 1) {
     GridPoint corner = z;
@@ -165,10 +164,7 @@ CellCornerSet CellWalker::signsOfUnsure(const Stop& stop, std::size_t face, cons
     corner = stop.toTet(corner);
     LatticePoint at{};
     for (std::size_t k = 0; k < 3; ++k) at[k] = corner[k] * map_.exact.unit;
-    if (orientation(tet[static_cast<std::size_t>(f[0])], tet[static_cast<std::size_t>(f[1])],
-                    tet[static_cast<std::size_t>(f[2])], at) < 0) {
-      outside |= CellCornerSet{1} << c;
-    }
+    if (sideOfFace(tet, face, at) < 0) outside |= CellCornerSet{1} << c;
   }
   return outside;
 }

@@ -12,8 +12,9 @@
 
 namespace hexhex {
 
-/// Points in a brick.
-inline constexpr std::size_t kBrickPoints = 512;
+/// Points along each side of a brick, and in all of it.
+inline constexpr std::uint32_t kBrickSide = 8;
+inline constexpr std::size_t kBrickPoints = std::size_t{kBrickSide} * kBrickSide * kBrickSide;
 
 /// What cuts may come between the centre of a cell and its corners: for each corner, in terms of
 /// the chart, the jump across all cut faces that the way from the centre to the corner may meet. A

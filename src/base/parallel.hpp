@@ -60,6 +60,17 @@ void parallelFor(Stage& stage, std::size_t n, std::size_t grain, const F& f) {
   });
 }
 
+/// All lists, one behind the other.
+template <class T>
+[[nodiscard]] std::vector<T> joined(std::span<const std::vector<T>> lists) {
+  std::size_t size = 0;
+  for (const std::vector<T>& list : lists) size += list.size();
+  std::vector<T> all;
+  all.reserve(size);
+  for (const std::vector<T>& list : lists) all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
+
 /// Calls f(begin, end, list) for consecutive blocks as parallelBlocks() does, each with a list of
 /// its own to append to.
 /// @return all lists, one behind the other
@@ -70,12 +81,7 @@ std::vector<T> collectFromBlocks(Stage& stage, std::size_t n, std::size_t grain,
     f(begin, end, blocks[block]);
   });
   if (blocks.size() == 1) return std::move(blocks.front());
-  std::vector<T> all;
-  std::size_t size = 0;
-  for (const std::vector<T>& block : blocks) size += block.size();
-  all.reserve(size);
-  for (const std::vector<T>& block : blocks) all.insert(all.end(), block.begin(), block.end());
-  return all;
+  return joined<T>(blocks);
 }
 
 /// Runs f() so that all parallel loops inside use at most this many threads (0: all cores).

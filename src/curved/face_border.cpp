@@ -66,7 +66,7 @@ CornerMask simplexOfOrigin(const LatticeTet& corners) {
                            c[k][2] * (c[i][0] * c[j][1] - c[i][1] * c[j][0]);
     const int side = std::abs(outside) > error
                          ? (outside < 0 ? 1 : -1)
-                         : orientation(corners[i], corners[j], corners[k], {0, 0, 0});
+                         : sideOfFace(corners, static_cast<std::size_t>(face), {0, 0, 0});
     if (side < 0) return kNoSimplex;
     if (side > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(face));
   }

@@ -208,33 +208,22 @@ class CellViewer {
   CellTracer tracer_;
 };
 
-template <class Element>
-std::vector<Element> joined(std::vector<std::vector<Element>>& parts) {
-  std::size_t size = 0;
-  for (const std::vector<Element>& part : parts) size += part.size();
-  std::vector<Element> all;
-  all.reserve(size);
-  for (const std::vector<Element>& part : parts) all.insert(all.end(), part.begin(), part.end());
-  return all;
-}
-
 std::vector<FeatureVertex> tagVertices(const TetMapView& given, const HexMesh& mesh, Stage& stage) {
   std::vector<std::int32_t> tagOf(given.points.size(), 0);
   for (const FeatureVertex& feature : given.features.vertices) {
     tagOf[feature.vertex] = feature.tag;
   }
-  std::vector<std::vector<FeatureVertex>> parts(blockCount(mesh.points.size(), kGrain));
-  parallelBlocks(stage, mesh.points.size(), kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   for (std::size_t v = begin; v < end; ++v) {
-                     const CornerSet corners = mesh.generatorCorners[v];
-                     if (dimension(corners) != 0) continue;
-                     const Tet& tet = given.tets[mesh.generatorTet[v]];
-                     const std::int32_t tag = tagOf[tet[firstCorner(corners)]];
-                     if (tag != 0) parts[block].push_back({static_cast<Index>(v), tag});
-                   }
-                 });
-  return joined(parts);
+  return collectFromBlocks<FeatureVertex>(
+      stage, mesh.points.size(), kGrain,
+      [&](std::size_t begin, std::size_t end, std::vector<FeatureVertex>& tagged) {
+        for (std::size_t v = begin; v < end; ++v) {
+          const CornerSet corners = mesh.generatorCorners[v];
+          if (dimension(corners) != 0) continue;
+          const Tet& tet = given.tets[mesh.generatorTet[v]];
+          const std::int32_t tag = tagOf[tet[firstCorner(corners)]];
+          if (tag != 0) tagged.push_back({static_cast<Index>(v), tag});
+        }
+      });
 }
 
 /// One entry per edge: that from the smaller vertex, if there is one.
@@ -283,8 +272,8 @@ void tagEdgesAndQuads(const TetMapView& given, const PreparedMap& prepared, cons
                    edges[block] = std::move(seen.edges);
                    quads[block] = std::move(seen.quads);
                  });
-  mesh.features.edges = uniqueEdges(joined(edges));
-  mesh.features.quads = uniqueQuads(joined(quads));
+  mesh.features.edges = uniqueEdges(joined<Seen::Edge>(edges));
+  mesh.features.quads = uniqueQuads(joined<FeatureQuad>(quads));
 }
 
 void fillRegions(const TetMapView& given, const CellSeeds& seeds, HexMesh& mesh, Stage& stage) {

@@ -54,13 +54,7 @@ CornerMask SmallBoxes::exactSimplexOf(const LatticePoint& point,
   }
   CornerMask simplex = kNoSimplex;
   for (std::size_t face = 0; face < 4; ++face) {
-    int side = 1;
-    if (weights[face] <= error_) {
-      const std::array<int, 3>& f = kFaceCorners[face];
-      side = orientation(lattice_[static_cast<std::size_t>(f[0])],
-                         lattice_[static_cast<std::size_t>(f[1])],
-                         lattice_[static_cast<std::size_t>(f[2])], point);
-    }
+    const int side = weights[face] > error_ ? 1 : sideOfFace(lattice_, face, point);
     if (side < 0) return kNoSimplex;
     // A point off the face opposite a corner has a positive barycentric coordinate there.
     if (side > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(static_cast<int>(face)));

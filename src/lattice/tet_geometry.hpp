@@ -106,6 +106,15 @@ inline constexpr std::array<std::array<int, 3>, 4> kFaceCorners = {
 [[nodiscard]] int orientation(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c,
                               const LatticePoint& d) noexcept;
 
+/// On which side of a face of a positive tet a point lies: 1 on that of the tet, 0 in its plane, -1
+/// beyond it. Exact.
+[[nodiscard]] inline int sideOfFace(const LatticeTet& tet, std::size_t face,
+                                    const LatticePoint& point) noexcept {
+  const std::array<int, 3>& f = kFaceCorners[face];
+  return orientation(tet[static_cast<std::size_t>(f[0])], tet[static_cast<std::size_t>(f[1])],
+                     tet[static_cast<std::size_t>(f[2])], point);
+}
+
 /// Signs of the components of the four inward face normals of a tet. They decide exactly how
 /// directions lie to faces, which is all that Holder (A.2) and Casing (A.3) ask.
 class NormalSigns {

@@ -370,9 +370,7 @@ std::optional<Singularities> computeSingularities(const TetTopology& topology,
   // Walks that did not see all corners of their vertices met a star in several pieces.
   if (!manifold || cornersSeen != countSpecialCorners(topology, plain.special, stage)) return {};
   Singularities result;
-  for (const std::vector<SingularEdge>& block : blocks) {
-    result.edges.insert(result.edges.end(), block.begin(), block.end());
-  }
+  result.edges = joined<SingularEdge>(blocks);
   indexByVertex(result, topology.pointCount);
   return result;
 }

@@ -15,15 +15,12 @@ constexpr std::size_t kGrain = 4096;
 /// The elements of [0, n) for which a test holds, ascending.
 template <class Test>
 std::vector<Index> select(std::size_t n, Stage& stage, const Test& test) {
-  std::vector<std::vector<Index>> blocks(blockCount(n, kGrain));
-  parallelBlocks(stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (test(static_cast<Index>(i))) blocks[block].push_back(static_cast<Index>(i));
-    }
-  });
-  std::vector<Index> all;
-  for (const std::vector<Index>& block : blocks) all.insert(all.end(), block.begin(), block.end());
-  return all;
+  return collectFromBlocks<Index>(
+      stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
+        for (std::size_t i = begin; i < end; ++i) {
+          if (test(static_cast<Index>(i))) found.push_back(static_cast<Index>(i));
+        }
+      });
 }
 
 }  // namespace
