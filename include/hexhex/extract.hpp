@@ -65,7 +65,7 @@ struct ExtractStatistics {
   std::uint64_t charts = 0;           ///< of the atlas
   std::uint64_t cutFaces = 0;         ///< inner faces of the tet mesh at which its picture ends
   std::uint64_t overlappingTets = 0;  ///< that did not fit their first chart
-  std::uint64_t tracedCells = 0;      ///< cells that met a cut
+  std::uint64_t tracedCells = 0;      ///< cells with a corner that their chart does not show
 
   RepairReport repair;  ///< changed is false for a map that was valid
   /// The map that was extracted instead, whose mesh it is, and whose tets `generatorTet` means;

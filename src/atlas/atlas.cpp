@@ -61,7 +61,8 @@ class Atlas {
     statistics.overlappingTets = overlaps.tets;
     Stage stage(context_, "cuts");
     if (options_.markCuts) {
-      Cuts cuts = markCutCells(map_, charts_, overlaps.tets == 0, vertices_.grid(), stage);
+      const bool onlyJumps = overlaps.tets == 0 && charts_.identitiesAgree;
+      Cuts cuts = markCutCells(map_, charts_, onlyJumps, vertices_.grid(), stage);
       statistics.cutFaces = cuts.faces;
       jumps_ = std::move(cuts.jumps);
     }

@@ -10,6 +10,7 @@
 #include <limits>
 #include <mutex>
 #include <span>
+#include <thread>
 #include <vector>
 
 #include <atlas/cut_cells.hpp>
@@ -53,12 +54,30 @@ struct Brick {
   std::array<Id, kBrickPoints> ids;
   CutCells* cuts;           ///< null if no cut may meet any cell
   std::uint32_t contested;  ///< not 0 if two vertices claim one of the points
+  std::uint32_t locked;     ///< not 0 while a thread changes the brick
 
   void clear() noexcept {
     ids.fill(kEmpty);
     cuts = nullptr;
     contested = 0;
+    locked = 0;
   }
+};
+
+/// Keeps other threads from a brick, for no longer than a few points take: exchanges of all these
+/// points would take longer.
+template <class Id>
+class BrickLock {
+ public:
+  explicit BrickLock(Brick<Id>& brick) noexcept : locked_(brick.locked) {
+    while (locked_.exchange(1, std::memory_order_acquire) != 0) std::this_thread::yield();
+  }
+  ~BrickLock() { locked_.store(0, std::memory_order_release); }
+  BrickLock(const BrickLock&) = delete;
+  BrickLock& operator=(const BrickLock&) = delete;
+
+ private:
+  std::atomic_ref<std::uint32_t> locked_;
 };
 
 /// Bricks by key. Filled in two steps: build() from all threads' keys at once, then add() for

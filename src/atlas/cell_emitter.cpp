@@ -113,6 +113,7 @@ void CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines, std::spa
       continue;
     }
     for (std::uint32_t i = first; i < first + count; ++i) {
+      job.place->fill(Brick<Id>::kEmpty);
       if (emitIrregular(line.point(i), line.simplex(i), kAllCellCorners, *job.place++)) ++traced_;
     }
   }
@@ -226,6 +227,7 @@ void CellEmitter<Id>::mendLine(const Job& job, const SweptLine& line, std::uint3
 
 /// Takes corners behind a cut from the picture on its other side, if there is just one cut on the
 /// way. It then ends on either side; if only one of the pictures has a vertex there, on that one.
+/// Where there are more cuts, the only vertex in any of the pictures behind them is taken.
 /// @param c       the cell's smallest corner in the chart
 /// @param hidden  becomes true if a vertex is found on the other side
 /// @return the corners that are still in question, in terms of the tet's own chart
@@ -240,7 +242,9 @@ CellCornerSet CellEmitter<Id>::lookAcross(const ChartPoint& c, const CutCell& cu
     const std::size_t own = turnedCorner(toOwn, corner);
     const JumpId id = cut.jump(corner);
     if (id != other.jump) other = otherSide(c, id);
-    const Id there = vertexBeyond(other, turnedCorner(other.rotation, corner));
+    Id there = vertexBeyond(other, turnedCorner(other.rotation, corner));
+    // Walks to some corners take hardly longer if there are more.
+    if (there == Brick<Id>::kContested && left == 0) there = pictures_.vertexAt(chart_, c, corner);
     Id& here = cell[own];
     const bool isHere = Brick<Id>::isVertex(here);
     const bool isThere = Brick<Id>::isVertex(there);
@@ -287,28 +291,30 @@ Id CellEmitter<Id>::vertexBeyond(const OtherSide& other, std::size_t corner) {
 
 /// Walks to some corners of a cell, and leaves what the picture shows of those to which a straight
 /// way without a cut leads.
-/// @return whether there are others
+/// @return whether the picture does not show one of the others
 template <class Id>
 bool CellEmitter<Id>::emitIrregular(const GridPoint& z, CornerMask generator, CellCornerSet corners,
                                     Cell& cell) {
   bool hidden = false;
+  const auto set = [&](std::size_t corner, Id vertex) {
+    hidden = hidden || cell[corner] != vertex;
+    cell[corner] = vertex;
+  };
   const CellCornerSet missed =
       walker_.run(tet_, z, corners, [&](const CellWalker::Stop& stop, CellCornerSet arrived) {
         if (stop.inSight) return;
-        hidden = true;
         for (; arrived != 0; arrived &= arrived - 1) {
           const auto c = memberOf(arrived);
           GridPoint corner = z;
           for (std::size_t k = 0; k < 3; ++k) corner[k] += kCellCorners[c][k];
-          cell[c] = vertices_.vertexAt(stop.tet, stop.toTet(corner), cache_);
+          set(c, vertices_.vertexAt(stop.tet, stop.toTet(corner), cache_));
         }
       });
   if (missed != 0) tracer_.enter(tet_, z, generator);
   for (std::size_t c = 0; missed >> c != 0; ++c) {
     if (((missed >> c) & 1U) == 0) continue;
-    hidden = true;
     const CornerPlace place = tracer_.trace(kCellCorners[c]);
-    cell[c] = vertices_.vertexAt(place.tet, place.z, cache_);
+    set(c, vertices_.vertexAt(place.tet, place.z, cache_));
   }
   return hidden;
 }

@@ -25,7 +25,7 @@ using Vector = std::array<double, 3>;
 constexpr double kPlaneError = 0x1p-43;
 
 /// Tets whose faces are remembered.
-constexpr std::size_t kRemembered = 2048;
+constexpr std::size_t kRemembered = 256;
 
 /// Ways that turn about an edge come to an end sooner than after so many tets.
 constexpr std::size_t kMaxSteps = 10000;

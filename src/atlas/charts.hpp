@@ -21,6 +21,9 @@ struct Charts {
   Array<Gauge> gauges;
   Index count = 0;  ///< charts
 
+  /// Whether tets that no jump separates are known to have the same gauge.
+  bool identitiesAgree = false;
+
   [[nodiscard]] const Gauge& gauge(Index tet) const noexcept { return gauges[gaugeOf[tet]]; }
 
   /// Whether the picture continues across a half-face (with a mate): both tets are in one chart,
@@ -46,7 +49,8 @@ struct Charts {
 };
 
 /// One chart for every connected component. Tets connected by identity transitions share a gauge;
-/// these patches are joined along a breadth-first tree.
+/// these patches are joined along a breadth-first tree. If there are many jumps, the tree is one of
+/// tets (map/gauges.hpp).
 [[nodiscard]] Charts buildCharts(const PreparedMap& map, Stage& stage);
 
 }  // namespace hexhex

@@ -17,42 +17,56 @@ inline constexpr std::uint32_t kBrickSide = 8;
 inline constexpr std::size_t kBrickPoints = std::size_t{kBrickSide} * kBrickSide * kBrickSide;
 
 /// What cuts may come between the centre of a cell and its corners: for each corner, in terms of
-/// the chart, the jump across all cut faces that the way from the centre to the corner may meet. A
+/// the chart, the jumps across all cut faces that the way from the centre to the corner may meet. A
 /// cell remembers two different jumps, which is enough for nearly all.
 class alignas(4) CutCell {
  public:
+  static constexpr std::size_t kMost = 2;
+
   [[nodiscard]] constexpr bool isCut() const noexcept { return jumps_[0] != kNoJump; }
   /// The corners with a cut in front of them.
   [[nodiscard]] constexpr CellCornerSet corners() const noexcept {
-    return CellCornerSet{corners_[0]} | corners_[1];
+    CellCornerSet all = 0;
+    for (const std::uint8_t set : corners_) all |= set;
+    return all;
+  }
+  /// The jumps; kNoJump stands for none, and kManyJumps for any.
+  [[nodiscard]] constexpr std::array<JumpId, kMost> jumps(std::size_t corner) const noexcept {
+    std::array<JumpId, kMost> jumps{};
+    for (std::size_t i = 0; i < kMost; ++i) {
+      jumps[i] = ((corners_[i] >> corner) & 1U) != 0 ? jumps_[i] : kNoJump;
+    }
+    return jumps;
   }
   /// kNoJump if no cut face may be met, kManyJumps if they have no jump in common.
   [[nodiscard]] constexpr JumpId jump(std::size_t corner) const noexcept {
-    const bool first = ((corners_[0] >> corner) & 1U) != 0;
-    const bool second = ((corners_[1] >> corner) & 1U) != 0;
-    if (first) return second ? kManyJumps : jumps_[0];
-    return second ? jumps_[1] : kNoJump;
+    JumpId common = kNoJump;
+    for (const JumpId jump : jumps(corner)) {
+      if (jump != kNoJump) common = common == kNoJump ? jump : kManyJumps;
+    }
+    return common;
   }
 
   /// With one more cut in front of some corners.
   [[nodiscard]] constexpr CutCell with(CellCornerSet corners, JumpId jump) const noexcept {
     CutCell after = *this;
-    for (std::size_t i = 0; i < 2; ++i) {
-      if (jumps_[i] != kNoJump && jumps_[i] != jump) continue;
-      after.jumps_[i] = jump;
-      after.corners_[i] = static_cast<std::uint8_t>(corners_[i] | corners);
-      return after;
+    std::size_t i = 0;
+    while (i < kMost && jumps_[i] != kNoJump && jumps_[i] != jump) ++i;
+    if (i == kMost) {
+      // What the last one was is forgotten.
+      i = kMost - 1;
+      jump = kManyJumps;
     }
-    // Corners with two jumps have many.
-    for (std::uint8_t& set : after.corners_) set = static_cast<std::uint8_t>(set | corners);
+    after.jumps_[i] = jump;
+    after.corners_[i] = static_cast<std::uint8_t>(corners_[i] | corners);
     return after;
   }
 
   [[nodiscard]] constexpr bool operator==(const CutCell&) const = default;
 
  private:
-  std::array<std::uint8_t, 2> corners_{};
-  std::array<JumpId, 2> jumps_{};
+  std::array<std::uint8_t, kMost> corners_{};
+  std::array<JumpId, kMost> jumps_{};  ///< from the first on, then kNoJump
 };
 
 /// The cells of a brick, named by their smallest corners.

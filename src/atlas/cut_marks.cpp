@@ -1,3 +1,5 @@
+#include <array>
+#include <span>
 #include <vector>
 
 #include <atlas/cut_marks.hpp>
@@ -23,23 +25,25 @@ SweepFrame cellFrame(const Gauge& gauge) noexcept {
 }
 
 /// One half-face of each inner face that is cut.
-/// @param asBuilt  as in markCutCells()
-std::vector<HalfFace> findCuts(const PreparedMap& map, const Charts& charts, bool asBuilt,
+/// @param onlyJumps  as in markCutCells()
+std::vector<HalfFace> findCuts(const PreparedMap& map, const Charts& charts, bool onlyJumps,
                                Stage& stage) {
   constexpr std::size_t kGrain = 4096;
   const Array<HalfFace>& mate = map.topology.mate;
   const std::vector<HalfFace>& jumps = map.exact.transitions.halfFaces;
-  const auto candidate = [&](std::size_t i) {
-    // Both half-faces of a jump are neighbours in the table, behind the identity.
-    if (asBuilt) return jumps[2 * i + 1];
-    return mate[i] != kNone && mate[i] > i ? static_cast<HalfFace>(i) : kNone;
-  };
   return collectFromBlocks<HalfFace>(
-      stage, asBuilt ? jumps.size() / 2 : mate.size(), kGrain,
+      stage, onlyJumps ? jumps.size() / 2 : mate.size(), kGrain,
       [&](std::size_t begin, std::size_t end, std::vector<HalfFace>& cuts) {
+        // Listed without branches, as nobody could predict on which side of a face one is. Tets of
+        // smaller half-faces have been looked at not long ago.
+        std::array<HalfFace, kGrain + 1> faces;  // NOLINT: written before it is read
+        std::size_t count = 0;
         for (std::size_t i = begin; i < end; ++i) {
-          const HalfFace halfFace = candidate(i);
-          if (halfFace == kNone) continue;
+          // Both half-faces of a jump are neighbours in the table, behind the identity.
+          faces[count] = onlyJumps ? jumps[2 * i + 1] : mate[i];
+          count += onlyJumps || mate[i] < i ? 1 : 0;
+        }
+        for (const HalfFace halfFace : std::span(faces).first(count)) {
           if (charts.isGlued(map.topology, map.exact.transitions, halfFace)) continue;
           cuts.push_back(halfFace);
         }
@@ -109,9 +113,9 @@ class CutMarker {
 }  // namespace
 
 template <class Id>
-Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool asBuilt, BrickGrid<Id>& grid,
+Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool onlyJumps, BrickGrid<Id>& grid,
                   Stage& stage) {
-  const std::vector<HalfFace> halfFaces = findCuts(map, charts, asBuilt, stage);
+  const std::vector<HalfFace> halfFaces = findCuts(map, charts, onlyJumps, stage);
   Cuts cuts;
   cuts.faces = halfFaces.size();
   std::vector<JumpId> jumps(halfFaces.size());

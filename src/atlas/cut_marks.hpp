@@ -21,10 +21,9 @@ struct Cuts {
 
 /// Marks, on both sides of every face that is not glued, the cells in which the face may meet the
 /// way from the centre to a corner. Faces of the boundary lie in grid planes and meet no such way.
-/// @param asBuilt  whether the charts are still those of buildCharts(), where tets that no jump
-///                 separates share a chart
+/// @param onlyJumps  whether tets that no jump separates are known to share chart and gauge
 template <class Id>
-[[nodiscard]] Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool asBuilt,
+[[nodiscard]] Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool onlyJumps,
                                 BrickGrid<Id>& grid, Stage& stage);
 
 }  // namespace hexhex

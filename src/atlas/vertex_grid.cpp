@@ -3,12 +3,11 @@
 #include <atlas/brick_box.hpp>
 #include <atlas/vertex_grid.hpp>
 
+#include <base/branchless.hpp>
+
 namespace hexhex {
 
 namespace {
-
-/// Tets of which each may take long.
-constexpr std::size_t kFewTets = 16;
 
 ChartRow rowOf(const VertexRun& run, const SweepFrame& frame, Index chart) {
   const SweptLine& line = *run.line;
@@ -16,10 +15,21 @@ ChartRow rowOf(const VertexRun& run, const SweepFrame& frame, Index chart) {
   return {chart, frame(line.level, line.row, first), frame.along(2), run.count};
 }
 
+/// Enters consecutive vertices. Of two that claim the same place, the one that comes later finds
+/// the other, and marks the brick.
+/// @return whether some did
 template <class Id>
-std::atomic_ref<Id> entry(Brick<Id>& brick, std::size_t place, std::ptrdiff_t offset) {
-  return std::atomic_ref(
-      brick.ids[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(place) + offset)]);
+bool enterVertices(Brick<Id>& brick, std::size_t place, std::ptrdiff_t stride, std::uint64_t first,
+                   std::uint32_t count) {
+  Id* entry = brick.ids.data() + place;
+  bool overlaps = false;
+  for (std::uint32_t i = 0; i < count; ++i, entry += stride) {
+    const auto id = static_cast<Id>(first + i);
+    overlaps |= allOf(*entry != Brick<Id>::kEmpty, *entry != id);
+    *entry = id;
+  }
+  if (overlaps) brick.contested = 1;
+  return overlaps;
 }
 
 }  // namespace
@@ -151,49 +161,31 @@ template <class Id>
 void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
   grid_.build(keys_, stage);
   keys_ = {};
-  // One thread alone sees every claim before its own; of several, one that exchanges does.
-  std::atomic<bool> overlaps{false};
-  const auto fillBlock = [&](std::size_t begin, std::size_t end, const auto& replace) {
-    BrickCache<Id> cache(grid_);
-    bool overlapsHere = false;
-    const auto enter = [&](const ChartRow& row, std::uint64_t first) {
-      row.forEachPart([&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count,
-                          std::ptrdiff_t stride) {
-        Bricks& brick = *cache.find(row.chart, c);
-        const std::size_t place = placeInBrick(c);
-        for (std::uint32_t i = 0; i < count; ++i) {
-          const auto id = static_cast<Id>(first + offset + i);
-          const Id before = replace(entry(brick, place, i * stride), id);
-          if (before == Bricks::kEmpty || before == id) continue;
-          overlapsHere = true;
-          std::atomic_ref(brick.contested).store(1, std::memory_order_relaxed);
-        }
-      });
-    };
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto tet = static_cast<Index>(t);
-      if (stored_ && stored_->areEmpty(tet)) continue;
-      std::optional<TetPositions> positions;
-      forEachClaim(
-          tet, Faces::OwnedAndCut,
-          [&](const VertexRun& run) { write(run, tet, positions, arrays); }, enter);
-    }
-    if (overlapsHere) overlaps.store(true, std::memory_order_relaxed);
-  };
   const bool alone = currentThreads() == 1;
+  std::atomic<bool> overlaps{false};
   parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t) {
-                   if (alone) {
-                     fillBlock(begin, end, [](const std::atomic_ref<Id>& at, Id id) {
-                       const Id before = at.load(std::memory_order_relaxed);
-                       at.store(id, std::memory_order_relaxed);
-                       return before;
+                   BrickCache<Id> cache(grid_);
+                   bool overlapsHere = false;
+                   const auto enter = [&](const ChartRow& row, std::uint64_t first) {
+                     row.forEachPart([&](const ChartPoint& c, std::uint32_t offset,
+                                         std::uint32_t count, std::ptrdiff_t stride) {
+                       Bricks& brick = *cache.find(row.chart, c);
+                       std::optional<BrickLock<Id>> lock;
+                       if (!alone) lock.emplace(brick);
+                       overlapsHere |=
+                           enterVertices(brick, placeInBrick(c), stride, first + offset, count);
                      });
-                   } else {
-                     fillBlock(begin, end, [](const std::atomic_ref<Id>& at, Id id) {
-                       return at.exchange(id, std::memory_order_relaxed);
-                     });
+                   };
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     if (stored_ && stored_->areEmpty(tet)) continue;
+                     std::optional<TetPositions> positions;
+                     forEachClaim(
+                         tet, Faces::OwnedAndCut,
+                         [&](const VertexRun& run) { write(run, tet, positions, arrays); }, enter);
                    }
+                   if (overlapsHere) overlaps.store(true, std::memory_order_relaxed);
                  });
   overlaps_ = overlaps.load();
 }
@@ -206,199 +198,17 @@ void VertexGrid<Id>::describe(Index tet, const VertexArrays& arrays) const {
       [](const ChartRow&, std::uint64_t) {});
 }
 
-/// The tets with a contested point of some brick in their bounding box.
-template <class Id>
-std::vector<Index> VertexGrid<Id>::tetsNearContested(Stage& stage) const {
-  const std::vector<BrickKey> contested = grid_.contested();
-  const auto isNear = [&](Index tet, BrickCache<Id>& cache) {
-    const GridBox points = gridBox(map_.exact.corners[tet], map_.exact.unit);
-    if (points.empty()) return false;
-    const BrickBox box(points, charts_.gauge(tet));
-    const Index chart = charts_.chart[tet];
-    if (contested.size() < box.count()) {
-      return std::any_of(contested.begin(), contested.end(),
-                         [&](BrickKey key) { return box.mayContain(chart, key); });
-    }
-    bool found = false;
-    box.forEach([&](const ChartPoint& c) {
-      const Bricks* const brick = cache.find(chart, c);
-      found = found || (brick != nullptr && brick->contested != 0);
-    });
-    return found;
-  };
-  return collectFromBlocks<Index>(
-      stage, map_.topology.tetCount(), kSweepBlock,
-      [&](std::size_t begin, std::size_t end, std::vector<Index>& tets) {
-        BrickCache<Id> cache(grid_);
-        for (std::size_t t = begin; t < end; ++t) {
-          if (isNear(static_cast<Index>(t), cache)) tets.push_back(static_cast<Index>(t));
-        }
-      });
-}
-
-/// Marks all points that two vertices claim. Entries are only ever replaced by "contested", so it
-/// does not matter who looks first.
-template <class Id>
-void VertexGrid<Id>::markContested(const std::vector<Index>& tets, Stage& stage) {
-  parallelBlocks(
-      stage, tets.size(), kFewTets, [&](std::size_t begin, std::size_t end, std::size_t) {
-        BrickCache<Id> cache(grid_);
-        for (std::size_t t = begin; t < end; ++t) {
-          forEachClaim(
-              tets[t], Faces::OwnedAndCut, [](const VertexRun&) {},
-              [&](const ChartRow& row, std::uint64_t first) {
-                row.forEachPart([&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count,
-                                    std::ptrdiff_t stride) {
-                  Bricks& brick = *cache.find(row.chart, c);
-                  const std::size_t place = placeInBrick(c);
-                  for (std::uint32_t i = 0; i < count; ++i) {
-                    const auto at = entry(brick, place, i * stride);
-                    if (at.load(std::memory_order_relaxed) == static_cast<Id>(first + offset + i)) {
-                      continue;
-                    }
-                    at.store(Bricks::kContested, std::memory_order_relaxed);
-                  }
-                });
-              });
-        }
-      });
-}
-
-/// Whether a tet has a contested point.
-template <class Id>
-bool VertexGrid<Id>::isContested(Index tet, BrickCache<Id>& cache) const {
-  bool contested = false;
-  forEachClaim(
-      tet, Faces::All, [](const VertexRun&) {},
-      [&](const ChartRow& row, std::uint64_t) {
-        row.forEachPart(
-            [&](const ChartPoint& c, std::uint32_t, std::uint32_t count, std::ptrdiff_t stride) {
-              Bricks& brick = *cache.find(row.chart, c);
-              const std::size_t place = placeInBrick(c);
-              for (std::uint32_t i = 0; i < count; ++i) {
-                contested =
-                    contested || entry(brick, place, i * stride).load(std::memory_order_relaxed) ==
-                                     Bricks::kContested;
-              }
-            });
-      });
-  return contested;
-}
-
-template <class Id>
-void VertexGrid<Id>::clearContested(const std::vector<Index>& tets) {
-  for (const Index tet : tets) {
-    forEachClaim(
-        tet, Faces::All, [](const VertexRun&) {},
-        [&](const ChartRow& row, std::uint64_t) {
-          row.forEachPart(
-              [&](const ChartPoint& c, std::uint32_t, std::uint32_t count, std::ptrdiff_t stride) {
-                Bricks& brick = *grid_.find(brickKey(row.chart, c));
-                const std::size_t place = placeInBrick(c);
-                for (std::uint32_t i = 0; i < count; ++i) {
-                  const auto at = entry(brick, place, i * stride);
-                  if (at.load(std::memory_order_relaxed) == Bricks::kContested) {
-                    at.store(Bricks::kEmpty, std::memory_order_relaxed);
-                  }
-                }
-              });
-        });
-  }
-}
-
-/// Claims all points of a tet in a chart if none of them belongs to another vertex.
-template <class Id>
-bool VertexGrid<Id>::tryClaim(Index tet, Index chart) {
-  bool free = true;
-  const auto forEachEntry = [&](const auto& visit) {
-    forEachClaim(
-        tet, Faces::All, [](const VertexRun&) {},
-        [&](const ChartRow& row, std::uint64_t first) {
-          row.forEachPart([&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count,
-                              std::ptrdiff_t stride) { visit(c, first + offset, count, stride); });
-        });
-  };
-  forEachEntry(
-      [&](const ChartPoint& c, std::uint64_t first, std::uint32_t count, std::ptrdiff_t stride) {
-        Bricks* const brick = free ? grid_.find(brickKey(chart, c)) : nullptr;
-        if (brick == nullptr) return;
-        const std::size_t place = placeInBrick(c);
-        for (std::uint32_t i = 0; i < count; ++i) {
-          const Id found = entry(*brick, place, i * stride).load(std::memory_order_relaxed);
-          free = free && (found == Bricks::kEmpty || found == static_cast<Id>(first + i));
-        }
-      });
-  if (!free) return false;
-  forEachEntry([&](const ChartPoint& c, std::uint64_t first, std::uint32_t count,
-                   std::ptrdiff_t stride) {
-    Bricks& brick = grid_.add(brickKey(chart, c));
-    const std::size_t place = placeInBrick(c);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      entry(brick, place, i * stride).store(static_cast<Id>(first + i), std::memory_order_relaxed);
-    }
-  });
-  return true;
-}
-
-/// Takes pending tets into a chart, breadth first, as long as they fit.
-template <class Id>
-void VertexGrid<Id>::grow(Index seed, Index chart, Array<std::uint8_t>& pending) {
-  if (!tryClaim(seed, chart)) return;
-  std::vector<Index> queue(1, seed);
-  pending[seed] = 0;
-  charts_.chart[seed] = chart;
-  for (std::size_t head = 0; head < queue.size(); ++head) {
-    for (int face = 0; face < 4; ++face) {
-      const HalfFace halfFace = halfFaceOf(queue[head], face);
-      const HalfFace mate = map_.topology.mate[halfFace];
-      if (mate == kNone || pending[tetOf(mate)] == 0) continue;
-      if (!charts_.gaugesAgree(map_.topology, map_.exact.transitions, halfFace)) continue;
-      if (!tryClaim(tetOf(mate), chart)) continue;
-      pending[tetOf(mate)] = 0;
-      charts_.chart[tetOf(mate)] = chart;
-      queue.push_back(tetOf(mate));
-    }
-  }
-}
-
 template <class Id>
 OverlapCounts VertexGrid<Id>::resolveOverlaps(Stage& stage) {
-  OverlapCounts counts;
-  if (!overlaps_) return counts;
-  const std::vector<Index> near = tetsNearContested(stage);
-  markContested(near, stage);
-  const auto tets = collectFromBlocks<Index>(
-      stage, near.size(), kFewTets,
-      [&](std::size_t begin, std::size_t end, std::vector<Index>& contested) {
-        BrickCache<Id> cache(grid_);
-        for (std::size_t i = begin; i < end; ++i) {
-          if (isContested(near[i], cache)) contested.push_back(near[i]);
-        }
-      });
-  counts.tets = tets.size();
-  clearContested(tets);
-  Array<std::uint8_t> pending(map_.topology.tetCount(), 0);
-  std::vector<Index> before;
-  for (const Index tet : tets) {
-    pending[tet] = 1;
-    before.push_back(charts_.chart[tet]);
-    charts_.chart[tet] = Charts::kNoChart;
-  }
-  // One sheet after the other: the first may stay, so that the border of the others is all that is
-  // cut anew.
-  for (std::size_t i = 0; i < tets.size(); ++i) {
-    if (pending[tets[i]] != 0) grow(tets[i], before[i], pending);
-  }
-  for (const Index tet : tets) {
-    if (pending[tet] == 0) continue;
-    grow(tet, charts_.count, pending);
-    ++charts_.count;
-    ++counts.charts;
-    // Only a tet that overlaps itself (modulo 2^19 grid units) does not fit an empty chart.
-    if (pending[tet] != 0) ++counts.homelessTets;
-    pending[tet] = 0;
-  }
-  return counts;
+  if (!overlaps_) return {};
+  const auto listClaims = [this](Index tet, std::vector<Claim>& claims) {
+    forEachClaim(
+        tet, Faces::All, [](const VertexRun&) {},
+        [&claims](const ChartRow& row, std::uint64_t first) {
+          claims.push_back({row, first});
+        });
+  };
+  return Overlaps<Id>(map_, listClaims, charts_, grid_).resolve(stage);
 }
 
 template <class Id>

@@ -7,6 +7,7 @@
 
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
+#include <atlas/overlaps.hpp>
 #include <sweep/cell_seeds.hpp>
 #include <sweep/tet_positions.hpp>
 #include <sweep/vertex_numbers.hpp>
@@ -39,13 +40,6 @@ struct VertexArrays {
   Vec3* points = nullptr;
   Index* tets = nullptr;
   CornerSet* corners = nullptr;
-};
-
-/// What became of places that several vertices claimed.
-struct OverlapCounts {
-  std::uint64_t tets = 0;          ///< with contested points at first
-  std::uint64_t charts = 0;        ///< opened for them
-  std::uint64_t homelessTets = 0;  ///< that no chart could take
 };
 
 /// Owns the numbers of all hex vertices and the grid that finds them again.
@@ -102,13 +96,6 @@ class VertexGrid {
 
   void write(const VertexRun& run, Index tet, std::optional<TetPositions>& positions,
              const VertexArrays& arrays) const;
-
-  [[nodiscard]] std::vector<Index> tetsNearContested(Stage& stage) const;
-  void markContested(const std::vector<Index>& tets, Stage& stage);
-  [[nodiscard]] bool isContested(Index tet, BrickCache<Id>& cache) const;
-  void clearContested(const std::vector<Index>& tets);
-  [[nodiscard]] bool tryClaim(Index tet, Index chart);
-  void grow(Index seed, Index chart, Array<std::uint8_t>& pending);
 
   const PreparedMap& map_;
   Charts& charts_;

@@ -16,7 +16,7 @@ constexpr std::size_t kHugePage = std::size_t{1} << 21;
 /// Below, ordinary pages do.
 constexpr std::size_t kLarge = 2 * kHugePage;
 /// From here on, asking for all pages at once is cheaper than a fault for each.
-constexpr std::size_t kManyPages = std::size_t{1} << 16;
+constexpr std::size_t kManyPages = std::size_t{1} << 14;
 
 /// Has the system provide the pages now that will be written anyway. Where it cannot, it does so
 /// page by page as ever.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 namespace hexhex {
@@ -9,6 +10,13 @@ namespace hexhex {
 using Pair = double __attribute__((vector_size(16)));
 /// One truth value for each: 0 or -1.
 using PairMask = std::int64_t __attribute__((vector_size(16)));
+
+/// Two numbers in a row.
+[[nodiscard]] inline Pair loadPair(const double* first) noexcept {
+  Pair pair;
+  std::memcpy(&pair, first, sizeof pair);
+  return pair;
+}
 
 [[nodiscard]] inline Pair magnitudeOf(Pair x) noexcept {
   constexpr std::int64_t kAllButSign = 0x7fffffffffffffff;
@@ -21,16 +29,19 @@ using PairMask = std::int64_t __attribute__((vector_size(16)));
                                 (~mask & reinterpret_cast<PairMask>(second)));
 }
 
-/// As nearestInteger() of vector3.hpp.
-[[nodiscard]] inline Pair nearestIntegers(Pair x) noexcept {
+/// Nearest multiples (even if there are two) of 2^-52 times `large`, which are powers of two, of
+/// numbers below `large` in magnitude; where that is 0, the numbers themselves.
+[[nodiscard]] inline Pair nearestMultiples(Pair x, Pair large) noexcept {
   constexpr std::int64_t kSign = std::numeric_limits<std::int64_t>::min();
-  constexpr Pair kLarge = {0x1p52, 0x1p52};
   const PairMask sign = reinterpret_cast<PairMask>(x) & PairMask{kSign, kSign};
-  const Pair large = reinterpret_cast<Pair>(reinterpret_cast<PairMask>(kLarge) | sign);
-  return (x + large) - large;
+  const Pair signedLarge = reinterpret_cast<Pair>(reinterpret_cast<PairMask>(large) | sign);
+  return (x + signedLarge) - signedLarge;
 }
 
 /// As std::max.
 [[nodiscard]] inline Pair larger(Pair a, Pair b) noexcept { return a < b ? b : a; }
+
+/// As std::min.
+[[nodiscard]] inline Pair smaller(Pair a, Pair b) noexcept { return a < b ? a : b; }
 
 }  // namespace hexhex

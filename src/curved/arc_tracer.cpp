@@ -1,3 +1,4 @@
+#include <bit>
 #include <string>
 
 #include <curved/arc_tracer.hpp>
@@ -46,10 +47,23 @@ SimplexInTet ArcTracer::behind(const SimplexInTet& point) {
 ArcExit ArcTracer::exitAt(Index tet, const LatticeTet& seen, const SimplexPoint& point) const {
   const CornerMask at = point.simplex();
   if (at == kNoSimplex) fail(tet, "a hex edge leaves a tet nowhere");
-  const std::array<double, 4> shares = point.normalized();
-  return {ownedBy(topology_, tet, at),
-          position(shares, topology_.tets[tet], map_.input.view.points),
-          coordinate(shares, seen, 0) / static_cast<double>(exact_.unit)};
+  // As normalized(), position() and coordinate() would have it, for the few corners that count.
+  std::array<double, 4> weights;
+  double sum = 0;
+  for (unsigned left = at; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    sum += weights[i] = toDouble(point.weights[i]);
+  }
+  ArcExit exit{ownedBy(topology_, tet, at), {}, 0};
+  for (unsigned left = at; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    const double share = weights[i] / sum;
+    const Vec3& corner = map_.input.view.points[topology_.tets[tet][i]];
+    for (std::size_t k = 0; k < 3; ++k) exit.point[k] += share * corner[k];
+    exit.parameter += share * static_cast<double>(seen[i][0]);
+  }
+  exit.parameter /= static_cast<double>(exact_.unit);
+  return exit;
 }
 
 }  // namespace hexhex

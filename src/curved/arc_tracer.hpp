@@ -113,10 +113,9 @@ class ArcTracer {
     for (std::size_t steps = 0; steps <= topology_.tetCount(); ++steps) {
       visit(std::as_const(at), walk.exit(at.tet));
       if (!walk.cross(at)) fail(at.tet, "a hex edge leaves the mesh");
-      const bool leaves = walk.leave(at);
-      if (leaves && walk.certainlyGoesOn()) continue;
-      const Index vertex = vertexIn(at);
-      if (vertex != kNone || !leaves) return vertex;
+      // To look for the end takes less than to leave the tet, so where it may be, it is done first.
+      const Index vertex = vertices_.hasVertices(at.tet) ? vertexIn(at) : kNone;
+      if (vertex != kNone || !walk.leave(at)) return vertex;
     }
     fail(at.tet, "a hex edge does not end");
   }

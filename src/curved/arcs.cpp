@@ -22,36 +22,41 @@ class BlockTracer {
       : map_(map), vertices_(vertices), arcs_(arcs), pieces_(pieces), tracer_(map, vertices) {}
 
   void trace(Index tet, const ElementNumbers::Row& row) {
-    if (!vertices_.hasVertices(tet)) {
-      row.forEach([&](const Element& edge) { trace(tet, edge, {}, {}); });
-      return;
-    }
     const GridPoint& begin = row.front().z;
     const int axis = row.front().axis;
+    // Early, as who copies it has to wait until memory has all its parts.
+    middle_ = {tet, kWholeTet, Frame::along(begin, axis)};
+    if (!vertices_.hasVertices(tet)) {
+      row.forEach([&](const Element& edge) { trace(edge, row.along(), {}, {}); });
+      return;
+    }
     const GridPoint end = step(begin, direction(axis, 1));
     LatticeNumbers::OnLine beginnings(vertices_, tet, begin, row.along(), fromHint_);
     LatticeNumbers::OnLine ends(vertices_, tet, end, row.along(), toHint_);
     row.forEach([&](const Element& edge) {
-      trace(tet, edge, beginnings.find(edge.z), ends.find(step(edge.z, direction(axis, 1))));
+      trace(edge, row.along(), beginnings.find(edge.z),
+            ends.find(step(edge.z, direction(axis, 1))));
     });
   }
 
  private:
   using Found = LatticeNumbers::Found;
 
+  /// @param along     in which coordinate the edge differs from others of its row
   /// @param from, to  what the tet has of the edge's ends
-  void trace(Index tet, const Element& edge, const Found& from, const Found& to) {
+  void trace(const Element& edge, std::size_t along, const Found& from, const Found& to) {
     if (from.vertex != kNone && to.vertex != kNone) {
       // By convexity, all between lies in the smallest simplex that contains both ends.
       arcs_.ends[edge.number] = {from.vertex, to.vertex};
       arcs_.pointBegin[edge.number] = 0;
-      addSegment({tet, static_cast<CornerMask>(from.simplex | to.simplex), {}});
+      addSegment({middle_.tet, static_cast<CornerMask>(from.simplex | to.simplex), {}});
       return;
     }
     const std::size_t before = pieces_.points();
-    const SimplexInTet middle{tet, edge.simplex, Frame::along(edge.z, edge.axis)};
-    arcs_.ends[edge.number] = edge.simplex == kWholeTet ? traceBothWays(middle, from, to)
-                                                        : traceFromBeginning(middle, from);
+    middle_.frame.origin[along] = edge.z[along];
+    middle_.simplex = edge.simplex;
+    arcs_.ends[edge.number] = edge.simplex == kWholeTet ? traceBothWays(middle_, from, to)
+                                                        : traceFromBeginning(middle_, from);
     arcs_.pointBegin[edge.number] = pieces_.points() - before;
     smoothParameters(pieces_.parametersFrom(before));
   }
@@ -134,6 +139,7 @@ class BlockTracer {
   Arcs& arcs_;
   ArcPieces& pieces_;
   ArcTracer tracer_;
+  SimplexInTet middle_;  ///< the midpoint of the edge at hand
   LineHint fromHint_;
   LineHint toHint_;
 };

@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cmath>
-
 #include <curved/face_walk.hpp>
 #include <curved/simplex_point.hpp>
 
@@ -79,8 +76,7 @@ bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen, const EdgeS
   const std::size_t face = kExits[back ? ~sides.left & 63U : sides.left];
   if (sides.touches || face == 4) return false;
   leaveThrough(at.tet, static_cast<int>(face));
-  look(at.frame);
-  reach_ = 0;
+  looked_ = false;
   const SeenFace& f = kFaces[face];
   for (std::size_t i = 0; i < 3; ++i) {
     const LatticePoint& p = seen[f.corners[i]];
@@ -100,12 +96,13 @@ bool FaceWalk::cross(SimplexInTet& at) {
   face_ = localOf(mate_);
   if (exact_.transitions.isJump(halfFace)) {
     at.frame = at.frame.carried(exact_.transitions.across(halfFace));
-    look(at.frame);
+    looked_ = false;
   }
   return true;
 }
 
 bool FaceWalk::leave(const SimplexInTet& at) {
+  if (!looked_) look(at.frame);
   const auto apex = static_cast<std::size_t>(face_);
   const LatticePoint& corner = exact_.corners[at.tet][apex];
   LatticePoint seen;
@@ -149,6 +146,7 @@ void FaceWalk::leaveThrough(Index tet, int face) noexcept {
 }
 
 void FaceWalk::look(const Frame& frame) noexcept {
+  looked_ = true;
   for (std::size_t k = 0; k < 3; ++k) {
     axis_[k] = static_cast<std::size_t>(axisOf(frame.axes[k]));
     zero_[k] = frame.origin[axis_[k]] * exact_.unit;
@@ -161,7 +159,6 @@ void FaceWalk::place(std::size_t i, Index vertex, const LatticePoint& seen) noex
   seen_[i] = seen;
   positions_[i] = points_[vertex];
   places_[i] = static_cast<double>(seen[0]);
-  reach_ = std::max(reach_, std::abs(places_[i]));
 }
 
 void FaceWalk::measure() noexcept {

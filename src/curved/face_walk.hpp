@@ -15,10 +15,10 @@ namespace hexhex {
 /// A wide number as memory should hold it: compilers write a whole one by way of vector registers,
 /// which wait for both halves to be in memory.
 struct Halves {
-  std::uint64_t low = 0;
-  std::int64_t high = 0;
+  std::uint64_t low;
+  std::int64_t high;
 
-  constexpr Halves() = default;
+  Halves() = default;  // not cleared
   constexpr explicit Halves(Int128 number) noexcept
       : low(static_cast<std::uint64_t>(number)), high(static_cast<std::int64_t>(number >> 64)) {}
   [[nodiscard]] constexpr Int128 whole() const noexcept {
@@ -85,16 +85,6 @@ class FaceWalk {
   /// @return false if the edge does not leave through the interior of a face
   [[nodiscard]] bool leave(const SimplexInTet& at);
 
-  /// Whether the point in the face at hand is certainly before coordinate 1 of the frame.
-  [[nodiscard]] bool certainlyGoesOn() const noexcept {
-    // In units of 2^-53: weights carry two roundings (2), their sum two more (4), shares one more
-    // (7), places one and products one, the sum of three two (11): times `reach_`, as shares are
-    // positive and add up to 1. 2^-48 leaves a factor of almost three for the rounding of the sum
-    // here and terms of second order.
-    constexpr double kRelativeError = 0x1p-48;
-    return place_ + kRelativeError * reach_ < unit_;
-  }
-
  private:
   void leaveThrough(Index tet, int face) noexcept;
   void look(const Frame& frame) noexcept;
@@ -109,7 +99,9 @@ class FaceWalk {
   int face_ = 0;           ///< of the tet at hand
   HalfFace mate_ = kNone;  ///< of that face
 
-  // The frame: coordinate k is p[axis_[k]] - zero_[k], negated if flip_[k] is -1.
+  // The frame, if it has been looked at: coordinate k is p[axis_[k]] - zero_[k], negated if
+  // flip_[k] is -1.
+  bool looked_ = false;
   std::array<std::size_t, 3> axis_{};
   std::array<std::int64_t, 3> zero_{};
   std::array<std::int64_t, 3> flip_{};
@@ -123,7 +115,6 @@ class FaceWalk {
   std::array<Vec3, 3> positions_{};
 
   double place_ = 0;  ///< of the point, times unit
-  double reach_ = 0;  ///< magnitude of the largest place since the start
 };
 
 }  // namespace hexhex

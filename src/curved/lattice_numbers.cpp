@@ -11,6 +11,7 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map) : map_(map) {
   axes_.resize(tets);
   lineBegin_.resize(tets + 1);
   lineBegin_[tets] = 0;
+  occupied_.assign((tets + 63) / 64, 0);
 }
 
 LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : LatticeNumbers(map) {
@@ -36,6 +37,10 @@ void LatticeNumbers::Sweep::sweep(std::size_t block, Index tet, HalfGrids& grids
   const std::size_t before = lines.size();
   numbers_.axes_[tet] = grids.sweep(0, [&](const SweptLine& line) { lines.push_back(line); });
   numbers_.lineBegin_[tet] = lines.size() - before;
+  // Blocks have words of their own.
+  static_assert(kSweepBlock % 64 == 0);
+  const std::uint64_t isOccupied = lines.size() != before ? 1 : 0;
+  numbers_.occupied_[tet / 64] |= isOccupied << (tet % 64);
   counter_.count(block, tet, std::span(lines).subspan(before));
 }
 

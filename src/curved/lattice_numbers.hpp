@@ -72,7 +72,7 @@ class LatticeNumbers {
 
   /// Whether a closed tet contains any vertices.
   [[nodiscard]] bool hasVertices(Index tet) const noexcept {
-    return lineBegin_[tet] != lineBegin_[std::size_t{tet} + 1];
+    return ((occupied_[tet / 64] >> (tet % 64)) & 1U) != 0;
   }
 
   struct Found {
@@ -144,6 +144,7 @@ class LatticeNumbers {
   VertexNumbers numbers_;
   Array<SweepAxes> axes_;           ///< per tet
   Array<std::uint64_t> lineBegin_;  ///< per tet (+1)
+  Array<std::uint64_t> occupied_;   ///< a bit per tet: few enough to be at hand wherever arcs go
   Array<Line> lines_;
 };
 
@@ -153,26 +154,24 @@ class LatticeNumbers {
 template <class Line, class SweptOf>
 [[nodiscard]] const Line* findLine(std::span<const Line> lines, std::int32_t level,
                                    std::int32_t row, const SweptOf& sweptOf, LineHint& hint) {
-  const auto isAt = [&](std::size_t i) {
+  // Level and row in one number, in their order.
+  const auto key = [](std::int64_t l, std::int32_t r) { return l * (std::int64_t{1} << 32) + r; };
+  const std::int64_t wanted = key(level, row);
+  const auto keyOf = [&](std::size_t i) {
     const SweptLine& line = sweptOf(lines[i]);
-    return line.level == level && line.row == row;
+    return key(line.level, line.row);
   };
-  // Elements come in the order of a sweep, so most searches repeat the one before.
-  if (hint.line < lines.size() && isAt(hint.line)) return &lines[hint.line];
-  if (hint.line + 1 < lines.size() && isAt(hint.line + 1)) return &lines[++hint.line];
+  // Elements come in the order of a sweep, so many searches repeat the one before.
+  if (hint.line < lines.size() && keyOf(hint.line) == wanted) return &lines[hint.line];
+  if (lines.empty()) return nullptr;
+  // By arithmetic, as on which side it is would be as good as random.
   std::size_t low = 0;
-  std::size_t high = lines.size();
-  while (low < high) {
-    const std::size_t middle = (low + high) / 2;
-    const SweptLine& line = sweptOf(lines[middle]);
-    const bool before = line.level != level ? line.level < level : line.row < row;
-    if (before) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
+  for (std::size_t left = lines.size(); left > 1;) {
+    const std::size_t half = left / 2;
+    low += half & (std::size_t{0} - static_cast<std::size_t>(keyOf(low + half) <= wanted));
+    left -= half;
   }
-  if (low == lines.size() || !isAt(low)) return nullptr;
+  if (keyOf(low) != wanted) return nullptr;
   hint.line = low;
   return &lines[low];
 }

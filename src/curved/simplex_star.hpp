@@ -1,10 +1,12 @@
 // All tets around a simplex, each with a frame carried to it.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <curved/frame.hpp>
 
+#include <map/edge_turn.hpp>
 #include <map/exact_map.hpp>
 #include <map/key_table.hpp>
 #include <map/tet_topology.hpp>
@@ -45,7 +47,55 @@ class SimplexStar {
   template <class Visit>
   bool visit(const SimplexInTet& start, const Visit& visit) {
     if (visit(start)) return true;
-    if (start.simplex == kWholeTet) return false;
+    switch (dimension(start.simplex)) {
+      case 3:
+        return false;
+      case 2: {
+        const int face = oppositeCorner(start.simplex);
+        if (topology_.mate[halfFaceOf(start.tet, face)] == kNone) return false;
+        return visit(crossed(topology_, map_, start, face));
+      }
+      case 1:
+        return visitAroundEdge(start, visit);
+      default:
+        return visitAroundVertex(start, visit);
+    }
+  }
+
+ private:
+  /// One step in one direction, one in the other, until they meet.
+  template <class Visit>
+  bool visitAroundEdge(const SimplexInTet& start, const Visit& visit) const {
+    struct Side {
+      EdgeTurn turn;
+      Frame frame;
+      bool goesOn = true;
+    };
+    const int first = otherFaceAtEdge(start.simplex, -1);
+    const int second = otherFaceAtEdge(start.simplex, first);
+    std::array<Side, 2> sides = {
+        Side{EdgeTurn(topology_, start.tet, start.simplex, first), start.frame},
+        Side{EdgeTurn(topology_, start.tet, start.simplex, second), start.frame}};
+    while (sides[0].goesOn || sides[1].goesOn) {
+      for (std::size_t i = 0; i < 2; ++i) {
+        Side& side = sides[i];
+        const HalfFace next = side.turn.next();
+        side.goesOn = side.goesOn && next != kNone && tetOf(next) != start.tet &&
+                      tetOf(next) != sides[1 - i].turn.tet();
+        if (!side.goesOn) continue;
+        const HalfFace halfFace = side.turn.out();
+        side.turn.step();
+        if (map_.transitions.isJump(halfFace)) {
+          side.frame = side.frame.carried(map_.transitions.across(halfFace));
+        }
+        if (visit(SimplexInTet{side.turn.tet(), side.turn.edge(), side.frame})) return true;
+      }
+    }
+    return false;
+  }
+
+  template <class Visit>
+  bool visitAroundVertex(const SimplexInTet& start, const Visit& visit) {
     seen_.clear();
     members_.assign(1, start);
     seen_.insert(start.tet);
@@ -63,7 +113,6 @@ class SimplexStar {
     return false;
   }
 
- private:
   const TetTopology& topology_;
   const ExactMap& map_;
   KeyTable seen_;

@@ -116,7 +116,7 @@ class Rasterization {
     for (const CornerMask simplex : kSimplices) {
       if (counts[simplex] == 0) continue;
       if (simplex != kWholeTet) ++incidences;
-      if (ownerTet(map_.topology, tet, simplex) != tet) continue;
+      if (!ownsSimplex(map_.topology, tet, simplex)) continue;
       block.generators.push_back({tet, 0, counts[simplex], simplex});
       block.vertices += counts[simplex];
     }

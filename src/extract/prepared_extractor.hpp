@@ -82,6 +82,7 @@ class Extractor::Prepared {
     constexpr std::size_t kGrain = 4096;
     parallelFor(stage, unscaledCorners_.size(), kGrain,
                 [&](std::size_t t) { map_.exact.corners[t] = unscaledCorners_[t]; });
+    map_.exact.scale = 1;
     scaleMap(map_.exact, scale, stage);
     scale_ = scale;
   }

@@ -60,7 +60,7 @@ void StarConnectivity::findPropellers() {
     const Index tet = entry.tet;
     for (Direction d = 0; d < kDirections; ++d) {
       const CornerMask simplex = holder(signs_[tet], entry.simplex, d);
-      if (simplex == kNoSimplex || ownerTet(topology_, tet, simplex) != tet) continue;
+      if (simplex == kNoSimplex || !ownsSimplex(topology_, tet, simplex)) continue;
       if (holders_.size() == kNoPropeller) {
         throw Error(ErrorCode::TooLarge,
                     "More than 254 hex edges meet at one point. Refine the map's singular node.",

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <extract/local_connectivity.hpp>
+#include <map/edge_turn.hpp>
 
 namespace hexhex {
 
@@ -83,25 +84,23 @@ void forEachTetAround(const TetTopology& topology, const Transitions& transition
   visit(tet, simplex, Rotation{});
   if (simplex == kWholeTet) return;
   const int first = otherFaceAtEdge(simplex, -1);
-  const int last = dimension(simplex) == 1 ? otherFaceAtEdge(simplex, first) : first;
-  for (const int start : {first, last}) {
-    Index current = tet;
-    CornerMask corners = simplex;
+  if (dimension(simplex) == 2) {
+    const HalfFace halfFace = halfFaceOf(tet, first);
+    const HalfFace mate = topology.mate[halfFace];
+    if (mate == kNone) return;
+    visit(tetOf(mate), topology.translated(simplex, tet, tetOf(mate)),
+          transitions.across(halfFace).rotation);
+    return;
+  }
+  for (const int face : {first, otherFaceAtEdge(simplex, first)}) {
+    EdgeTurn turn(topology, tet, simplex, face);
     Rotation rotation;
-    int exit = start;
-    for (;;) {
-      const HalfFace halfFace = halfFaceOf(current, exit);
-      const HalfFace mate = topology.mate[halfFace];
-      if (mate == kNone) break;
-      rotation = transitions.across(halfFace).rotation * rotation;
-      corners = topology.translated(corners, current, tetOf(mate));
-      current = tetOf(mate);
-      if (current == tet) return;  // all the way round
-      visit(current, corners, rotation);
-      if (dimension(corners) == 2) break;
-      exit = otherFaceAtEdge(corners, localOf(mate));
+    while (turn.next() != kNone) {
+      rotation = transitions.across(turn.out()).rotation * rotation;
+      turn.step();
+      if (turn.tet() == tet) return;  // all the way round
+      visit(turn.tet(), turn.edge(), rotation);
     }
-    if (first == last) return;
   }
 }
 

@@ -1,166 +1,151 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
-#include <base/pair.hpp>
 #include <lattice/half_grids.hpp>
 
 namespace hexhex {
 
 namespace {
 
-using Four = std::array<double, 4>;
+constexpr std::array<double, 4> kSteps = {0, 1, 2, 3};
 
-/// Coordinates of a tet's corners from a grid point near corner 0, in halves, by axis.
-struct NearCorners {
-  std::array<Four, 3> at;
-  GridPoint nearby;
-
-  NearCorners(const LatticeTet& corners, std::int64_t unit) noexcept {
-    const double perHalf = 2.0 / static_cast<double>(unit);
-    const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::int64_t grid = corners[0][k] >> shift;
-      const std::int64_t zero = grid << shift;
-      nearby[k] = static_cast<std::int32_t>(grid);
-      for (std::size_t i = 0; i < 4; ++i) {
-        at[k][i] = static_cast<double>(corners[i][k] - zero) * perHalf;
-      }
-    }
-  }
-};
-
-/// Weights of the four corners, times six volumes.
-struct Weights {
-  Pair of01;
-  Pair of23;
-
-  [[nodiscard]] Weights plus(const Weights& gradient, std::int32_t steps) const noexcept {
-    const auto factor = static_cast<double>(steps);
-    const Pair factors = {factor, factor};
-    return {of01 + gradient.of01 * factors, of23 + gradient.of23 * factors};
-  }
-  [[nodiscard]] bool anyBelow(double limit) const noexcept {
-    const Pair limits = {limit, limit};
-    const auto below = (of01 < limits) | (of23 < limits);
-    return (below[0] | below[1]) != 0;
-  }
-};
-
-/// The same as functions of a point.
-struct WeightPlanes {
-  std::array<Weights, 3> gradient;
-  Weights atOrigin;
-
-  explicit WeightPlanes(const std::array<Four, 3>& at) noexcept {
-    std::array<std::array<double, 3>, 3> e;
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) e[i][k] = at[k][i + 1] - at[k][0];
-    }
-    const Pair none = {0, 0};
-    atOrigin.of01 = none;
-    atOrigin.of23 = none;
-    double volume = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t m = k == 2 ? 0 : k + 1;
-      const std::size_t n = k == 0 ? 2 : k - 1;
-      const double g1 = e[1][m] * e[2][n] - e[1][n] * e[2][m];
-      const double g2 = e[2][m] * e[0][n] - e[2][n] * e[0][m];
-      const double g3 = e[0][m] * e[1][n] - e[0][n] * e[1][m];
-      volume += e[0][k] * g1;
-      gradient[k].of01 = Pair{-(g1 + g2 + g3), g1};
-      gradient[k].of23 = Pair{g2, g3};
-      const Pair corner = {at[k][0], at[k][0]};
-      atOrigin.of01 -= gradient[k].of01 * corner;
-      atOrigin.of23 -= gradient[k].of23 * corner;
-    }
-    atOrigin.of01 += Pair{volume, 0};
-  }
-};
+Pair swapped(Pair pair) noexcept { return Pair{pair[1], pair[0]}; }
 
 }  // namespace
 
-HalfGridSearch::HalfGridSearch(HalfGridSet wanted) : wanted_(wanted), places_(512) {
-  for (std::size_t key = 0; key < places_.size(); ++key) {
-    const std::array<std::size_t, 3> axes = {key / 64, key / 8 % 8, key % 8};
-    for (unsigned place = 0; place < 64; ++place) {
-      bool inBox = true;
-      unsigned grid = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t at = (place >> (2 * k)) & 3U;
-        inBox = inBox && at <= axes[k] / 2;
-        grid |= static_cast<unsigned>((axes[k] + at) & 1U) << k;
-      }
-      Places& places = places_[key];
-      if (inBox && ((wanted >> grid) & 1U) != 0) {
-        places.places[places.count++] = static_cast<std::uint8_t>(place);
-      }
-    }
+HalfBox::HalfBox(const LatticeTet& corners, std::int64_t unit) noexcept {
+  const std::int64_t half = unit / 2;
+  const int shift = std::countr_zero(static_cast<std::uint64_t>(half));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::int64_t low =
+        std::min(std::min(corners[0][k], corners[1][k]), std::min(corners[2][k], corners[3][k]));
+    const std::int64_t high =
+        std::max(std::max(corners[0][k], corners[1][k]), std::max(corners[2][k], corners[3][k]));
+    first[k] = static_cast<std::int32_t>((low + half - 1) >> shift);
+    steps[k] = static_cast<std::int32_t>(high >> shift) - first[k];
   }
 }
 
 HalfGrids::HalfGrids(const LatticeTet& corners, std::int64_t unit,
                      const HalfGridSearch& search) noexcept
-    : corners_(corners), unit_(unit) {
-  if (!comparePoints(search)) occupied_ = unsure_ = search.wanted();
+    : corners_(corners), unit_(unit), box_(corners, unit) {
+  if ((box_.steps[0] | box_.steps[1] | box_.steps[2]) < 0) return;  // one of them is
+  const std::int32_t most = std::max(std::max(box_.steps[0], box_.steps[1]), box_.steps[2]);
+  if (most < HalfGridSearch::kSide) {
+    small_ = true;
+    const HalfGridSearch::PlaceSet places = search.placesIn(box_);
+    if (places == 0) return;
+    measure(most);
+    comparePoints(places);
+    return;
+  }
+  occupied_ = static_cast<HalfGridSet>(search.wanted() & box_.grids());
+  if (occupied_ != 0 && most < kMostSteps) measure(most);
 }
 
-/// Sets `occupied_`, `unsure_` and `inside_`.
-/// @return false if the tet is not small
-bool HalfGrids::comparePoints(const HalfGridSearch& search) noexcept {
-  const NearCorners near(corners_, unit_);
-  std::array<std::int32_t, 3> first;
-  std::array<std::int32_t, 3> steps;
-  double size = 1;
-  bool large = false;
-  bool none = false;
+/// Sets the weights.
+/// @param most  steps of the box along an axis
+void HalfGrids::measure(std::int32_t most) noexcept {
+  measured_ = true;
+  // Errors in units of u = 2^-53, with magnitudes: coordinates are less than `size` away from the
+  // box's first point and carry one rounding, so edges, up to 2 size, are known to 4 size; products
+  // of two of them to 20 size^2, and their differences, the gradients, up to 8 size^2, to 48
+  // size^2. At the box's first point, three products with coordinates, each up to 8 size^3 and
+  // known to 64 size^3, make up a weight in two additions of at most 24 size^3: known to 240
+  // size^3. On the way to any other point, there are three more products, each up to 8 size^3 and
+  // known to 56 size^3, and 3 additions of at most 48 size^3, or, if it is done step by step, as
+  // many as there are levels and rows, less than 64: below 240 + 168 + 64 * 48 < 2^12 size^3. 2^13
+  // covers terms of second order as well.
+  const double size = static_cast<double>(most) + 1;
+  error_ = 0x1p-40 * size * size * size;
+  const double perHalf = 2.0 / static_cast<double>(unit_);
+  const Pair scale = {perHalf, perHalf};
+  // Normals are products of two edges of their faces: of faces 0 and 1 that are opposite corners 0
+  // and 1, and so on.
+  std::array<Pair, 3> first01;
+  std::array<Pair, 3> second01;
+  std::array<Pair, 3> first23;
+  std::array<Pair, 3> second23;
+  std::array<Pair, 3> on01;  // corners 1 and 0, which lie in faces 0 and 1
+  std::array<Pair, 3> on23;  // corner 0
   for (std::size_t k = 0; k < 3; ++k) {
-    constexpr double kOffset = 1024;
-    const Four& c = near.at[k];
-    const double low = std::min(std::min(c[0], c[1]), std::min(c[2], c[3]));
-    const double high = std::max(std::max(c[0], c[1]), std::max(c[2], c[3]));
-    size = std::max(size, std::max(high, -low));
-    if (!(size < kOffset)) return false;
-    // Rounding is monotone, so no point of the exact box is lost, neither here nor by conversions.
-    // Conversions to integers truncate, which takes numbers above zero to be rounding down.
-    first[k] = static_cast<std::int32_t>(kOffset) - static_cast<std::int32_t>(kOffset - low);
-    steps[k] =
-        static_cast<std::int32_t>(high + kOffset) - static_cast<std::int32_t>(kOffset) - first[k];
-    none |= steps[k] < 0;
-    large |= steps[k] >= HalfGridSearch::kSide;
+    const std::int64_t zero = box_.first[k] * (unit_ / 2);
+    const auto at = [&](std::size_t corner) {
+      return static_cast<double>(corners_[corner][k] - zero);
+    };
+    const Pair c01 = Pair{at(0), at(1)} * scale;
+    const Pair c23 = Pair{at(2), at(3)} * scale;
+    const Pair c10 = swapped(c01);
+    const Pair c00 = {c01[0], c01[0]};
+    first01[k] = swapped(c23) - c10;
+    second01[k] = c23 - c10;
+    first23[k] = Pair{c23[1], c01[1]} - c00;
+    second23[k] = Pair{c01[1], c23[0]} - c00;
+    on01[k] = c10;
+    on23[k] = c00;
   }
-  if (none) return true;
-  if (large) return false;
-  const HalfGridSearch::Places& places = search.placesIn(first, steps);
-  if (places.count == 0) return true;
-  const WeightPlanes planes(near.at);
-  // Errors in units of 2^-53, with magnitudes: coordinates carry one rounding (size), so edges, up
-  // to 2 size, are known to 4 size; their products to 20 size^2, gradients 1 to 3 (8 size^2) to
-  // 48 size^2, and gradient 0 (24 size^2) to 184 size^2. Products with coordinates, which are
-  // below size, make 24 size^3 each, known to 184 + 24 + 24 = 232 size^3, and the volume 48 size^3,
-  // known to 512 size^3. A weight sums seven such terms, six of them 24 size^3 large, in six
-  // additions of at most 192 size^3: 6 * 232 + 512 + 6 * 192 < 2^12 size^3. 2^13 covers terms of
-  // second order as well.
-  const double error = 0x1p-40 * size * size * size;
-  for (std::size_t i = 0; i < places.count; ++i) {
-    const unsigned place = places.places[i];
-    const std::int32_t x = first[0] + static_cast<std::int32_t>(place & 3U);
-    const std::int32_t y = first[1] + static_cast<std::int32_t>((place >> 2) & 3U);
-    const std::int32_t z = first[2] + static_cast<std::int32_t>(place >> 4);
-    const Weights weights = planes.atOrigin.plus(planes.gradient[0], x)
-                                .plus(planes.gradient[1], y)
-                                .plus(planes.gradient[2], z);
-    const auto grid = static_cast<HalfGrid>((x & 1) | (y & 1) << 1 | (z & 1) << 2);
-    // Without branches, as what is inside is as good as random.
-    const unsigned mayBeInside = weights.anyBelow(-error) ? 0 : halfGridBit(grid);
-    const unsigned isUnsure = weights.anyBelow(error) ? mayBeInside : 0;
-    inside_[insideCount_] = {
-        {near.nearby[0] + (x >> 1), near.nearby[1] + (y >> 1), near.nearby[2] + (z >> 1)}, grid};
-    insideCount_ += mayBeInside != 0 ? 1 : 0;
-    occupied_ = static_cast<HalfGridSet>(occupied_ | mayBeInside);
-    unsure_ = static_cast<HalfGridSet>(unsure_ | isUnsure);
+  atOrigin_ = {Pair{0, 0}, Pair{0, 0}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t m = k == 2 ? 0 : k + 1;
+    const std::size_t n = k == 0 ? 2 : k - 1;
+    gradient_[k].of01 = first01[m] * second01[n] - first01[n] * second01[m];
+    gradient_[k].of23 = first23[m] * second23[n] - first23[n] * second23[m];
+    atOrigin_.of01 -= gradient_[k].of01 * on01[k];
+    atOrigin_.of23 -= gradient_[k].of23 * on23[k];
   }
-  return true;
+}
+
+/// Sets `inside_` and `occupied_`.
+void HalfGrids::comparePoints(HalfGridSearch::PlaceSet places) noexcept {
+  using PlaceSet = HalfGridSearch::PlaceSet;
+  const auto stepsTo = [](unsigned place) {
+    return std::array<double, 3>{kSteps[place & 3U], kSteps[(place >> 2) & 3U], kSteps[place >> 4]};
+  };
+  // Without branches, as what is inside is as good as random.
+  PlaceSet inside = 0;
+  PlaceSet unsure = 0;
+  for (; places != 0; places &= places - 1) {
+    const auto place = static_cast<unsigned>(std::countr_zero(places));
+    const double least = weightsAt(stepsTo(place)).least();
+    inside |= PlaceSet{least >= -error_ ? 1U : 0U} << place;
+    unsure |= PlaceSet{least <= error_ ? 1U : 0U} << place;
+  }
+  for (; inside != 0; inside &= inside - 1) {
+    const auto place = static_cast<unsigned>(std::countr_zero(inside));
+    const std::array<std::int32_t, 3> steps = {static_cast<std::int32_t>(place & 3U),
+                                               static_cast<std::int32_t>((place >> 2) & 3U),
+                                               static_cast<std::int32_t>(place >> 4)};
+    CornerMask simplex = kWholeTet;
+    if (((unsure >> place) & 1U) != 0) simplex = exactSimplexOf(steps);
+    if (simplex == kNoSimplex) continue;
+    Inside& point = inside_[insideCount_++];
+    unsigned grid = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t at = box_.first[k] + steps[k];
+      grid |= static_cast<unsigned>(at & 1) << k;
+      point.z[k] = at >> 1;
+    }
+    point.grid = static_cast<HalfGrid>(grid);
+    point.simplex = simplex;
+    occupied_ = static_cast<HalfGridSet>(occupied_ | halfGridBit(point.grid));
+  }
+}
+
+/// The simplex whose interior holds a point near some face, or kNoSimplex outside.
+/// @param steps  from the box's first point
+CornerMask HalfGrids::exactSimplexOf(const std::array<std::int32_t, 3>& steps) const noexcept {
+  LatticePoint point;
+  for (std::size_t k = 0; k < 3; ++k) {
+    point[k] = (std::int64_t{box_.first[k]} + steps[k]) * (unit_ / 2);
+  }
+  const Weights weights = weightsAt({static_cast<double>(steps[0]), static_cast<double>(steps[1]),
+                                     static_cast<double>(steps[2])});
+  return simplexBySides([&](std::size_t face) {
+    const double weight = face < 2 ? weights.of01[face] : weights.of23[face - 2];
+    return weight > error_ ? 1 : sideOfFace(corners_, face, point);
+  });
 }
 
 std::size_t HalfGrids::sortInside(HalfGrid grid, SweepAxes sweepAxes,
@@ -170,21 +155,113 @@ std::size_t HalfGrids::sortInside(HalfGrid grid, SweepAxes sweepAxes,
   for (std::size_t i = 0; i < insideCount_; ++i) {
     if (inside_[i].grid != grid) continue;
     const GridPoint& z = inside_[i].z;
-    const std::array<std::int32_t, 3> point = {z[axes[0]], z[axes[1]], z[axes[2]]};
+    const SweepPoint point{{z[axes[0]], z[axes[1]], z[axes[2]]}, inside_[i].simplex};
     std::size_t at = count++;
-    for (; at > 0 && point < points[at - 1]; --at) points[at] = points[at - 1];
+    for (; at > 0 && point.at < points[at - 1].at; --at) points[at] = points[at - 1];
     points[at] = point;
   }
   return count;
 }
 
-GridBox HalfGrids::boxOf(HalfGrid grid) noexcept {
-  if (!boxes_) boxes_ = gridBoxes(corners_, unit_);
-  GridBox box;
+/// Of the points of a grid.
+BoxLimits HalfGrids::limitsOf(HalfGrid grid, const GridBox& box, SweepAxes axes) const noexcept {
+  LatticePoint first;
+  LatticePoint last;
   for (std::size_t k = 0; k < 3; ++k) {
-    box.range[k] = (((grid >> k) & 1) != 0 ? boxes_->centers : boxes_->vertices).range[k];
+    const std::int64_t moved = (grid >> k) & 1;
+    first[k] = (2 * std::int64_t{box.range[k].first} + moved) * (unit_ / 2);
+    last[k] = (2 * std::int64_t{box.range[k].last} + moved) * (unit_ / 2);
   }
-  return box;
+  return {corners_, first, last, axes};
+}
+
+/// @param limits  faces that are limits of the box, as bits
+/// @param steps   from the first to the last point of the lines
+HalfGrids::Slopes HalfGrids::slopesAlong(std::size_t axis, unsigned limits,
+                                         std::int32_t steps) const noexcept {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr Pair kZero = {0, 0};
+  constexpr Pair kAll = {kInfinity, kInfinity};
+  Slopes slopes;
+  Pair least = kAll;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Pair slope = (i == 0 ? gradient_[axis].of01 : gradient_[axis].of23) * Pair{2, 2};
+    Pair steepness = magnitudeOf(slope);
+    slopes.toZero[i] = Pair{-1, -1} / slope;
+    slopes.lowBias[i] = chosen(slope > kZero, kZero, -kAll);
+    slopes.highBias[i] = chosen(slope > kZero, kAll, kZero);
+    for (std::size_t j = 0; limits != 0 && j < 2; ++j) {
+      if (((limits >> (2 * i + j)) & 1U) == 0) continue;
+      steepness[j] = kInfinity;
+      slopes.toZero[i][j] = 0;
+      slopes.lowBias[i][j] = -kInfinity;
+      slopes.highBias[i][j] = kInfinity;
+    }
+    least = smaller(steepness, least);
+  }
+  const double leastSlope = std::min(least[0], least[1]);
+  // Errors of weights at a line's first point, and of slopes on the way from there, make less than
+  // 2 error_: zeros are known to an eighth.
+  constexpr double kClearSlope = 16;
+  slopes.areClear = leastSlope > kClearSlope * error_;
+  slopes.last = static_cast<double>(steps);
+  // Besides, the roundings of the zero itself and on its way to an integer.
+  slopes.zeroError = 2 * error_ / leastSlope + 0x1p-48 * (slopes.last + 16);
+  return slopes;
+}
+
+/// The points of a line.
+/// @param weights  at its first point
+/// @param sure     becomes false if it cannot tell
+HalfGrids::Run HalfGrids::runOf(const Weights& weights, const Slopes& slopes, bool& sure) noexcept {
+  const Pair zero01 = weights.of01 * slopes.toZero[0];
+  const Pair zero23 = weights.of23 * slopes.toZero[1];
+  const Pair lows = larger(zero01 + slopes.lowBias[0], zero23 + slopes.lowBias[1]);
+  const Pair highs = smaller(zero01 + slopes.highBias[0], zero23 + slopes.highBias[1]);
+  // Clamped to a range that integers hold; beyond the box by a little so that empty lines stay
+  // empty; not to integers, so that no limit is mistaken for a zero near one.
+  const double end = slopes.last + 2.5;
+  const double low = std::clamp(std::max(lows[0], lows[1]), -2.5, end);
+  const double high = std::clamp(std::min(highs[0], highs[1]), -2.5, end);
+  // Adding 4 makes truncation a floor. If no integer lies within the bound of either zero, the
+  // points strictly between them are all inside the tet, and no others are in it.
+  const auto lowFrom = static_cast<std::int32_t>(low - slopes.zeroError + 4);
+  const auto lowTo = static_cast<std::int32_t>(low + slopes.zeroError + 4);
+  const auto highFrom = static_cast<std::int32_t>(high - slopes.zeroError + 4);
+  const auto highTo = static_cast<std::int32_t>(high + slopes.zeroError + 4);
+  sure = sure && lowFrom == lowTo && highFrom == highTo;
+  return {std::max(lowFrom - 3, 0), std::min(highTo - 4, static_cast<std::int32_t>(slopes.last))};
+}
+
+bool HalfGrids::findLines(HalfGrid grid, const GridBox& box, SweepAxes sweepAxes,
+                          Lines& lines) const noexcept {
+  const std::array<std::uint8_t, 3>& axes = sweepAxes();
+  std::array<std::int32_t, 3> size;  // steps, by sweep axis
+  std::array<double, 3> toFirst;     // from the first point of the box, by axis
+  for (std::size_t k = 0; k < 3; ++k) {
+    const GridRange& range = box.range[axes[k]];
+    size[k] = range.last - range.first;
+    toFirst[axes[k]] =
+        static_cast<double>(2 * range.first + ((grid >> axes[k]) & 1) - box_.first[axes[k]]);
+  }
+  if (!measured_ || (std::int64_t{size[0]} + 1) * (std::int64_t{size[1]} + 1) > kMostLines) {
+    return false;
+  }
+  lines.limits = limitsOf(grid, box, sweepAxes);
+  const Slopes slopes = slopesAlong(axes[2], lines.limits.faces, size[2]);
+  if (!slopes.areClear) return false;
+  bool sure = true;
+  Run* run = lines.runs.data();
+  Weights atLevel = weightsAt(toFirst);
+  for (std::int32_t level = 0; level <= size[0]; ++level) {
+    Weights weights = atLevel;
+    for (std::int32_t row = 0; row <= size[1]; ++row) {
+      *run++ = runOf(weights, slopes, sure);
+      weights = weights.plus(gradient_[axes[1]], 2);
+    }
+    atLevel = atLevel.plus(gradient_[axes[0]], 2);
+  }
+  return sure;
 }
 
 LatticeTet HalfGrids::movedBack(HalfGrid grid) const noexcept {

@@ -5,12 +5,11 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <tuple>
 #include <utility>
-#include <vector>
 
+#include <base/pair.hpp>
+#include <lattice/box_limits.hpp>
 #include <lattice/line_rasterizer.hpp>
 
 namespace hexhex {
@@ -26,44 +25,96 @@ using HalfGridSet = std::uint8_t;
   return static_cast<HalfGridSet>(1U << grid);
 }
 
-/// Which grids are to be swept, and where their points are in small boxes of the grid of half the
-/// width. Made once for many tets.
+/// The points of the grid of half the width in the bounding box of a tet, in halves.
+struct HalfBox {
+  std::array<std::int32_t, 3> first;
+  std::array<std::int32_t, 3> steps;  ///< from the first to the last; -1 if there are none
+
+  /// @param unit  a power of two, at least 2
+  HalfBox(const LatticeTet& corners, std::int64_t unit) noexcept;
+
+  /// The grids that have points in the box.
+  [[nodiscard]] HalfGridSet grids() const noexcept {
+    constexpr std::array<unsigned, 3> kMoved = {0xaa, 0xcc, 0xf0};  ///< grids by axis
+    unsigned set = 0xff;
+    for (std::size_t k = 0; k < 3; ++k) {
+      // One point along the axis is of one half of the grids, two points are of both.
+      const unsigned odd = 0U - static_cast<unsigned>(first[k] & 1);
+      const unsigned ofFirst = ~(kMoved[k] ^ odd);
+      set &= steps[k] > 0 ? 0xffU : ofFirst & ~static_cast<unsigned>(steps[k]);
+    }
+    return static_cast<HalfGridSet>(set);
+  }
+  /// The points of one grid that has some.
+  [[nodiscard]] GridBox of(HalfGrid grid) const noexcept {
+    GridBox box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t moved = (grid >> k) & 1;
+      const std::int32_t last = first[k] + steps[k];
+      box.range[k] = {(first[k] + ((first[k] ^ moved) & 1)) >> 1,
+                      (last - ((last ^ moved) & 1)) >> 1};
+    }
+    return box;
+  }
+};
+
+/// Which grids are to be swept, and where their points are in small boxes.
 class HalfGridSearch {
  public:
-  /// Boxes of more points along some axis are not in the table.
+  /// Small boxes have fewer points along each axis.
   static constexpr std::int32_t kSide = 4;
+  /// Places in a small box, relative to its first point: two bits per axis name one.
+  using PlaceSet = std::uint64_t;
 
-  explicit HalfGridSearch(HalfGridSet wanted);
-
-  [[nodiscard]] HalfGridSet wanted() const noexcept { return wanted_; }
-
-  /// Places in a box, relative to its first point: two bits per axis.
-  struct Places {
-    std::uint8_t count = 0;
-    std::array<std::uint8_t, kSide * kSide * kSide> places{};
-  };
-  /// The wanted points of a box.
-  /// @param first  its first point, in halves
-  /// @param size   its number of points minus one, by axis, each less than kSide
-  [[nodiscard]] const Places& placesIn(const std::array<std::int32_t, 3>& first,
-                                       const std::array<std::int32_t, 3>& size) const noexcept {
-    std::size_t key = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      key = key * 8 + static_cast<std::size_t>(2 * size[k] + (first[k] & 1));
+  explicit constexpr HalfGridSearch(HalfGridSet wanted) noexcept : wanted_(wanted) {
+    for (unsigned parities = 0; parities < 8; ++parities) {
+      for (unsigned place = 0; place < 64; ++place) {
+        const unsigned moved = (place & 1U) | ((place >> 1) & 2U) | ((place >> 2) & 4U);
+        const unsigned isWanted = (unsigned{wanted} >> (moved ^ parities)) & 1U;
+        places_[parities] |= PlaceSet{isWanted} << place;
+      }
     }
-    return places_[key];
+  }
+
+  [[nodiscard]] constexpr HalfGridSet wanted() const noexcept { return wanted_; }
+
+  /// The wanted points of a small box that is not empty.
+  [[nodiscard]] PlaceSet placesIn(const HalfBox& box) const noexcept {
+    unsigned parities = 0;
+    PlaceSet inBox = ~PlaceSet{0};
+    for (std::size_t k = 0; k < 3; ++k) {
+      parities |= static_cast<unsigned>(box.first[k] & 1) << k;
+      inBox &= kWithin[k][static_cast<std::size_t>(box.steps[k])];
+    }
+    return places_[parities] & inBox;
   }
 
  private:
+  /// By axis and steps of a box: the places within.
+  static constexpr std::array<std::array<PlaceSet, kSide>, 3> kWithin = [] {
+    std::array<std::array<PlaceSet, kSide>, 3> sets{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (unsigned place = 0; place < 64; ++place) {
+        for (std::size_t steps = (place >> (2 * k)) & 3U; steps < kSide; ++steps) {
+          sets[k][steps] |= PlaceSet{1} << place;
+        }
+      }
+    }
+    return sets;
+  }();
+
   HalfGridSet wanted_;
-  std::vector<Places> places_;
+  std::array<PlaceSet, 8> places_{};  ///< by which coordinates of the first point are odd
 };
 
 /// Sweeps a tet for the points of one grid after the other.
 ///
-/// Small tets are compared with all points of their bounding box first, in floating point with a
-/// proven bound: that is all that most tets of a coarse map take. Grids of which a point is not
-/// certainly inside or outside then, and those of larger tets, are swept by LineRasterizer.
+/// The four weights of a point, barycentric coordinates, are computed in floating point with a
+/// proven bound, two at a time. Small tets are compared with all points of their bounding box at
+/// once; exact predicates look at those that are too close to a face. In larger tets, the weights
+/// tell where lines of points begin and end, as in LineRasterizer, but for all grids together.
+/// Grids with a line that this does not decide, and those of tets with many lines, are swept by
+/// LineRasterizer.
 class HalfGrids {
  public:
   /// @param search  for the grids that may be swept
@@ -76,59 +127,154 @@ class HalfGrids {
   /// order.
   /// @return the order of the sweep; any, if there are no lines
   template <class Visit>
-  SweepAxes sweep(HalfGrid grid, const Visit& visit) {
+  SweepAxes sweep(HalfGrid grid, const Visit& visit) const {
     if ((occupied_ & halfGridBit(grid)) == 0) return {};
-    const GridBox box = boxOf(grid);
+    const GridBox box = box_.of(grid);
     const SweepAxes axes = chooseSweepAxes(box);
-    if ((unsure_ & halfGridBit(grid)) == 0) {
+    if (small_) {
       SweepPoints points;
-      visitLines(std::span(points).first(sortInside(grid, axes, points)), axes, visit);
-    } else if (!box.empty()) {
-      const LatticeTet back = movedBack(grid);
-      LineRasterizer(back, unit_, box, axes).run(visit);
+      visitPoints(std::span(points).first(sortInside(grid, axes, points)), axes, visit);
+    } else {
+      Lines lines;
+      if (findLines(grid, box, axes, lines)) {
+        visitLines(lines, box, axes, visit);
+      } else {
+        const LatticeTet back = movedBack(grid);
+        LineRasterizer(back, unit_, box, axes).run(visit);
+      }
     }
     return axes;
   }
 
  private:
-  static constexpr std::size_t kMostPlaces =
-      std::tuple_size_v<decltype(HalfGridSearch::Places::places)>;
+  static constexpr std::size_t kPlaces = 64;
+  /// Where LineRasterizer, which leaves out rows that miss the tet, becomes faster.
+  static constexpr std::int64_t kMostLines = 64;
+  /// Steps of boxes for which weights are computed.
+  static constexpr std::int32_t kMostSteps = 1 << 10;
 
-  /// A point that is certainly inside.
+  /// Weights of the four corners: volumes, in halves.
+  struct Weights {
+    Pair of01;
+    Pair of23;
+
+    [[nodiscard]] Weights plus(const Weights& gradient, double steps) const noexcept {
+      const Pair factor = {steps, steps};
+      return {of01 + gradient.of01 * factor, of23 + gradient.of23 * factor};
+    }
+    [[nodiscard]] double least() const noexcept {
+      const Pair lower = smaller(of01, of23);
+      return lower[0] < lower[1] ? lower[0] : lower[1];
+    }
+  };
+
+  /// A point of the tet.
   struct Inside {
     GridPoint z;
     HalfGrid grid;
+    CornerMask simplex;
+  };
+  /// A point by sweep axis.
+  struct SweepPoint {
+    std::array<std::int32_t, 3> at;
+    CornerMask simplex;
+  };
+  using SweepPoints = std::array<SweepPoint, kPlaces>;
+  /// Points of the lines of a box, level by level and row by row, relative to it: first, last.
+  struct Run {
+    std::int32_t first;
+    std::int32_t last;
+  };
+  struct Lines {
+    std::array<Run, kMostLines> runs;
+    BoxLimits limits;
   };
 
-  [[nodiscard]] bool comparePoints(const HalfGridSearch& search) noexcept;
-  /// Coordinates of points by sweep axis, in sweep order.
-  using SweepPoints = std::array<std::array<std::int32_t, 3>, kMostPlaces>;
-  /// The points of a grid that is not unsure.
+  void measure(std::int32_t most) noexcept;
+  void comparePoints(HalfGridSearch::PlaceSet places) noexcept;
+  [[nodiscard]] Weights weightsAt(const std::array<double, 3>& steps) const noexcept {
+    return atOrigin_.plus(gradient_[0], steps[0])
+        .plus(gradient_[1], steps[1])
+        .plus(gradient_[2], steps[2]);
+  }
+  [[nodiscard]] CornerMask exactSimplexOf(const std::array<std::int32_t, 3>& steps) const noexcept;
+  /// The points of a grid, in sweep order.
   /// @return their number
   std::size_t sortInside(HalfGrid grid, SweepAxes axes, SweepPoints& points) const noexcept;
+  /// @return false if it does not decide on all lines
+  [[nodiscard]] bool findLines(HalfGrid grid, const GridBox& box, SweepAxes sweepAxes,
+                               Lines& lines) const noexcept;
+  /// How the weights change along lines. Each vanishes on a line at most once: rising ones where
+  /// the tet begins, falling ones where it ends.
+  struct Slopes {
+    std::array<Pair, 2> toZero;    ///< -1 / slope; 0 for limits
+    std::array<Pair, 2> lowBias;   ///< 0 for rising weights, else -infinity
+    std::array<Pair, 2> highBias;  ///< 0 for falling weights, else infinity
+    double zeroError;              ///< bound of the error of zeros
+    double last;                   ///< last point of the lines
+    bool areClear;                 ///< all weights change enough for that bound
+  };
+  [[nodiscard]] Slopes slopesAlong(std::size_t axis, unsigned limits,
+                                   std::int32_t steps) const noexcept;
+  [[nodiscard]] static Run runOf(const Weights& weights, const Slopes& slopes, bool& sure) noexcept;
+  [[nodiscard]] BoxLimits limitsOf(HalfGrid grid, const GridBox& box,
+                                   SweepAxes axes) const noexcept;
   template <class Visit>
-  static void visitLines(std::span<const std::array<std::int32_t, 3>> points, SweepAxes axes,
-                         const Visit& visit) {
+  static void visitPoints(std::span<const SweepPoint> points, SweepAxes axes, const Visit& visit) {
     for (std::size_t i = 0; i < points.size();) {
-      const auto& [level, row, first] = points[i];
+      const auto& [level, row, first] = points[i].at;
+      const CornerMask left = points[i].simplex;
       // Tets are convex: what they have of a line is consecutive.
       std::uint32_t count = 0;
-      while (i < points.size() && points[i][0] == level && points[i][1] == row) ++count, ++i;
-      const SweptLine line{level, row, first, count, kWholeTet, kWholeTet, axes};
+      while (i < points.size() && points[i].at[0] == level && points[i].at[1] == row) ++count, ++i;
+      const SweptLine line{level, row, first, count, left, points[i - 1].simplex, axes};
       visit(line);
     }
   }
-  [[nodiscard]] GridBox boxOf(HalfGrid grid) noexcept;
+  template <class Visit>
+  static void visitLines(const Lines& lines, const GridBox& box, SweepAxes sweepAxes,
+                         const Visit& visit) {
+    const std::array<std::uint8_t, 3>& axes = sweepAxes();
+    const GridRange& levels = box.range[axes[0]];
+    const GridRange& rows = box.range[axes[1]];
+    const GridRange& points = box.range[axes[2]];
+    const Run* run = lines.runs.data();
+    for (std::int32_t level = levels.first; level <= levels.last; ++level) {
+      for (std::int32_t row = rows.first; row <= rows.last; ++row) {
+        const std::int32_t first = points.first + run->first;
+        const std::int32_t last = points.first + run->last;
+        ++run;
+        if (first > last) continue;
+        SweptLine line{level,     row,       first,    static_cast<std::uint32_t>(last - first + 1),
+                       kWholeTet, kWholeTet, sweepAxes};
+        if (lines.limits.hold) {
+          const auto simplexAt = [&](std::int32_t point) {
+            return lines.limits.inside(
+                {level == levels.first, row == rows.first, point == points.first},
+                {level == levels.last, row == rows.last, point == points.last});
+          };
+          line.left = simplexAt(first);
+          line.right = simplexAt(last);
+        }
+        visit(std::as_const(line));
+      }
+    }
+  }
   /// The tet, moved so that the points of the grid become integers.
   [[nodiscard]] LatticeTet movedBack(HalfGrid grid) const noexcept;
 
   const LatticeTet& corners_;
   std::int64_t unit_;
+  HalfBox box_;
   HalfGridSet occupied_ = 0;
-  HalfGridSet unsure_ = 0;  ///< grids that take an exact sweep
+  bool small_ = false;
+  bool measured_ = false;  ///< whether there are weights
   std::size_t insideCount_ = 0;
-  std::optional<GridBoxes> boxes_;              ///< made when first needed
-  std::array<Inside, kMostPlaces + 1> inside_;  ///< of the grids that are not unsure
+  // Of weights, if there are any, at the box's first point and from point to point along each axis:
+  Weights atOrigin_;
+  std::array<Weights, 3> gradient_;
+  double error_;                        ///< bound of the error of weights in the box
+  std::array<Inside, kPlaces> inside_;  ///< of small tets
 };
 
 }  // namespace hexhex

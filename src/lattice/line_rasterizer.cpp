@@ -78,11 +78,13 @@ void LineRasterizer::preparePlanes() noexcept {
     boxOrigin[axes_[k]] = origin_[k] * unit_;
     size[axes_[k]] = size_[k];
   }
-  const unsigned limits = findLimits();
+  LatticePoint boxEnd = boxOrigin;
+  for (std::size_t k = 0; k < 3; ++k) boxEnd[k] += size[k] * unit_;
+  limits_ = BoxLimits(corners_, boxOrigin, boxEnd, sweepAxes_);
   for (std::size_t f = 0; f < 4; ++f) {
     lowBias_[f] = -kInfinity;
     highBias_[f] = kInfinity;
-    if (((limits >> f) & 1U) != 0) {
+    if (((limits_.faces >> f) & 1U) != 0) {
       offset_[f] = 0;
       for (std::size_t k = 0; k < 3; ++k) normal_[k][f] = 0;
       continue;
@@ -109,32 +111,6 @@ void LineRasterizer::preparePlanes() noexcept {
   }
   // The roundings of the zero itself and on its way to an integer.
   zeroError_ += 0x1p-48 * (static_cast<double>(size_[2]) + 8);
-}
-
-/// A face across an axis bounds the tet there: no point of the box is outside of it, and those on
-/// it are known.
-/// @return such faces, as bits
-unsigned LineRasterizer::findLimits() noexcept {
-  unsigned found = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t axis = axes_[k];
-    // Every face has both of one of these pairs.
-    if (corners_[0][axis] != corners_[1][axis] && corners_[2][axis] != corners_[3][axis]) continue;
-    for (std::size_t f = 0; f < 4; ++f) {
-      const std::int64_t p = corners_[static_cast<std::size_t>(kFaceCorners[f][0])][axis];
-      if (corners_[static_cast<std::size_t>(kFaceCorners[f][1])][axis] != p ||
-          corners_[static_cast<std::size_t>(kFaceCorners[f][2])][axis] != p) {
-        continue;
-      }
-      found |= 1U << f;
-      const bool last = corners_[f][axis] < p;
-      // Between grid points, there is none on it.
-      if (p != (origin_[k] + (last ? size_[k] : 0)) * unit_) continue;
-      limits_[k][last ? 1 : 0] = cornerBit(static_cast<int>(f));
-      hasLimits_ = true;
-    }
-  }
-  return found;
 }
 
 void LineRasterizer::prepareEdges() noexcept {
@@ -228,8 +204,8 @@ bool LineRasterizer::lineAt(std::int32_t level, std::int32_t row, SweptLine& lin
   if (!sure) return exactLine(first, last, line);
   line.first = origin_[2] + first;
   line.count = static_cast<std::uint32_t>(last - first + 1);
-  line.left = hasLimits_ ? insideOfLimits(level, row, first) : kWholeTet;
-  line.right = hasLimits_ ? insideOfLimits(level, row, last) : kWholeTet;
+  line.left = limits_.hold ? insideOfLimits(level, row, first) : kWholeTet;
+  line.right = limits_.hold ? insideOfLimits(level, row, last) : kWholeTet;
   return true;
 }
 

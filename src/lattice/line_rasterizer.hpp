@@ -13,6 +13,7 @@
 #include <optional>
 #include <utility>
 
+#include <lattice/box_limits.hpp>
 #include <lattice/rasterize.hpp>
 
 namespace hexhex {
@@ -71,7 +72,6 @@ class LineRasterizer {
   static constexpr std::int32_t kFewRows = 4;
 
   void preparePlanes() noexcept;
-  [[nodiscard]] unsigned findLimits() noexcept;
   void prepareEdges() noexcept;
   /// Rows of a level (relative to the box) that may meet the tet.
   [[nodiscard]] GridRange rowsAt(std::int32_t level) const noexcept;
@@ -81,11 +81,8 @@ class LineRasterizer {
   /// The simplex of a point relative to the box that lies inside of all faces but limits.
   [[nodiscard]] CornerMask insideOfLimits(std::int32_t level, std::int32_t row,
                                           std::int32_t point) const noexcept {
-    return static_cast<CornerMask>(
-        kWholeTet & ~(limits_[0][0] * unsigned{level == 0}) &
-        ~(limits_[0][1] * unsigned{level == size_[0]}) & ~(limits_[1][0] * unsigned{row == 0}) &
-        ~(limits_[1][1] * unsigned{row == size_[1]}) & ~(limits_[2][0] * unsigned{point == 0}) &
-        ~(limits_[2][1] * unsigned{point == size_[2]}));
+    return limits_.inside({level == 0, row == 0, point == 0},
+                          {level == size_[0], row == size_[1], point == size_[2]});
   }
   /// Which points relative to the box lie in the tet, by exact predicates, among points `first` to
   /// `last`.
@@ -110,22 +107,20 @@ class LineRasterizer {
   std::array<std::int32_t, 3> size_;    ///< points of the box minus one, by sweep axis
 
   // Per plane, inward positive:
-  std::array<double, 4> offset_;                     ///< value at the box's first point
-  std::array<std::array<double, 4>, 3> normal_;      ///< by sweep axis, then plane
-  std::array<double, 4> value_{};                    ///< at the first row and point of a level
-  std::array<double, 4> valueError_{};               ///< bound of the error of a value in the box
-  std::array<double, 4> toZero_{};                   ///< -1 / slope along the line; 0 if unusable
-  std::array<double, 4> lowBias_{};                  ///< 0 for rising planes, else -infinity
-  std::array<double, 4> highBias_{};                 ///< 0 for falling planes, else infinity
-  double zeroError_ = 0;                             ///< bound of the error of all zeros
-  std::array<bool, 4> constant_{};                   ///< parallel to the lines
-  bool hasConstant_ = false;                         ///< some plane is
-  bool hasUnsure_ = false;                           ///< some plane is nearly parallel
-  bool hasLimits_ = false;                           ///< some face is a limit of the box
-  std::array<std::array<unsigned, 2>, 3> limits_{};  ///< such faces' opposite corners, as bits, by
-                                                     ///< sweep axis: at its first, last point
-  std::array<Edge, 6> edges_;                        ///< if there are more than a few rows
-  std::optional<TetPlanes> planes_;                  ///< made when first needed
+  std::array<double, 4> offset_;                 ///< value at the box's first point
+  std::array<std::array<double, 4>, 3> normal_;  ///< by sweep axis, then plane
+  std::array<double, 4> value_{};                ///< at the first row and point of a level
+  std::array<double, 4> valueError_{};           ///< bound of the error of a value in the box
+  std::array<double, 4> toZero_{};               ///< -1 / slope along the line; 0 if unusable
+  std::array<double, 4> lowBias_{};              ///< 0 for rising planes, else -infinity
+  std::array<double, 4> highBias_{};             ///< 0 for falling planes, else infinity
+  double zeroError_ = 0;                         ///< bound of the error of all zeros
+  std::array<bool, 4> constant_{};               ///< parallel to the lines
+  bool hasConstant_ = false;                     ///< some plane is
+  bool hasUnsure_ = false;                       ///< some plane is nearly parallel
+  BoxLimits limits_;
+  std::array<Edge, 6> edges_;        ///< if there are more than a few rows
+  std::optional<TetPlanes> planes_;  ///< made when first needed
 };
 
 }  // namespace hexhex

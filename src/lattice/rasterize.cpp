@@ -5,6 +5,9 @@
 namespace hexhex {
 
 TetPlanes::TetPlanes(const LatticeTet& corners, std::int64_t unit) noexcept : unit_(unit) {
+  std::int64_t bits = unit;
+  for (const LatticePoint& corner : corners) bits |= corner[0] | corner[1] | corner[2];
+  exactBelow_ = exactBelow(bits);
   for (std::size_t face = 0; face < 4; ++face) {
     Plane& plane = planes_[face];
     plane.origin = corners[static_cast<std::size_t>(kFaceCorners[face][0])];
@@ -17,7 +20,7 @@ TetPlanes::TetPlanes(const LatticeTet& corners, std::int64_t unit) noexcept : un
   }
 }
 
-int TetPlanes::side(const Plane& plane, const LatticePoint& z) noexcept {
+int TetPlanes::side(const Plane& plane, const LatticePoint& z) const noexcept {
   const LatticePoint offset = z - plane.origin;
   double sum = 0;
   double magnitude = 0;
@@ -32,6 +35,9 @@ int TetPlanes::side(const Plane& plane, const LatticePoint& z) noexcept {
   constexpr double kRelativeError = 0x1p-50;
   if (sum > kRelativeError * magnitude) return 1;
   if (sum < -kRelativeError * magnitude) return -1;
+  // Components of normals that need more than 53 bits make greater magnitudes, or are multiplied by
+  // zero.
+  if (magnitude < exactBelow_) return (sum > 0 ? 1 : 0) - (sum < 0 ? 1 : 0);
   Int192 exact;
   for (std::size_t axis = 0; axis < 3; ++axis) exact.addProduct(plane.normal[axis], offset[axis]);
   return exact.sign();
@@ -39,14 +45,7 @@ int TetPlanes::side(const Plane& plane, const LatticePoint& z) noexcept {
 
 CornerMask TetPlanes::generator(const GridPoint& z) const noexcept {
   const LatticePoint point = {z[0] * unit_, z[1] * unit_, z[2] * unit_};
-  CornerMask simplex = kNoSimplex;
-  for (int face = 0; face < 4; ++face) {
-    const int s = side(planes_[static_cast<std::size_t>(face)], point);
-    if (s < 0) return kNoSimplex;
-    // A point off the face opposite a corner has a positive barycentric coordinate there.
-    if (s > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(face));
-  }
-  return simplex;
+  return simplexBySides([&](std::size_t face) { return side(planes_[face], point); });
 }
 
 std::array<double, 4> TetPlanes::weights(const GridPoint& z) const noexcept {

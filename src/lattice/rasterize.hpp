@@ -31,10 +31,11 @@ class TetPlanes {
     std::array<Int128, 3> normal;
     std::array<double, 3> roundedNormal;
   };
-  [[nodiscard]] static int side(const Plane& plane, const LatticePoint& z) noexcept;
+  [[nodiscard]] int side(const Plane& plane, const LatticePoint& z) const noexcept;
 
   std::array<Plane, 4> planes_;
   std::int64_t unit_;
+  double exactBelow_;  ///< sums of lesser magnitude are exact
 };
 
 /// The order in which a tet is swept: planes of constant coordinate axes[0], in them lines of

@@ -24,10 +24,18 @@ Vec3 rounded(const LatticePoint& p) noexcept {
 
 int orientation(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c,
                 const LatticePoint& d) noexcept {
-  const double filtered = certainDeterminant(rounded(b - a), rounded(c - a), rounded(d - a));
-  if (filtered > 0) return 1;
-  if (filtered < 0) return -1;
-  return orientationDeterminant(a, b, c, d).sign();
+  const LatticePoint u = b - a;
+  const LatticePoint v = c - a;
+  const LatticePoint w = d - a;
+  const RoundedDeterminant determinant(rounded(u), rounded(v), rounded(w));
+  if (!determinant.hasCertainSign()) {
+    // Coordinates of special places often have few bits, or are the same.
+    const std::int64_t bits = u[0] | u[1] | u[2] | v[0] | v[1] | v[2] | w[0] | w[1] | w[2];
+    if (determinant.magnitude >= exactBelow(bits)) {
+      return orientationDeterminant(a, b, c, d).sign();
+    }
+  }
+  return (determinant.value > 0 ? 1 : 0) - (determinant.value < 0 ? 1 : 0);
 }
 
 NormalSigns::NormalSigns(const LatticeTet& corners) noexcept {

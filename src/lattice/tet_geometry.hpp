@@ -80,26 +80,48 @@ inline constexpr std::array<std::array<int, 3>, 4> kFaceCorners = {
 [[nodiscard]] Int192 orientationDeterminant(const LatticePoint& a, const LatticePoint& b,
                                             const LatticePoint& c, const LatticePoint& d) noexcept;
 
+/// det(u, v, w) in floating point.
+struct RoundedDeterminant {
+  double value = 0;
+  double magnitude = 0;  ///< sum of those of all products
+
+  RoundedDeterminant(const Vec3& u, const Vec3& v, const Vec3& w) noexcept {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t j = axis == 2 ? 0 : axis + 1;
+      const std::size_t k = axis == 0 ? 2 : axis - 1;
+      const double first = u[j] * v[k];
+      const double second = u[k] * v[j];
+      value += (first - second) * w[axis];
+      magnitude += (std::abs(first) + std::abs(second)) * std::abs(w[axis]);
+    }
+  }
+  /// If components carry one rounding each.
+  [[nodiscard]] bool hasCertainSign() const noexcept {
+    // Each of the six products of three factors carries three roundings of its factors, two
+    // multiplications, and up to three additions: at most 8 roundings of relative size 2^-53, hence
+    // an error below 8.1 * 2^-53 < 2^-49 times the sum of magnitudes, which itself is computed to
+    // within a factor 1 + 2^-49. 2^-48 leaves a factor of two.
+    constexpr double kRelativeError = 0x1p-48;
+    return std::abs(value) > kRelativeError * magnitude;
+  }
+};
+
+/// Sums of products of three multiples of a power of two are exact in floating point if the sum of
+/// magnitudes is below this: no product and no partial sum needs more than 53 bits. (Factors that
+/// need more, and were rounded, are multiplied by zero then.)
+/// @param bits  all factors, or-ed
+[[nodiscard]] inline double exactBelow(std::int64_t bits) noexcept {
+  // 2^(52 + 3 e) for multiples of 2^e.
+  const int e = std::countr_zero(static_cast<std::uint64_t>(bits));
+  return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + 52 + 3 * e) << 52);
+}
+
 /// det(u, v, w) in floating point if its sign is certain, otherwise 0.
 /// @param u,v,w  components may carry one rounding each
 [[nodiscard]] inline double certainDeterminant(const Vec3& u, const Vec3& v,
                                                const Vec3& w) noexcept {
-  // Each of the six products of three factors carries three roundings of its factors, two
-  // multiplications, and up to three additions: at most 8 roundings of relative size 2^-53, hence
-  // an error below 8.1 * 2^-53 < 2^-49 times the sum of magnitudes, which itself is computed to
-  // within a factor 1 + 2^-49. 2^-48 leaves a factor of two.
-  constexpr double kRelativeError = 0x1p-48;
-  double sum = 0;
-  double magnitude = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t j = axis == 2 ? 0 : axis + 1;
-    const std::size_t k = axis == 0 ? 2 : axis - 1;
-    const double first = u[j] * v[k];
-    const double second = u[k] * v[j];
-    sum += (first - second) * w[axis];
-    magnitude += (std::abs(first) + std::abs(second)) * std::abs(w[axis]);
-  }
-  return std::abs(sum) > kRelativeError * magnitude ? sum : 0;
+  const RoundedDeterminant determinant(u, v, w);
+  return determinant.hasCertainSign() ? determinant.value : 0;
 }
 
 /// Sign of orientationDeterminant(): a floating-point filter, then exact arithmetic.
@@ -113,6 +135,20 @@ inline constexpr std::array<std::array<int, 3>, 4> kFaceCorners = {
   const std::array<int, 3>& f = kFaceCorners[face];
   return orientation(tet[static_cast<std::size_t>(f[0])], tet[static_cast<std::size_t>(f[1])],
                      tet[static_cast<std::size_t>(f[2])], point);
+}
+
+/// The simplex of a tet whose interior contains a point, or kNoSimplex outside.
+/// @param sideOf  of a face: on which side of it the point lies, as sideOfFace()
+template <class SideOf>
+[[nodiscard]] CornerMask simplexBySides(const SideOf& sideOf) noexcept {
+  CornerMask simplex = kNoSimplex;
+  for (std::size_t face = 0; face < 4; ++face) {
+    const int side = sideOf(face);
+    if (side < 0) return kNoSimplex;
+    // A point off the face opposite a corner has a positive barycentric coordinate there.
+    if (side > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(static_cast<int>(face)));
+  }
+  return simplex;
 }
 
 /// Signs of the components of the four inward face normals of a tet. They decide exactly how

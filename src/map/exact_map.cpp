@@ -76,7 +76,7 @@ ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters
   const RoundedTets rounded =
       roundTets(topology, parameters, plain, tolerance, byTets, stage, defects, map);
   sanitizeStars(topology, parameters, stars, singularities, tolerance, stage, defects, map);
-  checkOrientations(rounded.unfinished, stage, defects, map);
+  checkOrientations(rounded.unfinished, parameters, stage, defects, map);
   if (byTets) {
     addVolume(rounded, stage, map);
   } else {
@@ -95,6 +95,7 @@ void scaleMap(ExactMap& map, int scale, Stage& stage) {
   for (Transition& transition : map.transitions.table) {
     for (std::int32_t& component : transition.translation) component *= scale;
   }
+  map.scale *= scale;
 }
 
 }  // namespace hexhex

@@ -15,6 +15,7 @@ namespace hexhex {
 struct ExactMap {
   Array<LatticeTet> corners;  ///< per tet
   std::int64_t unit = 1;      ///< a power of two
+  int scale = 1;              ///< by what scaleMap() has multiplied corners and translations
   Transitions transitions;
   Int192 sixfoldVolume;        ///< of all tets of a valid map, before scaling, times unit^3
   double maxDisplacement = 0;  ///< largest change of a coordinate, in parameter units

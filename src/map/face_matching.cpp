@@ -1,6 +1,10 @@
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
-#include <base/branchless.hpp>
 #include <map/face_matching.hpp>
 
 namespace hexhex {
@@ -10,12 +14,45 @@ namespace {
 /// Vertices whose faces are matched in one go; small meshes must still have work for all threads.
 constexpr std::size_t kVertexGrain = 256;
 
-/// Tets are divided into at most as many parts: each part costs two numbers per vertex.
+/// Tets are divided into at most as many parts: each part costs three numbers per vertex.
 constexpr std::size_t kMaxParts = 8;
 
-// As values, so that no branch is to be foretold: which one is smaller is as good as random.
-constexpr Index smaller(Index a, Index b) { return a < b ? a : b; }
-constexpr Index larger(Index a, Index b) { return a < b ? b : a; }
+/// A half-face as the hash table keeps it: its number in the lower half. In the upper half, bit 0
+/// if its corners, in the order of kFaceCorners, ascend but for a rotation, and bit 1 if they
+/// descend; both if it has been matched. So two that share a bit must not be matched.
+using OpenFace = std::uint64_t;
+constexpr OpenFace kAscends = std::uint64_t{1} << 32;
+constexpr OpenFace kDescends = std::uint64_t{2} << 32;
+/// Matched, or none yet.
+constexpr OpenFace kMatched = kAscends | kDescends;
+constexpr OpenFace kNoFace = kNone;
+
+/// The corners and faces of a tet, in ascending order of vertices.
+struct RankedTet {
+  std::array<std::uint8_t, 4> corners{};  ///< by rank
+  /// By rank of the opposite corner: number within the tet, and whether it ascends or descends.
+  std::array<OpenFace, 4> faces{};
+};
+
+constexpr RankedTet rankedTet(const Tet& tet) {
+  RankedTet ranked;
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    std::size_t rank = 0;
+    for (const Index other : tet) rank += other < tet[corner] ? 1 : 0;
+    ranked.corners[rank] = static_cast<std::uint8_t>(corner);
+    const std::array<int, 3>& face = kFaceCorners[corner];
+    int descents = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index here = tet[static_cast<std::size_t>(face[k])];
+      const Index next = tet[static_cast<std::size_t>(face[(k + 1) % 3])];
+      descents += next < here ? 1 : 0;
+    }
+    ranked.faces[rank] = corner | (descents == 1 ? kAscends : kDescends);
+  }
+  return ranked;
+}
+
+constexpr std::array<RankedTet, kCornerOrders> kRankedTets = byCornerOrder<RankedTet>(rankedTet);
 
 /// Each triangle is found at its smallest vertex. In a tet, that is the tet's smallest vertex for
 /// three faces and the second smallest for the fourth: so each tet is in two linked lists, one of
@@ -39,26 +76,30 @@ struct FaceLists {
   [[nodiscard]] const Heads& at(std::size_t part, Index vertex) const {
     return heads[part * vertices + vertex];
   }
+  [[nodiscard]] Index smallestTet(Index vertex) const {
+    Index smallest = kNone;
+    for (std::size_t part = 0; part < parts; ++part) {
+      smallest = std::min(smallest, at(part, vertex).smallest);
+    }
+    return smallest;
+  }
 };
 
-/// Enters tets [begin, end) into the lists of one part.
-void listFaces(FaceLists& lists, std::span<const Tet> tets, std::size_t part, std::size_t begin,
+/// Enters tets [begin, end) into the lists of one part, and notes how their corners are ordered.
+void listFaces(FaceLists& lists, TetTopology& topology, std::size_t part, std::size_t begin,
                std::size_t end) {
   FaceLists::Heads* const heads = &lists.heads[part * lists.vertices];
   std::fill_n(heads, lists.vertices, FaceLists::Heads());
   // Backwards, so that the last tet to write is the smallest.
   for (std::size_t t = end; t > begin; --t) {
-    const Tet& tet = tets[t - 1];
+    const Tet& tet = topology.tets[t - 1];
     const auto index = static_cast<Index>(t - 1);
     for (const Index v : tet) heads[v].smallest = index;
-    const Index low01 = smaller(tet[0], tet[1]);
-    const Index low23 = smaller(tet[2], tet[3]);
-    const Index high01 = larger(tet[0], tet[1]);
-    const Index high23 = larger(tet[2], tet[3]);
-    const Index first = smaller(low01, low23);
-    const Index second = smaller(larger(low01, low23), smaller(high01, high23));
-    lists.next[index] = {std::exchange(heads[first].threeFaces, index),
-                         std::exchange(heads[second].oneFace, index)};
+    const CornerOrder order = cornerOrder(tet);
+    const RankedTet& ranked = kRankedTets[order];
+    topology.order[index] = order;
+    lists.next[index] = {std::exchange(heads[tet[ranked.corners[0]]].threeFaces, index),
+                         std::exchange(heads[tet[ranked.corners[1]]].oneFace, index)};
   }
 }
 
@@ -68,181 +109,127 @@ FaceLists listFaces(TetTopology& topology, Stage& stage) {
   lists.vertices = topology.pointCount;
   lists.heads.resize(lists.parts * lists.vertices);
   lists.next.resize(topology.tetCount());
+  topology.order.resize(topology.tetCount());
   const std::size_t tets = topology.tetCount();
   parallelFor(stage, lists.parts, 1, [&](std::size_t part) {
-    listFaces(lists, topology.tets, part, tets * part / lists.parts,
-              tets * (part + 1) / lists.parts);
+    listFaces(lists, topology, part, tets * part / lists.parts, tets * (part + 1) / lists.parts);
   });
   return lists;
 }
 
-/// The other corners of a tet, in the order in which kFaceCorners has the last two of them after
-/// this one, in the face opposite the first.
-constexpr std::array<std::array<std::uint8_t, 3>, 4> kTurns = [] {
-  std::array<std::array<std::uint8_t, 3>, 4> turns{};
-  for (std::size_t corner = 0; corner < 4; ++corner) {
-    const std::size_t face = corner == 0 ? 1 : 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (kFaceCorners[face][k] != static_cast<int>(corner)) continue;
-      turns[corner] = {static_cast<std::uint8_t>(face),
-                       static_cast<std::uint8_t>(kFaceCorners[face][(k + 1) % 3]),
-                       static_cast<std::uint8_t>(kFaceCorners[face][(k + 2) % 3])};
-    }
-  }
-  return turns;
-}();
-
-/// By corner and face: the other two corners of the face, in the order of kFaceCorners.
-constexpr std::array<std::array<std::array<std::uint8_t, 2>, 4>, 4> kTurnsInFace = [] {
-  std::array<std::array<std::array<std::uint8_t, 2>, 4>, 4> turns{};
-  for (std::size_t corner = 0; corner < 4; ++corner) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      turns[corner][kTurns[corner][k]] = {kTurns[corner][(k + 1) % 3], kTurns[corner][(k + 2) % 3]};
-    }
-  }
-  return turns;
-}();
-
-/// A half-face at a vertex.
-struct Entry {
-  std::uint64_t key;  ///< the triangle's other two vertices, the smaller one in the upper half
-  HalfFace halfFace;
-  std::uint32_t turned;  ///< 1 if the larger one comes first in kFaceCorners
-
-  Entry(Index a, Index b, HalfFace h)
-      : key((std::uint64_t{smaller(a, b)} << 32) | larger(a, b)),
-        halfFace(h),
-        turned(a > b ? 1 : 0) {}
-  Entry() = default;
+/// What a hash table has found at a vertex: a triangle's other two vertices, the smaller one in the
+/// upper half, and its half-face.
+struct FoundFace {
+  std::uint64_t vertices = 0;
+  OpenFace face = kNoFace;
 };
 
-/// Collects the half-faces whose smallest vertex is the same.
-class EntryList {
- public:
-  EntryList(const TetTopology& topology, const FaceLists& lists)
-      : topology_(topology), lists_(lists) {}
+/// Memory of a hash table for the half-faces at nearly every vertex, which is cleared in no time.
+struct SmallTable {
+  static constexpr int kBits = 8;
+  std::array<std::uint8_t, 1 << kBits> slots;
+  std::array<FoundFace, (1 << kBits) / 4 * 3> found;
 
-  std::span<const Entry> collect(Index v) {
-    const Tet* const tets = topology_.tets.data();
-    const FaceLists::Next* const next = lists_.next.data();
-    std::size_t count = 0;
-    for (std::size_t part = 0; part < lists_.parts; ++part) {
-      const FaceLists::Heads& heads = lists_.at(part, v);
-      for (Index t = heads.threeFaces; t != kNone; t = next[t].threeFaces) {
-        const Tet& tet = tets[t];
-        const std::array<std::uint8_t, 3>& turn = kTurns[localCorner(tet, v)];
-        const std::array<Index, 3> others = {tet[turn[0]], tet[turn[1]], tet[turn[2]]};
-        Entry* const added = roomFor(count, 3);
-        added[0] = Entry(others[1], others[2], 4 * t + turn[0]);
-        added[1] = Entry(others[2], others[0], 4 * t + turn[1]);
-        added[2] = Entry(others[0], others[1], 4 * t + turn[2]);
-        count += 3;
-      }
-      for (Index t = heads.oneFace; t != kNone; t = next[t].oneFace) {
-        const Tet& tet = tets[t];
-        // The face opposite the one vertex that is smaller.
-        const Index isLast = tet[3] < v ? 1 : 0;
-        const Index low = (tet[1] < v ? 1U : 0U) | isLast;
-        const Index high = (tet[2] < v ? 1U : 0U) | isLast;
-        const Index face = low | (high << 1);
-        const std::array<std::uint8_t, 2>& turn = kTurnsInFace[localCorner(tet, v)][face];
-        *roomFor(count, 1) = Entry(tet[turn[0]], tet[turn[1]], 4 * t + face);
-        ++count;
-      }
-    }
-    return {entries_.data(), count};
-  }
-
- private:
-  /// Behind the first `count` entries, for so many more.
-  Entry* roomFor(std::size_t count, std::size_t more) {
-    if (entries_.size() < count + more) entries_.resize(2 * (count + more));
-    return &entries_[count];
-  }
-
-  const TetTopology& topology_;
-  const FaceLists& lists_;
-  std::vector<Entry> entries_ = std::vector<Entry>(256);
+  [[nodiscard]] static constexpr int bits() { return kBits; }
 };
 
-/// Matches the half-faces at one vertex after the other by a hash table. Whether a triangle is
-/// found for the first or the second time is as good as random, so that all is done alike for both.
+/// The same for any number.
+struct LargeTable {
+  explicit LargeTable(int bits)
+      : bits_(bits), slots(std::size_t{1} << bits), found((std::size_t{1} << bits) / 4 * 3) {}
+  [[nodiscard]] int bits() const { return bits_; }
+
+  int bits_;
+  std::vector<std::uint32_t> slots;
+  std::vector<FoundFace> found;
+};
+
+/// Matches the half-faces at one vertex, by a hash table. Whether a triangle is found for the first
+/// or the second time is as good as random, so that all is done alike for both.
+template <class Table>
 class FaceMatcher {
  public:
-  explicit FaceMatcher(HalfFace* mate) : mate_(mate) {}
-
-  /// False if a triangle is there more than twice, or twice in the same orientation.
-  [[nodiscard]] bool run(std::span<const Entry> entries) {
-    makeRoom(entries.size());
-    const Table table{slots_.data(), slots_.size() - 1, shift_, ++group_ << 1};
-    HalfFace* const mate = mate_;
-    std::uint32_t faults = 0;
-    for (const Entry& entry : entries) {
-      Slot& slot = *table.find(entry.key);
-      const std::uint32_t tag = table.tag | entry.turned;
-      const std::uint32_t difference = slot.tag ^ tag;
-      const std::uint32_t isKnown = difference < 2 ? 1 : 0;
-      const std::uint32_t isPair = isKnown & difference & (slot.halfFace != kNone ? 1U : 0U);
-      const HalfFace pairMask = 0 - isPair;
-      const HalfFace other = entry.halfFace ^ ((entry.halfFace ^ slot.halfFace) & pairMask);
-      mate[other] = entry.halfFace | ~pairMask;
-      mate[entry.halfFace] = other | ~pairMask;
-      slot = {entry.key, tag, entry.halfFace | (0 - isKnown)};
-      faults |= isKnown ^ isPair;
-    }
-    return faults == 0;
+  FaceMatcher(Table& table, HalfFace* mate) : table_(table), mate_(mate) {
+    std::fill(table.slots.begin(), table.slots.end(), 0);
+    table.found[0].face = kNoFace;
   }
+
+  /// Whether so many can be added.
+  [[nodiscard]] bool hasRoom(std::size_t more) const { return count_ + more < table_.found.size(); }
+
+  /// @param low,high  the other two vertices, low < high
+  void add(Index low, Index high, OpenFace face) {
+    const std::uint64_t key = (std::uint64_t{low} << 32) | high;
+    auto& slot = slotOf(key);
+    const std::uint64_t isKnown = slot == 0 ? 0 : ~std::uint64_t{0};
+    const OpenFace other = table_.found[slot].face;
+    slot = static_cast<std::remove_reference_t<decltype(slot)>>(++count_);
+    table_.found[count_] = {key, face | (kMatched & isKnown)};
+    shared_ |= face & other;
+    const auto here = static_cast<HalfFace>(face);
+    const auto there = static_cast<HalfFace>(other);
+    mate_[here ^ ((here ^ there) & static_cast<HalfFace>(isKnown))] = here;
+    mate_[here] = there;
+  }
+
+  /// Whether no triangle was there more than twice, or twice in the same orientation.
+  [[nodiscard]] bool isSound() const { return (shared_ & kMatched) == 0; }
 
  private:
-  struct Slot {
-    std::uint64_t key = 0;
-    std::uint32_t tag = 0;      ///< a number per vertex, and Entry::turned
-    HalfFace halfFace = kNone;  ///< kNone after both were found
-  };
-
-  /// What a loop should keep in registers.
-  struct Table {
-    Slot* slots;
-    std::size_t last;
-    int shift;
-    std::uint32_t tag;
-
-    /// The slot of a key, or the one that it would get.
-    [[nodiscard]] Slot* find(std::uint64_t key) const {
-      // Odd, and near 2^64 / golden ratio: the upper bits of products with it spread well.
-      std::size_t i = (key * 0x9e3779b97f4a7c15U) >> shift;
-      while (isTakenByOther(slots[i], key)) i = (i + 1) & last;
-      return &slots[i];
+  /// The slot with the number of the last half-face of a triangle; 0 if there was none so far.
+  [[nodiscard]] auto& slotOf(std::uint64_t key) {
+    table_.found[0].vertices = key;  // ends the search at an empty slot
+    // Odd, and near 2^64 / golden ratio: the upper bits of products with it spread well.
+    std::size_t i = (key * 0x9e3779b97f4a7c15U) >> (64 - table_.bits());
+    while (table_.found[table_.slots[i]].vertices != key) {
+      i = (i + 1) & (table_.slots.size() - 1);
     }
-    /// By arithmetic, as of two conditions each would make a branch.
-    [[nodiscard]] bool isTakenByOther(const Slot& slot, std::uint64_t key) const {
-      const std::uint64_t otherKey = slot.key ^ key;
-      const std::uint64_t otherVertex = (slot.tag ^ tag) >> 1;
-      // The highest bit is set if the former is not zero and the latter is.
-      return static_cast<std::int64_t>((otherKey | (0 - otherKey)) & (otherVertex - 1)) < 0;
-    }
-  };
-
-  /// Keeps the table, in which each number of a vertex is used once, at most half full.
-  void makeRoom(std::size_t count) {
-    const bool isUsedUp = group_ == kLastGroup;
-    if (slots_.size() >= 2 * count && !isUsedUp) return;
-    while (slots_.size() < 2 * count) {
-      slots_.resize(2 * slots_.size());
-      --shift_;
-    }
-    std::fill(slots_.begin(), slots_.end(), Slot{});
-    group_ = 0;
+    return table_.slots[i];
   }
 
-  static constexpr int kInitialShift = 55;
-  static constexpr std::uint32_t kLastGroup = 0x7fffffff;
-
+  Table& table_;
   HalfFace* mate_;
-  std::vector<Slot> slots_ = std::vector<Slot>(std::size_t{1} << (64 - kInitialShift));
-  int shift_ = kInitialShift;
-  std::uint32_t group_ = 0;
+  std::size_t count_ = 0;
+  OpenFace shared_ = 0;
 };
+
+/// Matches the half-faces whose smallest vertex is the same.
+/// @return false if they do not fit the table
+template <class Table>
+bool matchFacesAt(Index v, const FaceLists& lists, Table& table, TetTopology& topology,
+                  bool& sound) {
+  FaceMatcher<Table> matcher(table, topology.mate.data());
+  for (std::size_t part = 0; part < lists.parts; ++part) {
+    const FaceLists::Heads& heads = lists.at(part, v);
+    for (Index t = heads.threeFaces; t != kNone; t = lists.next[t].threeFaces) {
+      if (!matcher.hasRoom(3)) return false;
+      const Tet& tet = topology.tets[t];
+      const RankedTet& ranked = kRankedTets[topology.order[t]];
+      const Index a = tet[ranked.corners[1]];
+      const Index b = tet[ranked.corners[2]];
+      const Index c = tet[ranked.corners[3]];
+      matcher.add(b, c, 4 * t + ranked.faces[1]);
+      matcher.add(a, c, 4 * t + ranked.faces[2]);
+      matcher.add(a, b, 4 * t + ranked.faces[3]);
+    }
+    for (Index t = heads.oneFace; t != kNone; t = lists.next[t].oneFace) {
+      if (!matcher.hasRoom(1)) return false;
+      const Tet& tet = topology.tets[t];
+      const RankedTet& ranked = kRankedTets[topology.order[t]];
+      matcher.add(tet[ranked.corners[2]], tet[ranked.corners[3]], 4 * t + ranked.faces[0]);
+    }
+  }
+  sound = sound && matcher.isSound();
+  return true;
+}
+
+/// The same with a table that is large enough.
+void matchManyFacesAt(Index v, const FaceLists& lists, TetTopology& topology, bool& sound) {
+  for (int bits = SmallTable::kBits + 2;; bits += 2) {
+    LargeTable table(bits);
+    if (matchFacesAt(v, lists, table, topology, sound)) return;
+  }
+}
 
 }  // namespace
 
@@ -253,17 +240,16 @@ bool matchFaces(TetTopology& topology, Stage& stage) {
   std::atomic<bool> sound = true;
   parallelBlocks(stage, topology.pointCount, kVertexGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   EntryList entries(topology, lists);
-                   FaceMatcher matcher(topology.mate.data());
+                   SmallTable table;  // NOLINT: written before it is read
+                   bool isSound = true;
                    for (std::size_t i = begin; i < end; ++i) {
                      const auto v = static_cast<Index>(i);
-                     Index smallest = kNone;
-                     for (std::size_t part = 0; part < lists.parts; ++part) {
-                       smallest = std::min(smallest, lists.at(part, v).smallest);
+                     topology.vertexTet[v] = lists.smallestTet(v);
+                     if (!matchFacesAt(v, lists, table, topology, isSound)) {
+                       matchManyFacesAt(v, lists, topology, isSound);
                      }
-                     topology.vertexTet[v] = smallest;
-                     if (!matcher.run(entries.collect(v))) sound = false;
                    }
+                   if (!isSound) sound = false;
                  });
   return sound;
 }

@@ -5,31 +5,11 @@
 #include <base/branchless.hpp>
 #include <base/vector3.hpp>
 #include <map/flat_stars.hpp>
+#include <map/turned_direction.hpp>
 
 namespace hexhex {
 
 namespace {
-
-/// kTurned[r]: the direction that is to be covered once, rotated.
-constexpr std::array<Vec3, Rotation::kCount> kTurned = [] {
-  std::array<Vec3, Rotation::kCount> turned{};
-  for (int r = 0; r < Rotation::kCount; ++r) {
-    turned[static_cast<std::size_t>(r)] = Rotation(r)(kGeneralDirection);
-  }
-  return turned;
-}();
-
-/// Where rotations send axes.
-constexpr std::array<std::array<std::uint8_t, 3>, Rotation::kCount> kImagesOfAxes = [] {
-  std::array<std::array<std::uint8_t, 3>, Rotation::kCount> images{};
-  for (int r = 0; r < Rotation::kCount; ++r) {
-    for (std::uint8_t axis = 0; axis < 3; ++axis) {
-      images[static_cast<std::size_t>(r)][axis] =
-          static_cast<std::uint8_t>(axisOf(Rotation(r)(direction(axis, 1))));
-    }
-  }
-  return images;
-}();
 
 /// The other corners of a tet, such that they are in positive order as seen from inside a positive
 /// tet.
@@ -85,7 +65,7 @@ std::size_t rotationOf(const VertexStar::Member& member) {
 constexpr std::array<Vec3, Rotation::kCount> kSigns = [] {
   std::array<Vec3, Rotation::kCount> signs{};
   for (std::size_t r = 0; r < signs.size(); ++r) {
-    for (std::size_t k = 0; k < 3; ++k) signs[r][k] = kTurned[r][k] > 0 ? 1 : -1;
+    for (std::size_t k = 0; k < 3; ++k) signs[r][k] = kTurnedDirections[r][k] > 0 ? 1 : -1;
   }
   return signs;
 }();
@@ -180,7 +160,7 @@ std::size_t FlatStarTest::countCones(std::span<const VertexStar::Member> star) {
   for (const Index i : std::span(turned_).first(open)) {
     TetParameters scratch;
     const TetParameters& u = parameters_.see(star[i].tet(), scratch);
-    count += Cone(u, star[i].corner % 4, kTurned[rotationOf(star[i])]).count();
+    count += Cone(u, star[i].corner % 4, kTurnedDirections[rotationOf(star[i])]).count();
   }
   return count;
 }
@@ -189,7 +169,7 @@ std::size_t FlatStarTest::countCones(std::span<const VertexStar::Member> star) {
 std::size_t FlatStarTest::countConesAndImages(std::span<const VertexStar::Member> star) const {
   std::size_t count = 0;
   for (const VertexStar::Member& member : star) {
-    const Vec3& direction = kTurned[rotationOf(member)];
+    const Vec3& direction = kTurnedDirections[rotationOf(member)];
     TetParameters scratch;
     const TetParameters& u = parameters_.see(member.tet(), scratch);
     const Cone cone(u, member.corner % 4, direction);

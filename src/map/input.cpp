@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <base/branchless.hpp>
 #include <base/pair.hpp>
+#include <base/prefetch.hpp>
 #include <map/input.hpp>
 
 namespace hexhex {
@@ -13,11 +16,15 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;
 
+/// Tets between asking for points and looking at them: the memory's delay.
+constexpr std::size_t kPointsAhead = 8;
+
 /// Which determinants of the edge vectors from corner 0 are positive and negative, as far as their
-/// signs are to be trusted.
+/// signs are to be trusted, and sums of magnitudes, which are finite only if all coordinates are.
 struct Signs {
   PairMask positive;
   PairMask negative;
+  Pair magnitude;
 };
 
 /// The first of each pair is in space, the second in the map.
@@ -40,7 +47,7 @@ Signs signsOf(const std::array<const Vec3*, 4>& points, const TetParameters& u) 
   }
   // Far above rounding, far below any tet that matters for a majority.
   const Pair enough = 1e-12 * magnitude;
-  return {determinant > enough, -determinant > enough};
+  return {determinant > enough, -determinant > enough, magnitude};
 }
 
 void checkSizes(const TetMapView& map) {
@@ -85,11 +92,28 @@ bool hasRepeatedVertex(const Tet& tet) {
                tet[1] == tet[3], tet[2] == tet[3]);
 }
 
+/// Whether any of some tets has an index out of range, or a vertex twice.
+bool haveBadIndices(std::span<const Tet> tets, std::size_t count) {
+  using Indices = std::uint32_t __attribute__((vector_size(16)));
+  static_assert(sizeof(Tet) == sizeof(Indices));
+  const auto limit = static_cast<std::uint32_t>(count);
+  auto isBad = Indices{} != Indices{};
+  for (const Tet& tet : tets) {
+    Indices indices;
+    std::memcpy(&indices, &tet, sizeof indices);
+    const Indices next = __builtin_shufflevector(indices, indices, 1, 2, 3, 0);
+    const Indices opposite = __builtin_shufflevector(indices, indices, 2, 3, 0, 1);
+    isBad |= (indices >= limit) | (indices == next) | (indices == opposite);
+  }
+  return anyOf(isBad[0] != 0, isBad[1] != 0, isBad[2] != 0, isBad[3] != 0);
+}
+
 /// What a pass over all tets finds out: how many are positive and negative, in space and in the
 /// map, and how large they are.
 struct Measures {
   PairMask positive = {0, 0};  ///< numbers: in space, in the map
   PairMask negative = {0, 0};
+  Pair magnitude = {0, 0};  ///< in space, in the map: of all tets, finite only if all of them are
   double largestCoordinate = 0;
   double largestExtent = 0;
 
@@ -107,6 +131,7 @@ struct Measures {
         {&map.points[tet[0]], &map.points[tet[1]], &map.points[tet[2]], &map.points[tet[3]]}, u);
     positive -= signs.positive;
     negative -= signs.negative;
+    magnitude += signs.magnitude;
     for (std::size_t k = 0; k < 3; ++k) {
       const double low = std::min(std::min(u[0][k], u[1][k]), std::min(u[2][k], u[3][k]));
       const double high = std::max(std::max(u[0][k], u[1][k]), std::max(u[2][k], u[3][k]));
@@ -116,26 +141,52 @@ struct Measures {
   }
 };
 
-/// Measures the tets; those that cannot be measured are defects.
+/// Measures tets whose indices are good.
+Measures measureAll(const TetMapView& map, std::size_t begin, std::size_t end) {
+  Measures measures;
+  for (std::size_t t = begin; t < end; ++t) {
+    const std::size_t ahead = std::min(t + kPointsAhead, end - 1);
+    for (const Index v : map.tets[ahead]) prefetch(&map.points[v]);
+    measures.addTet(map, t);
+  }
+  return measures;
+}
+
+/// Measures those tets that can be measured; others are defects.
+Measures measureGood(const TetMapView& map, std::size_t begin, std::size_t end,
+                     DefectCollector& defects) {
+  Measures measures;
+  for (std::size_t t = begin; t < end; ++t) {
+    const Tet& tet = map.tets[t];
+    const Place place{PlaceKind::Tet, t};
+    if (hasIndexBeyond(tet, map.points.size())) {
+      defects.add(ErrorCode::IndexOutOfRange, place, 0);
+    } else if (!isFinite(map.parameters[t])) {
+      defects.add(ErrorCode::NotFinite, place, 0);
+    } else if (hasRepeatedVertex(tet)) {
+      defects.add(ErrorCode::RepeatedVertex, place, 0);
+    } else {
+      measures.addTet(map, t);
+    }
+  }
+  return measures;
+}
+
+/// The same, all tets of a block at once if nothing is wrong with any of them.
+Measures measureBlock(const TetMapView& map, std::size_t begin, std::size_t end,
+                      DefectCollector& defects) {
+  if (!haveBadIndices(map.tets.subspan(begin, end - begin), map.points.size())) {
+    const Measures measures = measureAll(map, begin, end);
+    if (std::isfinite(measures.magnitude[1])) return measures;
+  }
+  return measureGood(map, begin, end, defects);
+}
+
 Measures measureTets(const TetMapView& map, Stage& stage, DefectCollector& defects) {
   std::vector<Measures> blocks(blockCount(map.tets.size(), kGrain));
   parallelBlocks(stage, map.tets.size(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   Measures measures;
-                   for (std::size_t t = begin; t < end; ++t) {
-                     const Tet& tet = map.tets[t];
-                     const Place place{PlaceKind::Tet, t};
-                     if (hasIndexBeyond(tet, map.points.size())) {
-                       defects.add(ErrorCode::IndexOutOfRange, place, 0);
-                     } else if (!isFinite(map.parameters[t])) {
-                       defects.add(ErrorCode::NotFinite, place, 0);
-                     } else if (hasRepeatedVertex(tet)) {
-                       defects.add(ErrorCode::RepeatedVertex, place, 0);
-                     } else {
-                       measures.addTet(map, t);
-                     }
-                   }
-                   blocks[block] = measures;
+                   blocks[block] = measureBlock(map, begin, end, defects);
                  });
   Measures total;
   for (const Measures& measures : blocks) total.add(measures);

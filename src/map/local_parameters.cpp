@@ -18,7 +18,9 @@ constexpr double kMaxLocalParameter = 0x1p28;
 }  // namespace
 
 LocalParameters::LocalParameters(const OrientedMap& map) noexcept
-    : parameters_(map.view.parameters), largest_(map.largestCoordinate) {
+    : parameters_(map.view.parameters),
+      largest_(map.largestCoordinate),
+      largestExtent_(map.largestExtent) {
   tooLarge_ = largest_ > kMaxParameter;
   if (tooLarge_) return;
   grid_ = kMinChartGrid;

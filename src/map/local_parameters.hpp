@@ -62,6 +62,8 @@ class LocalParameters {
   }
   /// Largest magnitude of a coordinate.
   [[nodiscard]] double largest() const noexcept { return largest_; }
+  /// Largest extent of a tet along an axis.
+  [[nodiscard]] double largestExtent() const noexcept { return largestExtent_; }
 
  private:
   [[nodiscard]] Vec3 move(const TetParameters& parameters) const noexcept {
@@ -73,6 +75,7 @@ class LocalParameters {
   std::span<const TetParameters> parameters_;
   double grid_ = 0;
   double largest_ = 0;
+  double largestExtent_ = 0;
   bool moved_ = false;
   bool tooLarge_ = false;
 };

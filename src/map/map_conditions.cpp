@@ -1,11 +1,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <base/vector3.hpp>
 #include <map/map_conditions.hpp>
 
 namespace hexhex {
+
+namespace {
+
+/// From corner 0 of a tet, without rounding: coordinates are below 2^52.
+Vec3 exactEdge(const LatticeTet& corners, std::size_t corner) {
+  const LatticePoint edge = corners[corner] - corners[0];
+  return {static_cast<double>(edge[0]), static_cast<double>(edge[1]), static_cast<double>(edge[2])};
+}
+
+}  // namespace
 
 std::size_t edgeAxis(const LocalParameters& parameters, const SingularEdge& edge) noexcept {
   return dominantAxis(
@@ -52,12 +63,22 @@ void checkSingularities(const Singularities& singularities, const LocalParameter
   }
 }
 
-void checkOrientations(std::span<const std::vector<Index>> tets, Stage& stage,
-                       DefectCollector& defects, const ExactMap& map) {
+double leastCertainDeterminant(const LocalParameters& parameters, double unit) noexcept {
+  // Each of the six products of three factors carries at most five roundings of relative size
+  // 2^-53: together less than 31 * 2^-53.
+  const double size = (parameters.largestExtent() + 1) * unit;
+  return 0x1p-47 * size * size * size;
+}
+
+void checkOrientations(std::span<const std::vector<Index>> tets, const LocalParameters& parameters,
+                       Stage& stage, DefectCollector& defects, const ExactMap& map) {
   const auto unit = static_cast<double>(map.unit);
+  const double enough = map.maxDisplacement <= 0.5 ? leastCertainDeterminant(parameters, unit)
+                                                   : std::numeric_limits<double>::infinity();
   parallelFor(stage, tets.size(), 1, [&](std::size_t block) {
     for (const Index t : tets[block]) {
       const LatticeTet& c = map.corners[t];
+      if (tripleProduct(exactEdge(c, 1), exactEdge(c, 2), exactEdge(c, 3)) > enough) continue;
       if (orientation(c[0], c[1], c[2], c[3]) > 0) continue;
       const double amount =
           orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() / (6 * unit * unit * unit);

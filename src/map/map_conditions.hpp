@@ -18,8 +18,14 @@ void checkBoundary(const PlainVertices& plain, const LocalParameters& parameters
 void checkSingularities(const Singularities& singularities, const LocalParameters& parameters,
                         double tolerance, DefectCollector& defects);
 
+/// A determinant of a tet that is larger is certainly positive, though floating point has computed
+/// it, from edges that are exact: in units of the lattice, and unless corners have moved by more
+/// than half a parameter.
+[[nodiscard]] double leastCertainDeterminant(const LocalParameters& parameters,
+                                             double unit) noexcept;
+
 /// (IGM4) for the tets of all lists.
-void checkOrientations(std::span<const std::vector<Index>> tets, Stage& stage,
-                       DefectCollector& defects, const ExactMap& map);
+void checkOrientations(std::span<const std::vector<Index>> tets, const LocalParameters& parameters,
+                       Stage& stage, DefectCollector& defects, const ExactMap& map);
 
 }  // namespace hexhex

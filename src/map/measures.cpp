@@ -4,6 +4,7 @@
 #include <functional>
 
 #include <base/disjoint_sets.hpp>
+#include <map/edge_turn.hpp>
 #include <map/measures.hpp>
 
 namespace hexhex {
@@ -26,15 +27,9 @@ std::uint64_t exactQuotient(const Int192& sum, int shift, unsigned divisor, cons
 
 /// The boundary half-face across an edge of a boundary half-face, around the tets between them.
 HalfFace acrossBoundaryEdge(const TetTopology& topology, HalfFace halfFace, CornerMask edge) {
-  Index tet = tetOf(halfFace);
-  int face = otherFaceAtEdge(edge, localOf(halfFace));
-  for (;;) {
-    const HalfFace mate = topology.mate[halfFaceOf(tet, face)];
-    if (mate == kNone) return halfFaceOf(tet, face);
-    edge = topology.translated(edge, tet, tetOf(mate));
-    tet = tetOf(mate);
-    face = otherFaceAtEdge(edge, localOf(mate));
-  }
+  EdgeTurn turn(topology, tetOf(halfFace), edge, otherFaceAtEdge(edge, localOf(halfFace)));
+  while (turn.next() != kNone) turn.step();
+  return turn.out();
 }
 
 }  // namespace

@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include <base/branchless.hpp>
+#include <base/pair.hpp>
 #include <base/vector3.hpp>
 #include <map/plain_vertices.hpp>
+#include <map/tet_normals.hpp>
 
 namespace hexhex {
 
@@ -30,67 +32,8 @@ constexpr std::size_t kPrefetchDistance = 12;
 /// Sets a flag that several threads may set.
 void mark(std::uint8_t& flag) { std::atomic_ref(flag).store(1, std::memory_order_relaxed); }
 
-/// Sets bits that several threads may set; nearly always, all are set already.
-void addBits(std::uint8_t& bits, unsigned added) {
-  const std::atomic_ref shared(bits);
-  if ((shared.load(std::memory_order_relaxed) & added) == added) return;
-  shared.fetch_or(static_cast<std::uint8_t>(added), std::memory_order_relaxed);
-}
-
 /// Per vertex: tets in one and the same direction from it.
 using Cones = Array<std::uint32_t>;
-
-/// The faces of a tet, as seen by the direction in general position.
-class TetNormals {
- public:
-  explicit TetNormals(const TetParameters& u) {
-    const Vec3 a = minus(u[1], u[0]);
-    const Vec3 b = minus(u[2], u[0]);
-    const Vec3 c = minus(u[3], u[0]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      size_ = std::max(std::max(size_, std::abs(a[k])), std::max(std::abs(b[k]), std::abs(c[k])));
-    }
-    normals_ = {cross(b, c), cross(c, a), cross(a, b)};
-    const double determinant = dot(a, normals_[0]);
-    isPositive_ = allOf(size_ > 0x1p-300, determinant > 0x1p-46 * size_ * size_ * size_);
-    for (std::size_t i = 0; i < 3; ++i) sides_[i] = dot(kGeneralDirection, normals_[i]);
-  }
-
-  /// As computeSides().
-  [[nodiscard]] TetSides sides() const noexcept { return packed(sides_); }
-
-  /// The same, with the direction mirrored along an axis.
-  [[nodiscard]] TetSides mirrored(std::size_t axis) const noexcept {
-    Vec3 sides = sides_;
-    for (std::size_t i = 0; i < 3; ++i) {
-      sides[i] -= 2 * kGeneralDirection[axis] * normals_[i][axis];
-    }
-    return packed(sides);
-  }
-
- private:
-  /// @param sides  of faces 1 to 3
-  [[nodiscard]] TetSides packed(const Vec3& sides) const noexcept {
-    const double side0 = -(sides[0] + sides[1] + sides[2]);
-    // With u = 2^-53: differences carry one rounding, components of normals are below 2 size^2 and
-    // off by 8 u size^2, the determinant by 42 u size^3, sides 1 to 3 by 33 u size^2, or 43 u
-    // size^2 if mirrored, and side 0 by 171 u size^2. Below 2^-300, products could underflow.
-    const double uncertainty = 0x1p-45 * size_ * size_;
-    const double smallest = std::min(std::min(std::abs(side0), std::abs(sides[0])),
-                                     std::min(std::abs(sides[1]), std::abs(sides[2])));
-    if (!allOf(isPositive_, smallest > uncertainty)) return kUncertainSides;
-    const unsigned outward = signBit(side0) | (signBit(sides[0]) << 1) | (signBit(sides[1]) << 2) |
-                             (signBit(sides[2]) << 3);
-    return static_cast<TetSides>(outward ^ kAllSides);
-  }
-
-  /// Inward, of the faces opposite corners 1, 2, 3; the four normals add up to zero.
-  std::array<Vec3, 3> normals_{};
-  static constexpr unsigned kAllSides = 15;
-  Vec3 sides_{};  ///< scalar products of the direction with them
-  double size_ = 0;
-  bool isPositive_ = false;
-};
 
 void markCorners(const Tet& tet, int face, PlainVertices& result) {
   for (const int corner : kFaceCorners[static_cast<std::size_t>(face)]) {
@@ -114,28 +57,18 @@ class BranchlessList {
   std::size_t count_ = 0;
 };
 
-/// The axes along which a triangle is constant, and the one across which it lies.
-struct TrianglePlane {
-  unsigned constantAxes = 0;  ///< bit k for axis k
-  std::size_t axis = 0;       ///< the normal's largest component, at least nearly
+/// The axes along which a triangle is constant, as bits.
+unsigned constantAxes(const Vec3& p, const Vec3& q, const Vec3& r) {
+  const Pair xy = {p[0], p[1]};
+  const PairMask isConstant = (xy == Pair{q[0], q[1]}) & (xy == Pair{r[0], r[1]});
+  const PairMask third = Pair{p[2], p[2]} == Pair{q[2], r[2]};
+  return static_cast<unsigned>((isConstant[0] & 1) | (isConstant[1] & 2) |
+                               (third[0] & third[1] & 4));
+}
 
-  TrianglePlane(const LocalParameters& parameters, HalfFace halfFace) {
-    const std::array<int, 3>& corners = kFaceCorners[halfFace % 4];
-    const Vec3 p = parameters(tetOf(halfFace), corners[0]);
-    const Vec3 a = minus(parameters(tetOf(halfFace), corners[1]), p);
-    const Vec3 b = minus(parameters(tetOf(halfFace), corners[2]), p);
-    // A difference is zero only if there is none.
-    for (std::size_t k = 0; k < 3; ++k) {
-      constantAxes |= (allOf(a[k] == 0, b[k] == 0) ? 1U : 0U) << k;
-    }
-    axis = dominantAxis(cross(a, b));
-  }
-};
-
-/// Lists the boundary faces of some tets, and notes their planes at their corners; without a
-/// plane, these are special.
-void surveyBoundary(const TetTopology& topology, const LocalParameters& parameters,
-                    std::size_t begin, std::size_t end, std::size_t block, PlainVertices& result) {
+/// Lists the boundary faces of some tets.
+void listBoundary(const TetTopology& topology, const LocalParameters& parameters, std::size_t begin,
+                  std::size_t end, std::size_t block, PlainVertices& result) {
   BranchlessList list;
   for (auto h = static_cast<HalfFace>(4 * begin); h < 4 * end; ++h) {
     list.add(h, topology.mate[h] == kNone);
@@ -143,15 +76,33 @@ void surveyBoundary(const TetTopology& topology, const LocalParameters& paramete
   std::fill(&result.passages[4 * begin], &result.passages[4 * begin] + 4 * (end - begin),
             Passage());
   std::vector<PlainVertices::BoundaryFace>& faces = result.boundaryFaces[block];
+  faces.resize(faces.size() + list.get().size());
+  PlainVertices::BoundaryFace* next = faces.data() + faces.size() - list.get().size();
   for (const HalfFace halfFace : list.get()) {
-    const Tet& tet = topology.tets[tetOf(halfFace)];
-    const TrianglePlane plane(parameters, halfFace);
-    faces.push_back({halfFace, static_cast<std::uint32_t>(plane.axis)});
-    result.passages[halfFace] =
-        Passage::boundary(plane.axis, plane.constantAxes == 1U << plane.axis);
-    if (plane.constantAxes == 0) markCorners(tet, localOf(halfFace), result);
-    for (const int corner : kFaceCorners[halfFace % 4]) {
-      addBits(result.plane[tet[static_cast<std::size_t>(corner)]], plane.constantAxes);
+    TetParameters scratch;
+    const TetParameters& u = parameters.see(tetOf(halfFace), scratch);
+    const std::array<int, 3>& corners = kFaceCorners[halfFace % 4];
+    const Vec3& p = u[static_cast<std::size_t>(corners[0])];
+    const Vec3& q = u[static_cast<std::size_t>(corners[1])];
+    const Vec3& r = u[static_cast<std::size_t>(corners[2])];
+    const unsigned constant = constantAxes(p, q, r);
+    const std::size_t axis = dominantAxis(cross(minus(q, p), minus(r, p)));
+    *next++ = {halfFace, static_cast<std::uint16_t>(axis), static_cast<std::uint16_t>(constant)};
+    result.passages[halfFace] = Passage::boundary(axis, constant == 1U << axis);
+  }
+}
+
+/// Notes the planes of boundary faces at their corners; without a plane, these are special. One
+/// thread does so for all, as faces share most of their corners, and are few.
+void notePlanes(const TetTopology& topology, PlainVertices& result) {
+  for (const std::vector<PlainVertices::BoundaryFace>& faces : result.boundaryFaces) {
+    for (const PlainVertices::BoundaryFace& face : faces) {
+      const Tet& tet = topology.tets[tetOf(face.halfFace)];
+      if (face.constantAxes == 0) markCorners(tet, localOf(face.halfFace), result);
+      for (const int corner : kFaceCorners[face.halfFace % 4]) {
+        std::uint8_t& plane = result.plane[tet[static_cast<std::size_t>(corner)]];
+        plane = static_cast<std::uint8_t>(plane | face.constantAxes);
+      }
     }
   }
 }
@@ -230,21 +181,31 @@ bool agree(const TetTopology& topology, const LocalParameters& parameters, HalfF
   return true;
 }
 
+/// The bits of two numbers in a row.
+PairMask bitsOfPair(const double* first) { return reinterpret_cast<PairMask>(loadPair(first)); }
+
+/// The corners of a half-face in ascending order of vertices.
+const std::array<std::uint8_t, 3>& ascendingCorners(const TetTopology& topology,
+                                                    HalfFace halfFace) {
+  return kAscendingFaceCorners[topology.order[tetOf(halfFace)]][halfFace % 4];
+}
+
 /// Whether they have the same bits there: the same as agree(), if true.
 bool areSame(const TetTopology& topology, const LocalParameters& parameters, HalfFace here,
              HalfFace there) {
-  const SharedFace face(topology, here, there);
   const TetParameters& u = parameters.given(tetOf(here));
   const TetParameters& v = parameters.given(tetOf(there));
-  std::uint64_t difference = 0;
+  const std::array<std::uint8_t, 3>& corners = ascendingCorners(topology, here);
+  const std::array<std::uint8_t, 3>& others = ascendingCorners(topology, there);
+  PairMask difference = {0, 0};
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3& a = u[face.here(k)];
-    const Vec3& b = v[face.there(k)];
-    for (std::size_t i = 0; i < 3; ++i) {
-      difference |= std::bit_cast<std::uint64_t>(a[i]) ^ std::bit_cast<std::uint64_t>(b[i]);
-    }
+    const Vec3& a = u[corners[k]];
+    const Vec3& b = v[others[k]];
+    // Two overlapping pairs have all three coordinates.
+    difference |= bitsOfPair(&a[0]) ^ bitsOfPair(&b[0]);
+    difference |= bitsOfPair(&a[1]) ^ bitsOfPair(&b[1]);
   }
-  return difference == 0;
+  return (difference[0] | difference[1]) == 0;
 }
 
 /// Looks at each inner face of some tets, from its larger half-face: the parameters of the
@@ -297,9 +258,10 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
   result.unequalFaces.resize(blockCount(tets, kGrain));
   parallelBlocks(stage, tets, kGrain, [&](std::size_t first, std::size_t last, std::size_t block) {
     forEachPart(first, last, [&](std::size_t begin, std::size_t end) {
-      surveyBoundary(topology, parameters, begin, end, block, result);
+      listBoundary(topology, parameters, begin, end, block, result);
     });
   });
+  notePlanes(topology, result);
   std::uint64_t boundaryFaces = 0;
   for (const auto& faces : result.boundaryFaces) boundaryFaces += faces.size();
   result.innerFaces = (4 * tets - boundaryFaces) / 2;

@@ -59,7 +59,8 @@ struct PlainVertices {
   /// A boundary face, and the axis along which it is constant, or nearly so.
   struct BoundaryFace {
     HalfFace halfFace;
-    std::uint32_t axis;
+    std::uint16_t axis;
+    std::uint16_t constantAxes;  ///< along which it is exactly constant: bit k for axis k
   };
   /// By half-face, ascending; in one list per block of kBlock tets.
   std::vector<std::vector<BoundaryFace>> boundaryFaces;

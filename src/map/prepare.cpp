@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -7,6 +9,7 @@
 #include <map/plain_vertices.hpp>
 #include <map/prepare.hpp>
 #include <map/topology_defects.hpp>
+#include <map/unfolded_vertices.hpp>
 
 namespace hexhex {
 
@@ -61,11 +64,20 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
     Stage stage(context, "transitions");
     transitions =
         computeTransitions(prepared.topology, parameters, plain, view.rotations, tolerance, stage);
+    if (hasManyJumps(prepared.topology, transitions)) {
+      prepared.gauges = computeGauges(prepared.topology, transitions, stage);
+    }
   }
   {
     Stage stage(context, "singularities");
+    std::vector<StarBlock> unfolded;
+    // What the caller claims about edges is looked up for each, hence no star is spared then.
+    if (!prepared.gauges.of.empty() && view.edgeValences.empty()) {
+      unfolded = unfoldVertices(prepared.topology, parameters, prepared.gauges, plain, stage);
+    }
     collectStars(prepared.topology, parameters, plain, view.edgeValences,
                  parameters.tooLarge() ? nullptr : &transitions, stars, stage);
+    std::move(unfolded.begin(), unfolded.end(), std::back_inserter(stars));
     std::optional<Singularities> singularities =
         computeSingularities(prepared.topology, parameters, plain, view.edgeValences, stars, stage);
     if (!singularities) {

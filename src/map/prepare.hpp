@@ -5,6 +5,7 @@
 #include <hexhex/types.hpp>
 
 #include <map/exact_map.hpp>
+#include <map/gauges.hpp>
 #include <map/input.hpp>
 #include <map/singularities.hpp>
 #include <map/tet_topology.hpp>
@@ -16,6 +17,7 @@ struct PreparedMap {
   OrientedMap input;
   TetTopology topology;
   Singularities singularities;
+  Gauges gauges;   ///< not scaled; empty if there are not many jumps
   ExactMap exact;  ///< not scaled
 };
 

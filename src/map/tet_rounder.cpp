@@ -4,6 +4,7 @@
 #include <base/pair.hpp>
 #include <base/vector3.hpp>
 #include <map/corner_rounder.hpp>
+#include <map/map_conditions.hpp>
 #include <map/tet_rounder.hpp>
 
 namespace hexhex {
@@ -12,117 +13,70 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;
 
-/// By PlainVertices::plane and axis: all bits where the coordinate becomes an integer.
-constexpr std::array<std::array<std::int64_t, 3>, 32> kSnapMasks = [] {
-  std::array<std::array<std::int64_t, 3>, 32> masks{};
-  for (std::size_t axis = 0; axis < 3; ++axis) masks[std::size_t{1} << axis][axis] = -1;
-  return masks;
-}();
+/// The twelve coordinates of a tet, corner by corner.
+using Coordinates = std::array<Pair, 6>;
 
-/// Of corners that are decided by their stars, and of others.
-constexpr std::array<double, 2> kWeights = {0, 1};
+Coordinates inARow(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return {loadPair(&a[0]), Pair{a[2], b[0]}, loadPair(&b[1]),
+          loadPair(&c[0]), Pair{c[2], d[0]}, loadPair(&d[1])};
+}
+
+Vec3 cornerOf(const Coordinates& coordinates, std::size_t corner) {
+  const auto number = [&](std::size_t i) { return coordinates[i / 2][i % 2]; };
+  return {number(3 * corner), number(3 * corner + 1), number(3 * corner + 2)};
+}
 
 /// Rounds one tet after the other.
 class TetRounder {
  public:
   TetRounder(const TetTopology& topology, const LocalParameters& parameters,
-             const PlainVertices& plain, double tolerance, bool measureVolume,
-             DefectCollector& defects, ExactMap& map)
+             const PlainVertices& plain, const Grains& grains, bool measureVolume, ExactMap& map)
       : topology_(topology),
         parameters_(parameters),
         plain_(plain),
-        tolerance_(tolerance),
+        grains_(grains),
         measureVolume_(measureVolume),
         map_(map),
         unit_(static_cast<double>(map.unit)),
         resolution_(1 / unit_),
-        rounder_(topology, tolerance, defects, map) {}
+        leastDeterminant_(leastCertainDeterminant(parameters, unit_)) {}
 
   /// Whether the tet is finished, and certainly positive.
   bool run(Index t) {
     const Tet& tet = topology_.tets[t];
     TetParameters scratch;
     const TetParameters& u = parameters_.see(t, scratch);
+    const Coordinates given = inARow(u[0], u[1], u[2], u[3]);
     std::array<unsigned, 4> planes{};
     for (std::size_t i = 0; i < 4; ++i) planes[i] = plain_.plane[tet[i]];
-    const unsigned anyPlane = planes[0] | planes[1] | planes[2] | planes[3];
-    const Rounded rounded = anyPlane == 0 ? roundedInside(u) : roundedAtPlanes(u, planes);
+    const Coordinates large = inARow(grains_.at(planes[0]), grains_.at(planes[1]),
+                                     grains_.at(planes[2]), grains_.at(planes[3]));
+    Coordinates rounded;
+    for (std::size_t i = 0; i < 6; ++i) {
+      rounded[i] = nearestMultiples(given[i] * unit_, large[i]);
+      displacement_ = larger(displacement_, magnitudeOf(rounded[i] * resolution_ - given[i]));
+    }
     LatticeTet& corners = map_.corners[t];
     store(rounded, corners);
-    const double displacement = displacementOfAll(planes, u, rounded);
-    maxDisplacement_ = std::max(maxDisplacement_, displacement);
-    if (displacement > tolerance_) report(t, u);
+    const unsigned anyPlane = planes[0] | planes[1] | planes[2] | planes[3];
     return anyPlane < PlainVertices::kPlaneOfStar && isPositive(rounded, corners);
   }
 
+  /// Without corners that are decided by their stars.
   [[nodiscard]] double maxDisplacement() const noexcept {
-    return std::max(maxDisplacement_, rounder_.maxDisplacement());
+    return std::max(displacement_[0], displacement_[1]);
   }
   /// Of all tets that are finished and positive, if asked for.
   [[nodiscard]] const Int192& sixfoldVolume() const noexcept { return sixfoldVolume_; }
 
  private:
-  /// Coordinates in units of the lattice, exact for integers below 2^53: entry [i][k] has axis k of
-  /// corners 2 i and 2 i + 1.
-  using Rounded = std::array<std::array<Pair, 3>, 2>;
-
-  [[nodiscard]] static Pair coordinates(const TetParameters& u, std::size_t i, std::size_t k) {
-    return Pair{u[2 * i][k], u[2 * i + 1][k]};
-  }
-
-  [[nodiscard]] Rounded roundedInside(const TetParameters& u) const {
-    Rounded rounded;
-    for (std::size_t i = 0; i < 2; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        rounded[i][k] = nearestIntegers(coordinates(u, i, k) * unit_);
-      }
-    }
-    return rounded;
-  }
-
-  /// The same, but with integers across boundary planes.
-  [[nodiscard]] Rounded roundedAtPlanes(const TetParameters& u,
-                                        const std::array<unsigned, 4>& planes) const {
-    Rounded rounded;
-    for (std::size_t i = 0; i < 2; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Pair x = coordinates(u, i, k);
-        const PairMask isAcross = {kSnapMasks[planes[2 * i]][k], kSnapMasks[planes[2 * i + 1]][k]};
-        rounded[i][k] = chosen(isAcross, nearestIntegers(x) * unit_, nearestIntegers(x * unit_));
-      }
-    }
-    return rounded;
-  }
-
-  static void store(const Rounded& rounded, LatticeTet& corners) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        corners[2 * i][k] = static_cast<std::int64_t>(rounded[i][k][0]);
-        corners[2 * i + 1][k] = static_cast<std::int64_t>(rounded[i][k][1]);
-      }
+  static void store(const Coordinates& rounded, LatticeTet& corners) {
+    for (std::size_t i = 0; i < 12; ++i) {
+      corners[i / 3][i % 3] = static_cast<std::int64_t>(rounded[i / 2][i % 2]);
     }
   }
 
-  /// Without corners that are decided by their stars.
-  [[nodiscard]] double displacementOfAll(const std::array<unsigned, 4>& planes,
-                                         const TetParameters& u, const Rounded& rounded) const {
-    Pair displacement = {0, 0};
-    for (std::size_t i = 0; i < 2; ++i) {
-      Pair moved = {0, 0};
-      for (std::size_t k = 0; k < 3; ++k) {
-        moved = larger(moved, magnitudeOf(rounded[i][k] * resolution_ - coordinates(u, i, k)));
-      }
-      const Pair weight = {weightOf(planes[2 * i]), weightOf(planes[2 * i + 1])};
-      displacement = larger(displacement, moved * weight);
-    }
-    return std::max(displacement[0], displacement[1]);
-  }
-
-  [[nodiscard]] static double weightOf(unsigned plane) {
-    return kWeights[plane >= PlainVertices::kPlaneOfStar ? 0 : 1];
-  }
-
-  [[nodiscard]] bool isPositive(const Rounded& rounded, const LatticeTet& corners) {
+  [[nodiscard]] bool isPositive(const Coordinates& rounded, const LatticeTet& corners) {
     if (measureVolume_) {
       const Int192 determinant =
           orientationDeterminant(corners[0], corners[1], corners[2], corners[3]);
@@ -130,39 +84,34 @@ class TetRounder {
       sixfoldVolume_ += determinant;
       return true;
     }
-    Vec3 a{};
-    Vec3 b{};
-    Vec3 c{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double origin = rounded[0][k][0];
-      a[k] = rounded[0][k][1] - origin;
-      b[k] = rounded[1][k][0] - origin;
-      c[k] = rounded[1][k][1] - origin;
-    }
-    return certainDeterminant(a, b, c) > 0;
-  }
-
-  void report(Index t, const TetParameters& u) {
-    const Tet& tet = topology_.tets[t];
-    for (std::size_t i = 0; i < 4; ++i) {
-      const unsigned plane = plain_.plane[tet[i]];
-      if (plane >= PlainVertices::kPlaneOfStar) continue;
-      rounder_.run(4 * t + static_cast<CornerIndex>(i), u[i], plane);
-    }
+    const Vec3 origin = cornerOf(rounded, 0);
+    return tripleProduct(minus(cornerOf(rounded, 1), origin), minus(cornerOf(rounded, 2), origin),
+                         minus(cornerOf(rounded, 3), origin)) > leastDeterminant_;
   }
 
   const TetTopology& topology_;
   const LocalParameters& parameters_;
   const PlainVertices& plain_;
-  double tolerance_;
+  const Grains& grains_;
   bool measureVolume_;
   ExactMap& map_;
   double unit_;
   double resolution_;
-  CornerRounder rounder_;
-  double maxDisplacement_ = 0;
+  double leastDeterminant_;
+  Pair displacement_ = {0, 0};
   Int192 sixfoldVolume_;
 };
+
+/// Reports corners that have moved too far.
+void reportDisplacements(const TetTopology& topology, const LocalParameters& parameters,
+                         const PlainVertices& plain, std::size_t begin, std::size_t end,
+                         CornerRounder& rounder) {
+  for (auto corner = static_cast<CornerIndex>(4 * begin); corner < 4 * end; ++corner) {
+    const unsigned plane = plain.plane[topology.vertex(corner)];
+    if (plane >= PlainVertices::kPlaneOfStar) continue;
+    rounder.run(corner, parameters(tetOf(corner), localOf(corner)), plane);
+  }
+}
 
 }  // namespace
 
@@ -174,10 +123,10 @@ RoundedTets roundTets(const TetTopology& topology, const LocalParameters& parame
   result.unfinished.resize(blocks);
   std::vector<double> displacements(blocks);
   std::vector<Int192> volumes(blocks);
+  const Grains grains(static_cast<double>(map.unit));
   parallelBlocks(stage, topology.tetCount(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   TetRounder rounder(topology, parameters, plain, tolerance, measureVolume,
-                                      defects, map);
+                   TetRounder rounder(topology, parameters, plain, grains, measureVolume, map);
                    std::array<Index, kGrain + 1> list;  // NOLINT: written before it is read
                    std::size_t count = 0;
                    for (std::size_t t = begin; t < end; ++t) {
@@ -186,6 +135,10 @@ RoundedTets roundTets(const TetTopology& topology, const LocalParameters& parame
                    }
                    result.unfinished[block].assign(list.begin(), list.begin() + count);
                    displacements[block] = rounder.maxDisplacement();
+                   if (displacements[block] > tolerance) {
+                     CornerRounder reporter(topology, tolerance, defects, map);
+                     reportDisplacements(topology, parameters, plain, begin, end, reporter);
+                   }
                    volumes[block] = rounder.sixfoldVolume();
                  });
   for (std::size_t block = 0; block < blocks; ++block) {

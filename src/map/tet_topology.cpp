@@ -1,5 +1,6 @@
 #include <atomic>
 
+#include <map/edge_turn.hpp>
 #include <map/face_matching.hpp>
 #include <map/tet_topology.hpp>
 #include <map/topology_defects.hpp>
@@ -103,37 +104,54 @@ std::uint64_t TetTopology::edgeIndex(Index a, Index b) const noexcept {
                                     edgeEnd.begin());
 }
 
+namespace {
+
+/// Calls visit(tet) for the other tets around an edge, until it returns false.
+template <class Visit>
+void visitOthersAround(const TetTopology& topology, Index tet, CornerMask edge,
+                       const Visit& visit) {
+  const int first = otherFaceAtEdge(edge, -1);
+  // One way round, and at a boundary the other way, too.
+  for (const int face : {first, otherFaceAtEdge(edge, first)}) {
+    EdgeTurn turn(topology, tet, edge, face);
+    while (turn.next() != kNone) {
+      turn.step();
+      if (turn.tet() == tet || !visit(turn.tet())) return;
+    }
+  }
+}
+
+}  // namespace
+
 Index ownerTet(const TetTopology& topology, Index tet, CornerMask simplex) noexcept {
   switch (dimension(simplex)) {
     case 3:
       return tet;
     case 2: {
-      const int opposite = oppositeCorner(simplex);
-      const HalfFace mate = topology.mate[halfFaceOf(tet, opposite)];
+      const HalfFace mate = topology.mate[halfFaceOf(tet, oppositeCorner(simplex))];
       return mate == kNone ? tet : std::min(tet, tetOf(mate));
     }
     case 1: {
       Index owner = tet;
-      const int first = otherFaceAtEdge(simplex, -1);
-      for (const int start : {first, otherFaceAtEdge(simplex, first)}) {
-        Index current = tet;
-        CornerMask edge = simplex;
-        int exit = start;
-        for (;;) {
-          const HalfFace mate = topology.mate[halfFaceOf(current, exit)];
-          if (mate == kNone) break;
-          edge = topology.translated(edge, current, tetOf(mate));
-          current = tetOf(mate);
-          if (current == tet) return owner;  // all the way round
-          owner = std::min(owner, current);
-          exit = otherFaceAtEdge(edge, localOf(mate));
-        }
-      }
+      visitOthersAround(topology, tet, simplex, [&owner](Index other) {
+        owner = std::min(owner, other);
+        return true;
+      });
       return owner;
     }
     default:
       return topology.vertexTet[topology.tets[tet][firstCorner(simplex)]];
   }
+}
+
+bool ownsSimplex(const TetTopology& topology, Index tet, CornerMask simplex) noexcept {
+  if (dimension(simplex) != 1) return ownerTet(topology, tet, simplex) == tet;
+  bool owns = true;
+  visitOthersAround(topology, tet, simplex, [&owns, tet](Index other) {
+    owns = tet < other;
+    return owns;
+  });
+  return owns;
 }
 
 }  // namespace hexhex

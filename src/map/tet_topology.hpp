@@ -11,6 +11,7 @@
 
 #include <base/parallel.hpp>
 #include <lattice/tet_geometry.hpp>
+#include <map/corner_order.hpp>
 #include <map/defects.hpp>
 
 namespace hexhex {
@@ -39,8 +40,9 @@ using HalfFace = std::uint32_t;
 struct TetTopology {
   std::span<const Tet> tets;  ///< the caller's array
   std::size_t pointCount = 0;
-  Array<HalfFace> mate;    ///< per half-face: the same triangle in the neighbour, or kNone
-  Array<Index> vertexTet;  ///< per vertex: the smallest tet at it, or kNone
+  Array<HalfFace> mate;      ///< per half-face: the same triangle in the neighbour, or kNone
+  Array<Index> vertexTet;    ///< per vertex: the smallest tet at it, or kNone
+  Array<CornerOrder> order;  ///< per tet: how its vertices are ordered
 
   // Empty until addStars().
   Array<Index> cornerBegin;    ///< per vertex (+1): its range in `corners`
@@ -184,5 +186,8 @@ void forEachEdge(const TetTopology& topology, Index v, std::vector<EdgeCorner>& 
 
 /// The smallest tet that contains a simplex of a tet: the simplex's owner (ParentTet of the paper).
 [[nodiscard]] Index ownerTet(const TetTopology& topology, Index tet, CornerMask simplex) noexcept;
+
+/// Whether that is the tet itself, which takes less time to say.
+[[nodiscard]] bool ownsSimplex(const TetTopology& topology, Index tet, CornerMask simplex) noexcept;
 
 }  // namespace hexhex

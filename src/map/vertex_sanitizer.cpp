@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <base/branchless.hpp>
 #include <base/vector3.hpp>
 #include <map/corner_rounder.hpp>
 #include <map/map_conditions.hpp>
@@ -81,7 +80,7 @@ LatticePoint VertexSanitizer::snapped(CornerIndex corner, AxisSet fixed) const {
 /// through the star lead to the same values.
 bool VertexSanitizer::spread(std::span<const VertexStar::Member> star) {
   std::size_t reached = 1;
-  bool isClosed = true;
+  std::int64_t difference = 0;
   for (std::size_t i = 0; i < star.size(); ++i) {
     const VertexStar::Member& member = star[i];
     const LatticePoint value = values_[i];
@@ -93,10 +92,10 @@ bool VertexSanitizer::spread(std::span<const VertexStar::Member> star) {
       values_[reached] = image;  // in vain if the one behind is not new
       reached += behind == reached ? 1 : 0;
       const LatticePoint& there = values_[behind];
-      isClosed = allOf(isClosed, there[0] == image[0], there[1] == image[1], there[2] == image[2]);
+      for (std::size_t axis = 0; axis < 3; ++axis) difference |= there[axis] ^ image[axis];
     }
   }
-  return isClosed;
+  return difference == 0;
 }
 
 LatticePoint VertexSanitizer::carried(const LatticePoint& value, Index jump) const {
@@ -107,7 +106,9 @@ LatticePoint VertexSanitizer::carried(const LatticePoint& value, Index jump) con
 /// Sets one corner; returns by how much it moves.
 double VertexSanitizer::assign(CornerIndex corner, const LatticePoint& value) {
   map_.corners[corner / 4][corner % 4] = value;
-  return displacementOf(parameters_(corner / 4, localOf(corner)), value, resolution_);
+  const Vec3 rounded = {static_cast<double>(value[0]), static_cast<double>(value[1]),
+                        static_cast<double>(value[2])};
+  return displacementOf(parameters_(corner / 4, localOf(corner)), rounded, resolution_);
 }
 
 /// The condition that a vertex which had to move too far violates.

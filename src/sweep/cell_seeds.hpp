@@ -44,7 +44,7 @@ class CenterOwner {
     const auto bit = 1U << simplex;
     if ((known_ & bit) == 0) {
       known_ |= bit;
-      if (ownerTet(topology_, tet_, simplex) == tet_) owned_ |= bit;
+      if (ownsSimplex(topology_, tet_, simplex)) owned_ |= bit;
     }
     return (owned_ & bit) != 0;
   }

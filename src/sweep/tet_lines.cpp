@@ -44,7 +44,7 @@ void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
   if (!vertexBox.empty() && !small.append(vertexBox, 0, vertices)) {
     appendLines(corners, map.unit, vertexBox, chooseSweepAxes(vertexBox), vertices);
   }
-  if (!centerBox.empty() && !small.append(centerBox, 0.5, centers)) {
+  if (!centerBox.empty() && !small.append(centerBox, map.unit / 2, centers)) {
     appendLines(shiftedTo(SweptGrid::Centers, corners, map.unit), map.unit, centerBox,
                 chooseSweepAxes(centerBox), centers);
   }

@@ -71,7 +71,7 @@ void VertexCounter::countBoundary(Block& block, Index tet, std::span<const Swept
     if (line.count > 2) counts[line.inner()] += line.count - 2;
   }
   for (const CornerMask simplex : kBoundarySimplices) {
-    if (counts[simplex] == 0 || ownerTet(map_.topology, tet, simplex) != tet) continue;
+    if (counts[simplex] == 0 || !ownsSimplex(map_.topology, tet, simplex)) continue;
     block.generators.push_back({counts[simplex], simplex});
     const auto kind = static_cast<std::size_t>(dimension(simplex));
     ++block.generatorCounts[kind];

@@ -251,6 +251,10 @@ TEST(Cuts, WouldSpoilTheMeshIfTheyWereNotMarked) {
   ExtractStatistics statistics;
   const HexMesh right = extract(tets, {}, context, &statistics);
   EXPECT_GT(statistics.tracedCells, 0U);
+  Context threads(3);
+  ExtractStatistics inParallel;
+  EXPECT_EQ(extract(tets, {}, threads, &inParallel).cells, right.cells);
+  EXPECT_EQ(inParallel.tracedCells, statistics.tracedCells);
   HexMesh wrong;
   try {
     wrong = runAtlas(map, parametricVolume(map.exact), context, statistics, {.markCuts = false});

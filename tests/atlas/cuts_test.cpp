@@ -67,6 +67,15 @@ JumpId commonJump(const std::vector<Added>& cuts, std::size_t corner) {
   return common;
 }
 
+/// All jumps that it should name, or none if it cannot.
+std::set<JumpId> jumpsAt(const std::vector<Added>& cuts, std::size_t corner) {
+  std::set<JumpId> jumps;
+  for (const Added& cut : cuts) {
+    if (((cut.corners >> corner) & 1U) != 0) jumps.insert(cut.jump);
+  }
+  return jumps;
+}
+
 std::vector<Added> anyCuts(int jumps) {
   std::vector<Added> cuts;
   for (int i = *rc::gen::inRange(0, 12); i > 0; --i) {
@@ -88,6 +97,10 @@ TEST(CutCell, KnowsTheJumpOfEachCorner) {
       const bool isMany = jumps > 2 && expected != kNoJump && cell.jump(corner) == kManyJumps;
       RC_ASSERT(cell.jump(corner) == expected || isMany);
       RC_ASSERT((((cell.corners() >> corner) & 1U) != 0) == (expected != kNoJump));
+      const auto named = cell.jumps(corner);
+      std::set<JumpId> found(named.begin(), named.end());
+      found.erase(kNoJump);
+      RC_ASSERT(found == jumpsAt(cuts, corner) || (jumps > 2 && found.count(kManyJumps) != 0));
     }
   }));
 }

@@ -89,6 +89,30 @@ TEST(HalfGrids, FindWhatLinesFind) {
   EXPECT_GT(seen.inside, 0);
 }
 
+/// Faces across an axis, through points of some grid or between them, as those on the boundary of a
+/// map; tets of a few points along each axis and of more.
+TEST(HalfGrids, FacesAcrossAnAxis) {
+  Random random(9);
+  const HalfGridSearch search(0xff);
+  Seen seen;
+  for (int i = cases(20'000); i > 0; --i) {
+    const std::int64_t unit = std::int64_t{1} << random.between(2, 40);
+    LatticeTet tet = anyTet(random, -unit, random.between(1, 6) * unit);
+    const auto axis = static_cast<std::size_t>(random.between(0, 2));
+    const auto apex = static_cast<std::size_t>(random.between(0, 3));
+    const std::int64_t plane = random.between(-1, 12) * (unit / 2) + (random.oneIn(4) ? 1 : 0);
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (c != apex) tet[c][axis] = plane;
+    }
+    if (random.oneIn(8)) tet[apex][(axis + 1) % 3] = tet[(apex + 1) % 4][(axis + 1) % 3];
+    if (orientation(tet[0], tet[1], tet[2], tet[3]) <= 0) continue;
+    ASSERT_NO_FATAL_FAILURE(compare(tet, unit, search, seen));
+  }
+  EXPECT_GT(seen.small, 0);
+  EXPECT_GT(seen.boundary, 1000);
+  EXPECT_GT(seen.inside, 1000);
+}
+
 TEST(HalfGrids, PointsAsCloseToFacesAsCanBe) {
   Random random(8);
   const HalfGridSearch search(0x17);

@@ -100,6 +100,21 @@ TEST(Orientation, OneLatticeUnitOffThePlane) {
   }
 }
 
+/// Floating point is exact of coordinates with few bits, wherever these are, and only of those.
+TEST(Orientation, MultiplesOfPowersOfTwo) {
+  Random random(15);
+  for (int i = cases(300'000); i > 0; --i) {
+    const int bits = static_cast<int>(random.between(5, 30));
+    LatticeTet t = coplanar(random, std::int64_t{1} << bits);
+    if (random.oneIn(2)) t[random.index(4)][random.index(3)] += random.oneIn(2) ? 1 : -1;
+    const auto shift = random.between(0, 59 - bits);
+    for (LatticePoint& p : t) {
+      for (std::int64_t& x : p) x *= std::int64_t{1} << shift;
+    }
+    ASSERT_NO_FATAL_FAILURE(expectOrientation(t));
+  }
+}
+
 /// A positive tet whose faces and edges often contain coordinate directions.
 LatticeTet anyPositiveTet(Random& random, std::int64_t largest = kFullRange) {
   for (;;) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <rapidcheck.h>
+#include <set>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -139,8 +140,9 @@ TEST_P(TopologyOfKind, OwnerIsTheSmallestTet) {
   const auto simplices = tetsBySimplex(map.tets);
   for (Index t = 0; t < map.tets.size(); ++t) {
     for (CornerMask simplex = 1; simplex <= kWholeTet; ++simplex) {
-      EXPECT_EQ(ownerTet(prepared.topology(), t, simplex),
-                simplices.at(verticesOf(map.tets[t], simplex)).front());
+      const Index owner = simplices.at(verticesOf(map.tets[t], simplex)).front();
+      EXPECT_EQ(ownerTet(prepared.topology(), t, simplex), owner);
+      EXPECT_EQ(ownsSimplex(prepared.topology(), t, simplex), owner == t);
     }
   }
 }
@@ -330,6 +332,25 @@ TEST(Topology, FastAndSlowChecksAgree) {
   EXPECT_TRUE(passed);
   EXPECT_GT(manifolds, 0);
   EXPECT_GT(others, 0);
+}
+
+TEST(CornerOrder, ListsTheCornersOfEachFaceByVertex) {
+  std::set<CornerOrder> orders;
+  Tet tet = {2, 3, 5, 0xfffffff0};
+  do {
+    const CornerOrder order = cornerOrder(tet);
+    ASSERT_LT(order, kCornerOrders);
+    orders.insert(order);
+    for (std::size_t face = 0; face < 4; ++face) {
+      Tet expected = tet;
+      expected[face] = kNone;
+      std::sort(expected.begin(), expected.end());
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(tet[kAscendingFaceCorners[order][face][k]], expected[k]);
+      }
+    }
+  } while (std::next_permutation(tet.begin(), tet.end()));
+  EXPECT_EQ(orders.size(), 24U);
 }
 
 /// So many faces at one vertex that the table for matching them has to grow.

@@ -1,0 +1,55 @@
+// How the vertices of a tet are ordered. Two tets that share a face list its vertices in any order;
+// in ascending order, they agree.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <hexhex/types.hpp>
+
+namespace hexhex {
+
+/// A number below kCornerOrders for each order of a tet's four different vertices: which corner has
+/// the smallest, and so on.
+using CornerOrder = std::uint8_t;
+inline constexpr std::size_t kCornerOrders = 32;
+
+/// By arithmetic, as which vertex is smaller is as good as random.
+[[nodiscard]] constexpr CornerOrder cornerOrder(const Tet& tet) noexcept {
+  const unsigned is1Below0 = tet[1] < tet[0] ? 1 : 0;
+  const unsigned rank0 = is1Below0 + (tet[2] < tet[0] ? 1 : 0) + (tet[3] < tet[0] ? 1 : 0);
+  const unsigned above1 = is1Below0 + (tet[1] < tet[2] ? 1 : 0) + (tet[1] < tet[3] ? 1 : 0);
+  return static_cast<CornerOrder>(rank0 + 4 * above1 + (tet[3] < tet[2] ? 16 : 0));
+}
+
+/// A T for each order, made by make(tet) from a tet with such an order.
+template <class T, class F>
+[[nodiscard]] constexpr std::array<T, kCornerOrders> byCornerOrder(const F& make) {
+  std::array<T, kCornerOrders> table{};
+  Tet tet = {0, 1, 2, 3};
+  do {
+    table[cornerOrder(tet)] = make(tet);
+  } while (std::next_permutation(tet.begin(), tet.end()));
+  return table;
+}
+
+/// By order, and by the number of a face within the tet: the face's corners in ascending order of
+/// vertices.
+inline constexpr auto kAscendingFaceCorners =
+    byCornerOrder<std::array<std::array<std::uint8_t, 3>, 4>>([](const Tet& tet) {
+      std::array<std::array<std::uint8_t, 3>, 4> corners{};
+      for (std::size_t face = 0; face < 4; ++face) {
+        for (std::uint8_t corner = 0; corner < 4; ++corner) {
+          std::size_t rank = 0;
+          for (std::size_t other = 0; other < 4; ++other) {
+            rank += other != face && tet[other] < tet[corner] ? 1 : 0;
+          }
+          if (corner != face) corners[face][rank] = corner;
+        }
+      }
+      return corners;
+    });
+
+}  // namespace hexhex
