@@ -69,6 +69,28 @@ class ArcTracer {
     return followBeyond(at, visit);
   }
 
+  /// Goes on from a point inside a face that the edge is known to leave a tet through, where the
+  /// tet behind it does not have the end. That point is not visited again.
+  template <class Visit>
+  [[nodiscard]] ArcEnd followThrough(int face, const std::array<double, 4>& shares,
+                                     SimplexInTet at, const Visit& visit) {
+    FaceWalk& walk = beginnings_[0].walk;
+    walk.resume(at, face, shares);
+    if (!walk.cross(at)) fail(at.tet, "a hex edge leaves the mesh");
+    const bool walking = walk.leave(at);
+    return goOn(walk, at, walking, visit);
+  }
+  /// The hex vertex at the end of an edge that crosses a face, if the closed tet behind has it.
+  /// @param z  the end, in the chart on this side
+  [[nodiscard]] Index vertexBehind(HalfFace halfFace, HalfFace mate, GridPoint z, Direction along) {
+    if (exact_.transitions.isJump(halfFace)) {
+      const Transition across = exact_.transitions.across(halfFace);
+      z = across(z);
+      along = across(along);
+    }
+    return vertices_.find(tetOf(mate), z, endHints_[along]).vertex;
+  }
+
   [[noreturn]] static void fail(Index tet, const char* what);
 
  private:

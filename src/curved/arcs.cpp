@@ -7,6 +7,7 @@
 #include <curved/arc_tracer.hpp>
 #include <curved/arcs.hpp>
 #include <curved/output_waves.hpp>
+#include <curved/tet_exits.hpp>
 
 namespace hexhex {
 
@@ -19,46 +20,166 @@ constexpr double kBelowOne = 1 - 0x1p-53;
 class BlockTracer {
  public:
   BlockTracer(const PreparedMap& map, const LatticeNumbers& vertices, Arcs& arcs, ArcPieces& pieces)
-      : map_(map), vertices_(vertices), arcs_(arcs), pieces_(pieces), tracer_(map, vertices) {}
+      : map_(map),
+        vertices_(vertices),
+        arcs_(arcs),
+        pieces_(pieces),
+        tracer_(map, vertices),
+        exits_(map) {}
 
   void trace(Index tet, const ElementNumbers::Row& row) {
     const GridPoint& begin = row.front().z;
     const int axis = row.front().axis;
+    lookAlong(tet, axis);
     // Early, as who copies it has to wait until memory has all its parts.
     middle_ = {tet, kWholeTet, Frame::along(begin, axis)};
-    if (!vertices_.hasVertices(tet)) {
-      row.forEach([&](const Element& edge) { trace(edge, row.along(), {}, {}); });
-      return;
-    }
-    const GridPoint end = step(begin, direction(axis, 1));
+    const TetExits::Weights first = exits_.atMiddle(begin);
+    const TetExits::Weights& gradient = exits_.gradient(row.along());
     LatticeNumbers::OnLine beginnings(vertices_, tet, begin, row.along(), fromHint_);
-    LatticeNumbers::OnLine ends(vertices_, tet, end, row.along(), toHint_);
+    LatticeNumbers::OnLine ends(vertices_, tet, step(begin, direction(axis, 1)), row.along(),
+                                toHint_);
+    double steps = 0;
     row.forEach([&](const Element& edge) {
-      trace(edge, row.along(), beginnings.find(edge.z),
-            ends.find(step(edge.z, direction(axis, 1))));
+      const TetExits::Weights middle = first.plus(gradient, steps);
+      steps += 1;
+      middle_.frame.origin[row.along()] = edge.z[row.along()];
+      middle_.simplex = edge.simplex;
+      const std::size_t before = pieces_.points();
+      if (edge.simplex != kWholeTet || !traceInside(edge, middle, beginnings, ends)) {
+        arcs_.ends[edge.number] = traceExactly(beginnings.find(edge.z), ends.find(endOf(edge)));
+      }
+      arcs_.pointBegin[edge.number] = pieces_.points() - before;
+      smoothParameters(pieces_.parametersFrom(before));
     });
   }
 
  private:
   using Found = LatticeNumbers::Found;
+  using OnLine = LatticeNumbers::OnLine;
+  /// One of the two ways from a midpoint inside a tet.
+  struct WayOut {
+    TetExits::Exit exit;
+    TetExits::Point point;
+    HalfFace mate = kNone;  ///< behind the face that the edge leaves through; kNone if it does not
+    Index vertex = kNone;   ///< the end of the edge, if it is known
+  };
 
-  /// @param along     in which coordinate the edge differs from others of its row
+  /// @return the edge's second grid point
+  [[nodiscard]] static GridPoint endOf(const Element& edge) noexcept {
+    return step(edge.z, direction(edge.axis, 1));
+  }
+
+  void lookAlong(Index tet, int axis) {
+    if (tet != tet_) {
+      exits_.enter(tet);
+      for (int face = 0; face < 4; ++face) {
+        owned_[static_cast<std::size_t>(face)] = ownedFace(map_.topology, tet, face);
+      }
+    }
+    if (tet != tet_ || axis != axis_) exits_.turn(axis);
+    tet_ = tet;
+    axis_ = axis;
+  }
+
+  /// From a midpoint inside a tet, as far as it is certain which faces the edge leaves it through.
+  /// @return false, without having done anything, if it is not
+  [[nodiscard]] bool traceInside(const Element& edge, const TetExits::Weights& middle,
+                                 OnLine& beginnings, OnLine& ends) {
+    const TetExits::Zeros zeros = exits_.zeros(middle);
+    WayOut back;
+    WayOut ahead;
+    back.exit = exits_.exit<Way::Backward>(zeros);
+    ahead.exit = exits_.exit<Way::Forward>(zeros);
+    if (!leave(back, middle, -back.exit.at) || !leave(ahead, middle, ahead.exit.at)) return false;
+    if (back.mate == kNone) back.vertex = beginnings.find(edge.z).vertex;
+    if (ahead.mate == kNone) ahead.vertex = ends.find(endOf(edge)).vertex;
+    if ((back.mate == kNone && back.vertex == kNone) ||
+        (ahead.mate == kNone && ahead.vertex == kNone)) {
+      return false;
+    }
+    arcs_.ends[edge.number][0] = goBack(edge, back);
+    pieces_.addSegment({tet_, kWholeTet});
+    arcs_.ends[edge.number][1] = goAhead(edge, ahead);
+    return true;
+  }
+
+  /// @param distance  to the exit
+  /// @return whether it is certain that the edge leaves the tet, and where, or that it does not
+  [[nodiscard]] bool leave(WayOut& way, const TetExits::Weights& middle, double distance) {
+    const TetExits::End end = exits_.endAt(distance);
+    if (end != TetExits::End::Beyond) return end == TetExits::End::Inside;
+    way.point = exits_.point(middle, way.exit);
+    if (!way.point.sure) return false;
+    const HalfFace halfFace = halfFaceOf(tet_, way.exit.face);
+    way.mate = map_.topology.mate[halfFace];
+    if (way.mate == kNone) return false;
+    vertices_.fetch(tetOf(way.mate));
+    return true;
+  }
+
+  [[nodiscard]] Index goBack(const Element& edge, WayOut& way) {
+    if (way.mate == kNone) return way.vertex;
+    const Index vertex = vertexBehind(way, edge.z, direction(axis_, -1));
+    if (vertex != kNone) {
+      pieces_.addSegment({tetOf(way.mate), kWholeTet});
+      addExit(way);
+      return vertex;
+    }
+    const std::size_t firstPoint = pieces_.points();
+    const std::size_t firstSegment = pieces_.segments();
+    addExit(way);
+    const ArcEnd first = tracer_.followThrough(
+        way.exit.face, sharesOf(way), {tet_, kWholeTet, middle_.frame.reversed()},
+        [&](const SimplexInTet& carrier, const ArcExit& exit) {
+          addSegment(carrier);
+          pieces_.addPoint(exit, 1 - exit.parameter);
+        });
+    addSegment(first.carrier);
+    pieces_.reverseFrom(firstPoint, firstSegment);
+    return first.vertex;
+  }
+  [[nodiscard]] Index goAhead(const Element& edge, WayOut& way) {
+    if (way.mate == kNone) return way.vertex;
+    addExit(way);
+    const Index vertex = vertexBehind(way, endOf(edge), direction(axis_, 1));
+    if (vertex != kNone) {
+      pieces_.addSegment({tetOf(way.mate), kWholeTet});
+      return vertex;
+    }
+    const ArcEnd last = tracer_.followThrough(way.exit.face, sharesOf(way), middle_,
+                                              [&](const SimplexInTet& carrier, const ArcExit& exit) {
+                                                addSegment(carrier);
+                                                pieces_.addPoint(exit, exit.parameter);
+                                              });
+    addSegment(last.carrier);
+    return last.vertex;
+  }
+  /// @param z  the end of the edge
+  [[nodiscard]] Index vertexBehind(const WayOut& way, const GridPoint& z, Direction along) {
+    if (!vertices_.hasVertices(tetOf(way.mate))) return kNone;
+    return tracer_.vertexBehind(halfFaceOf(tet_, way.exit.face), way.mate, z, along);
+  }
+  void addExit(const WayOut& way) {
+    const double parameter = 0.5 + way.exit.at;
+    pieces_.addPoint({owned_[static_cast<std::size_t>(way.exit.face)],
+                      exits_.position(way.point.shares), parameter},
+                     parameter);
+  }
+  [[nodiscard]] static std::array<double, 4> sharesOf(const WayOut& way) noexcept {
+    const TetExits::Weights& shares = way.point.shares;
+    return {shares.of01[0], shares.of01[1], shares.of23[0], shares.of23[1]};
+  }
+
+  /// From the midpoint, wherever that is.
   /// @param from, to  what the tet has of the edge's ends
-  void trace(const Element& edge, std::size_t along, const Found& from, const Found& to) {
+  [[nodiscard]] std::array<Index, 2> traceExactly(const Found& from, const Found& to) {
     if (from.vertex != kNone && to.vertex != kNone) {
       // By convexity, all between lies in the smallest simplex that contains both ends.
-      arcs_.ends[edge.number] = {from.vertex, to.vertex};
-      arcs_.pointBegin[edge.number] = 0;
       addSegment({middle_.tet, static_cast<CornerMask>(from.simplex | to.simplex), {}});
-      return;
+      return {from.vertex, to.vertex};
     }
-    const std::size_t before = pieces_.points();
-    middle_.frame.origin[along] = edge.z[along];
-    middle_.simplex = edge.simplex;
-    arcs_.ends[edge.number] = edge.simplex == kWholeTet ? traceBothWays(middle_, from, to)
-                                                        : traceFromBeginning(middle_, from);
-    arcs_.pointBegin[edge.number] = pieces_.points() - before;
-    smoothParameters(pieces_.parametersFrom(before));
+    return middle_.simplex == kWholeTet ? traceBothWays(middle_, from, to)
+                                        : traceFromBeginning(middle_, from);
   }
 
   /// From a midpoint inside a tet.
@@ -139,6 +260,10 @@ class BlockTracer {
   Arcs& arcs_;
   ArcPieces& pieces_;
   ArcTracer tracer_;
+  TetExits exits_;
+  Index tet_ = kNone;  ///< that exits are known of
+  int axis_ = -1;      ///< of its chart, along which
+  std::array<OwnedSimplex, 4> owned_{};  ///< its faces
   SimplexInTet middle_;  ///< the midpoint of the edge at hand
   LineHint fromHint_;
   LineHint toHint_;

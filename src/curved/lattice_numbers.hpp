@@ -10,6 +10,7 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/prefetch.hpp>
 #include <lattice/half_grids.hpp>
 #include <map/prepare.hpp>
 
@@ -73,6 +74,12 @@ class LatticeNumbers {
   /// Whether a closed tet contains any vertices.
   [[nodiscard]] bool hasVertices(Index tet) const noexcept {
     return ((occupied_[tet / 64] >> (tet % 64)) & 1U) != 0;
+  }
+
+  /// Tells memory that find() will be asked soon.
+  void fetch(Index tet) const noexcept {
+    prefetch(&axes_[tet]);
+    prefetch(&lineBegin_[tet]);
   }
 
   struct Found {
