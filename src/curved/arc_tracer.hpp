@@ -82,13 +82,9 @@ class ArcTracer {
   }
   /// The hex vertex at the end of an edge that crosses a face, if the closed tet behind has it.
   /// @param z  the end, in the chart on this side
-  [[nodiscard]] Index vertexBehind(HalfFace halfFace, HalfFace mate, GridPoint z, Direction along) {
-    if (exact_.transitions.isJump(halfFace)) {
-      const Transition across = exact_.transitions.across(halfFace);
-      z = across(z);
-      along = across(along);
-    }
-    return vertices_.find(tetOf(mate), z, endHints_[along]).vertex;
+  [[nodiscard]] Index vertexBehind(HalfFace halfFace, HalfFace mate, GridPoint z) const {
+    if (exact_.transitions.isJump(halfFace)) z = exact_.transitions.across(halfFace)(z);
+    return vertices_.find(tetOf(mate), z).vertex;
   }
 
   [[noreturn]] static void fail(Index tet, const char* what);
@@ -136,7 +132,7 @@ class ArcTracer {
       visit(std::as_const(at), walk.exit(at.tet));
       if (!walk.cross(at)) fail(at.tet, "a hex edge leaves the mesh");
       // To look for the end takes less than to leave the tet, so where it may be, it is done first.
-      const Index vertex = vertices_.hasVertices(at.tet) ? vertexIn(at) : kNone;
+      const Index vertex = vertexIn(at);
       if (vertex != kNone || !walk.leave(at)) return vertex;
     }
     fail(at.tet, "a hex edge does not end");
@@ -144,7 +140,7 @@ class ArcTracer {
   /// The hex vertex at the end of the edge, if the closed tet has it.
   [[nodiscard]] Index vertexIn(const SimplexInTet& at) {
     const Direction along = at.frame.axes[0];
-    return vertices_.find(at.tet, step(at.frame.origin, along), endHints_[along]).vertex;
+    return vertices_.find(at.tet, step(at.frame.origin, along)).vertex;
   }
   [[nodiscard]] LatticeTet see(const SimplexInTet& at) const {
     return at.frame.see(exact_.corners[at.tet], exact_.unit);
@@ -157,8 +153,6 @@ class ArcTracer {
   const LatticeNumbers& vertices_;
   std::array<Beginning, 2> beginnings_;  ///< by way
   SimplexStar star_;
-  /// Where the last edge ended, by direction, as edges come in the order of a sweep.
-  std::array<LineHint, kDirections> endHints_;
 };
 
 }  // namespace hexhex

@@ -35,9 +35,6 @@ class BlockTracer {
     middle_ = {tet, kWholeTet, Frame::along(begin, axis)};
     const TetExits::Weights first = exits_.atMiddle(begin);
     const TetExits::Weights& gradient = exits_.gradient(row.along());
-    LatticeNumbers::OnLine beginnings(vertices_, tet, begin, row.along(), fromHint_);
-    LatticeNumbers::OnLine ends(vertices_, tet, step(begin, direction(axis, 1)), row.along(),
-                                toHint_);
     double steps = 0;
     row.forEach([&](const Element& edge) {
       const TetExits::Weights middle = first.plus(gradient, steps);
@@ -45,8 +42,9 @@ class BlockTracer {
       middle_.frame.origin[row.along()] = edge.z[row.along()];
       middle_.simplex = edge.simplex;
       const std::size_t before = pieces_.points();
-      if (edge.simplex != kWholeTet || !traceInside(edge, middle, beginnings, ends)) {
-        arcs_.ends[edge.number] = traceExactly(beginnings.find(edge.z), ends.find(endOf(edge)));
+      if (edge.simplex != kWholeTet || !traceInside(edge, middle)) {
+        arcs_.ends[edge.number] =
+            traceExactly(vertices_.find(tet, edge.z), vertices_.find(tet, endOf(edge)));
       }
       arcs_.pointBegin[edge.number] = pieces_.points() - before;
       smoothParameters(pieces_.parametersFrom(before));
@@ -55,7 +53,6 @@ class BlockTracer {
 
  private:
   using Found = LatticeNumbers::Found;
-  using OnLine = LatticeNumbers::OnLine;
   /// One of the two ways from a midpoint inside a tet.
   struct WayOut {
     TetExits::Exit exit;
@@ -83,16 +80,15 @@ class BlockTracer {
 
   /// From a midpoint inside a tet, as far as it is certain which faces the edge leaves it through.
   /// @return false, without having done anything, if it is not
-  [[nodiscard]] bool traceInside(const Element& edge, const TetExits::Weights& middle,
-                                 OnLine& beginnings, OnLine& ends) {
+  [[nodiscard]] bool traceInside(const Element& edge, const TetExits::Weights& middle) {
     const TetExits::Zeros zeros = exits_.zeros(middle);
     WayOut back;
     WayOut ahead;
     back.exit = exits_.exit<Way::Backward>(zeros);
     ahead.exit = exits_.exit<Way::Forward>(zeros);
     if (!leave(back, middle, -back.exit.at) || !leave(ahead, middle, ahead.exit.at)) return false;
-    if (back.mate == kNone) back.vertex = beginnings.find(edge.z).vertex;
-    if (ahead.mate == kNone) ahead.vertex = ends.find(endOf(edge)).vertex;
+    if (back.mate == kNone) back.vertex = vertices_.find(tet_, edge.z).vertex;
+    if (ahead.mate == kNone) ahead.vertex = vertices_.find(tet_, endOf(edge)).vertex;
     if ((back.mate == kNone && back.vertex == kNone) ||
         (ahead.mate == kNone && ahead.vertex == kNone)) {
       return false;
@@ -119,7 +115,7 @@ class BlockTracer {
 
   [[nodiscard]] Index goBack(const Element& edge, WayOut& way) {
     if (way.mate == kNone) return way.vertex;
-    const Index vertex = vertexBehind(way, edge.z, direction(axis_, -1));
+    const Index vertex = vertexBehind(way, edge.z);
     if (vertex != kNone) {
       pieces_.addSegment({tetOf(way.mate), kWholeTet});
       addExit(way);
@@ -141,7 +137,7 @@ class BlockTracer {
   [[nodiscard]] Index goAhead(const Element& edge, WayOut& way) {
     if (way.mate == kNone) return way.vertex;
     addExit(way);
-    const Index vertex = vertexBehind(way, endOf(edge), direction(axis_, 1));
+    const Index vertex = vertexBehind(way, endOf(edge));
     if (vertex != kNone) {
       pieces_.addSegment({tetOf(way.mate), kWholeTet});
       return vertex;
@@ -155,9 +151,8 @@ class BlockTracer {
     return last.vertex;
   }
   /// @param z  the end of the edge
-  [[nodiscard]] Index vertexBehind(const WayOut& way, const GridPoint& z, Direction along) {
-    if (!vertices_.hasVertices(tetOf(way.mate))) return kNone;
-    return tracer_.vertexBehind(halfFaceOf(tet_, way.exit.face), way.mate, z, along);
+  [[nodiscard]] Index vertexBehind(const WayOut& way, const GridPoint& z) const {
+    return tracer_.vertexBehind(halfFaceOf(tet_, way.exit.face), way.mate, z);
   }
   void addExit(const WayOut& way) {
     const double parameter = 0.5 + way.exit.at;
@@ -265,8 +260,6 @@ class BlockTracer {
   int axis_ = -1;      ///< of its chart, along which
   std::array<OwnedSimplex, 4> owned_{};  ///< its faces
   SimplexInTet middle_;  ///< the midpoint of the edge at hand
-  LineHint fromHint_;
-  LineHint toHint_;
 };
 
 /// Makes room.

@@ -1,4 +1,4 @@
-#include <limits>
+#include <algorithm>
 #include <string>
 
 #include <curved/lattice_numbers.hpp>
@@ -12,6 +12,7 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map) : map_(map) {
   lineBegin_.resize(tets + 1);
   lineBegin_[tets] = 0;
   occupied_.assign((tets + 63) / 64, 0);
+  boxes_.resize(tets);
 }
 
 LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : LatticeNumbers(map) {
@@ -55,6 +56,7 @@ void LatticeNumbers::Sweep::finish(Stage& stage) {
   }
   exclusiveScan(std::span(n.lineBegin_));
   n.lines_.resize(n.lineBegin_.back());
+  std::vector<std::uint64_t> boxPoints(blocks_.size());
   parallelBlocks(stage, n.map_.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    std::size_t at = n.lineBegin_[begin];
@@ -63,7 +65,24 @@ void LatticeNumbers::Sweep::finish(Stage& stage) {
                    std::vector<SweptLine> scratch;
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
-                     if (n.hasVertices(tet)) n.number(tet, scratch);
+                     if (!n.hasVertices(tet)) continue;
+                     n.number(tet, scratch);
+                     n.boxes_[tet] = n.boxOf(tet);
+                     if (n.boxes_[tet].begin != kLarge) boxPoints[block] += n.boxes_[tet].points();
+                   }
+                 });
+  // When all tets have the numbers of what they own.
+  const std::uint64_t points = exclusiveScan(std::span(boxPoints));
+  n.boxVertices_.resize(points);
+  n.boxSimplices_.resize(points);
+  parallelBlocks(stage, n.map_.topology.tetCount(), kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   std::uint64_t at = boxPoints[block];
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     if (!n.hasVertices(tet) || n.boxes_[tet].begin == kLarge) continue;
+                     n.fillBox(tet, at);
+                     at += n.boxes_[tet].points();
                    }
                  });
 }
@@ -94,17 +113,67 @@ void LatticeNumbers::enter(Line& line, const VertexRun& run) {
   }
 }
 
-const LatticeNumbers::Line* LatticeNumbers::lineAt(Index tet, const GridPoint& z,
-                                                   LineHint& hint) const {
+/// Without its place in the tables, but for boxes that have none.
+LatticeNumbers::Box LatticeNumbers::boxOf(Index tet) const noexcept {
+  const std::span<const Line> lines = linesOf(tet);
   const std::array<std::uint8_t, 3>& axes = axes_[tet]();
-  return findLine(
-      linesOf(tet), z[axes[0]], z[axes[1]],
-      [](const Line& l) -> const SweptLine& { return l.swept; }, hint);
+  const SweptLine& front = lines.front().swept;
+  std::array<std::int32_t, 3> low = {front.level, front.row, front.first};
+  std::array<std::int32_t, 3> high = {lines.back().swept.level, front.row, front.first};
+  std::uint64_t points = 0;
+  for (const Line& line : lines) {
+    const auto count = static_cast<std::int32_t>(line.swept.count);
+    low[1] = std::min(low[1], line.swept.row);
+    high[1] = std::max(high[1], line.swept.row);
+    low[2] = std::min(low[2], line.swept.first);
+    high[2] = std::max(high[2], line.swept.first + count - 1);
+    points += line.swept.count;
+  }
+  Box box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.first[axes[k]] = low[k];
+    box.size[axes[k]] = static_cast<std::uint32_t>(high[k] - low[k] + 1);
+  }
+  // Tets fill a sixth of their bounding box if they have three edges along the axes. Long ones
+  // across may fill next to nothing.
+  constexpr std::uint64_t kMostPerVertex = 16;
+  if (box.points() > kMostPerVertex * points + 64) box.begin = kLarge;
+  return box;
 }
 
-LatticeNumbers::Found LatticeNumbers::find(Index tet, const GridPoint& z, LineHint& hint) const {
-  const Line* const line = lineAt(tet, z, hint);
-  return line == nullptr ? Found{} : foundOn(tet, *line, z, axes_[tet]()[2]);
+/// @param begin  of the box in the tables
+void LatticeNumbers::fillBox(Index tet, std::uint64_t begin) {
+  Box& box = boxes_[tet];
+  box.begin = begin;
+  std::fill_n(boxVertices_.data() + begin, box.points(), kNone);
+  const std::array<std::uint8_t, 3>& axes = axes_[tet]();
+  const std::array<std::size_t, 3> strides = {std::size_t{box.size[1]} * box.size[2], box.size[2],
+                                              1};
+  for (const Line& line : linesOf(tet)) {
+    GridPoint z = line.swept.point(0);
+    std::size_t at = begin;
+    for (std::size_t k = 0; k < 3; ++k) {
+      at += strides[k] * static_cast<std::size_t>(z[k] - box.first[k]);
+    }
+    for (std::uint32_t i = 0; i < line.swept.count; ++i) {
+      const Found found = foundOn(tet, line, z, i);
+      boxVertices_[at] = found.vertex;
+      boxSimplices_[at] = found.simplex;
+      at += strides[axes[2]];
+      ++z[axes[2]];
+    }
+  }
+}
+
+LatticeNumbers::Found LatticeNumbers::findOnLines(Index tet, const GridPoint& z) const {
+  const std::array<std::uint8_t, 3>& axes = axes_[tet]();
+  LineHint hint;
+  const Line* const line = findLine(
+      linesOf(tet), z[axes[0]], z[axes[1]],
+      [](const Line& l) -> const SweptLine& { return l.swept; }, hint);
+  if (line == nullptr) return {};
+  const auto i = static_cast<std::uint32_t>(z[axes[2]] - line->swept.first);
+  return i < line->swept.count ? foundOn(tet, *line, z, i) : Found{};
 }
 
 /// At the end of a line, or in a face that another tet owns.
@@ -121,18 +190,8 @@ LatticeNumbers::Found LatticeNumbers::foundAtEnd(Index tet, const Line& line, co
   // The tet on the other side of a face owns it.
   const HalfFace halfFace = halfFaceOf(tet, oppositeCorner(simplex));
   const Index owner = tetOf(map_.topology.mate[halfFace]);
-  LineHint there;
-  return {find(owner, map_.exact.transitions.across(halfFace)(z), there).vertex, simplex};
+  return {findOnLines(owner, map_.exact.transitions.across(halfFace)(z)).vertex, simplex};
 }
-
-LatticeNumbers::OnLine::OnLine(const LatticeNumbers& numbers, Index tet, const GridPoint& z,
-                               std::size_t axis, LineHint& hint)
-    : numbers_(numbers),
-      tet_(tet),
-      axis_(axis),
-      hint_(hint),
-      swept_(numbers.axes_[tet]()[2] == axis),
-      line_(swept_ ? numbers.lineAt(tet, z, hint) : nullptr) {}
 
 void LatticeNumbers::describe(const VertexDescriptions& to, Stage& stage) const {
   parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,

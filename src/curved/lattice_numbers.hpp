@@ -77,44 +77,27 @@ class LatticeNumbers {
   }
 
   /// Tells memory that find() will be asked soon.
-  void fetch(Index tet) const noexcept {
-    prefetch(&axes_[tet]);
-    prefetch(&lineBegin_[tet]);
-  }
+  void fetch(Index tet) const noexcept { prefetch(&boxes_[tet]); }
 
   struct Found {
     Index vertex = kNone;             ///< kNone if the closed tet does not contain the point
     CornerMask simplex = kNoSimplex;  ///< of the tet, in whose interior it lies
   };
   /// The vertex at a grid point in the chart of a tet.
-  [[nodiscard]] Found find(Index tet, const GridPoint& z, LineHint& hint) const;
-
- private:
-  struct Line;
-
- public:
-  /// The vertices of a tet on a line of the grid: for searches that go along it.
-  class OnLine {
-   public:
-    /// @param z     a point of the line
-    /// @param axis  along it
-    OnLine(const LatticeNumbers& numbers, Index tet, const GridPoint& z, std::size_t axis,
-           LineHint& hint);
-
-    /// The vertex at a point of the line.
-    [[nodiscard]] Found find(const GridPoint& z) {
-      if (!swept_) return numbers_.find(tet_, z, hint_);
-      return line_ == nullptr ? Found{} : numbers_.foundOn(tet_, *line_, z, axis_);
+  [[nodiscard]] Found find(Index tet, const GridPoint& z) const {
+    if (!hasVertices(tet)) return {};
+    const Box& box = boxes_[tet];
+    std::size_t place = 0;
+    bool isInside = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto at = static_cast<std::uint32_t>(z[k] - box.first[k]);
+      isInside &= at < box.size[k];
+      place = place * box.size[k] + at;
     }
-
-   private:
-    const LatticeNumbers& numbers_;
-    Index tet_;
-    std::size_t axis_;
-    LineHint& hint_;
-    bool swept_;        ///< whether the tet was swept along such lines
-    const Line* line_;  ///< then: the line, or nullptr if it has no vertices
-  };
+    if (!isInside) return {};
+    if (box.begin == kLarge) return findOnLines(tet, z);
+    return {boxVertices_[box.begin + place], boxSimplices_[box.begin + place]};
+  }
 
  private:
   /// A swept line with the numbers of its points.
@@ -130,12 +113,25 @@ class LatticeNumbers {
     const std::size_t begin = lineBegin_[tet];
     return std::span(lines_).subspan(begin, lineBegin_[std::size_t{tet} + 1] - begin);
   }
-  [[nodiscard]] const Line* lineAt(Index tet, const GridPoint& z, LineHint& hint) const;
-  /// The vertex at a point of a line that is swept along an axis.
+  /// The smallest box with all vertices of a tet, in its chart. In a table of its grid points, a
+  /// vertex is found at once.
+  struct Box {
+    std::uint64_t begin = 0;  ///< in the tables; kLarge if it is not there
+    GridPoint first{};
+    std::array<std::uint32_t, 3> size{};  ///< points along each axis
+
+    [[nodiscard]] std::uint64_t points() const noexcept {
+      return std::uint64_t{size[0]} * size[1] * size[2];
+    }
+  };
+  static constexpr std::uint64_t kLarge = ~std::uint64_t{0};
+
+  [[nodiscard]] Box boxOf(Index tet) const noexcept;
+  void fillBox(Index tet, std::uint64_t begin);
+  [[nodiscard]] Found findOnLines(Index tet, const GridPoint& z) const;
+  /// The i-th vertex of a line, at grid point z.
   [[nodiscard]] Found foundOn(Index tet, const Line& line, const GridPoint& z,
-                              std::size_t axis) const {
-    const auto i = static_cast<std::uint32_t>(z[axis] - line.swept.first);
-    if (i >= line.swept.count) return {};
+                              std::uint32_t i) const {
     if (i > 0 && i + 1 < line.swept.count && line.inner != kNone) {
       return {line.inner + static_cast<Index>(line.step * static_cast<std::int32_t>(i - 1)),
               line.swept.inner()};
@@ -153,6 +149,10 @@ class LatticeNumbers {
   Array<std::uint64_t> lineBegin_;  ///< per tet (+1)
   Array<std::uint64_t> occupied_;   ///< a bit per tet: few enough to be at hand wherever arcs go
   Array<Line> lines_;
+  // For find(). Only tets with vertices have a box.
+  Array<Box> boxes_;              ///< per tet
+  Array<Index> boxVertices_;      ///< per point of the boxes
+  Array<CornerMask> boxSimplices_;
 };
 
 /// Lines in the order of a sweep: the one at a level and row, or nullptr.
