@@ -132,7 +132,7 @@ class ArcTracer {
       visit(std::as_const(at), walk.exit(at.tet));
       if (!walk.cross(at)) fail(at.tet, "a hex edge leaves the mesh");
       // To look for the end takes less than to leave the tet, so where it may be, it is done first.
-      const Index vertex = vertexIn(at);
+      const Index vertex = vertices_.hasVertices(at.tet) ? vertexIn(at) : kNone;
       if (vertex != kNone || !walk.leave(at)) return vertex;
     }
     fail(at.tet, "a hex edge does not end");

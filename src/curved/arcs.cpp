@@ -27,12 +27,24 @@ class BlockTracer {
         tracer_(map, vertices),
         exits_(map) {}
 
-  void trace(Index tet, const ElementNumbers::Row& row) {
+  void trace(Index tet, std::uint64_t edges, const ElementNumbers::Row& row) {
     const GridPoint& begin = row.front().z;
     const int axis = row.front().axis;
-    lookAlong(tet, axis);
     // Early, as who copies it has to wait until memory has all its parts.
     middle_ = {tet, kWholeTet, Frame::along(begin, axis)};
+    if (edges < kFewEdges) {
+      row.forEach([&](const Element& edge) {
+        middle_.frame.origin[row.along()] = edge.z[row.along()];
+        middle_.simplex = edge.simplex;
+        const std::size_t before = pieces_.points();
+        arcs_.ends[edge.number] =
+            traceExactly(vertices_.find(tet, edge.z), vertices_.find(tet, endOf(edge)));
+        arcs_.pointBegin[edge.number] = pieces_.points() - before;
+        smoothParameters(pieces_.parametersFrom(before));
+      });
+      return;
+    }
+    lookAlong(tet, axis);
     const TetExits::Weights first = exits_.atMiddle(begin);
     const TetExits::Weights& gradient = exits_.gradient(row.along());
     double steps = 0;
@@ -51,6 +63,7 @@ class BlockTracer {
     });
   }
 
+  static constexpr std::uint64_t kFewEdges = 4;
  private:
   using Found = LatticeNumbers::Found;
   /// One of the two ways from a midpoint inside a tet.
@@ -293,7 +306,9 @@ Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const Ele
         BlockTracer tracer(map, vertices, arcs, pieces[block % kWaveBlocks]);
         for (std::size_t t = begin; t < end; ++t) {
           const auto tet = static_cast<Index>(t);
-          edges.forEachRow(tet, [&](const ElementNumbers::Row& row) { tracer.trace(tet, row); });
+          const std::uint64_t owned = edges.begin(t + 1) - edges.begin(t);
+          edges.forEachRow(
+              tet, [&](const ElementNumbers::Row& row) { tracer.trace(tet, owned, row); });
         }
       },
       [&](std::size_t firstBlock, std::size_t endBlock) {
