@@ -115,8 +115,9 @@ class ArcTracer {
       }
       const LatticeTet seen = see(at);
       const SimplexPoint exit = exitPoint(seen, at.simplex, 0);
-      visit(std::as_const(at), exitAt(at.tet, seen, exit));
-      at = behind({at.tet, exit.simplex(), at.frame});
+      const Passage passage = pass(at, exit.simplex());
+      visit(std::as_const(at), exitAt(passage.exit, at.tet, seen, exit));
+      at = passage.carrier;
       // The end is in the closed tet if and only if the edge does not leave it before.
       const Index vertex = vertexIn(at);
       if (vertex != kNone) return {at, vertex};
@@ -145,7 +146,17 @@ class ArcTracer {
   [[nodiscard]] LatticeTet see(const SimplexInTet& at) const {
     return at.frame.see(exact_.corners[at.tet], exact_.unit);
   }
-  [[nodiscard]] ArcExit exitAt(Index tet, const LatticeTet& seen, const SimplexPoint& point) const;
+  /// The simplex at whose inner point a part ends, and the carrier of the next part.
+  struct Passage {
+    OwnedSimplex exit;
+    SimplexInTet carrier;
+  };
+  /// @param at    the carrier of the part that ends
+  /// @param exit  where, in the same tet
+  [[nodiscard]] Passage pass(const SimplexInTet& at, CornerMask exit);
+  [[nodiscard]] Passage passOnBoundary(const SimplexInTet& at, CornerMask edge) const;
+  [[nodiscard]] ArcExit exitAt(const OwnedSimplex& generator, Index tet, const LatticeTet& seen,
+                               const SimplexPoint& point) const;
 
   const PreparedMap& map_;
   const ExactMap& exact_;

@@ -187,7 +187,7 @@ class BlockTracer {
       return {from.vertex, to.vertex};
     }
     return middle_.simplex == kWholeTet ? traceBothWays(middle_, from, to)
-                                        : traceFromBeginning(middle_, from);
+                                        : traceFromBoundary(middle_, from);
   }
 
   /// From a midpoint inside a tet.
@@ -201,56 +201,63 @@ class BlockTracer {
     if (from.vertex == kNone) tracer_.begin(Way::Backward, middle, seen, sides);
     if (to.vertex == kNone) tracer_.begin(Way::Forward, middle, seen, sides);
     if (from.vertex == kNone) {
-      ends[0] = traceBack();
+      ends[0] = traceBack(
+          [&](const auto& visit) { return tracer_.followBegun(Way::Backward, visit); });
     } else {
       addSegment(middle);
     }
-    if (to.vertex != kNone) return ends;
-    bool atMiddle = true;
-    const ArcEnd last =
-        tracer_.followBegun(Way::Forward, [&](const SimplexInTet& carrier, const ArcExit& exit) {
-          if (!atMiddle) addSegment(carrier);
-          atMiddle = false;
-          pieces_.addPoint(exit, exit.parameter);
-        });
-    addSegment(last.carrier);
-    ends[1] = last.vertex;
+    if (to.vertex == kNone) {
+      ends[1] = traceAhead(
+          [&](const auto& visit) { return tracer_.followBegun(Way::Forward, visit); });
+    }
     return ends;
   }
 
+  /// From a midpoint on the boundary of tets: back to the beginning, then on from where it was.
+  /// @param from  what the tet has of the beginning
+  [[nodiscard]] std::array<Index, 2> traceFromBoundary(const SimplexInTet& middle,
+                                                       const Found& from) {
+    SimplexInTet back{middle.tet, static_cast<CornerMask>(middle.simplex | from.simplex),
+                      middle.frame.reversed()};
+    Index first = from.vertex;
+    if (first == kNone) {
+      back = tracer_.behind({middle.tet, middle.simplex, back.frame});
+      first = traceBack([&](const auto& visit) { return tracer_.follow(back, visit); });
+    } else {
+      addSegment(back);
+    }
+    // Whether or not that part ends at the midpoint, it is there already.
+    back.frame = back.frame.reversed();
+    return {first, traceAhead([&](const auto& visit) { return tracer_.follow(back, visit); })};
+  }
+
   /// Adds what there is from the beginning to the segment at the midpoint.
+  /// @param follow  the way back, of a visitor
   /// @return the vertex at the beginning
-  [[nodiscard]] Index traceBack() {
+  template <class Follow>
+  [[nodiscard]] Index traceBack(const Follow& follow) {
     const std::size_t firstPoint = pieces_.points();
     const std::size_t firstSegment = pieces_.segments();
-    const ArcEnd first =
-        tracer_.followBegun(Way::Backward, [&](const SimplexInTet& carrier, const ArcExit& exit) {
-          addSegment(carrier);
-          pieces_.addPoint(exit, 1 - exit.parameter);
-        });
+    const ArcEnd first = follow([&](const SimplexInTet& carrier, const ArcExit& exit) {
+      addSegment(carrier);
+      pieces_.addPoint(exit, 1 - exit.parameter);
+    });
     addSegment(first.carrier);
     pieces_.reverseFrom(firstPoint, firstSegment);
     return first.vertex;
   }
-
-  /// From a midpoint on the boundary of tets: back to the beginning, then all the way.
-  /// @param from  what the tet has of the beginning
-  [[nodiscard]] std::array<Index, 2> traceFromBeginning(const SimplexInTet& middle,
-                                                        const Found& from) {
-    ArcEnd first{{middle.tet, static_cast<CornerMask>(middle.simplex | from.simplex), middle.frame},
-                 from.vertex};
-    if (from.vertex == kNone) {
-      const SimplexInTet turned{middle.tet, middle.simplex, middle.frame.reversed()};
-      first = tracer_.follow(tracer_.behind(turned), [](const SimplexInTet&, const ArcExit&) {});
-      first.carrier.frame = first.carrier.frame.reversed();
-    }
-    const ArcEnd last =
-        tracer_.follow(first.carrier, [&](const SimplexInTet& carrier, const ArcExit& exit) {
-          addSegment(carrier);
-          pieces_.addPoint(exit, exit.parameter);
-        });
-    addSegment(last.carrier);
-    return {first.vertex, last.vertex};
+  /// Adds what there is behind the segment at the midpoint.
+  /// @return the vertex at the end
+  template <class Follow>
+  [[nodiscard]] Index traceAhead(const Follow& follow) {
+    bool atMiddle = true;
+    const ArcEnd last = follow([&](const SimplexInTet& carrier, const ArcExit& exit) {
+      if (!atMiddle) addSegment(carrier);
+      atMiddle = false;
+      pieces_.addPoint(exit, exit.parameter);
+    });
+    if (!atMiddle) addSegment(last.carrier);
+    return last.vertex;
   }
 
   void addSegment(const SimplexInTet& carrier) {
