@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <string>
 
 #include <curved/lattice_numbers.hpp>
@@ -12,7 +13,7 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map) : map_(map) {
   lineBegin_.resize(tets + 1);
   lineBegin_[tets] = 0;
   occupied_.assign((tets + 63) / 64, 0);
-  boxes_.resize(tets);
+  boxOf_.resize(tets);
 }
 
 LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : LatticeNumbers(map) {
@@ -56,7 +57,6 @@ void LatticeNumbers::Sweep::finish(Stage& stage) {
   }
   exclusiveScan(std::span(n.lineBegin_));
   n.lines_.resize(n.lineBegin_.back());
-  std::vector<std::uint64_t> boxPoints(blocks_.size());
   parallelBlocks(stage, n.map_.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    std::size_t at = n.lineBegin_[begin];
@@ -65,26 +65,44 @@ void LatticeNumbers::Sweep::finish(Stage& stage) {
                    std::vector<SweptLine> scratch;
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
-                     if (!n.hasVertices(tet)) continue;
-                     n.number(tet, scratch);
-                     n.boxes_[tet] = n.boxOf(tet);
-                     if (n.boxes_[tet].begin != kLarge) boxPoints[block] += n.boxes_[tet].points();
+                     if (n.hasVertices(tet)) n.number(tet, scratch);
                    }
                  });
-  // When all tets have the numbers of what they own.
-  const std::uint64_t points = exclusiveScan(std::span(boxPoints));
-  n.boxVertices_.resize(points);
-  n.boxSimplices_.resize(points);
-  parallelBlocks(stage, n.map_.topology.tetCount(), kSweepBlock,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   std::uint64_t at = boxPoints[block];
-                   for (std::size_t t = begin; t < end; ++t) {
-                     const auto tet = static_cast<Index>(t);
-                     if (!n.hasVertices(tet) || n.boxes_[tet].begin == kLarge) continue;
-                     n.fillBox(tet, at);
-                     at += n.boxes_[tet].points();
-                   }
-                 });
+  n.fillBoxes(stage);
+}
+
+/// When all tets have the numbers of what they own.
+void LatticeNumbers::fillBoxes(Stage& stage) {
+  const std::size_t tets = map_.topology.tetCount();
+  std::vector<std::size_t> boxes(blockCount(tets, kSweepBlock));
+  for (std::size_t word = 0; word < occupied_.size(); ++word) {
+    boxes[word / (kSweepBlock / 64)] += static_cast<std::size_t>(std::popcount(occupied_[word]));
+  }
+  boxes_.resize(exclusiveScan(std::span(boxes)));
+  std::vector<std::uint64_t> points(boxes.size());
+  const auto forEachBox = [&](const auto& visit) {
+    parallelBlocks(stage, tets, kSweepBlock,
+                   [&](std::size_t begin, std::size_t end, std::size_t block) {
+                     std::size_t box = boxes[block];
+                     for (std::size_t t = begin; t < end; ++t) {
+                       const auto tet = static_cast<Index>(t);
+                       if (hasVertices(tet)) visit(tet, block, box++);
+                     }
+                   });
+  };
+  forEachBox([&](Index tet, std::size_t block, std::size_t box) {
+    boxOf_[tet] = static_cast<Index>(box);
+    boxes_[box] = measureBox(tet);
+    if (boxes_[box].begin != kLarge) points[block] += boxes_[box].points();
+  });
+  const std::uint64_t count = exclusiveScan(std::span(points));
+  boxVertices_.resize(count);
+  boxSimplices_.resize(count);
+  forEachBox([&](Index tet, std::size_t block, std::size_t box) {
+    if (boxes_[box].begin == kLarge) return;
+    fillBox(tet, points[block]);
+    points[block] += boxes_[box].points();
+  });
 }
 
 /// Enters the numbers of a tet's points.
@@ -114,7 +132,7 @@ void LatticeNumbers::enter(Line& line, const VertexRun& run) {
 }
 
 /// Without its place in the tables, but for boxes that have none.
-LatticeNumbers::Box LatticeNumbers::boxOf(Index tet) const noexcept {
+LatticeNumbers::Box LatticeNumbers::measureBox(Index tet) const noexcept {
   const std::span<const Line> lines = linesOf(tet);
   const std::array<std::uint8_t, 3>& axes = axes_[tet]();
   const SweptLine& front = lines.front().swept;
@@ -143,7 +161,7 @@ LatticeNumbers::Box LatticeNumbers::boxOf(Index tet) const noexcept {
 
 /// @param begin  of the box in the tables
 void LatticeNumbers::fillBox(Index tet, std::uint64_t begin) {
-  Box& box = boxes_[tet];
+  Box& box = boxes_[boxOf_[tet]];
   box.begin = begin;
   std::fill_n(boxVertices_.data() + begin, box.points(), kNone);
   const std::array<std::uint8_t, 3>& axes = axes_[tet]();

@@ -77,7 +77,7 @@ class LatticeNumbers {
   }
 
   /// Tells memory that find() will be asked soon.
-  void fetch(Index tet) const noexcept { prefetch(&boxes_[tet]); }
+  void fetch(Index tet) const noexcept { prefetch(&boxOf_[tet]); }
 
   struct Found {
     Index vertex = kNone;             ///< kNone if the closed tet does not contain the point
@@ -86,7 +86,7 @@ class LatticeNumbers {
   /// The vertex at a grid point in the chart of a tet.
   [[nodiscard]] Found find(Index tet, const GridPoint& z) const {
     if (!hasVertices(tet)) return {};
-    const Box& box = boxes_[tet];
+    const Box& box = boxes_[boxOf_[tet]];
     std::size_t place = 0;
     bool isInside = true;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -126,8 +126,9 @@ class LatticeNumbers {
   };
   static constexpr std::uint64_t kLarge = ~std::uint64_t{0};
 
-  [[nodiscard]] Box boxOf(Index tet) const noexcept;
+  [[nodiscard]] Box measureBox(Index tet) const noexcept;
   void fillBox(Index tet, std::uint64_t begin);
+  void fillBoxes(Stage& stage);
   [[nodiscard]] Found findOnLines(Index tet, const GridPoint& z) const;
   /// The i-th vertex of a line, at grid point z.
   [[nodiscard]] Found foundOn(Index tet, const Line& line, const GridPoint& z,
@@ -149,8 +150,9 @@ class LatticeNumbers {
   Array<std::uint64_t> lineBegin_;  ///< per tet (+1)
   Array<std::uint64_t> occupied_;   ///< a bit per tet: few enough to be at hand wherever arcs go
   Array<Line> lines_;
-  // For find(). Only tets with vertices have a box.
-  Array<Box> boxes_;              ///< per tet
+  // For find():
+  Array<Index> boxOf_;            ///< per tet; only of tets with vertices
+  Array<Box> boxes_;
   Array<Index> boxVertices_;      ///< per point of the boxes
   Array<CornerMask> boxSimplices_;
 };
