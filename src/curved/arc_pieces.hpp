@@ -73,21 +73,8 @@ class ArcPieces {
   }
 
  private:
-  [[nodiscard]] static std::size_t larger(std::size_t size) {
-    return std::max<std::size_t>(64, 2 * size);
-  }
-  void growPoints() {
-    pointRoom_ = larger(points_);
-    position_.resize(pointRoom_);
-    parameters_.resize(pointRoom_);
-    generatorTet_.resize(pointRoom_);
-    generatorCorners_.resize(pointRoom_);
-  }
-  void growSegments() {
-    segmentRoom_ = larger(segments_);
-    segmentTet_.resize(segmentRoom_);
-    segmentCorners_.resize(segmentRoom_);
-  }
+  void growPoints();
+  void growSegments();
   template <class T>
   static void copy(const Array<T>& from, std::size_t count, Array<T>& to, std::uint64_t first) {
     std::copy_n(from.data(), count, to.data() + first);

@@ -27,20 +27,17 @@ class BlockTracer {
         tracer_(map, vertices),
         exits_(map) {}
 
+  /// @param edges  of the tet
   void trace(Index tet, std::uint64_t edges, const ElementNumbers::Row& row) {
     const GridPoint& begin = row.front().z;
     const int axis = row.front().axis;
-    // Early, as who copies it has to wait until memory has all its parts.
-    middle_ = {tet, kWholeTet, Frame::along(begin, axis)};
     if (edges < kFewEdges) {
+      // Early, as who copies it has to wait until memory has all its parts.
+      middle_ = {tet, kWholeTet, Frame::along(begin, axis)};
       row.forEach([&](const Element& edge) {
         middle_.frame.origin[row.along()] = edge.z[row.along()];
         middle_.simplex = edge.simplex;
-        const std::size_t before = pieces_.points();
-        arcs_.ends[edge.number] =
-            traceExactly(vertices_.find(tet, edge.z), vertices_.find(tet, endOf(edge)));
-        arcs_.pointBegin[edge.number] = pieces_.points() - before;
-        smoothParameters(pieces_.parametersFrom(before));
+        traceExactly(edge);
       });
       return;
     }
@@ -51,25 +48,20 @@ class BlockTracer {
     row.forEach([&](const Element& edge) {
       const TetExits::Weights middle = first.plus(gradient, steps);
       steps += 1;
-      middle_.frame.origin[row.along()] = edge.z[row.along()];
-      middle_.simplex = edge.simplex;
-      const std::size_t before = pieces_.points();
-      if (edge.simplex != kWholeTet || !traceInside(edge, middle)) {
-        arcs_.ends[edge.number] =
-            traceExactly(vertices_.find(tet, edge.z), vertices_.find(tet, endOf(edge)));
-      }
-      arcs_.pointBegin[edge.number] = pieces_.points() - before;
-      smoothParameters(pieces_.parametersFrom(before));
+      if (edge.simplex == kWholeTet && traceInside(edge, middle)) return;
+      middle_ = {tet, edge.simplex, Frame::along(edge.z, axis)};
+      traceExactly(edge);
     });
   }
 
-  static constexpr std::uint64_t kFewEdges = 4;
  private:
+  /// To look along the axes of a tet is not worth it for fewer edges.
+  static constexpr std::uint64_t kFewEdges = 4;
   using Found = LatticeNumbers::Found;
   /// One of the two ways from a midpoint inside a tet.
   struct WayOut {
-    TetExits::Exit exit;
-    TetExits::Point point;
+    TetExits::Exit exit{};
+    TetExits::Point point{};
     HalfFace mate = kNone;  ///< behind the face that the edge leaves through; kNone if it does not
     Index vertex = kNone;   ///< the end of the edge, if it is known
   };
@@ -106,9 +98,10 @@ class BlockTracer {
         (ahead.mate == kNone && ahead.vertex == kNone)) {
       return false;
     }
-    arcs_.ends[edge.number][0] = goBack(edge, back);
+    const std::size_t before = pieces_.points();
+    const Index first = goBack(edge, back);
     pieces_.addSegment({tet_, kWholeTet});
-    arcs_.ends[edge.number][1] = goAhead(edge, ahead);
+    finish(edge, before, {first, goAhead(edge, ahead)});
     return true;
   }
 
@@ -138,7 +131,7 @@ class BlockTracer {
     const std::size_t firstSegment = pieces_.segments();
     addExit(way);
     const ArcEnd first = tracer_.followThrough(
-        way.exit.face, sharesOf(way), {tet_, kWholeTet, middle_.frame.reversed()},
+        way.exit.face, sharesOf(way), {tet_, kWholeTet, Frame::along(edge.z, axis_).reversed()},
         [&](const SimplexInTet& carrier, const ArcExit& exit) {
           addSegment(carrier);
           pieces_.addPoint(exit, 1 - exit.parameter);
@@ -155,7 +148,8 @@ class BlockTracer {
       pieces_.addSegment({tetOf(way.mate), kWholeTet});
       return vertex;
     }
-    const ArcEnd last = tracer_.followThrough(way.exit.face, sharesOf(way), middle_,
+    const ArcEnd last = tracer_.followThrough(way.exit.face, sharesOf(way),
+                                              {tet_, kWholeTet, Frame::along(edge.z, axis_)},
                                               [&](const SimplexInTet& carrier, const ArcExit& exit) {
                                                 addSegment(carrier);
                                                 pieces_.addPoint(exit, exit.parameter);
@@ -179,15 +173,25 @@ class BlockTracer {
   }
 
   /// From the midpoint, wherever that is.
-  /// @param from, to  what the tet has of the edge's ends
-  [[nodiscard]] std::array<Index, 2> traceExactly(const Found& from, const Found& to) {
+  void traceExactly(const Element& edge) {
+    const std::size_t before = pieces_.points();
+    const Found from = vertices_.find(middle_.tet, edge.z);
+    const Found to = vertices_.find(middle_.tet, endOf(edge));
+    std::array<Index, 2> ends = {from.vertex, to.vertex};
     if (from.vertex != kNone && to.vertex != kNone) {
       // By convexity, all between lies in the smallest simplex that contains both ends.
       addSegment({middle_.tet, static_cast<CornerMask>(from.simplex | to.simplex), {}});
-      return {from.vertex, to.vertex};
+    } else {
+      ends = middle_.simplex == kWholeTet ? traceBothWays(middle_, from, to)
+                                          : traceFromBoundary(middle_, from);
     }
-    return middle_.simplex == kWholeTet ? traceBothWays(middle_, from, to)
-                                        : traceFromBoundary(middle_, from);
+    finish(edge, before, ends);
+  }
+  /// @param before  how many points there were before the edge
+  void finish(const Element& edge, std::size_t before, const std::array<Index, 2>& ends) {
+    arcs_.ends[edge.number] = ends;
+    arcs_.pointBegin[edge.number] = pieces_.points() - before;
+    smoothParameters(pieces_.parametersFrom(before));
   }
 
   /// From a midpoint inside a tet.
