@@ -25,22 +25,22 @@ class BlockTracer {
         arcs_(arcs),
         pieces_(pieces),
         tracer_(map, vertices),
-        exits_(map) {}
+        exits_(map.exact.unit) {}
 
-  /// @param edges  of the tet
-  void trace(Index tet, std::uint64_t edges, const ElementNumbers::Row& row) {
+  /// By exact arithmetic.
+  void trace(Index tet, const ElementNumbers::Row& row) {
+    // Early, as who copies it has to wait until memory has all its parts.
+    middle_ = {tet, kWholeTet, Frame::along(row.front().z, row.front().axis)};
+    row.forEach([&](const Element& edge) {
+      middle_.frame.origin[row.along()] = edge.z[row.along()];
+      middle_.simplex = edge.simplex;
+      traceExactly(edge);
+    });
+  }
+  /// By exits in floating point, as far as they are certain.
+  void traceByExits(Index tet, const ElementNumbers::Row& row) {
     const GridPoint& begin = row.front().z;
     const int axis = row.front().axis;
-    if (edges < kFewEdges) {
-      // Early, as who copies it has to wait until memory has all its parts.
-      middle_ = {tet, kWholeTet, Frame::along(begin, axis)};
-      row.forEach([&](const Element& edge) {
-        middle_.frame.origin[row.along()] = edge.z[row.along()];
-        middle_.simplex = edge.simplex;
-        traceExactly(edge);
-      });
-      return;
-    }
     lookAlong(tet, axis);
     const TetExits::Weights first = exits_.atMiddle(begin);
     const TetExits::Weights& gradient = exits_.gradient(row.along());
@@ -55,8 +55,6 @@ class BlockTracer {
   }
 
  private:
-  /// To look along the axes of a tet is not worth it for fewer edges.
-  static constexpr std::uint64_t kFewEdges = 4;
   using Found = LatticeNumbers::Found;
   /// One of the two ways from a midpoint inside a tet.
   struct WayOut {
@@ -73,7 +71,7 @@ class BlockTracer {
 
   void lookAlong(Index tet, int axis) {
     if (tet != tet_) {
-      exits_.enter(tet);
+      exits_.enter(map_.exact.corners[tet], map_.topology.tets[tet], map_.input.view.points);
       for (int face = 0; face < 4; ++face) {
         owned_[static_cast<std::size_t>(face)] = ownedFace(map_.topology, tet, face);
       }
@@ -300,7 +298,7 @@ void lengthenAll(Arcs& arcs, std::uint64_t points, std::uint64_t segments, doubl
 }  // namespace
 
 Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const ElementNumbers& edges,
-               Stage& stage) {
+               Stage& stage, std::uint64_t enough) {
   Arcs arcs;
   arcs.ends.resize(edges.count());
   arcs.pointBegin.resize(edges.count() + 1);
@@ -317,9 +315,14 @@ Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const Ele
         BlockTracer tracer(map, vertices, arcs, pieces[block % kWaveBlocks]);
         for (std::size_t t = begin; t < end; ++t) {
           const auto tet = static_cast<Index>(t);
-          const std::uint64_t owned = edges.begin(t + 1) - edges.begin(t);
-          edges.forEachRow(
-              tet, [&](const ElementNumbers::Row& row) { tracer.trace(tet, owned, row); });
+          const bool byExits = edges.begin(t + 1) - edges.begin(t) >= enough;
+          edges.forEachRow(tet, [&](const ElementNumbers::Row& row) {
+            if (byExits) {
+              tracer.traceByExits(tet, row);
+            } else {
+              tracer.trace(tet, row);
+            }
+          });
         }
       },
       [&](std::size_t firstBlock, std::size_t endBlock) {

@@ -7,7 +7,8 @@
 
 namespace hexhex {
 
-LatticeNumbers::LatticeNumbers(const PreparedMap& map) : map_(map) {
+LatticeNumbers::LatticeNumbers(const PreparedMap& map, std::uint64_t room)
+    : map_(map), room_(room) {
   const std::size_t tets = map.topology.tetCount();
   axes_.resize(tets);
   lineBegin_.resize(tets + 1);
@@ -16,7 +17,8 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map) : map_(map) {
   boxOf_.resize(tets);
 }
 
-LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : LatticeNumbers(map) {
+LatticeNumbers::LatticeNumbers(const PreparedMap& map, std::uint64_t room, Stage& stage)
+    : LatticeNumbers(map, room) {
   Sweep sweep(*this);
   const HalfGridSearch search(kGrids);
   parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
@@ -152,10 +154,7 @@ LatticeNumbers::Box LatticeNumbers::measureBox(Index tet) const noexcept {
     box.first[axes[k]] = low[k];
     box.size[axes[k]] = static_cast<std::uint32_t>(high[k] - low[k] + 1);
   }
-  // Tets fill a sixth of their bounding box if they have three edges along the axes. Long ones
-  // across may fill next to nothing.
-  constexpr std::uint64_t kMostPerVertex = 16;
-  if (box.points() > kMostPerVertex * points + 64) box.begin = kLarge;
+  if (box.points() > room_ * points) box.begin = kLarge;
   return box;
 }
 

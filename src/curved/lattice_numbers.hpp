@@ -33,9 +33,15 @@ struct LineHint {
 class LatticeNumbers {
  public:
   /// @throws Error TooLarge for more vertices than an Index can number
-  LatticeNumbers(const PreparedMap& map, Stage& stage);
+  LatticeNumbers(const PreparedMap& map, Stage& stage) : LatticeNumbers(map, kRoomPerVertex, stage) {}
+  /// @param room  how many points the box of a tet's vertices may have for each of them, to be
+  ///              tabled; long tets across the axes fill next to nothing of theirs
+  LatticeNumbers(const PreparedMap& map, std::uint64_t room, Stage& stage);
   /// Without numbers until a Sweep is finished.
-  explicit LatticeNumbers(const PreparedMap& map);
+  explicit LatticeNumbers(const PreparedMap& map, std::uint64_t room = kRoomPerVertex);
+
+  /// Tets fill a sixth of their bounding box if they have three edges along the axes.
+  static constexpr std::uint64_t kRoomPerVertex = 24;
 
   /// The grid of vertices.
   static constexpr HalfGridSet kGrids = halfGridBit(0);
@@ -145,6 +151,7 @@ class LatticeNumbers {
   static void enter(Line& line, const VertexRun& run);
 
   const PreparedMap& map_;
+  std::uint64_t room_;
   VertexNumbers numbers_;
   Array<SweepAxes> axes_;           ///< per tet
   Array<std::uint64_t> lineBegin_;  ///< per tet (+1)

@@ -5,8 +5,8 @@
 
 namespace hexhex {
 
-void TetExits::enter(Index tet) noexcept {
-  const LatticeTet& corners = map_.exact.corners[tet];
+void TetExits::enter(const LatticeTet& corners, const Tet& vertices,
+                     std::span<const Vec3> points) noexcept {
   corner0_ = corners[0];
   size_ = 0;
   std::array<Vec3, 3> edges;
@@ -31,9 +31,8 @@ void TetExits::enter(Index tet) noexcept {
   constexpr double kLeastVolume = 0x1p-8;
   leastWeight_ = volume_ > kLeastVolume * cube ? 0x1p-31 * cube : kInfinity;
   placeError_ = 0x1p-34 * size_;
-  const Tet& vertices = map_.topology.tets[tet];
   for (std::size_t i = 0; i < 4; ++i) {
-    const Vec3& corner = map_.input.view.points[vertices[i]];
+    const Vec3& corner = points[vertices[i]];
     cornersXY_[i] = Pair{corner[0], corner[1]};
     cornersZ_[i] = corner[2];
   }
@@ -59,8 +58,7 @@ void TetExits::turn(int axis) noexcept {
 TetExits::Weights TetExits::atMiddle(const GridPoint& begin) const noexcept {
   Weights weights = {Pair{volume_, 0}, Pair{0, 0}};
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::int64_t unit = map_.exact.unit;
-    const std::int64_t point = begin[k] * unit + (k == axis_ ? unit / 2 : 0);
+    const std::int64_t point = begin[k] * unit_ + (k == axis_ ? unit_ / 2 : 0);
     weights = weights.plus(gradient_[k], static_cast<double>(point - corner0_[k]) * perUnit_);
   }
   return weights;

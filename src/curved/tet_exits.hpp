@@ -6,12 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
-#include <curved/arc_pieces.hpp>
 #include <curved/face_walk.hpp>
 
+#include <hexhex/types.hpp>
+
 #include <base/pair.hpp>
-#include <map/prepare.hpp>
+#include <lattice/tet_geometry.hpp>
 
 namespace hexhex {
 
@@ -31,11 +33,12 @@ namespace hexhex {
 /// what they had before: less than 2^-32 E^3.
 class TetExits {
  public:
-  explicit TetExits(const PreparedMap& map) noexcept
-      : map_(map), perUnit_(1 / static_cast<double>(map.exact.unit)) {}
+  explicit TetExits(std::int64_t unit) noexcept
+      : unit_(unit), perUnit_(1 / static_cast<double>(unit)) {}
 
   /// Goes to a tet.
-  void enter(Index tet) noexcept;
+  /// @param points  in space, by vertex
+  void enter(const LatticeTet& corners, const Tet& vertices, std::span<const Vec3> points) noexcept;
   /// Looks along an axis of its chart.
   void turn(int axis) noexcept;
 
@@ -135,7 +138,7 @@ class TetExits {
                                          {{0, 0}, {kInfinity, 0}},
                                          {{0, 0}, {0, kInfinity}}}};
 
-  const PreparedMap& map_;
+  std::int64_t unit_;
   double perUnit_;
 
   // Of the tet, in cells:
