@@ -204,33 +204,37 @@ HalfGrids::Slopes HalfGrids::slopesAlong(std::size_t axis, unsigned limits,
   // 2 error_: zeros are known to an eighth.
   constexpr double kClearSlope = 16;
   slopes.areClear = leastSlope > kClearSlope * error_;
-  slopes.last = static_cast<double>(steps);
+  const double last = static_cast<double>(steps);
+  // First points end up in the box, or behind it; last points in the box, or before it, so that
+  // empty lines stay empty. No limit is an integer, lest it be mistaken for a zero near one.
+  slopes.least = Pair{-0.5, -1.5};
+  slopes.most = Pair{last + 1.5, last + 0.5};
   // Besides, the roundings of the zero itself and on its way to an integer.
-  slopes.zeroError = 2 * error_ / leastSlope + 0x1p-48 * (slopes.last + 16);
+  slopes.zeroError = 2 * error_ / leastSlope + 0x1p-48 * (last + 16);
   return slopes;
 }
 
 /// The points of a line.
 /// @param weights  at its first point
-/// @param sure     becomes false if it cannot tell
-HalfGrids::Run HalfGrids::runOf(const Weights& weights, const Slopes& slopes, bool& sure) noexcept {
+/// @param unsure   gets bits if it cannot tell
+HalfGrids::Run HalfGrids::runOf(const Weights& weights, const Slopes& slopes,
+                                IntPair& unsure) noexcept {
   const Pair zero01 = weights.of01 * slopes.toZero[0];
   const Pair zero23 = weights.of23 * slopes.toZero[1];
   const Pair lows = larger(zero01 + slopes.lowBias[0], zero23 + slopes.lowBias[1]);
   const Pair highs = smaller(zero01 + slopes.highBias[0], zero23 + slopes.highBias[1]);
-  // Clamped to a range that integers hold; beyond the box by a little so that empty lines stay
-  // empty; not to integers, so that no limit is mistaken for a zero near one.
-  const double end = slopes.last + 2.5;
-  const double low = std::clamp(std::max(lows[0], lows[1]), -2.5, end);
-  const double high = std::clamp(std::min(highs[0], highs[1]), -2.5, end);
+  // The largest of the ones and the smallest of the others at once.
+  constexpr Pair kSigns = {1, -1};
+  const Pair ends = kSigns * larger(kSigns * Pair{lows[0], highs[0]}, kSigns * Pair{lows[1], highs[1]});
   // Adding 4 makes truncation a floor. If no integer lies within the bound of either zero, the
   // points strictly between them are all inside the tet, and no others are in it.
-  const auto lowFrom = static_cast<std::int32_t>(low - slopes.zeroError + 4);
-  const auto lowTo = static_cast<std::int32_t>(low + slopes.zeroError + 4);
-  const auto highFrom = static_cast<std::int32_t>(high - slopes.zeroError + 4);
-  const auto highTo = static_cast<std::int32_t>(high + slopes.zeroError + 4);
-  sure = sure && lowFrom == lowTo && highFrom == highTo;
-  return {std::max(lowFrom - 3, 0), std::min(highTo - 4, static_cast<std::int32_t>(slopes.last))};
+  const Pair clamped = smaller(larger(ends, slopes.least), slopes.most) + Pair{4, 4};
+  const Pair error = {slopes.zeroError, slopes.zeroError};
+  const IntPair from = __builtin_convertvector(clamped - error, IntPair);
+  const IntPair to = __builtin_convertvector(clamped + error, IntPair);
+  unsure |= from ^ to;
+  const IntPair run = from - IntPair{3, 4};
+  return {run[0], run[1]};
 }
 
 bool HalfGrids::findLines(HalfGrid grid, const GridBox& box, SweepAxes sweepAxes,
@@ -250,18 +254,18 @@ bool HalfGrids::findLines(HalfGrid grid, const GridBox& box, SweepAxes sweepAxes
   lines.limits = limitsOf(grid, box, sweepAxes);
   const Slopes slopes = slopesAlong(axes[2], lines.limits.faces, size[2]);
   if (!slopes.areClear) return false;
-  bool sure = true;
+  IntPair unsure = {0, 0};
   Run* run = lines.runs.data();
   Weights atLevel = weightsAt(toFirst);
   for (std::int32_t level = 0; level <= size[0]; ++level) {
     Weights weights = atLevel;
     for (std::int32_t row = 0; row <= size[1]; ++row) {
-      *run++ = runOf(weights, slopes, sure);
+      *run++ = runOf(weights, slopes, unsure);
       weights = weights.plus(gradient_[axes[1]], 2);
     }
     atLevel = atLevel.plus(gradient_[axes[0]], 2);
   }
-  return sure;
+  return (unsure[0] | unsure[1]) == 0;
 }
 
 LatticeTet HalfGrids::movedBack(HalfGrid grid) const noexcept {

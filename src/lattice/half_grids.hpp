@@ -211,12 +211,14 @@ class HalfGrids {
     std::array<Pair, 2> lowBias;   ///< 0 for rising weights, else -infinity
     std::array<Pair, 2> highBias;  ///< 0 for falling weights, else infinity
     double zeroError;              ///< bound of the error of zeros
-    double last;                   ///< last point of the lines
+    Pair least;                    ///< limits of both ends of lines
+    Pair most;
     bool areClear;                 ///< all weights change enough for that bound
   };
   [[nodiscard]] Slopes slopesAlong(std::size_t axis, unsigned limits,
                                    std::int32_t steps) const noexcept;
-  [[nodiscard]] static Run runOf(const Weights& weights, const Slopes& slopes, bool& sure) noexcept;
+  [[nodiscard]] static Run runOf(const Weights& weights, const Slopes& slopes,
+                                 IntPair& unsure) noexcept;
   [[nodiscard]] BoxLimits limitsOf(HalfGrid grid, const GridBox& box,
                                    SweepAxes axes) const noexcept;
   template <class Visit>
