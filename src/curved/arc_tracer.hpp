@@ -72,8 +72,8 @@ class ArcTracer {
   /// Goes on from a point inside a face that the edge is known to leave a tet through, where the
   /// tet behind it does not have the end. That point is not visited again.
   template <class Visit>
-  [[nodiscard]] ArcEnd followThrough(int face, const std::array<double, 4>& shares,
-                                     SimplexInTet at, const Visit& visit) {
+  [[nodiscard]] ArcEnd followThrough(int face, const std::array<double, 4>& shares, SimplexInTet at,
+                                     const Visit& visit) {
     FaceWalk& walk = beginnings_[0].walk;
     walk.resume(at, face, shares);
     if (!walk.cross(at)) fail(at.tet, "a hex edge leaves the mesh");

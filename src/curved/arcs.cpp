@@ -146,12 +146,12 @@ class BlockTracer {
       pieces_.addSegment({tetOf(way.mate), kWholeTet});
       return vertex;
     }
-    const ArcEnd last = tracer_.followThrough(way.exit.face, sharesOf(way),
-                                              {tet_, kWholeTet, Frame::along(edge.z, axis_)},
-                                              [&](const SimplexInTet& carrier, const ArcExit& exit) {
-                                                addSegment(carrier);
-                                                pieces_.addPoint(exit, exit.parameter);
-                                              });
+    const ArcEnd last = tracer_.followThrough(
+        way.exit.face, sharesOf(way), {tet_, kWholeTet, Frame::along(edge.z, axis_)},
+        [&](const SimplexInTet& carrier, const ArcExit& exit) {
+          addSegment(carrier);
+          pieces_.addPoint(exit, exit.parameter);
+        });
     addSegment(last.carrier);
     return last.vertex;
   }
@@ -203,14 +203,14 @@ class BlockTracer {
     if (from.vertex == kNone) tracer_.begin(Way::Backward, middle, seen, sides);
     if (to.vertex == kNone) tracer_.begin(Way::Forward, middle, seen, sides);
     if (from.vertex == kNone) {
-      ends[0] = traceBack(
-          [&](const auto& visit) { return tracer_.followBegun(Way::Backward, visit); });
+      ends[0] =
+          traceBack([&](const auto& visit) { return tracer_.followBegun(Way::Backward, visit); });
     } else {
       addSegment(middle);
     }
     if (to.vertex == kNone) {
-      ends[1] = traceAhead(
-          [&](const auto& visit) { return tracer_.followBegun(Way::Forward, visit); });
+      ends[1] =
+          traceAhead([&](const auto& visit) { return tracer_.followBegun(Way::Forward, visit); });
     }
     return ends;
   }
@@ -278,10 +278,10 @@ class BlockTracer {
   ArcPieces& pieces_;
   ArcTracer tracer_;
   TetExits exits_;
-  Index tet_ = kNone;  ///< that exits are known of
-  int axis_ = -1;      ///< of its chart, along which
+  Index tet_ = kNone;                    ///< that exits are known of
+  int axis_ = -1;                        ///< of its chart, along which
   std::array<OwnedSimplex, 4> owned_{};  ///< its faces
-  SimplexInTet middle_;  ///< the midpoint of the edge at hand
+  SimplexInTet middle_;                  ///< the midpoint of the edge at hand
 };
 
 /// Makes room.

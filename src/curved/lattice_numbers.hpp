@@ -33,7 +33,8 @@ struct LineHint {
 class LatticeNumbers {
  public:
   /// @throws Error TooLarge for more vertices than an Index can number
-  LatticeNumbers(const PreparedMap& map, Stage& stage) : LatticeNumbers(map, kRoomPerVertex, stage) {}
+  LatticeNumbers(const PreparedMap& map, Stage& stage)
+      : LatticeNumbers(map, kRoomPerVertex, stage) {}
   /// @param room  how many points the box of a tet's vertices may have for each of them, to be
   ///              tabled; long tets across the axes fill next to nothing of theirs
   LatticeNumbers(const PreparedMap& map, std::uint64_t room, Stage& stage);
@@ -158,9 +159,9 @@ class LatticeNumbers {
   Array<std::uint64_t> occupied_;   ///< a bit per tet: few enough to be at hand wherever arcs go
   Array<Line> lines_;
   // For find():
-  Array<Index> boxOf_;            ///< per tet; only of tets with vertices
+  Array<Index> boxOf_;  ///< per tet; only of tets with vertices
   Array<Box> boxes_;
-  Array<Index> boxVertices_;      ///< per point of the boxes
+  Array<Index> boxVertices_;  ///< per point of the boxes
   Array<CornerMask> boxSimplices_;
 };
 

@@ -1,5 +1,5 @@
-// Hex edges through the interior of a tet, in floating point with proven bounds: through which faces
-// they leave it, and where.
+// Hex edges through the interior of a tet, in floating point with proven bounds: through which
+// faces they leave it, and where.
 #pragma once
 
 #include <array>
@@ -28,9 +28,9 @@ namespace hexhex {
 /// so that no point of the tet is farther from there than E along any axis. Coordinates carry one
 /// rounding. Gradients are sums of up to six products, so they are below 6 E^2, known to 34 E^2;
 /// weights at a midpoint, with steps of up to 2 E from the first one of a row, to 2^9 E^3. A zero
-/// is at most 2 E away; where the slope is above E^2 / 2^8, it is known to (2^9 + 68) 2^8 E plus its
-/// own roundings: less than 2^18 E, or 2^-35 E. All weights there are known to 6 E^2 times that and
-/// what they had before: less than 2^-32 E^3.
+/// is at most 2 E away; where the slope is above E^2 / 2^8, it is known to (2^9 + 68) 2^8 E plus
+/// its own roundings: less than 2^18 E, or 2^-35 E. All weights there are known to 6 E^2 times that
+/// and what they had before: less than 2^-32 E^3.
 class TetExits {
  public:
   explicit TetExits(std::int64_t unit) noexcept
@@ -82,8 +82,7 @@ class TetExits {
     const int face23 = at23[1] < at23[0] ? 3 : 2;
     const double least01 = at01[1] < at01[0] ? at01[1] : at01[0];
     const double least23 = at23[1] < at23[0] ? at23[1] : at23[0];
-    return {least23 < least01 ? face23 : face01,
-            kSign * (least23 < least01 ? least23 : least01)};
+    return {least23 < least01 ? face23 : face01, kSign * (least23 < least01 ? least23 : least01)};
   }
 
   /// Where the end of an edge is.

@@ -38,8 +38,8 @@ void compareTables(const TetMap& given, PointCounts& counts) {
         for (std::int32_t z = box.range[2].first; z <= box.range[2].last; ++z) {
           const GridPoint point = {x, y, z};
           const LatticePoint place = {x * map.exact.unit, y * map.exact.unit, z * map.exact.unit};
-          const CornerMask simplex = simplexBySides(
-              [&](std::size_t face) { return sideOfFace(corners, face, place); });
+          const CornerMask simplex =
+              simplexBySides([&](std::size_t face) { return sideOfFace(corners, face, place); });
           for (const LatticeNumbers* numbers : {&lines, &some, &tables}) {
             const LatticeNumbers::Found found = numbers->find(tet, point);
             ASSERT_EQ(found.vertex == kNone, simplex == kNoSimplex);

@@ -1,5 +1,5 @@
-// What floating point says about the exits of tets, against exact arithmetic: what is certain must be
-// right, and where it would be wrong, it must not be certain.
+// What floating point says about the exits of tets, against exact arithmetic: what is certain must
+// be right, and where it would be wrong, it must not be certain.
 #include <algorithm>
 #include <cmath>
 #include <span>
