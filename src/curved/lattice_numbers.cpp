@@ -163,6 +163,7 @@ void LatticeNumbers::fillBox(Index tet, std::uint64_t begin) {
   Box& box = boxes_[boxOf_[tet]];
   box.begin = begin;
   std::fill_n(boxVertices_.data() + begin, box.points(), kNone);
+  std::fill_n(boxSimplices_.data() + begin, box.points(), kNoSimplex);
   const std::array<std::uint8_t, 3>& axes = axes_[tet]();
   const std::array<std::size_t, 3> strides = {std::size_t{box.size[1]} * box.size[2], box.size[2],
                                               1};

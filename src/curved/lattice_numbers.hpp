@@ -35,8 +35,8 @@ class LatticeNumbers {
   /// @throws Error TooLarge for more vertices than an Index can number
   LatticeNumbers(const PreparedMap& map, Stage& stage)
       : LatticeNumbers(map, kRoomPerVertex, stage) {}
-  /// @param room  how many points the box of a tet's vertices may have for each of them, to be
-  ///              tabled; long tets across the axes fill next to nothing of theirs
+  /// @param room  how many grid points the box around a tet's vertices may have for each of them if
+  ///              it is to have a table; thin tets across the axes fill next to nothing of theirs
   LatticeNumbers(const PreparedMap& map, std::uint64_t room, Stage& stage);
   /// Without numbers until a Sweep is finished.
   explicit LatticeNumbers(const PreparedMap& map, std::uint64_t room = kRoomPerVertex);
@@ -97,7 +97,7 @@ class LatticeNumbers {
     std::size_t place = 0;
     bool isInside = true;
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto at = static_cast<std::uint32_t>(z[k] - box.first[k]);
+      const auto at = static_cast<std::uint32_t>(z[k]) - static_cast<std::uint32_t>(box.first[k]);
       isInside &= at < box.size[k];
       place = place * box.size[k] + at;
     }

@@ -205,7 +205,7 @@ HalfGrids::Slopes HalfGrids::slopesAlong(std::size_t axis, unsigned limits,
   // 2 error_: zeros are known to an eighth.
   constexpr double kClearSlope = 16;
   slopes.areClear = leastSlope > kClearSlope * error_;
-  const double last = static_cast<double>(steps);
+  const auto last = static_cast<double>(steps);
   // First points end up in the box, or behind it; last points in the box, or before it, so that
   // empty lines stay empty. No limit is an integer, lest it be mistaken for a zero near one.
   slopes.least = Pair{-0.5, -1.5};
