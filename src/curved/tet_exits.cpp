@@ -31,6 +31,7 @@ void TetExits::enter(const LatticeTet& corners, const Tet& vertices,
   constexpr double kLeastVolume = 0x1p-8;
   leastWeight_ = volume_ > kLeastVolume * cube ? 0x1p-31 * cube : kInfinity;
   placeError_ = 0x1p-34 * size_;
+  reach_ = 2.5 * size_;
   for (std::size_t i = 0; i < 4; ++i) {
     const Vec3& corner = points[vertices[i]];
     cornersXY_[i] = Pair{corner[0], corner[1]};

@@ -27,10 +27,10 @@ namespace hexhex {
 /// Bounds, in units of u = 2^-53 and of E, the largest coordinate of a corner relative to corner 0,
 /// so that no point of the tet is farther from there than E along any axis. Coordinates carry one
 /// rounding. Gradients are sums of up to six products, so they are below 6 E^2, known to 34 E^2;
-/// weights at a midpoint, with steps of up to 2 E from the first one of a row, to 2^9 E^3. A zero
-/// is at most 2 E away; where the slope is above E^2 / 2^8, it is known to (2^9 + 68) 2^8 E plus
-/// its own roundings: less than 2^18 E, or 2^-35 E. All weights there are known to 6 E^2 times that
-/// and what they had before: less than 2^-32 E^3.
+/// weights at a midpoint, with steps of up to 2 E from the first one of a row, to 2^9 E^3. An exit
+/// is at most 2 E away, so zeros beyond 2.5 E are none; where the slope is above E^2 / 2^8, nearer
+/// ones are known to (2^9 + 85) 2^8 E plus their own roundings: less than 2^18 E, or 2^-35 E. All
+/// weights there are known to 6 E^2 times that and what they had before: less than 2^-32 E^3.
 class TetExits {
  public:
   explicit TetExits(std::int64_t unit) noexcept
@@ -107,7 +107,9 @@ class TetExits {
     const Pair sums = of01 + of23;
     const double perSum = 1 / (sums[0] + sums[1]);
     const Pair factor = {perSum, perSum};
-    return {{of01 * factor, of23 * factor}, least[0] > leastWeight_ && least[1] > leastWeight_};
+    const bool isNear = exit.at < reach_ && exit.at > -reach_;
+    return {{of01 * factor, of23 * factor},
+            isNear && least[0] > leastWeight_ && least[1] > leastWeight_};
   }
 
   /// In space.
@@ -147,6 +149,7 @@ class TetExits {
   double size_ = 0;         ///< E
   double leastWeight_ = 0;  ///< above it, a weight is positive where a line leaves
   double placeError_ = 0;   ///< of zeros
+  double reach_ = 0;        ///< exits are nearer
   std::array<Pair, 4> cornersXY_{};
   std::array<double, 4> cornersZ_{};
 

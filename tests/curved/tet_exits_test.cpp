@@ -119,7 +119,8 @@ Situation drawSituation(Random& random, std::int64_t unit) {
     middle[k] = s.z[k] * unit;
   }
   middle[axis] += unit / 2;
-  const std::int64_t size = unit * random.between(1, 20) / 4;
+  const std::int64_t size =
+      std::max<std::int64_t>(4, unit * random.between(1, 20) / (random.oneIn(3) ? 64 : 4));
   for (LatticePoint& corner : s.corners) {
     for (std::size_t k = 0; k < 3; ++k) corner[k] = middle[k] + random.between(-size, size);
   }
