@@ -59,52 +59,53 @@ void LatticeNumbers::Sweep::finish(Stage& stage) {
   }
   exclusiveScan(std::span(n.lineBegin_));
   n.lines_.resize(n.lineBegin_.back());
+  const std::vector<std::size_t> boxes = n.countBoxes();
+  std::vector<std::uint64_t> points(boxes.size());
   parallelBlocks(stage, n.map_.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    std::size_t at = n.lineBegin_[begin];
                    for (const SweptLine& line : blocks_[block]) n.lines_[at++] = {line};
                    blocks_[block] = {};
                    std::vector<SweptLine> scratch;
+                   std::size_t box = boxes[block];
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
-                     if (n.hasVertices(tet)) n.number(tet, scratch);
+                     if (!n.hasVertices(tet)) continue;
+                     n.number(tet, scratch);
+                     n.boxOf_[tet] = static_cast<Index>(box);
+                     const Box& measured = n.boxes_[box++] = n.measureBox(tet);
+                     if (measured.begin < kNoTable) points[block] += measured.points();
                    }
                  });
-  n.fillBoxes(stage);
+  n.fillBoxes(points, stage);
 }
 
-/// When all tets have the numbers of what they own.
-void LatticeNumbers::fillBoxes(Stage& stage) {
-  const std::size_t tets = map_.topology.tetCount();
-  std::vector<std::size_t> boxes(blockCount(tets, kSweepBlock));
+/// Makes room for the boxes.
+/// @return the first one per block of tets
+std::vector<std::size_t> LatticeNumbers::countBoxes() {
+  std::vector<std::size_t> boxes(blockCount(map_.topology.tetCount(), kSweepBlock));
   for (std::size_t word = 0; word < occupied_.size(); ++word) {
     boxes[word / (kSweepBlock / 64)] += static_cast<std::size_t>(std::popcount(occupied_[word]));
   }
   boxes_.resize(exclusiveScan(std::span(boxes)));
-  std::vector<std::uint64_t> points(boxes.size());
-  const auto forEachBox = [&](const auto& visit) {
-    parallelBlocks(stage, tets, kSweepBlock,
-                   [&](std::size_t begin, std::size_t end, std::size_t block) {
-                     std::size_t box = boxes[block];
-                     for (std::size_t t = begin; t < end; ++t) {
-                       const auto tet = static_cast<Index>(t);
-                       if (hasVertices(tet)) visit(tet, block, box++);
-                     }
-                   });
-  };
-  forEachBox([&](Index tet, std::size_t block, std::size_t box) {
-    boxOf_[tet] = static_cast<Index>(box);
-    boxes_[box] = measureBox(tet);
-    if (boxes_[box].begin != kLarge) points[block] += boxes_[box].points();
-  });
+  return boxes;
+}
+
+/// When all tets have the numbers of what they own.
+/// @param points  of the tables, by block of tets
+void LatticeNumbers::fillBoxes(std::vector<std::uint64_t>& points, Stage& stage) {
   const std::uint64_t count = exclusiveScan(std::span(points));
   boxVertices_.resize(count);
   boxSimplices_.resize(count);
-  forEachBox([&](Index tet, std::size_t block, std::size_t box) {
-    if (boxes_[box].begin == kLarge) return;
-    fillBox(tet, points[block]);
-    points[block] += boxes_[box].points();
-  });
+  parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     if (!hasVertices(tet) || boxes_[boxOf_[tet]].begin >= kNoTable) continue;
+                     fillBox(tet, points[block]);
+                     points[block] += boxes_[boxOf_[tet]].points();
+                   }
+                 });
 }
 
 /// Enters the numbers of a tet's points.
@@ -133,8 +134,8 @@ void LatticeNumbers::enter(Line& line, const VertexRun& run) {
   }
 }
 
-/// Without its place in the tables, but for boxes that have none.
-LatticeNumbers::Box LatticeNumbers::measureBox(Index tet) const noexcept {
+/// Without its place in the tables, unless it is known to need none.
+LatticeNumbers::Box LatticeNumbers::measureBox(Index tet) const {
   const std::span<const Line> lines = linesOf(tet);
   const std::array<std::uint8_t, 3>& axes = axes_[tet]();
   const SweptLine& front = lines.front().swept;
@@ -154,7 +155,11 @@ LatticeNumbers::Box LatticeNumbers::measureBox(Index tet) const noexcept {
     box.first[axes[k]] = low[k];
     box.size[axes[k]] = static_cast<std::uint32_t>(high[k] - low[k] + 1);
   }
-  if (box.points() > room_ * points) box.begin = kLarge;
+  if (box.points() > room_ * points) {
+    box.begin = kLarge;
+  } else if (points == 1 && lines.front().left != kNone) {
+    box.begin = beginOfOnly({lines.front().left, front.left});
+  }
   return box;
 }
 

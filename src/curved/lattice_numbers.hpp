@@ -102,7 +102,9 @@ class LatticeNumbers {
       place = place * box.size[k] + at;
     }
     if (!isInside) return {};
-    if (box.begin == kLarge) return findOnLines(tet, z);
+    if (box.begin >= kNoTable) {
+      return box.begin == kLarge ? findOnLines(tet, z) : onlyVertex(box.begin);
+    }
     return {boxVertices_[box.begin + place], boxSimplices_[box.begin + place]};
   }
 
@@ -123,7 +125,7 @@ class LatticeNumbers {
   /// The smallest box with all vertices of a tet, in its chart. In a table of its grid points, a
   /// vertex is found at once.
   struct Box {
-    std::uint64_t begin = 0;  ///< in the tables; kLarge if it is not there
+    std::uint64_t begin = 0;  ///< in the tables; kNoTable or more if it is not there
     GridPoint first{};
     std::array<std::uint32_t, 3> size{};  ///< points along each axis
 
@@ -131,11 +133,21 @@ class LatticeNumbers {
       return std::uint64_t{size[0]} * size[1] * size[2];
     }
   };
+  /// Plus the only vertex and its simplex.
+  static constexpr std::uint64_t kNoTable = std::uint64_t{1} << 63;
+  /// Too many points.
   static constexpr std::uint64_t kLarge = ~std::uint64_t{0};
+  [[nodiscard]] static Found onlyVertex(std::uint64_t begin) noexcept {
+    return {static_cast<Index>(begin), static_cast<CornerMask>((begin >> 32) & kWholeTet)};
+  }
+  [[nodiscard]] static std::uint64_t beginOfOnly(const Found& found) noexcept {
+    return kNoTable | std::uint64_t{found.simplex} << 32 | found.vertex;
+  }
 
-  [[nodiscard]] Box measureBox(Index tet) const noexcept;
+  [[nodiscard]] std::vector<std::size_t> countBoxes();
+  [[nodiscard]] Box measureBox(Index tet) const;
   void fillBox(Index tet, std::uint64_t begin);
-  void fillBoxes(Stage& stage);
+  void fillBoxes(std::vector<std::uint64_t>& points, Stage& stage);
   [[nodiscard]] Found findOnLines(Index tet, const GridPoint& z) const;
   /// The i-th vertex of a line, at grid point z.
   [[nodiscard]] Found foundOn(Index tet, const Line& line, const GridPoint& z,
