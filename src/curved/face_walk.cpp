@@ -147,7 +147,9 @@ void FaceWalk::leaveThrough(Index tet, int face) noexcept {
   const HalfFace own = halfFaceOf(tet, face);
   mate_ = topology_.mate[own];
   const HalfFace next = mate_ == kNone ? own : mate_;
-  prefetch(&exact_.transitions.jump[own]);
+  // What the jump is has been asked for one tet before, so it is known which transition it takes.
+  prefetch(&exact_.transitions.table[exact_.transitions.jump[own]]);
+  prefetch(&exact_.transitions.jump[halfFaceOf(tetOf(next), 0)]);
   prefetch(exact_.corners[tetOf(next)][static_cast<std::size_t>(localOf(next))].data());
   prefetch(topology_.tets[tetOf(next)].data());
   prefetch(&topology_.mate[halfFaceOf(tetOf(next), 0)]);
