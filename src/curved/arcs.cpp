@@ -9,6 +9,8 @@
 #include <curved/output_waves.hpp>
 #include <curved/tet_exits.hpp>
 
+#include <base/prefetch.hpp>
+
 namespace hexhex {
 
 namespace {
@@ -114,6 +116,8 @@ class BlockTracer {
     way.mate = map_.topology.mate[halfFace];
     if (way.mate == kNone) return false;
     vertices_.fetch(tetOf(way.mate));
+    const Transitions& transitions = map_.exact.transitions;
+    prefetch(&transitions.table[transitions.jump[halfFace]]);
     return true;
   }
 
