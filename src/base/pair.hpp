@@ -11,6 +11,8 @@ using Pair = double __attribute__((vector_size(16)));
 /// One truth value for each: 0 or -1.
 using PairMask = std::int64_t __attribute__((vector_size(16)));
 
+using IntPair = std::int32_t __attribute__((vector_size(8)));
+
 /// Two numbers in a row.
 [[nodiscard]] inline Pair loadPair(const double* first) noexcept {
   Pair pair;

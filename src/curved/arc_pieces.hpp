@@ -35,14 +35,14 @@ class ArcPieces {
   }
 
   void addPoint(const ArcExit& exit, double parameter) {
-    if (points_ == position_.size()) growPoints();
+    if (points_ == pointRoom_) growPoints();
     position_[points_] = exit.point;
     parameters_[points_] = parameter;
     generatorTet_[points_] = exit.generator.tet;
     generatorCorners_[points_++] = exit.generator.corners;
   }
   void addSegment(const OwnedSimplex& carrier) {
-    if (segments_ == segmentTet_.size()) growSegments();
+    if (segments_ == segmentRoom_) growSegments();
     segmentTet_[segments_] = carrier.tet;
     segmentCorners_[segments_++] = carrier.corners;
   }
@@ -73,21 +73,8 @@ class ArcPieces {
   }
 
  private:
-  [[nodiscard]] static std::size_t larger(std::size_t size) {
-    return std::max<std::size_t>(64, 2 * size);
-  }
-  void growPoints() {
-    const std::size_t size = larger(points_);
-    position_.resize(size);
-    parameters_.resize(size);
-    generatorTet_.resize(size);
-    generatorCorners_.resize(size);
-  }
-  void growSegments() {
-    const std::size_t size = larger(segments_);
-    segmentTet_.resize(size);
-    segmentCorners_.resize(size);
-  }
+  void growPoints();
+  void growSegments();
   template <class T>
   static void copy(const Array<T>& from, std::size_t count, Array<T>& to, std::uint64_t first) {
     std::copy_n(from.data(), count, to.data() + first);
@@ -102,6 +89,8 @@ class ArcPieces {
   Array<CornerSet> segmentCorners_;
   std::size_t points_ = 0;
   std::size_t segments_ = 0;
+  std::size_t pointRoom_ = 0;
+  std::size_t segmentRoom_ = 0;
 };
 
 }  // namespace hexhex

@@ -44,9 +44,38 @@ SimplexInTet ArcTracer::behind(const SimplexInTet& point) {
   return carrier;
 }
 
-ArcExit ArcTracer::exitAt(Index tet, const LatticeTet& seen, const SimplexPoint& point) const {
+ArcTracer::Passage ArcTracer::pass(const SimplexInTet& at, CornerMask exit) {
+  if (exit == kNoSimplex) fail(at.tet, "a hex edge leaves a tet nowhere");
+  if (dimension(exit) == 1 && dimension(at.simplex) == 2 &&
+      topology_.isBoundary(halfFaceOf(at.tet, oppositeCorner(at.simplex)))) {
+    const Passage passage = passOnBoundary(at, exit);
+    if (passage.carrier.simplex != kNoSimplex) return passage;
+  }
+  return {ownedBy(topology_, at.tet, exit), behind({at.tet, exit, at.frame})};
+}
+
+/// From a triangle on the boundary through one of its edges: usually to the next triangle on the
+/// boundary, and to go there takes one walk around the edge, which comes by its owner as well.
+/// @return a carrier without a simplex if the tet of that triangle does not have the next part
+ArcTracer::Passage ArcTracer::passOnBoundary(const SimplexInTet& at, CornerMask edge) const {
+  EdgeTurn turn(topology_, at.tet, edge, otherFaceAtEdge(edge, oppositeCorner(at.simplex)));
+  Passage passage{{at.tet, edge}, at};
+  while (turn.next() != kNone) {
+    const HalfFace halfFace = turn.out();
+    turn.step();
+    if (exact_.transitions.isJump(halfFace)) {
+      passage.carrier.frame = passage.carrier.frame.carried(exact_.transitions.across(halfFace));
+    }
+    if (turn.tet() < passage.exit.tet) passage.exit = {turn.tet(), turn.edge()};
+  }
+  passage.carrier.tet = turn.tet();
+  passage.carrier.simplex = holderAhead(see(passage.carrier), turn.edge());
+  return passage;
+}
+
+ArcExit ArcTracer::exitAt(const OwnedSimplex& generator, Index tet, const LatticeTet& seen,
+                          const SimplexPoint& point) const {
   const CornerMask at = point.simplex();
-  if (at == kNoSimplex) fail(tet, "a hex edge leaves a tet nowhere");
   // As normalized(), position() and coordinate() would have it, for the few corners that count.
   std::array<double, 4> weights;
   double sum = 0;
@@ -54,7 +83,7 @@ ArcExit ArcTracer::exitAt(Index tet, const LatticeTet& seen, const SimplexPoint&
     const auto i = static_cast<std::size_t>(std::countr_zero(left));
     sum += weights[i] = toDouble(point.weights[i]);
   }
-  ArcExit exit{ownedBy(topology_, tet, at), {}, 0};
+  ArcExit exit{generator, {}, 0};
   for (unsigned left = at; left != 0; left &= left - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(left));
     const double share = weights[i] / sum;

@@ -69,6 +69,24 @@ class ArcTracer {
     return followBeyond(at, visit);
   }
 
+  /// Goes on from a point inside a face that the edge is known to leave a tet through, where the
+  /// tet behind it does not have the end. That point is not visited again.
+  template <class Visit>
+  [[nodiscard]] ArcEnd followThrough(int face, const std::array<double, 4>& shares, SimplexInTet at,
+                                     const Visit& visit) {
+    FaceWalk& walk = beginnings_[0].walk;
+    walk.resume(at, face, shares);
+    if (!walk.cross(at)) fail(at.tet, "a hex edge leaves the mesh");
+    const bool walking = walk.leave(at);
+    return goOn(walk, at, walking, visit);
+  }
+  /// The hex vertex at the end of an edge that crosses a face, if the closed tet behind has it.
+  /// @param z  the end, in the chart on this side
+  [[nodiscard]] Index vertexBehind(HalfFace halfFace, HalfFace mate, GridPoint z) const {
+    if (exact_.transitions.isJump(halfFace)) z = exact_.transitions.across(halfFace)(z);
+    return vertices_.find(tetOf(mate), z).vertex;
+  }
+
   [[noreturn]] static void fail(Index tet, const char* what);
 
  private:
@@ -97,8 +115,9 @@ class ArcTracer {
       }
       const LatticeTet seen = see(at);
       const SimplexPoint exit = exitPoint(seen, at.simplex, 0);
-      visit(std::as_const(at), exitAt(at.tet, seen, exit));
-      at = behind({at.tet, exit.simplex(), at.frame});
+      const Passage passage = pass(at, exit.simplex());
+      visit(std::as_const(at), exitAt(passage.exit, at.tet, seen, exit));
+      at = passage.carrier;
       // The end is in the closed tet if and only if the edge does not leave it before.
       const Index vertex = vertexIn(at);
       if (vertex != kNone) return {at, vertex};
@@ -122,12 +141,22 @@ class ArcTracer {
   /// The hex vertex at the end of the edge, if the closed tet has it.
   [[nodiscard]] Index vertexIn(const SimplexInTet& at) {
     const Direction along = at.frame.axes[0];
-    return vertices_.find(at.tet, step(at.frame.origin, along), endHints_[along]).vertex;
+    return vertices_.find(at.tet, step(at.frame.origin, along)).vertex;
   }
   [[nodiscard]] LatticeTet see(const SimplexInTet& at) const {
     return at.frame.see(exact_.corners[at.tet], exact_.unit);
   }
-  [[nodiscard]] ArcExit exitAt(Index tet, const LatticeTet& seen, const SimplexPoint& point) const;
+  /// The simplex at whose inner point a part ends, and the carrier of the next part.
+  struct Passage {
+    OwnedSimplex exit;
+    SimplexInTet carrier;
+  };
+  /// @param at    the carrier of the part that ends
+  /// @param exit  where, in the same tet
+  [[nodiscard]] Passage pass(const SimplexInTet& at, CornerMask exit);
+  [[nodiscard]] Passage passOnBoundary(const SimplexInTet& at, CornerMask edge) const;
+  [[nodiscard]] ArcExit exitAt(const OwnedSimplex& generator, Index tet, const LatticeTet& seen,
+                               const SimplexPoint& point) const;
 
   const PreparedMap& map_;
   const ExactMap& exact_;
@@ -135,8 +164,6 @@ class ArcTracer {
   const LatticeNumbers& vertices_;
   std::array<Beginning, 2> beginnings_;  ///< by way
   SimplexStar star_;
-  /// Where the last edge ended, by direction, as edges come in the order of a sweep.
-  std::array<LineHint, kDirections> endHints_;
 };
 
 }  // namespace hexhex

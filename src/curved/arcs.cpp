@@ -7,6 +7,9 @@
 #include <curved/arc_tracer.hpp>
 #include <curved/arcs.hpp>
 #include <curved/output_waves.hpp>
+#include <curved/tet_exits.hpp>
+
+#include <base/prefetch.hpp>
 
 namespace hexhex {
 
@@ -19,44 +22,176 @@ constexpr double kBelowOne = 1 - 0x1p-53;
 class BlockTracer {
  public:
   BlockTracer(const PreparedMap& map, const LatticeNumbers& vertices, Arcs& arcs, ArcPieces& pieces)
-      : map_(map), vertices_(vertices), arcs_(arcs), pieces_(pieces), tracer_(map, vertices) {}
+      : map_(map),
+        vertices_(vertices),
+        arcs_(arcs),
+        pieces_(pieces),
+        tracer_(map, vertices),
+        exits_(map.exact.unit) {}
 
+  /// By exact arithmetic.
   void trace(Index tet, const ElementNumbers::Row& row) {
+    // Early, as who copies it has to wait until memory has all its parts.
+    middle_ = {tet, kWholeTet, Frame::along(row.front().z, row.front().axis)};
+    row.forEach([&](const Element& edge) {
+      middle_.frame.origin[row.along()] = edge.z[row.along()];
+      middle_.simplex = edge.simplex;
+      traceExactly(edge);
+    });
+  }
+  /// By exits in floating point, as far as they are certain.
+  void traceByExits(Index tet, const ElementNumbers::Row& row) {
     const GridPoint& begin = row.front().z;
     const int axis = row.front().axis;
-    // Early, as who copies it has to wait until memory has all its parts.
-    middle_ = {tet, kWholeTet, Frame::along(begin, axis)};
-    if (!vertices_.hasVertices(tet)) {
-      row.forEach([&](const Element& edge) { trace(edge, row.along(), {}, {}); });
-      return;
-    }
-    const GridPoint end = step(begin, direction(axis, 1));
-    LatticeNumbers::OnLine beginnings(vertices_, tet, begin, row.along(), fromHint_);
-    LatticeNumbers::OnLine ends(vertices_, tet, end, row.along(), toHint_);
+    lookAlong(tet, axis);
+    const TetExits::Weights first = exits_.atMiddle(begin);
+    const TetExits::Weights& gradient = exits_.gradient(row.along());
+    double steps = 0;
     row.forEach([&](const Element& edge) {
-      trace(edge, row.along(), beginnings.find(edge.z),
-            ends.find(step(edge.z, direction(axis, 1))));
+      const TetExits::Weights middle = first.plus(gradient, steps);
+      steps += 1;
+      if (edge.simplex == kWholeTet && traceInside(edge, middle)) return;
+      middle_ = {tet, edge.simplex, Frame::along(edge.z, axis)};
+      traceExactly(edge);
     });
   }
 
  private:
   using Found = LatticeNumbers::Found;
+  /// One of the two ways from a midpoint inside a tet.
+  struct WayOut {
+    TetExits::Exit exit{};
+    TetExits::Point point{};
+    HalfFace mate = kNone;  ///< behind the face that the edge leaves through; kNone if it does not
+    Index vertex = kNone;   ///< the end of the edge, if it is known
+  };
 
-  /// @param along     in which coordinate the edge differs from others of its row
-  /// @param from, to  what the tet has of the edge's ends
-  void trace(const Element& edge, std::size_t along, const Found& from, const Found& to) {
-    if (from.vertex != kNone && to.vertex != kNone) {
-      // By convexity, all between lies in the smallest simplex that contains both ends.
-      arcs_.ends[edge.number] = {from.vertex, to.vertex};
-      arcs_.pointBegin[edge.number] = 0;
-      addSegment({middle_.tet, static_cast<CornerMask>(from.simplex | to.simplex), {}});
-      return;
+  /// @return the edge's second grid point
+  [[nodiscard]] static GridPoint endOf(const Element& edge) noexcept {
+    return step(edge.z, direction(edge.axis, 1));
+  }
+
+  void lookAlong(Index tet, int axis) {
+    if (tet != tet_) {
+      exits_.enter(map_.exact.corners[tet], map_.topology.tets[tet], map_.input.view.points);
+      for (int face = 0; face < 4; ++face) {
+        owned_[static_cast<std::size_t>(face)] = ownedFace(map_.topology, tet, face);
+      }
+    }
+    if (tet != tet_ || axis != axis_) exits_.turn(axis);
+    tet_ = tet;
+    axis_ = axis;
+  }
+
+  /// From a midpoint inside a tet, as far as it is certain which faces the edge leaves it through.
+  /// @return false, without having done anything, if it is not
+  [[nodiscard]] bool traceInside(const Element& edge, const TetExits::Weights& middle) {
+    const TetExits::Zeros zeros = exits_.zeros(middle);
+    WayOut back;
+    WayOut ahead;
+    back.exit = exits_.exit<Way::Backward>(zeros);
+    ahead.exit = exits_.exit<Way::Forward>(zeros);
+    if (!leave(back, middle, -back.exit.at) || !leave(ahead, middle, ahead.exit.at)) return false;
+    if (back.mate == kNone) back.vertex = vertices_.find(tet_, edge.z).vertex;
+    if (ahead.mate == kNone) ahead.vertex = vertices_.find(tet_, endOf(edge)).vertex;
+    if ((back.mate == kNone && back.vertex == kNone) ||
+        (ahead.mate == kNone && ahead.vertex == kNone)) {
+      return false;
     }
     const std::size_t before = pieces_.points();
-    middle_.frame.origin[along] = edge.z[along];
-    middle_.simplex = edge.simplex;
-    arcs_.ends[edge.number] = edge.simplex == kWholeTet ? traceBothWays(middle_, from, to)
-                                                        : traceFromBeginning(middle_, from);
+    const Index first = goBack(edge, back);
+    pieces_.addSegment({tet_, kWholeTet});
+    finish(edge, before, {first, goAhead(edge, ahead)});
+    return true;
+  }
+
+  /// @param distance  to the exit
+  /// @return whether it is certain that the edge leaves the tet, and where, or that it does not
+  [[nodiscard]] bool leave(WayOut& way, const TetExits::Weights& middle, double distance) {
+    const TetExits::End end = exits_.endAt(distance);
+    if (end != TetExits::End::Beyond) return end == TetExits::End::Inside;
+    way.point = exits_.point(middle, way.exit);
+    if (!way.point.sure) return false;
+    const HalfFace halfFace = halfFaceOf(tet_, way.exit.face);
+    way.mate = map_.topology.mate[halfFace];
+    if (way.mate == kNone) return false;
+    vertices_.fetch(tetOf(way.mate));
+    const Transitions& transitions = map_.exact.transitions;
+    prefetch(&transitions.table[transitions.jump[halfFace]]);
+    return true;
+  }
+
+  [[nodiscard]] Index goBack(const Element& edge, WayOut& way) {
+    if (way.mate == kNone) return way.vertex;
+    const Index vertex = vertexBehind(way, edge.z);
+    if (vertex != kNone) {
+      pieces_.addSegment({tetOf(way.mate), kWholeTet});
+      addExit(way);
+      return vertex;
+    }
+    const std::size_t firstPoint = pieces_.points();
+    const std::size_t firstSegment = pieces_.segments();
+    addExit(way);
+    const ArcEnd first = tracer_.followThrough(
+        way.exit.face, sharesOf(way), {tet_, kWholeTet, Frame::along(edge.z, axis_).reversed()},
+        [&](const SimplexInTet& carrier, const ArcExit& exit) {
+          addSegment(carrier);
+          pieces_.addPoint(exit, 1 - exit.parameter);
+        });
+    addSegment(first.carrier);
+    pieces_.reverseFrom(firstPoint, firstSegment);
+    return first.vertex;
+  }
+  [[nodiscard]] Index goAhead(const Element& edge, WayOut& way) {
+    if (way.mate == kNone) return way.vertex;
+    addExit(way);
+    const Index vertex = vertexBehind(way, endOf(edge));
+    if (vertex != kNone) {
+      pieces_.addSegment({tetOf(way.mate), kWholeTet});
+      return vertex;
+    }
+    const ArcEnd last = tracer_.followThrough(
+        way.exit.face, sharesOf(way), {tet_, kWholeTet, Frame::along(edge.z, axis_)},
+        [&](const SimplexInTet& carrier, const ArcExit& exit) {
+          addSegment(carrier);
+          pieces_.addPoint(exit, exit.parameter);
+        });
+    addSegment(last.carrier);
+    return last.vertex;
+  }
+  /// @param z  the end of the edge
+  [[nodiscard]] Index vertexBehind(const WayOut& way, const GridPoint& z) const {
+    return tracer_.vertexBehind(halfFaceOf(tet_, way.exit.face), way.mate, z);
+  }
+  void addExit(const WayOut& way) {
+    const double parameter = 0.5 + way.exit.at;
+    pieces_.addPoint({owned_[static_cast<std::size_t>(way.exit.face)],
+                      exits_.position(way.point.shares), parameter},
+                     parameter);
+  }
+  [[nodiscard]] static std::array<double, 4> sharesOf(const WayOut& way) noexcept {
+    const TetExits::Weights& shares = way.point.shares;
+    return {shares.of01[0], shares.of01[1], shares.of23[0], shares.of23[1]};
+  }
+
+  /// From the midpoint, wherever that is.
+  void traceExactly(const Element& edge) {
+    const std::size_t before = pieces_.points();
+    const Found from = vertices_.find(middle_.tet, edge.z);
+    const Found to = vertices_.find(middle_.tet, endOf(edge));
+    std::array<Index, 2> ends = {from.vertex, to.vertex};
+    if (from.vertex != kNone && to.vertex != kNone) {
+      // By convexity, all between lies in the smallest simplex that contains both ends.
+      addSegment({middle_.tet, static_cast<CornerMask>(from.simplex | to.simplex), {}});
+    } else {
+      ends = middle_.simplex == kWholeTet ? traceBothWays(middle_, from, to)
+                                          : traceFromBoundary(middle_, from);
+    }
+    finish(edge, before, ends);
+  }
+  /// @param before  how many points there were before the edge
+  void finish(const Element& edge, std::size_t before, const std::array<Index, 2>& ends) {
+    arcs_.ends[edge.number] = ends;
     arcs_.pointBegin[edge.number] = pieces_.points() - before;
     smoothParameters(pieces_.parametersFrom(before));
   }
@@ -72,56 +207,63 @@ class BlockTracer {
     if (from.vertex == kNone) tracer_.begin(Way::Backward, middle, seen, sides);
     if (to.vertex == kNone) tracer_.begin(Way::Forward, middle, seen, sides);
     if (from.vertex == kNone) {
-      ends[0] = traceBack();
+      ends[0] =
+          traceBack([&](const auto& visit) { return tracer_.followBegun(Way::Backward, visit); });
     } else {
       addSegment(middle);
     }
-    if (to.vertex != kNone) return ends;
-    bool atMiddle = true;
-    const ArcEnd last =
-        tracer_.followBegun(Way::Forward, [&](const SimplexInTet& carrier, const ArcExit& exit) {
-          if (!atMiddle) addSegment(carrier);
-          atMiddle = false;
-          pieces_.addPoint(exit, exit.parameter);
-        });
-    addSegment(last.carrier);
-    ends[1] = last.vertex;
+    if (to.vertex == kNone) {
+      ends[1] =
+          traceAhead([&](const auto& visit) { return tracer_.followBegun(Way::Forward, visit); });
+    }
     return ends;
   }
 
+  /// From a midpoint on the boundary of tets: back to the beginning, then on from where it was.
+  /// @param from  what the tet has of the beginning
+  [[nodiscard]] std::array<Index, 2> traceFromBoundary(const SimplexInTet& middle,
+                                                       const Found& from) {
+    SimplexInTet back{middle.tet, static_cast<CornerMask>(middle.simplex | from.simplex),
+                      middle.frame.reversed()};
+    Index first = from.vertex;
+    if (first == kNone) {
+      back = tracer_.behind({middle.tet, middle.simplex, back.frame});
+      first = traceBack([&](const auto& visit) { return tracer_.follow(back, visit); });
+    } else {
+      addSegment(back);
+    }
+    // Whether or not that part ends at the midpoint, it is there already.
+    back.frame = back.frame.reversed();
+    return {first, traceAhead([&](const auto& visit) { return tracer_.follow(back, visit); })};
+  }
+
   /// Adds what there is from the beginning to the segment at the midpoint.
+  /// @param follow  the way back, of a visitor
   /// @return the vertex at the beginning
-  [[nodiscard]] Index traceBack() {
+  template <class Follow>
+  [[nodiscard]] Index traceBack(const Follow& follow) {
     const std::size_t firstPoint = pieces_.points();
     const std::size_t firstSegment = pieces_.segments();
-    const ArcEnd first =
-        tracer_.followBegun(Way::Backward, [&](const SimplexInTet& carrier, const ArcExit& exit) {
-          addSegment(carrier);
-          pieces_.addPoint(exit, 1 - exit.parameter);
-        });
+    const ArcEnd first = follow([&](const SimplexInTet& carrier, const ArcExit& exit) {
+      addSegment(carrier);
+      pieces_.addPoint(exit, 1 - exit.parameter);
+    });
     addSegment(first.carrier);
     pieces_.reverseFrom(firstPoint, firstSegment);
     return first.vertex;
   }
-
-  /// From a midpoint on the boundary of tets: back to the beginning, then all the way.
-  /// @param from  what the tet has of the beginning
-  [[nodiscard]] std::array<Index, 2> traceFromBeginning(const SimplexInTet& middle,
-                                                        const Found& from) {
-    ArcEnd first{{middle.tet, static_cast<CornerMask>(middle.simplex | from.simplex), middle.frame},
-                 from.vertex};
-    if (from.vertex == kNone) {
-      const SimplexInTet turned{middle.tet, middle.simplex, middle.frame.reversed()};
-      first = tracer_.follow(tracer_.behind(turned), [](const SimplexInTet&, const ArcExit&) {});
-      first.carrier.frame = first.carrier.frame.reversed();
-    }
-    const ArcEnd last =
-        tracer_.follow(first.carrier, [&](const SimplexInTet& carrier, const ArcExit& exit) {
-          addSegment(carrier);
-          pieces_.addPoint(exit, exit.parameter);
-        });
-    addSegment(last.carrier);
-    return {first.vertex, last.vertex};
+  /// Adds what there is behind the segment at the midpoint.
+  /// @return the vertex at the end
+  template <class Follow>
+  [[nodiscard]] Index traceAhead(const Follow& follow) {
+    bool atMiddle = true;
+    const ArcEnd last = follow([&](const SimplexInTet& carrier, const ArcExit& exit) {
+      if (!atMiddle) addSegment(carrier);
+      atMiddle = false;
+      pieces_.addPoint(exit, exit.parameter);
+    });
+    if (!atMiddle) addSegment(last.carrier);
+    return last.vertex;
   }
 
   void addSegment(const SimplexInTet& carrier) {
@@ -139,9 +281,11 @@ class BlockTracer {
   Arcs& arcs_;
   ArcPieces& pieces_;
   ArcTracer tracer_;
-  SimplexInTet middle_;  ///< the midpoint of the edge at hand
-  LineHint fromHint_;
-  LineHint toHint_;
+  TetExits exits_;
+  Index tet_ = kNone;                    ///< that exits are known of
+  int axis_ = -1;                        ///< of its chart, along which
+  std::array<OwnedSimplex, 4> owned_{};  ///< its faces
+  SimplexInTet middle_;                  ///< the midpoint of the edge at hand
 };
 
 /// Makes room.
@@ -158,7 +302,7 @@ void lengthenAll(Arcs& arcs, std::uint64_t points, std::uint64_t segments, doubl
 }  // namespace
 
 Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const ElementNumbers& edges,
-               Stage& stage) {
+               Stage& stage, std::uint64_t enough) {
   Arcs arcs;
   arcs.ends.resize(edges.count());
   arcs.pointBegin.resize(edges.count() + 1);
@@ -175,7 +319,14 @@ Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const Ele
         BlockTracer tracer(map, vertices, arcs, pieces[block % kWaveBlocks]);
         for (std::size_t t = begin; t < end; ++t) {
           const auto tet = static_cast<Index>(t);
-          edges.forEachRow(tet, [&](const ElementNumbers::Row& row) { tracer.trace(tet, row); });
+          const bool byExits = edges.begin(t + 1) - edges.begin(t) >= enough;
+          edges.forEachRow(tet, [&](const ElementNumbers::Row& row) {
+            if (byExits) {
+              tracer.traceByExits(tet, row);
+            } else {
+              tracer.trace(tet, row);
+            }
+          });
         }
       },
       [&](std::size_t firstBlock, std::size_t endBlock) {

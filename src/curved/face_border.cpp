@@ -117,8 +117,7 @@ CornerMask FaceBorder::setInsideOneTet(Index tet, const Frame& frame) {
   std::array<CornerMask, 4> simplices{};
   CornerMask carrier = kNoSimplex;
   for (std::size_t i = 0; i < 4; ++i) {
-    const LatticeNumbers::Found found =
-        input_.vertices.find(tet, frame.at(kSquareCorners[i]), vertexHints_[i]);
+    const LatticeNumbers::Found found = input_.vertices.find(tet, frame.at(kSquareCorners[i]));
     if (found.vertex == kNone) return kNoSimplex;
     vertices_[i] = found.vertex;
     simplices[i] = found.simplex;

@@ -88,7 +88,6 @@ class FaceBorder {
   const ExactMap& exact_;
   SimplexStar star_;
   std::uint64_t vertexCount_;
-  std::array<LineHint, 4> vertexHints_;  ///< per corner of the square
   /// Where arcs were found the last time, for several tets, axes and sides.
   std::array<LineHint, 512> arcHints_;
 

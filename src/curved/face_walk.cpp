@@ -89,6 +89,18 @@ bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen, const EdgeS
   return true;
 }
 
+void FaceWalk::resume(const SimplexInTet& at, int face, const std::array<double, 4>& shares) {
+  leaveThrough(at.tet, face);
+  look(at.frame);
+  const std::array<std::uint8_t, 3>& corners = kFaces[static_cast<std::size_t>(face)].corners;
+  for (std::size_t i = 0; i < 3; ++i) {
+    place(i, topology_.tets[at.tet][corners[i]], seen(exact_.corners[at.tet][corners[i]]));
+  }
+  // Weights are cross products, and their sum is twice the area of the face as the edge sees it.
+  const double area = toDouble(crossComponent(seen_[1] - seen_[0], seen_[2] - seen_[0], 0));
+  for (std::size_t i = 0; i < 3; ++i) weights_[i] = shares[corners[i]] * area;
+}
+
 bool FaceWalk::cross(SimplexInTet& at) {
   if (mate_ == kNone) return false;
   const HalfFace halfFace = halfFaceOf(at.tet, face_);
@@ -104,11 +116,7 @@ bool FaceWalk::cross(SimplexInTet& at) {
 bool FaceWalk::leave(const SimplexInTet& at) {
   if (!looked_) look(at.frame);
   const auto apex = static_cast<std::size_t>(face_);
-  const LatticePoint& corner = exact_.corners[at.tet][apex];
-  LatticePoint seen;
-  for (std::size_t k = 0; k < 3; ++k) {
-    seen[k] = ((corner[axis_[k]] - zero_[k]) ^ flip_[k]) - flip_[k];
-  }
+  const LatticePoint seen = this->seen(exact_.corners[at.tet][apex]);
   // The edge leaves between two corners, and the apex, that it has inside: those where the apex is
   // to the right of the first and to the left of the second.
   std::array<Halves, 3> side;
@@ -139,7 +147,9 @@ void FaceWalk::leaveThrough(Index tet, int face) noexcept {
   const HalfFace own = halfFaceOf(tet, face);
   mate_ = topology_.mate[own];
   const HalfFace next = mate_ == kNone ? own : mate_;
-  prefetch(&exact_.transitions.jump[own]);
+  // What the jump is has been asked for one tet before, so it is known which transition it takes.
+  prefetch(&exact_.transitions.table[exact_.transitions.jump[own]]);
+  prefetch(&exact_.transitions.jump[halfFaceOf(tetOf(next), 0)]);
   prefetch(exact_.corners[tetOf(next)][static_cast<std::size_t>(localOf(next))].data());
   prefetch(topology_.tets[tetOf(next)].data());
   prefetch(&topology_.mate[halfFaceOf(tetOf(next), 0)]);

@@ -67,6 +67,11 @@ class FaceWalk {
   [[nodiscard]] bool start(const SimplexInTet& at, const LatticeTet& seen, const EdgeSides& sides,
                            Way way);
 
+  /// Goes on from a point inside a face that the edge is known to leave a tet through.
+  /// @param at      the tet, in a frame that has the edge along its first axis
+  /// @param shares  of the tet's corners in the point, with sum 1
+  void resume(const SimplexInTet& at, int face, const std::array<double, 4>& shares);
+
   /// The point in the face at hand, on its side in the tet.
   [[nodiscard]] ArcExit exit(Index tet) const {
     ArcExit exit{{tet, faceMask(face_)}, {}, place_ * perUnit_};
@@ -88,6 +93,13 @@ class FaceWalk {
  private:
   void leaveThrough(Index tet, int face) noexcept;
   void look(const Frame& frame) noexcept;
+  [[nodiscard]] LatticePoint seen(const LatticePoint& corner) const noexcept {
+    LatticePoint seen;
+    for (std::size_t k = 0; k < 3; ++k) {
+      seen[k] = ((corner[axis_[k]] - zero_[k]) ^ flip_[k]) - flip_[k];
+    }
+    return seen;
+  }
   void place(std::size_t i, Index vertex, const LatticePoint& seen) noexcept;
   void measure() noexcept;
 

@@ -51,7 +51,6 @@ class NodeCollector {
   void collect(const CellSeed& cell, std::span<Index> nodes) {
     std::fill(nodes.begin(), nodes.end(), kNone);
     missing_ = nodes.size();
-    hints_.resize(nodes.size());
     Frame frame = Frame::along(cell.z, 0);
     for (std::int32_t& coordinate : frame.origin) coordinate *= order_;
     queue_.assign(1, {cell.tet, kWholeTet, frame});
@@ -88,7 +87,7 @@ class NodeCollector {
               static_cast<std::size_t>(i) +
               stride * (static_cast<std::size_t>(j) + stride * static_cast<std::size_t>(k));
           if (nodes[n] != kNone) continue;
-          nodes[n] = numbers_.find(here.tet, here.frame.at({i, j, k}), hints_[n]).vertex;
+          nodes[n] = numbers_.find(here.tet, here.frame.at({i, j, k})).vertex;
           if (nodes[n] != kNone) --missing_;
         }
       }
@@ -115,7 +114,6 @@ class NodeCollector {
   int order_;
   std::size_t missing_ = 0;
   std::vector<SimplexInTet> queue_;
-  std::vector<LineHint> hints_;  ///< per node
 };
 
 /// Place of a cell's corner among its nodes.

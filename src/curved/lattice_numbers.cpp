@@ -1,4 +1,5 @@
-#include <limits>
+#include <algorithm>
+#include <bit>
 #include <string>
 
 #include <curved/lattice_numbers.hpp>
@@ -6,15 +7,18 @@
 
 namespace hexhex {
 
-LatticeNumbers::LatticeNumbers(const PreparedMap& map) : map_(map) {
+LatticeNumbers::LatticeNumbers(const PreparedMap& map, std::uint64_t room)
+    : map_(map), room_(room) {
   const std::size_t tets = map.topology.tetCount();
   axes_.resize(tets);
   lineBegin_.resize(tets + 1);
   lineBegin_[tets] = 0;
   occupied_.assign((tets + 63) / 64, 0);
+  boxOf_.resize(tets);
 }
 
-LatticeNumbers::LatticeNumbers(const PreparedMap& map, Stage& stage) : LatticeNumbers(map) {
+LatticeNumbers::LatticeNumbers(const PreparedMap& map, std::uint64_t room, Stage& stage)
+    : LatticeNumbers(map, room) {
   Sweep sweep(*this);
   const HalfGridSearch search(kGrids);
   parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
@@ -55,15 +59,51 @@ void LatticeNumbers::Sweep::finish(Stage& stage) {
   }
   exclusiveScan(std::span(n.lineBegin_));
   n.lines_.resize(n.lineBegin_.back());
+  const std::vector<std::size_t> boxes = n.countBoxes();
+  std::vector<std::uint64_t> points(boxes.size());
   parallelBlocks(stage, n.map_.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    std::size_t at = n.lineBegin_[begin];
                    for (const SweptLine& line : blocks_[block]) n.lines_[at++] = {line};
                    blocks_[block] = {};
                    std::vector<SweptLine> scratch;
+                   std::size_t box = boxes[block];
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
-                     if (n.hasVertices(tet)) n.number(tet, scratch);
+                     if (!n.hasVertices(tet)) continue;
+                     n.number(tet, scratch);
+                     n.boxOf_[tet] = static_cast<Index>(box);
+                     const Box& measured = n.boxes_[box++] = n.measureBox(tet);
+                     if (measured.begin < kNoTable) points[block] += measured.points();
+                   }
+                 });
+  n.fillBoxes(points, stage);
+}
+
+/// Makes room for the boxes.
+/// @return the first one per block of tets
+std::vector<std::size_t> LatticeNumbers::countBoxes() {
+  std::vector<std::size_t> boxes(blockCount(map_.topology.tetCount(), kSweepBlock));
+  for (std::size_t word = 0; word < occupied_.size(); ++word) {
+    boxes[word / (kSweepBlock / 64)] += static_cast<std::size_t>(std::popcount(occupied_[word]));
+  }
+  boxes_.resize(exclusiveScan(std::span(boxes)));
+  return boxes;
+}
+
+/// When all tets have the numbers of what they own.
+/// @param points  of the tables, by block of tets
+void LatticeNumbers::fillBoxes(std::vector<std::uint64_t>& points, Stage& stage) {
+  const std::uint64_t count = exclusiveScan(std::span(points));
+  boxVertices_.resize(count);
+  boxSimplices_.resize(count);
+  parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     if (!hasVertices(tet) || boxes_[boxOf_[tet]].begin >= kNoTable) continue;
+                     fillBox(tet, points[block]);
+                     points[block] += boxes_[boxOf_[tet]].points();
                    }
                  });
 }
@@ -94,17 +134,69 @@ void LatticeNumbers::enter(Line& line, const VertexRun& run) {
   }
 }
 
-const LatticeNumbers::Line* LatticeNumbers::lineAt(Index tet, const GridPoint& z,
-                                                   LineHint& hint) const {
+/// Without its place in the tables, unless it is known to need none.
+LatticeNumbers::Box LatticeNumbers::measureBox(Index tet) const {
+  const std::span<const Line> lines = linesOf(tet);
   const std::array<std::uint8_t, 3>& axes = axes_[tet]();
-  return findLine(
-      linesOf(tet), z[axes[0]], z[axes[1]],
-      [](const Line& l) -> const SweptLine& { return l.swept; }, hint);
+  const SweptLine& front = lines.front().swept;
+  std::array<std::int32_t, 3> low = {front.level, front.row, front.first};
+  std::array<std::int32_t, 3> high = {lines.back().swept.level, front.row, front.first};
+  std::uint64_t points = 0;
+  for (const Line& line : lines) {
+    const auto count = static_cast<std::int32_t>(line.swept.count);
+    low[1] = std::min(low[1], line.swept.row);
+    high[1] = std::max(high[1], line.swept.row);
+    low[2] = std::min(low[2], line.swept.first);
+    high[2] = std::max(high[2], line.swept.first + count - 1);
+    points += line.swept.count;
+  }
+  Box box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.first[axes[k]] = low[k];
+    box.size[axes[k]] = static_cast<std::uint32_t>(high[k] - low[k] + 1);
+  }
+  if (box.points() > room_ * points) {
+    box.begin = kLarge;
+  } else if (points == 1 && lines.front().left != kNone) {
+    box.begin = beginOfOnly({lines.front().left, front.left});
+  }
+  return box;
 }
 
-LatticeNumbers::Found LatticeNumbers::find(Index tet, const GridPoint& z, LineHint& hint) const {
-  const Line* const line = lineAt(tet, z, hint);
-  return line == nullptr ? Found{} : foundOn(tet, *line, z, axes_[tet]()[2]);
+/// @param begin  of the box in the tables
+void LatticeNumbers::fillBox(Index tet, std::uint64_t begin) {
+  Box& box = boxes_[boxOf_[tet]];
+  box.begin = begin;
+  std::fill_n(boxVertices_.data() + begin, box.points(), kNone);
+  std::fill_n(boxSimplices_.data() + begin, box.points(), kNoSimplex);
+  const std::array<std::uint8_t, 3>& axes = axes_[tet]();
+  const std::array<std::size_t, 3> strides = {std::size_t{box.size[1]} * box.size[2], box.size[2],
+                                              1};
+  for (const Line& line : linesOf(tet)) {
+    GridPoint z = line.swept.point(0);
+    std::size_t at = begin;
+    for (std::size_t k = 0; k < 3; ++k) {
+      at += strides[k] * static_cast<std::size_t>(z[k] - box.first[k]);
+    }
+    for (std::uint32_t i = 0; i < line.swept.count; ++i) {
+      const Found found = foundOn(tet, line, z, i);
+      boxVertices_[at] = found.vertex;
+      boxSimplices_[at] = found.simplex;
+      at += strides[axes[2]];
+      ++z[axes[2]];
+    }
+  }
+}
+
+LatticeNumbers::Found LatticeNumbers::findOnLines(Index tet, const GridPoint& z) const {
+  const std::array<std::uint8_t, 3>& axes = axes_[tet]();
+  LineHint hint;
+  const Line* const line = findLine(
+      linesOf(tet), z[axes[0]], z[axes[1]],
+      [](const Line& l) -> const SweptLine& { return l.swept; }, hint);
+  if (line == nullptr) return {};
+  const auto i = static_cast<std::uint32_t>(z[axes[2]] - line->swept.first);
+  return i < line->swept.count ? foundOn(tet, *line, z, i) : Found{};
 }
 
 /// At the end of a line, or in a face that another tet owns.
@@ -121,18 +213,8 @@ LatticeNumbers::Found LatticeNumbers::foundAtEnd(Index tet, const Line& line, co
   // The tet on the other side of a face owns it.
   const HalfFace halfFace = halfFaceOf(tet, oppositeCorner(simplex));
   const Index owner = tetOf(map_.topology.mate[halfFace]);
-  LineHint there;
-  return {find(owner, map_.exact.transitions.across(halfFace)(z), there).vertex, simplex};
+  return {findOnLines(owner, map_.exact.transitions.across(halfFace)(z)).vertex, simplex};
 }
-
-LatticeNumbers::OnLine::OnLine(const LatticeNumbers& numbers, Index tet, const GridPoint& z,
-                               std::size_t axis, LineHint& hint)
-    : numbers_(numbers),
-      tet_(tet),
-      axis_(axis),
-      hint_(hint),
-      swept_(numbers.axes_[tet]()[2] == axis),
-      line_(swept_ ? numbers.lineAt(tet, z, hint) : nullptr) {}
 
 void LatticeNumbers::describe(const VertexDescriptions& to, Stage& stage) const {
   parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,

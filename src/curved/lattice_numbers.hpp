@@ -10,6 +10,7 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/prefetch.hpp>
 #include <lattice/half_grids.hpp>
 #include <map/prepare.hpp>
 
@@ -32,9 +33,16 @@ struct LineHint {
 class LatticeNumbers {
  public:
   /// @throws Error TooLarge for more vertices than an Index can number
-  LatticeNumbers(const PreparedMap& map, Stage& stage);
+  LatticeNumbers(const PreparedMap& map, Stage& stage)
+      : LatticeNumbers(map, kRoomPerVertex, stage) {}
+  /// @param room  how many grid points the box around a tet's vertices may have for each of them if
+  ///              it is to have a table; thin tets across the axes fill next to nothing of theirs
+  LatticeNumbers(const PreparedMap& map, std::uint64_t room, Stage& stage);
   /// Without numbers until a Sweep is finished.
-  explicit LatticeNumbers(const PreparedMap& map);
+  explicit LatticeNumbers(const PreparedMap& map, std::uint64_t room = kRoomPerVertex);
+
+  /// Tets fill a sixth of their bounding box if they have three edges along the axes.
+  static constexpr std::uint64_t kRoomPerVertex = 24;
 
   /// The grid of vertices.
   static constexpr HalfGridSet kGrids = halfGridBit(0);
@@ -75,39 +83,30 @@ class LatticeNumbers {
     return ((occupied_[tet / 64] >> (tet % 64)) & 1U) != 0;
   }
 
+  /// Tells memory that find() will be asked soon.
+  void fetch(Index tet) const noexcept { prefetch(&boxOf_[tet]); }
+
   struct Found {
     Index vertex = kNone;             ///< kNone if the closed tet does not contain the point
     CornerMask simplex = kNoSimplex;  ///< of the tet, in whose interior it lies
   };
   /// The vertex at a grid point in the chart of a tet.
-  [[nodiscard]] Found find(Index tet, const GridPoint& z, LineHint& hint) const;
-
- private:
-  struct Line;
-
- public:
-  /// The vertices of a tet on a line of the grid: for searches that go along it.
-  class OnLine {
-   public:
-    /// @param z     a point of the line
-    /// @param axis  along it
-    OnLine(const LatticeNumbers& numbers, Index tet, const GridPoint& z, std::size_t axis,
-           LineHint& hint);
-
-    /// The vertex at a point of the line.
-    [[nodiscard]] Found find(const GridPoint& z) {
-      if (!swept_) return numbers_.find(tet_, z, hint_);
-      return line_ == nullptr ? Found{} : numbers_.foundOn(tet_, *line_, z, axis_);
+  [[nodiscard]] Found find(Index tet, const GridPoint& z) const {
+    if (!hasVertices(tet)) return {};
+    const Box& box = boxes_[boxOf_[tet]];
+    std::size_t place = 0;
+    bool isInside = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto at = static_cast<std::uint32_t>(z[k]) - static_cast<std::uint32_t>(box.first[k]);
+      isInside &= at < box.size[k];
+      place = place * box.size[k] + at;
     }
-
-   private:
-    const LatticeNumbers& numbers_;
-    Index tet_;
-    std::size_t axis_;
-    LineHint& hint_;
-    bool swept_;        ///< whether the tet was swept along such lines
-    const Line* line_;  ///< then: the line, or nullptr if it has no vertices
-  };
+    if (!isInside) return {};
+    if (box.begin >= kNoTable) {
+      return box.begin == kLarge ? findOnLines(tet, z) : onlyVertex(box.begin);
+    }
+    return {boxVertices_[box.begin + place], boxSimplices_[box.begin + place]};
+  }
 
  private:
   /// A swept line with the numbers of its points.
@@ -123,12 +122,36 @@ class LatticeNumbers {
     const std::size_t begin = lineBegin_[tet];
     return std::span(lines_).subspan(begin, lineBegin_[std::size_t{tet} + 1] - begin);
   }
-  [[nodiscard]] const Line* lineAt(Index tet, const GridPoint& z, LineHint& hint) const;
-  /// The vertex at a point of a line that is swept along an axis.
+  /// The smallest box with all vertices of a tet, in its chart. In a table of its grid points, a
+  /// vertex is found at once.
+  struct Box {
+    std::uint64_t begin = 0;  ///< in the tables; kNoTable or more if it is not there
+    GridPoint first{};
+    std::array<std::uint32_t, 3> size{};  ///< points along each axis
+
+    [[nodiscard]] std::uint64_t points() const noexcept {
+      return std::uint64_t{size[0]} * size[1] * size[2];
+    }
+  };
+  /// Plus the only vertex and its simplex.
+  static constexpr std::uint64_t kNoTable = std::uint64_t{1} << 63;
+  /// Too many points.
+  static constexpr std::uint64_t kLarge = ~std::uint64_t{0};
+  [[nodiscard]] static Found onlyVertex(std::uint64_t begin) noexcept {
+    return {static_cast<Index>(begin), static_cast<CornerMask>((begin >> 32) & kWholeTet)};
+  }
+  [[nodiscard]] static std::uint64_t beginOfOnly(const Found& found) noexcept {
+    return kNoTable | std::uint64_t{found.simplex} << 32 | found.vertex;
+  }
+
+  [[nodiscard]] std::vector<std::size_t> countBoxes();
+  [[nodiscard]] Box measureBox(Index tet) const;
+  void fillBox(Index tet, std::uint64_t begin);
+  void fillBoxes(std::vector<std::uint64_t>& points, Stage& stage);
+  [[nodiscard]] Found findOnLines(Index tet, const GridPoint& z) const;
+  /// The i-th vertex of a line, at grid point z.
   [[nodiscard]] Found foundOn(Index tet, const Line& line, const GridPoint& z,
-                              std::size_t axis) const {
-    const auto i = static_cast<std::uint32_t>(z[axis] - line.swept.first);
-    if (i >= line.swept.count) return {};
+                              std::uint32_t i) const {
     if (i > 0 && i + 1 < line.swept.count && line.inner != kNone) {
       return {line.inner + static_cast<Index>(line.step * static_cast<std::int32_t>(i - 1)),
               line.swept.inner()};
@@ -141,11 +164,17 @@ class LatticeNumbers {
   static void enter(Line& line, const VertexRun& run);
 
   const PreparedMap& map_;
+  std::uint64_t room_;
   VertexNumbers numbers_;
   Array<SweepAxes> axes_;           ///< per tet
   Array<std::uint64_t> lineBegin_;  ///< per tet (+1)
   Array<std::uint64_t> occupied_;   ///< a bit per tet: few enough to be at hand wherever arcs go
   Array<Line> lines_;
+  // For find():
+  Array<Index> boxOf_;  ///< per tet; only of tets with vertices
+  Array<Box> boxes_;
+  Array<Index> boxVertices_;  ///< per point of the boxes
+  Array<CornerMask> boxSimplices_;
 };
 
 /// Lines in the order of a sweep: the one at a level and row, or nullptr.

@@ -18,13 +18,17 @@ struct BoxLimits {
   bool hold = false;  ///< whether there are points on such faces
 
   BoxLimits() = default;
+  /// Whether a face might be across an axis.
+  [[nodiscard]] static bool mayBeAcross(const LatticeTet& tet, std::size_t axis) noexcept {
+    // Every face has both of one of these pairs.
+    return tet[0][axis] == tet[1][axis] || tet[2][axis] == tet[3][axis];
+  }
   /// @param first,last  points of the box, on the lattice
   BoxLimits(const LatticeTet& tet, const LatticePoint& first, const LatticePoint& last,
             SweepAxes axes) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t axis = axes()[k];
-      // Every face has both of one of these pairs.
-      if (tet[0][axis] != tet[1][axis] && tet[2][axis] != tet[3][axis]) continue;
+      if (!mayBeAcross(tet, axis)) continue;
       for (std::size_t face = 0; face < 4; ++face) {
         const std::array<int, 3>& f = kFaceCorners[face];
         const std::int64_t at = tet[static_cast<std::size_t>(f[0])][axis];

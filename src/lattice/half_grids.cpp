@@ -41,6 +41,7 @@ HalfGrids::HalfGrids(const LatticeTet& corners, std::int64_t unit,
     comparePoints(places);
     return;
   }
+  for (std::size_t k = 0; k < 3; ++k) mayHaveLimits_ |= BoxLimits::mayBeAcross(corners, k);
   occupied_ = static_cast<HalfGridSet>(search.wanted() & box_.grids());
   if (occupied_ != 0 && most < kMostSteps) measure(most);
 }
@@ -204,33 +205,36 @@ HalfGrids::Slopes HalfGrids::slopesAlong(std::size_t axis, unsigned limits,
   // 2 error_: zeros are known to an eighth.
   constexpr double kClearSlope = 16;
   slopes.areClear = leastSlope > kClearSlope * error_;
-  slopes.last = static_cast<double>(steps);
+  const auto last = static_cast<double>(steps);
+  // First points end up in the box, or behind it; last points in the box, or before it, so that
+  // empty lines stay empty. No limit is an integer, lest it be mistaken for a zero near one.
+  slopes.least = Pair{-0.5, -1.5};
+  slopes.most = Pair{last + 1.5, last + 0.5};
   // Besides, the roundings of the zero itself and on its way to an integer.
-  slopes.zeroError = 2 * error_ / leastSlope + 0x1p-48 * (slopes.last + 16);
+  slopes.zeroError = 2 * error_ / leastSlope + 0x1p-48 * (last + 16);
   return slopes;
 }
 
-/// The points of a line.
-/// @param weights  at its first point
-/// @param sure     becomes false if it cannot tell
-HalfGrids::Run HalfGrids::runOf(const Weights& weights, const Slopes& slopes, bool& sure) noexcept {
+/// The first and the last point of a line; the other way round if there are none.
+/// @param weights  at its first point in the box
+/// @param unsure   gets bits if it cannot tell
+IntPair HalfGrids::runOf(const Weights& weights, const Slopes& slopes, IntPair& unsure) noexcept {
   const Pair zero01 = weights.of01 * slopes.toZero[0];
   const Pair zero23 = weights.of23 * slopes.toZero[1];
   const Pair lows = larger(zero01 + slopes.lowBias[0], zero23 + slopes.lowBias[1]);
   const Pair highs = smaller(zero01 + slopes.highBias[0], zero23 + slopes.highBias[1]);
-  // Clamped to a range that integers hold; beyond the box by a little so that empty lines stay
-  // empty; not to integers, so that no limit is mistaken for a zero near one.
-  const double end = slopes.last + 2.5;
-  const double low = std::clamp(std::max(lows[0], lows[1]), -2.5, end);
-  const double high = std::clamp(std::min(highs[0], highs[1]), -2.5, end);
+  // The largest of the ones and the smallest of the others at once.
+  constexpr Pair kSigns = {1, -1};
+  const Pair ends =
+      kSigns * larger(kSigns * Pair{lows[0], highs[0]}, kSigns * Pair{lows[1], highs[1]});
   // Adding 4 makes truncation a floor. If no integer lies within the bound of either zero, the
   // points strictly between them are all inside the tet, and no others are in it.
-  const auto lowFrom = static_cast<std::int32_t>(low - slopes.zeroError + 4);
-  const auto lowTo = static_cast<std::int32_t>(low + slopes.zeroError + 4);
-  const auto highFrom = static_cast<std::int32_t>(high - slopes.zeroError + 4);
-  const auto highTo = static_cast<std::int32_t>(high + slopes.zeroError + 4);
-  sure = sure && lowFrom == lowTo && highFrom == highTo;
-  return {std::max(lowFrom - 3, 0), std::min(highTo - 4, static_cast<std::int32_t>(slopes.last))};
+  const Pair clamped = smaller(larger(ends, slopes.least), slopes.most) + Pair{4, 4};
+  const Pair error = {slopes.zeroError, slopes.zeroError};
+  const IntPair from = __builtin_convertvector(clamped - error, IntPair);
+  const IntPair to = __builtin_convertvector(clamped + error, IntPair);
+  unsure |= from ^ to;
+  return from - IntPair{3, 4};
 }
 
 bool HalfGrids::findLines(HalfGrid grid, const GridBox& box, SweepAxes sweepAxes,
@@ -247,21 +251,25 @@ bool HalfGrids::findLines(HalfGrid grid, const GridBox& box, SweepAxes sweepAxes
   if (!measured_ || (std::int64_t{size[0]} + 1) * (std::int64_t{size[1]} + 1) > kMostLines) {
     return false;
   }
-  lines.limits = limitsOf(grid, box, sweepAxes);
+  if (mayHaveLimits_) lines.limits = limitsOf(grid, box, sweepAxes);
   const Slopes slopes = slopesAlong(axes[2], lines.limits.faces, size[2]);
   if (!slopes.areClear) return false;
-  bool sure = true;
-  Run* run = lines.runs.data();
+  IntPair unsure = {0, 0};
+  Run* end = lines.runs.data();
   Weights atLevel = weightsAt(toFirst);
   for (std::int32_t level = 0; level <= size[0]; ++level) {
     Weights weights = atLevel;
     for (std::int32_t row = 0; row <= size[1]; ++row) {
-      *run++ = runOf(weights, slopes, sure);
+      const IntPair run = runOf(weights, slopes, unsure);
+      // Without a branch, as which lines have points is as good as random.
+      *end = {level, row, run[0], run[1]};
+      end += run[0] <= run[1] ? 1 : 0;
       weights = weights.plus(gradient_[axes[1]], 2);
     }
     atLevel = atLevel.plus(gradient_[axes[0]], 2);
   }
-  return sure;
+  lines.count = static_cast<std::size_t>(end - lines.runs.data());
+  return (unsure[0] | unsure[1]) == 0;
 }
 
 LatticeTet HalfGrids::movedBack(HalfGrid grid) const noexcept {

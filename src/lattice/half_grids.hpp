@@ -180,13 +180,17 @@ class HalfGrids {
     CornerMask simplex;
   };
   using SweepPoints = std::array<SweepPoint, kPlaces>;
-  /// Points of the lines of a box, level by level and row by row, relative to it: first, last.
+  /// Points of a line of a box, relative to it.
   struct Run {
+    std::int32_t level;
+    std::int32_t row;
     std::int32_t first;
     std::int32_t last;
   };
+  /// Lines with points, in sweep order.
   struct Lines {
-    std::array<Run, kMostLines> runs;
+    std::array<Run, kMostLines + 1> runs;  ///< one more than there may be
+    std::size_t count = 0;
     BoxLimits limits;
   };
 
@@ -211,12 +215,14 @@ class HalfGrids {
     std::array<Pair, 2> lowBias;   ///< 0 for rising weights, else -infinity
     std::array<Pair, 2> highBias;  ///< 0 for falling weights, else infinity
     double zeroError;              ///< bound of the error of zeros
-    double last;                   ///< last point of the lines
-    bool areClear;                 ///< all weights change enough for that bound
+    Pair least;                    ///< limits of both ends of lines
+    Pair most;
+    bool areClear;  ///< all weights change enough for that bound
   };
   [[nodiscard]] Slopes slopesAlong(std::size_t axis, unsigned limits,
                                    std::int32_t steps) const noexcept;
-  [[nodiscard]] static Run runOf(const Weights& weights, const Slopes& slopes, bool& sure) noexcept;
+  [[nodiscard]] static IntPair runOf(const Weights& weights, const Slopes& slopes,
+                                     IntPair& unsure) noexcept;
   [[nodiscard]] BoxLimits limitsOf(HalfGrid grid, const GridBox& box,
                                    SweepAxes axes) const noexcept;
   template <class Visit>
@@ -238,26 +244,23 @@ class HalfGrids {
     const GridRange& levels = box.range[axes[0]];
     const GridRange& rows = box.range[axes[1]];
     const GridRange& points = box.range[axes[2]];
-    const Run* run = lines.runs.data();
-    for (std::int32_t level = levels.first; level <= levels.last; ++level) {
-      for (std::int32_t row = rows.first; row <= rows.last; ++row) {
-        const std::int32_t first = points.first + run->first;
-        const std::int32_t last = points.first + run->last;
-        ++run;
-        if (first > last) continue;
-        SweptLine line{level,     row,       first,    static_cast<std::uint32_t>(last - first + 1),
-                       kWholeTet, kWholeTet, sweepAxes};
-        if (lines.limits.hold) {
-          const auto simplexAt = [&](std::int32_t point) {
-            return lines.limits.inside(
-                {level == levels.first, row == rows.first, point == points.first},
-                {level == levels.last, row == rows.last, point == points.last});
-          };
-          line.left = simplexAt(first);
-          line.right = simplexAt(last);
-        }
-        visit(std::as_const(line));
+    for (const Run& run : std::span(lines.runs).first(lines.count)) {
+      const std::int32_t level = levels.first + run.level;
+      const std::int32_t row = rows.first + run.row;
+      const std::int32_t first = points.first + run.first;
+      const std::int32_t last = points.first + run.last;
+      SweptLine line{level,     row,       first,    static_cast<std::uint32_t>(last - first + 1),
+                     kWholeTet, kWholeTet, sweepAxes};
+      if (lines.limits.hold) {
+        const auto simplexAt = [&](std::int32_t point) {
+          return lines.limits.inside(
+              {level == levels.first, row == rows.first, point == points.first},
+              {level == levels.last, row == rows.last, point == points.last});
+        };
+        line.left = simplexAt(first);
+        line.right = simplexAt(last);
       }
+      visit(std::as_const(line));
     }
   }
   /// The tet, moved so that the points of the grid become integers.
@@ -268,7 +271,8 @@ class HalfGrids {
   HalfBox box_;
   HalfGridSet occupied_ = 0;
   bool small_ = false;
-  bool measured_ = false;  ///< whether there are weights
+  bool measured_ = false;       ///< whether there are weights
+  bool mayHaveLimits_ = false;  ///< unless no face of a large tet is across an axis
   std::size_t insideCount_ = 0;
   // Of weights, if there are any, at the box's first point and from point to point along each axis:
   Weights atOrigin_;

@@ -1,0 +1,103 @@
+// Vertices by grid point: from tables of boxes and from swept lines, for all points in and around
+// the tets.
+#include <algorithm>
+#include <vector>
+
+#include <curved/lattice_numbers.hpp>
+#include <gtest/gtest.h>
+
+#include <base/stage.hpp>
+#include <map/defects.hpp>
+
+#include "curved/curved_maps.hpp"
+
+namespace hexhex::test {
+
+namespace {
+
+/// How many points were asked for.
+struct PointCounts {
+  std::size_t found = 0;
+  std::size_t missed = 0;
+};
+
+/// Finds the same points in several ways.
+class TableExaminer {
+ public:
+  TableExaminer(const PreparedMap& map, PointCounts& counts, Stage& stage)
+      : map_(map),
+        counts_(counts),
+        lines_(map, 0, stage),  // no box has room
+        some_(map, 2, stage),
+        tables_(map, stage),
+        seen_(tables_.count()) {}
+
+  /// All points of the bounding box and a little around it.
+  void examine(Index tet) {
+    const GridBox box = gridBox(map_.exact.corners[tet], map_.exact.unit);
+    GridPoint z;
+    for (z[0] = box.range[0].first - 2; z[0] <= box.range[0].last + 2; ++z[0]) {
+      for (z[1] = box.range[1].first - 2; z[1] <= box.range[1].last + 2; ++z[1]) {
+        for (z[2] = box.range[2].first - 2; z[2] <= box.range[2].last + 2; ++z[2]) {
+          examine(tet, z);
+        }
+      }
+    }
+  }
+  /// Every vertex is in some tet.
+  [[nodiscard]] bool haveSeenAll() const {
+    return std::find(seen_.begin(), seen_.end(), false) == seen_.end();
+  }
+
+ private:
+  void examine(Index tet, const GridPoint& z) {
+    LatticePoint place;
+    for (std::size_t k = 0; k < 3; ++k) place[k] = z[k] * map_.exact.unit;
+    const CornerMask simplex = simplexBySides(
+        [&](std::size_t face) { return sideOfFace(map_.exact.corners[tet], face, place); });
+    const LatticeNumbers::Found found = tables_.find(tet, z);
+    EXPECT_EQ(found.simplex, simplex);
+    EXPECT_EQ(found.vertex == kNone, simplex == kNoSimplex);
+    for (const LatticeNumbers* numbers : {&lines_, &some_}) {
+      const LatticeNumbers::Found other = numbers->find(tet, z);
+      EXPECT_EQ(found.simplex, other.simplex);
+      EXPECT_EQ(found.vertex, other.vertex);
+    }
+    ++(simplex == kNoSimplex ? counts_.missed : counts_.found);
+    if (found.vertex != kNone) seen_[found.vertex] = true;
+  }
+
+  const PreparedMap& map_;
+  PointCounts& counts_;
+  LatticeNumbers lines_;
+  LatticeNumbers some_;
+  LatticeNumbers tables_;
+  std::vector<bool> seen_;
+};
+
+void compareTables(const TetMap& given, PointCounts& counts) {
+  Context context(2);
+  DefectCollector defects;
+  const PreparedMap map = prepareMap(given, 1e-3, 1, context, defects);
+  defects.throwIfAny();
+  Stage stage(context, "numbers");
+  TableExaminer examiner(map, counts, stage);
+  for (std::size_t t = 0; t < map.topology.tetCount(); ++t) {
+    examiner.examine(static_cast<Index>(t));
+    if (::testing::Test::HasFailure()) return;
+  }
+  EXPECT_TRUE(examiner.haveSeenAll());
+}
+
+TEST(LatticeNumbers, TablesHaveWhatLinesHave) {
+  PointCounts counts;
+  for (const CurvedMap& map : generatedMaps()) {
+    SCOPED_TRACE(map.name);
+    compareTables(map.map, counts);
+  }
+  EXPECT_GT(counts.found, 1000U);
+  EXPECT_GT(counts.missed, 1000U);
+}
+
+}  // namespace
+}  // namespace hexhex::test
