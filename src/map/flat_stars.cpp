@@ -126,11 +126,9 @@ std::size_t FlatStarTest::axis(const VertexStar::Member& member) const noexcept 
   return images[static_cast<std::size_t>(std::countr_zero(planes_))];
 }
 
-/// Halfway between two integers, the one to snap to depends on the chart.
 bool FlatStarTest::isBetweenPlanes(CornerIndex corner) const {
   const auto axis = static_cast<std::size_t>(std::countr_zero(planes_));
-  const double x = parameters_(tetOf(corner), localOf(corner))[axis];
-  return std::abs(x - std::nearbyint(x)) == 0.5;
+  return hexhex::isBetweenPlanes(parameters_(tetOf(corner), localOf(corner))[axis]);
 }
 
 bool FlatStarTest::coversDirectionOnce(std::span<const VertexStar::Member> star) {

@@ -1,6 +1,7 @@
 // Stars that are as good as plain ones, but for charts that differ.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,6 +11,12 @@
 #include <map/vertex_star.hpp>
 
 namespace hexhex {
+
+/// Whether a coordinate is halfway between two integers. The plane across its axis to snap to then
+/// depends on the chart.
+[[nodiscard]] inline bool isBetweenPlanes(double x) noexcept {
+  return std::abs(x - std::nearbyint(x)) == 0.5;
+}
 
 /// Tells flat stars from others. A star is flat if its tets, brought into one chart by exact
 /// transitions, are those of a plain vertex (plain_vertices.hpp): the transitions carry the

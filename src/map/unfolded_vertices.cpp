@@ -1,10 +1,10 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <cmath>
 
 #include <base/branchless.hpp>
 #include <base/shared_bits.hpp>
+#include <map/flat_stars.hpp>
 #include <map/tet_normals.hpp>
 #include <map/turn.hpp>
 #include <map/turned_direction.hpp>
@@ -120,11 +120,10 @@ class VertexUnfolder {
     return planes == 0 || (std::has_single_bit(planes) && !isBetweenPlanes(vertex));
   }
 
-  /// Halfway between two integers, the one to snap to depends on the chart.
   [[nodiscard]] bool isBetweenPlanes(Index vertex) const {
     const Index tet = topology_.vertexTet[vertex];
-    const double x = parameters_(tet, topology_.localCorner(tet, vertex))[planeAxis(vertex, tet)];
-    return std::abs(x - std::nearbyint(x)) == 0.5;
+    return hexhex::isBetweenPlanes(
+        parameters_(tet, topology_.localCorner(tet, vertex))[planeAxis(vertex, tet)]);
   }
 
   /// The axis across which the plane of a vertex is in the chart of a tet.

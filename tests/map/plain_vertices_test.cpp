@@ -109,47 +109,53 @@ TEST_P(PlainVerticesOfKind, AreNeitherSingularNorBetweenPlanesNorAtJumps) {
   }
 }
 
+/// Calls f(map, charts, noise) for samples with all styles of charts, exact ones and noisy ones.
+template <class F>
+void forEachNoise(SampleKind kind, const F& f) {
+  for (const ChartStyle charts : test::kChartStyles) {
+    for (const double noise : {0.0, 1e-4}) {
+      f(generateSample(kind, {.refine = 3, .charts = charts, .jitter = 0.6, .noise = noise}).map,
+        charts, noise);
+    }
+  }
+}
+
 /// Plain vertices take another path through sanitization: with all vertices declared special, the
 /// result must be the same, bit for bit.
 TEST_P(PlainVerticesOfKind, AreSanitizedAsTheirStarsAre) {
-  for (const ChartStyle charts : test::kChartStyles) {
-    for (const double noise : {0.0, 1e-4}) {
-      const TetMap map =
-          generateSample(kind(), {.refine = 3, .charts = charts, .jitter = 0.6, .noise = noise})
-              .map;
-      const auto sanitized = [&](bool allSpecial) {
-        Survey survey(map);
-        if (allSpecial) {
-          for (std::uint8_t& special : survey.plain.special) special = 1;
-        }
-        Transitions transitions = computeTransitions(survey.topology, survey.parameters,
-                                                     survey.plain, {}, 0.1, survey.stage);
-        EXPECT_TRUE(transitions.misfits.empty());
-        std::vector<StarBlock> stars;
-        collectStars(survey.topology, survey.parameters, survey.plain, {},
-                     allSpecial ? nullptr : &transitions, stars, survey.stage);
-        const bool flat = std::ranges::count(survey.plain.special, PlainVertices::kFlat) > 0;
-        if (allSpecial || noise > 0) {
-          EXPECT_FALSE(flat);
-        }
-        if (!allSpecial && noise == 0 && charts != ChartStyle::Aligned) {
-          EXPECT_TRUE(flat);
-        }
-        const auto singularities = computeSingularities(survey.topology, survey.parameters,
-                                                        survey.plain, {}, stars, survey.stage);
-        ExactMap exact =
-            sanitize(survey.topology, survey.parameters, std::move(transitions), survey.plain,
-                     stars, singularities.value(), 0.1, 1, survey.stage, survey.defects);
-        EXPECT_TRUE(survey.defects.empty());
-        return std::pair(std::move(exact), singularities->edges.size());
-      };
-      const auto [fast, fastEdges] = sanitized(false);
-      const auto [slow, slowEdges] = sanitized(true);
-      EXPECT_EQ(fast.corners, slow.corners);
-      EXPECT_EQ(fast.maxDisplacement, slow.maxDisplacement);
-      EXPECT_EQ(fastEdges, slowEdges);
-    }
-  }
+  forEachNoise(kind(), [](const TetMap& map, ChartStyle charts, double noise) {
+    const auto sanitized = [&](bool allSpecial) {
+      Survey survey(map);
+      if (allSpecial) {
+        for (std::uint8_t& special : survey.plain.special) special = 1;
+      }
+      Transitions transitions = computeTransitions(survey.topology, survey.parameters, survey.plain,
+                                                   {}, 0.1, survey.stage);
+      EXPECT_TRUE(transitions.misfits.empty());
+      std::vector<StarBlock> stars;
+      collectStars(survey.topology, survey.parameters, survey.plain, {},
+                   allSpecial ? nullptr : &transitions, stars, survey.stage);
+      const bool flat = std::ranges::count(survey.plain.special, PlainVertices::kFlat) > 0;
+      if (allSpecial || noise > 0) {
+        EXPECT_FALSE(flat);
+      }
+      if (!allSpecial && noise == 0 && charts != ChartStyle::Aligned) {
+        EXPECT_TRUE(flat);
+      }
+      const auto singularities = computeSingularities(survey.topology, survey.parameters,
+                                                      survey.plain, {}, stars, survey.stage);
+      ExactMap exact =
+          sanitize(survey.topology, survey.parameters, std::move(transitions), survey.plain, stars,
+                   singularities.value(), 0.1, 1, survey.stage, survey.defects);
+      EXPECT_TRUE(survey.defects.empty());
+      return std::pair(std::move(exact), singularities->edges.size());
+    };
+    const auto [fast, fastEdges] = sanitized(false);
+    const auto [slow, slowEdges] = sanitized(true);
+    EXPECT_EQ(fast.corners, slow.corners);
+    EXPECT_EQ(fast.maxDisplacement, slow.maxDisplacement);
+    EXPECT_EQ(fastEdges, slowEdges);
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, PlainVerticesOfKind, testing::ValuesIn(sampleKinds()),
@@ -177,41 +183,36 @@ struct Unfolded {
 
 /// Vertices that gauges unfold are flat or plain by their stars, too, and sanitized alike.
 TEST_P(PlainVerticesOfKind, AreUnfoldedByGaugesIfTheirStarsAreFlat) {
-  for (const ChartStyle charts : test::kChartStyles) {
-    for (const double noise : {0.0, 1e-4}) {
-      const TetMap map =
-          generateSample(kind(), {.refine = 3, .charts = charts, .jitter = 0.6, .noise = noise})
-              .map;
-      const auto sanitized = [&](Survey& survey, bool byGauges) {
-        Unfolded unfolded(survey, byGauges);
-        const auto singularities = computeSingularities(
-            survey.topology, survey.parameters, survey.plain, {}, unfolded.stars, survey.stage);
-        ExactMap exact = sanitize(survey.topology, survey.parameters,
-                                  std::move(unfolded.transitions), survey.plain, unfolded.stars,
-                                  singularities.value(), 0.1, 1, survey.stage, survey.defects);
-        EXPECT_TRUE(survey.defects.empty());
-        return std::pair(std::move(exact), singularities->edges.size());
-      };
-      Survey byGauges(map);
-      Survey byStars(map);
-      const auto [fast, fastEdges] = sanitized(byGauges, true);
-      const auto [slow, slowEdges] = sanitized(byStars, false);
-      EXPECT_EQ(fast.corners, slow.corners);
-      EXPECT_EQ(fast.maxDisplacement, slow.maxDisplacement);
-      EXPECT_EQ(fastEdges, slowEdges);
-      std::size_t unfolded = 0;
-      for (Index v = 0; v < map.points.size(); ++v) {
-        if (byGauges.plain.special[v] == 0 && byStars.plain.special[v] != 0) {
-          EXPECT_EQ(byStars.plain.special[v], PlainVertices::kFlat);
-          EXPECT_EQ(byStars.plain.plane[v], byGauges.plain.plane[v]);
-          ++unfolded;
-        }
-      }
-      if (charts == ChartStyle::Random && noise == 0) {
-        EXPECT_GT(unfolded, map.points.size() / 3);
+  forEachNoise(kind(), [](const TetMap& map, ChartStyle charts, double noise) {
+    const auto sanitized = [&](Survey& survey, bool byGauges) {
+      Unfolded unfolded(survey, byGauges);
+      const auto singularities = computeSingularities(
+          survey.topology, survey.parameters, survey.plain, {}, unfolded.stars, survey.stage);
+      ExactMap exact = sanitize(survey.topology, survey.parameters, std::move(unfolded.transitions),
+                                survey.plain, unfolded.stars, singularities.value(), 0.1, 1,
+                                survey.stage, survey.defects);
+      EXPECT_TRUE(survey.defects.empty());
+      return std::pair(std::move(exact), singularities->edges.size());
+    };
+    Survey byGauges(map);
+    Survey byStars(map);
+    const auto [fast, fastEdges] = sanitized(byGauges, true);
+    const auto [slow, slowEdges] = sanitized(byStars, false);
+    EXPECT_EQ(fast.corners, slow.corners);
+    EXPECT_EQ(fast.maxDisplacement, slow.maxDisplacement);
+    EXPECT_EQ(fastEdges, slowEdges);
+    std::size_t unfolded = 0;
+    for (Index v = 0; v < map.points.size(); ++v) {
+      if (byGauges.plain.special[v] == 0 && byStars.plain.special[v] != 0) {
+        EXPECT_EQ(byStars.plain.special[v], PlainVertices::kFlat);
+        EXPECT_EQ(byStars.plain.plane[v], byGauges.plain.plane[v]);
+        ++unfolded;
       }
     }
-  }
+    if (charts == ChartStyle::Random && noise == 0) {
+      EXPECT_GT(unfolded, map.points.size() / 3);
+    }
+  });
 }
 
 /// A fan of tets around an edge along the third axis, closed after `turns` turns in one chart: a
