@@ -111,7 +111,7 @@ TEST_P(PlainVerticesOfKind, AreNeitherSingularNorBetweenPlanesNorAtJumps) {
 
 /// Calls f(map, charts, noise) for samples with all styles of charts, exact ones and noisy ones.
 template <class F>
-void forEachNoise(SampleKind kind, const F& f) {
+void forEachChartStyle(SampleKind kind, const F& f) {
   for (const ChartStyle charts : test::kChartStyles) {
     for (const double noise : {0.0, 1e-4}) {
       f(generateSample(kind, {.refine = 3, .charts = charts, .jitter = 0.6, .noise = noise}).map,
@@ -123,7 +123,7 @@ void forEachNoise(SampleKind kind, const F& f) {
 /// Plain vertices take another path through sanitization: with all vertices declared special, the
 /// result must be the same, bit for bit.
 TEST_P(PlainVerticesOfKind, AreSanitizedAsTheirStarsAre) {
-  forEachNoise(kind(), [](const TetMap& map, ChartStyle charts, double noise) {
+  forEachChartStyle(kind(), [](const TetMap& map, ChartStyle charts, double noise) {
     const auto sanitized = [&](bool allSpecial) {
       Survey survey(map);
       if (allSpecial) {
@@ -183,7 +183,7 @@ struct Unfolded {
 
 /// Vertices that gauges unfold are flat or plain by their stars, too, and sanitized alike.
 TEST_P(PlainVerticesOfKind, AreUnfoldedByGaugesIfTheirStarsAreFlat) {
-  forEachNoise(kind(), [](const TetMap& map, ChartStyle charts, double noise) {
+  forEachChartStyle(kind(), [](const TetMap& map, ChartStyle charts, double noise) {
     const auto sanitized = [&](Survey& survey, bool byGauges) {
       Unfolded unfolded(survey, byGauges);
       const auto singularities = computeSingularities(
