@@ -129,49 +129,37 @@ class BlockTracer {
       addExit(way);
       return vertex;
     }
-    const std::size_t firstPoint = pieces_.points();
-    const std::size_t firstSegment = pieces_.segments();
-    addExit(way);
-    const ArcEnd first = tracer_.followThrough(
-        way.exit.face, sharesOf(way), {tet_, kWholeTet, Frame::along(edge.z, axis_).reversed()},
-        [&](const SimplexInTet& carrier, const ArcExit& exit) {
-          addSegment(carrier);
-          pieces_.addPoint(exit, 1 - exit.parameter);
-        });
-    addSegment(first.carrier);
-    pieces_.reverseFrom(firstPoint, firstSegment);
-    return first.vertex;
+    const SimplexInTet back{tet_, kWholeTet, Frame::along(edge.z, axis_).reversed()};
+    return traceBack([&](const auto& visit) {
+      addExit(way);
+      return tracer_.followThrough(way.exit.face, way.point.shares.byCorner(), back, visit);
+    });
   }
   [[nodiscard]] Index goAhead(const Element& edge, WayOut& way) {
     if (way.mate == kNone) return way.vertex;
-    addExit(way);
     const Index vertex = vertexBehind(way, endOf(edge));
     if (vertex != kNone) {
+      addExit(way);
       pieces_.addSegment({tetOf(way.mate), kWholeTet});
       return vertex;
     }
-    const ArcEnd last = tracer_.followThrough(
-        way.exit.face, sharesOf(way), {tet_, kWholeTet, Frame::along(edge.z, axis_)},
-        [&](const SimplexInTet& carrier, const ArcExit& exit) {
-          addSegment(carrier);
-          pieces_.addPoint(exit, exit.parameter);
-        });
-    addSegment(last.carrier);
-    return last.vertex;
+    const SimplexInTet middle{tet_, kWholeTet, Frame::along(edge.z, axis_)};
+    return traceAhead([&](const auto& visit) {
+      visit(middle, exitOf(way));
+      return tracer_.followThrough(way.exit.face, way.point.shares.byCorner(), middle, visit);
+    });
   }
   /// @param z  the end of the edge
   [[nodiscard]] Index vertexBehind(const WayOut& way, const GridPoint& z) const {
     return tracer_.vertexBehind(halfFaceOf(tet_, way.exit.face), way.mate, z);
   }
-  void addExit(const WayOut& way) {
-    const double parameter = 0.5 + way.exit.at;
-    pieces_.addPoint({owned_[static_cast<std::size_t>(way.exit.face)],
-                      exits_.position(way.point.shares), parameter},
-                     parameter);
+  [[nodiscard]] ArcExit exitOf(const WayOut& way) const noexcept {
+    return {owned_[static_cast<std::size_t>(way.exit.face)], exits_.position(way.point.shares),
+            0.5 + way.exit.at};
   }
-  [[nodiscard]] static std::array<double, 4> sharesOf(const WayOut& way) noexcept {
-    const TetExits::Weights& shares = way.point.shares;
-    return {shares.of01[0], shares.of01[1], shares.of23[0], shares.of23[1]};
+  void addExit(const WayOut& way) {
+    const ArcExit exit = exitOf(way);
+    pieces_.addPoint(exit, exit.parameter);
   }
 
   /// From the midpoint, wherever that is.

@@ -13,6 +13,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/pair.hpp>
+#include <lattice/corner_weights.hpp>
 #include <lattice/tet_geometry.hpp>
 
 namespace hexhex {
@@ -42,16 +43,7 @@ class TetExits {
   /// Looks along an axis of its chart.
   void turn(int axis) noexcept;
 
-  /// Of the four corners.
-  struct Weights {
-    Pair of01;
-    Pair of23;
-
-    [[nodiscard]] Weights plus(const Weights& gradient, double steps) const noexcept {
-      const Pair factor = {steps, steps};
-      return {of01 + gradient.of01 * factor, of23 + gradient.of23 * factor};
-    }
-  };
+  using Weights = CornerWeights;
   /// At the midpoint of an edge from a grid point along the axis.
   [[nodiscard]] Weights atMiddle(const GridPoint& begin) const noexcept;
   /// How weights change from a grid point to the next one.
@@ -114,8 +106,7 @@ class TetExits {
 
   /// In space.
   [[nodiscard]] Vec3 position(const Weights& shares) const noexcept {
-    const std::array<double, 4> s = {shares.of01[0], shares.of01[1], shares.of23[0],
-                                     shares.of23[1]};
+    const std::array<double, 4> s = shares.byCorner();
     Pair xy = Pair{s[0], s[0]} * cornersXY_[0];
     double z = s[0] * cornersZ_[0];
     for (std::size_t i = 1; i < 4; ++i) {

@@ -141,11 +141,12 @@ CornerMask HalfGrids::exactSimplexOf(const std::array<std::int32_t, 3>& steps) c
   for (std::size_t k = 0; k < 3; ++k) {
     point[k] = (std::int64_t{box_.first[k]} + steps[k]) * (unit_ / 2);
   }
-  const Weights weights = weightsAt({static_cast<double>(steps[0]), static_cast<double>(steps[1]),
-                                     static_cast<double>(steps[2])});
+  const std::array<double, 4> weights =
+      weightsAt({static_cast<double>(steps[0]), static_cast<double>(steps[1]),
+                 static_cast<double>(steps[2])})
+          .byCorner();
   return simplexBySides([&](std::size_t face) {
-    const double weight = face < 2 ? weights.of01[face] : weights.of23[face - 2];
-    return weight > error_ ? 1 : sideOfFace(corners_, face, point);
+    return weights[face] > error_ ? 1 : sideOfFace(corners_, face, point);
   });
 }
 

@@ -10,6 +10,7 @@
 
 #include <base/pair.hpp>
 #include <lattice/box_limits.hpp>
+#include <lattice/corner_weights.hpp>
 #include <lattice/line_rasterizer.hpp>
 
 namespace hexhex {
@@ -153,20 +154,8 @@ class HalfGrids {
   /// Steps of boxes for which weights are computed.
   static constexpr std::int32_t kMostSteps = 1 << 10;
 
-  /// Weights of the four corners: volumes, in halves.
-  struct Weights {
-    Pair of01;
-    Pair of23;
-
-    [[nodiscard]] Weights plus(const Weights& gradient, double steps) const noexcept {
-      const Pair factor = {steps, steps};
-      return {of01 + gradient.of01 * factor, of23 + gradient.of23 * factor};
-    }
-    [[nodiscard]] double least() const noexcept {
-      const Pair lower = smaller(of01, of23);
-      return lower[0] < lower[1] ? lower[0] : lower[1];
-    }
-  };
+  /// Volumes, in halves.
+  using Weights = CornerWeights;
 
   /// A point of the tet.
   struct Inside {
