@@ -114,6 +114,8 @@ TEST(HalfGrids, FacesAcrossAnAxis) {
     ASSERT_NO_FATAL_FAILURE(compare(tet, unit, search, seen));
   }
   expectAllKinds(seen);
+  EXPECT_GT(seen.boundary, 1000);
+  EXPECT_GT(seen.inside, 1000);
 }
 
 TEST(HalfGrids, PointsAsCloseToFacesAsCanBe) {
