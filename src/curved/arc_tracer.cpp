@@ -61,11 +61,8 @@ ArcTracer::Passage ArcTracer::passOnBoundary(const SimplexInTet& at, CornerMask 
   EdgeTurn turn(topology_, at.tet, edge, otherFaceAtEdge(edge, oppositeCorner(at.simplex)));
   Passage passage{{at.tet, edge}, at};
   while (turn.next() != kNone) {
-    const HalfFace halfFace = turn.out();
+    passage.carrier.frame.cross(exact_.transitions, turn.out());
     turn.step();
-    if (exact_.transitions.isJump(halfFace)) {
-      passage.carrier.frame = passage.carrier.frame.carried(exact_.transitions.across(halfFace));
-    }
     if (turn.tet() < passage.exit.tet) passage.exit = {turn.tet(), turn.edge()};
   }
   passage.carrier.tet = turn.tet();

@@ -98,9 +98,7 @@ void FaceCutter::addPieceBehind(std::size_t from, std::size_t side, int face) {
   const HalfFace mate = topology_.mate[halfFace];
   if (mate == kNone) failToCut(pieces_[from].carrier.tet, "a face leaves the mesh");
   SimplexInTet carrier{tetOf(mate), kWholeTet, pieces_[from].carrier.frame};
-  if (exact_.transitions.isJump(halfFace)) {
-    carrier.frame = carrier.frame.carried(exact_.transitions.across(halfFace));
-  }
+  carrier.frame.cross(exact_.transitions, halfFace);
   std::size_t& first = piecesOfTet_[carrier.tet];
   if (isKnown(carrier, first)) return;
   Piece& piece = newPiece(carrier, first);

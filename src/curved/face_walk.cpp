@@ -106,10 +106,7 @@ bool FaceWalk::cross(SimplexInTet& at) {
   const HalfFace halfFace = halfFaceOf(at.tet, face_);
   at.tet = tetOf(mate_);
   face_ = localOf(mate_);
-  if (exact_.transitions.isJump(halfFace)) {
-    at.frame = at.frame.carried(exact_.transitions.across(halfFace));
-    looked_ = false;
-  }
+  if (at.frame.cross(exact_.transitions, halfFace)) looked_ = false;
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include <lattice/tet_geometry.hpp>
 #include <lattice/transition.hpp>
+#include <map/transitions.hpp>
 
 namespace hexhex {
 
@@ -23,6 +24,14 @@ struct Frame {
 
   [[nodiscard]] constexpr Frame carried(const Transition& transition) const noexcept {
     return {transition(origin), {transition(axes[0]), transition(axes[1]), transition(axes[2])}};
+  }
+
+  /// Carries it across a face, if charts differ there.
+  /// @return whether they do
+  bool cross(const Transitions& transitions, HalfFace halfFace) noexcept {
+    if (!transitions.isJump(halfFace)) return false;
+    *this = carried(transitions.across(halfFace));
+    return true;
   }
 
   /// The frame of the same edge from its other end.

@@ -28,9 +28,7 @@ struct SimplexInTet {
   const Index next = tetOf(topology.mate[halfFace]);
   SimplexInTet to{next, kWholeTet, from.frame};
   if (from.simplex != kWholeTet) to.simplex = topology.translated(from.simplex, from.tet, next);
-  if (map.transitions.isJump(halfFace)) {
-    to.frame = from.frame.carried(map.transitions.across(halfFace));
-  }
+  to.frame.cross(map.transitions, halfFace);
   return to;
 }
 
@@ -83,11 +81,8 @@ class SimplexStar {
         side.goesOn = side.goesOn && next != kNone && tetOf(next) != start.tet &&
                       tetOf(next) != sides[1 - i].turn.tet();
         if (!side.goesOn) continue;
-        const HalfFace halfFace = side.turn.out();
+        side.frame.cross(map_.transitions, side.turn.out());
         side.turn.step();
-        if (map_.transitions.isJump(halfFace)) {
-          side.frame = side.frame.carried(map_.transitions.across(halfFace));
-        }
         if (visit(SimplexInTet{side.turn.tet(), side.turn.edge(), side.frame})) return true;
       }
     }
