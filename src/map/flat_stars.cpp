@@ -5,75 +5,53 @@
 #include <base/branchless.hpp>
 #include <base/vector3.hpp>
 #include <map/flat_stars.hpp>
+#include <map/tet_projection.hpp>
 #include <map/turned_direction.hpp>
 
 namespace hexhex {
 
 namespace {
 
-/// The other corners of a tet, such that they are in positive order as seen from inside a positive
-/// tet.
-constexpr std::array<std::array<std::uint8_t, 3>, 4> kPositiveOthers = {
-    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+/// Spoils any sum of cones.
+constexpr std::size_t kUncertainCone = std::size_t{1} << 48;
 
-/// The cone of directions that lead from a corner of a positive tet into it.
-class Cone {
- public:
-  Cone(const TetParameters& u, std::size_t corner, const Vec3& direction) {
-    std::array<Vec3, 3> edges{};
-    double size = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      edges[k] = minus(u[kPositiveOthers[corner][k]], u[corner]);
-      for (const double x : edges[k]) size = std::max(size, std::abs(x));
-    }
-    normals_ = {cross(edges[1], edges[2]), cross(edges[2], edges[0]), cross(edges[0], edges[1])};
-    for (std::size_t k = 0; k < 3; ++k) sides_[k] = dot(direction, normals_[k]);
-    // As in computeSides(). The mirrored direction adds 10 u size^2 to an error of 33 u size^2.
-    uncertainty_ = 0x1p-45 * size * size;
-  }
-
-  /// 1 if the direction leads into the tet, 0 if it does not, kUncertain if it may be in a face.
-  [[nodiscard]] std::size_t count() const noexcept { return count(sides_); }
-
-  /// The same for the direction mirrored along an axis.
-  [[nodiscard]] std::size_t countMirrored(const Vec3& direction, std::size_t axis) const noexcept {
-    Vec3 sides = sides_;
-    for (std::size_t k = 0; k < 3; ++k) sides[k] -= 2 * direction[axis] * normals_[k][axis];
-    return count(sides);
-  }
-
-  /// Spoils any sum.
-  static constexpr std::size_t kUncertain = std::size_t{1} << 48;
-
- private:
-  [[nodiscard]] std::size_t count(const Vec3& sides) const noexcept {
-    const double nearest = std::min({std::abs(sides[0]), std::abs(sides[1]), std::abs(sides[2])});
-    if (!(nearest > uncertainty_)) return kUncertain;
-    return 1U ^ (signBit(sides[0]) | signBit(sides[1]) | signBit(sides[2]));
-  }
-
-  std::array<Vec3, 3> normals_{};  ///< inward, of the faces at the corner
-  Vec3 sides_{};                   ///< scalar products of normals and direction
-  double uncertainty_ = 0;
-};
+/// 1 if the direction leads from a corner into the tet, 0 if it does not.
+std::size_t countCone(const TetProjection& projection, const Vec3& direction, std::size_t corner) {
+  const TetSides sides = projection.sides(direction);
+  return sides == kUncertainSides ? kUncertainCone : (coneCorner(sides) == corner ? 1 : 0);
+}
 
 std::size_t rotationOf(const VertexStar::Member& member) {
   return static_cast<std::size_t>(member.rotation.index());
 }
 
-/// Per rotation: the signs of the components of the direction that is to be covered.
-constexpr std::array<Vec3, Rotation::kCount> kSigns = [] {
-  std::array<Vec3, Rotation::kCount> signs{};
-  for (std::size_t r = 0; r < signs.size(); ++r) {
-    for (std::size_t k = 0; k < 3; ++k) signs[r][k] = kTurnedDirections[r][k] > 0 ? 1 : -1;
+/// In place of an axis to mirror at.
+constexpr std::size_t kNotMirrored = 3;
+
+/// The direction to be covered as a chart sees it, or its mirror image.
+struct TurnedRay {
+  Vec3 direction{};
+  Vec3 signs{};  ///< of its components
+};
+
+/// By rotation, and by the axis along which the direction is mirrored then, or kNotMirrored.
+constexpr auto kRays = [] {
+  std::array<std::array<TurnedRay, 4>, Rotation::kCount> rays{};
+  for (std::size_t r = 0; r < rays.size(); ++r) {
+    for (std::size_t mirror = 0; mirror < 4; ++mirror) {
+      Vec3& direction = rays[r][mirror].direction;
+      direction = kTurnedDirections[r];
+      if (mirror != kNotMirrored) direction = mirrored(direction, mirror);
+      for (std::size_t k = 0; k < 3; ++k) rays[r][mirror].signs[k] = direction[k] > 0 ? 1 : -1;
+    }
   }
-  return signs;
+  return rays;
 }();
 
 /// Whether the edges from a corner of a tet go far enough into an octant that a direction in it can
 /// lead into the tet; exact, and soon said.
 bool reachesOctant(const TetParameters& u, std::size_t corner, const Vec3& signs) {
-  const std::array<std::uint8_t, 3>& others = kPositiveOthers[corner];
+  const std::array<std::uint8_t, 3>& others = kOthers[corner];
   unsigned reaches = 1;
   for (std::size_t k = 0; k < 3; ++k) {
     const double farthest =
@@ -132,48 +110,53 @@ bool FlatStarTest::isBetweenPlanes(CornerIndex corner) const {
 }
 
 bool FlatStarTest::coversDirectionOnce(std::span<const VertexStar::Member> star) {
-  return (planes_ == 0 ? countCones(star) : countConesAndImages(star)) == 1;
+  std::size_t count = listRays(star);
+  for (const Ray& ray : keepOpenRays(star)) {
+    const VertexStar::Member& member = star[ray.member];
+    const std::size_t rotation = rotationOf(member);
+    TetParameters scratch;
+    const TetProjection projection(parameters_.see(member.tet(), scratch),
+                                   kImagesOfAxes[rotation][0]);
+    count += countCone(projection, kRays[rotation][ray.mirror].direction, member.corner % 4);
+  }
+  return count == 1;
 }
 
-/// Cones that contain the direction, of a vertex inside.
-std::size_t FlatStarTest::countCones(std::span<const VertexStar::Member> star) {
-  if (turned_.size() < star.size()) turned_.resize(2 * star.size());
+/// What is to be looked at: where charts are turned the direction, and on the boundary its mirror
+/// image, too. In other charts, cones are known.
+/// @return how many of these contain the direction
+std::size_t FlatStarTest::listRays(std::span<const VertexStar::Member> star) {
+  if (rays_.size() <= 2 * star.size()) rays_.resize(4 * star.size());
+  const std::size_t images = onBoundary() ? 1 : 0;
   std::size_t count = 0;
-  std::size_t turned = 0;
+  rayCount_ = 0;
   for (std::size_t i = 0; i < star.size(); ++i) {
-    // In charts that are not turned, all is known.
     const bool isTurned = !star[i].rotation.isIdentity();
     const bool isConeCorner = coneCorner(plain_.sides[star[i].tet()]) == star[i].corner % 4;
     count += allOf(!isTurned, isConeCorner) ? 1 : 0;
-    turned_[turned] = static_cast<Index>(i);
-    turned += isTurned ? 1 : 0;
-  }
-  std::size_t open = 0;
-  for (const Index i : std::span(turned_).first(turned)) {
-    TetParameters scratch;
-    const TetParameters& u = parameters_.see(star[i].tet(), scratch);
-    turned_[open] = i;
-    open += reachesOctant(u, star[i].corner % 4, kSigns[rotationOf(star[i])]) ? 1 : 0;
-  }
-  for (const Index i : std::span(turned_).first(open)) {
-    TetParameters scratch;
-    const TetParameters& u = parameters_.see(star[i].tet(), scratch);
-    count += Cone(u, star[i].corner % 4, kTurnedDirections[rotationOf(star[i])]).count();
+    rays_[rayCount_] = {static_cast<Index>(i), kNotMirrored};
+    rayCount_ += isTurned ? 1 : 0;
+    rays_[rayCount_] = {static_cast<Index>(i),
+                        static_cast<Index>(onBoundary() ? axis(star[i]) : 0)};
+    rayCount_ += images;
   }
   return count;
 }
 
-/// Cones and their mirror images, of a vertex on the boundary.
-std::size_t FlatStarTest::countConesAndImages(std::span<const VertexStar::Member> star) const {
-  std::size_t count = 0;
-  for (const VertexStar::Member& member : star) {
-    const Vec3& direction = kTurnedDirections[rotationOf(member)];
+/// Keeps the rays that may lead into their members.
+std::span<const FlatStarTest::Ray> FlatStarTest::keepOpenRays(
+    std::span<const VertexStar::Member> star) {
+  std::size_t open = 0;
+  for (std::size_t i = 0; i < rayCount_; ++i) {
+    const Ray ray = rays_[i];
+    const VertexStar::Member& member = star[ray.member];
     TetParameters scratch;
     const TetParameters& u = parameters_.see(member.tet(), scratch);
-    const Cone cone(u, member.corner % 4, direction);
-    count += cone.count() + cone.countMirrored(direction, axis(member));
+    rays_[open] = ray;
+    open +=
+        reachesOctant(u, member.corner % 4, kRays[rotationOf(member)][ray.mirror].signs) ? 1 : 0;
   }
-  return count;
+  return std::span(rays_).first(open);
 }
 
 }  // namespace hexhex

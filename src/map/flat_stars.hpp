@@ -49,16 +49,23 @@ class FlatStarTest {
  private:
   class Unfolding;
 
+  /// The direction to be covered, or its mirror image, in the chart of a member.
+  struct Ray {
+    Index member;
+    Index mirror;  ///< the axis, or kNotMirrored
+  };
+
   [[nodiscard]] bool isBetweenPlanes(CornerIndex corner) const;
   [[nodiscard]] bool coversDirectionOnce(std::span<const VertexStar::Member> star);
-  [[nodiscard]] std::size_t countCones(std::span<const VertexStar::Member> star);
-  [[nodiscard]] std::size_t countConesAndImages(std::span<const VertexStar::Member> star) const;
+  [[nodiscard]] std::size_t listRays(std::span<const VertexStar::Member> star);
+  [[nodiscard]] std::span<const Ray> keepOpenRays(std::span<const VertexStar::Member> star);
 
   const TetTopology& topology_;
   const LocalParameters& parameters_;
   const PlainVertices& plain_;
-  std::vector<Index> turned_;  ///< members whose charts are
-  unsigned planes_ = 0;        ///< bit k: across axis k of the first one's chart
+  std::vector<Ray> rays_;
+  std::size_t rayCount_ = 0;
+  unsigned planes_ = 0;  ///< bit k: across axis k of the first one's chart
 };
 
 }  // namespace hexhex

@@ -8,7 +8,7 @@
 #include <base/pair.hpp>
 #include <base/vector3.hpp>
 #include <map/plain_vertices.hpp>
-#include <map/tet_normals.hpp>
+#include <map/tet_projection.hpp>
 
 namespace hexhex {
 
@@ -118,8 +118,8 @@ class TetSurvey {
   void run(Index t) {
     const Tet& tet = topology_.tets[t];
     TetParameters scratch;
-    const TetNormals normals(parameters_.see(t, scratch));
-    const TetSides sides = normals.sides();
+    const TetProjection projection(parameters_.see(t, scratch));
+    const TetSides sides = projection.sides(kGeneralDirection);
     result_.sides[t] = sides;
     if (sides == kUncertainSides) {
       markAll(tet);
@@ -130,7 +130,7 @@ class TetSurvey {
     found_.add(tet[corner % 4], corner != 4);
     unsigned planes = 0;
     for (const Index v : tet) planes |= result_.plane[v];
-    if (planes != 0) addMirrored(tet, normals, planes);
+    if (planes != 0) addMirrored(tet, projection, planes);
   }
 
   /// Adds up what run() has found, for at most kNear tets.
@@ -142,10 +142,10 @@ class TetSurvey {
   }
 
  private:
-  void addMirrored(const Tet& tet, const TetNormals& normals, unsigned planes) {
+  void addMirrored(const Tet& tet, const TetProjection& projection, unsigned planes) {
     for (unsigned rest = planes; rest != 0; rest &= rest - 1) {
       const auto axis = static_cast<std::size_t>(std::countr_zero(rest));
-      const TetSides sides = normals.mirrored(axis);
+      const TetSides sides = projection.sides(mirrored(kGeneralDirection, axis));
       // The mirrored direction may be in a face of the tet.
       if (sides == kUncertainSides) {
         markAll(tet);
@@ -237,10 +237,12 @@ void surveyFaces(const TetTopology& topology, const LocalParameters& parameters,
 
 }  // namespace
 
-TetSides computeSides(const TetParameters& u) noexcept { return TetNormals(u).sides(); }
+TetSides computeSides(const TetParameters& u) noexcept {
+  return TetProjection(u).sides(kGeneralDirection);
+}
 
 TetSides computeMirroredSides(const TetParameters& u, std::size_t axis) noexcept {
-  return TetNormals(u).mirrored(axis);
+  return TetProjection(u).sides(mirrored(kGeneralDirection, axis));
 }
 
 PlainVertices findPlainVertices(const TetTopology& topology, const LocalParameters& parameters,

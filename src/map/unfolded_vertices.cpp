@@ -5,7 +5,7 @@
 #include <base/branchless.hpp>
 #include <base/shared_bits.hpp>
 #include <map/flat_stars.hpp>
-#include <map/tet_normals.hpp>
+#include <map/tet_projection.hpp>
 #include <map/turn.hpp>
 #include <map/turned_direction.hpp>
 #include <map/unfolded_vertices.hpp>
@@ -89,11 +89,13 @@ class VertexUnfolder {
     if (allOf(isBlocked(tet[0]), isBlocked(tet[1]), isBlocked(tet[2]), isBlocked(tet[3]))) return;
     const auto rotation = static_cast<std::size_t>(inward_[t].index());
     TetParameters scratch;
-    const TetNormals normals(parameters_.see(t, scratch), kTurnedDirections[rotation]);
-    add(tet, normals.sides(), 0);
+    const TetProjection projection(parameters_.see(t, scratch), kImagesOfAxes[rotation][0]);
+    const Vec3& direction = kTurnedDirections[rotation];
+    add(tet, projection.sides(direction), 0);
     for (unsigned rest = states % kBlocked; rest != 0; rest &= rest - 1) {
       const auto axis = static_cast<std::size_t>(std::countr_zero(rest));
-      add(tet, normals.mirrored(kImagesOfAxes[rotation][axis]), 1U << axis);
+      const std::size_t image = kImagesOfAxes[rotation][axis];
+      add(tet, projection.sides(mirrored(direction, image)), 1U << axis);
     }
   }
 

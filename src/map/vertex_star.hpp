@@ -15,6 +15,10 @@ namespace hexhex {
 inline constexpr std::array<std::array<std::uint8_t, 3>, 4> kOthers = {
     {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
 
+/// By corner and by the local number of a face at it: where the face stands in kOthers.
+inline constexpr std::array<std::array<std::uint8_t, 4>, 4> kPlaceOfFace = {
+    {{0, 0, 1, 2}, {0, 0, 1, 2}, {0, 1, 0, 2}, {0, 1, 2, 0}}};
+
 /// The star of one vertex after the other, without any list of stars. Keeps its memory.
 class VertexStar {
  public:
@@ -25,6 +29,7 @@ class VertexStar {
     std::array<Index, 3> neighbour;
     /// From the chart of the first member into this one's, along the walk; if it looked at charts.
     Rotation rotation;
+    std::uint8_t entry;  ///< through which of its three faces it was found; not of the first one
 
     [[nodiscard]] Index tet() const noexcept { return corner / 4; }
     [[nodiscard]] HalfFace halfFace(std::size_t k) const noexcept {
@@ -42,9 +47,9 @@ class VertexStar {
   }
 
   /// The same, and calls visit(half-face, member, spare, member behind) for the faces of each
-  /// member, in order; at the boundary, a member is behind itself. What is spare becomes the member
-  /// behind if that is new. Nothing is foretold that is as good as random: whether a member is new,
-  /// or a face is on the boundary.
+  /// member, in order, but for the one through which it was found; at the boundary, a member is
+  /// behind itself. What is spare becomes the member behind if that is new. Nothing is foretold
+  /// that is as good as random: whether a member is new, or a face is on the boundary.
   /// @returns `visit`, which is taken by value so that what it counts stays in registers
   template <class Visit>
   [[nodiscard]] Visit walk(const TetTopology& topology, Index vertex, Visit visit) {
@@ -57,30 +62,37 @@ class VertexStar {
     KeyTable::Numberer number = numbers_.numberer();
     Member* members = members_.data();
     const Index first = topology.vertexTet[vertex];
-    members[0] = {cornerAt(first), {}, {}};
+    members[0].corner = cornerAt(first);
+    members[0].rotation = Rotation();
     Index count = 1 + number(first, 0);
+    const auto pass = [&](Index head, CornerIndex here, std::size_t k) {
+      const HalfFace halfFace = 4 * (here / 4) + kOthers[here % 4][k];
+      const HalfFace mate = mates[halfFace];
+      const bool boundary = mate == kNone;
+      const Index behind = boundary ? here / 4 : tetOf(mate);
+      const Index neighbour = number(behind, count);
+      Member& spare = members[count];
+      spare.corner = cornerAt(behind);
+      spare.entry = kPlaceOfFace[spare.corner % 4][mate % 4];
+      spare.neighbour[spare.entry] = head;
+      members[head].neighbour[k] = boundary ? kNone : neighbour;
+      visit(halfFace, members[head], spare, members[neighbour]);
+      count += neighbour == count ? 1 : 0;
+    };
+    for (std::size_t k = 0; k < 3; ++k) pass(0, members[0].corner, k);
     Index room = 0;
-    for (Index head = 0; head < count; ++head) {
-      // Up to three more, and one that is written in vain.
-      if (room < count + 4) {
-        makeRoom(count + 4);
+    for (Index head = 1; head < count; ++head) {
+      // Up to two more, and one that is written in vain.
+      if (room < count + 3) {
+        makeRoom(count + 3);
         room = static_cast<Index>(members_.size());
         members = members_.data();
         number = numbers_.numberer();
       }
       const CornerIndex here = members[head].corner;
-      const std::array<std::uint8_t, 3>& others = kOthers[here % 4];
-      for (std::size_t k = 0; k < 3; ++k) {
-        const HalfFace halfFace = 4 * (here / 4) + others[k];
-        const HalfFace mate = mates[halfFace];
-        const bool boundary = mate == kNone;
-        const Index behind = boundary ? here / 4 : tetOf(mate);
-        const Index neighbour = number(behind, count);
-        members[count].corner = cornerAt(behind);
-        members[head].neighbour[k] = boundary ? kNone : neighbour;
-        visit(halfFace, members[head], members[count], members[neighbour]);
-        count += neighbour == count ? 1 : 0;
-      }
+      const std::size_t entry = members[head].entry;
+      pass(head, here, entry == 0 ? 1 : 0);
+      pass(head, here, entry == 2 ? 1 : 2);
     }
     count_ = count;
     return visit;
