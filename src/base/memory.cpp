@@ -4,6 +4,8 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/page_pool.hpp>
+
 #if defined(__linux__)
 #include <sys/mman.h>
 #endif
@@ -17,6 +19,29 @@ constexpr std::size_t kHugePage = std::size_t{1} << 21;
 constexpr std::size_t kLarge = 2 * kHugePage;
 /// From here on, asking for all pages at once is cheaper than a fault for each.
 constexpr std::size_t kManyPages = std::size_t{1} << 14;
+/// From here on, so is a huge page.
+constexpr std::size_t kManyMorePages = std::size_t{1} << 15;
+
+// Sanitizers know malloc, and see what is written beyond the end of its memory.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kPooled = false;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr bool kPooled = false;
+#else
+constexpr bool kPooled = true;
+#endif
+#else
+constexpr bool kPooled = true;
+#endif
+
+/// Never destroyed, as arrays may live until the end of the program.
+PagePool& pool() {
+  static PagePool* const pool = new PagePool;
+  return *pool;
+}
+
+bool isPooled(std::size_t bytes) { return kPooled && bytes >= kManyPages && bytes < kLarge; }
 
 /// Has the system provide the pages now that will be written anyway. Where it cannot, it does so
 /// page by page as ever.
@@ -52,12 +77,18 @@ void* allocateArray(std::size_t bytes) {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
   if (bytes >= kLarge) return allocateLarge(bytes);
 #endif
+  if (isPooled(bytes)) {
+    if (void* const memory = pool().allocate(bytes, bytes >= kManyMorePages)) return memory;
+  }
   void* const memory = std::malloc(bytes == 0 ? 1 : bytes);
   if (memory == nullptr) throw std::bad_alloc();
   if (bytes >= kManyPages) populate(memory, bytes);
   return memory;
 }
 
-void freeArray(void* memory, std::size_t /*bytes*/) noexcept { std::free(memory); }
+void freeArray(void* memory, std::size_t bytes) noexcept {
+  if (isPooled(bytes) && pool().release(memory, bytes)) return;
+  std::free(memory);
+}
 
 }  // namespace hexhex::detail
