@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <base/branchless.hpp>
+#include <base/pair.hpp>
 #include <base/vector3.hpp>
 #include <map/flat_stars.hpp>
 #include <map/tet_projection.hpp>
@@ -48,18 +49,19 @@ constexpr auto kRays = [] {
   return rays;
 }();
 
+/// Per pair of numbers in a row of a tet's corners: whether another one goes farther than a corner.
+PairMask goFarther(const TetParameters& u, std::size_t corner, std::size_t first, Pair signs) {
+  const auto at = [&](std::size_t i) { return signs * loadPair(&u[i][first]); };
+  return larger(larger(at(0), at(1)), larger(at(2), at(3))) > at(corner);
+}
+
 /// Whether the edges from a corner of a tet go far enough into an octant that a direction in it can
 /// lead into the tet; exact, and soon said.
 bool reachesOctant(const TetParameters& u, std::size_t corner, const Vec3& signs) {
-  const std::array<std::uint8_t, 3>& others = kOthers[corner];
-  unsigned reaches = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double farthest =
-        std::max(std::max(signs[k] * u[others[0]][k], signs[k] * u[others[1]][k]),
-                 signs[k] * u[others[2]][k]);
-    reaches &= farthest > signs[k] * u[corner][k] ? 1U : 0U;
-  }
-  return reaches != 0;
+  // Two overlapping pairs have all three coordinates.
+  const PairMask farther =
+      goFarther(u, corner, 0, loadPair(&signs[0])) & goFarther(u, corner, 1, loadPair(&signs[1]));
+  return (farther[0] & farther[1]) != 0;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cmath>
 
+#include <base/branchless.hpp>
 #include <base/vector3.hpp>
 #include <map/flat_stars.hpp>
 #include <map/key_table.hpp>
@@ -21,17 +22,15 @@ class AngleSum {
  public:
   /// Adds the angle whose cosine and sine are proportional to the arguments; sine >= 0.
   void add(double cosine, double sine) noexcept {
-    double real = real_ * cosine - imaginary_ * sine;
-    double imaginary = real_ * sine + imaginary_ * cosine;
-    if (imaginary < 0 || (imaginary == 0 && real < 0)) {
-      real = -real;
-      imaginary = -imaginary;
-      ++halfTurns_;
-    }
-    const double norm = std::abs(real) + imaginary;
+    const double real = real_ * cosine - imaginary_ * sine;
+    const double imaginary = real_ * sine + imaginary_ * cosine;
+    const bool isTurned = anyOf(imaginary < 0, allOf(imaginary == 0, real < 0));
+    const double sign = isTurned ? -1 : 1;
+    halfTurns_ += isTurned ? 1 : 0;
+    const double norm = std::abs(real) + std::abs(imaginary);
     if (!(norm > 0)) return;  // a degenerate tet: reported elsewhere
-    real_ = real / norm;
-    imaginary_ = imaginary / norm;
+    real_ = sign * real / norm;
+    imaginary_ = sign * imaginary / norm;
   }
   /// The sum in right angles, rounded.
   [[nodiscard]] int rightAngles() const noexcept {
@@ -94,10 +93,17 @@ class VertexEdges {
  private:
   struct Edge {
     Index other;
-    std::uint32_t boundaryFaces;  ///< two in a manifold
-    std::uint32_t turns;          ///< tets in one and the same direction from the edge
-    std::uint32_t disagreements;  ///< faces across which charts may differ
+    std::uint32_t turns;  ///< tets in one and the same direction from the edge
+    std::uint64_t faces;  ///< sum of what they are, seen from each tet
+
+    [[nodiscard]] bool onBoundary() const { return boundaryFaces() > 0; }
+    /// Two in a manifold.
+    [[nodiscard]] std::uint64_t boundaryFaces() const { return faces / kBoundaryFace; }
+    /// Whether charts may differ across a face.
+    [[nodiscard]] bool mayTurn() const { return faces > 0; }
   };
+  static constexpr std::uint64_t kCutFace = 1;
+  static constexpr std::uint64_t kBoundaryFace = std::uint64_t{1} << 32;
 
   /// Of one edge: the sum of dihedral angles, if its valence is wanted and turns do not tell it.
   struct Angles {
@@ -117,45 +123,46 @@ class VertexEdges {
     const KeyTable::Numberer number = others_.numberer();
     Index count = 0;
     numbers_.resize(star_.size());
-    boundaryFaces_ = 0;
+    faces_ = 0;
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
       const VertexStar::Member& member = star_[i];
       const Tet& tet = in_.topology.tets[member.tet()];
       const std::array<std::uint8_t, 3>& corners = kOthers[member.corner % 4];
       const Passage* const passages = &in_.plain.passages[4 * std::size_t{member.tet()}];
       const TetSides sides = in_.plain.sides[member.tet()];
-      std::array<std::uint32_t, 3> boundary{};
+      std::array<std::uint64_t, 3> faces{};
       std::array<std::uint32_t, 3> inward{};
-      std::array<std::uint32_t, 3> disagree{};
       for (std::size_t k = 0; k < 3; ++k) {
         const Index other = tet[corners[k]];
-        edges_[count] = Edge{other, 0, 0, 0};
+        edges_[count] = Edge{other, 0, 0};
         numbers_[i][k] = number(other, count);
         count += numbers_[i][k] == count ? 1 : 0;
-        boundary[k] = member.neighbour[k] == kNone ? 1U : 0U;
         inward[k] = leadsInward(sides, corners[k]);
-        disagree[k] = passages[corners[k]].isPlain() ? 0U : 1U;
-        boundaryFaces_ += boundary[k];
+        faces[k] = (passages[corners[k]].isPlain() ? 0 : kCutFace) +
+                   (member.neighbour[k] == kNone ? kBoundaryFace : 0);
       }
+      faces_ += faces[0] + faces[1] + faces[2];
       // The faces at the edge to corner k are those opposite the two other corners.
       for (std::size_t k = 0; k < 3; ++k) {
         Edge& edge = edges_[numbers_[i][k]];
         const std::size_t l = (k + 1) % 3;
         const std::size_t m = (k + 2) % 3;
-        edge.boundaryFaces += boundary[l] + boundary[m];
         edge.turns += inward[l] & inward[m];
-        edge.disagreements += disagree[l] + disagree[m];
+        edge.faces += faces[l] + faces[m];
       }
     }
     edgeCount_ = count;
+    selectEdges(vertex);
+  }
+
+  void selectEdges(Index vertex) {
     anglesNeeded_ = false;
     angles_.assign(edgeCount_, Angles{});
     for (std::size_t e = 0; e < angles_.size(); ++e) {
       // Edges at a plain vertex are regular.
-      angles_[e].wanted = edges_[e].other > vertex && in_.plain.special[edges_[e].other] == 1;
-      angles_[e].needed = angles_[e].wanted && !in_.valencesKnown &&
-                          edges_[e].boundaryFaces + edges_[e].disagreements > 0;
-      anglesNeeded_ = anglesNeeded_ || angles_[e].needed;
+      angles_[e].wanted = allOf(edges_[e].other > vertex, in_.plain.special[edges_[e].other] == 1);
+      angles_[e].needed = allOf(angles_[e].wanted, !in_.valencesKnown, edges_[e].mayTurn());
+      anglesNeeded_ = anyOf(anglesNeeded_, angles_[e].needed);
     }
   }
 
@@ -165,8 +172,8 @@ class VertexEdges {
   void addAngles() {
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
       const EdgeNumbers& numbers = numbers_[i];
-      if (!angles_[numbers[0]].needed && !angles_[numbers[1]].needed &&
-          !angles_[numbers[2]].needed) {
+      if (!anyOf(angles_[numbers[0]].needed, angles_[numbers[1]].needed,
+                 angles_[numbers[2]].needed)) {
         continue;
       }
       const CornerIndex corner = star_[i].corner;
@@ -193,7 +200,7 @@ class VertexEdges {
   [[nodiscard]] int valenceOf(Index vertex, std::size_t e) const {
     const Edge& edge = edges_[e];
     if (in_.valencesKnown) {
-      return (edge.boundaryFaces > 0 ? 2 : 4) + knownOffset(in_.known, vertex, edge.other);
+      return (edge.onBoundary() ? 2 : 4) + knownOffset(in_.known, vertex, edge.other);
     }
     return angles_[e].needed ? angles_[e].sum.rightAngles() : 4 * static_cast<int>(edge.turns);
   }
@@ -203,7 +210,7 @@ class VertexEdges {
     for (std::size_t e = 0; e < edges().size(); ++e) {
       if (!angles_[e].wanted) continue;
       const int valence = valenceOf(vertex, e);
-      const bool boundary = edges_[e].boundaryFaces > 0;
+      const bool boundary = edges_[e].onBoundary();
       if (valence == (boundary ? 2 : 4)) continue;
       singular.push_back(located(vertex, static_cast<Index>(e), boundary, valence));
     }
@@ -213,17 +220,22 @@ class VertexEdges {
 
   /// A singular edge, in the smallest tet at it.
   [[nodiscard]] SingularEdge located(Index vertex, Index number, bool boundary, int valence) const {
-    SingularEdge edge{vertex, edges_[number].other, kNone, 0, 0, boundary, valence};
+    // Corners by tet, and which of the others it is in the lowest bits: the smallest one counts.
+    std::uint64_t smallest = ~std::uint64_t{0};
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
-      const CornerIndex corner = star_[i].corner;
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (numbers_[i][k] != number || corner / 4 >= edge.tet) continue;
-        edge.tet = corner / 4;
-        edge.corner0 = static_cast<std::uint8_t>(corner % 4);
-        edge.corner1 = kOthers[corner % 4][k];
+      for (std::uint64_t k = 0; k < 3; ++k) {
+        const std::uint64_t place = 4 * std::uint64_t{star_[i].corner} + k;
+        smallest = numbers_[i][k] == number ? std::min(smallest, place) : smallest;
       }
     }
-    return edge;
+    const std::size_t corner = smallest / 4 % 4;
+    return {vertex,
+            edges_[number].other,
+            static_cast<Index>(smallest / 16),
+            static_cast<std::uint8_t>(corner),
+            kOthers[corner][smallest % 4],
+            boundary,
+            valence};
   }
 
   /// Whether the link, which the walk has found to be connected, is a sphere or, on the boundary, a
@@ -231,12 +243,13 @@ class VertexEdges {
   /// they are two, the characteristic is too small.)
   [[nodiscard]] bool isManifold() const {
     for (const Edge& edge : edges()) {
-      if (edge.boundaryFaces > 2) return false;
+      if (edge.boundaryFaces() > 2) return false;
     }
     const auto triangles = static_cast<std::int64_t>(star_.size());
-    const std::int64_t sides = (3 * triangles + boundaryFaces_) / 2;
+    const auto boundaryFaces = static_cast<std::int64_t>(faces_ / kBoundaryFace);
+    const std::int64_t sides = (3 * triangles + boundaryFaces) / 2;
     const auto corners = static_cast<std::int64_t>(edgeCount_);
-    return corners - sides + triangles == (boundaryFaces_ > 0 ? 1 : 2);
+    return corners - sides + triangles == (boundaryFaces > 0 ? 1 : 2);
   }
 
   Surroundings in_;
@@ -246,7 +259,7 @@ class VertexEdges {
   std::size_t edgeCount_ = 0;
   std::vector<Angles> angles_;        ///< per edge
   std::vector<EdgeNumbers> numbers_;  ///< per member of the star
-  std::int64_t boundaryFaces_ = 0;
+  std::uint64_t faces_ = 0;           ///< of the vertex, as those of edges
   bool anglesNeeded_ = false;
 };
 
