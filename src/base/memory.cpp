@@ -41,7 +41,7 @@ PagePool& pool() {
   return *pool;
 }
 
-bool isPooled(std::size_t bytes) { return kPooled && bytes >= kManyPages && bytes < kLarge; }
+bool isPooled(std::size_t bytes) { return kPooled && bytes >= PagePool::kPage && bytes < kLarge; }
 
 /// Has the system provide the pages now that will be written anyway. Where it cannot, it does so
 /// page by page as ever.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include <hexhex/types.hpp>
 
@@ -92,7 +91,7 @@ class KeyTable {
   }
 
   void grow() {
-    std::vector<Slot> old(2 * slots_.size());
+    Array<Slot> old(2 * slots_.size());
     old.swap(slots_);
     --shift_;
     for (const Slot& slot : old) {
@@ -100,7 +99,7 @@ class KeyTable {
     }
   }
 
-  std::vector<Slot> slots_;
+  Array<Slot> slots_;
   int shift_ = kInitialShift;
   std::uint32_t generation_ = 1;
   Index size_ = 0;

@@ -75,7 +75,7 @@ void listBoundary(const TetTopology& topology, const LocalParameters& parameters
   }
   std::fill(&result.passages[4 * begin], &result.passages[4 * begin] + 4 * (end - begin),
             Passage());
-  std::vector<PlainVertices::BoundaryFace>& faces = result.boundaryFaces[block];
+  Array<PlainVertices::BoundaryFace>& faces = result.boundaryFaces[block];
   faces.resize(faces.size() + list.get().size());
   PlainVertices::BoundaryFace* next = faces.data() + faces.size() - list.get().size();
   for (const HalfFace halfFace : list.get()) {
@@ -95,7 +95,7 @@ void listBoundary(const TetTopology& topology, const LocalParameters& parameters
 /// Notes the planes of boundary faces at their corners; without a plane, these are special. One
 /// thread does so for all, as faces share most of their corners, and are few.
 void notePlanes(const TetTopology& topology, PlainVertices& result) {
-  for (const std::vector<PlainVertices::BoundaryFace>& faces : result.boundaryFaces) {
+  for (const Array<PlainVertices::BoundaryFace>& faces : result.boundaryFaces) {
     for (const PlainVertices::BoundaryFace& face : faces) {
       const Tet& tet = topology.tets[tetOf(face.halfFace)];
       if (face.constantAxes == 0) markCorners(tet, localOf(face.halfFace), result);
@@ -224,7 +224,7 @@ void surveyFaces(const TetTopology& topology, const LocalParameters& parameters,
     const HalfFace there = topology.mate[faces[i]];
     unequal.add(faces[i], parameters.moved() || !areSame(topology, parameters, faces[i], there));
   }
-  std::vector<HalfFace>& found = result.unequalFaces[block];
+  Array<HalfFace>& found = result.unequalFaces[block];
   for (const HalfFace here : unequal.get()) {
     const HalfFace there = topology.mate[here];
     if (agree(topology, parameters, here, there)) continue;

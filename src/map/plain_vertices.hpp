@@ -53,7 +53,7 @@ struct PlainVertices {
 
   /// Inner triangles on whose corners' parameters their tets do not agree, by the larger half-face,
   /// ascending; in one list per block of kBlock tets.
-  std::vector<std::vector<HalfFace>> unequalFaces;
+  std::vector<Array<HalfFace>> unequalFaces;
   std::uint64_t innerFaces = 0;
 
   /// A boundary face, and the axis along which it is constant, or nearly so.
@@ -63,7 +63,7 @@ struct PlainVertices {
     std::uint16_t constantAxes;  ///< along which it is exactly constant: bit k for axis k
   };
   /// By half-face, ascending; in one list per block of kBlock tets.
-  std::vector<std::vector<BoundaryFace>> boundaryFaces;
+  std::vector<Array<BoundaryFace>> boundaryFaces;
 
   /// Per tet: what its part in the fan of an edge is.
   Array<TetSides> sides;

@@ -112,7 +112,7 @@ class VertexStar {
 
   KeyTable numbers_;  ///< of tets
   std::size_t count_ = 0;
-  std::vector<Member> members_ = std::vector<Member>(64);
+  Array<Member> members_ = Array<Member>(64);
 };
 
 /// Stars that are kept: those of the special vertices among consecutive vertices.
@@ -122,7 +122,7 @@ struct StarBlock {
   /// axis k.
   std::vector<std::uint32_t> planes;
   std::vector<std::size_t> ends;  ///< per vertex: where its members end
-  std::vector<VertexStar::Member> members;
+  Array<VertexStar::Member> members;
 
   /// Of boundary vertices with flat stars, only what is in the way of rounding each corner on its
   /// own: the boundary plane's axis in its chart, as a bit.
