@@ -17,17 +17,14 @@ class DisjointSets {
   explicit DisjointSets(std::size_t n) : parents_(n) {
     std::iota(parents_.begin(), parents_.end(), Index{0});
   }
-
   /// The smallest element of the set of `element`. Thread-safe.
   [[nodiscard]] Index find(Index element) {
     Index parent = load(element);
     while (parent != element) {
-      // Halve the path: the grandparent is in the same set, so skipping to it is always right.
+      // Halve the path: the grandparent is in the same set, so skipping to it is always right, even
+      // if another thread has found one farther up in the meantime.
       const Index grandparent = load(parent);
-      if (grandparent != parent) {
-        std::atomic_ref(parents_[element])
-            .compare_exchange_weak(parent, grandparent, std::memory_order_relaxed);
-      }
+      std::atomic_ref(parents_[element]).store(grandparent, std::memory_order_relaxed);
       element = grandparent;
       parent = load(element);
     }
