@@ -21,7 +21,7 @@ void countSingularities(const Singularities& singularities, CheckReport& report)
     ++(edge.boundary ? report.boundarySingularTetEdges
                      : report.innerSingularTetEdges)[edge.valence];
   }
-  for (Index v = 0; v < singularities.degree.size(); ++v) {
+  for (Index v = 0; v + 1 < singularities.begin.size(); ++v) {
     report.singularNodes += singularities.isNode(v) ? 1 : 0;
   }
 }
@@ -41,7 +41,7 @@ CheckReport check(const TetMapView& map, const CheckOptions& options, Context& c
     report.cornersReversed = prepared.input.cornersReversed;
     report.tetsInvertedInSpace = prepared.input.tetsInvertedInSpace;
     // What a defect kept from being computed stays empty, and is counted as nothing.
-    if (prepared.singularities.degree.empty()) return;
+    if (!prepared.singularities.areKnown()) return;
     addEdges(prepared.topology, stage);
     countElements(prepared.topology, report);
     report.chartJumps = prepared.exact.transitions.jumps;

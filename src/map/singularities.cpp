@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
 #include <base/branchless.hpp>
 #include <base/vector3.hpp>
@@ -112,6 +113,12 @@ class VertexEdges {
     AngleSum sum;
   };
 
+  /// A tet at an edge.
+  struct Wedge {
+    Index member;
+    std::uint8_t edge;  ///< in the order of kOthers
+  };
+
   /// One tet's edges at the vertex: their numbers in `edges_`, in the order of kOthers.
   using EdgeNumbers = std::array<Index, 3>;
 
@@ -170,29 +177,30 @@ class VertexEdges {
 
   /// Adds up dihedral angles where turns do not tell the valence.
   void addAngles() {
+    if (wedges_.size() <= 3 * numbers_.size()) wedges_.resize(2 * (3 * numbers_.size()));
+    std::size_t count = 0;
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
-      const EdgeNumbers& numbers = numbers_[i];
-      if (!anyOf(angles_[numbers[0]].needed, angles_[numbers[1]].needed,
-                 angles_[numbers[2]].needed)) {
-        continue;
-      }
-      const CornerIndex corner = star_[i].corner;
-      const Vec3 origin = in_.parameters(corner / 4, localOf(corner));
-      std::array<Vec3, 3> e{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        e[k] = minus(in_.parameters(corner / 4, kOthers[corner % 4][k]), origin);
-      }
-      // normals[k] belongs to the face opposite corner k.
-      const std::array<Vec3, 3> normals = {cross(e[1], e[2]), cross(e[2], e[0]), cross(e[0], e[1])};
-      const double determinant = std::abs(dot(e[0], normals[0]));
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (!angles_[numbers[k]].needed) continue;
-        // With a and b the edge's cross products with the two others,
-        // |a x b| = |edge| |det(edge, other, other)|.
-        angles_[numbers[k]].sum.add(-dot(normals[(k + 1) % 3], normals[(k + 2) % 3]),
-                                    length(e[k]) * determinant);
+      for (std::uint8_t k = 0; k < 3; ++k) {
+        wedges_[count] = {static_cast<Index>(i), k};
+        count += angles_[numbers_[i][k]].needed ? 1 : 0;
       }
     }
+    for (const Wedge& wedge : std::span(wedges_).first(count)) addAngle(wedge);
+  }
+
+  void addAngle(const Wedge& wedge) {
+    const CornerIndex corner = star_[wedge.member].corner;
+    const std::array<std::uint8_t, 3>& others = kOthers[corner % 4];
+    TetParameters scratch;
+    const TetParameters& u = in_.parameters.see(tetOf(corner), scratch);
+    const Vec3 edge = minus(u[others[wedge.edge]], u[corner % 4]);
+    const Vec3 a = minus(u[others[(wedge.edge + 1U) % 3]], u[corner % 4]);
+    const Vec3 b = minus(u[others[(wedge.edge + 2U) % 3]], u[corner % 4]);
+    const Vec3 normalA = cross(edge, a);
+    const Vec3 normalB = cross(edge, b);
+    // |normalA x normalB| = |edge| |det(edge, a, b)|.
+    angles_[numbers_[wedge.member][wedge.edge]].sum.add(dot(normalA, normalB),
+                                                        length(edge) * std::abs(dot(normalA, b)));
   }
 
   /// The number of hexahedra around an edge. If all tets around it lie in one chart, and are known
@@ -224,8 +232,8 @@ class VertexEdges {
     std::uint64_t smallest = ~std::uint64_t{0};
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
       for (std::uint64_t k = 0; k < 3; ++k) {
-        const std::uint64_t place = 4 * std::uint64_t{star_[i].corner} + k;
-        smallest = numbers_[i][k] == number ? std::min(smallest, place) : smallest;
+        const std::uint64_t isOther = numbers_[i][k] == number ? 0 : 1;
+        smallest = std::min(smallest, (4 * std::uint64_t{star_[i].corner} + k) | (0 - isOther));
       }
     }
     const std::size_t corner = smallest / 4 % 4;
@@ -259,6 +267,7 @@ class VertexEdges {
   std::size_t edgeCount_ = 0;
   std::vector<Angles> angles_;        ///< per edge
   std::vector<EdgeNumbers> numbers_;  ///< per member of the star
+  std::vector<Wedge> wedges_;         ///< more than are in use
   std::uint64_t faces_ = 0;           ///< of the vertex, as those of edges
   bool anglesNeeded_ = false;
 };
@@ -316,30 +325,23 @@ std::uint64_t countSpecialCorners(const TetTopology& topology, const Array<std::
 
 /// Lists the singular edges at each of their two vertices.
 void indexByVertex(Singularities& singularities, std::size_t pointCount) {
-  singularities.degree.assign(pointCount, 0);
-  singularities.incidences.reserve(2 * singularities.edges.size());
-  for (std::size_t e = 0; e < singularities.edges.size(); ++e) {
-    for (const Index v : {singularities.edges[e].vertex0, singularities.edges[e].vertex1}) {
-      std::uint8_t& degree = singularities.degree[v];
-      if (degree < 255) ++degree;
-      singularities.incidences.push_back({v, static_cast<Index>(e)});
-    }
+  Array<Index>& begin = singularities.begin;
+  begin.assign(pointCount + 1, 0);
+  const std::vector<SingularEdge>& edges = singularities.edges;
+  for (const SingularEdge& edge : edges) {
+    ++begin[edge.vertex0];
+    ++begin[edge.vertex1];
   }
-  std::sort(singularities.incidences.begin(), singularities.incidences.end(),
-            [](const Singularities::Incidence& a, const Singularities::Incidence& b) {
-              return a.vertex != b.vertex ? a.vertex < b.vertex : a.edge < b.edge;
-            });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  // Backwards, so that where each vertex's edges end becomes where they begin.
+  singularities.incident.resize(2 * edges.size());
+  for (std::size_t e = edges.size(); e-- > 0;) {
+    singularities.incident[--begin[edges[e].vertex0]] = static_cast<Index>(e);
+    singularities.incident[--begin[edges[e].vertex1]] = static_cast<Index>(e);
+  }
 }
 
 }  // namespace
-
-std::span<const Singularities::Incidence> Singularities::at(Index vertex) const noexcept {
-  if (degree[vertex] == 0) return {};
-  const auto [first, last] =
-      std::equal_range(incidences.begin(), incidences.end(), Incidence{vertex, 0},
-                       [](const Incidence& a, const Incidence& b) { return a.vertex < b.vertex; });
-  return {first, last};
-}
 
 void collectStars(const TetTopology& topology, const LocalParameters& parameters,
                   PlainVertices& plain, std::span<const EdgeValence> known,

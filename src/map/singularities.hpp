@@ -31,21 +31,22 @@ struct SingularEdge {
 struct Singularities {
   std::vector<SingularEdge> edges;  ///< in lexicographic order of vertices
 
-  /// Singular edges at each vertex, saturated at 255.
-  Array<std::uint8_t> degree;
+  /// By vertex (+1): where its edges begin in `incident`. Empty before they are known.
+  Array<Index> begin;
+  Array<Index> incident;  ///< indices of edges, at each of their two vertices, ascending there
 
-  /// The same incidence as a list, by vertex.
-  struct Incidence {
-    Index vertex;
-    Index edge;
-  };
-  std::vector<Incidence> incidences;
+  [[nodiscard]] bool areKnown() const noexcept { return !begin.empty(); }
 
-  [[nodiscard]] std::span<const Incidence> at(Index vertex) const noexcept;
+  [[nodiscard]] std::span<const Index> at(Index vertex) const noexcept {
+    return std::span(incident).subspan(begin[vertex], degree(vertex));
+  }
+  [[nodiscard]] Index degree(Index vertex) const noexcept {
+    return begin[vertex + 1] - begin[vertex];
+  }
 
   /// A singular vertex is incident to other than zero or two singular edges. (Section 3.2)
   [[nodiscard]] bool isNode(Index vertex) const noexcept {
-    return degree[vertex] != 0 && degree[vertex] != 2;
+    return degree(vertex) != 0 && degree(vertex) != 2;
   }
 };
 

@@ -52,8 +52,8 @@ VertexSanitizer::AxisSet VertexSanitizer::fixedAxes(Index v,
                                                     AxisSet planes) const {
   if (singularities_.isNode(v)) return kAllAxes;
   AxisSet fixed = planes;
-  for (const Singularities::Incidence& incidence : singularities_.at(v)) {
-    const SingularEdge& edge = singularities_.edges[incidence.edge];
+  for (const Index e : singularities_.at(v)) {
+    const SingularEdge& edge = singularities_.edges[e];
     const AxisSet across = kAllAxes & ~(1U << edgeAxis(parameters_, edge));
     const auto member =
         std::find_if(star.begin(), star.end(),
@@ -113,7 +113,7 @@ double VertexSanitizer::assign(CornerIndex corner, const LatticePoint& value) {
 
 /// The condition that a vertex which had to move too far violates.
 ErrorCode VertexSanitizer::causeOfDisplacement(Index v, AxisSet planes) const {
-  if (singularities_.degree[v] > 0) return ErrorCode::SingularityOffLattice;
+  if (singularities_.degree(v) > 0) return ErrorCode::SingularityOffLattice;
   return planes != 0 ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual;
 }
 

@@ -104,7 +104,7 @@ class Examiner {
   }
 
   [[nodiscard]] ErrorCode causeAt(Index v) const {
-    if (map_.singularities.degree[v] > 0) return ErrorCode::SingularityOffLattice;
+    if (map_.singularities.degree(v) > 0) return ErrorCode::SingularityOffLattice;
     return boundary_[v] != 0 ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual;
   }
 

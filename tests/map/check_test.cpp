@@ -254,7 +254,7 @@ TEST(Check, FindsTheBoundaryOffTheLattice) {
   std::size_t axis = 0;
   std::size_t faces = 0;
   for (Index v = 0; v < map.points.size() && vertex == kNone; ++v) {
-    if (before.singularities().degree[v] != 0) continue;
+    if (before.singularities().degree(v) != 0) continue;
     for (const CornerIndex corner : topology.star(v)) {
       for (const HalfFace face : {0U, 1U, 2U, 3U}) {
         if (face == corner % 4 || !topology.isBoundary(4 * (corner / 4) + face)) continue;

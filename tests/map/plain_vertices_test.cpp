@@ -94,7 +94,7 @@ TEST_P(PlainVerticesOfKind, AreNeitherSingularNorBetweenPlanesNorAtJumps) {
     const Prepared prepared(map);
     for (Index v = 0; v < map.points.size(); ++v) {
       if (survey.plain.special[v] != 0) continue;
-      EXPECT_EQ(prepared.singularities().degree[v], 0);
+      EXPECT_EQ(prepared.singularities().degree(v), 0);
       bool boundary = false;
       for (const CornerIndex corner : prepared.topology().star(v)) {
         for (int face = 0; face < 4; ++face) {

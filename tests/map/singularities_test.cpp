@@ -78,13 +78,9 @@ TEST_P(SingularitiesOfKind, AreFoundAtTheirVertices) {
       const SingularEdge& edge = singularities.edges[e];
       if (edge.vertex0 == v || edge.vertex1 == v) incident.push_back(static_cast<Index>(e));
     }
-    std::vector<Index> listed;
-    for (const Singularities::Incidence& incidence : singularities.at(v)) {
-      EXPECT_EQ(incidence.vertex, v);
-      listed.push_back(incidence.edge);
-    }
-    EXPECT_EQ(listed, incident);
-    EXPECT_EQ(singularities.degree[v], incident.size());
+    const std::span<const Index> listed = singularities.at(v);
+    EXPECT_EQ(std::vector<Index>(listed.begin(), listed.end()), incident);
+    EXPECT_EQ(singularities.degree(v), incident.size());
     EXPECT_EQ(singularities.isNode(v), !incident.empty() && incident.size() != 2);
   }
 }
@@ -103,7 +99,7 @@ TEST_P(SingularitiesOfKind, GivenValencesReproduceTheComputedOnes) {
   const Prepared computed(map);
   std::vector<EdgeValence> offsets = offsetsOf(computed.singularities());
   offsets.push_back({map.tets[0][0], map.tets[0][1], 0});  // listed, but regular or listed already
-  const bool listedTwice = computed.singularities().degree[map.tets[0][0]] > 0;
+  const bool listedTwice = computed.singularities().degree(map.tets[0][0]) > 0;
   if (listedTwice) offsets.pop_back();
   std::reverse(offsets.begin(), offsets.end());
   TetMapView view(map);
