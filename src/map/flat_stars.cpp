@@ -17,8 +17,7 @@ namespace {
 constexpr std::size_t kUncertainCone = std::size_t{1} << 48;
 
 /// 1 if the direction leads from a corner into the tet, 0 if it does not.
-std::size_t countCone(const TetProjection& projection, const Vec3& direction, std::size_t corner) {
-  const TetSides sides = projection.sides(direction);
+std::size_t countCone(TetSides sides, std::size_t corner) {
   return sides == kUncertainSides ? kUncertainCone : (coneCorner(sides) == corner ? 1 : 0);
 }
 
@@ -113,15 +112,27 @@ bool FlatStarTest::isBetweenPlanes(CornerIndex corner) const {
 
 bool FlatStarTest::coversDirectionOnce(std::span<const VertexStar::Member> star) {
   std::size_t count = listRays(star);
-  for (const Ray& ray : keepOpenRays(star)) {
-    const VertexStar::Member& member = star[ray.member];
-    const std::size_t rotation = rotationOf(member);
-    TetParameters scratch;
-    const TetProjection projection(parameters_.see(member.tet(), scratch),
-                                   kImagesOfAxes[rotation][0]);
-    count += countCone(projection, kRays[rotation][ray.mirror].direction, member.corner % 4);
+  const std::span<const Ray> rays = keepOpenRays(star);
+  for (std::size_t i = 0; i < rays.size(); i += 2) {
+    const bool areTwo = i + 1 < rays.size();
+    count += countCones(star, rays[i], rays[areTwo ? i + 1 : i], areTwo);
   }
   return count == 1;
+}
+
+/// Of two rays, or of the first one only.
+std::size_t FlatStarTest::countCones(std::span<const VertexStar::Member> star, const Ray& first,
+                                     const Ray& second, bool areTwo) const {
+  const VertexStar::Member& a = star[first.member];
+  const VertexStar::Member& b = star[second.member];
+  const TurnedRay& rayA = kRays[rotationOf(a)][first.mirror];
+  const TurnedRay& rayB = kRays[rotationOf(b)][second.mirror];
+  std::array<TetParameters, 2> scratch;  // NOLINT: written before it is read
+  const TetProjections projections(
+      parameters_.see(a.tet(), scratch[0]), parameters_.see(b.tet(), scratch[1]),
+      kImagesOfAxes[rotationOf(a)][0], kImagesOfAxes[rotationOf(b)][0]);
+  const std::array<TetSides, 2> sides = projections.sides(rayA.direction, rayB.direction);
+  return countCone(sides[0], a.corner % 4) + (areTwo ? countCone(sides[1], b.corner % 4) : 0);
 }
 
 /// What is to be looked at: where charts are turned the direction, and on the boundary its mirror

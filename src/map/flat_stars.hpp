@@ -59,6 +59,8 @@ class FlatStarTest {
   [[nodiscard]] bool coversDirectionOnce(std::span<const VertexStar::Member> star);
   [[nodiscard]] std::size_t listRays(std::span<const VertexStar::Member> star);
   [[nodiscard]] std::span<const Ray> keepOpenRays(std::span<const VertexStar::Member> star);
+  [[nodiscard]] std::size_t countCones(std::span<const VertexStar::Member> star, const Ray& first,
+                                       const Ray& second, bool areTwo) const;
 
   const TetTopology& topology_;
   const LocalParameters& parameters_;

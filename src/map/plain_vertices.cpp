@@ -115,11 +115,35 @@ class TetSurvey {
             PlainVertices& result)
       : topology_(topology), parameters_(parameters), cones_(cones), result_(result) {}
 
-  void run(Index t) {
+  /// For at most kNear tets.
+  void run(std::size_t begin, std::size_t end) {
+    found_.clear();
+    images_.clear();
+    for (std::size_t t = begin; t < end; t += 2) lookAtTwo(t, std::min(t + 1, end - 1));
+    const std::span<const std::uint32_t> images = images_.get();
+    for (std::size_t i = 0; i < images.size(); i += 2) {
+      lookAtTwoImages(images[i], images[std::min(i + 1, images.size() - 1)]);
+    }
+    for (const Index vertex : found_.get()) {
+      std::atomic_ref(cones_[vertex]).fetch_add(1, std::memory_order_relaxed);
+    }
+  }
+
+ private:
+  /// @param second  may be the first again
+  void lookAtTwo(std::size_t first, std::size_t second) {
+    const auto t = static_cast<Index>(first);
+    const auto next = static_cast<Index>(second);
+    std::array<TetParameters, 2> scratch;  // NOLINT: written before it is read
+    const TetProjections projections(parameters_.see(t, scratch[0]),
+                                     parameters_.see(next, scratch[1]));
+    const std::array<TetSides, 2> sides = projections.sides(kGeneralDirection, kGeneralDirection);
+    note(t, sides[0]);
+    if (next != t) note(next, sides[1]);
+  }
+
+  void note(Index t, TetSides sides) {
     const Tet& tet = topology_.tets[t];
-    TetParameters scratch;
-    const TetProjection projection(parameters_.see(t, scratch));
-    const TetSides sides = projection.sides(kGeneralDirection);
     result_.sides[t] = sides;
     if (sides == kUncertainSides) {
       markAll(tet);
@@ -130,43 +154,51 @@ class TetSurvey {
     found_.add(tet[corner % 4], corner != 4);
     unsigned planes = 0;
     for (const Index v : tet) planes |= result_.plane[v];
-    if (planes != 0) addMirrored(tet, projection, planes);
+    if (planes == 0) return;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      images_.add(4 * t + axis, ((planes >> axis) & 1U) != 0);
+    }
   }
 
-  /// Adds up what run() has found, for at most kNear tets.
-  void finish() {
-    for (const Index vertex : found_.get()) {
-      std::atomic_ref(cones_[vertex]).fetch_add(1, std::memory_order_relaxed);
-    }
-    found_.clear();
+  /// @param first, second  tets, and the axes along which to mirror the direction (in the two
+  ///                       lowest bits)
+  void lookAtTwoImages(std::uint32_t first, std::uint32_t second) {
+    std::array<TetParameters, 2> scratch;  // NOLINT: written before it is read
+    const TetProjections projections(parameters_.see(first / 4, scratch[0]),
+                                     parameters_.see(second / 4, scratch[1]));
+    const std::array<TetSides, 2> sides =
+        projections.sides(kMirrored[first % 4], kMirrored[second % 4]);
+    noteImage(first, sides[0]);
+    if (second != first) noteImage(second, sides[1]);
   }
 
- private:
-  void addMirrored(const Tet& tet, const TetProjection& projection, unsigned planes) {
-    for (unsigned rest = planes; rest != 0; rest &= rest - 1) {
-      const auto axis = static_cast<std::size_t>(std::countr_zero(rest));
-      const TetSides sides = projection.sides(mirrored(kGeneralDirection, axis));
-      // The mirrored direction may be in a face of the tet.
-      if (sides == kUncertainSides) {
-        markAll(tet);
-        continue;
-      }
-      // On two planes, a vertex is special anyway.
-      const std::size_t corner = coneCorner(sides);
-      const Index vertex = tet[corner % 4];
-      found_.add(vertex, allOf(corner != 4, result_.plane[vertex] == 1U << axis));
+  void noteImage(std::uint32_t image, TetSides sides) {
+    const Tet& tet = topology_.tets[image / 4];
+    // The mirrored direction may be in a face of the tet.
+    if (sides == kUncertainSides) {
+      markAll(tet);
+      return;
     }
+    // On two planes, a vertex is special anyway.
+    const std::size_t corner = coneCorner(sides);
+    const Index vertex = tet[corner % 4];
+    found_.add(vertex, allOf(corner != 4, result_.plane[vertex] == 1U << (image % 4)));
   }
 
   void markAll(const Tet& tet) {
     for (const Index v : tet) mark(result_.special[v]);
   }
 
+  static constexpr std::array<Vec3, 3> kMirrored = {mirrored(kGeneralDirection, 0),
+                                                    mirrored(kGeneralDirection, 1),
+                                                    mirrored(kGeneralDirection, 2)};
+
   const TetTopology& topology_;
   const LocalParameters& parameters_;
   Cones& cones_;
   PlainVertices& result_;
-  BranchlessList found_;  ///< vertices
+  BranchlessList found_;   ///< vertices
+  BranchlessList images_;  ///< as in lookAtTwoImages()
 };
 
 /// Whether two tets agree on the parameters of the corners of their common face.
@@ -238,11 +270,12 @@ void surveyFaces(const TetTopology& topology, const LocalParameters& parameters,
 }  // namespace
 
 TetSides computeSides(const TetParameters& u) noexcept {
-  return TetProjection(u).sides(kGeneralDirection);
+  return TetProjections(u, u).sides(kGeneralDirection, kGeneralDirection)[0];
 }
 
 TetSides computeMirroredSides(const TetParameters& u, std::size_t axis) noexcept {
-  return TetProjection(u).sides(mirrored(kGeneralDirection, axis));
+  const Vec3 direction = mirrored(kGeneralDirection, axis);
+  return TetProjections(u, u).sides(direction, direction)[0];
 }
 
 PlainVertices findPlainVertices(const TetTopology& topology, const LocalParameters& parameters,
@@ -270,8 +303,7 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
   parallelBlocks(stage, tets, kGrain, [&](std::size_t first, std::size_t last, std::size_t block) {
     TetSurvey tetSurvey(topology, parameters, cones, result);
     forEachPart(first, last, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) tetSurvey.run(static_cast<Index>(t));
-      tetSurvey.finish();
+      tetSurvey.run(begin, end);
       surveyFaces(topology, parameters, begin, end, block, result);
     });
   });

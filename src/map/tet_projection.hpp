@@ -1,57 +1,69 @@
-// How a direction in general position lies to the faces of a tet.
+// How directions in general position lie to the faces of tets.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
 
-#include <base/branchless.hpp>
 #include <base/pair.hpp>
-#include <base/vector3.hpp>
 #include <map/plain_vertices.hpp>
 
 namespace hexhex {
 
-/// The edges of a tet from corner 0, to be projected along directions onto the plane across an
-/// axis. There, the orientation of a face tells from which side a direction meets it.
-class TetProjection {
+/// A direction, mirrored along an axis.
+[[nodiscard]] constexpr Vec3 mirrored(Vec3 direction, std::size_t axis) noexcept {
+  direction[axis] = -direction[axis];
+  return direction;
+}
+
+/// Two tets at once, which may be the same: their edges from corner 0, to be projected along
+/// directions onto planes across an axis. There, the orientation of a face tells from which side a
+/// direction meets it.
+class TetProjections {
  public:
-  /// @param axis  along which the directions have a component of 1 or -1, their largest
-  explicit TetProjection(const TetParameters& u, std::size_t axis = 0) : axis_(axis) {
-    Pair largest = {0, 0};
-    for (std::size_t e = 0; e < 3; ++e) {
-      along_[e] = u[e + 1][axis] - u[0][axis];
-      across_[e] = acrossOf(u[e + 1]) - acrossOf(u[0]);
-      largest =
-          larger(larger(largest, magnitudeOf(Pair{along_[e], along_[e]})), magnitudeOf(across_[e]));
+  /// @param axisU, axisV  along which the directions have a component of 1 or -1, their largest
+  TetProjections(const TetParameters& u, const TetParameters& v, std::size_t axisU = 0,
+                 std::size_t axisV = 0)
+      : axes_{axisU, axisV} {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t a = nextAxis(axisU, k);
+      const std::size_t b = nextAxis(axisV, k);
+      const Pair origin = {u[0][a], v[0][b]};
+      for (std::size_t e = 0; e < 3; ++e) {
+        edges_[e][k] = Pair{u[e + 1][a], v[e + 1][b]} - origin;
+        size_ = larger(size_, magnitudeOf(edges_[e][k]));
+      }
     }
-    size_ = std::max(largest[0], largest[1]);
   }
 
-  /// On which side of the faces a direction leads, or kUncertainSides.
-  [[nodiscard]] TetSides sides(const Vec3& direction) const noexcept {
+  /// For each tet, on which side of its faces a direction leads, or kUncertainSides.
+  [[nodiscard]] std::array<TetSides, 2> sides(const Vec3& du, const Vec3& dv) const noexcept {
     // A shear that takes the direction to the axis keeps determinants as they are.
-    const double sign = direction[axis_];
-    const Pair slope = acrossOf(direction) * sign;
-    std::array<Pair, 3> projected;  // NOLINT: written before it is read
+    const Pair sign = component(du, dv, 0);
+    const std::array<Pair, 2> slopes = {component(du, dv, 1) * sign, component(du, dv, 2) * sign};
+    std::array<std::array<Pair, 2>, 3> projected{};
     for (std::size_t e = 0; e < 3; ++e) {
-      projected[e] = across_[e] - Pair{along_[e], along_[e]} * slope;
+      for (std::size_t k = 0; k < 2; ++k) {
+        projected[e][k] = edges_[e][k + 1] - edges_[e][0] * slopes[k];
+      }
     }
-    const Vec3 crosses = {crossOf(projected[1], projected[2]), crossOf(projected[2], projected[0]),
-                          crossOf(projected[0], projected[1])};
-    const double determinant =
-        along_[0] * crosses[0] + along_[1] * crosses[1] + along_[2] * crosses[2];
-    // Of the triangle opposite corner 0, seen from the other side.
-    const double cross0 = -(crosses[0] + crosses[1] + crosses[2]);
-    const double smallest = std::min(std::min(std::abs(cross0), std::abs(crosses[0])),
-                                     std::min(std::abs(crosses[1]), std::abs(crosses[2])));
-    if (!allOf(size_ > kSmallestSize, determinant > kUncertainty * size_ * size_ * size_,
-               smallest > kUncertainty * size_ * size_)) {
-      return kUncertainSides;
-    }
-    const unsigned against = signBit(cross0) | (signBit(crosses[0]) << 1) |
-                             (signBit(crosses[1]) << 2) | (signBit(crosses[2]) << 3);
-    return static_cast<TetSides>(against ^ (sign < 0 ? 0 : kAllSides));
+    // Of the triangles at corner 0, opposite corners 1 to 3, and of the one opposite corner 0, seen
+    // from the other side.
+    const Pair cross1 = crossOf(projected[1], projected[2]);
+    const Pair cross2 = crossOf(projected[2], projected[0]);
+    const Pair cross3 = crossOf(projected[0], projected[1]);
+    const Pair cross0 = -(cross1 + cross2 + cross3);
+    const Pair determinant = edges_[0][0] * cross1 + edges_[1][0] * cross2 + edges_[2][0] * cross3;
+    const Pair smallest = smaller(smaller(magnitudeOf(cross0), magnitudeOf(cross1)),
+                                  smaller(magnitudeOf(cross2), magnitudeOf(cross3)));
+    const Pair uncertainty = kUncertainty * size_ * size_;
+    const PairMask isSure =
+        (size_ > kSmallestSize) & (determinant > uncertainty * size_) & (smallest > uncertainty);
+    const PairMask outward =
+        signBits(cross0, 0) | signBits(cross1, 1) | signBits(cross2, 2) | signBits(cross3, 3);
+    // Seen along the axis, or against it.
+    const PairMask inward = outward ^ (sign < 0 ? PairMask{0, 0} : PairMask{15, 15});
+    const PairMask sides = inward & isSure;
+    return {static_cast<TetSides>(sides[0]), static_cast<TetSides>(sides[1])};
   }
 
  private:
@@ -61,27 +73,26 @@ class TetProjection {
   // u size^2, the determinant by 180 u size^3. Below the smallest size, products could underflow.
   static constexpr double kUncertainty = 0x1p-45;
   static constexpr double kSmallestSize = 0x1p-300;
-  static constexpr unsigned kAllSides = 15;
 
-  /// The two components across the axis, in cyclic order.
-  [[nodiscard]] Pair acrossOf(const Vec3& v) const noexcept {
-    return axis_ == 0 ? loadPair(&v[1]) : Pair{v[(axis_ + 1) % 3], v[(axis_ + 2) % 3]};
+  [[nodiscard]] static constexpr std::size_t nextAxis(std::size_t axis, std::size_t k) noexcept {
+    return (axis + k) % 3;
   }
-  [[nodiscard]] static double crossOf(Pair p, Pair q) noexcept {
-    const Pair products = p * Pair{q[1], q[0]};
-    return products[0] - products[1];
+  [[nodiscard]] Pair component(const Vec3& du, const Vec3& dv, std::size_t k) const noexcept {
+    return Pair{du[nextAxis(axes_[0], k)], dv[nextAxis(axes_[1], k)]};
+  }
+  [[nodiscard]] static Pair crossOf(const std::array<Pair, 2>& p,
+                                    const std::array<Pair, 2>& q) noexcept {
+    return p[0] * q[1] - p[1] * q[0];
+  }
+  /// Bit `place` where a number is negative.
+  [[nodiscard]] static PairMask signBits(Pair x, int place) noexcept {
+    using Bits = std::uint64_t __attribute__((vector_size(16)));
+    return reinterpret_cast<PairMask>((reinterpret_cast<Bits>(x) >> 63) << place);
   }
 
-  std::size_t axis_;
-  Vec3 along_{};                  ///< per edge to corners 1, 2, 3
-  std::array<Pair, 3> across_{};  ///< per edge
-  double size_ = 0;
+  std::array<std::size_t, 2> axes_;
+  std::array<std::array<Pair, 3>, 3> edges_{};  ///< to corners 1, 2, 3; along the axis, and across
+  Pair size_ = {0, 0};
 };
-
-/// A direction, mirrored along an axis.
-[[nodiscard]] constexpr Vec3 mirrored(Vec3 direction, std::size_t axis) noexcept {
-  direction[axis] = -direction[axis];
-  return direction;
-}
 
 }  // namespace hexhex

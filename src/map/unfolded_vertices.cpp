@@ -89,13 +89,15 @@ class VertexUnfolder {
     if (allOf(isBlocked(tet[0]), isBlocked(tet[1]), isBlocked(tet[2]), isBlocked(tet[3]))) return;
     const auto rotation = static_cast<std::size_t>(inward_[t].index());
     TetParameters scratch;
-    const TetProjection projection(parameters_.see(t, scratch), kImagesOfAxes[rotation][0]);
+    const TetParameters& u = parameters_.see(t, scratch);
+    const std::size_t along = kImagesOfAxes[rotation][0];
+    const TetProjections projections(u, u, along, along);
     const Vec3& direction = kTurnedDirections[rotation];
-    add(tet, projection.sides(direction), 0);
+    add(tet, projections.sides(direction, direction)[0], 0);
     for (unsigned rest = states % kBlocked; rest != 0; rest &= rest - 1) {
       const auto axis = static_cast<std::size_t>(std::countr_zero(rest));
-      const std::size_t image = kImagesOfAxes[rotation][axis];
-      add(tet, projection.sides(mirrored(direction, image)), 1U << axis);
+      const Vec3 image = mirrored(direction, kImagesOfAxes[rotation][axis]);
+      add(tet, projections.sides(image, image)[0], 1U << axis);
     }
   }
 
