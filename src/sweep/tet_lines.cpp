@@ -37,16 +37,12 @@ void TetSweep::run(std::int64_t unit, std::vector<SweptLine>& lines) const {
 
 void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
                std::vector<SweptLine>& centers) {
-  const LatticeTet& corners = map.corners[tet];
-  const auto [vertexBox, centerBox] = gridBoxes(corners, map.unit);
-  if (vertexBox.empty() && centerBox.empty()) return;
-  const SmallBoxes small(corners, map.unit);
-  if (!vertexBox.empty() && !small.append(vertexBox, 0, vertices)) {
-    appendLines(corners, map.unit, vertexBox, chooseSweepAxes(vertexBox), vertices);
+  const HalfGridSet left = appendFromSmallBoxes(map.corners[tet], map.unit, vertices, centers);
+  if ((left & halfGridBit(kVertexGrid)) != 0) {
+    TetSweep(map, tet, SweptGrid::Vertices).run(map.unit, vertices);
   }
-  if (!centerBox.empty() && !small.append(centerBox, map.unit / 2, centers)) {
-    appendLines(shiftedTo(SweptGrid::Centers, corners, map.unit), map.unit, centerBox,
-                chooseSweepAxes(centerBox), centers);
+  if ((left & halfGridBit(kCenterGrid)) != 0) {
+    TetSweep(map, tet, SweptGrid::Centers).run(map.unit, centers);
   }
 }
 

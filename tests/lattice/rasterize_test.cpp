@@ -1,6 +1,7 @@
 // The rasterizer against brute force: every grid point of the bounding box, located by the oracle.
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -123,17 +124,34 @@ std::vector<CornerMask> rasterized(const ScaledTet& scaled, SweepAxes axes, doub
   return collector.simplices();
 }
 
-/// The same by SmallBoxes, if the box is small.
+/// The same of small boxes, if they are: for the tet as it is, and moved by one half, as centres.
 void expectTheSameOfSmallBoxes(const ScaledTet& scaled, const std::vector<CornerMask>& expected) {
+  if (scaled.unit == 1) return;  // there are no halves
   const GridBox box = gridBox(scaled.corners, scaled.unit);
+  const auto compare = [&](std::span<const SweptLine> lines) {
+    SimplexGrid grid(box);
+    for (const SweptLine& line : lines) {
+      ASSERT_EQ(line.axes.index, chooseSweepAxes(box).index);
+      for (std::uint32_t i = 0; i < line.count; ++i) grid[line.point(i)] = line.simplex(i);
+    }
+    ASSERT_EQ(grid.simplices(), expected);
+  };
   std::vector<SweptLine> lines;
-  if (box.empty() || !SmallBoxes(scaled.corners, scaled.unit).append(box, 0, lines)) return;
-  SimplexGrid grid(box);
-  for (const SweptLine& line : lines) {
-    ASSERT_EQ(line.axes.index, chooseSweepAxes(box).index);
-    for (std::uint32_t i = 0; i < line.count; ++i) grid[line.point(i)] = line.simplex(i);
+  std::vector<SweptLine> others;
+  HalfGridSet left = appendFromSmallBoxes(scaled.corners, scaled.unit, lines, others);
+  if ((left & halfGridBit(kVertexGrid)) == 0) {
+    ASSERT_NO_FATAL_FAILURE(compare(lines));
   }
-  ASSERT_EQ(grid.simplices(), expected);
+  LatticeTet moved = scaled.corners;
+  for (LatticePoint& p : moved) {
+    for (std::int64_t& coordinate : p) coordinate += scaled.unit / 2;
+  }
+  lines.clear();
+  others.clear();
+  left = appendFromSmallBoxes(moved, scaled.unit, others, lines);
+  if ((left & halfGridBit(kCenterGrid)) == 0) {
+    ASSERT_NO_FATAL_FAILURE(compare(lines));
+  }
 }
 
 /// The same by LineRasterizer.
