@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <span>
 
 #include <base/pair.hpp>
 #include <lattice/small_boxes.hpp>
@@ -15,20 +16,23 @@ constexpr std::int32_t kFewPoints = 32;
 
 using Halves = std::array<std::int32_t, 3>;
 
-/// A tet in halves of grid units, and the points of the grid of that width in its bounding box. All
-/// is exact if coordinates are below kMostExact.
-struct HalvedTet {
-  /// Doubles hold integers up to here.
-  static constexpr double kMostExact = 0x1p53;
+/// Doubles hold integers up to here.
+constexpr double kMostExact = 0x1p53;
 
+/// Boxes with more half units than this along an axis have more points.
+constexpr double kManySteps = 64;
+
+/// A tet in halves of grid units, and its bounding box in the grid of that width. All is exact if
+/// doubles hold the corners.
+struct HalvedTet {
   std::array<Pair, 3> of01;  ///< corners, by axis
   std::array<Pair, 3> of23;
-  IntPair firstXy;  ///< the first point of the box
+  IntPair firstXy;  ///< point of the box
   std::int32_t firstZ;
-  IntPair countXy;  ///< of points along each axis
-  std::int32_t countZ;
-  double mostPoints;  ///< along an axis
-  double largest;     ///< coordinate of a corner
+  IntPair stepsXy;  ///< from the first to the last point; -1 if there are none
+  std::int32_t stepsZ;
+  double mostSteps;  ///< along an axis
+  double largest;    ///< coordinate of a corner
 
   HalvedTet(const LatticeTet& corners, double perHalf) noexcept {
     std::array<Pair, 3> low;
@@ -41,21 +45,26 @@ struct HalvedTet {
       high[k] = larger(of23[k], of01[k]);  // in this order there is an instruction for each
     }
     // All as upper bounds: of x and y, of the same turned around, and of z both ways.
-    const Pair lowXy = smaller(Pair{low[0][0], low[1][0]}, Pair{low[0][1], low[1][1]});
-    const Pair highXy = larger(Pair{high[0][0], high[1][0]}, Pair{high[0][1], high[1][1]});
+    const Pair beforeXy = -smaller(Pair{low[0][0], low[1][0]}, Pair{low[0][1], low[1][1]});
+    const Pair afterXy = larger(Pair{high[0][0], high[1][0]}, Pair{high[0][1], high[1][1]});
     const Pair aroundZ = larger(Pair{-low[2][0], high[2][0]}, Pair{-low[2][1], high[2][1]});
-    constexpr Pair kOne = {1, 1};
-    const Pair beforeXy = floorOf(-lowXy);
-    const Pair pointsXy = floorOf(highXy) + beforeXy + kOne;
+    const Pair minusFirstXy = floorOf(beforeXy);
+    const Pair lengthXy = floorOf(afterXy) + minusFirstXy;
     const Pair endsZ = floorOf(aroundZ);
-    const double pointsZ = endsZ[0] + endsZ[1] + 1;
-    firstXy = __builtin_convertvector(-beforeXy, IntPair);
-    firstZ = static_cast<std::int32_t>(-endsZ[0]);
-    countXy = __builtin_convertvector(pointsXy, IntPair);
-    countZ = static_cast<std::int32_t>(pointsZ);
-    mostPoints = std::max(std::max(pointsXy[0], pointsXy[1]), pointsZ);
-    const Pair bounds = larger(larger(-lowXy, highXy), aroundZ);
+    const double lengthZ = endsZ[0] + endsZ[1];
+    firstXy = -__builtin_convertvector(minusFirstXy, IntPair);
+    firstZ = -static_cast<std::int32_t>(endsZ[0]);
+    stepsXy = __builtin_convertvector(lengthXy, IntPair);
+    stepsZ = static_cast<std::int32_t>(lengthZ);
+    mostSteps = std::max(std::max(lengthXy[0], lengthXy[1]), lengthZ);
+    const Pair bounds = larger(larger(beforeXy, afterXy), aroundZ);
     largest = std::max(bounds[0], bounds[1]);
+  }
+  [[nodiscard]] HalfBox box() const noexcept {
+    HalfBox box;
+    box.first = {firstXy[0], firstXy[1], firstZ};
+    box.steps = {stepsXy[0], stepsXy[1], stepsZ};
+    return box;
   }
 };
 
@@ -65,11 +74,10 @@ struct PointsInBox {
   std::int32_t firstZ;
   IntPair countXy;  ///< along each axis
   std::int32_t countZ;
-  std::int32_t all;
-};
 
-/// If there are less than 2^10 along each axis.
-std::int32_t countOf(IntPair xy, std::int32_t z) noexcept { return xy[0] * xy[1] * z; }
+  /// If there are less than 2^10 along each axis.
+  [[nodiscard]] std::int32_t all() const noexcept { return countXy[0] * countXy[1] * countZ; }
+};
 
 CornerWeights sumOf(const CornerWeights& a, const CornerWeights& b) noexcept {
   return {a.of01 + b.of01, a.of23 + b.of23};
@@ -78,23 +86,21 @@ CornerWeights sumOf(const CornerWeights& a, const CornerWeights& b) noexcept {
 /// Appends lines of one tet.
 class FewPoints {
  public:
-  /// @param moved  what was subtracted from corners to get the tet in halves, in halves
-  FewPoints(const LatticeTet& corners, std::int64_t unit, const HalvedTet& halved,
-            const Halves& moved) noexcept
+  FewPoints(const LatticeTet& corners, std::int64_t unit, const HalvedTet& halved) noexcept
       : corners_(corners),
         unit_(unit),
-        moved_(moved),
         field_(halved.of01, halved.of23),
-        error_(WeightField::errorBound(halved.mostPoints)) {}
+        error_(WeightField::errorBound(halved.mostSteps + 1)) {}
 
-  void append(const PointsInBox& points, std::vector<SweptLine>& lines) const {
+  /// @param all  how many there are
+  void append(const PointsInBox& points, std::int32_t all, std::vector<SweptLine>& lines) const {
     const CornerWeights first =
         field_.at({static_cast<double>(points.firstXy[0]), static_cast<double>(points.firstXy[1]),
                    static_cast<double>(points.firstZ)});
-    if (points.all > 1) {
-      appendSome(points, first, lines);
+    if (all > 1) {
+      appendSome(points, all, first, lines);
     } else if (first.least() >= -error_) {
-      appendFirst(points, first, lines);
+      appendOne(points, {}, first, {}, lines);
     }
   }
 
@@ -102,12 +108,13 @@ class FewPoints {
   /// Weights of points, the last coordinate changing fastest, and one more.
   using WeightsOf = std::array<CornerWeights, kFewPoints + 1>;
 
-  void appendFirst(const PointsInBox& points, const CornerWeights& weights,
-                   std::vector<SweptLine>& lines) const;
-  void appendSome(const PointsInBox& points, const CornerWeights& first,
+  void appendOne(const PointsInBox& points, const std::array<std::int32_t, 3>& at,
+                 const CornerWeights& weights, SweepAxes order,
+                 std::vector<SweptLine>& lines) const;
+  void appendSome(const PointsInBox& points, std::int32_t all, const CornerWeights& first,
                   std::vector<SweptLine>& lines) const;
-  void appendCandidates(const PointsInBox& points, const WeightsOf& weights, std::uint32_t found,
-                        std::vector<SweptLine>& lines) const;
+  [[gnu::noinline]] void appendCandidates(const PointsInBox& points, const WeightsOf& weights,
+                                          std::uint32_t found, std::vector<SweptLine>& lines) const;
   void weigh(const PointsInBox& points, WeightsOf& weights) const noexcept;
   [[nodiscard]] std::uint32_t candidates(const WeightsOf& weights,
                                          std::int32_t points) const noexcept;
@@ -116,13 +123,11 @@ class FewPoints {
   /// In halves.
   [[nodiscard]] Halves pointAt(const PointsInBox& points, std::int32_t x, std::int32_t y,
                                std::int32_t z) const noexcept {
-    return {points.firstXy[0] + moved_[0] + 2 * x, points.firstXy[1] + moved_[1] + 2 * y,
-            points.firstZ + moved_[2] + 2 * z};
+    return {points.firstXy[0] + 2 * x, points.firstXy[1] + 2 * y, points.firstZ + 2 * z};
   }
 
   const LatticeTet& corners_;
   std::int64_t unit_;
-  Halves moved_;
   WeightField field_;
   double error_;  ///< bound of the error of weights in the box
 };
@@ -176,20 +181,24 @@ CornerMask FewPoints::simplexOf(const Halves& halves, const CornerWeights& weigh
   });
 }
 
-void FewPoints::appendFirst(const PointsInBox& points, const CornerWeights& weights,
-                            std::vector<SweptLine>& lines) const {
-  const Halves halves = pointAt(points, 0, 0, 0);
+/// @param at  steps from the first point, by axis
+void FewPoints::appendOne(const PointsInBox& points, const std::array<std::int32_t, 3>& at,
+                          const CornerWeights& weights, SweepAxes order,
+                          std::vector<SweptLine>& lines) const {
+  const Halves halves = pointAt(points, at[0], at[1], at[2]);
   const CornerMask simplex = simplexOf(halves, weights);
   if (simplex == kNoSimplex) return;
-  lines.push_back({halves[0] >> 1, halves[1] >> 1, halves[2] >> 1, 1, simplex, simplex, {}});
+  const std::array<std::uint8_t, 3>& axes = order();
+  lines.push_back({halves[axes[0]] >> 1, halves[axes[1]] >> 1, halves[axes[2]] >> 1, 1, simplex,
+                   simplex, order});
 }
 
-void FewPoints::appendSome(const PointsInBox& points, const CornerWeights& first,
+void FewPoints::appendSome(const PointsInBox& points, std::int32_t all, const CornerWeights& first,
                            std::vector<SweptLine>& lines) const {
   WeightsOf weights;  // NOLINT: written before it is read
   weights[0] = first;
   weigh(points, weights);
-  const std::uint32_t found = candidates(weights, points.all);
+  const std::uint32_t found = candidates(weights, all);
   if (found != 0) appendCandidates(points, weights, found, lines);
 }
 
@@ -197,6 +206,13 @@ void FewPoints::appendCandidates(const PointsInBox& points, const WeightsOf& wei
                                  std::uint32_t found, std::vector<SweptLine>& lines) const {
   const std::array<std::int32_t, 3> counts = {points.countXy[0], points.countXy[1], points.countZ};
   const SweepAxes order = chooseSweepAxes(counts);
+  if (std::has_single_bit(found)) {
+    const std::int32_t i = std::countr_zero(found);
+    const std::int32_t row = i / counts[2];
+    appendOne(points, {row / counts[1], row % counts[1], i % counts[2]},
+              weights[static_cast<std::size_t>(i)], order, lines);
+    return;
+  }
   const std::array<std::uint8_t, 3>& axes = order();
   const std::array<std::int32_t, 3> strides = {counts[1] * counts[2], counts[2], 1};
   std::array<std::int32_t, 3> at{};
@@ -229,65 +245,93 @@ void FewPoints::appendCandidates(const PointsInBox& points, const WeightsOf& wei
   });
 }
 
-/// The same near the origin.
-/// @return what was subtracted, in halves
-Halves moveToOrigin(LatticeTet& corners, std::int64_t unit) noexcept {
-  Halves moved;
+/// Of a grid with more points.
+[[gnu::noinline]] void appendLines(const LatticeTet& corners, std::int64_t unit, HalfGrid grid,
+                                   const HalfBox& box, std::vector<SweptLine>& lines) {
+  if ((box.grids() & halfGridBit(grid)) == 0) return;
+  LatticeTet moved = corners;
+  for (LatticePoint& corner : moved) {
+    for (std::size_t k = 0; k < 3; ++k) corner[k] -= ((grid >> k) & 1) * (unit / 2);
+  }
+  const GridBox points = box.of(grid);
+  LineRasterizer(moved, unit, points, chooseSweepAxes(points)).run([&](const SweptLine& line) {
+    lines.push_back(line);
+  });
+}
+
+void moveBack(std::span<SweptLine> lines, const GridPoint& by) noexcept {
+  for (SweptLine& line : lines) {
+    const std::array<std::uint8_t, 3>& axes = line.axes();
+    line.level += by[axes[0]];
+    line.row += by[axes[1]];
+    line.first += by[axes[2]];
+  }
+}
+
+/// Of a tet that doubles do not hold where it is.
+[[gnu::noinline]] void sweepFarAway(const LatticeTet& corners, std::int64_t unit,
+                                    std::vector<SweptLine>& vertices,
+                                    std::vector<SweptLine>& centers) {
+  LatticeTet moved = corners;
+  GridPoint by;
   for (std::size_t k = 0; k < 3; ++k) {
     // Rounded down to a grid point, as the unit is a power of two.
     const std::int64_t origin = corners[0][k] & -unit;
-    for (LatticePoint& corner : corners) corner[k] -= origin;
-    moved[k] = static_cast<std::int32_t>(2 * (origin / unit));
+    for (LatticePoint& corner : moved) corner[k] -= origin;
+    by[k] = static_cast<std::int32_t>(origin / unit);
   }
-  return moved;
-}
-
-HalfGridSet appendOf(const LatticeTet& corners, std::int64_t unit, const HalvedTet& halved,
-                     const Halves& moved, std::vector<SweptLine>& vertices,
-                     std::vector<SweptLine>& centers) {
-  constexpr IntPair kOne = {1, 1};
-  const IntPair oddXy = halved.firstXy & kOne;
-  const std::int32_t oddZ = halved.firstZ & 1;
-  PointsInBox ofVertices{halved.firstXy + oddXy, halved.firstZ + oddZ,
-                         (halved.countXy + kOne - oddXy) >> 1, (halved.countZ + 1 - oddZ) >> 1, 0};
-  PointsInBox ofCenters{halved.firstXy | kOne, halved.firstZ | 1,
-                        halved.countXy - ofVertices.countXy, halved.countZ - ofVertices.countZ, 0};
-  ofVertices.all = countOf(ofVertices.countXy, ofVertices.countZ);
-  ofCenters.all = countOf(ofCenters.countXy, ofCenters.countZ);
-  if ((ofVertices.all | ofCenters.all) == 0) return 0;
-  const FewPoints few(corners, unit, halved, moved);
-  unsigned left = 0;
-  const auto append = [&](const PointsInBox& points, HalfGrid grid, std::vector<SweptLine>& lines) {
-    if (points.all == 0) return;
-    if (points.all <= kFewPoints) {
-      few.append(points, lines);
-    } else {
-      left |= halfGridBit(grid);
-    }
-  };
-  append(ofVertices, kVertexGrid, vertices);
-  append(ofCenters, kCenterGrid, centers);
-  return static_cast<HalfGridSet>(left);
+  if (by == GridPoint{}) {
+    // It is too large for doubles.
+    const HalfBox box(corners, unit);
+    appendLines(corners, unit, kVertexGrid, box, vertices);
+    appendLines(corners, unit, kCenterGrid, box, centers);
+    return;
+  }
+  const std::array<std::size_t, 2> before = {vertices.size(), centers.size()};
+  sweepBothGrids(moved, unit, vertices, centers);
+  moveBack(std::span(vertices).subspan(before[0]), by);
+  moveBack(std::span(centers).subspan(before[1]), by);
 }
 
 }  // namespace
 
-HalfGridSet appendFromSmallBoxes(const LatticeTet& corners, std::int64_t unit,
-                                 std::vector<SweptLine>& vertices,
-                                 std::vector<SweptLine>& centers) {
-  constexpr HalfGridSet kBoth = halfGridBit(kVertexGrid) | halfGridBit(kCenterGrid);
-  const auto length = static_cast<double>(unit);
-  const double perHalf = 2 / length;
+void sweepBothGrids(const LatticeTet& corners, std::int64_t unit, std::vector<SweptLine>& vertices,
+                    std::vector<SweptLine>& centers) {
+  const double perHalf = 2 / static_cast<double>(unit);
   const HalvedTet halved(corners, perHalf);
-  if (halved.mostPoints > 2 * kFewPoints) return kBoth;
-  if (halved.largest * length < HalvedTet::kMostExact) {
-    return appendOf(corners, unit, halved, {}, vertices, centers);
+  if (!(halved.largest < kMostExact * perHalf)) {
+    sweepFarAway(corners, unit, vertices, centers);
+    return;
   }
-  LatticeTet near = corners;
-  const Halves moved = moveToOrigin(near, unit);
-  const HalvedTet again(near, perHalf);
-  if (!(again.largest * length < HalvedTet::kMostExact)) return kBoth;
-  return appendOf(corners, unit, again, moved, vertices, centers);
+  if (halved.mostSteps >= kManySteps) {
+    const HalfBox box = halved.box();
+    appendLines(corners, unit, kVertexGrid, box, vertices);
+    appendLines(corners, unit, kCenterGrid, box, centers);
+    return;
+  }
+  constexpr IntPair kOne = {1, 1};
+  const IntPair oddXy = halved.firstXy & kOne;
+  const std::int32_t oddZ = halved.firstZ & 1;
+  const PointsInBox ofVertices{halved.firstXy + oddXy, halved.firstZ + oddZ,
+                               (halved.stepsXy + 2 * kOne - oddXy) >> 1,
+                               (halved.stepsZ + 2 - oddZ) >> 1};
+  const PointsInBox ofCenters{halved.firstXy | kOne, halved.firstZ | 1,
+                              halved.stepsXy + kOne - ofVertices.countXy,
+                              halved.stepsZ + 1 - ofVertices.countZ};
+  const std::int32_t vertexCount = ofVertices.all();
+  const std::int32_t centerCount = ofCenters.all();
+  if ((vertexCount | centerCount) == 0) return;
+  const FewPoints few(corners, unit, halved);
+  if (vertexCount > kFewPoints) {
+    appendLines(corners, unit, kVertexGrid, halved.box(), vertices);
+  } else if (vertexCount > 0) {
+    few.append(ofVertices, vertexCount, vertices);
+  }
+  if (centerCount > kFewPoints) {
+    appendLines(corners, unit, kCenterGrid, halved.box(), centers);
+  } else if (centerCount > 0) {
+    few.append(ofCenters, centerCount, centers);
+  }
 }
 
 }  // namespace hexhex

@@ -1,6 +1,6 @@
-// Tets with few grid points in their bounding boxes: which of them are inside, in floating point
-// with a proven bound, and exactly where that leaves it open. That is all that most tets of a
-// coarse map take.
+// The points of two grids in a tet: in boxes of few points, which of them are inside, in floating
+// point with a proven bound, and exactly where that leaves it open. That is all that most tets of a
+// coarse map take. In other boxes, lines.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,9 @@ namespace hexhex {
 inline constexpr HalfGrid kVertexGrid = 0;
 inline constexpr HalfGrid kCenterGrid = 7;
 
-/// Appends the lines of both grids, as LineRasterizer has them, if there are few points of a grid
-/// in the bounding box.
-/// @param unit  a power of two
-/// @return the grids for which it did nothing, as there may be more
-[[nodiscard]] HalfGridSet appendFromSmallBoxes(const LatticeTet& corners, std::int64_t unit,
-                                               std::vector<SweptLine>& vertices,
-                                               std::vector<SweptLine>& centers);
+/// Appends the lines of both grids.
+/// @param unit  a power of two, at least 2
+void sweepBothGrids(const LatticeTet& corners, std::int64_t unit, std::vector<SweptLine>& vertices,
+                    std::vector<SweptLine>& centers);
 
 }  // namespace hexhex

@@ -17,13 +17,6 @@ LatticeTet shiftedTo(SweptGrid grid, LatticeTet corners, std::int64_t unit) noex
   return corners;
 }
 
-void appendLines(const LatticeTet& shifted, std::int64_t unit, const GridBox& box, SweepAxes axes,
-                 std::vector<SweptLine>& lines) {
-  LineRasterizer(shifted, unit, box, axes).run([&](const SweptLine& line) {
-    lines.push_back(line);
-  });
-}
-
 }  // namespace
 
 TetSweep::TetSweep(const ExactMap& map, Index tet, SweptGrid grid) noexcept
@@ -32,18 +25,10 @@ TetSweep::TetSweep(const ExactMap& map, Index tet, SweptGrid grid) noexcept
       axes(chooseSweepAxes(box)) {}
 
 void TetSweep::run(std::int64_t unit, std::vector<SweptLine>& lines) const {
-  if (!box.empty()) appendLines(shifted, unit, box, axes, lines);
-}
-
-void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
-               std::vector<SweptLine>& centers) {
-  const HalfGridSet left = appendFromSmallBoxes(map.corners[tet], map.unit, vertices, centers);
-  if ((left & halfGridBit(kVertexGrid)) != 0) {
-    TetSweep(map, tet, SweptGrid::Vertices).run(map.unit, vertices);
-  }
-  if ((left & halfGridBit(kCenterGrid)) != 0) {
-    TetSweep(map, tet, SweptGrid::Centers).run(map.unit, centers);
-  }
+  if (box.empty()) return;
+  LineRasterizer(shifted, unit, box, axes).run([&](const SweptLine& line) {
+    lines.push_back(line);
+  });
 }
 
 void TetLines::store(std::size_t block, const BlockLines& lines) {

@@ -124,8 +124,8 @@ std::vector<CornerMask> rasterized(const ScaledTet& scaled, SweepAxes axes, doub
   return collector.simplices();
 }
 
-/// The same of small boxes, if they are: for the tet as it is, and moved by one half, as centres.
-void expectTheSameOfSmallBoxes(const ScaledTet& scaled, const std::vector<CornerMask>& expected) {
+/// The same of both grids at once: for the tet as it is, and moved by one half, as centres.
+void expectTheSameOfBothGrids(const ScaledTet& scaled, const std::vector<CornerMask>& expected) {
   if (scaled.unit == 1) return;  // there are no halves
   const GridBox box = gridBox(scaled.corners, scaled.unit);
   const auto compare = [&](std::span<const SweptLine> lines) {
@@ -138,20 +138,15 @@ void expectTheSameOfSmallBoxes(const ScaledTet& scaled, const std::vector<Corner
   };
   std::vector<SweptLine> lines;
   std::vector<SweptLine> others;
-  HalfGridSet left = appendFromSmallBoxes(scaled.corners, scaled.unit, lines, others);
-  if ((left & halfGridBit(kVertexGrid)) == 0) {
-    ASSERT_NO_FATAL_FAILURE(compare(lines));
-  }
+  sweepBothGrids(scaled.corners, scaled.unit, lines, others);
+  ASSERT_NO_FATAL_FAILURE(compare(lines));
   LatticeTet moved = scaled.corners;
   for (LatticePoint& p : moved) {
     for (std::int64_t& coordinate : p) coordinate += scaled.unit / 2;
   }
   lines.clear();
-  others.clear();
-  left = appendFromSmallBoxes(moved, scaled.unit, others, lines);
-  if ((left & halfGridBit(kCenterGrid)) == 0) {
-    ASSERT_NO_FATAL_FAILURE(compare(lines));
-  }
+  sweepBothGrids(moved, scaled.unit, others, lines);
+  ASSERT_NO_FATAL_FAILURE(compare(lines));
 }
 
 /// The same by LineRasterizer.
@@ -198,7 +193,7 @@ void expectAgreement(const ScaledTet& scaled, SweepAxes axes, WithoutEpsilon wit
         << describe(scaled) << " epsilon " << epsilon;
   }
   ASSERT_EQ(rasterizedByLines(scaled, axes), expected) << describe(scaled);
-  expectTheSameOfSmallBoxes(scaled, expected);
+  expectTheSameOfBothGrids(scaled, expected);
   const std::vector<CornerMask> found = rasterized(scaled, axes, 0);
   for (std::size_t i = 0; i < found.size(); ++i) {
     const bool mayMiss =
