@@ -2,7 +2,7 @@
 
 #include <sweep/tet_lines.hpp>
 
-#include <lattice/small_boxes.hpp>
+#include <lattice/both_grids.hpp>
 
 namespace hexhex {
 

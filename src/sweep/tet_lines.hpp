@@ -10,8 +10,8 @@
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
+#include <lattice/both_grids.hpp>
 #include <lattice/line_rasterizer.hpp>
-#include <lattice/small_boxes.hpp>
 #include <map/exact_map.hpp>
 
 namespace hexhex {

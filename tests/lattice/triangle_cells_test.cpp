@@ -102,13 +102,13 @@ bool isOnWay(const Triangle& triangle, const GridPoint& z, std::size_t corner, s
   const auto between = [](const Point<Integer>& from, const Point<Integer>& to) {
     return Point<Integer>{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
   };
-  const Point<Integer> start = widened<Integer>(center);
-  const Point<Integer> step = widened<Integer>(way);
+  const auto start = widened<Integer>(center);
+  const auto step = widened<Integer>(way);
   const Point<Integer> normal = crossOf<Integer>(between(p[0], p[1]), between(p[0], p[2]));
   Interval<Integer> interval;
   // In the plane, from both its sides, and inside of each edge.
-  const Integer height = dot<Integer>(normal, between(p[0], start));
-  const Integer slope = dot<Integer>(normal, step);
+  const auto height = dot<Integer>(normal, between(p[0], start));
+  const auto slope = dot<Integer>(normal, step);
   interval.keep(height, slope);
   interval.keep(-height, -slope);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -123,7 +123,36 @@ bool isDegenerate(const Triangle& t) {
   return normal[0] == 0 && normal[1] == 0 && normal[2] == 0;
 }
 
-enum Kind { kGeneral, kGrid, kHalves, kThirds, kThin, kInGridPlane, kInCenterPlane, kKinds };
+enum Kind {
+  kGeneral,
+  kGrid,
+  kHalves,
+  kThirds,
+  kThin,
+  kInGridPlane,
+  kInCenterPlane,
+  kTouching,
+  kKinds
+};
+
+/// A point of a way from the centre of a cell to a corner, often the centre.
+LatticePoint pointOfWay(Random& random, std::int64_t unit, std::int64_t extent) {
+  const std::int64_t fraction = random.oneIn(3) ? 0 : random.between(0, unit / 2);
+  LatticePoint p{};
+  for (std::int64_t& coordinate : p) {
+    coordinate =
+        random.between(0, extent - 1) * unit + unit / 2 + (random.oneIn(2) ? fraction : -fraction);
+  }
+  return p;
+}
+
+/// Puts a corner or the middle of an edge on a way.
+void touchWay(Triangle& t, Random& random, std::int64_t unit, std::int64_t extent) {
+  const LatticePoint touched = pointOfWay(random, unit, extent);
+  const bool atCorner = random.oneIn(2);
+  for (std::size_t k = 0; k < 3; ++k) t[0][k] = atCorner ? touched[k] : 2 * touched[k] - t[1][k];
+  std::rotate(t.begin(), t.begin() + random.between(0, 2), t.end());
+}
 
 Triangle anyTriangle(Random& random, Kind kind, std::int64_t unit, std::int64_t extent) {
   for (;;) {
@@ -131,7 +160,7 @@ Triangle anyTriangle(Random& random, Kind kind, std::int64_t unit, std::int64_t 
     for (LatticePoint& p : t) {
       for (std::int64_t& coordinate : p) {
         const std::int64_t parts = kind == kThirds ? 3 : kind == kHalves ? 2 : 1;
-        coordinate = kind == kGeneral || kind == kThin
+        coordinate = kind == kGeneral || kind == kThin || kind == kTouching
                          ? random.between(0, extent * unit)
                          : random.between(0, extent * parts) * unit / parts;
       }
@@ -149,6 +178,7 @@ Triangle anyTriangle(Random& random, Kind kind, std::int64_t unit, std::int64_t 
       const std::int64_t height = random.between(0, extent - 1) * unit + unit / 2;
       for (LatticePoint& p : t) p[axis] = height;
     }
+    if (kind == kTouching) touchWay(t, random, unit, extent);
     if (!isDegenerate(t)) return t;
   }
 }
@@ -277,13 +307,13 @@ TEST_P(TriangleCellsKinds, ColumnsLeaveNoCellOut) {
 
 std::string kindName(const ::testing::TestParamInfo<Kind>& kind) {
   constexpr std::array<const char*, kKinds> kNames = {
-      "General", "Grid", "Halves", "Thirds", "Thin", "InGridPlane", "InCenterPlane"};
+      "General", "Grid", "Halves", "Thirds", "Thin", "InGridPlane", "InCenterPlane", "Touching"};
   return kNames[static_cast<std::size_t>(kind.param)];
 }
 
 INSTANTIATE_TEST_SUITE_P(, TriangleCellsKinds,
                          ::testing::Values(kGeneral, kGrid, kHalves, kThirds, kThin, kInGridPlane,
-                                           kInCenterPlane),
+                                           kInCenterPlane, kTouching),
                          kindName);
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <span>
 
 #include <base/pair.hpp>
-#include <lattice/small_boxes.hpp>
+#include <lattice/both_grids.hpp>
 #include <lattice/weight_field.hpp>
 
 namespace hexhex {
@@ -77,6 +77,10 @@ struct PointsInBox {
 
   /// If there are less than 2^10 along each axis.
   [[nodiscard]] std::int32_t all() const noexcept { return countXy[0] * countXy[1] * countZ; }
+  /// A point by steps from the first one, in halves.
+  [[nodiscard]] Halves at(const std::array<std::int32_t, 3>& steps) const noexcept {
+    return {firstXy[0] + 2 * steps[0], firstXy[1] + 2 * steps[1], firstZ + 2 * steps[2]};
+  }
 };
 
 CornerWeights sumOf(const CornerWeights& a, const CornerWeights& b) noexcept {
@@ -120,12 +124,6 @@ class FewPoints {
                                          std::int32_t points) const noexcept;
   [[nodiscard]] CornerMask simplexOf(const Halves& halves,
                                      const CornerWeights& weights) const noexcept;
-  /// In halves.
-  [[nodiscard]] Halves pointAt(const PointsInBox& points, std::int32_t x, std::int32_t y,
-                               std::int32_t z) const noexcept {
-    return {points.firstXy[0] + 2 * x, points.firstXy[1] + 2 * y, points.firstZ + 2 * z};
-  }
-
   const LatticeTet& corners_;
   std::int64_t unit_;
   WeightField field_;
@@ -185,7 +183,7 @@ CornerMask FewPoints::simplexOf(const Halves& halves, const CornerWeights& weigh
 void FewPoints::appendOne(const PointsInBox& points, const std::array<std::int32_t, 3>& at,
                           const CornerWeights& weights, SweepAxes order,
                           std::vector<SweptLine>& lines) const {
-  const Halves halves = pointAt(points, at[0], at[1], at[2]);
+  const Halves halves = points.at(at);
   const CornerMask simplex = simplexOf(halves, weights);
   if (simplex == kNoSimplex) return;
   const std::array<std::uint8_t, 3>& axes = order();
@@ -225,10 +223,10 @@ void FewPoints::appendCandidates(const PointsInBox& points, const WeightsOf& wei
     forEach(1, [&](std::int32_t row) {
       SweptLine line{0, 0, 0, 0, kNoSimplex, kNoSimplex, order};
       forEach(2, [&](std::int32_t point) {
-        const auto i = static_cast<std::size_t>(level + row + point);
+        const std::int32_t i = level + row + point;
         if (((found >> i) & 1U) == 0) return;
-        const Halves halves = pointAt(points, at[0], at[1], at[2]);
-        const CornerMask simplex = simplexOf(halves, weights[i]);
+        const Halves halves = points.at(at);
+        const CornerMask simplex = simplexOf(halves, weights[static_cast<std::size_t>(i)]);
         if (simplex == kNoSimplex) return;
         // Tets are convex: what they have of a line is consecutive.
         if (line.count == 0) {
