@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <cstring>
 #include <deque>
 #include <limits>
 #include <mutex>
@@ -135,13 +136,8 @@ class BrickGrid {
   /// What is known of cuts in a brick, made when it is first asked for. Thread-safe.
   [[nodiscard]] CutCells& cutsOf(Brick<Id>& brick) {
     const std::atomic_ref known(brick.cuts);
-    CutCells* cuts = known.load(std::memory_order_acquire);
-    if (cuts != nullptr) return *cuts;
-    CutCells& made = takeCuts();
-    made.clear();
-    if (known.compare_exchange_strong(cuts, &made, std::memory_order_acq_rel)) return made;
-    giveBack(made);  // another thread was faster
-    return *cuts;
+    CutCells* const cuts = known.load(std::memory_order_acquire);
+    return cuts != nullptr ? *cuts : makeCutsOf(brick);
   }
 
  private:
@@ -150,6 +146,17 @@ class BrickGrid {
     Brick<Id>* brick;
   };
 
+  [[gnu::noinline]] CutCells& makeCutsOf(Brick<Id>& brick) {
+    CutCells& made = takeCuts();
+    made.clear();
+    CutCells* known = nullptr;
+    if (std::atomic_ref(brick.cuts)
+            .compare_exchange_strong(known, &made, std::memory_order_acq_rel)) {
+      return made;
+    }
+    giveBack(made);  // another thread was faster
+    return *known;
+  }
   [[nodiscard]] CutCells& takeCuts() {
     const std::lock_guard lock(cutsMutex_);
     if (unusedCuts_.empty()) {
@@ -221,7 +228,8 @@ template <class Id>
 class BrickCache {
  public:
   explicit BrickCache(const BrickGrid<Id>& grid) : grid_(grid) {
-    entries_.fill({kNoBrick, nullptr});
+    // All bits of kNoBrick are set; bricks are looked at behind other keys only.
+    std::memset(entries_.data(), 0xff, sizeof entries_);
   }
 
   /// The brick that holds a point of a chart, or null.

@@ -4,6 +4,7 @@
 
 #include <atlas/charts.hpp>
 
+#include <base/branchless.hpp>
 #include <base/disjoint_sets.hpp>
 
 namespace hexhex {
@@ -17,17 +18,19 @@ class Patches {
  public:
   Patches(const PreparedMap& map, Stage& stage) : of_(map.topology.tetCount()) {
     const std::size_t tets = map.topology.tetCount();
-    const Array<HalfFace>& mate = map.topology.mate;
+    const HalfFace* const mates = map.topology.mate.data();
+    const Index* const jumps = map.exact.transitions.jump.data();
     DisjointSets sets(tets);
-    parallelFor(stage, tets, kGrain, [&](std::size_t t) {
+    parallelFor(stage, tets, kGrain, [&sets, mates, jumps](std::size_t t) {
       // Smaller neighbours, as each face needs to be seen once; listed without branches, which
       // nobody could predict.
       std::array<Index, 4> smaller;
       std::size_t count = 0;
-      for (std::size_t h = 4 * t; h < 4 * t + 4; ++h) {
-        smaller[count] = tetOf(mate[h]);
-        const bool isJump = map.exact.transitions.isJump(static_cast<HalfFace>(h));
-        count += mate[h] < h && !isJump ? 1 : 0;
+      const auto first = static_cast<HalfFace>(4 * t);
+      for (std::size_t f = 0; f < 4; ++f) {
+        const HalfFace mate = mates[first + f];
+        smaller[count] = tetOf(mate);
+        count += allOf(mate < first, jumps[first + f] == 0) ? 1 : 0;
       }
       auto patch = static_cast<Index>(t);
       for (std::size_t i = 0; i < count; ++i) patch = sets.unite(patch, smaller[i]);

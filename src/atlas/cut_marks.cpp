@@ -1,4 +1,5 @@
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -69,23 +70,37 @@ class CutMarker {
       : map_(map), charts_(charts), jumps_(jumps), grid_(grid), cache_(grid), lone_(lone) {}
 
   void mark(HalfFace halfFace, JumpId jump) {
+    const Triangle triangle = triangleOf(map_.exact, halfFace);
+    // Made when first needed, as most small triangles do not come before any corner.
+    std::optional<BothSides> sides;
+    TriangleCells(triangle, map_.exact.unit).run([&](const GridPoint& z, CellCornerSet corners) {
+      if (!sides) sides.emplace(sidesOf(halfFace, jump));
+      for (const Side& side : *sides) {
+        add(side.chart, side.frame(z[0], z[1], z[2]), turned(side.rotation, corners), side.jump);
+      }
+    });
+  }
+
+ private:
+  /// What a cut is in a chart.
+  struct Side {
+    Index chart;
+    Rotation rotation;
+    SweepFrame frame;  ///< of cells
+    JumpId jump;       ///< to the other side
+  };
+  using BothSides = std::array<Side, 2>;
+
+  [[nodiscard]] BothSides sidesOf(HalfFace halfFace, JumpId jump) const {
     const Index here = tetOf(halfFace);
     const Index there = tetOf(map_.topology.mate[halfFace]);
     const Gauge& gaugeHere = charts_.gauge(here);
     const Gauge gaugeThere = charts_.gauge(there) * map_.exact.transitions.across(halfFace);
-    const SweepFrame frameHere = cellFrame(gaugeHere);
-    const SweepFrame frameThere = cellFrame(gaugeThere);
     const JumpId back = jump == kManyJumps ? kManyJumps : jumps_[jump].inverse;
-    TriangleCells(triangleOf(map_.exact, halfFace), map_.exact.unit)
-        .run([&](const GridPoint& z, CellCornerSet corners) {
-          add(charts_.chart[here], frameHere(z[0], z[1], z[2]), turned(gaugeHere.rotation, corners),
-              jump);
-          add(charts_.chart[there], frameThere(z[0], z[1], z[2]),
-              turned(gaugeThere.rotation, corners), back);
-        });
+    return {Side{charts_.chart[here], gaugeHere.rotation, cellFrame(gaugeHere), jump},
+            Side{charts_.chart[there], gaugeThere.rotation, cellFrame(gaugeThere), back}};
   }
 
- private:
   void add(Index chart, const ChartPoint& c, CellCornerSet corners, JumpId jump) {
     if (chart == Charts::kNoChart) return;
     Brick<Id>* const brick = cache_.find(chart, c);

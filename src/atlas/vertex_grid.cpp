@@ -56,11 +56,15 @@ void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage) {
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
                      sweepBoth(map_.exact, tet, lines.next(), centers.next());
-                     const std::span<const SweptLine> own = centers.last();
-                     cells.begin[t] = own.empty() ? 0 : countOwned(map_.topology, tet, own);
-                     counter.count(block, tet, lines.last());
-                     if (!lines.last().empty())
-                       collectKeys(tet, lines.last(), filter, keys_[block]);
+                     cells.begin[t] = 0;
+                     counter.countNothing(tet);
+                     if (const auto own = centers.last(); !own.empty()) {
+                       cells.begin[t] = countOwned(map_.topology, tet, own);
+                     }
+                     if (const auto own = lines.last(); !own.empty()) {
+                       counter.count(block, tet, own);
+                       collectKeys(tet, own, filter, keys_[block]);
+                     }
                    }
                    if (stored_) stored_->store(block, lines);
                    if (cells.lines) cells.lines->store(block, centers);
@@ -80,6 +84,10 @@ void VertexGrid<Id>::collectKeys(Index tet, std::span<const SweptLine> lines, Ke
     if (filter.isNew(key, c)) keys.push_back(key);
   };
   const Gauge& gauge = charts_.gauge(tet);
+  if (lines.size() == 1 && lines.front().count == 1) {
+    collect(gauge(lines.front().point(0)));
+    return;
+  }
   const BrickBox box(lines, gauge);
   if (box.count() <= kMaxBricks) {
     box.forEach(collect);

@@ -40,6 +40,15 @@ using IntPair = std::int32_t __attribute__((vector_size(8)));
   return (x + signedLarge) - signedLarge;
 }
 
+/// Largest integers that are not larger, of numbers below 2^51 in magnitude.
+[[nodiscard]] inline Pair floorOf(Pair x) noexcept {
+  constexpr Pair kLarge = {0x1.8p52, 0x1.8p52};
+  constexpr Pair kOne = {1, 1};
+  const Pair nearest = (x + kLarge) - kLarge;
+  const PairMask above = nearest > x;
+  return nearest - reinterpret_cast<Pair>(above & reinterpret_cast<PairMask>(kOne));
+}
+
 /// As std::max.
 [[nodiscard]] inline Pair larger(Pair a, Pair b) noexcept { return a < b ? b : a; }
 

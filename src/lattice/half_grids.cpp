@@ -11,22 +11,7 @@ namespace {
 
 constexpr std::array<double, 4> kSteps = {0, 1, 2, 3};
 
-Pair swapped(Pair pair) noexcept { return Pair{pair[1], pair[0]}; }
-
 }  // namespace
-
-HalfBox::HalfBox(const LatticeTet& corners, std::int64_t unit) noexcept {
-  const std::int64_t half = unit / 2;
-  const int shift = std::countr_zero(static_cast<std::uint64_t>(half));
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::int64_t low =
-        std::min(std::min(corners[0][k], corners[1][k]), std::min(corners[2][k], corners[3][k]));
-    const std::int64_t high =
-        std::max(std::max(corners[0][k], corners[1][k]), std::max(corners[2][k], corners[3][k]));
-    first[k] = static_cast<std::int32_t>((low + half - 1) >> shift);
-    steps[k] = static_cast<std::int32_t>(high >> shift) - first[k];
-  }
-}
 
 HalfGrids::HalfGrids(const LatticeTet& corners, std::int64_t unit,
                      const HalfGridSearch& search) noexcept
@@ -50,52 +35,22 @@ HalfGrids::HalfGrids(const LatticeTet& corners, std::int64_t unit,
 /// @param most  steps of the box along an axis
 void HalfGrids::measure(std::int32_t most) noexcept {
   measured_ = true;
-  // Errors in units of u = 2^-53, with magnitudes: coordinates are less than `size` away from the
-  // box's first point and carry one rounding, so edges, up to 2 size, are known to 4 size; products
-  // of two of them to 20 size^2, and their differences, the gradients, up to 8 size^2, to 48
-  // size^2. At the box's first point, three products with coordinates, each up to 8 size^3 and
-  // known to 64 size^3, make up a weight in two additions of at most 24 size^3: known to 240
-  // size^3. On the way to any other point, there are three more products, each up to 8 size^3 and
-  // known to 56 size^3, and 3 additions of at most 48 size^3, or, if it is done step by step, as
-  // many as there are levels and rows, less than 64: below 240 + 168 + 64 * 48 < 2^12 size^3. 2^13
-  // covers terms of second order as well.
-  const double size = static_cast<double>(most) + 1;
-  error_ = 0x1p-40 * size * size * size;
+  error_ = WeightField::errorBound(static_cast<double>(most) + 1);
   const double perHalf = 2.0 / static_cast<double>(unit_);
   const Pair scale = {perHalf, perHalf};
-  // Normals are products of two edges of their faces: of faces 0 and 1 that are opposite corners 0
-  // and 1, and so on.
-  std::array<Pair, 3> first01;
-  std::array<Pair, 3> second01;
-  std::array<Pair, 3> first23;
-  std::array<Pair, 3> second23;
-  std::array<Pair, 3> on01;  // corners 1 and 0, which lie in faces 0 and 1
-  std::array<Pair, 3> on23;  // corner 0
+  std::array<Pair, 3> of01;
+  std::array<Pair, 3> of23;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::int64_t zero = box_.first[k] * (unit_ / 2);
     const auto at = [&](std::size_t corner) {
       return static_cast<double>(corners_[corner][k] - zero);
     };
-    const Pair c01 = Pair{at(0), at(1)} * scale;
-    const Pair c23 = Pair{at(2), at(3)} * scale;
-    const Pair c10 = swapped(c01);
-    const Pair c00 = {c01[0], c01[0]};
-    first01[k] = swapped(c23) - c10;
-    second01[k] = c23 - c10;
-    first23[k] = Pair{c23[1], c01[1]} - c00;
-    second23[k] = Pair{c01[1], c23[0]} - c00;
-    on01[k] = c10;
-    on23[k] = c00;
+    of01[k] = Pair{at(0), at(1)} * scale;
+    of23[k] = Pair{at(2), at(3)} * scale;
   }
-  atOrigin_ = {Pair{0, 0}, Pair{0, 0}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t m = k == 2 ? 0 : k + 1;
-    const std::size_t n = k == 0 ? 2 : k - 1;
-    gradient_[k].of01 = first01[m] * second01[n] - first01[n] * second01[m];
-    gradient_[k].of23 = first23[m] * second23[n] - first23[n] * second23[m];
-    atOrigin_.of01 -= gradient_[k].of01 * on01[k];
-    atOrigin_.of23 -= gradient_[k].of23 * on23[k];
-  }
+  const WeightField field(of01, of23);
+  atOrigin_ = field.at({0, 0, 0});
+  gradient_ = field.gradient;
 }
 
 /// Sets `inside_` and `occupied_`.

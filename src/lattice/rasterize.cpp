@@ -108,11 +108,7 @@ SweepAxes chooseSweepAxes(const GridBox& box) noexcept {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     counts[axis] = std::int64_t{box.range[axis].last} - box.range[axis].first;
   }
-  for (std::uint8_t i = 0; i < 6; ++i) {
-    const std::array<std::uint8_t, 3>& axes = SweepAxes::kPermutations[i];
-    if (counts[axes[0]] <= counts[axes[1]] && counts[axes[1]] <= counts[axes[2]]) return {i};
-  }
-  return {};
+  return chooseSweepAxes(counts);
 }
 
 std::array<double, 2> EpsilonPolygon::extent(double epsilon) const noexcept {

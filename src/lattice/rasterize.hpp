@@ -77,6 +77,16 @@ struct GridBoxes {
 [[nodiscard]] GridBoxes gridBoxes(const LatticeTet& corners, std::int64_t unit) noexcept;
 
 /// Fewest planes first, longest lines last; ties in order of the axes. (Section 5.2.1)
+/// @param counts  of points, by axis
+template <class Count>
+[[nodiscard]] constexpr SweepAxes chooseSweepAxes(const std::array<Count, 3>& counts) noexcept {
+  // By which axes have fewer points than others before them: 1 than 0, 2 than 1, 2 than 0. A table,
+  // as each order is as good as random.
+  constexpr std::array<std::uint8_t, 8> kOrders = {0, 2, 1, 5, 0, 3, 4, 5};
+  const unsigned fewer = (counts[1] < counts[0] ? 1U : 0U) | (counts[2] < counts[1] ? 2U : 0U) |
+                         (counts[2] < counts[0] ? 4U : 0U);
+  return {kOrders[fewer]};
+}
 [[nodiscard]] SweepAxes chooseSweepAxes(const GridBox& box) noexcept;
 
 /// Consecutive grid points of a closed tet along the third sweep axis. The simplices of the two end

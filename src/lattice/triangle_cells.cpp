@@ -1,5 +1,5 @@
+#include <algorithm>
 #include <bit>
-#include <limits>
 
 #include <lattice/triangle_cells.hpp>
 
@@ -7,122 +7,35 @@ namespace hexhex {
 
 namespace {
 
-/// The first half cell of a bounding box that begins at `low`. Half cells are open at grid points,
-/// where cells border on each other, but contain the centre planes of cells, where octants do.
-std::int32_t firstHalf(std::int64_t low, int shift) {
-  const std::int64_t half = (2 * low) >> shift;
-  const bool onPlane = (half << shift) == 2 * low;
-  return static_cast<std::int32_t>(onPlane && half % 2 != 0 ? half - 1 : half);
-}
-
-/// The last half cell of a bounding box that ends at `high`.
-std::int32_t lastHalf(std::int64_t high, int shift) {
-  const std::int64_t half = (2 * high) >> shift;
-  const bool onPlane = (half << shift) == 2 * high;
-  return static_cast<std::int32_t>(onPlane && half % 2 == 0 ? half - 1 : half);
-}
+// Of values, not of references as std::min and std::max, which become branches.
+constexpr std::int64_t lesser(std::int64_t a, std::int64_t b) noexcept { return a < b ? a : b; }
+constexpr std::int64_t greater(std::int64_t a, std::int64_t b) noexcept { return a < b ? b : a; }
 
 }  // namespace
 
-TriangleCells::TriangleCells(const std::array<LatticePoint, 3>& corners,
-                             std::int64_t unit) noexcept {
+TriangleCells::TriangleCells(const std::array<LatticePoint, 3>& corners, std::int64_t unit) noexcept
+    : triangle_(corners), unit_(unit) {
   const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
   const double scale = 1.0 / static_cast<double>(unit);
-  const LatticePoint a = corners[1] - corners[0];
-  const LatticePoint b = corners[2] - corners[0];
-  std::array<double, 3> normal{};
+  std::array<std::array<double, 3>, 3> relative;
+  double size = 1;
+  cells_ = 1;
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t i = (k + 1) % 3;
-    const std::size_t j = (k + 2) % 3;
-    // Exact before rounding: the slopes below are as good as doubles get, even of thin triangles.
-    normal[k] = signedToDouble(static_cast<Int128>(a[i]) * b[j] - static_cast<Int128>(a[j]) * b[i]);
-  }
-  std::uint8_t steepest = 0;
-  for (std::uint8_t k = 1; k < 3; ++k) {
-    if (std::abs(normal[k]) > std::abs(normal[steepest])) steepest = k;
-  }
-  axes_ = {static_cast<std::uint8_t>((steepest + 1) % 3),
-           static_cast<std::uint8_t>((steepest + 2) % 3), steepest};
-  double extent = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::uint8_t axis = axes_[k];
-    const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+    const std::int64_t low = lesser(lesser(corners[0][k], corners[1][k]), corners[2][k]);
+    const std::int64_t high = greater(greater(corners[0][k], corners[1][k]), corners[2][k]);
     origin_[k] = static_cast<std::int32_t>(low >> shift);
     const std::int64_t origin = std::int64_t{origin_[k]} << shift;
-    first_[k] = firstHalf(low - origin, shift);
-    last_[k] = lastHalf(high - origin, shift);
+    first_[k] = firstHalfCell(low - origin, shift);
+    last_[k] = lastHalfCell(high - origin, shift);
+    cells_ = first_[k] > last_[k]
+                 ? 0
+                 : std::min(cells_ * ((last_[k] >> 1) - (first_[k] >> 1) + 1), kFewCells + 1);
     for (std::size_t i = 0; i < 3; ++i) {
-      p_[i][k] = static_cast<double>(corners[i][axis] - origin) * scale;
-      extent = std::max(extent, std::abs(p_[i][k]));
+      relative[i][k] = static_cast<double>(corners[i][k] - origin) * scale;
     }
+    size = std::max(size, static_cast<double>(high - origin) * scale);
   }
-  plane_[1] = -normal[axes_[0]] / normal[axes_[2]];
-  plane_[2] = -normal[axes_[1]] / normal[axes_[2]];
-  plane_[0] = p_[0][2] - plane_[1] * p_[0][0] - plane_[2] * p_[0][1];
-  // Coordinates are below `extent` and slopes at most 1; some ten roundings each.
-  margin_ = 0x1p-46 * extent;
-}
-
-std::array<double, 2> TriangleCells::strip(std::int32_t u) const noexcept {
-  const double left = u - margin_;
-  const double right = u + 1 + margin_;
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  const auto include = [&](double v) {
-    low = std::min(low, v);
-    high = std::max(high, v);
-  };
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto& p = p_[i];
-    const auto& q = p_[(i + 1) % 3];
-    if (p[0] >= left && p[0] <= right) include(p[1]);
-    for (const double border : {left, right}) {
-      if ((p[0] < border) == (q[0] < border)) continue;
-      // The crossing lies between the ends, however badly the quotient is rounded.
-      const double t = std::clamp((border - p[0]) / (q[0] - p[0]), 0.0, 1.0);
-      const double slack = margin_ * (1 + std::abs(q[1] - p[1]) / std::abs(q[0] - p[0]));
-      const double v = p[1] + t * (q[1] - p[1]);
-      include(std::max(v - slack, std::min(p[1], q[1])));
-      include(std::min(v + slack, std::max(p[1], q[1])));
-    }
-  }
-  return {low - margin_, high + margin_};
-}
-
-TriangleCells::Column TriangleCells::columnAt(std::int32_t u, std::int32_t v) const noexcept {
-  // Heights in half cells at the centre of the column, and how far they differ from it at those of
-  // the quarters, and there from what they are in the rest of the quarter.
-  const double middle = 2 * (plane_[0] + plane_[1] * (u + 0.5) + plane_[2] * (v + 0.5));
-  const double sum = (plane_[1] + plane_[2]) / 2;
-  const double difference = (plane_[1] - plane_[2]) / 2;
-  const double spread = (std::abs(plane_[1]) + std::abs(plane_[2])) / 2 + 8 * margin_;
-  const std::array<double, 4> heights = {middle - sum, middle + difference, middle + sum,
-                                         middle - difference};
-  const auto half = [](double height, std::int32_t low, std::int32_t high) {
-    return static_cast<std::int32_t>(std::min<double>(std::max<double>(height, low), high));
-  };
-  std::array<std::int32_t, 4> first;
-  std::array<std::int32_t, 4> count;
-  Column column{last_[2], 0};
-  for (std::size_t i = 0; i < 4; ++i) {
-    first[i] = half(heights[i] - spread, first_[2], last_[2] + 1);
-    count[i] = half(heights[i] + spread, first_[2] - 1, last_[2]) + 1 - first[i];
-    column.lowest = std::min(column.lowest, first[i]);
-  }
-  column.lowest >>= 1;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const std::int32_t halfU = 2 * u + kCellCorners[i][0];
-    const std::int32_t halfV = 2 * v + kCellCorners[i][1];
-    const bool inBox =
-        halfU >= first_[0] && halfU <= last_[0] && halfV >= first_[1] && halfV <= last_[1];
-    if (count[i] <= 0 || !inBox) continue;
-    // Four bits for each layer of half cells, one of them for this quarter. The plane rises by no
-    // more than two cells in a column, so there are less than 16 layers.
-    constexpr std::uint64_t kOnePerLayer = 0x1111'1111'1111'1111;
-    const std::uint64_t layers = kOnePerLayer >> (64 - 4 * count[i]);
-    column.octants |= layers << (4 * (first[i] - 2 * column.lowest) + static_cast<int>(i));
-  }
-  return column;
+  ways_ = TriangleWays(relative, size);
 }
 
 }  // namespace hexhex

@@ -1,26 +1,23 @@
-// The unit cells whose open interior a triangle may meet, and the ways inside of them that it may
-// cut.
+// The unit cells in which a triangle may cut the ways from the centre to the corners.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 
 #include <lattice/cell_corners.hpp>
 #include <lattice/tet_geometry.hpp>
+#include <lattice/triangle_columns.hpp>
+#include <lattice/triangle_ways.hpp>
 
 namespace hexhex {
 
-/// Conservative rasterization of a triangle that is not degenerate: no cell that it meets is left
-/// out, some that it does not meet may be in. Cells are named by their smallest corner.
-///
-/// Columns of cells along the axis in which the triangle is steepest are found in the projection
-/// along that axis; in each column the triangle's plane bounds the cells, and in each quarter of a
-/// column the octants of cells. The way from the centre of a cell to a corner is the diagonal of an
-/// octant. Limits of the bounding box are exact, so that a triangle in a grid plane meets no cell.
+/// Finds cells in the bounding box of a small triangle, and by columns for a larger one. Limits of
+/// the box are exact, so that a triangle in a grid plane cuts nothing. Cells are named by their
+/// smallest corner.
 class TriangleCells {
  public:
-  /// @param unit  a power of two
+  /// @param corners  of a triangle that is not degenerate; must outlive this
+  /// @param unit     a power of two
   TriangleCells(const std::array<LatticePoint, 3>& corners, std::int64_t unit) noexcept;
 
   /// Calls visit(GridPoint, CellCornerSet) once for each cell, with at least those of its corners
@@ -28,55 +25,54 @@ class TriangleCells {
   /// triangle. Cells without such corners are left out.
   template <class Visit>
   void run(const Visit& visit) const {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (first_[k] > last_[k]) return;
+    if (cells_ == 0) return;
+    if (cells_ > kFewCells) {
+      TriangleColumns(triangle_, unit_).run([&](const GridPoint& z, CellCornerSet octants) {
+        const CellCornerSet corners = octants & ways_.cutIn(minus(z, origin_));
+        if (corners != 0) visit(z, corners);
+      });
+      return;
     }
-    const Rotation toOwn = Rotation::fromAxes(direction(axes_[0], 1), direction(axes_[1], 1));
-    for (std::int32_t u = first_[0] >> 1; u <= last_[0] >> 1; ++u) {
-      const std::array<double, 2> rows = strip(u);
-      const std::int32_t firstRow = clampedFloor(rows[0], first_[1] >> 1, last_[1] >> 1);
-      const std::int32_t lastRow = clampedFloor(rows[1], first_[1] >> 1, last_[1] >> 1);
-      for (std::int32_t v = firstRow; v <= lastRow; ++v) {
-        Column column = columnAt(u, v);
-        for (; column.octants != 0; column.octants >>= 8, ++column.lowest) {
-          const auto octants = static_cast<CellCornerSet>(column.octants & kAllCellCorners);
-          if (octants != 0) visit(cell(u, v, column.lowest), turned(toOwn, octants));
+    GridPoint z{};
+    for (z[2] = first_[2] >> 1; z[2] <= last_[2] >> 1; ++z[2]) {
+      for (z[1] = first_[1] >> 1; z[1] <= last_[1] >> 1; ++z[1]) {
+        for (z[0] = first_[0] >> 1; z[0] <= last_[0] >> 1; ++z[0]) {
+          const CellCornerSet corners = octantsInBox(z) & ways_.cutIn(z);
+          if (corners != 0) visit(plus(z, origin_), corners);
         }
       }
     }
   }
 
  private:
-  /// Consecutive cells along the third axis, with their octants that the triangle's plane may meet.
-  struct Column {
-    std::int32_t lowest;
-    std::uint64_t octants;  ///< those of the lowest cell in the lowest byte
-  };
+  /// Cells of which each takes less than it takes to find columns.
+  static constexpr std::int64_t kFewCells = 24;
 
-  /// floor(x) within limits that are not negative.
-  [[nodiscard]] static std::int32_t clampedFloor(double x, std::int32_t low,
-                                                 std::int32_t high) noexcept {
-    if (!(x > low)) return low;
-    return x >= high ? high : static_cast<std::int32_t>(x);
+  [[nodiscard]] static GridPoint plus(const GridPoint& a, const GridPoint& b) noexcept {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
   }
-  [[nodiscard]] GridPoint cell(std::int32_t u, std::int32_t v, std::int32_t w) const noexcept {
-    GridPoint z{};
-    z[axes_[0]] = u + origin_[0];
-    z[axes_[1]] = v + origin_[1];
-    z[axes_[2]] = w + origin_[2];
-    return z;
+  [[nodiscard]] static GridPoint minus(const GridPoint& a, const GridPoint& b) noexcept {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
   }
-  /// Range of the second coordinate where the first one is in [u, u + 1].
-  [[nodiscard]] std::array<double, 2> strip(std::int32_t u) const noexcept;
-  [[nodiscard]] Column columnAt(std::int32_t u, std::int32_t v) const noexcept;
+  [[nodiscard]] CellCornerSet octantsInBox(const GridPoint& z) const noexcept {
+    // By axis: corners with coordinate 0, and with 1.
+    constexpr std::array<std::array<CellCornerSet, 2>, 3> kSides = {
+        {{0x99, 0x66}, {0x33, 0xcc}, {0x0f, 0xf0}}};
+    CellCornerSet octants = kAllCellCorners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (2 * z[k] < first_[k]) octants &= kSides[k][1];
+      if (2 * z[k] + 1 > last_[k]) octants &= kSides[k][0];
+    }
+    return octants;
+  }
 
-  std::array<std::uint8_t, 3> axes_;    ///< cyclic; the last one is the steepest
-  std::array<std::int32_t, 3> origin_;  ///< grid point near the triangle, by axis
-  std::array<std::int32_t, 3> first_;   ///< half cells of the bounding box, relative
+  const std::array<LatticePoint, 3>& triangle_;
+  std::int64_t unit_;
+  GridPoint origin_;                   ///< near the triangle
+  std::array<std::int32_t, 3> first_;  ///< half cells of the bounding box, relative
   std::array<std::int32_t, 3> last_;
-  std::array<std::array<double, 3>, 3> p_;  ///< corners, by axis, relative
-  std::array<double, 3> plane_;             ///< w = plane[0] + plane[1] u + plane[2] v
-  double margin_;                           ///< bound of all rounding errors
+  std::int64_t cells_;  ///< in the box
+  TriangleWays ways_;
 };
 
 }  // namespace hexhex

@@ -2,7 +2,7 @@
 
 #include <sweep/tet_lines.hpp>
 
-#include <lattice/small_boxes.hpp>
+#include <lattice/both_grids.hpp>
 
 namespace hexhex {
 
@@ -17,13 +17,6 @@ LatticeTet shiftedTo(SweptGrid grid, LatticeTet corners, std::int64_t unit) noex
   return corners;
 }
 
-void appendLines(const LatticeTet& shifted, std::int64_t unit, const GridBox& box, SweepAxes axes,
-                 std::vector<SweptLine>& lines) {
-  LineRasterizer(shifted, unit, box, axes).run([&](const SweptLine& line) {
-    lines.push_back(line);
-  });
-}
-
 }  // namespace
 
 TetSweep::TetSweep(const ExactMap& map, Index tet, SweptGrid grid) noexcept
@@ -32,22 +25,10 @@ TetSweep::TetSweep(const ExactMap& map, Index tet, SweptGrid grid) noexcept
       axes(chooseSweepAxes(box)) {}
 
 void TetSweep::run(std::int64_t unit, std::vector<SweptLine>& lines) const {
-  if (!box.empty()) appendLines(shifted, unit, box, axes, lines);
-}
-
-void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
-               std::vector<SweptLine>& centers) {
-  const LatticeTet& corners = map.corners[tet];
-  const auto [vertexBox, centerBox] = gridBoxes(corners, map.unit);
-  if (vertexBox.empty() && centerBox.empty()) return;
-  const SmallBoxes small(corners, map.unit);
-  if (!vertexBox.empty() && !small.append(vertexBox, 0, vertices)) {
-    appendLines(corners, map.unit, vertexBox, chooseSweepAxes(vertexBox), vertices);
-  }
-  if (!centerBox.empty() && !small.append(centerBox, map.unit / 2, centers)) {
-    appendLines(shiftedTo(SweptGrid::Centers, corners, map.unit), map.unit, centerBox,
-                chooseSweepAxes(centerBox), centers);
-  }
+  if (box.empty()) return;
+  LineRasterizer(shifted, unit, box, axes).run([&](const SweptLine& line) {
+    lines.push_back(line);
+  });
 }
 
 void TetLines::store(std::size_t block, const BlockLines& lines) {

@@ -10,6 +10,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
+#include <lattice/both_grids.hpp>
 #include <lattice/line_rasterizer.hpp>
 #include <map/exact_map.hpp>
 
@@ -35,8 +36,10 @@ struct TetSweep {
 };
 
 /// Appends the lines of both grids.
-void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
-               std::vector<SweptLine>& centers);
+inline void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
+                      std::vector<SweptLine>& centers) {
+  sweepBothGrids(map.corners[tet], map.unit, vertices, centers);
+}
 
 /// The lines of a block of tets, one tet after the other.
 class BlockLines {

@@ -1,15 +1,16 @@
 // The rasterizer against brute force: every grid point of the bounding box, located by the oracle.
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <lattice/both_grids.hpp>
 #include <lattice/line_rasterizer.hpp>
 #include <lattice/rasterize.hpp>
-#include <lattice/small_boxes.hpp>
 
 #include "oracle.hpp"
 #include "random.hpp"
@@ -123,17 +124,34 @@ std::vector<CornerMask> rasterized(const ScaledTet& scaled, SweepAxes axes, doub
   return collector.simplices();
 }
 
-/// The same by SmallBoxes, if the box is small.
-void expectTheSameOfSmallBoxes(const ScaledTet& scaled, const std::vector<CornerMask>& expected) {
-  const GridBox box = gridBox(scaled.corners, scaled.unit);
-  std::vector<SweptLine> lines;
-  if (box.empty() || !SmallBoxes(scaled.corners, scaled.unit).append(box, 0, lines)) return;
+void expectLines(const GridBox& box, std::span<const SweptLine> lines,
+                 const std::vector<CornerMask>& expected) {
   SimplexGrid grid(box);
   for (const SweptLine& line : lines) {
     ASSERT_EQ(line.axes.index, chooseSweepAxes(box).index);
-    for (std::uint32_t i = 0; i < line.count; ++i) grid[line.point(i)] = line.simplex(i);
+    for (std::uint32_t i = 0; i < line.count; ++i) {
+      ASSERT_TRUE(grid.covers(line.point(i)));
+      grid[line.point(i)] = line.simplex(i);
+    }
   }
   ASSERT_EQ(grid.simplices(), expected);
+}
+
+/// The same of both grids at once: for the tet as it is, and moved by one half, as centres.
+void expectTheSameOfBothGrids(const ScaledTet& scaled, const std::vector<CornerMask>& expected) {
+  if (scaled.unit == 1) return;  // there are no halves
+  const GridBox box = gridBox(scaled.corners, scaled.unit);
+  std::vector<SweptLine> lines;
+  std::vector<SweptLine> others;
+  sweepBothGrids(scaled.corners, scaled.unit, lines, others);
+  ASSERT_NO_FATAL_FAILURE(expectLines(box, lines, expected));
+  LatticeTet moved = scaled.corners;
+  for (LatticePoint& p : moved) {
+    for (std::int64_t& coordinate : p) coordinate += scaled.unit / 2;
+  }
+  lines.clear();
+  sweepBothGrids(moved, scaled.unit, others, lines);
+  ASSERT_NO_FATAL_FAILURE(expectLines(box, lines, expected));
 }
 
 /// The same by LineRasterizer.
@@ -180,7 +198,7 @@ void expectAgreement(const ScaledTet& scaled, SweepAxes axes, WithoutEpsilon wit
         << describe(scaled) << " epsilon " << epsilon;
   }
   ASSERT_EQ(rasterizedByLines(scaled, axes), expected) << describe(scaled);
-  expectTheSameOfSmallBoxes(scaled, expected);
+  expectTheSameOfBothGrids(scaled, expected);
   const std::vector<CornerMask> found = rasterized(scaled, axes, 0);
   for (std::size_t i = 0; i < found.size(); ++i) {
     const bool mayMiss =

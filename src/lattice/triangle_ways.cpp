@@ -1,0 +1,103 @@
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <base/pair.hpp>
+#include <lattice/triangle_ways.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// Two straight lines through the centre of a cell, and the corners of the triangle by their
+/// weights in the points where its plane meets the lines. With a way as long as `sum`, the plane is
+/// as far from the centre as the determinant of the triangle's corners says.
+struct LinePair {
+  Pair least;  ///< weight
+  Pair most;
+  Pair sum;  ///< of the three weights
+
+  explicit LinePair(const std::array<Pair, 3>& weights) noexcept
+      : least(smaller(smaller(weights[0], weights[1]), weights[2])),
+        most(larger(weights[2], larger(weights[1], weights[0]))),
+        sum(weights[0] + weights[1] + weights[2]) {}
+};
+
+/// Corners that two lines lead to, as bits.
+struct LineEnds {
+  PairMask ahead;
+  PairMask behind;
+};
+
+constexpr PairMask cornerBits(int first, int second) noexcept {
+  return PairMask{std::int64_t{1} << first, std::int64_t{1} << second};
+}
+
+constexpr Pair broadcast(double x) noexcept { return Pair{x, x}; }
+
+/// @param least  the determinant, which is positive, less by the bound of its error
+PairMask cutOn(const LinePair& lines, const LineEnds& ends, double least, double error) noexcept {
+  const Pair half = lines.sum * broadcast(0.5);  // as long as the ways are
+  const PairMask ahead = (lines.least >= broadcast(-error)) & (half >= broadcast(least));
+  const PairMask behind = (lines.most <= broadcast(error)) & (-half >= broadcast(least));
+  return (ahead & ends.ahead) | (behind & ends.behind);
+}
+
+/// If the plane may contain the centre, and then whole lines.
+PairMask cutAtCenter(const LinePair& lines, const LineEnds& ends, double error) noexcept {
+  const PairMask mayMeet = (lines.least >= broadcast(-error)) | (lines.most <= broadcast(error)) |
+                           (magnitudeOf(lines.sum) <= broadcast(error));
+  return mayMeet & (ends.ahead | ends.behind);
+}
+
+}  // namespace
+
+CellCornerSet TriangleWays::cutIn(const GridPoint& z) const noexcept {
+  // Corners of the triangle relative to the centre: 0 and 1, 1 and 2, and alone.
+  std::array<Pair, 3> p01;
+  std::array<Pair, 3> p12;
+  std::array<double, 3> p0;
+  std::array<double, 3> p2;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double center = static_cast<double>(z[k]) + 0.5;
+    p01[k] = Pair{corners_[0][k], corners_[1][k]} - broadcast(center);
+    p2[k] = corners_[2][k] - center;
+    p0[k] = p01[k][0];
+    p12[k] = Pair{p01[k][1], p2[k]};
+  }
+  // Cross products of corners 0 and 1, 1 and 2; and of 2 and 0.
+  std::array<Pair, 3> first;
+  std::array<double, 3> last;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t i = k == 2 ? 0 : k + 1;
+    const std::size_t j = k == 0 ? 2 : k - 1;
+    first[k] = p01[i] * p12[j] - p01[j] * p12[i];
+    last[k] = p2[i] * p0[j] - p2[j] * p0[i];
+  }
+  const double determinant = p2[0] * first[0][0] + p2[1] * first[1][0] + p2[2] * first[2][0];
+  // With the triangle turned so that the determinant is positive: weights along the diagonals
+  // (1, 1, 1) and (1, -1, 1), and along (1, 1, -1) and (1, -1, -1).
+  const double sign = std::copysign(1.0, determinant);
+  const Pair signs = {sign, -sign};
+  std::array<Pair, 3> up;
+  std::array<Pair, 3> down;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto at = [&](std::size_t k) { return broadcast(i < 2 ? first[k][i] : last[k]); };
+    const Pair xy = at(0) * broadcast(sign) + at(1) * signs;
+    const Pair w = at(2) * broadcast(sign);
+    up[i] = xy + w;
+    down[i] = xy - w;
+  }
+  constexpr LineEnds kUp = {cornerBits(6, 5), cornerBits(0, 3)};
+  constexpr LineEnds kDown = {cornerBits(2, 1), cornerBits(4, 7)};
+  const LinePair upward(up);
+  const LinePair downward(down);
+  const double least = std::abs(determinant) - determinantError_;
+  const PairMask cut =
+      least > determinantError_
+          ? cutOn(upward, kUp, least, error_) | cutOn(downward, kDown, least, error_)
+          : cutAtCenter(upward, kUp, error_) | cutAtCenter(downward, kDown, error_);
+  return static_cast<CellCornerSet>(cut[0] | cut[1]);
+}
+
+}  // namespace hexhex
