@@ -86,7 +86,9 @@ void listBoundary(const TetTopology& topology, const LocalParameters& parameters
     const Vec3& q = u[static_cast<std::size_t>(corners[1])];
     const Vec3& r = u[static_cast<std::size_t>(corners[2])];
     const unsigned constant = constantAxes(p, q, r);
-    const std::size_t axis = dominantAxis(cross(minus(q, p), minus(r, p)));
+    const std::size_t axis = std::has_single_bit(constant)
+                                 ? static_cast<std::size_t>(std::countr_zero(constant))
+                                 : dominantAxis(cross(minus(q, p), minus(r, p)));
     *next++ = {halfFace, static_cast<std::uint16_t>(axis), static_cast<std::uint16_t>(constant)};
     result.passages[halfFace] = Passage::boundary(axis, constant == 1U << axis);
   }
