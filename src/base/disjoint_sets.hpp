@@ -14,7 +14,8 @@ namespace hexhex {
 /// its smallest element, whatever the order of calls, so results do not depend on threads.
 class DisjointSets {
  public:
-  explicit DisjointSets(std::size_t n) : parents_(n) {
+  /// @param shared  whether several threads will call unite() at the same time
+  explicit DisjointSets(std::size_t n, bool shared = true) : parents_(n), shared_(shared) {
     std::iota(parents_.begin(), parents_.end(), Index{0});
   }
 
@@ -22,11 +23,11 @@ class DisjointSets {
   [[nodiscard]] Index find(Index element) {
     Index parent = load(element);
     while (parent != element) {
-      // Halve the path: the grandparent is in the same set, so skipping to it is always right.
+      // Halve the path: the grandparent stays an ancestor for good, so skipping to it is always
+      // right, whatever others have entered in the meantime.
       const Index grandparent = load(parent);
       if (grandparent != parent) {
-        std::atomic_ref(parents_[element])
-            .compare_exchange_weak(parent, grandparent, std::memory_order_relaxed);
+        std::atomic_ref(parents_[element]).store(grandparent, std::memory_order_relaxed);
       }
       element = grandparent;
       parent = load(element);
@@ -43,6 +44,10 @@ class DisjointSets {
       b = find(b);
       if (a == b) return a;
       if (a < b) std::swap(a, b);
+      if (!shared_) {
+        parents_[a] = b;
+        return b;
+      }
       // Parents are always smaller, so there are no cycles; if `a` lost its root status to another
       // thread in the meantime, the exchange fails and we look again.
       Index expected = a;
@@ -68,6 +73,7 @@ class DisjointSets {
   }
 
   Array<Index> parents_;
+  bool shared_;
 };
 
 }  // namespace hexhex
