@@ -11,6 +11,8 @@ using Pair = double __attribute__((vector_size(16)));
 /// One truth value for each: 0 or -1.
 using PairMask = std::int64_t __attribute__((vector_size(16)));
 
+using PairBits = std::uint64_t __attribute__((vector_size(16)));
+
 using IntPair = std::int32_t __attribute__((vector_size(8)));
 
 /// Two numbers in a row.
@@ -23,6 +25,11 @@ using IntPair = std::int32_t __attribute__((vector_size(8)));
 [[nodiscard]] inline Pair magnitudeOf(Pair x) noexcept {
   constexpr std::int64_t kAllButSign = 0x7fffffffffffffff;
   return reinterpret_cast<Pair>(reinterpret_cast<PairMask>(x) & PairMask{kAllButSign, kAllButSign});
+}
+
+/// 1 for negative numbers, 0 for others.
+[[nodiscard]] inline PairBits signBits(Pair x) noexcept {
+  return reinterpret_cast<PairBits>(x) >> 63;
 }
 
 /// The first where the mask is set, elsewhere the second.

@@ -23,31 +23,37 @@ struct LinePair {
         sum(weights[0] + weights[1] + weights[2]) {}
 };
 
-/// Corners that two lines lead to, as bits.
-struct LineEnds {
-  PairMask ahead;
-  PairMask behind;
+/// Of two lines, for the ways in their directions and for those back, what is negative if they are
+/// not cut for certain.
+struct CutWays {
+  Pair ahead;
+  Pair behind;
 };
-
-constexpr PairMask cornerBits(int first, int second) noexcept {
-  return PairMask{std::int64_t{1} << first, std::int64_t{1} << second};
-}
 
 constexpr Pair broadcast(double x) noexcept { return Pair{x, x}; }
 
 /// @param least  the determinant, which is positive, less by the bound of its error
-PairMask cutOn(const LinePair& lines, const LineEnds& ends, double least, double error) noexcept {
+CutWays cutOn(const LinePair& lines, double least, double error) noexcept {
   const Pair half = lines.sum * broadcast(0.5);  // as long as the ways are
-  const PairMask ahead = (lines.least >= broadcast(-error)) & (half >= broadcast(least));
-  const PairMask behind = (lines.most <= broadcast(error)) & (-half >= broadcast(least));
-  return (ahead & ends.ahead) | (behind & ends.behind);
+  return {smaller(lines.least + broadcast(error), half - broadcast(least)),
+          smaller(broadcast(error) - lines.most, -half - broadcast(least))};
 }
 
 /// If the plane may contain the centre, and then whole lines.
-PairMask cutAtCenter(const LinePair& lines, const LineEnds& ends, double error) noexcept {
-  const PairMask mayMeet = (lines.least >= broadcast(-error)) | (lines.most <= broadcast(error)) |
-                           (magnitudeOf(lines.sum) <= broadcast(error));
-  return mayMeet & (ends.ahead | ends.behind);
+CutWays cutAtCenter(const LinePair& lines, double error) noexcept {
+  const Pair inside = larger(lines.least, -lines.most);
+  const Pair both = larger(inside, -magnitudeOf(lines.sum)) + broadcast(error);
+  return {both, both};
+}
+
+/// @param up,down  along (1, 1, 1) and (-1, 1, 1), and along (1, 1, -1) and (-1, 1, -1)
+CellCornerSet cornersBehind(const CutWays& up, const CutWays& down) noexcept {
+  // Corners 6, 4, 2 and 0 in the first of both numbers, and 7, 5, 3, and 1 in the second.
+  PairBits notCut = signBits(up.ahead);
+  notCut = (notCut << 2) | signBits(down.behind);
+  notCut = (notCut << 2) | signBits(down.ahead);
+  notCut = (notCut << 2) | signBits(up.behind);
+  return kAllCellCorners & ~static_cast<CellCornerSet>(notCut[0] | notCut[1] << 1);
 }
 
 }  // namespace
@@ -76,28 +82,25 @@ CellCornerSet TriangleWays::cutIn(const GridPoint& z) const noexcept {
   }
   const double determinant = p2[0] * first[0][0] + p2[1] * first[1][0] + p2[2] * first[2][0];
   // With the triangle turned so that the determinant is positive: weights along the diagonals
-  // (1, 1, 1) and (1, -1, 1), and along (1, 1, -1) and (1, -1, -1).
+  // (1, 1, 1) and (-1, 1, 1), and along (1, 1, -1) and (-1, 1, -1).
   const double sign = std::copysign(1.0, determinant);
   const Pair signs = {sign, -sign};
   std::array<Pair, 3> up;
   std::array<Pair, 3> down;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto at = [&](std::size_t k) { return broadcast(i < 2 ? first[k][i] : last[k]); };
-    const Pair xy = at(0) * broadcast(sign) + at(1) * signs;
+    const Pair xy = at(0) * signs + at(1) * broadcast(sign);
     const Pair w = at(2) * broadcast(sign);
     up[i] = xy + w;
     down[i] = xy - w;
   }
-  constexpr LineEnds kUp = {cornerBits(6, 5), cornerBits(0, 3)};
-  constexpr LineEnds kDown = {cornerBits(2, 1), cornerBits(4, 7)};
   const LinePair upward(up);
   const LinePair downward(down);
   const double least = std::abs(determinant) - determinantError_;
-  const PairMask cut =
-      least > determinantError_
-          ? cutOn(upward, kUp, least, error_) | cutOn(downward, kDown, least, error_)
-          : cutAtCenter(upward, kUp, error_) | cutAtCenter(downward, kDown, error_);
-  return static_cast<CellCornerSet>(cut[0] | cut[1]);
+  if (least > determinantError_) {
+    return cornersBehind(cutOn(upward, least, error_), cutOn(downward, least, error_));
+  }
+  return cornersBehind(cutAtCenter(upward, error_), cutAtCenter(downward, error_));
 }
 
 }  // namespace hexhex
