@@ -91,18 +91,6 @@ GridBox gridBox(const LatticeTet& corners, std::int64_t unit) noexcept {
   return box;
 }
 
-GridBoxes gridBoxes(const LatticeTet& corners, std::int64_t unit) noexcept {
-  const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
-  const std::int64_t half = unit / 2;
-  GridBoxes boxes;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto [low, high] = extent(corners, axis);
-    boxes.vertices.range[axis] = rangeBetween(low, high, shift);
-    boxes.centers.range[axis] = rangeBetween(low - half, high - half, shift);
-  }
-  return boxes;
-}
-
 SweepAxes chooseSweepAxes(const GridBox& box) noexcept {
   std::array<std::int64_t, 3> counts{};
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -69,13 +69,6 @@ struct GridBox {
 /// @param unit  a power of two
 [[nodiscard]] GridBox gridBox(const LatticeTet& corners, std::int64_t unit) noexcept;
 
-/// The boxes of grid points and of centres of cells (each named by the cell's smallest corner).
-struct GridBoxes {
-  GridBox vertices;
-  GridBox centers;
-};
-[[nodiscard]] GridBoxes gridBoxes(const LatticeTet& corners, std::int64_t unit) noexcept;
-
 /// Fewest planes first, longest lines last; ties in order of the axes. (Section 5.2.1)
 /// @param counts  of points, by axis
 template <class Count>

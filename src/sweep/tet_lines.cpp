@@ -2,8 +2,6 @@
 
 #include <sweep/tet_lines.hpp>
 
-#include <lattice/both_grids.hpp>
-
 namespace hexhex {
 
 namespace {
