@@ -120,7 +120,7 @@ Transition inverse(const Transition& transition) {
 }
 
 struct BlockResult {
-  std::vector<FoundJump> jumps;
+  Array<FoundJump> jumps;
   std::vector<Transitions::Misfit> misfits;
   double maxResidual = 0;
   Index firstJump = 0;  ///< index of its first jump in the table

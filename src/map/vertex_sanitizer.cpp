@@ -81,19 +81,24 @@ LatticePoint VertexSanitizer::snapped(CornerIndex corner, AxisSet fixed) const {
 bool VertexSanitizer::spread(std::span<const VertexStar::Member> star) {
   std::size_t reached = 1;
   std::int64_t difference = 0;
-  for (std::size_t i = 0; i < star.size(); ++i) {
+  const auto pass = [&](std::size_t i, std::size_t k) {
     const VertexStar::Member& member = star[i];
     const LatticePoint value = values_[i];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Index jump = map_.transitions.jump[member.halfFace(k)];
-      const LatticePoint image = jump == 0 ? value : carried(value, jump);
-      // At the boundary, a member stands for its neighbour.
-      const std::size_t behind = member.neighbour[k] == kNone ? i : member.neighbour[k];
-      values_[reached] = image;  // in vain if the one behind is not new
-      reached += behind == reached ? 1 : 0;
-      const LatticePoint& there = values_[behind];
-      for (std::size_t axis = 0; axis < 3; ++axis) difference |= there[axis] ^ image[axis];
-    }
+    const Index jump = map_.transitions.jump[member.halfFace(k)];
+    const LatticePoint image = jump == 0 ? value : carried(value, jump);
+    // At the boundary, a member stands for its neighbour.
+    const std::size_t behind = member.neighbour[k] == kNone ? i : member.neighbour[k];
+    values_[reached] = image;  // in vain if the one behind is not new
+    reached += behind == reached ? 1 : 0;
+    const LatticePoint& there = values_[behind];
+    for (std::size_t axis = 0; axis < 3; ++axis) difference |= there[axis] ^ image[axis];
+  };
+  for (std::size_t k = 0; k < 3; ++k) pass(0, k);
+  // The others hold what came through their entry, and would carry it back.
+  for (std::size_t i = 1; i < star.size(); ++i) {
+    const std::size_t entry = star[i].entry;
+    pass(i, entry == 0 ? 1 : 0);
+    pass(i, entry == 2 ? 1 : 2);
   }
   return difference == 0;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <lattice/rotation.hpp>
+#include <base/prefetch.hpp>
 #include <map/key_table.hpp>
 #include <map/tet_topology.hpp>
 
@@ -70,6 +71,7 @@ class VertexStar {
       const HalfFace mate = mates[halfFace];
       const bool boundary = mate == kNone;
       const Index behind = boundary ? here / 4 : tetOf(mate);
+      prefetch(&mates[4 * behind]);
       const Index neighbour = number(behind, count);
       Member& spare = members[count];
       spare.corner = cornerAt(behind);
