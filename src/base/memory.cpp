@@ -37,7 +37,7 @@ constexpr bool kPooled = true;
 
 /// Never destroyed, as arrays may live until the end of the program.
 PagePool& pool() {
-  static PagePool* const pool = new PagePool;
+  static auto* const pool = new PagePool;
   return *pool;
 }
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include <lattice/rotation.hpp>
 #include <base/prefetch.hpp>
+#include <lattice/rotation.hpp>
 #include <map/key_table.hpp>
 #include <map/tet_topology.hpp>
 
