@@ -35,10 +35,16 @@ class Patches {
       auto patch = static_cast<Index>(t);
       for (std::size_t i = 0; i < count; ++i) patch = sets.unite(patch, smaller[i]);
     });
-    parallelFor(stage, tets, kGrain,
-                [&](std::size_t t) { of_[t] = sets.find(static_cast<Index>(t)); });
-    // The representative is the smallest tet, so its number is known before the others need it.
-    for (std::size_t t = 0; t < tets; ++t) of_[t] = of_[t] == t ? count_++ : of_[of_[t]];
+    const auto representatives = collectFromBlocks<Index>(
+        stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::vector<Index>& list) {
+          for (std::size_t t = begin; t < end; ++t) {
+            of_[t] = sets.find(static_cast<Index>(t));
+            if (of_[t] == t) list.push_back(static_cast<Index>(t));
+          }
+        });
+    Array<Index> number(tets);  // of representatives; most of it is never touched
+    for (const Index t : representatives) number[t] = count_++;
+    parallelFor(stage, tets, kGrain, [&](std::size_t t) { of_[t] = number[of_[t]]; });
   }
   [[nodiscard]] Index of(Index tet) const noexcept { return of_[tet]; }
   [[nodiscard]] Index count() const noexcept { return count_; }
