@@ -96,6 +96,7 @@ std::size_t PagePool::slabCount() const {
 }
 
 char* PagePool::Slab::take(std::size_t pages) noexcept {
+  if (kPages - used_ < pages) return nullptr;
   for (std::size_t end = 0; end < kPages;) {
     const std::size_t first = next(end, false);
     if (first + pages > kPages) return nullptr;

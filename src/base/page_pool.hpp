@@ -16,8 +16,8 @@ namespace hexhex {
 class PagePool {
  public:
   static constexpr std::size_t kPage = 4096;
-  static constexpr std::size_t kSlab = std::size_t{1}
-                                       << 23;  ///< bytes of a slab, and its alignment
+  /// Bytes of a slab, and its alignment.
+  static constexpr std::size_t kSlab = std::size_t{1} << 23;
 
   PagePool() = default;
   PagePool(const PagePool&) = delete;

@@ -1,5 +1,6 @@
 // exitOfTurn and exitOfLine: every answer against the oracle, and walks from tet to tet that must
 // reach their target, through edges, vertices and along faces too.
+#include <algorithm>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -101,7 +102,7 @@ TEST(ExitOfTurn, AroundEdges) {
 TEST(ExitOfTurn, AroundFaces) {
   Random random(94);
   int ambiguous = 0;
-  for (int i = cases(1000); i > 0; --i) {
+  for (int i = std::max(50, cases(1000)); i > 0; --i) {  // few are ambiguous
     ambiguous += turnEverywhere(faceStar(random, random.oneIn(2) ? random.between(1, 2) : 1000));
     ASSERT_FALSE(HasFailure());
   }

@@ -114,8 +114,8 @@ TEST(HalfGrids, FacesAcrossAnAxis) {
     ASSERT_NO_FATAL_FAILURE(compare(tet, unit, search, seen));
   }
   expectAllKinds(seen);
-  EXPECT_GT(seen.boundary, 1000);
-  EXPECT_GT(seen.inside, 1000);
+  EXPECT_GT(seen.boundary, cases(20'000) / 2);
+  EXPECT_GT(seen.inside, cases(20'000) / 2);
 }
 
 TEST(HalfGrids, PointsAsCloseToFacesAsCanBe) {
