@@ -30,4 +30,9 @@ LocalParameters::LocalParameters(const OrientedMap& map) noexcept
   tooLarge_ = largest_ > kMaxLocalParameter;
 }
 
+const TetParameters& LocalParameters::copyTo(TetParameters& scratch, Index tet) const noexcept {
+  scratch = (*this)(tet);
+  return scratch;
+}
+
 }  // namespace hexhex

@@ -56,9 +56,7 @@ class LocalParameters {
   /// All corners of a tet, without a copy if they are where the caller has put them.
   /// @param scratch  must outlive the result
   [[nodiscard]] const TetParameters& see(Index tet, TetParameters& scratch) const noexcept {
-    if (!moved_) return parameters_[tet];
-    scratch = (*this)(tet);
-    return scratch;
+    return moved_ ? copyTo(scratch, tet) : parameters_[tet];
   }
   /// Largest magnitude of a coordinate.
   [[nodiscard]] double largest() const noexcept { return largest_; }
@@ -66,6 +64,8 @@ class LocalParameters {
   [[nodiscard]] double largestExtent() const noexcept { return largestExtent_; }
 
  private:
+  /// Apart, as compilers would otherwise share the copy's loads with the usual case.
+  const TetParameters& copyTo(TetParameters& scratch, Index tet) const noexcept;
   [[nodiscard]] Vec3 move(const TetParameters& parameters) const noexcept {
     Vec3 by{};
     for (std::size_t k = 0; k < 3; ++k) by[k] = std::nearbyint(parameters[0][k] / grid_) * grid_;

@@ -89,10 +89,17 @@ void listBoundary(const TetTopology& topology, const LocalParameters& parameters
     const std::size_t axis = std::has_single_bit(constant)
                                  ? static_cast<std::size_t>(std::countr_zero(constant))
                                  : dominantAxis(cross(minus(q, p), minus(r, p)));
-    *next++ = {halfFace, static_cast<std::uint16_t>(axis), static_cast<std::uint16_t>(constant)};
+    // The general direction, positive along all axes, leads inward where the tet is above.
+    const bool isAbove = u[halfFace % 4][axis] > p[axis];
+    *next++ = {halfFace, static_cast<std::uint16_t>(axis), static_cast<std::uint8_t>(constant),
+               isAbove};
     result.passages[halfFace] = Passage::boundary(axis, constant == 1U << axis);
   }
 }
+
+/// In PlainVertices::plane until all cones are counted: the planes that a tet is below at one of
+/// its boundary faces, where mirrored directions count, too.
+constexpr unsigned kBelow = 8;
 
 /// Notes the planes of boundary faces at their corners; without a plane, these are special. One
 /// thread does so for all, as faces share most of their corners, and are few.
@@ -101,16 +108,17 @@ void notePlanes(const TetTopology& topology, PlainVertices& result) {
     for (const PlainVertices::BoundaryFace& face : faces) {
       const Tet& tet = topology.tets[tetOf(face.halfFace)];
       if (face.constantAxes == 0) markCorners(tet, localOf(face.halfFace), result);
+      const unsigned planes = face.constantAxes * (face.isAbove ? 1 : 1 + kBelow);
       for (const int corner : kFaceCorners[face.halfFace % 4]) {
         std::uint8_t& plane = result.plane[tet[static_cast<std::size_t>(corner)]];
-        plane = static_cast<std::uint8_t>(plane | face.constantAxes);
+        plane = static_cast<std::uint8_t>(plane | planes);
       }
     }
   }
 }
 
 /// Finds out how the direction lies to tets, and counts cones: of the tets, and of their mirror
-/// images at vertices that are on one boundary plane.
+/// images at vertices that are on one boundary plane, unless they are above it everywhere.
 class TetSurvey {
  public:
   TetSurvey(const TetTopology& topology, const LocalParameters& parameters, Cones& cones,
@@ -156,9 +164,8 @@ class TetSurvey {
     found_.add(tet[corner % 4], corner != 4);
     unsigned planes = 0;
     for (const Index v : tet) planes |= result_.plane[v];
-    if (planes == 0) return;
     for (unsigned axis = 0; axis < 3; ++axis) {
-      images_.add(4 * t + axis, ((planes >> axis) & 1U) != 0);
+      images_.add(4 * t + axis, ((planes >> axis) & kBelow) != 0);
     }
   }
 
@@ -184,7 +191,7 @@ class TetSurvey {
     // On two planes, a vertex is special anyway.
     const std::size_t corner = coneCorner(sides);
     const Index vertex = tet[corner % 4];
-    found_.add(vertex, allOf(corner != 4, result_.plane[vertex] == 1U << (image % 4)));
+    found_.add(vertex, allOf(corner != 4, result_.plane[vertex] == (1 + kBelow) << (image % 4)));
   }
 
   void markAll(const Tet& tet) {
@@ -310,8 +317,10 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
     });
   });
   parallelFor(stage, vertices, kGrain, [&](std::size_t v) {
+    const unsigned planes = result.plane[v] % kBelow;
+    result.plane[v] = static_cast<std::uint8_t>(planes);
     // On two planes, all cones are counted in vain.
-    const bool manyPlanes = (result.plane[v] & (result.plane[v] - 1)) != 0;
+    const bool manyPlanes = (planes & (planes - 1)) != 0;
     if ((cones[v] != 1 || manyPlanes) && !topology.isIsolated(static_cast<Index>(v))) {
       special[v] = 1;
     }

@@ -37,6 +37,10 @@ inline constexpr TetSides kUncertainSides = 0;
 /// directions, as a covering branched at most at edges. The number of tets and images in any
 /// general direction is the sum of the surfaces' degrees; if it is one, there is one surface, and
 /// its projection is one-to-one. Images need not be made: the mirrored direction does as well.
+///
+/// Where the star is on one side of its plane at all boundary faces, one direction is enough, which
+/// leads to that side: across the plane the number of tets in a direction changes by that of the
+/// boundary faces there, at least one, so if it is one on this side, it is none on the other.
 struct PlainVertices {
   Array<std::uint8_t> special;  ///< per vertex: 1 if it is not plain (and not isolated)
   Array<std::uint8_t> plane;    ///< per plain vertex: bit k on a boundary plane across axis k, or 0
@@ -60,7 +64,8 @@ struct PlainVertices {
   struct BoundaryFace {
     HalfFace halfFace;
     std::uint16_t axis;
-    std::uint16_t constantAxes;  ///< along which it is exactly constant: bit k for axis k
+    std::uint8_t constantAxes;  ///< along which it is exactly constant: bit k for axis k
+    bool isAbove;               ///< whether the tet is on the larger side of it along the axis
   };
   /// By half-face, ascending; in one list per block of kBlock tets.
   std::vector<Array<BoundaryFace>> boundaryFaces;

@@ -311,6 +311,66 @@ TetMap centredCube() {
   return test::identityMap(points, tets);
 }
 
+Vec3 meanOf(const TetParameters& corners) {
+  Vec3 sum{};
+  for (const Vec3& u : corners) sum = plus(sum, u);
+  return {sum[0] / 4, sum[1] / 4, sum[2] / 4};
+}
+
+/// The tets of a map with certain centres.
+template <class Keep>
+TetMap partOf(const TetMap& map, const Keep& keep) {
+  TetMap part = map;
+  part.tets.clear();
+  part.parameters.clear();
+  for (std::size_t t = 0; t < map.tets.size(); ++t) {
+    if (!keep(meanOf(map.parameters[t]))) continue;
+    part.tets.push_back(map.tets[t]);
+    part.parameters.push_back(map.parameters[t]);
+  }
+  return part;
+}
+
+bool isPlain(const TetMap& map, Index vertex) {
+  const Survey survey(map);
+  EXPECT_TRUE(survey.defects.empty());
+  return survey.plain.special[vertex] == 0;
+}
+
+TEST(PlainVertices, OfTheBoundaryAreOnOneSideOfOnePlane) {
+  const TetMap cube = centredCube();
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const double side : {-1.0, 1.0}) {
+      EXPECT_TRUE(isPlain(partOf(cube, [&](const Vec3& u) { return side * u[k] > 0; }), 0));
+      for (const double other : {-1.0, 1.0}) {
+        const std::size_t l = (k + 1) % 3;
+        const auto isIn = [&](const Vec3& u) { return side * u[k] > 0 && other * u[l] > 0; };
+        EXPECT_FALSE(isPlain(partOf(cube, isIn), 0));
+        EXPECT_FALSE(isPlain(partOf(cube, [&](const Vec3& u) { return !isIn(u); }), 0));
+      }
+    }
+  }
+}
+
+TEST(PlainVertices, AreNotWhereASlitEnds) {
+  // Cut open along half a plane, the star is on both sides of it.
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const double side : {-1.0, 1.0}) {
+      TetMap map = centredCube();
+      const std::size_t l = (k + 1) % 3;
+      const auto pointsBefore = static_cast<Index>(map.points.size());
+      for (Index v = 0; v < pointsBefore; ++v) map.points.push_back(map.points[v]);
+      for (std::size_t t = 0; t < map.tets.size(); ++t) {
+        if (meanOf(map.parameters[t])[k] < 0) continue;
+        for (Index& v : map.tets[t]) {
+          if (map.points[v][k] == 0 && side * map.points[v][l] > 0) v += pointsBefore;
+        }
+      }
+      EXPECT_FALSE(isPlain(map, 0));
+    }
+  }
+}
+
 /// Rotates by a quarter turn about the third axis, and translates.
 void changeChart(TetParameters& parameters, double translation) {
   for (Vec3& u : parameters) u = {-u[1] + translation, u[0], u[2] - translation};
@@ -340,17 +400,8 @@ TEST(FlatStars, OfTheBoundaryLieInOnePlane) {
   // What is left of the star on one side of a plane, or of two.
   const TetMap cube = centredCube();
   const auto part = [&](auto keep) {
-    TetMap map = cube;
-    map.tets.clear();
-    map.parameters.clear();
-    for (std::size_t t = 0; t < cube.tets.size(); ++t) {
-      Vec3 mean{};
-      for (const Vec3& u : cube.parameters[t]) mean = plus(mean, u);
-      if (!keep(mean)) continue;
-      map.tets.push_back(cube.tets[t]);
-      map.parameters.push_back(cube.parameters[t]);
-      if (map.tets.size() % 3 == 0) changeChart(map.parameters.back(), 5);
-    }
+    TetMap map = partOf(cube, keep);
+    for (std::size_t t = 2; t < map.tets.size(); t += 3) changeChart(map.parameters[t], 5);
     return map;
   };
   const TetMap half = part([](const Vec3& u) { return u[0] > 0; });
