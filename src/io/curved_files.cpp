@@ -23,7 +23,7 @@ using LagrangeWriter = void (*)(const LagrangeMesh&, const std::filesystem::path
                                 const WriteOptions&, Context&);
 
 template <class Writer>
-struct Format {
+struct CurvedFormat {
   std::string_view extension;
   Writer write;
 };
@@ -35,14 +35,15 @@ void withoutMap(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/,
   write(mesh, file, context);
 }
 
-constexpr std::array<Format<PiecewiseWriter>, 3> kArcFormats = {{{".vtu", withoutMap<writeArcsVtu>},
-                                                                 {".vtp", withoutMap<writeArcsVtp>},
-                                                                 {".ovmb", writeArcsOvmb}}};
-constexpr std::array<Format<PiecewiseWriter>, 3> kPatchFormats = {
+constexpr std::array<CurvedFormat<PiecewiseWriter>, 3> kArcFormats = {
+    {{".vtu", withoutMap<writeArcsVtu>},
+     {".vtp", withoutMap<writeArcsVtp>},
+     {".ovmb", writeArcsOvmb}}};
+constexpr std::array<CurvedFormat<PiecewiseWriter>, 3> kPatchFormats = {
     {{".vtu", withoutMap<writePatchesVtu>},
      {".vtp", withoutMap<writePatchesVtp>},
      {".ovmb", writePatchesOvmb}}};
-constexpr std::array<Format<LagrangeWriter>, 3> kLagrangeFormats = {
+constexpr std::array<CurvedFormat<LagrangeWriter>, 3> kLagrangeFormats = {
     {{".vtu", writeLagrangeVtu}, {".msh", writeLagrangeGmsh}, {".mesh", writeLagrangeMfem}}};
 
 template <class Formats>
