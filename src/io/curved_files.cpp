@@ -9,6 +9,7 @@
 
 #include <base/lagrange_check.hpp>
 #include <io/lagrange_files.hpp>
+#include <io/letter_case.hpp>
 #include <io/piecewise_ovmb.hpp>
 #include <io/piecewise_vtk.hpp>
 
@@ -22,7 +23,7 @@ using LagrangeWriter = void (*)(const LagrangeMesh&, const std::filesystem::path
                                 const WriteOptions&, Context&);
 
 template <class Writer>
-struct Format {
+struct CurvedFormat {
   std::string_view extension;
   Writer write;
 };
@@ -34,27 +35,20 @@ void withoutMap(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/,
   write(mesh, file, context);
 }
 
-constexpr std::array<Format<PiecewiseWriter>, 3> kArcFormats = {{{".vtu", withoutMap<writeArcsVtu>},
-                                                                 {".vtp", withoutMap<writeArcsVtp>},
-                                                                 {".ovmb", writeArcsOvmb}}};
-constexpr std::array<Format<PiecewiseWriter>, 3> kPatchFormats = {
+constexpr std::array<CurvedFormat<PiecewiseWriter>, 3> kArcFormats = {
+    {{".vtu", withoutMap<writeArcsVtu>},
+     {".vtp", withoutMap<writeArcsVtp>},
+     {".ovmb", writeArcsOvmb}}};
+constexpr std::array<CurvedFormat<PiecewiseWriter>, 3> kPatchFormats = {
     {{".vtu", withoutMap<writePatchesVtu>},
      {".vtp", withoutMap<writePatchesVtp>},
      {".ovmb", writePatchesOvmb}}};
-constexpr std::array<Format<LagrangeWriter>, 3> kLagrangeFormats = {
+constexpr std::array<CurvedFormat<LagrangeWriter>, 3> kLagrangeFormats = {
     {{".vtu", writeLagrangeVtu}, {".msh", writeLagrangeGmsh}, {".mesh", writeLagrangeMfem}}};
-
-std::string lowerExtension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return extension;
-}
 
 template <class Formats>
 auto find(const Formats& formats, const std::filesystem::path& file, const char* what) {
-  const std::string extension = lowerExtension(file);
+  const std::string extension = lowerCaseExtension(file);
   std::string known;
   for (const auto& format : formats) {
     if (format.extension == extension) return format.write;
@@ -105,11 +99,11 @@ void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& fi
 }
 
 bool holdsLagrangeCells(const std::filesystem::path& file, Context& context) {
-  return lowerExtension(file) == ".vtu" && holdsLagrangeVtu(file, context);
+  return lowerCaseExtension(file) == ".vtu" && holdsLagrangeVtu(file, context);
 }
 
 LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& context) {
-  if (lowerExtension(file) != ".vtu") {
+  if (lowerCaseExtension(file) != ".vtu") {
     throw Error(ErrorCode::FileUnsupported,
                 file.string() + ": cells of higher order are read from .vtu files only.");
   }

@@ -43,10 +43,4 @@ void writeGmsh41Text(const HexMesh& mesh, const std::filesystem::path& file,
 void writeGmsh22Text(const HexMesh& mesh, const std::filesystem::path& file,
                      const WriteOptions& options, Context& context);
 
-// Element types of both versions.
-inline constexpr unsigned kGmshLine = 1;
-inline constexpr unsigned kGmshQuad = 3;
-inline constexpr unsigned kGmshHexahedron = 5;
-inline constexpr unsigned kGmshPoint = 15;
-
 }  // namespace hexhex

@@ -9,6 +9,7 @@
 #include <io/binary_lines.hpp>
 #include <io/checked_sink.hpp>
 #include <io/gmsh.hpp>
+#include <io/gmsh_types.hpp>
 #include <io/line_writer.hpp>
 #include <io/mesh_sink.hpp>
 #include <io/output_file.hpp>

@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -16,6 +17,12 @@ namespace hexhex {
 
 /// Dimension of elements, and the number of a physical group.
 using GmshGroup = std::pair<std::int64_t, std::int64_t>;
+
+/// The number of a group. Its sign tells which way an entity runs.
+[[nodiscard]] constexpr std::int64_t withoutSign(std::int64_t number) noexcept {
+  if (number == std::numeric_limits<std::int64_t>::min()) return 0;
+  return number < 0 ? -number : number;
+}
 
 /// The tag that a name of this library gives, or nothing if it is somebody else's.
 [[nodiscard]] inline std::optional<std::int32_t> tagInGroupName(std::string_view name) {

@@ -12,6 +12,7 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/gmsh.hpp>
+#include <io/gmsh_types.hpp>
 #include <io/line_writer.hpp>
 #include <io/msh41_writer.hpp>
 #include <io/output_file.hpp>

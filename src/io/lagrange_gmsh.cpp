@@ -6,6 +6,7 @@
 
 #include <base/parallel.hpp>
 #include <io/gmsh.hpp>
+#include <io/gmsh_types.hpp>
 #include <io/lagrange_elements.hpp>
 #include <io/lagrange_files.hpp>
 #include <io/lagrange_order.hpp>

@@ -71,7 +71,6 @@ class MeditReader {
   [[nodiscard]] Index readCorner(TextScanner& scanner, std::string_view what, std::size_t index,
                                  Place place) const;
   void skipSection();
-  void failIfRepeated(bool present, std::string_view keyword);
   [[nodiscard]] const TokenIndex* index() const { return index_ ? &*index_ : nullptr; }
 
   TextScanner scanner_;
@@ -132,15 +131,8 @@ void MeditReader<corners>::readDimension() {
 }
 
 template <std::size_t corners>
-void MeditReader<corners>::failIfRepeated(bool present, std::string_view keyword) {
-  if (!present) return;
-  scanner_.fail(ErrorCode::FileSyntax,
-                "the section " + std::string(keyword) + " occurs a second time.");
-}
-
-template <std::size_t corners>
 void MeditReader<corners>::readVertices() {
-  failIfRepeated(hasVertices_, "Vertices");
+  scanner_.failIfRepeated(hasVertices_, "Vertices");
   hasVertices_ = true;
   mesh_.points.resize(scanner_.readCount("vertices", kMinimumVertexBytes));
   references_.resize(mesh_.points.size());
@@ -163,7 +155,7 @@ void MeditReader<corners>::readVertex(TextScanner& scanner, std::size_t index) {
 
 template <std::size_t corners>
 void MeditReader<corners>::readCells() {
-  failIfRepeated(hasCells_, kKind.meditKeyword);
+  scanner_.failIfRepeated(hasCells_, kKind.meditKeyword);
   hasCells_ = true;
   if (!hasVertices_) {
     scanner_.fail(ErrorCode::FileUnsupported,

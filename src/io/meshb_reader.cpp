@@ -166,13 +166,7 @@ std::uint64_t MeshbReader<corners>::readCount(RecordShape shape, std::string_vie
   const std::uint64_t count = wide() != 0
                                   ? source_.size(name.c_str())
                                   : static_cast<std::uint32_t>(source_.integer(name.c_str()));
-  const std::size_t room = source_.room(shape);
-  if (count > room) {
-    source_.fail(ErrorCode::FileSyntax,
-                 "announces " + std::to_string(count) + " " + std::string(what) +
-                     ", but the rest of the file has room for at most " + std::to_string(room) +
-                     ": either the number is wrong or the file is incomplete.");
-  }
+  requireRoom(source_, count, shape, what);
   if (count > kNone) {
     source_.fail(ErrorCode::TooLarge, "announces " + std::to_string(count) + " " +
                                           std::string(what) + "; at most " + std::to_string(kNone) +

@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include <hexhex/error.hpp>
+#include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
 #include <io/input_file.hpp>
@@ -244,5 +245,25 @@ class BinarySource {
   const std::string* fileName_;
   Stage* stage_;
 };
+
+/// Refuses n records if the rest of the file has no room for so many.
+/// @param what  plural, e.g. "nodes"
+template <class Source>
+void requireRoom(const Source& source, std::uint64_t n, RecordShape shape, std::string_view what) {
+  const std::size_t room = source.room(shape);
+  if (n <= room) return;
+  source.fail(ErrorCode::FileSyntax, "announces " + std::to_string(n) + " " + std::string(what) +
+                                         ", but the rest of the file has room for at most " +
+                                         std::to_string(room) +
+                                         ": either the number is wrong or the file is incomplete.");
+}
+
+/// Refuses more elements than indices can number.
+template <class Source>
+void requireIndexable(const Source& source, std::uint64_t n, std::string_view what) {
+  if (n <= kNone) return;
+  source.fail(ErrorCode::TooLarge, "has " + std::to_string(n) + " " + std::string(what) +
+                                       "; at most " + std::to_string(kNone) + " are supported.");
+}
 
 }  // namespace hexhex

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -13,6 +12,7 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/letter_case.hpp>
 #include <io/line_writer.hpp>
 #include <io/mesh_groups.hpp>
 #include <io/openfoam.hpp>
@@ -184,13 +184,7 @@ class PolyMeshWriter {
   std::vector<std::unique_ptr<OutputFile>> files_;
 };
 
-bool isMarker(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return extension == ".foam";
-}
+bool isMarker(const std::filesystem::path& file) { return lowerCaseExtension(file) == ".foam"; }
 
 /// The folder of the mesh, which is created.
 std::filesystem::path folderFor(const std::filesystem::path& file) {

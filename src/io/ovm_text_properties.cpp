@@ -7,6 +7,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <io/letter_case.hpp>
 #include <io/number_parsing.hpp>
 #include <io/ovm_text_properties.hpp>
 #include <io/text_elements.hpp>
@@ -212,11 +213,8 @@ void PropertiesReader::skipStrings(std::size_t count) {
 }  // namespace
 
 bool equalsIgnoringCase(std::string_view a, std::string_view b) noexcept {
-  const auto lower = [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  };
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [&](char x, char y) { return lower(x) == lower(y); });
+                    [](char x, char y) { return lowerCase(x) == lowerCase(y); });
 }
 
 void readOvmTextProperties(const TextScanner& scanner, const TokenIndex& index, OvmMesh& mesh,

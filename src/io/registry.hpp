@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string_view>
 
 #include <hexhex/context.hpp>
@@ -43,12 +44,10 @@ struct Format {
   std::string_view missing = {};
 };
 
-/// The format of a file that holds, or will hold, a map or a hex mesh: the one of this name or, if
-/// it is empty, what the extension means. It reads or writes such files, if not both.
-/// @throws Error FileUnsupported, naming the extensions or the formats that are known
-[[nodiscard]] const Format& mapFormat(const std::filesystem::path& file,
-                                      std::string_view name = {});
-[[nodiscard]] const Format& hexMeshFormat(const std::filesystem::path& file,
-                                          std::string_view name = {});
+/// The table, in the order in which formats are listed.
+[[nodiscard]] std::span<const Format> allFormats() noexcept;
+
+/// The name in the table of what may be called by another name.
+[[nodiscard]] std::string_view usualFormatName(std::string_view name) noexcept;
 
 }  // namespace hexhex

@@ -64,6 +64,16 @@ std::size_t TextScanner::readCount(std::string_view what, std::size_t bytesEach)
   return static_cast<std::size_t>(count);
 }
 
+void TextScanner::skipLineBreak() {
+  const char* place = position_;
+  while (place != end_ && (*place == ' ' || *place == '\r')) ++place;
+  if (place == end_ || *place != '\n') {
+    fail(ErrorCode::FileSyntax, "the line has to end behind " + quoted(currentToken()) +
+                                    ", since the bytes of numbers begin on the next line.");
+  }
+  position_ = token_ = place + 1;
+}
+
 std::size_t TextScanner::countTokensOnLine() {
   std::size_t count = 0;
   if (!skipSpace()) return count;
@@ -125,6 +135,16 @@ void TextScanner::failInteger(std::string_view what) const {
   const std::string expected = "expected " + std::string(what) + ", found ";
   if (token.empty()) fail(ErrorCode::FileSyntax, expected + "the end of the file.");
   fail(ErrorCode::FileSyntax, expected + quoted(token) + ", which is not a whole number.");
+}
+
+void TextScanner::failToken(std::string_view what) const {
+  fail(ErrorCode::FileSyntax,
+       "expected " + std::string(what) + ", found " + quoted(currentToken()) + ".");
+}
+
+void TextScanner::failIfRepeated(bool present, std::string_view section) const {
+  if (!present) return;
+  fail(ErrorCode::FileSyntax, "the section " + std::string(section) + " occurs a second time.");
 }
 
 }  // namespace hexhex

@@ -92,6 +92,9 @@ class TextScanner {
   /// The token that was read last, or the one that could not be read.
   [[nodiscard]] std::string_view currentToken() const;
 
+  /// Moves to the next line, where bytes of numbers begin: nothing else may stand on this one.
+  void skipLineBreak();
+
   /// How many tokens stand on the line of the next token, counted from that token.
   [[nodiscard]] std::size_t countTokensOnLine();
 
@@ -108,6 +111,10 @@ class TextScanner {
   [[noreturn]] void failNumber(std::string_view what) const;
   /// After readInteger returned false: the same.
   [[noreturn]] void failInteger(std::string_view what) const;
+  /// After readToken returned another token: the same.
+  [[noreturn]] void failToken(std::string_view what) const;
+  /// Refuses a section that is present already.
+  void failIfRepeated(bool present, std::string_view section) const;
 
  private:
   [[nodiscard]] bool isComment(char c) const { return c == '#' && comments_ == Comments::Hash; }

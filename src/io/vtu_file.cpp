@@ -455,10 +455,7 @@ VtuColumn VtuFile::parsedColumn(const ArrayTag& array, Kind kind,
       std::memcpy(place, &integer, sizeof(integer));
     }
   }
-  if (scanner.skipSpace()) {
-    scanner.fail(ErrorCode::FileSyntax,
-                 "expected the end of the array, found " + quoted(scanner.currentToken()) + ".");
-  }
+  if (scanner.skipSpace()) scanner.failToken("the end of the array");
   return values;
 }
 
