@@ -56,7 +56,8 @@ void VtkLegacyCells<corners>::readNewCells(std::size_t places, std::size_t numbe
 template <std::size_t corners>
 void VtkLegacyCells<corners>::readTypes() {
   const std::size_t count = source_.scanner().readCount("types of cells", 2);
-  if (source_.binary() && count == cellCount_ && takePlainTypes(count)) return;
+  // None are plain for none: the cells may follow behind.
+  if (source_.binary() && count > 0 && count == cellCount_ && takePlainTypes(count)) return;
   types_ = source_.readIntegers(count, kVtkInt, "the type of a cell");
 }
 

@@ -94,6 +94,20 @@ TEST(VtkLegacyReader, Binary) {
   }
 }
 
+TEST(VtkLegacyReader, TypesBeforeCells) {
+  const auto types = [](std::initializer_list<std::int32_t> list) {
+    return "CELL_TYPES " + std::to_string(list.size()) + "\n" + big(list) + "\n";
+  };
+  const std::string cells = "CELLS 1 9\n" + big<std::int32_t>({8, 0, 1, 2, 3, 4, 5, 6, 7}) + "\n";
+  const std::string begin = binaryHead("4.2") + binaryPoints<float>("float");
+  const HexMesh mesh = parse(begin + types({12}) + cells);
+  ASSERT_EQ(mesh.cells.size(), 1U);
+  EXPECT_EQ(mesh.cells[0], kCubeCell);
+  const Failure none = failure(begin + types({}) + cells);
+  EXPECT_EQ(none.code, ErrorCode::FileSyntax);
+  EXPECT_NE(none.sentence.find("1 cells but 0 types"), std::string::npos) << none.sentence;
+}
+
 const std::string kGood = kHead + kPoints + kCells;
 
 /// The good file with one change must fail with this in the sentence.
