@@ -8,6 +8,12 @@ std::size_t largerRoom(std::size_t size) { return std::max<std::size_t>(64, 2 * 
 
 }  // namespace
 
+void ArcPieces::growArcs() {
+  arcRoom_ = largerRoom(arcs_);
+  ends_.resize(arcRoom_);
+  pointBegin_.resize(arcRoom_);
+}
+
 void ArcPieces::growPoints() {
   pointRoom_ = largerRoom(points_);
   position_.resize(pointRoom_);

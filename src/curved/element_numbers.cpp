@@ -4,20 +4,11 @@
 
 namespace hexhex {
 
-namespace {
-
-/// The grid of midpoints of edges along an axis, or of faces across it.
-HalfGrid midpoints(ElementKind kind, int axis) noexcept {
-  const int along = 1 << axis;
-  return static_cast<HalfGrid>(kind == ElementKind::Edges ? along : 7 ^ along);
-}
-
-}  // namespace
-
-HalfGridSet ElementNumbers::gridsOf(ElementKind kind) noexcept {
-  unsigned set = 0;
-  for (int axis = 0; axis < 3; ++axis) set |= halfGridBit(midpoints(kind, axis));
-  return static_cast<HalfGridSet>(set);
+void requireNumbers(std::uint64_t elements) {
+  if (elements < kNone) return;
+  throw Error(ErrorCode::TooLarge, "The mesh would have " + std::to_string(elements) +
+                                       " edges or faces, more than "
+                                       "32-bit indices can number. Lower the scale.");
 }
 
 ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind)
@@ -50,11 +41,7 @@ ElementNumbers::Sweep::Sweep(ElementNumbers& numbers)
 void ElementNumbers::Sweep::finish(Stage& stage) {
   ElementNumbers& n = numbers_;
   exclusiveScan(std::span(n.begin_));
-  if (n.count() >= kNone) {
-    throw Error(ErrorCode::TooLarge, "The mesh would have " + std::to_string(n.count()) +
-                                         " edges or faces, more than "
-                                         "32-bit indices can number. Lower the scale.");
-  }
+  requireNumbers(n.count());
   exclusiveScan(std::span(n.lineBegin_));
   n.lines_.resize(n.lineBegin_.back());
   parallelFor(stage, blocks_.size(), 1, [&](std::size_t block) {
@@ -76,7 +63,7 @@ void ElementNumbers::sweep(Index tet, HalfGrids& grids, std::vector<Line>& lines
   std::uint64_t elements = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t before = lines.size();
-    axes_[gridOf(tet, axis)] = grids.sweep(midpoints(kind_, axis), [&](const SweptLine& line) {
+    axes_[gridOf(tet, axis)] = grids.sweep(midpointsOf(kind_, axis), [&](const SweptLine& line) {
       const auto [first, count] = owner.owned(line);
       if (count == 0) return;
       lines.push_back({line, first, count, kNone});

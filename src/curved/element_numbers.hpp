@@ -44,8 +44,17 @@ class ElementNumbers {
   /// Without numbers until a Sweep is finished.
   ElementNumbers(const PreparedMap& map, ElementKind kind);
 
-  /// Grids with the midpoints of such elements.
-  [[nodiscard]] static HalfGridSet gridsOf(ElementKind kind) noexcept;
+  /// The grid of midpoints of edges along an axis, or of faces across it.
+  [[nodiscard]] static constexpr HalfGrid midpointsOf(ElementKind kind, int axis) noexcept {
+    const int along = 1 << axis;
+    return static_cast<HalfGrid>(kind == ElementKind::Edges ? along : 7 ^ along);
+  }
+  /// All three.
+  [[nodiscard]] static constexpr HalfGridSet gridsOf(ElementKind kind) noexcept {
+    unsigned set = 0;
+    for (int axis = 0; axis < 3; ++axis) set |= halfGridBit(midpointsOf(kind, axis));
+    return static_cast<HalfGridSet>(set);
+  }
 
   /// Gives numbers while others sweep the same tets.
   class Sweep {
@@ -152,6 +161,9 @@ class ElementNumbers {
   Array<Index> lineBegin_;      ///< per grid (+1); there are no more lines than elements
   Array<Line> lines_;           ///< those with owned elements
 };
+
+/// @throws Error TooLarge for more elements than an Index can number
+void requireNumbers(std::uint64_t elements);
 
 /// What vertices and edges take to be numbered, in one sweep of the tets.
 struct GridNumbers {
