@@ -56,7 +56,6 @@ class BlockTracer {
   /// One of the two ways from a midpoint inside a tet.
   struct WayOut {
     TetExits::Exit exit{};
-    TetExits::Point point{};
     HalfFace mate = kNone;  ///< behind the face that the edge leaves through; kNone if it does not
     Index vertex = kNone;   ///< the end of the edge, if it is known
   };
@@ -100,8 +99,7 @@ class BlockTracer {
   [[nodiscard]] bool leave(WayOut& way, const TetExits::Weights& middle, double distance) {
     const TetExits::End end = exits_.endAt(distance);
     if (end != TetExits::End::Beyond) return end == TetExits::End::Inside;
-    way.point = exits_.point(middle, way.exit);
-    if (!way.point.sure) return false;
+    if (!exits_.point(middle, way.exit).sure) return false;
     const HalfFace halfFace = halfFaceOf(tet_, way.exit.face);
     way.mate = map_.topology.mate[halfFace];
     if (way.mate == kNone) return false;
@@ -160,7 +158,7 @@ class BlockTracer {
   void finish(const Element& edge, std::size_t before, const std::array<Index, 2>& ends) {
     arcs_.ends[edge.number] = ends;
     arcs_.pointBegin[edge.number] = pieces_.points() - before;
-    EdgeTracer::smoothParameters(pieces_.parametersFrom(before));
+    EdgeTracer::smoothParameters(pieces_, before);
   }
 
   const PreparedMap& map_;

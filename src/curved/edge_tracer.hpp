@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <span>
 
 #include <curved/arc_pieces.hpp>
 #include <curved/arc_tracer.hpp>
@@ -55,10 +54,12 @@ class EdgeTracer {
   [[nodiscard]] ArcTracer& tracer() noexcept { return tracer_; }
   [[nodiscard]] const ArcTracer& tracer() const noexcept { return tracer_; }
 
-  /// Exact values are in (0, 1) and ascend; rounding may not change that.
-  static void smoothParameters(std::span<double> parameters) {
+  /// Of an arc's points. Exact values are in (0, 1) and ascend; rounding may not change that.
+  static void smoothParameters(ArcPieces& pieces, std::size_t firstPoint) {
     double low = std::numeric_limits<double>::min();
-    for (double& parameter : parameters) parameter = low = std::clamp(parameter, low, kBelowOne);
+    pieces.changeParameters(firstPoint, [&](double& parameter, std::size_t /*i*/) {
+      parameter = low = std::clamp(parameter, low, kBelowOne);
+    });
   }
 
  private:

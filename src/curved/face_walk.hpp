@@ -18,13 +18,14 @@ namespace hexhex {
 [[nodiscard]] inline ArcExit exitThrough(const PreparedMap& map, Index tet, int face,
                                          const ChartEdge& edge) {
   const OwnedCrossing owned(map, tet, face, edge);
-  const Index owner = owned.face.tet;
-  const int there = oppositeCorner(owned.face.corners);
   const std::int64_t unit = map.exact.unit;
-  const FaceCrossing crossing = crossFace(map.exact.corners[owner], there, owned.edge, unit);
+  const FaceCrossing crossing =
+      crossFace(map.exact.corners[owned.face.tet], owned.local, owned.edge, unit);
+  // Units are powers of two, so this is exact.
   const double perUnit = 1 / static_cast<double>(unit);
   return {owned.face,
-          pointInFace(crossing.shares, map.topology.tets[owner], there, map.input.view.points),
+          pointInFace(crossing.shares, map.topology.tets[owned.face.tet], owned.local,
+                      map.input.view.points),
           crossing.place.fromBegin() * perUnit,
           crossing.place.reversed(unit).fromBegin() * perUnit};
 }
