@@ -57,8 +57,9 @@ void compareWithExact(const TetMap& given, int scale, double epsilon, PointKinds
       parametricVolume(map.exact) * static_cast<std::uint64_t>(scale * scale * scale);
   Stage stage(context, "arcs");
   if (scale != 1) scaleMap(map.exact, scale, stage);
-  const auto [vertices, edges] = numberVerticesAndEdges(map, stage);
-  const Arcs exact = traceArcs(map, vertices, edges, stage, edges.count() + 1);
+  const GridNumbers numbers = numberVerticesAndEdges(map, stage);
+  const ElementNumbers& edges = numbers.edges;
+  const Arcs exact = traceArcs(map, numbers.vertices, edges, stage, edges.count() + 1);
   kinds.count(exact);
   for (const int threads : {1, 2, 5}) {
     SCOPED_TRACE(std::to_string(threads) + " threads");
@@ -67,7 +68,7 @@ void compareWithExact(const TetMap& given, int scale, double epsilon, PointKinds
       EngineFindings findings;
       const HexMesh mesh = runPipeline(map, cells, epsilon, context, statistics, &findings);
       const LatticeNumbers found(map, std::move(findings.lines.value()), mesh.points.size(), stage);
-      EXPECT_EQ(found.count(), vertices.count());
+      EXPECT_EQ(found.count(), numbers.vertices.count());
       expectSameBits(exact, gatherArcs(map, found, std::move(findings.edges), stage));
     });
     if (::testing::Test::HasFailure()) return;
