@@ -55,6 +55,12 @@ class Tracer {
         finder_(map, signs, vertices, local),
         global_(global) {}
 
+  /// About how many edges tets have at most, if they are regular: each is traced from one end only.
+  [[nodiscard]] std::size_t mostEdges(std::size_t firstTet, std::size_t endTet) const noexcept {
+    return 3 *
+           std::size_t{vertices_.lines.pointBegin(endTet) - vertices_.lines.pointBegin(firstTet)};
+  }
+
   /// Traces every propeller whose first blade's casing lies in this tet.
   template <class Recorder>
   void run(Index tet, Recorder& recorder) {
@@ -104,9 +110,9 @@ class Tracer {
     if constexpr (Recorder::kRecords) {
       // Of two threads, the one that is first at the lower place keeps its record.
       const bool isLower = here <= there;
-      if (entry(isLower ? here : there)
-              .exchange(isLower ? ahead : back, std::memory_order_relaxed) ==
-          GlobalConnectivity::kUntraced) {
+      if (alone_ || entry(isLower ? here : there)
+                            .exchange(isLower ? ahead : back, std::memory_order_relaxed) ==
+                        GlobalConnectivity::kUntraced) {
         const auto isInside = [&](Index g) { return vertices_.generators[g].simplex == kWholeTet; };
         recorder.keep({{vertex, end},
                        begin.tet,
@@ -178,6 +184,7 @@ class Tracer {
   const LocalConnectivity& local_;
   SlotFinder finder_;
   GlobalConnectivity& global_;
+  bool alone_ = currentThreads() == 1;
 };
 
 }  // namespace
@@ -209,7 +216,9 @@ GlobalConnectivity traceOpposites(const PreparedMap& map, const Array<NormalSign
   }
   records->assign(blockCount(tets, kGrain), {});
   parallelBlocks(stage, tets, kGrain, [&](std::size_t first, std::size_t end, std::size_t block) {
-    EdgeRecorder recorder((*records)[block]);
+    EdgeRecords& own = (*records)[block];
+    own.edges.reserve(tracer.mostEdges(first, end));
+    EdgeRecorder recorder(own);
     for (std::size_t t = first; t < end; ++t) tracer.run(static_cast<Index>(t), recorder);
   });
   return global;

@@ -39,6 +39,11 @@ struct LatticeLines {
     return planeBegin[tet] == planeBegin[tet + 1];
   }
 
+  /// The first point of a tet in `vertices`; also of the tet behind the last.
+  [[nodiscard]] Index pointBegin(std::size_t tet) const noexcept {
+    return lines[planes[planeBegin[tet]].lineBegin].pointBegin;
+  }
+
   /// Where the grid point is in these arrays.
   struct Place {
     Index line = kNone;  ///< kNone if the closed tet does not contain the point
