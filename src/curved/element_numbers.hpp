@@ -62,7 +62,7 @@ class ElementNumbers {
     explicit Sweep(ElementNumbers& numbers);
     /// Tets of a block in order, blocks in any order and in parallel.
     /// @param grids  of the tet; with gridsOf() wanted
-    void add(std::size_t block, Index tet, HalfGrids& grids) {
+    void add(std::size_t block, Index tet, const HalfGrids& grids) {
       if ((grids.occupied() & gridsOf(numbers_.kind_)) == 0) {
         numbers_.addNothing(tet);
       } else {
@@ -151,7 +151,7 @@ class ElementNumbers {
       lineBegin_[gridOf(tet, axis)] = 0;
     }
   }
-  void sweep(Index tet, HalfGrids& grids, std::vector<Line>& lines);
+  void sweep(Index tet, const HalfGrids& grids, std::vector<Line>& lines);
 
   const ExactMap& map_;
   const TetTopology& topology_;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <curved/arcs.hpp>
+#include <curved/edge_guest.hpp>
 #include <curved/lagrange.hpp>
 #include <curved/patches.hpp>
 #include <curved/recorded_arcs.hpp>
@@ -40,20 +41,31 @@ void addPatches(const PreparedMap& map, const LatticeNumbers& vertices, const El
   toCallersCorners(map.input, result.patches.polygonCorners, stage);
 }
 
-/// @param map       scaled
-/// @param findings  of the engine that found the mesh
-void addParts(const PreparedMap& map, EngineFindings findings, PiecewiseLinearParts parts,
+/// What arcs need of the engine that finds the mesh.
+struct FindingsForArcs {
+  /// @param map  scaled
+  FindingsForArcs(const PreparedMap& map, Engine engine) {
+    if (engine == Engine::Atlas) of.guest = &guest.emplace(map);
+  }
+
+  EngineFindings of;
+  std::optional<EdgeGuest> guest;  ///< of the atlas engine
+};
+
+/// @param map    scaled
+/// @param found  by the engine that found the mesh
+void addParts(const PreparedMap& map, FindingsForArcs& found, PiecewiseLinearParts parts,
               PiecewiseLinearMesh& result, Context& context) {
   Stage arcStage(context, "arcs");
   const bool withPatches = parts == PiecewiseLinearParts::ArcsAndPatches;
-  if (findings.lines) {
-    const LatticeNumbers vertices(map, std::move(*findings.lines), result.mesh.points.size(),
-                                  arcStage);
-    result.arcs = gatherArcs(map, vertices, std::move(findings.edges), arcStage);
+  if (!found.guest) {
+    const LatticeNumbers vertices(map, std::move(found.of.lines.value()),
+                                  result.mesh.points.size(), arcStage);
+    result.arcs = gatherArcs(map, vertices, std::move(found.of.edges), arcStage);
     arcStage.finish();
     if (withPatches) addPatches(map, vertices, nullptr, result, context);
   } else {
-    const auto [vertices, edges] = numberVerticesAndEdges(map, arcStage);
+    const auto [vertices, edges] = found.guest->finish(arcStage);
     result.arcs = traceArcs(map, vertices, edges, arcStage);
     arcStage.finish();
     if (withPatches) addPatches(map, vertices, &edges, result, context);
@@ -86,9 +98,9 @@ PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map, PiecewiseLinea
   PiecewiseLinearMesh result;
   runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {}, context, filled);
-    EngineFindings findings;
-    result.mesh = extractScaled(map, scaled, options, context, filled, &findings);
-    addParts(scaled.map, std::move(findings), parts, result, context);
+    FindingsForArcs findings(scaled.map, options.engine);
+    result.mesh = extractScaled(map, scaled, options, context, filled, &findings.of);
+    addParts(scaled.map, findings, parts, result, context);
   });
   return result;
 }
@@ -113,9 +125,9 @@ PiecewiseLinearMesh Extractor::extractPiecewiseLinear(PiecewiseLinearParts parts
   PiecewiseLinearMesh result;
   prepared_->run(options, {}, context, statistics,
                  [&](std::uint64_t cells, ExtractStatistics& filled) {
-                   EngineFindings findings;
-                   result.mesh = prepared_->mesh(cells, options, context, filled, &findings);
-                   addParts(prepared_->map(), std::move(findings), parts, result, context);
+                   FindingsForArcs findings(prepared_->map(), options.engine);
+                   result.mesh = prepared_->mesh(cells, options, context, filled, &findings.of);
+                   addParts(prepared_->map(), findings, parts, result, context);
                  });
   return result;
 }

@@ -2,16 +2,22 @@
 
 namespace hexhex {
 
-bool weighExactly(const SeenCorners& seen, std::array<double, 3>& weights) noexcept {
+bool shareExactly(const FaceView& view, std::array<double, 3>& shares) noexcept {
+  const std::array<Int128, 3> weights = {
+      crossComponent(view.second - view.begin, view.third - view.begin, 0),
+      crossComponent(view.begin, view.third, 0), crossComponent(view.second, view.begin, 0)};
   unsigned positive = 0;
   unsigned negative = 0;
+  double sum = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Int128 product = crossComponent(seen[(i + 1) % 3], seen[(i + 2) % 3], 0);
-    positive += product > 0 ? 1 : 0;
-    negative += product < 0 ? 1 : 0;
-    weights[i] = toDouble(product);
+    positive += weights[i] > 0 ? 1 : 0;
+    negative += weights[i] < 0 ? 1 : 0;
+    shares[i] = toDouble(weights[i]);
+    sum += shares[i];
   }
-  return positive == 3 || negative == 3;
+  if (positive != 3 && negative != 3) return false;
+  for (double& share : shares) share /= sum;
+  return true;
 }
 
 }  // namespace hexhex

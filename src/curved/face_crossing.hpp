@@ -57,66 +57,73 @@ struct FaceCrossing {
   bool inside = false;  ///< whether the edge's line crosses the interior of the face: exact
 };
 
-/// The corners of a face relative to where an edge begins: along it, then across.
-using SeenCorners = std::array<LatticePoint, 3>;
+/// A face seen along an edge: all relative to its first corner, along the edge, then across.
+struct FaceView {
+  LatticePoint begin;  ///< of the edge
+  LatticePoint second;
+  LatticePoint third;
 
-/// Cross products of pairs of corners, by exact arithmetic.
-/// @return whether the line crosses the interior of the face
-[[nodiscard]] bool weighExactly(const SeenCorners& seen, std::array<double, 3>& weights) noexcept;
+  FaceView(const LatticeTet& corners, int face, const ChartEdge& edge, std::int64_t unit) noexcept {
+    constexpr std::array<std::array<std::uint8_t, 3>, 3> kAxes = {
+        {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}}};
+    const std::array<std::uint8_t, 3>& axes = kAxes[static_cast<std::size_t>(axisOf(edge.along))];
+    const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+    const LatticePoint& a = corners[static_cast<std::size_t>(f[0])];
+    const LatticePoint& b = corners[static_cast<std::size_t>(f[1])];
+    const LatticePoint& c = corners[static_cast<std::size_t>(f[2])];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t axis = axes[k];
+      begin[k] = edge.z[axis] * unit - a[axis];
+      second[k] = b[axis] - a[axis];
+      third[k] = c[axis] - a[axis];
+    }
+  }
+};
+
+/// Shares of the corners, by exact arithmetic up to their own roundings.
+/// @return whether the edge's line crosses the interior of the face
+[[nodiscard]] bool shareExactly(const FaceView& view, std::array<double, 3>& shares) noexcept;
 
 /// The same in floating point.
 ///
-/// In units of u = 2^-53 and of M, the largest coordinate across the edge: coordinates carry one
-/// rounding, so products are known to 3 M^2 and their differences to 8 M^2, or 2^-50 M^2. M^2 is
-/// less than the sum of all squares. Where the sum of weights, which is known to three times that
-/// and its own roundings, is above 2^-10 of that, shares of it are known to 2^-37.
+/// In units of u = 2^-53 and of M, the largest coordinate of a corner across the edge, which is none
+/// of the line either, as that meets the closed face. Coordinates carry one rounding, so products
+/// are known to 3 M^2 and their differences to 8 M^2. M^2 is less than the sum of squares. Where the
+/// sum of all weights is above 2^-10 of that, the shares of the second and the third corner are known
+/// to 2^14 units and their own roundings, the share that is left to twice that: less than 2^-37.
 /// @return whether that is certain to be inside, and so well known
-[[nodiscard]] inline bool weighRoughly(const SeenCorners& seen,
-                                       std::array<double, 3>& weights) noexcept {
-  std::array<double, 3> p;
-  std::array<double, 3> q;
-  std::array<double, 3> squares;
-  for (std::size_t i = 0; i < 3; ++i) {
-    p[i] = static_cast<double>(seen[i][1]);
-    q[i] = static_cast<double>(seen[i][2]);
-    squares[i] = p[i] * p[i] + q[i] * q[i];
-  }
-  weights[0] = p[1] * q[2] - p[2] * q[1];
-  weights[1] = p[2] * q[0] - p[0] * q[2];
-  weights[2] = p[0] * q[1] - p[1] * q[0];
-  const double square = squares[0] + squares[1] + squares[2];
-  const double leastWeight = 0x1p-49 * square;
-  const double least = std::min(std::min(weights[0], weights[1]), weights[2]);
-  const double greatest = std::max(std::max(weights[0], weights[1]), weights[2]);
-  const bool hasOneSign = least > leastWeight || greatest < -leastWeight;
-  return hasOneSign && std::abs(weights[0] + weights[1] + weights[2]) > 0x1p-10 * square;
+[[nodiscard]] inline bool shareRoughly(const FaceView& view,
+                                       std::array<double, 3>& shares) noexcept {
+  const auto p = static_cast<double>(view.begin[1]);
+  const auto q = static_cast<double>(view.begin[2]);
+  const auto p2 = static_cast<double>(view.second[1]);
+  const auto q2 = static_cast<double>(view.second[2]);
+  const auto p3 = static_cast<double>(view.third[1]);
+  const auto q3 = static_cast<double>(view.third[2]);
+  const double squares = p2 * p2 + q2 * q2 + p3 * p3 + q3 * q3;
+  const double perSum = 1 / (p2 * q3 - p3 * q2);
+  shares[1] = (p * q3 - p3 * q) * perSum;
+  shares[2] = (p2 * q - p * q2) * perSum;
+  shares[0] = 1 - shares[1] - shares[2];
+  constexpr double kLeastShare = 0x1p-36;
+  return squares * std::abs(perSum) < 0x1p10 &&
+         std::min(std::min(shares[0], shares[1]), shares[2]) > kLeastShare;
 }
 
 /// @param corners  of the face's owner
-/// @param edge     in the owner's chart
+/// @param edge     in the owner's chart; its line meets the closed face
 [[nodiscard]] inline FaceCrossing crossFace(const LatticeTet& corners, int face,
                                             const ChartEdge& edge, std::int64_t unit) noexcept {
-  const auto along = static_cast<std::size_t>(axisOf(edge.along));
-  const std::array<std::size_t, 3> axes = {along, along == 2 ? 0 : along + 1,
-                                           along == 0 ? 2 : along - 1};
-  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
-  SeenCorners seen;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const LatticePoint& corner = corners[static_cast<std::size_t>(f[i])];
-    for (std::size_t k = 0; k < 3; ++k) seen[i][k] = corner[axes[k]] - edge.z[axes[k]] * unit;
-  }
+  const FaceView view(corners, face, edge, unit);
   FaceCrossing crossing;
-  std::array<double, 3> weights;
-  crossing.inside = weighRoughly(seen, weights) || weighExactly(seen, weights);
-  if (!crossing.inside) return crossing;
-  const double perSum = 1 / (weights[0] + weights[1] + weights[2]);
-  for (std::size_t i = 0; i < 3; ++i) crossing.shares[i] = weights[i] * perSum;
+  crossing.inside = shareRoughly(view, crossing.shares) || shareExactly(view, crossing.shares);
   const std::int64_t sign = signOf(edge.along);
-  const auto first = static_cast<double>(sign * (seen[1][0] - seen[0][0]));
-  const auto second = static_cast<double>(sign * (seen[2][0] - seen[0][0]));
-  crossing.place = {sign * seen[0][0], crossing.shares[1] * first + crossing.shares[2] * second};
-  crossing.error = 0x1p-36 * (std::abs(first) + std::abs(second)) +
-                   0x1p-50 * std::abs(static_cast<double>(seen[0][0]));
+  const auto second = static_cast<double>(sign * view.second[0]);
+  const auto third = static_cast<double>(sign * view.third[0]);
+  const std::int64_t corner = -sign * view.begin[0];
+  crossing.place = {corner, crossing.shares[1] * second + crossing.shares[2] * third};
+  crossing.error = 0x1p-36 * (std::abs(second) + std::abs(third)) +
+                   0x1p-50 * std::abs(static_cast<double>(corner));
   return crossing;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <sweep/sweep_guest.hpp>
 #include <sweep/tet_lines.hpp>
 #include <sweep/vertex_numbers.hpp>
 
@@ -40,7 +41,9 @@ class LatticeNumbers {
   /// @param room  how many grid points the box around a tet's vertices may have for each of them if
   ///              it is to have a table; thin tets across the axes fill next to nothing of theirs
   LatticeNumbers(const PreparedMap& map, std::uint64_t room, Stage& stage);
-  /// Takes over what an engine has found.
+  /// Takes over what an engine has swept and numbered.
+  LatticeNumbers(const PreparedMap& map, SweptVertices swept, Stage& stage);
+  /// Takes over tables in which an engine has found its way.
   /// @param lines  complete
   /// @param count  of vertices
   LatticeNumbers(const PreparedMap& map, LatticeLines lines, std::uint64_t count, Stage& stage);
@@ -59,7 +62,7 @@ class LatticeNumbers {
     explicit Sweep(LatticeNumbers& numbers);
     /// Tets of a block in order, blocks in any order and in parallel.
     /// @param grids  of the tet; with kGrids wanted
-    void add(std::size_t block, Index tet, HalfGrids& grids) {
+    void add(std::size_t block, Index tet, const HalfGrids& grids) {
       if ((grids.occupied() & kGrids) != 0) {
         sweep(block, tet, grids);
       } else {
@@ -72,7 +75,7 @@ class LatticeNumbers {
     void finish(Stage& stage);
 
    private:
-    void sweep(std::size_t block, Index tet, HalfGrids& grids);
+    void sweep(std::size_t block, Index tet, const HalfGrids& grids);
 
     LatticeNumbers& numbers_;
     VertexCounter counter_;
@@ -164,6 +167,9 @@ class LatticeNumbers {
     return kNoTable | std::uint64_t{found.simplex} << 32 | found.vertex;
   }
 
+  void noteLines(Index tet, std::span<const SweptLine> lines) noexcept;
+  template <class TakeBlock>
+  void numberLines(const TakeBlock& takeBlock, Stage& stage);
   [[nodiscard]] std::vector<std::size_t> countBoxes();
   [[nodiscard]] Box measureBox(Index tet) const;
   void fillBox(Index tet, std::uint64_t begin);
@@ -180,7 +186,7 @@ class LatticeNumbers {
   }
   [[nodiscard]] Found foundAtEnd(Index tet, const Line& line, const GridPoint& z,
                                  std::uint32_t i) const;
-  void number(Index tet, std::vector<SweptLine>& swept);
+  void number(Index tet, std::span<const SweptLine> swept);
   static void enter(Line& line, const VertexRun& run);
 
   const PreparedMap& map_;

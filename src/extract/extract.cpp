@@ -98,7 +98,10 @@ PreparedMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
 
 HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells, const ExtractOptions& options,
                   Context& context, ExtractStatistics& statistics, EngineFindings* findings) {
-  if (options.engine == Engine::Atlas) return runAtlas(map, expectedCells, context, statistics);
+  if (options.engine == Engine::Atlas) {
+    return runAtlas(map, expectedCells, context, statistics, {},
+                    findings == nullptr ? nullptr : findings->guest);
+  }
   {
     Stage stage(context, "stars");
     addStars(map.topology, stage);
