@@ -20,7 +20,6 @@ struct ArcExit {
   OwnedSimplex generator;  ///< the simplex that holds it
   Vec3 point;
   double parameter;  ///< along the edge
-  double rest;       ///< the same from the other end
 };
 
 /// Inner points and segments of consecutive arcs. Keeps its memory.
@@ -58,10 +57,10 @@ class ArcPieces {
   }
   void addSegment(const OwnedSimplex& carrier) { segments_.push_back(carrier); }
 
-  /// Calls change(parameter, i) for the points from one on, which is the 0-th.
+  /// Calls change(parameter) for the points from one on.
   template <class Change>
   void changeParameters(std::size_t first, const Change& change) {
-    for (std::size_t i = first; i < points_.size(); ++i) change(points_[i].parameter, i - first);
+    for (std::size_t i = first; i < points_.size(); ++i) change(points_[i].parameter);
   }
   /// Turns the order of the last ones round.
   void reverseFrom(std::size_t firstPoint, std::size_t firstSegment) {

@@ -84,7 +84,7 @@ ArcExit ArcTracer::exitAt(const OwnedSimplex& generator, const SimplexInTet& car
     const auto i = static_cast<std::size_t>(std::countr_zero(left));
     sum += weights[i] = toDouble(point.weights[i]);
   }
-  ArcExit exit{generator, {}, 0, 0};
+  ArcExit exit{generator, {}, 0};
   for (unsigned left = at; left != 0; left &= left - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(left));
     const double share = weights[i] / sum;
@@ -93,7 +93,6 @@ ArcExit ArcTracer::exitAt(const OwnedSimplex& generator, const SimplexInTet& car
     exit.parameter += share * static_cast<double>(seen[i][0]);
   }
   exit.parameter /= static_cast<double>(exact_.unit);
-  exit.rest = 1 - exit.parameter;
   return exit;
 }
 

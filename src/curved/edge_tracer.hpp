@@ -31,7 +31,7 @@ class EdgeTracer {
     const std::size_t firstSegment = pieces_.segments();
     const ArcEnd first = follow([&](const SimplexInTet& carrier, const ArcExit& exit) {
       addSegment(carrier);
-      pieces_.addPoint(exit, exit.rest);
+      pieces_.addPoint(exit, 1 - exit.parameter);
     });
     addSegment(first.carrier);
     pieces_.reverseFrom(firstPoint, firstSegment);
@@ -57,7 +57,7 @@ class EdgeTracer {
   /// Of an arc's points. Exact values are in (0, 1) and ascend; rounding may not change that.
   static void smoothParameters(ArcPieces& pieces, std::size_t firstPoint) {
     double low = std::numeric_limits<double>::min();
-    pieces.changeParameters(firstPoint, [&](double& parameter, std::size_t /*i*/) {
+    pieces.changeParameters(firstPoint, [&](double& parameter) {
       parameter = low = std::clamp(parameter, low, kBelowOne);
     });
   }

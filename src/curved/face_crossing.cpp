@@ -2,22 +2,30 @@
 
 namespace hexhex {
 
-bool shareExactly(const FaceView& view, std::array<double, 3>& shares) noexcept {
-  const std::array<Int128, 3> weights = {
-      crossComponent(view.second - view.begin, view.third - view.begin, 0),
-      crossComponent(view.begin, view.third, 0), crossComponent(view.second, view.begin, 0)};
+FaceShares shareExactly(const FaceView& face, const GridPoint& z, std::int64_t unit) noexcept {
+  LatticePoint line{};
+  for (const std::uint8_t axis : face.axes) line[axis] = z[axis] * unit;
+  const auto axis = static_cast<int>(face.axes[0]);
+  const auto weight = [&](const LatticePoint& a, const LatticePoint& b) {
+    return crossComponent(a - line, b - line, axis);
+  };
+  const std::array<Int128, 3> weights = {weight(face.second, face.third),
+                                         weight(face.third, face.first),
+                                         weight(face.first, face.second)};
   unsigned positive = 0;
   unsigned negative = 0;
   double sum = 0;
+  FaceShares shares;
   for (std::size_t i = 0; i < 3; ++i) {
     positive += weights[i] > 0 ? 1 : 0;
     negative += weights[i] < 0 ? 1 : 0;
-    shares[i] = toDouble(weights[i]);
-    sum += shares[i];
+    shares.of[i] = toDouble(weights[i]);
+    sum += shares.of[i];
   }
-  if (positive != 3 && negative != 3) return false;
-  for (double& share : shares) share /= sum;
-  return true;
+  shares.inside = positive == 3 || negative == 3;
+  if (!shares.inside) return {};
+  for (double& share : shares.of) share /= sum;
+  return shares;
 }
 
 }  // namespace hexhex

@@ -18,16 +18,12 @@ namespace hexhex {
 [[nodiscard]] inline ArcExit exitThrough(const PreparedMap& map, Index tet, int face,
                                          const ChartEdge& edge) {
   const OwnedCrossing owned(map, tet, face, edge);
-  const std::int64_t unit = map.exact.unit;
   const FaceCrossing crossing =
-      crossFace(map.exact.corners[owned.face.tet], owned.local, owned.edge, unit);
-  // Units are powers of two, so this is exact.
-  const double perUnit = 1 / static_cast<double>(unit);
+      crossFace(map.exact.corners[owned.face.tet], owned.local, owned.edge, map.exact.unit);
   return {owned.face,
           pointInFace(crossing.shares, map.topology.tets[owned.face.tet], owned.local,
                       map.input.view.points),
-          crossing.place.fromBegin() * perUnit,
-          crossing.place.reversed(unit).fromBegin() * perUnit};
+          crossing.parameter};
 }
 
 /// On which side of the edges of a tet a hex edge passes, looking along it.

@@ -52,8 +52,6 @@ class EdgeReplay {
       : map_(map),
         counts_(counts),
         unit_(map.exact.unit),
-        length_(static_cast<double>(map.exact.unit)),
-        perUnit_(1 / length_),
         arcs_(arcs),
         pieces_(arcs.pieces),
         vertices_(vertices),
@@ -87,7 +85,6 @@ class EdgeReplay {
   ///         midpoint is not certain to be inside of one
   [[nodiscard]] bool follow(const EdgeRecord& record, std::span<const HalfFace> faces) {
     if (faces.empty() && !record.inside) return false;
-    places_.clear();
     middle_ = {record.z, record.along};
     owner_ = record.tet;
     pieces_.addSegment({record.tet, kWholeTet});
@@ -100,11 +97,12 @@ class EdgeReplay {
       const HalfFace owned = isOwned ? halfFace : mate;
       const FaceCrossing crossing =
           crossFace(map_.exact.corners[tetOf(owned)], localOf(owned), isOwned ? at : ahead, unit_);
-      const double place = crossing.place.fromBegin();
-      const bool isBetween = place > crossing.error && place < length_ - crossing.error;
-      const double fromMiddle = place - length_ / 2;
-      if (!crossing.inside || !isBetween || std::abs(fromMiddle) <= crossing.error) return false;
-      addPoint(owned, crossing, place);
+      const double fromMiddle = crossing.parameter - 0.5;
+      const double distance = std::abs(fromMiddle);
+      if (!crossing.inside || distance >= 0.5 - crossing.error || distance <= crossing.error) {
+        return false;
+      }
+      addPoint(owned, crossing);
       at = ahead;
       tet = tetOf(mate);
       pieces_.addSegment({tet, kWholeTet});
@@ -115,12 +113,11 @@ class EdgeReplay {
     }
     return true;
   }
-  void addPoint(HalfFace face, const FaceCrossing& crossing, double place) {
+  void addPoint(HalfFace face, const FaceCrossing& crossing) {
     const Index owner = tetOf(face);
     const Vec3 point = pointInFace(crossing.shares, map_.topology.tets[owner], localOf(face),
                                    map_.input.view.points);
-    pieces_.addPoint({owner, faceMask(localOf(face))}, point, place * perUnit_);
-    places_.push_back(crossing.place);
+    pieces_.addPoint({owner, faceMask(localOf(face))}, point, crossing.parameter);
   }
 
   /// Makes the arc run along the owner's axis.
@@ -129,10 +126,7 @@ class EdgeReplay {
     if (signOf(middle_.along) < 0) {
       std::swap(ends[0], ends[1]);
       pieces_.reverseFrom(firstPoint, firstSegment);
-      const std::size_t count = places_.size();
-      pieces_.changeParameters(firstPoint, [&](double& parameter, std::size_t i) {
-        parameter = places_[count - 1 - i].reversed(unit_).fromBegin() * perUnit_;
-      });
+      pieces_.changeParameters(firstPoint, [](double& parameter) { parameter = 1 - parameter; });
     }
     finish(firstPoint, ends, owner_, middle_.ascending());
   }
@@ -211,16 +205,13 @@ class EdgeReplay {
   const PreparedMap& map_;
   const Counters& counts_;
   std::int64_t unit_;
-  double length_;  ///< of an edge: the same
-  double perUnit_;
   BlockArcs& arcs_;
   ArcPieces& pieces_;
   const LatticeNumbers& vertices_;
   EdgeTracer tracer_;
   SimplexStar star_;
-  std::vector<EdgePlace> places_;  ///< of the points of the edge at hand
-  Index owner_ = kNone;            ///< of the midpoint
-  ChartEdge middle_{};             ///< the edge there
+  Index owner_ = kNone;  ///< of the midpoint
+  ChartEdge middle_{};   ///< the edge there
 };
 
 /// An arc among those of all blocks.
