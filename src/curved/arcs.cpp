@@ -7,6 +7,7 @@
 #include <curved/edge_tracer.hpp>
 #include <curved/output_waves.hpp>
 #include <curved/tet_exits.hpp>
+#include <curved/tet_faces.hpp>
 
 #include <base/prefetch.hpp>
 
@@ -23,7 +24,8 @@ class BlockTracer {
         arcs_(arcs),
         pieces_(pieces),
         tracer_(map, vertices, pieces),
-        exits_(map.exact.unit) {}
+        exits_(map.exact.unit),
+        faces_(map) {}
 
   /// By exact arithmetic.
   void trace(Index tet, const ElementNumbers::Row& row) {
@@ -66,7 +68,10 @@ class BlockTracer {
   }
 
   void lookAlong(Index tet, int axis) {
-    if (tet != tet_) exits_.enter(map_.exact.corners[tet]);
+    if (tet != tet_) {
+      exits_.enter(map_.exact.corners[tet]);
+      faces_.enter(tet);
+    }
     if (tet != tet_ || axis != axis_) exits_.turn(axis);
     tet_ = tet;
     axis_ = axis;
@@ -141,8 +146,8 @@ class BlockTracer {
   [[nodiscard]] Index vertexBehind(const WayOut& way, const GridPoint& z) const {
     return tracer_.tracer().vertexBehind(halfFaceOf(tet_, way.exit.face), way.mate, z);
   }
-  [[nodiscard]] ArcExit exitOf(const Element& edge, const WayOut& way) const {
-    return exitThrough(map_, tet_, way.exit.face, {edge.z, direction(edge.axis, 1)});
+  [[nodiscard]] ArcExit exitOf(const Element& edge, const WayOut& way) {
+    return faces_.exit(way.exit.face, {edge.z, direction(edge.axis, 1)});
   }
   void addExit(const Element& edge, const WayOut& way) {
     const ArcExit exit = exitOf(edge, way);
@@ -167,6 +172,7 @@ class BlockTracer {
   ArcPieces& pieces_;
   EdgeTracer tracer_;
   TetExits exits_;
+  TetFaces faces_;
   Index tet_ = kNone;    ///< that exits are known of
   int axis_ = -1;        ///< of its chart, along which
   SimplexInTet middle_;  ///< the midpoint of the edge at hand

@@ -2,16 +2,14 @@
 
 namespace hexhex {
 
-FaceShares shareExactly(const FaceView& face, const GridPoint& z, std::int64_t unit) noexcept {
-  LatticePoint line{};
-  for (const std::uint8_t axis : face.axes) line[axis] = z[axis] * unit;
-  const auto axis = static_cast<int>(face.axes[0]);
-  const auto weight = [&](const LatticePoint& a, const LatticePoint& b) {
-    return crossComponent(a - line, b - line, axis);
+FaceShares shareExactly(const CrossedFace& face, const ChartEdge& edge,
+                        std::int64_t unit) noexcept {
+  LatticePoint line;
+  for (std::size_t k = 0; k < 3; ++k) line[k] = edge.z[k] * unit;
+  const auto weight = [&](std::size_t i, std::size_t j) {
+    return crossComponent(face.corner(i) - line, face.corner(j) - line, axisOf(edge.along));
   };
-  const std::array<Int128, 3> weights = {weight(face.second, face.third),
-                                         weight(face.third, face.first),
-                                         weight(face.first, face.second)};
+  const std::array<Int128, 3> weights = {weight(1, 2), weight(2, 0), weight(0, 1)};
   unsigned positive = 0;
   unsigned negative = 0;
   double sum = 0;

@@ -51,29 +51,28 @@ struct FaceShares {
   bool inside = false;
 };
 
-/// A face as seen along an edge.
-struct FaceView {
-  const LatticePoint& first;
-  const LatticePoint& second;
-  const LatticePoint& third;
-  std::array<std::uint8_t, 3> axes;  ///< along the edge, then across
+/// A face in the chart of its owner, ready to be crossed along any axis.
+struct CrossedFace {
+  const LatticeTet* corners;  ///< of the owner
+  int face;
+  LatticePoint first;            ///< its first corner
+  std::array<double, 3> second;  ///< the others, relative to that
+  std::array<double, 3> third;
 
-  FaceView(const LatticeTet& corners, int face, Direction along) noexcept
-      : first(cornerOf(corners, face, 0)),
-        second(cornerOf(corners, face, 1)),
-        third(cornerOf(corners, face, 2)),
-        axes(kAxes[static_cast<std::size_t>(axisOf(along))]) {}
-
- private:
-  static constexpr std::array<std::array<std::uint8_t, 3>, 3> kAxes = {
-      {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}}};
-  static const LatticePoint& cornerOf(const LatticeTet& corners, int face, std::size_t i) noexcept {
-    return corners[static_cast<std::size_t>(kFaceCorners[static_cast<std::size_t>(face)][i])];
+  CrossedFace(const LatticeTet& ofOwner, int ownersFace) noexcept
+      : corners(&ofOwner), face(ownersFace), first(corner(0)) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      second[k] = static_cast<double>(corner(1)[k] - first[k]);
+      third[k] = static_cast<double>(corner(2)[k] - first[k]);
+    }
+  }
+  [[nodiscard]] const LatticePoint& corner(std::size_t i) const noexcept {
+    return (*corners)[static_cast<std::size_t>(kFaceCorners[static_cast<std::size_t>(face)][i])];
   }
 };
 
 /// Where the line of an edge meets the plane of a face, by exact arithmetic up to the last roundings.
-[[nodiscard]] FaceShares shareExactly(const FaceView& face, const GridPoint& z,
+[[nodiscard]] FaceShares shareExactly(const CrossedFace& face, const ChartEdge& edge,
                                       std::int64_t unit) noexcept;
 
 /// The same in floating point.
@@ -85,16 +84,18 @@ struct FaceView {
 /// third corner are known to 2^14 and their own roundings, the share that is left to twice that:
 /// less than 2^-37.
 /// @return outside if it is not certain, or not known so well
-[[nodiscard]] inline FaceShares shareRoughly(const FaceView& face, const GridPoint& z,
+[[nodiscard]] inline FaceShares shareRoughly(const CrossedFace& face, const ChartEdge& edge,
                                              std::int64_t unit) noexcept {
-  const std::size_t m = face.axes[1];
-  const std::size_t n = face.axes[2];
-  const auto p = static_cast<double>(z[m] * unit - face.first[m]);
-  const auto q = static_cast<double>(z[n] * unit - face.first[n]);
-  const auto p2 = static_cast<double>(face.second[m] - face.first[m]);
-  const auto q2 = static_cast<double>(face.second[n] - face.first[n]);
-  const auto p3 = static_cast<double>(face.third[m] - face.first[m]);
-  const auto q3 = static_cast<double>(face.third[n] - face.first[n]);
+  constexpr std::array<std::array<std::uint8_t, 2>, 3> kAcross = {{{1, 2}, {2, 0}, {0, 1}}};
+  const std::array<std::uint8_t, 2>& across = kAcross[static_cast<std::size_t>(axisOf(edge.along))];
+  const std::size_t m = across[0];
+  const std::size_t n = across[1];
+  const auto p = static_cast<double>(edge.z[m] * unit - face.first[m]);
+  const auto q = static_cast<double>(edge.z[n] * unit - face.first[n]);
+  const double p2 = face.second[m];
+  const double q2 = face.second[n];
+  const double p3 = face.third[m];
+  const double q3 = face.third[n];
   const double squares = p2 * p2 + q2 * q2 + p3 * p3 + q3 * q3;
   const double perSum = 1 / (p2 * q3 - p3 * q2);
   const double second = (p * q3 - p3 * q) * perSum;
@@ -106,60 +107,67 @@ struct FaceView {
   return {{first, second, third}, inside};
 }
 
-/// @param corners  of the face's owner
-/// @param edge     in the owner's chart; its line meets the closed face
-/// @param unit     a power of two
-[[nodiscard]] inline FaceCrossing crossFace(const LatticeTet& corners, int face,
-                                            const ChartEdge& edge, std::int64_t unit) noexcept {
-  const FaceView view(corners, face, edge.along);
-  FaceShares shares = shareRoughly(view, edge.z, unit);
-  if (!shares.inside) [[unlikely]] shares = shareExactly(view, edge.z, unit);
-  const std::size_t axis = view.axes[0];
+/// @param edge  in the owner's chart; its line meets the closed face
+/// @param unit  a power of two
+[[nodiscard]] inline FaceCrossing crossFace(const CrossedFace& face, const ChartEdge& edge,
+                                            std::int64_t unit) noexcept {
+  FaceShares shares = shareRoughly(face, edge, unit);
+  if (!shares.inside) [[unlikely]] shares = shareExactly(face, edge, unit);
+  const auto axis = static_cast<std::size_t>(axisOf(edge.along));
   const bool ascends = signOf(edge.along) > 0;
-  const auto second = static_cast<double>(view.second[axis] - view.first[axis]);
-  const auto third = static_cast<double>(view.third[axis] - view.first[axis]);
-  const auto first = static_cast<double>(
-      view.first[axis] - (std::int64_t{edge.z[axis]} - (ascends ? 0 : 1)) * unit);
+  const std::int64_t begin = std::int64_t{edge.z[axis]} - (ascends ? 0 : 1);
+  const auto first = static_cast<double>(face.first[axis] - begin * unit);
+  const double beyond = shares.of[1] * face.second[axis] + shares.of[2] * face.third[axis];
   const double perUnit = 1 / static_cast<double>(unit);
-  const double place = (first + (shares.of[1] * second + shares.of[2] * third)) * perUnit;
   // A multiple of 2^-53, so that the way back is as exact as the way there.
-  const double rest = 1 - place;
+  const double rest = 1 - (first + beyond) * perUnit;
   const double parameter = ascends ? 1 - rest : rest;
-  const double error =
-      (0x1p-36 * (std::abs(second) + std::abs(third)) + 0x1p-50 * std::abs(first)) * perUnit +
-      0x1p-52;
+  const double reach = std::abs(face.second[axis]) + std::abs(face.third[axis]);
+  const double error = (0x1p-36 * reach + 0x1p-50 * std::abs(first)) * perUnit + 0x1p-52;
   return {shares.of, parameter, error, shares.inside};
 }
 
-/// In space.
+/// The corners of a face in space.
+using FacePoints = std::array<const Vec3*, 3>;
+
 /// @param tet  the face's owner
-[[nodiscard]] inline Vec3 pointInFace(const std::array<double, 3>& shares, const Tet& tet, int face,
-                                      std::span<const Vec3> points) noexcept {
+[[nodiscard]] inline FacePoints pointsOf(const Tet& tet, int face,
+                                         std::span<const Vec3> points) noexcept {
   const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
-  const Vec3& a = points[tet[static_cast<std::size_t>(f[0])]];
-  const Vec3& b = points[tet[static_cast<std::size_t>(f[1])]];
-  const Vec3& c = points[tet[static_cast<std::size_t>(f[2])]];
+  return {&points[tet[static_cast<std::size_t>(f[0])]], &points[tet[static_cast<std::size_t>(f[1])]],
+          &points[tet[static_cast<std::size_t>(f[2])]]};
+}
+
+[[nodiscard]] inline Vec3 pointInFace(const std::array<double, 3>& shares,
+                                      const FacePoints& corners) noexcept {
   Vec3 point;
-  for (std::size_t k = 0; k < 3; ++k)
-    point[k] = shares[0] * a[k] + shares[1] * b[k] + shares[2] * c[k];
+  for (std::size_t k = 0; k < 3; ++k) {
+    point[k] =
+        shares[0] * (*corners[0])[k] + shares[1] * (*corners[1])[k] + shares[2] * (*corners[2])[k];
+  }
   return point;
 }
 
-/// A face as its owner has it, with an edge that crosses it.
-struct OwnedCrossing {
-  OwnedSimplex face;
-  int local;  ///< the same face: by its opposite corner
-  ChartEdge edge;
+/// A face by its owner.
+struct FaceOfOwner {
+  Index tet;
+  int local;         ///< by its opposite corner
+  HalfFace crossed;  ///< on the side that it was seen from if the owner is on the other; else kNone
 
-  /// @param edge  in the chart of the tet
-  OwnedCrossing(const PreparedMap& map, Index tet, int localFace, const ChartEdge& inTet) noexcept
-      : face{tet, faceMask(localFace)}, local(localFace), edge(inTet) {
-    const HalfFace halfFace = halfFaceOf(tet, localFace);
-    const HalfFace mate = map.topology.mate[halfFace];
-    if (mate == kNone || tet < tetOf(mate)) return;
+  FaceOfOwner(const TetTopology& topology, Index seenFrom, int face) noexcept
+      : tet(seenFrom), local(face), crossed(kNone) {
+    const HalfFace halfFace = halfFaceOf(seenFrom, face);
+    const HalfFace mate = topology.mate[halfFace];
+    if (mate == kNone || seenFrom < tetOf(mate)) return;
+    tet = tetOf(mate);
     local = localOf(mate);
-    face = {tetOf(mate), faceMask(local)};
-    edge = inTet.across(map.exact.transitions, halfFace);
+    crossed = halfFace;
+  }
+  [[nodiscard]] OwnedSimplex simplex() const noexcept { return {tet, faceMask(local)}; }
+  /// @param edge  in the chart of the tet that the face was seen from
+  [[nodiscard]] ChartEdge carry(const ChartEdge& edge,
+                                const Transitions& transitions) const noexcept {
+    return crossed == kNone ? edge : edge.across(transitions, crossed);
   }
 };
 

@@ -17,13 +17,13 @@ namespace hexhex {
 /// @param edge  in the chart of the tet
 [[nodiscard]] inline ArcExit exitThrough(const PreparedMap& map, Index tet, int face,
                                          const ChartEdge& edge) {
-  const OwnedCrossing owned(map, tet, face, edge);
+  const FaceOfOwner owned(map.topology, tet, face);
+  const CrossedFace crossed(map.exact.corners[owned.tet], owned.local);
   const FaceCrossing crossing =
-      crossFace(map.exact.corners[owned.face.tet], owned.local, owned.edge, map.exact.unit);
-  return {owned.face,
-          pointInFace(crossing.shares, map.topology.tets[owned.face.tet], owned.local,
-                      map.input.view.points),
-          crossing.parameter};
+      crossFace(crossed, owned.carry(edge, map.exact.transitions), map.exact.unit);
+  const FacePoints corners =
+      pointsOf(map.topology.tets[owned.tet], owned.local, map.input.view.points);
+  return {owned.simplex(), pointInFace(crossing.shares, corners), crossing.parameter};
 }
 
 /// On which side of the edges of a tet a hex edge passes, looking along it.

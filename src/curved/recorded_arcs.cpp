@@ -96,7 +96,8 @@ class EdgeReplay {
       const bool isOwned = tet < tetOf(mate);
       const HalfFace owned = isOwned ? halfFace : mate;
       const FaceCrossing crossing =
-          crossFace(map_.exact.corners[tetOf(owned)], localOf(owned), isOwned ? at : ahead, unit_);
+          crossFace(CrossedFace(map_.exact.corners[tetOf(owned)], localOf(owned)),
+                    isOwned ? at : ahead, unit_);
       const double fromMiddle = crossing.parameter - 0.5;
       const double distance = std::abs(fromMiddle);
       if (!crossing.inside || distance >= 0.5 - crossing.error || distance <= crossing.error) {
@@ -115,9 +116,10 @@ class EdgeReplay {
   }
   void addPoint(HalfFace face, const FaceCrossing& crossing) {
     const Index owner = tetOf(face);
-    const Vec3 point = pointInFace(crossing.shares, map_.topology.tets[owner], localOf(face),
-                                   map_.input.view.points);
-    pieces_.addPoint({owner, faceMask(localOf(face))}, point, crossing.parameter);
+    const FacePoints corners =
+        pointsOf(map_.topology.tets[owner], localOf(face), map_.input.view.points);
+    pieces_.addPoint({owner, faceMask(localOf(face))}, pointInFace(crossing.shares, corners),
+                     crossing.parameter);
   }
 
   /// Makes the arc run along the owner's axis.
@@ -151,9 +153,9 @@ class EdgeReplay {
     ChartEdge edge{record.z, record.along};
     OwnedSimplex carrier{record.tet, simplex};
     if (dimension(simplex) == 2) {
-      const OwnedCrossing owned(map_, record.tet, oppositeCorner(simplex), edge);
-      carrier = owned.face;
-      edge = owned.edge;
+      const FaceOfOwner owned(map_.topology, record.tet, oppositeCorner(simplex));
+      carrier = owned.simplex();
+      edge = owned.carry(edge, map_.exact.transitions);
     }
     std::array<Index, 2> ends = record.ends;
     if (signOf(edge.along) < 0) std::swap(ends[0], ends[1]);
