@@ -59,8 +59,8 @@ void addParts(const PreparedMap& map, FindingsForArcs& found, PiecewiseLinearPar
   Stage arcStage(context, "arcs");
   const bool withPatches = parts == PiecewiseLinearParts::ArcsAndPatches;
   if (!found.guest) {
-    const LatticeNumbers vertices(map, std::move(found.of.lines.value()),
-                                  result.mesh.points.size(), arcStage);
+    const LatticeNumbers vertices(map, std::move(found.of.lines.value()), result.mesh.points.size(),
+                                  arcStage);
     result.arcs = gatherArcs(map, vertices, std::move(found.of.edges), arcStage);
     arcStage.finish();
     if (withPatches) addPatches(map, vertices, nullptr, result, context);

@@ -17,7 +17,7 @@ FaceShares shareExactly(const CrossedFace& face, const ChartEdge& edge,
   for (std::size_t i = 0; i < 3; ++i) {
     positive += weights[i] > 0 ? 1 : 0;
     negative += weights[i] < 0 ? 1 : 0;
-    shares.of[i] = toDouble(weights[i]);
+    shares.of[i] = signedToDouble(weights[i]);
     sum += shares.of[i];
   }
   shares.inside = positive == 3 || negative == 3;

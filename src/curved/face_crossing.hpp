@@ -71,7 +71,8 @@ struct CrossedFace {
   }
 };
 
-/// Where the line of an edge meets the plane of a face, by exact arithmetic up to the last roundings.
+/// Where the line of an edge meets the plane of a face, by exact arithmetic up to the last
+/// roundings.
 [[nodiscard]] FaceShares shareExactly(const CrossedFace& face, const ChartEdge& edge,
                                       std::int64_t unit) noexcept;
 
@@ -79,10 +80,10 @@ struct CrossedFace {
 ///
 /// In units of u = 2^-53 and of M, the largest coordinate of a corner across the edge relative to
 /// the first one; none of the line is larger, as it meets the closed face. Coordinates carry one
-/// rounding, so products are known to 3 M^2 and their differences to 8 M^2. M^2 is less than the sum
-/// of squares. Where the sum of all weights is above 2^-10 of that, the shares of the second and the
-/// third corner are known to 2^14 and their own roundings, the share that is left to twice that:
-/// less than 2^-37.
+/// rounding, so products are known to 3 M^2 and their differences to 8 M^2. M^2 is less than the
+/// sum of squares. Where the sum of all weights is above 2^-10 of that, the shares of the second
+/// and the third corner are known to 2^14 and their own roundings, the share that is left to twice
+/// that: less than 2^-37.
 /// @return outside if it is not certain, or not known so well
 [[nodiscard]] inline FaceShares shareRoughly(const CrossedFace& face, const ChartEdge& edge,
                                              std::int64_t unit) noexcept {
@@ -102,8 +103,8 @@ struct CrossedFace {
   const double third = (p2 * q - p * q2) * perSum;
   const double first = 1 - second - third;
   constexpr double kLeastShare = 0x1p-36;
-  const bool inside = squares * std::abs(perSum) < 0x1p10 &&
-                      std::min(std::min(first, second), third) > kLeastShare;
+  const bool inside =
+      squares * std::abs(perSum) < 0x1p10 && std::min(std::min(first, second), third) > kLeastShare;
   return {{first, second, third}, inside};
 }
 
@@ -112,7 +113,8 @@ struct CrossedFace {
 [[nodiscard]] inline FaceCrossing crossFace(const CrossedFace& face, const ChartEdge& edge,
                                             std::int64_t unit) noexcept {
   FaceShares shares = shareRoughly(face, edge, unit);
-  if (!shares.inside) [[unlikely]] shares = shareExactly(face, edge, unit);
+  if (!shares.inside) [[unlikely]]
+    shares = shareExactly(face, edge, unit);
   const auto axis = static_cast<std::size_t>(axisOf(edge.along));
   const bool ascends = signOf(edge.along) > 0;
   const std::int64_t begin = std::int64_t{edge.z[axis]} - (ascends ? 0 : 1);
@@ -134,7 +136,8 @@ using FacePoints = std::array<const Vec3*, 3>;
 [[nodiscard]] inline FacePoints pointsOf(const Tet& tet, int face,
                                          std::span<const Vec3> points) noexcept {
   const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
-  return {&points[tet[static_cast<std::size_t>(f[0])]], &points[tet[static_cast<std::size_t>(f[1])]],
+  return {&points[tet[static_cast<std::size_t>(f[0])]],
+          &points[tet[static_cast<std::size_t>(f[1])]],
           &points[tet[static_cast<std::size_t>(f[2])]]};
 }
 

@@ -1,5 +1,5 @@
-// A look at the tets while an engine sweeps them: further grids take little more then, as all of them
-// are points of the grid of half the width.
+// A look at the tets while an engine sweeps them: further grids take little more then, as all of
+// them are points of the grid of half the width.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// Arcs of recorded edges against those traced from their midpoints by exact arithmetic.
+// Arcs of what the engines hand over, recorded edges or swept lines, against those of a map that is
+// swept anew, traced from their midpoints by exact arithmetic.
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -6,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include <atlas/atlas.hpp>
 #include <curved/arcs.hpp>
+#include <curved/edge_guest.hpp>
 #include <curved/recorded_arcs.hpp>
 #include <gtest/gtest.h>
 
@@ -49,7 +52,33 @@ PreparedMap prepareAt(const TetMap& given, int scale, Context& context) {
   return map;
 }
 
-/// Records and gathers with several numbers of threads.
+/// What the propeller engine has recorded.
+Arcs recordedArcs(const PreparedMap& map, std::uint64_t cells, double epsilon, Context& context,
+                  Stage& stage) {
+  ExtractStatistics statistics;
+  EngineFindings findings;
+  const HexMesh mesh = runPipeline(map, cells, epsilon, context, statistics, &findings);
+  const LatticeNumbers found(map, std::move(findings.lines.value()), mesh.points.size(), stage);
+  EXPECT_EQ(found.count(), mesh.points.size());
+  return gatherArcs(map, found, std::move(findings.edges), stage);
+}
+
+/// Of the lines that the atlas engine has swept.
+/// @param mesh  that it makes if nobody watches
+Arcs arcsOfWatchedAtlas(const PreparedMap& map, const HexMesh& mesh, Context& context,
+                        Stage& stage) {
+  ExtractStatistics statistics;
+  EdgeGuest guest(map);
+  const HexMesh watched = runAtlas(map, mesh.cells.size(), context, statistics, {}, &guest);
+  EXPECT_TRUE(watched.points == mesh.points && watched.cells == mesh.cells);
+  EXPECT_TRUE(watched.generatorTet == mesh.generatorTet &&
+              watched.generatorCorners == mesh.generatorCorners);
+  const GridNumbers numbers = guest.finish(stage);
+  EXPECT_EQ(numbers.vertices.count(), mesh.points.size());
+  return traceArcs(map, numbers.vertices, numbers.edges, stage);
+}
+
+/// With several numbers of threads.
 void compareWithExact(const TetMap& given, int scale, double epsilon, PointKinds& kinds) {
   Context context(2);
   PreparedMap map = prepareAt(given, scale, context);
@@ -61,15 +90,13 @@ void compareWithExact(const TetMap& given, int scale, double epsilon, PointKinds
   const ElementNumbers& edges = numbers.edges;
   const Arcs exact = traceArcs(map, numbers.vertices, edges, stage, edges.count() + 1);
   kinds.count(exact);
+  ExtractStatistics statistics;
+  const HexMesh mesh = runAtlas(map, cells, context, statistics);
   for (const int threads : {1, 2, 5}) {
     SCOPED_TRACE(std::to_string(threads) + " threads");
     withThreads(threads, [&] {
-      ExtractStatistics statistics;
-      EngineFindings findings;
-      const HexMesh mesh = runPipeline(map, cells, epsilon, context, statistics, &findings);
-      const LatticeNumbers found(map, std::move(findings.lines.value()), mesh.points.size(), stage);
-      EXPECT_EQ(found.count(), numbers.vertices.count());
-      expectSameBits(exact, gatherArcs(map, found, std::move(findings.edges), stage));
+      expectSameBits(exact, recordedArcs(map, cells, epsilon, context, stage));
+      expectSameBits(exact, arcsOfWatchedAtlas(map, mesh, context, stage));
     });
     if (::testing::Test::HasFailure()) return;
   }
