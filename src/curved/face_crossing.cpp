@@ -6,8 +6,9 @@ FaceShares shareExactly(const CrossedFace& face, const ChartEdge& edge,
                         std::int64_t unit) noexcept {
   LatticePoint line;
   for (std::size_t k = 0; k < 3; ++k) line[k] = edge.z[k] * unit;
+  const auto axis = static_cast<std::size_t>(axisOf(edge.along));
   const auto weight = [&](std::size_t i, std::size_t j) {
-    return crossComponent(face.corner(i) - line, face.corner(j) - line, axisOf(edge.along));
+    return crossComponent(face.corner(i) - line, face.corner(j) - line, axis);
   };
   const std::array<Int128, 3> weights = {weight(1, 2), weight(2, 0), weight(0, 1)};
   unsigned positive = 0;
