@@ -17,6 +17,7 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind)
   begin_.resize(tets + 1);
   begin_[tets] = 0;
   axes_.resize(3 * tets);
+  blocks_.resize(blockCount(tets, kSweepBlock));
   lineBegin_.resize(3 * tets + 1);
   lineBegin_[3 * tets] = 0;
 }
@@ -35,25 +36,17 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& 
   sweep.finish(stage);
 }
 
-ElementNumbers::Sweep::Sweep(ElementNumbers& numbers)
-    : numbers_(numbers), blocks_(blockCount(numbers.topology_.tetCount(), kSweepBlock)) {}
-
 void ElementNumbers::Sweep::finish(Stage& stage) {
   ElementNumbers& n = numbers_;
   exclusiveScan(std::span(n.begin_));
   requireNumbers(n.count());
   exclusiveScan(std::span(n.lineBegin_));
-  n.lines_.resize(n.lineBegin_.back());
-  parallelFor(stage, blocks_.size(), 1, [&](std::size_t block) {
-    const std::size_t firstTet = block * kSweepBlock;
-    std::size_t at = n.lineBegin_[3 * firstTet];
-    auto number = static_cast<Index>(n.begin_[firstTet]);
-    for (const Line& line : blocks_[block]) {
-      n.lines_[at] = line;
-      n.lines_[at++].number = number;
+  parallelFor(stage, n.blocks_.size(), 1, [&](std::size_t block) {
+    auto number = static_cast<Index>(n.begin_[block * kSweepBlock]);
+    for (Line& line : n.blocks_[block]) {
+      line.number = number;
       number += line.ownedCount;
     }
-    blocks_[block] = {};
   });
 }
 
