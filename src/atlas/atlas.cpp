@@ -40,15 +40,17 @@ class Atlas {
     charts_ = buildCharts(map, stage);
   }
 
+  /// @param guest  sees every tet, if there is one
   /// @return the number of vertices
-  std::uint64_t sweep(std::uint64_t expectedCells) {
+  std::uint64_t sweep(std::uint64_t expectedCells, SweepGuest* guest = nullptr) {
     Stage stage(context_, "sweep");
-    vertices_.sweep(cells_, stage);
+    vertices_.sweep(cells_, stage, guest);
     requireExpected(cells_.count(), expectedCells);
     return vertices_.numbers().count();
   }
 
-  void fill(const VertexArrays& arrays, ExtractStatistics& statistics) {
+  /// @param keepLines  for takeVertices()
+  void fill(const VertexArrays& arrays, bool keepLines, ExtractStatistics& statistics) {
     {
       Stage stage(context_, "grid");
       vertices_.fill(arrays, stage);
@@ -66,13 +68,14 @@ class Atlas {
       statistics.cutFaces = cuts.faces;
       jumps_ = std::move(cuts.jumps);
     }
-    vertices_.dropLines();
+    if (!keepLines) vertices_.dropLines();
     statistics.charts = charts_.count;
     statistics.generators = vertices_.numbers().generatorCounts;
     statistics.vertices = vertices_.numbers().vertexCounts;
   }
 
   [[nodiscard]] const VertexGrid<Id>& vertices() const noexcept { return vertices_; }
+  [[nodiscard]] SweptVertices takeVertices() noexcept { return vertices_.takeVertices(); }
   [[nodiscard]] const CellSeeds& cells() const noexcept { return cells_; }
   [[nodiscard]] const Jumps& jumps() const noexcept { return jumps_; }
 
@@ -223,7 +226,7 @@ void streamCells(const PreparedMap& map, const Atlas<Id>& atlas, MeshSink& sink,
 template <class Id>
 void streamFrom(Atlas<Id>& atlas, const PreparedMap& map, MeshSink& sink, Context& context,
                 ExtractStatistics& statistics) {
-  atlas.fill({}, statistics);
+  atlas.fill({}, false, statistics);
   sink.begin(atlas.vertices().numbers().count(), atlas.cells().count());
   streamPoints(map, atlas.vertices(), sink, context);
   streamCells(map, atlas, sink, context, statistics);
@@ -233,9 +236,9 @@ void streamFrom(Atlas<Id>& atlas, const PreparedMap& map, MeshSink& sink, Contex
 }  // namespace
 
 HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& context,
-                 ExtractStatistics& statistics, const AtlasOptions& options) {
+                 ExtractStatistics& statistics, const AtlasOptions& options, SweepGuest* guest) {
   Atlas<Index> atlas(map, true, context, options);
-  const std::uint64_t count = atlas.sweep(expectedCells);
+  const std::uint64_t count = atlas.sweep(expectedCells, guest);
   if (count > kMaxNarrowVertices) {
     throw Error(ErrorCode::TooLarge,
                 "The mesh would have " + std::to_string(count) +
@@ -247,8 +250,9 @@ HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& c
   mesh.generatorTet.resize(count);
   mesh.generatorCorners.resize(count);
   atlas.fill({0, mesh.points.data(), mesh.generatorTet.data(), mesh.generatorCorners.data()},
-             statistics);
+             guest != nullptr, statistics);
   mesh.cells = emitAllCells(map, atlas, context, statistics);
+  if (guest != nullptr) guest->take(atlas.takeVertices());
   return mesh;
 }
 

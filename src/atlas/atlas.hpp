@@ -10,6 +10,8 @@
 
 #include <cstdint>
 
+#include <sweep/sweep_guest.hpp>
+
 #include <hexhex/context.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/stream.hpp>
@@ -28,9 +30,10 @@ struct AtlasOptions {
 
 /// Extracts the mesh of a map that has passed all checks and is scaled.
 /// @param expectedCells  the map's parametric volume
+/// @param guest          sees the tets that are swept, if there is one
 [[nodiscard]] HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells,
                                Context& context, ExtractStatistics& statistics,
-                               const AtlasOptions& options = {});
+                               const AtlasOptions& options = {}, SweepGuest* guest = nullptr);
 
 /// The same in pieces.
 void streamAtlas(const PreparedMap& map, std::uint64_t expectedCells, MeshSink& sink,

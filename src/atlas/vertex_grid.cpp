@@ -15,6 +15,16 @@ ChartRow rowOf(const VertexRun& run, const SweepFrame& frame, Index chart) {
   return {chart, frame(line.level, line.row, first), frame.along(2), run.count};
 }
 
+/// For vertices, cells, and what the guest wants to see.
+HalfGridSearch searchWith(const SweepGuest* guest) {
+  const unsigned own = halfGridBit(kVertexGrid) | halfGridBit(kCenterGrid);
+  return HalfGridSearch(static_cast<HalfGridSet>(own | (guest == nullptr ? 0U : guest->grids())));
+}
+
+void appendLines(const HalfGrids& grids, HalfGrid grid, std::vector<SweptLine>& lines) {
+  static_cast<void>(grids.sweep(grid, [&](const SweptLine& line) { lines.push_back(line); }));
+}
+
 /// Enters consecutive vertices. Of two that claim the same place, the one that comes later finds
 /// the other, and marks the brick.
 /// @return whether some did
@@ -44,10 +54,11 @@ std::span<const SweptLine> VertexGrid<Id>::linesOf(Index tet,
 }
 
 template <class Id>
-void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage) {
+void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage, SweepGuest* guest) {
   const std::size_t tets = map_.topology.tetCount();
   VertexCounter counter(map_, numbers_);
   keys_.resize(blockCount(tets, kSweepBlock));
+  const HalfGridSearch search = searchWith(guest);
   parallelBlocks(stage, tets, kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    BlockLines lines(stored_.has_value());
@@ -55,7 +66,14 @@ void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage) {
                    KeyFilter filter;
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
-                     sweepBoth(map_.exact, tet, lines.next(), centers.next());
+                     if (guest == nullptr) {
+                       sweepBoth(map_.exact, tet, lines.next(), centers.next());
+                     } else {
+                       const HalfGrids grids(map_.exact.corners[t], map_.exact.unit, search);
+                       appendLines(grids, kVertexGrid, lines.next());
+                       appendLines(grids, kCenterGrid, centers.next());
+                       guest->add(block, tet, grids);
+                     }
                      cells.begin[t] = 0;
                      counter.countNothing(tet);
                      if (const auto own = centers.last(); !own.empty()) {

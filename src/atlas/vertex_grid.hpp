@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
 #include <atlas/overlaps.hpp>
 #include <sweep/cell_seeds.hpp>
+#include <sweep/sweep_guest.hpp>
 #include <sweep/tet_positions.hpp>
 #include <sweep/vertex_numbers.hpp>
 
@@ -57,13 +59,18 @@ class VertexGrid {
   }
 
   /// Sweeps all tets, for vertices and for cells, and numbers both.
-  void sweep(CellSeeds& cells, Stage& stage);
+  /// @param guest  sees every tet, if there is one
+  void sweep(CellSeeds& cells, Stage& stage, SweepGuest* guest = nullptr);
   /// Makes the grid, enters all vertices, and writes them to `arrays`.
   void fill(const VertexArrays& arrays, Stage& stage);
   /// Finds and resolves overlaps.
   OverlapCounts resolveOverlaps(Stage& stage);
   /// Frees what only the steps above need.
   void dropLines() noexcept { stored_.reset(); }
+  /// Takes away what there is of vertices besides the grid, if lines were kept.
+  [[nodiscard]] SweptVertices takeVertices() noexcept {
+    return {std::move(*stored_), std::move(numbers_)};
+  }
 
   /// Writes the vertices that a tet owns.
   void describe(Index tet, const VertexArrays& arrays) const;

@@ -1,15 +1,17 @@
 // Points and segments of arcs while they are being traced.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <utility>
+#include <vector>
 
 #include <curved/owned_simplex.hpp>
 
 #include <hexhex/curved.hpp>
+
+#include <base/prefetch.hpp>
 
 namespace hexhex {
 
@@ -20,77 +22,115 @@ struct ArcExit {
   double parameter;  ///< along the edge
 };
 
-/// Inner points and segments of consecutive arcs, laid out as in Arcs. Keeps its memory.
+/// Inner points and segments of consecutive arcs. Keeps its memory.
 class ArcPieces {
  public:
   void clear() noexcept {
-    points_ = 0;
-    segments_ = 0;
+    arcs_.clear();
+    points_.clear();
+    segments_.clear();
   }
-  [[nodiscard]] std::size_t points() const noexcept { return points_; }
-  [[nodiscard]] std::size_t segments() const noexcept { return segments_; }
-  /// Parameters of the points from one on.
-  [[nodiscard]] std::span<double> parametersFrom(std::size_t first) noexcept {
-    return std::span(parameters_).subspan(first, points_ - first);
+  /// Makes room for what is known to come.
+  void reserve(std::size_t arcs, std::size_t points, std::size_t segments) {
+    arcs_.reserve(arcs);
+    points_.reserve(points);
+    segments_.reserve(segments);
   }
+  /// Takes the last points and segments back.
+  void shorten(std::size_t points, std::size_t segments) {
+    points_.resize(points);
+    segments_.resize(segments);
+  }
+  [[nodiscard]] std::size_t points() const noexcept { return points_.size(); }
+  [[nodiscard]] std::size_t segments() const noexcept { return segments_.size(); }
 
+  /// Adds an arc whose points and segments have been added.
+  /// @param firstPoint  how many points there were before it
+  void addArc(const std::array<Index, 2>& ends, std::size_t firstPoint) {
+    arcs_.push_back({ends, firstPoint});
+  }
   void addPoint(const ArcExit& exit, double parameter) {
-    if (points_ == pointRoom_) growPoints();
-    position_[points_] = exit.point;
-    parameters_[points_] = parameter;
-    generatorTet_[points_] = exit.generator.tet;
-    generatorCorners_[points_++] = exit.generator.corners;
+    addPoint(exit.generator, exit.point, parameter);
   }
-  void addSegment(const OwnedSimplex& carrier) {
-    if (segments_ == segmentRoom_) growSegments();
-    segmentTet_[segments_] = carrier.tet;
-    segmentCorners_[segments_++] = carrier.corners;
+  void addPoint(const OwnedSimplex& generator, const Vec3& point, double parameter) {
+    points_.push_back({point, parameter, generator});
   }
+  void addSegment(const OwnedSimplex& carrier) { segments_.push_back(carrier); }
 
+  /// Calls change(parameter) for the points from one on.
+  template <class Change>
+  void changeParameters(std::size_t first, const Change& change) {
+    for (std::size_t i = first; i < points_.size(); ++i) change(points_[i].parameter);
+  }
   /// Turns the order of the last ones round.
   void reverseFrom(std::size_t firstPoint, std::size_t firstSegment) {
     // Usually there is hardly anything to do.
-    for (std::size_t i = firstPoint, j = points_; i + 1 < j--; ++i) {
-      std::swap(position_[i], position_[j]);
-      std::swap(parameters_[i], parameters_[j]);
-      std::swap(generatorTet_[i], generatorTet_[j]);
-      std::swap(generatorCorners_[i], generatorCorners_[j]);
+    for (std::size_t i = firstPoint, j = points_.size(); i + 1 < j--; ++i) {
+      std::swap(points_[i], points_[j]);
     }
-    for (std::size_t i = firstSegment, j = segments_; i + 1 < j--; ++i) {
-      std::swap(segmentTet_[i], segmentTet_[j]);
-      std::swap(segmentCorners_[i], segmentCorners_[j]);
+    for (std::size_t i = firstSegment, j = segments_.size(); i + 1 < j--; ++i) {
+      std::swap(segments_[i], segments_[j]);
     }
   }
 
-  /// Copies all to where they belong.
-  void copyTo(Arcs& arcs, std::uint64_t firstPoint, std::uint64_t firstSegment) const {
-    copy(position_, points_, arcs.points, firstPoint);
-    copy(parameters_, points_, arcs.parameters, firstPoint);
-    copy(generatorTet_, points_, arcs.generatorTet, firstPoint);
-    copy(generatorCorners_, points_, arcs.generatorCorners, firstPoint);
-    copy(segmentTet_, segments_, arcs.segmentTet, firstSegment);
-    copy(segmentCorners_, segments_, arcs.segmentCorners, firstSegment);
+  /// The number of points of an arc.
+  [[nodiscard]] std::size_t pointsOf(std::size_t arc) const noexcept {
+    const std::size_t end = arc + 1 < arcs_.size() ? arcs_[arc + 1].firstPoint : points_.size();
+    return end - arcs_[arc].firstPoint;
+  }
+  /// Tells memory that an arc will be copied soon.
+  void fetchArc(std::size_t arc) const noexcept { prefetch(&arcs_[arc]); }
+  void fetchPieces(std::size_t arc) const noexcept {
+    const std::size_t first = arcs_[arc].firstPoint;
+    prefetch(points_.data() + first);
+    prefetch(segments_.data() + first + arc);
+  }
+  /// Copies one of the arcs to where it belongs.
+  /// @param number      that it has there
+  /// @param firstPoint  that it has there
+  void copyArc(std::size_t arc, Arcs& to, std::uint64_t number, std::uint64_t firstPoint) const {
+    const std::size_t first = arcs_[arc].firstPoint;
+    const std::size_t count = pointsOf(arc);
+    to.ends[number] = arcs_[arc].ends;
+    copyPoints(first, count, to, firstPoint);
+    copySegments(first + arc, count + 1, to, firstPoint + number);
+  }
+  /// Copies all points and segments to where they belong.
+  void copyTo(Arcs& to, std::uint64_t firstPoint, std::uint64_t firstSegment) const {
+    copyPoints(0, points_.size(), to, firstPoint);
+    copySegments(0, segments_.size(), to, firstSegment);
   }
 
  private:
-  void growPoints();
-  void growSegments();
-  template <class T>
-  static void copy(const Array<T>& from, std::size_t count, Array<T>& to, std::uint64_t first) {
-    std::copy_n(from.data(), count, to.data() + first);
+  struct Arc {
+    std::array<Index, 2> ends;
+    std::size_t firstPoint;
+  };
+  struct Point {
+    Vec3 position;
+    double parameter;
+    OwnedSimplex generator;
+  };
+
+  void copyPoints(std::size_t first, std::size_t count, Arcs& to, std::uint64_t place) const {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Point& point = points_[first + i];
+      to.points[place + i] = point.position;
+      to.parameters[place + i] = point.parameter;
+      to.generatorTet[place + i] = point.generator.tet;
+      to.generatorCorners[place + i] = point.generator.corners;
+    }
+  }
+  void copySegments(std::size_t first, std::size_t count, Arcs& to, std::uint64_t place) const {
+    for (std::size_t i = 0; i < count; ++i) {
+      to.segmentTet[place + i] = segments_[first + i].tet;
+      to.segmentCorners[place + i] = segments_[first + i].corners;
+    }
   }
 
-  // Room for more than there are:
-  Array<Vec3> position_;
-  Array<double> parameters_;
-  Array<Index> generatorTet_;
-  Array<CornerSet> generatorCorners_;
-  Array<Index> segmentTet_;
-  Array<CornerSet> segmentCorners_;
-  std::size_t points_ = 0;
-  std::size_t segments_ = 0;
-  std::size_t pointRoom_ = 0;
-  std::size_t segmentRoom_ = 0;
+  std::vector<Arc> arcs_;
+  std::vector<Point> points_;
+  std::vector<OwnedSimplex> segments_;
 };
 
 }  // namespace hexhex

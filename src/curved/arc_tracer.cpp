@@ -70,9 +70,13 @@ ArcTracer::Passage ArcTracer::passOnBoundary(const SimplexInTet& at, CornerMask 
   return passage;
 }
 
-ArcExit ArcTracer::exitAt(const OwnedSimplex& generator, Index tet, const LatticeTet& seen,
-                          const SimplexPoint& point) const {
+ArcExit ArcTracer::exitAt(const OwnedSimplex& generator, const SimplexInTet& carrier,
+                          const LatticeTet& seen, const SimplexPoint& point) const {
   const CornerMask at = point.simplex();
+  if (dimension(at) == 2) {
+    return exitThrough(map_, carrier.tet, oppositeCorner(at),
+                       {carrier.frame.origin, carrier.frame.axes[0]});
+  }
   // As normalized(), position() and coordinate() would have it, for the few corners that count.
   std::array<double, 4> weights;
   double sum = 0;
@@ -84,7 +88,7 @@ ArcExit ArcTracer::exitAt(const OwnedSimplex& generator, Index tet, const Lattic
   for (unsigned left = at; left != 0; left &= left - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(left));
     const double share = weights[i] / sum;
-    const Vec3& corner = map_.input.view.points[topology_.tets[tet][i]];
+    const Vec3& corner = map_.input.view.points[topology_.tets[carrier.tet][i]];
     for (std::size_t k = 0; k < 3; ++k) exit.point[k] += share * corner[k];
     exit.parameter += share * static_cast<double>(seen[i][0]);
   }

@@ -72,10 +72,9 @@ class ArcTracer {
   /// Goes on from a point inside a face that the edge is known to leave a tet through, where the
   /// tet behind it does not have the end. That point is not visited again.
   template <class Visit>
-  [[nodiscard]] ArcEnd followThrough(int face, const std::array<double, 4>& shares, SimplexInTet at,
-                                     const Visit& visit) {
+  [[nodiscard]] ArcEnd followThrough(int face, SimplexInTet at, const Visit& visit) {
     FaceWalk& walk = beginnings_[0].walk;
-    walk.resume(at, face, shares);
+    walk.resume(at, face);
     if (!walk.cross(at)) fail(at.tet, "a hex edge leaves the mesh");
     const bool walking = walk.leave(at);
     return goOn(walk, at, walking, visit);
@@ -116,7 +115,7 @@ class ArcTracer {
       const LatticeTet seen = see(at);
       const SimplexPoint exit = exitPoint(seen, at.simplex, 0);
       const Passage passage = pass(at, exit.simplex());
-      visit(std::as_const(at), exitAt(passage.exit, at.tet, seen, exit));
+      visit(std::as_const(at), exitAt(passage.exit, at, seen, exit));
       at = passage.carrier;
       // The end is in the closed tet if and only if the edge does not leave it before.
       const Index vertex = vertexIn(at);
@@ -130,7 +129,7 @@ class ArcTracer {
   template <class Visit>
   [[nodiscard]] Index walkOn(FaceWalk& walk, SimplexInTet& at, const Visit& visit) {
     for (std::size_t steps = 0; steps <= topology_.tetCount(); ++steps) {
-      visit(std::as_const(at), walk.exit(at.tet));
+      visit(std::as_const(at), walk.exit(at));
       if (!walk.cross(at)) fail(at.tet, "a hex edge leaves the mesh");
       // To look for the end takes less than to leave the tet, so where it may be, it is done first.
       const Index vertex = vertices_.hasVertices(at.tet) ? vertexIn(at) : kNone;
@@ -155,8 +154,8 @@ class ArcTracer {
   /// @param exit  where, in the same tet
   [[nodiscard]] Passage pass(const SimplexInTet& at, CornerMask exit);
   [[nodiscard]] Passage passOnBoundary(const SimplexInTet& at, CornerMask edge) const;
-  [[nodiscard]] ArcExit exitAt(const OwnedSimplex& generator, Index tet, const LatticeTet& seen,
-                               const SimplexPoint& point) const;
+  [[nodiscard]] ArcExit exitAt(const OwnedSimplex& generator, const SimplexInTet& carrier,
+                               const LatticeTet& seen, const SimplexPoint& point) const;
 
   const PreparedMap& map_;
   const ExactMap& exact_;

@@ -1,22 +1,19 @@
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include <curved/arc_pieces.hpp>
-#include <curved/arc_tracer.hpp>
 #include <curved/arcs.hpp>
+#include <curved/edge_tracer.hpp>
 #include <curved/output_waves.hpp>
 #include <curved/tet_exits.hpp>
+#include <curved/tet_faces.hpp>
 
 #include <base/prefetch.hpp>
 
 namespace hexhex {
 
 namespace {
-
-/// The largest double below 1.
-constexpr double kBelowOne = 1 - 0x1p-53;
 
 /// Traces the edges that a block of tets owns.
 class BlockTracer {
@@ -26,8 +23,9 @@ class BlockTracer {
         vertices_(vertices),
         arcs_(arcs),
         pieces_(pieces),
-        tracer_(map, vertices),
-        exits_(map.exact.unit) {}
+        tracer_(map, vertices, pieces),
+        exits_(map.exact.unit),
+        faces_(map) {}
 
   /// By exact arithmetic.
   void trace(Index tet, const ElementNumbers::Row& row) {
@@ -57,11 +55,9 @@ class BlockTracer {
   }
 
  private:
-  using Found = LatticeNumbers::Found;
   /// One of the two ways from a midpoint inside a tet.
   struct WayOut {
     TetExits::Exit exit{};
-    TetExits::Point point{};
     HalfFace mate = kNone;  ///< behind the face that the edge leaves through; kNone if it does not
     Index vertex = kNone;   ///< the end of the edge, if it is known
   };
@@ -73,10 +69,8 @@ class BlockTracer {
 
   void lookAlong(Index tet, int axis) {
     if (tet != tet_) {
-      exits_.enter(map_.exact.corners[tet], map_.topology.tets[tet], map_.input.view.points);
-      for (int face = 0; face < 4; ++face) {
-        owned_[static_cast<std::size_t>(face)] = ownedFace(map_.topology, tet, face);
-      }
+      exits_.enter(map_.exact.corners[tet]);
+      faces_.enter(tet);
     }
     if (tet != tet_ || axis != axis_) exits_.turn(axis);
     tet_ = tet;
@@ -110,8 +104,7 @@ class BlockTracer {
   [[nodiscard]] bool leave(WayOut& way, const TetExits::Weights& middle, double distance) {
     const TetExits::End end = exits_.endAt(distance);
     if (end != TetExits::End::Beyond) return end == TetExits::End::Inside;
-    way.point = exits_.point(middle, way.exit);
-    if (!way.point.sure) return false;
+    if (!exits_.point(middle, way.exit).sure) return false;
     const HalfFace halfFace = halfFaceOf(tet_, way.exit.face);
     way.mate = map_.topology.mate[halfFace];
     if (way.mate == kNone) return false;
@@ -126,154 +119,63 @@ class BlockTracer {
     const Index vertex = vertexBehind(way, edge.z);
     if (vertex != kNone) {
       pieces_.addSegment({tetOf(way.mate), kWholeTet});
-      addExit(way);
+      addExit(edge, way);
       return vertex;
     }
     const SimplexInTet back{tet_, kWholeTet, Frame::along(edge.z, axis_).reversed()};
-    return traceBack([&](const auto& visit) {
-      addExit(way);
-      return tracer_.followThrough(way.exit.face, way.point.shares.byCorner(), back, visit);
+    return tracer_.traceBack([&](const auto& visit) {
+      addExit(edge, way);
+      return tracer_.tracer().followThrough(way.exit.face, back, visit);
     });
   }
   [[nodiscard]] Index goAhead(const Element& edge, WayOut& way) {
     if (way.mate == kNone) return way.vertex;
     const Index vertex = vertexBehind(way, endOf(edge));
     if (vertex != kNone) {
-      addExit(way);
+      addExit(edge, way);
       pieces_.addSegment({tetOf(way.mate), kWholeTet});
       return vertex;
     }
     const SimplexInTet middle{tet_, kWholeTet, Frame::along(edge.z, axis_)};
-    return traceAhead([&](const auto& visit) {
-      visit(middle, exitOf(way));
-      return tracer_.followThrough(way.exit.face, way.point.shares.byCorner(), middle, visit);
+    return tracer_.traceAhead([&](const auto& visit) {
+      visit(middle, exitOf(edge, way));
+      return tracer_.tracer().followThrough(way.exit.face, middle, visit);
     });
   }
   /// @param z  the end of the edge
   [[nodiscard]] Index vertexBehind(const WayOut& way, const GridPoint& z) const {
-    return tracer_.vertexBehind(halfFaceOf(tet_, way.exit.face), way.mate, z);
+    return tracer_.tracer().vertexBehind(halfFaceOf(tet_, way.exit.face), way.mate, z);
   }
-  [[nodiscard]] ArcExit exitOf(const WayOut& way) const noexcept {
-    return {owned_[static_cast<std::size_t>(way.exit.face)], exits_.position(way.point.shares),
-            0.5 + way.exit.at};
+  [[nodiscard]] ArcExit exitOf(const Element& edge, const WayOut& way) {
+    return faces_.exit(way.exit.face, {edge.z, direction(edge.axis, 1)});
   }
-  void addExit(const WayOut& way) {
-    const ArcExit exit = exitOf(way);
+  void addExit(const Element& edge, const WayOut& way) {
+    const ArcExit exit = exitOf(edge, way);
     pieces_.addPoint(exit, exit.parameter);
   }
 
   /// From the midpoint, wherever that is.
   void traceExactly(const Element& edge) {
     const std::size_t before = pieces_.points();
-    const Found from = vertices_.find(middle_.tet, edge.z);
-    const Found to = vertices_.find(middle_.tet, endOf(edge));
-    std::array<Index, 2> ends = {from.vertex, to.vertex};
-    if (from.vertex != kNone && to.vertex != kNone) {
-      // By convexity, all between lies in the smallest simplex that contains both ends.
-      addSegment({middle_.tet, static_cast<CornerMask>(from.simplex | to.simplex), {}});
-    } else {
-      ends = middle_.simplex == kWholeTet ? traceBothWays(middle_, from, to)
-                                          : traceFromBoundary(middle_, from);
-    }
-    finish(edge, before, ends);
+    finish(edge, before, tracer_.trace(middle_));
   }
   /// @param before  how many points there were before the edge
   void finish(const Element& edge, std::size_t before, const std::array<Index, 2>& ends) {
     arcs_.ends[edge.number] = ends;
     arcs_.pointBegin[edge.number] = pieces_.points() - before;
-    smoothParameters(pieces_.parametersFrom(before));
-  }
-
-  /// From a midpoint inside a tet.
-  /// @param from, to  what the tet has of the edge's ends
-  [[nodiscard]] std::array<Index, 2> traceBothWays(const SimplexInTet& middle, const Found& from,
-                                                   const Found& to) {
-    const LatticeTet seen = middle.frame.see(map_.exact.corners[middle.tet], map_.exact.unit);
-    const EdgeSides sides(seen);
-    std::array<Index, 2> ends = {from.vertex, to.vertex};
-    // Both at once, so that memory answers to one while the other is followed.
-    if (from.vertex == kNone) tracer_.begin(Way::Backward, middle, seen, sides);
-    if (to.vertex == kNone) tracer_.begin(Way::Forward, middle, seen, sides);
-    if (from.vertex == kNone) {
-      ends[0] =
-          traceBack([&](const auto& visit) { return tracer_.followBegun(Way::Backward, visit); });
-    } else {
-      addSegment(middle);
-    }
-    if (to.vertex == kNone) {
-      ends[1] =
-          traceAhead([&](const auto& visit) { return tracer_.followBegun(Way::Forward, visit); });
-    }
-    return ends;
-  }
-
-  /// From a midpoint on the boundary of tets: back to the beginning, then on from where it was.
-  /// @param from  what the tet has of the beginning
-  [[nodiscard]] std::array<Index, 2> traceFromBoundary(const SimplexInTet& middle,
-                                                       const Found& from) {
-    SimplexInTet back{middle.tet, static_cast<CornerMask>(middle.simplex | from.simplex),
-                      middle.frame.reversed()};
-    Index first = from.vertex;
-    if (first == kNone) {
-      back = tracer_.behind({middle.tet, middle.simplex, back.frame});
-      first = traceBack([&](const auto& visit) { return tracer_.follow(back, visit); });
-    } else {
-      addSegment(back);
-    }
-    // Whether or not that part ends at the midpoint, it is there already.
-    back.frame = back.frame.reversed();
-    return {first, traceAhead([&](const auto& visit) { return tracer_.follow(back, visit); })};
-  }
-
-  /// Adds what there is from the beginning to the segment at the midpoint.
-  /// @param follow  the way back, of a visitor
-  /// @return the vertex at the beginning
-  template <class Follow>
-  [[nodiscard]] Index traceBack(const Follow& follow) {
-    const std::size_t firstPoint = pieces_.points();
-    const std::size_t firstSegment = pieces_.segments();
-    const ArcEnd first = follow([&](const SimplexInTet& carrier, const ArcExit& exit) {
-      addSegment(carrier);
-      pieces_.addPoint(exit, 1 - exit.parameter);
-    });
-    addSegment(first.carrier);
-    pieces_.reverseFrom(firstPoint, firstSegment);
-    return first.vertex;
-  }
-  /// Adds what there is behind the segment at the midpoint.
-  /// @return the vertex at the end
-  template <class Follow>
-  [[nodiscard]] Index traceAhead(const Follow& follow) {
-    bool atMiddle = true;
-    const ArcEnd last = follow([&](const SimplexInTet& carrier, const ArcExit& exit) {
-      if (!atMiddle) addSegment(carrier);
-      atMiddle = false;
-      pieces_.addPoint(exit, exit.parameter);
-    });
-    if (!atMiddle) addSegment(last.carrier);
-    return last.vertex;
-  }
-
-  void addSegment(const SimplexInTet& carrier) {
-    pieces_.addSegment(ownedBy(map_.topology, carrier.tet, carrier.simplex));
-  }
-
-  /// Exact values are in (0, 1) and ascend; rounding may not change that.
-  static void smoothParameters(std::span<double> parameters) {
-    double low = std::numeric_limits<double>::min();
-    for (double& parameter : parameters) parameter = low = std::clamp(parameter, low, kBelowOne);
+    EdgeTracer::smoothParameters(pieces_, before);
   }
 
   const PreparedMap& map_;
   const LatticeNumbers& vertices_;
   Arcs& arcs_;
   ArcPieces& pieces_;
-  ArcTracer tracer_;
+  EdgeTracer tracer_;
   TetExits exits_;
-  Index tet_ = kNone;                    ///< that exits are known of
-  int axis_ = -1;                        ///< of its chart, along which
-  std::array<OwnedSimplex, 4> owned_{};  ///< its faces
-  SimplexInTet middle_;                  ///< the midpoint of the edge at hand
+  TetFaces faces_;
+  Index tet_ = kNone;    ///< that exits are known of
+  int axis_ = -1;        ///< of its chart, along which
+  SimplexInTet middle_;  ///< the midpoint of the edge at hand
 };
 
 /// Makes room.

@@ -4,20 +4,11 @@
 
 namespace hexhex {
 
-namespace {
-
-/// The grid of midpoints of edges along an axis, or of faces across it.
-HalfGrid midpoints(ElementKind kind, int axis) noexcept {
-  const int along = 1 << axis;
-  return static_cast<HalfGrid>(kind == ElementKind::Edges ? along : 7 ^ along);
-}
-
-}  // namespace
-
-HalfGridSet ElementNumbers::gridsOf(ElementKind kind) noexcept {
-  unsigned set = 0;
-  for (int axis = 0; axis < 3; ++axis) set |= halfGridBit(midpoints(kind, axis));
-  return static_cast<HalfGridSet>(set);
+void requireNumbers(std::uint64_t elements) {
+  if (elements < kNone) return;
+  throw Error(ErrorCode::TooLarge, "The mesh would have " + std::to_string(elements) +
+                                       " edges or faces, more than "
+                                       "32-bit indices can number. Lower the scale.");
 }
 
 ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind)
@@ -26,6 +17,7 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind)
   begin_.resize(tets + 1);
   begin_[tets] = 0;
   axes_.resize(3 * tets);
+  blocks_.resize(blockCount(tets, kSweepBlock));
   lineBegin_.resize(3 * tets + 1);
   lineBegin_[3 * tets] = 0;
 }
@@ -44,39 +36,27 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& 
   sweep.finish(stage);
 }
 
-ElementNumbers::Sweep::Sweep(ElementNumbers& numbers)
-    : numbers_(numbers), blocks_(blockCount(numbers.topology_.tetCount(), kSweepBlock)) {}
-
 void ElementNumbers::Sweep::finish(Stage& stage) {
   ElementNumbers& n = numbers_;
   exclusiveScan(std::span(n.begin_));
-  if (n.count() >= kNone) {
-    throw Error(ErrorCode::TooLarge, "The mesh would have " + std::to_string(n.count()) +
-                                         " edges or faces, more than "
-                                         "32-bit indices can number. Lower the scale.");
-  }
+  requireNumbers(n.count());
   exclusiveScan(std::span(n.lineBegin_));
-  n.lines_.resize(n.lineBegin_.back());
-  parallelFor(stage, blocks_.size(), 1, [&](std::size_t block) {
-    const std::size_t firstTet = block * kSweepBlock;
-    std::size_t at = n.lineBegin_[3 * firstTet];
-    auto number = static_cast<Index>(n.begin_[firstTet]);
-    for (const Line& line : blocks_[block]) {
-      n.lines_[at] = line;
-      n.lines_[at++].number = number;
+  parallelFor(stage, n.blocks_.size(), 1, [&](std::size_t block) {
+    auto number = static_cast<Index>(n.begin_[block * kSweepBlock]);
+    for (Line& line : n.blocks_[block]) {
+      line.number = number;
       number += line.ownedCount;
     }
-    blocks_[block] = {};
   });
 }
 
 /// Appends the lines with elements that a tet owns, and counts both.
-void ElementNumbers::sweep(Index tet, HalfGrids& grids, std::vector<Line>& lines) {
+void ElementNumbers::sweep(Index tet, const HalfGrids& grids, std::vector<Line>& lines) {
   CenterOwner owner(topology_, tet);
   std::uint64_t elements = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t before = lines.size();
-    axes_[gridOf(tet, axis)] = grids.sweep(midpoints(kind_, axis), [&](const SweptLine& line) {
+    axes_[gridOf(tet, axis)] = grids.sweep(midpointsOf(kind_, axis), [&](const SweptLine& line) {
       const auto [first, count] = owner.owned(line);
       if (count == 0) return;
       lines.push_back({line, first, count, kNone});

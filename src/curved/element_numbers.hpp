@@ -44,28 +44,39 @@ class ElementNumbers {
   /// Without numbers until a Sweep is finished.
   ElementNumbers(const PreparedMap& map, ElementKind kind);
 
-  /// Grids with the midpoints of such elements.
-  [[nodiscard]] static HalfGridSet gridsOf(ElementKind kind) noexcept;
+  /// The grid of midpoints of edges along an axis, or of faces across it.
+  [[nodiscard]] static constexpr HalfGrid midpointsOf(ElementKind kind, int axis) noexcept {
+    const int along = 1 << axis;
+    return static_cast<HalfGrid>(kind == ElementKind::Edges ? along : 7 ^ along);
+  }
+  /// All three.
+  [[nodiscard]] static constexpr HalfGridSet gridsOf(ElementKind kind) noexcept {
+    unsigned set = 0;
+    for (int axis = 0; axis < 3; ++axis) set |= halfGridBit(midpointsOf(kind, axis));
+    return static_cast<HalfGridSet>(set);
+  }
 
   /// Gives numbers while others sweep the same tets.
   class Sweep {
    public:
-    explicit Sweep(ElementNumbers& numbers);
+    explicit Sweep(ElementNumbers& numbers) : numbers_(numbers) {}
     /// Tets of a block in order, blocks in any order and in parallel.
     /// @param grids  of the tet; with gridsOf() wanted
-    void add(std::size_t block, Index tet, HalfGrids& grids) {
+    void add(std::size_t block, Index tet, const HalfGrids& grids) {
       if ((grids.occupied() & gridsOf(numbers_.kind_)) == 0) {
         numbers_.addNothing(tet);
       } else {
-        numbers_.sweep(tet, grids, blocks_[block]);
+        numbers_.sweep(tet, grids, numbers_.blocks_[block]);
       }
+      // Lines stay where they are, so what was reserved too much would stay as well.
+      const bool isLast = (tet + 1) % kSweepBlock == 0;
+      if (isLast) numbers_.blocks_[block].shrink_to_fit();
     }
     /// @throws Error TooLarge for more elements than an Index can number
     void finish(Stage& stage);
 
    private:
     ElementNumbers& numbers_;
-    std::vector<std::vector<Line>> blocks_;
   };
 
   [[nodiscard]] std::uint64_t count() const noexcept { return begin_.back(); }
@@ -131,7 +142,10 @@ class ElementNumbers {
   }
   [[nodiscard]] std::span<const Line> linesOf(Index tet, int axis) const noexcept {
     const std::size_t grid = gridOf(tet, axis);
-    return std::span(lines_).subspan(lineBegin_[grid], lineBegin_[grid + 1] - lineBegin_[grid]);
+    const std::size_t block = tet / kSweepBlock;
+    const Index blockBegin = lineBegin_[3 * kSweepBlock * block];
+    return std::span(blocks_[block])
+        .subspan(lineBegin_[grid] - blockBegin, lineBegin_[grid + 1] - lineBegin_[grid]);
   }
   [[nodiscard]] GridPoint point(Index tet, int axis, const Line& line,
                                 std::uint32_t i) const noexcept;
@@ -142,16 +156,19 @@ class ElementNumbers {
       lineBegin_[gridOf(tet, axis)] = 0;
     }
   }
-  void sweep(Index tet, HalfGrids& grids, std::vector<Line>& lines);
+  void sweep(Index tet, const HalfGrids& grids, std::vector<Line>& lines);
 
   const ExactMap& map_;
   const TetTopology& topology_;
   ElementKind kind_;
-  Array<std::uint64_t> begin_;  ///< per tet (+1)
-  Array<SweepAxes> axes_;       ///< per grid: tet and axis
-  Array<Index> lineBegin_;      ///< per grid (+1); there are no more lines than elements
-  Array<Line> lines_;           ///< those with owned elements
+  Array<std::uint64_t> begin_;             ///< per tet (+1)
+  Array<SweepAxes> axes_;                  ///< per grid: tet and axis
+  Array<Index> lineBegin_;                 ///< per grid (+1); there are no more lines than elements
+  std::vector<std::vector<Line>> blocks_;  ///< by block of tets: lines with owned elements
 };
+
+/// @throws Error TooLarge for more elements than an Index can number
+void requireNumbers(std::uint64_t elements);
 
 /// What vertices and edges take to be numbered, in one sweep of the tets.
 struct GridNumbers {

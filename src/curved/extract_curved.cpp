@@ -1,10 +1,13 @@
 // The public entries of curved meshes.
+#include <optional>
 #include <string>
 #include <utility>
 
 #include <curved/arcs.hpp>
+#include <curved/edge_guest.hpp>
 #include <curved/lagrange.hpp>
 #include <curved/patches.hpp>
+#include <curved/recorded_arcs.hpp>
 
 #include <hexhex/curved.hpp>
 #include <hexhex/extractor.hpp>
@@ -26,19 +29,46 @@ void toCallersCorners(const OrientedMap& input, Array<CornerSet>& corners, Stage
               [&](std::size_t i) { corners[i] = input.callersCorners(corners[i]); });
 }
 
-/// @param map  scaled
-void addParts(const PreparedMap& map, PiecewiseLinearParts parts, PiecewiseLinearMesh& result,
-              Context& context) {
+/// @param edges  nothing if they are still to be numbered
+void addPatches(const PreparedMap& map, const LatticeNumbers& vertices, const ElementNumbers* edges,
+                PiecewiseLinearMesh& result, Context& context) {
+  Stage stage(context, "patches");
+  std::optional<ElementNumbers> own;
+  if (edges == nullptr) edges = &own.emplace(map, ElementKind::Edges, stage);
+  const ElementNumbers faces(map, ElementKind::Faces, stage);
+  result.patches = cutPatches({map, vertices, *edges, faces, result.arcs}, stage);
+  toCallersCorners(map.input, result.patches.generatorCorners, stage);
+  toCallersCorners(map.input, result.patches.polygonCorners, stage);
+}
+
+/// What arcs need of the engine that finds the mesh.
+struct FindingsForArcs {
+  /// @param map  scaled
+  FindingsForArcs(const PreparedMap& map, Engine engine) {
+    if (engine == Engine::Atlas) of.guest = &guest.emplace(map);
+  }
+
+  EngineFindings of;
+  std::optional<EdgeGuest> guest;  ///< of the atlas engine
+};
+
+/// @param map    scaled
+/// @param found  by the engine that found the mesh
+void addParts(const PreparedMap& map, FindingsForArcs& found, PiecewiseLinearParts parts,
+              PiecewiseLinearMesh& result, Context& context) {
   Stage arcStage(context, "arcs");
-  const auto [vertices, edges] = numberVerticesAndEdges(map, arcStage);
-  result.arcs = traceArcs(map, vertices, edges, arcStage);
-  arcStage.finish();
-  if (parts == PiecewiseLinearParts::ArcsAndPatches) {
-    Stage stage(context, "patches");
-    const ElementNumbers faces(map, ElementKind::Faces, stage);
-    result.patches = cutPatches({map, vertices, edges, faces, result.arcs}, stage);
-    toCallersCorners(map.input, result.patches.generatorCorners, stage);
-    toCallersCorners(map.input, result.patches.polygonCorners, stage);
+  const bool withPatches = parts == PiecewiseLinearParts::ArcsAndPatches;
+  if (!found.guest) {
+    const LatticeNumbers vertices(map, std::move(found.of.lines.value()), result.mesh.points.size(),
+                                  arcStage);
+    result.arcs = gatherArcs(map, vertices, std::move(found.of.edges), arcStage);
+    arcStage.finish();
+    if (withPatches) addPatches(map, vertices, nullptr, result, context);
+  } else {
+    const auto [vertices, edges] = found.guest->finish(arcStage);
+    result.arcs = traceArcs(map, vertices, edges, arcStage);
+    arcStage.finish();
+    if (withPatches) addPatches(map, vertices, &edges, result, context);
   }
   toCallersCorners(map.input, result.arcs.generatorCorners, arcStage);
   toCallersCorners(map.input, result.arcs.segmentCorners, arcStage);
@@ -68,8 +98,9 @@ PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map, PiecewiseLinea
   PiecewiseLinearMesh result;
   runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {}, context, filled);
-    result.mesh = extractScaled(map, scaled, options, context, filled);
-    addParts(scaled.map, parts, result, context);
+    FindingsForArcs findings(scaled.map, options.engine);
+    result.mesh = extractScaled(map, scaled, options, context, filled, &findings.of);
+    addParts(scaled.map, findings, parts, result, context);
   });
   return result;
 }
@@ -94,8 +125,9 @@ PiecewiseLinearMesh Extractor::extractPiecewiseLinear(PiecewiseLinearParts parts
   PiecewiseLinearMesh result;
   prepared_->run(options, {}, context, statistics,
                  [&](std::uint64_t cells, ExtractStatistics& filled) {
-                   result.mesh = prepared_->mesh(cells, options, context, filled);
-                   addParts(prepared_->map(), parts, result, context);
+                   FindingsForArcs findings(prepared_->map(), options.engine);
+                   result.mesh = prepared_->mesh(cells, options, context, filled, &findings.of);
+                   addParts(prepared_->map(), findings, parts, result, context);
                  });
   return result;
 }

@@ -63,7 +63,6 @@ constexpr std::array<std::uint8_t, 64> kExits = makeExits();
 EdgeSides::EdgeSides(const LatticeTet& seen) noexcept {
   for (std::size_t e = 0; e < 6; ++e) {
     const Int128 product = crossComponent(seen[kEdges[e][0]], seen[kEdges[e][1]], 0);
-    products[e] = Halves(product);
     left |= static_cast<unsigned>(product > 0) << e;
     touches |= product == 0;
   }
@@ -80,25 +79,20 @@ bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen, const EdgeS
   const SeenFace& f = kFaces[face];
   for (std::size_t i = 0; i < 3; ++i) {
     const LatticePoint& p = seen[f.corners[i]];
-    place(i, topology_.tets[at.tet][f.corners[i]],
-          back ? LatticePoint{exact_.unit - p[0], -p[1], p[2]} : p);
-    const Int128 product = sides.products[f.sides[i]].whole();
-    weights_[i] = toDouble(product < 0 ? -product : product);
+    vertices_[i] = topology_.tets[at.tet][f.corners[i]];
+    seen_[i] = back ? LatticePoint{exact_.unit - p[0], -p[1], p[2]} : p;
   }
-  measure();
   return true;
 }
 
-void FaceWalk::resume(const SimplexInTet& at, int face, const std::array<double, 4>& shares) {
+void FaceWalk::resume(const SimplexInTet& at, int face) {
   leaveThrough(at.tet, face);
   look(at.frame);
   const std::array<std::uint8_t, 3>& corners = kFaces[static_cast<std::size_t>(face)].corners;
   for (std::size_t i = 0; i < 3; ++i) {
-    place(i, topology_.tets[at.tet][corners[i]], seen(exact_.corners[at.tet][corners[i]]));
+    vertices_[i] = topology_.tets[at.tet][corners[i]];
+    seen_[i] = seen(exact_.corners[at.tet][corners[i]]);
   }
-  // Weights are cross products, and their sum is twice the area of the face as the edge sees it.
-  const double area = toDouble(crossComponent(seen_[1] - seen_[0], seen_[2] - seen_[0], 0));
-  for (std::size_t i = 0; i < 3; ++i) weights_[i] = shares[corners[i]] * area;
 }
 
 bool FaceWalk::cross(SimplexInTet& at) {
@@ -116,12 +110,10 @@ bool FaceWalk::leave(const SimplexInTet& at) {
   const LatticePoint seen = this->seen(exact_.corners[at.tet][apex]);
   // The edge leaves between two corners, and the apex, that it has inside: those where the apex is
   // to the right of the first and to the left of the second.
-  std::array<Halves, 3> side;
   unsigned right = 0;
   unsigned left = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const Int128 product = crossComponent(seen_[i], seen, 0);
-    side[i] = Halves(product);
     right |= static_cast<unsigned>(product < 0) << i;
     left |= static_cast<unsigned>(product > 0) << i;
   }
@@ -131,10 +123,8 @@ bool FaceWalk::leave(const SimplexInTet& at) {
   const std::size_t second = first == 2 ? 0 : first + 1;
   const std::size_t third = 3 - first - second;
   leaveThrough(at.tet, topology_.localCorner(at.tet, vertices_[third]));
-  place(third, topology_.tets[at.tet][apex], seen);
-  weights_[first] = toDouble(side[second].whole());
-  weights_[second] = toDouble(-side[first].whole());
-  measure();
+  vertices_[third] = topology_.tets[at.tet][apex];
+  seen_[third] = seen;
   return true;
 }
 
@@ -158,22 +148,6 @@ void FaceWalk::look(const Frame& frame) noexcept {
     axis_[k] = static_cast<std::size_t>(axisOf(frame.axes[k]));
     zero_[k] = frame.origin[axis_[k]] * exact_.unit;
     flip_[k] = signOf(frame.axes[k]) < 0 ? -1 : 0;
-  }
-}
-
-void FaceWalk::place(std::size_t i, Index vertex, const LatticePoint& seen) noexcept {
-  vertices_[i] = vertex;
-  seen_[i] = seen;
-  positions_[i] = points_[vertex];
-  places_[i] = static_cast<double>(seen[0]);
-}
-
-void FaceWalk::measure() noexcept {
-  const double sum = weights_[0] + weights_[1] + weights_[2];
-  place_ = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    shares_[i] = weights_[i] / sum;
-    place_ += shares_[i] * places_[i];
   }
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 
 #include <curved/arc_pieces.hpp>
+#include <curved/face_crossing.hpp>
 #include <curved/owned_simplex.hpp>
 #include <curved/simplex_star.hpp>
 
@@ -12,28 +13,26 @@
 
 namespace hexhex {
 
-/// A wide number as memory should hold it: compilers write a whole one by way of vector registers,
-/// which wait for both halves to be in memory.
-struct Halves {
-  std::uint64_t low;
-  std::int64_t high;
-
-  Halves() = default;  // not cleared
-  constexpr explicit Halves(Int128 number) noexcept
-      : low(static_cast<std::uint64_t>(number)), high(static_cast<std::int64_t>(number >> 64)) {}
-  [[nodiscard]] constexpr Int128 whole() const noexcept {
-    return static_cast<Int128>(high) << 64 | static_cast<Int128>(low);
-  }
-};
+/// The point inside a face through which an edge leaves a tet.
+/// @param edge  in the chart of the tet
+[[nodiscard]] inline ArcExit exitThrough(const PreparedMap& map, Index tet, int face,
+                                         const ChartEdge& edge) {
+  const FaceOfOwner owned(map.topology, tet, face);
+  const CrossedFace crossed(map.exact.corners[owned.tet], owned.local);
+  const FaceCrossing crossing =
+      crossFace(crossed, owned.carry(edge, map.exact.transitions), map.exact.unit);
+  const FacePoints corners =
+      pointsOf(map.topology.tets[owned.tet], owned.local, map.input.view.points);
+  return {owned.simplex(), pointInFace(crossing.shares, corners), crossing.parameter};
+}
 
 /// On which side of the edges of a tet a hex edge passes, looking along it.
 struct EdgeSides {
   /// @param seen  the tet in a frame that has the hex edge along its first axis
   explicit EdgeSides(const LatticeTet& seen) noexcept;
 
-  /// Edge e (kEdges of face_walk.cpp) as a cross product of its corners, across the first axis.
-  std::array<Halves, 6> products;
-  unsigned left = 0;     ///< bit e: the second corner is to the left of the first
+  /// Bit e (of kEdges in face_walk.cpp): the second corner is to the left of the first.
+  unsigned left = 0;
   bool touches = false;  ///< the line of some edge is met
 };
 
@@ -47,11 +46,7 @@ enum class Way : std::uint8_t { Forward, Backward };
 class FaceWalk {
  public:
   explicit FaceWalk(const PreparedMap& map)
-      : topology_(map.topology),
-        exact_(map.exact),
-        points_(map.input.view.points),
-        unit_(static_cast<double>(map.exact.unit)),
-        perUnit_(1 / unit_) {}
+      : map_(map), topology_(map.topology), exact_(map.exact) {}
 
   /// Leaves a tet.
   /// @param at     the tet, with a frame that has the edge along its first axis; its interior meets
@@ -68,18 +63,12 @@ class FaceWalk {
                            Way way);
 
   /// Goes on from a point inside a face that the edge is known to leave a tet through.
-  /// @param at      the tet, in a frame that has the edge along its first axis
-  /// @param shares  of the tet's corners in the point, with sum 1
-  void resume(const SimplexInTet& at, int face, const std::array<double, 4>& shares);
+  /// @param at  the tet, in a frame that has the edge along its first axis
+  void resume(const SimplexInTet& at, int face);
 
   /// The point in the face at hand, on its side in the tet.
-  [[nodiscard]] ArcExit exit(Index tet) const {
-    ArcExit exit{{tet, faceMask(face_)}, {}, place_ * perUnit_};
-    if (tetOf(mate_) < tet) exit.generator = {tetOf(mate_), faceMask(localOf(mate_))};
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) exit.point[k] += shares_[i] * positions_[i][k];
-    }
-    return exit;
+  [[nodiscard]] ArcExit exit(const SimplexInTet& at) const {
+    return exitThrough(map_, at.tet, face_, {at.frame.origin, at.frame.axes[0]});
   }
 
   /// Crosses the face.
@@ -100,14 +89,10 @@ class FaceWalk {
     }
     return seen;
   }
-  void place(std::size_t i, Index vertex, const LatticePoint& seen) noexcept;
-  void measure() noexcept;
 
+  const PreparedMap& map_;
   const TetTopology& topology_;
   const ExactMap& exact_;
-  std::span<const Vec3> points_;
-  double unit_;
-  double perUnit_;
   int face_ = 0;           ///< of the tet at hand
   HalfFace mate_ = kNone;  ///< of that face
 
@@ -121,12 +106,6 @@ class FaceWalk {
   // Per corner of the face:
   std::array<Index, 3> vertices_{};
   std::array<LatticePoint, 3> seen_{};
-  std::array<double, 3> places_{};   ///< coordinate along the edge, times unit
-  std::array<double, 3> weights_{};  ///< of the point, up to a common factor
-  std::array<double, 3> shares_{};   ///< the same with sum 1
-  std::array<Vec3, 3> positions_{};
-
-  double place_ = 0;  ///< of the point, times unit
 };
 
 }  // namespace hexhex

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <string>
+#include <utility>
 
 #include <curved/lattice_numbers.hpp>
 #include <sweep/tet_positions.hpp>
@@ -31,53 +32,98 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map, std::uint64_t room, Stage
   sweep.finish(stage);
 }
 
+LatticeNumbers::LatticeNumbers(const PreparedMap& map, LatticeLines lines, std::uint64_t count,
+                               Stage& stage)
+    : map_(map),
+      room_(0),
+      isTakenOver_(true),
+      takenOver_(std::move(lines)),
+      takenOverCount_(count),
+      occupied_((map.topology.tetCount() + 63) / 64) {
+  const std::size_t tets = map.topology.tetCount();
+  constexpr std::size_t kWords = 64;
+  parallelFor(stage, occupied_.size(), kWords, [&](std::size_t word) {
+    std::uint64_t bits = 0;
+    for (std::size_t t = 64 * word; t < std::min(tets, 64 * (word + 1)); ++t) {
+      bits |= std::uint64_t{takenOver_.empty(static_cast<Index>(t)) ? 0U : 1U} << (t % 64);
+    }
+    occupied_[word] = bits;
+  });
+}
+
 LatticeNumbers::Sweep::Sweep(LatticeNumbers& numbers)
     : numbers_(numbers),
       counter_(numbers.map_, numbers.numbers_),
       blocks_(blockCount(numbers.map_.topology.tetCount(), kSweepBlock)) {}
 
-void LatticeNumbers::Sweep::sweep(std::size_t block, Index tet, HalfGrids& grids) {
+LatticeNumbers::LatticeNumbers(const PreparedMap& map, SweptVertices swept, Stage& stage)
+    : LatticeNumbers(map) {
+  numbers_ = std::move(swept.numbers);
+  parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t) {
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     noteLines(tet, swept.lines.of(tet));
+                   }
+                 });
+  numberLines([&](std::size_t block) { return swept.lines.takeBlock(block); }, stage);
+}
+
+void LatticeNumbers::Sweep::sweep(std::size_t block, Index tet, const HalfGrids& grids) {
   std::vector<SweptLine>& lines = blocks_[block];
   const std::size_t before = lines.size();
-  numbers_.axes_[tet] = grids.sweep(0, [&](const SweptLine& line) { lines.push_back(line); });
-  numbers_.lineBegin_[tet] = lines.size() - before;
-  // Blocks have words of their own.
-  static_assert(kSweepBlock % 64 == 0);
-  const std::uint64_t isOccupied = lines.size() != before ? 1 : 0;
-  numbers_.occupied_[tet / 64] |= isOccupied << (tet % 64);
-  counter_.count(block, tet, std::span(lines).subspan(before));
+  static_cast<void>(grids.sweep(0, [&](const SweptLine& line) { lines.push_back(line); }));
+  const auto own = std::span(lines).subspan(before);
+  numbers_.noteLines(tet, own);
+  counter_.count(block, tet, own);
 }
 
 void LatticeNumbers::Sweep::finish(Stage& stage) {
-  LatticeNumbers& n = numbers_;
   counter_.finish();
-  if (n.count() >= kNone) {
+  if (numbers_.count() >= kNone) {
     throw Error(ErrorCode::TooLarge,
-                "The mesh would have " + std::to_string(n.count()) +
+                "The mesh would have " + std::to_string(numbers_.count()) +
                     " vertices, more than 32-bit indices can number. Lower the scale or the "
                     "order.");
   }
-  exclusiveScan(std::span(n.lineBegin_));
-  n.lines_.resize(n.lineBegin_.back());
-  const std::vector<std::size_t> boxes = n.countBoxes();
+  numbers_.numberLines([&](std::size_t block) { return std::exchange(blocks_[block], {}); }, stage);
+}
+
+/// Enters how many lines a tet has, and in which order it was swept.
+void LatticeNumbers::noteLines(Index tet, std::span<const SweptLine> lines) noexcept {
+  axes_[tet] = lines.empty() ? SweepAxes{} : lines.front().axes;
+  lineBegin_[tet] = lines.size();
+  // Blocks have words of their own.
+  static_assert(kSweepBlock % 64 == 0);
+  occupied_[tet / 64] |= std::uint64_t{lines.empty() ? 0U : 1U} << (tet % 64);
+}
+
+/// When the lines of all tets have been noted and the vertices have numbers.
+/// @param takeBlock  gives the lines of a block of tets away
+template <class TakeBlock>
+void LatticeNumbers::numberLines(const TakeBlock& takeBlock, Stage& stage) {
+  exclusiveScan(std::span(lineBegin_));
+  lines_.resize(lineBegin_.back());
+  const std::vector<std::size_t> boxes = countBoxes();
   std::vector<std::uint64_t> points(boxes.size());
-  parallelBlocks(stage, n.map_.topology.tetCount(), kSweepBlock,
+  parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   std::size_t at = n.lineBegin_[begin];
-                   for (const SweptLine& line : blocks_[block]) n.lines_[at++] = {line};
-                   blocks_[block] = {};
-                   std::vector<SweptLine> scratch;
+                   const auto swept = takeBlock(block);
+                   std::size_t at = lineBegin_[begin];
+                   for (const SweptLine& line : swept) lines_[at++] = {line};
                    std::size_t box = boxes[block];
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
-                     if (!n.hasVertices(tet)) continue;
-                     n.number(tet, scratch);
-                     n.boxOf_[tet] = static_cast<Index>(box);
-                     const Box& measured = n.boxes_[box++] = n.measureBox(tet);
+                     if (!hasVertices(tet)) continue;
+                     const std::size_t own = lineBegin_[t] - lineBegin_[begin];
+                     number(tet, std::span<const SweptLine>(swept).subspan(
+                                     own, lineBegin_[t + 1] - lineBegin_[t]));
+                     boxOf_[tet] = static_cast<Index>(box);
+                     const Box& measured = boxes_[box++] = measureBox(tet);
                      if (measured.begin < kNoTable) points[block] += measured.points();
                    }
                  });
-  n.fillBoxes(points, stage);
+  fillBoxes(points, stage);
 }
 
 /// Makes room for the boxes.
@@ -109,15 +155,11 @@ void LatticeNumbers::fillBoxes(std::vector<std::uint64_t>& points, Stage& stage)
 }
 
 /// Enters the numbers of a tet's points.
-void LatticeNumbers::number(Index tet, std::vector<SweptLine>& swept) {
+void LatticeNumbers::number(Index tet, std::span<const SweptLine> swept) {
   const std::size_t begin = lineBegin_[tet];
-  const std::size_t end = lineBegin_[std::size_t{tet} + 1];
-  swept.clear();
-  for (std::size_t i = begin; i < end; ++i) swept.push_back(lines_[i].swept);
-  TetNumbering(map_, numbers_, tet, axes_[tet])
-      .run(std::span<const SweptLine>(swept), [&](const VertexRun& run) {
-        enter(lines_[begin + static_cast<std::size_t>(run.line - swept.data())], run);
-      });
+  TetNumbering(map_, numbers_, tet, axes_[tet]).run(swept, [&](const VertexRun& run) {
+    enter(lines_[begin + static_cast<std::size_t>(run.line - swept.data())], run);
+  });
 }
 
 void LatticeNumbers::enter(Line& line, const VertexRun& run) {

@@ -5,12 +5,14 @@
 #include <span>
 #include <vector>
 
+#include <sweep/sweep_guest.hpp>
 #include <sweep/tet_lines.hpp>
 #include <sweep/vertex_numbers.hpp>
 
 #include <hexhex/types.hpp>
 
 #include <base/prefetch.hpp>
+#include <extract/lattice_lines.hpp>
 #include <lattice/half_grids.hpp>
 #include <map/prepare.hpp>
 
@@ -29,7 +31,8 @@ struct LineHint {
   std::size_t line = 0;
 };
 
-/// Sweeps a map for its grid points. Numbers are those of extract() at the map's scale.
+/// Sweeps a map for its grid points, or takes them over from an engine that has found them. Numbers
+/// are those of extract() at the map's scale.
 class LatticeNumbers {
  public:
   /// @throws Error TooLarge for more vertices than an Index can number
@@ -38,6 +41,12 @@ class LatticeNumbers {
   /// @param room  how many grid points the box around a tet's vertices may have for each of them if
   ///              it is to have a table; thin tets across the axes fill next to nothing of theirs
   LatticeNumbers(const PreparedMap& map, std::uint64_t room, Stage& stage);
+  /// Takes over what an engine has swept and numbered.
+  LatticeNumbers(const PreparedMap& map, SweptVertices swept, Stage& stage);
+  /// Takes over tables in which an engine has found its way.
+  /// @param lines  complete
+  /// @param count  of vertices
+  LatticeNumbers(const PreparedMap& map, LatticeLines lines, std::uint64_t count, Stage& stage);
   /// Without numbers until a Sweep is finished.
   explicit LatticeNumbers(const PreparedMap& map, std::uint64_t room = kRoomPerVertex);
 
@@ -53,7 +62,7 @@ class LatticeNumbers {
     explicit Sweep(LatticeNumbers& numbers);
     /// Tets of a block in order, blocks in any order and in parallel.
     /// @param grids  of the tet; with kGrids wanted
-    void add(std::size_t block, Index tet, HalfGrids& grids) {
+    void add(std::size_t block, Index tet, const HalfGrids& grids) {
       if ((grids.occupied() & kGrids) != 0) {
         sweep(block, tet, grids);
       } else {
@@ -66,16 +75,18 @@ class LatticeNumbers {
     void finish(Stage& stage);
 
    private:
-    void sweep(std::size_t block, Index tet, HalfGrids& grids);
+    void sweep(std::size_t block, Index tet, const HalfGrids& grids);
 
     LatticeNumbers& numbers_;
     VertexCounter counter_;
     std::vector<std::vector<SweptLine>> blocks_;
   };
 
-  [[nodiscard]] std::uint64_t count() const noexcept { return numbers_.count(); }
+  [[nodiscard]] std::uint64_t count() const noexcept {
+    return isTakenOver_ ? takenOverCount_ : numbers_.count();
+  }
 
-  /// Writes position and generator of every vertex.
+  /// Writes position and generator of every vertex. Only of what was swept here.
   void describe(const VertexDescriptions& to, Stage& stage) const;
 
   /// Whether a closed tet contains any vertices.
@@ -84,7 +95,14 @@ class LatticeNumbers {
   }
 
   /// Tells memory that find() will be asked soon.
-  void fetch(Index tet) const noexcept { prefetch(&boxOf_[tet]); }
+  void fetch(Index tet) const noexcept {
+    if (isTakenOver_) {
+      prefetch(&takenOver_.planeBegin[tet]);
+      prefetch(&takenOver_.sweeps[tet]);
+    } else {
+      prefetch(&boxOf_[tet]);
+    }
+  }
 
   struct Found {
     Index vertex = kNone;             ///< kNone if the closed tet does not contain the point
@@ -93,6 +111,11 @@ class LatticeNumbers {
   /// The vertex at a grid point in the chart of a tet.
   [[nodiscard]] Found find(Index tet, const GridPoint& z) const {
     if (!hasVertices(tet)) return {};
+    if (isTakenOver_) {
+      const LatticeLines::Place place = takenOver_.locate(tet, z);
+      if (place.line == kNone) return {};
+      return {takenOver_.vertices[place.point], takenOver_.simplexAt(place)};
+    }
     const Box& box = boxes_[boxOf_[tet]];
     std::size_t place = 0;
     bool isInside = true;
@@ -144,6 +167,9 @@ class LatticeNumbers {
     return kNoTable | std::uint64_t{found.simplex} << 32 | found.vertex;
   }
 
+  void noteLines(Index tet, std::span<const SweptLine> lines) noexcept;
+  template <class TakeBlock>
+  void numberLines(const TakeBlock& takeBlock, Stage& stage);
   [[nodiscard]] std::vector<std::size_t> countBoxes();
   [[nodiscard]] Box measureBox(Index tet) const;
   void fillBox(Index tet, std::uint64_t begin);
@@ -160,11 +186,14 @@ class LatticeNumbers {
   }
   [[nodiscard]] Found foundAtEnd(Index tet, const Line& line, const GridPoint& z,
                                  std::uint32_t i) const;
-  void number(Index tet, std::vector<SweptLine>& swept);
+  void number(Index tet, std::span<const SweptLine> swept);
   static void enter(Line& line, const VertexRun& run);
 
   const PreparedMap& map_;
   std::uint64_t room_;
+  bool isTakenOver_ = false;  ///< then all else but `occupied_` is empty
+  LatticeLines takenOver_;
+  std::uint64_t takenOverCount_ = 0;
   VertexNumbers numbers_;
   Array<SweepAxes> axes_;           ///< per tet
   Array<std::uint64_t> lineBegin_;  ///< per tet (+1)

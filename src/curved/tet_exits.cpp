@@ -5,8 +5,7 @@
 
 namespace hexhex {
 
-void TetExits::enter(const LatticeTet& corners, const Tet& vertices,
-                     std::span<const Vec3> points) noexcept {
+void TetExits::enter(const LatticeTet& corners) noexcept {
   corner0_ = corners[0];
   size_ = 0;
   std::array<Vec3, 3> edges;
@@ -32,11 +31,6 @@ void TetExits::enter(const LatticeTet& corners, const Tet& vertices,
   leastWeight_ = volume_ > kLeastVolume * cube ? 0x1p-31 * cube : kInfinity;
   placeError_ = 0x1p-34 * size_;
   reach_ = 2.5 * size_;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Vec3& corner = points[vertices[i]];
-    cornersXY_[i] = Pair{corner[0], corner[1]};
-    cornersZ_[i] = corner[2];
-  }
 }
 
 void TetExits::turn(int axis) noexcept {

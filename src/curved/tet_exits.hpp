@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 
 #include <curved/face_walk.hpp>
 
@@ -38,8 +37,7 @@ class TetExits {
       : unit_(unit), perUnit_(1 / static_cast<double>(unit)) {}
 
   /// Goes to a tet.
-  /// @param points  in space, by vertex
-  void enter(const LatticeTet& corners, const Tet& vertices, std::span<const Vec3> points) noexcept;
+  void enter(const LatticeTet& corners) noexcept;
   /// Looks along an axis of its chart.
   void turn(int axis) noexcept;
 
@@ -104,18 +102,6 @@ class TetExits {
             isNear && least[0] > leastWeight_ && least[1] > leastWeight_};
   }
 
-  /// In space.
-  [[nodiscard]] Vec3 position(const Weights& shares) const noexcept {
-    const std::array<double, 4> s = shares.byCorner();
-    Pair xy = Pair{s[0], s[0]} * cornersXY_[0];
-    double z = s[0] * cornersZ_[0];
-    for (std::size_t i = 1; i < 4; ++i) {
-      xy += Pair{s[i], s[i]} * cornersXY_[i];
-      z += s[i] * cornersZ_[i];
-    }
-    return {xy[0], xy[1], z};
-  }
-
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   using FaceWeights = std::array<Weights, 4>;
@@ -141,8 +127,6 @@ class TetExits {
   double leastWeight_ = 0;  ///< above it, a weight is positive where a line leaves
   double placeError_ = 0;   ///< of zeros
   double reach_ = 0;        ///< exits are nearer
-  std::array<Pair, 4> cornersXY_{};
-  std::array<double, 4> cornersZ_{};
 
   // Along the axis:
   std::size_t axis_ = 0;

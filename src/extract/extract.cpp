@@ -97,13 +97,16 @@ PreparedMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
 }
 
 HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells, const ExtractOptions& options,
-                  Context& context, ExtractStatistics& statistics) {
-  if (options.engine == Engine::Atlas) return runAtlas(map, expectedCells, context, statistics);
+                  Context& context, ExtractStatistics& statistics, EngineFindings* findings) {
+  if (options.engine == Engine::Atlas) {
+    return runAtlas(map, expectedCells, context, statistics, {},
+                    findings == nullptr ? nullptr : findings->guest);
+  }
   {
     Stage stage(context, "stars");
     addStars(map.topology, stage);
   }
-  return runPipeline(map, expectedCells, options.epsilon, context, statistics);
+  return runPipeline(map, expectedCells, options.epsilon, context, statistics, findings);
 }
 
 void throwMissingVertex(const MissingVertex& missing) {
@@ -135,8 +138,9 @@ ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options,
 }
 
 HexMesh extractScaled(const TetMapView& given, ScaledMap& scaled, const ExtractOptions& options,
-                      Context& context, ExtractStatistics& statistics) {
-  HexMesh mesh = runEngine(scaled.map, scaled.expectedCells, options, context, statistics);
+                      Context& context, ExtractStatistics& statistics, EngineFindings* findings) {
+  HexMesh mesh =
+      runEngine(scaled.map, scaled.expectedCells, options, context, statistics, findings);
   const TetMapView tagged = statistics.repairedMap ? TetMapView(*statistics.repairedMap) : given;
   carryTags(tagged, scaled.map, mesh, context);
   return mesh;

@@ -19,6 +19,30 @@ struct Trace {
   Direction beside;
 };
 
+/// Keeps no records.
+struct NoRecorder {
+  static constexpr bool kRecords = false;
+  void cross(HalfFace /*halfFace*/) const noexcept {}
+};
+
+/// Keeps records of edges, one at a time.
+class EdgeRecorder {
+ public:
+  static constexpr bool kRecords = true;
+
+  explicit EdgeRecorder(EdgeRecords& records) : records_(records) {}
+
+  void cross(HalfFace halfFace) { records_.faces.push_back(halfFace); }
+  void keep(EdgeRecord record) {
+    record.faceEnd = static_cast<Index>(records_.faces.size());
+    records_.edges.push_back(record);
+  }
+  void drop() { records_.faces.resize(records_.edges.empty() ? 0 : records_.edges.back().faceEnd); }
+
+ private:
+  EdgeRecords& records_;
+};
+
 class Tracer {
  public:
   Tracer(const PreparedMap& map, const Array<NormalSigns>& signs, const HexVertices& vertices,
@@ -31,8 +55,15 @@ class Tracer {
         finder_(map, signs, vertices, local),
         global_(global) {}
 
+  /// About how many edges tets have at most, if they are regular: each is traced from one end only.
+  [[nodiscard]] std::size_t mostEdges(std::size_t firstTet, std::size_t endTet) const noexcept {
+    return 3 *
+           std::size_t{vertices_.lines.pointBegin(endTet) - vertices_.lines.pointBegin(firstTet)};
+  }
+
   /// Traces every propeller whose first blade's casing lies in this tet.
-  void run(Index tet) {
+  template <class Recorder>
+  void run(Index tet, Recorder& recorder) {
     if (vertices_.lines.empty(tet)) return;
     vertices_.lines.forEachPoint(tet, [&](const GridPoint& z, CornerMask /*simplex*/, Index point) {
       const Index vertex = vertices_.lines.vertices[point];
@@ -44,40 +75,63 @@ class Tracer {
         const Propeller& propeller = local_.propeller(configuration, p);
         const Slot& slot = local_.slot(propeller, 0);
         if (!constant && slot.tet != tet) continue;
-        trace(vertex, generator, p, {tet, z, propeller.direction, slot.direction});
+        trace(vertex, generator, p, {tet, z, propeller.direction, slot.direction}, recorder);
       }
     });
   }
 
  private:
-  [[nodiscard]] std::atomic_ref<std::uint64_t> entry(Index vertex, Index generator,
-                                                     std::size_t propeller) const {
+  [[nodiscard]] std::uint64_t placeOf(Index vertex, Index generator, std::size_t propeller) const {
     const std::uint64_t count = local_.configuration(generator).propellerCount;
     const std::uint64_t rank = vertex - vertices_.generators[generator].firstVertex;
-    return std::atomic_ref(global_.opposites[global_.begin[generator] + rank * count + propeller]);
+    return global_.begin[generator] + rank * count + propeller;
+  }
+  [[nodiscard]] std::atomic_ref<std::uint64_t> entry(std::uint64_t place) const {
+    return std::atomic_ref(global_.opposites[place]);
   }
 
-  void trace(Index vertex, Index generator, std::size_t propeller, Trace at) {
+  template <class Recorder>
+  void trace(Index vertex, Index generator, std::size_t propeller, Trace at, Recorder& recorder) {
     // Two threads may trace an edge from both ends at once. They write the same values, so relaxed
     // accesses suffice, and the result is the same in any order.
-    const auto here = entry(vertex, generator, propeller);
-    if (here.load(std::memory_order_relaxed) != GlobalConnectivity::kUntraced) return;
-    const Index end = follow(at);
+    const std::uint64_t here = placeOf(vertex, generator, propeller);
+    if (entry(here).load(std::memory_order_relaxed) != GlobalConnectivity::kUntraced) return;
+    [[maybe_unused]] const Trace begin = at;
+    const Index end = follow(at, recorder);
     const Index endGenerator = vertices_.generatorOf[end];
     const SlotName arrived =
         finder_.find(at.tet, endGenerator, hexhex::opposite(at.along), at.beside);
     const auto offset = static_cast<std::uint16_t>(arrived.slot);
-    here.store(
-        GlobalConnectivity::pack({end, static_cast<std::uint16_t>(arrived.propeller), offset}),
-        std::memory_order_relaxed);
-    entry(end, endGenerator, arrived.propeller)
-        .store(GlobalConnectivity::pack({vertex, static_cast<std::uint16_t>(propeller), offset}),
-               std::memory_order_relaxed);
+    const std::uint64_t ahead =
+        GlobalConnectivity::pack({end, static_cast<std::uint16_t>(arrived.propeller), offset});
+    const std::uint64_t back =
+        GlobalConnectivity::pack({vertex, static_cast<std::uint16_t>(propeller), offset});
+    const std::uint64_t there = placeOf(end, endGenerator, arrived.propeller);
+    if constexpr (Recorder::kRecords) {
+      // Of two threads, the one that is first at the lower place keeps its record.
+      const bool isLower = here <= there;
+      if (alone_ || entry(isLower ? here : there)
+                            .exchange(isLower ? ahead : back, std::memory_order_relaxed) ==
+                        GlobalConnectivity::kUntraced) {
+        const auto isInside = [&](Index g) { return vertices_.generators[g].simplex == kWholeTet; };
+        recorder.keep({{vertex, end},
+                       begin.tet,
+                       begin.z,
+                       begin.along,
+                       isInside(generator) || isInside(endGenerator),
+                       0});
+      } else {
+        recorder.drop();
+      }
+    }
+    entry(here).store(ahead, std::memory_order_relaxed);
+    entry(there).store(back, std::memory_order_relaxed);
   }
 
   /// Goes from tet to tet until the next grid point along the edge is reached, and the tet holds
   /// the blade's quarter plane there; returns the hex vertex.
-  Index follow(Trace& at) const {
+  template <class Recorder>
+  Index follow(Trace& at, Recorder& recorder) const {
     int entered = -1;
     for (;;) {
       const Index found = vertices_.lines.find(at.tet, step(at.z, at.along));
@@ -90,6 +144,7 @@ class Tracer {
       const HalfFace mate = topology_.mate[halfFace];
       if (mate == kNone) throw MissingVertex{at.tet};
       entered = localOf(mate);
+      recorder.cross(halfFace);
       const Transition& transition = exact_.transitions.across(halfFace);
       at = {tetOf(mate), transition(at.z), transition(at.along), transition(at.beside)};
     }
@@ -129,13 +184,14 @@ class Tracer {
   const LocalConnectivity& local_;
   SlotFinder finder_;
   GlobalConnectivity& global_;
+  bool alone_ = currentThreads() == 1;
 };
 
 }  // namespace
 
 GlobalConnectivity traceOpposites(const PreparedMap& map, const Array<NormalSigns>& signs,
                                   const HexVertices& vertices, const LocalConnectivity& local,
-                                  Stage& stage) {
+                                  Stage& stage, std::vector<EdgeRecords>* records) {
   GlobalConnectivity global;
   global.begin.resize(vertices.generators.size());
   std::uint64_t total = 0;
@@ -151,8 +207,20 @@ GlobalConnectivity traceOpposites(const PreparedMap& map, const Array<NormalSign
               GlobalConnectivity::kUntraced);
   });
   Tracer tracer(map, signs, vertices, local, global);
-  parallelFor(stage, map.topology.tetCount(), kGrain,
-              [&](std::size_t t) { tracer.run(static_cast<Index>(t)); });
+  const std::size_t tets = map.topology.tetCount();
+  if (records == nullptr) {
+    NoRecorder none;
+    parallelFor(stage, tets, kGrain,
+                [&](std::size_t t) { tracer.run(static_cast<Index>(t), none); });
+    return global;
+  }
+  records->assign(blockCount(tets, kGrain), {});
+  parallelBlocks(stage, tets, kGrain, [&](std::size_t first, std::size_t end, std::size_t block) {
+    EdgeRecords& own = (*records)[block];
+    own.edges.reserve(tracer.mostEdges(first, end));
+    EdgeRecorder recorder(own);
+    for (std::size_t t = first; t < end; ++t) tracer.run(static_cast<Index>(t), recorder);
+  });
   return global;
 }
 

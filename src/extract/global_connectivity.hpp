@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include <hexhex/types.hpp>
 
+#include <extract/edge_records.hpp>
 #include <extract/local_connectivity.hpp>
 
 namespace hexhex {
@@ -34,10 +36,12 @@ struct GlobalConnectivity {
 };
 
 /// Traces all propellers. (Algorithm 8)
+/// @param[out] records  receives the hex edges, if they are asked for
 /// @throws MissingVertex
 [[nodiscard]] GlobalConnectivity traceOpposites(const PreparedMap& map,
                                                 const Array<NormalSigns>& signs,
                                                 const HexVertices& vertices,
-                                                const LocalConnectivity& local, Stage& stage);
+                                                const LocalConnectivity& local, Stage& stage,
+                                                std::vector<EdgeRecords>* records = nullptr);
 
 }  // namespace hexhex

@@ -39,23 +39,44 @@ struct LatticeLines {
     return planeBegin[tet] == planeBegin[tet + 1];
   }
 
-  /// The hex vertex at a grid point in the chart of a tet, or kNone if the closed tet does not
-  /// contain it.
-  [[nodiscard]] Index find(Index tet, const GridPoint& z) const noexcept {
+  /// The first point of a tet in `vertices`; also of the tet behind the last.
+  [[nodiscard]] Index pointBegin(std::size_t tet) const noexcept {
+    return lines[planes[planeBegin[tet]].lineBegin].pointBegin;
+  }
+
+  /// Where the grid point is in these arrays.
+  struct Place {
+    Index line = kNone;  ///< kNone if the closed tet does not contain the point
+    Index point = kNone;
+  };
+  [[nodiscard]] Place locate(Index tet, const GridPoint& z) const noexcept {
     const Index begin = planeBegin[tet];
     const Index count = planeBegin[tet + 1] - begin;
-    if (count == 0) return kNone;
+    if (count == 0) return {};
     const Sweep& sweep = sweeps[tet];
     const std::array<std::uint8_t, 3>& axes = sweep.axes();
     const auto plane = static_cast<std::uint32_t>(z[axes[0]] - sweep.firstPlane);
-    if (plane >= count) return kNone;
+    if (plane >= count) return {};
     const Plane& p = planes[begin + plane];
     const auto line = static_cast<std::uint32_t>(z[axes[1]] - p.firstLine);
-    if (line >= planes[begin + plane + 1].lineBegin - p.lineBegin) return kNone;
+    if (line >= planes[begin + plane + 1].lineBegin - p.lineBegin) return {};
     const Line& l = lines[p.lineBegin + line];
     const auto point = static_cast<std::uint32_t>(z[axes[2]] - l.firstPoint);
-    if (point >= lines[p.lineBegin + line + 1].pointBegin - l.pointBegin) return kNone;
-    return vertices[l.pointBegin + point];
+    if (point >= lines[p.lineBegin + line + 1].pointBegin - l.pointBegin) return {};
+    return {p.lineBegin + line, l.pointBegin + point};
+  }
+  /// The simplex that holds the point at a place.
+  [[nodiscard]] CornerMask simplexAt(const Place& place) const noexcept {
+    const Line& line = lines[place.line];
+    if (place.point == line.pointBegin) return line.left;
+    return place.point + 1 == lines[place.line + 1].pointBegin ? line.right : line.inner;
+  }
+
+  /// The hex vertex at a grid point in the chart of a tet, or kNone if the closed tet does not
+  /// contain it.
+  [[nodiscard]] Index find(Index tet, const GridPoint& z) const noexcept {
+    const Place place = locate(tet, z);
+    return place.line == kNone ? kNone : vertices[place.point];
   }
 
   /// Calls visit(z, simplex, index in `vertices`) for every grid point of a closed tet, in the

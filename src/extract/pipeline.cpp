@@ -26,8 +26,12 @@ Array<NormalSigns> computeNormalSigns(const ExactMap& map, Stage& stage) {
 class Extraction {
  public:
   Extraction(const PreparedMap& map, std::uint64_t expectedCells, Context& context,
-             ExtractStatistics& statistics)
-      : map_(map), expectedCells_(expectedCells), context_(context), statistics_(statistics) {}
+             ExtractStatistics& statistics, EngineFindings* findings)
+      : map_(map),
+        expectedCells_(expectedCells),
+        context_(context),
+        statistics_(statistics),
+        findings_(findings) {}
 
   /// @throws MissingVertex if epsilon was too small
   HexMesh run(double epsilon) {
@@ -48,7 +52,8 @@ class Extraction {
     GlobalConnectivity global;
     {
       Stage stage(context_, "global connectivity");
-      global = traceOpposites(map_, signs, vertices, local, stage);
+      std::vector<EdgeRecords>* records = findings_ == nullptr ? nullptr : &findings_->edges;
+      global = traceOpposites(map_, signs, vertices, local, stage, records);
     }
     HexMesh mesh;
     {
@@ -58,6 +63,7 @@ class Extraction {
       describeGenerators(map_, vertices, mesh, stage);
       count(vertices, local, global);
       mesh.points = std::move(vertices.positions);
+      if (findings_ != nullptr) findings_->lines = std::move(vertices.lines);
     }
     return mesh;
   }
@@ -83,13 +89,14 @@ class Extraction {
   std::uint64_t expectedCells_;
   Context& context_;
   ExtractStatistics& statistics_;
+  EngineFindings* findings_;
 };
 
 }  // namespace
 
 HexMesh runPipeline(const PreparedMap& map, std::uint64_t expectedCells, double epsilon,
-                    Context& context, ExtractStatistics& statistics) {
-  Extraction extraction(map, expectedCells, context, statistics);
+                    Context& context, ExtractStatistics& statistics, EngineFindings* findings) {
+  Extraction extraction(map, expectedCells, context, statistics, findings);
   statistics.epsilon = epsilon;
   try {
     return extraction.run(epsilon);

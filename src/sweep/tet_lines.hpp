@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <hexhex/types.hpp>
@@ -86,6 +87,10 @@ class TetLines {
     const std::size_t place = placeOf(tet);
     return std::span(blocks_[tet / kSweepBlock])
         .subspan(lineBegin_[place], lineBegin_[place + 1] - lineBegin_[place]);
+  }
+  /// Takes the lines of a block away, one tet after the other.
+  [[nodiscard]] Array<SweptLine> takeBlock(std::size_t block) noexcept {
+    return std::exchange(blocks_[block], {});
   }
 
  private:

@@ -10,6 +10,7 @@
 #include <hexhex/curved.hpp>
 
 #include "curved/curved_maps.hpp"
+#include "curved/same_arcs.hpp"
 #include "curved/tet_points.hpp"
 
 namespace hexhex::test {
@@ -155,14 +156,7 @@ TEST(Arcs, SameForAnyNumberOfThreadsAndEngine) {
   const Arcs one = withArcs(map, 1, 1).arcs;
   for (const Arcs& other :
        {withArcs(map, 1, 3).arcs, withArcs(map, 1, 2, Engine::Propeller).arcs}) {
-    EXPECT_EQ(one.ends, other.ends);
-    EXPECT_EQ(one.pointBegin, other.pointBegin);
-    EXPECT_EQ(one.points, other.points);
-    EXPECT_EQ(one.parameters, other.parameters);
-    EXPECT_EQ(one.generatorTet, other.generatorTet);
-    EXPECT_EQ(one.generatorCorners, other.generatorCorners);
-    EXPECT_EQ(one.segmentTet, other.segmentTet);
-    EXPECT_EQ(one.segmentCorners, other.segmentCorners);
+    expectSameBits(one, other);
   }
 }
 

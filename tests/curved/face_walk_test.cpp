@@ -44,7 +44,7 @@ class Walker {
         return;
       }
       ASSERT_EQ(dimension(expected.simplex()), 2);
-      ASSERT_NO_FATAL_FAILURE(compare(at.tet, seen, expected));
+      ASSERT_NO_FATAL_FAILURE(compare(at, seen, expected));
       const int face = oppositeCorner(expected.simplex());
       const HalfFace mate = map_.topology.mate[halfFaceOf(at.tet, face)];
       ASSERT_EQ(walk_.cross(at), mate != kNone);
@@ -59,16 +59,16 @@ class Walker {
     return at.frame.see(map_.exact.corners[at.tet], map_.exact.unit);
   }
 
-  void compare(Index tet, const LatticeTet& seen, const SimplexPoint& expected) {
+  void compare(const SimplexInTet& at, const LatticeTet& seen, const SimplexPoint& expected) {
     ++counts_.steps;
-    const ArcExit exit = walk_.exit(tet);
-    const OwnedSimplex owned = ownedBy(map_.topology, tet, expected.simplex());
+    const ArcExit exit = walk_.exit(at);
+    const OwnedSimplex owned = ownedBy(map_.topology, at.tet, expected.simplex());
     ASSERT_EQ(exit.generator.tet, owned.tet);
     ASSERT_EQ(exit.generator.corners, owned.corners);
     const auto shares = expected.normalized();
     const double parameter = coordinate(shares, seen, 0) / static_cast<double>(map_.exact.unit);
     ASSERT_NEAR(exit.parameter, parameter, 1e-12);
-    const Vec3 point = position(shares, map_.topology.tets[tet], map_.input.view.points);
+    const Vec3 point = position(shares, map_.topology.tets[at.tet], map_.input.view.points);
     for (std::size_t k = 0; k < 3; ++k) ASSERT_NEAR(exit.point[k], point[k], 1e-12);
   }
 

@@ -1,0 +1,177 @@
+// Where a hex edge crosses the interior of a face of the tets.
+//
+// Every way to trace an edge finds the same point, bit for bit: it is computed from the face as its
+// owner has it. The chart, and the direction in which the edge is followed, only permute and negate
+// the integers that all begins with, and what follows is the same for them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include <curved/owned_simplex.hpp>
+
+#include <hexhex/types.hpp>
+
+#include <map/prepare.hpp>
+
+namespace hexhex {
+
+/// A hex edge in the chart of a tet: from a grid point to its neighbour.
+struct ChartEdge {
+  GridPoint z;
+  Direction along;
+
+  /// Carries it across a face.
+  [[nodiscard]] ChartEdge across(const Transitions& transitions, HalfFace halfFace) const noexcept {
+    if (!transitions.isJump(halfFace)) return *this;
+    const Transition& transition = transitions.across(halfFace);
+    return {transition(z), transition(along)};
+  }
+  /// The same edge along the positive axis.
+  [[nodiscard]] ChartEdge ascending() const noexcept {
+    if (signOf(along) > 0) return *this;
+    return {step(z, along), opposite(along)};
+  }
+};
+
+/// The point inside a face at which an edge crosses it.
+struct FaceCrossing {
+  std::array<double, 3> shares{};  ///< of the face's corners, with sum 1
+  double parameter = 0;            ///< along the edge; 1 minus it, exactly, from the other end
+  double error = 0;                ///< bound for that of the parameter
+  bool inside = false;  ///< whether the edge's line crosses the interior of the face: exact
+};
+
+/// The shares of a face's corners at a point, and whether all are known to be positive.
+struct FaceShares {
+  std::array<double, 3> of{};
+  bool inside = false;
+};
+
+/// A face in the chart of its owner, ready to be crossed along any axis.
+struct CrossedFace {
+  const LatticeTet* corners;  ///< of the owner
+  int face;
+  LatticePoint first;            ///< its first corner
+  std::array<double, 3> second;  ///< the others, relative to that
+  std::array<double, 3> third;
+
+  CrossedFace(const LatticeTet& ofOwner, int ownersFace) noexcept
+      : corners(&ofOwner), face(ownersFace), first(corner(0)) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      second[k] = static_cast<double>(corner(1)[k] - first[k]);
+      third[k] = static_cast<double>(corner(2)[k] - first[k]);
+    }
+  }
+  [[nodiscard]] const LatticePoint& corner(std::size_t i) const noexcept {
+    return (*corners)[static_cast<std::size_t>(kFaceCorners[static_cast<std::size_t>(face)][i])];
+  }
+};
+
+/// Where the line of an edge meets the plane of a face, by exact arithmetic up to the last
+/// roundings.
+[[nodiscard]] FaceShares shareExactly(const CrossedFace& face, const ChartEdge& edge,
+                                      std::int64_t unit) noexcept;
+
+/// The same in floating point.
+///
+/// In units of u = 2^-53 and of M, the largest coordinate of a corner across the edge relative to
+/// the first one; none of the line is larger, as it meets the closed face. Coordinates carry one
+/// rounding, so products are known to 3 M^2 and their differences to 8 M^2. M^2 is less than the
+/// sum of squares. Where the sum of all weights is above 2^-10 of that, the shares of the second
+/// and the third corner are known to 2^14 and their own roundings, the share that is left to twice
+/// that: less than 2^-37.
+/// @return outside if it is not certain, or not known so well
+[[nodiscard]] inline FaceShares shareRoughly(const CrossedFace& face, const ChartEdge& edge,
+                                             std::int64_t unit) noexcept {
+  constexpr std::array<std::array<std::uint8_t, 2>, 3> kAcross = {{{1, 2}, {2, 0}, {0, 1}}};
+  const std::array<std::uint8_t, 2>& across = kAcross[static_cast<std::size_t>(axisOf(edge.along))];
+  const std::size_t m = across[0];
+  const std::size_t n = across[1];
+  const auto p = static_cast<double>(edge.z[m] * unit - face.first[m]);
+  const auto q = static_cast<double>(edge.z[n] * unit - face.first[n]);
+  const double p2 = face.second[m];
+  const double q2 = face.second[n];
+  const double p3 = face.third[m];
+  const double q3 = face.third[n];
+  const double squares = p2 * p2 + q2 * q2 + p3 * p3 + q3 * q3;
+  const double perSum = 1 / (p2 * q3 - p3 * q2);
+  const double second = (p * q3 - p3 * q) * perSum;
+  const double third = (p2 * q - p * q2) * perSum;
+  const double first = 1 - second - third;
+  constexpr double kLeastShare = 0x1p-36;
+  const bool inside =
+      squares * std::abs(perSum) < 0x1p10 && std::min(std::min(first, second), third) > kLeastShare;
+  return {{first, second, third}, inside};
+}
+
+/// @param edge  in the owner's chart; its line meets the closed face
+/// @param unit  a power of two
+[[nodiscard]] inline FaceCrossing crossFace(const CrossedFace& face, const ChartEdge& edge,
+                                            std::int64_t unit) noexcept {
+  FaceShares shares = shareRoughly(face, edge, unit);
+  if (!shares.inside) [[unlikely]]
+    shares = shareExactly(face, edge, unit);
+  const auto axis = static_cast<std::size_t>(axisOf(edge.along));
+  const bool ascends = signOf(edge.along) > 0;
+  const std::int64_t begin = std::int64_t{edge.z[axis]} - (ascends ? 0 : 1);
+  const auto first = static_cast<double>(face.first[axis] - begin * unit);
+  const double beyond = shares.of[1] * face.second[axis] + shares.of[2] * face.third[axis];
+  const double perUnit = 1 / static_cast<double>(unit);
+  // A multiple of 2^-53, so that the way back is as exact as the way there.
+  const double rest = 1 - (first + beyond) * perUnit;
+  const double parameter = ascends ? 1 - rest : rest;
+  const double reach = std::abs(face.second[axis]) + std::abs(face.third[axis]);
+  const double error = (0x1p-36 * reach + 0x1p-50 * std::abs(first)) * perUnit + 0x1p-52;
+  return {shares.of, parameter, error, shares.inside};
+}
+
+/// The corners of a face in space.
+using FacePoints = std::array<const Vec3*, 3>;
+
+/// @param tet  the face's owner
+[[nodiscard]] inline FacePoints pointsOf(const Tet& tet, int face,
+                                         std::span<const Vec3> points) noexcept {
+  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+  return {&points[tet[static_cast<std::size_t>(f[0])]],
+          &points[tet[static_cast<std::size_t>(f[1])]],
+          &points[tet[static_cast<std::size_t>(f[2])]]};
+}
+
+[[nodiscard]] inline Vec3 pointInFace(const std::array<double, 3>& shares,
+                                      const FacePoints& corners) noexcept {
+  Vec3 point;
+  for (std::size_t k = 0; k < 3; ++k) {
+    point[k] =
+        shares[0] * (*corners[0])[k] + shares[1] * (*corners[1])[k] + shares[2] * (*corners[2])[k];
+  }
+  return point;
+}
+
+/// A face by its owner.
+struct FaceOfOwner {
+  Index tet;
+  int local;         ///< by its opposite corner
+  HalfFace crossed;  ///< on the side that it was seen from if the owner is on the other; else kNone
+
+  FaceOfOwner(const TetTopology& topology, Index seenFrom, int face) noexcept
+      : tet(seenFrom), local(face), crossed(kNone) {
+    const HalfFace halfFace = halfFaceOf(seenFrom, face);
+    const HalfFace mate = topology.mate[halfFace];
+    if (mate == kNone || seenFrom < tetOf(mate)) return;
+    tet = tetOf(mate);
+    local = localOf(mate);
+    crossed = halfFace;
+  }
+  [[nodiscard]] OwnedSimplex simplex() const noexcept { return {tet, faceMask(local)}; }
+  /// @param edge  in the chart of the tet that the face was seen from
+  [[nodiscard]] ChartEdge carry(const ChartEdge& edge,
+                                const Transitions& transitions) const noexcept {
+    return crossed == kNone ? edge : edge.across(transitions, crossed);
+  }
+};
+
+}  // namespace hexhex

@@ -1,0 +1,115 @@
+// Points of edges in faces: floating point against exact arithmetic, seen from both ends.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <curved/face_crossing.hpp>
+#include <gtest/gtest.h>
+
+#include "lattice/random.hpp"
+
+namespace hexhex::test {
+
+namespace {
+
+using testing::Random;
+
+/// Corners on the half-integer grid, anywhere, or nearly on a line: all of them around the origin.
+LatticeTet randomCorners(std::int64_t unit, Random& random) {
+  LatticeTet corners{};
+  const bool onGrid = random.oneIn(3);
+  const std::int64_t thickness = random.oneIn(3) ? 3 : 4 * unit;
+  for (LatticePoint& corner : corners) {
+    for (std::int64_t& coordinate : corner) {
+      coordinate = onGrid ? unit / 2 * random.between(-6, 6) : random.between(-4, 4) * unit;
+      if (!onGrid) coordinate += random.between(-thickness, thickness);
+    }
+  }
+  return corners;
+}
+
+/// Whether the line meets the closed face in one point, by exact arithmetic.
+bool meets(const CrossedFace& face, const ChartEdge& edge, std::int64_t unit) {
+  LatticePoint line;
+  for (std::size_t k = 0; k < 3; ++k) line[k] = edge.z[k] * unit;
+  int positive = 0;
+  int negative = 0;
+  const auto axis = static_cast<std::size_t>(axisOf(edge.along));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Int128 weight =
+        crossComponent(face.corner((i + 1) % 3) - line, face.corner((i + 2) % 3) - line, axis);
+    positive += weight > 0 ? 1 : 0;
+    negative += weight < 0 ? 1 : 0;
+  }
+  return (positive == 0) != (negative == 0);
+}
+
+ChartEdge reversed(const ChartEdge& edge) {
+  return {step(edge.z, edge.along), opposite(edge.along)};
+}
+
+/// What occurred: tests that miss a case say nothing.
+struct CrossingCounts {
+  std::size_t certain = 0;
+  std::size_t leftToExact = 0;
+  std::size_t onBorders = 0;
+};
+
+/// The place along the edge of a point with these shares.
+double placeOf(const FaceShares& shares, const CrossedFace& face, const ChartEdge& edge,
+               std::int64_t unit) {
+  const auto axis = static_cast<std::size_t>(axisOf(edge.along));
+  double place = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::int64_t at = signOf(edge.along) * (face.corner(c)[axis] - edge.z[axis] * unit);
+    place += shares.of[c] * static_cast<double>(at);
+  }
+  return place / static_cast<double>(unit);
+}
+
+double largestDifference(const FaceShares& a, const FaceShares& b) {
+  double largest = 0;
+  for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(a.of[c] - b.of[c]));
+  return largest;
+}
+
+/// @param edge  its line meets the closed face
+void compareCrossing(const CrossedFace& face, const ChartEdge& edge, std::int64_t unit,
+                     CrossingCounts& counts) {
+  const FaceShares rough = shareRoughly(face, edge, unit);
+  const FaceShares exact = shareExactly(face, edge, unit);
+  const FaceCrossing crossing = crossFace(face, edge, unit);
+  EXPECT_EQ(crossing.inside, exact.inside);
+  if (!exact.inside) {
+    EXPECT_FALSE(rough.inside);
+    ++counts.onBorders;
+    return;
+  }
+  ++(rough.inside ? counts.certain : counts.leftToExact);
+  EXPECT_TRUE(!rough.inside || largestDifference(rough, exact) < 0x1p-37);
+  EXPECT_LE(std::abs(crossing.parameter - placeOf(exact, face, edge, unit)), crossing.error);
+  const FaceCrossing back = crossFace(face, reversed(edge), unit);
+  EXPECT_TRUE(back.parameter == 1 - crossing.parameter &&
+              crossing.parameter == 1 - back.parameter && back.shares == crossing.shares);
+}
+
+TEST(FaceCrossing, IsTheSameByBothArithmeticsAndFromBothEnds) {
+  Random random(8812);
+  CrossingCounts counts;
+  for (int i = 0; i < testing::cases(200000) + 5000 && !HasFailure(); ++i) {
+    // Where products fit 53 bits, and where they are rounded.
+    const std::int64_t unit = std::int64_t{1} << (random.oneIn(2) ? 18 : 44);
+    const LatticeTet corners = randomCorners(unit, random);
+    const CrossedFace face(corners, static_cast<int>(random.between(0, 3)));
+    ChartEdge edge{{}, static_cast<Direction>(random.between(0, 5))};
+    for (std::int32_t& z : edge.z) z = static_cast<std::int32_t>(random.between(-4, 4));
+    if (meets(face, edge, unit)) compareCrossing(face, edge, unit, counts);
+  }
+  EXPECT_GT(counts.certain, 100U);
+  EXPECT_GT(counts.leftToExact, 0U);
+  EXPECT_GT(counts.onBorders, 10U);
+}
+
+}  // namespace
+}  // namespace hexhex::test
