@@ -262,13 +262,13 @@ class VertexEdges {
 
   Surroundings in_;
   std::span<const VertexStar::Member> star_;
-  KeyTable others_;          ///< numbers the edges by their other vertices
+  KeyTable others_;    ///< numbers the edges by their other vertices
   Array<Edge> edges_;  ///< more than are in use
   std::size_t edgeCount_ = 0;
-  std::vector<Angles> angles_;        ///< per edge
+  std::vector<Angles> angles_;  ///< per edge
   Array<EdgeNumbers> numbers_;  ///< per member of the star
   Array<Wedge> wedges_;         ///< more than are in use
-  std::uint64_t faces_ = 0;           ///< of the vertex, as those of edges
+  std::uint64_t faces_ = 0;     ///< of the vertex, as those of edges
   bool anglesNeeded_ = false;
 };
 
