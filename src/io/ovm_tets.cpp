@@ -5,6 +5,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/bits.hpp>
 #include <io/ovm_cells.hpp>
 #include <io/ovm_first_fault.hpp>
 
@@ -239,8 +240,7 @@ bool assembleTet(const std::array<std::array<Index, 3>, 4>& loops, OvmTet& tet) 
       present |= 1U << order[i];
     }
     const unsigned missing = 15U & ~present;
-    // Exactly one bit; std::has_single_bit is a call on many machines.
-    if (missing == 0 || (missing & (missing - 1)) != 0) return false;
+    if (!hasOneBit(missing)) return false;
     order[3] = static_cast<std::uint8_t>(std::countr_zero(missing));
     // All half-faces run the same way round, seen from inside.
     if (!isEven(order)) return false;

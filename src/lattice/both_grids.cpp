@@ -3,6 +3,7 @@
 #include <bit>
 #include <span>
 
+#include <base/bits.hpp>
 #include <base/pair.hpp>
 #include <lattice/both_grids.hpp>
 #include <lattice/weight_field.hpp>
@@ -204,7 +205,7 @@ void FewPoints::appendCandidates(const PointsInBox& points, const WeightsOf& wei
                                  std::uint32_t found, std::vector<SweptLine>& lines) const {
   const std::array<std::int32_t, 3> counts = {points.countXy[0], points.countXy[1], points.countZ};
   const SweepAxes order = chooseSweepAxes(counts);
-  if (std::has_single_bit(found)) {
+  if (hasOneBit(found)) {
     const std::int32_t i = std::countr_zero(found);
     const std::int32_t row = i / counts[2];
     appendOne(points, {row / counts[1], row % counts[1], i % counts[2]},

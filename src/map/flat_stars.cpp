@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 
+#include <base/bits.hpp>
 #include <base/branchless.hpp>
 #include <base/pair.hpp>
 #include <base/vector3.hpp>
@@ -94,7 +95,7 @@ bool FlatStarTest::run(Index vertex, VertexStar& star) {
   planes_ = unfolding.planes();
   if (!unfolding.fits()) return false;
   const std::span<const VertexStar::Member> members = star.members();
-  if (planes_ != 0 && (!std::has_single_bit(planes_) || isBetweenPlanes(members[0].corner))) {
+  if (planes_ != 0 && (!hasOneBit(planes_) || isBetweenPlanes(members[0].corner))) {
     return false;
   }
   return coversDirectionOnce(members);

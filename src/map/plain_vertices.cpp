@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include <base/bits.hpp>
 #include <base/branchless.hpp>
 #include <base/pair.hpp>
 #include <base/vector3.hpp>
@@ -86,7 +87,7 @@ void listBoundary(const TetTopology& topology, const LocalParameters& parameters
     const Vec3& q = u[static_cast<std::size_t>(corners[1])];
     const Vec3& r = u[static_cast<std::size_t>(corners[2])];
     const unsigned constant = constantAxes(p, q, r);
-    const std::size_t axis = std::has_single_bit(constant)
+    const std::size_t axis = hasOneBit(constant)
                                  ? static_cast<std::size_t>(std::countr_zero(constant))
                                  : dominantAxis(cross(minus(q, p), minus(r, p)));
     // The general direction, positive along all axes, leads inward where the tet is above.
@@ -320,7 +321,7 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
     const unsigned planes = result.plane[v] % kBelow;
     result.plane[v] = static_cast<std::uint8_t>(planes);
     // On two planes, all cones are counted in vain.
-    const bool manyPlanes = (planes & (planes - 1)) != 0;
+    const bool manyPlanes = hasManyBits(planes);
     if ((cones[v] != 1 || manyPlanes) && !topology.isIsolated(static_cast<Index>(v))) {
       special[v] = 1;
     }

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <bit>
 
+#include <base/bits.hpp>
 #include <base/branchless.hpp>
 #include <base/shared_bits.hpp>
 #include <map/flat_stars.hpp>
@@ -121,7 +122,7 @@ class VertexUnfolder {
   [[nodiscard]] bool isFlat(Index vertex) const {
     const unsigned planes = state_[vertex];
     if (planes >= kBlocked || cones_[vertex] != 1) return false;
-    return planes == 0 || (std::has_single_bit(planes) && !isBetweenPlanes(vertex));
+    return planes == 0 || (hasOneBit(planes) && !isBetweenPlanes(vertex));
   }
 
   [[nodiscard]] bool isBetweenPlanes(Index vertex) const {
