@@ -64,6 +64,7 @@ void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage, SweepGuest* guest) {
                    BlockLines lines(stored_.has_value());
                    BlockLines centers(cells.lines.has_value());
                    KeyFilter filter;
+                   keys_[block].reserve(kSweepBlock / 16);
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
                      if (guest == nullptr) {

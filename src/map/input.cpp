@@ -114,14 +114,14 @@ struct Measures {
   PairMask positive = {0, 0};  ///< numbers: in space, in the map
   PairMask negative = {0, 0};
   Pair magnitude = {0, 0};  ///< in space, in the map: of all tets, finite only if all of them are
-  double largestCoordinate = 0;
-  double largestExtent = 0;
+  Pair largestCoordinate = {0, 0};  ///< the larger one counts
+  Pair largestExtent = {0, 0};
 
   void add(const Measures& other) {
     positive += other.positive;
     negative += other.negative;
-    largestCoordinate = std::max(largestCoordinate, other.largestCoordinate);
-    largestExtent = std::max(largestExtent, other.largestExtent);
+    largestCoordinate = larger(largestCoordinate, other.largestCoordinate);
+    largestExtent = larger(largestExtent, other.largestExtent);
   }
 
   void addTet(const TetMapView& map, std::size_t t) {
@@ -132,12 +132,20 @@ struct Measures {
     positive -= signs.positive;
     negative -= signs.negative;
     magnitude += signs.magnitude;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double low = std::min(std::min(u[0][k], u[1][k]), std::min(u[2][k], u[3][k]));
-      const double high = std::max(std::max(u[0][k], u[1][k]), std::max(u[2][k], u[3][k]));
-      largestCoordinate = std::max(largestCoordinate, std::max(-low, high));
-      largestExtent = std::max(largestExtent, high - low);
-    }
+    addBox(u);
+  }
+
+  /// Both coordinates of x and y at once, and z both ways.
+  void addBox(const TetParameters& u) {
+    const std::array<Pair, 4> xy = {loadPair(&u[0][0]), loadPair(&u[1][0]), loadPair(&u[2][0]),
+                                    loadPair(&u[3][0])};
+    const Pair lowXy = smaller(smaller(xy[0], xy[1]), smaller(xy[2], xy[3]));
+    const Pair highXy = larger(larger(xy[0], xy[1]), larger(xy[2], xy[3]));
+    const auto bothWays = [&](std::size_t corner) { return Pair{-u[corner][2], u[corner][2]}; };
+    const Pair aroundZ = larger(larger(bothWays(0), bothWays(1)), larger(bothWays(2), bothWays(3)));
+    largestCoordinate = larger(largestCoordinate, larger(larger(-lowXy, highXy), aroundZ));
+    const double extentZ = aroundZ[0] + aroundZ[1];
+    largestExtent = larger(largestExtent, larger(highXy - lowXy, Pair{extentZ, extentZ}));
   }
 };
 
@@ -240,8 +248,9 @@ OrientedMap readInput(const TetMapView& map, Stage& stage, DefectCollector& defe
   oriented.flippedTets = std::max<std::int64_t>(measures.positive[1], measures.negative[1]) < tets;
   oriented.tetsInvertedInSpace = static_cast<std::uint64_t>(
       std::min<std::int64_t>(measures.negative[0], measures.positive[0]));
-  oriented.largestCoordinate = measures.largestCoordinate;
-  oriented.largestExtent = measures.largestExtent;
+  oriented.largestCoordinate =
+      std::max(measures.largestCoordinate[0], measures.largestCoordinate[1]);
+  oriented.largestExtent = std::max(measures.largestExtent[0], measures.largestExtent[1]);
   if (defects.empty() && (oriented.cornersReversed || oriented.mirrored)) {
     reorient(oriented, map, stage);
   }

@@ -7,6 +7,7 @@
 #include <base/bits.hpp>
 #include <base/branchless.hpp>
 #include <base/pair.hpp>
+#include <base/shared_counts.hpp>
 #include <base/vector3.hpp>
 #include <map/plain_vertices.hpp>
 #include <map/tet_projection.hpp>
@@ -32,9 +33,6 @@ constexpr std::size_t kPrefetchDistance = 12;
 
 /// Sets a flag that several threads may set.
 void mark(std::uint8_t& flag) { std::atomic_ref(flag).store(1, std::memory_order_relaxed); }
-
-/// Per vertex: tets in one and the same direction from it.
-using Cones = Array<std::uint32_t>;
 
 void markCorners(const Tet& tet, int face, PlainVertices& result) {
   for (const int corner : kFaceCorners[static_cast<std::size_t>(face)]) {
@@ -122,8 +120,9 @@ void notePlanes(const TetTopology& topology, PlainVertices& result) {
 /// images at vertices that are on one boundary plane, unless they are above it everywhere.
 class TetSurvey {
  public:
-  TetSurvey(const TetTopology& topology, const LocalParameters& parameters, Cones& cones,
-            PlainVertices& result)
+  /// @param cones  per vertex: tets in one and the same direction from it
+  TetSurvey(const TetTopology& topology, const LocalParameters& parameters,
+            const SharedCounts& cones, PlainVertices& result)
       : topology_(topology), parameters_(parameters), cones_(cones), result_(result) {}
 
   /// For at most kNear tets.
@@ -135,9 +134,7 @@ class TetSurvey {
     for (std::size_t i = 0; i < images.size(); i += 2) {
       lookAtTwoImages(images[i], images[std::min(i + 1, images.size() - 1)]);
     }
-    for (const Index vertex : found_.get()) {
-      std::atomic_ref(cones_[vertex]).fetch_add(1, std::memory_order_relaxed);
-    }
+    for (const Index vertex : found_.get()) cones_.increase(vertex);
   }
 
  private:
@@ -205,7 +202,7 @@ class TetSurvey {
 
   const TetTopology& topology_;
   const LocalParameters& parameters_;
-  Cones& cones_;
+  const SharedCounts& cones_;
   PlainVertices& result_;
   BranchlessList found_;   ///< vertices
   BranchlessList images_;  ///< as in lookAtTwoImages()
@@ -295,7 +292,8 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
   Array<std::uint8_t>& special = result.special;
   special.assign(vertices, 0);
   result.plane.assign(vertices, 0);
-  Cones cones(vertices, 0);
+  Array<Index> cones(vertices, 0);
+  const SharedCounts sharedCones(cones);
   result.sides.resize(topology.tetCount());
   result.passages.resize(4 * topology.tetCount());
   const std::size_t tets = topology.tetCount();
@@ -311,7 +309,7 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
   for (const auto& faces : result.boundaryFaces) boundaryFaces += faces.size();
   result.innerFaces = (4 * tets - boundaryFaces) / 2;
   parallelBlocks(stage, tets, kGrain, [&](std::size_t first, std::size_t last, std::size_t block) {
-    TetSurvey tetSurvey(topology, parameters, cones, result);
+    TetSurvey tetSurvey(topology, parameters, sharedCones, result);
     forEachPart(first, last, [&](std::size_t begin, std::size_t end) {
       tetSurvey.run(begin, end);
       surveyFaces(topology, parameters, begin, end, block, result);

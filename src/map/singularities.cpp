@@ -356,6 +356,11 @@ void collectStars(const TetTopology& topology, const LocalParameters& parameters
   stars.resize(blockCount(topology.pointCount, kVertexGrain));
   parallelBlocks(stage, topology.pointCount, kVertexGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   const auto specials = static_cast<std::size_t>(
+                       std::count_if(&plain.special[begin], &plain.special[begin] + (end - begin),
+                                     [](std::uint8_t special) { return special != 0; }));
+                   if (specials == 0) return;
+                   stars[block].reserve(specials);
                    StarSorter sorter(topology, parameters, plain, flatAllowed, stars[block]);
                    for (std::size_t v = begin; v < end; ++v) {
                      if (plain.special[v] != 0) sorter.run(static_cast<Index>(v));

@@ -5,6 +5,7 @@
 #include <base/bits.hpp>
 #include <base/branchless.hpp>
 #include <base/shared_bits.hpp>
+#include <base/shared_counts.hpp>
 #include <map/flat_stars.hpp>
 #include <map/tet_projection.hpp>
 #include <map/turn.hpp>
@@ -115,9 +116,7 @@ class VertexUnfolder {
     if (plane == 0 || state_[vertex] == plane) count(vertex, 1);
   }
 
-  void count(Index vertex, std::uint32_t cones) {
-    std::atomic_ref(cones_[vertex]).fetch_add(cones, std::memory_order_relaxed);
-  }
+  void count(Index vertex, Index cones) { sharedCones_.increase(vertex, cones); }
 
   [[nodiscard]] bool isFlat(Index vertex) const {
     const unsigned planes = state_[vertex];
@@ -162,9 +161,10 @@ class VertexUnfolder {
   const LocalParameters& parameters_;
   PlainVertices& plain_;
   Stage& stage_;
-  Array<Rotation> inward_;      ///< per tet: from the picture into its chart
-  Array<std::uint8_t> state_;   ///< per vertex
-  Array<std::uint32_t> cones_;  ///< per vertex: tets and images in one direction from it
+  Array<Rotation> inward_;     ///< per tet: from the picture into its chart
+  Array<std::uint8_t> state_;  ///< per vertex
+  Array<Index> cones_;         ///< per vertex: tets and images in one direction from it
+  SharedCounts sharedCones_{cones_};
 };
 
 }  // namespace

@@ -136,6 +136,12 @@ struct StarBlock {
 
   std::size_t cornersSeen = 0;  ///< in all stars, kept or flat
 
+  /// Makes room for as many vertices.
+  void reserve(std::size_t count) {
+    vertices.reserve(count);
+    planes.reserve(count);
+    ends.reserve(count);
+  }
   void add(Index vertex, std::span<const VertexStar::Member> star, unsigned planesOfStar) {
     vertices.push_back(vertex);
     planes.push_back(planesOfStar);

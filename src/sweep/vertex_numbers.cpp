@@ -64,6 +64,7 @@ void VertexCounter::countSome(std::size_t block, Index tet, std::span<const Swep
 }
 
 void VertexCounter::countBoundary(Block& block, Index tet, std::span<const SweptLine> lines) {
+  if (block.generators.empty()) block.generators.reserve(kSweepBlock / 4);
   std::array<Index, 16> counts{};
   for (const SweptLine& line : lines) {
     ++counts[line.left];
