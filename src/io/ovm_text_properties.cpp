@@ -85,7 +85,6 @@ class PropertiesReader {
   void read();
 
  private:
-  std::string_view takeLine();
   [[nodiscard]] bool readWanted(const PropertyHeader& header);
   void readPoints();
   void readIntegers(Array<std::int32_t>& values, std::size_t count, std::string_view name);
@@ -97,14 +96,6 @@ class PropertiesReader {
   OvmMesh& mesh_;
   Stage& stage_;
 };
-
-/// Reads to the end of the line and returns what it read.
-std::string_view PropertiesReader::takeLine() {
-  const std::size_t begin = scanner_.position();
-  const std::size_t end = std::min(text_.find('\n', begin), text_.size());
-  scanner_.moveTo(std::min(end + 1, text_.size()));
-  return text_.substr(begin, end - begin);
-}
 
 void PropertiesReader::read() {
   // Behind values that were skipped without knowing them, everything up to the next header belongs
@@ -120,7 +111,7 @@ void PropertiesReader::read() {
           ErrorCode::FileSyntax,
           "expected a property (e.g. VProp) or the end of the file, found " + quoted(first) + ".");
     }
-    takeLine();
+    scanner_.takeLine();
     if (!header) continue;
     anythingGoes = !readWanted(*header);
     if (anythingGoes && equalsIgnoringCase(header->type, "string")) {

@@ -64,6 +64,15 @@ std::size_t TextScanner::readCount(std::string_view what, std::size_t bytesEach)
   return static_cast<std::size_t>(count);
 }
 
+std::string_view TextScanner::takeLine() {
+  const char* const begin = position_;
+  skipLine();
+  const std::string_view line(begin, position_);
+  if (position_ != end_) ++position_;
+  token_ = position_;
+  return line;
+}
+
 void TextScanner::skipLineBreak() {
   const char* place = position_;
   while (place != end_ && (*place == ' ' || *place == '\r')) ++place;

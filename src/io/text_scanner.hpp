@@ -92,6 +92,8 @@ class TextScanner {
   /// The token that was read last, or the one that could not be read.
   [[nodiscard]] std::string_view currentToken() const;
 
+  /// Reads the rest of the line, whatever it is, without the end of the line.
+  std::string_view takeLine();
   /// Moves to the next line, where bytes of numbers begin: nothing else may stand on this one.
   void skipLineBreak();
 

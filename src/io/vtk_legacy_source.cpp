@@ -44,30 +44,23 @@ Array<Wide> loadNumbers(const char* bytes, std::size_t count, std::size_t bytesE
 
 std::string VtkLegacySource::readKeyword() { return lowerCase(scanner_.readToken()); }
 
-std::string_view VtkLegacySource::takeLine() {
-  const std::size_t begin = scanner_.position();
-  const std::size_t end = std::min(text_.find('\n', begin), text_.size());
-  scanner_.moveTo(std::min(end + 1, text_.size()));
-  return text_.substr(begin, end - begin);
-}
-
 void VtkLegacySource::skipMetadata() {
-  static_cast<void>(takeLine());
+  static_cast<void>(scanner_.takeLine());
   while (scanner_.position() < text_.size()) {
-    const std::string_view line = takeLine();
+    const std::string_view line = scanner_.takeLine();
     if (line.empty() || line == "\r") return;
   }
 }
 
 void VtkLegacySource::readHead() {
   constexpr std::string_view kMagic = "# vtk DataFile Version ";
-  if (!takeLine().starts_with(kMagic)) {
+  if (!scanner_.takeLine().starts_with(kMagic)) {
     scanner_.moveTo(0);
     scanner_.fail(
         ErrorCode::FileSyntax,
         "a .vtk file begins with \"# vtk DataFile Version\". If it is XML, name it .vtu.");
   }
-  static_cast<void>(takeLine());  // a title, which may be anything
+  static_cast<void>(scanner_.takeLine());  // a title, which may be anything
   const std::string encoding = readKeyword();
   binary_ = encoding == "binary";
   if (!binary_ && encoding != "ascii") scanner_.failToken("\"ASCII\" or \"BINARY\"");

@@ -62,8 +62,6 @@ class VtkLegacySource {
 
   /// Reads a word that may come in any letter case, in lower case.
   [[nodiscard]] std::string readKeyword();
-  /// Reads the rest of the line, without the end of the line.
-  std::string_view takeLine();
   /// Skips lines up to an empty one.
   void skipMetadata();
 
