@@ -21,10 +21,6 @@ HalfGridSearch searchWith(const SweepGuest* guest) {
   return HalfGridSearch(static_cast<HalfGridSet>(own | (guest == nullptr ? 0U : guest->grids())));
 }
 
-void appendLines(const HalfGrids& grids, HalfGrid grid, std::vector<SweptLine>& lines) {
-  static_cast<void>(grids.sweep(grid, [&](const SweptLine& line) { lines.push_back(line); }));
-}
-
 /// Enters consecutive vertices. Of two that claim the same place, the one that comes later finds
 /// the other, and marks the brick.
 /// @return whether some did

@@ -29,10 +29,11 @@ class ArcSorter {
  public:
   void enter(const LatticeTet& corners, std::int64_t unit) {
     const HalfBox box(corners, unit);
+    const HalfGridSet grids = box.grids();
     size_ = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const HalfGrid grid = ElementNumbers::midpointsOf(ElementKind::Edges, static_cast<int>(axis));
-      if ((box.grids() & halfGridBit(grid)) == 0) continue;
+      if ((grids & halfGridBit(grid)) == 0) continue;
       const GridBox points = box.of(grid);
       Grid& g = grids_[axis];
       g.axes = chooseSweepAxes(points)();

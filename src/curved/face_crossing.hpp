@@ -158,20 +158,20 @@ struct FaceOfOwner {
   HalfFace crossed;  ///< on the side that it was seen from if the owner is on the other; else kNone
 
   FaceOfOwner(const TetTopology& topology, Index seenFrom, int face) noexcept
-      : tet(seenFrom), local(face), crossed(kNone) {
-    const HalfFace halfFace = halfFaceOf(seenFrom, face);
-    const HalfFace mate = topology.mate[halfFace];
-    if (mate == kNone || seenFrom < tetOf(mate)) return;
-    tet = tetOf(mate);
-    local = localOf(mate);
-    crossed = halfFace;
-  }
+      : FaceOfOwner(ownedFace(topology, seenFrom, face), halfFaceOf(seenFrom, face)) {}
+
   [[nodiscard]] OwnedSimplex simplex() const noexcept { return {tet, faceMask(local)}; }
   /// @param edge  in the chart of the tet that the face was seen from
   [[nodiscard]] ChartEdge carry(const ChartEdge& edge,
                                 const Transitions& transitions) const noexcept {
     return crossed == kNone ? edge : edge.across(transitions, crossed);
   }
+
+ private:
+  FaceOfOwner(const OwnedSimplex& owned, HalfFace seen) noexcept
+      : tet(owned.tet),
+        local(oppositeCorner(owned.corners)),
+        crossed(owned.tet == tetOf(seen) ? kNone : seen) {}
 };
 
 }  // namespace hexhex

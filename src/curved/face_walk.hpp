@@ -5,26 +5,13 @@
 #include <array>
 
 #include <curved/arc_pieces.hpp>
-#include <curved/face_crossing.hpp>
 #include <curved/owned_simplex.hpp>
 #include <curved/simplex_star.hpp>
+#include <curved/tet_faces.hpp>
 
 #include <map/prepare.hpp>
 
 namespace hexhex {
-
-/// The point inside a face through which an edge leaves a tet.
-/// @param edge  in the chart of the tet
-[[nodiscard]] inline ArcExit exitThrough(const PreparedMap& map, Index tet, int face,
-                                         const ChartEdge& edge) {
-  const FaceOfOwner owned(map.topology, tet, face);
-  const CrossedFace crossed(map.exact.corners[owned.tet], owned.local);
-  const FaceCrossing crossing =
-      crossFace(crossed, owned.carry(edge, map.exact.transitions), map.exact.unit);
-  const FacePoints corners =
-      pointsOf(map.topology.tets[owned.tet], owned.local, map.input.view.points);
-  return {owned.simplex(), pointInFace(crossing.shares, corners), crossing.parameter};
-}
 
 /// On which side of the edges of a tet a hex edge passes, looking along it.
 struct EdgeSides {

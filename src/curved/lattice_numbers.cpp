@@ -72,7 +72,7 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map, SweptVertices swept, Stag
 void LatticeNumbers::Sweep::sweep(std::size_t block, Index tet, const HalfGrids& grids) {
   std::vector<SweptLine>& lines = blocks_[block];
   const std::size_t before = lines.size();
-  static_cast<void>(grids.sweep(0, [&](const SweptLine& line) { lines.push_back(line); }));
+  appendLines(grids, kVertexGrid, lines);
   const auto own = std::span(lines).subspan(before);
   numbers_.noteLines(tet, own);
   counter_.count(block, tet, own);

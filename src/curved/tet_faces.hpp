@@ -1,4 +1,4 @@
-// The faces of a tet for several hex edges that leave through them.
+// The faces of a tet that hex edges leave through.
 #pragma once
 
 #include <array>
@@ -12,6 +12,36 @@
 
 namespace hexhex {
 
+/// A face as its owner has it, for edges that leave a tet through it.
+class FaceExit {
+ public:
+  FaceExit(const PreparedMap& map, Index tet, int face) noexcept
+      : owned_(map.topology, tet, face),
+        crossed_(map.exact.corners[owned_.tet], owned_.local),
+        corners_(pointsOf(map.topology.tets[owned_.tet], owned_.local, map.input.view.points)) {}
+
+  /// The point inside the face.
+  /// @param edge  in the chart of the tet
+  [[nodiscard]] ArcExit of(const PreparedMap& map, const ChartEdge& edge) const noexcept {
+    const FaceCrossing crossing =
+        crossFace(crossed_, owned_.carry(edge, map.exact.transitions), map.exact.unit);
+    return {owned_.simplex(), pointInFace(crossing.shares, corners_), crossing.parameter};
+  }
+
+ private:
+  FaceOfOwner owned_;
+  CrossedFace crossed_;
+  FacePoints corners_;
+};
+
+/// The point inside a face through which an edge leaves a tet.
+/// @param edge  in the chart of the tet
+[[nodiscard]] inline ArcExit exitThrough(const PreparedMap& map, Index tet, int face,
+                                         const ChartEdge& edge) noexcept {
+  return FaceExit(map, tet, face).of(map, edge);
+}
+
+/// The faces of one tet after the other, for several edges each.
 class TetFaces {
  public:
   explicit TetFaces(const PreparedMap& map) : map_(map) {}
@@ -19,33 +49,19 @@ class TetFaces {
   /// Goes to a tet.
   void enter(Index tet) noexcept {
     tet_ = tet;
-    for (std::optional<Face>& face : faces_) face.reset();
+    for (std::optional<FaceExit>& face : faces_) face.reset();
   }
   /// As exitThrough().
   [[nodiscard]] ArcExit exit(int face, const ChartEdge& edge) {
-    std::optional<Face>& entry = faces_[static_cast<std::size_t>(face)];
+    std::optional<FaceExit>& entry = faces_[static_cast<std::size_t>(face)];
     if (!entry) entry.emplace(map_, tet_, face);
-    const ChartEdge carried = entry->owned.carry(edge, map_.exact.transitions);
-    const FaceCrossing crossing = crossFace(entry->crossed, carried, map_.exact.unit);
-    return {entry->owned.simplex(), pointInFace(crossing.shares, entry->corners),
-            crossing.parameter};
+    return entry->of(map_, edge);
   }
 
  private:
-  struct Face {
-    FaceOfOwner owned;
-    CrossedFace crossed;
-    FacePoints corners;
-
-    Face(const PreparedMap& map, Index tet, int face) noexcept
-        : owned(map.topology, tet, face),
-          crossed(map.exact.corners[owned.tet], owned.local),
-          corners(pointsOf(map.topology.tets[owned.tet], owned.local, map.input.view.points)) {}
-  };
-
   const PreparedMap& map_;
   Index tet_ = kNone;
-  std::array<std::optional<Face>, 4> faces_;  ///< as soon as they are crossed
+  std::array<std::optional<FaceExit>, 4> faces_;  ///< as soon as they are crossed
 };
 
 }  // namespace hexhex

@@ -12,6 +12,7 @@
 
 #include <base/parallel.hpp>
 #include <lattice/both_grids.hpp>
+#include <lattice/half_grids.hpp>
 #include <lattice/line_rasterizer.hpp>
 #include <map/exact_map.hpp>
 
@@ -40,6 +41,11 @@ struct TetSweep {
 inline void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
                       std::vector<SweptLine>& centers) {
   sweepBothGrids(map.corners[tet], map.unit, vertices, centers);
+}
+
+/// Appends the lines of one grid of several.
+inline void appendLines(const HalfGrids& grids, HalfGrid grid, std::vector<SweptLine>& lines) {
+  static_cast<void>(grids.sweep(grid, [&](const SweptLine& line) { lines.push_back(line); }));
 }
 
 /// The lines of a block of tets, one tet after the other.
