@@ -1,6 +1,4 @@
 #include <limits>
-#include <memory>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +8,8 @@
 #include <atlas/charts.hpp>
 #include <atlas/cut_marks.hpp>
 #include <atlas/vertex_grid.hpp>
+
+#include <base/workspaces.hpp>
 
 namespace hexhex {
 
@@ -101,45 +101,34 @@ class CellEmitters {
             std::span<typename CellEmitter<Id>::Cell> cells) {
     const Array<std::uint64_t>& begin = atlas_.cells().begin;
     if (begin[firstTet] == begin[endTet]) return;
-    std::unique_ptr<CellEmitter<Id>> emitter = take();
-    std::vector<SweptLine> scratch;
+    const auto loan = workspaces_.lend([this] {
+      return Workspace{CellEmitter<Id>(map_, atlas_.vertices(), atlas_.jumps()), {}};
+    });
+    auto& [emitter, lines] = *loan;
     for (std::size_t t = firstTet; t < endTet; ++t) {
       if (begin[t] == begin[t + 1]) continue;
       const auto tet = static_cast<Index>(t);
-      emitter->emit(tet, atlas_.cells().linesOf(map_.exact, tet, scratch),
-                    cells.subspan(begin[t] - first, begin[t + 1] - begin[t]));
+      emitter.emit(tet, atlas_.cells().linesOf(map_.exact, tet, lines),
+                   cells.subspan(begin[t] - first, begin[t + 1] - begin[t]));
     }
-    giveBack(std::move(emitter));
   }
 
   /// Cells so far with a corner that the picture hides. Not while others emit.
-  [[nodiscard]] std::uint64_t traced() const noexcept {
+  [[nodiscard]] std::uint64_t traced() const {
     std::uint64_t sum = 0;
-    for (const std::unique_ptr<CellEmitter<Id>>& emitter : idle_) sum += emitter->traced();
+    workspaces_.forEach([&sum](const Workspace& each) { sum += each.emitter.traced(); });
     return sum;
   }
 
  private:
-  [[nodiscard]] std::unique_ptr<CellEmitter<Id>> take() {
-    {
-      const std::lock_guard lock(mutex_);
-      if (!idle_.empty()) {
-        std::unique_ptr<CellEmitter<Id>> emitter = std::move(idle_.back());
-        idle_.pop_back();
-        return emitter;
-      }
-    }
-    return std::make_unique<CellEmitter<Id>>(map_, atlas_.vertices(), atlas_.jumps());
-  }
-  void giveBack(std::unique_ptr<CellEmitter<Id>> emitter) {
-    const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(emitter));
-  }
+  struct Workspace {
+    CellEmitter<Id> emitter;
+    std::vector<SweptLine> lines;  ///< of a tet, where they are not kept
+  };
 
   const PreparedMap& map_;
   const Atlas<Id>& atlas_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<CellEmitter<Id>>> idle_;
+  Workspaces<Workspace> workspaces_;
 };
 
 /// All cells at once.

@@ -5,6 +5,7 @@
 
 #include <atlas/cut_marks.hpp>
 
+#include <base/workspaces.hpp>
 #include <lattice/triangle_cells.hpp>
 
 namespace hexhex {
@@ -64,19 +65,19 @@ struct LoneCut {
 template <class Id>
 class CutMarker {
  public:
-  /// @param lone  receives what there is no brick for
-  CutMarker(const PreparedMap& map, const Charts& charts, const Jumps& jumps, BrickGrid<Id>& grid,
-            std::vector<LoneCut>& lone)
-      : map_(map), charts_(charts), jumps_(jumps), grid_(grid), cache_(grid), lone_(lone) {}
+  CutMarker(const PreparedMap& map, const Charts& charts, const Jumps& jumps, BrickGrid<Id>& grid)
+      : map_(map), charts_(charts), jumps_(jumps), grid_(grid), cache_(grid) {}
 
-  void mark(HalfFace halfFace, JumpId jump) {
+  /// @param lone  receives what there is no brick for
+  void mark(HalfFace halfFace, JumpId jump, std::vector<LoneCut>& lone) {
     const Triangle triangle = triangleOf(map_.exact, halfFace);
     // Made when first needed, as most small triangles do not come before any corner.
     std::optional<BothSides> sides;
     TriangleCells(triangle, map_.exact.unit).run([&](const GridPoint& z, CellCornerSet corners) {
       if (!sides) sides.emplace(sidesOf(halfFace, jump));
       for (const Side& side : *sides) {
-        add(side.chart, side.frame(z[0], z[1], z[2]), turned(side.rotation, corners), side.jump);
+        add(side.chart, side.frame(z[0], z[1], z[2]), turned(side.rotation, corners), side.jump,
+            lone);
       }
     });
   }
@@ -101,7 +102,8 @@ class CutMarker {
             Side{charts_.chart[there], gaugeThere.rotation, cellFrame(gaugeThere), back}};
   }
 
-  void add(Index chart, const ChartPoint& c, CellCornerSet corners, JumpId jump) {
+  void add(Index chart, const ChartPoint& c, CellCornerSet corners, JumpId jump,
+           std::vector<LoneCut>& lone) {
     if (chart == Charts::kNoChart) return;
     Brick<Id>* const brick = cache_.find(chart, c);
     if (brick != nullptr) {
@@ -112,7 +114,7 @@ class CutMarker {
         cuts.addShared(placeInBrick(c), corners, jump);
       }
     } else {
-      lone_.push_back({brickKey(chart, c), placeInBrick(c), corners, jump});
+      lone.push_back({brickKey(chart, c), placeInBrick(c), corners, jump});
     }
   }
 
@@ -122,7 +124,6 @@ class CutMarker {
   const Jumps& jumps_;
   BrickGrid<Id>& grid_;
   BrickCache<Id> cache_;
-  std::vector<LoneCut>& lone_;
 };
 
 }  // namespace
@@ -138,11 +139,13 @@ Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool onlyJumps, 
     jumps[i] = cuts.jumps.across(map, charts, halfFaces[i]);
   }
   constexpr std::size_t kFaces = 32;  // one may meet thousands of cells
+  Workspaces<CutMarker<Id>> markers;
   const auto lone = collectFromBlocks<LoneCut>(
       stage, halfFaces.size(), kFaces,
       [&](std::size_t begin, std::size_t end, std::vector<LoneCut>& loneHere) {
-        CutMarker<Id> marker(map, charts, cuts.jumps, grid, loneHere);
-        for (std::size_t i = begin; i < end; ++i) marker.mark(halfFaces[i], jumps[i]);
+        const auto marker =
+            markers.lend([&] { return CutMarker<Id>(map, charts, cuts.jumps, grid); });
+        for (std::size_t i = begin; i < end; ++i) (*marker).mark(halfFaces[i], jumps[i], loneHere);
       });
   for (const LoneCut& cell : lone)
     grid.cutsOf(grid.add(cell.key)).add(cell.place, cell.corners, cell.jump);

@@ -4,6 +4,7 @@
 #include <atlas/vertex_grid.hpp>
 
 #include <base/branchless.hpp>
+#include <base/workspaces.hpp>
 
 namespace hexhex {
 
@@ -20,6 +21,12 @@ HalfGridSearch searchWith(const SweepGuest* guest) {
   const unsigned own = halfGridBit(kVertexGrid) | halfGridBit(kCenterGrid);
   return HalfGridSearch(static_cast<HalfGridSet>(own | (guest == nullptr ? 0U : guest->grids())));
 }
+
+/// Of a block of tets.
+struct SweptLines {
+  BlockLines vertices;
+  BlockLines centers;
+};
 
 /// Enters consecutive vertices. Of two that claim the same place, the one that comes later finds
 /// the other, and marks the brick.
@@ -55,35 +62,40 @@ void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage, SweepGuest* guest) {
   VertexCounter counter(map_, numbers_);
   keys_.resize(blockCount(tets, kSweepBlock));
   const HalfGridSearch search = searchWith(guest);
-  parallelBlocks(stage, tets, kSweepBlock,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   BlockLines lines(stored_.has_value());
-                   BlockLines centers(cells.lines.has_value());
-                   KeyFilter filter;
-                   keys_[block].reserve(kSweepBlock / 16);
-                   for (std::size_t t = begin; t < end; ++t) {
-                     const auto tet = static_cast<Index>(t);
-                     if (guest == nullptr) {
-                       sweepBoth(map_.exact, tet, lines.next(), centers.next());
-                     } else {
-                       const HalfGrids grids(map_.exact.corners[t], map_.exact.unit, search);
-                       appendLines(grids, kVertexGrid, lines.next());
-                       appendLines(grids, kCenterGrid, centers.next());
-                       guest->add(block, tet, grids);
-                     }
-                     cells.begin[t] = 0;
-                     counter.countNothing(tet);
-                     if (const auto own = centers.last(); !own.empty()) {
-                       cells.begin[t] = countOwned(map_.topology, tet, own);
-                     }
-                     if (const auto own = lines.last(); !own.empty()) {
-                       counter.count(block, tet, own);
-                       collectKeys(tet, own, filter, keys_[block]);
-                     }
-                   }
-                   if (stored_) stored_->store(block, lines);
-                   if (cells.lines) cells.lines->store(block, centers);
-                 });
+  const auto makeLines = [&] {
+    return SweptLines{BlockLines(stored_.has_value()), BlockLines(cells.lines.has_value())};
+  };
+  const auto sweepBlock = [&](std::size_t begin, std::size_t end, std::size_t block,
+                              SweptLines& swept) {
+    auto& [lines, centers] = swept;
+    lines.clear();
+    centers.clear();
+    KeyFilter filter;
+    keys_[block].reserve(kSweepBlock / 16);
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto tet = static_cast<Index>(t);
+      if (guest == nullptr) {
+        sweepBoth(map_.exact, tet, lines.next(), centers.next());
+      } else {
+        const HalfGrids grids(map_.exact.corners[t], map_.exact.unit, search);
+        appendLines(grids, kVertexGrid, lines.next());
+        appendLines(grids, kCenterGrid, centers.next());
+        guest->add(block, tet, grids);
+      }
+      cells.begin[t] = 0;
+      counter.countNothing(tet);
+      if (const auto own = centers.last(); !own.empty()) {
+        cells.begin[t] = countOwned(map_.topology, tet, own);
+      }
+      if (const auto own = lines.last(); !own.empty()) {
+        counter.count(block, tet, own);
+        collectKeys(tet, own, filter, keys_[block]);
+      }
+    }
+    if (stored_) stored_->store(block, lines);
+    if (cells.lines) cells.lines->store(block, centers);
+  };
+  parallelBlocksWith(stage, tets, kSweepBlock, makeLines, sweepBlock);
   counter.finish();
   exclusiveScan(std::span(cells.begin));
 }
@@ -186,30 +198,31 @@ void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
   keys_ = {};
   const bool alone = currentThreads() == 1;
   std::atomic<bool> overlaps{false};
-  parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
-                 [&](std::size_t begin, std::size_t end, std::size_t) {
-                   BrickCache<Id> cache(grid_);
-                   bool overlapsHere = false;
-                   const auto enter = [&](const ChartRow& row, std::uint64_t first) {
-                     row.forEachPart([&](const ChartPoint& c, std::uint32_t offset,
-                                         std::uint32_t count, std::ptrdiff_t stride) {
-                       Bricks& brick = *cache.find(row.chart, c);
-                       std::optional<BrickLock<Id>> lock;
-                       if (!alone) lock.emplace(brick);
-                       overlapsHere |=
-                           enterVertices(brick, placeInBrick(c), stride, first + offset, count);
-                     });
-                   };
-                   for (std::size_t t = begin; t < end; ++t) {
-                     const auto tet = static_cast<Index>(t);
-                     if (stored_ && stored_->areEmpty(tet)) continue;
-                     std::optional<TetPositions> positions;
-                     forEachClaim(
-                         tet, Faces::OwnedAndCut,
-                         [&](const VertexRun& run) { write(run, tet, positions, arrays); }, enter);
-                   }
-                   if (overlapsHere) overlaps.store(true, std::memory_order_relaxed);
-                 });
+  const auto fillBlock = [&](std::size_t begin, std::size_t end, std::size_t /*block*/,
+                             BrickCache<Id>& cache) {
+    bool overlapsHere = false;
+    const auto enter = [&](const ChartRow& row, std::uint64_t first) {
+      row.forEachPart([&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count,
+                          std::ptrdiff_t stride) {
+        Bricks& brick = *cache.find(row.chart, c);
+        std::optional<BrickLock<Id>> lock;
+        if (!alone) lock.emplace(brick);
+        overlapsHere |= enterVertices(brick, placeInBrick(c), stride, first + offset, count);
+      });
+    };
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto tet = static_cast<Index>(t);
+      if (stored_ && stored_->areEmpty(tet)) continue;
+      std::optional<TetPositions> positions;
+      forEachClaim(
+          tet, Faces::OwnedAndCut,
+          [&](const VertexRun& run) { write(run, tet, positions, arrays); }, enter);
+    }
+    if (overlapsHere) overlaps.store(true, std::memory_order_relaxed);
+  };
+  parallelBlocksWith(
+      stage, map_.topology.tetCount(), kSweepBlock, [this] { return BrickCache<Id>(grid_); },
+      fillBlock);
   overlaps_ = overlaps.load();
 }
 

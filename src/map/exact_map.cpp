@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include <base/workspaces.hpp>
 #include <map/corner_rounder.hpp>
 #include <map/exact_map.hpp>
 #include <map/map_conditions.hpp>
@@ -42,17 +43,26 @@ void sanitizeStars(const TetTopology& topology, const LocalParameters& parameter
                    std::span<const StarBlock> stars, const Singularities& singularities,
                    double tolerance, Stage& stage, DefectCollector& defects, ExactMap& map) {
   std::vector<double> displacements(stars.size());
-  parallelFor(stage, stars.size(), 1, [&](std::size_t block) {
-    VertexSanitizer sanitizer(parameters, singularities, tolerance, defects, map);
+  struct Workspace {
+    VertexSanitizer sanitizer;
+    CornerRounder rounder;
+  };
+  const auto makeWorkspace = [&] {
+    return Workspace{VertexSanitizer(parameters, singularities, tolerance, defects, map),
+                     CornerRounder(topology, tolerance, defects, map)};
+  };
+  const auto runBlock = [&](std::size_t block, Workspace& workspace) {
+    auto& [sanitizer, rounder] = workspace;
     for (std::size_t i = 0; i < stars[block].vertices.size(); ++i) {
       sanitizer.run(stars[block].vertices[i], stars[block].star(i), stars[block].planes[i]);
     }
-    CornerRounder rounder(topology, tolerance, defects, map);
     for (const auto& [corner, plane] : stars[block].planeCorners) {
       rounder.run(corner, parameters(tetOf(corner), localOf(corner)), plane);
     }
+    // Of all blocks so far that had this workspace.
     displacements[block] = std::max(sanitizer.maxDisplacement(), rounder.maxDisplacement());
-  });
+  };
+  parallelForWith(stage, stars.size(), 1, makeWorkspace, runBlock);
   for (const double displacement : displacements) {
     map.maxDisplacement = std::max(map.maxDisplacement, displacement);
   }

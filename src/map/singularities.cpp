@@ -5,6 +5,7 @@
 
 #include <base/branchless.hpp>
 #include <base/vector3.hpp>
+#include <base/workspaces.hpp>
 #include <map/flat_stars.hpp>
 #include <map/key_table.hpp>
 #include <map/singularities.hpp>
@@ -277,18 +278,16 @@ class StarSorter {
  public:
   /// @param flatAllowed  otherwise no star is called flat
   StarSorter(const TetTopology& topology, const LocalParameters& parameters, PlainVertices& plain,
-             bool flatAllowed, StarBlock& stars)
-      : plain_(plain),
-        stars_(stars),
-        flat_(topology, parameters, plain),
-        flatAllowed_(flatAllowed) {}
+             bool flatAllowed)
+      : plain_(plain), flat_(topology, parameters, plain), flatAllowed_(flatAllowed) {}
 
-  void run(Index vertex) {
+  /// @param stars  receives the star
+  void run(Index vertex, StarBlock& stars) {
     const bool isFlat = flat_.run(vertex, star_) && flatAllowed_;
     const std::span<const VertexStar::Member> star = star_.members();
-    stars_.cornersSeen += star.size();
+    stars.cornersSeen += star.size();
     if (!isFlat) {
-      stars_.add(vertex, star, flat_.planes());
+      stars.add(vertex, star, flat_.planes());
       plain_.plane[vertex] = PlainVertices::kDecidedByStar;
       return;
     }
@@ -296,13 +295,12 @@ class StarSorter {
     plain_.plane[vertex] = flat_.onBoundary() ? PlainVertices::kPlaneOfStar : 0;
     if (!flat_.onBoundary()) return;
     for (const VertexStar::Member& member : star) {
-      stars_.planeCorners.push_back({member.corner, 1U << flat_.axis(member)});
+      stars.planeCorners.push_back({member.corner, 1U << flat_.axis(member)});
     }
   }
 
  private:
   PlainVertices& plain_;
-  StarBlock& stars_;
   VertexStar star_;
   FlatStarTest flat_;
   bool flatAllowed_;
@@ -354,18 +352,19 @@ void collectStars(const TetTopology& topology, const LocalParameters& parameters
   // What the caller claims about edges, if anything, is to be looked up for each.
   const bool flatAllowed = known.empty() && transitions != nullptr;
   stars.resize(blockCount(topology.pointCount, kVertexGrain));
-  parallelBlocks(stage, topology.pointCount, kVertexGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   const auto specials = static_cast<std::size_t>(
-                       std::count_if(&plain.special[begin], &plain.special[begin] + (end - begin),
-                                     [](std::uint8_t special) { return special != 0; }));
-                   if (specials == 0) return;
-                   stars[block].reserve(specials);
-                   StarSorter sorter(topology, parameters, plain, flatAllowed, stars[block]);
-                   for (std::size_t v = begin; v < end; ++v) {
-                     if (plain.special[v] != 0) sorter.run(static_cast<Index>(v));
-                   }
-                 });
+  const auto makeSorter = [&] { return StarSorter(topology, parameters, plain, flatAllowed); };
+  parallelBlocksWith(
+      stage, topology.pointCount, kVertexGrain, makeSorter,
+      [&](std::size_t begin, std::size_t end, std::size_t block, StarSorter& sorter) {
+        const auto specials = static_cast<std::size_t>(
+            std::count_if(&plain.special[begin], &plain.special[begin] + (end - begin),
+                          [](std::uint8_t special) { return special != 0; }));
+        if (specials == 0) return;
+        stars[block].reserve(specials);
+        for (std::size_t v = begin; v < end; ++v) {
+          if (plain.special[v] != 0) sorter.run(static_cast<Index>(v), stars[block]);
+        }
+      });
 }
 
 std::optional<Singularities> computeSingularities(const TetTopology& topology,
@@ -377,14 +376,15 @@ std::optional<Singularities> computeSingularities(const TetTopology& topology,
   const Surroundings in{topology, parameters, plain, knownEdges, !known.empty()};
   std::vector<std::vector<SingularEdge>> blocks(stars.size());
   std::atomic<bool> manifold = true;
-  parallelFor(stage, stars.size(), 1, [&](std::size_t block) {
-    VertexEdges edges(in);
+  const auto runBlock = [&](std::size_t block, VertexEdges& edges) {
     for (std::size_t i = 0; i < stars[block].vertices.size(); ++i) {
       if (!edges.run(stars[block].vertices[i], stars[block].star(i), blocks[block])) {
         manifold = false;
       }
     }
-  });
+  };
+  parallelForWith(
+      stage, stars.size(), 1, [&] { return VertexEdges(in); }, runBlock);
   std::uint64_t cornersSeen = 0;
   for (const StarBlock& block : stars) cornersSeen += block.cornersSeen;
   // Walks that did not see all corners of their vertices met a star in several pieces.

@@ -1,5 +1,7 @@
 #include <sweep/cell_seeds.hpp>
 
+#include <base/workspaces.hpp>
+
 namespace hexhex {
 
 std::uint64_t countOwned(const TetTopology& topology, Index tet, std::span<const SweptLine> lines) {
@@ -20,16 +22,17 @@ std::span<const SweptLine> CellSeeds::linesOf(const ExactMap& map, Index tet,
 CellSeeds findCells(const PreparedMap& map, Stage& stage) {
   const std::size_t tets = map.topology.tetCount();
   CellSeeds seeds(tets, true);
-  parallelBlocks(stage, tets, kSweepBlock,
-                 [&](std::size_t first, std::size_t end, std::size_t block) {
-                   BlockLines lines(true);
-                   for (std::size_t t = first; t < end; ++t) {
-                     const auto tet = static_cast<Index>(t);
-                     TetSweep(map.exact, tet, SweptGrid::Centers).run(map.exact.unit, lines.next());
-                     seeds.begin[t] = countOwned(map.topology, tet, lines.last());
-                   }
-                   seeds.lines->store(block, lines);
-                 });
+  parallelBlocksWith(
+      stage, tets, kSweepBlock, [] { return BlockLines(true); },
+      [&](std::size_t first, std::size_t end, std::size_t block, BlockLines& lines) {
+        lines.clear();
+        for (std::size_t t = first; t < end; ++t) {
+          const auto tet = static_cast<Index>(t);
+          TetSweep(map.exact, tet, SweptGrid::Centers).run(map.exact.unit, lines.next());
+          seeds.begin[t] = countOwned(map.topology, tet, lines.last());
+        }
+        seeds.lines->store(block, lines);
+      });
   exclusiveScan(std::span(seeds.begin));
   return seeds;
 }

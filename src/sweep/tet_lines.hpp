@@ -54,6 +54,11 @@ class BlockLines {
   /// @param keep  whether to keep the lines of all tets, or just those of the last one
   explicit BlockLines(bool keep) noexcept : keep_(keep) {}
 
+  /// Begins another block.
+  void clear() noexcept {
+    lines_.clear();
+    tets_ = 0;
+  }
   /// Begins the next tet. Its lines are to be appended to what this returns.
   [[nodiscard]] std::vector<SweptLine>& next() noexcept {
     if (!keep_) lines_.clear();

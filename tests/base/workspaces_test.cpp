@@ -1,0 +1,104 @@
+// What parallel loops lend their blocks.
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <base/workspaces.hpp>
+
+namespace hexhex {
+namespace {
+
+/// Cannot be copied or moved, like some workspaces.
+struct Counter {
+  Counter() = default;
+  Counter(const Counter&) = delete;
+  Counter& operator=(const Counter&) = delete;
+
+  std::atomic<int> users{0};
+  std::size_t elements = 0;  ///< that passed; not atomic, as there is one user at a time
+};
+
+TEST(Workspaces, AreLentToOneAtATime) {
+  constexpr std::size_t kElements = 20000;
+  for (const int threads : {1, 2, 5}) {
+    Workspaces<Counter> workspaces;
+    std::atomic<int> made{0};
+    withThreads(threads, [&] {
+      Context context;
+      Stage stage(context, "loop");
+      parallelBlocks(stage, kElements, 7, [&](std::size_t begin, std::size_t end, std::size_t) {
+        const auto loan = workspaces.lend([&made] {
+          ++made;
+          return Counter();
+        });
+        Counter& counter = *loan;
+        EXPECT_EQ(counter.users.fetch_add(1), 0);
+        counter.elements += end - begin;
+        counter.users.fetch_sub(1);
+      });
+    });
+    EXPECT_GE(made.load(), 1);
+    EXPECT_LE(made.load(), threads);
+    std::size_t elements = 0;
+    int seen = 0;
+    workspaces.forEach([&](const Counter& counter) {
+      elements += counter.elements;
+      ++seen;
+    });
+    EXPECT_EQ(elements, kElements);
+    EXPECT_EQ(seen, made.load());
+  }
+}
+
+TEST(Workspaces, ComeBackAfterExceptions) {
+  Workspaces<std::vector<int>> workspaces;
+  int made = 0;
+  const auto make = [&made] {
+    ++made;
+    return std::vector<int>();
+  };
+  const auto fail = [&] {
+    const auto loan = workspaces.lend(make);
+    (*loan).push_back(7);
+    throw std::runtime_error("end");
+  };
+  EXPECT_THROW(fail(), std::runtime_error);
+  {
+    const auto first = workspaces.lend(make);
+    EXPECT_EQ(*first, std::vector<int>{7});
+    const auto second = workspaces.lend(make);
+    EXPECT_TRUE((*second).empty());
+  }
+  EXPECT_EQ(made, 2);
+}
+
+TEST(Workspaces, LoopsSeeEveryElementOnce) {
+  for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{1000}}) {
+    std::vector<std::atomic<int>> visits(n);
+    withThreads(2, [&] {
+      Context context;
+      Stage stage(context, "loop");
+      const auto make = [] { return std::vector<std::size_t>(); };
+      parallelBlocksWith(stage, n, 10, make,
+                         [&](std::size_t begin, std::size_t end, std::size_t block,
+                             std::vector<std::size_t>& list) {
+                           EXPECT_EQ(begin, 10 * block);
+                           list.clear();
+                           for (std::size_t i = begin; i < end; ++i) list.push_back(i);
+                           for (const std::size_t i : list) ++visits[i];
+                         });
+      parallelForWith(stage, n, 10, make, [&](std::size_t i, std::vector<std::size_t>& list) {
+        list.assign(1, i);
+        ++visits[list.front()];
+      });
+    });
+    for (const std::atomic<int>& count : visits) EXPECT_EQ(count.load(), 2);
+  }
+}
+
+}  // namespace
+}  // namespace hexhex
