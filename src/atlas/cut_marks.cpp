@@ -32,7 +32,7 @@ std::vector<HalfFace> findCuts(const PreparedMap& map, const Charts& charts, boo
                                Stage& stage) {
   constexpr std::size_t kGrain = 4096;
   const Array<HalfFace>& mate = map.topology.mate;
-  const std::vector<HalfFace>& jumps = map.exact.transitions.halfFaces;
+  const Array<HalfFace>& jumps = map.exact.transitions.halfFaces;
   return collectFromBlocks<HalfFace>(
       stage, onlyJumps ? jumps.size() / 2 : mate.size(), kGrain,
       [&](std::size_t begin, std::size_t end, std::vector<HalfFace>& cuts) {

@@ -67,7 +67,7 @@ class Extractor::Prepared {
   /// Copies what scaling changes, before the first time.
   void keepUnscaled() {
     if (!unscaledCorners_.empty()) return;
-    std::vector<Transition> transitions = map_.exact.transitions.table;
+    Array<Transition> transitions = map_.exact.transitions.table;
     unscaledCorners_ = map_.exact.corners;
     unscaledTransitions_ = std::move(transitions);
   }
@@ -95,7 +95,7 @@ class Extractor::Prepared {
   PreparedMap map_;
   int scale_ = 1;  ///< of map_
   Array<LatticeTet> unscaledCorners_;
-  std::vector<Transition> unscaledTransitions_;
+  Array<Transition> unscaledTransitions_;
 };
 
 }  // namespace hexhex

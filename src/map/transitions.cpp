@@ -105,13 +105,6 @@ FittedTransition fitTranslation(const SharedTriangle& triangle, Rotation rotatio
   return fitted;
 }
 
-/// A non-identity transition, found from the side of the smaller tet.
-struct FoundJump {
-  HalfFace halfFace;
-  Transition transition;
-  bool isExact;
-};
-
 Transition inverse(const Transition& transition) {
   Transition back{inverseOf(transition.rotation), {}};
   back.translation = turned(back.rotation, transition.translation);
@@ -119,37 +112,51 @@ Transition inverse(const Transition& transition) {
   return back;
 }
 
+/// What a block of triangles tells besides its transitions.
 struct BlockResult {
-  Array<FoundJump> jumps;
   std::vector<Transitions::Misfit> misfits;
   double maxResidual = 0;
-  Index firstJump = 0;  ///< index of its first jump in the table
+  Index endJump = 0;  ///< behind the last transition in the table
 };
 
 /// Fits transitions to the triangles on which tets do not agree.
 class TransitionFitter {
  public:
+  /// @param result  receives transitions
   TransitionFitter(const TetTopology& topology, const LocalParameters& parameters,
-                   std::span<const std::array<std::int8_t, 4>> rotations, double tolerance)
+                   std::span<const std::array<std::int8_t, 4>> rotations, double tolerance,
+                   PlainVertices& plain, Transitions& result)
       : topology_(topology),
         parameters_(parameters),
         rotations_(rotations),
-        tolerance_(tolerance) {}
+        tolerance_(tolerance),
+        plain_(plain),
+        result_(result) {}
 
-  [[nodiscard]] BlockResult run(std::span<const HalfFace> halfFaces) const {
+  /// @param index  in the table, of the first transition
+  [[nodiscard]] BlockResult run(std::span<const HalfFace> halfFaces, Index index) const {
     BlockResult block;
-    block.jumps.reserve(halfFaces.size());
     for (std::size_t i = 0; i < halfFaces.size(); ++i) {
-      const HalfFace here = topology_.mate[halfFaces[i]];  // the smaller one
+      const HalfFace there = halfFaces[i];
+      const HalfFace here = topology_.mate[there];  // the smaller one
       const std::size_t ahead = std::min(i + kFacesAhead, halfFaces.size() - 1);
       parameters_.prefetch(tetOf(topology_.mate[halfFaces[ahead]]));
-      const SharedTriangle triangle = sharedTriangle(topology_, parameters_, here, halfFaces[i]);
+      const SharedTriangle triangle = sharedTriangle(topology_, parameters_, here, there);
       const FittedTransition fitted = fitTranslation(triangle, rotation(here, triangle));
       block.maxResidual = std::max(block.maxResidual, fitted.residual);
       if (fitted.residual > tolerance_) block.misfits.push_back({here, fitted.residual});
       if (fitted.transition.isIdentity()) continue;  // rough, as it does not fit exactly
-      block.jumps.push_back({here, fitted.transition, fitted.isExact});
+      enter(index, here, fitted.transition, fitted.isExact);
+      enter(index + 1, there, inverse(fitted.transition), fitted.isExact);
+      for (const auto& [halfFace, jump] : {std::pair(here, index), std::pair(there, index + 1)}) {
+        const bool isSure = plain_.sides[tetOf(halfFace)] != kUncertainSides;
+        plain_.passages[halfFace] =
+            Passage::across(result_.table[jump].rotation, allOf(isSure, fitted.isExact));
+        result_.jump[halfFace] = jump;
+      }
+      index += 2;
     }
+    block.endJump = index;
     return block;
   }
 
@@ -159,12 +166,47 @@ class TransitionFitter {
     return known >= 0 && known < Rotation::kCount ? rotationFromAlgoHex(known)
                                                   : rotationOf(triangle);
   }
+  void enter(Index index, HalfFace halfFace, const Transition& transition, bool isExact) const {
+    result_.table[index] = transition;
+    result_.halfFaces[index] = halfFace;
+    result_.isExact[index] = isExact ? 1 : 0;
+  }
 
   const TetTopology& topology_;
   const LocalParameters& parameters_;
   std::span<const std::array<std::int8_t, 4>> rotations_;
   double tolerance_;
+  PlainVertices& plain_;
+  Transitions& result_;
 };
+
+/// Makes room for as many transitions and their inverses. The first entry is the identity.
+void makeRoom(Transitions& transitions, std::uint64_t jumps) {
+  transitions.table.resize(1 + 2 * jumps);
+  transitions.halfFaces.resize(1 + 2 * jumps);
+  transitions.isExact.resize(1 + 2 * jumps);
+  transitions.table.front() = {};
+  transitions.halfFaces.front() = kNone;
+  transitions.isExact.front() = 0;
+}
+
+/// Closes the gaps that triangles have left whose transitions are identities.
+/// @param first  per block: half the place of its first transition in the table
+void closeGaps(std::span<const BlockResult> blocks, std::span<const std::uint64_t> first,
+               Transitions& transitions) {
+  Index place = 1;
+  for (std::size_t block = 0; block < blocks.size(); ++block) {
+    for (auto from = static_cast<Index>(1 + 2 * first[block]); from < blocks[block].endJump;
+         ++from, ++place) {
+      transitions.table[place] = transitions.table[from];
+      transitions.isExact[place] = transitions.isExact[from];
+      const HalfFace halfFace = transitions.halfFaces[from];
+      transitions.halfFaces[place] = halfFace;
+      transitions.jump[halfFace] = place;
+    }
+  }
+  makeRoom(transitions, place / 2);
+}
 
 }  // namespace
 
@@ -173,45 +215,31 @@ Transitions computeTransitions(const TetTopology& topology, const LocalParameter
                                std::span<const std::array<std::int8_t, 4>> rotations,
                                double tolerance, Stage& stage) {
   Transitions result;
-  result.jump.resize(4 * topology.tetCount());
   result.innerFaces = plain.innerFaces;
-  const TransitionFitter fitter(topology, parameters, rotations, tolerance);
-  std::vector<BlockResult> blocks(plain.unequalFaces.size());
+  result.jump.resize(4 * topology.tetCount());
   parallelBlocks(stage, topology.tetCount(), PlainVertices::kBlock,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
                    std::fill(&result.jump[4 * begin], &result.jump[4 * begin] + 4 * (end - begin),
                              Index{0});
-                   blocks[block] = fitter.run(plain.unequalFaces[block]);
                  });
-  for (BlockResult& block : blocks) {
-    block.firstJump = static_cast<Index>(1 + 2 * result.jumps);
-    result.maxResidual = std::max(result.maxResidual, block.maxResidual);
-    result.jumps += block.jumps.size();
-    result.misfits.insert(result.misfits.end(), block.misfits.begin(), block.misfits.end());
+  std::vector<std::uint64_t> first(plain.unequalFaces.size() + 1);
+  for (std::size_t block = 0; block + 1 < first.size(); ++block) {
+    first[block] = plain.unequalFaces[block].size();
   }
-  result.table.resize(1 + 2 * result.jumps);
-  result.halfFaces.resize(result.table.size(), kNone);
-  result.isExact.resize(result.table.size());
+  const std::uint64_t unequal = exclusiveScan(std::span(first));
+  makeRoom(result, unequal);
+  const TransitionFitter fitter(topology, parameters, rotations, tolerance, plain, result);
+  std::vector<BlockResult> blocks(plain.unequalFaces.size());
   parallelFor(stage, blocks.size(), 1, [&](std::size_t block) {
-    Index index = blocks[block].firstJump;
-    for (const FoundJump& found : blocks[block].jumps) {
-      result.jump[found.halfFace] = index;
-      const HalfFace mate = topology.mate[found.halfFace];
-      result.jump[mate] = index + 1;
-      result.table[index] = found.transition;
-      result.table[index + 1] = inverse(found.transition);
-      result.halfFaces[index] = found.halfFace;
-      result.halfFaces[index + 1] = mate;
-      result.isExact[index] = result.isExact[index + 1] = found.isExact ? 1 : 0;
-      for (const auto& [halfFace, jump] :
-           {std::pair(found.halfFace, index), std::pair(mate, index + 1)}) {
-        const bool isSure = plain.sides[tetOf(halfFace)] != kUncertainSides;
-        plain.passages[halfFace] =
-            Passage::across(result.table[jump].rotation, allOf(isSure, found.isExact));
-      }
-      index += 2;
-    }
+    blocks[block] = fitter.run(plain.unequalFaces[block], static_cast<Index>(1 + 2 * first[block]));
   });
+  for (std::size_t block = 0; block < blocks.size(); ++block) {
+    result.maxResidual = std::max(result.maxResidual, blocks[block].maxResidual);
+    result.misfits.insert(result.misfits.end(), blocks[block].misfits.begin(),
+                          blocks[block].misfits.end());
+    result.jumps += blocks[block].endJump / 2 - first[block];
+  }
+  if (result.jumps < unequal) closeGaps(blocks, first, result);
   return result;
 }
 

@@ -16,12 +16,12 @@ struct Transitions {
   /// Per half-face: index in `table` of the transition into the neighbour's chart; 0, the identity,
   /// is by far the most frequent.
   Array<Index> jump;
-  std::vector<Transition> table;
+  Array<Transition> table;
   /// Per entry of the table: the half-face that it belongs to. kNone for the identity.
-  std::vector<HalfFace> halfFaces;
+  Array<HalfFace> halfFaces;
   /// Per entry of the table: 1 if it carries the triangle's parameters over without rounding. 0 for
   /// the identity, for the sake of triangles that it fits only best.
-  std::vector<std::uint8_t> isExact;
+  Array<std::uint8_t> isExact;
   double maxResidual = 0;   ///< largest violation of (IGM1), in parameter units
   std::uint64_t jumps = 0;  ///< inner faces whose transition is not the identity
   std::uint64_t innerFaces = 0;
