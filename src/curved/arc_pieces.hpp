@@ -128,9 +128,9 @@ class ArcPieces {
     }
   }
 
-  std::vector<Arc> arcs_;
-  std::vector<Point> points_;
-  std::vector<OwnedSimplex> segments_;
+  Array<Arc> arcs_;
+  Array<Point> points_;
+  Array<OwnedSimplex> segments_;
 };
 
 }  // namespace hexhex

@@ -26,7 +26,7 @@ struct EdgeKey {
 /// Arcs of a block of records, in their order.
 struct BlockArcs {
   ArcPieces pieces;
-  std::vector<EdgeKey> keys;
+  Array<EdgeKey> keys;
 };
 
 /// Computes the points where recorded edges cross faces, and traces those anew that meet edges or

@@ -51,7 +51,7 @@ void ElementNumbers::Sweep::finish(Stage& stage) {
 }
 
 /// Appends the lines with elements that a tet owns, and counts both.
-void ElementNumbers::sweep(Index tet, const HalfGrids& grids, std::vector<Line>& lines) {
+void ElementNumbers::sweep(Index tet, const HalfGrids& grids, Array<Line>& lines) {
   CenterOwner owner(topology_, tet);
   std::uint64_t elements = 0;
   for (int axis = 0; axis < 3; ++axis) {

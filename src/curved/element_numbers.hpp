@@ -156,7 +156,7 @@ class ElementNumbers {
       lineBegin_[gridOf(tet, axis)] = 0;
     }
   }
-  void sweep(Index tet, const HalfGrids& grids, std::vector<Line>& lines);
+  void sweep(Index tet, const HalfGrids& grids, Array<Line>& lines);
 
   const ExactMap& map_;
   const TetTopology& topology_;
@@ -164,7 +164,7 @@ class ElementNumbers {
   Array<std::uint64_t> begin_;             ///< per tet (+1)
   Array<SweepAxes> axes_;                  ///< per grid: tet and axis
   Array<Index> lineBegin_;                 ///< per grid (+1); there are no more lines than elements
-  std::vector<std::vector<Line>> blocks_;  ///< by block of tets: lines with owned elements
+  std::vector<Array<Line>> blocks_;  ///< by block of tets: lines with owned elements
 };
 
 /// @throws Error TooLarge for more elements than an Index can number

@@ -23,10 +23,10 @@ struct EdgeRecord {
 
 /// Edges, each recorded from one of its ends.
 struct EdgeRecords {
-  std::vector<EdgeRecord> edges;
+  Array<EdgeRecord> edges;
   /// The faces that they cross on their way, each on the side where they come from. Where edges lie
   /// in faces or meet edges and vertices of the tets, these are some tets that have parts of them.
-  std::vector<HalfFace> faces;
+  Array<HalfFace> faces;
 };
 
 }  // namespace hexhex

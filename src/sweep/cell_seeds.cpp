@@ -12,7 +12,7 @@ std::uint64_t countOwned(const TetTopology& topology, Index tet, std::span<const
 }
 
 std::span<const SweptLine> CellSeeds::linesOf(const ExactMap& map, Index tet,
-                                              std::vector<SweptLine>& scratch) const {
+                                              Array<SweptLine>& scratch) const {
   if (lines) return lines->of(tet);
   scratch.clear();
   TetSweep(map, tet, SweptGrid::Centers).run(map.unit, scratch);

@@ -34,17 +34,17 @@ struct TetSweep {
   TetSweep(const ExactMap& map, Index tet, SweptGrid grid) noexcept;
 
   /// Appends the tet's lines.
-  void run(std::int64_t unit, std::vector<SweptLine>& lines) const;
+  void run(std::int64_t unit, Array<SweptLine>& lines) const;
 };
 
 /// Appends the lines of both grids.
-inline void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
-                      std::vector<SweptLine>& centers) {
+inline void sweepBoth(const ExactMap& map, Index tet, Array<SweptLine>& vertices,
+                      Array<SweptLine>& centers) {
   sweepBothGrids(map.corners[tet], map.unit, vertices, centers);
 }
 
 /// Appends the lines of one grid of several.
-inline void appendLines(const HalfGrids& grids, HalfGrid grid, std::vector<SweptLine>& lines) {
+inline void appendLines(const HalfGrids& grids, HalfGrid grid, Array<SweptLine>& lines) {
   static_cast<void>(grids.sweep(grid, [&](const SweptLine& line) { lines.push_back(line); }));
 }
 
@@ -60,7 +60,7 @@ class BlockLines {
     tets_ = 0;
   }
   /// Begins the next tet. Its lines are to be appended to what this returns.
-  [[nodiscard]] std::vector<SweptLine>& next() noexcept {
+  [[nodiscard]] Array<SweptLine>& next() noexcept {
     if (!keep_) lines_.clear();
     begins_[tets_++] = static_cast<Index>(lines_.size());
     return lines_;
@@ -76,7 +76,7 @@ class BlockLines {
 
  private:
   bool keep_;
-  std::vector<SweptLine> lines_;
+  Array<SweptLine> lines_;
   std::array<Index, kSweepBlock> begins_;
   std::size_t tets_ = 0;
 };
