@@ -41,8 +41,14 @@ namespace detail {
 void freeArray(void* memory, std::size_t bytes) noexcept;
 }  // namespace detail
 
-/// Allocator that leaves trivial elements uninitialized, so that large arrays are touched once, by
-/// the thread that fills them.
+/// Whether elements of a type are left uninitialized by arrays that grow: numbers are, and what else
+/// says so because it is always written before it is read. Only for types that are copied like
+/// bytes.
+template <class T>
+inline constexpr bool kLeftUninitialized = std::is_trivially_default_constructible_v<T>;
+
+/// Allocator that leaves such elements uninitialized, so that large arrays are touched once, by the
+/// thread that fills them.
 template <class T>
 struct UninitializedAllocator {
   using value_type = T;
@@ -65,7 +71,7 @@ struct UninitializedAllocator {
   }
   template <class U>
   void construct(U* place) noexcept(std::is_nothrow_default_constructible_v<U>) {
-    ::new (static_cast<void*>(place)) U;
+    if constexpr (!kLeftUninitialized<U>) ::new (static_cast<void*>(place)) U;
   }
   template <class U, class... Args>
   void construct(U* place, Args&&... args) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include <hexhex/types.hpp>
+
 #include <lattice/rotation.hpp>
 
 namespace hexhex {
@@ -42,5 +44,9 @@ struct Transition {
     return {a.rotation * b.rotation, a(b.translation)};
   }
 };
+
+/// The table of a map's transitions is as large as the map where each tet has a chart of its own.
+template <>
+inline constexpr bool kLeftUninitialized<Transition> = true;
 
 }  // namespace hexhex
