@@ -41,8 +41,8 @@ namespace detail {
 void freeArray(void* memory, std::size_t bytes) noexcept;
 }  // namespace detail
 
-/// Whether elements of a type are left uninitialized by arrays that grow: numbers are, and what else
-/// says so because it is always written before it is read. Only for types that are copied like
+/// Whether elements of a type are left uninitialized by arrays that grow: numbers are, and what
+/// else says so because it is always written before it is read. Only for types that are copied like
 /// bytes.
 template <class T>
 inline constexpr bool kLeftUninitialized = std::is_trivially_default_constructible_v<T>;

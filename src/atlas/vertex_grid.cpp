@@ -48,8 +48,7 @@ bool enterVertices(Brick<Id>& brick, std::size_t place, std::ptrdiff_t stride, s
 }  // namespace
 
 template <class Id>
-std::span<const SweptLine> VertexGrid<Id>::linesOf(Index tet,
-                                                   Array<SweptLine>& scratch) const {
+std::span<const SweptLine> VertexGrid<Id>::linesOf(Index tet, Array<SweptLine>& scratch) const {
   if (stored_) return stored_->of(tet);
   scratch.clear();
   TetSweep(map_.exact, tet, SweptGrid::Vertices).run(map_.exact.unit, scratch);

@@ -161,9 +161,9 @@ class ElementNumbers {
   const ExactMap& map_;
   const TetTopology& topology_;
   ElementKind kind_;
-  Array<std::uint64_t> begin_;             ///< per tet (+1)
-  Array<SweepAxes> axes_;                  ///< per grid: tet and axis
-  Array<Index> lineBegin_;                 ///< per grid (+1); there are no more lines than elements
+  Array<std::uint64_t> begin_;       ///< per tet (+1)
+  Array<SweepAxes> axes_;            ///< per grid: tet and axis
+  Array<Index> lineBegin_;           ///< per grid (+1); there are no more lines than elements
   std::vector<Array<Line>> blocks_;  ///< by block of tets: lines with owned elements
 };
 

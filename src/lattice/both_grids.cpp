@@ -114,8 +114,7 @@ class FewPoints {
   using WeightsOf = std::array<CornerWeights, kFewPoints + 1>;
 
   void appendOne(const PointsInBox& points, const std::array<std::int32_t, 3>& at,
-                 const CornerWeights& weights, SweepAxes order,
-                 Array<SweptLine>& lines) const;
+                 const CornerWeights& weights, SweepAxes order, Array<SweptLine>& lines) const;
   void appendSome(const PointsInBox& points, std::int32_t all, const CornerWeights& first,
                   Array<SweptLine>& lines) const;
   [[gnu::noinline]] void appendCandidates(const PointsInBox& points, const WeightsOf& weights,
@@ -269,8 +268,7 @@ void moveBack(std::span<SweptLine> lines, const GridPoint& by) noexcept {
 
 /// Of a tet that doubles do not hold where it is.
 [[gnu::noinline]] void sweepFarAway(const LatticeTet& corners, std::int64_t unit,
-                                    Array<SweptLine>& vertices,
-                                    Array<SweptLine>& centers) {
+                                    Array<SweptLine>& vertices, Array<SweptLine>& centers) {
   LatticeTet moved = corners;
   GridPoint by;
   for (std::size_t k = 0; k < 3; ++k) {
