@@ -101,6 +101,8 @@ bool FaceWalk::cross(SimplexInTet& at) {
   at.tet = tetOf(mate_);
   face_ = localOf(mate_);
   if (at.frame.cross(exact_.transitions, halfFace)) looked_ = false;
+  // The next point is in a face with the corner opposite this one.
+  prefetch(&map_.input.view.points[topology_.tets[at.tet][static_cast<std::size_t>(face_)]]);
   return true;
 }
 
@@ -137,7 +139,9 @@ void FaceWalk::leaveThrough(Index tet, int face) noexcept {
   // What the jump is has been asked for one tet before, so it is known which transition it takes.
   prefetch(&exact_.transitions.table[exact_.transitions.jump[own]]);
   prefetch(&exact_.transitions.jump[halfFaceOf(tetOf(next), 0)]);
-  prefetch(exact_.corners[tetOf(next)][static_cast<std::size_t>(localOf(next))].data());
+  // The corner opposite the face, and the face itself if the next tet owns it.
+  prefetch(exact_.corners[tetOf(next)].front().data());
+  prefetch(&exact_.corners[tetOf(next)].back().back());
   prefetch(topology_.tets[tetOf(next)].data());
   prefetch(&topology_.mate[halfFaceOf(tetOf(next), 0)]);
 }
