@@ -176,7 +176,7 @@ void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
     if (progress != nullptr) progress->advance(end - begin);
   };
 #if HEXHEX_HAS_TBB
-  if (blocks > 1) {
+  if (blocks > 1 && currentThreads() > 1) {
     LoopOutcome outcome;
     {
       const LoopOrder loopOrder;
