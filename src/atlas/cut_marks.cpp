@@ -52,6 +52,11 @@ std::vector<HalfFace> findCuts(const PreparedMap& map, const Charts& charts, boo
       });
 }
 
+}  // namespace
+
+// What templates lend to loops has a name beyond this file.
+namespace detail {
+
 /// A cut cell without a brick.
 struct LoneCut {
   BrickKey key;
@@ -126,7 +131,7 @@ class CutMarker {
   BrickCache<Id> cache_;
 };
 
-}  // namespace
+}  // namespace detail
 
 template <class Id>
 Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool onlyJumps, BrickGrid<Id>& grid,
@@ -139,6 +144,8 @@ Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool onlyJumps, 
     jumps[i] = cuts.jumps.across(map, charts, halfFaces[i]);
   }
   constexpr std::size_t kFaces = 32;  // one may meet thousands of cells
+  using detail::CutMarker;
+  using detail::LoneCut;
   Workspaces<CutMarker<Id>> markers;
   const auto lone = collectFromBlocks<LoneCut>(
       stage, halfFaces.size(), kFaces,

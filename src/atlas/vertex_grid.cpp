@@ -22,12 +22,6 @@ HalfGridSearch searchWith(const SweepGuest* guest) {
   return HalfGridSearch(static_cast<HalfGridSet>(own | (guest == nullptr ? 0U : guest->grids())));
 }
 
-/// Of a block of tets.
-struct SweptLines {
-  BlockLines vertices;
-  BlockLines centers;
-};
-
 /// Enters consecutive vertices. Of two that claim the same place, the one that comes later finds
 /// the other, and marks the brick.
 /// @return whether some did

@@ -90,6 +90,12 @@ class VertexGrid {
   using Bricks = Brick<Id>;
   enum class Faces : std::uint8_t { Owned, OwnedAndCut, All };
 
+  /// Of a block of tets.
+  struct SweptLines {
+    BlockLines vertices;
+    BlockLines centers;
+  };
+
   void collectKeys(Index tet, std::span<const SweptLine> lines, KeyFilter& filter,
                    std::vector<BrickKey>& keys) const;
   [[nodiscard]] std::span<const SweptLine> linesOf(Index tet, Array<SweptLine>& scratch) const;

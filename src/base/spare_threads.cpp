@@ -2,6 +2,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdlib>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -82,6 +83,9 @@ int spareThreads(int wanted) { return wanted; }
 #endif
 
 void Gathering::arriveAndWait() {
+  // Has the C++ library make what it keeps of exceptions for each thread. There may be no memory
+  // for it when the first one is thrown, and that would end the process.
+  [[maybe_unused]] const volatile int exceptions = std::uncaught_exceptions();
   using Clock = std::chrono::steady_clock;
   // Threads start within microseconds, unless the machine is crowded; if other work of the same
   // process holds them, they may not come for long, and have been started.

@@ -128,12 +128,16 @@ class ArcTracer {
   /// @return the hex vertex at the end, or kNone if the walk comes to another exit before
   template <class Visit>
   [[nodiscard]] Index walkOn(FaceWalk& walk, SimplexInTet& at, const Visit& visit) {
+    // Points are computed one step late, while memory looks for the next tet.
+    FaceWalk::Exit exit = walk.exit(at);
     for (std::size_t steps = 0; steps <= topology_.tetCount(); ++steps) {
-      visit(std::as_const(at), walk.exit(at));
       if (!walk.cross(at)) fail(at.tet, "a hex edge leaves the mesh");
       // To look for the end takes less than to leave the tet, so where it may be, it is done first.
       const Index vertex = vertices_.hasVertices(at.tet) ? vertexIn(at) : kNone;
-      if (vertex != kNone || !walk.leave(at)) return vertex;
+      const bool goesOn = vertex == kNone && walk.leave(at);
+      visit(std::as_const(exit.carrier), exit.through(map_));
+      if (!goesOn) return vertex;
+      exit = walk.exit(at);
     }
     fail(at.tet, "a hex edge does not end");
   }

@@ -53,10 +53,17 @@ class FaceWalk {
   /// @param at  the tet, in a frame that has the edge along its first axis
   void resume(const SimplexInTet& at, int face);
 
-  /// The point in the face at hand, on its side in the tet.
-  [[nodiscard]] ArcExit exit(const SimplexInTet& at) const {
-    return exitThrough(map_, at.tet, face_, {at.frame.origin, at.frame.axes[0]});
-  }
+  /// Where the edge leaves a tet, for later.
+  struct Exit {
+    SimplexInTet carrier;
+    int face;  ///< of the tet
+
+    [[nodiscard]] ArcExit through(const PreparedMap& map) const {
+      return exitThrough(map, carrier.tet, face, {carrier.frame.origin, carrier.frame.axes[0]});
+    }
+  };
+  /// Through the face at hand.
+  [[nodiscard]] Exit exit(const SimplexInTet& at) const noexcept { return {at, face_}; }
 
   /// Crosses the face.
   /// @return false on the boundary

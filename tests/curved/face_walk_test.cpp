@@ -61,7 +61,7 @@ class Walker {
 
   void compare(const SimplexInTet& at, const LatticeTet& seen, const SimplexPoint& expected) {
     ++counts_.steps;
-    const ArcExit exit = walk_.exit(at);
+    const ArcExit exit = walk_.exit(at).through(map_);
     const OwnedSimplex owned = ownedBy(map_.topology, at.tet, expected.simplex());
     ASSERT_EQ(exit.generator.tet, owned.tet);
     ASSERT_EQ(exit.generator.corners, owned.corners);
