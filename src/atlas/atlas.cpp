@@ -123,7 +123,7 @@ class CellEmitters {
  private:
   struct Workspace {
     CellEmitter<Id> emitter;
-    Array<SweptLine> lines;  ///< of a tet, where they are not kept
+    std::vector<SweptLine> lines;  ///< of a tet, where they are not kept
   };
 
   const PreparedMap& map_;

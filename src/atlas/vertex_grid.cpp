@@ -42,7 +42,8 @@ bool enterVertices(Brick<Id>& brick, std::size_t place, std::ptrdiff_t stride, s
 }  // namespace
 
 template <class Id>
-std::span<const SweptLine> VertexGrid<Id>::linesOf(Index tet, Array<SweptLine>& scratch) const {
+std::span<const SweptLine> VertexGrid<Id>::linesOf(Index tet,
+                                                   std::vector<SweptLine>& scratch) const {
   if (stored_) return stored_->of(tet);
   scratch.clear();
   TetSweep(map_.exact, tet, SweptGrid::Vertices).run(map_.exact.unit, scratch);
@@ -87,6 +88,8 @@ void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage, SweepGuest* guest) {
     }
     if (stored_) stored_->store(block, lines);
     if (cells.lines) cells.lines->store(block, centers);
+    lines.shrink();
+    centers.shrink();
   };
   parallelBlocksWith(stage, tets, kSweepBlock, makeLines, sweepBlock);
   counter.finish();
@@ -125,7 +128,7 @@ template <class Id>
 template <class VisitRun, class VisitRow>
 void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, const VisitRun& visitRun,
                                   const VisitRow& visitRow) const {
-  Array<SweptLine> scratch;
+  std::vector<SweptLine> scratch;
   const std::span<const SweptLine> lines = linesOf(tet, scratch);
   if (lines.empty()) return;
   const SweepAxes axes = lines.front().axes;
@@ -154,7 +157,7 @@ void VertexGrid<Id>::forEachForeignClaim(Index tet, int face, const VisitRow& vi
   const HalfFace ownersHalfFace = map_.topology.mate[halfFaceOf(tet, face)];
   const Index owner = tetOf(ownersHalfFace);
   const Gauge gauge = charts_.gauge(tet) * map_.exact.transitions.across(ownersHalfFace);
-  Array<SweptLine> scratch;
+  std::vector<SweptLine> scratch;
   const std::span<const SweptLine> lines = linesOf(owner, scratch);
   const SweepAxes axes = lines.front().axes;
   const SweepFrame frame(gauge, axes());
@@ -255,7 +258,7 @@ Id VertexGrid<Id>::vertexAt(Index tet, const GridPoint& z, BrickCache<Id>& cache
 
 template <class Id>
 std::uint64_t VertexGrid<Id>::exactNumber(Index tet, const GridPoint& z) const {
-  Array<SweptLine> scratch;
+  std::vector<SweptLine> scratch;
   const std::span<const SweptLine> lines = linesOf(tet, scratch);
   const SweepAxes order = lines.empty() ? SweepAxes{} : lines.front().axes;
   const std::array<std::uint8_t, 3>& axes = order();

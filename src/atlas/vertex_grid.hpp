@@ -98,7 +98,8 @@ class VertexGrid {
 
   void collectKeys(Index tet, std::span<const SweptLine> lines, KeyFilter& filter,
                    std::vector<BrickKey>& keys) const;
-  [[nodiscard]] std::span<const SweptLine> linesOf(Index tet, Array<SweptLine>& scratch) const;
+  [[nodiscard]] std::span<const SweptLine> linesOf(Index tet,
+                                                   std::vector<SweptLine>& scratch) const;
 
   template <class VisitRun, class VisitRow>
   void forEachClaim(Index tet, Faces faces, const VisitRun& visitRun,

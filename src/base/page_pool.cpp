@@ -17,17 +17,20 @@ std::size_t pagesOf(std::size_t bytes) { return (bytes + PagePool::kPage - 1) / 
 
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
 
-/// Address space that nothing is in yet, or nullptr.
-char* map(std::size_t bytes) noexcept {
-  void* const mapped = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
-                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  return mapped == MAP_FAILED ? nullptr : static_cast<char*>(mapped);
-}
-
+/// Address space for a slab, or nullptr.
 char* mapSlab() noexcept {
-  char* const slab = detail::mapAligned(PagePool::kSlab, kHugePage);
+  // Twice as much has an aligned part of the size; the rest is returned.
+  void* const mapped = ::mmap(nullptr, 2 * PagePool::kSlab, PROT_READ | PROT_WRITE,
+                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (mapped == MAP_FAILED) return nullptr;
+  char* const begin = static_cast<char*>(mapped);
+  const std::size_t over = reinterpret_cast<std::uintptr_t>(begin) % PagePool::kSlab;
+  const std::size_t before = over == 0 ? 0 : PagePool::kSlab - over;
+  char* const slab = begin + before;
+  if (before > 0) ::munmap(begin, before);
+  ::munmap(slab + PagePool::kSlab, PagePool::kSlab - before);
   // A wish: where the system has no huge pages, ordinary ones do.
-  if (slab != nullptr) ::madvise(slab, PagePool::kSlab, MADV_HUGEPAGE);
+  ::madvise(slab, PagePool::kSlab, MADV_HUGEPAGE);
   return slab;
 }
 
@@ -55,25 +58,6 @@ bool isProvided(char* /*page*/) noexcept { return true; }
 #endif
 
 }  // namespace
-
-#if defined(__linux__) && defined(MADV_HUGEPAGE)
-char* detail::mapAligned(std::size_t bytes, std::size_t alignment) noexcept {
-  const auto before = [alignment](const char* memory) {
-    return (alignment - reinterpret_cast<std::uintptr_t>(memory) % alignment) % alignment;
-  };
-  // New kernels align to huge pages by themselves.
-  char* const first = map(bytes);
-  if (first == nullptr || before(first) == 0) return first;
-  ::munmap(first, bytes);
-  // So much more has an aligned part of the size; the rest is returned.
-  char* const begin = map(bytes + alignment);
-  if (begin == nullptr) return nullptr;
-  char* const aligned = begin + before(begin);
-  if (aligned > begin) ::munmap(begin, before(begin));
-  ::munmap(aligned + bytes, alignment - before(begin));
-  return aligned;
-}
-#endif
 
 PagePool::~PagePool() {
   for (const Slab& slab : slabs_) unmapSlab(slab.begin());

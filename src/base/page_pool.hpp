@@ -16,7 +16,7 @@ namespace hexhex {
 class PagePool {
  public:
   static constexpr std::size_t kPage = 4096;
-  /// Bytes of a slab.
+  /// Bytes of a slab, and its alignment.
   static constexpr std::size_t kSlab = std::size_t{1} << 23;
 
   PagePool() = default;
@@ -74,12 +74,5 @@ class PagePool::Slab {
   std::size_t populated_ = 0;  ///< bytes from begin on that the system has provided
   std::array<std::uint64_t, kPages / 64> inUse_{};  ///< a bit per page
 };
-
-namespace detail {
-/// Fresh address space, on Linux only: nullptr if there is none to be had.
-/// @param bytes      whole pages
-/// @param alignment  a power of two, whole pages
-[[nodiscard]] char* mapAligned(std::size_t bytes, std::size_t alignment) noexcept;
-}  // namespace detail
 
 }  // namespace hexhex

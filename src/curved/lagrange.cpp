@@ -27,7 +27,7 @@ Array<CellSeed> listCells(const PreparedMap& map, Stage& stage) {
   Array<CellSeed> cells(seeds.count());
   parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t) {
-                   Array<SweptLine> scratch;
+                   std::vector<SweptLine> scratch;
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
                      std::uint64_t at = seeds.begin[t];

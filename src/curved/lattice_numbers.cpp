@@ -70,7 +70,7 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map, SweptVertices swept, Stag
 }
 
 void LatticeNumbers::Sweep::sweep(std::size_t block, Index tet, const HalfGrids& grids) {
-  Array<SweptLine>& lines = blocks_[block];
+  std::vector<SweptLine>& lines = blocks_[block];
   const std::size_t before = lines.size();
   appendLines(grids, kVertexGrid, lines);
   const auto own = std::span(lines).subspan(before);
@@ -261,7 +261,7 @@ LatticeNumbers::Found LatticeNumbers::foundAtEnd(Index tet, const Line& line, co
 void LatticeNumbers::describe(const VertexDescriptions& to, Stage& stage) const {
   parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t) {
-                   Array<SweptLine> swept;
+                   std::vector<SweptLine> swept;
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
                      if (linesOf(tet).empty()) continue;

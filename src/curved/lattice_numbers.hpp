@@ -79,7 +79,7 @@ class LatticeNumbers {
 
     LatticeNumbers& numbers_;
     VertexCounter counter_;
-    std::vector<Array<SweptLine>> blocks_;
+    std::vector<std::vector<SweptLine>> blocks_;
   };
 
   [[nodiscard]] std::uint64_t count() const noexcept {

@@ -98,7 +98,7 @@ class FewPoints {
         error_(WeightField::errorBound(halved.mostSteps + 1)) {}
 
   /// @param all  how many there are
-  void append(const PointsInBox& points, std::int32_t all, Array<SweptLine>& lines) const {
+  void append(const PointsInBox& points, std::int32_t all, std::vector<SweptLine>& lines) const {
     const CornerWeights first =
         field_.at({static_cast<double>(points.firstXy[0]), static_cast<double>(points.firstXy[1]),
                    static_cast<double>(points.firstZ)});
@@ -114,11 +114,12 @@ class FewPoints {
   using WeightsOf = std::array<CornerWeights, kFewPoints + 1>;
 
   void appendOne(const PointsInBox& points, const std::array<std::int32_t, 3>& at,
-                 const CornerWeights& weights, SweepAxes order, Array<SweptLine>& lines) const;
+                 const CornerWeights& weights, SweepAxes order,
+                 std::vector<SweptLine>& lines) const;
   void appendSome(const PointsInBox& points, std::int32_t all, const CornerWeights& first,
-                  Array<SweptLine>& lines) const;
+                  std::vector<SweptLine>& lines) const;
   [[gnu::noinline]] void appendCandidates(const PointsInBox& points, const WeightsOf& weights,
-                                          std::uint32_t found, Array<SweptLine>& lines) const;
+                                          std::uint32_t found, std::vector<SweptLine>& lines) const;
   void weigh(const PointsInBox& points, WeightsOf& weights) const noexcept;
   [[nodiscard]] std::uint32_t candidates(const WeightsOf& weights,
                                          std::int32_t points) const noexcept;
@@ -182,7 +183,7 @@ CornerMask FewPoints::simplexOf(const Halves& halves, const CornerWeights& weigh
 /// @param at  steps from the first point, by axis
 void FewPoints::appendOne(const PointsInBox& points, const std::array<std::int32_t, 3>& at,
                           const CornerWeights& weights, SweepAxes order,
-                          Array<SweptLine>& lines) const {
+                          std::vector<SweptLine>& lines) const {
   const Halves halves = points.at(at);
   const CornerMask simplex = simplexOf(halves, weights);
   if (simplex == kNoSimplex) return;
@@ -192,7 +193,7 @@ void FewPoints::appendOne(const PointsInBox& points, const std::array<std::int32
 }
 
 void FewPoints::appendSome(const PointsInBox& points, std::int32_t all, const CornerWeights& first,
-                           Array<SweptLine>& lines) const {
+                           std::vector<SweptLine>& lines) const {
   WeightsOf weights;  // NOLINT: written before it is read
   weights[0] = first;
   weigh(points, weights);
@@ -201,7 +202,7 @@ void FewPoints::appendSome(const PointsInBox& points, std::int32_t all, const Co
 }
 
 void FewPoints::appendCandidates(const PointsInBox& points, const WeightsOf& weights,
-                                 std::uint32_t found, Array<SweptLine>& lines) const {
+                                 std::uint32_t found, std::vector<SweptLine>& lines) const {
   const std::array<std::int32_t, 3> counts = {points.countXy[0], points.countXy[1], points.countZ};
   const SweepAxes order = chooseSweepAxes(counts);
   if (hasOneBit(found)) {
@@ -245,7 +246,7 @@ void FewPoints::appendCandidates(const PointsInBox& points, const WeightsOf& wei
 
 /// Of a grid with more points.
 [[gnu::noinline]] void appendLines(const LatticeTet& corners, std::int64_t unit, HalfGrid grid,
-                                   const HalfBox& box, Array<SweptLine>& lines) {
+                                   const HalfBox& box, std::vector<SweptLine>& lines) {
   if ((box.grids() & halfGridBit(grid)) == 0) return;
   LatticeTet moved = corners;
   for (LatticePoint& corner : moved) {
@@ -268,7 +269,8 @@ void moveBack(std::span<SweptLine> lines, const GridPoint& by) noexcept {
 
 /// Of a tet that doubles do not hold where it is.
 [[gnu::noinline]] void sweepFarAway(const LatticeTet& corners, std::int64_t unit,
-                                    Array<SweptLine>& vertices, Array<SweptLine>& centers) {
+                                    std::vector<SweptLine>& vertices,
+                                    std::vector<SweptLine>& centers) {
   LatticeTet moved = corners;
   GridPoint by;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -292,8 +294,8 @@ void moveBack(std::span<SweptLine> lines, const GridPoint& by) noexcept {
 
 }  // namespace
 
-void sweepBothGrids(const LatticeTet& corners, std::int64_t unit, Array<SweptLine>& vertices,
-                    Array<SweptLine>& centers) {
+void sweepBothGrids(const LatticeTet& corners, std::int64_t unit, std::vector<SweptLine>& vertices,
+                    std::vector<SweptLine>& centers) {
   const double perHalf = 2 / static_cast<double>(unit);
   const HalvedTet halved(corners, perHalf);
   if (!(halved.largest < kMostExact * perHalf)) {

@@ -17,7 +17,7 @@ inline constexpr HalfGrid kCenterGrid = 7;
 
 /// Appends the lines of both grids.
 /// @param unit  a power of two, at least 2
-void sweepBothGrids(const LatticeTet& corners, std::int64_t unit, Array<SweptLine>& vertices,
-                    Array<SweptLine>& centers);
+void sweepBothGrids(const LatticeTet& corners, std::int64_t unit, std::vector<SweptLine>& vertices,
+                    std::vector<SweptLine>& centers);
 
 }  // namespace hexhex

@@ -12,7 +12,7 @@ std::uint64_t countOwned(const TetTopology& topology, Index tet, std::span<const
 }
 
 std::span<const SweptLine> CellSeeds::linesOf(const ExactMap& map, Index tet,
-                                              Array<SweptLine>& scratch) const {
+                                              std::vector<SweptLine>& scratch) const {
   if (lines) return lines->of(tet);
   scratch.clear();
   TetSweep(map, tet, SweptGrid::Centers).run(map.unit, scratch);
@@ -32,6 +32,7 @@ CellSeeds findCells(const PreparedMap& map, Stage& stage) {
           seeds.begin[t] = countOwned(map.topology, tet, lines.last());
         }
         seeds.lines->store(block, lines);
+        lines.shrink();
       });
   exclusiveScan(std::span(seeds.begin));
   return seeds;

@@ -84,7 +84,7 @@ struct CellSeeds {
 
   /// The tet's lines, in `scratch` if they are not stored.
   [[nodiscard]] std::span<const SweptLine> linesOf(const ExactMap& map, Index tet,
-                                                   Array<SweptLine>& scratch) const;
+                                                   std::vector<SweptLine>& scratch) const;
 };
 
 /// Sweeps the centres of all tets, and keeps their lines.

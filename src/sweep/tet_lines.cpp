@@ -22,7 +22,7 @@ TetSweep::TetSweep(const ExactMap& map, Index tet, SweptGrid grid) noexcept
       box(gridBox(shifted, map.unit)),
       axes(chooseSweepAxes(box)) {}
 
-void TetSweep::run(std::int64_t unit, Array<SweptLine>& lines) const {
+void TetSweep::run(std::int64_t unit, std::vector<SweptLine>& lines) const {
   if (box.empty()) return;
   LineRasterizer(shifted, unit, box, axes).run([&](const SweptLine& line) {
     lines.push_back(line);

@@ -34,17 +34,17 @@ struct TetSweep {
   TetSweep(const ExactMap& map, Index tet, SweptGrid grid) noexcept;
 
   /// Appends the tet's lines.
-  void run(std::int64_t unit, Array<SweptLine>& lines) const;
+  void run(std::int64_t unit, std::vector<SweptLine>& lines) const;
 };
 
 /// Appends the lines of both grids.
-inline void sweepBoth(const ExactMap& map, Index tet, Array<SweptLine>& vertices,
-                      Array<SweptLine>& centers) {
+inline void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
+                      std::vector<SweptLine>& centers) {
   sweepBothGrids(map.corners[tet], map.unit, vertices, centers);
 }
 
 /// Appends the lines of one grid of several.
-inline void appendLines(const HalfGrids& grids, HalfGrid grid, Array<SweptLine>& lines) {
+inline void appendLines(const HalfGrids& grids, HalfGrid grid, std::vector<SweptLine>& lines) {
   static_cast<void>(grids.sweep(grid, [&](const SweptLine& line) { lines.push_back(line); }));
 }
 
@@ -59,8 +59,14 @@ class BlockLines {
     lines_.clear();
     tets_ = 0;
   }
+  /// Gives memory for many lines back, as each thread has such a list.
+  void shrink() noexcept {
+    constexpr std::size_t kFew = 1024;
+    if (lines_.capacity() > kFew) lines_ = std::vector<SweptLine>();
+  }
+
   /// Begins the next tet. Its lines are to be appended to what this returns.
-  [[nodiscard]] Array<SweptLine>& next() noexcept {
+  [[nodiscard]] std::vector<SweptLine>& next() noexcept {
     if (!keep_) lines_.clear();
     begins_[tets_++] = static_cast<Index>(lines_.size());
     return lines_;
@@ -76,7 +82,7 @@ class BlockLines {
 
  private:
   bool keep_;
-  Array<SweptLine> lines_;
+  std::vector<SweptLine> lines_;
   std::array<Index, kSweepBlock> begins_;
   std::size_t tets_ = 0;
 };

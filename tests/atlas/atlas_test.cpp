@@ -287,7 +287,7 @@ TEST(Property, PointsOfTetsBelongToTheirOwnVertices) {
     for (Index tet = 0; tet < map.topology.tetCount(); ++tet) {
       if (charts.chart[tet] == Charts::kNoChart) continue;
       const TetSweep sweep(map.exact, tet, SweptGrid::Vertices);
-      Array<SweptLine> lines;
+      std::vector<SweptLine> lines;
       sweep.run(map.exact.unit, lines);
       for (const SweptLine& line : lines) {
         for (std::uint32_t i = 0; i < line.count; ++i) {

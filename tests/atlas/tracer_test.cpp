@@ -42,7 +42,7 @@ template <class Visit>
 void forEachCell(const PreparedMap& map, const Visit& visit) {
   for (Index tet = 0; tet < map.topology.tetCount(); ++tet) {
     const TetSweep sweep(map.exact, tet, SweptGrid::Centers);
-    Array<SweptLine> lines;
+    std::vector<SweptLine> lines;
     sweep.run(map.exact.unit, lines);
     CenterOwner owner(map.topology, tet);
     for (const SweptLine& line : lines) {

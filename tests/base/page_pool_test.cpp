@@ -11,11 +11,6 @@
 
 #include <base/page_pool.hpp>
 
-#if defined(__linux__)
-#include <fstream>
-#include <sys/mman.h>
-#endif
-
 namespace hexhex {
 namespace {
 
@@ -109,34 +104,6 @@ TEST(PagePool, LeavesAloneWhatIsNotItsOwn) {
   EXPECT_FALSE(pool.release(&local, sizeof local));
   EXPECT_FALSE(pool.release(nullptr, 1));
 }
-
-#if defined(__linux__)
-/// Pages of this process's address space that are in use for something.
-long mappedPages() {
-  long pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  return pages;
-}
-
-TEST(MapAligned, MapsWhatWasAskedForAndNothingElse) {
-  // Some alignments come by themselves, and some hardly ever.
-  for (int bits = 12; bits <= 30; ++bits) {
-    const std::size_t alignment = std::size_t{1} << bits;
-    for (const std::size_t pages : {1, 3, 512}) {
-      const std::size_t bytes = pages * PagePool::kPage;
-      const long before = mappedPages();
-      char* const memory = detail::mapAligned(bytes, alignment);
-      const long after = mappedPages();
-      ASSERT_NE(memory, nullptr);
-      EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory) % alignment, 0);
-      EXPECT_EQ(after - before, static_cast<long>(pages));
-      memory[0] = 1;
-      memory[bytes - 1] = 1;
-      EXPECT_EQ(::munmap(memory, bytes), 0);
-    }
-  }
-}
-#endif
 
 TEST(PagePool, ServesThreads) {
   if (!isPooling()) GTEST_SKIP() << "no huge pages on this system";

@@ -141,8 +141,8 @@ void expectLines(const GridBox& box, std::span<const SweptLine> lines,
 void expectTheSameOfBothGrids(const ScaledTet& scaled, const std::vector<CornerMask>& expected) {
   if (scaled.unit == 1) return;  // there are no halves
   const GridBox box = gridBox(scaled.corners, scaled.unit);
-  Array<SweptLine> lines;
-  Array<SweptLine> others;
+  std::vector<SweptLine> lines;
+  std::vector<SweptLine> others;
   sweepBothGrids(scaled.corners, scaled.unit, lines, others);
   ASSERT_NO_FATAL_FAILURE(expectLines(box, lines, expected));
   LatticeTet moved = scaled.corners;
