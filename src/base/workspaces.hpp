@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <type_traits>
@@ -20,20 +21,24 @@ class Workspaces {
   Workspaces(const Workspaces&) = delete;
   Workspaces& operator=(const Workspaces&) = delete;
 
-  /// A workspace that goes back at the end of this object's life.
+  /// A workspace that goes back at the end of this object's life, unless an exception ends it:
+  /// nobody knows in which state that leaves the workspace.
   class Loan {
    public:
     Loan(Workspaces& lender, std::unique_ptr<Workspace> workspace) noexcept
         : lender_(lender), workspace_(std::move(workspace)) {}
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
-    ~Loan() { lender_.takeBack(std::move(workspace_)); }
+    ~Loan() {
+      if (std::uncaught_exceptions() == exceptions_) lender_.takeBack(std::move(workspace_));
+    }
 
     [[nodiscard]] Workspace& operator*() const noexcept { return *workspace_; }
 
    private:
     Workspaces& lender_;
     std::unique_ptr<Workspace> workspace_;
+    int exceptions_ = std::uncaught_exceptions();  ///< on their way when it was lent
   };
 
   /// One that was lent before, or what make() returns. Several threads may call this.
@@ -51,7 +56,7 @@ class Workspaces {
     return Loan(*this, std::unique_ptr<Workspace>(new Workspace(make())));
   }
 
-  /// Calls visit(workspace) for all that were made. Not while any is lent.
+  /// Calls visit(workspace) for all that came back. Not while any is lent.
   template <class Visit>
   void forEach(const Visit& visit) const {
     for (const std::unique_ptr<Workspace>& workspace : idle_) visit(std::as_const(*workspace));

@@ -54,25 +54,36 @@ TEST(Workspaces, AreLentToOneAtATime) {
   }
 }
 
-TEST(Workspaces, ComeBackAfterExceptions) {
+TEST(Workspaces, ComeBackUnlessAnExceptionInterruptsThem) {
   Workspaces<std::vector<int>> workspaces;
   int made = 0;
   const auto make = [&made] {
     ++made;
     return std::vector<int>();
   };
-  const auto fail = [&] {
+  const auto use = [&](bool fail) {
     const auto loan = workspaces.lend(make);
     (*loan).push_back(7);
-    throw std::runtime_error("end");
+    if (fail) throw std::runtime_error("end");
   };
-  EXPECT_THROW(fail(), std::runtime_error);
-  {
-    const auto first = workspaces.lend(make);
-    EXPECT_EQ(*first, std::vector<int>{7});
-    const auto second = workspaces.lend(make);
-    EXPECT_TRUE((*second).empty());
-  }
+  use(false);
+  EXPECT_EQ(*workspaces.lend(make), std::vector<int>{7});
+  EXPECT_EQ(made, 1);
+  EXPECT_THROW(use(true), std::runtime_error);
+  EXPECT_TRUE((*workspaces.lend(make)).empty());
+  EXPECT_EQ(made, 2);
+  // While an exception that has nothing to do with it is on its way, all is as ever.
+  struct Cleanup {
+    decltype(use)& useNow;
+    ~Cleanup() { useNow(false); }
+  };
+  EXPECT_THROW(
+      {
+        const Cleanup cleanup{use};
+        throw std::runtime_error("elsewhere");
+      },
+      std::runtime_error);
+  EXPECT_EQ(*workspaces.lend(make), std::vector<int>{7});
   EXPECT_EQ(made, 2);
 }
 
