@@ -116,7 +116,8 @@ Transition inverse(const Transition& transition) {
 struct BlockResult {
   std::vector<Transitions::Misfit> misfits;
   double maxResidual = 0;
-  Index endJump = 0;  ///< behind the last transition in the table
+  Index beginJump = 0;  ///< place in the table of the first transition
+  Index endJump = 0;    ///< behind the last one
 };
 
 /// Fits transitions to the triangles on which tets do not agree.
@@ -136,6 +137,7 @@ class TransitionFitter {
   /// @param index  in the table, of the first transition
   [[nodiscard]] BlockResult run(std::span<const HalfFace> halfFaces, Index index) const {
     BlockResult block;
+    block.beginJump = index;
     for (std::size_t i = 0; i < halfFaces.size(); ++i) {
       const HalfFace there = halfFaces[i];
       const HalfFace here = topology_.mate[there];  // the smaller one
@@ -191,13 +193,10 @@ void makeRoom(Transitions& transitions, std::uint64_t jumps) {
 }
 
 /// Closes the gaps that triangles have left whose transitions are identities.
-/// @param first  per block: half the place of its first transition in the table
-void closeGaps(std::span<const BlockResult> blocks, std::span<const std::uint64_t> first,
-               Transitions& transitions) {
+void closeGaps(std::span<const BlockResult> blocks, Transitions& transitions) {
   Index place = 1;
-  for (std::size_t block = 0; block < blocks.size(); ++block) {
-    for (auto from = static_cast<Index>(1 + 2 * first[block]); from < blocks[block].endJump;
-         ++from, ++place) {
+  for (const BlockResult& block : blocks) {
+    for (Index from = block.beginJump; from < block.endJump; ++from, ++place) {
       transitions.table[place] = transitions.table[from];
       transitions.isExact[place] = transitions.isExact[from];
       const HalfFace halfFace = transitions.halfFaces[from];
@@ -233,13 +232,12 @@ Transitions computeTransitions(const TetTopology& topology, const LocalParameter
   parallelFor(stage, blocks.size(), 1, [&](std::size_t block) {
     blocks[block] = fitter.run(plain.unequalFaces[block], static_cast<Index>(1 + 2 * first[block]));
   });
-  for (std::size_t block = 0; block < blocks.size(); ++block) {
-    result.maxResidual = std::max(result.maxResidual, blocks[block].maxResidual);
-    result.misfits.insert(result.misfits.end(), blocks[block].misfits.begin(),
-                          blocks[block].misfits.end());
-    result.jumps += blocks[block].endJump / 2 - first[block];
+  for (const BlockResult& block : blocks) {
+    result.maxResidual = std::max(result.maxResidual, block.maxResidual);
+    result.misfits.insert(result.misfits.end(), block.misfits.begin(), block.misfits.end());
+    result.jumps += (block.endJump - block.beginJump) / 2;
   }
-  if (result.jumps < unequal) closeGaps(blocks, first, result);
+  if (result.jumps < unequal) closeGaps(blocks, result);
   return result;
 }
 

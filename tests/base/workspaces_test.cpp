@@ -1,7 +1,5 @@
 // What parallel loops lend their blocks.
-#include <algorithm>
 #include <atomic>
-#include <memory>
 #include <stdexcept>
 #include <vector>
 
