@@ -32,10 +32,11 @@ struct Arguments {
   bool quiet = false;
 };
 
-constexpr std::array<std::pair<std::string_view, ChartStyle>, 3> kChartStyles = {
+constexpr std::array<std::pair<std::string_view, ChartStyle>, 4> kChartStyles = {
     {{"aligned", ChartStyle::Aligned},
      {"blocks", ChartStyle::Blocks},
-     {"random", ChartStyle::Random}}};
+     {"random", ChartStyle::Random},
+     {"scattered", ChartStyle::Scattered}}};
 
 // The parser has checked all names.
 ChartStyle chartStyleNamed(std::string_view styleName) {
@@ -147,8 +148,9 @@ Command addGenerate(CLI::App& app) {
   parser
       ->add_option("--charts", arguments->charts,
                    "aligned: as many identities as possible; blocks: a\n"
-                   "random rotation and integer translation per block;\nrandom: per tet")
-      ->check(CLI::IsMember({"aligned", "blocks", "random"}))
+                   "random rotation and integer translation per block;\nrandom: per tet; "
+                   "scattered: for one tet in eight")
+      ->check(CLI::IsMember({"aligned", "blocks", "random", "scattered"}))
       ->option_text("STYLE [aligned]");
   addSampleOptions(*parser, arguments->options);
   parser->add_flag(

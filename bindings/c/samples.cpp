@@ -23,7 +23,7 @@ hexhex::SampleKind kindNamed(const char* kind) {
 hexhex::SampleOptions sampleOptions(const hexhex_sample_options* given) {
   const hexhex_sample_options options =
       hexhex::c::readStruct(given, HEXHEX_SAMPLE_OPTIONS_INIT, "options");
-  if (options.charts < HEXHEX_CHARTS_ALIGNED || options.charts > HEXHEX_CHARTS_RANDOM) {
+  if (options.charts < HEXHEX_CHARTS_ALIGNED || options.charts > HEXHEX_CHARTS_SCATTERED) {
     throw Error(ErrorCode::InvalidArgument, "There is no such style of charts.");
   }
   if (options.defect_kind < HEXHEX_DEFECTS_INTERIOR ||

@@ -45,6 +45,7 @@ nb::tuple generateMap(const std::string& kind, int cells, int refine, int valenc
   options.valence = valence;
   if (charts == "blocks") options.charts = ChartStyle::Blocks;
   if (charts == "random") options.charts = ChartStyle::Random;
+  if (charts == "scattered") options.charts = ChartStyle::Scattered;
   options.jitter = jitter;
   options.onLattice = onLattice;
   options.noise = noise;

@@ -24,10 +24,11 @@ enum class SampleKind {
 };
 
 enum class ChartStyle {
-  Aligned,  ///< one frame per block, turned so that as many transitions as possible are identities
-  Blocks,   ///< a random rotation and integer translation per block
-  Random    ///< a random rotation and integer translation per tet, and a random (even) order of
-            ///< its corners: hardly any identity is left
+  Aligned,   ///< one frame per block, turned so that as many transitions as possible are identities
+  Blocks,    ///< a random rotation and integer translation per block
+  Random,    ///< a random rotation and integer translation per tet, and a random (even) order of
+             ///< its corners: hardly any identity is left
+  Scattered  ///< Random for one tet in eight, Aligned for the others
 };
 
 /// Which vertices are moved to damage a sample, and how.

@@ -67,7 +67,8 @@ PreparedMap prepareMended(const TetMapView& map, double tolerance, int maxScale,
                           const Mending& mending, Context& context, ExtractStatistics& statistics) {
   {
     DefectCollector defects;
-    PreparedMap prepared = prepareMap(map, tolerance, maxScale, context, defects);
+    PreparedMap prepared =
+        prepareMap(map, tolerance, maxScale, context, defects, ChartChoice::Unfolded);
     if (defects.empty()) return prepared;
     if (!isToBeRepaired(defects, mending)) defects.throwIfAny();
   }
@@ -75,7 +76,8 @@ PreparedMap prepareMended(const TetMapView& map, double tolerance, int maxScale,
   statistics.repairedMap = std::make_shared<const TetMap>(
       repairInArena(ownedCopy(map), options, context, statistics.repair));
   DefectCollector defects;
-  PreparedMap prepared = prepareMap(*statistics.repairedMap, tolerance, maxScale, context, defects);
+  PreparedMap prepared = prepareMap(*statistics.repairedMap, tolerance, maxScale, context, defects,
+                                    ChartChoice::Unfolded);
   defects.throwIfAny();
   return prepared;
 }
@@ -90,7 +92,7 @@ PreparedMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
   statistics.tetsInvertedInSpace = prepared.input.tetsInvertedInSpace;
   statistics.maxDisplacement = prepared.exact.maxDisplacement;
   statistics.maxTransitionResidual = prepared.exact.transitions.maxResidual;
-  statistics.chartJumps = prepared.exact.transitions.jumps;
+  statistics.chartJumps = prepared.chartJumps;
   statistics.innerFaces = prepared.exact.transitions.innerFaces;
   statistics.singularEdges = prepared.singularities.edges.size();
   return prepared;

@@ -22,6 +22,9 @@ class DefectCollector {
   /// faces are to be reported.
   void setCornersReversed(bool reversed) { cornersReversed_ = reversed; }
 
+  /// Forgets what was added.
+  void clear() { defects_.clear(); }
+
   [[nodiscard]] bool empty() const { return defects_.empty(); }
   [[nodiscard]] bool has(ErrorCode code) const { return defects_.contains(code); }
 

@@ -6,6 +6,7 @@
 #include <base/prefetch.hpp>
 #include <map/gauges.hpp>
 #include <map/passage.hpp>
+#include <map/transition_fit.hpp>
 #include <map/turn.hpp>
 
 namespace hexhex {
@@ -13,7 +14,7 @@ namespace hexhex {
 namespace {
 
 /// Tets between asking for something and looking at it: the memory's delay.
-constexpr std::size_t kAhead = 6;
+constexpr std::size_t kAhead = 8;
 
 /// Part of a mesh that is connected without leaving a block is a *piece*; pieces are numbered block
 /// by block. A link leads from one to a piece in another block, through a half-face of the former.
@@ -41,13 +42,51 @@ Gauge composed(const Gauge& gauge, const Transition& transition) {
   return result;
 }
 
+/// Transitions that have been computed.
+class KnownTransitions {
+ public:
+  explicit KnownTransitions(const Transitions& transitions) : transitions_(transitions) {}
+
+  [[nodiscard]] const Transition& across(HalfFace halfFace) const noexcept {
+    return transitions_.across(halfFace);
+  }
+  /// Asks for what is needed to cross a half-face soon.
+  void fetch(HalfFace halfFace) const noexcept { prefetch(&transitions_.across(halfFace)); }
+
+ private:
+  const Transitions& transitions_;
+};
+
+/// Transitions that are computed from parameters where they are needed.
+class FittedTransitions {
+ public:
+  FittedTransitions(const TetTopology& topology, const LocalParameters& parameters)
+      : topology_(topology), parameters_(parameters) {}
+
+  [[nodiscard]] Transition across(HalfFace halfFace) const {
+    return fitTransition(topology_, parameters_, halfFace, topology_.mate[halfFace]).transition;
+  }
+  void fetch(HalfFace halfFace) const noexcept {
+    const Index neighbour = tetOf(topology_.mate[halfFace]);
+    parameters_.prefetch(neighbour);
+    prefetch(&topology_.tets[neighbour]);
+  }
+
+ private:
+  const TetTopology& topology_;
+  const LocalParameters& parameters_;
+};
+
 /// Searches one block of tets, and gives them gauges relative to the first tets of their pieces.
+/// In three passes, as each waits for memory in an order of its own: the search itself, which looks
+/// at neighbours only; transitions, tet by tet; and their composition, in the order of the search.
 /// Branches are avoided: which neighbours are new, or in the block, is as good as random.
+template <class Source>
 class PieceSearch {
  public:
   /// @param[out] result  gauges, and pieces in the place of components, numbered from 0 in each
   /// block
-  PieceSearch(const TetTopology& topology, const Transitions& transitions, std::size_t begin,
+  PieceSearch(const TetTopology& topology, const Source& transitions, std::size_t begin,
               std::size_t end, Gauges& result)
       : mates_(topology.mate.data()),
         transitions_(transitions),
@@ -55,7 +94,9 @@ class PieceSearch {
         begin_(static_cast<Index>(begin)),
         size_(static_cast<Index>(end - begin)),
         seen_(size_ + 1, 0),
-        queue_(size_ + 1),
+        entries_(size_ + 1),
+        entryOf_(size_, kNone),
+        toParent_(size_),
         exits_(4 * size_ + 1) {
     seen_[size_] = 1;
   }
@@ -65,6 +106,8 @@ class PieceSearch {
       if (seen_[i] == 0) searchFrom(begin_ + i, block.pieces++);
     }
     block.exits.assign(exits_.data(), exits_.data() + exitCount_);
+    lookUpTransitions();
+    composeGauges();
   }
 
  private:
@@ -72,41 +115,29 @@ class PieceSearch {
     seen_[root - begin_] = 1;
     result_.of[root] = {};
     result_.component[root] = piece;
-    std::size_t count = look(root, 0);
-    for (std::size_t head = 0; head < count; ++head) {
-      prefetchSome(head, count - 1);
-      const HalfFace entry = queue_[head];
-      const Index tet = tetOf(entry);
-      result_.of[tet] = composed(result_.of[tetOf(mates_[entry])], transitions_.across(entry));
-      result_.component[tet] = piece;
-      count = look(tet, count);
+    std::size_t head = entryCount_;
+    look(root);
+    for (; head < entryCount_; ++head) {
+      prefetch(&mates_[entries_[std::min(head + kAhead, entryCount_ - 1)]]);
+      const HalfFace entry = entries_[head];
+      entryOf_[tetOf(entry) - begin_] = entry;
+      result_.component[tetOf(entry)] = piece;
+      look(tetOf(entry));
     }
   }
 
-  /// Asks for what the next tets of the queue need, in two steps.
-  void prefetchSome(std::size_t head, std::size_t last) const {
-    const HalfFace far = queue_[std::min(head + 2 * kAhead, last)];
-    prefetch(&mates_[far]);
-    prefetch(&transitions_.jump[far]);
-    const HalfFace near = queue_[std::min(head + kAhead, last)];
-    prefetch(&transitions_.across(near));
-    prefetch(&result_.of[tetOf(mates_[near])]);
-  }
-
   /// Queues neighbours that were not seen, by their sides of the faces, in ascending order, which
-  /// makes cuts smoother; returns how many are queued then. What is outside of the block counts as
-  /// seen.
-  [[nodiscard]] std::size_t look(Index tet, std::size_t count) {
+  /// makes cuts smoother. What is outside of the block counts as seen.
+  void look(Index tet) {
     for (const HalfFace mate : sortedMates(tet)) {
       const Index place = tetOf(mate) - begin_;
       const Index slot = std::min(place, size_);
-      queue_[count] = mate;
-      count += seen_[slot] ^ 1U;
+      entries_[entryCount_] = mate;
+      entryCount_ += seen_[slot] ^ 1U;
       seen_[slot] = 1;
       exits_[exitCount_] = mate;
       exitCount_ += allOf(slot == size_, mate != kNone) ? 1 : 0;
     }
-    return count;
   }
 
   [[nodiscard]] std::array<HalfFace, 4> sortedMates(Index tet) const {
@@ -121,21 +152,43 @@ class PieceSearch {
             std::max(high0, high1)};
   }
 
+  void lookUpTransitions() {
+    for (Index i = 0; i < size_; ++i) {
+      const HalfFace ahead = entryOf_[std::min<Index>(i + kAhead, size_ - 1)];
+      if (ahead != kNone) transitions_.fetch(ahead);
+      if (entryOf_[i] != kNone) toParent_[i] = transitions_.across(entryOf_[i]);
+    }
+  }
+
+  void composeGauges() {
+    for (std::size_t i = 0; i < entryCount_; ++i) {
+      prefetch(&mates_[entries_[std::min(i + kAhead, entryCount_ - 1)]]);
+      const HalfFace entry = entries_[i];
+      const Index tet = tetOf(entry);
+      result_.of[tet] = composed(result_.of[tetOf(mates_[entry])], toParent_[tet - begin_]);
+    }
+  }
+
   const HalfFace* mates_;
-  const Transitions& transitions_;
+  const Source& transitions_;
   Gauges& result_;
   Index begin_;
   Index size_;
-  Array<std::uint8_t> seen_;  ///< by place in the block; and 1 for what is outside
-  Array<HalfFace> queue_;     ///< one more, which is written in vain
+  Array<std::uint8_t> seen_;    ///< by place in the block; and 1 for what is outside
+  Array<HalfFace> entries_;     ///< in the order of the search, for all tets but the first of each
+                                ///< piece; one more, which is written in vain
+  Array<HalfFace> entryOf_;     ///< by place: the same; kNone for the first of a piece
+  Array<Transition> toParent_;  ///< by place: across the entry
   Array<HalfFace> exits_;
+  std::size_t entryCount_ = 0;
   std::size_t exitCount_ = 0;
 };
 
 /// All pieces of a mesh, and how they are joined.
+template <class Source>
 class Pieces {
  public:
-  Pieces(const TetTopology& topology, const Transitions& transitions, std::size_t blockSize,
+  Pieces(const TetTopology& topology, const Source& transitions, std::size_t blockSize,
          Gauges& result, Stage& stage)
       : topology_(topology),
         transitions_(transitions),
@@ -228,7 +281,7 @@ class Pieces {
   }
 
   const TetTopology& topology_;
-  const Transitions& transitions_;
+  const Source& transitions_;
   Gauges& result_;
   Stage& stage_;
   std::size_t blockSize_;
@@ -238,10 +291,9 @@ class Pieces {
   std::vector<Index> components_;  ///< per piece
 };
 
-}  // namespace
-
-Gauges computeGauges(const TetTopology& topology, const Transitions& transitions, Stage& stage,
-                     std::size_t blockSize) {
+template <class Source>
+Gauges gaugesBy(const TetTopology& topology, const Source& transitions, Stage& stage,
+                std::size_t blockSize) {
   Gauges result;
   result.of.resize(topology.tetCount());
   result.component.resize(topology.tetCount());
@@ -250,6 +302,18 @@ Gauges computeGauges(const TetTopology& topology, const Transitions& transitions
   pieces.join();
   pieces.compose();
   return result;
+}
+
+}  // namespace
+
+Gauges computeGauges(const TetTopology& topology, const Transitions& transitions, Stage& stage,
+                     std::size_t blockSize) {
+  return gaugesBy(topology, KnownTransitions(transitions), stage, blockSize);
+}
+
+Gauges computeGauges(const TetTopology& topology, const LocalParameters& parameters, Stage& stage,
+                     std::size_t blockSize) {
+  return gaugesBy(topology, FittedTransitions(topology, parameters), stage, blockSize);
 }
 
 }  // namespace hexhex

@@ -7,6 +7,7 @@
 #include <hexhex/types.hpp>
 
 #include <lattice/gauge.hpp>
+#include <map/local_parameters.hpp>
 #include <map/tet_topology.hpp>
 #include <map/transitions.hpp>
 
@@ -33,6 +34,10 @@ inline constexpr std::size_t kGaugeBlock = std::size_t{1} << 14;
 /// The tree is one of breadth first searches: within blocks of consecutive tets, in parallel, and
 /// then from block to block. It does not depend on threads.
 [[nodiscard]] Gauges computeGauges(const TetTopology& topology, const Transitions& transitions,
+                                   Stage& stage, std::size_t blockSize = kGaugeBlock);
+
+/// The same before transitions are known: those along the tree are fitted.
+[[nodiscard]] Gauges computeGauges(const TetTopology& topology, const LocalParameters& parameters,
                                    Stage& stage, std::size_t blockSize = kGaugeBlock);
 
 }  // namespace hexhex

@@ -47,6 +47,10 @@ class LocalParameters {
   [[nodiscard]] bool moved() const noexcept { return moved_; }
   /// What the caller gave.
   [[nodiscard]] const TetParameters& given(Index tet) const noexcept { return parameters_[tet]; }
+  /// The multiple of the grid by which a chart is moved that has this coordinate at corner 0.
+  [[nodiscard]] double roundedToGrid(double coordinate) const noexcept {
+    return std::nearbyint(coordinate / grid_) * grid_;
+  }
   /// Asks for the parameters of a tet that will be looked at soon.
   void prefetch(Index tet) const noexcept {
     const TetParameters& parameters = parameters_[tet];
@@ -68,7 +72,7 @@ class LocalParameters {
   const TetParameters& copyTo(TetParameters& scratch, Index tet) const noexcept;
   [[nodiscard]] Vec3 move(const TetParameters& parameters) const noexcept {
     Vec3 by{};
-    for (std::size_t k = 0; k < 3; ++k) by[k] = std::nearbyint(parameters[0][k] / grid_) * grid_;
+    for (std::size_t k = 0; k < 3; ++k) by[k] = roundedToGrid(parameters[0][k]);
     return by;
   }
 

@@ -11,6 +11,7 @@
 #include <base/vector3.hpp>
 #include <map/plain_vertices.hpp>
 #include <map/tet_projection.hpp>
+#include <map/transition_fit.hpp>
 
 namespace hexhex {
 
@@ -207,18 +208,6 @@ class TetSurvey {
   BranchlessList found_;   ///< vertices
   BranchlessList images_;  ///< as in lookAtTwoImages()
 };
-
-/// Whether two tets agree on the parameters of the corners of their common face.
-bool agree(const TetTopology& topology, const LocalParameters& parameters, HalfFace here,
-           HalfFace there) {
-  const SharedFace face(topology, here, there);
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (parameters.at(tetOf(here), face.here(k)) != parameters.at(tetOf(there), face.there(k))) {
-      return false;
-    }
-  }
-  return true;
-}
 
 /// The bits of two numbers in a row.
 PairMask bitsOfPair(const double* first) { return reinterpret_cast<PairMask>(loadPair(first)); }

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,7 +7,7 @@
 #include <map/plain_vertices.hpp>
 #include <map/prepare.hpp>
 #include <map/topology_defects.hpp>
-#include <map/unfolded_vertices.hpp>
+#include <map/unfold_charts.hpp>
 
 namespace hexhex {
 
@@ -35,11 +33,8 @@ void checkArguments(double tolerance, int scale) {
               "bug; please report it with the map.");
 }
 
-}  // namespace
-
-PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Context& context,
-                       DefectCollector& defects) {
-  checkArguments(tolerance, maxScale);
+PreparedMap prepare(const TetMapView& map, double tolerance, int maxScale, Context& context,
+                    DefectCollector& defects, ChartChoice charts) {
   PreparedMap prepared;
   {
     Stage stage(context, "input");
@@ -47,16 +42,25 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
     if (!defects.empty()) return prepared;
   }
   const TetMapView& view = prepared.input.view;
-  const LocalParameters parameters(prepared.input);
   defects.setCornersReversed(prepared.input.cornersReversed);
   // Flipped tets falsify angles, hence singularities, hence what is snapped where.
   if (prepared.input.flippedTets) defects.setRootCause(ErrorCode::FlippedTet);
-  PlainVertices plain;
-  std::vector<StarBlock> stars;
   {
     Stage stage(context, "topology");
     prepared.topology = buildTopology(view, stage, defects);
     if (!defects.empty()) return prepared;
+  }
+  Unfolding unfolding;
+  if (charts == ChartChoice::Unfolded && needsUnfolding(prepared.topology, prepared.input)) {
+    Stage stage(context, "unfolding");
+    unfolding = unfoldCharts(prepared.topology, prepared.input, stage);
+    prepared.isUnfolded = true;
+  }
+  const LocalParameters parameters(prepared.input);
+  PlainVertices plain;
+  std::vector<StarBlock> stars;
+  {
+    Stage stage(context, "plain vertices");
     plain = findPlainVertices(prepared.topology, parameters, stage);
   }
   Transitions transitions;
@@ -64,20 +68,15 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
     Stage stage(context, "transitions");
     transitions =
         computeTransitions(prepared.topology, parameters, plain, view.rotations, tolerance, stage);
+    prepared.chartJumps = unfolding.countGivenJumps(prepared.topology, transitions, stage);
     if (hasManyJumps(prepared.topology, transitions)) {
       prepared.gauges = computeGauges(prepared.topology, transitions, stage);
     }
   }
   {
     Stage stage(context, "singularities");
-    std::vector<StarBlock> unfolded;
-    // What the caller claims about edges is looked up for each, hence no star is spared then.
-    if (!prepared.gauges.of.empty() && view.edgeValences.empty()) {
-      unfolded = unfoldVertices(prepared.topology, parameters, prepared.gauges, plain, stage);
-    }
     collectStars(prepared.topology, parameters, plain, view.edgeValences,
                  parameters.tooLarge() ? nullptr : &transitions, stars, stage);
-    std::move(unfolded.begin(), unfolded.end(), std::back_inserter(stars));
     std::optional<Singularities> singularities =
         computeSingularities(prepared.topology, parameters, plain, view.edgeValences, stars, stage);
     if (!singularities) {
@@ -96,6 +95,17 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
   prepared.exact = sanitize(prepared.topology, parameters, std::move(transitions), plain, stars,
                             prepared.singularities, tolerance, maxScale, stage, defects);
   return prepared;
+}
+
+}  // namespace
+
+PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Context& context,
+                       DefectCollector& defects, ChartChoice charts) {
+  checkArguments(tolerance, maxScale);
+  PreparedMap prepared = prepare(map, tolerance, maxScale, context, defects, charts);
+  if (defects.empty() || !prepared.isUnfolded) return prepared;
+  defects.clear();
+  return prepare(map, tolerance, maxScale, context, defects, ChartChoice::AsGiven);
 }
 
 }  // namespace hexhex

@@ -17,15 +17,25 @@ struct PreparedMap {
   OrientedMap input;
   TetTopology topology;
   Singularities singularities;
-  Gauges gauges;   ///< not scaled; empty if there are not many jumps
-  ExactMap exact;  ///< not scaled
+  bool isUnfolded = false;       ///< whether `input` has other charts than the caller's
+  std::uint64_t chartJumps = 0;  ///< between the caller's charts
+  Gauges gauges;                 ///< not scaled; empty if there are not many jumps
+  ExactMap exact;                ///< not scaled
+};
+
+/// In which charts a map is prepared.
+enum class ChartChoice : std::uint8_t {
+  AsGiven,  ///< the caller's
+  Unfolded  ///< common ones, if nearly every tet has a chart of its own (unfold_charts.hpp)
 };
 
 /// Stops early when a stage finds defects that the next one could not stand; the result must be
 /// used only if `defects` is empty, except for those parts that the stages before have finished.
+/// Defects are always those of the map in the caller's charts.
 /// @param maxScale  the map is going to be scaled by at most this
 /// @throws Error InvalidArgument for a tolerance or scale out of range
 [[nodiscard]] PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale,
-                                     Context& context, DefectCollector& defects);
+                                     Context& context, DefectCollector& defects,
+                                     ChartChoice charts = ChartChoice::AsGiven);
 
 }  // namespace hexhex

@@ -1,9 +1,8 @@
 #include <algorithm>
 
 #include <base/branchless.hpp>
-#include <base/vector3.hpp>
-#include <map/best_rotation.hpp>
 #include <map/plain_vertices.hpp>
+#include <map/transition_fit.hpp>
 #include <map/transitions.hpp>
 #include <map/turn.hpp>
 
@@ -13,97 +12,6 @@ namespace {
 
 /// Triangles between asking for a tet and looking at it: the memory's delay, in steps of a loop.
 constexpr std::size_t kFacesAhead = 4;
-
-double distance(const Vec3& a, const Vec3& b) {
-  return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
-}
-
-/// The three corners of a triangle in the charts of both its tets.
-struct SharedTriangle {
-  std::array<Vec3, 3> here;
-  std::array<Vec3, 3> there;
-};
-
-SharedTriangle sharedTriangle(const TetTopology& topology, const LocalParameters& parameters,
-                              HalfFace here, HalfFace there) {
-  const SharedFace face(topology, here, there);
-  SharedTriangle triangle;
-  for (std::size_t k = 0; k < 3; ++k) {
-    triangle.here[k] = parameters.at(tetOf(here), face.here(k));
-    triangle.there[k] = parameters.at(tetOf(there), face.there(k));
-  }
-  return triangle;
-}
-
-Rotation rotationOf(const SharedTriangle& triangle) {
-  return bestRotation(
-      {minus(triangle.here[1], triangle.here[0]), minus(triangle.here[2], triangle.here[0])},
-      {minus(triangle.there[1], triangle.there[0]), minus(triangle.there[2], triangle.there[0])});
-}
-
-/// What remains when a transition carries corners over.
-double residualOf(const SharedTriangle& triangle, const std::array<Vec3, 3>& images,
-                  const Vec3& translation) {
-  double residual = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    residual = std::max(residual, distance(triangle.there[i], plus(images[i], translation)));
-  }
-  return residual;
-}
-
-/// The integers nearest to the mean of what is left of the corners after the rotation.
-Vec3 meanTranslation(const SharedTriangle& triangle, const std::array<Vec3, 3>& images) {
-  Vec3 mean{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 difference = minus(triangle.there[i], images[i]);
-    for (std::size_t k = 0; k < 3; ++k) mean[k] += difference[k] / 3;
-  }
-  for (double& component : mean) component = nearestInteger(component);
-  return mean;
-}
-
-/// Whether nothing is rounded when corners are moved by a translation that leaves no residual. If
-/// a + b is not its rounded sum c, then c - a, with a the larger of the two, is a number other than
-/// b, and exact (Dekker).
-bool isExact(const SharedTriangle& triangle, const std::array<Vec3, 3>& images,
-             const Vec3& translation) {
-  double rest = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double sum = triangle.there[i][k];
-      rest += std::abs((sum - images[i][k]) - translation[k]) +
-              std::abs((sum - translation[k]) - images[i][k]);
-    }
-  }
-  return rest == 0;
-}
-
-/// The transition with a given rotation, and how well it does.
-struct FittedTransition {
-  Transition transition;
-  double residual = 0;
-  bool isExact = false;
-};
-
-FittedTransition fitTranslation(const SharedTriangle& triangle, Rotation rotation) {
-  std::array<Vec3, 3> images{};
-  for (std::size_t i = 0; i < 3; ++i) images[i] = turned(rotation, triangle.here[i]);
-  Vec3 translation = minus(triangle.there[0], images[0]);
-  for (double& component : translation) component = nearestInteger(component);
-  FittedTransition fitted;
-  fitted.residual = residualOf(triangle, images, translation);
-  // If it fits each corner to within a quarter, it is what the mean is nearest to.
-  if (fitted.residual > 0.25) {
-    translation = meanTranslation(triangle, images);
-    fitted.residual = residualOf(triangle, images, translation);
-  }
-  fitted.isExact = fitted.residual == 0 && isExact(triangle, images, translation);
-  fitted.transition.rotation = rotation;
-  for (std::size_t k = 0; k < 3; ++k) {
-    fitted.transition.translation[k] = static_cast<std::int32_t>(translation[k]);
-  }
-  return fitted;
-}
 
 Transition inverse(const Transition& transition) {
   Transition back{inverseOf(transition.rotation), {}};
@@ -143,8 +51,7 @@ class TransitionFitter {
       const HalfFace here = topology_.mate[there];  // the smaller one
       const std::size_t ahead = std::min(i + kFacesAhead, halfFaces.size() - 1);
       parameters_.prefetch(tetOf(topology_.mate[halfFaces[ahead]]));
-      const SharedTriangle triangle = sharedTriangle(topology_, parameters_, here, there);
-      const FittedTransition fitted = fitTranslation(triangle, rotation(here, triangle));
+      const FittedTransition fitted = fit(here, there);
       block.maxResidual = std::max(block.maxResidual, fitted.residual);
       if (fitted.residual > tolerance_) block.misfits.push_back({here, fitted.residual});
       if (fitted.transition.isIdentity()) continue;  // rough, as it does not fit exactly
@@ -163,10 +70,11 @@ class TransitionFitter {
   }
 
  private:
-  [[nodiscard]] Rotation rotation(HalfFace here, const SharedTriangle& triangle) const {
+  [[nodiscard]] FittedTransition fit(HalfFace here, HalfFace there) const {
     const int known = rotations_.empty() ? -1 : rotations_[tetOf(here)][here % 4];
-    return known >= 0 && known < Rotation::kCount ? rotationFromAlgoHex(known)
-                                                  : rotationOf(triangle);
+    return known >= 0 && known < Rotation::kCount
+               ? fitTransition(topology_, parameters_, here, there, rotationFromAlgoHex(known))
+               : fitTransition(topology_, parameters_, here, there);
   }
   void enter(Index index, HalfFace halfFace, const Transition& transition, bool isExact) const {
     result_.table[index] = transition;

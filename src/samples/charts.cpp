@@ -64,7 +64,7 @@ std::vector<Motion> alignedCharts(const BlockComplex& complex, std::int64_t cell
 
 std::vector<Motion> blockCharts(const BlockComplex& complex, const SampleOptions& options,
                                 Random& random) {
-  if (options.charts == ChartStyle::Aligned) {
+  if (options.charts == ChartStyle::Aligned || options.charts == ChartStyle::Scattered) {
     const auto offset = static_cast<std::int64_t>(options.offset);
     return alignedCharts(complex, options.cells, randomTranslation(offset, random));
   }
@@ -98,7 +98,7 @@ class MapWriter {
             Random chartRandom)
       : grid_(grid),
         charts_(std::move(charts)),
-        tetCharts_(options.charts == ChartStyle::Random),
+        style_(options.charts),
         limit_(translationLimit(options)),
         noise_(options.noise),
         chartRandom_(chartRandom),
@@ -106,24 +106,27 @@ class MapWriter {
 
   void write(std::size_t subBlock, TetMap& map) {
     const std::array<Index, 8> vertices = grid_.cornerVertices(subBlock);
-    std::array<Int3, 8> parameters = grid_.cornerParameters(subBlock);
+    const std::array<Int3, 8> parameters = grid_.cornerParameters(subBlock);
+    const Int3 centre = grid_.centreParameters[subBlock];
     const Motion& chart = charts_[subBlock / grid_.subBlocksPerBlock()];
-    for (Int3& parameter : parameters) parameter = chart(parameter);
-    const Int3 centre = chart(grid_.centreParameters[subBlock]);
     for (const SurfaceTriangle& t : surfaceTriangles(vertices)) {
       Tet tet = {grid_.centreVertex(subBlock), vertices[t[0]], vertices[t[1]], vertices[t[2]]};
       std::array<Int3, 4> corners = {centre, parameters[t[0]], parameters[t[1]], parameters[t[2]]};
-      if (tetCharts_) {
-        const Motion own = randomChart(limit_, chartRandom_);
-        for (Int3& corner : corners) corner = own(corner);
-        permuteCorners(tet, corners, chartRandom_);
-      }
+      const bool isOwn = hasOwnChart();
+      const Motion motion = isOwn ? randomChart(limit_, chartRandom_) : chart;
+      for (Int3& corner : corners) corner = motion(corner);
+      if (isOwn) permuteCorners(tet, corners, chartRandom_);
       map.tets.push_back(tet);
       map.parameters.push_back(rounded(corners));
     }
   }
 
  private:
+  /// Whether the next tet has a chart of its own.
+  [[nodiscard]] bool hasOwnChart() {
+    return style_ == ChartStyle::Random ||
+           (style_ == ChartStyle::Scattered && chartRandom_.below(8) == 0);
+  }
   /// To double, which is exact, and noise on top.
   TetParameters rounded(const std::array<Int3, 4>& corners) {
     TetParameters result{};
@@ -138,7 +141,7 @@ class MapWriter {
 
   const TetGrid& grid_;
   std::vector<Motion> charts_;
-  bool tetCharts_;
+  ChartStyle style_;
   std::int64_t limit_;
   double noise_;
   Random chartRandom_;

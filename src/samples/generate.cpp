@@ -80,9 +80,9 @@ void requireLegal(SampleKind kind, const SampleOptions& options) {
   const bool defectKnown =
       std::any_of(kDefectKinds.begin(), kDefectKinds.end(),
                   [&](const DefectKindName& entry) { return entry.kind == options.defectKind; });
-  const bool styleKnown = options.charts == ChartStyle::Aligned ||
-                          options.charts == ChartStyle::Blocks ||
-                          options.charts == ChartStyle::Random;
+  const bool styleKnown =
+      options.charts == ChartStyle::Aligned || options.charts == ChartStyle::Blocks ||
+      options.charts == ChartStyle::Random || options.charts == ChartStyle::Scattered;
   if (!known || !styleKnown || !defectKnown) {
     throw Error(
         ErrorCode::InvalidArgument,

@@ -59,8 +59,11 @@ inline std::vector<CurvedMap> generatedMaps() {
   for (const SampleKindName& kind : sampleKinds()) {
     for (std::size_t i = 0; i < std::min(count, options.size()); ++i) {
       const std::size_t number = (turn + i) % options.size();
-      maps.push_back({std::string(kind.name) + " " + std::to_string(number),
-                      generateSample(kind.kind, options[number]).map});
+      const TetMap map = generateSample(kind.kind, options[number]).map;
+      maps.push_back({std::string(kind.name) + " " + std::to_string(number), map});
+      if (number == 3 || number == 5) {
+        maps.push_back({maps.back().name + ", charts kept", withChartsKept(map)});
+      }
     }
     ++turn;
   }

@@ -125,7 +125,7 @@ TEST(EpsilonFallback, MissedVerticesAreNoticedAndFound) {
   const Sample sample = sampleOf(SampleKind::Sphere);
   Context context;
   DefectCollector defects;
-  PreparedMap map = prepareMap(sample.map, 1e-2, 1, context, defects);
+  PreparedMap map = prepareMap(sample.map, 1e-2, 1, context, defects, ChartChoice::Unfolded);
   {
     Stage stage(context, "test");
     addStars(map.topology, stage);

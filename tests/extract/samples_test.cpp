@@ -55,16 +55,21 @@ TEST_P(SampleExtraction, AgreesWithMapAndAnswer) {
                                       << o.refine << " jitter " << o.jitter);
     const Sample sample = generateSample(GetParam(), o);
     expectAnswer(sample, verifiedExtraction(sample.map));
+    if (o.charts == ChartStyle::Random) {
+      expectAnswer(sample, verifiedExtraction(withChartsKept(sample.map)));
+    }
   }
 }
 
 TEST_P(SampleExtraction, ChartsDoNotMatter) {
   SampleOptions o = options(4, 3, ChartStyle::Aligned, 0.3, 0.3);
   const HexMesh aligned = verifiedExtraction(generateSample(GetParam(), o).map);
-  for (const ChartStyle style : {ChartStyle::Blocks, ChartStyle::Random}) {
+  for (const ChartStyle style : {ChartStyle::Blocks, ChartStyle::Random, ChartStyle::Scattered}) {
     o.charts = style;
-    const HexMesh other = verifiedExtraction(generateSample(GetParam(), o).map);
-    EXPECT_TRUE(sameUpToNumbering(aligned, other)) << nameOf(GetParam());
+    const TetMap map = generateSample(GetParam(), o).map;
+    EXPECT_TRUE(sameUpToNumbering(aligned, verifiedExtraction(map))) << nameOf(GetParam());
+    const HexMesh inGivenCharts = verifiedExtraction(withChartsKept(map));
+    EXPECT_TRUE(sameUpToNumbering(aligned, inGivenCharts)) << nameOf(GetParam());
   }
 }
 
@@ -134,19 +139,23 @@ void checkRandomSample() {
   o.cells = *rc::gen::inRange(1, 8);
   o.refine = *rc::gen::inRange(1, 5);
   o.valence = *rc::gen::inRange(3, 13);
-  o.charts = *rc::gen::element(ChartStyle::Aligned, ChartStyle::Blocks, ChartStyle::Random);
+  o.charts = *rc::gen::element(ChartStyle::Aligned, ChartStyle::Blocks, ChartStyle::Random,
+                               ChartStyle::Scattered);
   o.jitter = *rc::gen::element(0.0, 0.1, 0.5, 1.0);
   o.onLattice = *rc::gen::element(0.0, 0.2, 0.8, 1.0);
   o.noise = *rc::gen::element(0.0, 1e-9, 1e-5);
   o.offset = *rc::gen::element(0.0, 1e3, 1e9);
   o.seed = *rc::gen::inRange<std::uint64_t>(1, 1U << 30);
-  constexpr const char* kCharts[] = {"aligned", "blocks", "random"};
+  constexpr const char* kCharts[] = {"aligned", "blocks", "random", "scattered"};
   RC_LOG() << "hexhex generate " << nameOf(kind) << " --cells " << o.cells << " --refine "
            << o.refine << " --valence " << o.valence << " --charts "
            << kCharts[static_cast<std::size_t>(o.charts)] << " --jitter " << o.jitter
            << " --on-lattice " << o.onLattice << " --noise " << o.noise << " --offset " << o.offset
            << " --seed " << o.seed << '\n';
-  const Sample sample = generateSample(kind, o);
+  Sample sample = generateSample(kind, o);
+  const bool areChartsKept = *rc::gen::arbitrary<bool>();
+  RC_LOG() << (areChartsKept ? "with its charts kept\n" : "");
+  if (areChartsKept) sample.map = withChartsKept(std::move(sample.map));
   ExtractOptions extractOptions;
   extractOptions.scale = *rc::gen::weightedElement<int>({{4, 1}, {1, 2}, {1, 3}});
   const HexMesh mesh = extract(sample.map, extractOptions);

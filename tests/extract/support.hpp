@@ -38,6 +38,12 @@ inline ExtractOptions withOtherEngine(ExtractOptions options) {
   return options;
 }
 
+/// The same map with rotations that say nothing, which is why no chart is changed.
+inline TetMap withChartsKept(TetMap map) {
+  map.rotations.assign(map.tets.size(), {-1, -1, -1, -1});
+  return map;
+}
+
 /// Extracts with both engines, which must agree in every bit, and verifies against the map itself.
 inline HexMesh verifiedExtraction(const TetMapView& map, const ExtractOptions& options = {},
                                   int threads = 0) {

@@ -28,8 +28,7 @@ RandomCase randomCase(Random& random) {
   options.cells = static_cast<int>(1 + random.below(5));
   options.refine = static_cast<int>(1 + random.below(3));
   options.valence = static_cast<int>(3 + random.below(6));
-  options.charts =
-      std::vector{ChartStyle::Aligned, ChartStyle::Blocks, ChartStyle::Random}[random.below(3)];
+  options.charts = static_cast<ChartStyle>(random.below(4));
   options.jitter = 0.5 * upToOne();
   options.onLattice = upToOne();
   options.offset = random.below(2) == 0 ? 0 : 1e6;

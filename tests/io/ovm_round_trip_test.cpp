@@ -54,7 +54,8 @@ TEST(OvmRoundTrip, Samples) {
     SampleOptions options;
     options.cells = 2;
     options.refine = *rc::gen::inRange(1, 3);
-    options.charts = *rc::gen::element(ChartStyle::Aligned, ChartStyle::Blocks, ChartStyle::Random);
+    options.charts = *rc::gen::element(ChartStyle::Aligned, ChartStyle::Blocks, ChartStyle::Random,
+                                       ChartStyle::Scattered);
     options.jitter = *rc::gen::element(0.0, 0.5);
     options.offset = *rc::gen::element(0.0, 1e9);
     options.seed = *rc::gen::arbitrary<std::uint64_t>();

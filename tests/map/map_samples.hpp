@@ -14,14 +14,15 @@
 
 namespace hexhex::test {
 
-/// The preprocessing of a map, and what it complains about. The map must outlive it.
+/// The preprocessing of a map, in the charts that it has, and what it complains about. The map must
+/// outlive it.
 class Prepared {
  public:
   explicit Prepared(const TetMapView& view, double tolerance = 1e-2, int maxScale = 1,
-                    int threads = 1) {
+                    int threads = 1, ChartChoice charts = ChartChoice::AsGiven) {
     Context context(threads);
     withThreads(threads, [&] {
-      map_ = prepareMap(view, tolerance, maxScale, context, defects_);
+      map_ = prepareMap(view, tolerance, maxScale, context, defects_, charts);
       Stage stage(context, "edges");
       if (map_.singularities.areKnown()) addEdges(map_.topology, stage);
     });
@@ -51,7 +52,7 @@ inline std::string kindTestName(const testing::TestParamInfo<SampleKindName>& in
 }
 
 inline constexpr ChartStyle kChartStyles[] = {ChartStyle::Aligned, ChartStyle::Blocks,
-                                              ChartStyle::Random};
+                                              ChartStyle::Random, ChartStyle::Scattered};
 
 /// A map that is the identity on its mesh.
 inline TetMap identityMap(std::vector<Vec3> points, std::vector<Tet> tets) {

@@ -88,7 +88,7 @@ TEST_P(DamagedSamples, ComeOutRight) {
     options.cells = 1 + i % 3;
     options.refine = 2 + i % 3;
     options.valence = i % 2 == 0 ? 5 : 8;
-    options.charts = static_cast<ChartStyle>(i % 3);
+    options.charts = static_cast<ChartStyle>(i % 4);
     options.jitter = 0.05 * i;
     options.offset = i % 4 == 0 ? 1e6 : 0;
     options.noise = i % 4 == 1 ? 1e-3 : 0;

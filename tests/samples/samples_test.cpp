@@ -19,6 +19,9 @@ namespace {
 using test::inspect;
 using test::Inspection;
 
+constexpr ChartStyle kChartStyles[] = {ChartStyle::Aligned, ChartStyle::Blocks, ChartStyle::Random,
+                                       ChartStyle::Scattered};
+
 std::string describe(SampleKind kind, const SampleOptions& options) {
   std::string text;
   for (const SampleKindName& entry : sampleKinds()) {
@@ -84,7 +87,7 @@ TEST_P(EveryKind, IsValidForAnySize) {
 }
 
 TEST_P(EveryKind, IsValidForEveryChartStyle) {
-  for (const ChartStyle charts : {ChartStyle::Aligned, ChartStyle::Blocks, ChartStyle::Random}) {
+  for (const ChartStyle charts : kChartStyles) {
     for (const double offset : {0.0, 1e9}) {
       SampleOptions options;
       options.cells = 3;
@@ -215,8 +218,16 @@ TEST(Samples, RandomChartsJumpNearlyEverywhere) {
   EXPECT_GT(found.chartJumps * 100, found.innerFaces * 99);
 }
 
+TEST(Samples, ScatteredChartsJumpHereAndThere) {
+  SampleOptions options;
+  options.charts = ChartStyle::Scattered;
+  const Inspection found = inspect(generateSample(SampleKind::Box, options).map);
+  EXPECT_GT(found.chartJumps * 100, found.innerFaces * 15);
+  EXPECT_LT(found.chartJumps * 100, found.innerFaces * 35);
+}
+
 TEST(Samples, OffsetMovesChartsFarAway) {
-  for (const ChartStyle charts : {ChartStyle::Aligned, ChartStyle::Blocks, ChartStyle::Random}) {
+  for (const ChartStyle charts : kChartStyles) {
     SampleOptions options;
     options.charts = charts;
     options.offset = 1e9;
@@ -431,7 +442,7 @@ TEST(Samples, AnyOptionsGiveAValidMap) {
     options.cells = *rc::gen::inRange(1, 9);
     options.refine = *rc::gen::inRange(1, 4);
     options.valence = *rc::gen::inRange(3, 13);
-    options.charts = static_cast<ChartStyle>(*rc::gen::inRange(0, 3));
+    options.charts = static_cast<ChartStyle>(*rc::gen::inRange(0, 4));
     options.jitter = *rc::gen::inRange(0, 11) / 10.0;
     options.onLattice = *rc::gen::inRange(0, 11) / 10.0;
     options.noise = *rc::gen::inRange(0, 2) * 0.01 * options.cells / options.refine;

@@ -271,7 +271,8 @@ HEXHEX_API hexhex_status hexhex_map_from_pair(const hexhex_map_arrays* tets,
 typedef enum hexhex_chart_style HEXHEX_AS_INT {
   HEXHEX_CHARTS_ALIGNED = 0, /**< as many identity transitions as possible */
   HEXHEX_CHARTS_BLOCKS = 1,  /**< a random chart per block */
-  HEXHEX_CHARTS_RANDOM = 2   /**< a random chart per tet */
+  HEXHEX_CHARTS_RANDOM = 2,  /**< a random chart per tet */
+  HEXHEX_CHARTS_SCATTERED = 3 /**< a random chart for one tet in eight, aligned for the others */
 } hexhex_chart_style;
 
 /** How hexhex_map_generate() damages a map: see DefectKind in <hexhex/samples.hpp>. */

@@ -524,7 +524,8 @@ def generate(kind: str, *, cells: int = 4, refine: int = 2, valence: int = 5,
         cells: hexahedra along each block edge.
         refine: tet sub-blocks along each block edge.
         valence: hexahedra around the inner edge of a "star", 3 to 12.
-        charts: "aligned", "blocks" (a random chart per block) or "random" (per tet).
+        charts: "aligned", "blocks" (a random chart per block), "random" (per tet) or "scattered" (for
+            one tet in eight).
         jitter, on_lattice, noise, offset, seed: see docs/command.md.
         features: tags corners, curves and surfaces, and numbers the blocks as regions.
         defects: at least so many tets are flipped or flat.
@@ -537,7 +538,7 @@ def generate(kind: str, *, cells: int = 4, refine: int = 2, valence: int = 5,
     >>> map, map.answer["cells"], map.answer["inner_singular_edges"]
     (<hexhex.Map: 672 tets, 185 points>, 448, {7: 4})
     """
-    if charts not in ("aligned", "blocks", "random"):
+    if charts not in ("aligned", "blocks", "random", "scattered"):
         raise ArgumentError(f'There is no style of charts "{charts}".', "InvalidArgument")
     if seed < 0:
         raise ArgumentError(f"The seed is {seed}. Choose it from 0.", "InvalidArgument")
