@@ -10,8 +10,8 @@ from evaluation.results import Run, select
 # Stages that are drawn as one: what they do, and their color. Stages of the same kind have the same
 # color in both panels.
 _INPUT = {
-    "topology": (("input", "topology"), style.BLACK),
-    "transitions, singularities": (("transitions", "singularities"), style.BLUE),
+    "topology": (("input", "topology", "plain vertices"), style.BLACK),
+    "transitions, singularities": (("unfolding", "transitions", "singularities"), style.BLUE),
     "sanitization": (("sanitization", "scaling"), style.SKY),
 }
 GROUPS: dict[str, dict[str, tuple[tuple[str, ...], str]]] = {

@@ -9,8 +9,16 @@ from evaluation.results import Run, select
 ENGINES = ("atlas", "propeller")
 
 
-def _unique(values: Iterable[str]) -> list[str]:
-    return list(dict.fromkeys(values))
+def _merged(sequences: Iterable[Iterable[str]]) -> list[str]:
+    """All names once, those that only some sequences have behind the one before them there."""
+    names: list[str] = []
+    for sequence in sequences:
+        place = 0
+        for name in sequence:
+            if name not in names:
+                names.insert(place, name)
+            place = names.index(name) + 1
+    return names
 
 
 def _ns_per(count: str) -> Callable[[Run], float]:
@@ -44,7 +52,7 @@ def stages(runs: list[Run], engine: str, unit: str) -> str:
     single = select(runs, "extract", engine=engine, threads="1")
     if not single:
         return ""
-    names = _unique(name for run in single for name in run.stages)
+    names = _merged(run.stages for run in single)
     rows = []
     for run in single:
         count = run["tets" if unit == "tet" else "hexes"]

@@ -33,79 +33,111 @@ void checkArguments(double tolerance, int scale) {
               "bug; please report it with the map.");
 }
 
-PreparedMap prepare(const TetMapView& map, double tolerance, int maxScale, Context& context,
-                    DefectCollector& defects, ChartChoice charts) {
-  PreparedMap prepared;
-  {
-    Stage stage(context, "input");
-    prepared.input = readInput(map, stage, defects);
-    if (!defects.empty()) return prepared;
-  }
-  const TetMapView& view = prepared.input.view;
-  defects.setCornersReversed(prepared.input.cornersReversed);
-  // Flipped tets falsify angles, hence singularities, hence what is snapped where.
-  if (prepared.input.flippedTets) defects.setRootCause(ErrorCode::FlippedTet);
-  {
-    Stage stage(context, "topology");
-    prepared.topology = buildTopology(view, stage, defects);
-    if (!defects.empty()) return prepared;
-  }
-  Unfolding unfolding;
-  if (charts == ChartChoice::Unfolded && needsUnfolding(prepared.topology, prepared.input)) {
-    Stage stage(context, "unfolding");
-    unfolding = unfoldCharts(prepared.topology, prepared.input, stage);
-    prepared.isUnfolded = true;
-  }
-  const LocalParameters parameters(prepared.input);
-  PlainVertices plain;
-  std::vector<StarBlock> stars;
-  {
-    Stage stage(context, "plain vertices");
-    plain = findPlainVertices(prepared.topology, parameters, stage);
-  }
-  Transitions transitions;
-  if (!parameters.tooLarge()) {
-    Stage stage(context, "transitions");
-    transitions =
-        computeTransitions(prepared.topology, parameters, plain, view.rotations, tolerance, stage);
-    prepared.chartJumps = unfolding.countGivenJumps(prepared.topology, transitions, stage);
-    if (hasManyJumps(prepared.topology, transitions)) {
-      prepared.gauges = computeGauges(prepared.topology, transitions, stage);
+/// One preparation, step by step.
+class Preparation {
+ public:
+  Preparation(const TetMapView& map, double tolerance, int maxScale, Context& context,
+              DefectCollector& defects)
+      : map_(map),
+        tolerance_(tolerance),
+        maxScale_(maxScale),
+        context_(context),
+        defects_(defects) {}
+
+  [[nodiscard]] PreparedMap run(ChartChoice charts) {
+    if (!read()) return std::move(prepared_);
+    Unfolding unfolding;
+    if (charts == ChartChoice::Unfolded && needsUnfolding(prepared_.topology, prepared_.input)) {
+      Stage stage(context_, "unfolding");
+      unfolding = unfoldCharts(prepared_.topology, prepared_.input, stage);
+      prepared_.isUnfolded = true;
     }
+    const LocalParameters parameters(prepared_.input);
+    PlainVertices plain;
+    {
+      Stage stage(context_, "plain vertices");
+      plain = findPlainVertices(prepared_.topology, parameters, stage);
+    }
+    Transitions transitions;
+    if (!parameters.tooLarge()) transitions = findTransitions(parameters, unfolding, plain);
+    std::vector<StarBlock> stars;
+    if (!findSingularities(parameters, transitions, plain, stars)) return std::move(prepared_);
+    Stage stage(context_, "sanitization");
+    prepared_.exact = sanitize(prepared_.topology, parameters, std::move(transitions), plain, stars,
+                               prepared_.singularities, tolerance_, maxScale_, stage, defects_);
+    return std::move(prepared_);
   }
-  {
-    Stage stage(context, "singularities");
-    collectStars(prepared.topology, parameters, plain, view.edgeValences,
+
+ private:
+  /// @return whether the input is good enough for anything else
+  [[nodiscard]] bool read() {
+    {
+      Stage stage(context_, "input");
+      prepared_.input = readInput(map_, stage, defects_);
+      if (!defects_.empty()) return false;
+    }
+    defects_.setCornersReversed(prepared_.input.cornersReversed);
+    // Flipped tets falsify angles, hence singularities, hence what is snapped where.
+    if (prepared_.input.flippedTets) defects_.setRootCause(ErrorCode::FlippedTet);
+    Stage stage(context_, "topology");
+    prepared_.topology = buildTopology(prepared_.input.view, stage, defects_);
+    return defects_.empty();
+  }
+
+  [[nodiscard]] Transitions findTransitions(const LocalParameters& parameters,
+                                            const Unfolding& unfolding, PlainVertices& plain) {
+    Stage stage(context_, "transitions");
+    Transitions transitions = computeTransitions(prepared_.topology, parameters, plain,
+                                                 prepared_.input.view.rotations, tolerance_, stage);
+    prepared_.chartJumps = unfolding.countGivenJumps(prepared_.topology, transitions, stage);
+    if (hasManyJumps(prepared_.topology, transitions)) {
+      prepared_.gauges = computeGauges(prepared_.topology, transitions, stage);
+    }
+    return transitions;
+  }
+
+  /// @return whether there is an exact map to be found
+  [[nodiscard]] bool findSingularities(const LocalParameters& parameters,
+                                       const Transitions& transitions, PlainVertices& plain,
+                                       std::vector<StarBlock>& stars) {
+    Stage stage(context_, "singularities");
+    const auto& valences = prepared_.input.view.edgeValences;
+    collectStars(prepared_.topology, parameters, plain, valences,
                  parameters.tooLarge() ? nullptr : &transitions, stars, stage);
     std::optional<Singularities> singularities =
-        computeSingularities(prepared.topology, parameters, plain, view.edgeValences, stars, stage);
+        computeSingularities(prepared_.topology, parameters, plain, valences, stars, stage);
     if (!singularities) {
-      collectTopologyDefects(prepared.topology, stage, defects);
-      if (defects.empty()) throwContradiction();
-      return prepared;
+      collectTopologyDefects(prepared_.topology, stage, defects_);
+      if (defects_.empty()) throwContradiction();
+      return false;
     }
     if (parameters.tooLarge()) {
-      defects.add(ErrorCode::TooLarge, {}, parameters.largest());
-      return prepared;
+      defects_.add(ErrorCode::TooLarge, {}, parameters.largest());
+      return false;
     }
-    prepared.singularities = std::move(*singularities);
-    collectMisfits(transitions, defects);
+    prepared_.singularities = std::move(*singularities);
+    collectMisfits(transitions, defects_);
+    return true;
   }
-  Stage stage(context, "sanitization");
-  prepared.exact = sanitize(prepared.topology, parameters, std::move(transitions), plain, stars,
-                            prepared.singularities, tolerance, maxScale, stage, defects);
-  return prepared;
-}
+
+  const TetMapView& map_;
+  double tolerance_;
+  int maxScale_;
+  Context& context_;
+  DefectCollector& defects_;
+  PreparedMap prepared_;
+};
 
 }  // namespace
 
 PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Context& context,
                        DefectCollector& defects, ChartChoice charts) {
   checkArguments(tolerance, maxScale);
-  PreparedMap prepared = prepare(map, tolerance, maxScale, context, defects, charts);
+  PreparedMap prepared = Preparation(map, tolerance, maxScale, context, defects).run(charts);
   if (defects.empty() || !prepared.isUnfolded) return prepared;
   defects.clear();
-  return prepare(map, tolerance, maxScale, context, defects, ChartChoice::AsGiven);
+  prepared = {};  // gives its memory back before the next one takes some
+  return Preparation(map, tolerance, maxScale, context, defects).run(ChartChoice::AsGiven);
 }
 
 }  // namespace hexhex

@@ -26,7 +26,7 @@ struct PreparedMap {
 /// In which charts a map is prepared.
 enum class ChartChoice : std::uint8_t {
   AsGiven,  ///< the caller's
-  Unfolded  ///< common ones, if nearly every tet has a chart of its own (unfold_charts.hpp)
+  Unfolded  ///< common ones, if many tets have charts of their own (unfold_charts.hpp)
 };
 
 /// Stops early when a stage finds defects that the next one could not stand; the result must be

@@ -1,4 +1,4 @@
-// Common charts for the tets of maps in which nearly every tet has a chart of its own.
+// Common charts for the tets of maps in which many tets have charts of their own.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +28,9 @@ class Unfolding {
   Array<Gauge> gauges_;  ///< empty if all are identities
 };
 
-/// Whether, by a sample, most triangles have exact transitions that are not identities. Not for
-/// maps that come with rotations, which are between given charts.
+/// Whether, by a sample, so many triangles have exact transitions that are not identities that
+/// unfolding is worth its time. Not for maps that come with rotations, which are between given
+/// charts.
 [[nodiscard]] bool needsUnfolding(const TetTopology& topology, const OrientedMap& map);
 
 /// Rewrites the parameters of a map in charts that extend along a tree of tets. All stages behind
