@@ -119,7 +119,7 @@ bool needsUnfolding(const TetTopology& topology, const OrientedMap& map) {
   const LocalParameters given(map);
   if (!map.view.rotations.empty() || given.tooLarge()) return false;
   constexpr std::size_t kSample = 32;    // tets
-  constexpr std::size_t kBreakEven = 6;  // of as many triangles, one with a jump costs as much
+  constexpr std::size_t kBreakEven = 3;  // of as many triangles, one with a jump costs as much
   const std::size_t step = std::max(topology.tetCount() / kSample, std::size_t{1});
   std::size_t faces = 0;
   std::size_t jumps = 0;
