@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -62,8 +63,8 @@ class ArcSorter {
     for (const ArcPlace& arc : arcs) {
       order_.push_back(place(keyOf(arc)) << 32 | static_cast<std::uint64_t>(order_.size()));
     }
-    if (arcs.size() >= kMany && size_ <= kRoom * arcs.size()) {
-      sortByTable(arcs);
+    if (size_ <= kRoom * arcs.size()) {
+      sortByRank(arcs);
     } else {
       sortByComparison(arcs);
     }
@@ -71,10 +72,9 @@ class ArcSorter {
 
  private:
   static constexpr std::uint64_t kMost = std::uint64_t{1} << 31;
-  /// So many arcs are worth a table, if it has room for not many more: tets fill a sixth of their
-  /// box, if they are not thin.
-  static constexpr std::size_t kMany = 24;
-  static constexpr std::uint64_t kRoom = 16;
+  /// Points per arc that are worth a bit each: tets fill a sixth of their box, if they are not
+  /// thin.
+  static constexpr std::uint64_t kRoom = 64;
 
   /// Where a point stands among those of all boxes, if these are less than kMost.
   [[nodiscard]] std::uint64_t place(const EdgeKey& key) const noexcept {
@@ -92,13 +92,24 @@ class ArcSorter {
     };
     return {static_cast<std::uint64_t>(key.axis) << 32 | at(0), at(1) << 32 | at(2)};
   }
-  void sortByTable(std::span<ArcPlace> arcs) {
-    table_.assign(size_, kNone);
-    for (const std::uint64_t entry : order_) table_[entry >> 32] = static_cast<Index>(entry);
-    std::size_t count = 0;
-    for (const Index i : table_) {
-      if (i != kNone) arcs[count++] = unsorted_[i];
+  /// By counting the points before, of those that are midpoints of the arcs.
+  void sortByRank(std::span<ArcPlace> arcs) {
+    words_.assign(size_ / 64 + 1, {});
+    for (const std::uint64_t entry : order_) words_[entry >> 38].bits |= bit(entry);
+    Index before = 0;
+    for (Word& word : words_) {
+      word.before = before;
+      before += static_cast<Index>(std::popcount(word.bits));
     }
+    for (const std::uint64_t entry : order_) {
+      const Word& word = words_[entry >> 38];
+      const int inWord = std::popcount(word.bits & (bit(entry) - 1));
+      arcs[word.before + static_cast<Index>(inWord)] = unsorted_[static_cast<Index>(entry)];
+    }
+  }
+  /// Of the place in an entry of order_.
+  [[nodiscard]] static std::uint64_t bit(std::uint64_t entry) noexcept {
+    return std::uint64_t{1} << ((entry >> 32) % 64);
   }
   void sortByComparison(std::span<ArcPlace> arcs) {
     std::sort(order_.begin(), order_.end());
@@ -118,7 +129,11 @@ class ArcSorter {
   std::uint64_t size_ = 0;  ///< points of all boxes; kMost if there are more
   std::vector<ArcPlace> unsorted_;
   std::vector<std::uint64_t> order_;  ///< a place, and whose it is
-  std::vector<Index> table_;
+  struct Word {
+    std::uint64_t bits = 0;  ///< of 64 places
+    Index before = 0;        ///< how many are set in the words before
+  };
+  std::vector<Word> words_;
 };
 
 }  // namespace hexhex
