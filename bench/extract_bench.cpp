@@ -18,6 +18,7 @@
 
 #include "bench_maps.hpp"
 #include "benchmarks.hpp"
+#include "core_speed.hpp"
 #include "memory.hpp"
 
 namespace hexhex::bench {
@@ -50,6 +51,8 @@ struct Totals {
   double extraction = 0;
   double copy = 0;
   double peakBytes = 0;
+  double coreSpeed = 0;       ///< additions per nanosecond of each thread
+  double coreSpeedAlone = 0;  ///< of one thread at a time
   std::vector<StageTime> stages;
   bool peakKnown = true;
   std::size_t hexes = 0;   ///< of the mesh
@@ -81,6 +84,8 @@ void setCounters(benchmark::State& state, const Totals& totals, std::size_t tets
   state.counters["seconds"] = totals.extraction / runs;
   state.counters["seconds_of_copy"] = totals.copy / runs;
   state.counters["ratio_to_yardstick"] = totals.extraction / totals.copy;
+  state.counters["additions_per_ns"] = totals.coreSpeed / runs;
+  state.counters["additions_per_ns_alone"] = totals.coreSpeedAlone / runs;
   state.counters["bytes_of_result"] = hexes * sizeof(Hex) + points * sizeof(Vec3);
   if (totals.peakKnown) state.counters["peak_bytes"] = totals.peakBytes / runs;
   for (std::size_t i = 0; i < totals.stages.size(); ++i) {
@@ -126,6 +131,8 @@ void extraction(benchmark::State& state, const Case& what) {
       totals.peakKnown = false;
     }
     for (const StageTime& stage : context.stageTimes()) totals.add(stage);
+    totals.coreSpeed += additionsPerNanosecond(what.threads);
+    totals.coreSpeedAlone += additionsPerNanosecond(1);
     totals.copy += secondsOfCopy(mesh);
     totals.hexes = mesh.cells.size();
     totals.points = mesh.points.size();

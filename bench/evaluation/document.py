@@ -20,6 +20,7 @@ def _parts(runs: list[Run], about: dict[str, str]) -> dict[str, Callable[[], str
         "table-stages-tet": lambda: tables.stages(runs, "atlas", "tet"),
         "table-stages-hex": lambda: tables.stages(runs, "atlas", "hex"),
         "table-stages-propeller": lambda: tables.stages(runs, "propeller", "hex"),
+        "table-threads": lambda: tables.threads(runs),
         "table-scales": lambda: tables.scales(runs),
         "stage-groups": lambda: plot_density.describe_groups(runs),
         "table-epsilon": lambda: tables.epsilon(runs),

@@ -40,11 +40,33 @@ def extraction(runs: list[Run], engine: str) -> str:
                      number(_ns_per("tets")(run)), number(_ns_per("hexes")(run)),
                      number(_bytes_per_hex(run)),
                      number(peak / run["bytes_of_result"] if peak else None),
-                     number(run["ratio_to_yardstick"])])
+                     number(run["ratio_to_yardstick"]), number(run.get("additions_per_ns"))])
     if not rows:
         return ""
     return table(["map", "threads", "tets", "million hexes", "hexes per tet", "ms", "ns per tet",
-                  "ns per hex", "bytes per hex", "memory / result", "time / copy"], rows)
+                  "ns per hex", "bytes per hex", "memory / result", "time / copy",
+                  "additions / ns"], rows)
+
+
+LONG = 100.0  # ms: what is worth a second thread
+
+
+def threads(runs: list[Run]) -> str:
+    """How many times as fast several threads are, beside what arithmetic alone gains by them."""
+    found = {(run.map, run.engine, run.threads): run for run in select(runs, "extract")}
+    rows = []
+    for (name, engine, count), run in found.items():
+        one = found.get((name, engine, 1))
+        if count == 1 or engine != "atlas" or one is None or one["ms"] < LONG:
+            continue
+        together, alone = (run.get(f"additions_per_ns{which}") for which in ("", "_alone"))
+        rows.append([name, str(count), number(one["ms"]), number(run["ms"]),
+                     number(one["ms"] / run["ms"]),
+                     number(count * together / alone) if together and alone else MISSING])
+    if not rows:
+        return ""
+    return table(["map", "threads", "one thread: ms", "all: ms", "times as fast",
+                  "of additions: times as many"], rows)
 
 
 def stages(runs: list[Run], engine: str, unit: str) -> str:
