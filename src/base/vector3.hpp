@@ -51,6 +51,12 @@ namespace hexhex {
   return (x + large) - large;
 }
 
+/// 0 if a rounded sum is a + b itself, otherwise positive: if it is not, then the sum without the
+/// larger one of both is a number other than the smaller one, and exact (Dekker).
+[[nodiscard]] inline double restOfSum(double sum, double a, double b) noexcept {
+  return std::abs((sum - a) - b) + std::abs((sum - b) - a);
+}
+
 [[nodiscard]] inline double length(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }
 
 }  // namespace hexhex

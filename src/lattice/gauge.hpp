@@ -19,7 +19,12 @@ struct Gauge {
   Rotation rotation;
   ChartPoint translation{};
 
-  [[nodiscard]] constexpr bool operator==(const Gauge&) const = default;
+  /// Without the call that comparing arrays makes.
+  [[nodiscard]] constexpr bool operator==(const Gauge& other) const noexcept {
+    std::uint32_t difference = rotation == other.rotation ? 0 : 1;
+    for (std::size_t k = 0; k < 3; ++k) difference |= translation[k] ^ other.translation[k];
+    return difference == 0;
+  }
 
   [[nodiscard]] constexpr ChartPoint operator()(const ChartPoint& z) const noexcept {
     ChartPoint image = rotation(z);

@@ -61,17 +61,13 @@ Vec3 meanTranslation(const SharedTriangle& triangle, const std::array<Vec3, 3>& 
   return mean;
 }
 
-/// Whether nothing is rounded when corners are moved by a translation that leaves no residual. If
-/// a + b is not its rounded sum c, then c - a, with a the larger of the two, is a number other than
-/// b, and exact (Dekker).
+/// Whether nothing is rounded when corners are moved by a translation that leaves no residual.
 bool isExact(const SharedTriangle& triangle, const std::array<Vec3, 3>& images,
              const Vec3& translation) {
   double rest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const double sum = triangle.there[i][k];
-      rest += std::abs((sum - images[i][k]) - translation[k]) +
-              std::abs((sum - translation[k]) - images[i][k]);
+      rest += restOfSum(triangle.there[i][k], images[i][k], translation[k]);
     }
   }
   return rest == 0;

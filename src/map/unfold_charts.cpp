@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <base/parallel.hpp>
+#include <base/vector3.hpp>
 #include <map/gauges.hpp>
 #include <map/local_parameters.hpp>
 #include <map/transition_fit.hpp>
@@ -17,13 +18,6 @@ namespace hexhex {
 namespace {
 
 constexpr std::size_t kGrain = 1024;
-
-/// a == b, without the call that comparing arrays makes.
-bool areEqual(const Gauge& a, const Gauge& b) noexcept {
-  std::uint32_t difference = a.rotation == b.rotation ? 0 : 1;
-  for (std::size_t k = 0; k < 3; ++k) difference |= a.translation[k] ^ b.translation[k];
-  return difference == 0;
-}
 
 /// Rewrites parameters by gauges.
 class ChartChanger {
@@ -63,16 +57,14 @@ class ChartChanger {
     }
   }
 
-  /// @return whether nothing is rounded. If a + b is not its rounded sum c, then c - a, with a the
-  ///         larger of the two, is a number other than b, and exact (Dekker).
+  /// @return whether nothing is rounded
   static bool moveExactly(const TetParameters& rotated, const Gauge& gauge, TetParameters& image) {
     const Vec3 by = translationOf(gauge);
     double rest = 0;
     for (std::size_t corner = 0; corner < 4; ++corner) {
       for (std::size_t k = 0; k < 3; ++k) {
         const double sum = rotated[corner][k] + by[k];
-        rest += std::abs((sum - rotated[corner][k]) - by[k]) +
-                std::abs((sum - by[k]) - rotated[corner][k]);
+        rest += restOfSum(sum, rotated[corner][k], by[k]);
         image[corner][k] = sum;
       }
     }
@@ -107,7 +99,7 @@ std::uint64_t Unfolding::countGivenJumps(const TetTopology& topology,
                      if (transitions.isJump(here)) {
                        image = Gauge{} * transitions.across(here) * image;
                      }
-                     blocks[block] += areEqual(image, gauges_[tetOf(there)]) ? 0 : 1;
+                     blocks[block] += image == gauges_[tetOf(there)] ? 0 : 1;
                    }
                  });
   std::uint64_t jumps = 0;

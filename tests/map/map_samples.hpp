@@ -39,6 +39,19 @@ class Prepared {
   PreparedMap map_;
 };
 
+/// The first steps of the preprocessing of a map, for tests of what comes next.
+struct Topology {
+  Context context;
+  Stage stage{context, "test"};
+  DefectCollector defects;
+  OrientedMap input;
+  TetTopology topology;
+
+  explicit Topology(const TetMapView& map)
+      : input(readInput(map, stage, defects)),
+        topology(buildTopology(input.view, stage, defects)) {}
+};
+
 /// For tests that run once per kind of sample.
 class EveryKind : public testing::TestWithParam<SampleKindName> {
  protected:

@@ -19,20 +19,12 @@ namespace {
 using test::Prepared;
 
 /// The preprocessing of a valid map up to its plain vertices.
-struct Survey {
-  Context context;
-  Stage stage{context, "test"};
-  DefectCollector defects;
-  OrientedMap input;
-  TetTopology topology;
+struct Survey : test::Topology {
   LocalParameters parameters;
   PlainVertices plain;
 
   explicit Survey(const TetMapView& map)
-      : input(readInput(map, stage, defects)),
-        topology(buildTopology(input.view, stage, defects)),
-        parameters(input),
-        plain(findPlainVertices(topology, parameters, stage)) {
+      : Topology(map), parameters(input), plain(findPlainVertices(topology, parameters, stage)) {
     addStars(topology, stage);
   }
 };

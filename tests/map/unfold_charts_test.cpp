@@ -16,20 +16,14 @@ namespace {
 using test::Prepared;
 
 /// A map before and after its charts are unfolded.
-struct Unfolded {
-  Context context;
-  Stage stage{context, "test"};
-  DefectCollector defects;
+struct Unfolded : test::Topology {
   OrientedMap given;
-  OrientedMap input;
-  TetTopology topology;
   bool needed;
   Unfolding unfolding;
 
   explicit Unfolded(const TetMapView& map)
-      : given(readInput(map, stage, defects)),
-        input(readInput(map, stage, defects)),
-        topology(buildTopology(input.view, stage, defects)),
+      : Topology(map),
+        given(readInput(map, stage, defects)),
         needed(needsUnfolding(topology, input)),
         unfolding(unfoldCharts(topology, input, stage)) {
     EXPECT_TRUE(defects.empty());
