@@ -11,7 +11,7 @@
 
 #include <hexhex/curved.hpp>
 
-#include <base/prefetch.hpp>
+#include <base/output_waves.hpp>
 
 namespace hexhex {
 
@@ -30,17 +30,12 @@ class ArcPieces {
     points_.clear();
     segments_.clear();
   }
-  /// Makes room for what is known to come.
-  void reserve(std::size_t arcs, std::size_t points, std::size_t segments) {
-    arcs_.reserve(arcs);
-    points_.reserve(points);
-    segments_.reserve(segments);
-  }
   /// Takes the last points and segments back.
   void shorten(std::size_t points, std::size_t segments) {
     points_.resize(points);
     segments_.resize(segments);
   }
+  [[nodiscard]] std::size_t arcs() const noexcept { return arcs_.size(); }
   [[nodiscard]] std::size_t points() const noexcept { return points_.size(); }
   [[nodiscard]] std::size_t segments() const noexcept { return segments_.size(); }
 
@@ -75,30 +70,23 @@ class ArcPieces {
 
   /// The number of points of an arc.
   [[nodiscard]] std::size_t pointsOf(std::size_t arc) const noexcept {
-    const std::size_t end = arc + 1 < arcs_.size() ? arcs_[arc + 1].firstPoint : points_.size();
-    return end - arcs_[arc].firstPoint;
+    return endOf(arc) - arcs_[arc].firstPoint;
   }
-  /// Tells memory that an arc will be copied soon.
-  void fetchArc(std::size_t arc) const noexcept { prefetch(&arcs_[arc]); }
-  void fetchPieces(std::size_t arc) const noexcept {
-    const std::size_t first = arcs_[arc].firstPoint;
-    prefetch(points_.data() + first);
-    prefetch(segments_.data() + first + arc);
-  }
-  /// Copies one of the arcs to where it belongs.
-  /// @param number      that it has there
-  /// @param firstPoint  that it has there
+  /// Copies points and segments of an arc to where they belong.
   void copyArc(std::size_t arc, Arcs& to, std::uint64_t number, std::uint64_t firstPoint) const {
     const std::size_t first = arcs_[arc].firstPoint;
-    const std::size_t count = pointsOf(arc);
-    to.ends[number] = arcs_[arc].ends;
-    copyPoints(first, count, to, firstPoint);
-    copySegments(first + arc, count + 1, to, firstPoint + number);
+    const std::size_t end = endOf(arc);
+    copyPoints(first, end, to, firstPoint);
+    copySegments(first + arc, end + arc + 1, to, firstPoint + number);
   }
-  /// Copies all points and segments to where they belong.
-  void copyTo(Arcs& to, std::uint64_t firstPoint, std::uint64_t firstSegment) const {
+  /// Copies all to where it belongs.
+  void copyTo(Arcs& to, std::uint64_t firstArc, std::uint64_t firstPoint) const {
+    for (std::size_t i = 0; i < arcs_.size(); ++i) {
+      to.ends[firstArc + i] = arcs_[i].ends;
+      to.pointBegin[firstArc + i] = firstPoint + arcs_[i].firstPoint;
+    }
     copyPoints(0, points_.size(), to, firstPoint);
-    copySegments(0, segments_.size(), to, firstSegment);
+    copySegments(0, segments_.size(), to, firstPoint + firstArc);
   }
 
  private:
@@ -112,19 +100,22 @@ class ArcPieces {
     OwnedSimplex generator;
   };
 
-  void copyPoints(std::size_t first, std::size_t count, Arcs& to, std::uint64_t place) const {
-    for (std::size_t i = 0; i < count; ++i) {
-      const Point& point = points_[first + i];
-      to.points[place + i] = point.position;
-      to.parameters[place + i] = point.parameter;
-      to.generatorTet[place + i] = point.generator.tet;
-      to.generatorCorners[place + i] = point.generator.corners;
+  [[nodiscard]] std::size_t endOf(std::size_t arc) const noexcept {
+    return arc + 1 < arcs_.size() ? arcs_[arc + 1].firstPoint : points_.size();
+  }
+  void copyPoints(std::size_t first, std::size_t end, Arcs& to, std::uint64_t place) const {
+    for (std::size_t i = first; i < end; ++i, ++place) {
+      const Point& point = points_[i];
+      to.points[place] = point.position;
+      to.parameters[place] = point.parameter;
+      to.generatorTet[place] = point.generator.tet;
+      to.generatorCorners[place] = point.generator.corners;
     }
   }
-  void copySegments(std::size_t first, std::size_t count, Arcs& to, std::uint64_t place) const {
-    for (std::size_t i = 0; i < count; ++i) {
-      to.segmentTet[place + i] = segments_[first + i].tet;
-      to.segmentCorners[place + i] = segments_[first + i].corners;
+  void copySegments(std::size_t first, std::size_t end, Arcs& to, std::uint64_t place) const {
+    for (std::size_t i = first; i < end; ++i, ++place) {
+      to.segmentTet[place] = segments_[i].tet;
+      to.segmentCorners[place] = segments_[i].corners;
     }
   }
 
@@ -132,5 +123,18 @@ class ArcPieces {
   Array<Point> points_;
   Array<OwnedSimplex> segments_;
 };
+
+/// Makes room for the pieces of more arcs.
+/// @param arcs  receives them; has room for all arcs
+/// @param done  how many arcs there are then
+inline void lengthenForPieces(Arcs& arcs, std::uint64_t points, std::uint64_t done) {
+  const double share = static_cast<double>(done) / static_cast<double>(arcs.count());
+  lengthen(arcs.points, points, share);
+  lengthen(arcs.parameters, points, share);
+  lengthen(arcs.generatorTet, points, share);
+  lengthen(arcs.generatorCorners, points, share);
+  lengthen(arcs.segmentTet, points + done, share);
+  lengthen(arcs.segmentCorners, points + done, share);
+}
 
 }  // namespace hexhex

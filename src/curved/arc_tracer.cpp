@@ -1,7 +1,7 @@
-#include <bit>
 #include <string>
 
 #include <curved/arc_tracer.hpp>
+#include <curved/edge_crossing.hpp>
 
 namespace hexhex {
 
@@ -77,23 +77,7 @@ ArcExit ArcTracer::exitAt(const OwnedSimplex& generator, const SimplexInTet& car
     return exitThrough(map_, carrier.tet, oppositeCorner(at),
                        {carrier.frame.origin, carrier.frame.axes[0]});
   }
-  // As normalized(), position() and coordinate() would have it, for the few corners that count.
-  std::array<double, 4> weights;
-  double sum = 0;
-  for (unsigned left = at; left != 0; left &= left - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(left));
-    sum += weights[i] = toDouble(point.weights[i]);
-  }
-  ArcExit exit{generator, {}, 0};
-  for (unsigned left = at; left != 0; left &= left - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(left));
-    const double share = weights[i] / sum;
-    const Vec3& corner = map_.input.view.points[topology_.tets[carrier.tet][i]];
-    for (std::size_t k = 0; k < 3; ++k) exit.point[k] += share * corner[k];
-    exit.parameter += share * static_cast<double>(seen[i][0]);
-  }
-  exit.parameter /= static_cast<double>(exact_.unit);
-  return exit;
+  return exitAtCorners(map_, generator, carrier.tet, at, seen, 0);
 }
 
 }  // namespace hexhex

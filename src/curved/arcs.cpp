@@ -1,14 +1,13 @@
 #include <algorithm>
-#include <span>
 #include <vector>
 
 #include <curved/arc_pieces.hpp>
 #include <curved/arcs.hpp>
 #include <curved/edge_tracer.hpp>
-#include <curved/output_waves.hpp>
 #include <curved/tet_exits.hpp>
 #include <curved/tet_faces.hpp>
 
+#include <base/output_waves.hpp>
 #include <base/prefetch.hpp>
 
 namespace hexhex {
@@ -18,10 +17,9 @@ namespace {
 /// Traces the edges that a block of tets owns.
 class BlockTracer {
  public:
-  BlockTracer(const PreparedMap& map, const LatticeNumbers& vertices, Arcs& arcs, ArcPieces& pieces)
+  BlockTracer(const PreparedMap& map, const LatticeNumbers& vertices, ArcPieces& pieces)
       : map_(map),
         vertices_(vertices),
-        arcs_(arcs),
         pieces_(pieces),
         tracer_(map, vertices, pieces),
         exits_(map.exact.unit),
@@ -34,7 +32,7 @@ class BlockTracer {
     row.forEach([&](const Element& edge) {
       middle_.frame.origin[row.along()] = edge.z[row.along()];
       middle_.simplex = edge.simplex;
-      traceExactly(edge);
+      traceExactly();
     });
   }
   /// By exits in floating point, as far as they are certain.
@@ -50,7 +48,7 @@ class BlockTracer {
       steps += 1;
       if (edge.simplex == kWholeTet && traceInside(edge, middle)) return;
       middle_ = {tet, edge.simplex, Frame::along(edge.z, axis)};
-      traceExactly(edge);
+      traceExactly();
     });
   }
 
@@ -95,7 +93,7 @@ class BlockTracer {
     const std::size_t before = pieces_.points();
     const Index first = goBack(edge, back);
     pieces_.addSegment({tet_, kWholeTet});
-    finish(edge, before, {first, goAhead(edge, ahead)});
+    finish(before, {first, goAhead(edge, ahead)});
     return true;
   }
 
@@ -155,20 +153,18 @@ class BlockTracer {
   }
 
   /// From the midpoint, wherever that is.
-  void traceExactly(const Element& edge) {
+  void traceExactly() {
     const std::size_t before = pieces_.points();
-    finish(edge, before, tracer_.trace(middle_));
+    finish(before, tracer_.trace(middle_));
   }
   /// @param before  how many points there were before the edge
-  void finish(const Element& edge, std::size_t before, const std::array<Index, 2>& ends) {
-    arcs_.ends[edge.number] = ends;
-    arcs_.pointBegin[edge.number] = pieces_.points() - before;
+  void finish(std::size_t before, const std::array<Index, 2>& ends) {
+    pieces_.addArc(ends, before);
     EdgeTracer::smoothParameters(pieces_, before);
   }
 
   const PreparedMap& map_;
   const LatticeNumbers& vertices_;
-  Arcs& arcs_;
   ArcPieces& pieces_;
   EdgeTracer tracer_;
   TetExits exits_;
@@ -178,17 +174,6 @@ class BlockTracer {
   SimplexInTet middle_;  ///< the midpoint of the edge at hand
 };
 
-/// Makes room.
-/// @param share  of all arcs whose pieces have room then
-void lengthenAll(Arcs& arcs, std::uint64_t points, std::uint64_t segments, double share) {
-  lengthen(arcs.points, points, share);
-  lengthen(arcs.parameters, points, share);
-  lengthen(arcs.generatorTet, points, share);
-  lengthen(arcs.generatorCorners, points, share);
-  lengthen(arcs.segmentTet, segments, share);
-  lengthen(arcs.segmentCorners, segments, share);
-}
-
 }  // namespace
 
 Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const ElementNumbers& edges,
@@ -196,17 +181,16 @@ Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const Ele
   Arcs arcs;
   arcs.ends.resize(edges.count());
   arcs.pointBegin.resize(edges.count() + 1);
-  arcs.pointBegin.back() = 0;
   const std::size_t tets = map.topology.tetCount();
   const std::size_t grain = tetsPerBlock(edges.count(), tets);
-  std::vector<ArcPieces> pieces(std::min(kWaveBlocks, blockCount(tets, grain)));
+  std::vector<ArcPieces> pieces(blocksPerWave(blockCount(tets, grain)));
   std::vector<std::uint64_t> firstPoints(pieces.size());
   std::uint64_t points = 0;
   parallelWaves(
-      stage, tets, grain,
+      stage, tets, grain, pieces.size(),
       [&](std::size_t begin, std::size_t end, std::size_t block) {
-        pieces[block % kWaveBlocks].clear();
-        BlockTracer tracer(map, vertices, arcs, pieces[block % kWaveBlocks]);
+        pieces[block % pieces.size()].clear();
+        BlockTracer tracer(map, vertices, pieces[block % pieces.size()]);
         for (std::size_t t = begin; t < end; ++t) {
           const auto tet = static_cast<Index>(t);
           const bool byExits = edges.begin(t + 1) - edges.begin(t) >= enough;
@@ -221,19 +205,16 @@ Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const Ele
       },
       [&](std::size_t firstBlock, std::size_t endBlock) {
         for (std::size_t block = firstBlock; block < endBlock; ++block) {
-          firstPoints[block % kWaveBlocks] = points;
-          points += pieces[block % kWaveBlocks].points();
+          firstPoints[block % pieces.size()] = points;
+          points += pieces[block % pieces.size()].points();
         }
-        const std::uint64_t done = edges.begin(std::min(endBlock * grain, tets));
-        lengthenAll(arcs, points, points + done,
-                    static_cast<double>(done) / static_cast<double>(edges.count()));
+        lengthenForPieces(arcs, points, edges.begin(std::min(endBlock * grain, tets)));
       },
       [&](std::size_t block) {
-        const std::uint64_t firstPoint = firstPoints[block % kWaveBlocks];
-        pieces[block % kWaveBlocks].copyTo(arcs, firstPoint,
-                                           firstPoint + edges.begin(block * grain));
+        pieces[block % pieces.size()].copyTo(arcs, edges.begin(block * grain),
+                                             firstPoints[block % pieces.size()]);
       });
-  exclusiveScan(std::span(arcs.pointBegin));
+  arcs.pointBegin.back() = points;
   return arcs;
 }
 

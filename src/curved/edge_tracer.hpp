@@ -54,18 +54,21 @@ class EdgeTracer {
   [[nodiscard]] ArcTracer& tracer() noexcept { return tracer_; }
   [[nodiscard]] const ArcTracer& tracer() const noexcept { return tracer_; }
 
-  /// Of an arc's points. Exact values are in (0, 1) and ascend; rounding may not change that.
+  /// Exact parameters are in (0, 1) and ascend; rounding may not change that.
+  /// @param before  the parameter before, or kLeastParameter
+  [[nodiscard]] static double smooth(double parameter, double before) noexcept {
+    constexpr double kBelowOne = 1 - 0x1p-53;
+    return std::clamp(parameter, before, kBelowOne);
+  }
+  static constexpr double kLeastParameter = std::numeric_limits<double>::min();
+  /// The same for all points of an arc.
   static void smoothParameters(ArcPieces& pieces, std::size_t firstPoint) {
-    double low = std::numeric_limits<double>::min();
-    pieces.changeParameters(firstPoint, [&](double& parameter) {
-      parameter = low = std::clamp(parameter, low, kBelowOne);
-    });
+    double before = kLeastParameter;
+    pieces.changeParameters(
+        firstPoint, [&](double& parameter) { parameter = before = smooth(parameter, before); });
   }
 
  private:
-  /// The largest double below 1.
-  static constexpr double kBelowOne = 1 - 0x1p-53;
-
   using Found = LatticeNumbers::Found;
 
   [[nodiscard]] std::array<Index, 2> traceBothWays(const SimplexInTet& middle, const Found& from,

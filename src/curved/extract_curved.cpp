@@ -1,13 +1,15 @@
 // The public entries of curved meshes.
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
+#include <curved/arc_guest.hpp>
 #include <curved/arcs.hpp>
 #include <curved/edge_guest.hpp>
 #include <curved/lagrange.hpp>
 #include <curved/patches.hpp>
-#include <curved/recorded_arcs.hpp>
 
 #include <hexhex/curved.hpp>
 #include <hexhex/extractor.hpp>
@@ -29,50 +31,86 @@ void toCallersCorners(const OrientedMap& input, Array<CornerSet>& corners, Stage
               [&](std::size_t i) { corners[i] = input.callersCorners(corners[i]); });
 }
 
-/// @param edges  nothing if they are still to be numbered
-void addPatches(const PreparedMap& map, const LatticeNumbers& vertices, const ElementNumbers* edges,
-                PiecewiseLinearMesh& result, Context& context) {
-  Stage stage(context, "patches");
-  std::optional<ElementNumbers> own;
-  if (edges == nullptr) edges = &own.emplace(map, ElementKind::Edges, stage);
-  const ElementNumbers faces(map, ElementKind::Faces, stage);
-  result.patches = cutPatches({map, vertices, *edges, faces, result.arcs}, stage);
-  toCallersCorners(map.input, result.patches.generatorCorners, stage);
-  toCallersCorners(map.input, result.patches.polygonCorners, stage);
+/// The arc of every edge.
+/// @param keys  of arcs, in their order
+Array<Index> arcsOfEdges(const ElementNumbers& edges, std::span<const EdgeKey> keys, Stage& stage) {
+  Array<Index> arcOf(keys.size());
+  parallelBlocks(stage, keys.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   LineHint hint;
+                   for (std::size_t arc = begin; arc < end; ++arc) {
+                     const EdgeKey& key = keys[arc];
+                     arcOf[edges.find(key.tet, key.axis, key.z, hint)] = static_cast<Index>(arc);
+                   }
+                 });
+  return arcOf;
 }
 
-/// What arcs need of the engine that finds the mesh.
-struct FindingsForArcs {
+/// Looks on while an engine finds the mesh, and adds the parts of a piecewise-linear one.
+class PartsOfMesh {
+ public:
   /// @param map  scaled
-  FindingsForArcs(const PreparedMap& map, Engine engine) {
-    if (engine == Engine::Atlas) of.guest = &guest.emplace(map);
+  PartsOfMesh(const PreparedMap& map, PiecewiseLinearParts parts, Engine engine)
+      : map_(map), withPatches_(parts == PiecewiseLinearParts::ArcsAndPatches) {
+    if (engine == Engine::Atlas) {
+      guests_.sweep = &edgeGuest_.emplace(map);
+    } else {
+      guests_.trace = &arcGuest_.emplace(map, withPatches_);
+    }
+  }
+  PartsOfMesh(const PartsOfMesh&) = delete;
+  PartsOfMesh& operator=(const PartsOfMesh&) = delete;
+  PartsOfMesh(PartsOfMesh&&) = delete;
+  PartsOfMesh& operator=(PartsOfMesh&&) = delete;
+  ~PartsOfMesh() = default;
+
+  /// Of the engine.
+  [[nodiscard]] const EngineGuests& guests() const noexcept { return guests_; }
+
+  /// When the engine is done.
+  void add(PiecewiseLinearMesh& result, Context& context) {
+    Stage arcStage(context, "arcs");
+    if (edgeGuest_) {
+      const auto [vertices, edges] = edgeGuest_->finish(arcStage);
+      result.arcs = traceArcs(map_, vertices, edges, arcStage);
+      arcStage.finish();
+      if (withPatches_) {
+        Stage stage(context, "patches");
+        addPatches(vertices, edges, {}, result, stage);
+      }
+    } else {
+      result.arcs = arcGuest_->takeArcs();
+      arcStage.finish();
+      if (withPatches_) {
+        Stage stage(context, "patches");
+        addPatchesOfArcGuest(result, stage);
+      }
+    }
+    toCallersCorners(map_.input, result.arcs.generatorCorners, arcStage);
+    toCallersCorners(map_.input, result.arcs.segmentCorners, arcStage);
   }
 
-  EngineFindings of;
-  std::optional<EdgeGuest> guest;  ///< of the atlas engine
+ private:
+  void addPatches(const LatticeNumbers& vertices, const ElementNumbers& edges,
+                  std::span<const Index> arcOf, PiecewiseLinearMesh& result, Stage& stage) const {
+    const ElementNumbers faces(map_, ElementKind::Faces, stage);
+    result.patches = cutPatches({map_, vertices, edges, faces, result.arcs, arcOf}, stage);
+    toCallersCorners(map_.input, result.patches.generatorCorners, stage);
+    toCallersCorners(map_.input, result.patches.polygonCorners, stage);
+  }
+  void addPatchesOfArcGuest(PiecewiseLinearMesh& result, Stage& stage) const {
+    const LatticeNumbers vertices = arcGuest_->numbers(stage);
+    const ElementNumbers edges(map_, ElementKind::Edges, stage);
+    const Array<Index> arcOf = arcsOfEdges(edges, arcGuest_->keys(), stage);
+    addPatches(vertices, edges, arcOf, result, stage);
+  }
+
+  const PreparedMap& map_;
+  bool withPatches_;
+  std::optional<EdgeGuest> edgeGuest_;  ///< of the atlas engine
+  std::optional<ArcGuest> arcGuest_;    ///< of the propeller engine
+  EngineGuests guests_;
 };
-
-/// @param map    scaled
-/// @param found  by the engine that found the mesh
-void addParts(const PreparedMap& map, FindingsForArcs& found, PiecewiseLinearParts parts,
-              PiecewiseLinearMesh& result, Context& context) {
-  Stage arcStage(context, "arcs");
-  const bool withPatches = parts == PiecewiseLinearParts::ArcsAndPatches;
-  if (!found.guest) {
-    const LatticeNumbers vertices(map, std::move(found.of.lines.value()), result.mesh.points.size(),
-                                  arcStage);
-    result.arcs = gatherArcs(map, vertices, std::move(found.of.edges), arcStage);
-    arcStage.finish();
-    if (withPatches) addPatches(map, vertices, nullptr, result, context);
-  } else {
-    const auto [vertices, edges] = found.guest->finish(arcStage);
-    result.arcs = traceArcs(map, vertices, edges, arcStage);
-    arcStage.finish();
-    if (withPatches) addPatches(map, vertices, &edges, result, context);
-  }
-  toCallersCorners(map.input, result.arcs.generatorCorners, arcStage);
-  toCallersCorners(map.input, result.arcs.segmentCorners, arcStage);
-}
 
 void requireOrder(int order) {
   if (order >= 1 && order <= kMaxOrder) return;
@@ -98,9 +136,9 @@ PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map, PiecewiseLinea
   PiecewiseLinearMesh result;
   runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {}, context, filled);
-    FindingsForArcs findings(scaled.map, options.engine);
-    result.mesh = extractScaled(map, scaled, options, context, filled, &findings.of);
-    addParts(scaled.map, findings, parts, result, context);
+    PartsOfMesh partsOfMesh(scaled.map, parts, options.engine);
+    result.mesh = extractScaled(map, scaled, options, context, filled, partsOfMesh.guests());
+    partsOfMesh.add(result, context);
   });
   return result;
 }
@@ -123,12 +161,12 @@ PiecewiseLinearMesh Extractor::extractPiecewiseLinear(PiecewiseLinearParts parts
                                                       Context& context,
                                                       ExtractStatistics* statistics) {
   PiecewiseLinearMesh result;
-  prepared_->run(options, {}, context, statistics,
-                 [&](std::uint64_t cells, ExtractStatistics& filled) {
-                   FindingsForArcs findings(prepared_->map(), options.engine);
-                   result.mesh = prepared_->mesh(cells, options, context, filled, &findings.of);
-                   addParts(prepared_->map(), findings, parts, result, context);
-                 });
+  prepared_->run(
+      options, {}, context, statistics, [&](std::uint64_t cells, ExtractStatistics& filled) {
+        PartsOfMesh partsOfMesh(prepared_->map(), parts, options.engine);
+        result.mesh = prepared_->mesh(cells, options, context, filled, partsOfMesh.guests());
+        partsOfMesh.add(result, context);
+      });
   return result;
 }
 

@@ -183,7 +183,7 @@ void FaceBorder::setArc(std::size_t side, const SimplexInTet& midpoint) {
   const int axis = axisOf(along);
   const std::size_t lines = 3 * std::size_t{owner} + static_cast<std::size_t>(axis);
   LineHint& hint = arcHints_[(4 * lines + side) % arcHints_.size()];
-  arcs_[side] = input_.edges.find(owner, axis, smaller, hint);
+  arcs_[side] = input_.arc(input_.edges.find(owner, axis, smaller, hint));
   reversed_ = static_cast<std::uint8_t>(reversed_ | (unsigned{backward == (side < 2)} << side));
   found_ |= 1U << side;
   prefetch(&input_.arcs.ends[arcs_[side]]);

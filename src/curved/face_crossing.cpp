@@ -2,8 +2,7 @@
 
 namespace hexhex {
 
-FaceShares shareExactly(const CrossedFace& face, const ChartEdge& edge,
-                        std::int64_t unit) noexcept {
+FaceShares shareExactly(const OwnersFace& face, const ChartEdge& edge, std::int64_t unit) noexcept {
   LatticePoint line;
   for (std::size_t k = 0; k < 3; ++k) line[k] = edge.z[k] * unit;
   const auto axis = static_cast<std::size_t>(axisOf(edge.along));

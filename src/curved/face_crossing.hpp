@@ -51,29 +51,50 @@ struct FaceShares {
   bool inside = false;
 };
 
-/// A face in the chart of its owner, ready to be crossed along any axis.
-struct CrossedFace {
-  const LatticeTet* corners;  ///< of the owner
-  int face;
-  LatticePoint first;            ///< its first corner
-  std::array<double, 3> second;  ///< the others, relative to that
-  std::array<double, 3> third;
+/// A face in the chart of its owner, to be crossed once.
+class OwnersFace {
+ public:
+  OwnersFace(const LatticeTet& ofOwner, int face) noexcept
+      : corners_(&ofOwner), indices_(&kFaceCorners[static_cast<std::size_t>(face)]) {}
 
-  CrossedFace(const LatticeTet& ofOwner, int ownersFace) noexcept
-      : corners(&ofOwner), face(ownersFace), first(corner(0)) {
+  [[nodiscard]] const LatticePoint& corner(std::size_t i) const noexcept {
+    return (*corners_)[static_cast<std::size_t>((*indices_)[i])];
+  }
+  /// Coordinate k of its first corner,
+  [[nodiscard]] std::int64_t first(std::size_t k) const noexcept { return corner(0)[k]; }
+  /// and those of the others, relative to that.
+  [[nodiscard]] double second(std::size_t k) const noexcept {
+    return static_cast<double>(corner(1)[k] - corner(0)[k]);
+  }
+  [[nodiscard]] double third(std::size_t k) const noexcept {
+    return static_cast<double>(corner(2)[k] - corner(0)[k]);
+  }
+
+ private:
+  const LatticeTet* corners_;
+  const std::array<int, 3>* indices_;
+};
+
+/// The same, ready to be crossed often.
+class CrossedFace : public OwnersFace {
+ public:
+  CrossedFace(const LatticeTet& ofOwner, int face) noexcept : OwnersFace(ofOwner, face) {
     for (std::size_t k = 0; k < 3; ++k) {
-      second[k] = static_cast<double>(corner(1)[k] - first[k]);
-      third[k] = static_cast<double>(corner(2)[k] - first[k]);
+      second_[k] = OwnersFace::second(k);
+      third_[k] = OwnersFace::third(k);
     }
   }
-  [[nodiscard]] const LatticePoint& corner(std::size_t i) const noexcept {
-    return (*corners)[static_cast<std::size_t>(kFaceCorners[static_cast<std::size_t>(face)][i])];
-  }
+  [[nodiscard]] double second(std::size_t k) const noexcept { return second_[k]; }
+  [[nodiscard]] double third(std::size_t k) const noexcept { return third_[k]; }
+
+ private:
+  std::array<double, 3> second_;
+  std::array<double, 3> third_;
 };
 
 /// Where the line of an edge meets the plane of a face, by exact arithmetic up to the last
 /// roundings.
-[[nodiscard]] FaceShares shareExactly(const CrossedFace& face, const ChartEdge& edge,
+[[nodiscard]] FaceShares shareExactly(const OwnersFace& face, const ChartEdge& edge,
                                       std::int64_t unit) noexcept;
 
 /// The same in floating point.
@@ -85,18 +106,19 @@ struct CrossedFace {
 /// and the third corner are known to 2^14 and their own roundings, the share that is left to twice
 /// that: less than 2^-37.
 /// @return outside if it is not certain, or not known so well
-[[nodiscard]] inline FaceShares shareRoughly(const CrossedFace& face, const ChartEdge& edge,
-                                             std::int64_t unit) noexcept {
+template <class Face>
+[[nodiscard]] FaceShares shareRoughly(const Face& face, const ChartEdge& edge,
+                                      std::int64_t unit) noexcept {
   constexpr std::array<std::array<std::uint8_t, 2>, 3> kAcross = {{{1, 2}, {2, 0}, {0, 1}}};
   const std::array<std::uint8_t, 2>& across = kAcross[static_cast<std::size_t>(axisOf(edge.along))];
   const std::size_t m = across[0];
   const std::size_t n = across[1];
-  const auto p = static_cast<double>(edge.z[m] * unit - face.first[m]);
-  const auto q = static_cast<double>(edge.z[n] * unit - face.first[n]);
-  const double p2 = face.second[m];
-  const double q2 = face.second[n];
-  const double p3 = face.third[m];
-  const double q3 = face.third[n];
+  const auto p = static_cast<double>(edge.z[m] * unit - face.first(m));
+  const auto q = static_cast<double>(edge.z[n] * unit - face.first(n));
+  const double p2 = face.second(m);
+  const double q2 = face.second(n);
+  const double p3 = face.third(m);
+  const double q3 = face.third(n);
   const double squares = p2 * p2 + q2 * q2 + p3 * p3 + q3 * q3;
   const double perSum = 1 / (p2 * q3 - p3 * q2);
   const double second = (p * q3 - p3 * q) * perSum;
@@ -108,25 +130,36 @@ struct CrossedFace {
   return {{first, second, third}, inside};
 }
 
-/// @param edge  in the owner's chart; its line meets the closed face
-/// @param unit  a power of two
-[[nodiscard]] inline FaceCrossing crossFace(const CrossedFace& face, const ChartEdge& edge,
-                                            std::int64_t unit) noexcept {
-  FaceShares shares = shareRoughly(face, edge, unit);
-  if (!shares.inside) [[unlikely]]
-    shares = shareExactly(face, edge, unit);
+/// @param shares  of the face's corners, where the line of the edge meets it
+/// @param edge    in the owner's chart
+/// @param unit    a power of two
+template <class Face>
+[[nodiscard]] FaceCrossing crossAt(const FaceShares& shares, const Face& face,
+                                   const ChartEdge& edge, std::int64_t unit) noexcept {
   const auto axis = static_cast<std::size_t>(axisOf(edge.along));
   const bool ascends = signOf(edge.along) > 0;
   const std::int64_t begin = std::int64_t{edge.z[axis]} - (ascends ? 0 : 1);
-  const auto first = static_cast<double>(face.first[axis] - begin * unit);
-  const double beyond = shares.of[1] * face.second[axis] + shares.of[2] * face.third[axis];
+  const auto first = static_cast<double>(face.first(axis) - begin * unit);
+  const double second = face.second(axis);
+  const double third = face.third(axis);
+  const double beyond = shares.of[1] * second + shares.of[2] * third;
   const double perUnit = 1 / static_cast<double>(unit);
   // A multiple of 2^-53, so that the way back is as exact as the way there.
   const double rest = 1 - (first + beyond) * perUnit;
   const double parameter = ascends ? 1 - rest : rest;
-  const double reach = std::abs(face.second[axis]) + std::abs(face.third[axis]);
+  const double reach = std::abs(second) + std::abs(third);
   const double error = (0x1p-36 * reach + 0x1p-50 * std::abs(first)) * perUnit + 0x1p-52;
   return {shares.of, parameter, error, shares.inside};
+}
+
+/// @param edge  in the owner's chart; its line meets the closed face
+template <class Face>
+[[nodiscard]] FaceCrossing crossFace(const Face& face, const ChartEdge& edge,
+                                     std::int64_t unit) noexcept {
+  FaceShares shares = shareRoughly(face, edge, unit);
+  if (!shares.inside) [[unlikely]]
+    shares = shareExactly(face, edge, unit);
+  return crossAt(shares, face, edge, unit);
 }
 
 /// The corners of a face in space.

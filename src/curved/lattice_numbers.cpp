@@ -32,20 +32,19 @@ LatticeNumbers::LatticeNumbers(const PreparedMap& map, std::uint64_t room, Stage
   sweep.finish(stage);
 }
 
-LatticeNumbers::LatticeNumbers(const PreparedMap& map, LatticeLines lines, std::uint64_t count,
-                               Stage& stage)
+LatticeNumbers::LatticeNumbers(const PreparedMap& map, const LatticeLines& lines,
+                               std::uint64_t count, Stage& stage)
     : map_(map),
       room_(0),
-      isTakenOver_(true),
-      takenOver_(std::move(lines)),
-      takenOverCount_(count),
+      engineLines_(&lines),
+      engineCount_(count),
       occupied_((map.topology.tetCount() + 63) / 64) {
   const std::size_t tets = map.topology.tetCount();
   constexpr std::size_t kWords = 64;
   parallelFor(stage, occupied_.size(), kWords, [&](std::size_t word) {
     std::uint64_t bits = 0;
     for (std::size_t t = 64 * word; t < std::min(tets, 64 * (word + 1)); ++t) {
-      bits |= std::uint64_t{takenOver_.empty(static_cast<Index>(t)) ? 0U : 1U} << (t % 64);
+      bits |= std::uint64_t{lines.empty(static_cast<Index>(t)) ? 0U : 1U} << (t % 64);
     }
     occupied_[word] = bits;
   });

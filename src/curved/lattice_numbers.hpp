@@ -43,10 +43,11 @@ class LatticeNumbers {
   LatticeNumbers(const PreparedMap& map, std::uint64_t room, Stage& stage);
   /// Takes over what an engine has swept and numbered.
   LatticeNumbers(const PreparedMap& map, SweptVertices swept, Stage& stage);
-  /// Takes over tables in which an engine has found its way.
-  /// @param lines  complete
+  /// Looks into tables in which an engine finds its way.
+  /// @param lines  complete; they have to stay there
   /// @param count  of vertices
-  LatticeNumbers(const PreparedMap& map, LatticeLines lines, std::uint64_t count, Stage& stage);
+  LatticeNumbers(const PreparedMap& map, const LatticeLines& lines, std::uint64_t count,
+                 Stage& stage);
   /// Without numbers until a Sweep is finished.
   explicit LatticeNumbers(const PreparedMap& map, std::uint64_t room = kRoomPerVertex);
 
@@ -83,7 +84,7 @@ class LatticeNumbers {
   };
 
   [[nodiscard]] std::uint64_t count() const noexcept {
-    return isTakenOver_ ? takenOverCount_ : numbers_.count();
+    return engineLines_ != nullptr ? engineCount_ : numbers_.count();
   }
 
   /// Writes position and generator of every vertex. Only of what was swept here.
@@ -96,9 +97,9 @@ class LatticeNumbers {
 
   /// Tells memory that find() will be asked soon.
   void fetch(Index tet) const noexcept {
-    if (isTakenOver_) {
-      prefetch(&takenOver_.planeBegin[tet]);
-      prefetch(&takenOver_.sweeps[tet]);
+    if (engineLines_ != nullptr) {
+      prefetch(&engineLines_->planeBegin[tet]);
+      prefetch(&engineLines_->sweeps[tet]);
     } else {
       prefetch(&boxOf_[tet]);
     }
@@ -111,10 +112,10 @@ class LatticeNumbers {
   /// The vertex at a grid point in the chart of a tet.
   [[nodiscard]] Found find(Index tet, const GridPoint& z) const {
     if (!hasVertices(tet)) return {};
-    if (isTakenOver_) {
-      const LatticeLines::Place place = takenOver_.locate(tet, z);
+    if (engineLines_ != nullptr) {
+      const LatticeLines::Place place = engineLines_->locate(tet, z);
       if (place.line == kNone) return {};
-      return {takenOver_.vertices[place.point], takenOver_.simplexAt(place)};
+      return {engineLines_->vertices[place.point], engineLines_->simplexAt(place)};
     }
     const Box& box = boxes_[boxOf_[tet]];
     std::size_t place = 0;
@@ -191,9 +192,8 @@ class LatticeNumbers {
 
   const PreparedMap& map_;
   std::uint64_t room_;
-  bool isTakenOver_ = false;  ///< then all else but `occupied_` is empty
-  LatticeLines takenOver_;
-  std::uint64_t takenOverCount_ = 0;
+  const LatticeLines* engineLines_ = nullptr;  ///< if given, all else but `occupied_` is empty
+  std::uint64_t engineCount_ = 0;
   VertexNumbers numbers_;
   Array<SweepAxes> axes_;           ///< per tet
   Array<std::uint64_t> lineBegin_;  ///< per tet (+1)

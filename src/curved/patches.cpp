@@ -3,8 +3,9 @@
 #include <vector>
 
 #include <curved/face_cutter.hpp>
-#include <curved/output_waves.hpp>
 #include <curved/patches.hpp>
+
+#include <base/output_waves.hpp>
 
 namespace hexhex {
 
@@ -104,18 +105,18 @@ Patches cutPatches(const PatchInput& input, Stage& stage) {
   lengthenAll(patches, {}, 1);
   const std::size_t tets = input.map.topology.tetCount();
   const std::size_t grain = tetsPerBlock(input.faces.count(), tets);
-  std::vector<PatchPieces> pieces(std::min(kWaveBlocks, blockCount(tets, grain)));
+  std::vector<PatchPieces> pieces(blocksPerWave(blockCount(tets, grain)));
   std::vector<PiecePlaces> places(pieces.size());
   PiecePlaces totals;
   parallelWaves(
-      stage, tets, grain,
+      stage, tets, grain, pieces.size(),
       [&](std::size_t begin, std::size_t end, std::size_t block) {
-        cutFaces(input, begin, end, patches, pieces[block % kWaveBlocks]);
+        cutFaces(input, begin, end, patches, pieces[block % pieces.size()]);
       },
       [&](std::size_t firstBlock, std::size_t endBlock) {
         for (std::size_t block = firstBlock; block < endBlock; ++block) {
-          places[block % kWaveBlocks] = totals;
-          totals = behind(totals, pieces[block % kWaveBlocks]);
+          places[block % pieces.size()] = totals;
+          totals = behind(totals, pieces[block % pieces.size()]);
         }
         requireIndexable(firstInnerPoint + totals.point);
         const std::uint64_t done = input.faces.begin(std::min(endBlock * grain, tets));
@@ -123,7 +124,8 @@ Patches cutPatches(const PatchInput& input, Stage& stage) {
                     static_cast<double>(done) / static_cast<double>(input.faces.count()));
       },
       [&](std::size_t block) {
-        join(pieces[block % kWaveBlocks], places[block % kWaveBlocks], firstInnerPoint, patches);
+        join(pieces[block % pieces.size()], places[block % pieces.size()], firstInnerPoint,
+             patches);
       });
   exclusiveScan(std::span(patches.polygonBegin));
   return patches;

@@ -1,6 +1,9 @@
 // Hex faces as planar polygons, tet by tet (Section 5.5).
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include <curved/element_numbers.hpp>
 #include <curved/lattice_numbers.hpp>
 #include <curved/owned_simplex.hpp>
@@ -15,7 +18,10 @@ struct PatchInput {
   const LatticeNumbers& vertices;
   const ElementNumbers& edges;
   const ElementNumbers& faces;
-  const Arcs& arcs;  ///< of the edges
+  const Arcs& arcs;              ///< of the edges
+  std::span<const Index> arcOf;  ///< per edge; empty if arcs come in the order of edges
+
+  [[nodiscard]] Index arc(Index edge) const noexcept { return arcOf.empty() ? edge : arcOf[edge]; }
 
   /// In the numbering that polygons use, behind hex vertices and points of arcs.
   [[nodiscard]] std::uint64_t firstInnerPoint() const noexcept {

@@ -13,6 +13,8 @@
 namespace hexhex {
 
 /// A face as its owner has it, for edges that leave a tet through it.
+/// @tparam Face  CrossedFace for several edges, OwnersFace for one
+template <class Face>
 class FaceExit {
  public:
   FaceExit(const PreparedMap& map, Index tet, int face) noexcept
@@ -30,7 +32,7 @@ class FaceExit {
 
  private:
   FaceOfOwner owned_;
-  CrossedFace crossed_;
+  Face crossed_;
   FacePoints corners_;
 };
 
@@ -38,7 +40,7 @@ class FaceExit {
 /// @param edge  in the chart of the tet
 [[nodiscard]] inline ArcExit exitThrough(const PreparedMap& map, Index tet, int face,
                                          const ChartEdge& edge) noexcept {
-  return FaceExit(map, tet, face).of(map, edge);
+  return FaceExit<OwnersFace>(map, tet, face).of(map, edge);
 }
 
 /// The faces of one tet after the other, for several edges each.
@@ -49,11 +51,11 @@ class TetFaces {
   /// Goes to a tet.
   void enter(Index tet) noexcept {
     tet_ = tet;
-    for (std::optional<FaceExit>& face : faces_) face.reset();
+    for (std::optional<FaceExit<CrossedFace>>& face : faces_) face.reset();
   }
   /// As exitThrough().
   [[nodiscard]] ArcExit exit(int face, const ChartEdge& edge) {
-    std::optional<FaceExit>& entry = faces_[static_cast<std::size_t>(face)];
+    std::optional<FaceExit<CrossedFace>>& entry = faces_[static_cast<std::size_t>(face)];
     if (!entry) entry.emplace(map_, tet_, face);
     return entry->of(map_, edge);
   }
@@ -61,7 +63,7 @@ class TetFaces {
  private:
   const PreparedMap& map_;
   Index tet_ = kNone;
-  std::array<std::optional<FaceExit>, 4> faces_;  ///< as soon as they are crossed
+  std::array<std::optional<FaceExit<CrossedFace>>, 4> faces_;  ///< as soon as they are crossed
 };
 
 }  // namespace hexhex

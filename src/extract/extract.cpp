@@ -99,16 +99,15 @@ PreparedMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
 }
 
 HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells, const ExtractOptions& options,
-                  Context& context, ExtractStatistics& statistics, EngineFindings* findings) {
+                  Context& context, ExtractStatistics& statistics, const EngineGuests& guests) {
   if (options.engine == Engine::Atlas) {
-    return runAtlas(map, expectedCells, context, statistics, {},
-                    findings == nullptr ? nullptr : findings->guest);
+    return runAtlas(map, expectedCells, context, statistics, {}, guests.sweep);
   }
   {
     Stage stage(context, "stars");
     addStars(map.topology, stage);
   }
-  return runPipeline(map, expectedCells, options.epsilon, context, statistics, findings);
+  return runPipeline(map, expectedCells, options.epsilon, context, statistics, guests.trace);
 }
 
 void throwMissingVertex(const MissingVertex& missing) {
@@ -140,9 +139,8 @@ ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options,
 }
 
 HexMesh extractScaled(const TetMapView& given, ScaledMap& scaled, const ExtractOptions& options,
-                      Context& context, ExtractStatistics& statistics, EngineFindings* findings) {
-  HexMesh mesh =
-      runEngine(scaled.map, scaled.expectedCells, options, context, statistics, findings);
+                      Context& context, ExtractStatistics& statistics, const EngineGuests& guests) {
+  HexMesh mesh = runEngine(scaled.map, scaled.expectedCells, options, context, statistics, guests);
   const TetMapView tagged = statistics.repairedMap ? TetMapView(*statistics.repairedMap) : given;
   carryTags(tagged, scaled.map, mesh, context);
   return mesh;

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <atomic>
+#include <vector>
 
+#include <base/output_waves.hpp>
 #include <extract/global_connectivity.hpp>
 #include <extract/slot_finder.hpp>
 
@@ -22,7 +24,7 @@ struct Trace {
 /// Keeps no records.
 struct NoRecorder {
   static constexpr bool kRecords = false;
-  void cross(HalfFace /*halfFace*/) const noexcept {}
+  void cross(HalfFace /*halfFace*/, const Trace& /*at*/) const noexcept {}
 };
 
 /// Keeps records of edges, one at a time.
@@ -30,17 +32,19 @@ class EdgeRecorder {
  public:
   static constexpr bool kRecords = true;
 
-  explicit EdgeRecorder(EdgeRecords& records) : records_(records) {}
+  explicit EdgeRecorder(FollowedEdges& records) : records_(records) {}
 
-  void cross(HalfFace halfFace) { records_.faces.push_back(halfFace); }
-  void keep(EdgeRecord record) {
-    record.faceEnd = static_cast<Index>(records_.faces.size());
-    records_.edges.push_back(record);
+  void cross(HalfFace halfFace, const Trace& at) {
+    records_.faces.push_back({halfFace, at.z, at.along});
+  }
+  void keep(FollowedEdge edge) {
+    edge.faceEnd = static_cast<Index>(records_.faces.size());
+    records_.edges.push_back(edge);
   }
   void drop() { records_.faces.resize(records_.edges.empty() ? 0 : records_.edges.back().faceEnd); }
 
  private:
-  EdgeRecords& records_;
+  FollowedEdges& records_;
 };
 
 class Tracer {
@@ -55,15 +59,9 @@ class Tracer {
         finder_(map, signs, vertices, local),
         global_(global) {}
 
-  /// About how many edges tets have at most, if they are regular: each is traced from one end only.
-  [[nodiscard]] std::size_t mostEdges(std::size_t firstTet, std::size_t endTet) const noexcept {
-    return 3 *
-           std::size_t{vertices_.lines.pointBegin(endTet) - vertices_.lines.pointBegin(firstTet)};
-  }
-
   /// Traces every propeller whose first blade's casing lies in this tet.
   template <class Recorder>
-  void run(Index tet, Recorder& recorder) {
+  void run(Index tet, Recorder& recorder) const {
     if (vertices_.lines.empty(tet)) return;
     vertices_.lines.forEachPoint(tet, [&](const GridPoint& z, CornerMask /*simplex*/, Index point) {
       const Index vertex = vertices_.lines.vertices[point];
@@ -90,42 +88,59 @@ class Tracer {
     return std::atomic_ref(global_.opposites[place]);
   }
 
+  /// The tet in whose turn a propeller is traced.
+  [[nodiscard]] Index turnOf(Index generator, std::size_t propeller) const {
+    if (local_.configurationOf[generator] < kConstantConfigurations) {
+      return vertices_.generators[generator].tet;
+    }
+    const Configuration& configuration = local_.configuration(generator);
+    return local_.slot(local_.propeller(configuration, propeller), 0).tet;
+  }
+  /// Whether the other end of an edge, as its propeller says, comes after a tet. Then it was
+  /// another thread that traced the edge.
+  [[nodiscard]] bool isAhead(std::uint64_t opposite, Index tet) const {
+    const Opposite o = GlobalConnectivity::unpack(opposite);
+    return turnOf(vertices_.generatorOf[o.vertex], o.propeller) > tet;
+  }
+
   template <class Recorder>
-  void trace(Index vertex, Index generator, std::size_t propeller, Trace at, Recorder& recorder) {
+  void trace(Index vertex, Index generator, std::size_t propeller, Trace at,
+             Recorder& recorder) const {
     // Two threads may trace an edge from both ends at once. They write the same values, so relaxed
-    // accesses suffice, and the result is the same in any order.
+    // accesses suffice, and the result is the same in any order. It is recorded from the end whose
+    // turn comes first, if need be by tracing it once more.
     const std::uint64_t here = placeOf(vertex, generator, propeller);
-    if (entry(here).load(std::memory_order_relaxed) != GlobalConnectivity::kUntraced) return;
+    const std::uint64_t known = entry(here).load(std::memory_order_relaxed);
+    if (known != GlobalConnectivity::kUntraced) {
+      if constexpr (!Recorder::kRecords) return;
+      if (alone_ || !isAhead(known, at.tet)) return;
+    }
     [[maybe_unused]] const Trace begin = at;
     const Index end = follow(at, recorder);
     const Index endGenerator = vertices_.generatorOf[end];
     const SlotName arrived =
         finder_.find(at.tet, endGenerator, hexhex::opposite(at.along), at.beside);
     const auto offset = static_cast<std::uint16_t>(arrived.slot);
-    const std::uint64_t ahead =
-        GlobalConnectivity::pack({end, static_cast<std::uint16_t>(arrived.propeller), offset});
-    const std::uint64_t back =
-        GlobalConnectivity::pack({vertex, static_cast<std::uint16_t>(propeller), offset});
     const std::uint64_t there = placeOf(end, endGenerator, arrived.propeller);
+    entry(here).store(
+        GlobalConnectivity::pack({end, static_cast<std::uint16_t>(arrived.propeller), offset}),
+        std::memory_order_relaxed);
+    entry(there).store(
+        GlobalConnectivity::pack({vertex, static_cast<std::uint16_t>(propeller), offset}),
+        std::memory_order_relaxed);
     if constexpr (Recorder::kRecords) {
-      // Of two threads, the one that is first at the lower place keeps its record.
-      const bool isLower = here <= there;
-      if (alone_ || entry(isLower ? here : there)
-                            .exchange(isLower ? ahead : back, std::memory_order_relaxed) ==
-                        GlobalConnectivity::kUntraced) {
-        const auto isInside = [&](Index g) { return vertices_.generators[g].simplex == kWholeTet; };
-        recorder.keep({{vertex, end},
-                       begin.tet,
-                       begin.z,
-                       begin.along,
-                       isInside(generator) || isInside(endGenerator),
-                       0});
-      } else {
+      if (!alone_ && turnOf(endGenerator, arrived.propeller) < begin.tet) {
         recorder.drop();
+        return;
       }
+      const auto isInside = [&](Index g) { return vertices_.generators[g].simplex == kWholeTet; };
+      recorder.keep({{vertex, end},
+                     begin.tet,
+                     begin.z,
+                     begin.along,
+                     isInside(generator) || isInside(endGenerator),
+                     0});
     }
-    entry(here).store(ahead, std::memory_order_relaxed);
-    entry(there).store(back, std::memory_order_relaxed);
   }
 
   /// Goes from tet to tet until the next grid point along the edge is reached, and the tet holds
@@ -144,7 +159,7 @@ class Tracer {
       const HalfFace mate = topology_.mate[halfFace];
       if (mate == kNone) throw MissingVertex{at.tet};
       entered = localOf(mate);
-      recorder.cross(halfFace);
+      recorder.cross(halfFace, at);
       const Transition& transition = exact_.transitions.across(halfFace);
       at = {tetOf(mate), transition(at.z), transition(at.along), transition(at.beside)};
     }
@@ -191,7 +206,7 @@ class Tracer {
 
 GlobalConnectivity traceOpposites(const PreparedMap& map, const Array<NormalSigns>& signs,
                                   const HexVertices& vertices, const LocalConnectivity& local,
-                                  Stage& stage, std::vector<EdgeRecords>* records) {
+                                  Stage& stage, TraceGuest* guest) {
   GlobalConnectivity global;
   global.begin.resize(vertices.generators.size());
   std::uint64_t total = 0;
@@ -206,21 +221,29 @@ GlobalConnectivity traceOpposites(const PreparedMap& map, const Array<NormalSign
               global.opposites.begin() + static_cast<std::ptrdiff_t>(end),
               GlobalConnectivity::kUntraced);
   });
-  Tracer tracer(map, signs, vertices, local, global);
+  const Tracer tracer(map, signs, vertices, local, global);
   const std::size_t tets = map.topology.tetCount();
-  if (records == nullptr) {
+  if (guest == nullptr) {
     NoRecorder none;
     parallelFor(stage, tets, kGrain,
                 [&](std::size_t t) { tracer.run(static_cast<Index>(t), none); });
     return global;
   }
-  records->assign(blockCount(tets, kGrain), {});
-  parallelBlocks(stage, tets, kGrain, [&](std::size_t first, std::size_t end, std::size_t block) {
-    EdgeRecords& own = (*records)[block];
-    own.edges.reserve(tracer.mostEdges(first, end));
-    EdgeRecorder recorder(own);
-    for (std::size_t t = first; t < end; ++t) tracer.run(static_cast<Index>(t), recorder);
-  });
+  const std::uint64_t edges = total / 2;
+  const std::size_t grain = tetsPerBlock(edges, tets);
+  std::vector<FollowedEdges> followed(blocksPerWave(blockCount(tets, grain)));
+  guest->begin(vertices.lines, {vertices.positions.size(), edges, followed.size()}, stage);
+  parallelWaves(
+      stage, tets, grain, followed.size(),
+      [&](std::size_t first, std::size_t end, std::size_t block) {
+        FollowedEdges& own = followed[block % followed.size()];
+        own.clear();
+        EdgeRecorder recorder(own);
+        for (std::size_t t = first; t < end; ++t) tracer.run(static_cast<Index>(t), recorder);
+        guest->add(block, own);
+      },
+      [&](std::size_t firstBlock, std::size_t endBlock) { guest->measure(firstBlock, endBlock); },
+      [&](std::size_t block) { guest->place(block); });
   return global;
 }
 

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include <hexhex/types.hpp>
 
-#include <extract/edge_records.hpp>
 #include <extract/local_connectivity.hpp>
+#include <extract/trace_guest.hpp>
 
 namespace hexhex {
 
@@ -36,12 +35,12 @@ struct GlobalConnectivity {
 };
 
 /// Traces all propellers. (Algorithm 8)
-/// @param[out] records  receives the hex edges, if they are asked for
+/// @param guest  sees the hex edges, if there is one
 /// @throws MissingVertex
 [[nodiscard]] GlobalConnectivity traceOpposites(const PreparedMap& map,
                                                 const Array<NormalSigns>& signs,
                                                 const HexVertices& vertices,
                                                 const LocalConnectivity& local, Stage& stage,
-                                                std::vector<EdgeRecords>* records = nullptr);
+                                                TraceGuest* guest = nullptr);
 
 }  // namespace hexhex

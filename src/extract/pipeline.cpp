@@ -26,12 +26,12 @@ Array<NormalSigns> computeNormalSigns(const ExactMap& map, Stage& stage) {
 class Extraction {
  public:
   Extraction(const PreparedMap& map, std::uint64_t expectedCells, Context& context,
-             ExtractStatistics& statistics, EngineFindings* findings)
+             ExtractStatistics& statistics, TraceGuest* guest)
       : map_(map),
         expectedCells_(expectedCells),
         context_(context),
         statistics_(statistics),
-        findings_(findings) {}
+        guest_(guest) {}
 
   /// @throws MissingVertex if epsilon was too small
   HexMesh run(double epsilon) {
@@ -52,8 +52,7 @@ class Extraction {
     GlobalConnectivity global;
     {
       Stage stage(context_, "global connectivity");
-      std::vector<EdgeRecords>* records = findings_ == nullptr ? nullptr : &findings_->edges;
-      global = traceOpposites(map_, signs, vertices, local, stage, records);
+      global = traceOpposites(map_, signs, vertices, local, stage, guest_);
     }
     HexMesh mesh;
     {
@@ -63,7 +62,7 @@ class Extraction {
       describeGenerators(map_, vertices, mesh, stage);
       count(vertices, local, global);
       mesh.points = std::move(vertices.positions);
-      if (findings_ != nullptr) findings_->lines = std::move(vertices.lines);
+      if (guest_ != nullptr) guest_->take(std::move(vertices.lines));
     }
     return mesh;
   }
@@ -89,14 +88,14 @@ class Extraction {
   std::uint64_t expectedCells_;
   Context& context_;
   ExtractStatistics& statistics_;
-  EngineFindings* findings_;
+  TraceGuest* guest_;
 };
 
 }  // namespace
 
 HexMesh runPipeline(const PreparedMap& map, std::uint64_t expectedCells, double epsilon,
-                    Context& context, ExtractStatistics& statistics, EngineFindings* findings) {
-  Extraction extraction(map, expectedCells, context, statistics, findings);
+                    Context& context, ExtractStatistics& statistics, TraceGuest* guest) {
+  Extraction extraction(map, expectedCells, context, statistics, guest);
   statistics.epsilon = epsilon;
   try {
     return extraction.run(epsilon);

@@ -7,7 +7,7 @@
 #include <hexhex/extract.hpp>
 #include <hexhex/types.hpp>
 
-#include <extract/findings.hpp>
+#include <extract/trace_guest.hpp>
 #include <map/prepare.hpp>
 
 namespace hexhex {
@@ -16,10 +16,10 @@ namespace hexhex {
 /// too small, starts over with infinity, which finds every vertex (Section 5.2.3).
 /// @param expectedCells  the map's parametric volume
 /// @param[in,out] statistics  receives what the stages count
-/// @param[out] findings  receives what else was found, if it is asked for
+/// @param guest  sees the hex edges, if there is one
 /// @throws MissingVertex  if vertices are missing even so, which would be a bug
 [[nodiscard]] HexMesh runPipeline(const PreparedMap& map, std::uint64_t expectedCells,
                                   double epsilon, Context& context, ExtractStatistics& statistics,
-                                  EngineFindings* findings = nullptr);
+                                  TraceGuest* guest = nullptr);
 
 }  // namespace hexhex

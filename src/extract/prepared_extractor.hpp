@@ -45,10 +45,9 @@ class Extractor::Prepared {
   }
 
   /// The mesh of the scaled map, with its tags.
-  /// @param[out] findings  receives what else was found, if it is asked for
   [[nodiscard]] HexMesh mesh(std::uint64_t cells, const ExtractOptions& options, Context& context,
-                             ExtractStatistics& statistics, EngineFindings* findings = nullptr) {
-    HexMesh result = runEngine(map_, cells, options, context, statistics, findings);
+                             ExtractStatistics& statistics, const EngineGuests& guests = {}) {
+    HexMesh result = runEngine(map_, cells, options, context, statistics, guests);
     carryTags(given_, map_, result, context);
     return result;
   }

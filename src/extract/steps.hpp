@@ -9,8 +9,8 @@
 #include <hexhex/stream.hpp>
 
 #include <base/parallel.hpp>
-#include <extract/findings.hpp>
 #include <extract/global_connectivity.hpp>
+#include <extract/guests.hpp>
 #include <map/prepare.hpp>
 
 namespace hexhex {
@@ -41,10 +41,9 @@ struct Mending {
 
 /// All stages behind the scaling. Adds to the map's topology what the engine needs.
 /// @param map  scaled
-/// @param[out] findings  receives what else was found, if it is asked for
 [[nodiscard]] HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells,
                                 const ExtractOptions& options, Context& context,
-                                ExtractStatistics& statistics, EngineFindings* findings = nullptr);
+                                ExtractStatistics& statistics, const EngineGuests& guests = {});
 
 /// A map that is ready for either engine.
 struct ScaledMap {
@@ -66,8 +65,7 @@ struct ScaleLimits {
 /// All further stages, with the tags of the caller's map.
 [[nodiscard]] HexMesh extractScaled(const TetMapView& given, ScaledMap& scaled,
                                     const ExtractOptions& options, Context& context,
-                                    ExtractStatistics& statistics,
-                                    EngineFindings* findings = nullptr);
+                                    ExtractStatistics& statistics, const EngineGuests& guests = {});
 
 [[noreturn]] void throwMissingVertex(const MissingVertex& missing);
 [[noreturn]] void throwOutOfMemory();

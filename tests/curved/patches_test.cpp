@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <vector>
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
@@ -13,6 +14,7 @@
 #include <base/disjoint_sets.hpp>
 
 #include "curved/curved_maps.hpp"
+#include "curved/same_arcs.hpp"
 #include "curved/tet_points.hpp"
 
 namespace hexhex::test {
@@ -277,29 +279,70 @@ TEST(Patches, RealMaps) {
   }
 }
 
-TEST(Patches, SameForAnyNumberOfThreadsAndEngine) {
+TetMap mapWithRandomCharts() {
   SampleOptions options;
   options.cells = 4;
   options.refine = 3;
   options.jitter = 0.5;
   options.charts = ChartStyle::Random;
-  const TetMap map = generateSample(SampleKind::Sphere, options).map;
-  const Patches one = withPatches(map, 1, 1).patches;
-  for (const Patches& other :
-       {withPatches(map, 1, 3).patches, withPatches(map, 1, 2, Engine::Propeller).patches}) {
-    EXPECT_EQ(one.vertices, other.vertices);
-    EXPECT_EQ(one.arcs, other.arcs);
-    EXPECT_EQ(one.reversedArcs, other.reversedArcs);
-    EXPECT_EQ(one.polygonBegin, other.polygonBegin);
-    EXPECT_EQ(one.cornerBegin, other.cornerBegin);
-    EXPECT_EQ(one.polygonTet, other.polygonTet);
-    EXPECT_EQ(one.polygonCorners, other.polygonCorners);
-    EXPECT_EQ(one.corners, other.corners);
-    EXPECT_EQ(one.parameters, other.parameters);
-    EXPECT_EQ(one.points, other.points);
-    EXPECT_EQ(one.generatorTet, other.generatorTet);
-    EXPECT_EQ(one.generatorCorners, other.generatorCorners);
+  return generateSample(SampleKind::Sphere, options).map;
+}
+
+void expectSamePatches(const Patches& a, const Patches& b) {
+  EXPECT_EQ(a.vertices, b.vertices);
+  EXPECT_EQ(a.arcs, b.arcs);
+  EXPECT_EQ(a.reversedArcs, b.reversedArcs);
+  EXPECT_EQ(a.polygonBegin, b.polygonBegin);
+  EXPECT_EQ(a.cornerBegin, b.cornerBegin);
+  EXPECT_EQ(a.polygonTet, b.polygonTet);
+  EXPECT_EQ(a.polygonCorners, b.polygonCorners);
+  EXPECT_EQ(a.corners, b.corners);
+  EXPECT_EQ(a.parameters, b.parameters);
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.generatorTet, b.generatorTet);
+  EXPECT_EQ(a.generatorCorners, b.generatorCorners);
+}
+
+/// Gives arcs and their points the numbers of the same arcs in another mesh.
+Patches renumbered(const PiecewiseLinearMesh& mesh, const Arcs& arcs) {
+  const std::vector<Index> here = orderByWay(mesh.arcs);
+  const std::vector<Index> there = orderByWay(arcs);
+  std::vector<Index> arcOf(here.size());
+  std::vector<Index> pointOf(mesh.arcs.points.size());
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    arcOf[here[i]] = there[i];
+    const std::uint64_t begin = mesh.arcs.pointBegin[here[i]];
+    for (std::uint64_t p = begin; p < mesh.arcs.pointBegin[here[i] + 1]; ++p) {
+      pointOf[p] = static_cast<Index>(arcs.pointBegin[there[i]] + p - begin);
+    }
   }
+  Patches result = mesh.patches;
+  for (auto& face : result.arcs) {
+    for (Index& arc : face) arc = arcOf[arc];
+  }
+  const auto vertices = static_cast<Index>(mesh.mesh.points.size());
+  for (Index& corner : result.corners) {
+    if (corner < vertices || corner - vertices >= pointOf.size()) continue;
+    corner = vertices + pointOf[corner - vertices];
+  }
+  return result;
+}
+
+TEST(Patches, SameForAnyNumberOfThreads) {
+  const TetMap map = mapWithRandomCharts();
+  for (const Engine engine : {Engine::Atlas, Engine::Propeller}) {
+    const Patches one = withPatches(map, 1, 1, engine).patches;
+    for (const int threads : {2, 3}) {
+      expectSamePatches(one, withPatches(map, 1, threads, engine).patches);
+    }
+  }
+}
+
+TEST(Patches, SameOfBothEnginesButForTheNumbersOfArcs) {
+  const TetMap map = mapWithRandomCharts();
+  const PiecewiseLinearMesh atlas = withPatches(map, 1, 1);
+  const PiecewiseLinearMesh propeller = withPatches(map, 1, 1, Engine::Propeller);
+  expectSamePatches(atlas.patches, renumbered(propeller, atlas.arcs));
 }
 
 }  // namespace

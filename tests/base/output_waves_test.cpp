@@ -2,8 +2,9 @@
 #include <numeric>
 #include <vector>
 
-#include <curved/output_waves.hpp>
 #include <gtest/gtest.h>
+
+#include <base/output_waves.hpp>
 
 namespace hexhex::test {
 
@@ -15,27 +16,28 @@ Array<std::size_t> collectInWaves(std::size_t n, std::size_t grain, int threads)
   withThreads(threads, [&] {
     Context context;
     Stage stage(context, "waves");
-    std::vector<std::vector<std::size_t>> pieces(kWaveBlocks);
-    std::vector<std::size_t> places(kWaveBlocks);
+    const std::size_t wave = blocksPerWave(blockCount(n, grain));
+    std::vector<std::vector<std::size_t>> pieces(wave);
+    std::vector<std::size_t> places(wave);
     std::size_t total = 0;
     parallelWaves(
-        stage, n, grain,
+        stage, n, grain, wave,
         [&](std::size_t begin, std::size_t end, std::size_t block) {
-          std::vector<std::size_t>& piece = pieces[block % kWaveBlocks];
+          std::vector<std::size_t>& piece = pieces[block % wave];
           piece.clear();
           for (std::size_t i = begin; i < end; ++i) piece.insert(piece.end(), i % 3, i);
         },
         [&](std::size_t first, std::size_t end) {
           for (std::size_t block = first; block < end; ++block) {
-            places[block % kWaveBlocks] = total;
-            total += pieces[block % kWaveBlocks].size();
+            places[block % wave] = total;
+            total += pieces[block % wave].size();
           }
           lengthen(all, total, static_cast<double>(end) / 1000.0);
         },
         [&](std::size_t block) {
-          const std::vector<std::size_t>& piece = pieces[block % kWaveBlocks];
+          const std::vector<std::size_t>& piece = pieces[block % wave];
           std::copy(piece.begin(), piece.end(),
-                    all.begin() + static_cast<std::ptrdiff_t>(places[block % kWaveBlocks]));
+                    all.begin() + static_cast<std::ptrdiff_t>(places[block % wave]));
         });
   });
   return all;
@@ -51,6 +53,14 @@ TEST(OutputWaves, KeepTheOrder) {
       }
     }
   }
+}
+
+TEST(OutputWaves, AreOfSomeBlocksPerThread) {
+  withThreads(1, [] {
+    EXPECT_EQ(blocksPerWave(0), 0U);
+    EXPECT_EQ(blocksPerWave(3), 3U);
+    EXPECT_EQ(blocksPerWave(1000), 8U);
+  });
 }
 
 TEST(OutputWaves, BlocksFollowTheElements) {

@@ -1,4 +1,4 @@
-// Arcs of what the engines hand over, recorded edges or swept lines, against those of a map that is
+// Arcs of what the engines hand over, followed edges or swept lines, against those of a map that is
 // swept anew, traced from their midpoints by exact arithmetic.
 #include <algorithm>
 #include <cstdint>
@@ -8,9 +8,9 @@
 #include <vector>
 
 #include <atlas/atlas.hpp>
+#include <curved/arc_guest.hpp>
 #include <curved/arcs.hpp>
 #include <curved/edge_guest.hpp>
-#include <curved/recorded_arcs.hpp>
 #include <gtest/gtest.h>
 
 #include <base/stage.hpp>
@@ -52,15 +52,29 @@ PreparedMap prepareAt(const TetMap& given, int scale, Context& context) {
   return map;
 }
 
-/// What the propeller engine has recorded.
-Arcs recordedArcs(const PreparedMap& map, std::uint64_t cells, double epsilon, Context& context,
-                  Stage& stage) {
+/// Of the edges that the propeller engine has followed.
+struct FollowedArcs {
+  Arcs arcs;
+  std::vector<Index> arcOf;  ///< per edge
+};
+
+FollowedArcs followedArcs(const PreparedMap& map, const ElementNumbers& edges, std::uint64_t cells,
+                          double epsilon, Context& context, Stage& stage) {
   ExtractStatistics statistics;
-  EngineFindings findings;
-  const HexMesh mesh = runPipeline(map, cells, epsilon, context, statistics, &findings);
-  const LatticeNumbers found(map, std::move(findings.lines.value()), mesh.points.size(), stage);
-  EXPECT_EQ(found.count(), mesh.points.size());
-  return gatherArcs(map, found, std::move(findings.edges), stage);
+  ArcGuest guest(map, true);
+  const HexMesh mesh = runPipeline(map, cells, epsilon, context, statistics, &guest);
+  EXPECT_EQ(guest.numbers(stage).count(), mesh.points.size());
+  FollowedArcs result{guest.takeArcs(), {}};
+  result.arcOf.assign(edges.count(), kNone);
+  EXPECT_EQ(guest.keys().size(), edges.count());
+  Index arc = 0;
+  for (const EdgeKey& key : guest.keys()) {
+    LineHint hint;
+    Index& found = result.arcOf[edges.find(key.tet, key.axis, key.z, hint)];
+    EXPECT_EQ(found, kNone);
+    found = arc++;
+  }
+  return result;
 }
 
 /// Of the lines that the atlas engine has swept.
@@ -92,10 +106,14 @@ void compareWithExact(const TetMap& given, int scale, double epsilon, PointKinds
   kinds.count(exact);
   ExtractStatistics statistics;
   const HexMesh mesh = runAtlas(map, cells, context, statistics);
+  Arcs first;
   for (const int threads : {1, 2, 5}) {
     SCOPED_TRACE(std::to_string(threads) + " threads");
     withThreads(threads, [&] {
-      expectSameBits(exact, recordedArcs(map, cells, epsilon, context, stage));
+      const FollowedArcs followed = followedArcs(map, edges, cells, epsilon, context, stage);
+      expectSameBits(exact, reordered(followed.arcs, followed.arcOf));
+      if (threads == 1) first = followed.arcs;
+      expectSameBits(first, followed.arcs);
       expectSameBits(exact, arcsOfWatchedAtlas(map, mesh, context, stage));
     });
     if (::testing::Test::HasFailure()) return;
@@ -104,7 +122,7 @@ void compareWithExact(const TetMap& given, int scale, double epsilon, PointKinds
 
 constexpr double kEpsilon = 1e-6;
 
-TEST(RecordedArcs, AreThoseOfExactArithmetic) {
+TEST(FollowedArcs, AreThoseOfExactArithmetic) {
   PointKinds kinds;
   for (const CurvedMap& map : generatedMaps()) {
     for (const int scale : {1, 3}) {
@@ -118,7 +136,7 @@ TEST(RecordedArcs, AreThoseOfExactArithmetic) {
   EXPECT_GT(kinds.flatSegments, 100U);
 }
 
-TEST(RecordedArcs, AreThoseOfExactArithmeticOnRandomMaps) {
+TEST(FollowedArcs, AreThoseOfExactArithmeticOnRandomMaps) {
   PointKinds kinds;
   Random random(20262);
   const auto share = [&](double most) {
@@ -144,13 +162,13 @@ TEST(RecordedArcs, AreThoseOfExactArithmeticOnRandomMaps) {
   EXPECT_GT(kinds.elsewhere, 0U);
 }
 
-TEST(RecordedArcs, EdgesThatComeBack) {
+TEST(FollowedArcs, EdgesThatComeBack) {
   PointKinds kinds;
   for (const int cells : {1, 2}) compareWithExact(tightTorus(cells), 1, kEpsilon, kinds);
 }
 
 /// With no epsilon at all, the engine starts over; with an infinite one, there are empty lines.
-TEST(RecordedArcs, DoNotDependOnEpsilon) {
+TEST(FollowedArcs, DoNotDependOnEpsilon) {
   PointKinds kinds;
   const TetMap map = generateSample(SampleKind::Sphere, curvedOptions()[2]).map;
   for (const double epsilon : {0.0, std::numeric_limits<double>::infinity()}) {
@@ -158,7 +176,7 @@ TEST(RecordedArcs, DoNotDependOnEpsilon) {
   }
 }
 
-TEST(RecordedArcs, AreThoseOfExactArithmeticOnRealMaps) {
+TEST(FollowedArcs, AreThoseOfExactArithmeticOnRealMaps) {
   const std::vector<CurvedMap> maps = realMaps();
   if (maps.empty()) GTEST_SKIP() << "skipped: no real maps here";
   PointKinds kinds;

@@ -11,20 +11,24 @@
 
 namespace hexhex {
 
-/// Blocks that are in memory at the same time: enough for the threads of large machines, few enough
-/// to be small beside what they make together.
-inline constexpr std::size_t kWaveBlocks = 64;
+/// How many blocks of a loop are to be in memory at the same time: enough for all threads to be
+/// busy, few enough to stay in their caches until they are copied.
+[[nodiscard]] inline std::size_t blocksPerWave(std::size_t blocks) {
+  constexpr std::size_t kPerThread = 8;
+  return std::min(blocks, kPerThread * static_cast<std::size_t>(currentThreads()));
+}
 
-/// parallelBlocks() in waves of kWaveBlocks blocks. After the blocks of a wave, measure(firstBlock,
+/// parallelBlocks() in waves of some blocks. After the blocks of a wave, measure(firstBlock,
 /// endBlock) is called, and then place(block) for each of them, in parallel: so what blocks collect
 /// comes where it belongs as the loop goes, and its memory is used again by the next wave.
+/// @param wave  blocks in a wave; no result may depend on it
 template <class F, class Measure, class Place>
-void parallelWaves(Stage& stage, std::size_t n, std::size_t grain, const F& f,
+void parallelWaves(Stage& stage, std::size_t n, std::size_t grain, std::size_t wave, const F& f,
                    const Measure& measure, const Place& place) {
   LoopProgress progress(stage, n);
   const std::size_t blocks = blockCount(n, grain);
-  for (std::size_t first = 0; first < blocks; first += kWaveBlocks) {
-    const std::size_t count = first + kWaveBlocks < blocks ? kWaveBlocks : blocks - first;
+  for (std::size_t first = 0; first < blocks; first += wave) {
+    const std::size_t count = std::min(wave, blocks - first);
     const std::size_t offset = first * grain;
     const std::size_t size = first + count < blocks ? count * grain : n - offset;
     const auto work = [&](std::size_t begin, std::size_t end, std::size_t block) {

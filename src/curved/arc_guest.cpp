@@ -1,0 +1,52 @@
+#include <algorithm>
+#include <utility>
+
+#include <curved/arc_guest.hpp>
+
+#include <base/output_waves.hpp>
+
+namespace hexhex {
+
+void ArcGuest::begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& stage) {
+  requireNumbers(sizes.edges);
+  slots_.clear();
+  vertices_.emplace(map_, lines, sizes.vertices, stage);
+  vertexCount_ = sizes.vertices;
+  for (std::size_t i = 0; i < sizes.wave; ++i) slots_.emplace_back(map_, *vertices_, withKeys_);
+  arcCount_ = 0;
+  arcs_ = {};
+  arcs_.ends.resize(sizes.edges);
+  arcs_.pointBegin.resize(sizes.edges + 1);
+  keys_.resize(withKeys_ ? sizes.edges : 0);
+}
+
+void ArcGuest::measure(std::size_t firstBlock, std::size_t endBlock) {
+  std::uint64_t points = arcs_.points.size();
+  for (std::size_t block = firstBlock; block < endBlock; ++block) {
+    Slot& slot = slots_[block % slots_.size()];
+    slot.firstArc = arcCount_;
+    slot.firstPoint = points;
+    arcCount_ += slot.replay.arcs();
+    points += slot.replay.points();
+  }
+  lengthenForPieces(arcs_, points, arcCount_);
+}
+
+void ArcGuest::place(std::size_t block) {
+  Slot& slot = slots_[block % slots_.size()];
+  slot.replay.copyTo(arcs_, slot.firstArc, slot.firstPoint);
+  if (withKeys_) {
+    const std::span<const EdgeKey> keys = slot.replay.keys();
+    std::copy(keys.begin(), keys.end(), keys_.begin() + static_cast<std::ptrdiff_t>(slot.firstArc));
+  }
+  slot.replay.clear();
+}
+
+Arcs ArcGuest::takeArcs() {
+  slots_.clear();
+  vertices_.reset();
+  arcs_.pointBegin.back() = arcs_.points.size();
+  return std::move(arcs_);
+}
+
+}  // namespace hexhex

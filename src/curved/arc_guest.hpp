@@ -1,0 +1,67 @@
+// Arcs of hex edges while the propeller engine follows them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include <curved/edge_replay.hpp>
+#include <curved/element_numbers.hpp>
+#include <curved/lattice_numbers.hpp>
+
+#include <hexhex/curved.hpp>
+
+#include <extract/trace_guest.hpp>
+#include <map/prepare.hpp>
+
+namespace hexhex {
+
+/// Makes the arcs that traceArcs() makes, bit for bit, in the order in which the engine comes to
+/// the edges.
+class ArcGuest final : public TraceGuest {
+ public:
+  /// @param withKeys  whether keys() will be asked for
+  ArcGuest(const PreparedMap& map, bool withKeys) : map_(map), withKeys_(withKeys) {}
+
+  void begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& stage) override;
+  void add(std::size_t block, const FollowedEdges& edges) override {
+    slots_[block % slots_.size()].replay.add(edges);
+  }
+  void measure(std::size_t firstBlock, std::size_t endBlock) override;
+  void place(std::size_t block) override;
+  void take(LatticeLines lines) override { lines_ = std::move(lines); }
+
+  // Once, when the engine is done:
+  /// @throws Error TooLarge for more edges than an Index can number
+  [[nodiscard]] Arcs takeArcs();
+  /// Per arc.
+  [[nodiscard]] std::span<const EdgeKey> keys() const noexcept { return keys_; }
+  [[nodiscard]] LatticeNumbers numbers(Stage& stage) const {
+    return {map_, *lines_, vertexCount_, stage};
+  }
+
+ private:
+  /// For a block of each wave.
+  struct Slot {
+    Slot(const PreparedMap& map, const LatticeNumbers& vertices, bool withKeys)
+        : replay(map, vertices, withKeys) {}
+
+    EdgeReplay replay;
+    std::uint64_t firstArc = 0;
+    std::uint64_t firstPoint = 0;
+  };
+
+  const PreparedMap& map_;
+  bool withKeys_;
+  std::uint64_t vertexCount_ = 0;
+  std::optional<LatticeNumbers> vertices_;  ///< while the engine works
+  std::optional<LatticeLines> lines_;       ///< when it is done
+  std::deque<Slot> slots_;
+  std::uint64_t arcCount_ = 0;  ///< so far
+  Arcs arcs_;
+  Array<EdgeKey> keys_;
+};
+
+}  // namespace hexhex
