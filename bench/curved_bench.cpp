@@ -72,11 +72,14 @@ void setNanoseconds(benchmark::State& state, const std::string& what, double sec
 /// Corners of all polylines, ends included.
 std::size_t arcPoints(const Arcs& arcs) { return arcs.points.size() + 2 * arcs.count(); }
 
-/// CPU time of an extraction of the mesh alone.
-double extractionSeconds(const TetMap& map, const ExtractOptions& options, int threads) {
+/// CPU time of run(context).
+template <class Run>
+double secondsOf(int threads, std::uint64_t bytes, const Run& run) {
+  warmFreeMemory(bytes);
+  releaseFreeMemory();
   StageClock clock;
   Context context(threads, clock.listener());
-  benchmark::DoNotOptimize(extract(map, options, context));
+  run(context);
   clock.begin("end");
   return clock.total();
 }
@@ -87,7 +90,7 @@ void piecewiseLinear(benchmark::State& state, const std::string& name, const Ben
   ExtractOptions options;
   options.engine = engine;
   options.scale = what.scale;
-  double total = 0;
+  double arcs = 0;
   double patches = 0;
   double extraction = 0;
   std::size_t points = 0;
@@ -99,9 +102,15 @@ void piecewiseLinear(benchmark::State& state, const std::string& name, const Ben
         extractPiecewiseLinear(map, PiecewiseLinearParts::ArcsAndPatches, options, context));
   });
   for (auto _ : state) {
-    warmFreeMemory(bytes);
-    releaseFreeMemory();
-    extraction += extractionSeconds(map, options, threads);
+    const double alone = secondsOf(threads, bytes, [&](Context& context) {
+      benchmark::DoNotOptimize(extract(map, options, context));
+    });
+    extraction += alone;
+    arcs -= alone;
+    arcs += secondsOf(threads, bytes, [&](Context& context) {
+      benchmark::DoNotOptimize(
+          extractPiecewiseLinear(map, PiecewiseLinearParts::Arcs, options, context));
+    });
     warmFreeMemory(bytes);
     releaseFreeMemory();
     StageClock clock;
@@ -112,12 +121,10 @@ void piecewiseLinear(benchmark::State& state, const std::string& name, const Ben
     state.SetIterationTime(statistics.seconds);
     clock.begin("end");
     patches += clock.seconds("patches");
-    total += clock.total();
     points = arcPoints(mesh.arcs);
     polygons = mesh.patches.polygonTet.size();
     hexes = mesh.mesh.cells.size();
   }
-  const double arcs = total - patches - extraction;
   setNanoseconds(state, "arc_point", arcs, points);
   setNanoseconds(state, "polygon", patches, polygons);
   state.counters["hexes"] = static_cast<double>(hexes);

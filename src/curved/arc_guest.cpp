@@ -12,7 +12,7 @@ void ArcGuest::begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& 
   slots_.clear();
   vertices_.emplace(map_, lines, sizes.vertices, stage);
   vertexCount_ = sizes.vertices;
-  for (std::size_t i = 0; i < sizes.wave; ++i) slots_.emplace_back(map_, *vertices_, withKeys_);
+  for (std::size_t i = 0; i < sizes.wave; ++i) slots_.emplace_back(map_, *vertices_);
   arcCount_ = 0;
   arcs_ = {};
   arcs_.ends.resize(sizes.edges);
@@ -34,11 +34,7 @@ void ArcGuest::measure(std::size_t firstBlock, std::size_t endBlock) {
 
 void ArcGuest::place(std::size_t block) {
   Slot& slot = slots_[block % slots_.size()];
-  slot.replay.copyTo(arcs_, slot.firstArc, slot.firstPoint);
-  if (withKeys_) {
-    const std::span<const EdgeKey> keys = slot.replay.keys();
-    std::copy(keys.begin(), keys.end(), keys_.begin() + static_cast<std::ptrdiff_t>(slot.firstArc));
-  }
+  slot.replay.copyTo(arcs_, keys_, slot.firstArc, slot.firstPoint);
   slot.replay.clear();
 }
 

@@ -45,8 +45,7 @@ class ArcGuest final : public TraceGuest {
  private:
   /// For a block of each wave.
   struct Slot {
-    Slot(const PreparedMap& map, const LatticeNumbers& vertices, bool withKeys)
-        : replay(map, vertices, withKeys) {}
+    Slot(const PreparedMap& map, const LatticeNumbers& vertices) : replay(map, vertices) {}
 
     EdgeReplay replay;
     std::uint64_t firstArc = 0;

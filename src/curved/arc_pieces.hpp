@@ -72,10 +72,11 @@ class ArcPieces {
   [[nodiscard]] std::size_t pointsOf(std::size_t arc) const noexcept {
     return endOf(arc) - arcs_[arc].firstPoint;
   }
-  /// Copies points and segments of an arc to where they belong.
+  /// Copies an arc to where it belongs, but for the place of its points.
   void copyArc(std::size_t arc, Arcs& to, std::uint64_t number, std::uint64_t firstPoint) const {
     const std::size_t first = arcs_[arc].firstPoint;
     const std::size_t end = endOf(arc);
+    to.ends[number] = arcs_[arc].ends;
     copyPoints(first, end, to, firstPoint);
     copySegments(first + arc, end + arc + 1, to, firstPoint + number);
   }

@@ -6,84 +6,62 @@
 
 namespace hexhex {
 
-void EdgeReplay::clear() noexcept {
-  arcs_.clear();
-  keys_.clear();
-  points_ = 0;
-  pieces_.clear();
+namespace {
+
+/// @param[in,out] counts  of the crossings before
+void crossFollowed(const PreparedMap& map, const FollowedFace& face, FollowedCrossing& crossing,
+                   CrossingCounts& counts) {
+  const HalfFace mate = map.topology.mate[face.halfFace];
+  const HalfFace owned = std::min(face.halfFace, mate);  // of the smaller tet
+  const Index owner = tetOf(owned);
+  const int local = localOf(owned);
+  const std::int64_t unit = map.exact.unit;
+  const bool isJump = map.exact.transitions.isJump(face.halfFace);
+  ChartEdge edge{face.z, face.along};
+  if (isJump && owned == mate) edge = edge.across(map.exact.transitions, face.halfFace);
+  const OwnersFace ownersFace(map.exact.corners[owner], local);
+  const FaceCrossing rough = crossAt(shareRoughly(ownersFace, edge, unit), ownersFace, edge, unit);
+  const FacePoints corners = pointsOf(map.topology.tets[owner], local, map.input.view.points);
+  crossing.point = pointInFace(rough.shares, corners);
+  crossing.parameter = rough.parameter;
+  crossing.generator = {owner, faceMask(local)};
+  crossing.behind = tetOf(mate);
+  const double distance = std::abs(rough.parameter - 0.5);
+  const bool isSure = rough.inside && distance < 0.5 - rough.error && distance > rough.error;
+  counts.unsure += isSure ? 0 : 1;
+  counts.jumps += isJump ? 1 : 0;
+  counts.early += rough.parameter < 0.5 ? 1 : 0;
 }
 
-/// @param followed  of a block; once between calls of clear()
+}  // namespace
+
 void EdgeReplay::add(const FollowedEdges& followed) {
+  followed_ = &followed;
   // First all crossings, in a loop that knows nothing of edges: how many faces these cross is as
   // good as random.
   cross(followed.faces);
-  arcs_.reserve(followed.edges.size());
+  points_ = followed.faces.size();
   Index first = 0;
   for (const FollowedEdge& edge : followed.edges) {
-    const Index end = edge.faceEnd;
-    const bool isInside = end > first || edge.inside;
-    if (isInside && counts_[end].unsure == counts_[first].unsure) {
-      addSure(edge, first, followed);
-    } else {
-      addUnsure(edge, Faces(followed.faces).subspan(first, end - first));
+    if (!isSure(edge, first)) {
+      const std::size_t before = pieces_.points();
+      addUnsure(edge, Faces(followed.faces).subspan(first, edge.faceEnd - first));
+      points_ += pieces_.points() - before;
+      points_ -= edge.faceEnd - first;
     }
-    first = end;
+    first = edge.faceEnd;
   }
 }
 
 void EdgeReplay::cross(Faces faces) {
   crossings_.resize(faces.size());
   counts_.resize(faces.size() + 1);
-  Counts sum;
-  counts_[0] = sum;
+  CrossingCounts counts;
+  counts_[0] = counts;
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    const Counts counts = cross(faces[i], crossings_[i]);
-    sum.unsure += counts.unsure;
-    sum.jumps += counts.jumps;
-    sum.early += counts.early;
-    counts_[i + 1] = sum;
+    crossFollowed(map_, faces[i], crossings_[i], counts);
+    counts_[i + 1] = counts;
   }
-}
-
-EdgeReplay::Counts EdgeReplay::cross(const FollowedFace& face, Crossing& crossing) const {
-  const HalfFace mate = map_.topology.mate[face.halfFace];
-  const HalfFace owned = std::min(face.halfFace, mate);  // of the smaller tet
-  const Index owner = tetOf(owned);
-  const int local = localOf(owned);
-  const bool isJump = map_.exact.transitions.isJump(face.halfFace);
-  ChartEdge edge{face.z, face.along};
-  if (isJump && owned == mate) edge = behind(face);
-  const OwnersFace ownersFace(map_.exact.corners[owner], local);
-  const FaceCrossing rough =
-      crossAt(shareRoughly(ownersFace, edge, unit_), ownersFace, edge, unit_);
-  const FacePoints corners = pointsOf(map_.topology.tets[owner], local, map_.input.view.points);
-  crossing = {
-      pointInFace(rough.shares, corners), rough.parameter, {owner, faceMask(local)}, tetOf(mate)};
-  const double fromMiddle = rough.parameter - 0.5;
-  const double distance = std::abs(fromMiddle);
-  const bool isSure = rough.inside && distance < 0.5 - rough.error && distance > rough.error;
-  return {isSure ? 0U : 1U, isJump ? 1U : 0U, fromMiddle < 0 ? 1U : 0U};
-}
-
-/// Adds an edge that passes through the interiors of faces and tets, and its midpoint through that
-/// of a tet, along the axis of this one.
-/// @param first  its first crossing
-void EdgeReplay::addSure(const FollowedEdge& edge, Index first, const FollowedEdges& followed) {
-  const Index end = edge.faceEnd;
-  const Index middleAt = first + counts_[end].early - counts_[first].early;
-  ChartEdge middle{edge.z, edge.along};
-  if (counts_[end].jumps != counts_[first].jumps && middleAt > first) {
-    middle = behind(followed.faces[middleAt - 1]);
-  }
-  const bool reversed = signOf(middle.along) < 0;
-  arcs_.push_back({{edge.ends[reversed ? 1 : 0], edge.ends[reversed ? 0 : 1]},
-                   first,
-                   end - first,
-                   edge.tet,
-                   reversed});
-  points_ += end - first;
-  addKey(middleAt > first ? crossings_[middleAt - 1].behind : edge.tet, middle);
 }
 
 void EdgeReplay::addUnsure(const FollowedEdge& edge, Faces faces) {
@@ -101,54 +79,77 @@ void EdgeReplay::addUnsure(const FollowedEdge& edge, Faces faces) {
     pieces_.reverseFrom(points, segments);
     pieces_.changeParameters(points, [](double& parameter) { parameter = 1 - parameter; });
   }
-  addArcOfPieces(ends, points);
-  addKey(exactly_.owner(), middle);
+  addArcOfPieces(ends, points, exactly_.owner(), middle);
 }
 
-void EdgeReplay::addArcOfPieces(const std::array<Index, 2>& ends, std::size_t firstPoint) {
+void EdgeReplay::addArcOfPieces(const std::array<Index, 2>& ends, std::size_t firstPoint,
+                                Index owner, const ChartEdge& middle) {
   EdgeTracer::smoothParameters(pieces_, firstPoint);
-  const auto number = static_cast<Index>(pieces_.arcs());
   pieces_.addArc(ends, firstPoint);
-  arcs_.push_back({ends, number, 0, kNone, false});
-  points_ += pieces_.points() - firstPoint;
+  keys_.emplace_back(owner, middle);
 }
 
-void EdgeReplay::copyTo(Arcs& to, std::uint64_t firstArc, std::uint64_t firstPoint) const {
-  std::uint64_t number = firstArc;
-  std::uint64_t point = firstPoint;
-  for (const Arc& arc : arcs_) {
-    to.ends[number] = arc.ends;
-    to.pointBegin[number] = point;
-    if (arc.tet != kNone) {
-      copySure(arc, to, number, point);
-      point += arc.count;
+void EdgeReplay::copyTo(Arcs& to, std::span<EdgeKey> keys, std::uint64_t firstArc,
+                        std::uint64_t firstPoint) const {
+  Place place{firstArc, firstPoint};
+  Index first = 0;
+  std::size_t unsure = 0;
+  for (const FollowedEdge& edge : followed_->edges) {
+    to.pointBegin[place.arc] = place.point;
+    if (isSure(edge, first)) {
+      copySure(edge, first, to, keys, place);
+      place.point += edge.faceEnd - first;
     } else {
-      pieces_.copyArc(arc.first, to, number, point);
-      point += pieces_.pointsOf(arc.first);
+      pieces_.copyArc(unsure, to, place.arc, place.point);
+      if (!keys.empty()) keys[place.arc] = keys_[unsure];
+      place.point += pieces_.pointsOf(unsure);
+      ++unsure;
     }
-    ++number;
+    ++place.arc;
+    first = edge.faceEnd;
   }
 }
 
-void EdgeReplay::copySure(const Arc& arc, Arcs& to, std::uint64_t number,
-                          std::uint64_t firstPoint) const {
-  const Crossing* const crossings = crossings_.data() + arc.first;
-  const std::size_t count = arc.count;
-  double low = EdgeTracer::kLeastParameter;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Crossing& crossing = crossings[arc.reversed ? count - 1 - i : i];
-    const std::uint64_t place = firstPoint + i;
-    to.points[place] = crossing.point;
-    low = EdgeTracer::smooth(arc.reversed ? 1 - crossing.parameter : crossing.parameter, low);
-    to.parameters[place] = low;
-    to.generatorTet[place] = crossing.generator.tet;
-    to.generatorCorners[place] = crossing.generator.corners;
+/// Along the axis of the midpoint's owner.
+void EdgeReplay::copySure(const FollowedEdge& edge, Index first, Arcs& to, std::span<EdgeKey> keys,
+                          const Place& place) const {
+  const FollowedCrossing* const crossings = crossings_.data() + first;
+  const std::size_t count = edge.faceEnd - first;
+  const CrossingCounts& upTo = counts_[edge.faceEnd];
+  const std::size_t early = upTo.early - counts_[first].early;
+  ChartEdge middle{edge.z, edge.along};
+  if (upTo.jumps != counts_[first].jumps && early > 0) {
+    middle = behind(followed_->faces[first + early - 1]);
   }
-  const std::uint64_t firstSegment = firstPoint + number;
-  for (std::size_t i = 0; i <= count; ++i) {
-    const std::uint64_t place = firstSegment + (arc.reversed ? count - i : i);
-    to.segmentTet[place] = i == 0 ? arc.tet : crossings[i - 1].behind;
-    to.segmentCorners[place] = kWholeTet;
+  if (!keys.empty()) {
+    keys[place.arc] = {early > 0 ? crossings[early - 1].behind : edge.tet, middle};
+  }
+  const bool reversed = signOf(middle.along) < 0;
+  to.ends[place.arc] = {edge.ends[reversed ? 1 : 0], edge.ends[reversed ? 0 : 1]};
+
+  std::uint64_t segment = place.point + place.arc;
+  to.segmentCorners[segment] = kWholeTet;
+  if (count == 0) {
+    to.segmentTet[segment] = edge.tet;
+    return;
+  }
+  for (std::size_t i = 1; i <= count; ++i) to.segmentCorners[segment + i] = kWholeTet;
+  // Forward from the first one, or backward from the last.
+  const std::size_t way = reversed ? ~std::size_t{0} : 1;
+  segment += reversed ? count : 0;
+  to.segmentTet[segment] = edge.tet;
+  std::size_t from = reversed ? count - 1 : 0;
+  double before = EdgeTracer::kLeastParameter;
+  for (std::size_t i = 0; i < count; ++i, from += way) {
+    segment += way;
+    to.segmentTet[segment] = crossings[i].behind;
+    const FollowedCrossing& crossing = crossings[from];
+    const std::uint64_t point = place.point + i;
+    before = EdgeTracer::smooth(reversed ? 1 - crossing.parameter : crossing.parameter, before);
+    to.points[point] = crossing.point;
+    to.parameters[point] = before;
+    to.generatorTet[point] = crossing.generator.tet;
+    to.generatorCorners[point] = crossing.generator.corners;
   }
 }
 
@@ -159,8 +160,7 @@ void EdgeReplay::traceFromMiddle(const FollowedEdge& followed, Faces faces) {
   const std::size_t before = pieces_.points();
   const int axis = axisOf(edge.along);
   const auto ends = tracer_.trace({middle.tet, middle.simplex, Frame::along(edge.z, axis)});
-  addArcOfPieces(ends, before);
-  addKey(middle.tet, edge);
+  addArcOfPieces(ends, before, middle.tet, edge);
 }
 
 /// A simplex with the midpoint, in one of the tets that the edge was followed through.
@@ -171,8 +171,8 @@ SimplexInTet EdgeReplay::findMiddle(const FollowedEdge& followed, Faces faces) c
     const ChartEdge edge = at.ascending();
     const int axis = axisOf(edge.along);
     LatticePoint middle;
-    for (std::size_t k = 0; k < 3; ++k) middle[k] = edge.z[k] * unit_;
-    middle[static_cast<std::size_t>(axis)] += unit_ / 2;
+    for (std::size_t k = 0; k < 3; ++k) middle[k] = edge.z[k] * map_.exact.unit;
+    middle[static_cast<std::size_t>(axis)] += map_.exact.unit / 2;
     const LatticeTet& corners = map_.exact.corners[tet];
     const CornerMask simplex =
         simplexBySides([&](std::size_t face) { return sideOfFace(corners, face, middle); });

@@ -26,18 +26,35 @@ struct EdgeKey {
   Index tet;
   std::int32_t axis;
   GridPoint z;
+
+  EdgeKey() = default;
+  /// @param edge  in the owner's chart
+  EdgeKey(Index owner, const ChartEdge& edge) noexcept
+      : tet(owner), axis(axisOf(edge.along)), z(edge.ascending().z) {}
+};
+
+/// Where an edge crosses the interior of a face.
+struct FollowedCrossing {
+  Vec3 point;
+  double parameter;  ///< in the direction in which the edge was followed
+  OwnedSimplex generator;
+  Index behind;  ///< the next tet
+};
+
+/// What is known of the crossings up to one.
+struct CrossingCounts {
+  Index unsure = 0;  ///< perhaps not inside the face, behind the end or at the midpoint
+  Index jumps = 0;   ///< from chart to chart
+  Index early = 0;   ///< before the midpoint
 };
 
 /// Computes the points where edges cross faces, and traces those anew that meet edges or vertices
 /// of the tets or lie in faces. Makes what traceArcs() makes of an edge, bit for bit.
 class EdgeReplay {
  public:
-  /// @param withKeys  whether keys() will be asked for
-  EdgeReplay(const PreparedMap& map, const LatticeNumbers& vertices, bool withKeys)
+  EdgeReplay(const PreparedMap& map, const LatticeNumbers& vertices)
       : map_(map),
-        unit_(map.exact.unit),
         vertices_(vertices),
-        withKeys_(withKeys),
         exactly_(map, vertices, pieces_),
         tracer_(map, vertices, pieces_),
         star_(map.topology, map.exact) {}
@@ -47,67 +64,59 @@ class EdgeReplay {
   EdgeReplay& operator=(EdgeReplay&&) = delete;
   ~EdgeReplay() = default;
 
-  void clear() noexcept;
+  /// Edges of a block, once between calls of clear().
+  /// @param followed  stays there until then
   void add(const FollowedEdges& followed);
+  void clear() noexcept {
+    followed_ = nullptr;
+    pieces_.clear();
+    keys_.clear();
+  }
 
   // What has been added:
-  [[nodiscard]] std::size_t arcs() const noexcept { return arcs_.size(); }
+  [[nodiscard]] std::size_t arcs() const noexcept { return followed_->edges.size(); }
   [[nodiscard]] std::size_t points() const noexcept { return points_; }
   /// Copies all to where it belongs.
-  void copyTo(Arcs& to, std::uint64_t firstArc, std::uint64_t firstPoint) const;
-  /// Per arc.
-  [[nodiscard]] std::span<const EdgeKey> keys() const noexcept { return keys_; }
+  /// @param keys  of all arcs; may be empty
+  void copyTo(Arcs& to, std::span<EdgeKey> keys, std::uint64_t firstArc,
+              std::uint64_t firstPoint) const;
 
  private:
-  /// Where an edge crosses the interior of a face.
-  struct Crossing {
-    Vec3 point;
-    double parameter;  ///< in the direction in which the edge was followed
-    OwnedSimplex generator;
-    Index behind;  ///< the next tet
-  };
-  /// Of the crossings up to one.
-  struct Counts {
-    Index unsure = 0;  ///< perhaps not inside the face, behind the end or at the midpoint
-    Index jumps = 0;   ///< from chart to chart
-    Index early = 0;   ///< before the midpoint
-  };
-  struct Arc {
-    std::array<Index, 2> ends;
-    Index first;  ///< its first crossing, or its number among `pieces_`
-    Index count;  ///< of crossings
-    Index tet;    ///< in which it was followed first; kNone if it is among `pieces_`
-    bool reversed;
-  };
   using Faces = std::span<const FollowedFace>;
+  /// Where an arc and its points belong.
+  struct Place {
+    std::uint64_t arc;
+    std::uint64_t point;
+  };
 
   void cross(Faces faces);
-  [[nodiscard]] Counts cross(const FollowedFace& face, Crossing& crossing) const;
-  void addSure(const FollowedEdge& edge, Index first, const FollowedEdges& followed);
+  /// Whether it is certain that an edge passes through the interiors of faces and tets, and its
+  /// midpoint through that of a tet.
+  /// @param first  its first crossing
+  [[nodiscard]] bool isSure(const FollowedEdge& edge, Index first) const noexcept {
+    const Index end = edge.faceEnd;
+    return (end > first || edge.inside) && counts_[end].unsure == counts_[first].unsure;
+  }
   void addUnsure(const FollowedEdge& edge, Faces faces);
   void traceFromMiddle(const FollowedEdge& edge, Faces faces);
-  void addArcOfPieces(const std::array<Index, 2>& ends, std::size_t firstPoint);
   [[nodiscard]] SimplexInTet findMiddle(const FollowedEdge& edge, Faces faces) const;
   [[nodiscard]] SimplexInTet ownedMiddle(const SimplexInTet& middle);
   [[nodiscard]] ChartEdge behind(const FollowedFace& face) const noexcept {
     return ChartEdge{face.z, face.along}.across(map_.exact.transitions, face.halfFace);
   }
-  /// @param edge  in the chart of the owner
-  void addKey(Index owner, const ChartEdge& edge) {
-    if (withKeys_) keys_.push_back({owner, axisOf(edge.along), edge.ascending().z});
-  }
-  void copySure(const Arc& arc, Arcs& to, std::uint64_t number, std::uint64_t firstPoint) const;
+  void addArcOfPieces(const std::array<Index, 2>& ends, std::size_t firstPoint, Index owner,
+                      const ChartEdge& middle);
+  void copySure(const FollowedEdge& edge, Index first, Arcs& to, std::span<EdgeKey> keys,
+                const Place& place) const;
 
   const PreparedMap& map_;
-  std::int64_t unit_;
   const LatticeNumbers& vertices_;
-  bool withKeys_;
-  Array<Arc> arcs_;
-  Array<EdgeKey> keys_;
+  const FollowedEdges* followed_ = nullptr;
   std::size_t points_ = 0;
-  Array<Crossing> crossings_;
-  Array<Counts> counts_;  ///< per crossing, and one before the first
-  ArcPieces pieces_;      ///< of edges that are not in general position
+  Array<FollowedCrossing> crossings_;
+  Array<CrossingCounts> counts_;  ///< per crossing, and one before the first
+  ArcPieces pieces_;              ///< of edges that are not sure
+  Array<EdgeKey> keys_;           ///< of the same
   ExactReplay exactly_;
   EdgeTracer tracer_;
   SimplexStar star_;

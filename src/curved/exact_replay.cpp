@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <curved/edge_crossing.hpp>
 #include <curved/exact_replay.hpp>
 #include <curved/simplex_point.hpp>
@@ -42,12 +44,18 @@ ExactReplay::Passed ExactReplay::pass(HalfFace halfFace) {
   const SimplexPoint point = crossingOfFace(seen, face, axis);
   const CornerMask exit = point.simplex();
   if (exit == kNoSimplex) return Passed::Failed;  // in the plane of the face
-  const bool isBegin = point.compare(seen, axis, 0) <= 0;
-  if (!isBegin && point.compare(seen, axis, unit) >= 0) {
+  const SimplexPoint::Rough place = point.roughly(seen, axis);
+  const auto compare = [&](std::int64_t target) {
+    const double difference = place.at - static_cast<double>(target);
+    if (std::abs(difference) > place.error) return difference > 0 ? 1 : -1;
+    return point.compare(seen, axis, target);
+  };
+  const bool isBegin = compare(0) <= 0;
+  if (!isBegin && compare(unit) >= 0) {
     return addSegment(exit, true) ? Passed::ToEnd : Passed::Failed;
   }
   if (!isBegin && exit != entered_) {
-    const int fromMiddle = point.compare(seen, axis, unit / 2);
+    const int fromMiddle = compare(unit / 2);
     if (fromMiddle == 0 || !addSegment(exit, fromMiddle > 0)) return Passed::Failed;
     const ArcExit found =
         exit == faceMask(face)

@@ -62,6 +62,26 @@ struct SimplexPoint {
     return exact.sign();
   }
 
+  /// A coordinate of the point, and a bound for its error.
+  struct Rough {
+    double at;
+    double error;
+  };
+  [[nodiscard]] Rough roughly(const LatticeTet& corners, std::size_t axis) const noexcept {
+    double all = 0;
+    double sum = 0;
+    double magnitude = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double weight = toDouble(weights[i]);
+      const double term = weight * static_cast<double>(corners[i][axis]);
+      all += weight;
+      sum += term;
+      magnitude += std::abs(term);
+    }
+    // As in compare(), and two more roundings for the division.
+    return {sum / all, 0x1p-48 * (magnitude / all)};
+  }
+
   /// Weights with sum 1, rounded.
   [[nodiscard]] std::array<double, 4> normalized() const noexcept {
     std::array<double, 4> shares{};

@@ -133,7 +133,7 @@ class Tracer {
         recorder.drop();
         return;
       }
-      const auto isInside = [&](Index g) { return vertices_.generators[g].simplex == kWholeTet; };
+      const auto isInside = [&](Index g) { return local_.configurationOf[g] == 0; };
       recorder.keep({{vertex, end},
                      begin.tet,
                      begin.z,

@@ -67,6 +67,7 @@ class TraceGuest {
   /// @param lines  of all tets; they stay there until take()
   virtual void begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& stage) = 0;
   /// Blocks of a wave in any order and in parallel.
+  /// @param edges  stay there until place()
   virtual void add(std::size_t block, const FollowedEdges& edges) = 0;
   /// After the blocks of a wave.
   virtual void measure(std::size_t firstBlock, std::size_t endBlock) = 0;
