@@ -8,9 +8,10 @@ namespace hexhex {
 
 namespace {
 
+/// Computes one of the crossings.
 /// @param[in,out] counts  of the crossings before
-void crossFollowed(const PreparedMap& map, const FollowedFace& face, FollowedCrossing& crossing,
-                   CrossingCounts& counts) {
+void crossFollowed(const PreparedMap& map, const FollowedFace& face, std::size_t number,
+                   FollowedCrossings& crossings, CrossingCounts& counts) {
   const HalfFace mate = map.topology.mate[face.halfFace];
   const HalfFace owned = std::min(face.halfFace, mate);  // of the smaller tet
   const Index owner = tetOf(owned);
@@ -22,10 +23,11 @@ void crossFollowed(const PreparedMap& map, const FollowedFace& face, FollowedCro
   const OwnersFace ownersFace(map.exact.corners[owner], local);
   const FaceCrossing rough = crossAt(shareRoughly(ownersFace, edge, unit), ownersFace, edge, unit);
   const FacePoints corners = pointsOf(map.topology.tets[owner], local, map.input.view.points);
-  crossing.point = pointInFace(rough.shares, corners);
-  crossing.parameter = rough.parameter;
-  crossing.generator = {owner, faceMask(local)};
-  crossing.behind = tetOf(mate);
+  crossings.points[number] = pointInFace(rough.shares, corners);
+  crossings.parameters[number] = rough.parameter;
+  crossings.generatorTet[number] = owner;
+  crossings.generatorCorners[number] = faceMask(local);
+  crossings.behind[number] = tetOf(mate);
   const double distance = std::abs(rough.parameter - 0.5);
   const bool isSure = rough.inside && distance < 0.5 - rough.error && distance > rough.error;
   counts.unsure += isSure ? 0 : 1;
@@ -59,7 +61,7 @@ void EdgeReplay::cross(Faces faces) {
   CrossingCounts counts;
   counts_[0] = counts;
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    crossFollowed(map_, faces[i], crossings_[i], counts);
+    crossFollowed(map_, faces[i], i, crossings_, counts);
     counts_[i + 1] = counts;
   }
 }
@@ -92,14 +94,16 @@ void EdgeReplay::addArcOfPieces(const std::array<Index, 2>& ends, std::size_t fi
 void EdgeReplay::copyTo(Arcs& to, std::span<EdgeKey> keys, std::uint64_t firstArc,
                         std::uint64_t firstPoint) const {
   Place place{firstArc, firstPoint};
+  Index copied = 0;  // crossings before this one
   Index first = 0;
   std::size_t unsure = 0;
   for (const FollowedEdge& edge : followed_->edges) {
     to.pointBegin[place.arc] = place.point;
     if (isSure(edge, first)) {
-      copySure(edge, first, to, keys, place);
       place.point += edge.faceEnd - first;
     } else {
+      copyCrossings(copied, first, to, place.point);
+      copied = edge.faceEnd;
       pieces_.copyArc(unsure, to, place.arc, place.point);
       if (!keys.empty()) keys[place.arc] = keys_[unsure];
       place.point += pieces_.pointsOf(unsure);
@@ -108,12 +112,33 @@ void EdgeReplay::copyTo(Arcs& to, std::span<EdgeKey> keys, std::uint64_t firstAr
     ++place.arc;
     first = edge.faceEnd;
   }
+  copyCrossings(copied, first, to, place.point);
+  place.arc = firstArc;
+  first = 0;
+  for (const FollowedEdge& edge : followed_->edges) {
+    place.point = to.pointBegin[place.arc];
+    if (isSure(edge, first)) copySure(edge, first, to, keys, place);
+    ++place.arc;
+    first = edge.faceEnd;
+  }
 }
 
-/// Along the axis of the midpoint's owner.
+/// Copies the points of consecutive sure edges, as they are.
+/// @param end  where they end
+void EdgeReplay::copyCrossings(Index first, Index end, Arcs& to, std::uint64_t place) const {
+  const auto copy = [&](const auto& from, auto& target) {
+    std::copy(from.begin() + first, from.begin() + end,
+              target.begin() + static_cast<std::ptrdiff_t>(place - (end - first)));
+  };
+  copy(crossings_.points, to.points);
+  copy(crossings_.parameters, to.parameters);
+  copy(crossings_.generatorTet, to.generatorTet);
+  copy(crossings_.generatorCorners, to.generatorCorners);
+}
+
+/// Adds what else an arc has, along the axis of the midpoint's owner.
 void EdgeReplay::copySure(const FollowedEdge& edge, Index first, Arcs& to, std::span<EdgeKey> keys,
                           const Place& place) const {
-  const FollowedCrossing* const crossings = crossings_.data() + first;
   const std::size_t count = edge.faceEnd - first;
   const CrossingCounts& upTo = counts_[edge.faceEnd];
   const std::size_t early = upTo.early - counts_[first].early;
@@ -122,34 +147,41 @@ void EdgeReplay::copySure(const FollowedEdge& edge, Index first, Arcs& to, std::
     middle = behind(followed_->faces[first + early - 1]);
   }
   if (!keys.empty()) {
-    keys[place.arc] = {early > 0 ? crossings[early - 1].behind : edge.tet, middle};
+    keys[place.arc] = {early > 0 ? crossings_.behind[first + early - 1] : edge.tet, middle};
   }
   const bool reversed = signOf(middle.along) < 0;
   to.ends[place.arc] = {edge.ends[reversed ? 1 : 0], edge.ends[reversed ? 0 : 1]};
+  Index* const segments = &to.segmentTet[place.point + place.arc];
+  std::fill_n(&to.segmentCorners[place.point + place.arc], count + 1, kWholeTet);
+  segments[0] = edge.tet;
+  if (count == 0) return;
+  std::copy_n(&crossings_.behind[first], count, segments + 1);
+  if (reversed) reverse(to, place, count);
+  if (count > 1) smooth(to, place, count);
+}
 
-  std::uint64_t segment = place.point + place.arc;
-  to.segmentCorners[segment] = kWholeTet;
-  if (count == 0) {
-    to.segmentTet[segment] = edge.tet;
-    return;
+/// Turns the points and segments of an arc round.
+void EdgeReplay::reverse(Arcs& to, const Place& place, std::size_t count) {
+  const auto turn = [](auto& array, std::uint64_t first, std::size_t size) {
+    std::reverse(&array[first], &array[first] + size);
+  };
+  turn(to.segmentTet, place.point + place.arc, count + 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    to.parameters[place.point + i] = 1 - to.parameters[place.point + i];
   }
-  for (std::size_t i = 1; i <= count; ++i) to.segmentCorners[segment + i] = kWholeTet;
-  // Forward from the first one, or backward from the last.
-  const std::size_t way = reversed ? ~std::size_t{0} : 1;
-  segment += reversed ? count : 0;
-  to.segmentTet[segment] = edge.tet;
-  std::size_t from = reversed ? count - 1 : 0;
+  if (count == 1) return;
+  turn(to.points, place.point, count);
+  turn(to.parameters, place.point, count);
+  turn(to.generatorTet, place.point, count);
+  turn(to.generatorCorners, place.point, count);
+}
+
+/// Of an arc whose parameters are certain to be in (0, 1).
+void EdgeReplay::smooth(Arcs& to, const Place& place, std::size_t count) {
   double before = EdgeTracer::kLeastParameter;
-  for (std::size_t i = 0; i < count; ++i, from += way) {
-    segment += way;
-    to.segmentTet[segment] = crossings[i].behind;
-    const FollowedCrossing& crossing = crossings[from];
-    const std::uint64_t point = place.point + i;
-    before = EdgeTracer::smooth(reversed ? 1 - crossing.parameter : crossing.parameter, before);
-    to.points[point] = crossing.point;
-    to.parameters[point] = before;
-    to.generatorTet[point] = crossing.generator.tet;
-    to.generatorCorners[point] = crossing.generator.corners;
+  for (std::size_t i = 0; i < count; ++i) {
+    double& parameter = to.parameters[place.point + i];
+    parameter = before = EdgeTracer::smooth(parameter, before);
   }
 }
 

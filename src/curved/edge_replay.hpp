@@ -33,12 +33,21 @@ struct EdgeKey {
       : tet(owner), axis(axisOf(edge.along)), z(edge.ascending().z) {}
 };
 
-/// Where an edge crosses the interior of a face.
-struct FollowedCrossing {
-  Vec3 point;
-  double parameter;  ///< in the direction in which the edge was followed
-  OwnedSimplex generator;
-  Index behind;  ///< the next tet
+/// Where edges cross the interiors of faces, in the order in which they were followed.
+struct FollowedCrossings {
+  Array<Vec3> points;
+  Array<double> parameters;  ///< in the direction in which the edge was followed
+  Array<Index> generatorTet;
+  Array<CornerSet> generatorCorners;
+  Array<Index> behind;  ///< the next tet
+
+  void resize(std::size_t count) {
+    points.resize(count);
+    parameters.resize(count);
+    generatorTet.resize(count);
+    generatorCorners.resize(count);
+    behind.resize(count);
+  }
 };
 
 /// What is known of the crossings up to one.
@@ -54,7 +63,6 @@ class EdgeReplay {
  public:
   EdgeReplay(const PreparedMap& map, const LatticeNumbers& vertices)
       : map_(map),
-        vertices_(vertices),
         exactly_(map, vertices, pieces_),
         tracer_(map, vertices, pieces_),
         star_(map.topology, map.exact) {}
@@ -94,26 +102,31 @@ class EdgeReplay {
   /// midpoint through that of a tet.
   /// @param first  its first crossing
   [[nodiscard]] bool isSure(const FollowedEdge& edge, Index first) const noexcept {
+    // Without branches, as whether there are crossings is as good as random.
     const Index end = edge.faceEnd;
-    return (end > first || edge.inside) && counts_[end].unsure == counts_[first].unsure;
+    const auto isInside = static_cast<unsigned>(end > first) | static_cast<unsigned>(edge.inside);
+    const auto allSure = static_cast<unsigned>(counts_[end].unsure == counts_[first].unsure);
+    return (isInside & allSure) != 0;
   }
   void addUnsure(const FollowedEdge& edge, Faces faces);
-  void traceFromMiddle(const FollowedEdge& edge, Faces faces);
-  [[nodiscard]] SimplexInTet findMiddle(const FollowedEdge& edge, Faces faces) const;
+  void traceFromMiddle(const FollowedEdge& followed, Faces faces);
+  [[nodiscard]] SimplexInTet findMiddle(const FollowedEdge& followed, Faces faces) const;
   [[nodiscard]] SimplexInTet ownedMiddle(const SimplexInTet& middle);
   [[nodiscard]] ChartEdge behind(const FollowedFace& face) const noexcept {
     return ChartEdge{face.z, face.along}.across(map_.exact.transitions, face.halfFace);
   }
   void addArcOfPieces(const std::array<Index, 2>& ends, std::size_t firstPoint, Index owner,
                       const ChartEdge& middle);
+  void copyCrossings(Index first, Index end, Arcs& to, std::uint64_t place) const;
   void copySure(const FollowedEdge& edge, Index first, Arcs& to, std::span<EdgeKey> keys,
                 const Place& place) const;
+  static void reverse(Arcs& to, const Place& place, std::size_t count);
+  static void smooth(Arcs& to, const Place& place, std::size_t count);
 
   const PreparedMap& map_;
-  const LatticeNumbers& vertices_;
   const FollowedEdges* followed_ = nullptr;
   std::size_t points_ = 0;
-  Array<FollowedCrossing> crossings_;
+  FollowedCrossings crossings_;
   Array<CrossingCounts> counts_;  ///< per crossing, and one before the first
   ArcPieces pieces_;              ///< of edges that are not sure
   Array<EdgeKey> keys_;           ///< of the same

@@ -137,8 +137,9 @@ template <class Face>
 [[nodiscard]] FaceCrossing crossAt(const FaceShares& shares, const Face& face,
                                    const ChartEdge& edge, std::int64_t unit) noexcept {
   const auto axis = static_cast<std::size_t>(axisOf(edge.along));
-  const bool ascends = signOf(edge.along) > 0;
-  const std::int64_t begin = std::int64_t{edge.z[axis]} - (ascends ? 0 : 1);
+  // No branch may depend on the direction, which is as good as random.
+  const std::size_t descends = signOf(edge.along) > 0 ? 0 : 1;
+  const std::int64_t begin = std::int64_t{edge.z[axis]} - static_cast<std::int64_t>(descends);
   const auto first = static_cast<double>(face.first(axis) - begin * unit);
   const double second = face.second(axis);
   const double third = face.third(axis);
@@ -146,7 +147,7 @@ template <class Face>
   const double perUnit = 1 / static_cast<double>(unit);
   // A multiple of 2^-53, so that the way back is as exact as the way there.
   const double rest = 1 - (first + beyond) * perUnit;
-  const double parameter = ascends ? 1 - rest : rest;
+  const double parameter = std::array{1 - rest, rest}[descends];
   const double reach = std::abs(second) + std::abs(third);
   const double error = (0x1p-36 * reach + 0x1p-50 * std::abs(first)) * perUnit + 0x1p-52;
   return {shares.of, parameter, error, shares.inside};
