@@ -4,6 +4,7 @@
 // chart, on the order of corners, or on which end the edge is followed from.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
