@@ -7,6 +7,18 @@
 
 namespace hexhex {
 
+namespace {
+
+/// @param fit  whether each edge has come once
+void requireArcs(bool fit) {
+  if (fit) return;
+  throw Error(ErrorCode::Internal,
+              "Some hex edges were not followed, or more than once. The map passed all checks, so "
+              "this is a bug; please report it with the map.");
+}
+
+}  // namespace
+
 void ArcGuest::begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& stage) {
   requireNumbers(sizes.edges);
   slots_.clear();
@@ -29,6 +41,7 @@ void ArcGuest::measure(std::size_t firstBlock, std::size_t endBlock) {
     arcCount_ += slot.replay.arcs();
     points += slot.replay.points();
   }
+  requireArcs(arcCount_ <= arcs_.count());
   lengthenForPieces(arcs_, points, arcCount_);
 }
 
@@ -39,6 +52,7 @@ void ArcGuest::place(std::size_t block) {
 }
 
 Arcs ArcGuest::takeArcs() {
+  requireArcs(arcCount_ == arcs_.count());
   slots_.clear();
   vertices_.reset();
   arcs_.pointBegin.back() = arcs_.points.size();
