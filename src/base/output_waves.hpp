@@ -56,7 +56,7 @@ void parallelWaves(Stage& stage, std::size_t n, std::size_t grain, std::size_t w
 template <class T>
 void lengthen(Array<T>& array, std::size_t size, double share) {
   constexpr double kReserve = 1.1;
-  constexpr double kMostAhead = 16;  // a beginning may be far from what is typical
+  constexpr double kMostAhead = 128;  // a beginning may be far from what is typical
   if (size > array.capacity()) {
     const double factor = std::clamp(kReserve / share, kReserve, kMostAhead);
     array.reserve(static_cast<std::size_t>(factor * static_cast<double>(size)));

@@ -5,7 +5,8 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
-#include <vector>
+#include <span>
+#include <utility>
 
 #include <curved/edge_replay.hpp>
 #include <curved/element_numbers.hpp>
@@ -25,6 +26,7 @@ class ArcGuest final : public TraceGuest {
   /// @param withKeys  whether keys() will be asked for
   ArcGuest(const PreparedMap& map, bool withKeys) : map_(map), withKeys_(withKeys) {}
 
+  /// @throws Error TooLarge for more edges than an Index can number
   void begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& stage) override;
   void add(std::size_t block, const FollowedEdges& edges) override {
     slots_[block % slots_.size()].replay.add(edges);
@@ -34,7 +36,7 @@ class ArcGuest final : public TraceGuest {
   void take(LatticeLines lines) override { lines_ = std::move(lines); }
 
   // Once, when the engine is done:
-  /// @throws Error TooLarge for more edges than an Index can number
+  /// @throws Error Internal if edges are missing
   [[nodiscard]] Arcs takeArcs();
   /// Per arc.
   [[nodiscard]] std::span<const EdgeKey> keys() const noexcept { return keys_; }
@@ -43,7 +45,7 @@ class ArcGuest final : public TraceGuest {
   }
 
  private:
-  /// For a block of each wave.
+  /// For one block of each wave.
   struct Slot {
     Slot(const PreparedMap& map, const LatticeNumbers& vertices) : replay(map, vertices) {}
 

@@ -9,9 +9,10 @@ namespace hexhex {
 namespace {
 
 /// Computes one of the crossings.
+/// @param perUnit  1 / unit
 /// @param[in,out] counts  of the crossings before
-void crossFollowed(const PreparedMap& map, const FollowedFace& face, std::size_t number,
-                   FollowedCrossings& crossings, CrossingCounts& counts) {
+void crossFollowed(const PreparedMap& map, double perUnit, const FollowedFace& face,
+                   std::size_t number, FollowedCrossings& crossings, CrossingCounts& counts) {
   const HalfFace mate = map.topology.mate[face.halfFace];
   const HalfFace owned = std::min(face.halfFace, mate);  // of the smaller tet
   const Index owner = tetOf(owned);
@@ -21,7 +22,8 @@ void crossFollowed(const PreparedMap& map, const FollowedFace& face, std::size_t
   ChartEdge edge{face.z, face.along};
   if (isJump && owned == mate) edge = edge.across(map.exact.transitions, face.halfFace);
   const OwnersFace ownersFace(map.exact.corners[owner], local);
-  const FaceCrossing rough = crossAt(shareRoughly(ownersFace, edge, unit), ownersFace, edge, unit);
+  const FaceCrossing rough =
+      crossAt(shareRoughly(ownersFace, edge, unit), ownersFace, edge, unit, perUnit);
   const FacePoints corners = pointsOf(map.topology.tets[owner], local, map.input.view.points);
   crossings.points[number] = pointInFace(rough.shares, corners);
   crossings.parameters[number] = rough.parameter;
@@ -44,8 +46,10 @@ void EdgeReplay::add(const FollowedEdges& followed) {
   cross(followed.faces);
   points_ = followed.faces.size();
   Index first = 0;
-  for (const FollowedEdge& edge : followed.edges) {
+  for (std::size_t i = 0; i < followed.edges.size(); ++i) {
+    const FollowedEdge& edge = followed.edges[i];
     if (!isSure(edge, first)) {
+      unsure_.push_back(static_cast<Index>(i));
       const std::size_t before = pieces_.points();
       addUnsure(edge, Faces(followed.faces).subspan(first, edge.faceEnd - first));
       points_ += pieces_.points() - before;
@@ -60,8 +64,9 @@ void EdgeReplay::cross(Faces faces) {
   counts_.resize(faces.size() + 1);
   CrossingCounts counts;
   counts_[0] = counts;
+  const double perUnit = 1 / static_cast<double>(map_.exact.unit);
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    crossFollowed(map_, faces[i], i, crossings_, counts);
+    crossFollowed(map_, perUnit, faces[i], i, crossings_, counts);
     counts_[i + 1] = counts;
   }
 }
@@ -93,52 +98,56 @@ void EdgeReplay::addArcOfPieces(const std::array<Index, 2>& ends, std::size_t fi
 
 void EdgeReplay::copyTo(Arcs& to, std::span<EdgeKey> keys, std::uint64_t firstArc,
                         std::uint64_t firstPoint) const {
+  const std::span<const FollowedEdge> edges = followed_->edges;
   Place place{firstArc, firstPoint};
-  Index copied = 0;  // crossings before this one
-  Index first = 0;
-  std::size_t unsure = 0;
-  for (const FollowedEdge& edge : followed_->edges) {
+  Run run{0, 0, 0};
+  for (std::size_t i = 0; i < unsure_.size(); ++i) {
+    run.end = unsure_[i];
+    place = copyRun(run, to, keys, place);
     to.pointBegin[place.arc] = place.point;
-    if (isSure(edge, first)) {
-      place.point += edge.faceEnd - first;
-    } else {
-      copyCrossings(copied, first, to, place.point);
-      copied = edge.faceEnd;
-      pieces_.copyArc(unsure, to, place.arc, place.point);
-      if (!keys.empty()) keys[place.arc] = keys_[unsure];
-      place.point += pieces_.pointsOf(unsure);
-      ++unsure;
-    }
+    pieces_.copyArc(i, to, place.arc, place.point);
+    if (!keys.empty()) keys[place.arc] = keys_[i];
+    place.point += pieces_.pointsOf(i);
     ++place.arc;
-    first = edge.faceEnd;
+    run = {run.end + 1, 0, edges[run.end].faceEnd};
   }
-  copyCrossings(copied, first, to, place.point);
-  place.arc = firstArc;
-  first = 0;
-  for (const FollowedEdge& edge : followed_->edges) {
-    place.point = to.pointBegin[place.arc];
-    if (isSure(edge, first)) copySure(edge, first, to, keys, place);
-    ++place.arc;
-    first = edge.faceEnd;
-  }
+  run.end = edges.size();
+  static_cast<void>(copyRun(run, to, keys, place));
 }
 
-/// Copies the points of consecutive sure edges, as they are.
-/// @param end  where they end
-void EdgeReplay::copyCrossings(Index first, Index end, Arcs& to, std::uint64_t place) const {
+/// @param place  of the first arc
+/// @return the place behind them
+EdgeReplay::Place EdgeReplay::copyRun(const Run& run, Arcs& to, std::span<EdgeKey> keys,
+                                      Place place) const {
+  if (run.edge == run.end) return place;
+  const std::span<const FollowedEdge> edges = followed_->edges;
+  // All points as they are, and then what is different.
+  const std::size_t points = edges[run.end - 1].faceEnd - run.crossing;
   const auto copy = [&](const auto& from, auto& target) {
-    std::copy(from.begin() + first, from.begin() + end,
-              target.begin() + static_cast<std::ptrdiff_t>(place - (end - first)));
+    std::copy_n(from.begin() + run.crossing, points,
+                target.begin() + static_cast<std::ptrdiff_t>(place.point));
   };
   copy(crossings_.points, to.points);
   copy(crossings_.parameters, to.parameters);
   copy(crossings_.generatorTet, to.generatorTet);
   copy(crossings_.generatorCorners, to.generatorCorners);
+  std::fill_n(to.segmentCorners.begin() + static_cast<std::ptrdiff_t>(place.point + place.arc),
+              points + (run.end - run.edge), kWholeTet);
+  Index crossing = run.crossing;
+  for (const FollowedEdge& edge : edges.subspan(run.edge, run.end - run.edge)) {
+    to.pointBegin[place.arc] = place.point;
+    finishSure(edge, crossing, to, keys, place);
+    place.point += edge.faceEnd - crossing;
+    ++place.arc;
+    crossing = edge.faceEnd;
+  }
+  return place;
 }
 
-/// Adds what else an arc has, along the axis of the midpoint's owner.
-void EdgeReplay::copySure(const FollowedEdge& edge, Index first, Arcs& to, std::span<EdgeKey> keys,
-                          const Place& place) const {
+/// Adds what else the arc of a sure edge has, and turns it round if need be, to make it run along
+/// the axis of the midpoint's owner.
+inline void EdgeReplay::finishSure(const FollowedEdge& edge, Index first, Arcs& to,
+                                   std::span<EdgeKey> keys, const Place& place) const {
   const std::size_t count = edge.faceEnd - first;
   const CrossingCounts& upTo = counts_[edge.faceEnd];
   const std::size_t early = upTo.early - counts_[first].early;
@@ -149,15 +158,24 @@ void EdgeReplay::copySure(const FollowedEdge& edge, Index first, Arcs& to, std::
   if (!keys.empty()) {
     keys[place.arc] = {early > 0 ? crossings_.behind[first + early - 1] : edge.tet, middle};
   }
-  const bool reversed = signOf(middle.along) < 0;
-  to.ends[place.arc] = {edge.ends[reversed ? 1 : 0], edge.ends[reversed ? 0 : 1]};
+  // Most edges cross no face or one. Whether they are turned round is as good as random, so no
+  // branch may depend on it.
+  const std::size_t reversed = signOf(middle.along) < 0 ? 1 : 0;
+  to.ends[place.arc] = {edge.ends[reversed], edge.ends[1 - reversed]};
   Index* const segments = &to.segmentTet[place.point + place.arc];
-  std::fill_n(&to.segmentCorners[place.point + place.arc], count + 1, kWholeTet);
-  segments[0] = edge.tet;
-  if (count == 0) return;
-  std::copy_n(&crossings_.behind[first], count, segments + 1);
-  if (reversed) reverse(to, place, count);
-  if (count > 1) smooth(to, place, count);
+  if (count == 0) {
+    segments[0] = edge.tet;
+  } else if (count == 1) {
+    segments[reversed] = edge.tet;
+    segments[1 - reversed] = crossings_.behind[first];
+    double& parameter = to.parameters[place.point];
+    parameter = std::array{parameter, 1 - parameter}[reversed];
+  } else {
+    segments[0] = edge.tet;
+    std::copy_n(&crossings_.behind[first], count, segments + 1);
+    if (reversed != 0) reverse(to, place, count);
+    smooth(to, place, count);
+  }
 }
 
 /// Turns the points and segments of an arc round.
@@ -166,14 +184,13 @@ void EdgeReplay::reverse(Arcs& to, const Place& place, std::size_t count) {
     std::reverse(&array[first], &array[first] + size);
   };
   turn(to.segmentTet, place.point + place.arc, count + 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    to.parameters[place.point + i] = 1 - to.parameters[place.point + i];
-  }
-  if (count == 1) return;
   turn(to.points, place.point, count);
   turn(to.parameters, place.point, count);
   turn(to.generatorTet, place.point, count);
   turn(to.generatorCorners, place.point, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    to.parameters[place.point + i] = 1 - to.parameters[place.point + i];
+  }
 }
 
 /// Of an arc whose parameters are certain to be in (0, 1).

@@ -57,8 +57,9 @@ struct CrossingCounts {
   Index early = 0;   ///< before the midpoint
 };
 
-/// Computes the points where edges cross faces, and traces those anew that meet edges or vertices
-/// of the tets or lie in faces. Makes what traceArcs() makes of an edge, bit for bit.
+/// Computes the points where edges cross faces, in floating point with a proven bound; those of
+/// edges that meet edges or vertices of the tets, or lie in faces, by exact arithmetic. Makes what
+/// traceArcs() makes of an edge, bit for bit.
 class EdgeReplay {
  public:
   EdgeReplay(const PreparedMap& map, const LatticeNumbers& vertices)
@@ -77,6 +78,7 @@ class EdgeReplay {
   void add(const FollowedEdges& followed);
   void clear() noexcept {
     followed_ = nullptr;
+    unsure_.clear();
     pieces_.clear();
     keys_.clear();
   }
@@ -95,6 +97,12 @@ class EdgeReplay {
   struct Place {
     std::uint64_t arc;
     std::uint64_t point;
+  };
+  /// Consecutive sure edges.
+  struct Run {
+    std::size_t edge;
+    std::size_t end;
+    Index crossing;  ///< the first
   };
 
   void cross(Faces faces);
@@ -117,9 +125,9 @@ class EdgeReplay {
   }
   void addArcOfPieces(const std::array<Index, 2>& ends, std::size_t firstPoint, Index owner,
                       const ChartEdge& middle);
-  void copyCrossings(Index first, Index end, Arcs& to, std::uint64_t place) const;
-  void copySure(const FollowedEdge& edge, Index first, Arcs& to, std::span<EdgeKey> keys,
-                const Place& place) const;
+  [[nodiscard]] Place copyRun(const Run& run, Arcs& to, std::span<EdgeKey> keys, Place place) const;
+  void finishSure(const FollowedEdge& edge, Index first, Arcs& to, std::span<EdgeKey> keys,
+                  const Place& place) const;
   static void reverse(Arcs& to, const Place& place, std::size_t count);
   static void smooth(Arcs& to, const Place& place, std::size_t count);
 
@@ -128,7 +136,8 @@ class EdgeReplay {
   std::size_t points_ = 0;
   FollowedCrossings crossings_;
   Array<CrossingCounts> counts_;  ///< per crossing, and one before the first
-  ArcPieces pieces_;              ///< of edges that are not sure
+  Array<Index> unsure_;           ///< numbers of edges that are not sure
+  ArcPieces pieces_;              ///< of these
   Array<EdgeKey> keys_;           ///< of the same
   ExactReplay exactly_;
   EdgeTracer tracer_;

@@ -133,9 +133,11 @@ template <class Face>
 /// @param shares  of the face's corners, where the line of the edge meets it
 /// @param edge    in the owner's chart
 /// @param unit    a power of two
+/// @param perUnit  1 / unit
 template <class Face>
 [[nodiscard]] FaceCrossing crossAt(const FaceShares& shares, const Face& face,
-                                   const ChartEdge& edge, std::int64_t unit) noexcept {
+                                   const ChartEdge& edge, std::int64_t unit,
+                                   double perUnit) noexcept {
   const auto axis = static_cast<std::size_t>(axisOf(edge.along));
   // No branch may depend on the direction, which is as good as random.
   const std::size_t descends = signOf(edge.along) > 0 ? 0 : 1;
@@ -144,7 +146,6 @@ template <class Face>
   const double second = face.second(axis);
   const double third = face.third(axis);
   const double beyond = shares.of[1] * second + shares.of[2] * third;
-  const double perUnit = 1 / static_cast<double>(unit);
   // A multiple of 2^-53, so that the way back is as exact as the way there.
   const double rest = 1 - (first + beyond) * perUnit;
   const double parameter = std::array{1 - rest, rest}[descends];
@@ -160,7 +161,7 @@ template <class Face>
   FaceShares shares = shareRoughly(face, edge, unit);
   if (!shares.inside) [[unlikely]]
     shares = shareExactly(face, edge, unit);
-  return crossAt(shares, face, edge, unit);
+  return crossAt(shares, face, edge, unit, 1 / static_cast<double>(unit));
 }
 
 /// The corners of a face in space.
