@@ -12,10 +12,11 @@
 namespace hexhex {
 
 /// How many blocks of a loop are to be in memory at the same time: enough for all threads to be
-/// busy, few enough to stay in their caches until they are copied.
+/// busy, few enough to stay in their caches until they are copied. A thread alone waits for nobody.
 [[nodiscard]] inline std::size_t blocksPerWave(std::size_t blocks) {
   constexpr std::size_t kPerThread = 8;
-  return std::min(blocks, kPerThread * static_cast<std::size_t>(currentThreads()));
+  const auto threads = static_cast<std::size_t>(currentThreads());
+  return std::min(blocks, threads == 1 ? 1 : kPerThread * threads);
 }
 
 /// parallelBlocks() in waves of some blocks. After the blocks of a wave, measure(firstBlock,
@@ -56,9 +57,10 @@ void parallelWaves(Stage& stage, std::size_t n, std::size_t grain, std::size_t w
 template <class T>
 void lengthen(Array<T>& array, std::size_t size, double share) {
   constexpr double kReserve = 1.1;
-  constexpr double kMostAhead = 128;  // a beginning may be far from what is typical
+  constexpr double kLeastShare = 1.0 / 1024;  // the very beginning may be far from what is typical
+  constexpr double kFirst = 16;
   if (size > array.capacity()) {
-    const double factor = std::clamp(kReserve / share, kReserve, kMostAhead);
+    const double factor = share < kLeastShare ? kFirst : std::max(kReserve / share, kReserve);
     array.reserve(static_cast<std::size_t>(factor * static_cast<double>(size)));
   }
   array.resize(size);

@@ -105,6 +105,12 @@ class EdgeReplay {
     Index crossing;  ///< the first
   };
 
+  /// The tet that owns the midpoint, and the edge in its chart.
+  struct Middle {
+    Index owner;
+    ChartEdge edge;
+  };
+
   void cross(Faces faces);
   /// Whether it is certain that an edge passes through the interiors of faces and tets, and its
   /// midpoint through that of a tet.
@@ -116,6 +122,8 @@ class EdgeReplay {
     const auto allSure = static_cast<unsigned>(counts_[end].unsure == counts_[first].unsure);
     return (isInside & allSure) != 0;
   }
+  void addSure(std::size_t number, Index first);
+  [[nodiscard]] Middle middleOf(const FollowedEdge& edge, Index first) const noexcept;
   void addUnsure(const FollowedEdge& edge, Faces faces);
   void traceFromMiddle(const FollowedEdge& followed, Faces faces);
   [[nodiscard]] SimplexInTet findMiddle(const FollowedEdge& followed, Faces faces) const;
@@ -126,19 +134,20 @@ class EdgeReplay {
   void addArcOfPieces(const std::array<Index, 2>& ends, std::size_t firstPoint, Index owner,
                       const ChartEdge& middle);
   [[nodiscard]] Place copyRun(const Run& run, Arcs& to, std::span<EdgeKey> keys, Place place) const;
-  void finishSure(const FollowedEdge& edge, Index first, Arcs& to, std::span<EdgeKey> keys,
-                  const Place& place) const;
-  static void reverse(Arcs& to, const Place& place, std::size_t count);
-  static void smooth(Arcs& to, const Place& place, std::size_t count);
+  void reverse(Index first, std::size_t number, std::size_t count);
+  void smooth(Index first, std::size_t count);
 
   const PreparedMap& map_;
   const FollowedEdges* followed_ = nullptr;
   std::size_t points_ = 0;
   FollowedCrossings crossings_;
   Array<CrossingCounts> counts_;  ///< per crossing, and one before the first
-  Array<Index> unsure_;           ///< numbers of edges that are not sure
-  ArcPieces pieces_;              ///< of these
-  Array<EdgeKey> keys_;           ///< of the same
+  // Of sure edges, in the arcs' direction, as are their crossings in the end:
+  Array<std::array<Index, 2>> ends_;
+  Array<Index> segmentTet_;
+  Array<Index> unsure_;  ///< numbers of edges that are not sure
+  ArcPieces pieces_;     ///< of these
+  Array<EdgeKey> keys_;  ///< of the same
   ExactReplay exactly_;
   EdgeTracer tracer_;
   SimplexStar star_;

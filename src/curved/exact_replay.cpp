@@ -20,6 +20,64 @@ LatticeTet seenAlong(const LatticeTet& corners, const ChartEdge& edge, std::int6
   return seen;
 }
 
+/// Where the line of a hex edge meets a face of a tet, along the edge.
+class Meeting {
+ public:
+  /// @param seen   the tet, seen along the edge
+  /// @param point  of the face
+  Meeting(const LatticeTet& seen, std::size_t axis, std::int64_t unit, const SimplexPoint& point)
+      : seen_(seen), axis_(axis), unit_(unit), point_(point), at_(point.simplex()) {
+    if (dimension(at_) == 1) {
+      crossing_ = crossTetEdge(seen[firstCorner(at_)], seen[lastCorner(at_)], axis, unit);
+    } else {
+      const SimplexPoint::Rough rough = point.roughly(seen, axis);
+      crossing_.begun = rough.at;
+      crossing_.left = static_cast<double>(unit) - rough.at;
+      crossing_.error = rough.error + 0x1p-52 * static_cast<double>(unit);
+    }
+  }
+
+  /// The simplex that holds the point.
+  [[nodiscard]] CornerMask at() const noexcept { return at_; }
+  /// If it is an edge.
+  [[nodiscard]] const EdgeCrossing& crossing() const noexcept { return crossing_; }
+
+  // Exact:
+  [[nodiscard]] bool isBehindBegin() const noexcept { return compare(crossing_.begun, 0) > 0; }
+  [[nodiscard]] bool isBeforeEnd() const noexcept { return compare(-crossing_.left, unit_) < 0; }
+  /// Sign of the point minus the midpoint.
+  [[nodiscard]] int fromMiddle() const noexcept {
+    return compare(0.5 * (crossing_.begun - crossing_.left), unit_ / 2);
+  }
+
+ private:
+  /// @param difference  from the target, roughly
+  [[nodiscard]] int compare(double difference, std::int64_t target) const noexcept {
+    if (std::abs(difference) > crossing_.error) return difference > 0 ? 1 : -1;
+    return point_.compare(seen_, axis_, target);
+  }
+
+  const LatticeTet& seen_;
+  std::size_t axis_;
+  std::int64_t unit_;
+  const SimplexPoint& point_;
+  CornerMask at_;
+  EdgeCrossing crossing_{};
+};
+
+/// The point at which an edge leaves a tet through an edge or a vertex.
+/// @param seen  the tet, seen along the edge
+ArcExit exitAtCorners(const PreparedMap& map, Index tet, const LatticeTet& seen, std::size_t axis,
+                      const Meeting& meeting) {
+  const CornerMask at = meeting.at();
+  const OwnedSimplex generator = ownedBy(map.topology, tet, at);
+  if (dimension(at) == 0) return exitAtCorners(map, generator, tet, at, seen, axis);
+  const Tet& vertices = map.topology.tets[tet];
+  const std::span<const Vec3> points = map.input.view.points;
+  return exitAtEdge(meeting.crossing(), generator, points[vertices[firstCorner(at)]],
+                    points[vertices[lastCorner(at)]]);
+}
+
 }  // namespace
 
 bool ExactReplay::follow(const FollowedEdge& edge, std::span<const FollowedFace> faces) {
@@ -37,30 +95,24 @@ bool ExactReplay::follow(const FollowedEdge& edge, std::span<const FollowedFace>
 
 /// Goes on to where the edge meets a face of the tet at hand, and through it.
 ExactReplay::Passed ExactReplay::pass(HalfFace halfFace) {
+  const int face = localOf(halfFace);
+  if ((entered_ & faceMask(face)) == entered_) {
+    goThrough(halfFace, entered_);  // where it is, on its way around an edge or a vertex
+    return Passed::On;
+  }
   const auto axis = static_cast<std::size_t>(axisOf(at_.along));
   const std::int64_t unit = map_.exact.unit;
   const LatticeTet seen = seenAlong(map_.exact.corners[tet_], at_, unit);
-  const int face = localOf(halfFace);
   const SimplexPoint point = crossingOfFace(seen, face, axis);
-  const CornerMask exit = point.simplex();
-  if (exit == kNoSimplex) return Passed::Failed;  // in the plane of the face
-  const SimplexPoint::Rough place = point.roughly(seen, axis);
-  const auto compare = [&](std::int64_t target) {
-    const double difference = place.at - static_cast<double>(target);
-    if (std::abs(difference) > place.error) return difference > 0 ? 1 : -1;
-    return point.compare(seen, axis, target);
-  };
-  const bool isBegin = compare(0) <= 0;
-  if (!isBegin && compare(unit) >= 0) {
-    return addSegment(exit, true) ? Passed::ToEnd : Passed::Failed;
-  }
-  if (!isBegin && exit != entered_) {
-    const int fromMiddle = compare(unit / 2);
+  if (point.simplex() == kNoSimplex) return Passed::Failed;  // in the plane of the face
+  const Meeting meeting(seen, axis, unit, point);
+  const CornerMask exit = meeting.at();
+  if (meeting.isBehindBegin()) {
+    if (!meeting.isBeforeEnd()) return addSegment(exit, true) ? Passed::ToEnd : Passed::Failed;
+    const int fromMiddle = meeting.fromMiddle();
     if (fromMiddle == 0 || !addSegment(exit, fromMiddle > 0)) return Passed::Failed;
-    const ArcExit found =
-        exit == faceMask(face)
-            ? exitThrough(map_, tet_, face, at_)
-            : exitAtCorners(map_, ownedBy(map_.topology, tet_, exit), tet_, exit, seen, axis);
+    const ArcExit found = exit == faceMask(face) ? exitThrough(map_, tet_, face, at_)
+                                                 : exitAtCorners(map_, tet_, seen, axis, meeting);
     pieces_.addPoint(found, found.parameter);
   }
   goThrough(halfFace, exit);

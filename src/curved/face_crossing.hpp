@@ -97,6 +97,13 @@ class CrossedFace : public OwnersFace {
 [[nodiscard]] FaceShares shareExactly(const OwnersFace& face, const ChartEdge& edge,
                                       std::int64_t unit) noexcept;
 
+namespace detail {
+
+inline constexpr std::array<std::array<std::uint8_t, 2>, 3> kAxesAcross = {
+    {{1, 2}, {2, 0}, {0, 1}}};
+
+}  // namespace detail
+
 /// The same in floating point.
 ///
 /// In units of u = 2^-53 and of M, the largest coordinate of a corner across the edge relative to
@@ -105,12 +112,13 @@ class CrossedFace : public OwnersFace {
 /// sum of squares. Where the sum of all weights is above 2^-10 of that, the shares of the second
 /// and the third corner are known to 2^14 and their own roundings, the share that is left to twice
 /// that: less than 2^-37.
+/// @param edge  a ChartEdge, or what has its members
 /// @return outside if it is not certain, or not known so well
-template <class Face>
-[[nodiscard]] FaceShares shareRoughly(const Face& face, const ChartEdge& edge,
+template <class Face, class Edge>
+[[nodiscard]] FaceShares shareRoughly(const Face& face, const Edge& edge,
                                       std::int64_t unit) noexcept {
-  constexpr std::array<std::array<std::uint8_t, 2>, 3> kAcross = {{{1, 2}, {2, 0}, {0, 1}}};
-  const std::array<std::uint8_t, 2>& across = kAcross[static_cast<std::size_t>(axisOf(edge.along))];
+  const std::array<std::uint8_t, 2>& across =
+      detail::kAxesAcross[static_cast<std::size_t>(axisOf(edge.along))];
   const std::size_t m = across[0];
   const std::size_t n = across[1];
   const auto p = static_cast<double>(edge.z[m] * unit - face.first(m));
@@ -131,13 +139,12 @@ template <class Face>
 }
 
 /// @param shares  of the face's corners, where the line of the edge meets it
-/// @param edge    in the owner's chart
+/// @param edge    in the owner's chart: a ChartEdge, or what has its members
 /// @param unit    a power of two
 /// @param perUnit  1 / unit
-template <class Face>
-[[nodiscard]] FaceCrossing crossAt(const FaceShares& shares, const Face& face,
-                                   const ChartEdge& edge, std::int64_t unit,
-                                   double perUnit) noexcept {
+template <class Face, class Edge>
+[[nodiscard]] FaceCrossing crossAt(const FaceShares& shares, const Face& face, const Edge& edge,
+                                   std::int64_t unit, double perUnit) noexcept {
   const auto axis = static_cast<std::size_t>(axisOf(edge.along));
   // No branch may depend on the direction, which is as good as random.
   const std::size_t descends = signOf(edge.along) > 0 ? 0 : 1;

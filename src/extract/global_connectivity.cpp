@@ -24,6 +24,7 @@ struct Trace {
 /// Keeps no records.
 struct NoRecorder {
   static constexpr bool kRecords = false;
+  void begin(const Trace& /*at*/) const noexcept {}
   void cross(HalfFace /*halfFace*/, const Trace& /*at*/) const noexcept {}
 };
 
@@ -34,14 +35,25 @@ class EdgeRecorder {
 
   explicit EdgeRecorder(FollowedEdges& records) : records_(records) {}
 
+  void begin(const Trace& at) {
+    FollowedEdge& edge = records_.edges.emplace_back();
+    edge.tet = at.tet;
+    edge.z = at.z;
+    edge.along = at.along;
+  }
   void cross(HalfFace halfFace, const Trace& at) {
     records_.faces.push_back({halfFace, at.z, at.along});
   }
-  void keep(FollowedEdge edge) {
+  void keep(Index vertex, Index end, bool inside) {
+    FollowedEdge& edge = records_.edges.back();
+    edge.ends = {vertex, end};
+    edge.inside = inside;
     edge.faceEnd = static_cast<Index>(records_.faces.size());
-    records_.edges.push_back(edge);
   }
-  void drop() { records_.faces.resize(records_.edges.empty() ? 0 : records_.edges.back().faceEnd); }
+  void drop() {
+    records_.edges.pop_back();
+    records_.faces.resize(records_.edges.empty() ? 0 : records_.edges.back().faceEnd);
+  }
 
  private:
   FollowedEdges& records_;
@@ -115,7 +127,8 @@ class Tracer {
       if constexpr (!Recorder::kRecords) return;
       if (alone_ || !isAhead(known, at.tet)) return;
     }
-    [[maybe_unused]] const Trace begin = at;
+    [[maybe_unused]] const Index turn = at.tet;
+    recorder.begin(at);
     const Index end = follow(at, recorder);
     const Index endGenerator = vertices_.generatorOf[end];
     const SlotName arrived =
@@ -129,17 +142,12 @@ class Tracer {
         GlobalConnectivity::pack({vertex, static_cast<std::uint16_t>(propeller), offset}),
         std::memory_order_relaxed);
     if constexpr (Recorder::kRecords) {
-      if (!alone_ && turnOf(endGenerator, arrived.propeller) < begin.tet) {
+      if (!alone_ && turnOf(endGenerator, arrived.propeller) < turn) {
         recorder.drop();
         return;
       }
       const auto isInside = [&](Index g) { return local_.configurationOf[g] == 0; };
-      recorder.keep({{vertex, end},
-                     begin.tet,
-                     begin.z,
-                     begin.along,
-                     isInside(generator) || isInside(endGenerator),
-                     0});
+      recorder.keep(vertex, end, isInside(generator) || isInside(endGenerator));
     }
   }
 

@@ -58,8 +58,11 @@ TEST(OutputWaves, KeepTheOrder) {
 TEST(OutputWaves, AreOfSomeBlocksPerThread) {
   withThreads(1, [] {
     EXPECT_EQ(blocksPerWave(0), 0U);
+    EXPECT_EQ(blocksPerWave(1000), 1U);
+  });
+  withThreads(2, [] {
     EXPECT_EQ(blocksPerWave(3), 3U);
-    EXPECT_EQ(blocksPerWave(1000), 8U);
+    EXPECT_EQ(blocksPerWave(1000), 16U);
   });
 }
 
