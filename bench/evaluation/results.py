@@ -30,6 +30,10 @@ class Run:
         return self.values.get(name)
 
     @property
+    def name(self) -> tuple[str, ...]:
+        return (self.family, self.map, *(f"{key}:{value}" for key, value in self.keys.items()))
+
+    @property
     def engine(self) -> str:
         return self.keys.get("engine", "")
 
@@ -91,13 +95,27 @@ def read_file(path: Path) -> list[Run]:
     return [_combine(name, repetitions) for name, repetitions in by_name.items()]
 
 
+def _quietest(runs: Iterable[Run]) -> list[Run]:
+    """Of the rounds of each benchmark the one in which cores made the most additions.
+
+    They are counted right behind each repetition, by a loop that has nothing to do with what is
+    measured: so the choice is by what else there was to do for the machine, not by the result.
+    """
+    best: dict[tuple[str, ...], Run] = {}
+    for run in runs:
+        known = best.setdefault(run.name, run)
+        if run.values.get("additions_per_ns", 0) > known.values.get("additions_per_ns", 0):
+            best[run.name] = run
+    return list(best.values())
+
+
 def read_folder(folder: Path) -> list[Run]:
-    """All results but the description of the machine."""
+    """All results but the description of the machine; of rounds the quietest."""
     runs: list[Run] = []
     for path in sorted(folder.glob("*.json")):
         if path.stem != "machine":
             runs += read_file(path)
-    return runs
+    return _quietest(runs)
 
 
 def select(runs: Iterable[Run], family: str, **keys: str) -> list[Run]:

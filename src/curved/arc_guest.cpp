@@ -17,6 +17,21 @@ void requireArcs(bool fit) {
               "this is a bug; please report it with the map.");
 }
 
+/// Makes room for the arcs of a block: for a point per face, and one more.
+void makeRoom(Arcs& arcs, Array<EdgeKey>& keys, bool withKeys, const FollowedEdges& edges) {
+  const std::size_t count = edges.edges.size();
+  const std::size_t points = edges.faces.size() + 1;
+  arcs.ends.resize(count);
+  arcs.pointBegin.resize(count);
+  keys.resize(withKeys ? count : 0);
+  arcs.points.resize(points);
+  arcs.parameters.resize(points);
+  arcs.generatorTet.resize(points);
+  arcs.generatorCorners.resize(points);
+  arcs.segmentTet.resize(points + count);
+  arcs.segmentCorners.resize(points + count);
+}
+
 }  // namespace
 
 void ArcGuest::begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& stage) {
@@ -26,36 +41,64 @@ void ArcGuest::begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& 
   vertexCount_ = sizes.vertices;
   for (std::size_t i = 0; i < sizes.wave; ++i) slots_.emplace_back(map_, *vertices_);
   arcCount_ = 0;
+  pointCount_ = 0;
   arcs_ = {};
   arcs_.ends.resize(sizes.edges);
   arcs_.pointBegin.resize(sizes.edges + 1);
   keys_.resize(withKeys_ ? sizes.edges : 0);
 }
 
+void ArcGuest::add(std::size_t block, const FollowedEdges& edges) {
+  Slot& slot = slots_[block % slots_.size()];
+  slot.arcCount = edges.edges.size();
+  if (isInOrder()) {
+    // In the result itself, as processors write to memory while they compute what comes next.
+    const std::uint64_t done = arcCount_ + slot.arcCount;
+    requireArcs(done <= arcs_.count());
+    lengthenForPieces(arcs_, pointCount_ + edges.faces.size() + 1, done);
+    slot.pointCount = slot.replay.add(edges, {arcs_, keys_, arcCount_, pointCount_});
+  } else {
+    makeRoom(slot.arcs, slot.keys, withKeys_, edges);
+    slot.pointCount = slot.replay.add(edges, {slot.arcs, slot.keys, 0, 0});
+  }
+}
+
 void ArcGuest::measure(std::size_t firstBlock, std::size_t endBlock) {
-  std::uint64_t points = arcs_.points.size();
   for (std::size_t block = firstBlock; block < endBlock; ++block) {
     Slot& slot = slots_[block % slots_.size()];
     slot.firstArc = arcCount_;
-    slot.firstPoint = points;
-    arcCount_ += slot.replay.arcs();
-    points += slot.replay.points();
+    slot.firstPoint = pointCount_;
+    arcCount_ += slot.arcCount;
+    pointCount_ += slot.pointCount;
   }
   requireArcs(arcCount_ <= arcs_.count());
-  lengthenForPieces(arcs_, points, arcCount_);
+  if (!isInOrder()) lengthenForPieces(arcs_, pointCount_, arcCount_);
 }
 
 void ArcGuest::place(std::size_t block) {
-  Slot& slot = slots_[block % slots_.size()];
-  slot.replay.copyTo(arcs_, keys_, slot.firstArc, slot.firstPoint);
-  slot.replay.clear();
+  if (isInOrder()) return;
+  const Slot& slot = slots_[block % slots_.size()];
+  const ArcColumns to(arcs_, keys_, slot.firstArc, slot.firstPoint);
+  const std::size_t arcs = slot.arcCount;
+  const std::size_t points = slot.pointCount;
+  std::copy_n(slot.arcs.ends.data(), arcs, to.ends);
+  std::transform(slot.arcs.pointBegin.data(), slot.arcs.pointBegin.data() + arcs, to.pointBegin,
+                 [&](std::uint64_t point) { return point + slot.firstPoint; });
+  if (withKeys_) std::copy_n(slot.keys.data(), arcs, to.keys);
+  std::copy_n(slot.arcs.points.data(), points, to.points);
+  std::copy_n(slot.arcs.parameters.data(), points, to.parameters);
+  std::copy_n(slot.arcs.generatorTet.data(), points, to.generatorTet);
+  std::copy_n(slot.arcs.generatorCorners.data(), points, to.generatorCorners);
+  std::copy_n(slot.arcs.segmentTet.data(), points + arcs, to.segmentTet);
+  std::copy_n(slot.arcs.segmentCorners.data(), points + arcs, to.segmentCorners);
 }
 
 Arcs ArcGuest::takeArcs() {
   requireArcs(arcCount_ == arcs_.count());
   slots_.clear();
   vertices_.reset();
-  arcs_.pointBegin.back() = arcs_.points.size();
+  lengthenForPieces(arcs_, pointCount_, arcCount_);  // or shortens
+  arcs_.pointBegin.back() = pointCount_;
   return std::move(arcs_);
 }
 

@@ -28,9 +28,7 @@ class ArcGuest final : public TraceGuest {
 
   /// @throws Error TooLarge for more edges than an Index can number
   void begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& stage) override;
-  void add(std::size_t block, const FollowedEdges& edges) override {
-    slots_[block % slots_.size()].replay.add(edges);
-  }
+  void add(std::size_t block, const FollowedEdges& edges) override;
   void measure(std::size_t firstBlock, std::size_t endBlock) override;
   void place(std::size_t block) override;
   void take(LatticeLines lines) override { lines_ = std::move(lines); }
@@ -50,9 +48,17 @@ class ArcGuest final : public TraceGuest {
     Slot(const PreparedMap& map, const LatticeNumbers& vertices) : replay(map, vertices) {}
 
     EdgeReplay replay;
+    // Of the block's arcs, until it is known where they belong; not used by waves of one block.
+    Arcs arcs;
+    Array<EdgeKey> keys;
+    std::size_t arcCount = 0;
+    std::size_t pointCount = 0;
     std::uint64_t firstArc = 0;
     std::uint64_t firstPoint = 0;
   };
+
+  /// Whether blocks come one after the other, so that each knows at once where its arcs belong.
+  [[nodiscard]] bool isInOrder() const noexcept { return slots_.size() == 1; }
 
   const PreparedMap& map_;
   bool withKeys_;
@@ -61,6 +67,7 @@ class ArcGuest final : public TraceGuest {
   std::optional<LatticeLines> lines_;       ///< when it is done
   std::deque<Slot> slots_;
   std::uint64_t arcCount_ = 0;  ///< so far
+  std::uint64_t pointCount_ = 0;
   Arcs arcs_;
   Array<EdgeKey> keys_;
 };

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <utility>
 
+#include <curved/arc_columns.hpp>
 #include <curved/owned_simplex.hpp>
 
 #include <hexhex/curved.hpp>
@@ -28,11 +29,6 @@ class ArcPieces {
     arcs_.clear();
     points_.clear();
     segments_.clear();
-  }
-  /// Takes the last points and segments back.
-  void shorten(std::size_t points, std::size_t segments) {
-    points_.resize(points);
-    segments_.resize(segments);
   }
   [[nodiscard]] std::size_t arcs() const noexcept { return arcs_.size(); }
   [[nodiscard]] std::size_t points() const noexcept { return points_.size(); }
@@ -67,17 +63,13 @@ class ArcPieces {
     }
   }
 
-  /// The number of points of an arc.
-  [[nodiscard]] std::size_t pointsOf(std::size_t arc) const noexcept {
-    return endOf(arc) - arcs_[arc].firstPoint;
-  }
-  /// Copies an arc to where it belongs, but for the place of its points.
-  void copyArc(std::size_t arc, Arcs& to, std::uint64_t number, std::uint64_t firstPoint) const {
-    const std::size_t first = arcs_[arc].firstPoint;
-    const std::size_t end = endOf(arc);
-    to.ends[number] = arcs_[arc].ends;
-    copyPoints(first, end, to, firstPoint);
-    copySegments(first + arc, end + arc + 1, to, firstPoint + number);
+  /// Copies the only arc to where it belongs, but for the place of its points.
+  /// @param number  among the arcs there
+  /// @param first   its first point among those there
+  void copyOnly(const ArcColumns& to, std::size_t number, std::size_t first) const {
+    to.ends[number] = arcs_[0].ends;
+    copyPoints(to, first);
+    copySegments(to, first + number);
   }
   /// Copies all to where it belongs.
   void copyTo(Arcs& to, std::uint64_t firstArc, std::uint64_t firstPoint) const {
@@ -85,8 +77,8 @@ class ArcPieces {
       to.ends[firstArc + i] = arcs_[i].ends;
       to.pointBegin[firstArc + i] = firstPoint + arcs_[i].firstPoint;
     }
-    copyPoints(0, points_.size(), to, firstPoint);
-    copySegments(0, segments_.size(), to, firstPoint + firstArc);
+    copyPoints(to, firstPoint);
+    copySegments(to, firstPoint + firstArc);
   }
 
  private:
@@ -100,22 +92,22 @@ class ArcPieces {
     OwnedSimplex generator;
   };
 
-  [[nodiscard]] std::size_t endOf(std::size_t arc) const noexcept {
-    return arc + 1 < arcs_.size() ? arcs_[arc + 1].firstPoint : points_.size();
-  }
-  void copyPoints(std::size_t first, std::size_t end, Arcs& to, std::uint64_t place) const {
-    for (std::size_t i = first; i < end; ++i, ++place) {
-      const Point& point = points_[i];
+  template <class To>
+  void copyPoints(To& to, std::uint64_t place) const {
+    for (const Point& point : points_) {
       to.points[place] = point.position;
       to.parameters[place] = point.parameter;
       to.generatorTet[place] = point.generator.tet;
       to.generatorCorners[place] = point.generator.corners;
+      ++place;
     }
   }
-  void copySegments(std::size_t first, std::size_t end, Arcs& to, std::uint64_t place) const {
-    for (std::size_t i = first; i < end; ++i, ++place) {
-      to.segmentTet[place] = segments_[i].tet;
-      to.segmentCorners[place] = segments_[i].corners;
+  template <class To>
+  void copySegments(To& to, std::uint64_t place) const {
+    for (const OwnedSimplex& segment : segments_) {
+      to.segmentTet[place] = segment.tet;
+      to.segmentCorners[place] = segment.corners;
+      ++place;
     }
   }
 

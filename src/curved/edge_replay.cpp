@@ -14,7 +14,8 @@ namespace {
 /// that is written.
 class Crosser {
  public:
-  Crosser(const PreparedMap& map, FollowedCrossings& crossings) noexcept
+  /// @param to  receives the points
+  Crosser(const PreparedMap& map, const ArcColumns& to, Array<Index>& behind) noexcept
       : transitions_(map.exact.transitions),
         mates_(map.topology.mate.data()),
         jumps_(map.exact.transitions.jump.data()),
@@ -23,11 +24,11 @@ class Crosser {
         space_(map.input.view.points),
         unit_(map.exact.unit),
         perUnit_(1 / static_cast<double>(unit_)),
-        points_(crossings.points.data()),
-        parameters_(crossings.parameters.data()),
-        generatorTet_(crossings.generatorTet.data()),
-        generatorCorners_(crossings.generatorCorners.data()),
-        behind_(crossings.behind.data()) {}
+        points_(to.points),
+        parameters_(to.parameters),
+        generatorTet_(to.generatorTet),
+        generatorCorners_(to.generatorCorners),
+        behind_(behind.data()) {}
 
   /// @param[in,out] counts  of the crossings before
   void operator()(const FollowedFace& face, std::size_t number,
@@ -79,39 +80,68 @@ class Crosser {
   Index* behind_;
 };
 
-}  // namespace
+void movePoint(const ArcColumns& to, std::size_t from, std::size_t place) {
+  to.points[place] = to.points[from];
+  to.parameters[place] = to.parameters[from];
+  to.generatorTet[place] = to.generatorTet[from];
+  to.generatorCorners[place] = to.generatorCorners[from];
+}
 
-void EdgeReplay::add(const FollowedEdges& followed) {
-  followed_ = &followed;
-  // First all crossings, in a loop that knows nothing of edges: how many faces these cross is as
-  // good as random.
-  cross(followed.faces);
-  ends_.resize(followed.edges.size());
-  segmentTet_.resize(followed.faces.size() + followed.edges.size());
-  points_ = followed.faces.size();
-  Index first = 0;
-  for (std::size_t i = 0; i < followed.edges.size(); ++i) {
-    const FollowedEdge& edge = followed.edges[i];
-    if (isSure(edge, first)) [[likely]] {
-      addSure(i, first);
-    } else {
-      unsure_.push_back(static_cast<Index>(i));
-      const std::size_t before = pieces_.points();
-      addUnsure(edge, Faces(followed.faces).subspan(first, edge.faceEnd - first));
-      points_ += pieces_.points() - before;
-      points_ -= edge.faceEnd - first;
-    }
-    first = edge.faceEnd;
+/// Turns the points and segments of an arc round.
+void reverse(const ArcColumns& to, Index* segments, std::size_t place, std::size_t count) {
+  const auto turn = [](auto* first, std::size_t size) { std::reverse(first, first + size); };
+  turn(segments, count + 1);
+  turn(to.points + place, count);
+  turn(to.parameters + place, count);
+  turn(to.generatorTet + place, count);
+  turn(to.generatorCorners + place, count);
+  for (std::size_t i = place; i < place + count; ++i) to.parameters[i] = 1 - to.parameters[i];
+}
+
+/// Of an arc whose parameters are certain to be in (0, 1).
+void smooth(double* parameters, std::size_t count) {
+  double before = EdgeTracer::kLeastParameter;
+  for (std::size_t i = 0; i < count; ++i) {
+    parameters[i] = before = EdgeTracer::smooth(parameters[i], before);
   }
 }
 
-void EdgeReplay::cross(Faces faces) {
-  crossings_.resize(faces.size() + 1);  // one that edges without crossings may look at
-  counts_.resize(faces.size() + 1);
-  const Crosser cross(map_, crossings_);
+}  // namespace
+
+std::size_t EdgeReplay::add(const FollowedEdges& followed, const ArcColumns& to) {
+  followed_ = &followed;
+  const std::size_t faces = followed.faces.size();
+  const std::size_t edges = followed.edges.size();
+  // First all crossings, in a loop that knows nothing of edges: how many faces these cross is as
+  // good as random. Then edges choose from them, in place: none has more points than it crosses
+  // faces, as in one tet it has one simplex that contains it.
+  cross(followed.faces, to);
+  std::fill_n(to.segmentCorners, faces + edges, kWholeTet);
+  std::size_t place = 0;
+  Index first = 0;
+  for (std::size_t i = 0; i < edges; ++i) {
+    to.pointBegin[i] = to.firstPoint + place;
+    place += isSure(followed.edges[i], first) ? addSure(to, i, first, place)
+                                              : addUnsure(to, i, first, place);
+    first = followed.edges[i].faceEnd;
+  }
+  return place;
+}
+
+void EdgeReplay::cross(Faces faces, const ArcColumns& to) {
+  const std::size_t count = faces.size();
+  // One more that edges without crossings may look at.
+  behind_.resize(count + 1);
+  behind_[count] = kNone;
+  to.points[count] = {};
+  to.parameters[count] = 0;
+  to.generatorTet[count] = kNone;
+  to.generatorCorners[count] = kNoSimplex;
+  counts_.resize(count + 1);
+  const Crosser cross(map_, to, behind_);
   CrossingCounts counts;
   counts_[0] = counts;
-  for (std::size_t i = 0; i < faces.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     cross(faces[i], i, counts);
     counts_[i + 1] = counts;
   }
@@ -119,25 +149,33 @@ void EdgeReplay::cross(Faces faces) {
 
 /// Makes the arc of a sure edge run along the axis of the midpoint's owner.
 /// @param first  its first crossing
-inline void EdgeReplay::addSure(std::size_t number, Index first) {
+/// @param place  of its first point, not behind it
+/// @return the number of points
+inline std::size_t EdgeReplay::addSure(const ArcColumns& to, std::size_t number, Index first,
+                                       std::size_t place) {
   const FollowedEdge& edge = followed_->edges[number];
   const std::size_t count = edge.faceEnd - first;
+  const Middle middle = middleOf(edge, first);
+  if (to.keys != nullptr) to.keys[number] = {middle.owner, middle.edge};
   // Whether an arc is turned round is as good as random, so no branch may depend on it, and most
   // edges cross no face or one, so none may depend on which.
-  const std::size_t reversed = signOf(middleOf(edge, first).edge.along) < 0 ? 1 : 0;
-  ends_[number] = {edge.ends[reversed], edge.ends[1 - reversed]};
-  Index* const segments = &segmentTet_[first + number];
+  const std::size_t reversed = signOf(middle.edge.along) < 0 ? 1 : 0;
+  to.ends[number] = {edge.ends[reversed], edge.ends[1 - reversed]};
+  Index* const segments = &to.segmentTet[place + number];
   if (count < 2) {
-    segments[count & (1 - reversed)] = crossings_.behind[first];
+    segments[count & (1 - reversed)] = behind_[first];
     segments[count & reversed] = edge.tet;
-    double& parameter = crossings_.parameters[first];
+    movePoint(to, first, place);
+    double& parameter = to.parameters[place];
     parameter = std::array{parameter, 1 - parameter}[count & reversed];
   } else {
     segments[0] = edge.tet;
-    std::copy_n(&crossings_.behind[first], count, segments + 1);
-    if (reversed != 0) reverse(first, number, count);
-    smooth(first, count);
+    std::copy_n(&behind_[first], count, segments + 1);
+    for (std::size_t i = 0; i < count; ++i) movePoint(to, first + i, place + i);
+    if (reversed != 0) reverse(to, segments, place, count);
+    smooth(&to.parameters[place], count);
   }
+  return count;
 }
 
 /// Where the midpoint of a sure edge is.
@@ -149,18 +187,32 @@ inline EdgeReplay::Middle EdgeReplay::middleOf(const FollowedEdge& edge,
   // At random there are some; jumps are rare.
   if ((upTo.jumps - before.jumps) * std::min(early, Index{1}) != 0) [[unlikely]] {
     const Index last = first + early - 1;
-    return {crossings_.behind[last], behind(followed_->faces[last])};
+    return {behind_[last], behind(followed_->faces[last])};
   }
-  const std::array<Index, 2> owners = {edge.tet,
-                                       crossings_.behind[first + std::max(early, Index{1}) - 1]};
+  const std::array<Index, 2> owners = {edge.tet, behind_[first + std::max(early, Index{1}) - 1]};
   return {owners[std::min(early, Index{1})], {edge.z, edge.along}};
 }
 
-void EdgeReplay::addUnsure(const FollowedEdge& edge, Faces faces) {
-  const std::size_t points = pieces_.points();
-  const std::size_t segments = pieces_.segments();
+/// Makes the arc of an edge of which not everything is certain.
+/// @param first, place  as for addSure()
+/// @return the number of points
+std::size_t EdgeReplay::addUnsure(const ArcColumns& to, std::size_t number, Index first,
+                                  std::size_t place) {
+  const FollowedEdge& edge = followed_->edges[number];
+  const std::size_t count = edge.faceEnd - first;
+  pieces_.clear();
+  followExactly(edge, Faces(followed_->faces).subspan(first, count));
+  if (pieces_.points() > count) {
+    ArcTracer::fail(edge.tet, "a hex edge meets more simplices than it was followed through");
+  }
+  if (to.keys != nullptr) to.keys[number] = key_;
+  pieces_.copyOnly(to, number, place);
+  return pieces_.points();
+}
+
+void EdgeReplay::followExactly(const FollowedEdge& edge, Faces faces) {
   if (!exactly_.follow(edge, faces)) {
-    pieces_.shorten(points, segments);
+    pieces_.clear();
     traceFromMiddle(edge, faces);
     return;
   }
@@ -168,105 +220,26 @@ void EdgeReplay::addUnsure(const FollowedEdge& edge, Faces faces) {
   const ChartEdge& middle = exactly_.middle();
   if (signOf(middle.along) < 0) {
     std::swap(ends[0], ends[1]);
-    pieces_.reverseFrom(points, segments);
-    pieces_.changeParameters(points, [](double& parameter) { parameter = 1 - parameter; });
+    pieces_.reverseFrom(0, 0);
+    pieces_.changeParameters(0, [](double& parameter) { parameter = 1 - parameter; });
   }
-  addArcOfPieces(ends, points, exactly_.owner(), middle);
+  addArcOfPieces(ends, exactly_.owner(), middle);
 }
 
-void EdgeReplay::addArcOfPieces(const std::array<Index, 2>& ends, std::size_t firstPoint,
-                                Index owner, const ChartEdge& middle) {
-  EdgeTracer::smoothParameters(pieces_, firstPoint);
-  pieces_.addArc(ends, firstPoint);
-  keys_.emplace_back(owner, middle);
-}
-
-void EdgeReplay::copyTo(Arcs& to, std::span<EdgeKey> keys, std::uint64_t firstArc,
-                        std::uint64_t firstPoint) const {
-  const std::span<const FollowedEdge> edges = followed_->edges;
-  Place place{firstArc, firstPoint};
-  Run run{0, 0, 0};
-  for (std::size_t i = 0; i < unsure_.size(); ++i) {
-    run.end = unsure_[i];
-    place = copyRun(run, to, keys, place);
-    to.pointBegin[place.arc] = place.point;
-    pieces_.copyArc(i, to, place.arc, place.point);
-    if (!keys.empty()) keys[place.arc] = keys_[i];
-    place.point += pieces_.pointsOf(i);
-    ++place.arc;
-    run = {run.end + 1, 0, edges[run.end].faceEnd};
-  }
-  run.end = edges.size();
-  static_cast<void>(copyRun(run, to, keys, place));
-}
-
-/// @param place  of the first arc
-/// @return the place behind them
-EdgeReplay::Place EdgeReplay::copyRun(const Run& run, Arcs& to, std::span<EdgeKey> keys,
-                                      Place place) const {
-  if (run.edge == run.end) return place;
-  const std::span<const FollowedEdge> edges = followed_->edges;
-  const std::size_t points = edges[run.end - 1].faceEnd - run.crossing;
-  const std::size_t arcs = run.end - run.edge;
-  const auto copy = [](const auto& from, std::size_t first, std::size_t count, auto& target,
-                       std::uint64_t at) { std::copy_n(&from[first], count, &target[at]); };
-  copy(ends_, run.edge, arcs, to.ends, place.arc);
-  if (points > 0) {
-    copy(crossings_.points, run.crossing, points, to.points, place.point);
-    copy(crossings_.parameters, run.crossing, points, to.parameters, place.point);
-    copy(crossings_.generatorTet, run.crossing, points, to.generatorTet, place.point);
-    copy(crossings_.generatorCorners, run.crossing, points, to.generatorCorners, place.point);
-  }
-  const std::uint64_t segment = place.point + place.arc;
-  copy(segmentTet_, run.crossing + run.edge, points + arcs, to.segmentTet, segment);
-  std::fill_n(&to.segmentCorners[segment], points + arcs, kWholeTet);
-  Index crossing = run.crossing;
-  for (std::size_t i = run.edge; i < run.end; ++i) {
-    to.pointBegin[place.arc] = place.point + (crossing - run.crossing);
-    if (!keys.empty()) {
-      const Middle middle = middleOf(edges[i], crossing);
-      keys[place.arc] = {middle.owner, middle.edge};
-    }
-    ++place.arc;
-    crossing = edges[i].faceEnd;
-  }
-  return {place.arc, place.point + points};
-}
-
-/// Turns the points and segments of an arc round.
-/// @param first   its first point
-/// @param number  of the edge
-void EdgeReplay::reverse(Index first, std::size_t number, std::size_t count) {
-  const auto turn = [](auto& array, std::size_t begin, std::size_t size) {
-    std::reverse(&array[begin], &array[begin] + size);
-  };
-  turn(segmentTet_, first + number, count + 1);
-  turn(crossings_.points, first, count);
-  turn(crossings_.parameters, first, count);
-  turn(crossings_.generatorTet, first, count);
-  turn(crossings_.generatorCorners, first, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    crossings_.parameters[first + i] = 1 - crossings_.parameters[first + i];
-  }
-}
-
-/// Of an arc whose parameters are certain to be in (0, 1).
-void EdgeReplay::smooth(Index first, std::size_t count) {
-  double before = EdgeTracer::kLeastParameter;
-  for (std::size_t i = 0; i < count; ++i) {
-    double& parameter = crossings_.parameters[first + i];
-    parameter = before = EdgeTracer::smooth(parameter, before);
-  }
+void EdgeReplay::addArcOfPieces(const std::array<Index, 2>& ends, Index owner,
+                                const ChartEdge& middle) {
+  EdgeTracer::smoothParameters(pieces_, 0);
+  pieces_.addArc(ends, 0);
+  key_ = {owner, middle};
 }
 
 /// Traces the edge from its midpoint.
 void EdgeReplay::traceFromMiddle(const FollowedEdge& followed, Faces faces) {
   const SimplexInTet middle = ownedMiddle(findMiddle(followed, faces));
   const ChartEdge edge = ChartEdge{middle.frame.origin, middle.frame.axes[0]}.ascending();
-  const std::size_t before = pieces_.points();
   const int axis = axisOf(edge.along);
   const auto ends = tracer_.trace({middle.tet, middle.simplex, Frame::along(edge.z, axis)});
-  addArcOfPieces(ends, before, middle.tet, edge);
+  addArcOfPieces(ends, middle.tet, edge);
 }
 
 /// A simplex with the midpoint, in one of the tets that the edge was followed through.

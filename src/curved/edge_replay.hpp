@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include <curved/arc_columns.hpp>
 #include <curved/arc_pieces.hpp>
 #include <curved/edge_tracer.hpp>
 #include <curved/exact_replay.hpp>
@@ -19,36 +20,6 @@
 #include <map/prepare.hpp>
 
 namespace hexhex {
-
-/// What an edge has its canonical number from: the owner of its midpoint, the axis of its chart,
-/// and where the edge begins there.
-struct EdgeKey {
-  Index tet;
-  std::int32_t axis;
-  GridPoint z;
-
-  EdgeKey() = default;
-  /// @param edge  in the owner's chart
-  EdgeKey(Index owner, const ChartEdge& edge) noexcept
-      : tet(owner), axis(axisOf(edge.along)), z(edge.ascending().z) {}
-};
-
-/// Where edges cross the interiors of faces, in the order in which they were followed.
-struct FollowedCrossings {
-  Array<Vec3> points;
-  Array<double> parameters;  ///< in the direction in which the edge was followed
-  Array<Index> generatorTet;
-  Array<CornerSet> generatorCorners;
-  Array<Index> behind;  ///< the next tet
-
-  void resize(std::size_t count) {
-    points.resize(count);
-    parameters.resize(count);
-    generatorTet.resize(count);
-    generatorCorners.resize(count);
-    behind.resize(count);
-  }
-};
 
 /// What is known of the crossings up to one.
 struct CrossingCounts {
@@ -73,45 +44,20 @@ class EdgeReplay {
   EdgeReplay& operator=(EdgeReplay&&) = delete;
   ~EdgeReplay() = default;
 
-  /// Edges of a block, once between calls of clear().
-  /// @param followed  stays there until then
-  void add(const FollowedEdges& followed);
-  void clear() noexcept {
-    followed_ = nullptr;
-    unsure_.clear();
-    pieces_.clear();
-    keys_.clear();
-  }
-
-  // What has been added:
-  [[nodiscard]] std::size_t arcs() const noexcept { return followed_->edges.size(); }
-  [[nodiscard]] std::size_t points() const noexcept { return points_; }
-  /// Copies all to where it belongs.
-  /// @param keys  of all arcs; may be empty
-  void copyTo(Arcs& to, std::span<EdgeKey> keys, std::uint64_t firstArc,
-              std::uint64_t firstPoint) const;
+  /// Makes the arcs of the edges of a block.
+  /// @param to  has room for as many points as there are faces, and one more
+  /// @return the number of points
+  std::size_t add(const FollowedEdges& followed, const ArcColumns& to);
 
  private:
   using Faces = std::span<const FollowedFace>;
-  /// Where an arc and its points belong.
-  struct Place {
-    std::uint64_t arc;
-    std::uint64_t point;
-  };
-  /// Consecutive sure edges.
-  struct Run {
-    std::size_t edge;
-    std::size_t end;
-    Index crossing;  ///< the first
-  };
-
   /// The tet that owns the midpoint, and the edge in its chart.
   struct Middle {
     Index owner;
     ChartEdge edge;
   };
 
-  void cross(Faces faces);
+  void cross(Faces faces, const ArcColumns& to);
   /// Whether it is certain that an edge passes through the interiors of faces and tets, and its
   /// midpoint through that of a tet.
   /// @param first  its first crossing
@@ -122,32 +68,24 @@ class EdgeReplay {
     const auto allSure = static_cast<unsigned>(counts_[end].unsure == counts_[first].unsure);
     return (isInside & allSure) != 0;
   }
-  void addSure(std::size_t number, Index first);
+  std::size_t addSure(const ArcColumns& to, std::size_t number, Index first, std::size_t place);
   [[nodiscard]] Middle middleOf(const FollowedEdge& edge, Index first) const noexcept;
-  void addUnsure(const FollowedEdge& edge, Faces faces);
+  std::size_t addUnsure(const ArcColumns& to, std::size_t number, Index first, std::size_t place);
+  void followExactly(const FollowedEdge& edge, Faces faces);
   void traceFromMiddle(const FollowedEdge& followed, Faces faces);
   [[nodiscard]] SimplexInTet findMiddle(const FollowedEdge& followed, Faces faces) const;
   [[nodiscard]] SimplexInTet ownedMiddle(const SimplexInTet& middle);
   [[nodiscard]] ChartEdge behind(const FollowedFace& face) const noexcept {
     return ChartEdge{face.z, face.along}.across(map_.exact.transitions, face.halfFace);
   }
-  void addArcOfPieces(const std::array<Index, 2>& ends, std::size_t firstPoint, Index owner,
-                      const ChartEdge& middle);
-  [[nodiscard]] Place copyRun(const Run& run, Arcs& to, std::span<EdgeKey> keys, Place place) const;
-  void reverse(Index first, std::size_t number, std::size_t count);
-  void smooth(Index first, std::size_t count);
+  void addArcOfPieces(const std::array<Index, 2>& ends, Index owner, const ChartEdge& middle);
 
   const PreparedMap& map_;
   const FollowedEdges* followed_ = nullptr;
-  std::size_t points_ = 0;
-  FollowedCrossings crossings_;
+  Array<Index> behind_;           ///< per crossing, the next tet
   Array<CrossingCounts> counts_;  ///< per crossing, and one before the first
-  // Of sure edges, in the arcs' direction, as are their crossings in the end:
-  Array<std::array<Index, 2>> ends_;
-  Array<Index> segmentTet_;
-  Array<Index> unsure_;  ///< numbers of edges that are not sure
-  ArcPieces pieces_;     ///< of these
-  Array<EdgeKey> keys_;  ///< of the same
+  ArcPieces pieces_;              ///< of an edge that is not sure
+  EdgeKey key_{};                 ///< of the same
   ExactReplay exactly_;
   EdgeTracer tracer_;
   SimplexStar star_;
