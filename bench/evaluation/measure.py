@@ -46,12 +46,14 @@ def _measure(step: Step, program: Path, result: Path) -> None:
 
 
 def _run_step(step: Step, build: Path, out: Path) -> None:
-    (out / f"{step.name}.json").unlink(missing_ok=True)
-    for old in out.glob(f"{step.name}-[0-9].json"):
-        old.unlink()
-    for i in range(step.rounds):
-        name = step.name if step.rounds == 1 else f"{step.name}-{i + 1}"
+    rounds = [step.name] if step.rounds == 1 else [f"{step.name}-{i + 1}"
+                                                   for i in range(step.rounds)]
+    for name in rounds:
         _measure(step, build / "bench" / step.program, out / f"{name}.json")
+    # Rounds of an earlier evaluation, which had more or fewer.
+    for old in [out / f"{step.name}.json", *out.glob(f"{step.name}-[0-9].json")]:
+        if old.stem not in rounds:
+            old.unlink(missing_ok=True)
 
 
 def run(build: Path, out: Path, quick: bool, only: list[str]) -> None:

@@ -60,7 +60,8 @@ void lengthen(Array<T>& array, std::size_t size, double share) {
   constexpr double kLeastShare = 1.0 / 1024;  // the very beginning may be far from what is typical
   constexpr double kFirst = 16;
   if (size > array.capacity()) {
-    const double factor = share < kLeastShare ? kFirst : std::max(kReserve / share, kReserve);
+    // Nothing is a share of nothing, too.
+    const double factor = share >= kLeastShare ? std::max(kReserve / share, kReserve) : kFirst;
     array.reserve(static_cast<std::size_t>(factor * static_cast<double>(size)));
   }
   array.resize(size);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <curved/face_crossing.hpp>
 
@@ -40,9 +41,10 @@ struct ArcColumns {
   CornerSet* segmentCorners;
   std::uint64_t firstPoint;  ///< the number of the first point
 
-  /// @param keysOfArcs  of all of them, or empty
-  ArcColumns(Arcs& arcs, Array<EdgeKey>& keysOfArcs, std::uint64_t arc,
-             std::uint64_t point) noexcept
+  /// @param arc, point  the numbers of the first ones
+  /// @param keysOfArcs  of all arcs, or empty
+  ArcColumns(Arcs& arcs, std::uint64_t arc, std::uint64_t point,
+             std::span<EdgeKey> keysOfArcs = {}) noexcept
       : ends(arcs.ends.data() + arc),
         pointBegin(arcs.pointBegin.data() + arc),
         keys(keysOfArcs.empty() ? nullptr : keysOfArcs.data() + arc),

@@ -17,21 +17,6 @@ void requireArcs(bool fit) {
               "this is a bug; please report it with the map.");
 }
 
-/// Makes room for the arcs of a block: for a point per face, and one more.
-void makeRoom(Arcs& arcs, Array<EdgeKey>& keys, bool withKeys, const FollowedEdges& edges) {
-  const std::size_t count = edges.edges.size();
-  const std::size_t points = edges.faces.size() + 1;
-  arcs.ends.resize(count);
-  arcs.pointBegin.resize(count);
-  keys.resize(withKeys ? count : 0);
-  arcs.points.resize(points);
-  arcs.parameters.resize(points);
-  arcs.generatorTet.resize(points);
-  arcs.generatorCorners.resize(points);
-  arcs.segmentTet.resize(points + count);
-  arcs.segmentCorners.resize(points + count);
-}
-
 }  // namespace
 
 void ArcGuest::begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& stage) {
@@ -51,15 +36,19 @@ void ArcGuest::begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& 
 void ArcGuest::add(std::size_t block, const FollowedEdges& edges) {
   Slot& slot = slots_[block % slots_.size()];
   slot.arcCount = edges.edges.size();
+  const std::size_t mostPoints = edges.faces.size() + 1;  // as EdgeReplay::add() needs
   if (isInOrder()) {
     // In the result itself, as processors write to memory while they compute what comes next.
     const std::uint64_t done = arcCount_ + slot.arcCount;
     requireArcs(done <= arcs_.count());
-    lengthenForPieces(arcs_, pointCount_ + edges.faces.size() + 1, done);
-    slot.pointCount = slot.replay.add(edges, {arcs_, keys_, arcCount_, pointCount_});
+    lengthenForPieces(arcs_, pointCount_ + mostPoints, done);
+    slot.pointCount = slot.replay.add(edges, {arcs_, arcCount_, pointCount_, keys_});
   } else {
-    makeRoom(slot.arcs, slot.keys, withKeys_, edges);
-    slot.pointCount = slot.replay.add(edges, {slot.arcs, slot.keys, 0, 0});
+    slot.arcs.ends.resize(slot.arcCount);
+    slot.arcs.pointBegin.resize(slot.arcCount);
+    slot.keys.resize(withKeys_ ? slot.arcCount : 0);
+    lengthenForPieces(slot.arcs, mostPoints, slot.arcCount);
+    slot.pointCount = slot.replay.add(edges, {slot.arcs, 0, 0, slot.keys});
   }
 }
 
@@ -78,7 +67,7 @@ void ArcGuest::measure(std::size_t firstBlock, std::size_t endBlock) {
 void ArcGuest::place(std::size_t block) {
   if (isInOrder()) return;
   const Slot& slot = slots_[block % slots_.size()];
-  const ArcColumns to(arcs_, keys_, slot.firstArc, slot.firstPoint);
+  const ArcColumns to(arcs_, slot.firstArc, slot.firstPoint, keys_);
   const std::size_t arcs = slot.arcCount;
   const std::size_t points = slot.pointCount;
   std::copy_n(slot.arcs.ends.data(), arcs, to.ends);

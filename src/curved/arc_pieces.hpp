@@ -63,22 +63,24 @@ class ArcPieces {
     }
   }
 
-  /// Copies the only arc to where it belongs, but for the place of its points.
-  /// @param number  among the arcs there
-  /// @param first   its first point among those there
-  void copyOnly(const ArcColumns& to, std::size_t number, std::size_t first) const {
-    to.ends[number] = arcs_[0].ends;
-    copyPoints(to, first);
-    copySegments(to, first + number);
-  }
-  /// Copies all to where it belongs.
-  void copyTo(Arcs& to, std::uint64_t firstArc, std::uint64_t firstPoint) const {
+  /// Copies all to where it belongs, but keys.
+  /// @param firstArc, firstPoint  among those there
+  void copyTo(const ArcColumns& to, std::size_t firstArc, std::size_t firstPoint) const {
     for (std::size_t i = 0; i < arcs_.size(); ++i) {
       to.ends[firstArc + i] = arcs_[i].ends;
-      to.pointBegin[firstArc + i] = firstPoint + arcs_[i].firstPoint;
+      to.pointBegin[firstArc + i] = to.firstPoint + firstPoint + arcs_[i].firstPoint;
     }
-    copyPoints(to, firstPoint);
-    copySegments(to, firstPoint + firstArc);
+    for (std::size_t i = 0, place = firstPoint; i < points_.size(); ++i, ++place) {
+      const Point& point = points_[i];
+      to.points[place] = point.position;
+      to.parameters[place] = point.parameter;
+      to.generatorTet[place] = point.generator.tet;
+      to.generatorCorners[place] = point.generator.corners;
+    }
+    for (std::size_t i = 0, place = firstPoint + firstArc; i < segments_.size(); ++i, ++place) {
+      to.segmentTet[place] = segments_[i].tet;
+      to.segmentCorners[place] = segments_[i].corners;
+    }
   }
 
  private:
@@ -91,25 +93,6 @@ class ArcPieces {
     double parameter;
     OwnedSimplex generator;
   };
-
-  template <class To>
-  void copyPoints(To& to, std::uint64_t place) const {
-    for (const Point& point : points_) {
-      to.points[place] = point.position;
-      to.parameters[place] = point.parameter;
-      to.generatorTet[place] = point.generator.tet;
-      to.generatorCorners[place] = point.generator.corners;
-      ++place;
-    }
-  }
-  template <class To>
-  void copySegments(To& to, std::uint64_t place) const {
-    for (const OwnedSimplex& segment : segments_) {
-      to.segmentTet[place] = segment.tet;
-      to.segmentCorners[place] = segment.corners;
-      ++place;
-    }
-  }
 
   Array<Arc> arcs_;
   Array<Point> points_;

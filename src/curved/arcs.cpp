@@ -211,8 +211,8 @@ Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const Ele
         lengthenForPieces(arcs, points, edges.begin(std::min(endBlock * grain, tets)));
       },
       [&](std::size_t block) {
-        pieces[block % pieces.size()].copyTo(arcs, edges.begin(block * grain),
-                                             firstPoints[block % pieces.size()]);
+        const std::size_t slot = block % pieces.size();
+        pieces[slot].copyTo({arcs, edges.begin(block * grain), firstPoints[slot]}, 0, 0);
       });
   arcs.pointBegin.back() = points;
   return arcs;

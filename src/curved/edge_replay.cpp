@@ -120,7 +120,6 @@ std::size_t EdgeReplay::add(const FollowedEdges& followed, const ArcColumns& to)
   std::size_t place = 0;
   Index first = 0;
   for (std::size_t i = 0; i < edges; ++i) {
-    to.pointBegin[i] = to.firstPoint + place;
     place += isSure(followed.edges[i], first) ? addSure(to, i, first, place)
                                               : addUnsure(to, i, first, place);
     first = followed.edges[i].faceEnd;
@@ -161,6 +160,7 @@ inline std::size_t EdgeReplay::addSure(const ArcColumns& to, std::size_t number,
   // edges cross no face or one, so none may depend on which.
   const std::size_t reversed = signOf(middle.edge.along) < 0 ? 1 : 0;
   to.ends[number] = {edge.ends[reversed], edge.ends[1 - reversed]};
+  to.pointBegin[number] = to.firstPoint + place;
   Index* const segments = &to.segmentTet[place + number];
   if (count < 2) {
     segments[count & (1 - reversed)] = behind_[first];
@@ -206,7 +206,7 @@ std::size_t EdgeReplay::addUnsure(const ArcColumns& to, std::size_t number, Inde
     ArcTracer::fail(edge.tet, "a hex edge meets more simplices than it was followed through");
   }
   if (to.keys != nullptr) to.keys[number] = key_;
-  pieces_.copyOnly(to, number, place);
+  pieces_.copyTo(to, number, place);
   return pieces_.points();
 }
 

@@ -97,13 +97,6 @@ class CrossedFace : public OwnersFace {
 [[nodiscard]] FaceShares shareExactly(const OwnersFace& face, const ChartEdge& edge,
                                       std::int64_t unit) noexcept;
 
-namespace detail {
-
-inline constexpr std::array<std::array<std::uint8_t, 2>, 3> kAxesAcross = {
-    {{1, 2}, {2, 0}, {0, 1}}};
-
-}  // namespace detail
-
 /// The same in floating point.
 ///
 /// In units of u = 2^-53 and of M, the largest coordinate of a corner across the edge relative to
@@ -117,8 +110,8 @@ inline constexpr std::array<std::array<std::uint8_t, 2>, 3> kAxesAcross = {
 template <class Face, class Edge>
 [[nodiscard]] FaceShares shareRoughly(const Face& face, const Edge& edge,
                                       std::int64_t unit) noexcept {
-  const std::array<std::uint8_t, 2>& across =
-      detail::kAxesAcross[static_cast<std::size_t>(axisOf(edge.along))];
+  static constexpr std::array<std::array<std::uint8_t, 2>, 3> kAcross = {{{1, 2}, {2, 0}, {0, 1}}};
+  const std::array<std::uint8_t, 2>& across = kAcross[static_cast<std::size_t>(axisOf(edge.along))];
   const std::size_t m = across[0];
   const std::size_t n = across[1];
   const auto p = static_cast<double>(edge.z[m] * unit - face.first(m));
