@@ -117,7 +117,7 @@ void extraction(benchmark::State& state, const Case& what) {
   });
   Totals totals;
   for (auto _ : state) {
-    warmFreeMemory(bytes);
+    warmFreeMemory(bytes, what.threads);
     Context context(what.threads);
     const PeakMemory peak;
     const auto begin = std::chrono::steady_clock::now();

@@ -29,6 +29,8 @@ namespace hexhex::bench {
 
 namespace {
 
+constexpr std::array<int, 2> kThreads = {1, 2};
+
 /// A folder for temporary files; it lives as long as this object.
 class TemporaryFolder {
  public:
@@ -113,7 +115,7 @@ BenchMesh makeMesh(const BenchMap& map) {
   result.extractionSeconds.push_back(0);
   ExtractOptions options;
   options.scale = map.scale;
-  for (const int threads : {1, 2}) {
+  for (const int threads : kThreads) {
     double best = std::numeric_limits<double>::max();
     for (int run = 0; run < 2; ++run) {  // the first one finds its memory cold
       Context context(threads);
@@ -200,7 +202,7 @@ double timeRuns(benchmark::State& state, const std::string& name, const std::fil
   double cpu = 0;
   for (auto _ : state) {
     before(need.file);
-    warmFreeMemory(need.memory + need.file);
+    warmFreeMemory(need.memory + need.file, kThreads.back());
     const double cpuBegin = cpuSeconds();
     const auto begin = std::chrono::steady_clock::now();
     f(file);
@@ -335,7 +337,7 @@ void surveying(benchmark::State& state, int threads) {
 
 template <class F>
 void add(const std::string& what, const BenchMap& map, const F& f) {
-  for (const int threads : {1, 2}) {
+  for (const int threads : kThreads) {
     const std::string name = what + "/" + map.name + "/threads:" + std::to_string(threads);
     auto* const registered = benchmark::RegisterBenchmark(
         name.c_str(), [f, threads](benchmark::State& state) { f(state, threads); });

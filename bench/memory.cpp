@@ -1,7 +1,12 @@
 #include "memory.hpp"
 
+#include <algorithm>
+#include <barrier>
+#include <cstddef>
 #include <fstream>
 #include <string>
+#include <thread>
+#include <vector>
 
 #if defined(__GLIBC__)
 #include <malloc.h>
@@ -35,6 +40,29 @@ bool resetPeak() {
   return clear.good();
 }
 
+/// Gives the memory back after all threads have touched theirs.
+void touchFreshMemory([[maybe_unused]] std::uint64_t bytes, std::barrier<>& together) {
+#if defined(__linux__)
+  void* memory = MAP_FAILED;
+  if (bytes > 0) {
+    memory = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  }
+  // If there is none, the measurement starts from whatever there is.
+  if (memory != MAP_FAILED) {
+#if defined(MADV_HUGEPAGE)
+    ::madvise(memory, bytes, MADV_HUGEPAGE);
+#endif
+    constexpr std::uint64_t kPage = 4096;
+    auto* const begin = static_cast<volatile char*>(memory);
+    for (std::uint64_t i = 0; i < bytes; i += kPage) begin[i] = 1;
+  }
+  together.arrive_and_wait();
+  if (memory != MAP_FAILED) ::munmap(memory, bytes);
+#else
+  together.arrive_and_wait();
+#endif
+}
+
 }  // namespace
 
 void releaseFreeMemory() {
@@ -43,20 +71,17 @@ void releaseFreeMemory() {
 #endif
 }
 
-void warmFreeMemory([[maybe_unused]] std::uint64_t bytes) {
-#if defined(__linux__)
-  if (bytes == 0) return;
-  void* const memory =
-      ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (memory == MAP_FAILED) return;  // then the measurement starts from whatever there is
-#if defined(MADV_HUGEPAGE)
-  ::madvise(memory, bytes, MADV_HUGEPAGE);
-#endif
-  constexpr std::uint64_t kPage = 4096;
-  auto* const begin = static_cast<volatile char*>(memory);
-  for (std::uint64_t i = 0; i < bytes; i += kPage) begin[i] = 1;
-  ::munmap(memory, bytes);
-#endif
+void warmFreeMemory(std::uint64_t bytes, int threads) {
+  const auto count = static_cast<std::uint64_t>(std::max(threads, 1));
+  if (const auto available = availableMemory()) bytes = std::min(bytes, *available / (2 * count));
+  // All hold their memory at the same time, or the second would get what the first gave back.
+  std::barrier together(static_cast<std::ptrdiff_t>(count));
+  std::vector<std::thread> others;
+  for (std::uint64_t i = 1; i < count; ++i) {
+    others.emplace_back([&together, bytes] { touchFreshMemory(bytes, together); });
+  }
+  touchFreshMemory(bytes, together);
+  for (std::thread& other : others) other.join();
 }
 
 std::optional<std::uint64_t> availableMemory() { return bytesIn("/proc/meminfo", "MemAvailable:"); }

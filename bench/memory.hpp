@@ -12,10 +12,12 @@ namespace hexhex::bench {
 /// neither profits from resident pages nor hides its growth in them.
 void releaseFreeMemory();
 
-/// Touches so much fresh memory, in huge pages as far as the system gives them, and gives it back.
-/// A virtual machine may have returned free memory to its host, which makes the next touch up to
-/// twenty times as expensive; shortly after this it is the machine's own again.
-void warmFreeMemory(std::uint64_t bytes);
+/// Touches so much fresh memory in each of so many threads, in huge pages as far as the system
+/// gives them, and gives it back. A virtual machine may have returned free memory to its host,
+/// which makes the next touch up to twenty times as expensive; shortly after this it is the
+/// machine's own again. Linux keeps freed pages for the core that freed them, so one thread cannot
+/// warm for two.
+void warmFreeMemory(std::uint64_t bytes, int threads);
 
 /// Bytes that this process could still use without swapping; nothing if the system does not tell.
 [[nodiscard]] std::optional<std::uint64_t> availableMemory();
