@@ -36,15 +36,15 @@ def extraction(runs: list[Run], engine: str) -> str:
         peak = run.get("peak_bytes")
         rows.append([run.map, str(run.threads), f"{run['tets']:,.0f}",
                      f"{run['hexes'] * 1e-6:.3g}",
-                     number(run.density), number(run["ms"]),
+                     number(run.density), number(run["ms"]), number(run["seconds_of_first"] * 1e3),
                      number(_ns_per("tets")(run)), number(_ns_per("hexes")(run)),
                      number(_bytes_per_hex(run)),
                      number(peak / run["bytes_of_result"] if peak else None),
                      number(run["ratio_to_yardstick"]), number(run.get("additions_per_ns"))])
     if not rows:
         return ""
-    return table(["map", "threads", "tets", "million hexes", "hexes per tet", "ms", "ns per tet",
-                  "ns per hex", "bytes per hex", "memory / result", "time / copy",
+    return table(["map", "threads", "tets", "million hexes", "hexes per tet", "ms", "first: ms",
+                  "ns per tet", "ns per hex", "bytes per hex", "memory / result", "time / copy",
                   "additions / ns"], rows)
 
 
