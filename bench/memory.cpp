@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <barrier>
+#include <chrono>
 #include <cstddef>
 #include <fstream>
 #include <string>
@@ -40,6 +41,12 @@ bool resetPeak() {
   return clear.good();
 }
 
+/// From here on, bytes, an extraction takes a good part of the period below.
+constexpr std::uint64_t kMuchMemory = std::uint64_t{1} << 28;
+/// Two seconds after memory was freed, Linux tells the host of all that is free then, and may give
+/// it away. Who holds the memory for longer has it for two seconds from when it gives it back.
+constexpr std::chrono::milliseconds kReportingPeriod(2500);
+
 /// Gives the memory back after all threads have touched theirs.
 void touchFreshMemory([[maybe_unused]] std::uint64_t bytes, std::barrier<>& together) {
 #if defined(__linux__)
@@ -57,6 +64,7 @@ void touchFreshMemory([[maybe_unused]] std::uint64_t bytes, std::barrier<>& toge
     for (std::uint64_t i = 0; i < bytes; i += kPage) begin[i] = 1;
   }
   together.arrive_and_wait();
+  if (bytes >= kMuchMemory) std::this_thread::sleep_for(kReportingPeriod);
   if (memory != MAP_FAILED) ::munmap(memory, bytes);
 #else
   together.arrive_and_wait();
