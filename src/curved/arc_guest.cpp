@@ -36,7 +36,7 @@ void ArcGuest::begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& 
 void ArcGuest::add(std::size_t block, const FollowedEdges& edges) {
   Slot& slot = slots_[block % slots_.size()];
   slot.arcCount = edges.edges.size();
-  const std::size_t mostPoints = edges.faces.size() + 1;  // as EdgeReplay::add() needs
+  const std::size_t mostPoints = edges.faces.size();  // as EdgeReplay::add() needs
   if (isInOrder()) {
     // In the result itself, as processors write to memory while they compute what comes next.
     const std::uint64_t done = arcCount_ + slot.arcCount;

@@ -10,13 +10,21 @@ namespace hexhex {
 
 namespace {
 
+/// Whether an edge, unless it jumps from chart to chart, is followed against its axis, along which
+/// its arc is to run.
+std::size_t runsBack(const FollowedEdge& edge) noexcept {
+  const auto descends = static_cast<std::size_t>(signOf(edge.along) < 0);
+  return descends & static_cast<std::size_t>(!edge.jumps);
+}
+
 /// Computes crossings. Has pointers of its own, as those of arrays might change with everything
 /// that is written.
 class Crosser {
  public:
   /// @param to  receives the points
-  Crosser(const PreparedMap& map, const ArcColumns& to, Array<Index>& behind) noexcept
-      : transitions_(map.exact.transitions),
+  Crosser(const PreparedMap& map, const FollowedEdges& followed, const ArcColumns& to) noexcept
+      : edges_(followed.edges.data()),
+        transitions_(map.exact.transitions),
         mates_(map.topology.mate.data()),
         jumps_(map.exact.transitions.jump.data()),
         corners_(map.exact.corners.data()),
@@ -28,11 +36,14 @@ class Crosser {
         parameters_(to.parameters),
         generatorTet_(to.generatorTet),
         generatorCorners_(to.generatorCorners),
-        behind_(behind.data()) {}
+        segmentTet_(to.segmentTet) {}
 
-  /// @param[in,out] counts  of the crossings before
-  void operator()(const FollowedFace& face, std::size_t number,
-                  CrossingCounts& counts) const noexcept {
+  /// Writes the point of a crossing, and the segment behind it, in the order of the arc if the edge
+  /// does not jump.
+  /// @return whether it is certain that it is inside the face, behind the beginning and the
+  /// crossing
+  ///         before, before the end, and not at the midpoint
+  bool operator()(const FollowedFace& face, std::size_t number) noexcept {
     const HalfFace mate = mates_[face.halfFace];
     // Which side owns the face, that of the smaller tet, is as good as random, so no branch may
     // depend on it: all bits are set if it is the other one.
@@ -46,25 +57,31 @@ class Crosser {
     FollowedFace carried;
     if ((jump & isMates) != 0) [[unlikely]] {
       const ChartEdge there = ChartEdge{face.z, face.along}.across(transitions_, face.halfFace);
-      carried = {mate, there.z, there.along};
+      carried = {mate, face.edge, there.z, there.along};
       edge = &carried;
     }
     const OwnersFace ownersFace(corners_[owner], local);
     const FaceCrossing rough =
         crossAt(shareRoughly(ownersFace, *edge, unit_), ownersFace, *edge, unit_, perUnit_);
-    points_[number] = pointInFace(rough.shares, pointsOf(tets_[owner], local, space_));
-    parameters_[number] = rough.parameter;
-    generatorTet_[number] = owner;
-    generatorCorners_[number] = faceMask(local);
-    behind_[number] = tetOf(mate);
-    // Not at an end, and not at the midpoint.
+    // In which order is as good as random, too.
+    const FollowedEdge& whole = edges_[face.edge];
+    const std::size_t back = runsBack(whole);
+    const std::size_t mirrored = std::size_t{whole.faceBegin} + whole.faceEnd - 1 - number;
+    const std::size_t place = number ^ ((number ^ mirrored) & (0 - back));
+    points_[place] = pointInFace(rough.shares, pointsOf(tets_[owner], local, space_));
+    parameters_[place] = std::array{rough.parameter, 1 - rough.parameter}[back];
+    generatorTet_[place] = owner;
+    generatorCorners_[place] = faceMask(local);
+    segmentTet_[place + face.edge + (1 - back)] = tetOf(mate);
+    const double before = std::array{0.0, before_}[face.edge == edge_ ? 1 : 0];
+    edge_ = face.edge;
+    before_ = rough.parameter;
     const double fromQuarter = std::abs(std::abs(rough.parameter - 0.5) - 0.25);
-    counts.unsure += allOf(rough.inside, fromQuarter < 0.25 - rough.error) ? 0 : 1;
-    counts.jumps += jump != 0 ? 1 : 0;
-    counts.early += rough.parameter < 0.5 ? 1 : 0;
+    return allOf(rough.inside, fromQuarter < 0.25 - rough.error, before <= rough.parameter);
   }
 
  private:
+  const FollowedEdge* edges_;
   const Transitions& transitions_;
   const HalfFace* mates_;
   const Index* jumps_;
@@ -77,33 +94,35 @@ class Crosser {
   double* parameters_;
   Index* generatorTet_;
   CornerSet* generatorCorners_;
-  Index* behind_;
+  Index* segmentTet_;
+  Index edge_ = kNone;  ///< of the crossing before
+  double before_ = 0;   ///< its parameter
 };
 
-void movePoint(const ArcColumns& to, std::size_t from, std::size_t place) {
-  to.points[place] = to.points[from];
-  to.parameters[place] = to.parameters[from];
-  to.generatorTet[place] = to.generatorTet[from];
-  to.generatorCorners[place] = to.generatorCorners[from];
-}
-
 /// Turns the points and segments of an arc round.
-void reverse(const ArcColumns& to, Index* segments, std::size_t place, std::size_t count) {
+/// @param segment  the first
+void reverse(const ArcColumns& to, std::size_t segment, std::size_t point, std::size_t points) {
   const auto turn = [](auto* first, std::size_t size) { std::reverse(first, first + size); };
-  turn(segments, count + 1);
-  turn(to.points + place, count);
-  turn(to.parameters + place, count);
-  turn(to.generatorTet + place, count);
-  turn(to.generatorCorners + place, count);
-  for (std::size_t i = place; i < place + count; ++i) to.parameters[i] = 1 - to.parameters[i];
+  turn(to.segmentTet + segment, points + 1);
+  turn(to.points + point, points);
+  turn(to.parameters + point, points);
+  turn(to.generatorTet + point, points);
+  turn(to.generatorCorners + point, points);
+  for (std::size_t i = point; i < point + points; ++i) to.parameters[i] = 1 - to.parameters[i];
 }
 
-/// Of an arc whose parameters are certain to be in (0, 1).
-void smooth(double* parameters, std::size_t count) {
-  double before = EdgeTracer::kLeastParameter;
-  for (std::size_t i = 0; i < count; ++i) {
-    parameters[i] = before = EdgeTracer::smooth(parameters[i], before);
-  }
+/// Moves points and segments of consecutive edges to an earlier place.
+void move(const ArcColumns& to, std::size_t firstFace, std::size_t firstSegment, std::size_t faces,
+          std::size_t segments, std::size_t distance) {
+  if (distance == 0) return;
+  const auto shift = [distance](auto* first, std::size_t size) {
+    std::copy(first, first + size, first - distance);
+  };
+  shift(to.points + firstFace, faces);
+  shift(to.parameters + firstFace, faces);
+  shift(to.generatorTet + firstFace, faces);
+  shift(to.generatorCorners + firstFace, faces);
+  shift(to.segmentTet + firstSegment, segments);
 }
 
 }  // namespace
@@ -117,96 +136,94 @@ std::size_t EdgeReplay::add(const FollowedEdges& followed, const ArcColumns& to)
   // faces, as in one tet it has one simplex that contains it.
   cross(followed.faces, to);
   std::fill_n(to.segmentCorners, faces + edges, kWholeTet);
-  std::size_t place = 0;
-  Index first = 0;
-  for (std::size_t i = 0; i < edges; ++i) {
-    place += isSure(followed.edges[i], first) ? addSure(to, i, first, place)
-                                              : addUnsure(to, i, first, place);
-    first = followed.edges[i].faceEnd;
+  std::size_t place = 0;  // of the next point
+  Place sure;             // the edges from here on are sure, and not yet moved to their place
+  const auto moveSure = [&](const Place& end) {
+    const std::size_t count = end.face - sure.face;
+    move(to, sure.face, sure.face + sure.edge, count, count + end.edge - sure.edge,
+         sure.face - place);
+    place += count;
+  };
+  Place at;
+  for (; at.edge < edges; ++at.edge) {
+    const FollowedEdge& edge = followed.edges[at.edge];
+    // Whether it is certain that the edge passes through the interiors of faces and tets, and its
+    // midpoint through that of a tet. Whether there are crossings is as good as random.
+    const auto isInside =
+        static_cast<unsigned>(edge.faceEnd > at.face) | static_cast<unsigned>(edge.inside);
+    const auto allSure = static_cast<unsigned>(unsure_[edge.faceEnd] == unsure_[at.face]);
+    if ((isInside & allSure) != 0) {
+      addSure(to, at, place + (at.face - sure.face));
+      at.face = edge.faceEnd;
+    } else {
+      moveSure(at);
+      place += addUnsure(to, at, place);
+      at.face = edge.faceEnd;
+      sure = {at.edge + 1, at.face};
+    }
   }
+  moveSure(at);
   return place;
 }
 
 void EdgeReplay::cross(Faces faces, const ArcColumns& to) {
   const std::size_t count = faces.size();
-  // One more that edges without crossings may look at.
-  behind_.resize(count + 1);
-  behind_[count] = kNone;
-  to.points[count] = {};
-  to.parameters[count] = 0;
-  to.generatorTet[count] = kNone;
-  to.generatorCorners[count] = kNoSimplex;
-  counts_.resize(count + 1);
-  const Crosser cross(map_, to, behind_);
-  CrossingCounts counts;
-  counts_[0] = counts;
+  unsure_.resize(count + 1);
+  Crosser cross(map_, *followed_, to);
+  Index unsure = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    cross(faces[i], i, counts);
-    counts_[i + 1] = counts;
+    unsure_[i] = unsure;
+    unsure += cross(faces[i], i) ? 0 : 1;
   }
+  unsure_[count] = unsure;
 }
 
 /// Makes the arc of a sure edge run along the axis of the midpoint's owner.
-/// @param first  its first crossing
-/// @param place  of its first point, not behind it
-/// @return the number of points
-inline std::size_t EdgeReplay::addSure(const ArcColumns& to, std::size_t number, Index first,
-                                       std::size_t place) {
-  const FollowedEdge& edge = followed_->edges[number];
-  const std::size_t count = edge.faceEnd - first;
-  const Middle middle = middleOf(edge, first);
-  if (to.keys != nullptr) to.keys[number] = {middle.owner, middle.edge};
-  // Whether an arc is turned round is as good as random, so no branch may depend on it, and most
-  // edges cross no face or one, so none may depend on which.
-  const std::size_t reversed = signOf(middle.edge.along) < 0 ? 1 : 0;
-  to.ends[number] = {edge.ends[reversed], edge.ends[1 - reversed]};
-  to.pointBegin[number] = to.firstPoint + place;
-  Index* const segments = &to.segmentTet[place + number];
-  if (count < 2) {
-    segments[count & (1 - reversed)] = behind_[first];
-    segments[count & reversed] = edge.tet;
-    movePoint(to, first, place);
-    double& parameter = to.parameters[place];
-    parameter = std::array{parameter, 1 - parameter}[count & reversed];
-  } else {
-    segments[0] = edge.tet;
-    std::copy_n(&behind_[first], count, segments + 1);
-    for (std::size_t i = 0; i < count; ++i) movePoint(to, first + i, place + i);
-    if (reversed != 0) reverse(to, segments, place, count);
-    smooth(&to.parameters[place], count);
+/// @param from   where the edge, its crossings and segments are
+/// @param place  where its points will be, not behind it
+inline void EdgeReplay::addSure(const ArcColumns& to, const Place& from, std::size_t place) {
+  const FollowedEdge& edge = followed_->edges[from.edge];
+  const std::size_t count = edge.faceEnd - from.face;
+  const std::size_t segment = from.face + from.edge;
+  std::size_t back = runsBack(edge);
+  to.segmentTet[segment + count * back] = edge.tet;
+  if (edge.jumps || to.keys != nullptr) {
+    const Middle middle = middleOf(to, from);
+    if (to.keys != nullptr) to.keys[from.edge] = {middle.owner, middle.edge};
+    if (edge.jumps && signOf(middle.edge.along) < 0) {
+      reverse(to, segment, from.face, count);
+      back = 1;
+    }
   }
-  return count;
+  to.ends[from.edge] = {edge.ends[back], edge.ends[1 - back]};
+  to.pointBegin[from.edge] = to.firstPoint + place;
 }
 
-/// Where the midpoint of a sure edge is.
-inline EdgeReplay::Middle EdgeReplay::middleOf(const FollowedEdge& edge,
-                                               Index first) const noexcept {
-  const CrossingCounts& before = counts_[first];
-  const CrossingCounts& upTo = counts_[edge.faceEnd];
-  const Index early = upTo.early - before.early;
-  // At random there are some; jumps are rare.
-  if ((upTo.jumps - before.jumps) * std::min(early, Index{1}) != 0) [[unlikely]] {
-    const Index last = first + early - 1;
-    return {behind_[last], behind(followed_->faces[last])};
+/// Where the midpoint of a sure edge is. If it jumps, its arc has not been turned round.
+EdgeReplay::Middle EdgeReplay::middleOf(const ArcColumns& to, const Place& from) const noexcept {
+  const FollowedEdge& edge = followed_->edges[from.edge];
+  std::size_t early = 0;  // points before the midpoint
+  for (std::size_t i = from.face; i < edge.faceEnd; ++i) {
+    early += to.parameters[i] < 0.5 ? 1 : 0;
   }
-  const std::array<Index, 2> owners = {edge.tet, behind_[first + std::max(early, Index{1}) - 1]};
-  return {owners[std::min(early, Index{1})], {edge.z, edge.along}};
+  const Index owner = to.segmentTet[from.face + from.edge + early];
+  if (!edge.jumps || early == 0) return {owner, ChartEdge{edge.z, edge.along}};
+  return {owner, behind(followed_->faces[from.face + early - 1])};
 }
 
 /// Makes the arc of an edge of which not everything is certain.
-/// @param first, place  as for addSure()
+/// @param from, place  as for addSure()
 /// @return the number of points
-std::size_t EdgeReplay::addUnsure(const ArcColumns& to, std::size_t number, Index first,
-                                  std::size_t place) {
-  const FollowedEdge& edge = followed_->edges[number];
-  const std::size_t count = edge.faceEnd - first;
+std::size_t EdgeReplay::addUnsure(const ArcColumns& to, const Place& from, std::size_t place) {
+  const FollowedEdge& edge = followed_->edges[from.edge];
+  const std::size_t count = edge.faceEnd - from.face;
   pieces_.clear();
-  followExactly(edge, Faces(followed_->faces).subspan(first, count));
+  followExactly(edge, Faces(followed_->faces).subspan(from.face, count));
   if (pieces_.points() > count) {
     ArcTracer::fail(edge.tet, "a hex edge meets more simplices than it was followed through");
   }
-  if (to.keys != nullptr) to.keys[number] = key_;
-  pieces_.copyTo(to, number, place);
+  if (to.keys != nullptr) to.keys[from.edge] = key_;
+  pieces_.copyTo(to, from.edge, place);
   return pieces_.points();
 }
 

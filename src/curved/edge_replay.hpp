@@ -21,13 +21,6 @@
 
 namespace hexhex {
 
-/// What is known of the crossings up to one.
-struct CrossingCounts {
-  Index unsure = 0;  ///< perhaps not inside the face, behind the end or at the midpoint
-  Index jumps = 0;   ///< from chart to chart
-  Index early = 0;   ///< before the midpoint
-};
-
 /// Computes the points where edges cross faces, in floating point with a proven bound; those of
 /// edges that meet edges or vertices of the tets, or lie in faces, by exact arithmetic. Makes what
 /// traceArcs() makes of an edge, bit for bit.
@@ -45,12 +38,17 @@ class EdgeReplay {
   ~EdgeReplay() = default;
 
   /// Makes the arcs of the edges of a block.
-  /// @param to  has room for as many points as there are faces, and one more
+  /// @param to  has room for as many points as there are faces
   /// @return the number of points
   std::size_t add(const FollowedEdges& followed, const ArcColumns& to);
 
  private:
   using Faces = std::span<const FollowedFace>;
+  /// Edges of a block from one on.
+  struct Place {
+    std::size_t edge = 0;
+    std::size_t face = 0;  ///< the first of that edge
+  };
   /// The tet that owns the midpoint, and the edge in its chart.
   struct Middle {
     Index owner;
@@ -58,19 +56,9 @@ class EdgeReplay {
   };
 
   void cross(Faces faces, const ArcColumns& to);
-  /// Whether it is certain that an edge passes through the interiors of faces and tets, and its
-  /// midpoint through that of a tet.
-  /// @param first  its first crossing
-  [[nodiscard]] bool isSure(const FollowedEdge& edge, Index first) const noexcept {
-    // Without branches, as whether there are crossings is as good as random.
-    const Index end = edge.faceEnd;
-    const auto isInside = static_cast<unsigned>(end > first) | static_cast<unsigned>(edge.inside);
-    const auto allSure = static_cast<unsigned>(counts_[end].unsure == counts_[first].unsure);
-    return (isInside & allSure) != 0;
-  }
-  std::size_t addSure(const ArcColumns& to, std::size_t number, Index first, std::size_t place);
-  [[nodiscard]] Middle middleOf(const FollowedEdge& edge, Index first) const noexcept;
-  std::size_t addUnsure(const ArcColumns& to, std::size_t number, Index first, std::size_t place);
+  void addSure(const ArcColumns& to, const Place& from, std::size_t place);
+  [[nodiscard]] Middle middleOf(const ArcColumns& to, const Place& from) const noexcept;
+  std::size_t addUnsure(const ArcColumns& to, const Place& from, std::size_t place);
   void followExactly(const FollowedEdge& edge, Faces faces);
   void traceFromMiddle(const FollowedEdge& followed, Faces faces);
   [[nodiscard]] SimplexInTet findMiddle(const FollowedEdge& followed, Faces faces) const;
@@ -82,10 +70,9 @@ class EdgeReplay {
 
   const PreparedMap& map_;
   const FollowedEdges* followed_ = nullptr;
-  Array<Index> behind_;           ///< per crossing, the next tet
-  Array<CrossingCounts> counts_;  ///< per crossing, and one before the first
-  ArcPieces pieces_;              ///< of an edge that is not sure
-  EdgeKey key_{};                 ///< of the same
+  Array<Index> unsure_;  ///< how many crossings before each are not certain, and in all
+  ArcPieces pieces_;     ///< of an edge that is not sure
+  EdgeKey key_{};        ///< of the same
   ExactReplay exactly_;
   EdgeTracer tracer_;
   SimplexStar star_;

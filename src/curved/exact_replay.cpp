@@ -83,7 +83,7 @@ ArcExit exitAtCorners(const PreparedMap& map, Index tet, const LatticeTet& seen,
 bool ExactReplay::follow(const FollowedEdge& edge, std::span<const FollowedFace> faces) {
   tet_ = edge.tet;
   at_ = {edge.z, edge.along};
-  entered_ = vertices_.find(tet_, at_.z).simplex;
+  entered_ = edge.begin;
   owner_ = kNone;
   for (const FollowedFace& face : faces) {
     const Passed passed = pass(face.halfFace);

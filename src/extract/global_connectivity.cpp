@@ -24,8 +24,8 @@ struct Trace {
 /// Keeps no records.
 struct NoRecorder {
   static constexpr bool kRecords = false;
-  void begin(const Trace& /*at*/) const noexcept {}
-  void cross(HalfFace /*halfFace*/, const Trace& /*at*/) const noexcept {}
+  void begin(const Trace& /*at*/, CornerMask /*simplex*/) const noexcept {}
+  void cross(HalfFace /*halfFace*/, const Trace& /*at*/, bool /*jumps*/) const noexcept {}
 };
 
 /// Keeps records of edges, one at a time.
@@ -35,28 +35,42 @@ class EdgeRecorder {
 
   explicit EdgeRecorder(FollowedEdges& records) : records_(records) {}
 
-  void begin(const Trace& at) {
+  /// @param simplex  of the tet, that holds the beginning
+  void begin(const Trace& at, CornerMask simplex) {
     FollowedEdge& edge = records_.edges.emplace_back();
     edge.tet = at.tet;
     edge.z = at.z;
     edge.along = at.along;
+    edge.begin = simplex;
+    edge.faceBegin = faceCount_;
+    jumps_ = false;
   }
-  void cross(HalfFace halfFace, const Trace& at) {
-    records_.faces.push_back({halfFace, at.z, at.along});
+  /// @param jumps  whether the charts on the two sides differ
+  void cross(HalfFace halfFace, const Trace& at, bool jumps) {
+    records_.faces.push_back({halfFace, edgeCount_, at.z, at.along});
+    ++faceCount_;
+    jumps_ |= jumps;
   }
   void keep(Index vertex, Index end, bool inside) {
     FollowedEdge& edge = records_.edges.back();
     edge.ends = {vertex, end};
     edge.inside = inside;
-    edge.faceEnd = static_cast<Index>(records_.faces.size());
+    edge.jumps = jumps_;
+    edge.faceEnd = faceCount_;
+    ++edgeCount_;
   }
   void drop() {
+    faceCount_ = records_.edges.back().faceBegin;
+    records_.faces.resize(faceCount_);
     records_.edges.pop_back();
-    records_.faces.resize(records_.edges.empty() ? 0 : records_.edges.back().faceEnd);
   }
 
  private:
   FollowedEdges& records_;
+  // Counted, as sizes of arrays of such elements take a division.
+  Index edgeCount_ = 0;  ///< that were kept
+  Index faceCount_ = 0;
+  bool jumps_ = false;  ///< the edge at hand, so far
 };
 
 class Tracer {
@@ -75,7 +89,7 @@ class Tracer {
   template <class Recorder>
   void run(Index tet, Recorder& recorder) const {
     if (vertices_.lines.empty(tet)) return;
-    vertices_.lines.forEachPoint(tet, [&](const GridPoint& z, CornerMask /*simplex*/, Index point) {
+    vertices_.lines.forEachPoint(tet, [&](const GridPoint& z, CornerMask simplex, Index point) {
       const Index vertex = vertices_.lines.vertices[point];
       if (vertex == kNone) throw MissingVertex{tet};
       const Index generator = vertices_.generatorOf[vertex];
@@ -85,7 +99,8 @@ class Tracer {
         const Propeller& propeller = local_.propeller(configuration, p);
         const Slot& slot = local_.slot(propeller, 0);
         if (!constant && slot.tet != tet) continue;
-        trace(vertex, generator, p, {tet, z, propeller.direction, slot.direction}, recorder);
+        trace(vertex, generator, p, {tet, z, propeller.direction, slot.direction}, simplex,
+              recorder);
       }
     });
   }
@@ -116,7 +131,7 @@ class Tracer {
   }
 
   template <class Recorder>
-  void trace(Index vertex, Index generator, std::size_t propeller, Trace at,
+  void trace(Index vertex, Index generator, std::size_t propeller, Trace at, CornerMask simplex,
              Recorder& recorder) const {
     // Two threads may trace an edge from both ends at once. They write the same values, so relaxed
     // accesses suffice, and the result is the same in any order. It is recorded from the end whose
@@ -128,7 +143,7 @@ class Tracer {
       if (alone_ || !isAhead(known, at.tet)) return;
     }
     [[maybe_unused]] const Index turn = at.tet;
-    recorder.begin(at);
+    recorder.begin(at, simplex);
     const Index end = follow(at, recorder);
     const Index endGenerator = vertices_.generatorOf[end];
     const SlotName arrived =
@@ -167,7 +182,7 @@ class Tracer {
       const HalfFace mate = topology_.mate[halfFace];
       if (mate == kNone) throw MissingVertex{at.tet};
       entered = localOf(mate);
-      recorder.cross(halfFace, at);
+      recorder.cross(halfFace, at, exact_.transitions.isJump(halfFace));
       const Transition& transition = exact_.transitions.across(halfFace);
       at = {tetOf(mate), transition(at.z), transition(at.along), transition(at.beside)};
     }

@@ -21,14 +21,18 @@ struct FollowedEdge {
   Index tet;
   GridPoint z;  ///< where it begins
   Direction along;
-  bool inside;    ///< its beginning or its end is in the interior of a tet
-  Index faceEnd;  ///< its faces end here; they begin where those of the edge before end
+  CornerMask begin;  ///< simplex of the tet that holds its beginning
+  bool inside;       ///< its beginning or its end is in the interior of a tet
+  bool jumps;        ///< from chart to chart, on its way
+  Index faceBegin;   ///< its faces begin here, where those of the edge before end,
+  Index faceEnd;     ///< and end here
 };
 
 /// A face that an edge crosses on its way, as seen from where it comes from.
 struct FollowedFace {
   HalfFace halfFace;
-  GridPoint z;  ///< where the edge begins, in the chart of the half-face's tet
+  Index edge;   ///< its number in the block
+  GridPoint z;  ///< where it begins, in the chart of the half-face's tet
   Direction along;
 };
 
