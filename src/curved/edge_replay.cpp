@@ -12,9 +12,8 @@ namespace {
 
 /// Whether an edge, unless it jumps from chart to chart, is followed against its axis, along which
 /// its arc is to run.
-std::size_t runsBack(const FollowedEdge& edge) noexcept {
-  const auto descends = static_cast<std::size_t>(signOf(edge.along) < 0);
-  return descends & static_cast<std::size_t>(!edge.jumps);
+unsigned runsBack(const FollowedEdge& edge) noexcept {
+  return descends(edge.along) & static_cast<unsigned>(!edge.jumps);
 }
 
 /// Computes crossings. Has pointers of its own, as those of arrays might change with everything
@@ -65,11 +64,11 @@ class Crosser {
         crossAt(shareRoughly(ownersFace, *edge, unit_), ownersFace, *edge, unit_, perUnit_);
     // In which order is as good as random, too.
     const FollowedEdge& whole = edges_[face.edge];
-    const std::size_t back = runsBack(whole);
+    const unsigned back = runsBack(whole);
     const std::size_t mirrored = std::size_t{whole.faceBegin} + whole.faceEnd - 1 - number;
-    const std::size_t place = number ^ ((number ^ mirrored) & (0 - back));
+    const std::size_t place = number ^ ((number ^ mirrored) & (std::size_t{0} - back));
     points_[place] = pointInFace(rough.shares, pointsOf(tets_[owner], local, space_));
-    parameters_[place] = std::array{rough.parameter, 1 - rough.parameter}[back];
+    parameters_[place] = fromOtherEnd(rough.parameter, back);
     generatorTet_[place] = owner;
     generatorCorners_[place] = faceMask(local);
     segmentTet_[place + face.edge + (1 - back)] = tetOf(mate);
@@ -185,7 +184,7 @@ inline void EdgeReplay::addSure(const ArcColumns& to, const Place& from, std::si
   const FollowedEdge& edge = followed_->edges[from.edge];
   const std::size_t count = edge.faceEnd - from.face;
   const std::size_t segment = from.face + from.edge;
-  std::size_t back = runsBack(edge);
+  unsigned back = runsBack(edge);
   to.segmentTet[segment + count * back] = edge.tet;
   if (edge.jumps || to.keys != nullptr) {
     const Middle middle = middleOf(to, from);

@@ -143,11 +143,9 @@ bool ExactReplay::addSegment(CornerMask to, bool behindMiddle) {
 /// @param exit  what holds the point, in the tet at hand
 void ExactReplay::goThrough(HalfFace halfFace, CornerMask exit) {
   const HalfFace mate = map_.topology.mate[halfFace];
-  const Index next = tetOf(mate);
-  entered_ = exit == faceMask(localOf(halfFace)) ? faceMask(localOf(mate))
-                                                 : map_.topology.translated(exit, tet_, next);
+  entered_ = acrossFace(map_.topology, halfFace, exit);
   at_ = at_.across(map_.exact.transitions, halfFace);
-  tet_ = next;
+  tet_ = tetOf(mate);
 }
 
 }  // namespace hexhex

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -92,6 +93,13 @@ class CrossedFace : public OwnersFace {
   std::array<double, 3> third_;
 };
 
+/// A parameter, or 1 minus it if the other argument is 1 and not 0; without a branch.
+[[nodiscard]] inline double fromOtherEnd(double parameter, unsigned other) noexcept {
+  static constexpr std::array<double, 2> kEnd = {0, 1};
+  const auto bits = std::bit_cast<std::uint64_t>(parameter);
+  return kEnd[other] + std::bit_cast<double>(bits ^ (std::uint64_t{other} << 63));
+}
+
 /// Where the line of an edge meets the plane of a face, by exact arithmetic up to the last
 /// roundings.
 [[nodiscard]] FaceShares shareExactly(const OwnersFace& face, const ChartEdge& edge,
@@ -140,15 +148,15 @@ template <class Face, class Edge>
                                    std::int64_t unit, double perUnit) noexcept {
   const auto axis = static_cast<std::size_t>(axisOf(edge.along));
   // No branch may depend on the direction, which is as good as random.
-  const std::size_t descends = signOf(edge.along) > 0 ? 0 : 1;
-  const std::int64_t begin = std::int64_t{edge.z[axis]} - static_cast<std::int64_t>(descends);
+  const unsigned back = descends(edge.along);
+  const std::int64_t begin = std::int64_t{edge.z[axis]} - std::int64_t{back};
   const auto first = static_cast<double>(face.first(axis) - begin * unit);
   const double second = face.second(axis);
   const double third = face.third(axis);
   const double beyond = shares.of[1] * second + shares.of[2] * third;
   // A multiple of 2^-53, so that the way back is as exact as the way there.
   const double rest = 1 - (first + beyond) * perUnit;
-  const double parameter = std::array{1 - rest, rest}[descends];
+  const double parameter = fromOtherEnd(rest, 1 - back);
   const double reach = std::abs(second) + std::abs(third);
   const double error = (0x1p-36 * reach + 0x1p-50 * std::abs(first)) * perUnit + 0x1p-52;
   return {shares.of, parameter, error, shares.inside};

@@ -124,6 +124,19 @@ class SharedFace {
   const Turn* there_ = nullptr;
 };
 
+/// A simplex of a face as the neighbour has it, without branches: its corners are as good as
+/// random.
+/// @param here  the face, as a half-face that is not on the boundary
+[[nodiscard]] inline CornerMask acrossFace(const TetTopology& topology, HalfFace here,
+                                           CornerMask simplex) noexcept {
+  const SharedFace face(topology, here, topology.mate[here]);
+  unsigned result = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    result |= ((unsigned{simplex} >> face.here(k)) & 1U) << face.there(k);
+  }
+  return static_cast<CornerMask>(result);
+}
+
 /// Builds adjacency through faces; defects are collected. After a defect the result must not be
 /// used. Faces are checked here (non-manifold, inconsistent orientation); that edges and vertices
 /// are manifold is for computeSingularities() to find out.
