@@ -74,8 +74,7 @@ std::size_t arcPoints(const Arcs& arcs) { return arcs.points.size() + 2 * arcs.c
 
 /// CPU time of run(context), up to its result; freeing that does not count.
 template <class Run>
-double secondsOf(int threads, std::uint64_t bytes, const Run& run) {
-  warmFreeMemory(bytes, threads);
+double secondsOf(int threads, const Run& run) {
   releaseFreeMemory();
   StageClock clock;
   Context context(threads, clock.listener());
@@ -103,15 +102,21 @@ void piecewiseLinear(benchmark::State& state, const std::string& name, const Ben
     benchmark::DoNotOptimize(
         extractPiecewiseLinear(map, PiecewiseLinearParts::ArcsAndPatches, options, context));
   });
+  const auto secondsAlone = [&] {
+    return secondsOf(threads, [&](Context& context) { return extract(map, options, context); });
+  };
+  warmFreeMemory(bytes, threads);
   for (auto _ : state) {
-    const double alone =
-        secondsOf(threads, bytes, [&](Context& context) { return extract(map, options, context); });
-    extraction += alone;
-    arcs -= alone;
-    arcs += secondsOf(threads, bytes, [&](Context& context) {
+    // Before and behind, as the machine's speed changes. One more before, as what comes after
+    // patches finds other things in the caches than what comes after an extraction.
+    secondsAlone();
+    const double before = secondsAlone();
+    const double withArcs = secondsOf(threads, [&](Context& context) {
       return extractPiecewiseLinear(map, PiecewiseLinearParts::Arcs, options, context);
     });
-    warmFreeMemory(bytes, threads);
+    const double alone = (before + secondsAlone()) / 2;
+    extraction += alone;
+    arcs += withArcs - alone;
     releaseFreeMemory();
     StageClock clock;
     Context context(threads, clock.listener());

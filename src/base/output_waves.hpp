@@ -57,7 +57,7 @@ void parallelWaves(Stage& stage, std::size_t n, std::size_t grain, std::size_t w
 template <class T>
 void lengthen(Array<T>& array, std::size_t size, double share) {
   constexpr double kReserve = 1.1;
-  constexpr double kLeastShare = 1.0 / 1024;  // the very beginning may be far from what is typical
+  constexpr double kLeastShare = 1.0 / 64;  // the beginning may be far from what is typical
   constexpr double kFirst = 16;
   if (size > array.capacity()) {
     // Nothing is a share of nothing, too.

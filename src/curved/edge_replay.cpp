@@ -148,8 +148,8 @@ std::size_t EdgeReplay::add(const FollowedEdges& followed, const ArcColumns& to)
     const FollowedEdge& edge = followed.edges[at.edge];
     // Whether it is certain that the edge passes through the interiors of faces and tets, and its
     // midpoint through that of a tet. Whether there are crossings is as good as random.
-    const auto isInside =
-        static_cast<unsigned>(edge.faceEnd > at.face) | static_cast<unsigned>(edge.inside);
+    const auto isInside = static_cast<unsigned>(edge.faceEnd > at.face) |
+                          static_cast<unsigned>((edge.begin | edge.end) == kWholeTet);
     const auto allSure = static_cast<unsigned>(unsure_[edge.faceEnd] == unsure_[at.face]);
     if ((isInside & allSure) != 0) {
       addSure(to, at, place + (at.face - sure.face));
@@ -210,12 +210,30 @@ EdgeReplay::Middle EdgeReplay::middleOf(const ArcColumns& to, const Place& from)
   return {owner, behind(followed_->faces[from.face + early - 1])};
 }
 
+/// Makes the arc of an edge that lies in a face from its beginning to its end.
+void EdgeReplay::addInFace(const ArcColumns& to, const Place& from, std::size_t place) const {
+  const FollowedEdge& edge = followed_->edges[from.edge];
+  const int opposite = oppositeCorner(static_cast<CornerMask>(edge.begin | edge.end));
+  const FaceOfOwner face(map_.topology, edge.tet, opposite);
+  const ChartEdge inOwner = face.carry({edge.z, edge.along}, map_.exact.transitions);
+  const unsigned back = descends(inOwner.along);
+  if (to.keys != nullptr) to.keys[from.edge] = {face.tet, inOwner};
+  to.ends[from.edge] = {edge.ends[back], edge.ends[1 - back]};
+  to.pointBegin[from.edge] = to.firstPoint + place;
+  to.segmentTet[place + from.edge] = face.tet;
+  to.segmentCorners[place + from.edge] = face.simplex().corners;
+}
+
 /// Makes the arc of an edge of which not everything is certain.
 /// @param from, place  as for addSure()
 /// @return the number of points
 std::size_t EdgeReplay::addUnsure(const ArcColumns& to, const Place& from, std::size_t place) {
   const FollowedEdge& edge = followed_->edges[from.edge];
   const std::size_t count = edge.faceEnd - from.face;
+  if (count == 0 && dimension(static_cast<CornerMask>(edge.begin | edge.end)) == 2) {
+    addInFace(to, from, place);
+    return 0;
+  }
   pieces_.clear();
   followExactly(edge, Faces(followed_->faces).subspan(from.face, count));
   if (pieces_.points() > count) {

@@ -28,7 +28,7 @@ class EdgeReplay {
  public:
   EdgeReplay(const PreparedMap& map, const LatticeNumbers& vertices)
       : map_(map),
-        exactly_(map, vertices, pieces_),
+        exactly_(map, pieces_),
         tracer_(map, vertices, pieces_),
         star_(map.topology, map.exact) {}
   EdgeReplay(const EdgeReplay&) = delete;
@@ -58,6 +58,7 @@ class EdgeReplay {
   void cross(Faces faces, const ArcColumns& to);
   void addSure(const ArcColumns& to, const Place& from, std::size_t place);
   [[nodiscard]] Middle middleOf(const ArcColumns& to, const Place& from) const noexcept;
+  void addInFace(const ArcColumns& to, const Place& from, std::size_t place) const;
   std::size_t addUnsure(const ArcColumns& to, const Place& from, std::size_t place);
   void followExactly(const FollowedEdge& edge, Faces faces);
   void traceFromMiddle(const FollowedEdge& followed, Faces faces);

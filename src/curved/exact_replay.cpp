@@ -89,8 +89,7 @@ bool ExactReplay::follow(const FollowedEdge& edge, std::span<const FollowedFace>
     const Passed passed = pass(face.halfFace);
     if (passed != Passed::On) return passed == Passed::ToEnd;
   }
-  const CornerMask end = vertices_.find(tet_, step(at_.z, at_.along)).simplex;
-  return end != kNoSimplex && addSegment(end, true);
+  return addSegment(edge.end, true);
 }
 
 /// Goes on to where the edge meets a face of the tet at hand, and through it.

@@ -7,7 +7,6 @@
 
 #include <curved/arc_pieces.hpp>
 #include <curved/face_crossing.hpp>
-#include <curved/lattice_numbers.hpp>
 
 #include <extract/trace_guest.hpp>
 #include <map/prepare.hpp>
@@ -19,8 +18,7 @@ namespace hexhex {
 class ExactReplay {
  public:
   /// @param pieces  receives points and segments
-  ExactReplay(const PreparedMap& map, const LatticeNumbers& vertices, ArcPieces& pieces)
-      : map_(map), vertices_(vertices), pieces_(pieces) {}
+  ExactReplay(const PreparedMap& map, ArcPieces& pieces) : map_(map), pieces_(pieces) {}
 
   /// Adds points and segments in the direction of an edge.
   /// @return false if the edge lies inside an edge of the tets, or its midpoint inside an edge or
@@ -39,7 +37,6 @@ class ExactReplay {
   void goThrough(HalfFace halfFace, CornerMask exit);
 
   const PreparedMap& map_;
-  const LatticeNumbers& vertices_;
   ArcPieces& pieces_;
   Index tet_ = kNone;                ///< at hand
   ChartEdge at_{};                   ///< the edge in its chart

@@ -51,10 +51,11 @@ class EdgeRecorder {
     ++faceCount_;
     jumps_ |= jumps;
   }
-  void keep(Index vertex, Index end, bool inside) {
+  /// @param simplex  of the last tet, that holds the end
+  void keep(Index vertex, Index end, CornerMask simplex) {
     FollowedEdge& edge = records_.edges.back();
     edge.ends = {vertex, end};
-    edge.inside = inside;
+    edge.end = simplex;
     edge.jumps = jumps_;
     edge.faceEnd = faceCount_;
     ++edgeCount_;
@@ -144,7 +145,7 @@ class Tracer {
     }
     [[maybe_unused]] const Index turn = at.tet;
     recorder.begin(at, simplex);
-    const Index end = follow(at, recorder);
+    const auto [end, endSimplex] = follow(at, recorder);
     const Index endGenerator = vertices_.generatorOf[end];
     const SlotName arrived =
         finder_.find(at.tet, endGenerator, hexhex::opposite(at.along), at.beside);
@@ -161,19 +162,27 @@ class Tracer {
         recorder.drop();
         return;
       }
-      const auto isInside = [&](Index g) { return local_.configurationOf[g] == 0; };
-      recorder.keep(vertex, end, isInside(generator) || isInside(endGenerator));
+      recorder.keep(vertex, end, endSimplex);
     }
   }
 
+  /// The end of an edge in the last tet on its way.
+  struct Arrival {
+    Index vertex;
+    CornerMask simplex;
+  };
+
   /// Goes from tet to tet until the next grid point along the edge is reached, and the tet holds
-  /// the blade's quarter plane there; returns the hex vertex.
+  /// the blade's quarter plane there.
   template <class Recorder>
-  Index follow(Trace& at, Recorder& recorder) const {
+  Arrival follow(Trace& at, Recorder& recorder) const {
     int entered = -1;
     for (;;) {
       const Index found = vertices_.lines.find(at.tet, step(at.z, at.along));
-      if (found != kNone && arrived(at, found)) return found;
+      if (found != kNone) {
+        const CornerMask simplex = arrived(at, found);
+        if (simplex != kNoSimplex) return {found, simplex};
+      }
       if (passed(at)) throw MissingVertex{at.tet};
       const int exit = exitOfLine(exact_.corners[at.tet], signs_[at.tet], at.z, exact_.unit,
                                   at.along, at.beside, entered);
@@ -188,21 +197,22 @@ class Tracer {
     }
   }
 
-  /// Whether the tet, which contains the edge's end, holds the blade's quarter plane there. The
-  /// edge may run inside a face of this tet while the blade lies on the other side of it.
-  [[nodiscard]] bool arrived(const Trace& at, Index vertex) const {
+  /// The simplex of the tet that holds the edge's end, if the tet holds the blade's quarter plane
+  /// there; or none. The edge may run inside a face of this tet while the blade lies on the other
+  /// side of it.
+  [[nodiscard]] CornerMask arrived(const Trace& at, Index vertex) const {
     const Index g = vertices_.generatorOf[vertex];
     const Generator& generator = vertices_.generators[g];
-    if (generator.simplex == kWholeTet) return true;
+    if (generator.simplex == kWholeTet) return kWholeTet;
     const CornerMask simplex = vertices_.incidenceOf(at.tet, g).simplex;
     const NormalSigns& signs = signs_[at.tet];
     for (int face = 0; face < 4; ++face) {
       if (!contains(simplex, face) && signs.dot(face, at.along) == 0 &&
           signs.dot(face, at.beside) < 0) {
-        return false;
+        return kNoSimplex;
       }
     }
-    return true;
+    return simplex;
   }
 
   /// Whether the whole tet lies beyond the edge's end, which then must have been overlooked.

@@ -22,7 +22,7 @@ struct FollowedEdge {
   GridPoint z;  ///< where it begins
   Direction along;
   CornerMask begin;  ///< simplex of the tet that holds its beginning
-  bool inside;       ///< its beginning or its end is in the interior of a tet
+  CornerMask end;    ///< simplex of the last tet on its way that holds its end
   bool jumps;        ///< from chart to chart, on its way
   Index faceBegin;   ///< its faces begin here, where those of the edge before end,
   Index faceEnd;     ///< and end here
