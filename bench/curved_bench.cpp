@@ -74,7 +74,8 @@ std::size_t arcPoints(const Arcs& arcs) { return arcs.points.size() + 2 * arcs.c
 
 /// CPU time of run(context), up to its result; freeing that does not count.
 template <class Run>
-double secondsOf(int threads, const Run& run) {
+double secondsOf(int threads, std::uint64_t bytes, const Run& run) {
+  warmFreeMemory(bytes, threads);
   releaseFreeMemory();
   StageClock clock;
   Context context(threads, clock.listener());
@@ -103,20 +104,19 @@ void piecewiseLinear(benchmark::State& state, const std::string& name, const Ben
         extractPiecewiseLinear(map, PiecewiseLinearParts::ArcsAndPatches, options, context));
   });
   const auto secondsAlone = [&] {
-    return secondsOf(threads, [&](Context& context) { return extract(map, options, context); });
+    return secondsOf(threads, bytes,
+                     [&](Context& context) { return extract(map, options, context); });
   };
-  warmFreeMemory(bytes, threads);
   for (auto _ : state) {
-    // Before and behind, as the machine's speed changes. One more before, as what comes after
-    // patches finds other things in the caches than what comes after an extraction.
-    secondsAlone();
+    // Before and behind, as the machine's speed changes.
     const double before = secondsAlone();
-    const double withArcs = secondsOf(threads, [&](Context& context) {
+    const double withArcs = secondsOf(threads, bytes, [&](Context& context) {
       return extractPiecewiseLinear(map, PiecewiseLinearParts::Arcs, options, context);
     });
     const double alone = (before + secondsAlone()) / 2;
     extraction += alone;
     arcs += withArcs - alone;
+    warmFreeMemory(bytes, threads);
     releaseFreeMemory();
     StageClock clock;
     Context context(threads, clock.listener());

@@ -39,9 +39,8 @@ class Crosser {
 
   /// Writes the point of a crossing, and the segment behind it, in the order of the arc if the edge
   /// does not jump.
-  /// @return whether it is certain that it is inside the face, behind the beginning and the
-  /// crossing
-  ///         before, before the end, and not at the midpoint
+  /// @return whether the crossing is certain to be inside the face, not before the one before it,
+  ///         neither at the beginning nor at the end, and not at the midpoint
   bool operator()(const FollowedFace& face, std::size_t number) noexcept {
     const HalfFace mate = mates_[face.halfFace];
     // Which side owns the face, that of the smaller tet, is as good as random, so no branch may

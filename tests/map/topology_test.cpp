@@ -147,6 +147,23 @@ TEST_P(TopologyOfKind, OwnerIsTheSmallestTet) {
   }
 }
 
+TEST_P(TopologyOfKind, SimplicesOfAFaceAreThoseOfTheNeighbour) {
+  const TetMap map = sampleOf(kind()).map;
+  const Prepared prepared(map);
+  const TetTopology& topology = prepared.topology();
+  for (HalfFace here = 0; here < topology.mate.size(); ++here) {
+    if (topology.isBoundary(here)) continue;
+    const CornerMask face = faceMask(localOf(here));
+    const Index there = tetOf(topology.mate[here]);
+    for (CornerMask simplex = 1; simplex <= face; ++simplex) {
+      if ((simplex & face) != simplex) continue;
+      const CornerMask across = acrossFace(topology, here, simplex);
+      ASSERT_EQ(verticesOf(map.tets[there], across), verticesOf(map.tets[tetOf(here)], simplex));
+      ASSERT_EQ(across, topology.translated(simplex, tetOf(here), there));
+    }
+  }
+}
+
 TEST_P(TopologyOfKind, EulerCharacteristicIsTheSamples) {
   const Sample sample = sampleOf(kind());
   const CheckReport report = check(sample.map);
