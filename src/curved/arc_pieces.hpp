@@ -30,7 +30,6 @@ class ArcPieces {
     points_.clear();
     segments_.clear();
   }
-  [[nodiscard]] std::size_t arcs() const noexcept { return arcs_.size(); }
   [[nodiscard]] std::size_t points() const noexcept { return points_.size(); }
   [[nodiscard]] std::size_t segments() const noexcept { return segments_.size(); }
 

@@ -109,20 +109,6 @@ void reverse(const ArcColumns& to, std::size_t segment, std::size_t point, std::
   for (std::size_t i = point; i < point + points; ++i) to.parameters[i] = 1 - to.parameters[i];
 }
 
-/// Moves points and segments of consecutive edges to an earlier place.
-void move(const ArcColumns& to, std::size_t firstFace, std::size_t firstSegment, std::size_t faces,
-          std::size_t segments, std::size_t distance) {
-  if (distance == 0) return;
-  const auto shift = [distance](auto* first, std::size_t size) {
-    std::copy(first, first + size, first - distance);
-  };
-  shift(to.points + firstFace, faces);
-  shift(to.parameters + firstFace, faces);
-  shift(to.generatorTet + firstFace, faces);
-  shift(to.generatorCorners + firstFace, faces);
-  shift(to.segmentTet + firstSegment, segments);
-}
-
 }  // namespace
 
 std::size_t EdgeReplay::add(const FollowedEdges& followed, const ArcColumns& to) {
@@ -134,34 +120,21 @@ std::size_t EdgeReplay::add(const FollowedEdges& followed, const ArcColumns& to)
   // faces, as in one tet it has one simplex that contains it.
   cross(followed.faces, to);
   std::fill_n(to.segmentCorners, faces + edges, kWholeTet);
-  std::size_t place = 0;  // of the next point
-  Place sure;             // the edges from here on are sure, and not yet moved to their place
-  const auto moveSure = [&](const Place& end) {
-    const std::size_t count = end.face - sure.face;
-    move(to, sure.face, sure.face + sure.edge, count, count + end.edge - sure.edge,
-         sure.face - place);
-    place += count;
-  };
-  Place at;
-  for (; at.edge < edges; ++at.edge) {
-    const FollowedEdge& edge = followed.edges[at.edge];
-    // Whether it is certain that the edge passes through the interiors of faces and tets, and its
-    // midpoint through that of a tet. Whether there are crossings is as good as random.
-    const auto isInside = static_cast<unsigned>(edge.faceEnd > at.face) |
-                          static_cast<unsigned>((edge.begin | edge.end) == kWholeTet);
-    const auto allSure = static_cast<unsigned>(unsure_[edge.faceEnd] == unsure_[at.face]);
-    if ((isInside & allSure) != 0) {
-      addSure(to, at, place + (at.face - sure.face));
-      at.face = edge.faceEnd;
+  std::size_t spare = 0;  // crossings that gave no point: so far is what follows to be moved
+  std::size_t sure = 0;   // edges from here on are sure, and have not been moved
+  for (std::size_t i = 0; i < edges; ++i) {
+    const FollowedEdge& edge = followed.edges[i];
+    const std::size_t place = edge.faceBegin - spare;
+    if (isSure(edge)) {
+      addSure(to, i, place);
     } else {
-      moveSure(at);
-      place += addUnsure(to, at, place);
-      at.face = edge.faceEnd;
-      sure = {at.edge + 1, at.face};
+      move(to, sure, i, spare);
+      spare += edge.faceEnd - edge.faceBegin - addUnsure(to, i, place);
+      sure = i + 1;
     }
   }
-  moveSure(at);
-  return place;
+  move(to, sure, edges, spare);
+  return faces - spare;
 }
 
 void EdgeReplay::cross(Faces faces, const ArcColumns& to) {
@@ -176,70 +149,86 @@ void EdgeReplay::cross(Faces faces, const ArcColumns& to) {
   unsure_[count] = unsure;
 }
 
-/// Makes the arc of a sure edge run along the axis of the midpoint's owner.
-/// @param from   where the edge, its crossings and segments are
-/// @param place  where its points will be, not behind it
-inline void EdgeReplay::addSure(const ArcColumns& to, const Place& from, std::size_t place) {
-  const FollowedEdge& edge = followed_->edges[from.edge];
-  const std::size_t count = edge.faceEnd - from.face;
-  const std::size_t segment = from.face + from.edge;
+/// Moves points and segments of consecutive edges to an earlier place.
+void EdgeReplay::move(const ArcColumns& to, std::size_t first, std::size_t end,
+                      std::size_t distance) const {
+  if (distance == 0 || first == end) return;
+  const std::size_t face = followed_->edges[first].faceBegin;
+  const std::size_t faces = followed_->edges[end - 1].faceEnd - face;
+  const auto shift = [distance](auto* begin, std::size_t size) {
+    std::copy(begin, begin + size, begin - distance);
+  };
+  shift(to.points + face, faces);
+  shift(to.parameters + face, faces);
+  shift(to.generatorTet + face, faces);
+  shift(to.generatorCorners + face, faces);
+  shift(to.segmentTet + face + first, faces + end - first);
+}
+
+/// Makes the arc of a sure edge run along the axis of the midpoint's owner. Its points and segments
+/// stay where its crossings are.
+/// @param place  where its points will be, not behind these
+inline void EdgeReplay::addSure(const ArcColumns& to, std::size_t number, std::size_t place) {
+  const FollowedEdge& edge = followed_->edges[number];
+  const std::size_t count = edge.faceEnd - edge.faceBegin;
+  const std::size_t segment = edge.faceBegin + number;
   unsigned back = runsBack(edge);
   to.segmentTet[segment + count * back] = edge.tet;
   if (edge.jumps || to.keys != nullptr) {
-    const Middle middle = middleOf(to, from);
-    if (to.keys != nullptr) to.keys[from.edge] = {middle.owner, middle.edge};
+    const Middle middle = middleOf(to, number);
+    if (to.keys != nullptr) to.keys[number] = {middle.owner, middle.edge};
     if (edge.jumps && signOf(middle.edge.along) < 0) {
-      reverse(to, segment, from.face, count);
+      reverse(to, segment, edge.faceBegin, count);
       back = 1;
     }
   }
-  to.ends[from.edge] = {edge.ends[back], edge.ends[1 - back]};
-  to.pointBegin[from.edge] = to.firstPoint + place;
+  to.ends[number] = {edge.ends[back], edge.ends[1 - back]};
+  to.pointBegin[number] = to.firstPoint + place;
 }
 
 /// Where the midpoint of a sure edge is. If it jumps, its arc has not been turned round.
-EdgeReplay::Middle EdgeReplay::middleOf(const ArcColumns& to, const Place& from) const noexcept {
-  const FollowedEdge& edge = followed_->edges[from.edge];
+EdgeReplay::Middle EdgeReplay::middleOf(const ArcColumns& to, std::size_t number) const noexcept {
+  const FollowedEdge& edge = followed_->edges[number];
   std::size_t early = 0;  // points before the midpoint
-  for (std::size_t i = from.face; i < edge.faceEnd; ++i) {
+  for (std::size_t i = edge.faceBegin; i < edge.faceEnd; ++i) {
     early += to.parameters[i] < 0.5 ? 1 : 0;
   }
-  const Index owner = to.segmentTet[from.face + from.edge + early];
+  const Index owner = to.segmentTet[edge.faceBegin + number + early];
   if (!edge.jumps || early == 0) return {owner, ChartEdge{edge.z, edge.along}};
-  return {owner, behind(followed_->faces[from.face + early - 1])};
+  return {owner, behind(followed_->faces[edge.faceBegin + early - 1])};
 }
 
 /// Makes the arc of an edge that lies in a face from its beginning to its end.
-void EdgeReplay::addInFace(const ArcColumns& to, const Place& from, std::size_t place) const {
-  const FollowedEdge& edge = followed_->edges[from.edge];
+void EdgeReplay::addInFace(const ArcColumns& to, std::size_t number, std::size_t place) const {
+  const FollowedEdge& edge = followed_->edges[number];
   const int opposite = oppositeCorner(static_cast<CornerMask>(edge.begin | edge.end));
   const FaceOfOwner face(map_.topology, edge.tet, opposite);
   const ChartEdge inOwner = face.carry({edge.z, edge.along}, map_.exact.transitions);
   const unsigned back = descends(inOwner.along);
-  if (to.keys != nullptr) to.keys[from.edge] = {face.tet, inOwner};
-  to.ends[from.edge] = {edge.ends[back], edge.ends[1 - back]};
-  to.pointBegin[from.edge] = to.firstPoint + place;
-  to.segmentTet[place + from.edge] = face.tet;
-  to.segmentCorners[place + from.edge] = face.simplex().corners;
+  if (to.keys != nullptr) to.keys[number] = {face.tet, inOwner};
+  to.ends[number] = {edge.ends[back], edge.ends[1 - back]};
+  to.pointBegin[number] = to.firstPoint + place;
+  to.segmentTet[place + number] = face.tet;
+  to.segmentCorners[place + number] = face.simplex().corners;
 }
 
 /// Makes the arc of an edge of which not everything is certain.
-/// @param from, place  as for addSure()
+/// @param place  as for addSure()
 /// @return the number of points
-std::size_t EdgeReplay::addUnsure(const ArcColumns& to, const Place& from, std::size_t place) {
-  const FollowedEdge& edge = followed_->edges[from.edge];
-  const std::size_t count = edge.faceEnd - from.face;
+std::size_t EdgeReplay::addUnsure(const ArcColumns& to, std::size_t number, std::size_t place) {
+  const FollowedEdge& edge = followed_->edges[number];
+  const std::size_t count = edge.faceEnd - edge.faceBegin;
   if (count == 0 && dimension(static_cast<CornerMask>(edge.begin | edge.end)) == 2) {
-    addInFace(to, from, place);
+    addInFace(to, number, place);
     return 0;
   }
   pieces_.clear();
-  followExactly(edge, Faces(followed_->faces).subspan(from.face, count));
+  followExactly(edge, Faces(followed_->faces).subspan(edge.faceBegin, count));
   if (pieces_.points() > count) {
     ArcTracer::fail(edge.tet, "a hex edge meets more simplices than it was followed through");
   }
-  if (to.keys != nullptr) to.keys[from.edge] = key_;
-  pieces_.copyTo(to, from.edge, place);
+  if (to.keys != nullptr) to.keys[number] = key_;
+  pieces_.copyTo(to, number, place);
   return pieces_.points();
 }
 

@@ -16,6 +16,7 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/branchless.hpp>
 #include <extract/trace_guest.hpp>
 #include <map/prepare.hpp>
 
@@ -44,11 +45,6 @@ class EdgeReplay {
 
  private:
   using Faces = std::span<const FollowedFace>;
-  /// Edges of a block from one on.
-  struct Place {
-    std::size_t edge = 0;
-    std::size_t face = 0;  ///< the first of that edge
-  };
   /// The tet that owns the midpoint, and the edge in its chart.
   struct Middle {
     Index owner;
@@ -56,10 +52,18 @@ class EdgeReplay {
   };
 
   void cross(Faces faces, const ArcColumns& to);
-  void addSure(const ArcColumns& to, const Place& from, std::size_t place);
-  [[nodiscard]] Middle middleOf(const ArcColumns& to, const Place& from) const noexcept;
-  void addInFace(const ArcColumns& to, const Place& from, std::size_t place) const;
-  std::size_t addUnsure(const ArcColumns& to, const Place& from, std::size_t place);
+  /// Whether it is certain that an edge passes through the interiors of faces and tets, and its
+  /// midpoint through that of a tet.
+  [[nodiscard]] bool isSure(const FollowedEdge& edge) const noexcept {
+    // Without branches, as whether there are crossings is as good as random.
+    return allOf(anyOf(edge.faceEnd > edge.faceBegin, (edge.begin | edge.end) == kWholeTet),
+                 unsure_[edge.faceEnd] == unsure_[edge.faceBegin]);
+  }
+  void move(const ArcColumns& to, std::size_t first, std::size_t end, std::size_t distance) const;
+  void addSure(const ArcColumns& to, std::size_t number, std::size_t place);
+  [[nodiscard]] Middle middleOf(const ArcColumns& to, std::size_t number) const noexcept;
+  void addInFace(const ArcColumns& to, std::size_t number, std::size_t place) const;
+  std::size_t addUnsure(const ArcColumns& to, std::size_t number, std::size_t place);
   void followExactly(const FollowedEdge& edge, Faces faces);
   void traceFromMiddle(const FollowedEdge& followed, Faces faces);
   [[nodiscard]] SimplexInTet findMiddle(const FollowedEdge& followed, Faces faces) const;

@@ -27,7 +27,7 @@ struct SimplexInTet {
   const HalfFace halfFace = halfFaceOf(from.tet, face);
   const Index next = tetOf(topology.mate[halfFace]);
   SimplexInTet to{next, kWholeTet, from.frame};
-  if (from.simplex != kWholeTet) to.simplex = topology.translated(from.simplex, from.tet, next);
+  if (from.simplex != kWholeTet) to.simplex = acrossFace(topology, halfFace, from.simplex);
   to.frame.cross(map.transitions, halfFace);
   return to;
 }

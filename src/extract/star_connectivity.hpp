@@ -88,7 +88,7 @@ void forEachTetAround(const TetTopology& topology, const Transitions& transition
     const HalfFace halfFace = halfFaceOf(tet, first);
     const HalfFace mate = topology.mate[halfFace];
     if (mate == kNone) return;
-    visit(tetOf(mate), topology.translated(simplex, tet, tetOf(mate)),
+    visit(tetOf(mate), acrossFace(topology, halfFace, simplex),
           transitions.across(halfFace).rotation);
     return;
   }
