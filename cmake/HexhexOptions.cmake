@@ -42,9 +42,12 @@ function(hexhex_alone)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# One object library per folder of src/.
+# hexhex_folder(NAME FILE...): one object library per folder of src/, of all its sources but the named
+# ones, which optional components add.
 function(hexhex_folder name)
-  add_library(hexhex_${name} OBJECT ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
+  list(REMOVE_ITEM sources ${ARGN})
+  add_library(hexhex_${name} OBJECT ${sources})
   target_include_directories(hexhex_${name} PUBLIC
     ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(hexhex_${name} PUBLIC hexhex_options hexhex_threads)

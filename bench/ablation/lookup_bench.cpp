@@ -14,7 +14,7 @@
 #include <hexhex/context.hpp>
 
 #include <base/stage.hpp>
-#include <extract/hex_vertices.hpp>
+#include <propeller/hex_vertices.hpp>
 
 #include "ablation/benchmarks.hpp"
 #include "ablation/scaled_map.hpp"

@@ -5,7 +5,7 @@
 #include <hexhex/context.hpp>
 
 #include <base/stage.hpp>
-#include <map/defects.hpp>
+#include <igm/defects.hpp>
 
 namespace hexhex::bench {
 

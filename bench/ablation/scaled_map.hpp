@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
 
 #include "bench_maps.hpp"
 

@@ -12,9 +12,9 @@
 #include <cstdlib>
 #include <string>
 
-#include <repair/same_connectivity.hpp>
-
 #include <hexhex/hexhex.hpp>
+
+#include <repair/same_connectivity.hpp>
 
 namespace hexhex::bench {
 namespace {

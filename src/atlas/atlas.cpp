@@ -8,7 +8,6 @@
 #include <atlas/charts.hpp>
 #include <atlas/cut_marks.hpp>
 #include <atlas/vertex_grid.hpp>
-
 #include <base/workspaces.hpp>
 
 namespace hexhex {

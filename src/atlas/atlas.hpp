@@ -10,14 +10,13 @@
 
 #include <cstdint>
 
-#include <sweep/sweep_guest.hpp>
-
 #include <hexhex/context.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
+#include <sweep/sweep_guest.hpp>
 
 namespace hexhex {
 

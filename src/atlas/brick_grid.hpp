@@ -14,11 +14,10 @@
 #include <thread>
 #include <vector>
 
-#include <atlas/cut_cells.hpp>
-#include <atlas/gauge.hpp>
-
 #include <hexhex/types.hpp>
 
+#include <atlas/cut_cells.hpp>
+#include <atlas/gauge.hpp>
 #include <base/parallel.hpp>
 
 namespace hexhex {

@@ -6,14 +6,14 @@
 #include <cstdint>
 #include <span>
 
+#include <hexhex/types.hpp>
+
 #include <atlas/brick_grid.hpp>
 #include <atlas/cell_walker.hpp>
 #include <atlas/pictures.hpp>
 #include <atlas/vertex_grid.hpp>
 #include <sweep/cell_seeds.hpp>
 #include <sweep/cell_tracer.hpp>
-
-#include <hexhex/types.hpp>
 
 namespace hexhex {
 

@@ -4,9 +4,8 @@
 #include <limits>
 
 #include <atlas/cell_walker.hpp>
-#include <sweep/cell_seeds.hpp>
-
 #include <base/vector3.hpp>
+#include <sweep/cell_seeds.hpp>
 
 namespace hexhex {
 

@@ -13,9 +13,8 @@
 #include <vector>
 
 #include <atlas/charts.hpp>
-
+#include <igm/prepare.hpp>
 #include <lattice/cell_corners.hpp>
-#include <map/prepare.hpp>
 
 namespace hexhex {
 

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include <atlas/charts.hpp>
-
 #include <base/branchless.hpp>
 #include <base/disjoint_sets.hpp>
 

@@ -3,11 +3,10 @@
 
 #include <cstdint>
 
-#include <atlas/gauge.hpp>
-
 #include <hexhex/types.hpp>
 
-#include <map/prepare.hpp>
+#include <atlas/gauge.hpp>
+#include <igm/prepare.hpp>
 
 namespace hexhex {
 

@@ -7,7 +7,6 @@
 #include <cstdint>
 
 #include <atlas/jumps.hpp>
-
 #include <lattice/cell_corners.hpp>
 
 namespace hexhex {

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include <atlas/cut_marks.hpp>
-
 #include <base/workspaces.hpp>
 #include <lattice/triangle_cells.hpp>
 

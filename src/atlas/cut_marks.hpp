@@ -3,13 +3,12 @@
 
 #include <cstdint>
 
+#include <hexhex/types.hpp>
+
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
 #include <atlas/jumps.hpp>
-
-#include <hexhex/types.hpp>
-
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
 
 namespace hexhex {
 

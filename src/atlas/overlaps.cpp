@@ -3,7 +3,6 @@
 
 #include <atlas/brick_box.hpp>
 #include <atlas/overlaps.hpp>
-
 #include <base/parallel.hpp>
 
 namespace hexhex {

@@ -8,12 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include <atlas/brick_grid.hpp>
-#include <atlas/charts.hpp>
-
 #include <hexhex/types.hpp>
 
-#include <map/prepare.hpp>
+#include <atlas/brick_grid.hpp>
+#include <atlas/charts.hpp>
+#include <igm/prepare.hpp>
 
 namespace hexhex {
 

@@ -2,7 +2,6 @@
 
 #include <atlas/brick_box.hpp>
 #include <atlas/vertex_grid.hpp>
-
 #include <base/branchless.hpp>
 #include <base/workspaces.hpp>
 

@@ -6,17 +6,16 @@
 #include <utility>
 #include <vector>
 
+#include <hexhex/types.hpp>
+
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
 #include <atlas/overlaps.hpp>
+#include <igm/prepare.hpp>
 #include <sweep/cell_seeds.hpp>
 #include <sweep/sweep_guest.hpp>
 #include <sweep/tet_positions.hpp>
 #include <sweep/vertex_numbers.hpp>
-
-#include <hexhex/types.hpp>
-
-#include <map/prepare.hpp>
 
 namespace hexhex {
 

@@ -6,11 +6,10 @@
 #include <cstdint>
 #include <span>
 
-#include <curved/face_crossing.hpp>
-
 #include <hexhex/curved.hpp>
 #include <hexhex/types.hpp>
 
+#include <curved/face_crossing.hpp>
 #include <lattice/direction.hpp>
 
 namespace hexhex {

@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <utility>
 
-#include <curved/arc_guest.hpp>
-
 #include <base/output_waves.hpp>
+#include <curved/arc_guest.hpp>
 
 namespace hexhex {
 

@@ -8,14 +8,13 @@
 #include <span>
 #include <utility>
 
+#include <hexhex/curved.hpp>
+
 #include <curved/edge_replay.hpp>
 #include <curved/element_numbers.hpp>
 #include <curved/lattice_numbers.hpp>
-
-#include <hexhex/curved.hpp>
-
-#include <extract/trace_guest.hpp>
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
+#include <propeller/trace_guest.hpp>
 
 namespace hexhex {
 

@@ -6,12 +6,11 @@
 #include <cstdint>
 #include <utility>
 
-#include <curved/arc_columns.hpp>
-#include <curved/owned_simplex.hpp>
-
 #include <hexhex/curved.hpp>
 
 #include <base/output_waves.hpp>
+#include <curved/arc_columns.hpp>
+#include <curved/owned_simplex.hpp>
 
 namespace hexhex {
 

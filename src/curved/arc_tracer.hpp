@@ -8,8 +8,7 @@
 #include <curved/lattice_numbers.hpp>
 #include <curved/simplex_point.hpp>
 #include <curved/simplex_star.hpp>
-
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
 
 namespace hexhex {
 

@@ -1,14 +1,13 @@
 #include <algorithm>
 #include <vector>
 
+#include <base/output_waves.hpp>
+#include <base/prefetch.hpp>
 #include <curved/arc_pieces.hpp>
 #include <curved/arcs.hpp>
 #include <curved/edge_tracer.hpp>
 #include <curved/tet_exits.hpp>
 #include <curved/tet_faces.hpp>
-
-#include <base/output_waves.hpp>
-#include <base/prefetch.hpp>
 
 namespace hexhex {
 

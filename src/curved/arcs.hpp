@@ -3,11 +3,11 @@
 
 #include <cstdint>
 
+#include <hexhex/curved.hpp>
+
 #include <curved/element_numbers.hpp>
 #include <curved/lattice_numbers.hpp>
 #include <curved/owned_simplex.hpp>
-
-#include <hexhex/curved.hpp>
 
 namespace hexhex {
 

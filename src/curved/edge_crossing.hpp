@@ -10,9 +10,8 @@
 #include <cstdint>
 
 #include <curved/arc_pieces.hpp>
-
+#include <igm/prepare.hpp>
 #include <lattice/tet_geometry.hpp>
-#include <map/prepare.hpp>
 
 namespace hexhex {
 

@@ -6,9 +6,8 @@
 #include <utility>
 
 #include <curved/element_numbers.hpp>
+#include <igm/prepare.hpp>
 #include <sweep/sweep_guest.hpp>
-
-#include <map/prepare.hpp>
 
 namespace hexhex {
 

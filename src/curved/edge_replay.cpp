@@ -2,9 +2,8 @@
 #include <cmath>
 #include <utility>
 
-#include <curved/edge_replay.hpp>
-
 #include <base/branchless.hpp>
+#include <curved/edge_replay.hpp>
 
 namespace hexhex {
 

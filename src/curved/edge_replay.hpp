@@ -6,6 +6,9 @@
 #include <cstdint>
 #include <span>
 
+#include <hexhex/types.hpp>
+
+#include <base/branchless.hpp>
 #include <curved/arc_columns.hpp>
 #include <curved/arc_pieces.hpp>
 #include <curved/edge_tracer.hpp>
@@ -13,12 +16,8 @@
 #include <curved/face_crossing.hpp>
 #include <curved/lattice_numbers.hpp>
 #include <curved/simplex_star.hpp>
-
-#include <hexhex/types.hpp>
-
-#include <base/branchless.hpp>
-#include <extract/trace_guest.hpp>
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
+#include <propeller/trace_guest.hpp>
 
 namespace hexhex {
 

@@ -9,13 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include <curved/lattice_numbers.hpp>
-#include <sweep/cell_seeds.hpp>
-
 #include <hexhex/types.hpp>
 
+#include <curved/lattice_numbers.hpp>
+#include <igm/prepare.hpp>
 #include <lattice/half_grids.hpp>
-#include <map/prepare.hpp>
+#include <sweep/cell_seeds.hpp>
 
 namespace hexhex {
 

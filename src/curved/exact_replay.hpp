@@ -7,9 +7,8 @@
 
 #include <curved/arc_pieces.hpp>
 #include <curved/face_crossing.hpp>
-
-#include <extract/trace_guest.hpp>
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
+#include <propeller/trace_guest.hpp>
 
 namespace hexhex {
 

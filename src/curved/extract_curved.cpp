@@ -5,16 +5,15 @@
 #include <string>
 #include <utility>
 
+#include <hexhex/curved.hpp>
+#include <hexhex/extractor.hpp>
+
+#include <base/parallel.hpp>
 #include <curved/arc_guest.hpp>
 #include <curved/arcs.hpp>
 #include <curved/edge_guest.hpp>
 #include <curved/lagrange.hpp>
 #include <curved/patches.hpp>
-
-#include <hexhex/curved.hpp>
-#include <hexhex/extractor.hpp>
-
-#include <base/parallel.hpp>
 #include <extract/prepared_extractor.hpp>
 #include <extract/steps.hpp>
 

@@ -2,10 +2,9 @@
 #include <cmath>
 #include <string>
 
+#include <base/prefetch.hpp>
 #include <curved/face_border.hpp>
 #include <curved/simplex_point.hpp>
-
-#include <base/prefetch.hpp>
 
 namespace hexhex {
 

@@ -12,11 +12,10 @@
 #include <cstdint>
 #include <span>
 
-#include <curved/owned_simplex.hpp>
-
 #include <hexhex/types.hpp>
 
-#include <map/prepare.hpp>
+#include <curved/owned_simplex.hpp>
+#include <igm/prepare.hpp>
 
 namespace hexhex {
 

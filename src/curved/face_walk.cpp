@@ -1,7 +1,6 @@
+#include <base/prefetch.hpp>
 #include <curved/face_walk.hpp>
 #include <curved/simplex_point.hpp>
-
-#include <base/prefetch.hpp>
 
 namespace hexhex {
 

@@ -8,8 +8,7 @@
 #include <curved/owned_simplex.hpp>
 #include <curved/simplex_star.hpp>
 #include <curved/tet_faces.hpp>
-
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
 
 namespace hexhex {
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <cstdint>
 
+#include <igm/transitions.hpp>
 #include <lattice/tet_geometry.hpp>
 #include <lattice/transition.hpp>
-#include <map/transitions.hpp>
 
 namespace hexhex {
 

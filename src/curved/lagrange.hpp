@@ -3,7 +3,7 @@
 
 #include <hexhex/curved.hpp>
 
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
 
 namespace hexhex {
 

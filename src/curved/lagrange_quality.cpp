@@ -4,13 +4,12 @@
 #include <numbers>
 #include <vector>
 
-#include <sweep/cell_seeds.hpp>
-
 #include <hexhex/curved.hpp>
 
 #include <base/lagrange_check.hpp>
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
+#include <sweep/cell_seeds.hpp>
 
 namespace hexhex {
 

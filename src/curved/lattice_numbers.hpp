@@ -5,16 +5,15 @@
 #include <span>
 #include <vector>
 
-#include <sweep/sweep_guest.hpp>
-#include <sweep/tet_lines.hpp>
-#include <sweep/vertex_numbers.hpp>
-
 #include <hexhex/types.hpp>
 
 #include <base/prefetch.hpp>
-#include <extract/lattice_lines.hpp>
+#include <igm/prepare.hpp>
 #include <lattice/half_grids.hpp>
-#include <map/prepare.hpp>
+#include <propeller/lattice_lines.hpp>
+#include <sweep/sweep_guest.hpp>
+#include <sweep/tet_lines.hpp>
+#include <sweep/vertex_numbers.hpp>
 
 namespace hexhex {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include <map/tet_topology.hpp>
+#include <igm/tet_topology.hpp>
 
 namespace hexhex {
 

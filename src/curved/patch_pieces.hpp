@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <curved/owned_simplex.hpp>
-
 #include <hexhex/types.hpp>
+
+#include <curved/owned_simplex.hpp>
 
 namespace hexhex {
 

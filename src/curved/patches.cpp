@@ -2,10 +2,9 @@
 #include <string>
 #include <vector>
 
+#include <base/output_waves.hpp>
 #include <curved/face_cutter.hpp>
 #include <curved/patches.hpp>
-
-#include <base/output_waves.hpp>
 
 namespace hexhex {
 

@@ -5,11 +5,10 @@
 #include <vector>
 
 #include <curved/frame.hpp>
-
-#include <map/edge_turn.hpp>
-#include <map/exact_map.hpp>
-#include <map/key_table.hpp>
-#include <map/tet_topology.hpp>
+#include <igm/edge_turn.hpp>
+#include <igm/exact_map.hpp>
+#include <igm/key_table.hpp>
+#include <igm/tet_topology.hpp>
 
 namespace hexhex {
 

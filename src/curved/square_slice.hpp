@@ -4,9 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include <curved/plane_section.hpp>
-
 #include <base/bits.hpp>
+#include <curved/plane_section.hpp>
 
 namespace hexhex {
 

@@ -7,11 +7,10 @@
 #include <cstdint>
 #include <limits>
 
-#include <curved/face_walk.hpp>
-
 #include <hexhex/types.hpp>
 
 #include <base/pair.hpp>
+#include <curved/face_walk.hpp>
 #include <lattice/corner_weights.hpp>
 #include <lattice/tet_geometry.hpp>
 

@@ -7,8 +7,7 @@
 
 #include <curved/arc_pieces.hpp>
 #include <curved/face_crossing.hpp>
-
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
 
 namespace hexhex {
 

@@ -3,16 +3,15 @@
 #include <limits>
 #include <string>
 
-#include <atlas/atlas.hpp>
-#include <repair/repair_map.hpp>
-
 #include <hexhex/extract.hpp>
 #include <hexhex/stream.hpp>
 
+#include <atlas/atlas.hpp>
 #include <extract/features.hpp>
-#include <extract/pipeline.hpp>
 #include <extract/steps.hpp>
-#include <map/measures.hpp>
+#include <igm/measures.hpp>
+#include <propeller/pipeline.hpp>
+#include <repair/repair_map.hpp>
 
 namespace hexhex {
 

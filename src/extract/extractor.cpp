@@ -1,9 +1,8 @@
 #include <utility>
 
-#include <atlas/atlas.hpp>
-
 #include <hexhex/extractor.hpp>
 
+#include <atlas/atlas.hpp>
 #include <extract/prepared_extractor.hpp>
 
 namespace hexhex {

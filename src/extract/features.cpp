@@ -3,11 +3,10 @@
 #include <string>
 #include <vector>
 
-#include <sweep/cell_seeds.hpp>
-#include <sweep/cell_tracer.hpp>
-
 #include <extract/features.hpp>
 #include <extract/tag_table.hpp>
+#include <sweep/cell_seeds.hpp>
+#include <sweep/cell_tracer.hpp>
 
 namespace hexhex {
 

@@ -8,7 +8,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
 
 namespace hexhex {
 

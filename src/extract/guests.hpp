@@ -1,9 +1,8 @@
 // Who looks on while an engine works, for later stages that would have to find the same again.
 #pragma once
 
+#include <propeller/trace_guest.hpp>
 #include <sweep/sweep_guest.hpp>
-
-#include <extract/trace_guest.hpp>
 
 namespace hexhex {
 

@@ -10,7 +10,7 @@
 
 #include <extract/features.hpp>
 #include <extract/steps.hpp>
-#include <map/measures.hpp>
+#include <igm/measures.hpp>
 
 namespace hexhex {
 

@@ -9,9 +9,9 @@
 #include <hexhex/stream.hpp>
 
 #include <base/parallel.hpp>
-#include <extract/global_connectivity.hpp>
 #include <extract/guests.hpp>
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
+#include <propeller/global_connectivity.hpp>
 
 namespace hexhex {
 

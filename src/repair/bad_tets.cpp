@@ -1,10 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <repair/bad_tets.hpp>
-
 #include <base/vector3.hpp>
 #include <lattice/tet_geometry.hpp>
+#include <repair/bad_tets.hpp>
 
 namespace hexhex {
 

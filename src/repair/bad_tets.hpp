@@ -6,8 +6,8 @@
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
-#include <map/exact_map.hpp>
-#include <map/local_parameters.hpp>
+#include <igm/exact_map.hpp>
+#include <igm/local_parameters.hpp>
 
 namespace hexhex {
 

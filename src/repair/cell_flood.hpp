@@ -9,8 +9,8 @@
 
 #include <hexhex/types.hpp>
 
+#include <igm/prepare.hpp>
 #include <lattice/wide_int.hpp>
-#include <map/prepare.hpp>
 
 namespace hexhex {
 

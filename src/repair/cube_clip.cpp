@@ -2,10 +2,9 @@
 #include <cmath>
 #include <utility>
 
-#include <repair/cube_clip.hpp>
-
 #include <base/vector3.hpp>
 #include <lattice/tet_geometry.hpp>
+#include <repair/cube_clip.hpp>
 
 namespace hexhex {
 

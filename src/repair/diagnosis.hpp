@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include <map/defects.hpp>
-#include <map/local_parameters.hpp>
-#include <map/prepare.hpp>
+#include <igm/defects.hpp>
+#include <igm/local_parameters.hpp>
+#include <igm/prepare.hpp>
 
 namespace hexhex {
 

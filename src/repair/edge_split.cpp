@@ -2,9 +2,8 @@
 #include <utility>
 #include <vector>
 
+#include <igm/vertex_star.hpp>
 #include <repair/edge_split.hpp>
-
-#include <map/vertex_star.hpp>
 
 namespace hexhex {
 

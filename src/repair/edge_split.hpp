@@ -4,11 +4,10 @@
 #include <array>
 #include <span>
 
-#include <repair/map_backup.hpp>
-
 #include <hexhex/types.hpp>
 
-#include <map/tet_topology.hpp>
+#include <igm/tet_topology.hpp>
+#include <repair/map_backup.hpp>
 
 namespace hexhex {
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
+#include <igm/local_parameters.hpp>
+#include <igm/tet_topology.hpp>
 #include <lattice/transition.hpp>
-#include <map/local_parameters.hpp>
-#include <map/tet_topology.hpp>
 
 namespace hexhex {
 

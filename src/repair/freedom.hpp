@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include <repair/patch_charts.hpp>
-
 #include <hexhex/types.hpp>
+
+#include <repair/patch_charts.hpp>
 
 namespace hexhex {
 

@@ -4,13 +4,12 @@
 #include <map>
 #include <string>
 
-#include <repair/bad_tets.hpp>
-#include <repair/cell_flood.hpp>
-#include <repair/valid_tets.hpp>
-
 #include <hexhex/partial.hpp>
 
 #include <base/disjoint_sets.hpp>
+#include <repair/bad_tets.hpp>
+#include <repair/cell_flood.hpp>
+#include <repair/valid_tets.hpp>
 
 namespace hexhex {
 

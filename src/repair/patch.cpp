@@ -2,9 +2,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include <repair/patch.hpp>
-
 #include <base/disjoint_sets.hpp>
+#include <repair/patch.hpp>
 
 namespace hexhex {
 

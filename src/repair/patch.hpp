@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include <map/tet_topology.hpp>
-#include <map/vertex_star.hpp>
+#include <igm/tet_topology.hpp>
+#include <igm/vertex_star.hpp>
 
 namespace hexhex {
 

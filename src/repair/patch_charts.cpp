@@ -3,10 +3,9 @@
 #include <numbers>
 #include <utility>
 
+#include <base/vector3.hpp>
 #include <repair/bad_tets.hpp>
 #include <repair/patch_charts.hpp>
-
-#include <base/vector3.hpp>
 
 namespace hexhex {
 

@@ -14,14 +14,13 @@
 #include <utility>
 #include <vector>
 
-#include <repair/face_fit.hpp>
-#include <repair/patch.hpp>
-
 #include <hexhex/types.hpp>
 
+#include <igm/local_parameters.hpp>
+#include <igm/tet_topology.hpp>
 #include <lattice/transition.hpp>
-#include <map/local_parameters.hpp>
-#include <map/tet_topology.hpp>
+#include <repair/face_fit.hpp>
+#include <repair/patch.hpp>
 
 namespace hexhex {
 

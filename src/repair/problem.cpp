@@ -1,10 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <base/vector3.hpp>
 #include <repair/bad_tets.hpp>
 #include <repair/problem.hpp>
-
-#include <base/vector3.hpp>
 
 namespace hexhex {
 

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include <hexhex/types.hpp>
+
 #include <repair/freedom.hpp>
 #include <repair/untangle.hpp>
-
-#include <hexhex/types.hpp>
 
 namespace hexhex {
 

@@ -9,6 +9,11 @@
 #include <string>
 #include <utility>
 
+#include <hexhex/repair.hpp>
+
+#include <base/vector3.hpp>
+#include <igm/measures.hpp>
+#include <igm/prepare.hpp>
 #include <repair/bad_tets.hpp>
 #include <repair/diagnosis.hpp>
 #include <repair/edge_split.hpp>
@@ -20,12 +25,6 @@
 #include <repair/repair_map.hpp>
 #include <repair/untangle.hpp>
 #include <repair/whole_regions.hpp>
-
-#include <hexhex/repair.hpp>
-
-#include <base/vector3.hpp>
-#include <map/measures.hpp>
-#include <map/prepare.hpp>
 
 namespace hexhex {
 

@@ -2,9 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include <repair/untangle.hpp>
-
 #include <base/vector3.hpp>
+#include <repair/untangle.hpp>
 
 #ifdef HEXHEX_HAS_LBFGS
 #include <lbfgs.h>

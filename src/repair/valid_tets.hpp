@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <map/local_parameters.hpp>
-#include <map/prepare.hpp>
+#include <igm/local_parameters.hpp>
+#include <igm/prepare.hpp>
 
 namespace hexhex {
 

@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <string>
 
+#include <base/disjoint_sets.hpp>
+#include <igm/vertex_star.hpp>
 #include <repair/bad_tets.hpp>
 #include <repair/whole_regions.hpp>
-
-#include <base/disjoint_sets.hpp>
-#include <map/vertex_star.hpp>
 
 namespace hexhex {
 

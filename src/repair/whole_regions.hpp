@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include <map/local_parameters.hpp>
-#include <map/tet_topology.hpp>
+#include <igm/local_parameters.hpp>
+#include <igm/tet_topology.hpp>
 
 namespace hexhex {
 

@@ -1,6 +1,5 @@
-#include <sweep/cell_seeds.hpp>
-
 #include <base/workspaces.hpp>
+#include <sweep/cell_seeds.hpp>
 
 namespace hexhex {
 

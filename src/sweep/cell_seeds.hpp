@@ -7,12 +7,11 @@
 #include <cstdint>
 #include <optional>
 
-#include <sweep/tet_lines.hpp>
-
 #include <hexhex/types.hpp>
 
+#include <igm/prepare.hpp>
 #include <lattice/cell_corners.hpp>
-#include <map/prepare.hpp>
+#include <sweep/tet_lines.hpp>
 
 namespace hexhex {
 

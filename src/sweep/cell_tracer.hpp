@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
 
 namespace hexhex {
 

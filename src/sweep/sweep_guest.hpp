@@ -5,12 +5,11 @@
 #include <cstddef>
 #include <utility>
 
-#include <sweep/tet_lines.hpp>
-#include <sweep/vertex_numbers.hpp>
-
 #include <hexhex/types.hpp>
 
 #include <lattice/half_grids.hpp>
+#include <sweep/tet_lines.hpp>
+#include <sweep/vertex_numbers.hpp>
 
 namespace hexhex {
 

@@ -11,10 +11,10 @@
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
+#include <igm/exact_map.hpp>
 #include <lattice/both_grids.hpp>
 #include <lattice/half_grids.hpp>
 #include <lattice/line_rasterizer.hpp>
-#include <map/exact_map.hpp>
 
 namespace hexhex {
 

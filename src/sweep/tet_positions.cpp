@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <sweep/tet_positions.hpp>
-
 #include <base/vector3.hpp>
+#include <sweep/tet_positions.hpp>
 
 namespace hexhex {
 

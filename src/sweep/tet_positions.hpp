@@ -4,8 +4,8 @@
 
 #include <hexhex/types.hpp>
 
+#include <igm/prepare.hpp>
 #include <lattice/rasterize.hpp>
-#include <map/prepare.hpp>
 
 namespace hexhex {
 

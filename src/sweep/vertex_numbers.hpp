@@ -7,11 +7,10 @@
 #include <cstdint>
 #include <vector>
 
-#include <sweep/tet_lines.hpp>
-
 #include <hexhex/types.hpp>
 
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
+#include <sweep/tet_lines.hpp>
 
 namespace hexhex {
 

@@ -4,9 +4,9 @@
 #include <limits>
 #include <string>
 
-#include <view/mesh_tables.hpp>
-
 #include <hexhex/error.hpp>
+
+#include <view/mesh_tables.hpp>
 
 namespace hexhex {
 namespace {

@@ -4,13 +4,12 @@
 #include <span>
 #include <vector>
 
-#include <view/surface_nodes.hpp>
-#include <view/table_codec.hpp>
-
 #include <hexhex/structure.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
+#include <view/surface_nodes.hpp>
+#include <view/table_codec.hpp>
 
 namespace hexhex {
 

@@ -8,9 +8,6 @@
 #include <utility>
 
 #include <nlohmann/json.hpp>
-#include <view/mesh_tables.hpp>
-#include <view/page_template.hpp>
-#include <view/surface_nodes.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/quality.hpp>
@@ -19,7 +16,10 @@
 #include <hexhex/view.hpp>
 
 #include <base/parallel.hpp>
-#include <io/output_file.hpp>
+#include <io/core/output_file.hpp>
+#include <view/mesh_tables.hpp>
+#include <view/page_template.hpp>
+#include <view/surface_nodes.hpp>
 
 namespace hexhex {
 namespace {

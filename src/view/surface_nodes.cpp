@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
-#include <view/surface_nodes.hpp>
-
 #include <hexhex/error.hpp>
+
+#include <view/surface_nodes.hpp>
 
 namespace hexhex {
 namespace {

@@ -6,12 +6,11 @@
 #include <string>
 #include <zlib.h>
 
-#include <view/table_codec.hpp>
-
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
+#include <view/table_codec.hpp>
 
 namespace hexhex {
 namespace {

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <rapidcheck.h>
 
-#include <atlas/atlas.hpp>
-#include <atlas/vertex_grid.hpp>
 #include <gtest/gtest.h>
 
 #include <hexhex/stream.hpp>
 
-#include <map/measures.hpp>
+#include <atlas/atlas.hpp>
+#include <atlas/vertex_grid.hpp>
+#include <igm/measures.hpp>
 
 #include "extract/support.hpp"
 

@@ -6,11 +6,12 @@
 #include <thread>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include <atlas/brick_box.hpp>
 #include <atlas/charts.hpp>
 #include <atlas/cut_cells.hpp>
 #include <atlas/jumps.hpp>
-#include <gtest/gtest.h>
 
 #include "extract/support.hpp"
 

@@ -1,9 +1,10 @@
 // Walks to all corners of a cell at once, against ways that are traced exactly one by one.
 #include <rapidcheck.h>
 
+#include <gtest/gtest.h>
+
 #include <atlas/cell_emitter.hpp>
 #include <atlas/cell_walker.hpp>
-#include <gtest/gtest.h>
 #include <sweep/cell_tracer.hpp>
 
 #include "extract/support.hpp"

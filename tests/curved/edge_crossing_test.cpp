@@ -5,8 +5,9 @@
 #include <cstdint>
 
 #include <boost/multiprecision/cpp_int.hpp>
-#include <curved/edge_crossing.hpp>
 #include <gtest/gtest.h>
+
+#include <curved/edge_crossing.hpp>
 
 #include "lattice/random.hpp"
 

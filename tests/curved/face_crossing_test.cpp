@@ -4,8 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <curved/face_crossing.hpp>
 #include <gtest/gtest.h>
+
+#include <curved/face_crossing.hpp>
 
 #include "lattice/random.hpp"
 

@@ -1,13 +1,13 @@
 // Walks of hex edges through the interiors of faces, step by step against exact arithmetic.
 #include <cmath>
 
-#include <curved/element_numbers.hpp>
-#include <curved/face_walk.hpp>
-#include <curved/simplex_point.hpp>
 #include <gtest/gtest.h>
 
 #include <base/stage.hpp>
-#include <map/defects.hpp>
+#include <curved/element_numbers.hpp>
+#include <curved/face_walk.hpp>
+#include <curved/simplex_point.hpp>
+#include <igm/defects.hpp>
 
 #include "curved/curved_maps.hpp"
 

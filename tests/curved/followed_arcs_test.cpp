@@ -7,17 +7,17 @@
 #include <utility>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include <atlas/atlas.hpp>
+#include <base/stage.hpp>
 #include <curved/arc_guest.hpp>
 #include <curved/arcs.hpp>
 #include <curved/edge_guest.hpp>
-#include <gtest/gtest.h>
-
-#include <base/stage.hpp>
-#include <extract/pipeline.hpp>
-#include <map/defects.hpp>
-#include <map/measures.hpp>
-#include <map/prepare.hpp>
+#include <igm/defects.hpp>
+#include <igm/measures.hpp>
+#include <igm/prepare.hpp>
+#include <propeller/pipeline.hpp>
 
 #include "curved/curved_maps.hpp"
 #include "curved/same_arcs.hpp"

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <vector>
 
-#include <curved/lattice_numbers.hpp>
 #include <gtest/gtest.h>
 
 #include <base/stage.hpp>
-#include <map/defects.hpp>
+#include <curved/lattice_numbers.hpp>
+#include <igm/defects.hpp>
 
 #include "curved/curved_maps.hpp"
 

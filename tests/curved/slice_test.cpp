@@ -6,9 +6,10 @@
 #include <vector>
 
 #include <boost/multiprecision/cpp_int.hpp>
+#include <gtest/gtest.h>
+
 #include <curved/cube_meets_face.hpp>
 #include <curved/square_slice.hpp>
-#include <gtest/gtest.h>
 
 #include "extract/support.hpp"
 

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <span>
 
+#include <gtest/gtest.h>
+
+#include <base/stage.hpp>
 #include <curved/arcs.hpp>
 #include <curved/frame.hpp>
 #include <curved/simplex_point.hpp>
 #include <curved/tet_exits.hpp>
-#include <gtest/gtest.h>
-
-#include <base/stage.hpp>
-#include <map/defects.hpp>
-#include <map/prepare.hpp>
+#include <igm/defects.hpp>
+#include <igm/prepare.hpp>
 
 #include "curved/curved_maps.hpp"
 #include "curved/same_arcs.hpp"

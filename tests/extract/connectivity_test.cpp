@@ -2,10 +2,10 @@
 // opposites are mutual; a rasterization that misses vertices is noticed and repaired.
 #include <gtest/gtest.h>
 
-#include <extract/global_connectivity.hpp>
-#include <extract/hex_cells.hpp>
-#include <extract/pipeline.hpp>
-#include <map/measures.hpp>
+#include <igm/measures.hpp>
+#include <propeller/global_connectivity.hpp>
+#include <propeller/hex_cells.hpp>
+#include <propeller/pipeline.hpp>
 
 #include "extract/support.hpp"
 

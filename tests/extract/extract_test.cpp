@@ -9,7 +9,7 @@
 #include <hexhex/quality.hpp>
 
 #include <base/vector3.hpp>
-#include <extract/pipeline.hpp>
+#include <propeller/pipeline.hpp>
 
 #include "extract/support.hpp"
 

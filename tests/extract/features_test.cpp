@@ -10,7 +10,7 @@
 #include <hexhex/check.hpp>
 #include <hexhex/io.hpp>
 
-#include <map/prepare.hpp>
+#include <igm/prepare.hpp>
 
 #include "extract/support.hpp"
 

@@ -19,15 +19,15 @@
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
-#include <io/gmsh.hpp>
-#include <io/hexex.hpp>
-#include <io/lagrange_files.hpp>
-#include <io/medit.hpp>
-#include <io/meshb.hpp>
-#include <io/ovm.hpp>
-#include <io/vtk_legacy.hpp>
-#include <io/vtu.hpp>
-#include <io/zlib_blocks.hpp>
+#include <io/core/zlib_blocks.hpp>
+#include <io/curved/lagrange_files.hpp>
+#include <io/gmsh/gmsh.hpp>
+#include <io/hexex/hexex.hpp>
+#include <io/medit/medit.hpp>
+#include <io/medit/meshb.hpp>
+#include <io/ovm/ovm.hpp>
+#include <io/vtk/vtk_legacy.hpp>
+#include <io/vtk/vtu.hpp>
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <hexhex/io.hpp>
 #include <hexhex/patches.hpp>
 
-#include <io/gmsh.hpp>
+#include <io/gmsh/gmsh.hpp>
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {

@@ -12,8 +12,8 @@
 
 #include <hexhex/io.hpp>
 
+#include <io/core/mesh_groups.hpp>
 #include <io/io_test_support.hpp>
-#include <io/mesh_groups.hpp>
 
 namespace hexhex::test {
 namespace {

@@ -10,8 +10,8 @@
 #include <hexhex/io.hpp>
 
 #include <io/io_test_support.hpp>
-#include <io/medit.hpp>
-#include <io/vtu.hpp>
+#include <io/medit/medit.hpp>
+#include <io/vtk/vtu.hpp>
 
 namespace hexhex::test {
 namespace {

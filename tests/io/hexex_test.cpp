@@ -6,7 +6,7 @@
 
 #include <hexhex/io.hpp>
 
-#include <io/hexex.hpp>
+#include <io/hexex/hexex.hpp>
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {

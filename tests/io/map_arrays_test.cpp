@@ -10,10 +10,10 @@
 #include <hexhex/io.hpp>
 #include <hexhex/samples.hpp>
 
+#include <io/core/zlib_blocks.hpp>
 #include <io/io_test_support.hpp>
-#include <io/vtk_legacy.hpp>
-#include <io/vtu.hpp>
-#include <io/zlib_blocks.hpp>
+#include <io/vtk/vtk_legacy.hpp>
+#include <io/vtk/vtu.hpp>
 
 namespace hexhex::test {
 namespace {

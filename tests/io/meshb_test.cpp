@@ -8,7 +8,7 @@
 #include <hexhex/io.hpp>
 
 #include <io/io_test_support.hpp>
-#include <io/meshb.hpp>
+#include <io/medit/meshb.hpp>
 
 namespace hexhex::test {
 namespace {

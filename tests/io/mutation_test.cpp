@@ -10,14 +10,14 @@
 
 #include <hexhex/io.hpp>
 
-#include <io/gmsh.hpp>
-#include <io/hexex.hpp>
+#include <io/core/zlib_blocks.hpp>
+#include <io/gmsh/gmsh.hpp>
+#include <io/hexex/hexex.hpp>
 #include <io/io_test_support.hpp>
-#include <io/medit.hpp>
-#include <io/meshb.hpp>
-#include <io/vtk_legacy.hpp>
-#include <io/vtu.hpp>
-#include <io/zlib_blocks.hpp>
+#include <io/medit/medit.hpp>
+#include <io/medit/meshb.hpp>
+#include <io/vtk/vtk_legacy.hpp>
+#include <io/vtk/vtu.hpp>
 
 namespace {
 std::atomic<std::size_t> largestAllocation{0};

@@ -8,9 +8,9 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
+#include <io/core/number_parsing.hpp>
+#include <io/hexex/rational.hpp>
 #include <io/io_test_support.hpp>
-#include <io/number_parsing.hpp>
-#include <io/rational.hpp>
 
 namespace hexhex::test {
 namespace {

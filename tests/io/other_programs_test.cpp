@@ -10,9 +10,9 @@
 #include <hexhex/io.hpp>
 #include <hexhex/samples.hpp>
 
+#include <io/core/zlib_blocks.hpp>
 #include <io/io_test_support.hpp>
 #include <io/other_programs.hpp>
-#include <io/zlib_blocks.hpp>
 
 namespace hexhex::test {
 namespace {

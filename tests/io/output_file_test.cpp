@@ -7,9 +7,9 @@
 
 #include <hexhex/io.hpp>
 
+#include <io/core/output_file.hpp>
 #include <io/file_size_limit.hpp>
 #include <io/io_test_support.hpp>
-#include <io/output_file.hpp>
 
 namespace hexhex::test {
 namespace {

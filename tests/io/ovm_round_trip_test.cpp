@@ -12,7 +12,7 @@
 #include <hexhex/io.hpp>
 #include <hexhex/quality.hpp>
 
-#include <io/ovm.hpp>
+#include <io/ovm/ovm.hpp>
 
 #include "ovm_test_support.hpp"
 

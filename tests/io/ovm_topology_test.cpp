@@ -10,10 +10,10 @@
 
 #include <base/parallel.hpp>
 #include <io/io_test_support.hpp>
-#include <io/ovm_cells.hpp>
-#include <io/ovm_hex_topology.hpp>
-#include <io/ovm_tet_topology.hpp>
-#include <io/ovm_topology.hpp>
+#include <io/ovm/ovm_cells.hpp>
+#include <io/ovm/ovm_hex_topology.hpp>
+#include <io/ovm/ovm_tet_topology.hpp>
+#include <io/ovm/ovm_topology.hpp>
 
 namespace hexhex::test {
 namespace {

@@ -7,10 +7,10 @@
 #include <hexhex/io.hpp>
 
 #include <base/stage.hpp>
-#include <io/hexex.hpp>
+#include <io/core/token_index.hpp>
+#include <io/hexex/hexex.hpp>
 #include <io/io_test_support.hpp>
-#include <io/medit.hpp>
-#include <io/token_index.hpp>
+#include <io/medit/medit.hpp>
 
 namespace hexhex::test {
 namespace {

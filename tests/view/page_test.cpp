@@ -12,9 +12,6 @@
 #include <zlib.h>
 
 #include <gtest/gtest.h>
-#include <view/mesh_tables.hpp>
-#include <view/surface_nodes.hpp>
-#include <view/table_codec.hpp>
 
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
@@ -24,6 +21,9 @@
 
 #include <base/parallel.hpp>
 #include <mesh/grid_meshes.hpp>
+#include <view/mesh_tables.hpp>
+#include <view/surface_nodes.hpp>
+#include <view/table_codec.hpp>
 
 namespace hexhex {
 namespace {

@@ -1,0 +1,85 @@
+// Rounding of single corners to the lattice.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <base/pair.hpp>
+#include <base/vector3.hpp>
+#include <igm/exact_map.hpp>
+
+namespace hexhex {
+
+/// By how much a coordinate changes at most.
+/// @param after  in units of the lattice
+/// @param resolution  1 / unit, exact
+[[nodiscard]] inline double displacementOf(const Vec3& before, const Vec3& after,
+                                           double resolution) {
+  const Pair xy = magnitudeOf(loadPair(&after[0]) * resolution - loadPair(&before[0]));
+  return std::max(std::max(xy[0], xy[1]), std::abs(after[2] * resolution - before[2]));
+}
+
+/// What corners are rounded to, in units of the lattice.
+class Grains {
+ public:
+  explicit Grains(double unit) {
+    // As nearestMultiples() wants them: for multiples of 1.
+    for (Vec3& grains : large_) grains = {0x1p52, 0x1p52, 0x1p52};
+    for (std::size_t axis = 0; axis < 3; ++axis) large_[std::size_t{1} << axis][axis] *= unit;
+    // Left as they are, and so not displaced.
+    std::fill(large_.begin() + PlainVertices::kPlaneOfStar, large_.end(), Vec3{0, 0, 0});
+  }
+  /// By axis.
+  [[nodiscard]] const Vec3& at(unsigned plane) const noexcept { return large_[plane]; }
+
+ private:
+  /// By PlainVertices::plane.
+  std::array<Vec3, 32> large_{};
+};
+
+/// Rounds corners at plain vertices, and at others with flat stars.
+class CornerRounder {
+ public:
+  CornerRounder(const TetTopology& topology, double tolerance, DefectCollector& defects,
+                ExactMap& map)
+      : topology_(topology),
+        tolerance_(tolerance),
+        defects_(defects),
+        map_(map),
+        unit_(static_cast<double>(map.unit)),
+        resolution_(1 / unit_),
+        grains_(unit_) {}
+
+  /// @param plane  of the boundary: bit k across axis k, or 0
+  void run(CornerIndex index, const Vec3& u, unsigned plane) {
+    const Vec3& large = grains_.at(plane);
+    const Pair xy = nearestMultiples(loadPair(&u[0]) * unit_, loadPair(&large[0]));
+    const Pair z = nearestMultiples(Pair{u[2], u[2]} * unit_, Pair{large[2], large[2]});
+    const Vec3 rounded = {xy[0], xy[1], z[0]};
+    LatticePoint& corner = map_.corners[index / 4][index % 4];
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = static_cast<std::int64_t>(rounded[k]);
+    const double displacement = displacementOf(u, rounded, resolution_);
+    maxDisplacement_ = std::max(maxDisplacement_, displacement);
+    // The same at all corners of the vertex, and to be reported once.
+    const Index vertex = topology_.vertex(index);
+    if (displacement > tolerance_ && topology_.vertexTet[vertex] == tetOf(index)) {
+      defects_.add(plane != 0 ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual,
+                   {PlaceKind::Vertex, vertex}, displacement);
+    }
+  }
+
+  [[nodiscard]] double maxDisplacement() const noexcept { return maxDisplacement_; }
+
+ private:
+  const TetTopology& topology_;
+  double tolerance_;
+  DefectCollector& defects_;
+  ExactMap& map_;
+  double unit_;
+  double resolution_;
+  Grains grains_;
+  double maxDisplacement_ = 0;
+};
+
+}  // namespace hexhex

@@ -1,0 +1,44 @@
+// The sanitized map: exact on a dyadic lattice, integer where an integer-grid map demands it
+// (Section 5.1.3).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <igm/plain_vertices.hpp>
+#include <igm/singularities.hpp>
+#include <igm/transitions.hpp>
+
+namespace hexhex {
+
+/// Parameters as integers, in units of 1 / unit. Transitions carry corners over exactly.
+struct ExactMap {
+  Array<LatticeTet> corners;  ///< per tet
+  std::int64_t unit = 1;      ///< a power of two
+  int scale = 1;              ///< by what scaleMap() has multiplied corners and translations
+  Transitions transitions;
+  Int192 sixfoldVolume;        ///< of all tets of a valid map, before scaling, times unit^3
+  double maxDisplacement = 0;  ///< largest change of a coordinate, in parameter units
+};
+
+/// Makes conditions (IGM1) to (IGM3) hold exactly, and collects tets that are not positive then
+/// (IGM4). Per vertex, one corner is the representative:
+/// all constraints of the vertex's star are brought into its chart; a boundary triangle fixes the
+/// coordinate along its normal to an integer, a singular edge the two across it, a singular node
+/// all three; the other coordinates are rounded to the lattice; then the value is carried to all
+/// other corners by the exact transitions. Vertices are independent of each other, so the result
+/// depends neither on their order nor on threads. Corners at plain vertices, and in
+/// flat stars, are only rounded.
+/// @param stars  of all special vertices, by collectStars()
+/// @param tolerance  larger displacements are defects
+/// @param maxScale   the map is going to be scaled by at most this
+[[nodiscard]] ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters,
+                                Transitions transitions, const PlainVertices& plain,
+                                std::span<const StarBlock> stars,
+                                const Singularities& singularities, double tolerance, int maxScale,
+                                Stage& stage, DefectCollector& defects);
+
+/// Multiplies all parameters by an integer, exactly.
+void scaleMap(ExactMap& map, int scale, Stage& stage);
+
+}  // namespace hexhex

@@ -1,0 +1,31 @@
+// The conditions that make a map an integer-grid map, as far as they are checked as such; the
+// others are found violated while the map is sanitized.
+#pragma once
+
+#include <igm/exact_map.hpp>
+
+namespace hexhex {
+
+/// The axis along which a singular edge runs, in the chart of its tet.
+[[nodiscard]] std::size_t edgeAxis(const LocalParameters& parameters,
+                                   const SingularEdge& edge) noexcept;
+
+/// (IGM2) up to the tolerance: what snapping may repair.
+void checkBoundary(const PlainVertices& plain, const LocalParameters& parameters, double tolerance,
+                   Stage& stage, DefectCollector& defects);
+
+/// (IGM3) up to the tolerance, for edges; nodes are noticed when they are snapped.
+void checkSingularities(const Singularities& singularities, const LocalParameters& parameters,
+                        double tolerance, DefectCollector& defects);
+
+/// A determinant of a tet that is larger is certainly positive, though floating point has computed
+/// it, from edges that are exact: in units of the lattice, and unless corners have moved by more
+/// than half a parameter.
+[[nodiscard]] double leastCertainDeterminant(const LocalParameters& parameters,
+                                             double unit) noexcept;
+
+/// (IGM4) for the tets of all lists.
+void checkOrientations(std::span<const std::vector<Index>> tets, const LocalParameters& parameters,
+                       Stage& stage, DefectCollector& defects, const ExactMap& map);
+
+}  // namespace hexhex

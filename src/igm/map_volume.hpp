@@ -1,0 +1,19 @@
+// The parametric volume of a map.
+#pragma once
+
+#include <igm/exact_map.hpp>
+#include <igm/tet_rounder.hpp>
+
+namespace hexhex {
+
+// Two ways to set map.sixfoldVolume from corners and transitions, for a map without defects:
+
+/// Along the boundary and the cuts.
+/// @param plain  knows the boundary, and where tets differ
+void addVolume(const PlainVertices& plain, Stage& stage, ExactMap& map);
+
+/// Tet by tet.
+/// @param rounded  measured
+void addVolume(const RoundedTets& rounded, Stage& stage, ExactMap& map);
+
+}  // namespace hexhex

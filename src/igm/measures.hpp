@@ -1,0 +1,34 @@
+// What a map measures, exactly: the mesh that it implies must have as many cells, quads and edges.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <hexhex/check.hpp>
+
+#include <igm/prepare.hpp>
+
+namespace hexhex {
+
+/// Parametric volume in unit cubes before scaling: the number of cells of the mesh at scale 1.
+/// @throws Error Internal if it is not an integer, which a valid map excludes
+[[nodiscard]] std::uint64_t parametricVolume(const ExactMap& map);
+
+/// Parametric area of the boundary in unit squares.
+[[nodiscard]] std::uint64_t boundaryArea(const TetTopology& topology, const ExactMap& map);
+
+/// Parametric length of a singular edge in unit lengths times map.unit.
+[[nodiscard]] std::int64_t latticeLength(const SingularEdge& edge, const ExactMap& map);
+
+/// Number of connected components of the tet mesh (through faces).
+[[nodiscard]] std::uint64_t componentCount(const TetTopology& topology);
+
+/// The genus of each boundary component, in descending order.
+[[nodiscard]] std::vector<std::int64_t> boundaryGenus(const TetTopology& topology);
+
+/// Everything that follows from a valid map about its mesh.
+/// @param map  needs addEdges()
+/// @param scale  of the mesh; `map` itself is not scaled
+[[nodiscard]] Expectation computeExpectation(const PreparedMap& map, int scale);
+
+}  // namespace hexhex

@@ -1,0 +1,143 @@
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <igm/local_parameters.hpp>
+#include <igm/plain_vertices.hpp>
+#include <igm/prepare.hpp>
+#include <igm/topology_defects.hpp>
+#include <igm/unfold_charts.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// From a quarter on, the nearest integer stops being the obvious one for two corners of an edge.
+constexpr double kMaxTolerance = 0.25;
+
+void checkArguments(double tolerance, int scale) {
+  if (!(tolerance >= 0) || tolerance >= kMaxTolerance) {
+    throw Error(ErrorCode::InvalidArgument, "The tolerance is " + std::to_string(tolerance) +
+                                                ". Choose it from 0 up to, but below, 0.25.");
+  }
+  if (scale < 1) {
+    throw Error(ErrorCode::InvalidArgument,
+                "The scale is " + std::to_string(scale) + ". Choose an integer from 1.");
+  }
+}
+
+[[noreturn]] void throwContradiction() {
+  throw Error(ErrorCode::Internal,
+              "The mesh failed a check of its topology, but nothing is wrong with it. This is a "
+              "bug; please report it with the map.");
+}
+
+/// One preparation, step by step.
+class Preparation {
+ public:
+  Preparation(const TetMapView& map, double tolerance, int maxScale, Context& context,
+              DefectCollector& defects)
+      : map_(map),
+        tolerance_(tolerance),
+        maxScale_(maxScale),
+        context_(context),
+        defects_(defects) {}
+
+  [[nodiscard]] PreparedMap run(ChartChoice charts) {
+    if (!read()) return std::move(prepared_);
+    Unfolding unfolding;
+    if (charts == ChartChoice::Unfolded && needsUnfolding(prepared_.topology, prepared_.input)) {
+      Stage stage(context_, "unfolding");
+      unfolding = unfoldCharts(prepared_.topology, prepared_.input, stage);
+      prepared_.isUnfolded = true;
+    }
+    const LocalParameters parameters(prepared_.input);
+    PlainVertices plain;
+    {
+      Stage stage(context_, "plain vertices");
+      plain = findPlainVertices(prepared_.topology, parameters, stage);
+    }
+    Transitions transitions;
+    if (!parameters.tooLarge()) transitions = findTransitions(parameters, unfolding, plain);
+    std::vector<StarBlock> stars;
+    if (!findSingularities(parameters, transitions, plain, stars)) return std::move(prepared_);
+    Stage stage(context_, "sanitization");
+    prepared_.exact = sanitize(prepared_.topology, parameters, std::move(transitions), plain, stars,
+                               prepared_.singularities, tolerance_, maxScale_, stage, defects_);
+    return std::move(prepared_);
+  }
+
+ private:
+  /// @return whether the input is good enough for anything else
+  [[nodiscard]] bool read() {
+    {
+      Stage stage(context_, "input");
+      prepared_.input = readInput(map_, stage, defects_);
+      if (!defects_.empty()) return false;
+    }
+    defects_.setCornersReversed(prepared_.input.cornersReversed);
+    // Flipped tets falsify angles, hence singularities, hence what is snapped where.
+    if (prepared_.input.flippedTets) defects_.setRootCause(ErrorCode::FlippedTet);
+    Stage stage(context_, "topology");
+    prepared_.topology = buildTopology(prepared_.input.view, stage, defects_);
+    return defects_.empty();
+  }
+
+  [[nodiscard]] Transitions findTransitions(const LocalParameters& parameters,
+                                            const Unfolding& unfolding, PlainVertices& plain) {
+    Stage stage(context_, "transitions");
+    Transitions transitions = computeTransitions(prepared_.topology, parameters, plain,
+                                                 prepared_.input.view.rotations, tolerance_, stage);
+    prepared_.chartJumps = unfolding.countGivenJumps(prepared_.topology, transitions, stage);
+    if (hasManyJumps(prepared_.topology, transitions)) {
+      prepared_.gauges = computeGauges(prepared_.topology, transitions, stage);
+    }
+    return transitions;
+  }
+
+  /// @return whether there is an exact map to be found
+  [[nodiscard]] bool findSingularities(const LocalParameters& parameters,
+                                       const Transitions& transitions, PlainVertices& plain,
+                                       std::vector<StarBlock>& stars) {
+    Stage stage(context_, "singularities");
+    const auto& valences = prepared_.input.view.edgeValences;
+    collectStars(prepared_.topology, parameters, plain, valences,
+                 parameters.tooLarge() ? nullptr : &transitions, stars, stage);
+    std::optional<Singularities> singularities =
+        computeSingularities(prepared_.topology, parameters, plain, valences, stars, stage);
+    if (!singularities) {
+      collectTopologyDefects(prepared_.topology, stage, defects_);
+      if (defects_.empty()) throwContradiction();
+      return false;
+    }
+    if (parameters.tooLarge()) {
+      defects_.add(ErrorCode::TooLarge, {}, parameters.largest());
+      return false;
+    }
+    prepared_.singularities = std::move(*singularities);
+    collectMisfits(transitions, defects_);
+    return true;
+  }
+
+  const TetMapView& map_;
+  double tolerance_;
+  int maxScale_;
+  Context& context_;
+  DefectCollector& defects_;
+  PreparedMap prepared_;
+};
+
+}  // namespace
+
+PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Context& context,
+                       DefectCollector& defects, ChartChoice charts) {
+  checkArguments(tolerance, maxScale);
+  PreparedMap prepared = Preparation(map, tolerance, maxScale, context, defects).run(charts);
+  if (defects.empty() || !prepared.isUnfolded) return prepared;
+  defects.clear();
+  prepared = {};  // gives its memory back before the next one takes some
+  return Preparation(map, tolerance, maxScale, context, defects).run(ChartChoice::AsGiven);
+}
+
+}  // namespace hexhex

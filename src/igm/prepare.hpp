@@ -1,0 +1,41 @@
+// The preprocessing of Section 5.1 as one chain: from the caller's arrays to an exact map.
+#pragma once
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
+
+#include <igm/exact_map.hpp>
+#include <igm/gauges.hpp>
+#include <igm/input.hpp>
+#include <igm/singularities.hpp>
+#include <igm/tet_topology.hpp>
+
+namespace hexhex {
+
+/// Everything that the stages behind need to know about a map. Refers to the caller's arrays.
+struct PreparedMap {
+  OrientedMap input;
+  TetTopology topology;
+  Singularities singularities;
+  bool isUnfolded = false;       ///< whether `input` has other charts than the caller's
+  std::uint64_t chartJumps = 0;  ///< between the caller's charts
+  Gauges gauges;                 ///< not scaled; empty if there are not many jumps
+  ExactMap exact;                ///< not scaled
+};
+
+/// In which charts a map is prepared.
+enum class ChartChoice : std::uint8_t {
+  AsGiven,  ///< the caller's
+  Unfolded  ///< common ones, if many tets have charts of their own (unfold_charts.hpp)
+};
+
+/// Stops early when a stage finds defects that the next one could not stand; the result must be
+/// used only if `defects` is empty, except for those parts that the stages before have finished.
+/// Defects are always those of the map in the caller's charts.
+/// @param maxScale  the map is going to be scaled by at most this
+/// @throws Error InvalidArgument for a tolerance or scale out of range
+[[nodiscard]] PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale,
+                                     Context& context, DefectCollector& defects,
+                                     ChartChoice charts = ChartChoice::AsGiven);
+
+}  // namespace hexhex

@@ -1,0 +1,69 @@
+// Singular edges and vertices of a map, from the sums of parametric dihedral angles
+// (Section 5.1.2).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <igm/local_parameters.hpp>
+#include <igm/plain_vertices.hpp>
+#include <igm/tet_topology.hpp>
+#include <igm/transitions.hpp>
+#include <igm/vertex_star.hpp>
+
+namespace hexhex {
+
+/// A tet edge with another number of hexahedra around it than 4 (inside) or 2 (on the boundary).
+struct SingularEdge {
+  Index vertex0;  ///< smaller
+  Index vertex1;
+  Index tet;  ///< the smallest at the edge
+  std::uint8_t corner0;
+  std::uint8_t corner1;
+  bool boundary;
+  std::int32_t valence;
+};
+
+struct Singularities {
+  std::vector<SingularEdge> edges;  ///< in lexicographic order of vertices
+
+  /// By vertex (+1): where its edges begin in `incident`. Empty before they are known.
+  Array<Index> begin;
+  Array<Index> incident;  ///< indices of edges, at each of their two vertices, ascending there
+
+  [[nodiscard]] bool areKnown() const noexcept { return !begin.empty(); }
+
+  [[nodiscard]] std::span<const Index> at(Index vertex) const noexcept {
+    return std::span(incident).subspan(begin[vertex], degree(vertex));
+  }
+  [[nodiscard]] Index degree(Index vertex) const noexcept {
+    return begin[vertex + 1] - begin[vertex];
+  }
+
+  /// A singular vertex is incident to other than zero or two singular edges. (Section 3.2)
+  [[nodiscard]] bool isNode(Index vertex) const noexcept {
+    return degree(vertex) != 0 && degree(vertex) != 2;
+  }
+};
+
+/// Finds the stars of special vertices; vertices at which the caller claims a singularity become
+/// special. Those whose stars are flat turn into PlainVertices::kFlat.
+/// @param known  valence offsets that the caller gave, or empty
+/// @param transitions  null if unknown; then no star is found to be flat
+/// @param[out] stars  of the special vertices
+void collectStars(const TetTopology& topology, const LocalParameters& parameters,
+                  PlainVertices& plain, std::span<const EdgeValence> known,
+                  const Transitions* transitions, std::vector<StarBlock>& stars, Stage& stage);
+
+/// Looks at the stars of special vertices. Nothing if an edge or vertex turns out not to be that of
+/// a manifold.
+/// @param known, stars  as in collectStars()
+[[nodiscard]] std::optional<Singularities> computeSingularities(
+    const TetTopology& topology, const LocalParameters& parameters, const PlainVertices& plain,
+    std::span<const EdgeValence> known, std::span<const StarBlock> stars, Stage& stage);
+
+}  // namespace hexhex

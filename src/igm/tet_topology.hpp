@@ -1,0 +1,206 @@
+// Who touches whom in a tet mesh.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <base/parallel.hpp>
+#include <igm/corner_order.hpp>
+#include <igm/defects.hpp>
+#include <lattice/tet_geometry.hpp>
+
+namespace hexhex {
+
+/// Index 4 * tet + corner of a corner of a tet, or of the face opposite that corner (a half-face).
+using CornerIndex = std::uint32_t;
+using HalfFace = std::uint32_t;
+
+[[nodiscard]] constexpr Index tetOf(HalfFace halfFace) noexcept { return halfFace / 4; }
+[[nodiscard]] constexpr int localOf(HalfFace halfFace) noexcept {
+  return static_cast<int>(halfFace % 4);
+}
+[[nodiscard]] constexpr HalfFace halfFaceOf(Index tet, int opposite) noexcept {
+  return 4 * tet + static_cast<HalfFace>(opposite);
+}
+
+/// Position of a vertex in a tet that contains it: as a number of two bits, of which nothing is to
+/// be foretold.
+[[nodiscard]] constexpr Index localCorner(const Tet& tet, Index vertex) noexcept {
+  const Index isLast = tet[3] == vertex ? 1 : 0;
+  const Index low = (tet[1] == vertex ? 1U : 0U) | isLast;
+  const Index high = (tet[2] == vertex ? 1U : 0U) | isLast;
+  return low | (high << 1);
+}
+
+struct TetTopology {
+  std::span<const Tet> tets;  ///< the caller's array
+  std::size_t pointCount = 0;
+  Array<HalfFace> mate;      ///< per half-face: the same triangle in the neighbour, or kNone
+  Array<Index> vertexTet;    ///< per vertex: the smallest tet at it, or kNone
+  Array<CornerOrder> order;  ///< per tet: how its vertices are ordered
+
+  // Empty until addStars().
+  Array<Index> cornerBegin;    ///< per vertex (+1): its range in `corners`
+  Array<CornerIndex> corners;  ///< corners by vertex, ascending: the star of each vertex
+
+  // Empty until addEdges().
+  Array<std::uint64_t> edgeBegin;  ///< per vertex (+1): its range in `edgeEnd`
+  Array<Index> edgeEnd;            ///< edges (v, w) with v < w, by v: the w, ascending
+
+  [[nodiscard]] std::size_t tetCount() const noexcept { return tets.size(); }
+  [[nodiscard]] Index vertex(CornerIndex corner) const noexcept {
+    return tets[corner / 4][corner % 4];
+  }
+  [[nodiscard]] bool isBoundary(HalfFace halfFace) const noexcept {
+    return mate[halfFace] == kNone;
+  }
+  [[nodiscard]] bool isIsolated(Index vertex) const noexcept { return vertexTet[vertex] == kNone; }
+  /// Position of a vertex in a tet that contains it.
+  [[nodiscard]] int localCorner(Index tet, Index vertex) const noexcept {
+    return static_cast<int>(hexhex::localCorner(tets[tet], vertex));
+  }
+  /// The same simplex (given by corners of tet `from`) as corners of tet `to`, which contains it.
+  [[nodiscard]] CornerMask translated(CornerMask mask, Index from, Index to) const noexcept {
+    CornerMask result = 0;
+    for (int i = 0; i < 4; ++i) {
+      if (contains(mask, i)) {
+        result = static_cast<CornerMask>(
+            result | cornerBit(localCorner(to, tets[from][static_cast<std::size_t>(i)])));
+      }
+    }
+    return result;
+  }
+  /// Needs addStars().
+  [[nodiscard]] std::span<const CornerIndex> star(Index vertex) const noexcept {
+    return std::span(corners).subspan(cornerBegin[vertex],
+                                      cornerBegin[vertex + 1] - cornerBegin[vertex]);
+  }
+  /// Number of edges, and index of the edge between two vertices. Need addEdges().
+  [[nodiscard]] std::size_t edgeCount() const noexcept { return edgeEnd.size(); }
+  [[nodiscard]] std::uint64_t edgeIndex(Index a, Index b) const noexcept;
+};
+
+/// The corners of a face that two tets share, in both of them.
+class SharedFace {
+ public:
+  SharedFace(const TetTopology& topology, HalfFace here, HalfFace there) noexcept
+      : here_(kTurns[here % 4][0]) {
+    const Tet& mate = topology.tets[tetOf(there)];
+    const Index first = topology.tets[tetOf(here)][here_[0]];
+    // The mate has the corners in reverse order: only the first one is to be found.
+    const auto& turns = kTurns[there % 4];
+    there_ =
+        &turns[3 + (mate[turns[0][1]] == first ? 1U : 0U) + (mate[turns[0][2]] == first ? 2U : 0U)];
+  }
+  [[nodiscard]] std::size_t here(std::size_t k) const noexcept { return here_[k]; }
+  [[nodiscard]] std::size_t there(std::size_t k) const noexcept { return (*there_)[k]; }
+
+ private:
+  using Turn = std::array<std::uint8_t, 3>;
+
+  /// Per face: its corners beginning with each of them, then the same in reverse order.
+  static constexpr std::array<std::array<Turn, 6>, 4> kTurns = [] {
+    std::array<std::array<Turn, 6>, 4> turns{};
+    for (std::size_t face = 0; face < 4; ++face) {
+      for (std::size_t first = 0; first < 3; ++first) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto corner = [face](std::size_t i) {
+            return static_cast<std::uint8_t>(kFaceCorners[face][i % 3]);
+          };
+          turns[face][first][k] = corner(first + k);
+          turns[face][3 + first][k] = corner(first + 3 - k);
+        }
+      }
+    }
+    return turns;
+  }();
+
+  const Turn& here_;
+  const Turn* there_ = nullptr;
+};
+
+/// A simplex of a face as the neighbour has it, without branches: its corners are as good as
+/// random.
+/// @param here  the face, as a half-face that is not on the boundary
+[[nodiscard]] inline CornerMask acrossFace(const TetTopology& topology, HalfFace here,
+                                           CornerMask simplex) noexcept {
+  const SharedFace face(topology, here, topology.mate[here]);
+  unsigned result = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    result |= ((unsigned{simplex} >> face.here(k)) & 1U) << face.there(k);
+  }
+  return static_cast<CornerMask>(result);
+}
+
+/// Builds adjacency through faces; defects are collected. After a defect the result must not be
+/// used. Faces are checked here (non-manifold, inconsistent orientation); that edges and vertices
+/// are manifold is for computeSingularities() to find out.
+/// @param map  has passed checkInput()
+[[nodiscard]] TetTopology buildTopology(const TetMapView& map, Stage& stage,
+                                        DefectCollector& defects);
+
+/// Lists the corners at each vertex. Does nothing if they are listed.
+void addStars(TetTopology& topology, Stage& stage);
+
+/// Lists the edges, and the stars.
+void addEdges(TetTopology& topology, Stage& stage);
+
+/// One tet at an edge: its corners at the edge's ends.
+struct EdgeCorner {
+  Index other;  ///< the edge's larger vertex
+  Index tet;
+  std::uint8_t corner0;  ///< at the smaller vertex
+  std::uint8_t corner1;  ///< at the larger vertex
+};
+
+/// Calls visit(w, span of EdgeCorner) for each edge (v, w), v < w, in ascending order of w, with
+/// all tets at the edge in ascending order. Needs addStars().
+/// @param scratch  reused between calls
+template <class Visit>
+void forEachEdge(const TetTopology& topology, Index v, std::vector<EdgeCorner>& scratch,
+                 const Visit& visit) {
+  scratch.clear();
+  for (const CornerIndex corner : topology.star(v)) {
+    const Tet& tet = topology.tets[corner / 4];
+    for (std::uint8_t i = 0; i < 4; ++i) {
+      if (tet[i] > v) {
+        scratch.push_back({tet[i], corner / 4, static_cast<std::uint8_t>(corner % 4), i});
+      }
+    }
+  }
+  std::sort(scratch.begin(), scratch.end(), [](const EdgeCorner& a, const EdgeCorner& b) {
+    return a.other != b.other ? a.other < b.other : a.tet < b.tet;
+  });
+  for (std::size_t begin = 0; begin < scratch.size();) {
+    std::size_t end = begin + 1;
+    while (end < scratch.size() && scratch[end].other == scratch[begin].other) ++end;
+    visit(scratch[begin].other, std::span<const EdgeCorner>(&scratch[begin], end - begin));
+    begin = end;
+  }
+}
+
+/// The boundary faces among the two faces of each tet at an edge: 0 inside, 2 on the boundary.
+[[nodiscard]] std::size_t boundaryFacesAt(const TetTopology& topology,
+                                          std::span<const EdgeCorner> fan);
+
+/// The half-face of a tet through which a walk around the edge (two corners) leaves that came in
+/// through half-face `entered`: the other face at the edge.
+[[nodiscard]] constexpr int otherFaceAtEdge(CornerMask edge, int entered) noexcept {
+  for (int face = 0; face < 4; ++face) {
+    if (!contains(edge, face) && face != entered) return face;
+  }
+  return entered;
+}
+
+/// The smallest tet that contains a simplex of a tet: the simplex's owner (ParentTet of the paper).
+[[nodiscard]] Index ownerTet(const TetTopology& topology, Index tet, CornerMask simplex) noexcept;
+
+/// Whether that is the tet itself, which takes less time to say.
+[[nodiscard]] bool ownsSimplex(const TetTopology& topology, Index tet, CornerMask simplex) noexcept;
+
+}  // namespace hexhex

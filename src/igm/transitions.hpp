@@ -1,0 +1,60 @@
+// How the charts of neighbouring tets differ (Section 5.1.1).
+#pragma once
+
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <igm/local_parameters.hpp>
+#include <igm/plain_vertices.hpp>
+#include <igm/tet_topology.hpp>
+#include <lattice/transition.hpp>
+
+namespace hexhex {
+
+struct Transitions {
+  /// Per half-face: index in `table` of the transition into the neighbour's chart; 0, the identity,
+  /// is by far the most frequent.
+  Array<Index> jump;
+  Array<Transition> table;
+  /// Per entry of the table: the half-face that it belongs to. kNone for the identity.
+  Array<HalfFace> halfFaces;
+  /// Per entry of the table: 1 if it carries the triangle's parameters over without rounding. 0 for
+  /// the identity, for the sake of triangles that it fits only best.
+  Array<std::uint8_t> isExact;
+  double maxResidual = 0;   ///< largest violation of (IGM1), in parameter units
+  std::uint64_t jumps = 0;  ///< inner faces whose transition is not the identity
+  std::uint64_t innerFaces = 0;
+
+  /// Triangles whose residual is above the tolerance.
+  struct Misfit {
+    HalfFace halfFace;
+    double residual;
+  };
+  std::vector<Misfit> misfits;
+
+  /// From the chart of the half-face's tet to that of its mate.
+  [[nodiscard]] const Transition& across(HalfFace halfFace) const noexcept {
+    return table[jump[halfFace]];
+  }
+  /// The index in `table` of the inverse: both are neighbours there.
+  [[nodiscard]] static constexpr Index inverse(Index jump) noexcept {
+    return jump == 0 ? 0 : ((jump - 1) ^ 1U) + 1;
+  }
+  [[nodiscard]] bool isJump(HalfFace halfFace) const noexcept { return jump[halfFace] != 0; }
+};
+
+/// @param plain  knows where tets differ; gets to know how these faces are passed
+/// @param rotations  what the caller knows, as in TetMapView; may be empty
+/// @param tolerance  residuals above it make misfits
+[[nodiscard]] Transitions computeTransitions(const TetTopology& topology,
+                                             const LocalParameters& parameters,
+                                             PlainVertices& plain,
+                                             std::span<const std::array<std::int8_t, 4>> rotations,
+                                             double tolerance, Stage& stage);
+
+/// Reports misfits. Not done at once, as nothing is worth saying about them if the mesh is not a
+/// manifold.
+void collectMisfits(const Transitions& transitions, DefectCollector& defects);
+
+}  // namespace hexhex

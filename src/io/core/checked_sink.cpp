@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <utility>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+#include <io/core/checked_sink.hpp>
+#include <io/core/finite_points.hpp>
+#include <io/core/with_threads_here.hpp>
+
+namespace hexhex {
+namespace {
+
+constexpr std::size_t kGrain = std::size_t{1} << 14;  // a fraction of a millisecond's work
+
+/// The first cell with a corner that is no vertex, or the number of cells.
+template <class Cell>
+std::size_t firstOutOfRange(std::span<const Cell> cells, std::uint64_t pointCount, Stage& stage) {
+  std::atomic<std::size_t> first{cells.size()};
+  parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+    if (*std::max_element(cells[c].begin(), cells[c].end()) < pointCount) return;
+    std::size_t known = first.load(std::memory_order_relaxed);
+    while (c < known && !first.compare_exchange_weak(known, c)) {
+    }
+  });
+  return first.load();
+}
+
+std::string numbers(std::uint64_t first, std::uint64_t size) {
+  return std::to_string(size) + " from number " + std::to_string(first) + " on";
+}
+
+}  // namespace
+
+CheckedSink::CheckedSink(std::string name, std::string_view stage, Context& context)
+    : name_(std::move(name)), stage_(stage), context_(context), quiet_(context.threads()) {}
+
+/// Runs one call: the sink is useless after one that failed.
+template <class F>
+void CheckedSink::run(const F& f) {
+  const State before = state_;
+  state_ = State::Failed;
+  if (before == State::Failed) refuse("a call before this one failed");
+  if (before == State::Ended) refuse("end() was called before");
+  context_.throwIfCancelled();
+  const auto begin = std::chrono::steady_clock::now();
+  state_ = before;
+  try {
+    f();
+  } catch (...) {
+    state_ = State::Failed;
+    throw;
+  }
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  context_.addStageTime(stage_, seconds.count());
+}
+
+void CheckedSink::begin(std::uint64_t pointCount, std::uint64_t cellCount) {
+  run([&] {
+    if (state_ != State::Fresh) refuse("begin() was called twice");
+    // So that no product of a count with the bytes of an element wraps around.
+    constexpr std::uint64_t kMost = std::uint64_t{1} << 48U;
+    if (std::max(pointCount, cellCount) > kMost) {
+      throw Error(ErrorCode::TooLarge, name_ + ": a mesh of " + std::to_string(pointCount) +
+                                           " vertices and " + std::to_string(cellCount) +
+                                           " cells is too large for a file.");
+    }
+    pointCount_ = pointCount;
+    cellCount_ = cellCount;
+    takeBegin();
+    state_ = State::Points;
+  });
+}
+
+void CheckedSink::points(const PointPiece& piece) {
+  run([&] {
+    if (state_ == State::Fresh) refuse("points() was called before begin()");
+    if (state_ == State::Cells) refuse("points() was called after cells()");
+    requireNext("vertices", piece.first, piece.points.size(), nextPoint_, pointCount_);
+    if (piece.points.empty()) return;
+    if (nextPoint_ == 0) {
+      hasTets_ = !piece.generatorTet.empty();
+      hasCorners_ = !piece.generatorCorners.empty();
+    }
+    requireConsistent(piece);
+    takePoints(piece);
+    nextPoint_ += piece.points.size();
+  });
+}
+
+void CheckedSink::cells(std::uint64_t first, std::span<const Hex> cells) {
+  checkCells(first, cells);
+}
+
+void CheckedSink::cells(std::uint64_t first, std::span<const Hex64> cells) {
+  checkCells(first, cells);
+}
+
+template <class Cell>
+void CheckedSink::checkCells(std::uint64_t first, std::span<const Cell> cells) {
+  run([&] {
+    beginCells();
+    requireNext("cells", first, cells.size(), nextCell_, cellCount_);
+    Stage stage(quiet_, "check");
+    std::size_t wrong = 0;
+    withThreadsHere(quiet_.threads(), [&] { wrong = firstOutOfRange(cells, pointCount_, stage); });
+    if (wrong < cells.size()) {
+      throw Error(ErrorCode::InvalidArgument,
+                  name_ + ": a corner of cell " + std::to_string(first + wrong) +
+                      " is not a vertex of the mesh.",
+                  Place{PlaceKind::Cell, first + wrong});
+    }
+    takeCells(first, cells);
+    nextCell_ += cells.size();
+  });
+}
+
+void CheckedSink::beginCells() {
+  if (state_ == State::Fresh) refuse("cells() or end() was called before begin()");
+  if (nextPoint_ != pointCount_) {
+    refuse("only " + std::to_string(nextPoint_) + " of " + std::to_string(pointCount_) +
+           " vertices came before cells() or end()");
+  }
+  if (state_ == State::Cells) return;
+  takeCellsBegin();
+  state_ = State::Cells;
+}
+
+void CheckedSink::end() {
+  run([&] {
+    beginCells();
+    if (nextCell_ != cellCount_) {
+      refuse("only " + std::to_string(nextCell_) + " of " + std::to_string(cellCount_) +
+             " cells came before end()");
+    }
+    takeEnd();
+    state_ = State::Ended;
+  });
+}
+
+void CheckedSink::requireNext(const char* what, std::uint64_t first, std::uint64_t size,
+                              std::uint64_t next, std::uint64_t count) const {
+  if (first != next) {
+    refuse("number " + std::to_string(next) + " of the " + what + " has to come next, but " +
+           numbers(first, size) + " came");
+  }
+  if (size > count - next) {
+    refuse(numbers(first, size) + " are more " + what + " than the " + std::to_string(count) +
+           " that begin() announced");
+  }
+}
+
+void CheckedSink::requireConsistent(const PointPiece& piece) {
+  const auto fits = [&piece](std::size_t size, bool expected) {
+    return size == (expected ? piece.points.size() : 0);
+  };
+  if (!fits(piece.generatorTet.size(), hasTets_) ||
+      !fits(piece.generatorCorners.size(), hasCorners_)) {
+    refuse("the generators of the vertices " + numbers(piece.first, piece.points.size()) +
+           " are not as many as the vertices, or are missing in some pieces only");
+  }
+  Stage stage(quiet_, "check");
+  std::size_t wrong = 0;
+  withThreadsHere(quiet_.threads(), [&] { wrong = firstNotFinite(piece.points, stage); });
+  if (wrong == piece.points.size()) return;
+  throw Error(
+      ErrorCode::NotFinite,
+      name_ + ": a coordinate of vertex " + std::to_string(piece.first + wrong) + " is not finite.",
+      Place{PlaceKind::Vertex, piece.first + wrong});
+}
+
+void CheckedSink::refuse(const std::string& sentence) const {
+  throw Error(ErrorCode::InvalidArgument,
+              name_ + ": a mesh in pieces came in the wrong way: " + sentence +
+                  ". A sink takes begin(), all vertices in order, all cells in order, and end().");
+}
+
+}  // namespace hexhex

@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <cerrno>
+#include <fcntl.h>
+#include <string>
+#include <sys/stat.h>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+#include <io/core/input_file.hpp>
+
+namespace hexhex {
+namespace {
+
+// Files without a known size (pipes) are read in steps of at least this many bytes: large enough
+// that the number of system calls does not matter.
+constexpr std::size_t kMinimumStep = std::size_t{1} << 20;
+
+// What one thread reads in a go: large enough that system calls cost nothing, small enough that
+// files of some megabytes have work for several threads.
+constexpr std::size_t kGrain = std::size_t{1} << 20;
+
+std::string reasonOf(int error) { return std::generic_category().message(error); }
+
+}  // namespace
+
+InputFile::Descriptor::~Descriptor() {
+  if (value >= 0) ::close(value);
+}
+
+InputFile::InputFile(std::filesystem::path file)
+    : path_(std::move(file)), descriptor_{::open(path_.c_str(), O_RDONLY | O_CLOEXEC)} {
+  struct stat status {};
+  if (descriptor_.value < 0 || ::fstat(descriptor_.value, &status) != 0) fail(reasonOf(errno));
+  if (S_ISDIR(status.st_mode)) fail("it is a folder");
+  regular_ = S_ISREG(status.st_mode);
+  if (regular_) size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+void InputFile::readAt(std::uint64_t position, void* bytes, std::size_t size) const {
+  char* place = static_cast<char*>(bytes);
+  while (size > 0) {
+    const ssize_t count = ::pread(descriptor_.value, place, size, static_cast<off_t>(position));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(reasonOf(errno));
+    if (count == 0) fail("it became shorter while it was read");
+    place += count;
+    position += static_cast<std::uint64_t>(count);
+    size -= static_cast<std::size_t>(count);
+  }
+}
+
+std::size_t InputFile::read(void* bytes, std::size_t size) const {
+  while (true) {
+    const ssize_t count = ::read(descriptor_.value, bytes, size);
+    if (count >= 0) return static_cast<std::size_t>(count);
+    if (errno != EINTR) fail(reasonOf(errno));
+  }
+}
+
+void InputFile::moveTo(std::uint64_t position) const {
+  if (::lseek(descriptor_.value, static_cast<off_t>(position), SEEK_SET) < 0) fail(reasonOf(errno));
+}
+
+void InputFile::fail(const std::string& reason) const {
+  throw Error(ErrorCode::FileNotFound,
+              path_.string() + ": the file cannot be read: " + reason + ".");
+}
+
+Array<char> readWholeFile(const std::filesystem::path& file, Stage& stage) {
+  const InputFile input(file);
+  // One byte more than the size, so that the end of the file shows without growing the array.
+  std::size_t size = input.size();
+  Array<char> bytes(input.isRegular() ? size + 1 : 0);
+  parallelBlocks(stage, size, kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   input.readAt(begin, bytes.data() + begin, end - begin);
+                 });
+  // The rest: of a file without a size everything, and what was appended in the meantime.
+  if (size > 0) input.moveTo(size);
+  while (true) {
+    if (size == bytes.size()) bytes.resize(size + std::max(size, kMinimumStep));
+    const std::size_t count = input.read(bytes.data() + size, bytes.size() - size);
+    if (count == 0) break;
+    size += count;
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+}  // namespace hexhex

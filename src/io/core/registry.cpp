@@ -1,0 +1,220 @@
+#include <array>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include <hexhex/io.hpp>
+
+#include <io/core/mesh_sink.hpp>
+#include <io/core/registry.hpp>
+#include <io/gmsh/gmsh.hpp>
+#include <io/hexex/hexex.hpp>
+#include <io/medit/medit.hpp>
+#include <io/medit/meshb.hpp>
+#include <io/ovm/ovm.hpp>
+#include <io/solvers/abaqus.hpp>
+#include <io/solvers/cgns.hpp>
+#include <io/solvers/exodus.hpp>
+#include <io/solvers/mfem.hpp>
+#include <io/solvers/openfoam.hpp>
+#include <io/vtk/vtk_legacy.hpp>
+#include <io/vtk/vtkhdf.hpp>
+#include <io/vtk/vtu.hpp>
+
+namespace hexhex {
+namespace {
+
+// Of formats whose maps need no options.
+template <auto read>
+TetMap readPlain(const std::filesystem::path& file, const ReadOptions& /*options*/,
+                 Context& context) {
+  return read(file, context);
+}
+template <auto write>
+void writePlain(const TetMap& map, const std::filesystem::path& file,
+                const WriteOptions& /*options*/, Context& context) {
+  write(map, file, context);
+}
+
+// Overloads of writers with a map have to be told apart.
+constexpr auto kWriteOvm = static_cast<void (*)(const HexMesh&, const std::filesystem::path&,
+                                                const WriteOptions&, Context&)>(writeOvmHexMesh);
+constexpr auto kWriteOvmb = static_cast<void (*)(const HexMesh&, const std::filesystem::path&,
+                                                 const WriteOptions&, Context&)>(writeOvmbHexMesh);
+
+TetCells readHexexTets(const std::filesystem::path& file, Context& context) {
+  const TetMap map = readHexex(file, context);
+  TetCells tets;
+  tets.points.assign(map.points.begin(), map.points.end());
+  tets.cells.assign(map.tets.begin(), map.tets.end());
+  return tets;
+}
+
+/// Formats over libraries that not every build has.
+using WriteMesh = void (*)(const HexMesh& mesh, const std::filesystem::path& file,
+                           const WriteOptions& options, Context& context);
+#if defined(HEXHEX_HAS_HDF5)
+constexpr WriteMesh kWriteVtkHdf = writeVtkHdf;
+constexpr bool kHasHdf5 = true;
+#else
+constexpr WriteMesh kWriteVtkHdf = nullptr;
+constexpr bool kHasHdf5 = false;
+#endif
+#if defined(HEXHEX_HAS_CGNS)
+constexpr WriteMesh kWriteCgns = writeCgns;
+constexpr bool kHasCgns = true;
+#else
+constexpr WriteMesh kWriteCgns = nullptr;
+constexpr bool kHasCgns = false;
+#endif
+#if defined(HEXHEX_HAS_EXODUS)
+constexpr WriteMesh kWriteExodus = writeExodus;
+constexpr bool kHasExodus = true;
+#else
+constexpr WriteMesh kWriteExodus = nullptr;
+constexpr bool kHasExodus = false;
+#endif
+
+/// A writer that may be missing. (That a function is not null is no constant expression to GCC's
+/// sanitizers.)
+struct OptionalWriter {
+  WriteMesh write;
+  bool isThere;
+};
+
+/// @param library  what has to be installed if there is no writer
+constexpr Format optionalFormat(std::string_view name, std::string_view extension,
+                                std::string_view description, OptionalWriter writer,
+                                std::string_view library) {
+  return {.name = name,
+          .extension = extension,
+          .description = description,
+          .writeMesh = writer.write,
+          .missing = writer.isThere ? std::string_view() : library};
+}
+
+constexpr std::array kFormatTable = {
+    Format{.name = "hexex",
+           .extension = ".hexex",
+           .description = "text of parametrized tets",
+           .readMap = readPlain<readHexex>,
+           .writeMap = writePlain<writeHexex>,
+           .readTets = readHexexTets},
+    Format{.name = "mesh",
+           .extension = ".mesh",
+           .description = "MEDIT (Gamma Mesh Format), text",
+           .readTets = readMeditTets,
+           .readMesh = readMedit,
+           .writeMesh = writeMedit,
+           .openSink = openMeditSink},
+    Format{.name = "meshb",
+           .extension = ".meshb",
+           .description = "MEDIT (Gamma Mesh Format), binary",
+           .readTets = readMeshbTets,
+           .readMesh = readMeshb,
+           .writeMesh = writeMeshb,
+           .openSink = openMeshbSink},
+    Format{.name = "vtu",
+           .extension = ".vtu",
+           .description = "VTK XML unstructured grid, binary",
+           .readMap = readVtuMap,
+           .writeMap = writeVtuMap,
+           .readTets = readVtuTets,
+           .readMesh = readVtu,
+           .writeMesh = writeVtu,
+           .openSink = openVtuSink,
+           .readMeshTo = readVtuTo,
+           .compresses = true},
+    Format{.name = "vtk",
+           .extension = ".vtk",
+           .description = "legacy VTK 2.0, text",
+           .readMap = readVtkLegacyMap,
+           .writeMap = writeVtkLegacyMap,
+           .readTets = readVtkLegacyTets,
+           .readMesh = readVtkLegacy,
+           .writeMesh = writeVtkLegacy,
+           .openSink = openVtkLegacySink},
+    Format{.name = "vtk-binary",
+           .extension = ".vtk",
+           .description = "legacy VTK 2.0, binary",
+           .readMap = readVtkLegacyMap,
+           .writeMap = writeVtkLegacyMapBinary,
+           .readTets = readVtkLegacyTets,
+           .readMesh = readVtkLegacy,
+           .writeMesh = writeVtkLegacyBinary,
+           .openSink = openVtkLegacyBinarySink},
+    Format{.name = "ovm",
+           .extension = ".ovm",
+           .description = "OpenVolumeMesh, text",
+           .readMap = readPlain<readOvmMap>,
+           .writeMap = writePlain<writeOvmMap>,
+           .readTets = readOvmTets,
+           .readMesh = readOvmHexMesh,
+           .writeMesh = kWriteOvm},
+    Format{.name = "ovmb",
+           .extension = ".ovmb",
+           .description = "OpenVolumeMesh, binary",
+           .readMap = readPlain<readOvmbMap>,
+           .writeMap = writePlain<writeOvmbMap>,
+           .readTets = readOvmbTets,
+           .readMesh = readOvmbHexMesh,
+           .writeMesh = kWriteOvmb},
+    Format{.name = "msh",
+           .extension = ".msh",
+           .description = "Gmsh 4.1, binary",
+           .readTets = readGmshTets,
+           .readMesh = readGmsh,
+           .writeMesh = writeGmsh41Binary,
+           .openSink = openGmsh41BinarySink},
+    Format{.name = "msh41-ascii",
+           .extension = ".msh",
+           .description = "Gmsh 4.1, text",
+           .readTets = readGmshTets,
+           .readMesh = readGmsh,
+           .writeMesh = writeGmsh41Text},
+    Format{.name = "msh22-ascii",
+           .extension = ".msh",
+           .description = "Gmsh 2.2, text",
+           .readTets = readGmshTets,
+           .readMesh = readGmsh,
+           .writeMesh = writeGmsh22Text},
+    Format{.name = "inp",
+           .extension = ".inp",
+           .description = "Abaqus and CalculiX, text",
+           .writeMesh = writeAbaqus},
+    Format{.name = "mfem",
+           .extension = "",
+           .description = "MFEM mesh v1.0, text",
+           .writeMesh = writeMfem},
+    Format{.name = "openfoam",
+           .extension = ".foam",
+           .description = "OpenFOAM polyMesh, a folder",
+           .writeMesh = writeOpenFoam},
+    optionalFormat("vtkhdf", ".vtkhdf", "VTKHDF", {kWriteVtkHdf, kHasHdf5}, "HDF5 (libhdf5-dev)"),
+    optionalFormat("cgns", ".cgns", "CGNS", {kWriteCgns, kHasCgns}, "CGNS (libcgns-dev)"),
+    optionalFormat("exodus", ".exo", "Exodus II", {kWriteExodus, kHasExodus},
+                   "Exodus (libexodusii-dev)"),
+    optionalFormat("exodus-e", ".e", "Exodus II", {kWriteExodus, kHasExodus},
+                   "Exodus (libexodusii-dev)"),
+};
+
+/// Other names for formats.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kOtherFormatNames = {
+    {{"gmsh", "msh"},
+     {"gmsh41", "msh"},
+     {"gmsh41-ascii", "msh41-ascii"},
+     {"gmsh22", "msh22-ascii"},
+     {"medit", "mesh"}}};
+
+}  // namespace
+
+std::span<const Format> allFormats() noexcept { return kFormatTable; }
+
+std::string_view usualFormatName(std::string_view name) noexcept {
+  for (const auto& [other, usual] : kOtherFormatNames) {
+    if (name == other) return usual;
+  }
+  return name;
+}
+
+}  // namespace hexhex

@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <mutex>
+
+#include <hexhex/io.hpp>
+#include <hexhex/survey.hpp>
+
+#include <base/parallel.hpp>
+#include <io/core/checked_sink.hpp>
+#include <io/core/mesh_pieces.hpp>
+#include <io/core/with_threads_here.hpp>
+
+namespace hexhex {
+namespace {
+
+constexpr std::size_t kGrain = std::size_t{1} << 13;  // a fraction of a millisecond's work
+
+/// What number `place` of an array adds to its checksum: all bits of both matter for all bits.
+std::uint64_t summand(std::uint64_t place, std::uint64_t value) {
+  std::uint64_t z = value ^ ((place + 1) * 0x9e3779b97f4a7c15U);  // odd, without pattern
+  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
+  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
+  return z ^ (z >> 31U);
+}
+
+struct Box {
+  Vec3 lower;
+  Vec3 upper;
+
+  void add(const Vec3& point) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], point[axis]);
+      upper[axis] = std::max(upper[axis], point[axis]);
+    }
+  }
+};
+
+}  // namespace
+
+/// Integers add up to the same in any order, and so do boxes.
+class SurveySink::Adder final : public CheckedSink {
+ public:
+  explicit Adder(Context& context)
+      : CheckedSink("survey", "survey", context), quiet_(context.threads()) {}
+
+  [[nodiscard]] const MeshSurvey& result() const noexcept { return result_; }
+
+ private:
+  void takeBegin() override { result_ = {pointCount(), cellCount(), {}, {}, 0, 0}; }
+
+  void takePoints(const PointPiece& piece) override {
+    if (piece.first == 0) result_.lower = result_.upper = piece.points.front();
+    std::mutex mutex;
+    forEachBlock(piece.points.size(), [&](std::size_t begin, std::size_t end) {
+      Box box{piece.points[begin], piece.points[begin]};
+      std::uint64_t sum = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        box.add(piece.points[i]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          sum += summand(3 * (piece.first + i) + axis,
+                         std::bit_cast<std::uint64_t>(piece.points[i][axis]));
+        }
+      }
+      const std::lock_guard lock(mutex);
+      result_.pointChecksum += sum;
+      Box all{result_.lower, result_.upper};
+      all.add(box.lower);
+      all.add(box.upper);
+      result_.lower = all.lower;
+      result_.upper = all.upper;
+    });
+  }
+
+  void takeCellsBegin() override {}
+  void takeCells(std::uint64_t first, std::span<const Hex> cells) override { add(first, cells); }
+  void takeCells(std::uint64_t first, std::span<const Hex64> cells) override { add(first, cells); }
+
+  template <class Cell>
+  void add(std::uint64_t first, std::span<const Cell> cells) {
+    std::atomic<std::uint64_t> all{0};
+    forEachBlock(cells.size(), [&](std::size_t begin, std::size_t end) {
+      std::uint64_t sum = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t k = 0; k < 8; ++k) sum += summand(8 * (first + i) + k, cells[i][k]);
+      }
+      all += sum;
+    });
+    result_.cellChecksum += all;
+  }
+
+  void takeEnd() override {}
+
+  template <class F>
+  void forEachBlock(std::size_t n, const F& f) {
+    Stage stage(quiet_, "survey");
+    withThreadsHere(quiet_.threads(), [&] {
+      parallelBlocks(
+          stage, n, kGrain,
+          [&f](std::size_t begin, std::size_t end, std::size_t /*block*/) { f(begin, end); });
+    });
+  }
+
+  Context quiet_;  // many short loops, which report no progress of their own
+  MeshSurvey result_;
+};
+
+SurveySink::SurveySink(Context& context) : adder_(std::make_unique<Adder>(context)) {}
+SurveySink::~SurveySink() = default;
+
+void SurveySink::begin(std::uint64_t pointCount, std::uint64_t cellCount) {
+  adder_->begin(pointCount, cellCount);
+}
+void SurveySink::points(const PointPiece& piece) { adder_->points(piece); }
+void SurveySink::cells(std::uint64_t first, std::span<const Hex> cells) {
+  adder_->cells(first, cells);
+}
+void SurveySink::cells(std::uint64_t first, std::span<const Hex64> cells) {
+  adder_->cells(first, cells);
+}
+void SurveySink::end() { adder_->end(); }
+const MeshSurvey& SurveySink::result() const noexcept { return adder_->result(); }
+
+MeshSurvey survey(const HexMesh& mesh, Context& context) {
+  SurveySink sink(context);
+  withThreads(context.threads(), [&] { sendTo(sink, mesh); });
+  return sink.result();
+}
+
+MeshSurvey surveyFile(const std::filesystem::path& file, const ReadOptions& options,
+                      Context& context) {
+  SurveySink sink(context);
+  readHexMeshTo(sink, file, options, context);
+  return sink.result();
+}
+
+MeshSurvey surveyFile(const std::filesystem::path& file, Context& context) {
+  return surveyFile(file, {}, context);
+}
+
+}  // namespace hexhex

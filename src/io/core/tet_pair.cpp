@@ -1,0 +1,105 @@
+// A map as two tet meshes.
+#include <algorithm>
+#include <string>
+
+#include <hexhex/error.hpp>
+#include <hexhex/io.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#include <io/ovm/ovm_first_fault.hpp>
+
+namespace hexhex {
+namespace {
+
+constexpr std::size_t kGrain = std::size_t{1} << 13;
+
+/// What two meshes are called in sentences, and what it is if they do not belong together.
+struct PairNames {
+  std::string tets;
+  std::string polycube;
+  ErrorCode mismatch;
+};
+
+std::string vertices(const Tet& tet) {
+  std::string text;
+  for (const Index vertex : tet) text += (text.empty() ? "" : " ") + std::to_string(vertex);
+  return text;
+}
+
+void requireSame(std::size_t tets, std::size_t polycube, const char* what, const PairNames& names) {
+  if (tets == polycube) return;
+  throw Error(names.mismatch,
+              names.tets + " has " + std::to_string(tets) + " " + what + ", but " + names.polycube +
+                  " has " + std::to_string(polycube) +
+                  ": the two meshes must have the same vertices and tets, in the same order.");
+}
+
+/// The corners of a tet may be listed in another order.
+bool sameVertices(Tet a, Tet b) {
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  return a == b;
+}
+
+TetMap combine(const TetMesh& tets, const TetMesh& polycube, const PairNames& names, Stage& stage) {
+  requireSame(tets.points.size(), polycube.points.size(), "vertices", names);
+  requireSame(tets.tets.size(), polycube.tets.size(), "tets", names);
+  const std::size_t count = tets.tets.size();
+  const auto inRange = [&](const Tet& tet) {
+    return std::all_of(tet.begin(), tet.end(), [&](Index v) { return v < tets.points.size(); });
+  };
+  const std::size_t fault = firstFault(stage, count, [&](std::size_t t) {
+    return sameVertices(tets.tets[t], polycube.tets[t]) && inRange(tets.tets[t]);
+  });
+  if (fault < count) {
+    const Place place{PlaceKind::Tet, fault};
+    if (!inRange(tets.tets[fault])) {
+      throw Error(ErrorCode::IndexOutOfRange,
+                  "Tet " + std::to_string(fault) + " of " + names.tets +
+                      " names a vertex that does not exist.",
+                  place);
+    }
+    throw Error(names.mismatch,
+                "Tet " + std::to_string(fault) + " has the vertices " + vertices(tets.tets[fault]) +
+                    " in " + names.tets + ", but " + vertices(polycube.tets[fault]) + " in " +
+                    names.polycube + ": the two meshes must have the same tets, in the same order.",
+                place);
+  }
+  TetMap map;
+  map.points = tets.points;
+  map.tets = tets.tets;
+  map.parameters.resize(count);
+  parallelFor(stage, count, kGrain, [&](std::size_t t) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      map.parameters[t][i] = polycube.points[map.tets[t][i]];
+    }
+  });
+  return map;
+}
+
+}  // namespace
+
+TetMap mapFromPair(const TetMesh& tets, const TetMesh& polycube, Context& context) {
+  Stage stage(context, "pair meshes");
+  TetMap map;
+  withThreads(context.threads(), [&] {
+    map = combine(tets, polycube, {"The mesh", "the polycube", ErrorCode::InvalidArgument}, stage);
+  });
+  return map;
+}
+
+TetMap readMapPair(const std::filesystem::path& tets, const std::filesystem::path& polycube,
+                   Context& context) {
+  const TetMesh first = readTetMesh(tets, {}, context);
+  const TetMesh second = readTetMesh(polycube, {}, context);
+  Stage stage(context, "pair meshes");
+  TetMap map;
+  withThreads(context.threads(), [&] {
+    map = combine(first, second, {tets.string(), polycube.string(), ErrorCode::FileUnsupported},
+                  stage);
+  });
+  return map;
+}
+
+}  // namespace hexhex

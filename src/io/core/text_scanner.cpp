@@ -1,0 +1,159 @@
+#include <algorithm>
+
+#include <hexhex/types.hpp>
+
+#include <io/core/number_parsing.hpp>
+#include <io/core/text_scanner.hpp>
+
+namespace hexhex {
+
+std::string quoted(std::string_view token) {
+  // Long enough to recognize a number of 17 digits, short enough for one line.
+  constexpr std::size_t kLongest = 40;
+  std::string result = "\"";
+  for (const char c : token.substr(0, kLongest)) {
+    const bool printable = c >= ' ' && c <= '~';
+    result += printable ? c : '?';
+  }
+  if (token.size() > kLongest) result += "...";
+  return result + "\"";
+}
+
+std::string_view TextScanner::currentToken() const {
+  const char* last = token_;
+  while (!endsToken(last)) ++last;
+  return {token_, static_cast<std::size_t>(last - token_)};
+}
+
+std::string_view TextScanner::peekToken() {
+  skipSpace();
+  return currentToken();
+}
+
+std::string_view TextScanner::readToken() {
+  const std::string_view token = peekToken();
+  position_ += token.size();
+  return token;
+}
+
+bool TextScanner::readUnusualNumber(double& value) {
+  const std::string_view token = currentToken();
+  if (parseNumber(token, value) != NumberProblem::None) return false;
+  position_ += token.size();
+  return true;
+}
+
+std::size_t TextScanner::readCount(std::string_view what, std::size_t bytesEach) {
+  std::int64_t count = 0;
+  if (!readInteger(count)) failInteger("the number of " + std::string(what));
+  if (count < 0) {
+    fail(ErrorCode::FileSyntax, "the number of " + std::string(what) + " is negative.");
+  }
+  // The last one may lack its separator at the end of the file.
+  const std::size_t room = (static_cast<std::size_t>(end_ - position_) + 1) / bytesEach;
+  if (static_cast<std::uint64_t>(count) > room) {
+    fail(ErrorCode::FileSyntax,
+         "announces " + std::string(currentToken()) + " " + std::string(what) +
+             ", but the rest of the file has room for at most " + std::to_string(room) +
+             ": either the number is wrong or the file is incomplete.");
+  }
+  if (static_cast<std::uint64_t>(count) > kNone) {
+    fail(ErrorCode::TooLarge, "announces " + std::to_string(count) + " " + std::string(what) +
+                                  "; at most " + std::to_string(kNone) + " are supported.");
+  }
+  return static_cast<std::size_t>(count);
+}
+
+std::string_view TextScanner::takeLine() {
+  const char* const begin = position_;
+  skipLine();
+  const std::string_view line(begin, position_);
+  if (position_ != end_) ++position_;
+  token_ = position_;
+  return line;
+}
+
+void TextScanner::skipLineBreak() {
+  const char* place = position_;
+  while (place != end_ && (*place == ' ' || *place == '\r')) ++place;
+  if (place == end_ || *place != '\n') {
+    fail(ErrorCode::FileSyntax, "the line has to end behind " + quoted(currentToken()) +
+                                    ", since the bytes of numbers begin on the next line.");
+  }
+  position_ = token_ = place + 1;
+}
+
+std::size_t TextScanner::countTokensOnLine() {
+  std::size_t count = 0;
+  if (!skipSpace()) return count;
+  for (const char* place = position_; place != end_ && *place != '\n' && !isComment(*place);) {
+    if (isSpace(*place)) {
+      ++place;
+      continue;
+    }
+    ++count;
+    while (!endsToken(place)) ++place;
+  }
+  return count;
+}
+
+std::uint64_t TextScanner::line() const {
+  // An end in front of which nothing but line breaks stand belongs to the last line with content.
+  const char* last = token_;
+  if (last == end_) {
+    while (last != begin_ && isSpace(last[-1])) --last;
+  }
+  return static_cast<std::uint64_t>(std::count(begin_, last, '\n')) + 1;
+}
+
+void TextScanner::fail(ErrorCode code, std::string_view sentence, Place place) const {
+  throw Error(code, fileName_ + ", line " + std::to_string(line()) + ": " + std::string(sentence),
+              place);
+}
+
+void TextScanner::fail(ErrorCode code, std::string_view sentence) const {
+  fail(code, sentence, Place{PlaceKind::Line, line()});
+}
+
+void TextScanner::failNumber(std::string_view what) const {
+  const std::string_view token = currentToken();
+  const std::string expected = "expected " + std::string(what) + ", found ";
+  if (token.empty()) fail(ErrorCode::FileSyntax, expected + "the end of the file.");
+  double ignored = 0;
+  switch (parseNumber(token, ignored)) {
+    case NumberProblem::NotFinite:
+      fail(ErrorCode::NotFinite, expected + quoted(token) + ", which is not finite.");
+    case NumberProblem::Overflow:
+      fail(ErrorCode::NotFinite,
+           expected + quoted(token) + ", which exceeds the largest number (about 1.8e308).");
+    case NumberProblem::ZeroDenominator:
+      fail(ErrorCode::FileSyntax, expected + quoted(token) + ", which divides by zero.");
+    case NumberProblem::TooLong:
+      fail(ErrorCode::FileUnsupported, expected + quoted(token) + ", a fraction with more than " +
+                                           std::to_string(kMaxRationalDigits) +
+                                           " digits; round it to a decimal number.");
+    case NumberProblem::None:
+    case NumberProblem::NotANumber:
+      break;
+  }
+  fail(ErrorCode::FileSyntax, expected + quoted(token) + ", which is not a number.");
+}
+
+void TextScanner::failInteger(std::string_view what) const {
+  const std::string_view token = currentToken();
+  const std::string expected = "expected " + std::string(what) + ", found ";
+  if (token.empty()) fail(ErrorCode::FileSyntax, expected + "the end of the file.");
+  fail(ErrorCode::FileSyntax, expected + quoted(token) + ", which is not a whole number.");
+}
+
+void TextScanner::failToken(std::string_view what) const {
+  fail(ErrorCode::FileSyntax,
+       "expected " + std::string(what) + ", found " + quoted(currentToken()) + ".");
+}
+
+void TextScanner::failIfRepeated(bool present, std::string_view section) const {
+  if (!present) return;
+  fail(ErrorCode::FileSyntax, "the section " + std::string(section) + " occurs a second time.");
+}
+
+}  // namespace hexhex

@@ -1,0 +1,147 @@
+// A fast scanner over a text file in memory: tokens between white space, numbers, and clear errors.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <hexhex/error.hpp>
+
+#include <io/core/token_index.hpp>
+
+namespace hexhex {
+
+/// Reads tokens one after the other. Functions that read return false, and stay before the token,
+/// if it is not what they want or the text ends; then a fail... function says why. Line numbers are
+/// counted only when an error is raised, so that they cost nothing on the way.
+class TextScanner {
+ public:
+  enum class Comments {
+    None,
+    Hash  ///< from '#' to the end of the line
+  };
+
+  /// @param text  must outlive the scanner
+  /// @param fileName  for error messages
+  TextScanner(std::string_view text, std::string fileName, Comments comments = Comments::None)
+      : begin_(text.data()),
+        position_(text.data()),
+        token_(text.data()),
+        end_(text.data() + text.size()),
+        fileName_(std::move(fileName)),
+        comments_(comments) {}
+
+  /// Goes on from the i-th character of the text.
+  void moveTo(std::size_t i) { position_ = token_ = begin_ + i; }
+  /// How many characters of the text are behind.
+  [[nodiscard]] std::size_t position() const noexcept {
+    return static_cast<std::size_t>(position_ - begin_);
+  }
+  [[nodiscard]] std::string_view text() const noexcept { return {begin_, end_}; }
+
+  /// Moves to the next token; false at the end of the text.
+  bool skipSpace() {
+    while (position_ != end_) {
+      if (isSpace(*position_)) {
+        ++position_;
+      } else if (isComment(*position_)) {
+        skipLine();
+      } else {
+        break;
+      }
+    }
+    token_ = position_;
+    return position_ != end_;
+  }
+
+  /// Reads a finite number: decimal, correctly rounded, or rational (see parseNumber).
+  bool readNumber(double& value) {
+    if (!skipSpace()) return false;
+    const auto result = std::from_chars(position_, end_, value);
+    if (result.ec == std::errc{} && endsToken(result.ptr) && std::isfinite(value)) {
+      position_ = result.ptr;
+      return true;
+    }
+    return readUnusualNumber(value);
+  }
+
+  /// Reads a whole number; one beyond 64 bits becomes the largest or smallest.
+  bool readInteger(std::int64_t& value) {
+    if (!skipSpace()) return false;
+    const char* const first = skipPlus(position_);
+    const auto result = std::from_chars(first, end_, value);
+    if (result.ec == std::errc::invalid_argument || !endsToken(result.ptr)) return false;
+    if (result.ec == std::errc::result_out_of_range) value = *first == '-' ? INT64_MIN : INT64_MAX;
+    position_ = result.ptr;
+    return true;
+  }
+
+  /// Reads a whole number of things that follow, each taking at least so many bytes of the file,
+  /// and refuses what cannot be true before anybody allocates memory for it.
+  /// @param what  plural, e.g. "vertices"
+  [[nodiscard]] std::size_t readCount(std::string_view what, std::size_t bytesEach);
+
+  /// The next token, without reading it; empty at the end of the text.
+  [[nodiscard]] std::string_view peekToken();
+  /// Reads the next token, whatever it is; empty at the end of the text.
+  std::string_view readToken();
+  /// The token that was read last, or the one that could not be read.
+  [[nodiscard]] std::string_view currentToken() const;
+
+  /// Reads the rest of the line, whatever it is, without the end of the line.
+  std::string_view takeLine();
+  /// Moves to the next line, where bytes of numbers begin: nothing else may stand on this one.
+  void skipLineBreak();
+
+  /// How many tokens stand on the line of the next token, counted from that token.
+  [[nodiscard]] std::size_t countTokensOnLine();
+
+  /// The 1-based line of the token that was read last, or that could not be read.
+  [[nodiscard]] std::uint64_t line() const;
+
+  [[nodiscard]] const std::string& fileName() const noexcept { return fileName_; }
+
+  /// Throws an error about the current token: "<file>, line 12: <sentence>".
+  [[noreturn]] void fail(ErrorCode code, std::string_view sentence) const;
+  /// The same with a place other than the line.
+  [[noreturn]] void fail(ErrorCode code, std::string_view sentence, Place place) const;
+  /// After readNumber returned false: throws an error that tells what was found instead of `what`.
+  [[noreturn]] void failNumber(std::string_view what) const;
+  /// After readInteger returned false: the same.
+  [[noreturn]] void failInteger(std::string_view what) const;
+  /// After readToken returned another token: the same.
+  [[noreturn]] void failToken(std::string_view what) const;
+  /// Refuses a section that is present already.
+  void failIfRepeated(bool present, std::string_view section) const;
+
+ private:
+  [[nodiscard]] bool isComment(char c) const { return c == '#' && comments_ == Comments::Hash; }
+  [[nodiscard]] bool endsToken(const char* place) const {
+    return place == end_ || isSpace(*place) || isComment(*place);
+  }
+  /// std::from_chars knows no plus sign.
+  [[nodiscard]] const char* skipPlus(const char* place) const {
+    const bool plus = *place == '+' && place + 1 != end_ && place[1] != '-';
+    return plus ? place + 1 : place;
+  }
+  void skipLine() {
+    while (position_ != end_ && *position_ != '\n') ++position_;
+  }
+  bool readUnusualNumber(double& value);
+
+  const char* begin_;
+  const char* position_;
+  const char* token_;
+  const char* end_;
+  std::string fileName_;
+  Comments comments_;
+};
+
+/// A token as an error message shows it: in quotes, shortened, without control characters.
+[[nodiscard]] std::string quoted(std::string_view token);
+
+}  // namespace hexhex

@@ -1,0 +1,125 @@
+// The table of formats for curved meshes, by extension.
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <hexhex/curved.hpp>
+#include <hexhex/error.hpp>
+
+#include <base/lagrange_check.hpp>
+#include <io/core/letter_case.hpp>
+#include <io/curved/lagrange_files.hpp>
+#include <io/ovm/piecewise_ovmb.hpp>
+#include <io/vtk/piecewise_vtk.hpp>
+
+namespace hexhex {
+
+namespace {
+
+using PiecewiseWriter = void (*)(const PiecewiseLinearMesh&, const TetMapView*,
+                                 const std::filesystem::path&, Context&);
+using LagrangeWriter = void (*)(const LagrangeMesh&, const std::filesystem::path&,
+                                const WriteOptions&, Context&);
+
+template <class Writer>
+struct CurvedFormat {
+  std::string_view extension;
+  Writer write;
+};
+
+/// Writers of formats that say nothing about the map.
+template <void (*write)(const PiecewiseLinearMesh&, const std::filesystem::path&, Context&)>
+void withoutMap(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/,
+                const std::filesystem::path& file, Context& context) {
+  write(mesh, file, context);
+}
+
+constexpr std::array<CurvedFormat<PiecewiseWriter>, 3> kArcFormats = {
+    {{".vtu", withoutMap<writeArcsVtu>},
+     {".vtp", withoutMap<writeArcsVtp>},
+     {".ovmb", writeArcsOvmb}}};
+constexpr std::array<CurvedFormat<PiecewiseWriter>, 3> kPatchFormats = {
+    {{".vtu", withoutMap<writePatchesVtu>},
+     {".vtp", withoutMap<writePatchesVtp>},
+     {".ovmb", writePatchesOvmb}}};
+constexpr std::array<CurvedFormat<LagrangeWriter>, 3> kLagrangeFormats = {
+    {{".vtu", writeLagrangeVtu}, {".msh", writeLagrangeGmsh}, {".mesh", writeLagrangeMfem}}};
+
+template <class Formats>
+auto find(const Formats& formats, const std::filesystem::path& file, const char* what) {
+  const std::string extension = lowerCaseExtension(file);
+  std::string known;
+  for (const auto& format : formats) {
+    if (format.extension == extension) return format.write;
+    known += (known.empty() ? "" : ", ") + std::string(format.extension);
+  }
+  throw Error(ErrorCode::FileUnsupported, file.string() + ": the extension \"" + extension +
+                                              "\" is no format of " + what + ". Formats: " + known +
+                                              ".");
+}
+
+constexpr const char* kArcs = "arcs";
+constexpr const char* kPatches = "patches";
+constexpr const char* kCells = "cells of higher order";
+
+}  // namespace
+
+void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
+               Context& context) {
+  find(kArcFormats, file, kArcs)(mesh, nullptr, file, context);
+}
+
+void writeArcs(const PiecewiseLinearMesh& mesh, const TetMapView& map,
+               const std::filesystem::path& file, Context& context) {
+  find(kArcFormats, file, kArcs)(mesh, &map, file, context);
+}
+
+void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
+                  Context& context) {
+  find(kPatchFormats, file, kPatches)(mesh, nullptr, file, context);
+}
+
+void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
+                  const std::filesystem::path& file, Context& context) {
+  find(kPatchFormats, file, kPatches)(mesh, &map, file, context);
+}
+
+void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                       const WriteOptions& options, Context& context) {
+  const LagrangeWriter write = find(kLagrangeFormats, file, kCells);
+  requireConsistent(mesh);
+  if (!options.scaledJacobians.empty() && options.scaledJacobians.size() != mesh.cellCount()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "There are " + std::to_string(options.scaledJacobians.size()) +
+                    " scaled Jacobians of " + std::to_string(mesh.cellCount()) +
+                    " cells. Give one for each, or none.");
+  }
+  write(mesh, file, options, context);
+}
+
+bool holdsLagrangeCells(const std::filesystem::path& file, Context& context) {
+  return lowerCaseExtension(file) == ".vtu" && holdsLagrangeVtu(file, context);
+}
+
+LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& context) {
+  if (lowerCaseExtension(file) != ".vtu") {
+    throw Error(ErrorCode::FileUnsupported,
+                file.string() + ": cells of higher order are read from .vtu files only.");
+  }
+  return readLagrangeVtu(file, context);
+}
+
+void requireArcFormat(const std::filesystem::path& file) {
+  static_cast<void>(find(kArcFormats, file, kArcs));
+}
+
+void requirePatchFormat(const std::filesystem::path& file) {
+  static_cast<void>(find(kPatchFormats, file, kPatches));
+}
+
+void requireLagrangeFormat(const std::filesystem::path& file) {
+  static_cast<void>(find(kLagrangeFormats, file, kCells));
+}
+
+}  // namespace hexhex

@@ -1,0 +1,46 @@
+// `.msh`: Gmsh. Written as MSH 4.1 (binary or ASCII) and MSH 2.2 (ASCII), with the boundary and all
+// features as physical groups.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include <hexhex/context.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/types.hpp>
+
+#include <io/core/cell_mesh.hpp>
+
+namespace hexhex {
+
+/// Reads nodes and hexahedra (element type 5) of MSH 2.x and 4.1, ASCII and binary. Other elements
+/// and sections are ignored. Vertices are in the order of the file, whatever their tags.
+/// @throws Error FileNotFound, FileSyntax (with line, or byte of a binary file), FileUnsupported,
+///         IndexOutOfRange, NotFinite, TooLarge
+[[nodiscard]] HexMesh readGmsh(const std::filesystem::path& file, Context& context);
+
+/// The same from memory.
+/// @param fileName  for error messages
+[[nodiscard]] HexMesh parseGmsh(std::string_view text, const std::string& fileName,
+                                Context& context);
+
+/// The same for tetrahedra instead of hexahedra.
+[[nodiscard]] TetCells readGmshTets(const std::filesystem::path& file, Context& context);
+[[nodiscard]] TetCells parseGmshTets(std::string_view text, const std::string& fileName,
+                                     Context& context);
+
+// Node i has the tag i + 1. Elements are tagged vertices (type 15), tagged edges (type 1), boundary
+// and tagged quads (type 3), then all cells (type 5), numbered from 1 in this order. Each group of
+// mesh_groups.hpp is an entity (of vertices: each vertex is one) and a physical group, both with
+// the group's number; the cells are volume 1, physical group "hexahedra".
+/// @throws Error FileWrite; InvalidArgument for features that are not in the mesh
+void writeGmsh41Binary(const HexMesh& mesh, const std::filesystem::path& file,
+                       const WriteOptions& options, Context& context);
+void writeGmsh41Text(const HexMesh& mesh, const std::filesystem::path& file,
+                     const WriteOptions& options, Context& context);
+/// @throws Error  the same, and TooLarge for 2^31 nodes or elements, which MSH 2.2 cannot number
+void writeGmsh22Text(const HexMesh& mesh, const std::filesystem::path& file,
+                     const WriteOptions& options, Context& context);
+
+}  // namespace hexhex

@@ -1,0 +1,338 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#include <io/core/input_file.hpp>
+#include <io/core/line_writer.hpp>
+#include <io/core/output_file.hpp>
+#include <io/core/text_elements.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/core/token_index.hpp>
+#include <io/hexex/hexex.hpp>
+
+namespace hexhex {
+namespace {
+
+// The shortest that a vertex ("0 0 0") and a tet ("0 1 2 3" and twelve digits) can be, with
+// separators.
+constexpr std::size_t kMinimumVertexBytes = 6;
+constexpr std::size_t kMinimumTetBytes = 32;
+
+// A coordinate or corner or parameter each.
+constexpr std::size_t kTokensOfVertex = 3;
+constexpr std::size_t kTokensOfTet = 16;
+
+void failIfAtEnd(TextScanner& scanner, std::size_t done, std::size_t count, const char* what) {
+  if (scanner.skipSpace()) return;
+  scanner.fail(ErrorCode::FileSyntax, "the file ends after " + std::to_string(done) + " of " +
+                                          std::to_string(count) + " " + what +
+                                          ": it is incomplete.");
+}
+
+/// The vertices of a feature in ascending order.
+std::array<Index, 1> keyOf(const FeatureVertex& feature) { return {feature.vertex}; }
+template <class Feature>
+auto keyOf(const Feature& feature) {
+  auto vertices = feature.vertices;
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
+/// Leaves out what is listed before.
+template <class Feature>
+void removeRepeated(std::vector<Feature>& features) {
+  using Key = decltype(keyOf(features[0]));
+  std::vector<std::pair<Key, std::size_t>> keys;
+  keys.reserve(features.size());
+  for (std::size_t i = 0; i < features.size(); ++i) keys.emplace_back(keyOf(features[i]), i);
+  std::sort(keys.begin(), keys.end());
+  std::vector<bool> repeated(features.size(), false);
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    repeated[keys[i].second] = keys[i].first == keys[i - 1].first;
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    if (!repeated[i]) features[kept++] = features[i];
+  }
+  features.resize(kept);
+}
+
+/// Reads one file from top to bottom.
+class HexexReader {
+ public:
+  HexexReader(std::string_view text, const std::string& fileName, Stage& stage)
+      : scanner_(text, fileName), index_(text, stage), stage_(stage) {}
+
+  TetMap read() {
+    readPoints();
+    readTets();
+    readTrailingSections();
+    return std::move(map_);
+  }
+
+ private:
+  void readPoints();
+  void readTets();
+  void readPoint(TextScanner& scanner, std::size_t vertex);
+  void readCorners(TextScanner& scanner, std::size_t tet);
+  void readParameters(TextScanner& scanner, std::size_t tet);
+  void readTrailingSections();
+  void readWalls();
+  void readFeatures();
+  Index readVertex(const char* what);
+  template <std::size_t n>
+  std::array<Index, n> readVertices(const char* what);
+
+  TextScanner scanner_;
+  TokenIndex index_;
+  Stage& stage_;
+  TetMap map_;
+};
+
+void HexexReader::readPoints() {
+  map_.points.resize(scanner_.readCount("vertices", kMinimumVertexBytes));
+  readElements(scanner_, &index_, stage_, map_.points.size(), kTokensOfVertex,
+               [this](TextScanner& scanner, std::size_t i) { readPoint(scanner, i); });
+}
+
+void HexexReader::readPoint(TextScanner& scanner, std::size_t vertex) {
+  failIfAtEnd(scanner, vertex, map_.points.size(), "vertices");
+  for (double& coordinate : map_.points[vertex]) {
+    if (!scanner.readNumber(coordinate)) {
+      scanner.failNumber("a coordinate of vertex " + std::to_string(vertex));
+    }
+  }
+}
+
+void HexexReader::readTets() {
+  const std::size_t count = scanner_.readCount("tets", kMinimumTetBytes);
+  map_.tets.resize(count);
+  map_.parameters.resize(count);
+  readElements(scanner_, &index_, stage_, count, kTokensOfTet,
+               [this](TextScanner& scanner, std::size_t i) {
+                 failIfAtEnd(scanner, i, map_.tets.size(), "tets");
+                 readCorners(scanner, i);
+                 readParameters(scanner, i);
+               });
+}
+
+void HexexReader::readCorners(TextScanner& scanner, std::size_t tet) {
+  const auto vertices = static_cast<std::int64_t>(map_.points.size());
+  for (Index& corner : map_.tets[tet]) {
+    std::int64_t vertex = 0;
+    if (!scanner.readInteger(vertex)) {
+      scanner.failInteger("a vertex of tet " + std::to_string(tet));
+    }
+    if (vertex < 0 || vertex >= vertices) {
+      scanner.fail(ErrorCode::IndexOutOfRange,
+                   "tet " + std::to_string(tet) + " names vertex " +
+                       std::string(scanner.currentToken()) + ", but the " +
+                       std::to_string(vertices) + " vertices are numbered from 0.",
+                   Place{PlaceKind::Tet, tet});
+    }
+    corner = static_cast<Index>(vertex);
+  }
+}
+
+void HexexReader::readParameters(TextScanner& scanner, std::size_t tet) {
+  for (Vec3& corner : map_.parameters[tet]) {
+    for (double& parameter : corner) {
+      if (!scanner.readNumber(parameter)) {
+        scanner.failNumber("a parameter of tet " + std::to_string(tet));
+      }
+    }
+  }
+}
+
+// No keyword announces the sections after the tets: their first line tells them apart.
+void HexexReader::readTrailingSections() {
+  std::vector<FeatureFace> walls;
+  if (scanner_.countTokensOnLine() == 1) readWalls();
+  walls.swap(map_.features.faces);
+  const std::size_t tokens = scanner_.countTokensOnLine();
+  if (tokens == 3) readFeatures();
+  if (tokens != 0 && scanner_.skipSpace()) {
+    scanner_.fail(ErrorCode::FileSyntax,
+                  "expected the end of the file, found " + quoted(scanner_.currentToken()) +
+                      ". After the last tet only walls (\"W\" and W lines \"v v v distance\") and "
+                      "features (\"vertices edges faces\" and their lines) may follow.");
+  }
+  // Features come first: a wall that is one as well is left out.
+  Features& features = map_.features;
+  features.faces.insert(features.faces.end(), walls.begin(), walls.end());
+  removeRepeated(features.vertices);
+  removeRepeated(features.edges);
+  removeRepeated(features.faces);
+}
+
+void HexexReader::readWalls() {
+  constexpr std::size_t kMinimumWallBytes = 8;  // four digits with separators
+  const std::size_t walls = scanner_.readCount("walls", kMinimumWallBytes);
+  map_.features.faces.reserve(walls);
+  for (std::size_t i = 0; i < walls; ++i) {
+    map_.features.faces.push_back({readVertices<3>("a vertex of a wall"), kHexexWallTag});
+    double distance = 0;
+    if (!scanner_.readNumber(distance)) scanner_.failNumber("the distance of a wall");
+  }
+}
+
+void HexexReader::readFeatures() {
+  constexpr std::size_t kMinimumIndexBytes = 2;  // one digit with a separator
+  const std::size_t vertices = scanner_.readCount("feature vertices", kMinimumIndexBytes);
+  const std::size_t edges = scanner_.readCount("feature edges", 2 * kMinimumIndexBytes);
+  const std::size_t faces = scanner_.readCount("feature faces", 3 * kMinimumIndexBytes);
+  Features& features = map_.features;
+  features.vertices.reserve(vertices);
+  features.edges.reserve(edges);
+  features.faces.reserve(faces);
+  for (std::size_t i = 0; i < vertices; ++i) {
+    features.vertices.push_back({readVertex("a feature vertex"), kHexexFeatureTag});
+  }
+  for (std::size_t i = 0; i < edges; ++i) {
+    features.edges.push_back({readVertices<2>("a vertex of a feature edge"), kHexexFeatureTag});
+  }
+  for (std::size_t i = 0; i < faces; ++i) {
+    features.faces.push_back({readVertices<3>("a vertex of a feature face"), kHexexFeatureTag});
+  }
+}
+
+Index HexexReader::readVertex(const char* what) {
+  std::int64_t index = 0;
+  if (!scanner_.readInteger(index)) scanner_.failInteger(what);
+  const auto vertices = static_cast<std::int64_t>(map_.points.size());
+  if (index < 0 || index >= vertices) {
+    scanner_.fail(ErrorCode::IndexOutOfRange,
+                  std::string(what) + " is " + std::string(scanner_.currentToken()) + ", but the " +
+                      std::to_string(vertices) + " vertices are numbered from 0.");
+  }
+  return static_cast<Index>(index);
+}
+
+template <std::size_t n>
+std::array<Index, n> HexexReader::readVertices(const char* what) {
+  std::array<Index, n> vertices{};
+  for (Index& vertex : vertices) vertex = readVertex(what);
+  return vertices;
+}
+
+void requireFeaturesInRange(const TetMap& map) {
+  Index largest = 0;
+  for (const FeatureVertex& feature : map.features.vertices) {
+    largest = std::max(largest, feature.vertex);
+  }
+  const auto look = [&largest](const auto& feature) {
+    for (const Index v : feature.vertices) largest = std::max(largest, v);
+  };
+  std::for_each(map.features.edges.begin(), map.features.edges.end(), look);
+  std::for_each(map.features.faces.begin(), map.features.faces.end(), look);
+  if (map.features.empty() || largest < map.points.size()) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "A feature names vertex " + std::to_string(largest) + ", but the map has " +
+                  std::to_string(map.points.size()) + " vertices, numbered from 0.");
+}
+
+/// Refuses what could not be read back.
+void requireWritable(const TetMap& map) {
+  if (map.parameters.size() != map.tets.size()) {
+    throw Error(ErrorCode::InvalidArgument, "The map has " + std::to_string(map.tets.size()) +
+                                                " tets but parameters for " +
+                                                std::to_string(map.parameters.size()) + ".");
+  }
+  const auto isFinite = [](const Vec3& v) {
+    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+  };
+  for (std::size_t i = 0; i < map.points.size(); ++i) {
+    if (isFinite(map.points[i])) continue;
+    throw Error(ErrorCode::NotFinite,
+                "A coordinate of vertex " + std::to_string(i) + " is not finite.",
+                Place{PlaceKind::Vertex, i});
+  }
+  requireFeaturesInRange(map);
+  for (std::size_t i = 0; i < map.parameters.size(); ++i) {
+    if (std::all_of(map.parameters[i].begin(), map.parameters[i].end(), isFinite)) continue;
+    throw Error(ErrorCode::NotFinite, "A parameter of tet " + std::to_string(i) + " is not finite.",
+                Place{PlaceKind::Tet, i});
+  }
+}
+
+/// The format has lists, but no place for tags.
+void writeFeatures(const Features& features, LineWriter& lines, OutputFile& output) {
+  const auto isTagged = [](const auto& feature) { return feature.tag != 0; };
+  const auto count = [&](const auto& list) {
+    return static_cast<std::uint64_t>(std::count_if(list.begin(), list.end(), isTagged));
+  };
+  const std::array<std::uint64_t, 3> counts = {count(features.vertices), count(features.edges),
+                                               count(features.faces)};
+  if (counts == std::array<std::uint64_t, 3>{}) return;
+  const auto write = [&](const auto& list, const auto& verticesOf) {
+    lines.write(
+        list.size(), 3 * (kNumberRoom + 1),
+        [&](char* place, std::size_t i) {
+          if (!isTagged(list[i])) return place;
+          return put(putNumbers(place, verticesOf(list[i])), '\n');
+        },
+        nullptr);
+  };
+  output.write(counts[0]).write(' ').write(counts[1]).write(' ').write(counts[2]).write('\n');
+  write(features.vertices, [](const FeatureVertex& v) { return std::array{v.vertex}; });
+  write(features.edges, [](const FeatureEdge& e) { return e.vertices; });
+  write(features.faces, [](const FeatureFace& f) { return f.vertices; });
+}
+
+}  // namespace
+
+TetMap parseHexex(std::string_view text, const std::string& fileName, Context& context) {
+  Stage stage(context, "read map");
+  TetMap map;
+  withThreads(context.threads(), [&] { map = HexexReader(text, fileName, stage).read(); });
+  return map;
+}
+
+TetMap readHexex(const std::filesystem::path& file, Context& context) {
+  Stage stage(context, "read map");
+  TetMap map;
+  withThreads(context.threads(), [&] {
+    const Array<char> bytes = readWholeFile(file, stage);
+    map = HexexReader(asText(bytes), file.string(), stage).read();
+  });
+  return map;
+}
+
+void writeHexex(const TetMap& map, const std::filesystem::path& file, Context& context) {
+  Stage stage(context, "write map");
+  requireWritable(map);
+  OutputFile output(file);
+  LineWriter lines(output, context.threads());
+  LoopProgress progress(stage, map.points.size() + map.tets.size());
+  output.write(map.points.size()).write('\n');
+  lines.write(
+      map.points.size(), kTokensOfVertex * (kNumberRoom + 1),
+      [&map](char* place, std::size_t i) {
+        place = putNumbers(place, map.points[i]);
+        return put(place, '\n');
+      },
+      &progress);
+  output.write(map.tets.size()).write('\n');
+  lines.write(
+      map.tets.size(), kTokensOfTet * (kNumberRoom + 1),
+      [&map](char* place, std::size_t i) {
+        place = putNumbers(place, map.tets[i]);
+        for (const Vec3& corner : map.parameters[i]) {
+          place = put(place, ' ');
+          place = putNumbers(place, corner);
+        }
+        return put(place, '\n');
+      },
+      &progress);
+  writeFeatures(map.features, lines, output);
+  output.commit();
+}
+
+}  // namespace hexhex

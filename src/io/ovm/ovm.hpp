@@ -1,0 +1,79 @@
+// `.ovm` and `.ovmb`: the text and binary files of OpenVolumeMesh, with maps or hex meshes in them.
+//
+// A map is the property `HexHex::Parametrization`: for each half-face of a tet the parameters of
+// the vertex opposite it, in the tet's chart. Also carried: valences of edges (`edge_valance`),
+// rotations across half-faces (`HalffaceTransiton`), features (`AlgoHex::FeatureVertices`,
+// `...Edges`,
+// `...Faces`), and with hex meshes the generators of vertices (`v_tet_generator_type`).
+//
+// The format has no order of a cell's corners, and no generators by corners; so that both come back
+// as they were, they are written as further properties, `hexhex::corner_order` (only where needed),
+// `hexhex::generator_tet` and `hexhex::generator_corners`, which other programs ignore.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include <hexhex/context.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/types.hpp>
+
+#include <io/core/cell_mesh.hpp>
+
+namespace hexhex {
+
+/// Read maps.
+/// @throws Error FileNotFound; FileSyntax, with byte or line, also for a binary file without its
+/// end;
+///         FileUnsupported if there is no map, or a cell is no tet; IndexOutOfRange, NotFinite,
+///         TooLarge
+[[nodiscard]] TetMap readOvmMap(const std::filesystem::path& file, Context& context);
+[[nodiscard]] TetMap readOvmbMap(const std::filesystem::path& file, Context& context);
+
+/// Read hex meshes. Cells may list their half-faces in any order; a mesh that is inside out is
+/// turned.
+/// @throws Error as above
+[[nodiscard]] HexMesh readOvmHexMesh(const std::filesystem::path& file, Context& context);
+[[nodiscard]] HexMesh readOvmbHexMesh(const std::filesystem::path& file, Context& context);
+
+/// Read tets without a map, whether there is one or not.
+/// @throws Error as above
+[[nodiscard]] TetCells readOvmTets(const std::filesystem::path& file, Context& context);
+[[nodiscard]] TetCells readOvmbTets(const std::filesystem::path& file, Context& context);
+
+/// The same from memory.
+/// @param fileName  for error messages
+[[nodiscard]] TetMap parseOvmMap(std::string_view text, const std::string& fileName,
+                                 Context& context);
+[[nodiscard]] TetMap parseOvmbMap(std::string_view bytes, const std::string& fileName,
+                                  Context& context);
+[[nodiscard]] HexMesh parseOvmHexMesh(std::string_view text, const std::string& fileName,
+                                      Context& context);
+[[nodiscard]] HexMesh parseOvmbHexMesh(std::string_view bytes, const std::string& fileName,
+                                       Context& context);
+
+/// Write maps.
+/// @throws Error FileWrite; InvalidArgument if arrays disagree, or features and valences name what
+/// is
+///         not in the mesh; IndexOutOfRange, RepeatedVertex, NotFinite; NonManifoldFace,
+///         Orientation for what the format cannot hold; TooLarge
+void writeOvmMap(const TetMap& map, const std::filesystem::path& file, Context& context);
+void writeOvmbMap(const TetMap& map, const std::filesystem::path& file, Context& context);
+
+/// Write hex meshes.
+/// @throws Error as above
+void writeOvmHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
+                     const WriteOptions& options, Context& context);
+void writeOvmbHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
+                      const WriteOptions& options, Context& context);
+
+/// The same with the map that the mesh comes from, so that vertices can name their generators as
+/// tools of the field do: `v_tet_generator_index`, in the numbering of a file that this library
+/// writes for this map.
+void writeOvmHexMesh(const HexMesh& mesh, const TetMap& map, const std::filesystem::path& file,
+                     Context& context);
+void writeOvmbHexMesh(const HexMesh& mesh, const TetMap& map, const std::filesystem::path& file,
+                      Context& context);
+
+}  // namespace hexhex

@@ -1,0 +1,265 @@
+// Edges and faces of hexahedra, which belong to one of their cells each: away from seams
+// (ovm_hex_mates.hpp), a cell has the three edges and the three faces at its corner 0, so that a
+// look at the neighbours tells all that it shares with them. Edges along seams have a list of their
+// own.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include <base/parallel.hpp>
+#include <base/prefetch.hpp>
+#include <io/ovm/ovm_hex_mates.hpp>
+#include <io/ovm/ovm_hex_topology.hpp>
+#include <io/ovm/ovm_seam_edges.hpp>
+#include <io/ovm/ovm_topology.hpp>
+#include <mesh/hex_topology.hpp>
+
+namespace hexhex {
+namespace {
+
+constexpr std::size_t kGrain = 2048;
+/// What a cell will ask for is fetched so many cells before: neighbours may be far from each other
+/// in memory.
+constexpr std::size_t kAhead = 16;
+
+/// The row of kHexFaces in each slot of kOvmHexFaces.
+constexpr std::array<std::uint8_t, 6> kFaceOfSlot = {4, 5, 2, 3, 1, 0};
+constexpr std::array<std::uint8_t, 6> kSlotOfFace = {5, 4, 2, 3, 0, 1};
+
+/// By corner: bit k if it is across from corner 0 along axis k.
+constexpr std::array<std::uint8_t, 8> kSteps = {0, 1, 3, 2, 4, 5, 7, 6};
+
+/// What belongs to a cell, as bits: its edges at corner 0 by axis, and its faces by slot.
+struct Own {
+  Index firstEdge;  ///< number of the first of them
+  Index firstFace;
+  std::uint8_t edges;
+  std::uint8_t faces;
+};
+constexpr std::uint8_t kAllEdges = 7;
+constexpr std::uint8_t kNearSlots = 1 | 4 | 32;
+
+/// Without a processor's instruction for it, std::popcount() would be a call.
+constexpr std::array<std::uint8_t, 64> makeBitCounts() {
+  std::array<std::uint8_t, 64> counts{};
+  for (std::size_t bits = 1; bits < counts.size(); ++bits) {
+    counts[bits] = static_cast<std::uint8_t>(counts[bits / 2] + bits % 2);
+  }
+  return counts;
+}
+constexpr std::array<std::uint8_t, 64> kBitCounts = makeBitCounts();
+
+/// How many bits are set below bit i.
+Index rankOf(unsigned bits, std::size_t i) { return kBitCounts[bits & ((1U << i) - 1)]; }
+
+/// Whether a side has its face rather than its mate: a cell begins with its first slot, and so does
+/// the face's loop; and faces at corner 0 have edges that are at hand.
+bool owns(Index side, Index mate) {
+  const auto rank = [](Index each) {
+    const std::size_t face = faceOf(each);
+    return face == kFaceOfSlot[0] ? 0U : 1 + face % 2;
+  };
+  return std::pair(rank(side), side) <= std::pair(rank(mate), mate);
+}
+
+class HexTopologyBuilder {
+ public:
+  HexTopologyBuilder(std::size_t vertexCount, std::span<const Hex> cells, HexMates&& mates,
+                     Stage& stage)
+      : cells_(cells),
+        stage_(stage),
+        seamCorners_(std::move(mates.seamCorners)),
+        seamEdges_(vertexCount, cells, seamCorners_, stage) {
+    topology_.vertexCount = vertexCount;
+    topology_.cells.length = 6;
+    topology_.cells.handles = std::move(mates.mates);
+  }
+
+  std::optional<OvmTopology> build() {
+    if (!number()) return std::nullopt;
+    listEdges();
+    listFaces();
+    listCells();
+    return std::move(topology_);
+  }
+
+ private:
+  /// Until cells are listed, their half-faces' places hold the mates of their sides.
+  [[nodiscard]] const Index* matesOf(std::size_t cell) const {
+    return topology_.cells.handles.data() + 6 * cell;
+  }
+  /// The neighbour across from corner 0.
+  [[nodiscard]] std::size_t behind(std::size_t cell, std::size_t axis) const {
+    return cellOf(matesOf(cell)[2 * axis + 1]);
+  }
+  [[nodiscard]] Own ownOf(std::size_t cell) const;
+  bool number();
+  void listEdges();
+  [[nodiscard]] Index ownHalfEdge(std::size_t cell, std::size_t axis) const {
+    const Own& own = own_[cell];
+    return 2 * (own.firstEdge + rankOf(own.edges, axis));
+  }
+  [[nodiscard]] Index halfEdge(std::size_t cell, std::size_t from, std::size_t to) const;
+  void listFaces();
+  void listNearFaces(std::size_t cell, Index* halfEdges) const;
+  void listOwnFaces(std::size_t cell, Index* halfEdges) const;
+  void listCells();
+
+  std::span<const Hex> cells_;
+  Stage& stage_;
+  OvmTopology topology_;
+  Array<std::uint8_t> seamCorners_;  ///< see HexMates
+  SeamEdges seamEdges_;
+  Array<Own> own_;  ///< per cell
+};
+
+/// Without numbers.
+Own HexTopologyBuilder::ownOf(std::size_t cell) const {
+  const unsigned seams = seamCorners_[cell];
+  if (seams == 0) return {0, 0, kAllEdges, kNearSlots};
+  unsigned edges = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    edges |= (seams & seams >> kNextCorner[axis] & 1U) == 0 ? 1U << axis : 0U;
+  }
+  unsigned faces = 0;
+  for (std::size_t slot = 0; slot < 6; ++slot) {
+    const std::size_t face = kFaceOfSlot[slot];
+    faces |= owns(sideOf(cell, face), matesOf(cell)[face]) ? 1U << slot : 0U;
+  }
+  return {0, 0, static_cast<std::uint8_t>(edges), static_cast<std::uint8_t>(faces)};
+}
+
+/// Numbers edges and faces.
+bool HexTopologyBuilder::number() {
+  const std::size_t blocks = blockCount(cells_.size(), kGrain);
+  Array<std::uint64_t> edges(blocks + 1, 0);
+  Array<std::uint64_t> faces(blocks + 1, 0);
+  own_.resize(cells_.size());
+  parallelBlocks(stage_, cells_.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   Index edge = 0;
+                   Index face = 0;
+                   for (std::size_t c = begin; c < end; ++c) {
+                     Own& own = own_[c] = ownOf(c);
+                     own.firstEdge = std::exchange(edge, edge + kBitCounts[own.edges]);
+                     own.firstFace = std::exchange(face, face + kBitCounts[own.faces]);
+                   }
+                   edges[block] = edge;
+                   faces[block] = face;
+                 });
+  const std::uint64_t edgeCount = seamEdges_.size() + exclusiveScan(std::span(edges));
+  const std::uint64_t faceCount = exclusiveScan(std::span(faces));
+  if (std::max(edgeCount, faceCount) > kMaxOvmEntities) return false;
+  parallelBlocks(stage_, cells_.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   const auto firstEdge = static_cast<Index>(seamEdges_.size() + edges[block]);
+                   const auto firstFace = static_cast<Index>(faces[block]);
+                   for (std::size_t c = begin; c < end; ++c) {
+                     own_[c].firstEdge += firstEdge;
+                     own_[c].firstFace += firstFace;
+                   }
+                 });
+  topology_.edges.resize(static_cast<std::size_t>(edgeCount));
+  topology_.faces.length = 4;
+  topology_.faces.handles.resize(static_cast<std::size_t>(4 * faceCount));
+  return true;
+}
+
+void HexTopologyBuilder::listEdges() {
+  seamEdges_.list(topology_.edges.data(), stage_);
+  parallelFor(stage_, cells_.size(), kGrain, [this](std::size_t c) {
+    std::array<Index, 2>* edge = topology_.edges.data() + own_[c].firstEdge;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if ((own_[c].edges >> axis & 1U) != 0) *edge++ = {cells_[c][0], cells_[c][kNextCorner[axis]]};
+    }
+  });
+}
+
+/// The half-edge between two corners of a cell.
+Index HexTopologyBuilder::halfEdge(std::size_t cell, std::size_t from, std::size_t to) const {
+  const unsigned seams = seamCorners_[cell];
+  if ((seams >> from & seams >> to & 1U) != 0) {
+    return seamEdges_.halfEdge(cells_[cell][from], cells_[cell][to]);
+  }
+  const unsigned along = kSteps[from] ^ kSteps[to];
+  const unsigned steps = kSteps[from] & kSteps[to];
+  std::size_t owner = cell;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if ((steps >> axis & 1U) != 0) owner = behind(owner, axis);
+  }
+  return ownHalfEdge(owner, along / 2) + ((kSteps[from] & along) != 0 ? 1U : 0U);
+}
+
+void HexTopologyBuilder::listFaces() {
+  parallelBlocks(stage_, cells_.size(), kGrain,
+                 [this](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   Index* const handles = topology_.faces.handles.data();
+                   for (std::size_t c = begin; c < end; ++c) {
+                     if (c + kAhead < end) {
+                       for (std::size_t axis = 0; axis < 3; ++axis) {
+                         prefetch(&own_[behind(c + kAhead, axis)]);
+                       }
+                     }
+                     Index* const halfEdges = handles + 4 * std::size_t{own_[c].firstFace};
+                     seamCorners_[c] == 0 ? listNearFaces(c, halfEdges)
+                                          : listOwnFaces(c, halfEdges);
+                   }
+                 });
+}
+
+/// The faces of a cell that is on no seam, in order.
+void HexTopologyBuilder::listNearFaces(std::size_t cell, Index* halfEdges) const {
+  const std::array<std::size_t, 3> next = {behind(cell, 0), behind(cell, 1), behind(cell, 2)};
+  const Index first = 2 * own_[cell].firstEdge;
+  const std::array<Index, 3> edges = {first, first + 2, first + 4};
+  // As kOvmHexFaces passes corners 0, 1, 2, 3; 0, 4, 5, 1; and 0, 3, 7, 4.
+  for (const std::size_t axis : {2U, 1U, 0U}) {
+    const std::size_t a = (axis + 1) % 3;
+    const std::size_t b = (axis + 2) % 3;
+    *halfEdges++ = edges[a];
+    *halfEdges++ = ownHalfEdge(next[a], b);
+    *halfEdges++ = ownHalfEdge(next[b], a) + 1;
+    *halfEdges++ = edges[b] + 1;
+  }
+}
+
+/// The same of any cell.
+void HexTopologyBuilder::listOwnFaces(std::size_t cell, Index* halfEdges) const {
+  for (std::size_t slot = 0; slot < 6; ++slot) {
+    if ((own_[cell].faces >> slot & 1U) == 0) continue;
+    const std::array<std::uint8_t, 4>& corners = kOvmHexFaces[slot];
+    for (std::size_t i = 0; i < 4; ++i) {
+      *halfEdges++ = halfEdge(cell, corners[i], corners[(i + 1) % 4]);
+    }
+  }
+}
+
+/// Replaces mates by half-faces.
+void HexTopologyBuilder::listCells() {
+  const auto numberOf = [this](std::size_t cell, std::size_t slot) {
+    return own_[cell].firstFace + rankOf(own_[cell].faces, slot);
+  };
+  parallelFor(stage_, cells_.size(), kGrain, [&](std::size_t c) {
+    Index* const handles = topology_.cells.handles.data() + 6 * c;
+    std::array<Index, 6> mates;  // NOLINT(*-member-init): all of it is set
+    std::copy_n(handles, 6, mates.begin());
+    for (std::size_t slot = 0; slot < 6; ++slot) {
+      const Index mate = mates[kFaceOfSlot[slot]];
+      handles[slot] = (own_[c].faces >> slot & 1U) != 0
+                          ? 2 * numberOf(c, slot)
+                          : 2 * numberOf(cellOf(mate), kSlotOfFace[faceOf(mate)]) + 1;
+    }
+  });
+}
+
+}  // namespace
+
+std::optional<OvmTopology> buildOvmHexTopology(std::size_t vertexCount, std::span<const Hex> cells,
+                                               Stage& stage) {
+  std::optional<HexMates> mates = findHexMates(vertexCount, cells, stage);
+  if (!mates) return std::nullopt;
+  return HexTopologyBuilder(vertexCount, cells, std::move(*mates), stage).build();
+}
+
+}  // namespace hexhex

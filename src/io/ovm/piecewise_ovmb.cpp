@@ -1,0 +1,327 @@
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#include <io/core/output_file.hpp>
+#include <io/core/simplex_indices.hpp>
+#include <io/ovm/ovm_first_fault.hpp>
+#include <io/ovm/ovmb_polygons.hpp>
+#include <io/ovm/piecewise_ovmb.hpp>
+
+namespace hexhex {
+
+namespace {
+
+using EdgeEnds = std::array<Index, 2>;
+
+[[noreturn]] void failAboutMap() {
+  throw Error(
+      ErrorCode::InvalidArgument,
+      "The arcs and patches do not lie in the tets of this map. Give the map that they were "
+      "extracted from: after a repair, the repaired one.");
+}
+
+/// The tets that generators name, and how a file numbers their simplices.
+class TetSimplices {
+ public:
+  TetSimplices(const TetMapView& map, Stage& stage)
+      : tets_(requireInRange(map, stage)), indices_(map.points, map.tets, stage) {}
+
+  /// @throws Error InvalidArgument if there is no such tet
+  [[nodiscard]] std::int32_t index(Index tet, CornerSet corners) const {
+    if (tet >= tets_.size()) failAboutMap();
+    return static_cast<std::int32_t>(indices_.of(tet, corners));
+  }
+
+  /// A simplex of one tet as corners of another that has it, too.
+  /// @throws Error InvalidArgument if it has not
+  [[nodiscard]] CornerSet translated(CornerSet corners, Index from, Index to) const {
+    if (from == to) return corners;
+    if (from >= tets_.size() || to >= tets_.size()) failAboutMap();
+    unsigned result = 0;
+    for (unsigned i = 0; i < 4; ++i) {
+      if ((corners >> i & 1U) == 0) continue;
+      const auto found = std::find(tets_[to].begin(), tets_[to].end(), tets_[from][i]);
+      if (found == tets_[to].end()) failAboutMap();
+      result |= 1U << static_cast<unsigned>(found - tets_[to].begin());
+    }
+    return static_cast<CornerSet>(result);
+  }
+
+ private:
+  static std::span<const Tet> requireInRange(const TetMapView& map, Stage& stage) {
+    const std::size_t fault = firstFault(stage, map.tets.size(), [&map](std::size_t t) {
+      return std::all_of(map.tets[t].begin(), map.tets[t].end(),
+                         [&map](Index vertex) { return vertex < map.points.size(); });
+    });
+    if (fault == map.tets.size()) return map.tets;
+    throw Error(ErrorCode::IndexOutOfRange,
+                "Tet " + std::to_string(fault) + " names a vertex that does not exist.",
+                Place{PlaceKind::Tet, fault});
+  }
+
+  std::span<const Tet> tets_;
+  SimplexIndices indices_;
+};
+
+/// The simplices that hold elements, as properties.
+class CarrierProperties {
+ public:
+  /// @param simplices  null: without their indices
+  CarrierProperties(std::uint8_t entity, std::string_view typeName, std::string_view indexName,
+                    const TetSimplices* simplices)
+      : simplices_(simplices),
+        type_{entity, typeName},
+        index_{entity, indexName},
+        tet_{entity, "hexhex::generator_tet"},
+        corners_{entity, "hexhex::generator_corners"} {}
+
+  void add(Index tet, CornerSet corners) {
+    type_.integers.push_back(static_cast<std::int32_t>(generatorKind(corners)));
+    if (simplices_ != nullptr) index_.integers.push_back(simplices_->index(tet, corners));
+    tet_.integers.push_back(static_cast<std::int32_t>(tet));
+    corners_.integers.push_back(corners);
+  }
+  void add(std::span<const Index> tets, std::span<const CornerSet> corners) {
+    for (std::size_t i = 0; i < corners.size(); ++i) add(tets[i], corners[i]);
+  }
+  /// One whose simplex is not known.
+  void addUnknown() {
+    for (OvmbProperty* const property : {&type_, &tet_, &corners_}) {
+      property->integers.push_back(-1);
+    }
+  }
+
+  void moveTo(std::vector<OvmbProperty>& properties) {
+    properties.push_back(std::move(type_));
+    if (simplices_ != nullptr) properties.push_back(std::move(index_));
+    properties.push_back(std::move(tet_));
+    properties.push_back(std::move(corners_));
+  }
+
+ private:
+  const TetSimplices* simplices_;
+  OvmbProperty type_;
+  OvmbProperty index_;
+  OvmbProperty tet_;
+  OvmbProperty corners_;
+};
+
+/// An edge by its ends in ascending order, and its number.
+struct KnownEdge {
+  EdgeEnds ends;
+  Index number;
+  [[nodiscard]] bool operator<(const KnownEdge& other) const { return ends < other.ends; }
+};
+
+EdgeEnds ascending(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+
+/// Collects what a file will hold.
+class Collector {
+ public:
+  /// @param map  where the mesh comes from, or null
+  Collector(const PiecewiseLinearMesh& mesh, const TetMapView* map, Stage& stage) : mesh_(mesh) {
+    if (map != nullptr) simplices_.emplace(*map, stage);
+  }
+
+  OvmbPolygons arcs() {
+    addPoints(false);
+    addSegments();
+    finishEdges();
+    return std::move(content_);
+  }
+
+  OvmbPolygons patches() {
+    addPoints(true);
+    addSegments();
+    for (std::size_t f = 0; f < mesh_.patches.count(); ++f) addFace(f);
+    finishEdges();
+    OvmbProperty face{2, "f_linear_hex_face"};
+    for (std::size_t f = 0; f < mesh_.patches.count(); ++f) {
+      face.integers.resize(mesh_.patches.polygonBegin[f + 1], static_cast<std::int32_t>(f));
+    }
+    content_.properties.push_back(std::move(face));
+    OvmbProperty tet{2, "f_intersected_tet_index"};
+    tet.integers.assign(mesh_.patches.polygonTet.begin(), mesh_.patches.polygonTet.end());
+    content_.properties.push_back(std::move(tet));
+    return std::move(content_);
+  }
+
+ private:
+  [[nodiscard]] const TetSimplices* simplices() const {
+    return simplices_ ? &*simplices_ : nullptr;
+  }
+
+  void addPoints(bool withPatches) {
+    OvmbProperty type{0, "v_type"};
+    OvmbProperty uv{0, "v_igm_uv"};
+    CarrierProperties carriers(0, "v_tet_generator_type", "v_tet_generator_index", simplices());
+    const auto add = [&](const auto& part, std::int32_t kind) {
+      content_.points.insert(content_.points.end(), part.points.begin(), part.points.end());
+      type.integers.resize(content_.points.size(), kind);
+      uv.pairs.resize(content_.points.size());
+      carriers.add(part.generatorTet, part.generatorCorners);
+    };
+    add(mesh_.mesh, 0);
+    const std::size_t vertices = content_.points.size();
+    add(mesh_.arcs, 1);
+    const std::size_t shared = content_.points.size();
+    for (std::size_t i = 0; i < mesh_.arcs.parameters.size(); ++i) {
+      uv.pairs[vertices + i] = {mesh_.arcs.parameters[i], 0};
+    }
+    if (withPatches) {
+      add(mesh_.patches, 2);
+      for (std::size_t i = 0; i < mesh_.patches.corners.size(); ++i) {
+        const Index point = mesh_.patches.corners[i];
+        if (point >= shared) uv.pairs[point] = mesh_.patches.parameters[i];
+      }
+    }
+    content_.properties.push_back(std::move(type));
+    content_.properties.push_back(std::move(uv));
+    carriers.moveTo(content_.properties);
+  }
+
+  void addSegments() {
+    const Arcs& arcs = mesh_.arcs;
+    const auto vertices = static_cast<Index>(mesh_.mesh.points.size());
+    for (std::size_t e = 0; e < arcs.count(); ++e) {
+      Index from = arcs.ends[e][0];
+      for (std::uint64_t i = arcs.pointBegin[e]; i < arcs.pointBegin[e + 1]; ++i) {
+        const Index to = vertices + static_cast<Index>(i);
+        content_.edges.push_back({from, to});
+        from = to;
+      }
+      content_.edges.push_back({from, arcs.ends[e][1]});
+      hexEdge_.integers.resize(content_.edges.size(), static_cast<std::int32_t>(e));
+    }
+    edgeCarriers_.emplace(1, "e_tet_generator_type", "e_tet_generator_index", simplices());
+    edgeCarriers_->add(arcs.segmentTet, arcs.segmentCorners);
+  }
+
+  void finishEdges() {
+    content_.properties.push_back(std::move(hexEdge_));
+    edgeCarriers_->moveTo(content_.properties);
+  }
+
+  /// The simplex that holds a point, by corners of a tet that has it.
+  [[nodiscard]] CornerSet generatorIn(Index tet, std::size_t point) const {
+    const auto of = [&](const auto& part) {
+      return simplices_->translated(part.generatorCorners[point], part.generatorTet[point], tet);
+    };
+    if (point < mesh_.mesh.points.size()) return of(mesh_.mesh);
+    point -= mesh_.mesh.points.size();
+    if (point < mesh_.arcs.points.size()) return of(mesh_.arcs);
+    point -= mesh_.arcs.points.size();
+    return of(mesh_.patches);
+  }
+
+  /// A side inside a face, of a polygon in this tet. By convexity, the smallest simplex that has
+  /// the generators of both ends holds it.
+  Index addInnerSide(const EdgeEnds& ends, Index tet) {
+    content_.edges.push_back(ends);
+    hexEdge_.integers.push_back(-1);
+    if (simplices_) {
+      edgeCarriers_->add(
+          tet, static_cast<CornerSet>(generatorIn(tet, ends[0]) | generatorIn(tet, ends[1])));
+    } else {
+      edgeCarriers_->addUnknown();
+    }
+    return static_cast<Index>(content_.edges.size() - 1);
+  }
+
+  /// Calls visit(from, to, polygon) for all sides of a face's polygons.
+  template <class Visit>
+  void forEachSide(std::size_t face, const Visit& visit) const {
+    const Patches& patches = mesh_.patches;
+    for (std::uint64_t p = patches.polygonBegin[face]; p < patches.polygonBegin[face + 1]; ++p) {
+      const std::uint64_t begin = patches.cornerBegin[p];
+      const std::uint64_t size = patches.cornerBegin[p + 1] - begin;
+      for (std::uint64_t i = 0; i < size; ++i) {
+        visit(patches.corners[begin + i], patches.corners[begin + (i + 1) % size], p);
+      }
+    }
+  }
+
+  /// Adds the polygons of a face, and the sides that no arc has.
+  void addFace(std::size_t face) {
+    const Patches& patches = mesh_.patches;
+    known_.clear();
+    for (const Index arc : patches.arcs[face]) {
+      for (std::uint64_t s = mesh_.arcs.firstSegment(arc);
+           s < mesh_.arcs.firstSegment(std::size_t{arc} + 1); ++s) {
+        const EdgeEnds& ends = content_.edges[s];
+        known_.push_back({ascending(ends[0], ends[1]), static_cast<Index>(s)});
+      }
+    }
+    std::sort(known_.begin(), known_.end());
+    const std::size_t border = known_.size();
+    forEachSide(face, [&](Index a, Index b, std::uint64_t polygon) {
+      const KnownEdge side{ascending(a, b), kNone};
+      // Sides inside the face come twice, once in each direction.
+      const auto bordering = std::span(known_).first(border);
+      if (a > b || std::binary_search(bordering.begin(), bordering.end(), side)) return;
+      known_.push_back({side.ends, addInnerSide(side.ends, patches.polygonTet[polygon])});
+    });
+    std::sort(known_.begin(), known_.end());
+    forEachSide(face, [&](Index a, Index b, std::uint64_t /*polygon*/) {
+      const auto edge =
+          std::lower_bound(known_.begin(), known_.end(), KnownEdge{ascending(a, b), kNone});
+      const bool along = content_.edges[edge->number][0] == a;
+      content_.halfEdges.push_back(2 * edge->number + (along ? 0 : 1));
+    });
+    for (std::uint64_t p = patches.polygonBegin[face]; p < patches.polygonBegin[face + 1]; ++p) {
+      content_.valences.push_back(
+          static_cast<std::uint8_t>(patches.cornerBegin[p + 1] - patches.cornerBegin[p]));
+    }
+  }
+
+  const PiecewiseLinearMesh& mesh_;
+  std::optional<TetSimplices> simplices_;
+  OvmbPolygons content_;
+  OvmbProperty hexEdge_{1, "e_linear_hex_edge"};
+  std::optional<CarrierProperties> edgeCarriers_;
+  std::vector<KnownEdge> known_;  ///< edges of one face
+};
+
+void requireSmall(std::uint64_t count) {
+  if (count <= std::numeric_limits<std::int32_t>::max()) return;
+  throw Error(ErrorCode::TooLarge,
+              "OpenVolumeMesh files number elements with 31 bits, which do "
+              "not suffice for " +
+                  std::to_string(count) + ". Lower the scale, or write .vtu.");
+}
+
+}  // namespace
+
+void writeArcsOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
+                   const std::filesystem::path& file, Context& context) {
+  Stage stage(context, "write arcs");
+  OutputFile output(file);  // first, so that a folder that is not writable shows at once
+  // Twice the segments, which are more than the points that they add.
+  requireSmall(
+      2 * std::max(mesh.mesh.points.size() + mesh.arcs.points.size(), mesh.arcs.segmentTet.size()));
+  withThreads(context.threads(),
+              [&] { writeOvmbPolygons(Collector(mesh, map, stage).arcs(), output, stage); });
+}
+
+void writePatchesOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
+                      const std::filesystem::path& file, Context& context) {
+  Stage stage(context, "write patches");
+  OutputFile output(file);
+  requireSmall(2 * mesh.patches.corners.size());
+  withThreads(context.threads(),
+              [&] { writeOvmbPolygons(Collector(mesh, map, stage).patches(), output, stage); });
+}
+
+}  // namespace hexhex

@@ -1,0 +1,83 @@
+// Propellers: the local structure around hex vertices, once per generator (Sections 4.2 and 5.3).
+//
+// Around a hex vertex, propellers (outgoing hex edges) are the vertices, pairs of a propeller and
+// one of its blades (hex face corners) the edges, and hex corners the triangles of a small
+// triangulated sphere, or disk on the boundary. A pair (propeller, i) of a propeller and its i-th
+// blade is a slot; slot i also stands for the hex corner between blades i and i + 1.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <igm/prepare.hpp>
+#include <propeller/hex_vertices.hpp>
+
+namespace hexhex {
+
+inline constexpr std::uint16_t kNoCorner = 0xffff;
+
+/// One blade of a propeller, and the hex corner behind it.
+struct Slot {
+  Index tet;             ///< owner of the casing: there the blade's direction is
+  Direction direction;   ///< ... this one
+  std::uint16_t blade;   ///< the propeller that is the blade
+  std::uint16_t back;    ///< which blade of that one this propeller is
+  std::uint16_t corner;  ///< hex corner between this blade and the next; kNoCorner if none
+};
+
+struct Propeller {
+  Index slotBegin;
+  std::uint16_t slotCount;  ///< number of blades, counter-clockwise
+  bool closed;              ///< inside the mesh: the last blade is followed by the first
+  Direction direction;      ///< in the tet of slot 0, into which that slot's casing leads
+};
+
+/// One hex corner, named by the first of its three slots.
+struct HexCorner {
+  std::uint16_t propeller;
+  std::uint16_t slot;
+};
+
+/// The structure around all vertices of a generator, or of all generators of a kind whose structure
+/// is constant; for these, `tet` of all slots is kNone and stands for the generator's own tet.
+struct Configuration {
+  Index propellerBegin;
+  Index cornerBegin;
+  std::uint16_t propellerCount;
+  std::uint16_t cornerCount;
+};
+
+/// Configuration 0 is that of all cell generators, 1 + d that of boundary faces with inward normal
+/// in direction d (constant local connectivity property, Section 5.3.1); the rest belong to one
+/// generator each.
+inline constexpr Index kConstantConfigurations = 1 + kDirections;
+
+struct LocalConnectivity {
+  Array<Index> configurationOf;  ///< per generator
+  std::vector<Configuration> configurations;
+  std::vector<Propeller> propellers;
+  std::vector<Slot> slots;
+  std::vector<HexCorner> corners;
+
+  [[nodiscard]] const Configuration& configuration(Index generator) const noexcept {
+    return configurations[configurationOf[generator]];
+  }
+  [[nodiscard]] const Propeller& propeller(const Configuration& configuration,
+                                           std::size_t p) const noexcept {
+    return propellers[configuration.propellerBegin + p];
+  }
+  [[nodiscard]] const Slot& slot(const Propeller& propeller, std::size_t i) const noexcept {
+    return slots[propeller.slotBegin + i];
+  }
+};
+
+/// Extracts propellers, blades and hex corners of all generators, and notes in
+/// `vertices.incidences` which propeller each direction of each tet leads to. (Algorithm 6)
+/// @param signs  normal signs of every tet
+[[nodiscard]] LocalConnectivity extractLocalConnectivity(const PreparedMap& map,
+                                                         const Array<NormalSigns>& signs,
+                                                         HexVertices& vertices, Stage& stage);
+
+}  // namespace hexhex

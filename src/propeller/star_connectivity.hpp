@@ -1,0 +1,107 @@
+// Local connectivity of one generator from the tets around it (Sections 5.3.2 to 5.3.4). Needs only
+// signs of face normals and of edge vectors, hence comparisons of integers: no determinant.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <igm/edge_turn.hpp>
+#include <propeller/local_connectivity.hpp>
+
+namespace hexhex {
+
+/// Extracts one generator after the other; keeps its working memory between them.
+class StarConnectivity {
+ public:
+  /// The structure around a vertex of one generator, before it is appended to the common arrays:
+  /// slotBegin counts from the generator's first slot.
+  struct Result {
+    std::vector<Propeller> propellers;
+    std::vector<Slot> slots;
+    std::vector<HexCorner> corners;
+  };
+
+  StarConnectivity(const PreparedMap& map, const Array<NormalSigns>& signs)
+      : topology_(map.topology), exact_(map.exact), signs_(signs) {}
+
+  /// @param simplex  corners of the generator in `tet`; not a cell
+  /// @throws Error Internal if the star is not that of a valid map
+  const Result& run(Index tet, CornerMask simplex);
+
+  /// For each tet of the star: the propeller in each direction.
+  struct StarTet {
+    Index tet;
+    CornerMask simplex;  ///< the generator's corners in this tet
+    std::array<std::uint8_t, kDirections> propeller;
+  };
+  [[nodiscard]] const std::vector<StarTet>& star() const noexcept { return star_; }
+
+ private:
+  /// A quarter plane at the generator in the chart of a tet: spanned by `first` and `second`.
+  struct Quadrant {
+    Index tet;
+    Direction first;
+    Direction second;
+  };
+
+  void collectStar(Index tet, CornerMask simplex);
+  void findPropellers();
+  void announce(std::uint8_t propeller, Index tet, CornerMask holderSimplex, Direction d);
+  void findCasings(std::size_t propeller);
+  void findBlades();
+  void traceBlade(std::size_t propeller, std::size_t slot);
+
+  [[nodiscard]] StarTet& inStar(Index tet);
+  [[nodiscard]] Direction directionIn(Index tet, std::size_t propeller);
+  /// The first quadrant of a propeller that leads into a tet of its holder's star.
+  [[nodiscard]] Quadrant anyCasing(std::size_t propeller);
+  /// Turns `second` by a right angle around `first`, counter-clockwise or clockwise, from tet to
+  /// tet of the holder's star. False if the boundary is in the way.
+  [[nodiscard]] bool turn(Quadrant& quadrant, bool counterClockwise);
+  /// The quadrant in the chart of the owner of its casing.
+  [[nodiscard]] Quadrant canonical(const Quadrant& quadrant);
+  [[noreturn]] void fail(const char* what) const;
+
+  const TetTopology& topology_;
+  const ExactMap& exact_;
+  const Array<NormalSigns>& signs_;
+  std::vector<StarTet> star_;
+  Result result_;
+  /// Per propeller: its holder's owner, corners there, and direction there.
+  struct Holder {
+    Index tet;
+    CornerMask simplex;
+    Direction direction;
+  };
+  std::vector<Holder> holders_;
+};
+
+/// Calls visit(tet, corners of the simplex there, transition from `tet`'s chart) for every tet
+/// around an edge, face or cell, in no particular order.
+template <class Visit>
+void forEachTetAround(const TetTopology& topology, const Transitions& transitions, Index tet,
+                      CornerMask simplex, const Visit& visit) {
+  visit(tet, simplex, Rotation{});
+  if (simplex == kWholeTet) return;
+  const int first = otherFaceAtEdge(simplex, -1);
+  if (dimension(simplex) == 2) {
+    const HalfFace halfFace = halfFaceOf(tet, first);
+    const HalfFace mate = topology.mate[halfFace];
+    if (mate == kNone) return;
+    visit(tetOf(mate), acrossFace(topology, halfFace, simplex),
+          transitions.across(halfFace).rotation);
+    return;
+  }
+  for (const int face : {first, otherFaceAtEdge(simplex, first)}) {
+    EdgeTurn turn(topology, tet, simplex, face);
+    Rotation rotation;
+    while (turn.next() != kNone) {
+      rotation = transitions.across(turn.out()).rotation * rotation;
+      turn.step();
+      if (turn.tet() == tet) return;  // all the way round
+      visit(turn.tet(), turn.edge(), rotation);
+    }
+  }
+}
+
+}  // namespace hexhex
