@@ -9,7 +9,7 @@
 #include <hexhex/hexhex.hpp>
 
 #include "extract/support.hpp"
-#include "map/prepare.hpp"
+#include "igm/prepare.hpp"
 #include "repair/edge_split.hpp"
 #include "repair/map_backup.hpp"
 #include "repair/same_connectivity.hpp"
