@@ -39,11 +39,11 @@ class Atlas {
     charts_ = buildCharts(map, stage);
   }
 
-  /// @param guest  sees every tet, if there is one
+  /// @param observer  sees every tet, if there is one
   /// @return the number of vertices
-  std::uint64_t sweep(std::uint64_t expectedCells, SweepGuest* guest = nullptr) {
+  std::uint64_t sweep(std::uint64_t expectedCells, SweepObserver* observer = nullptr) {
     Stage stage(context_, "sweep");
-    vertices_.sweep(cells_, stage, guest);
+    vertices_.sweep(cells_, stage, observer);
     requireExpected(cells_.count(), expectedCells);
     return vertices_.numbers().count();
   }
@@ -224,9 +224,10 @@ void streamFrom(Atlas<Id>& atlas, const PreparedMap& map, MeshSink& sink, Contex
 }  // namespace
 
 HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& context,
-                 ExtractStatistics& statistics, const AtlasOptions& options, SweepGuest* guest) {
+                 ExtractStatistics& statistics, const AtlasOptions& options,
+                 SweepObserver* observer) {
   Atlas<Index> atlas(map, true, context, options);
-  const std::uint64_t count = atlas.sweep(expectedCells, guest);
+  const std::uint64_t count = atlas.sweep(expectedCells, observer);
   if (count > kMaxNarrowVertices) {
     throw Error(ErrorCode::TooLarge,
                 "The mesh would have " + std::to_string(count) +
@@ -238,9 +239,9 @@ HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& c
   mesh.generatorTet.resize(count);
   mesh.generatorCorners.resize(count);
   atlas.fill({0, mesh.points.data(), mesh.generatorTet.data(), mesh.generatorCorners.data()},
-             guest != nullptr, statistics);
+             observer != nullptr, statistics);
   mesh.cells = emitAllCells(map, atlas, context, statistics);
-  if (guest != nullptr) guest->take(atlas.takeVertices());
+  if (observer != nullptr) observer->take(atlas.takeVertices());
   return mesh;
 }
 

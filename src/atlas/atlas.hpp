@@ -16,7 +16,7 @@
 #include <hexhex/types.hpp>
 
 #include <igm/prepare.hpp>
-#include <sweep/sweep_guest.hpp>
+#include <sweep/sweep_observer.hpp>
 
 namespace hexhex {
 
@@ -29,10 +29,10 @@ struct AtlasOptions {
 
 /// Extracts the mesh of a map that has passed all checks and is scaled.
 /// @param expectedCells  the map's parametric volume
-/// @param guest          sees the tets that are swept, if there is one
+/// @param observer       sees the tets that are swept, if there is one
 [[nodiscard]] HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells,
                                Context& context, ExtractStatistics& statistics,
-                               const AtlasOptions& options = {}, SweepGuest* guest = nullptr);
+                               const AtlasOptions& options = {}, SweepObserver* observer = nullptr);
 
 /// The same in pieces.
 void streamAtlas(const PreparedMap& map, std::uint64_t expectedCells, MeshSink& sink,

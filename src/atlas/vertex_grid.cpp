@@ -15,10 +15,11 @@ ChartRow rowOf(const VertexRun& run, const SweepFrame& frame, Index chart) {
   return {chart, frame(line.level, line.row, first), frame.along(2), run.count};
 }
 
-/// For vertices, cells, and what the guest wants to see.
-HalfGridSearch searchWith(const SweepGuest* guest) {
+/// For vertices, cells, and what the observer wants to see.
+HalfGridSearch searchWith(const SweepObserver* observer) {
   const unsigned own = halfGridBit(kVertexGrid) | halfGridBit(kCenterGrid);
-  return HalfGridSearch(static_cast<HalfGridSet>(own | (guest == nullptr ? 0U : guest->grids())));
+  return HalfGridSearch(
+      static_cast<HalfGridSet>(own | (observer == nullptr ? 0U : observer->grids())));
 }
 
 /// Enters consecutive vertices. Of two that claim the same place, the one that comes later finds
@@ -50,11 +51,11 @@ std::span<const SweptLine> VertexGrid<Id>::linesOf(Index tet,
 }
 
 template <class Id>
-void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage, SweepGuest* guest) {
+void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage, SweepObserver* observer) {
   const std::size_t tets = map_.topology.tetCount();
   VertexCounter counter(map_, numbers_);
   keys_.resize(blockCount(tets, kSweepBlock));
-  const HalfGridSearch search = searchWith(guest);
+  const HalfGridSearch search = searchWith(observer);
   const auto makeLines = [&] {
     return SweptLines{BlockLines(stored_.has_value()), BlockLines(cells.lines.has_value())};
   };
@@ -67,13 +68,13 @@ void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage, SweepGuest* guest) {
     keys_[block].reserve(kSweepBlock / 16);
     for (std::size_t t = begin; t < end; ++t) {
       const auto tet = static_cast<Index>(t);
-      if (guest == nullptr) {
+      if (observer == nullptr) {
         sweepBoth(map_.exact, tet, lines.next(), centers.next());
       } else {
         const HalfGrids grids(map_.exact.corners[t], map_.exact.unit, search);
         appendLines(grids, kVertexGrid, lines.next());
         appendLines(grids, kCenterGrid, centers.next());
-        guest->add(block, tet, grids);
+        observer->add(block, tet, grids);
       }
       cells.begin[t] = 0;
       counter.countNothing(tet);

@@ -13,7 +13,7 @@
 #include <atlas/overlaps.hpp>
 #include <igm/prepare.hpp>
 #include <sweep/cell_seeds.hpp>
-#include <sweep/sweep_guest.hpp>
+#include <sweep/sweep_observer.hpp>
 #include <sweep/tet_positions.hpp>
 #include <sweep/vertex_numbers.hpp>
 
@@ -58,8 +58,8 @@ class VertexGrid {
   }
 
   /// Sweeps all tets, for vertices and for cells, and numbers both.
-  /// @param guest  sees every tet, if there is one
-  void sweep(CellSeeds& cells, Stage& stage, SweepGuest* guest = nullptr);
+  /// @param observer  sees every tet, if there is one
+  void sweep(CellSeeds& cells, Stage& stage, SweepObserver* observer = nullptr);
   /// Makes the grid, enters all vertices, and writes them to `arrays`.
   void fill(const VertexArrays& arrays, Stage& stage);
   /// Finds and resolves overlaps.

@@ -7,11 +7,11 @@
 
 #include <curved/element_numbers.hpp>
 #include <igm/prepare.hpp>
-#include <sweep/sweep_guest.hpp>
+#include <sweep/sweep_observer.hpp>
 
 namespace hexhex {
 
-class EdgeGuest final : public SweepGuest {
+class EdgeGuest final : public SweepObserver {
  public:
   explicit EdgeGuest(const PreparedMap& map)
       : map_(map), edges_(map, ElementKind::Edges), sweep_(edges_) {}

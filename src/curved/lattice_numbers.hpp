@@ -11,7 +11,7 @@
 #include <igm/prepare.hpp>
 #include <lattice/half_grids.hpp>
 #include <propeller/lattice_lines.hpp>
-#include <sweep/sweep_guest.hpp>
+#include <sweep/sweep_observer.hpp>
 #include <sweep/tet_lines.hpp>
 #include <sweep/vertex_numbers.hpp>
 

@@ -2,14 +2,14 @@
 #pragma once
 
 #include <propeller/trace_guest.hpp>
-#include <sweep/sweep_guest.hpp>
+#include <sweep/sweep_observer.hpp>
 
 namespace hexhex {
 
 /// A guest of either engine, or nullptr.
 struct EngineGuests {
-  SweepGuest* sweep = nullptr;  ///< of the atlas engine
-  TraceGuest* trace = nullptr;  ///< of the propeller engine
+  SweepObserver* sweep = nullptr;  ///< of the atlas engine
+  TraceGuest* trace = nullptr;     ///< of the propeller engine
 };
 
 }  // namespace hexhex

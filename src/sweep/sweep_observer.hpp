@@ -19,14 +19,14 @@ struct SweptVertices {
   VertexNumbers numbers;
 };
 
-class SweepGuest {
+class SweepObserver {
  public:
-  SweepGuest() = default;
-  SweepGuest(const SweepGuest&) = delete;
-  SweepGuest& operator=(const SweepGuest&) = delete;
-  SweepGuest(SweepGuest&&) = delete;
-  SweepGuest& operator=(SweepGuest&&) = delete;
-  virtual ~SweepGuest() = default;
+  SweepObserver() = default;
+  SweepObserver(const SweepObserver&) = delete;
+  SweepObserver& operator=(const SweepObserver&) = delete;
+  SweepObserver(SweepObserver&&) = delete;
+  SweepObserver& operator=(SweepObserver&&) = delete;
+  virtual ~SweepObserver() = default;
 
   /// The grids that it wants to see.
   [[nodiscard]] virtual HalfGridSet grids() const noexcept = 0;
