@@ -5,6 +5,7 @@
 // loop whose blocks write to disjoint places gives the same result on any machine.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -60,6 +61,28 @@ void parallelFor(Stage& stage, std::size_t n, std::size_t grain, const F& f) {
   });
 }
 
+/// Lowers a number that several threads look for the smallest value of.
+inline void lowerTo(std::size_t value, std::atomic<std::size_t>& least) {
+  std::size_t known = least.load(std::memory_order_relaxed);
+  while (value < known && !least.compare_exchange_weak(known, value)) {
+  }
+}
+
+/// Calls isGood(i) for all i in [0, n), in parallel.
+/// @param grain  of the loop; a block takes some tens of microseconds at least
+/// @return the smallest i for which it is false, or n
+template <class F>
+[[nodiscard]] std::size_t firstFault(Stage& stage, std::size_t n, const F& isGood,
+                                     std::size_t grain = 4096) {
+  std::atomic<std::size_t> first{n};
+  parallelBlocks(stage, n, grain, [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!isGood(i)) lowerTo(i, first);
+    }
+  });
+  return first.load();
+}
+
 /// All lists, one behind the other.
 template <class T>
 [[nodiscard]] std::vector<T> joined(std::span<const std::vector<T>> lists) {
@@ -101,6 +124,17 @@ inline constexpr int kMaxThreads = 64;
 /// The number of threads that a loop called from here may use: for work that is divided among
 /// threads by hand. No result may depend on it.
 [[nodiscard]] int currentThreads();
+
+/// withThreads() for short loops, many times: where that many threads are at work anyway, f() is
+/// called as it is, since entering takes some microseconds.
+template <class F>
+void withThreadsHere(int threads, const F& f) {
+  if (currentThreads() == effectiveThreads(threads)) {
+    f();
+  } else {
+    withThreads(threads, f);
+  }
+}
 
 /// Replaces counts by their exclusive prefix sums; the last element, an unused slot, receives the
 /// total, which is returned. Sequential: it runs at the speed of memory.

@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <io/core/number_parsing.hpp>
-#include <io/hexex/rational.hpp>
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {

@@ -7,7 +7,7 @@
 #include <hexhex/io.hpp>
 
 #include <base/stage.hpp>
-#include <io/core/token_index.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/hexex/hexex.hpp>
 #include <io/io_test_support.hpp>
 #include <io/medit/medit.hpp>

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include <io/core/token_index.hpp>
+#include <io/core/text_scanner.hpp>
 
 namespace hexhex {
 

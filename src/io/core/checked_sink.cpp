@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <atomic>
 #include <chrono>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -8,8 +8,7 @@
 
 #include <base/parallel.hpp>
 #include <io/core/checked_sink.hpp>
-#include <io/core/finite_points.hpp>
-#include <io/core/with_threads_here.hpp>
+#include <io/core/writable.hpp>
 
 namespace hexhex {
 namespace {
@@ -19,14 +18,10 @@ constexpr std::size_t kGrain = std::size_t{1} << 14;  // a fraction of a millise
 /// The first cell with a corner that is no vertex, or the number of cells.
 template <class Cell>
 std::size_t firstOutOfRange(std::span<const Cell> cells, std::uint64_t pointCount, Stage& stage) {
-  std::atomic<std::size_t> first{cells.size()};
-  parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
-    if (*std::max_element(cells[c].begin(), cells[c].end()) < pointCount) return;
-    std::size_t known = first.load(std::memory_order_relaxed);
-    while (c < known && !first.compare_exchange_weak(known, c)) {
-    }
-  });
-  return first.load();
+  const auto isInRange = [&](std::size_t c) {
+    return *std::max_element(cells[c].begin(), cells[c].end()) < pointCount;
+  };
+  return firstFault(stage, cells.size(), isInRange, kGrain);
 }
 
 std::string numbers(std::uint64_t first, std::uint64_t size) {
@@ -176,6 +171,34 @@ void CheckedSink::refuse(const std::string& sentence) const {
   throw Error(ErrorCode::InvalidArgument,
               name_ + ": a mesh in pieces came in the wrong way: " + sentence +
                   ". A sink takes begin(), all vertices in order, all cells in order, and end().");
+}
+
+namespace {
+
+// Points or cells of a piece: a few megabytes.
+constexpr std::size_t kPiece = std::size_t{1} << 16;
+
+/// The values of elements [first, first + count); none if the array is empty.
+template <class T>
+std::span<const T> part(const Array<T>& values, std::size_t first, std::size_t count) {
+  if (values.empty()) return {};
+  return std::span(values).subspan(first, count);
+}
+
+}  // namespace
+
+void sendTo(MeshSink& sink, const HexMesh& mesh) {
+  sink.begin(mesh.points.size(), mesh.cells.size());
+  for (std::size_t first = 0; first < mesh.points.size(); first += kPiece) {
+    const std::size_t count = std::min(kPiece, mesh.points.size() - first);
+    sink.points({first, part(mesh.points, first, count), part(mesh.generatorTet, first, count),
+                 part(mesh.generatorCorners, first, count)});
+  }
+  for (std::size_t first = 0; first < mesh.cells.size(); first += kPiece) {
+    const std::size_t count = std::min(kPiece, mesh.cells.size() - first);
+    sink.cells(first, part(mesh.cells, first, count));
+  }
+  sink.end();
 }
 
 }  // namespace hexhex

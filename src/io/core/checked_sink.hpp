@@ -8,6 +8,7 @@
 
 #include <hexhex/context.hpp>
 #include <hexhex/stream.hpp>
+#include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
 
@@ -67,5 +68,8 @@ class CheckedSink : public MeshSink {
   bool hasTets_ = false;
   bool hasCorners_ = false;
 };
+
+/// Hands a mesh over, from begin() to end(). Generators go along if there are as many as vertices.
+void sendTo(MeshSink& sink, const HexMesh& mesh);
 
 }  // namespace hexhex

@@ -5,7 +5,6 @@
 
 #include <base/parallel.hpp>
 #include <io/core/grid_map.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
 
 namespace hexhex {
 namespace {

@@ -13,11 +13,12 @@
 #include <vector>
 
 #include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/core/bytes.hpp>
 #include <io/core/output_file.hpp>
-#include <io/core/with_threads_here.hpp>
 
 namespace hexhex {
 
@@ -116,5 +117,25 @@ class LineWriter {
   std::vector<std::unique_ptr<char[]>> blocks_;
   std::vector<std::size_t> sizes_;
 };
+
+/// Puts the bytes of a number, least first, and returns the place behind.
+template <class T>
+[[nodiscard]] char* putBytes(char* place, T number) {
+  const auto bytes = littleBytes(number);
+  return std::copy(bytes.begin(), bytes.end(), place);
+}
+
+/// The same of three coordinates.
+[[nodiscard]] inline char* putBytes(char* place, const Vec3& point) {
+  for (const double coordinate : point) place = putBytes(place, coordinate);
+  return place;
+}
+
+/// Writes the bytes of a number, least first.
+template <class T>
+void writeBytesOf(OutputFile& output, T number) {
+  const auto bytes = littleBytes(number);
+  output.writeBytes(bytes.data(), bytes.size());
+}
 
 }  // namespace hexhex

@@ -24,4 +24,11 @@ inline constexpr std::size_t kMaxRationalDigits = std::size_t{1} << 16;
 /// @param[out] value  set if the result is None
 [[nodiscard]] NumberProblem parseNumber(std::string_view token, double& value);
 
+/// The double nearest to numerator / denominator, ties to even; infinity if it exceeds the largest
+/// double; subnormal or 0 if it is that small.
+///
+/// Both are decimal digits only, at least one, without a sign; the denominator is not 0. Time grows
+/// with the square of the number of digits.
+[[nodiscard]] double nearestQuotient(std::string_view numerator, std::string_view denominator);
+
 }  // namespace hexhex

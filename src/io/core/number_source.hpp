@@ -18,11 +18,9 @@
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
+#include <io/core/bytes.hpp>
 #include <io/core/input_file.hpp>
-#include <io/core/text_elements.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/token_index.hpp>
-#include <io/ovm/ovmb_bytes.hpp>
 
 namespace hexhex {
 
@@ -193,9 +191,7 @@ class BinarySource {
           } catch (const Error&) {  // record i is wrong, and told about below
           }
           if (i == to) return;
-          std::size_t known = firstWrong.load(std::memory_order_relaxed);
-          while (i < known && !firstWrong.compare_exchange_weak(known, i)) {
-          }
+          lowerTo(i, firstWrong);
         });
     if (firstWrong < n) {  // throws again
       BinarySource source(*file_, begin + firstWrong * shape.bytes(), *fileName_, *stage_);

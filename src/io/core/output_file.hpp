@@ -1,12 +1,14 @@
 // Files that appear complete or not at all.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 
@@ -87,6 +89,66 @@ class OutputFile {
   int descriptor_ = -1;
   std::unique_ptr<char[]> buffer_;
   std::size_t used_ = 0;
+};
+
+/// Buffers what goes to consecutive places of a file.
+class FilePart {
+ public:
+  /// @param file  outlives this; has positions
+  FilePart(const OutputFile& file, std::uint64_t position)
+      : file_(&file), position_(position), buffer_(new char[kBufferSize]) {}
+
+  void writeBytes(const void* bytes, std::size_t size) {
+    if (size > kBufferSize - used_) {
+      flush();
+      if (size >= kBufferSize) return writeThrough(bytes, size);
+    }
+    std::copy_n(static_cast<const char*>(bytes), size, buffer_.get() + used_);
+    used_ += size;
+  }
+
+  /// Writes what is buffered. Without it, it is lost.
+  void flush() {
+    writeThrough(buffer_.get(), used_);
+    used_ = 0;
+  }
+
+ private:
+  // Large enough that system calls cost nothing, small enough for eight of them in the cache.
+  static constexpr std::size_t kBufferSize = std::size_t{1} << 17;
+
+  void writeThrough(const void* bytes, std::size_t size) {
+    file_->writeBytesAt(position_, bytes, size);
+    position_ += size;
+  }
+
+  const OutputFile* file_;
+  std::uint64_t position_;
+  std::unique_ptr<char[]> buffer_;
+  std::size_t used_ = 0;
+};
+
+/// HDF5, and what is built on it, keeps its state in global variables: whoever uses one of these
+/// libraries holds this lock.
+[[nodiscard]] std::mutex& libraryLock();
+
+/// An OutputFile whose temporary is written by name.
+///
+/// Functions throw Error FileWrite, with the target and the reason, if they fail. A target that is
+/// no regular file is refused: these libraries write at any position.
+class LibraryFile {
+ public:
+  /// Creates the temporary, empty.
+  explicit LibraryFile(const std::filesystem::path& target);
+
+  /// What the library is to write; it is closed before commit().
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  void commit() { file_.commit(); }
+  [[noreturn]] void fail(const std::string& reason) const { file_.fail(reason); }
+
+ private:
+  OutputFile file_;
+  std::string name_;
 };
 
 }  // namespace hexhex

@@ -7,8 +7,8 @@
 #include <hexhex/io.hpp>
 
 #include <base/parallel.hpp>
-#include <io/core/format_lookup.hpp>
-#include <io/core/mesh_pieces.hpp>
+#include <io/core/checked_sink.hpp>
+#include <io/core/registry.hpp>
 
 namespace hexhex {
 namespace {

@@ -8,8 +8,6 @@
 
 #include <base/parallel.hpp>
 #include <io/core/checked_sink.hpp>
-#include <io/core/mesh_pieces.hpp>
-#include <io/core/with_threads_here.hpp>
 
 namespace hexhex {
 namespace {

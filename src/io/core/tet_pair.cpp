@@ -7,7 +7,6 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
 
 namespace hexhex {
 namespace {

@@ -1,6 +1,9 @@
-// A fast scanner over a text file in memory: tokens between white space, numbers, and clear errors.
+// Text in memory: tokens between white space, numbers, and clear errors; and many elements of the
+// same number of tokens, read in parallel.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -10,10 +13,42 @@
 #include <system_error>
 
 #include <hexhex/error.hpp>
+#include <hexhex/types.hpp>
 
-#include <io/core/token_index.hpp>
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
 
 namespace hexhex {
+
+/// White space of all text formats.
+[[nodiscard]] constexpr bool isSpace(char c) noexcept {
+  return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+/// Where the n-th token (run of other characters than white space) of a text is, so that several
+/// threads can read a text whose lines, if it has any, mean nothing.
+class TokenIndex {
+ public:
+  /// @param text  must outlive the index
+  TokenIndex(std::string_view text, Stage& stage);
+
+  /// Number of tokens of the text.
+  [[nodiscard]] std::size_t count() const noexcept { return before_.back(); }
+
+  /// Number of tokens that begin before this position.
+  [[nodiscard]] std::size_t countBefore(std::size_t position) const;
+
+  /// Position of the first character of a token; the size of the text if there are not so many.
+  [[nodiscard]] std::size_t find(std::size_t token) const;
+
+ private:
+  [[nodiscard]] bool beginsToken(std::size_t i) const {
+    return !isSpace(text_[i]) && (i == 0 || isSpace(text_[i - 1]));
+  }
+
+  std::string_view text_;
+  Array<std::size_t> before_;  ///< per block: tokens that begin before it; last: all
+};
 
 /// Reads tokens one after the other. Functions that read return false, and stay before the token,
 /// if it is not what they want or the text ends; then a fail... function says why. Line numbers are
@@ -143,5 +178,50 @@ class TextScanner {
 
 /// A token as an error message shows it: in quotes, shortened, without control characters.
 [[nodiscard]] std::string quoted(std::string_view token);
+
+/// Elements that a thread reads in a go, which takes less than a millisecond.
+inline constexpr std::size_t kElementGrain = 1024;
+
+/// Calls read(scanner, i), which reads element i or throws an Error about it, for all i in [0, n),
+/// from several threads, each with a scanner of its own. Then `scanner`, which stands before the
+/// first element, is behind the last.
+///
+/// If elements are wrong or missing, the error is that of the first of them, for any number of
+/// threads.
+/// @param index  of the text of `scanner`; null for a text with comments, which one thread reads
+template <class Read>
+void readElements(TextScanner& scanner, const TokenIndex* index, Stage& stage, std::size_t n,
+                  std::size_t tokensEach, const Read& read) {
+  if (index == nullptr) {
+    LoopProgress progress(stage, n);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i % kElementGrain == 0) progress.advance(std::min(kElementGrain, n - i));
+      read(scanner, i);
+    }
+    return;
+  }
+  const std::size_t firstToken = index->countBefore(scanner.position());
+  const std::size_t complete = std::min(n, (index->count() - firstToken) / tokensEach);
+  const auto moveTo = [&](TextScanner& moved, std::size_t element) {
+    moved.moveTo(index->find(firstToken + element * tokensEach));
+  };
+
+  std::atomic<std::size_t> firstWrong{complete};
+  parallelBlocks(stage, complete, kElementGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   if (begin > firstWrong.load(std::memory_order_relaxed)) return;
+                   TextScanner local = scanner;
+                   moveTo(local, begin);
+                   std::size_t i = begin;
+                   try {
+                     for (; i < end; ++i) read(local, i);
+                   } catch (const Error&) {
+                     lowerTo(i, firstWrong);
+                   }
+                 });
+  // Normally nothing is left. Otherwise the first of these throws, now as if alone.
+  moveTo(scanner, firstWrong);
+  for (std::size_t i = firstWrong; i < n; ++i) read(scanner, i);
+}
 
 }  // namespace hexhex

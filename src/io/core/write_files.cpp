@@ -8,8 +8,8 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
-#include <io/core/finite_points.hpp>
-#include <io/core/format_lookup.hpp>
+#include <io/core/registry.hpp>
+#include <io/core/writable.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <mesh/smooth_patches.hpp>
 #include <mesh/vertex_cells.hpp>

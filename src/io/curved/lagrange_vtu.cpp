@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <io/core/tag_rows.hpp>
+#include <io/core/mesh_groups.hpp>
 #include <io/curved/lagrange_files.hpp>
 #include <io/curved/lagrange_order.hpp>
 #include <io/vtk/vtk_xml.hpp>

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include <hexhex/context.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
 #include <io/core/cell_mesh.hpp>
@@ -42,5 +44,10 @@ void writeGmsh41Text(const HexMesh& mesh, const std::filesystem::path& file,
 /// @throws Error  the same, and TooLarge for 2^31 nodes or elements, which MSH 2.2 cannot number
 void writeGmsh22Text(const HexMesh& mesh, const std::filesystem::path& file,
                      const WriteOptions& options, Context& context);
+
+/// Writes nodes and hexahedra as writeGmsh41Binary() does, but no boundary.
+/// @throws Error FileWrite also for a device or a pipe
+[[nodiscard]] std::unique_ptr<MeshSink> openGmsh41BinarySink(const std::filesystem::path& file,
+                                                             Context& context);
 
 }  // namespace hexhex

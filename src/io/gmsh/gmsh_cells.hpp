@@ -11,10 +11,10 @@
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
+#include <io/core/bytes.hpp>
 #include <io/core/cell_mesh.hpp>
 #include <io/gmsh/gmsh_types.hpp>
 #include <io/gmsh/node_tags.hpp>
-#include <io/ovm/ovmb_bytes.hpp>
 
 namespace hexhex {
 

@@ -8,7 +8,7 @@
 
 #include <base/stage.hpp>
 #include <io/core/number_source.hpp>
-#include <io/core/text_elements.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/gmsh/gmsh_elements.hpp>
 
 namespace hexhex {

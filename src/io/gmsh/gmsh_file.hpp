@@ -8,7 +8,6 @@
 #include <base/stage.hpp>
 #include <io/core/number_source.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/token_index.hpp>
 
 namespace hexhex {
 

@@ -4,9 +4,9 @@
 
 #include <hexhex/error.hpp>
 
+#include <io/core/bytes.hpp>
 #include <io/core/number_source.hpp>
 #include <io/gmsh/gmsh_nodes.hpp>
-#include <io/ovm/ovmb_bytes.hpp>
 
 namespace hexhex {
 namespace {

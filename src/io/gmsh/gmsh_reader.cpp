@@ -7,7 +7,7 @@
 #include <hexhex/error.hpp>
 
 #include <io/core/cell_mesh.hpp>
-#include <io/core/read_with.hpp>
+#include <io/core/input_file.hpp>
 #include <io/gmsh/gmsh.hpp>
 #include <io/gmsh/gmsh_cells.hpp>
 #include <io/gmsh/gmsh_elements.hpp>

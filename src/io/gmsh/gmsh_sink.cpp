@@ -6,10 +6,8 @@
 
 #include <hexhex/error.hpp>
 
-#include <io/core/binary_lines.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/core/line_writer.hpp>
-#include <io/core/mesh_sink.hpp>
 #include <io/core/output_file.hpp>
 #include <io/gmsh/gmsh.hpp>
 #include <io/gmsh/gmsh_types.hpp>

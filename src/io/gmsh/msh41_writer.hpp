@@ -13,7 +13,6 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
-#include <io/core/binary_lines.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>

@@ -12,9 +12,7 @@
 #include <io/core/input_file.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
-#include <io/core/text_elements.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/token_index.hpp>
 #include <io/hexex/hexex.hpp>
 
 namespace hexhex {

@@ -10,14 +10,12 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/cell_mesh.hpp>
+#include <io/core/input_file.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
-#include <io/core/read_with.hpp>
 #include <io/core/references.hpp>
-#include <io/core/text_elements.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/token_index.hpp>
 #include <io/medit/medit.hpp>
 #include <io/medit/medit_text.hpp>
 

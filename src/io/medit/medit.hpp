@@ -3,11 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include <hexhex/context.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
 #include <io/core/cell_mesh.hpp>
@@ -33,5 +35,10 @@ namespace hexhex {
 /// @throws Error FileWrite
 void writeMedit(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
                 Context& context);
+
+/// Writes the same as writeMedit() but no section Quadrilaterals: that the boundary is not known
+/// before the last cell came.
+[[nodiscard]] std::unique_ptr<MeshSink> openMeditSink(const std::filesystem::path& file,
+                                                      Context& context);
 
 }  // namespace hexhex

@@ -1,7 +1,7 @@
 #include <io/core/checked_sink.hpp>
 #include <io/core/line_writer.hpp>
-#include <io/core/mesh_sink.hpp>
 #include <io/core/output_file.hpp>
+#include <io/medit/medit.hpp>
 #include <io/medit/medit_text.hpp>
 
 namespace hexhex {

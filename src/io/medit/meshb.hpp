@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include <hexhex/context.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
 #include <io/core/cell_mesh.hpp>
@@ -53,5 +55,9 @@ enum class MeshbKeyword : std::uint32_t {
   Hexahedra = 10,
   End = 54
 };
+
+/// Writes vertices and hexahedra as writeMeshb() does, but no boundary.
+[[nodiscard]] std::unique_ptr<MeshSink> openMeshbSink(const std::filesystem::path& file,
+                                                      Context& context);
 
 }  // namespace hexhex

@@ -10,8 +10,8 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/cell_mesh.hpp>
+#include <io/core/input_file.hpp>
 #include <io/core/number_source.hpp>
-#include <io/core/read_with.hpp>
 #include <io/core/references.hpp>
 #include <io/medit/meshb.hpp>
 

@@ -1,9 +1,7 @@
 #include <optional>
 
-#include <io/core/binary_lines.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/core/line_writer.hpp>
-#include <io/core/mesh_sink.hpp>
 #include <io/core/output_file.hpp>
 #include <io/medit/meshb.hpp>
 #include <io/medit/meshb_layout.hpp>

@@ -4,13 +4,12 @@
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
-#include <io/core/simplex_indices.hpp>
-#include <io/core/writable_map.hpp>
+#include <io/core/writable.hpp>
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_features.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
 #include <io/ovm/ovm_output.hpp>
 #include <io/ovm/ovm_topology.hpp>
+#include <io/ovm/simplex_indices.hpp>
 
 namespace hexhex {
 namespace {

@@ -5,11 +5,11 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/parallel.hpp>
 #include <base/vector3.hpp>
-#include <io/core/writable_map.hpp>
+#include <io/core/writable.hpp>
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_features.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
 #include <io/ovm/ovm_output.hpp>
 #include <io/ovm/ovm_topology.hpp>
 

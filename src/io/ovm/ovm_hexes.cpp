@@ -4,10 +4,10 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/parallel.hpp>
 #include <base/prefetch.hpp>
 #include <base/vector3.hpp>
 #include <io/ovm/ovm_cells.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
 #include <io/ovm/ovm_topology.hpp>
 
 namespace hexhex {

@@ -8,7 +8,6 @@
 #include <base/parallel.hpp>
 #include <base/prefetch.hpp>
 #include <io/ovm/ovm_cells.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
 
 namespace hexhex {
 

@@ -6,8 +6,8 @@
 #include <hexhex/error.hpp>
 
 #include <base/bits.hpp>
+#include <base/parallel.hpp>
 #include <io/ovm/ovm_cells.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
 
 namespace hexhex {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <io/core/letter_case.hpp>
 #include <io/core/number_parsing.hpp>
-#include <io/core/text_elements.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/ovm/ovm_text_properties.hpp>
 
 namespace hexhex {

@@ -5,7 +5,6 @@
 
 #include <base/stage.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/token_index.hpp>
 #include <io/ovm/ovm_mesh.hpp>
 
 namespace hexhex {

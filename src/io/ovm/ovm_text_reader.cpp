@@ -3,9 +3,7 @@
 
 #include <hexhex/error.hpp>
 
-#include <io/core/text_elements.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/token_index.hpp>
 #include <io/ovm/ovm_text.hpp>
 #include <io/ovm/ovm_text_properties.hpp>
 #include <io/ovm/ovmb_chunks.hpp>

@@ -14,7 +14,6 @@
 
 #include <base/parallel.hpp>
 #include <io/ovm/ovm_cells.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
 #include <io/ovm/ovm_hex_topology.hpp>
 #include <io/ovm/ovm_tet_topology.hpp>
 #include <io/ovm/ovm_topology.hpp>

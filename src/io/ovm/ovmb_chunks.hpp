@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <io/ovm/ovmb_bytes.hpp>
+#include <io/core/bytes.hpp>
 
 namespace hexhex {
 

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include <base/parallel.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
 #include <io/ovm/ovmb_elements.hpp>
 
 namespace hexhex {

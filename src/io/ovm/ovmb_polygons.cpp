@@ -1,7 +1,7 @@
 #include <bit>
 #include <type_traits>
 
-#include <io/ovm/ovmb_bytes.hpp>
+#include <io/core/bytes.hpp>
 #include <io/ovm/ovmb_chunks.hpp>
 #include <io/ovm/ovmb_polygons.hpp>
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <base/parallel.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
 #include <io/ovm/ovmb_elements.hpp>
 #include <io/ovm/ovmb_properties.hpp>
 

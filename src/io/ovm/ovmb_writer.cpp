@@ -5,8 +5,8 @@
 #include <string>
 
 #include <base/stage.hpp>
+#include <io/core/bytes.hpp>
 #include <io/ovm/ovm_output.hpp>
-#include <io/ovm/ovmb_bytes.hpp>
 #include <io/ovm/ovmb_chunks.hpp>
 
 namespace hexhex {

@@ -14,10 +14,9 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/output_file.hpp>
-#include <io/core/simplex_indices.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
 #include <io/ovm/ovmb_polygons.hpp>
 #include <io/ovm/piecewise_ovmb.hpp>
+#include <io/ovm/simplex_indices.hpp>
 
 namespace hexhex {
 

@@ -12,8 +12,8 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
-#include <io/core/library_file.hpp>
 #include <io/core/mesh_groups.hpp>
+#include <io/core/output_file.hpp>
 #include <io/solvers/cgns.hpp>
 
 namespace hexhex {

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include <hexhex/context.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
 #include <io/core/cell_mesh.hpp>
@@ -54,5 +56,11 @@ void writeVtkLegacy(const HexMesh& mesh, const std::filesystem::path& file,
 /// @throws Error FileWrite; TooLarge for 2^31 points
 void writeVtkLegacyBinary(const HexMesh& mesh, const std::filesystem::path& file,
                           const WriteOptions& options, Context& context);
+
+/// Write the same as writeVtkLegacy() and writeVtkLegacyBinary().
+[[nodiscard]] std::unique_ptr<MeshSink> openVtkLegacySink(const std::filesystem::path& file,
+                                                          Context& context);
+[[nodiscard]] std::unique_ptr<MeshSink> openVtkLegacyBinarySink(const std::filesystem::path& file,
+                                                                Context& context);
 
 }  // namespace hexhex

@@ -4,7 +4,6 @@
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
 #include <io/vtk/vtk_legacy_cells.hpp>
 
 namespace hexhex {

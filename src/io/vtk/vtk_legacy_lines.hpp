@@ -14,8 +14,8 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
+#include <io/core/bytes.hpp>
 #include <io/core/line_writer.hpp>
-#include <io/ovm/ovmb_bytes.hpp>
 
 namespace hexhex {
 

@@ -7,10 +7,9 @@
 
 #include <base/parallel.hpp>
 #include <io/core/cell_mesh.hpp>
-#include <io/core/finite_points.hpp>
 #include <io/core/grid_map.hpp>
-#include <io/core/read_with.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
+#include <io/core/input_file.hpp>
+#include <io/core/writable.hpp>
 #include <io/vtk/vtk_legacy.hpp>
 #include <io/vtk/vtk_legacy_arrays.hpp>
 #include <io/vtk/vtk_legacy_cells.hpp>

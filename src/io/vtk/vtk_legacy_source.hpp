@@ -13,9 +13,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
-#include <io/core/text_elements.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/token_index.hpp>
 
 namespace hexhex {
 

@@ -9,9 +9,8 @@
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/core/line_writer.hpp>
-#include <io/core/mesh_sink.hpp>
 #include <io/core/output_file.hpp>
-#include <io/core/writable_map.hpp>
+#include <io/core/writable.hpp>
 #include <io/vtk/vtk_legacy.hpp>
 #include <io/vtk/vtk_legacy_lines.hpp>
 

@@ -11,8 +11,8 @@
 #include <hexhex/quality.hpp>
 
 #include <base/stage.hpp>
-#include <io/core/library_file.hpp>
-#include <io/core/tag_rows.hpp>
+#include <io/core/mesh_groups.hpp>
+#include <io/core/output_file.hpp>
 #include <io/vtk/vtkhdf.hpp>
 #include <io/vtk/vtu_content.hpp>
 

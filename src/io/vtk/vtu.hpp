@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -55,5 +56,10 @@ void readVtuTo(MeshSink& sink, const std::filesystem::path& path, Context& conte
 /// @throws Error FileWrite
 void writeVtu(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
               Context& context);
+
+/// Writes the same as writeVtu() but no array scaled_jacobian: it takes the vertices of all cells.
+/// @throws Error FileWrite also for a device or a pipe: arrays are written side by side
+[[nodiscard]] std::unique_ptr<MeshSink> openVtuSink(const std::filesystem::path& file,
+                                                    Context& context);
 
 }  // namespace hexhex

@@ -2,7 +2,6 @@
 #include <span>
 
 #include <base/parallel.hpp>
-#include <io/core/with_threads_here.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/vtk/vtu_blocks.hpp>
 

@@ -3,9 +3,9 @@
 #include <cstring>
 #include <vector>
 
+#include <base/parallel.hpp>
 #include <io/core/base64.hpp>
 #include <io/core/zlib_blocks.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
 #include <io/vtk/vtu_decoding.hpp>
 
 namespace hexhex {

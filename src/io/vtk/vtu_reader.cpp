@@ -9,10 +9,9 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/core/checked_sink.hpp>
 #include <io/core/grid_map.hpp>
 #include <io/core/input_file.hpp>
-#include <io/core/mesh_pieces.hpp>
-#include <io/core/read_with.hpp>
 #include <io/vtk/read_vtu_with.hpp>
 #include <io/vtk/vtu.hpp>
 #include <io/vtk/vtu_elements.hpp>

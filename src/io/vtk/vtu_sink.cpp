@@ -6,9 +6,8 @@
 #include <hexhex/error.hpp>
 
 #include <io/core/checked_sink.hpp>
-#include <io/core/file_part.hpp>
-#include <io/core/mesh_sink.hpp>
 #include <io/core/output_file.hpp>
+#include <io/vtk/vtu.hpp>
 #include <io/vtk/vtu_content.hpp>
 #include <io/vtk/vtu_layout.hpp>
 

@@ -12,10 +12,10 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
-#include <io/core/tag_rows.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/writable_map.hpp>
+#include <io/core/writable.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/vtk/vtu.hpp>
 #include <io/vtk/vtu_blocks.hpp>

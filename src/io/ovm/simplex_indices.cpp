@@ -2,8 +2,8 @@
 #include <array>
 #include <bit>
 
-#include <io/core/simplex_indices.hpp>
 #include <io/ovm/ovm_output.hpp>
+#include <io/ovm/simplex_indices.hpp>
 
 namespace hexhex {
 

@@ -4,8 +4,8 @@
 
 #include <hexhex/error.hpp>
 
-#include <io/core/writable_map.hpp>
-#include <io/ovm/ovm_first_fault.hpp>
+#include <base/parallel.hpp>
+#include <io/core/writable.hpp>
 
 namespace hexhex {
 namespace {
@@ -26,8 +26,7 @@ void requireWritable(const TetMap& map, Stage& stage) {
   requireSize(map.parameters.size(), "parameters");
   if (!map.rotations.empty()) requireSize(map.rotations.size(), "rotations");
   if (!map.regions.empty()) requireSize(map.regions.size(), "regions");
-  const std::size_t point =
-      firstFault(stage, map.points.size(), [&](std::size_t v) { return isFinite(map.points[v]); });
+  const std::size_t point = firstNotFinite(map.points, stage);
   if (point < map.points.size()) {
     throw Error(ErrorCode::NotFinite,
                 "A coordinate of vertex " + std::to_string(point) + " is not finite.",
@@ -44,6 +43,12 @@ void requireWritable(const TetMap& map, Stage& stage) {
               range ? "A parameter of tet " + std::to_string(tet) + " is not finite."
                     : "Tet " + std::to_string(tet) + " names a vertex that does not exist.",
               Place{PlaceKind::Tet, tet});
+}
+
+std::size_t firstNotFinite(std::span<const Vec3> points, Stage& stage) {
+  constexpr std::size_t kGrain = std::size_t{1} << 14;  // a fraction of a millisecond's work
+  return firstFault(
+      stage, points.size(), [&](std::size_t i) { return isFinite(points[i]); }, kGrain);
 }
 
 }  // namespace hexhex
