@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include <igm/tet_topology.hpp>
+#include <adjacency/tet_topology.hpp>
 
 namespace hexhex {
 

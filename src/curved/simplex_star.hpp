@@ -4,11 +4,12 @@
 #include <array>
 #include <vector>
 
+#include <adjacency/edge_turn.hpp>
+#include <adjacency/key_table.hpp>
+#include <adjacency/tet_topology.hpp>
+
 #include <curved/frame.hpp>
-#include <igm/edge_turn.hpp>
 #include <igm/exact_map.hpp>
-#include <igm/key_table.hpp>
-#include <igm/tet_topology.hpp>
 
 namespace hexhex {
 

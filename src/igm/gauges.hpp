@@ -4,10 +4,11 @@
 
 #include <cstddef>
 
+#include <adjacency/tet_topology.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <igm/local_parameters.hpp>
-#include <igm/tet_topology.hpp>
 #include <igm/transitions.hpp>
 #include <lattice/gauge.hpp>
 

@@ -3,8 +3,9 @@
 #include <cstdlib>
 #include <functional>
 
+#include <adjacency/edge_turn.hpp>
+
 #include <base/disjoint_sets.hpp>
-#include <igm/edge_turn.hpp>
 #include <igm/measures.hpp>
 
 namespace hexhex {

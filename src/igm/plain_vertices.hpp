@@ -6,9 +6,10 @@
 #include <span>
 #include <vector>
 
+#include <adjacency/tet_topology.hpp>
+
 #include <igm/local_parameters.hpp>
 #include <igm/passage.hpp>
-#include <igm/tet_topology.hpp>
 
 namespace hexhex {
 

@@ -1,6 +1,8 @@
 // The preprocessing of Section 5.1 as one chain: from the caller's arrays to an exact map.
 #pragma once
 
+#include <adjacency/tet_topology.hpp>
+
 #include <hexhex/context.hpp>
 #include <hexhex/types.hpp>
 
@@ -8,7 +10,6 @@
 #include <igm/gauges.hpp>
 #include <igm/input.hpp>
 #include <igm/singularities.hpp>
-#include <igm/tet_topology.hpp>
 
 namespace hexhex {
 

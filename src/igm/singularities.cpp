@@ -3,11 +3,12 @@
 #include <cmath>
 #include <numeric>
 
+#include <adjacency/key_table.hpp>
+
 #include <base/branchless.hpp>
 #include <base/vector3.hpp>
 #include <base/workspaces.hpp>
 #include <igm/flat_stars.hpp>
-#include <igm/key_table.hpp>
 #include <igm/singularities.hpp>
 
 namespace hexhex {

@@ -7,11 +7,12 @@
 #include <span>
 #include <vector>
 
+#include <adjacency/tet_topology.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <igm/local_parameters.hpp>
 #include <igm/plain_vertices.hpp>
-#include <igm/tet_topology.hpp>
 #include <igm/transitions.hpp>
 #include <igm/vertex_star.hpp>
 

@@ -186,4 +186,12 @@ void collectTopologyDefects(TetTopology& topology, Stage& stage, DefectCollector
   if (!defects.has(ErrorCode::NonManifoldEdge)) checkLinks(topology, degree, stage, defects);
 }
 
+TetTopology buildTopology(const TetMapView& map, Stage& stage, DefectCollector& defects) {
+  TetTopology topology;
+  topology.tets = map.tets;
+  topology.pointCount = map.points.size();
+  if (!matchFaces(topology, stage)) collectTopologyDefects(topology, stage, defects);
+  return topology;
+}
+
 }  // namespace hexhex

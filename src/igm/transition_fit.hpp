@@ -1,10 +1,11 @@
 // The transition between two tets that fits the parameters of their common corners best.
 #pragma once
 
+#include <adjacency/tet_topology.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <igm/local_parameters.hpp>
-#include <igm/tet_topology.hpp>
 #include <lattice/transition.hpp>
 
 namespace hexhex {

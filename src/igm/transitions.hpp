@@ -3,11 +3,12 @@
 
 #include <vector>
 
+#include <adjacency/tet_topology.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <igm/local_parameters.hpp>
 #include <igm/plain_vertices.hpp>
-#include <igm/tet_topology.hpp>
 #include <lattice/transition.hpp>
 
 namespace hexhex {

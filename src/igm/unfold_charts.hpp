@@ -3,10 +3,11 @@
 
 #include <cstdint>
 
+#include <adjacency/tet_topology.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <igm/input.hpp>
-#include <igm/tet_topology.hpp>
 #include <igm/transitions.hpp>
 #include <lattice/gauge.hpp>
 

@@ -5,9 +5,10 @@
 #include <span>
 #include <vector>
 
+#include <adjacency/key_table.hpp>
+#include <adjacency/tet_topology.hpp>
+
 #include <base/prefetch.hpp>
-#include <igm/key_table.hpp>
-#include <igm/tet_topology.hpp>
 #include <lattice/rotation.hpp>
 
 namespace hexhex {

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include <adjacency/hex_topology.hpp>
+#include <adjacency/vertex_cells.hpp>
+
 #include <hexhex/quality.hpp>
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
-#include <mesh/hex_topology.hpp>
-#include <mesh/vertex_cells.hpp>
 
 namespace hexhex {
 namespace {

@@ -4,15 +4,16 @@
 #include <string>
 #include <vector>
 
+#include <adjacency/boundary_quads.hpp>
+#include <adjacency/vertex_cells.hpp>
+
 #include <hexhex/error.hpp>
 #include <hexhex/patches.hpp>
 
 #include <base/disjoint_sets.hpp>
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
-#include <mesh/boundary_quads.hpp>
 #include <mesh/smooth_patches.hpp>
-#include <mesh/vertex_cells.hpp>
 
 namespace hexhex {
 

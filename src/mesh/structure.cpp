@@ -1,8 +1,9 @@
 // The structure of a mesh, from its faces and edges.
+#include <adjacency/hex_topology.hpp>
+
 #include <hexhex/structure.hpp>
 
 #include <base/parallel.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex {
 

@@ -6,11 +6,12 @@
 #include <string>
 #include <utility>
 
+#include <adjacency/hex_topology.hpp>
+#include <adjacency/vertex_cells.hpp>
+
 #include <base/parallel.hpp>
-#include <mesh/hex_topology.hpp>
 #include <mesh/lattice_points.hpp>
 #include <mesh/verify_against.hpp>
-#include <mesh/vertex_cells.hpp>
 
 namespace hexhex {
 namespace {

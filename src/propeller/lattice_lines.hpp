@@ -5,9 +5,10 @@
 
 #include <cstdint>
 
+#include <adjacency/tet_topology.hpp>
+
 #include <hexhex/types.hpp>
 
-#include <igm/tet_topology.hpp>
 #include <lattice/rasterize.hpp>
 
 namespace hexhex {

@@ -5,7 +5,8 @@
 #include <array>
 #include <vector>
 
-#include <igm/edge_turn.hpp>
+#include <adjacency/edge_turn.hpp>
+
 #include <propeller/local_connectivity.hpp>
 
 namespace hexhex {

@@ -6,10 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <adjacency/tet_topology.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
-#include <igm/tet_topology.hpp>
 #include <lattice/direction.hpp>
 #include <propeller/lattice_lines.hpp>
 

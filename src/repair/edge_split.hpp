@@ -4,9 +4,10 @@
 #include <array>
 #include <span>
 
+#include <adjacency/tet_topology.hpp>
+
 #include <hexhex/types.hpp>
 
-#include <igm/tet_topology.hpp>
 #include <repair/map_backup.hpp>
 
 namespace hexhex {

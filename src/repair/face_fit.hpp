@@ -4,8 +4,9 @@
 #include <array>
 #include <vector>
 
+#include <adjacency/tet_topology.hpp>
+
 #include <igm/local_parameters.hpp>
-#include <igm/tet_topology.hpp>
 #include <lattice/transition.hpp>
 
 namespace hexhex {

@@ -4,7 +4,8 @@
 #include <span>
 #include <vector>
 
-#include <igm/tet_topology.hpp>
+#include <adjacency/tet_topology.hpp>
+
 #include <igm/vertex_star.hpp>
 
 namespace hexhex {

@@ -14,10 +14,11 @@
 #include <utility>
 #include <vector>
 
+#include <adjacency/tet_topology.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <igm/local_parameters.hpp>
-#include <igm/tet_topology.hpp>
 #include <lattice/transition.hpp>
 #include <repair/face_fit.hpp>
 #include <repair/patch.hpp>

@@ -3,8 +3,9 @@
 
 #include <vector>
 
+#include <adjacency/tet_topology.hpp>
+
 #include <igm/local_parameters.hpp>
-#include <igm/tet_topology.hpp>
 
 namespace hexhex {
 

@@ -1,7 +1,7 @@
+#include <adjacency/tet_topology.hpp>
 #include <gtest/gtest.h>
 
 #include <igm/passage.hpp>
-#include <igm/tet_topology.hpp>
 
 namespace hexhex {
 namespace {

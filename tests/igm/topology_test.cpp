@@ -7,11 +7,11 @@
 #include <set>
 #include <string>
 
+#include <adjacency/tet_topology.hpp>
 #include <gtest/gtest.h>
 
 #include <hexhex/check.hpp>
 
-#include <igm/tet_topology.hpp>
 #include <igm/topology_defects.hpp>
 
 #include "map_samples.hpp"

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include <adjacency/hex_topology.hpp>
 #include <gtest/gtest.h>
 
 #include <hexhex/curved.hpp>
@@ -21,7 +22,6 @@
 #include <base/vector3.hpp>
 #include <io/io_test_support.hpp>
 #include <io/other_programs.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex::test {
 namespace {

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
+#include <adjacency/hex_topology.hpp>
 #include <gtest/gtest.h>
 
 #include <hexhex/io.hpp>
 
 #include <io/io_test_support.hpp>
 #include <io/other_programs.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex::test {
 namespace {

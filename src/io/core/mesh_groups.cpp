@@ -5,12 +5,13 @@
 #include <optional>
 #include <span>
 
+#include <adjacency/boundary_quads.hpp>
+#include <adjacency/hex_topology.hpp>
+
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
 #include <io/core/mesh_groups.hpp>
-#include <mesh/boundary_quads.hpp>
-#include <mesh/hex_topology.hpp>
 #include <mesh/smooth_patches.hpp>
 
 namespace hexhex {

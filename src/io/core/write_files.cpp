@@ -3,6 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include <adjacency/vertex_cells.hpp>
+
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 
@@ -12,7 +14,6 @@
 #include <io/core/writable.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <mesh/smooth_patches.hpp>
-#include <mesh/vertex_cells.hpp>
 
 namespace hexhex {
 namespace {

@@ -4,11 +4,12 @@
 #include <string>
 #include <utility>
 
+#include <adjacency/hex_topology.hpp>
+
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
 #include <io/curved/lagrange_elements.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex {
 namespace {

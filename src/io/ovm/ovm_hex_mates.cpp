@@ -7,13 +7,14 @@
 #include <tuple>
 #include <vector>
 
+#include <adjacency/aligned_cells.hpp>
+#include <adjacency/hex_topology.hpp>
+#include <adjacency/vertex_lists.hpp>
+
 #include <base/parallel.hpp>
 #include <base/prefetch.hpp>
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_hex_mates.hpp>
-#include <mesh/aligned_cells.hpp>
-#include <mesh/hex_topology.hpp>
-#include <mesh/vertex_lists.hpp>
 
 namespace hexhex {
 namespace {

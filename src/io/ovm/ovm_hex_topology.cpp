@@ -7,13 +7,14 @@
 #include <cstdint>
 #include <utility>
 
+#include <adjacency/hex_topology.hpp>
+
 #include <base/parallel.hpp>
 #include <base/prefetch.hpp>
 #include <io/ovm/ovm_hex_mates.hpp>
 #include <io/ovm/ovm_hex_topology.hpp>
 #include <io/ovm/ovm_seam_edges.hpp>
 #include <io/ovm/ovm_topology.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex {
 namespace {

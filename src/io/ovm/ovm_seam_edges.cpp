@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <bit>
 
+#include <adjacency/hex_topology.hpp>
+
 #include <base/parallel.hpp>
 #include <io/ovm/ovm_seam_edges.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex {
 namespace {

@@ -6,10 +6,11 @@
 #include <cstdint>
 #include <span>
 
+#include <adjacency/vertex_lists.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
-#include <mesh/vertex_lists.hpp>
 
 namespace hexhex {
 

@@ -8,11 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include <adjacency/vertex_lists.hpp>
+
 #include <base/branchless.hpp>
 #include <base/parallel.hpp>
 #include <io/ovm/ovm_tet_topology.hpp>
 #include <io/ovm/ovm_topology.hpp>
-#include <mesh/vertex_lists.hpp>
 
 namespace hexhex {
 namespace {

@@ -8,6 +8,9 @@
 #include <system_error>
 #include <vector>
 
+#include <adjacency/face_neighbours.hpp>
+#include <adjacency/hex_topology.hpp>
+
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
@@ -17,8 +20,6 @@
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 #include <io/solvers/openfoam.hpp>
-#include <mesh/face_neighbours.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex {
 namespace {

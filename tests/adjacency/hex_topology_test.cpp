@@ -2,13 +2,13 @@
 #include <cmath>
 #include <utility>
 
+#include <adjacency/hex_topology.hpp>
 #include <gtest/gtest.h>
 
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
 #include <mesh/grid_meshes.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex {
 namespace {

@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <map>
 
+#include <adjacency/boundary_quads.hpp>
+#include <adjacency/hex_topology.hpp>
 #include <gtest/gtest.h>
 
 #include <base/parallel.hpp>
-#include <mesh/boundary_quads.hpp>
 #include <mesh/grid_meshes.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex {
 namespace {

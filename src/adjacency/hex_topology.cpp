@@ -4,9 +4,10 @@
 #include <compare>
 #include <vector>
 
+#include <adjacency/hex_topology.hpp>
+
 #include <base/disjoint_sets.hpp>
 #include <base/parallel.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex {
 namespace {

@@ -4,11 +4,12 @@
 #include <string>
 #include <vector>
 
+#include <adjacency/face_neighbours.hpp>
+#include <adjacency/hex_topology.hpp>
+
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
-#include <mesh/face_neighbours.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <igm/face_matching.hpp>
+#include <adjacency/tet_topology.hpp>
 
 namespace hexhex {
 

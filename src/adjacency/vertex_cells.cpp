@@ -3,10 +3,11 @@
 #include <atomic>
 #include <string>
 
+#include <adjacency/vertex_cells.hpp>
+
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
-#include <mesh/vertex_cells.hpp>
 
 namespace hexhex {
 namespace {

@@ -12,10 +12,11 @@
 #include <span>
 #include <vector>
 
+#include <adjacency/aligned_cells.hpp>
+#include <adjacency/boundary_quads.hpp>
+#include <adjacency/hex_topology.hpp>
+
 #include <base/parallel.hpp>
-#include <mesh/aligned_cells.hpp>
-#include <mesh/boundary_quads.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex {
 namespace {

@@ -7,11 +7,12 @@
 #include <span>
 #include <vector>
 
+#include <adjacency/corner_order.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
-#include <igm/corner_order.hpp>
-#include <igm/defects.hpp>
+#include <base/stage.hpp>
 #include <lattice/tet_geometry.hpp>
 
 namespace hexhex {
@@ -137,12 +138,10 @@ class SharedFace {
   return static_cast<CornerMask>(result);
 }
 
-/// Builds adjacency through faces; defects are collected. After a defect the result must not be
-/// used. Faces are checked here (non-manifold, inconsistent orientation); that edges and vertices
-/// are manifold is for computeSingularities() to find out.
-/// @param map  has passed checkInput()
-[[nodiscard]] TetTopology buildTopology(const TetMapView& map, Stage& stage,
-                                        DefectCollector& defects);
+/// Finds the neighbour of each tet across each of its faces: fills `mate`, `vertexTet` and `order`.
+/// @return false if a triangle belongs to more than two tets, or if two tets at one do not see it
+///         with opposite orientation; nothing may then be made of the result but a list of defects
+[[nodiscard]] bool matchFaces(TetTopology& topology, Stage& stage);
 
 /// Lists the corners at each vertex. Does nothing if they are listed.
 void addStars(TetTopology& topology, Stage& stage);

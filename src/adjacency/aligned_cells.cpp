@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <atomic>
 
+#include <adjacency/aligned_cells.hpp>
+
 #include <base/parallel.hpp>
-#include <mesh/aligned_cells.hpp>
 
 namespace hexhex {
 

@@ -1,7 +1,7 @@
 // Around an edge of the tet mesh.
 #pragma once
 
-#include <igm/tet_topology.hpp>
+#include <adjacency/tet_topology.hpp>
 
 namespace hexhex {
 

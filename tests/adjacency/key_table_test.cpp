@@ -3,9 +3,8 @@
 #include <rapidcheck.h>
 #include <vector>
 
+#include <adjacency/key_table.hpp>
 #include <gtest/gtest.h>
-
-#include <igm/key_table.hpp>
 
 namespace hexhex {
 namespace {

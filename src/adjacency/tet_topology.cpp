@@ -1,9 +1,7 @@
 #include <atomic>
 
-#include <igm/edge_turn.hpp>
-#include <igm/face_matching.hpp>
-#include <igm/tet_topology.hpp>
-#include <igm/topology_defects.hpp>
+#include <adjacency/edge_turn.hpp>
+#include <adjacency/tet_topology.hpp>
 
 namespace hexhex {
 
@@ -24,14 +22,6 @@ void collectEdges(const TetTopology& topology, Index v, std::vector<Index>& ends
 }
 
 }  // namespace
-
-TetTopology buildTopology(const TetMapView& map, Stage& stage, DefectCollector& defects) {
-  TetTopology topology;
-  topology.tets = map.tets;
-  topology.pointCount = map.points.size();
-  if (!matchFaces(topology, stage)) collectTopologyDefects(topology, stage, defects);
-  return topology;
-}
 
 /// Counting sort; sorted afterwards, as threads fill in any order.
 void addStars(TetTopology& topology, Stage& stage) {

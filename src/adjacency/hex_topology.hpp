@@ -9,11 +9,12 @@
 #include <cstdint>
 #include <map>
 
+#include <adjacency/vertex_cells.hpp>
+
 #include <hexhex/structure.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
-#include <mesh/vertex_cells.hpp>
 
 namespace hexhex {
 

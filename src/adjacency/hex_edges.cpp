@@ -5,11 +5,12 @@
 #include <string>
 #include <vector>
 
+#include <adjacency/hex_topology.hpp>
+
 #include <hexhex/error.hpp>
 
 #include <base/disjoint_sets.hpp>
 #include <base/parallel.hpp>
-#include <mesh/hex_topology.hpp>
 
 namespace hexhex {
 namespace {
