@@ -6,6 +6,8 @@
 #include <hexhex/adapters/eigen.hpp>
 #include <hexhex/hexhex.hpp>
 
+#include "support/error_of.hpp"
+
 namespace hexhex {
 namespace {
 
@@ -61,9 +63,13 @@ TEST(EigenAdapter, ReadsMapsOfAnyLayout) {
 
 TEST(EigenAdapter, RefusesShapesAndIndices) {
   Matrices<Eigen::MatrixXd, Eigen::MatrixXi> m(generateSample(SampleKind::Box).map);
-  EXPECT_THROW(static_cast<void>(fromEigen(m.wide, m.tets, m.wide)), Error);
-  EXPECT_THROW(static_cast<void>(fromEigen(m.points, m.points.cast<int>(), m.wide)), Error);
-  EXPECT_THROW(static_cast<void>(fromEigen(m.points, m.tets, m.points)), Error);
+  EXPECT_EQ(test::codeOf([&] { static_cast<void>(fromEigen(m.wide, m.tets, m.wide)); }),
+            ErrorCode::InvalidArgument);
+  EXPECT_EQ(
+      test::codeOf([&] { static_cast<void>(fromEigen(m.points, m.points.cast<int>(), m.wide)); }),
+      ErrorCode::InvalidArgument);
+  EXPECT_EQ(test::codeOf([&] { static_cast<void>(fromEigen(m.points, m.tets, m.points)); }),
+            ErrorCode::InvalidArgument);
   m.tets(3, 2) = -1;
   try {
     static_cast<void>(fromEigen(m.points, m.tets, m.wide));
@@ -87,7 +93,7 @@ TEST(EigenAdapter, ShowsMeshesWithoutACopyAndCopiesThem) {
   EXPECT_EQ(cells(7, 3), static_cast<int>(mesh.cells[7][3]));
   EXPECT_EQ(pointRows(HexMesh{}).rows(), 0);
   Eigen::Matrix<std::int8_t, Eigen::Dynamic, 8> tooNarrow;
-  EXPECT_THROW(toEigen(mesh, points, tooNarrow), Error);
+  EXPECT_EQ(test::codeOf([&] { toEigen(mesh, points, tooNarrow); }), ErrorCode::TooLarge);
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 #include <hexhex/hexhex.hpp>
 
+#include "support/error_of.hpp"
+
 namespace hexhex {
 namespace {
 
@@ -69,8 +71,11 @@ TEST(Extractor, GivesOtherOrdersAndOutputsLikeTheFunctions) {
       EXPECT_EQ(pieces.arcs.points, expectedPieces.arcs.points);
       EXPECT_EQ(pieces.patches.corners, expectedPieces.patches.corners);
     }
-    EXPECT_THROW(static_cast<void>(extractor.extractLagrange(2, {.scale = 33}, context)), Error);
-    EXPECT_THROW(static_cast<void>(extractor.extractLagrange(10, {}, context)), Error);
+    EXPECT_EQ(test::codeOf(
+                  [&] { static_cast<void>(extractor.extractLagrange(2, {.scale = 33}, context)); }),
+              ErrorCode::InvalidArgument);
+    EXPECT_EQ(test::codeOf([&] { static_cast<void>(extractor.extractLagrange(10, {}, context)); }),
+              ErrorCode::InvalidArgument);
   }
 }
 

@@ -8,6 +8,8 @@
 #include <hexhex/adapters/openvolumemesh.hpp>
 #include <hexhex/hexhex.hpp>
 
+#include "support/error_of.hpp"
+
 namespace hexhex {
 namespace {
 
@@ -79,7 +81,7 @@ TEST(OpenVolumeMeshAdapter, RefusesAFaceOfThreeCells) {
   mesh.points.resize(8, Vec3{});
   mesh.cells.resize(3, Hex{0, 1, 2, 3, 4, 5, 6, 7});
   LookAlike out;
-  EXPECT_THROW(toOpenVolumeMesh(mesh, out), Error);
+  EXPECT_EQ(test::codeOf([&] { toOpenVolumeMesh(mesh, out); }), ErrorCode::NonManifoldFace);
 }
 
 }  // namespace

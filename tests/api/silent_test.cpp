@@ -8,6 +8,8 @@
 
 #include <hexhex/hexhex.hpp>
 
+#include "support/error_of.hpp"
+
 namespace hexhex {
 namespace {
 
@@ -47,11 +49,13 @@ void useEverything(const std::filesystem::path& folder) {
   TetMap broken = readMap(folder / "map.hexex");
   broken.parameters[0][0] = broken.parameters[0][1];
   EXPECT_FALSE(check(broken).valid());
-  EXPECT_THROW(static_cast<void>(extract(broken)), Error);
-  EXPECT_THROW(static_cast<void>(extract(map, {.epsilon = -1})), Error);
+  EXPECT_EQ(test::codeOf([&] { static_cast<void>(extract(broken)); }), ErrorCode::FlippedTet);
+  EXPECT_EQ(test::codeOf([&] { static_cast<void>(extract(map, {.epsilon = -1})); }),
+            ErrorCode::InvalidArgument);
   Context cancelled;
   cancelled.cancel();
-  EXPECT_THROW(static_cast<void>(extract(map, {}, cancelled)), Error);
+  EXPECT_EQ(test::codeOf([&] { static_cast<void>(extract(map, {}, cancelled)); }),
+            ErrorCode::Cancelled);
   for (const Engine engine : {Engine::Atlas, Engine::Propeller}) {
     // An epsilon of zero makes the second engine start over.
     const HexMesh mesh = extract(map, {.engine = engine, .scale = 2, .epsilon = 0});
@@ -72,7 +76,7 @@ void useEverything(const std::filesystem::path& folder) {
   if (canRepair()) {
     EXPECT_TRUE(check(repair(bad)).valid());
     broken.parameters.resize(1);
-    EXPECT_THROW(static_cast<void>(repair(broken)), Error);
+    EXPECT_EQ(test::codeOf([&] { static_cast<void>(repair(broken)); }), ErrorCode::InvalidArgument);
   }
   const auto pieces =
       extractPiecewiseLinear(map, PiecewiseLinearParts::ArcsAndPatches, {}, context);
@@ -82,8 +86,10 @@ void useEverything(const std::filesystem::path& folder) {
   extractToFile(folder / "stream.vtu", map, {}, context);
   EXPECT_EQ(surveyFile(folder / "stream.vtu", context), survey(pieces.mesh, context));
   EXPECT_GT(findMapStructure(map, 1e-2, context).singularEdges.size(), 0U);
-  EXPECT_THROW(static_cast<void>(readMap(folder / "m.vtu")), Error);
-  EXPECT_THROW(static_cast<void>(readHexMesh(folder / "none.mesh")), Error);
+  EXPECT_EQ(test::codeOf([&] { static_cast<void>(readMap(folder / "m.vtu")); }),
+            ErrorCode::FileUnsupported);
+  EXPECT_EQ(test::codeOf([&] { static_cast<void>(readHexMesh(folder / "none.mesh")); }),
+            ErrorCode::FileNotFound);
 }
 
 TEST(Library, PrintsNothing) {

@@ -13,6 +13,7 @@
 #include <hexhex/io.hpp>
 
 #include "map_samples.hpp"
+#include "support/error_of.hpp"
 
 namespace hexhex {
 namespace {
@@ -430,12 +431,7 @@ TEST(Check, FindsHalfIntegerFixedPointsOfADeniedLine) {
 TEST(Check, RejectsArgumentsOutOfRange) {
   const TetMap map = generateSample(SampleKind::Box).map;
   const auto codeOf = [](const TetMapView& view, const CheckOptions& options) {
-    try {
-      (void)check(view, options);
-    } catch (const Error& error) {
-      return error.code();
-    }
-    return ErrorCode::Internal;
+    return test::codeOf([&] { static_cast<void>(check(view, options)); });
   };
   for (const double tolerance : {std::numeric_limits<double>::quiet_NaN(), -1.0, 0.25, 1e300}) {
     EXPECT_EQ(codeOf(map, {.tolerance = tolerance}), ErrorCode::InvalidArgument);

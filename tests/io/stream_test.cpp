@@ -15,6 +15,8 @@
 #include <io/file_size_limit.hpp>
 #include <io/io_test_support.hpp>
 
+#include "support/collecting_sink.hpp"
+
 namespace hexhex::test {
 namespace {
 
@@ -152,42 +154,6 @@ TEST(Stream, EmptyMeshes) {
   }
 }
 
-/// Gathers what comes into a mesh again.
-class Collector : public MeshSink {
- public:
-  HexMesh mesh;
-  bool ended = false;
-  std::size_t largestPiece = 0;
-
-  void begin(std::uint64_t pointCount, std::uint64_t cellCount) override {
-    mesh.points.reserve(pointCount);
-    cellCount_ = cellCount;
-  }
-  void points(const PointPiece& piece) override {
-    EXPECT_EQ(piece.first, mesh.points.size());
-    largestPiece = std::max(largestPiece, piece.points.size());
-    mesh.points.insert(mesh.points.end(), piece.points.begin(), piece.points.end());
-    mesh.generatorTet.insert(mesh.generatorTet.end(), piece.generatorTet.begin(),
-                             piece.generatorTet.end());
-    mesh.generatorCorners.insert(mesh.generatorCorners.end(), piece.generatorCorners.begin(),
-                                 piece.generatorCorners.end());
-  }
-  void cells(std::uint64_t first, std::span<const Hex> cells) override {
-    EXPECT_EQ(first, mesh.cells.size());
-    mesh.cells.insert(mesh.cells.end(), cells.begin(), cells.end());
-  }
-  void cells(std::uint64_t /*first*/, std::span<const Hex64> /*cells*/) override {
-    ADD_FAILURE() << "wide cells of a small mesh";
-  }
-  void end() override {
-    EXPECT_EQ(mesh.cells.size(), cellCount_);
-    ended = true;
-  }
-
- private:
-  std::uint64_t cellCount_ = 0;
-};
-
 TEST(Stream, ReadingInPiecesGivesTheMeshBack) {
   const TemporaryFolder folder;
   Random random(29);
@@ -199,7 +165,7 @@ TEST(Stream, ReadingInPiecesGivesTheMeshBack) {
     }
     writeHexMesh(mesh, folder / name);
     Context context;
-    Collector collector;
+    CollectingSink collector;
     readHexMeshTo(collector, folder / name, context);
     EXPECT_TRUE(collector.ended);
     expectSameBits(collector.mesh.points, mesh.points);
@@ -234,7 +200,7 @@ TEST(Stream, OtherCellsAreSkipped) {
   const std::size_t place = text.rfind(types);
   for (const std::size_t i : {0U, 4U, 5U, 11U}) text[place + i] = 11;  // voxels
   writeText(folder / "b.vtu", text);
-  Collector collector;
+  CollectingSink collector;
   Context context;
   readHexMeshTo(collector, folder / "b.vtu", context);
   EXPECT_EQ(collector.mesh.cells.size(), 8U);
@@ -269,7 +235,7 @@ TEST(Stream, DamagedFilesAreRefusedInPiecesToo) {
     };
     const std::string whole = outcome([&] { static_cast<void>(readHexMesh(folder / "b.vtu")); });
     const std::string pieces = outcome([&] {
-      Collector collector;
+      CollectingSink collector;
       Context context;
       readHexMeshTo(collector, folder / "b.vtu", context);
     });

@@ -13,6 +13,7 @@
 #include "repair/edge_split.hpp"
 #include "repair/map_backup.hpp"
 #include "repair/same_connectivity.hpp"
+#include "support/error_of.hpp"
 
 namespace hexhex::test {
 
@@ -46,13 +47,8 @@ TetMap joined(TetMap first, const TetMap& second) {
   return first;
 }
 
-Error errorOf(const TetMap& map) {
-  try {
-    static_cast<void>(repair(map));
-  } catch (const Error& error) {
-    return error;
-  }
-  return {ErrorCode::Internal, "no error"};
+Error errorOfRepair(const TetMap& map) {
+  return test::errorOf([&] { static_cast<void>(repair(map)); });
 }
 
 class HostileMaps : public ::testing::Test {
@@ -66,7 +62,7 @@ TEST_F(HostileMaps, WithAnInvertedComponentAreRefused) {
   TetMap map = joined(sphere(4), sphere(2));
   const std::size_t first = sphere(4).tets.size();
   mirror(map, first, map.tets.size());
-  const Error error = errorOf(map);
+  const Error error = errorOfRepair(map);
   EXPECT_EQ(error.code(), ErrorCode::FlippedTet);
   EXPECT_NE(std::string(error.what()).find("component"), std::string::npos) << error.what();
   EXPECT_EQ(error.place().kind, PlaceKind::Tet);
@@ -76,7 +72,7 @@ TEST_F(HostileMaps, WithAnInvertedComponentAreRefused) {
 TEST_F(HostileMaps, WithAnInvertedBlockAreRefused) {
   TetMap map = sphere(5);
   mirror(map, 0, map.tets.size() / 7);
-  const Error error = errorOf(map);
+  const Error error = errorOfRepair(map);
   EXPECT_EQ(error.code(), ErrorCode::FlippedTet);
   EXPECT_NE(std::string(error.what()).find("region"), std::string::npos) << error.what();
   EXPECT_LT(error.place().index, map.tets.size() / 7);
@@ -85,18 +81,18 @@ TEST_F(HostileMaps, WithAnInvertedBlockAreRefused) {
 TEST_F(HostileMaps, WithoutAnySenseAreRefused) {
   TetMap map = sphere(2);
   for (TetParameters& corners : map.parameters) corners = {};
-  EXPECT_EQ(errorOf(map).code(), ErrorCode::FlippedTet);
+  EXPECT_EQ(errorOfRepair(map).code(), ErrorCode::FlippedTet);
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> anywhere(-5, 5);
   for (TetParameters& corners : map.parameters) {
     for (Vec3& u : corners) u = {anywhere(random), anywhere(random), anywhere(random)};
   }
-  EXPECT_EQ(errorOf(map).code(), ErrorCode::FlippedTet);
+  EXPECT_EQ(errorOfRepair(map).code(), ErrorCode::FlippedTet);
   map.parameters[3][1][2] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(errorOf(map).code(), ErrorCode::NotFinite);
+  EXPECT_EQ(errorOfRepair(map).code(), ErrorCode::NotFinite);
   map.parameters[3][1][2] = 1e12;
-  EXPECT_EQ(errorOf(map).code(), ErrorCode::TooLarge);
-  EXPECT_EQ(errorOf({}).code(), ErrorCode::EmptyMesh);
+  EXPECT_EQ(errorOfRepair(map).code(), ErrorCode::TooLarge);
+  EXPECT_EQ(errorOfRepair({}).code(), ErrorCode::EmptyMesh);
 }
 
 TEST_F(HostileMaps, OfOneTetAreRefused) {
@@ -104,7 +100,7 @@ TEST_F(HostileMaps, OfOneTetAreRefused) {
   map.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   map.tets = {{0, 1, 2, 3}};
   map.parameters = {{Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}};
-  EXPECT_EQ(errorOf(map).code(), ErrorCode::FlippedTet);
+  EXPECT_EQ(errorOfRepair(map).code(), ErrorCode::FlippedTet);
 }
 
 /// Damage in two components, with more and less than one thread per place.

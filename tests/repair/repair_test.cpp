@@ -12,6 +12,7 @@
 
 #include "extract/support.hpp"
 #include "repair/same_connectivity.hpp"
+#include "support/error_of.hpp"
 
 namespace hexhex::test {
 
@@ -258,7 +259,7 @@ TEST_F(Repairs, SplitEdgesOfLockedTets) {
   EXPECT_TRUE(sameConnectivity(verifiedExtraction(repaired), extract(sound)));
   RepairOptions unrefined;
   unrefined.refine = false;
-  EXPECT_THROW(static_cast<void>(repair(locked, unrefined)), Error);
+  EXPECT_EQ(codeOf([&] { static_cast<void>(repair(locked, unrefined)); }), ErrorCode::FlippedTet);
 }
 
 TEST_F(Repairs, RoundWhatIsNearlyOnTheGridIfAsked) {
@@ -284,7 +285,7 @@ TEST_F(Repairs, RoundWhatIsNearlyOnTheGridIfAsked) {
   forEachCornerAt(map, vertices[0], [&](Vec3& u) { u[0] += 0.15; });
   RepairOptions round;
   round.round = true;
-  EXPECT_THROW(static_cast<void>(repair(map, round)), Error);
+  EXPECT_EQ(codeOf([&] { static_cast<void>(repair(map, round)); }), ErrorCode::BoundaryOffLattice);
 }
 
 TEST_F(Repairs, GuessNoIntegers) {

@@ -25,6 +25,8 @@
 #include <view/surface_nodes.hpp>
 #include <view/table_codec.hpp>
 
+#include "support/error_of.hpp"
+
 namespace hexhex {
 namespace {
 
@@ -322,13 +324,16 @@ TEST_F(Page, HoldsCurvedCells) {
   EXPECT_TRUE(contains(page.html, "\"vertices\":27"));
   LagrangeMesh broken = mesh;
   broken.nodes[13] = 1000;
-  EXPECT_THROW(makeServedPage(broken, "/mesh", {}, context), Error);
+  EXPECT_EQ(test::codeOf([&] { static_cast<void>(makeServedPage(broken, "/mesh", {}, context)); }),
+            ErrorCode::InvalidArgument);
   broken = mesh;
   broken.vertexCount = 5;
-  EXPECT_THROW(makeServedPage(broken, "/mesh", {}, context), Error);
+  EXPECT_EQ(test::codeOf([&] { static_cast<void>(makeServedPage(broken, "/mesh", {}, context)); }),
+            ErrorCode::InvalidArgument);
   broken = mesh;
   broken.nodes.pop_back();
-  EXPECT_THROW(makeServedPage(broken, "/mesh", {}, context), Error);
+  EXPECT_EQ(test::codeOf([&] { static_cast<void>(makeServedPage(broken, "/mesh", {}, context)); }),
+            ErrorCode::InvalidArgument);
 }
 
 TEST(ServedPage, HasTheMeshApart) {
