@@ -143,6 +143,19 @@ const std::vector<BenchMap>& densityMaps() {
   return maps;
 }
 
+const std::vector<BenchMap>& ablationMaps() {
+  static const std::vector<BenchMap> maps = [] {
+    std::vector<BenchMap> all = benchMaps();
+    std::erase_if(all, [](const BenchMap& map) { return map.name.ends_with("_million"); });
+    BenchMap large = scalableSphere();
+    large.scale = 12;
+    large.name += "_x12";
+    all.push_back(large);
+    return all;
+  }();
+  return maps;
+}
+
 const BenchMap& middleMap() {
   static const BenchMap map =
       generated("sphere_blocks_middle", SampleKind::Sphere, ChartStyle::Blocks, 47, 12);

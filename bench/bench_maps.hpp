@@ -27,6 +27,10 @@ struct BenchMap {
 /// cells at scale 1.
 [[nodiscard]] const std::vector<BenchMap>& scalableMaps();
 
+/// Maps on which ways of working are compared: those of benchMaps() without a million tets, and the
+/// generated one of scalableMaps() at a large scale.
+[[nodiscard]] const std::vector<BenchMap>& ablationMaps();
+
 /// Generated maps of one kind, from 0.01 to 1000 hexahedra per tet.
 [[nodiscard]] const std::vector<BenchMap>& densityMaps();
 

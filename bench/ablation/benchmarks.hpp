@@ -1,5 +1,5 @@
-// What main registers: single steps beside alternatives to them, with one thread. Names are
-// FAMILY/MAP/scale:S/method:M.
+// What main registers. Single steps beside alternatives to them, with one thread, are named
+// FAMILY/MAP/scale:S/method:M, whole extractions ablation/MAP/switch:NAME/threads:T.
 #pragma once
 
 namespace hexhex::bench {
@@ -9,5 +9,8 @@ void registerRasterization();
 
 /// lookup/: the hex vertex at a grid point of a tet by different tables.
 void registerLookup();
+
+/// ablation/: whole extractions with a second way and without it.
+void registerSwitches();
 
 }  // namespace hexhex::bench

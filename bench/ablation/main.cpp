@@ -1,4 +1,5 @@
-// Comparisons of single steps, inside the library. See docs/performance.md.
+// Comparisons of ways to do the same, inside the library. See docs/performance.md,
+// docs/ablation.md.
 #include <benchmark/benchmark.h>
 
 #include "ablation/benchmarks.hpp"
@@ -8,6 +9,7 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   hexhex::bench::registerRasterization();
   hexhex::bench::registerLookup();
+  hexhex::bench::registerSwitches();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -11,7 +11,7 @@ def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="bench/evaluate")
     parser.add_argument("--build", type=Path, required=True, help="build directory")
     parser.add_argument("--out", type=Path, required=True, help="folder for measured figures")
-    parser.add_argument("--docs", type=Path, required=True, help="folder of performance.md")
+    parser.add_argument("--docs", type=Path, required=True, help="folder of performance.md and ablation.md")
     parser.add_argument("--quick", action="store_true", help="few repetitions of less")
     parser.add_argument("--only", default="", metavar="STEP,...", help="measure these anew")
     parser.add_argument("--no-run", action="store_true", help="only draw and write")
@@ -27,9 +27,8 @@ def main() -> None:
     about = json.loads((arguments.out / "machine.json").read_text(encoding="utf-8"))
     for path in plots.draw_all(runs, arguments.docs / "images"):
         print(f"  {path}")
-    text = arguments.docs / "performance.md"
-    missing = document.rewrite(text, runs, about)
-    print(f"  {text}")
+    missing = document.rewrite(arguments.docs, runs, about)
+    print(f"  {arguments.docs / 'performance.md'}, {arguments.docs / 'ablation.md'}")
     if missing:
         print(f"  Without figures: {', '.join(missing)}")
 

@@ -1,4 +1,4 @@
-"""Rewrites the generated parts of docs/performance.md: what stands between
+"""Rewrites the generated parts of docs/performance.md and docs/ablation.md: what stands between
 `<!-- begin:NAME -->` and `<!-- end -->`."""
 
 import re
@@ -11,8 +11,12 @@ from evaluation.results import Run
 PART = re.compile(r"(<!-- begin:([a-z-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
-def _parts(runs: list[Run], about: dict[str, str]) -> dict[str, Callable[[], str]]:
-    return {
+Parts = dict[str, Callable[[], str]]
+
+
+def _parts(runs: list[Run], about: dict[str, str]) -> dict[str, Parts]:
+    """By page."""
+    return {"performance.md": {
         "machine": lambda: tables.machine(about) + "\n" + tables.spread(runs),
         "table-engines": lambda: tables.engines(runs),
         "table-extraction": lambda: tables.extraction(runs, "atlas"),
@@ -28,12 +32,19 @@ def _parts(runs: list[Run], about: dict[str, str]) -> dict[str, Callable[[], str
         "table-lookup": lambda: tables.lookup(runs),
         "table-reference": lambda: tables.orientation(runs),
         "table-files": lambda: tables.others(runs),
-    }
+    }, "ablation.md": {
+        "machine-of-ablation": lambda: tables.machine(about),
+        "table-ablation": lambda: tables.ablation(runs),
+    }}
 
 
-def rewrite(document: Path, runs: list[Run], about: dict[str, str]) -> list[str]:
+def rewrite(folder: Path, runs: list[Run], about: dict[str, str]) -> list[str]:
     """@return the names of parts for which there are no figures"""
-    parts = _parts(runs, about)
+    return [part for page, parts in _parts(runs, about).items()
+            for part in _rewrite_page(folder / page, parts)]
+
+
+def _rewrite_page(document: Path, parts: Parts) -> list[str]:
     missing = []
 
     def replacement(match: re.Match[str]) -> str:

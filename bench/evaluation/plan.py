@@ -29,10 +29,11 @@ FULL = [
     Step("epsilon", BENCH, "^epsilon/", 5),
     Step("rasterization", ABLATION, "^rasterization/", 5),
     Step("lookup", ABLATION, "^lookup/", 5),
+    Step("ablation", ABLATION, "^ablation/", 7),
     Step("mesh", BENCH, "^(quality|verify)/", 5),
     Step("files", BENCH, "^(read|write|copy|survey)_", 3),
 ]
-FULL_TEXT = ("full: medians of five repetitions; of three at scales above 8, and of files; extraction "
+FULL_TEXT = ("full: medians of five repetitions, of seven for ablations, of three at scales above 8, and of files; extraction "
              "in three rounds")
 
 QUICK = [
@@ -43,6 +44,7 @@ QUICK = [
     Step("epsilon", BENCH, "^epsilon/", 1, 0.01),
     Step("rasterization", ABLATION, "^rasterization/.*/scale:[1-8]/", 1, 0.01),
     Step("lookup", ABLATION, "^lookup/.*/scale:[1-8]/", 1, 0.01),
+    Step("ablation", ABLATION, "^ablation/(sphere_blocks_(low|middle)|s17c)", 3, 0.01),
     Step("mesh", BENCH, "^(quality|verify)/", 1, 0.01),
     Step("files", BENCH, "^(read|write|copy|survey)_", 1, 0.01),
 ]

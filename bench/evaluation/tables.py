@@ -1,7 +1,9 @@
-"""The tables of docs/performance.md. Each function returns "" if there are no figures for it."""
+"""The tables of docs/performance.md and docs/ablation.md. Each function returns "" if there are no
+figures for it."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from statistics import geometric_mean
 
 from evaluation.markdown import MISSING, number, table
 from evaluation.results import Run, select
@@ -193,7 +195,29 @@ def lookup(runs: list[Run]) -> str:
                   "hash / table", "list / table"], rows)
 
 
-EXTRACTIONS = ("extract", "scale", "density", "epsilon", "rasterization", "lookup")
+def ablation(runs: list[Run]) -> str:
+    """What whole extractions take without a second way, as a share of what they take with it."""
+    found = select(runs, "ablation")
+    by_map: dict[str, dict[str, Run]] = {}
+    for run in found:
+        by_map.setdefault(run.map, {})[run.keys["switch"]] = run
+    switches = list(dict.fromkeys(run.keys["switch"] for run in found))
+    if not by_map:
+        return ""
+
+    def cell(run: Run | None) -> str:
+        return f"{run['cpu_ratio']:.3f}" if run else MISSING
+
+    rows = [[name, number(next(iter(of_map.values())).density),
+             *(cell(of_map.get(switch)) for switch in switches)]
+            for name, of_map in by_map.items()]
+    mean = [f"{geometric_mean([run['cpu_ratio'] for run in found if run.keys['switch'] == switch]):.3f}"
+            for switch in switches]
+    return table(["map", "hexes per tet", *switches],
+                 [*rows, ["geometric mean", MISSING, *mean]])
+
+
+EXTRACTIONS = ("extract", "scale", "density", "epsilon", "rasterization", "lookup", "ablation")
 
 
 def others(runs: list[Run]) -> str:

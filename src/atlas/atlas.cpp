@@ -29,12 +29,12 @@ void requireExpected(std::uint64_t cells, std::uint64_t expected) {
 template <class Id>
 class Atlas {
  public:
-  Atlas(const PreparedMap& map, bool keepLines, Context& context, const AtlasOptions& options)
+  Atlas(const PreparedMap& map, bool keepLines, Context& context, const EngineSwitches& switches)
       : map_(map),
         vertices_(map, charts_, keepLines),
         cells_(map.topology.tetCount(), keepLines),
         context_(context),
-        options_(options) {
+        switches_(switches) {
     Stage stage(context, "charts");
     charts_ = buildCharts(map, stage);
   }
@@ -57,11 +57,11 @@ class Atlas {
     OverlapCounts overlaps;
     {
       Stage stage(context_, "overlaps");
-      if (options_.resolveOverlaps) overlaps = vertices_.resolveOverlaps(stage);
+      if (switches_.resolveOverlaps) overlaps = vertices_.resolveOverlaps(stage);
     }
     statistics.overlappingTets = overlaps.tets;
     Stage stage(context_, "cuts");
-    if (options_.markCuts) {
+    if (switches_.markCuts) {
       const bool onlyJumps = overlaps.tets == 0 && charts_.identitiesAgree;
       Cuts cuts = markCutCells(map_, charts_, onlyJumps, vertices_.grid(), stage);
       statistics.cutFaces = cuts.faces;
@@ -85,7 +85,7 @@ class Atlas {
   CellSeeds cells_;
   Jumps jumps_;
   Context& context_;
-  AtlasOptions options_;
+  EngineSwitches switches_;
 };
 
 /// Emits cells by as many emitters as work at the same time; they remember much of what they saw.
@@ -224,9 +224,9 @@ void streamFrom(Atlas<Id>& atlas, const PreparedMap& map, MeshSink& sink, Contex
 }  // namespace
 
 HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& context,
-                 ExtractStatistics& statistics, const AtlasOptions& options,
+                 ExtractStatistics& statistics, const EngineSwitches& switches,
                  SweepObserver* observer) {
-  Atlas<Index> atlas(map, true, context, options);
+  Atlas<Index> atlas(map, true, context, switches);
   const std::uint64_t count = atlas.sweep(expectedCells, observer);
   if (count > kMaxNarrowVertices) {
     throw Error(ErrorCode::TooLarge,
@@ -246,15 +246,15 @@ HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& c
 }
 
 void streamAtlas(const PreparedMap& map, std::uint64_t expectedCells, MeshSink& sink,
-                 Context& context, ExtractStatistics& statistics, const AtlasOptions& options) {
-  if (!options.wideIds) {
-    Atlas<std::uint32_t> atlas(map, false, context, options);
+                 Context& context, ExtractStatistics& statistics, const EngineSwitches& switches) {
+  if (!switches.wideIds) {
+    Atlas<std::uint32_t> atlas(map, false, context, switches);
     if (atlas.sweep(expectedCells) <= kMaxNarrowVertices) {
       streamFrom(atlas, map, sink, context, statistics);
       return;
     }
   }
-  Atlas<std::uint64_t> atlas(map, false, context, options);
+  Atlas<std::uint64_t> atlas(map, false, context, switches);
   static_cast<void>(atlas.sweep(expectedCells));
   streamFrom(atlas, map, sink, context, statistics);
 }

@@ -15,27 +15,23 @@
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
+#include <base/switches.hpp>
 #include <igm/prepare.hpp>
 #include <sweep/sweep_observer.hpp>
 
 namespace hexhex {
-
-/// For tests: each of these must make a difference.
-struct AtlasOptions {
-  bool resolveOverlaps = true;
-  bool markCuts = true;
-  bool wideIds = false;  ///< numbers vertices with 64 bits even if 32 would do (streaming)
-};
 
 /// Extracts the mesh of a map that has passed all checks and is scaled.
 /// @param expectedCells  the map's parametric volume
 /// @param observer       sees the tets that are swept, if there is one
 [[nodiscard]] HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells,
                                Context& context, ExtractStatistics& statistics,
-                               const AtlasOptions& options = {}, SweepObserver* observer = nullptr);
+                               const EngineSwitches& switches = {},
+                               SweepObserver* observer = nullptr);
 
 /// The same in pieces.
 void streamAtlas(const PreparedMap& map, std::uint64_t expectedCells, MeshSink& sink,
-                 Context& context, ExtractStatistics& statistics, const AtlasOptions& options = {});
+                 Context& context, ExtractStatistics& statistics,
+                 const EngineSwitches& switches = {});
 
 }  // namespace hexhex

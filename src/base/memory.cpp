@@ -1,9 +1,11 @@
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <new>
 
 #include <hexhex/types.hpp>
 
+#include <base/memory.hpp>
 #include <base/page_pool.hpp>
 
 #if defined(__linux__)
@@ -34,6 +36,8 @@ constexpr bool kPooled = true;
 #else
 constexpr bool kPooled = true;
 #endif
+
+std::atomic<bool> hugePages{true};
 
 /// Never destroyed, as arrays may live until the end of the program.
 PagePool& pool() {
@@ -74,15 +78,16 @@ void* allocateLarge(std::size_t bytes) {
 }  // namespace
 
 void* allocateArray(std::size_t bytes) {
+  const bool huge = hugePages.load(std::memory_order_relaxed);
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
-  if (bytes >= kLarge) return allocateLarge(bytes);
+  if (huge && bytes >= kLarge) return allocateLarge(bytes);
 #endif
-  if (isPooled(bytes)) {
+  if (huge && isPooled(bytes)) {
     if (void* const memory = pool().allocate(bytes, bytes >= kManyMorePages)) return memory;
   }
   void* const memory = std::malloc(bytes == 0 ? 1 : bytes);
   if (memory == nullptr) throw std::bad_alloc();
-  if (bytes >= kManyPages) populate(memory, bytes);
+  if (huge && bytes >= kManyPages) populate(memory, bytes);
   return memory;
 }
 
@@ -92,3 +97,9 @@ void freeArray(void* memory, std::size_t bytes) noexcept {
 }
 
 }  // namespace hexhex::detail
+
+namespace hexhex {
+
+void useHugePages(bool use) { detail::hugePages.store(use, std::memory_order_relaxed); }
+
+}  // namespace hexhex

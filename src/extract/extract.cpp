@@ -97,10 +97,10 @@ PreparedMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
   return prepared;
 }
 
-HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells, const ExtractOptions& options,
+HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells, const EngineOptions& options,
                   Context& context, ExtractStatistics& statistics, const EngineGuests& guests) {
   if (options.engine == Engine::Atlas) {
-    return runAtlas(map, expectedCells, context, statistics, {}, guests.sweep);
+    return runAtlas(map, expectedCells, context, statistics, options.switches, guests.sweep);
   }
   {
     Stage stage(context, "stars");
@@ -122,7 +122,7 @@ void throwOutOfMemory() {
               "use a machine with more memory.");
 }
 
-ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options,
+ScaledMap prepareScaled(const TetMapView& map, const EngineOptions& options,
                         const ScaleLimits& limits, Context& context,
                         ExtractStatistics& statistics) {
   if (options.scale > std::numeric_limits<int>::max() / limits.furtherScale) {
@@ -137,7 +137,7 @@ ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options,
   return scaled;
 }
 
-HexMesh extractScaled(const TetMapView& given, ScaledMap& scaled, const ExtractOptions& options,
+HexMesh extractScaled(const TetMapView& given, ScaledMap& scaled, const EngineOptions& options,
                       Context& context, ExtractStatistics& statistics, const EngineGuests& guests) {
   HexMesh mesh = runEngine(scaled.map, scaled.expectedCells, options, context, statistics, guests);
   const TetMapView tagged = statistics.repairedMap ? TetMapView(*statistics.repairedMap) : given;
@@ -145,8 +145,8 @@ HexMesh extractScaled(const TetMapView& given, ScaledMap& scaled, const ExtractO
   return mesh;
 }
 
-HexMesh extract(const TetMapView& map, const ExtractOptions& options, Context& context,
-                ExtractStatistics* statistics) {
+HexMesh extractWith(const TetMapView& map, const EngineOptions& options, Context& context,
+                    ExtractStatistics* statistics) {
   checkOptions(options);
   HexMesh mesh;
   runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
@@ -154,6 +154,11 @@ HexMesh extract(const TetMapView& map, const ExtractOptions& options, Context& c
     mesh = extractScaled(map, scaled, options, context, filled);
   });
   return mesh;
+}
+
+HexMesh extract(const TetMapView& map, const ExtractOptions& options, Context& context,
+                ExtractStatistics* statistics) {
+  return extractWith(map, options, context, statistics);
 }
 
 void extractTo(MeshSink& sink, const TetMapView& map, const ExtractOptions& options,

@@ -9,6 +9,7 @@
 #include <hexhex/stream.hpp>
 
 #include <base/parallel.hpp>
+#include <base/switches.hpp>
 #include <extract/guests.hpp>
 #include <igm/prepare.hpp>
 #include <propeller/global_connectivity.hpp>
@@ -21,6 +22,14 @@ inline constexpr double kMaxStreamedCells = 0x1p60;
 
 /// @throws Error InvalidArgument for an epsilon out of range
 void checkOptions(const ExtractOptions& options);
+
+/// The caller's options, and how the engine works.
+struct EngineOptions : ExtractOptions {
+  // NOLINTNEXTLINE(google-explicit-constructor): options without switches mean the defaults.
+  EngineOptions(const ExtractOptions& options, const EngineSwitches& switches_ = {})
+      : ExtractOptions(options), switches(switches_) {}
+  EngineSwitches switches;
+};
 
 /// What may be done to maps that are not valid, as in ExtractOptions.
 struct Mending {
@@ -42,7 +51,7 @@ struct Mending {
 /// All stages behind the scaling. Adds to the map's topology what the engine needs.
 /// @param map  scaled
 [[nodiscard]] HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells,
-                                const ExtractOptions& options, Context& context,
+                                const EngineOptions& options, Context& context,
                                 ExtractStatistics& statistics, const EngineGuests& guests = {});
 
 /// A map that is ready for either engine.
@@ -58,14 +67,18 @@ struct ScaleLimits {
 
 /// Prepares a map and scales it.
 /// @throws Error  for every violated condition; TooLarge
-[[nodiscard]] ScaledMap prepareScaled(const TetMapView& map, const ExtractOptions& options,
+[[nodiscard]] ScaledMap prepareScaled(const TetMapView& map, const EngineOptions& options,
                                       const ScaleLimits& limits, Context& context,
                                       ExtractStatistics& statistics);
 
 /// All further stages, with the tags of the caller's map.
 [[nodiscard]] HexMesh extractScaled(const TetMapView& given, ScaledMap& scaled,
-                                    const ExtractOptions& options, Context& context,
+                                    const EngineOptions& options, Context& context,
                                     ExtractStatistics& statistics, const EngineGuests& guests = {});
+
+/// extract() for tests and ablations.
+[[nodiscard]] HexMesh extractWith(const TetMapView& map, const EngineOptions& options,
+                                  Context& context, ExtractStatistics* statistics = nullptr);
 
 [[noreturn]] void throwMissingVertex(const MissingVertex& missing);
 [[noreturn]] void throwOutOfMemory();

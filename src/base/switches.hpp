@@ -1,0 +1,19 @@
+// Ways of working that can be turned off: for tests, which show that a safeguard is needed, and for
+// ablations (bench/ablation), which show what a second way gains. The library itself always works
+// with the defaults.
+#pragma once
+
+namespace hexhex {
+
+/// Read per stage or per tet, never in an inner loop.
+struct EngineSwitches {
+  // Safeguards of the atlas engine: without them, results are wrong.
+  bool resolveOverlaps = true;
+  bool markCuts = true;
+  bool wideIds = false;  ///< numbers vertices with 64 bits even if 32 would do (streaming)
+
+  // Speed alone: the result is the same without.
+  bool hugePages = true;  ///< for arrays; of the whole process (base/memory.hpp)
+};
+
+}  // namespace hexhex
