@@ -75,16 +75,21 @@ bool isSame(const HexMesh& a, const HexMesh& b) {
 void compare(benchmark::State& state, const Entry& entry, const BenchMap& map) {
   Totals with;
   Totals without;
+  std::uint64_t bytes = 0;
   {
     // Also so that the first one measured does not find a cold machine.
     Totals untimed;
+    const PeakMemory peak;
     const HexMesh mesh = extractOnce(entry, map, true, untimed);
     if (!isSame(mesh, extractOnce(entry, map, false, untimed))) {
       state.SkipWithError("both ways make different meshes");
       return;
     }
+    bytes = peak.growth().value_or(0);
     state.counters["hexes"] = static_cast<double>(mesh.cells.size());
   }
+  // Else the host may still have the memory that either way touches first.
+  warmFreeMemory(bytes, entry.threads);
   bool on = true;  // whatever comes second may find warmer caches, so they take turns
   for (auto _ : state) {
     const double before = with.wall + without.wall;

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include <base/page_pool.hpp>
+#include <base/memory.hpp>
 
 namespace hexhex {
 namespace {
@@ -28,7 +28,7 @@ struct Block {
 
 /// As many words as fit, all of them the block's name.
 Block take(PagePool& pool, std::size_t bytes, std::uint32_t name) {
-  void* const memory = pool.allocate(bytes, true);
+  void* const memory = pool.allocate(bytes);
   if (memory == nullptr) return {};
   const Block block{{static_cast<std::uint32_t*>(memory), bytes / 4}, name};
   block.fill();
@@ -37,7 +37,7 @@ Block take(PagePool& pool, std::size_t bytes, std::uint32_t name) {
 
 bool isPooling() {
   PagePool pool;
-  void* const memory = pool.allocate(1, true);
+  void* const memory = pool.allocate(1);
   return memory != nullptr && pool.release(memory, 1);
 }
 
@@ -78,18 +78,16 @@ TEST(PagePool, BlocksDoNotOverlap) {
 TEST(PagePool, FillsSlabsBeforeItMakesOthers) {
   if (!isPooling()) GTEST_SKIP() << "no huge pages on this system";
   PagePool pool;
-  EXPECT_EQ(pool.allocate(1, false), nullptr);
   constexpr std::size_t kBytes = PagePool::kSlab / 64;
   std::vector<void*> blocks;
-  for (int i = 0; i < 64; ++i) blocks.push_back(pool.allocate(kBytes, true));
+  for (int i = 0; i < 64; ++i) blocks.push_back(pool.allocate(kBytes));
   EXPECT_EQ(pool.slabCount(), 1);
-  EXPECT_EQ(pool.allocate(1, false), nullptr);
   // What is given back is the next to be taken, be it the first, the last or in between.
   for (const std::size_t i : {0, 31, 63}) {
     EXPECT_TRUE(pool.release(blocks[i], kBytes));
-    EXPECT_EQ(pool.allocate(kBytes, true), blocks[i]);
+    EXPECT_EQ(pool.allocate(kBytes), blocks[i]);
   }
-  void* const other = pool.allocate(1, true);
+  void* const other = pool.allocate(1);
   EXPECT_EQ(pool.slabCount(), 2);
   EXPECT_TRUE(pool.release(other, 1));
   EXPECT_EQ(pool.slabCount(), 1);
@@ -99,7 +97,7 @@ TEST(PagePool, FillsSlabsBeforeItMakesOthers) {
 
 TEST(PagePool, LeavesAloneWhatIsNotItsOwn) {
   PagePool pool;
-  EXPECT_EQ(pool.allocate(PagePool::kSlab + 1, true), nullptr);
+  EXPECT_EQ(pool.allocate(PagePool::kSlab + 1), nullptr);
   int local = 0;
   EXPECT_FALSE(pool.release(&local, sizeof local));
   EXPECT_FALSE(pool.release(nullptr, 1));
