@@ -6,12 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <new>
 #include <span>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
+#include <hexhex/array.hpp>  // IWYU pragma: export
 #include <hexhex/export.h>
 #include <hexhex/features.hpp>  // IWYU pragma: export
 
@@ -33,55 +31,6 @@ using Quad = std::array<Index, 4>;
 
 /// The four parameters of one tetrahedron: entry i belongs to corner i of the tet.
 using TetParameters = std::array<Vec3, 4>;
-
-namespace detail {
-/// Memory for arrays. Large ones ask the system for huge pages: the first touch of a fresh array
-/// costs mostly page faults, and those come per page.
-[[nodiscard]] void* allocateArray(std::size_t bytes);
-void freeArray(void* memory, std::size_t bytes) noexcept;
-}  // namespace detail
-
-/// Whether elements of a type are left uninitialized by arrays that grow: numbers are, and what
-/// else says so because it is always written before it is read. Only for types that are copied like
-/// bytes.
-template <class T>
-inline constexpr bool kLeftUninitialized = std::is_trivially_default_constructible_v<T>;
-
-/// Allocator that leaves such elements uninitialized, so that large arrays are touched once, by the
-/// thread that fills them.
-template <class T>
-struct UninitializedAllocator {
-  using value_type = T;
-  UninitializedAllocator() = default;
-  template <class U>
-  UninitializedAllocator(const UninitializedAllocator<U>& /*other*/) noexcept {}
-
-  [[nodiscard]] T* allocate(std::size_t count) {
-    static_assert(alignof(T) <= alignof(std::max_align_t));
-    if (count > std::numeric_limits<std::size_t>::max() / sizeof(T))
-      throw std::bad_array_new_length();
-    return static_cast<T*>(detail::allocateArray(count * sizeof(T)));
-  }
-  void deallocate(T* memory, std::size_t count) noexcept {
-    detail::freeArray(memory, count * sizeof(T));
-  }
-  template <class U>
-  [[nodiscard]] bool operator==(const UninitializedAllocator<U>& /*other*/) const noexcept {
-    return true;
-  }
-  template <class U>
-  void construct(U* place) noexcept(std::is_nothrow_default_constructible_v<U>) {
-    if constexpr (!kLeftUninitialized<U>) ::new (static_cast<void*>(place)) U;
-  }
-  template <class U, class... Args>
-  void construct(U* place, Args&&... args) {
-    ::new (static_cast<void*>(place)) U(std::forward<Args>(args)...);
-  }
-};
-
-/// A std::vector whose resize() does not clear memory.
-template <class T>
-using Array = std::vector<T, UninitializedAllocator<T>>;
 
 /// The valence offset of one tet edge, as frame-field tools store it (`edge_valance`): the number
 /// of hexahedra around the edge minus the regular number (4 inside, 2 on the boundary).

@@ -10,8 +10,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# Of types.hpp, for its arrays alone; and of an adapter.
-INTERNAL = {"allocateArray", "freeArray", "allocate", "deallocate", "construct", "empty"}
+# Of arrays, and of an adapter.
+INTERNAL = {"allocateArray", "freeArray", "allocate", "deallocate", "construct", "empty", "operator", "swap"}
 
 
 def text(path):
