@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <base/output_waves.hpp>
+#include <base/output_batches.hpp>
 #include <curved/arc_guest.hpp>
 
 namespace hexhex {
@@ -23,7 +23,7 @@ void ArcGuest::begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& 
   slots_.clear();
   vertices_.emplace(map_, lines, sizes.vertices, stage);
   vertexCount_ = sizes.vertices;
-  for (std::size_t i = 0; i < sizes.wave; ++i) slots_.emplace_back(map_, *vertices_);
+  for (std::size_t i = 0; i < sizes.batch; ++i) slots_.emplace_back(map_, *vertices_);
   arcCount_ = 0;
   pointCount_ = 0;
   arcs_ = {};

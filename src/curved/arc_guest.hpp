@@ -42,12 +42,12 @@ class ArcGuest final : public TraceGuest {
   }
 
  private:
-  /// For one block of each wave.
+  /// For one block of each batch.
   struct Slot {
     Slot(const PreparedMap& map, const LatticeNumbers& vertices) : replay(map, vertices) {}
 
     EdgeReplay replay;
-    // Of the block's arcs, until it is known where they belong; not used by waves of one block.
+    // Of the block's arcs, until it is known where they belong; not used by batches of one block.
     Arcs arcs;
     Array<EdgeKey> keys;
     std::size_t arcCount = 0;

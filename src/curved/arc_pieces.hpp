@@ -8,7 +8,7 @@
 
 #include <hexhex/curved.hpp>
 
-#include <base/output_waves.hpp>
+#include <base/output_batches.hpp>
 #include <curved/arc_columns.hpp>
 #include <curved/owned_simplex.hpp>
 

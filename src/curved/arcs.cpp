@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <vector>
 
-#include <base/output_waves.hpp>
+#include <base/output_batches.hpp>
 #include <base/prefetch.hpp>
 #include <curved/arc_pieces.hpp>
 #include <curved/arcs.hpp>
@@ -182,10 +182,10 @@ Arcs traceArcs(const PreparedMap& map, const LatticeNumbers& vertices, const Ele
   arcs.pointBegin.resize(edges.count() + 1);
   const std::size_t tets = map.topology.tetCount();
   const std::size_t grain = tetsPerBlock(edges.count(), tets);
-  std::vector<ArcPieces> pieces(blocksPerWave(blockCount(tets, grain)));
+  std::vector<ArcPieces> pieces(blocksPerBatch(blockCount(tets, grain)));
   std::vector<std::uint64_t> firstPoints(pieces.size());
   std::uint64_t points = 0;
-  parallelWaves(
+  parallelBatches(
       stage, tets, grain, pieces.size(),
       [&](std::size_t begin, std::size_t end, std::size_t block) {
         pieces[block % pieces.size()].clear();

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include <base/output_waves.hpp>
+#include <base/output_batches.hpp>
 #include <curved/face_cutter.hpp>
 #include <curved/patches.hpp>
 
@@ -104,10 +104,10 @@ Patches cutPatches(const PatchInput& input, Stage& stage) {
   lengthenAll(patches, {}, 1);
   const std::size_t tets = input.map.topology.tetCount();
   const std::size_t grain = tetsPerBlock(input.faces.count(), tets);
-  std::vector<PatchPieces> pieces(blocksPerWave(blockCount(tets, grain)));
+  std::vector<PatchPieces> pieces(blocksPerBatch(blockCount(tets, grain)));
   std::vector<PiecePlaces> places(pieces.size());
   PiecePlaces totals;
-  parallelWaves(
+  parallelBatches(
       stage, tets, grain, pieces.size(),
       [&](std::size_t begin, std::size_t end, std::size_t block) {
         cutFaces(input, begin, end, patches, pieces[block % pieces.size()]);

@@ -2,7 +2,7 @@
 #include <atomic>
 #include <vector>
 
-#include <base/output_waves.hpp>
+#include <base/output_batches.hpp>
 #include <propeller/global_connectivity.hpp>
 #include <propeller/slot_finder.hpp>
 
@@ -264,9 +264,9 @@ GlobalConnectivity traceOpposites(const PreparedMap& map, const Array<NormalSign
   }
   const std::uint64_t edges = total / 2;
   const std::size_t grain = tetsPerBlock(edges, tets);
-  std::vector<FollowedEdges> followed(blocksPerWave(blockCount(tets, grain)));
+  std::vector<FollowedEdges> followed(blocksPerBatch(blockCount(tets, grain)));
   guest->begin(vertices.lines, {vertices.positions.size(), edges, followed.size()}, stage);
-  parallelWaves(
+  parallelBatches(
       stage, tets, grain, followed.size(),
       [&](std::size_t first, std::size_t end, std::size_t block) {
         FollowedEdges& own = followed[block % followed.size()];

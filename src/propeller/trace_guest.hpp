@@ -54,11 +54,11 @@ struct FollowedEdges {
 struct TraceSizes {
   std::uint64_t vertices;
   std::uint64_t edges;
-  std::size_t wave;  ///< blocks in a wave, except for the last one
+  std::size_t batch;  ///< blocks in a batch, except for the last one
 };
 
 /// Sees every hex edge once. Edges come in blocks, which do not depend on the number of threads,
-/// and these in waves (parallelWaves()).
+/// and these in batches (parallelBatches()).
 class TraceGuest {
  public:
   TraceGuest() = default;
@@ -71,10 +71,10 @@ class TraceGuest {
   /// Before all edges, and again if the engine has to start over.
   /// @param lines  of all tets; they stay there until take()
   virtual void begin(const LatticeLines& lines, const TraceSizes& sizes, Stage& stage) = 0;
-  /// Blocks of a wave in any order and in parallel.
+  /// Blocks of a batch in any order and in parallel.
   /// @param edges  stay there until place()
   virtual void add(std::size_t block, const FollowedEdges& edges) = 0;
-  /// After the blocks of a wave.
+  /// After the blocks of a batch.
   virtual void measure(std::size_t firstBlock, std::size_t endBlock) = 0;
   /// Then, of each of them, in parallel.
   virtual void place(std::size_t block) = 0;

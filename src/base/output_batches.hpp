@@ -13,23 +13,23 @@ namespace hexhex {
 
 /// How many blocks of a loop are to be in memory at the same time: enough for all threads to be
 /// busy, few enough to stay in their caches until they are copied. A thread alone waits for nobody.
-[[nodiscard]] inline std::size_t blocksPerWave(std::size_t blocks) {
+[[nodiscard]] inline std::size_t blocksPerBatch(std::size_t blocks) {
   constexpr std::size_t kPerThread = 8;
   const auto threads = static_cast<std::size_t>(currentThreads());
   return std::min(blocks, threads == 1 ? 1 : kPerThread * threads);
 }
 
-/// parallelBlocks() in waves of some blocks. After the blocks of a wave, measure(firstBlock,
+/// parallelBlocks() in batches of some blocks. After the blocks of a batch, measure(firstBlock,
 /// endBlock) is called, and then place(block) for each of them, in parallel: so what blocks collect
-/// comes where it belongs as the loop goes, and its memory is used again by the next wave.
-/// @param wave  blocks in a wave; no result may depend on it
+/// comes where it belongs as the loop goes, and its memory is used again by the next batch.
+/// @param batch  blocks in a batch; no result may depend on it
 template <class F, class Measure, class Place>
-void parallelWaves(Stage& stage, std::size_t n, std::size_t grain, std::size_t wave, const F& f,
-                   const Measure& measure, const Place& place) {
+void parallelBatches(Stage& stage, std::size_t n, std::size_t grain, std::size_t batch, const F& f,
+                     const Measure& measure, const Place& place) {
   LoopProgress progress(stage, n);
   const std::size_t blocks = blockCount(n, grain);
-  for (std::size_t first = 0; first < blocks; first += wave) {
-    const std::size_t count = std::min(wave, blocks - first);
+  for (std::size_t first = 0; first < blocks; first += batch) {
+    const std::size_t count = std::min(batch, blocks - first);
     const std::size_t offset = first * grain;
     const std::size_t size = first + count < blocks ? count * grain : n - offset;
     const auto work = [&](std::size_t begin, std::size_t end, std::size_t block) {

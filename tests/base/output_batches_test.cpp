@@ -1,73 +1,73 @@
-// Waves of blocks: every element comes once, in its place, for any number of blocks and threads.
+// Batches of blocks: every element comes once, in its place, for any number of blocks and threads.
 #include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <base/output_waves.hpp>
+#include <base/output_batches.hpp>
 
 namespace hexhex::test {
 
 namespace {
 
 /// Element i makes i % 3 numbers, all of them i.
-Array<std::size_t> collectInWaves(std::size_t n, std::size_t grain, int threads) {
+Array<std::size_t> collectInBatches(std::size_t n, std::size_t grain, int threads) {
   Array<std::size_t> all;
   withThreads(threads, [&] {
     Context context;
-    Stage stage(context, "waves");
-    const std::size_t wave = blocksPerWave(blockCount(n, grain));
-    std::vector<std::vector<std::size_t>> pieces(wave);
-    std::vector<std::size_t> places(wave);
+    Stage stage(context, "batches");
+    const std::size_t batch = blocksPerBatch(blockCount(n, grain));
+    std::vector<std::vector<std::size_t>> pieces(batch);
+    std::vector<std::size_t> places(batch);
     std::size_t total = 0;
-    parallelWaves(
-        stage, n, grain, wave,
+    parallelBatches(
+        stage, n, grain, batch,
         [&](std::size_t begin, std::size_t end, std::size_t block) {
-          std::vector<std::size_t>& piece = pieces[block % wave];
+          std::vector<std::size_t>& piece = pieces[block % batch];
           piece.clear();
           for (std::size_t i = begin; i < end; ++i) piece.insert(piece.end(), i % 3, i);
         },
         [&](std::size_t first, std::size_t end) {
           for (std::size_t block = first; block < end; ++block) {
-            places[block % wave] = total;
-            total += pieces[block % wave].size();
+            places[block % batch] = total;
+            total += pieces[block % batch].size();
           }
           lengthen(all, total, static_cast<double>(end) / 1000.0);
         },
         [&](std::size_t block) {
-          const std::vector<std::size_t>& piece = pieces[block % wave];
+          const std::vector<std::size_t>& piece = pieces[block % batch];
           std::copy(piece.begin(), piece.end(),
-                    all.begin() + static_cast<std::ptrdiff_t>(places[block % wave]));
+                    all.begin() + static_cast<std::ptrdiff_t>(places[block % batch]));
         });
   });
   return all;
 }
 
-TEST(OutputWaves, KeepTheOrder) {
+TEST(OutputBatches, KeepTheOrder) {
   for (const std::size_t n : {0U, 1U, 5U, 640U, 641U, 10007U}) {
     Array<std::size_t> expected;
     for (std::size_t i = 0; i < n; ++i) expected.insert(expected.end(), i % 3, i);
     for (const std::size_t grain : {1U, 10U, 4096U}) {
       for (const int threads : {1, 2, 5}) {
-        EXPECT_EQ(collectInWaves(n, grain, threads), expected) << n << " " << grain;
+        EXPECT_EQ(collectInBatches(n, grain, threads), expected) << n << " " << grain;
       }
     }
   }
 }
 
-TEST(OutputWaves, AreOfSomeBlocksPerThread) {
+TEST(OutputBatches, AreOfSomeBlocksPerThread) {
   withThreads(1, [] {
-    EXPECT_EQ(blocksPerWave(0), 0U);
-    EXPECT_EQ(blocksPerWave(1000), 1U);
+    EXPECT_EQ(blocksPerBatch(0), 0U);
+    EXPECT_EQ(blocksPerBatch(1000), 1U);
   });
   withThreads(2, [] {
     const bool alone = currentThreads() == 1;  // as in builds without oneTBB
-    EXPECT_EQ(blocksPerWave(3), alone ? 1U : 3U);
-    EXPECT_EQ(blocksPerWave(1000), alone ? 1U : 16U);
+    EXPECT_EQ(blocksPerBatch(3), alone ? 1U : 3U);
+    EXPECT_EQ(blocksPerBatch(1000), alone ? 1U : 16U);
   });
 }
 
-TEST(OutputWaves, BlocksFollowTheElements) {
+TEST(OutputBatches, BlocksFollowTheElements) {
   EXPECT_EQ(tetsPerBlock(0, 1000), 4096U);
   EXPECT_EQ(tetsPerBlock(256, 1000), 1000U);
   EXPECT_EQ(tetsPerBlock(1000000, 1000), 1U);
