@@ -11,14 +11,11 @@ AlignedCells::AlignedCells(std::size_t vertexCount, std::span<const Hex> cells, 
     : cells_(cells), cellAt_(vertexCount) {
   constexpr std::size_t kGrain = std::size_t{1} << 14;
   parallelFor(stage, vertexCount, kGrain, [this](std::size_t v) { cellAt_[v] = kNone; });
-  const bool alone = currentThreads() == 1;
-  const auto enter = [this, alone](std::size_t c) {
+  const auto enter = [this](std::size_t c) {
     const auto cell = static_cast<Index>(c);
     const std::atomic_ref place(cellAt_[cells_[c][0]]);
     Index known = place.load(std::memory_order_relaxed);
     while (known == kNone || known < cell) {
-      // Nobody else writes, so that nothing has to be exchanged at once, which takes longer.
-      if (alone) return place.store(cell, std::memory_order_relaxed);
       if (place.compare_exchange_weak(known, cell, std::memory_order_relaxed)) return;
     }
   };

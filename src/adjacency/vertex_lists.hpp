@@ -42,12 +42,9 @@ class VertexLists {
     return vertex == 0 ? 0 : ends_[vertex - 1];
   }
   Index next(Index vertex) noexcept {
-    // Nobody else is at work, so that nothing has to be exchanged at once, which takes longer.
-    if (alone_) return ends_[vertex]++;
     return std::atomic_ref(ends_[vertex]).fetch_add(1, std::memory_order_relaxed);
   }
 
-  const bool alone_ = currentThreads() == 1;
   /// Per vertex: the count, then where its list begins, and in the end where it ends.
   Array<Index> ends_;
   Array<T> values_;

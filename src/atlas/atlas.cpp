@@ -100,16 +100,18 @@ class CellEmitters {
             std::span<typename CellEmitter<Id>::Cell> cells) {
     const Array<std::uint64_t>& begin = atlas_.cells().begin;
     if (begin[firstTet] == begin[endTet]) return;
-    const auto loan = workspaces_.lend([this] {
+    const auto make = [this] {
       return Workspace{CellEmitter<Id>(map_, atlas_.vertices(), atlas_.jumps()), {}};
+    };
+    workspaces_.with(make, [&](Workspace& workspace) {
+      auto& [emitter, lines] = workspace;
+      for (std::size_t t = firstTet; t < endTet; ++t) {
+        if (begin[t] == begin[t + 1]) continue;
+        const auto tet = static_cast<Index>(t);
+        emitter.emit(tet, atlas_.cells().linesOf(map_.exact, tet, lines),
+                     cells.subspan(begin[t] - first, begin[t + 1] - begin[t]));
+      }
     });
-    auto& [emitter, lines] = *loan;
-    for (std::size_t t = firstTet; t < endTet; ++t) {
-      if (begin[t] == begin[t + 1]) continue;
-      const auto tet = static_cast<Index>(t);
-      emitter.emit(tet, atlas_.cells().linesOf(map_.exact, tet, lines),
-                   cells.subspan(begin[t] - first, begin[t + 1] - begin[t]));
-    }
   }
 
   /// Cells so far with a corner that the picture hides. Not while others emit.

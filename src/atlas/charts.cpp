@@ -19,7 +19,7 @@ class Patches {
     const std::size_t tets = map.topology.tetCount();
     const HalfFace* const mates = map.topology.mate.data();
     const Index* const jumps = map.exact.transitions.jump.data();
-    DisjointSets sets(tets, currentThreads() > 1);
+    DisjointSets sets(tets);
     parallelFor(stage, tets, kGrain, [&sets, mates, jumps](std::size_t t) {
       // Smaller neighbours, as each face needs to be seen once; listed without branches, which
       // nobody could predict.

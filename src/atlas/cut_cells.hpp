@@ -74,12 +74,8 @@ struct CutCells {
 
   void clear() noexcept { cells.fill({}); }
 
-  /// Adds a cut face.
+  /// Adds a cut face. Thread-safe.
   void add(std::size_t place, CellCornerSet corners, JumpId jump) noexcept {
-    cells[place] = cells[place].with(corners, jump);
-  }
-  /// The same. Thread-safe, which takes longer.
-  void addShared(std::size_t place, CellCornerSet corners, JumpId jump) noexcept {
     const std::atomic_ref cell(cells[place]);
     CutCell before = cell.load(std::memory_order_relaxed);
     for (;;) {

@@ -112,17 +112,12 @@ class CutMarker {
     Brick<Id>* const brick = cache_.find(chart, c);
     if (brick != nullptr) {
       CutCells& cuts = grid_.cutsOf(*brick);
-      if (alone_) {
-        cuts.add(placeInBrick(c), corners, jump);
-      } else {
-        cuts.addShared(placeInBrick(c), corners, jump);
-      }
+      cuts.add(placeInBrick(c), corners, jump);
     } else {
       lone.push_back({brickKey(chart, c), placeInBrick(c), corners, jump});
     }
   }
 
-  const bool alone_ = currentThreads() == 1;
   const PreparedMap& map_;
   const Charts& charts_;
   const Jumps& jumps_;
@@ -149,9 +144,10 @@ Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool onlyJumps, 
   const auto lone = collectFromBlocks<LoneCut>(
       stage, halfFaces.size(), kFaces,
       [&](std::size_t begin, std::size_t end, std::vector<LoneCut>& loneHere) {
-        const auto marker =
-            markers.lend([&] { return CutMarker<Id>(map, charts, cuts.jumps, grid); });
-        for (std::size_t i = begin; i < end; ++i) (*marker).mark(halfFaces[i], jumps[i], loneHere);
+        const auto make = [&] { return CutMarker<Id>(map, charts, cuts.jumps, grid); };
+        markers.with(make, [&](CutMarker<Id>& marker) {
+          for (std::size_t i = begin; i < end; ++i) marker.mark(halfFaces[i], jumps[i], loneHere);
+        });
       });
   for (const LoneCut& cell : lone)
     grid.cutsOf(grid.add(cell.key)).add(cell.place, cell.corners, cell.jump);

@@ -192,7 +192,6 @@ template <class Id>
 void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
   grid_.build(keys_, stage);
   keys_ = {};
-  const bool alone = currentThreads() == 1;
   std::atomic<bool> overlaps{false};
   const auto fillBlock = [&](std::size_t begin, std::size_t end, std::size_t /*block*/,
                              BrickCache<Id>& cache) {
@@ -201,8 +200,7 @@ void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
       row.forEachPart([&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count,
                           std::ptrdiff_t stride) {
         Bricks& brick = *cache.find(row.chart, c);
-        std::optional<BrickLock<Id>> lock;
-        if (!alone) lock.emplace(brick);
+        const BrickLock<Id> lock(brick);
         overlapsHere |= enterVertices(brick, placeInBrick(c), stride, first + offset, count);
       });
     };

@@ -14,8 +14,7 @@ namespace hexhex {
 /// its smallest element, whatever the order of calls, so results do not depend on threads.
 class DisjointSets {
  public:
-  /// @param shared  whether several threads will call unite() at the same time
-  explicit DisjointSets(std::size_t n, bool shared = true) : parents_(n), shared_(shared) {
+  explicit DisjointSets(std::size_t n) : parents_(n) {
     std::iota(parents_.begin(), parents_.end(), Index{0});
   }
   /// The smallest element of the set of `element`. Thread-safe.
@@ -41,10 +40,6 @@ class DisjointSets {
       b = find(b);
       if (a == b) return a;
       if (a < b) std::swap(a, b);
-      if (!shared_) {
-        parents_[a] = b;
-        return b;
-      }
       // Parents are always smaller, so there are no cycles; if `a` lost its root status to another
       // thread in the meantime, the exchange fails and we look again.
       Index expected = a;
@@ -70,7 +65,6 @@ class DisjointSets {
   }
 
   Array<Index> parents_;
-  bool shared_;
 };
 
 }  // namespace hexhex

@@ -1,10 +1,14 @@
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <cstddef>
 #include <exception>
+#include <latch>
 #include <memory>
 #include <mutex>
 #include <new>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -12,8 +16,10 @@
 
 #include <base/loop_order.hpp>
 #include <base/parallel.hpp>
-#include <base/spare_threads.hpp>
 
+#if defined(__unix__) || defined(__APPLE__)
+#include <pthread.h>
+#endif
 #if HEXHEX_HAS_TBB
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/global_control.h>
@@ -119,17 +125,68 @@ class LoopOutcome {
   std::atomic<std::size_t> completed_{0};
 };
 
+/// Whether so many more threads can run at the same time, each with the memory that it takes: found
+/// out by starting and ending them. oneTBB takes it for granted that threads can be started: if one
+/// cannot, because address space is limited or exhausted or there are too many threads, it throws
+/// where it cannot recover from that. The stacks of those that were tried stay in the system's
+/// cache for oneTBB's, so they are about as large.
+bool haveSpareThreads([[maybe_unused]] int wanted) {
+#if defined(__unix__) || defined(__APPLE__)
+  constexpr std::size_t kStack = (std::size_t{4} << 20) + (std::size_t{1} << 18);
+  constexpr std::size_t kHeap = std::size_t{1} << 18;  // oneTBB allocates some kilobytes for each
+  const auto count = static_cast<std::size_t>(wanted);
+  std::vector<pthread_t> threads;
+  std::vector<std::unique_ptr<char[]>> heap(count);
+  threads.reserve(count);
+  std::latch end(1);
+  const auto stay = [](void* latch) -> void* {
+    static_cast<std::latch*>(latch)->wait();
+    return nullptr;
+  };
+  pthread_attr_t attributes;
+  if (pthread_attr_init(&attributes) != 0) return false;
+  static_cast<void>(pthread_attr_setstacksize(&attributes, kStack));
+  for (std::unique_ptr<char[]>& memory : heap) {
+    memory.reset(new (std::nothrow) char[kHeap]);
+    pthread_t thread{};
+    if (!memory || pthread_create(&thread, &attributes, stay, &end) != 0) break;
+    threads.push_back(thread);
+  }
+  static_cast<void>(pthread_attr_destroy(&attributes));
+  end.count_down();
+  for (const pthread_t thread : threads) static_cast<void>(pthread_join(thread, nullptr));
+  return threads.size() == count;
+#else
+  return true;
+#endif
+}
+
+/// Returns when so many threads are here, or when there is no hope left that they come: threads
+/// start within microseconds, unless the machine is crowded; if other work of the process holds
+/// them, they have been started.
+void gather(std::atomic<int>& arrived, int expected) {
+  // Has the C++ library make what it keeps of exceptions for each thread. There may be no memory
+  // for it when the first one is thrown, and that would end the process.
+  [[maybe_unused]] const volatile int exceptions = std::uncaught_exceptions();
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point deadline = Clock::now() + std::chrono::milliseconds(300);
+  arrived.fetch_add(1);
+  while (arrived.load() < expected && Clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::microseconds(20));
+  }
+}
+
 /// Makes oneTBB start its threads now, by a loop whose blocks wait for each other. It starts them
 /// when they are first needed, and has no way to go on if the system refuses one then.
 void startWorkers(ArenaPool::Arena& arena, int threads) {
-  Gathering gathering(threads);
+  std::atomic<int> arrived{0};
   const LoopOrder loopOrder;
   arena.execute([&] {
     oneapi::tbb::parallel_for(
         oneapi::tbb::blocked_range<int>(0, threads, 1),
         [&](const oneapi::tbb::blocked_range<int>& /*one*/) {
           const RangeOrder rangeOrder;
-          gathering.arriveAndWait();
+          gather(arrived, threads);
         },
         oneapi::tbb::simple_partitioner());
   });
@@ -143,9 +200,8 @@ class Workforce {
     const std::lock_guard lock(mutex_);
     if (wanted <= hired_) return wanted;
     // All or none, and a few to spare: oneTBB may start a thread more while another is about to
-    // sleep. The stacks of those that were tried stay in the system's cache for oneTBB's.
-    const int more = wanted - hired_ + kSpare;
-    if (spareThreads(more) < more) return hired_;
+    // sleep.
+    if (!haveSpareThreads(wanted - hired_ + kSpare)) return hired_;
     const ArenaPool::Loan loan(arenaPool(), wanted);
     startWorkers(loan.arena(), wanted);
     hired_ = wanted;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <exception>
 #include <memory>
 #include <mutex>
 #include <type_traits>
@@ -21,56 +20,36 @@ class Workspaces {
   Workspaces(const Workspaces&) = delete;
   Workspaces& operator=(const Workspaces&) = delete;
 
-  /// A workspace that goes back at the end of this object's life, unless an exception ends it:
-  /// nobody knows in which state that leaves the workspace.
-  class Loan {
-   public:
-    Loan(Workspaces& lender, std::unique_ptr<Workspace> workspace) noexcept
-        : lender_(lender), workspace_(std::move(workspace)) {}
-    Loan(const Loan&) = delete;
-    Loan& operator=(const Loan&) = delete;
-    ~Loan() {
-      if (std::uncaught_exceptions() == exceptions_) lender_.takeBack(std::move(workspace_));
-    }
-
-    [[nodiscard]] Workspace& operator*() const noexcept { return *workspace_; }
-
-   private:
-    Workspaces& lender_;
-    std::unique_ptr<Workspace> workspace_;
-    int exceptions_ = std::uncaught_exceptions();  ///< on their way when it was lent
-  };
-
-  /// One that was lent before, or what make() returns. Several threads may call this.
-  template <class Make>
-  [[nodiscard]] Loan lend(const Make& make) {
-    {
-      const std::scoped_lock lock(mutex_);
-      if (!idle_.empty()) {
-        std::unique_ptr<Workspace> last = std::move(idle_.back());
-        idle_.pop_back();
-        return Loan(*this, std::move(last));
-      }
-      idle_.reserve(++made_);  // so that nothing can fail when it comes back
-    }
-    return Loan(*this, std::unique_ptr<Workspace>(new Workspace(make())));
+  /// Calls use(workspace) with one that was used before, or with what make() returns. Several
+  /// threads may call this.
+  template <class Make, class Use>
+  void with(const Make& make, const Use& use) {
+    std::unique_ptr<Workspace> workspace = take();
+    if (!workspace) workspace.reset(new Workspace(make()));
+    use(*workspace);
+    // Not after an exception: nobody knows in which state that leaves it.
+    const std::scoped_lock lock(mutex_);
+    idle_.push_back(std::move(workspace));
   }
 
-  /// Calls visit(workspace) for all that came back. Not while any is lent.
+  /// Calls visit(workspace) for all that came back. Not while any is in use.
   template <class Visit>
   void forEach(const Visit& visit) const {
     for (const std::unique_ptr<Workspace>& workspace : idle_) visit(std::as_const(*workspace));
   }
 
  private:
-  void takeBack(std::unique_ptr<Workspace> workspace) noexcept {
+  /// nullptr if all are in use.
+  std::unique_ptr<Workspace> take() {
     const std::scoped_lock lock(mutex_);
-    idle_.push_back(std::move(workspace));
+    if (idle_.empty()) return nullptr;
+    std::unique_ptr<Workspace> last = std::move(idle_.back());
+    idle_.pop_back();
+    return last;
   }
 
   std::mutex mutex_;
   std::vector<std::unique_ptr<Workspace>> idle_;
-  std::size_t made_ = 0;
 };
 
 /// As parallelBlocks(), and lends each block a workspace that no other one uses at the same time:
@@ -82,8 +61,7 @@ void parallelBlocksWith(Stage& stage, std::size_t n, std::size_t grain, const Ma
                         const F& f) {
   Workspaces<std::invoke_result_t<Make>> workspaces;
   parallelBlocks(stage, n, grain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    const auto loan = workspaces.lend(make);
-    f(begin, end, block, *loan);
+    workspaces.with(make, [&](auto& workspace) { f(begin, end, block, workspace); });
   });
 }
 

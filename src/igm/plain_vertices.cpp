@@ -7,7 +7,6 @@
 #include <base/bits.hpp>
 #include <base/branchless.hpp>
 #include <base/pair.hpp>
-#include <base/shared_counts.hpp>
 #include <base/vector3.hpp>
 #include <igm/plain_vertices.hpp>
 #include <igm/tet_projection.hpp>
@@ -122,8 +121,8 @@ void notePlanes(const TetTopology& topology, PlainVertices& result) {
 class TetSurvey {
  public:
   /// @param cones  per vertex: tets in one and the same direction from it
-  TetSurvey(const TetTopology& topology, const LocalParameters& parameters,
-            const SharedCounts& cones, PlainVertices& result)
+  TetSurvey(const TetTopology& topology, const LocalParameters& parameters, std::span<Index> cones,
+            PlainVertices& result)
       : topology_(topology), parameters_(parameters), cones_(cones), result_(result) {}
 
   /// For at most kNear tets.
@@ -135,7 +134,9 @@ class TetSurvey {
     for (std::size_t i = 0; i < images.size(); i += 2) {
       lookAtTwoImages(images[i], images[std::min(i + 1, images.size() - 1)]);
     }
-    for (const Index vertex : found_.get()) cones_.increase(vertex);
+    for (const Index vertex : found_.get()) {
+      std::atomic_ref(cones_[vertex]).fetch_add(1, std::memory_order_relaxed);
+    }
   }
 
  private:
@@ -203,7 +204,7 @@ class TetSurvey {
 
   const TetTopology& topology_;
   const LocalParameters& parameters_;
-  const SharedCounts& cones_;
+  std::span<Index> cones_;
   PlainVertices& result_;
   BranchlessList found_;   ///< vertices
   BranchlessList images_;  ///< as in lookAtTwoImages()
@@ -282,7 +283,6 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
   special.assign(vertices, 0);
   result.plane.assign(vertices, 0);
   Array<Index> cones(vertices, 0);
-  const SharedCounts sharedCones(cones);
   result.sides.resize(topology.tetCount());
   result.passages.resize(4 * topology.tetCount());
   const std::size_t tets = topology.tetCount();
@@ -298,7 +298,7 @@ PlainVertices findPlainVertices(const TetTopology& topology, const LocalParamete
   for (const auto& faces : result.boundaryFaces) boundaryFaces += faces.size();
   result.innerFaces = (4 * tets - boundaryFaces) / 2;
   parallelBlocks(stage, tets, kGrain, [&](std::size_t first, std::size_t last, std::size_t block) {
-    TetSurvey tetSurvey(topology, parameters, sharedCones, result);
+    TetSurvey tetSurvey(topology, parameters, cones, result);
     forEachPart(first, last, [&](std::size_t begin, std::size_t end) {
       tetSurvey.run(begin, end);
       surveyFaces(topology, parameters, begin, end, block, result);

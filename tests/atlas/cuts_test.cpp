@@ -114,7 +114,7 @@ TEST(CutCells, AreTheSameWhateverThreadComesFirst) {
     cells.clear();
     const auto addEvery = [&](std::size_t first) {
       for (std::size_t i = first; i < cuts.size(); i += 2) {
-        cells.addShared(kPlace, cuts[i].corners, cuts[i].jump);
+        cells.add(kPlace, cuts[i].corners, cuts[i].jump);
       }
     };
     std::thread other(addEvery, 1);

@@ -29,14 +29,15 @@ TEST(Workspaces, AreLentToOneAtATime) {
       Context context;
       Stage stage(context, "loop");
       parallelBlocks(stage, kElements, 7, [&](std::size_t begin, std::size_t end, std::size_t) {
-        const auto loan = workspaces.lend([&made] {
+        const auto make = [&made] {
           ++made;
           return Counter();
+        };
+        workspaces.with(make, [&](Counter& counter) {
+          EXPECT_EQ(counter.users.fetch_add(1), 0);
+          counter.elements += end - begin;
+          counter.users.fetch_sub(1);
         });
-        Counter& counter = *loan;
-        EXPECT_EQ(counter.users.fetch_add(1), 0);
-        counter.elements += end - begin;
-        counter.users.fetch_sub(1);
       });
     });
     EXPECT_GE(made.load(), 1);
@@ -60,15 +61,21 @@ TEST(Workspaces, ComeBackUnlessAnExceptionInterruptsThem) {
     return std::vector<int>();
   };
   const auto use = [&](bool fail) {
-    const auto loan = workspaces.lend(make);
-    (*loan).push_back(7);
-    if (fail) throw std::runtime_error("end");
+    workspaces.with(make, [fail](std::vector<int>& workspace) {
+      workspace.push_back(7);
+      if (fail) throw std::runtime_error("end");
+    });
+  };
+  const auto next = [&] {
+    std::vector<int> found;
+    workspaces.with(make, [&found](const std::vector<int>& workspace) { found = workspace; });
+    return found;
   };
   use(false);
-  EXPECT_EQ(*workspaces.lend(make), std::vector<int>{7});
+  EXPECT_EQ(next(), std::vector<int>{7});
   EXPECT_EQ(made, 1);
   EXPECT_THROW(use(true), std::runtime_error);
-  EXPECT_TRUE((*workspaces.lend(make)).empty());
+  EXPECT_TRUE(next().empty());
   EXPECT_EQ(made, 2);
   // While an exception that has nothing to do with it is on its way, all is as ever.
   struct Cleanup {
@@ -81,7 +88,7 @@ TEST(Workspaces, ComeBackUnlessAnExceptionInterruptsThem) {
         throw std::runtime_error("elsewhere");
       },
       std::runtime_error);
-  EXPECT_EQ(*workspaces.lend(make), std::vector<int>{7});
+  EXPECT_EQ(next(), std::vector<int>{7});
   EXPECT_EQ(made, 2);
 }
 
