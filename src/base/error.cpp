@@ -1,57 +1,43 @@
+#include <array>
+#include <cstddef>
+
 #include <hexhex/error.hpp>
 
 namespace hexhex {
 
+namespace {
+
+/// In the order of ErrorCode.
+constexpr auto kNames = std::to_array<std::string_view>({"InvalidArgument",
+                                                         "FileNotFound",
+                                                         "FileSyntax",
+                                                         "FileUnsupported",
+                                                         "FileWrite",
+                                                         "EmptyMesh",
+                                                         "IndexOutOfRange",
+                                                         "RepeatedVertex",
+                                                         "NotFinite",
+                                                         "NonManifoldFace",
+                                                         "NonManifoldEdge",
+                                                         "NonManifoldVertex",
+                                                         "Orientation",
+                                                         "TransitionResidual",
+                                                         "BoundaryOffLattice",
+                                                         "SingularityOffLattice",
+                                                         "FlippedTet",
+                                                         "HalfIntegerFixedPoint",
+                                                         "TooLarge",
+                                                         "Cancelled",
+                                                         "OutOfMemory",
+                                                         "VerificationFailed",
+                                                         "Internal"});
+static_assert(kNames.size() == static_cast<std::size_t>(ErrorCode::Internal) + 1);
+
+}  // namespace
+
 std::string_view name(ErrorCode code) noexcept {
-  switch (code) {
-    case ErrorCode::InvalidArgument:
-      return "InvalidArgument";
-    case ErrorCode::FileNotFound:
-      return "FileNotFound";
-    case ErrorCode::FileSyntax:
-      return "FileSyntax";
-    case ErrorCode::FileUnsupported:
-      return "FileUnsupported";
-    case ErrorCode::FileWrite:
-      return "FileWrite";
-    case ErrorCode::EmptyMesh:
-      return "EmptyMesh";
-    case ErrorCode::IndexOutOfRange:
-      return "IndexOutOfRange";
-    case ErrorCode::RepeatedVertex:
-      return "RepeatedVertex";
-    case ErrorCode::NotFinite:
-      return "NotFinite";
-    case ErrorCode::NonManifoldFace:
-      return "NonManifoldFace";
-    case ErrorCode::NonManifoldEdge:
-      return "NonManifoldEdge";
-    case ErrorCode::NonManifoldVertex:
-      return "NonManifoldVertex";
-    case ErrorCode::Orientation:
-      return "Orientation";
-    case ErrorCode::TransitionResidual:
-      return "TransitionResidual";
-    case ErrorCode::BoundaryOffLattice:
-      return "BoundaryOffLattice";
-    case ErrorCode::SingularityOffLattice:
-      return "SingularityOffLattice";
-    case ErrorCode::FlippedTet:
-      return "FlippedTet";
-    case ErrorCode::HalfIntegerFixedPoint:
-      return "HalfIntegerFixedPoint";
-    case ErrorCode::TooLarge:
-      return "TooLarge";
-    case ErrorCode::Cancelled:
-      return "Cancelled";
-    case ErrorCode::OutOfMemory:
-      return "OutOfMemory";
-    case ErrorCode::VerificationFailed:
-      return "VerificationFailed";
-    case ErrorCode::Internal:
-      return "Internal";
-  }
-  return "Unknown";
+  const auto index = static_cast<std::size_t>(code);
+  return index < kNames.size() ? kNames[index] : "Unknown";
 }
 
 std::string toString(const Place& place) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <exception>
 #include <latch>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -42,56 +43,42 @@ class ArenaPool {
  public:
   using Arena = oneapi::tbb::task_arena;
 
-  /// Lives while an arena is in use.
-  class Loan {
-   public:
-    Loan(ArenaPool& pool, int threads)
-        : pool_(pool), threads_(threads), arena_(pool.take(threads)) {}
-    ~Loan() { pool_.giveBack(threads_, std::move(arena_)); }
-    Loan(const Loan&) = delete;
-    Loan& operator=(const Loan&) = delete;
-    [[nodiscard]] Arena& arena() const noexcept { return *arena_; }
-
-   private:
-    ArenaPool& pool_;
-    int threads_;
-    std::unique_ptr<Arena> arena_;
-  };
+  /// Calls f(arena) with an arena of so many threads.
+  template <class F>
+  void with(int threads, const F& f) {
+    const Loan loan{*this, take(threads)};
+    f(loan.arena.mapped());
+  }
 
  private:
-  struct Idle {
-    int threads;
-    std::unique_ptr<Arena> arena;
+  using Idle = std::multimap<int, Arena>;  ///< by number of threads
+
+  /// Lives while an arena is in use. Giving it back takes no memory.
+  struct Loan {
+    ArenaPool& pool;
+    mutable Idle::node_type arena;
+    ~Loan() {
+      const std::lock_guard lock(pool.mutex_);
+      pool.idle_.insert(std::move(arena));
+    }
   };
 
-  std::unique_ptr<Arena> take(int threads) {
+  Idle::node_type take(int threads) {
     const std::lock_guard lock(mutex_);
-    const auto found = std::find_if(idle_.begin(), idle_.end(),
-                                    [&](const Idle& idle) { return idle.threads == threads; });
-    std::unique_ptr<Arena> arena;
+    auto found = idle_.find(threads);
     if (found == idle_.end()) {
-      // Room for all that are lent, as giving them back must not fail.
-      idle_.reserve(idle_.size() + lent_ + 1);
-      arena = std::make_unique<Arena>(threads);
+      Idle fresh;
+      found = fresh.emplace(threads, threads);
       // Not when it is first used: an arena for which there was no memory then waits for itself for
       // ever when it is used again. This one is destroyed.
-      arena->initialize();
-    } else {
-      arena = std::move(found->arena);
-      idle_.erase(found);
+      found->second.initialize();
+      return fresh.extract(found);
     }
-    ++lent_;
-    return arena;
-  }
-  void giveBack(int threads, std::unique_ptr<Arena> arena) noexcept {
-    const std::lock_guard lock(mutex_);
-    --lent_;
-    idle_.push_back({threads, std::move(arena)});
+    return idle_.extract(found);
   }
 
   std::mutex mutex_;
-  std::vector<Idle> idle_;
-  std::size_t lent_ = 0;
+  Idle idle_;
 };
 
 /// Never destroyed: at the end of a process, nobody knows whether oneTBB ends before.
@@ -202,8 +189,7 @@ class Workforce {
     // All or none, and a few to spare: oneTBB may start a thread more while another is about to
     // sleep.
     if (!haveSpareThreads(wanted - hired_ + kSpare)) return hired_;
-    const ArenaPool::Loan loan(arenaPool(), wanted);
-    startWorkers(loan.arena(), wanted);
+    arenaPool().with(wanted, [wanted](auto& arena) { startWorkers(arena, wanted); });
     hired_ = wanted;
     return hired_;
   }
@@ -268,8 +254,8 @@ void runWithThreads(int threads, const void* object, void (*call)(const void*)) 
     permission.emplace(oneapi::tbb::global_control::max_allowed_parallelism,
                        static_cast<std::size_t>(count));
   }
-  const ArenaPool::Loan loan(arenaPool(), workforce().hire(count));
-  loan.arena().execute([&] { call(object); });
+  const int hired = workforce().hire(count);
+  arenaPool().with(hired, [&](auto& arena) { arena.execute([&] { call(object); }); });
 #else
   static_cast<void>(threads);
   call(object);

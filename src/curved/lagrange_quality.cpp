@@ -6,9 +6,9 @@
 
 #include <hexhex/curved.hpp>
 
-#include <base/lagrange_check.hpp>
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
+#include <mesh/lagrange_check.hpp>
 #include <sweep/cell_seeds.hpp>
 
 namespace hexhex {

@@ -7,11 +7,11 @@
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 
-#include <base/lagrange_check.hpp>
 #include <io/core/letter_case.hpp>
 #include <io/curved/lagrange_files.hpp>
 #include <io/ovm/piecewise_ovmb.hpp>
 #include <io/vtk/piecewise_vtk.hpp>
+#include <mesh/lagrange_check.hpp>
 
 namespace hexhex {
 

@@ -4,7 +4,7 @@
 
 #include <hexhex/error.hpp>
 
-#include <base/lagrange_check.hpp>
+#include <mesh/lagrange_check.hpp>
 
 namespace hexhex {
 
