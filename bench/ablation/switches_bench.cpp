@@ -30,6 +30,7 @@ struct Entry {
 
 constexpr std::array kEntries = {
     Entry{"huge_pages", &EngineSwitches::hugePages},
+    Entry{"page_pool", &EngineSwitches::pagePool},
 };
 
 /// Of extractions in one way.
@@ -55,7 +56,7 @@ HexMesh extractOnce(const Entry& entry, const BenchMap& map, bool on, Totals& to
   switches.*entry.option = on;
   const TetMap& input = load(map);
   releaseFreeMemory();
-  useHugePages(switches.hugePages);
+  useHugePages(switches.hugePages, switches.pagePool);
   Context context(entry.threads);
   const double cpu = processorSeconds();
   const auto begin = std::chrono::steady_clock::now();
@@ -63,7 +64,7 @@ HexMesh extractOnce(const Entry& entry, const BenchMap& map, bool on, Totals& to
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   totals.cpu += processorSeconds() - cpu;
   totals.wall += wall.count();
-  useHugePages(true);
+  useHugePages(true, true);
   return mesh;
 }
 

@@ -12,9 +12,10 @@
 
 namespace hexhex {
 
-/// Whether arrays are to have huge pages from now on, in the whole process: an allocator knows
-/// nothing but globals. For ablations alone; arrays may end under another rule than they began.
-void useHugePages(bool use);
+/// Whether large arrays are to have huge pages from now on, and whether smaller ones share some, in
+/// the whole process: an allocator knows nothing but globals. For ablations alone; arrays may end
+/// under another rule than they began.
+void useHugePages(bool forLarge, bool shared);
 
 inline constexpr std::size_t kHugePage = std::size_t{1} << 21;
 
@@ -26,7 +27,7 @@ void unmapHugePages(char* memory, std::size_t bytes) noexcept;
 
 /// An array of less than a few huge pages that has pages of its own costs a page fault for each of
 /// them. So such arrays share slabs of huge pages, and memory that one stage has given back serves
-/// the next: without, extractions of small maps take up to 6.5 % longer (docs/ablation.md). Empty
+/// the next: without, an extraction of s17c_sphere_r10 takes 7.5 % longer (docs/ablation.md). Empty
 /// slabs go back to the system. Several threads may use a pool at the same time.
 class PagePool {
  public:
