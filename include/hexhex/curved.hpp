@@ -95,9 +95,8 @@ enum class PiecewiseLinearParts : std::uint8_t {
 };
 
 /// Extracts a mesh with its arcs and, if asked for, its patches. All combinatorial decisions are
-/// exact. The result does not depend on the number of threads; memory grows with its size. Both
-/// engines make the same arcs and patches, bit for bit, but each numbers arcs in an order of its
-/// own.
+/// exact. The result does not depend on the number of threads or on the engine; memory grows with
+/// its size.
 /// @throws Error  as extract(); TooLarge for more points than an Index can number
 [[nodiscard]] PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map,
                                                          PiecewiseLinearParts parts,

@@ -1,15 +1,14 @@
 // Points and segments of arcs while they are being traced.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include <hexhex/curved.hpp>
 
 #include <base/output_batches.hpp>
-#include <curved/arc_columns.hpp>
 #include <curved/owned_simplex.hpp>
 
 namespace hexhex {
@@ -37,12 +36,7 @@ class ArcPieces {
   void addArc(const std::array<Index, 2>& ends, std::size_t firstPoint) {
     arcs_.push_back({ends, firstPoint});
   }
-  void addPoint(const ArcExit& exit, double parameter) {
-    addPoint(exit.generator, exit.point, parameter);
-  }
-  void addPoint(const OwnedSimplex& generator, const Vec3& point, double parameter) {
-    points_.push_back({point, parameter, generator});
-  }
+  void addPoint(const ArcExit& point) { points_.push_back(point); }
   void addSegment(const OwnedSimplex& carrier) { segments_.push_back(carrier); }
 
   /// Calls change(parameter) for the points from one on.
@@ -52,32 +46,27 @@ class ArcPieces {
   }
   /// Turns the order of the last ones round.
   void reverseFrom(std::size_t firstPoint, std::size_t firstSegment) {
-    // Usually there is hardly anything to do.
-    for (std::size_t i = firstPoint, j = points_.size(); i + 1 < j--; ++i) {
-      std::swap(points_[i], points_[j]);
-    }
-    for (std::size_t i = firstSegment, j = segments_.size(); i + 1 < j--; ++i) {
-      std::swap(segments_[i], segments_[j]);
-    }
+    std::reverse(points_.begin() + static_cast<std::ptrdiff_t>(firstPoint), points_.end());
+    std::reverse(segments_.begin() + static_cast<std::ptrdiff_t>(firstSegment), segments_.end());
   }
 
-  /// Copies all to where it belongs, but keys.
-  /// @param firstArc, firstPoint  among those there
-  void copyTo(const ArcColumns& to, std::size_t firstArc, std::size_t firstPoint) const {
+  /// Copies all to where it belongs.
+  /// @param to  has room
+  /// @param firstArc, firstPoint  the numbers that the first ones have there
+  void copyTo(Arcs& to, std::uint64_t firstArc, std::uint64_t firstPoint) const {
     for (std::size_t i = 0; i < arcs_.size(); ++i) {
       to.ends[firstArc + i] = arcs_[i].ends;
-      to.pointBegin[firstArc + i] = to.firstPoint + firstPoint + arcs_[i].firstPoint;
+      to.pointBegin[firstArc + i] = firstPoint + arcs_[i].firstPoint;
     }
-    for (std::size_t i = 0, place = firstPoint; i < points_.size(); ++i, ++place) {
-      const Point& point = points_[i];
-      to.points[place] = point.position;
+    for (std::uint64_t place = firstPoint; const ArcExit& point : points_) {
+      to.points[place] = point.point;
       to.parameters[place] = point.parameter;
       to.generatorTet[place] = point.generator.tet;
-      to.generatorCorners[place] = point.generator.corners;
+      to.generatorCorners[place++] = point.generator.corners;
     }
-    for (std::size_t i = 0, place = firstPoint + firstArc; i < segments_.size(); ++i, ++place) {
-      to.segmentTet[place] = segments_[i].tet;
-      to.segmentCorners[place] = segments_[i].corners;
+    for (std::uint64_t place = firstPoint + firstArc; const OwnedSimplex& segment : segments_) {
+      to.segmentTet[place] = segment.tet;
+      to.segmentCorners[place++] = segment.corners;
     }
   }
 
@@ -86,14 +75,8 @@ class ArcPieces {
     std::array<Index, 2> ends;
     std::size_t firstPoint;
   };
-  struct Point {
-    Vec3 position;
-    double parameter;
-    OwnedSimplex generator;
-  };
-
   Array<Arc> arcs_;
-  Array<Point> points_;
+  Array<ArcExit> points_;
   Array<OwnedSimplex> segments_;
 };
 

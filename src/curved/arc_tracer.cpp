@@ -1,16 +1,12 @@
+#include <algorithm>
+#include <limits>
 #include <string>
 
 #include <curved/arc_tracer.hpp>
 #include <curved/edge_crossing.hpp>
+#include <curved/face_crossing.hpp>
 
 namespace hexhex {
-
-void ArcTracer::fail(Index tet, const char* what) {
-  throw Error(ErrorCode::Internal,
-              std::string("Tracing an arc failed: ") + what +
-                  ". The map passed all checks, so this is a bug; please report it with the map.",
-              {PlaceKind::Tet, tet});
-}
 
 namespace {
 
@@ -32,7 +28,167 @@ CornerMask holderAhead(const LatticeTet& seen, CornerMask at) {
 
 }  // namespace
 
-SimplexInTet ArcTracer::behind(const SimplexInTet& point) {
+void ArcTracer::fail(Index tet, const char* what) {
+  throw Error(ErrorCode::Internal,
+              std::string("Tracing an arc failed: ") + what +
+                  ". The map passed all checks, so this is a bug; please report it with the map.",
+              {PlaceKind::Tet, tet});
+}
+
+void ArcTracer::trace(const SimplexInTet& middle) {
+  const std::size_t firstPoint = pieces_.points();
+  const Found from = vertices_.find(middle.tet, middle.frame.origin);
+  const Found to = vertices_.find(middle.tet, step(middle.frame.origin, middle.frame.axes[0]));
+  Ends ends = {from.vertex, to.vertex};
+  if (from.vertex != kNone && to.vertex != kNone) {
+    // By convexity, all between lies in the smallest simplex that contains both ends.
+    addSegment({middle.tet, static_cast<CornerMask>(from.simplex | to.simplex), {}});
+  } else {
+    ends = middle.simplex == kWholeTet ? traceFromInside(middle, from, to)
+                                       : traceFromBoundary(middle, from);
+  }
+  pieces_.addArc(ends, firstPoint);
+  // Exact parameters are in (0, 1) and ascend; rounding may not change that.
+  constexpr double kBelowOne = 1 - 0x1p-53;
+  double before = std::numeric_limits<double>::min();
+  pieces_.changeParameters(firstPoint, [&](double& parameter) {
+    parameter = before = std::clamp(parameter, before, kBelowOne);
+  });
+}
+
+/// From a midpoint inside a tet.
+/// @param from, to  what the tet has of the edge's ends
+ArcTracer::Ends ArcTracer::traceFromInside(const SimplexInTet& middle, const Found& from,
+                                           const Found& to) {
+  const LatticeTet seen = see(middle);
+  const EdgeSides sides(seen);
+  Ends ends = {from.vertex, to.vertex};
+  if (from.vertex == kNone) {
+    const SimplexInTet back{middle.tet, kWholeTet, middle.frame.reversed()};
+    const bool walking = walk_.start(back, seen, sides, Heading::Backward);
+    ends[0] = traceBack(back, [&] { return followBeyond(back, walking); });
+  } else {
+    addSegment(middle);
+  }
+  if (to.vertex == kNone) {
+    ends[1] = followBeyond(middle, walk_.start(middle, seen, sides, Heading::Forward));
+  }
+  return ends;
+}
+
+/// From a midpoint on the boundary of tets: back to the beginning, then on from where it was.
+/// @param from  what the tet has of the beginning
+ArcTracer::Ends ArcTracer::traceFromBoundary(const SimplexInTet& middle, const Found& from) {
+  SimplexInTet carrier{middle.tet, static_cast<CornerMask>(middle.simplex | from.simplex),
+                       middle.frame};
+  Index first = from.vertex;
+  if (first == kNone) {
+    const SimplexInTet back = carrierBehind({middle.tet, middle.simplex, middle.frame.reversed()});
+    first = traceBack(back, [&] { return follow(back); });
+    carrier = {back.tet, back.simplex, back.frame.reversed()};
+  } else {
+    addSegment(carrier);
+  }
+  // Whether or not that part ends at the midpoint, it is there already.
+  return {first, follow(carrier)};
+}
+
+/// Adds all from the beginning of the edge to a part of it.
+/// @param carrier  of that part, in a frame with the edge reversed
+/// @param follow   follows the edge in that frame, from that part to its end
+/// @return the vertex at the beginning
+template <class Follow>
+Index ArcTracer::traceBack(const SimplexInTet& carrier, const Follow& follow) {
+  const std::size_t firstPoint = pieces_.points();
+  const std::size_t firstSegment = pieces_.segments();
+  addSegment(carrier);
+  const Index vertex = follow();
+  pieces_.reverseFrom(firstPoint, firstSegment);
+  pieces_.changeParameters(firstPoint, [](double& parameter) { parameter = 1 - parameter; });
+  return vertex;
+}
+
+/// Adds all behind a part of an edge: points, each with the segment behind it.
+/// @param at  the carrier of the part
+/// @return the vertex at the end
+Index ArcTracer::follow(const SimplexInTet& at) {
+  const Index vertex = vertexIn(at);
+  return vertex != kNone ? vertex : followBeyond(at, startWalk(at));
+}
+
+/// The same from a part that is not the last.
+/// @param walking  whether the walk has started from there
+Index ArcTracer::followBeyond(SimplexInTet at, bool walking) {
+  for (std::size_t steps = 0; steps <= topology_.tetCount(); ++steps) {
+    if (walking) {
+      const Index vertex = walkOn(at);
+      if (vertex != kNone) return vertex;
+    }
+    const LatticeTet seen = see(at);
+    const SimplexPoint exit = exitPoint(seen, at.simplex, 0);
+    const HandOver next = leave(at, exit.simplex());
+    pieces_.addPoint(exitAt(next.exit, at, seen, exit));
+    at = next.carrier;
+    addSegment(at);
+    // The end is in the closed tet if and only if the edge does not leave it before.
+    const Index vertex = vertexIn(at);
+    if (vertex != kNone) return vertex;
+    walking = startWalk(at);
+  }
+  fail(at.tet, "a hex edge does not end");
+}
+
+/// Whether a walk through the interiors of faces begins in a part's carrier.
+bool ArcTracer::startWalk(const SimplexInTet& at) {
+  if (at.simplex != kWholeTet) return false;
+  const LatticeTet seen = see(at);
+  return walk_.start(at, seen, EdgeSides(seen), Heading::Forward);
+}
+
+/// Follows the walk through the interiors of faces.
+/// @return the hex vertex at the end, or kNone if the walk comes to another exit before
+Index ArcTracer::walkOn(SimplexInTet& at) {
+  for (std::size_t steps = 0; steps <= topology_.tetCount(); ++steps) {
+    pieces_.addPoint(exitThrough(map_, at.tet, walk_.face(), at.frame.edge()));
+    if (!walk_.cross(at)) fail(at.tet, "a hex edge leaves the mesh");
+    pieces_.addSegment({at.tet, kWholeTet});
+    // To look for the end takes less than to leave the tet, so it is done first.
+    const Index vertex = vertices_.hasVertices(at.tet) ? vertexIn(at) : kNone;
+    if (vertex != kNone || !walk_.leave(at)) return vertex;
+  }
+  fail(at.tet, "a hex edge does not end");
+}
+
+/// @param at    the carrier of the part that ends
+/// @param exit  where, in the same tet
+ArcTracer::HandOver ArcTracer::leave(const SimplexInTet& at, CornerMask exit) {
+  if (exit == kNoSimplex) fail(at.tet, "a hex edge leaves a tet nowhere");
+  if (dimension(exit) == 1 && dimension(at.simplex) == 2 &&
+      topology_.isBoundary(halfFaceOf(at.tet, oppositeCorner(at.simplex)))) {
+    const HandOver next = leaveAlongBoundary(at, exit);
+    if (next.carrier.simplex != kNoSimplex) return next;
+  }
+  return {ownedBy(topology_, at.tet, exit), carrierBehind({at.tet, exit, at.frame})};
+}
+
+/// From a triangle on the boundary through one of its edges: usually to the next triangle on the
+/// boundary, and to go there takes one walk around the edge, which comes by its owner as well.
+/// @return a carrier without a simplex if the tet of that triangle does not have the next part
+ArcTracer::HandOver ArcTracer::leaveAlongBoundary(const SimplexInTet& at, CornerMask edge) const {
+  EdgeTurn turn(topology_, at.tet, edge, otherFaceAtEdge(edge, oppositeCorner(at.simplex)));
+  HandOver next{{at.tet, edge}, at};
+  while (turn.next() != kNone) {
+    next.carrier.frame.cross(exact_.transitions, turn.out());
+    turn.step();
+    if (turn.tet() < next.exit.tet) next.exit = {turn.tet(), turn.edge()};
+  }
+  next.carrier.tet = turn.tet();
+  next.carrier.simplex = holderAhead(see(next.carrier), turn.edge());
+  return next;
+}
+
+/// The carrier of the part of the edge behind a point of it in the interior of a simplex.
+SimplexInTet ArcTracer::carrierBehind(const SimplexInTet& point) {
   SimplexInTet carrier;
   const bool leads = star_.visit(point, [&](const SimplexInTet& here) {
     carrier = here;
@@ -44,40 +200,16 @@ SimplexInTet ArcTracer::behind(const SimplexInTet& point) {
   return carrier;
 }
 
-ArcTracer::Passage ArcTracer::pass(const SimplexInTet& at, CornerMask exit) {
-  if (exit == kNoSimplex) fail(at.tet, "a hex edge leaves a tet nowhere");
-  if (dimension(exit) == 1 && dimension(at.simplex) == 2 &&
-      topology_.isBoundary(halfFaceOf(at.tet, oppositeCorner(at.simplex)))) {
-    const Passage passage = passOnBoundary(at, exit);
-    if (passage.carrier.simplex != kNoSimplex) return passage;
-  }
-  return {ownedBy(topology_, at.tet, exit), behind({at.tet, exit, at.frame})};
-}
-
-/// From a triangle on the boundary through one of its edges: usually to the next triangle on the
-/// boundary, and to go there takes one walk around the edge, which comes by its owner as well.
-/// @return a carrier without a simplex if the tet of that triangle does not have the next part
-ArcTracer::Passage ArcTracer::passOnBoundary(const SimplexInTet& at, CornerMask edge) const {
-  EdgeTurn turn(topology_, at.tet, edge, otherFaceAtEdge(edge, oppositeCorner(at.simplex)));
-  Passage passage{{at.tet, edge}, at};
-  while (turn.next() != kNone) {
-    passage.carrier.frame.cross(exact_.transitions, turn.out());
-    turn.step();
-    if (turn.tet() < passage.exit.tet) passage.exit = {turn.tet(), turn.edge()};
-  }
-  passage.carrier.tet = turn.tet();
-  passage.carrier.simplex = holderAhead(see(passage.carrier), turn.edge());
-  return passage;
-}
-
+/// The point at which a part ends.
+/// @param generator  what holds it, by its owner
+/// @param seen       the carrier's tet
 ArcExit ArcTracer::exitAt(const OwnedSimplex& generator, const SimplexInTet& carrier,
                           const LatticeTet& seen, const SimplexPoint& point) const {
   const CornerMask at = point.simplex();
   if (dimension(at) == 2) {
-    return exitThrough(map_, carrier.tet, oppositeCorner(at),
-                       {carrier.frame.origin, carrier.frame.axes[0]});
+    return exitThrough(map_, carrier.tet, oppositeCorner(at), carrier.frame.edge());
   }
-  return exitAtCorners(map_, generator, carrier.tet, at, seen, 0);
+  return exitAtCorners(map_, generator, carrier.tet, at, seen);
 }
 
 }  // namespace hexhex

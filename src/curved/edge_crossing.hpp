@@ -19,9 +19,6 @@ namespace hexhex {
 struct EdgeCrossing {
   std::array<double, 2> shares;  ///< of the corners, with sum 1
   double parameter;              ///< along the hex edge; 1 minus it, exactly, from the other end
-  double begun;                  ///< length of the hex edge before the point; negative before it
-  double left;                   ///< and behind it
-  double error;                  ///< bound for that of both lengths
 };
 
 /// @param a, b   the corners, seen from where the hex edge begins
@@ -42,45 +39,33 @@ struct EdgeCrossing {
   };
   const double begun = between(a[axis], b[axis]);
   const double left = between(unit - a[axis], unit - b[axis]);
-  // Shares carry three roundings and products two more, their sum one: 6 * 2^-53 of a number that
-  // is not larger than this one.
-  const double error =
-      0x1p-50 * static_cast<double>(std::max(std::abs(a[axis]), std::abs(b[axis])) + unit);
   // From the nearer end: a multiple of 2^-53, so that the way back is as exact as the way there.
   const double rest = 1 - std::min(begun, left) / (begun + left);
-  return {{ofA, ofB}, begun <= left ? 1 - rest : rest, begun, left, error};
-}
-
-/// That point, at which a hex edge leaves a simplex.
-/// @param generator  the edge of the tets
-/// @param first, last  its corners in space
-[[nodiscard]] inline ArcExit exitAtEdge(const EdgeCrossing& crossing, const OwnedSimplex& generator,
-                                        const Vec3& first, const Vec3& last) noexcept {
-  Vec3 point;
-  for (std::size_t k = 0; k < 3; ++k) {
-    point[k] = crossing.shares[0] * first[k] + crossing.shares[1] * last[k];
-  }
-  return {generator, point, crossing.parameter};
+  return {{ofA, ofB}, begun <= left ? 1 - rest : rest};
 }
 
 /// The point inside an edge of the tets, or at a vertex, at which a hex edge leaves a simplex.
 /// @param generator  the edge or vertex
 /// @param tet, at    the same in a tet
-/// @param seen       that tet, seen from where the hex edge begins
-/// @param axis       along which the hex edge ascends
+/// @param seen       that tet, seen from where the hex edge begins, which ascends along axis 0
 [[nodiscard]] inline ArcExit exitAtCorners(const PreparedMap& map, const OwnedSimplex& generator,
-                                           Index tet, CornerMask at, const LatticeTet& seen,
-                                           std::size_t axis) noexcept {
+                                           Index tet, CornerMask at,
+                                           const LatticeTet& seen) noexcept {
   const std::size_t i = firstCorner(at);
+  const std::size_t j = lastCorner(at);
   const Tet& vertices = map.topology.tets[tet];
   const Vec3& first = map.input.view.points[vertices[i]];
+  const Vec3& last = map.input.view.points[vertices[j]];
   const std::int64_t unit = map.exact.unit;
-  if (dimension(at) == 0) {
-    return {generator, first, static_cast<double>(seen[i][axis]) / static_cast<double>(unit)};
+  if (i == j) {
+    return {generator, first, static_cast<double>(seen[i][0]) / static_cast<double>(unit)};
   }
-  const std::size_t j = lastCorner(at);
-  return exitAtEdge(crossTetEdge(seen[i], seen[j], axis, unit), generator, first,
-                    map.input.view.points[vertices[j]]);
+  const EdgeCrossing crossing = crossTetEdge(seen[i], seen[j], 0, unit);
+  Vec3 point;
+  for (std::size_t k = 0; k < 3; ++k) {
+    point[k] = crossing.shares[0] * first[k] + crossing.shares[1] * last[k];
+  }
+  return {generator, point, crossing.parameter};
 }
 
 }  // namespace hexhex

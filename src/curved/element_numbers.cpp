@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <string>
 
 #include <curved/element_numbers.hpp>
+#include <sweep/cell_seeds.hpp>
 
 namespace hexhex {
 
@@ -12,11 +14,10 @@ void requireNumbers(std::uint64_t elements) {
 }
 
 ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind)
-    : map_(map.exact), topology_(map.topology), kind_(kind) {
+    : topology_(map.topology), kind_(kind) {
   const std::size_t tets = map.topology.tetCount();
   begin_.resize(tets + 1);
   begin_[tets] = 0;
-  axes_.resize(3 * tets);
   blocks_.resize(blockCount(tets, kSweepBlock));
   lineBegin_.resize(3 * tets + 1);
   lineBegin_[3 * tets] = 0;
@@ -24,66 +25,59 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind)
 
 ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& stage)
     : ElementNumbers(map, kind) {
-  Sweep sweep(*this);
   const HalfGridSearch search(gridsOf(kind));
   parallelBlocks(stage, topology_.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    for (std::size_t t = begin; t < end; ++t) {
-                     HalfGrids grids(map_.corners[t], map_.unit, search);
-                     sweep.add(block, static_cast<Index>(t), grids);
+                     add(block, static_cast<Index>(t),
+                         HalfGrids(map.exact.corners[t], map.exact.unit, search));
                    }
                  });
-  sweep.finish(stage);
+  finish(stage);
 }
 
-void ElementNumbers::Sweep::finish(Stage& stage) {
-  ElementNumbers& n = numbers_;
-  exclusiveScan(std::span(n.begin_));
-  requireNumbers(n.count());
-  exclusiveScan(std::span(n.lineBegin_));
-  parallelFor(stage, n.blocks_.size(), 1, [&](std::size_t block) {
-    auto number = static_cast<Index>(n.begin_[block * kSweepBlock]);
-    for (Line& line : n.blocks_[block]) {
+/// Appends the lines with elements that a tet owns, and counts both.
+void ElementNumbers::add(std::size_t block, Index tet, const HalfGrids& grids) {
+  begin_[tet] = 0;
+  std::fill_n(lineBegin_.begin() + static_cast<std::ptrdiff_t>(gridOf(tet, 0)), 3, Index{0});
+  Array<Line>& lines = blocks_[block];
+  if ((grids.occupied() & gridsOf(kind_)) != 0) {
+    CenterOwner owner(topology_, tet);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::size_t before = lines.size();
+      static_cast<void>(grids.sweep(midpointsOf(kind_, axis), [&](const SweptLine& line) {
+        const auto [first, count] = owner.owned(line);
+        if (count == 0) return;
+        lines.push_back({line, first, count, kNone});
+        begin_[tet] += count;
+      }));
+      lineBegin_[gridOf(tet, axis)] = static_cast<Index>(lines.size() - before);
+    }
+  }
+  // Lines stay where they are, so what was reserved too much would stay as well.
+  const bool isLast = (tet + 1) % kSweepBlock == 0;
+  if (isLast) lines.shrink_to_fit();
+}
+
+void ElementNumbers::finish(Stage& stage) {
+  exclusiveScan(std::span(begin_));
+  requireNumbers(count());
+  exclusiveScan(std::span(lineBegin_));
+  parallelFor(stage, blocks_.size(), 1, [&](std::size_t block) {
+    auto number = static_cast<Index>(begin_[block * kSweepBlock]);
+    for (Line& line : blocks_[block]) {
       line.number = number;
       number += line.ownedCount;
     }
   });
 }
 
-/// Appends the lines with elements that a tet owns, and counts both.
-void ElementNumbers::sweep(Index tet, const HalfGrids& grids, Array<Line>& lines) {
-  CenterOwner owner(topology_, tet);
-  std::uint64_t elements = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t before = lines.size();
-    axes_[gridOf(tet, axis)] = grids.sweep(midpointsOf(kind_, axis), [&](const SweptLine& line) {
-      const auto [first, count] = owner.owned(line);
-      if (count == 0) return;
-      lines.push_back({line, first, count, kNone});
-      elements += count;
-    });
-    lineBegin_[gridOf(tet, axis)] = static_cast<Index>(lines.size() - before);
-  }
-  begin_[tet] = elements;
-}
-
-GridPoint ElementNumbers::point(Index tet, int axis, const Line& line,
-                                std::uint32_t i) const noexcept {
-  const std::array<std::uint8_t, 3>& a = axes_[gridOf(tet, axis)]();
-  GridPoint z{};
-  z[a[0]] = line.swept.level;
-  z[a[1]] = line.swept.row;
-  z[a[2]] = line.swept.first + static_cast<std::int32_t>(i);
-  return z;
-}
-
-Index ElementNumbers::find(Index owner, int axis, const GridPoint& z, LineHint& hint) const {
-  const std::array<std::uint8_t, 3>& a = axes_[gridOf(owner, axis)]();
-  const Line* const line = findLine(
-      linesOf(owner, axis), z[a[0]], z[a[1]],
-      [](const Line& l) -> const SweptLine& { return l.swept; }, hint);
+Index ElementNumbers::find(Index owner, int axis, const GridPoint& z, std::size_t& hint) const {
+  const std::span<const Line> lines = linesOf(owner, axis);
+  const Line* const line = findLine(lines, z, hint);
   if (line != nullptr) {
-    const auto i = static_cast<std::uint32_t>(z[a[2]] - line->swept.first) - line->ownedFirst;
+    hint = static_cast<std::size_t>(line - lines.data());
+    const std::uint32_t i = line->swept.indexOf(z) - line->ownedFirst;
     if (i < line->ownedCount) return line->number + i;
   }
   throw Error(ErrorCode::Internal,
@@ -92,23 +86,15 @@ Index ElementNumbers::find(Index owner, int axis, const GridPoint& z, LineHint& 
               {PlaceKind::Tet, owner});
 }
 
+GridNumbers EdgeObserver::finish(Stage& stage) {
+  edges_.finish(stage);
+  return {VertexTables(map_, std::move(*vertices_), stage), std::move(edges_)};
+}
+
 GridNumbers numberVerticesAndEdges(const PreparedMap& map, Stage& stage) {
-  GridNumbers numbers{LatticeNumbers(map), ElementNumbers(map, ElementKind::Edges)};
-  LatticeNumbers::Sweep vertices(numbers.vertices);
-  ElementNumbers::Sweep edges(numbers.edges);
-  const HalfGridSearch search(static_cast<HalfGridSet>(
-      LatticeNumbers::kGrids | ElementNumbers::gridsOf(ElementKind::Edges)));
-  parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   for (std::size_t t = begin; t < end; ++t) {
-                     HalfGrids grids(map.exact.corners[t], map.exact.unit, search);
-                     vertices.add(block, static_cast<Index>(t), grids);
-                     edges.add(block, static_cast<Index>(t), grids);
-                   }
-                 });
-  vertices.finish(stage);
-  edges.finish(stage);
-  return numbers;
+  EdgeObserver observer(map);
+  observer.take(sweepVertices(map, stage, &observer));
+  return observer.finish(stage);
 }
 
 }  // namespace hexhex

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <string>
 
-#include <base/prefetch.hpp>
 #include <curved/face_border.hpp>
 #include <curved/simplex_point.hpp>
 
@@ -74,31 +73,6 @@ CornerMask simplexOfOrigin(const LatticeTet& corners) {
 
 }  // namespace
 
-/// Faces come row by row. Two in a row, with centres in the same tet, have a side in common, whose
-/// midpoint is between the centres and so in the tet.
-void FaceBorder::begin(Index tet, int normal, const Frame& frame) {
-  const bool hasPrevious = tet == tet_ && normal == normal_ && found_ == 15U;
-  const GridPoint previous = origin_;
-  tet_ = tet;
-  normal_ = normal;
-  origin_ = frame.origin;
-  found_ = 0;
-  if (hasPrevious && origin_ == step(previous, frame.axes[0])) {
-    takeSide(3, 1);
-  } else if (hasPrevious && origin_ == step(previous, frame.axes[1])) {
-    takeSide(0, 2);
-  } else {
-    reversed_ = 0;
-  }
-}
-
-/// Takes the arc of a side from the opposite one, of the face before.
-void FaceBorder::takeSide(std::size_t side, std::size_t opposite) {
-  arcs_[side] = arcs_[opposite];
-  reversed_ = static_cast<std::uint8_t>(unsigned{!isReversed(opposite)} << side);
-  found_ = 1U << side;
-}
-
 bool FaceBorder::mayContainAll(const SeenTet& seen, std::int64_t unit) noexcept {
   for (std::size_t k = 0; k < 2; ++k) {
     std::int64_t low = seen.corners[0][k];
@@ -116,7 +90,7 @@ CornerMask FaceBorder::setInsideOneTet(Index tet, const Frame& frame) {
   std::array<CornerMask, 4> simplices{};
   CornerMask carrier = kNoSimplex;
   for (std::size_t i = 0; i < 4; ++i) {
-    const LatticeNumbers::Found found = input_.vertices.find(tet, frame.at(kSquareCorners[i]));
+    const VertexTables::Found found = input_.vertices.find(tet, frame.at(kSquareCorners[i]));
     if (found.vertex == kNone) return kNoSimplex;
     vertices_[i] = found.vertex;
     simplices[i] = found.simplex;
@@ -180,13 +154,9 @@ void FaceBorder::setArc(std::size_t side, const SimplexInTet& midpoint) {
   if (boundsAtOne(side)) smaller = step(smaller, frame.axes[axisAcross(side)]);
   if (backward) smaller = step(smaller, along);
   const int axis = axisOf(along);
-  const std::size_t lines = 3 * std::size_t{owner} + static_cast<std::size_t>(axis);
-  LineHint& hint = arcHints_[(4 * lines + side) % arcHints_.size()];
-  arcs_[side] = input_.arc(input_.edges.find(owner, axis, smaller, hint));
+  arcs_[side] = input_.edges.find(owner, axis, smaller, lineHints_[side]);
   reversed_ = static_cast<std::uint8_t>(reversed_ | (unsigned{backward == (side < 2)} << side));
   found_ |= 1U << side;
-  prefetch(&input_.arcs.ends[arcs_[side]]);
-  prefetch(&input_.arcs.pointBegin[arcs_[side]]);
 }
 
 /// Arcs know their ends; those of neighbouring sides must agree.
@@ -194,7 +164,6 @@ void FaceBorder::finish(Index tet) {
   if (found_ != 15U) failToCut(tet, "a side was not found");
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t before = (i + 3) % 4;
-    prefetch(input_.arcs.parameters.data() + input_.arcs.pointBegin[arcs_[i]]);
     vertices_[i] = input_.arcs.ends[arcs_[i]][isReversed(i) ? 1 : 0];
     if (vertices_[i] != input_.arcs.ends[arcs_[before]][isReversed(before) ? 0 : 1]) {
       failToCut(tet, "its sides do not close");
@@ -204,10 +173,9 @@ void FaceBorder::finish(Index tet) {
 
 PatchPoint FaceBorder::arcPoint(std::size_t side, std::uint64_t point) const noexcept {
   const double t = input_.arcs.parameters[point];
-  // By places in arrays, as the processor could only guess.
-  const double forward = std::array<double, 2>{t, 1 - t}[isReversed(side) ? 1 : 0];
+  const double forward = isReversed(side) ? 1 - t : t;
   PatchPoint result{static_cast<Index>(vertexCount_ + point), {}};
-  result.parameter[side % 2] = std::array<double, 2>{forward, 1 - forward}[side / 2];
+  result.parameter[side % 2] = side < 2 ? forward : 1 - forward;
   result.parameter[1 - side % 2] = boundsAtOne(side) ? 1 : 0;
   return result;
 }

@@ -29,10 +29,10 @@ class FaceBorder {
         vertexCount_(input.vertices.count()) {}
 
   /// Begins with another face.
-  /// @param tet     owner of the face's centre
-  /// @param normal  axis across the face
-  /// @param frame   of the face, in the tet
-  void begin(Index tet, int normal, const Frame& frame);
+  void begin() noexcept {
+    found_ = 0;
+    reversed_ = 0;
+  }
   /// Whether a tet may contain all vertices of the face.
   [[nodiscard]] static bool mayContainAll(const SeenTet& seen, std::int64_t unit) noexcept;
   /// Takes the four vertices if they are all in one closed tet, and the arcs between them.
@@ -78,7 +78,6 @@ class FaceBorder {
   [[nodiscard]] std::uint64_t partIn(const SimplexInTet& carrier, std::size_t side) const noexcept;
   [[nodiscard]] PatchPoint arcPoint(std::size_t side, std::uint64_t point) const noexcept;
   [[nodiscard]] CornerMask simplexOfMidpoint(const LatticeTet& corners, std::size_t side) const;
-  void takeSide(std::size_t side, std::size_t opposite);
   void setArc(std::size_t side, const SimplexInTet& midpoint);
 
   static constexpr std::uint64_t kNoPart = ~std::uint64_t{0};
@@ -88,13 +87,9 @@ class FaceBorder {
   const ExactMap& exact_;
   SimplexStar star_;
   std::uint64_t vertexCount_;
-  /// Where arcs were found the last time, for several tets, axes and sides.
-  std::array<LineHint, 512> arcHints_;
+  std::array<std::size_t, 4> lineHints_{};  ///< by side: where its arc was found the last time
 
   // Of the face at hand:
-  Index tet_ = kNone;
-  int normal_ = 0;
-  GridPoint origin_{};
   Quad vertices_{};
   std::array<Index, 4> arcs_{};
   std::uint8_t reversed_ = 0;  ///< bit per side

@@ -8,7 +8,7 @@ std::size_t FaceCutter::cut(Index tet, const Element& face) {
   // The face's axis is its normal.
   const SimplexInTet center{tet, face.simplex, Frame::along(face.z, (face.axis + 1) % 3)};
   const SeenTet seen = see(center);
-  border_.begin(tet, face.axis, center.frame);
+  border_.begin();
   if (FaceBorder::mayContainAll(seen, exact_.unit)) {
     const CornerMask carrier = border_.setInsideOneTet(tet, center.frame);
     if (carrier != kNoSimplex) {

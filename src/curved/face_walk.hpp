@@ -3,11 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
-#include <curved/arc_pieces.hpp>
-#include <curved/owned_simplex.hpp>
 #include <curved/simplex_star.hpp>
-#include <curved/tet_faces.hpp>
 #include <igm/prepare.hpp>
 
 namespace hexhex {
@@ -22,7 +20,8 @@ struct EdgeSides {
   bool touches = false;  ///< the line of some edge is met
 };
 
-enum class Way : std::uint8_t { Forward, Backward };
+/// Along the first axis of a frame, or against it.
+enum class Heading : std::uint8_t { Forward, Backward };
 
 /// Goes from face to face.
 ///
@@ -31,40 +30,23 @@ enum class Way : std::uint8_t { Forward, Backward };
 /// corner that the next face lacks, and the others stay where they are.
 class FaceWalk {
  public:
-  explicit FaceWalk(const PreparedMap& map)
-      : map_(map), topology_(map.topology), exact_(map.exact) {}
+  explicit FaceWalk(const PreparedMap& map) : topology_(map.topology), exact_(map.exact) {}
 
   /// Leaves a tet.
-  /// @param at     the tet, with a frame that has the edge along its first axis; its interior meets
-  ///               the edge
-  /// @param seen   the tet in the frame
-  /// @param sides  of `seen`
+  /// @param at       the tet, whose interior meets the edge
+  /// @param seen     the tet in a frame that has the edge along its first axis
+  /// @param sides    of `seen`
+  /// @param heading  in that frame
   /// @return false if the edge does not leave through the interior of a face, or touches the line
   ///         of an edge of the tet elsewhere
-  [[nodiscard]] bool start(const SimplexInTet& at, const LatticeTet& seen, const EdgeSides& sides) {
-    return start(at, seen, sides, Way::Forward);
-  }
-  /// The same from what the reverse of the frame shows, if the way is backward.
   [[nodiscard]] bool start(const SimplexInTet& at, const LatticeTet& seen, const EdgeSides& sides,
-                           Way way);
+                           Heading heading);
 
-  /// Goes on from a point inside a face that the edge is known to leave a tet through.
-  /// @param at  the tet, in a frame that has the edge along its first axis
-  void resume(const SimplexInTet& at, int face);
-
-  /// Where the edge leaves a tet, for later.
-  struct Exit {
-    SimplexInTet carrier;
-    int face;  ///< of the tet
-
-    [[nodiscard]] ArcExit through(const PreparedMap& map) const {
-      return exitThrough(map, carrier.tet, face, {carrier.frame.origin, carrier.frame.axes[0]});
-    }
-  };
-  /// Through the face at hand.
-  [[nodiscard]] Exit exit(const SimplexInTet& at) const noexcept { return {at, face_}; }
+  /// The face of the tet that the edge leaves it through; after cross(), that it came through.
+  [[nodiscard]] int face() const noexcept { return face_; }
 
   /// Crosses the face.
+  /// @param at  in a frame that has the edge along its first axis, in the direction of the walk
   /// @return false on the boundary
   [[nodiscard]] bool cross(SimplexInTet& at);
 
@@ -73,32 +55,12 @@ class FaceWalk {
   [[nodiscard]] bool leave(const SimplexInTet& at);
 
  private:
-  void leaveThrough(Index tet, int face) noexcept;
-  void look(const Frame& frame) noexcept;
-  [[nodiscard]] LatticePoint seen(const LatticePoint& corner) const noexcept {
-    LatticePoint seen;
-    for (std::size_t k = 0; k < 3; ++k) {
-      seen[k] = ((corner[axis_[k]] - zero_[k]) ^ flip_[k]) - flip_[k];
-    }
-    return seen;
-  }
-
-  const PreparedMap& map_;
   const TetTopology& topology_;
   const ExactMap& exact_;
-  int face_ = 0;           ///< of the tet at hand
-  HalfFace mate_ = kNone;  ///< of that face
-
-  // The frame, if it has been looked at: coordinate k is p[axis_[k]] - zero_[k], negated if
-  // flip_[k] is -1.
-  bool looked_ = false;
-  std::array<std::size_t, 3> axis_{};
-  std::array<std::int64_t, 3> zero_{};
-  std::array<std::int64_t, 3> flip_{};
-
+  int face_ = 0;
   // Per corner of the face:
   std::array<Index, 3> vertices_{};
-  std::array<LatticePoint, 3> seen_{};
+  std::array<LatticePoint, 3> seen_{};  ///< as the frame shows them
 };
 
 }  // namespace hexhex

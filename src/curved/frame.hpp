@@ -10,6 +10,19 @@
 
 namespace hexhex {
 
+/// A hex edge in the chart of a tet: from a grid point to its neighbour.
+struct ChartEdge {
+  GridPoint z;
+  Direction along;
+
+  /// Carries it across a face.
+  [[nodiscard]] ChartEdge across(const Transitions& transitions, HalfFace halfFace) const noexcept {
+    if (!transitions.isJump(halfFace)) return *this;
+    const Transition& transition = transitions.across(halfFace);
+    return {transition(z), transition(along)};
+  }
+};
+
 /// A right-handed coordinate system of the grid, in the chart of some tet: edges run from the
 /// origin along axis 0, squares between axes 0 and 1, cubes along all three. Carried from tet to
 /// tet, it shows every corner of a tet at the same place, whatever the charts.
@@ -39,6 +52,9 @@ struct Frame {
     return {at({1, 0, 0}), {opposite(axes[0]), opposite(axes[1]), axes[2]}};
   }
 
+  /// The edge along the first axis.
+  [[nodiscard]] constexpr ChartEdge edge() const noexcept { return {origin, axes[0]}; }
+
   /// The grid point at integer coordinates of the frame, in the chart.
   [[nodiscard]] constexpr GridPoint at(const GridPoint& c) const noexcept {
     GridPoint z = origin;
@@ -59,7 +75,7 @@ struct Frame {
     return seen;
   }
   [[nodiscard]] constexpr LatticeTet see(const LatticeTet& tet, std::int64_t unit) const noexcept {
-    LatticeTet seen;  // not cleared first: that takes longer than all the rest
+    LatticeTet seen;  // not cleared first
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(axisOf(axes[k]));
       const std::int64_t zero = origin[axis] * unit;

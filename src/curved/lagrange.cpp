@@ -4,9 +4,9 @@
 
 #include <curved/cube_meets_face.hpp>
 #include <curved/lagrange.hpp>
-#include <curved/lattice_numbers.hpp>
 #include <curved/simplex_star.hpp>
 #include <sweep/cell_seeds.hpp>
+#include <sweep/vertex_tables.hpp>
 
 namespace hexhex {
 
@@ -44,7 +44,7 @@ Array<CellSeed> listCells(const PreparedMap& map, Stage& stage) {
 class NodeCollector {
  public:
   /// @param map  scaled for the nodes
-  NodeCollector(const PreparedMap& map, const LatticeNumbers& numbers, int order)
+  NodeCollector(const PreparedMap& map, const VertexTables& numbers, int order)
       : map_(map), numbers_(numbers), order_(order) {}
 
   /// Numbers of the nodes in the refined grid.
@@ -110,7 +110,7 @@ class NodeCollector {
   }
 
   const PreparedMap& map_;
-  const LatticeNumbers& numbers_;
+  const VertexTables& numbers_;
   int order_;
   std::size_t missing_ = 0;
   std::vector<SimplexInTet> queue_;
@@ -155,7 +155,7 @@ Array<Index> renumber(const HexMesh& mesh, const LagrangeMesh& result, std::uint
 }
 
 /// Positions and generators of all nodes.
-void describeNodes(const LatticeNumbers& numbers, const HexMesh& mesh, const Array<Index>& number,
+void describeNodes(const VertexTables& numbers, const HexMesh& mesh, const Array<Index>& number,
                    LagrangeMesh& result, Stage& stage) {
   Array<Vec3> points(number.size());
   Array<Index> tets(number.size());
@@ -186,7 +186,7 @@ LagrangeMesh groupNodes(const HexMesh& mesh, PreparedMap& map, int order, Contex
     scaleMap(map.exact, order, stage);
   }
   Stage stage(context, "nodes");
-  const LatticeNumbers numbers(map, stage);
+  const VertexTables numbers(map, stage);
   const std::size_t perCell = result.nodesPerCell();
   result.nodes.resize(cells.size() * perCell);
   parallelBlocks(

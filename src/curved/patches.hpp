@@ -2,26 +2,22 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include <hexhex/curved.hpp>
 
 #include <curved/element_numbers.hpp>
-#include <curved/lattice_numbers.hpp>
 #include <curved/owned_simplex.hpp>
+#include <sweep/vertex_tables.hpp>
 
 namespace hexhex {
 
 /// What patches are made from.
 struct PatchInput {
   const PreparedMap& map;
-  const LatticeNumbers& vertices;
+  const VertexTables& vertices;
   const ElementNumbers& edges;
   const ElementNumbers& faces;
-  const Arcs& arcs;              ///< of the edges
-  std::span<const Index> arcOf;  ///< per edge; empty if arcs come in the order of edges
-
-  [[nodiscard]] Index arc(Index edge) const noexcept { return arcOf.empty() ? edge : arcOf[edge]; }
+  const Arcs& arcs;  ///< of the edges
 
   /// In the numbering that polygons use, behind hex vertices and points of arcs.
   [[nodiscard]] std::uint64_t firstInnerPoint() const noexcept {

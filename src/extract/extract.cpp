@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include <hexhex/extract.hpp>
 #include <hexhex/stream.hpp>
@@ -40,10 +41,10 @@ namespace {
 /// flat tets, and for what these may be the cause of, as angles around edges, and with them what is
 /// singular, are not what they seem there. Other defects are its business only if rounding was
 /// asked for.
-bool isToBeRepaired(const DefectCollector& defects, const Mending& mending) {
-  if (mending.mode == RepairMode::Off) return false;
+bool isToBeRepaired(const DefectCollector& defects, const RepairChoice& repair) {
+  if (repair.mode == RepairMode::Off) return false;
   const auto found = [&](ErrorCode code) { return defects.has(code); };
-  return mending.round || found(ErrorCode::FlippedTet) || found(ErrorCode::SingularityOffLattice) ||
+  return repair.round || found(ErrorCode::FlippedTet) || found(ErrorCode::SingularityOffLattice) ||
          found(ErrorCode::TransitionResidual) || found(ErrorCode::HalfIntegerFixedPoint);
 }
 
@@ -61,32 +62,35 @@ TetMap ownedCopy(const TetMapView& map) {
   return copy;
 }
 
-/// Prepares the map, or what a repair makes of it; that stays in `statistics`.
-PreparedMap prepareMended(const TetMapView& map, double tolerance, int maxScale,
-                          const Mending& mending, Context& context, ExtractStatistics& statistics) {
+/// Prepares the map, or what a repair makes of it.
+/// @param report  of the repair, if there was one
+ValidMap prepareOrRepair(const TetMapView& map, double tolerance, int maxScale,
+                         const RepairChoice& repair, Context& context, RepairReport& report) {
   {
     DefectCollector defects;
     PreparedMap prepared =
         prepareMap(map, tolerance, maxScale, context, defects, ChartChoice::Unfolded);
-    if (defects.empty()) return prepared;
-    if (!isToBeRepaired(defects, mending)) defects.throwIfAny();
+    if (defects.empty()) return {std::move(prepared), nullptr};
+    if (!isToBeRepaired(defects, repair)) defects.throwIfAny();
   }
-  const RepairOptions options{tolerance, maxScale, mending.round, true};
-  statistics.repairedMap = std::make_shared<const TetMap>(
-      repairInArena(ownedCopy(map), options, context, statistics.repair));
+  const RepairOptions options{tolerance, maxScale, repair.round, true};
+  auto repaired =
+      std::make_shared<const TetMap>(repairInArena(ownedCopy(map), options, context, report));
   DefectCollector defects;
-  PreparedMap prepared = prepareMap(*statistics.repairedMap, tolerance, maxScale, context, defects,
-                                    ChartChoice::Unfolded);
+  PreparedMap prepared =
+      prepareMap(*repaired, tolerance, maxScale, context, defects, ChartChoice::Unfolded);
   defects.throwIfAny();
-  return prepared;
+  return {std::move(prepared), std::move(repaired)};
 }
 
 }  // namespace
 
-PreparedMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
-                         const Mending& mending, Context& context, ExtractStatistics& statistics) {
+ValidMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
+                      const RepairChoice& repair, Context& context, ExtractStatistics& statistics) {
   requireValidTags(map);
-  PreparedMap prepared = prepareMended(map, tolerance, maxScale, mending, context, statistics);
+  ValidMap valid = prepareOrRepair(map, tolerance, maxScale, repair, context, statistics.repair);
+  const PreparedMap& prepared = valid.prepared;
+  statistics.repairedMap = valid.repaired;
   statistics.mirrored = prepared.input.mirrored;
   statistics.tetsInvertedInSpace = prepared.input.tetsInvertedInSpace;
   statistics.maxDisplacement = prepared.exact.maxDisplacement;
@@ -94,19 +98,19 @@ PreparedMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
   statistics.chartJumps = prepared.chartJumps;
   statistics.innerFaces = prepared.exact.transitions.innerFaces;
   statistics.singularEdges = prepared.singularities.edges.size();
-  return prepared;
+  return valid;
 }
 
 HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells, const EngineOptions& options,
-                  Context& context, ExtractStatistics& statistics, const EngineGuests& guests) {
+                  Context& context, ExtractStatistics& statistics, SweepObserver* observer) {
   if (options.engine == Engine::Atlas) {
-    return runAtlas(map, expectedCells, context, statistics, options.switches, guests.sweep);
+    return runAtlas(map, expectedCells, context, statistics, options.switches, observer);
   }
   {
     Stage stage(context, "stars");
     addStars(map.topology, stage);
   }
-  return runPipeline(map, expectedCells, options.epsilon, context, statistics, guests.trace);
+  return runPipeline(map, expectedCells, options.epsilon, context, statistics);
 }
 
 void throwMissingVertex(const MissingVertex& missing) {
@@ -128,8 +132,10 @@ ScaledMap prepareScaled(const TetMapView& map, const EngineOptions& options,
   if (options.scale > std::numeric_limits<int>::max() / limits.furtherScale) {
     throw Error(ErrorCode::TooLarge, "The scale is too large. Lower it.");
   }
-  ScaledMap scaled{prepareValid(map, options.tolerance, options.scale * limits.furtherScale,
-                                {options.repair, options.round}, context, statistics)};
+  ValidMap valid = prepareValid(map, options.tolerance, options.scale * limits.furtherScale,
+                                {options.repair, options.round}, context, statistics);
+  const TetMapView source = valid.repaired ? TetMapView(*valid.repaired) : map;
+  ScaledMap scaled{std::move(valid.prepared), source, std::move(valid.repaired)};
   Stage stage(context, "scaling");
   ExactMap& exact = scaled.map.exact;
   scaled.expectedCells = scaledCells(parametricVolume(exact), options.scale, limits.cells);
@@ -137,11 +143,11 @@ ScaledMap prepareScaled(const TetMapView& map, const EngineOptions& options,
   return scaled;
 }
 
-HexMesh extractScaled(const TetMapView& given, ScaledMap& scaled, const EngineOptions& options,
-                      Context& context, ExtractStatistics& statistics, const EngineGuests& guests) {
-  HexMesh mesh = runEngine(scaled.map, scaled.expectedCells, options, context, statistics, guests);
-  const TetMapView tagged = statistics.repairedMap ? TetMapView(*statistics.repairedMap) : given;
-  carryTags(tagged, scaled.map, mesh, context);
+HexMesh extractScaled(ScaledMap& scaled, const EngineOptions& options, Context& context,
+                      ExtractStatistics& statistics, SweepObserver* observer) {
+  HexMesh mesh =
+      runEngine(scaled.map, scaled.expectedCells, options, context, statistics, observer);
+  carryTags(scaled.source, scaled.map, mesh, context);
   return mesh;
 }
 
@@ -151,7 +157,7 @@ HexMesh extractWith(const TetMapView& map, const EngineOptions& options, Context
   HexMesh mesh;
   runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {}, context, filled);
-    mesh = extractScaled(map, scaled, options, context, filled);
+    mesh = extractScaled(scaled, options, context, filled);
   });
   return mesh;
 }

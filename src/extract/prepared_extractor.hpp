@@ -19,7 +19,7 @@ class Extractor::Prepared {
   Prepared(const TetMapView& map, const ExtractorOptions& options, Context& context)
       : given_(map), maxScale_(options.maxScale) {
     runExtraction({}, context, &known_, [&](ExtractStatistics& filled) {
-      map_ = prepareValid(map, options.tolerance, options.maxScale, {}, context, filled);
+      map_ = prepareValid(map, options.tolerance, options.maxScale, {}, context, filled).prepared;
       volume_ = parametricVolume(map_.exact);
     });
   }
@@ -46,8 +46,8 @@ class Extractor::Prepared {
 
   /// The mesh of the scaled map, with its tags.
   [[nodiscard]] HexMesh mesh(std::uint64_t cells, const ExtractOptions& options, Context& context,
-                             ExtractStatistics& statistics, const EngineGuests& guests = {}) {
-    HexMesh result = runEngine(map_, cells, options, context, statistics, guests);
+                             ExtractStatistics& statistics, SweepObserver* observer = nullptr) {
+    HexMesh result = runEngine(map_, cells, options, context, statistics, observer);
     carryTags(given_, map_, result, context);
     return result;
   }

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <new>
 
 #include <hexhex/extract.hpp>
@@ -10,9 +11,9 @@
 
 #include <base/parallel.hpp>
 #include <base/switches.hpp>
-#include <extract/guests.hpp>
 #include <igm/prepare.hpp>
-#include <propeller/global_connectivity.hpp>
+#include <propeller/hex_vertices.hpp>
+#include <sweep/sweep_observer.hpp>
 
 namespace hexhex {
 
@@ -32,16 +33,22 @@ struct EngineOptions : ExtractOptions {
 };
 
 /// What may be done to maps that are not valid, as in ExtractOptions.
-struct Mending {
+struct RepairChoice {
   RepairMode mode = RepairMode::Off;
   bool round = false;
 };
 
-/// Checks tags, prepares a map, or the repaired one, throws its first defect if it has any, and
-/// notes what is known about it. A repaired map stays in `statistics`, which the result refers to.
-[[nodiscard]] PreparedMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
-                                       const Mending& mending, Context& context,
-                                       ExtractStatistics& statistics);
+/// A map that has passed all checks.
+struct ValidMap {
+  PreparedMap prepared;
+  std::shared_ptr<const TetMap> repaired;  ///< what it was prepared from if not the caller's map
+};
+
+/// Checks tags, prepares a map, or the repaired one, and throws its first defect if it has any.
+/// @param statistics  receives what is known about the map
+[[nodiscard]] ValidMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
+                                    const RepairChoice& repair, Context& context,
+                                    ExtractStatistics& statistics);
 
 /// The number of cells at a scale.
 /// @param volume  at scale 1
@@ -49,14 +56,17 @@ struct Mending {
 [[nodiscard]] std::uint64_t scaledCells(std::uint64_t volume, int scale, double limit);
 
 /// All stages behind the scaling. Adds to the map's topology what the engine needs.
-/// @param map  scaled
+/// @param map       scaled
+/// @param observer  of the atlas engine; nullptr with the other one
 [[nodiscard]] HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells,
                                 const EngineOptions& options, Context& context,
-                                ExtractStatistics& statistics, const EngineGuests& guests = {});
+                                ExtractStatistics& statistics, SweepObserver* observer = nullptr);
 
 /// A map that is ready for either engine.
 struct ScaledMap {
   PreparedMap map;
+  TetMapView source;                       ///< what it was prepared from: with its tags
+  std::shared_ptr<const TetMap> repaired;  ///< owns the source if it is not the caller's map
   std::uint64_t expectedCells = 0;
 };
 
@@ -71,10 +81,11 @@ struct ScaleLimits {
                                       const ScaleLimits& limits, Context& context,
                                       ExtractStatistics& statistics);
 
-/// All further stages, with the tags of the caller's map.
-[[nodiscard]] HexMesh extractScaled(const TetMapView& given, ScaledMap& scaled,
-                                    const EngineOptions& options, Context& context,
-                                    ExtractStatistics& statistics, const EngineGuests& guests = {});
+/// All further stages, tags included.
+/// @param observer  as for runEngine()
+[[nodiscard]] HexMesh extractScaled(ScaledMap& scaled, const EngineOptions& options,
+                                    Context& context, ExtractStatistics& statistics,
+                                    SweepObserver* observer = nullptr);
 
 /// extract() for tests and ablations.
 [[nodiscard]] HexMesh extractWith(const TetMapView& map, const EngineOptions& options,

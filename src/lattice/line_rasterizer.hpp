@@ -43,6 +43,10 @@ struct SweptLine {
     z[a[2]] = first + static_cast<std::int32_t>(i);
     return z;
   }
+  /// Which point a grid point on the line is; not below `count` if it is none.
+  [[nodiscard]] std::uint32_t indexOf(const GridPoint& z) const noexcept {
+    return static_cast<std::uint32_t>(z[axes()[2]]) - static_cast<std::uint32_t>(first);
+  }
   /// Whether all points lie in the interior of the tet.
   [[nodiscard]] bool allInside() const noexcept { return left == kWholeTet && right == kWholeTet; }
 };

@@ -6,7 +6,6 @@
 #include <hexhex/types.hpp>
 
 #include <propeller/local_connectivity.hpp>
-#include <propeller/trace_guest.hpp>
 
 namespace hexhex {
 
@@ -35,12 +34,10 @@ struct GlobalConnectivity {
 };
 
 /// Traces all propellers. (Algorithm 8)
-/// @param guest  sees the hex edges, if there is one
 /// @throws MissingVertex
 [[nodiscard]] GlobalConnectivity traceOpposites(const PreparedMap& map,
                                                 const Array<NormalSigns>& signs,
                                                 const HexVertices& vertices,
-                                                const LocalConnectivity& local, Stage& stage,
-                                                TraceGuest* guest = nullptr);
+                                                const LocalConnectivity& local, Stage& stage);
 
 }  // namespace hexhex

@@ -26,12 +26,8 @@ Array<NormalSigns> computeNormalSigns(const ExactMap& map, Stage& stage) {
 class Extraction {
  public:
   Extraction(const PreparedMap& map, std::uint64_t expectedCells, Context& context,
-             ExtractStatistics& statistics, TraceGuest* guest)
-      : map_(map),
-        expectedCells_(expectedCells),
-        context_(context),
-        statistics_(statistics),
-        guest_(guest) {}
+             ExtractStatistics& statistics)
+      : map_(map), expectedCells_(expectedCells), context_(context), statistics_(statistics) {}
 
   /// @throws MissingVertex if epsilon was too small
   HexMesh run(double epsilon) {
@@ -52,7 +48,7 @@ class Extraction {
     GlobalConnectivity global;
     {
       Stage stage(context_, "global connectivity");
-      global = traceOpposites(map_, signs, vertices, local, stage, guest_);
+      global = traceOpposites(map_, signs, vertices, local, stage);
     }
     HexMesh mesh;
     {
@@ -62,7 +58,6 @@ class Extraction {
       describeGenerators(map_, vertices, mesh, stage);
       count(vertices, local, global);
       mesh.points = std::move(vertices.positions);
-      if (guest_ != nullptr) guest_->take(std::move(vertices.lines));
     }
     return mesh;
   }
@@ -88,14 +83,13 @@ class Extraction {
   std::uint64_t expectedCells_;
   Context& context_;
   ExtractStatistics& statistics_;
-  TraceGuest* guest_;
 };
 
 }  // namespace
 
 HexMesh runPipeline(const PreparedMap& map, std::uint64_t expectedCells, double epsilon,
-                    Context& context, ExtractStatistics& statistics, TraceGuest* guest) {
-  Extraction extraction(map, expectedCells, context, statistics, guest);
+                    Context& context, ExtractStatistics& statistics) {
+  Extraction extraction(map, expectedCells, context, statistics);
   statistics.epsilon = epsilon;
   try {
     return extraction.run(epsilon);

@@ -8,7 +8,6 @@
 #include <hexhex/types.hpp>
 
 #include <igm/prepare.hpp>
-#include <propeller/trace_guest.hpp>
 
 namespace hexhex {
 
@@ -16,10 +15,8 @@ namespace hexhex {
 /// too small, starts over with infinity, which finds every vertex (Section 5.2.3).
 /// @param expectedCells  the map's parametric volume
 /// @param[in,out] statistics  receives what the stages count
-/// @param guest  sees the hex edges, if there is one
 /// @throws MissingVertex  if vertices are missing even so, which would be a bug
 [[nodiscard]] HexMesh runPipeline(const PreparedMap& map, std::uint64_t expectedCells,
-                                  double epsilon, Context& context, ExtractStatistics& statistics,
-                                  TraceGuest* guest = nullptr);
+                                  double epsilon, Context& context, ExtractStatistics& statistics);
 
 }  // namespace hexhex

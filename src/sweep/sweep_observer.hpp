@@ -1,5 +1,6 @@
-// A look at the tets while an engine sweeps them: further grids take little more then, as all of
-// them are points of the grid of half the width.
+// A look at the tets while they are swept for vertices: further grids take little more then, as all
+// of them are points of the grid of half the width. (To sweep anew for the midpoints of edges would
+// cost arcs and an extraction together 4 to 8 %.)
 #pragma once
 
 #include <cstddef>
@@ -7,13 +8,14 @@
 
 #include <hexhex/types.hpp>
 
+#include <igm/prepare.hpp>
 #include <lattice/half_grids.hpp>
 #include <sweep/tet_lines.hpp>
 #include <sweep/vertex_numbers.hpp>
 
 namespace hexhex {
 
-/// All hex vertices, as an engine has swept and numbered them.
+/// All hex vertices, swept and numbered.
 struct SweptVertices {
   TetLines lines;
   VertexNumbers numbers;
@@ -35,5 +37,10 @@ class SweepObserver {
   /// At the end.
   virtual void take(SweptVertices vertices) = 0;
 };
+
+/// Sweeps all tets for vertices, and numbers these.
+/// @param observer  sees every tet, if there is one; the result is the caller's to hand over
+[[nodiscard]] SweptVertices sweepVertices(const PreparedMap& map, Stage& stage,
+                                          SweepObserver* observer = nullptr);
 
 }  // namespace hexhex

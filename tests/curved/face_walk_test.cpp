@@ -5,6 +5,7 @@
 
 #include <base/stage.hpp>
 #include <curved/element_numbers.hpp>
+#include <curved/face_crossing.hpp>
 #include <curved/face_walk.hpp>
 #include <curved/simplex_point.hpp>
 #include <igm/defects.hpp>
@@ -27,11 +28,11 @@ class Walker {
 
   /// Walks from a midpoint to the boundary or to where the walk ends, at most a few tets beyond the
   /// end of the edge.
-  void walk(const SimplexInTet& middle, Way way) {
+  void walk(const SimplexInTet& middle, Heading heading) {
     SimplexInTet at = middle;
     const LatticeTet ahead = see(middle);
-    if (way == Way::Backward) at.frame = middle.frame.reversed();
-    bool walks = walk_.start(at, ahead, EdgeSides(ahead), way);
+    if (heading == Heading::Backward) at.frame = middle.frame.reversed();
+    bool walks = walk_.start(at, ahead, EdgeSides(ahead), heading);
     for (int i = 0; i < 6; ++i) {
       const LatticeTet seen = see(at);
       const SimplexPoint expected = exitPoint(seen, kWholeTet, 0);
@@ -61,7 +62,7 @@ class Walker {
 
   void compare(const SimplexInTet& at, const LatticeTet& seen, const SimplexPoint& expected) {
     ++counts_.steps;
-    const ArcExit exit = walk_.exit(at).through(map_);
+    const ArcExit exit = exitThrough(map_, at.tet, walk_.face(), at.frame.edge());
     const OwnedSimplex owned = ownedBy(map_.topology, at.tet, expected.simplex());
     ASSERT_EQ(exit.generator.tet, owned.tet);
     ASSERT_EQ(exit.generator.corners, owned.corners);
@@ -93,7 +94,9 @@ TEST(FaceWalk, GoesWhereExactArithmeticGoes) {
       edges.forEach(tet, [&](const Element& edge) {
         if (edge.simplex != kWholeTet) return;
         const SimplexInTet middle{tet, kWholeTet, Frame::along(edge.z, edge.axis)};
-        for (const Way way : {Way::Forward, Way::Backward}) walker.walk(middle, way);
+        for (const Heading heading : {Heading::Forward, Heading::Backward}) {
+          walker.walk(middle, heading);
+        }
       });
       if (HasFatalFailure()) return;
     }

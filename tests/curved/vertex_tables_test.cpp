@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <base/stage.hpp>
-#include <curved/lattice_numbers.hpp>
 #include <igm/defects.hpp>
+#include <sweep/vertex_tables.hpp>
 
 #include "curved/curved_maps.hpp"
 
@@ -27,8 +27,8 @@ class TableExaminer {
   TableExaminer(const PreparedMap& map, PointCounts& counts, Stage& stage)
       : map_(map),
         counts_(counts),
-        lines_(map, 0, stage),  // no box has room
-        some_(map, 2, stage),
+        lines_(map, stage, 0),  // no box has room
+        some_(map, stage, 2),
         tables_(map, stage),
         seen_(tables_.count()) {}
 
@@ -55,11 +55,11 @@ class TableExaminer {
     for (std::size_t k = 0; k < 3; ++k) place[k] = z[k] * map_.exact.unit;
     const CornerMask simplex = simplexBySides(
         [&](std::size_t face) { return sideOfFace(map_.exact.corners[tet], face, place); });
-    const LatticeNumbers::Found found = tables_.find(tet, z);
+    const VertexTables::Found found = tables_.find(tet, z);
     EXPECT_EQ(found.simplex, simplex);
     EXPECT_EQ(found.vertex == kNone, simplex == kNoSimplex);
-    for (const LatticeNumbers* numbers : {&lines_, &some_}) {
-      const LatticeNumbers::Found other = numbers->find(tet, z);
+    for (const VertexTables* numbers : {&lines_, &some_}) {
+      const VertexTables::Found other = numbers->find(tet, z);
       EXPECT_EQ(found.simplex, other.simplex);
       EXPECT_EQ(found.vertex, other.vertex);
     }
@@ -69,9 +69,9 @@ class TableExaminer {
 
   const PreparedMap& map_;
   PointCounts& counts_;
-  LatticeNumbers lines_;
-  LatticeNumbers some_;
-  LatticeNumbers tables_;
+  VertexTables lines_;
+  VertexTables some_;
+  VertexTables tables_;
   std::vector<bool> seen_;
 };
 
@@ -89,7 +89,7 @@ void compareTables(const TetMap& given, PointCounts& counts) {
   EXPECT_TRUE(examiner.haveSeenAll());
 }
 
-TEST(LatticeNumbers, TablesHaveWhatLinesHave) {
+TEST(VertexTables, HaveWhatLinesHave) {
   PointCounts counts;
   for (const CurvedMap& map : generatedMaps()) {
     SCOPED_TRACE(map.name);

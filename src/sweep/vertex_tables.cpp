@@ -1,0 +1,201 @@
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include <sweep/tet_positions.hpp>
+#include <sweep/vertex_tables.hpp>
+
+namespace hexhex {
+
+VertexTables::VertexTables(const PreparedMap& map, SweptVertices swept, Stage& stage,
+                           std::uint64_t room)
+    : map_(map), numbers_(std::move(swept.numbers)) {
+  if (numbers_.count() >= kNone) {
+    throw Error(ErrorCode::TooLarge,
+                "The mesh would have " + std::to_string(numbers_.count()) +
+                    " vertices, more than 32-bit indices can number. Lower the scale or the "
+                    "order.");
+  }
+  countLines(swept.lines, stage);
+  enterLines(swept.lines, stage);
+  makeTables(room, stage);
+}
+
+void VertexTables::countLines(const TetLines& lines, Stage& stage) {
+  const std::size_t tets = map_.topology.tetCount();
+  lineBegin_.resize(tets + 1);
+  lineBegin_[tets] = 0;
+  occupied_.assign((tets + 63) / 64, 0);
+  static_assert(kSweepBlock % 64 == 0);  // blocks have words of their own
+  parallelFor(stage, tets, kSweepBlock, [&](std::size_t t) {
+    lineBegin_[t] = lines.of(static_cast<Index>(t)).size();
+    if (lineBegin_[t] != 0) occupied_[t / 64] |= std::uint64_t{1} << (t % 64);
+  });
+  lines_.resize(exclusiveScan(std::span(lineBegin_)));
+}
+
+/// Takes the lines, block by block.
+void VertexTables::enterLines(TetLines& lines, Stage& stage) {
+  parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   const Array<SweptLine> swept = lines.takeBlock(block);
+                   const std::size_t first = lineBegin_[begin];
+                   for (std::size_t i = 0; i < swept.size(); ++i) lines_[first + i] = {swept[i]};
+                   for (std::size_t t = begin; t < end; ++t) {
+                     if (lineBegin_[t] == lineBegin_[t + 1]) continue;
+                     numberLines(static_cast<Index>(t),
+                                 std::span<const SweptLine>(swept).subspan(
+                                     lineBegin_[t] - first, lineBegin_[t + 1] - lineBegin_[t]));
+                   }
+                 });
+}
+
+void VertexTables::numberLines(Index tet, std::span<const SweptLine> swept) {
+  const std::size_t begin = lineBegin_[tet];
+  TetNumbering(map_, numbers_, tet, swept.front().axes).run(swept, [&](const VertexRun& run) {
+    lines_[begin + static_cast<std::size_t>(run.line - swept.data())].enter(run);
+  });
+}
+
+void VertexTables::Line::enter(const VertexRun& run) {
+  const auto first = static_cast<Index>(run.first);
+  const std::uint32_t last = swept.count - 1;
+  if (run.offset == 0) left = first;
+  if (run.offset + run.count == swept.count) right = first + run.count - 1;
+  if (run.offset <= 1 && run.offset + run.count > 1 && last > 1) {
+    inner = first + (1 - run.offset);
+    step = 1;
+  } else if (run.offset == 2 && last > 2) {
+    // One by one: the sweep meets the points of an edge against their order.
+    step = static_cast<std::int32_t>(first) - static_cast<std::int32_t>(inner);
+  }
+}
+
+/// When all lines have their numbers.
+void VertexTables::makeTables(std::uint64_t room, Stage& stage) {
+  const std::size_t tets = map_.topology.tetCount();
+  boxOf_.resize(tets);
+  Index boxes = 0;
+  for (std::size_t t = 0; t < tets; ++t) {
+    boxOf_[t] = boxes;
+    if (hasVertices(static_cast<Index>(t))) ++boxes;
+  }
+  boxes_.resize(boxes);
+  const auto forEachBox = [&](const auto& visit) {
+    parallelFor(stage, tets, kSweepBlock, [&](std::size_t t) {
+      const auto tet = static_cast<Index>(t);
+      if (hasVertices(tet)) visit(tet, boxes_[boxOf_[t]]);
+    });
+  };
+  forEachBox([&](Index tet, Box& box) { box = measureBox(tet, room); });
+  std::uint64_t points = 0;
+  for (Box& box : boxes_) {
+    if (box.begin == kNoTable) continue;
+    box.begin = points;
+    points += box.points();
+  }
+  tableVertices_.resize(points);
+  tableSimplices_.resize(points);
+  forEachBox([&](Index tet, const Box& box) {
+    if (box.begin != kNoTable) fillTable(tet);
+  });
+}
+
+/// Without its place in the tables, if it is to have one.
+VertexTables::Box VertexTables::measureBox(Index tet, std::uint64_t room) const {
+  GridPoint low = linesOf(tet).front().swept.point(0);
+  GridPoint high = low;
+  std::uint64_t points = 0;
+  for (const Line& line : linesOf(tet)) {
+    const GridPoint first = line.swept.point(0);
+    const GridPoint last = line.swept.point(line.swept.count - 1);
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], first[k]);
+      high[k] = std::max(high[k], last[k]);
+    }
+    points += line.swept.count;
+  }
+  Box box;
+  box.first = low;
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.size[k] = static_cast<std::uint32_t>(high[k] - low[k] + 1);
+  }
+  if (box.points() > room * points) box.begin = kNoTable;
+  return box;
+}
+
+void VertexTables::fillTable(Index tet) {
+  const Box& box = boxes_[boxOf_[tet]];
+  std::fill_n(tableVertices_.data() + box.begin, box.points(), kNone);
+  std::fill_n(tableSimplices_.data() + box.begin, box.points(), kNoSimplex);
+  forEach(tet, [&](const GridPoint& z, const Found& found) {
+    std::uint64_t place = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      place = place * box.size[k] + static_cast<std::uint64_t>(z[k] - box.first[k]);
+    }
+    tableVertices_[box.begin + place] = found.vertex;
+    tableSimplices_[box.begin + place] = found.simplex;
+  });
+}
+
+unsigned VertexTables::occupiedSimplices(Index tet) const noexcept {
+  unsigned simplices = 0;
+  for (const Line& line : linesOf(tet)) {
+    simplices |= (1U << line.swept.left) | (1U << line.swept.right);
+    if (line.swept.count > 2) simplices |= 1U << line.swept.inner();
+  }
+  return simplices;
+}
+
+VertexTables::Found VertexTables::findOnLines(Index tet, const GridPoint& z) const {
+  const Line* const line = findLine(linesOf(tet), z);
+  if (line == nullptr) return {};
+  const std::uint32_t i = line->swept.indexOf(z);
+  return i < line->swept.count ? foundOn(tet, *line, z, i) : Found{};
+}
+
+/// The i-th vertex of a line, at grid point z.
+VertexTables::Found VertexTables::foundOn(Index tet, const Line& line, const GridPoint& z,
+                                          std::uint32_t i) const {
+  const CornerMask simplex = line.swept.simplex(i);
+  const bool isLast = i + 1 == line.swept.count;
+  Index vertex = i == 0 ? line.left : (isLast ? line.right : line.inner);
+  if (vertex != kNone) {
+    if (i > 0 && !isLast) {
+      vertex += static_cast<Index>(line.step * static_cast<std::int32_t>(i - 1));
+    }
+    return {vertex, simplex};
+  }
+  // The tet on the other side of a face owns it.
+  const HalfFace halfFace = halfFaceOf(tet, oppositeCorner(simplex));
+  const Index owner = tetOf(map_.topology.mate[halfFace]);
+  return {findOnLines(owner, map_.exact.transitions.across(halfFace)(z)).vertex, simplex};
+}
+
+void VertexTables::describe(const VertexDescriptions& to, Stage& stage) const {
+  parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t) {
+                   std::vector<SweptLine> swept;
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto tet = static_cast<Index>(t);
+                     if (!hasVertices(tet)) continue;
+                     swept.clear();
+                     for (const Line& line : linesOf(tet)) swept.push_back(line.swept);
+                     const TetSweep sweep(map_.exact, tet, SweptGrid::Vertices);
+                     const TetPositions positions(map_, tet, sweep.box, sweep.axes);
+                     TetNumbering(map_, numbers_, tet, sweep.axes)
+                         .run(std::span<const SweptLine>(swept), [&](const VertexRun& run) {
+                           if (!run.owned) return;
+                           for (std::uint32_t i = 0; i < run.count; ++i) {
+                             const std::uint64_t v = run.first + i;
+                             to.points[v] =
+                                 positions.at(run.simplex, run.line->point(run.offset + i));
+                             to.tets[v] = tet;
+                             to.corners[v] = map_.input.callersCorners(run.simplex);
+                           }
+                         });
+                   }
+                 });
+}
+
+}  // namespace hexhex
