@@ -10,7 +10,6 @@
 
 #include <atlas/brick_grid.hpp>
 #include <atlas/cell_walker.hpp>
-#include <atlas/pictures.hpp>
 #include <atlas/vertex_grid.hpp>
 #include <sweep/cell_seeds.hpp>
 #include <sweep/cell_tracer.hpp>
@@ -28,7 +27,6 @@ class CellEmitter {
         vertices_(vertices),
         jumps_(jumps),
         cache_(vertices.grid()),
-        pictures_(jumps, cache_),
         walker_(map, vertices.charts()),
         tracer_(map) {}
 
@@ -85,7 +83,6 @@ class CellEmitter {
   const VertexGrid<Id>& vertices_;
   const Jumps& jumps_;
   BrickCache<Id> cache_;
-  Pictures<Id> pictures_;
   CellWalker walker_;
   CellTracer tracer_;
   std::uint64_t traced_ = 0;

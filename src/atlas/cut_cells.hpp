@@ -17,7 +17,7 @@ inline constexpr std::size_t kBrickPoints = std::size_t{kBrickSide} * kBrickSide
 
 /// What cuts may come between the centre of a cell and its corners: for each corner, in terms of
 /// the chart, the jumps across all cut faces that the way from the centre to the corner may meet. A
-/// cell remembers two different jumps, which is enough for nearly all.
+/// cell remembers two different jumps: with one, s17c_sphere_r0.1 takes 6 % longer.
 class alignas(4) CutCell {
  public:
   static constexpr std::size_t kMost = 2;
