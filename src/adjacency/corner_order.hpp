@@ -35,6 +35,15 @@ template <class T, class F>
   return table;
 }
 
+/// By order: the corners in ascending order of vertices.
+inline constexpr auto kAscendingCorners =
+    byCornerOrder<std::array<std::uint8_t, 4>>([](const Tet& tet) {
+      std::array<std::uint8_t, 4> corners{0, 1, 2, 3};
+      std::sort(corners.begin(), corners.end(),
+                [&tet](std::uint8_t a, std::uint8_t b) { return tet[a] < tet[b]; });
+      return corners;
+    });
+
 /// By order, and by the number of a face within the tet: the face's corners in ascending order of
 /// vertices.
 inline constexpr auto kAscendingFaceCorners =

@@ -42,7 +42,7 @@ struct EdgeEntry {
   auto operator<=>(const EdgeEntry&) const = default;
 };
 
-/// Numbers the boundary quads in order of (cell, face), like boundaryQuads().
+/// Numbers the boundary quads in order of (cell, face), like boundaryPlaces().
 class QuadNumbers {
  public:
   explicit QuadNumbers(const HexFaces& faces) : boundary_(faces.boundary) {
@@ -86,13 +86,10 @@ class EdgeFinder {
     for (std::size_t v = begin; v < end; ++v) {
       const auto vertex = static_cast<Index>(v);
       collectEdges(vertex, entries);
-      const std::span<const EdgeEntry> all = entries;
-      for (std::size_t i = 0; i < all.size();) {
-        std::size_t next = i + 1;
-        while (next < all.size() && all[next].other == all[i].other) ++next;
-        addEdge(vertex, all.subspan(i, next - i), edges);
-        i = next;
-      }
+      forEachRun(
+          std::span<const EdgeEntry>(entries),
+          [](const EdgeEntry& a, const EdgeEntry& b) { return a.other == b.other; },
+          [&](std::span<const EdgeEntry> wedges) { addEdge(vertex, wedges, edges); });
     }
     return edges;
   }
@@ -104,7 +101,7 @@ class EdgeFinder {
   void collectEdges(Index vertex, std::vector<EdgeEntry>& entries) const {
     entries.clear();
     Index previous = kNone;
-    for (const Index c : around_.around(vertex)) {
+    for (const Index c : around_.at(vertex)) {
       if (c == previous) continue;  // a cell with repeated vertices
       previous = c;
       const Hex& cell = mesh_.cells[c];

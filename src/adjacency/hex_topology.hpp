@@ -1,6 +1,6 @@
-// Faces, edges and connected components of a hexahedral mesh, in linear time and without hashing:
-// everything that shares a face or an edge also shares its smallest vertex, so it suffices to sort
-// the few faces and edges around each vertex.
+// Faces, edges and connected components of a hexahedral mesh, whatever is wrong with it, in linear
+// time and without hashing: everything that shares a face or an edge also shares its smallest
+// vertex, so it suffices to sort the few faces and edges around each vertex.
 //
 // Faces are the same if they have the same four vertices, edges if they have the same two.
 #pragma once
@@ -9,7 +9,8 @@
 #include <cstdint>
 #include <map>
 
-#include <adjacency/vertex_cells.hpp>
+#include <adjacency/cell_faces.hpp>
+#include <adjacency/vertex_lists.hpp>
 
 #include <hexhex/structure.hpp>
 #include <hexhex/types.hpp>
@@ -18,40 +19,25 @@
 
 namespace hexhex {
 
-/// Local corners of the six faces of a cell, counter-clockwise seen from outside, in VTK's order.
-inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kHexFaces = {
-    {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
+/// The cells around each vertex, ascending. A cell is listed once for each corner that has the
+/// vertex, so a cell with repeated vertices is listed repeatedly. 32 bytes per cell plus 8 per
+/// vertex.
+using VertexCells = VertexLists<Index, std::uint64_t>;
 
-/// Local corners of the twelve edges of a cell, in VTK's order.
-inline constexpr std::array<std::array<std::uint8_t, 2>, 12> kHexEdges = {{{0, 1},
-                                                                           {1, 2},
-                                                                           {3, 2},
-                                                                           {0, 3},
-                                                                           {4, 5},
-                                                                           {5, 6},
-                                                                           {7, 6},
-                                                                           {4, 7},
-                                                                           {0, 4},
-                                                                           {1, 5},
-                                                                           {3, 7},
-                                                                           {2, 6}}};
+/// @throws Error InvalidArgument for a corner that is not a vertex of the mesh; TooLarge for
+///         2^32 - 1 cells or more
+[[nodiscard]] VertexCells cellsAroundVertices(const HexMesh& mesh, Stage& stage);
 
-/// One side of one cell.
-struct CellFace {
-  Index cell = kNone;
-  std::uint8_t face = 0;  ///< row of kHexFaces
-};
+/// The first cell with a corner that is not a vertex of the mesh, or the number of cells.
+[[nodiscard]] std::size_t firstCellOutOfRange(const HexMesh& mesh, Stage& stage);
 
-/// The four vertices of a face of a cell, counter-clockwise seen from outside.
-[[nodiscard]] constexpr Quad faceVertices(const Hex& cell, std::size_t face) noexcept {
-  const auto& corners = kHexFaces[face];
-  return {cell[corners[0]], cell[corners[1]], cell[corners[2]], cell[corners[3]]};
-}
+/// @throws Error InvalidArgument, with the first cell, if a corner is not a vertex of the mesh
+void requireCornersInRange(const HexMesh& mesh, Stage& stage);
 
 /// How often something wrong occurs, and where first (by smallest vertex, then cell).
 struct FaceFault {
   std::uint64_t count = 0;
-  CellFace first;
+  CellFace<Hex> first;
 };
 
 /// What the cells share with each other.
@@ -68,6 +54,12 @@ struct HexFaces {
 
 /// Finds all faces. @param around  of the same mesh
 [[nodiscard]] HexFaces findFaces(const HexMesh& mesh, const VertexCells& around, Stage& stage);
+
+/// Per cell and face (row of kHexFaces): the cell on the other side, kNone on the boundary.
+using FaceNeighbours = Array<std::array<Index, 6>>;
+
+/// @throws Error InvalidArgument for a face with more than two cells, and as cellsAroundVertices()
+[[nodiscard]] FaceNeighbours findFaceNeighbours(const HexMesh& mesh, Stage& stage);
 
 /// An edge of the mesh by its vertices, vertex0 <= vertex1.
 struct MeshEdge {
@@ -93,5 +85,12 @@ struct HexEdges {
 /// @throws Error TooLarge for 2^32 - 1 boundary quads or more
 [[nodiscard]] HexEdges findEdges(const HexMesh& mesh, const VertexCells& around,
                                  const HexFaces& faces, Stage& stage);
+
+/// V - E + F - C.
+[[nodiscard]] inline std::int64_t eulerCharacteristic(const HexMesh& mesh, const HexFaces& faces,
+                                                      const HexEdges& edges) noexcept {
+  return static_cast<std::int64_t>(faces.usedVertices + faces.count) -
+         static_cast<std::int64_t>(edges.count + mesh.cells.size());
+}
 
 }  // namespace hexhex

@@ -23,31 +23,14 @@ void collectEdges(const TetTopology& topology, Index v, std::vector<Index>& ends
 
 }  // namespace
 
-/// Counting sort; sorted afterwards, as threads fill in any order.
 void addStars(TetTopology& topology, Stage& stage) {
-  if (!topology.cornerBegin.empty()) return;
-  const std::size_t vertices = topology.pointCount;
-  topology.cornerBegin.assign(vertices + 1, 0);
-  Array<Index>& begin = topology.cornerBegin;
-  parallelFor(stage, topology.tetCount(), kGrain, [&](std::size_t t) {
-    for (const Index v : topology.tets[t]) {
-      std::atomic_ref(begin[v]).fetch_add(1, std::memory_order_relaxed);
-    }
-  });
-  exclusiveScan(std::span(begin));
-  topology.corners.resize(4 * topology.tetCount());
-  // begin[v] serves as the cursor of v and ends at the begin of v + 1.
-  parallelFor(stage, topology.tetCount(), kGrain, [&](std::size_t t) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Index place =
-          std::atomic_ref(begin[topology.tets[t][i]]).fetch_add(1, std::memory_order_relaxed);
-      topology.corners[place] = static_cast<CornerIndex>(4 * t + i);
-    }
-  });
-  for (std::size_t v = vertices; v > 0; --v) begin[v] = begin[v - 1];
-  begin[0] = 0;
-  parallelFor(stage, vertices, kGrain, [&](std::size_t v) {
-    std::sort(topology.corners.begin() + begin[v], topology.corners.begin() + begin[v + 1]);
+  if (!topology.stars.empty()) return;
+  topology.stars = VertexLists<CornerIndex>(topology.pointCount, stage, [&](const auto& add) {
+    parallelFor(stage, topology.tetCount(), kGrain, [&](std::size_t t) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        add(topology.tets[t][i], static_cast<CornerIndex>(4 * t + i));
+      }
+    });
   });
 }
 

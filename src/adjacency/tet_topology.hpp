@@ -7,7 +7,9 @@
 #include <span>
 #include <vector>
 
+#include <adjacency/cell_faces.hpp>
 #include <adjacency/corner_order.hpp>
+#include <adjacency/vertex_lists.hpp>
 
 #include <hexhex/types.hpp>
 
@@ -46,8 +48,7 @@ struct TetTopology {
   Array<CornerOrder> order;  ///< per tet: how its vertices are ordered
 
   // Empty until addStars().
-  Array<Index> cornerBegin;    ///< per vertex (+1): its range in `corners`
-  Array<CornerIndex> corners;  ///< corners by vertex, ascending: the star of each vertex
+  VertexLists<CornerIndex> stars;  ///< the corners at each vertex
 
   // Empty until addEdges().
   Array<std::uint64_t> edgeBegin;  ///< per vertex (+1): its range in `edgeEnd`
@@ -78,8 +79,7 @@ struct TetTopology {
   }
   /// Needs addStars().
   [[nodiscard]] std::span<const CornerIndex> star(Index vertex) const noexcept {
-    return std::span(corners).subspan(cornerBegin[vertex],
-                                      cornerBegin[vertex + 1] - cornerBegin[vertex]);
+    return stars.at(vertex);
   }
   /// Number of edges, and index of the edge between two vertices. Need addEdges().
   [[nodiscard]] std::size_t edgeCount() const noexcept { return edgeEnd.size(); }
@@ -175,12 +175,10 @@ void forEachEdge(const TetTopology& topology, Index v, std::vector<EdgeCorner>& 
   std::sort(scratch.begin(), scratch.end(), [](const EdgeCorner& a, const EdgeCorner& b) {
     return a.other != b.other ? a.other < b.other : a.tet < b.tet;
   });
-  for (std::size_t begin = 0; begin < scratch.size();) {
-    std::size_t end = begin + 1;
-    while (end < scratch.size() && scratch[end].other == scratch[begin].other) ++end;
-    visit(scratch[begin].other, std::span<const EdgeCorner>(&scratch[begin], end - begin));
-    begin = end;
-  }
+  forEachRun(
+      std::span<const EdgeCorner>(scratch),
+      [](const EdgeCorner& a, const EdgeCorner& b) { return a.other == b.other; },
+      [&visit](std::span<const EdgeCorner> fan) { visit(fan.front().other, fan); });
 }
 
 /// The boundary faces among the two faces of each tet at an edge: 0 inside, 2 on the boundary.

@@ -1,7 +1,8 @@
-// Lists of what vertices have, which all threads fill at once: a first look counts, a second one
-// enters.
+// Lists of what vertices have (cells, corners, edges): a counting sort in which all threads take
+// part.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <span>
@@ -13,40 +14,50 @@
 
 namespace hexhex {
 
-/// Up to 2^32 - 1 values altogether.
-template <class T>
+/// The values of each vertex, ascending.
+/// @tparam Offset  counts all values
+template <class T, class Offset = Index>
 class VertexLists {
  public:
-  VertexLists(std::size_t vertexCount, Stage& stage) : ends_(vertexCount + 1) {
-    constexpr std::size_t kGrain = std::size_t{1} << 14;
+  VertexLists() = default;
+
+  /// @param forEach  calls its argument with (vertex, value) for each value, from any thread; it is
+  ///                 called twice, to count values and to enter them
+  template <class ForEach>
+  VertexLists(std::size_t vertexCount, Stage& stage, const ForEach& forEach)
+      : ends_(vertexCount + 1) {
     parallelFor(stage, ends_.size(), kGrain, [this](std::size_t v) { ends_[v] = 0; });
+    const auto next = [this](Index vertex) {
+      return std::atomic_ref(ends_[vertex]).fetch_add(1, std::memory_order_relaxed);
+    };
+    forEach([&next](Index vertex, const T& /*value*/) { next(vertex); });
+    values_.resize(exclusiveScan(std::span(ends_)));
+    // Where a list begins moves on to its end while it is filled.
+    forEach([&](Index vertex, const T& value) { values_[next(vertex)] = value; });
+    // Threads come in any order: once sorted, lists are the same for any number of them.
+    parallelFor(stage, vertexCount, kGrain, [this](std::size_t v) {
+      const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(beginOf(v));
+      const auto end = values_.begin() + static_cast<std::ptrdiff_t>(ends_[v]);
+      if (!std::is_sorted(begin, end)) std::sort(begin, end);
+    });
   }
 
-  /// First, for each value; from any thread.
-  void count(Index vertex) noexcept { next(vertex); }
-  /// Then, once.
-  void makeRoom() { values_.resize(exclusiveScan(std::span(ends_))); }
-  /// Then, for each value that was counted; from any thread, so that they come in any order.
-  void enter(Index vertex, T value) noexcept { values_[next(vertex)] = value; }
+  /// Whether nothing has been listed at all.
+  [[nodiscard]] bool empty() const noexcept { return ends_.empty(); }
 
-  /// The list of a vertex, when all is entered.
-  [[nodiscard]] std::span<T> at(std::size_t vertex) noexcept {
-    return std::span(values_).subspan(beginOf(vertex), ends_[vertex] - beginOf(vertex));
-  }
   [[nodiscard]] std::span<const T> at(std::size_t vertex) const noexcept {
-    return std::span(values_).subspan(beginOf(vertex), ends_[vertex] - beginOf(vertex));
+    const Offset begin = beginOf(vertex);
+    return std::span(values_).subspan(begin, ends_[vertex] - begin);
   }
 
  private:
-  [[nodiscard]] Index beginOf(std::size_t vertex) const noexcept {
+  static constexpr std::size_t kGrain = 4096;
+
+  [[nodiscard]] Offset beginOf(std::size_t vertex) const noexcept {
     return vertex == 0 ? 0 : ends_[vertex - 1];
   }
-  Index next(Index vertex) noexcept {
-    return std::atomic_ref(ends_[vertex]).fetch_add(1, std::memory_order_relaxed);
-  }
 
-  /// Per vertex: the count, then where its list begins, and in the end where it ends.
-  Array<Index> ends_;
+  Array<Offset> ends_;
   Array<T> values_;
 };
 

@@ -1,4 +1,5 @@
 #include <atomic>
+#include <ranges>
 
 #include <igm/topology_defects.hpp>
 
@@ -8,88 +9,40 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;
 
-/// A half-face at its smallest vertex.
-struct FaceKey {
-  Index middle;
-  Index largest;
-  HalfFace halfFace;
-};
-
-/// Whether two tets see their common triangle with opposite orientation, as neighbours must.
-bool oppositeOrientation(const TetTopology& topology, HalfFace a, HalfFace b) {
-  const auto corners = [&](HalfFace f) {
-    const std::array<int, 3>& local = kFaceCorners[f % 4];
-    const Tet& tet = topology.tets[f / 4];
-    return std::array<Index, 3>{tet[static_cast<std::size_t>(local[0])],
-                                tet[static_cast<std::size_t>(local[1])],
-                                tet[static_cast<std::size_t>(local[2])]};
-  };
-  const std::array<Index, 3> left = corners(a);
-  const std::array<Index, 3> right = corners(b);
-  const auto shift =
-      static_cast<std::size_t>(std::find(right.begin(), right.end(), left[0]) - right.begin());
-  return right[(shift + 1) % 3] == left[2];
-}
-
-/// The half-faces whose smallest vertex is v, so that equal triangles follow each other.
-void collectFaces(const TetTopology& topology, Index v, std::vector<FaceKey>& faces) {
-  faces.clear();
-  for (const CornerIndex corner : topology.star(v)) {
-    const Tet& tet = topology.tets[corner / 4];
-    // Of the three other corners, two belong to each face at v.
-    for (std::uint32_t opposite = 0; opposite < 4; ++opposite) {
-      if (opposite == corner % 4) continue;
-      std::uint32_t i = 0;
-      while (i == corner % 4 || i == opposite) ++i;
-      const std::uint32_t j = 6 - corner % 4 - opposite - i;
-      if (tet[i] < v || tet[j] < v) continue;
-      faces.push_back({std::min(tet[i], tet[j]), std::max(tet[i], tet[j]),
-                       halfFaceOf(corner / 4, static_cast<int>(opposite))});
-    }
-  }
-  std::sort(faces.begin(), faces.end(), [](const FaceKey& a, const FaceKey& b) {
-    if (a.middle != b.middle) return a.middle < b.middle;
-    return a.largest != b.largest ? a.largest < b.largest : a.halfFace < b.halfFace;
-  });
-}
-
 /// Makes the half-faces of one triangle mates, or boundary if there is only one.
-void joinMates(TetTopology& topology, std::span<const FaceKey> same, DefectCollector& defects) {
-  for (const FaceKey& face : same) topology.mate[face.halfFace] = kNone;
+void joinMates(TetTopology& topology, std::span<const CellFace<Tet>> same,
+               DefectCollector& defects) {
+  const auto halfFaceAt = [](const CellFace<Tet>& at) { return halfFaceOf(at.cell, at.face); };
+  for (const CellFace<Tet>& at : same) topology.mate[halfFaceAt(at)] = kNone;
   if (same.size() == 1) return;
-  const HalfFace first = same[0].halfFace;
-  const HalfFace second = same[1].halfFace;
-  const Place place{PlaceKind::Face, tetOf(first), first % 4};
+  const CellFace<Tet>& first = same[0];
+  const CellFace<Tet>& second = same[1];
+  const Place place{PlaceKind::Face, first.cell, first.face};
   if (same.size() > 2) {
     defects.add(ErrorCode::NonManifoldFace, place, 0);
     return;
   }
-  topology.mate[first] = second;
-  topology.mate[second] = first;
-  if (!oppositeOrientation(topology, first, second)) {
+  topology.mate[halfFaceAt(first)] = halfFaceAt(second);
+  topology.mate[halfFaceAt(second)] = halfFaceAt(first);
+  if (!areOpposite(faceVertices(topology.tets[first.cell], first.face),
+                   faceVertices(topology.tets[second.cell], second.face))) {
     defects.add(ErrorCode::Orientation, place, 0);
   }
 }
 
-/// Matches half-faces once more; each triangle is found at its smallest vertex.
+/// Matches half-faces once more.
 void checkFaces(TetTopology& topology, Stage& stage, DefectCollector& defects) {
   topology.mate.resize(4 * topology.tetCount());
-  const auto matchAt = [&](Index v, std::vector<FaceKey>& faces) {
-    collectFaces(topology, v, faces);
-    for (std::size_t begin = 0; begin < faces.size();) {
-      std::size_t end = begin + 1;
-      while (end < faces.size() && faces[end].middle == faces[begin].middle &&
-             faces[end].largest == faces[begin].largest) {
-        ++end;
-      }
-      joinMates(topology, std::span(&faces[begin], end - begin), defects);
-      begin = end;
-    }
+  const auto join = [&](std::span<const CellFace<Tet>> same) {
+    joinMates(topology, same, defects);
   };
   parallelBlocks(stage, topology.pointCount, kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   std::vector<FaceKey> faces;
-                   for (std::size_t v = begin; v < end; ++v) matchAt(static_cast<Index>(v), faces);
+                   FacesAtVertices<Tet> faces(topology.tets);
+                   for (std::size_t i = begin; i < end; ++i) {
+                     const auto v = static_cast<Index>(i);
+                     faces.forEach(v, topology.star(v) | std::views::transform(tetOf), join);
+                   }
                  });
 }
 

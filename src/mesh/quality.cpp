@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <adjacency/hex_topology.hpp>
-#include <adjacency/vertex_cells.hpp>
 
 #include <hexhex/quality.hpp>
 

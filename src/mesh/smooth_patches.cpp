@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <numbers>
 #include <string>
 #include <vector>
 
-#include <adjacency/boundary_quads.hpp>
-#include <adjacency/vertex_cells.hpp>
+#include <adjacency/hex_faces.hpp>
+#include <adjacency/hex_topology.hpp>
+#include <adjacency/vertex_lists.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/patches.hpp>
@@ -30,46 +32,25 @@ constexpr double kCosineError = 1e-12;
 struct Side {
   Index other;  ///< the larger vertex
   Index quad;   ///< kNone: a seam
+  auto operator<=>(const Side&) const = default;
 };
 
 /// The edges of quads and the seams, by their smaller vertices.
-class Sides {
- public:
-  Sides(std::size_t points, std::span<const Quad> quads, std::span<const FeatureEdge> seams)
-      : begins_(points + 1) {
-    std::fill(begins_.begin(), begins_.end(), std::uint64_t{0});
-    forEach(quads, seams, [this](Index vertex, const Side&) { ++begins_[vertex]; });
-    sides_.resize(exclusiveScan(std::span(begins_)));
-    forEach(quads, seams, [this](Index vertex, const Side& side) {
-      sides_[begins_[vertex]++] = side;  // begins_[v] becomes the end of v
-    });
-  }
-
-  /// Those of one vertex, for one thread to sort.
-  [[nodiscard]] std::span<Side> at(std::size_t vertex) noexcept {
-    const std::uint64_t begin = vertex == 0 ? 0 : begins_[vertex - 1];
-    return std::span(sides_).subspan(begin, begins_[vertex] - begin);
-  }
-
- private:
-  template <class Visit>
-  static void forEach(std::span<const Quad> quads, std::span<const FeatureEdge> seams,
-                      const Visit& visit) {
-    for (std::size_t q = 0; q < quads.size(); ++q) {
-      for (std::size_t i = 0; i < 4; ++i) {
-        const auto [low, high] = std::minmax(quads[q][i], quads[q][(i + 1) % 4]);
-        visit(low, Side{high, static_cast<Index>(q)});
-      }
-    }
-    for (const FeatureEdge& seam : seams) {
-      const auto [low, high] = std::minmax(seam.vertices[0], seam.vertices[1]);
-      if (seam.tag != 0) visit(low, Side{high, kNone});
-    }
-  }
-
-  Array<std::uint64_t> begins_;
-  Array<Side> sides_;
-};
+VertexLists<Side, std::uint64_t> listSides(std::size_t points, std::span<const Quad> quads,
+                                           std::span<const FeatureEdge> seams, Stage& stage) {
+  return {points, stage, [&](const auto& add) {
+            parallelFor(stage, quads.size(), kGrain, [&](std::size_t q) {
+              for (std::size_t i = 0; i < 4; ++i) {
+                const auto [low, high] = std::minmax(quads[q][i], quads[q][(i + 1) % 4]);
+                add(low, Side{high, static_cast<Index>(q)});
+              }
+            });
+            for (const FeatureEdge& seam : seams) {
+              const auto [low, high] = std::minmax(seam.vertices[0], seam.vertices[1]);
+              if (seam.tag != 0) add(low, Side{high, kNone});
+            }
+          }};
+}
 
 /// Unit normals; zero for quads without area.
 Array<Vec3> normalsOf(std::span<const Vec3> points, std::span<const Quad> quads, Stage& stage) {
@@ -113,23 +94,17 @@ SmoothPatches findSmoothPatches(std::span<const Vec3> points, std::span<const Qu
   }
   const double limit = std::cos(angle * std::numbers::pi / 180) - kCosineError;
   const Array<Vec3> normals = normalsOf(points, quads, stage);
-  Sides sides(points.size(), quads, seams);
+  const VertexLists<Side, std::uint64_t> sides = listSides(points.size(), quads, seams, stage);
   DisjointSets sets(quads.size());
-  parallelFor(stage, points.size(), kGrain, [&](std::size_t v) {
-    const std::span<Side> all = sides.at(v);
-    std::sort(all.begin(), all.end(),
-              [](const Side& a, const Side& b) { return a.other < b.other; });
-    for (std::size_t i = 0; i < all.size();) {
-      std::size_t end = i + 1;
-      while (end < all.size() && all[end].other == all[i].other) ++end;
-      const Index a = all[i].quad;
-      const Index b = all[end - 1].quad;
-      // Exactly two quads and no seam.
-      const bool joins = end - i == 2 && a != kNone && b != kNone;
-      if (joins && dot(normals[a], normals[b]) >= limit) sets.unite(a, b);
-      i = end;
-    }
-  });
+  const auto isSameEdge = [](const Side& a, const Side& b) { return a.other == b.other; };
+  const auto join = [&](std::span<const Side> atEdge) {
+    // Exactly two quads and no seam, which would come last.
+    if (atEdge.size() != 2 || atEdge[1].quad == kNone) return;
+    const auto [a, b] = std::pair(atEdge[0].quad, atEdge[1].quad);
+    if (dot(normals[a], normals[b]) >= limit) sets.unite(a, b);
+  };
+  parallelFor(stage, points.size(), kGrain,
+              [&](std::size_t v) { forEachRun(sides.at(v), isSameEdge, join); });
   return numbered(sets, quads.size());
 }
 
@@ -145,7 +120,7 @@ std::vector<FeatureQuad> boundaryPatches(const HexMesh& mesh, double angle, Cont
                   "A feature edge names a vertex that is not one of the mesh.",
                   Place{PlaceKind::Edge, edge.vertices[0], edge.vertices[1]});
     }
-    const Array<Quad> quads = boundaryQuads(mesh, stage);
+    const Array<Quad> quads = quadsAt(mesh, boundaryPlaces(mesh, stage));
     const SmoothPatches patches =
         findSmoothPatches(mesh.points, quads, angle, mesh.features.edges, stage);
     tagged.resize(quads.size());

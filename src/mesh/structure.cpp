@@ -11,7 +11,7 @@ MeshStructure findStructure(const HexMesh& mesh, Context& context) {
   Stage stage(context, "structure");
   MeshStructure result;
   withThreads(context.threads(), [&] {
-    const VertexCells around(mesh, stage);
+    const VertexCells around = cellsAroundVertices(mesh, stage);
     const HexFaces faces = findFaces(mesh, around, stage);
     HexEdges edges = findEdges(mesh, around, faces, stage);
     result.singularEdges = std::move(edges.singular);
@@ -20,10 +20,7 @@ MeshStructure findStructure(const HexMesh& mesh, Context& context) {
     result.boundaryQuads = faces.boundaryCount;
     result.components = faces.components;
     result.boundaryComponents = edges.boundaryComponents;
-    // Signed: more edges than vertices is the rule.
-    result.eulerCharacteristic =
-        static_cast<std::int64_t>(faces.usedVertices) - static_cast<std::int64_t>(edges.count) +
-        static_cast<std::int64_t>(faces.count) - static_cast<std::int64_t>(mesh.cells.size());
+    result.eulerCharacteristic = eulerCharacteristic(mesh, faces, edges);
   });
   return result;
 }

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <map>
 
-#include <adjacency/boundary_quads.hpp>
+#include <adjacency/hex_faces.hpp>
 #include <adjacency/hex_topology.hpp>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ Array<Quad> quadsOf(const HexMesh& mesh, int threads = 0) {
   Context context(threads);
   Stage stage(context, "test");
   Array<Quad> quads;
-  withThreads(threads, [&] { quads = boundaryQuads(mesh, stage); });
+  withThreads(threads, [&] { quads = quadsAt(mesh, boundaryPlaces(mesh, stage)); });
   return quads;
 }
 

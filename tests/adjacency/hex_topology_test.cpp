@@ -29,7 +29,7 @@ Topology topologyOf(const HexMesh& mesh, int threads = 0) {
   Stage stage(context, "test");
   Topology result;
   withThreads(threads, [&] {
-    const VertexCells around(mesh, stage);
+    const VertexCells around = cellsAroundVertices(mesh, stage);
     result.faces = findFaces(mesh, around, stage);
     result.edges = findEdges(mesh, around, result.faces, stage);
   });

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include <adjacency/boundary_quads.hpp>
+#include <adjacency/hex_faces.hpp>
 #include <adjacency/hex_topology.hpp>
 
 #include <hexhex/error.hpp>

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include <adjacency/vertex_cells.hpp>
+#include <adjacency/hex_topology.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>

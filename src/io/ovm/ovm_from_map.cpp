@@ -113,7 +113,7 @@ void setEdgeValences(OvmOutput& output, const TetMap& map) {
   if (map.edgeValences.empty()) return;
   Array<std::int32_t>& offsets = output.properties[OvmInteger::EdgeValence];
   offsets.assign(output.topology.edges.size(), 0);
-  const OvmEdgeFinder finder(output.topology);
+  const OvmEdgeFinder finder(output.topology.vertexCount, output.topology.edges);
   for (const EdgeValence& edge : map.edgeValences) {
     const Place place{PlaceKind::Edge, edge.vertex0, edge.vertex1};
     setOvmValue(offsets, finder.find(edge.vertex0, edge.vertex1), edge.offset,

@@ -1,19 +1,17 @@
-// Edges and faces of hexahedra, which belong to one of their cells each: away from seams
-// (ovm_hex_mates.hpp), a cell has the three edges and the three faces at its corner 0, so that a
-// look at the neighbours tells all that it shares with them. Edges along seams have a list of their
-// own.
+// Edges and faces of hexahedra belong to one of their cells each: away from seams (HexMates), a
+// cell has the three edges and the three faces at its corner 0, so that a look at the neighbours
+// tells all that it shares with them. Edges along seams are listed by themselves.
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
 
-#include <adjacency/hex_topology.hpp>
+#include <adjacency/cell_faces.hpp>
+#include <adjacency/vertex_lists.hpp>
 
 #include <base/parallel.hpp>
 #include <base/prefetch.hpp>
-#include <io/ovm/ovm_hex_mates.hpp>
 #include <io/ovm/ovm_hex_topology.hpp>
-#include <io/ovm/ovm_seam_edges.hpp>
 #include <io/ovm/ovm_topology.hpp>
 
 namespace hexhex {
@@ -54,14 +52,41 @@ constexpr std::array<std::uint8_t, 64> kBitCounts = makeBitCounts();
 /// How many bits are set below bit i.
 Index rankOf(unsigned bits, std::size_t i) { return kBitCounts[bits & ((1U << i) - 1)]; }
 
-/// Whether a side has its face rather than its mate: a cell begins with its first slot, and so does
-/// the face's loop; and faces at corner 0 have edges that are at hand.
-bool owns(Index side, Index mate) {
+/// Whether a half-face has the face rather than its mate: a cell begins with its first slot, and so
+/// does the face's loop; and faces at corner 0 have edges that are at hand.
+bool owns(Index halfFace, Index mate) {
+  if (mate == kNone) return true;
   const auto rank = [](Index each) {
-    const std::size_t face = faceOf(each);
+    const std::size_t face = each % 6;
     return face == kFaceOfSlot[0] ? 0U : 1 + face % 2;
   };
-  return std::pair(rank(side), side) <= std::pair(rank(mate), mate);
+  return std::pair(rank(halfFace), halfFace) < std::pair(rank(mate), mate);
+}
+
+using Edge = std::array<Index, 2>;
+
+/// The edges between vertices on seams, which cells cannot tell by themselves to be new.
+Array<Edge> listSeamEdges(std::size_t vertexCount, std::span<const Hex> cells,
+                          std::span<const std::uint8_t> seamCorners, Stage& stage) {
+  const VertexLists<Index, std::uint64_t> ends(vertexCount, stage, [&](const auto& add) {
+    parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+      const unsigned seams = seamCorners[c];
+      if (seams == 0) return;
+      for (const auto& [i, k] : kHexEdges) {
+        if ((seams >> i & seams >> k & 1U) == 0) continue;
+        add(std::min(cells[c][i], cells[c][k]), std::max(cells[c][i], cells[c][k]));
+      }
+    });
+  });
+  Array<Edge> edges;
+  for (std::size_t v = 0; v < vertexCount; ++v) {
+    Index last = kNone;
+    for (const Index end : ends.at(v)) {
+      if (end != last) edges.push_back({static_cast<Index>(v), end});
+      last = end;
+    }
+  }
+  return edges;
 }
 
 class HexTopologyBuilder {
@@ -71,14 +96,15 @@ class HexTopologyBuilder {
       : cells_(cells),
         stage_(stage),
         seamCorners_(std::move(mates.seamCorners)),
-        seamEdges_(vertexCount, cells, seamCorners_, stage) {
+        seamEdges_(listSeamEdges(vertexCount, cells, seamCorners_, stage)),
+        seamEdgeFinder_(vertexCount, seamEdges_) {
     topology_.vertexCount = vertexCount;
     topology_.cells.length = 6;
     topology_.cells.handles = std::move(mates.mates);
   }
 
-  std::optional<OvmTopology> build() {
-    if (!number()) return std::nullopt;
+  OvmTopology build() {
+    number();
     listEdges();
     listFaces();
     listCells();
@@ -86,16 +112,16 @@ class HexTopologyBuilder {
   }
 
  private:
-  /// Until cells are listed, their half-faces' places hold the mates of their sides.
+  /// Until cells are listed, their half-faces' places hold the mates of these.
   [[nodiscard]] const Index* matesOf(std::size_t cell) const {
     return topology_.cells.handles.data() + 6 * cell;
   }
   /// The neighbour across from corner 0.
   [[nodiscard]] std::size_t behind(std::size_t cell, std::size_t axis) const {
-    return cellOf(matesOf(cell)[2 * axis + 1]);
+    return matesOf(cell)[2 * axis + 1] / 6;
   }
   [[nodiscard]] Own ownOf(std::size_t cell) const;
-  bool number();
+  void number();
   void listEdges();
   [[nodiscard]] Index ownHalfEdge(std::size_t cell, std::size_t axis) const {
     const Own& own = own_[cell];
@@ -111,7 +137,8 @@ class HexTopologyBuilder {
   Stage& stage_;
   OvmTopology topology_;
   Array<std::uint8_t> seamCorners_;  ///< see HexMates
-  SeamEdges seamEdges_;
+  Array<Edge> seamEdges_;
+  OvmEdgeFinder seamEdgeFinder_;
   Array<Own> own_;  ///< per cell
 };
 
@@ -126,13 +153,13 @@ Own HexTopologyBuilder::ownOf(std::size_t cell) const {
   unsigned faces = 0;
   for (std::size_t slot = 0; slot < 6; ++slot) {
     const std::size_t face = kFaceOfSlot[slot];
-    faces |= owns(sideOf(cell, face), matesOf(cell)[face]) ? 1U << slot : 0U;
+    faces |= owns(static_cast<Index>(6 * cell + face), matesOf(cell)[face]) ? 1U << slot : 0U;
   }
   return {0, 0, static_cast<std::uint8_t>(edges), static_cast<std::uint8_t>(faces)};
 }
 
 /// Numbers edges and faces.
-bool HexTopologyBuilder::number() {
+void HexTopologyBuilder::number() {
   const std::size_t blocks = blockCount(cells_.size(), kGrain);
   Array<std::uint64_t> edges(blocks + 1, 0);
   Array<std::uint64_t> faces(blocks + 1, 0);
@@ -151,7 +178,8 @@ bool HexTopologyBuilder::number() {
                  });
   const std::uint64_t edgeCount = seamEdges_.size() + exclusiveScan(std::span(edges));
   const std::uint64_t faceCount = exclusiveScan(std::span(faces));
-  if (std::max(edgeCount, faceCount) > kMaxOvmEntities) return false;
+  requireOvmCount(kMaxOvmEntities, faceCount, "faces");
+  requireOvmCount(kMaxOvmEntities, edgeCount, "edges");
   parallelBlocks(stage_, cells_.size(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    const auto firstEdge = static_cast<Index>(seamEdges_.size() + edges[block]);
@@ -164,13 +192,12 @@ bool HexTopologyBuilder::number() {
   topology_.edges.resize(static_cast<std::size_t>(edgeCount));
   topology_.faces.length = 4;
   topology_.faces.handles.resize(static_cast<std::size_t>(4 * faceCount));
-  return true;
 }
 
 void HexTopologyBuilder::listEdges() {
-  seamEdges_.list(topology_.edges.data(), stage_);
+  std::copy(seamEdges_.begin(), seamEdges_.end(), topology_.edges.begin());
   parallelFor(stage_, cells_.size(), kGrain, [this](std::size_t c) {
-    std::array<Index, 2>* edge = topology_.edges.data() + own_[c].firstEdge;
+    Edge* edge = topology_.edges.data() + own_[c].firstEdge;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if ((own_[c].edges >> axis & 1U) != 0) *edge++ = {cells_[c][0], cells_[c][kNextCorner[axis]]};
     }
@@ -181,7 +208,7 @@ void HexTopologyBuilder::listEdges() {
 Index HexTopologyBuilder::halfEdge(std::size_t cell, std::size_t from, std::size_t to) const {
   const unsigned seams = seamCorners_[cell];
   if ((seams >> from & seams >> to & 1U) != 0) {
-    return seamEdges_.halfEdge(cells_[cell][from], cells_[cell][to]);
+    return seamEdgeFinder_.halfEdge(cells_[cell][from], cells_[cell][to]);
   }
   const unsigned along = kSteps[from] ^ kSteps[to];
   const unsigned steps = kSteps[from] & kSteps[to];
@@ -249,18 +276,16 @@ void HexTopologyBuilder::listCells() {
       const Index mate = mates[kFaceOfSlot[slot]];
       handles[slot] = (own_[c].faces >> slot & 1U) != 0
                           ? 2 * numberOf(c, slot)
-                          : 2 * numberOf(cellOf(mate), kSlotOfFace[faceOf(mate)]) + 1;
+                          : 2 * numberOf(mate / 6, kSlotOfFace[mate % 6]) + 1;
     }
   });
 }
 
 }  // namespace
 
-std::optional<OvmTopology> buildOvmHexTopology(std::size_t vertexCount, std::span<const Hex> cells,
-                                               Stage& stage) {
-  std::optional<HexMates> mates = findHexMates(vertexCount, cells, stage);
-  if (!mates) return std::nullopt;
-  return HexTopologyBuilder(vertexCount, cells, std::move(*mates), stage).build();
+OvmTopology numberHexes(std::size_t vertexCount, std::span<const Hex> cells, HexMates mates,
+                        Stage& stage) {
+  return HexTopologyBuilder(vertexCount, cells, std::move(mates), stage).build();
 }
 
 }  // namespace hexhex

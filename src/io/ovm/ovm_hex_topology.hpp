@@ -1,9 +1,11 @@
-// The quick way to the edges, faces and half-faces of hexahedra.
+// How the edges and faces of hexahedra are numbered.
 #pragma once
 
 #include <cstddef>
-#include <optional>
+#include <cstdint>
 #include <span>
+
+#include <adjacency/hex_faces.hpp>
 
 #include <hexhex/types.hpp>
 
@@ -12,13 +14,12 @@
 
 namespace hexhex {
 
-/// The same as buildOvmTopology(), for meshes without faults. Edges along seams (HexMates) come
-/// first, from the smaller to the larger vertex and in lexicographic order; then the others, cell
-/// by cell, away from the cell's corner 0. Faces are numbered cell by cell, slot by slot.
-/// @param cells  fewer than 2^32 / 12, with vertices in range
-/// @return nothing if there are too many elements, or something is wrong with the mesh
-[[nodiscard]] std::optional<OvmTopology> buildOvmHexTopology(std::size_t vertexCount,
-                                                             std::span<const Hex> cells,
-                                                             Stage& stage);
+/// The rest of buildOvmTopology(), once faces are matched.
+[[nodiscard]] OvmTopology numberHexes(std::size_t vertexCount, std::span<const Hex> cells,
+                                      HexMates mates, Stage& stage);
+
+/// @param what  e.g. "edges"
+/// @throws Error TooLarge if there are more than the format can hold
+void requireOvmCount(std::uint64_t limit, std::uint64_t count, const char* what);
 
 }  // namespace hexhex

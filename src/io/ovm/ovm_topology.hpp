@@ -17,7 +17,7 @@ namespace hexhex {
 /// Counter-clockwise seen from inside, if det(v1 - v0, v2 - v0, v3 - v0) > 0.
 inline constexpr std::array<std::array<std::uint8_t, 3>, 4> kOvmTetFaces = {
     {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
-/// The corner opposite each of them.
+/// The corner opposite each of them, and the face opposite each corner.
 inline constexpr std::array<std::uint8_t, 4> kOvmTetOpposite = {3, 1, 2, 0};
 
 /// Faces of a hexahedron in VTK's order: three pairs of opposite faces, counter-clockwise seen from
@@ -27,8 +27,14 @@ inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kOvmHexFaces = {
 
 /// Finds the faces and edges of cells. Half-face 2f begins with the first corner of the slot of the
 /// cell that it points into; that is a cell that has the face in the first slot of its list, if
-/// there is one. Edges of tets go from the smaller to the larger vertex and come in the order of
-/// the smaller. Numbers of hexahedra are mostly as buildOvmHexTopology() says.
+/// there is one.
+///
+/// Of tets, edges go from the smaller to the larger vertex. Edges and faces come in the order of
+/// their smallest vertices, and those of a vertex in the order in which its tets have them.
+///
+/// Of hexahedra, edges along seams (HexMates) come first, from the smaller to the larger vertex and
+/// in lexicographic order; then the others, cell by cell, away from the cell's corner 0. Faces are
+/// numbered cell by cell, slot by slot.
 /// @param cells  corners of tets or hexahedra, vertices in range
 /// @throws Error NonManifoldFace, Orientation if a face is shared by more than two cells, or by two
 ///         that do not run in opposite directions; RepeatedVertex; TooLarge
@@ -37,12 +43,17 @@ inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kOvmHexFaces = {
 [[nodiscard]] OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Hex> cells,
                                            Stage& stage);
 
-/// Finds edges of a topology of tets that was built here.
+/// Finds edges that are listed in the order of their smaller vertices, which come first.
 class OvmEdgeFinder {
  public:
-  explicit OvmEdgeFinder(const OvmTopology& topology);
+  /// @param edges  those of tets, or those of hexahedra along seams
+  OvmEdgeFinder(std::size_t vertexCount, std::span<const std::array<Index, 2>> edges);
   /// The edge between two vertices, or kNone.
   [[nodiscard]] Index find(Index a, Index b) const noexcept;
+  /// The half-edge of an edge that there is.
+  [[nodiscard]] Index halfEdge(Index from, Index to) const noexcept {
+    return 2 * find(from, to) + (from < to ? 0U : 1U);
+  }
 
  private:
   std::span<const std::array<Index, 2>> edges_;

@@ -11,7 +11,7 @@ SimplexIndices::SimplexIndices(std::span<const Vec3> points, std::span<const Tet
                                Stage& stage)
     : tets_(tets),
       topology_(ovmTopologyOf(points, tets, stage)),
-      edges_(topology_),
+      edges_(topology_.vertexCount, topology_.edges),
       loops_(topology_, stage) {}
 
 Index SimplexIndices::of(Index tet, CornerSet corners) const {

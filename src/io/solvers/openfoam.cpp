@@ -8,7 +8,6 @@
 #include <system_error>
 #include <vector>
 
-#include <adjacency/face_neighbours.hpp>
 #include <adjacency/hex_topology.hpp>
 
 #include <hexhex/error.hpp>

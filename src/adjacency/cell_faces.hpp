@@ -1,0 +1,147 @@
+// Faces and edges of cells: which corners they have, and which of them are the same.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <lattice/tet_geometry.hpp>
+
+namespace hexhex {
+
+/// Local corners of the six faces of a hexahedron, counter-clockwise seen from outside, in VTK's
+/// order: 2 * axis at corner 0, 2 * axis + 1 across from it.
+inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kHexFaces = {
+    {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
+
+/// Local corners of the twelve edges of a hexahedron, in VTK's order.
+inline constexpr std::array<std::array<std::uint8_t, 2>, 12> kHexEdges = {{{0, 1},
+                                                                           {1, 2},
+                                                                           {3, 2},
+                                                                           {0, 3},
+                                                                           {4, 5},
+                                                                           {5, 6},
+                                                                           {7, 6},
+                                                                           {4, 7},
+                                                                           {0, 4},
+                                                                           {1, 5},
+                                                                           {3, 7},
+                                                                           {2, 6}}};
+
+/// Local corners of the faces of a cell; face i of a tet is opposite corner i.
+template <class Cell>
+[[nodiscard]] constexpr const auto& facesOf() noexcept {
+  if constexpr (std::is_same_v<Cell, Hex>) {
+    return kHexFaces;
+  } else {
+    static_assert(std::is_same_v<Cell, Tet>);
+    return kFaceCorners;
+  }
+}
+
+/// Number of faces of a cell, and of corners of a face.
+template <class Cell>
+inline constexpr std::size_t kFaceCount =
+    std::tuple_size_v<std::decay_t<decltype(facesOf<Cell>())>>;
+template <class Cell>
+inline constexpr std::size_t kFaceSize = std::is_same_v<Cell, Hex> ? 4 : 3;
+
+/// The vertices of a face of a cell: of a hexahedron counter-clockwise seen from outside, of a
+/// positive tet from inside.
+template <std::size_t n>
+[[nodiscard]] constexpr auto faceVertices(const std::array<Index, n>& cell,
+                                          std::size_t face) noexcept {
+  using Cell = std::array<Index, n>;
+  std::array<Index, kFaceSize<Cell>> vertices{};
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    vertices[i] = cell[static_cast<std::size_t>(facesOf<Cell>()[face][i])];
+  }
+  return vertices;
+}
+
+/// Whether two faces list the same vertices in opposite directions, starting anywhere.
+template <std::size_t n>
+[[nodiscard]] constexpr bool areOpposite(const std::array<Index, n>& here,
+                                         const std::array<Index, n>& there) noexcept {
+  for (std::size_t shift = 0; shift < n; ++shift) {
+    bool same = true;
+    for (std::size_t i = 0; i < n; ++i) same = same && here[i] == there[(shift + n - i) % n];
+    if (same) return true;
+  }
+  return false;
+}
+
+/// Calls visit(run) for each run of equal elements of a sorted list.
+template <class T, class Same, class Visit>
+void forEachRun(std::span<const T> sorted, const Same& same, const Visit& visit) {
+  for (std::size_t begin = 0; begin < sorted.size();) {
+    std::size_t end = begin + 1;
+    while (end < sorted.size() && same(sorted[begin], sorted[end])) ++end;
+    visit(sorted.subspan(begin, end - begin));
+    begin = end;
+  }
+}
+
+/// A half-face: a face as one of its cells has it.
+template <class Cell>
+struct CellFace {
+  /// The face's vertices but for the smallest one, ascending.
+  std::array<Index, kFaceSize<Cell> - 1> others{};
+  Index cell = kNone;
+  std::uint8_t face = 0;
+
+  auto operator<=>(const CellFace&) const = default;
+};
+
+/// Finds faces at their smallest vertices: faces are the same if they have the same vertices, so
+/// that all their cells have them there.
+template <class Cell>
+class FacesAtVertices {
+ public:
+  explicit FacesAtVertices(std::span<const Cell> cells) : cells_(cells) {}
+
+  /// Calls visit(its half-faces, by cell) for each face whose smallest vertex this is, in
+  /// lexicographic order.
+  /// @param around  the cells at the vertex, ascending; a repeated one counts once
+  /// @param isWanted  of (cell, face): whether a half-face is to be looked at
+  template <class Cells, class Filter, class Visit>
+  void forEach(Index vertex, const Cells& around, const Filter& isWanted, const Visit& visit) {
+    found_.clear();
+    Index previous = kNone;
+    for (const Index cell : around) {
+      if (cell == previous) continue;
+      previous = cell;
+      for (std::uint8_t face = 0; face < kFaceCount<Cell>; ++face) {
+        auto vertices = faceVertices(cells_[cell], face);
+        if (*std::min_element(vertices.begin(), vertices.end()) != vertex) continue;
+        if (!isWanted(cell, face)) continue;
+        std::sort(vertices.begin(), vertices.end());
+        found_.push_back({{}, cell, face});
+        std::copy(vertices.begin() + 1, vertices.end(), found_.back().others.begin());
+      }
+    }
+    std::sort(found_.begin(), found_.end());
+    forEachRun(
+        std::span<const CellFace<Cell>>(found_),
+        [](const auto& a, const auto& b) { return a.others == b.others; }, visit);
+  }
+
+  template <class Cells, class Visit>
+  void forEach(Index vertex, const Cells& around, const Visit& visit) {
+    forEach(
+        vertex, around, [](Index /*cell*/, std::size_t /*face*/) { return true; }, visit);
+  }
+
+ private:
+  std::span<const Cell> cells_;
+  std::vector<CellFace<Cell>> found_;  ///< reused between calls
+};
+
+}  // namespace hexhex

@@ -1,0 +1,184 @@
+// Most neighbours number their corners alike and find each other at once. A face that is found in
+// another way, or could be another cell's as well, has all its vertices on seams: such faces are
+// few in most meshes, and are compared at their smallest vertices.
+#include <algorithm>
+#include <atomic>
+
+#include <adjacency/aligned_cells.hpp>
+#include <adjacency/cell_faces.hpp>
+#include <adjacency/hex_faces.hpp>
+#include <adjacency/vertex_lists.hpp>
+
+#include <base/parallel.hpp>
+
+namespace hexhex {
+namespace {
+
+constexpr std::size_t kGrain = 2048;
+
+/// By face: its corners as bits.
+constexpr std::array<unsigned, 6> makeCornersOfFaces() {
+  std::array<unsigned, 6> result{};
+  for (std::size_t f = 0; f < 6; ++f) {
+    for (const std::uint8_t corner : kHexFaces[f]) result[f] |= 1U << corner;
+  }
+  return result;
+}
+constexpr std::array<unsigned, 6> kCornersOfFaces = makeCornersOfFaces();
+
+/// Calls link(cell, axis, next) where face 2 * axis + 1 of a cell is face 2 * axis of the next one.
+template <class Link>
+void linkAlignedCells(std::size_t vertexCount, std::span<const Hex> cells, Stage& stage,
+                      const Link& link) {
+  const AlignedCells aligned(vertexCount, cells, stage);
+  parallelBlocks(
+      stage, cells.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+        aligned.forEach(begin, end, [&](std::size_t cell, const std::array<Index, 3>& behind) {
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Index next = behind[axis];
+            if (next == kNone) continue;
+            // In a ring of two cells, two edges have the same vertices: a seam.
+            if (cells[next][kNextCorner[axis]] == cells[cell][0]) continue;
+            link(cell, axis, next);
+          }
+        });
+      });
+}
+
+/// Per cell: bit k if corner k is a vertex of a face that is not linked.
+template <class IsLinked>
+Array<std::uint8_t> findSeamCorners(std::size_t vertexCount, std::span<const Hex> cells,
+                                    Stage& stage, const IsLinked& isLinked) {
+  Array<std::uint8_t> onSeam(vertexCount);
+  parallelFor(stage, vertexCount, 8 * kGrain, [&](std::size_t v) { onSeam[v] = 0; });
+  parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+    for (std::size_t face = 0; face < 6; ++face) {
+      if (isLinked(c, face)) continue;
+      for (const Index v : faceVertices(cells[c], face)) {
+        std::atomic_ref(onSeam[v]).store(1, std::memory_order_relaxed);
+      }
+    }
+  });
+  Array<std::uint8_t> seamCorners(cells.size());
+  parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+    unsigned corners = 0;
+    for (std::size_t k = 0; k < 8; ++k) corners |= unsigned{onSeam[cells[c][k]]} << k;
+    seamCorners[c] = static_cast<std::uint8_t>(corners);
+  });
+  return seamCorners;
+}
+
+/// Calls visit(its half-faces) for each face with all its vertices on seams, from any thread.
+template <class Visit>
+void forEachSeamFace(std::size_t vertexCount, std::span<const Hex> cells,
+                     std::span<const std::uint8_t> seamCorners, Stage& stage, const Visit& visit) {
+  const auto isOnSeam = [seamCorners](std::size_t cell, std::size_t face) {
+    return (seamCorners[cell] & kCornersOfFaces[face]) == kCornersOfFaces[face];
+  };
+  const VertexLists<Index, std::uint64_t> around(vertexCount, stage, [&](const auto& add) {
+    parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+      if (seamCorners[c] == 0) return;
+      for (std::size_t face = 0; face < 6; ++face) {
+        if (!isOnSeam(c, face)) continue;
+        const Quad quad = faceVertices(cells[c], face);
+        add(*std::min_element(quad.begin(), quad.end()), static_cast<Index>(c));
+      }
+    });
+  });
+  parallelBlocks(stage, vertexCount, kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   FacesAtVertices<Hex> faces(cells);
+                   for (std::size_t v = begin; v < end; ++v) {
+                     faces.forEach(static_cast<Index>(v), around.at(v), isOnSeam, visit);
+                   }
+                 });
+}
+
+/// Whether every linked half-face is the mate of its mate. In a broken mesh, two cells may claim
+/// the same one: then fewer half-faces are claimed than claim.
+bool areMutual(std::span<const Index> mates, Stage& stage) {
+  std::atomic<std::int64_t> balance{0};
+  parallelBlocks(stage, mates.size(), 6 * kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::int64_t sum = 0;
+                   for (std::size_t i = begin; i < end; ++i) {
+                     if (mates[i] != kNone) sum += i % 2 == 1 ? 1 : -1;
+                   }
+                   balance.fetch_add(sum, std::memory_order_relaxed);
+                 });
+  return balance == 0;
+}
+
+}  // namespace
+
+std::optional<HexMates> matchHexFaces(std::size_t vertexCount, std::span<const Hex> cells,
+                                      Stage& stage) {
+  HexMates result;
+  Array<Index>& mates = result.mates;
+  mates.resize(6 * cells.size());
+  parallelFor(stage, mates.size(), 6 * kGrain, [&](std::size_t i) { mates[i] = kNone; });
+  linkAlignedCells(vertexCount, cells, stage, [&](std::size_t cell, std::size_t axis, Index next) {
+    const std::size_t far = 6 * cell + 2 * axis + 1;
+    const std::size_t near = 6 * std::size_t{next} + 2 * axis;
+    mates[far] = static_cast<Index>(near);
+    std::atomic_ref(mates[near]).store(static_cast<Index>(far), std::memory_order_relaxed);
+  });
+  if (!areMutual(mates, stage)) return std::nullopt;
+  result.seamCorners = findSeamCorners(
+      vertexCount, cells, stage,
+      [&](std::size_t cell, std::size_t face) { return mates[6 * cell + face] != kNone; });
+  std::atomic<bool> isSound{true};
+  forEachSeamFace(vertexCount, cells, result.seamCorners, stage,
+                  [&](std::span<const CellFace<Hex>> halfFaces) {
+                    if (halfFaces.size() == 1) return;
+                    const auto& [a, b] = std::pair(halfFaces.front(), halfFaces.back());
+                    mates[6 * std::size_t{a.cell} + a.face] = 6 * b.cell + b.face;
+                    mates[6 * std::size_t{b.cell} + b.face] = 6 * a.cell + a.face;
+                    if (halfFaces.size() > 2 || !areOpposite(faceVertices(cells[a.cell], a.face),
+                                                             faceVertices(cells[b.cell], b.face))) {
+                      isSound.store(false, std::memory_order_relaxed);
+                    }
+                  });
+  if (!isSound) return std::nullopt;
+  return result;
+}
+
+Array<std::uint64_t> boundaryPlaces(const HexMesh& mesh, Stage& stage) {
+  enum class Kind : std::uint8_t { Unknown, Shared, Boundary };
+  // One byte each, so that threads need not wait for each other.
+  Array<std::array<Kind, 6>> kinds(mesh.cells.size());
+  parallelFor(stage, kinds.size(), kGrain, [&](std::size_t c) { kinds[c].fill(Kind::Unknown); });
+  const auto set = [&kinds](std::size_t cell, std::size_t face, Kind kind) {
+    std::atomic_ref(kinds[cell][face]).store(kind, std::memory_order_relaxed);
+  };
+  linkAlignedCells(mesh.points.size(), mesh.cells, stage,
+                   [&](std::size_t cell, std::size_t axis, Index next) {
+                     set(cell, 2 * axis + 1, Kind::Shared);
+                     set(next, 2 * axis, Kind::Shared);
+                   });
+  const Array<std::uint8_t> seamCorners = findSeamCorners(
+      mesh.points.size(), mesh.cells, stage,
+      [&](std::size_t cell, std::size_t face) { return kinds[cell][face] == Kind::Shared; });
+  forEachSeamFace(mesh.points.size(), mesh.cells, seamCorners, stage,
+                  [&](std::span<const CellFace<Hex>> halfFaces) {
+                    const CellFace<Hex>& first = halfFaces.front();
+                    if (halfFaces.size() == 1) set(first.cell, first.face, Kind::Boundary);
+                  });
+  Array<std::uint64_t> places;
+  for (std::size_t c = 0; c < kinds.size(); ++c) {
+    for (std::size_t face = 0; face < 6; ++face) {
+      if (kinds[c][face] == Kind::Boundary) places.push_back(8 * c + face);
+    }
+  }
+  return places;
+}
+
+Array<Quad> quadsAt(const HexMesh& mesh, std::span<const std::uint64_t> places) {
+  Array<Quad> quads(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    quads[i] = faceVertices(mesh.cells[places[i] / 8], places[i] % 8);
+  }
+  return quads;
+}
+
+}  // namespace hexhex
