@@ -11,6 +11,7 @@
 
 #include <base/parallel.hpp>
 #include <igm/prepare.hpp>
+#include <igm/topology_defects.hpp>
 
 namespace hexhex::test {
 
