@@ -117,7 +117,7 @@ void throwMissingVertex(const MissingVertex& missing) {
   throw Error(ErrorCode::Internal,
               "The map passed all checks, but a hex vertex is missing. This is a bug; please "
               "report it with the map.",
-              {PlaceKind::Tet, missing.tet});
+              missing.tet ? Place{PlaceKind::Tet, *missing.tet} : Place{});
 }
 
 void throwOutOfMemory() {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include <hexhex/types.hpp>
 
@@ -60,7 +61,7 @@ struct HexVertices {
 /// Thrown by this and later stages where the map must have a hex vertex and none was found: the
 /// rasterization's epsilon was too small (Section 5.2.3).
 struct MissingVertex {
-  Index tet;
+  std::optional<Index> tet;  ///< where it is missing; unknown if only the number of cells tells
 };
 
 /// Rasterizes all tets. Vertices are numbered by owner, generator, and position: along an edge from

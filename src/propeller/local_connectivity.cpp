@@ -11,50 +11,59 @@ namespace {
 
 constexpr std::size_t kGrain = 256;
 
-/// A constant configuration: propellers in the given directions, with given cycles of blades.
-class ConstantConfiguration {
- public:
-  void add(Direction d, std::span<const Direction> blades, bool closed) {
-    propellers_.push_back(
-        {static_cast<Index>(slots_.size()), static_cast<std::uint16_t>(blades.size()), closed, d});
-    for (const Direction blade : blades) slots_.push_back({kNone, blade, 0, 0, kNoCorner});
+/// Appends the structure around the vertices of one generator.
+void append(Configurations& to, const StarConnectivity::Result& structure) {
+  to.configurations.push_back({static_cast<Index>(to.propellers.size()),
+                               static_cast<Index>(to.corners.size()),
+                               static_cast<std::uint16_t>(structure.propellers.size()),
+                               static_cast<std::uint16_t>(structure.corners.size())});
+  for (Propeller propeller : structure.propellers) {
+    propeller.slotBegin += static_cast<Index>(to.slots.size());
+    to.propellers.push_back(propeller);
   }
+  to.slots.insert(to.slots.end(), structure.slots.begin(), structure.slots.end());
+  to.corners.insert(to.corners.end(), structure.corners.begin(), structure.corners.end());
+}
 
-  void appendTo(LocalConnectivity& local) {
-    for (const Propeller& propeller : propellers_) {
-      for (std::size_t i = 0; i < propeller.slotCount; ++i) {
-        Slot& slot = slots_[propeller.slotBegin + i];
-        slot.blade = static_cast<std::uint16_t>(indexOf(slot.direction));
-        const Propeller& blade = propellers_[slot.blade];
-        while (slots_[blade.slotBegin + slot.back].direction != propeller.direction) {
-          ++slot.back;
-        }
-      }
+/// Appends those of a block of generators.
+void append(Configurations& to, const Configurations& block) {
+  const auto propellerBase = static_cast<Index>(to.propellers.size());
+  const auto slotBase = static_cast<Index>(to.slots.size());
+  const auto cornerBase = static_cast<Index>(to.corners.size());
+  for (Configuration configuration : block.configurations) {
+    configuration.propellerBegin += propellerBase;
+    configuration.cornerBegin += cornerBase;
+    to.configurations.push_back(configuration);
+  }
+  for (Propeller propeller : block.propellers) {
+    propeller.slotBegin += slotBase;
+    to.propellers.push_back(propeller);
+  }
+  to.slots.insert(to.slots.end(), block.slots.begin(), block.slots.end());
+  to.corners.insert(to.corners.end(), block.corners.begin(), block.corners.end());
+}
+
+/// Adds a propeller and its blades to a structure, by their directions.
+void addPropeller(StarConnectivity::Result& structure, Direction d,
+                  std::span<const Direction> blades, bool closed) {
+  structure.propellers.push_back({static_cast<Index>(structure.slots.size()),
+                                  static_cast<std::uint16_t>(blades.size()), closed, d});
+  for (const Direction blade : blades) structure.slots.push_back({kNone, blade, 0, 0, kNoCorner});
+}
+
+/// Finds the propellers that are the blades, and the hex corners.
+void linkBlades(StarConnectivity::Result& structure) {
+  auto& [propellers, slots, corners] = structure;
+  for (const Propeller& propeller : propellers) {
+    for (std::size_t i = 0; i < propeller.slotCount; ++i) {
+      Slot& slot = slots[propeller.slotBegin + i];
+      while (propellers[slot.blade].direction != slot.direction) ++slot.blade;
+      const Index bladeBegin = propellers[slot.blade].slotBegin;
+      while (slots[bladeBegin + slot.back].direction != propeller.direction) ++slot.back;
     }
-    std::vector<HexCorner> corners;
-    static_cast<void>(linkCorners(propellers_, slots_, corners));
-    local.configurations.push_back({static_cast<Index>(local.propellers.size()),
-                                    static_cast<Index>(local.corners.size()),
-                                    static_cast<std::uint16_t>(propellers_.size()),
-                                    static_cast<std::uint16_t>(corners.size())});
-    for (Propeller& propeller : propellers_) {
-      propeller.slotBegin += static_cast<Index>(local.slots.size());
-    }
-    local.propellers.insert(local.propellers.end(), propellers_.begin(), propellers_.end());
-    local.slots.insert(local.slots.end(), slots_.begin(), slots_.end());
-    local.corners.insert(local.corners.end(), corners.begin(), corners.end());
   }
-
- private:
-  [[nodiscard]] std::size_t indexOf(Direction d) const {
-    std::size_t p = 0;
-    while (propellers_[p].direction != d) ++p;
-    return p;
-  }
-
-  std::vector<Propeller> propellers_;
-  std::vector<Slot> slots_;
-};
+  static_cast<void>(linkCorners(propellers, slots, corners));
+}
 
 /// The four directions across d, counter-clockwise.
 std::array<Direction, 4> around(Direction d) {
@@ -63,23 +72,24 @@ std::array<Direction, 4> around(Direction d) {
   return {first, second, opposite(first), opposite(second)};
 }
 
-void addConstantConfigurations(LocalConnectivity& local) {
-  ConstantConfiguration cell;
-  for (Direction d = 0; d < kDirections; ++d) cell.add(d, around(d), true);
-  cell.appendTo(local);
+void addConstantConfigurations(Configurations& configurations) {
+  StarConnectivity::Result cell;
+  for (Direction d = 0; d < kDirections; ++d) addPropeller(cell, d, around(d), true);
+  linkBlades(cell);
+  append(configurations, cell);
   for (Direction inward = 0; inward < kDirections; ++inward) {
-    ConstantConfiguration boundary;
+    StarConnectivity::Result boundary;
     for (Direction d = 0; d < kDirections; ++d) {
       if (d == opposite(inward)) continue;
       if (d == inward) {
-        boundary.add(d, around(d), true);
+        addPropeller(boundary, d, around(d), true);
       } else {
         // A half disk: along the boundary, inward, along the boundary.
-        const std::array<Direction, 3> blades = {cross(inward, d), inward, cross(d, inward)};
-        boundary.add(d, blades, false);
+        addPropeller(boundary, d, std::array{cross(inward, d), inward, cross(d, inward)}, false);
       }
     }
-    boundary.appendTo(local);
+    linkBlades(boundary);
+    append(configurations, boundary);
   }
 }
 
@@ -95,45 +105,6 @@ Index constantConfiguration(const PreparedMap& map, const Array<NormalSigns>& si
   }
   return kNone;
 }
-
-/// What one block of generators yields; joined afterwards.
-struct BlockResult {
-  std::vector<Configuration> configurations;
-  std::vector<Propeller> propellers;
-  std::vector<Slot> slots;
-  std::vector<HexCorner> corners;
-
-  /// All begins count from the block's own arrays.
-  void append(const StarConnectivity::Result& star) {
-    configurations.push_back({static_cast<Index>(propellers.size()),
-                              static_cast<Index>(corners.size()),
-                              static_cast<std::uint16_t>(star.propellers.size()),
-                              static_cast<std::uint16_t>(star.corners.size())});
-    for (Propeller propeller : star.propellers) {
-      propeller.slotBegin += static_cast<Index>(slots.size());
-      propellers.push_back(propeller);
-    }
-    slots.insert(slots.end(), star.slots.begin(), star.slots.end());
-    corners.insert(corners.end(), star.corners.begin(), star.corners.end());
-  }
-
-  void appendTo(LocalConnectivity& local) const {
-    const auto propellerBase = static_cast<Index>(local.propellers.size());
-    const auto slotBase = static_cast<Index>(local.slots.size());
-    const auto cornerBase = static_cast<Index>(local.corners.size());
-    for (Configuration configuration : configurations) {
-      configuration.propellerBegin += propellerBase;
-      configuration.cornerBegin += cornerBase;
-      local.configurations.push_back(configuration);
-    }
-    for (Propeller propeller : propellers) {
-      propeller.slotBegin += slotBase;
-      local.propellers.push_back(propeller);
-    }
-    local.slots.insert(local.slots.end(), slots.begin(), slots.end());
-    local.corners.insert(local.corners.end(), corners.begin(), corners.end());
-  }
-};
 
 /// Notes the star's propellers in the incidences of its tets. Each incidence belongs to one
 /// generator, so generators can be processed in parallel.
@@ -155,7 +126,7 @@ LocalConnectivity extractLocalConnectivity(const PreparedMap& map, const Array<N
   addConstantConfigurations(local);
   const std::size_t generators = vertices.generators.size();
   local.configurationOf.resize(generators);
-  std::vector<BlockResult> blocks(blockCount(generators, kGrain));
+  std::vector<Configurations> blocks(blockCount(generators, kGrain));
   parallelBlocks(stage, generators, kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    StarConnectivity star(map, signs);
@@ -163,12 +134,12 @@ LocalConnectivity extractLocalConnectivity(const PreparedMap& map, const Array<N
                      const Generator& generator = vertices.generators[g];
                      local.configurationOf[g] = constantConfiguration(map, signs, generator);
                      if (local.configurationOf[g] != kNone) continue;
-                     blocks[block].append(star.run(generator.tet, generator.simplex));
+                     append(blocks[block], star.run(generator.tet, generator.simplex));
                      publish(star.star(), vertices);
                    }
                  });
   auto next = static_cast<Index>(local.configurations.size());
-  for (const BlockResult& block : blocks) block.appendTo(local);
+  for (const Configurations& block : blocks) append(local, block);
   for (Index& configuration : local.configurationOf) {
     if (configuration == kNone) configuration = next++;
   }

@@ -54,12 +54,15 @@ struct Configuration {
 /// generator each.
 inline constexpr Index kConstantConfigurations = 1 + kDirections;
 
-struct LocalConnectivity {
-  Array<Index> configurationOf;  ///< per generator
+struct Configurations {
   std::vector<Configuration> configurations;
   std::vector<Propeller> propellers;
   std::vector<Slot> slots;
   std::vector<HexCorner> corners;
+};
+
+struct LocalConnectivity : Configurations {
+  Array<Index> configurationOf;  ///< per generator
 
   [[nodiscard]] const Configuration& configuration(Index generator) const noexcept {
     return configurations[configurationOf[generator]];

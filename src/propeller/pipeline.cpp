@@ -43,7 +43,7 @@ class Extraction {
       signs = computeNormalSigns(map_.exact, stage);
       local = extractLocalConnectivity(map_, signs, vertices, stage);
       // A vertex that was overlooked leaves corners behind that make up no whole number of cells.
-      if (countCells(vertices, local) != expectedCells_) throw MissingVertex{0};
+      if (countCells(vertices, local) != expectedCells_) throw MissingVertex{};
     }
     GlobalConnectivity global;
     {
@@ -54,7 +54,7 @@ class Extraction {
     {
       Stage stage(context_, "cells");
       mesh.cells = collectCells(map_, signs, vertices, local, global, stage);
-      if (mesh.cells.size() != expectedCells_) throw MissingVertex{0};
+      if (mesh.cells.size() != expectedCells_) throw MissingVertex{};
       describeGenerators(map_, vertices, mesh, stage);
       count(vertices, local, global);
       mesh.points = std::move(vertices.positions);
