@@ -1,3 +1,9 @@
+// First, as its HalfFace and CornerOrder are names of entities and properties: adjacency has types
+// of these names, which they would shadow.
+// clang-format off
+#include <io/ovm/ovm_topology.hpp>
+// clang-format on
+
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -14,7 +20,6 @@
 #include <base/parallel.hpp>
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_hex_topology.hpp>
-#include <io/ovm/ovm_topology.hpp>
 
 namespace hexhex {
 
