@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <hexhex/context.hpp>
 #include <hexhex/stream.hpp>
@@ -68,6 +71,42 @@ class CheckedSink : public MeshSink {
   bool hasTets_ = false;
   bool hasCorners_ = false;
 };
+
+/// A sink that hands what it checked to the writer of a format.
+/// @tparam Writer  has begin(pointCount, cellCount),
+///         points(piece), beginCells(), cells(first, cells) for both kinds of cells, and end()
+template <class Writer>
+class WriterSink : public CheckedSink {
+ public:
+  template <class... Arguments>
+  WriterSink(std::string name, std::string_view stage, Context& context,
+             const Arguments&... arguments)
+      : CheckedSink(std::move(name), stage, context), writer_(arguments...) {}
+
+  [[nodiscard]] const Writer& writer() const noexcept { return writer_; }
+
+ private:
+  void takeBegin() override { writer_.begin(pointCount(), cellCount()); }
+  void takePoints(const PointPiece& piece) override { writer_.points(piece); }
+  void takeCellsBegin() override { writer_.beginCells(); }
+  void takeCells(std::uint64_t first, std::span<const Hex> cells) override {
+    writer_.cells(first, cells);
+  }
+  void takeCells(std::uint64_t first, std::span<const Hex64> cells) override {
+    writer_.cells(first, cells);
+  }
+  void takeEnd() override { writer_.end(); }
+
+  Writer writer_;
+};
+
+/// A sink over a writer that is made from a file and a number of threads.
+template <class Writer>
+[[nodiscard]] std::unique_ptr<MeshSink> openWriterSink(const std::filesystem::path& file,
+                                                       Context& context) {
+  return std::make_unique<WriterSink<Writer>>(file.string(), "write mesh", context, file,
+                                              context.threads());
+}
 
 /// Hands a mesh over, from begin() to end(). Generators go along if there are as many as vertices.
 void sendTo(MeshSink& sink, const HexMesh& mesh);

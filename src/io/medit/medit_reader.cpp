@@ -1,6 +1,6 @@
+// The reading half of medit.hpp.
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,13 +11,9 @@
 #include <base/stage.hpp>
 #include <io/core/cell_mesh.hpp>
 #include <io/core/input_file.hpp>
-#include <io/core/line_writer.hpp>
-#include <io/core/mesh_groups.hpp>
-#include <io/core/output_file.hpp>
 #include <io/core/references.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/medit/medit.hpp>
-#include <io/medit/medit_text.hpp>
 
 namespace hexhex {
 namespace {
@@ -233,28 +229,6 @@ TetCells parseMeditTets(std::string_view text, const std::string& fileName, Cont
 
 TetCells readMeditTets(const std::filesystem::path& file, Context& context) {
   return readWith<MeditReader<4>>(file, "read tets", context);
-}
-
-// Tagged edges stay out: viewers that read no more than what they show stumble over the section.
-void writeMedit(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
-                Context& context) {
-  Stage stage(context, "write mesh");
-  OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  const Array<std::uint32_t> vertices = vertexReferences(mesh, groupVertices(mesh));
-  const Array<std::uint32_t> regions = cellReferences(mesh, Untagged::Zero);
-  QuadGroups quads;
-  withThreads(context.threads(), [&] { quads = groupQuads(mesh, options.patchAngle, stage); });
-  const Array<std::uint32_t> references = groupNumbers(quads.groups, Untagged::Zero);
-  LineWriter lines(output, context.threads());
-  LoopProgress progress(stage, mesh.points.size() + quads.elements.size() + mesh.cells.size());
-  output.write(kMeditHead).write(mesh.points.size()).write('\n');
-  writeMeditVertices(lines, mesh.points, &progress, vertices);
-  output.write("Quadrilaterals\n").write(quads.elements.size()).write('\n');
-  writeMeditElements(lines, std::span<const Quad>(quads.elements), &progress, references);
-  output.write("Hexahedra\n").write(mesh.cells.size()).write('\n');
-  writeMeditElements(lines, std::span<const Hex>(mesh.cells), &progress, regions);
-  output.write("End\n");
-  output.commit();
 }
 
 }  // namespace hexhex
