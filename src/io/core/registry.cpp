@@ -41,12 +41,6 @@ void writePlain(const TetMap& map, const std::filesystem::path& file,
   write(map, file, context);
 }
 
-// Overloads of writers with a map have to be told apart.
-constexpr auto kWriteOvm = static_cast<void (*)(const HexMesh&, const std::filesystem::path&,
-                                                const WriteOptions&, Context&)>(writeOvmHexMesh);
-constexpr auto kWriteOvmb = static_cast<void (*)(const HexMesh&, const std::filesystem::path&,
-                                                 const WriteOptions&, Context&)>(writeOvmbHexMesh);
-
 TetCells readHexexTets(const std::filesystem::path& file, Context& context) {
   const TetMap map = readHexex(file, context);
   TetCells tets;
@@ -155,7 +149,7 @@ constexpr std::array kFormatTable = {
            .writeMap = writePlain<writeOvmMap>,
            .readTets = readOvmTets,
            .readMesh = readOvmHexMesh,
-           .writeMesh = kWriteOvm},
+           .writeMesh = writeOvmHexMesh},
     Format{.name = "ovmb",
            .extension = ".ovmb",
            .description = "OpenVolumeMesh, binary",
@@ -163,7 +157,7 @@ constexpr std::array kFormatTable = {
            .writeMap = writePlain<writeOvmbMap>,
            .readTets = readOvmbTets,
            .readMesh = readOvmbHexMesh,
-           .writeMesh = kWriteOvmb},
+           .writeMesh = writeOvmbHexMesh},
     Format{.name = "msh",
            .extension = ".msh",
            .description = "Gmsh 4.1, binary",

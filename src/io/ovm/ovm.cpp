@@ -3,151 +3,96 @@
 #include <io/core/input_file.hpp>
 #include <io/ovm/ovm.hpp>
 #include <io/ovm/ovm_cells.hpp>
-#include <io/ovm/ovm_output.hpp>
-#include <io/ovm/ovm_text.hpp>
-#include <io/ovm/ovmb_chunks.hpp>
-#include <io/ovm/ovmb_elements.hpp>
-#include <io/ovm/ovmb_properties.hpp>
+#include <io/ovm/ovm_files.hpp>
 
 namespace hexhex {
 namespace {
 
-OvmMesh parseOvmb(std::string_view bytes, const std::string& fileName, Stage& stage) {
-  const OvmbFrame frame = splitOvmb(bytes, fileName);
-  OvmMesh mesh;
-  readOvmbElements(frame, mesh, stage);
-  readOvmbProperties(frame, mesh, stage);
-  return mesh;
-}
-
 using Parse = OvmMesh (*)(std::string_view bytes, const std::string& fileName, Stage& stage);
-
+using Write = void (*)(const OvmOutput& mesh, OutputFile& output, Stage& stage);
 template <class Result>
 using Convert = Result (*)(OvmMesh&& mesh, const std::string& fileName, Stage& stage);
 
 template <class Result>
-Result parse(std::string_view bytes, const std::string& fileName, Stage& stage, Parse parseFile,
-             Convert<Result> convert) {
+Result parse(std::string_view bytes, const std::string& fileName, Context& context,
+             std::string_view stageName, Parse parseFile, Convert<Result> convert) {
+  Stage stage(context, stageName);
   Result result;
-  withThreads(stage.context().threads(),
+  withThreads(context.threads(),
               [&] { result = convert(parseFile(bytes, fileName, stage), fileName, stage); });
   return result;
 }
 
 template <class Result>
-Result read(const std::filesystem::path& file, Stage& stage, Parse parseFile,
-            Convert<Result> convert) {
+Result read(const std::filesystem::path& file, Context& context, std::string_view stageName,
+            Parse parseFile, Convert<Result> convert) {
+  Stage stage(context, stageName);
+  const std::string fileName = file.string();
+  const auto parsed = [&] {
+    const Array<char> bytes = readWholeFile(file, stage);  // given back before cells are made
+    return parseFile(asText(bytes), fileName, stage);
+  };
   Result result;
-  withThreads(stage.context().threads(), [&] {
-    const std::string fileName = file.string();
-    const auto parsed = [&] {
-      const Array<char> bytes = readWholeFile(file, stage);  // given back before cells are made
-      return parseFile(asText(bytes), fileName, stage);
-    };
-    result = convert(parsed(), fileName, stage);
-  });
+  withThreads(context.threads(), [&] { result = convert(parsed(), fileName, stage); });
   return result;
 }
 
-TetMap mapFrom(std::string_view bytes, const std::string& fileName, Context& context,
-               Parse parseFile) {
-  Stage stage(context, "read map");
-  return parse<TetMap>(bytes, fileName, stage, parseFile, toTetMap);
-}
-
-HexMesh meshFrom(std::string_view bytes, const std::string& fileName, Context& context,
-                 Parse parseFile) {
-  Stage stage(context, "read mesh");
-  return parse<HexMesh>(bytes, fileName, stage, parseFile, toHexMesh);
-}
-
-TetMap readMapWith(const std::filesystem::path& file, Context& context, Parse parseFile) {
-  Stage stage(context, "read map");
-  return read<TetMap>(file, stage, parseFile, toTetMap);
-}
-
-TetCells readTetsWith(const std::filesystem::path& file, Context& context, Parse parseFile) {
-  Stage stage(context, "read tets");
-  return read<TetCells>(file, stage, parseFile, toTetCells);
-}
-
-HexMesh readMeshWith(const std::filesystem::path& file, Context& context, Parse parseFile) {
-  Stage stage(context, "read mesh");
-  return read<HexMesh>(file, stage, parseFile, toHexMesh);
-}
-
-using Write = void (*)(const OvmOutput& mesh, OutputFile& output, Stage& stage);
-
-void writeMapWith(const TetMap& map, const std::filesystem::path& file, Context& context,
-                  Write write) {
-  Stage stage(context, "write map");
+/// @param mesh  a map or a hex mesh
+template <class Mesh>
+void write(const Mesh& mesh, const std::filesystem::path& file, Context& context,
+           std::string_view stageName, Write writeFile) {
+  Stage stage(context, stageName);
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  withThreads(context.threads(), [&] { write(toOvm(map, stage), output, stage); });
-}
-
-void writeMeshWith(const HexMesh& mesh, const TetMap* map, const std::filesystem::path& file,
-                   Context& context, Write write) {
-  Stage stage(context, "write mesh");
-  OutputFile output(file);  // first, as above
-  withThreads(context.threads(), [&] { write(toOvm(mesh, map, stage), output, stage); });
+  withThreads(context.threads(), [&] { writeFile(toOvm(mesh, stage), output, stage); });
 }
 
 }  // namespace
 
 TetMap readOvmMap(const std::filesystem::path& file, Context& context) {
-  return readMapWith(file, context, parseOvmText);
+  return read<TetMap>(file, context, "read map", parseOvmText, toTetMap);
 }
 TetMap readOvmbMap(const std::filesystem::path& file, Context& context) {
-  return readMapWith(file, context, parseOvmb);
+  return read<TetMap>(file, context, "read map", parseOvmb, toTetMap);
 }
 TetCells readOvmTets(const std::filesystem::path& file, Context& context) {
-  return readTetsWith(file, context, parseOvmText);
+  return read<TetCells>(file, context, "read tets", parseOvmText, toTetCells);
 }
 TetCells readOvmbTets(const std::filesystem::path& file, Context& context) {
-  return readTetsWith(file, context, parseOvmb);
+  return read<TetCells>(file, context, "read tets", parseOvmb, toTetCells);
 }
 HexMesh readOvmHexMesh(const std::filesystem::path& file, Context& context) {
-  return readMeshWith(file, context, parseOvmText);
+  return read<HexMesh>(file, context, "read mesh", parseOvmText, toHexMesh);
 }
 HexMesh readOvmbHexMesh(const std::filesystem::path& file, Context& context) {
-  return readMeshWith(file, context, parseOvmb);
+  return read<HexMesh>(file, context, "read mesh", parseOvmb, toHexMesh);
 }
 
 TetMap parseOvmMap(std::string_view text, const std::string& fileName, Context& context) {
-  return mapFrom(text, fileName, context, parseOvmText);
+  return parse<TetMap>(text, fileName, context, "read map", parseOvmText, toTetMap);
 }
 TetMap parseOvmbMap(std::string_view bytes, const std::string& fileName, Context& context) {
-  return mapFrom(bytes, fileName, context, parseOvmb);
+  return parse<TetMap>(bytes, fileName, context, "read map", parseOvmb, toTetMap);
 }
 HexMesh parseOvmHexMesh(std::string_view text, const std::string& fileName, Context& context) {
-  return meshFrom(text, fileName, context, parseOvmText);
+  return parse<HexMesh>(text, fileName, context, "read mesh", parseOvmText, toHexMesh);
 }
 HexMesh parseOvmbHexMesh(std::string_view bytes, const std::string& fileName, Context& context) {
-  return meshFrom(bytes, fileName, context, parseOvmb);
+  return parse<HexMesh>(bytes, fileName, context, "read mesh", parseOvmb, toHexMesh);
 }
 
 void writeOvmMap(const TetMap& map, const std::filesystem::path& file, Context& context) {
-  writeMapWith(map, file, context, writeOvmTextFile);
+  write(map, file, context, "write map", writeOvmText);
 }
 void writeOvmbMap(const TetMap& map, const std::filesystem::path& file, Context& context) {
-  writeMapWith(map, file, context, writeOvmbFile);
+  write(map, file, context, "write map", writeOvmb);
 }
-
 void writeOvmHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
                      const WriteOptions& /*options*/, Context& context) {
-  writeMeshWith(mesh, nullptr, file, context, writeOvmTextFile);
+  write(mesh, file, context, "write mesh", writeOvmText);
 }
 void writeOvmbHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
                       const WriteOptions& /*options*/, Context& context) {
-  writeMeshWith(mesh, nullptr, file, context, writeOvmbFile);
-}
-void writeOvmHexMesh(const HexMesh& mesh, const TetMap& map, const std::filesystem::path& file,
-                     Context& context) {
-  writeMeshWith(mesh, &map, file, context, writeOvmTextFile);
-}
-void writeOvmbHexMesh(const HexMesh& mesh, const TetMap& map, const std::filesystem::path& file,
-                      Context& context) {
-  writeMeshWith(mesh, &map, file, context, writeOvmbFile);
+  write(mesh, file, context, "write mesh", writeOvmb);
 }
 
 }  // namespace hexhex

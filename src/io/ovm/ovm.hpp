@@ -3,8 +3,7 @@
 // A map is the property `HexHex::Parametrization`: for each half-face of a tet the parameters of
 // the vertex opposite it, in the tet's chart. Also carried: valences of edges (`edge_valance`),
 // rotations across half-faces (`HalffaceTransiton`), features (`AlgoHex::FeatureVertices`,
-// `...Edges`,
-// `...Faces`), and with hex meshes the generators of vertices (`v_tet_generator_type`).
+// `...Edges`, `...Faces`), and with hex meshes the generators of vertices (`v_tet_generator_type`).
 //
 // The format has no order of a cell's corners, and no generators by corners; so that both come back
 // as they were, they are written as further properties, `hexhex::corner_order` (only where needed),
@@ -25,9 +24,8 @@ namespace hexhex {
 
 /// Read maps.
 /// @throws Error FileNotFound; FileSyntax, with byte or line, also for a binary file without its
-/// end;
-///         FileUnsupported if there is no map, or a cell is no tet; IndexOutOfRange, NotFinite,
-///         TooLarge
+///         end; FileUnsupported if there is no map, or a cell is no tet; IndexOutOfRange,
+///         NotFinite, TooLarge
 [[nodiscard]] TetMap readOvmMap(const std::filesystem::path& file, Context& context);
 [[nodiscard]] TetMap readOvmbMap(const std::filesystem::path& file, Context& context);
 
@@ -55,8 +53,7 @@ namespace hexhex {
 
 /// Write maps.
 /// @throws Error FileWrite; InvalidArgument if arrays disagree, or features and valences name what
-/// is
-///         not in the mesh; IndexOutOfRange, RepeatedVertex, NotFinite; NonManifoldFace,
+///         is not in the mesh; IndexOutOfRange, RepeatedVertex, NotFinite; NonManifoldFace,
 ///         Orientation for what the format cannot hold; TooLarge
 void writeOvmMap(const TetMap& map, const std::filesystem::path& file, Context& context);
 void writeOvmbMap(const TetMap& map, const std::filesystem::path& file, Context& context);
@@ -67,13 +64,5 @@ void writeOvmHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
                      const WriteOptions& options, Context& context);
 void writeOvmbHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
                       const WriteOptions& options, Context& context);
-
-/// The same with the map that the mesh comes from, so that vertices can name their generators as
-/// tools of the field do: `v_tet_generator_index`, in the numbering of a file that this library
-/// writes for this map.
-void writeOvmHexMesh(const HexMesh& mesh, const TetMap& map, const std::filesystem::path& file,
-                     Context& context);
-void writeOvmbHexMesh(const HexMesh& mesh, const TetMap& map, const std::filesystem::path& file,
-                      Context& context);
 
 }  // namespace hexhex

@@ -1,8 +1,9 @@
-// Cells as lists of corners, from cells as lists of half-faces.
+// Maps and hex meshes, whose cells are lists of corners, from and to polyhedral meshes, whose cells
+// are lists of half-faces.
 #pragma once
 
 #include <array>
-#include <bit>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,6 +11,7 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/cell_mesh.hpp>
 #include <io/ovm/ovm_mesh.hpp>
@@ -30,59 +32,49 @@ namespace hexhex {
 /// @throws Error FileUnsupported if a cell is no hexahedron; FileSyntax if cells are wrong
 [[nodiscard]] HexMesh toHexMesh(OvmMesh&& mesh, const std::string& fileName, Stage& stage);
 
-/// A cell that was read: its corners, and half-face s of its list is opposite corner `opposite[s]`.
-struct OvmTet {
-  Tet corners{};
-  std::array<std::uint8_t, 4> opposite{};
-};
+/// What a file holds. Half-faces point into their cells, and the first slots of cells begin with
+/// the cells' corners where neighbours allow it; elsewhere, the property CornerOrder tells the
+/// order.
+/// @param mesh  with corners and generators in range
+/// @throws Error InvalidArgument if arrays disagree, or features and valences name what is not in
+///         the mesh; IndexOutOfRange, RepeatedVertex, NotFinite, NonManifoldFace, Orientation,
+///         TooLarge
+[[nodiscard]] OvmOutput toOvm(const TetMap& map, Stage& stage);
+[[nodiscard]] OvmOutput toOvm(const HexMesh& mesh, Stage& stage);
 
-/// The tet with the four half-faces: the loop of the first one, then the vertex opposite it.
-/// @param loops  three vertices of each half-face in order
-/// @return false if they do not bound a tet
-[[nodiscard]] bool assembleTet(const std::array<std::array<Index, 3>, 4>& loops,
-                               OvmTet& tet) noexcept;
+/// The topology of a map's file.
+/// @param tets  with vertices in range
+[[nodiscard]] OvmTopology ovmTopologyOf(std::span<const Vec3> points, std::span<const Tet> tets,
+                                        Stage& stage);
 
-/// Whether two corners are the same vertex, of fewer than 2^31. Without branches, and two pairs of
-/// corners at once, since it is asked of every cell.
-template <std::size_t corners>
-[[nodiscard]] bool hasVertexTwice(const std::array<Index, corners>& cell) noexcept {
-  constexpr std::uint64_t kOnes = 0x0000000100000001U;
-  constexpr std::uint64_t kSigns = 0x8000000080000000U;
-  const auto pairs = std::bit_cast<std::array<std::uint64_t, corners / 2>>(cell);
-  std::uint64_t equal = 0;
-  // No difference has a sign, so that one appears where 1 is taken from none.
-  const auto compare = [&equal](std::uint64_t a, std::uint64_t b) { equal |= (a ^ b) - kOnes; };
-  for (std::size_t i = 0; i < corners / 2; ++i) {
-    const std::uint64_t exchanged = std::rotl(pairs[i], 32);
-    compare(pairs[i], exchanged);
-    for (std::size_t k = i + 1; k < corners / 2; ++k) {
-      compare(pairs[i], pairs[k]);
-      compare(exchanged, pairs[k]);
+/// Whether valueOf(i) is negative for more of the i in [0, n) than it is positive.
+template <class F>
+[[nodiscard]] bool areMostlyNegative(Stage& stage, std::size_t n, const F& valueOf) {
+  constexpr std::size_t kGrain = 4096;
+  std::atomic<std::int64_t> balance{0};
+  parallelBlocks(stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+    std::int64_t local = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const double value = valueOf(i);
+      local += value > 0 ? 1 : (value < 0 ? -1 : 0);
     }
-  }
-  return (equal & kSigns) != 0;
+    balance.fetch_add(local, std::memory_order_relaxed);
+  });
+  return balance.load() < 0;
 }
 
-/// The hexahedron with the six half-faces in VTK's order: the loop of the first one, then the
-/// vertices that edges join to them. Positive if loops run counter-clockwise seen from inside.
-/// @return false if they do not bound a hexahedron
-[[nodiscard]] bool assembleHex(const std::array<std::array<Index, 4>, 6>& loops, Hex& hex) noexcept;
+/// Whether two corners are the same vertex.
+template <std::size_t corners>
+[[nodiscard]] bool hasVertexTwice(const std::array<Index, corners>& cell) noexcept {
+  bool twice = false;
+  for (std::size_t i = 1; i < corners; ++i) {
+    for (std::size_t k = 0; k < i; ++k) twice |= cell[i] == cell[k];
+  }
+  return twice;
+}
 
-/// Whether most hexahedra have a negative volume (that of their mean edge vectors). Of a large
-/// mesh, some tens of thousands are asked.
-[[nodiscard]] bool isMostlyNegative(std::span<const Vec3> points, std::span<const Hex> cells,
-                                    Stage& stage);
-
-/// Even and odd orders of a tet's corners, which the property CornerOrder numbers: corner i of the
-/// listed tet is corner kTetOrders[n][i] of the assembled one. Number 0 changes nothing.
-inline constexpr std::array<std::array<std::uint8_t, 4>, 24> kTetOrders = {
-    {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 1, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {0, 3, 2, 1},
-     {1, 0, 2, 3}, {1, 0, 3, 2}, {1, 2, 0, 3}, {1, 2, 3, 0}, {1, 3, 0, 2}, {1, 3, 2, 0},
-     {2, 0, 1, 3}, {2, 0, 3, 1}, {2, 1, 0, 3}, {2, 1, 3, 0}, {2, 3, 0, 1}, {2, 3, 1, 0},
-     {3, 0, 1, 2}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 1, 2, 0}, {3, 2, 0, 1}, {3, 2, 1, 0}}};
-
-/// The same for hexahedra, whose first face is always the assembled one's: 0 to 3 begin with that
-/// corner of it, 4 to 7 go round in the other direction.
+/// Orders of a hexahedron's corners, which the property CornerOrder numbers. The first face is
+/// always the same: 0 to 3 begin with that corner of it, 4 to 7 go round in the other direction.
 inline constexpr std::size_t kHexOrders = 8;
 [[nodiscard]] Hex inHexOrder(const Hex& assembled, std::size_t order) noexcept;
 

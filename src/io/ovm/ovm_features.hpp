@@ -1,4 +1,5 @@
-// Features and edge valences, which list few elements, as properties, which have a value for each.
+// Features and regions of maps and hex meshes, which list few elements, from and to properties,
+// which have a value for each.
 #pragma once
 
 #include <algorithm>
@@ -13,9 +14,38 @@
 
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_mesh.hpp>
-#include <io/ovm/ovm_output.hpp>
 
 namespace hexhex {
+
+/// Calls f(element, tag) for all elements with a tag other than 0.
+template <class F>
+void forEachOvmTag(const Array<std::int32_t>& tags, const F& f) {
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    if (tags[i] != 0) f(i, tags[i]);
+  }
+}
+
+/// Reads the features of a mesh.
+/// @param faces  those of `features`
+template <std::size_t n, class Features, class FaceFeature>
+void readOvmFeatures(const OvmMesh& mesh, const OvmLoops<n>& loops, const std::string& fileName,
+                     Features& features, std::vector<FaceFeature>& faces) {
+  const OvmProperties& properties = mesh.properties;
+  forEachOvmTag(properties[OvmInteger::FeatureVertices], [&](std::size_t v, std::int32_t tag) {
+    features.vertices.push_back({static_cast<Index>(v), tag});
+  });
+  forEachOvmTag(properties[OvmInteger::FeatureEdges], [&](std::size_t e, std::int32_t tag) {
+    features.edges.push_back({mesh.topology.edges[e], tag});
+  });
+  forEachOvmTag(properties[OvmInteger::FeatureFaces], [&](std::size_t f, std::int32_t tag) {
+    if (!loops.isGood(f)) {
+      throw Error(ErrorCode::FileSyntax, fileName + ": face " + std::to_string(f) +
+                                             " is tagged as a feature, but is no closed loop of " +
+                                             std::to_string(n) + " half-edges.");
+    }
+    faces.push_back({loops.ofFace(f), tag});
+  });
+}
 
 /// Gives one element its value, which must be there and not have one yet.
 /// @param element  index, or kNone; @param what  e.g. "feature edge 3-17", for the message
@@ -30,24 +60,16 @@ inline void setOvmValue(Array<std::int32_t>& values, Index element, std::int32_t
   values[element] = value;
 }
 
-inline void setOvmVertexTags(OvmOutput& output, const std::vector<FeatureVertex>& features) {
-  if (features.empty()) return;
-  Array<std::int32_t>& tags = output.properties[OvmInteger::FeatureVertices];
-  tags.assign(output.topology.vertexCount, 0);
-  for (const FeatureVertex& feature : features) {
-    setOvmValue(tags, feature.vertex, feature.tag,
-                "feature vertex " + std::to_string(feature.vertex),
-                {PlaceKind::Vertex, feature.vertex});
-  }
-}
-
 /// Gives tagged elements with n vertices their tags.
+/// @param features  their vertices need not be in the order of the element
 /// @param verticesOf  of an element by its number, in any order
 /// @param nameOf, placeOf  of a feature, for messages
 template <std::size_t n, class Feature, class Vertices, class Name, class At>
-void setOvmTags(Array<std::int32_t>& tags, std::size_t vertexCount,
+void setOvmTags(Array<std::int32_t>& tags, std::size_t elements, std::size_t vertexCount,
                 const std::vector<Feature>& features, const Vertices& verticesOf,
                 const Name& nameOf, const At& placeOf) {
+  if (features.empty()) return;
+  tags.assign(elements, 0);
   struct Wanted {
     std::array<Index, n> vertices;
     const Feature* feature;
@@ -64,7 +86,7 @@ void setOvmTags(Array<std::int32_t>& tags, std::size_t vertexCount,
   }
   const auto before = [](const Wanted& a, const Wanted& b) { return a.vertices < b.vertices; };
   std::stable_sort(wanted.begin(), wanted.end(), before);
-  for (std::size_t i = 0; i < tags.size(); ++i) {
+  for (std::size_t i = 0; i < elements; ++i) {
     Wanted key{verticesOf(i), nullptr, 0};
     if (isSmallest[*std::min_element(key.vertices.begin(), key.vertices.end())] == 0) continue;
     std::sort(key.vertices.begin(), key.vertices.end());
@@ -79,46 +101,49 @@ void setOvmTags(Array<std::int32_t>& tags, std::size_t vertexCount,
   }
 }
 
-inline void setOvmEdgeTags(OvmOutput& output, const std::vector<FeatureEdge>& features) {
-  if (features.empty()) return;
-  Array<std::int32_t>& tags = output.properties[OvmInteger::FeatureEdges];
-  tags.assign(output.topology.edges.size(), 0);
+/// Makes properties of features and regions.
+/// @param faces  those of `features`
+/// @param regions  one per cell, or none
+/// @throws Error InvalidArgument if they name what is not in the mesh, or twice; or if there are
+///         regions for another number of cells
+template <std::size_t n, class Features, class FaceFeature, class Regions>
+void setOvmFeatures(OvmProperties& properties, const OvmTopology& topology,
+                    const Features& features, const std::vector<FaceFeature>& faces,
+                    const Regions& regions, Stage& stage) {
+  if (!features.vertices.empty()) {
+    Array<std::int32_t>& tags = properties[OvmInteger::FeatureVertices];
+    tags.assign(topology.vertexCount, 0);
+    for (const auto& [vertex, tag] : features.vertices) {
+      setOvmValue(tags, vertex, tag, "feature vertex " + std::to_string(vertex),
+                  {PlaceKind::Vertex, vertex});
+    }
+  }
   const auto placeOf = [](const FeatureEdge& feature) {
     return Place{PlaceKind::Edge, feature.vertices[0], feature.vertices[1]};
   };
   setOvmTags<2>(
-      tags, output.topology.vertexCount, features,
-      [&](std::size_t e) { return output.topology.edges[e]; },
+      properties[OvmInteger::FeatureEdges], topology.edges.size(), topology.vertexCount,
+      features.edges, [&](std::size_t e) { return topology.edges[e]; },
       [&](const FeatureEdge& feature) { return "feature " + toString(placeOf(feature)); }, placeOf);
-}
-
-/// @param regions  one per cell, or none
-template <class Regions>
-void setOvmRegions(OvmOutput& output, const Regions& regions) {
-  if (regions.empty()) return;
-  if (regions.size() != output.topology.cells.size()) {
+  if (!faces.empty()) {
+    const OvmLoops<n> loops(topology, stage);
+    const auto nameOf = [](const FaceFeature& feature) {
+      std::string name = "feature face";
+      for (const Index vertex : feature.vertices)
+        name.append(1, ' ').append(std::to_string(vertex));
+      return name;
+    };
+    setOvmTags<n>(
+        properties[OvmInteger::FeatureFaces], topology.faces.size(), topology.vertexCount, faces,
+        [&](std::size_t f) { return loops.ofFace(f); }, nameOf,
+        [](const FaceFeature& /*feature*/) { return Place{}; });
+  }
+  if (!regions.empty() && regions.size() != topology.cells.size()) {
     throw Error(ErrorCode::InvalidArgument,
-                "The mesh has " + std::to_string(output.topology.cells.size()) +
+                "The mesh has " + std::to_string(topology.cells.size()) +
                     " cells, but regions for " + std::to_string(regions.size()) + ".");
   }
-  output.properties[OvmInteger::Region].assign(regions.begin(), regions.end());
-}
-
-/// @tparam Feature  with n vertices; they need not be in the order of the face
-template <std::size_t n, class Feature>
-void setOvmFaceTags(OvmOutput& output, const std::vector<Feature>& features,
-                    const OvmLoops<n>& loops) {
-  if (features.empty()) return;
-  Array<std::int32_t>& tags = output.properties[OvmInteger::FeatureFaces];
-  tags.assign(output.topology.faces.size(), 0);
-  const auto nameOf = [](const Feature& feature) {
-    std::string name = "feature face";
-    for (const Index vertex : feature.vertices) name.append(1, ' ').append(std::to_string(vertex));
-    return name;
-  };
-  setOvmTags<n>(
-      tags, output.topology.vertexCount, features, [&](std::size_t f) { return loops.ofFace(f); },
-      nameOf, [](const Feature& /*feature*/) { return Place{}; });
+  properties[OvmInteger::Region].assign(regions.begin(), regions.end());
 }
 
 }  // namespace hexhex

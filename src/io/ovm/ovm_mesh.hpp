@@ -10,6 +10,9 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <hexhex/types.hpp>
 
@@ -80,8 +83,7 @@ inline constexpr std::string_view kParametrizationName = "HexHex::Parametrizatio
 enum class OvmInteger : std::uint8_t {
   FeatureVertices,
   GeneratorType,     ///< of hex meshes: dimension of the simplex of the tets that holds the vertex
-  GeneratorIndex,    ///< its index in the tet mesh
-  GeneratorTet,      ///< the same as HexMesh has it, so that it comes back as it was
+  GeneratorTet,      ///< the simplex as HexMesh has it, so that it comes back as it was
   GeneratorCorners,  ///< likewise
   EdgeValence,
   FeatureEdges,
@@ -95,10 +97,9 @@ struct OvmIntegerName {
   OvmEntity entity;
   std::string_view name;  ///< some are misspelt, and known so
 };
-inline constexpr std::array<OvmIntegerName, 11> kOvmIntegers = {
+inline constexpr std::array<OvmIntegerName, 10> kOvmIntegers = {
     {{OvmEntity::Vertex, "AlgoHex::FeatureVertices"},
      {OvmEntity::Vertex, "v_tet_generator_type"},
-     {OvmEntity::Vertex, "v_tet_generator_index"},
      {OvmEntity::Vertex, "hexhex::generator_tet"},
      {OvmEntity::Vertex, "hexhex::generator_corners"},
      {OvmEntity::Edge, "edge_valance"},
@@ -108,7 +109,15 @@ inline constexpr std::array<OvmIntegerName, 11> kOvmIntegers = {
      {OvmEntity::Cell, "hexhex::corner_order"},
      {OvmEntity::Cell, "hexhex::region"}}};
 
-/// Values of properties, one per element of the entity; empty if there is no such property.
+/// A property as it is written: integers, points, or pairs of numbers.
+struct OvmProperty {
+  OvmEntity entity = OvmEntity::Vertex;
+  std::string_view name;
+  std::variant<Array<std::int32_t>, Array<Vec3>, Array<std::array<double, 2>>> values = {};
+};
+
+/// Values of the properties that this library knows, one per element of the entity; empty if there
+/// is no such property.
 struct OvmProperties {
   Array<Vec3> parametrization;  ///< per half-face
   std::array<Array<std::int32_t>, kOvmIntegers.size()> integers;
@@ -119,6 +128,25 @@ struct OvmProperties {
   [[nodiscard]] const Array<std::int32_t>& operator[](OvmInteger property) const noexcept {
     return integers[static_cast<std::size_t>(property)];
   }
+  /// The values of a property of integers by its name in files; null if it is not known.
+  [[nodiscard]] Array<std::int32_t>* find(OvmEntity entity, std::string_view name) noexcept {
+    for (std::size_t i = 0; i < integers.size(); ++i) {
+      if (kOvmIntegers[i].entity == entity && kOvmIntegers[i].name == name) return &integers[i];
+    }
+    return nullptr;
+  }
+  /// All properties that there are, in the order in which they are written.
+  [[nodiscard]] std::vector<OvmProperty> listed() && {
+    std::vector<OvmProperty> list;
+    for (std::size_t i = 0; i < integers.size(); ++i) {
+      if (i == static_cast<std::size_t>(OvmInteger::Transition) && !parametrization.empty()) {
+        list.push_back({OvmEntity::HalfFace, kParametrizationName, std::move(parametrization)});
+      }
+      if (integers[i].empty()) continue;
+      list.push_back({kOvmIntegers[i].entity, kOvmIntegers[i].name, std::move(integers[i])});
+    }
+    return list;
+  }
 };
 
 /// A mesh as it was read.
@@ -128,6 +156,14 @@ struct OvmMesh {
   OvmProperties properties;
   /// Whether the file has a property of the map's name that is no map, for error messages.
   bool hasForeignParametrization = false;
+};
+
+/// A mesh as it is written.
+struct OvmOutput {
+  std::span<const Vec3> points;  ///< of the mesh that it was made from
+  OvmTopology topology;
+  std::vector<OvmProperty> properties;  ///< in the order in which they are written
+  bool hasWideHandles = false;  ///< handles of `.ovmb` have four bytes, even if fewer would do
 };
 
 }  // namespace hexhex

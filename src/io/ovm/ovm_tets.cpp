@@ -1,5 +1,6 @@
-// From a polyhedral mesh to a map on tets (see ovm_cells.hpp).
+// Maps on tets from and to polyhedral meshes (see ovm_cells.hpp).
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 
@@ -7,19 +8,77 @@
 
 #include <base/bits.hpp>
 #include <base/parallel.hpp>
+#include <base/vector3.hpp>
+#include <io/core/writable.hpp>
 #include <io/ovm/ovm_cells.hpp>
+#include <io/ovm/ovm_features.hpp>
+#include <io/ovm/ovm_topology.hpp>
 
 namespace hexhex {
 namespace {
 
-/// Whether four different numbers from 0 to 3 are an even permutation.
-bool isEven(const std::array<std::uint8_t, 4>& order) {
+constexpr std::size_t kGrain = 4096;
+
+using TetOrder = std::array<std::uint8_t, 4>;
+
+/// All orders of a tet's corners, which the property CornerOrder numbers: corner i of the listed
+/// tet is corner kTetOrders[n][i] of the assembled one. Number 0 changes nothing.
+constexpr std::array<TetOrder, 24> kTetOrders = {
+    {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 1, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {0, 3, 2, 1},
+     {1, 0, 2, 3}, {1, 0, 3, 2}, {1, 2, 0, 3}, {1, 2, 3, 0}, {1, 3, 0, 2}, {1, 3, 2, 0},
+     {2, 0, 1, 3}, {2, 0, 3, 1}, {2, 1, 0, 3}, {2, 1, 3, 0}, {2, 3, 0, 1}, {2, 3, 1, 0},
+     {3, 0, 1, 2}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 1, 2, 0}, {3, 2, 0, 1}, {3, 2, 1, 0}}};
+/// Where most tets are inside out, two corners of each are exchanged.
+constexpr std::size_t kAsListed = 0;
+constexpr std::size_t kTurned = 2;
+
+bool isEven(const TetOrder& order) {
   int inversions = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = i + 1; j < 4; ++j) inversions += order[i] > order[j] ? 1 : 0;
   }
   return inversions % 2 == 0;
 }
+
+/// A cell that was read: its corners, and half-face s of its list is opposite corner `opposite[s]`.
+struct AssembledTet {
+  Tet corners{};
+  std::array<std::uint8_t, 4> opposite{};
+};
+
+/// The tet with the four half-faces: the loop of the first one, then the vertex opposite it.
+/// @param loops  three vertices of each half-face in order
+/// @return false if they do not bound a tet
+bool assembleTet(const std::array<std::array<Index, 3>, 4>& loops, AssembledTet& tet) {
+  const std::array<Index, 3>& base = loops[0];
+  const auto inBase = [&](Index v) { return std::find(base.begin(), base.end(), v) != base.end(); };
+  const auto* const apex = std::find_if_not(loops[1].begin(), loops[1].end(), inBase);
+  if (apex == loops[1].end()) return false;
+  tet.corners = {base[0], base[1], base[2], *apex};
+  if (hasVertexTwice(tet.corners)) return false;
+
+  unsigned seen = 0;
+  for (std::size_t s = 0; s < 4; ++s) {
+    TetOrder order{};
+    unsigned present = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto* const corner = std::find(tet.corners.begin(), tet.corners.end(), loops[s][i]);
+      if (corner == tet.corners.end()) return false;
+      order[i] = static_cast<std::uint8_t>(corner - tet.corners.begin());
+      present |= 1U << order[i];
+    }
+    const unsigned missing = 15U & ~present;
+    if (!hasOneBit(missing)) return false;
+    order[3] = static_cast<std::uint8_t>(std::countr_zero(missing));
+    // All half-faces run the same way round, seen from inside.
+    if (!isEven(order)) return false;
+    tet.opposite[s] = order[3];
+    seen |= missing;
+  }
+  return seen == 15U;
+}
+
+bool isRotation(std::int32_t rotation) { return rotation >= -1 && rotation < 24; }
 
 /// Makes tets out of a mesh's cells, with all that belongs to their corners and faces.
 class TetReader {
@@ -40,14 +99,7 @@ class TetReader {
   void readTets();
   [[nodiscard]] bool readTet(std::size_t cell);
   [[nodiscard]] bool isFinite(std::size_t cell) const;
-  void readRotations();
-  [[nodiscard]] bool readRotationsOf(std::size_t cell);
-  void readEdgeValences();
-  void readFeatures();
-  /// The corner that half-face s of a cell's list is opposite.
-  [[nodiscard]] std::size_t opposite(std::size_t cell, std::size_t s) const {
-    return (opposites_[cell] >> (2 * s)) & 3U;
-  }
+  void requireRotations() const;
 
   OvmMesh mesh_;
   const OvmTopology& topology_;
@@ -55,7 +107,6 @@ class TetReader {
   const std::string& fileName_;
   Stage& stage_;
   OvmLoops<3> loops_;
-  Array<std::uint8_t> opposites_;  ///< per cell: two bits for each half-face
   TetMap map_;
 };
 
@@ -63,16 +114,21 @@ TetMap TetReader::read() {
   requireProperCells(topology_, loops_, 4, fileName_, "tetrahedra", stage_);
   requireMap();
   map_.points.assign(mesh_.points.begin(), mesh_.points.end());
+  map_.parameters.resize(topology_.cells.size());
+  if (!properties_[OvmInteger::Transition].empty()) map_.rotations.resize(topology_.cells.size());
   readTets();
-  if (!properties_[OvmInteger::Transition].empty()) readRotations();
-  readEdgeValences();
-  readFeatures();
+  requireRotations();
+  forEachOvmTag(properties_[OvmInteger::EdgeValence], [this](std::size_t e, std::int32_t offset) {
+    map_.edgeValences.push_back({topology_.edges[e][0], topology_.edges[e][1], offset});
+  });
+  readOvmFeatures(mesh_, loops_, fileName_, map_.features, map_.features.faces);
+  const Array<std::int32_t>& regions = properties_[OvmInteger::Region];
+  map_.regions.assign(regions.begin(), regions.end());
   return std::move(map_);
 }
 
 TetCells TetReader::readWithoutMap() {
   requireProperCells(topology_, loops_, 4, fileName_, "tetrahedra", stage_);
-  mesh_.properties.parametrization.clear();
   readTets();
   TetCells result;
   result.points = std::move(mesh_.points);
@@ -96,36 +152,36 @@ void TetReader::requireMap() const {
           "second mesh (--polycube).");
 }
 
+/// Reads a tet with the parameters and rotations that the map has room for.
 bool TetReader::readTet(std::size_t cell) {
   const std::span<const Index> halfFaces = topology_.cells[cell];
   std::array<std::array<Index, 3>, 4> loops;
   for (std::size_t s = 0; s < 4; ++s) loops[s] = loops_.ofHalfFace(halfFaces[s]);
-  OvmTet tet;
+  AssembledTet tet;
   if (!assembleTet(loops, tet)) return false;
-  std::array<std::uint8_t, 4> order = kTetOrders[0];
-  if (const auto& orders = properties_[OvmInteger::CornerOrder]; !orders.empty()) {
-    if (orders[cell] < 0 || static_cast<std::size_t>(orders[cell]) >= kTetOrders.size()) {
-      return false;
-    }
-    order = kTetOrders[static_cast<std::size_t>(orders[cell])];
-  }
-  std::array<std::uint8_t, 4> place{};  // of each assembled corner in the listed tet
+  const Array<std::int32_t>& orders = properties_[OvmInteger::CornerOrder];
+  const auto number = static_cast<std::size_t>(orders.empty() ? 0 : orders[cell]);
+  if (number >= kTetOrders.size()) return false;
+  const TetOrder& order = kTetOrders[number];
+  TetOrder place{};  // of each assembled corner in the listed tet
   for (std::uint8_t i = 0; i < 4; ++i) {
     place[order[i]] = i;
     map_.tets[cell][i] = tet.corners[order[i]];
   }
-  unsigned opposites = 0;
   for (std::size_t s = 0; s < 4; ++s) {
-    const unsigned corner = place[tet.opposite[s]];
-    opposites |= corner << (2 * s);
-    if (properties_.parametrization.empty()) continue;  // only the tets are wanted
-    map_.parameters[cell][corner] = properties_.parametrization[halfFaces[s]];
+    const std::size_t corner = place[tet.opposite[s]];
+    if (!map_.parameters.empty()) {
+      map_.parameters[cell][corner] = properties_.parametrization[halfFaces[s]];
+    }
+    if (map_.rotations.empty()) continue;
+    const std::int32_t rotation = properties_[OvmInteger::Transition][halfFaces[s]];
+    map_.rotations[cell][corner] = static_cast<std::int8_t>(isRotation(rotation) ? rotation : -1);
   }
-  opposites_[cell] = static_cast<std::uint8_t>(opposites);
   return true;
 }
 
 bool TetReader::isFinite(std::size_t cell) const {
+  if (map_.parameters.empty()) return true;
   const TetParameters& corners = map_.parameters[cell];
   return std::all_of(corners.begin(), corners.end(), [](const Vec3& corner) {
     return std::isfinite(corner[0]) && std::isfinite(corner[1]) && std::isfinite(corner[2]);
@@ -133,13 +189,11 @@ bool TetReader::isFinite(std::size_t cell) const {
 }
 
 void TetReader::readTets() {
-  const std::size_t cells = topology_.cells.size();
-  map_.tets.resize(cells);
-  map_.parameters.resize(cells);
-  opposites_.resize(cells);
-  const std::size_t fault = firstFault(
-      stage_, cells, [this](std::size_t cell) { return readTet(cell) && isFinite(cell); });
-  if (fault == cells) return;
+  map_.tets.resize(topology_.cells.size());
+  const std::size_t fault = firstFault(stage_, map_.tets.size(), [this](std::size_t cell) {
+    return readTet(cell) && isFinite(cell);
+  });
+  if (fault == map_.tets.size()) return;
   const Place place{PlaceKind::Tet, fault};
   if (readTet(fault)) {
     throw Error(ErrorCode::NotFinite,
@@ -152,103 +206,133 @@ void TetReader::readTets() {
               place);
 }
 
-bool TetReader::readRotationsOf(std::size_t cell) {
-  const std::span<const Index> halfFaces = topology_.cells[cell];
-  bool good = true;
-  for (std::size_t s = 0; s < 4; ++s) {
-    const std::int32_t rotation = properties_[OvmInteger::Transition][halfFaces[s]];
-    const bool known = rotation >= -1 && rotation < 24;
-    good = good && known;
-    map_.rotations[cell][opposite(cell, s)] = static_cast<std::int8_t>(known ? rotation : -1);
-  }
-  return good;
-}
-
-/// Values beyond the 24 rotations are "unknown" at the boundary, where they mean nothing.
-void TetReader::readRotations() {
-  const std::size_t cells = topology_.cells.size();
-  map_.rotations.resize(cells);
-  std::size_t fault =
-      firstFault(stage_, cells, [this](std::size_t cell) { return readRotationsOf(cell); });
-  if (fault == cells) return;
-  Array<char> used(2 * topology_.faces.size(), 0);
+/// Refuses values beyond the 24 rotations, except at the boundary, where they mean nothing.
+void TetReader::requireRotations() const {
+  const Array<std::int32_t>& rotations = properties_[OvmInteger::Transition];
+  if (std::all_of(rotations.begin(), rotations.end(), isRotation)) return;
+  Array<char> used(rotations.size(), 0);
   for (const Index halfFace : topology_.cells.handles) used[halfFace] = 1;
-  for (; fault < cells; ++fault) {
-    for (const Index halfFace : topology_.cells[fault]) {
-      const std::int32_t rotation = properties_[OvmInteger::Transition][halfFace];
-      if ((rotation >= -1 && rotation < 24) || used[halfFace ^ 1U] == 0) continue;
+  for (std::size_t t = 0; t < map_.tets.size(); ++t) {
+    for (const Index halfFace : topology_.cells[t]) {
+      if (isRotation(rotations[halfFace]) || used[halfFace ^ 1U] == 0) continue;
       throw Error(ErrorCode::FileSyntax,
                   fileName_ + ": the rotation across half-face " + std::to_string(halfFace) +
-                      " of tet " + std::to_string(fault) + " is " + std::to_string(rotation) +
+                      " of tet " + std::to_string(t) + " is " +
+                      std::to_string(rotations[halfFace]) +
                       ", but rotations are numbered from 0 to 23, or -1 if unknown.",
-                  Place{PlaceKind::Tet, fault});
+                  Place{PlaceKind::Tet, t});
     }
   }
 }
 
-void TetReader::readEdgeValences() {
-  const Array<std::int32_t>& offsets = properties_[OvmInteger::EdgeValence];
-  for (std::size_t e = 0; e < offsets.size(); ++e) {
-    if (offsets[e] == 0) continue;
-    map_.edgeValences.push_back({topology_.edges[e][0], topology_.edges[e][1], offsets[e]});
-  }
-}
-
-void TetReader::readFeatures() {
-  const auto forEachTag = [this](OvmInteger property, const auto& add) {
-    const Array<std::int32_t>& tags = properties_[property];
-    for (std::size_t i = 0; i < tags.size(); ++i) {
-      if (tags[i] != 0) add(i, tags[i]);
-    }
+/// The number of the order that tets are written in.
+std::size_t writtenOrder(std::span<const Vec3> points, std::span<const Tet> tets, Stage& stage) {
+  const auto volumeOf = [&](std::size_t t) {
+    const Vec3& origin = points[tets[t][0]];
+    return tripleProduct(minus(points[tets[t][3]], origin), minus(points[tets[t][1]], origin),
+                         minus(points[tets[t][2]], origin));
   };
-  forEachTag(OvmInteger::FeatureVertices, [this](std::size_t v, std::int32_t tag) {
-    map_.features.vertices.push_back({static_cast<Index>(v), tag});
+  return areMostlyNegative(stage, tets.size(), volumeOf) ? kTurned : kAsListed;
+}
+
+OvmTopology topologyOf(std::size_t points, std::span<const Tet> tets, const TetOrder& order,
+                       Stage& stage) {
+  Array<Tet> ordered(tets.size());
+  parallelFor(stage, tets.size(), kGrain, [&](std::size_t t) {
+    for (std::size_t i = 0; i < 4; ++i) ordered[t][i] = tets[t][order[i]];
   });
-  forEachTag(OvmInteger::FeatureEdges, [this](std::size_t e, std::int32_t tag) {
-    map_.features.edges.push_back({topology_.edges[e], tag});
-  });
-  forEachTag(OvmInteger::FeatureFaces, [this](std::size_t f, std::int32_t tag) {
-    if (!loops_.isGood(f)) {
-      throw Error(ErrorCode::FileSyntax,
-                  fileName_ + ": face " + std::to_string(f) +
-                      " is tagged as a feature, but is no closed loop of 3 half-edges.");
+  return buildOvmTopology(points, ordered, stage);
+}
+
+/// Makes a mesh out of a map.
+class TetWriter {
+ public:
+  TetWriter(const TetMap& map, Stage& stage)
+      : map_(map),
+        stage_(stage),
+        orderNumber_(writtenOrder(map.points, map.tets, stage)),
+        order_(kTetOrders[orderNumber_]),
+        topology_(topologyOf(map.points.size(), map.tets, order_, stage)) {}
+
+  OvmOutput write() {
+    setCornerOrder();
+    setHalfFaceValues();
+    setEdgeValences();
+    setOvmFeatures<3>(properties_, topology_, map_.features, map_.features.faces, map_.regions,
+                      stage_);
+    return {map_.points, std::move(topology_), std::move(properties_).listed()};
+  }
+
+ private:
+  [[nodiscard]] std::size_t listedOrder(std::size_t tet) const;
+  void setCornerOrder();
+  void setHalfFaceValues();
+  void setEdgeValences();
+
+  const TetMap& map_;
+  Stage& stage_;
+  std::size_t orderNumber_;
+  const TetOrder& order_;
+  OvmTopology topology_;
+  OvmProperties properties_;
+};
+
+/// How the corners of a tet are listed, against the order in which a reader finds them.
+std::size_t TetWriter::listedOrder(std::size_t tet) const {
+  // Tets begin with their first half-face, and nearly all of those begin where the tet does.
+  const Index first = topology_.cells.handles[4 * tet];
+  if (first % 2 == 0) return orderNumber_;
+  const std::array<Index, 3> loop = loopOfHalfFace(loopOfFace<3>(topology_, first / 2), first);
+  const Tet& listed = map_.tets[tet];
+  const Tet assembled = {loop[0], loop[1], loop[2], listed[order_[3]]};
+  const auto* const found =
+      std::find_if(kTetOrders.begin(), kTetOrders.end(), [&](const TetOrder& order) {
+        return listed == Tet{assembled[order[0]], assembled[order[1]], assembled[order[2]],
+                             assembled[order[3]]};
+      });
+  return static_cast<std::size_t>(found - kTetOrders.begin());
+}
+
+void TetWriter::setCornerOrder() {
+  Array<std::int32_t> orders(map_.tets.size());
+  parallelFor(stage_, orders.size(), kGrain,
+              [&](std::size_t t) { orders[t] = static_cast<std::int32_t>(listedOrder(t)); });
+  if (std::all_of(orders.begin(), orders.end(), [](std::int32_t n) { return n == 0; })) return;
+  properties_[OvmInteger::CornerOrder] = std::move(orders);
+}
+
+/// Parameters and rotations, which half-faces carry for the corners opposite them.
+void TetWriter::setHalfFaceValues() {
+  Array<Vec3>& parameters = properties_.parametrization;
+  Array<std::int32_t>& rotations = properties_[OvmInteger::Transition];
+  // The half-faces at the boundary have no cell; all others are overwritten.
+  parameters.assign(2 * topology_.faces.size(), Vec3{});
+  if (!map_.rotations.empty()) rotations.assign(parameters.size(), -1);
+  parallelFor(stage_, map_.tets.size(), kGrain, [&](std::size_t t) {
+    for (std::size_t s = 0; s < 4; ++s) {
+      const Index halfFace = topology_.cells.handles[4 * t + s];
+      const std::size_t corner = order_[kOvmTetOpposite[s]];
+      parameters[halfFace] = map_.parameters[t][corner];
+      if (rotations.empty()) continue;
+      const std::int32_t rotation = map_.rotations[t][corner];
+      rotations[halfFace] = isRotation(rotation) ? rotation : -1;
     }
-    map_.features.faces.push_back({loops_.ofFace(f), tag});
   });
-  const Array<std::int32_t>& regions = properties_[OvmInteger::Region];
-  map_.regions.assign(regions.begin(), regions.end());
+}
+
+void TetWriter::setEdgeValences() {
+  if (map_.edgeValences.empty()) return;
+  Array<std::int32_t>& offsets = properties_[OvmInteger::EdgeValence];
+  offsets.assign(topology_.edges.size(), 0);
+  const OvmEdgeFinder finder(topology_.vertexCount, topology_.edges);
+  for (const EdgeValence& edge : map_.edgeValences) {
+    const Place place{PlaceKind::Edge, edge.vertex0, edge.vertex1};
+    setOvmValue(offsets, finder.find(edge.vertex0, edge.vertex1), edge.offset,
+                toString(place) + " with a known valence", place);
+  }
 }
 
 }  // namespace
-
-bool assembleTet(const std::array<std::array<Index, 3>, 4>& loops, OvmTet& tet) noexcept {
-  const std::array<Index, 3>& base = loops[0];
-  const auto inBase = [&](Index v) { return std::find(base.begin(), base.end(), v) != base.end(); };
-  const auto* const apex = std::find_if_not(loops[1].begin(), loops[1].end(), inBase);
-  if (apex == loops[1].end()) return false;
-  tet.corners = {base[0], base[1], base[2], *apex};
-  if (base[0] == base[1] || base[1] == base[2] || base[2] == base[0]) return false;
-
-  unsigned seen = 0;
-  for (std::size_t s = 0; s < 4; ++s) {
-    std::array<std::uint8_t, 4> order{};
-    unsigned present = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto* const corner = std::find(tet.corners.begin(), tet.corners.end(), loops[s][i]);
-      if (corner == tet.corners.end()) return false;
-      order[i] = static_cast<std::uint8_t>(corner - tet.corners.begin());
-      present |= 1U << order[i];
-    }
-    const unsigned missing = 15U & ~present;
-    if (!hasOneBit(missing)) return false;
-    order[3] = static_cast<std::uint8_t>(std::countr_zero(missing));
-    // All half-faces run the same way round, seen from inside.
-    if (!isEven(order)) return false;
-    tet.opposite[s] = order[3];
-    seen |= missing;
-  }
-  return seen == 15U;
-}
 
 TetMap toTetMap(OvmMesh&& mesh, const std::string& fileName, Stage& stage) {
   return TetReader(std::move(mesh), fileName, stage).read();
@@ -256,6 +340,15 @@ TetMap toTetMap(OvmMesh&& mesh, const std::string& fileName, Stage& stage) {
 
 TetCells toTetCells(OvmMesh&& mesh, const std::string& fileName, Stage& stage) {
   return TetReader(std::move(mesh), fileName, stage).readWithoutMap();
+}
+
+OvmOutput toOvm(const TetMap& map, Stage& stage) {
+  requireWritable(map, stage);
+  return TetWriter(map, stage).write();
+}
+
+OvmTopology ovmTopologyOf(std::span<const Vec3> points, std::span<const Tet> tets, Stage& stage) {
+  return topologyOf(points.size(), tets, kTetOrders[writtenOrder(points, tets, stage)], stage);
 }
 
 }  // namespace hexhex

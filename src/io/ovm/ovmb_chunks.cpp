@@ -1,9 +1,9 @@
+// Cuts an `.ovmb` file into its chunks (see ovmb_reader.hpp).
 #include <algorithm>
 #include <optional>
 
 #include <io/core/text_scanner.hpp>
-#include <io/ovm/ovm_mesh.hpp>
-#include <io/ovm/ovmb_chunks.hpp>
+#include <io/ovm/ovmb_reader.hpp>
 
 namespace hexhex {
 namespace {
@@ -36,19 +36,22 @@ void readFileHeader(OvmbFrame& frame, ByteCursor& cursor) {
                 "here. If this is a text file of OpenVolumeMesh, give it the extension .ovm.");
   }
   static_cast<void>(cursor.take(kOvmbMagic.size(), "the signature"));
-  // The version of the file is not checked: chunks have versions of their own.
-  static_cast<void>(cursor.read<std::uint8_t>("the version of the file"));
+  const auto readByte = [&cursor](const char* what) {
+    return unsigned{cursor.read<std::uint8_t>(what)};
+  };
   const auto require = [&cursor](bool condition, ErrorCode code, const std::string& sentence) {
     if (!condition) cursor.failAt(cursor.position() - 1, code, sentence);
   };
-  const auto version = cursor.read<std::uint8_t>("the version of the header");
+  // The version of the file is not checked: chunks have versions of their own.
+  static_cast<void>(readByte("the version of the file"));
+  const unsigned version = readByte("the version of the header");
   require(version == 1, ErrorCode::FileUnsupported,
           "the header has version " + std::to_string(version) + "; only version 1 is supported.");
-  const auto dimension = cursor.read<std::uint8_t>("the dimension");
+  const unsigned dimension = readByte("the dimension");
   require(dimension == 3, ErrorCode::FileUnsupported,
           "the dimension must be 3, found " + std::to_string(dimension) + ".");
   // Valences decide what the cells are; this is but a hint.
-  const auto kind = cursor.read<std::uint8_t>("the kind of the mesh");
+  const unsigned kind = readByte("the kind of the mesh");
   require(kind <= 2, ErrorCode::FileSyntax,
           "the kind of the mesh must be 0, 1 or 2, found " + std::to_string(kind) + ".");
   const std::size_t reserved = cursor.position();

@@ -1,13 +1,12 @@
-// The binary half of ovm_output.hpp's writers.
+// Writes `.ovmb` files (see ovm_files.hpp).
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <string>
+#include <type_traits>
 
-#include <base/stage.hpp>
-#include <io/core/bytes.hpp>
-#include <io/ovm/ovm_output.hpp>
-#include <io/ovm/ovmb_chunks.hpp>
+#include <io/core/line_writer.hpp>
+#include <io/ovm/ovm_files.hpp>
+#include <io/ovm/ovmb_reader.hpp>
 
 namespace hexhex {
 namespace {
@@ -15,15 +14,23 @@ namespace {
 // What is written between two looks at the caller's wish to cancel: some milliseconds' work.
 constexpr std::size_t kSlice = std::size_t{1} << 18;
 
-constexpr std::size_t kVerticesHeaderBytes = 16;
-constexpr std::size_t kTopologyHeaderBytes = 24;
-constexpr std::size_t kPropertyHeaderBytes = 16;
-
-/// How many bytes OpenVolumeMesh takes for handles of so many things.
-std::size_t handleBytes(std::size_t count) {
-  if (count <= std::numeric_limits<std::uint8_t>::max()) return 1;
-  return count <= std::numeric_limits<std::uint16_t>::max() ? 2 : 4;
+/// What the directory says of a type of values.
+struct ElementType {
+  std::string_view name;
+  std::size_t bytes;
+};
+ElementType typeOf(const OvmProperty& property) {
+  constexpr std::array<ElementType, 3> kTypes = {
+      {{"i32", sizeof(std::int32_t)}, {"3d", sizeof(Vec3)}, {"2d", 2 * sizeof(double)}}};
+  return kTypes[property.values.index()];
 }
+
+/// Arrays of numbers, one after the other.
+template <class Number, std::size_t n>
+std::span<const Number> flat(std::span<const std::array<Number, n>> arrays) {
+  return {reinterpret_cast<const Number*>(arrays.data()), n * arrays.size()};
+}
+std::span<const std::int32_t> flat(std::span<const std::int32_t> numbers) { return numbers; }
 
 class OvmbWriter {
  public:
@@ -39,8 +46,7 @@ class OvmbWriter {
  private:
   template <class T>
   void put(T value) {
-    const auto bytes = littleBytes(value);
-    output_.writeBytes(bytes.data(), bytes.size());
+    writeBytesOf(output_, value);
   }
   void putText(std::string_view text) {
     put(static_cast<std::uint32_t>(text.size()));
@@ -49,31 +55,27 @@ class OvmbWriter {
   void putZeros(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) output_.write('\0');
   }
-  /// Numbers one after the other, as Stored.
   template <class Stored, class T>
   void putArray(std::span<const T> values);
-  void putHandles(std::span<const Index> handles, std::size_t bytesEach);
-
   void beginChunk(std::string_view type, std::uint64_t payload);
-  void endChunk(std::uint64_t payload) { putZeros(paddingOf(payload)); }
-  static std::uint8_t paddingOf(std::uint64_t payload) {
-    return static_cast<std::uint8_t>((8 - payload % 8) % 8);
-  }
+  void endChunk() { putZeros(padding_); }
   void putSpan(std::size_t count);
 
   void writeHeader();
-  void writeDirectory(const std::vector<OvmPropertyValues>& properties);
+  void writeDirectory();
   void writeVertices();
-  void writeTopology(std::uint8_t entity, std::size_t count, std::size_t valence,
-                     std::span<const Index> handles, std::size_t referenced);
-  void writeProperty(const OvmPropertyValues& property, std::uint32_t number);
+  void writeTopology(OvmEntity entity, std::size_t valence, std::span<const std::uint64_t> offsets,
+                     std::span<const Index> handles, OvmEntity referenced);
+  void writeProperty(std::uint32_t number);
 
   const OvmOutput& mesh_;
   const OvmTopology& topology_;
   OutputFile& output_;
   LoopProgress progress_;
+  std::uint8_t padding_ = 0;  ///< of the chunk that is being written
 };
 
+/// Numbers one after the other, as Stored.
 template <class Stored, class T>
 void OvmbWriter::putArray(std::span<const T> values) {
   constexpr bool kAsInMemory =
@@ -89,21 +91,15 @@ void OvmbWriter::putArray(std::span<const T> values) {
   }
 }
 
-void OvmbWriter::putHandles(std::span<const Index> handles, std::size_t bytesEach) {
-  if (bytesEach == 1) putArray<std::uint8_t>(handles);
-  if (bytesEach == 2) putArray<std::uint16_t>(handles);
-  if (bytesEach == 4) putArray<std::uint32_t>(handles);
-  progress_.advance(handles.size());
-}
-
 void OvmbWriter::beginChunk(std::string_view type, std::uint64_t payload) {
   constexpr std::uint8_t kMandatory = 1;
+  padding_ = static_cast<std::uint8_t>((8 - payload % 8) % 8);
   output_.write(type);
   put(std::uint8_t{0});  // version
-  put(paddingOf(payload));
+  put(padding_);
   put(std::uint8_t{0});  // compression
   put(kMandatory);
-  put(payload + paddingOf(payload));
+  put(payload + padding_);
 }
 
 void OvmbWriter::putSpan(std::size_t count) {
@@ -126,115 +122,102 @@ void OvmbWriter::writeHeader() {
   }
 }
 
-void OvmbWriter::writeDirectory(const std::vector<OvmPropertyValues>& properties) {
-  if (properties.empty()) return;
-  const auto defaultBytes = [](const OvmPropertyValues& property) {
-    return property.points != nullptr ? sizeof(Vec3) : sizeof(std::int32_t);
-  };
-  const auto typeName = [](const OvmPropertyValues& property) {
-    return std::string_view(property.points != nullptr ? "3d" : "i32");
-  };
+void OvmbWriter::writeDirectory() {
+  if (mesh_.properties.empty()) return;
   constexpr std::size_t kEntryBytes = 13;  // an entity and three lengths
   std::uint64_t payload = 0;
-  for (const OvmPropertyValues& property : properties) {
-    payload +=
-        kEntryBytes + property.name.size() + typeName(property).size() + defaultBytes(property);
+  for (const OvmProperty& property : mesh_.properties) {
+    const ElementType type = typeOf(property);
+    payload += kEntryBytes + property.name.size() + type.name.size() + type.bytes;
   }
   beginChunk("DIRP", payload);
-  for (const OvmPropertyValues& property : properties) {
+  for (const OvmProperty& property : mesh_.properties) {
+    const ElementType type = typeOf(property);
     put(static_cast<std::uint8_t>(property.entity));
     putText(property.name);
-    putText(typeName(property));
-    put(static_cast<std::uint32_t>(defaultBytes(property)));
-    putZeros(defaultBytes(property));
+    putText(type.name);
+    put(static_cast<std::uint32_t>(type.bytes));
+    putZeros(type.bytes);  // the default value
   }
-  endChunk(payload);
-}
-
-/// The coordinates of points, one after the other.
-std::span<const double> coordinatesOf(std::span<const Vec3> points) {
-  return {reinterpret_cast<const double*>(points.data()), 3 * points.size()};
+  endChunk();
 }
 
 void OvmbWriter::writeVertices() {
   if (mesh_.points.empty()) return;
+  constexpr std::size_t kHeaderBytes = 16;
   constexpr std::uint32_t kFloat64 = 2;
-  const std::uint64_t payload = kVerticesHeaderBytes + mesh_.points.size_bytes();
-  beginChunk("VERT", payload);
+  beginChunk("VERT", kHeaderBytes + mesh_.points.size_bytes());
   putSpan(mesh_.points.size());
   put(kFloat64);
-  putArray<double>(coordinatesOf(mesh_.points));
-  endChunk(payload);
+  putArray<double>(flat(mesh_.points));
+  endChunk();
   progress_.advance(mesh_.points.size());
 }
 
-void OvmbWriter::writeTopology(std::uint8_t entity, std::size_t count, std::size_t valence,
-                               std::span<const Index> handles, std::size_t referenced) {
+/// @param offsets     of lists of different valences, at most 255; else empty
+/// @param referenced  what the handles name
+void OvmbWriter::writeTopology(OvmEntity entity, std::size_t valence,
+                               std::span<const std::uint64_t> offsets,
+                               std::span<const Index> handles, OvmEntity referenced) {
+  constexpr std::size_t kHeaderBytes = 24;
+  const std::size_t count = topology_.count(entity);
   if (count == 0) return;
-  const std::size_t bytesEach = handleBytes(referenced);
-  const std::uint64_t payload = kTopologyHeaderBytes + handles.size() * bytesEach;
-  beginChunk("TOPO", payload);
+  // As OpenVolumeMesh does: for their number, not for the largest of them.
+  const std::size_t limit = topology_.count(referenced);
+  const bool wide = mesh_.hasWideHandles || limit > std::numeric_limits<std::uint16_t>::max();
+  const bool narrow = !wide && limit <= std::numeric_limits<std::uint8_t>::max();
+  const std::size_t bytesEach = wide ? 4 : (narrow ? 1 : 2);
+  const std::size_t varying = offsets.empty() ? 0 : count;
+  beginChunk("TOPO", kHeaderBytes + varying + handles.size() * bytesEach);
   putSpan(count);
-  put(entity);
+  put(static_cast<std::uint8_t>(entity));
   put(static_cast<std::uint8_t>(valence));
-  put(std::uint8_t{0});  // valences do not vary
+  put(static_cast<std::uint8_t>(varying > 0 ? 1 : 0));  // bytes of a valence
   put(static_cast<std::uint8_t>(bytesEach));
   put(std::uint64_t{0});  // OpenVolumeMesh misreads other offsets of edges
-  putHandles(handles, bytesEach);
-  endChunk(payload);
+  for (std::size_t i = 0; i < varying; ++i) {
+    put(static_cast<std::uint8_t>(offsets[i + 1] - offsets[i]));
+  }
+  if (bytesEach == 1) putArray<std::uint8_t>(handles);
+  if (bytesEach == 2) putArray<std::uint16_t>(handles);
+  if (bytesEach == 4) putArray<std::uint32_t>(handles);
+  endChunk();
+  progress_.advance(handles.size());
 }
 
-void OvmbWriter::writeProperty(const OvmPropertyValues& property, std::uint32_t number) {
-  const bool points = property.points != nullptr;
-  const std::size_t count = points ? property.points->size() : property.integers->size();
-  const std::uint64_t payload =
-      kPropertyHeaderBytes + count * (points ? sizeof(Vec3) : sizeof(std::int32_t));
-  beginChunk("PROP", payload);
-  putSpan(count);
-  put(number);
-  if (points) {
-    putArray<double>(coordinatesOf(*property.points));
-  } else {
-    putArray<std::int32_t>(std::span<const std::int32_t>(*property.integers));
-  }
-  endChunk(payload);
+void OvmbWriter::writeProperty(std::uint32_t number) {
+  constexpr std::size_t kHeaderBytes = 16;
+  std::visit(
+      [&](const auto& values) {
+        const auto numbers = flat(std::span(values));
+        beginChunk("PROP", kHeaderBytes + numbers.size_bytes());
+        putSpan(values.size());
+        put(number);
+        putArray<typename decltype(numbers)::value_type>(numbers);
+        endChunk();
+      },
+      mesh_.properties[number].values);
 }
 
 void OvmbWriter::write() {
-  const std::vector<OvmPropertyValues> properties = listProperties(mesh_.properties);
   writeHeader();
-  writeDirectory(properties);
+  writeDirectory();
   writeVertices();
-  const std::span<const Index> edgeEnds(reinterpret_cast<const Index*>(topology_.edges.data()),
-                                        2 * topology_.edges.size());
-  writeTopology(1, topology_.edges.size(), 2, edgeEnds, mesh_.points.size());
-  writeTopology(2, topology_.faces.size(), topology_.faces.length, topology_.faces.handles,
-                2 * topology_.edges.size());
-  writeTopology(3, topology_.cells.size(), topology_.cells.length, topology_.cells.handles,
-                2 * topology_.faces.size());
-  for (std::uint32_t i = 0; i < properties.size(); ++i) writeProperty(properties[i], i);
+  const std::span<const std::array<Index, 2>> edges(topology_.edges);
+  writeTopology(OvmEntity::Edge, 2, {}, flat(edges), OvmEntity::Vertex);
+  const auto writeLists = [this](OvmEntity entity, const OvmLists& lists, OvmEntity referenced) {
+    writeTopology(entity, lists.length, lists.offsets, lists.handles, referenced);
+  };
+  writeLists(OvmEntity::Face, topology_.faces, OvmEntity::HalfEdge);
+  writeLists(OvmEntity::Cell, topology_.cells, OvmEntity::HalfFace);
+  for (std::uint32_t i = 0; i < mesh_.properties.size(); ++i) writeProperty(i);
   beginChunk("EOF ", 0);
   output_.commit();
 }
 
 }  // namespace
 
-std::vector<OvmPropertyValues> listProperties(const OvmProperties& properties) {
-  std::vector<OvmPropertyValues> list;
-  for (std::size_t i = 0; i < kOvmIntegers.size(); ++i) {
-    if (i == static_cast<std::size_t>(OvmInteger::Transition) &&
-        !properties.parametrization.empty()) {
-      list.push_back(
-          {OvmEntity::HalfFace, kParametrizationName, &properties.parametrization, nullptr});
-    }
-    if (properties.integers[i].empty()) continue;
-    list.push_back(
-        {kOvmIntegers[i].entity, kOvmIntegers[i].name, nullptr, &properties.integers[i]});
-  }
-  return list;
-}
-
-void writeOvmbFile(const OvmOutput& mesh, OutputFile& output, Stage& stage) {
+void writeOvmb(const OvmOutput& mesh, OutputFile& output, Stage& stage) {
   OvmbWriter(mesh, output, stage).write();
 }
 

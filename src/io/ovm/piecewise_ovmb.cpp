@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -14,15 +15,16 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/output_file.hpp>
-#include <io/ovm/ovmb_polygons.hpp>
+#include <io/ovm/ovm_cells.hpp>
+#include <io/ovm/ovm_files.hpp>
+#include <io/ovm/ovm_topology.hpp>
 #include <io/ovm/piecewise_ovmb.hpp>
-#include <io/ovm/simplex_indices.hpp>
 
 namespace hexhex {
-
 namespace {
 
 using EdgeEnds = std::array<Index, 2>;
+using Integers = Array<std::int32_t>;
 
 [[noreturn]] void failAboutMap() {
   throw Error(
@@ -31,16 +33,34 @@ using EdgeEnds = std::array<Index, 2>;
       "extracted from: after a repair, the repaired one.");
 }
 
-/// The tets that generators name, and how a file numbers their simplices.
+/// The tets that generators name, and how the `.ovm` or `.ovmb` file of their map numbers
+/// simplices.
 class TetSimplices {
  public:
   TetSimplices(const TetMapView& map, Stage& stage)
-      : tets_(requireInRange(map, stage)), indices_(map.points, map.tets, stage) {}
+      : tets_(requireInRange(map, stage)),
+        topology_(ovmTopologyOf(map.points, map.tets, stage)),
+        edges_(topology_.vertexCount, topology_.edges),
+        loops_(topology_, stage) {}
 
+  /// The index of a simplex among those of its dimension.
   /// @throws Error InvalidArgument if there is no such tet
-  [[nodiscard]] std::int32_t index(Index tet, CornerSet corners) const {
+  [[nodiscard]] Index index(Index tet, CornerSet corners) const {
     if (tet >= tets_.size()) failAboutMap();
-    return static_cast<std::int32_t>(indices_.of(tet, corners));
+    const auto vertexOf = [&](unsigned set) {
+      return tets_[tet][static_cast<std::size_t>(std::countr_zero(set))];
+    };
+    switch (generatorKind(corners)) {
+      case GeneratorKind::Vertex:
+        return vertexOf(corners);
+      case GeneratorKind::Edge:
+        return edges_.find(vertexOf(corners), vertexOf(corners & (corners - 1U)));
+      case GeneratorKind::Face:
+        return faceWithout(tet, vertexOf(15U & ~unsigned{corners}));
+      case GeneratorKind::Cell:
+        break;
+    }
+    return tet;
   }
 
   /// A simplex of one tet as corners of another that has it, too.
@@ -70,51 +90,60 @@ class TetSimplices {
                 Place{PlaceKind::Tet, fault});
   }
 
+  [[nodiscard]] Index faceWithout(Index tet, Index vertex) const {
+    for (const Index halfFace : topology_.cells[tet]) {
+      const std::array<Index, 3>& loop = loops_.ofFace(halfFace / 2);
+      if (std::find(loop.begin(), loop.end(), vertex) == loop.end()) return halfFace / 2;
+    }
+    return kNone;
+  }
+
   std::span<const Tet> tets_;
-  SimplexIndices indices_;
+  OvmTopology topology_;
+  OvmEdgeFinder edges_;
+  OvmLoops<3> loops_;
 };
 
 /// The simplices that hold elements, as properties.
 class CarrierProperties {
  public:
   /// @param simplices  null: without their indices
-  CarrierProperties(std::uint8_t entity, std::string_view typeName, std::string_view indexName,
+  CarrierProperties(OvmEntity entity, std::string_view typeName, std::string_view indexName,
                     const TetSimplices* simplices)
-      : simplices_(simplices),
-        type_{entity, typeName},
-        index_{entity, indexName},
-        tet_{entity, "hexhex::generator_tet"},
-        corners_{entity, "hexhex::generator_corners"} {}
+      : entity_(entity), typeName_(typeName), indexName_(indexName), simplices_(simplices) {}
 
   void add(Index tet, CornerSet corners) {
-    type_.integers.push_back(static_cast<std::int32_t>(generatorKind(corners)));
-    if (simplices_ != nullptr) index_.integers.push_back(simplices_->index(tet, corners));
-    tet_.integers.push_back(static_cast<std::int32_t>(tet));
-    corners_.integers.push_back(corners);
+    types_.push_back(static_cast<std::int32_t>(generatorKind(corners)));
+    if (simplices_ != nullptr) {
+      indices_.push_back(static_cast<std::int32_t>(simplices_->index(tet, corners)));
+    }
+    tets_.push_back(static_cast<std::int32_t>(tet));
+    corners_.push_back(corners);
   }
   void add(std::span<const Index> tets, std::span<const CornerSet> corners) {
     for (std::size_t i = 0; i < corners.size(); ++i) add(tets[i], corners[i]);
   }
   /// One whose simplex is not known.
   void addUnknown() {
-    for (OvmbProperty* const property : {&type_, &tet_, &corners_}) {
-      property->integers.push_back(-1);
-    }
+    for (Integers* const values : {&types_, &tets_, &corners_}) values->push_back(-1);
   }
 
-  void moveTo(std::vector<OvmbProperty>& properties) {
-    properties.push_back(std::move(type_));
-    if (simplices_ != nullptr) properties.push_back(std::move(index_));
-    properties.push_back(std::move(tet_));
-    properties.push_back(std::move(corners_));
+  void moveTo(std::vector<OvmProperty>& properties) {
+    properties.push_back({entity_, typeName_, std::move(types_)});
+    if (simplices_ != nullptr) properties.push_back({entity_, indexName_, std::move(indices_)});
+    properties.push_back({entity_, "hexhex::generator_tet", std::move(tets_)});
+    properties.push_back({entity_, "hexhex::generator_corners", std::move(corners_)});
   }
 
  private:
+  OvmEntity entity_;
+  std::string_view typeName_;
+  std::string_view indexName_;
   const TetSimplices* simplices_;
-  OvmbProperty type_;
-  OvmbProperty index_;
-  OvmbProperty tet_;
-  OvmbProperty corners_;
+  Integers types_;
+  Integers indices_;
+  Integers tets_;
+  Integers corners_;
 };
 
 /// An edge by its ends in ascending order, and its number.
@@ -126,68 +155,64 @@ struct KnownEdge {
 
 EdgeEnds ascending(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Collects what a file will hold.
-class Collector {
+/// Collects what a file will hold, and writes it.
+class PiecewiseWriter {
  public:
   /// @param map  where the mesh comes from, or null
-  Collector(const PiecewiseLinearMesh& mesh, const TetMapView* map, Stage& stage) : mesh_(mesh) {
+  PiecewiseWriter(const PiecewiseLinearMesh& mesh, const TetMapView* map, Stage& stage)
+      : mesh_(mesh), stage_(stage) {
     if (map != nullptr) simplices_.emplace(*map, stage);
+    edgeCarriers_.emplace(OvmEntity::Edge, "e_tet_generator_type", "e_tet_generator_index",
+                          simplices());
   }
 
-  OvmbPolygons arcs() {
-    addPoints(false);
+  void write(PiecewiseLinearParts parts, OutputFile& output) {
+    const bool withPatches = parts == PiecewiseLinearParts::ArcsAndPatches;
+    addPoints(withPatches);
     addSegments();
-    finishEdges();
-    return std::move(content_);
-  }
-
-  OvmbPolygons patches() {
-    addPoints(true);
-    addSegments();
-    for (std::size_t f = 0; f < mesh_.patches.count(); ++f) addFace(f);
-    finishEdges();
-    OvmbProperty face{2, "f_linear_hex_face"};
-    for (std::size_t f = 0; f < mesh_.patches.count(); ++f) {
-      face.integers.resize(mesh_.patches.polygonBegin[f + 1], static_cast<std::int32_t>(f));
-    }
-    content_.properties.push_back(std::move(face));
-    OvmbProperty tet{2, "f_intersected_tet_index"};
-    tet.integers.assign(mesh_.patches.polygonTet.begin(), mesh_.patches.polygonTet.end());
-    content_.properties.push_back(std::move(tet));
-    return std::move(content_);
+    if (withPatches) addPolygons();
+    content_.properties.push_back({OvmEntity::Edge, "e_linear_hex_edge", std::move(hexEdges_)});
+    edgeCarriers_->moveTo(content_.properties);
+    if (withPatches) addPolygonProperties();
+    content_.points = points_;
+    content_.topology.vertexCount = points_.size();
+    content_.hasWideHandles = true;
+    writeOvmb(content_, output, stage_);
   }
 
  private:
   [[nodiscard]] const TetSimplices* simplices() const {
     return simplices_ ? &*simplices_ : nullptr;
   }
+  [[nodiscard]] Array<EdgeEnds>& edges() { return content_.topology.edges; }
 
   void addPoints(bool withPatches) {
-    OvmbProperty type{0, "v_type"};
-    OvmbProperty uv{0, "v_igm_uv"};
-    CarrierProperties carriers(0, "v_tet_generator_type", "v_tet_generator_index", simplices());
-    const auto add = [&](const auto& part, std::int32_t kind) {
-      content_.points.insert(content_.points.end(), part.points.begin(), part.points.end());
-      type.integers.resize(content_.points.size(), kind);
-      uv.pairs.resize(content_.points.size());
+    Integers types;
+    Array<std::array<double, 2>> uv;
+    CarrierProperties carriers(OvmEntity::Vertex, "v_tet_generator_type", "v_tet_generator_index",
+                               simplices());
+    const auto add = [&](const auto& part, std::int32_t type) {
+      points_.insert(points_.end(), part.points.begin(), part.points.end());
+      types.resize(points_.size(), type);
+      uv.resize(points_.size(), {0, 0});
       carriers.add(part.generatorTet, part.generatorCorners);
     };
     add(mesh_.mesh, 0);
-    const std::size_t vertices = content_.points.size();
     add(mesh_.arcs, 1);
-    const std::size_t shared = content_.points.size();
+    const std::size_t vertices = mesh_.mesh.points.size();
+    const std::size_t shared = points_.size();
     for (std::size_t i = 0; i < mesh_.arcs.parameters.size(); ++i) {
-      uv.pairs[vertices + i] = {mesh_.arcs.parameters[i], 0};
+      uv[vertices + i] = {mesh_.arcs.parameters[i], 0};
     }
     if (withPatches) {
       add(mesh_.patches, 2);
       for (std::size_t i = 0; i < mesh_.patches.corners.size(); ++i) {
         const Index point = mesh_.patches.corners[i];
-        if (point >= shared) uv.pairs[point] = mesh_.patches.parameters[i];
+        if (point >= shared) uv[point] = mesh_.patches.parameters[i];
       }
     }
-    content_.properties.push_back(std::move(type));
-    content_.properties.push_back(std::move(uv));
+    content_.properties.push_back({OvmEntity::Vertex, "v_type", std::move(types)});
+    content_.properties.push_back({OvmEntity::Vertex, "v_igm_uv", std::move(uv)});
     carriers.moveTo(content_.properties);
   }
 
@@ -198,19 +223,30 @@ class Collector {
       Index from = arcs.ends[e][0];
       for (std::uint64_t i = arcs.pointBegin[e]; i < arcs.pointBegin[e + 1]; ++i) {
         const Index to = vertices + static_cast<Index>(i);
-        content_.edges.push_back({from, to});
+        edges().push_back({from, to});
         from = to;
       }
-      content_.edges.push_back({from, arcs.ends[e][1]});
-      hexEdge_.integers.resize(content_.edges.size(), static_cast<std::int32_t>(e));
+      edges().push_back({from, arcs.ends[e][1]});
+      hexEdges_.resize(edges().size(), static_cast<std::int32_t>(e));
     }
-    edgeCarriers_.emplace(1, "e_tet_generator_type", "e_tet_generator_index", simplices());
     edgeCarriers_->add(arcs.segmentTet, arcs.segmentCorners);
   }
 
-  void finishEdges() {
-    content_.properties.push_back(std::move(hexEdge_));
-    edgeCarriers_->moveTo(content_.properties);
+  void addPolygons() {
+    const Patches& patches = mesh_.patches;
+    for (std::size_t f = 0; f < patches.count(); ++f) addFace(f);
+    if (!patches.polygonTet.empty()) content_.topology.faces.offsets = patches.cornerBegin;
+  }
+
+  void addPolygonProperties() {
+    const Patches& patches = mesh_.patches;
+    Integers faces;
+    for (std::size_t f = 0; f < patches.count(); ++f) {
+      faces.resize(patches.polygonBegin[f + 1], static_cast<std::int32_t>(f));
+    }
+    content_.properties.push_back({OvmEntity::Face, "f_linear_hex_face", std::move(faces)});
+    content_.properties.push_back({OvmEntity::Face, "f_intersected_tet_index",
+                                   Integers(patches.polygonTet.begin(), patches.polygonTet.end())});
   }
 
   /// The simplex that holds a point, by corners of a tet that has it.
@@ -228,15 +264,15 @@ class Collector {
   /// A side inside a face, of a polygon in this tet. By convexity, the smallest simplex that has
   /// the generators of both ends holds it.
   Index addInnerSide(const EdgeEnds& ends, Index tet) {
-    content_.edges.push_back(ends);
-    hexEdge_.integers.push_back(-1);
+    edges().push_back(ends);
+    hexEdges_.push_back(-1);
     if (simplices_) {
       edgeCarriers_->add(
           tet, static_cast<CornerSet>(generatorIn(tet, ends[0]) | generatorIn(tet, ends[1])));
     } else {
       edgeCarriers_->addUnknown();
     }
-    return static_cast<Index>(content_.edges.size() - 1);
+    return static_cast<Index>(edges().size() - 1);
   }
 
   /// Calls visit(from, to, polygon) for all sides of a face's polygons.
@@ -259,7 +295,7 @@ class Collector {
     for (const Index arc : patches.arcs[face]) {
       for (std::uint64_t s = mesh_.arcs.firstSegment(arc);
            s < mesh_.arcs.firstSegment(std::size_t{arc} + 1); ++s) {
-        const EdgeEnds& ends = content_.edges[s];
+        const EdgeEnds& ends = edges()[s];
         known_.push_back({ascending(ends[0], ends[1]), static_cast<Index>(s)});
       }
     }
@@ -276,19 +312,17 @@ class Collector {
     forEachSide(face, [&](Index a, Index b, std::uint64_t /*polygon*/) {
       const auto edge =
           std::lower_bound(known_.begin(), known_.end(), KnownEdge{ascending(a, b), kNone});
-      const bool along = content_.edges[edge->number][0] == a;
-      content_.halfEdges.push_back(2 * edge->number + (along ? 0 : 1));
+      const bool along = edges()[edge->number][0] == a;
+      content_.topology.faces.handles.push_back(2 * edge->number + (along ? 0 : 1));
     });
-    for (std::uint64_t p = patches.polygonBegin[face]; p < patches.polygonBegin[face + 1]; ++p) {
-      content_.valences.push_back(
-          static_cast<std::uint8_t>(patches.cornerBegin[p + 1] - patches.cornerBegin[p]));
-    }
   }
 
   const PiecewiseLinearMesh& mesh_;
+  Stage& stage_;
   std::optional<TetSimplices> simplices_;
-  OvmbPolygons content_;
-  OvmbProperty hexEdge_{1, "e_linear_hex_edge"};
+  std::vector<Vec3> points_;
+  OvmOutput content_;
+  Integers hexEdges_;
   std::optional<CarrierProperties> edgeCarriers_;
   std::vector<KnownEdge> known_;  ///< edges of one face
 };
@@ -311,7 +345,7 @@ void writeArcsOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
   requireSmall(
       2 * std::max(mesh.mesh.points.size() + mesh.arcs.points.size(), mesh.arcs.segmentTet.size()));
   withThreads(context.threads(),
-              [&] { writeOvmbPolygons(Collector(mesh, map, stage).arcs(), output, stage); });
+              [&] { PiecewiseWriter(mesh, map, stage).write(PiecewiseLinearParts::Arcs, output); });
 }
 
 void writePatchesOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
@@ -319,8 +353,9 @@ void writePatchesOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
   Stage stage(context, "write patches");
   OutputFile output(file);
   requireSmall(2 * mesh.patches.corners.size());
-  withThreads(context.threads(),
-              [&] { writeOvmbPolygons(Collector(mesh, map, stage).patches(), output, stage); });
+  withThreads(context.threads(), [&] {
+    PiecewiseWriter(mesh, map, stage).write(PiecewiseLinearParts::ArcsAndPatches, output);
+  });
 }
 
 }  // namespace hexhex

@@ -1,4 +1,5 @@
-// The frame of an `.ovmb` file: its header, and the chunks behind it.
+// `.ovmb` files: a header, and the chunks behind it, which hold vertices, edges, faces, cells and
+// properties.
 #pragma once
 
 #include <array>
@@ -7,12 +8,13 @@
 #include <string_view>
 #include <vector>
 
+#include <base/stage.hpp>
 #include <io/core/bytes.hpp>
+#include <io/ovm/ovm_mesh.hpp>
 
 namespace hexhex {
 
 inline constexpr std::string_view kOvmbMagic = "OVMB\n\r\n\xff";
-inline constexpr std::size_t kOvmbHeaderBytes = 48;
 
 /// The chunk types that are known.
 enum class OvmbChunkType : std::uint8_t { Vertices, Topology, Directory, Property };
@@ -40,5 +42,24 @@ struct OvmbFrame {
 /// @param bytes, fileName  must outlive the frame
 /// @throws Error FileSyntax, also if the end chunk is missing; FileUnsupported; TooLarge
 [[nodiscard]] OvmbFrame splitOvmb(std::string_view bytes, const std::string& fileName);
+
+/// A range of elements, as VERT, TOPO and PROP chunks begin with.
+struct OvmbSpan {
+  std::uint64_t first = 0;
+  std::uint64_t count = 0;
+};
+[[nodiscard]] OvmbSpan readOvmbSpan(ByteCursor& cursor);
+
+/// Decodes all VERT and TOPO chunks: any encoding of numbers, handles and valences, any number of
+/// spans. Handles are in range afterwards; nothing else about the topology is checked.
+/// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite
+void readOvmbElements(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage);
+
+/// Decodes the properties that this library knows, by entity, name and type; the map may be of
+/// doubles or floats, integers of any width, or bits. All others are skipped, after a check of
+/// their place in the file. Elements outside of all spans have the default value.
+/// @param mesh  with complete topology
+/// @throws Error FileSyntax, FileUnsupported
+void readOvmbProperties(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage);
 
 }  // namespace hexhex
