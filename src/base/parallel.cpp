@@ -2,6 +2,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <cstdlib>
 #include <exception>
 #include <latch>
 #include <map>
@@ -123,8 +124,10 @@ bool haveSpareThreads([[maybe_unused]] int wanted) {
   constexpr std::size_t kHeap = std::size_t{1} << 18;  // oneTBB allocates some kilobytes for each
   const auto count = static_cast<std::size_t>(wanted);
   std::vector<pthread_t> threads;
-  std::vector<std::unique_ptr<char[]>> heap(count);
+  // Not by operator new, which programs may replace.
+  std::vector<std::unique_ptr<void, void (*)(void*)>> heap;
   threads.reserve(count);
+  heap.reserve(count);
   std::latch end(1);
   const auto stay = [](void* latch) -> void* {
     static_cast<std::latch*>(latch)->wait();
@@ -133,10 +136,10 @@ bool haveSpareThreads([[maybe_unused]] int wanted) {
   pthread_attr_t attributes;
   if (pthread_attr_init(&attributes) != 0) return false;
   static_cast<void>(pthread_attr_setstacksize(&attributes, kStack));
-  for (std::unique_ptr<char[]>& memory : heap) {
-    memory.reset(new (std::nothrow) char[kHeap]);
+  for (std::size_t i = 0; i < count; ++i) {
+    heap.emplace_back(std::malloc(kHeap), std::free);
     pthread_t thread{};
-    if (!memory || pthread_create(&thread, &attributes, stay, &end) != 0) break;
+    if (!heap.back() || pthread_create(&thread, &attributes, stay, &end) != 0) break;
     threads.push_back(thread);
   }
   static_cast<void>(pthread_attr_destroy(&attributes));
