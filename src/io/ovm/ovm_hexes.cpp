@@ -214,7 +214,10 @@ void setGenerators(OvmProperties& properties, const HexMesh& mesh, Stage& stage)
   Array<std::int32_t>& corners = properties[OvmInteger::GeneratorCorners];
   types.resize(vertices);
   corners.resize(vertices);
-  properties[OvmInteger::GeneratorTet].assign(mesh.generatorTet.begin(), mesh.generatorTet.end());
+  Array<std::int32_t>& tets = properties[OvmInteger::GeneratorTet];
+  tets.resize(mesh.generatorTet.size());
+  std::transform(mesh.generatorTet.begin(), mesh.generatorTet.end(), tets.begin(),
+                 [](Index tet) { return static_cast<std::int32_t>(tet); });
   const std::size_t fault = firstFault(stage, vertices, [&](std::size_t v) {
     types[v] = static_cast<std::int32_t>(generatorKind(mesh.generatorCorners[v]));
     corners[v] = mesh.generatorCorners[v];

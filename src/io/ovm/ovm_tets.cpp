@@ -314,7 +314,7 @@ void TetWriter::setHalfFaceValues() {
       const std::size_t corner = order_[kOvmTetOpposite[s]];
       parameters[halfFace] = map_.parameters[t][corner];
       if (rotations.empty()) continue;
-      const std::int32_t rotation = map_.rotations[t][corner];
+      const std::int8_t rotation = map_.rotations[t][corner];
       rotations[halfFace] = isRotation(rotation) ? rotation : -1;
     }
   });
