@@ -36,12 +36,12 @@ void withoutMap(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/,
 }
 
 constexpr std::array<CurvedFormat<PiecewiseWriter>, 3> kArcFormats = {
-    {{".vtu", withoutMap<writeArcsVtu>},
-     {".vtp", withoutMap<writeArcsVtp>},
+    {{".vtu", withoutMap<writeArcsVtk>},
+     {".vtp", withoutMap<writeArcsVtk>},
      {".ovmb", writeArcsOvmb}}};
 constexpr std::array<CurvedFormat<PiecewiseWriter>, 3> kPatchFormats = {
-    {{".vtu", withoutMap<writePatchesVtu>},
-     {".vtp", withoutMap<writePatchesVtp>},
+    {{".vtu", withoutMap<writePatchesVtk>},
+     {".vtp", withoutMap<writePatchesVtk>},
      {".ovmb", writePatchesOvmb}}};
 constexpr std::array<CurvedFormat<LagrangeWriter>, 3> kLagrangeFormats = {
     {{".vtu", writeLagrangeVtu}, {".msh", writeLagrangeGmsh}, {".mesh", writeLagrangeMfem}}};

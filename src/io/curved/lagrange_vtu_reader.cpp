@@ -19,8 +19,6 @@
 namespace hexhex {
 namespace {
 
-constexpr std::int64_t kVtkLagrangeHexahedron = 72;
-
 Array<std::int64_t> typesOf(const VtuFile& file) {
   Array<std::int64_t> types(file.cellCount());
   file.copy(file.types(), 0, types.size(), types.data());
@@ -62,8 +60,8 @@ class VtuLagrangeReader {
     readNodes(begins, mesh);
     readGenerators(mesh);
     mesh.regions = readVtuRegions(file_, numbers);
-    mesh.features = {readVtuVertexTags(file_), readVtuFeatures<FeatureEdge>(file_, kVtuEdgeTags),
-                     readVtuFeatures<FeatureQuad>(file_, kVtuQuadTags)};
+    mesh.features = {readVtuVertexTags(file_), readVtuFeatures<FeatureEdge>(file_, kVtkEdgeTags),
+                     readVtuFeatures<FeatureQuad>(file_, kVtkQuadTags)};
     putCornersFirst(mesh);
     return mesh;
   }

@@ -2,203 +2,174 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string>
+#include <string_view>
+#include <vector>
 
+#include <base/stage.hpp>
+#include <io/core/letter_case.hpp>
+#include <io/core/output_file.hpp>
 #include <io/vtk/piecewise_vtk.hpp>
-#include <io/vtk/vtk_xml.hpp>
+#include <io/vtk/vtk_xml_writer.hpp>
 
 namespace hexhex {
 
 namespace {
 
-constexpr std::array<std::string_view, 4> kGridSections = {"PointData", "CellData", "Points",
-                                                           "Cells"};
-constexpr std::array<std::string_view, 7> kPolySections = {
-    "PointData", "CellData", "Points", "Verts", "Lines", "Strips", "Polys"};
-constexpr std::uint8_t kVtkLine = 3;
-constexpr std::uint8_t kVtkPolygon = 7;
+bool isPolyData(const std::filesystem::path& file) { return lowerCaseExtension(file) == ".vtp"; }
 
-/// An array of the points of several lists, one after the other.
-template <class T>
-void addJoined(VtkXmlFile& file, const std::string& section, const std::string& name,
-               std::string_view type, std::size_t components,
-               const std::vector<std::span<const T>>& parts) {
-  std::uint64_t count = 0;
-  for (const auto& part : parts) count += part.size();
-  file.add(section, name, type, components, count, sizeof(T), [parts](OutputFile& output) {
-    for (const auto& part : parts) output.writeBytes(part.data(), part.size_bytes());
-  });
-}
-
-/// Positions and generators of hex vertices, inner points of arcs, and those of patches if wanted.
-void addPoints(VtkXmlFile& file, const PiecewiseLinearMesh& mesh, bool patches) {
-  const auto join = [&](const auto& ofMesh, const auto& ofArcs, const auto& ofPatches,
-                        const std::string& section, const std::string& name, std::string_view type,
-                        std::size_t components) {
-    using T = typename std::remove_cvref_t<decltype(ofMesh)>::value_type;
-    std::vector<std::span<const T>> parts = {ofMesh, ofArcs};
-    if (patches) parts.emplace_back(ofPatches);
-    addJoined<T>(file, section, name, type, components, parts);
+/// Points of several lists, one after the other.
+struct JoinedPoints {
+  struct Part {
+    std::span<const Vec3> points;
+    std::span<const Index> tets;
+    std::span<const CornerSet> corners;
   };
-  join(mesh.mesh.points, mesh.arcs.points, mesh.patches.points, "Points", "Points", "Float64", 3);
-  join(mesh.mesh.generatorTet, mesh.arcs.generatorTet, mesh.patches.generatorTet, "PointData",
-       "generator_tet", "UInt32", 1);
-  join(mesh.mesh.generatorCorners, mesh.arcs.generatorCorners, mesh.patches.generatorCorners,
-       "PointData", "generator_corners", "UInt8", 1);
-  const std::size_t vertices = mesh.mesh.points.size();
-  const std::size_t arcPoints = mesh.arcs.points.size();
-  const std::size_t all = vertices + arcPoints + (patches ? mesh.patches.points.size() : 0);
-  file.addComputed<std::uint8_t>(
-      "PointData", "generator_kind", all, [&mesh, vertices, arcPoints](std::size_t i) {
-        if (i < vertices) return generatorKind(mesh.mesh.generatorCorners[i]);
-        i -= vertices;
-        return generatorKind(i < arcPoints ? mesh.arcs.generatorCorners[i]
-                                           : mesh.patches.generatorCorners[i - arcPoints]);
-      });
-}
+  std::vector<Part> parts;
 
-std::uint64_t pointCount(const PiecewiseLinearMesh& mesh, bool patches) {
-  return mesh.mesh.points.size() + mesh.arcs.points.size() +
-         (patches ? mesh.patches.points.size() : 0);
-}
+  /// The vertices of hexahedra and the inner points of arcs.
+  explicit JoinedPoints(const PiecewiseLinearMesh& mesh)
+      : parts{{mesh.mesh.points, mesh.mesh.generatorTet, mesh.mesh.generatorCorners},
+              {mesh.arcs.points, mesh.arcs.generatorTet, mesh.arcs.generatorCorners}} {}
+
+  [[nodiscard]] std::uint64_t count() const {
+    std::uint64_t sum = 0;
+    for (const Part& part : parts) sum += part.points.size();
+    return sum;
+  }
+
+  void addTo(VtkDataSet& data) const {
+    data.add<double>(VtkSection::Points, "Points", 3, count(), [this](const VtkBytes& output) {
+      for (const Part& part : parts) output(part.points.data(), part.points.size_bytes());
+    });
+    data.add<Index>(VtkSection::PointData, kVtkGeneratorTets, 1, count(),
+                    [this](const VtkBytes& output) {
+                      for (const Part& part : parts) {
+                        output(part.tets.data(), part.tets.size_bytes());
+                      }
+                    });
+    data.add<CornerSet>(VtkSection::PointData, kVtkGeneratorCorners, 1, count(),
+                        [this](const VtkBytes& output) {
+                          for (const Part& part : parts) {
+                            output(part.corners.data(), part.corners.size_bytes());
+                          }
+                        });
+    data.add<std::uint8_t>(
+        VtkSection::PointData, "generator_kind", 1, count(), [this](const VtkBytes& output) {
+          for (const Part& part : parts) {
+            writeValues<std::uint8_t>(output, part.corners.size(), [&part](std::size_t i) {
+              return generatorKind(part.corners[i]);
+            });
+          }
+        });
+  }
+};
 
 /// The simplices that cells lie in.
-void addCarriers(VtkXmlFile& file, std::span<const Index> tets,
+void addCarriers(VtkDataSet& data, std::span<const Index> tets,
                  std::span<const CornerSet> corners) {
-  file.add("CellData", "tet", tets);
-  file.add("CellData", "tet_corners", corners);
-  file.addComputed<std::uint8_t>("CellData", "tet_kind", corners.size(),
+  data.add(VtkSection::CellData, "tet", tets);
+  data.add(VtkSection::CellData, "tet_corners", corners);
+  data.addComputed<std::uint8_t>(VtkSection::CellData, "tet_kind", corners.size(),
                                  [corners](std::size_t i) { return generatorKind(corners[i]); });
 }
 
+/// All cells of one type; PolyData need not be told it.
+void addTypes(VtkDataSet& data, std::uint8_t type) {
+  if (data.elements != VtkSection::Cells) return;
+  data.addComputed<std::uint8_t>(VtkSection::Cells, "types", data.cells,
+                                 [type](std::size_t) { return type; });
+}
+
 /// Per element of rows with the given beginnings: the row.
-Array<std::int32_t> rowsOf(std::span<const std::uint64_t> begins, std::uint64_t extraPerRow) {
+Array<std::int32_t> rowOfEach(std::span<const std::uint64_t> begins, std::uint64_t extraPerRow) {
   const std::size_t rows = begins.size() - 1;
   Array<std::int32_t> result(begins.back() + rows * extraPerRow);
   for (std::size_t row = 0; row < rows; ++row) {
     const std::uint64_t first = begins[row] + row * extraPerRow;
-    const std::uint64_t end = begins[row + 1] + (row + 1) * extraPerRow;
-    std::fill(result.begin() + static_cast<std::ptrdiff_t>(first),
-              result.begin() + static_cast<std::ptrdiff_t>(end), static_cast<std::int32_t>(row));
+    const std::uint64_t count = begins[row + 1] - begins[row] + extraPerRow;
+    std::fill_n(result.begin() + static_cast<std::ptrdiff_t>(first), count,
+                static_cast<std::int32_t>(row));
   }
   return result;
 }
 
 /// Both ends of all segments.
-Array<std::array<std::int32_t, 2>> segmentEnds(const PiecewiseLinearMesh& mesh) {
+Array<std::int32_t> segmentEnds(const PiecewiseLinearMesh& mesh) {
   const Arcs& arcs = mesh.arcs;
-  Array<std::array<std::int32_t, 2>> ends;
-  ends.reserve(arcs.segmentTet.size());
+  Array<std::int32_t> ends;
+  ends.reserve(2 * arcs.segmentTet.size());
   const auto firstPoint = static_cast<std::int32_t>(mesh.mesh.points.size());
   for (std::size_t e = 0; e < arcs.count(); ++e) {
-    auto from = static_cast<std::int32_t>(arcs.ends[e][0]);
+    ends.push_back(static_cast<std::int32_t>(arcs.ends[e][0]));
     for (std::uint64_t i = arcs.pointBegin[e]; i < arcs.pointBegin[e + 1]; ++i) {
-      const std::int32_t to = firstPoint + static_cast<std::int32_t>(i);
-      ends.push_back({from, to});
-      from = to;
+      const std::int32_t point = firstPoint + static_cast<std::int32_t>(i);
+      ends.push_back(point);  // of one segment, and of the next
+      ends.push_back(point);
     }
-    ends.push_back({from, static_cast<std::int32_t>(arcs.ends[e][1])});
+    ends.push_back(static_cast<std::int32_t>(arcs.ends[e][1]));
   }
   return ends;
 }
 
-/// @param elements  section of the connectivity
-void writeArcsAs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& path,
-                 const std::string& elements, Context& context) {
+}  // namespace
+
+void writeArcsVtk(const PiecewiseLinearMesh& mesh, const std::filesystem::path& path,
+                  Context& context) {
   Stage stage(context, "write arcs");
   OutputFile output(path);  // first, so that a folder that is not writable shows at once
   const Arcs& arcs = mesh.arcs;
   const std::size_t vertices = mesh.mesh.points.size();
   const std::size_t segments = arcs.segmentTet.size();
-  VtkXmlFile file;
-  addPoints(file, mesh, false);
-  const Array<std::int32_t> arcOfPoint = rowsOf(arcs.pointBegin, 0);
-  file.addComputed<std::int32_t>(
-      "PointData", "hex_edge", pointCount(mesh, false),
-      [&](std::size_t i) { return i < vertices ? -1 : arcOfPoint[i - vertices]; });
-  file.addComputed<double>("PointData", "parameter", pointCount(mesh, false), [&](std::size_t i) {
-    return i < vertices ? 0.0 : arcs.parameters[i - vertices];
-  });
-  const Array<std::int32_t> arcOfSegment = rowsOf(arcs.pointBegin, 1);
-  file.add("CellData", "hex_edge", std::span<const std::int32_t>(arcOfSegment));
-  addCarriers(file, arcs.segmentTet, arcs.segmentCorners);
-  const Array<std::array<std::int32_t, 2>> ends = segmentEnds(mesh);
-  file.add(
-      elements, "connectivity", "Int32", 1, 2 * segments, sizeof(std::int32_t),
-      [&ends](OutputFile& out) { out.writeBytes(ends.data(), ends.size() * sizeof(ends[0])); });
-  file.addComputed<std::int64_t>(elements, "offsets", segments,
+  const JoinedPoints points(mesh);
+  VtkDataSet data(points.count(), segments,
+                  isPolyData(path) ? VtkSection::Lines : VtkSection::Cells);
+  data.curved = true;
+  points.addTo(data);
+  data.addComputed<std::int32_t>(
+      VtkSection::PointData, "hex_edge", data.points,
+      [vertices, arcOfPoint = rowOfEach(arcs.pointBegin, 0)](std::size_t i) {
+        return i < vertices ? -1 : arcOfPoint[i - vertices];
+      });
+  data.addComputed<double>(VtkSection::PointData, "parameter", data.points,
+                           [vertices, &arcs](std::size_t i) {
+                             return i < vertices ? 0.0 : arcs.parameters[i - vertices];
+                           });
+  data.addOwn(VtkSection::CellData, "hex_edge", rowOfEach(arcs.pointBegin, 1));
+  addCarriers(data, arcs.segmentTet, arcs.segmentCorners);
+  data.addOwn(data.elements, "connectivity", segmentEnds(mesh));
+  data.addComputed<std::int64_t>(data.elements, "offsets", segments,
                                  [](std::size_t i) { return 2 * (i + 1); });
-  const std::string points = "NumberOfPoints=\"" + std::to_string(pointCount(mesh, false)) + "\" ";
-  if (elements == "Cells") {
-    file.addComputed<std::uint8_t>(elements, "types", segments,
-                                   [](std::size_t) { return kVtkLine; });
-    file.write(output, "UnstructuredGrid",
-               points + "NumberOfCells=\"" + std::to_string(segments) + "\"", kGridSections, stage);
-  } else {
-    file.write(output, "PolyData",
-               points + "NumberOfVerts=\"0\" NumberOfLines=\"" + std::to_string(segments) +
-                   "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\"",
-               kPolySections, stage);
-  }
+  addTypes(data, kVtkLine);
+  writeVtkXml(output, data, false, stage);
 }
 
-void writePatchesAs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& path,
-                    const std::string& elements, Context& context) {
+void writePatchesVtk(const PiecewiseLinearMesh& mesh, const std::filesystem::path& path,
+                     Context& context) {
   Stage stage(context, "write patches");
   OutputFile output(path);
   const Patches& patches = mesh.patches;
   const std::size_t vertices = mesh.mesh.points.size();
   const std::size_t shared = vertices + mesh.arcs.points.size();
   const std::size_t polygons = patches.polygonTet.size();
-  VtkXmlFile file;
-  addPoints(file, mesh, true);
-  file.addComputed<std::uint8_t>(
-      "PointData", "point_kind", pointCount(mesh, true),
+  JoinedPoints points(mesh);
+  points.parts.push_back({patches.points, patches.generatorTet, patches.generatorCorners});
+  VtkDataSet data(points.count(), polygons,
+                  isPolyData(path) ? VtkSection::Polys : VtkSection::Cells);
+  data.curved = true;
+  points.addTo(data);
+  data.addComputed<std::uint8_t>(
+      VtkSection::PointData, "point_kind", data.points,
       [vertices, shared](std::size_t i) { return i < vertices ? 0 : (i < shared ? 1 : 2); });
-  const Array<std::int32_t> faceOfPolygon = rowsOf(patches.polygonBegin, 0);
-  file.add("CellData", "hex_face", std::span<const std::int32_t>(faceOfPolygon));
-  addCarriers(file, patches.polygonTet, patches.polygonCorners);
-  file.add("FieldData", "corner_uv", std::span<const std::array<double, 2>>(patches.parameters));
-  file.addComputed<std::int64_t>(elements, "connectivity", patches.corners.size(),
+  data.addOwn(VtkSection::CellData, "hex_face", rowOfEach(patches.polygonBegin, 0));
+  addCarriers(data, patches.polygonTet, patches.polygonCorners);
+  data.add(VtkSection::FieldData, "corner_uv",
+           std::span<const std::array<double, 2>>(patches.parameters));
+  data.addComputed<std::int64_t>(data.elements, "connectivity", patches.corners.size(),
                                  [&patches](std::size_t i) { return patches.corners[i]; });
-  file.addComputed<std::int64_t>(elements, "offsets", polygons,
+  data.addComputed<std::int64_t>(data.elements, "offsets", polygons,
                                  [&patches](std::size_t i) { return patches.cornerBegin[i + 1]; });
-  const std::string points = "NumberOfPoints=\"" + std::to_string(pointCount(mesh, true)) + "\" ";
-  if (elements == "Cells") {
-    file.addComputed<std::uint8_t>(elements, "types", polygons,
-                                   [](std::size_t) { return kVtkPolygon; });
-    file.write(output, "UnstructuredGrid",
-               points + "NumberOfCells=\"" + std::to_string(polygons) + "\"", kGridSections, stage);
-  } else {
-    file.write(output, "PolyData",
-               points +
-                   "NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
-                   "NumberOfPolys=\"" +
-                   std::to_string(polygons) + "\"",
-               kPolySections, stage);
-  }
-}
-
-}  // namespace
-
-void writeArcsVtu(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
-                  Context& context) {
-  writeArcsAs(mesh, file, "Cells", context);
-}
-
-void writeArcsVtp(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
-                  Context& context) {
-  writeArcsAs(mesh, file, "Lines", context);
-}
-
-void writePatchesVtu(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
-                     Context& context) {
-  writePatchesAs(mesh, file, "Cells", context);
-}
-
-void writePatchesVtp(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
-                     Context& context) {
-  writePatchesAs(mesh, file, "Polys", context);
+  addTypes(data, kVtkPolygon);
+  writeVtkXml(output, data, false, stage);
 }
 
 }  // namespace hexhex

@@ -1,49 +1,156 @@
-// The writing half of vtk_legacy.hpp.
+// The writing half of vtk_legacy.hpp: a mesh or map in memory is written like a mesh of one piece.
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/core/bytes.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/writable.hpp>
+#include <io/vtk/vtk_data_set.hpp>
 #include <io/vtk/vtk_legacy.hpp>
-#include <io/vtk/vtk_legacy_lines.hpp>
 
 namespace hexhex {
 namespace {
 
+/// Numbers as text: in the form of version 2.0, which every program reads.
+struct VtkText {
+  static constexpr std::string_view kEncoding = "ASCII";
+  static constexpr std::string_view kEndOfSection = {};
+  static constexpr std::size_t kRoom = kNumberRoom + 1;  ///< for a number
+
+  template <class T, std::size_t n>
+  static char* numbers(char* place, const std::array<T, n>& numbers) {
+    return put(putNumbers(place, numbers), '\n');
+  }
+  template <class Vertex, std::size_t corners>
+  static char* cell(char* place, const std::array<Vertex, corners>& cell) {
+    return numbers(put(put(place, corners), ' '), cell);
+  }
+};
+
+/// Numbers as bytes, the largest first.
+struct VtkBigBytes {
+  static constexpr std::string_view kEncoding = "BINARY";
+  static constexpr std::string_view kEndOfSection = "\n";
+  static constexpr std::size_t kRoom = 8;
+
+  template <class T>
+  static char* number(char* place, T number) {
+    const auto bytes = littleBytes(number);
+    return std::reverse_copy(bytes.begin(), bytes.end(), place);
+  }
+  template <class T, std::size_t n>
+  static char* numbers(char* place, const std::array<T, n>& numbers) {
+    for (const T value : numbers) place = number(place, value);
+    return place;
+  }
+  template <class Vertex, std::size_t corners>
+  static char* cell(char* place, const std::array<Vertex, corners>& cell) {
+    place = number(place, static_cast<std::uint32_t>(corners));
+    for (const Vertex vertex : cell) place = number(place, static_cast<std::uint32_t>(vertex));
+    return place;
+  }
+};
+
+/// Writes the sections of a file, in order.
+template <class Numbers>
+class LegacyWriter {
+ public:
+  LegacyWriter(const std::filesystem::path& file, int threads)
+      : name_(file.string()), output_(file), lines_(output_, threads) {}
+
+  /// Everything up to the points.
+  /// @throws Error TooLarge for points that 32-bit indices cannot number
+  void begin(std::string_view title, std::uint64_t points) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
+    if (Numbers::kEncoding == VtkBigBytes::kEncoding && points > kMost) {
+      throw Error(ErrorCode::TooLarge,
+                  name_ +
+                      ": legacy binary .vtk files have vertex numbers of 31 bits, which do not "
+                      "suffice for " +
+                      std::to_string(points) + " points; write .vtu.");
+    }
+    output_.write("# vtk DataFile Version 2.0\n").write(title).write('\n');
+    output_.write(Numbers::kEncoding).write("\nDATASET UNSTRUCTURED_GRID\n");
+    output_.write("POINTS ").write(points).write(" double\n");
+  }
+  /// n rows: row(i) is an array of numbers.
+  template <class Row>
+  void rows(std::size_t n, const Row& row, LoopProgress* progress) {
+    constexpr std::size_t kNumbers = std::tuple_size_v<std::remove_cvref_t<decltype(row(n))>>;
+    lines_.write(
+        n, kNumbers * Numbers::kRoom,
+        [&row](char* place, std::size_t i) { return Numbers::numbers(place, row(i)); }, progress);
+  }
+  void points(std::span<const Vec3> points, LoopProgress* progress = nullptr) {
+    rows(
+        points.size(), [points](std::size_t i) -> const Vec3& { return points[i]; }, progress);
+  }
+  void beginCells(std::uint64_t cells, std::size_t corners) {
+    output_.write(Numbers::kEndOfSection);
+    output_.write("CELLS ").write(cells).write(' ').write((corners + 1) * cells).write('\n');
+  }
+  template <class Vertex, std::size_t corners>
+  void cells(std::span<const std::array<Vertex, corners>> cells, LoopProgress* progress = nullptr) {
+    lines_.write(
+        cells.size(), (corners + 1) * Numbers::kRoom,
+        [cells](char* place, std::size_t i) { return Numbers::cell(place, cells[i]); }, progress);
+  }
+  /// All cells are of one type.
+  void types(std::uint64_t cells, std::uint32_t type, LoopProgress* progress = nullptr) {
+    output_.write(Numbers::kEndOfSection);
+    output_.write("CELL_TYPES ").write(cells).write('\n');
+    rows(
+        cells, [type](std::size_t) { return std::array{type}; }, progress);
+    output_.write(Numbers::kEndOfSection);
+  }
+  /// An array of cells.
+  /// @param head  what follows their number
+  template <class Row>
+  void cellData(std::uint64_t cells, std::string_view head, const Row& row,
+                LoopProgress* progress = nullptr) {
+    output_.write("CELL_DATA ").write(cells).write(head);
+    rows(cells, row, progress);
+    output_.write(Numbers::kEndOfSection);
+  }
+  void commit() { output_.commit(); }
+
+ private:
+  std::string name_;
+  OutputFile output_;
+  LineWriter lines_;
+};
+
 constexpr std::string_view kMeshTitle = "hexahedral mesh by hexhex";
-constexpr std::string_view kMapTitle = "integer-grid map by hexhex";
-constexpr std::uint32_t kTetType = 10;
-constexpr std::uint32_t kHexahedronType = 12;
 
 template <class Numbers>
-void writeMesh(const HexMesh& mesh, const std::filesystem::path& file, Context& context) {
+void writeMesh(const HexMesh& mesh, const std::filesystem::path& file,
+               const WriteOptions& /*options*/, Context& context) {
   Stage stage(context, "write mesh");
-  OutputFile output(file);
-  requireVtkIndices<Numbers>(mesh.points.size(), file.string());
-  LineWriter lines(output, context.threads());
+  LegacyWriter<Numbers> writer(file, context.threads());
   const std::size_t cells = mesh.cells.size();
   LoopProgress progress(stage, mesh.points.size() + 2 * cells);
-  writeVtkHead<Numbers>(output, kMeshTitle, mesh.points.size());
-  writeVtkReals<Numbers>(lines, std::span<const Vec3>(mesh.points), &progress);
-  writeVtkCellsHead<Numbers>(output, cells, std::tuple_size_v<Hex>);
-  writeVtkCells<Numbers>(lines, std::span<const Hex>(mesh.cells), &progress);
-  writeVtkTypes<Numbers>(output, lines, cells, kHexahedronType, &progress);
+  writer.begin(kMeshTitle, mesh.points.size());
+  writer.points(mesh.points, &progress);
+  writer.beginCells(cells, std::tuple_size_v<Hex>);
+  writer.cells(std::span<const Hex>(mesh.cells), &progress);
+  writer.types(cells, kVtkHexahedron, &progress);
   if (!mesh.regions.empty()) {
-    output.write("CELL_DATA ").write(cells).write("\nSCALARS region int 1\nLOOKUP_TABLE default\n");
-    const auto region = [&mesh](char* place, std::size_t i) {
-      return Numbers::integer(place, mesh.regions[i]);
-    };
-    lines.write(cells, Numbers::kRoom, region, nullptr);
-    output.write(Numbers::kEndOfSection);
+    writer.cellData(cells, "\nSCALARS region int 1\nLOOKUP_TABLE default\n",
+                    [&mesh](std::size_t c) { return std::array{mesh.regions[c]}; });
   }
-  output.commit();
+  writer.commit();
 }
 
 /// Names of arrays are tokens: other characters are written as "%20", as VTK does it.
@@ -67,83 +174,64 @@ std::string encodedName(std::string_view name) {
 template <class Numbers>
 void writeMap(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
               Context& context) {
-  using Numbers12 = std::array<double, 12>;
-  static_assert(sizeof(Numbers12) == sizeof(TetParameters));
   Stage stage(context, "write map");
   const std::string name = encodedName(options.mapArray);
-  OutputFile output(file);
+  LegacyWriter<Numbers> writer(file, context.threads());
   withThreads(context.threads(), [&] { requireWritable(map, stage); });
-  requireVtkIndices<Numbers>(map.points.size(), file.string());
-  LineWriter lines(output, context.threads());
   const std::size_t tets = map.tets.size();
   LoopProgress progress(stage, map.points.size() + 3 * tets);
-  writeVtkHead<Numbers>(output, kMapTitle, map.points.size());
-  writeVtkReals<Numbers>(lines, std::span<const Vec3>(map.points), &progress);
-  writeVtkCellsHead<Numbers>(output, tets, std::tuple_size_v<Tet>);
-  writeVtkCells<Numbers>(lines, std::span<const Tet>(map.tets), &progress);
-  writeVtkTypes<Numbers>(output, lines, tets, kTetType, &progress);
-  output.write("CELL_DATA ").write(tets).write("\nFIELD FieldData 1\n").write(name);
-  output.write(" 12 ").write(tets).write(" double\n");
-  lines.write(
-      tets, 12 * Numbers::kRoom,
-      [&map](char* place, std::size_t t) {
-        Numbers12 numbers;
+  writer.begin("integer-grid map by hexhex", map.points.size());
+  writer.points(map.points, &progress);
+  writer.beginCells(tets, std::tuple_size_v<Tet>);
+  writer.cells(std::span<const Tet>(map.tets), &progress);
+  writer.types(tets, kVtkTet, &progress);
+  writer.cellData(
+      tets, "\nFIELD FieldData 1\n" + name + " 12 " + std::to_string(tets) + " double\n",
+      [&map](std::size_t t) {
+        std::array<double, 12> numbers;
         for (std::size_t i = 0; i < numbers.size(); ++i) {
           numbers[i] = map.parameters[t][i / 3][i % 3];
         }
-        return Numbers::reals(place, numbers);
+        return numbers;
       },
       &progress);
-  output.write(Numbers::kEndOfSection);
-  output.commit();
+  writer.commit();
 }
 
 template <class Numbers>
 class VtkLegacySink final : public CheckedSink {
  public:
   VtkLegacySink(const std::filesystem::path& file, Context& context)
-      : CheckedSink(file.string(), "write mesh", context),
-        name_(file.string()),
-        output_(file),
-        lines_(output_, threads()) {}
+      : CheckedSink(file.string(), "write mesh", context), writer_(file, threads()) {}
 
  private:
-  void takeBegin() override {
-    requireVtkIndices<Numbers>(pointCount(), name_);
-    writeVtkHead<Numbers>(output_, kMeshTitle, pointCount());
-  }
-  void takePoints(const PointPiece& piece) override {
-    writeVtkReals<Numbers>(lines_, piece.points);
-  }
-  void takeCellsBegin() override {
-    writeVtkCellsHead<Numbers>(output_, cellCount(), std::tuple_size_v<Hex>);
-  }
+  void takeBegin() override { writer_.begin(kMeshTitle, pointCount()); }
+  void takePoints(const PointPiece& piece) override { writer_.points(piece.points); }
+  void takeCellsBegin() override { writer_.beginCells(cellCount(), std::tuple_size_v<Hex>); }
   void takeCells(std::uint64_t /*first*/, std::span<const Hex> cells) override {
-    writeVtkCells<Numbers>(lines_, cells);
+    writer_.cells(cells);
   }
   void takeCells(std::uint64_t /*first*/, std::span<const Hex64> cells) override {
-    writeVtkCells<Numbers>(lines_, cells);
+    writer_.cells(cells);
   }
   void takeEnd() override {
-    writeVtkTypes<Numbers>(output_, lines_, cellCount(), kHexahedronType);
-    output_.commit();
+    writer_.types(cellCount(), kVtkHexahedron);
+    writer_.commit();
   }
 
-  std::string name_;
-  OutputFile output_;
-  LineWriter lines_;
+  LegacyWriter<Numbers> writer_;
 };
 
 }  // namespace
 
 void writeVtkLegacy(const HexMesh& mesh, const std::filesystem::path& file,
-                    const WriteOptions& /*options*/, Context& context) {
-  writeMesh<VtkText>(mesh, file, context);
+                    const WriteOptions& options, Context& context) {
+  writeMesh<VtkText>(mesh, file, options, context);
 }
 
 void writeVtkLegacyBinary(const HexMesh& mesh, const std::filesystem::path& file,
-                          const WriteOptions& /*options*/, Context& context) {
-  writeMesh<VtkBytes>(mesh, file, context);
+                          const WriteOptions& options, Context& context) {
+  writeMesh<VtkBigBytes>(mesh, file, options, context);
 }
 
 void writeVtkLegacyMap(const TetMap& map, const std::filesystem::path& file,
@@ -153,7 +241,7 @@ void writeVtkLegacyMap(const TetMap& map, const std::filesystem::path& file,
 
 void writeVtkLegacyMapBinary(const TetMap& map, const std::filesystem::path& file,
                              const WriteOptions& options, Context& context) {
-  writeMap<VtkBytes>(map, file, options, context);
+  writeMap<VtkBigBytes>(map, file, options, context);
 }
 
 std::unique_ptr<MeshSink> openVtkLegacySink(const std::filesystem::path& file, Context& context) {
@@ -162,7 +250,7 @@ std::unique_ptr<MeshSink> openVtkLegacySink(const std::filesystem::path& file, C
 
 std::unique_ptr<MeshSink> openVtkLegacyBinarySink(const std::filesystem::path& file,
                                                   Context& context) {
-  return std::make_unique<VtkLegacySink<VtkBytes>>(file, context);
+  return std::make_unique<VtkLegacySink<VtkBigBytes>>(file, context);
 }
 
 }  // namespace hexhex

@@ -1,29 +1,21 @@
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <hdf5.h>
 #include <mutex>
 #include <span>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include <hexhex/error.hpp>
 #include <hexhex/quality.hpp>
 
 #include <base/stage.hpp>
-#include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
+#include <io/vtk/vtk_data_set.hpp>
 #include <io/vtk/vtkhdf.hpp>
-#include <io/vtk/vtu_content.hpp>
 
 namespace hexhex {
 namespace {
-
-/// All numbers of an array of tuples, one after the other; null if there are none.
-template <class Tuple>
-const typename Tuple::value_type* numbersOf(const Array<Tuple>& tuples) {
-  return tuples.empty() ? nullptr : tuples.front().data();
-}
 
 /// Keeps HDF5 from printing its errors, in its scope.
 class QuietHdf {
@@ -76,53 +68,40 @@ class Handle {
   Close close_;
 };
 
-template <class T>
-hid_t typeOf();
-template <>
-hid_t typeOf<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-template <>
-hid_t typeOf<std::int64_t>() {
-  return H5T_NATIVE_INT64;
-}
-template <>
-hid_t typeOf<std::int32_t>() {
-  return H5T_NATIVE_INT32;
-}
-template <>
-hid_t typeOf<std::uint32_t>() {
-  return H5T_NATIVE_UINT32;
-}
-template <>
-hid_t typeOf<std::uint8_t>() {
+/// HDF5's type of the numbers that VTK's XML calls so, in memory.
+hid_t typeOf(std::string_view name) {
+  if (name == "Float64") return H5T_NATIVE_DOUBLE;
+  if (name == "Int64") return H5T_NATIVE_INT64;
+  if (name == "Int32") return H5T_NATIVE_INT32;
+  if (name == "UInt32") return H5T_NATIVE_UINT32;
   return H5T_NATIVE_UINT8;
 }
 
 /// Writes one file.
 class VtkHdfWriter {
  public:
-  VtkHdfWriter(const LibraryFile& file, const HexMesh& mesh, Stage& stage)
+  VtkHdfWriter(const LibraryFile& file, const VtkDataSet& data, Stage& stage)
       : file_(file),
-        mesh_(mesh),
+        data_(data),
         root_(file, H5Fcreate(file.name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
               H5Fclose),
         grid_(file, createGroup(root_.id(), "VTKHDF"), H5Gclose),
-        progress_(stage, mesh.points.size() + mesh.cells.size()) {}
+        progress_(stage, data.points + data.cells) {}
 
-  void write(std::span<const double> quality) {
+  void write() {
     writeKind();
-    const auto points = static_cast<std::int64_t>(mesh_.points.size());
-    const auto cells = static_cast<std::int64_t>(mesh_.cells.size());
-    count("NumberOfPoints", points);
-    count("NumberOfCells", cells);
-    count("NumberOfConnectivityIds", 8 * cells);
-    rows<double>(grid_, "Points", numbersOf(mesh_.points), mesh_.points.size(), 3);
-    progress_.advance(mesh_.points.size());
+    count("NumberOfPoints", data_.points);
+    count("NumberOfCells", data_.cells);
+    count("NumberOfConnectivityIds", 8 * data_.cells);
+    for (const VtkArray& array : data_.arrays()) {
+      if (array.section == VtkSection::Points) writeRows(grid_, "Points", array);
+    }
+    progress_.advance(data_.points);
     writeCells();
-    writePointData();
-    writeCellData(quality);
-    writeFieldData();
+    progress_.advance(data_.cells);
+    writeGroup("PointData", VtkSection::PointData);
+    writeGroup("CellData", VtkSection::CellData);
+    writeGroup("FieldData", VtkSection::FieldData);
     grid_.close();
     root_.close();
   }
@@ -154,75 +133,65 @@ class VtkHdfWriter {
     name.require(H5Awrite(name.id(), type.id(), kind.data()));
   }
 
-  void count(const char* name, std::int64_t number) { rows(grid_, name, &number, 1, 1); }
+  void count(const char* name, std::uint64_t number) {
+    writeNumbers(name, 1, [number](std::size_t) { return number; });
+  }
+  /// Writes n integers of 64 bits.
+  template <class F>
+  void writeNumbers(const char* name, std::uint64_t n, const F& valueOf) {
+    VtkArray array;
+    array.type = "Int64";
+    array.rows = n;
+    array.write = [&](const VtkBytes& output) { writeValues<std::int64_t>(output, n, valueOf); };
+    writeRows(grid_, name, array);
+  }
 
-  /// Writes a dataset of n rows.
-  /// @param file  the number type in the file; that in memory if not given
-  template <class T>
-  void rows(const Handle& group, const char* name, const T* values, std::size_t n,
-            std::size_t columns, hid_t file = typeOf<T>()) {
-    const std::array<hsize_t, 2> shape = {n, columns};
-    const Handle space(file_, H5Screate_simple(columns == 1 ? 1 : 2, shape.data(), nullptr),
-                       H5Sclose);
+  /// Writes a dataset, piece by piece as the array's bytes come.
+  void writeRows(const Handle& group, const char* name, const VtkArray& array) {
+    const hid_t memory = typeOf(array.type);
+    const hid_t stored = array.section == VtkSection::Cells && memory == H5T_NATIVE_INT32
+                             ? H5T_STD_I64LE  // whatever the number of points
+                             : memory;
+    const int rank = array.components == 1 ? 1 : 2;
+    const std::array<hsize_t, 2> shape = {array.rows, array.components};
+    const Handle space(file_, H5Screate_simple(rank, shape.data(), nullptr), H5Sclose);
     const Handle set(
         file_,
-        H5Dcreate2(group.id(), name, file, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+        H5Dcreate2(group.id(), name, stored, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
         H5Dclose);
-    if (n > 0) {
-      set.require(H5Dwrite(set.id(), typeOf<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
-    }
+    std::array<hsize_t, 2> begin = {0, 0};
+    array.write([&](const void* bytes, std::size_t size) {
+      if (size == 0) return;
+      const std::array<hsize_t, 2> count = {size / (array.components * H5Tget_size(memory)),
+                                            array.components};
+      const Handle part(file_, H5Screate_simple(rank, count.data(), nullptr), H5Sclose);
+      space.require(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, begin.data(), nullptr,
+                                        count.data(), nullptr));
+      set.require(H5Dwrite(set.id(), memory, part.id(), space.id(), H5P_DEFAULT, bytes));
+      begin[0] += count[0];
+    });
   }
 
   void writeCells() {
-    const std::size_t cells = mesh_.cells.size();
-    rows<std::uint32_t>(grid_, "Connectivity", numbersOf(mesh_.cells), 8 * cells, 1, H5T_STD_I64LE);
-    Array<std::int64_t> offsets(cells + 1);
-    for (std::size_t i = 0; i <= cells; ++i) offsets[i] = static_cast<std::int64_t>(8 * i);
-    rows(grid_, "Offsets", offsets.data(), offsets.size(), 1);
-    const std::vector<std::uint8_t> types(cells, kVtkHexahedron);
-    rows(grid_, "Types", types.data(), cells, 1);
-    progress_.advance(cells);
-  }
-
-  void writePointData() {
-    const Handle group(file_, createGroup(grid_.id(), "PointData"), H5Gclose);
-    const std::size_t points = mesh_.points.size();
-    if (!mesh_.generatorCorners.empty()) {
-      std::vector<std::uint8_t> kinds(points);
-      std::transform(mesh_.generatorCorners.begin(), mesh_.generatorCorners.end(), kinds.begin(),
-                     [](CornerSet c) { return static_cast<std::uint8_t>(generatorKind(c)); });
-      rows(group, "generator_kind", kinds.data(), points, 1);
-      rows(group, "generator_corners", mesh_.generatorCorners.data(), points, 1);
-    }
-    if (!mesh_.generatorTet.empty()) {
-      rows(group, "generator_tet", mesh_.generatorTet.data(), points, 1);
-    }
-    if (!mesh_.features.vertices.empty()) {
-      rows(group, "feature_vertex", vertexTags(mesh_.features.vertices, points).data(), points, 1);
+    for (const VtkArray& array : data_.arrays()) {
+      if (array.section != VtkSection::Cells) continue;
+      if (array.name == "connectivity") writeRows(grid_, "Connectivity", array);
+      if (array.name == "types") writeRows(grid_, "Types", array);
+      if (array.name != "offsets") continue;
+      // Where cells begin, and the last one ends.
+      writeNumbers("Offsets", data_.cells + 1, [](std::size_t i) { return 8 * i; });
     }
   }
 
-  void writeCellData(std::span<const double> quality) {
-    const Handle group(file_, createGroup(grid_.id(), "CellData"), H5Gclose);
-    rows(group, "scaled_jacobian", quality.data(), quality.size(), 1);
-    if (mesh_.regions.empty()) return;
-    rows(group, "region", mesh_.regions.data(), mesh_.regions.size(), 1);
-  }
-
-  void writeFieldData() {
-    const Handle group(file_, createGroup(grid_.id(), "FieldData"), H5Gclose);
-    if (!mesh_.features.edges.empty()) {
-      rows(group, "feature_edges", rowsOf(mesh_.features.edges).data(), mesh_.features.edges.size(),
-           3);
-    }
-    if (!mesh_.features.quads.empty()) {
-      rows(group, "feature_quads", rowsOf(mesh_.features.quads).data(), mesh_.features.quads.size(),
-           5);
+  void writeGroup(const char* name, VtkSection section) {
+    const Handle group(file_, createGroup(grid_.id(), name), H5Gclose);
+    for (const VtkArray& array : data_.arrays()) {
+      if (array.section == section) writeRows(group, std::string(array.name).c_str(), array);
     }
   }
 
   const LibraryFile& file_;
-  const HexMesh& mesh_;
+  const VtkDataSet& data_;
   Handle root_;
   Handle grid_;
   LoopProgress progress_;
@@ -237,10 +206,12 @@ void writeVtkHdf(const HexMesh& mesh, const std::filesystem::path& file,
   std::span<const double> quality = options.scaledJacobians;
   if (quality.empty()) quality = computedQuality = scaledJacobians(mesh, context);
   Stage stage(context, "write mesh");
+  VtkPiece piece;
+  const VtkDataSet data = hexDataSet(mesh, quality, piece);
   {
     const std::lock_guard lock(libraryLock());
     const QuietHdf quiet;
-    VtkHdfWriter(target, mesh, stage).write(quality);
+    VtkHdfWriter(target, data, stage).write();
   }
   target.commit();
 }

@@ -122,12 +122,12 @@ class VtuHexReader {
 
   HexMesh read() {
     const VtuFile& file = reader_.file();
-    const bool hasRegions = file.findIntegers(kVtuRegions, VtuSection::Cells, 1).has_value();
+    const bool hasRegions = file.findIntegers(kVtkRegions, VtuSection::Cells, 1).has_value();
     Array<std::size_t> cellNumbers;
     HexMesh mesh = toHexMesh(reader_.read(hasRegions ? &cellNumbers : nullptr));
     if (hasRegions) mesh.regions = readVtuRegions(file, cellNumbers);
-    mesh.features = {readVtuVertexTags(file), readVtuFeatures<FeatureEdge>(file, kVtuEdgeTags),
-                     readVtuFeatures<FeatureQuad>(file, kVtuQuadTags)};
+    mesh.features = {readVtuVertexTags(file), readVtuFeatures<FeatureEdge>(file, kVtkEdgeTags),
+                     readVtuFeatures<FeatureQuad>(file, kVtkQuadTags)};
     readGenerators(file, mesh);
     return mesh;
   }
@@ -173,8 +173,8 @@ class VtuMapReader {
     Array<std::int32_t> regions = readVtuRegions(file, grid.cellInFile);
     TetMap map = toTetMap(std::move(grid), mapArray_, fileName_, stage_);
     map.regions.assign(regions.begin(), regions.end());
-    map.features = {readVtuVertexTags(file), readVtuFeatures<FeatureEdge>(file, kVtuEdgeTags),
-                    readVtuFeatures<FeatureFace>(file, kVtuTriangleTags)};
+    map.features = {readVtuVertexTags(file), readVtuFeatures<FeatureEdge>(file, kVtkEdgeTags),
+                    readVtuFeatures<FeatureFace>(file, kVtkTriangleTags)};
     return map;
   }
 

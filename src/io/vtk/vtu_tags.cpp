@@ -30,9 +30,9 @@ void forEachNumber(const VtuFile& file, const VtuColumn& column, std::string_vie
 
 std::vector<FeatureVertex> readVtuVertexTags(const VtuFile& file) {
   std::vector<FeatureVertex> features;
-  const std::optional<VtuColumn> column = file.findIntegers(kVtuVertexTags, VtuSection::Points, 1);
+  const std::optional<VtuColumn> column = file.findIntegers(kVtkVertexTags, VtuSection::Points, 1);
   if (!column) return features;
-  forEachNumber(file, *column, kVtuVertexTags, [&](std::size_t vertex, std::int32_t tag) {
+  forEachNumber(file, *column, kVtkVertexTags, [&](std::size_t vertex, std::int32_t tag) {
     if (tag != 0) features.push_back({static_cast<Index>(vertex), tag});
   });
   return features;
@@ -40,11 +40,11 @@ std::vector<FeatureVertex> readVtuVertexTags(const VtuFile& file) {
 
 Array<std::int32_t> readVtuRegions(const VtuFile& file, std::span<const std::size_t> cells) {
   Array<std::int32_t> regions;
-  const std::optional<VtuColumn> column = file.findIntegers(kVtuRegions, VtuSection::Cells, 1);
+  const std::optional<VtuColumn> column = file.findIntegers(kVtkRegions, VtuSection::Cells, 1);
   if (!column) return regions;
   regions.resize(cells.size());
   std::size_t next = 0;
-  forEachNumber(file, *column, kVtuRegions, [&](std::size_t cell, std::int32_t region) {
+  forEachNumber(file, *column, kVtkRegions, [&](std::size_t cell, std::int32_t region) {
     if (next < cells.size() && cells[next] == cell) regions[next++] = region;
   });
   return regions;

@@ -14,15 +14,10 @@
 #include <hexhex/features.hpp>
 #include <hexhex/types.hpp>
 
+#include <io/vtk/vtk_data_set.hpp>
 #include <io/vtk/vtu_file.hpp>
 
 namespace hexhex {
-
-inline constexpr std::string_view kVtuVertexTags = "feature_vertex";
-inline constexpr std::string_view kVtuEdgeTags = "feature_edges";
-inline constexpr std::string_view kVtuTriangleTags = "feature_triangles";
-inline constexpr std::string_view kVtuQuadTags = "feature_quads";
-inline constexpr std::string_view kVtuRegions = "region";
 
 /// Arrays of integers with these names and the right number of components are read; others of the
 /// same names are somebody else's, and left alone.

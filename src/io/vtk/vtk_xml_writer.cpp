@@ -1,0 +1,284 @@
+#include <algorithm>
+#include <bit>
+#include <string_view>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+#include <io/core/zlib_blocks.hpp>
+#include <io/vtk/vtk_xml_writer.hpp>
+
+namespace hexhex {
+namespace {
+
+constexpr std::string_view kTail = "\n  </AppendedData>\n</VTKFile>\n";
+
+/// The tag of one array. `offset` counts from the beginning of the data.
+std::string tagOf(const VtkArray& array, std::uint64_t offset) {
+  std::string tag = "        <DataArray type=\"" + std::string(array.type) + "\" Name=\"" +
+                    std::string(array.name) + "\"";
+  // Left out where it is 1: some readers would make a matrix with one column of it.
+  if (array.components != 1) {
+    tag += " NumberOfComponents=\"" + std::to_string(array.components) + "\"";
+  }
+  // Nothing else tells the length of a field array.
+  if (array.section == VtkSection::FieldData) {
+    tag += " NumberOfTuples=\"" + std::to_string(array.rows) + "\"";
+  }
+  return tag + " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+}
+
+/// The beginning of a file, up to its data.
+/// @param offsets  of the arrays, counted from the beginning of the data
+std::string headOf(const VtkDataSet& data, std::span<const std::uint64_t> offsets,
+                   bool compressed) {
+  const bool isGrid = data.elements == VtkSection::Cells;
+  const std::string type = isGrid ? "UnstructuredGrid" : "PolyData";
+  const bool little = std::endian::native == std::endian::little;
+  std::string head = "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type + "\" version=\"" +
+                     (data.curved ? "2.2" : "1.0") + "\" byte_order=\"" +
+                     (little ? "LittleEndian" : "BigEndian") + "\" header_type=\"UInt64\"";
+  if (compressed) head += " compressor=\"vtkZLibDataCompressor\"";
+  head += ">\n  <" + type + ">\n";
+  const auto addSection = [&](std::string_view name, VtkSection section) {
+    head.append("      <").append(name).append(">\n");
+    for (std::size_t i = 0; i < offsets.size(); ++i) {
+      if (data.arrays()[i].section == section) head += tagOf(data.arrays()[i], offsets[i]);
+    }
+    head.append("      </").append(name).append(">\n");
+  };
+  if (data.curved || data.arrays().front().section == VtkSection::FieldData) {
+    addSection("FieldData", VtkSection::FieldData);
+  }
+  head += "    <Piece NumberOfPoints=\"" + std::to_string(data.points) + "\"";
+  const auto addCount = [&head](std::string_view what, std::uint64_t count) {
+    head.append(" NumberOf").append(what).append("=\"").append(std::to_string(count)).append("\"");
+  };
+  const bool lines = data.elements == VtkSection::Lines;
+  if (isGrid) {
+    addCount("Cells", data.cells);
+  } else {
+    addCount("Verts", 0);
+    addCount("Lines", lines ? data.cells : 0);
+    addCount("Strips", 0);
+    addCount("Polys", lines ? 0 : data.cells);
+  }
+  head += ">\n";
+  addSection("PointData", VtkSection::PointData);
+  addSection("CellData", VtkSection::CellData);
+  addSection("Points", VtkSection::Points);
+  if (isGrid) {
+    addSection("Cells", VtkSection::Cells);
+  } else {
+    head += "      <Verts>\n      </Verts>\n";
+    addSection("Lines", VtkSection::Lines);
+    head += "      <Strips>\n      </Strips>\n";
+    addSection("Polys", VtkSection::Polys);
+  }
+  head += "    </Piece>\n  </" + type + ">\n  <AppendedData encoding=\"raw\">\n";
+  return head + (data.curved ? "_" : "    _");
+}
+
+/// The beginning of a file whose arrays are plain bytes.
+/// @param[out] positions  of the arrays in the file; in front of each stands its length
+std::string plainHead(const VtkDataSet& data, std::vector<std::uint64_t>& positions) {
+  std::uint64_t offset = 0;
+  for (const VtkArray& array : data.arrays()) {
+    positions.push_back(offset);
+    offset += sizeof(array.bytes) + array.bytes;
+  }
+  std::string head = headOf(data, positions, false);
+  for (std::uint64_t& position : positions) position += head.size() + sizeof(std::uint64_t);
+  return head;
+}
+
+/// The beginning of a file whose arrays are compressed. It has the same number of bytes whatever
+/// the offsets are.
+std::string compressedHead(const VtkDataSet& data, std::span<const std::uint64_t> offsets) {
+  const std::vector<std::uint64_t> largest(offsets.size(), ~std::uint64_t{0});
+  const std::size_t size = headOf(data, largest, true).size();
+  std::string head = headOf(data, offsets, true);
+  // Space in front of the mark of the data means nothing.
+  head.insert(head.size() - 1, size - head.size(), ' ');
+  return head;
+}
+
+/// Takes an array's bytes from front to back and writes them as blocks, compressed by all threads.
+class CompressedArray {
+ public:
+  /// @param position  in the file of what is written next
+  CompressedArray(OutputFile& output, std::uint64_t position, std::uint64_t bytes, int threads)
+      : output_(output),
+        quiet_(threads),
+        stage_(quiet_, "compress"),
+        begin_(position),
+        // The number of blocks, the size of one, that of a last shorter one, those of compressed
+        // ones.
+        head_{blockCount(bytes, kBlockBytes), kBlockBytes, bytes % kBlockBytes},
+        compressed_(kBatch) {
+    const std::vector<std::uint64_t> room(head_.size() + head_[0], 0);
+    output_.writeBytes(room.data(), room.size() * sizeof(std::uint64_t));
+    end_ = position + room.size() * sizeof(std::uint64_t);
+    collected_.resize(std::min<std::uint64_t>(kBatch, head_[0]) * kBlockBytes);
+  }
+
+  void writeBytes(const void* bytes, std::size_t size) {
+    const char* from = static_cast<const char*>(bytes);
+    while (size > 0) {
+      const std::size_t count = std::min(size, collected_.size() - used_);
+      std::copy_n(from, count, collected_.data() + used_);
+      from += count;
+      used_ += count;
+      size -= count;
+      if (used_ == collected_.size()) compress();
+    }
+  }
+
+  /// Writes what is left, once all bytes have come.
+  /// @return the position in the file of what is written next
+  [[nodiscard]] std::uint64_t finish() {
+    compress();
+    output_.flush();
+    output_.writeBytesAt(begin_, head_.data(), head_.size() * sizeof(std::uint64_t));
+    return end_;
+  }
+
+ private:
+  // A millisecond's work, and as large as zlib's window needs to be good.
+  static constexpr std::size_t kBlockBytes = std::size_t{1} << 17;
+  // Blocks that are compressed at once.
+  static constexpr std::size_t kBatch = 64;
+
+  void compress() {
+    withThreadsHere(quiet_.threads(), [&] {
+      parallelBlocks(
+          stage_, used_, kBlockBytes, [&](std::size_t begin, std::size_t end, std::size_t block) {
+            compressed_[block].clear();
+            deflateBlock(std::span(collected_).subspan(begin, end - begin), compressed_[block]);
+          });
+    });
+    for (std::size_t block = 0; block < blockCount(used_, kBlockBytes); ++block) {
+      output_.writeBytes(compressed_[block].data(), compressed_[block].size());
+      head_.push_back(compressed_[block].size());
+      end_ += compressed_[block].size();
+    }
+    used_ = 0;
+  }
+
+  OutputFile& output_;
+  Context quiet_;
+  Stage stage_;
+  std::uint64_t begin_;
+  std::uint64_t end_ = 0;
+  std::vector<std::uint64_t> head_;
+  Array<char> collected_;  ///< not compressed yet
+  std::size_t used_ = 0;
+  std::vector<Array<char>> compressed_;
+};
+
+// What is written between two looks at the caller's wish to cancel: some milliseconds' work.
+constexpr std::size_t kSliceBytes = std::size_t{1} << 22;
+
+/// Passes bytes on, in slices.
+VtkBytes inSlices(VtkBytes output, LoopProgress& progress) {
+  return [output = std::move(output), &progress](const void* bytes, std::size_t size) {
+    for (std::size_t begin = 0; begin < size; begin += kSliceBytes) {
+      const std::size_t count = std::min(kSliceBytes, size - begin);
+      output(static_cast<const char*>(bytes) + begin, count);
+      progress.advance(count);
+    }
+  };
+}
+
+void writePlain(OutputFile& output, const VtkDataSet& data, LoopProgress& progress) {
+  std::vector<std::uint64_t> positions;
+  output.write(plainHead(data, positions));
+  const VtkBytes bytes = inSlices(
+      [&output](const void* from, std::size_t size) { output.writeBytes(from, size); }, progress);
+  for (const VtkArray& array : data.arrays()) {
+    output.writeBytes(&array.bytes, sizeof(array.bytes));
+    array.write(bytes);
+  }
+}
+
+/// The head, which says where arrays begin, comes last, to the place that is kept free for it.
+void writeCompressed(OutputFile& output, const VtkDataSet& data, int threads,
+                     LoopProgress& progress) {
+  std::vector<std::uint64_t> offsets(data.arrays().size(), 0);
+  const std::size_t headBytes = compressedHead(data, offsets).size();
+  output.write(std::string(headBytes, ' '));
+  std::uint64_t position = headBytes;
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    const VtkArray& array = data.arrays()[i];
+    offsets[i] = position - headBytes;
+    CompressedArray blocks(output, position, array.bytes, threads);
+    array.write(
+        inSlices([&blocks](const void* from, std::size_t size) { blocks.writeBytes(from, size); },
+                 progress));
+    position = blocks.finish();
+  }
+  const std::string head = compressedHead(data, offsets);
+  output.flush();
+  output.writeBytesAt(0, head.data(), head.size());
+}
+
+}  // namespace
+
+void writeVtkXml(OutputFile& output, const VtkDataSet& data, bool compress, Stage& stage) {
+  std::uint64_t bytes = 0;
+  for (const VtkArray& array : data.arrays()) bytes += array.bytes;
+  LoopProgress progress(stage, bytes);
+  if (compress) {
+    writeCompressed(output, data, stage.context().threads(), progress);
+  } else {
+    writePlain(output, data, progress);
+  }
+  output.write(kTail);
+  output.commit();
+}
+
+void requireCompressible(const OutputFile& output, const std::string& fileName) {
+  if (!hasZlib()) {
+    throw Error(ErrorCode::FileUnsupported,
+                fileName +
+                    ": this program was built without zlib and cannot compress files. Write the "
+                    "file without compression.");
+  }
+  if (output.hasPositions()) return;
+  throw Error(ErrorCode::FileWrite,
+              fileName +
+                  ": the file was not written because it is a device or a pipe, to which no "
+                  "compressed .vtu file can be written. Name a file.");
+}
+
+VtkXmlPieces::VtkXmlPieces(OutputFile& output, const VtkDataSet& data)
+    : output_(output), data_(data) {
+  std::vector<std::uint64_t> positions;
+  const std::string head = plainHead(data, positions);
+  output_.writeBytesAt(0, head.data(), head.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const std::uint64_t bytes = data.arrays()[i].bytes;
+    output_.writeBytesAt(positions[i] - sizeof(bytes), &bytes, sizeof(bytes));
+    parts_.emplace_back(output_, positions[i]);
+    end_ = positions[i] + bytes;
+  }
+}
+
+void VtkXmlPieces::writeRows(bool ofPoints) {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const VtkArray& array = data_.arrays()[i];
+    const bool isOfPoints =
+        array.section == VtkSection::PointData || array.section == VtkSection::Points;
+    if (isOfPoints != ofPoints) continue;
+    array.write(
+        [&part = parts_[i]](const void* from, std::size_t size) { part.writeBytes(from, size); });
+  }
+}
+
+void VtkXmlPieces::finish() {
+  for (FilePart& part : parts_) part.flush();
+  output_.writeBytesAt(end_, kTail.data(), kTail.size());
+  output_.commit();
+}
+
+}  // namespace hexhex
