@@ -1,5 +1,5 @@
 #include <atomic>
-#include <ranges>
+#include <vector>
 
 #include <igm/topology_defects.hpp>
 
@@ -39,9 +39,14 @@ void checkFaces(TetTopology& topology, Stage& stage, DefectCollector& defects) {
   parallelBlocks(stage, topology.pointCount, kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
                    FacesAtVertices<Tet> faces(topology.tets);
+                   std::vector<Index> around;
                    for (std::size_t i = begin; i < end; ++i) {
                      const auto v = static_cast<Index>(i);
-                     faces.forEach(v, topology.star(v) | std::views::transform(tetOf), join);
+                     around.clear();
+                     for (const CornerIndex corner : topology.star(v)) {
+                       around.push_back(tetOf(corner));
+                     }
+                     faces.forEach(v, around, join);
                    }
                  });
 }

@@ -214,7 +214,7 @@ void PropertyReader::decode(const Entry& entry, std::span<std::int32_t> values,
       return loadLittle<Stored>(data + i * sizeof(Stored));
     };
     const std::size_t fault = firstFault(stage_, values.size(), [&](std::size_t i) {
-      values[i] = static_cast<std::int32_t>(valueAt(i));
+      values[i] = static_cast<std::int32_t>(static_cast<std::int64_t>(valueAt(i)));
       return std::in_range<std::int32_t>(valueAt(i));
     });
     if (fault == values.size()) return;
