@@ -240,13 +240,15 @@ class PiecewiseWriter {
 
   void addPolygonProperties() {
     const Patches& patches = mesh_.patches;
+    Integers tets(patches.polygonTet.size());
+    std::transform(patches.polygonTet.begin(), patches.polygonTet.end(), tets.begin(),
+                   [](Index tet) { return static_cast<std::int32_t>(tet); });
     Integers faces;
     for (std::size_t f = 0; f < patches.count(); ++f) {
       faces.resize(patches.polygonBegin[f + 1], static_cast<std::int32_t>(f));
     }
     content_.properties.push_back({OvmEntity::Face, "f_linear_hex_face", std::move(faces)});
-    content_.properties.push_back({OvmEntity::Face, "f_intersected_tet_index",
-                                   Integers(patches.polygonTet.begin(), patches.polygonTet.end())});
+    content_.properties.push_back({OvmEntity::Face, "f_intersected_tet_index", std::move(tets)});
   }
 
   /// The simplex that holds a point, by corners of a tet that has it.
