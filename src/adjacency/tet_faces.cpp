@@ -88,7 +88,8 @@ struct FaceLists {
 /// Enters tets [begin, end) into the lists of one part, and notes how their corners are ordered.
 void listFaces(FaceLists& lists, TetTopology& topology, std::size_t part, std::size_t begin,
                std::size_t end) {
-  FaceLists::Heads* const heads = &lists.heads[part * lists.vertices];
+  FaceLists::Heads* const heads =
+      lists.heads.data() + part * lists.vertices;  // null without vertices
   std::fill_n(heads, lists.vertices, FaceLists::Heads());
   // Backwards, so that the last tet to write is the smallest.
   for (std::size_t t = end; t > begin; --t) {
