@@ -1,10 +1,9 @@
 // `hexhex generate`: maps with known answers.
 #include <algorithm>
-#include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -32,44 +31,18 @@ struct Arguments {
   bool quiet = false;
 };
 
-constexpr std::array<std::pair<std::string_view, ChartStyle>, 4> kChartStyles = {
-    {{"aligned", ChartStyle::Aligned},
-     {"blocks", ChartStyle::Blocks},
-     {"random", ChartStyle::Random},
-     {"scattered", ChartStyle::Scattered}}};
-
-// The parser has checked all names.
-ChartStyle chartStyleNamed(std::string_view styleName) {
-  const auto found = std::find_if(kChartStyles.begin(), kChartStyles.end(),
-                                  [&](const auto& entry) { return entry.first == styleName; });
-  return found->second;
+/// The kind or style of this name; the parser has checked it.
+template <class Entry>
+auto kindNamed(std::span<const Entry> entries, std::string_view name) {
+  return std::find_if(entries.begin(), entries.end(),
+                      [&](const Entry& entry) { return entry.name == name; })
+      ->kind;
 }
 
-SampleKind kindNamed(std::string_view kindName) {
-  const auto kinds = sampleKinds();
-  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const SampleKindName& entry) {
-    return entry.name == kindName;
-  });
-  return found->kind;
-}
-
-DefectKind defectKindNamed(std::string_view defectName) {
-  const auto kinds = defectKinds();
-  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const DefectKindName& entry) {
-    return entry.name == defectName;
-  });
-  return found->kind;
-}
-
-std::vector<std::string> defectNames() {
+template <class Entry>
+std::vector<std::string> namesOf(std::span<const Entry> entries) {
   std::vector<std::string> names;
-  for (const DefectKindName& entry : defectKinds()) names.emplace_back(entry.name);
-  return names;
-}
-
-std::vector<std::string> kindNames() {
-  std::vector<std::string> names;
-  for (const SampleKindName& entry : sampleKinds()) names.emplace_back(entry.name);
+  for (const Entry& entry : entries) names.emplace_back(entry.name);
   return names;
 }
 
@@ -78,12 +51,12 @@ int run(const Arguments& arguments) {
   requireMapFormat(arguments.output, writing);
   requireWritable(arguments.output);
   SampleOptions options = arguments.options;
-  options.charts = chartStyleNamed(arguments.charts);
-  options.defectKind = defectKindNamed(arguments.defectKind);
+  options.charts = kindNamed(chartStyles(), arguments.charts);
+  options.defectKind = kindNamed(defectKinds(), arguments.defectKind);
   // A signal takes effect between the two steps: a file is written whole or not at all.
   Context context;
   const CancelOnSignal cancelOnSignal(context);
-  const Sample sample = generateSample(kindNamed(arguments.kind), options);
+  const Sample sample = generateSample(kindNamed(sampleKinds(), arguments.kind), options);
   context.throwIfCancelled();
   writeMap(sample.map, arguments.output, writing, context);
   if (arguments.quiet) return kSuccess;
@@ -133,7 +106,7 @@ Command addGenerate(CLI::App& app) {
       app.add_subcommand("generate", "Generate a map whose mesh is known in advance");
   parser->add_option("KIND", arguments->kind, "What to generate: one of the kinds below")
       ->required()
-      ->check(CLI::IsMember(kindNames()))
+      ->check(CLI::IsMember(namesOf(sampleKinds())))
       ->option_text("REQUIRED");
   parser
       ->add_option("-o,--output", arguments->output,
@@ -150,7 +123,7 @@ Command addGenerate(CLI::App& app) {
                    "aligned: as many identities as possible; blocks: a\n"
                    "random rotation and integer translation per block;\nrandom: per tet; "
                    "scattered: for one tet in eight")
-      ->check(CLI::IsMember({"aligned", "blocks", "random", "scattered"}))
+      ->check(CLI::IsMember(namesOf(chartStyles())))
       ->option_text("STYLE [aligned]");
   addSampleOptions(*parser, arguments->options);
   parser->add_flag(
@@ -166,7 +139,7 @@ Command addGenerate(CLI::App& app) {
       ->add_option("--defect-kind", arguments->defectKind,
                    "Which vertices are moved: interior, singular, boundary\n"
                    "(until tets flip), or sliver (until they collapse)")
-      ->check(CLI::IsMember(defectNames()))
+      ->check(CLI::IsMember(namesOf(defectKinds())))
       ->option_text("KIND [interior]");
   addQuiet(*parser, arguments->quiet);
   parser->footer(describeKinds());

@@ -15,14 +15,15 @@ using namespace nanobind::literals;
 namespace hexhex::python {
 namespace {
 
-/// The entry of this name in a table of kinds.
+/// The entry of this name in a table of kinds or styles.
+/// @param what  of it, before its name, e.g. "style of charts"
 template <class Table>
 auto kindNamed(const Table& table, const std::string& name, const char* what) {
   for (const auto& entry : table) {
     if (entry.name == name) return entry.kind;
   }
   throw Error(ErrorCode::InvalidArgument,
-              std::string("There is no kind of ") + what + " called \"" + name + "\".");
+              std::string("There is no ") + what + " \"" + name + "\".");
 }
 
 Dict answerAsDict(const SampleAnswer& answer) {
@@ -43,9 +44,7 @@ nb::tuple generateMap(const std::string& kind, int cells, int refine, int valenc
   options.cells = cells;
   options.refine = refine;
   options.valence = valence;
-  if (charts == "blocks") options.charts = ChartStyle::Blocks;
-  if (charts == "random") options.charts = ChartStyle::Random;
-  if (charts == "scattered") options.charts = ChartStyle::Scattered;
+  options.charts = kindNamed(chartStyles(), charts, "style of charts");
   options.jitter = jitter;
   options.onLattice = onLattice;
   options.noise = noise;
@@ -53,8 +52,8 @@ nb::tuple generateMap(const std::string& kind, int cells, int refine, int valenc
   options.seed = seed;
   options.features = features;
   options.defects = defects;
-  options.defectKind = kindNamed(defectKinds(), defectKind, "defect");
-  const SampleKind sample = kindNamed(sampleKinds(), kind, "map");
+  options.defectKind = kindNamed(defectKinds(), defectKind, "kind of defect called");
+  const SampleKind sample = kindNamed(sampleKinds(), kind, "kind of map called");
   Sample made = run(0, {}, [&](Context& /*context*/) { return generateSample(sample, options); });
   return nb::make_tuple(std::move(made.map), answerAsDict(made.answer));
 }

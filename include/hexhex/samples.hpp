@@ -88,6 +88,13 @@ struct SampleKindName {
 };
 [[nodiscard]] std::span<const SampleKindName> sampleKinds() noexcept;
 
+/// Every style of charts with its name on the command line ("aligned", ...).
+struct ChartStyleName {
+  ChartStyle kind;
+  std::string_view name;
+};
+[[nodiscard]] std::span<const ChartStyleName> chartStyles() noexcept;
+
 /// Every kind of defect with its name on the command line ("interior", ...).
 struct DefectKindName {
   DefectKind kind;

@@ -12,39 +12,37 @@ namespace hexhex::samples {
 namespace {
 
 /// The coordinates of a corner of the unit cube.
-Int3 cornerPoint(std::size_t corner) {
-  return {static_cast<std::int64_t>(corner & 1), static_cast<std::int64_t>(corner >> 1 & 1),
-          static_cast<std::int64_t>(corner >> 2 & 1)};
+GridPoint cornerPoint(std::size_t corner) {
+  return {static_cast<int>(corner & 1), static_cast<int>(corner >> 1 & 1),
+          static_cast<int>(corner >> 2 & 1)};
 }
 
-/// The axis across a face.
-std::size_t normalAxis(const BlockPart& face) {
-  return static_cast<std::size_t>(
-      std::find_if(face.digits.begin(), face.digits.end(),
-                   [](int digit) { return digit != BlockPart::kAlong; }) -
-      face.digits.begin());
+/// The direction across a face, out of its block.
+Direction outwards(const BlockPart& face) {
+  int axis = 0;
+  while (face.digits[static_cast<std::size_t>(axis)] == BlockPart::kAlong) ++axis;
+  return direction(axis, face.digits[static_cast<std::size_t>(axis)] == 1 ? 1 : -1);
 }
 
-/// The motion across a face, between the frames of two blocks that are unit cubes. The cell's own
-/// frame is common to both; what points out of one block points into the other.
-Motion motionAcross(const Occurrence& from, const Occurrence& to) {
-  Motion motion;
-  const auto turn = [&motion](const Direction& before, const Direction& after) {
-    motion.rotation.image[before.axis] = {after.axis, before.sign * after.sign};
+/// The transition across a face, between the frames of two blocks that are unit cubes. The cell's
+/// own frame is common to both; what points out of one block points into the other.
+Transition transitionAcross(const Occurrence& from, const Occurrence& to) {
+  std::array<Direction, 3> image{};
+  const auto send = [&image](Direction before, Direction after) {
+    image[static_cast<std::size_t>(axisOf(before))] = signOf(before) < 0 ? opposite(after) : after;
   };
-  turn(from.axes[0], to.axes[0]);
-  turn(from.axes[1], to.axes[1]);
-  const std::size_t normalFrom = normalAxis(from.part);
-  const std::size_t normalTo = normalAxis(to.part);
-  turn({normalFrom, from.part.digits[normalFrom] == 1 ? 1 : -1},
-       {normalTo, to.part.digits[normalTo] == 1 ? -1 : 1});
-  if (determinant(motion.rotation) != 1) {
+  send(from.axes[0], to.axes[0]);
+  send(from.axes[1], to.axes[1]);
+  send(outwards(from.part), opposite(outwards(to.part)));
+  if (cross(image[0], image[1]) != image[2]) {
     throw Error(ErrorCode::Internal,
                 "Two neighbouring blocks of a sample have opposite orientation; please report this "
                 "as a bug.");
   }
-  motion.translation = cornerPoint(to.origin) - motion.rotation(cornerPoint(from.origin));
-  return motion;
+  Transition across{Rotation::fromAxes(image[0], image[1]), cornerPoint(to.origin)};
+  const GridPoint turned = across.rotation(cornerPoint(from.origin));
+  for (std::size_t a = 0; a < 3; ++a) across.translation[a] -= turned[a];
+  return across;
 }
 
 }  // namespace
@@ -79,10 +77,7 @@ bool BlockPart::contains(const BlockPart& part) const {
 std::vector<std::size_t> BlockPart::corners() const {
   std::vector<std::size_t> result;
   for (std::size_t corner = 0; corner < 8; ++corner) {
-    const Int3 point = cornerPoint(corner);
-    const BlockPart cornerPart{
-        {static_cast<int>(point[0]), static_cast<int>(point[1]), static_cast<int>(point[2])}};
-    if (contains(cornerPart)) result.push_back(corner);
+    if (contains({cornerPoint(corner)})) result.push_back(corner);
   }
   return result;
 }
@@ -111,7 +106,7 @@ Occurrence BlockComplex::frameOf(std::size_t block, const BlockPart& part) const
     if (part.digits[a] != BlockPart::kAlong) continue;
     const std::size_t end = occurrence.origin ^ (std::size_t{1} << a);
     const Index rank = dimension < 3 ? vertices[end] : static_cast<Index>(a);
-    axes.emplace_back(rank, Direction{a, end > occurrence.origin ? 1 : -1});
+    axes.emplace_back(rank, direction(static_cast<int>(a), end > occurrence.origin ? 1 : -1));
   }
   std::sort(axes.begin(), axes.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -151,6 +146,17 @@ void BlockComplex::markBoundary() {
   }
 }
 
+std::vector<std::size_t> BlockComplex::sides(std::size_t cell) const {
+  const Occurrence& occurrence = cells_[cell].occurrences.front();
+  std::vector<std::size_t> result;
+  for (std::size_t code = 0; code < BlockPart::kCount; ++code) {
+    const BlockPart part = BlockPart::fromCode(code);
+    if (part.dimension() + 1 != cells_[cell].dimension || !occurrence.part.contains(part)) continue;
+    result.push_back(find(occurrence.block, part).cell);
+  }
+  return result;
+}
+
 std::optional<Neighbour> BlockComplex::neighbour(std::size_t block, std::size_t axis,
                                                  int side) const {
   const CellReference face = find(block, BlockPart::face(axis, side));
@@ -158,11 +164,11 @@ std::optional<Neighbour> BlockComplex::neighbour(std::size_t block, std::size_t 
   if (sides.size() < 2) return std::nullopt;
   const Occurrence& here = sides[face.occurrence];
   const Occurrence& there = sides[1 - face.occurrence];
-  return Neighbour{there.block, motionAcross(here, there)};
+  return Neighbour{there.block, transitionAcross(here, there)};
 }
 
 /// Carries the frame of the first block around each cell to the others, through faces at the cell.
-/// (Around a singular edge the result depends on the way, but only in axes that are not free.)
+/// (Around a singular edge the result depends on the path, but only in axes that are not free.)
 void BlockComplex::turnStars() {
   for (CoarseCell& cell : cells_) {
     std::vector<std::size_t> reached = {0};
@@ -178,7 +184,7 @@ void BlockComplex::turnStars() {
         for (std::size_t to = 0; to < cell.occurrences.size(); ++to) {
           if (seen[to] || cell.occurrences[to].block != other->block) continue;
           seen[to] = true;
-          cell.occurrences[to].fromFirst = compose(other->motion.rotation, from.fromFirst);
+          cell.occurrences[to].fromFirst = other->transition.rotation * from.fromFirst;
           reached.push_back(to);
         }
       }
@@ -191,7 +197,7 @@ void BlockComplex::turnStars() {
 void BlockComplex::restrictFreeAxes() {
   for (CoarseCell& cell : cells_) {
     for (const Occurrence& occurrence : cell.occurrences) {
-      const Rotation toFirst = inverse(occurrence.fromFirst);
+      const Rotation toFirst = occurrence.fromFirst.inverse();
       for (std::size_t code = 0; code < BlockPart::kCount; ++code) {
         const BlockPart around = BlockPart::fromCode(code);
         if (!around.contains(occurrence.part)) continue;
@@ -200,7 +206,9 @@ void BlockComplex::restrictFreeAxes() {
             (other.dimension == 2 && other.boundary) || (other.dimension == 1 && other.singular());
         if (!fixing) continue;
         for (std::size_t a = 0; a < 3; ++a) {
-          if (around.digits[a] != BlockPart::kAlong) cell.free[toFirst.image[a].axis] = false;
+          if (around.digits[a] == BlockPart::kAlong) continue;
+          const Direction fixed = toFirst(direction(static_cast<int>(a), 1));
+          cell.free[static_cast<std::size_t>(axisOf(fixed))] = false;
         }
       }
     }

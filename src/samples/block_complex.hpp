@@ -9,7 +9,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <samples/rotation.hpp>
+#include <lattice/transition.hpp>
 
 namespace hexhex::samples {
 
@@ -65,11 +65,11 @@ struct CellReference {
   std::size_t occurrence = 0;
 };
 
-/// The block on the other side of a face, and the motion from the frame of this one into its frame
-/// (for blocks that are unit cubes).
+/// The block on the other side of a face, and the transition from the frame of this one into its
+/// frame (for blocks that are unit cubes).
 struct Neighbour {
   std::size_t block = 0;
-  Motion motion;
+  Transition transition;
 };
 
 class BlockComplex {
@@ -83,6 +83,8 @@ class BlockComplex {
   [[nodiscard]] CellReference find(std::size_t block, const BlockPart& part) const {
     return references_[block][part.code()];
   }
+  /// The cells on the boundary of a cell with one dimension less.
+  [[nodiscard]] std::vector<std::size_t> sides(std::size_t cell) const;
   /// Empty if the face is on the boundary.
   [[nodiscard]] std::optional<Neighbour> neighbour(std::size_t block, std::size_t axis,
                                                    int side) const;

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include <samples/charts.hpp>
 #include <samples/random.hpp>
+#include <samples/steps.hpp>
 
 namespace hexhex::samples {
 
@@ -24,53 +24,61 @@ std::int64_t translationLimit(const SampleOptions& options) {
   return options.offset >= 1 ? static_cast<std::int64_t>(options.offset) : kSmallOffset;
 }
 
-Int3 randomTranslation(std::int64_t limit, Random& random) {
-  Int3 translation{};
-  for (std::int64_t& coordinate : translation) coordinate = random.integerUpTo(limit);
+GridPoint randomTranslation(std::int64_t limit, Random& random) {
+  GridPoint translation{};
+  for (auto& coordinate : translation) {
+    coordinate = static_cast<std::int32_t>(random.integerUpTo(limit));
+  }
   return translation;
 }
 
-/// A random rotation and integer translation, in units.
-Motion randomChart(std::int64_t limit, Random& random) {
-  const Rotation rotation = cubeRotation(random.below(24));
-  return {rotation, kUnitsPerCell * randomTranslation(limit, random)};
+Transition randomChart(std::int64_t limit, Random& random) {
+  // Numbered by the axis that +x is sent to, the one that +y is sent to, and the two signs.
+  const auto number = static_cast<int>(random.below(Rotation::kCount));
+  const int first = number / 8;
+  const int second = (first + 1 + number / 4 % 2) % 3;
+  const auto signedAxis = [](int axis, int bit) { return direction(axis, bit == 0 ? 1 : -1); };
+  const Rotation rotation =
+      Rotation::fromAxes(signedAxis(first, number % 2), signedAxis(second, number / 2 % 2));
+  return {rotation, randomTranslation(limit, random)};
 }
 
 /// Charts of all blocks such that transitions across a spanning tree of the blocks are identities;
 /// all are moved by the same translation.
-std::vector<Motion> alignedCharts(const BlockComplex& complex, std::int64_t cells,
-                                  const Int3& translation) {
-  std::vector<std::optional<Motion>> charts(complex.blockCount());
+std::vector<Transition> alignedCharts(const BlockComplex& complex, int cells,
+                                      const GridPoint& translation) {
+  std::vector<std::optional<Transition>> charts(complex.blockCount());
   for (std::size_t root = 0; root < charts.size(); ++root) {
     if (charts[root]) continue;
-    charts[root] = Motion{{}, kUnitsPerCell * translation};
+    charts[root] = Transition{{}, translation};
     std::vector<std::size_t> reached = {root};
     for (std::size_t next = 0; next < reached.size(); ++next) {
       for (std::size_t face = 0; face < 6; ++face) {
         const auto other = complex.neighbour(reached[next], face / 2, static_cast<int>(face % 2));
         if (!other || charts[other->block]) continue;
-        Motion across = other->motion;
-        across.translation = cells * kUnitsPerCell * across.translation;
-        charts[other->block] = compose(*charts[reached[next]], inverse(across));
+        Transition across = other->transition;
+        for (std::int32_t& coordinate : across.translation) coordinate *= cells;
+        charts[other->block] = *charts[reached[next]] * across.inverse();
         reached.push_back(other->block);
       }
     }
   }
-  std::vector<Motion> result;
+  std::vector<Transition> result;
   result.reserve(charts.size());
-  for (const std::optional<Motion>& chart : charts) result.push_back(*chart);
+  for (const std::optional<Transition>& chart : charts) result.push_back(*chart);
   return result;
 }
 
-std::vector<Motion> blockCharts(const BlockComplex& complex, const SampleOptions& options,
-                                Random& random) {
+/// From the frames of blocks to their charts.
+std::vector<Transition> blockCharts(const BlockComplex& complex, const SampleOptions& options,
+                                    Random& random) {
   if (options.charts == ChartStyle::Aligned || options.charts == ChartStyle::Scattered) {
     const auto offset = static_cast<std::int64_t>(options.offset);
     return alignedCharts(complex, options.cells, randomTranslation(offset, random));
   }
-  std::vector<Motion> charts(complex.blockCount());
+  std::vector<Transition> charts(complex.blockCount());
   if (options.charts == ChartStyle::Random) return charts;  // every tet gets its own
-  for (Motion& chart : charts) chart = randomChart(translationLimit(options), random);
+  for (Transition& chart : charts) chart = randomChart(translationLimit(options), random);
   return charts;
 }
 
@@ -94,7 +102,7 @@ void permuteCorners(Tet& tet, std::array<Int3, 4>& corners, Random& random) {
 /// Writes the 12 tets of each sub-block.
 class MapWriter {
  public:
-  MapWriter(const TetGrid& grid, std::vector<Motion> charts, const SampleOptions& options,
+  MapWriter(const TetGrid& grid, std::vector<Transition> charts, const SampleOptions& options,
             Random chartRandom)
       : grid_(grid),
         charts_(std::move(charts)),
@@ -108,13 +116,13 @@ class MapWriter {
     const std::array<Index, 8> vertices = grid_.cornerVertices(subBlock);
     const std::array<Int3, 8> parameters = grid_.cornerParameters(subBlock);
     const Int3 centre = grid_.centreParameters[subBlock];
-    const Motion& chart = charts_[subBlock / grid_.subBlocksPerBlock()];
+    const Transition& chart = charts_[subBlock / grid_.subBlocksPerBlock()];
     for (const SurfaceTriangle& t : surfaceTriangles(vertices)) {
       Tet tet = {grid_.centreVertex(subBlock), vertices[t[0]], vertices[t[1]], vertices[t[2]]};
       std::array<Int3, 4> corners = {centre, parameters[t[0]], parameters[t[1]], parameters[t[2]]};
       const bool isOwn = hasOwnChart();
-      const Motion motion = isOwn ? randomChart(limit_, chartRandom_) : chart;
-      for (Int3& corner : corners) corner = motion(corner);
+      const Transition own = isOwn ? randomChart(limit_, chartRandom_) : chart;
+      for (Int3& corner : corners) corner = own(corner, kUnitsPerCell);
       if (isOwn) permuteCorners(tet, corners, chartRandom_);
       map.tets.push_back(tet);
       map.parameters.push_back(rounded(corners));
@@ -140,7 +148,7 @@ class MapWriter {
   }
 
   const TetGrid& grid_;
-  std::vector<Motion> charts_;
+  std::vector<Transition> charts_;
   ChartStyle style_;
   std::int64_t limit_;
   double noise_;
@@ -150,16 +158,15 @@ class MapWriter {
 
 }  // namespace
 
-TetMap mapWithCharts(TetGrid&& grid, const BlockComplex& complex, const SampleOptions& options) {
+void addCharts(TetGrid&& grid, const BlockComplex& complex, const SampleOptions& options,
+               TetMap& map) {
   Random random(options.seed, kChartStream);
-  std::vector<Motion> charts = blockCharts(complex, options, random);
+  std::vector<Transition> charts = blockCharts(complex, options, random);
   MapWriter writer(grid, std::move(charts), options, random);
-  TetMap map;
   map.tets.reserve(12 * grid.subBlockCount());
   map.parameters.reserve(12 * grid.subBlockCount());
   for (std::size_t sub = 0; sub < grid.subBlockCount(); ++sub) writer.write(sub, map);
   map.points = std::move(grid.points);
-  return map;
 }
 
 }  // namespace hexhex::samples

@@ -8,12 +8,8 @@
 #include <hexhex/error.hpp>
 #include <hexhex/samples.hpp>
 
-#include <samples/charts.hpp>
-#include <samples/damage.hpp>
-#include <samples/expected_answer.hpp>
-#include <samples/features.hpp>
 #include <samples/kinds.hpp>
-#include <samples/perturbation.hpp>
+#include <samples/steps.hpp>
 #include <samples/tet_grid.hpp>
 
 namespace hexhex {
@@ -31,6 +27,13 @@ constexpr std::array<SampleKindName, 8> kKinds = {{
     {SampleKind::Torus, "torus", "solid torus (genus 1), O-grid section"},
     {SampleKind::Shell, "shell", "spherical shell, 6 blocks: a cavity, two boundary components"},
     {SampleKind::HandleBody, "handle-body", "plate with two holes, genus 2"},
+}};
+
+constexpr std::array<ChartStyleName, 4> kChartStyles = {{
+    {ChartStyle::Aligned, "aligned"},
+    {ChartStyle::Blocks, "blocks"},
+    {ChartStyle::Random, "random"},
+    {ChartStyle::Scattered, "scattered"},
 }};
 
 constexpr std::array<DefectKindName, 4> kDefectKinds = {{
@@ -73,17 +76,15 @@ void requireReal(const char* option, double value, bool legal, const char* range
                                               "; choose a number " + range + ".");
 }
 
+template <class Entries, class Kind>
+bool isListed(const Entries& entries, Kind kind) {
+  return std::any_of(entries.begin(), entries.end(),
+                     [kind](const auto& entry) { return entry.kind == kind; });
+}
+
 void requireLegal(SampleKind kind, const SampleOptions& options) {
-  const bool known = std::any_of(kKinds.begin(), kKinds.end(), [kind](const SampleKindName& entry) {
-    return entry.kind == kind;
-  });
-  const bool defectKnown =
-      std::any_of(kDefectKinds.begin(), kDefectKinds.end(),
-                  [&](const DefectKindName& entry) { return entry.kind == options.defectKind; });
-  const bool styleKnown =
-      options.charts == ChartStyle::Aligned || options.charts == ChartStyle::Blocks ||
-      options.charts == ChartStyle::Random || options.charts == ChartStyle::Scattered;
-  if (!known || !styleKnown || !defectKnown) {
+  if (!isListed(kKinds, kind) || !isListed(kChartStyles, options.charts) ||
+      !isListed(kDefectKinds, options.defectKind)) {
     throw Error(
         ErrorCode::InvalidArgument,
         "The kind, chart style or defect of a sample is none of the enumerators; choose one "
@@ -127,6 +128,8 @@ void requireIndexable(std::size_t blocks, int refine) {
 
 std::span<const SampleKindName> sampleKinds() noexcept { return kKinds; }
 
+std::span<const ChartStyleName> chartStyles() noexcept { return kChartStyles; }
+
 std::span<const DefectKindName> defectKinds() noexcept { return kDefectKinds; }
 
 Sample generateSample(SampleKind kind, const SampleOptions& options) try {
@@ -147,16 +150,10 @@ Sample generateSample(SampleKind kind, const SampleOptions& options) try {
   }
 
   Sample sample;
-  sample.answer = samples::expectedAnswer(complex, static_cast<std::uint64_t>(options.cells));
-  TetMap features;
-  if (options.features) {
-    sample.answer.features =
-        samples::expectedFeatures(complex, static_cast<std::uint64_t>(options.cells));
-    samples::addFeatures(grid, complex, features);
-  }
-  sample.map = samples::mapWithCharts(std::move(grid), complex, options);
-  sample.map.features = std::move(features.features);
-  sample.map.regions = std::move(features.regions);
+  sample.answer =
+      samples::expectedAnswer(complex, static_cast<std::uint64_t>(options.cells), options.features);
+  if (options.features) samples::addFeatures(grid, complex, sample.map);
+  samples::addCharts(std::move(grid), complex, options, sample.map);
   return sample;
 } catch (const std::bad_alloc&) {
   throw Error(

@@ -1,9 +1,12 @@
 // Most kinds are sections in the plane, extruded; the round ones become round by a warp.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <set>
+#include <tuple>
 #include <utility>
 
+#include <base/vector3.hpp>
 #include <samples/kinds.hpp>
 
 namespace hexhex::samples {
@@ -99,6 +102,15 @@ Section starSection(Index valence) {
   return section;
 }
 
+/// Adds a block.
+/// @param cornerAt  returns the vertex and the place of a corner
+template <class CornerAt>
+void addBlock(BlockModel& model, const CornerAt& cornerAt) {
+  BlockCorners& block = model.blocks.emplace_back();
+  std::array<Vec3, 8>& shape = model.shapes.emplace_back();
+  for (std::size_t c = 0; c < 8; ++c) std::tie(block[c], shape[c]) = cornerAt(c);
+}
+
 /// Copies of a section above each other, with blocks between them. A closed column ends where it
 /// began; its shape before the warp does not know that.
 BlockModel extrude(const Section& section, Index layers, bool closed) {
@@ -106,18 +118,23 @@ BlockModel extrude(const Section& section, Index layers, bool closed) {
   const auto perLevel = static_cast<Index>(section.points.size());
   for (Index layer = 0; layer < layers; ++layer) {
     for (const std::array<Index, 4>& quad : section.quads) {
-      BlockCorners& block = model.blocks.emplace_back();
-      std::array<Vec3, 8>& shape = model.shapes.emplace_back();
-      for (Index corner = 0; corner < 8; ++corner) {
-        const Index level = layer + corner / 4;
+      addBlock(model, [&](std::size_t corner) {
+        const Index level = layer + static_cast<Index>(corner / 4);
         const Index vertex = quad[corner % 4];
-        block[corner] = (closed ? level % layers : level) * perLevel + vertex;
-        shape[corner] = {section.points[vertex][0], section.points[vertex][1],
-                         static_cast<double>(level)};
-      }
+        const Vec2& point = section.points[vertex];
+        return std::pair((closed ? level % layers : level) * perLevel + vertex,
+                         Vec3{point[0], point[1], static_cast<double>(level)});
+      });
     }
   }
   return model;
+}
+
+/// A corner of the cube around the origin with this half side.
+Vec3 cubeCorner(std::size_t corner, double half) {
+  Vec3 point{};
+  for (std::size_t a = 0; a < 3; ++a) point[a] = (corner >> a & 1) == 1 ? half : -half;
+  return point;
 }
 
 /// Six blocks between an inner and an outer cube, whose corners are vertices 0..7 and 8..15.
@@ -129,18 +146,13 @@ BlockModel cubeLayer(double innerHalf) {
     // The frame of the block: two axes along the face and one outwards, right-handed.
     const std::size_t along0 = (axis + (side == 1 ? 1 : 2)) % 3;
     const std::size_t along1 = 3 - axis - along0;
-    BlockCorners& block = model.blocks.emplace_back();
-    std::array<Vec3, 8>& shape = model.shapes.emplace_back();
-    for (std::size_t corner = 0; corner < 8; ++corner) {
-      const std::size_t cubeCorner =
+    addBlock(model, [&](std::size_t corner) {
+      const std::size_t ofCube =
           side << axis | (corner & 1) << along0 | (corner >> 1 & 1) << along1;
       const bool outer = corner >= 4;
-      block[corner] = static_cast<Index>(cubeCorner + (outer ? 8 : 0));
-      for (std::size_t a = 0; a < 3; ++a) {
-        const double half = outer ? 1.0 : innerHalf;
-        shape[corner][a] = (cubeCorner >> a & 1) == 1 ? half : -half;
-      }
-    }
+      return std::pair(static_cast<Index>(ofCube + (outer ? 8 : 0)),
+                       cubeCorner(ofCube, outer ? 1.0 : innerHalf));
+    });
   }
   return model;
 }
@@ -148,14 +160,9 @@ BlockModel cubeLayer(double innerHalf) {
 /// The same around a block that fills the inner cube.
 BlockModel cubeGrid() {
   BlockModel model = cubeLayer(kInnerCube);
-  BlockCorners& block = model.blocks.emplace_back();
-  std::array<Vec3, 8>& shape = model.shapes.emplace_back();
-  for (std::size_t corner = 0; corner < 8; ++corner) {
-    block[corner] = static_cast<Index>(corner);
-    for (std::size_t a = 0; a < 3; ++a) {
-      shape[corner][a] = (corner >> a & 1) == 1 ? kInnerCube : -kInnerCube;
-    }
-  }
+  addBlock(model, [](std::size_t corner) {
+    return std::pair(static_cast<Index>(corner), cubeCorner(corner, kInnerCube));
+  });
   return model;
 }
 
@@ -168,20 +175,16 @@ BlockModel midpointTetrahedron() {
       {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
   BlockModel model;
   for (const std::array<std::size_t, 4>& frame : kFrames) {
-    BlockCorners& block = model.blocks.emplace_back();
-    std::array<Vec3, 8>& shape = model.shapes.emplace_back();
-    for (std::size_t corner = 0; corner < 8; ++corner) {
+    addBlock(model, [&](std::size_t corner) {
       std::size_t set = std::size_t{1} << frame[0];
       for (std::size_t a = 0; a < 3; ++a) set |= (corner >> a & 1) << frame[a + 1];
-      block[corner] = static_cast<Index>(set - 1);
-      double count = 0;
+      Vec3 mean{};
       for (std::size_t v = 0; v < 4; ++v) {
-        if ((set >> v & 1) == 0) continue;
-        count += 1;
-        for (std::size_t a = 0; a < 3; ++a) shape[corner][a] += kCorners[v][a];
+        if ((set >> v & 1) == 1) mean = plus(mean, kCorners[v]);
       }
-      for (double& coordinate : shape[corner]) coordinate /= count;
-    }
+      for (double& coordinate : mean) coordinate /= std::popcount(set);
+      return std::pair(static_cast<Index>(set - 1), mean);
+    });
   }
   return model;
 }
@@ -211,12 +214,7 @@ Vec3 warpCylinder(const Vec3& point) {
 Vec3 warpBall(const Vec3& point) { return roundOutside<3>(point, kInnerCube); }
 
 /// Concentric cubes become concentric spheres.
-Vec3 warpShell(const Vec3& point) {
-  const double maximum = std::max({std::abs(point[0]), std::abs(point[1]), std::abs(point[2])});
-  const double length = std::sqrt(point[0] * point[0] + point[1] * point[1] + point[2] * point[2]);
-  const double factor = maximum / length;
-  return {point[0] * factor, point[1] * factor, point[2] * factor};
-}
+Vec3 warpShell(const Vec3& point) { return roundOutside<3>(point, 0); }
 
 /// Bends a cylinder of height kRingBlocks to a ring around the y axis.
 Vec3 warpTorus(const Vec3& point) {
@@ -224,6 +222,11 @@ Vec3 warpTorus(const Vec3& point) {
   const Vec2 turned = onUnitCircle(point[2] / kRingBlocks);
   const double radius = kRingRadius + section[0];
   return {radius * turned[0], section[1], radius * turned[1]};
+}
+
+BlockModel warped(BlockModel model, Vec3 (*warp)(const Vec3&)) {
+  model.warp = warp;
+  return model;
 }
 
 }  // namespace
@@ -239,7 +242,6 @@ Vec3 BlockModel::place(std::size_t block, const Vec3& local) const {
 }
 
 BlockModel blockModel(SampleKind kind, int valence) {
-  BlockModel model;
   switch (kind) {
     case SampleKind::Box:
       return extrude(plate(2, 2), 2, false);
@@ -250,23 +252,15 @@ BlockModel blockModel(SampleKind kind, int valence) {
     case SampleKind::Tetrahedron:
       return midpointTetrahedron();
     case SampleKind::Cylinder:
-      model = extrude(squareGrid(), 1, false);
-      model.warp = warpCylinder;
-      return model;
+      return warped(extrude(squareGrid(), 1, false), warpCylinder);
     case SampleKind::Torus:
-      model = extrude(squareGrid(), kRingBlocks, true);
-      model.warp = warpTorus;
-      return model;
+      return warped(extrude(squareGrid(), kRingBlocks, true), warpTorus);
     case SampleKind::Sphere:
-      model = cubeGrid();
-      model.warp = warpBall;
-      return model;
+      return warped(cubeGrid(), warpBall);
     case SampleKind::Shell:
-      model = cubeLayer(kCavity);
-      model.warp = warpShell;
-      return model;
+      return warped(cubeLayer(kCavity), warpShell);
   }
-  return model;
+  return {};
 }
 
 }  // namespace hexhex::samples

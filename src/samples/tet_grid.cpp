@@ -56,7 +56,7 @@ Int3 TetGrid::gridPoint(const Occurrence& occurrence, std::size_t dimension,
   auto rest = static_cast<std::int64_t>(point);
   for (std::size_t a = 0; a < dimension; ++a) {
     const Direction axis = occurrence.axes[a];
-    result[axis.axis] += axis.sign * (1 + rest % (refine_ - 1));
+    result[static_cast<std::size_t>(axisOf(axis))] += signOf(axis) * (1 + rest % (refine_ - 1));
     rest /= refine_ - 1;
   }
   return result;

@@ -13,6 +13,16 @@
 
 namespace hexhex::samples {
 
+/// Parameters in units, or coordinates of a block's grid.
+using Int3 = std::array<std::int64_t, 3>;
+
+inline Int3 operator+(const Int3& a, const Int3& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+inline Int3 operator-(const Int3& a, const Int3& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
 /// Parameters are multiples of 2^-16, held as integers. That is fine enough for 500 sub-blocks
 /// along a single hexahedron (131 steps each), and coarse enough for translations of 1e9 and
 /// rotations to be exact in double (46 bits).

@@ -538,8 +538,6 @@ def generate(kind: str, *, cells: int = 4, refine: int = 2, valence: int = 5,
     >>> map, map.answer["cells"], map.answer["inner_singular_edges"]
     (<hexhex.Map: 672 tets, 185 points>, 448, {7: 4})
     """
-    if charts not in ("aligned", "blocks", "random", "scattered"):
-        raise ArgumentError(f'There is no style of charts "{charts}".', "InvalidArgument")
     if seed < 0:
         raise ArgumentError(f"The seed is {seed}. Choose it from 0.", "InvalidArgument")
     handle, answer = _hexhex.generate(kind, cells, refine, valence, charts, jitter, on_lattice, noise,
