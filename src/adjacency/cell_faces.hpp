@@ -113,6 +113,7 @@ class FacesAtVertices {
   /// @param isWanted  of (cell, face): whether a half-face is to be looked at
   template <class Cells, class Filter, class Visit>
   void forEach(Index vertex, const Cells& around, const Filter& isWanted, const Visit& visit) {
+    if (around.empty()) return;
     found_.clear();
     Index previous = kNone;
     for (const Index cell : around) {

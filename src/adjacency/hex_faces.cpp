@@ -52,8 +52,11 @@ Array<std::uint8_t> findSeamCorners(std::size_t vertexCount, std::span<const Hex
   Array<std::uint8_t> onSeam(vertexCount);
   parallelFor(stage, vertexCount, 8 * kGrain, [&](std::size_t v) { onSeam[v] = 0; });
   parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+    unsigned linked = 0;
+    for (std::size_t face = 0; face < 6; ++face) linked |= unsigned{isLinked(c, face)} << face;
+    if (linked == 63) return;  // as of most cells
     for (std::size_t face = 0; face < 6; ++face) {
-      if (isLinked(c, face)) continue;
+      if ((linked >> face & 1U) != 0) continue;
       for (const Index v : faceVertices(cells[c], face)) {
         std::atomic_ref(onSeam[v]).store(1, std::memory_order_relaxed);
       }
@@ -166,6 +169,7 @@ Array<std::uint64_t> boundaryPlaces(const HexMesh& mesh, Stage& stage) {
                   });
   Array<std::uint64_t> places;
   for (std::size_t c = 0; c < kinds.size(); ++c) {
+    if (seamCorners[c] == 0) continue;
     for (std::size_t face = 0; face < 6; ++face) {
       if (kinds[c][face] == Kind::Boundary) places.push_back(8 * c + face);
     }

@@ -24,7 +24,6 @@
 #include <io/gmsh/gmsh.hpp>
 #include <io/hexex/hexex.hpp>
 #include <io/medit/medit.hpp>
-#include <io/medit/meshb.hpp>
 #include <io/ovm/ovm.hpp>
 #include <io/vtk/vtk_legacy.hpp>
 #include <io/vtk/vtu.hpp>
@@ -88,6 +87,12 @@ void read(std::string_view text) {
   examine(parse(text, "input", context));
 }
 
+/// Of readers whose input is a file or bytes.
+template <auto readInput>
+auto parse(std::string_view text, const std::string& fileName, Context& context) {
+  return readInput(Input(text, fileName), context);
+}
+
 // Maps in arrays of the usual name.
 TetMap parseVtkMap(std::string_view text, const std::string& fileName, Context& context) {
   return parseVtkLegacyMap(text, fileName, {}, context);
@@ -114,12 +119,12 @@ struct Reader {
 };
 
 constexpr std::array kReaders = {
-    Reader{"hexex", read<parseHexex>},     Reader{"mesh", read<parseMedit>},
-    Reader{"meshb", read<parseMeshb>},     Reader{"msh", read<parseGmsh>},
-    Reader{"vtk", read<parseVtkLegacy>},   Reader{"vtu", read<parseVtu>},
-    Reader{"vtk-map", read<parseVtkMap>},  Reader{"vtu-map", read<parseVtuMapOf>},
-    Reader{"vtu-lagrange", readLagrange},  Reader{"ovm-map", read<parseOvmMap>},
-    Reader{"ovm", read<parseOvmHexMesh>},  Reader{"ovmb-map", read<parseOvmbMap>},
+    Reader{"hexex", read<parseHexex>},       Reader{"mesh", read<parse<readMedit>>},
+    Reader{"meshb", read<parse<readMeshb>>}, Reader{"msh", read<parse<readGmsh>>},
+    Reader{"vtk", read<parseVtkLegacy>},     Reader{"vtu", read<parseVtu>},
+    Reader{"vtk-map", read<parseVtkMap>},    Reader{"vtu-map", read<parseVtuMapOf>},
+    Reader{"vtu-lagrange", readLagrange},    Reader{"ovm-map", read<parseOvmMap>},
+    Reader{"ovm", read<parseOvmHexMesh>},    Reader{"ovmb-map", read<parseOvmbMap>},
     Reader{"ovmb", read<parseOvmbHexMesh>}};
 
 const Reader* chosen = nullptr;

@@ -17,7 +17,7 @@ namespace {
 
 HexMesh parse(const std::string& text) {
   Context context;
-  return parseGmsh(text, "m.msh", context);
+  return readGmsh({text, "m.msh"}, context);
 }
 
 Failure failure(const std::string& text) {
@@ -258,8 +258,9 @@ TEST(Gmsh, FirstErrorInBytesWithAnyNumberOfThreads) {
   binary[place + 72 * 9] = binary[place + 72 * 9 + 1] = '\xff';
   for (const int threads : {1, 4}) {
     Context context(threads);
-    const Failure wrong =
-        failureOf([&] { static_cast<void>(parseGmsh(binary, "m.msh", context)); });
+    const Failure wrong = failureOf([&] {
+      static_cast<void>(readGmsh({binary, "m.msh"}, context));
+    });
     EXPECT_EQ(wrong.code, ErrorCode::IndexOutOfRange);
     EXPECT_EQ(toString(wrong.place), "cell 7950");
     EXPECT_NE(wrong.sentence.find("byte " + std::to_string(place + 8)), std::string::npos)

@@ -18,7 +18,7 @@ namespace {
 
 HexMesh mesh(const std::string& text) {
   Context context;
-  return parseMedit(text, "m.mesh", context);
+  return readMedit({text, "m.mesh"}, context);
 }
 
 HexMesh vtu(const std::string& text) {

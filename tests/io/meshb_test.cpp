@@ -8,14 +8,14 @@
 #include <hexhex/io.hpp>
 
 #include <io/io_test_support.hpp>
-#include <io/medit/meshb.hpp>
+#include <io/medit/medit.hpp>
 
 namespace hexhex::test {
 namespace {
 
 HexMesh parse(const std::string& text) {
   Context context;
-  return parseMeshb(text, "m.meshb", context);
+  return readMeshb({text, "m.meshb"}, context);
 }
 
 template <class... T>

@@ -15,7 +15,6 @@
 #include <io/hexex/hexex.hpp>
 #include <io/io_test_support.hpp>
 #include <io/medit/medit.hpp>
-#include <io/medit/meshb.hpp>
 #include <io/vtk/vtk_legacy.hpp>
 #include <io/vtk/vtu.hpp>
 
@@ -111,6 +110,12 @@ void damage(const std::string& text, const Parse& parse) {
   EXPECT_LT(largestAllocation.load(), kReasonableAllocation);
 }
 
+/// Of readers whose input is a file or bytes.
+template <auto read>
+HexMesh parse(std::string_view text, const std::string& fileName, Context& context) {
+  return read(Input(text, fileName), context);
+}
+
 TEST(DamagedFiles, Hexex) {
   const TemporaryFolder folder;
   writeMap(smallMap(), folder / "a.hexex");
@@ -120,7 +125,7 @@ TEST(DamagedFiles, Hexex) {
 TEST(DamagedFiles, Medit) {
   const TemporaryFolder folder;
   writeHexMesh(gridMesh(2, 2, 1), folder / "a.mesh");
-  damage(contentOf(folder / "a.mesh"), parseMedit);
+  damage(contentOf(folder / "a.mesh"), parse<readMedit>);
 }
 
 TEST(DamagedFiles, Vtu) {
@@ -139,7 +144,7 @@ TEST(DamagedFiles, Gmsh) {
     WriteOptions options;
     options.format = format;
     writeHexMesh(mesh, folder / "a.msh", options, context);
-    damage(contentOf(folder / "a.msh"), parseGmsh);
+    damage(contentOf(folder / "a.msh"), parse<readGmsh>);
   }
 }
 
@@ -148,7 +153,7 @@ TEST(DamagedFiles, Meshb) {
   Context context;
   for (const std::uint32_t version : {2U, 4U}) {
     writeMeshbVersion(gridMesh(2, 2, 1), folder / "a.meshb", version, context);
-    damage(contentOf(folder / "a.meshb"), parseMeshb);
+    damage(contentOf(folder / "a.meshb"), parse<readMeshb>);
   }
 }
 

@@ -115,7 +115,10 @@ TEST(ParallelText, HexexErrorsAreThoseOfOneThread) {
 TEST(ParallelText, MeditErrorsAreThoseOfOneThread) {
   const TemporaryFolder folder;
   writeHexMesh(gridMesh(20, 20, 20), folder / "a.mesh");
-  expectSameErrors(contentOf(folder / "a.mesh"), parseMedit);
+  expectSameErrors(contentOf(folder / "a.mesh"),
+                   [](const std::string& text, const std::string& name, Context& context) {
+                     return readMedit({text, name}, context);
+                   });
 }
 
 TEST(ParallelText, TheFirstOfManyErrorsWithItsLine) {
@@ -140,8 +143,8 @@ TEST(ParallelText, CommentsDoNotMatter) {
   writeHexMesh(grid, folder / "a.mesh");
   Context context(3);
   const std::string text = contentOf(folder / "a.mesh");
-  const HexMesh plain = parseMedit(text, "m", context);
-  const HexMesh commented = parseMedit("# 1 2 3\n" + text, "m", context);
+  const HexMesh plain = readMedit({text, "m"}, context);
+  const HexMesh commented = readMedit({"# 1 2 3\n" + text, "m"}, context);
   expectSameBits(grid.points, plain.points);
   expectSameBits(grid.points, commented.points);
   EXPECT_EQ(grid.cells, plain.cells);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -22,16 +21,6 @@ template <class T>
   std::memcpy(bytes.data(), place, sizeof(T));
   if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
   return std::bit_cast<T>(bytes);
-}
-
-/// Three coordinates at a place of any alignment; false unless all are finite.
-[[nodiscard]] inline bool loadPoint(const char* place, std::array<double, 3>& point) noexcept {
-  bool finite = true;
-  for (std::size_t k = 0; k < 3; ++k) {
-    point[k] = loadLittle<double>(place + k * sizeof(double));
-    finite = finite && std::isfinite(point[k]);
-  }
-  return finite;
 }
 
 /// The bytes of a number.

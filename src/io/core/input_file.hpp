@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <hexhex/context.hpp>
@@ -61,48 +63,54 @@ class InputFile {
   return {bytes.data(), bytes.size()};
 }
 
-/// @tparam Reader  made from a text, a name for error messages and a stage; has read()
+/// What is read: a file, or bytes in memory.
+class Input {
+ public:
+  Input(const std::filesystem::path& file) : name_(file.string()), path_(file) {}
+  /// @param bytes  outlive this
+  /// @param name  for error messages
+  Input(std::string_view bytes, std::string name) : name_(std::move(name)), bytes_(bytes) {}
+
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  [[nodiscard]] const std::optional<std::string_view>& bytes() const noexcept { return bytes_; }
+
+ private:
+  std::string name_;
+  std::filesystem::path path_;
+  std::optional<std::string_view> bytes_;
+};
+
+/// What a reader makes of an input.
+/// @tparam Reader  made from a text, a name for error messages and a stage; has read(). If it can
+///         be made from an open file, too, a regular file is never in memory as a whole
 /// @param more  what else the reader's constructor takes
+template <class Reader, class... More>
+[[nodiscard]] auto readWith(const Input& input, std::string_view stageName, Context& context,
+                            const More&... more) {
+  Stage stage(context, stageName);
+  decltype(std::declval<Reader&>().read()) result;
+  const auto read = [&](const auto& source) {
+    result = Reader(source, input.name(), stage, more...).read();
+  };
+  withThreads(context.threads(), [&] {
+    if (input.bytes()) return read(*input.bytes());
+    if constexpr (std::is_constructible_v<Reader, const InputFile&, const std::string&, Stage&,
+                                          const More&...>) {
+      const InputFile file(input.path());
+      if (file.isRegular()) return read(file);
+    }
+    const Array<char> bytes = readWholeFile(input.path(), stage);
+    read(asText(bytes));
+  });
+  return result;
+}
+
+/// The same of a text.
 template <class Reader, class... More>
 [[nodiscard]] auto parseWith(std::string_view text, const std::string& fileName,
                              std::string_view stageName, Context& context, const More&... more) {
-  Stage stage(context, stageName);
-  decltype(std::declval<Reader&>().read()) result;
-  withThreads(context.threads(), [&] { result = Reader(text, fileName, stage, more...).read(); });
-  return result;
-}
-
-/// The same of a file.
-template <class Reader, class... More>
-[[nodiscard]] auto readWith(const std::filesystem::path& file, std::string_view stageName,
-                            Context& context, const More&... more) {
-  Stage stage(context, stageName);
-  decltype(std::declval<Reader&>().read()) result;
-  withThreads(context.threads(), [&] {
-    const Array<char> bytes = readWholeFile(file, stage);
-    result = Reader(asText(bytes), file.string(), stage, more...).read();
-  });
-  return result;
-}
-
-/// The same for readers that can be made from an open file, so that a regular file is never in
-/// memory as a whole.
-template <class Reader>
-[[nodiscard]] auto readDirectly(const std::filesystem::path& file, std::string_view stageName,
-                                Context& context) {
-  Stage stage(context, stageName);
-  const std::string fileName = file.string();
-  decltype(std::declval<Reader&>().read()) result;
-  withThreads(context.threads(), [&] {
-    const InputFile input(file);
-    if (input.isRegular()) {
-      result = Reader(input, fileName, stage).read();
-    } else {
-      const Array<char> bytes = readWholeFile(file, stage);
-      result = Reader(asText(bytes), fileName, stage).read();
-    }
-  });
-  return result;
+  return readWith<Reader>(Input(text, fileName), stageName, context, more...);
 }
 
 }  // namespace hexhex

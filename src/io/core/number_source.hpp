@@ -1,8 +1,8 @@
 // The numbers of a file, for readers that need not know whether they are text or bytes.
 //
 // A source stands somewhere in the file; records, which are equal runs of numbers, are read in
-// parallel through a function f(record, i). Of several errors the first one is reported, for any
-// number of threads.
+// parallel through a function f(record, i), where a record has numbers as its source has. Of
+// several errors the first one is reported, for any number of threads.
 #pragma once
 
 #include <array>
@@ -34,31 +34,54 @@ struct RecordShape {
   [[nodiscard]] std::size_t bytes() const { return 8 * sizes + 4 * integers + 8 * reals; }
 };
 
+/// What a number is called in messages: "the dimension", "a coordinate of vertex 12".
+struct NumberName {
+  NumberName(const char* name) : before(name) {}
+  NumberName(std::string_view before_, std::string_view of_, std::size_t number_ = 0)
+      : before(before_), of(of_), number(number_) {}
+
+  [[nodiscard]] std::string text() const {
+    const std::string name = std::string(before) + std::string(of);
+    return number == 0 ? name : name + " " + std::to_string(number);
+  }
+
+  std::string_view before;
+  std::string_view of;
+  std::size_t number = 0;  ///< 0: none
+};
+
 /// Numbers as text.
 class TextSource {
  public:
   /// @param scanner  which the source moves
-  TextSource(TextScanner& scanner, const TokenIndex& index, Stage& stage)
-      : scanner_(&scanner), index_(&index), stage_(&stage) {}
+  /// @param index  of its text; null for a text with comments, in which nothing can be skipped
+  TextSource(TextScanner& scanner, const TokenIndex* index, Stage& stage)
+      : scanner_(&scanner), index_(index), stage_(&stage) {}
 
-  [[nodiscard]] std::uint64_t size(const char* what) {
-    const std::int64_t value = integer(what);
-    if (value < 0) fail(ErrorCode::FileSyntax, std::string(what) + " is negative.");
+  [[nodiscard]] std::uint64_t size(const NumberName& name) {
+    const std::int64_t value = integer(name);
+    if (value < 0) fail(ErrorCode::FileSyntax, name.text() + " is negative.");
     return static_cast<std::uint64_t>(value);
   }
-  [[nodiscard]] std::int64_t integer(const char* what) {
+  [[nodiscard]] std::int64_t integer(const NumberName& name) {
     std::int64_t value = 0;
-    if (!scanner_->readInteger(value)) scanner_->failInteger(what);
+    if (!scanner_->readInteger(value)) scanner_->failInteger(name.text());
     return value;
   }
-  [[nodiscard]] double real(const char* what) {
+  [[nodiscard]] double real(const NumberName& name) {
     double value = 0;
-    if (!scanner_->readNumber(value)) scanner_->failNumber(what);
+    if (!scanner_->readNumber(value)) scanner_->failNumber(name.text());
     return value;
   }
 
   [[nodiscard]] std::size_t position() const { return scanner_->position(); }
   void moveTo(std::size_t position) { scanner_->moveTo(position); }
+  /// Whether no number follows.
+  [[nodiscard]] bool atEnd() const { return !scanner_->skipSpace(); }
+  /// How the file spells the number that was read last.
+  [[nodiscard]] std::string spelling(std::uint64_t /*number*/) const {
+    return std::string(scanner_->currentToken());
+  }
 
   /// How many records there can be in the rest of the file.
   [[nodiscard]] std::size_t room(RecordShape shape) const {
@@ -72,14 +95,9 @@ class TextSource {
   void records(std::size_t n, RecordShape shape, const F& f) {
     readElements(*scanner_, index_, *stage_, n, shape.tokens(),
                  [&](TextScanner& scanner, std::size_t i) {
-                   TextSource record(scanner, *index_, *stage_);
+                   TextSource record(scanner, index_, *stage_);
                    f(record, i);
                  });
-  }
-  /// Text has no records of a fixed size.
-  template <class Quick, class F>
-  void records(std::size_t n, RecordShape shape, const Quick& /*quick*/, const F& f) {
-    records(n, shape, f);
   }
 
   [[noreturn]] void fail(ErrorCode code, const std::string& sentence) const {
@@ -98,44 +116,105 @@ class TextSource {
 /// Bytes of a file, in memory or on the disk.
 class ByteFile {
  public:
-  explicit ByteFile(std::string_view bytes) : bytes_(bytes), size_(bytes.size()) {}
+  /// @param bytes  outlive this, and so does the name
+  ByteFile(std::string_view bytes, const std::string& name)
+      : bytes_(bytes), size_(bytes.size()), name_(&name) {}
   /// @param input  a regular file; outlives this
-  explicit ByteFile(const InputFile& input) : input_(&input), size_(input.size()) {}
+  ByteFile(const InputFile& input, const std::string& name)
+      : input_(&input), size_(input.size()), name_(&name) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  /// Bytes of the file, for which there is room if they are not in memory. Thread-safe.
-  [[nodiscard]] std::string_view view(std::size_t position, std::size_t size, char* room) const {
-    if (input_ == nullptr) return bytes_.substr(position, size);
+  [[nodiscard]] bool isInMemory() const noexcept { return input_ == nullptr; }
+  /// Bytes of the file; `room` is for as many if they are not in memory. Thread-safe.
+  [[nodiscard]] const char* view(std::size_t position, std::size_t size, char* room) const {
+    if (isInMemory()) return bytes_.data() + position;
     input_->readAt(position, room, size);
-    return {room, size};
+    return room;
   }
-  /// Everything if it is in memory, else nothing.
-  [[nodiscard]] std::string_view inMemory() const noexcept { return bytes_; }
+  [[noreturn]] void fail(std::size_t position, ErrorCode code, const std::string& sentence,
+                         Place place) const {
+    throw Error(code, *name_ + ", byte " + std::to_string(position) + ": " + sentence, place);
+  }
 
  private:
   const InputFile* input_ = nullptr;
   std::string_view bytes_;
   std::size_t size_;
+  const std::string* name_;
 };
 
 /// Numbers as bytes, the least first.
-class BinarySource {
+/// @tparam Derived  has read<T>(name), which reads the bytes of a T, and fail()
+template <class Derived>
+class LittleEndianNumbers {
  public:
-  /// @param file  outlives this, and so does the name
-  BinarySource(const ByteFile& file, std::size_t position, const std::string& fileName,
-               Stage& stage)
-      : file_(&file),
-        window_(file.inMemory()),
-        position_(position),
-        fileName_(&fileName),
-        stage_(&stage) {}
-
-  [[nodiscard]] std::uint64_t size(const char* what) { return read<std::uint64_t>(what); }
-  [[nodiscard]] std::int64_t integer(const char* what) { return read<std::int32_t>(what); }
-  [[nodiscard]] double real(const char* what) { return finite(read<double>(what), what); }
+  [[nodiscard]] std::uint64_t size(const NumberName& name) { return read<std::uint64_t>(name); }
+  [[nodiscard]] std::int64_t integer(const NumberName& name) { return read<std::int32_t>(name); }
+  [[nodiscard]] double real(const NumberName& name) { return finite(read<double>(name), name); }
   /// A number of single precision.
-  [[nodiscard]] double shortReal(const char* what) {
-    return finite(double{read<float>(what)}, what);
+  [[nodiscard]] double shortReal(const NumberName& name) {
+    return finite(double{read<float>(name)}, name);
+  }
+
+ private:
+  template <class T>
+  T read(const NumberName& name) {
+    return static_cast<Derived*>(this)->template read<T>(name);
+  }
+  double finite(double value, const NumberName& name) const {
+    if (std::isfinite(value)) return value;
+    static_cast<const Derived*>(this)->fail(ErrorCode::NotFinite, name.text() + " is not finite.");
+  }
+};
+
+/// The numbers of one record, whose bytes are all at hand.
+class BinaryRecord : public LittleEndianNumbers<BinaryRecord> {
+ public:
+  /// @param position  of its bytes in the file
+  BinaryRecord(const ByteFile& file, std::size_t position, const char* bytes)
+      : file_(&file), begin_(bytes), next_(bytes), position_(position) {}
+
+  template <class T>
+  [[nodiscard]] T read(const NumberName& /*name*/) {
+    const T value = loadLittle<T>(next_);
+    next_ += sizeof(T);
+    return value;
+  }
+
+  [[nodiscard]] std::size_t position() const {
+    return position_ + static_cast<std::size_t>(next_ - begin_);
+  }
+  void moveTo(std::size_t position) { next_ = begin_ + (position - position_); }
+  void skip(std::size_t n, RecordShape shape) { next_ += n * shape.bytes(); }
+  [[nodiscard]] static std::string spelling(std::uint64_t number) { return std::to_string(number); }
+
+  [[noreturn]] void fail(ErrorCode code, const std::string& sentence, Place place = {}) const {
+    file_->fail(position(), code, sentence, place);
+  }
+
+ private:
+  const ByteFile* file_;
+  const char* begin_;
+  const char* next_;
+  std::size_t position_;
+};
+
+/// The numbers of a file.
+class BinarySource : public LittleEndianNumbers<BinarySource> {
+ public:
+  /// @param file  outlives this
+  BinarySource(const ByteFile& file, std::size_t position, Stage& stage)
+      : file_(&file), position_(position), stage_(&stage) {}
+
+  template <class T>
+  [[nodiscard]] T read(const NumberName& name) {
+    if (position_ > file_->size() || file_->size() - position_ < sizeof(T)) {
+      fail(ErrorCode::FileSyntax, "the file ends within " + name.text() + ".");
+    }
+    std::array<char, sizeof(T)> room{};
+    const T value = loadLittle<T>(file_->view(position_, sizeof(T), room.data()));
+    position_ += sizeof(T);
+    return value;
   }
 
   [[nodiscard]] std::size_t position() const { return position_; }
@@ -145,100 +224,46 @@ class BinarySource {
     return (file_->size() - position_) / shape.bytes();
   }
   void skip(std::size_t n, RecordShape shape) { position_ += n * shape.bytes(); }
+  /// There is room for so many.
   template <class F>
   void records(std::size_t n, RecordShape shape, const F& f) {
-    const auto number = [&f](BinarySource& record, const char* /*place*/, std::size_t i) {
-      f(record, i);
-      return true;
-    };
-    readRecords(n, shape, number, f);
-  }
-  /// The same, faster: quick(place, i) takes record i from its bytes, and returns false if anything
-  /// is wrong with it; then f(record, i) has to say what.
-  template <class Quick, class F>
-  void records(std::size_t n, RecordShape shape, const Quick& quick, const F& f) {
-    const auto bytes = [&quick](BinarySource& /*record*/, const char* place, std::size_t i) {
-      return quick(place, i);
-    };
-    readRecords(n, shape, bytes, f);
-  }
-
-  [[noreturn]] void fail(ErrorCode code, const std::string& sentence, Place place = {}) const {
-    throw Error(code, *fileName_ + ", byte " + std::to_string(position_) + ": " + sentence, place);
-  }
-
- private:
-  /// @param take  reads record i, or returns false or throws if it is wrong
-  /// @param f     throws about a record that is wrong
-  template <class Take, class F>
-  void readRecords(std::size_t n, RecordShape shape, const Take& take, const F& f) {
-    const std::size_t begin = position_;
     std::atomic<std::size_t> firstWrong{n};
-    parallelBlocks(
-        *stage_, n, kElementGrain, [&](std::size_t from, std::size_t to, std::size_t /*block*/) {
-          if (from > firstWrong.load(std::memory_order_relaxed)) return;
-          const std::size_t size = (to - from) * shape.bytes();
-          const std::unique_ptr<char[]> room(window_.empty() ? new char[size] : nullptr);
-          BinarySource source(*this, begin + from * shape.bytes(), size, room.get());
-          const char* place = source.window_.data() + source.position_ - source.windowBegin_;
-          std::size_t i = from;
-          try {
-            while (i < to && take(source, place, i)) {
-              ++i;
-              place += shape.bytes();
-              source.position_ = begin + i * shape.bytes();
-            }
-          } catch (const Error&) {  // record i is wrong, and told about below
-          }
-          if (i == to) return;
-          lowerTo(i, firstWrong);
-        });
-    if (firstWrong < n) {  // throws again
-      BinarySource source(*file_, begin + firstWrong * shape.bytes(), *fileName_, *stage_);
-      f(source, firstWrong);
-    }
+    parallelBlocks(*stage_, n, kElementGrain,
+                   [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                     if (begin > firstWrong.load(std::memory_order_relaxed)) return;
+                     std::size_t i = begin;
+                     try {
+                       readRecords(i, end, shape, f);
+                     } catch (const Error&) {  // thrown again below
+                       lowerTo(i, firstWrong);
+                     }
+                   });
+    std::size_t wrong = firstWrong;
+    if (wrong < n) readRecords(wrong, wrong + 1, shape, f);
     skip(n, shape);
   }
 
-  /// A source that has a part of the file at hand.
-  BinarySource(const BinarySource& whole, std::size_t position, std::size_t size, char* room)
-      : file_(whole.file_),
-        window_(whole.file_->view(position, size, room)),
-        windowBegin_(position),
-        position_(position),
-        fileName_(whole.fileName_),
-        stage_(whole.stage_) {}
+  [[noreturn]] void fail(ErrorCode code, const std::string& sentence, Place place = {}) const {
+    file_->fail(position_, code, sentence, place);
+  }
 
-  [[nodiscard]] double finite(double value, const char* what) const {
-    if (!std::isfinite(value)) {
-      fail(ErrorCode::NotFinite, std::string(what) + " is not finite.");
+ private:
+  /// Reads records [i, end), and moves i on.
+  template <class F>
+  void readRecords(std::size_t& i, std::size_t end, RecordShape shape, const F& f) const {
+    const std::size_t each = shape.bytes();
+    const std::size_t size = (end - i) * each;
+    const std::unique_ptr<char[]> room(file_->isInMemory() ? nullptr : new char[size]);
+    std::size_t position = position_ + i * each;
+    const char* bytes = file_->view(position, size, room.get());
+    for (; i < end; ++i, position += each, bytes += each) {
+      BinaryRecord record(*file_, position, bytes);
+      f(record, i);
     }
-    return value;
-  }
-  template <class T>
-  T read(const char* what) {
-    const std::size_t place = position_ - windowBegin_;
-    if (window_.size() < sizeof(T) || place > window_.size() - sizeof(T)) return readAlone<T>(what);
-    const T value = loadLittle<T>(window_.data() + place);
-    position_ += sizeof(T);
-    return value;
-  }
-  template <class T>
-  T readAlone(const char* what) {
-    if (position_ > file_->size() || file_->size() - position_ < sizeof(T)) {
-      fail(ErrorCode::FileSyntax, std::string("the file ends within ") + what + ".");
-    }
-    std::array<char, sizeof(T)> room{};
-    const T value = loadLittle<T>(file_->view(position_, sizeof(T), room.data()).data());
-    position_ += sizeof(T);
-    return value;
   }
 
   const ByteFile* file_;
-  std::string_view window_;  ///< what is at hand
-  std::size_t windowBegin_ = 0;
   std::size_t position_;
-  const std::string* fileName_;
   Stage* stage_;
 };
 

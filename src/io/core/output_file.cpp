@@ -80,6 +80,7 @@ void OutputFile::flush() {
 }
 
 void OutputFile::writeThrough(const char* bytes, std::size_t size) {
+  written_ += size;
   while (size > 0) {
     const ssize_t written = ::write(descriptor_, bytes, size);
     if (written < 0 && errno == EINTR) continue;

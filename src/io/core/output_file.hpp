@@ -50,6 +50,8 @@ class OutputFile {
   /// hasPositions(). The buffered functions above go on where they were. Thread-safe.
   void writeBytesAt(std::uint64_t position, const void* bytes, std::size_t size) const;
 
+  /// Where the buffered functions write next.
+  [[nodiscard]] std::uint64_t position() const noexcept { return written_ + used_; }
   /// Writes what is buffered; afterwards, writeBytesAt() may replace it.
   void flush();
 
@@ -89,6 +91,7 @@ class OutputFile {
   int descriptor_ = -1;
   std::unique_ptr<char[]> buffer_;
   std::size_t used_ = 0;
+  std::uint64_t written_ = 0;  ///< bytes of earlier buffers
 };
 
 /// Buffers what goes to consecutive places of a file.

@@ -15,7 +15,6 @@
 #include <io/gmsh/gmsh.hpp>
 #include <io/hexex/hexex.hpp>
 #include <io/medit/medit.hpp>
-#include <io/medit/meshb.hpp>
 #include <io/ovm/ovm.hpp>
 #include <io/solvers/abaqus.hpp>
 #include <io/solvers/cgns.hpp>
@@ -28,6 +27,12 @@
 
 namespace hexhex {
 namespace {
+
+// Of formats whose readers take bytes in memory, too.
+template <auto read>
+auto readFile(const std::filesystem::path& file, Context& context) {
+  return read(file, context);
+}
 
 // Of formats whose maps need no options.
 template <auto read>
@@ -102,15 +107,15 @@ constexpr std::array kFormatTable = {
     Format{.name = "mesh",
            .extension = ".mesh",
            .description = "MEDIT (Gamma Mesh Format), text",
-           .readTets = readMeditTets,
-           .readMesh = readMedit,
+           .readTets = readFile<readMeditTets>,
+           .readMesh = readFile<readMedit>,
            .writeMesh = writeMedit,
            .openSink = openMeditSink},
     Format{.name = "meshb",
            .extension = ".meshb",
            .description = "MEDIT (Gamma Mesh Format), binary",
-           .readTets = readMeshbTets,
-           .readMesh = readMeshb,
+           .readTets = readFile<readMeshbTets>,
+           .readMesh = readFile<readMeshb>,
            .writeMesh = writeMeshb,
            .openSink = openMeshbSink},
     Format{.name = "vtu",
@@ -161,21 +166,21 @@ constexpr std::array kFormatTable = {
     Format{.name = "msh",
            .extension = ".msh",
            .description = "Gmsh 4.1, binary",
-           .readTets = readGmshTets,
-           .readMesh = readGmsh,
+           .readTets = readFile<readGmshTets>,
+           .readMesh = readFile<readGmsh>,
            .writeMesh = writeGmsh41Binary,
            .openSink = openGmsh41BinarySink},
     Format{.name = "msh41-ascii",
            .extension = ".msh",
            .description = "Gmsh 4.1, text",
-           .readTets = readGmshTets,
-           .readMesh = readGmsh,
+           .readTets = readFile<readGmshTets>,
+           .readMesh = readFile<readGmsh>,
            .writeMesh = writeGmsh41Text},
     Format{.name = "msh22-ascii",
            .extension = ".msh",
            .description = "Gmsh 2.2, text",
-           .readTets = readGmshTets,
-           .readMesh = readGmsh,
+           .readTets = readFile<readGmshTets>,
+           .readMesh = readFile<readGmsh>,
            .writeMesh = writeGmsh22Text},
     Format{.name = "inp",
            .extension = ".inp",

@@ -4,8 +4,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <string>
-#include <string_view>
 
 #include <hexhex/context.hpp>
 #include <hexhex/io.hpp>
@@ -13,6 +11,7 @@
 #include <hexhex/types.hpp>
 
 #include <io/core/cell_mesh.hpp>
+#include <io/core/input_file.hpp>
 
 namespace hexhex {
 
@@ -20,17 +19,9 @@ namespace hexhex {
 /// and sections are ignored. Vertices are in the order of the file, whatever their tags.
 /// @throws Error FileNotFound, FileSyntax (with line, or byte of a binary file), FileUnsupported,
 ///         IndexOutOfRange, NotFinite, TooLarge
-[[nodiscard]] HexMesh readGmsh(const std::filesystem::path& file, Context& context);
-
-/// The same from memory.
-/// @param fileName  for error messages
-[[nodiscard]] HexMesh parseGmsh(std::string_view text, const std::string& fileName,
-                                Context& context);
-
+[[nodiscard]] HexMesh readGmsh(const Input& input, Context& context);
 /// The same for tetrahedra instead of hexahedra.
-[[nodiscard]] TetCells readGmshTets(const std::filesystem::path& file, Context& context);
-[[nodiscard]] TetCells parseGmshTets(std::string_view text, const std::string& fileName,
-                                     Context& context);
+[[nodiscard]] TetCells readGmshTets(const Input& input, Context& context);
 
 // Node i has the tag i + 1. Elements are tagged vertices (type 15), tagged edges (type 1), boundary
 // and tagged quads (type 3), then all cells (type 5), numbered from 1 in this order. Each group of
@@ -49,5 +40,11 @@ void writeGmsh22Text(const HexMesh& mesh, const std::filesystem::path& file,
 /// @throws Error FileWrite also for a device or a pipe
 [[nodiscard]] std::unique_ptr<MeshSink> openGmsh41BinarySink(const std::filesystem::path& file,
                                                              Context& context);
+
+// Types of elements in files of all versions.
+inline constexpr unsigned kGmshLine = 1;
+inline constexpr unsigned kGmshQuad = 3;
+inline constexpr unsigned kGmshHexahedron = 5;
+inline constexpr unsigned kGmshPoint = 15;
 
 }  // namespace hexhex

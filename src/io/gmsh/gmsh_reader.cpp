@@ -1,23 +1,303 @@
 // The reading half of gmsh.hpp: the sections of a file, in its order.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <hexhex/error.hpp>
 
+#include <base/stage.hpp>
 #include <io/core/cell_mesh.hpp>
 #include <io/core/input_file.hpp>
+#include <io/core/number_source.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/gmsh/gmsh.hpp>
-#include <io/gmsh/gmsh_cells.hpp>
 #include <io/gmsh/gmsh_elements.hpp>
-#include <io/gmsh/gmsh_file.hpp>
-#include <io/gmsh/gmsh_groups.hpp>
-#include <io/gmsh/gmsh_nodes.hpp>
 #include <io/gmsh/gmsh_tags.hpp>
 
 namespace hexhex {
 namespace {
+
+/// The frame of a file: its version and encoding, and its sections one after the other.
+class GmshFile {
+ public:
+  /// Reads the section $MeshFormat.
+  /// @param text  must outlive this, and so must the others
+  /// @throws Error FileSyntax, FileUnsupported
+  GmshFile(std::string_view text, const std::string& fileName, Stage& stage);
+
+  /// Whether the version is 4.1; otherwise it is 2.
+  [[nodiscard]] bool version4() const noexcept { return version4_; }
+
+  /// Goes to the next section and returns its name, without '$'; nothing at the end of the file.
+  [[nodiscard]] std::optional<std::string_view> nextSection();
+  /// Reads the end of a section.
+  void endSection(std::string_view name);
+  /// Skips the rest of a section, and returns what that is, with the end.
+  std::string_view skipSection(std::string_view name);
+
+  [[nodiscard]] Stage& stage() const noexcept { return stage_; }
+  /// Stands where the file is read, and moves on with it.
+  [[nodiscard]] TextScanner& scanner() noexcept { return scanner_; }
+  /// Calls f(source) with a source of numbers that stands at the scanner's place (if they are
+  /// bytes, on the next line), and goes on behind what it read.
+  template <class F>
+  void withSource(const F& f) {
+    if (binary_) {
+      scanner_.skipLineBreak();
+      BinarySource source(bytes_, scanner_.position(), stage_);
+      f(source);
+      scanner_.moveTo(source.position());
+    } else {
+      TextSource source(scanner_, &*index_, stage_);
+      f(source);
+    }
+  }
+
+ private:
+  void readVersion();
+  void readEncoding();
+
+  std::string_view text_;
+  ByteFile bytes_;
+  TextScanner scanner_;
+  Stage& stage_;
+  std::optional<TokenIndex> index_;  ///< only of text
+  bool binary_ = false;
+  bool version4_ = false;
+};
+
+GmshFile::GmshFile(std::string_view text, const std::string& fileName, Stage& stage)
+    : text_(text), bytes_(text, fileName), scanner_(text, fileName), stage_(stage) {
+  if (scanner_.readToken() != "$MeshFormat") {
+    scanner_.fail(ErrorCode::FileSyntax, "a .msh file begins with \"$MeshFormat\", found " +
+                                             quoted(scanner_.currentToken()) + ".");
+  }
+  readVersion();
+  readEncoding();
+  endSection("MeshFormat");
+}
+
+void GmshFile::readVersion() {
+  const std::string_view version = scanner_.readToken();
+  version4_ = version == "4.1";
+  if (version4_ || version == "2.2" || version == "2.1" || version == "2" || version == "2.0") {
+    return;
+  }
+  scanner_.fail(ErrorCode::FileUnsupported,
+                "version " + quoted(version) +
+                    " of the format is not supported; save the mesh as version 4.1 or 2.2.");
+}
+
+void GmshFile::readEncoding() {
+  std::int64_t type = 0;
+  if (!scanner_.readInteger(type)) scanner_.failInteger("the file type");
+  if (type != 0 && type != 1) {
+    scanner_.fail(ErrorCode::FileSyntax,
+                  "the file type is 0 (text) or 1 (binary), found " + std::to_string(type) + ".");
+  }
+  binary_ = type == 1;
+  std::int64_t size = 0;
+  if (!scanner_.readInteger(size)) scanner_.failInteger("the size of numbers");
+  if (size != 8) {
+    scanner_.fail(ErrorCode::FileUnsupported,
+                  "numbers of " + std::to_string(size) + " bytes are not supported, only 8.");
+  }
+  if (!binary_) {
+    index_.emplace(text_, stage_);
+    return;
+  }
+  withSource([](auto& source) {
+    if (source.integer("the mark of the byte order") == 1) return;
+    source.fail(ErrorCode::FileUnsupported,
+                "the bytes of numbers come in the order of another kind of computers; save the "
+                "mesh as text.");
+  });
+}
+
+std::optional<std::string_view> GmshFile::nextSection() {
+  if (!scanner_.skipSpace()) return {};
+  const std::string_view token = scanner_.readToken();
+  if (token.front() != '$') {
+    scanner_.fail(ErrorCode::FileSyntax,
+                  "a section begins with '$' and its name, found " + quoted(token) + ".");
+  }
+  return token.substr(1);
+}
+
+void GmshFile::endSection(std::string_view name) {
+  const std::string_view token = scanner_.readToken();
+  if (token.starts_with("$End") && token.substr(4) == name) return;
+  scanner_.failToken("\"$End" + std::string(name) + "\"");
+}
+
+std::string_view GmshFile::skipSection(std::string_view name) {
+  const std::string end = "$End" + std::string(name);
+  const std::size_t begin = scanner_.position();
+  const std::size_t place = text_.find(end, begin);
+  if (place == std::string_view::npos) {
+    scanner_.fail(ErrorCode::FileSyntax, "the section has no " + quoted(std::string_view(end)) +
+                                             ": the file is incomplete.");
+  }
+  scanner_.moveTo(place + end.size());
+  return text_.substr(begin, place + end.size() - begin);
+}
+
+/// Takes the names of groups from the section $PhysicalNames: lines "dimension number name", as
+/// text in binary files, too. Lines of another form are passed over.
+void readNames(std::string_view section, GmshTags& tags) {
+  while (!section.empty()) {
+    const std::size_t length = std::min(section.find('\n'), section.size());
+    const std::string_view line = section.substr(0, length);
+    section.remove_prefix(std::min(length + 1, section.size()));
+    GmshGroup group;
+    const char* const end = line.data() + line.size();
+    const auto dimension = std::from_chars(line.data(), end, group.first);
+    if (dimension.ec != std::errc{} || dimension.ptr == end || *dimension.ptr != ' ') continue;
+    const auto number = std::from_chars(dimension.ptr + 1, end, group.second);
+    const std::size_t quote = line.find('"');
+    if (number.ec != std::errc{} || quote == std::string_view::npos) continue;
+    const std::string_view name = line.substr(quote + 1);
+    tags.addName(group, name.substr(0, std::min(name.find('"'), name.size())));
+  }
+}
+
+/// The first number of a list, which begins with its length; 0 if it is empty.
+template <class Source>
+std::int64_t firstOfGmshList(Source& source, const char* what) {
+  const std::uint64_t count = source.size("the length of a list");
+  requireRoom(source, count, {.integers = 1}, "numbers");
+  const std::int64_t first = count > 0 ? source.integer(what) : 0;
+  if (count > 1) source.skip(static_cast<std::size_t>(count - 1), {.integers = 1});
+  return first;
+}
+
+/// Entities of one dimension: their tags, where they are, their groups and bounding entities.
+template <class Source>
+void readEntitiesOf(Source& source, std::size_t dimension, std::uint64_t count, GmshTags& tags) {
+  const std::size_t reals = dimension == 0 ? 3 : 6;
+  requireRoom(source, count, {.integers = 1, .reals = reals}, "entities");
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::int64_t entity = source.integer("the tag of an entity");
+    for (std::size_t k = 0; k < reals; ++k) {
+      static_cast<void>(source.real("a coordinate of an entity"));
+    }
+    const std::int64_t physical = firstOfGmshList(source, "the tag of a physical group");
+    if (dimension > 0) firstOfGmshList(source, "the tag of a bounding entity");
+    tags.addEntity({static_cast<std::int64_t>(dimension), entity}, withoutSign(physical));
+  }
+}
+
+/// Reads the groups of entities in the section $Entities of version 4.1.
+template <class Source>
+void readEntities(Source& source, GmshTags& tags) {
+  std::array<std::uint64_t, 4> counts{};
+  for (std::uint64_t& count : counts) count = source.size("the number of entities");
+  for (std::size_t dimension = 0; dimension < counts.size(); ++dimension) {
+    readEntitiesOf(source, dimension, counts[dimension], tags);
+  }
+}
+
+/// Points, and the tag of each.
+class GmshNodes {
+ public:
+  template <class Source>
+  void read41(Source& source);
+  template <class Source>
+  void read22(Source& source, std::size_t count);
+
+  [[nodiscard]] Array<Vec3>& points() noexcept { return points_; }
+  /// @throws Error FileSyntax for two nodes with one tag
+  [[nodiscard]] NodeTags index(const TextScanner& scanner) const;
+
+ private:
+  template <class Source>
+  std::size_t readBlock(Source& source, std::size_t done);
+  template <class Record>
+  void readPoint(Record& record, std::size_t node);
+
+  Array<Vec3> points_;
+  Array<std::uint64_t> tags_;
+};
+
+template <class Source>
+void GmshNodes::read41(Source& source) {
+  const std::uint64_t blocks = source.size("the number of blocks of nodes");
+  const std::uint64_t total = source.size("the number of nodes");
+  static_cast<void>(source.size("the smallest tag of a node"));
+  static_cast<void>(source.size("the largest tag of a node"));
+  requireRoom(source, total, {.sizes = 1, .reals = 3}, "nodes");
+  requireIndexable(source, total, "nodes");
+  points_.resize(total);
+  tags_.resize(total);
+  std::size_t done = 0;
+  for (std::uint64_t block = 0; block < blocks; ++block) done += readBlock(source, done);
+  if (done == total) return;
+  source.fail(ErrorCode::FileSyntax, "the blocks have " + std::to_string(done) + " of the " +
+                                         std::to_string(total) + " nodes of the section.");
+}
+
+/// Nodes of one entity: all tags, then all points.
+/// @param done  nodes before them
+/// @return how many they are
+template <class Source>
+std::size_t GmshNodes::readBlock(Source& source, std::size_t done) {
+  const std::int64_t dimension = source.integer("the dimension of an entity");
+  static_cast<void>(source.integer("the tag of an entity"));
+  const bool parametric = source.integer("whether nodes have parameters") != 0;
+  const std::uint64_t count = source.size("the number of nodes of a block");
+  if (dimension < 0 || dimension > 3) {
+    source.fail(ErrorCode::FileSyntax,
+                "an entity has the dimension " + std::to_string(dimension) + ".");
+  }
+  if (count > points_.size() - done) {
+    source.fail(ErrorCode::FileSyntax, "the blocks have more nodes than the " +
+                                           std::to_string(points_.size()) + " of the section.");
+  }
+  requireRoom(source, count, {.sizes = 1}, "nodes");
+  source.records(count, {.sizes = 1}, [&](auto& record, std::size_t i) {
+    tags_[done + i] = record.size("the tag of a node");
+  });
+  const std::size_t reals = 3 + (parametric ? static_cast<std::size_t>(dimension) : 0);
+  requireRoom(source, count, {.reals = reals}, "nodes");
+  source.records(count, {.reals = reals}, [&](auto& record, std::size_t i) {
+    readPoint(record, done + i);
+    for (std::size_t k = 3; k < reals; ++k) {
+      static_cast<void>(record.real("a parameter of a node"));
+    }
+  });
+  return count;
+}
+
+template <class Source>
+void GmshNodes::read22(Source& source, std::size_t count) {
+  const RecordShape shape{.integers = 1, .reals = 3};
+  requireRoom(source, count, shape, "nodes");
+  points_.resize(count);
+  tags_.resize(count);
+  source.records(count, shape, [&](auto& record, std::size_t i) {
+    tags_[i] = static_cast<std::uint64_t>(record.integer("the number of a node"));
+    readPoint(record, i);
+  });
+}
+
+template <class Record>
+void GmshNodes::readPoint(Record& record, std::size_t node) {
+  for (double& coordinate : points_[node]) coordinate = record.real("a coordinate of a node");
+}
+
+NodeTags GmshNodes::index(const TextScanner& scanner) const {
+  NodeTags index(tags_);
+  const Index repeated = index.repeated();
+  if (repeated == kNone) return index;
+  scanner.fail(ErrorCode::FileSyntax,
+               "two nodes have the tag " + std::to_string(tags_[repeated]) + ".");
+}
 
 /// Reads the sections of one file from top to bottom.
 template <std::size_t corners>
@@ -26,15 +306,75 @@ class GmshReader {
   GmshReader(std::string_view text, const std::string& fileName, Stage& stage)
       : file_(text, fileName, stage), fileName_(fileName) {}
 
-  CellMesh<corners> read();
+  CellMesh<corners> read() {
+    while (const std::optional<std::string_view> name = file_.nextSection()) readSection(*name);
+    requireCells();
+    return std::move(mesh_);
+  }
 
  private:
   static constexpr CellKind kKind = kCellKind<corners>;
 
-  void readSection(std::string_view name);
-  void readNodes();
-  void readElements();
-  void requireCells() const;
+  void readSection(std::string_view name) {
+    if (name == "PhysicalNames") return readNames(file_.skipSection(name), tags_);
+    if (name == "Entities" && file_.version4()) {
+      file_.withSource([this](auto& source) { readEntities(source, tags_); });
+    } else if (name == "Nodes") {
+      readNodes();
+    } else if (name == "Elements") {
+      readElements();
+    } else {
+      file_.skipSection(name);
+      return;
+    }
+    file_.endSection(name);
+  }
+
+  void readNodes() {
+    file_.scanner().failIfRepeated(hasNodes_, "$Nodes");
+    hasNodes_ = true;
+    GmshNodes nodes;
+    if (file_.version4()) {
+      file_.withSource([&](auto& source) { nodes.read41(source); });
+    } else {
+      const std::size_t count = file_.scanner().readCount("nodes", 8);
+      file_.withSource([&](auto& source) { nodes.read22(source, count); });
+    }
+    nodes_ = nodes.index(file_.scanner());
+    mesh_.points = std::move(nodes.points());
+  }
+
+  void readElements() {
+    file_.scanner().failIfRepeated(hasElements_, "$Elements");
+    hasElements_ = true;
+    if (!hasNodes_) {
+      file_.scanner().fail(
+          ErrorCode::FileUnsupported,
+          "the section $Elements stands before the section $Nodes; exchange them.");
+    }
+    GmshElements<corners> elements(tags_, nodes_, mesh_, file_.stage());
+    if (file_.version4()) {
+      file_.withSource([&](auto& source) { elements.read41(source); });
+    } else {
+      const std::size_t count = file_.scanner().readCount("elements", 8);
+      file_.withSource([&](auto& source) { elements.read22(source, count); });
+    }
+    hasOtherElements_ = elements.hasOthers();
+  }
+
+  void requireCells() const {
+    if (!hasElements_) {
+      throw Error(ErrorCode::FileUnsupported, fileName_ + ": the file holds no " +
+                                                  std::string(kKind.plural) +
+                                                  ": it has no section $Elements.");
+    }
+    if (mesh_.cells.empty() && hasOtherElements_) {
+      throw Error(ErrorCode::FileUnsupported,
+                  fileName_ + ": the file holds no " + std::string(kKind.plural) + " with " +
+                      std::to_string(corners) + " nodes (type " + std::to_string(kKind.gmshType) +
+                      "), but other elements only.");
+    }
+  }
 
   GmshFile file_;
   const std::string& fileName_;
@@ -46,81 +386,14 @@ class GmshReader {
   CellMesh<corners> mesh_;
 };
 
-template <std::size_t corners>
-CellMesh<corners> GmshReader<corners>::read() {
-  while (const std::optional<std::string_view> name = file_.nextSection()) readSection(*name);
-  requireCells();
-  return std::move(mesh_);
-}
-
-template <std::size_t corners>
-void GmshReader<corners>::readSection(std::string_view name) {
-  if (name == "PhysicalNames") return readGmshNames(file_.skipSection(name), tags_);
-  if (name == "Entities" && file_.version4()) return readGmshEntities(file_, tags_);
-  if (name == "Nodes") {
-    readNodes();
-  } else if (name == "Elements") {
-    readElements();
-  } else {
-    file_.skipSection(name);
-    return;
-  }
-  file_.endSection(name);
-}
-
-template <std::size_t corners>
-void GmshReader<corners>::readNodes() {
-  file_.scanner().failIfRepeated(hasNodes_, "$Nodes");
-  hasNodes_ = true;
-  GmshNodes nodes = readGmshNodes(file_);
-  nodes_ = std::move(nodes.tags);
-  mesh_.points = std::move(nodes.points);
-}
-
-template <std::size_t corners>
-void GmshReader<corners>::readElements() {
-  file_.scanner().failIfRepeated(hasElements_, "$Elements");
-  hasElements_ = true;
-  if (!hasNodes_) {
-    file_.scanner().fail(ErrorCode::FileUnsupported,
-                         "the section $Elements stands before the section $Nodes; exchange them.");
-  }
-  GmshCells<corners> cells(nodes_, mesh_);
-  hasOtherElements_ =
-      file_.version4() ? readElements41(file_, tags_, cells) : readElements22(file_, tags_, cells);
-}
-
-template <std::size_t corners>
-void GmshReader<corners>::requireCells() const {
-  if (!hasElements_) {
-    throw Error(ErrorCode::FileUnsupported, fileName_ + ": the file holds no " +
-                                                std::string(kKind.plural) +
-                                                ": it has no section $Elements.");
-  }
-  if (mesh_.cells.empty() && hasOtherElements_) {
-    throw Error(ErrorCode::FileUnsupported,
-                fileName_ + ": the file holds no " + std::string(kKind.plural) + " with " +
-                    std::to_string(corners) + " nodes (type " + std::to_string(kKind.gmshType) +
-                    "), but other elements only.");
-  }
-}
-
 }  // namespace
 
-HexMesh parseGmsh(std::string_view text, const std::string& fileName, Context& context) {
-  return toHexMesh(parseWith<GmshReader<8>>(text, fileName, "read mesh", context));
+HexMesh readGmsh(const Input& input, Context& context) {
+  return toHexMesh(readWith<GmshReader<8>>(input, "read mesh", context));
 }
 
-HexMesh readGmsh(const std::filesystem::path& file, Context& context) {
-  return toHexMesh(readWith<GmshReader<8>>(file, "read mesh", context));
-}
-
-TetCells parseGmshTets(std::string_view text, const std::string& fileName, Context& context) {
-  return parseWith<GmshReader<4>>(text, fileName, "read tets", context);
-}
-
-TetCells readGmshTets(const std::filesystem::path& file, Context& context) {
-  return readWith<GmshReader<4>>(file, "read tets", context);
+TetCells readGmshTets(const Input& input, Context& context) {
+  return readWith<GmshReader<4>>(input, "read tets", context);
 }
 
 }  // namespace hexhex

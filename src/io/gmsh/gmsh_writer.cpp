@@ -1,92 +1,87 @@
 // The writing half of gmsh.hpp.
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
-#include <tuple>
 
 #include <hexhex/error.hpp>
 
-#include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/core/checked_sink.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
 #include <io/gmsh/gmsh.hpp>
-#include <io/gmsh/gmsh_types.hpp>
 #include <io/gmsh/msh41_writer.hpp>
 
 namespace hexhex {
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 14;
-
-/// A mesh as Gmsh sees it.
-struct GmshContent {
-  std::span<const Vec3> points;
-  std::span<const Hex> given;  ///< cells as the mesh has them
-  GmshGroups groups;
-  Array<Hex> sortedCells;  ///< by region; empty if they are that anyway
-
-  GmshContent(const HexMesh& mesh, const WriteOptions& options, Stage& stage)
-      : points(mesh.points), given(mesh.cells), groups(mesh, options.patchAngle, stage) {
-    if (groups.cells.order.empty()) return;
-    sortedCells.resize(given.size());
-    parallelFor(stage, given.size(), kGrain,
-                [this](std::size_t i) { sortedCells[i] = given[groups.cells.at(i)]; });
-  }
-
-  [[nodiscard]] std::size_t elementCount() const {
-    return groups.vertices.elements.size() + groups.edges.elements.size() +
-           groups.quads.elements.size() + given.size();
-  }
-
-  /// Calls f(dimension, type, elements) for each kind of elements in the order of the file.
-  template <class F>
-  void forEachKind(const F& f) const {
-    f(0U, kGmshPoint, std::span(groups.vertices.elements));
-    f(1U, kGmshLine, std::span(groups.edges.elements));
-    f(2U, kGmshQuad, std::span(groups.quads.elements));
-    f(3U, kGmshHexahedron, sortedCells.empty() ? given : std::span<const Hex>(sortedCells));
-  }
-};
-
-GmshContent contentOf(const HexMesh& mesh, const WriteOptions& options, Stage& stage, int threads) {
-  std::optional<GmshContent> content;
-  withThreads(threads, [&] { content.emplace(mesh, options, stage); });
-  return std::move(*content);
+/// Calls f(kind) for the elements of each dimension, in the order of the file.
+template <class F>
+void forEachKind(const HexMesh& mesh, const GmshGroups& groups, const F& f) {
+  const auto of = [](const auto& elements) {
+    return [&elements](std::size_t i) -> const auto& { return elements[i]; };
+  };
+  f(GmshKind{0U, kGmshPoint, 1, of(groups.vertices.elements)});
+  f(GmshKind{1U, kGmshLine, 2, of(groups.edges.elements)});
+  f(GmshKind{2U, kGmshQuad, 4, of(groups.quads.elements)});
+  f(GmshKind{3U, kGmshHexahedron, 8,
+             [&](std::size_t i) -> const Hex& { return mesh.cells[groups.cells.at(i)]; }});
 }
 
 template <class Numbers>
 void writeMsh41(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
                 Context& context) {
   Stage stage(context, "write mesh");
-  OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  const GmshContent content = contentOf(mesh, options, stage, context.threads());
-  Msh41Writer<Numbers, GmshContent>(output, content, stage, context.threads()).write();
-  output.commit();
+  // First, so that a folder that is not writable shows at once.
+  Msh41Writer<Numbers> writer(file, context.threads());
+  const GmshGroups groups(mesh, options.patchAngle, stage, context.threads());
+  writer.write(
+      mesh.points, groups, [&](const auto& f) { forEachKind(mesh, groups, f); }, stage);
 }
 
-/// Writes the elements of one kind as lines "tag type 2 physical entity nodes".
-template <class Elements>
-void writeMsh22Elements(LineWriter& lines, std::uint64_t firstTag, unsigned type,
-                        const std::vector<GmshEntity>& entities, const Elements& elements,
-                        LoopProgress& progress) {
-  constexpr std::size_t kCorners = std::tuple_size_v<typename Elements::value_type>;
-  for (const GmshEntity& entity : entities) {
-    const auto element = [&](char* place, std::size_t i) {
-      const std::array<std::uint64_t, 5> head = {firstTag + entity.begin + i, type, 2,
-                                                 entity.physical, entity.tag};
-      place = putNumbers(place, head);
-      for (const Index vertex : elements[entity.begin + i]) {
-        place = put(put(place, ' '), std::uint64_t{vertex} + 1);
-      }
-      return put(place, '\n');
-    };
-    lines.write(entity.end - entity.begin, (kCorners + 5) * (kNumberRoom + 1), element, &progress);
+/// A mesh in pieces: one volume. Its box stands in front of the nodes but is known only behind
+/// them, and is written to its place in the end.
+class GmshStream : private Msh41Writer<BinaryNumbers> {
+ public:
+  GmshStream(const std::filesystem::path& file, int threads) : Msh41Writer(file, threads) {
+    if (output().hasPositions()) return;
+    throw Error(ErrorCode::FileWrite,
+                file.string() +
+                    ": the file was not written because it is a device or a pipe, to which a .msh "
+                    "file cannot be written in pieces. Name a file.");
   }
-}
+
+  void begin(std::uint64_t points, std::uint64_t cells) {
+    groups_ = GmshGroups(cells);
+    beginEntities(groups_);
+    writeEntity(3, volume(), box_);
+    beginNodes(groups_, points);
+  }
+  void points(const PointPiece& piece) {
+    for (const Vec3& point : piece.points) box_.add(point);
+    writePoints(piece.points);
+  }
+  void beginCells() {
+    beginElements(groups_);
+    beginBlock(3, volume(), kGmshHexahedron);
+  }
+  template <class Cell>
+  void cells(std::uint64_t first, std::span<const Cell> cells) {
+    writeElements(first + 1, cells.size(), 8,
+                  [cells](std::size_t i) -> const Cell& { return cells[i]; });
+  }
+  void end() {
+    rewriteBox(box_);
+    Msh41Writer::end();
+  }
+
+ private:
+  [[nodiscard]] const GmshEntity& volume() const { return groups_.entities[3].front(); }
+
+  GmshGroups groups_{0};
+  Box box_;
+};
 
 void requireSmall(std::size_t count, const char* what) {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
@@ -112,27 +107,44 @@ void writeGmsh22Text(const HexMesh& mesh, const std::filesystem::path& file,
                      const WriteOptions& options, Context& context) {
   Stage stage(context, "write mesh");
   OutputFile output(file);
-  const GmshContent content = contentOf(mesh, options, stage, context.threads());
+  const GmshGroups groups(mesh, options.patchAngle, stage, context.threads());
   requireSmall(mesh.points.size(), "nodes");
-  requireSmall(content.elementCount(), "elements");
+  requireSmall(groups.elementCount(), "elements");
   LineWriter lines(output, context.threads());
-  LoopProgress progress(stage, mesh.points.size() + content.elementCount());
+  LoopProgress progress(stage, mesh.points.size() + groups.elementCount());
   output.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
-  writePhysicalNames(output, content.groups);
+  writePhysicalNames(output, groups);
   output.write("$Nodes\n").write(mesh.points.size()).write('\n');
   const auto node = [&mesh](char* place, std::size_t i) {
     place = put(put(place, std::uint64_t{i} + 1), ' ');
     return put(putNumbers(place, mesh.points[i]), '\n');
   };
   lines.write(mesh.points.size(), 4 * (kNumberRoom + 1), node, &progress);
-  output.write("$EndNodes\n$Elements\n").write(content.elementCount()).write('\n');
+  output.write("$EndNodes\n$Elements\n").write(groups.elementCount()).write('\n');
   std::uint64_t tag = 1;
-  content.forEachKind([&](unsigned dimension, unsigned type, const auto& elements) {
-    writeMsh22Elements(lines, tag, type, content.groups.entities[dimension], elements, progress);
-    tag += elements.size();
+  forEachKind(mesh, groups, [&](const auto& kind) {
+    for (const GmshEntity& entity : groups.entities[kind.dimension]) {
+      const auto element = [&](char* place, std::size_t i) {
+        const std::array<std::uint64_t, 5> head = {tag + i, kind.type, 2, entity.physical,
+                                                   entity.tag};
+        place = putNumbers(place, head);
+        const auto& nodes = kind.at(entity.begin + i);
+        for (std::size_t k = 0; k < kind.nodes; ++k) {
+          place = put(put(place, ' '), std::uint64_t{nodes[k]} + 1);
+        }
+        return put(place, '\n');
+      };
+      lines.write(entity.size(), (kind.nodes + 5) * (kNumberRoom + 1), element, &progress);
+      tag += entity.size();
+    }
   });
   output.write("$EndElements\n");
   output.commit();
+}
+
+std::unique_ptr<MeshSink> openGmsh41BinarySink(const std::filesystem::path& file,
+                                               Context& context) {
+  return openWriterSink<GmshStream>(file, context);
 }
 
 }  // namespace hexhex

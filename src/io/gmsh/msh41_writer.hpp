@@ -1,9 +1,11 @@
-// Writes MSH 4.1, as text and as bytes: what differs is how a number looks.
+// Writes MSH 4.1, as text and as bytes: what differs is how a number looks. A whole mesh and a mesh
+// in pieces have the same sections.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <initializer_list>
 #include <limits>
 #include <span>
@@ -12,6 +14,7 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
@@ -25,27 +28,9 @@ struct GmshEntity {
   std::uint32_t physical;  ///< number of the physical group
   std::size_t begin;
   std::size_t end;
+
+  [[nodiscard]] std::size_t size() const { return end - begin; }
 };
-
-[[nodiscard]] inline std::vector<GmshEntity> entitiesOf(const std::vector<ElementGroup>& groups) {
-  std::vector<GmshEntity> entities;
-  entities.reserve(groups.size());
-  for (const ElementGroup& group : groups) {
-    entities.push_back({group.number, group.number, group.begin, group.end});
-  }
-  return entities;
-}
-
-/// A point entity is one point: each vertex of a group is an entity of its own.
-[[nodiscard]] inline std::vector<GmshEntity> pointsOf(const std::vector<ElementGroup>& groups) {
-  std::vector<GmshEntity> entities;
-  for (const ElementGroup& group : groups) {
-    for (std::size_t i = group.begin; i < group.end; ++i) {
-      entities.push_back({static_cast<std::uint32_t>(i + 1), group.number, i, i + 1});
-    }
-  }
-  return entities;
-}
 
 /// What the elements of a file are sorted into.
 struct GmshGroups {
@@ -56,18 +41,51 @@ struct GmshGroups {
   std::array<std::vector<GmshEntity>, 4> entities;  ///< by dimension
 
   /// @throws Error InvalidArgument for features that are not in the mesh
-  GmshGroups(const HexMesh& mesh, double patchAngle, Stage& stage)
-      : vertices(groupVertices(mesh)),
-        edges(groupEdges(mesh)),
-        quads(groupQuads(mesh, patchAngle, stage)),
-        cells(groupCells(mesh)),
-        entities{pointsOf(vertices.groups), entitiesOf(edges.groups), entitiesOf(quads.groups),
-                 entitiesOf(cells.groups)} {}
+  GmshGroups(const HexMesh& mesh, double patchAngle, Stage& stage, int threads)
+      : vertices(groupVertices(mesh)), edges(groupEdges(mesh)), cells(groupCells(mesh)) {
+    withThreads(threads, [&] { quads = groupQuads(mesh, patchAngle, stage); });
+    addEntities();
+  }
+  /// Of cells alone.
+  explicit GmshGroups(std::size_t cellCount) : cells{{{1, "hexahedra", 0, cellCount}}, {}} {
+    addEntities();
+  }
 
   [[nodiscard]] std::array<const std::vector<ElementGroup>*, 4> byDimension() const {
     return {&vertices.groups, &edges.groups, &quads.groups, &cells.groups};
   }
+  [[nodiscard]] std::size_t elementCount() const {
+    return vertices.elements.size() + edges.elements.size() + quads.elements.size() +
+           cells.groups.back().end;
+  }
+
+ private:
+  void addEntities() {
+    // A point entity is one point: each vertex of a group is an entity of its own.
+    for (const ElementGroup& group : vertices.groups) {
+      for (std::size_t i = group.begin; i < group.end; ++i) {
+        entities[0].push_back({static_cast<std::uint32_t>(i + 1), group.number, i, i + 1});
+      }
+    }
+    for (std::size_t dimension = 1; dimension < 4; ++dimension) {
+      for (const ElementGroup& group : *byDimension()[dimension]) {
+        entities[dimension].push_back({group.number, group.number, group.begin, group.end});
+      }
+    }
+  }
 };
+
+/// The elements of one dimension.
+/// @tparam At  at(i)[k] is node k of element i
+template <class At>
+struct GmshKind {
+  unsigned dimension;
+  unsigned type;      ///< Gmsh's
+  std::size_t nodes;  ///< of each element
+  At at;
+};
+template <class At>
+GmshKind(unsigned, unsigned, std::size_t, At) -> GmshKind<At>;
 
 inline void writePhysicalNames(OutputFile& output, const GmshGroups& groups) {
   std::size_t count = 0;
@@ -85,203 +103,229 @@ inline void writePhysicalNames(OutputFile& output, const GmshGroups& groups) {
 /// Numbers of MSH 4.1 as text: with a space or a line break behind each.
 class TextNumbers {
  public:
-  static constexpr std::string_view kFileType = "0";
+  static constexpr bool kIsBinary = false;
   static constexpr std::size_t kRoom = kNumberRoom + 1;
 
   static char* size(char* place, std::uint64_t number) { return put(put(place, number), ' '); }
   static char* point(char* place, const Vec3& point) { return putNumbers(place, point); }
   static char* endLine(char* place) { return put(place, '\n'); }
-  static void integer(OutputFile& output, std::uint32_t number) { output.write(number).write(' '); }
-  static void size(OutputFile& output, std::uint64_t number) { output.write(number).write(' '); }
-  static void real(OutputFile& output, double number) { output.write(number).write(' '); }
-  static void endLine(OutputFile& output) { output.write('\n'); }
-  static void endianness(OutputFile& /*output*/) {}
+  template <class Number>
+  static void write(OutputFile& output, Number number) {
+    output.write(number).write(' ');
+  }
 };
 
 /// Numbers of MSH 4.1 as bytes.
 class BinaryNumbers {
  public:
-  static constexpr std::string_view kFileType = "1";
+  static constexpr bool kIsBinary = true;
   static constexpr std::size_t kRoom = 8;
 
   static char* size(char* place, std::uint64_t number) { return putBytes(place, number); }
   static char* point(char* place, const Vec3& point) { return putBytes(place, point); }
   static char* endLine(char* place) { return place; }
-  static void integer(OutputFile& output, std::uint32_t number) { writeBytesOf(output, number); }
-  static void size(OutputFile& output, std::uint64_t number) { writeBytesOf(output, number); }
-  static void real(OutputFile& output, double number) { writeBytesOf(output, number); }
-  static void endLine(OutputFile& /*output*/) {}
-  static void endianness(OutputFile& output) {
-    writeBytesOf(output, std::uint32_t{1});
-    output.write('\n');
+  template <class Number>
+  static void write(OutputFile& output, Number number) {
+    writeBytesOf(output, number);
   }
 };
 
-/// Writes the sections of MSH 4.1.
-/// @tparam Content  points, a span of Vec3; groups, a GmshGroups; elementCount(); and
-///         forEachKind(f), which calls f(dimension, type, elements) for dimensions 0 to 3, with
-///         Gmsh's type of elements; elements has size(), subspan(begin, count), and operator[](i),
-///         a range of Index with the same size() for all i
-template <class Numbers, class Content>
+/// Writes one file front to back.
+template <class Numbers>
 class Msh41Writer {
  public:
-  Msh41Writer(OutputFile& output, const Content& content, Stage& stage, int threads)
-      : output_(output),
-        lines_(output, threads),
-        content_(content),
-        progress_(stage, 2 * content.points.size() + content.elementCount()) {}
+  Msh41Writer(const std::filesystem::path& file, int threads)
+      : output_(file), lines_(output_, threads) {}
 
-  void write() {
-    output_.write("$MeshFormat\n4.1 ").write(Numbers::kFileType).write(" 8\n");
-    Numbers::endianness(output_);
-    output_.write("$EndMeshFormat\n");
-    writePhysicalNames(output_, content_.groups);
-    writeEntities();
-    writeNodes();
-    writeElements();
-  }
-
- private:
-  using Box = std::array<Vec3, 2>;
-
-  static void extend(Box& box, const Vec3& point) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box[0][axis] = std::min(box[0][axis], point[axis]);
-      box[1][axis] = std::max(box[1][axis], point[axis]);
-    }
-  }
-  static constexpr Box emptyBox() {
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    return {Vec3{kFar, kFar, kFar}, Vec3{-kFar, -kFar, -kFar}};
-  }
-  /// The smallest box around all points.
-  [[nodiscard]] Box boxOfAll() const {
-    Box box = emptyBox();
-    for (const Vec3& point : content_.points) extend(box, point);
-    return content_.points.empty() ? Box{} : box;
-  }
-  /// The smallest box around the points of elements.
-  template <class Elements>
-  [[nodiscard]] Box boxOf(const Elements& elements) const {
-    Box box = emptyBox();
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-      for (const Index node : elements[i]) extend(box, content_.points[node]);
-    }
-    return elements.size() == 0 ? Box{} : box;
-  }
-
-  void writeEntities() {
-    output_.write("$Entities\n");
-    const auto& entities = content_.groups.entities;
-    for (const auto& ofDimension : entities) sizes({ofDimension.size()});
-    Numbers::endLine(output_);
-    content_.forEachKind([&](unsigned dimension, unsigned /*type*/, const auto& elements) {
-      for (const GmshEntity& entity : entities[dimension]) {
-        this->writeEntity(dimension, entity,
-                          elements.subspan(entity.begin, entity.end - entity.begin));
+  /// A whole mesh.
+  /// @param forEachKind  calls its argument with the GmshKind of each dimension, 0 to 3
+  template <class ForEachKind>
+  void write(std::span<const Vec3> points, const GmshGroups& groups, const ForEachKind& forEachKind,
+             Stage& stage) {
+    LoopProgress progress(stage, 2 * points.size() + groups.elementCount());
+    progress_ = &progress;
+    Box boxOfAll;
+    for (const Vec3& point : points) boxOfAll.add(point);
+    beginEntities(groups);
+    forEachKind([&](const auto& kind) {
+      for (const GmshEntity& entity : groups.entities[kind.dimension]) {
+        // A volume has all points, each of which is looked at once then.
+        const Box box = kind.dimension == 3 ? boxOfAll : boxOf(kind, entity, points);
+        this->writeEntity(kind.dimension, entity, box);
       }
     });
-    endSection("$EndEntities\n");
+    beginNodes(groups, points.size());
+    writePoints(points);
+    beginElements(groups);
+    std::uint64_t tag = 1;
+    forEachKind([&](const auto& kind) {
+      for (const GmshEntity& entity : groups.entities[kind.dimension]) {
+        this->beginBlock(kind.dimension, entity, kind.type);
+        this->writeElements(tag, entity.size(), kind.nodes, [&](std::size_t i) -> decltype(auto) {
+          return kind.at(entity.begin + i);
+        });
+        tag += entity.size();
+      }
+    });
+    end();
   }
 
-  template <class Elements>
-  void writeEntity(unsigned dimension, const GmshEntity& entity, const Elements& elements) {
-    // A volume has all points, each of which is looked at once then.
-    const Box box = dimension == 3 ? boxOfAll() : boxOf(elements);
-    Numbers::integer(output_, entity.tag);
+ protected:
+  /// The smallest box around points; around none, all of it is 0.
+  class Box {
+   public:
+    void add(const Vec3& point) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        lower_[axis] = std::min(lower_[axis], point[axis]);
+        upper_[axis] = std::max(upper_[axis], point[axis]);
+      }
+    }
+    [[nodiscard]] std::array<Vec3, 2> corners() const {
+      if (lower_[0] > upper_[0]) return {};
+      return {lower_, upper_};
+    }
+
+   private:
+    static constexpr double kFar = std::numeric_limits<double>::infinity();
+    Vec3 lower_ = {kFar, kFar, kFar};
+    Vec3 upper_ = {-kFar, -kFar, -kFar};
+  };
+
+  // The parts of a file, in their order. Each ends the section before it.
+
+  /// All before the entities.
+  void beginEntities(const GmshGroups& groups) {
+    output_.write("$MeshFormat\n4.1 ").write(Numbers::kIsBinary ? '1' : '0').write(" 8\n");
+    if (Numbers::kIsBinary) {
+      writeBytesOf(output_, std::uint32_t{1});
+      output_.write('\n');
+    }
+    output_.write("$EndMeshFormat\n");
+    writePhysicalNames(output_, groups);
+    output_.write("$Entities\n");
+    for (const auto& ofDimension : groups.entities) sizes({ofDimension.size()});
+    endLine();
+  }
+
+  void writeEntity(unsigned dimension, const GmshEntity& entity, const Box& box) {
+    integers({entity.tag});
+    boxPosition_ = output_.position();
+    const std::array<Vec3, 2> corners = box.corners();
     // A point has a position instead of a box.
     for (std::size_t corner = 0; corner < (dimension == 0 ? 1U : 2U); ++corner) {
-      for (const double coordinate : box[corner]) Numbers::real(output_, coordinate);
+      for (const double coordinate : corners[corner]) Numbers::write(output_, coordinate);
     }
     sizes({1});
-    Numbers::integer(output_, entity.physical);
+    integers({entity.physical});
     // What bounds an entity is left open: patches of features need not be whole boundaries.
     if (dimension > 0) sizes({0});
-    Numbers::endLine(output_);
+    endLine();
+  }
+  /// Replaces the box of the last entity, in a file of bytes.
+  void rewriteBox(const Box& box) {
+    output_.flush();
+    std::array<char, sizeof(Vec3) * 2> bytes;  // NOLINT(*-member-init): filled at once
+    char* place = bytes.data();
+    for (const Vec3& corner : box.corners()) place = putBytes(place, corner);
+    output_.writeBytesAt(boxPosition_, bytes.data(), bytes.size());
   }
 
-  void writeNodes() {
-    const std::span<const Vec3> points(content_.points);
+  /// All before the points.
+  void beginNodes(const GmshGroups& groups, std::size_t count) {
+    endSection("$EndEntities\n");
     output_.write("$Nodes\n");
-    const std::size_t blocks = points.empty() ? 0 : 1;
-    sizes({blocks, points.size(), blocks, points.size()});
-    Numbers::endLine(output_);
-    if (blocks == 1) {
-      const std::uint32_t volume = content_.groups.entities[3].front().tag;
-      for (const std::uint32_t number : {3U, volume, 0U}) Numbers::integer(output_, number);
-      sizes({points.size()});
-      Numbers::endLine(output_);
-    }
+    const std::size_t blocks = std::min<std::size_t>(count, 1);
+    sizes({blocks, count, blocks, count});
+    endLine();
+    if (count == 0) return;
+    integers({3, groups.entities[3].front().tag, 0});
+    sizes({count});
+    endLine();
     const auto tag = [](char* place, std::size_t i) {
       return Numbers::endLine(Numbers::size(place, i + 1));
     };
+    lines_.write(count, Numbers::kRoom + 1, tag, progress_);
+  }
+
+  void writePoints(std::span<const Vec3> points) {
     const auto point = [points](char* place, std::size_t i) {
       return Numbers::endLine(Numbers::point(place, points[i]));
     };
-    lines_.write(points.size(), Numbers::kRoom + 1, tag, &progress_);
-    lines_.write(points.size(), 3 * Numbers::kRoom + 1, point, &progress_);
+    lines_.write(points.size(), 3 * Numbers::kRoom + 1, point, progress_);
+  }
+
+  void beginElements(const GmshGroups& groups) {
     endSection("$EndNodes\n");
-  }
-
-  void writeElements() {
     output_.write("$Elements\n");
-    const std::size_t count = content_.elementCount();
+    const std::size_t count = groups.elementCount();
     std::size_t blocks = 0;
-    forEachBlock([&](auto&&...) { ++blocks; });
+    for (const auto& ofDimension : groups.entities) {
+      for (const GmshEntity& entity : ofDimension) blocks += entity.size() > 0 ? 1 : 0;
+    }
     sizes({blocks, count, std::min<std::size_t>(count, 1), count});
-    Numbers::endLine(output_);
-    std::uint64_t tag = 1;
-    forEachBlock(
-        [&](unsigned dimension, unsigned type, std::uint32_t entity, const auto& elements) {
-          for (const std::uint32_t number : {dimension, entity, type}) {
-            Numbers::integer(output_, number);
-          }
-          sizes({elements.size()});
-          Numbers::endLine(output_);
-          writeBlock(tag, elements);
-          tag += elements.size();
-        });
-    endSection("$EndElements\n");
+    endLine();
   }
 
-  /// Calls f(dimension, type, entity, elements of the entity) for the entities that are not empty.
-  template <class F>
-  void forEachBlock(const F& f) const {
-    content_.forEachKind([&](unsigned dimension, unsigned type, const auto& elements) {
-      for (const GmshEntity& entity : content_.groups.entities[dimension]) {
-        if (entity.begin == entity.end) continue;
-        f(dimension, type, entity.tag, elements.subspan(entity.begin, entity.end - entity.begin));
-      }
-    });
+  /// The elements of an entity have a block, if there are any.
+  void beginBlock(unsigned dimension, const GmshEntity& entity, unsigned type) {
+    if (entity.size() == 0) return;
+    integers({dimension, entity.tag, type});
+    sizes({entity.size()});
+    endLine();
   }
 
-  /// @param elements  not empty
-  template <class Elements>
-  void writeBlock(std::uint64_t firstTag, const Elements& elements) {
-    const auto element = [&elements, firstTag](char* place, std::size_t i) {
+  /// @param nodes, at  as in GmshKind
+  template <class At>
+  void writeElements(std::uint64_t firstTag, std::size_t count, std::size_t nodes, const At& at) {
+    const auto element = [&](char* place, std::size_t i) {
       place = Numbers::size(place, firstTag + i);
-      for (const Index node : elements[i]) {
-        place = Numbers::size(place, std::uint64_t{node} + 1);
+      const auto& ofElement = at(i);
+      for (std::size_t k = 0; k < nodes; ++k) {
+        place = Numbers::size(place, std::uint64_t{ofElement[k]} + 1);
       }
       return Numbers::endLine(place);
     };
-    lines_.write(elements.size(), (elements[0].size() + 1) * Numbers::kRoom + 1, element,
-                 &progress_);
+    lines_.write(count, (nodes + 1) * Numbers::kRoom + 1, element, progress_);
   }
 
+  void end() {
+    endSection("$EndElements\n");
+    output_.commit();
+  }
+
+  [[nodiscard]] const OutputFile& output() const noexcept { return output_; }
+
+ private:
+  template <class At>
+  [[nodiscard]] static Box boxOf(const GmshKind<At>& kind, const GmshEntity& entity,
+                                 std::span<const Vec3> points) {
+    Box box;
+    for (std::size_t i = entity.begin; i < entity.end; ++i) {
+      const auto& element = kind.at(i);
+      for (std::size_t k = 0; k < kind.nodes; ++k) box.add(points[element[k]]);
+    }
+    return box;
+  }
+
+  void integers(std::initializer_list<std::uint32_t> numbers) {
+    for (const std::uint32_t number : numbers) Numbers::write(output_, number);
+  }
   void sizes(std::initializer_list<std::uint64_t> numbers) {
-    for (const std::uint64_t number : numbers) Numbers::size(output_, number);
+    for (const std::uint64_t number : numbers) Numbers::write(output_, number);
+  }
+  void endLine() {
+    if (!Numbers::kIsBinary) output_.write('\n');
   }
   void endSection(std::string_view end) {
     // Behind bytes the end has to begin a line.
-    if (Numbers::kFileType == "1") output_.write('\n');
+    if (Numbers::kIsBinary) output_.write('\n');
     output_.write(end);
   }
 
-  OutputFile& output_;
+  OutputFile output_;
   LineWriter lines_;
-  const Content& content_;
-  LoopProgress progress_;
+  LoopProgress* progress_ = nullptr;
+  std::uint64_t boxPosition_ = 0;
 };
 
 }  // namespace hexhex
