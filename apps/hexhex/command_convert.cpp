@@ -125,8 +125,9 @@ Command addConvert(CLI::App& app) {
   addThreads(*parser, arguments->threads);
   parser->add_flag("--stream", arguments->stream,
                    "Read and write a mesh piece by piece, for meshes larger\n"
-                   "than the memory, from .vtu to .vtu, .mesh, .meshb, .vtk\n"
-                   "or .msh; without boundary quads and quality");
+                   "than the memory, from .vtu to " +
+                       extensionsThat(&FileFormat::streams) +
+                       ";\nwithout boundary quads and quality");
   addQuiet(*parser, arguments->quiet);
   parser->footer(
       "Maps become maps, and hexahedral meshes become hexahedral meshes: the input's content "

@@ -361,11 +361,11 @@ void addMethod(CLI::App& parser, Arguments& arguments) {
                   "changes the result, only the time")
       ->option_text("NUMBER [1e-6]");
   parser.add_flag("--stream", arguments.stream,
-                  "Write the mesh piece by piece, .vtu, .mesh, .meshb, .vtk\n"
-                  "or .msh, for meshes"
-                  " larger than the memory. Nothing that takes the whole mesh:\n"
-                  "no scaled Jacobians, no boundary quads, and verified by\n"
-                  "counts and checksums, by reading the file again");
+                  "Write the mesh piece by piece, for meshes larger than the\nmemory: " +
+                      extensionsThat(&FileFormat::streams) +
+                      ".\nNothing that takes the whole mesh: no scaled Jacobians,\n"
+                      "no boundary quads, and verified by counts and checksums,\n"
+                      "by reading the file again");
 }
 
 /// Meshes that follow the map more closely.

@@ -110,7 +110,7 @@ Command addGenerate(CLI::App& app) {
       ->option_text("REQUIRED");
   parser
       ->add_option("-o,--output", arguments->output,
-                   "The map to write, .hexex, .ovm, .ovmb, .vtu or .vtk")
+                   "The map to write, " + extensionsThat(&FileFormat::writesMaps))
       ->required()
       ->option_text("FILE REQUIRED");
   addOutputChoice(*parser, arguments->choice);

@@ -77,7 +77,9 @@ Command addRepair(CLI::App& app) {
   CLI::App* const parser =
       app.add_subcommand("repair", "Mend flipped and flat tets of a map by moving parameters");
   addMapSource(*parser, arguments->input);
-  parser->add_option("-o,--output", arguments->output, "The map to write, .hexex, .ovm or .ovmb")
+  parser
+      ->add_option("-o,--output", arguments->output,
+                   "The map to write, " + extensionsThat(&FileFormat::writesMaps))
       ->required()
       ->option_text("FILE REQUIRED");
   addOutputChoice(*parser, arguments->choice);

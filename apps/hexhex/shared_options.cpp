@@ -1,7 +1,9 @@
 #include "shared_options.hpp"
 
 #include <charconv>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -32,13 +34,28 @@ ReadOptions MapSource::options() const {
   return options;
 }
 
+std::string extensionsThat(bool FileFormat::*can) {
+  std::vector<std::string_view> list;
+  for (const FileFormat& format : fileFormats()) {
+    const bool isNew = list.empty() || list.back() != format.extension;
+    if (format.*can && isNew && !format.extension.empty()) list.push_back(format.extension);
+  }
+  std::string text;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const char* const before = i + 1 < list.size() ? ", " : " or ";
+    text += (i == 0 ? "" : before) + std::string(list[i]);
+  }
+  return text;
+}
+
+std::string mapDescription() { return "The map, " + extensionsThat(&FileFormat::readsMaps); }
+
 void addMapOptions(CLI::App& parser, MapSource& source) {
-  CLI::Option* const tets =
-      parser
-          .add_option("--tets", source.tets,
-                      "Instead of MAP: a tet mesh, .mesh, .meshb, .msh, .vtk,\n"
-                      ".vtu, .ovm or .ovmb ...")
-          ->option_text("FILE");
+  CLI::Option* const tets = parser
+                                .add_option("--tets", source.tets,
+                                            "Instead of MAP: a tet mesh,\n" +
+                                                extensionsThat(&FileFormat::readsTets) + " ...")
+                                ->option_text("FILE");
   CLI::Option* const polycube =
       parser
           .add_option("--polycube", source.polycube,
@@ -74,7 +91,7 @@ void addMapSource(CLI::App& parser, MapSource& source, const std::string& argume
 void addMapSourceBefore(CLI::App& parser, MapSource& source, const std::string& argument,
                         std::string& other, const std::string& otherArgument,
                         const std::string& otherDescription) {
-  parser.add_option(argument, source.file, kMapDescription)->option_text("FILE");
+  parser.add_option(argument, source.file, mapDescription())->option_text("FILE");
   parser.add_option(otherArgument, other, otherDescription)->option_text("FILE REQUIRED");
   addMapOptions(parser, source);
   parser.parse_complete_callback([&source, &other, argument, otherArgument] {

@@ -32,14 +32,17 @@ struct MapSource {
   [[nodiscard]] ReadOptions options() const;
 };
 
+/// ".mesh, .vtu or .vtk": the extensions of the formats that can do this.
+[[nodiscard]] std::string extensionsThat(bool FileFormat::*can);
+
 /// For arguments that name a map to read.
-inline constexpr const char* kMapDescription = "The map, .hexex, .ovm, .ovmb, .vtu or .vtk";
+[[nodiscard]] std::string mapDescription();
 
 /// Adds --tets, --polycube and --map-array.
 void addMapOptions(CLI::App& parser, MapSource& source);
 /// Adds an argument and the same options; one of both has to be given.
 void addMapSource(CLI::App& parser, MapSource& source, const std::string& argument = "MAP",
-                  const std::string& description = kMapDescription);
+                  const std::string& description = mapDescription());
 /// For subcommands with another argument behind MAP: where two meshes are given instead, the first
 /// argument is that other one.
 /// @param argument, otherArgument  their names
