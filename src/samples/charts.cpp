@@ -1,7 +1,6 @@
 // Draws the charts and writes the tets of every sub-block.
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -47,26 +46,25 @@ Transition randomChart(std::int64_t limit, Random& random) {
 /// all are moved by the same translation.
 std::vector<Transition> alignedCharts(const BlockComplex& complex, int cells,
                                       const GridPoint& translation) {
-  std::vector<std::optional<Transition>> charts(complex.blockCount());
+  std::vector<Transition> charts(complex.blockCount(), Transition{{}, translation});
+  std::vector<bool> hasChart(charts.size(), false);
   for (std::size_t root = 0; root < charts.size(); ++root) {
-    if (charts[root]) continue;
-    charts[root] = Transition{{}, translation};
+    if (hasChart[root]) continue;
+    hasChart[root] = true;
     std::vector<std::size_t> reached = {root};
     for (std::size_t next = 0; next < reached.size(); ++next) {
       for (std::size_t face = 0; face < 6; ++face) {
         const auto other = complex.neighbour(reached[next], face / 2, static_cast<int>(face % 2));
-        if (!other || charts[other->block]) continue;
+        if (!other || hasChart[other->block]) continue;
         Transition across = other->transition;
         for (std::int32_t& coordinate : across.translation) coordinate *= cells;
-        charts[other->block] = *charts[reached[next]] * across.inverse();
+        charts[other->block] = charts[reached[next]] * across.inverse();
+        hasChart[other->block] = true;
         reached.push_back(other->block);
       }
     }
   }
-  std::vector<Transition> result;
-  result.reserve(charts.size());
-  for (const std::optional<Transition>& chart : charts) result.push_back(*chart);
-  return result;
+  return charts;
 }
 
 /// From the frames of blocks to their charts.

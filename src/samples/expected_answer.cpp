@@ -152,13 +152,12 @@ SampleAnswer expectedAnswer(const BlockComplex& complex, std::uint64_t cellsPerE
                             bool features) {
   SampleAnswer answer;
   Expectation& expected = answer.expected;
+  const auto perEdge = static_cast<std::int64_t>(cellsPerEdge);
   for (const CoarseCell& cell : complex.cells()) {
-    std::uint64_t innerVertices = 1;
-    for (std::size_t a = 0; a < cell.dimension; ++a) innerVertices *= cellsPerEdge - 1;
-    answer.vertices += innerVertices;
+    answer.vertices += power(perEdge - 1, cell.dimension);
     expected.eulerCharacteristic += cell.dimension % 2 == 0 ? 1 : -1;
-    if (cell.dimension == 3) expected.cells += cellsPerEdge * cellsPerEdge * cellsPerEdge;
-    if (cell.dimension == 2 && cell.boundary) expected.boundaryQuads += cellsPerEdge * cellsPerEdge;
+    if (cell.dimension == 3) expected.cells += power(perEdge, 3);
+    if (cell.dimension == 2 && cell.boundary) expected.boundaryQuads += power(perEdge, 2);
     if (cell.dimension == 1 && cell.singular()) {
       auto& singular = cell.boundary ? expected.boundarySingularEdges : expected.innerSingularEdges;
       singular[cell.valence()] += cellsPerEdge;

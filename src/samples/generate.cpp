@@ -60,20 +60,23 @@ constexpr double kNoiseEnd = 0.25;
 /// units.
 constexpr double kNoisePerSubBlock = 1 / (18 * samples::kNoiseReserve);
 
-void requireInteger(const char* option, int value, int least, int greatest) {
-  if (value >= least && value <= greatest) return;
-  throw Error(ErrorCode::InvalidArgument, std::string("The option '") + option +
-                                              "' of a sample is " + std::to_string(value) +
-                                              "; choose a number from " + std::to_string(least) +
-                                              " to " + std::to_string(greatest) + ".");
-}
-
 /// @param legal  written so that it is false for NaN
-void requireReal(const char* option, double value, bool legal, const char* range) {
+/// @param range  "from 1 to 5"
+template <class Number>
+void requireOption(bool legal, const char* option, Number value, const std::string& range) {
   if (legal) return;
   throw Error(ErrorCode::InvalidArgument, std::string("The option '") + option +
                                               "' of a sample is " + std::to_string(value) +
                                               "; choose a number " + range + ".");
+}
+
+void requireInteger(const char* option, int value, int least, int greatest) {
+  requireOption(value >= least && value <= greatest, option, value,
+                "from " + std::to_string(least) + " to " + std::to_string(greatest));
+}
+
+void requireReal(const char* option, double value, double greatest, const char* range) {
+  requireOption(value >= 0 && value <= greatest, option, value, range);
 }
 
 template <class Entries, class Kind>
@@ -96,12 +99,11 @@ void requireLegal(SampleKind kind, const SampleOptions& options) {
     requireInteger("valence", options.valence, kMinValence, kMaxValence);
   }
   requireInteger("defects", options.defects, 0, kMaxDefects);
-  const auto within = [](double value, double end) { return value >= 0 && value <= end; };
-  requireReal("jitter", options.jitter, within(options.jitter, 1), "from 0 to 1");
-  requireReal("onLattice", options.onLattice, within(options.onLattice, 1), "from 0 to 1");
-  requireReal("offset", options.offset, within(options.offset, kMaxOffset), "from 0 to 1e9");
-  requireReal("noise", options.noise, options.noise >= 0 && options.noise < kNoiseEnd,
-              "from 0 to below 0.25");
+  requireReal("jitter", options.jitter, 1, "from 0 to 1");
+  requireReal("onLattice", options.onLattice, 1, "from 0 to 1");
+  requireReal("offset", options.offset, kMaxOffset, "from 0 to 1e9");
+  requireOption(options.noise >= 0 && options.noise < kNoiseEnd, "noise", options.noise,
+                "from 0 to below 0.25");
   const double limit = kNoisePerSubBlock * options.cells / options.refine;
   if (options.noise > limit) {
     throw Error(ErrorCode::InvalidArgument,
@@ -114,8 +116,7 @@ void requireLegal(SampleKind kind, const SampleOptions& options) {
 }
 
 void requireIndexable(std::size_t blocks, int refine) {
-  const auto perEdge = static_cast<std::uint64_t>(refine);
-  const std::uint64_t tets = 12 * blocks * perEdge * perEdge * perEdge;
+  const std::uint64_t tets = 12 * blocks * samples::power(refine, 3);
   if (tets < kNone) return;
   throw Error(ErrorCode::TooLarge, "A sample of " + std::to_string(blocks) +
                                        " blocks with refine " + std::to_string(refine) +

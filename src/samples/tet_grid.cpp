@@ -1,6 +1,7 @@
 // Numbers and places the vertices of the grid; all by index arithmetic, without look-ups.
 #include <algorithm>
 
+#include <base/vector3.hpp>
 #include <samples/tet_grid.hpp>
 
 namespace hexhex::samples {
@@ -39,16 +40,6 @@ TetGrid::TetGrid(const BlockModel& model, const BlockComplex& complex, int cells
   placeCentres();
 }
 
-std::size_t TetGrid::subBlocksPerBlock() const {
-  return static_cast<std::size_t>(refine_ * refine_ * refine_);
-}
-
-std::size_t TetGrid::innerPointCount(std::size_t dimension) const {
-  std::size_t count = 1;
-  for (std::size_t a = 0; a < dimension; ++a) count *= static_cast<std::size_t>(refine_ - 1);
-  return count;
-}
-
 Int3 TetGrid::gridPoint(const Occurrence& occurrence, std::size_t dimension,
                         std::size_t point) const {
   Int3 result = {};
@@ -82,18 +73,20 @@ Slot TetGrid::lowSlot(std::size_t subBlock) const {
   return slot(block, low);
 }
 
-std::array<Index, 8> TetGrid::cornerVertices(std::size_t subBlock) const {
+template <class T>
+std::array<T, 8> TetGrid::atCorners(const std::vector<T>& perSlot, std::size_t subBlock) const {
   const Slot low = lowSlot(subBlock);
-  std::array<Index, 8> corners{};
-  for (std::size_t c = 0; c < 8; ++c) corners[c] = vertices[low + cornerOffsets_[c]];
+  std::array<T, 8> corners{};
+  for (std::size_t c = 0; c < 8; ++c) corners[c] = perSlot[low + cornerOffsets_[c]];
   return corners;
 }
 
+std::array<Index, 8> TetGrid::cornerVertices(std::size_t subBlock) const {
+  return atCorners(vertices, subBlock);
+}
+
 std::array<Int3, 8> TetGrid::cornerParameters(std::size_t subBlock) const {
-  const Slot low = lowSlot(subBlock);
-  std::array<Int3, 8> corners{};
-  for (std::size_t c = 0; c < 8; ++c) corners[c] = parameters[low + cornerOffsets_[c]];
-  return corners;
+  return atCorners(parameters, subBlock);
 }
 
 std::array<Vec3, 8> TetGrid::cornersInMap(std::size_t subBlock) const {
@@ -110,9 +103,7 @@ std::array<Vec3, 8> TetGrid::cornersInSpace(std::size_t subBlock) const {
   const Vec3& centre = points[centreVertex(subBlock)];
   const std::array<Index, 8> ids = cornerVertices(subBlock);
   std::array<Vec3, 8> corners{};
-  for (std::size_t c = 0; c < 8; ++c) {
-    for (std::size_t a = 0; a < 3; ++a) corners[c][a] = points[ids[c]][a] - centre[a];
-  }
+  for (std::size_t c = 0; c < 8; ++c) corners[c] = minus(points[ids[c]], centre);
   return corners;
 }
 
@@ -158,14 +149,10 @@ void TetGrid::numberGridVertices(const BlockModel& model, const BlockComplex& co
 void TetGrid::placeCentres() {
   centreParameters.resize(subBlockCount());
   for (std::size_t sub = 0; sub < subBlockCount(); ++sub) {
-    const Slot low = lowSlot(sub);
     Int3 parameterSum{};
+    for (const Int3& corner : cornerParameters(sub)) parameterSum = parameterSum + corner;
     Vec3 pointSum{};
-    for (const Slot offset : cornerOffsets_) {
-      parameterSum = parameterSum + parameters[low + offset];
-      const Vec3& point = points[vertices[low + offset]];
-      for (std::size_t a = 0; a < 3; ++a) pointSum[a] += point[a];
-    }
+    for (const Index corner : cornerVertices(sub)) pointSum = plus(pointSum, points[corner]);
     for (std::size_t a = 0; a < 3; ++a) {
       centreParameters[sub][a] = parameterSum[a] / 8;
       pointSum[a] /= 8;

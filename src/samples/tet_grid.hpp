@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <hexhex/types.hpp>
@@ -21,6 +22,12 @@ inline Int3 operator+(const Int3& a, const Int3& b) {
 }
 inline Int3 operator-(const Int3& a, const Int3& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+[[nodiscard]] constexpr std::uint64_t power(std::int64_t base, std::size_t exponent) noexcept {
+  std::uint64_t result = 1;
+  for (std::size_t i = 0; i < exponent; ++i) result *= static_cast<std::uint64_t>(base);
+  return result;
 }
 
 /// Parameters are multiples of 2^-16, held as integers. That is fine enough for 500 sub-blocks
@@ -50,19 +57,19 @@ class TetGrid {
   [[nodiscard]] std::int64_t cells() const { return cells_; }
   [[nodiscard]] std::int64_t refine() const { return refine_; }
   [[nodiscard]] std::size_t blockCount() const { return blockCount_; }
-  [[nodiscard]] std::size_t subBlocksPerBlock() const;
+  [[nodiscard]] std::size_t subBlocksPerBlock() const { return power(refine_, 3); }
   [[nodiscard]] std::size_t subBlockCount() const { return blockCount_ * subBlocksPerBlock(); }
 
   /// Number of points along a coarse cell of this dimension that lie inside it.
-  [[nodiscard]] std::size_t innerPointCount(std::size_t dimension) const;
+  [[nodiscard]] std::size_t innerPointCount(std::size_t dimension) const {
+    return power(refine_ - 1, dimension);
+  }
   /// Grid coordinates, in the block of an occurrence, of inner point number `point` of its cell.
   [[nodiscard]] Int3 gridPoint(const Occurrence& occurrence, std::size_t dimension,
                                std::size_t point) const;
 
   [[nodiscard]] Slot slot(std::size_t block, const Int3& gridPoint) const;
   [[nodiscard]] std::size_t subBlock(std::size_t block, const Int3& lowCorner) const;
-  /// The slot of corner 0 of a sub-block.
-  [[nodiscard]] Slot lowSlot(std::size_t subBlock) const;
 
   [[nodiscard]] Index centreVertex(std::size_t subBlock) const {
     return static_cast<Index>(gridVertexCount_ + subBlock);
@@ -82,6 +89,11 @@ class TetGrid {
   std::vector<Vec3> points;            ///< per vertex: the grid's, then the sub-blocks' centres
 
  private:
+  template <class T>
+  [[nodiscard]] std::array<T, 8> atCorners(const std::vector<T>& perSlot,
+                                           std::size_t subBlock) const;
+  /// The slot of corner 0 of a sub-block.
+  [[nodiscard]] Slot lowSlot(std::size_t subBlock) const;
   void numberGridVertices(const BlockModel& model, const BlockComplex& complex);
   void placeCentres();
   [[nodiscard]] std::int64_t gridLine(std::int64_t i) const;

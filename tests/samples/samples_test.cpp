@@ -371,6 +371,11 @@ TEST(Samples, NamesAreUniqueAndComplete) {
     EXPECT_FALSE(sampleKinds()[i].description.empty());
     for (std::size_t j = 0; j < i; ++j) EXPECT_NE(sampleKinds()[i].name, sampleKinds()[j].name);
   }
+  ASSERT_EQ(chartStyles().size(), 4U);
+  for (std::size_t i = 0; i < chartStyles().size(); ++i) {
+    EXPECT_EQ(chartStyles()[i].kind, static_cast<ChartStyle>(i));
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(chartStyles()[i].name, chartStyles()[j].name);
+  }
 }
 
 template <class Change>

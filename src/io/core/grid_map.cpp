@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <cmath>
 
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
 #include <io/core/grid_map.hpp>
+#include <io/core/writable.hpp>
 
 namespace hexhex {
 namespace {
@@ -37,12 +37,6 @@ void setParameters(const TetGrid& grid, std::size_t tet, TetParameters& paramete
     std::copy_n(values + kPointMapComponents * grid.mesh.cells[tet][i], kPointMapComponents,
                 parameters[i].data());
   }
-}
-
-bool isFinite(const TetParameters& corners) {
-  return std::all_of(corners.begin(), corners.end(), [](const Vec3& corner) {
-    return std::isfinite(corner[0]) && std::isfinite(corner[1]) && std::isfinite(corner[2]);
-  });
 }
 
 }  // namespace

@@ -81,6 +81,15 @@ class Input {
   std::optional<std::string_view> bytes_;
 };
 
+/// What work(stage) returns, with the context's threads.
+template <class Work>
+[[nodiscard]] auto inStage(Context& context, std::string_view name, const Work& work) {
+  Stage stage(context, name);
+  decltype(work(stage)) result;
+  withThreads(context.threads(), [&] { result = work(stage); });
+  return result;
+}
+
 /// What a reader makes of an input.
 /// @tparam Reader  made from a text, a name for error messages and a stage; has read(). If it can
 ///         be made from an open file, too, a regular file is never in memory as a whole
@@ -88,12 +97,10 @@ class Input {
 template <class Reader, class... More>
 [[nodiscard]] auto readWith(const Input& input, std::string_view stageName, Context& context,
                             const More&... more) {
-  Stage stage(context, stageName);
-  decltype(std::declval<Reader&>().read()) result;
-  const auto read = [&](const auto& source) {
-    result = Reader(source, input.name(), stage, more...).read();
-  };
-  withThreads(context.threads(), [&] {
+  return inStage(context, stageName, [&](Stage& stage) {
+    const auto read = [&](const auto& source) {
+      return Reader(source, input.name(), stage, more...).read();
+    };
     if (input.bytes()) return read(*input.bytes());
     if constexpr (std::is_constructible_v<Reader, const InputFile&, const std::string&, Stage&,
                                           const More&...>) {
@@ -101,9 +108,8 @@ template <class Reader, class... More>
       if (file.isRegular()) return read(file);
     }
     const Array<char> bytes = readWholeFile(input.path(), stage);
-    read(asText(bytes));
+    return read(asText(bytes));
   });
-  return result;
 }
 
 /// The same of a text.

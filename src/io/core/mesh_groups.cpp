@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <limits>
-#include <optional>
+#include <numeric>
 #include <span>
+#include <utility>
 
 #include <adjacency/hex_faces.hpp>
 #include <adjacency/hex_topology.hpp>
@@ -21,62 +21,48 @@ constexpr std::size_t kGrain = std::size_t{1} << 12;
 
 using Tag = std::int32_t;
 
-/// Tags of elements, and the order that sorts elements by tag without mixing equal ones. Elements
-/// with tag 0 come last.
-class TagOrder {
- public:
-  explicit TagOrder(std::span<const Tag> tags) : tags_(tags), order_(tags.size()) {
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < tags.size(); ++i) {
-      if (tags[i] != 0) order_[next++] = i;
-    }
-    const auto untagged = order_.begin() + static_cast<std::ptrdiff_t>(next);
-    std::stable_sort(order_.begin(), untagged,
-                     [tags](std::size_t a, std::size_t b) { return tags[a] < tags[b]; });
-    for (std::size_t i = 0; i < tags.size(); ++i) {
-      if (tags[i] == 0) order_[next++] = i;
-    }
-  }
+/// The order that sorts elements by tag without mixing equal ones. Elements with tag 0 come last.
+Array<std::size_t> orderByTag(std::span<const Tag> tags) {
+  Array<std::size_t> order(tags.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto untagged = std::stable_partition(order.begin(), order.end(),
+                                              [tags](std::size_t i) { return tags[i] != 0; });
+  std::stable_sort(order.begin(), untagged,
+                   [tags](std::size_t a, std::size_t b) { return tags[a] < tags[b]; });
+  return order;
+}
 
-  /// Which element stands at a place of the sorted list.
-  [[nodiscard]] std::size_t operator[](std::size_t i) const { return order_[i]; }
-  [[nodiscard]] std::size_t size() const { return order_.size(); }
-
-  /// @param kind, untagged  what names are made of, for elements with a tag and without
-  [[nodiscard]] std::vector<ElementGroup> groups(const std::string& kind,
-                                                 const char* untagged = "boundary") const {
-    std::vector<ElementGroup> groups;
-    const bool numbersAreTags = canNumberByTags();
-    std::uint32_t last = 0;
-    for (std::size_t begin = 0; begin < size();) {
-      std::size_t end = begin + 1;
-      while (end < size() && tags_[order_[end]] == tags_[order_[begin]]) ++end;
-      const Tag tag = tags_[order_[begin]];
-      last = numbersAreTags && tag != 0 ? static_cast<std::uint32_t>(tag) : last + 1;
-      groups.push_back({last, nameOf(kind, untagged, tag), begin, end, tag});
-      begin = end;
-    }
-    return groups;
-  }
-
- private:
-  /// The largest tag needs a successor for the untagged elements.
-  [[nodiscard]] bool canNumberByTags() const {
-    return std::all_of(tags_.begin(), tags_.end(),
-                       [](Tag tag) { return tag >= 0 && tag < std::numeric_limits<Tag>::max(); });
-  }
-  static std::string nameOf(const std::string& kind, const char* untagged, Tag tag) {
-    if (tag == 0) return untagged;
-    const std::int64_t wide = tag;
-    std::string name = kind;
-    name += wide < 0 ? "_m" : "_";
-    name += std::to_string(wide < 0 ? -wide : wide);
-    return name;
-  }
-
-  std::span<const Tag> tags_;
-  Array<std::size_t> order_;
+/// What the names of groups are made of, for elements with a tag and without.
+struct GroupWords {
+  std::string tagged;
+  const char* untagged = "boundary";
 };
+
+std::string groupName(const GroupWords& words, Tag tag) {
+  if (tag == 0) return words.untagged;
+  const std::int64_t wide = tag;
+  return words.tagged + (wide < 0 ? "_m" : "_") + std::to_string(wide < 0 ? -wide : wide);
+}
+
+/// @param order  of all elements, by tag
+std::vector<ElementGroup> groupsOf(std::span<const Tag> tags, std::span<const std::size_t> order,
+                                   const GroupWords& words) {
+  // The largest tag needs a successor for the untagged elements.
+  const bool numbersAreTags = std::all_of(tags.begin(), tags.end(), [](Tag tag) {
+    return tag >= 0 && tag < std::numeric_limits<Tag>::max();
+  });
+  std::vector<ElementGroup> groups;
+  std::uint32_t last = 0;
+  for (std::size_t begin = 0; begin < order.size();) {
+    const Tag tag = tags[order[begin]];
+    std::size_t end = begin + 1;
+    while (end < order.size() && tags[order[end]] == tag) ++end;
+    last = numbersAreTags && tag != 0 ? static_cast<std::uint32_t>(tag) : last + 1;
+    groups.push_back({last, groupName(words, tag), begin, end, tag});
+    begin = end;
+  }
+  return groups;
+}
 
 template <class Vertices>
 void requireVertices(const HexMesh& mesh, const Vertices& vertices, const char* what,
@@ -90,48 +76,34 @@ void requireVertices(const HexMesh& mesh, const Vertices& vertices, const char* 
   }
 }
 
-/// Without those of tag 0, which means "no feature".
-template <class Feature>
-std::vector<Feature> withTags(const std::vector<Feature>& features) {
-  std::vector<Feature> tagged;
-  std::copy_if(features.begin(), features.end(), std::back_inserter(tagged),
-               [](const Feature& feature) { return feature.tag != 0; });
-  return tagged;
+std::array<Index, 1> verticesOf(const FeatureVertex& feature) { return {feature.vertex}; }
+std::array<Index, 2> verticesOf(const FeatureEdge& feature) { return feature.vertices; }
+
+/// The groups of all features but those of tag 0, which means "no feature".
+template <std::size_t n, class Feature>
+ElementGroups<n> groupFeatures(const HexMesh& mesh, const std::vector<Feature>& all,
+                               const char* what, const GroupWords& words) {
+  std::vector<Feature> features;
+  Array<Tag> tags;
+  for (const Feature& feature : all) {
+    if (feature.tag == 0) continue;
+    features.push_back(feature);
+    tags.push_back(feature.tag);
+  }
+  const Array<std::size_t> order = orderByTag(tags);
+  ElementGroups<n> result{groupsOf(tags, order, words), {}};
+  result.elements.reserve(features.size());
+  for (const std::size_t i : order) {
+    requireVertices(mesh, verticesOf(features[i]), what, i);
+    result.elements.push_back(verticesOf(features[i]));
+  }
+  return result;
 }
 
-template <class Feature>
-Array<Tag> tagsOf(const std::vector<Feature>& features) {
-  Array<Tag> tags(features.size());
-  for (std::size_t i = 0; i < features.size(); ++i) tags[i] = features[i].tag;
-  return tags;
+Quad sorted(Quad quad) {
+  std::sort(quad.begin(), quad.end());
+  return quad;
 }
-
-/// Finds tagged quads by their vertices, in whatever order.
-class FeatureQuadTable {
- public:
-  explicit FeatureQuadTable(std::span<const FeatureQuad> quads) {
-    entries_.reserve(quads.size());
-    for (std::size_t i = 0; i < quads.size(); ++i) {
-      if (quads[i].tag != 0) entries_.emplace_back(sorted(quads[i].vertices), i);
-    }
-    std::sort(entries_.begin(), entries_.end());
-  }
-
-  [[nodiscard]] std::optional<std::size_t> find(const Quad& quad) const {
-    const Entry wanted{sorted(quad), 0};
-    const auto found = std::lower_bound(entries_.begin(), entries_.end(), wanted);
-    if (found == entries_.end() || found->first != wanted.first) return std::nullopt;
-    return found->second;
-  }
-
- private:
-  using Entry = std::pair<Quad, std::size_t>;
-  static Quad sorted(Quad quad) {
-    std::sort(quad.begin(), quad.end());
-    return quad;
-  }
-  std::vector<Entry> entries_;
-};
 
 /// Quads before they are sorted into groups.
 struct TaggedQuads {
@@ -164,12 +136,18 @@ TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage) {
     if (patchAngle > 0) tagPatches(mesh, patchAngle, found, stage);
     return found;
   }
-  const FeatureQuadTable table(features);
+  std::vector<std::pair<Quad, std::size_t>> table;  // by vertices, in whatever order
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    if (features[i].tag != 0) table.emplace_back(sorted(features[i].vertices), i);
+  }
+  std::sort(table.begin(), table.end());
   std::vector<std::uint8_t> onBoundary(features.size(), 0);
   parallelFor(stage, found.quads.size(), kGrain, [&](std::size_t i) {
-    const std::optional<std::size_t> feature = table.find(found.quads[i]);
-    found.tags[i] = feature ? features[*feature].tag : 0;
-    if (feature) onBoundary[*feature] = 1;  // no other boundary quad has these vertices
+    const std::pair<Quad, std::size_t> wanted{sorted(found.quads[i]), 0};
+    const auto feature = std::lower_bound(table.begin(), table.end(), wanted);
+    if (feature == table.end() || feature->first != wanted.first) return;
+    found.tags[i] = features[feature->second].tag;
+    onBoundary[feature->second] = 1;  // no other boundary quad has these vertices
   });
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (onBoundary[i] != 0 || features[i].tag == 0) continue;
@@ -183,28 +161,11 @@ TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage) {
 }  // namespace
 
 VertexGroups groupVertices(const HexMesh& mesh) {
-  const std::vector<FeatureVertex> features = withTags(mesh.features.vertices);
-  const Array<Tag> tags = tagsOf(features);
-  const TagOrder order(tags);
-  VertexGroups result{order.groups("point"), Array<std::array<Index, 1>>(features.size())};
-  for (std::size_t i = 0; i < features.size(); ++i) {
-    const Index vertex = features[order[i]].vertex;
-    requireVertices(mesh, std::array{vertex}, "vertex", order[i]);
-    result.elements[i] = {vertex};
-  }
-  return result;
+  return groupFeatures<1>(mesh, mesh.features.vertices, "vertex", {"point"});
 }
 
 EdgeGroups groupEdges(const HexMesh& mesh) {
-  const std::vector<FeatureEdge> features = withTags(mesh.features.edges);
-  const Array<Tag> tags = tagsOf(features);
-  const TagOrder order(tags);
-  EdgeGroups result{order.groups("curve"), Array<std::array<Index, 2>>(features.size())};
-  for (std::size_t i = 0; i < features.size(); ++i) {
-    requireVertices(mesh, features[order[i]].vertices, "edge", order[i]);
-    result.elements[i] = features[order[i]].vertices;
-  }
-  return result;
+  return groupFeatures<2>(mesh, mesh.features.edges, "edge", {"curve"});
 }
 
 QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage) {
@@ -215,8 +176,8 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage) {
     requireVertices(mesh, mesh.features.edges[i].vertices, "edge", i);
   }
   TaggedQuads found = findQuads(mesh, patchAngle, stage);
-  const TagOrder order(found.tags);
-  QuadGroups result{order.groups(found.kind), {}, {}};
+  const Array<std::size_t> order = orderByTag(found.tags);
+  QuadGroups result{{groupsOf(found.tags, order, {found.kind}), {}}, {}};
   // The usual case: one group, in order.
   if (result.groups.size() <= 1) {
     result.elements = std::move(found.quads);
@@ -234,8 +195,8 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage) {
 
 CellGroups groupCells(const HexMesh& mesh) {
   if (mesh.regions.empty()) return {{{1, "hexahedra", 0, mesh.cells.size()}}, {}};
-  const TagOrder order(mesh.regions);
-  CellGroups result{order.groups("region", "hexahedra"), {}};
+  const Array<std::size_t> order = orderByTag(mesh.regions);
+  CellGroups result{groupsOf(mesh.regions, order, {"region", "hexahedra"}), {}};
   if (result.groups.empty()) result.groups.push_back({1, "hexahedra", 0, 0});
   if (result.groups.size() == 1) return result;
   result.order.resize(order.size());

@@ -29,20 +29,16 @@ struct ElementGroup {
   std::int32_t tag = 0;  ///< 0 for elements without one
 };
 
-struct VertexGroups {
+template <std::size_t vertices>
+struct ElementGroups {
   std::vector<ElementGroup> groups;
-  Array<std::array<Index, 1>> elements;
+  Array<std::array<Index, vertices>> elements;
 };
-
-struct EdgeGroups {
-  std::vector<ElementGroup> groups;
-  Array<std::array<Index, 2>> elements;
-};
+using VertexGroups = ElementGroups<1>;
+using EdgeGroups = ElementGroups<2>;
 
 /// All boundary quads, facing outwards, and the tagged quads inside.
-struct QuadGroups {
-  std::vector<ElementGroup> groups;
-  Array<Quad> elements;
+struct QuadGroups : ElementGroups<4> {
   Array<std::uint64_t> places;  ///< per quad: 8 * cell + face; kNoPlace inside the mesh
 };
 

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +16,6 @@
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
-#include <base/parallel.hpp>
 #include <io/core/bytes.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
@@ -227,18 +225,10 @@ class BinarySource : public LittleEndianNumbers<BinarySource> {
   /// There is room for so many.
   template <class F>
   void records(std::size_t n, RecordShape shape, const F& f) {
-    std::atomic<std::size_t> firstWrong{n};
-    parallelBlocks(*stage_, n, kElementGrain,
-                   [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                     if (begin > firstWrong.load(std::memory_order_relaxed)) return;
-                     std::size_t i = begin;
-                     try {
-                       readRecords(i, end, shape, f);
-                     } catch (const Error&) {  // thrown again below
-                       lowerTo(i, firstWrong);
-                     }
-                   });
-    std::size_t wrong = firstWrong;
+    std::size_t wrong =
+        firstUnreadable(*stage_, n, [&](std::size_t /*begin*/, std::size_t end, std::size_t& i) {
+          readRecords(i, end, shape, f);
+        });
     if (wrong < n) readRecords(wrong, wrong + 1, shape, f);
     skip(n, shape);
   }
@@ -273,10 +263,7 @@ template <class Source>
 void requireRoom(const Source& source, std::uint64_t n, RecordShape shape, std::string_view what) {
   const std::size_t room = source.room(shape);
   if (n <= room) return;
-  source.fail(ErrorCode::FileSyntax, "announces " + std::to_string(n) + " " + std::string(what) +
-                                         ", but the rest of the file has room for at most " +
-                                         std::to_string(room) +
-                                         ": either the number is wrong or the file is incomplete.");
+  source.fail(ErrorCode::FileSyntax, lacksRoom(std::to_string(n), what, room));
 }
 
 /// Refuses more elements than indices can number.

@@ -30,9 +30,13 @@ std::filesystem::path folderOf(const std::filesystem::path& file) {
 
 }  // namespace
 
-OutputFile::OutputFile(std::filesystem::path target)
+OutputFile::OutputFile(std::filesystem::path target, Target kind)
     : target_(std::move(target)), buffer_(new char[kBufferSize]) {
   std::error_code error;
+  if (kind == Target::Regular && std::filesystem::exists(target_, error) &&
+      !std::filesystem::is_regular_file(target_, error)) {
+    fail("it is no regular file, which this format needs");
+  }
   // Renaming onto a link would replace the link, not what it points to.
   if (std::filesystem::is_symlink(target_, error)) {
     const std::filesystem::path real = std::filesystem::canonical(target_, error);
@@ -50,7 +54,10 @@ OutputFile::OutputFile(std::filesystem::path target)
   if (descriptor_ < 0) fail("it cannot be opened", errno);
 }
 
-OutputFile::~OutputFile() { discard(); }
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
 
 void OutputFile::openTemporary() {
   const std::filesystem::path folder = folderOf(target_);
@@ -65,12 +72,11 @@ void OutputFile::openTemporary() {
 }
 
 void OutputFile::writeBytes(const void* bytes, std::size_t size) {
-  const char* const data = static_cast<const char*>(bytes);
   if (size > kBufferSize - used_) {
     flush();
-    if (size >= kBufferSize) return writeThrough(data, size);
+    if (size >= kBufferSize) return writeThrough(bytes, size);
   }
-  std::copy_n(data, size, buffer_.get() + used_);
+  std::copy_n(static_cast<const char*>(bytes), size, buffer_.get() + used_);
   used_ += size;
 }
 
@@ -79,27 +85,30 @@ void OutputFile::flush() {
   used_ = 0;
 }
 
-void OutputFile::writeThrough(const char* bytes, std::size_t size) {
-  written_ += size;
-  while (size > 0) {
-    const ssize_t written = ::write(descriptor_, bytes, size);
+/// @param write  write(bytes, size, done) writes some of so many bytes, after `done` others, and
+///               returns how many, as the system does
+template <class Write>
+void OutputFile::writeAll(const void* bytes, std::size_t size, const Write& write) const {
+  const char* const data = static_cast<const char*>(bytes);
+  for (std::size_t done = 0; done < size;) {
+    const ssize_t written = write(data + done, size - done, done);
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail("it cannot be written completely", errno);
-    bytes += written;
-    size -= static_cast<std::size_t>(written);
+    done += static_cast<std::size_t>(written);
   }
 }
 
+void OutputFile::writeThrough(const void* bytes, std::size_t size) {
+  written_ += size;
+  writeAll(bytes, size, [this](const char* data, std::size_t count, std::size_t /*done*/) {
+    return ::write(descriptor_, data, count);
+  });
+}
+
 void OutputFile::writeBytesAt(std::uint64_t position, const void* bytes, std::size_t size) const {
-  const char* data = static_cast<const char*>(bytes);
-  while (size > 0) {
-    const ssize_t written = ::pwrite(descriptor_, data, size, static_cast<off_t>(position));
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail("it cannot be written completely", errno);
-    data += written;
-    position += static_cast<std::uint64_t>(written);
-    size -= static_cast<std::size_t>(written);
-  }
+  writeAll(bytes, size, [&](const char* data, std::size_t count, std::size_t done) {
+    return ::pwrite(descriptor_, data, count, static_cast<off_t>(position + done));
+  });
 }
 
 void OutputFile::commit() {
@@ -115,12 +124,6 @@ void OutputFile::commit() {
   temporary_.clear();
 }
 
-void OutputFile::discard() noexcept {
-  if (descriptor_ >= 0) ::close(descriptor_);
-  descriptor_ = -1;
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
-}
-
 void OutputFile::fail(const std::string& what, int error) const {
   fail(what + ": " + std::generic_category().message(error));
 }
@@ -130,28 +133,9 @@ void OutputFile::fail(const std::string& reason) const {
               target_.string() + ": the file was not written because " + reason + ".");
 }
 
-namespace {
-
-/// Before anything is opened: opening a pipe waits for who reads it.
-const std::filesystem::path& requireRegular(const std::filesystem::path& target) {
-  std::error_code error;
-  if (std::filesystem::exists(target, error) && !std::filesystem::is_regular_file(target, error)) {
-    throw Error(ErrorCode::FileWrite,
-                target.string() +
-                    ": the file was not written because it is no regular file, which this format "
-                    "needs.");
-  }
-  return target;
-}
-
-}  // namespace
-
 std::mutex& libraryLock() {
   static std::mutex lock;
   return lock;
 }
-
-LibraryFile::LibraryFile(const std::filesystem::path& target)
-    : file_(requireRegular(target)), name_(file_.temporary().string()) {}
 
 }  // namespace hexhex

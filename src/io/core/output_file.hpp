@@ -1,7 +1,8 @@
-// Files that appear complete or not at all.
+// Numbers as text and bytes, and files that appear complete or not at all.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <concepts>
 #include <cstddef>
@@ -11,8 +12,67 @@
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <type_traits>
+
+#include <hexhex/types.hpp>
+
+#include <io/core/bytes.hpp>
 
 namespace hexhex {
+
+/// Room for any number: the longest, -1.2345678901234567e-308, has 24 characters.
+inline constexpr std::size_t kNumberRoom = 24;
+
+// Each puts text at a place that has room for it, and returns the place behind.
+[[nodiscard]] inline char* put(char* place, char character) {
+  *place = character;
+  return place + 1;
+}
+[[nodiscard]] inline char* put(char* place, std::string_view text) {
+  return std::copy(text.begin(), text.end(), place);
+}
+/// With the fewest digits (at most 17) that read back to the same value.
+[[nodiscard]] inline char* put(char* place, double number) {
+  // Whole numbers, which maps are full of, take a fifth of the time as integers. Of up to five
+  // digits, none has a shorter form with an exponent; 0 may be negative.
+  constexpr double kMost = 99999;
+  if (number >= -kMost && number <= kMost && number != 0) {
+    const auto whole = static_cast<std::int32_t>(number);
+    if (static_cast<double>(whole) == number) {
+      return std::to_chars(place, place + kNumberRoom, whole).ptr;
+    }
+  }
+  return std::to_chars(place, place + kNumberRoom, number).ptr;
+}
+[[nodiscard]] inline char* put(char* place, std::int32_t number) {
+  return std::to_chars(place, place + kNumberRoom, number).ptr;
+}
+[[nodiscard]] inline char* put(char* place, std::unsigned_integral auto number) {
+  return std::to_chars(place, place + kNumberRoom, number).ptr;
+}
+/// Numbers with a space between them.
+template <class Number, std::size_t n>
+[[nodiscard]] char* putNumbers(char* place, const std::array<Number, n>& numbers) {
+  place = put(place, numbers[0]);
+  for (std::size_t i = 1; i < n; ++i) {
+    *place++ = ' ';
+    place = put(place, numbers[i]);
+  }
+  return place;
+}
+
+/// Puts the bytes of a number, least first, and returns the place behind.
+template <class T>
+[[nodiscard]] char* putBytes(char* place, T number) {
+  const auto bytes = littleBytes(number);
+  return std::copy(bytes.begin(), bytes.end(), place);
+}
+
+/// The same of three coordinates.
+[[nodiscard]] inline char* putBytes(char* place, const Vec3& point) {
+  for (const double coordinate : point) place = putBytes(place, coordinate);
+  return place;
+}
 
 /// A buffered file that is written to a temporary beside its target and renamed by commit().
 /// Without commit() the temporary vanishes and the target stays as it was. A target that exists and
@@ -21,7 +81,11 @@ namespace hexhex {
 /// Every function throws Error FileWrite, with the target and the system's reason, if it fails.
 class OutputFile {
  public:
-  explicit OutputFile(std::filesystem::path target);
+  /// What the target may be. Libraries, which write the temporary by its name and at any position,
+  /// need a regular file.
+  enum class Target { Any, Regular };
+
+  explicit OutputFile(std::filesystem::path target, Target kind = Target::Any);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -37,9 +101,13 @@ class OutputFile {
   }
   // Without it a string literal would convert to a number.
   OutputFile& write(const char* text) { return write(std::string_view(text)); }
-  /// In decimal; a double with the fewest digits (at most 17) that read back to the same value.
-  OutputFile& write(double number) { return writeNumber(number); }
-  OutputFile& write(std::unsigned_integral auto number) { return writeNumber(number); }
+  /// As put() spells it.
+  template <class Number>
+  requires std::is_arithmetic_v<Number> OutputFile& write(Number number) {
+    makeRoom(kNumberRoom);
+    used_ = static_cast<std::size_t>(put(buffer_.get() + used_, number) - buffer_.get());
+    return *this;
+  }
 
   /// Writes memory as it is.
   void writeBytes(const void* bytes, std::size_t size);
@@ -58,32 +126,24 @@ class OutputFile {
   /// Writes what is buffered, closes the file, and gives it its name.
   void commit();
 
-  /// What is renamed by commit(); empty if the target is written directly.
+  /// What commit() renames, for libraries that write a file by its name and close it before; empty
+  /// if the target is written directly.
   [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
   /// Throws Error FileWrite.
   /// @param reason  why the file was not written
   [[noreturn]] void fail(const std::string& reason) const;
 
  private:
-  // The longest number, -1.2345678901234567e-308, has 24 characters.
-  static constexpr std::size_t kMaxNumberLength = 32;
   // Large enough that system calls cost nothing, small enough for the cache.
   static constexpr std::size_t kBufferSize = std::size_t{1} << 18;
 
-  template <class Number>
-  OutputFile& writeNumber(Number number) {
-    makeRoom(kMaxNumberLength);
-    char* const place = buffer_.get() + used_;
-    used_ += static_cast<std::size_t>(std::to_chars(place, place + kMaxNumberLength, number).ptr -
-                                      place);
-    return *this;
-  }
   void makeRoom(std::size_t size) {
     if (used_ + size > kBufferSize) flush();
   }
   void openTemporary();
-  void writeThrough(const char* bytes, std::size_t size);
-  void discard() noexcept;
+  template <class Write>
+  void writeAll(const void* bytes, std::size_t size, const Write& write) const;
+  void writeThrough(const void* bytes, std::size_t size);
   [[noreturn]] void fail(const std::string& what, int error) const;
 
   std::filesystem::path target_;
@@ -93,6 +153,13 @@ class OutputFile {
   std::size_t used_ = 0;
   std::uint64_t written_ = 0;  ///< bytes of earlier buffers
 };
+
+/// Writes the bytes of a number, least first.
+template <class T>
+void writeBytesOf(OutputFile& output, T number) {
+  const auto bytes = littleBytes(number);
+  output.writeBytes(bytes.data(), bytes.size());
+}
 
 /// Buffers what goes to consecutive places of a file.
 class FilePart {
@@ -134,24 +201,5 @@ class FilePart {
 /// HDF5, and what is built on it, keeps its state in global variables: whoever uses one of these
 /// libraries holds this lock.
 [[nodiscard]] std::mutex& libraryLock();
-
-/// An OutputFile whose temporary is written by name.
-///
-/// Functions throw Error FileWrite, with the target and the reason, if they fail. A target that is
-/// no regular file is refused: these libraries write at any position.
-class LibraryFile {
- public:
-  /// Creates the temporary, empty.
-  explicit LibraryFile(const std::filesystem::path& target);
-
-  /// What the library is to write; it is closed before commit().
-  [[nodiscard]] const std::string& name() const noexcept { return name_; }
-  void commit() { file_.commit(); }
-  [[noreturn]] void fail(const std::string& reason) const { file_.fail(reason); }
-
- private:
-  OutputFile file_;
-  std::string name_;
-};
 
 }  // namespace hexhex

@@ -9,8 +9,8 @@
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 
-#include <io/core/letter_case.hpp>
 #include <io/core/registry.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/gmsh/gmsh.hpp>
 #include <io/hexex/hexex.hpp>
@@ -54,152 +54,90 @@ TetCells readHexexTets(const std::filesystem::path& file, Context& context) {
   return tets;
 }
 
-/// Formats over libraries that not every build has.
-using WriteMesh = void (*)(const HexMesh& mesh, const std::filesystem::path& file,
-                           const WriteOptions& options, Context& context);
+/// The writer of a format over a library that not every build has, or what has to be installed.
+struct OptionalWriter {
+  void (*write)(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+                Context& context) = nullptr;
+  std::string_view missing = {};
+};
 #if defined(HEXHEX_HAS_HDF5)
-constexpr WriteMesh kWriteVtkHdf = writeVtkHdf;
-constexpr bool kHasHdf5 = true;
+constexpr OptionalWriter kVtkHdf = {.write = writeVtkHdf};
 #else
-constexpr WriteMesh kWriteVtkHdf = nullptr;
-constexpr bool kHasHdf5 = false;
+constexpr OptionalWriter kVtkHdf = {.missing = "HDF5 (libhdf5-dev)"};
 #endif
 #if defined(HEXHEX_HAS_CGNS)
-constexpr WriteMesh kWriteCgns = writeCgns;
-constexpr bool kHasCgns = true;
+constexpr OptionalWriter kCgns = {.write = writeCgns};
 #else
-constexpr WriteMesh kWriteCgns = nullptr;
-constexpr bool kHasCgns = false;
+constexpr OptionalWriter kCgns = {.missing = "CGNS (libcgns-dev)"};
 #endif
 #if defined(HEXHEX_HAS_EXODUS)
-constexpr WriteMesh kWriteExodus = writeExodus;
-constexpr bool kHasExodus = true;
+constexpr OptionalWriter kExodus = {.write = writeExodus};
 #else
-constexpr WriteMesh kWriteExodus = nullptr;
-constexpr bool kHasExodus = false;
+constexpr OptionalWriter kExodus = {.missing = "Exodus (libexodusii-dev)"};
 #endif
 
-/// A writer that may be missing. (That a function is not null is no constant expression to GCC's
-/// sanitizers.)
-struct OptionalWriter {
-  WriteMesh write;
-  bool isThere;
-};
-
-/// @param library  what has to be installed if there is no writer
-constexpr Format optionalFormat(std::string_view name, std::string_view extension,
-                                std::string_view description, OptionalWriter writer,
-                                std::string_view library) {
-  return {.name = name,
-          .extension = extension,
-          .description = description,
-          .writeMesh = writer.write,
-          .missing = writer.isThere ? std::string_view() : library};
-}
-
 constexpr std::array kFormatTable = {
-    Format{.name = "hexex",
-           .extension = ".hexex",
-           .description = "text of parametrized tets",
-           .readMap = readPlain<readHexex>,
-           .writeMap = writePlain<writeHexex>,
+    Format{.label = {"hexex", ".hexex", "text of parametrized tets"},
+           .maps = {readPlain<readHexex>, writePlain<writeHexex>},
            .readTets = readHexexTets},
-    Format{.name = "mesh",
-           .extension = ".mesh",
-           .description = "MEDIT (Gamma Mesh Format), text",
+    Format{.label = {"mesh", ".mesh", "MEDIT (Gamma Mesh Format), text"},
            .readTets = readFile<readMeditTets>,
-           .readMesh = readFile<readMedit>,
-           .writeMesh = writeMedit,
-           .openSink = openMeditSink},
-    Format{.name = "meshb",
-           .extension = ".meshb",
-           .description = "MEDIT (Gamma Mesh Format), binary",
+           .meshes = {readFile<readMedit>, writeMedit},
+           .pieces = {openMeditSink}},
+    Format{.label = {"meshb", ".meshb", "MEDIT (Gamma Mesh Format), binary"},
            .readTets = readFile<readMeshbTets>,
-           .readMesh = readFile<readMeshb>,
-           .writeMesh = writeMeshb,
-           .openSink = openMeshbSink},
-    Format{.name = "vtu",
-           .extension = ".vtu",
-           .description = "VTK XML unstructured grid, binary",
-           .readMap = readVtuMap,
-           .writeMap = writeVtuMap,
+           .meshes = {readFile<readMeshb>, writeMeshb},
+           .pieces = {openMeshbSink}},
+    Format{.label = {"vtu", ".vtu", "VTK XML unstructured grid, binary"},
+           .maps = {readVtuMap, writeVtuMap},
            .readTets = readVtuTets,
-           .readMesh = readVtu,
-           .writeMesh = writeVtu,
-           .openSink = openVtuSink,
-           .readMeshTo = readVtuTo,
+           .meshes = {readVtu, writeVtu},
+           .pieces = {openVtuSink, readVtuTo},
            .compresses = true},
-    Format{.name = "vtk",
-           .extension = ".vtk",
-           .description = "legacy VTK 2.0, text",
-           .readMap = readVtkLegacyMap,
-           .writeMap = writeVtkLegacyMap,
+    Format{.label = {"vtk", ".vtk", "legacy VTK 2.0, text"},
+           .maps = {readVtkLegacyMap, writeVtkLegacyMap},
            .readTets = readVtkLegacyTets,
-           .readMesh = readVtkLegacy,
-           .writeMesh = writeVtkLegacy,
-           .openSink = openVtkLegacySink},
-    Format{.name = "vtk-binary",
-           .extension = ".vtk",
-           .description = "legacy VTK 2.0, binary",
-           .readMap = readVtkLegacyMap,
-           .writeMap = writeVtkLegacyMapBinary,
+           .meshes = {readVtkLegacy, writeVtkLegacy},
+           .pieces = {openVtkLegacySink}},
+    Format{.label = {"vtk-binary", ".vtk", "legacy VTK 2.0, binary"},
+           .maps = {readVtkLegacyMap, writeVtkLegacyMapBinary},
            .readTets = readVtkLegacyTets,
-           .readMesh = readVtkLegacy,
-           .writeMesh = writeVtkLegacyBinary,
-           .openSink = openVtkLegacyBinarySink},
-    Format{.name = "ovm",
-           .extension = ".ovm",
-           .description = "OpenVolumeMesh, text",
-           .readMap = readPlain<readOvmMap>,
-           .writeMap = writePlain<writeOvmMap>,
+           .meshes = {readVtkLegacy, writeVtkLegacyBinary},
+           .pieces = {openVtkLegacyBinarySink}},
+    Format{.label = {"ovm", ".ovm", "OpenVolumeMesh, text"},
+           .maps = {readPlain<readOvmMap>, writePlain<writeOvmMap>},
            .readTets = readOvmTets,
-           .readMesh = readOvmHexMesh,
-           .writeMesh = writeOvmHexMesh},
-    Format{.name = "ovmb",
-           .extension = ".ovmb",
-           .description = "OpenVolumeMesh, binary",
-           .readMap = readPlain<readOvmbMap>,
-           .writeMap = writePlain<writeOvmbMap>,
+           .meshes = {readOvmHexMesh, writeOvmHexMesh}},
+    Format{.label = {"ovmb", ".ovmb", "OpenVolumeMesh, binary"},
+           .maps = {readPlain<readOvmbMap>, writePlain<writeOvmbMap>},
            .readTets = readOvmbTets,
-           .readMesh = readOvmbHexMesh,
-           .writeMesh = writeOvmbHexMesh},
-    Format{.name = "msh",
-           .extension = ".msh",
-           .description = "Gmsh 4.1, binary",
+           .meshes = {readOvmbHexMesh, writeOvmbHexMesh}},
+    Format{.label = {"msh", ".msh", "Gmsh 4.1, binary"},
            .readTets = readFile<readGmshTets>,
-           .readMesh = readFile<readGmsh>,
-           .writeMesh = writeGmsh41Binary,
-           .openSink = openGmsh41BinarySink},
-    Format{.name = "msh41-ascii",
-           .extension = ".msh",
-           .description = "Gmsh 4.1, text",
+           .meshes = {readFile<readGmsh>, writeGmsh41Binary},
+           .pieces = {openGmsh41BinarySink}},
+    Format{.label = {"msh41-ascii", ".msh", "Gmsh 4.1, text"},
            .readTets = readFile<readGmshTets>,
-           .readMesh = readFile<readGmsh>,
-           .writeMesh = writeGmsh41Text},
-    Format{.name = "msh22-ascii",
-           .extension = ".msh",
-           .description = "Gmsh 2.2, text",
+           .meshes = {readFile<readGmsh>, writeGmsh41Text}},
+    Format{.label = {"msh22-ascii", ".msh", "Gmsh 2.2, text"},
            .readTets = readFile<readGmshTets>,
-           .readMesh = readFile<readGmsh>,
-           .writeMesh = writeGmsh22Text},
-    Format{.name = "inp",
-           .extension = ".inp",
-           .description = "Abaqus and CalculiX, text",
-           .writeMesh = writeAbaqus},
-    Format{.name = "mfem",
-           .extension = "",
-           .description = "MFEM mesh v1.0, text",
-           .writeMesh = writeMfem},
-    Format{.name = "openfoam",
-           .extension = ".foam",
-           .description = "OpenFOAM polyMesh, a folder",
-           .writeMesh = writeOpenFoam},
-    optionalFormat("vtkhdf", ".vtkhdf", "VTKHDF", {kWriteVtkHdf, kHasHdf5}, "HDF5 (libhdf5-dev)"),
-    optionalFormat("cgns", ".cgns", "CGNS", {kWriteCgns, kHasCgns}, "CGNS (libcgns-dev)"),
-    optionalFormat("exodus", ".exo", "Exodus II", {kWriteExodus, kHasExodus},
-                   "Exodus (libexodusii-dev)"),
-    optionalFormat("exodus-e", ".e", "Exodus II", {kWriteExodus, kHasExodus},
-                   "Exodus (libexodusii-dev)"),
+           .meshes = {readFile<readGmsh>, writeGmsh22Text}},
+    Format{.label = {"inp", ".inp", "Abaqus and CalculiX, text"}, .meshes = {.write = writeAbaqus}},
+    Format{.label = {"mfem", "", "MFEM mesh v1.0, text"}, .meshes = {.write = writeMfem}},
+    Format{.label = {"openfoam", ".foam", "OpenFOAM polyMesh, a folder"},
+           .meshes = {.write = writeOpenFoam}},
+    Format{.label = {"vtkhdf", ".vtkhdf", "VTKHDF"},
+           .meshes = {.write = kVtkHdf.write},
+           .missing = kVtkHdf.missing},
+    Format{.label = {"cgns", ".cgns", "CGNS"},
+           .meshes = {.write = kCgns.write},
+           .missing = kCgns.missing},
+    Format{.label = {"exodus", ".exo", "Exodus II"},
+           .meshes = {.write = kExodus.write},
+           .missing = kExodus.missing},
+    Format{.label = {"exodus-e", ".e", "Exodus II"},
+           .meshes = {.write = kExodus.write},
+           .missing = kExodus.missing},
 };
 
 /// Other names for formats.
@@ -210,80 +148,85 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kOtherFor
      {"gmsh22", "msh22-ascii"},
      {"medit", "mesh"}}};
 
-}  // namespace
-
-std::span<const Format> allFormats() noexcept { return kFormatTable; }
-
-std::string_view usualFormatName(std::string_view name) noexcept {
+/// The name in the table of what may be called by another name.
+std::string_view usualName(std::string_view name) {
   for (const auto& [other, usual] : kOtherFormatNames) {
     if (name == other) return usual;
   }
   return name;
 }
 
-namespace {
-
 bool holdsMaps(const Format& format) {
-  return format.readMap != nullptr || format.writeMap != nullptr;
+  return format.maps.read != nullptr || format.maps.write != nullptr;
 }
 bool holdsMeshes(const Format& format) {
-  return format.readMesh != nullptr || format.writeMesh != nullptr || !format.missing.empty();
+  return format.meshes.read != nullptr || format.meshes.write != nullptr || !format.missing.empty();
 }
 
 /// What a format is looked for.
-struct FormatPurpose {
+struct Purpose {
   bool (*fits)(const Format& format);
   const char* what;
 };
-constexpr FormatPurpose kForMaps = {holdsMaps, "maps"};
-constexpr FormatPurpose kForMeshes = {holdsMeshes, "hexahedral meshes"};
-constexpr FormatPurpose kForBoth = {
-    [](const Format& format) { return holdsMaps(format) || holdsMeshes(format); },
-    "maps or hexahedral meshes"};
-constexpr FormatPurpose kForTets = {[](const Format& format) { return format.readTets != nullptr; },
-                                    "tetrahedral meshes"};
 
-/// ".mesh, .vtu": what file names can mean.
-std::string listExtensions(bool (*fits)(const Format&)) {
+constexpr Purpose purposeOf(FileContent content) {
+  switch (content) {
+    case FileContent::Map:
+      return {holdsMaps, "maps"};
+    case FileContent::HexMesh:
+      return {holdsMeshes, "hexahedral meshes"};
+    case FileContent::MapOrHexMesh:
+      return {[](const Format& format) { return holdsMaps(format) || holdsMeshes(format); },
+              "maps or hexahedral meshes"};
+    case FileContent::Tets:
+      break;
+  }
+  return {[](const Format& format) { return format.readTets != nullptr; }, "tetrahedral meshes"};
+}
+
+/// ".mesh, .vtu": the names or extensions of the formats that fit.
+std::string listed(bool (*fits)(const Format&), std::string_view FormatLabel::*what) {
   std::string list;
   std::string_view last;
-  for (const Format& format : allFormats()) {
-    if (!fits(format) || format.extension.empty() || format.extension == last) continue;
-    last = format.extension;
-    list += (list.empty() ? "" : ", ") + std::string(last);
+  for (const Format& format : kFormatTable) {
+    const std::string_view word = format.label.*what;
+    if (!fits(format) || word.empty() || word == last) continue;
+    last = word;
+    list += (list.empty() ? "" : ", ") + std::string(word);
   }
   return list;
 }
 
-const Format& formatNamed(std::string_view name, const std::filesystem::path& file,
-                          const FormatPurpose& purpose) {
-  name = usualFormatName(name);
-  for (const Format& format : allFormats()) {
-    if (format.name == name && purpose.fits(format)) return format;
-  }
-  throw Error(ErrorCode::FileUnsupported, file.string() + ": \"" + std::string(name) +
-                                              "\" is no format of " + purpose.what +
-                                              ". Formats: " + listFormatNames(purpose.fits) + ".");
+/// @param key  the format's name or its extension, as `member` says; null if there is no such one
+const Format* formatWith(std::string_view key, std::string_view FormatLabel::*member,
+                         bool (*fits)(const Format&)) {
+  const auto found =
+      std::find_if(kFormatTable.begin(), kFormatTable.end(), [&](const Format& format) {
+        return !key.empty() && format.label.*member == key && fits(format);
+      });
+  return found == kFormatTable.end() ? nullptr : &*found;
 }
 
-const Format& findFormat(const std::filesystem::path& file, std::string_view name,
-                         const FormatPurpose& purpose) {
-  if (!name.empty()) return formatNamed(name, file, purpose);
-  const std::string extension = lowerCaseExtension(file);
-  for (const Format& format : allFormats()) {
-    if (!extension.empty() && format.extension == extension && purpose.fits(format)) return format;
-  }
-  const std::string problem =
-      extension.empty() ? "the file name has no extension"
-                        : "the extension \"" + extension + "\" is no format of " + purpose.what;
-  const std::span<const Format> formats = allFormats();
-  const bool tetsOnly = std::any_of(formats.begin(), formats.end(), [&](const Format& format) {
-    return purpose.fits == holdsMaps && !extension.empty() && format.extension == extension &&
-           format.readTets != nullptr;
-  });
+[[noreturn]] void failToName(const std::filesystem::path& file, std::string_view name,
+                             const Purpose& purpose) {
   throw Error(ErrorCode::FileUnsupported,
-              file.string() + ": " + problem + ". Maps: " + listExtensions(holdsMaps) +
-                  "; hexahedral meshes: " + listExtensions(holdsMeshes) + "." +
+              file.string() + ": \"" + std::string(name) + "\" is no format of " + purpose.what +
+                  ". Formats: " + listed(purpose.fits, &FormatLabel::name) + ".");
+}
+
+[[noreturn]] void failToExtend(const std::filesystem::path& file, const std::string& extension,
+                               FileContent content) {
+  const std::string problem =
+      extension.empty()
+          ? "the file name has no extension"
+          : "the extension \"" + extension + "\" is no format of " + purposeOf(content).what;
+  const bool tetsOnly =
+      content == FileContent::Map &&
+      formatWith(extension, &FormatLabel::extension, purposeOf(FileContent::Tets).fits) != nullptr;
+  throw Error(ErrorCode::FileUnsupported,
+              file.string() + ": " + problem +
+                  ". Maps: " + listed(holdsMaps, &FormatLabel::extension) +
+                  "; hexahedral meshes: " + listed(holdsMeshes, &FormatLabel::extension) + "." +
                   (tetsOnly ? " Tets without a map need a second mesh with their parameters "
                               "(--tets, --polycube)."
                             : ""));
@@ -291,45 +234,37 @@ const Format& findFormat(const std::filesystem::path& file, std::string_view nam
 
 }  // namespace
 
-const Format& mapFormat(const std::filesystem::path& file, std::string_view name) {
-  return findFormat(file, name, kForMaps);
-}
-
-const Format& hexMeshFormat(const std::filesystem::path& file, std::string_view name) {
-  const Format& format = findFormat(file, name, kForMeshes);
-  if (format.missing.empty()) return format;
+const Format& findFormat(const std::filesystem::path& file, std::string_view name,
+                         FileContent content) {
+  const Purpose purpose = purposeOf(content);
+  const std::string_view usual = usualName(name);
+  const std::string extension = lowerCaseExtension(file);
+  const Format* const format = usual.empty()
+                                   ? formatWith(extension, &FormatLabel::extension, purpose.fits)
+                                   : formatWith(usual, &FormatLabel::name, purpose.fits);
+  if (format == nullptr && !usual.empty()) failToName(file, usual, purpose);
+  if (format == nullptr) failToExtend(file, extension, content);
+  if (content != FileContent::HexMesh || format->missing.empty()) return *format;
   throw Error(ErrorCode::FileUnsupported, file.string() +
                                               ": this build of hexhex cannot write the format \"" +
-                                              std::string(format.name) + "\". Install " +
-                                              std::string(format.missing) + " and build it anew.");
+                                              std::string(format->label.name) + "\". Install " +
+                                              std::string(format->missing) + " and build it anew.");
 }
 
-const Format& mapOrHexMeshFormat(const std::filesystem::path& file, std::string_view name) {
-  return findFormat(file, name, kForBoth);
-}
-
-const Format& tetFormat(const std::filesystem::path& file, std::string_view name) {
-  return findFormat(file, name, kForTets);
-}
-
-std::string listFormatNames(bool (*fits)(const Format&)) {
-  std::string list;
-  for (const Format& format : allFormats()) {
-    if (fits(format)) list += (list.empty() ? "" : ", ") + std::string(format.name);
-  }
-  return list;
+std::string streamingFormats() {
+  return listed([](const Format& format) { return format.pieces.openSink != nullptr; },
+                &FormatLabel::name);
 }
 
 std::span<const FileFormat> fileFormats() {
   static const std::vector<FileFormat> list = [] {
     std::vector<FileFormat> result;
-    result.reserve(allFormats().size());
-    for (const Format& format : allFormats()) {
+    for (const Format& format : kFormatTable) {
       if (!format.missing.empty()) continue;
-      result.push_back({format.name, format.extension, format.description,
-                        format.readMap != nullptr, format.writeMap != nullptr,
-                        format.readTets != nullptr, format.readMesh != nullptr,
-                        format.writeMesh != nullptr, format.openSink != nullptr,
+      result.push_back({format.label.name, format.label.extension, format.label.description,
+                        format.maps.read != nullptr, format.maps.write != nullptr,
+                        format.readTets != nullptr, format.meshes.read != nullptr,
+                        format.meshes.write != nullptr, format.pieces.openSink != nullptr,
                         format.compresses && hasZlib()});
     }
     return result;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <mutex>
 
@@ -22,17 +21,12 @@ std::uint64_t summand(std::uint64_t place, std::uint64_t value) {
   return z ^ (z >> 31U);
 }
 
-struct Box {
-  Vec3 lower;
-  Vec3 upper;
-
-  void add(const Vec3& point) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], point[axis]);
-      upper[axis] = std::max(upper[axis], point[axis]);
-    }
+void enlarge(Vec3& lower, Vec3& upper, const Vec3& point) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    lower[axis] = std::min(lower[axis], point[axis]);
+    upper[axis] = std::max(upper[axis], point[axis]);
   }
-};
+}
 
 }  // namespace
 
@@ -49,45 +43,39 @@ class SurveySink::Adder final : public CheckedSink {
 
   void takePoints(const PointPiece& piece) override {
     if (piece.first == 0) result_.lower = result_.upper = piece.points.front();
-    std::mutex mutex;
     forEachBlock(piece.points.size(), [&](std::size_t begin, std::size_t end) {
-      Box box{piece.points[begin], piece.points[begin]};
-      std::uint64_t sum = 0;
+      MeshSurvey part;
+      part.lower = part.upper = piece.points[begin];
       for (std::size_t i = begin; i < end; ++i) {
-        box.add(piece.points[i]);
+        enlarge(part.lower, part.upper, piece.points[i]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          sum += summand(3 * (piece.first + i) + axis,
-                         std::bit_cast<std::uint64_t>(piece.points[i][axis]));
+          part.pointChecksum += summand(3 * (piece.first + i) + axis,
+                                        std::bit_cast<std::uint64_t>(piece.points[i][axis]));
         }
       }
-      const std::lock_guard lock(mutex);
-      result_.pointChecksum += sum;
-      Box all{result_.lower, result_.upper};
-      all.add(box.lower);
-      all.add(box.upper);
-      result_.lower = all.lower;
-      result_.upper = all.upper;
+      const std::lock_guard lock(mutex_);
+      result_.pointChecksum += part.pointChecksum;
+      enlarge(result_.lower, result_.upper, part.lower);
+      enlarge(result_.lower, result_.upper, part.upper);
     });
   }
 
   void takeCellsBegin() override {}
   void takeCells(std::uint64_t first, std::span<const Hex> cells) override { add(first, cells); }
   void takeCells(std::uint64_t first, std::span<const Hex64> cells) override { add(first, cells); }
+  void takeEnd() override {}
 
   template <class Cell>
   void add(std::uint64_t first, std::span<const Cell> cells) {
-    std::atomic<std::uint64_t> all{0};
     forEachBlock(cells.size(), [&](std::size_t begin, std::size_t end) {
       std::uint64_t sum = 0;
       for (std::size_t i = begin; i < end; ++i) {
         for (std::size_t k = 0; k < 8; ++k) sum += summand(8 * (first + i) + k, cells[i][k]);
       }
-      all += sum;
+      const std::lock_guard lock(mutex_);
+      result_.cellChecksum += sum;
     });
-    result_.cellChecksum += all;
   }
-
-  void takeEnd() override {}
 
   template <class F>
   void forEachBlock(std::size_t n, const F& f) {
@@ -100,6 +88,7 @@ class SurveySink::Adder final : public CheckedSink {
   }
 
   Context quiet_;  // many short loops, which report no progress of their own
+  std::mutex mutex_;
   MeshSurvey result_;
 };
 

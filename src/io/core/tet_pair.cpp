@@ -7,6 +7,7 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/core/input_file.hpp>
 
 namespace hexhex {
 namespace {
@@ -35,10 +36,8 @@ void requireSame(std::size_t tets, std::size_t polycube, const char* what, const
 }
 
 /// The corners of a tet may be listed in another order.
-bool sameVertices(Tet a, Tet b) {
-  std::sort(a.begin(), a.end());
-  std::sort(b.begin(), b.end());
-  return a == b;
+bool sameVertices(const Tet& a, const Tet& b) {
+  return std::is_permutation(a.begin(), a.end(), b.begin());
 }
 
 TetMap combine(const TetMesh& tets, const TetMesh& polycube, const PairNames& names, Stage& stage) {
@@ -70,9 +69,7 @@ TetMap combine(const TetMesh& tets, const TetMesh& polycube, const PairNames& na
   map.tets = tets.tets;
   map.parameters.resize(count);
   parallelFor(stage, count, kGrain, [&](std::size_t t) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      map.parameters[t][i] = polycube.points[map.tets[t][i]];
-    }
+    for (std::size_t i = 0; i < 4; ++i) map.parameters[t][i] = polycube.points[map.tets[t][i]];
   });
   return map;
 }
@@ -80,25 +77,18 @@ TetMap combine(const TetMesh& tets, const TetMesh& polycube, const PairNames& na
 }  // namespace
 
 TetMap mapFromPair(const TetMesh& tets, const TetMesh& polycube, Context& context) {
-  Stage stage(context, "pair meshes");
-  TetMap map;
-  withThreads(context.threads(), [&] {
-    map = combine(tets, polycube, {"The mesh", "the polycube", ErrorCode::InvalidArgument}, stage);
-  });
-  return map;
+  const PairNames names = {"The mesh", "the polycube", ErrorCode::InvalidArgument};
+  return inStage(context, "pair meshes",
+                 [&](Stage& stage) { return combine(tets, polycube, names, stage); });
 }
 
 TetMap readMapPair(const std::filesystem::path& tets, const std::filesystem::path& polycube,
                    Context& context) {
   const TetMesh first = readTetMesh(tets, {}, context);
   const TetMesh second = readTetMesh(polycube, {}, context);
-  Stage stage(context, "pair meshes");
-  TetMap map;
-  withThreads(context.threads(), [&] {
-    map = combine(first, second, {tets.string(), polycube.string(), ErrorCode::FileUnsupported},
-                  stage);
-  });
-  return map;
+  const PairNames names = {tets.string(), polycube.string(), ErrorCode::FileUnsupported};
+  return inStage(context, "pair meshes",
+                 [&](Stage& stage) { return combine(first, second, names, stage); });
 }
 
 }  // namespace hexhex

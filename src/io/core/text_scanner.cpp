@@ -9,6 +9,27 @@
 
 namespace hexhex {
 
+std::string lowerCase(std::string_view word) {
+  std::string result(word);
+  for (char& c : result) c = lowerCase(c);
+  return result;
+}
+
+std::string lowerCaseExtension(const std::filesystem::path& file) {
+  return lowerCase(file.extension().string());
+}
+
+std::string exceedsLimit(std::uint64_t count, std::string_view what, std::uint64_t limit) {
+  return "announces " + std::to_string(count) + " " + std::string(what) + "; at most " +
+         std::to_string(limit) + " are supported.";
+}
+
+std::string lacksRoom(std::string_view count, std::string_view what, std::size_t room) {
+  return "announces " + std::string(count) + " " + std::string(what) +
+         ", but the rest of the file has room for at most " + std::to_string(room) +
+         ": either the number is wrong or the file is incomplete.";
+}
+
 std::string quoted(std::string_view token) {
   // Long enough to recognize a number of 17 digits, short enough for one line.
   constexpr std::size_t kLongest = 40;
@@ -54,14 +75,10 @@ std::size_t TextScanner::readCount(std::string_view what, std::size_t bytesEach)
   // The last one may lack its separator at the end of the file.
   const std::size_t room = (static_cast<std::size_t>(end_ - position_) + 1) / bytesEach;
   if (static_cast<std::uint64_t>(count) > room) {
-    fail(ErrorCode::FileSyntax,
-         "announces " + std::string(currentToken()) + " " + std::string(what) +
-             ", but the rest of the file has room for at most " + std::to_string(room) +
-             ": either the number is wrong or the file is incomplete.");
+    fail(ErrorCode::FileSyntax, lacksRoom(currentToken(), what, room));
   }
   if (static_cast<std::uint64_t>(count) > kNone) {
-    fail(ErrorCode::TooLarge, "announces " + std::to_string(count) + " " + std::string(what) +
-                                  "; at most " + std::to_string(kNone) + " are supported.");
+    fail(ErrorCode::TooLarge, exceedsLimit(static_cast<std::uint64_t>(count), what, kNone));
   }
   return static_cast<std::size_t>(count);
 }
@@ -118,39 +135,46 @@ void TextScanner::fail(ErrorCode code, std::string_view sentence) const {
 }
 
 void TextScanner::failNumber(std::string_view what) const {
-  const std::string_view token = currentToken();
-  const std::string expected = "expected " + std::string(what) + ", found ";
-  if (token.empty()) fail(ErrorCode::FileSyntax, expected + "the end of the file.");
   double ignored = 0;
-  switch (parseNumber(token, ignored)) {
+  switch (parseNumber(currentToken(), ignored)) {
     case NumberProblem::NotFinite:
-      fail(ErrorCode::NotFinite, expected + quoted(token) + ", which is not finite.");
+      failFound(ErrorCode::NotFinite, what, ", which is not finite.");
     case NumberProblem::Overflow:
-      fail(ErrorCode::NotFinite,
-           expected + quoted(token) + ", which exceeds the largest number (about 1.8e308).");
+      failFound(ErrorCode::NotFinite, what, ", which exceeds the largest number (about 1.8e308).");
     case NumberProblem::ZeroDenominator:
-      fail(ErrorCode::FileSyntax, expected + quoted(token) + ", which divides by zero.");
+      failFound(ErrorCode::FileSyntax, what, ", which divides by zero.");
     case NumberProblem::TooLong:
-      fail(ErrorCode::FileUnsupported, expected + quoted(token) + ", a fraction with more than " +
-                                           std::to_string(kMaxRationalDigits) +
-                                           " digits; round it to a decimal number.");
+      failFound(ErrorCode::FileUnsupported, what,
+                ", a fraction with more than " + std::to_string(kMaxRationalDigits) +
+                    " digits; round it to a decimal number.");
     case NumberProblem::None:
     case NumberProblem::NotANumber:
       break;
   }
-  fail(ErrorCode::FileSyntax, expected + quoted(token) + ", which is not a number.");
+  failFound(ErrorCode::FileSyntax, what, ", which is not a number.");
 }
 
 void TextScanner::failInteger(std::string_view what) const {
+  failFound(ErrorCode::FileSyntax, what, ", which is not a whole number.");
+}
+
+void TextScanner::failFound(ErrorCode code, std::string_view what, std::string_view problem) const {
   const std::string_view token = currentToken();
   const std::string expected = "expected " + std::string(what) + ", found ";
   if (token.empty()) fail(ErrorCode::FileSyntax, expected + "the end of the file.");
-  fail(ErrorCode::FileSyntax, expected + quoted(token) + ", which is not a whole number.");
+  fail(code, expected + quoted(token) + std::string(problem));
 }
 
 void TextScanner::failToken(std::string_view what) const {
   fail(ErrorCode::FileSyntax,
        "expected " + std::string(what) + ", found " + quoted(currentToken()) + ".");
+}
+
+void TextScanner::failIfAtEnd(std::size_t done, std::size_t count, std::string_view what) {
+  if (skipSpace()) return;
+  fail(ErrorCode::FileSyntax, "the file ends after " + std::to_string(done) + " of " +
+                                  std::to_string(count) + " " + std::string(what) +
+                                  ": it is incomplete.");
 }
 
 void TextScanner::failIfRepeated(bool present, std::string_view section) const {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -24,6 +25,14 @@ namespace hexhex {
 [[nodiscard]] constexpr bool isSpace(char c) noexcept {
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
+
+/// Words and file names whose letter case means nothing. ASCII only: no locale has a say.
+[[nodiscard]] constexpr char lowerCase(char c) noexcept {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+[[nodiscard]] std::string lowerCase(std::string_view word);
+/// With the dot; empty if the file's name has none.
+[[nodiscard]] std::string lowerCaseExtension(const std::filesystem::path& file);
 
 /// Where the n-th token (run of other characters than white space) of a text is, so that several
 /// threads can read a text whose lines, if it has any, mean nothing.
@@ -150,6 +159,8 @@ class TextScanner {
   [[noreturn]] void failInteger(std::string_view what) const;
   /// After readToken returned another token: the same.
   [[noreturn]] void failToken(std::string_view what) const;
+  /// Refuses a text that ends after so many elements.
+  void failIfAtEnd(std::size_t done, std::size_t count, std::string_view what);
   /// Refuses a section that is present already.
   void failIfRepeated(bool present, std::string_view section) const;
 
@@ -167,6 +178,9 @@ class TextScanner {
     while (position_ != end_ && *position_ != '\n') ++position_;
   }
   bool readUnusualNumber(double& value);
+  /// Throws an error about the current token, or about the end of the file if there is none.
+  [[noreturn]] void failFound(ErrorCode code, std::string_view what,
+                              std::string_view problem) const;
 
   const char* begin_;
   const char* position_;
@@ -176,11 +190,38 @@ class TextScanner {
   Comments comments_;
 };
 
+/// "announces 9 nodes; at most 5 are supported."
+[[nodiscard]] std::string exceedsLimit(std::uint64_t count, std::string_view what,
+                                       std::uint64_t limit);
+
+/// "announces 9 nodes, but the rest of the file has room for at most 3: ..."
+[[nodiscard]] std::string lacksRoom(std::string_view count, std::string_view what,
+                                    std::size_t room);
+
 /// A token as an error message shows it: in quotes, shortened, without control characters.
 [[nodiscard]] std::string quoted(std::string_view token);
 
 /// Elements that a thread reads in a go, which takes less than a millisecond.
 inline constexpr std::size_t kElementGrain = 1024;
+
+/// Calls read(begin, end, i), which reads elements [begin, end) and counts i up from begin, for all
+/// elements of [0, n), in parallel. At an element that is wrong it stops or throws an Error.
+/// @return the first element that is wrong, or n
+template <class Read>
+[[nodiscard]] std::size_t firstUnreadable(Stage& stage, std::size_t n, const Read& read) {
+  std::atomic<std::size_t> firstWrong{n};
+  parallelBlocks(stage, n, kElementGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   if (begin > firstWrong.load(std::memory_order_relaxed)) return;
+                   std::size_t i = begin;
+                   try {
+                     read(begin, end, i);
+                   } catch (const Error&) {  // element i is wrong, and told about by the caller
+                   }
+                   if (i < end) lowerTo(i, firstWrong);
+                 });
+  return firstWrong;
+}
 
 /// Calls read(scanner, i), which reads element i or throws an Error about it, for all i in [0, n),
 /// from several threads, each with a scanner of its own. Then `scanner`, which stands before the
@@ -205,23 +246,15 @@ void readElements(TextScanner& scanner, const TokenIndex* index, Stage& stage, s
   const auto moveTo = [&](TextScanner& moved, std::size_t element) {
     moved.moveTo(index->find(firstToken + element * tokensEach));
   };
-
-  std::atomic<std::size_t> firstWrong{complete};
-  parallelBlocks(stage, complete, kElementGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   if (begin > firstWrong.load(std::memory_order_relaxed)) return;
-                   TextScanner local = scanner;
-                   moveTo(local, begin);
-                   std::size_t i = begin;
-                   try {
-                     for (; i < end; ++i) read(local, i);
-                   } catch (const Error&) {
-                     lowerTo(i, firstWrong);
-                   }
-                 });
+  const std::size_t wrong =
+      firstUnreadable(stage, complete, [&](std::size_t begin, std::size_t end, std::size_t& i) {
+        TextScanner local = scanner;
+        moveTo(local, begin);
+        for (; i < end; ++i) read(local, i);
+      });
   // Normally nothing is left. Otherwise the first of these throws, now as if alone.
-  moveTo(scanner, firstWrong);
-  for (std::size_t i = firstWrong; i < n; ++i) read(scanner, i);
+  moveTo(scanner, wrong);
+  for (std::size_t i = wrong; i < n; ++i) read(scanner, i);
 }
 
 }  // namespace hexhex

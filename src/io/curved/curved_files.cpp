@@ -7,7 +7,7 @@
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 
-#include <io/core/letter_case.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/curved/lagrange_files.hpp>
 #include <io/ovm/piecewise_ovmb.hpp>
 #include <io/vtk/piecewise_vtk.hpp>

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -13,6 +13,7 @@
 #include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/text_scanner.hpp>
+#include <io/core/writable.hpp>
 #include <io/hexex/hexex.hpp>
 
 namespace hexhex {
@@ -27,13 +28,6 @@ constexpr std::size_t kMinimumTetBytes = 32;
 constexpr std::size_t kTokensOfVertex = 3;
 constexpr std::size_t kTokensOfTet = 16;
 
-void failIfAtEnd(TextScanner& scanner, std::size_t done, std::size_t count, const char* what) {
-  if (scanner.skipSpace()) return;
-  scanner.fail(ErrorCode::FileSyntax, "the file ends after " + std::to_string(done) + " of " +
-                                          std::to_string(count) + " " + what +
-                                          ": it is incomplete.");
-}
-
 /// The vertices of a feature in ascending order.
 std::array<Index, 1> keyOf(const FeatureVertex& feature) { return {feature.vertex}; }
 template <class Feature>
@@ -46,18 +40,10 @@ auto keyOf(const Feature& feature) {
 /// Leaves out what is listed before.
 template <class Feature>
 void removeRepeated(std::vector<Feature>& features) {
-  using Key = decltype(keyOf(features[0]));
-  std::vector<std::pair<Key, std::size_t>> keys;
-  keys.reserve(features.size());
-  for (std::size_t i = 0; i < features.size(); ++i) keys.emplace_back(keyOf(features[i]), i);
-  std::sort(keys.begin(), keys.end());
-  std::vector<bool> repeated(features.size(), false);
-  for (std::size_t i = 1; i < keys.size(); ++i) {
-    repeated[keys[i].second] = keys[i].first == keys[i - 1].first;
-  }
+  std::set<decltype(keyOf(features[0]))> seen;
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < features.size(); ++i) {
-    if (!repeated[i]) features[kept++] = features[i];
+  for (const Feature& feature : features) {
+    if (seen.insert(keyOf(feature)).second) features[kept++] = feature;
   }
   features.resize(kept);
 }
@@ -78,13 +64,10 @@ class HexexReader {
  private:
   void readPoints();
   void readTets();
-  void readPoint(TextScanner& scanner, std::size_t vertex);
-  void readCorners(TextScanner& scanner, std::size_t tet);
-  void readParameters(TextScanner& scanner, std::size_t tet);
+  void readTet(TextScanner& scanner, std::size_t tet);
   void readTrailingSections();
   void readWalls();
   void readFeatures();
-  Index readVertex(const char* what);
   template <std::size_t n>
   std::array<Index, n> readVertices(const char* what);
 
@@ -95,18 +78,16 @@ class HexexReader {
 };
 
 void HexexReader::readPoints() {
-  map_.points.resize(scanner_.readCount("vertices", kMinimumVertexBytes));
-  readElements(scanner_, &index_, stage_, map_.points.size(), kTokensOfVertex,
-               [this](TextScanner& scanner, std::size_t i) { readPoint(scanner, i); });
-}
-
-void HexexReader::readPoint(TextScanner& scanner, std::size_t vertex) {
-  failIfAtEnd(scanner, vertex, map_.points.size(), "vertices");
-  for (double& coordinate : map_.points[vertex]) {
-    if (!scanner.readNumber(coordinate)) {
-      scanner.failNumber("a coordinate of vertex " + std::to_string(vertex));
-    }
-  }
+  const std::size_t count = scanner_.readCount("vertices", kMinimumVertexBytes);
+  map_.points.resize(count);
+  readElements(scanner_, &index_, stage_, count, kTokensOfVertex,
+               [&](TextScanner& scanner, std::size_t vertex) {
+                 scanner.failIfAtEnd(vertex, count, "vertices");
+                 for (double& coordinate : map_.points[vertex]) {
+                   if (scanner.readNumber(coordinate)) continue;
+                   scanner.failNumber("a coordinate of vertex " + std::to_string(vertex));
+                 }
+               });
 }
 
 void HexexReader::readTets() {
@@ -114,14 +95,11 @@ void HexexReader::readTets() {
   map_.tets.resize(count);
   map_.parameters.resize(count);
   readElements(scanner_, &index_, stage_, count, kTokensOfTet,
-               [this](TextScanner& scanner, std::size_t i) {
-                 failIfAtEnd(scanner, i, map_.tets.size(), "tets");
-                 readCorners(scanner, i);
-                 readParameters(scanner, i);
-               });
+               [this](TextScanner& scanner, std::size_t i) { readTet(scanner, i); });
 }
 
-void HexexReader::readCorners(TextScanner& scanner, std::size_t tet) {
+void HexexReader::readTet(TextScanner& scanner, std::size_t tet) {
+  scanner.failIfAtEnd(tet, map_.tets.size(), "tets");
   const auto vertices = static_cast<std::int64_t>(map_.points.size());
   for (Index& corner : map_.tets[tet]) {
     std::int64_t vertex = 0;
@@ -137,9 +115,6 @@ void HexexReader::readCorners(TextScanner& scanner, std::size_t tet) {
     }
     corner = static_cast<Index>(vertex);
   }
-}
-
-void HexexReader::readParameters(TextScanner& scanner, std::size_t tet) {
   for (Vec3& corner : map_.parameters[tet]) {
     for (double& parameter : corner) {
       if (!scanner.readNumber(parameter)) {
@@ -191,7 +166,7 @@ void HexexReader::readFeatures() {
   features.edges.reserve(edges);
   features.faces.reserve(faces);
   for (std::size_t i = 0; i < vertices; ++i) {
-    features.vertices.push_back({readVertex("a feature vertex"), kHexexFeatureTag});
+    features.vertices.push_back({readVertices<1>("a feature vertex")[0], kHexexFeatureTag});
   }
   for (std::size_t i = 0; i < edges; ++i) {
     features.edges.push_back({readVertices<2>("a vertex of a feature edge"), kHexexFeatureTag});
@@ -201,22 +176,20 @@ void HexexReader::readFeatures() {
   }
 }
 
-Index HexexReader::readVertex(const char* what) {
-  std::int64_t index = 0;
-  if (!scanner_.readInteger(index)) scanner_.failInteger(what);
-  const auto vertices = static_cast<std::int64_t>(map_.points.size());
-  if (index < 0 || index >= vertices) {
-    scanner_.fail(ErrorCode::IndexOutOfRange,
-                  std::string(what) + " is " + std::string(scanner_.currentToken()) + ", but the " +
-                      std::to_string(vertices) + " vertices are numbered from 0.");
-  }
-  return static_cast<Index>(index);
-}
-
 template <std::size_t n>
 std::array<Index, n> HexexReader::readVertices(const char* what) {
   std::array<Index, n> vertices{};
-  for (Index& vertex : vertices) vertex = readVertex(what);
+  const auto count = static_cast<std::int64_t>(map_.points.size());
+  for (Index& vertex : vertices) {
+    std::int64_t index = 0;
+    if (!scanner_.readInteger(index)) scanner_.failInteger(what);
+    if (index < 0 || index >= count) {
+      scanner_.fail(ErrorCode::IndexOutOfRange,
+                    std::string(what) + " is " + std::string(scanner_.currentToken()) +
+                        ", but the " + std::to_string(count) + " vertices are numbered from 0.");
+    }
+    vertex = static_cast<Index>(index);
+  }
   return vertices;
 }
 
@@ -234,30 +207,6 @@ void requireFeaturesInRange(const TetMap& map) {
   throw Error(ErrorCode::InvalidArgument,
               "A feature names vertex " + std::to_string(largest) + ", but the map has " +
                   std::to_string(map.points.size()) + " vertices, numbered from 0.");
-}
-
-/// Refuses what could not be read back.
-void requireWritable(const TetMap& map) {
-  if (map.parameters.size() != map.tets.size()) {
-    throw Error(ErrorCode::InvalidArgument, "The map has " + std::to_string(map.tets.size()) +
-                                                " tets but parameters for " +
-                                                std::to_string(map.parameters.size()) + ".");
-  }
-  const auto isFinite = [](const Vec3& v) {
-    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-  };
-  for (std::size_t i = 0; i < map.points.size(); ++i) {
-    if (isFinite(map.points[i])) continue;
-    throw Error(ErrorCode::NotFinite,
-                "A coordinate of vertex " + std::to_string(i) + " is not finite.",
-                Place{PlaceKind::Vertex, i});
-  }
-  requireFeaturesInRange(map);
-  for (std::size_t i = 0; i < map.parameters.size(); ++i) {
-    if (std::all_of(map.parameters[i].begin(), map.parameters[i].end(), isFinite)) continue;
-    throw Error(ErrorCode::NotFinite, "A parameter of tet " + std::to_string(i) + " is not finite.",
-                Place{PlaceKind::Tet, i});
-  }
 }
 
 /// The format has lists, but no place for tags.
@@ -287,45 +236,31 @@ void writeFeatures(const Features& features, LineWriter& lines, OutputFile& outp
 }  // namespace
 
 TetMap parseHexex(std::string_view text, const std::string& fileName, Context& context) {
-  Stage stage(context, "read map");
-  TetMap map;
-  withThreads(context.threads(), [&] { map = HexexReader(text, fileName, stage).read(); });
-  return map;
+  return parseWith<HexexReader>(text, fileName, "read map", context);
 }
 
 TetMap readHexex(const std::filesystem::path& file, Context& context) {
-  Stage stage(context, "read map");
-  TetMap map;
-  withThreads(context.threads(), [&] {
-    const Array<char> bytes = readWholeFile(file, stage);
-    map = HexexReader(asText(bytes), file.string(), stage).read();
-  });
-  return map;
+  return readWith<HexexReader>(file, "read map", context);
 }
 
 void writeHexex(const TetMap& map, const std::filesystem::path& file, Context& context) {
   Stage stage(context, "write map");
-  requireWritable(map);
+  withThreads(context.threads(), [&] { requireWritable(map, stage); });
+  requireFeaturesInRange(map);
   OutputFile output(file);
   LineWriter lines(output, context.threads());
   LoopProgress progress(stage, map.points.size() + map.tets.size());
   output.write(map.points.size()).write('\n');
   lines.write(
       map.points.size(), kTokensOfVertex * (kNumberRoom + 1),
-      [&map](char* place, std::size_t i) {
-        place = putNumbers(place, map.points[i]);
-        return put(place, '\n');
-      },
+      [&map](char* place, std::size_t i) { return put(putNumbers(place, map.points[i]), '\n'); },
       &progress);
   output.write(map.tets.size()).write('\n');
   lines.write(
       map.tets.size(), kTokensOfTet * (kNumberRoom + 1),
       [&map](char* place, std::size_t i) {
         place = putNumbers(place, map.tets[i]);
-        for (const Vec3& corner : map.parameters[i]) {
-          place = put(place, ' ');
-          place = putNumbers(place, corner);
-        }
+        for (const Vec3& corner : map.parameters[i]) place = putNumbers(put(place, ' '), corner);
         return put(place, '\n');
       },
       &progress);

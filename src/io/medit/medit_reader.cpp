@@ -165,11 +165,7 @@ class MeditBytes {
   [[nodiscard]] std::size_t readCount(std::string_view what, RecordShape shape) {
     const std::uint64_t count = vertex(source_, {"the number of ", what});
     requireRoom(source_, count, shape, what);
-    if (count > kNone) {
-      source_.fail(ErrorCode::TooLarge, "announces " + std::to_string(count) + " " +
-                                            std::string(what) + "; at most " +
-                                            std::to_string(kNone) + " are supported.");
-    }
+    if (count > kNone) source_.fail(ErrorCode::TooLarge, exceedsLimit(count, what, kNone));
     return static_cast<std::size_t>(count);
   }
 

@@ -8,7 +8,6 @@
 
 #include <hexhex/error.hpp>
 
-#include <io/core/letter_case.hpp>
 #include <io/core/number_parsing.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/ovm/ovm_files.hpp>
@@ -128,14 +127,6 @@ class OvmTextReader {
   OvmMesh mesh_;
 };
 
-void failIfAtEnd(TextScanner& scanner, std::size_t done, std::size_t count,
-                 const SectionName& section) {
-  if (scanner.skipSpace()) return;
-  scanner.fail(ErrorCode::FileSyntax, "the file ends after " + std::to_string(done) + " of " +
-                                          std::to_string(count) + " " + section.many +
-                                          ": it is incomplete.");
-}
-
 Index readHandle(TextScanner& scanner, const SectionName& section, std::size_t number,
                  std::size_t limit) {
   std::int64_t handle = 0;
@@ -205,9 +196,7 @@ std::size_t OvmTextReader::readSection(const SectionName& section) {
   }
   const std::size_t count = scanner_.readCount(section.many, section.minimumBytes);
   if (count > kMaxOvmEntities) {
-    scanner_.fail(ErrorCode::TooLarge, "announces " + std::to_string(count) + " " + section.many +
-                                           "; at most " + std::to_string(kMaxOvmEntities) +
-                                           " are supported.");
+    scanner_.fail(ErrorCode::TooLarge, exceedsLimit(count, section.many, kMaxOvmEntities));
   }
   return count;
 }
@@ -217,7 +206,7 @@ void OvmTextReader::readVertices() {
   mesh_.points.resize(count);
   mesh_.topology.vertexCount = count;
   readElements(scanner_, index(), stage_, count, 3, [&](TextScanner& scanner, std::size_t i) {
-    failIfAtEnd(scanner, i, count, kVertexSection);
+    scanner.failIfAtEnd(i, count, kVertexSection.many);
     for (double& coordinate : mesh_.points[i]) {
       if (!scanner.readNumber(coordinate)) {
         scanner.failNumber("a coordinate of vertex " + std::to_string(i));
@@ -230,7 +219,7 @@ void OvmTextReader::readEdges() {
   const std::size_t count = readSection(kEdgeSection);
   mesh_.topology.edges.resize(count);
   readElements(scanner_, index(), stage_, count, 2, [&](TextScanner& scanner, std::size_t i) {
-    failIfAtEnd(scanner, i, count, kEdgeSection);
+    scanner.failIfAtEnd(i, count, kEdgeSection.many);
     for (Index& vertex : mesh_.topology.edges[i]) {
       vertex = readHandle(scanner, kEdgeSection, i, mesh_.points.size());
     }
@@ -274,7 +263,7 @@ void OvmTextReader::readLists(OvmLists& lists, const SectionName& section, std::
   if (readUniformLists(lists, count, section, limit)) return;
   lists.offsets.push_back(0);
   readElements(scanner_, nullptr, stage_, count, 1, [&](TextScanner& scanner, std::size_t i) {
-    failIfAtEnd(scanner, i, count, section);
+    scanner.failIfAtEnd(i, count, section.many);
     const std::uint32_t length = readValence(scanner, section, i);
     for (std::uint32_t k = 0; k < length; ++k) {
       lists.handles.push_back(readHandle(scanner, section, i, limit));

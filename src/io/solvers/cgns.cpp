@@ -22,9 +22,9 @@ namespace {
 /// An open file of the library.
 class CgnsFile {
  public:
-  explicit CgnsFile(const LibraryFile& file) : file_(file) {
+  explicit CgnsFile(const OutputFile& file) : file_(file) {
     require(cg_set_file_type(CG_FILE_HDF5));
-    require(cg_open(file.name().c_str(), CG_MODE_WRITE, &number_));
+    require(cg_open(file.temporary().c_str(), CG_MODE_WRITE, &number_));
     open_ = true;
   }
   ~CgnsFile() {
@@ -44,7 +44,7 @@ class CgnsFile {
   }
 
  private:
-  const LibraryFile& file_;
+  const OutputFile& file_;
   int number_ = 0;
   bool open_ = false;
 };
@@ -59,7 +59,7 @@ struct CgnsContent {
 
 class CgnsWriter {
  public:
-  CgnsWriter(const LibraryFile& file, const HexMesh& mesh, Stage& stage)
+  CgnsWriter(const OutputFile& file, const HexMesh& mesh, Stage& stage)
       : file_(file), mesh_(mesh), progress_(stage, mesh.points.size() + mesh.cells.size()) {}
 
   void write(const CgnsContent& content) {
@@ -178,7 +178,8 @@ void requireSmall(const HexMesh& mesh, const CgnsContent& content) {
 void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
                Context& context) {
   Stage stage(context, "write mesh");
-  LibraryFile target(file);  // first, so that a folder that is not writable shows at once
+  // First, so that a folder that is not writable shows at once.
+  OutputFile target(file, OutputFile::Target::Regular);
   if (mesh.points.empty() || mesh.cells.empty()) {
     throw Error(ErrorCode::InvalidArgument,
                 file.string() + ": the mesh is empty, which a CGNS file cannot hold.");

@@ -35,11 +35,11 @@ constexpr std::array<int, 6> kSideNumbers = {4, 2, 1, 3, 5, 6};
 /// An open file of the library.
 class ExodusFile {
  public:
-  ExodusFile(const LibraryFile& file, int mode) : file_(file) {
+  ExodusFile(const OutputFile& file, int mode) : file_(file) {
     int wordInMemory = sizeof(double);
     int wordInFile = sizeof(double);
     ex_opts(0);  // print nothing
-    id_ = ex_create(file.name().c_str(), EX_CLOBBER | mode, &wordInMemory, &wordInFile);
+    id_ = ex_create(file.temporary().c_str(), EX_CLOBBER | mode, &wordInMemory, &wordInFile);
     require(id_);
   }
   ~ExodusFile() {
@@ -56,7 +56,7 @@ class ExodusFile {
   void close() { require(ex_close(std::exchange(id_, -1))); }
 
  private:
-  const LibraryFile& file_;
+  const OutputFile& file_;
   int id_ = -1;
 };
 
@@ -100,7 +100,7 @@ std::vector<SideSet> sideSets(const QuadGroups& quads) {
 
 class ExodusWriter {
  public:
-  ExodusWriter(const LibraryFile& file, int mode, const HexMesh& mesh, Stage& stage)
+  ExodusWriter(const OutputFile& file, int mode, const HexMesh& mesh, Stage& stage)
       : file_(file, mode), mesh_(mesh), progress_(stage, mesh.points.size() + mesh.cells.size()) {}
 
   void write(const CellGroups& cells, const QuadGroups& quads,
@@ -242,7 +242,8 @@ int modeFor(const HexMesh& mesh) {
 void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
                  const WriteOptions& options, Context& context) {
   Stage stage(context, "write mesh");
-  LibraryFile target(file);  // first, so that a folder that is not writable shows at once
+  // First, so that a folder that is not writable shows at once.
+  OutputFile target(file, OutputFile::Target::Regular);
   requireSmall(mesh.points.size(), "vertices");
   requireSmall(mesh.cells.size(), "cells");
   std::vector<NodeSet> nodeSets;

@@ -14,10 +14,10 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
-#include <io/core/letter_case.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/solvers/openfoam.hpp>
 
 namespace hexhex {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <base/stage.hpp>
-#include <io/core/letter_case.hpp>
 #include <io/core/output_file.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/vtk/piecewise_vtk.hpp>
 #include <io/vtk/vtk_xml_writer.hpp>
 

@@ -3,7 +3,7 @@
 
 #include <hexhex/error.hpp>
 
-#include <io/core/letter_case.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/vtk/vtk_legacy_arrays.hpp>
 
 namespace hexhex {

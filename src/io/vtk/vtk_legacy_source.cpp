@@ -4,7 +4,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
-#include <io/core/letter_case.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/vtk/vtk_legacy_source.hpp>
 
 namespace hexhex {

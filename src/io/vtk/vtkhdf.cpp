@@ -37,7 +37,7 @@ class QuietHdf {
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
-  Handle(const LibraryFile& file, hid_t id, Close function)
+  Handle(const OutputFile& file, hid_t id, Close function)
       : file_(file), id_(id), close_(function) {
     if (id_ < 0) refuse();
   }
@@ -63,7 +63,7 @@ class Handle {
     file_.fail("HDF5 could not write it; perhaps the disk is full");
   }
 
-  const LibraryFile& file_;
+  const OutputFile& file_;
   hid_t id_;
   Close close_;
 };
@@ -80,10 +80,10 @@ hid_t typeOf(std::string_view name) {
 /// Writes one file.
 class VtkHdfWriter {
  public:
-  VtkHdfWriter(const LibraryFile& file, const VtkDataSet& data, Stage& stage)
+  VtkHdfWriter(const OutputFile& file, const VtkDataSet& data, Stage& stage)
       : file_(file),
         data_(data),
-        root_(file, H5Fcreate(file.name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+        root_(file, H5Fcreate(file.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
               H5Fclose),
         grid_(file, createGroup(root_.id(), "VTKHDF"), H5Gclose),
         progress_(stage, data.points + data.cells) {}
@@ -190,7 +190,7 @@ class VtkHdfWriter {
     }
   }
 
-  const LibraryFile& file_;
+  const OutputFile& file_;
   const VtkDataSet& data_;
   Handle root_;
   Handle grid_;
@@ -201,7 +201,8 @@ class VtkHdfWriter {
 
 void writeVtkHdf(const HexMesh& mesh, const std::filesystem::path& file,
                  const WriteOptions& options, Context& context) {
-  LibraryFile target(file);  // first, so that a folder that is not writable shows at once
+  // First, so that a folder that is not writable shows at once.
+  OutputFile target(file, OutputFile::Target::Regular);
   Array<double> computedQuality;
   std::span<const double> quality = options.scaledJacobians;
   if (quality.empty()) quality = computedQuality = scaledJacobians(mesh, context);
