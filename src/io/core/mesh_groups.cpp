@@ -204,6 +204,24 @@ CellGroups groupCells(const HexMesh& mesh) {
   return result;
 }
 
+std::size_t QuadGroups::boundaryEnd(const ElementGroup& group) const {
+  const auto end = std::find(places.begin() + static_cast<std::ptrdiff_t>(group.begin),
+                             places.begin() + static_cast<std::ptrdiff_t>(group.end), kNoPlace);
+  return static_cast<std::size_t>(end - places.begin());
+}
+
+MeshGroups::MeshGroups(const HexMesh& mesh, double patchAngle, Stage& stage, int threads)
+    : vertices(groupVertices(mesh)), edges(groupEdges(mesh)), cells(groupCells(mesh)) {
+  withThreads(threads, [&] { quads = groupQuads(mesh, patchAngle, stage); });
+}
+
+void requireInt32(std::size_t count, const std::string& numbers, const std::string& instead) {
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+  if (count <= kMost) return;
+  throw Error(ErrorCode::TooLarge, numbers + " with 31 bits, which do not suffice for " +
+                                       std::to_string(count) + "; " + instead + ".");
+}
+
 namespace {
 
 /// @param groups  all of the same kind of elements

@@ -3,6 +3,7 @@
 // cells by region.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -40,6 +41,9 @@ using EdgeGroups = ElementGroups<2>;
 /// All boundary quads, facing outwards, and the tagged quads inside.
 struct QuadGroups : ElementGroups<4> {
   Array<std::uint64_t> places;  ///< per quad: 8 * cell + face; kNoPlace inside the mesh
+
+  /// The end of a group's boundary quads; those inside the mesh come last.
+  [[nodiscard]] std::size_t boundaryEnd(const ElementGroup& group) const;
 };
 
 /// Names are "point_TAG" and "curve_TAG".
@@ -68,6 +72,44 @@ struct CellGroups {
 
 /// Names are "region_TAG", and "hexahedra" for cells of region 0 and in meshes without regions.
 [[nodiscard]] CellGroups groupCells(const HexMesh& mesh);
+
+/// Everything that formats list by group.
+struct MeshGroups {
+  VertexGroups vertices;
+  EdgeGroups edges;
+  QuadGroups quads;
+  CellGroups cells;
+
+  /// @throws Error InvalidArgument for a feature with a vertex that is none of the mesh
+  MeshGroups(const HexMesh& mesh, double patchAngle, Stage& stage, int threads);
+  /// Of cells alone.
+  explicit MeshGroups(std::size_t cellCount) : cells{{{1, "hexahedra", 0, cellCount}}, {}} {}
+
+  [[nodiscard]] std::size_t elementCount() const {
+    return vertices.elements.size() + edges.elements.size() + quads.elements.size() +
+           cells.groups.back().end;
+  }
+};
+
+/// The different vertices of a group's elements, ascending.
+template <class Groups>
+[[nodiscard]] Array<Index> verticesOf(const Groups& groups, const ElementGroup& group) {
+  Array<Index> vertices;
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    const auto& element = groups.elements[i];
+    vertices.insert(vertices.end(), element.begin(), element.end());
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+/// Refuses more elements than 32 bits with a sign can number.
+/// @param numbers  who numbers what: "OpenFOAM numbers faces"
+/// @param instead  what else can be done
+/// @throws Error TooLarge
+void requireInt32(std::size_t count, const std::string& numbers,
+                  const std::string& instead = "choose another format");
 
 /// What stands for elements without a tag beside others that have one.
 enum class Untagged : std::uint8_t { Numbered, Zero };

@@ -16,11 +16,7 @@
 #include <io/hexex/hexex.hpp>
 #include <io/medit/medit.hpp>
 #include <io/ovm/ovm.hpp>
-#include <io/solvers/abaqus.hpp>
-#include <io/solvers/cgns.hpp>
-#include <io/solvers/exodus.hpp>
-#include <io/solvers/mfem.hpp>
-#include <io/solvers/openfoam.hpp>
+#include <io/solvers/solvers.hpp>
 #include <io/vtk/vtk_legacy.hpp>
 #include <io/vtk/vtkhdf.hpp>
 #include <io/vtk/vtu.hpp>

@@ -35,7 +35,7 @@ void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& fi
   // First, so that a folder that is not writable shows at once.
   Msh41Writer<TextNumbers> writer(file, context.threads());
   HexMesh straight = straightMesh(mesh);
-  const GmshGroups groups(straight, options.patchAngle, stage, context.threads());
+  const GmshGroups groups(MeshGroups(straight, options.patchAngle, stage, context.threads()));
   Array<Index> lines;
   Array<Index> quads;
   withThreads(context.threads(), [&] {
@@ -49,7 +49,7 @@ void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& fi
   const std::size_t perQuad = perEdge * perEdge;
   const std::size_t type = perEdge - 2;
   const auto forEachKind = [&](const auto& f) {
-    f(GmshKind{0U, kGmshPoint, 1, [&](std::size_t i) { return groups.vertices.elements[i]; }});
+    f(GmshKind{0U, kGmshPoint, 1U, [&](std::size_t i) { return groups.vertices.elements[i]; }});
     f(GmshKind{1U, kLines[type], perEdge,
                [&](std::size_t i) { return lines.data() + i * perEdge; }});
     f(GmshKind{2U, kQuads[type], perQuad,

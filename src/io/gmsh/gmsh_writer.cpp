@@ -1,8 +1,8 @@
 // The writing half of gmsh.hpp.
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
+#include <type_traits>
 
 #include <hexhex/error.hpp>
 
@@ -16,16 +16,19 @@
 namespace hexhex {
 namespace {
 
+template <std::size_t n>
+constexpr std::integral_constant<std::size_t, n> kNodes;
+
 /// Calls f(kind) for the elements of each dimension, in the order of the file.
 template <class F>
 void forEachKind(const HexMesh& mesh, const GmshGroups& groups, const F& f) {
   const auto of = [](const auto& elements) {
     return [&elements](std::size_t i) -> const auto& { return elements[i]; };
   };
-  f(GmshKind{0U, kGmshPoint, 1, of(groups.vertices.elements)});
-  f(GmshKind{1U, kGmshLine, 2, of(groups.edges.elements)});
-  f(GmshKind{2U, kGmshQuad, 4, of(groups.quads.elements)});
-  f(GmshKind{3U, kGmshHexahedron, 8,
+  f(GmshKind{0U, kGmshPoint, kNodes<1>, of(groups.vertices.elements)});
+  f(GmshKind{1U, kGmshLine, kNodes<2>, of(groups.edges.elements)});
+  f(GmshKind{2U, kGmshQuad, kNodes<4>, of(groups.quads.elements)});
+  f(GmshKind{3U, kGmshHexahedron, kNodes<8>,
              [&](std::size_t i) -> const Hex& { return mesh.cells[groups.cells.at(i)]; }});
 }
 
@@ -35,7 +38,7 @@ void writeMsh41(const HexMesh& mesh, const std::filesystem::path& file, const Wr
   Stage stage(context, "write mesh");
   // First, so that a folder that is not writable shows at once.
   Msh41Writer<Numbers> writer(file, context.threads());
-  const GmshGroups groups(mesh, options.patchAngle, stage, context.threads());
+  const GmshGroups groups(MeshGroups(mesh, options.patchAngle, stage, context.threads()));
   writer.write(
       mesh.points, groups, [&](const auto& f) { forEachKind(mesh, groups, f); }, stage);
 }
@@ -53,7 +56,7 @@ class GmshStream : private Msh41Writer<BinaryNumbers> {
   }
 
   void begin(std::uint64_t points, std::uint64_t cells) {
-    groups_ = GmshGroups(cells);
+    groups_ = GmshGroups(MeshGroups(cells));
     beginEntities(groups_);
     writeEntity(3, volume(), box_);
     beginNodes(groups_, points);
@@ -68,7 +71,7 @@ class GmshStream : private Msh41Writer<BinaryNumbers> {
   }
   template <class Cell>
   void cells(std::uint64_t first, std::span<const Cell> cells) {
-    writeElements(first + 1, cells.size(), 8,
+    writeElements(first + 1, cells.size(), kNodes<8>,
                   [cells](std::size_t i) -> const Cell& { return cells[i]; });
   }
   void end() {
@@ -79,17 +82,9 @@ class GmshStream : private Msh41Writer<BinaryNumbers> {
  private:
   [[nodiscard]] const GmshEntity& volume() const { return groups_.entities[3].front(); }
 
-  GmshGroups groups_{0};
+  GmshGroups groups_{MeshGroups(0)};
   Box box_;
 };
-
-void requireSmall(std::size_t count, const char* what) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (count <= kMost) return;
-  throw Error(ErrorCode::TooLarge, "MSH 2.2 numbers " + std::string(what) +
-                                       " with 31 bits, which do not suffice for " +
-                                       std::to_string(count) + "; write MSH 4.1.");
-}
 
 }  // namespace
 
@@ -107,9 +102,9 @@ void writeGmsh22Text(const HexMesh& mesh, const std::filesystem::path& file,
                      const WriteOptions& options, Context& context) {
   Stage stage(context, "write mesh");
   OutputFile output(file);
-  const GmshGroups groups(mesh, options.patchAngle, stage, context.threads());
-  requireSmall(mesh.points.size(), "nodes");
-  requireSmall(groups.elementCount(), "elements");
+  const GmshGroups groups(MeshGroups(mesh, options.patchAngle, stage, context.threads()));
+  requireInt32(mesh.points.size(), "MSH 2.2 numbers nodes", "write MSH 4.1");
+  requireInt32(groups.elementCount(), "MSH 2.2 numbers elements", "write MSH 4.1");
   LineWriter lines(output, context.threads());
   LoopProgress progress(stage, mesh.points.size() + groups.elementCount());
   output.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");

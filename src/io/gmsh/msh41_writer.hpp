@@ -10,11 +10,11 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <hexhex/types.hpp>
 
-#include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
@@ -33,34 +33,10 @@ struct GmshEntity {
 };
 
 /// What the elements of a file are sorted into.
-struct GmshGroups {
-  VertexGroups vertices;
-  EdgeGroups edges;
-  QuadGroups quads;
-  CellGroups cells;
+struct GmshGroups : MeshGroups {
   std::array<std::vector<GmshEntity>, 4> entities;  ///< by dimension
 
-  /// @throws Error InvalidArgument for features that are not in the mesh
-  GmshGroups(const HexMesh& mesh, double patchAngle, Stage& stage, int threads)
-      : vertices(groupVertices(mesh)), edges(groupEdges(mesh)), cells(groupCells(mesh)) {
-    withThreads(threads, [&] { quads = groupQuads(mesh, patchAngle, stage); });
-    addEntities();
-  }
-  /// Of cells alone.
-  explicit GmshGroups(std::size_t cellCount) : cells{{{1, "hexahedra", 0, cellCount}}, {}} {
-    addEntities();
-  }
-
-  [[nodiscard]] std::array<const std::vector<ElementGroup>*, 4> byDimension() const {
-    return {&vertices.groups, &edges.groups, &quads.groups, &cells.groups};
-  }
-  [[nodiscard]] std::size_t elementCount() const {
-    return vertices.elements.size() + edges.elements.size() + quads.elements.size() +
-           cells.groups.back().end;
-  }
-
- private:
-  void addEntities() {
+  explicit GmshGroups(MeshGroups groups) : MeshGroups(std::move(groups)) {
     // A point entity is one point: each vertex of a group is an entity of its own.
     for (const ElementGroup& group : vertices.groups) {
       for (std::size_t i = group.begin; i < group.end; ++i) {
@@ -73,19 +49,24 @@ struct GmshGroups {
       }
     }
   }
+
+  [[nodiscard]] std::array<const std::vector<ElementGroup>*, 4> byDimension() const {
+    return {&vertices.groups, &edges.groups, &quads.groups, &cells.groups};
+  }
 };
 
 /// The elements of one dimension.
-/// @tparam At  at(i)[k] is node k of element i
-template <class At>
+/// @tparam Count  a number, or a constant
+/// @tparam At     at(i)[k] is node k of element i
+template <class Count, class At>
 struct GmshKind {
   unsigned dimension;
-  unsigned type;      ///< Gmsh's
-  std::size_t nodes;  ///< of each element
+  unsigned type;  ///< Gmsh's
+  Count nodes;    ///< of each element
   At at;
 };
-template <class At>
-GmshKind(unsigned, unsigned, std::size_t, At) -> GmshKind<At>;
+template <class Count, class At>
+GmshKind(unsigned, unsigned, Count, At) -> GmshKind<Count, At>;
 
 inline void writePhysicalNames(OutputFile& output, const GmshGroups& groups) {
   std::size_t count = 0;
@@ -275,8 +256,8 @@ class Msh41Writer {
   }
 
   /// @param nodes, at  as in GmshKind
-  template <class At>
-  void writeElements(std::uint64_t firstTag, std::size_t count, std::size_t nodes, const At& at) {
+  template <class Count, class At>
+  void writeElements(std::uint64_t firstTag, std::size_t count, Count nodes, const At& at) {
     const auto element = [&](char* place, std::size_t i) {
       place = Numbers::size(place, firstTag + i);
       const auto& ofElement = at(i);
@@ -296,8 +277,8 @@ class Msh41Writer {
   [[nodiscard]] const OutputFile& output() const noexcept { return output_; }
 
  private:
-  template <class At>
-  [[nodiscard]] static Box boxOf(const GmshKind<At>& kind, const GmshEntity& entity,
+  template <class Kind>
+  [[nodiscard]] static Box boxOf(const Kind& kind, const GmshEntity& entity,
                                  std::span<const Vec3> points) {
     Box box;
     for (std::size_t i = entity.begin; i < entity.end; ++i) {

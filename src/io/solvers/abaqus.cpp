@@ -1,17 +1,14 @@
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
-#include <span>
+#include <string>
+#include <string_view>
 
-#include <hexhex/error.hpp>
-
-#include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
-#include <io/solvers/abaqus.hpp>
+#include <io/solvers/solvers.hpp>
 
 namespace hexhex {
 namespace {
@@ -39,32 +36,25 @@ std::string upperCase(std::string name) {
   return name;
 }
 
-/// The different vertices of elements, in order.
-template <class Elements>
-Array<Index> verticesOf(const Elements& elements) {
-  Array<Index> vertices;
-  for (const auto& element : elements) {
-    vertices.insert(vertices.end(), element.begin(), element.end());
-  }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
-}
-
 class AbaqusWriter {
  public:
   AbaqusWriter(OutputFile& output, const HexMesh& mesh, Stage& stage, int threads)
       : output_(output), lines_(output, threads), mesh_(mesh), stage_(stage) {}
 
-  void write(const VertexGroups& vertices, const EdgeGroups& edges, const QuadGroups& quads) {
+  void write(const MeshGroups& groups) {
     output_.write("*HEADING\nhexahedral mesh by hexhex\n");
     writeNodes();
     writeElements();
-    writeElementSets();
-    writeNodeSets(quads);
-    writeNodeSets(edges);
-    writeNodeSets(vertices);
-    for (const ElementGroup& group : quads.groups) writeSurface(quads, group);
+    // The set of all elements is there in any case.
+    for (const ElementGroup& group : groups.cells.groups) {
+      if (group.name == "hexahedra") continue;
+      writeSet("*ELSET, ELSET=E_", group, group.end - group.begin,
+               [&](std::size_t i) { return groups.cells.at(group.begin + i); });
+    }
+    writeNodeSets(groups.quads);
+    writeNodeSets(groups.edges);
+    writeNodeSets(groups.vertices);
+    for (const ElementGroup& group : groups.quads.groups) writeSurface(groups.quads, group);
   }
 
  private:
@@ -94,54 +84,38 @@ class AbaqusWriter {
     lines_.write(mesh_.cells.size(), 9 * (kNumberRoom + 2), cell, &progress);
   }
 
-  /// Regions; the set of all elements is there in any case.
-  void writeElementSets() {
-    if (mesh_.regions.empty()) return;
-    const CellGroups cells = groupCells(mesh_);
-    for (const ElementGroup& group : cells.groups) {
-      const std::size_t size = group.end - group.begin;
-      if (group.name == "hexahedra") continue;
-      output_.write("*ELSET, ELSET=E_").write(upperCase(group.name)).write('\n');
-      const auto entry = [&](char* place, std::size_t i) {
-        const bool ends = i + 1 == size || (i + 1) % kNamesPerLine == 0;
-        return put(put(place, std::uint64_t{cells.at(group.begin + i)} + 1), ends ? "\n" : ", ");
-      };
-      lines_.write(size, kNumberRoom + 2, entry, nullptr);
-    }
-  }
-
   template <class Groups>
   void writeNodeSets(const Groups& groups) {
     for (const ElementGroup& group : groups.groups) {
-      const std::span elements(groups.elements);
-      writeNodeSet("N_" + upperCase(group.name),
-                   verticesOf(elements.subspan(group.begin, group.end - group.begin)));
+      const Array<Index> vertices = verticesOf(groups, group);
+      writeSet("*NSET, NSET=N_", group, vertices.size(),
+               [&](std::size_t i) { return vertices[i]; });
     }
   }
 
-  void writeNodeSet(const std::string& name, const Array<Index>& vertices) {
-    output_.write("*NSET, NSET=").write(name).write('\n');
-    const auto entry = [&vertices](char* place, std::size_t i) {
-      const bool ends = i + 1 == vertices.size() || (i + 1) % kNamesPerLine == 0;
-      return put(put(place, std::uint64_t{vertices[i]} + 1), ends ? "\n" : ", ");
+  /// @param indexAt  of the i-th of n members
+  template <class F>
+  void writeSet(std::string_view keyword, const ElementGroup& group, std::size_t n,
+                const F& indexAt) {
+    output_.write(keyword).write(upperCase(group.name)).write('\n');
+    const auto entry = [&](char* place, std::size_t i) {
+      const bool ends = i + 1 == n || (i + 1) % kNamesPerLine == 0;
+      return put(put(place, std::uint64_t{indexAt(i)} + 1), ends ? "\n" : ", ");
     };
-    lines_.write(vertices.size(), kNumberRoom + 2, entry, nullptr);
+    lines_.write(n, kNumberRoom + 2, entry, nullptr);
   }
 
   /// Quads inside the mesh are on no surface.
   void writeSurface(const QuadGroups& quads, const ElementGroup& group) {
-    const auto begin = quads.places.begin();
-    const auto groupEnd = begin + static_cast<std::ptrdiff_t>(group.end);
-    const auto groupBegin = begin + static_cast<std::ptrdiff_t>(group.begin);
-    const auto inside = std::find(groupBegin, groupEnd, kNoPlace);  // they come last
-    if (inside == groupBegin) return;
+    const std::size_t count = quads.boundaryEnd(group) - group.begin;
+    if (count == 0) return;
     output_.write("*SURFACE, TYPE=ELEMENT, NAME=S_").write(upperCase(group.name)).write('\n');
     const auto face = [&quads, &group](char* place, std::size_t i) {
       const std::uint64_t side = quads.places[group.begin + i];
       place = put(put(place, side / 8 + 1), ", S");
       return put(put(place, kFaceNumbers[side % 8]), '\n');
     };
-    lines_.write(static_cast<std::size_t>(inside - groupBegin), kNumberRoom + 5, face, nullptr);
+    lines_.write(count, kNumberRoom + 5, face, nullptr);
   }
 
   OutputFile& output_;
@@ -156,11 +130,8 @@ void writeAbaqus(const HexMesh& mesh, const std::filesystem::path& file,
                  const WriteOptions& options, Context& context) {
   Stage stage(context, "write mesh");
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  const VertexGroups vertices = groupVertices(mesh);
-  const EdgeGroups edges = groupEdges(mesh);
-  QuadGroups quads;
-  withThreads(context.threads(), [&] { quads = groupQuads(mesh, options.patchAngle, stage); });
-  AbaqusWriter(output, mesh, stage, context.threads()).write(vertices, edges, quads);
+  const MeshGroups groups(mesh, options.patchAngle, stage, context.threads());
+  AbaqusWriter(output, mesh, stage, context.threads()).write(groups);
   output.commit();
 }
 

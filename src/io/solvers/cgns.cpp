@@ -4,17 +4,14 @@
 #include <cstdint>
 #include <limits>
 #include <mutex>
-#include <span>
 #include <string>
-#include <vector>
 
 #include <hexhex/error.hpp>
 
-#include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
-#include <io/solvers/cgns.hpp>
+#include <io/solvers/solvers.hpp>
 
 namespace hexhex {
 namespace {
@@ -49,20 +46,12 @@ class CgnsFile {
   bool open_ = false;
 };
 
-/// Everything that a file lists, by group.
-struct CgnsContent {
-  VertexGroups vertices;
-  EdgeGroups edges;
-  QuadGroups quads;
-  CellGroups cells;
-};
-
 class CgnsWriter {
  public:
   CgnsWriter(const OutputFile& file, const HexMesh& mesh, Stage& stage)
       : file_(file), mesh_(mesh), progress_(stage, mesh.points.size() + mesh.cells.size()) {}
 
-  void write(const CgnsContent& content) {
+  void write(const MeshGroups& groups) {
     const std::array<cgsize_t, 3> size = {static_cast<cgsize_t>(mesh_.points.size()),
                                           static_cast<cgsize_t>(mesh_.cells.size()), 0};
     int base = 0;
@@ -71,26 +60,24 @@ class CgnsWriter {
     file_.require(
         cg_zone_write(file_.number(), base, "Zone", size.data(), CGNS_ENUMV(Unstructured), &zone));
     writePoints();
-    for (const ElementGroup& group : content.cells.groups) {
+    for (const ElementGroup& group : groups.cells.groups) {
       writeSection(group, CGNS_ENUMV(HEXA_8),
-                   [&](std::size_t i) -> const Hex& { return mesh_.cells[content.cells.at(i)]; });
+                   [&](std::size_t i) -> const Hex& { return mesh_.cells[groups.cells.at(i)]; });
     }
     progress_.advance(mesh_.cells.size());
-    for (const ElementGroup& group : content.quads.groups) {
+    const auto of = [](const auto& elements) {
+      return [&elements](std::size_t i) -> const auto& { return elements[i]; };
+    };
+    for (const ElementGroup& group : groups.quads.groups) {
       const cgsize_t first = next_;
-      writeSection(group, CGNS_ENUMV(QUAD_4),
-                   [&](std::size_t i) -> const Quad& { return content.quads.elements[i]; });
-      writeBoundary(group, content.quads, first);
+      writeSection(group, CGNS_ENUMV(QUAD_4), of(groups.quads.elements));
+      writeBoundary(group, groups.quads, first);
     }
-    for (const ElementGroup& group : content.edges.groups) {
-      writeSection(group, CGNS_ENUMV(BAR_2), [&](std::size_t i) -> const std::array<Index, 2>& {
-        return content.edges.elements[i];
-      });
+    for (const ElementGroup& group : groups.edges.groups) {
+      writeSection(group, CGNS_ENUMV(BAR_2), of(groups.edges.elements));
     }
-    for (const ElementGroup& group : content.vertices.groups) {
-      writeSection(group, CGNS_ENUMV(NODE), [&](std::size_t i) -> const std::array<Index, 1>& {
-        return content.vertices.elements[i];
-      });
+    for (const ElementGroup& group : groups.vertices.groups) {
+      writeSection(group, CGNS_ENUMV(NODE), of(groups.vertices.elements));
     }
     file_.close();
   }
@@ -127,15 +114,11 @@ class CgnsWriter {
                                    next_ - 1, 0, vertices.data(), &section));
   }
 
-  /// Quads inside the mesh, which come last, are no boundary.
+  /// Quads inside the mesh are no boundary.
   void writeBoundary(const ElementGroup& group, const QuadGroups& quads, cgsize_t first) {
-    const auto begin = quads.places.begin();
-    const auto groupBegin = begin + static_cast<std::ptrdiff_t>(group.begin);
-    const auto inside =
-        std::find(groupBegin, begin + static_cast<std::ptrdiff_t>(group.end), kNoPlace);
-    if (inside == groupBegin) return;
-    const std::array<cgsize_t, 2> range = {first,
-                                           first + static_cast<cgsize_t>(inside - groupBegin) - 1};
+    const std::size_t count = quads.boundaryEnd(group) - group.begin;
+    if (count == 0) return;
+    const std::array<cgsize_t, 2> range = {first, first + static_cast<cgsize_t>(count) - 1};
     int condition = 0;
     file_.require(cg_boco_write(file_.number(), kBase, kZone, group.name.c_str(),
                                 CGNS_ENUMV(FamilySpecified), CGNS_ENUMV(PointRange), 2,
@@ -160,9 +143,8 @@ class CgnsWriter {
   cgsize_t next_ = 1;  ///< number of the next element
 };
 
-void requireSmall(const HexMesh& mesh, const CgnsContent& content) {
-  const std::uint64_t elements = mesh.cells.size() + content.quads.elements.size() +
-                                 content.edges.elements.size() + content.vertices.elements.size();
+void requireSmall(const HexMesh& mesh, const MeshGroups& groups) {
+  const std::uint64_t elements = groups.elementCount();
   // The library counts the numbers of a section with the same integers.
   const auto largest =
       std::max<std::uint64_t>({mesh.points.size(), elements, 8 * mesh.cells.size()});
@@ -184,13 +166,11 @@ void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const Wri
     throw Error(ErrorCode::InvalidArgument,
                 file.string() + ": the mesh is empty, which a CGNS file cannot hold.");
   }
-  CgnsContent content{groupVertices(mesh), groupEdges(mesh), {}, groupCells(mesh)};
-  withThreads(context.threads(),
-              [&] { content.quads = groupQuads(mesh, options.patchAngle, stage); });
-  requireSmall(mesh, content);
+  const MeshGroups groups(mesh, options.patchAngle, stage, context.threads());
+  requireSmall(mesh, groups);
   {
     const std::lock_guard lock(libraryLock());
-    CgnsWriter(target, mesh, stage).write(content);
+    CgnsWriter(target, mesh, stage).write(groups);
   }
   target.commit();
 }

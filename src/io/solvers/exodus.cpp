@@ -13,14 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include <hexhex/error.hpp>
 #include <hexhex/version.hpp>
 
-#include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
-#include <io/solvers/exodus.hpp>
+#include <io/solvers/solvers.hpp>
 
 namespace hexhex {
 namespace {
@@ -66,6 +64,15 @@ struct SideSet {
   std::size_t end;  ///< in the group's list; behind it, quads inside the mesh
 };
 
+std::vector<SideSet> sideSets(const QuadGroups& quads) {
+  std::vector<SideSet> sets;
+  for (const ElementGroup& group : quads.groups) {
+    const std::size_t end = quads.boundaryEnd(group);
+    if (end > group.begin) sets.push_back({&group, end});
+  }
+  return sets;
+}
+
 struct NodeSet {
   std::string name;
   std::vector<int> vertices;  ///< from 1 on, ascending
@@ -74,28 +81,11 @@ struct NodeSet {
 template <class Groups>
 void addNodeSets(const Groups& groups, std::vector<NodeSet>& sets) {
   for (const ElementGroup& group : groups.groups) {
-    NodeSet set{group.name, {}};
-    for (std::size_t i = group.begin; i < group.end; ++i) {
-      for (const Index vertex : groups.elements[i]) {
-        set.vertices.push_back(static_cast<int>(vertex) + 1);
-      }
+    NodeSet& set = sets.emplace_back(NodeSet{group.name, {}});
+    for (const Index vertex : verticesOf(groups, group)) {
+      set.vertices.push_back(static_cast<int>(vertex) + 1);
     }
-    std::sort(set.vertices.begin(), set.vertices.end());
-    set.vertices.erase(std::unique(set.vertices.begin(), set.vertices.end()), set.vertices.end());
-    sets.push_back(std::move(set));
   }
-}
-
-std::vector<SideSet> sideSets(const QuadGroups& quads) {
-  std::vector<SideSet> sets;
-  for (const ElementGroup& group : quads.groups) {
-    const auto begin = quads.places.begin();
-    const auto end = std::find(begin + static_cast<std::ptrdiff_t>(group.begin),
-                               begin + static_cast<std::ptrdiff_t>(group.end), kNoPlace);
-    const auto size = static_cast<std::size_t>(end - begin);
-    if (size > group.begin) sets.push_back({&group, size});
-  }
-  return sets;
 }
 
 class ExodusWriter {
@@ -103,15 +93,18 @@ class ExodusWriter {
   ExodusWriter(const OutputFile& file, int mode, const HexMesh& mesh, Stage& stage)
       : file_(file, mode), mesh_(mesh), progress_(stage, mesh.points.size() + mesh.cells.size()) {}
 
-  void write(const CellGroups& cells, const QuadGroups& quads,
-             const std::vector<NodeSet>& nodeSets) {
-    const std::vector<SideSet> sides = sideSets(quads);
+  void write(const MeshGroups& groups) {
+    const CellGroups& cells = groups.cells;
+    const std::vector<SideSet> sides = sideSets(groups.quads);
+    std::vector<NodeSet> nodeSets;
+    addNodeSets(groups.edges, nodeSets);
+    addNodeSets(groups.vertices, nodeSets);
     reserveHead(cells.groups.size() + nodeSets.size() + sides.size());
     define(cells, sides, nodeSets);
     writePoints();
     for (const ElementGroup& group : cells.groups) writeCells(cells, group);
     const Array<Index> places = placesOf(cells);
-    for (const SideSet& set : sides) writeSides(set, quads, places);
+    for (const SideSet& set : sides) writeSides(set, groups.quads, places);
     for (std::size_t i = 0; i < nodeSets.size(); ++i) {
       file_.require(
           ex_put_set(file_.id(), EX_NODE_SET, size(i + 1), nodeSets[i].vertices.data(), nullptr));
@@ -221,14 +214,6 @@ class ExodusWriter {
   LoopProgress progress_;
 };
 
-void requireSmall(std::size_t count, const char* what) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (count <= kMost) return;
-  throw Error(ErrorCode::TooLarge, "An Exodus file numbers " + std::string(what) +
-                                       " with 31 bits, which do not suffice for " +
-                                       std::to_string(count) + "; choose another format.");
-}
-
 /// With 64-bit offsets an array takes at most 4 GB.
 int modeFor(const HexMesh& mesh) {
   constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max() - 8;
@@ -244,16 +229,12 @@ void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
   Stage stage(context, "write mesh");
   // First, so that a folder that is not writable shows at once.
   OutputFile target(file, OutputFile::Target::Regular);
-  requireSmall(mesh.points.size(), "vertices");
-  requireSmall(mesh.cells.size(), "cells");
-  std::vector<NodeSet> nodeSets;
-  addNodeSets(groupEdges(mesh), nodeSets);
-  addNodeSets(groupVertices(mesh), nodeSets);
-  QuadGroups quads;
-  withThreads(context.threads(), [&] { quads = groupQuads(mesh, options.patchAngle, stage); });
+  requireInt32(mesh.points.size(), "An Exodus file numbers vertices");
+  requireInt32(mesh.cells.size(), "An Exodus file numbers cells");
+  const MeshGroups groups(mesh, options.patchAngle, stage, context.threads());
   {
     const std::lock_guard lock(libraryLock());
-    ExodusWriter(target, modeFor(mesh), mesh, stage).write(groupCells(mesh), quads, nodeSets);
+    ExodusWriter(target, modeFor(mesh), mesh, stage).write(groups);
   }
   target.commit();
 }

@@ -1,6 +1,5 @@
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -18,7 +17,7 @@
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/solvers/openfoam.hpp>
+#include <io/solvers/solvers.hpp>
 
 namespace hexhex {
 namespace {
@@ -86,14 +85,6 @@ void addPatches(const QuadGroups& quads, PolyMesh& poly) {
     }
     if (poly.faces.size() > begin) poly.patches.push_back({group.name, begin, poly.faces.size()});
   }
-}
-
-void requireSmall(std::size_t count, const char* what) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (count <= kMost) return;
-  throw Error(ErrorCode::TooLarge, "OpenFOAM numbers " + std::string(what) +
-                                       " with 31 bits, which do not suffice for " +
-                                       std::to_string(count) + "; choose another format.");
 }
 
 /// Writes the files of a mesh; commit() gives them their names.
@@ -209,8 +200,8 @@ void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
     addInnerFaces(mesh, poly, stage);
   });
   addPatches(quads, poly);
-  requireSmall(mesh.points.size(), "vertices");
-  requireSmall(poly.faces.size(), "faces");
+  requireInt32(mesh.points.size(), "OpenFOAM numbers vertices");
+  requireInt32(poly.faces.size(), "OpenFOAM numbers faces");
   PolyMeshWriter writer(folderFor(file), context.threads());
   writer.write(mesh, poly, stage);
   // Without regions there are no zones, which has to be said where an earlier mesh had some.

@@ -1,0 +1,67 @@
+// Formats of programs for simulations. Written only; groups are those of mesh_groups.hpp.
+//
+// All throw Error FileWrite, and InvalidArgument for features that are not in the mesh.
+#pragma once
+
+#include <filesystem>
+
+#include <hexhex/context.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/types.hpp>
+
+namespace hexhex {
+
+/// `.inp`: Abaqus and CalculiX input. Writes nodes and elements of type C3D8, numbered from 1, and
+/// for each group of vertices, edges and quads a node set, and for each group of boundary quads an
+/// element surface. Names are in upper case: element set HEXAHEDRA, node sets N_BOUNDARY,
+/// N_SURFACE_7, N_CURVE_3, N_POINT_1, surfaces S_BOUNDARY, S_SURFACE_7.
+///
+/// Numbers take at most 20 characters, since programs cut longer ones off: they read back to the
+/// same double where 20 characters suffice, which is so for most; others are rounded, to at least
+/// 13 significant digits.
+void writeAbaqus(const HexMesh& mesh, const std::filesystem::path& file,
+                 const WriteOptions& options, Context& context);
+
+/// `.cgns`: the CFD General Notation System, in HDF5; only in builds with its library
+/// (HEXHEX_HAS_CGNS). Writes one base with one unstructured zone: a section HEXA_8 for each region,
+/// QUAD_4 for each group of boundary quads and tagged quads inside, BAR_2 and NODE for the tags of
+/// edges and vertices, named as their groups; and a boundary condition, of the type
+/// FamilySpecified, for each group of boundary quads. The cells are in order of their regions.
+/// @throws Error  also InvalidArgument for an empty mesh, and TooLarge for more elements than the
+///         library's integers can number
+void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+               Context& context);
+
+/// `.exo`, `.e`: Exodus II, for the codes of Sandia and MOOSE; only in builds with its library
+/// (HEXHEX_HAS_EXODUS). Writes an element block HEX8 for each region, a side set for each group of
+/// boundary quads, and node sets for the tags of edges and vertices; sets and blocks are named as
+/// their groups. Side sets and blocks have the numbers of their groups. Tagged quads inside the
+/// mesh are left out. The cells are in order of their regions.
+///
+/// NetCDF with 64-bit offsets; NetCDF 4, which takes larger arrays, for meshes that need it.
+/// @throws Error  also TooLarge for more than 2^31 - 1 vertices or cells
+void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
+                 const WriteOptions& options, Context& context);
+
+/// MFEM mesh v1.0, only by the name of the format, since MFEM's files have the extension of
+/// MEDIT's. Writes cells (attribute 1), boundary quads and tagged quads inside (attribute: the
+/// number of their group), and vertices. Numbers have the fewest digits (at most 17) that read back
+/// to the same double.
+void writeMfem(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+               Context& context);
+
+/// OpenFOAM's `polyMesh`, a folder of text files. Writes points, faces, owner, neighbour and
+/// boundary: inner faces in upper-triangular order, then a patch for each group of boundary quads,
+/// named as the group; and a cell zone for each region. Numbers have the fewest digits (at most 17)
+/// that read back to the same double. Tagged vertices, edges and quads inside the mesh are left
+/// out.
+/// @param file  `CASE/X.foam`, which becomes an empty file, as ParaView opens it, next to
+///              `CASE/constant/polyMesh`; or the name of the folder `polyMesh` itself. Folders are
+///              created; other files in them stay. Each file appears complete or not at all, and
+///              all at the end.
+/// @throws Error  also InvalidArgument for faces of more than two cells, and TooLarge for more than
+///         2^31 - 1 vertices, faces or cells
+void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
+                   const WriteOptions& options, Context& context);
+
+}  // namespace hexhex
