@@ -1,98 +1,203 @@
-// Which numbers of a mesh go into which table.
+// Which numbers of a mesh go into which table, and how tables are packed.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <string>
+#include <utility>
+#include <vector>
+#include <zlib.h>
 
 #include <hexhex/error.hpp>
 
+#include <base/parallel.hpp>
+#include <mesh/lagrange_check.hpp>
 #include <view/mesh_tables.hpp>
 
 namespace hexhex {
 namespace {
 
+// How a chunk is packed: column 0 is subtracted from the other columns, the row above from each row
+// (modulo 2^32), signs go to the lowest bit, and the bytes are sorted by significance: what is left
+// are long runs of the same few bytes, which zlib is good at.
+
+/// Numbers per chunk: large enough for zlib, small enough for a string in a browser, and for work
+/// on all cores.
+constexpr std::size_t kNumbersPerChunk = std::size_t{1} << 18;
+
+/// A sixth of the time of the best level, and pages that are hardly larger.
+constexpr int kZlibLevel = 6;
+
+/// 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
+constexpr std::uint32_t zigzag(std::uint32_t difference) {
+  return (difference << 1U) ^ (difference >> 31U != 0 ? ~std::uint32_t{0} : 0U);
+}
+
+/// The differences, column by column.
+Array<std::uint32_t> differences(const Array<std::uint32_t>& table, std::size_t rows,
+                                 std::size_t columns) {
+  Array<std::uint32_t> codes(table.size());
+  for (std::size_t column = 0; column < columns; ++column) {
+    std::uint32_t previous = 0;
+    for (std::size_t row = 0; row < rows; ++row) {
+      const std::uint32_t first = column == 0 ? 0 : table[row * columns];
+      const std::uint32_t value = table[row * columns + column] - first;
+      codes[column * rows + row] = zigzag(value - previous);
+      previous = value;
+    }
+  }
+  return codes;
+}
+
+/// The number of planes, then the planes, least significant bytes first.
+std::string bytePlanes(const Array<std::uint32_t>& codes) {
+  std::uint32_t used = 0;
+  for (const std::uint32_t code : codes) used |= code;
+  std::size_t planes = 0;
+  while (planes < 4 && used >> (8 * planes) != 0) ++planes;
+  std::string bytes(1 + planes * codes.size(), '\0');
+  bytes[0] = static_cast<char>(planes);
+  char* to = bytes.data() + 1;
+  for (std::size_t plane = 0; plane < planes; ++plane) {
+    for (const std::uint32_t code : codes) *to++ = static_cast<char>(code >> (8 * plane));
+  }
+  return bytes;
+}
+
+std::string deflated(const std::string& bytes) {
+  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+  std::string packed(size, '\0');
+  const int status = compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+                               reinterpret_cast<const Bytef*>(bytes.data()),
+                               static_cast<uLong>(bytes.size()), kZlibLevel);
+  // The bound suffices for any content, so nothing else can happen.
+  if (status != Z_OK) throw std::bad_alloc();
+  packed.resize(size);
+  packed.shrink_to_fit();
+  return packed;
+}
+
+}  // namespace
+
+PackedTable packTable(std::string_view name, std::size_t rows, std::size_t columns,
+                      const FillRows& fill, Stage& stage) {
+  PackedTable packed{std::string(name), rows, columns, kNumbersPerChunk / columns, {}};
+  packed.chunks.resize(blockCount(rows, packed.rowsPerChunk));
+  parallelBlocks(
+      stage, rows, packed.rowsPerChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        Array<std::uint32_t> table((end - begin) * columns);
+        fill(begin, end, table.data());
+        packed.chunks[chunk] = deflated(bytePlanes(differences(table, end - begin, columns)));
+      });
+  return packed;
+}
+
+std::string toBase64(std::string_view bytes) {
+  static constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text((bytes.size() + 2) / 3 * 4, '=');
+  char* to = text.data();
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      group = group << 8U | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    }
+    // The digits that no byte reaches stay '='.
+    for (std::size_t k = 0; k <= count; ++k) to[k] = kDigits[group >> (18 - 6 * k) & 63U];
+    to += 4;
+  }
+  return text;
+}
+
+namespace {
+
+/// Which nodes of a cell are on its faces, but not at corners.
+std::vector<std::size_t> placesOnFaces(int order) {
+  std::vector<std::size_t> places;
+  std::size_t place = 0;
+  for (int k = 0; k <= order; ++k) {
+    for (int j = 0; j <= order; ++j) {
+      for (int i = 0; i <= order; ++i, ++place) {
+        const auto atEnd = [order](int index) { return index == 0 || index == order ? 1 : 0; };
+        const int ends = atEnd(i) + atEnd(j) + atEnd(k);
+        if (ends == 1 || ends == 2) places.push_back(place);
+      }
+    }
+  }
+  return places;
+}
+
+}  // namespace
+
+SurfaceNodes surfaceNodesOf(const LagrangeMesh& mesh) {
+  requireConsistent(mesh);
+  const std::vector<std::size_t> places = placesOnFaces(mesh.order);
+  SurfaceNodes result;
+  result.order = mesh.order;
+  result.perCell = places.size();
+  result.numbers.resize(mesh.cellCount() * result.perCell);
+  Array<Index> numberOf(mesh.points.size());
+  std::ranges::fill(numberOf, kNone);
+  auto next = static_cast<Index>(mesh.vertexCount);
+  auto to = result.numbers.begin();
+  for (std::size_t c = 0; c < mesh.cellCount(); ++c) {
+    const Index* const nodes = mesh.nodes.data() + c * mesh.nodesPerCell();
+    for (const std::size_t place : places) {
+      Index& number = numberOf[nodes[place]];
+      if (number == kNone) {
+        number = next++;
+        result.points.push_back(mesh.points[nodes[place]]);
+      }
+      *to++ = number;
+    }
+  }
+  return result;
+}
+
+namespace {
+
 /// 20 bits: in a mesh of a hundred cells along a side, a ten-thousandth of a cell.
 constexpr double kPositionSteps = (1U << 20U) - 1U;
 
-PackedTable packPoints(const HexMesh& mesh, const SurfaceNodes& nodes,
-                       const Quantization& quantization, Stage& stage) {
-  const std::size_t vertices = mesh.points.size();
-  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const Vec3& point = v < vertices ? mesh.points[v] : nodes.points[v - vertices];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double offset = point[axis] - quantization.lower[axis];
-        *to++ = static_cast<std::uint32_t>(std::lround(offset / quantization.step));
-      }
-    }
-  };
-  return packTable("points", vertices + nodes.points.size(), 3, fill, stage);
-}
+/// The tables of a page; those without rows are left out.
+class TableList {
+ public:
+  explicit TableList(Stage& stage) : stage_(stage) {}
 
-PackedTable packNodes(const HexMesh& mesh, const SurfaceNodes& nodes, Stage& stage) {
-  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
-    const std::size_t first = begin * nodes.perCell;
-    std::copy_n(nodes.numbers.data() + first, (end - begin) * nodes.perCell, to);
-  };
-  return packTable("nodes", mesh.cells.size(), nodes.perCell, fill, stage);
-}
+  /// @param putRow  of (i, place): puts row i at its place, and returns the place behind
+  template <class PutRow>
+  void add(std::string_view name, std::size_t rows, std::size_t columns, const PutRow& putRow) {
+    const auto fill = [&putRow](std::size_t begin, std::size_t end, std::uint32_t* to) {
+      for (std::size_t i = begin; i < end; ++i) to = putRow(i, to);
+    };
+    if (rows > 0) tables_.push_back(packTable(name, rows, columns, fill, stage_));
+  }
+  /// A table of one column.
+  template <class NumberOf>
+  void addColumn(std::string_view name, std::size_t rows, const NumberOf& numberOf) {
+    add(name, rows, 1, [&](std::size_t i, std::uint32_t* to) {
+      *to++ = static_cast<std::uint32_t>(numberOf(i));
+      return to;
+    });
+  }
+  /// Tagged edges or quads: their vertices and the tag.
+  template <class Feature>
+  void addFeatures(std::string_view name, const std::vector<Feature>& features) {
+    add(name, features.size(), Feature{}.vertices.size() + 1,
+        [&](std::size_t i, std::uint32_t* to) {
+          to = std::ranges::copy(features[i].vertices, to).out;
+          *to++ = static_cast<std::uint32_t>(features[i].tag);
+          return to;
+        });
+  }
+  [[nodiscard]] std::vector<PackedTable> take() { return std::move(tables_); }
 
-PackedTable packRegions(const HexMesh& mesh, Stage& stage) {
-  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
-    for (std::size_t c = begin; c < end; ++c) *to++ = static_cast<std::uint32_t>(mesh.regions[c]);
-  };
-  return packTable("regions", mesh.regions.size(), 1, fill, stage);
-}
-
-PackedTable packCells(const HexMesh& mesh, Stage& stage) {
-  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
-    for (std::size_t c = begin; c < end; ++c) to = std::ranges::copy(mesh.cells[c], to).out;
-  };
-  return packTable("cells", mesh.cells.size(), 8, fill, stage);
-}
-
-PackedTable packQuality(std::span<const double> scaledJacobians, Stage& stage) {
-  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const double share = (std::clamp(scaledJacobians[c], -1.0, 1.0) + 1) / 2;
-      *to++ = static_cast<std::uint32_t>(std::lround(share * kQualitySteps));
-    }
-  };
-  return packTable("quality", scaledJacobians.size(), 1, fill, stage);
-}
-
-PackedTable packGenerators(const HexMesh& mesh, Stage& stage) {
-  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
-    for (std::size_t v = begin; v < end; ++v) {
-      *to++ = static_cast<std::uint32_t>(generatorKind(mesh.generatorCorners[v]));
-    }
-  };
-  return packTable("generator_kinds", mesh.generatorCorners.size(), 1, fill, stage);
-}
-
-PackedTable packSingularEdges(std::span<const SingularHexEdge> edges, Stage& stage) {
-  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
-    for (const SingularHexEdge& edge : edges.subspan(begin, end - begin)) {
-      *to++ = edge.vertex0;
-      *to++ = edge.vertex1;
-      *to++ = 2 * edge.valence + (edge.boundary ? 1U : 0U);
-    }
-  };
-  return packTable("singular_edges", edges.size(), 3, fill, stage);
-}
-
-/// Tagged edges or quads: their vertices and the tag.
-template <class Feature>
-PackedTable packFeatures(std::string_view name, const std::vector<Feature>& features,
-                         Stage& stage) {
-  const auto fill = [&](std::size_t begin, std::size_t end, std::uint32_t* to) {
-    for (std::size_t i = begin; i < end; ++i) {
-      to = std::ranges::copy(features[i].vertices, to).out;
-      *to++ = static_cast<std::uint32_t>(features[i].tag);
-    }
-  };
-  return packTable(name, features.size(), Feature{}.vertices.size() + 1, fill, stage);
-}
+ private:
+  Stage& stage_;
+  std::vector<PackedTable> tables_;
+};
 
 }  // namespace
 
@@ -136,22 +241,38 @@ std::vector<PackedTable> packMesh(const HexMesh& mesh, const Quantization& quant
                                   std::span<const double> scaledJacobians,
                                   std::span<const SingularHexEdge> singularEdges, Stage& stage,
                                   const SurfaceNodes& nodes) {
-  std::vector<PackedTable> tables;
-  tables.push_back(packPoints(mesh, nodes, quantization, stage));
-  tables.push_back(packCells(mesh, stage));
-  tables.push_back(packQuality(scaledJacobians, stage));
-  if (nodes.perCell > 0) tables.push_back(packNodes(mesh, nodes, stage));
-  if (!mesh.generatorCorners.empty()) tables.push_back(packGenerators(mesh, stage));
-  if (!mesh.regions.empty()) tables.push_back(packRegions(mesh, stage));
-  if (!singularEdges.empty()) tables.push_back(packSingularEdges(singularEdges, stage));
-  const HexFeatures& features = mesh.features;
-  if (!features.edges.empty()) {
-    tables.push_back(packFeatures("feature_edges", features.edges, stage));
-  }
-  if (!features.quads.empty()) {
-    tables.push_back(packFeatures("feature_quads", features.quads, stage));
-  }
-  return tables;
+  TableList list(stage);
+  const std::size_t vertices = mesh.points.size();
+  list.add("points", vertices + nodes.points.size(), 3, [&](std::size_t v, std::uint32_t* to) {
+    const Vec3& point = v < vertices ? mesh.points[v] : nodes.points[v - vertices];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double offset = point[axis] - quantization.lower[axis];
+      *to++ = static_cast<std::uint32_t>(std::lround(offset / quantization.step));
+    }
+    return to;
+  });
+  list.add("cells", mesh.cells.size(), 8, [&](std::size_t c, std::uint32_t* to) {
+    return std::ranges::copy(mesh.cells[c], to).out;
+  });
+  list.addColumn("quality", scaledJacobians.size(), [&](std::size_t c) {
+    return std::lround((std::clamp(scaledJacobians[c], -1.0, 1.0) + 1) / 2 * kQualitySteps);
+  });
+  list.add("nodes", nodes.perCell > 0 ? mesh.cells.size() : 0, nodes.perCell,
+           [&](std::size_t c, std::uint32_t* to) {
+             return std::copy_n(nodes.numbers.data() + c * nodes.perCell, nodes.perCell, to);
+           });
+  list.addColumn("generator_kinds", mesh.generatorCorners.size(),
+                 [&](std::size_t v) { return generatorKind(mesh.generatorCorners[v]); });
+  list.addColumn("regions", mesh.regions.size(), [&](std::size_t c) { return mesh.regions[c]; });
+  list.add("singular_edges", singularEdges.size(), 3, [&](std::size_t i, std::uint32_t* to) {
+    const SingularHexEdge& edge = singularEdges[i];
+    const std::array<std::uint32_t, 3> row = {edge.vertex0, edge.vertex1,
+                                              2 * edge.valence + (edge.boundary ? 1U : 0U)};
+    return std::ranges::copy(row, to).out;
+  });
+  list.addFeatures("feature_edges", mesh.features.edges);
+  list.addFeatures("feature_quads", mesh.features.quads);
+  return list.take();
 }
 
 }  // namespace hexhex

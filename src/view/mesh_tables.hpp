@@ -1,17 +1,56 @@
-// A mesh as the tables of a page.
+// A mesh as the tables of a page: whole numbers, packed as differences, byte planes, zlib. The
+// other side is decodeChunk() in viewer/src/format.ts.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/structure.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
-#include <view/surface_nodes.hpp>
-#include <view/table_codec.hpp>
 
 namespace hexhex {
+
+/// A table in compressed chunks of consecutive rows.
+struct PackedTable {
+  std::string name;
+  std::size_t rows = 0;
+  std::size_t columns = 0;
+  std::size_t rowsPerChunk = 0;
+  std::vector<std::string> chunks;  ///< a zlib stream each
+};
+
+/// Writes the numbers of rows [begin, end), row by row, to `to`. Called from several threads.
+using FillRows = std::function<void(std::size_t begin, std::size_t end, std::uint32_t* to)>;
+
+/// Packs a table. Neighbouring rows should be similar, and so should the columns of a row.
+/// The result does not depend on the number of threads.
+[[nodiscard]] PackedTable packTable(std::string_view name, std::size_t rows, std::size_t columns,
+                                    const FillRows& fill, Stage& stage);
+
+/// The base64 encoding (RFC 4648) of bytes.
+[[nodiscard]] std::string toBase64(std::string_view bytes);
+
+/// What a page takes of cells of higher order: the nodes on their faces, without those at corners.
+/// Their numbers follow those of the hex vertices, in the order in which cells name them first.
+struct SurfaceNodes {
+  int order = 1;
+  Array<Vec3> points;
+  std::size_t perCell = 0;  ///< (p + 1)^3 - (p - 1)^3 - 8
+  /// `perCell` numbers per cell: the nodes (i, j, k) of LagrangeMesh with an index that is 0 or p,
+  /// but not all three, in the order there. As in viewer/src/curves.ts.
+  Array<Index> numbers;
+};
+
+/// @throws Error  as requireConsistent() of the mesh
+[[nodiscard]] SurfaceNodes surfaceNodesOf(const LagrangeMesh& mesh);
 
 /// Where quantized coordinates are: coordinate = lower + step * number, the same step on all axes.
 struct Quantization {

@@ -19,7 +19,6 @@
 #include <io/core/output_file.hpp>
 #include <view/mesh_tables.hpp>
 #include <view/page_template.hpp>
-#include <view/surface_nodes.hpp>
 
 namespace hexhex {
 namespace {
@@ -195,13 +194,11 @@ PageContent makeContent(const LagrangeMesh& mesh, const ViewOptions& options, Co
   return makeContent({corners, nodes}, quality, options, context);
 }
 
-std::string escaped(std::string_view text) {
+std::string replaced(std::string_view text, char character, std::string_view by) {
   std::string result;
   for (const char c : text) {
-    if (c == '<') {
-      result += "&lt;";
-    } else if (c == '&') {
-      result += "&amp;";
+    if (c == character) {
+      result += by;
     } else {
       result += c;
     }
@@ -209,19 +206,15 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
+std::string escaped(std::string_view text) {
+  return replaced(replaced(text, '&', "&amp;"), '<', "&lt;");
+}
+
 /// JSON that may stand in a script element: nothing in it ends the element. Bytes that are no UTF-8
 /// (in file names) are replaced.
 std::string scriptText(const nlohmann::json& value) {
-  const std::string text = value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-  std::string result;
-  for (const char c : text) {
-    if (c == '<') {
-      result += "\\u003c";
-    } else {
-      result += c;
-    }
-  }
-  return result;
+  return replaced(value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace), '<',
+                  "\\u003c");
 }
 
 /// All before the mesh. @param connect  what the page may connect to

@@ -22,8 +22,6 @@
 #include <base/parallel.hpp>
 #include <mesh/grid_meshes.hpp>
 #include <view/mesh_tables.hpp>
-#include <view/surface_nodes.hpp>
-#include <view/table_codec.hpp>
 
 #include "support/error_of.hpp"
 

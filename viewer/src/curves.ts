@@ -14,7 +14,7 @@ const kCornerPlaces = [
 export interface CurvedCells {
   order: number;
   cells: Uint32Array;
-  /** Per cell the nodes on its faces without its corners, as src/view/surface_nodes.hpp says. */
+  /** Per cell the nodes on its faces without its corners, as src/view/mesh_tables.hpp says. */
   nodes: Uint32Array;
   /** Four numbers per vertex or node, of which the first three are its position. */
   positions: Float32Array;
