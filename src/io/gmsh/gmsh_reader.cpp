@@ -35,11 +35,35 @@ class GmshFile {
   [[nodiscard]] bool version4() const noexcept { return version4_; }
 
   /// Goes to the next section and returns its name, without '$'; nothing at the end of the file.
-  [[nodiscard]] std::optional<std::string_view> nextSection();
+  [[nodiscard]] std::optional<std::string_view> nextSection() {
+    if (!scanner_.skipSpace()) return {};
+    const std::string_view token = scanner_.readToken();
+    if (token.front() != '$') {
+      scanner_.fail(ErrorCode::FileSyntax,
+                    "a section begins with '$' and its name, found " + quoted(token) + ".");
+    }
+    return token.substr(1);
+  }
+
   /// Reads the end of a section.
-  void endSection(std::string_view name);
+  void endSection(std::string_view name) {
+    const std::string_view token = scanner_.readToken();
+    if (token.starts_with("$End") && token.substr(4) == name) return;
+    scanner_.failToken("\"$End" + std::string(name) + "\"");
+  }
+
   /// Skips the rest of a section, and returns what that is, with the end.
-  std::string_view skipSection(std::string_view name);
+  std::string_view skipSection(std::string_view name) {
+    const std::string end = "$End" + std::string(name);
+    const std::size_t begin = scanner_.position();
+    const std::size_t place = text_.find(end, begin);
+    if (place == std::string_view::npos) {
+      scanner_.fail(ErrorCode::FileSyntax, "the section has no " + quoted(std::string_view(end)) +
+                                               ": the file is incomplete.");
+    }
+    scanner_.moveTo(place + end.size());
+    return text_.substr(begin, place + end.size() - begin);
+  }
 
   [[nodiscard]] Stage& stage() const noexcept { return stage_; }
   /// Stands where the file is read, and moves on with it.
@@ -60,8 +84,41 @@ class GmshFile {
   }
 
  private:
-  void readVersion();
-  void readEncoding();
+  void readVersion() {
+    const std::string_view version = scanner_.readToken();
+    version4_ = version == "4.1";
+    if (version4_ || version == "2.2" || version == "2.1" || version == "2" || version == "2.0") {
+      return;
+    }
+    scanner_.fail(ErrorCode::FileUnsupported,
+                  "version " + quoted(version) +
+                      " of the format is not supported; save the mesh as version 4.1 or 2.2.");
+  }
+
+  void readEncoding() {
+    TextSource numbers(scanner_, nullptr, stage_);
+    const std::int64_t type = numbers.integer("the file type");
+    if (type != 0 && type != 1) {
+      scanner_.fail(ErrorCode::FileSyntax,
+                    "the file type is 0 (text) or 1 (binary), found " + std::to_string(type) + ".");
+    }
+    binary_ = type == 1;
+    const std::int64_t size = numbers.integer("the size of numbers");
+    if (size != 8) {
+      scanner_.fail(ErrorCode::FileUnsupported,
+                    "numbers of " + std::to_string(size) + " bytes are not supported, only 8.");
+    }
+    if (!binary_) {
+      index_.emplace(text_, stage_);
+      return;
+    }
+    withSource([](auto& source) {
+      if (source.integer("the mark of the byte order") == 1) return;
+      source.fail(ErrorCode::FileUnsupported,
+                  "the bytes of numbers come in the order of another kind of computers; save the "
+                  "mesh as text.");
+    });
+  }
 
   std::string_view text_;
   ByteFile bytes_;
@@ -81,71 +138,6 @@ GmshFile::GmshFile(std::string_view text, const std::string& fileName, Stage& st
   readVersion();
   readEncoding();
   endSection("MeshFormat");
-}
-
-void GmshFile::readVersion() {
-  const std::string_view version = scanner_.readToken();
-  version4_ = version == "4.1";
-  if (version4_ || version == "2.2" || version == "2.1" || version == "2" || version == "2.0") {
-    return;
-  }
-  scanner_.fail(ErrorCode::FileUnsupported,
-                "version " + quoted(version) +
-                    " of the format is not supported; save the mesh as version 4.1 or 2.2.");
-}
-
-void GmshFile::readEncoding() {
-  std::int64_t type = 0;
-  if (!scanner_.readInteger(type)) scanner_.failInteger("the file type");
-  if (type != 0 && type != 1) {
-    scanner_.fail(ErrorCode::FileSyntax,
-                  "the file type is 0 (text) or 1 (binary), found " + std::to_string(type) + ".");
-  }
-  binary_ = type == 1;
-  std::int64_t size = 0;
-  if (!scanner_.readInteger(size)) scanner_.failInteger("the size of numbers");
-  if (size != 8) {
-    scanner_.fail(ErrorCode::FileUnsupported,
-                  "numbers of " + std::to_string(size) + " bytes are not supported, only 8.");
-  }
-  if (!binary_) {
-    index_.emplace(text_, stage_);
-    return;
-  }
-  withSource([](auto& source) {
-    if (source.integer("the mark of the byte order") == 1) return;
-    source.fail(ErrorCode::FileUnsupported,
-                "the bytes of numbers come in the order of another kind of computers; save the "
-                "mesh as text.");
-  });
-}
-
-std::optional<std::string_view> GmshFile::nextSection() {
-  if (!scanner_.skipSpace()) return {};
-  const std::string_view token = scanner_.readToken();
-  if (token.front() != '$') {
-    scanner_.fail(ErrorCode::FileSyntax,
-                  "a section begins with '$' and its name, found " + quoted(token) + ".");
-  }
-  return token.substr(1);
-}
-
-void GmshFile::endSection(std::string_view name) {
-  const std::string_view token = scanner_.readToken();
-  if (token.starts_with("$End") && token.substr(4) == name) return;
-  scanner_.failToken("\"$End" + std::string(name) + "\"");
-}
-
-std::string_view GmshFile::skipSection(std::string_view name) {
-  const std::string end = "$End" + std::string(name);
-  const std::size_t begin = scanner_.position();
-  const std::size_t place = text_.find(end, begin);
-  if (place == std::string_view::npos) {
-    scanner_.fail(ErrorCode::FileSyntax, "the section has no " + quoted(std::string_view(end)) +
-                                             ": the file is incomplete.");
-  }
-  scanner_.moveTo(place + end.size());
-  return text_.substr(begin, place + end.size() - begin);
 }
 
 /// Takes the names of groups from the section $PhysicalNames: lines "dimension number name", as
@@ -207,97 +199,86 @@ void readEntities(Source& source, GmshTags& tags) {
 class GmshNodes {
  public:
   template <class Source>
-  void read41(Source& source);
+  void read41(Source& source) {
+    const std::uint64_t blocks = source.size("the number of blocks of nodes");
+    const std::uint64_t total = source.size("the number of nodes");
+    static_cast<void>(source.size("the smallest tag of a node"));
+    static_cast<void>(source.size("the largest tag of a node"));
+    requireRoom(source, total, {.sizes = 1, .reals = 3}, "nodes");
+    requireIndexable(source, total, "nodes");
+    points_.resize(total);
+    tags_.resize(total);
+    std::size_t done = 0;
+    for (std::uint64_t block = 0; block < blocks; ++block) done += readBlock(source, done);
+    if (done == total) return;
+    source.fail(ErrorCode::FileSyntax, "the blocks have " + std::to_string(done) + " of the " +
+                                           std::to_string(total) + " nodes of the section.");
+  }
+
   template <class Source>
-  void read22(Source& source, std::size_t count);
+  void read22(Source& source, std::size_t count) {
+    const RecordShape shape{.integers = 1, .reals = 3};
+    requireRoom(source, count, shape, "nodes");
+    points_.resize(count);
+    tags_.resize(count);
+    source.records(count, shape, [&](auto& record, std::size_t i) {
+      tags_[i] = static_cast<std::uint64_t>(record.integer("the number of a node"));
+      readPoint(record, i);
+    });
+  }
 
   [[nodiscard]] Array<Vec3>& points() noexcept { return points_; }
+
   /// @throws Error FileSyntax for two nodes with one tag
-  [[nodiscard]] NodeTags index(const TextScanner& scanner) const;
+  [[nodiscard]] NodeTags index(const TextScanner& scanner) const {
+    NodeTags index(tags_);
+    const Index repeated = index.repeated();
+    if (repeated == kNone) return index;
+    scanner.fail(ErrorCode::FileSyntax,
+                 "two nodes have the tag " + std::to_string(tags_[repeated]) + ".");
+  }
 
  private:
+  /// Nodes of one entity: all tags, then all points.
+  /// @param done  nodes before them
+  /// @return how many they are
   template <class Source>
-  std::size_t readBlock(Source& source, std::size_t done);
+  std::size_t readBlock(Source& source, std::size_t done) {
+    const std::int64_t dimension = source.integer("the dimension of an entity");
+    static_cast<void>(source.integer("the tag of an entity"));
+    const bool parametric = source.integer("whether nodes have parameters") != 0;
+    const std::uint64_t count = source.size("the number of nodes of a block");
+    if (dimension < 0 || dimension > 3) {
+      source.fail(ErrorCode::FileSyntax,
+                  "an entity has the dimension " + std::to_string(dimension) + ".");
+    }
+    if (count > points_.size() - done) {
+      source.fail(ErrorCode::FileSyntax, "the blocks have more nodes than the " +
+                                             std::to_string(points_.size()) + " of the section.");
+    }
+    requireRoom(source, count, {.sizes = 1}, "nodes");
+    source.records(count, {.sizes = 1}, [&](auto& record, std::size_t i) {
+      tags_[done + i] = record.size("the tag of a node");
+    });
+    const std::size_t reals = 3 + (parametric ? static_cast<std::size_t>(dimension) : 0);
+    requireRoom(source, count, {.reals = reals}, "nodes");
+    source.records(count, {.reals = reals}, [&](auto& record, std::size_t i) {
+      readPoint(record, done + i);
+      for (std::size_t k = 3; k < reals; ++k) {
+        static_cast<void>(record.real("a parameter of a node"));
+      }
+    });
+    return count;
+  }
+
   template <class Record>
-  void readPoint(Record& record, std::size_t node);
+  void readPoint(Record& record, std::size_t node) {
+    for (double& coordinate : points_[node]) coordinate = record.real("a coordinate of a node");
+  }
 
   Array<Vec3> points_;
   Array<std::uint64_t> tags_;
 };
-
-template <class Source>
-void GmshNodes::read41(Source& source) {
-  const std::uint64_t blocks = source.size("the number of blocks of nodes");
-  const std::uint64_t total = source.size("the number of nodes");
-  static_cast<void>(source.size("the smallest tag of a node"));
-  static_cast<void>(source.size("the largest tag of a node"));
-  requireRoom(source, total, {.sizes = 1, .reals = 3}, "nodes");
-  requireIndexable(source, total, "nodes");
-  points_.resize(total);
-  tags_.resize(total);
-  std::size_t done = 0;
-  for (std::uint64_t block = 0; block < blocks; ++block) done += readBlock(source, done);
-  if (done == total) return;
-  source.fail(ErrorCode::FileSyntax, "the blocks have " + std::to_string(done) + " of the " +
-                                         std::to_string(total) + " nodes of the section.");
-}
-
-/// Nodes of one entity: all tags, then all points.
-/// @param done  nodes before them
-/// @return how many they are
-template <class Source>
-std::size_t GmshNodes::readBlock(Source& source, std::size_t done) {
-  const std::int64_t dimension = source.integer("the dimension of an entity");
-  static_cast<void>(source.integer("the tag of an entity"));
-  const bool parametric = source.integer("whether nodes have parameters") != 0;
-  const std::uint64_t count = source.size("the number of nodes of a block");
-  if (dimension < 0 || dimension > 3) {
-    source.fail(ErrorCode::FileSyntax,
-                "an entity has the dimension " + std::to_string(dimension) + ".");
-  }
-  if (count > points_.size() - done) {
-    source.fail(ErrorCode::FileSyntax, "the blocks have more nodes than the " +
-                                           std::to_string(points_.size()) + " of the section.");
-  }
-  requireRoom(source, count, {.sizes = 1}, "nodes");
-  source.records(count, {.sizes = 1}, [&](auto& record, std::size_t i) {
-    tags_[done + i] = record.size("the tag of a node");
-  });
-  const std::size_t reals = 3 + (parametric ? static_cast<std::size_t>(dimension) : 0);
-  requireRoom(source, count, {.reals = reals}, "nodes");
-  source.records(count, {.reals = reals}, [&](auto& record, std::size_t i) {
-    readPoint(record, done + i);
-    for (std::size_t k = 3; k < reals; ++k) {
-      static_cast<void>(record.real("a parameter of a node"));
-    }
-  });
-  return count;
-}
-
-template <class Source>
-void GmshNodes::read22(Source& source, std::size_t count) {
-  const RecordShape shape{.integers = 1, .reals = 3};
-  requireRoom(source, count, shape, "nodes");
-  points_.resize(count);
-  tags_.resize(count);
-  source.records(count, shape, [&](auto& record, std::size_t i) {
-    tags_[i] = static_cast<std::uint64_t>(record.integer("the number of a node"));
-    readPoint(record, i);
-  });
-}
-
-template <class Record>
-void GmshNodes::readPoint(Record& record, std::size_t node) {
-  for (double& coordinate : points_[node]) coordinate = record.real("a coordinate of a node");
-}
-
-NodeTags GmshNodes::index(const TextScanner& scanner) const {
-  NodeTags index(tags_);
-  const Index repeated = index.repeated();
-  if (repeated == kNone) return index;
-  scanner.fail(ErrorCode::FileSyntax,
-               "two nodes have the tag " + std::to_string(tags_[repeated]) + ".");
-}
 
 /// Reads the sections of one file from top to bottom.
 template <std::size_t corners>
