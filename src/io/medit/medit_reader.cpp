@@ -64,14 +64,15 @@ class MeditText {
 
   void requireDimension() const {}
 
-  [[nodiscard]] RecordShape shape(std::size_t integers, std::size_t reals = 0) const {
+  [[nodiscard]] static RecordShape shape(std::size_t integers, std::size_t reals = 0) {
     return {.integers = integers, .reals = reals};
   }
   [[nodiscard]] std::size_t readCount(std::string_view what, RecordShape shape) {
     return scanner_.readCount(what, 2 * shape.tokens());  // a digit and a separator each
   }
 
-  void beginElement(TextSource& record, std::size_t i, std::size_t count, std::string_view what) {
+  static void beginElement(TextSource& record, std::size_t i, std::size_t count,
+                           std::string_view what) {
     if (!record.atEnd()) return;
     record.fail(ErrorCode::FileSyntax, "the file ends after " + std::to_string(i) + " of " +
                                            std::to_string(count) + " " + std::string(what) +

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -6,7 +5,6 @@
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <adjacency/hex_topology.hpp>
@@ -57,17 +55,21 @@ void addInnerFaces(const HexMesh& mesh, PolyMesh& poly, Stage& stage) {
   poly.owners.resize(count);
   poly.neighbours.resize(count);
   parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
-    std::array<std::pair<Index, std::size_t>, 6> owned;  // neighbour and face
-    auto* end = owned.begin();
+    // By insertion, in ascending order of neighbours.
+    std::array<std::size_t, 6> order{};
+    std::size_t size = 0;
     for (std::size_t face = 0; face < 6; ++face) {
-      if (isOwned(c, face)) *end++ = {neighbours[c][face], face};
+      if (!isOwned(c, face)) continue;
+      std::size_t place = size++;
+      for (; place > 0 && neighbours[c][order[place - 1]] > neighbours[c][face]; --place) {
+        order[place] = order[place - 1];
+      }
+      order[place] = face;
     }
-    std::sort(owned.begin(), end);
-    std::size_t place = begin[c];
-    for (const auto* next = owned.begin(); next != end; ++next, ++place) {
-      poly.faces[place] = faceVertices(mesh.cells[c], next->second);
-      poly.owners[place] = static_cast<Index>(c);
-      poly.neighbours[place] = next->first;
+    for (std::size_t i = 0; i < size; ++i) {
+      poly.faces[begin[c] + i] = faceVertices(mesh.cells[c], order[i]);
+      poly.owners[begin[c] + i] = static_cast<Index>(c);
+      poly.neighbours[begin[c] + i] = neighbours[c][order[i]];
     }
   });
 }
