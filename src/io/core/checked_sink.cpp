@@ -30,21 +30,18 @@ std::string numbers(std::uint64_t first, std::uint64_t size) {
 
 }  // namespace
 
-CheckedSink::CheckedSink(std::string name, std::string_view stage, Context& context)
+SinkCalls::SinkCalls(std::string name, std::string_view stage, Context& context)
     : name_(std::move(name)), stage_(stage), context_(context), quiet_(context.threads()) {}
 
-/// Runs one call: the sink is useless after one that failed.
-template <class F>
-void CheckedSink::run(const F& f) {
-  const State before = state_;
-  state_ = State::Failed;
+void SinkCalls::run(const std::function<void()>& call) {
+  const State before = std::exchange(state_, State::Failed);
   if (before == State::Failed) refuse("a call before this one failed");
   if (before == State::Ended) refuse("end() was called before");
   context_.throwIfCancelled();
   const auto begin = std::chrono::steady_clock::now();
   state_ = before;
   try {
-    f();
+    call();
   } catch (...) {
     state_ = State::Failed;
     throw;
@@ -53,91 +50,69 @@ void CheckedSink::run(const F& f) {
   context_.addStageTime(stage_, seconds.count());
 }
 
-void CheckedSink::begin(std::uint64_t pointCount, std::uint64_t cellCount) {
-  run([&] {
-    if (state_ != State::Fresh) refuse("begin() was called twice");
-    // So that no product of a count with the bytes of an element wraps around.
-    constexpr std::uint64_t kMost = std::uint64_t{1} << 48U;
-    if (std::max(pointCount, cellCount) > kMost) {
-      throw Error(ErrorCode::TooLarge, name_ + ": a mesh of " + std::to_string(pointCount) +
-                                           " vertices and " + std::to_string(cellCount) +
-                                           " cells is too large for a file.");
-    }
-    pointCount_ = pointCount;
-    cellCount_ = cellCount;
-    takeBegin();
-    state_ = State::Points;
-  });
+void SinkCalls::begin(std::uint64_t pointCount, std::uint64_t cellCount) {
+  if (state_ != State::Fresh) refuse("begin() was called twice");
+  // So that no product of a count with the bytes of an element wraps around.
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 48U;
+  if (std::max(pointCount, cellCount) > kMost) {
+    throw Error(ErrorCode::TooLarge, name_ + ": a mesh of " + std::to_string(pointCount) +
+                                         " vertices and " + std::to_string(cellCount) +
+                                         " cells is too large for a file.");
+  }
+  pointCount_ = pointCount;
+  cellCount_ = cellCount;
+  state_ = State::Points;
 }
 
-void CheckedSink::points(const PointPiece& piece) {
-  run([&] {
-    if (state_ == State::Fresh) refuse("points() was called before begin()");
-    if (state_ == State::Cells) refuse("points() was called after cells()");
-    requireNext("vertices", piece.first, piece.points.size(), nextPoint_, pointCount_);
-    if (piece.points.empty()) return;
-    if (nextPoint_ == 0) {
-      hasTets_ = !piece.generatorTet.empty();
-      hasCorners_ = !piece.generatorCorners.empty();
-    }
-    requireConsistent(piece);
-    takePoints(piece);
-    nextPoint_ += piece.points.size();
-  });
+void SinkCalls::points(const PointPiece& piece) {
+  if (state_ == State::Fresh) refuse("points() was called before begin()");
+  if (state_ == State::Cells) refuse("points() was called after cells()");
+  requireNext("vertices", piece.first, piece.points.size(), nextPoint_, pointCount_);
+  if (piece.points.empty()) return;
+  if (nextPoint_ == 0) {
+    hasTets_ = !piece.generatorTet.empty();
+    hasCorners_ = !piece.generatorCorners.empty();
+  }
+  requireConsistent(piece);
+  nextPoint_ += piece.points.size();
 }
 
-void CheckedSink::cells(std::uint64_t first, std::span<const Hex> cells) {
-  checkCells(first, cells);
-}
-
-void CheckedSink::cells(std::uint64_t first, std::span<const Hex64> cells) {
-  checkCells(first, cells);
-}
-
-template <class Cell>
-void CheckedSink::checkCells(std::uint64_t first, std::span<const Cell> cells) {
-  run([&] {
-    beginCells();
-    requireNext("cells", first, cells.size(), nextCell_, cellCount_);
-    Stage stage(quiet_, "check");
-    std::size_t wrong = 0;
-    withThreadsHere(quiet_.threads(), [&] { wrong = firstOutOfRange(cells, pointCount_, stage); });
-    if (wrong < cells.size()) {
-      throw Error(ErrorCode::InvalidArgument,
-                  name_ + ": a corner of cell " + std::to_string(first + wrong) +
-                      " is not a vertex of the mesh.",
-                  Place{PlaceKind::Cell, first + wrong});
-    }
-    takeCells(first, cells);
-    nextCell_ += cells.size();
-  });
-}
-
-void CheckedSink::beginCells() {
+bool SinkCalls::beginsCells() {
   if (state_ == State::Fresh) refuse("cells() or end() was called before begin()");
   if (nextPoint_ != pointCount_) {
     refuse("only " + std::to_string(nextPoint_) + " of " + std::to_string(pointCount_) +
            " vertices came before cells() or end()");
   }
-  if (state_ == State::Cells) return;
-  takeCellsBegin();
-  state_ = State::Cells;
+  return std::exchange(state_, State::Cells) == State::Points;
 }
 
-void CheckedSink::end() {
-  run([&] {
-    beginCells();
-    if (nextCell_ != cellCount_) {
-      refuse("only " + std::to_string(nextCell_) + " of " + std::to_string(cellCount_) +
-             " cells came before end()");
-    }
-    takeEnd();
-    state_ = State::Ended;
-  });
+template <class Cell>
+void SinkCalls::cells(std::uint64_t first, std::span<const Cell> cells) {
+  requireNext("cells", first, cells.size(), nextCell_, cellCount_);
+  Stage stage(quiet_, "check");
+  std::size_t wrong = 0;
+  withThreadsHere(quiet_.threads(), [&] { wrong = firstOutOfRange(cells, pointCount_, stage); });
+  if (wrong < cells.size()) {
+    throw Error(ErrorCode::InvalidArgument,
+                name_ + ": a corner of cell " + std::to_string(first + wrong) +
+                    " is not a vertex of the mesh.",
+                Place{PlaceKind::Cell, first + wrong});
+  }
+  nextCell_ += cells.size();
+}
+template void SinkCalls::cells(std::uint64_t first, std::span<const Hex> cells);
+template void SinkCalls::cells(std::uint64_t first, std::span<const Hex64> cells);
+
+void SinkCalls::end() {
+  if (nextCell_ != cellCount_) {
+    refuse("only " + std::to_string(nextCell_) + " of " + std::to_string(cellCount_) +
+           " cells came before end()");
+  }
+  state_ = State::Ended;
 }
 
-void CheckedSink::requireNext(const char* what, std::uint64_t first, std::uint64_t size,
-                              std::uint64_t next, std::uint64_t count) const {
+void SinkCalls::requireNext(const char* what, std::uint64_t first, std::uint64_t size,
+                            std::uint64_t next, std::uint64_t count) const {
   if (first != next) {
     refuse("number " + std::to_string(next) + " of the " + what + " has to come next, but " +
            numbers(first, size) + " came");
@@ -148,7 +123,7 @@ void CheckedSink::requireNext(const char* what, std::uint64_t first, std::uint64
   }
 }
 
-void CheckedSink::requireConsistent(const PointPiece& piece) {
+void SinkCalls::requireConsistent(const PointPiece& piece) {
   const auto fits = [&piece](std::size_t size, bool expected) {
     return size == (expected ? piece.points.size() : 0);
   };
@@ -167,7 +142,7 @@ void CheckedSink::requireConsistent(const PointPiece& piece) {
       Place{PlaceKind::Vertex, piece.first + wrong});
 }
 
-void CheckedSink::refuse(const std::string& sentence) const {
+void SinkCalls::refuse(const std::string& sentence) const {
   throw Error(ErrorCode::InvalidArgument,
               name_ + ": a mesh in pieces came in the wrong way: " + sentence +
                   ". A sink takes begin(), all vertices in order, all cells in order, and end().");

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,45 +18,31 @@
 
 namespace hexhex {
 
-/// A sink whose derived classes are called in the right order only, with finite coordinates and
-/// vertices that exist. A call that throws is the last one.
-class CheckedSink : public MeshSink {
+/// The calls of one sink: in the right order only, with finite coordinates and vertices that exist.
+/// Of a call inside run(), the functions throw if it is wrong.
+class SinkCalls {
  public:
-  void begin(std::uint64_t pointCount, std::uint64_t cellCount) final;
-  void points(const PointPiece& piece) final;
-  void cells(std::uint64_t first, std::span<const Hex> cells) final;
-  void cells(std::uint64_t first, std::span<const Hex64> cells) final;
-  void end() final;
-
- protected:
   /// @param name  what errors begin with, e.g. a file
   /// @param stage  under which the time is noted; outlives this
-  CheckedSink(std::string name, std::string_view stage, Context& context);
+  SinkCalls(std::string name, std::string_view stage, Context& context);
 
-  virtual void takeBegin() = 0;
-  /// The piece is not empty.
-  virtual void takePoints(const PointPiece& piece) = 0;
-  /// Called once before the first cells, or before the end if there are none.
-  virtual void takeCellsBegin() = 0;
-  virtual void takeCells(std::uint64_t first, std::span<const Hex> cells) = 0;
-  virtual void takeCells(std::uint64_t first, std::span<const Hex64> cells) = 0;
-  virtual void takeEnd() = 0;
+  /// Does what one call is to do. A call that throws is the last one.
+  void run(const std::function<void()>& call);
 
-  [[nodiscard]] int threads() const noexcept { return context_.threads(); }
-  [[nodiscard]] std::uint64_t pointCount() const noexcept { return pointCount_; }
-  [[nodiscard]] std::uint64_t cellCount() const noexcept { return cellCount_; }
+  void begin(std::uint64_t pointCount, std::uint64_t cellCount);
+  void points(const PointPiece& piece);
+  /// @return whether these are the first cells, or the end without any
+  [[nodiscard]] bool beginsCells();
+  template <class Cell>
+  void cells(std::uint64_t first, std::span<const Cell> cells);
+  void end();
 
  private:
   enum class State { Fresh, Points, Cells, Ended, Failed };
 
-  template <class F>
-  void run(const F& f);
-  template <class Cell>
-  void checkCells(std::uint64_t first, std::span<const Cell> cells);
   void requireNext(const char* what, std::uint64_t first, std::uint64_t size, std::uint64_t next,
                    std::uint64_t count) const;
   void requireConsistent(const PointPiece& piece);
-  void beginCells();
   [[noreturn]] void refuse(const std::string& sentence) const;
 
   std::string name_;
@@ -73,30 +60,55 @@ class CheckedSink : public MeshSink {
 };
 
 /// A sink that hands what it checked to the writer of a format.
-/// @tparam Writer  has begin(pointCount, cellCount),
-///         points(piece), beginCells(), cells(first, cells) for both kinds of cells, and end()
+/// @tparam Writer  has begin(pointCount, cellCount); points(piece), with some points; beginCells(),
+///         called once, even if there are no cells; cells(first, cells) for both kinds of cells;
+///         and end()
 template <class Writer>
-class WriterSink : public CheckedSink {
+class CheckedSink : public MeshSink {
  public:
+  /// @param arguments  what the writer is made from; the others as SinkCalls has them
   template <class... Arguments>
-  WriterSink(std::string name, std::string_view stage, Context& context,
-             const Arguments&... arguments)
-      : CheckedSink(std::move(name), stage, context), writer_(arguments...) {}
+  CheckedSink(std::string name, std::string_view stage, Context& context,
+              const Arguments&... arguments)
+      : calls_(std::move(name), stage, context), writer_(arguments...) {}
 
   [[nodiscard]] const Writer& writer() const noexcept { return writer_; }
 
- private:
-  void takeBegin() override { writer_.begin(pointCount(), cellCount()); }
-  void takePoints(const PointPiece& piece) override { writer_.points(piece); }
-  void takeCellsBegin() override { writer_.beginCells(); }
-  void takeCells(std::uint64_t first, std::span<const Hex> cells) override {
-    writer_.cells(first, cells);
+  void begin(std::uint64_t pointCount, std::uint64_t cellCount) override {
+    calls_.run([&] {
+      calls_.begin(pointCount, cellCount);
+      writer_.begin(pointCount, cellCount);
+    });
   }
-  void takeCells(std::uint64_t first, std::span<const Hex64> cells) override {
-    writer_.cells(first, cells);
+  void points(const PointPiece& piece) override {
+    calls_.run([&] {
+      calls_.points(piece);
+      if (!piece.points.empty()) writer_.points(piece);
+    });
   }
-  void takeEnd() override { writer_.end(); }
+  void cells(std::uint64_t first, std::span<const Hex> cells) override { takeCells(first, cells); }
+  void cells(std::uint64_t first, std::span<const Hex64> cells) override {
+    takeCells(first, cells);
+  }
+  void end() override {
+    calls_.run([&] {
+      if (calls_.beginsCells()) writer_.beginCells();
+      calls_.end();
+      writer_.end();
+    });
+  }
 
+ private:
+  template <class Cell>
+  void takeCells(std::uint64_t first, std::span<const Cell> cells) {
+    calls_.run([&] {
+      if (calls_.beginsCells()) writer_.beginCells();
+      calls_.cells(first, cells);
+      writer_.cells(first, cells);
+    });
+  }
+
+  SinkCalls calls_;
   Writer writer_;
 };
 
@@ -104,8 +116,8 @@ class WriterSink : public CheckedSink {
 template <class Writer>
 [[nodiscard]] std::unique_ptr<MeshSink> openWriterSink(const std::filesystem::path& file,
                                                        Context& context) {
-  return std::make_unique<WriterSink<Writer>>(file.string(), "write mesh", context, file,
-                                              context.threads());
+  return std::make_unique<CheckedSink<Writer>>(file.string(), "write mesh", context, file,
+                                               context.threads());
 }
 
 /// Hands a mesh over, from begin() to end(). Generators go along if there are as many as vertices.

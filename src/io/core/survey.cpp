@@ -31,17 +31,15 @@ void enlarge(Vec3& lower, Vec3& upper, const Vec3& point) {
 }  // namespace
 
 /// Integers add up to the same in any order, and so do boxes.
-class SurveySink::Adder final : public CheckedSink {
+class SurveyWriter {
  public:
-  explicit Adder(Context& context)
-      : CheckedSink("survey", "survey", context), quiet_(context.threads()) {}
+  explicit SurveyWriter(int threads) : quiet_(threads) {}
 
   [[nodiscard]] const MeshSurvey& result() const noexcept { return result_; }
 
- private:
-  void takeBegin() override { result_ = {pointCount(), cellCount(), {}, {}, 0, 0}; }
+  void begin(std::uint64_t points, std::uint64_t cells) { result_ = {points, cells, {}, {}, 0, 0}; }
 
-  void takePoints(const PointPiece& piece) override {
+  void points(const PointPiece& piece) {
     if (piece.first == 0) result_.lower = result_.upper = piece.points.front();
     forEachBlock(piece.points.size(), [&](std::size_t begin, std::size_t end) {
       MeshSurvey part;
@@ -60,13 +58,9 @@ class SurveySink::Adder final : public CheckedSink {
     });
   }
 
-  void takeCellsBegin() override {}
-  void takeCells(std::uint64_t first, std::span<const Hex> cells) override { add(first, cells); }
-  void takeCells(std::uint64_t first, std::span<const Hex64> cells) override { add(first, cells); }
-  void takeEnd() override {}
-
+  void beginCells() {}
   template <class Cell>
-  void add(std::uint64_t first, std::span<const Cell> cells) {
+  void cells(std::uint64_t first, std::span<const Cell> cells) {
     forEachBlock(cells.size(), [&](std::size_t begin, std::size_t end) {
       std::uint64_t sum = 0;
       for (std::size_t i = begin; i < end; ++i) {
@@ -76,7 +70,9 @@ class SurveySink::Adder final : public CheckedSink {
       result_.cellChecksum += sum;
     });
   }
+  void end() {}
 
+ private:
   template <class F>
   void forEachBlock(std::size_t n, const F& f) {
     Stage stage(quiet_, "survey");
@@ -92,7 +88,12 @@ class SurveySink::Adder final : public CheckedSink {
   MeshSurvey result_;
 };
 
-SurveySink::SurveySink(Context& context) : adder_(std::make_unique<Adder>(context)) {}
+class SurveySink::Adder final : public CheckedSink<SurveyWriter> {
+  using CheckedSink::CheckedSink;
+};
+
+SurveySink::SurveySink(Context& context)
+    : adder_(std::make_unique<Adder>("survey", "survey", context, context.threads())) {}
 SurveySink::~SurveySink() = default;
 
 void SurveySink::begin(std::uint64_t pointCount, std::uint64_t cellCount) {
@@ -106,7 +107,7 @@ void SurveySink::cells(std::uint64_t first, std::span<const Hex64> cells) {
   adder_->cells(first, cells);
 }
 void SurveySink::end() { adder_->end(); }
-const MeshSurvey& SurveySink::result() const noexcept { return adder_->result(); }
+const MeshSurvey& SurveySink::result() const noexcept { return adder_->writer().result(); }
 
 MeshSurvey survey(const HexMesh& mesh, Context& context) {
   SurveySink sink(context);

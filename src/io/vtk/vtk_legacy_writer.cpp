@@ -198,28 +198,30 @@ void writeMap(const TetMap& map, const std::filesystem::path& file, const WriteO
   writer.commit();
 }
 
+/// Writes a mesh that comes in pieces.
 template <class Numbers>
-class VtkLegacySink final : public CheckedSink {
+class LegacyStream {
  public:
-  VtkLegacySink(const std::filesystem::path& file, Context& context)
-      : CheckedSink(file.string(), "write mesh", context), writer_(file, threads()) {}
+  LegacyStream(const std::filesystem::path& file, int threads) : writer_(file, threads) {}
 
- private:
-  void takeBegin() override { writer_.begin(kMeshTitle, pointCount()); }
-  void takePoints(const PointPiece& piece) override { writer_.points(piece.points); }
-  void takeCellsBegin() override { writer_.beginCells(cellCount(), std::tuple_size_v<Hex>); }
-  void takeCells(std::uint64_t /*first*/, std::span<const Hex> cells) override {
+  void begin(std::uint64_t points, std::uint64_t cells) {
+    cellCount_ = cells;
+    writer_.begin(kMeshTitle, points);
+  }
+  void points(const PointPiece& piece) { writer_.points(piece.points); }
+  void beginCells() { writer_.beginCells(cellCount_, std::tuple_size_v<Hex>); }
+  template <class Cell>
+  void cells(std::uint64_t /*first*/, std::span<const Cell> cells) {
     writer_.cells(cells);
   }
-  void takeCells(std::uint64_t /*first*/, std::span<const Hex64> cells) override {
-    writer_.cells(cells);
-  }
-  void takeEnd() override {
-    writer_.types(cellCount(), kVtkHexahedron);
+  void end() {
+    writer_.types(cellCount_, kVtkHexahedron);
     writer_.commit();
   }
 
+ private:
   LegacyWriter<Numbers> writer_;
+  std::uint64_t cellCount_ = 0;
 };
 
 }  // namespace
@@ -245,12 +247,12 @@ void writeVtkLegacyMapBinary(const TetMap& map, const std::filesystem::path& fil
 }
 
 std::unique_ptr<MeshSink> openVtkLegacySink(const std::filesystem::path& file, Context& context) {
-  return std::make_unique<VtkLegacySink<VtkText>>(file, context);
+  return openWriterSink<LegacyStream<VtkText>>(file, context);
 }
 
 std::unique_ptr<MeshSink> openVtkLegacyBinarySink(const std::filesystem::path& file,
                                                   Context& context) {
-  return std::make_unique<VtkLegacySink<VtkBigBytes>>(file, context);
+  return openWriterSink<LegacyStream<VtkBigBytes>>(file, context);
 }
 
 }  // namespace hexhex

@@ -33,10 +33,10 @@ void requirePlainName(std::string_view name) {
                   "characters \" ' < > & or a control character.");
 }
 
-class VtuSink final : public CheckedSink {
+/// Writes a mesh that comes in pieces.
+class VtuStream {
  public:
-  VtuSink(const std::filesystem::path& file, Context& context)
-      : CheckedSink(file.string(), "write mesh", context), output_(file) {
+  VtuStream(const std::filesystem::path& file, int /*threads*/) : output_(file) {
     if (output_.hasPositions()) return;
     throw Error(ErrorCode::FileWrite,
                 file.string() +
@@ -44,41 +44,38 @@ class VtuSink final : public CheckedSink {
                     "of a .vtu file that comes in pieces are written side by side. Name a file.");
   }
 
- private:
-  void takeBegin() override {}
-
-  void takePoints(const PointPiece& piece) override {
+  void begin(std::uint64_t points, std::uint64_t cells) {
+    pointCount_ = points;
+    cellCount_ = cells;
+  }
+  void points(const PointPiece& piece) {
     piece_ = {.points = piece.points,
               .generatorTets = piece.generatorTet,
               .generatorCorners = piece.generatorCorners};
     beginFile();
     pieces_->writePoints();
   }
-  void takeCellsBegin() override { beginFile(); }  // there may be no vertices
-  void takeCells(std::uint64_t first, std::span<const Hex> cells) override {
-    writeCells(first, cells);
-  }
-  void takeCells(std::uint64_t first, std::span<const Hex64> cells) override {
-    writeCells(first, cells);
-  }
-  void takeEnd() override { pieces_->finish(); }
-
+  void beginCells() { beginFile(); }  // there may be no vertices
   template <class Cell>
-  void writeCells(std::uint64_t first, std::span<const Cell> cells) {
+  void cells(std::uint64_t first, std::span<const Cell> cells) {
     piece_ = {};
     piece_.setCells(first, cells);
     pieces_->writeCells();
   }
+  void end() { pieces_->finish(); }
 
+ private:
   /// Only the first piece tells which arrays there are, and so where they begin.
   void beginFile() {
     if (pieces_) return;
     data_.emplace(
-        meshDataSet(piece_, pointCount(), cellCount(), std::tuple_size_v<Hex>, kVtkHexahedron));
+        meshDataSet(piece_, pointCount_, cellCount_, std::tuple_size_v<Hex>, kVtkHexahedron));
     pieces_.emplace(output_, *data_);
   }
 
   OutputFile output_;
+  std::uint64_t pointCount_ = 0;
+  std::uint64_t cellCount_ = 0;
   VtkPiece piece_;
   std::optional<VtkDataSet> data_;
   std::optional<VtkXmlPieces> pieces_;
@@ -119,7 +116,7 @@ void writeVtuMap(const TetMap& map, const std::filesystem::path& file, const Wri
 }
 
 std::unique_ptr<MeshSink> openVtuSink(const std::filesystem::path& file, Context& context) {
-  return std::make_unique<VtuSink>(file, context);
+  return openWriterSink<VtuStream>(file, context);
 }
 
 }  // namespace hexhex
