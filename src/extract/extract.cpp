@@ -1,10 +1,12 @@
-// The public entry: options and errors around the engines.
+// The public entries: options and errors around the engines.
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include <hexhex/extract.hpp>
+#include <hexhex/io.hpp>
 #include <hexhex/stream.hpp>
 
 #include <atlas/atlas.hpp>
@@ -38,9 +40,8 @@ std::uint64_t scaledCells(std::uint64_t volume, int scale, double limit) {
 namespace {
 
 /// Whether a repair is to be tried, even if this build can only say that it cannot: for flipped and
-/// flat tets, and for what these may be the cause of, as angles around edges, and with them what is
-/// singular, are not what they seem there. Other defects are its business only if rounding was
-/// asked for.
+/// flat tets, and for what they may have caused, as they falsify angles around edges and thereby
+/// singularities. Other defects are repaired only if rounding was asked for.
 bool isToBeRepaired(const DefectCollector& defects, const RepairChoice& repair) {
   if (repair.mode == RepairMode::Off) return false;
   const auto found = [&](ErrorCode code) { return defects.has(code); };
@@ -174,6 +175,12 @@ void extractTo(MeshSink& sink, const TetMapView& map, const ExtractOptions& opti
     const ScaledMap scaled = prepareScaled(map, options, {1, kMaxStreamedCells}, context, filled);
     streamAtlas(scaled.map, scaled.expectedCells, sink, context, filled);
   });
+}
+
+void extractToFile(const std::filesystem::path& file, const TetMapView& map,
+                   const ExtractOptions& options, Context& context, ExtractStatistics* statistics) {
+  const std::unique_ptr<MeshSink> sink = openMeshSink(file, context);
+  extractTo(*sink, map, options, context, statistics);
 }
 
 HexMesh extract(const TetMapView& map, const ExtractOptions& options) {

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include <extract/features.hpp>
-#include <extract/tag_table.hpp>
 #include <sweep/cell_seeds.hpp>
 #include <sweep/cell_tracer.hpp>
 
@@ -13,6 +12,68 @@ namespace hexhex {
 namespace {
 
 constexpr std::size_t kGrain = std::size_t{1} << 14;
+
+/// Tagged edges or triangles of the tet mesh, found by their vertices.
+/// @tparam n  vertices of a simplex: 2 or 3
+template <std::size_t n>
+class TagTable {
+ public:
+  /// @param features  those with tag 0 are left out
+  template <class Feature>
+  explicit TagTable(std::span<const Feature> features) {
+    for (const Feature& feature : features) {
+      if (feature.tag != 0) entries_.push_back({sorted(feature.vertices), feature.tag});
+    }
+    std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
+      return a.simplex != b.simplex ? a.simplex < b.simplex : a.tag < b.tag;
+    });
+  }
+
+  /// The tag of the simplex of a tet, 0 if it has none or has another number of corners.
+  [[nodiscard]] std::int32_t find(const Tet& tet, CornerMask simplex) const {
+    if (dimension(simplex) != static_cast<int>(n) - 1) return 0;
+    Simplex wanted{};
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (contains(simplex, static_cast<int>(i))) wanted[k++] = tet[i];
+    }
+    wanted = sorted(wanted);
+    const auto found = std::lower_bound(
+        entries_.begin(), entries_.end(), wanted,
+        [](const Entry& entry, const Simplex& key) { return entry.simplex < key; });
+    return found != entries_.end() && found->simplex == wanted ? found->tag : 0;
+  }
+
+  /// @throws Error InvalidArgument if a simplex has two tags
+  void requireOne() const {
+    const auto twice = std::adjacent_find(
+        entries_.begin(), entries_.end(),
+        [](const Entry& a, const Entry& b) { return a.simplex == b.simplex && a.tag != b.tag; });
+    if (twice == entries_.end()) return;
+    std::string vertices;
+    for (const Index v : twice->simplex) {
+      if (!vertices.empty()) vertices += '-';
+      vertices += std::to_string(v);
+    }
+    throw Error(ErrorCode::InvalidArgument,
+                std::string(n == 2 ? "The edge " : "The triangle ") + vertices +
+                    " is tagged twice, " + std::to_string(twice->tag) + " and " +
+                    std::to_string((twice + 1)->tag) + ". Give it one tag.");
+  }
+
+ private:
+  using Simplex = std::array<Index, n>;
+  struct Entry {
+    Simplex simplex;
+    std::int32_t tag;
+  };
+  static Simplex sorted(Simplex simplex) {
+    std::sort(simplex.begin(), simplex.end());
+    return simplex;
+  }
+
+  std::vector<Entry> entries_;  ///< ascending
+};
 
 /// A hex vertex may begin a tagged edge, or may be the corner of a tagged face.
 using Mark = std::uint8_t;
@@ -248,8 +309,8 @@ std::vector<FeatureQuad> uniqueQuads(std::vector<FeatureQuad> quads) {
 
 void tagEdgesAndQuads(const TetMapView& given, const PreparedMap& prepared, const CellSeeds& seeds,
                       HexMesh& mesh, Stage& stage) {
-  const TagTable<2> edgeTags(given.points.size(), given.features.edges);
-  const TagTable<3> faceTags(given.points.size(), given.features.faces);
+  const TagTable<2> edgeTags(given.features.edges);
+  const TagTable<3> faceTags(given.features.faces);
   const Marks marks(given, mesh, stage);
   const std::size_t tets = prepared.topology.tetCount();
   std::vector<std::vector<Seen::Edge>> edges(blockCount(tets, kSweepBlock));
@@ -327,8 +388,8 @@ void requireValidTags(const TetMapView& map) {
   for (std::size_t i = 0; i < map.features.faces.size(); ++i) {
     requirePoints(map, map.features.faces[i].vertices, "face", i);
   }
-  if (!map.features.edges.empty()) TagTable<2>(map.points.size(), map.features.edges).requireOne();
-  if (!map.features.faces.empty()) TagTable<3>(map.points.size(), map.features.faces).requireOne();
+  TagTable<2>(map.features.edges).requireOne();
+  TagTable<3>(map.features.faces).requireOne();
   if (map.regions.empty() || map.regions.size() == map.tets.size()) return;
   throw Error(ErrorCode::InvalidArgument,
               "The map has " + std::to_string(map.tets.size()) + " tets, but regions for " +

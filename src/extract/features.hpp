@@ -1,8 +1,8 @@
 // Tags of the tet mesh, carried over to the mesh that was extracted from it.
 //
-// An edge of a cell, and a face beside an edge, are looked at where they begin: the way from the
-// cell's centre to the corner ends in a tet that holds that beginning (CellTracer), and there the
-// signs of face normals decide exactly into which simplex it leads (holder and casing,
+// An edge of a cell, and a face beside an edge, are looked at where they begin: the half diagonal
+// from the cell's centre to the corner ends in a tet that holds that beginning (CellTracer), and
+// there the signs of face normals decide exactly into which simplex it leads (holder and casing,
 // Section 4.2). Only the cells with a corner at a tagged simplex are looked at.
 #pragma once
 
