@@ -31,6 +31,7 @@ struct Entry {
 constexpr std::array kEntries = {
     Entry{"huge_pages", &EngineSwitches::hugePages},
     Entry{"page_pool", &EngineSwitches::pagePool},
+    Entry{"look_across_cuts", &EngineSwitches::lookAcrossCuts},
 };
 
 /// Of extractions in one way.

@@ -1,3 +1,4 @@
+#include <atomic>
 #include <limits>
 #include <string>
 #include <utility>
@@ -54,18 +55,16 @@ class Atlas {
       Stage stage(context_, "grid");
       vertices_.fill(arrays, stage);
     }
-    OverlapCounts overlaps;
     {
       Stage stage(context_, "overlaps");
-      if (switches_.resolveOverlaps) overlaps = vertices_.resolveOverlaps(stage);
+      if (switches_.resolveOverlaps) statistics.overlappingTets = vertices_.resolveOverlaps(stage);
     }
-    statistics.overlappingTets = overlaps.tets;
     Stage stage(context_, "cuts");
     if (switches_.markCuts) {
-      const bool onlyJumps = overlaps.tets == 0 && charts_.identitiesAgree;
-      Cuts cuts = markCutCells(map_, charts_, onlyJumps, vertices_.grid(), stage);
+      const bool identitiesGlue = statistics.overlappingTets == 0 && charts_.identitiesAgree;
+      Cuts cuts = markCutCells(map_, charts_, identitiesGlue, vertices_.grid(), stage);
       statistics.cutFaces = cuts.faces;
-      jumps_ = std::move(cuts.jumps);
+      transitions_ = std::move(cuts.transitions);
     }
     if (!keepLines) vertices_.dropLines();
     statistics.charts = charts_.count;
@@ -76,116 +75,91 @@ class Atlas {
   [[nodiscard]] const VertexGrid<Id>& vertices() const noexcept { return vertices_; }
   [[nodiscard]] SweptVertices takeVertices() noexcept { return vertices_.takeVertices(); }
   [[nodiscard]] const CellSeeds& cells() const noexcept { return cells_; }
-  [[nodiscard]] const Jumps& jumps() const noexcept { return jumps_; }
+  [[nodiscard]] CellEmitter<Id> makeEmitter() const {
+    return {map_, vertices_, transitions_, switches_.lookAcrossCuts};
+  }
 
  private:
   const PreparedMap& map_;
   Charts charts_;
   VertexGrid<Id> vertices_;
   CellSeeds cells_;
-  Jumps jumps_;
+  CutTransitions transitions_;
   Context& context_;
   EngineSwitches switches_;
 };
 
-/// Emits cells by as many emitters as work at the same time; they remember much of what they saw.
+/// Tets that one thread works on at a time where each has many elements.
+constexpr std::size_t kFewTets = 64;
+
+/// Consecutive tets, and the vertices or cells that they own.
+struct Piece {
+  std::size_t firstTet;
+  std::size_t endTet;
+  std::uint64_t first;
+  std::size_t count;
+
+  [[nodiscard]] std::size_t tetCount() const noexcept { return endTet - firstTet; }
+};
+
+/// Calls visit(Piece) for pieces of about a million elements.
+/// @param begin  per tet (+1): the first element that it owns
+template <class Visit>
+void forEachPiece(const Array<std::uint64_t>& begin, const Visit& visit) {
+  constexpr std::uint64_t kPiece = std::uint64_t{1} << 20;
+  const std::size_t tets = begin.size() - 1;
+  for (std::size_t first = 0, end = 0; first < tets; first = end) {
+    end = first + 1;
+    while (end < tets && begin[end + 1] - begin[first] <= kPiece) ++end;
+    const auto count = static_cast<std::size_t>(begin[end] - begin[first]);
+    if (count > 0) visit(Piece{first, end, begin[first], count});
+  }
+}
+
+/// Emits the cells of a piece.
+/// @return how many have a corner that their chart does not show
 template <class Id>
-class CellEmitters {
- public:
-  CellEmitters(const PreparedMap& map, const Atlas<Id>& atlas) : map_(map), atlas_(atlas) {}
-
-  /// Emits the cells of consecutive tets.
-  /// @param first  number of the first cell in `cells`
-  void emit(std::size_t firstTet, std::size_t endTet, std::uint64_t first,
-            std::span<typename CellEmitter<Id>::Cell> cells) {
-    const Array<std::uint64_t>& begin = atlas_.cells().begin;
-    if (begin[firstTet] == begin[endTet]) return;
-    const auto make = [this] {
-      return Workspace{CellEmitter<Id>(map_, atlas_.vertices(), atlas_.jumps()), {}};
-    };
-    workspaces_.with(make, [&](Workspace& workspace) {
-      auto& [emitter, lines] = workspace;
-      for (std::size_t t = firstTet; t < endTet; ++t) {
-        if (begin[t] == begin[t + 1]) continue;
-        const auto tet = static_cast<Index>(t);
-        emitter.emit(tet, atlas_.cells().linesOf(map_.exact, tet, lines),
-                     cells.subspan(begin[t] - first, begin[t + 1] - begin[t]));
-      }
-    });
-  }
-
-  /// Cells so far with a corner that the picture hides. Not while others emit.
-  [[nodiscard]] std::uint64_t traced() const {
-    std::uint64_t sum = 0;
-    workspaces_.forEach([&sum](const Workspace& each) { sum += each.emitter.traced(); });
-    return sum;
-  }
-
- private:
+std::uint64_t emitCells(const PreparedMap& map, const Atlas<Id>& atlas, const Piece& piece,
+                        std::span<typename CellEmitter<Id>::Cell> cells, Stage& stage) {
   struct Workspace {
     CellEmitter<Id> emitter;
     std::vector<SweptLine> lines;  ///< of a tet, where they are not kept
   };
-
-  const PreparedMap& map_;
-  const Atlas<Id>& atlas_;
-  Workspaces<Workspace> workspaces_;
-};
-
-/// All cells at once.
-Array<Hex> emitAllCells(const PreparedMap& map, const Atlas<Index>& atlas, Context& context,
-                        ExtractStatistics& statistics) {
-  Stage stage(context, "cells");
-  Array<Hex> cells(atlas.cells().count());
-  CellEmitters<Index> emitters(map, atlas);
-  parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
-                 [&](std::size_t first, std::size_t end, std::size_t) {
-                   emitters.emit(first, end, 0, std::span(cells));
-                 });
-  statistics.tracedCells = emitters.traced();
-  return cells;
+  const Array<std::uint64_t>& begin = atlas.cells().begin;
+  std::atomic<std::uint64_t> resolved{0};
+  parallelBlocksWith(
+      stage, piece.tetCount(), kFewTets,
+      [&] {
+        return Workspace{atlas.makeEmitter(), {}};
+      },
+      [&](std::size_t from, std::size_t to, std::size_t /*block*/, Workspace& workspace) {
+        for (std::size_t t = piece.firstTet + from; t < piece.firstTet + to; ++t) {
+          if (begin[t] == begin[t + 1]) continue;
+          const auto tet = static_cast<Index>(t);
+          resolved += workspace.emitter.emit(
+              tet, atlas.cells().linesOf(map.exact, tet, workspace.lines),
+              cells.subspan(begin[t] - piece.first, begin[t + 1] - begin[t]));
+        }
+      });
+  return resolved;
 }
-
-/// Consecutive tets that own about as many elements as a piece should have.
-struct Batch {
-  std::size_t firstTet;
-  std::size_t endTet;
-};
-
-Batch nextBatch(const Array<std::uint64_t>& begin, std::size_t firstTet) {
-  constexpr std::uint64_t kPiece = std::uint64_t{1} << 20;
-  std::size_t end = firstTet + 1;
-  const std::size_t tets = begin.size() - 1;
-  while (end < tets && begin[end + 1] - begin[firstTet] <= kPiece) ++end;
-  return {firstTet, end};
-}
-
-/// Tets of a batch that one thread works on at a time.
-constexpr std::size_t kBatchGrain = 64;
 
 template <class Id>
-void streamPoints(const PreparedMap& map, const VertexGrid<Id>& vertices, MeshSink& sink,
-                  Context& context) {
+void streamPoints(const VertexGrid<Id>& vertices, MeshSink& sink, Context& context) {
   Stage stage(context, "points");
-  const Array<std::uint64_t>& begin = vertices.numbers().begin;
   Array<Vec3> points;
   Array<Index> tets;
   Array<CornerSet> corners;
-  for (std::size_t t = 0; t < map.topology.tetCount();) {
-    const Batch batch = nextBatch(begin, t);
-    t = batch.endTet;
-    const std::uint64_t first = begin[batch.firstTet];
-    const auto count = static_cast<std::size_t>(begin[batch.endTet] - first);
-    if (count == 0) continue;
-    points.resize(count);
-    tets.resize(count);
-    corners.resize(count);
-    const VertexArrays arrays{first, points.data(), tets.data(), corners.data()};
-    parallelFor(stage, batch.endTet - batch.firstTet, kBatchGrain, [&](std::size_t i) {
-      vertices.describe(static_cast<Index>(batch.firstTet + i), arrays);
+  forEachPiece(vertices.numbers().begin, [&](const Piece& piece) {
+    points.resize(piece.count);
+    tets.resize(piece.count);
+    corners.resize(piece.count);
+    const VertexArrays arrays{piece.first, points.data(), tets.data(), corners.data()};
+    parallelFor(stage, piece.tetCount(), kFewTets, [&](std::size_t i) {
+      vertices.describe(static_cast<Index>(piece.firstTet + i), arrays);
     });
-    sink.points({first, points, tets, corners});
-  }
+    sink.points({piece.first, points, tets, corners});
+  });
 }
 
 template <class Id>
@@ -193,24 +167,12 @@ void streamCells(const PreparedMap& map, const Atlas<Id>& atlas, MeshSink& sink,
                  ExtractStatistics& statistics) {
   Stage stage(context, "cells");
   using Cell = typename CellEmitter<Id>::Cell;
-  const Array<std::uint64_t>& begin = atlas.cells().begin;
-  CellEmitters<Id> emitters(map, atlas);
   Array<Cell> cells;
-  for (std::size_t t = 0; t < map.topology.tetCount();) {
-    const Batch batch = nextBatch(begin, t);
-    t = batch.endTet;
-    const std::uint64_t first = begin[batch.firstTet];
-    const auto count = static_cast<std::size_t>(begin[batch.endTet] - first);
-    if (count == 0) continue;
-    cells.resize(count);
-    parallelBlocks(stage, batch.endTet - batch.firstTet, kBatchGrain,
-                   [&](std::size_t from, std::size_t to, std::size_t) {
-                     emitters.emit(batch.firstTet + from, batch.firstTet + to, first,
-                                   std::span(cells));
-                   });
-    sink.cells(first, std::span<const Cell>(cells));
-  }
-  statistics.tracedCells = emitters.traced();
+  forEachPiece(atlas.cells().begin, [&](const Piece& piece) {
+    cells.resize(piece.count);
+    statistics.tracedCells += emitCells(map, atlas, piece, std::span<Cell>(cells), stage);
+    sink.cells(piece.first, std::span<const Cell>(cells));
+  });
 }
 
 template <class Id>
@@ -218,7 +180,7 @@ void streamFrom(Atlas<Id>& atlas, const PreparedMap& map, MeshSink& sink, Contex
                 ExtractStatistics& statistics) {
   atlas.fill({}, false, statistics);
   sink.begin(atlas.vertices().numbers().count(), atlas.cells().count());
-  streamPoints(map, atlas.vertices(), sink, context);
+  streamPoints(atlas.vertices(), sink, context);
   streamCells(map, atlas, sink, context, statistics);
   sink.end();
 }
@@ -242,7 +204,12 @@ HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& c
   mesh.generatorCorners.resize(count);
   atlas.fill({0, mesh.points.data(), mesh.generatorTet.data(), mesh.generatorCorners.data()},
              observer != nullptr, statistics);
-  mesh.cells = emitAllCells(map, atlas, context, statistics);
+  {
+    Stage stage(context, "cells");
+    mesh.cells.resize(atlas.cells().count());
+    const Piece all{0, map.topology.tetCount(), 0, mesh.cells.size()};
+    statistics.tracedCells = emitCells(map, atlas, all, std::span<Hex>(mesh.cells), stage);
+  }
   if (observer != nullptr) observer->take(atlas.takeVertices());
   return mesh;
 }

@@ -2,7 +2,6 @@
 // in bricks of 8 x 8 x 8 points behind a hash table.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -12,36 +11,16 @@
 #include <mutex>
 #include <span>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <hexhex/types.hpp>
 
+#include <atlas/bricks.hpp>
 #include <atlas/cut_cells.hpp>
-#include <atlas/gauge.hpp>
 #include <base/parallel.hpp>
 
 namespace hexhex {
-
-/// Names a brick: chart and brick coordinates, modulo 2^16 each. Charts and places that the modulus
-/// makes equal overlap, no more (see gauge.hpp).
-using BrickKey = std::uint64_t;
-inline constexpr BrickKey kNoBrick = std::numeric_limits<BrickKey>::max();
-
-[[nodiscard]] constexpr BrickKey brickKey(Index chart, const ChartPoint& c) noexcept {
-  const auto part = [](std::uint32_t value) { return std::uint64_t{value & 0xffffU}; };
-  const BrickKey key = part(chart) << 48 | part(c[2] / kBrickSide) << 32 |
-                       part(c[1] / kBrickSide) << 16 | part(c[0] / kBrickSide);
-  return key == kNoBrick ? 0 : key;
-}
-[[nodiscard]] constexpr std::size_t placeInBrick(const ChartPoint& c) noexcept {
-  return (c[2] % kBrickSide * kBrickSide + c[1] % kBrickSide) * kBrickSide + c[0] % kBrickSide;
-}
-
-/// From the place of a point to that of its neighbour in a direction, in the same brick.
-[[nodiscard]] constexpr std::ptrdiff_t strideInBrick(Direction d) noexcept {
-  constexpr std::array<std::ptrdiff_t, 3> kStrides = {1, kBrickSide, kBrickSide * kBrickSide};
-  return signOf(d) * kStrides[static_cast<std::size_t>(axisOf(d))];
-}
 
 template <class Id>
 struct Brick {
@@ -61,6 +40,15 @@ struct Brick {
     cuts = nullptr;
     contested = 0;
     locked = 0;
+  }
+  /// What stands for bricks that do not exist: no vertices, no cuts.
+  [[nodiscard]] static const Brick& none() {
+    static const Brick brick = [] {
+      Brick empty;
+      empty.clear();
+      return empty;
+    }();
+    return brick;
   }
 };
 
@@ -112,15 +100,6 @@ class BrickGrid {
     }
   }
 
-  /// The bricks with a point that two vertices claim.
-  [[nodiscard]] std::vector<BrickKey> contested() const {
-    std::vector<BrickKey> keys;
-    for (const Slot& slot : slots_) {
-      if (slot.key != kNoBrick && slot.brick->contested != 0) keys.push_back(slot.key);
-    }
-    return keys;
-  }
-
   /// The brick of a key, added if there is none. Not while others use the grid.
   Brick<Id>& add(BrickKey key) {
     if (Brick<Id>* const brick = find(key)) return *brick;
@@ -135,8 +114,12 @@ class BrickGrid {
   /// What is known of cuts in a brick, made when it is first asked for. Thread-safe.
   [[nodiscard]] CutCells& cutsOf(Brick<Id>& brick) {
     const std::atomic_ref known(brick.cuts);
-    CutCells* const cuts = known.load(std::memory_order_acquire);
-    return cuts != nullptr ? *cuts : makeCutsOf(brick);
+    if (CutCells* const cuts = known.load(std::memory_order_acquire)) return *cuts;
+    const std::lock_guard lock(cutsMutex_);
+    if (CutCells* const cuts = known.load(std::memory_order_acquire)) return *cuts;
+    CutCells& made = cuts_.emplace_back();
+    known.store(&made, std::memory_order_release);
+    return made;
   }
 
  private:
@@ -145,33 +128,6 @@ class BrickGrid {
     Brick<Id>* brick;
   };
 
-  [[gnu::noinline]] CutCells& makeCutsOf(Brick<Id>& brick) {
-    CutCells& made = takeCuts();
-    made.clear();
-    CutCells* known = nullptr;
-    if (std::atomic_ref(brick.cuts)
-            .compare_exchange_strong(known, &made, std::memory_order_acq_rel)) {
-      return made;
-    }
-    giveBack(made);  // another thread was faster
-    return *known;
-  }
-  [[nodiscard]] CutCells& takeCuts() {
-    const std::lock_guard lock(cutsMutex_);
-    if (unusedCuts_.empty()) {
-      // In portions, so that it takes few calls and wastes little.
-      constexpr std::size_t kMost = 64;
-      cuts_.emplace_back(cuts_.empty() ? 16 : std::min(2 * cuts_.back().size(), kMost));
-      for (CutCells& cuts : cuts_.back()) unusedCuts_.push_back(&cuts);
-    }
-    CutCells& taken = *unusedCuts_.back();
-    unusedCuts_.pop_back();
-    return taken;
-  }
-  void giveBack(CutCells& cuts) {
-    const std::lock_guard lock(cutsMutex_);
-    unusedCuts_.push_back(&cuts);
-  }
   [[nodiscard]] std::size_t home(BrickKey key) const noexcept {
     return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15U) >> shift_);
   }
@@ -218,8 +174,7 @@ class BrickGrid {
   Array<Brick<Id>> bricks_;
   std::deque<Brick<Id>> added_;
   std::mutex cutsMutex_;
-  std::vector<Array<CutCells>> cuts_;
-  std::vector<CutCells*> unusedCuts_;
+  std::deque<CutCells> cuts_;
 };
 
 /// Finds bricks without the hash table while accesses stay close. One per thread.
@@ -234,10 +189,18 @@ class BrickCache {
   /// The brick that holds a point of a chart, or null.
   [[nodiscard]] Brick<Id>* find(Index chart, const ChartPoint& c) noexcept {
     const BrickKey key = brickKey(chart, c);
-    Entry& entry = entries_[(c[0] / kBrickSide % 8) | (c[1] / kBrickSide % 8) << 3 |
-                            (c[2] / kBrickSide % 8) << 6];
+    Entry& entry = entries_[recentBrick(c)];
     if (entry.key != key) entry = {key, grid_.find(key)};
     return entry.brick;
+  }
+  /// The same, or Brick::none().
+  [[nodiscard]] const Brick<Id>& at(Index chart, const ChartPoint& c) noexcept {
+    const Brick<Id>* const brick = find(chart, c);
+    return brick != nullptr ? *brick : Brick<Id>::none();
+  }
+  /// What the grid shows at a point of a chart.
+  [[nodiscard]] Id idAt(Index chart, const ChartPoint& c) noexcept {
+    return at(chart, c).ids[placeInBrick(c)];
   }
 
  private:
@@ -246,33 +209,7 @@ class BrickCache {
     Brick<Id>* brick;
   };
   const BrickGrid<Id>& grid_;
-  std::array<Entry, 512> entries_;
-};
-
-/// A straight row of points in a chart, in steps of one grid unit.
-struct ChartRow {
-  Index chart;
-  ChartPoint start;
-  Direction along;
-  std::uint32_t count;
-
-  /// Calls visit(point, offset, count, stride) for each part of the row within one brick: its first
-  /// point, its offset in the row, its number of points, and the distance of their places.
-  template <class Visit>
-  void forEachPart(const Visit& visit) const {
-    const auto axis = static_cast<std::size_t>(axisOf(along));
-    const std::ptrdiff_t stride = strideInBrick(along);
-    const bool forward = signOf(along) > 0;
-    ChartPoint c = start;
-    for (std::uint32_t offset = 0; offset < count;) {
-      const std::uint32_t inBrick = c[axis] % kBrickSide;
-      const std::uint32_t room = forward ? kBrickSide - inBrick : inBrick + 1;
-      const std::uint32_t part = std::min(room, count - offset);
-      visit(std::as_const(c), offset, part, stride);
-      offset += part;
-      c[axis] += forward ? part : 0U - part;
-    }
-  }
+  std::array<Entry, kRecentBricks> entries_;
 };
 
 }  // namespace hexhex

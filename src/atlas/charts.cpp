@@ -1,9 +1,7 @@
-#include <array>
 #include <utility>
 #include <vector>
 
 #include <atlas/charts.hpp>
-#include <base/branchless.hpp>
 #include <base/disjoint_sets.hpp>
 
 namespace hexhex {
@@ -17,22 +15,17 @@ class Patches {
  public:
   Patches(const PreparedMap& map, Stage& stage) : of_(map.topology.tetCount()) {
     const std::size_t tets = map.topology.tetCount();
-    const HalfFace* const mates = map.topology.mate.data();
-    const Index* const jumps = map.exact.transitions.jump.data();
+    const Array<HalfFace>& mate = map.topology.mate;
     DisjointSets sets(tets);
-    parallelFor(stage, tets, kGrain, [&sets, mates, jumps](std::size_t t) {
-      // Smaller neighbours, as each face needs to be seen once; listed without branches, which
-      // nobody could predict.
-      std::array<Index, 4> smaller;
-      std::size_t count = 0;
+    parallelFor(stage, tets, kGrain, [&](std::size_t t) {
       const auto first = static_cast<HalfFace>(4 * t);
-      for (std::size_t f = 0; f < 4; ++f) {
-        const HalfFace mate = mates[first + f];
-        smaller[count] = tetOf(mate);
-        count += allOf(mate < first, jumps[first + f] == 0) ? 1 : 0;
-      }
       auto patch = static_cast<Index>(t);
-      for (std::size_t i = 0; i < count; ++i) patch = sets.unite(patch, smaller[i]);
+      for (HalfFace h = first; h < first + 4; ++h) {
+        // Smaller neighbours, as each face needs to be seen once.
+        if (mate[h] < first && !map.exact.transitions.isJump(h)) {
+          patch = sets.unite(patch, tetOf(mate[h]));
+        }
+      }
     });
     const auto representatives = collectFromBlocks<Index>(
         stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::vector<Index>& list) {

@@ -1,18 +1,18 @@
-// The atlas: tets glued to charts, in which the map is one picture.
+// The atlas: tets glued to charts.
 #pragma once
 
 #include <cstdint>
 
 #include <hexhex/types.hpp>
 
-#include <atlas/gauge.hpp>
 #include <igm/prepare.hpp>
+#include <lattice/gauge.hpp>
 
 namespace hexhex {
 
 /// Every tet belongs to a chart and has a gauge that takes its own chart there.
 struct Charts {
-  /// A tet that no chart could take without overlap: its cells are traced.
+  /// Of a tet that no chart could take without overlap: its cells are traced.
   static constexpr Index kNoChart = kNone;
 
   Array<Index> chart;    ///< per tet
@@ -20,12 +20,12 @@ struct Charts {
   Array<Gauge> gauges;
   Index count = 0;  ///< charts
 
-  /// Whether tets that no jump separates are known to have the same gauge.
+  /// Whether gauges are known to agree on all faces with the identity as transition.
   bool identitiesAgree = false;
 
   [[nodiscard]] const Gauge& gauge(Index tet) const noexcept { return gauges[gaugeOf[tet]]; }
 
-  /// Whether the picture continues across a half-face (with a mate): both tets are in one chart,
+  /// Whether the chart continues across a half-face (with a mate): both tets are in one chart,
   /// and both gauges agree on the face.
   [[nodiscard]] bool isGlued(const TetTopology& topology, const Transitions& transitions,
                              HalfFace halfFace) const noexcept {
@@ -48,8 +48,8 @@ struct Charts {
 };
 
 /// One chart for every connected component. Tets connected by identity transitions share a gauge;
-/// these patches are joined along a breadth-first tree. If there are many jumps, the tree is one of
-/// tets (map/gauges.hpp).
+/// these patches are joined along a breadth-first tree. If there are few such transitions, the tree
+/// is one of tets (igm/gauges.hpp).
 [[nodiscard]] Charts buildCharts(const PreparedMap& map, Stage& stage);
 
 }  // namespace hexhex

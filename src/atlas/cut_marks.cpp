@@ -1,6 +1,5 @@
 #include <array>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include <atlas/cut_marks.hpp>
@@ -26,32 +25,64 @@ SweepFrame cellFrame(const Gauge& gauge) noexcept {
 }
 
 /// One half-face of each inner face that is cut.
-/// @param onlyJumps  as in markCutCells()
-std::vector<HalfFace> findCuts(const PreparedMap& map, const Charts& charts, bool onlyJumps,
+/// @param identitiesGlue  as in markCutCells()
+std::vector<HalfFace> findCuts(const PreparedMap& map, const Charts& charts, bool identitiesGlue,
                                Stage& stage) {
   constexpr std::size_t kGrain = 4096;
+  const auto isCut = [&](HalfFace halfFace) {
+    return !charts.isGlued(map.topology, map.exact.transitions, halfFace);
+  };
+  if (identitiesGlue) {
+    // Both half-faces of a face with another transition are neighbours, behind the identity.
+    const Array<HalfFace>& halfFaces = map.exact.transitions.halfFaces;
+    return collectFromBlocks<HalfFace>(
+        stage, halfFaces.size() / 2, kGrain,
+        [&](std::size_t begin, std::size_t end, std::vector<HalfFace>& cuts) {
+          for (std::size_t i = begin; i < end; ++i) {
+            if (isCut(halfFaces[2 * i + 1])) cuts.push_back(halfFaces[2 * i + 1]);
+          }
+        });
+  }
   const Array<HalfFace>& mate = map.topology.mate;
-  const Array<HalfFace>& jumps = map.exact.transitions.halfFaces;
   return collectFromBlocks<HalfFace>(
-      stage, onlyJumps ? jumps.size() / 2 : mate.size(), kGrain,
+      stage, mate.size(), kGrain,
       [&](std::size_t begin, std::size_t end, std::vector<HalfFace>& cuts) {
-        // Listed without branches, as nobody could predict on which side of a face one is. Tets of
-        // smaller half-faces have been looked at not long ago.
-        std::array<HalfFace, kGrain + 1> faces;  // NOLINT: written before it is read
-        std::size_t count = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-          // Both half-faces of a jump are neighbours in the table, behind the identity.
-          faces[count] = onlyJumps ? jumps[2 * i + 1] : mate[i];
-          count += onlyJumps || mate[i] < i ? 1 : 0;
-        }
-        for (const HalfFace halfFace : std::span(faces).first(count)) {
-          if (charts.isGlued(map.topology, map.exact.transitions, halfFace)) continue;
-          cuts.push_back(halfFace);
+        for (std::size_t h = begin; h < end; ++h) {
+          if (mate[h] < h && isCut(mate[h])) cuts.push_back(mate[h]);
         }
       });
 }
 
 }  // namespace
+
+CutTransitionId CutTransitions::across(const PreparedMap& map, const Charts& charts,
+                                       HalfFace halfFace) {
+  const Index here = tetOf(halfFace);
+  const Index there = tetOf(map.topology.mate[halfFace]);
+  const Index from = charts.chart[here];
+  const Index to = charts.chart[there];
+  if (from == Charts::kNoChart || to == Charts::kNoChart) return kAnyCuts;
+  const Gauge forth =
+      charts.gauge(there) * map.exact.transitions.across(halfFace) / charts.gauge(here);
+  const auto id = static_cast<CutTransitionId>(all_.size());
+  const auto [known, isNew] = ids_.try_emplace(keyOf(from, to, forth), id);
+  if (!isNew) return known->second;
+  if (all_.size() + 2 > kAnyCuts) return known->second = kAnyCuts;
+  const Gauge back = Gauge{} / forth;
+  const auto [inverse, isOther] = ids_.try_emplace(keyOf(to, from, back), id + 1);
+  all_.push_back({from, to, forth, inverse->second});
+  if (isOther) all_.push_back({to, from, back, id});
+  return id;
+}
+
+CutTransitions::Key CutTransitions::keyOf(Index from, Index to, const Gauge& map) noexcept {
+  return {from,
+          to,
+          static_cast<std::uint32_t>(map.rotation.index()),
+          map.translation[0],
+          map.translation[1],
+          map.translation[2]};
+}
 
 // What templates lend to loops has a name beyond this file.
 namespace detail {
@@ -61,7 +92,7 @@ struct LoneCut {
   BrickKey key;
   std::size_t place;
   CellCornerSet corners;
-  JumpId jump;
+  CutTransitionId transition;
 };
 
 /// Marks what a cut may meet, in the charts on both its sides: what the triangle meets on one side
@@ -69,19 +100,20 @@ struct LoneCut {
 template <class Id>
 class CutMarker {
  public:
-  CutMarker(const PreparedMap& map, const Charts& charts, const Jumps& jumps, BrickGrid<Id>& grid)
-      : map_(map), charts_(charts), jumps_(jumps), grid_(grid), cache_(grid) {}
+  CutMarker(const PreparedMap& map, const Charts& charts, const CutTransitions& transitions,
+            BrickGrid<Id>& grid)
+      : map_(map), charts_(charts), transitions_(transitions), grid_(grid), cache_(grid) {}
 
   /// @param lone  receives what there is no brick for
-  void mark(HalfFace halfFace, JumpId jump, std::vector<LoneCut>& lone) {
+  void mark(HalfFace halfFace, CutTransitionId transition, std::vector<LoneCut>& lone) {
     const Triangle triangle = triangleOf(map_.exact, halfFace);
     // Made when first needed, as most small triangles do not come before any corner.
     std::optional<BothSides> sides;
     TriangleCells(triangle, map_.exact.unit).run([&](const GridPoint& z, CellCornerSet corners) {
-      if (!sides) sides.emplace(sidesOf(halfFace, jump));
+      if (!sides) sides.emplace(sidesOf(halfFace, transition));
       for (const Side& side : *sides) {
-        add(side.chart, side.frame(z[0], z[1], z[2]), turned(side.rotation, corners), side.jump,
-            lone);
+        add(side.chart, side.frame(z[0], z[1], z[2]), turned(side.rotation, corners),
+            side.transition, lone);
       }
     });
   }
@@ -91,36 +123,37 @@ class CutMarker {
   struct Side {
     Index chart;
     Rotation rotation;
-    SweepFrame frame;  ///< of cells
-    JumpId jump;       ///< to the other side
+    SweepFrame frame;            ///< of cells
+    CutTransitionId transition;  ///< to the other side
   };
   using BothSides = std::array<Side, 2>;
 
-  [[nodiscard]] BothSides sidesOf(HalfFace halfFace, JumpId jump) const {
+  [[nodiscard]] BothSides sidesOf(HalfFace halfFace, CutTransitionId transition) const {
     const Index here = tetOf(halfFace);
     const Index there = tetOf(map_.topology.mate[halfFace]);
     const Gauge& gaugeHere = charts_.gauge(here);
     const Gauge gaugeThere = charts_.gauge(there) * map_.exact.transitions.across(halfFace);
-    const JumpId back = jump == kManyJumps ? kManyJumps : jumps_[jump].inverse;
-    return {Side{charts_.chart[here], gaugeHere.rotation, cellFrame(gaugeHere), jump},
+    const CutTransitionId back =
+        transition == kAnyCuts ? kAnyCuts : transitions_[transition].inverse;
+    return {Side{charts_.chart[here], gaugeHere.rotation, cellFrame(gaugeHere), transition},
             Side{charts_.chart[there], gaugeThere.rotation, cellFrame(gaugeThere), back}};
   }
 
-  void add(Index chart, const ChartPoint& c, CellCornerSet corners, JumpId jump,
+  void add(Index chart, const ChartPoint& c, CellCornerSet corners, CutTransitionId transition,
            std::vector<LoneCut>& lone) {
     if (chart == Charts::kNoChart) return;
     Brick<Id>* const brick = cache_.find(chart, c);
     if (brick != nullptr) {
       CutCells& cuts = grid_.cutsOf(*brick);
-      cuts.add(placeInBrick(c), corners, jump);
+      cuts.add(placeInBrick(c), corners, transition);
     } else {
-      lone.push_back({brickKey(chart, c), placeInBrick(c), corners, jump});
+      lone.push_back({brickKey(chart, c), placeInBrick(c), corners, transition});
     }
   }
 
   const PreparedMap& map_;
   const Charts& charts_;
-  const Jumps& jumps_;
+  const CutTransitions& transitions_;
   BrickGrid<Id>& grid_;
   BrickCache<Id> cache_;
 };
@@ -128,29 +161,31 @@ class CutMarker {
 }  // namespace detail
 
 template <class Id>
-Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool onlyJumps, BrickGrid<Id>& grid,
-                  Stage& stage) {
-  const std::vector<HalfFace> halfFaces = findCuts(map, charts, onlyJumps, stage);
+Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool identitiesGlue,
+                  BrickGrid<Id>& grid, Stage& stage) {
+  const std::vector<HalfFace> halfFaces = findCuts(map, charts, identitiesGlue, stage);
   Cuts cuts;
   cuts.faces = halfFaces.size();
-  std::vector<JumpId> jumps(halfFaces.size());
-  for (std::size_t i = 0; i < jumps.size(); ++i) {
-    jumps[i] = cuts.jumps.across(map, charts, halfFaces[i]);
+  std::vector<CutTransitionId> transitions;
+  transitions.reserve(halfFaces.size());
+  for (const HalfFace halfFace : halfFaces) {
+    transitions.push_back(cuts.transitions.across(map, charts, halfFace));
   }
   constexpr std::size_t kFaces = 32;  // one may meet thousands of cells
   using detail::CutMarker;
   using detail::LoneCut;
-  Workspaces<CutMarker<Id>> markers;
-  const auto lone = collectFromBlocks<LoneCut>(
+  std::vector<std::vector<LoneCut>> lone(blockCount(halfFaces.size(), kFaces));
+  parallelBlocksWith(
       stage, halfFaces.size(), kFaces,
-      [&](std::size_t begin, std::size_t end, std::vector<LoneCut>& loneHere) {
-        const auto make = [&] { return CutMarker<Id>(map, charts, cuts.jumps, grid); };
-        markers.with(make, [&](CutMarker<Id>& marker) {
-          for (std::size_t i = begin; i < end; ++i) marker.mark(halfFaces[i], jumps[i], loneHere);
-        });
+      [&] { return CutMarker<Id>(map, charts, cuts.transitions, grid); },
+      [&](std::size_t begin, std::size_t end, std::size_t block, CutMarker<Id>& marker) {
+        for (std::size_t i = begin; i < end; ++i) {
+          marker.mark(halfFaces[i], transitions[i], lone[block]);
+        }
       });
-  for (const LoneCut& cell : lone)
-    grid.cutsOf(grid.add(cell.key)).add(cell.place, cell.corners, cell.jump);
+  for (const LoneCut& cell : joined<LoneCut>(lone)) {
+    grid.cutsOf(grid.add(cell.key)).add(cell.place, cell.corners, cell.transition);
+  }
   return cuts;
 }
 

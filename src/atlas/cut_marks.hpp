@@ -1,28 +1,61 @@
-// Cells that the picture of a chart does not show whole.
+// Cut faces: where they come between the centre of a cell and its corners.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
+#include <vector>
 
 #include <hexhex/types.hpp>
 
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
-#include <atlas/jumps.hpp>
+#include <atlas/cut_cells.hpp>
 #include <igm/prepare.hpp>
 
 namespace hexhex {
 
+/// What many faces of a cut have in common.
+struct CutTransition {
+  Index from;               ///< the chart on this side
+  Index to;                 ///< the chart on the other side
+  Gauge map;                ///< takes places of the one to places of the other
+  CutTransitionId inverse;  ///< from the other side back
+};
+
+/// The different transitions across the cuts of an atlas. There are few: two for each sheet of
+/// cuts. Of more than there are names for, those that come late have none. (Names of one byte let a
+/// cell remember two of them, see CutCell.)
+class CutTransitions {
+ public:
+  /// The transition across a half-face that is not glued, found or added together with its inverse;
+  /// kAnyCuts if there is no chart on one of the sides, or no name left.
+  [[nodiscard]] CutTransitionId across(const PreparedMap& map, const Charts& charts,
+                                       HalfFace halfFace);
+
+  [[nodiscard]] const CutTransition& operator[](CutTransitionId id) const noexcept {
+    return all_[id];
+  }
+
+ private:
+  using Key = std::array<std::uint32_t, 6>;  ///< charts, rotation, translation
+  [[nodiscard]] static Key keyOf(Index from, Index to, const Gauge& map) noexcept;
+
+  std::vector<CutTransition> all_ = std::vector<CutTransition>(1);  ///< by id; kNoCut is none
+  std::map<Key, CutTransitionId> ids_;
+};
+
 /// The faces that are not glued.
 struct Cuts {
   std::uint64_t faces = 0;
-  Jumps jumps;
+  CutTransitions transitions;
 };
 
-/// Marks, on both sides of every face that is not glued, the cells in which the face may meet the
-/// way from the centre to a corner. Faces of the boundary lie in grid planes and meet no such way.
-/// @param onlyJumps  whether tets that no jump separates are known to share chart and gauge
+/// Marks, on both sides of every face that is not glued, the cells in which the face may meet a
+/// half diagonal. Faces of the boundary lie in grid planes and meet none.
+/// @param identitiesGlue  whether faces with the identity as transition are known to be glued
 template <class Id>
-[[nodiscard]] Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool onlyJumps,
+[[nodiscard]] Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool identitiesGlue,
                                 BrickGrid<Id>& grid, Stage& stage);
 
 }  // namespace hexhex

@@ -1,8 +1,7 @@
 #include <algorithm>
 
-#include <atlas/brick_box.hpp>
+#include <atlas/overlaps.hpp>
 #include <atlas/vertex_grid.hpp>
-#include <base/branchless.hpp>
 #include <base/workspaces.hpp>
 
 namespace hexhex {
@@ -32,7 +31,7 @@ bool enterVertices(Brick<Id>& brick, std::size_t place, std::ptrdiff_t stride, s
   bool overlaps = false;
   for (std::uint32_t i = 0; i < count; ++i, entry += stride) {
     const auto id = static_cast<Id>(first + i);
-    overlaps |= allOf(*entry != Brick<Id>::kEmpty, *entry != id);
+    overlaps = overlaps || (*entry != Brick<Id>::kEmpty && *entry != id);
     *entry = id;
   }
   if (overlaps) brick.contested = 1;
@@ -83,7 +82,10 @@ void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage, SweepObserver* observ
       }
       if (const auto own = lines.last(); !own.empty()) {
         counter.count(block, tet, own);
-        collectKeys(tet, own, filter, keys_[block]);
+        forEachBrick(tet, own, [&](const ChartPoint& c) {
+          const BrickKey key = brickKey(charts_.chart[tet], c);
+          if (filter.isNew(key, c)) keys_[block].push_back(key);
+        });
       }
     }
     if (stored_) stored_->store(block, lines);
@@ -96,31 +98,18 @@ void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage, SweepObserver* observ
   exclusiveScan(std::span(cells.begin));
 }
 
-/// Lists the bricks that the tet's points are in, and some beside them.
+/// Calls visit(ChartPoint) with the first point of each row of the tet's points in each brick.
 template <class Id>
-void VertexGrid<Id>::collectKeys(Index tet, std::span<const SweptLine> lines, KeyFilter& filter,
-                                 std::vector<BrickKey>& keys) const {
-  constexpr std::uint64_t kMaxBricks = 8;
-  const Index chart = charts_.chart[tet];
-  const auto collect = [&](const ChartPoint& c) {
-    const BrickKey key = brickKey(chart, c);
-    if (filter.isNew(key, c)) keys.push_back(key);
-  };
-  const Gauge& gauge = charts_.gauge(tet);
-  if (lines.size() == 1 && lines.front().count == 1) {
-    collect(gauge(lines.front().point(0)));
-    return;
-  }
-  const BrickBox box(lines, gauge);
-  if (box.count() <= kMaxBricks) {
-    box.forEach(collect);
-    return;
-  }
-  const SweepFrame frame(gauge, lines.front().axes());
+template <class Visit>
+void VertexGrid<Id>::forEachBrick(Index tet, std::span<const SweptLine> lines,
+                                  const Visit& visit) const {
+  if (lines.empty()) return;
+  const SweepFrame frame(charts_.gauge(tet), lines.front().axes());
   for (const SweptLine& line : lines) {
-    const ChartRow row{chart, frame(line.level, line.row, line.first), frame.along(2), line.count};
+    const ChartRow row{charts_.chart[tet], frame(line.level, line.row, line.first), frame.along(2),
+                       line.count};
     row.forEachPart(
-        [&](const ChartPoint& c, std::uint32_t, std::uint32_t, std::ptrdiff_t) { collect(c); });
+        [&](const ChartPoint& c, std::uint32_t, std::uint32_t, std::ptrdiff_t) { visit(c); });
   }
 }
 
@@ -229,27 +218,47 @@ void VertexGrid<Id>::describe(Index tet, const VertexArrays& arrays) const {
 }
 
 template <class Id>
-OverlapCounts VertexGrid<Id>::resolveOverlaps(Stage& stage) {
-  if (!overlaps_) return {};
-  const auto listClaims = [this](Index tet, std::vector<Claim>& claims) {
-    forEachClaim(
-        tet, Faces::All, [](const VertexRun&) {},
-        [&claims](const ChartRow& row, std::uint64_t first) {
-          claims.push_back({row, first});
-        });
+std::uint64_t VertexGrid<Id>::resolveOverlaps(Stage& stage) {
+  if (!overlaps_) return 0;
+  const auto isNearContested = [&](Index tet, std::vector<SweptLine>& scratch,
+                                   BrickCache<Id>& cache) {
+    bool isNear = false;
+    forEachBrick(tet, linesOf(tet, scratch), [&](const ChartPoint& c) {
+      isNear = isNear || cache.at(charts_.chart[tet], c).contested != 0;
+    });
+    return isNear;
   };
-  return Overlaps<Id>(map_, listClaims, charts_, grid_).resolve(stage);
+  const auto tets =
+      collectFromBlocks<Index>(stage, map_.topology.tetCount(), kSweepBlock,
+                               [&](std::size_t begin, std::size_t end, std::vector<Index>& list) {
+                                 BrickCache<Id> cache(grid_);
+                                 std::vector<SweptLine> scratch;
+                                 for (auto tet = static_cast<Index>(begin); tet < end; ++tet) {
+                                   if (isNearContested(tet, scratch, cache)) list.push_back(tet);
+                                 }
+                               });
+  // Listed once, as finding the owners of vertices takes longer than all that follows.
+  std::vector<TetClaims> claims(tets.size());
+  constexpr std::size_t kFewTets = 64;
+  const auto list = [&](std::size_t i, std::vector<Claim>& scratch) {
+    scratch.clear();
+    forEachClaim(
+        tets[i], Faces::All, [](const VertexRun&) {},
+        [&](const ChartRow& row, std::uint64_t first) {
+          scratch.push_back({row, first});
+        });
+    claims[i] = {tets[i], scratch};
+  };
+  parallelForWith(
+      stage, tets.size(), kFewTets, [] { return std::vector<Claim>(); }, list);
+  return hexhex::resolveOverlaps(map_, claims, charts_, grid_, stage);
 }
 
 template <class Id>
 Id VertexGrid<Id>::vertexAt(Index tet, const GridPoint& z, BrickCache<Id>& cache) const {
   if (charts_.chart[tet] != Charts::kNoChart) {
-    const ChartPoint c = charts_.gauge(tet)(z);
-    Bricks* const brick = cache.find(charts_.chart[tet], c);
-    if (brick != nullptr) {
-      const Id id = brick->ids[placeInBrick(c)];
-      if (Bricks::isVertex(id)) return id;
-    }
+    const Id id = cache.idAt(charts_.chart[tet], charts_.gauge(tet)(z));
+    if (Bricks::isVertex(id)) return id;
   }
   return static_cast<Id>(exactNumber(tet, z));
 }

@@ -10,7 +10,6 @@
 
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
-#include <atlas/overlaps.hpp>
 #include <igm/prepare.hpp>
 #include <sweep/cell_seeds.hpp>
 #include <sweep/sweep_observer.hpp>
@@ -24,15 +23,14 @@ class KeyFilter {
  public:
   KeyFilter() { seen_.fill(kNoBrick); }
   [[nodiscard]] bool isNew(BrickKey key, const ChartPoint& c) noexcept {
-    BrickKey& entry = seen_[(c[0] / kBrickSide % 8) | (c[1] / kBrickSide % 8) << 3 |
-                            (c[2] / kBrickSide % 8) << 6];
+    BrickKey& entry = seen_[recentBrick(c)];
     if (entry == key) return false;
     entry = key;
     return true;
   }
 
  private:
-  std::array<BrickKey, 512> seen_;
+  std::array<BrickKey, kRecentBricks> seen_;
 };
 
 /// Where vertices are written: arrays from the vertex number `first` on; none if null.
@@ -63,7 +61,8 @@ class VertexGrid {
   /// Makes the grid, enters all vertices, and writes them to `arrays`.
   void fill(const VertexArrays& arrays, Stage& stage);
   /// Finds and resolves overlaps.
-  OverlapCounts resolveOverlaps(Stage& stage);
+  /// @return the number of tets with contested points
+  std::uint64_t resolveOverlaps(Stage& stage);
   /// Frees what only the steps above need.
   void dropLines() noexcept { stored_.reset(); }
   /// Takes away what there is of vertices besides the grid, if lines were kept.
@@ -95,8 +94,8 @@ class VertexGrid {
     BlockLines centers;
   };
 
-  void collectKeys(Index tet, std::span<const SweptLine> lines, KeyFilter& filter,
-                   std::vector<BrickKey>& keys) const;
+  template <class Visit>
+  void forEachBrick(Index tet, std::span<const SweptLine> lines, const Visit& visit) const;
   [[nodiscard]] std::span<const SweptLine> linesOf(Index tet,
                                                    std::vector<SweptLine>& scratch) const;
 

@@ -13,6 +13,8 @@ struct EngineSwitches {
   bool wideIds = false;  ///< numbers vertices with 64 bits even if 32 would do (streaming)
 
   // Speed alone: the result is the same without.
+  bool lookAcrossCuts =
+      true;               ///< before corners behind cuts are traced (atlas/corner_resolver.hpp)
   bool hugePages = true;  ///< for large arrays; of the whole process, as the next (base/memory.hpp)
   bool pagePool = true;   ///< smaller arrays share huge pages
 };

@@ -142,7 +142,7 @@ TetMap hollowStar(int valence, bool cavity) {
   return hollow;
 }
 
-/// A map whose picture overlaps itself, and how it does.
+/// A map whose chart overlaps itself, and how it does.
 struct Overlapping {
   const char* name;
   int valence;
@@ -167,8 +167,8 @@ TEST_P(Overlaps, AreResolved) {
   EXPECT_TRUE(verify(map, mesh, {}).passed());
 }
 
-/// The same stages, but nobody looks for overlaps: the picture is wrong then. If it were not, the
-/// search would have no test.
+/// The same stages without a search for overlaps: charts show wrong vertices then. If they did not,
+/// the search would have no test.
 TEST_P(Overlaps, WouldSpoilTheMeshIfNobodyLooked) {
   const TetMap tets = GetParam().map();
   const PreparedMap map = prepared(tets);
@@ -191,7 +191,7 @@ INSTANTIATE_TEST_SUITE_P(Maps, Overlaps,
                            return map.param.name;
                          });
 
-/// Beyond a cut the picture shows nothing, or another sheet: that is when marks matter.
+/// Beyond a cut the chart shows nothing, or another sheet: that is when marks matter.
 TEST(Cuts, WouldSpoilTheMeshIfTheyWereNotMarked) {
   const TetMap tets = sampleOf(SampleKind::Star, 7, 2, 9, 0.8).map;
   const PreparedMap map = prepared(tets);
@@ -209,7 +209,7 @@ TEST(Cuts, WouldSpoilTheMeshIfTheyWereNotMarked) {
 }
 
 /// Every tet that has a chart finds all its lattice points there as its own vertices, whatever the
-/// overlaps: this is what reading cells off the picture relies on.
+/// overlaps: this is what reading cells off a chart relies on.
 TEST(Property, PointsOfTetsBelongToTheirOwnVertices) {
   EXPECT_TRUE(rc::check("points of tets belong to their own vertices", [] {
     const int valence = *rc::gen::inRange(3, 13);

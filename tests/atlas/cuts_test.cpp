@@ -1,4 +1,4 @@
-// Jumps, what cells remember of cuts, boxes of bricks: each against its definition.
+// Transitions across cuts, and what cells remember of them, against their definitions.
 #include <algorithm>
 #include <array>
 #include <rapidcheck.h>
@@ -8,10 +8,10 @@
 
 #include <gtest/gtest.h>
 
-#include <atlas/brick_box.hpp>
+#include <atlas/bricks.hpp>
 #include <atlas/charts.hpp>
 #include <atlas/cut_cells.hpp>
-#include <atlas/jumps.hpp>
+#include <atlas/cut_marks.hpp>
 
 #include "extract/support.hpp"
 
@@ -30,7 +30,7 @@ ChartPoint anyPoint() {
           *rc::gen::arbitrary<std::uint32_t>()};
 }
 
-TEST(Gauge, QuotientTakesTheOnePictureToTheOther) {
+TEST(Gauge, QuotientTakesTheOneChartToTheOther) {
   EXPECT_TRUE(rc::check("(a / b)(b(u)) = a(u)", [] {
     const Gauge a = anyGauge();
     const Gauge b = anyGauge();
@@ -55,53 +55,40 @@ TEST(Gauge, CornersOfACellAreCornersOfItsImage) {
 /// One cut in front of some corners.
 struct Added {
   CellCornerSet corners;
-  JumpId jump;
+  CutTransitionId transition;
 };
 
 /// The definition of what a cell should say of a corner.
-JumpId commonJump(const std::vector<Added>& cuts, std::size_t corner) {
-  JumpId common = kNoJump;
+CutTransitionId commonTransition(const std::vector<Added>& cuts, std::size_t corner) {
+  CutTransitionId common = kNoCut;
   for (const Added& cut : cuts) {
     if (((cut.corners >> corner) & 1U) == 0) continue;
-    common = common == kNoJump || common == cut.jump ? cut.jump : kManyJumps;
+    common = common == kNoCut || common == cut.transition ? cut.transition : kAnyCuts;
   }
   return common;
 }
 
-/// All jumps that it should name, or none if it cannot.
-std::set<JumpId> jumpsAt(const std::vector<Added>& cuts, std::size_t corner) {
-  std::set<JumpId> jumps;
-  for (const Added& cut : cuts) {
-    if (((cut.corners >> corner) & 1U) != 0) jumps.insert(cut.jump);
-  }
-  return jumps;
-}
-
-std::vector<Added> anyCuts(int jumps) {
+std::vector<Added> anyCuts(int transitions) {
   std::vector<Added> cuts;
   for (int i = *rc::gen::inRange(0, 12); i > 0; --i) {
     cuts.push_back({*rc::gen::inRange<CellCornerSet>(1, 256),
-                    static_cast<JumpId>(*rc::gen::inRange(1, jumps + 1))});
+                    static_cast<CutTransitionId>(*rc::gen::inRange(1, transitions + 1))});
   }
   return cuts;
 }
 
-TEST(CutCell, KnowsTheJumpOfEachCorner) {
-  EXPECT_TRUE(rc::check("of two jumps everything, of more never too little", [] {
-    const int jumps = *rc::gen::inRange(1, 5);
-    const std::vector<Added> cuts = anyCuts(jumps);
+TEST(CutCell, KnowsTheTransitionOfEachCorner) {
+  EXPECT_TRUE(rc::check("of two transitions everything, of more never too little", [] {
+    const int transitions = *rc::gen::inRange(1, 5);
+    const std::vector<Added> cuts = anyCuts(transitions);
     CutCell cell;
-    for (const Added& cut : cuts) cell = cell.with(cut.corners, cut.jump);
+    for (const Added& cut : cuts) cell = cell.with(cut.corners, cut.transition);
     RC_ASSERT(cell.isCut() == !cuts.empty());
     for (std::size_t corner = 0; corner < 8; ++corner) {
-      const JumpId expected = commonJump(cuts, corner);
-      const bool isMany = jumps > 2 && expected != kNoJump && cell.jump(corner) == kManyJumps;
-      RC_ASSERT(cell.jump(corner) == expected || isMany);
-      RC_ASSERT((((cell.corners() >> corner) & 1U) != 0) == (expected != kNoJump));
-      const auto named = cell.jumps(corner);
-      std::set<JumpId> found(named.begin(), named.end());
-      found.erase(kNoJump);
-      RC_ASSERT(found == jumpsAt(cuts, corner) || (jumps > 2 && found.count(kManyJumps) != 0));
+      const CutTransitionId expected = commonTransition(cuts, corner);
+      const CutTransitionId found = cell.transition(corner);
+      RC_ASSERT(found == expected || (transitions > 2 && expected != kNoCut && found == kAnyCuts));
+      RC_ASSERT((((cell.corners() >> corner) & 1U) != 0) == (expected != kNoCut));
     }
   }));
 }
@@ -111,24 +98,23 @@ TEST(CutCells, AreTheSameWhateverThreadComesFirst) {
   EXPECT_TRUE(rc::check("two threads mark one cell", [] {
     const std::vector<Added> cuts = anyCuts(2);
     CutCells cells;
-    cells.clear();
     const auto addEvery = [&](std::size_t first) {
       for (std::size_t i = first; i < cuts.size(); i += 2) {
-        cells.add(kPlace, cuts[i].corners, cuts[i].jump);
+        cells.add(kPlace, cuts[i].corners, cuts[i].transition);
       }
     };
     std::thread other(addEvery, 1);
     addEvery(0);
     other.join();
     for (std::size_t corner = 0; corner < 8; ++corner) {
-      RC_ASSERT(cells.cells[kPlace].jump(corner) == commonJump(cuts, corner));
+      RC_ASSERT(cells.cells[kPlace].transition(corner) == commonTransition(cuts, corner));
     }
     RC_ASSERT(!cells.cells[kPlace + 1].isCut());
   }));
 }
 
-/// The jump leads from the picture on one side of a face to the other, and its inverse back.
-TEST(Jumps, TakePicturesOfFacesToEachOther) {
+/// The transition leads from the chart on one side of a face to the other, and its inverse back.
+TEST(CutTransitions, TakeChartsToEachOther) {
   for (const SampleKind kind : {SampleKind::Star, SampleKind::Sphere, SampleKind::Torus}) {
     SampleOptions options;
     options.cells = 3;
@@ -140,44 +126,25 @@ TEST(Jumps, TakePicturesOfFacesToEachOther) {
     const PreparedMap map = prepareMap(sample.map, 1e-2, 1, context, defects);
     Stage stage(context, "charts");
     const Charts charts = buildCharts(map, stage);
-    Jumps jumps;
-    std::set<JumpId> ids;
+    CutTransitions transitions;
+    std::set<CutTransitionId> ids;
     for (std::size_t h = 0; h < map.topology.mate.size(); ++h) {
       const auto halfFace = static_cast<HalfFace>(h);
       const HalfFace mate = map.topology.mate[h];
       if (mate == kNone || charts.isGlued(map.topology, map.exact.transitions, halfFace)) continue;
-      const JumpId id = jumps.across(map, charts, halfFace);
-      ASSERT_NE(id, kNoJump);
-      ASSERT_NE(id, kManyJumps);
+      const CutTransitionId id = transitions.across(map, charts, halfFace);
+      ASSERT_NE(id, kNoCut);
+      ASSERT_NE(id, kAnyCuts);
       ids.insert(id);
-      EXPECT_EQ(jumps[id].inverse, jumps.across(map, charts, mate));
+      EXPECT_EQ(transitions[id].inverse, transitions.across(map, charts, mate));
       const GridPoint u = {3, -5, 8};
       const GridPoint across = map.exact.transitions.across(halfFace)(u);
-      EXPECT_EQ(jumps[id].map(charts.gauge(tetOf(halfFace))(u)), charts.gauge(tetOf(mate))(across));
+      EXPECT_EQ(transitions[id].map(charts.gauge(tetOf(halfFace))(u)),
+                charts.gauge(tetOf(mate))(across));
     }
     EXPECT_FALSE(ids.empty());
     EXPECT_LT(ids.size(), 100U);
   }
-}
-
-TEST(BrickBox, ContainsTheBricksThatItVisits) {
-  EXPECT_TRUE(rc::check("keys in a box, across the modulus, too", [] {
-    GridBox box;
-    for (GridRange& range : box.range) {
-      range.first = *rc::gen::arbitrary<std::int32_t>() / 4;
-      range.last = range.first + *rc::gen::inRange(0, 30);
-    }
-    const Index chart = *rc::gen::element<Index>(0, 1, 70000);
-    const BrickBox bricks(box, anyGauge());
-    std::set<BrickKey> keys;
-    bricks.forEach([&](const ChartPoint& c) { keys.insert(brickKey(chart, c)); });
-    RC_ASSERT(keys.size() == bricks.count());
-    RC_ASSERT(std::all_of(keys.begin(), keys.end(),
-                          [&](BrickKey key) { return bricks.mayContain(chart, key); }));
-    const BrickKey other = brickKey(chart, anyPoint());
-    RC_ASSERT(other == 0 || keys.contains(other) == bricks.mayContain(chart, other));
-    RC_ASSERT(!bricks.mayContain(chart + 1, other == 0 ? 1 : other));
-  }));
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
-// Walks to all corners of a cell at once, against ways that are traced exactly one by one.
+// Corners of cells: traced exactly, and as the resolver finds them.
 #include <rapidcheck.h>
 
 #include <gtest/gtest.h>
 
-#include <atlas/cell_emitter.hpp>
-#include <atlas/cell_walker.hpp>
+#include <atlas/corner_resolver.hpp>
 #include <sweep/cell_tracer.hpp>
 
 #include "extract/support.hpp"
@@ -38,7 +37,8 @@ std::unique_ptr<Prepared> anyMap() {
   return prepared;
 }
 
-/// Calls visit(tet, z, generator) for every cell, at the tet that owns its centre.
+/// Calls visit(tet, line, i) for every cell: its centre is point i of a line of the tet that owns
+/// it.
 template <class Visit>
 void forEachCell(const PreparedMap& map, const Visit& visit) {
   for (Index tet = 0; tet < map.topology.tetCount(); ++tet) {
@@ -49,7 +49,7 @@ void forEachCell(const PreparedMap& map, const Visit& visit) {
     for (const SweptLine& line : lines) {
       const auto [first, count] = owner.owned(line);
       for (std::uint32_t i = first; i < first + count; ++i) {
-        visit(tet, line.point(i), line.simplex(i));
+        visit(tet, line, i);
       }
     }
   }
@@ -62,8 +62,8 @@ TEST(Property, TracedCornersAreGridPointsOfTheirTets) {
     const auto prepared = anyMap();
     const PreparedMap& map = prepared->map;
     CellTracer tracer(map);
-    forEachCell(map, [&](Index tet, const GridPoint& z, CornerMask generator) {
-      tracer.enter(tet, z, generator);
+    forEachCell(map, [&](Index tet, const SweptLine& line, std::uint32_t i) {
+      tracer.enter(tet, line.point(i), line.simplex(i));
       for (const GridPoint& offset : kCellCorners) {
         const CornerPlace place = tracer.trace(offset);
         const TetPlanes planes(map.exact.corners[place.tet], map.exact.unit);
@@ -73,10 +73,9 @@ TEST(Property, TracedCornersAreGridPointsOfTheirTets) {
   }));
 }
 
-/// The walker arrives at the vertices that exact tracing finds, and what it says to be in sight is
-/// in the picture.
-TEST(Property, WalksEndAtTheTracedCorners) {
-  EXPECT_TRUE(rc::check("walks end at the traced corners", [] {
+/// Whether it looks across cuts or not, and whatever the cell's chart shows.
+TEST(Property, TheResolverFindsTheTracedCorners) {
+  EXPECT_TRUE(rc::check("the resolver finds the traced corners", [] {
     const auto prepared = anyMap();
     const PreparedMap& map = prepared->map;
     Context context(1);
@@ -87,35 +86,43 @@ TEST(Property, WalksEndAtTheTracedCorners) {
     vertices.sweep(cells, stage);
     vertices.fill({}, stage);
     static_cast<void>(vertices.resolveOverlaps(stage));
+    const Cuts cuts = markCutCells(map, charts, false, vertices.grid(), stage);
     BrickCache<Index> cache(vertices.grid());
-    CellWalker walker(map, charts);
+    CornerResolver<Index> looking(map, vertices, cuts.transitions, true);
+    CornerResolver<Index> tracing(map, vertices, cuts.transitions, false);
     CellTracer tracer(map);
-    std::size_t arrived = 0;
-    forEachCell(map, [&](Index tet, const GridPoint& z, CornerMask generator) {
-      tracer.enter(tet, z, generator);
-      CellCornerSet seen = 0;
-      const auto arrive = [&](const CellWalker::Stop& stop, CellCornerSet corners) {
-        RC_ASSERT((seen & corners) == 0U);
-        seen |= corners;
-        for (std::size_t c = 0; c < 8; ++c) {
-          if (((corners >> c) & 1U) == 0) continue;
-          ++arrived;
-          GridPoint corner = z;
-          for (std::size_t k = 0; k < 3; ++k) corner[k] += kCellCorners[c][k];
-          const CornerPlace place = tracer.trace(kCellCorners[c]);
-          const std::uint64_t vertex = vertices.exactNumber(place.tet, place.z);
-          RC_ASSERT(vertices.exactNumber(stop.tet, stop.toTet(corner)) == vertex);
-          if (!stop.inSight) continue;
-          const ChartPoint at = charts.gauge(tet)(corner);
-          const Brick<Index>* const brick = cache.find(charts.chart[tet], at);
-          RC_ASSERT(brick != nullptr);
-          RC_ASSERT(std::uint64_t{brick->ids[placeInBrick(at)]} == vertex);
-        }
-      };
-      const CellCornerSet missed = walker.run(tet, z, kAllCellCorners, arrive);
-      RC_ASSERT((seen ^ missed) == 0xffU);
+    forEachCell(map, [&](Index tet, const SweptLine& line, std::uint32_t i) {
+      tracer.enter(tet, line.point(i), line.simplex(i));
+      Hex traced{};
+      Hex shown{};
+      const ChartPoint place = charts.gauge(tet).cell(line.point(i));
+      const Rotation rotation = charts.gauge(tet).rotation;
+      for (std::size_t c = 0; c < 8; ++c) {
+        const CornerPlace end = tracer.trace(kCellCorners[c]);
+        traced[c] = static_cast<Index>(vertices.exactNumber(end.tet, end.z));
+        shown[c] =
+            cache.idAt(charts.chart[tet], plus(place, kCellCorners[turnedCorner(rotation, c)]));
+      }
+      CutCell cut;
+      if (const CutCells* const known = cache.at(charts.chart[tet], place).cuts; known != nullptr) {
+        cut = known->cells[placeInBrick(place)];
+      }
+      // A corner without a cut in front of it is shown.
+      for (std::size_t c = 0; c < 8; ++c) {
+        if (cut.transition(turnedCorner(rotation, c)) == kNoCut) RC_ASSERT(shown[c] == traced[c]);
+      }
+      for (CornerResolver<Index>* const resolver : {&looking, &tracing}) {
+        Hex cell = shown;
+        RC_ASSERT(resolver->resolve({tet, &line, i, place, cut}, cell) == (shown != traced));
+        RC_ASSERT(cell == traced);
+      }
+      // Without a chart, nothing is known of any corner.
+      Hex cell{};
+      cell.fill(Brick<Index>::kEmpty);
+      const CutCell unknown = CutCell().with(kAllCellCorners, kAnyCuts);
+      RC_ASSERT(looking.resolve({tet, &line, i, {}, unknown}, cell));
+      RC_ASSERT(cell == traced);
     });
-    RC_ASSERT(arrived > 0U);
   }));
 }
 
