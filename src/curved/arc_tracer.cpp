@@ -149,8 +149,14 @@ bool ArcTracer::startWalk(const SimplexInTet& at) {
 /// @return the hex vertex at the end, or kNone if the walk comes to another exit before
 Index ArcTracer::walkOn(SimplexInTet& at) {
   for (std::size_t steps = 0; steps <= topology_.tetCount(); ++steps) {
-    pieces_.addPoint(exitThrough(map_, at.tet, walk_.face(), at.frame.edge()));
+    SimplexInTet owner = at;
+    int face = walk_.face();
     if (!walk_.cross(at)) fail(at.tet, "a hex edge leaves the mesh");
+    if (at.tet < owner.tet) {
+      owner = at;
+      face = walk_.face();
+    }
+    pieces_.addPoint(exitThrough(map_, {owner.tet, faceMask(face)}, owner.frame.edge()));
     pieces_.addSegment({at.tet, kWholeTet});
     // To look for the end takes less than to leave the tet, so it is done first.
     const Index vertex = vertices_.hasVertices(at.tet) ? vertexIn(at) : kNone;

@@ -108,26 +108,33 @@ struct FaceCrossing {
   return {shares.of, backward ? rest : 1 - rest};
 }
 
-/// The point inside a face through which an edge leaves a tet.
-/// @param edge  in the chart of the tet
-[[nodiscard]] inline ArcExit exitThrough(const PreparedMap& map, Index tet, int face,
+/// The point inside a face at which an edge crosses it.
+/// @param face  by its owner
+/// @param edge  in the chart of the owner
+[[nodiscard]] inline ArcExit exitThrough(const PreparedMap& map, const OwnedSimplex& face,
                                          const ChartEdge& edge) noexcept {
-  const OwnedSimplex owned = ownedFace(map.topology, tet, face);
-  const int local = oppositeCorner(owned.corners);
-  const ChartEdge inOwner =
-      owned.tet == tet ? edge : edge.across(map.exact.transitions, halfFaceOf(tet, face));
+  const int local = oppositeCorner(face.corners);
   const FaceCrossing crossing =
-      crossFace(OwnersFace(map.exact.corners[owned.tet], local), inOwner, map.exact.unit);
+      crossFace(OwnersFace(map.exact.corners[face.tet], local), edge, map.exact.unit);
   const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(local)];
   const auto corner = [&](std::size_t i) -> const Vec3& {
-    return map.input.view.points[map.topology.tets[owned.tet][static_cast<std::size_t>(f[i])]];
+    return map.input.view.points[map.topology.tets[face.tet][static_cast<std::size_t>(f[i])]];
   };
   Vec3 point;
   for (std::size_t k = 0; k < 3; ++k) {
     point[k] = crossing.shares[0] * corner(0)[k] + crossing.shares[1] * corner(1)[k] +
                crossing.shares[2] * corner(2)[k];
   }
-  return {owned, point, crossing.parameter};
+  return {face, point, crossing.parameter};
+}
+
+/// The same from any tet of the face.
+/// @param edge  in the chart of that tet
+[[nodiscard]] inline ArcExit exitThrough(const PreparedMap& map, Index tet, int face,
+                                         const ChartEdge& edge) noexcept {
+  const OwnedSimplex owned = ownedFace(map.topology, tet, face);
+  if (owned.tet == tet) return exitThrough(map, owned, edge);
+  return exitThrough(map, owned, edge.across(map.exact.transitions, halfFaceOf(tet, face)));
 }
 
 }  // namespace hexhex

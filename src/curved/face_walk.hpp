@@ -55,9 +55,12 @@ class FaceWalk {
   [[nodiscard]] bool leave(const SimplexInTet& at);
 
  private:
+  void leaveThrough(Index tet, int face) noexcept;
+
   const TetTopology& topology_;
   const ExactMap& exact_;
   int face_ = 0;
+  HalfFace mate_ = kNone;  ///< on the other side of the face
   // Per corner of the face:
   std::array<Index, 3> vertices_{};
   std::array<LatticePoint, 3> seen_{};  ///< as the frame shows them
