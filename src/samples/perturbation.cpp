@@ -195,22 +195,19 @@ class Mover {
   double leastInSpace_;
 };
 
-void jitterInMap(Mover& mover, const Site& site, std::int64_t limit, Random& random) {
-  Int3 shift = site.drawShift(limit, random);
+/// Calls move(shift), with half the shift each time, until it succeeds.
+template <class Shift, class Move>
+void moveAsFarAsPossible(Shift shift, const Move& move) {
   for (int attempt = 0; attempt <= kHalvings; ++attempt) {
-    if (mover.moveInMap(site, shift)) return;
-    for (std::int64_t& coordinate : shift) coordinate /= 2;
+    if (move(shift)) return;
+    for (auto& coordinate : shift) coordinate /= 2;
   }
 }
 
-void jitterInSpace(Mover& mover, const Site& site, double share, Random& random) {
-  const double limit = share * mover.roomInSpace(site);
+Vec3 drawShiftInSpace(double limit, Random& random) {
   Vec3 shift{};
   for (double& coordinate : shift) coordinate = random.realUpTo(limit);
-  for (int attempt = 0; attempt <= kHalvings; ++attempt) {
-    if (mover.moveInSpace(site, shift)) return;
-    for (double& coordinate : shift) coordinate /= 2;
-  }
+  return shift;
 }
 
 /// What is missing to the nearest integer, in units.
@@ -341,8 +338,11 @@ void jitter(TetGrid& grid, const BlockComplex& complex, double share, double noi
   Random random(seed, kJitterStream);
   const auto limit = static_cast<std::int64_t>(share * subBlockUnits(grid));
   forEachSite(grid, complex, [&](const Site& site) {
-    jitterInMap(mover, site, limit, random);
-    if (site.inside) jitterInSpace(mover, site, share, random);
+    moveAsFarAsPossible(site.drawShift(limit, random),
+                        [&](const Int3& shift) { return mover.moveInMap(site, shift); });
+    if (!site.inside) return;
+    moveAsFarAsPossible(drawShiftInSpace(share * mover.roomInSpace(site), random),
+                        [&](const Vec3& shift) { return mover.moveInSpace(site, shift); });
   });
 }
 

