@@ -133,11 +133,6 @@ void printWarnings(const ExtractionRecord& record, const TetMap& map) {
   if (statistics.mirrored) {
     printWarning("The map reverses orientation; it was mirrored before the extraction.");
   }
-  if (statistics.epsilonFallback) {
-    printWarning(
-        "Epsilon was too small, so that the whole bounding boxes were searched: the "
-        "result is right but took longer. Try a larger --epsilon.");
-  }
 }
 
 std::string verificationAsText(const ExtractionRecord& record) {

@@ -1,5 +1,5 @@
-// How the hex vertex at a grid point of a tet is found: in the lines that the rasterization leaves
-// behind, in a hash table per tet, or in a list per tet. (The paper's Table 6)
+// How the hex vertex at a grid point of a tet is found: in a table of its bounding box, in a hash
+// table per tet, or in a list per tet. (The paper's Table 6)
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -14,7 +14,7 @@
 #include <hexhex/context.hpp>
 
 #include <base/stage.hpp>
-#include <propeller/hex_vertices.hpp>
+#include <sweep/vertex_tables.hpp>
 
 #include "ablation/benchmarks.hpp"
 #include "ablation/scaled_map.hpp"
@@ -25,31 +25,38 @@ namespace {
 
 /// The vertices of the map at one scale, and the tets in which they are looked up.
 struct Scene {
-  HexVertices vertices;
+  VertexTables vertices;
+  std::size_t tetCount;
   std::vector<Index> tets;
   std::size_t points = 0;  ///< of these tets
+
+  /// @param maxPoints  of so many tets as have about so many points, evenly chosen
+  Scene(const PreparedMap& map, std::size_t maxPoints, Stage& stage)
+      : vertices(map, stage), tetCount(map.topology.tetCount()) {
+    std::size_t all = 0;
+    for (std::size_t t = 0; t < tetCount; ++t) all += pointsOf(static_cast<Index>(t));
+    const std::size_t every = all / maxPoints + 1;
+    for (std::size_t t = 0; t < tetCount; t += every) {
+      const auto tet = static_cast<Index>(t);
+      if (!vertices.hasVertices(tet)) continue;
+      tets.push_back(tet);
+      points += pointsOf(tet);
+    }
+  }
+
+ private:
+  [[nodiscard]] std::size_t pointsOf(Index tet) const {
+    std::size_t count = 0;
+    vertices.forEach(tet, [&](const GridPoint&, const VertexTables::Found&) { ++count; });
+    return count;
+  }
 };
 
-/// @param maxPoints  of so many tets as have about so many points, evenly chosen
 std::unique_ptr<Scene> makeScene(int scale, std::size_t maxPoints) {
   const PreparedMap& map = scaledMap(scale);
-  auto scene = std::make_unique<Scene>();
   Context context(1);
   Stage stage(context, "vertices");
-  constexpr double kEpsilon = 1e-6;
-  scene->vertices = extractVertices(map, kEpsilon, stage);
-  const LatticeLines& lines = scene->vertices.lines;
-  const std::size_t every = lines.vertices.size() / maxPoints + 1;
-  for (std::size_t t = 0; t < map.topology.tetCount(); t += every) {
-    const auto tet = static_cast<Index>(t);
-    if (lines.empty(tet)) continue;
-    scene->tets.push_back(tet);
-    const Index pointBegin = lines.lines[lines.planes[lines.planeBegin[tet]].lineBegin].pointBegin;
-    const Index pointEnd =
-        lines.lines[lines.planes[lines.planeBegin[tet + 1]].lineBegin].pointBegin;
-    scene->points += pointEnd - pointBegin;
-  }
-  return scene;
+  return std::make_unique<Scene>(map, maxPoints, stage);
 }
 
 const Scene& sceneAt(int scale, std::size_t maxPoints) {
@@ -69,11 +76,13 @@ constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
 class Table {
  public:
   static constexpr std::size_t kMaxPoints = kUnlimited;
-  explicit Table(const Scene& scene) : lines_(scene.vertices.lines) {}
-  [[nodiscard]] Index find(Index tet, const GridPoint& z) const { return lines_.find(tet, z); }
+  explicit Table(const Scene& scene) : tables_(scene.vertices) {}
+  [[nodiscard]] Index find(Index tet, const GridPoint& z) const {
+    return tables_.find(tet, z).vertex;
+  }
 
  private:
-  const LatticeLines& lines_;
+  const VertexTables& tables_;
 };
 
 struct HashOfPoint {
@@ -90,11 +99,10 @@ struct HashOfPoint {
 class Hash {
  public:
   static constexpr std::size_t kMaxPoints = kUnlimited;
-  explicit Hash(const Scene& scene) : maps_(scene.vertices.lines.sweeps.size()) {
-    const LatticeLines& lines = scene.vertices.lines;
+  explicit Hash(const Scene& scene) : maps_(scene.tetCount) {
     for (const Index tet : scene.tets) {
-      lines.forEachPoint(tet, [&](const GridPoint& z, CornerMask /*simplex*/, Index point) {
-        maps_[tet].emplace(z, lines.vertices[point]);
+      scene.vertices.forEach(tet, [&](const GridPoint& z, const VertexTables::Found& found) {
+        maps_[tet].emplace(z, found.vertex);
       });
     }
   }
@@ -111,11 +119,10 @@ class List {
  public:
   /// Searching is quadratic in the points of a tet, so not all tets are asked at large scales.
   static constexpr std::size_t kMaxPoints = 50'000;
-  explicit List(const Scene& scene) : lists_(scene.vertices.lines.sweeps.size()) {
-    const LatticeLines& lines = scene.vertices.lines;
+  explicit List(const Scene& scene) : lists_(scene.tetCount) {
     for (const Index tet : scene.tets) {
-      lines.forEachPoint(tet, [&](const GridPoint& z, CornerMask /*simplex*/, Index point) {
-        lists_[tet].emplace_back(z, lines.vertices[point]);
+      scene.vertices.forEach(tet, [&](const GridPoint& z, const VertexTables::Found& found) {
+        lists_[tet].emplace_back(z, found.vertex);
       });
     }
   }
@@ -136,10 +143,9 @@ template <class Method>
 std::uint64_t findAll(const Method& method, const Scene& scene) {
   std::uint64_t sum = 0;
   for (const Index tet : scene.tets) {
-    scene.vertices.lines.forEachPoint(
-        tet, [&](const GridPoint& z, CornerMask /*simplex*/, Index /*point*/) {
-          for (Direction d = 0; d < kDirections; ++d) sum += method.find(tet, step(z, d));
-        });
+    scene.vertices.forEach(tet, [&](const GridPoint& z, const VertexTables::Found& /*found*/) {
+      for (Direction d = 0; d < kDirections; ++d) sum += method.find(tet, step(z, d));
+    });
   }
   return sum;
 }

@@ -1,6 +1,6 @@
 // How the grid points of all tets are found, each with the simplex in whose interior it lies: by
-// testing every point of the bounding box, by the paper's epsilon polygons, or by lines. (The
-// paper's Figure 22)
+// exact predicates at every point of the bounding box, at the ends of all lines of tets enlarged by
+// epsilon, as in the paper, or just where zeros of planes do not tell. (The paper's Figure 22)
 #include <array>
 #include <cstdint>
 #include <string>
@@ -8,8 +8,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include <lattice/line_rasterizer.hpp>
-#include <lattice/rasterize.hpp>
+#include <lattice/tet_rasterizer.hpp>
 
 #include "ablation/benchmarks.hpp"
 #include "ablation/scaled_map.hpp"
@@ -38,13 +37,13 @@ struct Found {
 };
 
 struct BoundingBox {
-  static void run(const LatticeTet& corners, std::int64_t unit, const GridBox& box, Found& found) {
-    const TetPlanes planes(corners, unit);
+  static void run(const LatticeTet& corners, std::int64_t unit, Found& found) {
+    const GridBox box = gridBox(corners, unit);
     GridPoint z{};
     for (z[0] = box.range[0].first; z[0] <= box.range[0].last; ++z[0]) {
       for (z[1] = box.range[1].first; z[1] <= box.range[1].last; ++z[1]) {
         for (z[2] = box.range[2].first; z[2] <= box.range[2].last; ++z[2]) {
-          const CornerMask simplex = planes.generator(z);
+          const CornerMask simplex = simplexOf(corners, z, unit);
           if (simplex != kNoSimplex) found.add(simplex, 1);
         }
       }
@@ -52,36 +51,29 @@ struct BoundingBox {
   }
 };
 
-struct Polygons {
-  struct Sink {
-    Found& found;
-    static void plane(std::int32_t /*firstLine*/) {}
-    void line(const GridLine& line) {
-      found.addLine(line.left, line.inner, line.right, static_cast<std::uint64_t>(line.count));
-    }
-  };
-  static void run(const LatticeTet& corners, std::int64_t unit, const GridBox& box, Found& found) {
+void findLines(const LatticeTet& corners, std::int64_t unit, double epsilon, Found& found) {
+  TetRasterizer(corners, unit, epsilon).sweep(kVertexGrid, [&found](const SweptLine& line) {
+    found.addLine(line.left, line.inner(), line.right, line.count);
+  });
+}
+
+struct Enlarged {
+  static void run(const LatticeTet& corners, std::int64_t unit, Found& found) {
     constexpr double kEpsilon = 1e-6;
-    Sink sink{found};
-    TetRasterizer(corners, unit, box, chooseSweepAxes(box), kEpsilon).run(sink);
+    findLines(corners, unit, kEpsilon, found);
   }
 };
 
 struct Lines {
-  static void run(const LatticeTet& corners, std::int64_t unit, const GridBox& box, Found& found) {
-    LineRasterizer(corners, unit, box, chooseSweepAxes(box)).run([&found](const SweptLine& line) {
-      found.addLine(line.left, line.inner(), line.right, line.count);
-    });
+  static void run(const LatticeTet& corners, std::int64_t unit, Found& found) {
+    findLines(corners, unit, 0, found);
   }
 };
 
 template <class Method>
 Found findAll(const ExactMap& map) {
   Found found;
-  for (const LatticeTet& corners : map.corners) {
-    const GridBox box = gridBox(corners, map.unit);
-    if (!box.empty()) Method::run(corners, map.unit, box, found);
-  }
+  for (const LatticeTet& corners : map.corners) Method::run(corners, map.unit, found);
   return found;
 }
 
@@ -128,7 +120,7 @@ void add(const std::string& method) {
 
 void registerRasterization() {
   add<BoundingBox>("box");
-  add<Polygons>("polygons");
+  add<Enlarged>("epsilon");
   add<Lines>("lines");
 }
 

@@ -32,6 +32,7 @@ constexpr std::array kEntries = {
     Entry{"huge_pages", &EngineSwitches::hugePages},
     Entry{"page_pool", &EngineSwitches::pagePool},
     Entry{"look_across_cuts", &EngineSwitches::lookAcrossCuts},
+    Entry{"few_points", &EngineSwitches::fewPoints},
 };
 
 /// Of extractions in one way.

@@ -7,10 +7,10 @@ from matplotlib.axes import Axes
 from evaluation import style
 from evaluation.results import Run, select
 
-RASTERIZATION = {"box": ("bounding box", style.GREY), "polygons": ("epsilon polygons", style.RED),
+RASTERIZATION = {"box": ("bounding box", style.GREY), "epsilon": ("lines, epsilon", style.RED),
                  "lines": ("lines", style.BLUE)}
 LOOKUP = {"list": ("list", style.GREY), "hash": ("hash table", style.RED),
-          "table": ("lines", style.BLUE)}
+          "table": ("table", style.BLUE)}
 
 
 def _draw_methods(axes: Axes, found: list[Run], methods: dict[str, tuple[str, str]],

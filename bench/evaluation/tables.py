@@ -167,15 +167,15 @@ def rasterization(runs: list[Run]) -> str:
     rows = []
     for (name, scale), methods in _by_method(runs, "rasterization").items():
         one = next(iter(methods.values()))
-        box, polygons, lines = (methods[m]["ms"] if m in methods else None
-                                for m in ("box", "polygons", "lines"))
+        box, enlarged, lines = (methods[m]["ms"] if m in methods else None
+                                for m in ("box", "epsilon", "lines"))
         rows.append([name, str(scale), f"{one['points']:,.0f}",
-                     number(one["points"] / one["tets"]), number(box), number(polygons),
-                     number(lines), _ratio(box, polygons), _ratio(box, lines)])
+                     number(one["points"] / one["tets"]), number(box), number(enlarged),
+                     number(lines), _ratio(box, enlarged), _ratio(box, lines)])
     if not rows:
         return ""
-    return table(["map", "scale", "points", "points per tet", "bounding box: ms", "polygons: ms",
-                  "lines: ms", "box / polygons", "box / lines"], rows)
+    return table(["map", "scale", "points", "points per tet", "bounding box: ms", "epsilon: ms",
+                  "lines: ms", "box / epsilon", "box / lines"], rows)
 
 
 def lookup(runs: list[Run]) -> str:

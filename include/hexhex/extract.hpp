@@ -46,8 +46,8 @@ struct ExtractOptions {
 struct ExtractStatistics {
   double seconds = 0;                     ///< from input arrays to finished arrays
   int threads = 0;                        ///< used
-  double epsilon = 0;                     ///< used in the end (infinity after a fall-back)
-  bool epsilonFallback = false;           ///< epsilon was too small and became infinity
+  double epsilon = 0;                     ///< used; 0 with the atlas engine
+  bool epsilonFallback = false;           ///< never set: no epsilon is too small
   bool mirrored = false;                  ///< the map reverses orientation
   std::uint64_t tetsInvertedInSpace = 0;  ///< harmless for the extraction, a warning
   double maxDisplacement = 0;             ///< by sanitization, in unscaled parameter units

@@ -44,7 +44,7 @@ class Atlas {
   /// @return the number of vertices
   std::uint64_t sweep(std::uint64_t expectedCells, SweepObserver* observer = nullptr) {
     Stage stage(context_, "sweep");
-    vertices_.sweep(cells_, stage, observer);
+    vertices_.sweep(cells_, stage, observer, switches_.fewPoints);
     requireExpected(cells_.count(), expectedCells);
     return vertices_.numbers().count();
   }
@@ -74,7 +74,7 @@ class Atlas {
 
   [[nodiscard]] const VertexGrid<Id>& vertices() const noexcept { return vertices_; }
   [[nodiscard]] SweptVertices takeVertices() noexcept { return vertices_.takeVertices(); }
-  [[nodiscard]] const CellSeeds& cells() const noexcept { return cells_; }
+  [[nodiscard]] const CellCenters& cells() const noexcept { return cells_; }
   [[nodiscard]] CellEmitter<Id> makeEmitter() const {
     return {map_, vertices_, transitions_, switches_.lookAcrossCuts};
   }
@@ -83,7 +83,7 @@ class Atlas {
   const PreparedMap& map_;
   Charts charts_;
   VertexGrid<Id> vertices_;
-  CellSeeds cells_;
+  CellCenters cells_;
   CutTransitions transitions_;
   Context& context_;
   EngineSwitches switches_;

@@ -17,7 +17,7 @@
 
 #include <base/switches.hpp>
 #include <igm/prepare.hpp>
-#include <sweep/sweep_observer.hpp>
+#include <sweep/vertex_numbers.hpp>
 
 namespace hexhex {
 

@@ -11,7 +11,7 @@
 #include <atlas/brick_grid.hpp>
 #include <atlas/corner_resolver.hpp>
 #include <atlas/vertex_grid.hpp>
-#include <sweep/cell_seeds.hpp>
+#include <sweep/cell_centers.hpp>
 
 namespace hexhex {
 

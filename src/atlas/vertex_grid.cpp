@@ -3,6 +3,7 @@
 #include <atlas/overlaps.hpp>
 #include <atlas/vertex_grid.hpp>
 #include <base/workspaces.hpp>
+#include <lattice/few_points.hpp>
 
 namespace hexhex {
 
@@ -12,13 +13,6 @@ ChartRow rowOf(const VertexRun& run, const SweepFrame& frame, Index chart) {
   const SweptLine& line = *run.line;
   const std::int32_t first = line.first + static_cast<std::int32_t>(run.offset);
   return {chart, frame(line.level, line.row, first), frame.along(2), run.count};
-}
-
-/// For vertices, cells, and what the observer wants to see.
-HalfGridSearch searchWith(const SweepObserver* observer) {
-  const unsigned own = halfGridBit(kVertexGrid) | halfGridBit(kCenterGrid);
-  return HalfGridSearch(
-      static_cast<HalfGridSet>(own | (observer == nullptr ? 0U : observer->grids())));
 }
 
 /// Enters consecutive vertices. Of two that claim the same place, the one that comes later finds
@@ -45,16 +39,16 @@ std::span<const SweptLine> VertexGrid<Id>::linesOf(Index tet,
                                                    std::vector<SweptLine>& scratch) const {
   if (stored_) return stored_->of(tet);
   scratch.clear();
-  TetSweep(map_.exact, tet, SweptGrid::Vertices).run(map_.exact.unit, scratch);
+  TetRasterizer(map_.exact.corners[tet], map_.exact.unit).append(kVertexGrid, scratch);
   return scratch;
 }
 
 template <class Id>
-void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage, SweepObserver* observer) {
+void VertexGrid<Id>::sweep(CellCenters& cells, Stage& stage, SweepObserver* observer,
+                           bool fewPoints) {
   const std::size_t tets = map_.topology.tetCount();
   VertexCounter counter(map_, numbers_);
   keys_.resize(blockCount(tets, kSweepBlock));
-  const HalfGridSearch search = searchWith(observer);
   const auto makeLines = [&] {
     return SweptLines{BlockLines(stored_.has_value()), BlockLines(cells.lines.has_value())};
   };
@@ -67,13 +61,16 @@ void VertexGrid<Id>::sweep(CellSeeds& cells, Stage& stage, SweepObserver* observ
     keys_[block].reserve(kSweepBlock / 16);
     for (std::size_t t = begin; t < end; ++t) {
       const auto tet = static_cast<Index>(t);
-      if (observer == nullptr) {
-        sweepBoth(map_.exact, tet, lines.next(), centers.next());
-      } else {
-        const HalfGrids grids(map_.exact.corners[t], map_.exact.unit, search);
-        appendLines(grids, kVertexGrid, lines.next());
-        appendLines(grids, kCenterGrid, centers.next());
-        observer->add(block, tet, grids);
+      std::vector<SweptLine>& ofVertices = lines.next();
+      std::vector<SweptLine>& ofCenters = centers.next();
+      const LatticeTet& corners = map_.exact.corners[t];
+      const bool isSwept =
+          fewPoints && sweepFewPoints(corners, map_.exact.unit, ofVertices, ofCenters);
+      if (!isSwept || observer != nullptr) {
+        TetRasterizer rasterizer(corners, map_.exact.unit);
+        if (!isSwept) rasterizer.append(kVertexGrid, ofVertices);
+        if (!isSwept) rasterizer.append(kCenterGrid, ofCenters);
+        if (observer != nullptr) observer->add(block, tet, rasterizer);
       }
       cells.begin[t] = 0;
       counter.countNothing(tet);
@@ -161,9 +158,7 @@ void VertexGrid<Id>::write(const VertexRun& run, Index tet, std::optional<TetPos
                            const VertexArrays& arrays) const {
   if (!run.owned || arrays.points == nullptr) return;
   const SweptLine& line = *run.line;
-  if (!positions) {
-    positions.emplace(map_, tet, gridBox(map_.exact.corners[tet], map_.exact.unit), line.axes);
-  }
+  if (!positions) positions.emplace(map_, tet, line.axes);
   const std::size_t at = run.first - arrays.first;
   if (run.simplex == kWholeTet) {
     positions->alongLine(line.level, line.row, line.first + static_cast<std::int32_t>(run.offset),
@@ -281,8 +276,7 @@ std::uint64_t VertexGrid<Id>::exactNumber(Index tet, const GridPoint& z) const {
     if (((numbering.foreignFaces() >> face) & 1U) == 0) continue;
     const HalfFace halfFace = halfFaceOf(tet, face);
     const Index owner = tetOf(map_.topology.mate[halfFace]);
-    if (TetPlanes(map_.exact.corners[tet], map_.exact.unit).generator(z) != faceMask(face))
-      continue;
+    if (simplexOf(map_.exact.corners[tet], z, map_.exact.unit) != faceMask(face)) continue;
     return exactNumber(owner, map_.exact.transitions.across(halfFace)(z));
   }
   throw Error(ErrorCode::Internal,

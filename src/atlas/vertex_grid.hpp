@@ -11,8 +11,7 @@
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
 #include <igm/prepare.hpp>
-#include <sweep/cell_seeds.hpp>
-#include <sweep/sweep_observer.hpp>
+#include <sweep/cell_centers.hpp>
 #include <sweep/tet_positions.hpp>
 #include <sweep/vertex_numbers.hpp>
 
@@ -56,8 +55,10 @@ class VertexGrid {
   }
 
   /// Sweeps all tets, for vertices and for cells, and numbers both.
-  /// @param observer  sees every tet, if there is one
-  void sweep(CellSeeds& cells, Stage& stage, SweepObserver* observer = nullptr);
+  /// @param observer   sees every tet, if there is one
+  /// @param fewPoints  as in EngineSwitches
+  void sweep(CellCenters& cells, Stage& stage, SweepObserver* observer = nullptr,
+             bool fewPoints = true);
   /// Makes the grid, enters all vertices, and writes them to `arrays`.
   void fill(const VertexArrays& arrays, Stage& stage);
   /// Finds and resolves overlaps.

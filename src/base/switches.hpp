@@ -17,6 +17,7 @@ struct EngineSwitches {
       true;               ///< before corners behind cuts are traced (atlas/corner_resolver.hpp)
   bool hugePages = true;  ///< for large arrays; of the whole process, as the next (base/memory.hpp)
   bool pagePool = true;   ///< smaller arrays share huge pages
+  bool fewPoints = true;  ///< tets with few points in their boxes (lattice/few_points.hpp)
 };
 
 }  // namespace hexhex

@@ -2,7 +2,7 @@
 #include <string>
 
 #include <curved/element_numbers.hpp>
-#include <sweep/cell_seeds.hpp>
+#include <sweep/cell_centers.hpp>
 
 namespace hexhex {
 
@@ -25,34 +25,30 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind)
 
 ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& stage)
     : ElementNumbers(map, kind) {
-  const HalfGridSearch search(gridsOf(kind));
   parallelBlocks(stage, topology_.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    for (std::size_t t = begin; t < end; ++t) {
-                     add(block, static_cast<Index>(t),
-                         HalfGrids(map.exact.corners[t], map.exact.unit, search));
+                     TetRasterizer rasterizer(map.exact.corners[t], map.exact.unit);
+                     add(block, static_cast<Index>(t), rasterizer);
                    }
                  });
   finish(stage);
 }
 
 /// Appends the lines with elements that a tet owns, and counts both.
-void ElementNumbers::add(std::size_t block, Index tet, const HalfGrids& grids) {
+void ElementNumbers::add(std::size_t block, Index tet, TetRasterizer& rasterizer) {
   begin_[tet] = 0;
-  std::fill_n(lineBegin_.begin() + static_cast<std::ptrdiff_t>(gridOf(tet, 0)), 3, Index{0});
   Array<Line>& lines = blocks_[block];
-  if ((grids.occupied() & gridsOf(kind_)) != 0) {
-    CenterOwner owner(topology_, tet);
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::size_t before = lines.size();
-      static_cast<void>(grids.sweep(midpointsOf(kind_, axis), [&](const SweptLine& line) {
-        const auto [first, count] = owner.owned(line);
-        if (count == 0) return;
-        lines.push_back({line, first, count, kNone});
-        begin_[tet] += count;
-      }));
-      lineBegin_[gridOf(tet, axis)] = static_cast<Index>(lines.size() - before);
-    }
+  CenterOwner owner(topology_, tet);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t before = lines.size();
+    rasterizer.sweep(midpointsOf(kind_, axis), [&](const SweptLine& line) {
+      const auto [first, count] = owner.owned(line);
+      if (count == 0) return;
+      lines.push_back({line, first, count, kNone});
+      begin_[tet] += count;
+    });
+    lineBegin_[gridOf(tet, axis)] = static_cast<Index>(lines.size() - before);
   }
   // Lines stay where they are, so what was reserved too much would stay as well.
   const bool isLast = (tet + 1) % kSweepBlock == 0;

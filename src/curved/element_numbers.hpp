@@ -13,7 +13,7 @@
 #include <hexhex/types.hpp>
 
 #include <igm/prepare.hpp>
-#include <lattice/half_grids.hpp>
+#include <lattice/tet_rasterizer.hpp>
 #include <sweep/vertex_tables.hpp>
 
 namespace hexhex {
@@ -48,16 +48,10 @@ class ElementNumbers {
     const int along = 1 << axis;
     return static_cast<HalfGrid>(kind == ElementKind::Edges ? along : 7 ^ along);
   }
-  /// All three.
-  [[nodiscard]] static constexpr HalfGridSet gridsOf(ElementKind kind) noexcept {
-    unsigned set = 0;
-    for (int axis = 0; axis < 3; ++axis) set |= halfGridBit(midpointsOf(kind, axis));
-    return static_cast<HalfGridSet>(set);
-  }
 
-  // While others sweep the same tets, with gridsOf() wanted:
+  // While others sweep the same tets:
   /// Tets of a block of kSweepBlock in order, blocks in any order and in parallel.
-  void add(std::size_t block, Index tet, const HalfGrids& grids);
+  void add(std::size_t block, Index tet, TetRasterizer& rasterizer);
   /// When all have been added.
   /// @throws Error TooLarge for more elements than an Index can number
   void finish(Stage& stage);
@@ -117,11 +111,8 @@ class EdgeObserver final : public SweepObserver {
  public:
   explicit EdgeObserver(const PreparedMap& map) : map_(map), edges_(map, ElementKind::Edges) {}
 
-  [[nodiscard]] HalfGridSet grids() const noexcept override {
-    return ElementNumbers::gridsOf(ElementKind::Edges);
-  }
-  void add(std::size_t block, Index tet, const HalfGrids& grids) override {
-    edges_.add(block, tet, grids);
+  void add(std::size_t block, Index tet, TetRasterizer& rasterizer) override {
+    edges_.add(block, tet, rasterizer);
   }
   void take(SweptVertices vertices) override { vertices_ = std::move(vertices); }
 

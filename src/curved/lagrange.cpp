@@ -5,7 +5,7 @@
 #include <curved/cube_meets_face.hpp>
 #include <curved/lagrange.hpp>
 #include <curved/simplex_star.hpp>
-#include <sweep/cell_seeds.hpp>
+#include <sweep/cell_centers.hpp>
 #include <sweep/vertex_tables.hpp>
 
 namespace hexhex {
@@ -23,15 +23,15 @@ struct CellSeed {
 
 /// All cells in their canonical order.
 Array<CellSeed> listCells(const PreparedMap& map, Stage& stage) {
-  const CellSeeds seeds = findCells(map, stage);
-  Array<CellSeed> cells(seeds.count());
+  const CellCenters centers = findCells(map, stage);
+  Array<CellSeed> cells(centers.count());
   parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t) {
                    std::vector<SweptLine> scratch;
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
-                     std::uint64_t at = seeds.begin[t];
-                     forEachOwnedCenter(map.topology, tet, seeds.linesOf(map.exact, tet, scratch),
+                     std::uint64_t at = centers.begin[t];
+                     forEachOwnedCenter(map.topology, tet, centers.linesOf(map.exact, tet, scratch),
                                         [&](const SweptLine& line, std::uint32_t i) {
                                           cells[at++] = {tet, line.point(i)};
                                         });

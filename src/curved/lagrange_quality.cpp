@@ -9,7 +9,7 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <mesh/lagrange_check.hpp>
-#include <sweep/cell_seeds.hpp>
+#include <sweep/cell_centers.hpp>
 
 namespace hexhex {
 

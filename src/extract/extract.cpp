@@ -114,13 +114,6 @@ HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells, const EngineOpt
   return runPipeline(map, expectedCells, options.epsilon, context, statistics);
 }
 
-void throwMissingVertex(const MissingVertex& missing) {
-  throw Error(ErrorCode::Internal,
-              "The map passed all checks, but a hex vertex is missing. This is a bug; please "
-              "report it with the map.",
-              missing.tet ? Place{PlaceKind::Tet, *missing.tet} : Place{});
-}
-
 void throwOutOfMemory() {
   throw Error(ErrorCode::OutOfMemory,
               "Not enough memory for the extraction. Lower the scale, extract piece by piece, or "

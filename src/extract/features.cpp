@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <extract/features.hpp>
-#include <sweep/cell_seeds.hpp>
+#include <sweep/cell_centers.hpp>
 #include <sweep/cell_tracer.hpp>
 
 namespace hexhex {
@@ -307,8 +307,8 @@ std::vector<FeatureQuad> uniqueQuads(std::vector<FeatureQuad> quads) {
   return quads;
 }
 
-void tagEdgesAndQuads(const TetMapView& given, const PreparedMap& prepared, const CellSeeds& seeds,
-                      HexMesh& mesh, Stage& stage) {
+void tagEdgesAndQuads(const TetMapView& given, const PreparedMap& prepared,
+                      const CellCenters& centers, HexMesh& mesh, Stage& stage) {
   const TagTable<2> edgeTags(given.features.edges);
   const TagTable<3> faceTags(given.features.faces);
   const Marks marks(given, mesh, stage);
@@ -321,9 +321,9 @@ void tagEdgesAndQuads(const TetMapView& given, const PreparedMap& prepared, cons
                    Seen seen;
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
-                     std::uint64_t cell = seeds.begin[t];
-                     if (cell == seeds.begin[t + 1]) continue;
-                     forEachOwnedCenter(prepared.topology, tet, seeds.lines->of(tet),
+                     std::uint64_t cell = centers.begin[t];
+                     if (cell == centers.begin[t + 1]) continue;
+                     forEachOwnedCenter(prepared.topology, tet, centers.lines->of(tet),
                                         [&](const SweptLine& line, std::uint32_t i) {
                                           viewer.view(mesh.cells[cell++], tet, line.point(i),
                                                       line.simplex(i), seen);
@@ -336,11 +336,11 @@ void tagEdgesAndQuads(const TetMapView& given, const PreparedMap& prepared, cons
   mesh.features.quads = uniqueQuads(joined<FeatureQuad>(quads));
 }
 
-void fillRegions(const TetMapView& given, const CellSeeds& seeds, HexMesh& mesh, Stage& stage) {
+void fillRegions(const TetMapView& given, const CellCenters& centers, HexMesh& mesh, Stage& stage) {
   mesh.regions.resize(mesh.cells.size());
   parallelFor(stage, given.tets.size(), kGrain, [&](std::size_t t) {
-    std::fill(mesh.regions.begin() + static_cast<std::ptrdiff_t>(seeds.begin[t]),
-              mesh.regions.begin() + static_cast<std::ptrdiff_t>(seeds.begin[t + 1]),
+    std::fill(mesh.regions.begin() + static_cast<std::ptrdiff_t>(centers.begin[t]),
+              mesh.regions.begin() + static_cast<std::ptrdiff_t>(centers.begin[t + 1]),
               given.regions[t]);
   });
 }
@@ -403,9 +403,9 @@ void carryTags(const TetMapView& given, const PreparedMap& prepared, HexMesh& me
   Stage stage(context, "features");
   if (!given.features.vertices.empty()) mesh.features.vertices = tagVertices(given, mesh, stage);
   if (!byCells && given.regions.empty()) return;
-  const CellSeeds seeds = findCells(prepared, stage);
-  if (byCells) tagEdgesAndQuads(given, prepared, seeds, mesh, stage);
-  if (!given.regions.empty()) fillRegions(given, seeds, mesh, stage);
+  const CellCenters centers = findCells(prepared, stage);
+  if (byCells) tagEdgesAndQuads(given, prepared, centers, mesh, stage);
+  if (!given.regions.empty()) fillRegions(given, centers, mesh, stage);
 }
 
 }  // namespace hexhex

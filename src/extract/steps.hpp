@@ -12,8 +12,7 @@
 #include <base/parallel.hpp>
 #include <base/switches.hpp>
 #include <igm/prepare.hpp>
-#include <propeller/hex_vertices.hpp>
-#include <sweep/sweep_observer.hpp>
+#include <sweep/vertex_numbers.hpp>
 
 namespace hexhex {
 
@@ -91,7 +90,6 @@ struct ScaleLimits {
 [[nodiscard]] HexMesh extractWith(const TetMapView& map, const EngineOptions& options,
                                   Context& context, ExtractStatistics* statistics = nullptr);
 
-[[noreturn]] void throwMissingVertex(const MissingVertex& missing);
 [[noreturn]] void throwOutOfMemory();
 
 /// Runs work(statistics) with the context's threads; translates what may escape from it, and notes
@@ -106,8 +104,6 @@ void runExtraction(const ExtractStatistics& known, Context& context, ExtractStat
   filled = known;
   try {
     withThreads(context.threads(), [&] { work(filled); });
-  } catch (const MissingVertex& missing) {
-    throwMissingVertex(missing);
   } catch (const std::bad_alloc&) {
     throwOutOfMemory();
   }

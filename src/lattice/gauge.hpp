@@ -1,7 +1,7 @@
-// From the chart of a tet to a picture that many tets have in common: a chart of the atlas.
+// From the chart of a tet to one that many tets have in common: a chart of the atlas.
 //
 // Coordinates there are integers modulo 2^32: they never overflow, however long the chain of tets
-// that a picture is glued from. Two places that the modulus makes equal are nothing but another
+// that a chart is glued from. Two places that the modulus makes equal are nothing but another
 // overlap, which the atlas has to stand anyway.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace hexhex {
 
-/// Grid point of a common picture.
+/// Grid point of a common chart.
 using ChartPoint = std::array<std::uint32_t, 3>;
 
 struct Gauge {

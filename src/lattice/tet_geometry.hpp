@@ -137,7 +137,7 @@ struct RoundedDeterminant {
                      tet[static_cast<std::size_t>(f[2])], point);
 }
 
-/// The simplex of a tet whose interior contains a point, or kNoSimplex outside.
+/// The simplex of a tet whose interior contains a point, or kNoSimplex outside. (Algorithm 3)
 /// @param sideOf  of a face: on which side of it the point lies, as sideOfFace()
 template <class SideOf>
 [[nodiscard]] CornerMask simplexBySides(const SideOf& sideOf) noexcept {
@@ -149,6 +149,17 @@ template <class SideOf>
     if (side > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(static_cast<int>(face)));
   }
   return simplex;
+}
+
+/// The same of a positive tet, exactly.
+[[nodiscard]] inline CornerMask simplexOf(const LatticeTet& tet,
+                                          const LatticePoint& point) noexcept {
+  return simplexBySides([&](std::size_t face) { return sideOfFace(tet, face, point); });
+}
+/// The same for a grid point.
+[[nodiscard]] inline CornerMask simplexOf(const LatticeTet& tet, const GridPoint& z,
+                                          std::int64_t unit) noexcept {
+  return simplexOf(tet, LatticePoint{z[0] * unit, z[1] * unit, z[2] * unit});
 }
 
 /// Signs of the components of the four inward face normals of a tet. They decide exactly how

@@ -1,4 +1,4 @@
-// The unit cells in which a triangle may cut the ways from the centre to the corners.
+// The unit cells in which a triangle may cut half diagonals: segments from the centre to a corner.
 #pragma once
 
 #include <array>
@@ -7,9 +7,37 @@
 #include <lattice/cell_corners.hpp>
 #include <lattice/tet_geometry.hpp>
 #include <lattice/triangle_columns.hpp>
-#include <lattice/triangle_ways.hpp>
 
 namespace hexhex {
+
+/// The half diagonals of cells that a triangle may cut, in floating point with a proven bound.
+class HalfDiagonalCuts {
+ public:
+  HalfDiagonalCuts() = default;
+  /// @param corners  relative to a grid point; not negative, may carry one rounding
+  /// @param size     no coordinate is larger; at least 1
+  HalfDiagonalCuts(const std::array<std::array<double, 3>, 3>& corners, double size) noexcept
+      : corners_(corners) {
+    // With u = 2^-53 and s, one more than `size`: relative to the centre of a cell around the
+    // triangle, corners are less than s away and known to 2 u s in each axis. Components of their
+    // products, up to 2 s^2, err by 12 u s^2. The sum of three of them, up to 6 s^2, errs by 46 u
+    // s^2, and the sum of three such sums by 168 u s^2. The determinant errs by 12 u s^3 for the
+    // corner, by 36 u s^3 for the product, and by 16 u s^3 for roundings. 2^-44 is 512 u.
+    const double s = size + 1;
+    error_ = 0x1p-44 * s * s;
+    determinantError_ = error_ * s;
+  }
+
+  /// The corners of a cell whose half diagonals, with the centre, may meet the triangle.
+  /// @param z  the cell's smallest corner, relative to the same grid point; not negative, the
+  ///           centre at most `size` + 1
+  [[nodiscard]] CellCornerSet cutIn(const GridPoint& z) const noexcept;
+
+ private:
+  std::array<std::array<double, 3>, 3> corners_;
+  double error_;             ///< bound of the error of weights, and their sums
+  double determinantError_;  ///< and of the determinant of the triangle's corners
+};
 
 /// Finds cells in the bounding box of a small triangle, and by columns for a larger one. Limits of
 /// the box are exact, so that a triangle in a grid plane cuts nothing. Cells are named by their
@@ -21,14 +49,14 @@ class TriangleCells {
   TriangleCells(const std::array<LatticePoint, 3>& corners, std::int64_t unit) noexcept;
 
   /// Calls visit(GridPoint, CellCornerSet) once for each cell, with at least those of its corners
-  /// to which the straight way from its centre, with the centre but without the corner, meets the
-  /// triangle. Cells without such corners are left out.
+  /// whose half diagonals, with the centre but without the corner, meet the triangle. Cells without
+  /// such corners are left out.
   template <class Visit>
   void run(const Visit& visit) const {
     if (cells_ == 0) return;
     if (cells_ > kFewCells) {
       TriangleColumns(triangle_, unit_).run([&](const GridPoint& z, CellCornerSet octants) {
-        const CellCornerSet corners = octants & ways_.cutIn(minus(z, origin_));
+        const CellCornerSet corners = octants & cuts_.cutIn(minus(z, origin_));
         if (corners != 0) visit(z, corners);
       });
       return;
@@ -37,7 +65,7 @@ class TriangleCells {
     for (z[2] = first_[2] >> 1; z[2] <= last_[2] >> 1; ++z[2]) {
       for (z[1] = first_[1] >> 1; z[1] <= last_[1] >> 1; ++z[1]) {
         for (z[0] = first_[0] >> 1; z[0] <= last_[0] >> 1; ++z[0]) {
-          const CellCornerSet corners = octantsInBox(z) & ways_.cutIn(z);
+          const CellCornerSet corners = octantsInBox(z) & cuts_.cutIn(z);
           if (corners != 0) visit(plus(z, origin_), corners);
         }
       }
@@ -72,7 +100,7 @@ class TriangleCells {
   std::array<std::int32_t, 3> first_;  ///< half cells of the bounding box, relative
   std::array<std::int32_t, 3> last_;
   std::int64_t cells_;  ///< in the box
-  TriangleWays ways_;
+  HalfDiagonalCuts cuts_;
 };
 
 }  // namespace hexhex

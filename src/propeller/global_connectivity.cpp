@@ -2,7 +2,6 @@
 #include <atomic>
 
 #include <propeller/global_connectivity.hpp>
-#include <propeller/slot_finder.hpp>
 
 namespace hexhex {
 
@@ -10,8 +9,8 @@ namespace {
 
 constexpr std::size_t kGrain = 64;
 
-/// A hex edge on its way: in the chart of a tet, from grid point z in direction `along`, beside it
-/// the blade in direction `beside`.
+/// A hex edge that is traced: in the chart of a tet, from grid point z in direction `along`, beside
+/// it the blade in direction `beside`.
 struct Trace {
   Index tet;
   GridPoint z;
@@ -33,10 +32,8 @@ class Tracer {
 
   /// Traces every propeller whose first blade's casing lies in this tet.
   void run(Index tet) const {
-    if (vertices_.lines.empty(tet)) return;
-    vertices_.lines.forEachPoint(tet, [&](const GridPoint& z, CornerMask /*simplex*/, Index point) {
-      const Index vertex = vertices_.lines.vertices[point];
-      if (vertex == kNone) throw MissingVertex{tet};
+    vertices_.tables.forEach(tet, [&](const GridPoint& z, const VertexTables::Found& found) {
+      const Index vertex = found.vertex;
       const Index generator = vertices_.generatorOf[vertex];
       const Configuration& configuration = local_.configuration(generator);
       const bool constant = local_.configurationOf[generator] < kConstantConfigurations;
@@ -83,27 +80,24 @@ class Tracer {
   Index follow(Trace& at) const {
     int entered = -1;
     for (;;) {
-      const Index found = vertices_.lines.find(at.tet, step(at.z, at.along));
-      if (found != kNone && arrived(at, found)) return found;
-      if (passed(at)) throw MissingVertex{at.tet};
+      const VertexTables::Found found = vertices_.tables.find(at.tet, step(at.z, at.along));
+      if (found.vertex != kNone && holdsBlade(at, found.simplex)) return found.vertex;
       const int exit = exitOfLine(exact_.corners[at.tet], signs_[at.tet], at.z, exact_.unit,
                                   at.along, at.beside, entered);
-      if (exit == kNoExit) throw MissingVertex{at.tet};
+      if (exit == kNoExit || passed(at)) failForMissingVertex(at.tet);
       const HalfFace halfFace = halfFaceOf(at.tet, exit);
       const HalfFace mate = topology_.mate[halfFace];
-      if (mate == kNone) throw MissingVertex{at.tet};
+      if (mate == kNone) failForMissingVertex(at.tet);
       entered = localOf(mate);
       const Transition& transition = exact_.transitions.across(halfFace);
       at = {tetOf(mate), transition(at.z), transition(at.along), transition(at.beside)};
     }
   }
 
-  /// Whether the tet holds the blade's quarter plane at the edge's end. The edge may run inside a
-  /// face of this tet while the blade lies on the other side of it.
-  [[nodiscard]] bool arrived(const Trace& at, Index vertex) const {
-    const Index g = vertices_.generatorOf[vertex];
-    if (vertices_.generators[g].simplex == kWholeTet) return true;
-    const CornerMask simplex = vertices_.incidenceOf(at.tet, g).simplex;
+  /// Whether the tet holds the blade's quarter plane at the edge's end, in the interior of a
+  /// simplex. The edge may run inside a face of this tet while the blade lies on the other side of
+  /// it.
+  [[nodiscard]] bool holdsBlade(const Trace& at, CornerMask simplex) const {
     const NormalSigns& signs = signs_[at.tet];
     for (int face = 0; face < 4; ++face) {
       if (!contains(simplex, face) && signs.dot(face, at.along) == 0 &&

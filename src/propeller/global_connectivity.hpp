@@ -34,7 +34,6 @@ struct GlobalConnectivity {
 };
 
 /// Traces all propellers. (Algorithm 8)
-/// @throws MissingVertex
 [[nodiscard]] GlobalConnectivity traceOpposites(const PreparedMap& map,
                                                 const Array<NormalSigns>& signs,
                                                 const HexVertices& vertices,

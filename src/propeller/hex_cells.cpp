@@ -1,7 +1,5 @@
 #include <propeller/hex_cells.hpp>
-#include <propeller/link_corners.hpp>
-#include <propeller/slot_finder.hpp>
-#include <sweep/cell_seeds.hpp>
+#include <sweep/cell_centers.hpp>
 #include <sweep/cell_tracer.hpp>
 
 namespace hexhex {
@@ -85,15 +83,15 @@ Array<Hex> collectCells(const PreparedMap& map, const Array<NormalSigns>& signs,
                         const HexVertices& vertices, const LocalConnectivity& local,
                         const GlobalConnectivity& global, Stage& stage) {
   const std::size_t tets = map.topology.tetCount();
-  const CellSeeds seeds = findCells(map, stage);
-  Array<Hex> cells(seeds.count());
+  const CellCenters centers = findCells(map, stage);
+  Array<Hex> cells(centers.count());
   const CellWalker walker(vertices, local, global);
   const SlotFinder finder(map, signs, vertices, local);
   const auto enter = [&](CellTracer& tracer, Index tet, const GridPoint& z, CornerMask generator) {
     tracer.enter(tet, z, generator);
     const CornerPlace place = tracer.trace({0, 0, 0});
-    const Index vertex = vertices.lines.find(place.tet, place.z);
-    if (vertex == kNone) throw MissingVertex{place.tet};
+    const Index vertex = vertices.tables.find(place.tet, place.z).vertex;
+    if (vertex == kNone) failForMissingVertex(place.tet);
     return walker.walk(
         vertex, finder.find(place.tet, vertices.generatorOf[vertex],
                             place.rotation(direction(0, 1)), place.rotation(direction(1, 1))));
@@ -102,9 +100,9 @@ Array<Hex> collectCells(const PreparedMap& map, const Array<NormalSigns>& signs,
     CellTracer tracer(map);
     for (std::size_t t = begin; t < end; ++t) {
       const auto tet = static_cast<Index>(t);
-      std::uint64_t next = seeds.begin[t];
-      if (next == seeds.begin[t + 1]) continue;
-      forEachOwnedCenter(map.topology, tet, seeds.lines->of(tet),
+      std::uint64_t next = centers.begin[t];
+      if (next == centers.begin[t + 1]) continue;
+      forEachOwnedCenter(map.topology, tet, centers.lines->of(tet),
                          [&](const SweptLine& line, std::uint32_t i) {
                            cells[next++] = enter(tracer, tet, line.point(i), line.simplex(i));
                          });

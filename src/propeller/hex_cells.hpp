@@ -13,9 +13,8 @@ namespace hexhex {
 /// Number of cells that the hex corners of all vertices make up.
 [[nodiscard]] std::uint64_t countCells(const HexVertices& vertices, const LocalConnectivity& local);
 
-/// All cells in canonical order (cell_seeds.hpp). Each is entered from its centre at its first
+/// All cells in canonical order (cell_centers.hpp). Each is entered from its centre at its first
 /// corner; from there the walk goes from propeller to opposite.
-/// @throws MissingVertex
 [[nodiscard]] Array<Hex> collectCells(const PreparedMap& map, const Array<NormalSigns>& signs,
                                       const HexVertices& vertices, const LocalConnectivity& local,
                                       const GlobalConnectivity& global, Stage& stage);

@@ -1,4 +1,9 @@
-// Hex vertices: grid points of the image with their generators (Section 5.2).
+// Vertex extraction (Section 5.2): the lattice points of the map's image, and their generators, the
+// simplices of the tet mesh in whose interior they lie.
+//
+// Enumeration, numbers and look-up are those of src/sweep, which curved meshes use, too; but here
+// epsilon is positive, so that an exact predicate decides at both ends of every line, as in the
+// paper. Nothing is shared with the atlas engine that its tests do not compare with brute force.
 #pragma once
 
 #include <array>
@@ -8,7 +13,7 @@
 #include <hexhex/types.hpp>
 
 #include <igm/prepare.hpp>
-#include <propeller/lattice_lines.hpp>
+#include <sweep/vertex_tables.hpp>
 
 namespace hexhex {
 
@@ -19,10 +24,6 @@ struct Generator {
   Index firstVertex;
   Index vertexCount;
   CornerMask simplex;
-
-  [[nodiscard]] GeneratorKind kind() const noexcept {
-    return static_cast<GeneratorKind>(dimension(simplex));
-  }
 };
 
 /// A generator of lower dimension than a cell, as seen from one of the tets around it.
@@ -36,21 +37,19 @@ struct GeneratorIncidence {
 inline constexpr std::uint8_t kNoPropeller = 255;
 
 struct HexVertices {
-  Array<Vec3> positions;        ///< per hex vertex
+  VertexTables tables;          ///< hex vertices by tet and grid point
   Array<Index> generatorOf;     ///< per hex vertex
   Array<Generator> generators;  ///< by owner, then dimension, then corners
-  Array<Index> generatorBegin;  ///< per tet (+1): the generators that it owns
-  LatticeLines lines;           ///< hex vertices by tet and grid point
   Array<Index> incidenceBegin;  ///< per tet (+1): its range in `incidences`
   Array<GeneratorIncidence> incidences;
 
-  /// A generator of a tet's boundary, by its corners in that tet.
-  [[nodiscard]] const GeneratorIncidence& incidence(Index tet, CornerMask simplex) const noexcept {
-    Index i = incidenceBegin[tet];
-    while (incidences[i].simplex != simplex) ++i;
-    return incidences[i];
-  }
-  /// The same by its number.
+  /// Sweeps the map.
+  /// @param map      scaled
+  /// @param epsilon  as in ExtractOptions
+  /// @throws Error TooLarge if the vertices cannot be numbered in 32 bits
+  HexVertices(const PreparedMap& map, double epsilon, Stage& stage);
+
+  /// A generator of a tet's boundary, by its number.
   [[nodiscard]] const GeneratorIncidence& incidenceOf(Index tet, Index generator) const noexcept {
     Index i = incidenceBegin[tet];
     while (incidences[i].generator != generator) ++i;
@@ -58,18 +57,8 @@ struct HexVertices {
   }
 };
 
-/// Thrown by this and later stages where the map must have a hex vertex and none was found: the
-/// rasterization's epsilon was too small (Section 5.2.3).
-struct MissingVertex {
-  std::optional<Index> tet;  ///< where it is missing; unknown if only the number of cells tells
-};
-
-/// Rasterizes all tets. Vertices are numbered by owner, generator, and position: along an edge from
-/// its smaller vertex on, otherwise in the order of the owner's sweep.
-/// @param map      scaled
-/// @param epsilon  as in ExtractOptions
-/// @throws Error TooLarge if the vertices cannot be numbered in 32 bits
-/// @throws MissingVertex
-[[nodiscard]] HexVertices extractVertices(const PreparedMap& map, double epsilon, Stage& stage);
+/// Where the map must have a hex vertex and none was found.
+/// @param tet  unknown if only the number of cells tells
+[[noreturn]] void failForMissingVertex(std::optional<Index> tet);
 
 }  // namespace hexhex

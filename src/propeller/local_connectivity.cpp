@@ -1,11 +1,34 @@
 #include <algorithm>
 #include <span>
 
-#include <propeller/link_corners.hpp>
 #include <propeller/local_connectivity.hpp>
 #include <propeller/star_connectivity.hpp>
 
 namespace hexhex {
+
+bool linkCorners(const std::vector<Propeller>& propellers, std::vector<Slot>& slots,
+                 std::vector<HexCorner>& corners) {
+  for (std::size_t p = 0; p < propellers.size(); ++p) {
+    const Propeller& propeller = propellers[p];
+    // On the boundary there is no corner behind the last blade.
+    const std::size_t count =
+        propeller.closed ? propeller.slotCount : propeller.slotCount - std::size_t{1};
+    for (std::size_t i = 0; i < count; ++i) {
+      if (slots[propeller.slotBegin + i].corner != kNoCorner) continue;
+      const auto number = static_cast<std::uint16_t>(corners.size());
+      corners.push_back({static_cast<std::uint16_t>(p), static_cast<std::uint16_t>(i)});
+      SlotName at{p, i};
+      for (int side = 0; side < 3; ++side) {
+        Slot& slot = slots[propellers[at.propeller].slotBegin + at.slot];
+        if (slot.corner != kNoCorner) return false;
+        slot.corner = number;
+        at = rotateCorner(propellers.data(), slots.data(), at);
+      }
+      if (at.propeller != p || at.slot != i) return false;
+    }
+  }
+  return true;
+}
 
 namespace {
 
@@ -111,10 +134,8 @@ Index constantConfiguration(const PreparedMap& map, const Array<NormalSigns>& si
 void publish(const std::vector<StarConnectivity::StarTet>& star, HexVertices& vertices) {
   for (const StarConnectivity::StarTet& entry : star) {
     Index i = vertices.incidenceBegin[entry.tet];
-    const Index end = vertices.incidenceBegin[entry.tet + 1];
-    while (i < end && vertices.incidences[i].simplex != entry.simplex) ++i;
-    // With a too small epsilon the tet may have missed the generator's points: tracing will tell.
-    if (i < end) vertices.incidences[i].propeller = entry.propeller;
+    while (vertices.incidences[i].simplex != entry.simplex) ++i;
+    vertices.incidences[i].propeller = entry.propeller;
   }
 }
 
@@ -144,6 +165,48 @@ LocalConnectivity extractLocalConnectivity(const PreparedMap& map, const Array<N
     if (configuration == kNone) configuration = next++;
   }
   return local;
+}
+
+SlotName SlotFinder::find(Index tet, Index generator, Direction along, Direction beside) const {
+  const std::size_t p = findPropeller(tet, generator, along);
+  const Slot key = casingKey(tet, generator, along, beside);
+  const Propeller& propeller = local_.propeller(local_.configuration(generator), p);
+  for (std::size_t i = 0; i < propeller.slotCount; ++i) {
+    const Slot& slot = local_.slot(propeller, i);
+    if (slot.tet == key.tet && slot.direction == key.direction) return {p, i};
+  }
+  failForMissingVertex(tet);
+}
+
+std::size_t SlotFinder::findPropeller(Index tet, Index generator, Direction along) const {
+  const Index configuration = local_.configurationOf[generator];
+  if (configuration == 0) return along;
+  if (configuration < kConstantConfigurations) {
+    // Propellers of a boundary face: all directions but the one that leads outside.
+    const Direction outward = opposite(static_cast<Direction>(configuration - 1));
+    return along > outward ? along - std::size_t{1} : along;
+  }
+  const std::uint8_t propeller = vertices_.incidenceOf(tet, generator).propeller[along];
+  if (propeller == kNoPropeller) failForMissingVertex(tet);
+  return propeller;
+}
+
+/// Names the blade's casing as the slots do.
+Slot SlotFinder::casingKey(Index tet, Index generator, Direction along, Direction beside) const {
+  if (local_.configurationOf[generator] < kConstantConfigurations) {
+    return {kNone, beside, 0, 0, 0};
+  }
+  const CornerMask simplex =
+      casing(signs_[tet], vertices_.incidenceOf(tet, generator).simplex, along, beside);
+  if (dimension(simplex) == 2) {
+    const int face = oppositeCorner(simplex);
+    const HalfFace halfFace = halfFaceOf(tet, face);
+    const HalfFace mate = topology_.mate[halfFace];
+    if (mate != kNone && tetOf(mate) < tet) {
+      return {tetOf(mate), exact_.transitions.across(halfFace)(beside), 0, 0, 0};
+    }
+  }
+  return {tet, beside, 0, 0, 0};
 }
 
 }  // namespace hexhex

@@ -76,11 +76,57 @@ struct LocalConnectivity : Configurations {
   }
 };
 
+/// Names a slot within one configuration.
+struct SlotName {
+  std::size_t propeller;
+  std::size_t slot;
+};
+
+/// The hex corner between blades i and i + 1 of propeller p1, with p2 = blade i and p3 = blade i +
+/// 1, seen from p2: there it lies between blades p3 and p1.
+[[nodiscard]] inline SlotName rotateCorner(const Propeller* propellers, const Slot* slots,
+                                           SlotName at) noexcept {
+  const Slot& slot = slots[propellers[at.propeller].slotBegin + at.slot];
+  const std::size_t count = propellers[slot.blade].slotCount;
+  return {slot.blade, slot.back == 0 ? count - 1 : slot.back - std::size_t{1}};
+}
+
+/// Hex corners from blades (Section 5.3.4): enumerates those of a configuration and numbers them in
+/// all three slots of each. False if three blades do not close.
+[[nodiscard]] bool linkCorners(const std::vector<Propeller>& propellers, std::vector<Slot>& slots,
+                               std::vector<HexCorner>& corners);
+
 /// Extracts propellers, blades and hex corners of all generators, and notes in
 /// `vertices.incidences` which propeller each direction of each tet leads to. (Algorithm 6)
 /// @param signs  normal signs of every tet
 [[nodiscard]] LocalConnectivity extractLocalConnectivity(const PreparedMap& map,
                                                          const Array<NormalSigns>& signs,
                                                          HexVertices& vertices, Stage& stage);
+
+/// Names propellers and blades by directions in the chart of a tet.
+class SlotFinder {
+ public:
+  SlotFinder(const PreparedMap& map, const Array<NormalSigns>& signs, const HexVertices& vertices,
+             const LocalConnectivity& local)
+      : topology_(map.topology),
+        exact_(map.exact),
+        signs_(signs),
+        vertices_(vertices),
+        local_(local) {}
+
+  /// The propeller that leaves a vertex in direction `along`, and its blade in direction `beside`,
+  /// where the tet holds the beginning of the quarter plane that they span.
+  [[nodiscard]] SlotName find(Index tet, Index generator, Direction along, Direction beside) const;
+
+ private:
+  [[nodiscard]] std::size_t findPropeller(Index tet, Index generator, Direction along) const;
+  [[nodiscard]] Slot casingKey(Index tet, Index generator, Direction along, Direction beside) const;
+
+  const TetTopology& topology_;
+  const ExactMap& exact_;
+  const Array<NormalSigns>& signs_;
+  const HexVertices& vertices_;
+  const LocalConnectivity& local_;
+};
 
 }  // namespace hexhex

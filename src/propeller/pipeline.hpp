@@ -1,4 +1,4 @@
-// The stages behind preprocessing, in a row.
+// The propeller engine, which is the paper's: its stages behind preprocessing, in a row.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,10 @@
 
 namespace hexhex {
 
-/// Extracts the mesh of a map that has passed all checks and is scaled. If epsilon turns out to be
-/// too small, starts over with infinity, which finds every vertex (Section 5.2.3).
+/// Extracts the mesh of a map that has passed all checks and is scaled.
 /// @param expectedCells  the map's parametric volume
+/// @param epsilon        as in ExtractOptions
 /// @param[in,out] statistics  receives what the stages count
-/// @throws MissingVertex  if vertices are missing even so, which would be a bug
 [[nodiscard]] HexMesh runPipeline(const PreparedMap& map, std::uint64_t expectedCells,
                                   double epsilon, Context& context, ExtractStatistics& statistics);
 

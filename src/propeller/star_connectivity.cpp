@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <string>
 
-#include <propeller/link_corners.hpp>
 #include <propeller/star_connectivity.hpp>
 
 namespace hexhex {

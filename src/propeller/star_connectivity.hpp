@@ -1,4 +1,5 @@
-// Local connectivity of one generator from the tets around it (Sections 5.3.2 to 5.3.4). Needs only
+// Propellers, blades and hex corners of one generator from the tets around it (Sections 5.3.2 to
+// 5.3.4). Needs only
 // signs of face normals and of edge vectors, hence comparisons of integers: no determinant.
 #pragma once
 

@@ -59,86 +59,90 @@ void CellTracer::enter(Index tet, const GridPoint& z, CornerMask generator) noex
 }
 
 CornerPlace CellTracer::trace(const GridPoint& offset, const TiltOrder& tilts) {
-  Way way = begin(offset, tilts);
-  int face = exitFromInside(way);
-  for (std::size_t steps = 0; face != kNoExit && !endsBefore(way, face); ++steps) {
-    if (topology_.isBoundary(halfFaceOf(way.tet, face))) fail(way.tet, "the way leaves the mesh");
-    if (steps > topology_.tetCount()) fail(way.tet, "the way does not end");
-    cross(way, face);
-    face = exitAfterEntry(way);
+  Segment segment = begin(offset, tilts);
+  int face = exitFromInside(segment);
+  for (std::size_t steps = 0; face != kNoExit && !endsBefore(segment, face); ++steps) {
+    if (topology_.isBoundary(halfFaceOf(segment.tet, face)))
+      fail(segment.tet, "the way leaves the mesh");
+    if (steps > topology_.tetCount()) fail(segment.tet, "the way does not end");
+    cross(segment, face);
+    face = exitAfterEntry(segment);
   }
-  if (face == kNoExit) fail(way.tet, "the way leaves a tet nowhere");
-  CornerPlace place{way.tet, {}, way.rotation};
+  if (face == kNoExit) fail(segment.tet, "the way leaves a tet nowhere");
+  CornerPlace place{segment.tet, {}, segment.rotation};
   for (std::size_t k = 0; k < 3; ++k) {
-    place.z[k] = static_cast<std::int32_t>((way.center[k] + way.along[k] * half_) >> shift_);
+    place.z[k] =
+        static_cast<std::int32_t>((segment.center[k] + segment.along[k] * half_) >> shift_);
   }
   return place;
 }
 
-CellTracer::Way CellTracer::begin(const GridPoint& offset, const TiltOrder& tilts) {
-  Way way{tet_, -1, center_, {}, {}, {}, {}};
+CellTracer::Segment CellTracer::begin(const GridPoint& offset, const TiltOrder& tilts) {
+  Segment segment{tet_, -1, center_, {}, {}, {}, {}};
   for (std::size_t k = 0; k < 3; ++k) {
-    way.along[k] = 2 * offset[k] - 1;
+    segment.along[k] = 2 * offset[k] - 1;
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    way.tilts[k] = direction(tilts[k], -way.along[tilts[k]]);
+    segment.tilts[k] = direction(tilts[k], -segment.along[tilts[k]]);
   }
   if (generator_ == kWholeTet) {
-    for (std::size_t i = 0; i < 4; ++i) way.seen[i] = seenAs(way, corners_[i]);
+    for (std::size_t i = 0; i < 4; ++i) segment.seen[i] = seenAs(segment, corners_[i]);
   } else {
-    way = startAroundCenter(way);
-    for (std::size_t i = 0; i < 4; ++i) look(way, i);
+    segment = startAroundCenter(segment);
+    for (std::size_t i = 0; i < 4; ++i) look(segment, i);
   }
-  return way;
+  return segment;
 }
 
-LatticePoint CellTracer::relative(const Way& way, int corner) const noexcept {
-  return exact_.corners[way.tet][static_cast<std::size_t>(corner)] - way.center;
+LatticePoint CellTracer::relative(const Segment& segment, int corner) const noexcept {
+  return exact_.corners[segment.tet][static_cast<std::size_t>(corner)] - segment.center;
 }
 
-LatticeTet CellTracer::relativeTet(const Way& way) const noexcept {
-  return {relative(way, 0), relative(way, 1), relative(way, 2), relative(way, 3)};
+LatticeTet CellTracer::relativeTet(const Segment& segment) const noexcept {
+  return {relative(segment, 0), relative(segment, 1), relative(segment, 2), relative(segment, 3)};
 }
 
 /// How a corner of the tet looks, from its coordinates relative to the centre.
-CellTracer::Seen CellTracer::seenAs(const Way& way, const std::array<double, 3>& r) noexcept {
-  const double x = r[0] * way.along[0];
-  const double y = r[1] * way.along[1];
-  const double z = r[2] * way.along[2];
+CellTracer::Seen CellTracer::seenAs(const Segment& segment,
+                                    const std::array<double, 3>& r) noexcept {
+  const double x = r[0] * segment.along[0];
+  const double y = r[1] * segment.along[1];
+  const double z = r[2] * segment.along[2];
   return {x - z, y - z, x + y + z, std::abs(x) + std::abs(y) + std::abs(z)};
 }
 
-void CellTracer::look(Way& way, std::size_t corner) const noexcept {
-  const LatticePoint r = relative(way, static_cast<int>(corner));
-  way.seen[corner] = seenAs(
-      way, {static_cast<double>(r[0]), static_cast<double>(r[1]), static_cast<double>(r[2])});
+void CellTracer::look(Segment& segment, std::size_t corner) const noexcept {
+  const LatticePoint r = relative(segment, static_cast<int>(corner));
+  segment.seen[corner] = seenAs(
+      segment, {static_cast<double>(r[0]), static_cast<double>(r[1]), static_cast<double>(r[2])});
 }
 
-/// Twice the area of the triangle between two seen corners and the way, with the sign that tells on
-/// which side of the edge the way passes; errors are below kAreaError times both sizes.
+/// Twice the area of the triangle between two seen corners and the segment, with the sign that
+/// tells on which side of the edge the segment passes; errors are below kAreaError times both
+/// sizes.
 ///
 /// x and y carry a conversion and a subtraction, hence errors below 2 * 2^-53 * size; with the two
 /// products and their difference less than 12 * 2^-53 of the product of sizes.
 constexpr double kAreaError = 0x1p-49;
 
-/// Sign of det(a, b, way) for two corners a, b relative to the centre: on which side of the edge
-/// the way passes. 0 only if the edge contains the centre.
-int CellTracer::side(const Way& way, int i, int j) const noexcept {
-  const Seen& a = way.seen[static_cast<std::size_t>(i)];
-  const Seen& b = way.seen[static_cast<std::size_t>(j)];
+/// Sign of det(a, b, segment) for two corners a, b relative to the centre: on which side of the
+/// edge the segment passes. 0 only if the edge contains the centre.
+int CellTracer::side(const Segment& segment, int i, int j) const noexcept {
+  const Seen& a = segment.seen[static_cast<std::size_t>(i)];
+  const Seen& b = segment.seen[static_cast<std::size_t>(j)];
   const double area = a.x * b.y - a.y * b.x;
-  if (std::abs(area) <= kAreaError * a.size * b.size) return exactSide(way, i, j);
-  const int mirror = way.along[0] * way.along[1] * way.along[2];
+  if (std::abs(area) <= kAreaError * a.size * b.size) return exactSide(segment, i, j);
+  const int mirror = segment.along[0] * segment.along[1] * segment.along[2];
   return area > 0 ? mirror : -mirror;
 }
 
-int CellTracer::exactSide(const Way& way, int i, int j) const noexcept {
-  const LatticePoint p = relative(way, i);
-  const LatticePoint q = relative(way, j);
+int CellTracer::exactSide(const Segment& segment, int i, int j) const noexcept {
+  const LatticePoint p = relative(segment, i);
+  const LatticePoint q = relative(segment, j);
   Int128 exact = 0;
-  for (std::size_t k = 0; k < 3; ++k) exact += crossComponent(p, q, k) * way.along[k];
+  for (std::size_t k = 0; k < 3; ++k) exact += crossComponent(p, q, k) * segment.along[k];
   if (exact != 0) return sign(exact);
-  for (const Direction tilt : way.tilts) {
+  for (const Direction tilt : segment.tilts) {
     const int tilted =
         sign(crossComponent(p, q, static_cast<std::size_t>(axisOf(tilt)))) * signOf(tilt);
     if (tilted != 0) return tilted;
@@ -146,36 +150,37 @@ int CellTracer::exactSide(const Way& way, int i, int j) const noexcept {
   return 0;
 }
 
-/// The face through which the way leaves the tet in which it begins: the one of which it passes all
-/// three edges on the negative side.
-int CellTracer::exitFromInside(const Way& way) const noexcept {
+/// The face through which the segment leaves the tet in which it begins: the one of which it passes
+/// all three edges on the negative side.
+int CellTracer::exitFromInside(const Segment& segment) const noexcept {
   for (int face = 0; face < 4; ++face) {
     const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
-    if (side(way, f[0], f[1]) < 0 && side(way, f[1], f[2]) < 0 && side(way, f[2], f[0]) < 0) {
+    if (side(segment, f[0], f[1]) < 0 && side(segment, f[1], f[2]) < 0 &&
+        side(segment, f[2], f[0]) < 0) {
       return face;
     }
   }
   return kNoExit;
 }
 
-/// The same for a tet that the way entered: seen along the way, the corners a, b, c of the entry
-/// stand around the origin, and the origin lies in that one of the triangles between two of them
-/// and the fourth corner e which holds the direction opposite e.
-int CellTracer::exitAfterEntry(const Way& way) const noexcept {
-  const int e = way.entered;
+/// The same for a tet that the segment entered: seen along the segment, the corners a, b, c of the
+/// entry stand around the origin, and the origin lies in that one of the triangles between two of
+/// them and the fourth corner e which holds the direction opposite e.
+int CellTracer::exitAfterEntry(const Segment& segment) const noexcept {
+  const int e = segment.entered;
   const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(e)];
-  if (side(way, f[0], e) < 0) return side(way, f[1], e) > 0 ? f[2] : f[0];
-  return side(way, f[2], e) < 0 ? f[1] : f[0];
+  if (side(segment, f[0], e) < 0) return side(segment, f[1], e) > 0 ? f[2] : f[0];
+  return side(segment, f[2], e) < 0 ? f[1] : f[0];
 }
 
-/// Whether the way ends before it reaches its exit face: compares the depth of the corner with that
-/// of the face at the origin, which is the mean of its corners' depths, weighted by the areas of
-/// the triangles opposite them.
-bool CellTracer::endsBefore(const Way& way, int face) const noexcept {
+/// Whether the segment ends before it reaches its exit face: compares the depth of the corner with
+/// that of the face at the origin, which is the mean of its corners' depths, weighted by the areas
+/// of the triangles opposite them.
+bool CellTracer::endsBefore(const Segment& segment, int face) const noexcept {
   const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
-  const Seen& a = way.seen[static_cast<std::size_t>(f[0])];
-  const Seen& b = way.seen[static_cast<std::size_t>(f[1])];
-  const Seen& c = way.seen[static_cast<std::size_t>(f[2])];
+  const Seen& a = segment.seen[static_cast<std::size_t>(f[0])];
+  const Seen& b = segment.seen[static_cast<std::size_t>(f[1])];
+  const Seen& c = segment.seen[static_cast<std::size_t>(f[2])];
   const double end = 3 * static_cast<double>(half_);
   const double atA = b.x * c.y - b.y * c.x;
   const double atB = c.x * a.y - c.y * a.x;
@@ -184,19 +189,19 @@ bool CellTracer::endsBefore(const Way& way, int face) const noexcept {
   // Each area errs by kAreaError of the product of two sizes, each depth by 4 * 2^-53 of a size.
   const double size = a.size + b.size + c.size;
   if (std::abs(beyond) <= 4 * kAreaError * size * size * (size + end)) {
-    return endsExactlyBefore(way, face);
+    return endsExactlyBefore(segment, face);
   }
   return (beyond > 0) == (atA + atB + atC > 0);
 }
 
-bool CellTracer::endsExactlyBefore(const Way& way, int face) const noexcept {
+bool CellTracer::endsExactlyBefore(const Segment& segment, int face) const noexcept {
   LatticePoint corner{};
-  for (std::size_t k = 0; k < 3; ++k) corner[k] = way.along[k] * half_;
-  const LatticeTet tet = relativeTet(way);
+  for (std::size_t k = 0; k < 3; ++k) corner[k] = segment.along[k] * half_;
+  const LatticeTet tet = relativeTet(segment);
   const Face plane(tet, face);
   const int side = plane.side(corner);
   if (side != 0) return side > 0;
-  for (const Direction tilt : way.tilts) {
+  for (const Direction tilt : segment.tilts) {
     const int tilted = plane.dot(tilt);
     if (tilted != 0) return tilted > 0;
   }
@@ -204,37 +209,37 @@ bool CellTracer::endsExactlyBefore(const Way& way, int face) const noexcept {
 }
 
 /// Goes on into the neighbour across a face.
-void CellTracer::cross(Way& way, int face) const {
-  const HalfFace halfFace = halfFaceOf(way.tet, face);
+void CellTracer::cross(Segment& segment, int face) const {
+  const HalfFace halfFace = halfFaceOf(segment.tet, face);
   const HalfFace mate = topology_.mate[halfFace];
-  const Index before = way.tet;
-  way.tet = tetOf(mate);
-  way.entered = localOf(mate);
+  const Index before = segment.tet;
+  segment.tet = tetOf(mate);
+  segment.entered = localOf(mate);
   if (exact_.transitions.isJump(halfFace)) {
     const Transition& transition = exact_.transitions.across(halfFace);
-    way.center = transition(way.center, exact_.unit);
-    way.along = transition.rotation(way.along);
-    for (Direction& tilt : way.tilts) tilt = transition(tilt);
-    way.rotation = transition.rotation * way.rotation;
-    for (std::size_t i = 0; i < 4; ++i) look(way, i);
+    segment.center = transition(segment.center, exact_.unit);
+    segment.along = transition.rotation(segment.along);
+    for (Direction& tilt : segment.tilts) tilt = transition(tilt);
+    segment.rotation = transition.rotation * segment.rotation;
+    for (std::size_t i = 0; i < 4; ++i) look(segment, i);
     return;
   }
   // Three corners look as before.
-  const std::array<Seen, 4> seen = way.seen;
-  const Tet& next = topology_.tets[way.tet];
+  const std::array<Seen, 4> seen = segment.seen;
+  const Tet& next = topology_.tets[segment.tet];
   for (std::size_t i = 0; i < 4; ++i) {
-    if (static_cast<int>(i) == way.entered) {
-      look(way, i);
+    if (static_cast<int>(i) == segment.entered) {
+      look(segment, i);
     } else {
-      way.seen[i] = seen[static_cast<std::size_t>(topology_.localCorner(before, next[i]))];
+      segment.seen[i] = seen[static_cast<std::size_t>(topology_.localCorner(before, next[i]))];
     }
   }
 }
 
-/// The tet among those around the centre into which the way leads: no face through the centre may
-/// have it outside.
-CellTracer::Way CellTracer::startAroundCenter(const Way& way) {
-  const auto leadsInto = [this](const Way& candidate) {
+/// The tet among those around the centre into which the segment leads: no face through the centre
+/// may have it outside.
+CellTracer::Segment CellTracer::startAroundCenter(const Segment& segment) {
+  const auto leadsInto = [this](const Segment& candidate) {
     const LatticeTet tet = relativeTet(candidate);
     for (int face = 0; face < 4; ++face) {
       const Face plane(tet, face);
@@ -247,9 +252,9 @@ CellTracer::Way CellTracer::startAroundCenter(const Way& way) {
     }
     return true;
   };
-  star_.assign(1, way);
+  star_.assign(1, segment);
   for (std::size_t head = 0; head < star_.size(); ++head) {
-    const Way here = star_[head];
+    const Segment here = star_[head];
     if (leadsInto(here)) return here;
     const LatticeTet tet = relativeTet(here);
     for (int face = 0; face < 4; ++face) {
@@ -257,14 +262,14 @@ CellTracer::Way CellTracer::startAroundCenter(const Way& way) {
       if (topology_.isBoundary(halfFaceOf(here.tet, face))) {
         fail(here.tet, "a centre lies on the boundary");
       }
-      Way next = here;
+      Segment next = here;
       cross(next, face);
       const bool seen = std::any_of(star_.begin(), star_.end(),
-                                    [&](const Way& other) { return other.tet == next.tet; });
+                                    [&](const Segment& other) { return other.tet == next.tet; });
       if (!seen) star_.push_back(next);
     }
   }
-  fail(way.tet, "no tet around a centre contains the beginning of the way");
+  fail(segment.tet, "no tet around a centre contains the beginning of the way");
 }
 
 }  // namespace hexhex

@@ -1,11 +1,11 @@
 // From the centre of a cell straight to its corners, tet by tet, by exact predicates.
 //
-// Inside the open unit cube of a cell the map is one to one, so the way is unambiguous whatever the
-// charts. It does not end at the corner itself but beside it, at corner + e d1 + e^2 d2 + e^3 d3
-// with an infinitesimal e and the directions d1, d2, d3 of the cell's edges at the corner. A way
-// that is tilted like that meets no edge and no vertex of the tet mesh, so every decision has one
-// answer, and it ends in a tet that holds the beginning of edge d1 and of the square between d1 and
-// d2.
+// Inside the open unit cube of a cell the map is one to one, so the segment can be followed
+// whatever the charts. It does not end at the corner itself but beside it, at corner + e d1 + e^2
+// d2 + e^3 d3 with an infinitesimal e and the directions d1, d2, d3 of the cell's edges at the
+// corner. A segment that is tilted like that meets no edge and no vertex of the tet mesh, so every
+// decision has one answer, and it ends in a tet that holds the beginning of edge d1 and of the
+// square between d1 and d2.
 #pragma once
 
 #include <array>
@@ -17,12 +17,12 @@
 
 namespace hexhex {
 
-/// The axes of a cell in the order in which ways are tilted along them: d1, d2, d3.
+/// The axes of a cell in the order in which segments are tilted along them: d1, d2, d3.
 using TiltOrder = std::array<std::uint8_t, 3>;
 
-/// Where a way from a centre to a corner ends.
+/// Where a segment from a centre to a corner ends.
 struct CornerPlace {
-  Index tet;          ///< contains the corner, and the way's end beside it
+  Index tet;          ///< contains the corner, and the segment's end beside it
   GridPoint z;        ///< the corner in that tet's chart
   Rotation rotation;  ///< from the chart of the centre's owner to that of `tet`
 };
@@ -45,8 +45,8 @@ class CellTracer {
   [[nodiscard]] CornerPlace trace(const GridPoint& offset, const TiltOrder& tilts = {0, 1, 2});
 
  private:
-  /// A corner of a tet seen along a way: as a point (x, y) of a plane with the way at its origin,
-  /// at a depth, rounded; relative to the cell's centre, in lattice units.
+  /// A corner of a tet seen along a segment: as a point (x, y) of a plane with the segment at its
+  /// origin, at a depth, rounded; relative to the cell's centre, in lattice units.
   struct Seen {
     double x;
     double y;
@@ -54,8 +54,8 @@ class CellTracer {
     double size;  ///< sum of magnitudes of the corner's coordinates
   };
 
-  /// A way through a tet: everything in the tet's chart, in lattice units.
-  struct Way {
+  /// A segment through a tet: everything in the tet's chart, in lattice units.
+  struct Segment {
     Index tet;
     int entered;  ///< face through which it came, or -1
     LatticePoint center;
@@ -65,19 +65,19 @@ class CellTracer {
     std::array<Seen, 4> seen;
   };
 
-  [[nodiscard]] Way begin(const GridPoint& offset, const TiltOrder& tilts);
-  [[nodiscard]] LatticePoint relative(const Way& way, int corner) const noexcept;
-  [[nodiscard]] LatticeTet relativeTet(const Way& way) const noexcept;
-  [[nodiscard]] static Seen seenAs(const Way& way, const std::array<double, 3>& r) noexcept;
-  void look(Way& way, std::size_t corner) const noexcept;
-  [[nodiscard]] int side(const Way& way, int i, int j) const noexcept;
-  [[nodiscard]] int exactSide(const Way& way, int i, int j) const noexcept;
-  [[nodiscard]] int exitFromInside(const Way& way) const noexcept;
-  [[nodiscard]] int exitAfterEntry(const Way& way) const noexcept;
-  [[nodiscard]] bool endsBefore(const Way& way, int face) const noexcept;
-  [[nodiscard]] bool endsExactlyBefore(const Way& way, int face) const noexcept;
-  void cross(Way& way, int face) const;
-  [[nodiscard]] Way startAroundCenter(const Way& way);
+  [[nodiscard]] Segment begin(const GridPoint& offset, const TiltOrder& tilts);
+  [[nodiscard]] LatticePoint relative(const Segment& segment, int corner) const noexcept;
+  [[nodiscard]] LatticeTet relativeTet(const Segment& segment) const noexcept;
+  [[nodiscard]] static Seen seenAs(const Segment& segment, const std::array<double, 3>& r) noexcept;
+  void look(Segment& segment, std::size_t corner) const noexcept;
+  [[nodiscard]] int side(const Segment& segment, int i, int j) const noexcept;
+  [[nodiscard]] int exactSide(const Segment& segment, int i, int j) const noexcept;
+  [[nodiscard]] int exitFromInside(const Segment& segment) const noexcept;
+  [[nodiscard]] int exitAfterEntry(const Segment& segment) const noexcept;
+  [[nodiscard]] bool endsBefore(const Segment& segment, int face) const noexcept;
+  [[nodiscard]] bool endsExactlyBefore(const Segment& segment, int face) const noexcept;
+  void cross(Segment& segment, int face) const;
+  [[nodiscard]] Segment startAroundCenter(const Segment& segment);
   [[noreturn]] static void fail(Index tet, const char* what);
 
   const TetTopology& topology_;
@@ -91,7 +91,7 @@ class CellTracer {
   CornerMask generator_ = kNoSimplex;
   LatticePoint center_{};
   std::array<std::array<double, 3>, 4> corners_{};  ///< of the tet, from the centre
-  std::vector<Way> star_;                           ///< working memory
+  std::vector<Segment> star_;                       ///< working memory
 };
 
 }  // namespace hexhex

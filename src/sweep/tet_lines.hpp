@@ -2,6 +2,7 @@
 // by one half (cell centres).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -12,41 +13,12 @@
 
 #include <base/parallel.hpp>
 #include <igm/exact_map.hpp>
-#include <lattice/both_grids.hpp>
-#include <lattice/half_grids.hpp>
-#include <lattice/line_rasterizer.hpp>
+#include <lattice/tet_rasterizer.hpp>
 
 namespace hexhex {
 
-/// Which points are swept. A cell is named by its corner with the smallest coordinates, so that
-/// grid point z stands for the centre z + (1/2, 1/2, 1/2).
-enum class SweptGrid : std::uint8_t { Vertices, Centers };
-
 /// Tets are worked on in blocks of this many.
 inline constexpr std::size_t kSweepBlock = 256;
-
-/// One tet, ready to be swept.
-struct TetSweep {
-  LatticeTet shifted;  ///< corners, so that the swept points are integers
-  GridBox box;
-  SweepAxes axes;
-
-  TetSweep(const ExactMap& map, Index tet, SweptGrid grid) noexcept;
-
-  /// Appends the tet's lines.
-  void run(std::int64_t unit, std::vector<SweptLine>& lines) const;
-};
-
-/// Appends the lines of both grids.
-inline void sweepBoth(const ExactMap& map, Index tet, std::vector<SweptLine>& vertices,
-                      std::vector<SweptLine>& centers) {
-  sweepBothGrids(map.corners[tet], map.unit, vertices, centers);
-}
-
-/// Appends the lines of one grid of several.
-inline void appendLines(const HalfGrids& grids, HalfGrid grid, std::vector<SweptLine>& lines) {
-  static_cast<void>(grids.sweep(grid, [&](const SweptLine& line) { lines.push_back(line); }));
-}
 
 /// The lines of a block of tets, one tet after the other.
 class BlockLines {
@@ -94,7 +66,12 @@ class TetLines {
   explicit TetLines(std::size_t tets)
       : lineBegin_(tets + blockCount(tets, kSweepBlock)), blocks_(blockCount(tets, kSweepBlock)) {}
 
-  void store(std::size_t block, const BlockLines& lines);
+  void store(std::size_t block, const BlockLines& lines) {
+    blocks_[block].assign(lines.all().begin(), lines.all().end());
+    const auto place = lineBegin_.begin() + static_cast<std::ptrdiff_t>(block * (kSweepBlock + 1));
+    *std::copy(lines.begins().begin(), lines.begins().end(), place) =
+        static_cast<Index>(lines.all().size());
+  }
 
   [[nodiscard]] bool areEmpty(Index tet) const noexcept {
     const std::size_t place = placeOf(tet);

@@ -22,8 +22,9 @@ void addScaled(Vec3& sum, const Vec3& v, double factor) {
 
 }  // namespace
 
-TetPositions::TetPositions(const PreparedMap& map, Index tet, const GridBox& box, SweepAxes axes)
+TetPositions::TetPositions(const PreparedMap& map, Index tet, SweepAxes axes)
     : corners_(map.exact.corners[tet]), unit_(map.exact.unit), axes_(axes()) {
+  const GridBox box = gridBox(corners_, unit_);
   for (std::size_t i = 0; i < 4; ++i) points_[i] = map.input.view.points[map.topology.tets[tet][i]];
   LatticePoint boxOrigin{};
   Vec3 extent{};

@@ -5,15 +5,15 @@
 #include <hexhex/types.hpp>
 
 #include <igm/prepare.hpp>
-#include <lattice/rasterize.hpp>
+#include <lattice/tet_rasterizer.hpp>
 
 namespace hexhex {
 
 /// The inverse of the map in one tet.
 class TetPositions {
  public:
-  /// @param box, axes  of the tet's sweep; the box is not empty
-  TetPositions(const PreparedMap& map, Index tet, const GridBox& box, SweepAxes axes);
+  /// @param axes  of the tet's sweep, which finds points
+  TetPositions(const PreparedMap& map, Index tet, SweepAxes axes);
 
   /// The preimage of a grid point in the interior of a simplex of the tet: a vertex itself, on the
   /// segment at edges, in the plane of the three corners at faces.

@@ -1,5 +1,4 @@
-#include <numeric>
-
+#include <base/workspaces.hpp>
 #include <sweep/vertex_numbers.hpp>
 
 namespace hexhex {
@@ -93,6 +92,29 @@ void VertexCounter::finish() {
     }
   }
   blocks_ = {};
+}
+
+SweptVertices sweepVertices(const PreparedMap& map, Stage& stage, SweepObserver* observer,
+                            double epsilon) {
+  const std::size_t tets = map.topology.tetCount();
+  SweptVertices swept{TetLines(tets), {}};
+  VertexCounter counter(map, swept.numbers);
+  parallelBlocksWith(
+      stage, tets, kSweepBlock, [] { return BlockLines(true); },
+      [&](std::size_t begin, std::size_t end, std::size_t block, BlockLines& lines) {
+        lines.clear();
+        for (std::size_t t = begin; t < end; ++t) {
+          const auto tet = static_cast<Index>(t);
+          TetRasterizer rasterizer(map.exact.corners[t], map.exact.unit, epsilon);
+          rasterizer.append(kVertexGrid, lines.next());
+          counter.count(block, tet, lines.last());
+          if (observer != nullptr) observer->add(block, tet, rasterizer);
+        }
+        swept.lines.store(block, lines);
+        lines.shrink();
+      });
+  counter.finish();
+  return swept;
 }
 
 void TetNumbering::start(Counter& counter, CornerMask simplex) {

@@ -66,6 +66,35 @@ class VertexCounter {
   std::vector<Block> blocks_;
 };
 
+/// All hex vertices, swept and numbered.
+struct SweptVertices {
+  TetLines lines;
+  VertexNumbers numbers;
+};
+
+/// A look at the tets while they are swept for vertices: further grids take little more then. (To
+/// sweep anew for the midpoints of edges would cost arcs and an extraction together 4 to 8 %.)
+class SweepObserver {
+ public:
+  SweepObserver() = default;
+  SweepObserver(const SweepObserver&) = delete;
+  SweepObserver& operator=(const SweepObserver&) = delete;
+  SweepObserver(SweepObserver&&) = delete;
+  SweepObserver& operator=(SweepObserver&&) = delete;
+  virtual ~SweepObserver() = default;
+
+  /// Tets of a block of kSweepBlock in order, blocks in any order and in parallel.
+  virtual void add(std::size_t block, Index tet, TetRasterizer& rasterizer) = 0;
+  /// At the end.
+  virtual void take(SweptVertices vertices) = 0;
+};
+
+/// Sweeps all tets for vertices, and numbers these.
+/// @param observer  sees every tet, if there is one; the result is the caller's to hand over
+/// @param epsilon   of TetRasterizer
+[[nodiscard]] SweptVertices sweepVertices(const PreparedMap& map, Stage& stage,
+                                          SweepObserver* observer = nullptr, double epsilon = 0);
+
 /// Consecutive points of one line in the interior of one simplex, with consecutive numbers.
 struct VertexRun {
   const SweptLine* line;

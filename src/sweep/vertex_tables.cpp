@@ -88,54 +88,49 @@ void VertexTables::makeTables(std::uint64_t room, Stage& stage) {
     });
   };
   forEachBox([&](Index tet, Box& box) { box = measureBox(tet, room); });
-  std::uint64_t points = 0;
+  std::uint64_t places = 0;
   for (Box& box : boxes_) {
     if (box.begin == kNoTable) continue;
-    box.begin = points;
-    points += box.points();
+    box.begin = places;
+    places += box.places();
   }
-  tableVertices_.resize(points);
-  tableSimplices_.resize(points);
+  tables_.resize(places);
   forEachBox([&](Index tet, const Box& box) {
-    if (box.begin != kNoTable) fillTable(tet);
+    if (box.begin != kNoTable) fillTable(tet, box);
   });
 }
 
 /// Without its place in the tables, if it is to have one.
 VertexTables::Box VertexTables::measureBox(Index tet, std::uint64_t room) const {
-  GridPoint low = linesOf(tet).front().swept.point(0);
-  GridPoint high = low;
-  std::uint64_t points = 0;
-  for (const Line& line : linesOf(tet)) {
-    const GridPoint first = line.swept.point(0);
-    const GridPoint last = line.swept.point(line.swept.count - 1);
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], first[k]);
-      high[k] = std::max(high[k], last[k]);
+  const std::span<const Line> lines = linesOf(tet);
+  std::array<std::int32_t, 2> low = {lines.front().swept.level, lines.front().swept.row};
+  std::array<std::int32_t, 2> high = low;
+  for (const Line& line : lines) {
+    const std::array<std::int32_t, 2> at = {line.swept.level, line.swept.row};
+    for (std::size_t k = 0; k < 2; ++k) {
+      low[k] = std::min(low[k], at[k]);
+      high[k] = std::max(high[k], at[k]);
     }
-    points += line.swept.count;
   }
   Box box;
+  box.axes = lines.front().swept.axes;
   box.first = low;
-  for (std::size_t k = 0; k < 3; ++k) {
+  for (std::size_t k = 0; k < 2; ++k) {
     box.size[k] = static_cast<std::uint32_t>(high[k] - low[k] + 1);
   }
-  if (box.points() > room * points) box.begin = kNoTable;
+  if (box.places() > room * lines.size()) box.begin = kNoTable;
   return box;
 }
 
-void VertexTables::fillTable(Index tet) {
-  const Box& box = boxes_[boxOf_[tet]];
-  std::fill_n(tableVertices_.data() + box.begin, box.points(), kNone);
-  std::fill_n(tableSimplices_.data() + box.begin, box.points(), kNoSimplex);
-  forEach(tet, [&](const GridPoint& z, const Found& found) {
-    std::uint64_t place = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      place = place * box.size[k] + static_cast<std::uint64_t>(z[k] - box.first[k]);
-    }
-    tableVertices_[box.begin + place] = found.vertex;
-    tableSimplices_[box.begin + place] = found.simplex;
-  });
+void VertexTables::fillTable(Index tet, const Box& box) {
+  Index* const table = tables_.data() + box.begin;
+  std::fill_n(table, box.places(), kNone);
+  Index number = 0;
+  for (const Line& line : linesOf(tet)) {
+    const auto level = static_cast<std::uint64_t>(line.swept.level - box.first[0]);
+    const auto row = static_cast<std::uint64_t>(line.swept.row - box.first[1]);
+    table[level * box.size[1] + row] = number++;
+  }
 }
 
 unsigned VertexTables::occupiedSimplices(Index tet) const noexcept {
@@ -145,13 +140,6 @@ unsigned VertexTables::occupiedSimplices(Index tet) const noexcept {
     if (line.swept.count > 2) simplices |= 1U << line.swept.inner();
   }
   return simplices;
-}
-
-VertexTables::Found VertexTables::findOnLines(Index tet, const GridPoint& z) const {
-  const Line* const line = findLine(linesOf(tet), z);
-  if (line == nullptr) return {};
-  const std::uint32_t i = line->swept.indexOf(z);
-  return i < line->swept.count ? foundOn(tet, *line, z, i) : Found{};
 }
 
 /// The i-th vertex of a line, at grid point z.
@@ -169,7 +157,7 @@ VertexTables::Found VertexTables::foundOn(Index tet, const Line& line, const Gri
   // The tet on the other side of a face owns it.
   const HalfFace halfFace = halfFaceOf(tet, oppositeCorner(simplex));
   const Index owner = tetOf(map_.topology.mate[halfFace]);
-  return {findOnLines(owner, map_.exact.transitions.across(halfFace)(z)).vertex, simplex};
+  return {find(owner, map_.exact.transitions.across(halfFace)(z)).vertex, simplex};
 }
 
 void VertexTables::describe(const VertexDescriptions& to, Stage& stage) const {
@@ -181,9 +169,9 @@ void VertexTables::describe(const VertexDescriptions& to, Stage& stage) const {
                      if (!hasVertices(tet)) continue;
                      swept.clear();
                      for (const Line& line : linesOf(tet)) swept.push_back(line.swept);
-                     const TetSweep sweep(map_.exact, tet, SweptGrid::Vertices);
-                     const TetPositions positions(map_, tet, sweep.box, sweep.axes);
-                     TetNumbering(map_, numbers_, tet, sweep.axes)
+                     const SweepAxes axes = swept.front().axes;
+                     const TetPositions positions(map_, tet, axes);
+                     TetNumbering(map_, numbers_, tet, axes)
                          .run(std::span<const SweptLine>(swept), [&](const VertexRun& run) {
                            if (!run.owned) return;
                            for (std::uint32_t i = 0; i < run.count; ++i) {

@@ -11,7 +11,7 @@
 #include <hexhex/types.hpp>
 
 #include <igm/prepare.hpp>
-#include <sweep/sweep_observer.hpp>
+#include <sweep/vertex_numbers.hpp>
 
 namespace hexhex {
 
@@ -22,23 +22,38 @@ struct VertexDescriptions {
   std::span<CornerSet> corners;  ///< in terms of the caller's tets
 };
 
+/// Of the lines of a tet's sweep, each with a SweptLine `swept`: the one through a grid point,
+/// which may end before it; or nullptr.
+/// @param hint  which line may be the one: searches in the order of a sweep repeat the one before
+template <class Line>
+[[nodiscard]] const Line* findLine(std::span<const Line> lines, const GridPoint& z,
+                                   std::size_t hint = 0) {
+  if (lines.empty()) return nullptr;
+  const std::array<std::uint8_t, 3>& axes = lines.front().swept.axes();
+  const std::pair wanted(z[axes[0]], z[axes[1]]);
+  const auto placeOf = [](const Line& line) { return std::pair(line.swept.level, line.swept.row); };
+  if (hint < lines.size() && placeOf(lines[hint]) == wanted) return &lines[hint];
+  const auto found = std::ranges::lower_bound(lines, wanted, {}, placeOf);
+  return found != lines.end() && placeOf(*found) == wanted ? &*found : nullptr;
+}
+
 /// Numbers are those of extract() at the map's scale.
 ///
-/// A tet has a table of the grid points in the box around its vertices, unless hardly any of them
-/// are vertices: then its lines are searched. Without tables, arcs and an extraction together take
-/// 7 % (tets of the size of cells) to 70 % (many cells in a tet) more time.
+/// A tet has a table of the lines of its sweep, by level and row, unless hardly any of them hold
+/// vertices: then its lines are searched. (Without tables, arcs and an extraction together take 7 %
+/// more time with tets of the size of cells, and up to 70 % with many cells in a tet.)
 class VertexTables {
  public:
-  /// Tets fill a sixth of their bounding box if they have three edges along the axes.
-  static constexpr std::uint64_t kRoomPerVertex = 24;
+  static constexpr std::uint64_t kRoomPerLine = 24;
 
-  /// @param room  how many grid points the box around a tet's vertices may have for each of them if
-  ///              it is to have a table; thin tets across the axes fill next to nothing of theirs
+  /// @param room  how many places the table of a tet may have for each of its lines; thin tets
+  /// across
+  ///              the axes fill next to nothing of theirs
   /// @throws Error TooLarge for more vertices than an Index can number
   VertexTables(const PreparedMap& map, SweptVertices swept, Stage& stage,
-               std::uint64_t room = kRoomPerVertex);
+               std::uint64_t room = kRoomPerLine);
   /// Sweeps the map.
-  VertexTables(const PreparedMap& map, Stage& stage, std::uint64_t room = kRoomPerVertex)
+  VertexTables(const PreparedMap& map, Stage& stage, std::uint64_t room = kRoomPerLine)
       : VertexTables(map, sweepVertices(map, stage), stage, room) {}
 
   [[nodiscard]] const VertexNumbers& numbers() const noexcept { return numbers_; }
@@ -62,14 +77,17 @@ class VertexTables {
   [[nodiscard]] Found find(Index tet, const GridPoint& z) const {
     if (!hasVertices(tet)) return {};
     const Box& box = boxes_[boxOf_[tet]];
+    const std::array<std::uint8_t, 3>& axes = box.axes();
     std::size_t place = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto at = static_cast<std::uint32_t>(z[k]) - static_cast<std::uint32_t>(box.first[k]);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto at =
+          static_cast<std::uint32_t>(z[axes[k]]) - static_cast<std::uint32_t>(box.first[k]);
       if (at >= box.size[k]) return {};
       place = place * box.size[k] + at;
     }
-    if (box.begin == kNoTable) return findOnLines(tet, z);
-    return {tableVertices_[box.begin + place], tableSimplices_[box.begin + place]};
+    if (box.begin == kNoTable) return foundOn(tet, findLine(linesOf(tet), z), z);
+    const Index line = tables_[box.begin + place];
+    return foundOn(tet, line == kNone ? nullptr : &lines_[lineBegin_[tet] + line], z);
   }
 
   /// Calls visit(z, Found) for every vertex of a closed tet, in the order of its sweep.
@@ -95,15 +113,14 @@ class VertexTables {
 
     void enter(const VertexRun& run);
   };
-  /// The smallest box with all vertices of a tet, in its chart.
+  /// The levels and rows of a tet's lines.
   struct Box {
     std::uint64_t begin = 0;  ///< in the tables, or kNoTable
-    GridPoint first{};
-    std::array<std::uint32_t, 3> size{};  ///< points along each axis
+    std::array<std::int32_t, 2> first{};
+    std::array<std::uint32_t, 2> size{};
+    SweepAxes axes;
 
-    [[nodiscard]] std::uint64_t points() const noexcept {
-      return std::uint64_t{size[0]} * size[1] * size[2];
-    }
+    [[nodiscard]] std::uint64_t places() const noexcept { return std::uint64_t{size[0]} * size[1]; }
   };
   static constexpr std::uint64_t kNoTable = ~std::uint64_t{0};
 
@@ -116,8 +133,13 @@ class VertexTables {
   void numberLines(Index tet, std::span<const SweptLine> swept);
   void makeTables(std::uint64_t room, Stage& stage);
   [[nodiscard]] Box measureBox(Index tet, std::uint64_t room) const;
-  void fillTable(Index tet);
-  [[nodiscard]] Found findOnLines(Index tet, const GridPoint& z) const;
+  void fillTable(Index tet, const Box& box);
+  /// The vertex at grid point z of a line, if there is that line.
+  [[nodiscard]] Found foundOn(Index tet, const Line* line, const GridPoint& z) const {
+    if (line == nullptr) return {};
+    const std::uint32_t i = line->swept.indexOf(z);
+    return i < line->swept.count ? foundOn(tet, *line, z, i) : Found{};
+  }
   [[nodiscard]] Found foundOn(Index tet, const Line& line, const GridPoint& z,
                               std::uint32_t i) const;
 
@@ -128,23 +150,7 @@ class VertexTables {
   Array<std::uint64_t> occupied_;  ///< a bit per tet: few enough to stay in caches
   Array<Index> boxOf_;             ///< per tet with vertices
   Array<Box> boxes_;
-  Array<Index> tableVertices_;  ///< per point of the boxes with tables
-  Array<CornerMask> tableSimplices_;
+  Array<Index> tables_;  ///< which of its tet's lines; or kNone
 };
-
-/// Of the lines of a tet's sweep, each with a SweptLine `swept`: the one through a grid point,
-/// which may end before it; or nullptr.
-/// @param hint  which line may be the one: searches in the order of a sweep repeat the one before
-template <class Line>
-[[nodiscard]] const Line* findLine(std::span<const Line> lines, const GridPoint& z,
-                                   std::size_t hint = 0) {
-  if (lines.empty()) return nullptr;
-  const std::array<std::uint8_t, 3>& axes = lines.front().swept.axes();
-  const std::pair wanted(z[axes[0]], z[axes[1]]);
-  const auto placeOf = [](const Line& line) { return std::pair(line.swept.level, line.swept.row); };
-  if (hint < lines.size() && placeOf(lines[hint]) == wanted) return &lines[hint];
-  const auto found = std::ranges::lower_bound(lines, wanted, {}, placeOf);
-  return found != lines.end() && placeOf(*found) == wanted ? &*found : nullptr;
-}
 
 }  // namespace hexhex

@@ -223,16 +223,15 @@ TEST(Property, PointsOfTetsBelongToTheirOwnVertices) {
     Stage stage(context, "test");
     Charts charts = buildCharts(map, stage);
     VertexGrid<Index> grid(map, charts, true);
-    CellSeeds cells(map.topology.tetCount(), false);
+    CellCenters cells(map.topology.tetCount(), false);
     grid.sweep(cells, stage);
     grid.fill({}, stage);
     static_cast<void>(grid.resolveOverlaps(stage));
     BrickCache<Index> cache(grid.grid());
     for (Index tet = 0; tet < map.topology.tetCount(); ++tet) {
       if (charts.chart[tet] == Charts::kNoChart) continue;
-      const TetSweep sweep(map.exact, tet, SweptGrid::Vertices);
       std::vector<SweptLine> lines;
-      sweep.run(map.exact.unit, lines);
+      TetRasterizer(map.exact.corners[tet], map.exact.unit).append(kVertexGrid, lines);
       for (const SweptLine& line : lines) {
         for (std::uint32_t i = 0; i < line.count; ++i) {
           const GridPoint z = line.point(i);

@@ -42,9 +42,8 @@ std::unique_ptr<Prepared> anyMap() {
 template <class Visit>
 void forEachCell(const PreparedMap& map, const Visit& visit) {
   for (Index tet = 0; tet < map.topology.tetCount(); ++tet) {
-    const TetSweep sweep(map.exact, tet, SweptGrid::Centers);
     std::vector<SweptLine> lines;
-    sweep.run(map.exact.unit, lines);
+    TetRasterizer(map.exact.corners[tet], map.exact.unit).append(kCenterGrid, lines);
     CenterOwner owner(map.topology, tet);
     for (const SweptLine& line : lines) {
       const auto [first, count] = owner.owned(line);
@@ -66,8 +65,7 @@ TEST(Property, TracedCornersAreGridPointsOfTheirTets) {
       tracer.enter(tet, line.point(i), line.simplex(i));
       for (const GridPoint& offset : kCellCorners) {
         const CornerPlace place = tracer.trace(offset);
-        const TetPlanes planes(map.exact.corners[place.tet], map.exact.unit);
-        RC_ASSERT(planes.generator(place.z) != kNoSimplex);
+        RC_ASSERT(simplexOf(map.exact.corners[place.tet], place.z, map.exact.unit) != kNoSimplex);
       }
     });
   }));
@@ -82,7 +80,7 @@ TEST(Property, TheResolverFindsTheTracedCorners) {
     Stage stage(context, "test");
     Charts charts = buildCharts(map, stage);
     VertexGrid<Index> vertices(map, charts, true);
-    CellSeeds cells(map.topology.tetCount(), false);
+    CellCenters cells(map.topology.tetCount(), false);
     vertices.sweep(cells, stage);
     vertices.fill({}, stage);
     static_cast<void>(vertices.resolveOverlaps(stage));

@@ -51,10 +51,7 @@ class TableExaminer {
 
  private:
   void examine(Index tet, const GridPoint& z) {
-    LatticePoint place;
-    for (std::size_t k = 0; k < 3; ++k) place[k] = z[k] * map_.exact.unit;
-    const CornerMask simplex = simplexBySides(
-        [&](std::size_t face) { return sideOfFace(map_.exact.corners[tet], face, place); });
+    const CornerMask simplex = simplexOf(map_.exact.corners[tet], z, map_.exact.unit);
     const VertexTables::Found found = tables_.find(tet, z);
     EXPECT_EQ(found.simplex, simplex);
     EXPECT_EQ(found.vertex == kNone, simplex == kNoSimplex);

@@ -1,5 +1,8 @@
 // The stages' own invariants: propellers, blades and corners form small spheres and disks;
-// opposites are mutual; a rasterization that misses vertices is noticed and repaired.
+// opposites are mutual; epsilon changes nothing.
+#include <limits>
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include <igm/measures.hpp>
@@ -13,13 +16,15 @@ namespace hexhex::test {
 
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// All stages of one map, kept.
 struct Stages {
   Context context;
   DefectCollector defects;
   PreparedMap map;
   Array<NormalSigns> signs;
-  HexVertices vertices;
+  std::optional<HexVertices> swept;
   LocalConnectivity local;
   GlobalConnectivity global;
 
@@ -30,10 +35,11 @@ struct Stages {
     addStars(map.topology, stage);
     signs.resize(map.exact.corners.size());
     for (std::size_t t = 0; t < signs.size(); ++t) signs[t] = NormalSigns(map.exact.corners[t]);
-    vertices = extractVertices(map, epsilon, stage);
+    HexVertices& vertices = swept.emplace(map, epsilon, stage);
     local = extractLocalConnectivity(map, signs, vertices, stage);
     global = traceOpposites(map, signs, vertices, local, stage);
   }
+  [[nodiscard]] const HexVertices& vertices() const { return *swept; }
 };
 
 Sample sampleOf(SampleKind kind) {
@@ -79,15 +85,16 @@ TEST_P(Connectivity, OppositesAreMutual) {
   const Sample sample = sampleOf(GetParam());
   const Stages stages(sample.map);
   const auto entry = [&](Index vertex, std::size_t propeller) {
-    const Index g = stages.vertices.generatorOf[vertex];
+    const Index g = stages.vertices().generatorOf[vertex];
     const std::size_t count = stages.local.configuration(g).propellerCount;
     return GlobalConnectivity::unpack(
         stages.global
             .opposites[stages.global.begin[g] +
-                       (vertex - stages.vertices.generators[g].firstVertex) * count + propeller]);
+                       (vertex - stages.vertices().generators[g].firstVertex) * count + propeller]);
   };
-  for (Index v = 0; v < stages.vertices.positions.size(); ++v) {
-    const Configuration& configuration = stages.local.configuration(stages.vertices.generatorOf[v]);
+  for (Index v = 0; v < stages.vertices().tables.count(); ++v) {
+    const Configuration& configuration =
+        stages.local.configuration(stages.vertices().generatorOf[v]);
     for (std::uint16_t p = 0; p < configuration.propellerCount; ++p) {
       const Opposite there = entry(v, p);
       const Opposite back = entry(there.vertex, there.propeller);
@@ -96,7 +103,7 @@ TEST_P(Connectivity, OppositesAreMutual) {
       ASSERT_EQ(back.offset, there.offset);
       // Both ends see the same number of faces around the edge.
       const Configuration& other =
-          stages.local.configuration(stages.vertices.generatorOf[there.vertex]);
+          stages.local.configuration(stages.vertices().generatorOf[there.vertex]);
       ASSERT_EQ(stages.local.propeller(other, there.propeller).slotCount,
                 stages.local.propeller(configuration, p).slotCount);
     }
@@ -120,38 +127,23 @@ TEST(ConstantConfigurations, AreThoseOfTheRegularGrid) {
   }
 }
 
-// A negative epsilon shrinks the tets, so that vertices near their boundaries are overlooked.
-TEST(EpsilonFallback, MissedVerticesAreNoticedAndFound) {
+TEST(Epsilon, ChangesNothing) {
   const Sample sample = sampleOf(SampleKind::Sphere);
-  Context context;
-  DefectCollector defects;
-  PreparedMap map = prepareMap(sample.map, 1e-2, 1, context, defects, ChartChoice::Unfolded);
-  {
-    Stage stage(context, "test");
-    addStars(map.topology, stage);
-  }
   const HexMesh right = extract(sample.map);
-  for (const double epsilon : {-1e-3, -0.05, -0.2, -0.6}) {
+  for (const double epsilon : {0.0, 1e-6, 1e-3, 0.2, 0.6, 1e9, kInfinity}) {
+    Context context;
     ExtractStatistics statistics;
-    const HexMesh mesh =
-        runPipeline(map, sample.answer.expected.cells, epsilon, context, statistics);
-    EXPECT_TRUE(statistics.epsilonFallback) << epsilon;
+    ExtractOptions options;
+    options.engine = Engine::Propeller;
+    options.epsilon = epsilon;
+    const HexMesh mesh = extract(sample.map, options, context, &statistics);
     EXPECT_TRUE(sameBits(mesh, right)) << epsilon;
+    EXPECT_FALSE(statistics.epsilonFallback) << epsilon;
+    EXPECT_EQ(statistics.epsilon, epsilon);
+    EXPECT_EQ(statistics.vertices[0] + statistics.vertices[1] + statistics.vertices[2] +
+                  statistics.vertices[3],
+              mesh.points.size());
   }
-}
-
-TEST(EpsilonFallback, IsNotNeededOtherwise) {
-  const Sample sample = sampleOf(SampleKind::Sphere);
-  Context context;
-  ExtractStatistics statistics;
-  ExtractOptions options;
-  options.engine = Engine::Propeller;
-  const HexMesh mesh = extract(sample.map, options, context, &statistics);
-  EXPECT_FALSE(statistics.epsilonFallback);
-  EXPECT_EQ(statistics.epsilon, 1e-6);
-  EXPECT_EQ(statistics.vertices[0] + statistics.vertices[1] + statistics.vertices[2] +
-                statistics.vertices[3],
-            mesh.points.size());
 }
 
 }  // namespace

@@ -5,8 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <lattice/rasterize.hpp>
-
 #include "oracle.hpp"
 #include "random.hpp"
 #include "tet_patch.hpp"
@@ -215,7 +213,7 @@ int followEverywhere(const TetPatch& patch, const GridPoint& z, std::int64_t uni
   int total = 0;
   const auto isInside = [&](const GridPoint& point) {
     for (int t = 0; t < patch.size(); ++t) {
-      if (TetPlanes(patch.corners(t), unit).generator(point) != kNoSimplex) return true;
+      if (simplexOf(patch.corners(t), point, unit) != kNoSimplex) return true;
     }
     return false;
   };
@@ -223,7 +221,7 @@ int followEverywhere(const TetPatch& patch, const GridPoint& z, std::int64_t uni
     if (::testing::Test::HasFailure() || !isInside(step(z, d1))) return;
     for (int t = 0; t < patch.size(); ++t) {
       const LatticeTet corners = patch.corners(t);
-      const CornerMask simplex = TetPlanes(corners, unit).generator(z);
+      const CornerMask simplex = simplexOf(corners, z, unit);
       if (simplex == kNoSimplex) continue;
       if (casing(NormalSigns(corners), simplex, d1, d2) == kNoSimplex) continue;
       int steps = 0;

@@ -1,4 +1,5 @@
 // The rasterizer against brute force: every grid point of the bounding box, located by the oracle.
+// Tets of all shapes, so that they are swept in all orders.
 #include <cmath>
 #include <limits>
 #include <span>
@@ -8,9 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include <lattice/both_grids.hpp>
-#include <lattice/line_rasterizer.hpp>
-#include <lattice/rasterize.hpp>
+#include <lattice/few_points.hpp>
+#include <lattice/tet_rasterizer.hpp>
 
 #include "oracle.hpp"
 #include "random.hpp"
@@ -82,99 +82,26 @@ SimplexGrid bruteForce(const ScaledTet& scaled) {
   return grid;
 }
 
-/// Takes what the rasterizer reports, point by point.
-class Collector {
- public:
-  Collector(const GridBox& box, SweepAxes axes)
-      : grid_(box), axes_(axes()), level_(box.range[axes_[0]].first - 1) {}
-
-  void plane(std::int32_t y0) {
-    ++level_;
-    y_ = y0;
-  }
-  void line(const GridLine& line) {
-    GridPoint z{};
-    z[axes_[0]] = level_;
-    z[axes_[1]] = y_++;
-    for (std::int32_t i = 0; i < line.count; ++i) {
-      z[axes_[2]] = line.first + i;
-      if (grid_.covers(z) && line.simplex(i) != kNoSimplex) {
-        grid_[z] = line.simplex(i);
-      } else {
-        ADD_FAILURE() << "reported a point outside the tet";
-      }
-    }
-  }
-  [[nodiscard]] std::int32_t level() const { return level_; }
-  [[nodiscard]] const std::vector<CornerMask>& simplices() const { return grid_.simplices(); }
-
- private:
-  SimplexGrid grid_;
-  std::array<std::uint8_t, 3> axes_;
-  std::int32_t level_;
-  std::int32_t y_ = 0;
-};
-
-std::vector<CornerMask> rasterized(const ScaledTet& scaled, SweepAxes axes, double epsilon) {
-  const GridBox box = gridBox(scaled.corners, scaled.unit);
-  const TetRasterizer rasterizer(scaled.corners, scaled.unit, box, axes, epsilon);
-  Collector collector(box, axes);
-  rasterizer.run(collector);
-  EXPECT_EQ(collector.level(), std::max(box.range[axes()[0]].last, box.range[axes()[0]].first - 1));
-  return collector.simplices();
-}
-
-void expectLines(const GridBox& box, std::span<const SweptLine> lines,
+/// What the rasterizer finds of a grid. Lines come in sweep order, are not empty, and stay in the
+/// box.
+void expectLines(TetRasterizer& rasterizer, HalfGrid halfGrid, const GridBox& box,
                  const std::vector<CornerMask>& expected) {
   SimplexGrid grid(box);
-  for (const SweptLine& line : lines) {
-    ASSERT_EQ(line.axes.index, chooseSweepAxes(box).index);
+  const SweepAxes axes = chooseSweepAxes(box);
+  std::array<std::int32_t, 2> previous = {box.range[axes()[0]].first,
+                                          box.range[axes()[1]].first - 1};
+  rasterizer.sweep(halfGrid, [&](const SweptLine& line) {
+    ASSERT_EQ(line.axes.index, axes.index);
+    ASSERT_LT(previous, (std::array<std::int32_t, 2>{line.level, line.row}));
+    previous = {line.level, line.row};
+    ASSERT_GT(line.count, 0U);
     for (std::uint32_t i = 0; i < line.count; ++i) {
       ASSERT_TRUE(grid.covers(line.point(i)));
       grid[line.point(i)] = line.simplex(i);
     }
-  }
-  ASSERT_EQ(grid.simplices(), expected);
-}
-
-/// The same of both grids at once: for the tet as it is, and moved by one half, as centres.
-void expectTheSameOfBothGrids(const ScaledTet& scaled, const std::vector<CornerMask>& expected) {
-  if (scaled.unit == 1) return;  // there are no halves
-  const GridBox box = gridBox(scaled.corners, scaled.unit);
-  std::vector<SweptLine> lines;
-  std::vector<SweptLine> others;
-  sweepBothGrids(scaled.corners, scaled.unit, lines, others);
-  ASSERT_NO_FATAL_FAILURE(expectLines(box, lines, expected));
-  LatticeTet moved = scaled.corners;
-  for (LatticePoint& p : moved) {
-    for (std::int64_t& coordinate : p) coordinate += scaled.unit / 2;
-  }
-  lines.clear();
-  sweepBothGrids(moved, scaled.unit, others, lines);
-  ASSERT_NO_FATAL_FAILURE(expectLines(box, lines, expected));
-}
-
-/// The same by LineRasterizer.
-std::vector<CornerMask> rasterizedByLines(const ScaledTet& scaled, SweepAxes axes) {
-  const GridBox box = gridBox(scaled.corners, scaled.unit);
-  SimplexGrid grid(box);
-  if (box.empty()) return grid.simplices();
-  std::array<std::int32_t, 2> previous = {box.range[axes()[0]].first,
-                                          box.range[axes()[1]].first - 1};
-  LineRasterizer(scaled.corners, scaled.unit, box, axes).run([&](const SweptLine& line) {
-    EXPECT_LT(previous, (std::array<std::int32_t, 2>{line.level, line.row}));
-    previous = {line.level, line.row};
-    EXPECT_GT(line.count, 0U);
-    for (std::uint32_t i = 0; i < line.count; ++i) {
-      const GridPoint z = line.point(i);
-      if (!grid.covers(z)) {
-        ADD_FAILURE() << "reported a point outside the box";
-        return;
-      }
-      grid[z] = line.simplex(i);
-    }
   });
-  return grid.simplices();
+  if (::testing::Test::HasFatalFailure()) return;
+  ASSERT_EQ(grid.simplices(), expected);
 }
 
 std::string describe(const ScaledTet& scaled) {
@@ -186,25 +113,61 @@ std::string describe(const ScaledTet& scaled) {
   return text;
 }
 
-/// What must be found without any enlargement.
-enum class WithoutEpsilon { kNothing, kInnerPoints, kEverything };
+/// Lines of a box, as points.
+void expectPoints(const GridBox& box, const std::vector<SweptLine>& lines,
+                  const std::vector<CornerMask>& expected) {
+  SimplexGrid grid(box);
+  for (const SweptLine& line : lines) {
+    ASSERT_EQ(line.axes.index, chooseSweepAxes(box).index);
+    for (std::uint32_t i = 0; i < line.count; ++i) {
+      ASSERT_TRUE(grid.covers(line.point(i)));
+      grid[line.point(i)] = line.simplex(i);
+    }
+  }
+  ASSERT_EQ(grid.simplices(), expected);
+}
 
-/// Rasterizes with every kind of epsilon and compares with brute force.
+/// sweepFewPoints(), if there are few: for the tet as it is, and moved by one half, as centres.
+void expectTheSameOfFewPoints(const ScaledTet& scaled, const std::vector<CornerMask>& expected) {
+  const GridBox box = gridBox(scaled.corners, scaled.unit);
+  std::vector<SweptLine> lines;
+  std::vector<SweptLine> others;
+  if (sweepFewPoints(scaled.corners, scaled.unit, lines, others)) {
+    ASSERT_NO_FATAL_FAILURE(expectPoints(box, lines, expected));
+  } else {
+    ASSERT_TRUE(lines.empty() && others.empty());
+  }
+  LatticeTet moved = scaled.corners;
+  for (LatticePoint& p : moved) {
+    for (std::int64_t& coordinate : p) coordinate += scaled.unit / 2;
+  }
+  lines.clear();
+  if (sweepFewPoints(moved, scaled.unit, others, lines)) {
+    ASSERT_NO_FATAL_FAILURE(expectPoints(box, lines, expected));
+  }
+}
+
+/// Rasterizes with every kind of epsilon, and in every grid the tet that is moved like the grid,
+/// and compares with brute force.
 template <class Integer>
-void expectAgreement(const ScaledTet& scaled, SweepAxes axes, WithoutEpsilon withoutEpsilon) {
+void expectAgreement(const ScaledTet& scaled) {
+  const GridBox box = gridBox(scaled.corners, scaled.unit);
   const std::vector<CornerMask> expected = bruteForce<Integer>(scaled).simplices();
-  for (const double epsilon : {1e-6, 1e-2, 1e9, kInfinity}) {
-    ASSERT_EQ(rasterized(scaled, axes, epsilon), expected)
+  for (const double epsilon : {0.0, 1e-6, 1e-2, 1e9, kInfinity}) {
+    TetRasterizer rasterizer(scaled.corners, scaled.unit, epsilon);
+    ASSERT_NO_FATAL_FAILURE(expectLines(rasterizer, kVertexGrid, box, expected))
         << describe(scaled) << " epsilon " << epsilon;
   }
-  ASSERT_EQ(rasterizedByLines(scaled, axes), expected) << describe(scaled);
-  expectTheSameOfBothGrids(scaled, expected);
-  const std::vector<CornerMask> found = rasterized(scaled, axes, 0);
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const bool mayMiss =
-        withoutEpsilon == WithoutEpsilon::kNothing ||
-        (withoutEpsilon == WithoutEpsilon::kInnerPoints && expected[i] != kWholeTet);
-    ASSERT_TRUE(found[i] == expected[i] || (mayMiss && found[i] == kNoSimplex)) << describe(scaled);
+  if (scaled.unit == 1) return;  // there are no halves
+  ASSERT_NO_FATAL_FAILURE(expectTheSameOfFewPoints(scaled, expected)) << describe(scaled);
+  for (HalfGrid grid = 1; grid < 8; ++grid) {
+    LatticeTet moved = scaled.corners;
+    for (LatticePoint& p : moved) {
+      for (std::size_t k = 0; k < 3; ++k) p[k] += ((grid >> k) & 1) * (scaled.unit / 2);
+    }
+    TetRasterizer rasterizer(moved, scaled.unit);
+    ASSERT_NO_FATAL_FAILURE(expectLines(rasterizer, grid, box, expected))
+        << describe(scaled) << " grid " << int{grid};
   }
 }
 
@@ -290,11 +253,6 @@ GridPoint anyOffset(Random& random, std::int64_t range) {
           static_cast<std::int32_t>(p[2])};
 }
 
-SweepAxes anyAxes(const ScaledTet& scaled, Random& random) {
-  if (random.oneIn(2)) return chooseSweepAxes(gridBox(scaled.corners, scaled.unit));
-  return {static_cast<std::uint8_t>(random.index(6))};
-}
-
 class RasterizeKinds : public ::testing::TestWithParam<TetSource::Kind> {};
 
 TEST_P(RasterizeKinds, SmallTetsWithFewBits) {
@@ -304,9 +262,7 @@ TEST_P(RasterizeKinds, SmallTetsWithFewBits) {
     for (std::int64_t& e : source.extent) e = random.between(1, 6);
     ScaledTet scaled = source(GetParam(), std::int64_t{1} << random.between(0, 8));
     translate(scaled, anyOffset(random, 100));
-    // Interior points are farther from the faces than any rounding error.
-    ASSERT_NO_FATAL_FAILURE(
-        expectAgreement<Int128>(scaled, anyAxes(scaled, random), WithoutEpsilon::kInnerPoints));
+    ASSERT_NO_FATAL_FAILURE(expectAgreement<Int128>(scaled));
   }
 }
 
@@ -317,8 +273,7 @@ TEST_P(RasterizeKinds, SmallTetsFarFromTheOrigin) {
     for (std::int64_t& e : source.extent) e = random.between(1, 3);
     ScaledTet scaled = source(GetParam(), std::int64_t{1} << random.between(3, 29));
     translate(scaled, anyOffset(random, 1'000'000'000));
-    ASSERT_NO_FATAL_FAILURE(
-        expectAgreement<Int128>(scaled, anyAxes(scaled, random), WithoutEpsilon::kNothing));
+    ASSERT_NO_FATAL_FAILURE(expectAgreement<Int128>(scaled));
   }
 }
 
@@ -329,8 +284,7 @@ TEST_P(RasterizeKinds, CoordinatesOfSixtyBits) {
     for (std::int64_t& e : source.extent) e = random.between(1, 3);
     ScaledTet scaled = source(GetParam(), std::int64_t{1} << random.between(30, 52));
     translate(scaled, anyOffset(random, 100));
-    ASSERT_NO_FATAL_FAILURE(
-        expectAgreement<Integer256>(scaled, anyAxes(scaled, random), WithoutEpsilon::kNothing));
+    ASSERT_NO_FATAL_FAILURE(expectAgreement<Integer256>(scaled));
   }
 }
 
@@ -342,8 +296,7 @@ TEST_P(RasterizeKinds, LargeAndLongTets) {
     if (GetParam() == TetSource::kNeedle) source.extent[random.index(3)] *= 50;
     ScaledTet scaled = source(GetParam(), std::int64_t{1} << random.between(3, 20));
     translate(scaled, anyOffset(random, random.oneIn(2) ? 10 : 1'000'000));
-    ASSERT_NO_FATAL_FAILURE(
-        expectAgreement<Int128>(scaled, anyAxes(scaled, random), WithoutEpsilon::kNothing));
+    ASSERT_NO_FATAL_FAILURE(expectAgreement<Int128>(scaled));
   }
 }
 
@@ -376,12 +329,12 @@ TEST(Rasterize, SteepCutsFarFromTheOrigin) {
     if (s == 0) continue;
     if (s < 0) std::swap(scaled.corners[0], scaled.corners[1]);
     translate(scaled, anyOffset(random, 1'000'000'000));
-    ASSERT_NO_FATAL_FAILURE(expectAgreement<Int128>(scaled, {0}, WithoutEpsilon::kNothing));
+    ASSERT_NO_FATAL_FAILURE(expectAgreement<Int128>(scaled));
   }
 }
 
-TEST(Rasterize, KuhnTetsOfPowerOfTwoCubesNeedNoEpsilon) {
-  // All quotients are exact: rises are powers of two, slopes 0 and 1.
+TEST(Rasterize, KuhnTetsOfPowerOfTwoCubes) {
+  // Faces in planes of the grid and along diagonals, with slopes 0 and 1.
   for (std::int64_t edge = 1; edge <= 8; edge *= 2) {
     for (const auto& order : SweepAxes::kPermutations) {
       ScaledTet scaled{{}, 4};
@@ -392,10 +345,7 @@ TEST(Rasterize, KuhnTetsOfPowerOfTwoCubesNeedNoEpsilon) {
       if (determinant<Int128>(widened<Int128>(scaled.corners)) < 0) {
         std::swap(scaled.corners[1], scaled.corners[2]);
       }
-      for (std::uint8_t axes = 0; axes < 6; ++axes) {
-        ASSERT_NO_FATAL_FAILURE(
-            expectAgreement<Int128>(scaled, {axes}, WithoutEpsilon::kEverything));
-      }
+      ASSERT_NO_FATAL_FAILURE(expectAgreement<Int128>(scaled));
     }
   }
 }
@@ -404,8 +354,9 @@ TEST(Rasterize, NamesTheSimplexOfEveryPoint) {
   // The corner tet of a cube of edge 2: a line along an edge, and one across the slanted face.
   const ScaledTet scaled = {{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}}}, 2};
   SimplexGrid grid = bruteForce<Int128>(scaled);
-  const std::vector<CornerMask> found = rasterized(scaled, {0}, 1e-6);
-  ASSERT_EQ(found, grid.simplices());
+  TetRasterizer rasterizer(scaled.corners, scaled.unit);
+  ASSERT_NO_FATAL_FAILURE(
+      expectLines(rasterizer, kVertexGrid, gridBox(scaled.corners, scaled.unit), grid.simplices()));
   EXPECT_EQ((grid[{0, 0, 0}]), cornerBit(0));
   EXPECT_EQ((grid[{0, 0, 1}]), cornerBit(0) | cornerBit(3));
   EXPECT_EQ((grid[{0, 0, 2}]), cornerBit(3));
@@ -413,14 +364,43 @@ TEST(Rasterize, NamesTheSimplexOfEveryPoint) {
   EXPECT_EQ((grid[{1, 1, 1}]), kNoSimplex);
 }
 
-TEST(GridLine, SimplexByPosition) {
-  const GridLine line = {7, 4, 1, 3, 2};
-  EXPECT_EQ(line.simplex(0), 1);
-  EXPECT_EQ(line.simplex(1), 3);
-  EXPECT_EQ(line.simplex(2), 3);
-  EXPECT_EQ(line.simplex(3), 2);
-  EXPECT_EQ((GridLine{7, 1, 5, 5, 5}.simplex(0)), 5);
-  EXPECT_EQ((GridLine{7, 2, 1, 3, 2}.simplex(1)), 2);
+/// Centres and midpoints, which tests above only see in tets that are moved with them.
+TEST(Rasterize, FindsAllGridsOfOneTet) {
+  TetSource source(91);
+  Random& random = source.random();
+  for (int i = cases(20'000); i > 0; --i) {
+    for (std::int64_t& e : source.extent) e = random.between(1, 4);
+    const auto kind = static_cast<TetSource::Kind>(random.index(TetSource::kKinds));
+    ScaledTet scaled = source(kind, std::int64_t{1} << random.between(2, 20));
+    translate(scaled, anyOffset(random, 1000));
+    TetRasterizer rasterizer(scaled.corners, scaled.unit);
+    for (HalfGrid half = 0; half < 8; ++half) {
+      const GridBox box = gridBox(scaled.corners, scaled.unit, half);
+      SimplexGrid expected(box);
+      expected.forAllPoints([&](const GridPoint& z) {
+        LatticePoint p = latticePoint(z, scaled.unit);
+        for (std::size_t k = 0; k < 3; ++k) p[k] += ((half >> k) & 1) * (scaled.unit / 2);
+        expected[z] = locate(widened<Int128>(scaled.corners), widened<Int128>(p));
+      });
+      ASSERT_NO_FATAL_FAILURE(expectLines(rasterizer, half, box, expected.simplices()))
+          << describe(scaled) << " grid " << int{half};
+    }
+  }
+}
+
+/// Corners within a few units of points of the finer grid: faces pass by its points closely.
+TEST(Rasterize, PointsAsCloseToFacesAsCanBe) {
+  Random random(8);
+  for (int i = cases(10'000); i > 0; --i) {
+    ScaledTet scaled{{}, std::int64_t{1} << random.between(30, 50)};
+    for (LatticePoint& corner : scaled.corners) {
+      corner = random.point(0, 4);
+      for (std::int64_t& c : corner) c = c * (scaled.unit / 2) + random.between(-2, 2);
+    }
+    const LatticeTet& t = scaled.corners;
+    if (orientation(t[0], t[1], t[2], t[3]) <= 0) continue;
+    ASSERT_NO_FATAL_FAILURE(expectAgreement<Integer256>(scaled));
+  }
 }
 
 TEST(GridBox, HoldsTheGridPointsOfTheBoundingBox) {
@@ -466,7 +446,7 @@ TEST(SweepAxes, FewestPlanesFirstLongestLinesLast) {
   EXPECT_EQ(axes(kLargest, 1, 0), (Axes{2, 1, 0}));
 }
 
-TEST(TetPlanes, LocatesPointsInsideAndOutside) {
+TEST(SimplexOf, LocatesPointsInsideAndOutside) {
   TetSource source(81);
   Random& random = source.random();
   for (int i = cases(200'000); i > 0; --i) {
@@ -479,58 +459,11 @@ TEST(TetPlanes, LocatesPointsInsideAndOutside) {
       z[k] =
           static_cast<std::int32_t>(random.between(box.range[k].first - 2, box.range[k].last + 2));
     }
-    const TetPlanes planes(scaled.corners, scaled.unit);
-    ASSERT_EQ(planes.generator(z), locate(widened<Integer256>(scaled.corners),
-                                          widened<Integer256>(latticePoint(z, scaled.unit))))
+    ASSERT_EQ(simplexOf(scaled.corners, z, scaled.unit),
+              locate(widened<Integer256>(scaled.corners),
+                     widened<Integer256>(latticePoint(z, scaled.unit))))
         << describe(scaled);
   }
-}
-
-/// An upper bound of what is summed up in a barycentric coordinate of face f's corner.
-BigInteger sizeOfTerms(const ScaledTet& scaled, const LatticePoint& p, int f) {
-  const Tet<BigInteger> tet = widened<BigInteger>(scaled.corners);
-  const int origin = kFaceCorners[static_cast<std::size_t>(f)][0];
-  const LatticePoint offset = p - scaled.corners[static_cast<std::size_t>(origin)];
-  BigInteger sum = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const BigInteger slope =
-        barycentricSlopes<BigInteger>(tet, direction(axis, 1))[static_cast<std::size_t>(f)];
-    sum += abs(BigInteger(slope * offset[static_cast<std::size_t>(axis)]));
-  }
-  return sum;
-}
-
-TEST(TetPlanes, WeightsAreBarycentricCoordinatesTimesTheDeterminant) {
-  TetSource source(82);
-  Random& random = source.random();
-  for (int i = cases(10'000); i > 0; --i) {
-    const auto kind = static_cast<TetSource::Kind>(random.index(TetSource::kKinds));
-    ScaledTet scaled = source(kind, std::int64_t{1} << random.between(3, 29));
-    translate(scaled, anyOffset(random, random.oneIn(2) ? 3 : 1'000'000'000));
-    const TetPlanes planes(scaled.corners, scaled.unit);
-    SimplexGrid grid = bruteForce<Int128>(scaled);
-    grid.forAllPoints([&](const GridPoint& z) {
-      if (grid[z] == kNoSimplex) return;
-      const LatticePoint p = latticePoint(z, scaled.unit);
-      const auto exact = barycentric(widened<BigInteger>(scaled.corners), widened<BigInteger>(p));
-      const std::array<double, 4> weights = planes.weights(z);
-      for (std::size_t f = 0; f < 4; ++f) {
-        EXPECT_GE(weights[f], 0);
-        // Five roundings of relative size 2^-53, with room for their products. Doubles of this size
-        // are integers.
-        const BigInteger error = abs(BigInteger(BigInteger(std::floor(weights[f])) - exact[f]));
-        EXPECT_LE(BigInteger(error << 50), sizeOfTerms(scaled, p, static_cast<int>(f)));
-      }
-    });
-    ASSERT_FALSE(HasFailure()) << describe(scaled);
-  }
-}
-
-TEST(TetPlanes, WeightsOfSimplePoints) {
-  const TetPlanes planes({{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {0, 0, 8}}}, 2);
-  EXPECT_EQ(planes.weights({0, 0, 0}), (std::array<double, 4>{512, 0, 0, 0}));
-  EXPECT_EQ(planes.weights({1, 1, 1}), (std::array<double, 4>{128, 128, 128, 128}));
-  EXPECT_EQ(planes.weights({0, 3, 1}), (std::array<double, 4>{0, 0, 384, 128}));
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <span>
+#include <cstddef>
 
 #include <base/bits.hpp>
 #include <base/pair.hpp>
-#include <lattice/both_grids.hpp>
-#include <lattice/weight_field.hpp>
+#include <lattice/few_points.hpp>
 
 namespace hexhex {
 
@@ -61,12 +60,6 @@ struct HalvedTet {
     const Pair bounds = larger(larger(beforeXy, afterXy), aroundZ);
     largest = std::max(bounds[0], bounds[1]);
   }
-  [[nodiscard]] HalfBox box() const noexcept {
-    HalfBox box;
-    box.first = {firstXy[0], firstXy[1], firstZ};
-    box.steps = {stepsXy[0], stepsXy[1], stepsZ};
-    return box;
-  }
 };
 
 /// Those of a grid in a bounding box.
@@ -81,6 +74,80 @@ struct PointsInBox {
   /// A point by steps from the first one, in halves.
   [[nodiscard]] Halves at(const std::array<std::int32_t, 3>& steps) const noexcept {
     return {firstXy[0] + 2 * steps[0], firstXy[1] + 2 * steps[1], firstZ + 2 * steps[2]};
+  }
+};
+
+/// A number for each corner of a tet.
+struct CornerWeights {
+  Pair of01;
+  Pair of23;
+
+  [[nodiscard]] double least() const noexcept {
+    const Pair lower = smaller(of01, of23);
+    return lower[0] < lower[1] ? lower[0] : lower[1];
+  }
+  [[nodiscard]] std::array<double, 4> byCorner() const noexcept {
+    return {of01[0], of01[1], of23[0], of23[1]};
+  }
+};
+
+/// The weights of points, as volumes, in units of a grid: positive inside of the face opposite a
+/// corner.
+struct WeightField {
+  std::array<CornerWeights, 3> gradient;  ///< by axis
+  std::array<CornerWeights, 3> zero;      ///< by axis, a point where the weight vanishes
+
+  WeightField() = default;
+  /// @param of01,of23  the corners, by axis
+  WeightField(const std::array<Pair, 3>& of01, const std::array<Pair, 3>& of23) noexcept {
+    // Normals are products of two edges of their faces: of faces 0 and 1 that are opposite corners
+    // 0 and 1, and so on.
+    std::array<Pair, 3> first01;
+    std::array<Pair, 3> second01;
+    std::array<Pair, 3> first23;
+    std::array<Pair, 3> second23;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Pair c10 = {of01[k][1], of01[k][0]};
+      const Pair c00 = {of01[k][0], of01[k][0]};
+      first01[k] = Pair{of23[k][1], of23[k][0]} - c10;
+      second01[k] = of23[k] - c10;
+      first23[k] = Pair{of23[k][1], of01[k][1]} - c00;
+      second23[k] = Pair{of01[k][1], of23[k][0]} - c00;
+      zero[k] = {c10, c00};
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t m = k == 2 ? 0 : k + 1;
+      const std::size_t n = k == 0 ? 2 : k - 1;
+      gradient[k].of01 = first01[m] * second01[n] - first01[n] * second01[m];
+      gradient[k].of23 = first23[m] * second23[n] - first23[n] * second23[m];
+    }
+  }
+
+  [[nodiscard]] CornerWeights at(const std::array<double, 3>& point) const noexcept {
+    CornerWeights weights;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Pair coordinate = {point[k], point[k]};
+      const Pair term01 = gradient[k].of01 * (coordinate - zero[k].of01);
+      const Pair term23 = gradient[k].of23 * (coordinate - zero[k].of23);
+      weights = k == 0 ? CornerWeights{term01, term23}
+                       : CornerWeights{weights.of01 + term01, weights.of23 + term23};
+    }
+    return weights;
+  }
+
+  /// Of the error of a weight at() a point, or less than 64 steps of whole units from there.
+  /// @param size  what no coordinate of a corner is away from any point on the way; corners and
+  ///              first points may carry one rounding of such a distance
+  [[nodiscard]] static constexpr double errorBound(double size) noexcept {
+    // Errors in units of u = 2^-53, with magnitudes: edges, up to 2 size, are known to 4 size;
+    // products of two of them to 20 size^2, and their differences, the gradients, up to 8 size^2,
+    // to 48 size^2. At the first point, three products with distances, each up to 8 size^3 and
+    // known to 72 size^3, make up a weight in two additions of at most 24 size^3: known to 264
+    // size^3. On the way to any other point, there are three more products, each up to 8 size^3 and
+    // known to 56 size^3, and 3 additions of at most 48 size^3, or, if it is done step by step,
+    // less than 64: below 264 + 168 + 64 * 48 < 2^12 size^3. 2^13 covers terms of second order as
+    // well.
+    return 0x1p-40 * size * size * size;
   }
 };
 
@@ -118,8 +185,8 @@ class FewPoints {
                  std::vector<SweptLine>& lines) const;
   void appendSome(const PointsInBox& points, std::int32_t all, const CornerWeights& first,
                   std::vector<SweptLine>& lines) const;
-  [[gnu::noinline]] void appendCandidates(const PointsInBox& points, const WeightsOf& weights,
-                                          std::uint32_t found, std::vector<SweptLine>& lines) const;
+  void appendCandidates(const PointsInBox& points, const WeightsOf& weights, std::uint32_t found,
+                        std::vector<SweptLine>& lines) const;
   void weigh(const PointsInBox& points, WeightsOf& weights) const noexcept;
   [[nodiscard]] std::uint32_t candidates(const WeightsOf& weights,
                                          std::int32_t points) const noexcept;
@@ -149,8 +216,7 @@ void FewPoints::weigh(const PointsInBox& points, WeightsOf& weights) const noexc
   *end = end[-1];
 }
 
-/// Which points are not outside of a face for certain, as bits. Without branches, as each point is
-/// as good as random.
+/// Which points are not certainly outside of a face, as bits.
 std::uint32_t FewPoints::candidates(const WeightsOf& weights, std::int32_t points) const noexcept {
   const Pair least = {-error_, -error_};
   PairMask found = {0, 0};
@@ -204,7 +270,8 @@ void FewPoints::appendSome(const PointsInBox& points, std::int32_t all, const Co
 void FewPoints::appendCandidates(const PointsInBox& points, const WeightsOf& weights,
                                  std::uint32_t found, std::vector<SweptLine>& lines) const {
   const std::array<std::int32_t, 3> counts = {points.countXy[0], points.countXy[1], points.countZ};
-  const SweepAxes order = chooseSweepAxes(counts);
+  const SweepAxes order =
+      chooseSweepAxes(GridBox{{{{0, counts[0] - 1}, {0, counts[1] - 1}, {0, counts[2] - 1}}}});
   if (hasOneBit(found)) {
     const std::int32_t i = std::countr_zero(found);
     const std::int32_t row = i / counts[2];
@@ -244,70 +311,13 @@ void FewPoints::appendCandidates(const PointsInBox& points, const WeightsOf& wei
   });
 }
 
-/// Of a grid with more points.
-[[gnu::noinline]] void appendLines(const LatticeTet& corners, std::int64_t unit, HalfGrid grid,
-                                   const HalfBox& box, std::vector<SweptLine>& lines) {
-  if ((box.grids() & halfGridBit(grid)) == 0) return;
-  LatticeTet moved = corners;
-  for (LatticePoint& corner : moved) {
-    for (std::size_t k = 0; k < 3; ++k) corner[k] -= ((grid >> k) & 1) * (unit / 2);
-  }
-  const GridBox points = box.of(grid);
-  LineRasterizer(moved, unit, points, chooseSweepAxes(points)).run([&](const SweptLine& line) {
-    lines.push_back(line);
-  });
-}
-
-void moveBack(std::span<SweptLine> lines, const GridPoint& by) noexcept {
-  for (SweptLine& line : lines) {
-    const std::array<std::uint8_t, 3>& axes = line.axes();
-    line.level += by[axes[0]];
-    line.row += by[axes[1]];
-    line.first += by[axes[2]];
-  }
-}
-
-/// Of a tet that doubles do not hold where it is.
-[[gnu::noinline]] void sweepFarAway(const LatticeTet& corners, std::int64_t unit,
-                                    std::vector<SweptLine>& vertices,
-                                    std::vector<SweptLine>& centers) {
-  LatticeTet moved = corners;
-  GridPoint by;
-  for (std::size_t k = 0; k < 3; ++k) {
-    // Rounded down to a grid point, as the unit is a power of two.
-    const std::int64_t origin = corners[0][k] & -unit;
-    for (LatticePoint& corner : moved) corner[k] -= origin;
-    by[k] = static_cast<std::int32_t>(origin / unit);
-  }
-  if (by == GridPoint{}) {
-    // It is too large for doubles.
-    const HalfBox box(corners, unit);
-    appendLines(corners, unit, kVertexGrid, box, vertices);
-    appendLines(corners, unit, kCenterGrid, box, centers);
-    return;
-  }
-  const std::array<std::size_t, 2> before = {vertices.size(), centers.size()};
-  sweepBothGrids(moved, unit, vertices, centers);
-  moveBack(std::span(vertices).subspan(before[0]), by);
-  moveBack(std::span(centers).subspan(before[1]), by);
-}
-
 }  // namespace
 
-void sweepBothGrids(const LatticeTet& corners, std::int64_t unit, std::vector<SweptLine>& vertices,
+bool sweepFewPoints(const LatticeTet& corners, std::int64_t unit, std::vector<SweptLine>& vertices,
                     std::vector<SweptLine>& centers) {
   const double perHalf = 2 / static_cast<double>(unit);
   const HalvedTet halved(corners, perHalf);
-  if (!(halved.largest < kMostExact * perHalf)) {
-    sweepFarAway(corners, unit, vertices, centers);
-    return;
-  }
-  if (halved.mostSteps >= kManySteps) {
-    const HalfBox box = halved.box();
-    appendLines(corners, unit, kVertexGrid, box, vertices);
-    appendLines(corners, unit, kCenterGrid, box, centers);
-    return;
-  }
+  if (!(halved.largest < kMostExact * perHalf) || halved.mostSteps >= kManySteps) return false;
   constexpr IntPair kOne = {1, 1};
   const IntPair oddXy = halved.firstXy & kOne;
   const std::int32_t oddZ = halved.firstZ & 1;
@@ -319,18 +329,12 @@ void sweepBothGrids(const LatticeTet& corners, std::int64_t unit, std::vector<Sw
                               halved.stepsZ + 1 - ofVertices.countZ};
   const std::int32_t vertexCount = ofVertices.all();
   const std::int32_t centerCount = ofCenters.all();
-  if ((vertexCount | centerCount) == 0) return;
+  if (vertexCount > kFewPoints || centerCount > kFewPoints) return false;
+  if ((vertexCount | centerCount) == 0) return true;
   const FewPoints few(corners, unit, halved);
-  if (vertexCount > kFewPoints) {
-    appendLines(corners, unit, kVertexGrid, halved.box(), vertices);
-  } else if (vertexCount > 0) {
-    few.append(ofVertices, vertexCount, vertices);
-  }
-  if (centerCount > kFewPoints) {
-    appendLines(corners, unit, kCenterGrid, halved.box(), centers);
-  } else if (centerCount > 0) {
-    few.append(ofCenters, centerCount, centers);
-  }
+  if (vertexCount > 0) few.append(ofVertices, vertexCount, vertices);
+  if (centerCount > 0) few.append(ofCenters, centerCount, centers);
+  return true;
 }
 
 }  // namespace hexhex

@@ -1,5 +1,5 @@
 #include <base/workspaces.hpp>
-#include <sweep/cell_seeds.hpp>
+#include <sweep/cell_centers.hpp>
 
 namespace hexhex {
 
@@ -10,31 +10,31 @@ std::uint64_t countOwned(const TetTopology& topology, Index tet, std::span<const
   return count;
 }
 
-std::span<const SweptLine> CellSeeds::linesOf(const ExactMap& map, Index tet,
-                                              std::vector<SweptLine>& scratch) const {
+std::span<const SweptLine> CellCenters::linesOf(const ExactMap& map, Index tet,
+                                                std::vector<SweptLine>& scratch) const {
   if (lines) return lines->of(tet);
   scratch.clear();
-  TetSweep(map, tet, SweptGrid::Centers).run(map.unit, scratch);
+  TetRasterizer(map.corners[tet], map.unit).append(kCenterGrid, scratch);
   return scratch;
 }
 
-CellSeeds findCells(const PreparedMap& map, Stage& stage) {
+CellCenters findCells(const PreparedMap& map, Stage& stage) {
   const std::size_t tets = map.topology.tetCount();
-  CellSeeds seeds(tets, true);
+  CellCenters centers(tets, true);
   parallelBlocksWith(
       stage, tets, kSweepBlock, [] { return BlockLines(true); },
       [&](std::size_t first, std::size_t end, std::size_t block, BlockLines& lines) {
         lines.clear();
         for (std::size_t t = first; t < end; ++t) {
           const auto tet = static_cast<Index>(t);
-          TetSweep(map.exact, tet, SweptGrid::Centers).run(map.exact.unit, lines.next());
-          seeds.begin[t] = countOwned(map.topology, tet, lines.last());
+          TetRasterizer(map.exact.corners[t], map.exact.unit).append(kCenterGrid, lines.next());
+          centers.begin[t] = countOwned(map.topology, tet, lines.last());
         }
-        seeds.lines->store(block, lines);
+        centers.lines->store(block, lines);
         lines.shrink();
       });
-  exclusiveScan(std::span(seeds.begin));
-  return seeds;
+  exclusiveScan(std::span(centers.begin));
+  return centers;
 }
 
 }  // namespace hexhex

@@ -71,11 +71,11 @@ void forEachOwnedCenter(const TetTopology& topology, Index tet, std::span<const 
                                        std::span<const SweptLine> lines);
 
 /// Where the cells of each tet are.
-struct CellSeeds {
+struct CellCenters {
   Array<std::uint64_t> begin;     ///< per tet (+1): the first cell that it owns
   std::optional<TetLines> lines;  ///< of centres; swept again when needed if there are none
 
-  CellSeeds(std::size_t tets, bool keepLines) : begin(tets + 1) {
+  CellCenters(std::size_t tets, bool keepLines) : begin(tets + 1) {
     begin[tets] = 0;
     if (keepLines) lines.emplace(tets);
   }
@@ -87,6 +87,6 @@ struct CellSeeds {
 };
 
 /// Sweeps the centres of all tets, and keeps their lines.
-[[nodiscard]] CellSeeds findCells(const PreparedMap& map, Stage& stage);
+[[nodiscard]] CellCenters findCells(const PreparedMap& map, Stage& stage);
 
 }  // namespace hexhex

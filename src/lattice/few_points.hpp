@@ -1,0 +1,25 @@
+// Vertices and centres of cells in the tets of a coarse map: which of the few points of the
+// bounding box are inside, in floating point with a proven bound, and exactly where that leaves it
+// open.
+//
+// A second way beside TetRasterizer. With lines alone, whole extractions of maps with 0.1 cells per
+// tet take 11 to 20 % longer (cylinder_random_low, s17c_sphere_r0.1).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <lattice/tet_rasterizer.hpp>
+
+namespace hexhex {
+
+/// Appends the lines of both grids, the same as TetRasterizer's, if each has few points in the
+/// bounding box.
+/// @param unit  a power of two, at least 2
+/// @return false, and nothing is appended, if there are more, or if the tet is so far away that
+///         doubles do not hold its corners
+[[nodiscard]] bool sweepFewPoints(const LatticeTet& corners, std::int64_t unit,
+                                  std::vector<SweptLine>& vertices,
+                                  std::vector<SweptLine>& centers);
+
+}  // namespace hexhex
