@@ -25,8 +25,7 @@
 #include <io/hexex/hexex.hpp>
 #include <io/medit/medit.hpp>
 #include <io/ovm/ovm.hpp>
-#include <io/vtk/vtk_legacy.hpp>
-#include <io/vtk/vtu.hpp>
+#include <io/vtk/vtk.hpp>
 
 namespace {
 

@@ -11,7 +11,7 @@
 
 #include <io/io_test_support.hpp>
 #include <io/medit/medit.hpp>
-#include <io/vtk/vtu.hpp>
+#include <io/vtk/vtk.hpp>
 
 namespace hexhex::test {
 namespace {

@@ -12,8 +12,7 @@
 
 #include <io/core/zlib_blocks.hpp>
 #include <io/io_test_support.hpp>
-#include <io/vtk/vtk_legacy.hpp>
-#include <io/vtk/vtu.hpp>
+#include <io/vtk/vtk.hpp>
 
 namespace hexhex::test {
 namespace {

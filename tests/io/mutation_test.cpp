@@ -15,8 +15,7 @@
 #include <io/hexex/hexex.hpp>
 #include <io/io_test_support.hpp>
 #include <io/medit/medit.hpp>
-#include <io/vtk/vtk_legacy.hpp>
-#include <io/vtk/vtu.hpp>
+#include <io/vtk/vtk.hpp>
 
 namespace {
 std::atomic<std::size_t> largestAllocation{0};

@@ -8,7 +8,7 @@
 #include <hexhex/io.hpp>
 
 #include <io/io_test_support.hpp>
-#include <io/vtk/vtk_legacy.hpp>
+#include <io/vtk/vtk.hpp>
 
 namespace hexhex::test {
 namespace {

@@ -17,9 +17,7 @@
 #include <io/medit/medit.hpp>
 #include <io/ovm/ovm.hpp>
 #include <io/solvers/solvers.hpp>
-#include <io/vtk/vtk_legacy.hpp>
-#include <io/vtk/vtkhdf.hpp>
-#include <io/vtk/vtu.hpp>
+#include <io/vtk/vtk.hpp>
 
 namespace hexhex {
 namespace {

@@ -10,7 +10,7 @@
 #include <io/core/text_scanner.hpp>
 #include <io/curved/lagrange_files.hpp>
 #include <io/ovm/piecewise_ovmb.hpp>
-#include <io/vtk/piecewise_vtk.hpp>
+#include <io/vtk/vtk.hpp>
 #include <mesh/lagrange_check.hpp>
 
 namespace hexhex {

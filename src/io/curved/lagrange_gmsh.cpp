@@ -5,9 +5,8 @@
 #include <vector>
 
 #include <base/parallel.hpp>
-#include <io/curved/lagrange_elements.hpp>
 #include <io/curved/lagrange_files.hpp>
-#include <io/curved/lagrange_order.hpp>
+#include <io/curved/lagrange_nodes.hpp>
 #include <io/gmsh/gmsh.hpp>
 #include <io/gmsh/msh41_writer.hpp>
 
@@ -39,8 +38,8 @@ void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& fi
   Array<Index> lines;
   Array<Index> quads;
   withThreads(context.threads(), [&] {
-    lines = edgeNodes(mesh, straight, groups.edges, gmshEdgeOrder(mesh.order), stage);
-    quads = quadNodes(mesh, straight, groups.quads, gmshQuadOrder(mesh.order), stage);
+    lines = gmshEdgeNodes(mesh, straight, groups.edges, stage);
+    quads = gmshQuadNodes(mesh, straight, groups.quads, stage);
   });
   straight = {};
 

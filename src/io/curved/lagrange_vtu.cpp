@@ -1,12 +1,158 @@
+// Lagrange cells in `.vtu` files.
+#include <algorithm>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include <hexhex/error.hpp>
+
 #include <io/curved/lagrange_files.hpp>
-#include <io/curved/lagrange_order.hpp>
+#include <io/curved/lagrange_nodes.hpp>
+#include <io/vtk/vtk_reader.hpp>
 #include <io/vtk/vtk_xml_writer.hpp>
+#include <io/vtk/vtu_file.hpp>
 
 namespace hexhex {
+namespace {
+
+/// Lagrange hexahedra with so many nodes.
+VtkCells lagrangeCells(std::size_t nodes) {
+  return {kVtkLagrangeHexahedron, nodes, "Lagrange hexahedron", "Lagrange hexahedra"};
+}
+
+/// The order of cells with (p + 1)^3 nodes; 0 if no p from 1 to 9 has as many.
+int orderOf(std::uint64_t nodes) {
+  for (int order = 1; order <= kMaxOrder; ++order) {
+    const auto n = static_cast<std::uint64_t>(order) + 1;
+    if (n * n * n == nodes) return order;
+  }
+  return 0;
+}
+
+/// The order of the cells, which must be the same for all.
+int findOrder(const VtkSource& source) {
+  Array<std::int64_t> types(source.cells);
+  Array<std::int64_t> ends(source.cells);
+  source.copy(source.types, 0, types.size(), types.data());
+  source.copy(source.offsets, 0, ends.size(), ends.data());
+  std::int64_t nodes = 0;
+  for (std::size_t c = 0; c < types.size(); ++c) {
+    if (types[c] != kVtkLagrangeHexahedron) continue;
+    const std::int64_t begin = c == 0 ? 0 : ends[c - 1];
+    // Readers of cells say what is wrong with corners that end before they begin, or too late.
+    const auto stored = static_cast<std::int64_t>(source.connectivity.count);
+    if (begin < 0 || ends[c] < begin || ends[c] > stored) break;
+    const std::int64_t count = ends[c] - begin;
+    const bool first = nodes == 0;
+    if (first && orderOf(static_cast<std::uint64_t>(count)) > 0) nodes = count;
+    if (count == nodes) continue;
+    source.fail(ErrorCode::FileUnsupported,
+                "cell " + std::to_string(c) + " has " + std::to_string(count) + " nodes" +
+                    (first ? ", but Lagrange hexahedra of an order p from 1 to 9, the same in all "
+                             "directions, have (p + 1)^3."
+                           : ", but the cells before it have " + std::to_string(nodes) +
+                                 ". Cells of different orders are not supported."),
+                Place{PlaceKind::Cell, c});
+  }
+  return nodes == 0 ? 1 : orderOf(static_cast<std::uint64_t>(nodes));
+}
+
+/// From the order of VTK to that of LagrangeMesh.
+void reorderNodes(LagrangeMesh& mesh, Stage& stage) {
+  constexpr std::size_t kGrain = std::size_t{1} << 10;
+  const std::vector<std::uint32_t> places = vtkNodeOrder(mesh.order);
+  parallelBlocks(stage, mesh.cellCount(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::vector<Index> row(places.size());
+                   for (std::size_t c = begin; c < end; ++c) {
+                     Index* const nodes = mesh.nodes.data() + c * row.size();
+                     std::copy_n(nodes, row.size(), row.begin());
+                     for (std::size_t k = 0; k < row.size(); ++k) nodes[places[k]] = row[k];
+                   }
+                 });
+}
+
+/// Renumbers tags of corners; others are no part of the straight mesh.
+void renumberFeatures(const std::vector<bool>& isCorner, const Array<Index>& newNumber,
+                      HexFeatures& features) {
+  const auto isNoCorner = [&isCorner](Index node) { return !isCorner[node]; };
+  std::erase_if(features.vertices,
+                [&](const FeatureVertex& feature) { return isNoCorner(feature.vertex); });
+  for (FeatureVertex& feature : features.vertices) feature.vertex = newNumber[feature.vertex];
+  const auto renumber = [&](auto& elements) {
+    std::erase_if(elements, [&](const auto& element) {
+      return std::ranges::any_of(element.vertices, isNoCorner);
+    });
+    for (auto& element : elements) {
+      for (Index& vertex : element.vertices) vertex = newNumber[vertex];
+    }
+  };
+  renumber(features.edges);
+  renumber(features.quads);
+}
+
+/// Renumbers nodes so that those at corners come first, otherwise in the order of the file.
+void putCornersFirst(LagrangeMesh& mesh) {
+  std::vector<bool> isCorner(mesh.points.size(), false);
+  const std::vector<std::uint32_t> places = vtkNodeOrder(mesh.order);  // corners come first
+  const std::size_t perCell = mesh.nodesPerCell();
+  for (std::size_t c = 0; c < mesh.cellCount(); ++c) {
+    for (std::size_t k = 0; k < 8; ++k) isCorner[mesh.nodes[c * perCell + places[k]]] = true;
+  }
+  mesh.vertexCount = static_cast<std::uint64_t>(std::count(isCorner.begin(), isCorner.end(), true));
+  Array<Index> newNumber(mesh.points.size());
+  Index nextCorner = 0;
+  auto nextOther = static_cast<Index>(mesh.vertexCount);
+  for (std::size_t v = 0; v < newNumber.size(); ++v) {
+    newNumber[v] = isCorner[v] ? nextCorner++ : nextOther++;
+  }
+  const auto moved = [&newNumber](const auto& from) {
+    auto to = from;
+    for (std::size_t v = 0; v < from.size(); ++v) to[newNumber[v]] = from[v];
+    return to;
+  };
+  mesh.points = moved(mesh.points);
+  mesh.generatorTet = moved(mesh.generatorTet);
+  mesh.generatorCorners = moved(mesh.generatorCorners);
+  for (Index& node : mesh.nodes) node = newNumber[node];
+  renumberFeatures(isCorner, newNumber, mesh.features);
+}
+
+LagrangeMesh readLagrange(const VtkSource& source, Stage& stage) {
+  source.requireIndexable();
+  LagrangeMesh mesh;
+  mesh.order = findOrder(source);
+  const VtkCells wanted = lagrangeCells(mesh.nodesPerCell());
+  if (source.cells == 0) failWithoutVtkCells(source, wanted);
+  mesh.points.resize(source.points);
+  readVtkPoints(source, mesh.points, stage);
+  Array<std::size_t> numbers;
+  const auto makeRoom = [&mesh](std::size_t cells) {
+    mesh.nodes.resize(cells * mesh.nodesPerCell());
+    return mesh.nodes.data();
+  };
+  readVtkCells(source, wanted, makeRoom, &numbers, stage);
+  reorderNodes(mesh, stage);
+  readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
+  mesh.regions = readVtkRegions(source, numbers);
+  mesh.features = readVtkHexFeatures(source);
+  putCornersFirst(mesh);
+  return mesh;
+}
+
+}  // namespace
+
+bool holdsLagrangeVtu(const std::filesystem::path& file, Context& context) {
+  return readVtuFile(file, "read mesh", context, [](const VtkSource& source, Stage& /*stage*/) {
+    return countVtkCells(source, lagrangeCells(0), 0, source.cells) > 0;
+  });
+}
+
+LagrangeMesh readLagrangeVtu(const std::filesystem::path& file, Context& context) {
+  return readVtuFile(file, "read mesh", context, readLagrange);
+}
 
 void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& file,
                       const WriteOptions& options, Context& context) {

@@ -8,7 +8,7 @@
 #include <base/stage.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/vtk/piecewise_vtk.hpp>
+#include <io/vtk/vtk.hpp>
 #include <io/vtk/vtk_xml_writer.hpp>
 
 namespace hexhex {

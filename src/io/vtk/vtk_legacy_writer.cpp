@@ -17,8 +17,8 @@
 #include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/writable.hpp>
+#include <io/vtk/vtk.hpp>
 #include <io/vtk/vtk_data_set.hpp>
-#include <io/vtk/vtk_legacy.hpp>
 
 namespace hexhex {
 namespace {

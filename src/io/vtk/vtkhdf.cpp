@@ -11,8 +11,8 @@
 
 #include <base/stage.hpp>
 #include <io/core/output_file.hpp>
+#include <io/vtk/vtk.hpp>
 #include <io/vtk/vtk_data_set.hpp>
-#include <io/vtk/vtkhdf.hpp>
 
 namespace hexhex {
 namespace {

@@ -1,30 +1,91 @@
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <vector>
 
 #include <base/parallel.hpp>
-#include <io/core/base64.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/vtk/vtu_decoding.hpp>
 
 namespace hexhex {
 namespace {
 
-/// Bytes as they are, front to back.
-class RawReader {
+constexpr std::uint8_t kNoDigit = 255;
+constexpr std::uint8_t kPadding = 64;
+
+constexpr std::array<std::uint8_t, 256> kBase64Digits = [] {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/=";
+  std::array<std::uint8_t, 256> table{};
+  table.fill(kNoDigit);
+  for (std::size_t i = 0; i < kDigits.size(); ++i) {
+    table[static_cast<unsigned char>(kDigits[i])] = static_cast<std::uint8_t>(i);
+  }
+  return table;
+}();
+
+/// Bytes front to back: as they are, or out of a base64 text. There, white space is skipped, and
+/// texts that end with padding may follow each other.
+class EncodedBytes {
  public:
-  explicit RawReader(std::string_view bytes) : rest_(bytes) {}
+  EncodedBytes(std::string_view text, bool base64) : rest_(text), base64_(base64) {}
+
+  /// Reads so many bytes; false if there are not as many, or the text is no base64.
   [[nodiscard]] bool read(char* to, std::size_t size) {
-    if (size > rest_.size()) return false;
-    std::copy_n(rest_.data(), size, to);
-    rest_.remove_prefix(size);
+    if (!base64_) {
+      if (size > rest_.size()) return false;
+      std::copy_n(rest_.data(), size, to);
+      rest_.remove_prefix(size);
+      return true;
+    }
+    while (size > 0) {
+      if (pendingBegin_ == pendingEnd_ && !decodeGroup()) return false;
+      *to++ = pending_[pendingBegin_++];
+      --size;
+    }
     return true;
   }
-  [[nodiscard]] std::size_t room() const noexcept { return rest_.size(); }
+
+  /// The most bytes that can be left.
+  [[nodiscard]] std::size_t room() const noexcept {
+    return base64_ ? rest_.size() / 4 * 3 + (pendingEnd_ - pendingBegin_) : rest_.size();
+  }
 
  private:
+  /// Four characters are three bytes, or fewer with padding.
+  bool decodeGroup() {
+    std::array<std::uint8_t, 4> digits{};
+    std::size_t count = 0;
+    std::size_t used = 0;
+    while (count < digits.size()) {
+      if (used == rest_.size()) return false;
+      const char c = rest_[used++];
+      if (isSpace(c)) continue;
+      digits[count] = kBase64Digits[static_cast<unsigned char>(c)];
+      if (digits[count++] == kNoDigit) return false;
+    }
+    rest_.remove_prefix(used);
+    if (digits[0] == kPadding || digits[1] == kPadding) return false;
+    const bool one = digits[2] == kPadding;
+    const bool two = digits[3] == kPadding;
+    if (one && !two) return false;
+    const auto digit = [&](std::size_t i) { return std::uint32_t{digits[i]} & 63U; };
+    const std::uint32_t bits =
+        digit(0) << 18U | digit(1) << 12U | (one ? 0 : digit(2) << 6U) | (two ? 0 : digit(3));
+    pending_ = {static_cast<char>(bits >> 16U), static_cast<char>(bits >> 8U),
+                static_cast<char>(bits)};
+    pendingBegin_ = 0;
+    pendingEnd_ = one ? 1 : (two ? 2 : 3);
+    return true;
+  }
+
   std::string_view rest_;
+  bool base64_;
+  std::array<char, 3> pending_{};
+  std::size_t pendingBegin_ = 0;
+  std::size_t pendingEnd_ = 0;
 };
 
 /// Where the blocks of a compressed array are.
@@ -34,114 +95,77 @@ struct Blocks {
   std::vector<std::uint64_t> begins;  ///< of the compressed blocks, and the end of the last
 };
 
-/// Decodes one array from a source of bytes.
-template <class Source>
-class Decoder {
- public:
-  Decoder(Source source, const VtuEncoding& encoding, Stage* stage, std::string& problem)
-      : source_(source), encoding_(encoding), stage_(stage), problem_(problem) {}
-
-  std::optional<Array<char>> decode() {
-    return encoding_.compressed ? decodeBlocks() : decodePlain();
+/// A number in front of the data, in this machine's order of bytes, which the reader has made sure
+/// of.
+bool readLength(EncodedBytes& source, std::size_t lengthBytes, std::uint64_t& length) {
+  std::array<char, sizeof(length)> bytes{};
+  if (!source.read(bytes.data(), lengthBytes)) return false;
+  if (lengthBytes == sizeof(std::uint32_t)) {
+    std::uint32_t shortLength = 0;
+    std::memcpy(&shortLength, bytes.data(), sizeof(shortLength));
+    length = shortLength;
+  } else {
+    std::memcpy(&length, bytes.data(), sizeof(length));
   }
+  return true;
+}
 
- private:
-  std::nullopt_t fail(const char* sentence) {
-    problem_ = sentence;
-    return std::nullopt;
+/// In front of the blocks: their number, their size, that of a last shorter block or 0, and the
+/// sizes of the compressed ones.
+bool readBlocks(EncodedBytes& source, std::size_t lengthBytes, Blocks& blocks) {
+  std::uint64_t count = 0;
+  if (!readLength(source, lengthBytes, count) || !readLength(source, lengthBytes, blocks.size) ||
+      !readLength(source, lengthBytes, blocks.lastSize) || count > source.room() / lengthBytes) {
+    return false;
   }
-  bool readLength(std::uint64_t& length) {
-    std::array<char, sizeof(length)> bytes{};
-    if (!source_.read(bytes.data(), encoding_.lengthBytes)) return false;
-    // In this machine's order of bytes, which the reader has made sure of.
-    if (encoding_.lengthBytes == sizeof(std::uint32_t)) {
-      std::uint32_t shortLength = 0;
-      std::memcpy(&shortLength, bytes.data(), sizeof(shortLength));
-      length = shortLength;
-    } else {
-      std::memcpy(&length, bytes.data(), sizeof(length));
-    }
-    return true;
+  if (blocks.lastSize == 0) blocks.lastSize = blocks.size;
+  blocks.begins = {0};
+  for (std::uint64_t i = 0; i < count; ++i) {
+    std::uint64_t size = 0;
+    if (!readLength(source, lengthBytes, size) || size > source.room()) return false;
+    const std::uint64_t limit = size * kLargestZlibRatio;
+    if ((i + 1 < count ? blocks.size : blocks.lastSize) > limit) return false;
+    blocks.begins.push_back(blocks.begins.back() + size);
   }
+  return blocks.begins.back() <= source.room() && blocks.lastSize <= blocks.size;
+}
 
-  std::optional<Array<char>> decodePlain() {
-    std::uint64_t length = 0;
-    if (!readLength(length) || length > source_.room()) {
-      return fail("the data of this array are incomplete.");
-    }
-    Array<char> bytes(static_cast<std::size_t>(length));
-    if (!source_.read(bytes.data(), bytes.size())) {
-      return fail("the data of this array are incomplete, or no base64.");
-    }
-    return bytes;
-  }
-
-  /// In front of the blocks: their number, their size, that of a last shorter block or 0, and the
-  /// sizes of the compressed ones.
-  bool readBlocks(Blocks& blocks) {
-    std::uint64_t count = 0;
-    if (!readLength(count) || !readLength(blocks.size) || !readLength(blocks.lastSize))
-      return false;
-    if (count > source_.room() / encoding_.lengthBytes) return false;
-    if (blocks.lastSize == 0) blocks.lastSize = blocks.size;
-    blocks.begins = {0};
-    for (std::uint64_t i = 0; i < count; ++i) {
-      std::uint64_t size = 0;
-      if (!readLength(size) || size > source_.room()) return false;
-      const std::uint64_t limit = size * kLargestZlibRatio;
-      if ((i + 1 < count ? blocks.size : blocks.lastSize) > limit) return false;
-      blocks.begins.push_back(blocks.begins.back() + size);
-    }
-    return blocks.begins.back() <= source_.room() && blocks.lastSize <= blocks.size;
-  }
-
-  std::optional<Array<char>> decodeBlocks() {
-    Blocks blocks;
-    if (!readBlocks(blocks)) return fail("the data of this array are incomplete.");
-    const std::size_t count = blocks.begins.size() - 1;
-    if (count == 0) return Array<char>();
-    Array<char> compressed(blocks.begins.back());
-    if (!source_.read(compressed.data(), compressed.size())) {
-      return fail("the data of this array are incomplete, or no base64.");
-    }
-    Array<char> bytes((count - 1) * blocks.size + blocks.lastSize);
-    const auto inflate = [&](std::size_t i) {
-      const std::uint64_t begin = blocks.begins[i];
-      return inflateBlock(
-          {compressed.data() + begin, blocks.begins[i + 1] - begin},
-          {bytes.data() + i * blocks.size, i + 1 < count ? blocks.size : blocks.lastSize});
-    };
-    if (firstWrong(count, inflate) < count) {
-      return fail("the compressed data of this array are damaged.");
-    }
-    return bytes;
-  }
-
-  template <class F>
-  std::size_t firstWrong(std::size_t count, const F& inflate) {
-    constexpr std::size_t kGrain = 8;  // blocks of some tens of kilobytes
-    if (stage_ != nullptr) return firstFault(*stage_, count, inflate, kGrain);
-    std::size_t i = 0;
-    while (i < count && inflate(i)) ++i;
-    return i;
-  }
-
-  Source source_;
-  const VtuEncoding& encoding_;
-  Stage* stage_;
-  std::string& problem_;
-};
+constexpr const char* kIncomplete = "the data of this array are incomplete.";
+constexpr const char* kIncompleteOrNoBase64 =
+    "the data of this array are incomplete, or no base64.";
 
 }  // namespace
 
-std::optional<Array<char>> decodeVtuArray(std::string_view text, const VtuEncoding& encoding,
-                                          Stage* stage, std::string& problem) {
-  if (encoding.compressed && !hasZlib()) {
-    problem = "this program was built without zlib, which compressed arrays need.";
-    return std::nullopt;
+Array<char> decodeVtuArray(std::string_view text, const VtuEncoding& encoding, Stage& stage,
+                           const std::function<void(const char* sentence)>& fail) {
+  EncodedBytes source(text, encoding.base64);
+  if (!encoding.compressed) {
+    std::uint64_t length = 0;
+    if (!readLength(source, encoding.lengthBytes, length) || length > source.room()) {
+      fail(kIncomplete);
+    }
+    Array<char> bytes(static_cast<std::size_t>(length));
+    if (!source.read(bytes.data(), bytes.size())) fail(kIncompleteOrNoBase64);
+    return bytes;
   }
-  if (encoding.base64) return Decoder(Base64Reader(text), encoding, stage, problem).decode();
-  return Decoder(RawReader(text), encoding, stage, problem).decode();
+  Blocks blocks;
+  if (!readBlocks(source, encoding.lengthBytes, blocks)) fail(kIncomplete);
+  const std::size_t count = blocks.begins.size() - 1;
+  if (count == 0) return {};
+  Array<char> compressed(blocks.begins.back());
+  if (!source.read(compressed.data(), compressed.size())) fail(kIncompleteOrNoBase64);
+  Array<char> bytes((count - 1) * blocks.size + blocks.lastSize);
+  constexpr std::size_t kGrain = 8;  // blocks of some tens of kilobytes
+  const auto inflate = [&](std::size_t i) {
+    const std::uint64_t begin = blocks.begins[i];
+    return inflateBlock(
+        {compressed.data() + begin, blocks.begins[i + 1] - begin},
+        {bytes.data() + i * blocks.size, i + 1 < count ? blocks.size : blocks.lastSize});
+  };
+  if (firstFault(stage, count, inflate, kGrain) < count) {
+    fail("the compressed data of this array are damaged.");
+  }
+  return bytes;
 }
 
 }  // namespace hexhex

@@ -3,10 +3,8 @@
 #include <array>
 #include <bit>
 #include <charconv>
-#include <cstring>
-#include <type_traits>
+#include <utility>
 
-#include <io/core/grid_map.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/vtk/vtu_decoding.hpp>
@@ -17,139 +15,72 @@ namespace {
 
 constexpr std::string_view kZlibCompressor = "vtkZLibDataCompressor";
 
-// How much of a file is searched for the end of its head: first this, then more, at most that. A
-// head takes some kilobytes; one with more holds arrays as text.
-constexpr std::size_t kFirstHeadBytes = std::size_t{1} << 16;
-constexpr std::size_t kMostHeadBytes = std::size_t{1} << 24;
+constexpr std::array<std::pair<std::string_view, VtkSection>, 5> kSections = {
+    {{"FieldData", VtkSection::FieldData},
+     {"PointData", VtkSection::PointData},
+     {"CellData", VtkSection::CellData},
+     {"Points", VtkSection::Points},
+     {"Cells", VtkSection::Cells}}};
 
-struct ScalarName {
-  std::string_view name;
-  VtuScalar scalar;
-  std::size_t bytes;
-};
-constexpr std::array<ScalarName, 10> kScalars = {{{"Int8", VtuScalar::Int8, 1},
-                                                  {"UInt8", VtuScalar::UInt8, 1},
-                                                  {"Int16", VtuScalar::Int16, 2},
-                                                  {"UInt16", VtuScalar::UInt16, 2},
-                                                  {"Int32", VtuScalar::Int32, 4},
-                                                  {"UInt32", VtuScalar::UInt32, 4},
-                                                  {"Int64", VtuScalar::Int64, 8},
-                                                  {"UInt64", VtuScalar::UInt64, 8},
-                                                  {"Float32", VtuScalar::Float32, 4},
-                                                  {"Float64", VtuScalar::Float64, 8}}};
+constexpr std::array<std::pair<std::string_view, VtkScalar>, 10> kScalars = {
+    {{"Int8", VtkScalar::Int8},
+     {"UInt8", VtkScalar::UInt8},
+     {"Int16", VtkScalar::Int16},
+     {"UInt16", VtkScalar::UInt16},
+     {"Int32", VtkScalar::Int32},
+     {"UInt32", VtkScalar::UInt32},
+     {"Int64", VtkScalar::Int64},
+     {"UInt64", VtkScalar::UInt64},
+     {"Float32", VtkScalar::Float32},
+     {"Float64", VtkScalar::Float64}}};
 
-/// Numbers one after the other, as they are stored, into an array of T.
-template <class Stored, class T>
-void convert(const char* from, std::size_t count, T* to) {
-  for (std::size_t i = 0; i < count; ++i) {
-    Stored stored;
-    std::memcpy(&stored, from + i * sizeof(Stored), sizeof(Stored));
-    // NOLINTNEXTLINE(bugprone-signed-char-misuse): numbers of 8 bits keep their sign, too.
-    to[i] = static_cast<T>(stored);
-  }
+/// What a table has under a name; null if it has nothing.
+template <class Table>
+auto* lookUp(const Table& table, std::string_view name) {
+  const auto found = std::find_if(table.begin(), table.end(),
+                                  [name](const auto& entry) { return entry.first == name; });
+  return found == table.end() ? nullptr : &found->second;
 }
 
-template <class T>
-void convert(VtuScalar scalar, const char* from, std::size_t count, T* to) {
-  switch (scalar) {
-    case VtuScalar::Int8:
-      return convert<std::int8_t>(from, count, to);
-    case VtuScalar::UInt8:
-      return convert<std::uint8_t>(from, count, to);
-    case VtuScalar::Int16:
-      return convert<std::int16_t>(from, count, to);
-    case VtuScalar::UInt16:
-      return convert<std::uint16_t>(from, count, to);
-    case VtuScalar::Int32:
-      return convert<std::int32_t>(from, count, to);
-    case VtuScalar::UInt32:
-      return convert<std::uint32_t>(from, count, to);
-    case VtuScalar::Int64:
-      return convert<std::int64_t>(from, count, to);
-    case VtuScalar::UInt64:
-      return convert<std::uint64_t>(from, count, to);
-    case VtuScalar::Float32:
-      return convert<float>(from, count, to);
-    case VtuScalar::Float64:
-      return convert<double>(from, count, to);
-  }
-}
-
-/// Whether numbers in memory have the bytes of the stored ones, so that they need not be converted.
-template <class T>
-bool isStoredAs(VtuScalar scalar) {
-  if constexpr (std::is_same_v<T, double>) return scalar == VtuScalar::Float64;
-  if constexpr (std::is_same_v<T, std::int64_t>) return scalar == VtuScalar::Int64;
-  if constexpr (std::is_same_v<T, Index>) {
-    return scalar == VtuScalar::Int32 || scalar == VtuScalar::UInt32;
-  }
-  return false;
-}
-
-/// The beginning of a file up to its binary data; everything up to a limit if it has none.
-struct HeadBytes {
-  Array<char> bytes;
-  bool complete = false;  ///< the binary data begin within these bytes
-};
-
-HeadBytes readHeadBytes(const InputFile& input) {
-  HeadBytes head;
-  for (std::size_t most = kFirstHeadBytes; most <= kMostHeadBytes; most *= 4) {
-    const std::size_t size = std::min<std::uint64_t>(most, input.size());
-    head.bytes.resize(size);
-    input.readAt(0, head.bytes.data(), size);
-    const std::string_view text = asText(head.bytes);
-    const std::size_t tag = text.find("<AppendedData");
-    head.complete = tag != std::string_view::npos && text.find('_', tag) != std::string_view::npos;
-    if (head.complete || size == input.size()) break;
-  }
-  return head;
+VtkNumbers numbersOf(std::string_view type) {
+  if (type.starts_with("Float")) return VtkNumbers::Reals;
+  if (type.starts_with("Int") || type.starts_with("UInt")) return VtkNumbers::Integers;
+  return VtkNumbers::Others;
 }
 
 }  // namespace
 
-VtuFile::VtuFile(std::string_view text, const std::string& fileName, Stage& stage)
-    : stage_(&stage),
+VtuFile::VtuFile(const ByteFile& bytes, std::string_view text, const std::string& fileName,
+                 Stage& stage)
+    : VtkSource(bytes, fileName),
+      stage_(stage),
       text_(text),
-      fileSize_(text.size()),
-      fileName_(fileName),
+      fileSize_(bytes.size()),
       tags_(text, fileName) {
-  readHead();
-  findColumns();
+  readTags();
+  if (points > 0) {
+    coordinates = loadNeeded(VtkSection::Points, {}, "points", VtkNumbers::Reals, 3 * points);
+  }
+  if (cells == 0) return;
+  types = loadNeeded(VtkSection::Cells, "types", "cell types", VtkNumbers::Integers, cells);
+  offsets = loadNeeded(VtkSection::Cells, "offsets", "cell offsets", VtkNumbers::Integers, cells);
+  connectivity =
+      loadNeeded(VtkSection::Cells, "connectivity", "cell corners", VtkNumbers::Integers, {});
 }
 
-VtuFile::VtuFile(const InputFile& input, const std::string& fileName)
-    : input_(&input),
-      headBytes_(readHeadBytes(input).bytes),
-      text_(asText(headBytes_)),
-      fileSize_(input.size()),
-      fileName_(fileName),
-      tags_(text_, fileName) {
-  readHead();
-  findColumns();
-}
-
-bool VtuFile::hasPlainAppendedData(const InputFile& input) {
-  const HeadBytes head = readHeadBytes(input);
-  const std::string_view text = asText(head.bytes);
-  if (!head.complete || text.find("compressor=") != std::string_view::npos) return false;
-  const std::string_view tag = text.substr(text.find("<AppendedData"));
-  return tag.substr(0, tag.find('_')).find("base64") == std::string_view::npos;
-}
-
-void VtuFile::readHead() {
+void VtuFile::readTags() {
   XmlTag tag;
-  std::string_view section;
+  const VtkSection* section = nullptr;
   while (tags_.next(tag)) {
     if (!hasFileTag_ && tag.name != "VTKFile") break;
-    if (tag.name == "VTKFile" && !tag.closing) readFileTag(tag);
-    if (tag.name == "Piece" && !tag.closing) readPieceTag(tag);
-    if (tag.name == "FieldData" || tag.name == "PointData" || tag.name == "CellData" ||
-        tag.name == "Points" || tag.name == "Cells") {
-      section = tag.closing ? std::string_view() : tag.name;
+    if (const VtkSection* const named = lookUp(kSections, tag.name)) {
+      section = tag.closing ? nullptr : named;
     }
-    if (tag.name == "DataArray" && !tag.closing) readArrayTag(tag, section);
-    if (tag.name == "AppendedData" && !tag.closing) {
+    if (tag.closing) continue;
+    if (tag.name == "VTKFile") readFileTag(tag);
+    if (tag.name == "Piece") readPieceTag(tag);
+    if (tag.name == "DataArray" && section != nullptr) readArrayTag(tag, *section);
+    if (tag.name == "AppendedData") {
       readAppendedTag(tag);
       break;  // binary data, no more tags
     }
@@ -164,7 +95,7 @@ void VtuFile::readFileTag(const XmlTag& tag) {
     tags_.fail(ErrorCode::FileUnsupported,
                "the file's type is " + quoted(tag.attribute("type")) +
                    ", only UnstructuredGrid is supported.",
-               tag.begin);
+               tag);
   }
   const std::string_view compressor = tag.attribute("compressor");
   compressed_ = !compressor.empty();
@@ -172,13 +103,13 @@ void VtuFile::readFileTag(const XmlTag& tag) {
     tags_.fail(ErrorCode::FileUnsupported,
                "the file is compressed with " + quoted(compressor) +
                    ". Save it uncompressed or with zlib (vtkZLibDataCompressor).",
-               tag.begin);
+               tag);
   }
   const bool little = std::endian::native == std::endian::little;
   const std::string_view order = tag.attribute("byte_order");
   if (!order.empty() && order != (little ? "LittleEndian" : "BigEndian")) {
     tags_.fail(ErrorCode::FileUnsupported,
-               "the byte order " + quoted(order) + " is not that of this machine.", tag.begin);
+               "the byte order " + quoted(order) + " is not that of this machine.", tag);
   }
   const std::string_view header = tag.attribute("header_type");
   lengthBytes_ = header == "UInt64" ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
@@ -187,11 +118,11 @@ void VtuFile::readFileTag(const XmlTag& tag) {
 void VtuFile::readPieceTag(const XmlTag& tag) {
   if (piece_) {
     tags_.fail(ErrorCode::FileUnsupported,
-               "the file has several pieces; merge them into one and save it again.", tag.begin);
+               "the file has several pieces; merge them into one and save it again.", tag);
   }
-  piece_ = tag.begin;
-  pointCount_ = readCount(tag, "NumberOfPoints");
-  cellCount_ = readCount(tag, "NumberOfCells");
+  piece_ = tag;
+  points = readCount(tag, "NumberOfPoints");
+  cells = readCount(tag, "NumberOfCells");
 }
 
 std::uint64_t VtuFile::readCount(const XmlTag& tag, std::string_view attribute) const {
@@ -202,7 +133,7 @@ std::uint64_t VtuFile::readCount(const XmlTag& tag, std::string_view attribute) 
     tags_.fail(
         ErrorCode::FileSyntax,
         "expected a whole number as " + std::string(attribute) + ", found " + quoted(value) + ".",
-        tag.begin);
+        tag);
   }
   // Each point or cell takes some bytes, which zlib makes smaller at most by its ratio. Besides,
   // products of this count cannot overflow then.
@@ -210,24 +141,25 @@ std::uint64_t VtuFile::readCount(const XmlTag& tag, std::string_view attribute) 
     tags_.fail(ErrorCode::FileSyntax,
                std::string(attribute) + " is " + std::to_string(count) +
                    ", more than the file has room for: it is wrong or the file is incomplete.",
-               tag.begin);
+               tag);
   }
   return count;
 }
 
-void VtuFile::readArrayTag(const XmlTag& tag, std::string_view section) {
-  const std::size_t next = std::min(text_.find('<', tag.end), text_.size());
-  const ArrayTag array{tag, text_.substr(tag.end, next - tag.end)};
-  const std::string_view name = tag.attribute("Name");
-  if (section == "FieldData") dataArrays_.push_back({array, VtuSection::Field});
-  if (section == "PointData") dataArrays_.push_back({array, VtuSection::Points});
-  if (section == "CellData") dataArrays_.push_back({array, VtuSection::Cells});
-  if (section == "Points") coordinatesTag_ = array;
-  if (section == "Cells" && name == "connectivity") connectivityTag_ = array;
-  if (section == "Cells" && name == "offsets") endsTag_ = array;
-  if (section == "Cells" && name == "types") typesTag_ = array;
-  if (section == "PointData" && name == "generator_tet") generatorTetsTag_ = array;
-  if (section == "PointData" && name == "generator_corners") generatorCornersTag_ = array;
+void VtuFile::readArrayTag(const XmlTag& tag, VtkSection section) {
+  VtkSourceArray array;
+  array.section = section;
+  array.name = tag.attribute("Name");
+  array.numbers = numbersOf(tag.attribute("type"));
+  const std::string_view components = tag.attribute("NumberOfComponents");
+  std::from_chars(components.data(), components.data() + components.size(), array.components);
+  array.appended = tag.attribute("format") == "appended";
+  array.load = [this, tag](VtkNumbers numbers, std::optional<std::uint64_t> count) {
+    return loadArray(tag, numbers, count);
+  };
+  const bool ofCells = section == VtkSection::CellData;
+  if (ofCells || section == VtkSection::PointData) see(array.name, ofCells, array.components);
+  arrays.push_back(std::move(array));
 }
 
 void VtuFile::readAppendedTag(const XmlTag& tag) {
@@ -237,18 +169,18 @@ void VtuFile::readAppendedTag(const XmlTag& tag) {
     tags_.fail(ErrorCode::FileUnsupported,
                "the appended data are encoded as " + quoted(encoding) +
                    ", which is neither raw nor base64.",
-               tag.begin);
+               tag);
   }
   const std::size_t mark = text_.find('_', tag.end);
   if (mark == std::string_view::npos) {
     tags_.fail(ErrorCode::FileSyntax, "the appended data are missing: the file is incomplete.",
-               tag.begin);
+               tag);
   }
   appended_ = mark + 1;
 }
 
 void VtuFile::requireIndexable() const {
-  for (const std::uint64_t count : {pointCount_, cellCount_}) {
+  for (const std::uint64_t count : {points, cells}) {
     if (count <= kNone) continue;
     tags_.fail(ErrorCode::TooLarge,
                "the file holds " + std::to_string(count) + " points or cells; at most " +
@@ -257,227 +189,145 @@ void VtuFile::requireIndexable() const {
   }
 }
 
-void VtuFile::findColumns() {
-  if (pointCount_ > 0) {
-    coordinates_ = column(coordinatesTag_, "points", Kind::Reals, 3 * pointCount_);
-    generatorTets_ = generatorColumn(generatorTetsTag_, VtuScalar::UInt32);
-    generatorCorners_ = generatorColumn(generatorCornersTag_, VtuScalar::UInt8);
-  }
-  if (cellCount_ > 0) {
-    types_ = column(typesTag_, "cell types", Kind::Integers, cellCount_);
-    ends_ = column(endsTag_, "cell offsets", Kind::Integers, cellCount_);
-    connectivity_ = column(connectivityTag_, "cell corners", Kind::Integers, std::nullopt);
-  }
+/// The numbers of an array that no file can do without. That of the points may have any name.
+VtkColumn VtuFile::loadNeeded(VtkSection section, std::string_view name, const char* what,
+                              VtkNumbers numbers, std::optional<std::uint64_t> count) const {
+  const auto found = std::find_if(arrays.rbegin(), arrays.rend(), [&](const VtkSourceArray& array) {
+    return array.section == section && (name.empty() || array.name == name);
+  });
+  if (found != arrays.rend()) return found->load(numbers, count);
+  fail(ErrorCode::FileSyntax, "the file has no array of " + std::string(what) + ".");
 }
 
-/// The numbers of an array that is needed, exactly `count` of them if that is known.
-VtuColumn VtuFile::column(const std::optional<ArrayTag>& array, const char* what, Kind kind,
-                          std::optional<std::uint64_t> count) const {
-  if (!array) {
-    fail(ErrorCode::FileSyntax, "the file has no array of " + std::string(what) + ".");
-  }
-  const std::string_view format = array->tag.attribute("format");
-  if (format == "ascii") return parsedColumn(*array, kind, count);
+/// The numbers of an array, exactly `count` of them if that is known.
+VtkColumn VtuFile::loadArray(const XmlTag& tag, VtkNumbers numbers,
+                             std::optional<std::uint64_t> count) const {
+  const std::string_view format = tag.attribute("format");
+  if (format == "ascii") return parse(tag, numbers, count);
   if (format != "appended" && format != "binary") {
     tags_.fail(ErrorCode::FileUnsupported,
                "the data format " + quoted(format) + " is none of appended, binary and ascii.",
-               array->tag.begin);
+               tag);
   }
-  const bool plain = format == "appended" && !appendedBase64_ && !compressed_;
-  VtuColumn column = plain ? appendedColumn(*array, kind) : decodedColumn(*array, kind);
+  const std::string_view type = tag.attribute("type");
+  const VtkScalar* const scalar = lookUp(kScalars, type);
+  if (scalar == nullptr || numbersOf(type) != numbers) {
+    tags_.fail(ErrorCode::FileUnsupported,
+               "the number type " + quoted(type) + " is not supported for this array.", tag);
+  }
+  VtkColumn column;
+  column.scalar = *scalar;
+  std::uint64_t bytes = 0;
+  if (format == "appended" && !appendedBase64_ && !compressed_) {
+    bytes = findAppended(tag, column);
+  } else {
+    column.decoded = decode(tag);
+    bytes = column.decoded.size();
+  }
+  column.count = bytes / bytesOf(column.scalar);
   if (count && column.count != *count) {
     tags_.fail(ErrorCode::FileSyntax,
                "this array should hold " + std::to_string(*count) + " numbers, but it holds " +
                    std::to_string(column.count) + ".",
-               array->tag.begin);
+               tag);
   }
   return column;
 }
 
-/// An array without its numbers.
-VtuColumn VtuFile::typedColumn(const ArrayTag& array, Kind kind) const {
-  const std::string_view type = array.tag.attribute("type");
-  const auto scalar = std::find_if(kScalars.begin(), kScalars.end(),
-                                   [type](const ScalarName& entry) { return entry.name == type; });
-  const bool isReal = type.starts_with("Float");
-  if (scalar == kScalars.end() || isReal != (kind == Kind::Reals)) {
-    tags_.fail(ErrorCode::FileUnsupported,
-               "the number type " + quoted(type) + " is not supported for this array.",
-               array.tag.begin);
-  }
-  VtuColumn column;
-  column.scalar = scalar->scalar;
-  column.bytesEach = scalar->bytes;
-  return column;
-}
-
-VtuColumn VtuFile::appendedColumn(const ArrayTag& array, Kind kind) const {
-  VtuColumn column = typedColumn(array, kind);
-  const std::uint64_t offset = readCount(array.tag, "offset");
-  const auto incomplete = [this, &array]() {
-    tags_.fail(ErrorCode::FileSyntax,
-               "the data of this array lie beyond the end of the file: it is incomplete.",
-               array.tag.begin);
-  };
+/// Finds an array that is appended as plain bytes.
+/// @return their number
+std::uint64_t VtuFile::findAppended(const XmlTag& tag, VtkColumn& column) const {
+  const std::uint64_t offset = readCount(tag, "offset");
   const std::uint64_t room = appended_ ? fileSize_ - *appended_ : 0;
-  if (offset > room || room - offset < lengthBytes_) incomplete();
-  column.position = *appended_ + offset + lengthBytes_;
-  std::array<char, sizeof(std::uint64_t)> length{};
-  readBytes(column.position - lengthBytes_, lengthBytes_, length.data());
-  std::uint64_t bytes = 0;
-  convert(lengthBytes_ == sizeof(std::uint64_t) ? VtuScalar::UInt64 : VtuScalar::UInt32,
-          length.data(), 1, &bytes);
-  if (bytes > room - offset - lengthBytes_) incomplete();
-  column.count = bytes / column.bytesEach;
-  return column;
+  if (offset <= room && room - offset >= lengthBytes_) {
+    VtkColumn length;
+    length.scalar = lengthBytes_ == sizeof(std::uint64_t) ? VtkScalar::UInt64 : VtkScalar::UInt32;
+    length.position = *appended_ + offset;
+    std::int64_t bytes = 0;
+    copy(length, 0, 1, &bytes);
+    column.position = length.position + lengthBytes_;
+    if (static_cast<std::uint64_t>(bytes) <= room - offset - lengthBytes_) {
+      return static_cast<std::uint64_t>(bytes);
+    }
+  }
+  tags_.fail(ErrorCode::FileSyntax,
+             "the data of this array lie beyond the end of the file: it is incomplete.", tag);
 }
 
-/// An array that is base64 in its tag or appended, or compressed.
-VtuColumn VtuFile::decodedColumn(const ArrayTag& array, Kind kind) const {
-  VtuColumn column = typedColumn(array, kind);
-  std::string_view text = array.content;
+/// The bytes of an array that is base64 in its tag or appended, or compressed.
+Array<char> VtuFile::decode(const XmlTag& tag) const {
+  std::string_view text = contentOf(tag);
   bool base64 = true;
-  if (array.tag.attribute("format") == "appended") {
-    const std::uint64_t offset = readCount(array.tag, "offset");
+  if (tag.attribute("format") == "appended") {
+    const std::uint64_t offset = readCount(tag, "offset");
     const std::uint64_t room = appended_ ? text_.size() - *appended_ : 0;
     if (offset > room) {
       tags_.fail(ErrorCode::FileSyntax,
-                 "the data of this array lie beyond the end of the file: it is incomplete.",
-                 array.tag.begin);
+                 "the data of this array lie beyond the end of the file: it is incomplete.", tag);
     }
     text = text_.substr(appended_ ? *appended_ + offset : text_.size());
     base64 = appendedBase64_;
   }
-  std::string problem;
-  std::optional<Array<char>> bytes =
-      decodeVtuArray(text, {base64, compressed_, lengthBytes_}, stage_, problem);
-  if (!bytes) {
-    tags_.fail(compressed_ && !hasZlib() ? ErrorCode::FileUnsupported : ErrorCode::FileSyntax,
-               problem, array.tag.begin);
+  if (compressed_ && !hasZlib()) {
+    tags_.fail(ErrorCode::FileUnsupported,
+               "this program was built without zlib, which compressed arrays need.", tag);
   }
-  column.inMemory = true;
-  column.count = bytes->size() / column.bytesEach;
-  column.decoded = std::move(*bytes);
-  return column;
+  return decodeVtuArray(
+      text, {base64, compressed_, lengthBytes_}, stage_,
+      [&](const char* sentence) { tags_.fail(ErrorCode::FileSyntax, sentence, tag); });
 }
 
-std::size_t VtuFile::componentsOf(const ArrayTag& array) {
-  const std::string_view value = array.tag.attribute("NumberOfComponents");
-  std::size_t components = 1;
-  std::from_chars(value.data(), value.data() + value.size(), components);
-  return components;
-}
-
-const VtuFile::DataArray* VtuFile::findArray(std::string_view name, VtuSection section,
-                                             std::size_t components, Kind kind) const {
-  for (const DataArray& data : dataArrays_) {
-    const XmlTag& tag = data.array.tag;
-    const std::string_view type = tag.attribute("type");
-    const bool right = kind == Kind::Reals ? type.starts_with("Float")
-                                           : type.starts_with("Int") || type.starts_with("UInt");
-    if (right && data.section == section && tag.attribute("Name") == name &&
-        componentsOf(data.array) == components) {
-      return &data;
-    }
-  }
-  return nullptr;
-}
-
-std::optional<VtuColumn> VtuFile::findReals(std::string_view name, bool ofCells,
-                                            std::size_t components) const {
-  const DataArray* const data =
-      findArray(name, ofCells ? VtuSection::Cells : VtuSection::Points, components, Kind::Reals);
-  if (data == nullptr) return std::nullopt;
-  const std::uint64_t tuples = ofCells ? cellCount_ : pointCount_;
-  return column(data->array, "the map", Kind::Reals, components * tuples);
-}
-
-std::optional<VtuColumn> VtuFile::findIntegers(std::string_view name, VtuSection section,
-                                               std::size_t components) const {
-  const DataArray* const data = findArray(name, section, components, Kind::Integers);
-  if (data == nullptr) return std::nullopt;
-  std::optional<std::uint64_t> count;
-  if (section == VtuSection::Points) count = components * pointCount_;
-  if (section == VtuSection::Cells) count = components * cellCount_;
-  return column(data->array, "tags", Kind::Integers, count);
-}
-
-std::vector<std::string> VtuFile::describeArrays() const {
-  std::vector<std::string> list;
-  for (const DataArray& data : dataArrays_) {
-    if (data.section == VtuSection::Field) continue;
-    list.push_back(describeArray(data.array.tag.attribute("Name"),
-                                 data.section == VtuSection::Cells, componentsOf(data.array)));
-  }
-  return list;
-}
-
-/// An array that is used if it is as this library writes it.
-std::optional<VtuColumn> VtuFile::generatorColumn(const std::optional<ArrayTag>& array,
-                                                  VtuScalar scalar) const {
-  if (!array || array->tag.attribute("format") != "appended") return std::nullopt;
-  if (!array->tag.attribute("type").starts_with("UInt")) return std::nullopt;
-  const bool plain = !appendedBase64_ && !compressed_;
-  VtuColumn column =
-      plain ? appendedColumn(*array, Kind::Integers) : decodedColumn(*array, Kind::Integers);
-  if (column.scalar != scalar || column.count != pointCount_) return std::nullopt;
-  return column;
-}
-
-/// The numbers of a text, as Int64 or Float64. Without a count: as many as there are.
-VtuColumn VtuFile::parsedColumn(const ArrayTag& array, Kind kind,
-                                std::optional<std::uint64_t> count) const {
+/// The numbers of a text. Without a count: as many as there are.
+VtkColumn VtuFile::parse(const XmlTag& tag, VtkNumbers numbers,
+                         std::optional<std::uint64_t> count) const {
   // A view from the beginning of the file makes line numbers right; the scanner ends at the next
   // tag. Two bytes are the least that a number takes with its separator.
-  TextScanner scanner(text_.substr(0, array.tag.end + array.content.size()), fileName_);
-  scanner.moveTo(array.tag.end);
-  const std::size_t room = array.content.size() / 2 + 1;
+  const std::string_view content = contentOf(tag);
+  TextScanner scanner = tags_.scannerTo(tag.end + content.size());
+  scanner.moveTo(tag.end);
+  const std::size_t room = content.size() / 2 + 1;
   if (count && *count > room) {
     tags_.fail(ErrorCode::FileSyntax,
                "this array should hold " + std::to_string(*count) +
                    " numbers, but there is only room for " + std::to_string(room) + ".",
-               array.tag.begin);
+               tag);
   }
-  VtuColumn values;
-  values.inMemory = true;
-  values.scalar = kind == Kind::Reals ? VtuScalar::Float64 : VtuScalar::Int64;
-  values.bytesEach = 8;
-  values.decoded.resize((count ? *count : room) * values.bytesEach);
-  for (char* place = values.decoded.data(); count ? values.count < *count : scanner.skipSpace();
-       ++values.count, place += values.bytesEach) {
-    double real = 0;
-    std::int64_t integer = 0;
-    if (kind == Kind::Reals) {
-      if (!scanner.readNumber(real)) scanner.failNumber("a number");
-      std::memcpy(place, &real, sizeof(real));
-    } else {
-      if (!scanner.readInteger(integer)) scanner.failInteger("a whole number");
-      std::memcpy(place, &integer, sizeof(integer));
-    }
+  VtkColumn column = textColumn(numbers, count ? *count : room);
+  const char* const what = numbers == VtkNumbers::Reals ? "a number" : "a whole number";
+  column.count = 0;
+  while (count ? column.count < *count : scanner.skipSpace()) {
+    readVtkNumber(scanner, numbers, column, column.count++, [what] { return what; });
   }
   if (scanner.skipSpace()) scanner.failToken("the end of the array");
-  return values;
+  return column;
 }
 
-void VtuFile::readBytes(std::uint64_t position, std::size_t size, char* to) const {
-  if (input_ != nullptr) return input_->readAt(position, to, size);
-  std::copy_n(text_.data() + position, size, to);
+std::string_view VtuFile::contentOf(const XmlTag& tag) const {
+  return text_.substr(tag.end, std::min(text_.find('<', tag.end), text_.size()) - tag.end);
 }
 
-template <class T>
-void VtuFile::copy(const VtuColumn& column, std::uint64_t begin, std::size_t count, T* to) const {
-  const std::uint64_t position = column.position + begin * column.bytesEach;
-  if (column.inMemory) return convert(column.scalar, column.decoded.data() + position, count, to);
-  if (input_ == nullptr) return convert(column.scalar, text_.data() + position, count, to);
-  if (isStoredAs<T>(column.scalar)) return input_->readAt(position, to, count * sizeof(T));
-  Array<char> bytes(count * column.bytesEach);
-  input_->readAt(position, bytes.data(), bytes.size());
-  convert(column.scalar, bytes.data(), count, to);
+Array<char> readPlainVtuHead(const InputFile& input) {
+  // How much of a file is searched for the end of its head: first this, then more, at most that. A
+  // head takes some kilobytes; one with more holds arrays as text.
+  constexpr std::size_t kFirst = std::size_t{1} << 16;
+  constexpr std::size_t kMost = std::size_t{1} << 24;
+  Array<char> bytes;
+  if (!input.isRegular()) return bytes;
+  for (std::size_t most = kFirst; most <= kMost; most *= 4) {
+    bytes.resize(std::min<std::uint64_t>(most, input.size()));
+    input.readAt(0, bytes.data(), bytes.size());
+    const std::string_view text = asText(bytes);
+    const std::size_t tag = text.find("<AppendedData");
+    const std::size_t mark = tag == std::string_view::npos ? tag : text.find('_', tag);
+    if (mark != std::string_view::npos) {
+      const bool plain = text.find("compressor=") == std::string_view::npos &&
+                         text.substr(tag, mark - tag).find("base64") == std::string_view::npos;
+      if (!plain) bytes.clear();
+      return bytes;
+    }
+    if (bytes.size() == input.size()) break;
+  }
+  return {};
 }
-
-template void VtuFile::copy(const VtuColumn&, std::uint64_t, std::size_t, double*) const;
-template void VtuFile::copy(const VtuColumn&, std::uint64_t, std::size_t, std::int64_t*) const;
-template void VtuFile::copy(const VtuColumn&, std::uint64_t, std::size_t, Index*) const;
-template void VtuFile::copy(const VtuColumn&, std::uint64_t, std::size_t, CornerSet*) const;
 
 }  // namespace hexhex

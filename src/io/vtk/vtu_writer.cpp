@@ -15,8 +15,8 @@
 #include <io/core/output_file.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/core/writable.hpp>
+#include <io/vtk/vtk.hpp>
 #include <io/vtk/vtk_xml_writer.hpp>
-#include <io/vtk/vtu.hpp>
 
 namespace hexhex {
 namespace {

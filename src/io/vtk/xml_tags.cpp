@@ -60,7 +60,7 @@ bool XmlTags::next(XmlTag& tag) {
 std::size_t XmlTags::after(std::string_view mark, std::size_t begin) const {
   const std::size_t found = text_.find(mark, begin);
   if (found != std::string_view::npos) return found + mark.size();
-  fail(ErrorCode::FileSyntax, "the file ends inside of what begins with '<' here.", begin);
+  failAt(begin, ErrorCode::FileSyntax, "the file ends inside of what begins with '<' here.");
 }
 
 std::size_t XmlTags::findTagEnd(std::size_t begin) const {
@@ -75,10 +75,10 @@ std::size_t XmlTags::findTagEnd(std::size_t begin) const {
       return i;
     }
   }
-  fail(ErrorCode::FileSyntax, "the file ends inside of the tag that begins here.", begin);
+  failAt(begin, ErrorCode::FileSyntax, "the file ends inside of the tag that begins here.");
 }
 
-void XmlTags::fail(ErrorCode code, std::string_view sentence, std::size_t position) const {
+void XmlTags::failAt(std::size_t position, ErrorCode code, std::string_view sentence) const {
   const std::string_view before = text_.substr(0, position);
   const auto line = static_cast<std::uint64_t>(std::count(before.begin(), before.end(), '\n')) + 1;
   throw Error(code, fileName_ + ", line " + std::to_string(line) + ": " + std::string(sentence),

@@ -7,6 +7,8 @@
 
 #include <hexhex/error.hpp>
 
+#include <io/core/text_scanner.hpp>
+
 namespace hexhex {
 
 /// One tag; refers to the text that was scanned.
@@ -34,10 +36,17 @@ class XmlTags {
   /// @throws Error FileSyntax for a tag without end
   bool next(XmlTag& tag);
 
-  /// Throws an error about the line of this position: "<file>, line 12: <sentence>".
-  [[noreturn]] void fail(ErrorCode code, std::string_view sentence, std::size_t position) const;
+  /// Throws an error about the line that the tag begins in: "<file>, line 12: <sentence>".
+  [[noreturn]] void fail(ErrorCode code, std::string_view sentence, const XmlTag& tag) const {
+    failAt(tag.begin, code, sentence);
+  }
+  /// For what stands between tags: a scanner of the text up to this position.
+  [[nodiscard]] TextScanner scannerTo(std::size_t end) const {
+    return {text_.substr(0, end), fileName_};
+  }
 
  private:
+  [[noreturn]] void failAt(std::size_t position, ErrorCode code, std::string_view sentence) const;
   /// The position after the next occurrence of `mark`.
   [[nodiscard]] std::size_t after(std::string_view mark, std::size_t begin) const;
   /// The position of the '>' that ends the tag, which may contain quoted ones.

@@ -1,0 +1,357 @@
+// Points and cells, a range at a time, checked; and meshes and maps of them.
+#include <algorithm>
+#include <atomic>
+#include <type_traits>
+
+#include <hexhex/stream.hpp>
+
+#include <base/parallel.hpp>
+#include <io/core/writable.hpp>
+#include <io/vtk/vtk_reader.hpp>
+
+namespace hexhex {
+namespace {
+
+// Points or cells that one thread reads in a go: a fraction of a millisecond's work.
+constexpr std::size_t kGrain = std::size_t{1} << 13;
+
+/// Calls f(begin, end, block) for all blocks of n elements, in parallel. Of several errors, the one
+/// of the first block is thrown.
+template <class F>
+void forEachBlock(Stage& stage, std::size_t n, const F& f) {
+  std::atomic<std::size_t> firstWrong{n};
+  parallelBlocks(stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+    if (begin > firstWrong.load(std::memory_order_relaxed)) return;
+    try {
+      f(begin, end, block);
+    } catch (const Error&) {
+      lowerTo(begin, firstWrong);
+    }
+  });
+  const std::size_t begin = firstWrong;
+  if (begin < n) f(begin, std::min(begin + kGrain, n), begin / kGrain);  // throws again
+}
+
+/// Types of consecutive cells, and where their corners are.
+class CellTable {
+ public:
+  CellTable(const VtkSource& source, const VtkCells& wanted, std::uint64_t first, std::size_t count)
+      : source_(source), wanted_(wanted), first_(first), types_(count), places_(count + 1, 0) {
+    source.copy(source.types, first, count, types_.data());
+    if (source.stride > 0) {
+      for (std::size_t i = 0; i <= count; ++i) {
+        places_[i] = static_cast<std::int64_t>(source.stride * (first + i));
+      }
+      return;
+    }
+    if (source.offsets.count > source.cells) {
+      source.copy(source.offsets, first, count + 1, places_.data());
+      return;
+    }
+    // The end of the cell before is the beginning of the first one.
+    const std::size_t before = first > 0 ? 1 : 0;
+    source.copy(source.offsets, first - before, count + before, places_.data() + 1 - before);
+  }
+
+  [[nodiscard]] bool isWanted(std::size_t i) const { return types_[i] == wanted_.type; }
+  [[nodiscard]] std::uint64_t begin(std::size_t i) const {
+    return static_cast<std::uint64_t>(places_[i]) + source_.gap;
+  }
+  [[nodiscard]] std::uint64_t end(std::size_t i) const {
+    return static_cast<std::uint64_t>(places_[i + 1]);
+  }
+  [[nodiscard]] bool isGood(std::size_t i) const {
+    return isOrdered(i) && (!isWanted(i) || end(i) - begin(i) == wanted_.corners);
+  }
+
+  /// Throws what is wrong with a cell that is not good.
+  [[noreturn]] void fail(std::size_t i) const {
+    const std::string cell = std::to_string(first_ + i);
+    const Place place{PlaceKind::Cell, first_ + i};
+    if (!isOrdered(i)) {
+      source_.fail(ErrorCode::FileSyntax,
+                   "the corners of cell " + cell + " end at " + std::to_string(end(i)) +
+                       ", which is before they begin or beyond the " +
+                       std::to_string(source_.connectivity.count) + " corners in the file.",
+                   place);
+    }
+    source_.fail(ErrorCode::FileSyntax,
+                 "cell " + cell + " is a " + std::string(wanted_.singular) + " with " +
+                     std::to_string(end(i) - begin(i)) + " instead of " +
+                     std::to_string(wanted_.corners) + " corners.",
+                 place);
+  }
+
+ private:
+  [[nodiscard]] bool isOrdered(std::size_t i) const {
+    return end(i) >= begin(i) && end(i) <= source_.connectivity.count;
+  }
+
+  const VtkSource& source_;
+  const VtkCells& wanted_;
+  std::uint64_t first_;
+  Array<std::int64_t> types_;
+  Array<std::int64_t> places_;
+};
+
+/// The usual case: numbers of 32 bits, which are corners as they are.
+/// @return false if they have 64 bits, or one is no point
+bool copyVertices(const VtkSource& source, std::size_t corners, std::uint64_t begin,
+                  std::span<Index> vertices) {
+  const VtkScalar scalar = source.connectivity.scalar;
+  const bool narrow = scalar == VtkScalar::Int32 || scalar == VtkScalar::UInt32;
+  if (!narrow || source.points > kNone) return false;
+  if (source.gap == 0) {
+    source.copy(source.connectivity, begin, vertices.size(), vertices.data());
+  } else {
+    constexpr std::size_t kCells = 512;  // whose numbers stay in the cache
+    const std::size_t each = corners + source.gap;
+    Array<Index> numbers(each * kCells);
+    Index* to = vertices.data();
+    for (std::size_t left = vertices.size() / corners; left > 0;) {
+      const std::size_t cells = std::min(kCells, left);
+      source.copy(source.connectivity, begin, each * cells - source.gap, numbers.data());
+      for (std::size_t cell = 0; cell < cells; ++cell) {
+        const Index* const from = numbers.data() + each * cell;
+        for (std::size_t k = 0; k < corners; ++k) *to++ = from[k];
+      }
+      begin += each * cells;
+      left -= cells;
+    }
+  }
+  // A negative number is a large one here.
+  const Index* const numbers = vertices.data();
+  Index largest = 0;
+  for (std::size_t k = 0; k < vertices.size(); ++k) largest = std::max(largest, numbers[k]);
+  return largest < source.points;
+}
+
+/// Reads wanted cells that follow each other.
+/// @param first  the number of the first
+/// @param begin  where its corners begin
+template <class Vertex>
+void readRun(const VtkSource& source, std::size_t corners, std::uint64_t first, std::uint64_t begin,
+             std::span<Vertex> vertices) {
+  if constexpr (std::is_same_v<Vertex, Index>) {
+    if (copyVertices(source, corners, begin, vertices)) return;
+  }
+  const std::size_t cells = vertices.size() / corners;
+  const std::size_t each = corners + source.gap;
+  Array<std::int64_t> numbers(each * cells - source.gap);
+  source.copy(source.connectivity, begin, numbers.size(), numbers.data());
+  Vertex* to = vertices.data();
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    const std::int64_t* const from = numbers.data() + each * cell;
+    for (std::size_t k = 0; k < corners; ++k) {
+      // A negative number is a large one here.
+      if (static_cast<std::uint64_t>(from[k]) >= source.points) {
+        source.fail(ErrorCode::IndexOutOfRange,
+                    "cell " + std::to_string(first + cell) + " names point " +
+                        std::to_string(from[k]) + ", but the " + std::to_string(source.points) +
+                        " points are numbered from 0.",
+                    Place{PlaceKind::Cell, first + cell});
+      }
+      *to++ = static_cast<Vertex>(from[k]);
+    }
+  }
+}
+
+/// @param cells, points  of the mesh
+template <class Points, class Cells>
+void readMesh(const VtkSource& source, Points& points, Cells& cells, Array<std::size_t>* numbers,
+              Stage& stage) {
+  source.requireIndexable();
+  points.resize(source.points);
+  readVtkPoints(source, points, stage);
+  constexpr std::size_t kCorners = std::tuple_size_v<typename Cells::value_type>;
+  const auto makeRoom = [&cells](std::size_t count) {
+    cells.resize(count);
+    return count == 0 ? nullptr : cells.front().data();
+  };
+  readVtkCells(source, kVtkCells<kCorners>, makeRoom, numbers, stage);
+}
+
+// Components of the two forms of a map.
+constexpr std::size_t kCellMapComponents = 12;
+constexpr std::size_t kPointMapComponents = 3;
+
+/// Finds the map among the arrays that are known, or goes on to others.
+const VtkSourceArray* findMap(VtkSource& source, std::string_view name) {
+  do {
+    if (const auto* const found =
+            source.find(VtkSection::CellData, name, kCellMapComponents, VtkNumbers::Reals)) {
+      return found;
+    }
+    if (const auto* const found =
+            source.find(VtkSection::PointData, name, kPointMapComponents, VtkNumbers::Reals)) {
+      return found;
+    }
+  } while (source.readOn());
+  return nullptr;
+}
+
+[[noreturn]] void failWithoutMap(const VtkSource& source, std::size_t tets, std::string_view name) {
+  std::string found;
+  for (const std::string& array : source.seen) found += (found.empty() ? "" : ", ") + array;
+  source.fail(ErrorCode::FileUnsupported,
+              "the file holds " + std::to_string(tets) + " tets, but no map: no cell array \"" +
+                  std::string(name) +
+                  "\" of 12 floating-point numbers (u v w of each corner), and no point array of "
+                  "this name with 3, for a map without jumps. Arrays in the file: " +
+                  (found.empty() ? "none" : found) +
+                  ". Name the map's array (--map-array), or give the map as a second mesh "
+                  "(--polycube).");
+}
+
+/// The parameters of tets from a number per cell of the file.
+/// @param numbers  which cells of the file the tets are
+void readCellParameters(const VtkSource& source, const VtkColumn& column,
+                        std::span<const std::size_t> numbers,
+                        std::vector<TetParameters>& parameters, Stage& stage) {
+  forEachBlock(stage, source.cells, [&](std::size_t begin, std::size_t end, std::size_t) {
+    auto tet = std::lower_bound(numbers.begin(), numbers.end(), begin);
+    if (tet == numbers.end() || *tet >= end) return;
+    Array<double> values(kCellMapComponents * (end - begin));
+    source.copy(column, kCellMapComponents * begin, values.size(), values.data());
+    for (; tet != numbers.end() && *tet < end; ++tet) {
+      std::copy_n(values.data() + kCellMapComponents * (*tet - begin), kCellMapComponents,
+                  parameters[static_cast<std::size_t>(tet - numbers.begin())][0].data());
+    }
+  });
+}
+
+/// The same from three numbers per point.
+void readPointParameters(const VtkSource& source, const VtkColumn& column, TetMap& map,
+                         Stage& stage) {
+  Array<Vec3> values(source.points);
+  forEachBlock(stage, values.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+    source.copy(column, kPointMapComponents * begin, kPointMapComponents * (end - begin),
+                values[begin].data());
+  });
+  parallelFor(stage, map.tets.size(), kGrain, [&](std::size_t t) {
+    for (std::size_t i = 0; i < map.tets[t].size(); ++i) {
+      map.parameters[t][i] = values[map.tets[t][i]];
+    }
+  });
+}
+
+}  // namespace
+
+void readVtkPoints(const VtkSource& source, std::uint64_t first, std::span<Vec3> points) {
+  if (points.empty()) return;
+  source.copy(source.coordinates, 3 * first, 3 * points.size(), points.front().data());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (isFinite(points[i])) continue;
+    source.fail(ErrorCode::NotFinite,
+                "a coordinate of point " + std::to_string(first + i) + " is not finite.",
+                Place{PlaceKind::Vertex, first + i});
+  }
+}
+
+void readVtkPoints(const VtkSource& source, std::span<Vec3> points, Stage& stage) {
+  forEachBlock(stage, points.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+    readVtkPoints(source, begin, points.subspan(begin, end - begin));
+  });
+}
+
+std::size_t countVtkCells(const VtkSource& source, const VtkCells& cells, std::uint64_t first,
+                          std::size_t count) {
+  Array<std::int64_t> types(count);
+  source.copy(source.types, first, count, types.data());
+  return static_cast<std::size_t>(std::count(types.begin(), types.end(), cells.type));
+}
+
+template <class Vertex>
+void readVtkCells(const VtkSource& source, const VtkCells& cells, std::uint64_t first,
+                  std::size_t count, Vertex* vertices, std::size_t* numbers) {
+  const CellTable table(source, cells, first, count);
+  std::size_t good = 0;
+  while (good < count && table.isGood(good)) ++good;
+  // Cells that follow each other have their corners one after the other, and are read at once.
+  for (std::size_t i = 0; i < good;) {
+    std::size_t end = i;
+    while (end < good && table.isWanted(end)) ++end;
+    const std::size_t size = cells.corners * (end - i);
+    if (end > i)
+      readRun(source, cells.corners, first + i, table.begin(i), std::span(vertices, size));
+    vertices += size;
+    for (std::size_t k = i; numbers != nullptr && k < end; ++k) *numbers++ = first + k;
+    i = std::max(end, i + 1);
+  }
+  if (good < count) table.fail(good);
+}
+
+template void readVtkCells(const VtkSource&, const VtkCells&, std::uint64_t, std::size_t, Index*,
+                           std::size_t*);
+template void readVtkCells(const VtkSource&, const VtkCells&, std::uint64_t, std::size_t,
+                           std::uint64_t*, std::size_t*);
+
+void readVtkCells(const VtkSource& source, const VtkCells& cells,
+                  const std::function<Index*(std::size_t)>& makeRoom, Array<std::size_t>* numbers,
+                  Stage& stage) {
+  const std::size_t all = source.cells;
+  std::vector<std::size_t> begins(blockCount(all, kGrain) + 1, 0);
+  forEachBlock(stage, all, [&](std::size_t begin, std::size_t end, std::size_t block) {
+    begins[block] = countVtkCells(source, cells, begin, end - begin);
+  });
+  const std::size_t count = exclusiveScan(std::span(begins));
+  if (all > 0 && count == 0) failWithoutVtkCells(source, cells);
+  Index* const vertices = makeRoom(count);
+  if (numbers != nullptr) numbers->resize(count);
+  forEachBlock(stage, all, [&](std::size_t begin, std::size_t end, std::size_t block) {
+    readVtkCells(source, cells, begin, end - begin, vertices + cells.corners * begins[block],
+                 numbers != nullptr ? numbers->data() + begins[block] : nullptr);
+  });
+}
+
+void failWithoutVtkCells(const VtkSource& source, const VtkCells& cells) {
+  source.fail(ErrorCode::FileUnsupported, "the file holds no " + std::string(cells.plural) +
+                                              ": none of its " + std::to_string(source.cells) +
+                                              " cells has the type " + std::to_string(cells.type) +
+                                              ".");
+}
+
+HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {
+  HexMesh mesh;
+  Array<std::size_t> numbers;
+  const bool regions = hasVtkRegions(source);
+  readMesh(source, mesh.points, mesh.cells, regions ? &numbers : nullptr, stage);
+  if (regions) mesh.regions = readVtkRegions(source, numbers);
+  mesh.features = readVtkHexFeatures(source);
+  readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
+  return mesh;
+}
+
+TetCells readVtkTets(const VtkSource& source, Stage& stage) {
+  TetCells mesh;
+  readMesh(source, mesh.points, mesh.cells, nullptr, stage);
+  return mesh;
+}
+
+TetMap readVtkMap(VtkSource& source, std::string_view mapArray, Stage& stage) {
+  TetMap map;
+  Array<std::size_t> numbers;
+  readMesh(source, map.points, map.tets, &numbers, stage);
+  const Array<std::int32_t> regions = readVtkRegions(source, numbers);
+  map.regions.assign(regions.begin(), regions.end());
+  const VtkSourceArray* const array = findMap(source, mapArray);
+  if (array == nullptr) failWithoutMap(source, map.tets.size(), mapArray);
+  const VtkColumn column = source.load(*array);
+  map.parameters.resize(map.tets.size());
+  if (array->section == VtkSection::CellData) {
+    readCellParameters(source, column, numbers, map.parameters, stage);
+  } else {
+    readPointParameters(source, column, map, stage);
+  }
+  const std::size_t fault = firstFault(stage, map.tets.size(),
+                                       [&](std::size_t t) { return isFinite(map.parameters[t]); });
+  if (fault < map.tets.size()) {
+    source.fail(ErrorCode::NotFinite,
+                "a parameter of tet " + std::to_string(fault) + " is not finite.",
+                Place{PlaceKind::Tet, fault});
+  }
+  map.features = readVtkTetFeatures(source);
+  return map;
+}
+
+}  // namespace hexhex

@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <array>
+#include <type_traits>
+
+#include <io/vtk/vtk_source.hpp>
+
+namespace hexhex {
+namespace {
+
+/// Calls f with a number of the type.
+template <class F>
+auto visitScalar(VtkScalar scalar, const F& f) {
+  switch (scalar) {
+    case VtkScalar::Int8:
+      return f(std::int8_t{});
+    case VtkScalar::UInt8:
+      return f(std::uint8_t{});
+    case VtkScalar::Int16:
+      return f(std::int16_t{});
+    case VtkScalar::UInt16:
+      return f(std::uint16_t{});
+    case VtkScalar::Int32:
+      return f(std::int32_t{});
+    case VtkScalar::UInt32:
+      return f(std::uint32_t{});
+    case VtkScalar::Int64:
+      return f(std::int64_t{});
+    case VtkScalar::UInt64:
+      return f(std::uint64_t{});
+    case VtkScalar::Float32:
+      return f(float{});
+    case VtkScalar::Float64:
+      break;
+  }
+  return f(double{});
+}
+
+/// The number at a place of any alignment. Only numbers of 4 and 8 bytes come with the largest byte
+/// first.
+template <class T, bool bigEndian>
+T loadNumber(const char* place) {
+  if constexpr (bigEndian && sizeof(T) >= sizeof(std::uint32_t)) {
+    return loadBig<T>(place);
+  } else {
+    T number;
+    std::memcpy(&number, place, sizeof(T));
+    return number;
+  }
+}
+
+/// Numbers one after the other, as they are stored, into an array of T.
+template <class T>
+void convert(const VtkColumn& column, const char* from, std::size_t count, T* to) {
+  visitScalar(column.scalar, [&](auto zero) {
+    const auto all = [&](auto bigEndian) {
+      using Stored = decltype(zero);
+      for (std::size_t i = 0; i < count; ++i) {
+        // NOLINTNEXTLINE(bugprone-signed-char-misuse): numbers of 8 bits keep their sign, too.
+        to[i] = static_cast<T>(loadNumber<Stored, bigEndian>(from + i * sizeof(Stored)));
+      }
+    };
+    if (column.bigEndian) return all(std::true_type{});
+    all(std::false_type{});
+  });
+}
+
+/// Whether numbers in memory have the bytes of the stored ones, so that they need not be converted.
+template <class T>
+bool isStoredAs(const VtkColumn& column) {
+  if (column.bigEndian) return false;
+  if constexpr (std::is_same_v<T, double>) return column.scalar == VtkScalar::Float64;
+  if constexpr (std::is_same_v<T, std::int64_t>) return column.scalar == VtkScalar::Int64;
+  if constexpr (std::is_same_v<T, Index>) {
+    return column.scalar == VtkScalar::Int32 || column.scalar == VtkScalar::UInt32;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::size_t bytesOf(VtkScalar scalar) noexcept {
+  return visitScalar(scalar, [](auto zero) { return sizeof(zero); });
+}
+
+const VtkSourceArray* VtkSource::find(VtkSection section, std::string_view name,
+                                      std::size_t components, VtkNumbers numbers) const {
+  const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const VtkSourceArray& array) {
+    return array.section == section && array.name == name && array.components == components &&
+           array.numbers == numbers;
+  });
+  return found == arrays.end() ? nullptr : &*found;
+}
+
+VtkColumn VtkSource::load(const VtkSourceArray& array) const {
+  std::optional<std::uint64_t> count;
+  if (array.section == VtkSection::PointData) count = array.components * points;
+  if (array.section == VtkSection::CellData) count = array.components * cells;
+  return array.load(array.numbers, count);
+}
+
+template <class T>
+void VtkSource::copy(const VtkColumn& column, std::uint64_t begin, std::size_t count, T* to) const {
+  const std::size_t size = count * bytesOf(column.scalar);
+  const std::uint64_t position = column.position + begin * bytesOf(column.scalar);
+  if (!column.decoded.empty()) return convert(column, column.decoded.data() + position, count, to);
+  if (!bytes_.isInMemory() && isStoredAs<T>(column)) {
+    static_cast<void>(bytes_.view(position, size, reinterpret_cast<char*>(to)));
+    return;
+  }
+  Array<char> room(bytes_.isInMemory() ? 0 : size);
+  convert(column, bytes_.view(position, size, room.data()), count, to);
+}
+
+template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, double*) const;
+template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, std::int64_t*) const;
+template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, Index*) const;
+template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, CornerSet*) const;
+
+void VtkSource::see(std::string_view name, bool ofCells, std::size_t components) {
+  seen.push_back('"' + std::string(name) + (ofCells ? "\" (cells, " : "\" (points, ") +
+                 std::to_string(components) + (components == 1 ? " component)" : " components)"));
+}
+
+VtkColumn textColumn(VtkNumbers numbers, std::size_t count) {
+  VtkColumn column;
+  column.scalar = numbers == VtkNumbers::Reals ? VtkScalar::Float64 : VtkScalar::Int64;
+  column.count = count;
+  column.decoded.resize(count * sizeof(double));
+  return column;
+}
+
+}  // namespace hexhex

@@ -1,0 +1,156 @@
+// A data set of VTK as those who read one see it: points, cells and named arrays, wherever their
+// numbers are and however they are stored. Formats fill it in; vtk_reader.hpp makes meshes of it.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <hexhex/error.hpp>
+#include <hexhex/types.hpp>
+
+#include <io/core/number_source.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/vtk/vtk_data_set.hpp>
+
+namespace hexhex {
+
+/// The number types that are read.
+enum class VtkScalar : std::uint8_t {
+  Int8,
+  UInt8,
+  Int16,
+  UInt16,
+  Int32,
+  UInt32,
+  Int64,
+  UInt64,
+  Float32,
+  Float64
+};
+
+[[nodiscard]] std::size_t bytesOf(VtkScalar scalar) noexcept;
+
+/// What numbers are needed as. Arrays of others, like strings, are never needed.
+enum class VtkNumbers : std::uint8_t { Integers, Reals, Others };
+
+/// A number of 4 or 8 bytes that is stored with the largest byte first. Bytes are swapped by
+/// halves, since loops of it take a fifth of the time that they take byte by byte.
+template <class T>
+[[nodiscard]] T loadBig(const char* place) {
+  using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+  static_assert(sizeof(T) == sizeof(Bits));
+  Bits bits;
+  std::memcpy(&bits, place, sizeof(bits));
+  if constexpr (std::endian::native == std::endian::little) {
+    constexpr Bits kOddBytes = static_cast<Bits>(0xff00ff00ff00ff00U);
+    constexpr Bits kOddPairs = static_cast<Bits>(0xffff0000ffff0000U);
+    bits = (bits & kOddBytes) >> 8U | (bits << 8U & kOddBytes);
+    bits = (bits & kOddPairs) >> 16U | (bits << 16U & kOddPairs);
+    if constexpr (sizeof(T) == 8) bits = bits >> 32U | bits << 32U;
+  }
+  return std::bit_cast<T>(bits);
+}
+
+/// Where the numbers of an array are, and how they are stored.
+struct VtkColumn {
+  VtkScalar scalar = VtkScalar::Float64;
+  bool bigEndian = false;  ///< the largest byte first; otherwise in this machine's order
+  std::uint64_t count = 0;
+  std::uint64_t position = 0;  ///< in the file, or in `decoded`
+  Array<char> decoded = {};    ///< what the file does not hold as plain bytes
+};
+
+/// An array of a file.
+struct VtkSourceArray {
+  VtkSection section = VtkSection::FieldData;
+  std::string name;
+  VtkNumbers numbers = VtkNumbers::Others;
+  std::size_t components = 1;
+  bool appended = false;  ///< to the head of an XML file, as this library writes arrays
+  /// Finds the numbers: of this kind, and so many if it is told.
+  std::function<VtkColumn(VtkNumbers, std::optional<std::uint64_t> count)> load = {};
+};
+
+/// An open file.
+class VtkSource {
+ public:
+  VtkSource(const ByteFile& bytes, std::string fileName)
+      : bytes_(bytes), fileName_(std::move(fileName)) {}
+  virtual ~VtkSource() = default;
+  // Arrays refer to the file.
+  VtkSource(const VtkSource&) = delete;
+  VtkSource& operator=(const VtkSource&) = delete;
+
+  std::uint64_t points = 0;
+  std::uint64_t cells = 0;
+  VtkColumn coordinates;
+  VtkColumn types;
+  /// Where cells end in `connectivity`; or one number more: where they begin and the last one ends.
+  VtkColumn offsets;
+  /// How many numbers of `connectivity` each cell has, if all have as many and no offsets say it.
+  std::size_t stride = 0;
+  VtkColumn connectivity;
+  std::size_t gap = 0;  ///< how many numbers stand in `connectivity` in front of a cell's corners
+
+  std::vector<VtkSourceArray> arrays;
+  std::vector<std::string> seen;  ///< arrays of points and cells, for messages
+
+  /// Goes on to more arrays; false if all are known.
+  virtual bool readOn() { return false; }
+  /// Throws TooLarge if points or cells are more than an Index can count.
+  virtual void requireIndexable() const {}
+
+  /// The first array of a section with this name and form; null if there is none.
+  [[nodiscard]] const VtkSourceArray* find(VtkSection section, std::string_view name,
+                                           std::size_t components, VtkNumbers numbers) const;
+  /// Its numbers: a tuple for each point or cell, if it belongs to them.
+  [[nodiscard]] VtkColumn load(const VtkSourceArray& array) const;
+
+  /// Copies numbers [begin, begin + count) of a column. T is double, std::int64_t, or the very type
+  /// of the column. Thread-safe.
+  template <class T>
+  void copy(const VtkColumn& column, std::uint64_t begin, std::size_t count, T* to) const;
+
+  /// Throws an error about the file.
+  [[noreturn]] void fail(ErrorCode code, const std::string& sentence, Place place = {}) const {
+    throw Error(code, fileName_ + ": " + sentence, place);
+  }
+
+ protected:
+  /// Notes an array of points or cells for messages.
+  void see(std::string_view name, bool ofCells, std::size_t components);
+
+ private:
+  ByteFile bytes_;
+  std::string fileName_;
+};
+
+/// A column for `count` numbers of text, to be filled in by readVtkNumber().
+[[nodiscard]] VtkColumn textColumn(VtkNumbers numbers, std::size_t count);
+
+/// Reads a number that is text, as number i of a column.
+/// @param what  for messages; called if it is no such number
+template <class What>
+void readVtkNumber(TextScanner& scanner, VtkNumbers numbers, VtkColumn& column, std::size_t i,
+                   const What& what) {
+  char* const place = column.decoded.data() + i * sizeof(double);
+  if (numbers == VtkNumbers::Reals) {
+    double real = 0;
+    if (!scanner.readNumber(real)) scanner.failNumber(what());
+    std::memcpy(place, &real, sizeof(real));
+  } else {
+    std::int64_t integer = 0;
+    if (!scanner.readInteger(integer)) scanner.failInteger(what());
+    std::memcpy(place, &integer, sizeof(integer));
+  }
+}
+
+}  // namespace hexhex
