@@ -17,7 +17,7 @@ namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// Two ways to the same mesh, bit for bit.
 enum class Engine : std::uint8_t {
-  Atlas,     ///< reads cells off a picture of the map, and traces only those that a cut meets
+  Atlas,     ///< reads cells off charts of the map, and traces only those that a cut meets
   Propeller  ///< the paper's algorithm: traces every edge
 };
 
@@ -63,7 +63,7 @@ struct ExtractStatistics {
 
   // Of the atlas engine:
   std::uint64_t charts = 0;           ///< of the atlas
-  std::uint64_t cutFaces = 0;         ///< inner faces of the tet mesh at which its picture ends
+  std::uint64_t cutFaces = 0;         ///< inner faces of the tet mesh at which a chart ends
   std::uint64_t overlappingTets = 0;  ///< that did not fit their first chart
   std::uint64_t tracedCells = 0;      ///< cells with a corner that their chart does not show
 

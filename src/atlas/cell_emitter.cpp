@@ -101,7 +101,8 @@ std::uint64_t CellEmitter<Id>::emitWithoutChart(const Frame& frame, const Cells&
   constexpr CutCell kCutOff = CutCell().with(kAllCellCorners, kAnyCuts);
   for (std::uint32_t i = 0; i < cells.corners.size(); ++i) {
     cells.corners[i].fill(Brick<Id>::kEmpty);
-    resolver_.resolve({frame.tet, &cells.line, cells.first + i, {}, kCutOff}, cells.corners[i]);
+    resolver_.resolve({frame.tet, &cells.line, cells.first + i, {}, kCutOff}, cells.corners[i],
+                      cache_);
   }
   return cells.corners.size();
 }
@@ -172,7 +173,7 @@ std::uint64_t CellEmitter<Id>::resolveCells(const Frame& frame, const ChartRow& 
           if (!cut.isCut()) continue;
           const CellInQuestion question{frame.tet, &cells.line, cells.first + offset + i,
                                         moved(c, row.along, i), cut};
-          if (resolver_.resolve(question, cells.corners[offset + i])) ++resolved;
+          if (resolver_.resolve(question, cells.corners[offset + i], cache_)) ++resolved;
         }
       });
   return resolved;

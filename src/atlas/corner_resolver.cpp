@@ -13,17 +13,19 @@ std::size_t firstOf(CellCornerSet corners) {
 }  // namespace
 
 template <class Id>
-bool CornerResolver<Id>::resolve(const CellInQuestion& question, Cell& cell) {
+bool CornerResolver<Id>::resolve(const CellInQuestion& question, Cell& cell,
+                                 BrickCache<Id>& cache) {
   const Cell shown = cell;
-  const CellCornerSet open = lookAcross(question, cell);
-  if (open != 0) trace(question, open, cell);
+  const CellCornerSet open = lookAcross(question, cell, cache);
+  if (open != 0) trace(question, open, cell, cache);
   return cell != shown;
 }
 
 /// Takes vertices from the other sides of cuts.
 /// @return the corners that are still in question, in terms of the tet's own chart
 template <class Id>
-CellCornerSet CornerResolver<Id>::lookAcross(const CellInQuestion& question, Cell& cell) {
+CellCornerSet CornerResolver<Id>::lookAcross(const CellInQuestion& question, Cell& cell,
+                                             BrickCache<Id>& cache) {
   const Rotation toOwn = vertices_.charts().gauge(question.tet).rotation.inverse();
   if (!lookAcrossCuts_) return turned(toOwn, question.cuts.corners());
   CellCornerSet open = 0;
@@ -31,8 +33,8 @@ CellCornerSet CornerResolver<Id>::lookAcross(const CellInQuestion& question, Cel
   for (CellCornerSet rest = question.cuts.corners(); rest != 0; rest &= rest - 1) {
     const std::size_t corner = firstOf(rest);
     const CutTransitionId id = question.cuts.transition(corner);
-    if (id != image.id) image = imageAcross(id, question.place);
-    const std::optional<Id> there = shownBeyond(image, corner);
+    if (id != image.id) image = imageAcross(id, question.place, cache);
+    const std::optional<Id> there = shownBeyond(image, corner, cache);
     const std::size_t own = turnedCorner(toOwn, corner);
     const bool isHere = Brick<Id>::isVertex(cell[own]);
     const bool isThere = there && Brick<Id>::isVertex(*there);
@@ -48,11 +50,12 @@ CellCornerSet CornerResolver<Id>::lookAcross(const CellInQuestion& question, Cel
 
 template <class Id>
 typename CornerResolver<Id>::Image CornerResolver<Id>::imageAcross(CutTransitionId id,
-                                                                   const ChartPoint& place) {
+                                                                   const ChartPoint& place,
+                                                                   BrickCache<Id>& cache) {
   if (id == kAnyCuts) return {id, nullptr, {}, {}};
   const CutTransition& map = transitions_[id];
   const ChartPoint image = map.map.cell(place);
-  const CutCells* const cuts = cache_.at(map.to, image).cuts;
+  const CutCells* const cuts = cache.at(map.to, image).cuts;
   if (cuts == nullptr) return {id, nullptr, {}, {}};
   return {id, &map, image, cuts->cells[placeInBrick(image)]};
 }
@@ -60,21 +63,23 @@ typename CornerResolver<Id>::Image CornerResolver<Id>::imageAcross(CutTransition
 /// What the chart on the other side shows at a corner.
 /// @return nothing if the half diagonal may meet further cuts
 template <class Id>
-std::optional<Id> CornerResolver<Id>::shownBeyond(const Image& image, std::size_t corner) {
+std::optional<Id> CornerResolver<Id>::shownBeyond(const Image& image, std::size_t corner,
+                                                  BrickCache<Id>& cache) {
   if (image.map == nullptr) return std::nullopt;
   const std::size_t there = turnedCorner(image.map->map.rotation, corner);
   if (image.cuts.transition(there) != image.map->inverse) return std::nullopt;
-  return cache_.idAt(image.map->to, plus(image.place, kCellCorners[there]));
+  return cache.idAt(image.map->to, plus(image.place, kCellCorners[there]));
 }
 
 template <class Id>
-void CornerResolver<Id>::trace(const CellInQuestion& question, CellCornerSet corners, Cell& cell) {
+void CornerResolver<Id>::trace(const CellInQuestion& question, CellCornerSet corners, Cell& cell,
+                               BrickCache<Id>& cache) {
   const SweptLine& line = *question.centers;
   tracer_.enter(question.tet, line.point(question.index), line.simplex(question.index));
   for (; corners != 0; corners &= corners - 1) {
     const std::size_t corner = firstOf(corners);
     const CornerPlace place = tracer_.trace(kCellCorners[corner]);
-    cell[corner] = vertices_.vertexAt(place.tet, place.z, cache_);
+    cell[corner] = vertices_.vertexAt(place.tet, place.z, cache);
   }
 }
 

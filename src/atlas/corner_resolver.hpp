@@ -43,13 +43,13 @@ class CornerResolver {
       : vertices_(vertices),
         transitions_(transitions),
         lookAcrossCuts_(lookAcrossCuts),
-        cache_(vertices.grid()),
         tracer_(map) {}
 
   /// Finds the vertices at the corners in question.
   /// @param cell  what the tet's chart shows at each corner; receives the vertices that are there
+  /// @param cache  of the vertices' grid
   /// @return whether the chart showed something else
-  bool resolve(const CellInQuestion& question, Cell& cell);
+  bool resolve(const CellInQuestion& question, Cell& cell, BrickCache<Id>& cache);
 
  private:
   /// A cell on the other side of a cut.
@@ -60,15 +60,18 @@ class CornerResolver {
     CutCell cuts;                        ///< noted there
   };
 
-  [[nodiscard]] CellCornerSet lookAcross(const CellInQuestion& question, Cell& cell);
-  [[nodiscard]] Image imageAcross(CutTransitionId id, const ChartPoint& place);
-  [[nodiscard]] std::optional<Id> shownBeyond(const Image& image, std::size_t corner);
-  void trace(const CellInQuestion& question, CellCornerSet corners, Cell& cell);
+  [[nodiscard]] CellCornerSet lookAcross(const CellInQuestion& question, Cell& cell,
+                                         BrickCache<Id>& cache);
+  [[nodiscard]] Image imageAcross(CutTransitionId id, const ChartPoint& place,
+                                  BrickCache<Id>& cache);
+  [[nodiscard]] std::optional<Id> shownBeyond(const Image& image, std::size_t corner,
+                                              BrickCache<Id>& cache);
+  void trace(const CellInQuestion& question, CellCornerSet corners, Cell& cell,
+             BrickCache<Id>& cache);
 
   const VertexGrid<Id>& vertices_;
   const CutTransitions& transitions_;
   bool lookAcrossCuts_;
-  BrickCache<Id> cache_;
   CellTracer tracer_;
 };
 

@@ -175,7 +175,6 @@ void VertexGrid<Id>::write(const VertexRun& run, Index tet, std::optional<TetPos
 template <class Id>
 void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
   grid_.build(keys_, stage);
-  keys_ = {};
   std::atomic<bool> overlaps{false};
   const auto fillBlock = [&](std::size_t begin, std::size_t end, std::size_t /*block*/,
                              BrickCache<Id>& cache) {
@@ -223,15 +222,20 @@ std::uint64_t VertexGrid<Id>::resolveOverlaps(Stage& stage) {
     });
     return isNear;
   };
+  const auto listTets = [&](std::size_t begin, std::size_t end, std::vector<Index>& list) {
+    const std::vector<BrickKey>& keys = keys_[begin / kSweepBlock];
+    if (std::none_of(keys.begin(), keys.end(),
+                     [this](BrickKey key) { return grid_.find(key)->contested != 0; })) {
+      return;
+    }
+    BrickCache<Id> cache(grid_);
+    std::vector<SweptLine> scratch;
+    for (auto tet = static_cast<Index>(begin); tet < end; ++tet) {
+      if (isNearContested(tet, scratch, cache)) list.push_back(tet);
+    }
+  };
   const auto tets =
-      collectFromBlocks<Index>(stage, map_.topology.tetCount(), kSweepBlock,
-                               [&](std::size_t begin, std::size_t end, std::vector<Index>& list) {
-                                 BrickCache<Id> cache(grid_);
-                                 std::vector<SweptLine> scratch;
-                                 for (auto tet = static_cast<Index>(begin); tet < end; ++tet) {
-                                   if (isNearContested(tet, scratch, cache)) list.push_back(tet);
-                                 }
-                               });
+      collectFromBlocks<Index>(stage, map_.topology.tetCount(), kSweepBlock, listTets);
   // Listed once, as finding the owners of vertices takes longer than all that follows.
   std::vector<TetClaims> claims(tets.size());
   constexpr std::size_t kFewTets = 64;

@@ -113,7 +113,7 @@ class VertexGrid {
   Charts& charts_;
   std::optional<TetLines> stored_;
   VertexNumbers numbers_;
-  std::vector<std::vector<BrickKey>> keys_;  ///< of the bricks that will be needed
+  std::vector<std::vector<BrickKey>> keys_;  ///< bricks with points of each block of tets
   BrickGrid<Id> grid_;
   bool overlaps_ = false;  ///< some point was claimed by two vertices
 };

@@ -111,14 +111,14 @@ TEST(Property, TheResolverFindsTheTracedCorners) {
       }
       for (CornerResolver<Index>* const resolver : {&looking, &tracing}) {
         Hex cell = shown;
-        RC_ASSERT(resolver->resolve({tet, &line, i, place, cut}, cell) == (shown != traced));
+        RC_ASSERT(resolver->resolve({tet, &line, i, place, cut}, cell, cache) == (shown != traced));
         RC_ASSERT(cell == traced);
       }
       // Without a chart, nothing is known of any corner.
       Hex cell{};
       cell.fill(Brick<Index>::kEmpty);
       const CutCell unknown = CutCell().with(kAllCellCorners, kAnyCuts);
-      RC_ASSERT(looking.resolve({tet, &line, i, {}, unknown}, cell));
+      RC_ASSERT(looking.resolve({tet, &line, i, {}, unknown}, cell, cache));
       RC_ASSERT(cell == traced);
     });
   }));
