@@ -79,10 +79,7 @@ void VertexGrid<Id>::sweep(CellCenters& cells, Stage& stage, SweepObserver* obse
       }
       if (const auto own = lines.last(); !own.empty()) {
         counter.count(block, tet, own);
-        forEachBrick(tet, own, [&](const ChartPoint& c) {
-          const BrickKey key = brickKey(charts_.chart[tet], c);
-          if (filter.isNew(key, c)) keys_[block].push_back(key);
-        });
+        collectKeys(tet, own, filter, keys_[block]);
       }
     }
     if (stored_) stored_->store(block, lines);
@@ -108,6 +105,16 @@ void VertexGrid<Id>::forEachBrick(Index tet, std::span<const SweptLine> lines,
     row.forEachPart(
         [&](const ChartPoint& c, std::uint32_t, std::uint32_t, std::ptrdiff_t) { visit(c); });
   }
+}
+
+/// Lists the bricks that the tet's points are in.
+template <class Id>
+void VertexGrid<Id>::collectKeys(Index tet, std::span<const SweptLine> lines, KeyFilter& filter,
+                                 std::vector<BrickKey>& keys) const {
+  forEachBrick(tet, lines, [&](const ChartPoint& c) {
+    const BrickKey key = brickKey(charts_.chart[tet], c);
+    if (filter.isNew(key, c)) keys.push_back(key);
+  });
 }
 
 template <class Id>

@@ -97,6 +97,8 @@ class VertexGrid {
 
   template <class Visit>
   void forEachBrick(Index tet, std::span<const SweptLine> lines, const Visit& visit) const;
+  void collectKeys(Index tet, std::span<const SweptLine> lines, KeyFilter& filter,
+                   std::vector<BrickKey>& keys) const;
   [[nodiscard]] std::span<const SweptLine> linesOf(Index tet,
                                                    std::vector<SweptLine>& scratch) const;
 
