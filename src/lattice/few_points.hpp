@@ -3,7 +3,7 @@
 // open.
 //
 // A second way beside TetRasterizer. With lines alone, whole extractions of maps with 0.1 cells per
-// tet take 11 to 20 % longer (cylinder_random_low, s17c_sphere_r0.1).
+// tet take 7 % (sphere_blocks_low) to 12 % (s17c_sphere_r0.1) longer (docs/ablation.md).
 #pragma once
 
 #include <cstdint>
