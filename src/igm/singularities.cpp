@@ -127,9 +127,7 @@ class VertexEdges {
   /// Without branches, as these could not be foretold.
   void collectEdges(Index vertex) {
     others_.clear();
-    others_.makeRoom(3 * star_.size());
     if (edges_.size() <= 3 * star_.size()) edges_.resize(2 * (3 * star_.size()));
-    const KeyTable::Numberer number = others_.numberer();
     Index count = 0;
     numbers_.resize(star_.size());
     faces_ = 0;
@@ -144,7 +142,7 @@ class VertexEdges {
       for (std::size_t k = 0; k < 3; ++k) {
         const Index other = tet[corners[k]];
         edges_[count] = Edge{other, 0, 0};
-        numbers_[i][k] = number(other, count);
+        numbers_[i][k] = others_.insert(other);
         count += numbers_[i][k] == count ? 1 : 0;
         inward[k] = leadsInward(sides, corners[k]);
         faces[k] = (passages[corners[k]].isPlain() ? 0 : kCutFace) +
@@ -264,7 +262,7 @@ class VertexEdges {
 
   Surroundings in_;
   std::span<const VertexStar::Member> star_;
-  KeyTable others_;    ///< numbers the edges by their other vertices
+  KeyTable<> others_;  ///< numbers the edges by their other vertices
   Array<Edge> edges_;  ///< more than are in use
   std::size_t edgeCount_ = 0;
   std::vector<Angles> angles_;  ///< per edge

@@ -61,19 +61,18 @@ class VertexStar {
       return 4 * tet + localCorner(tets[tet], vertex);
     };
     numbers_.clear();
-    KeyTable::Numberer number = numbers_.numberer();
     Member* members = members_.data();
     const Index first = topology.vertexTet[vertex];
     members[0].corner = cornerAt(first);
     members[0].rotation = Rotation();
-    Index count = 1 + number(first, 0);
+    Index count = 1 + numbers_.insert(first);
     const auto pass = [&](Index head, CornerIndex here, std::size_t k) {
       const HalfFace halfFace = 4 * (here / 4) + kOthers[here % 4][k];
       const HalfFace mate = mates[halfFace];
       const bool boundary = mate == kNone;
       const Index behind = boundary ? here / 4 : tetOf(mate);
       prefetch(&mates[4 * behind]);
-      const Index neighbour = number(behind, count);
+      const Index neighbour = numbers_.insert(behind);
       Member& spare = members[count];
       spare.corner = cornerAt(behind);
       spare.entry = kPlaceOfFace[spare.corner % 4][mate % 4];
@@ -90,7 +89,6 @@ class VertexStar {
         makeRoom(count + 3);
         room = static_cast<Index>(members_.size());
         members = members_.data();
-        number = numbers_.numberer();
       }
       const CornerIndex here = members[head].corner;
       const std::size_t entry = members[head].entry;
@@ -110,10 +108,9 @@ class VertexStar {
  private:
   void makeRoom(std::size_t count) {
     while (members_.size() < count) members_.resize(2 * members_.size());
-    numbers_.makeRoom(members_.size());
   }
 
-  KeyTable numbers_;  ///< of tets
+  KeyTable<> numbers_;  ///< of tets
   std::size_t count_ = 0;
   Array<Member> members_ = Array<Member>(64);
 };
