@@ -16,7 +16,6 @@ namespace hexhex {
 using CornerOrder = std::uint8_t;
 inline constexpr std::size_t kCornerOrders = 32;
 
-/// By arithmetic, as which vertex is smaller is as good as random.
 [[nodiscard]] constexpr CornerOrder cornerOrder(const Tet& tet) noexcept {
   const unsigned is1Below0 = tet[1] < tet[0] ? 1 : 0;
   const unsigned rank0 = is1Below0 + (tet[2] < tet[0] ? 1 : 0) + (tet[3] < tet[0] ? 1 : 0);

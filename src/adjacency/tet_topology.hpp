@@ -86,7 +86,8 @@ struct TetTopology {
   [[nodiscard]] std::uint64_t edgeIndex(Index a, Index b) const noexcept;
 };
 
-/// The corners of a face that two tets share, in both of them.
+/// The corners of a face that two tets share, in both of them. Turns come from a table: with three
+/// searches for a corner, extractions of s17c_sphere_r0.1 take 8 % longer.
 class SharedFace {
  public:
   SharedFace(const TetTopology& topology, HalfFace here, HalfFace there) noexcept
@@ -125,17 +126,11 @@ class SharedFace {
   const Turn* there_ = nullptr;
 };
 
-/// A simplex of a face as the neighbour has it, without branches: its corners are as good as
-/// random.
+/// A simplex of a face as the neighbour has it.
 /// @param here  the face, as a half-face that is not on the boundary
 [[nodiscard]] inline CornerMask acrossFace(const TetTopology& topology, HalfFace here,
                                            CornerMask simplex) noexcept {
-  const SharedFace face(topology, here, topology.mate[here]);
-  unsigned result = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    result |= ((unsigned{simplex} >> face.here(k)) & 1U) << face.there(k);
-  }
-  return static_cast<CornerMask>(result);
+  return topology.translated(simplex, tetOf(here), tetOf(topology.mate[here]));
 }
 
 /// Finds the neighbour of each tet across each of its faces: fills `mate`, `vertexTet` and `order`.
