@@ -122,7 +122,9 @@ class FacesAtVertices {
       for (std::uint8_t face = 0; face < kFaceCount<Cell>; ++face) {
         if (!isWanted(cell, face)) continue;
         auto vertices = faceVertices(cells_[cell], face);
-        if (*std::min_element(vertices.begin(), vertices.end()) != vertex) continue;
+        Index smallest = vertices[0];
+        for (const Index other : vertices) smallest = std::min(smallest, other);
+        if (smallest != vertex) continue;
         std::sort(vertices.begin(), vertices.end());
         found_.push_back({{}, cell, face});
         std::copy(vertices.begin() + 1, vertices.end(), found_.back().others.begin());

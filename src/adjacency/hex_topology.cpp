@@ -1,6 +1,8 @@
-// Faces of a hexahedral mesh and what follows from them (see hex_edges.cpp for the edges).
+// Faces and edges of a hexahedral mesh and what follows from them.
 #include <algorithm>
 #include <atomic>
+#include <bit>
+#include <compare>
 #include <string>
 #include <vector>
 
@@ -164,6 +166,165 @@ FaceNeighbours findFaceNeighbours(const HexMesh& mesh, Stage& stage) {
                    }
                  });
   return neighbours;
+}
+
+namespace {
+
+/// The two faces of a cell that meet in each of its edges.
+constexpr std::array<std::array<std::uint8_t, 2>, 12> facesOfEdges() {
+  std::array<std::array<std::uint8_t, 2>, 12> result{};
+  for (std::size_t e = 0; e < 12; ++e) {
+    std::size_t found = 0;
+    for (std::uint8_t f = 0; f < 6; ++f) {
+      int common = 0;
+      for (const std::uint8_t corner : kHexFaces[f]) {
+        if (corner == kHexEdges[e][0] || corner == kHexEdges[e][1]) ++common;
+      }
+      if (common == 2) result[e][found++] = f;
+    }
+  }
+  return result;
+}
+constexpr auto kFacesOfEdges = facesOfEdges();
+
+/// An edge seen from one cell. Its smaller vertex is known from the context.
+struct EdgeEntry {
+  Index other;                 ///< the larger vertex
+  std::array<Index, 2> quads;  ///< boundary quads of this cell at this edge, kNone if inside
+  auto operator<=>(const EdgeEntry&) const = default;
+};
+
+/// Numbers the boundary quads in order of (cell, face), like boundaryPlaces().
+class QuadNumbers {
+ public:
+  explicit QuadNumbers(const HexFaces& faces) : boundary_(faces.boundary) {
+    if (faces.boundaryCount >= kNone) {
+      throw Error(ErrorCode::TooLarge,
+                  "The mesh has " + std::to_string(faces.boundaryCount) +
+                      " boundary quads, but fewer than 2^32 - 1 are supported. Use a smaller "
+                      "scale.");
+    }
+    firsts_.resize(boundary_.size());
+    Index next = 0;
+    for (std::size_t c = 0; c < boundary_.size(); ++c) {
+      firsts_[c] = next;
+      next += static_cast<Index>(std::popcount(boundary_[c]));
+    }
+  }
+
+  /// The number of the quad on a face of a cell, kNone if the face is inside.
+  [[nodiscard]] Index at(Index cell, std::uint8_t face) const {
+    const unsigned mask = boundary_[cell];
+    if ((mask >> face & 1U) == 0) return kNone;
+    const unsigned before = mask & ((1U << face) - 1U);
+    return firsts_[cell] + static_cast<Index>(std::popcount(before));
+  }
+
+ private:
+  const Array<std::uint8_t>& boundary_;
+  Array<Index> firsts_;
+};
+
+/// Finds edges vertex by vertex and joins boundary quads, from several threads.
+class EdgeFinder {
+ public:
+  EdgeFinder(const HexMesh& mesh, const VertexCells& around, const HexFaces& faces)
+      : mesh_(mesh), around_(around), numbers_(faces), components_(faces.boundaryCount) {}
+
+  /// Handles all edges whose smaller vertex is in [begin, end).
+  HexEdges findInBlock(std::size_t begin, std::size_t end) {
+    HexEdges edges;
+    std::vector<EdgeEntry> entries;
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto vertex = static_cast<Index>(v);
+      collectEdges(vertex, entries);
+      forEachRun(
+          std::span<const EdgeEntry>(entries),
+          [](const EdgeEntry& a, const EdgeEntry& b) { return a.other == b.other; },
+          [&](std::span<const EdgeEntry> wedges) { addEdge(vertex, wedges, edges); });
+    }
+    return edges;
+  }
+
+  [[nodiscard]] std::uint64_t countComponents() const { return components_.count(); }
+
+ private:
+  /// Collects the edges of the cells around `vertex` that have it as their smaller vertex, sorted.
+  void collectEdges(Index vertex, std::vector<EdgeEntry>& entries) const {
+    entries.clear();
+    Index previous = kNone;
+    for (const Index c : around_.at(vertex)) {
+      if (c == previous) continue;  // a cell with repeated vertices
+      previous = c;
+      const Hex& cell = mesh_.cells[c];
+      for (std::size_t e = 0; e < 12; ++e) {
+        const Index a = cell[kHexEdges[e][0]];
+        const Index b = cell[kHexEdges[e][1]];
+        if (std::min(a, b) != vertex) continue;
+        entries.push_back(
+            {std::max(a, b),
+             {numbers_.at(c, kFacesOfEdges[e][0]), numbers_.at(c, kFacesOfEdges[e][1])}});
+      }
+    }
+    std::sort(entries.begin(), entries.end());
+  }
+
+  /// One edge, given by its appearances in cells.
+  void addEdge(Index vertex, std::span<const EdgeEntry> wedges, HexEdges& edges) {
+    ++edges.count;
+    Index firstQuad = kNone;
+    std::size_t quads = 0;
+    for (const EdgeEntry& wedge : wedges) {
+      for (const Index quad : wedge.quads) {
+        if (quad == kNone) continue;
+        if (quads++ == 0) firstQuad = quad;
+        components_.unite(firstQuad, quad);
+      }
+    }
+    const int valence = static_cast<int>(wedges.size());
+    if (valence != (quads == 0 ? 4 : 2)) {
+      edges.singular.push_back(
+          {vertex, wedges.front().other, static_cast<std::uint32_t>(valence), quads != 0});
+    }
+    if (quads == 0) {
+      if (valence != 4) ++edges.innerSingular[valence];
+      return;
+    }
+    ++edges.boundaryCount;
+    if (valence != 2) ++edges.boundarySingular[valence];
+    if (quads != 2 && edges.openCount++ == 0) edges.firstOpen = {vertex, wedges.front().other};
+  }
+
+  const HexMesh& mesh_;
+  const VertexCells& around_;
+  QuadNumbers numbers_;
+  DisjointSets components_;
+};
+
+}  // namespace
+
+HexEdges findEdges(const HexMesh& mesh, const VertexCells& around, const HexFaces& faces,
+                   Stage& stage) {
+  EdgeFinder finder(mesh, around, faces);
+  std::vector<HexEdges> blocks(blockCount(mesh.points.size(), kGrain));
+  parallelBlocks(stage, mesh.points.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   blocks[block] = finder.findInBlock(begin, end);
+                 });
+  HexEdges edges;
+  for (const HexEdges& part : blocks) {
+    if (edges.openCount == 0) edges.firstOpen = part.firstOpen;
+    edges.count += part.count;
+    edges.boundaryCount += part.boundaryCount;
+    edges.openCount += part.openCount;
+    edges.singular.insert(edges.singular.end(), part.singular.begin(), part.singular.end());
+    for (const auto& [valence, count] : part.innerSingular) edges.innerSingular[valence] += count;
+    for (const auto& [valence, count] : part.boundarySingular) {
+      edges.boundarySingular[valence] += count;
+    }
+  }
+  edges.boundaryComponents = finder.countComponents();
+  return edges;
 }
 
 }  // namespace hexhex

@@ -6,8 +6,8 @@
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
-#include <mesh/lattice_points.hpp>
 #include <mesh/tet_locator.hpp>
+#include <mesh/verify_against.hpp>
 
 namespace hexhex {
 namespace {

@@ -3,6 +3,7 @@
 // tells all that it shares with them. Edges along seams are listed by themselves.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <utility>
 
@@ -11,7 +12,6 @@
 
 #include <base/parallel.hpp>
 #include <base/prefetch.hpp>
-#include <io/ovm/ovm_hex_topology.hpp>
 #include <io/ovm/ovm_topology.hpp>
 
 namespace hexhex {
@@ -40,14 +40,11 @@ constexpr std::uint8_t kAllEdges = 7;
 constexpr std::uint8_t kNearSlots = 1 | 4 | 32;
 
 /// Without a processor's instruction for it, std::popcount() would be a call.
-constexpr std::array<std::uint8_t, 64> makeBitCounts() {
+constexpr auto kBitCounts = [] {
   std::array<std::uint8_t, 64> counts{};
-  for (std::size_t bits = 1; bits < counts.size(); ++bits) {
-    counts[bits] = static_cast<std::uint8_t>(counts[bits / 2] + bits % 2);
-  }
+  for (unsigned i = 0; i < 64; ++i) counts[i] = static_cast<std::uint8_t>(std::popcount(i));
   return counts;
-}
-constexpr std::array<std::uint8_t, 64> kBitCounts = makeBitCounts();
+}();
 
 /// How many bits are set below bit i.
 Index rankOf(unsigned bits, std::size_t i) { return kBitCounts[bits & ((1U << i) - 1)]; }

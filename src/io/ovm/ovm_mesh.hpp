@@ -1,14 +1,19 @@
 // What `.ovm` and `.ovmb` files hold: a polyhedral mesh of vertices, edges, faces and cells, and
-// the properties of them that this library knows.
+// the properties of them that this library knows; and what reads and writes them.
 //
 // Half-edge 2e is edge e as stored, 2e + 1 the same edge reversed. Half-face 2f is face f as stored
 // (a closed loop of half-edges), 2f + 1 the reversed loop.
+//
+// A text has the sections Vertices, Edges, Faces, Polyhedra, each with a count and one element per
+// line; then properties: a line `HFProp vec3d "name"`, and a value per element. Binary files are a
+// header and chunks (ovmb_reader.hpp).
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -16,10 +21,17 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/stage.hpp>
+#include <io/core/output_file.hpp>
+
 namespace hexhex {
 
 /// What a property belongs to; the numbers are those of `.ovmb`.
 enum class OvmEntity : std::uint8_t { Vertex, Edge, Face, Cell, HalfEdge, HalfFace, Mesh };
+
+/// By entity: the first word of the line of `.ovm` that begins a property.
+inline constexpr std::array<std::string_view, 7> kOvmPropertyWords = {
+    "VProp", "EProp", "FProp", "CProp", "HEProp", "HFProp", "MProp"};
 
 /// Indices of half-entities have to fit into 32 bits, so there are at most this many entities of a
 /// kind. It is also the limit of OpenVolumeMesh.
@@ -165,5 +177,21 @@ struct OvmOutput {
   std::vector<OvmProperty> properties;  ///< in the order in which they are written
   bool hasWideHandles = false;  ///< handles of `.ovmb` have four bytes, even if fewer would do
 };
+
+/// Read the mesh and the properties that this library knows. Handles are in range; nothing else
+/// about the topology is checked.
+/// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite, TooLarge, with the line
+///         or byte
+[[nodiscard]] OvmMesh parseOvmText(std::string_view text, const std::string& fileName,
+                                   Stage& stage);
+[[nodiscard]] OvmMesh parseOvmb(std::string_view bytes, const std::string& fileName, Stage& stage);
+
+/// Write and commit a mesh in the layout of OpenVolumeMesh's own files: for each kind of element
+/// one chunk or section, handles without offset; numbers of `.ovm` have the fewest digits that read
+/// back to the same double.
+/// @param mesh  for `.ovm` with faces and cells of one valence each
+/// @throws Error FileWrite
+void writeOvmText(const OvmOutput& mesh, OutputFile& output, Stage& stage);
+void writeOvmb(const OvmOutput& mesh, OutputFile& output, Stage& stage);
 
 }  // namespace hexhex

@@ -1,4 +1,4 @@
-// Reads `.ovm` files (see ovm_files.hpp).
+// Reads `.ovm` files (see ovm_mesh.hpp).
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -10,7 +10,7 @@
 
 #include <io/core/number_parsing.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/ovm/ovm_files.hpp>
+#include <io/ovm/ovm_mesh.hpp>
 #include <io/ovm/ovmb_reader.hpp>
 
 namespace hexhex {
@@ -30,18 +30,6 @@ constexpr SectionName kEdgeSection = {"Edges", "edge", "edges", "vertex", 4};
 constexpr SectionName kFaceSection = {"Faces", "face", "faces", "half-edge", 8, 3};
 constexpr SectionName kCellSection = {"Polyhedra", "cell", "cells", "half-face", 10, 4};
 
-/// The first word of the line that begins a property.
-struct EntityKeyword {
-  std::string_view word;
-  OvmEntity entity;
-};
-constexpr std::array<EntityKeyword, 7> kEntities = {{{"VProp", OvmEntity::Vertex},
-                                                     {"EProp", OvmEntity::Edge},
-                                                     {"HEProp", OvmEntity::HalfEdge},
-                                                     {"FProp", OvmEntity::Face},
-                                                     {"HFProp", OvmEntity::HalfFace},
-                                                     {"CProp", OvmEntity::Cell},
-                                                     {"MProp", OvmEntity::Mesh}}};
 constexpr std::array<std::string_view, 6> kIntegerTypes = {"int",  "uint",  "short",
                                                            "long", "ulong", "bool"};
 constexpr std::array<std::string_view, 2> kPointTypes = {"vec3d", "vec3f"};
@@ -57,7 +45,7 @@ bool isOneOf(std::string_view word, const std::array<std::string_view, n>& words
                      [&](std::string_view known) { return equalsIgnoringCase(word, known); });
 }
 
-/// That line.
+/// The line that begins a property.
 struct PropertyHeader {
   OvmEntity entity = OvmEntity::Mesh;
   std::string_view type;
@@ -77,11 +65,12 @@ std::string_view takeWord(std::string_view& line) {
 
 std::optional<PropertyHeader> parseHeader(std::string_view line) {
   const std::string_view keyword = takeWord(line);
-  const auto* const entity = std::find_if(
-      kEntities.begin(), kEntities.end(),
-      [&](const EntityKeyword& known) { return equalsIgnoringCase(known.word, keyword); });
-  if (entity == kEntities.end()) return std::nullopt;
-  PropertyHeader header{entity->entity, takeWord(line), {}};
+  const auto* const word =
+      std::find_if(kOvmPropertyWords.begin(), kOvmPropertyWords.end(),
+                   [&](std::string_view known) { return equalsIgnoringCase(known, keyword); });
+  if (word == kOvmPropertyWords.end()) return std::nullopt;
+  PropertyHeader header{
+      static_cast<OvmEntity>(word - kOvmPropertyWords.begin()), takeWord(line), {}};
   const std::size_t quote = line.find('"');
   if (quote == std::string_view::npos) return header;
   header.name = line.substr(quote + 1);

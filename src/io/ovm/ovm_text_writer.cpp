@@ -1,7 +1,7 @@
-// Writes `.ovm` files (see ovm_files.hpp).
+// Writes `.ovm` files (see ovm_mesh.hpp).
 #include <base/stage.hpp>
 #include <io/core/line_writer.hpp>
-#include <io/ovm/ovm_files.hpp>
+#include <io/ovm/ovm_mesh.hpp>
 
 namespace hexhex {
 namespace {
@@ -74,10 +74,8 @@ void OvmTextWriter::writeLines(const OvmLists& lists) {
 }
 
 void OvmTextWriter::writeProperty(const OvmProperty& property) {
-  constexpr std::array<const char*, 7> kKeywords = {"VProp",  "EProp",  "FProp", "CProp",
-                                                    "HEProp", "HFProp", "MProp"};  // as OvmEntity
-  constexpr std::array<const char*, 3> kTypes = {"int", "vec3d", "vec2d"};         // as the variant
-  output_.write(kKeywords[static_cast<std::size_t>(property.entity)]).write(' ');
+  constexpr std::array<const char*, 3> kTypes = {"int", "vec3d", "vec2d"};  // as the variant
+  output_.write(kOvmPropertyWords[static_cast<std::size_t>(property.entity)]).write(' ');
   output_.write(kTypes[property.values.index()]).write(" \"").write(property.name).write("\"\n");
   std::visit([this](const auto& values) { writeLines(std::span(values)); }, property.values);
 }

@@ -10,7 +10,6 @@
 
 #include <adjacency/cell_faces.hpp>
 #include <adjacency/corner_order.hpp>
-#include <adjacency/hex_faces.hpp>
 #include <adjacency/key_table.hpp>
 #include <adjacency/tet_topology.hpp>
 #include <adjacency/vertex_lists.hpp>
@@ -19,7 +18,6 @@
 
 #include <base/parallel.hpp>
 #include <io/ovm/ovm_cells.hpp>
-#include <io/ovm/ovm_hex_topology.hpp>
 
 namespace hexhex {
 

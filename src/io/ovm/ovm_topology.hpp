@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <span>
 
+#include <adjacency/hex_faces.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
@@ -42,6 +44,14 @@ inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kOvmHexFaces = {
                                            Stage& stage);
 [[nodiscard]] OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Hex> cells,
                                            Stage& stage);
+
+/// The part of buildOvmTopology() that numbers hexahedra, once their faces are matched.
+[[nodiscard]] OvmTopology numberHexes(std::size_t vertexCount, std::span<const Hex> cells,
+                                      HexMates mates, Stage& stage);
+
+/// @param what  e.g. "edges"
+/// @throws Error TooLarge if there are more than the format can hold
+void requireOvmCount(std::uint64_t limit, std::uint64_t count, const char* what);
 
 /// Finds edges that are listed in the order of their smaller vertices, which come first.
 class OvmEdgeFinder {

@@ -39,10 +39,6 @@ struct OvmbFrame {
   return bytes.starts_with(kOvmbMagic);
 }
 
-/// @param bytes, fileName  must outlive the frame
-/// @throws Error FileSyntax, also if the end chunk is missing; FileUnsupported; TooLarge
-[[nodiscard]] OvmbFrame splitOvmb(std::string_view bytes, const std::string& fileName);
-
 /// A range of elements, as VERT, TOPO and PROP chunks begin with.
 struct OvmbSpan {
   std::uint64_t first = 0;
@@ -54,12 +50,5 @@ struct OvmbSpan {
 /// spans. Handles are in range afterwards; nothing else about the topology is checked.
 /// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite
 void readOvmbElements(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage);
-
-/// Decodes the properties that this library knows, by entity, name and type; the map may be of
-/// doubles or floats, integers of any width, or bits. All others are skipped, after a check of
-/// their place in the file. Elements outside of all spans have the default value.
-/// @param mesh  with complete topology
-/// @throws Error FileSyntax, FileUnsupported
-void readOvmbProperties(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage);
 
 }  // namespace hexhex

@@ -1,11 +1,11 @@
-// Writes `.ovmb` files (see ovm_files.hpp).
+// Writes `.ovmb` files (see ovm_mesh.hpp).
 #include <algorithm>
 #include <bit>
 #include <limits>
 #include <type_traits>
 
 #include <io/core/line_writer.hpp>
-#include <io/ovm/ovm_files.hpp>
+#include <io/ovm/ovm_mesh.hpp>
 #include <io/ovm/ovmb_reader.hpp>
 
 namespace hexhex {

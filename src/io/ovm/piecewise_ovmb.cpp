@@ -16,7 +16,7 @@
 #include <base/stage.hpp>
 #include <io/core/output_file.hpp>
 #include <io/ovm/ovm_cells.hpp>
-#include <io/ovm/ovm_files.hpp>
+#include <io/ovm/ovm_mesh.hpp>
 #include <io/ovm/ovm_topology.hpp>
 #include <io/ovm/piecewise_ovmb.hpp>
 
@@ -40,8 +40,7 @@ class TetSimplices {
   TetSimplices(const TetMapView& map, Stage& stage)
       : tets_(requireInRange(map, stage)),
         topology_(ovmTopologyOf(map.points, map.tets, stage)),
-        edges_(topology_.vertexCount, topology_.edges),
-        loops_(topology_, stage) {}
+        edges_(topology_.vertexCount, topology_.edges) {}
 
   /// The index of a simplex among those of its dimension.
   /// @throws Error InvalidArgument if there is no such tet
@@ -92,7 +91,7 @@ class TetSimplices {
 
   [[nodiscard]] Index faceWithout(Index tet, Index vertex) const {
     for (const Index halfFace : topology_.cells[tet]) {
-      const std::array<Index, 3>& loop = loops_.ofFace(halfFace / 2);
+      const std::array<Index, 3> loop = loopOfFace<3>(topology_, halfFace / 2);
       if (std::find(loop.begin(), loop.end(), vertex) == loop.end()) return halfFace / 2;
     }
     return kNone;
@@ -101,7 +100,6 @@ class TetSimplices {
   std::span<const Tet> tets_;
   OvmTopology topology_;
   OvmEdgeFinder edges_;
-  OvmLoops<3> loops_;
 };
 
 /// The simplices that hold elements, as properties.
