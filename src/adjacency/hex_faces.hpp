@@ -19,9 +19,9 @@ inline constexpr std::array<std::size_t, 3> kNextCorner = {1, 3, 4};
 
 /// A half-face by its number is 6 * cell + face (row of kHexFaces).
 ///
-/// *Seams* are the faces whose two cells do not number their corners alike (aligned_cells.hpp), and
-/// the boundary. A vertex that is on no seam has eight cells, each of which has it at another
-/// corner: to go from one to the next is to look up a mate.
+/// *Seams* are the faces whose two cells do not number their corners alike, and the boundary. A
+/// vertex that is on no seam has eight cells, each of which has it at another corner: to go from
+/// one to the next is to look up a mate.
 struct HexMates {
   Array<Index> mates;               ///< per half-face: the same face in the other cell, or kNone
   Array<std::uint8_t> seamCorners;  ///< per cell: bit k if corner k is on a seam
