@@ -28,17 +28,18 @@ class Grains {
     for (Vec3& grains : large_) grains = {0x1p52, 0x1p52, 0x1p52};
     for (std::size_t axis = 0; axis < 3; ++axis) large_[std::size_t{1} << axis][axis] *= unit;
     // Left as they are, and so not displaced.
-    std::fill(large_.begin() + PlainVertices::kPlaneOfStar, large_.end(), Vec3{0, 0, 0});
+    large_.back() = {0, 0, 0};
   }
   /// By axis.
-  [[nodiscard]] const Vec3& at(unsigned plane) const noexcept { return large_[plane]; }
+  [[nodiscard]] const Vec3& at(Rounding rounding) const noexcept {
+    return large_[static_cast<std::size_t>(rounding)];
+  }
 
  private:
-  /// By PlainVertices::plane.
-  std::array<Vec3, 32> large_{};
+  std::array<Vec3, static_cast<std::size_t>(Rounding::ByStar) + 1> large_{};
 };
 
-/// Rounds corners at plain vertices, and at others with flat stars.
+/// Rounds corners at regular and flat vertices.
 class CornerRounder {
  public:
   CornerRounder(const TetTopology& topology, double tolerance, DefectCollector& defects,
@@ -51,9 +52,9 @@ class CornerRounder {
         resolution_(1 / unit_),
         grains_(unit_) {}
 
-  /// @param plane  of the boundary: bit k across axis k, or 0
-  void run(CornerIndex index, const Vec3& u, unsigned plane) {
-    const Vec3& large = grains_.at(plane);
+  /// @param rounding  other than by the star
+  void run(CornerIndex index, const Vec3& u, Rounding rounding) {
+    const Vec3& large = grains_.at(rounding);
     const Pair xy = nearestMultiples(loadPair(&u[0]) * unit_, loadPair(&large[0]));
     const Pair z = nearestMultiples(Pair{u[2], u[2]} * unit_, Pair{large[2], large[2]});
     const Vec3 rounded = {xy[0], xy[1], z[0]};
@@ -64,7 +65,8 @@ class CornerRounder {
     // The same at all corners of the vertex, and to be reported once.
     const Index vertex = topology_.vertex(index);
     if (displacement > tolerance_ && topology_.vertexTet[vertex] == tetOf(index)) {
-      defects_.add(plane != 0 ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual,
+      defects_.add(rounding != Rounding::Free ? ErrorCode::BoundaryOffLattice
+                                              : ErrorCode::TransitionResidual,
                    {PlaceKind::Vertex, vertex}, displacement);
     }
   }

@@ -56,8 +56,8 @@ void sanitizeStars(const TetTopology& topology, const LocalParameters& parameter
     for (std::size_t i = 0; i < stars[block].vertices.size(); ++i) {
       sanitizer.run(stars[block].vertices[i], stars[block].star(i), stars[block].planes[i]);
     }
-    for (const auto& [corner, plane] : stars[block].planeCorners) {
-      rounder.run(corner, parameters(tetOf(corner), localOf(corner)), plane);
+    for (const auto& [corner, rounding] : stars[block].planeCorners) {
+      rounder.run(corner, parameters(tetOf(corner), localOf(corner)), rounding);
     }
     // Of all blocks so far that had this workspace.
     displacements[block] = std::max(sanitizer.maxDisplacement(), rounder.maxDisplacement());
@@ -71,12 +71,12 @@ void sanitizeStars(const TetTopology& topology, const LocalParameters& parameter
 }  // namespace
 
 ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters,
-                  Transitions transitions, const PlainVertices& plain,
-                  std::span<const StarBlock> stars, const Singularities& singularities,
-                  double tolerance, int maxScale, Stage& stage, DefectCollector& defects) {
+                  Transitions transitions, const RegularVertices& survey,
+                  const VertexKinds& vertices, const Singularities& singularities, double tolerance,
+                  int maxScale, Stage& stage, DefectCollector& defects) {
   ExactMap map;
   map.transitions = std::move(transitions);
-  checkBoundary(plain, parameters, tolerance, stage, defects);
+  checkBoundary(survey, parameters, tolerance, stage, defects);
   checkSingularities(singularities, parameters, tolerance, defects);
   map.unit = std::int64_t{1} << fractionBits(parameters.largest(), maxScale, defects);
   if (defects.has(ErrorCode::TooLarge)) return map;
@@ -84,13 +84,14 @@ ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters
   // Of two ways to the volume, the shorter one: tet by tet, or along the boundary and the cuts.
   const bool byTets = map.transitions.jumps > topology.tetCount();
   const RoundedTets rounded =
-      roundTets(topology, parameters, plain, tolerance, byTets, stage, defects, map);
-  sanitizeStars(topology, parameters, stars, singularities, tolerance, stage, defects, map);
+      roundTets(topology, parameters, vertices.rounding, tolerance, byTets, stage, defects, map);
+  sanitizeStars(topology, parameters, vertices.blocks, singularities, tolerance, stage, defects,
+                map);
   checkOrientations(rounded.unfinished, parameters, stage, defects, map);
   if (byTets) {
     addVolume(rounded, stage, map);
   } else {
-    addVolume(plain, stage, map);
+    addVolume(survey, stage, map);
   }
   return map;
 }

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <span>
 
-#include <igm/plain_vertices.hpp>
 #include <igm/singularities.hpp>
 #include <igm/transitions.hpp>
 
@@ -27,16 +26,16 @@ struct ExactMap {
 /// coordinate along its normal to an integer, a singular edge the two across it, a singular node
 /// all three; the other coordinates are rounded to the lattice; then the value is carried to all
 /// other corners by the exact transitions. Vertices are independent of each other, so the result
-/// depends neither on their order nor on threads. Corners at plain vertices, and in
-/// flat stars, are only rounded.
-/// @param stars  of all special vertices, by collectStars()
+/// depends neither on their order nor on threads. Corners at regular and flat vertices are only
+/// rounded.
+/// @param vertices  by classifyVertices()
 /// @param tolerance  larger displacements are defects
 /// @param maxScale   the map is going to be scaled by at most this
 [[nodiscard]] ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters,
-                                Transitions transitions, const PlainVertices& plain,
-                                std::span<const StarBlock> stars,
-                                const Singularities& singularities, double tolerance, int maxScale,
-                                Stage& stage, DefectCollector& defects);
+                                Transitions transitions, const RegularVertices& survey,
+                                const VertexKinds& vertices, const Singularities& singularities,
+                                double tolerance, int maxScale, Stage& stage,
+                                DefectCollector& defects);
 
 /// Multiplies all parameters by an integer, exactly.
 void scaleMap(ExactMap& map, int scale, Stage& stage);

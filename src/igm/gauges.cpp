@@ -5,9 +5,7 @@
 #include <base/branchless.hpp>
 #include <base/prefetch.hpp>
 #include <igm/gauges.hpp>
-#include <igm/passage.hpp>
 #include <igm/transition_fit.hpp>
-#include <igm/turn.hpp>
 
 namespace hexhex {
 
@@ -31,17 +29,6 @@ struct Block {
   std::vector<Link> links;      ///< by piece; at least one for each neighbour of a piece
 };
 
-/// gauge * transition, looked up: the rotations are as good as random.
-Gauge composed(const Gauge& gauge, const Transition& transition) {
-  const Rotation product = Passage::across(gauge.rotation, true).after(transition.rotation);
-  const GridPoint image = turned(gauge.rotation, transition.translation);
-  Gauge result{product, gauge.translation};
-  for (std::size_t k = 0; k < 3; ++k) {
-    result.translation[k] += static_cast<std::uint32_t>(image[k]);
-  }
-  return result;
-}
-
 /// Transitions that have been computed.
 class KnownTransitions {
  public:
@@ -64,7 +51,7 @@ class FittedTransitions {
       : topology_(topology), parameters_(parameters) {}
 
   [[nodiscard]] Transition across(HalfFace halfFace) const {
-    return fitTransition(topology_, parameters_, halfFace, topology_.mate[halfFace]).transition;
+    return fitTransition(SharedTriangle(topology_, parameters_, halfFace)).transition;
   }
   void fetch(HalfFace halfFace) const noexcept {
     const Index neighbour = tetOf(topology_.mate[halfFace]);
@@ -165,7 +152,7 @@ class PieceSearch {
       prefetch(&mates_[entries_[std::min(i + kAhead, entryCount_ - 1)]]);
       const HalfFace entry = entries_[i];
       const Index tet = tetOf(entry);
-      result_.of[tet] = composed(result_.of[tetOf(mates_[entry])], toParent_[tet - begin_]);
+      result_.of[tet] = result_.of[tetOf(mates_[entry])] * toParent_[tet - begin_];
     }
   }
 

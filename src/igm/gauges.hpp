@@ -8,7 +8,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <igm/local_parameters.hpp>
+#include <igm/input.hpp>
 #include <igm/transitions.hpp>
 #include <lattice/gauge.hpp>
 

@@ -23,10 +23,10 @@ std::size_t edgeAxis(const LocalParameters& parameters, const SingularEdge& edge
       minus(parameters(edge.tet, edge.corner1), parameters(edge.tet, edge.corner0)));
 }
 
-void checkBoundary(const PlainVertices& plain, const LocalParameters& parameters, double tolerance,
-                   Stage& stage, DefectCollector& defects) {
-  parallelFor(stage, plain.boundaryFaces.size(), 1, [&](std::size_t block) {
-    for (const PlainVertices::BoundaryFace& face : plain.boundaryFaces[block]) {
+void checkBoundary(const RegularVertices& survey, const LocalParameters& parameters,
+                   double tolerance, Stage& stage, DefectCollector& defects) {
+  parallelFor(stage, survey.boundaryFaces.size(), 1, [&](std::size_t block) {
+    for (const RegularVertices::BoundaryFace& face : survey.boundaryFaces[block]) {
       const std::size_t axis = face.axis;
       const HalfFace halfFace = face.halfFace;
       std::array<double, 3> x{};

@@ -11,8 +11,8 @@ namespace hexhex {
                                    const SingularEdge& edge) noexcept;
 
 /// (IGM2) up to the tolerance: what snapping may repair.
-void checkBoundary(const PlainVertices& plain, const LocalParameters& parameters, double tolerance,
-                   Stage& stage, DefectCollector& defects);
+void checkBoundary(const RegularVertices& survey, const LocalParameters& parameters,
+                   double tolerance, Stage& stage, DefectCollector& defects);
 
 /// (IGM3) up to the tolerance, for edges; nodes are noticed when they are snapped.
 void checkSingularities(const Singularities& singularities, const LocalParameters& parameters,

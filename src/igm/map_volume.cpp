@@ -15,7 +15,7 @@ class VolumeSum {
   explicit VolumeSum(const ExactMap& map) : map_(map) {}
 
   /// A triangle in an axis-parallel plane has a normal along that axis.
-  void addBoundary(const PlainVertices::BoundaryFace& face) {
+  void addBoundary(const RegularVertices::BoundaryFace& face) {
     // Outward normals are the negative ones.
     const Triangle triangle(map_, face.halfFace);
     add(triangle.normal(face.axis), -triangle.p[face.axis]);
@@ -69,7 +69,8 @@ class VolumeSum {
   }
 
   static constexpr int kLowBits = 56;
-  static_assert(PlainVertices::kBlock <= 1024);  // so many tets have at most 4 * 3 * 1024 products
+  static_assert(RegularVertices::kBlock <=
+                1024);  // so many tets have at most 4 * 3 * 1024 products
 
   const ExactMap& map_;
   UInt128 lowSum_ = 0;
@@ -82,15 +83,15 @@ void addAll(std::span<const Int192> volumes, Int192& sum) {
 
 }  // namespace
 
-void addVolume(const PlainVertices& plain, Stage& stage, ExactMap& map) {
-  const std::size_t blocks = plain.boundaryFaces.size();
+void addVolume(const RegularVertices& survey, Stage& stage, ExactMap& map) {
+  const std::size_t blocks = survey.boundaryFaces.size();
   std::vector<Int192> volumes(blocks);
   parallelFor(stage, blocks, 1, [&](std::size_t block) {
     VolumeSum sum(map);
-    for (const PlainVertices::BoundaryFace& face : plain.boundaryFaces[block]) {
+    for (const RegularVertices::BoundaryFace& face : survey.boundaryFaces[block]) {
       sum.addBoundary(face);
     }
-    for (const HalfFace halfFace : plain.unequalFaces[block]) sum.addInner(halfFace);
+    for (const HalfFace halfFace : survey.unequalFaces[block]) sum.addInner(halfFace);
     volumes[block] = sum.get();
   });
   addAll(volumes, map.sixfoldVolume);

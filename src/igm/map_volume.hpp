@@ -9,8 +9,8 @@ namespace hexhex {
 // Two ways to set map.sixfoldVolume from corners and transitions, for a map without defects:
 
 /// Along the boundary and the cuts.
-/// @param plain  knows the boundary, and where tets differ
-void addVolume(const PlainVertices& plain, Stage& stage, ExactMap& map);
+/// @param survey  knows the boundary, and where tets differ
+void addVolume(const RegularVertices& survey, Stage& stage, ExactMap& map);
 
 /// Tet by tet.
 /// @param rounded  measured

@@ -3,9 +3,9 @@
 #include <utility>
 #include <vector>
 
-#include <igm/local_parameters.hpp>
-#include <igm/plain_vertices.hpp>
+#include <igm/input.hpp>
 #include <igm/prepare.hpp>
+#include <igm/regular_vertices.hpp>
 #include <igm/topology_defects.hpp>
 #include <igm/unfold_charts.hpp>
 
@@ -53,18 +53,19 @@ class Preparation {
       prepared_.isUnfolded = true;
     }
     const LocalParameters parameters(prepared_.input);
-    PlainVertices plain;
+    RegularVertices survey;
     {
       Stage stage(context_, "plain vertices");
-      plain = findPlainVertices(prepared_.topology, parameters, stage);
+      survey = findRegularVertices(prepared_.topology, parameters, stage);
     }
     Transitions transitions;
-    if (!parameters.tooLarge()) transitions = findTransitions(parameters, unfolding, plain);
-    std::vector<StarBlock> stars;
-    if (!findSingularities(parameters, transitions, plain, stars)) return std::move(prepared_);
+    if (!parameters.tooLarge()) transitions = findTransitions(parameters, unfolding, survey);
+    VertexKinds vertices;
+    if (!findSingularities(parameters, transitions, survey, vertices)) return std::move(prepared_);
     Stage stage(context_, "sanitization");
-    prepared_.exact = sanitize(prepared_.topology, parameters, std::move(transitions), plain, stars,
-                               prepared_.singularities, tolerance_, maxScale_, stage, defects_);
+    prepared_.exact =
+        sanitize(prepared_.topology, parameters, std::move(transitions), survey, vertices,
+                 prepared_.singularities, tolerance_, maxScale_, stage, defects_);
     return std::move(prepared_);
   }
 
@@ -85,9 +86,10 @@ class Preparation {
   }
 
   [[nodiscard]] Transitions findTransitions(const LocalParameters& parameters,
-                                            const Unfolding& unfolding, PlainVertices& plain) {
+                                            const Unfolding& unfolding,
+                                            const RegularVertices& survey) {
     Stage stage(context_, "transitions");
-    Transitions transitions = computeTransitions(prepared_.topology, parameters, plain,
+    Transitions transitions = computeTransitions(prepared_.topology, parameters, survey,
                                                  prepared_.input.view.rotations, tolerance_, stage);
     prepared_.chartJumps = unfolding.countGivenJumps(prepared_.topology, transitions, stage);
     if (hasManyJumps(prepared_.topology, transitions)) {
@@ -98,14 +100,15 @@ class Preparation {
 
   /// @return whether there is an exact map to be found
   [[nodiscard]] bool findSingularities(const LocalParameters& parameters,
-                                       const Transitions& transitions, PlainVertices& plain,
-                                       std::vector<StarBlock>& stars) {
+                                       const Transitions& transitions,
+                                       const RegularVertices& survey, VertexKinds& vertices) {
     Stage stage(context_, "singularities");
     const auto& valences = prepared_.input.view.edgeValences;
-    collectStars(prepared_.topology, parameters, plain, valences,
-                 parameters.tooLarge() ? nullptr : &transitions, stars, stage);
-    std::optional<Singularities> singularities =
-        computeSingularities(prepared_.topology, parameters, plain, valences, stars, stage);
+    const Array<HalfFaceCrossing> crossings =
+        findCrossings(prepared_.topology, survey, transitions, stage);
+    vertices = classifyVertices(prepared_.topology, parameters, survey, crossings, valences, stage);
+    std::optional<Singularities> singularities = computeSingularities(
+        prepared_.topology, parameters, survey, crossings, vertices, valences, stage);
     if (!singularities) {
       collectTopologyDefects(prepared_.topology, stage, defects_);
       if (defects_.empty()) throwContradiction();

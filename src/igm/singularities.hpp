@@ -11,10 +11,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <igm/local_parameters.hpp>
-#include <igm/plain_vertices.hpp>
-#include <igm/transitions.hpp>
-#include <igm/vertex_star.hpp>
+#include <igm/irregular_vertices.hpp>
 
 namespace hexhex {
 
@@ -51,20 +48,13 @@ struct Singularities {
   }
 };
 
-/// Finds the stars of special vertices; vertices at which the caller claims a singularity become
-/// special. Those whose stars are flat turn into PlainVertices::kFlat.
+/// Looks at the stars of irregular vertices. Nothing if an edge or vertex turns out not to be that
+/// of a manifold.
+/// @param vertices  by classifyVertices()
 /// @param known  valence offsets that the caller gave, or empty
-/// @param transitions  null if unknown; then no star is found to be flat
-/// @param[out] stars  of the special vertices
-void collectStars(const TetTopology& topology, const LocalParameters& parameters,
-                  PlainVertices& plain, std::span<const EdgeValence> known,
-                  const Transitions* transitions, std::vector<StarBlock>& stars, Stage& stage);
-
-/// Looks at the stars of special vertices. Nothing if an edge or vertex turns out not to be that of
-/// a manifold.
-/// @param known, stars  as in collectStars()
 [[nodiscard]] std::optional<Singularities> computeSingularities(
-    const TetTopology& topology, const LocalParameters& parameters, const PlainVertices& plain,
-    std::span<const EdgeValence> known, std::span<const StarBlock> stars, Stage& stage);
+    const TetTopology& topology, const LocalParameters& parameters, const RegularVertices& survey,
+    std::span<const HalfFaceCrossing> crossings, const VertexKinds& vertices,
+    std::span<const EdgeValence> known, Stage& stage);
 
 }  // namespace hexhex

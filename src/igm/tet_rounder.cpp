@@ -30,10 +30,11 @@ Vec3 cornerOf(const Coordinates& coordinates, std::size_t corner) {
 class TetRounder {
  public:
   TetRounder(const TetTopology& topology, const LocalParameters& parameters,
-             const PlainVertices& plain, const Grains& grains, bool measureVolume, ExactMap& map)
+             std::span<const Rounding> rounding, const Grains& grains, bool measureVolume,
+             ExactMap& map)
       : topology_(topology),
         parameters_(parameters),
-        plain_(plain),
+        rounding_(rounding),
         grains_(grains),
         measureVolume_(measureVolume),
         map_(map),
@@ -47,10 +48,10 @@ class TetRounder {
     TetParameters scratch;
     const TetParameters& u = parameters_.see(t, scratch);
     const Coordinates given = inARow(u[0], u[1], u[2], u[3]);
-    std::array<unsigned, 4> planes{};
-    for (std::size_t i = 0; i < 4; ++i) planes[i] = plain_.plane[tet[i]];
-    const Coordinates large = inARow(grains_.at(planes[0]), grains_.at(planes[1]),
-                                     grains_.at(planes[2]), grains_.at(planes[3]));
+    std::array<Rounding, 4> rounding{};
+    for (std::size_t i = 0; i < 4; ++i) rounding[i] = rounding_[tet[i]];
+    const Coordinates large = inARow(grains_.at(rounding[0]), grains_.at(rounding[1]),
+                                     grains_.at(rounding[2]), grains_.at(rounding[3]));
     Coordinates rounded;
     for (std::size_t i = 0; i < 6; ++i) {
       rounded[i] = nearestMultiples(given[i] * unit_, large[i]);
@@ -58,8 +59,8 @@ class TetRounder {
     }
     LatticeTet& corners = map_.corners[t];
     store(rounded, corners);
-    const unsigned anyPlane = planes[0] | planes[1] | planes[2] | planes[3];
-    return anyPlane < PlainVertices::kPlaneOfStar && isPositive(rounded, corners);
+    const bool isFinished = std::ranges::find(rounding, Rounding::ByStar) == rounding.end();
+    return isFinished && isPositive(rounded, corners);
   }
 
   /// Without corners that are decided by their stars.
@@ -91,7 +92,7 @@ class TetRounder {
 
   const TetTopology& topology_;
   const LocalParameters& parameters_;
-  const PlainVertices& plain_;
+  std::span<const Rounding> rounding_;
   const Grains& grains_;
   bool measureVolume_;
   ExactMap& map_;
@@ -104,19 +105,19 @@ class TetRounder {
 
 /// Reports corners that have moved too far.
 void reportDisplacements(const TetTopology& topology, const LocalParameters& parameters,
-                         const PlainVertices& plain, std::size_t begin, std::size_t end,
+                         std::span<const Rounding> rounding, std::size_t begin, std::size_t end,
                          CornerRounder& rounder) {
   for (auto corner = static_cast<CornerIndex>(4 * begin); corner < 4 * end; ++corner) {
-    const unsigned plane = plain.plane[topology.vertex(corner)];
-    if (plane >= PlainVertices::kPlaneOfStar) continue;
-    rounder.run(corner, parameters(tetOf(corner), localOf(corner)), plane);
+    const Rounding how = rounding[topology.vertex(corner)];
+    if (how == Rounding::ByStar) continue;
+    rounder.run(corner, parameters(tetOf(corner), localOf(corner)), how);
   }
 }
 
 }  // namespace
 
 RoundedTets roundTets(const TetTopology& topology, const LocalParameters& parameters,
-                      const PlainVertices& plain, double tolerance, bool measureVolume,
+                      std::span<const Rounding> rounding, double tolerance, bool measureVolume,
                       Stage& stage, DefectCollector& defects, ExactMap& map) {
   const std::size_t blocks = blockCount(topology.tetCount(), kGrain);
   RoundedTets result;
@@ -126,7 +127,7 @@ RoundedTets roundTets(const TetTopology& topology, const LocalParameters& parame
   const Grains grains(static_cast<double>(map.unit));
   parallelBlocks(stage, topology.tetCount(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   TetRounder rounder(topology, parameters, plain, grains, measureVolume, map);
+                   TetRounder rounder(topology, parameters, rounding, grains, measureVolume, map);
                    std::array<Index, kGrain + 1> list;  // NOLINT: written before it is read
                    std::size_t count = 0;
                    for (std::size_t t = begin; t < end; ++t) {
@@ -137,7 +138,7 @@ RoundedTets roundTets(const TetTopology& topology, const LocalParameters& parame
                    displacements[block] = rounder.maxDisplacement();
                    if (displacements[block] > tolerance) {
                      CornerRounder reporter(topology, tolerance, defects, map);
-                     reportDisplacements(topology, parameters, plain, begin, end, reporter);
+                     reportDisplacements(topology, parameters, rounding, begin, end, reporter);
                    }
                    volumes[block] = rounder.sixfoldVolume();
                  });

@@ -1,6 +1,7 @@
 // Rounding of all tets to the lattice, where their corners do not depend on others.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <igm/exact_map.hpp>
@@ -14,11 +15,12 @@ struct RoundedTets {
   Int192 sixfoldVolume;  ///< of all others, if asked for
 };
 
-/// Rounds corners at plain vertices, and others in vain where a star decides, and updates
-/// map.maxDisplacement.
+/// Rounds corners at regular and flat vertices, and others in vain where a star decides, and
+/// updates map.maxDisplacement.
+/// @param rounding  per vertex
 /// @param tolerance  larger displacements are defects
 [[nodiscard]] RoundedTets roundTets(const TetTopology& topology, const LocalParameters& parameters,
-                                    const PlainVertices& plain, double tolerance,
+                                    std::span<const Rounding> rounding, double tolerance,
                                     bool measureVolume, Stage& stage, DefectCollector& defects,
                                     ExactMap& map);
 

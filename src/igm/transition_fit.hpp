@@ -1,18 +1,42 @@
-// The transition between two tets that fits the parameters of their common corners best.
+// The transition between two tets that fits the parameters of their common corners best
+// (Section 5.1.1).
 #pragma once
+
+#include <array>
+#include <vector>
 
 #include <adjacency/tet_topology.hpp>
 
 #include <hexhex/types.hpp>
 
-#include <igm/local_parameters.hpp>
+#include <igm/input.hpp>
 #include <lattice/transition.hpp>
 
 namespace hexhex {
 
+/// Two edges of a triangle, in the chart of one tet or the other.
+using VectorPair = std::array<Vec3, 2>;
+
+/// argmin over the rotations R of |images[0] - R vectors[0]|^2 + |images[1] - R vectors[1]|^2, as
+/// far as rounding can tell; the first of several.
+[[nodiscard]] Rotation bestRotation(const VectorPair& vectors, const VectorPair& images) noexcept;
+
+/// The same by comparing all rotations, for tests.
+[[nodiscard]] Rotation bestRotationOfAll(const VectorPair& vectors,
+                                         const VectorPair& images) noexcept;
+
+/// The three corners of an inner triangle in the charts of both its tets.
+struct SharedTriangle {
+  std::array<Vec3, 3> here;
+  std::array<Vec3, 3> there;
+
+  SharedTriangle(const TetTopology& topology, const LocalParameters& parameters,
+                 HalfFace halfFace) noexcept;
+};
+
 /// Whether two tets agree on the parameters of the corners of their common face.
 [[nodiscard]] bool agree(const TetTopology& topology, const LocalParameters& parameters,
-                         HalfFace here, HalfFace there);
+                         HalfFace halfFace) noexcept;
 
 /// A transition, and how well it does.
 struct FittedTransition {
@@ -21,15 +45,15 @@ struct FittedTransition {
   bool isExact = false;  ///< whether it carries the corners over without rounding
 };
 
-/// From the chart of the tet `here` belongs to, to that of its mate: the best rotation, and the
-/// integers nearest to what is left then (Section 5.1.1).
-[[nodiscard]] FittedTransition fitTransition(const TetTopology& topology,
-                                             const LocalParameters& parameters, HalfFace here,
-                                             HalfFace there);
+/// From the chart here to that there: the best rotation, and the integers nearest to what is left
+/// then.
+[[nodiscard]] FittedTransition fitTransition(const SharedTriangle& triangle) noexcept;
 
 /// The same with a rotation that is known.
-[[nodiscard]] FittedTransition fitTransition(const TetTopology& topology,
-                                             const LocalParameters& parameters, HalfFace here,
-                                             HalfFace there, Rotation rotation);
+[[nodiscard]] FittedTransition fitTransition(const SharedTriangle& triangle,
+                                             Rotation rotation) noexcept;
+
+/// With each of the rotations, smallest residual first.
+[[nodiscard]] std::vector<FittedTransition> fitAllTransitions(const SharedTriangle& triangle);
 
 }  // namespace hexhex

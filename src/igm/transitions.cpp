@@ -1,152 +1,144 @@
 #include <algorithm>
 
-#include <base/branchless.hpp>
-#include <igm/plain_vertices.hpp>
 #include <igm/transition_fit.hpp>
 #include <igm/transitions.hpp>
-#include <igm/turn.hpp>
 
 namespace hexhex {
 
 namespace {
 
-/// Triangles between asking for a tet and looking at it: the memory's delay, in steps of a loop.
-constexpr std::size_t kFacesAhead = 4;
-
-Transition inverse(const Transition& transition) {
-  Transition back{inverseOf(transition.rotation), {}};
-  back.translation = turned(back.rotation, transition.translation);
-  for (std::int32_t& component : back.translation) component = -component;
-  return back;
-}
-
-/// What a block of triangles tells besides its transitions.
+/// What fitting transitions to a block of triangles gives.
 struct BlockResult {
+  struct Jump {
+    HalfFace here;  ///< the smaller half-face
+    bool isExact;
+    Transition transition;
+  };
+  std::vector<Jump> jumps;
   std::vector<Transitions::Misfit> misfits;
   double maxResidual = 0;
-  Index beginJump = 0;  ///< place in the table of the first transition
-  Index endJump = 0;    ///< behind the last one
 };
 
 /// Fits transitions to the triangles on which tets do not agree.
 class TransitionFitter {
  public:
-  /// @param result  receives transitions
   TransitionFitter(const TetTopology& topology, const LocalParameters& parameters,
-                   std::span<const std::array<std::int8_t, 4>> rotations, double tolerance,
-                   PlainVertices& plain, Transitions& result)
+                   std::span<const std::array<std::int8_t, 4>> rotations, double tolerance)
       : topology_(topology),
         parameters_(parameters),
         rotations_(rotations),
-        tolerance_(tolerance),
-        plain_(plain),
-        result_(result) {}
+        tolerance_(tolerance) {}
 
-  /// @param index  in the table, of the first transition
-  [[nodiscard]] BlockResult run(std::span<const HalfFace> halfFaces, Index index) const {
+  [[nodiscard]] BlockResult run(std::span<const HalfFace> halfFaces) const {
     BlockResult block;
-    block.beginJump = index;
-    for (std::size_t i = 0; i < halfFaces.size(); ++i) {
-      const HalfFace there = halfFaces[i];
-      const HalfFace here = topology_.mate[there];  // the smaller one
-      const std::size_t ahead = std::min(i + kFacesAhead, halfFaces.size() - 1);
-      parameters_.prefetch(tetOf(topology_.mate[halfFaces[ahead]]));
-      const FittedTransition fitted = fit(here, there);
+    for (const HalfFace there : halfFaces) {
+      const HalfFace here = topology_.mate[there];
+      const FittedTransition fitted = fit(here);
       block.maxResidual = std::max(block.maxResidual, fitted.residual);
       if (fitted.residual > tolerance_) block.misfits.push_back({here, fitted.residual});
-      if (fitted.transition.isIdentity()) continue;  // rough, as it does not fit exactly
-      enter(index, here, fitted.transition, fitted.isExact);
-      enter(index + 1, there, inverse(fitted.transition), fitted.isExact);
-      for (const auto& [halfFace, jump] : {std::pair(here, index), std::pair(there, index + 1)}) {
-        const bool isSure = plain_.sides[tetOf(halfFace)] != kUncertainSides;
-        plain_.passages[halfFace] =
-            Passage::across(result_.table[jump].rotation, allOf(isSure, fitted.isExact));
-        result_.jump[halfFace] = jump;
-      }
-      index += 2;
+      if (fitted.transition.isIdentity()) continue;
+      block.jumps.push_back({here, fitted.isExact, fitted.transition});
     }
-    block.endJump = index;
     return block;
   }
 
  private:
-  [[nodiscard]] FittedTransition fit(HalfFace here, HalfFace there) const {
+  [[nodiscard]] FittedTransition fit(HalfFace here) const {
+    const SharedTriangle triangle(topology_, parameters_, here);
     const int known = rotations_.empty() ? -1 : rotations_[tetOf(here)][here % 4];
     return known >= 0 && known < Rotation::kCount
-               ? fitTransition(topology_, parameters_, here, there, rotationFromAlgoHex(known))
-               : fitTransition(topology_, parameters_, here, there);
-  }
-  void enter(Index index, HalfFace halfFace, const Transition& transition, bool isExact) const {
-    result_.table[index] = transition;
-    result_.halfFaces[index] = halfFace;
-    result_.isExact[index] = isExact ? 1 : 0;
+               ? fitTransition(triangle, rotationFromAlgoHex(known))
+               : fitTransition(triangle);
   }
 
   const TetTopology& topology_;
   const LocalParameters& parameters_;
   std::span<const std::array<std::int8_t, 4>> rotations_;
   double tolerance_;
-  PlainVertices& plain_;
-  Transitions& result_;
 };
 
-/// Makes room for as many transitions and their inverses. The first entry is the identity.
-void makeRoom(Transitions& transitions, std::uint64_t jumps) {
-  transitions.table.resize(1 + 2 * jumps);
-  transitions.halfFaces.resize(1 + 2 * jumps);
-  transitions.isExact.resize(1 + 2 * jumps);
-  transitions.table.front() = {};
-  transitions.halfFaces.front() = kNone;
-  transitions.isExact.front() = 0;
-}
-
-/// Closes the gaps that triangles have left whose transitions are identities.
-void closeGaps(std::span<const BlockResult> blocks, Transitions& transitions) {
-  Index place = 1;
-  for (const BlockResult& block : blocks) {
-    for (Index from = block.beginJump; from < block.endJump; ++from, ++place) {
-      transitions.table[place] = transitions.table[from];
-      transitions.isExact[place] = transitions.isExact[from];
-      const HalfFace halfFace = transitions.halfFaces[from];
-      transitions.halfFaces[place] = halfFace;
-      transitions.jump[halfFace] = place;
-    }
-  }
-  makeRoom(transitions, place / 2);
+void enter(Index index, HalfFace halfFace, const Transition& transition, bool isExact,
+           Transitions& result) {
+  result.jump[halfFace] = index;
+  result.table[index] = transition;
+  result.halfFaces[index] = halfFace;
+  result.isExact[index] = isExact ? 1 : 0;
 }
 
 }  // namespace
 
 Transitions computeTransitions(const TetTopology& topology, const LocalParameters& parameters,
-                               PlainVertices& plain,
+                               const RegularVertices& survey,
                                std::span<const std::array<std::int8_t, 4>> rotations,
                                double tolerance, Stage& stage) {
+  const TransitionFitter fitter(topology, parameters, rotations, tolerance);
+  std::vector<BlockResult> blocks(survey.unequalFaces.size());
+  parallelFor(stage, blocks.size(), 1,
+              [&](std::size_t block) { blocks[block] = fitter.run(survey.unequalFaces[block]); });
   Transitions result;
-  result.innerFaces = plain.innerFaces;
-  result.jump.resize(4 * topology.tetCount());
-  parallelBlocks(stage, topology.tetCount(), PlainVertices::kBlock,
-                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   std::fill(&result.jump[4 * begin], &result.jump[4 * begin] + 4 * (end - begin),
-                             Index{0});
-                 });
-  std::vector<std::uint64_t> first(plain.unequalFaces.size() + 1);
-  for (std::size_t block = 0; block + 1 < first.size(); ++block) {
-    first[block] = plain.unequalFaces[block].size();
-  }
-  const std::uint64_t unequal = exclusiveScan(std::span(first));
-  makeRoom(result, unequal);
-  const TransitionFitter fitter(topology, parameters, rotations, tolerance, plain, result);
-  std::vector<BlockResult> blocks(plain.unequalFaces.size());
-  parallelFor(stage, blocks.size(), 1, [&](std::size_t block) {
-    blocks[block] = fitter.run(plain.unequalFaces[block], static_cast<Index>(1 + 2 * first[block]));
-  });
+  result.innerFaces = survey.innerFaces;
+  std::vector<std::uint64_t> first;
   for (const BlockResult& block : blocks) {
+    first.push_back(result.jumps);
+    result.jumps += block.jumps.size();
     result.maxResidual = std::max(result.maxResidual, block.maxResidual);
     result.misfits.insert(result.misfits.end(), block.misfits.begin(), block.misfits.end());
-    result.jumps += (block.endJump - block.beginJump) / 2;
   }
-  if (result.jumps < unequal) closeGaps(blocks, result);
+  result.jump.resize(4 * topology.tetCount());
+  parallelBlocks(stage, result.jump.size(), 4 * RegularVertices::kBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::fill(&result.jump[begin], &result.jump[begin] + (end - begin), Index{0});
+                 });
+  result.table.resize(1 + 2 * result.jumps);
+  result.halfFaces.resize(result.table.size());
+  result.isExact.resize(result.table.size());
+  result.table.front() = {};
+  result.halfFaces.front() = kNone;
+  result.isExact.front() = 0;
+  parallelFor(stage, blocks.size(), 1, [&](std::size_t block) {
+    auto index = static_cast<Index>(1 + 2 * first[block]);
+    for (const BlockResult::Jump& jump : blocks[block].jumps) {
+      enter(index++, jump.here, jump.transition, jump.isExact, result);
+      enter(index++, topology.mate[jump.here], jump.transition.inverse(), jump.isExact, result);
+    }
+  });
   return result;
+}
+
+Array<HalfFaceCrossing> findCrossings(const TetTopology& topology, const RegularVertices& survey,
+                                      const Transitions& transitions, Stage& stage) {
+  Array<HalfFaceCrossing> crossings(topology.mate.size());
+  const auto isCertain = [&](HalfFace h) { return survey.sides[tetOf(h)] != kUncertainSides; };
+  parallelBlocks(stage, topology.tetCount(), RegularVertices::kBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   std::fill(&crossings[4 * begin], &crossings[4 * begin] + 4 * (end - begin),
+                             HalfFaceCrossing());
+                   for (auto t = static_cast<Index>(begin); t < end; ++t) {
+                     if (survey.sides[t] != kUncertainSides) continue;
+                     for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+                       crossings[h] = HalfFaceCrossing::inner(Rotation(), false);
+                     }
+                   }
+                   for (const RegularVertices::BoundaryFace& face : survey.boundaryFaces[block]) {
+                     const bool isConstant = face.constantAxes == 1U << face.axis;
+                     crossings[face.halfFace] = HalfFaceCrossing::boundary(
+                         face.axis, isConstant && isCertain(face.halfFace));
+                   }
+                 });
+  parallelFor(stage, survey.unequalFaces.size(), 1, [&](std::size_t block) {
+    for (const HalfFace halfFace : survey.unequalFaces[block]) {
+      for (const HalfFace h : {halfFace, topology.mate[halfFace]}) {
+        if (transitions.jump.empty()) {
+          crossings[h] = HalfFaceCrossing::inner(Rotation(), false);
+          continue;
+        }
+        const Index jump = transitions.jump[h];
+        crossings[h] = HalfFaceCrossing::inner(transitions.table[jump].rotation,
+                                               transitions.isExact[jump] != 0 && isCertain(h));
+      }
+    }
+  });
+  return crossings;
 }
 
 void collectMisfits(const Transitions& transitions, DefectCollector& defects) {

@@ -1,14 +1,16 @@
 // How the charts of neighbouring tets differ (Section 5.1.1).
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <adjacency/tet_topology.hpp>
 
 #include <hexhex/types.hpp>
 
-#include <igm/local_parameters.hpp>
-#include <igm/plain_vertices.hpp>
+#include <igm/half_face_crossing.hpp>
+#include <igm/input.hpp>
+#include <igm/regular_vertices.hpp>
 #include <lattice/transition.hpp>
 
 namespace hexhex {
@@ -45,14 +47,21 @@ struct Transitions {
   [[nodiscard]] bool isJump(HalfFace halfFace) const noexcept { return jump[halfFace] != 0; }
 };
 
-/// @param plain  knows where tets differ; gets to know how these faces are passed
+/// @param survey  knows where tets differ
 /// @param rotations  what the caller knows, as in TetMapView; may be empty
 /// @param tolerance  residuals above it make misfits
 [[nodiscard]] Transitions computeTransitions(const TetTopology& topology,
                                              const LocalParameters& parameters,
-                                             PlainVertices& plain,
+                                             const RegularVertices& survey,
                                              std::span<const std::array<std::int8_t, 4>> rotations,
                                              double tolerance, Stage& stage);
+
+/// Per half-face. Inexact are all of a tet with uncertain sides, and where tets do not agree unless
+/// a transition fits exactly.
+/// @param transitions  may be empty: if parameters are too large, they are not known
+[[nodiscard]] Array<HalfFaceCrossing> findCrossings(const TetTopology& topology,
+                                                    const RegularVertices& survey,
+                                                    const Transitions& transitions, Stage& stage);
 
 /// Reports misfits. Not done at once, as nothing is worth saying about them if the mesh is not a
 /// manifold.

@@ -8,9 +8,8 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <igm/gauges.hpp>
-#include <igm/local_parameters.hpp>
+#include <igm/input.hpp>
 #include <igm/transition_fit.hpp>
-#include <igm/turn.hpp>
 #include <igm/unfold_charts.hpp>
 
 namespace hexhex {
@@ -43,8 +42,7 @@ class ChartChanger {
 
  private:
   static TetParameters turnedTet(Rotation rotation, const TetParameters& u) {
-    return {turned(rotation, u[0]), turned(rotation, u[1]), turned(rotation, u[2]),
-            turned(rotation, u[3])};
+    return {rotation(u[0]), rotation(u[1]), rotation(u[2]), rotation(u[3])};
   }
 
   /// As LocalParameters would move the chart.
@@ -121,8 +119,8 @@ bool needsUnfolding(const TetTopology& topology, const OrientedMap& map) {
       const HalfFace there = topology.mate[here];
       if (there == kNone) continue;
       ++faces;
-      if (agree(topology, given, here, there)) continue;
-      const FittedTransition fitted = fitTransition(topology, given, here, there);
+      if (agree(topology, given, here)) continue;
+      const FittedTransition fitted = fitTransition(SharedTriangle(topology, given, here));
       jumps += fitted.isExact && !fitted.transition.isIdentity() ? 1 : 0;
     }
   }

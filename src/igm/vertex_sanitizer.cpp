@@ -10,17 +10,6 @@ namespace hexhex {
 
 namespace {
 
-constexpr unsigned kAllAxes = 7;
-
-/// The axes that a rotation sends to these.
-unsigned rotatedBack(unsigned axes, Rotation rotation) {
-  unsigned preimage = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    preimage |= ((axes >> axisOf(rotation(direction(axis, 1)))) & 1U) << axis;
-  }
-  return preimage;
-}
-
 /// Far more than in any star whose transitions do not contradict each other, and far less than what
 /// another transition could make an overflow.
 bool outOfRange(const LatticePoint& value) {
@@ -47,9 +36,8 @@ void VertexSanitizer::run(Index v, std::span<const VertexStar::Member> star, uns
 }
 
 /// All constraints of the star, in the chart of its first member, the representative.
-VertexSanitizer::AxisSet VertexSanitizer::fixedAxes(Index v,
-                                                    std::span<const VertexStar::Member> star,
-                                                    AxisSet planes) const {
+AxisSet VertexSanitizer::fixedAxes(Index v, std::span<const VertexStar::Member> star,
+                                   AxisSet planes) const {
   if (singularities_.isNode(v)) return kAllAxes;
   AxisSet fixed = planes;
   for (const Index e : singularities_.at(v)) {
@@ -58,7 +46,7 @@ VertexSanitizer::AxisSet VertexSanitizer::fixedAxes(Index v,
     const auto member =
         std::find_if(star.begin(), star.end(),
                      [&edge](const VertexStar::Member& m) { return m.tet() == edge.tet; });
-    fixed |= rotatedBack(across, member->rotation);
+    fixed |= imageOf(across, member->rotation.inverse());
   }
   return fixed;
 }

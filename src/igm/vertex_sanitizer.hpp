@@ -9,7 +9,7 @@
 
 namespace hexhex {
 
-/// Makes the corners of one special vertex after the other what its star demands, in map.corners.
+/// Makes the corners of one irregular vertex after the other what its star demands, in map.corners.
 class VertexSanitizer {
  public:
   /// @param defects  gets vertices that move by more than the tolerance, and those whose stars do
@@ -31,9 +31,6 @@ class VertexSanitizer {
   [[nodiscard]] double maxDisplacement() const noexcept { return maxDisplacement_; }
 
  private:
-  /// A set of coordinate axes: bit k for axis k.
-  using AxisSet = unsigned;
-
   [[nodiscard]] AxisSet fixedAxes(Index v, std::span<const VertexStar::Member> star,
                                   AxisSet planes) const;
   [[nodiscard]] LatticePoint snapped(CornerIndex corner, AxisSet fixed) const;

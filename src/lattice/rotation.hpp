@@ -69,6 +69,37 @@ constexpr RotationTables makeRotationTables() {
 
 inline constexpr RotationTables kRotationTables = makeRotationTables();
 
+/// By rotation and axis: the axis that is sent to it or its opposite, and 1 or -1.
+struct AxisSources {
+  std::array<std::array<std::uint8_t, 3>, Rotation::kCount> axis{};
+  std::array<std::array<std::int8_t, 3>, Rotation::kCount> sign{};
+};
+
+inline constexpr AxisSources kAxisSources = [] {
+  AxisSources sources;
+  for (std::size_t r = 0; r < Rotation::kCount; ++r) {
+    for (std::uint8_t from = 0; from < 3; ++from) {
+      const Direction to = kRotationTables.image[r][2U * from];
+      sources.axis[r][static_cast<std::size_t>(axisOf(to))] = from;
+      sources.sign[r][static_cast<std::size_t>(axisOf(to))] = static_cast<std::int8_t>(signOf(to));
+    }
+  }
+  return sources;
+}();
+
+inline constexpr std::array<std::array<std::uint8_t, Rotation::kCount>, Rotation::kCount>
+    kProducts = [] {
+      std::array<std::array<std::uint8_t, Rotation::kCount>, Rotation::kCount> products{};
+      for (std::size_t a = 0; a < Rotation::kCount; ++a) {
+        for (std::size_t b = 0; b < Rotation::kCount; ++b) {
+          const auto& inner = kRotationTables.image[b];
+          const auto& outer = kRotationTables.image[a];
+          products[a][b] = kRotationTables.byAxes[outer[inner[0]]][outer[inner[2]]];
+        }
+      }
+      return products;
+    }();
+
 }  // namespace detail
 
 constexpr Rotation Rotation::fromAxes(Direction x, Direction y) {
@@ -82,20 +113,49 @@ constexpr Direction Rotation::operator()(Direction d) const noexcept {
 template <class Number>
 constexpr std::array<Number, 3> Rotation::operator()(
     const std::array<Number, 3>& v) const noexcept {
+  const auto& axis = detail::kAxisSources.axis[index_];
+  const auto& sign = detail::kAxisSources.sign[index_];
   std::array<Number, 3> rotated{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Direction d = detail::kRotationTables.image[index_][2 * axis];
-    rotated[static_cast<std::size_t>(axisOf(d))] = signOf(d) < 0 ? -v[axis] : v[axis];
+  for (std::size_t k = 0; k < 3; ++k) {
+    rotated[k] = static_cast<Number>(static_cast<Number>(sign[k]) * v[axis[k]]);
   }
   return rotated;
 }
 
 constexpr Rotation operator*(Rotation a, Rotation b) noexcept {
-  return Rotation::fromAxes(a(b(Direction{0})), a(b(Direction{2})));
+  return Rotation(detail::kProducts[a.index_][b.index_]);
 }
 
 constexpr Rotation Rotation::inverse() const noexcept {
   return Rotation(detail::kRotationTables.inverse[index_]);
+}
+
+/// A set of coordinate axes: bit k for axis k.
+using AxisSet = unsigned;
+
+inline constexpr AxisSet kAllAxes = 7;
+
+namespace detail {
+
+inline constexpr auto kAxisImages = [] {
+  std::array<std::array<std::uint8_t, kAllAxes + 1>, Rotation::kCount> images{};
+  for (int r = 0; r < Rotation::kCount; ++r) {
+    for (AxisSet axes = 0; axes <= kAllAxes; ++axes) {
+      unsigned image = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        image |= ((axes >> axis) & 1U) << axisOf(Rotation(r)(direction(axis, 1)));
+      }
+      images[static_cast<std::size_t>(r)][axes] = static_cast<std::uint8_t>(image);
+    }
+  }
+  return images;
+}();
+
+}  // namespace detail
+
+/// Where a rotation sends axes.
+[[nodiscard]] constexpr AxisSet imageOf(AxisSet axes, Rotation rotation) noexcept {
+  return detail::kAxisImages[static_cast<std::size_t>(rotation.index())][axes];
 }
 
 /// The parameter rotation across a half-face that AlgoHex stores as index 0..23 in its property

@@ -7,7 +7,7 @@
 
 #include <base/parallel.hpp>
 #include <igm/exact_map.hpp>
-#include <igm/local_parameters.hpp>
+#include <igm/input.hpp>
 
 namespace hexhex {
 

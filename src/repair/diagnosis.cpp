@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <igm/transition_fit.hpp>
 #include <repair/bad_tets.hpp>
 #include <repair/diagnosis.hpp>
-#include <repair/face_fit.hpp>
 #include <repair/valid_tets.hpp>
 
 namespace hexhex {
@@ -81,7 +81,7 @@ class Examiner {
       // A triangle's own corners tell whether it fits, even where its tets are flipped. The nearest
       // rotation need not be the one that fits best with an integer translation.
       const double residual =
-          fitAllTransitions(facingTriangles(topology, parameters_, misfit.halfFace))
+          fitAllTransitions(SharedTriangle(topology, parameters_, misfit.halfFace))
               .front()
               .residual;
       if (residual <= tolerance_) continue;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <igm/defects.hpp>
-#include <igm/local_parameters.hpp>
+#include <igm/input.hpp>
 #include <igm/prepare.hpp>
 
 namespace hexhex {

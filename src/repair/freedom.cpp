@@ -46,24 +46,14 @@ AxisSet boundaryAxes(const std::vector<VertexStar::Member>& star, const PatchCha
   for (std::size_t i = 0; i < star.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (star[i].neighbour[k] != kNone) continue;
-      fixed |= rotatedBack(1U << charts.boundaryAxis(star[i].halfFace(k)),
-                           vertex.corners[i].fromFirst.rotation);
+      fixed |= imageOf(1U << charts.boundaryAxis(star[i].halfFace(k)),
+                       vertex.corners[i].fromFirst.rotation.inverse());
     }
   }
   return fixed;
 }
 
 }  // namespace
-
-AxisSet rotatedBack(AxisSet axes, Rotation rotation) {
-  AxisSet preimage = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    preimage |= ((axes >> axisOf(rotation(direction(axis, 1)))) & 1U) << axis;
-  }
-  return preimage;
-}
-
-AxisSet rotated(AxisSet axes, Rotation rotation) { return rotatedBack(axes, rotation.inverse()); }
 
 std::vector<PatchVertex> findFreedom(const LocalParameters& parameters, const Patch& patch,
                                      const PatchCharts& charts) {
@@ -83,7 +73,7 @@ std::vector<PatchVertex> findFreedom(const LocalParameters& parameters, const Pa
     const auto copy =
         std::find_if(vertex.corners.begin(), vertex.corners.end(),
                      [&](const PatchVertex::Copy& c) { return tetOf(c.corner) == edge.tet; });
-    vertex.fixed |= rotatedBack(kAllAxes & ~(1U << edge.axis), copy->fromFirst.rotation);
+    vertex.fixed |= imageOf(kAllAxes & ~(1U << edge.axis), copy->fromFirst.rotation.inverse());
   });
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     PatchVertex& vertex = vertices[i];

@@ -29,9 +29,4 @@ struct PatchVertex {
 [[nodiscard]] std::vector<PatchVertex> findFreedom(const LocalParameters& parameters,
                                                    const Patch& patch, const PatchCharts& charts);
 
-/// The axes that a rotation sends to these.
-[[nodiscard]] AxisSet rotatedBack(AxisSet axes, Rotation rotation);
-/// The axes to which a rotation sends these.
-[[nodiscard]] AxisSet rotated(AxisSet axes, Rotation rotation);
-
 }  // namespace hexhex

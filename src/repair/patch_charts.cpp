@@ -111,8 +111,8 @@ void PatchCharts::findCandidates() {
       face.axes = planesOf(face.halfFace);
     } else {
       const double limit = std::max(fitLimit_, 2 * fits[f].front().residual);
-      for (const auto& [residual, transition] : fits[f]) {
-        if (residual <= limit) face.candidates.push_back(transition);
+      for (const FittedTransition& fit : fits[f]) {
+        if (fit.residual <= limit) face.candidates.push_back(fit.transition);
       }
     }
     if (face.choices() > 1) ambiguous_.push_back(static_cast<std::uint32_t>(f));
@@ -121,12 +121,12 @@ void PatchCharts::findCandidates() {
 
 /// All rotations, or the one that the caller knows.
 std::vector<FittedTransition> PatchCharts::fitsOf(HalfFace halfFace) const {
-  const FacingTriangles triangles = facingTriangles(topology_, parameters_, halfFace);
+  const SharedTriangle triangle(topology_, parameters_, halfFace);
   const int known = map_.rotations.empty() ? -1 : map_.rotations[tetOf(halfFace)][halfFace % 4];
   if (known >= 0 && known < Rotation::kCount) {
-    return {fitTransition(triangles, rotationFromAlgoHex(known))};
+    return {fitTransition(triangle, rotationFromAlgoHex(known))};
   }
-  return fitAllTransitions(triangles);
+  return fitAllTransitions(triangle);
 }
 
 /// The axes across which a boundary triangle may lie: one, unless it is flat.

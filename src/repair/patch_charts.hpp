@@ -18,16 +18,12 @@
 
 #include <hexhex/types.hpp>
 
-#include <igm/local_parameters.hpp>
+#include <igm/input.hpp>
+#include <igm/transition_fit.hpp>
 #include <lattice/transition.hpp>
-#include <repair/face_fit.hpp>
 #include <repair/patch.hpp>
 
 namespace hexhex {
-
-/// A set of coordinate axes: bit k for axis k.
-using AxisSet = unsigned;
-inline constexpr AxisSet kAllAxes = 7;
 
 /// What a repair knows about one edge of a patch.
 struct PatchEdge {

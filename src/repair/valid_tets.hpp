@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <igm/local_parameters.hpp>
+#include <igm/input.hpp>
 #include <igm/prepare.hpp>
 
 namespace hexhex {

@@ -5,7 +5,7 @@
 
 #include <adjacency/tet_topology.hpp>
 
-#include <igm/local_parameters.hpp>
+#include <igm/input.hpp>
 
 namespace hexhex {
 

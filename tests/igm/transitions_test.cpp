@@ -9,7 +9,7 @@
 #include <hexhex/check.hpp>
 
 #include <base/vector3.hpp>
-#include <igm/best_rotation.hpp>
+#include <igm/transition_fit.hpp>
 #include <igm/transitions.hpp>
 
 #include "map_samples.hpp"

@@ -35,7 +35,7 @@ struct Unfolded : test::Topology {
     std::size_t count = 0;
     for (HalfFace h = 0; h < topology.mate.size(); ++h) {
       const HalfFace mate = topology.mate[h];
-      if (mate != kNone && h < mate && !agree(topology, parameters, h, mate)) ++count;
+      if (mate != kNone && h < mate && !agree(topology, parameters, h)) ++count;
     }
     return count;
   }

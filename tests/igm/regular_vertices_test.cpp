@@ -1,7 +1,9 @@
-// Plain vertices: what is concluded without a look at their stars, against a look at their stars.
+// Regular vertices: what is concluded without a look at their stars, against a look at their stars.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <rapidcheck.h>
 #include <vector>
 
@@ -9,7 +11,7 @@
 
 #include <base/vector3.hpp>
 #include <igm/exact_map.hpp>
-#include <igm/plain_vertices.hpp>
+#include <igm/regular_vertices.hpp>
 
 #include "map_samples.hpp"
 
@@ -18,14 +20,45 @@ namespace {
 
 using test::Prepared;
 
-/// The preprocessing of a valid map up to its plain vertices.
+/// The preprocessing of a valid map up to its regular vertices.
 struct Survey : test::Topology {
   LocalParameters parameters;
-  PlainVertices plain;
+  RegularVertices regular;
 
   explicit Survey(const TetMapView& map)
-      : Topology(map), parameters(input), plain(findPlainVertices(topology, parameters, stage)) {
+      : Topology(map),
+        parameters(input),
+        regular(findRegularVertices(topology, parameters, stage)) {
     addStars(topology, stage);
+  }
+};
+
+/// What follows from the stars of irregular vertices.
+struct Stars {
+  Transitions transitions;
+  Array<HalfFaceCrossing> crossings;
+  VertexKinds vertices;
+
+  /// @param noneIsFlat  declares all crossings inexact
+  explicit Stars(Survey& survey, bool noneIsFlat = false)
+      : transitions(computeTransitions(survey.topology, survey.parameters, survey.regular, {}, 0.1,
+                                       survey.stage)),
+        crossings(findCrossings(survey.topology, survey.regular, transitions, survey.stage)) {
+    if (noneIsFlat) {
+      for (HalfFaceCrossing& crossing : crossings) {
+        crossing = crossing.isBoundary()
+                       ? HalfFaceCrossing::boundary(
+                             static_cast<std::size_t>(std::countr_zero(crossing.plane())), false)
+                       : HalfFaceCrossing::inner(crossing.rotation(), false);
+      }
+    }
+    vertices = classifyVertices(survey.topology, survey.parameters, survey.regular, crossings, {},
+                                survey.stage);
+  }
+
+  [[nodiscard]] std::optional<Singularities> singularities(Survey& survey) const {
+    return computeSingularities(survey.topology, survey.parameters, survey.regular, crossings,
+                                vertices, {}, survey.stage);
   }
 };
 
@@ -47,13 +80,13 @@ double rightAngles(const TetMapView& map, std::span<const EdgeCorner> fan) {
   return sum / (std::numbers::pi / 2);
 }
 
-/// Everything that being plain promises about edges.
+/// Everything that being regular promises about edges.
 std::size_t expectRegularEdges(const Survey& survey) {
   std::vector<EdgeCorner> scratch;
   std::size_t edges = 0;
   for (Index v = 0; v < survey.topology.pointCount; ++v) {
     forEachEdge(survey.topology, v, scratch, [&](Index w, std::span<const EdgeCorner> fan) {
-      if (survey.plain.special[v] != 0 && survey.plain.special[w] != 0) return;
+      if (survey.regular.isIrregular[v] != 0 && survey.regular.isIrregular[w] != 0) return;
       const double regular = boundaryFacesAt(survey.topology, fan) > 0 ? 2 : 4;
       EXPECT_NEAR(rightAngles(survey.input.view, fan), regular, 1e-6);
       ++edges;
@@ -62,9 +95,9 @@ std::size_t expectRegularEdges(const Survey& survey) {
   return edges;
 }
 
-class PlainVerticesOfKind : public test::EveryKind {};
+class RegularVerticesOfKind : public test::EveryKind {};
 
-TEST_P(PlainVerticesOfKind, HaveRegularEdgesOnly) {
+TEST_P(RegularVerticesOfKind, HaveRegularEdgesOnly) {
   for (const ChartStyle charts : test::kChartStyles) {
     const TetMap map =
         generateSample(kind(), {.cells = 7, .refine = 3, .charts = charts, .jitter = 0.6}).map;
@@ -77,13 +110,13 @@ TEST_P(PlainVerticesOfKind, HaveRegularEdgesOnly) {
   }
 }
 
-TEST_P(PlainVerticesOfKind, AreNeitherSingularNorBetweenPlanesNorAtJumps) {
+TEST_P(RegularVerticesOfKind, AreNeitherSingularNorBetweenPlanesNorAtJumps) {
   for (const ChartStyle charts : test::kChartStyles) {
     const TetMap map = generateSample(kind(), {.refine = 3, .charts = charts, .jitter = 0.6}).map;
     const Survey survey(map);
     const Prepared prepared(map);
     for (Index v = 0; v < map.points.size(); ++v) {
-      if (survey.plain.special[v] != 0) continue;
+      if (survey.regular.isIrregular[v] != 0) continue;
       EXPECT_EQ(prepared.singularities().degree(v), 0);
       bool boundary = false;
       for (const CornerIndex corner : prepared.topology().star(v)) {
@@ -94,7 +127,7 @@ TEST_P(PlainVerticesOfKind, AreNeitherSingularNorBetweenPlanesNorAtJumps) {
           EXPECT_FALSE(prepared.transitions().isJump(halfFace));
         }
       }
-      EXPECT_EQ(survey.plain.plane[v] != 0, boundary);
+      EXPECT_EQ(survey.regular.plane[v] != 0, boundary);
     }
   }
 }
@@ -110,33 +143,28 @@ void forEachChartStyle(SampleKind kind, const F& f) {
   }
 }
 
-/// Plain vertices take another path through sanitization: with all vertices declared special, the
-/// result must be the same, bit for bit.
-TEST_P(PlainVerticesOfKind, AreSanitizedAsTheirStarsAre) {
+/// Regular vertices take another path through sanitization: with all vertices declared irregular,
+/// the result must be the same, bit for bit.
+TEST_P(RegularVerticesOfKind, AreSanitizedAsTheirStarsAre) {
   forEachChartStyle(kind(), [](const TetMap& map, ChartStyle charts, double noise) {
-    const auto sanitized = [&](bool allSpecial) {
+    const auto sanitized = [&](bool allIrregular) {
       Survey survey(map);
-      if (allSpecial) {
-        for (std::uint8_t& special : survey.plain.special) special = 1;
+      if (allIrregular) {
+        for (std::uint8_t& isIrregular : survey.regular.isIrregular) isIrregular = 1;
       }
-      Transitions transitions = computeTransitions(survey.topology, survey.parameters, survey.plain,
-                                                   {}, 0.1, survey.stage);
-      EXPECT_TRUE(transitions.misfits.empty());
-      std::vector<StarBlock> stars;
-      collectStars(survey.topology, survey.parameters, survey.plain, {},
-                   allSpecial ? nullptr : &transitions, stars, survey.stage);
-      const bool flat = std::ranges::count(survey.plain.special, PlainVertices::kFlat) > 0;
-      if (allSpecial || noise > 0) {
+      Stars stars(survey, allIrregular);
+      EXPECT_TRUE(stars.transitions.misfits.empty());
+      const bool flat = std::ranges::count(stars.vertices.kind, VertexKind::Flat) > 0;
+      if (allIrregular || noise > 0) {
         EXPECT_FALSE(flat);
       }
-      if (!allSpecial && noise == 0 && charts != ChartStyle::Aligned) {
+      if (!allIrregular && noise == 0 && charts != ChartStyle::Aligned) {
         EXPECT_TRUE(flat);
       }
-      const auto singularities = computeSingularities(survey.topology, survey.parameters,
-                                                      survey.plain, {}, stars, survey.stage);
+      const auto singularities = stars.singularities(survey);
       ExactMap exact =
-          sanitize(survey.topology, survey.parameters, std::move(transitions), survey.plain, stars,
-                   singularities.value(), 0.1, 1, survey.stage, survey.defects);
+          sanitize(survey.topology, survey.parameters, std::move(stars.transitions), survey.regular,
+                   stars.vertices, singularities.value(), 0.1, 1, survey.stage, survey.defects);
       EXPECT_TRUE(survey.defects.empty());
       return std::pair(std::move(exact), singularities->edges.size());
     };
@@ -148,7 +176,7 @@ TEST_P(PlainVerticesOfKind, AreSanitizedAsTheirStarsAre) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, PlainVerticesOfKind, testing::ValuesIn(sampleKinds()),
+INSTANTIATE_TEST_SUITE_P(Kinds, RegularVerticesOfKind, testing::ValuesIn(sampleKinds()),
                          test::kindTestName);
 
 /// A fan of tets around an edge along the third axis, closed after `turns` turns in one chart: a
@@ -174,19 +202,13 @@ TetMap windingFan(int turns, double angle) {
   return map;
 }
 
-TEST(PlainVertices, TurnsInOneChartAreCounted) {
+TEST(RegularVertices, TurnsInOneChartAreCounted) {
   for (const int turns : {1, 2, 3}) {
     for (const double angle : {0.0, 0.1, 1.0, 3.0}) {
       const TetMap map = windingFan(turns, angle);
       Survey survey(map);
       ASSERT_TRUE(survey.defects.empty());
-      const Transitions transitions = computeTransitions(survey.topology, survey.parameters,
-                                                         survey.plain, {}, 0.1, survey.stage);
-      std::vector<StarBlock> stars;
-      collectStars(survey.topology, survey.parameters, survey.plain, {}, &transitions, stars,
-                   survey.stage);
-      const auto singularities = computeSingularities(survey.topology, survey.parameters,
-                                                      survey.plain, {}, stars, survey.stage);
+      const auto singularities = Stars(survey).singularities(survey);
       ASSERT_TRUE(singularities.has_value());
       int valence = 4;
       for (const SingularEdge& edge : singularities->edges) {
@@ -200,18 +222,14 @@ TEST(PlainVertices, TurnsInOneChartAreCounted) {
   }
 }
 
-/// Which vertices have stars that are flat, but not plain.
+/// Which vertices have stars that are flat, but not regular.
 std::vector<Index> flatVertices(const TetMap& map) {
   Survey survey(map);
   EXPECT_TRUE(survey.defects.empty());
-  const Transitions transitions =
-      computeTransitions(survey.topology, survey.parameters, survey.plain, {}, 0.1, survey.stage);
-  std::vector<StarBlock> stars;
-  collectStars(survey.topology, survey.parameters, survey.plain, {}, &transitions, stars,
-               survey.stage);
+  const Stars stars(survey);
   std::vector<Index> flat;
   for (Index v = 0; v < map.points.size(); ++v) {
-    if (survey.plain.special[v] == PlainVertices::kFlat) flat.push_back(v);
+    if (stars.vertices.kind[v] == VertexKind::Flat) flat.push_back(v);
   }
   return flat;
 }
@@ -267,28 +285,28 @@ TetMap partOf(const TetMap& map, const Keep& keep) {
   return part;
 }
 
-bool isPlain(const TetMap& map, Index vertex) {
+bool isRegular(const TetMap& map, Index vertex) {
   const Survey survey(map);
   EXPECT_TRUE(survey.defects.empty());
-  return survey.plain.special[vertex] == 0;
+  return survey.regular.isIrregular[vertex] == 0;
 }
 
-TEST(PlainVertices, OfTheBoundaryAreOnOneSideOfOnePlane) {
+TEST(RegularVertices, OfTheBoundaryAreOnOneSideOfOnePlane) {
   const TetMap cube = centredCube();
   for (std::size_t k = 0; k < 3; ++k) {
     for (const double side : {-1.0, 1.0}) {
-      EXPECT_TRUE(isPlain(partOf(cube, [&](const Vec3& u) { return side * u[k] > 0; }), 0));
+      EXPECT_TRUE(isRegular(partOf(cube, [&](const Vec3& u) { return side * u[k] > 0; }), 0));
       for (const double other : {-1.0, 1.0}) {
         const std::size_t l = (k + 1) % 3;
         const auto isIn = [&](const Vec3& u) { return side * u[k] > 0 && other * u[l] > 0; };
-        EXPECT_FALSE(isPlain(partOf(cube, isIn), 0));
-        EXPECT_FALSE(isPlain(partOf(cube, [&](const Vec3& u) { return !isIn(u); }), 0));
+        EXPECT_FALSE(isRegular(partOf(cube, isIn), 0));
+        EXPECT_FALSE(isRegular(partOf(cube, [&](const Vec3& u) { return !isIn(u); }), 0));
       }
     }
   }
 }
 
-TEST(PlainVertices, AreNotWhereASlitEnds) {
+TEST(RegularVertices, AreNotWhereASlitEnds) {
   // Cut open along half a plane, the star is on both sides of it.
   for (std::size_t k = 0; k < 3; ++k) {
     for (const double side : {-1.0, 1.0}) {
@@ -302,7 +320,7 @@ TEST(PlainVertices, AreNotWhereASlitEnds) {
           if (map.points[v][k] == 0 && side * map.points[v][l] > 0) v += pointsBefore;
         }
       }
-      EXPECT_FALSE(isPlain(map, 0));
+      EXPECT_FALSE(isRegular(map, 0));
     }
   }
 }
@@ -313,10 +331,10 @@ void changeChart(TetParameters& parameters, double translation) {
 }
 
 TEST(FlatStars, AreThoseOfExactTransitionsWithoutHolonomy) {
-  const TetMap plain = centredCube();
-  EXPECT_EQ(std::ranges::count(flatVertices(plain), 0U), 0);  // but plain
+  const TetMap regular = centredCube();
+  EXPECT_EQ(std::ranges::count(flatVertices(regular), 0U), 0);  // but regular
 
-  TetMap flat = plain;
+  TetMap flat = regular;
   for (const std::size_t t : {3U, 8U, 20U, 21U}) changeChart(flat.parameters[t], 3);
   EXPECT_EQ(std::ranges::count(flatVertices(flat), 0U), 1);
 
@@ -366,7 +384,7 @@ TEST(TetSides, ConesOfACornerCoverADirectionOnce) {
     const bool degenerate = test::determinant(u) == 0;
     for (const unsigned mirror : {0U, 1U, 2U, 4U}) {
       const std::size_t axis = mirror / 2;
-      const TetSides sides = mirror == 0 ? computeSides(u) : computeMirroredSides(u, axis);
+      const TetSides sides = sidesOf(u, kRays[0][mirror == 0 ? kNoReflection : axis]);
       RC_ASSERT((sides == kUncertainSides) == degenerate);
       if (degenerate) continue;
       RC_ASSERT(sides > 0 && sides < 15);
@@ -379,7 +397,7 @@ TEST(TetSides, ConesOfACornerCoverADirectionOnce) {
       }
       if (mirror == 0) continue;
       std::swap(mirrored[2], mirrored[3]);
-      const TetSides swapped = computeSides(mirrored);
+      const TetSides swapped = sidesOf(mirrored);
       RC_ASSERT((sides & 3) == (swapped & 3));
       RC_ASSERT(((sides >> 2) & 1) == ((swapped >> 3) & 1));
       RC_ASSERT(((sides >> 3) & 1) == ((swapped >> 2) & 1));
@@ -390,11 +408,11 @@ TEST(TetSides, ConesOfACornerCoverADirectionOnce) {
 
 TEST(TetSides, NegativeTetsAreUncertain) {
   TetParameters u = {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-  EXPECT_NE(computeSides(u), kUncertainSides);
+  EXPECT_NE(sidesOf(u), kUncertainSides);
   std::swap(u[0], u[1]);
-  EXPECT_EQ(computeSides(u), kUncertainSides);
+  EXPECT_EQ(sidesOf(u), kUncertainSides);
   u.fill({1, 2, 3});
-  EXPECT_EQ(computeSides(u), kUncertainSides);
+  EXPECT_EQ(sidesOf(u), kUncertainSides);
 }
 
 }  // namespace

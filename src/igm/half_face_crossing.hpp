@@ -1,0 +1,61 @@
+// What a walk through the charts of tets meets at a half-face.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <hexhex/types.hpp>
+
+#include <lattice/rotation.hpp>
+
+namespace hexhex {
+
+/// Either the rotation into the neighbour's chart (the translation follows from the parameters), or
+/// the boundary, across an axis. A byte, so that all of them fit a cache.
+class HalfFaceCrossing {
+ public:
+  /// To a neighbour that agrees on the parameters of the common corners.
+  constexpr HalfFaceCrossing() = default;
+
+  /// @param isExact  whether a transition carries the parameters over without rounding
+  [[nodiscard]] static constexpr HalfFaceCrossing inner(Rotation rotation, bool isExact) noexcept {
+    return {static_cast<unsigned>(rotation.index()), isExact};
+  }
+  /// @param axis  along which the triangle is constant, or nearly so
+  [[nodiscard]] static constexpr HalfFaceCrossing boundary(std::size_t axis,
+                                                           bool isConstant) noexcept {
+    return {static_cast<unsigned>(kFirstBoundary + axis), isConstant};
+  }
+
+  /// Whether anything about it is rounded, or may be.
+  [[nodiscard]] constexpr bool isInexact() const noexcept { return (code_ & kInexact) != 0; }
+  /// Whether it leads to a neighbour in the same chart.
+  [[nodiscard]] constexpr bool isTrivial() const noexcept { return code_ == 0; }
+  [[nodiscard]] constexpr bool isBoundary() const noexcept {
+    return code_ % kInexact >= kFirstBoundary;
+  }
+
+  /// Into the neighbour's chart; the identity at the boundary.
+  [[nodiscard]] constexpr Rotation rotation() const noexcept {
+    const unsigned kind = code_ % kInexact;
+    return Rotation(static_cast<int>(kind < kFirstBoundary ? kind : 0));
+  }
+  /// The axis across a boundary half-face; none of an inner one.
+  [[nodiscard]] constexpr AxisSet plane() const noexcept {
+    return (1U << code_ % kInexact) >> kFirstBoundary;
+  }
+
+ private:
+  static constexpr unsigned kFirstBoundary = Rotation::kCount;
+  static constexpr unsigned kInexact = 32;
+
+  constexpr HalfFaceCrossing(unsigned kind, bool isExact)
+      : code_(static_cast<std::uint8_t>(kind | (isExact ? 0 : kInexact))) {}
+
+  std::uint8_t code_ = 0;
+};
+
+template <>
+inline constexpr bool kLeftUninitialized<HalfFaceCrossing> = true;
+
+}  // namespace hexhex

@@ -1,0 +1,174 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <base/bits.hpp>
+#include <base/workspaces.hpp>
+#include <igm/irregular_vertices.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// Most vertices are regular, and the star of another one takes long.
+constexpr std::size_t kGrain = 128;
+
+/// Whether a coordinate is halfway between two integers. The plane across its axis to snap to then
+/// depends on the chart.
+bool isBetweenIntegers(double x) { return std::abs(x - std::nearbyint(x)) == 0.5; }
+
+/// Whether the edges from a corner of a tet go far enough into an octant that a ray in it can lead
+/// into the tet.
+bool reachesOctant(const TetParameters& u, std::size_t corner, const Ray& ray) {
+  PairMask reaches = {-1, -1};
+  // Two overlapping pairs have all three coordinates.
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Pair signs = loadPair(&ray.signs[k]);
+    const auto at = [&](std::size_t i) { return signs * loadPair(&u[i][k]); };
+    reaches &= larger(larger(at(0), at(1)), larger(at(2), at(3))) > at(corner);
+  }
+  return (reaches[0] & reaches[1]) != 0;
+}
+
+/// Looks at one star after the other.
+class StarClassifier {
+ public:
+  StarClassifier(const TetTopology& topology, const LocalParameters& parameters,
+                 const RegularVertices& survey, std::span<const HalfFaceCrossing> crossings,
+                 bool flatAllowed, VertexKinds& result)
+      : topology_(topology),
+        parameters_(parameters),
+        survey_(survey),
+        crossings_(crossings),
+        flatAllowed_(flatAllowed),
+        result_(result) {}
+
+  /// @param block  receives the star
+  void run(Index vertex, StarBlock& block) {
+    star_.collect(topology_, vertex, crossings_);
+    const std::span<const VertexStar::Member> star = star_.members();
+    block.cornersSeen += star.size();
+    planes_ = star_.planes();
+    if (!flatAllowed_ || !star_.chartsFit() || !isInOnePlane(star) || !coversDirectionOnce(star)) {
+      result_.kind[vertex] = VertexKind::Irregular;
+      result_.rounding[vertex] = Rounding::ByStar;
+      block.add(vertex, star, planes_);
+      return;
+    }
+    result_.kind[vertex] = VertexKind::Flat;
+    result_.rounding[vertex] = planes_ == 0 ? Rounding::Free : Rounding::ByStar;
+    if (planes_ == 0) return;
+    for (const VertexStar::Member& member : star) {
+      block.planeCorners.push_back(
+          {member.corner, static_cast<Rounding>(imageOf(planes_, member.rotation))});
+    }
+  }
+
+ private:
+  /// The axis across the boundary plane, in the chart to which a rotation leads.
+  [[nodiscard]] std::size_t planeAxis(Rotation rotation) const {
+    return static_cast<std::size_t>(std::countr_zero(imageOf(planes_, rotation)));
+  }
+
+  /// Whether all boundary faces are in one plane, and it is certain to which one the vertex snaps.
+  [[nodiscard]] bool isInOnePlane(std::span<const VertexStar::Member> star) const {
+    if (planes_ == 0) return true;
+    const CornerIndex first = star.front().corner;
+    return hasOneBit(planes_) &&
+           !isBetweenIntegers(parameters_(tetOf(first), localOf(first))[planeAxis({})]);
+  }
+
+  [[nodiscard]] bool coversDirectionOnce(std::span<const VertexStar::Member> star) {
+    std::size_t cones = listRays(star);
+    for (std::size_t i = 0; i < rayCount_; i += 2) {
+      const bool isLast = i + 1 == rayCount_;
+      const auto& [first, rayOfFirst] = rays_[i];
+      const auto& [second, rayOfSecond] = rays_[isLast ? i : i + 1];
+      std::array<TetParameters, 2> scratch;  // NOLINT: written before it is read
+      const auto sides = sidesOf(parameters_.see(tetOf(first), scratch[0]), rayOfFirst->direction,
+                                 parameters_.see(tetOf(second), scratch[1]), rayOfSecond->direction,
+                                 rayOfFirst->axis, rayOfSecond->axis);
+      if (sides[0] == kUncertainSides || sides[1] == kUncertainSides) return false;
+      cones += coneCorner(sides[0]) == first % 4 ? 1 : 0;
+      cones += !isLast && coneCorner(sides[1]) == second % 4 ? 1 : 0;
+    }
+    return cones == 1;
+  }
+
+  /// Lists what may lead into tets: where charts are rotated the direction, and on the boundary its
+  /// mirror image. In other charts, cones are known.
+  /// @return how many of these contain the direction
+  std::size_t listRays(std::span<const VertexStar::Member> star) {
+    if (rays_.size() <= 2 * star.size()) rays_.resize(4 * star.size());
+    rayCount_ = 0;
+    std::size_t cones = 0;
+    // Whether a ray leads into the octant cannot be predicted.
+    const auto add = [&](const VertexStar::Member& member, const Ray& ray) {
+      TetParameters scratch;
+      const TetParameters& u = parameters_.see(member.tet(), scratch);
+      rays_[rayCount_] = {member.corner, &ray};
+      rayCount_ += reachesOctant(u, member.corner % 4, ray) ? 1 : 0;
+    };
+    for (const VertexStar::Member& member : star) {
+      const auto& rays = kRays[static_cast<std::size_t>(member.rotation.index())];
+      if (!member.rotation.isIdentity()) {
+        add(member, rays[kNoReflection]);
+      } else {
+        cones += coneCorner(survey_.sides[member.tet()]) == member.corner % 4 ? 1 : 0;
+      }
+      if (planes_ != 0) add(member, rays[planeAxis(member.rotation)]);
+    }
+    return cones;
+  }
+
+  const TetTopology& topology_;
+  const LocalParameters& parameters_;
+  const RegularVertices& survey_;
+  std::span<const HalfFaceCrossing> crossings_;
+  bool flatAllowed_;
+  VertexKinds& result_;
+  VertexStar star_;
+  AxisSet planes_ = 0;  ///< of boundary faces, in the chart of the first member
+  std::vector<std::pair<CornerIndex, const Ray*>> rays_;  ///< more than are in use
+  std::size_t rayCount_ = 0;
+};
+
+}  // namespace
+
+VertexKinds classifyVertices(const TetTopology& topology, const LocalParameters& parameters,
+                             const RegularVertices& survey,
+                             std::span<const HalfFaceCrossing> crossings,
+                             std::span<const EdgeValence> known, Stage& stage) {
+  Array<std::uint8_t> isIrregular = survey.isIrregular;
+  for (const EdgeValence& edge : known) {
+    for (const Index v : {edge.vertex0, edge.vertex1}) {
+      if (!topology.isIsolated(v)) isIrregular[v] = 1;
+    }
+  }
+  VertexKinds result;
+  result.kind.resize(topology.pointCount);
+  result.rounding.resize(topology.pointCount);
+  result.blocks.resize(blockCount(topology.pointCount, kGrain));
+  // What the caller claims about edges, if anything, is to be looked up for each.
+  const bool flatAllowed = known.empty();
+  const auto makeClassifier = [&] {
+    return StarClassifier(topology, parameters, survey, crossings, flatAllowed, result);
+  };
+  parallelBlocksWith(
+      stage, topology.pointCount, kGrain, makeClassifier,
+      [&](std::size_t begin, std::size_t end, std::size_t block, StarClassifier& classifier) {
+        result.blocks[block].reserve(static_cast<std::size_t>(
+            std::count(&isIrregular[begin], &isIrregular[begin] + (end - begin), 1)));
+        for (std::size_t v = begin; v < end; ++v) {
+          if (isIrregular[v] != 0) {
+            classifier.run(static_cast<Index>(v), result.blocks[block]);
+          } else {
+            result.kind[v] = VertexKind::Regular;
+            result.rounding[v] = static_cast<Rounding>(survey.plane[v]);
+          }
+        }
+      });
+  return result;
+}
+
+}  // namespace hexhex
