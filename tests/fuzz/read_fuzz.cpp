@@ -93,11 +93,11 @@ auto parse(std::string_view text, const std::string& fileName, Context& context)
 }
 
 // Maps in arrays of the usual name.
-TetMap parseVtkMap(std::string_view text, const std::string& fileName, Context& context) {
-  return parseVtkLegacyMap(text, fileName, {}, context);
+TetMap parseVtkLegacyMap(std::string_view text, const std::string& fileName, Context& context) {
+  return readVtkLegacyMap({text, fileName}, {}, context);
 }
-TetMap parseVtuMapOf(std::string_view text, const std::string& fileName, Context& context) {
-  return parseVtuMap(text, fileName, {}, context);
+TetMap parseVtuMap(std::string_view text, const std::string& fileName, Context& context) {
+  return readVtuMap({text, fileName}, {}, context);
 }
 
 /// Lagrange cells are read from files only, so the bytes become one, in memory.
@@ -118,12 +118,12 @@ struct Reader {
 };
 
 constexpr std::array kReaders = {
-    Reader{"hexex", read<parseHexex>},       Reader{"mesh", read<parse<readMedit>>},
-    Reader{"meshb", read<parse<readMeshb>>}, Reader{"msh", read<parse<readGmsh>>},
-    Reader{"vtk", read<parseVtkLegacy>},     Reader{"vtu", read<parseVtu>},
-    Reader{"vtk-map", read<parseVtkMap>},    Reader{"vtu-map", read<parseVtuMapOf>},
-    Reader{"vtu-lagrange", readLagrange},    Reader{"ovm-map", read<parseOvmMap>},
-    Reader{"ovm", read<parseOvmHexMesh>},    Reader{"ovmb-map", read<parseOvmbMap>},
+    Reader{"hexex", read<parse<readHexex>>},    Reader{"mesh", read<parse<readMedit>>},
+    Reader{"meshb", read<parse<readMeshb>>},    Reader{"msh", read<parse<readGmsh>>},
+    Reader{"vtk", read<parse<readVtkLegacy>>},  Reader{"vtu", read<parse<readVtu>>},
+    Reader{"vtk-map", read<parseVtkLegacyMap>}, Reader{"vtu-map", read<parseVtuMap>},
+    Reader{"vtu-lagrange", readLagrange},       Reader{"ovm-map", read<parseOvmMap>},
+    Reader{"ovm", read<parseOvmHexMesh>},       Reader{"ovmb-map", read<parseOvmbMap>},
     Reader{"ovmb", read<parseOvmbHexMesh>}};
 
 const Reader* chosen = nullptr;

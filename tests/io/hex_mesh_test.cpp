@@ -23,7 +23,7 @@ HexMesh mesh(const std::string& text) {
 
 HexMesh vtu(const std::string& text) {
   Context context;
-  return parseVtu(text, "m.vtu", context);
+  return readVtu({text, "m.vtu"}, context);
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

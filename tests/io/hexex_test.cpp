@@ -19,7 +19,7 @@ const std::string kOneTet = kPoints + "1\n" + kTet;
 
 TetMap parse(const std::string& text) {
   Context context;
-  return parseHexex(text, "m.hexex", context);
+  return readHexex({text, "m.hexex"}, context);
 }
 
 void expectSame(const TetMap& a, const TetMap& b) {
@@ -186,7 +186,9 @@ TEST(Hexex, VerticesOutOfRangeAreNamedWithTetAndLine) {
 TEST(Hexex, CancellationEndsReading) {
   Context context;
   context.cancel();
-  EXPECT_EQ(failureOf([&] { static_cast<void>(parseHexex(kOneTet, "m", context)); }).code,
+  EXPECT_EQ(failureOf([&] {
+              static_cast<void>(readHexex({kOneTet, "m"}, context));
+            }).code,
             ErrorCode::Cancelled);
 }
 

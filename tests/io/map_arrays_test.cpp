@@ -27,14 +27,14 @@ TetMap vtu(const std::string& text, std::string_view array = "igm") {
   Context context;
   ReadOptions options;
   options.mapArray = array;
-  return parseVtuMap(text, "m.vtu", options, context);
+  return readVtuMap({text, "m.vtu"}, options, context);
 }
 
 TetMap vtk(const std::string& text, std::string_view array = "igm") {
   Context context;
   ReadOptions options;
   options.mapArray = array;
-  return parseVtkLegacyMap(text, "m.vtk", options, context);
+  return readVtkLegacyMap({text, "m.vtk"}, options, context);
 }
 
 // A hexahedron between two tets, so that tets and cells have different numbers.

@@ -111,14 +111,14 @@ void damage(const std::string& text, const Parse& parse) {
 
 /// Of readers whose input is a file or bytes.
 template <auto read>
-HexMesh parse(std::string_view text, const std::string& fileName, Context& context) {
+auto parse(std::string_view text, const std::string& fileName, Context& context) {
   return read(Input(text, fileName), context);
 }
 
 TEST(DamagedFiles, Hexex) {
   const TemporaryFolder folder;
   writeMap(smallMap(), folder / "a.hexex");
-  damage(contentOf(folder / "a.hexex") + "1\n0 1 2 1/3\n1 1 1\n0\n1 2\n1 2 3\n", parseHexex);
+  damage(contentOf(folder / "a.hexex") + "1\n0 1 2 1/3\n1 1 1\n0\n1 2\n1 2 3\n", parse<readHexex>);
 }
 
 TEST(DamagedFiles, Medit) {
@@ -130,7 +130,7 @@ TEST(DamagedFiles, Medit) {
 TEST(DamagedFiles, Vtu) {
   const TemporaryFolder folder;
   writeHexMesh(gridMesh(2, 2, 1), folder / "a.vtu");
-  damage(contentOf(folder / "a.vtu"), parseVtu);
+  damage(contentOf(folder / "a.vtu"), parse<readVtu>);
 }
 
 TEST(DamagedFiles, Gmsh) {
@@ -160,11 +160,11 @@ TEST(DamagedFiles, VtkLegacy) {
   const TemporaryFolder folder;
   writeHexMesh(gridMesh(2, 2, 1), folder / "a.vtk");
   const std::string text = contentOf(folder / "a.vtk");
-  damage(text, parseVtkLegacy);
+  damage(text, parse<readVtkLegacy>);
   // The same bytes mean something else.
   std::string binary = text;
   binary.replace(binary.find("ASCII"), 5, "BINARY");
-  damage(binary, parseVtkLegacy);
+  damage(binary, parse<readVtkLegacy>);
 }
 
 TEST(DamagedFiles, MapsInVtkFiles) {
@@ -176,7 +176,7 @@ TEST(DamagedFiles, MapsInVtkFiles) {
     writeMap(smallMap(), folder / "a.vtk", options, context);
     damage(contentOf(folder / "a.vtk"),
            [](const std::string& text, const std::string& name, Context& reading) {
-             return parseVtkLegacyMap(text, name, {}, reading);
+             return readVtkLegacyMap({text, name}, {}, reading);
            });
   }
   for (const bool compress : {false, hasZlib()}) {
@@ -185,7 +185,7 @@ TEST(DamagedFiles, MapsInVtkFiles) {
     writeMap(smallMap(), folder / "a.vtu", options, context);
     damage(contentOf(folder / "a.vtu"),
            [](const std::string& text, const std::string& name, Context& reading) {
-             return parseVtuMap(text, name, {}, reading);
+             return readVtuMap({text, name}, {}, reading);
            });
   }
 }

@@ -65,14 +65,18 @@ std::string hexexText(std::size_t tets, char separator) {
   return text;
 }
 
+TetMap parseMap(const std::string& text, const std::string& name, Context& context) {
+  return readHexex({text, name}, context);
+}
+
 TEST(ParallelText, LinesMeanNothing) {
   constexpr std::size_t kTets = 5000;
   Context context;
-  const TetMap expected = parseHexex(hexexText(kTets, '\n'), "m", context);
+  const TetMap expected = parseMap(hexexText(kTets, '\n'), "m", context);
   ASSERT_EQ(expected.tets.size(), kTets);
   EXPECT_EQ(expected.parameters[kTets - 1][0][0], kTets - 1 + 0.25);
   for (const char separator : {' ', '\t', '\r'}) {
-    const TetMap map = parseHexex(hexexText(kTets, separator), "m", context);
+    const TetMap map = parseMap(hexexText(kTets, separator), "m", context);
     EXPECT_EQ(map.parameters, expected.parameters);
   }
 }
@@ -109,7 +113,7 @@ void expectSameErrors(const std::string& good, const Parse& parse) {
 }
 
 TEST(ParallelText, HexexErrorsAreThoseOfOneThread) {
-  expectSameErrors(hexexText(6000, '\n'), parseHexex);
+  expectSameErrors(hexexText(6000, '\n'), parseMap);
 }
 
 TEST(ParallelText, MeditErrorsAreThoseOfOneThread) {
@@ -129,8 +133,7 @@ TEST(ParallelText, TheFirstOfManyErrorsWithItsLine) {
   }
   for (const int threads : {1, 2, 7}) {
     Context context(threads);
-    const Failure failure =
-        failureOf([&] { static_cast<void>(parseHexex(text, "m.hexex", context)); });
+    const Failure failure = failureOf([&] { static_cast<void>(parseMap(text, "m.hexex", context)); });
     EXPECT_TRUE(
         failure.sentence.starts_with("m.hexex, line 4328: expected a parameter of tet 4321"))
         << failure.sentence;

@@ -15,7 +15,7 @@ namespace {
 
 HexMesh parse(const std::string& text) {
   Context context;
-  return parseVtkLegacy(text, "m.vtk", context);
+  return readVtkLegacy({text, "m.vtk"}, context);
 }
 
 Failure failure(const std::string& text) {

@@ -74,6 +74,12 @@ class Input {
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   [[nodiscard]] const std::optional<std::string_view>& bytes() const noexcept { return bytes_; }
+  /// All bytes. Those of a file go to `room`.
+  [[nodiscard]] std::string_view text(Array<char>& room, Stage& stage) const {
+    if (bytes_) return *bytes_;
+    room = readWholeFile(path_, stage);
+    return asText(room);
+  }
 
  private:
   std::string name_;
@@ -101,22 +107,16 @@ template <class Reader, class... More>
     const auto read = [&](const auto& source) {
       return Reader(source, input.name(), stage, more...).read();
     };
-    if (input.bytes()) return read(*input.bytes());
     if constexpr (std::is_constructible_v<Reader, const InputFile&, const std::string&, Stage&,
                                           const More&...>) {
-      const InputFile file(input.path());
-      if (file.isRegular()) return read(file);
+      if (!input.bytes()) {
+        const InputFile file(input.path());
+        if (file.isRegular()) return read(file);
+      }
     }
-    const Array<char> bytes = readWholeFile(input.path(), stage);
-    return read(asText(bytes));
+    Array<char> room;
+    return read(input.text(room, stage));
   });
-}
-
-/// The same of a text.
-template <class Reader, class... More>
-[[nodiscard]] auto parseWith(std::string_view text, const std::string& fileName,
-                             std::string_view stageName, Context& context, const More&... more) {
-  return readWith<Reader>(Input(text, fileName), stageName, context, more...);
 }
 
 }  // namespace hexhex

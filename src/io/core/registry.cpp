@@ -23,9 +23,9 @@ namespace hexhex {
 namespace {
 
 // Of formats whose readers take bytes in memory, too.
-template <auto read>
-auto readFile(const std::filesystem::path& file, Context& context) {
-  return read(file, context);
+template <auto read, class... More>
+auto readFile(const std::filesystem::path& file, More... more) {
+  return read(file, more...);
 }
 
 // Of formats whose maps need no options.
@@ -83,20 +83,20 @@ constexpr std::array kFormatTable = {
            .meshes = {readFile<readMeshb>, writeMeshb},
            .pieces = {openMeshbSink}},
     Format{.label = {"vtu", ".vtu", "VTK XML unstructured grid, binary"},
-           .maps = {readVtuMap, writeVtuMap},
-           .readTets = readVtuTets,
-           .meshes = {readVtu, writeVtu},
+           .maps = {readFile<readVtuMap>, writeVtuMap},
+           .readTets = readFile<readVtuTets>,
+           .meshes = {readFile<readVtu>, writeVtu},
            .pieces = {openVtuSink, readVtuTo},
            .compresses = true},
     Format{.label = {"vtk", ".vtk", "legacy VTK 2.0, text"},
-           .maps = {readVtkLegacyMap, writeVtkLegacyMap},
-           .readTets = readVtkLegacyTets,
-           .meshes = {readVtkLegacy, writeVtkLegacy},
+           .maps = {readFile<readVtkLegacyMap>, writeVtkLegacyMap},
+           .readTets = readFile<readVtkLegacyTets>,
+           .meshes = {readFile<readVtkLegacy>, writeVtkLegacy},
            .pieces = {openVtkLegacySink}},
     Format{.label = {"vtk-binary", ".vtk", "legacy VTK 2.0, binary"},
-           .maps = {readVtkLegacyMap, writeVtkLegacyMapBinary},
-           .readTets = readVtkLegacyTets,
-           .meshes = {readVtkLegacy, writeVtkLegacyBinary},
+           .maps = {readFile<readVtkLegacyMap>, writeVtkLegacyMapBinary},
+           .readTets = readFile<readVtkLegacyTets>,
+           .meshes = {readFile<readVtkLegacy>, writeVtkLegacyBinary},
            .pieces = {openVtkLegacyBinarySink}},
     Format{.label = {"ovm", ".ovm", "OpenVolumeMesh, text"},
            .maps = {readPlain<readOvmMap>, writePlain<writeOvmMap>},

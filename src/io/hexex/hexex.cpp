@@ -9,7 +9,6 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
-#include <io/core/input_file.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/text_scanner.hpp>
@@ -235,12 +234,8 @@ void writeFeatures(const Features& features, LineWriter& lines, OutputFile& outp
 
 }  // namespace
 
-TetMap parseHexex(std::string_view text, const std::string& fileName, Context& context) {
-  return parseWith<HexexReader>(text, fileName, "read map", context);
-}
-
-TetMap readHexex(const std::filesystem::path& file, Context& context) {
-  return readWith<HexexReader>(file, "read map", context);
+TetMap readHexex(const Input& input, Context& context) {
+  return readWith<HexexReader>(input, "read map", context);
 }
 
 void writeHexex(const TetMap& map, const std::filesystem::path& file, Context& context) {

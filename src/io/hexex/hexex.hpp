@@ -13,11 +13,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <string>
-#include <string_view>
 
 #include <hexhex/context.hpp>
 #include <hexhex/types.hpp>
+
+#include <io/core/input_file.hpp>
 
 namespace hexhex {
 
@@ -25,12 +25,7 @@ inline constexpr std::int32_t kHexexFeatureTag = 1;
 inline constexpr std::int32_t kHexexWallTag = 2;
 
 /// @throws Error FileNotFound, FileSyntax, IndexOutOfRange, NotFinite, TooLarge
-[[nodiscard]] TetMap readHexex(const std::filesystem::path& file, Context& context);
-
-/// The same from memory.
-/// @param fileName  for error messages
-[[nodiscard]] TetMap parseHexex(std::string_view text, const std::string& fileName,
-                                Context& context);
+[[nodiscard]] TetMap readHexex(const Input& input, Context& context);
 
 /// Writes numbers with the fewest digits (at most 17) that read back to the same double. Features
 /// follow the tets, without their tags.

@@ -3,8 +3,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <string>
-#include <string_view>
 
 #include <hexhex/context.hpp>
 #include <hexhex/curved.hpp>
@@ -13,6 +11,7 @@
 #include <hexhex/types.hpp>
 
 #include <io/core/cell_mesh.hpp>
+#include <io/core/input_file.hpp>
 
 namespace hexhex {
 
@@ -20,23 +19,17 @@ namespace hexhex {
 // compressed with zlib, if the library was built with it. They are written as raw bytes, appended,
 // which ParaView and VTK read without conversion.
 
-/// Read points and hexahedra (cell type 12), and the generators, tags and regions of writeVtu();
+/// Reads points and hexahedra (cell type 12), and the generators, tags and regions of writeVtu();
 /// other cells and arrays are ignored.
-/// @param fileName  for error messages
 /// @throws Error FileNotFound, FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite
-[[nodiscard]] HexMesh readVtu(const std::filesystem::path& file, Context& context);
-[[nodiscard]] HexMesh parseVtu(std::string_view text, const std::string& fileName,
-                               Context& context);
+[[nodiscard]] HexMesh readVtu(const Input& input, Context& context);
 
 /// Reads tetrahedra (cell type 10) instead of hexahedra.
-[[nodiscard]] TetCells readVtuTets(const std::filesystem::path& file, Context& context);
+[[nodiscard]] TetCells readVtuTets(const Input& input, Context& context);
 
-/// Read the map of tets from an array, as readVtkMap() finds it.
+/// Reads the map of tets from an array, as readVtkMap() finds it.
 /// @throws Error as above; FileUnsupported without such an array
-[[nodiscard]] TetMap readVtuMap(const std::filesystem::path& file, const ReadOptions& options,
-                                Context& context);
-[[nodiscard]] TetMap parseVtuMap(std::string_view text, const std::string& fileName,
-                                 const ReadOptions& options, Context& context);
+[[nodiscard]] TetMap readVtuMap(const Input& input, const ReadOptions& options, Context& context);
 
 /// Reads the same as readVtu(), but hands it over in pieces; with little memory if the file's data
 /// are appended and it is no pipe. Then generators, as writeVtu() writes them, are handed over,
@@ -81,20 +74,16 @@ void writePatchesVtk(const PiecewiseLinearMesh& mesh, const std::filesystem::pat
 // `.vtk`: an unstructured grid, ASCII or binary, of versions 1.0 to 5.1. Written in version 2.0,
 // the narrow form that every program reads.
 
-/// Read points and hexahedra, and regions as writeVtkLegacy() writes them; other cells and arrays
+/// Reads points and hexahedra, and regions as writeVtkLegacy() writes them; other cells and arrays
 /// are ignored.
 /// @throws Error FileNotFound, FileSyntax (with the line), FileUnsupported, IndexOutOfRange,
 ///         NotFinite, TooLarge
-[[nodiscard]] HexMesh readVtkLegacy(const std::filesystem::path& file, Context& context);
-[[nodiscard]] HexMesh parseVtkLegacy(std::string_view text, const std::string& fileName,
-                                     Context& context);
+[[nodiscard]] HexMesh readVtkLegacy(const Input& input, Context& context);
 
 /// The same for tetrahedra and for maps, as of `.vtu`.
-[[nodiscard]] TetCells readVtkLegacyTets(const std::filesystem::path& file, Context& context);
-[[nodiscard]] TetMap readVtkLegacyMap(const std::filesystem::path& file, const ReadOptions& options,
+[[nodiscard]] TetCells readVtkLegacyTets(const Input& input, Context& context);
+[[nodiscard]] TetMap readVtkLegacyMap(const Input& input, const ReadOptions& options,
                                       Context& context);
-[[nodiscard]] TetMap parseVtkLegacyMap(std::string_view text, const std::string& fileName,
-                                       const ReadOptions& options, Context& context);
 
 /// Write points, hexahedra and regions, as ASCII or as bytes, the largest of a number first.
 /// HexaLab, OpenFOAM and MFEM read no other form than ASCII.

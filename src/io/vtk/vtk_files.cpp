@@ -5,7 +5,6 @@
 
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
-#include <io/core/input_file.hpp>
 #include <io/vtk/vtk.hpp>
 #include <io/vtk/vtk_legacy_file.hpp>
 #include <io/vtk/vtk_reader.hpp>
@@ -14,22 +13,12 @@
 namespace hexhex {
 namespace {
 
-/// @tparam File  VtuFile or VtkLegacyFile
-template <class File, class Read>
-auto parseVtk(std::string_view text, const std::string& fileName, std::string_view stageName,
-              Context& context, const Read& read) {
-  return inStage(context, stageName, [&](Stage& stage) {
-    File file(text, fileName, stage);
-    return read(file, stage);
-  });
-}
-
 template <class Read>
-auto readLegacyFile(const std::filesystem::path& path, std::string_view stageName, Context& context,
+auto readLegacyFile(const Input& input, std::string_view stageName, Context& context,
                     const Read& read) {
   return inStage(context, stageName, [&](Stage& stage) {
-    const Array<char> bytes = readWholeFile(path, stage);
-    VtkLegacyFile file(asText(bytes), path.string(), stage);
+    Array<char> room;
+    VtkLegacyFile file(input.text(room, stage), input.name(), stage);
     return read(file, stage);
   });
 }
@@ -91,47 +80,28 @@ void sendCells(const VtkSource& source, MeshSink& sink, Stage& stage) {
 
 }  // namespace
 
-HexMesh parseVtu(std::string_view text, const std::string& fileName, Context& context) {
-  return parseVtk<VtuFile>(text, fileName, "read mesh", context, readVtkHexMesh);
+HexMesh readVtu(const Input& input, Context& context) {
+  return readVtuFile(input, "read mesh", context, readVtkHexMesh);
 }
 
-HexMesh readVtu(const std::filesystem::path& file, Context& context) {
-  return readVtuFile(file, "read mesh", context, readVtkHexMesh);
+TetCells readVtuTets(const Input& input, Context& context) {
+  return readVtuFile(input, "read tets", context, readVtkTets);
 }
 
-TetCells readVtuTets(const std::filesystem::path& file, Context& context) {
-  return readVtuFile(file, "read tets", context, readVtkTets);
+TetMap readVtuMap(const Input& input, const ReadOptions& options, Context& context) {
+  return readVtuFile(input, "read map", context, mapReader(options));
 }
 
-TetMap parseVtuMap(std::string_view text, const std::string& fileName, const ReadOptions& options,
-                   Context& context) {
-  return parseVtk<VtuFile>(text, fileName, "read map", context, mapReader(options));
+HexMesh readVtkLegacy(const Input& input, Context& context) {
+  return readLegacyFile(input, "read mesh", context, readLegacyHexes);
 }
 
-TetMap readVtuMap(const std::filesystem::path& file, const ReadOptions& options, Context& context) {
-  return readVtuFile(file, "read map", context, mapReader(options));
+TetCells readVtkLegacyTets(const Input& input, Context& context) {
+  return readLegacyFile(input, "read tets", context, readVtkTets);
 }
 
-HexMesh parseVtkLegacy(std::string_view text, const std::string& fileName, Context& context) {
-  return parseVtk<VtkLegacyFile>(text, fileName, "read mesh", context, readLegacyHexes);
-}
-
-HexMesh readVtkLegacy(const std::filesystem::path& file, Context& context) {
-  return readLegacyFile(file, "read mesh", context, readLegacyHexes);
-}
-
-TetCells readVtkLegacyTets(const std::filesystem::path& file, Context& context) {
-  return readLegacyFile(file, "read tets", context, readVtkTets);
-}
-
-TetMap parseVtkLegacyMap(std::string_view text, const std::string& fileName,
-                         const ReadOptions& options, Context& context) {
-  return parseVtk<VtkLegacyFile>(text, fileName, "read map", context, mapReader(options));
-}
-
-TetMap readVtkLegacyMap(const std::filesystem::path& file, const ReadOptions& options,
-                        Context& context) {
-  return readLegacyFile(file, "read map", context, mapReader(options));
+TetMap readVtkLegacyMap(const Input& input, const ReadOptions& options, Context& context) {
+  return readLegacyFile(input, "read map", context, mapReader(options));
 }
 
 void readVtuTo(MeshSink& sink, const std::filesystem::path& path, Context& context) {

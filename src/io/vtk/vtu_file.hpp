@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,8 +24,6 @@ class VtuFile final : public VtkSource {
   /// this
   /// @param stage  for parallel decoding; outlives this
   VtuFile(const ByteFile& bytes, std::string_view text, const std::string& fileName, Stage& stage);
-  VtuFile(std::string_view text, const std::string& fileName, Stage& stage)
-      : VtuFile(ByteFile(text, fileName), text, fileName, stage) {}
 
   void requireIndexable() const override;
 
@@ -66,16 +63,16 @@ class VtuFile final : public VtkSource {
 
 /// Calls read(file, stage), without the whole file in memory where it can be avoided.
 template <class Read>
-[[nodiscard]] auto readVtuFile(const std::filesystem::path& path, std::string_view stageName,
-                               Context& context, const Read& read) {
+[[nodiscard]] auto readVtuFile(const Input& input, std::string_view stageName, Context& context,
+                               const Read& read) {
   return inStage(context, stageName, [&](Stage& stage) {
-    const InputFile input(path);
-    const std::string name = path.string();
-    Array<char> text = readPlainVtuHead(input);
-    const bool plain = !text.empty();
-    if (!plain) text = readWholeFile(path, stage);
-    VtuFile file(plain ? ByteFile(input, name) : ByteFile(asText(text), name), asText(text), name,
-                 stage);
+    std::optional<InputFile> open;
+    Array<char> room;
+    if (!input.bytes()) room = readPlainVtuHead(open.emplace(input.path()));
+    const bool plain = !room.empty();
+    const std::string_view text = plain ? asText(room) : input.text(room, stage);
+    VtuFile file(plain ? ByteFile(*open, input.name()) : ByteFile(text, input.name()), text,
+                 input.name(), stage);
     return read(file, stage);
   });
 }
