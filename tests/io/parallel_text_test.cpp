@@ -133,7 +133,8 @@ TEST(ParallelText, TheFirstOfManyErrorsWithItsLine) {
   }
   for (const int threads : {1, 2, 7}) {
     Context context(threads);
-    const Failure failure = failureOf([&] { static_cast<void>(parseMap(text, "m.hexex", context)); });
+    const Failure failure =
+        failureOf([&] { static_cast<void>(parseMap(text, "m.hexex", context)); });
     EXPECT_TRUE(
         failure.sentence.starts_with("m.hexex, line 4328: expected a parameter of tet 4321"))
         << failure.sentence;

@@ -10,8 +10,8 @@
 
 #include <io/curved/lagrange_files.hpp>
 #include <io/curved/lagrange_nodes.hpp>
+#include <io/vtk/vtk_data_set.hpp>
 #include <io/vtk/vtk_reader.hpp>
-#include <io/vtk/vtk_xml_writer.hpp>
 #include <io/vtk/vtu_file.hpp>
 
 namespace hexhex {

@@ -9,7 +9,7 @@
 #include <io/core/output_file.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/vtk/vtk.hpp>
-#include <io/vtk/vtk_xml_writer.hpp>
+#include <io/vtk/vtk_data_set.hpp>
 
 namespace hexhex {
 
@@ -19,12 +19,7 @@ bool isPolyData(const std::filesystem::path& file) { return lowerCaseExtension(f
 
 /// Points of several lists, one after the other.
 struct JoinedPoints {
-  struct Part {
-    std::span<const Vec3> points;
-    std::span<const Index> tets;
-    std::span<const CornerSet> corners;
-  };
-  std::vector<Part> parts;
+  std::vector<VtkPiece> parts;
 
   /// The vertices of hexahedra and the inner points of arcs.
   explicit JoinedPoints(const PiecewiseLinearMesh& mesh)
@@ -33,31 +28,32 @@ struct JoinedPoints {
 
   [[nodiscard]] std::uint64_t count() const {
     std::uint64_t sum = 0;
-    for (const Part& part : parts) sum += part.points.size();
+    for (const VtkPiece& part : parts) sum += part.points.size();
     return sum;
   }
 
-  void addTo(VtkDataSet& data) const {
-    data.add<double>(VtkSection::Points, "Points", 3, count(), [this](const VtkBytes& output) {
-      for (const Part& part : parts) output(part.points.data(), part.points.size_bytes());
+  /// What all parts have in memory.
+  /// @tparam T  the number type
+  template <class T, class Value>
+  void addArray(VtkDataSet& data, VtkSection section, std::string_view name, std::size_t components,
+                std::span<const Value> VtkPiece::*values) const {
+    data.add<T>(section, name, components, count(), [this, values](const VtkBytes& output) {
+      for (const VtkPiece& part : parts) {
+        output((part.*values).data(), (part.*values).size_bytes());
+      }
     });
-    data.add<Index>(VtkSection::PointData, kVtkGeneratorTets, 1, count(),
-                    [this](const VtkBytes& output) {
-                      for (const Part& part : parts) {
-                        output(part.tets.data(), part.tets.size_bytes());
-                      }
-                    });
-    data.add<CornerSet>(VtkSection::PointData, kVtkGeneratorCorners, 1, count(),
-                        [this](const VtkBytes& output) {
-                          for (const Part& part : parts) {
-                            output(part.corners.data(), part.corners.size_bytes());
-                          }
-                        });
+  }
+
+  void addTo(VtkDataSet& data) const {
+    addArray<double>(data, VtkSection::Points, "Points", 3, &VtkPiece::points);
+    addArray<Index>(data, VtkSection::PointData, kVtkGeneratorTets, 1, &VtkPiece::generatorTets);
+    addArray<CornerSet>(data, VtkSection::PointData, kVtkGeneratorCorners, 1,
+                        &VtkPiece::generatorCorners);
     data.add<std::uint8_t>(
         VtkSection::PointData, "generator_kind", 1, count(), [this](const VtkBytes& output) {
-          for (const Part& part : parts) {
-            writeValues<std::uint8_t>(output, part.corners.size(), [&part](std::size_t i) {
-              return generatorKind(part.corners[i]);
+          for (const VtkPiece& part : parts) {
+            writeValues<std::uint8_t>(output, part.generatorCorners.size(), [&](std::size_t i) {
+              return generatorKind(part.generatorCorners[i]);
             });
           }
         });

@@ -8,10 +8,9 @@
 namespace hexhex {
 namespace {
 
-/// A tag for each vertex, 0 without. Nothing if there are no features.
+/// A tag for each vertex, 0 without.
 /// @throws Error InvalidArgument for a vertex that does not exist
 Array<std::int32_t> vertexTags(const std::vector<FeatureVertex>& features, std::size_t vertices) {
-  if (features.empty()) return {};
   Array<std::int32_t> tags(vertices);
   std::fill(tags.begin(), tags.end(), 0);
   for (const FeatureVertex& feature : features) {
@@ -38,17 +37,13 @@ std::vector<std::int64_t> rowsOf(const std::vector<Feature>& features) {
 }
 
 /// What a piece has in memory.
-template <class Value>
-void addPart(VtkDataSet& data, VtkSection section, std::string_view name, const VtkPiece& piece,
-             std::span<const Value> VtkPiece::*part) {
-  const auto write = [&piece, part](const VtkBytes& output) {
+/// @tparam T  the number type
+template <class T, class Value>
+void addPart(VtkDataSet& data, VtkSection section, std::string_view name, std::size_t components,
+             const VtkPiece& piece, std::span<const Value> VtkPiece::*part) {
+  data.add<T>(section, name, components, data.points, [&piece, part](const VtkBytes& output) {
     output((piece.*part).data(), (piece.*part).size_bytes());
-  };
-  if constexpr (std::same_as<Value, Vec3>) {
-    data.add<double>(section, name, 3, data.points, write);
-  } else {
-    data.add<Value>(section, name, 1, data.points, write);
-  }
+  });
 }
 
 /// @tparam Corner  the number type in the file
@@ -84,12 +79,14 @@ void addRows(VtkDataSet& data, std::string_view name, const std::vector<Feature>
   data.addOwn(VtkSection::FieldData, name, rowsOf(features), features.front().vertices.size() + 1);
 }
 
-void addVertexTags(VtkDataSet& data, const std::vector<FeatureVertex>& features) {
-  if (features.empty()) return;
-  data.addOwn(VtkSection::PointData, kVtkVertexTags, vertexTags(features, data.points));
-}
-
-void addRegions(VtkDataSet& data, std::span<const std::int32_t> regions) {
+template <class AnyFeatures, class Face>
+void addTagsOf(VtkDataSet& data, const AnyFeatures& features, std::string_view faceTags,
+               const std::vector<Face>& faces, std::span<const std::int32_t> regions) {
+  addRows(data, kVtkEdgeTags, features.edges);
+  addRows(data, faceTags, faces);
+  if (!features.vertices.empty()) {
+    data.addOwn(VtkSection::PointData, kVtkVertexTags, vertexTags(features.vertices, data.points));
+  }
   if (!regions.empty()) data.add(VtkSection::CellData, kVtkRegions, regions);
 }
 
@@ -105,12 +102,14 @@ VtkDataSet meshDataSet(const VtkPiece& piece, std::uint64_t points, std::uint64_
             return generatorKind(piece.generatorCorners[i]);
           });
         });
-    addPart(data, VtkSection::PointData, kVtkGeneratorCorners, piece, &VtkPiece::generatorCorners);
+    addPart<CornerSet>(data, VtkSection::PointData, kVtkGeneratorCorners, 1, piece,
+                       &VtkPiece::generatorCorners);
   }
   if (!piece.generatorTets.empty()) {
-    addPart(data, VtkSection::PointData, kVtkGeneratorTets, piece, &VtkPiece::generatorTets);
+    addPart<Index>(data, VtkSection::PointData, kVtkGeneratorTets, 1, piece,
+                   &VtkPiece::generatorTets);
   }
-  addPart(data, VtkSection::Points, "Points", piece, &VtkPiece::points);
+  addPart<double>(data, VtkSection::Points, "Points", 3, piece, &VtkPiece::points);
   // 32-bit numbers are signed, since every reader takes those.
   constexpr std::uint64_t kLargestInt32 = std::numeric_limits<std::int32_t>::max();
   const auto addCornersAs =
@@ -127,17 +126,11 @@ VtkDataSet meshDataSet(const VtkPiece& piece, std::uint64_t points, std::uint64_
 }
 
 void addTags(VtkDataSet& data, const HexFeatures& features, std::span<const std::int32_t> regions) {
-  addRows(data, kVtkEdgeTags, features.edges);
-  addRows(data, kVtkQuadTags, features.quads);
-  addVertexTags(data, features.vertices);
-  addRegions(data, regions);
+  addTagsOf(data, features, kVtkQuadTags, features.quads, regions);
 }
 
 void addTags(VtkDataSet& data, const Features& features, std::span<const std::int32_t> regions) {
-  addRows(data, kVtkEdgeTags, features.edges);
-  addRows(data, kVtkTriangleTags, features.faces);
-  addVertexTags(data, features.vertices);
-  addRegions(data, regions);
+  addTagsOf(data, features, kVtkTriangleTags, features.faces, regions);
 }
 
 VtkDataSet hexDataSet(const HexMesh& mesh, std::span<const double> quality, VtkPiece& piece) {

@@ -15,6 +15,9 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/stage.hpp>
+#include <io/core/output_file.hpp>
+
 namespace hexhex {
 
 // VTK's types of cells.
@@ -183,5 +186,12 @@ void addTags(VtkDataSet& data, const Features& features, std::span<const std::in
 /// @param piece, quality  outlive the data set, as the mesh does
 [[nodiscard]] VtkDataSet hexDataSet(const HexMesh& mesh, std::span<const double> quality,
                                     VtkPiece& piece);
+
+/// Writes and commits a file of VTK's XML, array by array. One thread does it, straight from
+/// memory: that is as fast as the file system takes bytes, which lets one thread at a time write to
+/// a file. Blocks of compressed arrays come from all threads; the bytes do not depend on their
+/// number.
+/// @param compress  with zlib, which is there; the output has positions then
+void writeVtkXml(OutputFile& output, const VtkDataSet& data, bool compress, Stage& stage);
 
 }  // namespace hexhex

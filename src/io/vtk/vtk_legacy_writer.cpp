@@ -1,6 +1,7 @@
-// The writing half of vtk_legacy.hpp: a mesh or map in memory is written like a mesh of one piece.
+// Legacy `.vtk` files: a mesh or map in memory is written like a mesh of one piece.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -13,12 +14,12 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/bytes.hpp>
+#include <io/core/cell_mesh.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/writable.hpp>
 #include <io/vtk/vtk.hpp>
-#include <io/vtk/vtk_data_set.hpp>
 
 namespace hexhex {
 namespace {
@@ -63,8 +64,9 @@ struct VtkBigBytes {
   }
 };
 
-/// Writes the sections of a file, in order.
-template <class Numbers>
+/// Writes the sections of a file, in order: of hexahedra, which may come in pieces, or of the tets
+/// of a map.
+template <class Numbers, std::size_t corners = 8>
 class LegacyWriter {
  public:
   LegacyWriter(const std::filesystem::path& file, int threads)
@@ -72,7 +74,7 @@ class LegacyWriter {
 
   /// Everything up to the points.
   /// @throws Error TooLarge for points that 32-bit indices cannot number
-  void begin(std::string_view title, std::uint64_t points) {
+  void begin(std::uint64_t points, std::uint64_t cells) {
     constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
     if (Numbers::kEncoding == VtkBigBytes::kEncoding && points > kMost) {
       throw Error(ErrorCode::TooLarge,
@@ -81,73 +83,84 @@ class LegacyWriter {
                       "suffice for " +
                       std::to_string(points) + " points; write .vtu.");
     }
-    output_.write("# vtk DataFile Version 2.0\n").write(title).write('\n');
+    cellCount_ = cells;
+    output_.write("# vtk DataFile Version 2.0\n");
+    output_.write(corners == 8 ? "hexahedral mesh by hexhex\n" : "integer-grid map by hexhex\n");
     output_.write(Numbers::kEncoding).write("\nDATASET UNSTRUCTURED_GRID\n");
     output_.write("POINTS ").write(points).write(" double\n");
   }
-  /// n rows: row(i) is an array of numbers.
-  template <class Row>
-  void rows(std::size_t n, const Row& row, LoopProgress* progress) {
-    constexpr std::size_t kNumbers = std::tuple_size_v<std::remove_cvref_t<decltype(row(n))>>;
-    lines_.write(
-        n, kNumbers * Numbers::kRoom,
-        [&row](char* place, std::size_t i) { return Numbers::numbers(place, row(i)); }, progress);
+  void points(const PointPiece& piece) {
+    rows(piece.points.size(), [&](std::size_t i) -> const Vec3& { return piece.points[i]; });
   }
-  void points(std::span<const Vec3> points, LoopProgress* progress = nullptr) {
-    rows(
-        points.size(), [points](std::size_t i) -> const Vec3& { return points[i]; }, progress);
-  }
-  void beginCells(std::uint64_t cells, std::size_t corners) {
+  void beginCells() {
     output_.write(Numbers::kEndOfSection);
-    output_.write("CELLS ").write(cells).write(' ').write((corners + 1) * cells).write('\n');
+    output_.write("CELLS ").write(cellCount_);
+    output_.write(' ').write((corners + 1) * cellCount_).write('\n');
   }
-  template <class Vertex, std::size_t corners>
-  void cells(std::span<const std::array<Vertex, corners>> cells, LoopProgress* progress = nullptr) {
+  template <class Vertex>
+  void cells(std::uint64_t /*first*/, std::span<const std::array<Vertex, corners>> cells) {
     lines_.write(
         cells.size(), (corners + 1) * Numbers::kRoom,
-        [cells](char* place, std::size_t i) { return Numbers::cell(place, cells[i]); }, progress);
+        [cells](char* place, std::size_t i) { return Numbers::cell(place, cells[i]); }, progress_);
   }
-  /// All cells are of one type.
-  void types(std::uint64_t cells, std::uint32_t type, LoopProgress* progress = nullptr) {
+  void types() {
     output_.write(Numbers::kEndOfSection);
-    output_.write("CELL_TYPES ").write(cells).write('\n');
-    rows(
-        cells, [type](std::size_t) { return std::array{type}; }, progress);
+    output_.write("CELL_TYPES ").write(cellCount_).write('\n');
+    constexpr auto kType = static_cast<std::uint32_t>(kCellKind<corners>.vtkType);
+    rows(cellCount_, [](std::size_t) { return std::array{kType}; });
     output_.write(Numbers::kEndOfSection);
   }
   /// An array of cells.
   /// @param head  what follows their number
   template <class Row>
-  void cellData(std::uint64_t cells, std::string_view head, const Row& row,
-                LoopProgress* progress = nullptr) {
-    output_.write("CELL_DATA ").write(cells).write(head);
-    rows(cells, row, progress);
+  void cellData(std::string_view head, const Row& row) {
+    output_.write("CELL_DATA ").write(cellCount_).write(head);
+    rows(cellCount_, row);
     output_.write(Numbers::kEndOfSection);
   }
   void commit() { output_.commit(); }
+  void end() {
+    types();
+    commit();
+  }
+
+  /// Everything up to the types of cells. What is written from now on advances the progress.
+  void write(std::span<const Vec3> allPoints, std::span<const std::array<Index, corners>> allCells,
+             LoopProgress& progress) {
+    progress_ = &progress;
+    begin(allPoints.size(), allCells.size());
+    points({0, allPoints, {}, {}});
+    beginCells();
+    cells(0, allCells);
+    types();
+  }
 
  private:
+  /// n rows: row(i) is an array of numbers.
+  template <class Row>
+  void rows(std::size_t n, const Row& row) {
+    constexpr std::size_t kNumbers = std::tuple_size_v<std::remove_cvref_t<decltype(row(n))>>;
+    lines_.write(
+        n, kNumbers * Numbers::kRoom,
+        [&row](char* place, std::size_t i) { return Numbers::numbers(place, row(i)); }, progress_);
+  }
+
   std::string name_;
   OutputFile output_;
   LineWriter lines_;
+  std::uint64_t cellCount_ = 0;
+  LoopProgress* progress_ = nullptr;
 };
-
-constexpr std::string_view kMeshTitle = "hexahedral mesh by hexhex";
 
 template <class Numbers>
 void writeMesh(const HexMesh& mesh, const std::filesystem::path& file,
                const WriteOptions& /*options*/, Context& context) {
   Stage stage(context, "write mesh");
   LegacyWriter<Numbers> writer(file, context.threads());
-  const std::size_t cells = mesh.cells.size();
-  LoopProgress progress(stage, mesh.points.size() + 2 * cells);
-  writer.begin(kMeshTitle, mesh.points.size());
-  writer.points(mesh.points, &progress);
-  writer.beginCells(cells, std::tuple_size_v<Hex>);
-  writer.cells(std::span<const Hex>(mesh.cells), &progress);
-  writer.types(cells, kVtkHexahedron, &progress);
+  LoopProgress progress(stage, mesh.points.size() + 2 * mesh.cells.size() + mesh.regions.size());
+  writer.write(mesh.points, mesh.cells, progress);
   if (!mesh.regions.empty()) {
-    writer.cellData(cells, "\nSCALARS region int 1\nLOOKUP_TABLE default\n",
+    writer.cellData("\nSCALARS region int 1\nLOOKUP_TABLE default\n",
                     [&mesh](std::size_t c) { return std::array{mesh.regions[c]}; });
   }
   writer.commit();
@@ -176,53 +189,16 @@ void writeMap(const TetMap& map, const std::filesystem::path& file, const WriteO
               Context& context) {
   Stage stage(context, "write map");
   const std::string name = encodedName(options.mapArray);
-  LegacyWriter<Numbers> writer(file, context.threads());
+  LegacyWriter<Numbers, 4> writer(file, context.threads());
   withThreads(context.threads(), [&] { requireWritable(map, stage); });
   const std::size_t tets = map.tets.size();
   LoopProgress progress(stage, map.points.size() + 3 * tets);
-  writer.begin("integer-grid map by hexhex", map.points.size());
-  writer.points(map.points, &progress);
-  writer.beginCells(tets, std::tuple_size_v<Tet>);
-  writer.cells(std::span<const Tet>(map.tets), &progress);
-  writer.types(tets, kVtkTet, &progress);
+  writer.write(map.points, map.tets, progress);
   writer.cellData(
-      tets, "\nFIELD FieldData 1\n" + name + " 12 " + std::to_string(tets) + " double\n",
-      [&map](std::size_t t) {
-        std::array<double, 12> numbers;
-        for (std::size_t i = 0; i < numbers.size(); ++i) {
-          numbers[i] = map.parameters[t][i / 3][i % 3];
-        }
-        return numbers;
-      },
-      &progress);
+      "\nFIELD FieldData 1\n" + name + " 12 " + std::to_string(tets) + " double\n",
+      [&map](std::size_t t) { return std::bit_cast<std::array<double, 12>>(map.parameters[t]); });
   writer.commit();
 }
-
-/// Writes a mesh that comes in pieces.
-template <class Numbers>
-class LegacyStream {
- public:
-  LegacyStream(const std::filesystem::path& file, int threads) : writer_(file, threads) {}
-
-  void begin(std::uint64_t points, std::uint64_t cells) {
-    cellCount_ = cells;
-    writer_.begin(kMeshTitle, points);
-  }
-  void points(const PointPiece& piece) { writer_.points(piece.points); }
-  void beginCells() { writer_.beginCells(cellCount_, std::tuple_size_v<Hex>); }
-  template <class Cell>
-  void cells(std::uint64_t /*first*/, std::span<const Cell> cells) {
-    writer_.cells(cells);
-  }
-  void end() {
-    writer_.types(cellCount_, kVtkHexahedron);
-    writer_.commit();
-  }
-
- private:
-  LegacyWriter<Numbers> writer_;
-  std::uint64_t cellCount_ = 0;
-};
 
 }  // namespace
 
@@ -247,12 +223,12 @@ void writeVtkLegacyMapBinary(const TetMap& map, const std::filesystem::path& fil
 }
 
 std::unique_ptr<MeshSink> openVtkLegacySink(const std::filesystem::path& file, Context& context) {
-  return openWriterSink<LegacyStream<VtkText>>(file, context);
+  return openWriterSink<LegacyWriter<VtkText>>(file, context);
 }
 
 std::unique_ptr<MeshSink> openVtkLegacyBinarySink(const std::filesystem::path& file,
                                                   Context& context) {
-  return openWriterSink<LegacyStream<VtkBigBytes>>(file, context);
+  return openWriterSink<LegacyWriter<VtkBigBytes>>(file, context);
 }
 
 }  // namespace hexhex

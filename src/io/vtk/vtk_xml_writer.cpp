@@ -1,12 +1,25 @@
+// VTK's XML files, with the arrays appended as raw bytes: of any data set at once, of meshes also
+// in pieces.
 #include <algorithm>
 #include <bit>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
 #include <string_view>
+#include <tuple>
 
 #include <hexhex/error.hpp>
+#include <hexhex/quality.hpp>
 
 #include <base/parallel.hpp>
+#include <io/core/checked_sink.hpp>
+#include <io/core/output_file.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/core/writable.hpp>
 #include <io/core/zlib_blocks.hpp>
-#include <io/vtk/vtk_xml_writer.hpp>
+#include <io/vtk/vtk.hpp>
+#include <io/vtk/vtk_data_set.hpp>
 
 namespace hexhex {
 namespace {
@@ -222,6 +235,100 @@ void writeCompressed(OutputFile& output, const VtkDataSet& data, int threads,
   output.writeBytesAt(0, head.data(), head.size());
 }
 
+/// Names stand in attributes of tags as they are.
+void requirePlainName(std::string_view name) {
+  const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
+    return c >= ' ' && std::string_view("\"'<>&\x7f").find(c) == std::string_view::npos;
+  });
+  if (plain && !name.empty()) return;
+  throw Error(ErrorCode::InvalidArgument,
+              quoted(name) +
+                  " cannot be the name of an array: it is empty or has one of the "
+                  "characters \" ' < > & or a control character.");
+}
+
+/// Writes a mesh that comes in pieces, which bring some of each array: all arrays are written side
+/// by side, each from its own position on, which follows from the counts alone.
+class VtuStream {
+ public:
+  VtuStream(const std::filesystem::path& file, int /*threads*/) : output_(file) {
+    if (output_.hasPositions()) return;
+    throw Error(ErrorCode::FileWrite,
+                file.string() +
+                    ": the file was not written because it is a device or a pipe, but the arrays "
+                    "of a .vtu file that comes in pieces are written side by side. Name a file.");
+  }
+
+  void begin(std::uint64_t points, std::uint64_t cells) {
+    pointCount_ = points;
+    cellCount_ = cells;
+  }
+  void points(const PointPiece& piece) {
+    piece_ = {.points = piece.points,
+              .generatorTets = piece.generatorTet,
+              .generatorCorners = piece.generatorCorners};
+    beginFile();
+    writeRows(true);
+  }
+  void beginCells() { beginFile(); }  // there may be no vertices
+  template <class Cell>
+  void cells(std::uint64_t first, std::span<const Cell> cells) {
+    piece_ = {};
+    piece_.setCells(first, cells);
+    writeRows(false);
+  }
+  void end() {
+    for (FilePart& part : parts_) part.flush();
+    output_.writeBytesAt(end_, kTail.data(), kTail.size());
+    output_.commit();
+  }
+
+ private:
+  /// Only the first piece tells which arrays there are, and so where they begin.
+  void beginFile() {
+    if (data_) return;
+    data_.emplace(
+        meshDataSet(piece_, pointCount_, cellCount_, std::tuple_size_v<Hex>, kVtkHexahedron));
+    std::vector<std::uint64_t> positions;
+    const std::string head = plainHead(*data_, positions);
+    output_.writeBytesAt(0, head.data(), head.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const std::uint64_t bytes = data_->arrays()[i].bytes;
+      output_.writeBytesAt(positions[i] - sizeof(bytes), &bytes, sizeof(bytes));
+      parts_.emplace_back(output_, positions[i]);
+      end_ = positions[i] + bytes;
+    }
+  }
+  /// Writes the next rows of the arrays of points, or of cells.
+  void writeRows(bool ofPoints) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const VtkArray& array = data_->arrays()[i];
+      const bool isOfPoints =
+          array.section == VtkSection::PointData || array.section == VtkSection::Points;
+      if (isOfPoints != ofPoints) continue;
+      array.write(
+          [&part = parts_[i]](const void* from, std::size_t size) { part.writeBytes(from, size); });
+    }
+  }
+
+  OutputFile output_;
+  std::uint64_t pointCount_ = 0;
+  std::uint64_t cellCount_ = 0;
+  VtkPiece piece_;
+  std::optional<VtkDataSet> data_;
+  std::vector<FilePart> parts_;  ///< of the arrays
+  std::uint64_t end_ = 0;        ///< of the last array
+};
+
+/// The head of a compressed file is written last.
+void requireCompressible(const OutputFile& output, const std::filesystem::path& file) {
+  if (output.hasPositions()) return;
+  throw Error(ErrorCode::FileWrite,
+              file.string() +
+                  ": the file was not written because it is a device or a pipe, to which no "
+                  "compressed .vtu file can be written. Name a file.");
+}
+
 }  // namespace
 
 void writeVtkXml(OutputFile& output, const VtkDataSet& data, bool compress, Stage& stage) {
@@ -237,48 +344,39 @@ void writeVtkXml(OutputFile& output, const VtkDataSet& data, bool compress, Stag
   output.commit();
 }
 
-void requireCompressible(const OutputFile& output, const std::string& fileName) {
-  if (!hasZlib()) {
-    throw Error(ErrorCode::FileUnsupported,
-                fileName +
-                    ": this program was built without zlib and cannot compress files. Write the "
-                    "file without compression.");
-  }
-  if (output.hasPositions()) return;
-  throw Error(ErrorCode::FileWrite,
-              fileName +
-                  ": the file was not written because it is a device or a pipe, to which no "
-                  "compressed .vtu file can be written. Name a file.");
+void writeVtu(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+              Context& context) {
+  OutputFile output(file);  // first, so that a folder that is not writable shows at once
+  if (options.compress) requireCompressible(output, file);
+  Array<double> computedQuality;
+  std::span<const double> quality = options.scaledJacobians;
+  if (quality.empty()) quality = computedQuality = scaledJacobians(mesh, context);
+  Stage stage(context, "write mesh");
+  VtkPiece piece;
+  writeVtkXml(output, hexDataSet(mesh, quality, piece), options.compress, stage);
 }
 
-VtkXmlPieces::VtkXmlPieces(OutputFile& output, const VtkDataSet& data)
-    : output_(output), data_(data) {
-  std::vector<std::uint64_t> positions;
-  const std::string head = plainHead(data, positions);
-  output_.writeBytesAt(0, head.data(), head.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const std::uint64_t bytes = data.arrays()[i].bytes;
-    output_.writeBytesAt(positions[i] - sizeof(bytes), &bytes, sizeof(bytes));
-    parts_.emplace_back(output_, positions[i]);
-    end_ = positions[i] + bytes;
-  }
+void writeVtuMap(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
+                 Context& context) {
+  Stage stage(context, "write map");
+  requirePlainName(options.mapArray);
+  OutputFile output(file);
+  if (options.compress) requireCompressible(output, file);
+  withThreads(context.threads(), [&] { requireWritable(map, stage); });
+  VtkPiece piece{.points = map.points};
+  piece.setCells(0, std::span<const Tet>(map.tets));
+  VtkDataSet data =
+      meshDataSet(piece, map.points.size(), map.tets.size(), std::tuple_size_v<Tet>, kVtkTet);
+  addTags(data, map.features, map.regions);
+  data.add<double>(VtkSection::CellData, options.mapArray, 12, data.cells,
+                   [&map](const VtkBytes& bytes) {
+                     bytes(map.parameters.data(), map.parameters.size() * sizeof(TetParameters));
+                   });
+  writeVtkXml(output, data, options.compress, stage);
 }
 
-void VtkXmlPieces::writeRows(bool ofPoints) {
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const VtkArray& array = data_.arrays()[i];
-    const bool isOfPoints =
-        array.section == VtkSection::PointData || array.section == VtkSection::Points;
-    if (isOfPoints != ofPoints) continue;
-    array.write(
-        [&part = parts_[i]](const void* from, std::size_t size) { part.writeBytes(from, size); });
-  }
-}
-
-void VtkXmlPieces::finish() {
-  for (FilePart& part : parts_) part.flush();
-  output_.writeBytesAt(end_, kTail.data(), kTail.size());
-  output_.commit();
+std::unique_ptr<MeshSink> openVtuSink(const std::filesystem::path& file, Context& context) {
+  return openWriterSink<VtuStream>(file, context);
 }
 
 }  // namespace hexhex
