@@ -15,15 +15,6 @@ namespace {
 
 constexpr std::size_t kGrain = std::size_t{1} << 14;  // a fraction of a millisecond's work
 
-/// The first cell with a corner that is no vertex, or the number of cells.
-template <class Cell>
-std::size_t firstOutOfRange(std::span<const Cell> cells, std::uint64_t pointCount, Stage& stage) {
-  const auto isInRange = [&](std::size_t c) {
-    return *std::max_element(cells[c].begin(), cells[c].end()) < pointCount;
-  };
-  return firstFault(stage, cells.size(), isInRange, kGrain);
-}
-
 std::string numbers(std::uint64_t first, std::uint64_t size) {
   return std::to_string(size) + " from number " + std::to_string(first) + " on";
 }
@@ -89,9 +80,13 @@ bool SinkCalls::beginsCells() {
 template <class Cell>
 void SinkCalls::cells(std::uint64_t first, std::span<const Cell> cells) {
   requireNext("cells", first, cells.size(), nextCell_, cellCount_);
+  const auto isInRange = [&](std::size_t c) {
+    return *std::max_element(cells[c].begin(), cells[c].end()) < pointCount_;
+  };
   Stage stage(quiet_, "check");
   std::size_t wrong = 0;
-  withThreadsHere(quiet_.threads(), [&] { wrong = firstOutOfRange(cells, pointCount_, stage); });
+  withThreadsHere(quiet_.threads(),
+                  [&] { wrong = firstFault(stage, cells.size(), isInRange, kGrain); });
   if (wrong < cells.size()) {
     throw Error(ErrorCode::InvalidArgument,
                 name_ + ": a corner of cell " + std::to_string(first + wrong) +

@@ -175,15 +175,9 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage) {
   for (std::size_t i = 0; i < mesh.features.edges.size(); ++i) {
     requireVertices(mesh, mesh.features.edges[i].vertices, "edge", i);
   }
-  TaggedQuads found = findQuads(mesh, patchAngle, stage);
+  const TaggedQuads found = findQuads(mesh, patchAngle, stage);
   const Array<std::size_t> order = orderByTag(found.tags);
   QuadGroups result{{groupsOf(found.tags, order, {found.kind}), {}}, {}};
-  // The usual case: one group, in order.
-  if (result.groups.size() <= 1) {
-    result.elements = std::move(found.quads);
-    result.places = std::move(found.places);
-    return result;
-  }
   result.elements.resize(order.size());
   result.places.resize(order.size());
   parallelFor(stage, order.size(), kGrain, [&](std::size_t i) {
@@ -222,44 +216,30 @@ void requireInt32(std::size_t count, const std::string& numbers, const std::stri
                                        std::to_string(count) + "; " + instead + ".");
 }
 
-namespace {
-
-/// @param groups  all of the same kind of elements
-std::uint32_t referenceOf(const ElementGroup& group, std::size_t groups, Untagged untagged) {
-  return untagged == Untagged::Zero && group.tag == 0 && groups > 1 ? 0 : group.number;
-}
-
-}  // namespace
-
 Array<std::uint32_t> cellReferences(const HexMesh& mesh, Untagged untagged) {
   if (mesh.regions.empty()) return {};
   const CellGroups groups = groupCells(mesh);
+  const Array<std::uint32_t> numbers = groupNumbers(groups.groups, untagged);
   Array<std::uint32_t> references(mesh.cells.size());
-  for (const ElementGroup& group : groups.groups) {
-    const std::uint32_t reference = referenceOf(group, groups.groups.size(), untagged);
-    for (std::size_t i = group.begin; i < group.end; ++i) references[groups.at(i)] = reference;
-  }
+  for (std::size_t i = 0; i < numbers.size(); ++i) references[groups.at(i)] = numbers[i];
   return references;
 }
 
 Array<std::uint32_t> vertexReferences(const HexMesh& mesh, const VertexGroups& groups) {
   if (groups.elements.empty()) return {};
+  const Array<std::uint32_t> numbers = groupNumbers(groups.groups);
   Array<std::uint32_t> references(mesh.points.size());
   std::fill(references.begin(), references.end(), 0U);
-  for (const ElementGroup& group : groups.groups) {
-    for (std::size_t i = group.begin; i < group.end; ++i) {
-      references[groups.elements[i][0]] = group.number;
-    }
-  }
+  for (std::size_t i = 0; i < numbers.size(); ++i) references[groups.elements[i][0]] = numbers[i];
   return references;
 }
 
 Array<std::uint32_t> groupNumbers(const std::vector<ElementGroup>& groups, Untagged untagged) {
   Array<std::uint32_t> numbers(groups.empty() ? 0 : groups.back().end);
   for (const ElementGroup& group : groups) {
+    const bool zero = untagged == Untagged::Zero && group.tag == 0 && groups.size() > 1;
     std::fill(numbers.begin() + static_cast<std::ptrdiff_t>(group.begin),
-              numbers.begin() + static_cast<std::ptrdiff_t>(group.end),
-              referenceOf(group, groups.size(), untagged));
+              numbers.begin() + static_cast<std::ptrdiff_t>(group.end), zero ? 0 : group.number);
   }
   return numbers;
 }

@@ -225,8 +225,8 @@ class BinarySource : public LittleEndianNumbers<BinarySource> {
   /// There is room for so many.
   template <class F>
   void records(std::size_t n, RecordShape shape, const F& f) {
-    std::size_t wrong =
-        firstUnreadable(*stage_, n, [&](std::size_t /*begin*/, std::size_t end, std::size_t& i) {
+    std::size_t wrong = firstUnreadable(
+        *stage_, n, kElementGrain, [&](std::size_t /*begin*/, std::size_t end, std::size_t& i) {
           readRecords(i, end, shape, f);
         });
     if (wrong < n) readRecords(wrong, wrong + 1, shape, f);

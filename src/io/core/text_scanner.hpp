@@ -205,21 +205,22 @@ class TextScanner {
 inline constexpr std::size_t kElementGrain = 1024;
 
 /// Calls read(begin, end, i), which reads elements [begin, end) and counts i up from begin, for all
-/// elements of [0, n), in parallel. At an element that is wrong it stops or throws an Error.
+/// elements of [0, n), in parallel and at most `grain` in a go. At an element that is wrong it
+/// stops or throws an Error.
 /// @return the first element that is wrong, or n
 template <class Read>
-[[nodiscard]] std::size_t firstUnreadable(Stage& stage, std::size_t n, const Read& read) {
+[[nodiscard]] std::size_t firstUnreadable(Stage& stage, std::size_t n, std::size_t grain,
+                                          const Read& read) {
   std::atomic<std::size_t> firstWrong{n};
-  parallelBlocks(stage, n, kElementGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   if (begin > firstWrong.load(std::memory_order_relaxed)) return;
-                   std::size_t i = begin;
-                   try {
-                     read(begin, end, i);
-                   } catch (const Error&) {  // element i is wrong, and told about by the caller
-                   }
-                   if (i < end) lowerTo(i, firstWrong);
-                 });
+  parallelBlocks(stage, n, grain, [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+    if (begin > firstWrong.load(std::memory_order_relaxed)) return;
+    std::size_t i = begin;
+    try {
+      read(begin, end, i);
+    } catch (const Error&) {  // element i is wrong, and told about by the caller
+    }
+    if (i < end) lowerTo(i, firstWrong);
+  });
   return firstWrong;
 }
 
@@ -246,8 +247,8 @@ void readElements(TextScanner& scanner, const TokenIndex* index, Stage& stage, s
   const auto moveTo = [&](TextScanner& moved, std::size_t element) {
     moved.moveTo(index->find(firstToken + element * tokensEach));
   };
-  const std::size_t wrong =
-      firstUnreadable(stage, complete, [&](std::size_t begin, std::size_t end, std::size_t& i) {
+  const std::size_t wrong = firstUnreadable(
+      stage, complete, kElementGrain, [&](std::size_t begin, std::size_t end, std::size_t& i) {
         TextScanner local = scanner;
         moveTo(local, begin);
         for (; i < end; ++i) read(local, i);

@@ -22,31 +22,29 @@ std::string decodedVtkName(std::string_view token) {
   return name;
 }
 
-bool isReal(VtkScalar scalar) {
-  return scalar == VtkScalar::Float32 || scalar == VtkScalar::Float64;
-}
+bool isReal(VtkScalar scalar) { return isOf<float>(scalar) || isOf<double>(scalar); }
 
 }  // namespace
 
 // The first three are those that a file need not tell. Bits and strings are no numbers, and never
 // wanted.
 const std::array<VtkLegacyFile::NumberType, 16> VtkLegacyFile::kTypes = {
-    {{"int", VtkScalar::Int32},
-     {"float", VtkScalar::Float32},
-     {"unsigned_char", VtkScalar::UInt8},
-     {"double", VtkScalar::Float64},
-     {"vtktypeint64", VtkScalar::Int64},
-     {"vtkidtype", VtkScalar::Int32},
-     {"vtktypeint32", VtkScalar::Int32},
-     {"long", VtkScalar::Int64},
-     {"unsigned_int", VtkScalar::UInt32},
-     {"unsigned_long", VtkScalar::UInt64},
-     {"vtktypeuint64", VtkScalar::UInt64},
-     {"short", VtkScalar::Int16},
-     {"unsigned_short", VtkScalar::UInt16},
-     {"char", VtkScalar::Int8},
-     {"bit", VtkScalar::UInt8},
-     {"string", VtkScalar::UInt8}}};
+    {{"int", std::int32_t{}},
+     {"float", float{}},
+     {"unsigned_char", std::uint8_t{}},
+     {"double", double{}},
+     {"vtktypeint64", std::int64_t{}},
+     {"vtkidtype", std::int32_t{}},
+     {"vtktypeint32", std::int32_t{}},
+     {"long", std::int64_t{}},
+     {"unsigned_int", std::uint32_t{}},
+     {"unsigned_long", std::uint64_t{}},
+     {"vtktypeuint64", std::uint64_t{}},
+     {"short", std::int16_t{}},
+     {"unsigned_short", std::uint16_t{}},
+     {"char", std::int8_t{}},
+     {"bit", std::uint8_t{}},
+     {"string", std::uint8_t{}}}};
 
 VtkLegacyFile::VtkLegacyFile(std::string_view text, const std::string& fileName, Stage& stage)
     : VtkSource(ByteFile(text, fileName), fileName),
@@ -351,7 +349,7 @@ VtkColumn VtkLegacyFile::readNumbers(std::size_t count, const NumberType& type, 
 }
 
 VtkColumn VtkLegacyFile::readIntegers(std::size_t count, const NumberType& type, const char* what) {
-  if (type.scalar != VtkScalar::Int32 && type.scalar != VtkScalar::Int64) {
+  if (!isOf<std::int32_t>(type.scalar) && !isOf<std::int64_t>(type.scalar)) {
     scanner_.fail(ErrorCode::FileUnsupported, std::string(what) + " cannot be of type " +
                                                   std::string(type.name) +
                                                   ", only int or vtktypeint64.");

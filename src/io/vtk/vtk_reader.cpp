@@ -1,6 +1,5 @@
 // Points and cells, a range at a time, checked; and meshes and maps of them.
 #include <algorithm>
-#include <atomic>
 #include <type_traits>
 
 #include <hexhex/stream.hpp>
@@ -19,16 +18,11 @@ constexpr std::size_t kGrain = std::size_t{1} << 13;
 /// of the first block is thrown.
 template <class F>
 void forEachBlock(Stage& stage, std::size_t n, const F& f) {
-  std::atomic<std::size_t> firstWrong{n};
-  parallelBlocks(stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    if (begin > firstWrong.load(std::memory_order_relaxed)) return;
-    try {
-      f(begin, end, block);
-    } catch (const Error&) {
-      lowerTo(begin, firstWrong);
-    }
-  });
-  const std::size_t begin = firstWrong;
+  const std::size_t begin =
+      firstUnreadable(stage, n, kGrain, [&](std::size_t first, std::size_t end, std::size_t& i) {
+        f(first, end, first / kGrain);
+        i = end;
+      });
   if (begin < n) f(begin, std::min(begin + kGrain, n), begin / kGrain);  // throws again
 }
 
@@ -99,7 +93,7 @@ class CellTable {
 bool copyVertices(const VtkSource& source, std::size_t corners, std::uint64_t begin,
                   std::span<Index> vertices) {
   const VtkScalar scalar = source.connectivity.scalar;
-  const bool narrow = scalar == VtkScalar::Int32 || scalar == VtkScalar::UInt32;
+  const bool narrow = isOf<std::int32_t>(scalar) || isOf<std::uint32_t>(scalar);
   if (!narrow || source.points > kNone) return false;
   if (source.gap == 0) {
     source.copy(source.connectivity, begin, vertices.size(), vertices.data());

@@ -7,34 +7,6 @@
 namespace hexhex {
 namespace {
 
-/// Calls f with a number of the type.
-template <class F>
-auto visitScalar(VtkScalar scalar, const F& f) {
-  switch (scalar) {
-    case VtkScalar::Int8:
-      return f(std::int8_t{});
-    case VtkScalar::UInt8:
-      return f(std::uint8_t{});
-    case VtkScalar::Int16:
-      return f(std::int16_t{});
-    case VtkScalar::UInt16:
-      return f(std::uint16_t{});
-    case VtkScalar::Int32:
-      return f(std::int32_t{});
-    case VtkScalar::UInt32:
-      return f(std::uint32_t{});
-    case VtkScalar::Int64:
-      return f(std::int64_t{});
-    case VtkScalar::UInt64:
-      return f(std::uint64_t{});
-    case VtkScalar::Float32:
-      return f(float{});
-    case VtkScalar::Float64:
-      break;
-  }
-  return f(double{});
-}
-
 /// The number at a place of any alignment. Only numbers of 4 and 8 bytes come with the largest byte
 /// first.
 template <class T, bool bigEndian>
@@ -51,7 +23,7 @@ T loadNumber(const char* place) {
 /// Numbers one after the other, as they are stored, into an array of T.
 template <class T>
 void convert(const VtkColumn& column, const char* from, std::size_t count, T* to) {
-  visitScalar(column.scalar, [&](auto zero) {
+  const auto convertFrom = [&](auto zero) {
     const auto all = [&](auto bigEndian) {
       using Stored = decltype(zero);
       for (std::size_t i = 0; i < count; ++i) {
@@ -61,25 +33,25 @@ void convert(const VtkColumn& column, const char* from, std::size_t count, T* to
     };
     if (column.bigEndian) return all(std::true_type{});
     all(std::false_type{});
-  });
+  };
+  std::visit(convertFrom, column.scalar);
 }
 
 /// Whether numbers in memory have the bytes of the stored ones, so that they need not be converted.
 template <class T>
 bool isStoredAs(const VtkColumn& column) {
   if (column.bigEndian) return false;
-  if constexpr (std::is_same_v<T, double>) return column.scalar == VtkScalar::Float64;
-  if constexpr (std::is_same_v<T, std::int64_t>) return column.scalar == VtkScalar::Int64;
   if constexpr (std::is_same_v<T, Index>) {
-    return column.scalar == VtkScalar::Int32 || column.scalar == VtkScalar::UInt32;
+    return isOf<std::int32_t>(column.scalar) || isOf<std::uint32_t>(column.scalar);
+  } else {
+    return isOf<T>(column.scalar);
   }
-  return false;
 }
 
 }  // namespace
 
-std::size_t bytesOf(VtkScalar scalar) noexcept {
-  return visitScalar(scalar, [](auto zero) { return sizeof(zero); });
+std::size_t bytesOf(const VtkScalar& scalar) {
+  return std::visit([](auto zero) { return sizeof(zero); }, scalar);
 }
 
 const VtkSourceArray* VtkSource::find(VtkSection section, std::string_view name,
@@ -123,7 +95,7 @@ void VtkSource::see(std::string_view name, bool ofCells, std::size_t components)
 
 VtkColumn textColumn(VtkNumbers numbers, std::size_t count) {
   VtkColumn column;
-  column.scalar = numbers == VtkNumbers::Reals ? VtkScalar::Float64 : VtkScalar::Int64;
+  column.scalar = numbers == VtkNumbers::Reals ? VtkScalar(double{}) : VtkScalar(std::int64_t{});
   column.count = count;
   column.decoded.resize(count * sizeof(double));
   return column;

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <variant>
 #include <vector>
 
 #include <hexhex/error.hpp>
@@ -22,21 +23,16 @@
 
 namespace hexhex {
 
-/// The number types that are read.
-enum class VtkScalar : std::uint8_t {
-  Int8,
-  UInt8,
-  Int16,
-  UInt16,
-  Int32,
-  UInt32,
-  Int64,
-  UInt64,
-  Float32,
-  Float64
-};
+/// The number types that are read: a zero of the type.
+using VtkScalar =
+    std::variant<double, float, std::int8_t, std::uint8_t, std::int16_t, std::uint16_t,
+                 std::int32_t, std::uint32_t, std::int64_t, std::uint64_t>;
 
-[[nodiscard]] std::size_t bytesOf(VtkScalar scalar) noexcept;
+template <class T>
+[[nodiscard]] constexpr bool isOf(const VtkScalar& scalar) noexcept {
+  return std::holds_alternative<T>(scalar);
+}
+[[nodiscard]] std::size_t bytesOf(const VtkScalar& scalar);
 
 /// What numbers are needed as. Arrays of others, like strings, are never needed.
 enum class VtkNumbers : std::uint8_t { Integers, Reals, Others };
@@ -61,7 +57,7 @@ template <class T>
 
 /// Where the numbers of an array are, and how they are stored.
 struct VtkColumn {
-  VtkScalar scalar = VtkScalar::Float64;
+  VtkScalar scalar = {};
   bool bigEndian = false;  ///< the largest byte first; otherwise in this machine's order
   std::uint64_t count = 0;
   std::uint64_t position = 0;  ///< in the file, or in `decoded`

@@ -94,8 +94,8 @@ const VtkSourceArray* findRegions(const VtkSource& source) {
 }  // namespace
 
 VtkGenerators findVtkGenerators(const VtkSource& source) {
-  return {findGenerators(source, kVtkGeneratorTets, VtkScalar::UInt32),
-          findGenerators(source, kVtkGeneratorCorners, VtkScalar::UInt8)};
+  return {findGenerators(source, kVtkGeneratorTets, std::uint32_t{}),
+          findGenerators(source, kVtkGeneratorCorners, std::uint8_t{})};
 }
 
 void readVtkGenerators(const VtkSource& source, Array<Index>& tets, Array<CornerSet>& corners) {

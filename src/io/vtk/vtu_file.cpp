@@ -23,16 +23,16 @@ constexpr std::array<std::pair<std::string_view, VtkSection>, 5> kSections = {
      {"Cells", VtkSection::Cells}}};
 
 constexpr std::array<std::pair<std::string_view, VtkScalar>, 10> kScalars = {
-    {{"Int8", VtkScalar::Int8},
-     {"UInt8", VtkScalar::UInt8},
-     {"Int16", VtkScalar::Int16},
-     {"UInt16", VtkScalar::UInt16},
-     {"Int32", VtkScalar::Int32},
-     {"UInt32", VtkScalar::UInt32},
-     {"Int64", VtkScalar::Int64},
-     {"UInt64", VtkScalar::UInt64},
-     {"Float32", VtkScalar::Float32},
-     {"Float64", VtkScalar::Float64}}};
+    {{"Int8", std::int8_t{}},
+     {"UInt8", std::uint8_t{}},
+     {"Int16", std::int16_t{}},
+     {"UInt16", std::uint16_t{}},
+     {"Int32", std::int32_t{}},
+     {"UInt32", std::uint32_t{}},
+     {"Int64", std::int64_t{}},
+     {"UInt64", std::uint64_t{}},
+     {"Float32", float{}},
+     {"Float64", double{}}}};
 
 /// What a table has under a name; null if it has nothing.
 template <class Table>
@@ -241,7 +241,8 @@ std::uint64_t VtuFile::findAppended(const XmlTag& tag, VtkColumn& column) const 
   const std::uint64_t room = appended_ ? fileSize_ - *appended_ : 0;
   if (offset <= room && room - offset >= lengthBytes_) {
     VtkColumn length;
-    length.scalar = lengthBytes_ == sizeof(std::uint64_t) ? VtkScalar::UInt64 : VtkScalar::UInt32;
+    length.scalar = lengthBytes_ == sizeof(std::uint64_t) ? VtkScalar(std::uint64_t{})
+                                                          : VtkScalar(std::uint32_t{});
     length.position = *appended_ + offset;
     std::int64_t bytes = 0;
     copy(length, 0, 1, &bytes);
