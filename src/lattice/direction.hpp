@@ -13,8 +13,6 @@ inline constexpr int kDirections = 6;
 
 [[nodiscard]] constexpr int axisOf(Direction d) noexcept { return d >> 1; }
 [[nodiscard]] constexpr int signOf(Direction d) noexcept { return (d & 1) != 0 ? -1 : 1; }
-/// 1 against the axis, 0 along it: for arithmetic where a branch would be a guess.
-[[nodiscard]] constexpr unsigned descends(Direction d) noexcept { return d & 1U; }
 [[nodiscard]] constexpr Direction opposite(Direction d) noexcept {
   return static_cast<Direction>(d ^ 1);
 }

@@ -28,7 +28,7 @@ int orientation(const LatticePoint& a, const LatticePoint& b, const LatticePoint
   const LatticePoint v = c - a;
   const LatticePoint w = d - a;
   const RoundedDeterminant determinant(rounded(u), rounded(v), rounded(w));
-  if (!determinant.hasCertainSign()) {
+  if (!determinant.hasCertifiedSign()) {
     // Coordinates of special places often have few bits, or are the same.
     const std::int64_t bits = u[0] | u[1] | u[2] | v[0] | v[1] | v[2] | w[0] | w[1] | w[2];
     if (determinant.magnitude >= exactBelow(bits)) {

@@ -95,8 +95,8 @@ struct RoundedDeterminant {
       magnitude += (std::abs(first) + std::abs(second)) * std::abs(w[axis]);
     }
   }
-  /// If components carry one rounding each.
-  [[nodiscard]] bool hasCertainSign() const noexcept {
+  /// Whether the sign is certified, if components carry at most one rounding each.
+  [[nodiscard]] bool hasCertifiedSign() const noexcept {
     // Each of the six products of three factors carries three roundings of its factors, two
     // multiplications, and up to three additions: at most 8 roundings of relative size 2^-53, hence
     // an error below 8.1 * 2^-53 < 2^-49 times the sum of magnitudes, which itself is computed to
@@ -114,14 +114,6 @@ struct RoundedDeterminant {
   // 2^(52 + 3 e) for multiples of 2^e.
   const int e = std::countr_zero(static_cast<std::uint64_t>(bits));
   return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + 52 + 3 * e) << 52);
-}
-
-/// det(u, v, w) in floating point if its sign is certain, otherwise 0.
-/// @param u,v,w  components may carry one rounding each
-[[nodiscard]] inline double certainDeterminant(const Vec3& u, const Vec3& v,
-                                               const Vec3& w) noexcept {
-  const RoundedDeterminant determinant(u, v, w);
-  return determinant.hasCertainSign() ? determinant.value : 0;
 }
 
 /// Sign of orientationDeterminant(): a floating-point filter, then exact arithmetic.

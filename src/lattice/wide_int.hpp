@@ -10,17 +10,10 @@ __extension__ using UInt128 = unsigned __int128;
 
 [[nodiscard]] constexpr int sign(Int128 a) noexcept { return a > 0 ? 1 : (a < 0 ? -1 : 0); }
 
-/// Correctly rounded, as a conversion, but in halves: compilers convert 64 bits by a jump that
-/// depends on the highest one, which in the lower half of a number is as good as random.
-[[nodiscard]] constexpr double toDouble(std::uint64_t value) noexcept {
-  return static_cast<double>(static_cast<std::int64_t>(value >> 32)) * 0x1p32 +
-         static_cast<double>(static_cast<std::int64_t>(value & 0xffffffffU));
-}
-
 /// A number that is not negative, rounded twice: to within 2^-52 of its value.
 [[nodiscard]] constexpr double toDouble(Int128 value) noexcept {
   return static_cast<double>(static_cast<std::int64_t>(value >> 64)) * 0x1p64 +
-         toDouble(static_cast<std::uint64_t>(value));
+         static_cast<double>(static_cast<std::uint64_t>(value));
 }
 
 /// The same for any number.
