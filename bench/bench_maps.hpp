@@ -27,7 +27,7 @@ struct BenchMap {
 /// cells at scale 1.
 [[nodiscard]] const std::vector<BenchMap>& scalableMaps();
 
-/// Maps on which ways of working are compared: those of benchMaps() without a million tets, and the
+/// Maps of the ablation: those of benchMaps() without a million tets, and the
 /// generated one of scalableMaps() at a large scale.
 [[nodiscard]] const std::vector<BenchMap>& ablationMaps();
 

@@ -216,8 +216,8 @@ double timeRuns(benchmark::State& state, const std::string& name, const std::fil
   return total;
 }
 
-/// A format and how it is written.
-struct Way {
+/// A format, compressed or not.
+struct FormatVariant {
   std::string format;
   bool compress = false;
 
@@ -269,13 +269,13 @@ void timeReading(benchmark::State& state, const std::filesystem::path& file, con
       state, "read " + file.string(), file, [](std::uint64_t /*bytes*/) {}, f);
 }
 
-void writing(benchmark::State& state, const Way& way, int threads) {
-  const BenchMesh& mesh = way.mesh();
-  timeWriting(state, "mesh " + way.name(),
+void writing(benchmark::State& state, const FormatVariant& variant, int threads) {
+  const BenchMesh& mesh = variant.mesh();
+  timeWriting(state, "mesh " + variant.name(),
               mesh.extractionSeconds[static_cast<std::size_t>(threads)],
               [&](const std::filesystem::path& file) {
                 Context context(threads);
-                WriteOptions options = way.writing();
+                WriteOptions options = variant.writing();
                 options.scaledJacobians = mesh.quality;
                 writeHexMesh(mesh.mesh, file, options, context);
               });
@@ -289,41 +289,41 @@ std::filesystem::path sourceOf(const BenchMesh& mesh) {
 }
 
 /// Through a sink: reads the mesh piece by piece from a file that a benchmark before has written.
-void copyingInPieces(benchmark::State& state, const Way& way, int threads) {
-  const std::filesystem::path source = sourceOf(way.mesh());
-  timeWriting(state, "copy " + way.name(), 0, [&](const std::filesystem::path& file) {
+void copyingInPieces(benchmark::State& state, const FormatVariant& variant, int threads) {
+  const std::filesystem::path source = sourceOf(variant.mesh());
+  timeWriting(state, "copy " + variant.name(), 0, [&](const std::filesystem::path& file) {
     Context context(threads);
-    readHexMeshTo(*openMeshSink(file, way.writing(), context), source, context);
+    readHexMeshTo(*openMeshSink(file, variant.writing(), context), source, context);
   });
 }
 
-void readingMap(benchmark::State& state, const Way& way, int threads) {
-  const std::filesystem::path file = folder() / ("map-" + way.name());
+void readingMap(benchmark::State& state, const FormatVariant& variant, int threads) {
+  const std::filesystem::path file = folder() / ("map-" + variant.name());
   Context writing;
-  if (!std::filesystem::exists(file)) writeMap(load(middleMap()), file, way.writing(), writing);
+  if (!std::filesystem::exists(file)) writeMap(load(middleMap()), file, variant.writing(), writing);
   timeReading(state, file, [&](const std::filesystem::path& path) {
     Context context(threads);
-    benchmark::DoNotOptimize(readMap(path, way.reading(), context).tets.data());
+    benchmark::DoNotOptimize(readMap(path, variant.reading(), context).tets.data());
   });
 }
 
-void writingMap(benchmark::State& state, const Way& way, int threads) {
+void writingMap(benchmark::State& state, const FormatVariant& variant, int threads) {
   const TetMap& map = load(middleMap());
-  timeWriting(state, "map " + way.name(), 0, [&](const std::filesystem::path& file) {
+  timeWriting(state, "map " + variant.name(), 0, [&](const std::filesystem::path& file) {
     Context context(threads);
-    writeMap(map, file, way.writing(), context);
+    writeMap(map, file, variant.writing(), context);
   });
 }
 
-void readingMesh(benchmark::State& state, const Way& way, int threads) {
-  const std::filesystem::path file = folder() / ("source-" + way.name());
+void readingMesh(benchmark::State& state, const FormatVariant& variant, int threads) {
+  const std::filesystem::path file = folder() / ("source-" + variant.name());
   Context writing;
   if (!std::filesystem::exists(file)) {
-    writeHexMesh(way.mesh().mesh, file, way.writing(), writing);
+    writeHexMesh(variant.mesh().mesh, file, variant.writing(), writing);
   }
   timeReading(state, file, [&](const std::filesystem::path& path) {
     Context context(threads);
-    benchmark::DoNotOptimize(readHexMesh(path, way.reading(), context).cells.data());
+    benchmark::DoNotOptimize(readHexMesh(path, variant.reading(), context).cells.data());
   });
 }
 
@@ -381,27 +381,29 @@ void writingPlainly(benchmark::State& state) {
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(kBytes));
 }
 
-void addFormat(const FileFormat& format, const Way& way) {
-  const std::string name = way.name();
+void addFormat(const FileFormat& format, const FormatVariant& variant) {
+  const std::string name = variant.name();
   if (format.writesHexMeshes) {
-    add("write_" + name, way.map(),
-        [way](benchmark::State& state, int threads) { writing(state, way, threads); });
+    add("write_" + name, variant.map(),
+        [variant](benchmark::State& state, int threads) { writing(state, variant, threads); });
   }
   if (format.readsHexMeshes && format.writesHexMeshes) {
-    add("read_" + name, way.map(),
-        [way](benchmark::State& state, int threads) { readingMesh(state, way, threads); });
+    add("read_" + name, variant.map(),
+        [variant](benchmark::State& state, int threads) { readingMesh(state, variant, threads); });
   }
-  if (format.streams && !way.compress) {
-    add("copy_in_pieces_to_" + name, way.map(),
-        [way](benchmark::State& state, int threads) { copyingInPieces(state, way, threads); });
+  if (format.streams && !variant.compress) {
+    add("copy_in_pieces_to_" + name, variant.map(),
+        [variant](benchmark::State& state, int threads) {
+          copyingInPieces(state, variant, threads);
+        });
   }
   if (format.writesMaps) {
     add("write_map_" + name, middleMap(),
-        [way](benchmark::State& state, int threads) { writingMap(state, way, threads); });
+        [variant](benchmark::State& state, int threads) { writingMap(state, variant, threads); });
   }
   if (format.readsMaps && format.writesMaps) {
     add("read_map_" + name, middleMap(),
-        [way](benchmark::State& state, int threads) { readingMap(state, way, threads); });
+        [variant](benchmark::State& state, int threads) { readingMap(state, variant, threads); });
   }
 }
 

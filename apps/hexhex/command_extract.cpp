@@ -327,7 +327,7 @@ int run(const Arguments& arguments) {
 void addRepairOptions(CLI::App& parser, Arguments& arguments) {
   parser
       .add_option("--repair", arguments.options.repair,
-                  "auto: mend flipped and flat tets of the map first, with a\n"
+                  "auto: repair flipped and flat tets of the map first, with a\n"
                   "notice; off: they are an error. Valid maps pay nothing")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, RepairMode>{{"auto", RepairMode::Auto}, {"off", RepairMode::Off}}))
@@ -343,8 +343,8 @@ void addMethod(CLI::App& parser, Arguments& arguments) {
   addThreads(parser, arguments.threads);
   parser
       .add_option("--engine", arguments.options.engine,
-                  "atlas: reads cells off a picture of the map and traces\n"
-                  "few; propeller: the algorithm of the paper. Both give\n"
+                  "atlas: reads most cells off large charts of the map;\n"
+                  "propeller: the algorithm of the paper, slower. Both give\n"
                   "the same mesh, bit for bit")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Engine>{
           {"atlas", Engine::Atlas}, {"propeller", Engine::Propeller}}))

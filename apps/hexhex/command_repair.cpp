@@ -75,7 +75,7 @@ int run(const Arguments& arguments) {
 Command addRepair(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const parser =
-      app.add_subcommand("repair", "Mend flipped and flat tets of a map by moving parameters");
+      app.add_subcommand("repair", "Repair flipped and flat tets of a map by moving parameters");
   addMapSource(*parser, arguments->input);
   parser
       ->add_option("-o,--output", arguments->output,
@@ -97,7 +97,7 @@ Command addRepair(CLI::App& app) {
       "why, and nothing is written. docs/defects.md explains what can be repaired and how.\n\n"
       "Example:\n"
       "  hexhex generate sphere --defects 10 --defect-kind singular -o broken.hexex\n"
-      "  hexhex repair broken.hexex -o mended.hexex");
+      "  hexhex repair broken.hexex -o repaired.hexex");
   return {parser, [arguments] { return run(*arguments); }};
 }
 

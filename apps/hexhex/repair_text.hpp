@@ -7,7 +7,7 @@
 
 namespace hexhex::command {
 
-/// "21 flipped or flat tets in 3 places were mended: ..."
+/// "The map had 21 flipped or flat tets in 3 places. It was repaired: ..."
 [[nodiscard]] std::string repairNotice(const RepairReport& report);
 
 /// One line per region, on the standard output.

@@ -10,7 +10,7 @@ void registerRasterization();
 /// lookup/: the hex vertex at a grid point of a tet by different tables.
 void registerLookup();
 
-/// ablation/: whole extractions with a second way and without it.
+/// ablation/: whole extractions with a special path and without it.
 void registerSwitches();
 
 }  // namespace hexhex::bench

@@ -1,4 +1,4 @@
-// Comparisons of ways to do the same, inside the library. See docs/performance.md,
+// Comparisons of alternatives inside the library. See docs/performance.md,
 // docs/ablation.md.
 #include <benchmark/benchmark.h>
 

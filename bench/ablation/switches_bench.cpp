@@ -1,5 +1,5 @@
-// What each second way gains: whole extractions with it and without it, in turn, on the maps of the
-// evaluation. An entry of kEntries is all that a new one takes. (docs/ablation.md)
+// What each special path gains: whole extractions with it and without it, in turn, on the maps of
+// the evaluation. An entry of kEntries is all that a new one takes. (docs/ablation.md)
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -35,7 +35,7 @@ constexpr std::array kEntries = {
     Entry{"few_points", &EngineSwitches::fewPoints},
 };
 
-/// Of extractions in one way.
+/// Of extractions with the switch on, or off.
 struct Totals {
   double cpu = 0;   ///< seconds of the processor, in the program and in the system
   double wall = 0;  ///< seconds
@@ -85,13 +85,13 @@ void compare(benchmark::State& state, const Entry& entry, const BenchMap& map) {
     const PeakMemory peak;
     const HexMesh mesh = extractOnce(entry, map, true, untimed);
     if (!isSame(mesh, extractOnce(entry, map, false, untimed))) {
-      state.SkipWithError("both ways make different meshes");
+      state.SkipWithError("the meshes with and without the switch differ");
       return;
     }
     bytes = peak.growth().value_or(0);
     state.counters["hexes"] = static_cast<double>(mesh.cells.size());
   }
-  // Else the host may still have the memory that either way touches first.
+  // Else the host may still have the memory that the first extraction touches.
   warmFreeMemory(bytes, entry.threads);
   bool on = true;  // whatever comes second may find warmer caches, so they take turns
   for (auto _ : state) {

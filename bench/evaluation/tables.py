@@ -196,7 +196,7 @@ def lookup(runs: list[Run]) -> str:
 
 
 def ablation(runs: list[Run]) -> str:
-    """What whole extractions take without a second way, as a share of what they take with it."""
+    """What whole extractions take without a special path, as a share of what they take with it."""
     found = select(runs, "ablation")
     by_map: dict[str, dict[str, Run]] = {}
     for run in found:

@@ -202,7 +202,7 @@ def check_cancel():
 
 
 def check_repair():
-    """A few flipped tets are mended; or they are an error."""
+    """A few flipped tets are repaired; or they are an error."""
     run("generate", "box", "--cells", "4", "--refine", "4", "--defects", "2", "-o", "flipped.hexex")
     reader = OpenDataFile(os.path.join(OUT, "flipped.hexex"))
     filter_ = HexHexExtract(Input=OutputPort(reader, 0))

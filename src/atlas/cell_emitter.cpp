@@ -110,7 +110,7 @@ std::uint64_t CellEmitter<Id>::emitWithoutChart(const Frame& frame, const Cells&
 /// Reads the corners of a line of cells from the chart.
 /// @tparam Permutation  of the sweep's axes
 /// @param row  the first of the four rows of points around them, with one point more than cells
-/// @return whether a brick on the way has cut cells
+/// @return whether any of the bricks has cut cells
 template <class Id>
 template <std::size_t Permutation>
 bool CellEmitter<Id>::readCells(const Frame& frame, const ChartRow& row, const Cells& cells) {

@@ -84,7 +84,8 @@ CutTransitions::Key CutTransitions::keyOf(Index from, Index to, const Gauge& map
           map.translation[2]};
 }
 
-// What templates lend to loops has a name beyond this file.
+// Not unnamed: closures in templates that are instantiated explicitly have linkage, and so must the
+// types that they capture.
 namespace detail {
 
 /// A cut cell without a brick.
@@ -95,8 +96,8 @@ struct LoneCut {
   CutTransitionId transition;
 };
 
-/// Marks what a cut may meet, in the charts on both its sides: what the triangle meets on one side
-/// are the images of what it meets on the other.
+/// Marks the half diagonals that a cut face may meet, in the charts on both its sides: those on one
+/// side are the images of those on the other.
 template <class Id>
 class CutMarker {
  public:
@@ -104,10 +105,10 @@ class CutMarker {
             BrickGrid<Id>& grid)
       : map_(map), charts_(charts), transitions_(transitions), grid_(grid), cache_(grid) {}
 
-  /// @param lone  receives what there is no brick for
+  /// @param lone  receives cut cells without a brick
   void mark(HalfFace halfFace, CutTransitionId transition, std::vector<LoneCut>& lone) {
     const Triangle triangle = triangleOf(map_.exact, halfFace);
-    // Made when first needed, as most small triangles do not come before any corner.
+    // Made when first needed, as most small triangles meet no half diagonal.
     std::optional<BothSides> sides;
     TriangleCells(triangle, map_.exact.unit).run([&](const GridPoint& z, CellCornerSet corners) {
       if (!sides) sides.emplace(sidesOf(halfFace, transition));
@@ -119,7 +120,7 @@ class CutMarker {
   }
 
  private:
-  /// What a cut is in a chart.
+  /// A cut face in the chart of one of its sides.
   struct Side {
     Index chart;
     Rotation rotation;

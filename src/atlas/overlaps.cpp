@@ -27,7 +27,8 @@ void forEachEntry(const TetClaims& tet, const BrickAt& brickAt, const Visit& vis
 
 }  // namespace
 
-// What templates lend to loops has a name beyond this file.
+// Not unnamed: closures in templates that are instantiated explicitly have linkage, and so must the
+// types that they capture.
 namespace detail {
 
 /// Moves tets to other charts.

@@ -53,7 +53,7 @@ class Extractor::Prepared {
   }
 
   [[nodiscard]] const PreparedMap& map() const noexcept { return map_; }
-  /// For who scales it further: the next call begins with the unscaled one again.
+  /// To scale it further: the next call begins with the unscaled one again.
   [[nodiscard]] PreparedMap& mapToScale() {
     keepUnscaled();
     scale_ = 0;

@@ -44,7 +44,7 @@ struct HalvedTet {
       low[k] = smaller(of01[k], of23[k]);
       high[k] = larger(of23[k], of01[k]);  // in this order there is an instruction for each
     }
-    // All as upper bounds: of x and y, of the same turned around, and of z both ways.
+    // All as upper bounds: of x and y, of both negated, and of z and -z.
     const Pair beforeXy = -smaller(Pair{low[0][0], low[1][0]}, Pair{low[0][1], low[1][1]});
     const Pair afterXy = larger(Pair{high[0][0], high[1][0]}, Pair{high[0][1], high[1][1]});
     const Pair aroundZ = larger(Pair{-low[2][0], high[2][0]}, Pair{-low[2][1], high[2][1]});
@@ -136,14 +136,14 @@ struct WeightField {
   }
 
   /// Of the error of a weight at() a point, or less than 64 steps of whole units from there.
-  /// @param size  what no coordinate of a corner is away from any point on the way; corners and
+  /// @param size  bounds the distance of corners from all these points, by axis; corners and
   ///              first points may carry one rounding of such a distance
   [[nodiscard]] static constexpr double errorBound(double size) noexcept {
     // Errors in units of u = 2^-53, with magnitudes: edges, up to 2 size, are known to 4 size;
     // products of two of them to 20 size^2, and their differences, the gradients, up to 8 size^2,
     // to 48 size^2. At the first point, three products with distances, each up to 8 size^3 and
     // known to 72 size^3, make up a weight in two additions of at most 24 size^3: known to 264
-    // size^3. On the way to any other point, there are three more products, each up to 8 size^3 and
+    // size^3. From there to any other point, there are three more products, each up to 8 size^3 and
     // known to 56 size^3, and 3 additions of at most 48 size^3, or, if it is done step by step,
     // less than 64: below 264 + 168 + 64 * 48 < 2^12 size^3. 2^13 covers terms of second order as
     // well.

@@ -1,9 +1,9 @@
-// Vertices and centres of cells in the tets of a coarse map: which of the few points of the
-// bounding box are inside, in floating point with a proven bound, and exactly where that leaves it
-// open.
+// Lattice points and cell centres in the tets of a coarse map: which of the few points of the
+// bounding box are inside, by a floating-point filter with a proven bound, and by exact predicates
+// where it cannot tell.
 //
-// A second way beside TetRasterizer. With lines alone, whole extractions of maps with 0.1 cells per
-// tet take 7 % (sphere_blocks_low) to 12 % (s17c_sphere_r0.1) longer (docs/ablation.md).
+// A special case beside TetRasterizer. With lines alone, whole extractions of maps with 0.1 cells
+// per tet take 7 % (sphere_blocks_low) to 12 % (s17c_sphere_r0.1) longer (docs/ablation.md).
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace hexhex {
 
-/// Appends the lines of both grids, the same as TetRasterizer's, if each has few points in the
-/// bounding box.
+/// Appends the lines of lattice points and of cell centres, the same as TetRasterizer's, if there
+/// are few of either in the bounding box.
 /// @param unit  a power of two, at least 2
 /// @return false, and nothing is appended, if there are more, or if the tet is so far away that
 ///         doubles do not hold its corners

@@ -1,8 +1,8 @@
-// From the chart of a tet to one that many tets have in common: a chart of the atlas.
+// Gauges: transitions from the charts of tets into a chart that many tets share.
 //
-// Coordinates there are integers modulo 2^32: they never overflow, however long the chain of tets
-// that a chart is glued from. Two places that the modulus makes equal are nothing but another
-// overlap, which the atlas has to stand anyway.
+// Coordinates there are integers modulo 2^32: they never overflow, however many tets the chart is
+// glued from. Two points that the modulus makes equal are one more overlap of the chart, and the
+// atlas resolves overlaps anyway (atlas/overlaps.hpp).
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct Gauge {
   Rotation rotation;
   ChartPoint translation{};
 
-  /// Without the call that comparing arrays makes.
+  /// Not defaulted, as GCC would call memcmp.
   [[nodiscard]] constexpr bool operator==(const Gauge& other) const noexcept {
     std::uint32_t difference = rotation == other.rotation ? 0 : 1;
     for (std::size_t k = 0; k < 3; ++k) difference |= translation[k] ^ other.translation[k];
@@ -36,7 +36,7 @@ struct Gauge {
                               static_cast<std::uint32_t>(z[2])});
   }
 
-  /// The cell whose smallest corner is z, by its smallest corner in the atlas.
+  /// Where the cell with smallest corner z goes, by its smallest corner there.
   template <class Point>
   [[nodiscard]] constexpr ChartPoint cell(const Point& z) const noexcept {
     ChartPoint image = (*this)(z);
@@ -78,7 +78,7 @@ struct Gauge {
   return c;
 }
 
-/// Steps in a chart: the point `steps` grid units from c in a direction.
+/// The point `steps` grid units from c in a direction.
 [[nodiscard]] constexpr ChartPoint moved(ChartPoint c, Direction d, std::uint32_t steps) noexcept {
   c[static_cast<std::size_t>(axisOf(d))] += signOf(d) > 0 ? steps : 0U - steps;
   return c;

@@ -87,7 +87,7 @@ void TetRasterizer::measure() noexcept {
   // products of two of them to 20 size^2, and their differences, the gradients, up to 8 size^2, to
   // 48 size^2. At the first point of a box, three products with distances, each up to 8 size^3 and
   // known to 72 size^3, make up a value in two additions of at most 24 size^3: known to 264 size^3.
-  // On the way to any other point there are three more products, each up to 8 size^3 and known to
+  // From there to any other point there are three more products, each up to 8 size^3 and known to
   // 56 size^3, and three additions of at most 48 size^3: below 264 + 168 + 144 < 2^10 size^3. 2^13
   // covers terms of second order, and conversions of the ends of lines to integers.
   error_ = 0x1p-40 * size * size * size;
@@ -134,7 +134,7 @@ bool TetRasterizer::prepare(HalfGrid grid, const GridBox& box, Search& search) c
       zeroError = std::max(zeroError, 2 * search.errors[face] / std::abs(slope));
     }
   }
-  // The roundings of the zero itself and on its way to an integer.
+  // The roundings of the zero itself and of its conversion to an integer.
   search.zeroError = zeroError + 0x1p-48 * (static_cast<double>(search.size[2]) + 16);
   return true;
 }

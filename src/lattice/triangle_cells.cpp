@@ -25,9 +25,9 @@ struct LinePair {
         sum(weights[0] + weights[1] + weights[2]) {}
 };
 
-/// Of two lines, for the half diagonals in their directions and for those back: negative if they
-/// are certainly not cut.
-struct Uncut {
+/// One number for each half diagonal on two lines, in their directions and opposite: negative if it
+/// is certified that the triangle does not cut it.
+struct CutSigns {
   Pair ahead;
   Pair behind;
 };
@@ -35,21 +35,21 @@ struct Uncut {
 constexpr Pair broadcast(double x) noexcept { return Pair{x, x}; }
 
 /// @param least  the determinant, which is positive, less by the bound of its error
-Uncut cutOn(const LinePair& lines, double least, double error) noexcept {
+CutSigns cutOn(const LinePair& lines, double least, double error) noexcept {
   const Pair half = lines.sum * broadcast(0.5);  // as long as the half diagonals are
   return {smaller(lines.least + broadcast(error), half - broadcast(least)),
           smaller(broadcast(error) - lines.most, -half - broadcast(least))};
 }
 
 /// If the plane may contain the centre, and then whole lines.
-Uncut cutAtCenter(const LinePair& lines, double error) noexcept {
+CutSigns cutAtCenter(const LinePair& lines, double error) noexcept {
   const Pair inside = larger(lines.least, -lines.most);
   const Pair both = larger(inside, -magnitudeOf(lines.sum)) + broadcast(error);
   return {both, both};
 }
 
 /// @param up,down  along (1, 1, 1) and (-1, 1, 1), and along (1, 1, -1) and (-1, 1, -1)
-CellCornerSet cornersBehind(const Uncut& up, const Uncut& down) noexcept {
+CellCornerSet cornersBehind(const CutSigns& up, const CutSigns& down) noexcept {
   // Corners 6, 4, 2 and 0 in the first of both numbers, and 7, 5, 3, and 1 in the second.
   PairBits notCut = signBits(up.ahead);
   notCut = (notCut << 2) | signBits(down.behind);

@@ -124,7 +124,7 @@ bool StarConnectivity::turn(Quadrant& quadrant, bool counterClockwise) {
       quadrant = {tet, axis, target};
       return true;
     }
-    if (exit == kNoExit) fail("a turn around a propeller found no way out of a tet");
+    if (exit == kNoExit) fail("a turn around a propeller leaves a tet through no face");
     const HalfFace halfFace = halfFaceOf(tet, exit);
     const HalfFace mate = topology_.mate[halfFace];
     if (mate == kNone) return false;
@@ -200,13 +200,14 @@ void StarConnectivity::traceBlade(std::size_t propeller, std::size_t slotIndex) 
   Direction from = directionIn(tet, propeller);
   Direction to = slot.direction;
   for (std::size_t steps = 0;; ++steps) {
-    if (steps > 2 * star_.size()) fail("the way from a propeller to its blade does not end");
+    if (steps > 2 * star_.size()) fail("the turn from a propeller to its blade does not end");
     const int exit = exitOfTurn(exact_.corners[tet], signs_[tet], inStar(tet).simplex, from, to);
     if (exit == kStaysInside) break;
-    if (exit == kNoExit) fail("the way from a propeller to its blade leaves a tet nowhere");
+    if (exit == kNoExit)
+      fail("the turn from a propeller to its blade leaves a tet through no face");
     const HalfFace halfFace = halfFaceOf(tet, exit);
     const HalfFace mate = topology_.mate[halfFace];
-    if (mate == kNone) fail("the way from a propeller to its blade leaves the mesh");
+    if (mate == kNone) fail("the turn from a propeller to its blade leaves the mesh");
     const Rotation rotation = exact_.transitions.across(halfFace).rotation;
     from = rotation(from);
     to = rotation(to);
@@ -226,7 +227,7 @@ void StarConnectivity::traceBlade(std::size_t propeller, std::size_t slotIndex) 
     back.back = static_cast<std::uint16_t>(slotIndex);
     return;
   }
-  fail("a blade does not know its propeller");
+  fail("a propeller is no blade of its blade");
 }
 
 }  // namespace hexhex

@@ -1,6 +1,6 @@
 // Propellers, blades and hex corners of one generator from the tets around it (Sections 5.3.2 to
-// 5.3.4). Needs only
-// signs of face normals and of edge vectors, hence comparisons of integers: no determinant.
+// 5.3.4). Needs only signs of face normals and of edge vectors, hence comparisons of integers: no
+// determinant.
 #pragma once
 
 #include <array>
@@ -58,7 +58,7 @@ class StarConnectivity {
   /// The first quadrant of a propeller that leads into a tet of its holder's star.
   [[nodiscard]] Quadrant anyCasing(std::size_t propeller);
   /// Turns `second` by a right angle around `first`, counter-clockwise or clockwise, from tet to
-  /// tet of the holder's star. False if the boundary is in the way.
+  /// tet of the holder's star. False if it would leave the mesh.
   [[nodiscard]] bool turn(Quadrant& quadrant, bool counterClockwise);
   /// The quadrant in the chart of the owner of its casing.
   [[nodiscard]] Quadrant canonical(const Quadrant& quadrant);
@@ -100,7 +100,7 @@ void forEachTetAround(const TetTopology& topology, const Transitions& transition
     while (turn.next() != kNone) {
       rotation = transitions.across(turn.out()).rotation * rotation;
       turn.step();
-      if (turn.tet() == tet) return;  // all the way round
+      if (turn.tet() == tet) return;  // once around
       visit(turn.tet(), turn.edge(), rotation);
     }
   }

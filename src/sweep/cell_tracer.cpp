@@ -63,12 +63,12 @@ CornerPlace CellTracer::trace(const GridPoint& offset, const TiltOrder& tilts) {
   int face = exitFromInside(segment);
   for (std::size_t steps = 0; face != kNoExit && !endsBefore(segment, face); ++steps) {
     if (topology_.isBoundary(halfFaceOf(segment.tet, face)))
-      fail(segment.tet, "the way leaves the mesh");
-    if (steps > topology_.tetCount()) fail(segment.tet, "the way does not end");
+      fail(segment.tet, "the half diagonal leaves the mesh");
+    if (steps > topology_.tetCount()) fail(segment.tet, "the half diagonal does not end");
     cross(segment, face);
     face = exitAfterEntry(segment);
   }
-  if (face == kNoExit) fail(segment.tet, "the way leaves a tet nowhere");
+  if (face == kNoExit) fail(segment.tet, "the half diagonal leaves a tet through no face");
   CornerPlace place{segment.tet, {}, segment.rotation};
   for (std::size_t k = 0; k < 3; ++k) {
     place.z[k] =
@@ -269,7 +269,7 @@ CellTracer::Segment CellTracer::startAroundCenter(const Segment& segment) {
       if (!seen) star_.push_back(next);
     }
   }
-  fail(segment.tet, "no tet around a centre contains the beginning of the way");
+  fail(segment.tet, "no tet around a centre contains the beginning of a half diagonal");
 }
 
 }  // namespace hexhex

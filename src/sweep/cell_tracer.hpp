@@ -1,4 +1,5 @@
-// From the centre of a cell straight to its corners, tet by tet, by exact predicates.
+// Traces half diagonals, from the centre of a cell straight to its corners, tet by tet, by exact
+// predicates.
 //
 // Inside the open unit cube of a cell the map is one to one, so the segment can be followed
 // whatever the charts. It does not end at the corner itself but beside it, at corner + e d1 + e^2

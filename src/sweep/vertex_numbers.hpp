@@ -72,8 +72,9 @@ struct SweptVertices {
   VertexNumbers numbers;
 };
 
-/// A look at the tets while they are swept for vertices: further grids take little more then. (To
-/// sweep anew for the midpoints of edges would cost arcs and an extraction together 4 to 8 %.)
+/// Sees the tets while they are swept for vertices, and may sweep them for other points. (With a
+/// sweep of their own for the midpoints of edges, arcs and an extraction together take 4 to 8 %
+/// longer.)
 class SweepObserver {
  public:
   SweepObserver() = default;

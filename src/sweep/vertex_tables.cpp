@@ -71,7 +71,7 @@ void VertexTables::Line::enter(const VertexRun& run) {
   }
 }
 
-/// When all lines have their numbers.
+/// To be called when all lines have their numbers.
 void VertexTables::makeTables(std::uint64_t room, Stage& stage) {
   const std::size_t tets = map_.topology.tetCount();
   boxOf_.resize(tets);
@@ -100,7 +100,7 @@ void VertexTables::makeTables(std::uint64_t room, Stage& stage) {
   });
 }
 
-/// Without its place in the tables, if it is to have one.
+/// `begin` is kNoTable if the tet gets no table, and otherwise still to be set.
 VertexTables::Box VertexTables::measureBox(Index tet, std::uint64_t room) const {
   const std::span<const Line> lines = linesOf(tet);
   std::array<std::int32_t, 2> low = {lines.front().swept.level, lines.front().swept.row};

@@ -23,7 +23,7 @@ struct VertexDescriptions {
 };
 
 /// Of the lines of a tet's sweep, each with a SweptLine `swept`: the one through a grid point,
-/// which may end before it; or nullptr.
+/// which may end before it; nullptr if there is none.
 /// @param hint  which line may be the one: searches in the order of a sweep repeat the one before
 template <class Line>
 [[nodiscard]] const Line* findLine(std::span<const Line> lines, const GridPoint& z,
@@ -46,9 +46,8 @@ class VertexTables {
  public:
   static constexpr std::uint64_t kRoomPerLine = 24;
 
-  /// @param room  how many places the table of a tet may have for each of its lines; thin tets
-  /// across
-  ///              the axes fill next to nothing of theirs
+  /// @param room  how many places the table of a tet may have for each of its lines: thin tets
+  ///              across the axes would leave most of theirs empty
   /// @throws Error TooLarge for more vertices than an Index can number
   VertexTables(const PreparedMap& map, SweptVertices swept, Stage& stage,
                std::uint64_t room = kRoomPerLine);

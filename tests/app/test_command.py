@@ -507,13 +507,13 @@ class Repair(CommandTest):
         if not self.can_repair():
             self.skipTest("built without libLBFGS")
         map_file = self.damaged()
-        run = self.run_command("repair", map_file, "-o", "mended.hexex", "--report", "r.json")
+        run = self.run_command("repair", map_file, "-o", "repaired.hexex", "--report", "r.json")
         self.assertIn("It was repaired", run.stdout)
-        self.run_command("check", "mended.hexex", "--quiet")
+        self.run_command("check", "repaired.hexex", "--quiet")
         self.assertGreater(json.loads((self.folder / "r.json").read_text())["moved_vertices"], 0)
-        self.run_command("repair", "mended.hexex", "-o", "same.hexex", "--report", "n.json")
+        self.run_command("repair", "repaired.hexex", "-o", "same.hexex", "--report", "n.json")
         self.assertEqual((self.folder / "same.hexex").read_bytes(),
-                         (self.folder / "mended.hexex").read_bytes())
+                         (self.folder / "repaired.hexex").read_bytes())
         self.assertIsNone(json.loads((self.folder / "n.json").read_text()))
         for options in [["-o", map_file], ["-o", "x.hexex", "--report", map_file],
                         ["-o", "x.hexex", "--report", "x.hexex"]]:

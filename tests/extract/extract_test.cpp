@@ -47,8 +47,8 @@ void expectPositive(const HexMesh& mesh) {
 
 TEST(Extract, EitherOrientationGivesTheSameMesh) {
   const Sample sample = sphere();
-  const HexMesh plain = verifiedExtraction(sample.map);
-  expectPositive(plain);
+  const HexMesh reference = verifiedExtraction(sample.map);
+  expectPositive(reference);
   for (int variant = 1; variant < 4; ++variant) {
     TetMap map = sample.map;
     if (variant & 1) reverseCorners(map);
@@ -58,14 +58,14 @@ TEST(Extract, EitherOrientationGivesTheSameMesh) {
     const HexMesh mesh = extract(map, {}, context, &statistics);
     EXPECT_EQ(statistics.mirrored, (variant & 2) != 0);
     expectPositive(mesh);
-    EXPECT_TRUE(sameUpToNumbering(plain, mesh)) << "variant " << variant;
+    EXPECT_TRUE(sameUpToNumbering(reference, mesh)) << "variant " << variant;
     EXPECT_TRUE(verify(map, mesh).passed());
   }
 }
 
 TEST(Extract, NumberingOfTheInputDoesNotMatter) {
   const Sample sample = sphere();
-  const HexMesh plain = verifiedExtraction(sample.map);
+  const HexMesh reference = verifiedExtraction(sample.map);
   TetMap map = sample.map;
   std::reverse(map.points.begin(), map.points.end());
   const auto last = static_cast<Index>(map.points.size() - 1);
@@ -74,7 +74,7 @@ TEST(Extract, NumberingOfTheInputDoesNotMatter) {
   }
   std::reverse(map.tets.begin(), map.tets.end());
   std::reverse(map.parameters.begin(), map.parameters.end());
-  EXPECT_TRUE(sameUpToNumbering(plain, verifiedExtraction(map)));
+  EXPECT_TRUE(sameUpToNumbering(reference, verifiedExtraction(map)));
 }
 
 // An independent look at cells: where all eight corners lie inside one tet, the tet's affine map
@@ -191,7 +191,7 @@ TEST(Extract, GeneratorsNameSimplicesOfTheInput) {
 
 TEST(Extract, GivenValencesAreUsed) {
   const Sample sample = sphere();
-  const HexMesh plain = verifiedExtraction(sample.map);
+  const HexMesh reference = verifiedExtraction(sample.map);
   Context context;
   DefectCollector defects;
   const PreparedMap prepared = prepareMap(sample.map, 1e-2, 1, context, defects);
@@ -202,7 +202,7 @@ TEST(Extract, GivenValencesAreUsed) {
   ASSERT_FALSE(known.empty());
   TetMapView view(sample.map);
   view.edgeValences = known;
-  EXPECT_TRUE(sameBits(plain, extract(view)));
+  EXPECT_TRUE(sameBits(reference, extract(view)));
 }
 
 TEST(ExtractErrors, HaveTheirCodes) {

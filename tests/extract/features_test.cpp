@@ -178,8 +178,8 @@ TEST(Features, TaggedEdgesLieOnTaggedTetEdges) {
   EXPECT_TRUE(std::all_of(mesh.features.edges.begin(), mesh.features.edges.end(), isEdge));
 }
 
-// Inner faces and edges are tagged in the same way: here the planes between the blocks of a box,
-// and the lines in which they meet, found by their coordinates.
+// Inner faces and edges are tagged like those of the boundary: here the planes between the blocks
+// of a box, and the lines in which they meet, found by their coordinates.
 TEST(Features, InnerFacesAndEdges) {
   SampleOptions options;
   options.cells = 3;
@@ -290,27 +290,27 @@ void expectRefused(const TetMap& map) {
 }
 
 TEST(Features, RefusesWhatMakesNoSense) {
-  const TetMap plain = generateSample(SampleKind::Box).map;
-  const auto points = static_cast<Index>(plain.points.size());
-  TetMap map = plain;
+  const TetMap untouched = generateSample(SampleKind::Box).map;
+  const auto points = static_cast<Index>(untouched.points.size());
+  TetMap map = untouched;
   map.features.vertices = {{points, 1}};
   expectRefused(map);
-  map = plain;
+  map = untouched;
   map.features.edges = {{{0, points}, 1}};
   expectRefused(map);
-  map = plain;
+  map = untouched;
   map.features.faces = {{{0, 1, points}, 1}};
   expectRefused(map);
-  map = plain;
+  map = untouched;
   map.features.vertices = {{3, 1}, {3, 2}};
   expectRefused(map);
-  map = plain;
+  map = untouched;
   map.features.edges = {{{3, 4}, 1}, {{4, 3}, 2}};
   expectRefused(map);
-  map = plain;
+  map = untouched;
   map.features.faces = {{{3, 4, 5}, 1}, {{5, 3, 4}, 2}};
   expectRefused(map);
-  map = plain;
+  map = untouched;
   map.regions = {1, 2, 3};
   expectRefused(map);
 }

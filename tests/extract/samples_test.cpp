@@ -42,7 +42,7 @@ TEST_P(SampleExtraction, AgreesWithMapAndAnswer) {
       options(1, 1),                                        // one hex a block: all ties at once
       options(1, 5, ChartStyle::Random, 0.4),               // far fewer hexes than tets
       options(4, 4),                                        // tets aligned with the grid
-      options(4, 2, ChartStyle::Random),                    // ... and the other way round
+      options(4, 2, ChartStyle::Random),                    // ... and vice versa
       options(5, 3, ChartStyle::Blocks, 0.3),               // generic position
       options(6, 3, ChartStyle::Random, 0.7, 0.6),          // degenerate and generic mixed
       options(6, 6, ChartStyle::Random, 0.5, 1.0),          // as degenerate as it gets

@@ -101,7 +101,7 @@ class PointMatcher {
 };
 
 /// The cell with its corners renumbered, in a form that does not depend on which corner is first:
-/// the smallest of the 24 ways to list a hexahedron.
+/// the smallest of the 24 orders of corners of a hexahedron.
 inline Hex canonicalCell(const Hex& cell) {
   // Quarter turns about the axis through the bottom face, and about one across it, generate all 24.
   const auto spin = [](const Hex& c) {

@@ -37,7 +37,7 @@ void turn(const Star& star, int start, Direction d1, Direction d2) {
       return;
     }
     ASSERT_GE(face, 0);
-    ASSERT_TRUE(contains(exitsOfTurn(corners, simplex, d1, d2), face)) << "not on the way";
+    ASSERT_TRUE(contains(exitsOfTurn(corners, simplex, d1, d2), face)) << "not crossed";
     tet = star.patch.neighbor(tet, face);
     ASSERT_GE(tet, 0) << "left the star";
   }
@@ -198,7 +198,7 @@ void follow(const TetPatch& patch, int start, const Line& line, int& steps) {
     const int face =
         exitOfLine(corners, NormalSigns(corners), line.from, line.unit, line.d1, line.d2, entered);
     ASSERT_GE(face, 0) << "lost the line";
-    ASSERT_TRUE(contains(exitsOfLine(corners, from, line.d1, line.d2), face)) << "not on the way";
+    ASSERT_TRUE(contains(exitsOfLine(corners, from, line.d1, line.d2), face)) << "not crossed";
     const int next = patch.neighbor(tet, face);
     ASSERT_GE(next, 0) << "left the patch before the target";
     entered = patch.faceTowards(next, tet);

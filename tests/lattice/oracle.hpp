@@ -1,4 +1,4 @@
-// The predicates of the lattice by plain determinants over integers of any width: slow, and obvious
+// The predicates of the lattice by determinants over integers of any width: slow, and obvious
 // enough to judge the fast ones.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The ways in cells that triangles cut, and the columns of cells that they meet, against exact
+// The half diagonals that triangles cut, and the columns of cells that they meet, against exact
 // intersection.
 #include <algorithm>
 #include <bit>
@@ -67,7 +67,8 @@ Point<Integer> crossOf(const Point<Integer>& a, const Point<Integer>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// The part of the way from a cell's centre (0) to a corner (1) that lies in a half-space.
+/// The part of a half diagonal, from a cell's centre (0) to a corner (1), that lies in a
+/// half-space.
 template <class Integer>
 struct Interval {
   // Two fractions with positive denominators.
@@ -87,23 +88,24 @@ struct Interval {
   }
 };
 
-/// Whether the straight way from the centre of a cell to a corner, with the centre but without the
-/// corner, meets a triangle: exactly, for units of up to 2^10 with 128 bits, and 2^24 with 256.
+/// Whether a half diagonal of a cell, with the centre but without the corner, meets a triangle:
+/// exactly, for units of up to 2^10 with 128 bits, and 2^24 with 256.
 template <class Integer>
-bool isOnWay(const Triangle& triangle, const GridPoint& z, std::size_t corner, std::int64_t unit) {
+bool meetsHalfDiagonal(const Triangle& triangle, const GridPoint& z, std::size_t corner,
+                       std::int64_t unit) {
   std::array<Point<Integer>, 3> p;
   LatticePoint center{};
-  LatticePoint way{};
+  LatticePoint diagonal{};
   for (std::size_t k = 0; k < 3; ++k) {
     center[k] = z[k] * unit + unit / 2;
-    way[k] = (2 * kCellCorners[corner][k] - 1) * unit / 2;
+    diagonal[k] = (2 * kCellCorners[corner][k] - 1) * unit / 2;
   }
   for (std::size_t i = 0; i < 3; ++i) p[i] = widened<Integer>(triangle[i]);
   const auto between = [](const Point<Integer>& from, const Point<Integer>& to) {
     return Point<Integer>{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
   };
   const auto start = widened<Integer>(center);
-  const auto step = widened<Integer>(way);
+  const auto step = widened<Integer>(diagonal);
   const Point<Integer> normal = crossOf<Integer>(between(p[0], p[1]), between(p[0], p[2]));
   Interval<Integer> interval;
   // In the plane, from both its sides, and inside of each edge.
@@ -135,8 +137,8 @@ enum Kind {
   kKinds
 };
 
-/// A point of a way from the centre of a cell to a corner, often the centre.
-LatticePoint pointOfWay(Random& random, std::int64_t unit, std::int64_t extent) {
+/// A point on a half diagonal, often the centre of the cell.
+LatticePoint pointOnHalfDiagonal(Random& random, std::int64_t unit, std::int64_t extent) {
   const std::int64_t fraction = random.oneIn(3) ? 0 : random.between(0, unit / 2);
   LatticePoint p{};
   for (std::int64_t& coordinate : p) {
@@ -146,9 +148,9 @@ LatticePoint pointOfWay(Random& random, std::int64_t unit, std::int64_t extent) 
   return p;
 }
 
-/// Puts a corner or the middle of an edge on a way.
-void touchWay(Triangle& t, Random& random, std::int64_t unit, std::int64_t extent) {
-  const LatticePoint touched = pointOfWay(random, unit, extent);
+/// Puts a corner or the middle of an edge on a half diagonal.
+void touchHalfDiagonal(Triangle& t, Random& random, std::int64_t unit, std::int64_t extent) {
+  const LatticePoint touched = pointOnHalfDiagonal(random, unit, extent);
   const bool atCorner = random.oneIn(2);
   for (std::size_t k = 0; k < 3; ++k) t[0][k] = atCorner ? touched[k] : 2 * touched[k] - t[1][k];
   std::rotate(t.begin(), t.begin() + random.between(0, 2), t.end());
@@ -178,7 +180,7 @@ Triangle anyTriangle(Random& random, Kind kind, std::int64_t unit, std::int64_t 
       const std::int64_t height = random.between(0, extent - 1) * unit + unit / 2;
       for (LatticePoint& p : t) p[axis] = height;
     }
-    if (kind == kTouching) touchWay(t, random, unit, extent);
+    if (kind == kTouching) touchHalfDiagonal(t, random, unit, extent);
     if (!isDegenerate(t)) return t;
   }
 }
@@ -251,7 +253,7 @@ class TriangleCellsKinds : public ::testing::TestWithParam<Kind> {};
 /// Compares with exact arithmetic on integers of some width.
 /// @param mostBits  of the unit
 template <class Integer>
-void expectAllWays(Kind kind, std::uint64_t seed, int count, std::int64_t mostBits) {
+void expectAllHalfDiagonals(Kind kind, std::uint64_t seed, int count, std::int64_t mostBits) {
   Random random(seed + static_cast<std::uint64_t>(kind));
   std::size_t met = 0;
   std::size_t visited = 0;
@@ -262,7 +264,7 @@ void expectAllWays(Kind kind, std::uint64_t seed, int count, std::int64_t mostBi
     }
     forEachCell(drawn.extent, [&](const GridPoint& z) {
       for (std::size_t corner = 0; corner < 8; ++corner) {
-        if (!isOnWay<Integer>(drawn.triangle, z, corner, drawn.unit)) continue;
+        if (!meetsHalfDiagonal<Integer>(drawn.triangle, z, corner, drawn.unit)) continue;
         ++met;
         EXPECT_TRUE((drawn.taken[z] >> corner) & 1U) << "case " << i << " unit " << drawn.unit;
       }
@@ -274,12 +276,12 @@ void expectAllWays(Kind kind, std::uint64_t seed, int count, std::int64_t mostBi
   expectUse(kind, count, visited, met, 2);
 }
 
-TEST_P(TriangleCellsKinds, LeaveNoWayOut) {
-  expectAllWays<Int128>(GetParam(), 81, cases(1500), 10);
+TEST_P(TriangleCellsKinds, LeaveNoHalfDiagonalOut) {
+  expectAllHalfDiagonals<Int128>(GetParam(), 81, cases(1500), 10);
 }
 
-TEST_P(TriangleCellsKinds, LeaveNoWayOutOfManyBits) {
-  expectAllWays<Integer256>(GetParam(), 281, cases(200), 24);
+TEST_P(TriangleCellsKinds, LeaveNoHalfDiagonalOutOfManyBits) {
+  expectAllHalfDiagonals<Integer256>(GetParam(), 281, cases(200), 24);
 }
 
 /// Whatever meets the open cell meets some open octant of it, or the planes between them, and all

@@ -171,7 +171,7 @@ int vtkHexHexExtract::RequestData(
   const hexhex::RepairReport& repair = result.statistics.repair;
   if (repair.changed)
   {
-    vtkWarningMacro(<< "The map has flipped or flat tets, which were mended before the extraction, in "
+    vtkWarningMacro(<< "The map has flipped or flat tets, which were repaired before the extraction, in "
                     << repair.regions.size() << (repair.regions.size() == 1 ? " place." : " places."));
   }
   vtkUnstructuredGrid& grid = *vtkUnstructuredGrid::GetData(outputs, 0);

@@ -34,7 +34,7 @@ public:
   /** How far the map may be from its integer conditions, in parameter units. */
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
-  /** Whether flipped and flat tets of the map are mended first, with a warning. */
+  /** Whether flipped and flat tets of the map are repaired first, with a warning. */
   vtkSetMacro(Repair, vtkTypeBool);
   vtkGetMacro(Repair, vtkTypeBool);
   /** Whether the mesh is compared with the map. */
