@@ -1,8 +1,16 @@
 // Gmsh's files of Lagrange cells.
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
+
+#include <adjacency/hex_topology.hpp>
+
+#include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
 #include <io/curved/lagrange_files.hpp>
@@ -25,6 +33,205 @@ struct NodesInOrder {
 
   Index operator[](std::size_t k) const { return nodes[order[k]]; }
 };
+
+/// A quadrangle: its corners, sides, and what is inside, which is a smaller one.
+void appendGmshQuad(std::vector<Node>& nodes, std::array<Node, 4> corners, int order) {
+  if (order < 0) return;
+  if (order == 0) {
+    nodes.push_back(corners[0]);
+    return;
+  }
+  nodes.insert(nodes.end(), corners.begin(), corners.end());
+  for (std::size_t i = 0; i < 4; ++i) {
+    append(nodes, between(corners[i], corners[(i + 1) % 4], order - 1));
+  }
+  std::array<Node, 4> inner{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    // One step towards the opposite corner.
+    const Node& opposite = corners[(i + 2) % 4];
+    inner[i] = between(corners[i], opposite, 1)[0];
+  }
+  appendGmshQuad(nodes, inner, order - 2);
+}
+
+void appendGmshHex(std::vector<Node>& nodes, int low, int high) {
+  constexpr std::array<std::array<std::size_t, 4>, 6> kFaces = {
+      {{0, 3, 2, 1}, {0, 1, 5, 4}, {0, 4, 7, 3}, {1, 2, 6, 5}, {2, 3, 7, 6}, {4, 5, 6, 7}}};
+  if (low > high) return;
+  if (low == high) {
+    nodes.push_back(corner(0, low, high));
+    return;
+  }
+  for (std::size_t i = 0; i < 8; ++i) nodes.push_back(corner(i, low, high));
+  auto edges = kHexEdges;  // ascending, from the smaller corner to the larger one
+  for (auto& edge : edges) edge = {std::min(edge[0], edge[1]), std::max(edge[0], edge[1])};
+  std::sort(edges.begin(), edges.end());
+  for (const auto& [a, b] : edges) {
+    append(nodes, between(corner(a, low, high), corner(b, low, high), high - low - 1));
+  }
+  for (const auto& face : kFaces) {
+    std::array<Node, 4> inner{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Node from = corner(face[i], low, high);
+      inner[i] = between(from, corner(face[(i + 2) % 4], low, high), 1)[0];
+    }
+    appendGmshQuad(nodes, inner, high - low - 2);
+  }
+  appendGmshHex(nodes, low + 1, high - 1);
+}
+
+constexpr std::size_t kGrain = std::size_t{1} << 12;
+
+// A place is 16 * cell + slot: a cell has 12 edges and 6 faces.
+constexpr std::uint64_t kSlots = 16;
+
+template <std::size_t n>
+std::array<Index, n> sorted(std::array<Index, n> vertices) {
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
+template <std::size_t n>
+std::array<Index, n> verticesAt(const Hex& cell, const std::array<std::uint8_t, n>& corners) {
+  std::array<Index, n> vertices;
+  for (std::size_t i = 0; i < n; ++i) vertices[i] = cell[corners[i]];
+  return vertices;
+}
+
+/// Finds elements, which are few, in the cells that have them.
+template <std::size_t n>
+class ElementFinder {
+ public:
+  ElementFinder(const HexMesh& mesh, std::span<const std::array<Index, n>> elements)
+      : mesh_(mesh), marked_(mesh.points.size(), 0), places_(elements.size(), kNoPlace) {
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      wanted_.emplace_back(sorted(elements[i]), i);
+      for (const Index vertex : elements[i]) marked_[vertex] = 1;
+    }
+    std::sort(wanted_.begin(), wanted_.end());
+  }
+
+  /// The first place of each element, or kNoPlace.
+  /// @param corners  of the elements of a cell, by slot
+  template <std::size_t slots>
+  std::vector<std::uint64_t> find(const std::array<std::array<std::uint8_t, n>, slots>& corners,
+                                  Stage& stage) {
+    static_assert(slots <= kSlots);
+    if (wanted_.empty()) return std::move(places_);
+    parallelFor(stage, mesh_.cells.size(), kGrain, [&](std::size_t c) {
+      const Hex& cell = mesh_.cells[c];
+      const auto count = std::count_if(cell.begin(), cell.end(),
+                                       [this](Index vertex) { return marked_[vertex] != 0; });
+      if (static_cast<std::size_t>(count) < n) return;
+      for (std::size_t slot = 0; slot < slots; ++slot) {
+        offer(sorted(verticesAt(cell, corners[slot])), kSlots * c + slot);
+      }
+    });
+    return std::move(places_);
+  }
+
+ private:
+  using Wanted = std::pair<std::array<Index, n>, std::size_t>;
+
+  void offer(const std::array<Index, n>& vertices, std::uint64_t place) {
+    for (auto found = std::lower_bound(wanted_.begin(), wanted_.end(), Wanted{vertices, 0});
+         found != wanted_.end() && found->first == vertices; ++found) {
+      const std::atomic_ref known(places_[found->second]);
+      std::uint64_t before = known.load(std::memory_order_relaxed);
+      while (place < before && !known.compare_exchange_weak(before, place)) {
+      }
+    }
+  }
+
+  const HexMesh& mesh_;
+  std::vector<std::uint8_t> marked_;  ///< per vertex: whether a wanted element has it
+  std::vector<Wanted> wanted_;        ///< by their vertices
+  std::vector<std::uint64_t> places_;
+};
+
+[[noreturn]] void failAbout(const char* what, std::span<const Index> vertices) {
+  std::string text = std::string("The tagged ") + what;
+  for (const Index vertex : vertices) text.append(1, ' ').append(std::to_string(vertex));
+  throw Error(ErrorCode::InvalidArgument, text + " belongs to no cell of the mesh.");
+}
+
+/// Appends the nodes from + i * stepI + j * stepJ of a cell, where (i, j, 0) are the nodes of a
+/// list. Steps lead from one corner towards two others.
+/// @param corners  the one and the two others
+void appendNodes(const LagrangeMesh& mesh, std::uint64_t cell,
+                 const std::array<std::size_t, 3>& corners, const std::vector<Node>& list,
+                 Array<Index>& nodes) {
+  const Index* const ofCell = mesh.nodes.data() + cell * mesh.nodesPerCell();
+  const std::ptrdiff_t row = mesh.order + 1;
+  const auto placeOf = [row](const Node& n) { return n[0] + row * (n[1] + row * n[2]); };
+  const std::ptrdiff_t from = placeOf(corner(corners[0], 0, mesh.order));
+  const auto stepTo = [&](std::size_t other) {
+    return (placeOf(corner(other, 0, mesh.order)) - from) / mesh.order;
+  };
+  const std::ptrdiff_t stepI = stepTo(corners[1]);
+  const std::ptrdiff_t stepJ = stepTo(corners[2]);
+  for (const Node& n : list) nodes.push_back(ofCell[from + n[0] * stepI + n[1] * stepJ]);
+}
+
+/// Entry k: the place of the node that Gmsh lists at place k.
+std::vector<std::uint32_t> gmshNodeOrder(int order) {
+  std::vector<Node> nodes;
+  appendGmshHex(nodes, 0, order);
+  return placesOf(nodes, order);
+}
+
+/// The nodes of tagged edges, order + 1 each, in Gmsh's order.
+/// @param straight  what straightMesh() returns
+/// @throws Error InvalidArgument for an edge that is none of a cell
+Array<Index> gmshEdgeNodes(const LagrangeMesh& mesh, const HexMesh& straight,
+                           const EdgeGroups& edges, Stage& stage) {
+  std::vector<Node> list = {{0, 0, 0}, {mesh.order, 0, 0}};
+  append(list, between(list[0], list[1], mesh.order - 1));
+  const std::vector<std::uint64_t> places =
+      ElementFinder<2>(straight, edges.elements).find(kHexEdges, stage);
+  Array<Index> nodes;
+  nodes.reserve(places.size() * list.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i] == kNoPlace) failAbout("edge", edges.elements[i]);
+    const std::uint64_t cell = places[i] / kSlots;
+    auto [a, b] = kHexEdges[places[i] % kSlots];
+    if (straight.cells[cell][a] != edges.elements[i][0]) std::swap(a, b);
+    appendNodes(mesh, cell, {a, b, b}, list, nodes);
+  }
+  return nodes;
+}
+
+/// The nodes of quads, (order + 1)^2 each, in Gmsh's order; those of the boundary run
+/// counter-clockwise seen from outside, those inside the mesh so seen from outside of the first
+/// cell that they belong to.
+/// @throws Error InvalidArgument for a quad that is no face of a cell
+Array<Index> gmshQuadNodes(const LagrangeMesh& mesh, const HexMesh& straight,
+                           const QuadGroups& quads, Stage& stage) {
+  const int p = mesh.order;
+  std::vector<Node> list;
+  appendGmshQuad(list, {{{0, 0, 0}, {p, 0, 0}, {p, p, 0}, {0, p, 0}}}, p);
+  std::vector<Quad> inside;
+  for (std::size_t i = 0; i < quads.elements.size(); ++i) {
+    if (quads.places[i] == kNoPlace) inside.push_back(quads.elements[i]);
+  }
+  const std::vector<std::uint64_t> found =
+      ElementFinder<4>(straight, inside).find(kHexFaces, stage);
+  Array<Index> nodes;
+  nodes.reserve(quads.elements.size() * list.size());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < quads.elements.size(); ++i) {
+    std::uint64_t cell = quads.places[i] / 8;
+    std::uint64_t face = quads.places[i] % 8;
+    if (quads.places[i] == kNoPlace) {
+      if (found[next] == kNoPlace) failAbout("quad", quads.elements[i]);
+      cell = found[next] / kSlots;
+      face = found[next++] % kSlots;
+    }
+    const auto& corners = kHexFaces[face];
+    appendNodes(mesh, cell, {corners[0], corners[1], corners[3]}, list, nodes);
+  }
+  return nodes;
+}
 
 }  // namespace
 

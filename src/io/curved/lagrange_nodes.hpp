@@ -1,34 +1,46 @@
-// The nodes of Lagrange hexahedra in the order of formats, and those of edges and quads that
-// formats list beside the cells.
+// Nodes of Lagrange hexahedra, for the orders in which formats list them.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
-
-#include <hexhex/curved.hpp>
-
-#include <base/stage.hpp>
-#include <io/core/mesh_groups.hpp>
 
 namespace hexhex {
 
-/// Entry i: the place in LagrangeMesh's order, i + (p + 1) (j + (p + 1) k), of the node that the
-/// format lists at place i.
-[[nodiscard]] std::vector<std::uint32_t> vtkNodeOrder(int order);
-[[nodiscard]] std::vector<std::uint32_t> gmshNodeOrder(int order);
+/// Where a node is in a cell, from 0 to the order along each axis.
+using Node = std::array<int, 3>;
 
-/// The nodes of tagged edges, order + 1 each, in Gmsh's order.
-/// @param straight  what straightMesh() returns
-/// @throws Error InvalidArgument for an edge that is none of a cell
-[[nodiscard]] Array<Index> gmshEdgeNodes(const LagrangeMesh& mesh, const HexMesh& straight,
-                                         const EdgeGroups& edges, Stage& stage);
+/// Corners in VTK's order, which Gmsh shares, on a cube from `low` to `high`.
+[[nodiscard]] inline Node corner(std::size_t i, int low, int high) {
+  return {i % 4 == 1 || i % 4 == 2 ? high : low, i % 4 >= 2 ? high : low, i >= 4 ? high : low};
+}
 
-/// The nodes of quads, (order + 1)^2 each, in Gmsh's order; those of the boundary run
-/// counter-clockwise seen from outside, those inside the mesh so seen from outside of the first
-/// cell that they belong to.
-/// @throws Error InvalidArgument for a quad that is no face of a cell
-[[nodiscard]] Array<Index> gmshQuadNodes(const LagrangeMesh& mesh, const HexMesh& straight,
-                                         const QuadGroups& quads, Stage& stage);
+/// Nodes strictly between two corners, from the first on; their steps are of length 1.
+[[nodiscard]] inline std::vector<Node> between(const Node& from, const Node& to, int count) {
+  std::vector<Node> nodes;
+  for (int step = 1; step <= count; ++step) {
+    Node node = from;
+    for (std::size_t k = 0; k < 3; ++k) {
+      node[k] += to[k] > from[k] ? step : (to[k] < from[k] ? -step : 0);
+    }
+    nodes.push_back(node);
+  }
+  return nodes;
+}
+
+/// Places in the order of LagrangeMesh, i + (p + 1) (j + (p + 1) k).
+[[nodiscard]] inline std::vector<std::uint32_t> placesOf(const std::vector<Node>& nodes,
+                                                         int order) {
+  std::vector<std::uint32_t> places;
+  places.reserve(nodes.size());
+  for (const Node& n : nodes) {
+    places.push_back(static_cast<std::uint32_t>(n[0] + (order + 1) * (n[1] + (order + 1) * n[2])));
+  }
+  return places;
+}
+
+inline void append(std::vector<Node>& nodes, const std::vector<Node>& more) {
+  nodes.insert(nodes.end(), more.begin(), more.end());
+}
 
 }  // namespace hexhex
