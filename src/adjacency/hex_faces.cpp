@@ -3,6 +3,7 @@
 // few in most meshes, and are compared at their smallest vertices.
 #include <algorithm>
 #include <atomic>
+#include <bit>
 
 #include <adjacency/cell_faces.hpp>
 #include <adjacency/hex_faces.hpp>
@@ -113,15 +114,19 @@ void linkAlignedCells(std::size_t vertexCount, std::span<const Hex> cells, Stage
 }
 
 /// Per cell: bit k if corner k is a vertex of a face that is not linked.
+/// @param balance  grows by how many more faces at corner 6 than at corner 0 are linked
 template <class IsLinked>
 Array<std::uint8_t> findSeamCorners(std::size_t vertexCount, std::span<const Hex> cells,
-                                    Stage& stage, const IsLinked& isLinked) {
+                                    Stage& stage, const IsLinked& isLinked,
+                                    std::atomic<std::int64_t>& balance) {
   Array<std::uint8_t> onSeam(vertexCount);
   parallelFor(stage, vertexCount, 8 * kGrain, [&](std::size_t v) { onSeam[v] = 0; });
   parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
     unsigned linked = 0;
     for (std::size_t face = 0; face < 6; ++face) linked |= unsigned{isLinked(c, face)} << face;
     if (linked == 63) return;  // as of most cells
+    balance.fetch_add(std::popcount(linked & 0b101010U) - std::popcount(linked & 0b010101U),
+                      std::memory_order_relaxed);
     for (std::size_t face = 0; face < 6; ++face) {
       if ((linked >> face & 1U) != 0) continue;
       for (const Index v : faceVertices(cells[c], face)) {
@@ -164,21 +169,6 @@ void forEachSeamFace(std::size_t vertexCount, std::span<const Hex> cells,
                  });
 }
 
-/// Whether every linked half-face is the mate of its mate. In a broken mesh, two cells may claim
-/// the same one: then fewer half-faces are claimed than claim.
-bool areMutual(std::span<const Index> mates, Stage& stage) {
-  std::atomic<std::int64_t> balance{0};
-  parallelBlocks(stage, mates.size(), 6 * kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   std::int64_t sum = 0;
-                   for (std::size_t i = begin; i < end; ++i) {
-                     if (mates[i] != kNone) sum += i % 2 == 1 ? 1 : -1;
-                   }
-                   balance.fetch_add(sum, std::memory_order_relaxed);
-                 });
-  return balance == 0;
-}
-
 }  // namespace
 
 std::optional<HexMates> matchHexFaces(std::size_t vertexCount, std::span<const Hex> cells,
@@ -193,10 +183,12 @@ std::optional<HexMates> matchHexFaces(std::size_t vertexCount, std::span<const H
     mates[far] = static_cast<Index>(near);
     std::atomic_ref(mates[near]).store(static_cast<Index>(far), std::memory_order_relaxed);
   });
-  if (!areMutual(mates, stage)) return std::nullopt;
+  std::atomic<std::int64_t> balance{0};
   result.seamCorners = findSeamCorners(
       vertexCount, cells, stage,
-      [&](std::size_t cell, std::size_t face) { return mates[6 * cell + face] != kNone; });
+      [&](std::size_t cell, std::size_t face) { return mates[6 * cell + face] != kNone; }, balance);
+  // In a broken mesh, two cells may claim the same half-face: then fewer are claimed than claim.
+  if (balance != 0) return std::nullopt;
   std::atomic<bool> isSound{true};
   forEachSeamFace(vertexCount, cells, result.seamCorners, stage,
                   [&](std::span<const CellFace<Hex>> halfFaces) {
@@ -226,9 +218,11 @@ Array<std::uint64_t> boundaryPlaces(const HexMesh& mesh, Stage& stage) {
                      set(cell, 2 * axis + 1, Kind::Shared);
                      set(next, 2 * axis, Kind::Shared);
                    });
+  std::atomic<std::int64_t> balance{0};  // of no interest here
   const Array<std::uint8_t> seamCorners = findSeamCorners(
       mesh.points.size(), mesh.cells, stage,
-      [&](std::size_t cell, std::size_t face) { return kinds[cell][face] == Kind::Shared; });
+      [&](std::size_t cell, std::size_t face) { return kinds[cell][face] == Kind::Shared; },
+      balance);
   forEachSeamFace(mesh.points.size(), mesh.cells, seamCorners, stage,
                   [&](std::span<const CellFace<Hex>> halfFaces) {
                     const CellFace<Hex>& first = halfFaces.front();

@@ -30,7 +30,7 @@ class KeyTable {
     if (slot.generation == generation_) return slot.number;
     const Index number = size_++;
     slot = {key, generation_, number};
-    if (2 * std::size_t{size_} > slots_.size()) grow();
+    if (2 * std::size_t{size_} > mask_) grow();
     return number;
   }
 
@@ -48,7 +48,7 @@ class KeyTable {
     // The upper bits of a product with an odd constant near 2^64 / golden ratio spread well.
     std::size_t i = (std::uint64_t{key} * 0x9e3779b97f4a7c15U) >> shift_;
     while (slots_[i].generation == generation_ && slots_[i].key != key) {
-      i = (i + 1) & (slots_.size() - 1);
+      i = (i + 1) & mask_;
     }
     return slots_[i];
   }
@@ -57,12 +57,14 @@ class KeyTable {
     Array<Slot> old(2 * slots_.size());
     old.swap(slots_);
     --shift_;
+    mask_ = 2 * mask_ + 1;
     for (const Slot& slot : old) {
       if (slot.generation == generation_) slotOf(slot.key) = slot;
     }
   }
 
   Array<Slot> slots_ = Array<Slot>(std::size_t{1} << kInitialBits);
+  std::size_t mask_ = (std::size_t{1} << kInitialBits) - 1;  ///< one less than slots
   int shift_ = 64 - kInitialBits;
   std::uint32_t generation_ = 1;
   Index size_ = 0;
