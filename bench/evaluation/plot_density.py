@@ -10,7 +10,7 @@ from evaluation.results import Run, select
 # Stages that are drawn as one: what they do, and their color. Stages of the same kind have the same
 # color in both panels.
 _INPUT = {
-    "topology": (("input", "topology", "plain vertices"), style.BLACK),
+    "topology": (("input", "topology", "regular vertices"), style.BLACK),
     "transitions, singularities": (("unfolding", "transitions", "singularities"), style.BLUE),
     "sanitization": (("sanitization", "scaling"), style.SKY),
 }

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <base/workspaces.hpp>
-#include <igm/corner_rounder.hpp>
 #include <igm/exact_map.hpp>
 #include <igm/map_conditions.hpp>
 #include <igm/map_volume.hpp>

@@ -55,7 +55,7 @@ class Preparation {
     const LocalParameters parameters(prepared_.input);
     RegularVertices survey;
     {
-      Stage stage(context_, "plain vertices");
+      Stage stage(context_, "regular vertices");
       survey = findRegularVertices(prepared_.topology, parameters, stage);
     }
     Transitions transitions;

@@ -3,7 +3,6 @@
 
 #include <base/pair.hpp>
 #include <base/vector3.hpp>
-#include <igm/corner_rounder.hpp>
 #include <igm/map_conditions.hpp>
 #include <igm/tet_rounder.hpp>
 

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include <base/vector3.hpp>
-#include <igm/corner_rounder.hpp>
 #include <igm/map_conditions.hpp>
+#include <igm/tet_rounder.hpp>
 #include <igm/vertex_sanitizer.hpp>
 
 namespace hexhex {
