@@ -9,11 +9,17 @@
 
 namespace hexhex {
 
-/// Numbers keys (tets, vertices, pairs of vertices) in the order in which they come. Keeps its
-/// memory, and is emptied in no time.
-template <class Key = Index>
+/// Numbers keys (tets, vertices) in the order in which they come. Emptied in no time, and made so
+/// that nothing in it is for the processor to guess: whether a key is new is as good as random.
 class KeyTable {
+  struct Slot {
+    std::uint64_t tag = 0;  ///< generation and key; the slot is empty in all other generations
+    Index number = 0;
+  };
+
  public:
+  KeyTable() : slots_(kInitialSlots) {}
+
   void clear() {
     size_ = 0;
     if (++generation_ != 0) return;
@@ -25,47 +31,76 @@ class KeyTable {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
   /// The number of a key, which is the former size() if the key is new.
-  Index insert(Key key) {
-    Slot& slot = slotOf(key);
-    if (slot.generation == generation_) return slot.number;
-    const Index number = size_++;
-    slot = {key, generation_, number};
-    if (2 * std::size_t{size_} > mask_) grow();
+  Index insert(Index key) {
+    makeRoom(size_ + 1);
+    const Index number = numberer()(key, size_);
+    size_ += number == size_ ? 1 : 0;
     return number;
   }
 
- private:
-  struct Slot {
-    Key key = 0;
-    std::uint32_t generation = 0;  ///< the slot is empty in all others
-    Index number = 0;
+  /// Does the work, as an object that a loop can keep in registers. The caller counts the keys, and
+  /// size() knows nothing of them.
+  class Numberer {
+   public:
+    /// The number of a key: `size` if it is new. There must be room.
+    Index operator()(Index key, Index size) const noexcept {
+      const std::uint64_t tag = generation_ | key;
+      Slot& slot = *find(slots_, shift_, tag);
+      // Chosen by arithmetic, as the compiler would make a branch of a condition.
+      const Index isKnown = slot.tag == tag ? 1 : 0;
+      const Index number = size ^ ((slot.number ^ size) & (0 - isKnown));
+      slot = {tag, number};
+      return number;
+    }
+
+   private:
+    friend class KeyTable;
+    Numberer(Slot* slots, int shift, std::uint64_t generation)
+        : slots_(slots), shift_(shift), generation_(generation) {}
+    Slot* slots_;
+    int shift_;
+    std::uint64_t generation_;  ///< in the upper half
   };
+
+  /// To be renewed after makeRoom().
+  [[nodiscard]] Numberer numberer() noexcept {
+    return {slots_.data(), shift_, std::uint64_t{generation_} << 32};
+  }
+
+  [[nodiscard]] bool hasRoom(std::size_t size) const noexcept { return 2 * size <= slots_.size(); }
+
+  /// For this many keys.
+  void makeRoom(std::size_t size) {
+    while (!hasRoom(size)) grow();
+  }
+
+ private:
   /// Many more than the tets or edges at nearly all vertices, so that keys hardly ever collide.
-  static constexpr int kInitialBits = 9;
+  static constexpr std::size_t kInitialSlots = 512;
+  static constexpr int kInitialShift = 23;  ///< 2^(32 - 23) slots
 
   /// The slot of a key, or the one that it would get.
-  [[nodiscard]] Slot& slotOf(Key key) noexcept {
-    // The upper bits of a product with an odd constant near 2^64 / golden ratio spread well.
-    std::size_t i = (std::uint64_t{key} * 0x9e3779b97f4a7c15U) >> shift_;
-    while (slots_[i].generation == generation_ && slots_[i].key != key) {
-      i = (i + 1) & mask_;
-    }
-    return slots_[i];
+  [[nodiscard]] static Slot* find(Slot* slots, int shift, std::uint64_t tag) noexcept {
+    const std::size_t mask = 0xffffffffU >> shift;
+    // The upper bits of a product with an odd constant near 2^32 / golden ratio spread well.
+    std::size_t i = (static_cast<std::uint32_t>(tag) * 0x9e3779b9U) >> shift;
+    // While the slot is of this generation, but of another key: in one comparison, as two would
+    // make a branch.
+    while ((slots[i].tag ^ tag) - 1 < 0xffffffffU) i = (i + 1) & mask;
+    return &slots[i];
   }
 
   void grow() {
     Array<Slot> old(2 * slots_.size());
     old.swap(slots_);
     --shift_;
-    mask_ = 2 * mask_ + 1;
     for (const Slot& slot : old) {
-      if (slot.generation == generation_) slotOf(slot.key) = slot;
+      if ((slot.tag >> 32) == generation_) *find(slots_.data(), shift_, slot.tag) = slot;
     }
   }
 
-  Array<Slot> slots_ = Array<Slot>(std::size_t{1} << kInitialBits);
-  std::size_t mask_ = (std::size_t{1} << kInitialBits) - 1;  ///< one less than slots
-  int shift_ = 64 - kInitialBits;
+  Array<Slot> slots_;
+  int shift_ = kInitialShift;
   std::uint32_t generation_ = 1;
   Index size_ = 0;
 };

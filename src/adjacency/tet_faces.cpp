@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include <adjacency/corner_order.hpp>
-#include <adjacency/key_table.hpp>
 #include <adjacency/tet_topology.hpp>
 
 namespace hexhex {
@@ -18,21 +17,42 @@ constexpr std::size_t kVertexGrain = 256;
 /// Tets are divided into at most as many parts: each part costs three numbers per vertex.
 constexpr std::size_t kMaxParts = 8;
 
-/// A way around a triangle, as a bit: vertices ascend but for a rotation, or descend.
-using Direction = std::uint8_t;
-constexpr Direction kAscending = 1;
-constexpr Direction kDescending = 2;
+/// A half-face as the hash table keeps it: its number in the lower half. In the upper half, bit 0
+/// if its corners, in the order of kFaceCorners, ascend but for a rotation, and bit 1 if they
+/// descend; both if it has been matched. So two that share a bit must not be matched.
+using OpenFace = std::uint64_t;
+constexpr OpenFace kAscends = std::uint64_t{1} << 32;
+constexpr OpenFace kDescends = std::uint64_t{2} << 32;
+/// Matched, or none yet.
+constexpr OpenFace kMatched = kAscends | kDescends;
+constexpr OpenFace kNoFace = kNone;
 
-/// By order and face: the direction of the face's corners in the order of kFaceCorners.
-constexpr auto kDirections = byCornerOrder<std::array<Direction, 4>>([](const Tet& tet) {
-  std::array<Direction, 4> directions{};
-  for (std::size_t face = 0; face < 4; ++face) {
-    const auto [a, b, c] = faceVertices(tet, face);
-    const int descents = (b < a ? 1 : 0) + (c < b ? 1 : 0) + (a < c ? 1 : 0);
-    directions[face] = descents == 1 ? kAscending : kDescending;
+/// The corners and faces of a tet, in ascending order of vertices.
+struct RankedTet {
+  std::array<std::uint8_t, 4> corners{};  ///< by rank
+  /// By rank of the opposite corner: number within the tet, and whether it ascends or descends.
+  std::array<OpenFace, 4> faces{};
+};
+
+constexpr RankedTet rankedTet(const Tet& tet) {
+  RankedTet ranked;
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    std::size_t rank = 0;
+    for (const Index other : tet) rank += other < tet[corner] ? 1 : 0;
+    ranked.corners[rank] = static_cast<std::uint8_t>(corner);
+    const std::array<int, 3>& face = kFaceCorners[corner];
+    int descents = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index here = tet[static_cast<std::size_t>(face[k])];
+      const Index next = tet[static_cast<std::size_t>(face[(k + 1) % 3])];
+      descents += next < here ? 1 : 0;
+    }
+    ranked.faces[rank] = corner | (descents == 1 ? kAscends : kDescends);
   }
-  return directions;
-});
+  return ranked;
+}
+
+constexpr std::array<RankedTet, kCornerOrders> kRankedTets = byCornerOrder<RankedTet>(rankedTet);
 
 /// Each triangle is found at its smallest vertex. In a tet, that is the tet's smallest vertex for
 /// three faces and the second smallest for the fourth: so each tet is in two linked lists, one of
@@ -77,10 +97,10 @@ void listFaces(FaceLists& lists, TetTopology& topology, std::size_t part, std::s
     const auto index = static_cast<Index>(t - 1);
     for (const Index v : tet) heads[v].smallest = index;
     const CornerOrder order = cornerOrder(tet);
-    const std::array<std::uint8_t, 4>& ascending = kAscendingCorners[order];
+    const RankedTet& ranked = kRankedTets[order];
     topology.order[index] = order;
-    lists.next[index] = {std::exchange(heads[tet[ascending[0]]].threeFaces, index),
-                         std::exchange(heads[tet[ascending[1]]].oneFace, index)};
+    lists.next[index] = {std::exchange(heads[tet[ranked.corners[0]]].threeFaces, index),
+                         std::exchange(heads[tet[ranked.corners[1]]].oneFace, index)};
   }
 }
 
@@ -98,61 +118,119 @@ FaceLists listFaces(TetTopology& topology, Stage& stage) {
   return lists;
 }
 
-/// Matches the half-faces at one vertex after the other.
+/// What a hash table has found at a vertex: a triangle's other two vertices, the smaller one in the
+/// upper half, and its half-face.
+struct FoundFace {
+  std::uint64_t vertices = 0;
+  OpenFace face = kNoFace;
+};
+
+/// Memory of a hash table for the half-faces at nearly every vertex, which is cleared in no time.
+struct SmallTable {
+  static constexpr int kBits = 8;
+  std::array<std::uint8_t, 1 << kBits> slots;
+  std::array<FoundFace, (1 << kBits) / 4 * 3> found;
+
+  [[nodiscard]] static constexpr int bits() { return kBits; }
+};
+
+/// The same for any number.
+struct LargeTable {
+  explicit LargeTable(int bits)
+      : bits_(bits), slots(std::size_t{1} << bits), found((std::size_t{1} << bits) / 4 * 3) {}
+  [[nodiscard]] int bits() const { return bits_; }
+
+  int bits_;
+  std::vector<std::uint32_t> slots;
+  std::vector<FoundFace> found;
+};
+
+/// Matches the half-faces at one vertex, by a hash table. Whether a triangle is found for the first
+/// or the second time is as good as random, so that all is done alike for both.
+template <class Table>
 class FaceMatcher {
  public:
-  FaceMatcher(const FaceLists& lists, TetTopology& topology) : lists_(lists), topology_(topology) {}
-
-  void matchAt(Index vertex) {
-    triangles_.clear();
-    firsts_.clear();
-    for (std::size_t part = 0; part < lists_.parts; ++part) {
-      const FaceLists::Heads& heads = lists_.at(part, vertex);
-      for (Index t = heads.threeFaces; t != kNone; t = lists_.next[t].threeFaces) {
-        for (std::size_t rank = 1; rank < 4; ++rank) match(t, rank);
-      }
-      for (Index t = heads.oneFace; t != kNone; t = lists_.next[t].oneFace) match(t, 0);
-    }
+  FaceMatcher(Table& table, HalfFace* mate) : table_(table), mate_(mate) {
+    std::fill(table.slots.begin(), table.slots.end(), 0);
+    table.found[0].face = kNoFace;
   }
 
-  /// Whether no triangle was there more than twice, or twice in the same direction.
-  [[nodiscard]] bool isSound() const { return isSound_; }
+  /// Whether so many can be added.
+  [[nodiscard]] bool hasRoom(std::size_t more) const { return count_ + more < table_.found.size(); }
+
+  /// @param low,high  the other two vertices, low < high
+  void add(Index low, Index high, OpenFace face) {
+    const std::uint64_t key = (std::uint64_t{low} << 32) | high;
+    auto& slot = slotOf(key);
+    const std::uint64_t isKnown = slot == 0 ? 0 : ~std::uint64_t{0};
+    const OpenFace other = table_.found[slot].face;
+    slot = static_cast<std::remove_reference_t<decltype(slot)>>(++count_);
+    table_.found[count_] = {key, face | (kMatched & isKnown)};
+    shared_ |= face & other;
+    const auto here = static_cast<HalfFace>(face);
+    const auto there = static_cast<HalfFace>(other);
+    mate_[here ^ ((here ^ there) & static_cast<HalfFace>(isKnown))] = here;
+    mate_[here] = there;
+  }
+
+  /// Whether no triangle was there more than twice, or twice in the same orientation.
+  [[nodiscard]] bool isSound() const { return (shared_ & kMatched) == 0; }
 
  private:
-  struct First {
-    HalfFace halfFace;
-    Direction directions;  ///< of all half-faces of the triangle so far
-  };
-
-  /// Matches a half-face with the first one of its triangle, or is that.
-  /// @param rank  of the corner opposite it, by which the vertex is the smallest or second smallest
-  void match(Index t, std::size_t rank) {
-    const Tet& tet = topology_.tets[t];
-    const CornerOrder order = topology_.order[t];
-    const std::array<std::uint8_t, 4>& ascending = kAscendingCorners[order];
-    const HalfFace halfFace = 4 * t + ascending[rank];
-    const Direction direction = kDirections[order][ascending[rank]];
-    const std::uint64_t low = tet[ascending[rank < 2 ? 2 : 1]];
-    const Index number = triangles_.insert(low << 32 | tet[ascending[rank < 3 ? 3 : 2]]);
-    if (number == firsts_.size()) {
-      firsts_.push_back({halfFace, direction});
-      topology_.mate[halfFace] = kNone;
-      return;
+  /// The slot with the number of the last half-face of a triangle; 0 if there was none so far.
+  [[nodiscard]] auto& slotOf(std::uint64_t key) {
+    table_.found[0].vertices = key;  // ends the search at an empty slot
+    // Odd, and near 2^64 / golden ratio: the upper bits of products with it spread well.
+    std::size_t i = (key * 0x9e3779b97f4a7c15U) >> (64 - table_.bits());
+    while (table_.found[table_.slots[i]].vertices != key) {
+      i = (i + 1) & (table_.slots.size() - 1);
     }
-    First& first = firsts_[number];
-    topology_.mate[halfFace] = first.halfFace;
-    topology_.mate[first.halfFace] = halfFace;
-    isSound_ = isSound_ && (first.directions & direction) == 0;
-    first.directions = kAscending | kDescending;
+    return table_.slots[i];
   }
 
-  const FaceLists& lists_;
-  TetTopology& topology_;
-  /// The triangles at a vertex by their other two vertices, the smaller one in the upper half.
-  KeyTable<std::uint64_t> triangles_;
-  std::vector<First> firsts_;
-  bool isSound_ = true;
+  Table& table_;
+  HalfFace* mate_;
+  std::size_t count_ = 0;
+  OpenFace shared_ = 0;
 };
+
+/// Matches the half-faces whose smallest vertex is the same.
+/// @return false if they do not fit the table
+template <class Table>
+bool matchFacesAt(Index v, const FaceLists& lists, Table& table, TetTopology& topology,
+                  bool& sound) {
+  FaceMatcher<Table> matcher(table, topology.mate.data());
+  for (std::size_t part = 0; part < lists.parts; ++part) {
+    const FaceLists::Heads& heads = lists.at(part, v);
+    for (Index t = heads.threeFaces; t != kNone; t = lists.next[t].threeFaces) {
+      if (!matcher.hasRoom(3)) return false;
+      const Tet& tet = topology.tets[t];
+      const RankedTet& ranked = kRankedTets[topology.order[t]];
+      const Index a = tet[ranked.corners[1]];
+      const Index b = tet[ranked.corners[2]];
+      const Index c = tet[ranked.corners[3]];
+      matcher.add(b, c, 4 * t + ranked.faces[1]);
+      matcher.add(a, c, 4 * t + ranked.faces[2]);
+      matcher.add(a, b, 4 * t + ranked.faces[3]);
+    }
+    for (Index t = heads.oneFace; t != kNone; t = lists.next[t].oneFace) {
+      if (!matcher.hasRoom(1)) return false;
+      const Tet& tet = topology.tets[t];
+      const RankedTet& ranked = kRankedTets[topology.order[t]];
+      matcher.add(tet[ranked.corners[2]], tet[ranked.corners[3]], 4 * t + ranked.faces[0]);
+    }
+  }
+  sound = sound && matcher.isSound();
+  return true;
+}
+
+/// The same with a table that is large enough.
+void matchManyFacesAt(Index v, const FaceLists& lists, TetTopology& topology, bool& sound) {
+  for (int bits = SmallTable::kBits + 2;; bits += 2) {
+    LargeTable table(bits);
+    if (matchFacesAt(v, lists, table, topology, sound)) return;
+  }
+}
 
 }  // namespace
 
@@ -163,13 +241,16 @@ bool matchFaces(TetTopology& topology, Stage& stage) {
   std::atomic<bool> sound = true;
   parallelBlocks(stage, topology.pointCount, kVertexGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   FaceMatcher matcher(lists, topology);
+                   SmallTable table;  // NOLINT: written before it is read
+                   bool isSound = true;
                    for (std::size_t i = begin; i < end; ++i) {
                      const auto v = static_cast<Index>(i);
                      topology.vertexTet[v] = lists.smallestTet(v);
-                     matcher.matchAt(v);
+                     if (!matchFacesAt(v, lists, table, topology, isSound)) {
+                       matchManyFacesAt(v, lists, topology, isSound);
+                     }
                    }
-                   if (!matcher.isSound()) sound = false;
+                   if (!isSound) sound = false;
                  });
   return sound;
 }

@@ -60,7 +60,7 @@ class FaceCutter {
   };
   /// A list per key, by the number of a KeyTable.
   struct Lists {
-    KeyTable<> keys;
+    KeyTable keys;
     std::vector<std::size_t> first;
 
     void clear() {

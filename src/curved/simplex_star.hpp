@@ -110,7 +110,7 @@ class SimplexStar {
 
   const TetTopology& topology_;
   const ExactMap& map_;
-  KeyTable<> seen_;
+  KeyTable seen_;
   std::vector<SimplexInTet> members_;
 };
 

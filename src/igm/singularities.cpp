@@ -105,7 +105,9 @@ class VertexEdges {
   /// Faces and edges are counted without branches, which could not be predicted.
   void collectEdges() {
     others_.clear();
+    others_.makeRoom(3 * star_.size());
     if (edges_.size() <= 3 * star_.size()) edges_.resize(2 * (3 * star_.size()));
+    const KeyTable::Numberer number = others_.numberer();
     numbers_.resize(star_.size());
     Index count = 0;
     std::int64_t boundaryFaces = 0;
@@ -117,7 +119,7 @@ class VertexEdges {
       std::array<Index, 3>& numbers = numbers_[i];
       for (std::size_t k = 0; k < 3; ++k) {
         edges_[count] = {tet[corners[k]], 0, 0, 0};
-        numbers[k] = others_.insert(tet[corners[k]]);
+        numbers[k] = number(tet[corners[k]], count);
         count += numbers[k] == count ? 1 : 0;
       }
       std::array<std::uint32_t, 3> inward{};
@@ -227,7 +229,7 @@ class VertexEdges {
 
   Surroundings in_;
   std::span<const VertexStar::Member> star_;
-  KeyTable<> others_;        ///< numbers the edges by their other vertices
+  KeyTable others_;          ///< numbers the edges by their other vertices
   std::vector<Edge> edges_;  ///< more than are in use
   Index edgeCount_ = 0;
   std::vector<Index> candidates_;              ///< for being singular; more than are in use

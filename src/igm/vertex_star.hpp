@@ -47,11 +47,12 @@ class VertexStar {
   void collect(const TetTopology& topology, Index vertex,
                std::span<const HalfFaceCrossing> crossings = {}) {
     numbers_.clear();
+    KeyTable::Numberer number = numbers_.numberer();
     Member* members = members_.data();
     const Index first = topology.vertexTet[vertex];
     members[0].corner = 4 * first + localCorner(topology.tets[first], vertex);
     members[0].rotation = Rotation();
-    Index count = 1 + numbers_.insert(first);
+    Index count = 1 + number(first, 0);
     AxisSet planes = 0;
     unsigned misfits = 0;
     // Looks through face k of a member, without branches: neither whether the member behind is new
@@ -65,7 +66,7 @@ class VertexStar {
       const bool isBoundary = mate == kNone;
       const Index tet = isBoundary ? here.tet() : tetOf(mate);
       prefetch(&topology.mate[4 * tet]);
-      const Index j = numbers_.insert(tet);
+      const Index j = number(tet, count);
       Member& behind = members[count];  // in vain if it is not new
       const Index corner = localCorner(topology.tets[tet], vertex);
       behind.corner = 4 * tet + corner;
@@ -83,7 +84,9 @@ class VertexStar {
       // Up to two more, and one that is written in vain.
       if (members_.size() < count + 3) {
         members_.resize(2 * members_.size());
+        numbers_.makeRoom(members_.size());
         members = members_.data();
+        number = numbers_.numberer();
       }
       const std::size_t entry = members[head].entry;
       cross(head, entry == 0 ? 1 : 0);
@@ -104,7 +107,7 @@ class VertexStar {
   [[nodiscard]] bool chartsFit() const noexcept { return fits_; }
 
  private:
-  KeyTable<> numbers_;  ///< of tets
+  KeyTable numbers_;  ///< of tets
   Index count_ = 0;
   AxisSet planes_ = 0;
   bool fits_ = true;

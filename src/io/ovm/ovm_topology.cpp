@@ -92,7 +92,7 @@ using Edge = std::array<Index, 2>;
 
 /// The edges from a vertex to larger ones, in the order in which its tets have them.
 /// @param others  reused between calls
-void appendEdges(const TetTopology& tets, Index vertex, KeyTable<>& others,
+void appendEdges(const TetTopology& tets, Index vertex, KeyTable& others,
                  std::vector<Edge>& edges) {
   others.clear();
   for (const CornerIndex corner : tets.star(vertex)) {
@@ -110,7 +110,7 @@ Array<Edge> listEdges(const TetTopology& tets, Stage& stage) {
   std::vector<std::vector<Edge>> blocks(blockCount(tets.pointCount, kGrain));
   parallelBlocks(stage, tets.pointCount, kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   KeyTable<> others;
+                   KeyTable others;
                    for (std::size_t v = begin; v < end; ++v) {
                      appendEdges(tets, static_cast<Index>(v), others, blocks[block]);
                    }
