@@ -1,3 +1,4 @@
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -18,14 +19,18 @@ class Patches {
     const Array<HalfFace>& mate = map.topology.mate;
     DisjointSets sets(tets);
     parallelFor(stage, tets, kGrain, [&](std::size_t t) {
+      // Smaller neighbours, as each face needs to be seen once; listed without branches, which
+      // cannot be predicted: with them, an extraction of s17c_sphere_r0.1 takes 4 % longer.
+      std::array<Index, 4> smaller{};
+      std::size_t count = 0;
       const auto first = static_cast<HalfFace>(4 * t);
-      auto patch = static_cast<Index>(t);
       for (HalfFace h = first; h < first + 4; ++h) {
-        // Smaller neighbours, as each face needs to be seen once.
-        if (mate[h] < first && !map.exact.transitions.isJump(h)) {
-          patch = sets.unite(patch, tetOf(mate[h]));
-        }
+        smaller[count] = tetOf(mate[h]);
+        count += static_cast<std::size_t>(mate[h] < first) &
+                 static_cast<std::size_t>(!map.exact.transitions.isJump(h));
       }
+      auto patch = static_cast<Index>(t);
+      for (std::size_t i = 0; i < count; ++i) patch = sets.unite(patch, smaller[i]);
     });
     const auto representatives = collectFromBlocks<Index>(
         stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::vector<Index>& list) {
