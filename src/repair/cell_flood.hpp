@@ -1,4 +1,5 @@
-// One cell of a partial extraction: the pieces of tets in its unit cube.
+// One cell of a partial extraction: the pieces of tets in its unit cube, and their volumes by
+// floating point.
 #pragma once
 
 #include <array>
@@ -54,7 +55,7 @@ class CellFlood {
   };
   [[nodiscard]] Corner corner(std::size_t i) const;
 
-  /// Whether a face of the cell, in the order of hexFaces in partial.cpp, is on the boundary of the
+  /// Whether a face of the cell, in the order of kHexFaces, is on the boundary of the
   /// tets.
   [[nodiscard]] bool isOnBoundary(std::size_t wall) const { return wallArea_[wall] > 1 - kSlack; }
 
@@ -74,5 +75,15 @@ class CellFlood {
   std::vector<Piece> pieces_;
   std::array<double, 6> wallArea_{};  ///< of the tets' boundary in each wall: axis 0 low, high, ...
 };
+
+/// Volume of the part of a positive tet in [0, 1]^3.
+[[nodiscard]] double volumeInCube(const std::array<Vec3, 4>& tet);
+
+/// The part of a triangle in [0, 1]^3.
+struct ClippedTriangle {
+  double area = 0;
+  Vec3 centre{};  ///< if the area is not 0
+};
+[[nodiscard]] ClippedTriangle clipToCube(const std::array<Vec3, 3>& triangle);
 
 }  // namespace hexhex

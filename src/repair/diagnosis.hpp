@@ -1,7 +1,10 @@
-// What is wrong with a map apart from flipped and flat tets: looked for where none of them is near.
+// What is wrong with a map apart from single flipped and flat tets: other conditions, looked for
+// where no such tet is near, and whole parts of the map that are inverted or collapsed.
 #pragma once
 
 #include <vector>
+
+#include <adjacency/tet_topology.hpp>
 
 #include <igm/defects.hpp>
 #include <igm/input.hpp>
@@ -21,5 +24,18 @@ struct Diagnosis {
 void diagnose(const PreparedMap& map, const LocalParameters& parameters,
               const std::vector<Index>& bad, double tolerance, double limit, Stage& stage,
               Diagnosis& diagnosis);
+
+/// Moving parameters along free coordinates changes no volume. So a component of the mesh without
+/// positive volume cannot be repaired; nor can a map of which a large part is bad.
+/// @param bad  ascending
+/// @throws Error FlippedTet  that says what was found where
+void refuseInvertedParts(const TetTopology& topology, const LocalParameters& parameters,
+                         const std::vector<Index>& bad);
+
+/// Refuses regions of many bad tets some of which have no good tet around: only a guess would tell
+/// what they were meant to be.
+/// @param bad  ascending
+/// @throws Error FlippedTet  likewise
+void refuseInvertedRegions(const TetTopology& topology, const std::vector<Index>& bad);
 
 }  // namespace hexhex

@@ -4,10 +4,11 @@
 #include <map>
 #include <string>
 
+#include <adjacency/hex_topology.hpp>
+
 #include <hexhex/partial.hpp>
 
 #include <base/disjoint_sets.hpp>
-#include <repair/bad_tets.hpp>
 #include <repair/cell_flood.hpp>
 #include <repair/valid_tets.hpp>
 
@@ -17,13 +18,9 @@ namespace {
 
 constexpr std::size_t kTetGrain = 64;
 
-/// Corners of the faces of a cell, in the order of walls: axis 0 low, high, axis 1 low, ...
-constexpr std::array<std::array<std::size_t, 4>, 6> kHexFaces = {
-    {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
-
 struct FoundCell {
   std::array<CellFlood::Corner, 8> corners;
-  std::uint8_t boundaryWalls = 0;  ///< bit per wall
+  std::uint8_t boundaryWalls = 0;  ///< bit per face
 };
 
 struct Found {
@@ -119,41 +116,14 @@ void assemble(const std::vector<Found>& blocks, PartialMesh& result,
   }
 }
 
-/// Compares faces of cells with each other.
-void matchFaces(const std::vector<std::uint8_t>& boundaryWalls, PartialMesh& result) {
-  struct Side {
-    Quad sorted;
-    std::size_t cell;
-    std::size_t wall;
-    bool even;  ///< parity of the order in which the face lists its corners
-  };
-  std::vector<Side> sides;
-  sides.reserve(6 * result.mesh.cells.size());
-  for (std::size_t c = 0; c < result.mesh.cells.size(); ++c) {
-    for (std::size_t wall = 0; wall < 6; ++wall) {
-      Quad quad{};
-      for (std::size_t i = 0; i < 4; ++i) quad[i] = result.mesh.cells[c][kHexFaces[wall][i]];
-      std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
-      const bool even = quad[1] < quad[3];
-      std::sort(quad.begin(), quad.end());
-      sides.push_back({quad, c, wall, even});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return a.sorted != b.sorted ? a.sorted < b.sorted : a.cell < b.cell;
-  });
+/// Marks cells at holes: a face has no other cell behind it, and the tets go on.
+void matchFaces(const std::vector<std::uint8_t>& boundaryWalls, Stage& stage, PartialMesh& result) {
+  const HexFaces faces = findFaces(result.mesh, cellsAroundVertices(result.mesh, stage), stage);
   result.mesh.regions.assign(result.mesh.cells.size(), 0);
-  for (std::size_t begin = 0; begin < sides.size();) {
-    std::size_t end = begin + 1;
-    while (end < sides.size() && sides[end].sorted == sides[begin].sorted) ++end;
-    const Side& first = sides[begin];
-    if (end - begin == 1) {
-      if ((boundaryWalls[first.cell] >> first.wall & 1) == 0) result.mesh.regions[first.cell] = 1;
-    } else if (end - begin > 2 || first.even == sides[begin + 1].even) {
-      ++result.faceConflicts;
-    }
-    begin = end;
+  for (std::size_t c = 0; c < boundaryWalls.size(); ++c) {
+    if ((faces.boundary[c] & ~boundaryWalls[c]) != 0) result.mesh.regions[c] = 1;
   }
+  result.faceConflicts = faces.overfull.count + faces.sameDirection.count;
 }
 
 double volumeOf(const ExactMap& map, std::size_t t) {
@@ -226,7 +196,7 @@ PartialMesh extractPartial(const TetMapView& map, const PartialOptions& options,
                    });
     std::vector<std::uint8_t> boundaryWalls;
     assemble(blocks, result, boundaryWalls);
-    matchFaces(boundaryWalls, result);
+    matchFaces(boundaryWalls, stage, result);
     collectHoles(prepared, valid, blocks, result);
   });
   return result;

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include <base/vector3.hpp>
-#include <repair/bad_tets.hpp>
 #include <repair/patch_charts.hpp>
+#include <repair/valid_tets.hpp>
 
 namespace hexhex {
 

@@ -14,17 +14,15 @@
 #include <base/vector3.hpp>
 #include <igm/measures.hpp>
 #include <igm/prepare.hpp>
-#include <repair/bad_tets.hpp>
 #include <repair/diagnosis.hpp>
-#include <repair/edge_split.hpp>
-#include <repair/freedom.hpp>
-#include <repair/map_backup.hpp>
+#include <repair/map_changes.hpp>
 #include <repair/patch.hpp>
 #include <repair/patch_charts.hpp>
-#include <repair/problem.hpp>
+#include <repair/patch_problem.hpp>
+#include <repair/repair_errors.hpp>
 #include <repair/repair_map.hpp>
 #include <repair/untangle.hpp>
-#include <repair/whole_regions.hpp>
+#include <repair/valid_tets.hpp>
 
 namespace hexhex {
 
@@ -34,8 +32,6 @@ namespace {
 constexpr std::array<int, 4> kRings = {2, 3, 5, 8};
 /// How often edges are split.
 constexpr int kMaxRefinements = 5;
-/// What --round may move.
-constexpr double kRoundingLimit = 0.1;
 /// Volumes of maps without noise differ by less than this: far above rounding, far below a cell.
 constexpr double kVolumeSlack = 0.05;
 
@@ -61,7 +57,7 @@ class Repairer {
     look();
     if (now_->defects.empty()) return std::move(map_);
     refuseBrokenTopology();
-    if (!canRepair()) refuseWithoutSolver();
+    if (!canRepair()) throwWithoutSolver(now_->defects);
     original_ = MapBackup(map_);
     std::vector<Index> bad = findSeeds();
     report_.badTets = bad.size();
@@ -108,20 +104,9 @@ class Repairer {
 
   [[nodiscard]] LocalParameters parameters() const { return LocalParameters(now_->prepared.input); }
 
-  /// Nothing that parameters could mend.
+  /// Nothing that moving parameters could repair.
   void refuseBrokenTopology() const {
     if (now_->prepared.exact.corners.empty()) now_->defects.throwIfAny();
-  }
-
-  void refuseWithoutSolver() const {
-    const Defect first = now_->defects.defects().front();
-    throw Error(
-        first.code,
-        first.sentence +
-            " A repair might help, but this build of hexhex cannot repair maps: it was made "
-            "without libLBFGS. Build it again where that is installed (on Debian "
-            "liblbfgs-dev), or compute the map again.",
-        first.worst.empty() ? Place{} : first.worst.front().place);
   }
 
   /// Bad tets; if none are, those that sanitization flattens.
@@ -152,7 +137,7 @@ class Repairer {
       diagnosis.hopeless.setCornersReversed(now_->prepared.input.cornersReversed);
       diagnose(now_->prepared, parameters(), bad, options_.tolerance, limit_, stage, diagnosis);
     }
-    if (!diagnosis.hopeless.empty()) throwHopeless(diagnosis.hopeless, bad.size());
+    if (!diagnosis.hopeless.empty()) throwHopeless(diagnosis.hopeless, bad.size(), options_.round);
     if (bad.empty() && diagnosis.roundable.empty()) now_->defects.throwIfAny();
     report_.roundedVertices = diagnosis.roundable.size();
     std::vector<Index> tets;
@@ -161,42 +146,6 @@ class Repairer {
       tets.push_back(now_->prepared.topology.vertexTet[v]);
     }
     return tets;
-  }
-
-  /// Transitions first, since what they are off shows elsewhere, too.
-  [[noreturn]] void throwHopeless(const DefectCollector& hopeless, std::size_t badTets) const {
-    const std::vector<Defect> list = hopeless.defects();
-    const Defect& first = list.front();
-    const Defect::Occurrence& worst = first.worst.front();
-    std::string message = first.sentence + " Found " + timesAsText(first.count) +
-                          ", and not because of flipped tets; worst at " + toString(worst.place) +
-                          (worst.amount > 0 ? " (by " + shortNumber(worst.amount) + ")" : "") + ".";
-    double largest = worst.amount;
-    for (std::size_t i = 1; i < list.size(); ++i) {
-      message += (i == 1 ? " Also " : ", ") + std::string(name(list[i].code)) + " " +
-                 timesAsText(list[i].count);
-      largest = std::max(largest, list[i].worst.front().amount);
-    }
-    if (list.size() > 1) message += ".";
-    if (badTets > 0) {
-      message += " The map has " + std::to_string(badTets) +
-                 " flipped or flat tets as well; mending them would not make it valid.";
-    }
-    message += " What the integers were meant to be would be a guess, so nothing was repaired";
-    message += largest > 0 && largest <= kRoundingLimit && !options_.round
-                   ? ": all amounts are below 0.1, so rounding (--round) can be asked for."
-                   : ". `hexhex check` lists the places.";
-    throw Error(first.code, message, worst.place);
-  }
-
-  static std::string timesAsText(std::uint64_t count) {
-    return count == 1 ? "once" : std::to_string(count) + " times";
-  }
-
-  static std::string shortNumber(double value) {
-    std::array<char, 32> text{};
-    static_cast<void>(std::snprintf(text.data(), text.size(), "%.3g", value));
-    return text.data();
   }
 
   /// Optimizes the patches around bad tets, one after the other.
@@ -224,7 +173,7 @@ class Repairer {
     const PatchCharts charts(view, topology, u, patch, limit_);
     if (const PatchEdge* edge = charts.impossibleEdge()) throwImpossible(*edge);
     std::vector<PatchVertex> vertices = findFreedom(u, patch, charts);
-    refuseOffLattice(vertices);
+    refuseOffLattice(vertices, limit_, options_.round);
     PatchProblem problem(view, topology, u, patch, vertices);
     noteEdges(charts);
     const std::vector<LockedTet> locked = problem.lockedTets(patch);
@@ -236,34 +185,6 @@ class Repairer {
     static_cast<void>(untangle(problem.problem(), stage));
     noteSplitCandidates(patch, charts);
     write(problem, vertices, patch);
-  }
-
-  [[noreturn]] static void throwImpossible(const PatchEdge& edge) {
-    throw Error(ErrorCode::TransitionResidual,
-                "The charts around edge " + std::to_string(edge.vertex0) + "-" +
-                    std::to_string(edge.vertex1) +
-                    " are related in a way that no integer-grid map has: going around it turns "
-                    "the grid, but not about the edge. It is close to flipped or flat tets, but "
-                    "cannot be repaired without guessing. Compute the map again, or align this "
-                    "edge to the grid.",
-                {PlaceKind::Edge, edge.vertex0, edge.vertex1});
-  }
-
-  void refuseOffLattice(const std::vector<PatchVertex>& vertices) const {
-    const auto worst =
-        std::max_element(vertices.begin(), vertices.end(),
-                         [](const PatchVertex& a, const PatchVertex& b) { return a.off < b.off; });
-    if (worst == vertices.end() || worst->off <= limit_) return;
-    std::string message = std::string("Vertex ") + std::to_string(worst->vertex) + " is " +
-                          (worst->singular ? "on a singular edge" : "on the boundary") + " and " +
-                          shortNumber(worst->off) +
-                          " off the integer grid, near flipped or flat tets. What the integers "
-                          "were meant to be would be a guess, so nothing was repaired. Snap it in "
-                          "the program that made the map";
-    message +=
-        worst->off <= kRoundingLimit && !options_.round ? ", or allow rounding (--round)." : ".";
-    throw Error(worst->singular ? ErrorCode::SingularityOffLattice : ErrorCode::BoundaryOffLattice,
-                message, {PlaceKind::Vertex, worst->vertex});
   }
 
   /// The valences that edges of a patch must have in the end, by the latest patch.

@@ -1,13 +1,34 @@
-// Which tets of a map that is not valid can be used, and where one can go on to the next.
+// Which tets of a map are positive, and which can be used although the map is not valid.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include <hexhex/types.hpp>
+
+#include <base/parallel.hpp>
+#include <igm/exact_map.hpp>
 #include <igm/input.hpp>
 #include <igm/prepare.hpp>
 
 namespace hexhex {
+
+/// det(u1 - u0, u2 - u0, u3 - u0): six times the signed volume.
+[[nodiscard]] double determinantOf(const TetParameters& u) noexcept;
+
+/// Whether a tet is flipped or flat, so far as floating point can tell.
+[[nodiscard]] bool isBad(const TetParameters& u) noexcept;
+
+/// Whether moving corners by up to `noise` along each axis could make a tet bad: the angles of such
+/// a tet mean nothing.
+[[nodiscard]] bool isThin(const TetParameters& u, double noise) noexcept;
+
+/// The bad tets among all, ascending.
+[[nodiscard]] std::vector<Index> findBadTets(std::size_t tets, const LocalParameters& parameters,
+                                             Stage& stage);
+
+/// The tets that are not positive on the sanitized lattice, ascending.
+[[nodiscard]] std::vector<Index> findExactlyBadTets(const ExactMap& map, Stage& stage);
 
 /// Whether transitions carry the three lattice corners of an inner triangle over.
 [[nodiscard]] bool isCarriedOver(const PreparedMap& map, HalfFace halfFace) noexcept;

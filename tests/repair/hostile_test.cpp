@@ -10,8 +10,8 @@
 
 #include "extract/support.hpp"
 #include "igm/prepare.hpp"
-#include "repair/edge_split.hpp"
-#include "repair/map_backup.hpp"
+#include "repair/map_changes.hpp"
+#include "repair/map_changes.hpp"
 #include "repair/same_connectivity.hpp"
 #include "support/error_of.hpp"
 

@@ -8,7 +8,7 @@
 #include <hexhex/hexhex.hpp>
 
 #include "extract/support.hpp"
-#include "repair/cube_clip.hpp"
+#include "repair/cell_flood.hpp"
 #include "repair/same_connectivity.hpp"
 
 namespace hexhex::test {

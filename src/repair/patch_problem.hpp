@@ -1,4 +1,5 @@
-// From a patch to an optimization problem and back.
+// From a patch to an optimization problem and back: along which coordinates its vertices may move,
+// the constraints of Section 5.1.3 read off the patch's own charts, and the tets to untangle.
 #pragma once
 
 #include <span>
@@ -6,10 +7,29 @@
 
 #include <hexhex/types.hpp>
 
-#include <repair/freedom.hpp>
+#include <repair/patch_charts.hpp>
 #include <repair/untangle.hpp>
 
 namespace hexhex {
+
+/// A vertex of a patch. Its parameter in the chart of its first corner stands for all.
+struct PatchVertex {
+  Index vertex = 0;
+  Vec3 parameter{};   ///< in the chart of corners.front(); integers where it is fixed
+  AxisSet fixed = 0;  ///< axes of that chart along which it must stay
+  bool singular = false;
+  bool boundary = false;
+  double off = 0;  ///< how far the fixed coordinates were from integers
+  struct Copy {
+    CornerIndex corner;
+    Transition fromFirst;
+  };
+  std::vector<Copy> corners;  ///< all corners at the vertex
+};
+
+/// One entry per vertex of the patch.
+[[nodiscard]] std::vector<PatchVertex> findFreedom(const LocalParameters& parameters,
+                                                   const Patch& patch, const PatchCharts& charts);
 
 /// A tet that no parameters make positive, whatever its vertices do: all four corners in one
 /// integer plane to which they are bound, or three of them on one line.
