@@ -25,12 +25,6 @@ std::vector<Index> verticesOf(const TetTopology& topology, std::span<const Index
 
 }  // namespace
 
-const std::vector<VertexStar::Member>* Patch::starOf(Index vertex) const {
-  const auto found = std::lower_bound(vertices.begin(), vertices.end(), vertex);
-  if (found == vertices.end() || *found != vertex) return nullptr;
-  return &stars[static_cast<std::size_t>(found - vertices.begin())];
-}
-
 Patch growPatch(const TetTopology& topology, std::span<const Index> seeds, int rings) {
   Patch patch;
   patch.seeds.assign(seeds.begin(), seeds.end());

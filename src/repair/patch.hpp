@@ -16,8 +16,6 @@ struct Patch {
   std::vector<Index> tets;      ///< ascending: the tets at these vertices
   /// Per entry of `vertices`: its star.
   std::vector<std::vector<VertexStar::Member>> stars;
-
-  [[nodiscard]] const std::vector<VertexStar::Member>* starOf(Index vertex) const;
 };
 
 /// The vertices of the seeds, and `rings - 1` times those of the tets around.

@@ -50,8 +50,6 @@ class PatchCharts {
   [[nodiscard]] int boundaryAxis(HalfFace halfFace) const;
   /// All edges at vertices of the patch, by vertices.
   [[nodiscard]] std::span<const PatchEdge> edges() const { return edges_; }
-  /// Triangles that fit more than one choice.
-  [[nodiscard]] std::size_t ambiguousFaces() const { return ambiguous_.size(); }
   /// Whether some edge has a holonomy that no integer-grid map has: the first such edge.
   [[nodiscard]] const PatchEdge* impossibleEdge() const;
 
