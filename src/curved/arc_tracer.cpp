@@ -3,8 +3,7 @@
 #include <string>
 
 #include <curved/arc_tracer.hpp>
-#include <curved/edge_crossing.hpp>
-#include <curved/face_crossing.hpp>
+#include <curved/crossings.hpp>
 
 namespace hexhex {
 

@@ -1,9 +1,9 @@
-// Hex edges on their way from simplex to simplex.
+// Follows hex edges from simplex to simplex.
 #pragma once
 
 #include <array>
 
-#include <curved/arc_pieces.hpp>
+#include <curved/arcs.hpp>
 #include <curved/face_walk.hpp>
 #include <curved/simplex_point.hpp>
 #include <curved/simplex_star.hpp>

@@ -16,6 +16,44 @@ void failToCut(Index tet, const char* what) {
 
 namespace {
 
+/// The vertices of a simplex of less than four, ascending; kNone behind them.
+using SimplexVertices = std::array<Index, 3>;
+
+SimplexVertices verticesOf(const Tet& tet, CornerMask simplex) noexcept {
+  SimplexVertices found = {kNone, kNone, kNone};
+  std::size_t count = 0;
+  for (int i = 0; i < 4; ++i) {
+    if (contains(simplex, i)) found[count++] = tet[static_cast<std::size_t>(i)];
+  }
+  std::sort(found.begin(), found.end());  // kNone is above all
+  return found;
+}
+
+/// Tells a simplex of less than four corners from others that are given by their owners.
+class SimplexMatcher {
+ public:
+  SimplexMatcher(const TetTopology& topology, Index tet, CornerMask simplex)
+      : topology_(topology), isFace_(dimension(simplex) == 2) {
+    // The owner of an edge is found by a walk around it only, so edges are known by their vertices.
+    if (isFace_) {
+      face_ = ownedFace(topology, tet, oppositeCorner(simplex));
+    } else {
+      vertices_ = verticesOf(topology.tets[tet], simplex);
+    }
+  }
+
+  [[nodiscard]] bool operator()(const OwnedSimplex& other) const {
+    if (isFace_) return other.tet == face_.tet && other.corners == face_.corners;
+    return verticesOf(topology_.tets[other.tet], other.corners) == vertices_;
+  }
+
+ private:
+  const TetTopology& topology_;
+  bool isFace_;
+  OwnedSimplex face_{};
+  SimplexVertices vertices_{};
+};
+
 /// Corners of the square, counter-clockwise.
 constexpr std::array<GridPoint, 4> kSquareCorners = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 
-#include <curved/owned_simplex.hpp>
 #include <curved/patches.hpp>
 #include <curved/simplex_star.hpp>
 #include <curved/square_slice.hpp>

@@ -251,7 +251,7 @@ void FaceCutter::emit(Piece& piece) {
     open &= ~(1U << corner);
   };
   if (piece.from != kLast) {
-    // There the side runs the other way.
+    // There the side runs in the other direction.
     const Piece& from = pieces_[piece.from];
     const std::size_t first = from.firstCorner + from.slice.next(piece.fromSide);
     const std::size_t second = from.firstCorner + piece.fromSide;

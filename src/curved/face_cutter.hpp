@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <curved/face_border.hpp>
-#include <curved/patch_pieces.hpp>
 #include <curved/patches.hpp>
 #include <curved/simplex_star.hpp>
 #include <curved/square_slice.hpp>

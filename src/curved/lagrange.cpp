@@ -2,10 +2,8 @@
 #include <atomic>
 #include <string>
 
-#include <curved/cube_meets_face.hpp>
 #include <curved/lagrange.hpp>
 #include <curved/simplex_star.hpp>
-#include <sweep/cell_centers.hpp>
 #include <sweep/vertex_tables.hpp>
 
 namespace hexhex {
@@ -14,6 +12,50 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 constexpr std::size_t kCellGrain = 256;
+
+using Triangle = std::array<LatticePoint, 3>;
+
+bool separatedByCube(const Triangle& t, std::int64_t unit) noexcept {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [low, high] = std::minmax({t[0][k], t[1][k], t[2][k]});
+    if (low >= unit || high <= 0) return true;
+  }
+  return false;
+}
+
+/// Along the cross product of cube edge k and a triangle edge d.
+bool separatedByEdges(const Triangle& t, const LatticePoint& d, std::size_t k,
+                      std::int64_t unit) noexcept {
+  const std::size_t i = (k + 1) % 3;
+  const std::size_t j = (k + 2) % 3;
+  if (d[i] == 0 && d[j] == 0) return false;  // parallel edges have no cross product
+  // The function d_i x_j - d_j x_i of a point x.
+  const auto at = [&](const LatticePoint& x) {
+    return static_cast<Int128>(d[i]) * x[j] - static_cast<Int128>(d[j]) * x[i];
+  };
+  const auto [low, high] = std::minmax({at(t[0]), at(t[1]), at(t[2])});
+  const Int128 alongJ = static_cast<Int128>(d[i]) * unit;
+  const Int128 alongI = -static_cast<Int128>(d[j]) * unit;
+  const Int128 zero = 0;
+  const Int128 cubeLow = std::min(alongI, zero) + std::min(alongJ, zero);
+  const Int128 cubeHigh = std::max(alongI, zero) + std::max(alongJ, zero);
+  return low >= cubeHigh || high <= cubeLow;
+}
+
+bool separatedByTriangle(const Triangle& t, std::int64_t unit) noexcept {
+  const LatticePoint u = t[1] - t[0];
+  const LatticePoint v = t[2] - t[0];
+  // The normal's product with (corner of the cube) - (corner of the triangle): the cube is on one
+  // side if its two extreme corners are.
+  Int192 lowest;
+  Int192 highest;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Int128 normal = crossComponent(u, v, k);
+    lowest.addProduct(normal, (normal < 0 ? unit : 0) - t[0][k]);
+    highest.addProduct(normal, (normal > 0 ? unit : 0) - t[0][k]);
+  }
+  return lowest.sign() >= 0 || highest.sign() <= 0;
+}
 
 /// A cell at the tet that owns its centre.
 struct CellSeed {
@@ -54,7 +96,7 @@ class NodeCollector {
     Frame frame = Frame::along(cell.z, 0);
     for (std::int32_t& coordinate : frame.origin) coordinate *= order_;
     queue_.assign(1, {cell.tet, kWholeTet, frame});
-    // NOLINTNEXTLINE(modernize-loop-convert): the queue grows on the way.
+    // NOLINTNEXTLINE(modernize-loop-convert): the queue grows meanwhile.
     for (std::size_t head = 0; head < queue_.size(); ++head) {
       const SimplexInTet here = queue_[head];
       take(here, nodes);
@@ -95,7 +137,7 @@ class NodeCollector {
   }
 
   /// Goes on through the faces that meet the open cube: there, the map is one to one, and it does
-  /// not matter on which way a tet is reached.
+  /// not matter through which of them a tet is reached.
   void addNeighbours(const SimplexInTet& here) {
     const LatticeTet seen = here.frame.see(map_.exact.corners[here.tet], map_.exact.unit);
     for (int face = 0; face < 4; ++face) {
@@ -115,17 +157,6 @@ class NodeCollector {
   std::size_t missing_ = 0;
   std::vector<SimplexInTet> queue_;
 };
-
-/// Place of a cell's corner among its nodes.
-std::size_t nodeOfCorner(std::size_t corner, int order) {
-  const auto last = static_cast<std::size_t>(order);
-  const std::size_t stride = last + 1;
-  const GridPoint& offset = kCellCorners[corner];
-  const std::size_t x = static_cast<std::size_t>(offset[0]) * last;
-  const std::size_t y = static_cast<std::size_t>(offset[1]) * last;
-  const std::size_t z = static_cast<std::size_t>(offset[2]) * last;
-  return x + stride * (y + stride * z);
-}
 
 /// Numbers of the refined grid, renumbered: hex vertices first, the others in the same order.
 Array<Index> renumber(const HexMesh& mesh, const LagrangeMesh& result, std::uint64_t count,
@@ -174,6 +205,21 @@ void describeNodes(const VertexTables& numbers, const HexMesh& mesh, const Array
 }
 
 }  // namespace
+
+bool cubeMeetsFace(const LatticeTet& corners, int face, std::int64_t unit) noexcept {
+  Triangle t{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    t[i] = corners[static_cast<std::size_t>(kFaceCorners[static_cast<std::size_t>(face)][i])];
+  }
+  if (separatedByCube(t, unit)) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const LatticePoint d = t[(i + 1) % 3] - t[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (separatedByEdges(t, d, k, unit)) return false;
+    }
+  }
+  return !separatedByTriangle(t, unit);
+}
 
 LagrangeMesh groupNodes(const HexMesh& mesh, PreparedMap& map, int order, Context& context) {
   LagrangeMesh result;

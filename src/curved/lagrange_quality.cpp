@@ -8,8 +8,8 @@
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
+#include <curved/lagrange.hpp>
 #include <mesh/lagrange_check.hpp>
-#include <sweep/cell_centers.hpp>
 
 namespace hexhex {
 
@@ -177,16 +177,10 @@ HexMesh straightMesh(const LagrangeMesh& mesh) {
                                      mesh.generatorCorners.begin() + vertices);
   }
   straight.cells.resize(mesh.cellCount());
-  const auto stride = static_cast<std::size_t>(mesh.order) + 1;
-  const auto p = static_cast<std::size_t>(mesh.order);
   const std::size_t perCell = mesh.nodesPerCell();
   for (std::size_t c = 0; c < straight.cells.size(); ++c) {
     for (std::size_t corner = 0; corner < 8; ++corner) {
-      const GridPoint& offset = kCellCorners[corner];
-      const auto x = static_cast<std::size_t>(offset[0]) * p;
-      const auto y = static_cast<std::size_t>(offset[1]) * p;
-      const auto z = static_cast<std::size_t>(offset[2]) * p;
-      straight.cells[c][corner] = mesh.nodes[c * perCell + x + stride * (y + stride * z)];
+      straight.cells[c][corner] = mesh.nodes[c * perCell + nodeOfCorner(corner, mesh.order)];
     }
   }
   return straight;

@@ -181,7 +181,7 @@ Section sectionBehind(const SeenTet& tet, int entered, const Section& from, std:
   Section section;
   section.size = outline.size;
   side = outline.sideIn[static_cast<std::size_t>(entered)];
-  // There the side runs the other way.
+  // There the side runs in the other direction.
   std::size_t k = side;
   section.points[k] = from.points[from.next(fromSide)];
   section.points[k].simplex = outline.simplex[k];

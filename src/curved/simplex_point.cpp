@@ -32,20 +32,18 @@ SimplexPoint exitOfFace(const LatticeTet& corners, int face, std::size_t along) 
 
 SimplexPoint crossingOfFace(const LatticeTet& corners, int face, std::size_t along) noexcept {
   const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
-  // Without branches, as signs are as good as random.
   SimplexPoint point;
-  unsigned positive = 0;
-  unsigned negative = 0;
+  bool positive = false;
+  bool negative = false;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto a = static_cast<std::size_t>(f[(i + 1) % 3]);
     const auto b = static_cast<std::size_t>(f[(i + 2) % 3]);
     const Int128 area = crossComponent(corners[a], corners[b], along);
-    positive |= static_cast<unsigned>(area > 0);
-    negative |= static_cast<unsigned>(area < 0);
-    const Int128 allBits = area >> 127;  // of negative areas
-    point.weights[static_cast<std::size_t>(f[i])] = (area ^ allBits) - allBits;
+    positive = positive || area > 0;
+    negative = negative || area < 0;
+    point.weights[static_cast<std::size_t>(f[i])] = area < 0 ? -area : area;
   }
-  if ((positive & negative) != 0) return {};
+  if (positive && negative) return {};
   return point;
 }
 

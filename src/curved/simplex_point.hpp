@@ -1,9 +1,8 @@
-// Points by weights of the corners of a tet: exact comparison of their coordinates, and positions.
+// Points by weights of the corners of a tet: exact comparison of their coordinates.
 #pragma once
 
 #include <array>
 #include <cmath>
-#include <span>
 
 #include <hexhex/types.hpp>
 
@@ -62,26 +61,6 @@ struct SimplexPoint {
     return exact.sign();
   }
 
-  /// A coordinate of the point, and a bound for its error.
-  struct Rough {
-    double at;
-    double error;
-  };
-  [[nodiscard]] Rough roughly(const LatticeTet& corners, std::size_t axis) const noexcept {
-    double all = 0;
-    double sum = 0;
-    double magnitude = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const double weight = toDouble(weights[i]);
-      const double term = weight * static_cast<double>(corners[i][axis]);
-      all += weight;
-      sum += term;
-      magnitude += std::abs(term);
-    }
-    // As in compare(), and two more roundings for the division.
-    return {sum / all, 0x1p-48 * (magnitude / all)};
-  }
-
   /// Weights with sum 1, rounded.
   [[nodiscard]] std::array<double, 4> normalized() const noexcept {
     std::array<double, 4> shares{};
@@ -100,17 +79,6 @@ struct SimplexPoint {
     if (shares[i] != 0) sum += shares[i] * static_cast<double>(corners[i][axis]);
   }
   return sum;
-}
-
-/// The same in space.
-[[nodiscard]] inline Vec3 position(const std::array<double, 4>& shares, const Tet& tet,
-                                   std::span<const Vec3> points) noexcept {
-  Vec3 p{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (shares[i] == 0) continue;
-    for (std::size_t k = 0; k < 3; ++k) p[k] += shares[i] * points[tet[i]][k];
-  }
-  return p;
 }
 
 /// Where a line that is parallel to axis `along` leaves the interior of a simplex of a tet, in

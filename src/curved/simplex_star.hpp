@@ -1,4 +1,4 @@
-// All tets around a simplex, each with a frame carried to it.
+// Simplices of tets: who owns them, and all tets around one, each with a frame carried to it.
 #pragma once
 
 #include <array>
@@ -12,6 +12,28 @@
 #include <igm/exact_map.hpp>
 
 namespace hexhex {
+
+/// A simplex by the smallest tet that contains it.
+struct OwnedSimplex {
+  Index tet;
+  CornerMask corners;
+};
+
+/// A face of a tet, by its owner.
+[[nodiscard]] inline OwnedSimplex ownedFace(const TetTopology& topology, Index tet, int face) {
+  const HalfFace mate = topology.mate[halfFaceOf(tet, face)];
+  if (mate == kNone || tet < tetOf(mate)) return {tet, faceMask(face)};
+  return {tetOf(mate), faceMask(localOf(mate))};
+}
+
+/// A simplex of a tet, by its owner.
+[[nodiscard]] inline OwnedSimplex ownedBy(const TetTopology& topology, Index tet,
+                                          CornerMask simplex) {
+  if (simplex == kWholeTet) return {tet, simplex};
+  if (dimension(simplex) == 2) return ownedFace(topology, tet, oppositeCorner(simplex));
+  const Index owner = ownerTet(topology, tet, simplex);
+  return {owner, owner == tet ? simplex : topology.translated(simplex, tet, owner)};
+}
 
 /// A simplex as one of the tets around it sees it.
 struct SimplexInTet {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 
-#include <base/bits.hpp>
 #include <curved/plane_section.hpp>
 
 namespace hexhex {
@@ -26,7 +25,10 @@ struct alignas(4) SliceCorner {
 
   [[nodiscard]] bool isOnBorder() const noexcept { return borders >= 16; }
   /// Whether it is on two borders.
-  [[nodiscard]] bool isSquareCorner() const noexcept { return hasManyBits(unsigned{borders} >> 4); }
+  [[nodiscard]] bool isSquareCorner() const noexcept {
+    const unsigned on = unsigned{borders} >> 4;
+    return (on & (on - 1)) != 0;
+  }
   /// Then: the corner of the square, between sides i - 1 and i.
   [[nodiscard]] std::size_t squareCorner() const noexcept {
     constexpr std::array<std::uint8_t, 16> kCorners = {0, 0, 0, 1, 0, 0, 2, 0,

@@ -7,7 +7,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
-#include <curved/edge_crossing.hpp>
+#include <curved/crossings.hpp>
 
 #include "lattice/random.hpp"
 

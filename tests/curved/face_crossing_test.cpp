@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <curved/face_crossing.hpp>
+#include <curved/crossings.hpp>
 
 #include "lattice/random.hpp"
 

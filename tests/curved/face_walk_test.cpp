@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <base/stage.hpp>
+#include <curved/crossings.hpp>
 #include <curved/element_numbers.hpp>
-#include <curved/face_crossing.hpp>
 #include <curved/face_walk.hpp>
 #include <curved/simplex_point.hpp>
 #include <igm/defects.hpp>
@@ -69,7 +69,13 @@ class Walker {
     const auto shares = expected.normalized();
     const double parameter = coordinate(shares, seen, 0) / static_cast<double>(map_.exact.unit);
     ASSERT_NEAR(exit.parameter, parameter, 1e-12);
-    const Vec3 point = position(shares, map_.topology.tets[at.tet], map_.input.view.points);
+    const Tet& tet = map_.topology.tets[at.tet];
+    Vec3 point{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        point[k] += shares[i] * map_.input.view.points[tet[i]][k];
+      }
+    }
     for (std::size_t k = 0; k < 3; ++k) ASSERT_NEAR(exit.point[k], point[k], 1e-12);
   }
 

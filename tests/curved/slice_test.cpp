@@ -8,7 +8,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
-#include <curved/cube_meets_face.hpp>
+#include <curved/lagrange.hpp>
 #include <curved/square_slice.hpp>
 
 #include "extract/support.hpp"

@@ -1,4 +1,4 @@
-#include <curved/face_crossing.hpp>
+#include <curved/crossings.hpp>
 
 namespace hexhex {
 
