@@ -1,5 +1,5 @@
 // The propeller engine's enlargement of tets: time of its vertices, summed over several maps at
-// scales 1, 2 and 4, and how often it was too small, so that the engine started over with infinity.
+// scales 1, 2 and 4.
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -28,11 +28,9 @@ const std::vector<TetMap>& maps() {
 
 /// One extraction of every map at every scale.
 struct Sums {
-  double vertexSeconds = 0;  ///< of successful and failed attempts
+  double vertexSeconds = 0;
   double seconds = 0;
   std::uint64_t hexes = 0;
-  std::uint64_t extractions = 0;
-  std::uint64_t fallbacks = 0;
 
   void extractAll(double epsilon) {
     ExtractOptions options;
@@ -50,8 +48,6 @@ struct Sums {
     Context context(1);
     ExtractStatistics statistics;
     hexes += extract(map, options, context, &statistics).cells.size();
-    ++extractions;
-    fallbacks += statistics.epsilonFallback ? 1 : 0;
     seconds += statistics.seconds;
     for (const StageTime& time : context.stageTimes()) {
       if (time.stage == "vertices") vertexSeconds += time.seconds;
@@ -70,8 +66,6 @@ void epsilonBenchmark(benchmark::State& state, double epsilon) {
   state.counters["vertex_seconds"] = sums.vertexSeconds / runs;
   state.counters["seconds"] = sums.seconds / runs;
   state.counters["hexes"] = static_cast<double>(sums.hexes) / runs;
-  state.counters["extractions"] = static_cast<double>(sums.extractions) / runs;
-  state.counters["fallbacks"] = static_cast<double>(sums.fallbacks) / runs;
 }
 
 }  // namespace

@@ -18,23 +18,20 @@ def _parts(runs: list[Run], about: dict[str, str]) -> dict[str, Parts]:
     """By page."""
     return {"performance.md": {
         "machine": lambda: tables.machine(about) + "\n" + tables.spread(runs),
-        "table-engines": lambda: tables.engines(runs),
-        "table-extraction": lambda: tables.extraction(runs, "atlas"),
-        "table-extraction-propeller": lambda: tables.extraction(runs, "propeller"),
-        "table-stages-tet": lambda: tables.stages(runs, "atlas", "tet"),
-        "table-stages-hex": lambda: tables.stages(runs, "atlas", "hex"),
-        "table-stages-propeller": lambda: tables.stages(runs, "propeller", "hex"),
-        "table-threads": lambda: tables.threads(runs),
+        "table-extraction": lambda: tables.extraction(runs),
+        "table-reference": lambda: tables.beside_reference(runs),
         "table-scales": lambda: tables.scales(runs),
+        "table-stages": lambda: tables.stages(runs),
         "stage-groups": lambda: plot_density.describe_groups(runs),
-        "table-epsilon": lambda: tables.epsilon(runs),
-        "table-rasterization": lambda: tables.rasterization(runs),
-        "table-lookup": lambda: tables.lookup(runs),
-        "table-reference": lambda: tables.orientation(runs),
-        "table-files": lambda: tables.others(runs),
+        "table-curved": lambda: tables.curved(runs),
+        "table-files": lambda: tables.files(runs),
+        "table-checks": lambda: tables.checks(runs),
     }, "ablation.md": {
         "machine-of-ablation": lambda: tables.machine(about),
         "table-ablation": lambda: tables.ablation(runs),
+        "table-epsilon": lambda: tables.epsilon(runs),
+        "table-rasterization": lambda: tables.rasterization(runs),
+        "table-lookup": lambda: tables.lookup(runs),
     }}
 
 

@@ -31,10 +31,11 @@ FULL = [
     Step("lookup", ABLATION, "^lookup/", 5),
     Step("ablation", ABLATION, "^ablation/", 7),
     Step("mesh", BENCH, "^(quality|verify)/", 5),
+    Step("curved", BENCH, "^arcs_and_patches/.*engine:atlas/threads:1", 3),
     Step("files", BENCH, "^(read|write|copy|survey)_", 3),
 ]
-FULL_TEXT = ("full: medians of five repetitions, of seven for ablations, of three at scales above 8, and of files; extraction "
-             "in three rounds")
+FULL_TEXT = ("full: medians of five repetitions, of seven for ablations, of three at scales above "
+             "8, of arcs and of files; extraction in three rounds")
 
 QUICK = [
     Step("extract", BENCH, "^extract/(sphere_blocks|s17c|rockerarm)", 3, 0.01),
@@ -46,6 +47,7 @@ QUICK = [
     Step("lookup", ABLATION, "^lookup/.*/scale:[1-8]/", 1, 0.01),
     Step("ablation", ABLATION, "^ablation/(sphere_blocks_(low|middle)|s17c)", 3, 0.01),
     Step("mesh", BENCH, "^(quality|verify)/", 1, 0.01),
+    Step("curved", BENCH, "^arcs_and_patches/(sphere_blocks_low|s17c).*engine:atlas/threads:1", 1, 0.01),
     Step("files", BENCH, "^(read|write|copy|survey)_", 1, 0.01),
 ]
 QUICK_TEXT = "quick (`--quick`): extraction is the median of three runs, all else ran once"

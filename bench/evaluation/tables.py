@@ -32,76 +32,46 @@ def _bytes_per_hex(run: Run) -> float | None:
     return peak / run["hexes"] if peak else None
 
 
-def extraction(runs: list[Run], engine: str) -> str:
-    rows = []
-    for run in select(runs, "extract", engine=engine):
-        peak = run.get("peak_bytes")
-        rows.append([run.map, str(run.threads), f"{run['tets']:,.0f}",
-                     f"{run['hexes'] * 1e-6:.3g}",
-                     number(run.density), number(run["ms"]), number(run["seconds_of_first"] * 1e3),
-                     number(_ns_per("tets")(run)), number(_ns_per("hexes")(run)),
-                     number(_bytes_per_hex(run)),
-                     number(peak / run["bytes_of_result"] if peak else None),
-                     number(run["ratio_to_yardstick"]), number(run.get("additions_per_ns"))])
-    if not rows:
-        return ""
-    return table(["map", "threads", "tets", "million hexes", "hexes per tet", "ms", "first: ms",
-                  "ns per tet", "ns per hex", "bytes per hex", "memory / result", "time / copy",
-                  "additions / ns"], rows)
+def _ratio(over: float | None, under: float | None) -> str:
+    return number(over / under) if over is not None and under else MISSING
 
 
-LONG = 100.0  # ms: what is worth a second thread
-
-
-def threads(runs: list[Run]) -> str:
-    """How many times as fast several threads are, beside what arithmetic alone gains by them."""
+def extraction(runs: list[Run]) -> str:
+    """Both engines with one thread; what a second thread gives, and memory, of the atlas engine."""
     found = {(run.map, run.engine, run.threads): run for run in select(runs, "extract")}
     rows = []
-    for (name, engine, count), run in found.items():
-        one = found.get((name, engine, 1))
-        if count == 1 or engine != "atlas" or one is None or one["ms"] < LONG:
+    for (name, engine, threads), atlas in found.items():
+        if engine != "atlas" or threads != 1:
             continue
-        together, alone = (run.get(f"additions_per_ns{which}") for which in ("", "_alone"))
-        rows.append([name, str(count), number(one["ms"]), number(run["ms"]),
-                     number(one["ms"] / run["ms"]),
-                     number(count * together / alone) if together and alone else MISSING])
+        propeller = found.get((name, "propeller", 1))
+        two = found.get((name, "atlas", 2))
+        peak = atlas.get("peak_bytes")
+        rows.append([name, f"{atlas['tets']:,.0f}", number(atlas.density),
+                     number(propeller["ms"] if propeller else None), number(atlas["ms"]),
+                     _ratio(propeller["ms"] if propeller else None, atlas["ms"]),
+                     number(_ns_per("tets")(atlas)), number(_ns_per("hexes")(atlas)),
+                     _ratio(atlas["ms"], two["ms"] if two else None),
+                     number(_bytes_per_hex(atlas)), _ratio(peak, atlas["bytes_of_result"]),
+                     number(atlas["ratio_to_yardstick"])])
     if not rows:
         return ""
-    return table(["map", "threads", "one thread: ms", "all: ms", "times as fast",
-                  "of additions: times as many"], rows)
+    return table(["map", "tets", "hexes per tet", "propeller: ms", "atlas: ms", "times as fast",
+                  "ns per tet", "ns per hex", "two threads: times as fast", "bytes per hex",
+                  "memory / result", "time / copy"], rows)
 
 
-def stages(runs: list[Run], engine: str, unit: str) -> str:
-    """@param unit  "tet" or "hex\""""
-    single = select(runs, "extract", engine=engine, threads="1")
+def stages(runs: list[Run]) -> str:
+    """Of the atlas engine with one thread, ns per tet."""
+    single = select(runs, "extract", engine="atlas", threads="1")
     if not single:
         return ""
     names = _merged(run.stages for run in single)
     rows = []
     for run in single:
-        count = run["tets" if unit == "tet" else "hexes"]
         times = run.stages
-        cells = [times[name] * 1e9 / count if name in times else None for name in names]
+        cells = [times[name] * 1e9 / run["tets"] if name in times else None for name in names]
         rows.append([run.map, *map(number, cells)])
-    return table([f"ns per {unit}", *names], rows)
-
-
-def engines(runs: list[Run]) -> str:
-    """Both engines side by side."""
-    found = {(run.map, run.threads, run.engine): run for run in select(runs, "extract")}
-    rows = []
-    for (name, threads, engine), atlas in found.items():
-        propeller = found.get((name, threads, "propeller"))
-        if engine != "atlas" or propeller is None:
-            continue
-        memory = [propeller.get("peak_bytes"), atlas.get("peak_bytes")]
-        rows.append([name, str(threads), number(propeller["ms"]), number(atlas["ms"]),
-                     number(propeller["ms"] / atlas["ms"]),
-                     number(memory[0] / memory[1]) if memory[0] and memory[1] else MISSING])
-    if not rows:
-        return ""
-    return table(["map", "threads", "propeller: ms", "atlas: ms", "times as fast",
-                  "times less memory"], rows)
+    return table(["ns per tet", *names], rows)
 
 
 def scales(runs: list[Run]) -> str:
@@ -145,10 +115,10 @@ def epsilon(runs: list[Run]) -> str:
         return ""
     rows = [["infinity" if run.keys["epsilon"] == "inf" else run.keys["epsilon"],
              number(run["vertex_seconds"] * 1e3),
-             number(run["vertex_seconds"] * 1e9 / run["hexes"]), number(run["seconds"] * 1e3),
-             f"{run['fallbacks']:.0f} of {run['extractions']:.0f}"] for run in found]
-    return table(["epsilon", "vertices: ms", "vertices: ns per hex", "extraction: ms",
-                  "started over"], rows)
+             number(run["vertex_seconds"] * 1e9 / run["hexes"]), number(run["seconds"] * 1e3)]
+            for run in found]
+    return table(["epsilon", "vertices: ms", "vertices: ns per hex", "extraction: ms"],
+                 rows)
 
 
 def _by_method(runs: list[Run], family: str) -> dict[tuple[str, int], dict[str, Run]]:
@@ -156,10 +126,6 @@ def _by_method(runs: list[Run], family: str) -> dict[tuple[str, int], dict[str, 
     for run in select(runs, family):
         places.setdefault((run.map, run.scale), {})[run.keys["method"]] = run
     return dict(sorted(places.items()))
-
-
-def _ratio(over: float | None, under: float | None) -> str:
-    return number(over / under) if over is not None and under else MISSING
 
 
 def rasterization(runs: list[Run]) -> str:
@@ -217,21 +183,50 @@ def ablation(runs: list[Run]) -> str:
                  [*rows, ["geometric mean", MISSING, *mean]])
 
 
-EXTRACTIONS = ("extract", "scale", "density", "epsilon", "rasterization", "lookup", "ablation")
-
-
-def others(runs: list[Run]) -> str:
-    """Quality, verification, files."""
-    rows = []
-    for run in (run for run in runs if run.family not in EXTRACTIONS and not run.error):
-        rows.append([run.family, run.map, str(run.threads), number(run["ms"]),
-                     number(run["bytes_per_second"] * 1e-6),
-                     number(run.get("ratio_to_plain_write")),
-                     number(run.get("ratio_to_extraction"))])
+def curved(runs: list[Run]) -> str:
+    """Arcs and patches beside an extraction without them, with one thread."""
+    rows = [[run.map, f"{run['hexes']:,.0f}", number(run["arcs_to_extraction"]),
+             number(run["ns_per_arc_point"]), number(run["patches_to_extraction"]),
+             number(run["ns_per_polygon"])]
+            for run in select(runs, "arcs_and_patches", engine="atlas", threads="1")]
     if not rows:
         return ""
-    return table(["what", "map", "threads", "ms", "MB/s", "time / plain write",
-                  "time / extraction"], rows, texts=2)
+    return table(["map", "hexes", "arcs / extraction", "ns per arc point", "patches / extraction",
+                  "ns per polygon"], rows)
+
+
+# What io_bench calls its benchmarks, and the columns that they fill.
+DIRECTIONS = {"write_map_": "map out", "read_map_": "map in", "write_": "mesh out",
+              "copy_in_pieces_to_": "mesh in pieces", "read_": "mesh in"}
+
+
+def files(runs: list[Run]) -> str:
+    """MB per second of each format and direction, with one thread; and beside a plain write."""
+    rates: dict[str, dict[str, Run]] = {}
+    for run in runs:
+        if run.error or run.threads != 1:
+            continue
+        prefix = next((one for one in DIRECTIONS if run.family.startswith(one)), None)
+        if prefix:
+            name = run.family[len(prefix):]
+            rates.setdefault(name, {})[DIRECTIONS[prefix]] = run
+    columns = ("map out", "map in", "mesh out", "mesh in pieces", "mesh in")
+    rows = []
+    for name, found in rates.items():
+        written = found.get("mesh out") or found.get("map out")
+        rows.append([name, *(number(found[column]["bytes_per_second"] * 1e-6)
+                             if column in found else MISSING for column in columns),
+                     number(written.get("ratio_to_plain_write") if written else None)])
+    if not rows:
+        return ""
+    return table(["MB per second", *columns, "time of writing / plain write"], rows)
+
+
+def checks(runs: list[Run]) -> str:
+    """Quality and verification of a finished mesh."""
+    rows = [[run.family, run.map, number(run["ms"])]
+            for run in runs if run.family in ("quality", "verify") and not run.error]
+    return table(["what", "map", "ms"], rows, texts=2) if rows else ""
 
 
 @dataclass(frozen=True)
@@ -253,7 +248,7 @@ REFERENCES = (
 )
 
 
-def orientation(runs: list[Run]) -> str:
+def beside_reference(runs: list[Run]) -> str:
     """Both engines beside the reference implementation."""
     found = {(run.map, run.engine): run for run in select(runs, "extract", threads="1")}
     rows = []
