@@ -15,7 +15,7 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// Two ways to the same mesh, bit for bit.
+/// Two algorithms for the same mesh, bit for bit.
 enum class Engine : std::uint8_t {
   Atlas,     ///< reads cells off charts of the map, and traces only those that a cut meets
   Propeller  ///< the paper's algorithm: traces every edge
@@ -42,7 +42,7 @@ struct ExtractOptions {
   bool round = false;  ///< as RepairOptions::round, if there is a repair
 };
 
-/// What happened on the way.
+/// What happened during an extraction.
 struct ExtractStatistics {
   double seconds = 0;                     ///< from input arrays to finished arrays
   int threads = 0;                        ///< used

@@ -21,7 +21,7 @@ struct ReadOptions {
   std::string_view format = {};
   /// The name of the array that holds the map in `.vtu` and `.vtk` files: of cells, with 12
   /// components (u0 v0 w0 u1 ... w3: the parameters of the corners in their order), or of points,
-  /// with 3, for maps without jumps.
+  /// with 3, for maps with one chart.
   std::string_view mapArray = "igm";
 };
 
@@ -40,7 +40,7 @@ struct ReadOptions {
                                   Context& context);
 
 /// The map of two meshes of the same tets, as polycube tools deliver it: the vertices of the second
-/// one are the parameters of the first one's. There are no jumps then. The corners of a tet may be
+/// one are the parameters of the first one's. There is one chart then. The corners of a tet may be
 /// listed in another order.
 /// @throws Error InvalidArgument if the numbers of vertices or tets differ, or a tet (the place)
 /// has

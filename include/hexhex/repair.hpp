@@ -1,4 +1,4 @@
-// Mends maps with flipped or flat tets locally, by moving parameters, so that they can be
+// Repairs maps with flipped or flat tets locally, by moving parameters, so that they can be
 // extracted.
 #pragma once
 

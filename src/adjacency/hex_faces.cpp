@@ -1,5 +1,5 @@
 // Most neighbours number their corners alike and find each other at once. A face that is found in
-// another way, or could be another cell's as well, has all its vertices on seams: such faces are
+// otherwise, or could be another cell's as well, has all its vertices on seams: such faces are
 // few in most meshes, and are compared at their smallest vertices.
 #include <algorithm>
 #include <atomic>

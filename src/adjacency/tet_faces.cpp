@@ -146,7 +146,8 @@ struct LargeTable {
 };
 
 /// Matches the half-faces at one vertex, by a hash table. Whether a triangle is found for the first
-/// or the second time is as good as random, so that all is done alike for both.
+/// or the second time cannot be predicted, so both go the same path
+/// (key_table.hpp has the figure).
 template <class Table>
 class FaceMatcher {
  public:

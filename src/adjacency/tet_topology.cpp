@@ -84,7 +84,7 @@ template <class Visit>
 void visitOthersAround(const TetTopology& topology, Index tet, CornerMask edge,
                        const Visit& visit) {
   const int first = otherFaceAtEdge(edge, -1);
-  // One way round, and at a boundary the other way, too.
+  // In one direction, and from a boundary in the other, too.
   for (const int face : {first, otherFaceAtEdge(edge, first)}) {
     EdgeTurn turn(topology, tet, edge, face);
     while (turn.next() != kNone) {

@@ -27,7 +27,7 @@ class Patches {
       for (HalfFace h = first; h < first + 4; ++h) {
         smaller[count] = tetOf(mate[h]);
         count += static_cast<std::size_t>(mate[h] < first) &
-                 static_cast<std::size_t>(!map.exact.transitions.isJump(h));
+                 static_cast<std::size_t>(!map.exact.transitions.isNonTrivial(h));
       }
       auto patch = static_cast<Index>(t);
       for (std::size_t i = 0; i < count; ++i) patch = sets.unite(patch, smaller[i]);

@@ -40,7 +40,7 @@ struct Charts {
                                  HalfFace halfFace) const noexcept {
     const Index here = tetOf(halfFace);
     const Index there = tetOf(topology.mate[halfFace]);
-    if (!transitions.isJump(halfFace)) {
+    if (!transitions.isNonTrivial(halfFace)) {
       return gaugeOf[here] == gaugeOf[there] || gauge(here) == gauge(there);
     }
     return gauge(there) * transitions.across(halfFace) == gauge(here);

@@ -1,6 +1,6 @@
-// Ways of working that can be turned off: for tests, which show that a safeguard is needed, and for
-// ablations (bench/ablation), which show what a second way gains. The library itself always works
-// with the defaults.
+// Safeguards and special paths that can be turned off: for tests, which show that a safeguard is
+// needed, and for ablations (bench/ablation), which show what a special path gains. The library
+// itself always works with the defaults.
 #pragma once
 
 namespace hexhex {

@@ -33,7 +33,7 @@ namespace hexhex {
 
 /// The axis of the largest component, the first of several.
 [[nodiscard]] inline std::size_t dominantAxis(const Vec3& v) noexcept {
-  // As numbers, since which one it is would be as good as random.
+  // As numbers, since a branch could not be predicted.
   const std::size_t first = std::abs(v[1]) > std::abs(v[0]) ? 1 : 0;
   const std::size_t isThird = std::abs(v[2]) > std::max(std::abs(v[0]), std::abs(v[1])) ? 1 : 0;
   return first + isThird * (2 - first);

@@ -17,7 +17,7 @@ struct ChartEdge {
 
   /// Carries it across a face.
   [[nodiscard]] ChartEdge across(const Transitions& transitions, HalfFace halfFace) const noexcept {
-    if (!transitions.isJump(halfFace)) return *this;
+    if (!transitions.isNonTrivial(halfFace)) return *this;
     const Transition& transition = transitions.across(halfFace);
     return {transition(z), transition(along)};
   }
@@ -42,7 +42,7 @@ struct Frame {
   /// Carries it across a face, if charts differ there.
   /// @return whether they do
   bool cross(const Transitions& transitions, HalfFace halfFace) noexcept {
-    if (!transitions.isJump(halfFace)) return false;
+    if (!transitions.isNonTrivial(halfFace)) return false;
     *this = carried(transitions.across(halfFace));
     return true;
   }

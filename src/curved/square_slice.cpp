@@ -245,7 +245,7 @@ void join(const Section& section, SectionCuts& cuts, Slice& slice) noexcept {
   const std::uint8_t entry = first->begin;
   noteMidpoints(slice, *last, *first);
   // Clipping by one side of the square after the other begins with corner 0 of the square, instead
-  // of the first side, if it comes by there, and if the section, on the way from its point 0,
+  // of the first side, if it comes by there, and if the section, on its part from point 0,
   // crosses the line along side 0 from above: the point where clipping begins, beyond side 3 in the
   // end, is before that line then.
   if (entry >= exit || pointsBelow == 0 || (section.points[0].borders & 1U) != 0) {

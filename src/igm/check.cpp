@@ -44,7 +44,7 @@ CheckReport check(const TetMapView& map, const CheckOptions& options, Context& c
     if (!prepared.singularities.areKnown()) return;
     addEdges(prepared.topology, stage);
     countElements(prepared.topology, report);
-    report.chartJumps = prepared.exact.transitions.jumps;
+    report.chartJumps = prepared.exact.transitions.nonTrivial;
     report.maxTransitionResidual = prepared.exact.transitions.maxResidual;
     report.maxDisplacement = prepared.exact.maxDisplacement;
     countSingularities(prepared.singularities, report);

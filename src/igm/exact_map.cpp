@@ -80,8 +80,9 @@ ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters
   map.unit = std::int64_t{1} << fractionBits(parameters.largest(), maxScale, defects);
   if (defects.has(ErrorCode::TooLarge)) return map;
   map.corners.resize(topology.tetCount());
-  // Of two ways to the volume, the shorter one: tet by tet, or along the boundary and the cuts.
-  const bool byTets = map.transitions.jumps > topology.tetCount();
+  // Of two sums that give the volume, the shorter one: tet by tet, or along the boundary and the
+  // cuts.
+  const bool byTets = map.transitions.nonTrivial > topology.tetCount();
   const RoundedTets rounded =
       roundTets(topology, parameters, vertices.rounding, tolerance, byTets, stage, defects, map);
   sanitizeStars(topology, parameters, vertices.blocks, singularities, tolerance, stage, defects,

@@ -67,7 +67,7 @@ class FittedTransitions {
 /// Searches one block of tets, and gives them gauges relative to the first tets of their pieces.
 /// In three passes, as each waits for memory in an order of its own: the search itself, which looks
 /// at neighbours only; transitions, tet by tet; and their composition, in the order of the search.
-/// Branches are avoided: which neighbours are new, or in the block, is as good as random.
+/// Branches are avoided: which neighbours are new, or in the block, cannot be predicted.
 template <class Source>
 class PieceSearch {
  public:

@@ -1,4 +1,4 @@
-// One picture for all tets that are connected, in maps where nearly every tet has a chart of its
+// One chart for all tets that are connected, in maps where nearly every tet has a chart of its
 // own.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace hexhex {
 
-/// Transitions along a spanning tree, composed: each tet's from its chart into the common picture.
+/// Transitions along a spanning tree, composed: each tet's from its chart into the common chart.
 /// Across the faces that are not in the tree, gauges need not agree.
 struct Gauges {
   Array<Gauge> of;         ///< per tet; empty if there are none
@@ -22,10 +22,11 @@ struct Gauges {
   Index components = 0;
 };
 
-/// Whether there are so many jumps that tets with a common chart are not worth looking for.
-[[nodiscard]] inline bool hasManyJumps(const TetTopology& topology,
-                                       const Transitions& transitions) noexcept {
-  return transitions.jumps > topology.tetCount();
+/// Whether so many transitions are not the identity that tets with a common chart are not worth
+/// looking for.
+[[nodiscard]] inline bool areMostlyNonTrivial(const TetTopology& topology,
+                                              const Transitions& transitions) noexcept {
+  return transitions.nonTrivial > topology.tetCount();
 }
 
 /// Tets in a block: what they need, some 140 bytes each, is to stay in a cache of one or two MB.

@@ -23,7 +23,7 @@ enum class Rounding : std::uint8_t {
   Plane0 = 1,  ///< likewise, but to an integer along axis 0,
   Plane1 = 2,  ///< 1,
   Plane2 = 4,  ///< or 2, in all charts
-  ByStar = 8   ///< in different ways, as the star says
+  ByStar = 8   ///< corner by corner, as the star says
 };
 
 /// The stars of the irregular vertices among consecutive vertices.

@@ -82,7 +82,7 @@ MapStructure findMapStructure(const TetMapView& map, double tolerance, Context& 
     for (const SingularEdge& edge : prepared.singularities.edges) {
       result.singularEdges.push_back({edge.vertex0, edge.vertex1, edge.valence, edge.boundary});
     }
-    if (!prepared.exact.transitions.jump.empty()) addChartJumps(map, prepared, result);
+    if (!prepared.exact.transitions.ofFace.empty()) addChartJumps(map, prepared, result);
   });
   return result;
 }

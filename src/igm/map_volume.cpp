@@ -23,7 +23,7 @@ class VolumeSum {
 
   void addInner(HalfFace halfFace) {
     const Transitions& transitions = map_.transitions;
-    const Index back = Transitions::inverse(transitions.jump[halfFace]);
+    const Index back = Transitions::inverse(transitions.ofFace[halfFace]);
     const GridPoint& translation = transitions.table[back].translation;
     const Triangle triangle(map_, halfFace);
     for (std::size_t k = 0; k < 3; ++k) add(triangle.normal(k), -translation[k] * map_.unit);
@@ -48,7 +48,7 @@ class VolumeSum {
           q(corners[static_cast<std::size_t>(face[1])]),
           r(corners[static_cast<std::size_t>(face[2])]) {}
 
-    /// A component of (q - p) x (r - p); by a table, as axes are as good as random.
+    /// A component of (q - p) x (r - p); by a table, as axes cannot be predicted.
     [[nodiscard]] Int128 normal(std::size_t axis) const noexcept {
       constexpr std::array<std::uint8_t, 5> kAxes = {0, 1, 2, 0, 1};
       const std::size_t i = kAxes[axis + 1];

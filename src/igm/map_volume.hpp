@@ -6,7 +6,8 @@
 
 namespace hexhex {
 
-// Two ways to set map.sixfoldVolume from corners and transitions, for a map without defects:
+// Sets map.sixfoldVolume from corners and transitions, for a map without defects, by one of two
+// sums:
 
 /// Along the boundary and the cuts.
 /// @param survey  knows the boundary, and where tets differ

@@ -92,7 +92,7 @@ class Preparation {
     Transitions transitions = computeTransitions(prepared_.topology, parameters, survey,
                                                  prepared_.input.view.rotations, tolerance_, stage);
     prepared_.chartJumps = unfolding.countGivenJumps(prepared_.topology, transitions, stage);
-    if (hasManyJumps(prepared_.topology, transitions)) {
+    if (areMostlyNonTrivial(prepared_.topology, transitions)) {
       prepared_.gauges = computeGauges(prepared_.topology, transitions, stage);
     }
     return transitions;

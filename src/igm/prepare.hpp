@@ -20,7 +20,7 @@ struct PreparedMap {
   Singularities singularities;
   bool isUnfolded = false;       ///< whether `input` has other charts than the caller's
   std::uint64_t chartJumps = 0;  ///< between the caller's charts
-  Gauges gauges;                 ///< not scaled; empty if there are not many jumps
+  Gauges gauges;                 ///< not scaled; empty if most transitions are the identity
   ExactMap exact;                ///< not scaled
 };
 

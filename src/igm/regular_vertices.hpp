@@ -1,5 +1,5 @@
 // Tells the many vertices that are certainly regular from the few that need a closer look
-// (Section 5.1.2), and lists boundary faces and faces whose tets have different charts on the way.
+// (Section 5.1.2), and also lists boundary faces and faces whose tets have different charts.
 #pragma once
 
 #include <cstdint>

@@ -9,12 +9,12 @@ namespace {
 
 /// What fitting transitions to a block of triangles gives.
 struct BlockResult {
-  struct Jump {
+  struct NonTrivial {
     HalfFace here;  ///< the smaller half-face
     bool isExact;
     Transition transition;
   };
-  std::vector<Jump> jumps;
+  std::vector<NonTrivial> nonTrivial;
   std::vector<Transitions::Misfit> misfits;
   double maxResidual = 0;
 };
@@ -37,7 +37,7 @@ class TransitionFitter {
       block.maxResidual = std::max(block.maxResidual, fitted.residual);
       if (fitted.residual > tolerance_) block.misfits.push_back({here, fitted.residual});
       if (fitted.transition.isIdentity()) continue;
-      block.jumps.push_back({here, fitted.isExact, fitted.transition});
+      block.nonTrivial.push_back({here, fitted.isExact, fitted.transition});
     }
     return block;
   }
@@ -59,7 +59,7 @@ class TransitionFitter {
 
 void enter(Index index, HalfFace halfFace, const Transition& transition, bool isExact,
            Transitions& result) {
-  result.jump[halfFace] = index;
+  result.ofFace[halfFace] = index;
   result.table[index] = transition;
   result.halfFaces[index] = halfFace;
   result.isExact[index] = isExact ? 1 : 0;
@@ -79,17 +79,18 @@ Transitions computeTransitions(const TetTopology& topology, const LocalParameter
   result.innerFaces = survey.innerFaces;
   std::vector<std::uint64_t> first;
   for (const BlockResult& block : blocks) {
-    first.push_back(result.jumps);
-    result.jumps += block.jumps.size();
+    first.push_back(result.nonTrivial);
+    result.nonTrivial += block.nonTrivial.size();
     result.maxResidual = std::max(result.maxResidual, block.maxResidual);
     result.misfits.insert(result.misfits.end(), block.misfits.begin(), block.misfits.end());
   }
-  result.jump.resize(4 * topology.tetCount());
-  parallelBlocks(stage, result.jump.size(), 4 * RegularVertices::kBlock,
+  result.ofFace.resize(4 * topology.tetCount());
+  parallelBlocks(stage, result.ofFace.size(), 4 * RegularVertices::kBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   std::fill(&result.jump[begin], &result.jump[begin] + (end - begin), Index{0});
+                   std::fill(&result.ofFace[begin], &result.ofFace[begin] + (end - begin),
+                             Index{0});
                  });
-  result.table.resize(1 + 2 * result.jumps);
+  result.table.resize(1 + 2 * result.nonTrivial);
   result.halfFaces.resize(result.table.size());
   result.isExact.resize(result.table.size());
   result.table.front() = {};
@@ -97,9 +98,9 @@ Transitions computeTransitions(const TetTopology& topology, const LocalParameter
   result.isExact.front() = 0;
   parallelFor(stage, blocks.size(), 1, [&](std::size_t block) {
     auto index = static_cast<Index>(1 + 2 * first[block]);
-    for (const BlockResult::Jump& jump : blocks[block].jumps) {
-      enter(index++, jump.here, jump.transition, jump.isExact, result);
-      enter(index++, topology.mate[jump.here], jump.transition.inverse(), jump.isExact, result);
+    for (const BlockResult::NonTrivial& face : blocks[block].nonTrivial) {
+      enter(index++, face.here, face.transition, face.isExact, result);
+      enter(index++, topology.mate[face.here], face.transition.inverse(), face.isExact, result);
     }
   });
   return result;
@@ -128,13 +129,13 @@ Array<HalfFaceCrossing> findCrossings(const TetTopology& topology, const Regular
   parallelFor(stage, survey.unequalFaces.size(), 1, [&](std::size_t block) {
     for (const HalfFace halfFace : survey.unequalFaces[block]) {
       for (const HalfFace h : {halfFace, topology.mate[halfFace]}) {
-        if (transitions.jump.empty()) {
+        if (transitions.ofFace.empty()) {
           crossings[h] = HalfFaceCrossing::inner(Rotation(), false);
           continue;
         }
-        const Index jump = transitions.jump[h];
-        crossings[h] = HalfFaceCrossing::inner(transitions.table[jump].rotation,
-                                               transitions.isExact[jump] != 0 && isCertain(h));
+        const Index index = transitions.ofFace[h];
+        crossings[h] = HalfFaceCrossing::inner(transitions.table[index].rotation,
+                                               transitions.isExact[index] != 0 && isCertain(h));
       }
     }
   });

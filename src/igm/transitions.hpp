@@ -18,15 +18,15 @@ namespace hexhex {
 struct Transitions {
   /// Per half-face: index in `table` of the transition into the neighbour's chart; 0, the identity,
   /// is by far the most frequent.
-  Array<Index> jump;
+  Array<Index> ofFace;
   Array<Transition> table;
   /// Per entry of the table: the half-face that it belongs to. kNone for the identity.
   Array<HalfFace> halfFaces;
   /// Per entry of the table: 1 if it carries the triangle's parameters over without rounding. 0 for
   /// the identity, for the sake of triangles that it fits only best.
   Array<std::uint8_t> isExact;
-  double maxResidual = 0;   ///< largest violation of (IGM1), in parameter units
-  std::uint64_t jumps = 0;  ///< inner faces whose transition is not the identity
+  double maxResidual = 0;        ///< largest violation of (IGM1), in parameter units
+  std::uint64_t nonTrivial = 0;  ///< inner faces whose transition is not the identity
   std::uint64_t innerFaces = 0;
 
   /// Triangles whose residual is above the tolerance.
@@ -38,13 +38,15 @@ struct Transitions {
 
   /// From the chart of the half-face's tet to that of its mate.
   [[nodiscard]] const Transition& across(HalfFace halfFace) const noexcept {
-    return table[jump[halfFace]];
+    return table[ofFace[halfFace]];
   }
   /// The index in `table` of the inverse: both are neighbours there.
-  [[nodiscard]] static constexpr Index inverse(Index jump) noexcept {
-    return jump == 0 ? 0 : ((jump - 1) ^ 1U) + 1;
+  [[nodiscard]] static constexpr Index inverse(Index index) noexcept {
+    return index == 0 ? 0 : ((index - 1) ^ 1U) + 1;
   }
-  [[nodiscard]] bool isJump(HalfFace halfFace) const noexcept { return jump[halfFace] != 0; }
+  [[nodiscard]] bool isNonTrivial(HalfFace halfFace) const noexcept {
+    return ofFace[halfFace] != 0;
+  }
 };
 
 /// @param survey  knows where tets differ

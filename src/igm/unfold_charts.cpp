@@ -86,7 +86,7 @@ class ChartChanger {
 
 std::uint64_t Unfolding::countGivenJumps(const TetTopology& topology,
                                          const Transitions& transitions, Stage& stage) const {
-  if (gauges_.empty()) return transitions.jumps;
+  if (gauges_.empty()) return transitions.nonTrivial;
   std::vector<std::uint64_t> blocks(blockCount(topology.mate.size(), 4 * kGrain));
   parallelBlocks(stage, topology.mate.size(), 4 * kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
@@ -94,25 +94,26 @@ std::uint64_t Unfolding::countGivenJumps(const TetTopology& topology,
                      const HalfFace there = topology.mate[here];
                      if (there == kNone || there < here) continue;
                      Gauge image = gauges_[tetOf(here)];
-                     if (transitions.isJump(here)) {
+                     if (transitions.isNonTrivial(here)) {
                        image = Gauge{} * transitions.across(here) * image;
                      }
                      blocks[block] += image == gauges_[tetOf(there)] ? 0 : 1;
                    }
                  });
-  std::uint64_t jumps = 0;
-  for (const std::uint64_t count : blocks) jumps += count;
-  return jumps;
+  std::uint64_t nonTrivial = 0;
+  for (const std::uint64_t count : blocks) nonTrivial += count;
+  return nonTrivial;
 }
 
 bool needsUnfolding(const TetTopology& topology, const OrientedMap& map) {
   const LocalParameters given(map);
   if (!map.view.rotations.empty() || given.tooLarge()) return false;
-  constexpr std::size_t kSample = 32;    // tets
-  constexpr std::size_t kBreakEven = 3;  // of as many triangles, one with a jump costs as much
+  constexpr std::size_t kSample = 32;  // tets
+  constexpr std::size_t kBreakEven =
+      3;  // of as many triangles, one between different charts costs as much
   const std::size_t step = std::max(topology.tetCount() / kSample, std::size_t{1});
   std::size_t faces = 0;
-  std::size_t jumps = 0;
+  std::size_t nonTrivial = 0;
   for (std::size_t t = 0; t < topology.tetCount(); t += step) {
     for (int f = 0; f < 4; ++f) {
       const HalfFace here = halfFaceOf(static_cast<Index>(t), f);
@@ -121,10 +122,10 @@ bool needsUnfolding(const TetTopology& topology, const OrientedMap& map) {
       ++faces;
       if (agree(topology, given, here)) continue;
       const FittedTransition fitted = fitTransition(SharedTriangle(topology, given, here));
-      jumps += fitted.isExact && !fitted.transition.isIdentity() ? 1 : 0;
+      nonTrivial += fitted.isExact && !fitted.transition.isIdentity() ? 1 : 0;
     }
   }
-  return kBreakEven * jumps > faces;
+  return kBreakEven * nonTrivial > faces;
 }
 
 Unfolding unfoldCharts(const TetTopology& topology, OrientedMap& map, Stage& stage) {

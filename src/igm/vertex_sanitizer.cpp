@@ -64,7 +64,7 @@ LatticePoint VertexSanitizer::snapped(CornerIndex corner, AxisSet fixed) const {
   return value;
 }
 
-/// Carries the value of the first member to all others, along the walk; false if not all ways
+/// Carries the value of the first member to all others, along the walk; false if not all paths
 /// through the star lead to the same values.
 bool VertexSanitizer::spread(std::span<const VertexStar::Member> star) {
   std::size_t reached = 1;
@@ -72,8 +72,8 @@ bool VertexSanitizer::spread(std::span<const VertexStar::Member> star) {
   const auto pass = [&](std::size_t i, std::size_t k) {
     const VertexStar::Member& member = star[i];
     const LatticePoint value = values_[i];
-    const Index jump = map_.transitions.jump[member.halfFace(k)];
-    const LatticePoint image = jump == 0 ? value : carried(value, jump);
+    const Index index = map_.transitions.ofFace[member.halfFace(k)];
+    const LatticePoint image = index == 0 ? value : carried(value, index);
     // At the boundary, a member stands for its neighbour.
     const std::size_t behind = member.neighbour[k] == kNone ? i : member.neighbour[k];
     values_[reached] = image;  // in vain if the one behind is not new
@@ -91,8 +91,8 @@ bool VertexSanitizer::spread(std::span<const VertexStar::Member> star) {
   return difference == 0;
 }
 
-LatticePoint VertexSanitizer::carried(const LatticePoint& value, Index jump) const {
-  const LatticePoint image = map_.transitions.table[jump](value, map_.unit);
+LatticePoint VertexSanitizer::carried(const LatticePoint& value, Index transition) const {
+  const LatticePoint image = map_.transitions.table[transition](value, map_.unit);
   return outOfRange(image) ? value : image;
 }
 

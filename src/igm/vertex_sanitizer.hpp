@@ -35,7 +35,7 @@ class VertexSanitizer {
                                   AxisSet planes) const;
   [[nodiscard]] LatticePoint snapped(CornerIndex corner, AxisSet fixed) const;
   [[nodiscard]] bool spread(std::span<const VertexStar::Member> star);
-  [[nodiscard]] LatticePoint carried(const LatticePoint& value, Index jump) const;
+  [[nodiscard]] LatticePoint carried(const LatticePoint& value, Index transition) const;
   [[nodiscard]] double assign(CornerIndex corner, const LatticePoint& value);
   [[nodiscard]] ErrorCode causeOfDisplacement(Index v, AxisSet planes) const;
 

@@ -215,7 +215,7 @@ void CellTracer::cross(Segment& segment, int face) const {
   const Index before = segment.tet;
   segment.tet = tetOf(mate);
   segment.entered = localOf(mate);
-  if (exact_.transitions.isJump(halfFace)) {
+  if (exact_.transitions.isNonTrivial(halfFace)) {
     const Transition& transition = exact_.transitions.across(halfFace);
     segment.center = transition(segment.center, exact_.unit);
     segment.along = transition.rotation(segment.along);

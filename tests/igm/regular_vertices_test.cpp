@@ -124,7 +124,7 @@ TEST_P(RegularVerticesOfKind, AreNeitherSingularNorBetweenPlanesNorAtJumps) {
           if (face == localOf(corner)) continue;
           const HalfFace halfFace = halfFaceOf(corner / 4, face);
           boundary = boundary || survey.topology.isBoundary(halfFace);
-          EXPECT_FALSE(prepared.transitions().isJump(halfFace));
+          EXPECT_FALSE(prepared.transitions().isNonTrivial(halfFace));
         }
       }
       EXPECT_EQ(survey.regular.plane[v] != 0, boundary);

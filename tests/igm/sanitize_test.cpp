@@ -169,7 +169,7 @@ TEST_P(SanitizeKind, DoesNotDependOnThreads) {
   EXPECT_TRUE(one.exact().corners == two.exact().corners);
   EXPECT_EQ(one.exact().unit, two.exact().unit);
   EXPECT_EQ(one.exact().maxDisplacement, two.exact().maxDisplacement);
-  EXPECT_TRUE(one.transitions().jump == two.transitions().jump);
+  EXPECT_TRUE(one.transitions().ofFace == two.transitions().ofFace);
   EXPECT_TRUE(one.transitions().table == two.transitions().table);
   EXPECT_TRUE(one.topology().mate == two.topology().mate);
   EXPECT_TRUE(one.topology().edgeEnd == two.topology().edgeEnd);

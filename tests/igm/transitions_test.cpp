@@ -74,20 +74,20 @@ TEST_P(TransitionsOfKind, OfMatesAreInverse) {
     const Prepared prepared(map);
     const TetTopology& topology = prepared.topology();
     const Transitions& transitions = prepared.transitions();
-    std::uint64_t jumps = 0;
+    std::uint64_t count = 0;
     std::uint64_t innerFaces = 0;
     for (HalfFace here = 0; here < topology.mate.size(); ++here) {
       const HalfFace there = topology.mate[here];
-      EXPECT_EQ(transitions.isJump(here), !transitions.across(here).isIdentity());
+      EXPECT_EQ(transitions.isNonTrivial(here), !transitions.across(here).isIdentity());
       if (there == kNone) {
-        EXPECT_FALSE(transitions.isJump(here));
+        EXPECT_FALSE(transitions.isNonTrivial(here));
         continue;
       }
       EXPECT_EQ(transitions.across(there), transitions.across(here).inverse());
       innerFaces += here < there ? 1 : 0;
-      jumps += here < there && transitions.isJump(here) ? 1 : 0;
+      count += here < there && transitions.isNonTrivial(here) ? 1 : 0;
     }
-    EXPECT_EQ(transitions.jumps, jumps);
+    EXPECT_EQ(transitions.nonTrivial, count);
     EXPECT_EQ(transitions.innerFaces, innerFaces);
   }
 }
@@ -124,7 +124,7 @@ TEST_P(TransitionsOfKind, GivenRotationsAreTheComputedOnes) {
   view.rotations = rotations;
   const Prepared given(view);
   EXPECT_TRUE(given.defects().empty());
-  EXPECT_EQ(given.transitions().jump, computed.transitions().jump);
+  EXPECT_EQ(given.transitions().ofFace, computed.transitions().ofFace);
   EXPECT_EQ(given.transitions().table, computed.transitions().table);
 }
 
@@ -144,7 +144,7 @@ TEST(Transitions, AlignedBoxHasNoJumps) {
   for (const double offset : {0.0, 1e9}) {
     const TetMap map = generateSample(SampleKind::Box, {.jitter = 0.4, .offset = offset}).map;
     const Prepared prepared(map);
-    EXPECT_EQ(prepared.transitions().jumps, 0U);
+    EXPECT_EQ(prepared.transitions().nonTrivial, 0U);
     EXPECT_EQ(prepared.transitions().table.size(), 1U);
     EXPECT_EQ(prepared.transitions().maxResidual, 0);
   }
@@ -154,7 +154,7 @@ TEST(Transitions, RandomChartsJumpNearlyEverywhere) {
   const TetMap map = generateSample(SampleKind::Box, {.charts = ChartStyle::Random}).map;
   const Prepared prepared(map);
   const Transitions& transitions = prepared.transitions();
-  EXPECT_GT(transitions.jumps * 100, transitions.innerFaces * 99);
+  EXPECT_GT(transitions.nonTrivial * 100, transitions.innerFaces * 99);
 }
 
 /// Whether a + b is c without rounding (Knuth's TwoSum).
@@ -202,11 +202,11 @@ void expectBest(const TetTopology& topology, const Transitions& transitions,
       isExact &= isExactSum(rotation(u[i])[k], std::nearbyint(mean), v[i][k]);
     }
   }
-  const Index jump = transitions.jump[here];
-  if (jump != 0) {
-    ASSERT_EQ(transitions.isExact[jump] != 0, isExact);
+  const Index index = transitions.ofFace[here];
+  if (index != 0) {
+    ASSERT_EQ(transitions.isExact[index] != 0, isExact);
   }
-  ASSERT_EQ(transitions.jump[there], Transitions::inverse(jump));
+  ASSERT_EQ(transitions.ofFace[there], Transitions::inverse(index));
 }
 
 TEST(Transitions, AreTheBestRotationAndTheMeanTranslation) {
@@ -220,7 +220,7 @@ TEST(Transitions, AreTheBestRotationAndTheMeanTranslation) {
     addNoise(map, noise);
     const Prepared prepared(map, 0.2);
     const TetTopology& topology = prepared.topology();
-    if (prepared.transitions().jump.empty()) continue;  // a defect of the mesh in the map
+    if (prepared.transitions().ofFace.empty()) continue;  // a defect of the mesh in the map
     const LocalParameters parameters(prepared.map().input);
     for (HalfFace here = 0; here < topology.mate.size(); ++here) {
       if (topology.mate[here] == kNone || topology.mate[here] < here) continue;

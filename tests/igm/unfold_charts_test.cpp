@@ -98,13 +98,13 @@ TEST_P(UnfoldChartsOfKind, AreReportedAsGiven) {
     const Prepared unfolded(map, 1e-2, 1, 3, ChartChoice::Unfolded);
     ASSERT_TRUE(given.defects().empty());
     ASSERT_TRUE(unfolded.defects().empty());
-    EXPECT_EQ(given.map().chartJumps, given.transitions().jumps);
+    EXPECT_EQ(given.map().chartJumps, given.transitions().nonTrivial);
     EXPECT_EQ(unfolded.map().chartJumps, given.map().chartJumps);
     EXPECT_EQ(unfolded.map().isUnfolded, noise == 0);
     if (noise == 0) {
-      EXPECT_LT(10 * unfolded.transitions().jumps, given.transitions().jumps);
+      EXPECT_LT(10 * unfolded.transitions().nonTrivial, given.transitions().nonTrivial);
     } else {
-      EXPECT_EQ(unfolded.transitions().jumps, given.transitions().jumps);
+      EXPECT_EQ(unfolded.transitions().nonTrivial, given.transitions().nonTrivial);
     }
     EXPECT_EQ(unfolded.singularities().edges.size(), given.singularities().edges.size());
   }
