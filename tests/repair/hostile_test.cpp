@@ -11,7 +11,6 @@
 #include "extract/support.hpp"
 #include "igm/prepare.hpp"
 #include "repair/map_changes.hpp"
-#include "repair/map_changes.hpp"
 #include "repair/same_connectivity.hpp"
 #include "support/error_of.hpp"
 
