@@ -4,11 +4,6 @@
 namespace hexhex {
 
 template <class... Bools>
-[[nodiscard]] constexpr bool anyOf(Bools... conditions) noexcept {
-  return (static_cast<unsigned>(conditions) | ...) != 0;
-}
-
-template <class... Bools>
 [[nodiscard]] constexpr bool allOf(Bools... conditions) noexcept {
   return (static_cast<unsigned>(conditions) & ...) != 0;
 }

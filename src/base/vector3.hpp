@@ -2,9 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 #include <hexhex/types.hpp>
 
@@ -37,11 +35,6 @@ namespace hexhex {
   const std::size_t first = std::abs(v[1]) > std::abs(v[0]) ? 1 : 0;
   const std::size_t isThird = std::abs(v[2]) > std::max(std::abs(v[0]), std::abs(v[1])) ? 1 : 0;
   return first + isThird * (2 - first);
-}
-
-/// 1 for negative numbers, 0 for others: a comparison would make a branch.
-[[nodiscard]] constexpr unsigned signBit(double x) noexcept {
-  return static_cast<unsigned>(std::bit_cast<std::uint64_t>(x) >> 63);
 }
 
 /// Nearest integer (even if there are two) of a number below 2^52 in magnitude, as std::nearbyint

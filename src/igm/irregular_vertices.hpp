@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <igm/regular_vertices.hpp>
-#include <igm/transitions.hpp>
 #include <igm/vertex_star.hpp>
 
 namespace hexhex {

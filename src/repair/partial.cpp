@@ -9,6 +9,7 @@
 #include <hexhex/partial.hpp>
 
 #include <base/disjoint_sets.hpp>
+#include <lattice/tet_rasterizer.hpp>
 #include <repair/cell_flood.hpp>
 #include <repair/valid_tets.hpp>
 
@@ -35,38 +36,26 @@ class CellFinder {
       : map_(map), valid_(valid), flood_(map, valid) {}
 
   void run(Index tet, Found& found) {
-    const LatticeTet& corners = map_.exact.corners[tet];
-    GridPoint low{};
-    GridPoint high{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [least, greatest] =
-          std::minmax({corners[0][k], corners[1][k], corners[2][k], corners[3][k]});
-      low[k] = static_cast<std::int32_t>(floorDivided(least));
-      high[k] = static_cast<std::int32_t>(floorDivided(greatest));
-    }
-    GridPoint z{};
-    for (z[0] = low[0]; z[0] <= high[0]; ++z[0]) {
-      for (z[1] = low[1]; z[1] <= high[1]; ++z[1]) {
-        for (z[2] = low[2]; z[2] <= high[2]; ++z[2]) tryCell(tet, z, found);
-      }
-    }
+    centres_.clear();
+    TetRasterizer(map_.exact.corners[tet], map_.exact.unit)
+        .sweep(kCenterGrid, [&](const SweptLine& line) {
+          for (std::uint32_t i = 0; i < line.count; ++i) centres_.push_back(line.point(i));
+        });
+    // The sweep's axes depend on the tet; cells of all tets come in the same order.
+    std::sort(centres_.begin(), centres_.end());
+    for (const GridPoint& z : centres_) tryCell(tet, z, found);
   }
 
  private:
-  [[nodiscard]] std::int64_t floorDivided(std::int64_t x) const {
-    const std::int64_t unit = map_.exact.unit;
-    return x >= 0 ? x / unit : -((-x + unit - 1) / unit);
-  }
-
   void tryCell(Index tet, const GridPoint& z, Found& found) {
+    if (!flood_.run(tet, z)) return;
     LatticePoint centre{};
     for (std::size_t k = 0; k < 3; ++k) {
       centre[k] = std::int64_t{z[k]} * map_.exact.unit + map_.exact.unit / 2;
     }
-    if (!holds(map_.exact.corners[tet], centre) || !flood_.run(tet, z)) return;
     // A centre between tets belongs to the smallest of them.
     for (const CellFlood::Piece& piece : flood_.pieces()) {
-      if (piece.tet < tet && holds(piece.corners, centre)) return;
+      if (piece.tet < tet && simplexOf(piece.corners, centre) != kNoSimplex) return;
     }
     FoundCell cell;
     for (std::size_t i = 0; i < 8; ++i) cell.corners[i] = flood_.corner(i);
@@ -81,14 +70,10 @@ class CellFinder {
     }
   }
 
-  [[nodiscard]] static bool holds(const LatticeTet& c, const LatticePoint& at) {
-    return orientation(at, c[1], c[2], c[3]) >= 0 && orientation(c[0], at, c[2], c[3]) >= 0 &&
-           orientation(c[0], c[1], at, c[3]) >= 0 && orientation(c[0], c[1], c[2], at) >= 0;
-  }
-
   const PreparedMap& map_;
   std::span<const std::uint8_t> valid_;
   CellFlood flood_;
+  std::vector<GridPoint> centres_;  ///< by smallest corner of the cell; reused
 };
 
 /// Numbers the vertices of all cells by their names.

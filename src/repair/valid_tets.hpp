@@ -6,7 +6,6 @@
 
 #include <hexhex/types.hpp>
 
-#include <base/parallel.hpp>
 #include <igm/exact_map.hpp>
 #include <igm/input.hpp>
 #include <igm/prepare.hpp>

@@ -12,7 +12,6 @@
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
-#include <igm/exact_map.hpp>
 #include <lattice/tet_rasterizer.hpp>
 
 namespace hexhex {
