@@ -118,13 +118,13 @@ struct Reader {
 };
 
 constexpr std::array kReaders = {
-    Reader{"hexex", read<parse<readHexex>>},    Reader{"mesh", read<parse<readMedit>>},
-    Reader{"meshb", read<parse<readMeshb>>},    Reader{"msh", read<parse<readGmsh>>},
-    Reader{"vtk", read<parse<readVtkLegacy>>},  Reader{"vtu", read<parse<readVtu>>},
-    Reader{"vtk-map", read<parseVtkLegacyMap>}, Reader{"vtu-map", read<parseVtuMap>},
-    Reader{"vtu-lagrange", readLagrange},       Reader{"ovm-map", read<parseOvmMap>},
-    Reader{"ovm", read<parseOvmHexMesh>},       Reader{"ovmb-map", read<parseOvmbMap>},
-    Reader{"ovmb", read<parseOvmbHexMesh>}};
+    Reader{"hexex", read<parse<readHexex>>},     Reader{"mesh", read<parse<readMedit>>},
+    Reader{"meshb", read<parse<readMeshb>>},     Reader{"msh", read<parse<readGmsh>>},
+    Reader{"vtk", read<parse<readVtkLegacy>>},   Reader{"vtu", read<parse<readVtu>>},
+    Reader{"vtk-map", read<parseVtkLegacyMap>},  Reader{"vtu-map", read<parseVtuMap>},
+    Reader{"vtu-lagrange", readLagrange},        Reader{"ovm-map", read<parse<readOvmMap>>},
+    Reader{"ovm", read<parse<readOvmHexMesh>>},  Reader{"ovmb-map", read<parse<readOvmbMap>>},
+    Reader{"ovmb", read<parse<readOvmbHexMesh>>}};
 
 const Reader* chosen = nullptr;
 

@@ -98,11 +98,11 @@ bool isConsistent(const HexMesh& mesh) {
 }
 
 /// Whether the file was refused.
-template <class Parse>
-bool isRefused(const std::string& bytes, const Parse& parse) {
+template <class Read>
+bool isRefused(const std::string& bytes, const Read& read) {
   try {
     Context context(1);
-    EXPECT_TRUE(isConsistent(parse(bytes, "damaged", context)));
+    EXPECT_TRUE(isConsistent(read({bytes, "damaged"}, context)));
   } catch (const Error& error) {
     EXPECT_NE(error.code(), ErrorCode::Internal) << error.what();
     EXPECT_TRUE(std::string_view(error.what()).starts_with("damaged")) << error.what();
@@ -149,27 +149,27 @@ std::string mutated(std::string bytes, Random& random) {
   return bytes;
 }
 
-template <class Parse>
-void damage(const std::string& bytes, const Parse& parse, bool endIsMarked) {
-  ASSERT_FALSE(isRefused(bytes, parse));
+template <class Read>
+void damage(const std::string& bytes, const Read& read, bool endIsMarked) {
+  ASSERT_FALSE(isRefused(bytes, read));
   ASSERT_LT(bytes.size(), 16384U);
   const MemoryLimit limit;
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    const bool refused = isRefused(bytes.substr(0, size), parse);
+    const bool refused = isRefused(bytes.substr(0, size), read);
     if (endIsMarked) {
       EXPECT_TRUE(refused) << "cut at " << size;
     }
   }
   if (endIsMarked) {
     for (const char* more : {"x", "EOF ", "EOF \0\0\0\1\0\0\0\0\0\0\0\0"}) {
-      EXPECT_TRUE(isRefused(bytes + more, parse));
+      EXPECT_TRUE(isRefused(bytes + more, read));
     }
   }
   Random random(11);
   std::size_t refused = 0;
   constexpr std::size_t kCases = 20000;
   for (std::size_t i = 0; i < kCases; ++i) {
-    refused += isRefused(mutated(bytes, random), parse) ? 1 : 0;
+    refused += isRefused(mutated(bytes, random), read) ? 1 : 0;
   }
   // Most damage is seen; what is not, changed numbers.
   EXPECT_GT(refused, kCases / 5);
@@ -201,8 +201,8 @@ TEST(DamagedOvm, Maps) {
   const TemporaryFolder folder;
   writeMap(richMap(), folder / "a.ovmb");
   writeMap(richMap(), folder / "a.ovm");
-  damage(contentOf(folder / "a.ovmb"), parseOvmbMap, true);
-  damage(contentOf(folder / "a.ovm") + "VProp string \"s\"\n1:a\n0:\n2:bc\n0:\n0:\n", parseOvmMap,
+  damage(contentOf(folder / "a.ovmb"), readOvmbMap, true);
+  damage(contentOf(folder / "a.ovm") + "VProp string \"s\"\n1:a\n0:\n2:bc\n0:\n0:\n", readOvmMap,
          false);
 }
 
@@ -210,8 +210,8 @@ TEST(DamagedOvm, HexMeshes) {
   const TemporaryFolder folder;
   writeHexMesh(richMesh(), folder / "a.ovmb");
   writeHexMesh(richMesh(), folder / "a.ovm");
-  damage(contentOf(folder / "a.ovmb"), parseOvmbHexMesh, true);
-  damage(contentOf(folder / "a.ovm"), parseOvmHexMesh, false);
+  damage(contentOf(folder / "a.ovmb"), readOvmbHexMesh, true);
+  damage(contentOf(folder / "a.ovm"), readOvmHexMesh, false);
 }
 
 #if !defined(HEXHEX_TEST_SANITIZED)
@@ -239,17 +239,17 @@ TEST(DamagedOvm, AbsurdCounts) {
       file.chunk("TOPO", Bytes().span(0, count & 0xFFFFFFFF).u8(which).u8(3).u8(0).u8(4).u64(0));
       file.chunk("PROP", Bytes().span(0, count & 0xFFFFFFFF).u32(0).f64(0));
       file.chunk("EOF ", {});
-      EXPECT_TRUE(isRefused(file.str(), parseOvmbMap));
-      EXPECT_TRUE(isRefused(file.str(), parseOvmbHexMesh));
+      EXPECT_TRUE(isRefused(file.str(), readOvmbMap));
+      EXPECT_TRUE(isRefused(file.str(), readOvmbHexMesh));
       const std::string empty =
           ovmbHeader(1, counts).chunk("DIRP", entries).chunk("EOF ", {}).str();
-      EXPECT_TRUE(isRefused(empty, parseOvmbMap));
+      EXPECT_TRUE(isRefused(empty, readOvmbMap));
     }
     const std::string number = std::to_string(count);
-    EXPECT_TRUE(isRefused("Vertices\n" + number + "\n0 0 0\n", parseOvmMap));
-    EXPECT_TRUE(isRefused("Vertices\n1\n0 0 0\nEdges\n" + number + "\n0 0\n", parseOvmMap));
+    EXPECT_TRUE(isRefused("Vertices\n" + number + "\n0 0 0\n", readOvmMap));
+    EXPECT_TRUE(isRefused("Vertices\n1\n0 0 0\nEdges\n" + number + "\n0 0\n", readOvmMap));
     EXPECT_TRUE(isRefused("Vertices\n1\n0 0 0\nEdges\n1\n0 0\nFaces\n1\n" + number + " 0 0 0\n",
-                          parseOvmMap));
+                          readOvmMap));
   }
 }
 

@@ -16,12 +16,12 @@ namespace {
 
 TetMap map(const std::string& text) {
   Context context;
-  return parseOvmMap(text, "m.ovm", context);
+  return readOvmMap({text, "m.ovm"}, context);
 }
 
 HexMesh mesh(const std::string& text) {
   Context context;
-  return parseOvmHexMesh(text, "m.ovm", context);
+  return readOvmHexMesh({text, "m.ovm"}, context);
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

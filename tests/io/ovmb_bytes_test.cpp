@@ -19,12 +19,12 @@ namespace {
 
 TetMap map(const std::string& bytes) {
   Context context;
-  return parseOvmbMap(bytes, "m.ovmb", context);
+  return readOvmbMap({bytes, "m.ovmb"}, context);
 }
 
 HexMesh mesh(const std::string& bytes) {
   Context context;
-  return parseOvmbHexMesh(bytes, "m.ovmb", context);
+  return readOvmbHexMesh({bytes, "m.ovmb"}, context);
 }
 
 /// Two tets at the face 1 2 3, as lists of the format. Edges 0: 0-1, 1: 0-2, 2: 0-3, 3: 1-2,

@@ -22,17 +22,10 @@
 namespace hexhex {
 namespace {
 
-// Of formats whose readers take bytes in memory, too.
-template <auto read, class... More>
-auto readFile(const std::filesystem::path& file, More... more) {
-  return read(file, more...);
-}
-
 // Of formats whose maps need no options.
 template <auto read>
-TetMap readPlain(const std::filesystem::path& file, const ReadOptions& /*options*/,
-                 Context& context) {
-  return read(file, context);
+TetMap readPlain(const Input& input, const ReadOptions& /*options*/, Context& context) {
+  return read(input, context);
 }
 template <auto write>
 void writePlain(const TetMap& map, const std::filesystem::path& file,
@@ -40,8 +33,8 @@ void writePlain(const TetMap& map, const std::filesystem::path& file,
   write(map, file, context);
 }
 
-TetCells readHexexTets(const std::filesystem::path& file, Context& context) {
-  const TetMap map = readHexex(file, context);
+TetCells readHexexTets(const Input& input, Context& context) {
+  const TetMap map = readHexex(input, context);
   TetCells tets;
   tets.points.assign(map.points.begin(), map.points.end());
   tets.cells.assign(map.tets.begin(), map.tets.end());
@@ -75,28 +68,28 @@ constexpr std::array kFormatTable = {
            .maps = {readPlain<readHexex>, writePlain<writeHexex>},
            .readTets = readHexexTets},
     Format{.label = {"mesh", ".mesh", "MEDIT (Gamma Mesh Format), text"},
-           .readTets = readFile<readMeditTets>,
-           .meshes = {readFile<readMedit>, writeMedit},
+           .readTets = readMeditTets,
+           .meshes = {readMedit, writeMedit},
            .pieces = {openMeditSink}},
     Format{.label = {"meshb", ".meshb", "MEDIT (Gamma Mesh Format), binary"},
-           .readTets = readFile<readMeshbTets>,
-           .meshes = {readFile<readMeshb>, writeMeshb},
+           .readTets = readMeshbTets,
+           .meshes = {readMeshb, writeMeshb},
            .pieces = {openMeshbSink}},
     Format{.label = {"vtu", ".vtu", "VTK XML unstructured grid, binary"},
-           .maps = {readFile<readVtuMap>, writeVtuMap},
-           .readTets = readFile<readVtuTets>,
-           .meshes = {readFile<readVtu>, writeVtu},
+           .maps = {readVtuMap, writeVtuMap},
+           .readTets = readVtuTets,
+           .meshes = {readVtu, writeVtu},
            .pieces = {openVtuSink, readVtuTo},
            .compresses = true},
     Format{.label = {"vtk", ".vtk", "legacy VTK 2.0, text"},
-           .maps = {readFile<readVtkLegacyMap>, writeVtkLegacyMap},
-           .readTets = readFile<readVtkLegacyTets>,
-           .meshes = {readFile<readVtkLegacy>, writeVtkLegacy},
+           .maps = {readVtkLegacyMap, writeVtkLegacyMap},
+           .readTets = readVtkLegacyTets,
+           .meshes = {readVtkLegacy, writeVtkLegacy},
            .pieces = {openVtkLegacySink}},
     Format{.label = {"vtk-binary", ".vtk", "legacy VTK 2.0, binary"},
-           .maps = {readFile<readVtkLegacyMap>, writeVtkLegacyMapBinary},
-           .readTets = readFile<readVtkLegacyTets>,
-           .meshes = {readFile<readVtkLegacy>, writeVtkLegacyBinary},
+           .maps = {readVtkLegacyMap, writeVtkLegacyMapBinary},
+           .readTets = readVtkLegacyTets,
+           .meshes = {readVtkLegacy, writeVtkLegacyBinary},
            .pieces = {openVtkLegacyBinarySink}},
     Format{.label = {"ovm", ".ovm", "OpenVolumeMesh, text"},
            .maps = {readPlain<readOvmMap>, writePlain<writeOvmMap>},
@@ -107,15 +100,15 @@ constexpr std::array kFormatTable = {
            .readTets = readOvmbTets,
            .meshes = {readOvmbHexMesh, writeOvmbHexMesh}},
     Format{.label = {"msh", ".msh", "Gmsh 4.1, binary"},
-           .readTets = readFile<readGmshTets>,
-           .meshes = {readFile<readGmsh>, writeGmsh41Binary},
+           .readTets = readGmshTets,
+           .meshes = {readGmsh, writeGmsh41Binary},
            .pieces = {openGmsh41BinarySink}},
     Format{.label = {"msh41-ascii", ".msh", "Gmsh 4.1, text"},
-           .readTets = readFile<readGmshTets>,
-           .meshes = {readFile<readGmsh>, writeGmsh41Text}},
+           .readTets = readGmshTets,
+           .meshes = {readGmsh, writeGmsh41Text}},
     Format{.label = {"msh22-ascii", ".msh", "Gmsh 2.2, text"},
-           .readTets = readFile<readGmshTets>,
-           .meshes = {readFile<readGmsh>, writeGmsh22Text}},
+           .readTets = readGmshTets,
+           .meshes = {readGmsh, writeGmsh22Text}},
     Format{.label = {"inp", ".inp", "Abaqus and CalculiX, text"}, .meshes = {.write = writeAbaqus}},
     Format{.label = {"mfem", "", "MFEM mesh v1.0, text"}, .meshes = {.write = writeMfem}},
     Format{.label = {"openfoam", ".foam", "OpenFOAM polyMesh, a folder"},

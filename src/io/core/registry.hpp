@@ -14,6 +14,7 @@
 #include <hexhex/types.hpp>
 
 #include <io/core/cell_mesh.hpp>
+#include <io/core/input_file.hpp>
 
 namespace hexhex {
 
@@ -31,15 +32,14 @@ struct Format {
   FormatLabel label;
 
   struct {
-    TetMap (*read)(const std::filesystem::path& file, const ReadOptions& options,
-                   Context& context) = nullptr;
+    TetMap (*read)(const Input& input, const ReadOptions& options, Context& context) = nullptr;
     void (*write)(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
                   Context& context) = nullptr;
   } maps = {};
   /// Tets without a map, whether there is one or not.
-  TetCells (*readTets)(const std::filesystem::path& file, Context& context) = nullptr;
+  TetCells (*readTets)(const Input& input, Context& context) = nullptr;
   struct {
-    HexMesh (*read)(const std::filesystem::path& file, Context& context) = nullptr;
+    HexMesh (*read)(const Input& input, Context& context) = nullptr;
     void (*write)(const HexMesh& mesh, const std::filesystem::path& file,
                   const WriteOptions& options, Context& context) = nullptr;
   } meshes = {};

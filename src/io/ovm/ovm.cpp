@@ -1,8 +1,5 @@
-#include <type_traits>
-
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
-#include <io/core/input_file.hpp>
 #include <io/ovm/ovm.hpp>
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_mesh.hpp>
@@ -15,22 +12,16 @@ using Write = void (*)(const OvmOutput& mesh, OutputFile& output, Stage& stage);
 template <class Result>
 using Convert = Result (*)(OvmMesh&& mesh, const std::string& fileName, Stage& stage);
 
-/// @param source  the bytes of a file, or its path
-template <class Result, class Source>
-Result read(const Source& source, const std::string& fileName, Context& context,
-            std::string_view stageName, Parse parseFile, Convert<Result> convert) {
-  Stage stage(context, stageName);
-  const auto parsed = [&] {
-    if constexpr (std::is_same_v<Source, std::string_view>) {
-      return parseFile(source, fileName, stage);
-    } else {
-      const Array<char> bytes = readWholeFile(source, stage);  // given back before cells are made
-      return parseFile(asText(bytes), fileName, stage);
-    }
-  };
-  Result result;
-  withThreads(context.threads(), [&] { result = convert(parsed(), fileName, stage); });
-  return result;
+template <class Result>
+Result read(const Input& input, Context& context, std::string_view stageName, Parse parse,
+            Convert<Result> convert) {
+  return inStage(context, stageName, [&](Stage& stage) {
+    const auto parsed = [&] {
+      Array<char> room;  // given back before cells are made
+      return parse(input.text(room, stage), input.name(), stage);
+    };
+    return convert(parsed(), input.name(), stage);
+  });
 }
 
 /// @param mesh  a map or a hex mesh
@@ -44,36 +35,23 @@ void write(const Mesh& mesh, const std::filesystem::path& file, Context& context
 
 }  // namespace
 
-TetMap readOvmMap(const std::filesystem::path& file, Context& context) {
-  return read<TetMap>(file, file.string(), context, "read map", parseOvmText, toTetMap);
+TetMap readOvmMap(const Input& input, Context& context) {
+  return read<TetMap>(input, context, "read map", parseOvmText, toTetMap);
 }
-TetMap readOvmbMap(const std::filesystem::path& file, Context& context) {
-  return read<TetMap>(file, file.string(), context, "read map", parseOvmb, toTetMap);
+TetMap readOvmbMap(const Input& input, Context& context) {
+  return read<TetMap>(input, context, "read map", parseOvmb, toTetMap);
 }
-TetCells readOvmTets(const std::filesystem::path& file, Context& context) {
-  return read<TetCells>(file, file.string(), context, "read tets", parseOvmText, toTetCells);
+TetCells readOvmTets(const Input& input, Context& context) {
+  return read<TetCells>(input, context, "read tets", parseOvmText, toTetCells);
 }
-TetCells readOvmbTets(const std::filesystem::path& file, Context& context) {
-  return read<TetCells>(file, file.string(), context, "read tets", parseOvmb, toTetCells);
+TetCells readOvmbTets(const Input& input, Context& context) {
+  return read<TetCells>(input, context, "read tets", parseOvmb, toTetCells);
 }
-HexMesh readOvmHexMesh(const std::filesystem::path& file, Context& context) {
-  return read<HexMesh>(file, file.string(), context, "read mesh", parseOvmText, toHexMesh);
+HexMesh readOvmHexMesh(const Input& input, Context& context) {
+  return read<HexMesh>(input, context, "read mesh", parseOvmText, toHexMesh);
 }
-HexMesh readOvmbHexMesh(const std::filesystem::path& file, Context& context) {
-  return read<HexMesh>(file, file.string(), context, "read mesh", parseOvmb, toHexMesh);
-}
-
-TetMap parseOvmMap(std::string_view text, const std::string& fileName, Context& context) {
-  return read<TetMap>(text, fileName, context, "read map", parseOvmText, toTetMap);
-}
-TetMap parseOvmbMap(std::string_view bytes, const std::string& fileName, Context& context) {
-  return read<TetMap>(bytes, fileName, context, "read map", parseOvmb, toTetMap);
-}
-HexMesh parseOvmHexMesh(std::string_view text, const std::string& fileName, Context& context) {
-  return read<HexMesh>(text, fileName, context, "read mesh", parseOvmText, toHexMesh);
-}
-HexMesh parseOvmbHexMesh(std::string_view bytes, const std::string& fileName, Context& context) {
-  return read<HexMesh>(bytes, fileName, context, "read mesh", parseOvmb, toHexMesh);
+HexMesh readOvmbHexMesh(const Input& input, Context& context) {
+  return read<HexMesh>(input, context, "read mesh", parseOvmb, toHexMesh);
 }
 
 void writeOvmMap(const TetMap& map, const std::filesystem::path& file, Context& context) {

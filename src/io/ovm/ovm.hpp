@@ -11,14 +11,13 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <string_view>
 
 #include <hexhex/context.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/types.hpp>
 
 #include <io/core/cell_mesh.hpp>
+#include <io/core/input_file.hpp>
 
 namespace hexhex {
 
@@ -26,30 +25,19 @@ namespace hexhex {
 /// @throws Error FileNotFound; FileSyntax, with byte or line, also for a binary file without its
 ///         end; FileUnsupported if there is no map, or a cell is no tet; IndexOutOfRange,
 ///         NotFinite, TooLarge
-[[nodiscard]] TetMap readOvmMap(const std::filesystem::path& file, Context& context);
-[[nodiscard]] TetMap readOvmbMap(const std::filesystem::path& file, Context& context);
+[[nodiscard]] TetMap readOvmMap(const Input& input, Context& context);
+[[nodiscard]] TetMap readOvmbMap(const Input& input, Context& context);
 
 /// Read hex meshes. Cells may list their half-faces in any order; a mesh that is inside out is
 /// turned.
 /// @throws Error as above
-[[nodiscard]] HexMesh readOvmHexMesh(const std::filesystem::path& file, Context& context);
-[[nodiscard]] HexMesh readOvmbHexMesh(const std::filesystem::path& file, Context& context);
+[[nodiscard]] HexMesh readOvmHexMesh(const Input& input, Context& context);
+[[nodiscard]] HexMesh readOvmbHexMesh(const Input& input, Context& context);
 
 /// Read tets without a map, whether there is one or not.
 /// @throws Error as above
-[[nodiscard]] TetCells readOvmTets(const std::filesystem::path& file, Context& context);
-[[nodiscard]] TetCells readOvmbTets(const std::filesystem::path& file, Context& context);
-
-/// The same from memory.
-/// @param fileName  for error messages
-[[nodiscard]] TetMap parseOvmMap(std::string_view text, const std::string& fileName,
-                                 Context& context);
-[[nodiscard]] TetMap parseOvmbMap(std::string_view bytes, const std::string& fileName,
-                                  Context& context);
-[[nodiscard]] HexMesh parseOvmHexMesh(std::string_view text, const std::string& fileName,
-                                      Context& context);
-[[nodiscard]] HexMesh parseOvmbHexMesh(std::string_view bytes, const std::string& fileName,
-                                       Context& context);
+[[nodiscard]] TetCells readOvmTets(const Input& input, Context& context);
+[[nodiscard]] TetCells readOvmbTets(const Input& input, Context& context);
 
 /// Write maps.
 /// @throws Error FileWrite; InvalidArgument if arrays disagree, or features and valences name what
