@@ -108,29 +108,4 @@ template <std::size_t n>
   return reversed;
 }
 
-/// The three or four vertices of all faces, in loop order, from the half-face 2f on.
-template <std::size_t n>
-class OvmLoops {
- public:
-  OvmLoops(const OvmTopology& topology, Stage& stage);
-
-  /// Whether face f has n vertices and a closed loop.
-  [[nodiscard]] bool isGood(std::size_t face) const noexcept { return loops_[face][0] != kNone; }
-  [[nodiscard]] const std::array<Index, n>& ofFace(std::size_t face) const noexcept {
-    return loops_[face];
-  }
-  [[nodiscard]] std::array<Index, n> ofHalfFace(Index halfFace) const noexcept {
-    return loopOfHalfFace(loops_[halfFace / 2], halfFace);
-  }
-
- private:
-  Array<std::array<Index, n>> loops_;
-};
-
-/// Throws unless all cells have this number of half-faces, none is in two cells, and all have good
-/// loops.
-template <std::size_t n>
-void requireProperCells(const OvmTopology& topology, const OvmLoops<n>& loops, std::size_t valence,
-                        const std::string& fileName, const char* wanted, Stage& stage);
-
 }  // namespace hexhex

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,10 +27,12 @@ void forEachOvmTag(const Array<std::int32_t>& tags, const F& f) {
 }
 
 /// Reads the features of a mesh.
+/// @param loops  of faces; all kNone if they are not closed
 /// @param faces  those of `features`
 template <std::size_t n, class Features, class FaceFeature>
-void readOvmFeatures(const OvmMesh& mesh, const OvmLoops<n>& loops, const std::string& fileName,
-                     Features& features, std::vector<FaceFeature>& faces) {
+void readOvmFeatures(const OvmMesh& mesh, std::span<const std::array<Index, n>> loops,
+                     const std::string& fileName, Features& features,
+                     std::vector<FaceFeature>& faces) {
   const OvmProperties& properties = mesh.properties;
   forEachOvmTag(properties[OvmInteger::FeatureVertices], [&](std::size_t v, std::int32_t tag) {
     features.vertices.push_back({static_cast<Index>(v), tag});
@@ -38,12 +41,12 @@ void readOvmFeatures(const OvmMesh& mesh, const OvmLoops<n>& loops, const std::s
     features.edges.push_back({mesh.topology.edges[e], tag});
   });
   forEachOvmTag(properties[OvmInteger::FeatureFaces], [&](std::size_t f, std::int32_t tag) {
-    if (!loops.isGood(f)) {
+    if (loops[f][0] == kNone) {
       throw Error(ErrorCode::FileSyntax, fileName + ": face " + std::to_string(f) +
                                              " is tagged as a feature, but is no closed loop of " +
                                              std::to_string(n) + " half-edges.");
     }
-    faces.push_back({loops.ofFace(f), tag});
+    faces.push_back({loops[f], tag});
   });
 }
 
@@ -109,7 +112,7 @@ void setOvmTags(Array<std::int32_t>& tags, std::size_t elements, std::size_t ver
 template <std::size_t n, class Features, class FaceFeature, class Regions>
 void setOvmFeatures(OvmProperties& properties, const OvmTopology& topology,
                     const Features& features, const std::vector<FaceFeature>& faces,
-                    const Regions& regions, Stage& stage) {
+                    const Regions& regions) {
   if (!features.vertices.empty()) {
     Array<std::int32_t>& tags = properties[OvmInteger::FeatureVertices];
     tags.assign(topology.vertexCount, 0);
@@ -126,7 +129,6 @@ void setOvmFeatures(OvmProperties& properties, const OvmTopology& topology,
       features.edges, [&](std::size_t e) { return topology.edges[e]; },
       [&](const FeatureEdge& feature) { return "feature " + toString(placeOf(feature)); }, placeOf);
   if (!faces.empty()) {
-    const OvmLoops<n> loops(topology, stage);
     const auto nameOf = [](const FaceFeature& feature) {
       std::string name = "feature face";
       for (const Index vertex : feature.vertices)
@@ -135,7 +137,7 @@ void setOvmFeatures(OvmProperties& properties, const OvmTopology& topology,
     };
     setOvmTags<n>(
         properties[OvmInteger::FeatureFaces], topology.faces.size(), topology.vertexCount, faces,
-        [&](std::size_t f) { return loops.ofFace(f); }, nameOf,
+        [&](std::size_t f) { return loopOfFace<n>(topology, f); }, nameOf,
         [](const FaceFeature& /*feature*/) { return Place{}; });
   }
   if (!regions.empty() && regions.size() != topology.cells.size()) {

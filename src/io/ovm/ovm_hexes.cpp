@@ -5,6 +5,7 @@
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
+#include <io/ovm/ovm_cell_reader.hpp>
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_features.hpp>
 #include <io/ovm/ovm_topology.hpp>
@@ -101,7 +102,7 @@ class HexReader {
         properties_(file_.properties),
         fileName_(fileName),
         stage_(stage),
-        loops_(topology_, stage) {}
+        cells_(file_, kHexOrders, fileName, stage) {}
 
   HexMesh read();
 
@@ -116,12 +117,11 @@ class HexReader {
   const OvmProperties& properties_;
   const std::string& fileName_;
   Stage& stage_;
-  OvmLoops<4> loops_;
+  OvmCells<8> cells_;
   HexMesh mesh_;
 };
 
 HexMesh HexReader::read() {
-  requireProperCells(topology_, loops_, 6, fileName_, "hexahedra", stage_);
   mesh_.points = std::move(file_.points);
   readCells();
   if (properties_[OvmInteger::CornerOrder].empty() &&
@@ -134,25 +134,18 @@ HexMesh HexReader::read() {
 }
 
 bool HexReader::readCell(std::size_t cell) {
-  QuadLoops loops;
-  for (std::size_t s = 0; s < 6; ++s) loops[s] = loops_.ofHalfFace(topology_.cells[cell][s]);
-  if (!assembleHex(loops, mesh_.cells[cell])) return false;
-  const Array<std::int32_t>& orders = properties_[OvmInteger::CornerOrder];
-  const auto order = static_cast<std::size_t>(orders.empty() ? 0 : orders[cell]);
-  if (order >= kHexOrders) return false;
-  mesh_.cells[cell] = inHexOrder(mesh_.cells[cell], order);
+  Hex assembled;
+  const std::size_t order = cells_.orderOf(cell);
+  if (!assembleHex(cells_.loopsOf(cell), assembled) || order >= kHexOrders) return false;
+  mesh_.cells[cell] = inHexOrder(assembled, order);
   return true;
 }
 
 void HexReader::readCells() {
   mesh_.cells.resize(topology_.cells.size());
   const std::size_t fault =
-      firstFault(stage_, mesh_.cells.size(), [this](std::size_t cell) { return readCell(cell); });
-  if (fault == mesh_.cells.size()) return;
-  throw Error(ErrorCode::FileSyntax,
-              fileName_ + ": the half-faces of cell " + std::to_string(fault) +
-                  " do not bound a hexahedron, or its corner order is not from 0 to 7.",
-              Place{PlaceKind::Cell, fault});
+      cells_.firstUnreadable([this](std::size_t cell) { return readCell(cell); });
+  if (fault < mesh_.cells.size()) cells_.failToBound(fault);
 }
 
 /// Restores generators that this library wrote. Those of other programs name entities of a tet mesh
@@ -177,7 +170,7 @@ void HexReader::readGenerators() {
 }
 
 void HexReader::readFeatures() {
-  readOvmFeatures(file_, loops_, fileName_, mesh_.features, mesh_.features.quads);
+  readOvmFeatures(file_, cells_.loops(), fileName_, mesh_.features, mesh_.features.quads);
   // The numbering of edges says nothing.
   std::vector<FeatureEdge>& edges = mesh_.features.edges;
   for (FeatureEdge& edge : edges) std::sort(edge.vertices.begin(), edge.vertices.end());
@@ -258,7 +251,7 @@ OvmOutput toOvm(const HexMesh& mesh, Stage& stage) {
   OvmProperties properties;
   setCornerOrder(properties, topology, cells, turned, stage);
   setGenerators(properties, mesh, stage);
-  setOvmFeatures<4>(properties, topology, mesh.features, mesh.features.quads, mesh.regions, stage);
+  setOvmFeatures<4>(properties, topology, mesh.features, mesh.features.quads, mesh.regions);
   return {mesh.points, std::move(topology), std::move(properties).listed()};
 }
 

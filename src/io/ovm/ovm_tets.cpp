@@ -1,15 +1,12 @@
 // Maps on tets from and to polyhedral meshes (see ovm_cells.hpp).
 #include <algorithm>
-#include <atomic>
-#include <bit>
-#include <cmath>
 
 #include <hexhex/error.hpp>
 
-#include <base/bits.hpp>
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <io/core/writable.hpp>
+#include <io/ovm/ovm_cell_reader.hpp>
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_features.hpp>
 #include <io/ovm/ovm_topology.hpp>
@@ -32,14 +29,6 @@ constexpr std::array<TetOrder, 24> kTetOrders = {
 constexpr std::size_t kAsListed = 0;
 constexpr std::size_t kTurned = 2;
 
-bool isEven(const TetOrder& order) {
-  int inversions = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = i + 1; j < 4; ++j) inversions += order[i] > order[j] ? 1 : 0;
-  }
-  return inversions % 2 == 0;
-}
-
 /// A cell that was read: its corners, and half-face s of its list is opposite corner `opposite[s]`.
 struct AssembledTet {
   Tet corners{};
@@ -59,21 +48,16 @@ bool assembleTet(const std::array<std::array<Index, 3>, 4>& loops, AssembledTet&
 
   unsigned seen = 0;
   for (std::size_t s = 0; s < 4; ++s) {
-    TetOrder order{};
-    unsigned present = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto* const corner = std::find(tet.corners.begin(), tet.corners.end(), loops[s][i]);
-      if (corner == tet.corners.end()) return false;
-      order[i] = static_cast<std::uint8_t>(corner - tet.corners.begin());
-      present |= 1U << order[i];
-    }
-    const unsigned missing = 15U & ~present;
-    if (!hasOneBit(missing)) return false;
-    order[3] = static_cast<std::uint8_t>(std::countr_zero(missing));
+    const auto inLoop = [&loop = loops[s]](Index v) {
+      return std::find(loop.begin(), loop.end(), v) != loop.end();
+    };
+    const auto opposite = static_cast<std::size_t>(
+        std::find_if_not(tet.corners.begin(), tet.corners.end(), inLoop) - tet.corners.begin());
     // All half-faces run the same way round, seen from inside.
-    if (!isEven(order)) return false;
-    tet.opposite[s] = order[3];
-    seen |= missing;
+    if (!areOpposite(loopOfHalfFace(loops[s], 1), faceVertices(tet.corners, opposite)))
+      return false;
+    tet.opposite[s] = static_cast<std::uint8_t>(opposite);
+    seen |= 1U << opposite;
   }
   return seen == 15U;
 }
@@ -88,8 +72,7 @@ class TetReader {
         topology_(mesh_.topology),
         properties_(mesh_.properties),
         fileName_(fileName),
-        stage_(stage),
-        loops_(topology_, stage) {}
+        cells_(mesh_, kTetOrders.size(), fileName, stage) {}
 
   TetMap read();
   TetCells readWithoutMap();
@@ -98,20 +81,17 @@ class TetReader {
   void requireMap() const;
   void readTets();
   [[nodiscard]] bool readTet(std::size_t cell);
-  [[nodiscard]] bool isFinite(std::size_t cell) const;
   void requireRotations() const;
 
   OvmMesh mesh_;
   const OvmTopology& topology_;
   const OvmProperties& properties_;
   const std::string& fileName_;
-  Stage& stage_;
-  OvmLoops<3> loops_;
+  OvmCells<4> cells_;
   TetMap map_;
 };
 
 TetMap TetReader::read() {
-  requireProperCells(topology_, loops_, 4, fileName_, "tetrahedra", stage_);
   requireMap();
   map_.points.assign(mesh_.points.begin(), mesh_.points.end());
   map_.parameters.resize(topology_.cells.size());
@@ -121,14 +101,13 @@ TetMap TetReader::read() {
   forEachOvmTag(properties_[OvmInteger::EdgeValence], [this](std::size_t e, std::int32_t offset) {
     map_.edgeValences.push_back({topology_.edges[e][0], topology_.edges[e][1], offset});
   });
-  readOvmFeatures(mesh_, loops_, fileName_, map_.features, map_.features.faces);
+  readOvmFeatures(mesh_, cells_.loops(), fileName_, map_.features, map_.features.faces);
   const Array<std::int32_t>& regions = properties_[OvmInteger::Region];
   map_.regions.assign(regions.begin(), regions.end());
   return std::move(map_);
 }
 
 TetCells TetReader::readWithoutMap() {
-  requireProperCells(topology_, loops_, 4, fileName_, "tetrahedra", stage_);
   readTets();
   TetCells result;
   result.points = std::move(mesh_.points);
@@ -138,6 +117,7 @@ TetCells TetReader::readWithoutMap() {
 
 void TetReader::requireMap() const {
   if (!properties_.parametrization.empty() || topology_.cells.size() == 0) return;
+  cells_.requireProper();
   const std::string name = "\"" + std::string(kParametrizationName) + "\"";
   throw Error(
       ErrorCode::FileUnsupported,
@@ -154,14 +134,9 @@ void TetReader::requireMap() const {
 
 /// Reads a tet with the parameters and rotations that the map has room for.
 bool TetReader::readTet(std::size_t cell) {
-  const std::span<const Index> halfFaces = topology_.cells[cell];
-  std::array<std::array<Index, 3>, 4> loops;
-  for (std::size_t s = 0; s < 4; ++s) loops[s] = loops_.ofHalfFace(halfFaces[s]);
   AssembledTet tet;
-  if (!assembleTet(loops, tet)) return false;
-  const Array<std::int32_t>& orders = properties_[OvmInteger::CornerOrder];
-  const auto number = static_cast<std::size_t>(orders.empty() ? 0 : orders[cell]);
-  if (number >= kTetOrders.size()) return false;
+  const std::size_t number = cells_.orderOf(cell);
+  if (!assembleTet(cells_.loopsOf(cell), tet) || number >= kTetOrders.size()) return false;
   const TetOrder& order = kTetOrders[number];
   TetOrder place{};  // of each assembled corner in the listed tet
   for (std::uint8_t i = 0; i < 4; ++i) {
@@ -169,41 +144,30 @@ bool TetReader::readTet(std::size_t cell) {
     map_.tets[cell][i] = tet.corners[order[i]];
   }
   for (std::size_t s = 0; s < 4; ++s) {
+    const Index halfFace = topology_.cells[cell][s];
     const std::size_t corner = place[tet.opposite[s]];
     if (!map_.parameters.empty()) {
-      map_.parameters[cell][corner] = properties_.parametrization[halfFaces[s]];
+      map_.parameters[cell][corner] = properties_.parametrization[halfFace];
     }
     if (map_.rotations.empty()) continue;
-    const std::int32_t rotation = properties_[OvmInteger::Transition][halfFaces[s]];
+    const std::int32_t rotation = properties_[OvmInteger::Transition][halfFace];
     map_.rotations[cell][corner] = static_cast<std::int8_t>(isRotation(rotation) ? rotation : -1);
   }
   return true;
 }
 
-bool TetReader::isFinite(std::size_t cell) const {
-  if (map_.parameters.empty()) return true;
-  const TetParameters& corners = map_.parameters[cell];
-  return std::all_of(corners.begin(), corners.end(), [](const Vec3& corner) {
-    return std::isfinite(corner[0]) && std::isfinite(corner[1]) && std::isfinite(corner[2]);
-  });
-}
-
 void TetReader::readTets() {
   map_.tets.resize(topology_.cells.size());
-  const std::size_t fault = firstFault(stage_, map_.tets.size(), [this](std::size_t cell) {
-    return readTet(cell) && isFinite(cell);
-  });
+  const auto isFiniteTet = [this](std::size_t cell) {
+    return map_.parameters.empty() || isFinite(map_.parameters[cell]);
+  };
+  const std::size_t fault =
+      cells_.firstUnreadable([&](std::size_t cell) { return readTet(cell) && isFiniteTet(cell); });
   if (fault == map_.tets.size()) return;
-  const Place place{PlaceKind::Tet, fault};
-  if (readTet(fault)) {
-    throw Error(ErrorCode::NotFinite,
-                fileName_ + ": a parameter of tet " + std::to_string(fault) + " is not finite.",
-                place);
-  }
-  throw Error(ErrorCode::FileSyntax,
-              fileName_ + ": the half-faces of cell " + std::to_string(fault) +
-                  " do not bound a tetrahedron, or its corner order is not from 0 to 23.",
-              place);
+  if (!readTet(fault)) cells_.failToBound(fault);
+  throw Error(ErrorCode::NotFinite,
+              fileName_ + ": a parameter of tet " + std::to_string(fault) + " is not finite.",
+              Place{PlaceKind::Tet, fault});
 }
 
 /// Refuses values beyond the 24 rotations, except at the boundary, where they mean nothing.
@@ -258,8 +222,7 @@ class TetWriter {
     setCornerOrder();
     setHalfFaceValues();
     setEdgeValences();
-    setOvmFeatures<3>(properties_, topology_, map_.features, map_.features.faces, map_.regions,
-                      stage_);
+    setOvmFeatures<3>(properties_, topology_, map_.features, map_.features.faces, map_.regions);
     return {map_.points, std::move(topology_), std::move(properties_).listed()};
   }
 
