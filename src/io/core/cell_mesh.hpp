@@ -22,25 +22,26 @@ struct CellMesh {
 };
 using TetCells = CellMesh<4>;
 
-/// What formats and sentences call a kind of cells.
+/// What formats and sentences call a kind of elements.
 struct CellKind {
+  std::size_t corners = 0;
   std::string_view singular;
   std::string_view plural;
-  std::string_view meditKeyword;
-  std::uint32_t meshbKeyword;
-  std::int64_t gmshType;
-  std::int64_t vtkType;
-  PlaceKind place;
+  std::string_view meditKeyword = {};
+  std::uint32_t meshbKeyword = 0;
+  std::int64_t gmshType = 0;
+  std::int64_t vtkType = 0;
+  PlaceKind place = PlaceKind::None;
 };
 
 template <std::size_t corners>
 inline constexpr CellKind kCellKind = {};
 template <>
-inline constexpr CellKind kCellKind<4> = {"tetrahedron", "tetrahedra", "Tetrahedra", 8, 4, 10,
-                                          PlaceKind::Tet};
+inline constexpr CellKind kCellKind<4> = {4,  "tetrahedron", "tetrahedra", "Tetrahedra", 8, 4,
+                                          10, PlaceKind::Tet};
 template <>
-inline constexpr CellKind kCellKind<8> = {"hexahedron", "hexahedra",    "Hexahedra", 10, 5,
-                                          12,           PlaceKind::Cell};
+inline constexpr CellKind kCellKind<8> = {8, "hexahedron", "hexahedra",    "Hexahedra", 10,
+                                          5, 12,           PlaceKind::Cell};
 
 /// The same as a hex mesh.
 [[nodiscard]] inline HexMesh toHexMesh(CellMesh<8>&& mesh) {

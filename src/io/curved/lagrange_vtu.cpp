@@ -14,14 +14,16 @@
 #include <io/curved/lagrange_nodes.hpp>
 #include <io/vtk/vtk_data_set.hpp>
 #include <io/vtk/vtk_reader.hpp>
-#include <io/vtk/vtu_file.hpp>
 
 namespace hexhex {
 namespace {
 
 /// Lagrange hexahedra with so many nodes.
-VtkCells lagrangeCells(std::size_t nodes) {
-  return {kVtkLagrangeHexahedron, nodes, "Lagrange hexahedron", "Lagrange hexahedra"};
+CellKind lagrangeCells(std::size_t nodes) {
+  return {.corners = nodes,
+          .singular = "Lagrange hexahedron",
+          .plural = "Lagrange hexahedra",
+          .vtkType = kVtkLagrangeHexahedron};
 }
 
 /// Entry k: the place of the node that VTK lists at place k: corners, edges, faces, inside; edges
@@ -160,7 +162,7 @@ LagrangeMesh readLagrange(const VtkSource& source, Stage& stage) {
   source.requireIndexable();
   LagrangeMesh mesh;
   mesh.order = findOrder(source);
-  const VtkCells wanted = lagrangeCells(mesh.nodesPerCell());
+  const CellKind wanted = lagrangeCells(mesh.nodesPerCell());
   if (source.cells == 0) failWithoutVtkCells(source, wanted);
   mesh.points.resize(source.points);
   readVtkPoints(source, mesh.points, stage);
@@ -181,13 +183,15 @@ LagrangeMesh readLagrange(const VtkSource& source, Stage& stage) {
 }  // namespace
 
 bool holdsLagrangeVtu(const std::filesystem::path& file, Context& context) {
-  return readVtuFile(file, "read mesh", context, [](const VtkSource& source, Stage& /*stage*/) {
-    return countVtkCells(source, lagrangeCells(0), 0, source.cells) > 0;
+  return inStage(context, "read mesh", [&file](Stage& stage) {
+    const auto source = openVtuFile(file, stage);
+    return countVtkCells(*source, lagrangeCells(0), 0, source->cells) > 0;
   });
 }
 
 LagrangeMesh readLagrangeVtu(const std::filesystem::path& file, Context& context) {
-  return readVtuFile(file, "read mesh", context, readLagrange);
+  return inStage(context, "read mesh",
+                 [&file](Stage& stage) { return readLagrange(*openVtuFile(file, stage), stage); });
 }
 
 void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& file,

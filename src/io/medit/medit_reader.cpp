@@ -18,14 +18,9 @@
 namespace hexhex {
 namespace {
 
-/// What elements are called in sentences.
-struct MeditElements {
-  std::string_view singular;
-  std::string_view plural;
-  PlaceKind place;
-};
-constexpr MeditElements kMeditEdges = {"edge", "edges", PlaceKind::None};
-constexpr MeditElements kMeditQuads = {"quadrilateral", "quadrilaterals", PlaceKind::None};
+constexpr CellKind kMeditEdges = {.corners = 2, .singular = "edge", .plural = "edges"};
+constexpr CellKind kMeditQuads = {
+    .corners = 4, .singular = "quadrilateral", .plural = "quadrilaterals"};
 
 /// `.mesh`: keywords and numbers between white space.
 class MeditText {
@@ -281,11 +276,10 @@ class MeditReader {
                                   " stands before the section Vertices; exchange them.");
     }
     hasCells_ = true;
-    constexpr MeditElements kElements = {kKind.singular, kKind.plural, kKind.place};
     mesh_.cells.resize(encoding_.readCount(kKind.plural, encoding_.shape(corners + 1)));
     const auto read = [&](auto& record, std::size_t i) {
       encoding_.beginElement(record, i, mesh_.cells.size(), kKind.plural);
-      for (Index& corner : mesh_.cells[i]) corner = readVertex(record, kElements, i, 0);
+      for (Index& corner : mesh_.cells[i]) corner = readVertex(record, kKind, i, 0);
     };
     mesh_.regions = readReferenced(mesh_.cells.size(), corners, 0, "the reference of a cell", read);
   }
@@ -293,8 +287,8 @@ class MeditReader {
   /// Edges or quads, with their references as tags; without those of reference 0.
   /// @return whether references say anything
   template <class Feature>
-  [[nodiscard]] bool readFeatures(std::vector<Feature>& features, const MeditElements& elements) {
-    const RecordShape shape = encoding_.shape(decltype(Feature::vertices){}.size() + 1);
+  [[nodiscard]] bool readFeatures(std::vector<Feature>& features, const CellKind& elements) {
+    const RecordShape shape = encoding_.shape(elements.corners + 1);
     features.assign(encoding_.readCount(elements.plural, shape), {});
     SeenReferences seen;
     encoding_.source().records(features.size(), shape, [&](auto& record, std::size_t i) {
@@ -350,7 +344,7 @@ class MeditReader {
   /// One vertex of an element.
   /// @param begin  where the element stands
   template <class Record>
-  [[nodiscard]] Index readVertex(Record& record, const MeditElements& elements, std::size_t i,
+  [[nodiscard]] Index readVertex(Record& record, const CellKind& elements, std::size_t i,
                                  std::size_t begin) const {
     const std::uint64_t vertex =
         encoding_.vertex(record, {"a vertex of ", elements.singular, i + 1});
@@ -361,7 +355,7 @@ class MeditReader {
 
   // Apart, with records by value, so that what is read stays in registers.
   template <class Record>
-  [[noreturn]] void failVertex(Record record, std::uint64_t vertex, const MeditElements& elements,
+  [[noreturn]] void failVertex(Record record, std::uint64_t vertex, const CellKind& elements,
                                std::size_t i, std::size_t begin) const {
     const bool isCell = elements.place != PlaceKind::None;
     if (!Encoding::kIsText && !isCell) failFeature(record, elements, i, begin);
@@ -373,7 +367,7 @@ class MeditReader {
   }
 
   template <class Record>
-  [[noreturn]] void failFeature(Record record, const MeditElements& elements, std::size_t i,
+  [[noreturn]] void failFeature(Record record, const CellKind& elements, std::size_t i,
                                 std::size_t begin) const {
     record.moveTo(begin);
     record.fail(ErrorCode::IndexOutOfRange,

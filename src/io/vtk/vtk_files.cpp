@@ -4,34 +4,12 @@
 #include <hexhex/stream.hpp>
 
 #include <base/stage.hpp>
-#include <io/core/checked_sink.hpp>
+#include <io/core/input_file.hpp>
 #include <io/vtk/vtk.hpp>
-#include <io/vtk/vtk_legacy_file.hpp>
 #include <io/vtk/vtk_reader.hpp>
-#include <io/vtk/vtu_file.hpp>
 
 namespace hexhex {
 namespace {
-
-template <class Read>
-auto readLegacyFile(const Input& input, std::string_view stageName, Context& context,
-                    const Read& read) {
-  return inStage(context, stageName, [&](Stage& stage) {
-    Array<char> room;
-    VtkLegacyFile file(input.text(room, stage), input.name(), stage);
-    return read(file, stage);
-  });
-}
-
-HexMesh readLegacyHexes(VtkLegacyFile& file, Stage& stage) {
-  file.readRegions();
-  return readVtkHexMesh(file, stage);
-}
-
-/// Reads the map from the array that options name.
-auto mapReader(const ReadOptions& options) {
-  return [&options](auto& file, Stage& stage) { return readVtkMap(file, options.mapArray, stage); };
-}
 
 // Points or cells of a piece: a few megabytes.
 constexpr std::size_t kPiece = std::size_t{1} << 16;
@@ -71,59 +49,70 @@ void sendCells(const VtkSource& source, MeshSink& sink, Stage& stage) {
   Array<Cell> cells;
   std::uint64_t sent = 0;
   forEachPiece(stage, source.cells, [&](std::uint64_t first, std::size_t count) {
-    cells.resize(countVtkCells(source, kVtkCells<8>, first, count));
-    readVtkCells(source, kVtkCells<8>, first, count, cells.empty() ? nullptr : cells[0].data());
+    cells.resize(countVtkCells(source, kCellKind<8>, first, count));
+    readVtkCells(source, kCellKind<8>, first, count, cells.empty() ? nullptr : cells[0].data());
     if (!cells.empty()) sink.cells(sent, std::span<const Cell>(cells));
     sent += cells.size();
   });
 }
 
+void sendPieces(const VtkSource& source, MeshSink& sink, Stage& stage) {
+  std::uint64_t hexahedra = 0;
+  forEachPiece(stage, source.cells, [&](std::uint64_t first, std::size_t count) {
+    hexahedra += countVtkCells(source, kCellKind<8>, first, count);
+  });
+  if (source.cells > 0 && hexahedra == 0) failWithoutVtkCells(source, kCellKind<8>);
+  sink.begin(source.points, hexahedra);
+  sendPoints(source, sink, stage);
+  if (source.points < kNone) {
+    sendCells<Hex>(source, sink, stage);
+  } else {
+    sendCells<Hex64>(source, sink, stage);
+  }
+  sink.end();
+}
+
 }  // namespace
 
 HexMesh readVtu(const Input& input, Context& context) {
-  return readVtuFile(input, "read mesh", context, readVtkHexMesh);
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    return readVtkHexMesh(*openVtuFile(input, stage), stage);
+  });
 }
 
 TetCells readVtuTets(const Input& input, Context& context) {
-  return readVtuFile(input, "read tets", context, readVtkTets);
+  return inStage(context, "read tets",
+                 [&input](Stage& stage) { return readVtkTets(*openVtuFile(input, stage), stage); });
 }
 
 TetMap readVtuMap(const Input& input, const ReadOptions& options, Context& context) {
-  return readVtuFile(input, "read map", context, mapReader(options));
+  return inStage(context, "read map", [&](Stage& stage) {
+    return readVtkMap(*openVtuFile(input, stage), options.mapArray, stage);
+  });
 }
 
 HexMesh readVtkLegacy(const Input& input, Context& context) {
-  return readLegacyFile(input, "read mesh", context, readLegacyHexes);
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    return readVtkHexMesh(*openVtkLegacyFile(input, true, stage), stage);
+  });
 }
 
 TetCells readVtkLegacyTets(const Input& input, Context& context) {
-  return readLegacyFile(input, "read tets", context, readVtkTets);
+  return inStage(context, "read tets", [&input](Stage& stage) {
+    return readVtkTets(*openVtkLegacyFile(input, false, stage), stage);
+  });
 }
 
 TetMap readVtkLegacyMap(const Input& input, const ReadOptions& options, Context& context) {
-  return readLegacyFile(input, "read map", context, mapReader(options));
+  return inStage(context, "read map", [&](Stage& stage) {
+    return readVtkMap(*openVtkLegacyFile(input, false, stage), options.mapArray, stage);
+  });
 }
 
 void readVtuTo(MeshSink& sink, const std::filesystem::path& path, Context& context) {
-  const InputFile input(path);
-  const Array<char> head = readPlainVtuHead(input);
-  if (head.empty()) return sendTo(sink, readVtu(path, context));
+  const Input input(path);
   Stage stage(context, "read mesh");
-  const std::string name = path.string();
-  const VtuFile file(ByteFile(input, name), asText(head), name, stage);
-  std::uint64_t hexahedra = 0;
-  forEachPiece(stage, file.cells, [&](std::uint64_t first, std::size_t count) {
-    hexahedra += countVtkCells(file, kVtkCells<8>, first, count);
-  });
-  if (file.cells > 0 && hexahedra == 0) failWithoutVtkCells(file, kVtkCells<8>);
-  sink.begin(file.points, hexahedra);
-  sendPoints(file, sink, stage);
-  if (file.points < kNone) {
-    sendCells<Hex>(file, sink, stage);
-  } else {
-    sendCells<Hex64>(file, sink, stage);
-  }
-  sink.end();
+  sendPieces(*openVtuFile(input, stage), sink, stage);
 }
 
 }  // namespace hexhex

@@ -1,9 +1,19 @@
+// Legacy `.vtk` files: their sections, in any order, and where the numbers are.
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cstdint>
 #include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include <base/parallel.hpp>
-#include <io/vtk/vtk_legacy_file.hpp>
+#include <base/stage.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/vtk/vtk_source.hpp>
 
 namespace hexhex {
 namespace {
@@ -24,350 +34,387 @@ std::string decodedVtkName(std::string_view token) {
 
 bool isReal(VtkScalar scalar) { return isOf<float>(scalar) || isOf<double>(scalar); }
 
-}  // namespace
+struct NumberType {
+  std::string_view name;
+  VtkScalar scalar;
+};
 
 // The first three are those that a file need not tell. Bits and strings are no numbers, and never
 // wanted.
-const std::array<VtkLegacyFile::NumberType, 16> VtkLegacyFile::kTypes = {
-    {{"int", std::int32_t{}},
-     {"float", float{}},
-     {"unsigned_char", std::uint8_t{}},
-     {"double", double{}},
-     {"vtktypeint64", std::int64_t{}},
-     {"vtkidtype", std::int32_t{}},
-     {"vtktypeint32", std::int32_t{}},
-     {"long", std::int64_t{}},
-     {"unsigned_int", std::uint32_t{}},
-     {"unsigned_long", std::uint64_t{}},
-     {"vtktypeuint64", std::uint64_t{}},
-     {"short", std::int16_t{}},
-     {"unsigned_short", std::uint16_t{}},
-     {"char", std::int8_t{}},
-     {"bit", std::uint8_t{}},
-     {"string", std::uint8_t{}}}};
+constexpr std::array<NumberType, 16> kTypes = {{{"int", std::int32_t{}},
+                                                {"float", float{}},
+                                                {"unsigned_char", std::uint8_t{}},
+                                                {"double", double{}},
+                                                {"vtktypeint64", std::int64_t{}},
+                                                {"vtkidtype", std::int32_t{}},
+                                                {"vtktypeint32", std::int32_t{}},
+                                                {"long", std::int64_t{}},
+                                                {"unsigned_int", std::uint32_t{}},
+                                                {"unsigned_long", std::uint64_t{}},
+                                                {"vtktypeuint64", std::uint64_t{}},
+                                                {"short", std::int16_t{}},
+                                                {"unsigned_short", std::uint16_t{}},
+                                                {"char", std::int8_t{}},
+                                                {"bit", std::uint8_t{}},
+                                                {"string", std::uint8_t{}}}};
 
-VtkLegacyFile::VtkLegacyFile(std::string_view text, const std::string& fileName, Stage& stage)
-    : VtkSource(ByteFile(text, fileName), fileName),
-      text_(text),
-      stage_(stage),
-      scanner_(text, fileName) {
-  readHead();
-  while (!isBehindMesh() && readOn()) {
-  }
-  require(hasPoints_, "POINTS");
-  require(hasCells_, "CELLS");
-  require(hasTypes_, "CELL_TYPES");
-  if (types.count == cells) return;
-  scanner_.fail(ErrorCode::FileSyntax, "the file has " + std::to_string(cells) + " cells but " +
-                                           std::to_string(types.count) + " types of cells.");
-}
-
-void VtkLegacyFile::readHead() {
-  constexpr std::string_view kMagic = "# vtk DataFile Version ";
-  if (!scanner_.takeLine().starts_with(kMagic)) {
-    scanner_.moveTo(0);
-    scanner_.fail(
-        ErrorCode::FileSyntax,
-        "a .vtk file begins with \"# vtk DataFile Version\". If it is XML, name it .vtu.");
-  }
-  static_cast<void>(scanner_.takeLine());  // a title, which may be anything
-  const std::string encoding = readKeyword();
-  binary_ = encoding == "binary";
-  if (!binary_ && encoding != "ascii") scanner_.failToken("\"ASCII\" or \"BINARY\"");
-  if (readKeyword() != "dataset") scanner_.failToken("\"DATASET\"");
-  if (readKeyword() != "unstructured_grid") {
-    scanner_.fail(ErrorCode::FileUnsupported, "the data set must be an UNSTRUCTURED_GRID, found " +
-                                                  quoted(scanner_.currentToken()) + ".");
-  }
-  if (!binary_) index_.emplace(text_, stage_);
-}
-
-void VtkLegacyFile::readSection(const std::string& keyword) {
-  if (keyword == "points") {
-    beginSection(hasPoints_, "POINTS");
-    readPoints();
-  } else if (keyword == "cells") {
-    beginSection(hasCells_, "CELLS");
-    readCells();
-  } else if (keyword == "cell_types") {
-    beginSection(hasTypes_, "CELL_TYPES");
-    types = readIntegers(scanner_.readCount("types of cells", 2), kTypes[0], "the type of a cell");
-  } else if (keyword == "field") {
-    beginField();
-  } else if (keyword == "metadata") {
-    skipMetadata();
-  } else {
-    scanner_.failToken("POINTS, CELLS or CELL_TYPES");
-  }
-}
-
-/// Notes that a section is there, unless it was before.
-void VtkLegacyFile::beginSection(bool& present, std::string_view keyword) {
-  scanner_.failIfRepeated(present, keyword);
-  present = true;
-}
-
-void VtkLegacyFile::require(bool present, std::string_view keyword) const {
-  if (present) return;
-  scanner_.fail(ErrorCode::FileSyntax, "the file ends without the section " + std::string(keyword) +
-                                           ": it is incomplete.");
-}
-
-void VtkLegacyFile::readPoints() {
-  points = scanner_.readCount("points", 6);
-  const NumberType& type = readType();
-  if (!isReal(type.scalar)) {
-    scanner_.fail(ErrorCode::FileUnsupported, "the coordinates of points must be float or double.");
-  }
-  coordinates = readNumbers(3 * points, type, VtkNumbers::Reals, [](std::size_t i) {
-    return "a coordinate of point " + std::to_string(i / 3);
-  });
-}
-
-void VtkLegacyFile::readCells() {
-  // Counted as numbers of one digit or four bytes.
-  const std::size_t first = scanner_.readCount("cells", 2);
-  const std::size_t second = scanner_.readCount("numbers of cells", 2);
-  const std::size_t before = scanner_.position();
-  if (readKeyword() != "offsets") {
-    scanner_.moveTo(before);
-    cells = first;
-    return readOldCells(second);
-  }
-  // From version 5 on: where cells begin and the last one ends, and all corners.
-  cells = std::max<std::size_t>(first, 1) - 1;
-  offsets = readIntegers(first, readType(), "an offset of a cell");
-  if (readKeyword() != "connectivity") scanner_.failToken("\"CONNECTIVITY\"");
-  connectivity = readIntegers(second, readType(), "a corner of a cell");
-}
-
-/// Up to version 4: each cell is its number of corners, and its corners.
-void VtkLegacyFile::readOldCells(std::size_t numbers) {
-  gap = 1;
-  connectivity = readIntegers(numbers, kTypes[0], "a corner of a cell");
-  const auto numberAt = [&](std::size_t i) {
-    if (binary_)
-      return std::int64_t{loadBig<std::int32_t>(text_.data() + connectivity.position + 4 * i)};
-    std::int64_t number = 0;
-    copy(connectivity, i, 1, &number);
-    return number;
-  };
-  // Usually all cells are alike.
-  const std::size_t each = cells > 0 ? numbers / cells : 0;
-  const auto hasAsMany = [&](std::size_t cell) {
-    return numberAt(each * cell) == static_cast<std::int64_t>(each - 1);
-  };
-  if (each > 0 && each * cells == numbers && firstFault(stage_, cells, hasAsMany) == cells) {
-    stride = each;
-    return;
-  }
-  offsets = textColumn(VtkNumbers::Integers, cells + 1);
-  std::size_t place = 0;
-  for (std::size_t cell = 0; cell <= cells; ++cell) {
-    const auto offset = static_cast<std::int64_t>(place);
-    std::memcpy(offsets.decoded.data() + cell * sizeof(offset), &offset, sizeof(offset));
-    if (cell == cells) break;
-    const std::int64_t count = place < numbers ? numberAt(place) : -1;
-    if (count < 0 || static_cast<std::uint64_t>(count) > numbers - place - 1) {
-      scanner_.fail(ErrorCode::FileSyntax,
-                    "cell " + std::to_string(cell) + " of " + std::to_string(cells) +
-                        " goes beyond the " + std::to_string(numbers) +
-                        " numbers that the section CELLS announces.",
-                    Place{PlaceKind::Cell, cell});
+/// An open `.vtk` file. Functions throw Error FileSyntax, FileUnsupported, NotFinite or TooLarge,
+/// with the line.
+class VtkLegacyFile final : public VtkSource {
+ public:
+  VtkLegacyFile(VtkFileBytes bytes, const std::string& fileName, Stage& stage)
+      : VtkSource(std::move(bytes), fileName), stage_(stage), scanner_(text(), fileName) {
+    readHead();
+    while (!isBehindMesh() && readOn()) {
     }
-    place += 1 + static_cast<std::size_t>(count);
+    require(hasPoints_, "POINTS");
+    require(hasCells_, "CELLS");
+    require(hasTypes_, "CELL_TYPES");
+    if (types.count == cells) return;
+    scanner_.fail(ErrorCode::FileSyntax, "the file has " + std::to_string(cells) + " cells but " +
+                                             std::to_string(types.count) + " types of cells.");
   }
-}
 
-void VtkLegacyFile::readRegions() {
-  const std::string begin =
-      "CELL_DATA " + std::to_string(cells) + "\nSCALARS region int 1\nLOOKUP_TABLE default";
-  if (!scanner_.skipSpace() || !text_.substr(scanner_.position()).starts_with(begin)) return;
-  const std::size_t numbers = scanner_.position() + begin.size();
-  arrays.push_back({VtkSection::CellData, std::string(kVtkRegions), VtkNumbers::Integers, 1, false,
-                    [this, numbers](VtkNumbers, std::optional<std::uint64_t>) {
-                      scanner_.moveTo(numbers);
-                      return readIntegers(cells, kTypes[0], "a region");
-                    }});
-}
-
-bool VtkLegacyFile::readOn() {
-  if (fieldArrays_ > 0) {
-    readFieldArray();
-    return true;
-  }
-  if (!scanner_.skipSpace()) return false;
-  const std::string keyword = readKeyword();
-  if (isBehindMesh()) {
-    readAttribute(keyword);
-  } else {
-    readSection(keyword);
-  }
-  return true;
-}
-
-/// Reads one array, or the beginning of several.
-void VtkLegacyFile::readAttribute(const std::string& keyword) {
-  if (keyword == "metadata") return skipMetadata();
-  if (keyword == "field") return beginField();
-  if (keyword == "point_data" || keyword == "cell_data") return beginArrays(keyword == "cell_data");
-  const std::string_view name = scanner_.readToken();
-  const auto array = [&](std::size_t components, const NumberType& type) {
-    readArray(name, components, elements(), type);
-  };
-  const NumberType& colour = binary_ ? kTypes[2] : kTypes[1];
-  if (keyword == "scalars") return readScalars(name);
-  if (keyword == "vectors" || keyword == "normals") return array(3, readType());
-  if (keyword == "tensors") return array(9, readType());
-  if (keyword == "tensors6") return array(6, readType());
-  if (keyword == "global_ids" || keyword == "pedigree_ids") return array(1, readType());
-  if (keyword == "texture_coordinates") {
-    const std::size_t components = scanner_.readCount("components", 1);
-    return array(components, readType());
-  }
-  if (keyword == "color_scalars") return array(scanner_.readCount("components", 1), colour);
-  if (keyword == "lookup_table") return skipNumbers(4 * scanner_.readCount("colours", 4), colour);
-  scanner_.fail(ErrorCode::FileSyntax, "expected a keyword of point or cell data, found " +
-                                           quoted(std::string_view(keyword)) + ".");
-}
-
-void VtkLegacyFile::beginArrays(bool ofCells) {
-  ofCells_ = ofCells;
-  std::int64_t count = 0;
-  if (!scanner_.readInteger(count)) scanner_.failInteger("the number of values");
-  if (count >= 0 && static_cast<std::uint64_t>(count) == elements()) return;
-  scanner_.fail(ErrorCode::FileSyntax,
-                "the arrays are for " + std::to_string(count) + (ofCells ? " cells" : " points") +
-                    ", but the file has " + std::to_string(elements()) + ".");
-}
-
-/// "SCALARS name type components", where the last may be missing, and the name of a table of
-/// colours.
-void VtkLegacyFile::readScalars(std::string_view name) {
-  constexpr std::string_view kTable = "lookup_table";
-  const NumberType& type = readType();
-  std::size_t components = 1;
-  if (lowerCase(scanner_.peekToken()) != kTable) components = scanner_.readCount("components", 1);
-  if (lowerCase(scanner_.peekToken()) == kTable) {
-    scanner_.readToken();
-    scanner_.readToken();
-  }
-  readArray(name, components, elements(), type);
-}
-
-void VtkLegacyFile::beginField() {
-  scanner_.readToken();
-  fieldArrays_ = scanner_.readCount("arrays", 8);
-}
-
-void VtkLegacyFile::readFieldArray() {
-  --fieldArrays_;
-  if (lowerCase(scanner_.peekToken()) == "metadata") {
-    scanner_.readToken();
-    skipMetadata();
-  }
-  const std::string_view name = scanner_.readToken();
-  const std::size_t components = scanner_.readCount("components", 1);
-  const std::size_t tuples = scanner_.readCount("tuples", 1);
-  readArray(name, components, tuples, readType());
-}
-
-/// Skips the numbers of an array. In front of the mesh's sections, arrays belong to nothing.
-void VtkLegacyFile::readArray(std::string_view name, std::size_t components, std::size_t tuples,
-                              const NumberType& type) {
-  if (components > 0 && tuples > text_.size() / components) {
-    scanner_.fail(ErrorCode::FileSyntax, "an array has more numbers than the file has bytes.");
-  }
-  see(name, ofCells_, components);
-  const std::size_t count = components * tuples;
-  const std::size_t begin = scanner_.position();
-  if (isBehindMesh() && tuples == elements() && isReal(type.scalar)) {
-    arrays.push_back({ofCells_ ? VtkSection::CellData : VtkSection::PointData, decodedVtkName(name),
-                      VtkNumbers::Reals, components, false,
-                      [this, begin, count, &type](VtkNumbers numbers, auto&&) {
-                        scanner_.moveTo(begin);
-                        return readNumbers(count, type, numbers,
-                                           [](std::size_t) { return "a parameter of the map"; });
+  /// Reads the regions of cells if they follow as this library writes them.
+  void readRegions() {
+    const std::string begin =
+        "CELL_DATA " + std::to_string(cells) + "\nSCALARS region int 1\nLOOKUP_TABLE default";
+    if (!scanner_.skipSpace() || !text().substr(scanner_.position()).starts_with(begin)) return;
+    const std::size_t numbers = scanner_.position() + begin.size();
+    arrays.push_back({VtkSection::CellData, std::string(kVtkRegions), VtkNumbers::Integers, 1,
+                      false, [this, numbers](VtkNumbers, std::optional<std::uint64_t>) {
+                        scanner_.moveTo(numbers);
+                        return readIntegers(cells, kTypes[0], "a region");
                       }});
   }
-  skipNumbers(count, type);
-}
 
-/// Reads a word that may come in any letter case, in lower case.
-std::string VtkLegacyFile::readKeyword() { return lowerCase(scanner_.readToken()); }
-
-const VtkLegacyFile::NumberType& VtkLegacyFile::readType() {
-  const std::string name = readKeyword();
-  const auto* const found = std::find_if(kTypes.begin(), kTypes.end(),
-                                         [&](const NumberType& type) { return type.name == name; });
-  if (found != kTypes.end()) return *found;
-  scanner_.failToken("a type of numbers, e.g. double");
-}
-
-/// Skips lines up to an empty one.
-void VtkLegacyFile::skipMetadata() {
-  static_cast<void>(scanner_.takeLine());
-  while (scanner_.position() < text_.size()) {
-    const std::string_view line = scanner_.takeLine();
-    if (line.empty() || line == "\r") return;
+  /// Reads the next section, array, or beginning of several arrays.
+  bool readOn() override {
+    if (fieldArrays_ > 0) {
+      readFieldArray();
+      return true;
+    }
+    if (!scanner_.skipSpace()) return false;
+    const std::string keyword = readKeyword();
+    if (isBehindMesh()) {
+      readAttribute(keyword);
+    } else {
+      readSection(keyword);
+    }
+    return true;
   }
-}
 
-/// Goes on behind the bytes of so many numbers, which begin on the next line.
-/// @return where they begin
-std::size_t VtkLegacyFile::takeBytes(std::size_t count, std::size_t bytesEach) {
-  scanner_.skipLineBreak();
-  const std::size_t begin = scanner_.position();
-  const std::size_t left = text_.size() - begin;
-  if (count > left / bytesEach) {
+ private:
+  void readHead() {
+    constexpr std::string_view kMagic = "# vtk DataFile Version ";
+    if (!scanner_.takeLine().starts_with(kMagic)) {
+      scanner_.moveTo(0);
+      scanner_.fail(
+          ErrorCode::FileSyntax,
+          "a .vtk file begins with \"# vtk DataFile Version\". If it is XML, name it .vtu.");
+    }
+    static_cast<void>(scanner_.takeLine());  // a title, which may be anything
+    const std::string encoding = readKeyword();
+    binary_ = encoding == "binary";
+    if (!binary_ && encoding != "ascii") scanner_.failToken("\"ASCII\" or \"BINARY\"");
+    if (readKeyword() != "dataset") scanner_.failToken("\"DATASET\"");
+    if (readKeyword() != "unstructured_grid") {
+      scanner_.fail(ErrorCode::FileUnsupported,
+                    "the data set must be an UNSTRUCTURED_GRID, found " +
+                        quoted(scanner_.currentToken()) + ".");
+    }
+    if (!binary_) index_.emplace(text(), stage_);
+  }
+
+  /// Whether only arrays follow.
+  [[nodiscard]] bool isBehindMesh() const { return hasPoints_ && hasCells_ && hasTypes_; }
+
+  void readSection(const std::string& keyword) {
+    if (keyword == "points") {
+      beginSection(hasPoints_, "POINTS");
+      readPoints();
+    } else if (keyword == "cells") {
+      beginSection(hasCells_, "CELLS");
+      readCells();
+    } else if (keyword == "cell_types") {
+      beginSection(hasTypes_, "CELL_TYPES");
+      types =
+          readIntegers(scanner_.readCount("types of cells", 2), kTypes[0], "the type of a cell");
+    } else if (keyword == "field") {
+      beginField();
+    } else if (keyword == "metadata") {
+      skipMetadata();
+    } else {
+      scanner_.failToken("POINTS, CELLS or CELL_TYPES");
+    }
+  }
+
+  /// Notes that a section is there, unless it was before.
+  void beginSection(bool& present, std::string_view keyword) {
+    scanner_.failIfRepeated(present, keyword);
+    present = true;
+  }
+
+  void require(bool present, std::string_view keyword) const {
+    if (present) return;
+    scanner_.fail(ErrorCode::FileSyntax, "the file ends without the section " +
+                                             std::string(keyword) + ": it is incomplete.");
+  }
+
+  void readPoints() {
+    points = scanner_.readCount("points", 6);
+    const NumberType& type = readType();
+    if (!isReal(type.scalar)) {
+      scanner_.fail(ErrorCode::FileUnsupported,
+                    "the coordinates of points must be float or double.");
+    }
+    coordinates = readNumbers(3 * points, type, VtkNumbers::Reals, [](std::size_t i) {
+      return "a coordinate of point " + std::to_string(i / 3);
+    });
+  }
+
+  void readCells() {
+    // Counted as numbers of one digit or four bytes.
+    const std::size_t first = scanner_.readCount("cells", 2);
+    const std::size_t second = scanner_.readCount("numbers of cells", 2);
+    const std::size_t before = scanner_.position();
+    if (readKeyword() != "offsets") {
+      scanner_.moveTo(before);
+      cells = first;
+      return readOldCells(second);
+    }
+    // From version 5 on: where cells begin and the last one ends, and all corners.
+    cells = std::max<std::size_t>(first, 1) - 1;
+    offsets = readIntegers(first, readType(), "an offset of a cell");
+    if (readKeyword() != "connectivity") scanner_.failToken("\"CONNECTIVITY\"");
+    connectivity = readIntegers(second, readType(), "a corner of a cell");
+  }
+
+  /// Up to version 4: each cell is its number of corners, and its corners.
+  void readOldCells(std::size_t numbers) {
+    gap = 1;
+    connectivity = readIntegers(numbers, kTypes[0], "a corner of a cell");
+    const auto numberAt = [&](std::size_t i) {
+      if (binary_)
+        return std::int64_t{loadBig<std::int32_t>(text().data() + connectivity.position + 4 * i)};
+      std::int64_t number = 0;
+      copy(connectivity, i, 1, &number);
+      return number;
+    };
+    // Usually all cells are alike.
+    const std::size_t each = cells > 0 ? numbers / cells : 0;
+    const auto hasAsMany = [&](std::size_t cell) {
+      return numberAt(each * cell) == static_cast<std::int64_t>(each - 1);
+    };
+    if (each > 0 && each * cells == numbers && firstFault(stage_, cells, hasAsMany) == cells) {
+      stride = each;
+      return;
+    }
+    offsets = textColumn(VtkNumbers::Integers, cells + 1);
+    std::size_t place = 0;
+    for (std::size_t cell = 0; cell <= cells; ++cell) {
+      const auto offset = static_cast<std::int64_t>(place);
+      std::memcpy(offsets.decoded.data() + cell * sizeof(offset), &offset, sizeof(offset));
+      if (cell == cells) break;
+      const std::int64_t count = place < numbers ? numberAt(place) : -1;
+      if (count < 0 || static_cast<std::uint64_t>(count) > numbers - place - 1) {
+        scanner_.fail(ErrorCode::FileSyntax,
+                      "cell " + std::to_string(cell) + " of " + std::to_string(cells) +
+                          " goes beyond the " + std::to_string(numbers) +
+                          " numbers that the section CELLS announces.",
+                      Place{PlaceKind::Cell, cell});
+      }
+      place += 1 + static_cast<std::size_t>(count);
+    }
+  }
+
+  /// Reads one array, or the beginning of several.
+  void readAttribute(const std::string& keyword) {
+    if (keyword == "metadata") return skipMetadata();
+    if (keyword == "field") return beginField();
+    if (keyword == "point_data" || keyword == "cell_data")
+      return beginArrays(keyword == "cell_data");
+    const std::string_view name = scanner_.readToken();
+    const auto array = [&](std::size_t components, const NumberType& type) {
+      readArray(name, components, elements(), type);
+    };
+    const NumberType& colour = binary_ ? kTypes[2] : kTypes[1];
+    if (keyword == "scalars") return readScalars(name);
+    if (keyword == "vectors" || keyword == "normals") return array(3, readType());
+    if (keyword == "tensors") return array(9, readType());
+    if (keyword == "tensors6") return array(6, readType());
+    if (keyword == "global_ids" || keyword == "pedigree_ids") return array(1, readType());
+    if (keyword == "texture_coordinates") {
+      const std::size_t components = scanner_.readCount("components", 1);
+      return array(components, readType());
+    }
+    if (keyword == "color_scalars") return array(scanner_.readCount("components", 1), colour);
+    if (keyword == "lookup_table") return skipNumbers(4 * scanner_.readCount("colours", 4), colour);
+    scanner_.fail(ErrorCode::FileSyntax, "expected a keyword of point or cell data, found " +
+                                             quoted(std::string_view(keyword)) + ".");
+  }
+
+  void beginArrays(bool ofCells) {
+    ofCells_ = ofCells;
+    std::int64_t count = 0;
+    if (!scanner_.readInteger(count)) scanner_.failInteger("the number of values");
+    if (count >= 0 && static_cast<std::uint64_t>(count) == elements()) return;
     scanner_.fail(ErrorCode::FileSyntax,
-                  std::to_string(count) + " numbers of " + std::to_string(bytesEach) +
-                      " bytes are announced, but only " + std::to_string(left) +
-                      " bytes are left: the file is incomplete.");
+                  "the arrays are for " + std::to_string(count) + (ofCells ? " cells" : " points") +
+                      ", but the file has " + std::to_string(elements()) + ".");
   }
-  scanner_.moveTo(begin + count * bytesEach);
-  return begin;
-}
 
-/// @param what  for messages: what(i) is what number i should be
-template <class What>
-VtkColumn VtkLegacyFile::readNumbers(std::size_t count, const NumberType& type, VtkNumbers numbers,
-                                     const What& what) {
-  VtkColumn column;
-  if (binary_) {
-    column.scalar = type.scalar;
-    column.bigEndian = true;
-    column.count = count;
-    column.position = takeBytes(count, bytesOf(type.scalar));
+  /// "SCALARS name type components", where the last may be missing, and the name of a table of
+  /// colours.
+  void readScalars(std::string_view name) {
+    constexpr std::string_view kTable = "lookup_table";
+    const NumberType& type = readType();
+    std::size_t components = 1;
+    if (lowerCase(scanner_.peekToken()) != kTable) components = scanner_.readCount("components", 1);
+    if (lowerCase(scanner_.peekToken()) == kTable) {
+      scanner_.readToken();
+      scanner_.readToken();
+    }
+    readArray(name, components, elements(), type);
+  }
+
+  void beginField() {
+    scanner_.readToken();
+    fieldArrays_ = scanner_.readCount("arrays", 8);
+  }
+
+  void readFieldArray() {
+    --fieldArrays_;
+    if (lowerCase(scanner_.peekToken()) == "metadata") {
+      scanner_.readToken();
+      skipMetadata();
+    }
+    const std::string_view name = scanner_.readToken();
+    const std::size_t components = scanner_.readCount("components", 1);
+    const std::size_t tuples = scanner_.readCount("tuples", 1);
+    readArray(name, components, tuples, readType());
+  }
+
+  /// Skips the numbers of an array. In front of the mesh's sections, arrays belong to nothing.
+  void readArray(std::string_view name, std::size_t components, std::size_t tuples,
+                 const NumberType& type) {
+    if (components > 0 && tuples > text().size() / components) {
+      scanner_.fail(ErrorCode::FileSyntax, "an array has more numbers than the file has bytes.");
+    }
+    see(name, ofCells_, components);
+    const std::size_t count = components * tuples;
+    const std::size_t begin = scanner_.position();
+    if (isBehindMesh() && tuples == elements() && isReal(type.scalar)) {
+      arrays.push_back({ofCells_ ? VtkSection::CellData : VtkSection::PointData,
+                        decodedVtkName(name), VtkNumbers::Reals, components, false,
+                        [this, begin, count, &type](VtkNumbers numbers, auto&&) {
+                          scanner_.moveTo(begin);
+                          return readNumbers(count, type, numbers,
+                                             [](std::size_t) { return "a parameter of the map"; });
+                        }});
+    }
+    skipNumbers(count, type);
+  }
+
+  /// Reads a word that may come in any letter case, in lower case.
+  std::string readKeyword() { return lowerCase(scanner_.readToken()); }
+
+  const NumberType& readType() {
+    const std::string name = readKeyword();
+    const auto* const found = std::find_if(
+        kTypes.begin(), kTypes.end(), [&](const NumberType& type) { return type.name == name; });
+    if (found != kTypes.end()) return *found;
+    scanner_.failToken("a type of numbers, e.g. double");
+  }
+
+  /// Skips lines up to an empty one.
+  void skipMetadata() {
+    static_cast<void>(scanner_.takeLine());
+    while (scanner_.position() < text().size()) {
+      const std::string_view line = scanner_.takeLine();
+      if (line.empty() || line == "\r") return;
+    }
+  }
+
+  /// Goes on behind the bytes of so many numbers, which begin on the next line.
+  /// @return where they begin
+  std::size_t takeBytes(std::size_t count, std::size_t bytesEach) {
+    scanner_.skipLineBreak();
+    const std::size_t begin = scanner_.position();
+    const std::size_t left = text().size() - begin;
+    if (count > left / bytesEach) {
+      scanner_.fail(ErrorCode::FileSyntax,
+                    std::to_string(count) + " numbers of " + std::to_string(bytesEach) +
+                        " bytes are announced, but only " + std::to_string(left) +
+                        " bytes are left: the file is incomplete.");
+    }
+    scanner_.moveTo(begin + count * bytesEach);
+    return begin;
+  }
+
+  /// @param what  for messages: what(i) is what number i should be
+  template <class What>
+  VtkColumn readNumbers(std::size_t count, const NumberType& type, VtkNumbers numbers,
+                        const What& what) {
+    VtkColumn column;
+    if (binary_) {
+      column.scalar = type.scalar;
+      column.bigEndian = true;
+      column.count = count;
+      column.position = takeBytes(count, bytesOf(type.scalar));
+      return column;
+    }
+    column = textColumn(numbers, count);
+    readElements(scanner_, &*index_, stage_, count, 1, [&](TextScanner& scanner, std::size_t i) {
+      readVtkNumber(scanner, numbers, column, i, [&] { return what(i); });
+    });
     return column;
   }
-  column = textColumn(numbers, count);
-  readElements(scanner_, &*index_, stage_, count, 1, [&](TextScanner& scanner, std::size_t i) {
-    readVtkNumber(scanner, numbers, column, i, [&] { return what(i); });
-  });
-  return column;
-}
 
-VtkColumn VtkLegacyFile::readIntegers(std::size_t count, const NumberType& type, const char* what) {
-  if (!isOf<std::int32_t>(type.scalar) && !isOf<std::int64_t>(type.scalar)) {
-    scanner_.fail(ErrorCode::FileUnsupported, std::string(what) + " cannot be of type " +
-                                                  std::string(type.name) +
-                                                  ", only int or vtktypeint64.");
+  VtkColumn readIntegers(std::size_t count, const NumberType& type, const char* what) {
+    if (!isOf<std::int32_t>(type.scalar) && !isOf<std::int64_t>(type.scalar)) {
+      scanner_.fail(ErrorCode::FileUnsupported, std::string(what) + " cannot be of type " +
+                                                    std::string(type.name) +
+                                                    ", only int or vtktypeint64.");
+    }
+    return readNumbers(count, type, VtkNumbers::Integers, [what](std::size_t) { return what; });
   }
-  return readNumbers(count, type, VtkNumbers::Integers, [what](std::size_t) { return what; });
-}
 
-void VtkLegacyFile::skipNumbers(std::size_t count, const NumberType& type) {
-  if (!binary_) {
-    scanner_.moveTo(index_->find(index_->countBefore(scanner_.position()) + count));
-    return;
+  void skipNumbers(std::size_t count, const NumberType& type) {
+    if (!binary_) {
+      scanner_.moveTo(index_->find(index_->countBefore(scanner_.position()) + count));
+      return;
+    }
+    if (type.name == "string") {
+      scanner_.fail(ErrorCode::FileUnsupported,
+                    "an array of strings has no known length in bytes; save the file without it.");
+    }
+    static_cast<void>(type.name == "bit" ? takeBytes((count + 7) / 8, 1)
+                                         : takeBytes(count, bytesOf(type.scalar)));
   }
-  if (type.name == "string") {
-    scanner_.fail(ErrorCode::FileUnsupported,
-                  "an array of strings has no known length in bytes; save the file without it.");
-  }
-  static_cast<void>(type.name == "bit" ? takeBytes((count + 7) / 8, 1)
-                                       : takeBytes(count, bytesOf(type.scalar)));
+
+  /// Number of points or cells, whichever arrays belong to.
+  [[nodiscard]] std::size_t elements() const { return ofCells_ ? cells : points; }
+
+  Stage& stage_;
+  TextScanner scanner_;
+  std::optional<TokenIndex> index_;  ///< only of text
+  bool binary_ = false;
+  bool hasPoints_ = false;
+  bool hasCells_ = false;
+  bool hasTypes_ = false;
+  bool ofCells_ = false;         ///< whether arrays belong to cells or to points
+  std::size_t fieldArrays_ = 0;  ///< that follow in the field that was begun
+};
+
+}  // namespace
+
+std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegions, Stage& stage) {
+  VtkFileBytes bytes;
+  bytes.text = input.text(bytes.room, stage);
+  auto file = std::make_unique<VtkLegacyFile>(std::move(bytes), input.name(), stage);
+  if (withRegions) file->readRegions();
+  return file;
 }
 
 }  // namespace hexhex

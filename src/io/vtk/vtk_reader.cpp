@@ -29,7 +29,7 @@ void forEachBlock(Stage& stage, std::size_t n, const F& f) {
 /// Types of consecutive cells, and where their corners are.
 class CellTable {
  public:
-  CellTable(const VtkSource& source, const VtkCells& wanted, std::uint64_t first, std::size_t count)
+  CellTable(const VtkSource& source, const CellKind& wanted, std::uint64_t first, std::size_t count)
       : source_(source), wanted_(wanted), first_(first), types_(count), places_(count + 1, 0) {
     source.copy(source.types, first, count, types_.data());
     if (source.stride > 0) {
@@ -47,7 +47,7 @@ class CellTable {
     source.copy(source.offsets, first - before, count + before, places_.data() + 1 - before);
   }
 
-  [[nodiscard]] bool isWanted(std::size_t i) const { return types_[i] == wanted_.type; }
+  [[nodiscard]] bool isWanted(std::size_t i) const { return types_[i] == wanted_.vtkType; }
   [[nodiscard]] std::uint64_t begin(std::size_t i) const {
     return static_cast<std::uint64_t>(places_[i]) + source_.gap;
   }
@@ -82,7 +82,7 @@ class CellTable {
   }
 
   const VtkSource& source_;
-  const VtkCells& wanted_;
+  const CellKind& wanted_;
   std::uint64_t first_;
   Array<std::int64_t> types_;
   Array<std::int64_t> places_;
@@ -162,7 +162,7 @@ void readMesh(const VtkSource& source, Points& points, Cells& cells, Array<std::
     cells.resize(count);
     return count == 0 ? nullptr : cells.front().data();
   };
-  readVtkCells(source, kVtkCells<kCorners>, makeRoom, numbers, stage);
+  readVtkCells(source, kCellKind<kCorners>, makeRoom, numbers, stage);
 }
 
 // Components of the two forms of a map.
@@ -248,15 +248,15 @@ void readVtkPoints(const VtkSource& source, std::span<Vec3> points, Stage& stage
   });
 }
 
-std::size_t countVtkCells(const VtkSource& source, const VtkCells& cells, std::uint64_t first,
+std::size_t countVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t first,
                           std::size_t count) {
   Array<std::int64_t> types(count);
   source.copy(source.types, first, count, types.data());
-  return static_cast<std::size_t>(std::count(types.begin(), types.end(), cells.type));
+  return static_cast<std::size_t>(std::count(types.begin(), types.end(), cells.vtkType));
 }
 
 template <class Vertex>
-void readVtkCells(const VtkSource& source, const VtkCells& cells, std::uint64_t first,
+void readVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t first,
                   std::size_t count, Vertex* vertices, std::size_t* numbers) {
   const CellTable table(source, cells, first, count);
   std::size_t good = 0;
@@ -275,12 +275,12 @@ void readVtkCells(const VtkSource& source, const VtkCells& cells, std::uint64_t 
   if (good < count) table.fail(good);
 }
 
-template void readVtkCells(const VtkSource&, const VtkCells&, std::uint64_t, std::size_t, Index*,
+template void readVtkCells(const VtkSource&, const CellKind&, std::uint64_t, std::size_t, Index*,
                            std::size_t*);
-template void readVtkCells(const VtkSource&, const VtkCells&, std::uint64_t, std::size_t,
+template void readVtkCells(const VtkSource&, const CellKind&, std::uint64_t, std::size_t,
                            std::uint64_t*, std::size_t*);
 
-void readVtkCells(const VtkSource& source, const VtkCells& cells,
+void readVtkCells(const VtkSource& source, const CellKind& cells,
                   const std::function<Index*(std::size_t)>& makeRoom, Array<std::size_t>* numbers,
                   Stage& stage) {
   const std::size_t all = source.cells;
@@ -298,11 +298,11 @@ void readVtkCells(const VtkSource& source, const VtkCells& cells,
   });
 }
 
-void failWithoutVtkCells(const VtkSource& source, const VtkCells& cells) {
+void failWithoutVtkCells(const VtkSource& source, const CellKind& cells) {
   source.fail(ErrorCode::FileUnsupported, "the file holds no " + std::string(cells.plural) +
                                               ": none of its " + std::to_string(source.cells) +
-                                              " cells has the type " + std::to_string(cells.type) +
-                                              ".");
+                                              " cells has the type " +
+                                              std::to_string(cells.vtkType) + ".");
 }
 
 HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {

@@ -22,24 +22,13 @@
 
 namespace hexhex {
 
-/// The cells that are wanted: those of a type, with so many corners.
-struct VtkCells {
-  std::int64_t type;
-  std::size_t corners;
-  std::string_view singular;
-  std::string_view plural;
-};
-template <std::size_t corners>
-inline constexpr VtkCells kVtkCells = {kCellKind<corners>.vtkType, corners,
-                                       kCellKind<corners>.singular, kCellKind<corners>.plural};
-
 /// Reads points from number `first` on; or all, with all threads.
 /// @throws Error NotFinite
 void readVtkPoints(const VtkSource& source, std::uint64_t first, std::span<Vec3> points);
 void readVtkPoints(const VtkSource& source, std::span<Vec3> points, Stage& stage);
 
 /// Number of wanted cells among `count` cells from number `first` on.
-[[nodiscard]] std::size_t countVtkCells(const VtkSource& source, const VtkCells& cells,
+[[nodiscard]] std::size_t countVtkCells(const VtkSource& source, const CellKind& cells,
                                         std::uint64_t first, std::size_t count);
 
 /// Reads the wanted cells among `count` cells from number `first` on.
@@ -48,19 +37,19 @@ void readVtkPoints(const VtkSource& source, std::span<Vec3> points, Stage& stage
 /// @param numbers   if not null, room for as many: which cells of the file they are
 /// @throws Error FileSyntax, IndexOutOfRange
 template <class Vertex>
-void readVtkCells(const VtkSource& source, const VtkCells& cells, std::uint64_t first,
+void readVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t first,
                   std::size_t count, Vertex* vertices, std::size_t* numbers = nullptr);
 
 /// Reads all wanted cells, with all threads.
 /// @param makeRoom  called with their number; returns where their corners go
 /// @param[out] numbers  if not null: which cells of the file they are
 /// @throws Error the same; FileUnsupported if there are only others
-void readVtkCells(const VtkSource& source, const VtkCells& cells,
+void readVtkCells(const VtkSource& source, const CellKind& cells,
                   const std::function<Index*(std::size_t)>& makeRoom, Array<std::size_t>* numbers,
                   Stage& stage);
 
 /// Throws the error of a file with cells, but no wanted ones.
-[[noreturn]] void failWithoutVtkCells(const VtkSource& source, const VtkCells& cells);
+[[noreturn]] void failWithoutVtkCells(const VtkSource& source, const CellKind& cells);
 
 /// The simplices that points were generated on, in two arrays as this library writes them.
 struct VtkGenerators {

@@ -2,11 +2,14 @@
 // numbers are and however they are stored. Formats fill it in; vtk_reader.hpp makes meshes of it.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +20,8 @@
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
+#include <base/stage.hpp>
+#include <io/core/input_file.hpp>
 #include <io/core/number_source.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/vtk/vtk_data_set.hpp>
@@ -37,22 +42,12 @@ template <class T>
 /// What numbers are needed as. Arrays of others, like strings, are never needed.
 enum class VtkNumbers : std::uint8_t { Integers, Reals, Others };
 
-/// A number of 4 or 8 bytes that is stored with the largest byte first. Bytes are swapped by
-/// halves, since loops of it take a fifth of the time that they take byte by byte.
+/// The number at a place, stored with the largest byte first.
 template <class T>
 [[nodiscard]] T loadBig(const char* place) {
-  using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
-  static_assert(sizeof(T) == sizeof(Bits));
-  Bits bits;
-  std::memcpy(&bits, place, sizeof(bits));
-  if constexpr (std::endian::native == std::endian::little) {
-    constexpr Bits kOddBytes = static_cast<Bits>(0xff00ff00ff00ff00U);
-    constexpr Bits kOddPairs = static_cast<Bits>(0xffff0000ffff0000U);
-    bits = (bits & kOddBytes) >> 8U | (bits << 8U & kOddBytes);
-    bits = (bits & kOddPairs) >> 16U | (bits << 16U & kOddPairs);
-    if constexpr (sizeof(T) == 8) bits = bits >> 32U | bits << 32U;
-  }
-  return std::bit_cast<T>(bits);
+  std::array<char, sizeof(T)> bytes;  // NOLINT(*-member-init): all of it is copied to
+  std::reverse_copy(place, place + sizeof(T), bytes.begin());
+  return std::bit_cast<T>(bytes);
 }
 
 /// Where the numbers of an array are, and how they are stored.
@@ -75,11 +70,21 @@ struct VtkSourceArray {
   std::function<VtkColumn(VtkNumbers, std::optional<std::uint64_t> count)> load = {};
 };
 
+/// The bytes of a file: all of them in memory, or its head only.
+struct VtkFileBytes {
+  std::unique_ptr<InputFile> file;  ///< where the rest is; null: nowhere else
+  Array<char> room;                 ///< for `text`, unless that was in memory before
+  std::string_view text;            ///< what is in memory
+};
+
 /// An open file.
 class VtkSource {
  public:
-  VtkSource(const ByteFile& bytes, std::string fileName)
-      : bytes_(bytes), fileName_(std::move(fileName)) {}
+  VtkSource(VtkFileBytes content, std::string fileName)
+      : content_(std::move(content)),
+        fileName_(std::move(fileName)),
+        bytes_(content_.file ? ByteFile(*content_.file, fileName_)
+                             : ByteFile(content_.text, fileName_)) {}
   virtual ~VtkSource() = default;
   // Arrays refer to the file.
   VtkSource(const VtkSource&) = delete;
@@ -124,10 +129,27 @@ class VtkSource {
   /// Notes an array of points or cells for messages.
   void see(std::string_view name, bool ofCells, std::size_t components);
 
+  [[nodiscard]] std::string_view text() const noexcept { return content_.text; }
+  [[nodiscard]] std::uint64_t fileSize() const noexcept { return bytes_.size(); }
+
  private:
-  ByteFile bytes_;
+  VtkFileBytes content_;
   std::string fileName_;
+  ByteFile bytes_;
 };
+
+/// Opens a `.vtu` file, without the whole of it in memory if its arrays are appended as plain
+/// bytes. Every size and offset is checked against the file.
+/// @param input, stage  outlive the source
+/// @throws Error FileSyntax, FileUnsupported, NotFinite
+[[nodiscard]] std::unique_ptr<VtkSource> openVtuFile(const Input& input, Stage& stage);
+
+/// Opens a legacy `.vtk` file, and reads as far as the first array behind the sections of a mesh.
+/// Of arrays, only floating-point numbers are offered, and the regions of cells.
+/// @param withRegions  reads the regions of cells if they follow as this library writes them
+/// @throws Error FileSyntax, FileUnsupported, NotFinite or TooLarge, with the line
+[[nodiscard]] std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegions,
+                                                           Stage& stage);
 
 /// A column for `count` numbers of text, to be filled in by readVtkNumber().
 [[nodiscard]] VtkColumn textColumn(VtkNumbers numbers, std::size_t count);

@@ -1,14 +1,23 @@
-// Tags first, which say where the arrays are, then the arrays' lengths, which must agree with them.
+// `.vtu` files: tags, which say where the arrays are, then the arrays' lengths, which must agree
+// with them. Every size and offset is checked against the file.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 
+#include <base/stage.hpp>
+#include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/core/zlib_blocks.hpp>
+#include <io/vtk/vtk_source.hpp>
 #include <io/vtk/vtu_decoding.hpp>
-#include <io/vtk/vtu_file.hpp>
+#include <io/vtk/xml_tags.hpp>
 
 namespace hexhex {
 namespace {
@@ -48,266 +57,286 @@ VtkNumbers numbersOf(std::string_view type) {
   return VtkNumbers::Others;
 }
 
-}  // namespace
-
-VtuFile::VtuFile(const ByteFile& bytes, std::string_view text, const std::string& fileName,
-                 Stage& stage)
-    : VtkSource(bytes, fileName),
-      stage_(stage),
-      text_(text),
-      fileSize_(bytes.size()),
-      tags_(text, fileName) {
-  readTags();
-  if (points > 0) {
-    coordinates = loadNeeded(VtkSection::Points, {}, "points", VtkNumbers::Reals, 3 * points);
-  }
-  if (cells == 0) return;
-  types = loadNeeded(VtkSection::Cells, "types", "cell types", VtkNumbers::Integers, cells);
-  offsets = loadNeeded(VtkSection::Cells, "offsets", "cell offsets", VtkNumbers::Integers, cells);
-  connectivity =
-      loadNeeded(VtkSection::Cells, "connectivity", "cell corners", VtkNumbers::Integers, {});
-}
-
-void VtuFile::readTags() {
-  XmlTag tag;
-  const VtkSection* section = nullptr;
-  while (tags_.next(tag)) {
-    if (!hasFileTag_ && tag.name != "VTKFile") break;
-    if (const VtkSection* const named = lookUp(kSections, tag.name)) {
-      section = tag.closing ? nullptr : named;
+/// An open `.vtu` file. Functions throw Error FileSyntax or FileUnsupported.
+class VtuFile final : public VtkSource {
+ public:
+  /// @param stage  for parallel decoding
+  VtuFile(VtkFileBytes bytes, const std::string& fileName, Stage& stage)
+      : VtkSource(std::move(bytes), fileName), stage_(stage), tags_(text(), fileName) {
+    readTags();
+    if (points > 0) {
+      coordinates = loadNeeded(VtkSection::Points, {}, "points", VtkNumbers::Reals, 3 * points);
     }
-    if (tag.closing) continue;
-    if (tag.name == "VTKFile") readFileTag(tag);
-    if (tag.name == "Piece") readPieceTag(tag);
-    if (tag.name == "DataArray" && section != nullptr) readArrayTag(tag, *section);
-    if (tag.name == "AppendedData") {
-      readAppendedTag(tag);
-      break;  // binary data, no more tags
+    if (cells == 0) return;
+    types = loadNeeded(VtkSection::Cells, "types", "cell types", VtkNumbers::Integers, cells);
+    offsets = loadNeeded(VtkSection::Cells, "offsets", "cell offsets", VtkNumbers::Integers, cells);
+    connectivity =
+        loadNeeded(VtkSection::Cells, "connectivity", "cell corners", VtkNumbers::Integers, {});
+  }
+
+  void requireIndexable() const override {
+    for (const std::uint64_t count : {points, cells}) {
+      if (count <= kNone) continue;
+      tags_.fail(ErrorCode::TooLarge,
+                 "the file holds " + std::to_string(count) + " points or cells; at most " +
+                     std::to_string(kNone) + " are supported.",
+                 *piece_);
     }
   }
-  if (!hasFileTag_) fail(ErrorCode::FileSyntax, "this is no VTK XML file: no tag VTKFile.");
-  if (!piece_) fail(ErrorCode::FileSyntax, "the file has no tag Piece: it is incomplete.");
-}
 
-void VtuFile::readFileTag(const XmlTag& tag) {
-  hasFileTag_ = true;
-  if (tag.attribute("type") != "UnstructuredGrid") {
-    tags_.fail(ErrorCode::FileUnsupported,
-               "the file's type is " + quoted(tag.attribute("type")) +
-                   ", only UnstructuredGrid is supported.",
-               tag);
-  }
-  const std::string_view compressor = tag.attribute("compressor");
-  compressed_ = !compressor.empty();
-  if (compressed_ && compressor != kZlibCompressor) {
-    tags_.fail(ErrorCode::FileUnsupported,
-               "the file is compressed with " + quoted(compressor) +
-                   ". Save it uncompressed or with zlib (vtkZLibDataCompressor).",
-               tag);
-  }
-  const bool little = std::endian::native == std::endian::little;
-  const std::string_view order = tag.attribute("byte_order");
-  if (!order.empty() && order != (little ? "LittleEndian" : "BigEndian")) {
-    tags_.fail(ErrorCode::FileUnsupported,
-               "the byte order " + quoted(order) + " is not that of this machine.", tag);
-  }
-  const std::string_view header = tag.attribute("header_type");
-  lengthBytes_ = header == "UInt64" ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
-}
-
-void VtuFile::readPieceTag(const XmlTag& tag) {
-  if (piece_) {
-    tags_.fail(ErrorCode::FileUnsupported,
-               "the file has several pieces; merge them into one and save it again.", tag);
-  }
-  piece_ = tag;
-  points = readCount(tag, "NumberOfPoints");
-  cells = readCount(tag, "NumberOfCells");
-}
-
-std::uint64_t VtuFile::readCount(const XmlTag& tag, std::string_view attribute) const {
-  const std::string_view value = tag.attribute(attribute);
-  std::uint64_t count = 0;
-  const auto result = std::from_chars(value.data(), value.data() + value.size(), count);
-  if (result.ec != std::errc{} || result.ptr != value.data() + value.size()) {
-    tags_.fail(
-        ErrorCode::FileSyntax,
-        "expected a whole number as " + std::string(attribute) + ", found " + quoted(value) + ".",
-        tag);
-  }
-  // Each point or cell takes some bytes, which zlib makes smaller at most by its ratio. Besides,
-  // products of this count cannot overflow then.
-  if (count / (compressed_ ? kLargestZlibRatio : 1) > fileSize_) {
-    tags_.fail(ErrorCode::FileSyntax,
-               std::string(attribute) + " is " + std::to_string(count) +
-                   ", more than the file has room for: it is wrong or the file is incomplete.",
-               tag);
-  }
-  return count;
-}
-
-void VtuFile::readArrayTag(const XmlTag& tag, VtkSection section) {
-  VtkSourceArray array;
-  array.section = section;
-  array.name = tag.attribute("Name");
-  array.numbers = numbersOf(tag.attribute("type"));
-  const std::string_view components = tag.attribute("NumberOfComponents");
-  std::from_chars(components.data(), components.data() + components.size(), array.components);
-  array.appended = tag.attribute("format") == "appended";
-  array.load = [this, tag](VtkNumbers numbers, std::optional<std::uint64_t> count) {
-    return loadArray(tag, numbers, count);
-  };
-  const bool ofCells = section == VtkSection::CellData;
-  if (ofCells || section == VtkSection::PointData) see(array.name, ofCells, array.components);
-  arrays.push_back(std::move(array));
-}
-
-void VtuFile::readAppendedTag(const XmlTag& tag) {
-  const std::string_view encoding = tag.attribute("encoding");
-  appendedBase64_ = encoding == "base64";
-  if (!appendedBase64_ && encoding != "raw") {
-    tags_.fail(ErrorCode::FileUnsupported,
-               "the appended data are encoded as " + quoted(encoding) +
-                   ", which is neither raw nor base64.",
-               tag);
-  }
-  const std::size_t mark = text_.find('_', tag.end);
-  if (mark == std::string_view::npos) {
-    tags_.fail(ErrorCode::FileSyntax, "the appended data are missing: the file is incomplete.",
-               tag);
-  }
-  appended_ = mark + 1;
-}
-
-void VtuFile::requireIndexable() const {
-  for (const std::uint64_t count : {points, cells}) {
-    if (count <= kNone) continue;
-    tags_.fail(ErrorCode::TooLarge,
-               "the file holds " + std::to_string(count) + " points or cells; at most " +
-                   std::to_string(kNone) + " are supported.",
-               *piece_);
-  }
-}
-
-/// The numbers of an array that no file can do without. That of the points may have any name.
-VtkColumn VtuFile::loadNeeded(VtkSection section, std::string_view name, const char* what,
-                              VtkNumbers numbers, std::optional<std::uint64_t> count) const {
-  const auto found = std::find_if(arrays.rbegin(), arrays.rend(), [&](const VtkSourceArray& array) {
-    return array.section == section && (name.empty() || array.name == name);
-  });
-  if (found != arrays.rend()) return found->load(numbers, count);
-  fail(ErrorCode::FileSyntax, "the file has no array of " + std::string(what) + ".");
-}
-
-/// The numbers of an array, exactly `count` of them if that is known.
-VtkColumn VtuFile::loadArray(const XmlTag& tag, VtkNumbers numbers,
-                             std::optional<std::uint64_t> count) const {
-  const std::string_view format = tag.attribute("format");
-  if (format == "ascii") return parse(tag, numbers, count);
-  if (format != "appended" && format != "binary") {
-    tags_.fail(ErrorCode::FileUnsupported,
-               "the data format " + quoted(format) + " is none of appended, binary and ascii.",
-               tag);
-  }
-  const std::string_view type = tag.attribute("type");
-  const VtkScalar* const scalar = lookUp(kScalars, type);
-  if (scalar == nullptr || numbersOf(type) != numbers) {
-    tags_.fail(ErrorCode::FileUnsupported,
-               "the number type " + quoted(type) + " is not supported for this array.", tag);
-  }
-  VtkColumn column;
-  column.scalar = *scalar;
-  std::uint64_t bytes = 0;
-  if (format == "appended" && !appendedBase64_ && !compressed_) {
-    bytes = findAppended(tag, column);
-  } else {
-    column.decoded = decode(tag);
-    bytes = column.decoded.size();
-  }
-  column.count = bytes / bytesOf(column.scalar);
-  if (count && column.count != *count) {
-    tags_.fail(ErrorCode::FileSyntax,
-               "this array should hold " + std::to_string(*count) + " numbers, but it holds " +
-                   std::to_string(column.count) + ".",
-               tag);
-  }
-  return column;
-}
-
-/// Finds an array that is appended as plain bytes.
-/// @return their number
-std::uint64_t VtuFile::findAppended(const XmlTag& tag, VtkColumn& column) const {
-  const std::uint64_t offset = readCount(tag, "offset");
-  const std::uint64_t room = appended_ ? fileSize_ - *appended_ : 0;
-  if (offset <= room && room - offset >= lengthBytes_) {
-    VtkColumn length;
-    length.scalar = lengthBytes_ == sizeof(std::uint64_t) ? VtkScalar(std::uint64_t{})
-                                                          : VtkScalar(std::uint32_t{});
-    length.position = *appended_ + offset;
-    std::int64_t bytes = 0;
-    copy(length, 0, 1, &bytes);
-    column.position = length.position + lengthBytes_;
-    if (static_cast<std::uint64_t>(bytes) <= room - offset - lengthBytes_) {
-      return static_cast<std::uint64_t>(bytes);
+ private:
+  void readTags() {
+    XmlTag tag;
+    const VtkSection* section = nullptr;
+    while (tags_.next(tag)) {
+      if (!hasFileTag_ && tag.name != "VTKFile") break;
+      if (const VtkSection* const named = lookUp(kSections, tag.name)) {
+        section = tag.closing ? nullptr : named;
+      }
+      if (tag.closing) continue;
+      if (tag.name == "VTKFile") readFileTag(tag);
+      if (tag.name == "Piece") readPieceTag(tag);
+      if (tag.name == "DataArray" && section != nullptr) readArrayTag(tag, *section);
+      if (tag.name == "AppendedData") {
+        readAppendedTag(tag);
+        break;  // binary data, no more tags
+      }
     }
+    if (!hasFileTag_) fail(ErrorCode::FileSyntax, "this is no VTK XML file: no tag VTKFile.");
+    if (!piece_) fail(ErrorCode::FileSyntax, "the file has no tag Piece: it is incomplete.");
   }
-  tags_.fail(ErrorCode::FileSyntax,
-             "the data of this array lie beyond the end of the file: it is incomplete.", tag);
-}
 
-/// The bytes of an array that is base64 in its tag or appended, or compressed.
-Array<char> VtuFile::decode(const XmlTag& tag) const {
-  std::string_view text = contentOf(tag);
-  bool base64 = true;
-  if (tag.attribute("format") == "appended") {
-    const std::uint64_t offset = readCount(tag, "offset");
-    const std::uint64_t room = appended_ ? text_.size() - *appended_ : 0;
-    if (offset > room) {
+  void readFileTag(const XmlTag& tag) {
+    hasFileTag_ = true;
+    if (tag.attribute("type") != "UnstructuredGrid") {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the file's type is " + quoted(tag.attribute("type")) +
+                     ", only UnstructuredGrid is supported.",
+                 tag);
+    }
+    const std::string_view compressor = tag.attribute("compressor");
+    compressed_ = !compressor.empty();
+    if (compressed_ && compressor != kZlibCompressor) {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the file is compressed with " + quoted(compressor) +
+                     ". Save it uncompressed or with zlib (vtkZLibDataCompressor).",
+                 tag);
+    }
+    const bool little = std::endian::native == std::endian::little;
+    const std::string_view order = tag.attribute("byte_order");
+    if (!order.empty() && order != (little ? "LittleEndian" : "BigEndian")) {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the byte order " + quoted(order) + " is not that of this machine.", tag);
+    }
+    const std::string_view header = tag.attribute("header_type");
+    lengthBytes_ = header == "UInt64" ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
+  }
+
+  void readPieceTag(const XmlTag& tag) {
+    if (piece_) {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the file has several pieces; merge them into one and save it again.", tag);
+    }
+    piece_ = tag;
+    points = readCount(tag, "NumberOfPoints");
+    cells = readCount(tag, "NumberOfCells");
+  }
+
+  std::uint64_t readCount(const XmlTag& tag, std::string_view attribute) const {
+    const std::string_view value = tag.attribute(attribute);
+    std::uint64_t count = 0;
+    const auto result = std::from_chars(value.data(), value.data() + value.size(), count);
+    if (result.ec != std::errc{} || result.ptr != value.data() + value.size()) {
+      tags_.fail(
+          ErrorCode::FileSyntax,
+          "expected a whole number as " + std::string(attribute) + ", found " + quoted(value) + ".",
+          tag);
+    }
+    // Each point or cell takes some bytes, which zlib makes smaller at most by its ratio. Besides,
+    // products of this count cannot overflow then.
+    if (count / (compressed_ ? kLargestZlibRatio : 1) > fileSize()) {
       tags_.fail(ErrorCode::FileSyntax,
-                 "the data of this array lie beyond the end of the file: it is incomplete.", tag);
+                 std::string(attribute) + " is " + std::to_string(count) +
+                     ", more than the file has room for: it is wrong or the file is incomplete.",
+                 tag);
     }
-    text = text_.substr(appended_ ? *appended_ + offset : text_.size());
-    base64 = appendedBase64_;
+    return count;
   }
-  if (compressed_ && !hasZlib()) {
-    tags_.fail(ErrorCode::FileUnsupported,
-               "this program was built without zlib, which compressed arrays need.", tag);
-  }
-  return decodeVtuArray(
-      text, {base64, compressed_, lengthBytes_}, stage_,
-      [&](const char* sentence) { tags_.fail(ErrorCode::FileSyntax, sentence, tag); });
-}
 
-/// The numbers of a text. Without a count: as many as there are.
-VtkColumn VtuFile::parse(const XmlTag& tag, VtkNumbers numbers,
-                         std::optional<std::uint64_t> count) const {
-  // A view from the beginning of the file makes line numbers right; the scanner ends at the next
-  // tag. Two bytes are the least that a number takes with its separator.
-  const std::string_view content = contentOf(tag);
-  TextScanner scanner = tags_.scannerTo(tag.end + content.size());
-  scanner.moveTo(tag.end);
-  const std::size_t room = content.size() / 2 + 1;
-  if (count && *count > room) {
+  void readArrayTag(const XmlTag& tag, VtkSection section) {
+    VtkSourceArray array;
+    array.section = section;
+    array.name = tag.attribute("Name");
+    array.numbers = numbersOf(tag.attribute("type"));
+    const std::string_view components = tag.attribute("NumberOfComponents");
+    std::from_chars(components.data(), components.data() + components.size(), array.components);
+    array.appended = tag.attribute("format") == "appended";
+    array.load = [this, tag](VtkNumbers numbers, std::optional<std::uint64_t> count) {
+      return loadArray(tag, numbers, count);
+    };
+    const bool ofCells = section == VtkSection::CellData;
+    if (ofCells || section == VtkSection::PointData) see(array.name, ofCells, array.components);
+    arrays.push_back(std::move(array));
+  }
+
+  void readAppendedTag(const XmlTag& tag) {
+    const std::string_view encoding = tag.attribute("encoding");
+    appendedBase64_ = encoding == "base64";
+    if (!appendedBase64_ && encoding != "raw") {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the appended data are encoded as " + quoted(encoding) +
+                     ", which is neither raw nor base64.",
+                 tag);
+    }
+    const std::size_t mark = text().find('_', tag.end);
+    if (mark == std::string_view::npos) {
+      tags_.fail(ErrorCode::FileSyntax, "the appended data are missing: the file is incomplete.",
+                 tag);
+    }
+    appended_ = mark + 1;
+  }
+
+  /// The numbers of an array that no file can do without. That of the points may have any name.
+  VtkColumn loadNeeded(VtkSection section, std::string_view name, const char* what,
+                       VtkNumbers numbers, std::optional<std::uint64_t> count) const {
+    const auto found =
+        std::find_if(arrays.rbegin(), arrays.rend(), [&](const VtkSourceArray& array) {
+          return array.section == section && (name.empty() || array.name == name);
+        });
+    if (found != arrays.rend()) return found->load(numbers, count);
+    fail(ErrorCode::FileSyntax, "the file has no array of " + std::string(what) + ".");
+  }
+
+  /// The numbers of an array, exactly `count` of them if that is known.
+  VtkColumn loadArray(const XmlTag& tag, VtkNumbers numbers,
+                      std::optional<std::uint64_t> count) const {
+    const std::string_view format = tag.attribute("format");
+    if (format == "ascii") return parse(tag, numbers, count);
+    if (format != "appended" && format != "binary") {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the data format " + quoted(format) + " is none of appended, binary and ascii.",
+                 tag);
+    }
+    const std::string_view type = tag.attribute("type");
+    const VtkScalar* const scalar = lookUp(kScalars, type);
+    if (scalar == nullptr || numbersOf(type) != numbers) {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the number type " + quoted(type) + " is not supported for this array.", tag);
+    }
+    VtkColumn column;
+    column.scalar = *scalar;
+    std::uint64_t bytes = 0;
+    if (format == "appended" && !appendedBase64_ && !compressed_) {
+      bytes = findAppended(tag, column);
+    } else {
+      column.decoded = decode(tag);
+      bytes = column.decoded.size();
+    }
+    column.count = bytes / bytesOf(column.scalar);
+    if (count && column.count != *count) {
+      tags_.fail(ErrorCode::FileSyntax,
+                 "this array should hold " + std::to_string(*count) + " numbers, but it holds " +
+                     std::to_string(column.count) + ".",
+                 tag);
+    }
+    return column;
+  }
+
+  /// Finds an array that is appended as plain bytes.
+  /// @return their number
+  std::uint64_t findAppended(const XmlTag& tag, VtkColumn& column) const {
+    const std::uint64_t offset = readCount(tag, "offset");
+    const std::uint64_t room = appended_ ? fileSize() - *appended_ : 0;
+    if (offset <= room && room - offset >= lengthBytes_) {
+      VtkColumn length;
+      length.scalar = lengthBytes_ == sizeof(std::uint64_t) ? VtkScalar(std::uint64_t{})
+                                                            : VtkScalar(std::uint32_t{});
+      length.position = *appended_ + offset;
+      std::int64_t bytes = 0;
+      copy(length, 0, 1, &bytes);
+      column.position = length.position + lengthBytes_;
+      if (static_cast<std::uint64_t>(bytes) <= room - offset - lengthBytes_) {
+        return static_cast<std::uint64_t>(bytes);
+      }
+    }
     tags_.fail(ErrorCode::FileSyntax,
-               "this array should hold " + std::to_string(*count) +
-                   " numbers, but there is only room for " + std::to_string(room) + ".",
-               tag);
+               "the data of this array lie beyond the end of the file: it is incomplete.", tag);
   }
-  VtkColumn column = textColumn(numbers, count ? *count : room);
-  const char* const what = numbers == VtkNumbers::Reals ? "a number" : "a whole number";
-  column.count = 0;
-  while (count ? column.count < *count : scanner.skipSpace()) {
-    readVtkNumber(scanner, numbers, column, column.count++, [what] { return what; });
+
+  /// The bytes of an array that is base64 in its tag or appended, or compressed.
+  Array<char> decode(const XmlTag& tag) const {
+    std::string_view encoded = contentOf(tag);
+    bool base64 = true;
+    if (tag.attribute("format") == "appended") {
+      const std::uint64_t offset = readCount(tag, "offset");
+      const std::uint64_t room = appended_ ? text().size() - *appended_ : 0;
+      if (offset > room) {
+        tags_.fail(ErrorCode::FileSyntax,
+                   "the data of this array lie beyond the end of the file: it is incomplete.", tag);
+      }
+      encoded = text().substr(appended_ ? *appended_ + offset : text().size());
+      base64 = appendedBase64_;
+    }
+    if (compressed_ && !hasZlib()) {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "this program was built without zlib, which compressed arrays need.", tag);
+    }
+    return decodeVtuArray(
+        encoded, {base64, compressed_, lengthBytes_}, stage_,
+        [&](const char* sentence) { tags_.fail(ErrorCode::FileSyntax, sentence, tag); });
   }
-  if (scanner.skipSpace()) scanner.failToken("the end of the array");
-  return column;
+
+  /// The numbers of a text. Without a count: as many as there are.
+  VtkColumn parse(const XmlTag& tag, VtkNumbers numbers, std::optional<std::uint64_t> count) const {
+    // A view from the beginning of the file makes line numbers right; the scanner ends at the next
+    // tag. Two bytes are the least that a number takes with its separator.
+    const std::string_view content = contentOf(tag);
+    TextScanner scanner = tags_.scannerTo(tag.end + content.size());
+    scanner.moveTo(tag.end);
+    const std::size_t room = content.size() / 2 + 1;
+    if (count && *count > room) {
+      tags_.fail(ErrorCode::FileSyntax,
+                 "this array should hold " + std::to_string(*count) +
+                     " numbers, but there is only room for " + std::to_string(room) + ".",
+                 tag);
+    }
+    VtkColumn column = textColumn(numbers, count ? *count : room);
+    const char* const what = numbers == VtkNumbers::Reals ? "a number" : "a whole number";
+    column.count = 0;
+    while (count ? column.count < *count : scanner.skipSpace()) {
+      readVtkNumber(scanner, numbers, column, column.count++, [what] { return what; });
+    }
+    if (scanner.skipSpace()) scanner.failToken("the end of the array");
+    return column;
+  }
+
+  std::string_view contentOf(const XmlTag& tag) const {
+    return text().substr(tag.end, std::min(text().find('<', tag.end), text().size()) - tag.end);
+  }
+
+  Stage& stage_;
+  XmlTags tags_;
+  bool hasFileTag_ = false;
+  std::optional<XmlTag> piece_;
+  std::size_t lengthBytes_ = 4;  ///< of the numbers in front of encoded arrays
+  bool compressed_ = false;
+  bool appendedBase64_ = false;
+  std::optional<std::uint64_t> appended_;  ///< position behind the '_' of AppendedData
+};
+
+/// Whether a text, which may go on, is a head with all its tags behind which arrays follow as plain
+/// bytes; nothing while the end of the head is not in the text.
+std::optional<bool> isPlainHead(std::string_view text) {
+  const std::size_t tag = text.find("<AppendedData");
+  const std::size_t mark = tag == std::string_view::npos ? tag : text.find('_', tag);
+  if (mark == std::string_view::npos) return {};
+  return text.find("compressor=") == std::string_view::npos &&
+         text.substr(tag, mark - tag).find("base64") == std::string_view::npos;
 }
 
-std::string_view VtuFile::contentOf(const XmlTag& tag) const {
-  return text_.substr(tag.end, std::min(text_.find('<', tag.end), text_.size()) - tag.end);
-}
-
-Array<char> readPlainVtuHead(const InputFile& input) {
+/// The head of a regular file whose arrays are appended to it as plain bytes; nothing of other
+/// files.
+Array<char> readPlainHead(const InputFile& input) {
   // How much of a file is searched for the end of its head: first this, then more, at most that. A
   // head takes some kilobytes; one with more holds arrays as text.
   constexpr std::size_t kFirst = std::size_t{1} << 16;
@@ -317,18 +346,29 @@ Array<char> readPlainVtuHead(const InputFile& input) {
   for (std::size_t most = kFirst; most <= kMost; most *= 4) {
     bytes.resize(std::min<std::uint64_t>(most, input.size()));
     input.readAt(0, bytes.data(), bytes.size());
-    const std::string_view text = asText(bytes);
-    const std::size_t tag = text.find("<AppendedData");
-    const std::size_t mark = tag == std::string_view::npos ? tag : text.find('_', tag);
-    if (mark != std::string_view::npos) {
-      const bool plain = text.find("compressor=") == std::string_view::npos &&
-                         text.substr(tag, mark - tag).find("base64") == std::string_view::npos;
-      if (!plain) bytes.clear();
-      return bytes;
+    if (const std::optional<bool> plain = isPlainHead(asText(bytes))) {
+      if (*plain) return bytes;
+      break;
     }
     if (bytes.size() == input.size()) break;
   }
   return {};
+}
+
+}  // namespace
+
+std::unique_ptr<VtkSource> openVtuFile(const Input& input, Stage& stage) {
+  VtkFileBytes bytes;
+  if (!input.bytes()) {
+    bytes.file = std::make_unique<InputFile>(input.path());
+    bytes.room = readPlainHead(*bytes.file);
+    bytes.text = asText(bytes.room);
+  }
+  if (bytes.text.empty()) {
+    bytes.file.reset();
+    bytes.text = input.text(bytes.room, stage);
+  }
+  return std::make_unique<VtuFile>(std::move(bytes), input.name(), stage);
 }
 
 }  // namespace hexhex
