@@ -18,38 +18,6 @@
 
 namespace hexhex {
 
-/// Calls f(element, tag) for all elements with a tag other than 0.
-template <class F>
-void forEachOvmTag(const Array<std::int32_t>& tags, const F& f) {
-  for (std::size_t i = 0; i < tags.size(); ++i) {
-    if (tags[i] != 0) f(i, tags[i]);
-  }
-}
-
-/// Reads the features of a mesh.
-/// @param loops  of faces; all kNone if they are not closed
-/// @param faces  those of `features`
-template <std::size_t n, class Features, class FaceFeature>
-void readOvmFeatures(const OvmMesh& mesh, std::span<const std::array<Index, n>> loops,
-                     const std::string& fileName, Features& features,
-                     std::vector<FaceFeature>& faces) {
-  const OvmProperties& properties = mesh.properties;
-  forEachOvmTag(properties[OvmInteger::FeatureVertices], [&](std::size_t v, std::int32_t tag) {
-    features.vertices.push_back({static_cast<Index>(v), tag});
-  });
-  forEachOvmTag(properties[OvmInteger::FeatureEdges], [&](std::size_t e, std::int32_t tag) {
-    features.edges.push_back({mesh.topology.edges[e], tag});
-  });
-  forEachOvmTag(properties[OvmInteger::FeatureFaces], [&](std::size_t f, std::int32_t tag) {
-    if (loops[f][0] == kNone) {
-      throw Error(ErrorCode::FileSyntax, fileName + ": face " + std::to_string(f) +
-                                             " is tagged as a feature, but is no closed loop of " +
-                                             std::to_string(n) + " half-edges.");
-    }
-    faces.push_back({loops[f], tag});
-  });
-}
-
 /// Gives one element its value, which must be there and not have one yet.
 /// @param element  index, or kNone; @param what  e.g. "feature edge 3-17", for the message
 inline void setOvmValue(Array<std::int32_t>& values, Index element, std::int32_t value,

@@ -94,90 +94,64 @@ void reverse(std::span<Hex> cells, Stage& stage) {
               [&](std::size_t c) { cells[c] = inHexOrder(cells[c], kReversed); });
 }
 
-class HexReader {
+class HexReader : OvmCellReader<8, kHexOrders> {
  public:
-  HexReader(OvmMesh&& mesh, const std::string& fileName, Stage& stage)
-      : file_(std::move(mesh)),
-        topology_(file_.topology),
-        properties_(file_.properties),
-        fileName_(fileName),
-        stage_(stage),
-        cells_(file_, kHexOrders, fileName, stage) {}
+  using OvmCellReader::OvmCellReader;
 
-  HexMesh read();
+  HexMesh read() {
+    hexes_.points = std::move(mesh_.points);
+    readCells();
+    if (properties_[OvmInteger::CornerOrder].empty() &&
+        isMostlyNegative(hexes_.points, hexes_.cells, stage_)) {
+      reverse(hexes_.cells, stage_);
+    }
+    readGenerators();
+    readFeatures(hexes_.features, hexes_.features.quads);
+    // The numbering of edges says nothing.
+    std::vector<FeatureEdge>& edges = hexes_.features.edges;
+    for (FeatureEdge& edge : edges) std::sort(edge.vertices.begin(), edge.vertices.end());
+    std::sort(edges.begin(), edges.end(),
+              [](const FeatureEdge& a, const FeatureEdge& b) { return a.vertices < b.vertices; });
+    hexes_.regions = properties_[OvmInteger::Region];
+    return std::move(hexes_);
+  }
 
  private:
-  void readCells();
-  [[nodiscard]] bool readCell(std::size_t cell);
-  void readGenerators();
-  void readFeatures();
-
-  OvmMesh file_;
-  const OvmTopology& topology_;
-  const OvmProperties& properties_;
-  const std::string& fileName_;
-  Stage& stage_;
-  OvmCells<8> cells_;
-  HexMesh mesh_;
-};
-
-HexMesh HexReader::read() {
-  mesh_.points = std::move(file_.points);
-  readCells();
-  if (properties_[OvmInteger::CornerOrder].empty() &&
-      isMostlyNegative(mesh_.points, mesh_.cells, stage_)) {
-    reverse(mesh_.cells, stage_);
+  void readCells() {
+    hexes_.cells.resize(topology_.cells.size());
+    const std::size_t fault =
+        firstUnreadable([this](std::size_t cell, const QuadLoops& loops, std::size_t order) {
+          Hex assembled;
+          if (!assembleHex(loops, assembled)) return false;
+          hexes_.cells[cell] = inHexOrder(assembled, order);
+          return true;
+        });
+    if (fault < hexes_.cells.size()) failToBound(fault);
   }
-  readGenerators();
-  readFeatures();
-  return std::move(mesh_);
-}
 
-bool HexReader::readCell(std::size_t cell) {
-  Hex assembled;
-  const std::size_t order = cells_.orderOf(cell);
-  if (!assembleHex(cells_.loopsOf(cell), assembled) || order >= kHexOrders) return false;
-  mesh_.cells[cell] = inHexOrder(assembled, order);
-  return true;
-}
+  /// Restores generators that this library wrote. Those of other programs name entities of a tet
+  /// mesh that is not here.
+  void readGenerators() {
+    const Array<std::int32_t>& tets = properties_[OvmInteger::GeneratorTet];
+    const Array<std::int32_t>& corners = properties_[OvmInteger::GeneratorCorners];
+    if (tets.empty() || corners.empty()) return;
+    hexes_.generatorTet.resize(tets.size());
+    hexes_.generatorCorners.resize(tets.size());
+    const std::size_t fault = firstFault(stage_, tets.size(), [&](std::size_t v) {
+      hexes_.generatorTet[v] = static_cast<Index>(tets[v]);
+      hexes_.generatorCorners[v] = static_cast<CornerSet>(corners[v]);
+      return tets[v] >= -1 && corners[v] >= 1 && corners[v] <= 15;
+    });
+    if (fault == tets.size()) return;
+    throw Error(ErrorCode::FileSyntax,
+                fileName_ + ": the generator of vertex " + std::to_string(fault) + " is tet " +
+                    std::to_string(tets[fault]) + " with the corner set " +
+                    std::to_string(corners[fault]) + ", which must be from 1 to 15.",
+                Place{PlaceKind::Vertex, fault});
+  }
 
-void HexReader::readCells() {
-  mesh_.cells.resize(topology_.cells.size());
-  const std::size_t fault =
-      cells_.firstUnreadable([this](std::size_t cell) { return readCell(cell); });
-  if (fault < mesh_.cells.size()) cells_.failToBound(fault);
-}
-
-/// Restores generators that this library wrote. Those of other programs name entities of a tet mesh
-/// that is not here.
-void HexReader::readGenerators() {
-  const Array<std::int32_t>& tets = properties_[OvmInteger::GeneratorTet];
-  const Array<std::int32_t>& corners = properties_[OvmInteger::GeneratorCorners];
-  if (tets.empty() || corners.empty()) return;
-  mesh_.generatorTet.resize(tets.size());
-  mesh_.generatorCorners.resize(tets.size());
-  const std::size_t fault = firstFault(stage_, tets.size(), [&](std::size_t v) {
-    mesh_.generatorTet[v] = static_cast<Index>(tets[v]);
-    mesh_.generatorCorners[v] = static_cast<CornerSet>(corners[v]);
-    return tets[v] >= -1 && corners[v] >= 1 && corners[v] <= 15;
-  });
-  if (fault == tets.size()) return;
-  throw Error(ErrorCode::FileSyntax,
-              fileName_ + ": the generator of vertex " + std::to_string(fault) + " is tet " +
-                  std::to_string(tets[fault]) + " with the corner set " +
-                  std::to_string(corners[fault]) + ", which must be from 1 to 15.",
-              Place{PlaceKind::Vertex, fault});
-}
-
-void HexReader::readFeatures() {
-  readOvmFeatures(file_, cells_.loops(), fileName_, mesh_.features, mesh_.features.quads);
-  // The numbering of edges says nothing.
-  std::vector<FeatureEdge>& edges = mesh_.features.edges;
-  for (FeatureEdge& edge : edges) std::sort(edge.vertices.begin(), edge.vertices.end());
-  std::sort(edges.begin(), edges.end(),
-            [](const FeatureEdge& a, const FeatureEdge& b) { return a.vertices < b.vertices; });
-  mesh_.regions = properties_[OvmInteger::Region];
-}
+  HexMesh hexes_;
+};
 
 /// Tells how cells are listed, which a reader finds from where their first half-faces begin.
 /// @param cells   those of the mesh as the topology was built from them
