@@ -75,6 +75,12 @@ CutTransitionId CutTransitions::across(const PreparedMap& map, const Charts& cha
   return id;
 }
 
+std::size_t CutTransitions::Hash::operator()(const Key& key) const noexcept {
+  std::uint64_t hash = 0;
+  for (const std::uint32_t part : key) hash = (hash ^ part) * 0x9e3779b97f4a7c15U;
+  return static_cast<std::size_t>(hash >> 32);
+}
+
 CutTransitions::Key CutTransitions::keyOf(Index from, Index to, const Gauge& map) noexcept {
   return {from,
           to,

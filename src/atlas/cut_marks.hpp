@@ -3,7 +3,7 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
+#include <unordered_map>
 #include <vector>
 
 #include <hexhex/types.hpp>
@@ -39,10 +39,13 @@ class CutTransitions {
 
  private:
   using Key = std::array<std::uint32_t, 6>;  ///< charts, rotation, translation
+  struct Hash {
+    [[nodiscard]] std::size_t operator()(const Key& key) const noexcept;
+  };
   [[nodiscard]] static Key keyOf(Index from, Index to, const Gauge& map) noexcept;
 
   std::vector<CutTransition> all_ = std::vector<CutTransition>(1);  ///< by id; kNoCut is none
-  std::map<Key, CutTransitionId> ids_;
+  std::unordered_map<Key, CutTransitionId, Hash> ids_;
 };
 
 /// The faces that are not glued.

@@ -24,30 +24,24 @@ class HalfFaceCrossing {
   /// @param axis  along which the triangle is constant, or nearly so
   [[nodiscard]] static constexpr HalfFaceCrossing boundary(std::size_t axis,
                                                            bool isConstant) noexcept {
-    return {static_cast<unsigned>(kFirstBoundary + axis), isConstant};
+    return {static_cast<unsigned>((1 + axis) * kBoundary), isConstant};
   }
 
   /// Whether anything about it is rounded, or may be.
   [[nodiscard]] constexpr bool isInexact() const noexcept { return (code_ & kInexact) != 0; }
   /// Whether it leads to a neighbour in the same chart.
   [[nodiscard]] constexpr bool isTrivial() const noexcept { return code_ == 0; }
-  [[nodiscard]] constexpr bool isBoundary() const noexcept {
-    return code_ % kInexact >= kFirstBoundary;
-  }
+  [[nodiscard]] constexpr bool isBoundary() const noexcept { return code_ >= kBoundary; }
 
   /// Into the neighbour's chart; the identity at the boundary.
-  [[nodiscard]] constexpr Rotation rotation() const noexcept {
-    const unsigned kind = code_ % kInexact;
-    return Rotation(static_cast<int>(kind < kFirstBoundary ? kind : 0));
-  }
+  [[nodiscard]] constexpr Rotation rotation() const noexcept { return Rotation(code_ % kInexact); }
   /// The axis across a boundary half-face; none of an inner one.
-  [[nodiscard]] constexpr AxisSet plane() const noexcept {
-    return (1U << code_ % kInexact) >> kFirstBoundary;
-  }
+  [[nodiscard]] constexpr AxisSet plane() const noexcept { return (1U << code_ / kBoundary) >> 1; }
 
  private:
-  static constexpr unsigned kFirstBoundary = Rotation::kCount;
+  // The bits of the byte: five for the rotation, one, and two for the axis plus one.
   static constexpr unsigned kInexact = 32;
+  static constexpr unsigned kBoundary = 64;
 
   constexpr HalfFaceCrossing(unsigned kind, bool isExact)
       : code_(static_cast<std::uint8_t>(kind | (isExact ? 0 : kInexact))) {}

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <base/bits.hpp>
+#include <base/branchless.hpp>
 #include <base/workspaces.hpp>
 #include <igm/irregular_vertices.hpp>
 
@@ -100,24 +101,29 @@ class StarClassifier {
   /// @return how many of these contain the direction
   std::size_t listRays(std::span<const VertexStar::Member> star) {
     if (rays_.size() <= 2 * star.size()) rays_.resize(4 * star.size());
-    rayCount_ = 0;
-    std::size_t cones = 0;
-    // Whether a ray leads into the octant cannot be predicted.
-    const auto add = [&](const VertexStar::Member& member, const Ray& ray) {
-      TetParameters scratch;
-      const TetParameters& u = parameters_.see(member.tet(), scratch);
-      rays_[rayCount_] = {member.corner, &ray};
-      rayCount_ += reachesOctant(u, member.corner % 4, ray) ? 1 : 0;
+    std::size_t count = 0;
+    // Neither where charts are rotated nor which octants are reached can be predicted.
+    const auto add = [&](CornerIndex corner, const Ray& ray, bool isWanted) {
+      rays_[count] = {corner, &ray};
+      count += isWanted ? 1 : 0;
     };
+    std::size_t cones = 0;
     for (const VertexStar::Member& member : star) {
       const auto& rays = kRays[static_cast<std::size_t>(member.rotation.index())];
-      if (!member.rotation.isIdentity()) {
-        add(member, rays[kNoReflection]);
-      } else {
-        cones += coneCorner(survey_.sides[member.tet()]) == member.corner % 4 ? 1 : 0;
-      }
-      if (planes_ != 0) add(member, rays[planeAxis(member.rotation)]);
+      const bool isRotated = !member.rotation.isIdentity();
+      const std::size_t cone = coneCorner(survey_.sides[member.tet()]);
+      cones += allOf(!isRotated, cone == member.corner % 4) ? 1 : 0;
+      add(member.corner, rays[kNoReflection], isRotated);
+      if (planes_ != 0) add(member.corner, rays[planeAxis(member.rotation)], true);
     }
+    const std::span listed = std::span(rays_).first(count);
+    count = 0;
+    for (const auto& [corner, ray] : listed) {
+      TetParameters scratch;
+      const TetParameters& u = parameters_.see(tetOf(corner), scratch);
+      add(corner, *ray, reachesOctant(u, corner % 4, *ray));
+    }
+    rayCount_ = count;
     return cones;
   }
 

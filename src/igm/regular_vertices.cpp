@@ -24,14 +24,16 @@ struct Planes {
   std::uint8_t all = 0;
   std::uint8_t below = 0;  ///< where the tet of some boundary face is on the smaller side
 
-  [[nodiscard]] bool isOne() const noexcept { return hasOneBit(all); }
   [[nodiscard]] bool areMany() const noexcept { return hasManyBits(all); }
 };
 
 /// The axes along which a triangle is constant, as bits.
 unsigned constantAxes(const Vec3& p, const Vec3& q, const Vec3& r) {
   unsigned axes = 0;
-  for (std::size_t k = 0; k < 3; ++k) axes |= (allOf(p[k] == q[k], p[k] == r[k]) ? 1U : 0U) << k;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double extent = std::abs(p[k] - q[k]) + std::abs(p[k] - r[k]);  // one comparison
+    axes |= (extent == 0 ? 1U : 0U) << k;
+  }
   return axes;
 }
 
@@ -57,7 +59,8 @@ void forEachPart(std::size_t begin, std::size_t end, const F& f) {
 }
 
 RegularVertices::BoundaryFace boundaryFace(const LocalParameters& parameters, HalfFace halfFace) {
-  const TetParameters u = parameters(tetOf(halfFace));
+  TetParameters scratch;  // NOLINT: written before it is read
+  const TetParameters& u = parameters.see(tetOf(halfFace), scratch);
   const std::array<int, 3>& corners = kFaceCorners[halfFace % 4];
   const Vec3& p = u[static_cast<std::size_t>(corners[0])];
   const Vec3& q = u[static_cast<std::size_t>(corners[1])];
@@ -189,7 +192,8 @@ class Survey {
     const std::size_t corner = coneCorner(sides);
     const Index vertex = tet[corner % 4];
     const Planes& planes = planes_[vertex];
-    cones.add(vertex, allOf(corner < 4, planes.isOne(), planes.below == 1U << (image % 4)));
+    const unsigned plane = 1U << (image % 4);
+    cones.add(vertex, allOf(corner < 4, planes.all == plane, planes.below == plane));
   }
 
   [[nodiscard]] std::array<TetSides, 2> sidesOf(Index t, const Vec3& direction, Index next,

@@ -102,6 +102,12 @@ class VertexEdges {
     std::uint32_t boundaryFaces;    ///< two in a manifold, or none; counted likewise
   };
 
+  /// A tet at an edge.
+  struct Wedge {
+    CornerIndex corner;  ///< at the vertex
+    std::size_t k;       ///< the edge leads to corner kOthers[corner % 4][k]
+  };
+
   /// Faces and edges are counted without branches, which could not be predicted.
   void collectEdges() {
     others_.clear();
@@ -129,7 +135,7 @@ class VertexEdges {
         const HalfFaceCrossing crossing = in_.crossings[4 * member.tet() + corners[k]];
         inward[k] = leadsInward(sides, corners[k]) ? 1 : 0;
         isNonTrivial[k] = crossing.isTrivial() ? 0 : 1;
-        isBoundary[k] = crossing.isBoundary() ? 1 : 0;
+        isBoundary[k] = member.neighbour[k] == kNone ? 1 : 0;
         boundaryFaces += isBoundary[k];
       }
       // The faces at the edge to corner k are those opposite the two other corners.
@@ -146,7 +152,8 @@ class VertexEdges {
     boundaryFaces_ = boundaryFaces;
   }
 
-  void addAngle(CornerIndex corner, std::size_t k, AngleSum& sum) const {
+  void addAngle(const Wedge& wedge, AngleSum& sum) const {
+    const auto [corner, k] = wedge;
     const std::array<std::uint8_t, 3>& others = kOthers[corner % 4];
     TetParameters scratch;
     const TetParameters& u = in_.parameters.see(tetOf(corner), scratch);
@@ -159,20 +166,29 @@ class VertexEdges {
     sum.add(dot(normalA, normalB), length(edge) * std::abs(dot(normalA, b)));
   }
 
-  /// Around an edge, in right angles.
-  [[nodiscard]] int sumOfAngles(Index e) const {
-    AngleSum sum;
+  /// Lists the tets around an edge, without branches: which ones these are cannot be predicted.
+  [[nodiscard]] std::span<const Wedge> wedgesAt(Index e) {
+    wedges_.resize(star_.size() + 1);
+    std::size_t count = 0;
     for (std::size_t i = 0; i < star_.size(); ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (numbers_[i][k] == e) addAngle(star_[i].corner, k, sum);
-      }
+      const std::array<Index, 3>& edges = numbers_[i];
+      const std::size_t k = (edges[1] == e ? 1U : 0U) + (edges[2] == e ? 2U : 0U);
+      wedges_[count] = {star_[i].corner, k};
+      count += edges[k] == e ? 1 : 0;
     }
+    return std::span(wedges_).first(count);
+  }
+
+  /// Around an edge, in right angles.
+  [[nodiscard]] int sumOfAngles(Index e) {
+    AngleSum sum;
+    for (const Wedge& wedge : wedgesAt(e)) addAngle(wedge, sum);
     return sum.rightAngles();
   }
 
   /// The number of hexahedra around an edge. If all tets around it lie in one chart, and are known
   /// to be positive, they turn around it as often as they meet any direction.
-  [[nodiscard]] int valenceOf(Index vertex, Index e) const {
+  [[nodiscard]] int valenceOf(Index vertex, Index e) {
     const Edge& edge = edges_[e];
     if (!in_.known.empty()) return regularValence(edge) + in_.known.at(vertex, edge.other);
     return edge.nonTrivialFaces > 0 ? sumOfAngles(e) : 4 * static_cast<int>(edge.turns);
@@ -200,18 +216,19 @@ class VertexEdges {
   }
 
   /// A singular edge, in the smallest tet at it.
-  [[nodiscard]] SingularEdge located(Index vertex, Index number, int valence) const {
+  [[nodiscard]] SingularEdge located(Index vertex, Index number, int valence) {
+    const std::span<const Wedge> wedges = wedgesAt(number);
+    const Wedge& first =
+        *std::min_element(wedges.begin(), wedges.end(),
+                          [](const Wedge& a, const Wedge& b) { return a.corner < b.corner; });
     const Edge& edge = edges_[number];
-    SingularEdge result{vertex, edge.other, kNone, 0, 0, edge.boundaryFaces > 0, valence};
-    for (std::size_t i = 0; i < star_.size(); ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (numbers_[i][k] != number || star_[i].tet() > result.tet) continue;
-        result.tet = star_[i].tet();
-        result.corner0 = static_cast<std::uint8_t>(star_[i].corner % 4);
-        result.corner1 = kOthers[result.corner0][k];
-      }
-    }
-    return result;
+    return {vertex,
+            edge.other,
+            tetOf(first.corner),
+            static_cast<std::uint8_t>(first.corner % 4),
+            kOthers[first.corner % 4][first.k],
+            edge.boundaryFaces > 0,
+            valence};
   }
 
   /// Whether the link, which the walk has found to be connected, is a sphere or, on the boundary, a
@@ -233,6 +250,7 @@ class VertexEdges {
   std::vector<Edge> edges_;  ///< more than are in use
   Index edgeCount_ = 0;
   std::vector<Index> candidates_;              ///< for being singular; more than are in use
+  std::vector<Wedge> wedges_;                  ///< more than are in use
   std::vector<std::array<Index, 3>> numbers_;  ///< per member of the star: of its edges
   std::int64_t boundaryFaces_ = 0;             ///< at the vertex
 };

@@ -53,8 +53,8 @@ class VertexStar {
     members[0].corner = 4 * first + localCorner(topology.tets[first], vertex);
     members[0].rotation = Rotation();
     Index count = 1 + number(first, 0);
-    AxisSet planes = 0;
     unsigned misfits = 0;
+    AxisSet planes = 0;
     // Looks through face k of a member, without branches: neither whether the member behind is new
     // nor where the boundary is can be predicted. At the boundary, a member is behind itself.
     const auto cross = [&](Index head, std::size_t k) {
@@ -64,7 +64,7 @@ class VertexStar {
           crossings.empty() ? HalfFaceCrossing() : crossings[halfFace];
       const HalfFace mate = topology.mate[halfFace];
       const bool isBoundary = mate == kNone;
-      const Index tet = isBoundary ? here.tet() : tetOf(mate);
+      const Index tet = tetOf(isBoundary ? halfFace : mate);
       prefetch(&topology.mate[4 * tet]);
       const Index j = number(tet, count);
       Member& behind = members[count];  // in vain if it is not new
@@ -93,8 +93,8 @@ class VertexStar {
       cross(head, entry == 2 ? 1 : 2);
     }
     count_ = count;
-    planes_ = planes;
     fits_ = misfits == 0;
+    planes_ = planes;
   }
 
   /// In the order of the walk.

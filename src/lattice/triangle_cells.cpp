@@ -11,6 +11,10 @@ namespace hexhex {
 
 namespace {
 
+// Of values: std::min and std::max, of references, become branches that cannot be predicted.
+constexpr std::int64_t lesser(std::int64_t a, std::int64_t b) noexcept { return a < b ? a : b; }
+constexpr std::int64_t greater(std::int64_t a, std::int64_t b) noexcept { return a < b ? b : a; }
+
 /// Two straight lines through the centre of a cell, and the corners of the triangle by their
 /// weights in the points where its plane meets the lines. With a half diagonal as long as `sum`,
 /// the plane is as far from the centre as the determinant of the triangle's corners says.
@@ -68,7 +72,8 @@ TriangleCells::TriangleCells(const std::array<LatticePoint, 3>& corners, std::in
   double size = 1;
   cells_ = 1;
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto [low, high] = std::minmax({corners[0][k], corners[1][k], corners[2][k]});
+    const std::int64_t low = lesser(lesser(corners[0][k], corners[1][k]), corners[2][k]);
+    const std::int64_t high = greater(greater(corners[0][k], corners[1][k]), corners[2][k]);
     origin_[k] = static_cast<std::int32_t>(low >> shift);
     const std::int64_t origin = std::int64_t{origin_[k]} << shift;
     first_[k] = firstHalfCell(low - origin, shift);
