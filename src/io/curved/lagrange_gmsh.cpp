@@ -1,9 +1,7 @@
 // Gmsh's files of Lagrange cells.
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -80,80 +78,45 @@ void appendGmshHex(std::vector<Node>& nodes, int low, int high) {
   appendGmshHex(nodes, low + 1, high - 1);
 }
 
-constexpr std::size_t kGrain = std::size_t{1} << 12;
-
-// A place is 16 * cell + slot: a cell has 12 edges and 6 faces.
-constexpr std::uint64_t kSlots = 16;
-
-template <std::size_t n>
-std::array<Index, n> sorted(std::array<Index, n> vertices) {
-  std::sort(vertices.begin(), vertices.end());
-  return vertices;
-}
-
-template <std::size_t n>
-std::array<Index, n> verticesAt(const Hex& cell, const std::array<std::uint8_t, n>& corners) {
-  std::array<Index, n> vertices;
-  for (std::size_t i = 0; i < n; ++i) vertices[i] = cell[corners[i]];
-  return vertices;
-}
+/// A cell, and which of its edges or faces an element is.
+struct ElementPlace {
+  std::uint64_t cell;
+  std::size_t slot;
+};
 
 /// Finds elements, which are few, in the cells that have them.
-template <std::size_t n>
 class ElementFinder {
  public:
-  ElementFinder(const HexMesh& mesh, std::span<const std::array<Index, n>> elements)
-      : mesh_(mesh), marked_(mesh.points.size(), 0), places_(elements.size(), kNoPlace) {
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-      wanted_.emplace_back(sorted(elements[i]), i);
-      for (const Index vertex : elements[i]) marked_[vertex] = 1;
-    }
-    std::sort(wanted_.begin(), wanted_.end());
-  }
+  ElementFinder(const HexMesh& mesh, Stage& stage) : mesh_(mesh), stage_(stage) {}
 
-  /// The first place of each element, or kNoPlace.
-  /// @param corners  of the elements of a cell, by slot
-  template <std::size_t slots>
-  std::vector<std::uint64_t> find(const std::array<std::array<std::uint8_t, n>, slots>& corners,
-                                  Stage& stage) {
-    static_assert(slots <= kSlots);
-    if (wanted_.empty()) return std::move(places_);
-    parallelFor(stage, mesh_.cells.size(), kGrain, [&](std::size_t c) {
-      const Hex& cell = mesh_.cells[c];
-      const auto count = std::count_if(cell.begin(), cell.end(),
-                                       [this](Index vertex) { return marked_[vertex] != 0; });
-      if (static_cast<std::size_t>(count) < n) return;
+  /// The first place of an element.
+  /// @param corners  of such elements of a cell, by slot
+  /// @param what  for the message
+  /// @throws Error InvalidArgument for an element that is none of a cell
+  template <std::size_t n, std::size_t slots>
+  ElementPlace find(const std::array<Index, n>& element,
+                    const std::array<std::array<std::uint8_t, n>, slots>& corners,
+                    const char* what) {
+    if (around_.empty()) around_ = cellsAroundVertices(mesh_, stage_);
+    for (const Index cell : around_.at(element[0])) {
       for (std::size_t slot = 0; slot < slots; ++slot) {
-        offer(sorted(verticesAt(cell, corners[slot])), kSlots * c + slot);
+        std::array<Index, n> vertices{};
+        for (std::size_t i = 0; i < n; ++i) vertices[i] = mesh_.cells[cell][corners[slot][i]];
+        if (std::is_permutation(vertices.begin(), vertices.end(), element.begin())) {
+          return {cell, slot};
+        }
       }
-    });
-    return std::move(places_);
+    }
+    std::string text = std::string("The tagged ") + what;
+    for (const Index vertex : element) text.append(1, ' ').append(std::to_string(vertex));
+    throw Error(ErrorCode::InvalidArgument, text + " belongs to no cell of the mesh.");
   }
 
  private:
-  using Wanted = std::pair<std::array<Index, n>, std::size_t>;
-
-  void offer(const std::array<Index, n>& vertices, std::uint64_t place) {
-    for (auto found = std::lower_bound(wanted_.begin(), wanted_.end(), Wanted{vertices, 0});
-         found != wanted_.end() && found->first == vertices; ++found) {
-      const std::atomic_ref known(places_[found->second]);
-      std::uint64_t before = known.load(std::memory_order_relaxed);
-      while (place < before && !known.compare_exchange_weak(before, place)) {
-      }
-    }
-  }
-
   const HexMesh& mesh_;
-  std::vector<std::uint8_t> marked_;  ///< per vertex: whether a wanted element has it
-  std::vector<Wanted> wanted_;        ///< by their vertices
-  std::vector<std::uint64_t> places_;
+  Stage& stage_;
+  VertexCells around_;  ///< found when it is needed
 };
-
-[[noreturn]] void failAbout(const char* what, std::span<const Index> vertices) {
-  std::string text = std::string("The tagged ") + what;
-  for (const Index vertex : vertices) text.append(1, ' ').append(std::to_string(vertex));
-  throw Error(ErrorCode::InvalidArgument, text + " belongs to no cell of the mesh.");
-}
 
 /// Appends the nodes from + i * stepI + j * stepJ of a cell, where (i, j, 0) are the nodes of a
 /// list. Steps lead from one corner towards two others.
@@ -182,20 +145,16 @@ std::vector<std::uint32_t> gmshNodeOrder(int order) {
 
 /// The nodes of tagged edges, order + 1 each, in Gmsh's order.
 /// @param straight  what straightMesh() returns
-/// @throws Error InvalidArgument for an edge that is none of a cell
 Array<Index> gmshEdgeNodes(const LagrangeMesh& mesh, const HexMesh& straight,
-                           const EdgeGroups& edges, Stage& stage) {
+                           const EdgeGroups& edges, ElementFinder& finder) {
   std::vector<Node> list = {{0, 0, 0}, {mesh.order, 0, 0}};
   append(list, between(list[0], list[1], mesh.order - 1));
-  const std::vector<std::uint64_t> places =
-      ElementFinder<2>(straight, edges.elements).find(kHexEdges, stage);
   Array<Index> nodes;
-  nodes.reserve(places.size() * list.size());
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (places[i] == kNoPlace) failAbout("edge", edges.elements[i]);
-    const std::uint64_t cell = places[i] / kSlots;
-    auto [a, b] = kHexEdges[places[i] % kSlots];
-    if (straight.cells[cell][a] != edges.elements[i][0]) std::swap(a, b);
+  nodes.reserve(edges.elements.size() * list.size());
+  for (const std::array<Index, 2>& edge : edges.elements) {
+    const auto [cell, slot] = finder.find(edge, kHexEdges, "edge");
+    auto [a, b] = kHexEdges[slot];
+    if (straight.cells[cell][a] != edge[0]) std::swap(a, b);
     appendNodes(mesh, cell, {a, b, b}, list, nodes);
   }
   return nodes;
@@ -204,29 +163,17 @@ Array<Index> gmshEdgeNodes(const LagrangeMesh& mesh, const HexMesh& straight,
 /// The nodes of quads, (order + 1)^2 each, in Gmsh's order; those of the boundary run
 /// counter-clockwise seen from outside, those inside the mesh so seen from outside of the first
 /// cell that they belong to.
-/// @throws Error InvalidArgument for a quad that is no face of a cell
-Array<Index> gmshQuadNodes(const LagrangeMesh& mesh, const HexMesh& straight,
-                           const QuadGroups& quads, Stage& stage) {
+Array<Index> gmshQuadNodes(const LagrangeMesh& mesh, const QuadGroups& quads,
+                           ElementFinder& finder) {
   const int p = mesh.order;
   std::vector<Node> list;
   appendGmshQuad(list, {{{0, 0, 0}, {p, 0, 0}, {p, p, 0}, {0, p, 0}}}, p);
-  std::vector<Quad> inside;
-  for (std::size_t i = 0; i < quads.elements.size(); ++i) {
-    if (quads.places[i] == kNoPlace) inside.push_back(quads.elements[i]);
-  }
-  const std::vector<std::uint64_t> found =
-      ElementFinder<4>(straight, inside).find(kHexFaces, stage);
   Array<Index> nodes;
   nodes.reserve(quads.elements.size() * list.size());
-  std::size_t next = 0;
   for (std::size_t i = 0; i < quads.elements.size(); ++i) {
-    std::uint64_t cell = quads.places[i] / 8;
-    std::uint64_t face = quads.places[i] % 8;
-    if (quads.places[i] == kNoPlace) {
-      if (found[next] == kNoPlace) failAbout("quad", quads.elements[i]);
-      cell = found[next] / kSlots;
-      face = found[next++] % kSlots;
-    }
+    const std::uint64_t place = quads.places[i];
+    const auto [cell, face] = place == kNoPlace ? finder.find(quads.elements[i], kHexFaces, "quad")
+                                                : ElementPlace{place / 8, place % 8};
     const auto& corners = kHexFaces[face];
     appendNodes(mesh, cell, {corners[0], corners[1], corners[3]}, list, nodes);
   }
@@ -245,8 +192,9 @@ void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& fi
   Array<Index> lines;
   Array<Index> quads;
   withThreads(context.threads(), [&] {
-    lines = gmshEdgeNodes(mesh, straight, groups.edges, stage);
-    quads = gmshQuadNodes(mesh, straight, groups.quads, stage);
+    ElementFinder finder(straight, stage);
+    lines = gmshEdgeNodes(mesh, straight, groups.edges, finder);
+    quads = gmshQuadNodes(mesh, groups.quads, finder);
   });
   straight = {};
 

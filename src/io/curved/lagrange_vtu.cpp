@@ -197,22 +197,13 @@ LagrangeMesh readLagrangeVtu(const std::filesystem::path& file, Context& context
 void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& file,
                       const WriteOptions& options, Context& context) {
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  Array<double> computed;
-  std::span<const double> quality = options.scaledJacobians;
-  if (quality.empty()) quality = computed = scaledJacobians(mesh, context);
-  Stage stage(context, "write mesh");
   const std::size_t perCell = mesh.nodesPerCell();
   const std::vector<std::uint32_t> order = vtkNodeOrder(mesh.order);
+  const PointPiece nodes = {0, mesh.points, mesh.generatorTet, mesh.generatorCorners};
   VtkDataSet data(mesh.points.size(), mesh.cellCount());
   data.curved = true;
-  data.add(VtkSection::Points, "Points", std::span<const Vec3>(mesh.points));
-  data.add(VtkSection::PointData, kVtkGeneratorTets, std::span<const Index>(mesh.generatorTet));
-  data.add(VtkSection::PointData, kVtkGeneratorCorners,
-           std::span<const CornerSet>(mesh.generatorCorners));
-  data.addComputed<std::uint8_t>(
-      VtkSection::PointData, "generator_kind", mesh.generatorCorners.size(),
-      [&mesh](std::size_t i) { return generatorKind(mesh.generatorCorners[i]); });
-  data.add(VtkSection::CellData, "scaled_jacobian", quality);
+  addPoints(data, std::span(&nodes, 1));
+  addQuality(data, mesh, options, context);
   addTags(data, mesh.features, mesh.regions);  // vertices are the first nodes
   data.addComputed<std::int64_t>(VtkSection::Cells, "connectivity", mesh.nodes.size(),
                                  [&](std::size_t i) {
@@ -223,6 +214,7 @@ void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& fil
                                  [perCell](std::size_t i) { return perCell * (i + 1); });
   data.addComputed<std::uint8_t>(VtkSection::Cells, "types", data.cells,
                                  [](std::size_t) { return kVtkLagrangeHexahedron; });
+  Stage stage(context, "write mesh");
   writeVtkXml(output, data, false, stage);
 }
 

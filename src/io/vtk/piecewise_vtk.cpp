@@ -2,7 +2,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include <base/stage.hpp>
@@ -17,48 +16,11 @@ namespace {
 
 bool isPolyData(const std::filesystem::path& file) { return lowerCaseExtension(file) == ".vtp"; }
 
-/// Points of several lists, one after the other.
-struct JoinedPoints {
-  std::vector<VtkPiece> parts;
-
-  /// The vertices of hexahedra and the inner points of arcs.
-  explicit JoinedPoints(const PiecewiseLinearMesh& mesh)
-      : parts{{mesh.mesh.points, mesh.mesh.generatorTet, mesh.mesh.generatorCorners},
-              {mesh.arcs.points, mesh.arcs.generatorTet, mesh.arcs.generatorCorners}} {}
-
-  [[nodiscard]] std::uint64_t count() const {
-    std::uint64_t sum = 0;
-    for (const VtkPiece& part : parts) sum += part.points.size();
-    return sum;
-  }
-
-  /// What all parts have in memory.
-  /// @tparam T  the number type
-  template <class T, class Value>
-  void addArray(VtkDataSet& data, VtkSection section, std::string_view name, std::size_t components,
-                std::span<const Value> VtkPiece::*values) const {
-    data.add<T>(section, name, components, count(), [this, values](const VtkBytes& output) {
-      for (const VtkPiece& part : parts) {
-        output((part.*values).data(), (part.*values).size_bytes());
-      }
-    });
-  }
-
-  void addTo(VtkDataSet& data) const {
-    addArray<double>(data, VtkSection::Points, "Points", 3, &VtkPiece::points);
-    addArray<Index>(data, VtkSection::PointData, kVtkGeneratorTets, 1, &VtkPiece::generatorTets);
-    addArray<CornerSet>(data, VtkSection::PointData, kVtkGeneratorCorners, 1,
-                        &VtkPiece::generatorCorners);
-    data.add<std::uint8_t>(
-        VtkSection::PointData, "generator_kind", 1, count(), [this](const VtkBytes& output) {
-          for (const VtkPiece& part : parts) {
-            writeValues<std::uint8_t>(output, part.generatorCorners.size(), [&](std::size_t i) {
-              return generatorKind(part.generatorCorners[i]);
-            });
-          }
-        });
-  }
-};
+/// The vertices of hexahedra and the inner points of arcs.
+std::vector<PointPiece> pointsOf(const PiecewiseLinearMesh& mesh) {
+  return {{0, mesh.mesh.points, mesh.mesh.generatorTet, mesh.mesh.generatorCorners},
+          {0, mesh.arcs.points, mesh.arcs.generatorTet, mesh.arcs.generatorCorners}};
+}
 
 /// The simplices that cells lie in.
 void addCarriers(VtkDataSet& data, std::span<const Index> tets,
@@ -116,11 +78,11 @@ void writeArcsVtk(const PiecewiseLinearMesh& mesh, const std::filesystem::path& 
   const Arcs& arcs = mesh.arcs;
   const std::size_t vertices = mesh.mesh.points.size();
   const std::size_t segments = arcs.segmentTet.size();
-  const JoinedPoints points(mesh);
-  VtkDataSet data(points.count(), segments,
+  const std::vector<PointPiece> points = pointsOf(mesh);
+  VtkDataSet data(vertices + arcs.points.size(), segments,
                   isPolyData(path) ? VtkSection::Lines : VtkSection::Cells);
   data.curved = true;
-  points.addTo(data);
+  addPoints(data, points);
   data.addComputed<std::int32_t>(
       VtkSection::PointData, "hex_edge", data.points,
       [vertices, arcOfPoint = rowOfEach(arcs.pointBegin, 0)](std::size_t i) {
@@ -147,12 +109,12 @@ void writePatchesVtk(const PiecewiseLinearMesh& mesh, const std::filesystem::pat
   const std::size_t vertices = mesh.mesh.points.size();
   const std::size_t shared = vertices + mesh.arcs.points.size();
   const std::size_t polygons = patches.polygonTet.size();
-  JoinedPoints points(mesh);
-  points.parts.push_back({patches.points, patches.generatorTet, patches.generatorCorners});
-  VtkDataSet data(points.count(), polygons,
+  std::vector<PointPiece> points = pointsOf(mesh);
+  points.push_back({0, patches.points, patches.generatorTet, patches.generatorCorners});
+  VtkDataSet data(shared + patches.points.size(), polygons,
                   isPolyData(path) ? VtkSection::Polys : VtkSection::Cells);
   data.curved = true;
-  points.addTo(data);
+  addPoints(data, points);
   data.addComputed<std::uint8_t>(
       VtkSection::PointData, "point_kind", data.points,
       [vertices, shared](std::size_t i) { return i < vertices ? 0 : (i < shared ? 1 : 2); });

@@ -36,14 +36,51 @@ std::vector<std::int64_t> rowsOf(const std::vector<Feature>& features) {
   return rows;
 }
 
-/// What a piece has in memory.
+/// Number of rows of an array that lists of points have all, or none of them.
+template <class Value>
+std::uint64_t rowsIn(const VtkDataSet& data, std::span<const PointPiece> lists,
+                     std::span<const Value> PointPiece::*values) {
+  const auto isEmpty = [values](const PointPiece& list) { return (list.*values).empty(); };
+  return std::all_of(lists.begin(), lists.end(), isEmpty) ? 0 : data.points;
+}
+
+/// What lists of points have in memory.
 /// @tparam T  the number type
 template <class T, class Value>
-void addPart(VtkDataSet& data, VtkSection section, std::string_view name, std::size_t components,
-             const VtkPiece& piece, std::span<const Value> VtkPiece::*part) {
-  data.add<T>(section, name, components, data.points, [&piece, part](const VtkBytes& output) {
-    output((piece.*part).data(), (piece.*part).size_bytes());
-  });
+void addLists(VtkDataSet& data, VtkSection section, std::string_view name, std::size_t components,
+              std::span<const PointPiece> lists, std::span<const Value> PointPiece::*values) {
+  data.add<T>(section, name, components, rowsIn(data, lists, values),
+              [lists, values](const VtkBytes& output) {
+                for (const PointPiece& list : lists) {
+                  output((list.*values).data(), (list.*values).size_bytes());
+                }
+              });
+}
+
+void addCoordinates(VtkDataSet& data, std::span<const PointPiece> lists) {
+  addLists<double>(data, VtkSection::Points, "Points", 3, lists, &PointPiece::points);
+}
+
+void addGeneratorTets(VtkDataSet& data, std::span<const PointPiece> lists) {
+  addLists<Index>(data, VtkSection::PointData, kVtkGeneratorTets, 1, lists,
+                  &PointPiece::generatorTet);
+}
+
+void addGeneratorCorners(VtkDataSet& data, std::span<const PointPiece> lists) {
+  addLists<CornerSet>(data, VtkSection::PointData, kVtkGeneratorCorners, 1, lists,
+                      &PointPiece::generatorCorners);
+}
+
+void addGeneratorKinds(VtkDataSet& data, std::span<const PointPiece> lists) {
+  const auto kinds = [lists](const VtkBytes& output) {
+    for (const PointPiece& list : lists) {
+      writeValues<std::uint8_t>(output, list.generatorCorners.size(), [&](std::size_t i) {
+        return generatorKind(list.generatorCorners[i]);
+      });
+    }
+  };
+  data.add<std::uint8_t>(VtkSection::PointData, "generator_kind", 1,
+                         rowsIn(data, lists, &PointPiece::generatorCorners), kinds);
 }
 
 /// @tparam Corner  the number type in the file
@@ -95,21 +132,13 @@ void addTagsOf(VtkDataSet& data, const AnyFeatures& features, std::string_view f
 VtkDataSet meshDataSet(const VtkPiece& piece, std::uint64_t points, std::uint64_t cells,
                        std::size_t corners, std::uint8_t type) {
   VtkDataSet data(points, cells);
-  if (!piece.generatorCorners.empty()) {
-    data.add<std::uint8_t>(
-        VtkSection::PointData, "generator_kind", 1, points, [&piece](const VtkBytes& output) {
-          writeValues<std::uint8_t>(output, piece.generatorCorners.size(), [&](std::size_t i) {
-            return generatorKind(piece.generatorCorners[i]);
-          });
-        });
-    addPart<CornerSet>(data, VtkSection::PointData, kVtkGeneratorCorners, 1, piece,
-                       &VtkPiece::generatorCorners);
+  const std::span lists(&piece.vertices, 1);
+  if (!piece.vertices.generatorCorners.empty()) {
+    addGeneratorKinds(data, lists);
+    addGeneratorCorners(data, lists);
   }
-  if (!piece.generatorTets.empty()) {
-    addPart<Index>(data, VtkSection::PointData, kVtkGeneratorTets, 1, piece,
-                   &VtkPiece::generatorTets);
-  }
-  addPart<double>(data, VtkSection::Points, "Points", 3, piece, &VtkPiece::points);
+  if (!piece.vertices.generatorTet.empty()) addGeneratorTets(data, lists);
+  addCoordinates(data, lists);
   // 32-bit numbers are signed, since every reader takes those.
   constexpr std::uint64_t kLargestInt32 = std::numeric_limits<std::int32_t>::max();
   const auto addCornersAs =
@@ -125,6 +154,13 @@ VtkDataSet meshDataSet(const VtkPiece& piece, std::uint64_t points, std::uint64_
   return data;
 }
 
+void addPoints(VtkDataSet& data, std::span<const PointPiece> lists) {
+  addCoordinates(data, lists);
+  addGeneratorTets(data, lists);
+  addGeneratorCorners(data, lists);
+  addGeneratorKinds(data, lists);
+}
+
 void addTags(VtkDataSet& data, const HexFeatures& features, std::span<const std::int32_t> regions) {
   addTagsOf(data, features, kVtkQuadTags, features.quads, regions);
 }
@@ -133,14 +169,13 @@ void addTags(VtkDataSet& data, const Features& features, std::span<const std::in
   addTagsOf(data, features, kVtkTriangleTags, features.faces, regions);
 }
 
-VtkDataSet hexDataSet(const HexMesh& mesh, std::span<const double> quality, VtkPiece& piece) {
-  piece = {.points = mesh.points,
-           .generatorTets = mesh.generatorTet,
-           .generatorCorners = mesh.generatorCorners};
+VtkDataSet hexDataSet(const HexMesh& mesh, const WriteOptions& options, VtkPiece& piece,
+                      Context& context) {
+  piece.vertices = {0, mesh.points, mesh.generatorTet, mesh.generatorCorners};
   piece.setCells(0, std::span<const Hex>(mesh.cells));
   VtkDataSet data = meshDataSet(piece, mesh.points.size(), mesh.cells.size(),
                                 std::tuple_size_v<Hex>, kVtkHexahedron);
-  data.add(VtkSection::CellData, "scaled_jacobian", quality);
+  addQuality(data, mesh, options, context);
   addTags(data, mesh.features, mesh.regions);
   return data;
 }

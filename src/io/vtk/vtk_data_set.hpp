@@ -13,6 +13,10 @@
 #include <utility>
 #include <vector>
 
+#include <hexhex/context.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/quality.hpp>
+#include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
@@ -147,9 +151,7 @@ class VtkDataSet {
 
 /// Vertices and cells of a mesh, all or some of them: what the arrays of meshDataSet() write next.
 struct VtkPiece {
-  std::span<const Vec3> points = {};
-  std::span<const Index> generatorTets = {};
-  std::span<const CornerSet> generatorCorners = {};
+  PointPiece vertices = {};
   std::uint64_t firstCell = 0;
   std::size_t cells = 0;
   std::span<const Index> corners = {};  ///< of the cells; or wide ones:
@@ -174,6 +176,21 @@ struct VtkPiece {
 [[nodiscard]] VtkDataSet meshDataSet(const VtkPiece& piece, std::uint64_t points,
                                      std::uint64_t cells, std::size_t corners, std::uint8_t type);
 
+/// Adds points and the arrays generator_tet, generator_corners and generator_kind.
+/// @param lists  of points, one behind the other; outlive the data set
+void addPoints(VtkDataSet& data, std::span<const PointPiece> lists);
+
+/// Adds the cell array scaled_jacobian: what the options say or, if that is nothing, what is
+/// computed.
+template <class Mesh>
+void addQuality(VtkDataSet& data, const Mesh& mesh, const WriteOptions& options, Context& context) {
+  constexpr std::string_view kName = "scaled_jacobian";
+  if (!options.scaledJacobians.empty()) {
+    return data.add(VtkSection::CellData, kName, options.scaledJacobians);
+  }
+  data.addOwn(VtkSection::CellData, kName, scaledJacobians(mesh, context));
+}
+
 /// Adds tags and regions: the point array feature_vertex (Int32), the field arrays feature_edges,
 /// feature_triangles and feature_quads (Int64: vertices and the tag), and the cell array region
 /// (Int32); each if there are any.
@@ -183,9 +200,9 @@ void addTags(VtkDataSet& data, const HexFeatures& features, std::span<const std:
 void addTags(VtkDataSet& data, const Features& features, std::span<const std::int32_t> regions);
 
 /// What `.vtu` and `.vtkhdf` hold of a hex mesh, as writeVtu() describes it.
-/// @param piece, quality  outlive the data set, as the mesh does
-[[nodiscard]] VtkDataSet hexDataSet(const HexMesh& mesh, std::span<const double> quality,
-                                    VtkPiece& piece);
+/// @param piece  outlives the data set, as the mesh and the options do
+[[nodiscard]] VtkDataSet hexDataSet(const HexMesh& mesh, const WriteOptions& options,
+                                    VtkPiece& piece, Context& context);
 
 /// Writes and commits a file of VTK's XML, array by array. One thread does it, straight from
 /// memory: that is as fast as the file system takes bytes, which lets one thread at a time write to

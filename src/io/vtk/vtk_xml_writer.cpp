@@ -10,7 +10,6 @@
 #include <tuple>
 
 #include <hexhex/error.hpp>
-#include <hexhex/quality.hpp>
 
 #include <base/parallel.hpp>
 #include <io/core/checked_sink.hpp>
@@ -264,9 +263,7 @@ class VtuStream {
     cellCount_ = cells;
   }
   void points(const PointPiece& piece) {
-    piece_ = {.points = piece.points,
-              .generatorTets = piece.generatorTet,
-              .generatorCorners = piece.generatorCorners};
+    piece_.vertices = piece;
     beginFile();
     writeRows(true);
   }
@@ -348,12 +345,10 @@ void writeVtu(const HexMesh& mesh, const std::filesystem::path& file, const Writ
               Context& context) {
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
   if (options.compress) requireCompressible(output, file);
-  Array<double> computedQuality;
-  std::span<const double> quality = options.scaledJacobians;
-  if (quality.empty()) quality = computedQuality = scaledJacobians(mesh, context);
-  Stage stage(context, "write mesh");
   VtkPiece piece;
-  writeVtkXml(output, hexDataSet(mesh, quality, piece), options.compress, stage);
+  const VtkDataSet data = hexDataSet(mesh, options, piece, context);
+  Stage stage(context, "write mesh");
+  writeVtkXml(output, data, options.compress, stage);
 }
 
 void writeVtuMap(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
@@ -363,7 +358,8 @@ void writeVtuMap(const TetMap& map, const std::filesystem::path& file, const Wri
   OutputFile output(file);
   if (options.compress) requireCompressible(output, file);
   withThreads(context.threads(), [&] { requireWritable(map, stage); });
-  VtkPiece piece{.points = map.points};
+  VtkPiece piece;
+  piece.vertices.points = map.points;
   piece.setCells(0, std::span<const Tet>(map.tets));
   VtkDataSet data =
       meshDataSet(piece, map.points.size(), map.tets.size(), std::tuple_size_v<Tet>, kVtkTet);

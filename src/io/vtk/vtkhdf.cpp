@@ -2,12 +2,10 @@
 #include <cstdint>
 #include <hdf5.h>
 #include <mutex>
-#include <span>
 #include <string>
 #include <string_view>
 
 #include <hexhex/error.hpp>
-#include <hexhex/quality.hpp>
 
 #include <base/stage.hpp>
 #include <io/core/output_file.hpp>
@@ -203,12 +201,9 @@ void writeVtkHdf(const HexMesh& mesh, const std::filesystem::path& file,
                  const WriteOptions& options, Context& context) {
   // First, so that a folder that is not writable shows at once.
   OutputFile target(file, OutputFile::Target::Regular);
-  Array<double> computedQuality;
-  std::span<const double> quality = options.scaledJacobians;
-  if (quality.empty()) quality = computedQuality = scaledJacobians(mesh, context);
-  Stage stage(context, "write mesh");
   VtkPiece piece;
-  const VtkDataSet data = hexDataSet(mesh, quality, piece);
+  const VtkDataSet data = hexDataSet(mesh, options, piece, context);
+  Stage stage(context, "write mesh");
   {
     const std::lock_guard lock(libraryLock());
     const QuietHdf quiet;
