@@ -29,6 +29,22 @@ namespace hexhex {
 /// What a property belongs to; the numbers are those of `.ovmb`.
 enum class OvmEntity : std::uint8_t { Vertex, Edge, Face, Cell, HalfEdge, HalfFace, Mesh };
 
+/// Vertices, edges, faces and cells as files and sentences call them.
+struct OvmElements {
+  const char* section;  ///< of `.ovm`
+  const char* one;
+  const char* many;
+  const char* parts;           ///< what an element names
+  std::uint32_t leastValence;  ///< fewer half-edges or half-faces enclose nothing
+  std::size_t fewestBytes;     ///< of the shortest lines, e.g. "0 0 0", "0 1", "3 0 2 4", with ends
+};
+/// By entity.
+inline constexpr std::array<OvmElements, 4> kOvmElements = {
+    {{"Vertices", "vertex", "vertices", "", 0, 6},
+     {"Edges", "edge", "edges", "vertex", 2, 4},
+     {"Faces", "face", "faces", "half-edge", 3, 8},
+     {"Polyhedra", "cell", "cells", "half-face", 4, 10}}};
+
 /// By entity: the first word of the line of `.ovm` that begins a property.
 inline constexpr std::array<std::string_view, 7> kOvmPropertyWords = {
     "VProp", "EProp", "FProp", "CProp", "HEProp", "HFProp", "MProp"};
@@ -140,13 +156,6 @@ struct OvmProperties {
   [[nodiscard]] const Array<std::int32_t>& operator[](OvmInteger property) const noexcept {
     return integers[static_cast<std::size_t>(property)];
   }
-  /// The values of a property of integers by its name in files; null if it is not known.
-  [[nodiscard]] Array<std::int32_t>* find(OvmEntity entity, std::string_view name) noexcept {
-    for (std::size_t i = 0; i < integers.size(); ++i) {
-      if (kOvmIntegers[i].entity == entity && kOvmIntegers[i].name == name) return &integers[i];
-    }
-    return nullptr;
-  }
   /// All properties that there are, in the order in which they are written.
   [[nodiscard]] std::vector<OvmProperty> listed() && {
     std::vector<OvmProperty> list;
@@ -161,6 +170,9 @@ struct OvmProperties {
   }
 };
 
+/// What the values of a property are.
+enum class OvmNumbers : std::uint8_t { Integers, Points, Others };
+
 /// A mesh as it was read.
 struct OvmMesh {
   Array<Vec3> points;
@@ -168,6 +180,27 @@ struct OvmMesh {
   OvmProperties properties;
   /// Whether the file has a property of the map's name that is no map, for error messages.
   bool hasForeignParametrization = false;
+
+  /// Where the values of a property go. Both are null if it is not known, or came before.
+  struct Destination {
+    Array<Vec3>* points = nullptr;
+    Array<std::int32_t>* integers = nullptr;
+  };
+  [[nodiscard]] Destination destinationOf(OvmEntity entity, std::string_view name,
+                                          OvmNumbers numbers) {
+    if (name == kParametrizationName) {
+      const bool isMap = entity == OvmEntity::HalfFace && numbers == OvmNumbers::Points;
+      Array<Vec3>& values = properties.parametrization;
+      if (isMap && values.empty()) return {.points = &values};
+      hasForeignParametrization = true;
+    }
+    for (std::size_t i = 0; i < kOvmIntegers.size(); ++i) {
+      if (kOvmIntegers[i].entity != entity || kOvmIntegers[i].name != name) continue;
+      Array<std::int32_t>& values = properties.integers[i];
+      if (numbers == OvmNumbers::Integers && values.empty()) return {.integers = &values};
+    }
+    return {};
+  }
 };
 
 /// A mesh as it is written.

@@ -1,6 +1,6 @@
 // Cuts an `.ovmb` file into its chunks, and decodes its properties (see ovmb_reader.hpp).
 #include <algorithm>
-#include <optional>
+#include <array>
 #include <span>
 #include <string>
 #include <utility>
@@ -25,14 +25,6 @@ struct ChunkHeader {
   std::uint8_t flags = 0;
   std::uint64_t length = 0;  ///< of the body, including padding
 };
-
-std::optional<OvmbChunkType> typeOf(std::string_view name) {
-  if (name == "VERT") return OvmbChunkType::Vertices;
-  if (name == "TOPO") return OvmbChunkType::Topology;
-  if (name == "DIRP") return OvmbChunkType::Directory;
-  if (name == "PROP") return OvmbChunkType::Property;
-  return std::nullopt;
-}
 
 void readFileHeader(OvmbFrame& frame, ByteCursor& cursor) {
   if (!isOvmb(frame.bytes)) {
@@ -105,8 +97,9 @@ std::string_view takePayload(const ChunkHeader& header, ByteCursor& cursor) {
 
 /// Whether a chunk is of a kind that this library knows; if not, it has to be optional.
 bool isKnown(const ChunkHeader& header, const ByteCursor& cursor) {
-  const bool known = (typeOf(header.type) || header.type == "EOF ") && header.version == 0 &&
-                     header.compression == 0;
+  constexpr std::array<std::string_view, 5> kTypes = {"VERT", "TOPO", "DIRP", "PROP", "EOF "};
+  const bool known = std::find(kTypes.begin(), kTypes.end(), header.type) != kTypes.end() &&
+                     header.version == 0 && header.compression == 0;
   if (known || (header.flags & kMandatory) == 0) return known;
   cursor.failAt(header.position, ErrorCode::FileUnsupported,
                 "the chunk " + quoted(header.type) + " (version " + std::to_string(header.version) +
@@ -136,7 +129,7 @@ OvmbFrame splitOvmb(std::string_view bytes, const std::string& fileName) {
       }
       break;
     }
-    frame.chunks.push_back({*typeOf(header.type), payload});
+    frame.chunks.push_back({header.type, payload});
   }
   if (cursor.remaining() > 0) {
     cursor.fail(ErrorCode::FileSyntax,
@@ -177,9 +170,7 @@ struct Entry {
   std::string_view name;
   std::string_view type;
   std::string_view defaultValue;
-  // Where its values go, if they are wanted.
-  Array<Vec3>* points = nullptr;
-  Array<std::int32_t>* integers = nullptr;
+  OvmMesh::Destination destination = {};
 };
 
 Entry readEntry(ByteCursor& cursor) {
@@ -229,17 +220,97 @@ class PropertyReader {
   PropertyReader(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage)
       : frame_(frame), mesh_(mesh), stage_(stage) {}
 
-  void readDirectory(std::string_view payload);
-  void readProperty(std::string_view payload);
+  void readDirectory(std::string_view payload) {
+    ByteCursor cursor = frame_.cursor(payload);
+    if (hasDirectory_) cursor.fail(ErrorCode::FileSyntax, "there is a second DIRP chunk.");
+    hasDirectory_ = true;
+    while (cursor.remaining() > 0) {
+      Entry entry = readEntry(cursor);
+      entry.destination = mesh_.destinationOf(entry.entity, entry.name, numbersOf(entry.type));
+      if (entry.destination.points != nullptr) makeDefault(entry, *entry.destination.points);
+      if (entry.destination.integers != nullptr) makeDefault(entry, *entry.destination.integers);
+      entries_.push_back(entry);
+    }
+  }
+
+  void readProperty(std::string_view payload) {
+    ByteCursor cursor = frame_.cursor(payload);
+    const OvmbSpan span = readOvmbSpan(cursor);
+    const std::size_t position = cursor.position();
+    const auto number = cursor.read<std::uint32_t>("the header of a PROP chunk");
+    if (number >= entries_.size()) {
+      cursor.failAt(position, ErrorCode::FileSyntax,
+                    "a PROP chunk is about property " + std::to_string(number) + ", but only " +
+                        std::to_string(entries_.size()) + " are listed before it.");
+    }
+    const Entry& entry = entries_[number];
+    const std::size_t count = mesh_.topology.count(entry.entity);
+    if (span.first > count || span.count > count - span.first) {
+      cursor.fail(ErrorCode::FileSyntax, "values of the property " + quoted(entry.name) +
+                                             " lie outside of its " + std::to_string(count) +
+                                             " elements.");
+    }
+    const auto decodeInto = [&](auto* values) {
+      if (values == nullptr) return;
+      decode(entry,
+             std::span(*values).subspan(static_cast<std::size_t>(span.first),
+                                        static_cast<std::size_t>(span.count)),
+             kValues, cursor);
+    };
+    decodeInto(entry.destination.points);
+    decodeInto(entry.destination.integers);
+  }
 
  private:
-  void prepare(Entry& entry);
+  static OvmNumbers numbersOf(std::string_view type) {
+    const auto ignore = [](auto /*number*/) {};
+    if (withPointType(type, ignore)) return OvmNumbers::Points;
+    return withIntegerType(type, ignore) ? OvmNumbers::Integers : OvmNumbers::Others;
+  }
+
   template <class T>
-  void makeDefault(const Entry& entry, Array<T>& values);
+  void makeDefault(const Entry& entry, Array<T>& values) {
+    ByteCursor cursor = frame_.cursor(entry.defaultValue);
+    T value{};
+    decode(entry, std::span<T>(&value, 1), kDefault, cursor);
+    values.assign(mesh_.topology.count(entry.entity), value);
+  }
+
   void decode(const Entry& entry, std::span<Vec3> values, const Subject& subject,
-              ByteCursor& cursor);
+              ByteCursor& cursor) {
+    withPointType(entry.type, [&]<class Stored>(Stored /*coordinate*/) {
+      const char* const data = takeAll(values.size() * 3 * sizeof(Stored), entry, subject, cursor);
+      // Half-faces without a cell may have any numbers.
+      decodeOvmbPoints<Stored>(data, values, stage_);
+    });
+  }
+
   void decode(const Entry& entry, std::span<std::int32_t> values, const Subject& subject,
-              ByteCursor& cursor);
+              ByteCursor& cursor) {
+    const std::size_t begin = cursor.position();
+    if (entry.type == kBits) {  // eight elements per byte, from the lowest bit on
+      const char* const data = takeAll((values.size() + 7) / 8, entry, subject, cursor);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = static_cast<unsigned char>(data[i / 8]) >> (i % 8) & 1;
+      }
+      return;
+    }
+    withIntegerType(entry.type, [&]<class Stored>(Stored /*number*/) {
+      const char* const data = takeAll(values.size() * sizeof(Stored), entry, subject, cursor);
+      const auto valueAt = [data](std::size_t i) {
+        return loadLittle<Stored>(data + i * sizeof(Stored));
+      };
+      const std::size_t fault = firstFault(stage_, values.size(), [&](std::size_t i) {
+        values[i] = static_cast<std::int32_t>(static_cast<std::int64_t>(valueAt(i)));
+        return std::in_range<std::int32_t>(valueAt(i));
+      });
+      if (fault == values.size()) return;
+      cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::FileUnsupported,
+                    "the property " + quoted(entry.name) + " has the value " +
+                        std::to_string(valueAt(fault)) +
+                        ", which does not fit into 32 bits with a sign.");
+    });
+  }
 
   const OvmbFrame& frame_;
   OvmMesh& mesh_;
@@ -247,118 +318,6 @@ class PropertyReader {
   bool hasDirectory_ = false;
   std::vector<Entry> entries_;
 };
-
-void PropertyReader::readDirectory(std::string_view payload) {
-  ByteCursor cursor = frame_.cursor(payload);
-  if (hasDirectory_) cursor.fail(ErrorCode::FileSyntax, "there is a second DIRP chunk.");
-  hasDirectory_ = true;
-  while (cursor.remaining() > 0) {
-    Entry entry = readEntry(cursor);
-    prepare(entry);
-    entries_.push_back(entry);
-  }
-}
-
-/// If an entry is one of those that are wanted, and the first of its name, makes its array.
-void PropertyReader::prepare(Entry& entry) {
-  const auto isNew = [this](const auto* values, auto Entry::*where) {
-    return values != nullptr && std::none_of(entries_.begin(), entries_.end(),
-                                             [&](const Entry& e) { return e.*where == values; });
-  };
-  const auto ignore = [](auto /*number*/) {};
-  if (entry.name == kParametrizationName) {
-    Array<Vec3>& values = mesh_.properties.parametrization;
-    if (entry.entity == OvmEntity::HalfFace && withPointType(entry.type, ignore) &&
-        isNew(&values, &Entry::points)) {
-      entry.points = &values;
-      makeDefault(entry, values);
-    } else {
-      mesh_.hasForeignParametrization = true;
-    }
-  }
-  Array<std::int32_t>* const values = mesh_.properties.find(entry.entity, entry.name);
-  if (!isNew(values, &Entry::integers) || !withIntegerType(entry.type, ignore)) return;
-  entry.integers = values;
-  makeDefault(entry, *values);
-}
-
-template <class T>
-void PropertyReader::makeDefault(const Entry& entry, Array<T>& values) {
-  ByteCursor cursor = frame_.cursor(entry.defaultValue);
-  T value{};
-  decode(entry, std::span<T>(&value, 1), kDefault, cursor);
-  values.resize(mesh_.topology.count(entry.entity));
-  constexpr std::size_t kGrain = 1 << 16;
-  parallelFor(stage_, values.size(), kGrain, [&](std::size_t i) { values[i] = value; });
-}
-
-void PropertyReader::readProperty(std::string_view payload) {
-  ByteCursor cursor = frame_.cursor(payload);
-  const OvmbSpan span = readOvmbSpan(cursor);
-  const std::size_t position = cursor.position();
-  const auto number = cursor.read<std::uint32_t>("the header of a PROP chunk");
-  if (number >= entries_.size()) {
-    cursor.failAt(position, ErrorCode::FileSyntax,
-                  "a PROP chunk is about property " + std::to_string(number) + ", but only " +
-                      std::to_string(entries_.size()) + " are listed before it.");
-  }
-  const Entry& entry = entries_[number];
-  const std::size_t count = mesh_.topology.count(entry.entity);
-  if (span.first > count || span.count > count - span.first) {
-    cursor.fail(ErrorCode::FileSyntax, "values of the property " + quoted(entry.name) +
-                                           " lie outside of its " + std::to_string(count) +
-                                           " elements.");
-  }
-  const auto decodeInto = [&](auto& values) {
-    decode(entry,
-           std::span(values).subspan(static_cast<std::size_t>(span.first),
-                                     static_cast<std::size_t>(span.count)),
-           kValues, cursor);
-  };
-  if (entry.points != nullptr) decodeInto(*entry.points);
-  if (entry.integers != nullptr) decodeInto(*entry.integers);
-}
-
-void PropertyReader::decode(const Entry& entry, std::span<Vec3> values, const Subject& subject,
-                            ByteCursor& cursor) {
-  withPointType(entry.type, [&]<class Stored>(Stored /*coordinate*/) {
-    constexpr std::size_t kBytes = 3 * sizeof(Stored);
-    const char* const data = takeAll(values.size() * kBytes, entry, subject, cursor);
-    constexpr std::size_t kGrain = 1 << 14;
-    parallelFor(stage_, values.size(), kGrain, [&](std::size_t i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        values[i][k] = loadLittle<Stored>(data + i * kBytes + k * sizeof(Stored));
-      }
-    });
-  });
-}
-
-void PropertyReader::decode(const Entry& entry, std::span<std::int32_t> values,
-                            const Subject& subject, ByteCursor& cursor) {
-  const std::size_t begin = cursor.position();
-  if (entry.type == kBits) {  // eight elements per byte, from the lowest bit on
-    const char* const data = takeAll((values.size() + 7) / 8, entry, subject, cursor);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = static_cast<unsigned char>(data[i / 8]) >> (i % 8) & 1;
-    }
-    return;
-  }
-  withIntegerType(entry.type, [&]<class Stored>(Stored /*number*/) {
-    const char* const data = takeAll(values.size() * sizeof(Stored), entry, subject, cursor);
-    const auto valueAt = [data](std::size_t i) {
-      return loadLittle<Stored>(data + i * sizeof(Stored));
-    };
-    const std::size_t fault = firstFault(stage_, values.size(), [&](std::size_t i) {
-      values[i] = static_cast<std::int32_t>(static_cast<std::int64_t>(valueAt(i)));
-      return std::in_range<std::int32_t>(valueAt(i));
-    });
-    if (fault == values.size()) return;
-    cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::FileUnsupported,
-                  "the property " + quoted(entry.name) + " has the value " +
-                      std::to_string(valueAt(fault)) +
-                      ", which does not fit into 32 bits with a sign.");
-  });
-}
 
 }  // namespace
 
@@ -368,8 +327,8 @@ OvmMesh parseOvmb(std::string_view bytes, const std::string& fileName, Stage& st
   readOvmbElements(frame, mesh, stage);
   PropertyReader reader(frame, mesh, stage);
   for (const OvmbChunk& chunk : frame.chunks) {
-    if (chunk.type == OvmbChunkType::Directory) reader.readDirectory(chunk.payload);
-    if (chunk.type == OvmbChunkType::Property) reader.readProperty(chunk.payload);
+    if (chunk.type == "DIRP") reader.readDirectory(chunk.payload);
+    if (chunk.type == "PROP") reader.readProperty(chunk.payload);
   }
   return mesh;
 }

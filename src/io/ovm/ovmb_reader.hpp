@@ -3,24 +3,25 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/bytes.hpp>
+#include <io/core/writable.hpp>
 #include <io/ovm/ovm_mesh.hpp>
 
 namespace hexhex {
 
 inline constexpr std::string_view kOvmbMagic = "OVMB\n\r\n\xff";
 
-/// The chunk types that are known.
-enum class OvmbChunkType : std::uint8_t { Vertices, Topology, Directory, Property };
-
 struct OvmbChunk {
-  OvmbChunkType type = OvmbChunkType::Vertices;
+  std::string_view type;     ///< four characters
   std::string_view payload;  ///< without padding
 };
 
@@ -45,6 +46,21 @@ struct OvmbSpan {
   std::uint64_t count = 0;
 };
 [[nodiscard]] OvmbSpan readOvmbSpan(ByteCursor& cursor);
+
+/// Decodes points that are stored as three floats or doubles each.
+/// @return the first that is not finite, or their number
+template <class Stored>
+std::size_t decodeOvmbPoints(const char* data, std::span<Vec3> points, Stage& stage) {
+  return firstFault(
+      stage, points.size(),
+      [&](std::size_t i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          points[i][k] = double{loadLittle<Stored>(data + (3 * i + k) * sizeof(Stored))};
+        }
+        return isFinite(points[i]);
+      },
+      std::size_t{1} << 14);
+}
 
 /// Decodes all VERT and TOPO chunks: any encoding of numbers, handles and valences, any number of
 /// spans. Handles are in range afterwards; nothing else about the topology is checked.
