@@ -66,11 +66,11 @@ template <class F>
 /// Whether two corners are the same vertex.
 template <std::size_t corners>
 [[nodiscard]] bool hasVertexTwice(const std::array<Index, corners>& cell) noexcept {
-  bool twice = false;
-  for (std::size_t i = 1; i < corners; ++i) {
-    for (std::size_t k = 0; k < i; ++k) twice |= cell[i] == cell[k];
+  Index alike = 0;  // pairs of corners, each with itself among them
+  for (const Index a : cell) {
+    for (const Index b : cell) alike += a == b ? 1U : 0U;
   }
-  return twice;
+  return alike > corners;
 }
 
 /// Orders of a hexahedron's corners, which the property CornerOrder numbers. The first face is

@@ -5,23 +5,20 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include <adjacency/cell_faces.hpp>
 #include <adjacency/vertex_lists.hpp>
 
 #include <base/parallel.hpp>
-#include <base/prefetch.hpp>
+#include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_topology.hpp>
 
 namespace hexhex {
 namespace {
 
 constexpr std::size_t kGrain = 2048;
-/// What a cell will ask for is fetched so many cells before: neighbours may be far from each other
-/// in memory.
-constexpr std::size_t kAhead = 16;
-
 /// The row of kHexFaces in each slot of kOvmHexFaces.
 constexpr std::array<std::uint8_t, 6> kFaceOfSlot = {4, 5, 2, 3, 1, 0};
 constexpr std::array<std::uint8_t, 6> kSlotOfFace = {5, 4, 2, 3, 0, 1};
@@ -62,15 +59,34 @@ bool owns(Index halfFace, Index mate) {
 
 using Edge = std::array<Index, 2>;
 
+/// The two faces at each edge of kHexEdges.
+constexpr std::array<std::array<std::uint8_t, 2>, 12> kFacesAtEdge = {{{2, 4},
+                                                                       {1, 4},
+                                                                       {3, 4},
+                                                                       {0, 4},
+                                                                       {2, 5},
+                                                                       {1, 5},
+                                                                       {3, 5},
+                                                                       {0, 5},
+                                                                       {0, 2},
+                                                                       {1, 2},
+                                                                       {0, 3},
+                                                                       {1, 3}}};
+
 /// The edges between vertices on seams, which cells cannot tell by themselves to be new.
 Array<Edge> listSeamEdges(std::size_t vertexCount, std::span<const Hex> cells,
-                          std::span<const std::uint8_t> seamCorners, Stage& stage) {
+                          const HexMates& mates, Stage& stage) {
+  // Of the cells at an edge, the first one lists it, and few others.
+  const auto isFirst = [&mates](std::size_t cell, const std::array<std::uint8_t, 2>& faces) {
+    const auto isBefore = [&](std::size_t face) { return mates.mates[6 * cell + face] > 6 * cell; };
+    return isBefore(faces[0]) && isBefore(faces[1]);  // kNone is larger than all
+  };
   const VertexLists<Index, std::uint64_t> ends(vertexCount, stage, [&](const auto& add) {
     parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
-      const unsigned seams = seamCorners[c];
-      if (seams == 0) return;
-      for (const auto& [i, k] : kHexEdges) {
-        if ((seams >> i & seams >> k & 1U) == 0) continue;
+      const unsigned seams = mates.seamCorners[c];
+      for (std::size_t e = 0; seams != 0 && e < 12; ++e) {
+        const auto& [i, k] = kHexEdges[e];
+        if ((seams >> i & seams >> k & 1U) == 0 || !isFirst(c, kFacesAtEdge[e])) continue;
         add(std::min(cells[c][i], cells[c][k]), std::max(cells[c][i], cells[c][k]));
       }
     });
@@ -92,18 +108,18 @@ class HexTopologyBuilder {
                      Stage& stage)
       : cells_(cells),
         stage_(stage),
-        seamCorners_(std::move(mates.seamCorners)),
-        seamEdges_(listSeamEdges(vertexCount, cells, seamCorners_, stage)),
+        seamEdges_(listSeamEdges(vertexCount, cells, mates, stage)),
         seamEdgeFinder_(vertexCount, seamEdges_) {
     topology_.vertexCount = vertexCount;
     topology_.cells.length = 6;
     topology_.cells.handles = std::move(mates.mates);
+    seamCorners_ = std::move(mates.seamCorners);
   }
 
-  OvmTopology build() {
+  std::optional<OvmTopology> build() {
     number();
     listEdges();
-    listFaces();
+    if (!listFaces()) return std::nullopt;
     listCells();
     return std::move(topology_);
   }
@@ -125,7 +141,7 @@ class HexTopologyBuilder {
     return 2 * (own.firstEdge + rankOf(own.edges, axis));
   }
   [[nodiscard]] Index halfEdge(std::size_t cell, std::size_t from, std::size_t to) const;
-  void listFaces();
+  [[nodiscard]] bool listFaces();
   void listNearFaces(std::size_t cell, Index* halfEdges) const;
   void listOwnFaces(std::size_t cell, Index* halfEdges) const;
   void listCells();
@@ -157,38 +173,19 @@ Own HexTopologyBuilder::ownOf(std::size_t cell) const {
 
 /// Numbers edges and faces.
 void HexTopologyBuilder::number() {
-  const std::size_t blocks = blockCount(cells_.size(), kGrain);
-  Array<std::uint64_t> edges(blocks + 1, 0);
-  Array<std::uint64_t> faces(blocks + 1, 0);
   own_.resize(cells_.size());
-  parallelBlocks(stage_, cells_.size(), kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   Index edge = 0;
-                   Index face = 0;
-                   for (std::size_t c = begin; c < end; ++c) {
-                     Own& own = own_[c] = ownOf(c);
-                     own.firstEdge = std::exchange(edge, edge + kBitCounts[own.edges]);
-                     own.firstFace = std::exchange(face, face + kBitCounts[own.faces]);
-                   }
-                   edges[block] = edge;
-                   faces[block] = face;
-                 });
-  const std::uint64_t edgeCount = seamEdges_.size() + exclusiveScan(std::span(edges));
-  const std::uint64_t faceCount = exclusiveScan(std::span(faces));
-  requireOvmCount(kMaxOvmEntities, faceCount, "faces");
-  requireOvmCount(kMaxOvmEntities, edgeCount, "edges");
-  parallelBlocks(stage_, cells_.size(), kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   const auto firstEdge = static_cast<Index>(seamEdges_.size() + edges[block]);
-                   const auto firstFace = static_cast<Index>(faces[block]);
-                   for (std::size_t c = begin; c < end; ++c) {
-                     own_[c].firstEdge += firstEdge;
-                     own_[c].firstFace += firstFace;
-                   }
-                 });
-  topology_.edges.resize(static_cast<std::size_t>(edgeCount));
+  parallelFor(stage_, cells_.size(), kGrain, [this](std::size_t c) { own_[c] = ownOf(c); });
+  std::uint64_t edges = seamEdges_.size();
+  std::uint64_t faces = 0;
+  for (Own& own : own_) {
+    own.firstEdge = static_cast<Index>(std::exchange(edges, edges + kBitCounts[own.edges]));
+    own.firstFace = static_cast<Index>(std::exchange(faces, faces + kBitCounts[own.faces]));
+  }
+  requireOvmCount(kMaxOvmEntities, faces, "faces");
+  requireOvmCount(kMaxOvmEntities, edges, "edges");
+  topology_.edges.resize(static_cast<std::size_t>(edges));
   topology_.faces.length = 4;
-  topology_.faces.handles.resize(static_cast<std::size_t>(4 * faceCount));
+  topology_.faces.handles.resize(static_cast<std::size_t>(4 * faces));
 }
 
 void HexTopologyBuilder::listEdges() {
@@ -216,21 +213,15 @@ Index HexTopologyBuilder::halfEdge(std::size_t cell, std::size_t from, std::size
   return ownHalfEdge(owner, along / 2) + ((kSteps[from] & along) != 0 ? 1U : 0U);
 }
 
-void HexTopologyBuilder::listFaces() {
-  parallelBlocks(stage_, cells_.size(), kGrain,
-                 [this](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   Index* const handles = topology_.faces.handles.data();
-                   for (std::size_t c = begin; c < end; ++c) {
-                     if (c + kAhead < end) {
-                       for (std::size_t axis = 0; axis < 3; ++axis) {
-                         prefetch(&own_[behind(c + kAhead, axis)]);
-                       }
-                     }
-                     Index* const halfEdges = handles + 4 * std::size_t{own_[c].firstFace};
-                     seamCorners_[c] == 0 ? listNearFaces(c, halfEdges)
-                                          : listOwnFaces(c, halfEdges);
-                   }
-                 });
+/// @return whether all cells have different vertices: asked here, where memory keeps processors
+/// waiting anyway. With a loop of its own, conversions of large meshes take 5 % longer.
+bool HexTopologyBuilder::listFaces() {
+  const auto list = [this](std::size_t c) {
+    Index* const halfEdges = topology_.faces.handles.data() + 4 * std::size_t{own_[c].firstFace};
+    seamCorners_[c] == 0 ? listNearFaces(c, halfEdges) : listOwnFaces(c, halfEdges);
+    return !hasVertexTwice(cells_[c]);
+  };
+  return firstFault(stage_, cells_.size(), list) == cells_.size();
 }
 
 /// The faces of a cell that is on no seam, in order.
@@ -280,8 +271,8 @@ void HexTopologyBuilder::listCells() {
 
 }  // namespace
 
-OvmTopology numberHexes(std::size_t vertexCount, std::span<const Hex> cells, HexMates mates,
-                        Stage& stage) {
+std::optional<OvmTopology> numberHexes(std::size_t vertexCount, std::span<const Hex> cells,
+                                       HexMates mates, Stage& stage) {
   return HexTopologyBuilder(vertexCount, cells, std::move(mates), stage).build();
 }
 

@@ -32,11 +32,14 @@ namespace {
 
 constexpr std::size_t kGrain = 2048;
 
-template <class Cell>
-void requireGoodCells(std::size_t vertexCount, std::span<const Cell> cells, Stage& stage) {
+void requireCounts(std::size_t vertexCount, std::size_t cellCount, std::size_t facesPerCell) {
   requireOvmCount(kMaxOvmEntities, vertexCount, "vertices");
   // The half-faces of all cells have 32-bit numbers.
-  requireOvmCount((kNone - 1) / kFaceCount<Cell>, cells.size(), "cells");
+  requireOvmCount((kNone - 1) / facesPerCell, cellCount, "cells");
+}
+
+template <class Cell>
+void requireDifferentVertices(std::span<const Cell> cells, Stage& stage) {
   const std::size_t fault =
       firstFault(stage, cells.size(), [cells](std::size_t c) { return !hasVertexTwice(cells[c]); });
   if (fault == cells.size()) return;
@@ -225,7 +228,8 @@ Index OvmEdgeFinder::find(Index a, Index b) const noexcept {
 }
 
 OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Tet> cells, Stage& stage) {
-  requireGoodCells(vertexCount, cells, stage);
+  requireCounts(vertexCount, cells.size(), 4);
+  requireDifferentVertices(cells, stage);
   TetTopology tets;
   tets.tets = cells;
   tets.pointCount = vertexCount;
@@ -239,10 +243,14 @@ OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Tet> cells
 }
 
 OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Hex> cells, Stage& stage) {
-  requireGoodCells(vertexCount, cells, stage);
+  requireCounts(vertexCount, cells.size(), 6);
   std::optional<HexMates> mates = matchHexFaces(vertexCount, cells, stage);
-  if (!mates) throwFaceFault(vertexCount, cells, stage);
-  return numberHexes(vertexCount, cells, std::move(*mates), stage);
+  if (mates) {
+    std::optional<OvmTopology> topology = numberHexes(vertexCount, cells, std::move(*mates), stage);
+    if (topology) return std::move(*topology);
+  }
+  requireDifferentVertices(cells, stage);
+  throwFaceFault(vertexCount, cells, stage);
 }
 
 }  // namespace hexhex

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include <adjacency/hex_faces.hpp>
@@ -46,8 +47,10 @@ inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kOvmHexFaces = {
                                            Stage& stage);
 
 /// The part of buildOvmTopology() that numbers hexahedra, once their faces are matched.
-[[nodiscard]] OvmTopology numberHexes(std::size_t vertexCount, std::span<const Hex> cells,
-                                      HexMates mates, Stage& stage);
+/// @return nothing if a cell has a vertex twice
+[[nodiscard]] std::optional<OvmTopology> numberHexes(std::size_t vertexCount,
+                                                     std::span<const Hex> cells, HexMates mates,
+                                                     Stage& stage);
 
 /// @param what  e.g. "edges"
 /// @throws Error TooLarge if there are more than the format can hold
