@@ -9,7 +9,7 @@
 
 #include <io/core/text_scanner.hpp>
 #include <io/curved/lagrange_files.hpp>
-#include <io/ovm/piecewise_ovmb.hpp>
+#include <io/ovm/ovm.hpp>
 #include <io/vtk/vtk.hpp>
 #include <mesh/lagrange_check.hpp>
 

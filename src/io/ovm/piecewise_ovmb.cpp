@@ -1,9 +1,10 @@
+// Arcs and patches as polyhedral meshes (see ovm.hpp).
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <limits>
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,10 +16,10 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/output_file.hpp>
+#include <io/ovm/ovm.hpp>
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_mesh.hpp>
 #include <io/ovm/ovm_topology.hpp>
-#include <io/ovm/piecewise_ovmb.hpp>
 
 namespace hexhex {
 namespace {
@@ -125,6 +126,11 @@ class CarrierProperties {
   void addUnknown() {
     for (Integers* const values : {&types_, &tets_, &corners_}) values->push_back(-1);
   }
+  /// The simplex of an element by corners of a tet that has it.
+  [[nodiscard]] CornerSet simplexIn(Index tet, std::size_t element) const {
+    return simplices_->translated(static_cast<CornerSet>(corners_[element]),
+                                  static_cast<Index>(tets_[element]), tet);
+  }
 
   void moveTo(std::vector<OvmProperty>& properties) {
     properties.push_back({entity_, typeName_, std::move(types_)});
@@ -158,19 +164,22 @@ class PiecewiseWriter {
  public:
   /// @param map  where the mesh comes from, or null
   PiecewiseWriter(const PiecewiseLinearMesh& mesh, const TetMapView* map, Stage& stage)
-      : mesh_(mesh), stage_(stage) {
-    if (map != nullptr) simplices_.emplace(*map, stage);
-    edgeCarriers_.emplace(OvmEntity::Edge, "e_tet_generator_type", "e_tet_generator_index",
-                          simplices());
-  }
+      : mesh_(mesh),
+        stage_(stage),
+        simplices_(map == nullptr ? nullptr : std::make_unique<TetSimplices>(*map, stage)),
+        pointCarriers_(OvmEntity::Vertex, "v_tet_generator_type", "v_tet_generator_index",
+                       simplices_.get()),
+        edgeCarriers_(OvmEntity::Edge, "e_tet_generator_type", "e_tet_generator_index",
+                      simplices_.get()) {}
 
   void write(PiecewiseLinearParts parts, OutputFile& output) {
     const bool withPatches = parts == PiecewiseLinearParts::ArcsAndPatches;
     addPoints(withPatches);
     addSegments();
     if (withPatches) addPolygons();
+    pointCarriers_.moveTo(content_.properties);
     content_.properties.push_back({OvmEntity::Edge, "e_linear_hex_edge", std::move(hexEdges_)});
-    edgeCarriers_->moveTo(content_.properties);
+    edgeCarriers_.moveTo(content_.properties);
     if (withPatches) addPolygonProperties();
     content_.points = points_;
     content_.topology.vertexCount = points_.size();
@@ -179,21 +188,16 @@ class PiecewiseWriter {
   }
 
  private:
-  [[nodiscard]] const TetSimplices* simplices() const {
-    return simplices_ ? &*simplices_ : nullptr;
-  }
   [[nodiscard]] Array<EdgeEnds>& edges() { return content_.topology.edges; }
 
   void addPoints(bool withPatches) {
     Integers types;
     Array<std::array<double, 2>> uv;
-    CarrierProperties carriers(OvmEntity::Vertex, "v_tet_generator_type", "v_tet_generator_index",
-                               simplices());
     const auto add = [&](const auto& part, std::int32_t type) {
       points_.insert(points_.end(), part.points.begin(), part.points.end());
       types.resize(points_.size(), type);
       uv.resize(points_.size(), {0, 0});
-      carriers.add(part.generatorTet, part.generatorCorners);
+      pointCarriers_.add(part.generatorTet, part.generatorCorners);
     };
     add(mesh_.mesh, 0);
     add(mesh_.arcs, 1);
@@ -211,7 +215,6 @@ class PiecewiseWriter {
     }
     content_.properties.push_back({OvmEntity::Vertex, "v_type", std::move(types)});
     content_.properties.push_back({OvmEntity::Vertex, "v_igm_uv", std::move(uv)});
-    carriers.moveTo(content_.properties);
   }
 
   void addSegments() {
@@ -227,7 +230,7 @@ class PiecewiseWriter {
       edges().push_back({from, arcs.ends[e][1]});
       hexEdges_.resize(edges().size(), static_cast<std::int32_t>(e));
     }
-    edgeCarriers_->add(arcs.segmentTet, arcs.segmentCorners);
+    edgeCarriers_.add(arcs.segmentTet, arcs.segmentCorners);
   }
 
   void addPolygons() {
@@ -249,28 +252,16 @@ class PiecewiseWriter {
     content_.properties.push_back({OvmEntity::Face, "f_intersected_tet_index", std::move(tets)});
   }
 
-  /// The simplex that holds a point, by corners of a tet that has it.
-  [[nodiscard]] CornerSet generatorIn(Index tet, std::size_t point) const {
-    const auto of = [&](const auto& part) {
-      return simplices_->translated(part.generatorCorners[point], part.generatorTet[point], tet);
-    };
-    if (point < mesh_.mesh.points.size()) return of(mesh_.mesh);
-    point -= mesh_.mesh.points.size();
-    if (point < mesh_.arcs.points.size()) return of(mesh_.arcs);
-    point -= mesh_.arcs.points.size();
-    return of(mesh_.patches);
-  }
-
   /// A side inside a face, of a polygon in this tet. By convexity, the smallest simplex that has
   /// the generators of both ends holds it.
   Index addInnerSide(const EdgeEnds& ends, Index tet) {
     edges().push_back(ends);
     hexEdges_.push_back(-1);
     if (simplices_) {
-      edgeCarriers_->add(
-          tet, static_cast<CornerSet>(generatorIn(tet, ends[0]) | generatorIn(tet, ends[1])));
+      edgeCarriers_.add(tet, static_cast<CornerSet>(pointCarriers_.simplexIn(tet, ends[0]) |
+                                                    pointCarriers_.simplexIn(tet, ends[1])));
     } else {
-      edgeCarriers_->addUnknown();
+      edgeCarriers_.addUnknown();
     }
     return static_cast<Index>(edges().size() - 1);
   }
@@ -319,20 +310,26 @@ class PiecewiseWriter {
 
   const PiecewiseLinearMesh& mesh_;
   Stage& stage_;
-  std::optional<TetSimplices> simplices_;
+  std::unique_ptr<const TetSimplices> simplices_;
+  CarrierProperties pointCarriers_;
+  CarrierProperties edgeCarriers_;
   std::vector<Vec3> points_;
   OvmOutput content_;
   Integers hexEdges_;
-  std::optional<CarrierProperties> edgeCarriers_;
   std::vector<KnownEdge> known_;  ///< edges of one face
 };
 
-void requireSmall(std::uint64_t count) {
-  if (count <= std::numeric_limits<std::int32_t>::max()) return;
-  throw Error(ErrorCode::TooLarge,
-              "OpenVolumeMesh files number elements with 31 bits, which do "
-              "not suffice for " +
-                  std::to_string(count) + ". Lower the scale, or write .vtu.");
+/// @param most  what there is no more of than this
+void write(const PiecewiseLinearMesh& mesh, const TetMapView* map, PiecewiseLinearParts parts,
+           std::uint64_t most, const std::filesystem::path& file, Stage& stage) {
+  OutputFile output(file);  // first, so that a folder that is not writable shows at once
+  if (most > std::numeric_limits<std::int32_t>::max()) {
+    throw Error(ErrorCode::TooLarge,
+                "OpenVolumeMesh files number elements with 31 bits, which do not suffice for " +
+                    std::to_string(most) + ". Lower the scale, or write .vtu.");
+  }
+  withThreads(stage.context().threads(),
+              [&] { PiecewiseWriter(mesh, map, stage).write(parts, output); });
 }
 
 }  // namespace
@@ -340,22 +337,17 @@ void requireSmall(std::uint64_t count) {
 void writeArcsOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
                    const std::filesystem::path& file, Context& context) {
   Stage stage(context, "write arcs");
-  OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  // Twice the segments, which are more than the points that they add.
-  requireSmall(
-      2 * std::max(mesh.mesh.points.size() + mesh.arcs.points.size(), mesh.arcs.segmentTet.size()));
-  withThreads(context.threads(),
-              [&] { PiecewiseWriter(mesh, map, stage).write(PiecewiseLinearParts::Arcs, output); });
+  // Segments are more than the points that they add.
+  const std::uint64_t most =
+      std::max(mesh.mesh.points.size() + mesh.arcs.points.size(), mesh.arcs.segmentTet.size());
+  write(mesh, map, PiecewiseLinearParts::Arcs, 2 * most, file, stage);
 }
 
 void writePatchesOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
                       const std::filesystem::path& file, Context& context) {
   Stage stage(context, "write patches");
-  OutputFile output(file);
-  requireSmall(2 * mesh.patches.corners.size());
-  withThreads(context.threads(), [&] {
-    PiecewiseWriter(mesh, map, stage).write(PiecewiseLinearParts::ArcsAndPatches, output);
-  });
+  write(mesh, map, PiecewiseLinearParts::ArcsAndPatches, 2 * mesh.patches.corners.size(), file,
+        stage);
 }
 
 }  // namespace hexhex
