@@ -8,7 +8,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
-#include <io/core/number_parsing.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {

@@ -1,26 +1,28 @@
 // Points, and cells of one kind: what readers take from files that may hold other cells, too.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <type_traits>
 
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex {
 
-/// Hexahedra (8 corners) or tetrahedra (4) with their points. Corners are in the order of VTK.
-template <std::size_t corners>
-struct CellMesh {
+/// Tetrahedra with their points. Corners are in the order of VTK.
+struct TetCells {
   Array<Vec3> points;
-  Array<std::array<Index, corners>> cells;
-  // Where the format has them, and only with hexahedra.
+  Array<Tet> cells;
+  // Readers leave them empty: features and regions are read of hexahedra only.
   HexFeatures features = {};
   Array<std::int32_t> regions = {};
 };
-using TetCells = CellMesh<4>;
+
+/// What readers make of hexahedra (8 corners) or tetrahedra (4).
+template <std::size_t corners>
+using CellMesh = std::conditional_t<corners == 8, HexMesh, TetCells>;
 
 /// What formats and sentences call a kind of elements.
 struct CellKind {
@@ -42,15 +44,5 @@ inline constexpr CellKind kCellKind<4> = {4,  "tetrahedron", "tetrahedra", "Tetr
 template <>
 inline constexpr CellKind kCellKind<8> = {8, "hexahedron", "hexahedra",    "Hexahedra", 10,
                                           5, 12,           PlaceKind::Cell};
-
-/// The same as a hex mesh.
-[[nodiscard]] inline HexMesh toHexMesh(CellMesh<8>&& mesh) {
-  HexMesh result;
-  result.points = std::move(mesh.points);
-  result.cells = std::move(mesh.cells);
-  result.features = std::move(mesh.features);
-  result.regions = std::move(mesh.regions);
-  return result;
-}
 
 }  // namespace hexhex

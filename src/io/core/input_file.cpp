@@ -19,7 +19,7 @@ namespace {
 // that the number of system calls does not matter.
 constexpr std::size_t kMinimumStep = std::size_t{1} << 20;
 
-// What one thread reads in a go: large enough that system calls cost nothing, small enough that
+// What one thread reads at once: large enough that system calls cost nothing, small enough that
 // files of some megabytes have work for several threads.
 constexpr std::size_t kGrain = std::size_t{1} << 20;
 

@@ -1,5 +1,5 @@
-// Formats text in parallel and writes it in order, with bounded memory: numbers take longer to
-// spell than a file system to swallow.
+// Formats text in parallel and writes it in order, with bounded memory: formatting numbers takes
+// longer than writing them.
 #pragma once
 
 #include <algorithm>

@@ -204,9 +204,9 @@ std::size_t QuadGroups::boundaryEnd(const ElementGroup& group) const {
   return static_cast<std::size_t>(end - places.begin());
 }
 
-MeshGroups::MeshGroups(const HexMesh& mesh, double patchAngle, Stage& stage, int threads)
+MeshGroups::MeshGroups(const HexMesh& mesh, double patchAngle, Stage& stage)
     : vertices(groupVertices(mesh)), edges(groupEdges(mesh)), cells(groupCells(mesh)) {
-  withThreads(threads, [&] { quads = groupQuads(mesh, patchAngle, stage); });
+  withThreads(stage.context().threads(), [&] { quads = groupQuads(mesh, patchAngle, stage); });
 }
 
 void requireInt32(std::size_t count, const std::string& numbers, const std::string& instead) {

@@ -81,7 +81,7 @@ struct MeshGroups {
   CellGroups cells;
 
   /// @throws Error InvalidArgument for a feature with a vertex that is none of the mesh
-  MeshGroups(const HexMesh& mesh, double patchAngle, Stage& stage, int threads);
+  MeshGroups(const HexMesh& mesh, double patchAngle, Stage& stage);
   /// Of cells alone.
   explicit MeshGroups(std::size_t cellCount) : cells{{{1, "hexahedra", 0, cellCount}}, {}} {}
 

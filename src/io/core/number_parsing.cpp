@@ -7,7 +7,7 @@
 #include <system_error>
 #include <vector>
 
-#include <io/core/number_parsing.hpp>
+#include <io/core/text_scanner.hpp>
 
 namespace hexhex {
 namespace {

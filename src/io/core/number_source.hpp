@@ -32,22 +32,6 @@ struct RecordShape {
   [[nodiscard]] std::size_t bytes() const { return 8 * sizes + 4 * integers + 8 * reals; }
 };
 
-/// What a number is called in messages: "the dimension", "a coordinate of vertex 12".
-struct NumberName {
-  NumberName(const char* name) : before(name) {}
-  NumberName(std::string_view before_, std::string_view of_, std::size_t number_ = 0)
-      : before(before_), of(of_), number(number_) {}
-
-  [[nodiscard]] std::string text() const {
-    const std::string name = std::string(before) + std::string(of);
-    return number == 0 ? name : name + " " + std::to_string(number);
-  }
-
-  std::string_view before;
-  std::string_view of;
-  std::size_t number = 0;  ///< 0: none
-};
-
 /// Numbers as text.
 class TextSource {
  public:
@@ -61,16 +45,8 @@ class TextSource {
     if (value < 0) fail(ErrorCode::FileSyntax, name.text() + " is negative.");
     return static_cast<std::uint64_t>(value);
   }
-  [[nodiscard]] std::int64_t integer(const NumberName& name) {
-    std::int64_t value = 0;
-    if (!scanner_->readInteger(value)) scanner_->failInteger(name.text());
-    return value;
-  }
-  [[nodiscard]] double real(const NumberName& name) {
-    double value = 0;
-    if (!scanner_->readNumber(value)) scanner_->failNumber(name.text());
-    return value;
-  }
+  [[nodiscard]] std::int64_t integer(const NumberName& name) { return scanner_->integer(name); }
+  [[nodiscard]] double real(const NumberName& name) { return scanner_->number(name); }
 
   [[nodiscard]] std::size_t position() const { return scanner_->position(); }
   void moveTo(std::size_t position) { scanner_->moveTo(position); }

@@ -111,6 +111,10 @@ void OutputFile::writeBytesAt(std::uint64_t position, const void* bytes, std::si
   });
 }
 
+void OutputFile::requirePositions(const std::string& why) const {
+  if (!hasPositions()) fail("it is a device or a pipe, " + why + ". Name a file");
+}
+
 void OutputFile::commit() {
   flush();
   // Some file systems report a full disk only here.

@@ -4,7 +4,6 @@
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
-#include <io/core/number_parsing.hpp>
 #include <io/core/text_scanner.hpp>
 
 namespace hexhex {
@@ -67,8 +66,7 @@ bool TextScanner::readUnusualNumber(double& value) {
 }
 
 std::size_t TextScanner::readCount(std::string_view what, std::size_t bytesEach) {
-  std::int64_t count = 0;
-  if (!readInteger(count)) failInteger("the number of " + std::string(what));
+  const std::int64_t count = integer({"the number of ", what});
   if (count < 0) {
     fail(ErrorCode::FileSyntax, "the number of " + std::string(what) + " is negative.");
   }
@@ -186,7 +184,7 @@ namespace {
 
 // What find() scans in vain: little compared with what a thread then reads from there.
 constexpr std::size_t kBlockBytes = std::size_t{1} << 13;
-// Blocks that one thread counts in a go.
+// Blocks that one thread counts at once.
 constexpr std::size_t kGrain = 64;
 
 constexpr unsigned isGap(char c) { return isSpace(c) ? 1 : 0; }

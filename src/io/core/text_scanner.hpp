@@ -1,5 +1,5 @@
-// Text in memory: tokens between white space, numbers, and clear errors; and many elements of the
-// same number of tokens, read in parallel.
+// Text in memory: tokens between white space, numbers (decimals of any length, and rationals p/q),
+// and clear errors; and many elements of the same number of tokens, read in parallel.
 #pragma once
 
 #include <algorithm>
@@ -34,6 +34,50 @@ namespace hexhex {
 /// With the dot; empty if the file's name has none.
 [[nodiscard]] std::string lowerCaseExtension(const std::filesystem::path& file);
 
+enum class NumberProblem {
+  None,
+  NotANumber,
+  NotFinite,        ///< infinity or NaN, spelled out
+  Overflow,         ///< beyond the largest double
+  ZeroDenominator,  ///< p/0
+  TooLong           ///< a rational with more digits than kMaxRationalDigits
+};
+
+/// The longest numerator or denominator that is accepted. Far beyond what exact maps hold (some
+/// hundred digits); it keeps a file of nothing but digits from taking hours.
+inline constexpr std::size_t kMaxRationalDigits = std::size_t{1} << 16;
+
+/// Parses one whole token: an optional sign; then a decimal number with or without a point and an
+/// exponent, or two integers with '/' between them. The result is the nearest double, ties to even;
+/// numbers too small for a double become 0.
+/// @param[out] value  set if the result is None
+[[nodiscard]] NumberProblem parseNumber(std::string_view token, double& value);
+
+/// The double nearest to numerator / denominator, ties to even; infinity if it exceeds the largest
+/// double; subnormal or 0 if it is that small.
+///
+/// Both are decimal digits only, at least one, without a sign; the denominator is not 0. Time grows
+/// with the square of the number of digits.
+[[nodiscard]] double nearestQuotient(std::string_view numerator, std::string_view denominator);
+
+/// What a number is called in messages: "the dimension", "a coordinate of vertex 12".
+struct NumberName {
+  static constexpr std::size_t kNoNumber = ~std::size_t{0};
+
+  NumberName(const char* name) : before(name) {}
+  NumberName(std::string_view before_, std::string_view of_, std::size_t number_ = kNoNumber)
+      : before(before_), of(of_), number(number_) {}
+
+  [[nodiscard]] std::string text() const {
+    const std::string name = std::string(before) + std::string(of);
+    return number == kNoNumber ? name : name + " " + std::to_string(number);
+  }
+
+  std::string_view before;
+  std::string_view of;
+  std::size_t number = kNoNumber;
+};
+
 /// Where the n-th token (run of other characters than white space) of a text is, so that several
 /// threads can read a text whose lines, if it has any, mean nothing.
 class TokenIndex {
@@ -61,7 +105,7 @@ class TokenIndex {
 
 /// Reads tokens one after the other. Functions that read return false, and stay before the token,
 /// if it is not what they want or the text ends; then a fail... function says why. Line numbers are
-/// counted only when an error is raised, so that they cost nothing on the way.
+/// counted only when an error is raised, so that reading does not pay for them.
 class TextScanner {
  public:
   enum class Comments {
@@ -124,8 +168,20 @@ class TextScanner {
     return true;
   }
 
+  // The same of numbers that have to be there: errors say what was found instead.
+  [[nodiscard]] double number(const NumberName& name) {
+    double value = 0;
+    if (!readNumber(value)) failNumber(name.text());
+    return value;
+  }
+  [[nodiscard]] std::int64_t integer(const NumberName& name) {
+    std::int64_t value = 0;
+    if (!readInteger(value)) failInteger(name.text());
+    return value;
+  }
+
   /// Reads a whole number of things that follow, each taking at least so many bytes of the file,
-  /// and refuses what cannot be true before anybody allocates memory for it.
+  /// and refuses what cannot be true before memory is allocated for it.
   /// @param what  plural, e.g. "vertices"
   [[nodiscard]] std::size_t readCount(std::string_view what, std::size_t bytesEach);
 
@@ -201,11 +257,11 @@ class TextScanner {
 /// A token as an error message shows it: in quotes, shortened, without control characters.
 [[nodiscard]] std::string quoted(std::string_view token);
 
-/// Elements that a thread reads in a go, which takes less than a millisecond.
+/// Elements that a thread reads at once, which takes less than a millisecond.
 inline constexpr std::size_t kElementGrain = 1024;
 
 /// Calls read(begin, end, i), which reads elements [begin, end) and counts i up from begin, for all
-/// elements of [0, n), in parallel and at most `grain` in a go. At an element that is wrong it
+/// elements of [0, n), in parallel and at most `grain` at once. At an element that is wrong it
 /// stops or throws an Error.
 /// @return the first element that is wrong, or n
 template <class Read>

@@ -188,7 +188,7 @@ void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& fi
   // First, so that a folder that is not writable shows at once.
   Msh41Writer<TextNumbers> writer(file, context.threads());
   HexMesh straight = straightMesh(mesh);
-  const GmshGroups groups(MeshGroups(straight, options.patchAngle, stage, context.threads()));
+  const GmshGroups groups(MeshGroups(straight, options.patchAngle, stage));
   Array<Index> lines;
   Array<Index> quads;
   withThreads(context.threads(), [&] {

@@ -370,7 +370,7 @@ class GmshReader {
 }  // namespace
 
 HexMesh readGmsh(const Input& input, Context& context) {
-  return toHexMesh(readWith<GmshReader<8>>(input, "read mesh", context));
+  return readWith<GmshReader<8>>(input, "read mesh", context);
 }
 
 TetCells readGmshTets(const Input& input, Context& context) {

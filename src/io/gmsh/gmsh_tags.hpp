@@ -22,13 +22,13 @@ namespace hexhex {
 /// Dimension of elements, and the number of a physical group.
 using GmshGroup = std::pair<std::int64_t, std::int64_t>;
 
-/// The number of a group. Its sign tells which way an entity runs.
+/// The number of a group. Its sign tells the direction of an entity.
 [[nodiscard]] constexpr std::int64_t withoutSign(std::int64_t number) noexcept {
   if (number == std::numeric_limits<std::int64_t>::min()) return 0;
   return number < 0 ? -number : number;
 }
 
-/// The tag that a name of this library gives, or nothing if it is somebody else's.
+/// The tag that a name of this library gives, or nothing if another program chose it.
 [[nodiscard]] inline std::optional<std::int32_t> tagInGroupName(std::string_view name) {
   constexpr std::array<std::string_view, 4> kTagged = {"point_", "curve_", "surface_", "region_"};
   if (name == "boundary" || name == "hexahedra" || name.starts_with("patch_")) return 0;

@@ -4,8 +4,6 @@
 #include <span>
 #include <type_traits>
 
-#include <hexhex/error.hpp>
-
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/core/line_writer.hpp>
@@ -38,7 +36,7 @@ void writeMsh41(const HexMesh& mesh, const std::filesystem::path& file, const Wr
   Stage stage(context, "write mesh");
   // First, so that a folder that is not writable shows at once.
   Msh41Writer<Numbers> writer(file, context.threads());
-  const GmshGroups groups(MeshGroups(mesh, options.patchAngle, stage, context.threads()));
+  const GmshGroups groups(MeshGroups(mesh, options.patchAngle, stage));
   writer.write(
       mesh.points, groups, [&](const auto& f) { forEachKind(mesh, groups, f); }, stage);
 }
@@ -48,11 +46,7 @@ void writeMsh41(const HexMesh& mesh, const std::filesystem::path& file, const Wr
 class GmshStream : private Msh41Writer<BinaryNumbers> {
  public:
   GmshStream(const std::filesystem::path& file, int threads) : Msh41Writer(file, threads) {
-    if (output().hasPositions()) return;
-    throw Error(ErrorCode::FileWrite,
-                file.string() +
-                    ": the file was not written because it is a device or a pipe, to which a .msh "
-                    "file cannot be written in pieces. Name a file.");
+    output().requirePositions("to which a .msh file cannot be written in pieces");
   }
 
   void begin(std::uint64_t points, std::uint64_t cells) {
@@ -102,7 +96,7 @@ void writeGmsh22Text(const HexMesh& mesh, const std::filesystem::path& file,
                      const WriteOptions& options, Context& context) {
   Stage stage(context, "write mesh");
   OutputFile output(file);
-  const GmshGroups groups(MeshGroups(mesh, options.patchAngle, stage, context.threads()));
+  const GmshGroups groups(MeshGroups(mesh, options.patchAngle, stage));
   requireInt32(mesh.points.size(), "MSH 2.2 numbers nodes", "write MSH 4.1");
   requireInt32(groups.elementCount(), "MSH 2.2 numbers elements", "write MSH 4.1");
   LineWriter lines(output, context.threads());

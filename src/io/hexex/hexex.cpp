@@ -61,136 +61,116 @@ class HexexReader {
   }
 
  private:
-  void readPoints();
-  void readTets();
-  void readTet(TextScanner& scanner, std::size_t tet);
-  void readTrailingSections();
-  void readWalls();
-  void readFeatures();
+  void readPoints() {
+    const std::size_t count = scanner_.readCount("vertices", kMinimumVertexBytes);
+    map_.points.resize(count);
+    readElements(scanner_, &index_, stage_, count, kTokensOfVertex,
+                 [&](TextScanner& scanner, std::size_t vertex) {
+                   scanner.failIfAtEnd(vertex, count, "vertices");
+                   for (double& coordinate : map_.points[vertex]) {
+                     coordinate = scanner.number({"a coordinate of ", "vertex", vertex});
+                   }
+                 });
+  }
+
+  void readTets() {
+    const std::size_t count = scanner_.readCount("tets", kMinimumTetBytes);
+    map_.tets.resize(count);
+    map_.parameters.resize(count);
+    readElements(scanner_, &index_, stage_, count, kTokensOfTet,
+                 [this](TextScanner& scanner, std::size_t i) { readTet(scanner, i); });
+  }
+
+  void readTet(TextScanner& scanner, std::size_t tet) {
+    scanner.failIfAtEnd(tet, map_.tets.size(), "tets");
+    const auto vertices = static_cast<std::int64_t>(map_.points.size());
+    for (Index& corner : map_.tets[tet]) {
+      const std::int64_t vertex = scanner.integer({"a vertex of ", "tet", tet});
+      if (vertex < 0 || vertex >= vertices) {
+        scanner.fail(ErrorCode::IndexOutOfRange,
+                     "tet " + std::to_string(tet) + " names vertex " +
+                         std::string(scanner.currentToken()) + ", but the " +
+                         std::to_string(vertices) + " vertices are numbered from 0.",
+                     Place{PlaceKind::Tet, tet});
+      }
+      corner = static_cast<Index>(vertex);
+    }
+    for (Vec3& corner : map_.parameters[tet]) {
+      for (double& parameter : corner) {
+        parameter = scanner.number({"a parameter of ", "tet", tet});
+      }
+    }
+  }
+
+  // No keyword announces the sections after the tets: their first line tells them apart.
+  void readTrailingSections() {
+    std::vector<FeatureFace> walls;
+    if (scanner_.countTokensOnLine() == 1) walls = readWalls();
+    const std::size_t tokens = scanner_.countTokensOnLine();
+    if (tokens == 3) readFeatures();
+    if (tokens != 0 && scanner_.skipSpace()) {
+      scanner_.fail(
+          ErrorCode::FileSyntax,
+          "expected the end of the file, found " + quoted(scanner_.currentToken()) +
+              ". After the last tet only walls (\"W\" and W lines \"v v v distance\") and "
+              "features (\"vertices edges faces\" and their lines) may follow.");
+    }
+    // Features come first: a wall that is one as well is left out.
+    Features& features = map_.features;
+    features.faces.insert(features.faces.end(), walls.begin(), walls.end());
+    removeRepeated(features.vertices);
+    removeRepeated(features.edges);
+    removeRepeated(features.faces);
+  }
+
+  std::vector<FeatureFace> readWalls() {
+    constexpr std::size_t kMinimumWallBytes = 8;  // four digits with separators
+    std::vector<FeatureFace> walls(scanner_.readCount("walls", kMinimumWallBytes));
+    for (FeatureFace& wall : walls) {
+      wall = {readVertices<3>("a vertex of a wall"), kHexexWallTag};
+      static_cast<void>(scanner_.number("the distance of a wall"));
+    }
+    return walls;
+  }
+
+  void readFeatures() {
+    constexpr std::size_t kMinimumIndexBytes = 2;  // one digit with a separator
+    Features& features = map_.features;
+    features.vertices.resize(scanner_.readCount("feature vertices", kMinimumIndexBytes));
+    features.edges.resize(scanner_.readCount("feature edges", 2 * kMinimumIndexBytes));
+    features.faces.resize(scanner_.readCount("feature faces", 3 * kMinimumIndexBytes));
+    for (FeatureVertex& vertex : features.vertices) {
+      vertex = {readVertices<1>("a feature vertex")[0], kHexexFeatureTag};
+    }
+    for (FeatureEdge& edge : features.edges) {
+      edge = {readVertices<2>("a vertex of a feature edge"), kHexexFeatureTag};
+    }
+    for (FeatureFace& face : features.faces) {
+      face = {readVertices<3>("a vertex of a feature face"), kHexexFeatureTag};
+    }
+  }
+
   template <std::size_t n>
-  std::array<Index, n> readVertices(const char* what);
+  std::array<Index, n> readVertices(const char* what) {
+    std::array<Index, n> vertices{};
+    const auto count = static_cast<std::int64_t>(map_.points.size());
+    for (Index& vertex : vertices) {
+      const std::int64_t index = scanner_.integer(what);
+      if (index < 0 || index >= count) {
+        scanner_.fail(ErrorCode::IndexOutOfRange,
+                      std::string(what) + " is " + std::string(scanner_.currentToken()) +
+                          ", but the " + std::to_string(count) + " vertices are numbered from 0.");
+      }
+      vertex = static_cast<Index>(index);
+    }
+    return vertices;
+  }
 
   TextScanner scanner_;
   TokenIndex index_;
   Stage& stage_;
   TetMap map_;
 };
-
-void HexexReader::readPoints() {
-  const std::size_t count = scanner_.readCount("vertices", kMinimumVertexBytes);
-  map_.points.resize(count);
-  readElements(scanner_, &index_, stage_, count, kTokensOfVertex,
-               [&](TextScanner& scanner, std::size_t vertex) {
-                 scanner.failIfAtEnd(vertex, count, "vertices");
-                 for (double& coordinate : map_.points[vertex]) {
-                   if (scanner.readNumber(coordinate)) continue;
-                   scanner.failNumber("a coordinate of vertex " + std::to_string(vertex));
-                 }
-               });
-}
-
-void HexexReader::readTets() {
-  const std::size_t count = scanner_.readCount("tets", kMinimumTetBytes);
-  map_.tets.resize(count);
-  map_.parameters.resize(count);
-  readElements(scanner_, &index_, stage_, count, kTokensOfTet,
-               [this](TextScanner& scanner, std::size_t i) { readTet(scanner, i); });
-}
-
-void HexexReader::readTet(TextScanner& scanner, std::size_t tet) {
-  scanner.failIfAtEnd(tet, map_.tets.size(), "tets");
-  const auto vertices = static_cast<std::int64_t>(map_.points.size());
-  for (Index& corner : map_.tets[tet]) {
-    std::int64_t vertex = 0;
-    if (!scanner.readInteger(vertex)) {
-      scanner.failInteger("a vertex of tet " + std::to_string(tet));
-    }
-    if (vertex < 0 || vertex >= vertices) {
-      scanner.fail(ErrorCode::IndexOutOfRange,
-                   "tet " + std::to_string(tet) + " names vertex " +
-                       std::string(scanner.currentToken()) + ", but the " +
-                       std::to_string(vertices) + " vertices are numbered from 0.",
-                   Place{PlaceKind::Tet, tet});
-    }
-    corner = static_cast<Index>(vertex);
-  }
-  for (Vec3& corner : map_.parameters[tet]) {
-    for (double& parameter : corner) {
-      if (!scanner.readNumber(parameter)) {
-        scanner.failNumber("a parameter of tet " + std::to_string(tet));
-      }
-    }
-  }
-}
-
-// No keyword announces the sections after the tets: their first line tells them apart.
-void HexexReader::readTrailingSections() {
-  std::vector<FeatureFace> walls;
-  if (scanner_.countTokensOnLine() == 1) readWalls();
-  walls.swap(map_.features.faces);
-  const std::size_t tokens = scanner_.countTokensOnLine();
-  if (tokens == 3) readFeatures();
-  if (tokens != 0 && scanner_.skipSpace()) {
-    scanner_.fail(ErrorCode::FileSyntax,
-                  "expected the end of the file, found " + quoted(scanner_.currentToken()) +
-                      ". After the last tet only walls (\"W\" and W lines \"v v v distance\") and "
-                      "features (\"vertices edges faces\" and their lines) may follow.");
-  }
-  // Features come first: a wall that is one as well is left out.
-  Features& features = map_.features;
-  features.faces.insert(features.faces.end(), walls.begin(), walls.end());
-  removeRepeated(features.vertices);
-  removeRepeated(features.edges);
-  removeRepeated(features.faces);
-}
-
-void HexexReader::readWalls() {
-  constexpr std::size_t kMinimumWallBytes = 8;  // four digits with separators
-  const std::size_t walls = scanner_.readCount("walls", kMinimumWallBytes);
-  map_.features.faces.reserve(walls);
-  for (std::size_t i = 0; i < walls; ++i) {
-    map_.features.faces.push_back({readVertices<3>("a vertex of a wall"), kHexexWallTag});
-    double distance = 0;
-    if (!scanner_.readNumber(distance)) scanner_.failNumber("the distance of a wall");
-  }
-}
-
-void HexexReader::readFeatures() {
-  constexpr std::size_t kMinimumIndexBytes = 2;  // one digit with a separator
-  const std::size_t vertices = scanner_.readCount("feature vertices", kMinimumIndexBytes);
-  const std::size_t edges = scanner_.readCount("feature edges", 2 * kMinimumIndexBytes);
-  const std::size_t faces = scanner_.readCount("feature faces", 3 * kMinimumIndexBytes);
-  Features& features = map_.features;
-  features.vertices.reserve(vertices);
-  features.edges.reserve(edges);
-  features.faces.reserve(faces);
-  for (std::size_t i = 0; i < vertices; ++i) {
-    features.vertices.push_back({readVertices<1>("a feature vertex")[0], kHexexFeatureTag});
-  }
-  for (std::size_t i = 0; i < edges; ++i) {
-    features.edges.push_back({readVertices<2>("a vertex of a feature edge"), kHexexFeatureTag});
-  }
-  for (std::size_t i = 0; i < faces; ++i) {
-    features.faces.push_back({readVertices<3>("a vertex of a feature face"), kHexexFeatureTag});
-  }
-}
-
-template <std::size_t n>
-std::array<Index, n> HexexReader::readVertices(const char* what) {
-  std::array<Index, n> vertices{};
-  const auto count = static_cast<std::int64_t>(map_.points.size());
-  for (Index& vertex : vertices) {
-    std::int64_t index = 0;
-    if (!scanner_.readInteger(index)) scanner_.failInteger(what);
-    if (index < 0 || index >= count) {
-      scanner_.fail(ErrorCode::IndexOutOfRange,
-                    std::string(what) + " is " + std::string(scanner_.currentToken()) +
-                        ", but the " + std::to_string(count) + " vertices are numbered from 0.");
-    }
-    vertex = static_cast<Index>(index);
-  }
-  return vertices;
-}
 
 void requireFeaturesInRange(const TetMap& map) {
   Index largest = 0;

@@ -393,11 +393,11 @@ class MeditReader {
 }  // namespace
 
 HexMesh readMedit(const Input& input, Context& context) {
-  return toHexMesh(readWith<MeditReader<MeditText, 8>>(input, "read mesh", context));
+  return readWith<MeditReader<MeditText, 8>>(input, "read mesh", context);
 }
 
 HexMesh readMeshb(const Input& input, Context& context) {
-  return toHexMesh(readWith<MeditReader<MeditBytes, 8>>(input, "read mesh", context));
+  return readWith<MeditReader<MeditBytes, 8>>(input, "read mesh", context);
 }
 
 TetCells readMeditTets(const Input& input, Context& context) {

@@ -34,12 +34,12 @@ struct MeditGroups {
   Array<std::uint32_t> quadReferences;
   Array<std::uint32_t> cellReferences;  ///< empty: all are 1
 
-  MeditGroups(const HexMesh& mesh, bool withEdges, double patchAngle, Stage& stage, int threads)
+  MeditGroups(const HexMesh& mesh, bool withEdges, double patchAngle, Stage& stage)
       : vertexReferences(hexhex::vertexReferences(mesh, groupVertices(mesh))),
         cellReferences(hexhex::cellReferences(mesh, Untagged::Zero)) {
     if (withEdges) edges = groupEdges(mesh);
     edgeReferences = groupNumbers(edges.groups);
-    withThreads(threads, [&] { quads = groupQuads(mesh, patchAngle, stage); });
+    withThreads(stage.context().threads(), [&] { quads = groupQuads(mesh, patchAngle, stage); });
     quadReferences = groupNumbers(quads.groups, Untagged::Zero);
   }
 };
@@ -224,8 +224,7 @@ void writeWhole(const HexMesh& mesh, const std::filesystem::path& file, std::uin
   Stage stage(context, "write mesh");
   // First, so that a folder that is not writable shows at once.
   MeditWriter<Encoding> writer(file, context.threads());
-  const MeditGroups groups(mesh, Encoding::kHoldsEdges, options.patchAngle, stage,
-                           context.threads());
+  const MeditGroups groups(mesh, Encoding::kHoldsEdges, options.patchAngle, stage);
   writer.write(mesh, groups, version, stage);
 }
 

@@ -8,7 +8,6 @@
 
 #include <hexhex/error.hpp>
 
-#include <io/core/number_parsing.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/ovm/ovm_mesh.hpp>
 #include <io/ovm/ovmb_reader.hpp>

@@ -130,7 +130,7 @@ void writeAbaqus(const HexMesh& mesh, const std::filesystem::path& file,
                  const WriteOptions& options, Context& context) {
   Stage stage(context, "write mesh");
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  const MeshGroups groups(mesh, options.patchAngle, stage, context.threads());
+  const MeshGroups groups(mesh, options.patchAngle, stage);
   AbaqusWriter(output, mesh, stage, context.threads()).write(groups);
   output.commit();
 }

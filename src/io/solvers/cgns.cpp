@@ -166,7 +166,7 @@ void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const Wri
     throw Error(ErrorCode::InvalidArgument,
                 file.string() + ": the mesh is empty, which a CGNS file cannot hold.");
   }
-  const MeshGroups groups(mesh, options.patchAngle, stage, context.threads());
+  const MeshGroups groups(mesh, options.patchAngle, stage);
   requireSmall(mesh, groups);
   {
     const std::lock_guard lock(libraryLock());

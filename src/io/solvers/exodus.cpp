@@ -231,7 +231,7 @@ void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
   OutputFile target(file, OutputFile::Target::Regular);
   requireInt32(mesh.points.size(), "An Exodus file numbers vertices");
   requireInt32(mesh.cells.size(), "An Exodus file numbers cells");
-  const MeshGroups groups(mesh, options.patchAngle, stage, context.threads());
+  const MeshGroups groups(mesh, options.patchAngle, stage);
   {
     const std::lock_guard lock(libraryLock());
     ExodusWriter(target, modeFor(mesh), mesh, stage).write(groups);

@@ -1,5 +1,5 @@
 // A data set of VTK as those who write one describe it: arrays of points, cells, and of the whole,
-// each with its name, its type and a way to its bytes.
+// each with its name, its type and a function that writes its bytes.
 #pragma once
 
 #include <algorithm>

@@ -169,7 +169,7 @@ class VtkLegacyFile final : public VtkSource {
                     "the coordinates of points must be float or double.");
     }
     coordinates = readNumbers(3 * points, type, VtkNumbers::Reals, [](std::size_t i) {
-      return "a coordinate of point " + std::to_string(i / 3);
+      return NumberName("a coordinate of ", "point", i / 3);
     });
   }
 
@@ -256,8 +256,7 @@ class VtkLegacyFile final : public VtkSource {
 
   void beginArrays(bool ofCells) {
     ofCells_ = ofCells;
-    std::int64_t count = 0;
-    if (!scanner_.readInteger(count)) scanner_.failInteger("the number of values");
+    const std::int64_t count = scanner_.integer("the number of values");
     if (count >= 0 && static_cast<std::uint64_t>(count) == elements()) return;
     scanner_.fail(ErrorCode::FileSyntax,
                   "the arrays are for " + std::to_string(count) + (ofCells ? " cells" : " points") +
@@ -366,7 +365,7 @@ class VtkLegacyFile final : public VtkSource {
     }
     column = textColumn(numbers, count);
     readElements(scanner_, &*index_, stage_, count, 1, [&](TextScanner& scanner, std::size_t i) {
-      readVtkNumber(scanner, numbers, column, i, [&] { return what(i); });
+      readVtkNumber(scanner, numbers, column, i, what(i));
     });
     return column;
   }

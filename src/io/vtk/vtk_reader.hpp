@@ -60,8 +60,8 @@ struct VtkGenerators {
 /// Reads both, unless arrays of their names are something else.
 void readVtkGenerators(const VtkSource& source, Array<Index>& tets, Array<CornerSet>& corners);
 
-/// Tags and regions as addTags() writes them. Arrays of other forms are somebody else's, and left
-/// alone.
+/// Tags and regions as addTags() writes them. Arrays of other forms belong to other programs, and
+/// are ignored.
 /// @throws Error FileSyntax if an array has too few or too many numbers; FileUnsupported for a tag
 ///         or region that does not fit into 32 bits; IndexOutOfRange for a vertex that is no point
 [[nodiscard]] HexFeatures readVtkHexFeatures(const VtkSource& source);

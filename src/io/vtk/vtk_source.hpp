@@ -155,20 +155,7 @@ class VtkSource {
 [[nodiscard]] VtkColumn textColumn(VtkNumbers numbers, std::size_t count);
 
 /// Reads a number that is text, as number i of a column.
-/// @param what  for messages; called if it is no such number
-template <class What>
 void readVtkNumber(TextScanner& scanner, VtkNumbers numbers, VtkColumn& column, std::size_t i,
-                   const What& what) {
-  char* const place = column.decoded.data() + i * sizeof(double);
-  if (numbers == VtkNumbers::Reals) {
-    double real = 0;
-    if (!scanner.readNumber(real)) scanner.failNumber(what());
-    std::memcpy(place, &real, sizeof(real));
-  } else {
-    std::int64_t integer = 0;
-    if (!scanner.readInteger(integer)) scanner.failInteger(what());
-    std::memcpy(place, &integer, sizeof(integer));
-  }
-}
+                   const NumberName& name);
 
 }  // namespace hexhex

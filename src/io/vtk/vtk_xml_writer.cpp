@@ -251,11 +251,8 @@ void requirePlainName(std::string_view name) {
 class VtuStream {
  public:
   VtuStream(const std::filesystem::path& file, int /*threads*/) : output_(file) {
-    if (output_.hasPositions()) return;
-    throw Error(ErrorCode::FileWrite,
-                file.string() +
-                    ": the file was not written because it is a device or a pipe, but the arrays "
-                    "of a .vtu file that comes in pieces are written side by side. Name a file.");
+    output_.requirePositions(
+        "but the arrays of a .vtu file that comes in pieces are written side by side");
   }
 
   void begin(std::uint64_t points, std::uint64_t cells) {
@@ -317,13 +314,9 @@ class VtuStream {
   std::uint64_t end_ = 0;        ///< of the last array
 };
 
-/// The head of a compressed file is written last.
-void requireCompressible(const OutputFile& output, const std::filesystem::path& file) {
-  if (output.hasPositions()) return;
-  throw Error(ErrorCode::FileWrite,
-              file.string() +
-                  ": the file was not written because it is a device or a pipe, to which no "
-                  "compressed .vtu file can be written. Name a file.");
+void requireCompressible(const OutputFile& output) {
+  // The head is written last.
+  output.requirePositions("to which no compressed .vtu file can be written");
 }
 
 }  // namespace
@@ -344,7 +337,7 @@ void writeVtkXml(OutputFile& output, const VtkDataSet& data, bool compress, Stag
 void writeVtu(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
               Context& context) {
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  if (options.compress) requireCompressible(output, file);
+  if (options.compress) requireCompressible(output);
   VtkPiece piece;
   const VtkDataSet data = hexDataSet(mesh, options, piece, context);
   Stage stage(context, "write mesh");
@@ -356,7 +349,7 @@ void writeVtuMap(const TetMap& map, const std::filesystem::path& file, const Wri
   Stage stage(context, "write map");
   requirePlainName(options.mapArray);
   OutputFile output(file);
-  if (options.compress) requireCompressible(output, file);
+  if (options.compress) requireCompressible(output);
   withThreads(context.threads(), [&] { requireWritable(map, stage); });
   VtkPiece piece;
   piece.vertices.points = map.points;

@@ -95,8 +95,7 @@ struct Blocks {
   std::vector<std::uint64_t> begins;  ///< of the compressed blocks, and the end of the last
 };
 
-/// A number in front of the data, in this machine's order of bytes, which the reader has made sure
-/// of.
+/// A number in front of the data, in this machine's order of bytes, as the reader has checked.
 bool readLength(EncodedBytes& source, std::size_t lengthBytes, std::uint64_t& length) {
   std::array<char, sizeof(length)> bytes{};
   if (!source.read(bytes.data(), lengthBytes)) return false;

@@ -304,7 +304,7 @@ class VtuFile final : public VtkSource {
     const char* const what = numbers == VtkNumbers::Reals ? "a number" : "a whole number";
     column.count = 0;
     while (count ? column.count < *count : scanner.skipSpace()) {
-      readVtkNumber(scanner, numbers, column, column.count++, [what] { return what; });
+      readVtkNumber(scanner, numbers, column, column.count++, what);
     }
     if (scanner.skipSpace()) scanner.failToken("the end of the array");
     return column;
