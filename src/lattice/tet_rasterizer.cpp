@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include <lattice/tet_rasterizer.hpp>
 
@@ -123,16 +124,20 @@ bool TetRasterizer::prepare(HalfGrid grid, const GridBox& box, Search& search) c
     search.size[k] = range.last - range.first;
     search.slopes[k] = gradients_[axes[k]];
   }
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  search.hasFlat = false;
   double zeroError = 0;
   for (std::size_t face = 0; face < 4; ++face) {
     const double slope = search.slopes[2][face];
     // Other zeros are known to an eighth.
     constexpr double kClearSlope = 16;
-    search.isFlat[face] = !(std::abs(slope) > kClearSlope * search.errors[face]);
-    search.toZero[face] = -1 / slope;
-    if (!search.isFlat[face]) {
-      zeroError = std::max(zeroError, 2 * search.errors[face] / std::abs(slope));
-    }
+    const bool isFlat = !(std::abs(slope) > kClearSlope * search.errors[face]);
+    search.isFlat[face] = isFlat;
+    search.hasFlat = search.hasFlat || isFlat;
+    search.toZero[face] = isFlat ? 0 : -1 / slope;
+    search.forLow[face] = !isFlat && slope > 0 ? 0 : -kInfinity;
+    search.forHigh[face] = !isFlat && slope < 0 ? 0 : kInfinity;
+    zeroError = std::max(zeroError, 2 * search.errors[face] * std::abs(search.toZero[face]));
   }
   // The roundings of the zero itself and of its conversion to an integer.
   search.zeroError = zeroError + 0x1p-48 * (static_cast<double>(search.size[2]) + 16);
@@ -154,16 +159,15 @@ TetRasterizer::Line TetRasterizer::findLine(const Search& search, std::int32_t l
         search.values[face] + search.slopes[0][face] * level + search.slopes[1][face] * row;
   }
   for (std::size_t face = 0; face < 4; ++face) {
-    const double slope = search.slopes[2][face];
-    if (search.isFlat[face]) {
-      const double reach = search.errors[face] + std::abs(slope) * search.size[2];
-      if (values[face] < -reach) return Line::Outside;
-      if (!(values[face] > reach)) isCertain = false;
-    } else if (slope > 0) {
-      low = std::max(low, values[face] * search.toZero[face]);
-    } else {
-      high = std::min(high, values[face] * search.toZero[face]);
-    }
+    const double zero = values[face] * search.toZero[face];
+    low = std::max(low, zero + search.forLow[face]);
+    high = std::min(high, zero + search.forHigh[face]);
+  }
+  for (std::size_t face = 0; search.hasFlat && face < 4; ++face) {
+    if (!search.isFlat[face]) continue;
+    const double reach = search.errors[face] + std::abs(search.slopes[2][face]) * search.size[2];
+    if (values[face] < -reach) return Line::Outside;
+    if (!(values[face] > reach)) isCertain = false;
   }
   if (low - search.zeroError > high + search.zeroError) return Line::Outside;
   low = std::min(low, behind);

@@ -155,7 +155,10 @@ class TetRasterizer {
     ByFace errors;                      ///< more than values may be wrong by anywhere in the box
     /// So nearly parallel to the lines that zeros would be useless.
     std::array<bool, 4> isFlat;
-    ByFace toZero;     ///< unless flat: -1 / slope along the lines
+    bool hasFlat;      ///< any face
+    ByFace toZero;     ///< -1 / slope along the lines; 0 if flat
+    ByFace forLow;     ///< 0 for rising planes, otherwise -infinity, which leaves the maximum alone
+    ByFace forHigh;    ///< 0 for falling planes, otherwise infinity
     double zeroError;  ///< bound of the error of all zeros
   };
   /// Outside: the whole line certainly misses the tet, not just its points.
