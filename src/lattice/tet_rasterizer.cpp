@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include <lattice/tet_rasterizer.hpp>
 
@@ -104,7 +103,8 @@ bool TetRasterizer::prepare(HalfGrid grid, const GridBox& box, Search& search) c
     const auto length = static_cast<double>(range.last - range.first);
     for (std::size_t face = 0; face < 4; ++face) {
       search.values[face] += gradients_[k][face] * (start - zeros_[k][face]);
-      most[face] += std::max(gradients_[k][face] * length, 0.0);
+      const double change = gradients_[k][face] * length;
+      most[face] += 0.5 * (change + std::abs(change));  // if positive
     }
     if (epsilon_ > 0) {
       for (std::size_t face = 0; face < 4; ++face) {
@@ -124,7 +124,7 @@ bool TetRasterizer::prepare(HalfGrid grid, const GridBox& box, Search& search) c
     search.size[k] = range.last - range.first;
     search.slopes[k] = gradients_[axes[k]];
   }
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kFar = 1e300;  // beyond all zeros
   search.hasFlat = false;
   double zeroError = 0;
   for (std::size_t face = 0; face < 4; ++face) {
@@ -134,10 +134,11 @@ bool TetRasterizer::prepare(HalfGrid grid, const GridBox& box, Search& search) c
     const bool isFlat = !(std::abs(slope) > kClearSlope * search.errors[face]);
     search.isFlat[face] = isFlat;
     search.hasFlat = search.hasFlat || isFlat;
-    search.toZero[face] = isFlat ? 0 : -1 / slope;
-    search.forLow[face] = !isFlat && slope > 0 ? 0 : -kInfinity;
-    search.forHigh[face] = !isFlat && slope < 0 ? 0 : kInfinity;
-    zeroError = std::max(zeroError, 2 * search.errors[face] * std::abs(search.toZero[face]));
+    const double toZero = isFlat ? 0 : -1 / slope;
+    search.toZero[face] = toZero;
+    search.forLow[face] = -kFar * (toZero < 0 ? 0 : 1);
+    search.forHigh[face] = kFar * (toZero > 0 ? 0 : 1);
+    zeroError = std::max(zeroError, 2 * search.errors[face] * std::abs(toZero));
   }
   // The roundings of the zero itself and of its conversion to an integer.
   search.zeroError = zeroError + 0x1p-48 * (static_cast<double>(search.size[2]) + 16);

@@ -157,8 +157,8 @@ class TetRasterizer {
     std::array<bool, 4> isFlat;
     bool hasFlat;      ///< any face
     ByFace toZero;     ///< -1 / slope along the lines; 0 if flat
-    ByFace forLow;     ///< 0 for rising planes, otherwise -infinity, which leaves the maximum alone
-    ByFace forHigh;    ///< 0 for falling planes, otherwise infinity
+    ByFace forLow;     ///< added to zeros: 0 if the plane rises, otherwise far below all others
+    ByFace forHigh;    ///< likewise: 0 if it falls, otherwise far above
     double zeroError;  ///< bound of the error of all zeros
   };
   /// Outside: the whole line certainly misses the tet, not just its points.
