@@ -106,7 +106,6 @@ class Survey {
     result_.innerFaces = (4 * tets - boundaryFaces) / 2;
     parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
       forEachPart(begin, end, [&](std::size_t first, std::size_t last) {
-        findSides(first, last);
         countCones(first, last);
         compareNeighbours(first, last, result_.unequalFaces[block]);
       });
@@ -142,33 +141,16 @@ class Survey {
     }
   }
 
-  void findSides(std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; t += 2) {
-      const std::size_t next = std::min(t + 1, end - 1);
-      const auto sides = sidesOf(static_cast<Index>(t), kGeneralDirection, static_cast<Index>(next),
-                                 kGeneralDirection);
-      result_.sides[t] = sides[0];
-      result_.sides[next] = sides[1];
-    }
-  }
-
   /// Counts tets at the vertices from which the general direction leads into them, and their mirror
   /// images at vertices on one boundary plane, unless the star is above that everywhere.
   void countCones(std::size_t begin, std::size_t end) {
     PartList cones;   // vertices
     PartList images;  // tets, and in the two lowest bits the axes along which they are mirrored
-    for (auto t = static_cast<Index>(begin); t < end; ++t) {
-      const Tet& tet = topology_.tets[t];
-      const TetSides sides = result_.sides[t];
-      if (sides == kUncertainSides) {
-        markTet(tet);
-        continue;
-      }
-      const std::size_t corner = coneCorner(sides);
-      cones.add(tet[corner % 4], corner < 4);
-      unsigned below = 0;
-      for (const Index v : tet) below |= planes_[v].below;
-      for (unsigned axis = 0; axis < 3; ++axis) images.add(4 * t + axis, (below >> axis & 1U) != 0);
+    for (auto t = static_cast<Index>(begin); t < end; t += 2) {
+      const Index next = std::min(t + 1, static_cast<Index>(end - 1));
+      const auto sides = sidesOf(t, kGeneralDirection, next, kGeneralDirection);
+      listTet(t, sides[0], cones, images);
+      if (next != t) listTet(next, sides[1], cones, images);
     }
     const std::span<const std::uint32_t> list = images.get();
     for (std::size_t i = 0; i < list.size(); i += 2) {
@@ -181,6 +163,20 @@ class Survey {
     for (const Index v : cones.get()) {
       std::atomic_ref(cones_[v]).fetch_add(1, std::memory_order_relaxed);
     }
+  }
+
+  void listTet(Index t, TetSides sides, PartList& cones, PartList& images) {
+    const Tet& tet = topology_.tets[t];
+    result_.sides[t] = sides;
+    if (sides == kUncertainSides) {
+      markTet(tet);
+      return;
+    }
+    const std::size_t corner = coneCorner(sides);
+    cones.add(tet[corner % 4], corner < 4);
+    unsigned below = 0;
+    for (const Index v : tet) below |= planes_[v].below;
+    for (unsigned axis = 0; axis < 3; ++axis) images.add(4 * t + axis, (below >> axis & 1U) != 0);
   }
 
   void listImage(std::uint32_t image, TetSides sides, PartList& cones) {
