@@ -11,7 +11,6 @@
 #include <base/parallel.hpp>
 #include <io/io_test_support.hpp>
 #include <io/ovm/ovm_cells.hpp>
-#include <io/ovm/ovm_topology.hpp>
 
 namespace hexhex::test {
 namespace {

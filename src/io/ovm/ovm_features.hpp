@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,32 +42,30 @@ void setOvmTags(Array<std::int32_t>& tags, std::size_t elements, std::size_t ver
                 const Name& nameOf, const At& placeOf) {
   if (features.empty()) return;
   tags.assign(elements, 0);
+  const auto sorted = [](std::array<Index, n> vertices) {
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
+  };
   struct Wanted {
-    std::array<Index, n> vertices;
     const Feature* feature;
     Index element;
   };
-  std::vector<Wanted> wanted;
+  std::multimap<std::array<Index, n>, Wanted> wanted;
   // Few vertices of a mesh are the smallest ones of a feature, and all elements are asked.
   Array<std::uint8_t> isSmallest(vertexCount, 0);
   for (const Feature& feature : features) {
-    wanted.push_back({feature.vertices, &feature, kNone});
-    std::sort(wanted.back().vertices.begin(), wanted.back().vertices.end());
-    const Index smallest = wanted.back().vertices[0];
-    if (smallest < vertexCount) isSmallest[smallest] = 1;
+    const auto place = wanted.emplace(sorted(feature.vertices), Wanted{&feature, kNone});
+    if (place->first[0] < vertexCount) isSmallest[place->first[0]] = 1;
   }
-  const auto before = [](const Wanted& a, const Wanted& b) { return a.vertices < b.vertices; };
-  std::stable_sort(wanted.begin(), wanted.end(), before);
   for (std::size_t i = 0; i < elements; ++i) {
-    Wanted key{verticesOf(i), nullptr, 0};
-    if (isSmallest[*std::min_element(key.vertices.begin(), key.vertices.end())] == 0) continue;
-    std::sort(key.vertices.begin(), key.vertices.end());
-    const auto range = std::equal_range(wanted.begin(), wanted.end(), key, before);
-    for (auto found = range.first; found != range.second; ++found) {
-      found->element = static_cast<Index>(i);
+    const std::array<Index, n> vertices = verticesOf(i);
+    if (isSmallest[*std::min_element(vertices.begin(), vertices.end())] == 0) continue;
+    const auto [begin, end] = wanted.equal_range(sorted(vertices));
+    for (auto found = begin; found != end; ++found) {
+      found->second.element = static_cast<Index>(i);
     }
   }
-  for (const Wanted& entry : wanted) {
+  for (const auto& [vertices, entry] : wanted) {
     setOvmValue(tags, entry.element, entry.feature->tag, nameOf(*entry.feature),
                 placeOf(*entry.feature));
   }

@@ -13,7 +13,6 @@
 
 #include <base/parallel.hpp>
 #include <io/ovm/ovm_cells.hpp>
-#include <io/ovm/ovm_topology.hpp>
 
 namespace hexhex {
 namespace {
@@ -133,18 +132,123 @@ class HexTopologyBuilder {
   [[nodiscard]] std::size_t behind(std::size_t cell, std::size_t axis) const {
     return matesOf(cell)[2 * axis + 1] / 6;
   }
-  [[nodiscard]] Own ownOf(std::size_t cell) const;
-  void number();
-  void listEdges();
   [[nodiscard]] Index ownHalfEdge(std::size_t cell, std::size_t axis) const {
     const Own& own = own_[cell];
     return 2 * (own.firstEdge + rankOf(own.edges, axis));
   }
-  [[nodiscard]] Index halfEdge(std::size_t cell, std::size_t from, std::size_t to) const;
-  [[nodiscard]] bool listFaces();
-  void listNearFaces(std::size_t cell, Index* halfEdges) const;
-  void listOwnFaces(std::size_t cell, Index* halfEdges) const;
-  void listCells();
+
+  /// Without numbers.
+  [[nodiscard]] Own ownOf(std::size_t cell) const {
+    const unsigned seams = seamCorners_[cell];
+    if (seams == 0) return {0, 0, kAllEdges, kNearSlots};
+    unsigned edges = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      edges |= (seams & seams >> kNextCorner[axis] & 1U) == 0 ? 1U << axis : 0U;
+    }
+    unsigned faces = 0;
+    for (std::size_t slot = 0; slot < 6; ++slot) {
+      const std::size_t face = kFaceOfSlot[slot];
+      faces |= owns(static_cast<Index>(6 * cell + face), matesOf(cell)[face]) ? 1U << slot : 0U;
+    }
+    return {0, 0, static_cast<std::uint8_t>(edges), static_cast<std::uint8_t>(faces)};
+  }
+
+  /// Numbers edges and faces.
+  void number() {
+    own_.resize(cells_.size());
+    parallelFor(stage_, cells_.size(), kGrain, [this](std::size_t c) { own_[c] = ownOf(c); });
+    std::uint64_t edges = seamEdges_.size();
+    std::uint64_t faces = 0;
+    for (Own& own : own_) {
+      own.firstEdge = static_cast<Index>(std::exchange(edges, edges + kBitCounts[own.edges]));
+      own.firstFace = static_cast<Index>(std::exchange(faces, faces + kBitCounts[own.faces]));
+    }
+    requireOvmCount(kMaxOvmEntities, faces, "faces");
+    requireOvmCount(kMaxOvmEntities, edges, "edges");
+    topology_.edges.resize(static_cast<std::size_t>(edges));
+    topology_.faces.length = 4;
+    topology_.faces.handles.resize(static_cast<std::size_t>(4 * faces));
+  }
+
+  void listEdges() {
+    std::copy(seamEdges_.begin(), seamEdges_.end(), topology_.edges.begin());
+    parallelFor(stage_, cells_.size(), kGrain, [this](std::size_t c) {
+      Edge* edge = topology_.edges.data() + own_[c].firstEdge;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if ((own_[c].edges >> axis & 1U) != 0)
+          *edge++ = {cells_[c][0], cells_[c][kNextCorner[axis]]};
+      }
+    });
+  }
+
+  /// The half-edge between two corners of a cell.
+  [[nodiscard]] Index halfEdge(std::size_t cell, std::size_t from, std::size_t to) const {
+    const unsigned seams = seamCorners_[cell];
+    if ((seams >> from & seams >> to & 1U) != 0) {
+      return seamEdgeFinder_.halfEdge(cells_[cell][from], cells_[cell][to]);
+    }
+    const unsigned along = kSteps[from] ^ kSteps[to];
+    const unsigned steps = kSteps[from] & kSteps[to];
+    std::size_t owner = cell;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if ((steps >> axis & 1U) != 0) owner = behind(owner, axis);
+    }
+    return ownHalfEdge(owner, along / 2) + ((kSteps[from] & along) != 0 ? 1U : 0U);
+  }
+
+  /// @return whether all cells have different vertices: asked here, where memory keeps processors
+  /// waiting anyway. With a loop of its own, conversions of large meshes take 5 % longer.
+  [[nodiscard]] bool listFaces() {
+    const auto list = [this](std::size_t c) {
+      Index* const halfEdges = topology_.faces.handles.data() + 4 * std::size_t{own_[c].firstFace};
+      seamCorners_[c] == 0 ? listNearFaces(c, halfEdges) : listOwnFaces(c, halfEdges);
+      return !hasVertexTwice(cells_[c]);
+    };
+    return firstFault(stage_, cells_.size(), list) == cells_.size();
+  }
+
+  /// The faces of a cell that is on no seam, in order.
+  void listNearFaces(std::size_t cell, Index* halfEdges) const {
+    const std::array<std::size_t, 3> next = {behind(cell, 0), behind(cell, 1), behind(cell, 2)};
+    // As kOvmHexFaces passes corners 0, 1, 2, 3; 0, 4, 5, 1; and 0, 3, 7, 4.
+    for (const std::size_t axis : {2U, 1U, 0U}) {
+      const std::size_t a = (axis + 1) % 3;
+      const std::size_t b = (axis + 2) % 3;
+      *halfEdges++ = ownHalfEdge(cell, a);
+      *halfEdges++ = ownHalfEdge(next[a], b);
+      *halfEdges++ = ownHalfEdge(next[b], a) + 1;
+      *halfEdges++ = ownHalfEdge(cell, b) + 1;
+    }
+  }
+
+  /// The same of any cell.
+  void listOwnFaces(std::size_t cell, Index* halfEdges) const {
+    for (std::size_t slot = 0; slot < 6; ++slot) {
+      if ((own_[cell].faces >> slot & 1U) == 0) continue;
+      const std::array<std::uint8_t, 4>& corners = kOvmHexFaces[slot];
+      for (std::size_t i = 0; i < 4; ++i) {
+        *halfEdges++ = halfEdge(cell, corners[i], corners[(i + 1) % 4]);
+      }
+    }
+  }
+
+  /// Replaces mates by half-faces.
+  void listCells() {
+    const auto numberOf = [this](std::size_t cell, std::size_t slot) {
+      return own_[cell].firstFace + rankOf(own_[cell].faces, slot);
+    };
+    parallelFor(stage_, cells_.size(), kGrain, [&](std::size_t c) {
+      Index* const handles = topology_.cells.handles.data() + 6 * c;
+      std::array<Index, 6> mates;  // NOLINT(*-member-init): all of it is set
+      std::copy_n(handles, 6, mates.begin());
+      for (std::size_t slot = 0; slot < 6; ++slot) {
+        const Index mate = mates[kFaceOfSlot[slot]];
+        handles[slot] = (own_[c].faces >> slot & 1U) != 0
+                            ? 2 * numberOf(c, slot)
+                            : 2 * numberOf(mate / 6, kSlotOfFace[mate % 6]) + 1;
+      }
+    });
+  }
 
   std::span<const Hex> cells_;
   Stage& stage_;
@@ -154,120 +258,6 @@ class HexTopologyBuilder {
   OvmEdgeFinder seamEdgeFinder_;
   Array<Own> own_;  ///< per cell
 };
-
-/// Without numbers.
-Own HexTopologyBuilder::ownOf(std::size_t cell) const {
-  const unsigned seams = seamCorners_[cell];
-  if (seams == 0) return {0, 0, kAllEdges, kNearSlots};
-  unsigned edges = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    edges |= (seams & seams >> kNextCorner[axis] & 1U) == 0 ? 1U << axis : 0U;
-  }
-  unsigned faces = 0;
-  for (std::size_t slot = 0; slot < 6; ++slot) {
-    const std::size_t face = kFaceOfSlot[slot];
-    faces |= owns(static_cast<Index>(6 * cell + face), matesOf(cell)[face]) ? 1U << slot : 0U;
-  }
-  return {0, 0, static_cast<std::uint8_t>(edges), static_cast<std::uint8_t>(faces)};
-}
-
-/// Numbers edges and faces.
-void HexTopologyBuilder::number() {
-  own_.resize(cells_.size());
-  parallelFor(stage_, cells_.size(), kGrain, [this](std::size_t c) { own_[c] = ownOf(c); });
-  std::uint64_t edges = seamEdges_.size();
-  std::uint64_t faces = 0;
-  for (Own& own : own_) {
-    own.firstEdge = static_cast<Index>(std::exchange(edges, edges + kBitCounts[own.edges]));
-    own.firstFace = static_cast<Index>(std::exchange(faces, faces + kBitCounts[own.faces]));
-  }
-  requireOvmCount(kMaxOvmEntities, faces, "faces");
-  requireOvmCount(kMaxOvmEntities, edges, "edges");
-  topology_.edges.resize(static_cast<std::size_t>(edges));
-  topology_.faces.length = 4;
-  topology_.faces.handles.resize(static_cast<std::size_t>(4 * faces));
-}
-
-void HexTopologyBuilder::listEdges() {
-  std::copy(seamEdges_.begin(), seamEdges_.end(), topology_.edges.begin());
-  parallelFor(stage_, cells_.size(), kGrain, [this](std::size_t c) {
-    Edge* edge = topology_.edges.data() + own_[c].firstEdge;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if ((own_[c].edges >> axis & 1U) != 0) *edge++ = {cells_[c][0], cells_[c][kNextCorner[axis]]};
-    }
-  });
-}
-
-/// The half-edge between two corners of a cell.
-Index HexTopologyBuilder::halfEdge(std::size_t cell, std::size_t from, std::size_t to) const {
-  const unsigned seams = seamCorners_[cell];
-  if ((seams >> from & seams >> to & 1U) != 0) {
-    return seamEdgeFinder_.halfEdge(cells_[cell][from], cells_[cell][to]);
-  }
-  const unsigned along = kSteps[from] ^ kSteps[to];
-  const unsigned steps = kSteps[from] & kSteps[to];
-  std::size_t owner = cell;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if ((steps >> axis & 1U) != 0) owner = behind(owner, axis);
-  }
-  return ownHalfEdge(owner, along / 2) + ((kSteps[from] & along) != 0 ? 1U : 0U);
-}
-
-/// @return whether all cells have different vertices: asked here, where memory keeps processors
-/// waiting anyway. With a loop of its own, conversions of large meshes take 5 % longer.
-bool HexTopologyBuilder::listFaces() {
-  const auto list = [this](std::size_t c) {
-    Index* const halfEdges = topology_.faces.handles.data() + 4 * std::size_t{own_[c].firstFace};
-    seamCorners_[c] == 0 ? listNearFaces(c, halfEdges) : listOwnFaces(c, halfEdges);
-    return !hasVertexTwice(cells_[c]);
-  };
-  return firstFault(stage_, cells_.size(), list) == cells_.size();
-}
-
-/// The faces of a cell that is on no seam, in order.
-void HexTopologyBuilder::listNearFaces(std::size_t cell, Index* halfEdges) const {
-  const std::array<std::size_t, 3> next = {behind(cell, 0), behind(cell, 1), behind(cell, 2)};
-  const Index first = 2 * own_[cell].firstEdge;
-  const std::array<Index, 3> edges = {first, first + 2, first + 4};
-  // As kOvmHexFaces passes corners 0, 1, 2, 3; 0, 4, 5, 1; and 0, 3, 7, 4.
-  for (const std::size_t axis : {2U, 1U, 0U}) {
-    const std::size_t a = (axis + 1) % 3;
-    const std::size_t b = (axis + 2) % 3;
-    *halfEdges++ = edges[a];
-    *halfEdges++ = ownHalfEdge(next[a], b);
-    *halfEdges++ = ownHalfEdge(next[b], a) + 1;
-    *halfEdges++ = edges[b] + 1;
-  }
-}
-
-/// The same of any cell.
-void HexTopologyBuilder::listOwnFaces(std::size_t cell, Index* halfEdges) const {
-  for (std::size_t slot = 0; slot < 6; ++slot) {
-    if ((own_[cell].faces >> slot & 1U) == 0) continue;
-    const std::array<std::uint8_t, 4>& corners = kOvmHexFaces[slot];
-    for (std::size_t i = 0; i < 4; ++i) {
-      *halfEdges++ = halfEdge(cell, corners[i], corners[(i + 1) % 4]);
-    }
-  }
-}
-
-/// Replaces mates by half-faces.
-void HexTopologyBuilder::listCells() {
-  const auto numberOf = [this](std::size_t cell, std::size_t slot) {
-    return own_[cell].firstFace + rankOf(own_[cell].faces, slot);
-  };
-  parallelFor(stage_, cells_.size(), kGrain, [&](std::size_t c) {
-    Index* const handles = topology_.cells.handles.data() + 6 * c;
-    std::array<Index, 6> mates;  // NOLINT(*-member-init): all of it is set
-    std::copy_n(handles, 6, mates.begin());
-    for (std::size_t slot = 0; slot < 6; ++slot) {
-      const Index mate = mates[kFaceOfSlot[slot]];
-      handles[slot] = (own_[c].faces >> slot & 1U) != 0
-                          ? 2 * numberOf(c, slot)
-                          : 2 * numberOf(mate / 6, kSlotOfFace[mate % 6]) + 1;
-    }
-  });
-}
 
 }  // namespace
 

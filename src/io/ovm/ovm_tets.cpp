@@ -9,7 +9,6 @@
 #include <io/ovm/ovm_cell_reader.hpp>
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_features.hpp>
-#include <io/ovm/ovm_topology.hpp>
 
 namespace hexhex {
 namespace {

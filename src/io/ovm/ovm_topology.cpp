@@ -1,7 +1,7 @@
 // First, as its HalfFace and CornerOrder are names of entities and properties: adjacency has types
 // of these names, which they would shadow.
 // clang-format off
-#include <io/ovm/ovm_topology.hpp>
+#include <io/ovm/ovm_cells.hpp>
 // clang-format on
 
 #include <algorithm>
@@ -17,7 +17,6 @@
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
-#include <io/ovm/ovm_cells.hpp>
 
 namespace hexhex {
 
@@ -107,43 +106,30 @@ void appendEdges(const TetTopology& tets, Index vertex, KeyTable& others,
   }
 }
 
-Array<Edge> listEdges(const TetTopology& tets, Stage& stage) {
-  std::vector<std::vector<Edge>> blocks(blockCount(tets.pointCount, kGrain));
-  parallelBlocks(stage, tets.pointCount, kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   KeyTable others;
-                   for (std::size_t v = begin; v < end; ++v) {
-                     appendEdges(tets, static_cast<Index>(v), others, blocks[block]);
-                   }
-                 });
-  Array<std::uint64_t> begins(blocks.size() + 1);
-  for (std::size_t i = 0; i < blocks.size(); ++i) begins[i] = blocks[i].size();
-  begins.back() = 0;
-  const std::uint64_t count = exclusiveScan(std::span(begins));
-  requireOvmCount(kMaxOvmEntities, count, "edges");
-  Array<Edge> edges(static_cast<std::size_t>(count));
-  parallelFor(stage, blocks.size(), 1, [&](std::size_t i) {
-    std::copy(blocks[i].begin(), blocks[i].end(), edges.data() + begins[i]);
-    blocks[i] = {};
-  });
-  return edges;
+std::vector<Edge> listEdges(const TetTopology& tets, Stage& stage) {
+  return collectFromBlocks<Edge>(
+      stage, tets.pointCount, kGrain,
+      [&tets](std::size_t begin, std::size_t end, std::vector<Edge>& edges) {
+        KeyTable others;
+        for (std::size_t v = begin; v < end; ++v) {
+          appendEdges(tets, static_cast<Index>(v), others, edges);
+        }
+      });
 }
 
-/// Calls visit(half-face) for each face whose smallest vertex this is, by the first tet that has
-/// it.
-template <class Visit>
-void forEachFace(const TetTopology& tets, Index vertex, const Visit& visit) {
-  const auto visitIfFirst = [&](HalfFace halfFace) {
-    if (tets.mate[halfFace] > halfFace) visit(halfFace);  // kNone is larger than all
+/// The faces whose smallest vertex this is, as half-faces of the first tet that has them.
+void appendFaces(const TetTopology& tets, Index vertex, std::vector<HalfFace>& faces) {
+  const auto addIfFirst = [&](HalfFace halfFace) {
+    if (tets.mate[halfFace] > halfFace) faces.push_back(halfFace);  // kNone is larger than all
   };
   for (const CornerIndex corner : tets.star(vertex)) {
     const Index t = corner / 4;
     const std::array<std::uint8_t, 4>& ascending = kAscendingCorners[tets.order[t]];
     if (ascending[0] == corner % 4) {
       // The order of slots, if the tet lists its vertices in ascending order.
-      for (const std::size_t opposite : {3U, 1U, 2U}) visitIfFirst(4 * t + ascending[opposite]);
+      for (const std::size_t opposite : {3U, 1U, 2U}) addIfFirst(4 * t + ascending[opposite]);
     } else if (ascending[1] == corner % 4) {
-      visitIfFirst(4 * t + ascending[0]);
+      addIfFirst(4 * t + ascending[0]);
     }
   }
 }
@@ -155,28 +141,18 @@ class TetFaceLister {
       : tets_(tets), topology_(topology), edges_(tets.pointCount, topology.edges) {}
 
   void run(Stage& stage) {
-    Array<std::uint64_t> begins(blockCount(tets_.pointCount, kGrain) + 1, 0);
-    parallelBlocks(stage, tets_.pointCount, kGrain,
-                   [&](std::size_t begin, std::size_t end, std::size_t block) {
-                     const auto count = [&](HalfFace /*halfFace*/) { ++begins[block]; };
-                     for (std::size_t v = begin; v < end; ++v) {
-                       forEachFace(tets_, static_cast<Index>(v), count);
-                     }
-                   });
-    const std::uint64_t count = exclusiveScan(std::span(begins));
-    requireOvmCount(kMaxOvmEntities, count, "faces");
+    const std::vector<HalfFace> faces = collectFromBlocks<HalfFace>(
+        stage, tets_.pointCount, kGrain,
+        [this](std::size_t begin, std::size_t end, std::vector<HalfFace>& list) {
+          for (std::size_t v = begin; v < end; ++v) appendFaces(tets_, static_cast<Index>(v), list);
+        });
+    requireOvmCount(kMaxOvmEntities, faces.size(), "faces");
     topology_.cells.length = 4;
     topology_.cells.handles.resize(4 * tets_.tetCount());
     topology_.faces.length = 3;
-    topology_.faces.handles.resize(static_cast<std::size_t>(3 * count));
-    parallelBlocks(stage, tets_.pointCount, kGrain,
-                   [&](std::size_t begin, std::size_t end, std::size_t block) {
-                     auto face = static_cast<Index>(begins[block]);
-                     const auto list = [&](HalfFace halfFace) { listFace(face++, halfFace); };
-                     for (std::size_t v = begin; v < end; ++v) {
-                       forEachFace(tets_, static_cast<Index>(v), list);
-                     }
-                   });
+    topology_.faces.handles.resize(3 * faces.size());
+    parallelFor(stage, faces.size(), kGrain,
+                [&](std::size_t f) { listFace(static_cast<Index>(f), faces[f]); });
   }
 
  private:
@@ -237,7 +213,9 @@ OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Tet> cells
   addStars(tets, stage);
   OvmTopology topology;
   topology.vertexCount = vertexCount;
-  topology.edges = listEdges(tets, stage);
+  const std::vector<Edge> edges = listEdges(tets, stage);
+  requireOvmCount(kMaxOvmEntities, edges.size(), "edges");
+  topology.edges.assign(edges.begin(), edges.end());
   TetFaceLister(tets, topology).run(stage);
   return topology;
 }

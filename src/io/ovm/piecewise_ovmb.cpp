@@ -19,7 +19,6 @@
 #include <io/ovm/ovm.hpp>
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_mesh.hpp>
-#include <io/ovm/ovm_topology.hpp>
 
 namespace hexhex {
 namespace {
