@@ -58,34 +58,25 @@ bool owns(Index halfFace, Index mate) {
 
 using Edge = std::array<Index, 2>;
 
-/// The two faces at each edge of kHexEdges.
-constexpr std::array<std::array<std::uint8_t, 2>, 12> kFacesAtEdge = {{{2, 4},
-                                                                       {1, 4},
-                                                                       {3, 4},
-                                                                       {0, 4},
-                                                                       {2, 5},
-                                                                       {1, 5},
-                                                                       {3, 5},
-                                                                       {0, 5},
-                                                                       {0, 2},
-                                                                       {1, 2},
-                                                                       {0, 3},
-                                                                       {1, 3}}};
+/// By edge of kHexEdges: one face and the other face that have it.
+constexpr std::array<std::array<std::uint8_t, 12>, 2> kFacesAtEdges = {
+    {{2, 1, 3, 0, 2, 1, 3, 0, 0, 1, 0, 1}, {4, 4, 4, 4, 5, 5, 5, 5, 2, 2, 3, 3}}};
 
 /// The edges between vertices on seams, which cells cannot tell by themselves to be new.
 Array<Edge> listSeamEdges(std::size_t vertexCount, std::span<const Hex> cells,
                           const HexMates& mates, Stage& stage) {
   // Of the cells at an edge, the first one lists it, and few others.
-  const auto isFirst = [&mates](std::size_t cell, const std::array<std::uint8_t, 2>& faces) {
-    const auto isBefore = [&](std::size_t face) { return mates.mates[6 * cell + face] > 6 * cell; };
-    return isBefore(faces[0]) && isBefore(faces[1]);  // kNone is larger than all
+  const auto isFirst = [&mates](std::size_t cell, std::size_t edge) {
+    return std::all_of(kFacesAtEdges.begin(), kFacesAtEdges.end(), [&](const auto& faces) {
+      return mates.mates[6 * cell + faces[edge]] > 6 * cell;  // kNone is larger than all
+    });
   };
   const VertexLists<Index, std::uint64_t> ends(vertexCount, stage, [&](const auto& add) {
     parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
       const unsigned seams = mates.seamCorners[c];
       for (std::size_t e = 0; seams != 0 && e < 12; ++e) {
         const auto& [i, k] = kHexEdges[e];
-        if ((seams >> i & seams >> k & 1U) == 0 || !isFirst(c, kFacesAtEdge[e])) continue;
+        if ((seams >> i & seams >> k & 1U) == 0 || !isFirst(c, e)) continue;
         add(std::min(cells[c][i], cells[c][k]), std::max(cells[c][i], cells[c][k]));
       }
     });

@@ -76,30 +76,19 @@ struct OvmTopology {
   OvmLists cells;                     ///< half-faces
 
   [[nodiscard]] std::size_t count(OvmEntity entity) const noexcept {
-    switch (entity) {
-      case OvmEntity::Vertex:
-        return vertexCount;
-      case OvmEntity::Edge:
-        return edges.size();
-      case OvmEntity::Face:
-        return faces.size();
-      case OvmEntity::Cell:
-        return cells.size();
-      case OvmEntity::HalfEdge:
-        return 2 * edges.size();
-      case OvmEntity::HalfFace:
-        return 2 * faces.size();
-      case OvmEntity::Mesh:
-        break;
-    }
-    return 1;
+    const std::array<std::size_t, 7> counts = {vertexCount,
+                                               edges.size(),
+                                               faces.size(),
+                                               cells.size(),
+                                               2 * edges.size(),
+                                               2 * faces.size(),
+                                               1};
+    return counts[static_cast<std::size_t>(entity)];
   }
   /// The vertex that a half-edge comes from.
   [[nodiscard]] Index from(Index halfEdge) const noexcept {
     return edges[halfEdge / 2][halfEdge % 2];
   }
-  /// The vertex that a half-edge goes to.
-  [[nodiscard]] Index to(Index halfEdge) const noexcept { return from(halfEdge ^ 1U); }
 };
 
 /// The map: for each half-face the parameters of the vertex opposite it in its cell, in the cell's

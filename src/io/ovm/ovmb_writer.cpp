@@ -1,6 +1,7 @@
 // Writes `.ovmb` files (see ovm_mesh.hpp).
 #include <algorithm>
 #include <bit>
+#include <initializer_list>
 #include <limits>
 #include <type_traits>
 
@@ -48,18 +49,24 @@ class OvmbWriter {
   void put(T value) {
     writeBytesOf(output_, value);
   }
+  void putBytes(std::initializer_list<std::size_t> bytes) {
+    for (const std::size_t byte : bytes) put(static_cast<std::uint8_t>(byte));
+  }
+  void putZeros(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) putBytes({0});
+  }
   void putText(std::string_view text) {
     put(static_cast<std::uint32_t>(text.size()));
     output_.write(text);
   }
-  void putZeros(std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) output_.write('\0');
+  void putSpan(std::size_t count) {
+    put(std::uint64_t{0});
+    put(static_cast<std::uint32_t>(count));
   }
   template <class Stored, class T>
   void putArray(std::span<const T> values);
-  void beginChunk(std::string_view type, std::uint64_t payload);
-  void endChunk() { putZeros(padding_); }
-  void putSpan(std::size_t count);
+  template <class Body>
+  void writeChunk(std::string_view type, std::uint64_t payload, const Body& body);
 
   void writeHeader();
   void writeDirectory();
@@ -72,7 +79,6 @@ class OvmbWriter {
   const OvmTopology& topology_;
   OutputFile& output_;
   LoopProgress progress_;
-  std::uint8_t padding_ = 0;  ///< of the chunk that is being written
 };
 
 /// Numbers one after the other, as Stored.
@@ -91,30 +97,23 @@ void OvmbWriter::putArray(std::span<const T> values) {
   }
 }
 
-void OvmbWriter::beginChunk(std::string_view type, std::uint64_t payload) {
-  constexpr std::uint8_t kMandatory = 1;
-  padding_ = static_cast<std::uint8_t>((8 - payload % 8) % 8);
+/// @param payload  the bytes that body() puts
+template <class Body>
+void OvmbWriter::writeChunk(std::string_view type, std::uint64_t payload, const Body& body) {
+  const std::uint64_t padding = (8 - payload % 8) % 8;
   output_.write(type);
-  put(std::uint8_t{0});  // version
-  put(padding_);
-  put(std::uint8_t{0});  // compression
-  put(kMandatory);
-  put(payload + padding_);
-}
-
-void OvmbWriter::putSpan(std::size_t count) {
-  put(std::uint64_t{0});
-  put(static_cast<std::uint32_t>(count));
+  putBytes({0, padding, 0, 1});  // version, padding, compression, mandatory
+  put(payload + padding);
+  body();
+  putZeros(padding);
 }
 
 void OvmbWriter::writeHeader() {
   output_.write(kOvmbMagic);
-  put(std::uint8_t{1});  // version of the file
-  put(std::uint8_t{1});  // version of the header
-  put(std::uint8_t{3});  // dimension
-  const bool tets = topology_.faces.length == 3 && topology_.cells.size() > 0;
-  const bool hexes = topology_.faces.length == 4 && topology_.cells.size() > 0;
-  put(static_cast<std::uint8_t>(tets ? 1 : (hexes ? 2 : 0)));
+  const std::size_t valence = topology_.cells.size() > 0 ? topology_.faces.length : 0;
+  const bool tets = valence == 3;
+  const bool hexes = valence == 4;
+  putBytes({1, 1, 3, tets ? 1U : (hexes ? 2U : 0U)});  // versions of file and header, dimension
   put(std::uint32_t{0});
   for (const std::size_t count : {mesh_.points.size(), topology_.edges.size(),
                                   topology_.faces.size(), topology_.cells.size()}) {
@@ -130,27 +129,27 @@ void OvmbWriter::writeDirectory() {
     const ElementType type = typeOf(property);
     payload += kEntryBytes + property.name.size() + type.name.size() + type.bytes;
   }
-  beginChunk("DIRP", payload);
-  for (const OvmProperty& property : mesh_.properties) {
-    const ElementType type = typeOf(property);
-    put(static_cast<std::uint8_t>(property.entity));
-    putText(property.name);
-    putText(type.name);
-    put(static_cast<std::uint32_t>(type.bytes));
-    putZeros(type.bytes);  // the default value
-  }
-  endChunk();
+  writeChunk("DIRP", payload, [this] {
+    for (const OvmProperty& property : mesh_.properties) {
+      const ElementType type = typeOf(property);
+      put(static_cast<std::uint8_t>(property.entity));
+      putText(property.name);
+      putText(type.name);
+      put(static_cast<std::uint32_t>(type.bytes));
+      putZeros(type.bytes);  // the default value
+    }
+  });
 }
 
 void OvmbWriter::writeVertices() {
   if (mesh_.points.empty()) return;
   constexpr std::size_t kHeaderBytes = 16;
   constexpr std::uint32_t kFloat64 = 2;
-  beginChunk("VERT", kHeaderBytes + mesh_.points.size_bytes());
-  putSpan(mesh_.points.size());
-  put(kFloat64);
-  putArray<double>(flat(mesh_.points));
-  endChunk();
+  writeChunk("VERT", kHeaderBytes + mesh_.points.size_bytes(), [this] {
+    putSpan(mesh_.points.size());
+    put(kFloat64);
+    putArray<double>(flat(mesh_.points));
+  });
   progress_.advance(mesh_.points.size());
 }
 
@@ -168,20 +167,16 @@ void OvmbWriter::writeTopology(OvmEntity entity, std::size_t valence,
   const bool narrow = !wide && limit <= std::numeric_limits<std::uint8_t>::max();
   const std::size_t bytesEach = wide ? 4 : (narrow ? 1 : 2);
   const std::size_t varying = offsets.empty() ? 0 : count;
-  beginChunk("TOPO", kHeaderBytes + varying + handles.size() * bytesEach);
-  putSpan(count);
-  put(static_cast<std::uint8_t>(entity));
-  put(static_cast<std::uint8_t>(valence));
-  put(static_cast<std::uint8_t>(varying > 0 ? 1 : 0));  // bytes of a valence
-  put(static_cast<std::uint8_t>(bytesEach));
-  put(std::uint64_t{0});  // OpenVolumeMesh misreads other offsets of edges
-  for (std::size_t i = 0; i < varying; ++i) {
-    put(static_cast<std::uint8_t>(offsets[i + 1] - offsets[i]));
-  }
-  if (bytesEach == 1) putArray<std::uint8_t>(handles);
-  if (bytesEach == 2) putArray<std::uint16_t>(handles);
-  if (bytesEach == 4) putArray<std::uint32_t>(handles);
-  endChunk();
+  writeChunk("TOPO", kHeaderBytes + varying + handles.size() * bytesEach, [&] {
+    putSpan(count);
+    const std::size_t bytesOfValence = varying > 0 ? 1 : 0;
+    putBytes({static_cast<std::size_t>(entity), valence, bytesOfValence, bytesEach});
+    put(std::uint64_t{0});  // OpenVolumeMesh misreads other offsets of edges
+    for (std::size_t i = 0; i < varying; ++i) putBytes({offsets[i + 1] - offsets[i]});
+    if (bytesEach == 1) putArray<std::uint8_t>(handles);
+    if (bytesEach == 2) putArray<std::uint16_t>(handles);
+    if (bytesEach == 4) putArray<std::uint32_t>(handles);
+  });
   progress_.advance(handles.size());
 }
 
@@ -190,11 +185,11 @@ void OvmbWriter::writeProperty(std::uint32_t number) {
   std::visit(
       [&](const auto& values) {
         const auto numbers = flat(std::span(values));
-        beginChunk("PROP", kHeaderBytes + numbers.size_bytes());
-        putSpan(values.size());
-        put(number);
-        putArray<typename decltype(numbers)::value_type>(numbers);
-        endChunk();
+        writeChunk("PROP", kHeaderBytes + numbers.size_bytes(), [&] {
+          putSpan(values.size());
+          put(number);
+          putArray<typename decltype(numbers)::value_type>(numbers);
+        });
       },
       mesh_.properties[number].values);
 }
@@ -205,13 +200,12 @@ void OvmbWriter::write() {
   writeVertices();
   const std::span<const std::array<Index, 2>> edges(topology_.edges);
   writeTopology(OvmEntity::Edge, 2, {}, flat(edges), OvmEntity::Vertex);
-  const auto writeLists = [this](OvmEntity entity, const OvmLists& lists, OvmEntity referenced) {
-    writeTopology(entity, lists.length, lists.offsets, lists.handles, referenced);
-  };
-  writeLists(OvmEntity::Face, topology_.faces, OvmEntity::HalfEdge);
-  writeLists(OvmEntity::Cell, topology_.cells, OvmEntity::HalfFace);
+  const OvmLists& faces = topology_.faces;
+  const OvmLists& cells = topology_.cells;
+  writeTopology(OvmEntity::Face, faces.length, faces.offsets, faces.handles, OvmEntity::HalfEdge);
+  writeTopology(OvmEntity::Cell, cells.length, cells.offsets, cells.handles, OvmEntity::HalfFace);
   for (std::uint32_t i = 0; i < mesh_.properties.size(); ++i) writeProperty(i);
-  beginChunk("EOF ", 0);
+  writeChunk("EOF ", 0, [] {});
   output_.commit();
 }
 
