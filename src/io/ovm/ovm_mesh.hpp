@@ -89,6 +89,8 @@ struct OvmTopology {
   [[nodiscard]] Index from(Index halfEdge) const noexcept {
     return edges[halfEdge / 2][halfEdge % 2];
   }
+  /// The vertex that a half-edge goes to.
+  [[nodiscard]] Index to(Index halfEdge) const noexcept { return from(halfEdge ^ 1U); }
 };
 
 /// The map: for each half-face the parameters of the vertex opposite it in its cell, in the cell's
