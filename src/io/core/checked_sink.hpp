@@ -1,6 +1,9 @@
-// What all sinks have in common: the order of calls, checks of what comes, time and cancellation.
+// What all writers refuse; and what all sinks have in common: the order of calls, checks of what
+// comes, time and cancellation.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -11,12 +14,32 @@
 #include <utility>
 
 #include <hexhex/context.hpp>
+#include <hexhex/io.hpp>
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
 
 namespace hexhex {
+
+[[nodiscard]] inline bool isFinite(const Vec3& v) noexcept {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+[[nodiscard]] inline bool isFinite(const TetParameters& corners) noexcept {
+  return isFinite(corners[0]) && isFinite(corners[1]) && isFinite(corners[2]) &&
+         isFinite(corners[3]);
+}
+
+/// The first point with a coordinate that is infinite or no number, or the number of points.
+[[nodiscard]] std::size_t firstNotFinite(std::span<const Vec3> points, Stage& stage);
+
+/// Refuses a map that could not be read back.
+/// @throws Error InvalidArgument if arrays disagree, IndexOutOfRange, NotFinite
+void requireWritable(const TetMap& map, Stage& stage);
+
+/// Refuses meshes that would crash a writer or could not be read back.
+/// @throws Error InvalidArgument if arrays disagree or a cell names no vertex, NotFinite
+void requireWritable(const HexMesh& mesh, const WriteOptions& options, Stage& stage);
 
 /// The calls of one sink: in the right order only, with finite coordinates and vertices that exist.
 /// Of a call inside run(), the functions throw if it is wrong.

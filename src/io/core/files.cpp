@@ -11,7 +11,6 @@
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/core/registry.hpp>
-#include <io/core/writable.hpp>
 #include <io/core/zlib_blocks.hpp>
 
 namespace hexhex {

@@ -50,8 +50,10 @@ class TextSource {
 
   [[nodiscard]] std::size_t position() const { return scanner_->position(); }
   void moveTo(std::size_t position) { scanner_->moveTo(position); }
-  /// Whether no number follows.
-  [[nodiscard]] bool atEnd() const { return !scanner_->skipSpace(); }
+  /// Refuses a text that ends after so many elements.
+  void failIfAtEnd(std::size_t done, std::size_t count, std::string_view what) const {
+    scanner_->failIfAtEnd(done, count, what);
+  }
   /// How the file spells the number that was read last.
   [[nodiscard]] std::string spelling(std::uint64_t /*number*/) const {
     return std::string(scanner_->currentToken());

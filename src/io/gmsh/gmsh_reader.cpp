@@ -29,7 +29,16 @@ class GmshFile {
   /// Reads the section $MeshFormat.
   /// @param text  must outlive this, and so must the others
   /// @throws Error FileSyntax, FileUnsupported
-  GmshFile(std::string_view text, const std::string& fileName, Stage& stage);
+  GmshFile(std::string_view text, const std::string& fileName, Stage& stage)
+      : text_(text), bytes_(text, fileName), scanner_(text, fileName), stage_(stage) {
+    if (scanner_.readToken() != "$MeshFormat") {
+      scanner_.fail(ErrorCode::FileSyntax, "a .msh file begins with \"$MeshFormat\", found " +
+                                               quoted(scanner_.currentToken()) + ".");
+    }
+    readVersion();
+    readEncoding();
+    endSection("MeshFormat");
+  }
 
   /// Whether the version is 4.1; otherwise it is 2.
   [[nodiscard]] bool version4() const noexcept { return version4_; }
@@ -128,17 +137,6 @@ class GmshFile {
   bool binary_ = false;
   bool version4_ = false;
 };
-
-GmshFile::GmshFile(std::string_view text, const std::string& fileName, Stage& stage)
-    : text_(text), bytes_(text, fileName), scanner_(text, fileName), stage_(stage) {
-  if (scanner_.readToken() != "$MeshFormat") {
-    scanner_.fail(ErrorCode::FileSyntax, "a .msh file begins with \"$MeshFormat\", found " +
-                                             quoted(scanner_.currentToken()) + ".");
-  }
-  readVersion();
-  readEncoding();
-  endSection("MeshFormat");
-}
 
 /// Takes the names of groups from the section $PhysicalNames: lines "dimension number name", as
 /// text in binary files, too. Lines of another form are passed over.

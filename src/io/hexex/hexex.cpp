@@ -9,10 +9,10 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/core/checked_sink.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/writable.hpp>
 #include <io/hexex/hexex.hpp>
 
 namespace hexhex {

@@ -68,10 +68,7 @@ class MeditText {
 
   static void beginElement(TextSource& record, std::size_t i, std::size_t count,
                            std::string_view what) {
-    if (!record.atEnd()) return;
-    record.fail(ErrorCode::FileSyntax, "the file ends after " + std::to_string(i) + " of " +
-                                           std::to_string(count) + " " + std::string(what) +
-                                           ": it is incomplete.");
+    record.failIfAtEnd(i, count, what);
   }
   [[nodiscard]] static double coordinate(TextSource& record, std::size_t i) {
     return record.real({"a coordinate of ", "vertex", i + 1});

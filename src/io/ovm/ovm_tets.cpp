@@ -5,7 +5,7 @@
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
-#include <io/core/writable.hpp>
+#include <io/core/checked_sink.hpp>
 #include <io/ovm/ovm_cell_reader.hpp>
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_features.hpp>

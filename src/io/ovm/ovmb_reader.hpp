@@ -13,7 +13,7 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/bytes.hpp>
-#include <io/core/writable.hpp>
+#include <io/core/checked_sink.hpp>
 #include <io/ovm/ovm_mesh.hpp>
 
 namespace hexhex {

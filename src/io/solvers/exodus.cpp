@@ -24,7 +24,7 @@ namespace hexhex {
 namespace {
 
 /// Points or cells of a slice: a few hundred kilobytes, so that it is in the cache when netCDF
-/// turns its bytes round.
+/// reverses the order of its bytes.
 constexpr std::size_t kSlice = std::size_t{1} << 13;
 
 /// Exodus' numbers of the faces of kHexFaces.
@@ -58,34 +58,48 @@ class ExodusFile {
   int id_ = -1;
 };
 
-/// The sides of one group of boundary quads.
-struct SideSet {
-  const ElementGroup* group;
-  std::size_t end;  ///< in the group's list; behind it, quads inside the mesh
+/// A set of vertices or of sides of cells.
+struct ExodusSet {
+  ex_entity_type type;
+  std::int64_t number;
+  std::string name;
+  std::vector<int> elements;  ///< vertices or cells, from 1 on
+  std::vector<int> sides;     ///< of the cells
 };
 
-std::vector<SideSet> sideSets(const QuadGroups& quads) {
-  std::vector<SideSet> sets;
-  for (const ElementGroup& group : quads.groups) {
-    const std::size_t end = quads.boundaryEnd(group);
-    if (end > group.begin) sets.push_back({&group, end});
-  }
-  return sets;
+/// Where each cell stands in the order of the blocks; empty: as they are.
+Array<Index> placesOf(const CellGroups& cells) {
+  Array<Index> places(cells.order.size());
+  for (std::size_t i = 0; i < places.size(); ++i) places[cells.at(i)] = static_cast<Index>(i);
+  return places;
 }
 
-struct NodeSet {
-  std::string name;
-  std::vector<int> vertices;  ///< from 1 on, ascending
-};
-
-template <class Groups>
-void addNodeSets(const Groups& groups, std::vector<NodeSet>& sets) {
-  for (const ElementGroup& group : groups.groups) {
-    NodeSet& set = sets.emplace_back(NodeSet{group.name, {}});
-    for (const Index vertex : verticesOf(groups, group)) {
-      set.vertices.push_back(static_cast<int>(vertex) + 1);
+/// The sides of each group of boundary quads, and the vertices of those of edges and vertices.
+std::vector<ExodusSet> findSets(const MeshGroups& groups) {
+  std::vector<ExodusSet> sets;
+  const Array<Index> places = placesOf(groups.cells);
+  for (const ElementGroup& group : groups.quads.groups) {
+    ExodusSet set{EX_SIDE_SET, group.number, group.name, {}, {}};
+    const std::size_t end = groups.quads.boundaryEnd(group);  // behind it, quads inside the mesh
+    for (std::size_t i = group.begin; i < end; ++i) {
+      const std::size_t cell = groups.quads.places[i] / 8;
+      set.elements.push_back(static_cast<int>(places.empty() ? cell : places[cell]) + 1);
+      set.sides.push_back(kSideNumbers[groups.quads.places[i] % 8]);
     }
+    if (!set.elements.empty()) sets.push_back(std::move(set));
   }
+  std::int64_t number = 0;
+  const auto addNodeSets = [&](const auto& ofKind) {
+    for (const ElementGroup& group : ofKind.groups) {
+      sets.push_back({EX_NODE_SET, ++number, group.name, {}, {}});
+      for (const Index vertex : verticesOf(ofKind, group)) {
+        sets.back().elements.push_back(static_cast<int>(vertex) + 1);
+      }
+    }
+  };
+  addNodeSets(groups.edges);
+  addNodeSets(groups.vertices);
+  return sets;
 }
 
 class ExodusWriter {
@@ -95,19 +109,14 @@ class ExodusWriter {
 
   void write(const MeshGroups& groups) {
     const CellGroups& cells = groups.cells;
-    const std::vector<SideSet> sides = sideSets(groups.quads);
-    std::vector<NodeSet> nodeSets;
-    addNodeSets(groups.edges, nodeSets);
-    addNodeSets(groups.vertices, nodeSets);
-    reserveHead(cells.groups.size() + nodeSets.size() + sides.size());
-    define(cells, sides, nodeSets);
+    const std::vector<ExodusSet> sets = findSets(groups);
+    reserveHead(cells.groups.size() + sets.size());
+    define(cells, sets);
     writePoints();
     for (const ElementGroup& group : cells.groups) writeCells(cells, group);
-    const Array<Index> places = placesOf(cells);
-    for (const SideSet& set : sides) writeSides(set, groups.quads, places);
-    for (std::size_t i = 0; i < nodeSets.size(); ++i) {
-      file_.require(
-          ex_put_set(file_.id(), EX_NODE_SET, size(i + 1), nodeSets[i].vertices.data(), nullptr));
+    for (const ExodusSet& set : sets) {
+      file_.require(ex_put_set(file_.id(), set.type, set.number, set.elements.data(),
+                               set.sides.empty() ? nullptr : set.sides.data()));
     }
     file_.close();
   }
@@ -131,27 +140,22 @@ class ExodusWriter {
   void requireNetcdf(int status) const { file_.require(status == NC_NOERR ? 0 : -1); }
 
   /// Everything but the long arrays.
-  void define(const CellGroups& cells, const std::vector<SideSet>& sides,
-              const std::vector<NodeSet>& nodeSets) {
+  void define(const CellGroups& cells, const std::vector<ExodusSet>& sets) {
+    const std::int64_t nodeSets = std::count_if(
+        sets.begin(), sets.end(), [](const ExodusSet& set) { return set.type == EX_NODE_SET; });
     file_.require(ex_put_init(file_.id(), "hexahedral mesh by hexhex", 3, size(mesh_.points.size()),
-                              size(mesh_.cells.size()), size(cells.groups.size()),
-                              size(nodeSets.size()), size(sides.size())));
+                              size(mesh_.cells.size()), size(cells.groups.size()), nodeSets,
+                              size(sets.size()) - nodeSets));
     for (const ElementGroup& group : cells.groups) {
       file_.require(ex_put_block(file_.id(), EX_ELEM_BLOCK, group.number, "HEX8",
                                  size(group.end - group.begin), 8, 0, 0, 0));
       file_.require(ex_put_name(file_.id(), EX_ELEM_BLOCK, group.number, group.name.c_str()));
     }
-    for (const auto& [group, end] : sides) {
-      defineSet(EX_SIDE_SET, group->number, end - group->begin, group->name);
+    for (const ExodusSet& set : sets) {
+      file_.require(
+          ex_put_set_param(file_.id(), set.type, set.number, size(set.elements.size()), 0));
+      file_.require(ex_put_name(file_.id(), set.type, set.number, set.name.c_str()));
     }
-    for (std::size_t i = 0; i < nodeSets.size(); ++i) {
-      defineSet(EX_NODE_SET, size(i + 1), nodeSets[i].vertices.size(), nodeSets[i].name);
-    }
-  }
-  void defineSet(ex_entity_type type, std::int64_t number, std::size_t count,
-                 const std::string& name) {
-    file_.require(ex_put_set_param(file_.id(), type, number, size(count), 0));
-    file_.require(ex_put_name(file_.id(), type, number, name.c_str()));
   }
 
   /// Calls f(begin, count) for slices of n elements.
@@ -188,25 +192,6 @@ class ExodusWriter {
       file_.require(ex_put_n_elem_conn(file_.id(), group.number, size(begin + 1), size(count),
                                        vertices.data()));
     });
-  }
-
-  /// Where each cell stands in the order of the blocks; empty: as they are.
-  static Array<Index> placesOf(const CellGroups& cells) {
-    Array<Index> places(cells.order.size());
-    for (std::size_t i = 0; i < places.size(); ++i) places[cells.at(i)] = static_cast<Index>(i);
-    return places;
-  }
-
-  void writeSides(const SideSet& set, const QuadGroups& quads, const Array<Index>& places) {
-    std::vector<int> elements;
-    std::vector<int> sides;
-    for (std::size_t i = set.group->begin; i < set.end; ++i) {
-      const std::size_t cell = quads.places[i] / 8;
-      elements.push_back(static_cast<int>(places.empty() ? cell : places[cell]) + 1);
-      sides.push_back(kSideNumbers[quads.places[i] % 8]);
-    }
-    file_.require(
-        ex_put_set(file_.id(), EX_SIDE_SET, set.group->number, elements.data(), sides.data()));
   }
 
   ExodusFile file_;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -5,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <adjacency/hex_topology.hpp>
@@ -55,21 +57,16 @@ void addInnerFaces(const HexMesh& mesh, PolyMesh& poly, Stage& stage) {
   poly.owners.resize(count);
   poly.neighbours.resize(count);
   parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
-    // By insertion, in ascending order of neighbours.
-    std::array<std::size_t, 6> order{};
+    std::array<std::pair<Index, std::size_t>, 6> owned{};  // neighbours and faces, ascending
     std::size_t size = 0;
     for (std::size_t face = 0; face < 6; ++face) {
-      if (!isOwned(c, face)) continue;
-      std::size_t place = size++;
-      for (; place > 0 && neighbours[c][order[place - 1]] > neighbours[c][face]; --place) {
-        order[place] = order[place - 1];
-      }
-      order[place] = face;
+      if (isOwned(c, face)) owned[size++] = {neighbours[c][face], face};
     }
+    std::sort(owned.begin(), owned.begin() + size);
     for (std::size_t i = 0; i < size; ++i) {
-      poly.faces[begin[c] + i] = faceVertices(mesh.cells[c], order[i]);
+      poly.faces[begin[c] + i] = faceVertices(mesh.cells[c], owned[i].second);
       poly.owners[begin[c] + i] = static_cast<Index>(c);
-      poly.neighbours[begin[c] + i] = neighbours[c][order[i]];
+      poly.neighbours[begin[c] + i] = owned[i].first;
     }
   });
 }

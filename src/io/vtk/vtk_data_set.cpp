@@ -95,8 +95,7 @@ void addCorners(VtkDataSet& data, const VtkPiece& piece, std::uint64_t count) {
         writeValues<Corner>(output, corners.size(), [&](std::size_t i) { return corners[i]; });
       }
     };
-    if (!piece.wideCorners.empty()) return write(piece.wideCorners);
-    write(piece.corners);
+    std::visit(write, piece.corners);
   });
 }
 

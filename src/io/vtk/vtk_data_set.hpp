@@ -11,6 +11,7 @@
 #include <span>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <hexhex/context.hpp>
@@ -154,19 +155,13 @@ struct VtkPiece {
   PointPiece vertices = {};
   std::uint64_t firstCell = 0;
   std::size_t cells = 0;
-  std::span<const Index> corners = {};  ///< of the cells; or wide ones:
-  std::span<const std::uint64_t> wideCorners = {};
+  std::variant<std::span<const Index>, std::span<const std::uint64_t>> corners = {};
 
   template <class Vertex, std::size_t n>
   void setCells(std::uint64_t first, std::span<const std::array<Vertex, n>> list) {
     firstCell = first;
     cells = list.size();
-    const Vertex* const numbers = list.empty() ? nullptr : list.front().data();
-    if constexpr (std::same_as<Vertex, Index>) {
-      corners = {numbers, n * list.size()};
-    } else {
-      wideCorners = {numbers, n * list.size()};
-    }
+    corners = std::span(list.empty() ? nullptr : list.front().data(), n * list.size());
   }
 };
 

@@ -18,7 +18,6 @@
 #include <io/core/checked_sink.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
-#include <io/core/writable.hpp>
 #include <io/vtk/vtk.hpp>
 
 namespace hexhex {

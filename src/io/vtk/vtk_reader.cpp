@@ -5,7 +5,7 @@
 #include <hexhex/stream.hpp>
 
 #include <base/parallel.hpp>
-#include <io/core/writable.hpp>
+#include <io/core/checked_sink.hpp>
 #include <io/vtk/vtk_reader.hpp>
 
 namespace hexhex {

@@ -15,7 +15,6 @@
 #include <io/core/checked_sink.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/writable.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/vtk/vtk.hpp>
 #include <io/vtk/vtk_data_set.hpp>
