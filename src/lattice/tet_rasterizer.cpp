@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 
+#include <base/pair.hpp>
 #include <lattice/tet_rasterizer.hpp>
 
 namespace hexhex {
@@ -145,30 +146,28 @@ bool TetRasterizer::prepare(HalfGrid grid, const GridBox& box, Search& search) c
   return true;
 }
 
-TetRasterizer::Line TetRasterizer::findLine(const Search& search, std::int32_t level,
+TetRasterizer::Line TetRasterizer::findLine(const Search& search, const ByFace& values,
                                             std::int32_t row, SweptLine& line) const noexcept {
   // Beside the box, so that empty lines stay empty, and no integers, lest a limit be mistaken for a
   // zero near one.
   constexpr double kBefore = -1.5;
   const double behind = static_cast<double>(search.size[2]) + 1.5;
-  double low = kBefore;
-  double high = behind;
+  const ByFace here = valuesAfter(values, search.slopes[1], row);
+  Pair lows = {kBefore, kBefore};
+  Pair highs = {behind, behind};
+  for (std::size_t face = 0; face < 4; face += 2) {
+    const Pair zeros = loadPair(&here[face]) * loadPair(&search.toZero[face]);
+    lows = larger(lows, zeros + loadPair(&search.forLow[face]));
+    highs = smaller(highs, zeros + loadPair(&search.forHigh[face]));
+  }
+  double low = std::max(lows[0], lows[1]);
+  double high = std::min(highs[0], highs[1]);
   bool isCertain = !(epsilon_ > 0);
-  ByFace values;
-  for (std::size_t face = 0; face < 4; ++face) {
-    values[face] =
-        search.values[face] + search.slopes[0][face] * level + search.slopes[1][face] * row;
-  }
-  for (std::size_t face = 0; face < 4; ++face) {
-    const double zero = values[face] * search.toZero[face];
-    low = std::max(low, zero + search.forLow[face]);
-    high = std::min(high, zero + search.forHigh[face]);
-  }
   for (std::size_t face = 0; search.hasFlat && face < 4; ++face) {
     if (!search.isFlat[face]) continue;
     const double reach = search.errors[face] + std::abs(search.slopes[2][face]) * search.size[2];
-    if (values[face] < -reach) return Line::Outside;
-    if (!(values[face] > reach)) isCertain = false;
+    if (here[face] < -reach) return Line::Outside;
+    if (!(here[face] > reach)) isCertain = false;
   }
   if (low - search.zeroError > high + search.zeroError) return Line::Outside;
   low = std::min(low, behind);
@@ -181,12 +180,11 @@ TetRasterizer::Line TetRasterizer::findLine(const Search& search, std::int32_t l
   const std::int32_t from = std::max(beforeFirst + 1, 0);
   const std::int32_t to = std::min(last, search.size[2]);
   if (from > to) return Line::HasNoPoints;
-  line.level = search.first[0] + level;
   line.row = search.first[1] + row;
   isCertain = isCertain && floorOf(low + search.zeroError) == beforeFirst &&
               floorOf(high - search.zeroError) == last;
   if (!isCertain) {
-    return findExactly(search, values, from, to, line) ? Line::HasPoints : Line::HasNoPoints;
+    return findExactly(search, here, from, to, line) ? Line::HasPoints : Line::HasNoPoints;
   }
   line.first = search.first[2] + from;
   line.count = static_cast<std::uint32_t>(to - from + 1);

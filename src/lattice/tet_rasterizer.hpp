@@ -126,9 +126,11 @@ class TetRasterizer {
     SweptLine line;
     line.axes = search.axes;
     for (std::int32_t level = 0; level <= search.size[0]; ++level) {
+      const ByFace values = valuesAfter(search.values, search.slopes[0], level);
+      line.level = search.first[0] + level;
       bool entered = false;
       for (std::int32_t row = 0; row <= search.size[1]; ++row) {
-        const Line found = findLine(search, level, row, line);
+        const Line found = findLine(search, values, row, line);
         if (found == Line::Outside && entered) break;  // the tet is convex
         entered = entered || found != Line::Outside;
         if (found == Line::HasPoints) visit(std::as_const(line));
@@ -164,11 +166,20 @@ class TetRasterizer {
   /// Outside: the whole line certainly misses the tet, not just its points.
   enum class Line : std::uint8_t { Outside, HasNoPoints, HasPoints };
 
+  /// Values some steps farther.
+  [[nodiscard]] static ByFace valuesAfter(const ByFace& values, const ByFace& slopes,
+                                          std::int32_t steps) noexcept {
+    ByFace there;
+    for (std::size_t face = 0; face < 4; ++face) there[face] = values[face] + slopes[face] * steps;
+    return there;
+  }
+
   void measure() noexcept;
   /// False if the tet misses the box.
   [[nodiscard]] bool prepare(HalfGrid grid, const GridBox& box, Search& search) const noexcept;
-  /// The line at a level and row relative to the box.
-  [[nodiscard]] Line findLine(const Search& search, std::int32_t level, std::int32_t row,
+  /// The line at a row relative to the box.
+  /// @param values  at the first row
+  [[nodiscard]] Line findLine(const Search& search, const ByFace& values, std::int32_t row,
                               SweptLine& line) const noexcept;
   /// The same by exact predicates, among points `first` to `last`; false if it has no points.
   /// @param values  at the line's first point in the box
