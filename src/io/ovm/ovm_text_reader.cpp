@@ -107,20 +107,20 @@ class OvmTextReader {
         hasComments_(text.find('#') != std::string_view::npos) {}
 
   OvmMesh read() {
-    const auto& [vertices, edges, faces, cells] = kOvmElements;
     OvmTopology& topology = mesh_.topology;
     readHeader();
-    readArrays(mesh_.points, vertices, [](TextScanner& scanner, std::size_t i) {
+    readArrays(mesh_.points, kOvmElements[0], [](TextScanner& scanner, std::size_t i) {
       double coordinate = 0;
       if (scanner.readNumber(coordinate)) return coordinate;
       scanner.failNumber("a coordinate of vertex " + std::to_string(i));
     });
     topology.vertexCount = mesh_.points.size();
+    const OvmElements& edges = kOvmElements[1];
     readArrays(topology.edges, edges, [&](TextScanner& scanner, std::size_t i) {
       return readHandle(scanner, edges, i, topology.vertexCount);
     });
-    readLists(topology.faces, faces, 2 * topology.edges.size());
-    readLists(topology.cells, cells, 2 * topology.faces.size());
+    readLists(topology.faces, kOvmElements[2], topology.count(OvmEntity::HalfEdge));
+    readLists(topology.cells, kOvmElements[3], topology.count(OvmEntity::HalfFace));
     readProperties();
     return std::move(mesh_);
   }
