@@ -61,7 +61,7 @@ class Atlas {
     }
     Stage stage(context_, "cuts");
     if (switches_.markCuts) {
-      const bool identitiesGlue = statistics.overlappingTets == 0 && charts_.identitiesAgree;
+      const bool identitiesGlue = statistics.overlappingTets == 0;
       Cuts cuts = markCutCells(map_, charts_, identitiesGlue, vertices_.grid(), stage);
       statistics.cutFaces = cuts.faces;
       transitions_ = std::move(cuts.transitions);

@@ -76,29 +76,12 @@ Borders findBorders(const PreparedMap& map, const Patches& patches) {
   return borders;
 }
 
-/// Where nearly each tet has a gauge of its own.
-Charts buildFromTets(const PreparedMap& map, Stage& stage) {
-  const Gauges& gauges = map.gauges;
-  const std::size_t tets = gauges.of.size();
-  Charts charts;
-  charts.gaugeOf.resize(tets);
-  charts.gauges.resize(tets);
-  charts.chart.resize(tets);
-  parallelFor(stage, tets, kGrain, [&](std::size_t t) {
-    charts.gaugeOf[t] = static_cast<Index>(t);
-    charts.gauges[t] = scaled(gauges.of[t], map.exact.scale);
-    charts.chart[t] = gauges.component[t];
-  });
-  charts.count = gauges.components;
-  return charts;
-}
+}  // namespace
 
-/// Where many share one.
-Charts buildFromPatches(const PreparedMap& map, Stage& stage) {
+Charts buildCharts(const PreparedMap& map, Stage& stage) {
   Patches patches(map, stage);
   const Borders borders = findBorders(map, patches);
   Charts charts;
-  charts.identitiesAgree = true;
   charts.gauges.resize(patches.count());
   std::vector<Index> chartOfPatch(patches.count(), kNone);
   std::vector<Index> queue;
@@ -125,12 +108,6 @@ Charts buildFromPatches(const PreparedMap& map, Stage& stage) {
   parallelFor(stage, charts.chart.size(), kGrain,
               [&](std::size_t t) { charts.chart[t] = chartOfPatch[charts.gaugeOf[t]]; });
   return charts;
-}
-
-}  // namespace
-
-Charts buildCharts(const PreparedMap& map, Stage& stage) {
-  return map.gauges.of.empty() ? buildFromPatches(map, stage) : buildFromTets(map, stage);
 }
 
 }  // namespace hexhex

@@ -20,9 +20,6 @@ struct Charts {
   Array<Gauge> gauges;
   Index count = 0;  ///< charts
 
-  /// Whether gauges are known to agree on all faces with the identity as transition.
-  bool identitiesAgree = false;
-
   [[nodiscard]] const Gauge& gauge(Index tet) const noexcept { return gauges[gaugeOf[tet]]; }
 
   /// Whether the chart continues across a half-face (with a mate): both tets are in one chart,
@@ -48,8 +45,7 @@ struct Charts {
 };
 
 /// One chart for every connected component. Tets connected by identity transitions share a gauge;
-/// these patches are joined along a breadth-first tree. If there are few such transitions, the tree
-/// is one of tets (igm/gauges.hpp).
+/// these patches are joined along a breadth-first tree.
 [[nodiscard]] Charts buildCharts(const PreparedMap& map, Stage& stage);
 
 }  // namespace hexhex

@@ -10,10 +10,13 @@ namespace hexhex {
 
 namespace {
 
-/// From corner 0 of a tet, without rounding: coordinates are below 2^52.
-Vec3 exactEdge(const LatticeTet& corners, std::size_t corner) {
-  const LatticePoint edge = corners[corner] - corners[0];
-  return {static_cast<double>(edge[0]), static_cast<double>(edge[1]), static_cast<double>(edge[2])};
+/// Without rounding: coordinates are below 2^52.
+TetParameters exactDoubles(const LatticeTet& corners) {
+  TetParameters doubles{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) doubles[i][k] = static_cast<double>(corners[i][k]);
+  }
+  return doubles;
 }
 
 }  // namespace
@@ -78,8 +81,7 @@ void checkOrientations(std::span<const std::vector<Index>> tets, const LocalPara
   parallelFor(stage, tets.size(), 1, [&](std::size_t block) {
     for (const Index t : tets[block]) {
       const LatticeTet& c = map.corners[t];
-      if (tripleProduct(exactEdge(c, 1), exactEdge(c, 2), exactEdge(c, 3)) > enough) continue;
-      if (orientation(c[0], c[1], c[2], c[3]) > 0) continue;
+      if (isPositive(exactDoubles(c), enough) || orientation(c[0], c[1], c[2], c[3]) > 0) continue;
       const double amount =
           orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() / (6 * unit * unit * unit);
       defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, amount < 0 ? -amount : 0.0);

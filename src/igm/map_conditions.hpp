@@ -2,6 +2,7 @@
 // others are found violated while the map is sanitized.
 #pragma once
 
+#include <base/vector3.hpp>
 #include <igm/exact_map.hpp>
 
 namespace hexhex {
@@ -23,6 +24,14 @@ void checkSingularities(const Singularities& singularities, const LocalParameter
 /// than half a parameter.
 [[nodiscard]] double leastCertainDeterminant(const LocalParameters& parameters,
                                              double unit) noexcept;
+
+/// Whether the determinant of a tet, in floating point, is larger than this.
+/// @param corners  in units of the lattice
+[[nodiscard]] inline bool isPositive(const TetParameters& corners,
+                                     double leastDeterminant) noexcept {
+  return tripleProduct(minus(corners[1], corners[0]), minus(corners[2], corners[0]),
+                       minus(corners[3], corners[0])) > leastDeterminant;
+}
 
 /// (IGM4) for the tets of all lists.
 void checkOrientations(std::span<const std::vector<Index>> tets, const LocalParameters& parameters,

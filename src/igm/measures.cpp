@@ -26,6 +26,27 @@ std::uint64_t exactQuotient(const Int192& sum, int shift, unsigned divisor, cons
   return static_cast<std::uint64_t>(quotient / divisor);
 }
 
+/// A face of a tet in its chart.
+struct LatticeTriangle {
+  LatticePoint origin;
+  LatticePoint a;  ///< edges from there
+  LatticePoint b;
+
+  LatticeTriangle(const ExactMap& map, HalfFace halfFace) {
+    const LatticeTet& corners = map.corners[tetOf(halfFace)];
+    const auto corner = [&](std::size_t k) {
+      return corners[static_cast<std::size_t>(kFaceCorners[halfFace % 4][k])];
+    };
+    origin = corner(0);
+    a = corner(1) - origin;
+    b = corner(2) - origin;
+  }
+  /// A component of the normal, which leads into the tet.
+  [[nodiscard]] Int128 normal(std::size_t axis) const noexcept {
+    return crossComponent(a, b, axis);
+  }
+};
+
 /// The boundary half-face across an edge of a boundary half-face, around the tets between them.
 HalfFace acrossBoundaryEdge(const TetTopology& topology, HalfFace halfFace, CornerMask edge) {
   EdgeTurn turn(topology, tetOf(halfFace), edge, otherFaceAtEdge(edge, localOf(halfFace)));
@@ -35,6 +56,32 @@ HalfFace acrossBoundaryEdge(const TetTopology& topology, HalfFace halfFace, Corn
 
 }  // namespace
 
+/// The volume of a tet is the sum of those between its faces and the origin. They cancel at inner
+/// faces, but for what the transition makes of it: if it is a translation by t after a rotation,
+/// then the scalar product of t with the triangle's normal is left.
+Int192 sixfoldVolume(const RegularVertices& survey, const ExactMap& map, Stage& stage) {
+  const Transitions& transitions = map.transitions;
+  std::vector<Int192> sums(survey.boundaryFaces.size());
+  parallelFor(stage, sums.size(), 1, [&](std::size_t block) {
+    for (const RegularVertices::BoundaryFace& face : survey.boundaryFaces[block]) {
+      const LatticeTriangle triangle(map, face.halfFace);
+      // Its plane is axis-parallel, and so is the normal.
+      sums[block].addProduct(triangle.normal(face.axis), -triangle.origin[face.axis]);
+    }
+    for (const HalfFace halfFace : survey.unequalFaces[block]) {
+      const Index back = Transitions::inverse(transitions.ofFace[halfFace]);
+      const GridPoint& translation = transitions.table[back].translation;
+      const LatticeTriangle triangle(map, halfFace);
+      for (std::size_t k = 0; k < 3; ++k) {
+        sums[block].addProduct(triangle.normal(k), -translation[k] * map.unit);
+      }
+    }
+  });
+  Int192 volume;
+  for (const Int192& sum : sums) volume += sum;
+  return volume;
+}
+
 std::uint64_t parametricVolume(const ExactMap& map) {
   return exactQuotient(map.sixfoldVolume, 3 * unitBits(map), 6, "volume");
 }
@@ -43,14 +90,10 @@ std::uint64_t boundaryArea(const TetTopology& topology, const ExactMap& map) {
   Int192 sum;
   for (HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
     if (!topology.isBoundary(halfFace)) continue;
-    const LatticeTet& c = map.corners[tetOf(halfFace)];
-    const std::array<int, 3>& face = kFaceCorners[halfFace % 4];
-    const LatticePoint& origin = c[static_cast<std::size_t>(face[0])];
-    const LatticePoint a = c[static_cast<std::size_t>(face[1])] - origin;
-    const LatticePoint b = c[static_cast<std::size_t>(face[2])] - origin;
-    // The triangle lies in a grid plane: one component of its normal is not zero.
+    const LatticeTriangle triangle(map, halfFace);
+    // It lies in a grid plane: one component of its normal is not zero.
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Int128 component = crossComponent(a, b, axis);
+      const Int128 component = triangle.normal(axis);
       sum += Int192(component < 0 ? -component : component);
     }
   }

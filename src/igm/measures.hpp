@@ -7,8 +7,14 @@
 #include <hexhex/check.hpp>
 
 #include <igm/prepare.hpp>
+#include <igm/regular_vertices.hpp>
 
 namespace hexhex {
+
+/// ExactMap::sixfoldVolume of a map without defects, before it is scaled.
+/// @param survey  knows the boundary, and where tets differ
+[[nodiscard]] Int192 sixfoldVolume(const RegularVertices& survey, const ExactMap& map,
+                                   Stage& stage);
 
 /// Parametric volume in unit cubes before scaling: the number of cells of the mesh at scale 1.
 /// @throws Error Internal if it is not an integer, which a valid map excludes

@@ -46,7 +46,7 @@ class Preparation {
 
   [[nodiscard]] PreparedMap run(ChartChoice charts) {
     if (!read()) return std::move(prepared_);
-    Unfolding unfolding;
+    Array<Gauge> unfolding;
     if (charts == ChartChoice::Unfolded && needsUnfolding(prepared_.topology, prepared_.input)) {
       Stage stage(context_, "unfolding");
       unfolding = unfoldCharts(prepared_.topology, prepared_.input, stage);
@@ -86,15 +86,12 @@ class Preparation {
   }
 
   [[nodiscard]] Transitions findTransitions(const LocalParameters& parameters,
-                                            const Unfolding& unfolding,
+                                            const Array<Gauge>& unfolding,
                                             const RegularVertices& survey) {
     Stage stage(context_, "transitions");
     Transitions transitions = computeTransitions(prepared_.topology, parameters, survey,
                                                  prepared_.input.view.rotations, tolerance_, stage);
-    prepared_.chartJumps = unfolding.countGivenJumps(prepared_.topology, transitions, stage);
-    if (areMostlyNonTrivial(prepared_.topology, transitions)) {
-      prepared_.gauges = computeGauges(prepared_.topology, transitions, stage);
-    }
+    prepared_.chartJumps = countGivenTransitions(prepared_.topology, transitions, unfolding, stage);
     return transitions;
   }
 

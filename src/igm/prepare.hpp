@@ -7,7 +7,6 @@
 #include <hexhex/types.hpp>
 
 #include <igm/exact_map.hpp>
-#include <igm/gauges.hpp>
 #include <igm/input.hpp>
 #include <igm/singularities.hpp>
 
@@ -20,7 +19,6 @@ struct PreparedMap {
   Singularities singularities;
   bool isUnfolded = false;       ///< whether `input` has other charts than the caller's
   std::uint64_t chartJumps = 0;  ///< between the caller's charts
-  Gauges gauges;                 ///< not scaled; empty if most transitions are the identity
   ExactMap exact;                ///< not scaled
 };
 

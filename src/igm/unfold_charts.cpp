@@ -1,14 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
-#include <igm/gauges.hpp>
-#include <igm/input.hpp>
 #include <igm/transition_fit.hpp>
 #include <igm/unfold_charts.hpp>
 
@@ -18,107 +16,199 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;
 
-/// Rewrites parameters by gauges.
-class ChartChanger {
- public:
-  ChartChanger(const LocalParameters& parameters, OrientedMap& map, Array<Gauge>& gauges)
-      : parameters_(parameters), map_(map), gauges_(gauges) {}
+/// Tets that are connected within a block of consecutive tets are a *piece*. Pieces are numbered
+/// from 0 in each block, and then block by block.
+struct Block {
+  std::vector<HalfFace> exits;    ///< half-faces of other blocks whose mates are in this one
+  std::vector<std::size_t> ends;  ///< per piece: where its exits end
+};
 
-  void rewrite(Index t) {
-    const TetParameters u = parameters_(t);
-    const TetParameters rotated = turnedTet(gauges_[t].rotation, u);
-    moveToOrigin(gauges_[t], rotated[0]);
-    TetParameters& image = map_.parameters[t];
-    if (!moveExactly(rotated, gauges_[t], image)) {
-      gauges_[t] = {};
-      image = u;
-    }
-    for (const Vec3& corner : image) {
-      for (const double coordinate : corner) largest_ = std::max(largest_, std::abs(coordinate));
-    }
+/// Searches the dual graph: blocks of tets, then the graph of their pieces.
+class GaugeSearch {
+ public:
+  GaugeSearch(const TetTopology& topology, const LocalParameters& parameters, std::size_t blockSize)
+      : topology_(topology),
+        parameters_(parameters),
+        blockSize_(blockSize),
+        gauges_(topology.tetCount()),
+        pieces_(topology.tetCount(), kNone) {}
+
+  Array<Gauge> run(Stage& stage) {
+    const std::size_t tets = topology_.tetCount();
+    std::vector<Block> blocks(blockCount(tets, blockSize_));
+    parallelBlocks(stage, tets, blockSize_,
+                   [&](std::size_t begin, std::size_t end, std::size_t block) {
+                     searchBlock(static_cast<Index>(begin), static_cast<Index>(end), blocks[block]);
+                   });
+    const std::vector<Gauge> gaugesOfPieces = joinPieces(blocks);
+    parallelFor(stage, tets, kGrain, [&](std::size_t t) {
+      gauges_[t] = gaugesOfPieces[pieceOf(static_cast<Index>(t))] * gauges_[t];
+    });
+    return std::move(gauges_);
   }
-  /// The largest magnitude of a coordinate.
-  [[nodiscard]] double largest() const noexcept { return largest_; }
 
  private:
-  static TetParameters turnedTet(Rotation rotation, const TetParameters& u) {
-    return {rotation(u[0]), rotation(u[1]), rotation(u[2]), rotation(u[3])};
-  }
-
-  /// As LocalParameters would move the chart.
-  /// @param corner  0, rotated
-  void moveToOrigin(Gauge& gauge, const Vec3& corner) const {
-    const Vec3 by = translationOf(gauge);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto back = static_cast<std::int64_t>(parameters_.roundedToGrid(corner[k] + by[k]));
-      gauge.translation[k] -= static_cast<std::uint32_t>(back);
+  /// Gives the tets of a block gauges relative to the first tets of their pieces. The search comes
+  /// first, then transitions, tet by tet, as they need far more memory.
+  void searchBlock(Index begin, Index end, Block& block) {
+    Array<HalfFace> entry(end - begin);  // per tet: from which its neighbour has found it
+    std::vector<Index> queue;            // tets in the order of the search
+    queue.reserve(end - begin);
+    for (Index root = begin; root < end; ++root) {
+      if (pieces_[root] != kNone) continue;
+      const auto piece = static_cast<Index>(block.ends.size());
+      pieces_[root] = piece;
+      entry[root - begin] = kNone;
+      std::size_t head = queue.size();
+      queue.push_back(root);
+      for (; head < queue.size(); ++head) {
+        for (const HalfFace mate : sortedMates(queue[head])) {
+          if (mate == kNone) continue;
+          const Index neighbour = tetOf(mate);
+          if (neighbour < begin || neighbour >= end) {
+            block.exits.push_back(mate);
+          } else if (pieces_[neighbour] == kNone) {
+            pieces_[neighbour] = piece;
+            entry[neighbour - begin] = mate;
+            queue.push_back(neighbour);
+          }
+        }
+      }
+      block.ends.push_back(block.exits.size());
+    }
+    for (Index t = begin; t < end; ++t) {
+      const HalfFace halfFace = entry[t - begin];
+      gauges_[t] = halfFace == kNone ? Gauge{} : Gauge{} * transitionAcross(halfFace);
+    }
+    for (const Index t : queue) {
+      const HalfFace halfFace = entry[t - begin];
+      if (halfFace != kNone) gauges_[t] = gauges_[tetOf(topology_.mate[halfFace])] * gauges_[t];
     }
   }
 
-  /// @return whether nothing is rounded
-  static bool moveExactly(const TetParameters& rotated, const Gauge& gauge, TetParameters& image) {
-    const Vec3 by = translationOf(gauge);
-    double rest = 0;
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double sum = rotated[corner][k] + by[k];
-        rest += restOfSum(sum, rotated[corner][k], by[k]);
-        image[corner][k] = sum;
+  /// In ascending order, which makes cuts smoother.
+  [[nodiscard]] std::array<HalfFace, 4> sortedMates(Index tet) const {
+    const HalfFace* m = &topology_.mate[4 * tet];
+    const auto [low0, high0] = std::minmax(m[0], m[1]);
+    const auto [low1, high1] = std::minmax(m[2], m[3]);
+    const auto [middle0, middle1] = std::minmax(std::max(low0, low1), std::min(high0, high1));
+    return {std::min(low0, low1), middle0, middle1, std::max(high0, high1)};
+  }
+
+  /// @return per piece: the gauge of its first tet
+  std::vector<Gauge> joinPieces(const std::vector<Block>& blocks) {
+    std::vector<HalfFace> exits;
+    std::vector<std::size_t> begin = {0};  // per piece (+1): in `exits`
+    for (const Block& block : blocks) {
+      firstPiece_.push_back(static_cast<Index>(begin.size() - 1));
+      for (const std::size_t end : block.ends) begin.push_back(exits.size() + end);
+      exits.insert(exits.end(), block.exits.begin(), block.exits.end());
+    }
+    const auto count = static_cast<Index>(begin.size() - 1);
+    std::vector<Gauge> gauges(count);
+    std::vector<bool> reached(count, false);
+    std::vector<Index> queue;
+    for (Index root = 0; root < count; ++root) {
+      if (reached[root]) continue;
+      reached[root] = true;
+      queue.assign(1, root);
+      for (std::size_t head = 0; head < queue.size(); ++head) {
+        const Index piece = queue[head];
+        for (std::size_t i = begin[piece]; i < begin[piece + 1]; ++i) {
+          const Index there = tetOf(exits[i]);
+          const Index neighbour = pieceOf(there);
+          if (reached[neighbour]) continue;
+          reached[neighbour] = true;
+          const Gauge& here = gauges_[tetOf(topology_.mate[exits[i]])];
+          gauges[neighbour] = gauges[piece] * (here * transitionAcross(exits[i])) / gauges_[there];
+          queue.push_back(neighbour);
+        }
       }
     }
-    return rest == 0;
+    return gauges;
   }
 
-  static Vec3 translationOf(const Gauge& gauge) noexcept {
-    const auto at = [&](std::size_t k) -> double {
-      return static_cast<std::int32_t>(gauge.translation[k]);
-    };
-    return {at(0), at(1), at(2)};
+  [[nodiscard]] Transition transitionAcross(HalfFace halfFace) const {
+    return fitTransition(SharedTriangle(topology_, parameters_, halfFace)).transition;
+  }
+  [[nodiscard]] Index pieceOf(Index tet) const noexcept {
+    return firstPiece_[tet / blockSize_] + pieces_[tet];
   }
 
+  const TetTopology& topology_;
   const LocalParameters& parameters_;
-  OrientedMap& map_;
-  Array<Gauge>& gauges_;
-  double largest_ = 0;
+  std::size_t blockSize_;
+  Array<Gauge> gauges_;
+  Array<Index> pieces_;            ///< per tet: its piece, by number in the block
+  std::vector<Index> firstPiece_;  ///< per block
 };
+
+Vec3 translationOf(const Gauge& gauge) {
+  Vec3 translation{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    translation[k] = static_cast<std::int32_t>(gauge.translation[k]);
+  }
+  return translation;
+}
+
+/// @return whether nothing is rounded
+bool translateExactly(const TetParameters& rotated, const Vec3& by, TetParameters& image) {
+  double rest = 0;
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double sum = rotated[corner][k] + by[k];
+      rest += restOfSum(sum, rotated[corner][k], by[k]);
+      image[corner][k] = sum;
+    }
+  }
+  return rest == 0;
+}
+
+/// The parameters of a tet in the chart of its gauge, moved to the origin as LocalParameters would
+/// move it. If that rounds, they stay as they are, and the gauge becomes the identity.
+TetParameters rewritten(const LocalParameters& given, Index t, Gauge& gauge) {
+  const TetParameters u = given(t);
+  const Rotation rotation = gauge.rotation;
+  const TetParameters rotated = {rotation(u[0]), rotation(u[1]), rotation(u[2]), rotation(u[3])};
+  const Vec3 by = translationOf(gauge);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto back = static_cast<std::int64_t>(given.roundedToGrid(rotated[0][k] + by[k]));
+    gauge.translation[k] -= static_cast<std::uint32_t>(back);
+  }
+  TetParameters image;
+  if (translateExactly(rotated, translationOf(gauge), image)) return image;
+  gauge = {};
+  return u;
+}
+
+double largestMagnitude(const TetParameters& u) {
+  double largest = 0;
+  for (const Vec3& corner : u) {
+    for (const double x : corner) largest = std::max(largest, std::abs(x));
+  }
+  return largest;
+}
 
 }  // namespace
 
-std::uint64_t Unfolding::countGivenJumps(const TetTopology& topology,
-                                         const Transitions& transitions, Stage& stage) const {
-  if (gauges_.empty()) return transitions.nonTrivial;
-  std::vector<std::uint64_t> blocks(blockCount(topology.mate.size(), 4 * kGrain));
-  parallelBlocks(stage, topology.mate.size(), 4 * kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   for (auto here = static_cast<HalfFace>(begin); here < end; ++here) {
-                     const HalfFace there = topology.mate[here];
-                     if (there == kNone || there < here) continue;
-                     Gauge image = gauges_[tetOf(here)];
-                     if (transitions.isNonTrivial(here)) {
-                       image = Gauge{} * transitions.across(here) * image;
-                     }
-                     blocks[block] += image == gauges_[tetOf(there)] ? 0 : 1;
-                   }
-                 });
-  std::uint64_t nonTrivial = 0;
-  for (const std::uint64_t count : blocks) nonTrivial += count;
-  return nonTrivial;
+Array<Gauge> computeGauges(const TetTopology& topology, const LocalParameters& parameters,
+                           Stage& stage, std::size_t blockSize) {
+  return GaugeSearch(topology, parameters, blockSize).run(stage);
 }
 
 bool needsUnfolding(const TetTopology& topology, const OrientedMap& map) {
   const LocalParameters given(map);
   if (!map.view.rotations.empty() || given.tooLarge()) return false;
   constexpr std::size_t kSample = 32;  // tets
-  constexpr std::size_t kBreakEven =
-      3;  // of as many triangles, one between different charts costs as much
+  // Of as many triangles, one between different charts costs as much as unfolding.
+  constexpr std::size_t kBreakEven = 3;
   const std::size_t step = std::max(topology.tetCount() / kSample, std::size_t{1});
   std::size_t faces = 0;
   std::size_t nonTrivial = 0;
   for (std::size_t t = 0; t < topology.tetCount(); t += step) {
     for (int f = 0; f < 4; ++f) {
       const HalfFace here = halfFaceOf(static_cast<Index>(t), f);
-      const HalfFace there = topology.mate[here];
-      if (there == kNone) continue;
+      if (topology.isBoundary(here)) continue;
       ++faces;
       if (agree(topology, given, here)) continue;
       const FittedTransition fitted = fitTransition(SharedTriangle(topology, given, here));
@@ -128,20 +218,41 @@ bool needsUnfolding(const TetTopology& topology, const OrientedMap& map) {
   return kBreakEven * nonTrivial > faces;
 }
 
-Unfolding unfoldCharts(const TetTopology& topology, OrientedMap& map, Stage& stage) {
+Array<Gauge> unfoldCharts(const TetTopology& topology, OrientedMap& map, Stage& stage) {
   const LocalParameters given(map);
-  Gauges gauges = computeGauges(topology, given, stage);
+  Array<Gauge> gauges = computeGauges(topology, given, stage);
   const std::size_t tets = topology.tetCount();
   if (map.parameters.empty()) map.parameters.resize(tets);
-  std::vector<double> largest(blockCount(tets, kGrain));
+  std::vector<double> largest(blockCount(tets, kGrain), 0);
   parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    ChartChanger changer(given, map, gauges.of);
-    for (std::size_t t = begin; t < end; ++t) changer.rewrite(static_cast<Index>(t));
-    largest[block] = changer.largest();
+    for (std::size_t t = begin; t < end; ++t) {
+      map.parameters[t] = rewritten(given, static_cast<Index>(t), gauges[t]);
+      largest[block] = std::max(largest[block], largestMagnitude(map.parameters[t]));
+    }
   });
   map.view.parameters = map.parameters;
   map.largestCoordinate = *std::max_element(largest.begin(), largest.end());
-  return Unfolding(std::move(gauges.of));
+  return gauges;
+}
+
+std::uint64_t countGivenTransitions(const TetTopology& topology, const Transitions& transitions,
+                                    const Array<Gauge>& gauges, Stage& stage) {
+  if (gauges.empty()) return transitions.nonTrivial;
+  const std::size_t halfFaces = topology.mate.size();
+  std::vector<std::uint64_t> blocks(blockCount(halfFaces, kGrain), 0);
+  parallelBlocks(stage, halfFaces, kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   for (auto here = static_cast<HalfFace>(begin); here < end; ++here) {
+                     const HalfFace there = topology.mate[here];
+                     if (there == kNone || there < here) continue;
+                     Gauge image = gauges[tetOf(here)];
+                     if (transitions.isNonTrivial(here)) {
+                       image = Gauge{} * transitions.across(here) * image;
+                     }
+                     blocks[block] += image == gauges[tetOf(there)] ? 0 : 1;
+                   }
+                 });
+  return std::accumulate(blocks.begin(), blocks.end(), std::uint64_t{0});
 }
 
 }  // namespace hexhex

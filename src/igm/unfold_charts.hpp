@@ -1,6 +1,9 @@
-// Common charts for the tets of maps in which many tets have charts of their own.
+// In which charts are as many transitions as possible the identity? Maps with a chart per tet are
+// rewritten in common charts, along a spanning tree of the dual graph, before transitions are
+// computed (not in the paper; before its Section 5.1.1).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include <adjacency/tet_topology.hpp>
@@ -13,23 +16,7 @@
 
 namespace hexhex {
 
-/// How the charts of tets differ from those that the caller gave (and LocalParameters moved).
-class Unfolding {
- public:
-  /// No chart differs.
-  Unfolding() = default;
-  /// @param gauges  per tet: from the given chart into the one that is used
-  explicit Unfolding(Array<Gauge> gauges) noexcept : gauges_(std::move(gauges)) {}
-
-  /// How many inner faces have another transition than the identity, between given charts.
-  [[nodiscard]] std::uint64_t countGivenJumps(const TetTopology& topology,
-                                              const Transitions& transitions, Stage& stage) const;
-
- private:
-  Array<Gauge> gauges_;  ///< empty if all are identities
-};
-
-/// Whether, by a sample, so many triangles have exact transitions that are not identities that
+/// Whether, by a sample, so many triangles have exact transitions that are not the identity that
 /// unfolding is worth its time. Not for maps that come with rotations, which are between given
 /// charts.
 [[nodiscard]] bool needsUnfolding(const TetTopology& topology, const OrientedMap& map);
@@ -39,6 +26,27 @@ class Unfolding {
 /// looks at vertices are for few triangles instead of all. Rotations change nothing but the order
 /// and the signs of coordinates, and where a sum would be rounded, a tet keeps its chart; so it is
 /// the same map to the last bit.
-[[nodiscard]] Unfolding unfoldCharts(const TetTopology& topology, OrientedMap& map, Stage& stage);
+/// @return per tet: from the given chart (as LocalParameters moved it) into the one that is used
+[[nodiscard]] Array<Gauge> unfoldCharts(const TetTopology& topology, OrientedMap& map,
+                                        Stage& stage);
+
+/// How many inner faces have another transition than the identity between given charts.
+/// @param gauges  by unfoldCharts(), or empty: no chart differs
+[[nodiscard]] std::uint64_t countGivenTransitions(const TetTopology& topology,
+                                                  const Transitions& transitions,
+                                                  const Array<Gauge>& gauges, Stage& stage);
+
+/// Tets in a block: what they need is to stay in a cache of one or two MB. Smaller blocks are
+/// faster, but cuts are as few as those of one search only inside of blocks.
+inline constexpr std::size_t kGaugeBlock = std::size_t{1} << 14;
+
+/// Per tet, the transition into a chart that all connected tets share: fitted transitions, composed
+/// along a spanning tree. Across faces that are not in the tree, gauges need not agree.
+///
+/// The tree is one of breadth-first searches: within blocks of consecutive tets, in parallel, and
+/// then from block to block. It does not depend on threads.
+[[nodiscard]] Array<Gauge> computeGauges(const TetTopology& topology,
+                                         const LocalParameters& parameters, Stage& stage,
+                                         std::size_t blockSize = kGaugeBlock);
 
 }  // namespace hexhex

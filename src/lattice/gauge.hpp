@@ -66,12 +66,6 @@ struct Gauge {
   }
 };
 
-/// The gauge of a map whose coordinates are all multiplied by an integer.
-[[nodiscard]] constexpr Gauge scaled(Gauge gauge, int scale) noexcept {
-  for (std::uint32_t& x : gauge.translation) x *= static_cast<std::uint32_t>(scale);
-  return gauge;
-}
-
 /// The point at an offset.
 [[nodiscard]] constexpr ChartPoint plus(ChartPoint c, const GridPoint& offset) noexcept {
   for (std::size_t k = 0; k < 3; ++k) c[k] += static_cast<std::uint32_t>(offset[k]);

@@ -1,4 +1,4 @@
-// Gauges: one picture along a spanning tree, whatever the numbering of tets.
+// Gauges: one chart along a spanning tree, whatever the numbering of tets.
 #include <algorithm>
 #include <numeric>
 #include <random>
@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <base/disjoint_sets.hpp>
-#include <igm/gauges.hpp>
+#include <igm/unfold_charts.hpp>
 
 #include "map_samples.hpp"
 
@@ -16,12 +16,13 @@ namespace {
 
 using test::Prepared;
 
-Gauges gaugesOf(const Prepared& prepared, std::size_t blockSize, int threads = 1) {
+Array<Gauge> gaugesOf(const Prepared& prepared, std::size_t blockSize, int threads = 1) {
   Context context(threads);
   Stage stage(context, "test");
-  Gauges gauges;
+  Array<Gauge> gauges;
   withThreads(threads, [&] {
-    gauges = computeGauges(prepared.topology(), prepared.transitions(), stage, blockSize);
+    const LocalParameters parameters(prepared.map().input);
+    gauges = computeGauges(prepared.topology(), parameters, stage, blockSize);
   });
   return gauges;
 }
@@ -53,38 +54,31 @@ TetMap twice(TetMap map) {
   return map;
 }
 
-bool agree(const Prepared& prepared, const Gauges& gauges, HalfFace halfFace) {
+bool agree(const Prepared& prepared, const Array<Gauge>& gauges, HalfFace halfFace) {
   const Index there = tetOf(prepared.topology().mate[halfFace]);
-  return gauges.of[there] * prepared.transitions().across(halfFace) == gauges.of[tetOf(halfFace)];
+  return gauges[there] * prepared.transitions().across(halfFace) == gauges[tetOf(halfFace)];
 }
 
-/// Whether the faces on which gauges agree connect all tets of each component, and components have
-/// no face in common.
-void expectSpanning(const Prepared& prepared, const Gauges& gauges) {
+/// How many parts the faces on which gauges agree connect tets to.
+std::size_t connectedParts(const Prepared& prepared, const Array<Gauge>& gauges) {
   const Array<HalfFace>& mate = prepared.topology().mate;
-  DisjointSets agreeing(gauges.of.size());
+  DisjointSets agreeing(gauges.size());
   for (HalfFace h = 0; h < mate.size(); ++h) {
-    if (mate[h] == kNone) continue;
-    EXPECT_EQ(gauges.component[tetOf(h)], gauges.component[tetOf(mate[h])]);
-    if (agree(prepared, gauges, h)) agreeing.unite(tetOf(h), tetOf(mate[h]));
+    if (mate[h] != kNone && agree(prepared, gauges, h)) agreeing.unite(tetOf(h), tetOf(mate[h]));
   }
-  EXPECT_EQ(agreeing.count(), gauges.components);
-  EXPECT_EQ(*std::ranges::max_element(gauges.component) + 1, gauges.components);
+  return agreeing.count();
 }
 
 class GaugesOfKind : public test::EveryKind {};
 
 /// @param copies  of a connected mesh
-void expectGoodGauges(const TetMap& map, Index copies) {
+void expectGoodGauges(const TetMap& map, std::size_t copies) {
   const Prepared prepared(map);
   ASSERT_TRUE(prepared.defects().empty());
   for (const std::size_t blockSize : {std::size_t{500}, kGaugeBlock}) {
-    const Gauges gauges = gaugesOf(prepared, blockSize);
-    EXPECT_EQ(gauges.components, copies);
-    expectSpanning(prepared, gauges);
-    const Gauges inParallel = gaugesOf(prepared, blockSize, 3);
-    EXPECT_EQ(gauges.of, inParallel.of);
-    EXPECT_EQ(gauges.component, inParallel.component);
+    const Array<Gauge> gauges = gaugesOf(prepared, blockSize);
+    EXPECT_EQ(connectedParts(prepared, gauges), copies);
+    EXPECT_EQ(gauges, gaugesOf(prepared, blockSize, 3));
   }
 }
 
@@ -99,15 +93,16 @@ TEST_P(GaugesOfKind, AgreeAlongASpanningTree) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, GaugesOfKind, testing::ValuesIn(sampleKinds()), test::kindTestName);
 
-/// Without singularities or handles, there is nothing that ways through the mesh could disagree on.
+/// Without singularities or handles, there is nothing on which paths through the mesh could
+/// disagree.
 TEST(Gauges, AgreeEverywhereInABox) {
   const TetMap map =
       generateSample(SampleKind::Box, {.refine = 8, .charts = ChartStyle::Random, .jitter = 0.5})
           .map;
   for (const TetMap& other : {map, shuffled(map, 4)}) {
     const Prepared prepared(other);
-    ASSERT_TRUE(areMostlyNonTrivial(prepared.topology(), prepared.transitions()));
-    const Gauges gauges = gaugesOf(prepared, 1000);
+    ASSERT_GT(prepared.transitions().nonTrivial, prepared.topology().tetCount());
+    const Array<Gauge> gauges = gaugesOf(prepared, 1000);
     const Array<HalfFace>& mate = prepared.topology().mate;
     std::size_t disagreements = 0;
     for (HalfFace h = 0; h < mate.size(); ++h) {

@@ -19,13 +19,13 @@ using test::Prepared;
 struct Unfolded : test::Topology {
   OrientedMap given;
   bool needed;
-  Unfolding unfolding;
+  Array<Gauge> gauges;
 
   explicit Unfolded(const TetMapView& map)
       : Topology(map),
         given(readInput(map, stage, defects)),
         needed(needsUnfolding(topology, input)),
-        unfolding(unfoldCharts(topology, input, stage)) {
+        gauges(unfoldCharts(topology, input, stage)) {
     EXPECT_TRUE(defects.empty());
   }
 
