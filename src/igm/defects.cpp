@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -8,6 +9,8 @@
 namespace hexhex {
 
 namespace {
+
+constexpr std::size_t kGrain = 1024;
 
 /// At most this many places of each kind are kept (a list that a person reads).
 constexpr std::size_t kWorst = 10;
@@ -28,8 +31,7 @@ const char* explanation(ErrorCode code) {
       return "A triangle belongs to more than two tets. Remove duplicate or overlapping tets.";
     case ErrorCode::NonManifoldEdge:
       return "The tets around an edge do not form one fan. Separate the parts of the mesh that "
-             "touch "
-             "only there by duplicating the edge's vertices.";
+             "touch only there by duplicating the edge's vertices.";
     case ErrorCode::NonManifoldVertex:
       return "The tets around a vertex do not form one ball. Separate the parts of the mesh that "
              "touch only there by duplicating the vertex.";
@@ -38,30 +40,25 @@ const char* explanation(ErrorCode code) {
              "(and their parameters) of the tets so that all have positive volume.";
     case ErrorCode::TransitionResidual:
       return "The charts of two neighbouring tets do not differ by a rotation of the integer grid "
-             "and "
-             "an integer translation (IGM1). Let the map's solver converge further, or raise the "
-             "tolerance if the amounts are just above it.";
+             "and an integer translation (IGM1). Let the map's solver converge further, or raise "
+             "the tolerance if the amounts are just above it.";
     case ErrorCode::BoundaryOffLattice:
       return "A boundary triangle does not lie in an integer plane (IGM2). Snap the boundary to "
              "integers in the program that made the map, or raise the tolerance if the amounts are "
              "just above it.";
     case ErrorCode::SingularityOffLattice:
       return "A singular edge does not lie on an integer line, or a singular node not on an "
-             "integer "
-             "point (IGM3). Snap singularities to integers in the program that made the map, or "
-             "raise "
-             "the tolerance if the amounts are just above it.";
+             "integer point (IGM3). Snap singularities to integers in the program that made the "
+             "map, or raise the tolerance if the amounts are just above it.";
     case ErrorCode::FlippedTet:
       return "A tet is flipped or degenerate in the map (IGM4). Make the map locally injective, "
-             "e.g. "
-             "by foldover-free optimization.";
+             "e.g. by foldover-free optimization.";
     case ErrorCode::HalfIntegerFixedPoint:
       return "The transitions around a vertex leave no grid-aligned position for it: their fixed "
              "points are at half-integers, or they contradict each other. Quantize the map again.";
     case ErrorCode::TooLarge:
       return "A parameter or a size is larger than the library represents. Translate charts "
-             "towards "
-             "the origin, or lower the scale.";
+             "towards the origin, or lower the scale.";
     default:
       return "";
   }
@@ -79,6 +76,115 @@ bool worse(const Defect::Occurrence& a, const Defect::Occurrence& b) {
   if (a.amount != b.amount) return a.amount > b.amount;
   return std::tie(a.place.kind, a.place.index, a.place.second) <
          std::tie(b.place.kind, b.place.index, b.place.second);
+}
+
+/// Makes the half-faces of one triangle mates, or boundary if there is only one.
+void joinMates(TetTopology& topology, std::span<const CellFace<Tet>> same,
+               DefectCollector& defects) {
+  const auto halfFaceAt = [](const CellFace<Tet>& at) { return halfFaceOf(at.cell, at.face); };
+  for (const CellFace<Tet>& at : same) topology.mate[halfFaceAt(at)] = kNone;
+  if (same.size() == 1) return;
+  const CellFace<Tet>& first = same[0];
+  const CellFace<Tet>& second = same[1];
+  const Place place{PlaceKind::Face, first.cell, first.face};
+  if (same.size() > 2) {
+    defects.add(ErrorCode::NonManifoldFace, place, 0);
+    return;
+  }
+  topology.mate[halfFaceAt(first)] = halfFaceAt(second);
+  topology.mate[halfFaceAt(second)] = halfFaceAt(first);
+  if (!areOpposite(faceVertices(topology.tets[first.cell], first.face),
+                   faceVertices(topology.tets[second.cell], second.face))) {
+    defects.add(ErrorCode::Orientation, place, 0);
+  }
+}
+
+/// Matches half-faces once more.
+void checkFaces(TetTopology& topology, Stage& stage, DefectCollector& defects) {
+  topology.mate.resize(4 * topology.tetCount());
+  const auto join = [&](std::span<const CellFace<Tet>> same) {
+    joinMates(topology, same, defects);
+  };
+  parallelFor(stage, topology.pointCount, kGrain, [&](std::size_t v) {
+    FacesAtVertices<Tet> faces(topology.tets);
+    std::vector<Index> around;
+    for (const CornerIndex corner : topology.star(static_cast<Index>(v))) {
+      around.push_back(tetOf(corner));
+    }
+    faces.forEach(static_cast<Index>(v), around, join);
+  });
+}
+
+/// An edge with more than two boundary faces has more than one fan. Returns the number of edges at
+/// each vertex.
+Array<Index> checkEdges(const TetTopology& topology, Stage& stage, DefectCollector& defects) {
+  Array<Index> degree(topology.pointCount, 0);
+  parallelFor(stage, topology.pointCount, kGrain, [&](std::size_t i) {
+    const auto v = static_cast<Index>(i);
+    std::vector<EdgeCorner> scratch;
+    forEachEdge(topology, v, scratch, [&](Index w, std::span<const EdgeCorner> fan) {
+      std::atomic_ref(degree[v]).fetch_add(1, std::memory_order_relaxed);
+      std::atomic_ref(degree[w]).fetch_add(1, std::memory_order_relaxed);
+      if (boundaryFacesAt(topology, fan) > 2) {
+        defects.add(ErrorCode::NonManifoldEdge, {PlaceKind::Edge, v, w}, 0);
+      }
+    });
+  });
+  return degree;
+}
+
+/// V - E + F of the link of a vertex: the triangles opposite it in the tets of its star.
+std::int64_t linkCharacteristic(std::span<const CornerIndex> star, std::int64_t edgesAtVertex,
+                                std::int64_t boundaryFaces) {
+  const auto triangles = static_cast<std::int64_t>(star.size());
+  const std::int64_t sides = (3 * triangles + boundaryFaces) / 2;
+  return edgesAtVertex - sides + triangles;
+}
+
+std::int64_t boundaryFacesAt(const TetTopology& topology, std::span<const CornerIndex> star) {
+  std::int64_t count = 0;
+  for (const CornerIndex corner : star) {
+    for (int face = 0; face < 4; ++face) {
+      if (face != localOf(corner) && topology.isBoundary(halfFaceOf(corner / 4, face))) ++count;
+    }
+  }
+  return count;
+}
+
+/// Whether faces at the vertex connect all tets of its star.
+bool isConnected(const TetTopology& topology, std::span<const CornerIndex> star) {
+  std::vector<bool> reached(star.size(), false);
+  reached[0] = true;
+  std::vector<CornerIndex> queue = {star[0]};
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    const CornerIndex corner = queue[head];
+    for (int face = 0; face < 4; ++face) {
+      const HalfFace mate = topology.mate[halfFaceOf(corner / 4, face)];
+      if (face == localOf(corner) || mate == kNone) continue;
+      const auto neighbour = std::lower_bound(star.begin(), star.end(), 4 * tetOf(mate));
+      const auto position = static_cast<std::size_t>(neighbour - star.begin());
+      if (reached[position]) continue;
+      reached[position] = true;
+      queue.push_back(*neighbour);
+    }
+  }
+  return queue.size() == star.size();
+}
+
+/// The link of a vertex must be a sphere (inside) or a disk (on the boundary). As its triangles are
+/// glued edge to edge and its boundary is free of branching (checked at edges), that is so if it is
+/// connected and has the right Euler characteristic.
+void checkLinks(const TetTopology& topology, const Array<Index>& degree, Stage& stage,
+                DefectCollector& defects) {
+  parallelFor(stage, topology.pointCount, kGrain, [&](std::size_t v) {
+    const std::span<const CornerIndex> star = topology.star(static_cast<Index>(v));
+    if (star.empty()) return;  // isolated: reported by check(), harmless
+    const std::int64_t boundary = boundaryFacesAt(topology, star);
+    if (linkCharacteristic(star, degree[v], boundary) != (boundary > 0 ? 1 : 2) ||
+        !isConnected(topology, star)) {
+      defects.add(ErrorCode::NonManifoldVertex, {PlaceKind::Vertex, v}, 0);
+    }
+  });
 }
 
 }  // namespace
@@ -124,6 +230,22 @@ void DefectCollector::throwIfAny() const {
     message += ".";
   }
   throw Error(defect.code, message, worst.place);
+}
+
+void collectTopologyDefects(TetTopology& topology, Stage& stage, DefectCollector& defects) {
+  addStars(topology, stage);
+  checkFaces(topology, stage, defects);
+  if (defects.has(ErrorCode::NonManifoldFace)) return;
+  const Array<Index> degree = checkEdges(topology, stage, defects);
+  if (!defects.has(ErrorCode::NonManifoldEdge)) checkLinks(topology, degree, stage, defects);
+}
+
+TetTopology buildTopology(const TetMapView& map, Stage& stage, DefectCollector& defects) {
+  TetTopology topology;
+  topology.tets = map.tets;
+  topology.pointCount = map.points.size();
+  if (!matchFaces(topology, stage)) collectTopologyDefects(topology, stage, defects);
+  return topology;
 }
 
 }  // namespace hexhex

@@ -1,18 +1,20 @@
-// Collects violated conditions from parallel loops: all are counted, the ten worst of each kind are
-// kept, and the outcome does not depend on the order in which they arrive.
+// What is wrong with a map, and with its tet mesh if that is not a manifold? (Section 3.1 says what
+// is right.)
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <map>
 #include <mutex>
 #include <vector>
+
+#include <adjacency/tet_topology.hpp>
 
 #include <hexhex/check.hpp>
 #include <hexhex/error.hpp>
 
 namespace hexhex {
 
+/// Collects violated conditions from parallel loops: all are counted, the ten worst of each kind
+/// are kept, and the outcome does not depend on the order in which they arrive.
 class DefectCollector {
  public:
   /// Thread-safe. `amount` in parameter units; larger is worse.
@@ -43,5 +45,18 @@ class DefectCollector {
   bool cornersReversed_ = false;
   ErrorCode rootCause_ = ErrorCode::Internal;
 };
+
+/// Builds adjacency through faces; defects are collected. After a defect the result must not be
+/// used. Faces are checked here (non-manifold, inconsistent orientation); that edges and vertices
+/// are manifold is for computeSingularities() to find out.
+/// @param map  has passed checkInput()
+[[nodiscard]] TetTopology buildTopology(const TetMapView& map, Stage& stage,
+                                        DefectCollector& defects);
+
+/// Goes through all faces, edges and vertices and names those that keep the mesh from being an
+/// oriented manifold with boundary. Slow and simple: for meshes of which faster checks have found
+/// that something is wrong.
+/// @param topology  needs `tets` and `pointCount`; receives `mate` and the stars
+void collectTopologyDefects(TetTopology& topology, Stage& stage, DefectCollector& defects);
 
 }  // namespace hexhex

@@ -145,7 +145,7 @@ class StarSanitizer {
   /// @param planes  of the boundary faces, in the chart of the star's first member
   void run(Index v, Star star, AxisSet planes) {
     const CornerIndex representative = star[0].corner;
-    values_.resize(star.size());
+    if (values_.size() <= star.size()) values_.resize(2 * star.size());
     values_[0] = nearestPoint(parameters_(tetOf(representative), localOf(representative)),
                               grains_.at(fixedAxes(v, star, planes)), unit_);
     if (!spread(star)) {
@@ -193,7 +193,9 @@ class StarSanitizer {
         const std::size_t behind = star[i].neighbour[k];
         if (behind == kNone || (i > 0 && k == star[i].entry)) continue;
         const LatticePoint image = carried(values_[i], star[i].halfFace(k));
-        if (behind == reached) values_[reached++] = image;
+        values_[reached] =
+            image;  // in vain unless the one behind is new, which cannot be predicted
+        reached += behind == reached ? 1 : 0;
         for (std::size_t axis = 0; axis < 3; ++axis) {
           difference |= values_[behind][axis] ^ image[axis];
         }
@@ -239,6 +241,11 @@ Coordinates inARow(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
           loadPair(&c[0]), Pair{c[2], d[0]}, loadPair(&d[1])};
 }
 
+Vec3 cornerOf(const Coordinates& coordinates, std::size_t corner) {
+  const auto number = [&](std::size_t i) { return coordinates[i / 2][i % 2]; };
+  return {number(3 * corner), number(3 * corner + 1), number(3 * corner + 2)};
+}
+
 /// Rounds one tet after the other, two coordinates at a time. (One at a time, extractions of
 /// sphere_blocks_low take 7 % longer, and with a CornerRounder those of s17c_sphere_r0.1 8 %.)
 class TetRounder {
@@ -263,17 +270,19 @@ class TetRounder {
     const Coordinates large = inARow(grains_.at(rounding[0]), grains_.at(rounding[1]),
                                      grains_.at(rounding[2]), grains_.at(rounding[3]));
     const double resolution = 1 / unit_;
-    TetParameters rounded;
+    Coordinates rounded;
     for (std::size_t i = 0; i < 6; ++i) {
-      const Pair nearest = nearestMultiples(given[i] * unit_, large[i]);
-      displacement_ = larger(displacement_, magnitudeOf(nearest * resolution - given[i]));
-      for (std::size_t j = 2 * i; j < 2 * i + 2; ++j) {
-        rounded[j / 3][j % 3] = nearest[j % 2];
-        map_.corners[t][j / 3][j % 3] = static_cast<std::int64_t>(nearest[j % 2]);
-      }
+      rounded[i] = nearestMultiples(given[i] * unit_, large[i]);
+      displacement_ = larger(displacement_, magnitudeOf(rounded[i] * resolution - given[i]));
+    }
+    LatticeTet& corners = map_.corners[t];
+    for (std::size_t i = 0; i < 12; ++i) {
+      corners[i / 3][i % 3] = static_cast<std::int64_t>(rounded[i / 2][i % 2]);
     }
     const bool isFinished = std::ranges::find(rounding, Rounding::ByStar) == rounding.end();
-    return isFinished && isPositive(rounded, leastDeterminant_);
+    return isFinished && isPositive({cornerOf(rounded, 0), cornerOf(rounded, 1),
+                                     cornerOf(rounded, 2), cornerOf(rounded, 3)},
+                                    leastDeterminant_);
   }
 
   /// Without corners that are decided by their stars.

@@ -1,5 +1,5 @@
-// The sanitized map: exact on a dyadic lattice, integer where an integer-grid map demands it
-// (Section 5.1.3).
+// What is the map exactly? Sanitization: parameters on a dyadic lattice that fulfil the conditions
+// of an integer-grid map, integer where these demand it (Section 5.1.3).
 #pragma once
 
 #include <cstdint>

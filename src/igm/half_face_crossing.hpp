@@ -1,4 +1,5 @@
-// What a walk through the charts of tets meets at a half-face.
+// What does a walk through the charts of tets meet at a half-face: another chart, or a boundary
+// plane (Section 5.1.1)?
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// The conditions that make a map an integer-grid map, as far as they are checked as such; the
-// others are found violated while the map is sanitized.
+// Does the map fulfil the conditions (IGM2) to (IGM4) of Section 3.2, up to the tolerance? Others
+// are found violated while the map is sanitized (Section 5.1.3).
 #pragma once
 
 #include <base/vector3.hpp>

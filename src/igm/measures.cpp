@@ -63,19 +63,21 @@ Int192 sixfoldVolume(const RegularVertices& survey, const ExactMap& map, Stage& 
   const Transitions& transitions = map.transitions;
   std::vector<Int192> sums(survey.boundaryFaces.size());
   parallelFor(stage, sums.size(), 1, [&](std::size_t block) {
+    Int192 sum;
     for (const RegularVertices::BoundaryFace& face : survey.boundaryFaces[block]) {
       const LatticeTriangle triangle(map, face.halfFace);
       // Its plane is axis-parallel, and so is the normal.
-      sums[block].addProduct(triangle.normal(face.axis), -triangle.origin[face.axis]);
+      sum.addProduct(triangle.normal(face.axis), -triangle.origin[face.axis]);
     }
     for (const HalfFace halfFace : survey.unequalFaces[block]) {
       const Index back = Transitions::inverse(transitions.ofFace[halfFace]);
       const GridPoint& translation = transitions.table[back].translation;
       const LatticeTriangle triangle(map, halfFace);
       for (std::size_t k = 0; k < 3; ++k) {
-        sums[block].addProduct(triangle.normal(k), -translation[k] * map.unit);
+        sum.addProduct(triangle.normal(k), -translation[k] * map.unit);
       }
     }
+    sums[block] = sum;
   });
   Int192 volume;
   for (const Int192& sum : sums) volume += sum;

@@ -1,4 +1,5 @@
-// What a map measures, exactly: the mesh that it implies must have as many cells, quads and edges.
+// What does a map measure, exactly? The mesh that it implies must have as many cells, quads and
+// edges (not in the paper).
 #pragma once
 
 #include <cstdint>

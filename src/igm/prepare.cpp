@@ -3,10 +3,10 @@
 #include <utility>
 #include <vector>
 
+#include <igm/defects.hpp>
 #include <igm/input.hpp>
 #include <igm/prepare.hpp>
 #include <igm/regular_vertices.hpp>
-#include <igm/topology_defects.hpp>
 #include <igm/unfold_charts.hpp>
 
 namespace hexhex {

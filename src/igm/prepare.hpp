@@ -1,4 +1,5 @@
-// The preprocessing of Section 5.1 as one chain: from the caller's arrays to an exact map.
+// What do the stages behind need to know about a map? The preprocessing of Section 5.1 as one
+// chain: from the caller's arrays to an exact map.
 #pragma once
 
 #include <adjacency/tet_topology.hpp>

@@ -1,4 +1,4 @@
-// How directions in general position lie to the faces of tets.
+// Into which tets at a vertex does a direction in general position lead (for Section 5.1.2)?
 #pragma once
 
 #include <array>

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,9 @@ namespace hexhex {
 namespace {
 
 constexpr std::size_t kGrain = 1024;
+
+/// Tets between asking for parameters and looking at them: the memory's delay.
+constexpr Index kAhead = 8;
 
 /// Tets that are connected within a block of consecutive tets are a *piece*. Pieces are numbered
 /// from 0 in each block, and then block by block.
@@ -49,38 +53,50 @@ class GaugeSearch {
 
  private:
   /// Gives the tets of a block gauges relative to the first tets of their pieces. The search comes
-  /// first, then transitions, tet by tet, as they need far more memory.
+  /// first, then transitions, tet by tet, as they need far more memory. (With branches and without
+  /// prefetching, extractions of cylinder_random_low take 5 % longer.)
   void searchBlock(Index begin, Index end, Block& block) {
-    Array<HalfFace> entry(end - begin);  // per tet: from which its neighbour has found it
-    std::vector<Index> queue;            // tets in the order of the search
-    queue.reserve(end - begin);
+    Array<HalfFace> entry(end - begin, kNone);  // per tet: through which it was found
+    std::vector<Index> queue(end - begin + 1);  // tets in the order of the search
+    std::size_t count = 0;
     for (Index root = begin; root < end; ++root) {
       if (pieces_[root] != kNone) continue;
       const auto piece = static_cast<Index>(block.ends.size());
       pieces_[root] = piece;
-      entry[root - begin] = kNone;
-      std::size_t head = queue.size();
-      queue.push_back(root);
-      for (; head < queue.size(); ++head) {
+      std::size_t head = count;
+      queue[count++] = root;
+      for (; head < count; ++head) {
         for (const HalfFace mate : sortedMates(queue[head])) {
           if (mate == kNone) continue;
           const Index neighbour = tetOf(mate);
           if (neighbour < begin || neighbour >= end) {
             block.exits.push_back(mate);
-          } else if (pieces_[neighbour] == kNone) {
-            pieces_[neighbour] = piece;
-            entry[neighbour - begin] = mate;
-            queue.push_back(neighbour);
+            continue;
           }
+          const bool isNew = pieces_[neighbour] == kNone;
+          pieces_[neighbour] = piece;
+          HalfFace& entryThere = entry[neighbour - begin];
+          entryThere = isNew ? mate : entryThere;
+          queue[count] = neighbour;  // in vain unless it is new, which cannot be predicted
+          count += static_cast<std::size_t>(isNew);
         }
       }
       block.ends.push_back(block.exits.size());
     }
+    composeInBlock(begin, end, entry, std::span(queue).first(count));
+  }
+
+  /// @param entry  per tet: the half-face through which the search has found it, or kNone
+  /// @param order  of the search
+  void composeInBlock(Index begin, Index end, std::span<const HalfFace> entry,
+                      std::span<const Index> order) {
     for (Index t = begin; t < end; ++t) {
+      const HalfFace ahead = entry[std::min(t + kAhead, end - 1) - begin];
+      if (ahead != kNone) parameters_.prefetch(tetOf(topology_.mate[ahead]));
       const HalfFace halfFace = entry[t - begin];
       gauges_[t] = halfFace == kNone ? Gauge{} : Gauge{} * transitionAcross(halfFace);
     }
-    for (const Index t : queue) {
+    for (const Index t : order) {
       const HalfFace halfFace = entry[t - begin];
       if (halfFace != kNone) gauges_[t] = gauges_[tetOf(topology_.mate[halfFace])] * gauges_[t];
     }

@@ -25,10 +25,10 @@ std::vector<Index> verticesOf(const TetTopology& topology, std::span<const Index
 
 }  // namespace
 
-Patch growPatch(const TetTopology& topology, std::span<const Index> seeds, int rings) {
+Patch growPatch(const TetTopology& topology, std::span<const Index> startTets, int rings) {
   Patch patch;
-  patch.seeds.assign(seeds.begin(), seeds.end());
-  patch.tets = patch.seeds;
+  patch.startTets.assign(startTets.begin(), startTets.end());
+  patch.tets = patch.startTets;
   VertexStar star;
   for (int ring = 0; ring < rings; ++ring) {
     patch.vertices = verticesOf(topology, patch.tets);

@@ -11,17 +11,18 @@
 namespace hexhex {
 
 struct Patch {
-  std::vector<Index> seeds;     ///< the bad tets, ascending
-  std::vector<Index> vertices;  ///< ascending; with their whole stars in the patch: they may move
-  std::vector<Index> tets;      ///< ascending: the tets at these vertices
+  std::vector<Index> startTets;  ///< the bad tets, ascending
+  std::vector<Index> vertices;   ///< ascending; with their whole stars in the patch: they may move
+  std::vector<Index> tets;       ///< ascending: the tets at these vertices
   /// Per entry of `vertices`: its star.
   std::vector<std::vector<VertexStar::Member>> stars;
 };
 
-/// The vertices of the seeds, and `rings - 1` times those of the tets around.
-/// @param seeds  ascending
+/// The vertices of the start tets, and `rings - 1` times those of the tets around.
+/// @param startTets  ascending
 /// @param rings  at least 1
-[[nodiscard]] Patch growPatch(const TetTopology& topology, std::span<const Index> seeds, int rings);
+[[nodiscard]] Patch growPatch(const TetTopology& topology, std::span<const Index> startTets,
+                              int rings);
 
 /// Splits bad tets into groups whose patches of so many rings have no tet in common.
 [[nodiscard]] std::vector<std::vector<Index>> separateRegions(const TetTopology& topology,

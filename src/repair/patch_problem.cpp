@@ -210,7 +210,7 @@ UntangleCorner PatchProblem::cornerOf(Index tet, int corner) const {
 
 std::vector<LockedTet> PatchProblem::lockedTets(const Patch& patch) const {
   std::vector<LockedTet> locked;
-  for (const Index t : patch.seeds) {
+  for (const Index t : patch.startTets) {
     std::array<UntangleCorner, 4> corners{};
     for (int c = 0; c < 4; ++c) corners[static_cast<std::size_t>(c)] = cornerOf(t, c);
     // Along how many axes all corners of a simplex are bound to the same coordinate.

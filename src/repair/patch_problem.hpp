@@ -45,7 +45,7 @@ class PatchProblem {
                const LocalParameters& parameters, const Patch& patch,
                std::span<const PatchVertex> vertices);
 
-  /// Locked tets among the seeds.
+  /// Locked tets among the start tets.
   [[nodiscard]] std::vector<LockedTet> lockedTets(const Patch& patch) const;
 
   [[nodiscard]] UntangleProblem& problem() { return problem_; }

@@ -59,7 +59,7 @@ class Repairer {
     refuseBrokenTopology();
     if (!canRepair()) throwWithoutSolver(now_->defects);
     original_ = MapBackup(map_);
-    std::vector<Index> bad = findSeeds();
+    std::vector<Index> bad = findStartTets();
     report_.badTets = bad.size();
     prepareExpectation(bad);
     const std::vector<Index> toRound = refuseOtherDefects(bad);
@@ -70,7 +70,7 @@ class Repairer {
         solve(bad, fresh ? toRound : std::vector<Index>{}, rings);
         look();
         if (now_->defects.empty() && isWhatWasMeant()) return finish();
-        bad = findSeeds();
+        bad = findStartTets();
         // All positive and yet wrong, wound around an edge twice, say: a larger patch from scratch.
         fresh = bad.empty();
         if (fresh) bad = startOver();
@@ -99,7 +99,7 @@ class Repairer {
     report_.splitEdges = 0;
     report_.addedTets = 0;
     look();
-    return findSeeds();
+    return findStartTets();
   }
 
   [[nodiscard]] LocalParameters parameters() const { return LocalParameters(now_->prepared.input); }
@@ -110,7 +110,7 @@ class Repairer {
   }
 
   /// Bad tets; if none are, those that sanitization flattens.
-  std::vector<Index> findSeeds() {
+  std::vector<Index> findStartTets() {
     Stage stage(context_, "defects");
     std::vector<Index> bad = findBadTets(map_.tets.size(), parameters(), stage);
     if (bad.empty()) bad = findExactlyBadTets(now_->prepared.exact, stage);
@@ -153,13 +153,13 @@ class Repairer {
     Stage stage(context_, "repair");
     locked_.clear();
     candidates_.clear();
-    std::vector<Index> seeds = bad;
-    seeds.insert(seeds.end(), toRound.begin(), toRound.end());
-    std::sort(seeds.begin(), seeds.end());
-    seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
+    std::vector<Index> startTets = bad;
+    startTets.insert(startTets.end(), toRound.begin(), toRound.end());
+    std::sort(startTets.begin(), startTets.end());
+    startTets.erase(std::unique(startTets.begin(), startTets.end()), startTets.end());
     const LocalParameters u = parameters();
     for (const std::vector<Index>& region :
-         separateRegions(now_->prepared.topology, seeds, rings)) {
+         separateRegions(now_->prepared.topology, startTets, rings)) {
       context_.throwIfCancelled();
       solveRegion(region, u, rings, stage);
     }
@@ -234,7 +234,7 @@ class Repairer {
 
   /// Should all patches fail: the inner edges of bad tets.
   void noteSplitCandidates(const Patch& patch, const PatchCharts& charts) {
-    for (const Index t : patch.seeds) addEdgesOf(t, kWholeTet, charts, false, candidates_);
+    for (const Index t : patch.startTets) addEdgesOf(t, kWholeTet, charts, false, candidates_);
   }
 
   bool refine(const std::vector<Index>& bad) {
@@ -289,15 +289,15 @@ class Repairer {
       if (found != moved_.end()) return found->second;
     }
     RepairedRegion region;
-    region.place = {PlaceKind::Tet, patch.seeds.front()};
-    for (const Index t : patch.seeds) {
+    region.place = {PlaceKind::Tet, patch.startTets.front()};
+    for (const Index t : patch.startTets) {
       for (const Index v : now_->prepared.topology.tets[t]) {
         for (std::size_t k = 0; k < 3; ++k) {
-          region.position[k] += map_.points[v][k] / static_cast<double>(4 * patch.seeds.size());
+          region.position[k] += map_.points[v][k] / static_cast<double>(4 * patch.startTets.size());
         }
       }
     }
-    region.badTets = patch.seeds.size();
+    region.badTets = patch.startTets.size();
     region.tets = patch.tets.size();
     report_.regions.push_back(region);
     return report_.regions.size() - 1;

@@ -10,8 +10,8 @@
 #include <hexhex/samples.hpp>
 
 #include <base/parallel.hpp>
+#include <igm/defects.hpp>
 #include <igm/prepare.hpp>
-#include <igm/topology_defects.hpp>
 
 namespace hexhex::test {
 

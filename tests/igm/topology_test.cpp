@@ -12,7 +12,7 @@
 
 #include <hexhex/check.hpp>
 
-#include <igm/topology_defects.hpp>
+#include <igm/defects.hpp>
 
 #include "map_samples.hpp"
 
