@@ -10,7 +10,7 @@
 #include <adjacency/vertex_lists.hpp>
 
 #include <base/parallel.hpp>
-#include <base/prefetch.hpp>
+#include <base/low_level.hpp>
 
 namespace hexhex {
 namespace {

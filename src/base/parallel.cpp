@@ -16,11 +16,13 @@
 
 #include <hexhex/error.hpp>
 
-#include <base/loop_order.hpp>
 #include <base/parallel.hpp>
 
 #if defined(__unix__) || defined(__APPLE__)
 #include <pthread.h>
+#endif
+#if HEXHEX_THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
 #endif
 #if HEXHEX_HAS_TBB
 #include <oneapi/tbb/blocked_range.h>
@@ -36,6 +38,32 @@ namespace hexhex {
 namespace detail {
 #if HEXHEX_HAS_TBB
 namespace {
+
+/// oneTBB guarantees that what was written before a loop is seen in it, and what the loop wrote is
+/// seen after it. The thread sanitizer cannot look into oneTBB, so it is told.
+class KnownOrder {
+ public:
+  /// Lives while the caller waits for a loop, or while a thread works on a range of it.
+  enum class Of : std::uint8_t { Loop, Range };
+  explicit KnownOrder(Of of) noexcept : of_(of) {
+    of_ == Of::Loop ? release(loopBegins) : acquire(loopBegins);
+  }
+  ~KnownOrder() { of_ == Of::Loop ? acquire(rangeEnds) : release(rangeEnds); }
+  KnownOrder(const KnownOrder&) = delete;
+  KnownOrder& operator=(const KnownOrder&) = delete;
+
+ private:
+#if HEXHEX_THREAD_SANITIZER
+  static void release(char& event) noexcept { __tsan_release(&event); }
+  static void acquire(char& event) noexcept { __tsan_acquire(&event); }
+#else
+  static void release(char& /*event*/) noexcept {}
+  static void acquire(char& /*event*/) noexcept {}
+#endif
+  static inline char loopBegins = 0;
+  static inline char rangeEnds = 0;
+  Of of_;
+};
 
 /// Arenas for their next use. oneTBB keeps some kilobytes of every arena that ever was, so a
 /// process that works for long must not make a new one each time. Calls that run at the same time
@@ -170,12 +198,12 @@ void gather(std::atomic<int>& arrived, int expected) {
 /// when they are first needed, and has no way to go on if the system refuses one then.
 void startWorkers(ArenaPool::Arena& arena, int threads) {
   std::atomic<int> arrived{0};
-  const LoopOrder loopOrder;
+  const KnownOrder loop(KnownOrder::Of::Loop);
   arena.execute([&] {
     oneapi::tbb::parallel_for(
         oneapi::tbb::blocked_range<int>(0, threads, 1),
         [&](const oneapi::tbb::blocked_range<int>& /*one*/) {
-          const RangeOrder rangeOrder;
+          const KnownOrder ofRange(KnownOrder::Of::Range);
           gather(arrived, threads);
         },
         oneapi::tbb::simple_partitioner());
@@ -224,10 +252,10 @@ void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
   if (blocks > 1 && currentThreads() > 1) {
     LoopOutcome outcome;
     {
-      const LoopOrder loopOrder;
+      const KnownOrder loop(KnownOrder::Of::Loop);
       oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, blocks, 1),
                                 [&](const oneapi::tbb::blocked_range<std::size_t>& range) {
-                                  const RangeOrder rangeOrder;
+                                  const KnownOrder ofRange(KnownOrder::Of::Range);
                                   try {
                                     for (std::size_t block = range.begin(); block < range.end();
                                          ++block) {
@@ -247,7 +275,7 @@ void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
   for (std::size_t block = 0; block < blocks; ++block) runBlock(block);
 }
 
-void runWithThreads(int threads, const void* object, void (*call)(const void*)) {
+void runWithThreads(int threads, const std::function<void()>& function) {
 #if HEXHEX_HAS_TBB
   const int count = effectiveThreads(threads);
   // More threads than cores have to be allowed first. The permission holds for the whole process,
@@ -258,10 +286,10 @@ void runWithThreads(int threads, const void* object, void (*call)(const void*)) 
                        static_cast<std::size_t>(count));
   }
   const int hired = workforce().hire(count);
-  arenaPool().with(hired, [&](auto& arena) { arena.execute([&] { call(object); }); });
+  arenaPool().with(hired, [&](auto& arena) { arena.execute(function); });
 #else
   static_cast<void>(threads);
-  call(object);
+  function();
 #endif
 }
 

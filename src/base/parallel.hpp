@@ -7,7 +7,7 @@
 
 #include <atomic>
 #include <cstddef>
-#include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,33 +16,17 @@
 
 namespace hexhex {
 
-/// A reference to a callable void(std::size_t begin, std::size_t end, std::size_t block).
-class BlockFunction {
- public:
-  template <class F>
-  explicit BlockFunction(const F& function)
-      : object_(&function),
-        call_([](const void* object, std::size_t begin, std::size_t end, std::size_t block) {
-          (*static_cast<const F*>(object))(begin, end, block);
-        }) {}
-  void operator()(std::size_t begin, std::size_t end, std::size_t block) const {
-    call_(object_, begin, end, block);
-  }
-
- private:
-  const void* object_;
-  void (*call_)(const void*, std::size_t, std::size_t, std::size_t);
-};
-
 /// Number of blocks that a loop over n elements with this grain has.
 [[nodiscard]] constexpr std::size_t blockCount(std::size_t n, std::size_t grain) noexcept {
   return (n + grain - 1) / grain;
 }
 
 namespace detail {
+/// Of (begin, end, block).
+using BlockFunction = std::function<void(std::size_t, std::size_t, std::size_t)>;
 void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
                const BlockFunction& function);
-void runWithThreads(int threads, const void* object, void (*call)(const void*));
+void runWithThreads(int threads, const std::function<void()>& function);
 }  // namespace detail
 
 /// Calls f(begin, end, block) for consecutive blocks of `grain` elements of [0, n), in parallel,
@@ -50,7 +34,7 @@ void runWithThreads(int threads, const void* object, void (*call)(const void*));
 template <class F>
 void parallelBlocks(Stage& stage, std::size_t n, std::size_t grain, const F& f) {
   LoopProgress progress(stage, n);
-  detail::runBlocks(n, grain, &progress, BlockFunction(f));
+  detail::runBlocks(n, grain, &progress, std::cref(f));
 }
 
 /// Calls f(i) for every i in [0, n), in parallel.
@@ -110,8 +94,7 @@ std::vector<T> collectFromBlocks(Stage& stage, std::size_t n, std::size_t grain,
 /// Runs f() so that all parallel loops inside use at most this many threads (0: all cores).
 template <class F>
 void withThreads(int threads, const F& f) {
-  detail::runWithThreads(threads, &f,
-                         [](const void* object) { (*static_cast<const F*>(object))(); });
+  detail::runWithThreads(threads, std::cref(f));
 }
 
 /// More threads than this, or than cores, are not used, whatever is asked for: they would only

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <vector>
 
-#include <base/output_batches.hpp>
 #include <curved/arc_tracer.hpp>
 #include <curved/arcs.hpp>
 
@@ -30,25 +29,20 @@ Arcs traceArcs(const PreparedMap& map, const VertexTables& vertices, const Eleme
   arcs.ends.resize(edges.count());
   arcs.pointBegin.resize(edges.count() + 1);
   const std::size_t tets = map.topology.tetCount();
-  const std::size_t grain = tetsPerBlock(edges.count(), tets);
-  std::vector<ArcPieces> pieces(blocksPerBatch(blockCount(tets, grain)));
-  std::vector<std::uint64_t> firstPoints(pieces.size());
   std::uint64_t points = 0;
-  parallelBatches(
-      stage, tets, grain, pieces.size(),
-      [&](std::size_t begin, std::size_t end, std::size_t block) {
-        traceEdges(map, vertices, edges, begin, end, pieces[block % pieces.size()]);
+  parallelBatches<ArcPieces>(
+      stage, tets, tetsPerBlock(edges.count(), tets),
+      [&](std::size_t begin, std::size_t end, ArcPieces& pieces) {
+        traceEdges(map, vertices, edges, begin, end, pieces);
       },
-      [&](std::size_t firstBlock, std::size_t endBlock) {
-        for (std::size_t block = firstBlock; block < endBlock; ++block) {
-          firstPoints[block % pieces.size()] = points;
-          points += pieces[block % pieces.size()].points();
-        }
-        lengthenForPieces(arcs, points, edges.begin(std::min(endBlock * grain, tets)));
+      [&](const ArcPieces& pieces, std::size_t end) {
+        const std::uint64_t firstPoint = points;
+        points += pieces.points();
+        lengthenForPieces(arcs, points, edges.begin(end));
+        return firstPoint;
       },
-      [&](std::size_t block) {
-        const std::size_t slot = block % pieces.size();
-        pieces[slot].copyTo(arcs, edges.begin(block * grain), firstPoints[slot]);
+      [&](const ArcPieces& pieces, std::uint64_t firstPoint, std::size_t begin) {
+        pieces.copyTo(arcs, edges.begin(begin), firstPoint);
       });
   arcs.pointBegin.back() = points;
   return arcs;

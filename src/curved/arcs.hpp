@@ -8,7 +8,7 @@
 
 #include <hexhex/curved.hpp>
 
-#include <base/output_batches.hpp>
+#include <curved/batches.hpp>
 #include <curved/crossings.hpp>
 #include <curved/element_numbers.hpp>
 #include <sweep/vertex_tables.hpp>

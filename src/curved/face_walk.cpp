@@ -1,4 +1,4 @@
-#include <base/prefetch.hpp>
+#include <base/low_level.hpp>
 #include <curved/face_walk.hpp>
 
 namespace hexhex {

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include <base/output_batches.hpp>
+#include <curved/batches.hpp>
 #include <curved/face_cutter.hpp>
 #include <curved/patches.hpp>
 
@@ -47,11 +47,6 @@ void requireIndexable(std::uint64_t points) {
                                        std::to_string(points) +
                                        " points, more than 32-bit indices can number. Lower the "
                                        "scale.");
-}
-
-PiecePlaces behind(const PiecePlaces& place, const PatchPieces& pieces) {
-  return {place.polygon + pieces.carriers.size(), place.corner + pieces.corners.size(),
-          place.point + pieces.points.size()};
 }
 
 /// Makes room.
@@ -103,28 +98,25 @@ Patches cutPatches(const PatchInput& input, Stage& stage) {
   Patches patches = ofFaces(input.faces.count());
   lengthenAll(patches, {}, 1);
   const std::size_t tets = input.map.topology.tetCount();
-  const std::size_t grain = tetsPerBlock(input.faces.count(), tets);
-  std::vector<PatchPieces> pieces(blocksPerBatch(blockCount(tets, grain)));
-  std::vector<PiecePlaces> places(pieces.size());
   PiecePlaces totals;
-  parallelBatches(
-      stage, tets, grain, pieces.size(),
-      [&](std::size_t begin, std::size_t end, std::size_t block) {
-        cutFaces(input, begin, end, patches, pieces[block % pieces.size()]);
+  parallelBatches<PatchPieces>(
+      stage, tets, tetsPerBlock(input.faces.count(), tets),
+      [&](std::size_t begin, std::size_t end, PatchPieces& pieces) {
+        cutFaces(input, begin, end, patches, pieces);
       },
-      [&](std::size_t firstBlock, std::size_t endBlock) {
-        for (std::size_t block = firstBlock; block < endBlock; ++block) {
-          places[block % pieces.size()] = totals;
-          totals = behind(totals, pieces[block % pieces.size()]);
-        }
+      [&](const PatchPieces& pieces, std::size_t end) {
+        const PiecePlaces places = totals;
+        totals.polygon += pieces.carriers.size();
+        totals.corner += pieces.corners.size();
+        totals.point += pieces.points.size();
         requireIndexable(firstInnerPoint + totals.point);
-        const std::uint64_t done = input.faces.begin(std::min(endBlock * grain, tets));
-        lengthenAll(patches, totals,
-                    static_cast<double>(done) / static_cast<double>(input.faces.count()));
+        lengthenAll(
+            patches, totals,
+            static_cast<double>(input.faces.begin(end)) / static_cast<double>(input.faces.count()));
+        return places;
       },
-      [&](std::size_t block) {
-        join(pieces[block % pieces.size()], places[block % pieces.size()], firstInnerPoint,
-             patches);
+      [&](const PatchPieces& pieces, const PiecePlaces& places, std::size_t /*begin*/) {
+        join(pieces, places, firstInnerPoint, patches);
       });
   exclusiveScan(std::span(patches.polygonBegin));
   return patches;

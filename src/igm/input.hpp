@@ -9,8 +9,8 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/low_level.hpp>
 #include <base/parallel.hpp>
-#include <base/prefetch.hpp>
 #include <base/vector3.hpp>
 #include <igm/defects.hpp>
 

@@ -2,8 +2,7 @@
 #include <bit>
 #include <cmath>
 
-#include <base/bits.hpp>
-#include <base/branchless.hpp>
+#include <base/low_level.hpp>
 #include <base/workspaces.hpp>
 #include <igm/irregular_vertices.hpp>
 

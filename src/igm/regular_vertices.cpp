@@ -1,8 +1,7 @@
 #include <atomic>
 #include <bit>
 
-#include <base/bits.hpp>
-#include <base/branchless.hpp>
+#include <base/low_level.hpp>
 #include <igm/regular_vertices.hpp>
 #include <igm/transition_fit.hpp>
 

@@ -6,7 +6,7 @@
 
 #include <adjacency/key_table.hpp>
 
-#include <base/branchless.hpp>
+#include <base/low_level.hpp>
 #include <base/workspaces.hpp>
 #include <igm/singularities.hpp>
 

@@ -8,7 +8,7 @@
 #include <adjacency/key_table.hpp>
 #include <adjacency/tet_topology.hpp>
 
-#include <base/prefetch.hpp>
+#include <base/low_level.hpp>
 #include <igm/half_face_crossing.hpp>
 
 namespace hexhex {

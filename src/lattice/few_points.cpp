@@ -3,7 +3,7 @@
 #include <bit>
 #include <cstddef>
 
-#include <base/bits.hpp>
+#include <base/low_level.hpp>
 #include <base/pair.hpp>
 #include <lattice/few_points.hpp>
 

@@ -16,8 +16,8 @@
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
+#include <base/low_level.hpp>
 #include <base/parallel.hpp>
-#include <base/prefetch.hpp>
 #include <base/stage.hpp>
 #include <io/core/cell_mesh.hpp>
 #include <io/ovm/ovm_cells.hpp>

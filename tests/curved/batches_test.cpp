@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <base/output_batches.hpp>
+#include <curved/batches.hpp>
 
 namespace hexhex::test {
 
@@ -16,34 +16,26 @@ Array<std::size_t> collectInBatches(std::size_t n, std::size_t grain, int thread
   withThreads(threads, [&] {
     Context context;
     Stage stage(context, "batches");
-    const std::size_t batch = blocksPerBatch(blockCount(n, grain));
-    std::vector<std::vector<std::size_t>> pieces(batch);
-    std::vector<std::size_t> places(batch);
-    std::size_t total = 0;
-    parallelBatches(
-        stage, n, grain, batch,
-        [&](std::size_t begin, std::size_t end, std::size_t block) {
-          std::vector<std::size_t>& piece = pieces[block % batch];
+    parallelBatches<std::vector<std::size_t>>(
+        stage, n, grain,
+        [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& piece) {
           piece.clear();
           for (std::size_t i = begin; i < end; ++i) piece.insert(piece.end(), i % 3, i);
         },
-        [&](std::size_t first, std::size_t end) {
-          for (std::size_t block = first; block < end; ++block) {
-            places[block % batch] = total;
-            total += pieces[block % batch].size();
-          }
-          lengthen(all, total, static_cast<double>(end) / 1000.0);
+        [&](const std::vector<std::size_t>& piece, std::size_t end) {
+          const std::size_t position = all.size();
+          lengthen(all, position + piece.size(), static_cast<double>(end) / 10007);
+          return position;
         },
-        [&](std::size_t block) {
-          const std::vector<std::size_t>& piece = pieces[block % batch];
+        [&](const std::vector<std::size_t>& piece, std::size_t position, std::size_t /*begin*/) {
           std::copy(piece.begin(), piece.end(),
-                    all.begin() + static_cast<std::ptrdiff_t>(places[block % batch]));
+                    all.begin() + static_cast<std::ptrdiff_t>(position));
         });
   });
   return all;
 }
 
-TEST(OutputBatches, KeepTheOrder) {
+TEST(Batches, KeepTheOrder) {
   for (const std::size_t n : {0U, 1U, 5U, 640U, 641U, 10007U}) {
     Array<std::size_t> expected;
     for (std::size_t i = 0; i < n; ++i) expected.insert(expected.end(), i % 3, i);
@@ -55,7 +47,7 @@ TEST(OutputBatches, KeepTheOrder) {
   }
 }
 
-TEST(OutputBatches, AreOfSomeBlocksPerThread) {
+TEST(Batches, AreOfSomeBlocksPerThread) {
   withThreads(1, [] {
     EXPECT_EQ(blocksPerBatch(0), 0U);
     EXPECT_EQ(blocksPerBatch(1000), 1U);
@@ -67,7 +59,7 @@ TEST(OutputBatches, AreOfSomeBlocksPerThread) {
   });
 }
 
-TEST(OutputBatches, BlocksFollowTheElements) {
+TEST(Batches, BlocksFollowTheElements) {
   EXPECT_EQ(tetsPerBlock(0, 1000), 4096U);
   EXPECT_EQ(tetsPerBlock(256, 1000), 1000U);
   EXPECT_EQ(tetsPerBlock(1000000, 1000), 1U);

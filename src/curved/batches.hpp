@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include <hexhex/types.hpp>
 
@@ -19,28 +23,37 @@ namespace hexhex {
   return std::min(blocks, threads == 1 ? 1 : kPerThread * threads);
 }
 
-/// parallelBlocks() in batches of some blocks. After the blocks of a batch, measure(firstBlock,
-/// endBlock) is called, and then place(block) for each of them, in parallel: so what blocks collect
-/// comes where it belongs as the loop goes, and its memory is used again by the next batch.
-/// @param batch  blocks in a batch; no result may depend on it
-template <class F, class Measure, class Place>
-void parallelBatches(Stage& stage, std::size_t n, std::size_t grain, std::size_t batch, const F& f,
+/// parallelBlocks() in batches of some blocks: f(begin, end, pieces) fills pieces, whose memory is
+/// used again by the next batch. After a batch, measure(pieces, end) is called for its blocks, in
+/// order; it makes room and returns a position. Then place(pieces, position, begin) is called for
+/// each of them, in parallel: so what blocks collect comes where it belongs as the loop goes.
+template <class Pieces, class F, class Measure, class Place>
+void parallelBatches(Stage& stage, std::size_t n, std::size_t grain, const F& f,
                      const Measure& measure, const Place& place) {
+  struct Block {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    Pieces pieces;
+    std::invoke_result_t<Measure, const Pieces&, std::size_t> position{};
+  };
   LoopProgress progress(stage, n);
-  const std::size_t blocks = blockCount(n, grain);
-  for (std::size_t first = 0; first < blocks; first += batch) {
-    const std::size_t count = std::min(batch, blocks - first);
-    const std::size_t offset = first * grain;
-    const std::size_t size = first + count < blocks ? count * grain : n - offset;
-    const auto work = [&](std::size_t begin, std::size_t end, std::size_t block) {
-      f(offset + begin, offset + end, first + block);
+  std::vector<Block> batch(blocksPerBatch(blockCount(n, grain)));
+  for (std::size_t first = 0; first < n; first += batch.size() * grain) {
+    const std::size_t size = std::min(batch.size() * grain, n - first);
+    const auto fill = [&](std::size_t begin, std::size_t end, std::size_t i) {
+      batch[i].begin = first + begin;
+      batch[i].end = first + end;
+      f(first + begin, first + end, batch[i].pieces);
     };
-    detail::runBlocks(size, grain, &progress, BlockFunction(work));
-    measure(first, first + count);
-    const auto placeOne = [&](std::size_t block, std::size_t, std::size_t) {
-      place(first + block);
+    detail::runBlocks(size, grain, &progress, std::cref(fill));
+    const std::size_t count = blockCount(size, grain);
+    for (std::size_t i = 0; i < count; ++i) {
+      batch[i].position = measure(std::as_const(batch[i].pieces), batch[i].end);
+    }
+    const auto placeOne = [&](std::size_t i, std::size_t /*end*/, std::size_t /*block*/) {
+      place(std::as_const(batch[i].pieces), batch[i].position, batch[i].begin);
     };
-    detail::runBlocks(count, 1, nullptr, BlockFunction(placeOne));
+    detail::runBlocks(count, 1, nullptr, std::cref(placeOne));
   }
 }
 
