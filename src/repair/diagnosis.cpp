@@ -2,10 +2,10 @@
 #include <cmath>
 #include <string>
 
-#include <base/disjoint_sets.hpp>
 #include <igm/transition_fit.hpp>
 #include <igm/vertex_star.hpp>
 #include <repair/diagnosis.hpp>
+#include <repair/patch.hpp>
 #include <repair/valid_tets.hpp>
 
 namespace hexhex {
@@ -13,14 +13,6 @@ namespace hexhex {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
-
-double displacementOf(const Vec3& before, const LatticePoint& after, double unit) {
-  double largest = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    largest = std::max(largest, std::abs(static_cast<double>(after[k]) / unit - before[k]));
-  }
-  return largest;
-}
 
 class Examiner {
  public:
@@ -133,18 +125,6 @@ std::string tetsAsText(std::size_t count) {
   return count == 1 ? "1 tet" : std::to_string(count) + " tets";
 }
 
-/// Unites tets that have a triangle in common, and for which a test holds.
-template <class Test>
-DisjointSets componentsOf(const TetTopology& topology, const Test& test) {
-  DisjointSets sets(topology.tetCount());
-  for (HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
-    const HalfFace mate = topology.mate[halfFace];
-    if (mate == kNone || mate < halfFace) continue;
-    if (test(tetOf(halfFace)) && test(tetOf(mate))) sets.unite(tetOf(halfFace), tetOf(mate));
-  }
-  return sets;
-}
-
 void refuseInvertedComponents(const TetTopology& topology, const LocalParameters& parameters) {
   DisjointSets sets = componentsOf(topology, [](Index) { return true; });
   std::vector<double> volume(topology.tetCount(), 0);  // by smallest tet
@@ -189,9 +169,7 @@ void diagnose(const PreparedMap& map, const LocalParameters& parameters,
   Examiner examiner(map, parameters, bad, tolerance, limit);
   examiner.examineVertices(stage, diagnosis);
   examiner.examineFaces(stage, diagnosis);
-  std::sort(diagnosis.roundable.begin(), diagnosis.roundable.end());
-  diagnosis.roundable.erase(std::unique(diagnosis.roundable.begin(), diagnosis.roundable.end()),
-                            diagnosis.roundable.end());
+  sortUnique(diagnosis.roundable);
 }
 
 void refuseInvertedParts(const TetTopology& topology, const LocalParameters& parameters,

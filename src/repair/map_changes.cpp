@@ -2,7 +2,6 @@
 #include <utility>
 #include <vector>
 
-#include <igm/vertex_star.hpp>
 #include <repair/map_changes.hpp>
 
 namespace hexhex {
@@ -90,13 +89,7 @@ std::vector<Fan> disjointFans(const TetTopology& topology,
   std::vector<Index> taken;  // sorted
   VertexStar star;
   for (const std::array<Index, 2>& edge : edges) {
-    Fan fan{edge, {}};
-    star.collect(topology, edge[0]);
-    for (const VertexStar::Member& member : star.members()) {
-      const Tet& t = topology.tets[member.tet()];
-      if (std::find(t.begin(), t.end(), edge[1]) != t.end()) fan.tets.push_back(member.tet());
-    }
-    std::sort(fan.tets.begin(), fan.tets.end());
+    Fan fan{edge, tetsAtEdge(topology, edge, star)};
     const bool free = std::none_of(fan.tets.begin(), fan.tets.end(), [&](Index t) {
       return std::binary_search(taken.begin(), taken.end(), t);
     });
@@ -109,6 +102,18 @@ std::vector<Fan> disjointFans(const TetTopology& topology,
 }
 
 }  // namespace
+
+std::vector<Index> tetsAtEdge(const TetTopology& topology, const std::array<Index, 2>& edge,
+                              VertexStar& star) {
+  std::vector<Index> tets;
+  star.collect(topology, edge[0]);
+  for (const VertexStar::Member& member : star.members()) {
+    const Tet& tet = topology.tets[member.tet()];
+    if (std::find(tet.begin(), tet.end(), edge[1]) != tet.end()) tets.push_back(member.tet());
+  }
+  std::sort(tets.begin(), tets.end());
+  return tets;
+}
 
 void MapBackup::keep(const TetMap& map, Index tet) {
   if (tet >= tetCount_ || tets_.contains(tet)) return;

@@ -7,10 +7,13 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <adjacency/tet_topology.hpp>
 
 #include <hexhex/types.hpp>
+
+#include <igm/vertex_star.hpp>
 
 namespace hexhex {
 
@@ -52,6 +55,11 @@ class MapBackup {
   std::map<Index, KeptTet> tets_;
   std::optional<KeptLists> lists_;  ///< once edges are split
 };
+
+/// The tets with both vertices, ascending; none if there is no such edge.
+/// @param star  reused between calls
+[[nodiscard]] std::vector<Index> tetsAtEdge(const TetTopology& topology,
+                                            const std::array<Index, 2>& edge, VertexStar& star);
 
 /// Puts a vertex in the middle of each edge, in space and in all charts, and cuts the tets at it in
 /// two. The map stays the same function. Edges that share a tet with one before them are left out.

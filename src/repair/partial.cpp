@@ -8,7 +8,6 @@
 
 #include <hexhex/partial.hpp>
 
-#include <base/disjoint_sets.hpp>
 #include <lattice/tet_rasterizer.hpp>
 #include <repair/cell_flood.hpp>
 #include <repair/valid_tets.hpp>
@@ -127,12 +126,7 @@ void collectHoles(const PreparedMap& map, std::span<const std::uint8_t> valid,
     for (const auto& [tet, volume] : block.covered) missing[tet] -= volume;
   }
   const auto isOpen = [&](Index t) { return valid[t] == 0 || missing[t] > CellFlood::kSlack; };
-  DisjointSets sets(topology.tetCount());
-  for (HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
-    const HalfFace mate = topology.mate[halfFace];
-    if (mate == kNone || mate < halfFace) continue;
-    if (isOpen(tetOf(halfFace)) && isOpen(tetOf(mate))) sets.unite(tetOf(halfFace), tetOf(mate));
-  }
+  DisjointSets sets = componentsOf(topology, isOpen);
   std::map<Index, Hole> holes;
   for (Index t = 0; t < topology.tetCount(); ++t) {
     if (!isOpen(t)) continue;

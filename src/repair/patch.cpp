@@ -9,11 +9,6 @@ namespace hexhex {
 
 namespace {
 
-void sortUnique(std::vector<Index>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 std::vector<Index> verticesOf(const TetTopology& topology, std::span<const Index> tets) {
   std::vector<Index> vertices;
   for (const Index t : tets) {

@@ -77,8 +77,7 @@ void PatchCharts::collectFaces(const Patch& patch) {
       }
     }
   }
-  std::sort(halfFaces.begin(), halfFaces.end());
-  halfFaces.erase(std::unique(halfFaces.begin(), halfFaces.end()), halfFaces.end());
+  sortUnique(halfFaces);
   faces_.reserve(halfFaces.size());
   for (const HalfFace halfFace : halfFaces) {
     faces_.push_back({halfFace, topology_.isBoundary(halfFace), {}, {}, 0, {}});
@@ -190,48 +189,40 @@ void PatchCharts::collectEdges(const Patch& patch) {
 }
 
 void PatchCharts::walkFan(PatchEdge& edge, Fan& fan) const {
-  const auto edgeMask = [&](Index tet) {
-    return static_cast<CornerMask>(cornerBit(topology_.localCorner(tet, edge.vertex0)) |
-                                   cornerBit(topology_.localCorner(tet, edge.vertex1)));
+  const auto corners = [&](Index tet) {
+    return std::array{topology_.localCorner(tet, edge.vertex0),
+                      topology_.localCorner(tet, edge.vertex1)};
   };
+  const auto [from, to] = corners(edge.tet);
+  const auto mask = static_cast<CornerMask>(cornerBit(from) | cornerBit(to));
   // Back to the boundary, if there is one.
-  Index tet = edge.tet;
-  int entered = otherFaceAtEdge(edgeMask(tet), -1);
-  while (true) {
-    const HalfFace mate = topology_.mate[halfFaceOf(tet, entered)];
-    if (mate == kNone) {
-      edge.boundary = true;
-      edge.tet = tet;
-      break;
-    }
-    tet = tetOf(mate);
-    if (tet == edge.tet) break;
-    entered = otherFaceAtEdge(edgeMask(tet), localOf(mate));
+  EdgeTurn back(topology_, edge.tet, mask, otherFaceAtEdge(mask, -1));
+  while (back.next() != kNone) {
+    back.step();
+    if (back.tet() == edge.tet) break;
   }
-  tet = edge.tet;
-  if (edge.boundary) {
-    fan.firstBoundary = static_cast<std::uint32_t>(faceIndex(halfFaceOf(tet, entered)));
-  } else {
-    entered = otherFaceAtEdge(edgeMask(tet), -1);
+  if (back.next() == kNone) {
+    edge.boundary = true;
+    edge.tet = back.tet();
+    fan.firstBoundary = static_cast<std::uint32_t>(faceIndex(back.out()));
   }
-  fan.vector = minus(parameters_(tet, topology_.localCorner(tet, edge.vertex1)),
-                     parameters_(tet, topology_.localCorner(tet, edge.vertex0)));
+  const auto [first, second] = corners(edge.tet);
+  fan.vector = minus(parameters_(edge.tet, second), parameters_(edge.tet, first));
   edge.sound = true;
-  while (true) {
-    if (isThin(parameters_(tet), fitLimit_)) edge.sound = false;
-    const HalfFace leaving = halfFaceOf(tet, otherFaceAtEdge(edgeMask(tet), entered));
-    const HalfFace mate = topology_.mate[leaving];
+  EdgeTurn turn(topology_, edge.tet, back.edge(),
+                otherFaceAtEdge(back.edge(), localOf(back.out())));
+  do {
+    if (isThin(parameters_(turn.tet()), fitLimit_)) edge.sound = false;
+    const HalfFace leaving = turn.out();
+    const HalfFace mate = turn.next();
     if (mate == kNone) {
       fan.lastBoundary = static_cast<std::uint32_t>(faceIndex(leaving));
       return;
     }
-    const bool forward = leaving < mate;
     fan.crossings.push_back(
-        {static_cast<std::uint32_t>(faceIndex(forward ? leaving : mate)), forward});
-    tet = tetOf(mate);
-    entered = localOf(mate);
-    if (tet == edge.tet) return;
-  }
+        {static_cast<std::uint32_t>(faceIndex(std::min(leaving, mate))), leaving < mate});
+    turn.step();
+  } while (turn.tet() != edge.tet);
 }
 
 Transition PatchCharts::across(HalfFace halfFace) const {
@@ -286,8 +277,7 @@ bool PatchCharts::improve(std::span<const std::uint32_t> faces) {
   for (const std::uint32_t f : faces) {
     around.insert(around.end(), faces_[f].edges.begin(), faces_[f].edges.end());
   }
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
+  sortUnique(around);
   const auto localCost = [&] {
     double sum = 0;
     for (const std::uint32_t e : around) sum += edgeCost(e);

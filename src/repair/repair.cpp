@@ -155,8 +155,7 @@ class Repairer {
     candidates_.clear();
     std::vector<Index> startTets = bad;
     startTets.insert(startTets.end(), toRound.begin(), toRound.end());
-    std::sort(startTets.begin(), startTets.end());
-    startTets.erase(std::unique(startTets.begin(), startTets.end()), startTets.end());
+    sortUnique(startTets);
     const LocalParameters u = parameters();
     for (const std::vector<Index>& region :
          separateRegions(now_->prepared.topology, startTets, rings)) {
@@ -330,8 +329,10 @@ class Repairer {
     for (const SingularEdge& edge : now_->prepared.singularities.edges) {
       found[{edge.vertex0, edge.vertex1}] = edge.valence;
     }
+    VertexStar star;
     for (const auto& [key, valence] : valences_) {
-      if (!isEdge(now_->prepared.topology, key)) continue;  // was split
+      // Was it split?
+      if (tetsAtEdge(now_->prepared.topology, {key.first, key.second}, star).empty()) continue;
       const auto entry = found.find(key);
       // Without an entry, the edge is regular. Zero stands for singular, but unknown how.
       const bool same = entry == found.end() ? valence == 2 || valence == 4
@@ -342,16 +343,6 @@ class Repairer {
       return false;
     }
     return true;
-  }
-
-  static bool isEdge(const TetTopology& topology, const EdgeKey& key) {
-    VertexStar star;
-    star.collect(topology, key.first);
-    return std::any_of(star.members().begin(), star.members().end(),
-                       [&](const VertexStar::Member& member) {
-                         const Tet& tet = topology.tets[member.tet()];
-                         return std::find(tet.begin(), tet.end(), key.second) != tet.end();
-                       });
   }
 
   void describeMoves() {

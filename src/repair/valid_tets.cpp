@@ -66,6 +66,14 @@ std::vector<Index> findExactlyBadTets(const ExactMap& map, Stage& stage) {
   });
 }
 
+double displacementOf(const Vec3& before, const LatticePoint& after, double unit) noexcept {
+  double largest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    largest = std::max(largest, std::abs(static_cast<double>(after[k]) / unit - before[k]));
+  }
+  return largest;
+}
+
 bool isCarriedOver(const PreparedMap& map, HalfFace halfFace) noexcept {
   const TetTopology& topology = map.topology;
   const HalfFace mate = topology.mate[halfFace];
@@ -88,11 +96,9 @@ std::vector<std::uint8_t> findValidTets(const PreparedMap& map, const LocalParam
     const LatticeTet& corners = map.exact.corners[t];
     double displacement = 0;
     for (int c = 0; c < 4; ++c) {
-      const Vec3 u = parameters(static_cast<Index>(t), c);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double now = static_cast<double>(corners[static_cast<std::size_t>(c)][k]) / unit;
-        displacement = std::max(displacement, std::abs(now - u[k]));
-      }
+      displacement =
+          std::max(displacement, displacementOf(parameters(static_cast<Index>(t), c),
+                                                corners[static_cast<std::size_t>(c)], unit));
     }
     const bool positive = orientation(corners[0], corners[1], corners[2], corners[3]) > 0;
     valid[t] = positive && displacement <= tolerance ? 1 : 0;

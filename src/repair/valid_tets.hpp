@@ -6,6 +6,7 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/disjoint_sets.hpp>
 #include <igm/exact_map.hpp>
 #include <igm/input.hpp>
 #include <igm/prepare.hpp>
@@ -28,6 +29,23 @@ namespace hexhex {
 
 /// The tets that are not positive on the sanitized lattice, ascending.
 [[nodiscard]] std::vector<Index> findExactlyBadTets(const ExactMap& map, Stage& stage);
+
+/// How far sanitization moved a parameter, along any axis.
+/// @param unit  of the sanitized lattice
+[[nodiscard]] double displacementOf(const Vec3& before, const LatticePoint& after,
+                                    double unit) noexcept;
+
+/// Unites the tets that have a triangle in common, and for both of which a test holds.
+template <class Test>
+[[nodiscard]] DisjointSets componentsOf(const TetTopology& topology, const Test& test) {
+  DisjointSets sets(topology.tetCount());
+  for (HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
+    const HalfFace mate = topology.mate[halfFace];
+    if (mate == kNone || mate < halfFace) continue;
+    if (test(tetOf(halfFace)) && test(tetOf(mate))) sets.unite(tetOf(halfFace), tetOf(mate));
+  }
+  return sets;
+}
 
 /// Whether transitions carry the three lattice corners of an inner triangle over.
 [[nodiscard]] bool isCarriedOver(const PreparedMap& map, HalfFace halfFace) noexcept;
