@@ -100,51 +100,46 @@ struct CellFace {
   auto operator<=>(const CellFace&) const = default;
 };
 
-/// Finds faces at their smallest vertices: faces are the same if they have the same vertices, so
-/// that all their cells have them there.
-template <class Cell>
-class FacesAtVertices {
- public:
-  explicit FacesAtVertices(std::span<const Cell> cells) : cells_(cells) {}
-
-  /// Calls visit(its half-faces, by cell) for each face whose smallest vertex this is, in
-  /// lexicographic order.
-  /// @param around  the cells at the vertex, ascending; a repeated one counts once
-  /// @param isWanted  of (cell, face): whether a half-face is to be looked at
-  template <class Cells, class Filter, class Visit>
-  void forEach(Index vertex, const Cells& around, const Filter& isWanted, const Visit& visit) {
-    if (around.empty()) return;
-    found_.clear();
+/// Calls visit(its half-faces, by cell) for each face, by its smallest vertex and then in
+/// lexicographic order. Faces are the same if they have the same vertices, so that all their cells
+/// have them at the smallest one.
+/// @param begin, end  the smallest vertices of the faces in question
+/// @param cellsAt  of a vertex: the cells at it, ascending; a repeated one counts once
+/// @param isWanted  of (cell, face): whether a half-face is to be looked at
+template <class Cell, class CellsAt, class Filter, class Visit>
+void forEachFace(std::span<const Cell> cells, std::size_t begin, std::size_t end,
+                 const CellsAt& cellsAt, const Filter& isWanted, const Visit& visit) {
+  std::vector<CellFace<Cell>> found;
+  for (std::size_t vertex = begin; vertex < end; ++vertex) {
+    found.clear();
     Index previous = kNone;
-    for (const Index cell : around) {
+    for (const Index cell : cellsAt(vertex)) {
       if (cell == previous) continue;
       previous = cell;
       for (std::uint8_t face = 0; face < kFaceCount<Cell>; ++face) {
         if (!isWanted(cell, face)) continue;
-        auto vertices = faceVertices(cells_[cell], face);
+        auto vertices = faceVertices(cells[cell], face);
         Index smallest = vertices[0];
         for (const Index other : vertices) smallest = std::min(smallest, other);
         if (smallest != vertex) continue;
         std::sort(vertices.begin(), vertices.end());
-        found_.push_back({{}, cell, face});
-        std::copy(vertices.begin() + 1, vertices.end(), found_.back().others.begin());
+        found.push_back({{}, cell, face});
+        std::copy(vertices.begin() + 1, vertices.end(), found.back().others.begin());
       }
     }
-    std::sort(found_.begin(), found_.end());
+    std::sort(found.begin(), found.end());
     forEachRun(
-        std::span<const CellFace<Cell>>(found_),
+        std::span<const CellFace<Cell>>(found),
         [](const auto& a, const auto& b) { return a.others == b.others; }, visit);
   }
+}
 
-  template <class Cells, class Visit>
-  void forEach(Index vertex, const Cells& around, const Visit& visit) {
-    forEach(
-        vertex, around, [](Index /*cell*/, std::size_t /*face*/) { return true; }, visit);
-  }
-
- private:
-  std::span<const Cell> cells_;
-  std::vector<CellFace<Cell>> found_;  ///< reused between calls
-};
+/// The same for all half-faces.
+template <class Cell, class CellsAt, class Visit>
+void forEachFace(std::span<const Cell> cells, std::size_t begin, std::size_t end,
+                 const CellsAt& cellsAt, const Visit& visit) {
+  forEachFace(
+      cells, begin, end, cellsAt, [](Index /*cell*/, std::size_t /*face*/) { return true; }, visit);
+}
 
 }  // namespace hexhex

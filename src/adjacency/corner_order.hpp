@@ -49,12 +49,9 @@ inline constexpr auto kAscendingFaceCorners =
     byCornerOrder<std::array<std::array<std::uint8_t, 3>, 4>>([](const Tet& tet) {
       std::array<std::array<std::uint8_t, 3>, 4> corners{};
       for (std::size_t face = 0; face < 4; ++face) {
-        for (std::uint8_t corner = 0; corner < 4; ++corner) {
-          std::size_t rank = 0;
-          for (std::size_t other = 0; other < 4; ++other) {
-            rank += other != face && tet[other] < tet[corner] ? 1 : 0;
-          }
-          if (corner != face) corners[face][rank] = corner;
+        std::size_t rank = 0;
+        for (const std::uint8_t corner : kAscendingCorners[cornerOrder(tet)]) {
+          if (corner != face) corners[face][rank++] = corner;
         }
       }
       return corners;

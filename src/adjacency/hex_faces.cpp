@@ -1,16 +1,15 @@
-// Most neighbours number their corners alike and find each other at once. A face that is found in
-// otherwise, or could be another cell's as well, has all its vertices on seams: such faces are
-// few in most meshes, and are compared at their smallest vertices.
+// Most neighbours number their corners alike and find each other at once. Other faces are few in
+// most meshes, and are compared at their smallest vertices.
 #include <algorithm>
 #include <atomic>
 #include <bit>
 
 #include <adjacency/cell_faces.hpp>
-#include <adjacency/hex_faces.hpp>
+#include <adjacency/hex_topology.hpp>
 #include <adjacency/vertex_lists.hpp>
 
-#include <base/parallel.hpp>
 #include <base/low_level.hpp>
+#include <base/parallel.hpp>
 
 namespace hexhex {
 namespace {
@@ -55,6 +54,38 @@ class AlignedCells {
     parallelFor(stage, std::min<std::size_t>(cells.size(), kNone), 8 * kGrain, enter);
   }
 
+  /// Calls link(cell, axis, next) where face 2 * axis + 1 of a cell is face 2 * axis of the next
+  /// one, from any thread.
+  template <class Link>
+  void forEachPair(Stage& stage, const Link& link) const {
+    parallelFor(stage, cells_.size(), kGrain, [&](std::size_t c) {
+      // Neighbours may be far from each other in memory.
+      constexpr std::size_t kAhead = 16;
+      if (c + kAhead < cells_.size()) fetch(c + kAhead);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Index next = behind(c, axis);
+        if (next != kNone) link(c, axis, next);
+      }
+    });
+  }
+
+  /// Calls visit(cell, axis) for the cells that forEachPair() may have named as the next ones
+  /// behind a face with these vertices, until it returns true; returns whether it did.
+  template <class Visit>
+  [[nodiscard]] bool anyBehind(Quad quad, const Visit& visit) const {
+    std::sort(quad.begin(), quad.end());
+    return std::any_of(quad.begin(), quad.end(), [&](Index vertex) {
+      const Index cell = cellAt_[vertex];
+      for (std::size_t axis = 0; axis < 3 && cell != kNone; ++axis) {
+        Quad face = faceVertices(cells_[cell], 2 * axis);
+        std::sort(face.begin(), face.end());
+        if (face == quad && visit(cell, axis)) return true;
+      }
+      return false;
+    });
+  }
+
+ private:
   /// A cell with face 2 * axis where this cell has face 2 * axis + 1, whose four corners there are
   /// what its neighbour along the axis is in this cell; or kNone. Cells that share a vertex at
   /// corner 0 with a later cell are not found.
@@ -70,19 +101,6 @@ class AlignedCells {
     return different == 0 ? candidate : kNone;
   }
 
-  /// Calls f(cell, {behind(cell, 0), behind(cell, 1), behind(cell, 2)}) for the cells of
-  /// [begin, end). Quicker than asking for one after the other, as neighbours may be far from each
-  /// other in memory: they are fetched ahead.
-  template <class F>
-  void forEach(std::size_t begin, std::size_t end, const F& f) const {
-    constexpr std::size_t kAhead = 16;
-    for (std::size_t c = begin; c < end; ++c) {
-      if (c + kAhead < end) fetch(c + kAhead);
-      f(c, std::array<Index, 3>{behind(c, 0), behind(c, 1), behind(c, 2)});
-    }
-  }
-
- private:
   void fetch(std::size_t cell) const noexcept {
     for (const auto& corners : kAlignedCorners) {
       const Index candidate = cellAt_[cells_[cell][corners[0][1]]];
@@ -94,36 +112,18 @@ class AlignedCells {
   Array<Index> cellAt_;  ///< per vertex: the last cell that has it at corner 0, or kNone
 };
 
-/// Calls link(cell, axis, next) where face 2 * axis + 1 of a cell is face 2 * axis of the next one.
-template <class Link>
-void linkAlignedCells(std::size_t vertexCount, std::span<const Hex> cells, Stage& stage,
-                      const Link& link) {
-  const AlignedCells aligned(vertexCount, cells, stage);
-  parallelBlocks(
-      stage, cells.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-        aligned.forEach(begin, end, [&](std::size_t cell, const std::array<Index, 3>& behind) {
-          for (std::size_t axis = 0; axis < 3; ++axis) {
-            const Index next = behind[axis];
-            if (next == kNone) continue;
-            // In a ring of two cells, two edges have the same vertices: a seam.
-            if (cells[next][kNextCorner[axis]] == cells[cell][0]) continue;
-            link(cell, axis, next);
-          }
-        });
-      });
-}
-
-/// Per cell: bit k if corner k is a vertex of a face that is not linked.
-/// @param balance  grows by how many more faces at corner 6 than at corner 0 are linked
-template <class IsLinked>
+/// Per cell: bit k if corner k is a vertex of a face without a mate.
+/// @param balance  grows by how many more faces at corner 6 than at corner 0 have mates
 Array<std::uint8_t> findSeamCorners(std::size_t vertexCount, std::span<const Hex> cells,
-                                    Stage& stage, const IsLinked& isLinked,
+                                    const Array<Index>& mates, Stage& stage,
                                     std::atomic<std::int64_t>& balance) {
   Array<std::uint8_t> onSeam(vertexCount);
   parallelFor(stage, vertexCount, 8 * kGrain, [&](std::size_t v) { onSeam[v] = 0; });
   parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
     unsigned linked = 0;
-    for (std::size_t face = 0; face < 6; ++face) linked |= unsigned{isLinked(c, face)} << face;
+    for (std::size_t face = 0; face < 6; ++face) {
+      linked |= unsigned{mates[6 * c + face] != kNone} << face;
+    }
     if (linked == 63) return;  // as of most cells
     balance.fetch_add(std::popcount(linked & 0b101010U) - std::popcount(linked & 0b010101U),
                       std::memory_order_relaxed);
@@ -143,30 +143,30 @@ Array<std::uint8_t> findSeamCorners(std::size_t vertexCount, std::span<const Hex
   return seamCorners;
 }
 
-/// Calls visit(its half-faces) for each face with all its vertices on seams, from any thread.
-template <class Visit>
-void forEachSeamFace(std::size_t vertexCount, std::span<const Hex> cells,
-                     std::span<const std::uint8_t> seamCorners, Stage& stage, const Visit& visit) {
-  const auto isOnSeam = [seamCorners](std::size_t cell, std::size_t face) {
-    return (seamCorners[cell] & kCornersOfFaces[face]) == kCornersOfFaces[face];
-  };
+/// Calls visit(its half-faces, list) for each face that is wanted, from any thread.
+/// @param mayHave  of a cell: false if none of its faces is wanted
+/// @param isWanted  of (cell, face)
+/// @return all that was appended to lists
+template <class MayHave, class Filter, class Visit>
+std::vector<std::uint64_t> collectFromFaces(std::size_t vertexCount, std::span<const Hex> cells,
+                                            Stage& stage, const MayHave& mayHave,
+                                            const Filter& isWanted, const Visit& visit) {
   const VertexLists<Index, std::uint64_t> around(vertexCount, stage, [&](const auto& add) {
     parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
-      if (seamCorners[c] == 0) return;
+      if (!mayHave(c)) return;
       for (std::size_t face = 0; face < 6; ++face) {
-        if (!isOnSeam(c, face)) continue;
+        if (!isWanted(c, face)) continue;
         const Quad quad = faceVertices(cells[c], face);
         add(*std::min_element(quad.begin(), quad.end()), static_cast<Index>(c));
       }
     });
   });
-  parallelBlocks(stage, vertexCount, kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   FacesAtVertices<Hex> faces(cells);
-                   for (std::size_t v = begin; v < end; ++v) {
-                     faces.forEach(static_cast<Index>(v), around.at(v), isOnSeam, visit);
-                   }
-                 });
+  return collectFromBlocks<std::uint64_t>(
+      stage, vertexCount, kGrain,
+      [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& list) {
+        forEachFace(cells, begin, end, around, isWanted,
+                    [&](std::span<const CellFace<Hex>> halfFaces) { visit(halfFaces, list); });
+      });
 }
 
 }  // namespace
@@ -177,64 +177,70 @@ std::optional<HexMates> matchHexFaces(std::size_t vertexCount, std::span<const H
   Array<Index>& mates = result.mates;
   mates.resize(6 * cells.size());
   parallelFor(stage, mates.size(), 6 * kGrain, [&](std::size_t i) { mates[i] = kNone; });
-  linkAlignedCells(vertexCount, cells, stage, [&](std::size_t cell, std::size_t axis, Index next) {
+  const AlignedCells aligned(vertexCount, cells, stage);
+  aligned.forEachPair(stage, [&](std::size_t cell, std::size_t axis, Index next) {
+    // In a ring of two cells, two edges have the same vertices: a seam.
+    if (cells[next][kNextCorner[axis]] == cells[cell][0]) return;
     const std::size_t far = 6 * cell + 2 * axis + 1;
     const std::size_t near = 6 * std::size_t{next} + 2 * axis;
     mates[far] = static_cast<Index>(near);
     std::atomic_ref(mates[near]).store(static_cast<Index>(far), std::memory_order_relaxed);
   });
   std::atomic<std::int64_t> balance{0};
-  result.seamCorners = findSeamCorners(
-      vertexCount, cells, stage,
-      [&](std::size_t cell, std::size_t face) { return mates[6 * cell + face] != kNone; }, balance);
+  result.seamCorners = findSeamCorners(vertexCount, cells, mates, stage, balance);
   // In a broken mesh, two cells may claim the same half-face: then fewer are claimed than claim.
   if (balance != 0) return std::nullopt;
-  std::atomic<bool> isSound{true};
-  forEachSeamFace(vertexCount, cells, result.seamCorners, stage,
-                  [&](std::span<const CellFace<Hex>> halfFaces) {
-                    if (halfFaces.size() == 1) return;
-                    const auto& [a, b] = std::pair(halfFaces.front(), halfFaces.back());
-                    mates[6 * std::size_t{a.cell} + a.face] = 6 * b.cell + b.face;
-                    mates[6 * std::size_t{b.cell} + b.face] = 6 * a.cell + a.face;
-                    if (halfFaces.size() > 2 || !areOpposite(faceVertices(cells[a.cell], a.face),
-                                                             faceVertices(cells[b.cell], b.face))) {
-                      isSound.store(false, std::memory_order_relaxed);
-                    }
-                  });
-  if (!isSound) return std::nullopt;
+  const auto hasSeams = [&](std::size_t cell) { return result.seamCorners[cell] != 0; };
+  const auto isOnSeam = [&](std::size_t cell, std::size_t face) {
+    return (result.seamCorners[cell] & kCornersOfFaces[face]) == kCornersOfFaces[face];
+  };
+  const auto join = [&](std::span<const CellFace<Hex>> halfFaces,
+                        std::vector<std::uint64_t>& faults) {
+    if (halfFaces.size() == 1) return;
+    const auto& [a, b] = std::pair(halfFaces.front(), halfFaces.back());
+    mates[6 * std::size_t{a.cell} + a.face] = 6 * b.cell + b.face;
+    mates[6 * std::size_t{b.cell} + b.face] = 6 * a.cell + a.face;
+    if (halfFaces.size() > 2 ||
+        !areOpposite(faceVertices(cells[a.cell], a.face), faceVertices(cells[b.cell], b.face))) {
+      faults.push_back(a.cell);
+    }
+  };
+  if (!collectFromFaces(vertexCount, cells, stage, hasSeams, isOnSeam, join).empty()) {
+    return std::nullopt;
+  }
   return result;
 }
 
-Array<std::uint64_t> boundaryPlaces(const HexMesh& mesh, Stage& stage) {
-  enum class Kind : std::uint8_t { Unknown, Shared, Boundary };
-  // One byte each, so that threads need not wait for each other.
-  Array<std::array<Kind, 6>> kinds(mesh.cells.size());
-  parallelFor(stage, kinds.size(), kGrain, [&](std::size_t c) { kinds[c].fill(Kind::Unknown); });
-  const auto set = [&kinds](std::size_t cell, std::size_t face, Kind kind) {
-    std::atomic_ref(kinds[cell][face]).store(kind, std::memory_order_relaxed);
+std::vector<std::uint64_t> boundaryPlaces(const HexMesh& mesh, Stage& stage) {
+  // Per cell: which of its faces are linked to others; one byte each, so that threads need not wait
+  // for each other. The last two are always set.
+  using Linked = std::array<std::uint8_t, 8>;
+  constexpr auto kAllLinked = std::bit_cast<std::uint64_t>(Linked{1, 1, 1, 1, 1, 1, 1, 1});
+  Array<Linked> linked(mesh.cells.size());
+  parallelFor(stage, linked.size(), kGrain,
+              [&](std::size_t c) { linked[c] = {0, 0, 0, 0, 0, 0, 1, 1}; });
+  const AlignedCells aligned(mesh.points.size(), mesh.cells, stage);
+  aligned.forEachPair(stage, [&](std::size_t cell, std::size_t axis, Index next) {
+    std::atomic_ref(linked[cell][2 * axis + 1]).store(1, std::memory_order_relaxed);
+    std::atomic_ref(linked[next][2 * axis]).store(1, std::memory_order_relaxed);
+  });
+  const auto mayHave = [&](std::size_t cell) {
+    return std::bit_cast<std::uint64_t>(linked[cell]) != kAllLinked;
   };
-  linkAlignedCells(mesh.points.size(), mesh.cells, stage,
-                   [&](std::size_t cell, std::size_t axis, Index next) {
-                     set(cell, 2 * axis + 1, Kind::Shared);
-                     set(next, 2 * axis, Kind::Shared);
-                   });
-  std::atomic<std::int64_t> balance{0};  // of no interest here
-  const Array<std::uint8_t> seamCorners = findSeamCorners(
-      mesh.points.size(), mesh.cells, stage,
-      [&](std::size_t cell, std::size_t face) { return kinds[cell][face] == Kind::Shared; },
-      balance);
-  forEachSeamFace(mesh.points.size(), mesh.cells, seamCorners, stage,
-                  [&](std::span<const CellFace<Hex>> halfFaces) {
-                    const CellFace<Hex>& first = halfFaces.front();
-                    if (halfFaces.size() == 1) set(first.cell, first.face, Kind::Boundary);
-                  });
-  Array<std::uint64_t> places;
-  for (std::size_t c = 0; c < kinds.size(); ++c) {
-    if (seamCorners[c] == 0) continue;
-    for (std::size_t face = 0; face < 6; ++face) {
-      if (kinds[c][face] == Kind::Boundary) places.push_back(8 * c + face);
+  const auto isOpen = [&](std::size_t cell, std::size_t face) { return linked[cell][face] == 0; };
+  const auto isNear = [&](Index cell, std::size_t axis) { return linked[cell][2 * axis] != 0; };
+  const auto add = [&](std::span<const CellFace<Hex>> halfFaces,
+                       std::vector<std::uint64_t>& places) {
+    const CellFace<Hex>& first = halfFaces.front();
+    // In a broken mesh, others may be linked across it.
+    if (halfFaces.size() == 1 &&
+        !aligned.anyBehind(faceVertices(mesh.cells[first.cell], first.face), isNear)) {
+      places.push_back(8 * std::uint64_t{first.cell} + first.face);
     }
-  }
+  };
+  std::vector<std::uint64_t> places =
+      collectFromFaces(mesh.points.size(), mesh.cells, stage, mayHave, isOpen, add);
+  std::sort(places.begin(), places.end());
   return places;
 }
 

@@ -29,56 +29,26 @@ void merge(FaceFault& sum, const FaceFault& part) {
   sum.count += part.count;
 }
 
-/// Finds faces vertex by vertex and notes them in places that several threads share.
-class FaceFinder {
- public:
-  FaceFinder(const HexMesh& mesh, const VertexCells& around)
-      : mesh_(mesh), around_(around), boundary_(mesh.cells.size(), 0), sets_(mesh.cells.size()) {}
-
-  /// What the faces whose smallest vertex is in [begin, end) add up to.
-  HexFaces findInBlock(std::size_t begin, std::size_t end) {
-    HexFaces sum;
-    FacesAtVertices<Hex> faces(mesh_.cells);
-    for (std::size_t v = begin; v < end; ++v) {
-      const std::span<const Index> cells = around_.at(v);
-      if (cells.empty()) {
-        sum.firstUnusedVertex = std::min(sum.firstUnusedVertex, static_cast<Index>(v));
-        continue;
-      }
-      ++sum.usedVertices;
-      faces.forEach(static_cast<Index>(v), cells,
-                    [&](std::span<const CellFace<Hex>> halfFaces) { addFace(halfFaces, sum); });
-    }
-    return sum;
+/// One face, given by its half-faces.
+/// @param boundary, cells  shared by several threads
+void addFace(const HexMesh& mesh, std::span<const CellFace<Hex>> halfFaces,
+             Array<std::uint8_t>& boundary, DisjointSets& cells, HexFaces& sum) {
+  ++sum.count;
+  const CellFace<Hex>& first = halfFaces.front();
+  if (halfFaces.size() == 1) {
+    ++sum.boundaryCount;
+    const auto bit = static_cast<std::uint8_t>(1U << first.face);
+    std::atomic_ref(boundary[first.cell]).fetch_or(bit, std::memory_order_relaxed);
+    return;
   }
-
-  [[nodiscard]] Array<std::uint8_t> takeBoundary() { return std::move(boundary_); }
-  [[nodiscard]] std::uint64_t countComponents() const { return sets_.count(); }
-
- private:
-  void addFace(std::span<const CellFace<Hex>> halfFaces, HexFaces& sum) {
-    ++sum.count;
-    const CellFace<Hex>& first = halfFaces.front();
-    if (halfFaces.size() == 1) {
-      ++sum.boundaryCount;
-      const auto bit = static_cast<std::uint8_t>(1U << first.face);
-      std::atomic_ref(boundary_[first.cell]).fetch_or(bit, std::memory_order_relaxed);
-      return;
-    }
-    for (const CellFace<Hex>& other : halfFaces.subspan(1)) sets_.unite(first.cell, other.cell);
-    if (halfFaces.size() > 2) {
-      note(sum.overfull, first);
-    } else if (!areOpposite(faceVertices(mesh_.cells[first.cell], first.face),
-                            faceVertices(mesh_.cells[halfFaces[1].cell], halfFaces[1].face))) {
-      note(sum.sameDirection, first);
-    }
+  for (const CellFace<Hex>& other : halfFaces.subspan(1)) cells.unite(first.cell, other.cell);
+  if (halfFaces.size() > 2) {
+    note(sum.overfull, first);
+  } else if (!areOpposite(faceVertices(mesh.cells[first.cell], first.face),
+                          faceVertices(mesh.cells[halfFaces[1].cell], halfFaces[1].face))) {
+    note(sum.sameDirection, first);
   }
-
-  const HexMesh& mesh_;
-  const VertexCells& around_;
-  Array<std::uint8_t> boundary_;
-  DisjointSets sets_;
-};
+}
 
 /// Throws unless every corner is a vertex and cell numbers fit an Index.
 void requireIndexable(const HexMesh& mesh, Stage& stage) {
@@ -122,11 +92,23 @@ void requireCornersInRange(const HexMesh& mesh, Stage& stage) {
 }
 
 HexFaces findFaces(const HexMesh& mesh, const VertexCells& around, Stage& stage) {
-  FaceFinder finder(mesh, around);
+  Array<std::uint8_t> boundary(mesh.cells.size(), 0);
+  DisjointSets cells(mesh.cells.size());
   std::vector<HexFaces> blocks(blockCount(mesh.points.size(), kGrain));
   parallelBlocks(stage, mesh.points.size(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   blocks[block] = finder.findInBlock(begin, end);
+                   HexFaces& sum = blocks[block];
+                   for (std::size_t v = end; v-- > begin;) {
+                     if (around(v).empty()) {
+                       sum.firstUnusedVertex = static_cast<Index>(v);
+                     } else {
+                       ++sum.usedVertices;
+                     }
+                   }
+                   forEachFace(std::span(mesh.cells), begin, end, around,
+                               [&](std::span<const CellFace<Hex>> halfFaces) {
+                                 addFace(mesh, halfFaces, boundary, cells, sum);
+                               });
                  });
   HexFaces faces;
   for (const HexFaces& part : blocks) {
@@ -137,8 +119,8 @@ HexFaces findFaces(const HexMesh& mesh, const VertexCells& around, Stage& stage)
     merge(faces.overfull, part.overfull);
     merge(faces.sameDirection, part.sameDirection);
   }
-  faces.boundary = finder.takeBoundary();
-  faces.components = finder.countComponents();
+  faces.boundary = std::move(boundary);
+  faces.components = cells.count();
   return faces;
 }
 
@@ -160,10 +142,7 @@ FaceNeighbours findFaceNeighbours(const HexMesh& mesh, Stage& stage) {
   };
   parallelBlocks(stage, mesh.points.size(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   FacesAtVertices<Hex> faces(mesh.cells);
-                   for (std::size_t v = begin; v < end; ++v) {
-                     faces.forEach(static_cast<Index>(v), around.at(v), join);
-                   }
+                   forEachFace(std::span(mesh.cells), begin, end, around, join);
                  });
   return neighbours;
 }
@@ -225,91 +204,72 @@ class QuadNumbers {
   Array<Index> firsts_;
 };
 
-/// Finds edges vertex by vertex and joins boundary quads, from several threads.
-class EdgeFinder {
- public:
-  EdgeFinder(const HexMesh& mesh, const VertexCells& around, const HexFaces& faces)
-      : mesh_(mesh), around_(around), numbers_(faces), components_(faces.boundaryCount) {}
-
-  /// Handles all edges whose smaller vertex is in [begin, end).
-  HexEdges findInBlock(std::size_t begin, std::size_t end) {
-    HexEdges edges;
-    std::vector<EdgeEntry> entries;
-    for (std::size_t v = begin; v < end; ++v) {
-      const auto vertex = static_cast<Index>(v);
-      collectEdges(vertex, entries);
-      forEachRun(
-          std::span<const EdgeEntry>(entries),
-          [](const EdgeEntry& a, const EdgeEntry& b) { return a.other == b.other; },
-          [&](std::span<const EdgeEntry> wedges) { addEdge(vertex, wedges, edges); });
+/// Collects the edges of the cells around a vertex that have it as their smaller vertex, sorted.
+void collectEdges(const HexMesh& mesh, std::span<const Index> around, Index vertex,
+                  const QuadNumbers& numbers, std::vector<EdgeEntry>& entries) {
+  entries.clear();
+  Index previous = kNone;
+  for (const Index c : around) {
+    if (c == previous) continue;  // a cell with repeated vertices
+    previous = c;
+    const Hex& cell = mesh.cells[c];
+    for (std::size_t e = 0; e < 12; ++e) {
+      const Index a = cell[kHexEdges[e][0]];
+      const Index b = cell[kHexEdges[e][1]];
+      if (std::min(a, b) != vertex) continue;
+      entries.push_back({std::max(a, b),
+                         {numbers.at(c, kFacesOfEdges[e][0]), numbers.at(c, kFacesOfEdges[e][1])}});
     }
-    return edges;
   }
+  std::sort(entries.begin(), entries.end());
+}
 
-  [[nodiscard]] std::uint64_t countComponents() const { return components_.count(); }
-
- private:
-  /// Collects the edges of the cells around `vertex` that have it as their smaller vertex, sorted.
-  void collectEdges(Index vertex, std::vector<EdgeEntry>& entries) const {
-    entries.clear();
-    Index previous = kNone;
-    for (const Index c : around_.at(vertex)) {
-      if (c == previous) continue;  // a cell with repeated vertices
-      previous = c;
-      const Hex& cell = mesh_.cells[c];
-      for (std::size_t e = 0; e < 12; ++e) {
-        const Index a = cell[kHexEdges[e][0]];
-        const Index b = cell[kHexEdges[e][1]];
-        if (std::min(a, b) != vertex) continue;
-        entries.push_back(
-            {std::max(a, b),
-             {numbers_.at(c, kFacesOfEdges[e][0]), numbers_.at(c, kFacesOfEdges[e][1])}});
-      }
+/// One edge, given by its appearances in cells.
+/// @param quads  of the boundary; shared by several threads
+void addEdge(Index vertex, std::span<const EdgeEntry> wedges, DisjointSets& quads,
+             HexEdges& edges) {
+  ++edges.count;
+  Index firstQuad = kNone;
+  std::size_t quadCount = 0;
+  for (const EdgeEntry& wedge : wedges) {
+    for (const Index quad : wedge.quads) {
+      if (quad == kNone) continue;
+      if (quadCount++ == 0) firstQuad = quad;
+      quads.unite(firstQuad, quad);
     }
-    std::sort(entries.begin(), entries.end());
   }
-
-  /// One edge, given by its appearances in cells.
-  void addEdge(Index vertex, std::span<const EdgeEntry> wedges, HexEdges& edges) {
-    ++edges.count;
-    Index firstQuad = kNone;
-    std::size_t quads = 0;
-    for (const EdgeEntry& wedge : wedges) {
-      for (const Index quad : wedge.quads) {
-        if (quad == kNone) continue;
-        if (quads++ == 0) firstQuad = quad;
-        components_.unite(firstQuad, quad);
-      }
-    }
-    const int valence = static_cast<int>(wedges.size());
-    if (valence != (quads == 0 ? 4 : 2)) {
-      edges.singular.push_back(
-          {vertex, wedges.front().other, static_cast<std::uint32_t>(valence), quads != 0});
-    }
-    if (quads == 0) {
-      if (valence != 4) ++edges.innerSingular[valence];
-      return;
-    }
-    ++edges.boundaryCount;
-    if (valence != 2) ++edges.boundarySingular[valence];
-    if (quads != 2 && edges.openCount++ == 0) edges.firstOpen = {vertex, wedges.front().other};
+  const bool isBoundary = quadCount != 0;
+  const int valence = static_cast<int>(wedges.size());
+  if (valence != (isBoundary ? 2 : 4)) {
+    edges.singular.push_back(
+        {vertex, wedges.front().other, static_cast<std::uint32_t>(valence), isBoundary});
+    ++(isBoundary ? edges.boundarySingular : edges.innerSingular)[valence];
   }
-
-  const HexMesh& mesh_;
-  const VertexCells& around_;
-  QuadNumbers numbers_;
-  DisjointSets components_;
-};
+  if (!isBoundary) return;
+  ++edges.boundaryCount;
+  if (quadCount != 2 && edges.openCount++ == 0) edges.firstOpen = {vertex, wedges.front().other};
+}
 
 }  // namespace
 
 HexEdges findEdges(const HexMesh& mesh, const VertexCells& around, const HexFaces& faces,
                    Stage& stage) {
-  EdgeFinder finder(mesh, around, faces);
+  const QuadNumbers numbers(faces);
+  DisjointSets quads(faces.boundaryCount);
   std::vector<HexEdges> blocks(blockCount(mesh.points.size(), kGrain));
   parallelBlocks(stage, mesh.points.size(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   blocks[block] = finder.findInBlock(begin, end);
+                   std::vector<EdgeEntry> entries;
+                   for (std::size_t v = begin; v < end; ++v) {
+                     const auto vertex = static_cast<Index>(v);
+                     collectEdges(mesh, around(v), vertex, numbers, entries);
+                     forEachRun(
+                         std::span<const EdgeEntry>(entries),
+                         [](const EdgeEntry& a, const EdgeEntry& b) { return a.other == b.other; },
+                         [&](std::span<const EdgeEntry> wedges) {
+                           addEdge(vertex, wedges, quads, blocks[block]);
+                         });
+                   }
                  });
   HexEdges edges;
   for (const HexEdges& part : blocks) {
@@ -323,7 +283,7 @@ HexEdges findEdges(const HexMesh& mesh, const VertexCells& around, const HexFace
       edges.boundarySingular[valence] += count;
     }
   }
-  edges.boundaryComponents = finder.countComponents();
+  edges.boundaryComponents = quads.count();
   return edges;
 }
 

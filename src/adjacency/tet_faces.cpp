@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -27,19 +26,12 @@ constexpr OpenFace kDescends = std::uint64_t{2} << 32;
 constexpr OpenFace kMatched = kAscends | kDescends;
 constexpr OpenFace kNoFace = kNone;
 
-/// The corners and faces of a tet, in ascending order of vertices.
-struct RankedTet {
-  std::array<std::uint8_t, 4> corners{};  ///< by rank
-  /// By rank of the opposite corner: number within the tet, and whether it ascends or descends.
+/// By order of a tet, and by rank of the corner opposite a face: the face's number within the tet,
+/// and whether it ascends or descends.
+constexpr auto kRankedFaces = byCornerOrder<std::array<OpenFace, 4>>([](const Tet& tet) {
   std::array<OpenFace, 4> faces{};
-};
-
-constexpr RankedTet rankedTet(const Tet& tet) {
-  RankedTet ranked;
-  for (std::size_t corner = 0; corner < 4; ++corner) {
-    std::size_t rank = 0;
-    for (const Index other : tet) rank += other < tet[corner] ? 1 : 0;
-    ranked.corners[rank] = static_cast<std::uint8_t>(corner);
+  for (std::size_t rank = 0; rank < 4; ++rank) {
+    const std::size_t corner = kAscendingCorners[cornerOrder(tet)][rank];
     const std::array<int, 3>& face = kFaceCorners[corner];
     int descents = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -47,12 +39,10 @@ constexpr RankedTet rankedTet(const Tet& tet) {
       const Index next = tet[static_cast<std::size_t>(face[(k + 1) % 3])];
       descents += next < here ? 1 : 0;
     }
-    ranked.faces[rank] = corner | (descents == 1 ? kAscends : kDescends);
+    faces[rank] = corner | (descents == 1 ? kAscends : kDescends);
   }
-  return ranked;
-}
-
-constexpr std::array<RankedTet, kCornerOrders> kRankedTets = byCornerOrder<RankedTet>(rankedTet);
+  return faces;
+});
 
 /// Each triangle is found at its smallest vertex. In a tet, that is the tet's smallest vertex for
 /// three faces and the second smallest for the fourth: so each tet is in two linked lists, one of
@@ -97,10 +87,10 @@ void listFaces(FaceLists& lists, TetTopology& topology, std::size_t part, std::s
     const auto index = static_cast<Index>(t - 1);
     for (const Index v : tet) heads[v].smallest = index;
     const CornerOrder order = cornerOrder(tet);
-    const RankedTet& ranked = kRankedTets[order];
+    const std::array<std::uint8_t, 4>& corners = kAscendingCorners[order];
     topology.order[index] = order;
-    lists.next[index] = {std::exchange(heads[tet[ranked.corners[0]]].threeFaces, index),
-                         std::exchange(heads[tet[ranked.corners[1]]].oneFace, index)};
+    lists.next[index] = {std::exchange(heads[tet[corners[0]]].threeFaces, index),
+                         std::exchange(heads[tet[corners[1]]].oneFace, index)};
   }
 }
 
@@ -125,48 +115,40 @@ struct FoundFace {
   OpenFace face = kNoFace;
 };
 
-/// Memory of a hash table for the half-faces at nearly every vertex, which is cleared in no time.
-struct SmallTable {
+/// Memory of a hash table for the half-faces at a vertex.
+struct FaceTable {
+  /// Enough at nearly every vertex, and cleared in no time.
   static constexpr int kBits = 8;
-  std::array<std::uint8_t, 1 << kBits> slots;
-  std::array<FoundFace, (1 << kBits) / 4 * 3> found;
 
-  [[nodiscard]] static constexpr int bits() { return kBits; }
-};
-
-/// The same for any number.
-struct LargeTable {
-  explicit LargeTable(int bits)
-      : bits_(bits), slots(std::size_t{1} << bits), found((std::size_t{1} << bits) / 4 * 3) {}
-  [[nodiscard]] int bits() const { return bits_; }
-
-  int bits_;
-  std::vector<std::uint32_t> slots;
+  std::vector<std::uint32_t> slots;  ///< numbers in `found`; 0: empty
   std::vector<FoundFace> found;
 };
 
 /// Matches the half-faces at one vertex, by a hash table. Whether a triangle is found for the first
 /// or the second time cannot be predicted, so both go the same path
 /// (key_table.hpp has the figure).
-template <class Table>
 class FaceMatcher {
  public:
-  FaceMatcher(Table& table, HalfFace* mate) : table_(table), mate_(mate) {
-    std::fill(table.slots.begin(), table.slots.end(), 0);
+  /// @param bits  of the table's size
+  FaceMatcher(FaceTable& table, int bits, HalfFace* mate) : mate_(mate), shift_(64 - bits) {
+    table.slots.assign(std::size_t{1} << bits, 0);
+    table.found.resize(table.slots.size() / 4 * 3);
     table.found[0].face = kNoFace;
+    slots_ = table.slots;
+    found_ = table.found;
   }
 
   /// Whether so many can be added.
-  [[nodiscard]] bool hasRoom(std::size_t more) const { return count_ + more < table_.found.size(); }
+  [[nodiscard]] bool hasRoom(std::size_t more) const { return count_ + more < found_.size(); }
 
   /// @param low,high  the other two vertices, low < high
   void add(Index low, Index high, OpenFace face) {
     const std::uint64_t key = (std::uint64_t{low} << 32) | high;
-    auto& slot = slotOf(key);
+    std::uint32_t& slot = slotOf(key);
     const std::uint64_t isKnown = slot == 0 ? 0 : ~std::uint64_t{0};
-    const OpenFace other = table_.found[slot].face;
-    slot = static_cast<std::remove_reference_t<decltype(slot)>>(++count_);
-    table_.found[count_] = {key, face | (kMatched & isKnown)};
+    const OpenFace other = found_[slot].face;
+    slot = ++count_;
+    found_[count_] = {key, face | (kMatched & isKnown)};
     shared_ |= face & other;
     const auto here = static_cast<HalfFace>(face);
     const auto there = static_cast<HalfFace>(other);
@@ -179,58 +161,50 @@ class FaceMatcher {
 
  private:
   /// The slot with the number of the last half-face of a triangle; 0 if there was none so far.
-  [[nodiscard]] auto& slotOf(std::uint64_t key) {
-    table_.found[0].vertices = key;  // ends the search at an empty slot
+  [[nodiscard]] std::uint32_t& slotOf(std::uint64_t key) {
+    found_[0].vertices = key;  // ends the search at an empty slot
     // Odd, and near 2^64 / golden ratio: the upper bits of products with it spread well.
-    std::size_t i = (key * 0x9e3779b97f4a7c15U) >> (64 - table_.bits());
-    while (table_.found[table_.slots[i]].vertices != key) {
-      i = (i + 1) & (table_.slots.size() - 1);
-    }
-    return table_.slots[i];
+    std::size_t i = (key * 0x9e3779b97f4a7c15U) >> shift_;
+    while (found_[slots_[i]].vertices != key) i = (i + 1) & (slots_.size() - 1);
+    return slots_[i];
   }
 
-  Table& table_;
   HalfFace* mate_;
-  std::size_t count_ = 0;
+  int shift_;
+  std::span<std::uint32_t> slots_;
+  std::span<FoundFace> found_;
+  std::uint32_t count_ = 0;
   OpenFace shared_ = 0;
 };
 
 /// Matches the half-faces whose smallest vertex is the same.
 /// @return false if they do not fit the table
-template <class Table>
-bool matchFacesAt(Index v, const FaceLists& lists, Table& table, TetTopology& topology,
-                  bool& sound) {
-  FaceMatcher<Table> matcher(table, topology.mate.data());
+bool matchFacesAt(Index v, const FaceLists& lists, TetTopology& topology, FaceTable& table,
+                  int bits, bool& sound) {
+  FaceMatcher matcher(table, bits, topology.mate.data());
   for (std::size_t part = 0; part < lists.parts; ++part) {
     const FaceLists::Heads& heads = lists.at(part, v);
     for (Index t = heads.threeFaces; t != kNone; t = lists.next[t].threeFaces) {
       if (!matcher.hasRoom(3)) return false;
       const Tet& tet = topology.tets[t];
-      const RankedTet& ranked = kRankedTets[topology.order[t]];
-      const Index a = tet[ranked.corners[1]];
-      const Index b = tet[ranked.corners[2]];
-      const Index c = tet[ranked.corners[3]];
-      matcher.add(b, c, 4 * t + ranked.faces[1]);
-      matcher.add(a, c, 4 * t + ranked.faces[2]);
-      matcher.add(a, b, 4 * t + ranked.faces[3]);
+      const auto& corners = kAscendingCorners[topology.order[t]];
+      const auto& faces = kRankedFaces[topology.order[t]];
+      const Index a = tet[corners[1]];
+      const Index b = tet[corners[2]];
+      const Index c = tet[corners[3]];
+      matcher.add(b, c, 4 * t + faces[1]);
+      matcher.add(a, c, 4 * t + faces[2]);
+      matcher.add(a, b, 4 * t + faces[3]);
     }
     for (Index t = heads.oneFace; t != kNone; t = lists.next[t].oneFace) {
       if (!matcher.hasRoom(1)) return false;
       const Tet& tet = topology.tets[t];
-      const RankedTet& ranked = kRankedTets[topology.order[t]];
-      matcher.add(tet[ranked.corners[2]], tet[ranked.corners[3]], 4 * t + ranked.faces[0]);
+      const auto& corners = kAscendingCorners[topology.order[t]];
+      matcher.add(tet[corners[2]], tet[corners[3]], 4 * t + kRankedFaces[topology.order[t]][0]);
     }
   }
   sound = sound && matcher.isSound();
   return true;
-}
-
-/// The same with a table that is large enough.
-void matchManyFacesAt(Index v, const FaceLists& lists, TetTopology& topology, bool& sound) {
-  for (int bits = SmallTable::kBits + 2;; bits += 2) {
-    LargeTable table(bits);
-    if (matchFacesAt(v, lists, table, topology, sound)) return;
-  }
 }
 
 }  // namespace
@@ -242,14 +216,13 @@ bool matchFaces(TetTopology& topology, Stage& stage) {
   std::atomic<bool> sound = true;
   parallelBlocks(stage, topology.pointCount, kVertexGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   SmallTable table;  // NOLINT: written before it is read
+                   FaceTable table;
                    bool isSound = true;
                    for (std::size_t i = begin; i < end; ++i) {
                      const auto v = static_cast<Index>(i);
                      topology.vertexTet[v] = lists.smallestTet(v);
-                     if (!matchFacesAt(v, lists, table, topology, isSound)) {
-                       matchManyFacesAt(v, lists, topology, isSound);
-                     }
+                     int bits = FaceTable::kBits;
+                     while (!matchFacesAt(v, lists, topology, table, bits, isSound)) bits += 2;
                    }
                    if (!isSound) sound = false;
                  });

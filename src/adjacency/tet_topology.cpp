@@ -1,6 +1,5 @@
 #include <atomic>
 
-#include <adjacency/edge_turn.hpp>
 #include <adjacency/tet_topology.hpp>
 
 namespace hexhex {
@@ -8,18 +7,6 @@ namespace hexhex {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
-
-/// The w of all edges (v, w) with v < w, ascending.
-void collectEdges(const TetTopology& topology, Index v, std::vector<Index>& ends) {
-  ends.clear();
-  for (const CornerIndex corner : topology.star(v)) {
-    for (const Index w : topology.tets[corner / 4]) {
-      if (w > v) ends.push_back(w);
-    }
-  }
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-}
 
 }  // namespace
 
@@ -34,28 +21,24 @@ void addStars(TetTopology& topology, Stage& stage) {
   });
 }
 
-void addEdges(TetTopology& topology, Stage& stage) {
-  if (!topology.edgeBegin.empty()) return;
-  addStars(topology, stage);
-  const std::size_t vertices = topology.pointCount;
-  topology.edgeBegin.assign(vertices + 1, 0);
-  // Blocks gather their edges in order, so that joining them in order is the lexicographic list.
-  std::vector<std::vector<Index>> blocks(blockCount(vertices, kGrain));
-  parallelBlocks(stage, vertices, kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   std::vector<Index> ends;
-                   for (std::size_t v = begin; v < end; ++v) {
-                     collectEdges(topology, static_cast<Index>(v), ends);
-                     topology.edgeBegin[v] = ends.size();
-                     blocks[block].insert(blocks[block].end(), ends.begin(), ends.end());
-                   }
-                 });
-  topology.edgeEnd.resize(exclusiveScan(std::span(topology.edgeBegin)));
-  parallelFor(stage, blocks.size(), 1, [&](std::size_t block) {
-    std::copy(
-        blocks[block].begin(), blocks[block].end(),
-        topology.edgeEnd.begin() + static_cast<std::ptrdiff_t>(topology.edgeBegin[block * kGrain]));
-  });
+std::uint64_t countEdges(const TetTopology& topology, Stage& stage) {
+  std::atomic<std::uint64_t> count{0};
+  parallelBlocks(
+      stage, topology.pointCount, kGrain,
+      [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+        std::vector<Index> ends;  // w of edges (v, w) with v < w
+        for (std::size_t v = begin; v < end; ++v) {
+          ends.clear();
+          for (const CornerIndex corner : topology.star(static_cast<Index>(v))) {
+            for (const Index w : topology.tets[corner / 4]) {
+              if (w > v) ends.push_back(w);
+            }
+          }
+          std::sort(ends.begin(), ends.end());
+          count += static_cast<std::uint64_t>(std::unique(ends.begin(), ends.end()) - ends.begin());
+        }
+      });
+  return count;
 }
 
 std::size_t boundaryFacesAt(const TetTopology& topology, std::span<const EdgeCorner> fan) {
@@ -67,14 +50,6 @@ std::size_t boundaryFacesAt(const TetTopology& topology, std::span<const EdgeCor
     }
   }
   return count;
-}
-
-std::uint64_t TetTopology::edgeIndex(Index a, Index b) const noexcept {
-  const Index v = std::min(a, b);
-  const auto first = edgeEnd.begin() + static_cast<std::ptrdiff_t>(edgeBegin[v]);
-  const auto last = edgeEnd.begin() + static_cast<std::ptrdiff_t>(edgeBegin[v + 1]);
-  return static_cast<std::uint64_t>(std::lower_bound(first, last, std::max(a, b)) -
-                                    edgeEnd.begin());
 }
 
 namespace {

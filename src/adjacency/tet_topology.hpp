@@ -50,10 +50,6 @@ struct TetTopology {
   // Empty until addStars().
   VertexLists<CornerIndex> stars;  ///< the corners at each vertex
 
-  // Empty until addEdges().
-  Array<std::uint64_t> edgeBegin;  ///< per vertex (+1): its range in `edgeEnd`
-  Array<Index> edgeEnd;            ///< edges (v, w) with v < w, by v: the w, ascending
-
   [[nodiscard]] std::size_t tetCount() const noexcept { return tets.size(); }
   [[nodiscard]] Index vertex(CornerIndex corner) const noexcept {
     return tets[corner / 4][corner % 4];
@@ -79,11 +75,8 @@ struct TetTopology {
   }
   /// Needs addStars().
   [[nodiscard]] std::span<const CornerIndex> star(Index vertex) const noexcept {
-    return stars.at(vertex);
+    return stars(vertex);
   }
-  /// Number of edges, and index of the edge between two vertices. Need addEdges().
-  [[nodiscard]] std::size_t edgeCount() const noexcept { return edgeEnd.size(); }
-  [[nodiscard]] std::uint64_t edgeIndex(Index a, Index b) const noexcept;
 };
 
 /// The corners of a face that two tets share, in both of them. Turns come from a table: with three
@@ -141,8 +134,8 @@ class SharedFace {
 /// Lists the corners at each vertex. Does nothing if they are listed.
 void addStars(TetTopology& topology, Stage& stage);
 
-/// Lists the edges, and the stars.
-void addEdges(TetTopology& topology, Stage& stage);
+/// Needs addStars().
+[[nodiscard]] std::uint64_t countEdges(const TetTopology& topology, Stage& stage);
 
 /// One tet at an edge: its corners at the edge's ends.
 struct EdgeCorner {
@@ -188,6 +181,45 @@ void forEachEdge(const TetTopology& topology, Index v, std::vector<EdgeCorner>& 
   }
   return entered;
 }
+
+/// From tet to tet around an edge.
+class EdgeTurn {
+ public:
+  /// @param edge  two corners of the tet
+  /// @param face  at the edge, through which it goes first
+  EdgeTurn(const TetTopology& topology, Index tet, CornerMask edge, int face) noexcept
+      : topology_(topology),
+        tet_(tet),
+        edge_(edge),
+        out_(halfFaceOf(tet, face)),
+        ahead_(topology.tets[tet][static_cast<std::size_t>(otherFaceAtEdge(edge, face))]) {}
+
+  [[nodiscard]] Index tet() const noexcept { return tet_; }
+  /// The edge, as corners of the tet.
+  [[nodiscard]] CornerMask edge() const noexcept { return edge_; }
+  /// The half-face that it leaves the tet through.
+  [[nodiscard]] HalfFace out() const noexcept { return out_; }
+  /// The same in the next tet, or kNone.
+  [[nodiscard]] HalfFace next() const noexcept { return topology_.mate[out_]; }
+
+  /// Enters the next tet, of which there must be one.
+  void step() noexcept {
+    const HalfFace in = next();
+    tet_ = tetOf(in);
+    // The third corner of the face behind is the one opposite the face ahead.
+    const int opposite = topology_.localCorner(tet_, ahead_);
+    edge_ = static_cast<CornerMask>(kWholeTet ^ cornerBit(opposite) ^ cornerBit(localOf(in)));
+    ahead_ = topology_.tets[tet_][static_cast<std::size_t>(localOf(in))];
+    out_ = halfFaceOf(tet_, opposite);
+  }
+
+ private:
+  const TetTopology& topology_;
+  Index tet_;
+  CornerMask edge_;
+  HalfFace out_;
+  Index ahead_;  ///< third corner of the face that it leaves through
+};
 
 /// The smallest tet that contains a simplex of a tet: the simplex's owner (ParentTet of the paper).
 [[nodiscard]] Index ownerTet(const TetTopology& topology, Index tet, CornerMask simplex) noexcept;

@@ -45,7 +45,7 @@ class VertexLists {
   /// Whether nothing has been listed at all.
   [[nodiscard]] bool empty() const noexcept { return ends_.empty(); }
 
-  [[nodiscard]] std::span<const T> at(std::size_t vertex) const noexcept {
+  [[nodiscard]] std::span<const T> operator()(std::size_t vertex) const noexcept {
     const Offset begin = beginOf(vertex);
     return std::span(values_).subspan(begin, ends_[vertex] - begin);
   }

@@ -4,7 +4,6 @@
 #include <array>
 #include <vector>
 
-#include <adjacency/edge_turn.hpp>
 #include <adjacency/key_table.hpp>
 #include <adjacency/tet_topology.hpp>
 

@@ -12,7 +12,6 @@ namespace hexhex {
 namespace {
 
 void countElements(const TetTopology& topology, CheckReport& report) {
-  report.edges = topology.edgeCount();
   for (const HalfFace mate : topology.mate) report.boundaryFaces += mate == kNone ? 1 : 0;
   report.innerFaces = (4 * topology.tetCount() - report.boundaryFaces) / 2;
   report.faces = report.innerFaces + report.boundaryFaces;
@@ -109,14 +108,15 @@ CheckReport check(const TetMapView& map, const CheckOptions& options, Context& c
     report.tetsInvertedInSpace = prepared.input.tetsInvertedInSpace;
     // What a defect kept from being computed stays empty, and is counted as nothing.
     if (!prepared.singularities.areKnown()) return;
-    addEdges(prepared.topology, stage);
+    addStars(prepared.topology, stage);
+    report.edges = countEdges(prepared.topology, stage);
     countElements(prepared.topology, report);
     report.chartJumps = prepared.exact.transitions.nonTrivial;
     report.maxTransitionResidual = prepared.exact.transitions.maxResidual;
     report.maxDisplacement = prepared.exact.maxDisplacement;
     countSingularities(prepared.singularities, report);
     report.boundaryGenus = boundaryGenus(prepared.topology);
-    if (report.valid()) report.expected = computeExpectation(prepared, options.scale);
+    if (report.valid()) report.expected = computeExpectation(prepared, report.edges, options.scale);
   });
   return report;
 }

@@ -105,14 +105,18 @@ void checkFaces(TetTopology& topology, Stage& stage, DefectCollector& defects) {
   const auto join = [&](std::span<const CellFace<Tet>> same) {
     joinMates(topology, same, defects);
   };
-  parallelFor(stage, topology.pointCount, kGrain, [&](std::size_t v) {
-    FacesAtVertices<Tet> faces(topology.tets);
-    std::vector<Index> around;
-    for (const CornerIndex corner : topology.star(static_cast<Index>(v))) {
-      around.push_back(tetOf(corner));
-    }
-    faces.forEach(static_cast<Index>(v), around, join);
-  });
+  parallelBlocks(stage, topology.pointCount, kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::vector<Index> around;
+                   const auto tetsAt = [&](std::size_t v) {
+                     around.clear();
+                     for (const CornerIndex corner : topology.star(static_cast<Index>(v))) {
+                       around.push_back(tetOf(corner));
+                     }
+                     return std::span<const Index>(around);
+                   };
+                   forEachFace(topology.tets, begin, end, tetsAt, join);
+                 });
 }
 
 /// An edge with more than two boundary faces has more than one fan. Returns the number of edges at

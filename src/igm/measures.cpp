@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <functional>
 
-#include <adjacency/edge_turn.hpp>
+#include <adjacency/tet_topology.hpp>
 
 #include <base/disjoint_sets.hpp>
 #include <igm/measures.hpp>
@@ -149,7 +149,7 @@ std::vector<std::int64_t> boundaryGenus(const TetTopology& topology) {
   return genus;
 }
 
-Expectation computeExpectation(const PreparedMap& map, int scale) {
+Expectation computeExpectation(const PreparedMap& map, std::uint64_t edges, int scale) {
   const auto s = static_cast<std::uint64_t>(scale);
   Expectation expected;
   expected.cells = parametricVolume(map.exact) * s * s * s;
@@ -172,8 +172,7 @@ Expectation computeExpectation(const PreparedMap& map, int scale) {
   for (const HalfFace mate : map.topology.mate) boundaryFaces += mate == kNone ? 1 : 0;
   const auto tets = static_cast<std::int64_t>(map.topology.tetCount());
   const std::int64_t faces = (4 * tets + boundaryFaces) / 2;
-  expected.eulerCharacteristic =
-      used - static_cast<std::int64_t>(map.topology.edgeCount()) + faces - tets;
+  expected.eulerCharacteristic = used - static_cast<std::int64_t>(edges) + faces - tets;
   expected.components = componentCount(map.topology);
   expected.boundaryComponents = boundaryGenus(map.topology).size();
   return expected;

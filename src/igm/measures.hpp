@@ -34,8 +34,9 @@ namespace hexhex {
 [[nodiscard]] std::vector<std::int64_t> boundaryGenus(const TetTopology& topology);
 
 /// Everything that follows from a valid map about its mesh.
-/// @param map  needs addEdges()
+/// @param edges  of its tets
 /// @param scale  of the mesh; `map` itself is not scaled
-[[nodiscard]] Expectation computeExpectation(const PreparedMap& map, int scale);
+[[nodiscard]] Expectation computeExpectation(const PreparedMap& map, std::uint64_t edges,
+                                             int scale);
 
 }  // namespace hexhex

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <adjacency/hex_faces.hpp>
 #include <adjacency/hex_topology.hpp>
 #include <adjacency/vertex_lists.hpp>
 
@@ -104,7 +103,7 @@ SmoothPatches findSmoothPatches(std::span<const Vec3> points, std::span<const Qu
     if (dot(normals[a], normals[b]) >= limit) sets.unite(a, b);
   };
   parallelFor(stage, points.size(), kGrain,
-              [&](std::size_t v) { forEachRun(sides.at(v), isSameEdge, join); });
+              [&](std::size_t v) { forEachRun(sides(v), isSameEdge, join); });
   return numbered(sets, quads.size());
 }
 

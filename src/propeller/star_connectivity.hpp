@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include <adjacency/edge_turn.hpp>
+#include <adjacency/tet_topology.hpp>
 
 #include <propeller/local_connectivity.hpp>
 

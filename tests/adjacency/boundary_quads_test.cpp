@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <map>
 
-#include <adjacency/hex_faces.hpp>
 #include <adjacency/hex_topology.hpp>
 #include <gtest/gtest.h>
 

@@ -25,7 +25,7 @@ class Prepared {
     withThreads(threads, [&] {
       map_ = prepareMap(view, tolerance, maxScale, context, defects_, charts);
       Stage stage(context, "edges");
-      if (map_.singularities.areKnown()) addEdges(map_.topology, stage);
+      if (map_.singularities.areKnown()) addStars(map_.topology, stage);
     });
   }
   [[nodiscard]] const TetTopology& topology() const { return map_.topology; }

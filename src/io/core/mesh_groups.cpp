@@ -5,7 +5,6 @@
 #include <span>
 #include <utility>
 
-#include <adjacency/hex_faces.hpp>
 #include <adjacency/hex_topology.hpp>
 
 #include <hexhex/error.hpp>
@@ -108,7 +107,7 @@ Quad sorted(Quad quad) {
 /// Quads before they are sorted into groups.
 struct TaggedQuads {
   Array<Quad> quads;
-  Array<std::uint64_t> places;
+  std::vector<std::uint64_t> places;
   Array<Tag> tags;
   const char* kind = "surface";
 };

@@ -98,7 +98,7 @@ class ElementFinder {
                     const std::array<std::array<std::uint8_t, n>, slots>& corners,
                     const char* what) {
     if (around_.empty()) around_ = cellsAroundVertices(mesh_, stage_);
-    for (const Index cell : around_.at(element[0])) {
+    for (const Index cell : around_(element[0])) {
       for (std::size_t slot = 0; slot < slots; ++slot) {
         std::array<Index, n> vertices{};
         for (std::size_t i = 0; i < n; ++i) vertices[i] = mesh_.cells[cell][corners[slot][i]];

@@ -10,7 +10,7 @@
 #include <span>
 #include <string>
 
-#include <adjacency/hex_faces.hpp>
+#include <adjacency/hex_topology.hpp>
 
 #include <hexhex/types.hpp>
 

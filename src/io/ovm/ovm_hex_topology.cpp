@@ -84,7 +84,7 @@ Array<Edge> listSeamEdges(std::size_t vertexCount, std::span<const Hex> cells,
   Array<Edge> edges;
   for (std::size_t v = 0; v < vertexCount; ++v) {
     Index last = kNone;
-    for (const Index end : ends.at(v)) {
+    for (const Index end : ends(v)) {
       if (end != last) edges.push_back({static_cast<Index>(v), end});
       last = end;
     }

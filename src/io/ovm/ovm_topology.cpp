@@ -79,12 +79,9 @@ template <class Cell>
       for (const Index v : cells[c]) add(v, static_cast<Index>(c));
     });
   });
-  FacesAtVertices<Cell> faces(cells);
-  for (std::size_t v = 0; v < vertexCount; ++v) {
-    faces.forEach(
-        static_cast<Index>(v), around.at(v),
-        [cells](std::span<const CellFace<Cell>> halfFaces) { requireManifold(cells, halfFaces); });
-  }
+  forEachFace(cells, 0, vertexCount, around, [cells](std::span<const CellFace<Cell>> halfFaces) {
+    requireManifold(cells, halfFaces);
+  });
   throw Error(ErrorCode::Internal, "A fault of a face was found, but not again.");
 }
 
