@@ -182,24 +182,27 @@ class StarSanitizer {
     return fixed;
   }
 
-  /// Carries the value of the first member to all others, along the walk; false if not all paths
-  /// through the star lead to the same values.
+  /// Carries the value of the first member to all others, along the walk, as in
+  /// VertexStar::collect(); false if not all paths through the star lead to the same values.
   [[nodiscard]] bool spread(Star star) {
     std::int64_t difference = 0;
     std::size_t reached = 1;
-    for (std::size_t i = 0; i < star.size(); ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        // What came through the entry would be carried back.
-        const std::size_t behind = star[i].neighbour[k];
-        if (behind == kNone || (i > 0 && k == star[i].entry)) continue;
-        const LatticePoint image = carried(values_[i], star[i].halfFace(k));
-        values_[reached] =
-            image;  // in vain unless the one behind is new, which cannot be predicted
-        reached += behind == reached ? 1 : 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          difference |= values_[behind][axis] ^ image[axis];
-        }
+    const auto cross = [&](std::size_t i, std::size_t k) {
+      const VertexStar::Member& member = star[i];
+      const LatticePoint image = carried(values_[i], member.halfFace(k));
+      // At the boundary, a member is behind itself.
+      const std::size_t behind = member.neighbour[k] == kNone ? i : member.neighbour[k];
+      values_[reached] = image;  // in vain if the one behind is not new
+      reached += behind == reached ? 1 : 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        difference |= values_[behind][axis] ^ image[axis];
       }
+    };
+    for (std::size_t k = 0; k < 3; ++k) cross(0, k);
+    // What came through the entry would be carried back.
+    for (std::size_t i = 1; i < star.size(); ++i) {
+      cross(i, star[i].entry == 0 ? 1 : 0);
+      cross(i, star[i].entry == 2 ? 1 : 2);
     }
     return difference == 0;
   }
@@ -279,10 +282,9 @@ class TetRounder {
     for (std::size_t i = 0; i < 12; ++i) {
       corners[i / 3][i % 3] = static_cast<std::int64_t>(rounded[i / 2][i % 2]);
     }
-    const bool isFinished = std::ranges::find(rounding, Rounding::ByStar) == rounding.end();
-    return isFinished && isPositive({cornerOf(rounded, 0), cornerOf(rounded, 1),
-                                     cornerOf(rounded, 2), cornerOf(rounded, 3)},
-                                    leastDeterminant_);
+    return !isAnyByStar(rounding) && isPositive({cornerOf(rounded, 0), cornerOf(rounded, 1),
+                                                 cornerOf(rounded, 2), cornerOf(rounded, 3)},
+                                                leastDeterminant_);
   }
 
   /// Without corners that are decided by their stars.
@@ -291,6 +293,12 @@ class TetRounder {
   }
 
  private:
+  static bool isAnyByStar(const std::array<Rounding, 4>& rounding) {
+    unsigned bits = 0;
+    for (const Rounding one : rounding) bits |= static_cast<unsigned>(one);
+    return (bits & static_cast<unsigned>(Rounding::ByStar)) != 0;
+  }
+
   const TetTopology& topology_;
   const LocalParameters& parameters_;
   std::span<const Rounding> rounding_;
@@ -322,9 +330,13 @@ std::vector<std::vector<Index>> roundTets(const TetTopology& topology,
   };
   parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
     TetRounder rounder(topology, parameters, rounding, grains, map);
+    std::array<Index, kGrain + 1> list;  // NOLINT: written before it is read
+    std::size_t count = 0;
     for (auto t = static_cast<Index>(begin); t < end; ++t) {
-      if (!rounder.run(t)) unfinished[block].push_back(t);
+      list[count] = t;
+      count += rounder.run(t) ? 0 : 1;
     }
+    unfinished[block].assign(list.begin(), list.begin() + count);
     displacements[block] = rounder.maxDisplacement();
     if (displacements[block] > tolerance) {
       report(static_cast<Index>(begin), static_cast<Index>(end));
