@@ -18,6 +18,9 @@ struct EngineSwitches {
   bool hugePages = true;  ///< for large arrays; of the whole process, as the next (base/memory.hpp)
   bool pagePool = true;   ///< smaller arrays share huge pages
   bool fewPoints = true;  ///< tets with few points in their boxes (lattice/few_points.hpp)
+  bool unfoldCharts = true;     ///< before all else (igm/unfold_charts.hpp)
+  bool regularVertices = true;  ///< found without their stars (igm/regular_vertices.hpp)
+  bool flatStars = true;        ///< told from irregular ones (igm/irregular_vertices.hpp)
 };
 
 }  // namespace hexhex

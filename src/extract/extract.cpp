@@ -42,10 +42,10 @@ namespace {
 /// Whether a repair is to be tried, even if this build can only say that it cannot: for flipped and
 /// flat tets, and for what they may have caused, as they falsify angles around edges and thereby
 /// singularities. Other defects are repaired only if rounding was asked for.
-bool isToBeRepaired(const DefectCollector& defects, const RepairChoice& repair) {
-  if (repair.mode == RepairMode::Off) return false;
+bool isToBeRepaired(const DefectCollector& defects, const ExtractOptions& options) {
+  if (options.repair == RepairMode::Off) return false;
   const auto found = [&](ErrorCode code) { return defects.has(code); };
-  return repair.round || found(ErrorCode::FlippedTet) || found(ErrorCode::SingularityOffLattice) ||
+  return options.round || found(ErrorCode::FlippedTet) || found(ErrorCode::SingularityOffLattice) ||
          found(ErrorCode::TransitionResidual) || found(ErrorCode::HalfIntegerFixedPoint);
 }
 
@@ -65,31 +65,31 @@ TetMap ownedCopy(const TetMapView& map) {
 
 /// Prepares the map, or what a repair makes of it.
 /// @param report  of the repair, if there was one
-ValidMap prepareOrRepair(const TetMapView& map, double tolerance, int maxScale,
-                         const RepairChoice& repair, Context& context, RepairReport& report) {
+ValidMap prepareOrRepair(const TetMapView& map, int maxScale, const EngineOptions& options,
+                         Context& context, RepairReport& report) {
   {
     DefectCollector defects;
-    PreparedMap prepared =
-        prepareMap(map, tolerance, maxScale, context, defects, ChartChoice::Unfolded);
+    PreparedMap prepared = prepareMap(map, options.tolerance, maxScale, context, defects,
+                                      ChartChoice::Unfolded, options.switches);
     if (defects.empty()) return {std::move(prepared), nullptr};
-    if (!isToBeRepaired(defects, repair)) defects.throwIfAny();
+    if (!isToBeRepaired(defects, options)) defects.throwIfAny();
   }
-  const RepairOptions options{tolerance, maxScale, repair.round, true};
+  const RepairOptions repair{options.tolerance, maxScale, options.round, true};
   auto repaired =
-      std::make_shared<const TetMap>(repairInArena(ownedCopy(map), options, context, report));
+      std::make_shared<const TetMap>(repairInArena(ownedCopy(map), repair, context, report));
   DefectCollector defects;
-  PreparedMap prepared =
-      prepareMap(*repaired, tolerance, maxScale, context, defects, ChartChoice::Unfolded);
+  PreparedMap prepared = prepareMap(*repaired, options.tolerance, maxScale, context, defects,
+                                    ChartChoice::Unfolded, options.switches);
   defects.throwIfAny();
   return {std::move(prepared), std::move(repaired)};
 }
 
 }  // namespace
 
-ValidMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
-                      const RepairChoice& repair, Context& context, ExtractStatistics& statistics) {
+ValidMap prepareValid(const TetMapView& map, int maxScale, const EngineOptions& options,
+                      Context& context, ExtractStatistics& statistics) {
   requireValidTags(map);
-  ValidMap valid = prepareOrRepair(map, tolerance, maxScale, repair, context, statistics.repair);
+  ValidMap valid = prepareOrRepair(map, maxScale, options, context, statistics.repair);
   const PreparedMap& prepared = valid.prepared;
   statistics.repairedMap = valid.repaired;
   statistics.mirrored = prepared.input.mirrored;
@@ -126,8 +126,8 @@ ScaledMap prepareScaled(const TetMapView& map, const EngineOptions& options,
   if (options.scale > std::numeric_limits<int>::max() / limits.furtherScale) {
     throw Error(ErrorCode::TooLarge, "The scale is too large. Lower it.");
   }
-  ValidMap valid = prepareValid(map, options.tolerance, options.scale * limits.furtherScale,
-                                {options.repair, options.round}, context, statistics);
+  ValidMap valid =
+      prepareValid(map, options.scale * limits.furtherScale, options, context, statistics);
   const TetMapView source = valid.repaired ? TetMapView(*valid.repaired) : map;
   ScaledMap scaled{std::move(valid.prepared), source, std::move(valid.repaired)};
   Stage stage(context, "scaling");

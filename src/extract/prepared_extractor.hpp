@@ -19,7 +19,9 @@ class Extractor::Prepared {
   Prepared(const TetMapView& map, const ExtractorOptions& options, Context& context)
       : given_(map), maxScale_(options.maxScale) {
     runExtraction({}, context, &known_, [&](ExtractStatistics& filled) {
-      map_ = prepareValid(map, options.tolerance, options.maxScale, {}, context, filled).prepared;
+      ExtractOptions prepare;  // without a repair
+      prepare.tolerance = options.tolerance;
+      map_ = prepareValid(map, options.maxScale, prepare, context, filled).prepared;
       volume_ = parametricVolume(map_.exact);
     });
   }

@@ -31,12 +31,6 @@ struct EngineOptions : ExtractOptions {
   EngineSwitches switches;
 };
 
-/// What may be done to maps that are not valid, as in ExtractOptions.
-struct RepairChoice {
-  RepairMode mode = RepairMode::Off;
-  bool round = false;
-};
-
 /// A map that has passed all checks.
 struct ValidMap {
   PreparedMap prepared;
@@ -44,9 +38,10 @@ struct ValidMap {
 };
 
 /// Checks tags, prepares a map, or the repaired one, and throws its first defect if it has any.
+/// @param maxScale  the map is going to be scaled by at most this
 /// @param statistics  receives what is known about the map
-[[nodiscard]] ValidMap prepareValid(const TetMapView& map, double tolerance, int maxScale,
-                                    const RepairChoice& repair, Context& context,
+[[nodiscard]] ValidMap prepareValid(const TetMapView& map, int maxScale,
+                                    const EngineOptions& options, Context& context,
                                     ExtractStatistics& statistics);
 
 /// The number of cells at a scale.

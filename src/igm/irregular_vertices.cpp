@@ -143,7 +143,7 @@ class StarClassifier {
 VertexKinds classifyVertices(const TetTopology& topology, const LocalParameters& parameters,
                              const RegularVertices& survey,
                              std::span<const HalfFaceCrossing> crossings,
-                             std::span<const EdgeValence> known, Stage& stage) {
+                             std::span<const EdgeValence> known, bool findFlat, Stage& stage) {
   Array<std::uint8_t> isIrregular = survey.isIrregular;
   for (const EdgeValence& edge : known) {
     for (const Index v : {edge.vertex0, edge.vertex1}) {
@@ -155,7 +155,7 @@ VertexKinds classifyVertices(const TetTopology& topology, const LocalParameters&
   result.rounding.resize(topology.pointCount);
   result.blocks.resize(blockCount(topology.pointCount, kGrain));
   // What the caller claims about edges, if anything, is to be looked up for each.
-  const bool flatAllowed = known.empty();
+  const bool flatAllowed = findFlat && known.empty();
   const auto makeClassifier = [&] {
     return StarClassifier(topology, parameters, survey, crossings, flatAllowed, result);
   };

@@ -33,16 +33,24 @@ void checkArguments(double tolerance, int scale) {
               "bug; please report it with the map.");
 }
 
+/// As RegularVertices::isIrregular, if no vertex were certain to be regular.
+Array<std::uint8_t> usedVertices(const TetTopology& topology) {
+  Array<std::uint8_t> used(topology.pointCount);
+  for (Index v = 0; v < topology.pointCount; ++v) used[v] = topology.isIsolated(v) ? 0 : 1;
+  return used;
+}
+
 /// One preparation, step by step.
 class Preparation {
  public:
   Preparation(const TetMapView& map, double tolerance, int maxScale, Context& context,
-              DefectCollector& defects)
+              DefectCollector& defects, const EngineSwitches& switches)
       : map_(map),
         tolerance_(tolerance),
         maxScale_(maxScale),
         context_(context),
-        defects_(defects) {}
+        defects_(defects),
+        switches_(switches) {}
 
   [[nodiscard]] PreparedMap run(ChartChoice charts) {
     if (!read()) return std::move(prepared_);
@@ -57,6 +65,7 @@ class Preparation {
     {
       Stage stage(context_, "regular vertices");
       survey = findRegularVertices(prepared_.topology, parameters, stage);
+      if (!switches_.regularVertices) survey.isIrregular = usedVertices(prepared_.topology);
     }
     Transitions transitions;
     if (!parameters.tooLarge()) transitions = findTransitions(parameters, unfolding, survey);
@@ -103,7 +112,8 @@ class Preparation {
     const auto& valences = prepared_.input.view.edgeValences;
     const Array<HalfFaceCrossing> crossings =
         findCrossings(prepared_.topology, survey, transitions, stage);
-    vertices = classifyVertices(prepared_.topology, parameters, survey, crossings, valences, stage);
+    vertices = classifyVertices(prepared_.topology, parameters, survey, crossings, valences,
+                                switches_.flatStars, stage);
     std::optional<Singularities> singularities = computeSingularities(
         prepared_.topology, parameters, survey, crossings, vertices, valences, stage);
     if (!singularities) {
@@ -125,19 +135,24 @@ class Preparation {
   int maxScale_;
   Context& context_;
   DefectCollector& defects_;
+  const EngineSwitches& switches_;
   PreparedMap prepared_;
 };
 
 }  // namespace
 
 PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Context& context,
-                       DefectCollector& defects, ChartChoice charts) {
+                       DefectCollector& defects, ChartChoice charts,
+                       const EngineSwitches& switches) {
   checkArguments(tolerance, maxScale);
-  PreparedMap prepared = Preparation(map, tolerance, maxScale, context, defects).run(charts);
+  if (!switches.unfoldCharts) charts = ChartChoice::AsGiven;
+  PreparedMap prepared =
+      Preparation(map, tolerance, maxScale, context, defects, switches).run(charts);
   if (defects.empty() || !prepared.isUnfolded) return prepared;
   defects.clear();
   prepared = {};  // gives its memory back before the next one takes some
-  return Preparation(map, tolerance, maxScale, context, defects).run(ChartChoice::AsGiven);
+  return Preparation(map, tolerance, maxScale, context, defects, switches)
+      .run(ChartChoice::AsGiven);
 }
 
 }  // namespace hexhex

@@ -7,6 +7,7 @@
 #include <hexhex/context.hpp>
 #include <hexhex/types.hpp>
 
+#include <base/switches.hpp>
 #include <igm/exact_map.hpp>
 #include <igm/input.hpp>
 #include <igm/singularities.hpp>
@@ -36,6 +37,7 @@ enum class ChartChoice : std::uint8_t {
 /// @throws Error InvalidArgument for a tolerance or scale out of range
 [[nodiscard]] PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale,
                                      Context& context, DefectCollector& defects,
-                                     ChartChoice charts = ChartChoice::AsGiven);
+                                     ChartChoice charts = ChartChoice::AsGiven,
+                                     const EngineSwitches& switches = {});
 
 }  // namespace hexhex

@@ -53,7 +53,7 @@ struct Stars {
       }
     }
     vertices = classifyVertices(survey.topology, survey.parameters, survey.regular, crossings, {},
-                                survey.stage);
+                                true, survey.stage);
   }
 
   [[nodiscard]] std::optional<Singularities> singularities(Survey& survey) const {
