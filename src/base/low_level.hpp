@@ -4,11 +4,7 @@
 
 namespace hexhex {
 
-/// Conditions that are all evaluated.
-template <class... Bools>
-[[nodiscard]] constexpr bool anyOf(Bools... conditions) noexcept {
-  return (static_cast<unsigned>(conditions) | ...) != 0;
-}
+/// Whether all conditions hold; all of them are evaluated.
 template <class... Bools>
 [[nodiscard]] constexpr bool allOf(Bools... conditions) noexcept {
   return (static_cast<unsigned>(conditions) & ...) != 0;

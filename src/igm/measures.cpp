@@ -154,8 +154,9 @@ Expectation computeExpectation(const PreparedMap& map, std::uint64_t edges, int 
   Expectation expected;
   expected.cells = parametricVolume(map.exact) * s * s * s;
   expected.boundaryQuads = boundaryArea(map.topology, map.exact) * s * s;
-  std::map<int, std::int64_t> inner;
-  std::map<int, std::int64_t> boundary;
+  // One length is below 2^54, but there may be 2^32 of them.
+  std::map<int, Int128> inner;
+  std::map<int, Int128> boundary;
   for (const SingularEdge& edge : map.singularities.edges) {
     (edge.boundary ? boundary : inner)[edge.valence] += latticeLength(edge, map.exact);
   }

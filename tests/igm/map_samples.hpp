@@ -1,4 +1,4 @@
-// What the tests of src/map share: samples, maps prepared from them, and small meshes by hand.
+// What the tests of src/igm share: samples, maps prepared from them, and small meshes by hand.
 #pragma once
 
 #include <cstdint>
