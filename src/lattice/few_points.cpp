@@ -12,7 +12,7 @@ namespace hexhex {
 namespace {
 
 /// More points take longer one by one than by lines.
-constexpr std::int32_t kFewPoints = 32;
+constexpr std::int32_t kFewPoints = 16;
 
 using Halves = std::array<std::int32_t, 3>;
 
