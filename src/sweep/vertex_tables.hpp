@@ -30,11 +30,18 @@ template <class Line>
                                    std::size_t hint = 0) {
   if (lines.empty()) return nullptr;
   const std::array<std::uint8_t, 3>& axes = lines.front().swept.axes();
-  const std::pair wanted(z[axes[0]], z[axes[1]]);
-  const auto placeOf = [](const Line& line) { return std::pair(line.swept.level, line.swept.row); };
-  if (hint < lines.size() && placeOf(lines[hint]) == wanted) return &lines[hint];
-  const auto found = std::ranges::lower_bound(lines, wanted, {}, placeOf);
-  return found != lines.end() && placeOf(*found) == wanted ? &*found : nullptr;
+  const auto key = [](std::int64_t level, std::int64_t row) { return (level << 32) + row; };
+  const auto keyOf = [&](const Line& line) { return key(line.swept.level, line.swept.row); };
+  const std::int64_t wanted = key(z[axes[0]], z[axes[1]]);
+  if (hint < lines.size() && keyOf(lines[hint]) == wanted) return &lines[hint];
+  // std::lower_bound() branches, and where to cannot be predicted.
+  const Line* found = lines.data();
+  for (std::size_t size = lines.size(); size > 1;) {
+    const std::size_t half = size / 2;
+    found += keyOf(found[half - 1]) < wanted ? half : 0;
+    size -= half;
+  }
+  return keyOf(*found) == wanted ? found : nullptr;
 }
 
 /// Numbers are those of extract() at the map's scale.
