@@ -182,7 +182,7 @@ bool CellFlood::spread(std::size_t index) {
   return true;
 }
 
-CellFlood::Corner CellFlood::corner(std::size_t i) const {
+std::optional<CellFlood::Corner> CellFlood::corner(std::size_t i) const {
   LatticePoint at{};
   for (std::size_t k = 0; k < 3; ++k) {
     at[k] = (std::int64_t{low_[k]} + kCellCorners[i][k]) * map_.exact.unit;
@@ -209,10 +209,7 @@ CellFlood::Corner CellFlood::corner(std::size_t i) const {
     }
     return corner;
   }
-  throw Error(ErrorCode::Internal,
-              "A cell of a partial extraction has no tet at one of its corners. This is a bug; "
-              "please report it with the map.",
-              {PlaceKind::Tet, pieces_.front().tet});
+  return {};
 }
 
 VertexName CellFlood::nameOf(const Piece& piece, CornerMask simplex, const LatticePoint& at) const {

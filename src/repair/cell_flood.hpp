@@ -5,6 +5,7 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,12 +49,13 @@ class CellFlood {
 
   [[nodiscard]] std::span<const Piece> pieces() const { return pieces_; }
 
-  /// Corner i of the cell in VTK's order.
   struct Corner {
     VertexName name;
     Vec3 position{};
   };
-  [[nodiscard]] Corner corner(std::size_t i) const;
+  /// Corner i of the cell in VTK's order; nothing if the pieces miss it by less than volumes show:
+  /// the cell is not whole then, either.
+  [[nodiscard]] std::optional<Corner> corner(std::size_t i) const;
 
   /// Whether a face of the cell, in the order of kHexFaces, is on the boundary of the
   /// tets.

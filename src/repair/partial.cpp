@@ -57,7 +57,11 @@ class CellFinder {
       if (piece.tet < tet && simplexOf(piece.corners, centre) != kNoSimplex) return;
     }
     FoundCell cell;
-    for (std::size_t i = 0; i < 8; ++i) cell.corners[i] = flood_.corner(i);
+    for (std::size_t i = 0; i < 8; ++i) {
+      const std::optional<CellFlood::Corner> corner = flood_.corner(i);
+      if (!corner) return;
+      cell.corners[i] = *corner;
+    }
     for (std::size_t wall = 0; wall < 6; ++wall) {
       if (flood_.isOnBoundary(wall)) {
         cell.boundaryWalls = static_cast<std::uint8_t>(cell.boundaryWalls | (1U << wall));

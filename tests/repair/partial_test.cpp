@@ -7,6 +7,8 @@
 
 #include <hexhex/hexhex.hpp>
 
+#include <mesh/grid_meshes.hpp>
+
 #include "extract/support.hpp"
 #include "repair/cell_flood.hpp"
 #include "repair/same_connectivity.hpp"
@@ -31,6 +33,29 @@ TEST(CubeClip, MeasuresPiecesOfTheUnitCube) {
   const ClippedTriangle triangle = clipToCube({Vec3{0, 0, 0.5}, {4, 0, 0.5}, {0, 4, 0.5}});
   EXPECT_NEAR(triangle.area, 1, 1e-15);
   EXPECT_NEAR(triangle.centre[0], 0.5, 1e-15);
+}
+
+/// Damaged maps have cells whose tets miss a corner by less than any tolerance of volumes.
+TEST(CellFlood, FindsNoCornerThatNoTetHolds) {
+  const TetMap cube = testing::identityMap(1);
+  Context context;
+  DefectCollector defects;
+  PreparedMap prepared = prepareMap(cube, 1e-2, 1, context, defects);
+  ASSERT_TRUE(defects.empty());
+  const std::vector<std::uint8_t> valid(cube.tets.size(), 1);
+  CellFlood flood(prepared, valid);
+  ASSERT_TRUE(flood.run(0, {0, 0, 0}));
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_TRUE(flood.corner(i).has_value());
+  // All tets meet in corner 6.
+  for (LatticeTet& corners : prepared.exact.corners) {
+    for (LatticePoint& corner : corners) {
+      if (corner == LatticePoint{prepared.exact.unit, prepared.exact.unit, prepared.exact.unit}) {
+        for (std::int64_t& x : corner) --x;
+      }
+    }
+  }
+  ASSERT_TRUE(flood.run(0, {0, 0, 0}));
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(flood.corner(i).has_value(), i != 6);
 }
 
 TEST(Partial, IsTheWholeMeshOfAValidMap) {
