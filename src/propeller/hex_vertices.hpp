@@ -32,9 +32,11 @@ struct GeneratorIncidence {
   CornerMask simplex;
   /// For each direction in the tet's chart the local propeller that leads there inside this closed
   /// tet, or kNoPropeller. Filled by the local connectivity.
-  std::array<std::uint8_t, kDirections> propeller;
+  std::array<std::uint16_t, kDirections> propeller;
 };
-inline constexpr std::uint8_t kNoPropeller = 255;
+inline constexpr std::uint16_t kNoPropeller = 0xffff;
+/// Hex edges at one point. There are fewer than twice as many hex corners, which 16 bits number.
+inline constexpr std::size_t kMaxPropellers = 0x8000;
 
 struct HexVertices {
   VertexTables tables;          ///< hex vertices by tet and grid point

@@ -186,7 +186,7 @@ std::size_t SlotFinder::findPropeller(Index tet, Index generator, Direction alon
     const Direction outward = opposite(static_cast<Direction>(configuration - 1));
     return along > outward ? along - std::size_t{1} : along;
   }
-  const std::uint8_t propeller = vertices_.incidenceOf(tet, generator).propeller[along];
+  const std::uint16_t propeller = vertices_.incidenceOf(tet, generator).propeller[along];
   if (propeller == kNoPropeller) failForMissingVertex(tet);
   return propeller;
 }

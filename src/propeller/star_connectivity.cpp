@@ -60,12 +60,13 @@ void StarConnectivity::findPropellers() {
     for (Direction d = 0; d < kDirections; ++d) {
       const CornerMask simplex = holder(signs_[tet], entry.simplex, d);
       if (simplex == kNoSimplex || !ownsSimplex(topology_, tet, simplex)) continue;
-      if (holders_.size() == kNoPropeller) {
+      if (holders_.size() == kMaxPropellers) {
         throw Error(ErrorCode::TooLarge,
-                    "More than 254 hex edges meet at one point. Refine the map's singular node.",
+                    "More than " + std::to_string(kMaxPropellers) +
+                        " hex edges meet at one point. Use the atlas engine.",
                     {PlaceKind::Tet, tet});
       }
-      announce(static_cast<std::uint8_t>(holders_.size()), tet, simplex, d);
+      announce(static_cast<std::uint16_t>(holders_.size()), tet, simplex, d);
       holders_.push_back({tet, simplex, d});
     }
   }
@@ -73,7 +74,7 @@ void StarConnectivity::findPropellers() {
 }
 
 /// Notes a propeller in all tets around its holder, in each with its direction there.
-void StarConnectivity::announce(std::uint8_t propeller, Index tet, CornerMask holderSimplex,
+void StarConnectivity::announce(std::uint16_t propeller, Index tet, CornerMask holderSimplex,
                                 Direction d) {
   forEachTetAround(topology_, exact_.transitions, tet, holderSimplex,
                    [&](Index t, CornerMask /*corners*/, Rotation rotation) {
@@ -213,7 +214,7 @@ void StarConnectivity::traceBlade(std::size_t propeller, std::size_t slotIndex) 
     to = rotation(to);
     tet = tetOf(mate);
   }
-  const std::uint8_t blade = inStar(tet).propeller[to];
+  const std::uint16_t blade = inStar(tet).propeller[to];
   if (blade == kNoPropeller) fail("a blade is not a propeller");
   // Seen from the blade, the same quarter plane is one of its casings.
   const Quadrant seen = canonical({tet, to, from});

@@ -34,7 +34,7 @@ class StarConnectivity {
   struct StarTet {
     Index tet;
     CornerMask simplex;  ///< the generator's corners in this tet
-    std::array<std::uint8_t, kDirections> propeller;
+    std::array<std::uint16_t, kDirections> propeller;
   };
   [[nodiscard]] const std::vector<StarTet>& star() const noexcept { return star_; }
 
@@ -48,7 +48,7 @@ class StarConnectivity {
 
   void collectStar(Index tet, CornerMask simplex);
   void findPropellers();
-  void announce(std::uint8_t propeller, Index tet, CornerMask holderSimplex, Direction d);
+  void announce(std::uint16_t propeller, Index tet, CornerMask holderSimplex, Direction d);
   void findCasings(std::size_t propeller);
   void findBlades();
   void traceBlade(std::size_t propeller, std::size_t slot);
