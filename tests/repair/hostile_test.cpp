@@ -13,6 +13,7 @@
 #include "repair/map_changes.hpp"
 #include "repair/same_connectivity.hpp"
 #include "support/error_of.hpp"
+#include "support/side_by_side.hpp"
 
 namespace hexhex::test {
 
@@ -34,18 +35,6 @@ void mirror(TetMap& map, std::size_t begin, std::size_t end) {
   }
 }
 
-/// Both maps side by side.
-TetMap joined(TetMap first, const TetMap& second) {
-  const auto offset = static_cast<Index>(first.points.size());
-  for (const Vec3& p : second.points) first.points.push_back({p[0] + 10, p[1], p[2]});
-  for (const Tet& t : second.tets) {
-    first.tets.push_back({t[0] + offset, t[1] + offset, t[2] + offset, t[3] + offset});
-  }
-  first.parameters.insert(first.parameters.end(), second.parameters.begin(),
-                          second.parameters.end());
-  return first;
-}
-
 Error errorOfRepair(const TetMap& map) {
   return test::errorOf([&] { static_cast<void>(repair(map)); });
 }
@@ -58,7 +47,7 @@ class HostileMaps : public ::testing::Test {
 };
 
 TEST_F(HostileMaps, WithAnInvertedComponentAreRefused) {
-  TetMap map = joined(sphere(4), sphere(2));
+  TetMap map = sideBySide(sphere(4), sphere(2));
   const std::size_t first = sphere(4).tets.size();
   mirror(map, first, map.tets.size());
   const Error error = errorOfRepair(map);
@@ -104,13 +93,13 @@ TEST_F(HostileMaps, OfOneTetAreRefused) {
 
 /// Damage in two components, with more and less than one thread per place.
 TEST_F(HostileMaps, WithSeveralPlacesAreRepairedTheSameWithAnyNumberOfThreads) {
-  const TetMap damaged = joined(sphere(4, 8, 1), sphere(3, 5, 2));
+  const TetMap damaged = sideBySide(sphere(4, 8, 1), sphere(3, 5, 2));
   Context one(1);
   RepairReport report;
   const TetMap expected = repair(damaged, {}, one, &report);
   EXPECT_EQ(report.regions.size(), 2U);
   const HexMesh mesh = verifiedExtraction(expected);
-  const HexMesh wanted = extract(joined(sphere(4), sphere(3)));
+  const HexMesh wanted = extract(sideBySide(sphere(4), sphere(3)));
   EXPECT_EQ(mesh.cells.size(), wanted.cells.size());
   EXPECT_EQ(mesh.points.size(), wanted.points.size());
   for (const int threads : {2, 8}) {
