@@ -8,7 +8,6 @@
 #include <mesh/grid_meshes.hpp>
 
 #include "extract/support.hpp"
-#include "support/side_by_side.hpp"
 
 namespace hexhex::test {
 
@@ -18,7 +17,18 @@ namespace {
 TetMap separateCubes(std::size_t count) {
   const TetMap cube = testing::identityMap(1);
   TetMap map;
-  for (std::size_t i = 0; i < count; ++i) addBeside(map, cube, 2 * static_cast<double>(i));
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto first = static_cast<Index>(map.points.size());
+    for (Vec3 point : cube.points) {
+      point[0] += 2 * static_cast<double>(i);
+      map.points.push_back(point);
+    }
+    for (Tet tet : cube.tets) {
+      for (Index& v : tet) v += first;
+      map.tets.push_back(tet);
+    }
+    map.parameters.insert(map.parameters.end(), cube.parameters.begin(), cube.parameters.end());
+  }
   return map;
 }
 

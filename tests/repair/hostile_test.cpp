@@ -13,7 +13,7 @@
 #include "repair/map_changes.hpp"
 #include "repair/same_connectivity.hpp"
 #include "support/error_of.hpp"
-#include "support/side_by_side.hpp"
+#include "support/joined_maps.hpp"
 
 namespace hexhex::test {
 
@@ -47,7 +47,7 @@ class HostileMaps : public ::testing::Test {
 };
 
 TEST_F(HostileMaps, WithAnInvertedComponentAreRefused) {
-  TetMap map = sideBySide(sphere(4), sphere(2));
+  TetMap map = joined(sphere(4), sphere(2));
   const std::size_t first = sphere(4).tets.size();
   mirror(map, first, map.tets.size());
   const Error error = errorOfRepair(map);
@@ -93,13 +93,13 @@ TEST_F(HostileMaps, OfOneTetAreRefused) {
 
 /// Damage in two components, with more and less than one thread per place.
 TEST_F(HostileMaps, WithSeveralPlacesAreRepairedTheSameWithAnyNumberOfThreads) {
-  const TetMap damaged = sideBySide(sphere(4, 8, 1), sphere(3, 5, 2));
+  const TetMap damaged = joined(sphere(4, 8, 1), sphere(3, 5, 2));
   Context one(1);
   RepairReport report;
   const TetMap expected = repair(damaged, {}, one, &report);
   EXPECT_EQ(report.regions.size(), 2U);
   const HexMesh mesh = verifiedExtraction(expected);
-  const HexMesh wanted = extract(sideBySide(sphere(4), sphere(3)));
+  const HexMesh wanted = extract(joined(sphere(4), sphere(3)));
   EXPECT_EQ(mesh.cells.size(), wanted.cells.size());
   EXPECT_EQ(mesh.points.size(), wanted.points.size());
   for (const int threads : {2, 8}) {
