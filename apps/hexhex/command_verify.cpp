@@ -42,8 +42,10 @@ void printTable(const VerifyReport& report) {
   };
   printRow(head, "result");
   for (const VerifyItem& item : report.items) printRow(item, item.passed ? "ok" : "FAILED");
-  fmt::print("{}\n", report.passed() ? "The mesh agrees with the map."
-                                     : "The mesh does not agree with the map.");
+  fmt::print("{}\n", report.passed()    ? "The mesh agrees with the map."
+                     : report.ambiguous ? "The mesh cannot be verified: different edges or faces "
+                                          "have the same vertices. Use a larger scale."
+                                        : "The mesh does not agree with the map.");
 }
 
 VerifyReport compare(const Arguments& arguments) {

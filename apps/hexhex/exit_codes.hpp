@@ -38,6 +38,7 @@ enum ExitCode : int {
     case ErrorCode::FlippedTet:
     case ErrorCode::HalfIntegerFixedPoint:
     case ErrorCode::TooLarge:
+    case ErrorCode::AmbiguousMesh:
       return kInvalidMap;
     case ErrorCode::Cancelled:
       return kInterrupted;

@@ -34,7 +34,8 @@ enum class ErrorCode {
   Cancelled,              ///< the caller asked to stop
   OutOfMemory,            ///< memory was exhausted
   VerificationFailed,     ///< the result does not agree with the map
-  Internal                ///< a bug of this library
+  Internal,               ///< a bug of this library
+  AmbiguousMesh           ///< different edges or faces of the mesh have the same vertices
 };
 
 /// The name of a code, e.g. "FlippedTet".

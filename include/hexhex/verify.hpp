@@ -21,6 +21,10 @@ struct VerifyItem {
 
 struct VerifyReport {
   std::vector<VerifyItem> items;
+  /// The mesh has the right cells and vertices, but different edges or faces of it have the same
+  /// vertices: the map is so coarse that a cell meets itself, or another one twice. No comparison
+  /// that is about edges or faces says anything then.
+  bool ambiguous = false;
   [[nodiscard]] bool passed() const noexcept {
     for (const VerifyItem& item : items) {
       if (!item.passed) return false;

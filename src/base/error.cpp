@@ -8,30 +8,20 @@ namespace hexhex {
 namespace {
 
 /// In the order of ErrorCode.
-constexpr auto kNames = std::to_array<std::string_view>({"InvalidArgument",
-                                                         "FileNotFound",
-                                                         "FileSyntax",
-                                                         "FileUnsupported",
-                                                         "FileWrite",
-                                                         "EmptyMesh",
-                                                         "IndexOutOfRange",
-                                                         "RepeatedVertex",
-                                                         "NotFinite",
-                                                         "NonManifoldFace",
-                                                         "NonManifoldEdge",
-                                                         "NonManifoldVertex",
-                                                         "Orientation",
-                                                         "TransitionResidual",
-                                                         "BoundaryOffLattice",
-                                                         "SingularityOffLattice",
-                                                         "FlippedTet",
-                                                         "HalfIntegerFixedPoint",
-                                                         "TooLarge",
-                                                         "Cancelled",
-                                                         "OutOfMemory",
-                                                         "VerificationFailed",
-                                                         "Internal"});
-static_assert(kNames.size() == static_cast<std::size_t>(ErrorCode::Internal) + 1);
+constexpr auto kNames =
+    std::to_array<std::string_view>({"InvalidArgument",    "FileNotFound",
+                                     "FileSyntax",         "FileUnsupported",
+                                     "FileWrite",          "EmptyMesh",
+                                     "IndexOutOfRange",    "RepeatedVertex",
+                                     "NotFinite",          "NonManifoldFace",
+                                     "NonManifoldEdge",    "NonManifoldVertex",
+                                     "Orientation",        "TransitionResidual",
+                                     "BoundaryOffLattice", "SingularityOffLattice",
+                                     "FlippedTet",         "HalfIntegerFixedPoint",
+                                     "TooLarge",           "Cancelled",
+                                     "OutOfMemory",        "VerificationFailed",
+                                     "Internal",           "AmbiguousMesh"});
+static_assert(kNames.size() == static_cast<std::size_t>(ErrorCode::AmbiguousMesh) + 1);
 
 }  // namespace
 

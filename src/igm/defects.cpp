@@ -56,6 +56,10 @@ const char* explanation(ErrorCode code) {
     case ErrorCode::HalfIntegerFixedPoint:
       return "The transitions around a vertex leave no grid-aligned position for it: their fixed "
              "points are at half-integers, or they contradict each other. Quantize the map again.";
+    case ErrorCode::AmbiguousMesh:
+      return "A single hexahedron meets itself around an edge inside of the map: its vertices do "
+             "not tell its edges apart, at any scale. Give singular edges a valence of two or "
+             "more.";
     case ErrorCode::TooLarge:
       return "A parameter or a size is larger than the library represents. Translate charts "
              "towards the origin, or lower the scale.";

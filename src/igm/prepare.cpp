@@ -125,6 +125,10 @@ class Preparation {
       defects_.add(ErrorCode::TooLarge, {}, parameters.largest());
       return false;
     }
+    for (const SingularEdge& edge : singularities->edges) {
+      if (edge.boundary || edge.valence != 1) continue;
+      defects_.add(ErrorCode::AmbiguousMesh, {PlaceKind::Edge, edge.vertex0, edge.vertex1}, 0);
+    }
     prepared_.singularities = std::move(*singularities);
     collectMisfits(transitions, defects_);
     return true;

@@ -40,6 +40,8 @@ class Comparisons {
         count == 0);
   }
 
+  void setAmbiguous(bool ambiguous) { report_.ambiguous = ambiguous; }
+
   [[nodiscard]] VerifyReport take() { return std::move(report_); }
 
  private:
@@ -95,6 +97,35 @@ bool compareIndices(const HexMesh& mesh, Stage& stage, Comparisons& comparisons)
   return inRange;
 }
 
+/// The number of edges, and the corners of cells at them.
+struct EdgeSum {
+  std::uint64_t edges = 0;
+  std::uint64_t corners = 0;
+  explicit EdgeSum(const std::map<int, std::uint64_t>& countsByValence) {
+    for (const auto& [valence, count] : countsByValence) {
+      edges += count;
+      corners += count * static_cast<std::uint64_t>(valence);
+    }
+  }
+};
+
+/// Whether there are fewer edges or faces than the cells of the map have, and all vertices.
+bool isAmbiguous(const Expectation& expected, const HexMesh& mesh, const HexFaces& faces,
+                 const HexEdges& edges) {
+  const EdgeSum inner(expected.innerSingularEdges);
+  const EdgeSum boundary(expected.boundarySingularEdges);
+  const std::uint64_t regularBoundary = 2 * expected.boundaryQuads - boundary.edges;
+  const std::uint64_t regularInner =
+      (12 * expected.cells - inner.corners - boundary.corners - 2 * regularBoundary) / 4;
+  const std::uint64_t allEdges = inner.edges + boundary.edges + regularBoundary + regularInner;
+  const std::uint64_t allFaces = (6 * expected.cells + expected.boundaryQuads) / 2;
+  const auto vertices = static_cast<std::uint64_t>(expected.eulerCharacteristic) + allEdges +
+                        expected.cells - allFaces;
+  return mesh.cells.size() == expected.cells && faces.usedVertices == vertices &&
+         edges.count <= allEdges && faces.count <= allFaces &&
+         edges.count + faces.count < allEdges + allFaces;
+}
+
 void compareTopology(const Expectation& expected, const HexMesh& mesh, Stage& stage,
                      Comparisons& comparisons) {
   const VertexCells around = cellsAroundVertices(mesh, stage);
@@ -121,6 +152,7 @@ void compareTopology(const Expectation& expected, const HexMesh& mesh, Stage& st
                        edges.boundaryComponents);
   comparisons.addNone("unused_vertices", mesh.points.size() - faces.usedVertices,
                       vertexName(faces.firstUnusedVertex));
+  comparisons.setAmbiguous(isAmbiguous(expected, mesh, faces, edges));
 }
 
 void comparePositions(const TetMapView& map, const HexMesh& mesh, const VerifyOptions& options,

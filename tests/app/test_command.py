@@ -7,6 +7,7 @@ Needs nothing but Python's standard library.
 """
 
 import base64
+import itertools
 import json
 import os
 import pathlib
@@ -286,6 +287,35 @@ class InvalidMaps(CommandTest):
         map_file = self.write("map.hexex", "1\n0 0 0\n0\n")
         self.assert_fails("extract", map_file, "-o", "a.vtu", expect=INVALID_MAP,
                           code="EmptyMesh")
+
+
+def three_torus(cells):
+    """A torus of 27 vertices without boundary, in a map of cells^3 hexahedra."""
+    lines = ["27", *(f"{i % 3} {i // 3 % 3} {i // 9}" for i in range(27)), "162"]
+    for i in range(27):
+        for order in itertools.permutations(range(3)):
+            at = [i % 3, i // 3 % 3, i // 9]
+            corners = [tuple(at)]
+            for axis in order:
+                at[axis] += 1
+                corners.append(tuple(at))
+            if order not in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+                corners[2], corners[3] = corners[3], corners[2]
+            tet = [x % 3 + 3 * (y % 3) + 9 * (z % 3) for x, y, z in corners]
+            lines.append(" ".join(map(str, [*tet, *(cells * x / 3 for u in corners for x in u)])))
+    return "\n".join(lines) + "\n"
+
+
+class CoarseMaps(CommandTest):
+    def test_are_refused_with_advice(self):
+        map_file = self.write("torus.hexex", three_torus(2))
+        self.assert_fails("extract", map_file, "-o", "mesh.vtu", expect=INVALID_MAP,
+                          words=["so coarse", "--scale"], code="AmbiguousMesh")
+        self.run_command("extract", map_file, "-o", "mesh.vtu", "--no-verify")
+        result = self.run_command("verify", map_file, "mesh.vtu", expect=FAILURE)
+        self.assertIn("cannot be verified", result.stdout)
+        self.run_command("extract", map_file, "-o", "mesh.vtu", "--scale", 2)
+        self.run_command("verify", map_file, "mesh.vtu", "--scale", 2)
 
 
 class Pipeline(CommandTest):
