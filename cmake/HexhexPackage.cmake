@@ -43,7 +43,7 @@ if(HEXHEX_HAS_TBB)
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libtbb-dev")
 endif()
 get_property(component_libraries GLOBAL PROPERTY HEXHEX_COMPONENT_LIBRARIES)
-foreach(pair IN ITEMS "hdf5=libhdf5-dev" "cgns=libcgns-dev" "exo=libexodusii-dev"
+foreach(pair IN ITEMS "hdf5=libhdf5-dev" "exo=libexodusii-dev"
     "netcdf=libnetcdf-dev"
     "lbfgs=liblbfgs-dev" "z[.]=zlib1g-dev")
   string(REPLACE "=" ";" pair ${pair})

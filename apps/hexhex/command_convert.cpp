@@ -94,10 +94,10 @@ int run(const Arguments& arguments) {
                 "--stream converts hexahedral meshes, but --tets and --polycube are a map.");
   }
   requireAnyFormat(arguments);
-  requireWritable(arguments.output);
   ProgressDisplay progress(arguments.quiet);
   Context context(arguments.threads, progress.callback());
   const CancelOnSignal cancelOnSignal(context);
+  requireWritable(arguments.output);
   const std::string what = (arguments.stream ? convertInPieces : convertWhole)(arguments, context);
   progress.clear();
   if (arguments.quiet) return kSuccess;

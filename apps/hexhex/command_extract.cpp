@@ -115,7 +115,6 @@ void requireOutputs(const Arguments& arguments) {
   if (arguments.stream) {
     requireStreamable(arguments.output, arguments.choice.options(), arguments.options);
   }
-  if (!arguments.report.empty()) requireWritable(arguments.report);
 }
 
 void printWarnings(const ExtractionRecord& record, const TetMap& map) {
@@ -267,14 +266,14 @@ void extractInPieces(const Arguments& arguments, const TetMap& map, Context& con
 
 /// What is left of a map beyond repair. Always an invalid map, by its exit code.
 int extractWhatIsValid(const Arguments& arguments, const TetMap& map, const Error& problem,
-                       Context& context, ProgressDisplay& progress) {
+                       Context& context, ProgressDisplay& progress, TextFile* report) {
   const PartialMesh partial =
       extractPartial(map, {arguments.options.scale, arguments.options.tolerance}, context);
   WriteOptions options = arguments.choice.options();
   options.patchAngle = arguments.patchAngle;
   writeHexMesh(partial.mesh, arguments.output, options, context);
-  if (!arguments.report.empty()) {
-    writeTextFile(arguments.report, partialReportAsJson(partial, problem, arguments.options.scale));
+  if (report != nullptr) {
+    report->commit(partialReportAsJson(partial, problem, arguments.options.scale));
   }
   progress.clear();
   printError(problem);
@@ -286,10 +285,11 @@ int extractWhatIsValid(const Arguments& arguments, const TetMap& map, const Erro
 }
 
 int run(const Arguments& arguments) {
-  requireOutputs(arguments);
   ProgressDisplay progress(arguments.quiet);
   Context context(arguments.threads, progress.callback());
   const CancelOnSignal cancelOnSignal(context);
+  requireOutputs(arguments);
+  const std::unique_ptr<TextFile> report = openReport(arguments.report);
 
   const TetMap map = readMap(arguments.input, context);
   ExtractionRecord record;
@@ -300,7 +300,7 @@ int run(const Arguments& arguments) {
     make(arguments, map, context, record);
   } catch (const Error& error) {
     if (!arguments.partial || exitCodeOf(error.code()) != kInvalidMap) throw;
-    return extractWhatIsValid(arguments, map, error, context, progress);
+    return extractWhatIsValid(arguments, map, error, context, progress, report.get());
   }
   progress.clear();
 
@@ -315,7 +315,7 @@ int run(const Arguments& arguments) {
   record.points = map.points.size();
   record.tets = map.tets.size();
   record.stages = context.stageTimes();
-  if (!arguments.report.empty()) writeTextFile(arguments.report, reportAsJson(record));
+  if (report) report->commit(reportAsJson(record));
   if (!arguments.quiet) {
     printWarnings(record, map);
     printSummary(record);

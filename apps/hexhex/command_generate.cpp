@@ -49,13 +49,13 @@ std::vector<std::string> namesOf(std::span<const Entry> entries) {
 int run(const Arguments& arguments) {
   const WriteOptions writing = arguments.choice.options();
   requireMapFormat(arguments.output, writing);
-  requireWritable(arguments.output);
   SampleOptions options = arguments.options;
   options.charts = kindNamed(chartStyles(), arguments.charts);
   options.defectKind = kindNamed(defectKinds(), arguments.defectKind);
   // A signal takes effect between the two steps: a file is written whole or not at all.
   Context context;
   const CancelOnSignal cancelOnSignal(context);
+  requireWritable(arguments.output);
   const Sample sample = generateSample(kindNamed(sampleKinds(), arguments.kind), options);
   context.throwIfCancelled();
   writeMap(sample.map, arguments.output, writing, context);

@@ -44,20 +44,18 @@ int run(const Arguments& arguments) {
   const WriteOptions writing = arguments.choice.options();
   requireMapFormat(arguments.output, writing);
   requireAllDifferent(arguments);
-  requireWritable(arguments.output);
-  if (!arguments.report.empty()) requireWritable(arguments.report);
   ProgressDisplay progress(arguments.quiet);
   Context context(arguments.threads, progress.callback());
   const CancelOnSignal cancelOnSignal(context);
+  requireWritable(arguments.output);
+  const std::unique_ptr<TextFile> reportFile = openReport(arguments.report);
   RepairOptions options = arguments.options;
   options.refine = !arguments.noRefine;
   RepairReport report;
   const TetMap map = repair(readMap(arguments.input, context), options, context, &report);
   writeMap(map, arguments.output, writing, context);
   progress.clear();
-  if (!arguments.report.empty()) {
-    writeTextFile(arguments.report, repairAsJson(report).dump(2) + "\n");
-  }
+  if (reportFile) reportFile->commit(repairAsJson(report).dump(2) + "\n");
   if (arguments.quiet) return kSuccess;
   fmt::print("{} -> {}\n", arguments.input.description(), arguments.output);
   if (!report.changed) {

@@ -6,6 +6,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <system_error>
 
 #include <fmt/core.h>
 
@@ -50,6 +51,16 @@ std::string usageProblem(const CLI::App* app, const CLI::Error& error) {
                      error.what(), app->get_display_name());
 }
 
+/// Says so without any memory.
+int failForMemory() noexcept {
+  static_cast<void>(std::fputs(
+      "hexhex: error: The memory of this machine does not suffice, or it refuses threads "
+      "or locks; nothing was written. Try a smaller scale, or one thread. "
+      "[OutOfMemory]\n",
+      stderr));
+  return kFailure;
+}
+
 /// Runs a subcommand; every error ends here.
 int runGuarded(const Command& command) {
   try {
@@ -58,11 +69,9 @@ int runGuarded(const Command& command) {
     printError(error);
     return exitCodeOf(error.code());
   } catch (const std::bad_alloc&) {
-    printToStderr(
-        "hexhex: error: The memory of this machine does not suffice; nothing was written. "
-        "Try a smaller scale. [{}]\n",
-        name(ErrorCode::OutOfMemory));
-    return kFailure;
+    return failForMemory();
+  } catch (const std::system_error&) {
+    return failForMemory();
   } catch (const std::exception& error) {
     printToStderr("hexhex: error: Unexpected: {} Please report this. [{}]\n", error.what(),
                   name(ErrorCode::Internal));
@@ -103,6 +112,8 @@ int main(int argc, char** argv) {
   try {
     const int code = run(argc, argv);
     if (std::fflush(stdout) == 0 || code != kSuccess) return code;
+  } catch (const std::bad_alloc&) {
+    return failForMemory();
   } catch (...) {
     // What remains can only come from printing, e.g. to a closed pipe.
   }

@@ -1,11 +1,6 @@
 #include "output.hpp"
 
-#include <cerrno>
-#include <cstdio>
-#include <fcntl.h>
-#include <fstream>
 #include <system_error>
-#include <unistd.h>
 
 #include <fmt/core.h>
 
@@ -20,17 +15,11 @@ bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
   if (std::filesystem::equivalent(a, b, missing)) return !std::filesystem::is_other(a, missing);
   const auto whole = [](const std::filesystem::path& file) {
     std::error_code error;
-    std::filesystem::path path =
-        std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
+    std::filesystem::path path = std::filesystem::absolute(file, error);
+    if (!error) path = std::filesystem::weakly_canonical(path, error);
     return error ? file : path;
   };
   return whole(a) == whole(b) && !std::filesystem::is_other(a, missing);
-}
-
-[[noreturn]] void failToWrite(const std::filesystem::path& file, int error) {
-  throw Error(ErrorCode::FileWrite,
-              fmt::format("{}: the file cannot be written: {}.", file.string(),
-                          std::generic_category().message(error)));
 }
 
 }  // namespace
@@ -83,38 +72,13 @@ void requireDifferent(const std::filesystem::path& a, const std::filesystem::pat
 }
 
 void requireWritable(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) failToWrite(file, EISDIR);
-  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-  if (::access(folder.c_str(), W_OK | X_OK) == 0) return;
-  const int error = errno;
-  throw Error(ErrorCode::FileWrite,
-              fmt::format("{}: no file can be created in the folder {}: {}.", file.string(),
-                          folder.string(), std::generic_category().message(error)));
+  // Opening a pipe twice would end it.
+  std::error_code missing;
+  if (!std::filesystem::is_other(file, missing)) static_cast<void>(TextFile(file));
 }
 
-void writeTextFile(const std::filesystem::path& file, std::string_view text) {
-  // A device or pipe cannot be replaced, only written.
-  std::error_code ignored;
-  const bool direct =
-      std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored);
-  std::filesystem::path temporary = file;
-  if (!direct) temporary.replace_filename(fmt::format(".hexhex-{}-report.tmp", ::getpid()));
-  std::FILE* const stream = std::fopen(temporary.c_str(), "wb");
-  if (stream == nullptr) failToWrite(file, errno);
-  const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
-  const bool closed = std::fclose(stream) == 0;
-  if (!written || !closed) {
-    const int error = errno;
-    if (!direct) std::filesystem::remove(temporary, ignored);
-    failToWrite(file, error);
-  }
-  if (direct) return;
-  std::error_code renaming;
-  std::filesystem::rename(temporary, file, renaming);
-  if (!renaming) return;
-  std::filesystem::remove(temporary, ignored);
-  failToWrite(file, renaming.value());
+std::unique_ptr<TextFile> openReport(const std::string& file) {
+  return file.empty() ? nullptr : std::make_unique<TextFile>(file);
 }
 
 }  // namespace hexhex::command

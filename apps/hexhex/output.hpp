@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 #include <fmt/core.h>
 
 #include <hexhex/error.hpp>
+#include <hexhex/io.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/types.hpp>
 
@@ -53,12 +55,12 @@ void printError(const Error& error);
 /// Throws InvalidArgument if two names mean one file, or would once both are written.
 void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b);
 
-/// Throws FileWrite if the file is a folder, or the folder that it will be in does not exist or
-/// cannot be written: to fail before long work.
+/// Throws FileWrite if the file is a folder or a link to nowhere, or no file can be created in its
+/// folder: to fail before long work.
 void requireWritable(const std::filesystem::path& file);
 
-/// Writes a text so that the file appears complete or not at all.
+/// A report that is going to be written; null if the name is empty.
 /// @throws Error FileWrite
-void writeTextFile(const std::filesystem::path& file, std::string_view text);
+[[nodiscard]] std::unique_ptr<TextFile> openReport(const std::string& file);
 
 }  // namespace hexhex::command

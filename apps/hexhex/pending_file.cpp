@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include <hexhex/io.hpp>
+
 namespace hexhex::command {
 namespace {
 
@@ -46,9 +48,7 @@ PendingFile::~PendingFile() {
 }
 
 void PendingFile::keep() {
-  std::error_code error;
-  std::filesystem::rename(pending_, real_, error);
-  if (error) fail(target_, "the finished file cannot be renamed to it: " + error.message());
+  replaceFile(pending_, real_);
   pending_.clear();
 }
 

@@ -133,7 +133,9 @@ int writePage(const ViewArguments& arguments, ProgressDisplay& progress, Context
   if (!arguments.quiet) {
     fmt::print("{} -> {}\n", arguments.mesh, page.string());
     printLine("mesh", counted(subject.cellCount(), "cell"));
-    printLine("page", bytesAsText(std::filesystem::file_size(page)));
+    std::error_code unknown;  // the size of a pipe
+    const std::uintmax_t bytes = std::filesystem::file_size(page, unknown);
+    if (!unknown) printLine("page", bytesAsText(bytes));
     printLine("to see it", "open the page in a browser; no network is needed");
   }
   return subject.agrees() ? kSuccess : kFailure;

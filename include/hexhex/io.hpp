@@ -12,6 +12,10 @@
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
+namespace hexhex {
+class OutputFile;
+}
+
 namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// What a reader may be told.
@@ -128,6 +132,29 @@ void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file);
                                                      const WriteOptions& options, Context& context);
 [[nodiscard]] std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file,
                                                      Context& context);
+
+/// A text file of the caller's, complete or absent like all that is written here: opened at once,
+/// so that what cannot be written shows before long work; without commit() nothing is left of it.
+class TextFile {
+ public:
+  /// @throws Error FileWrite
+  explicit TextFile(const std::filesystem::path& file);
+  ~TextFile();
+  TextFile(const TextFile&) = delete;
+  TextFile& operator=(const TextFile&) = delete;
+
+  /// Writes the text and gives the file its name.
+  /// @throws Error FileWrite
+  void commit(std::string_view text);
+
+ private:
+  std::unique_ptr<OutputFile> output_;
+};
+
+/// Gives a file that is written another name, of its folder, also for the time after a power
+/// failure.
+/// @throws Error FileWrite
+void replaceFile(const std::filesystem::path& finished, const std::filesystem::path& target);
 
 /// Reads a hexahedral mesh and hands it over in pieces. A `.vtu` file with appended data, as this
 /// library writes it, takes a few megabytes of memory, however large it is, and hands over the

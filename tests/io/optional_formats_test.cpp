@@ -2,11 +2,13 @@
 // they are installed (HEXHEX_PYTHON: another interpreter than python3), and the rules of polyMesh.
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <set>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <adjacency/hex_topology.hpp>
@@ -14,6 +16,7 @@
 
 #include <hexhex/io.hpp>
 
+#include <io/file_size_limit.hpp>
 #include <io/io_test_support.hpp>
 #include <io/other_programs.hpp>
 
@@ -238,6 +241,34 @@ TEST(OptionalFormats, FilesAppearCompleteOrNotAtAll) {
     } else {
       EXPECT_TRUE(write(HexMesh{}, folder / name));
     }
+  }
+}
+
+// A library that could not write crashed when the process ended; see also test_command.py.
+TEST(OptionalFormats, FullDiskLeavesNothing) {
+  const TemporaryFolder folder;
+  const HexMesh mesh = gridMesh(20, 20, 20);
+  for (const char* name : {"a.vtkhdf", "a.cgns", "a.exo", "a.foam"}) {
+    const TemporaryFolder other;
+    if (!write(gridMesh(1, 1, 1), other / name)) continue;
+    const FileSizeLimit limit(100'000);
+    EXPECT_EQ(failureOf([&] { write(mesh, folder / name); }).code, ErrorCode::FileWrite) << name;
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << name;
+  }
+}
+
+TEST(OptionalFormats, TheClockIsNotInTheFile) {
+  const TemporaryFolder folder;
+  std::vector<std::string> bytes;
+  const std::array<const char*, 3> names = {"a.vtkhdf", "a.cgns", "a.exo"};
+  for (const char* name : names) {
+    bytes.push_back(write(meshWithTags(), folder / name) ? contentOf(folder / name) : "");
+  }
+  // HDF5 counts whole seconds.
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!write(meshWithTags(), folder / names[i])) continue;
+    EXPECT_TRUE(contentOf(folder / names[i]) == bytes[i]) << names[i];
   }
 }
 

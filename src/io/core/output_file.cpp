@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <hexhex/error.hpp>
+#include <hexhex/io.hpp>
 
 #include <io/core/output_file.hpp>
 
@@ -28,7 +29,70 @@ std::filesystem::path folderOf(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
+/// Calls a function of the system again if a signal interrupted it.
+template <class Call>
+auto uninterrupted(const Call& call) {
+  while (true) {
+    const auto result = call();
+    if (result >= 0 || errno != EINTR) return result;
+  }
+}
+
+/// Makes what was written survive a power failure, where the file system knows how to.
+bool synced(int descriptor) {
+  return uninterrupted([descriptor] { return ::fsync(descriptor); }) == 0 || errno == EINVAL;
+}
+
 }  // namespace
+
+void failToWrite(const std::filesystem::path& target, const std::string& reason, int error) {
+  throw Error(ErrorCode::FileWrite,
+              target.string() + ": the file was not written because " + reason +
+                  (error == 0 ? "." : ": " + std::generic_category().message(error) + "."));
+}
+
+std::filesystem::path temporaryBeside(const std::filesystem::path& target) {
+  return folderOf(target) / temporaryName();
+}
+
+std::filesystem::path realTarget(const std::filesystem::path& target) {
+  std::error_code error;
+  // What a link to a pipe says of it is no name.
+  if (!std::filesystem::is_symlink(target, error) || std::filesystem::is_other(target, error)) {
+    return target;
+  }
+  std::filesystem::path real = std::filesystem::canonical(target, error);
+  if (error) failToWrite(target, "its link leads nowhere", error.value());
+  return real;
+}
+
+ChangedFolder::ChangedFolder(const std::filesystem::path& target)
+    : target_(target), descriptor_(uninterrupted([&target] {
+        return ::open(folderOf(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+      })) {
+  // A folder may be one that can be written, but not read.
+  if (descriptor_ < 0 && errno != EACCES) failToWrite(target, "its folder cannot be opened", errno);
+}
+
+ChangedFolder::~ChangedFolder() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void ChangedFolder::sync() const {
+  if (descriptor_ < 0 || synced(descriptor_)) return;
+  throw Error(ErrorCode::FileWrite,
+              target_.string() + ": the file is complete, but its folder could not be written to " +
+                  "the disk, so it may be lost with the power: " +
+                  std::generic_category().message(errno) + ".");
+}
+
+void replaceFile(const std::filesystem::path& finished, const std::filesystem::path& target) {
+  const ChangedFolder folder(target);
+  if (::rename(finished.c_str(), target.c_str()) != 0) {
+    failToWrite(target, "the finished file cannot be renamed to it", errno);
+  }
+  folder.sync();
+}
 
 OutputFile::OutputFile(std::filesystem::path target, Target kind)
     : target_(std::move(target)), buffer_(new char[kBufferSize]) {
@@ -37,12 +101,7 @@ OutputFile::OutputFile(std::filesystem::path target, Target kind)
       !std::filesystem::is_regular_file(target_, error)) {
     fail("it is no regular file, which this format needs");
   }
-  // Renaming onto a link would replace the link, not what it points to.
-  if (std::filesystem::is_symlink(target_, error)) {
-    const std::filesystem::path real = std::filesystem::canonical(target_, error);
-    if (error) fail("its link leads nowhere", error.value());
-    target_ = real;
-  }
+  target_ = realTarget(target_);
   struct stat status {};
   const bool exists = ::stat(target_.c_str(), &status) == 0;
   if (exists && S_ISDIR(status.st_mode)) fail("it is a folder", EISDIR);
@@ -50,7 +109,7 @@ OutputFile::OutputFile(std::filesystem::path target, Target kind)
     openTemporary();
     return;
   }
-  descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+  descriptor_ = uninterrupted([this] { return ::open(target_.c_str(), O_WRONLY | O_CLOEXEC); });
   if (descriptor_ < 0) fail("it cannot be opened", errno);
 }
 
@@ -60,15 +119,15 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::openTemporary() {
-  const std::filesystem::path folder = folderOf(target_);
+  // A signal may interrupt open(); a file of that name may be there from an earlier process.
   do {
-    temporary_ = folder / temporaryName();
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kPermissions);
-  } while (descriptor_ < 0 && errno == EEXIST);
+    temporary_ = temporaryBeside(target_);
+    descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kPermissions);
+  } while (descriptor_ < 0 && (errno == EEXIST || errno == EINTR));
   if (descriptor_ >= 0) return;
   const int error = errno;
   temporary_.clear();
-  fail("no file can be created in the folder " + folder.string(), error);
+  fail("no file can be created in the folder " + folderOf(target_).string(), error);
 }
 
 void OutputFile::writeBytes(const void* bytes, std::size_t size) {
@@ -91,8 +150,7 @@ template <class Write>
 void OutputFile::writeAll(const void* bytes, std::size_t size, const Write& write) const {
   const char* const data = static_cast<const char*>(bytes);
   for (std::size_t done = 0; done < size;) {
-    const ssize_t written = write(data + done, size - done, done);
-    if (written < 0 && errno == EINTR) continue;
+    const ssize_t written = uninterrupted([&] { return write(data + done, size - done, done); });
     if (written < 0) fail("it cannot be written completely", errno);
     done += static_cast<std::size_t>(written);
   }
@@ -111,30 +169,46 @@ void OutputFile::writeBytesAt(std::uint64_t position, const void* bytes, std::si
   });
 }
 
+void OutputFile::readBytesAt(std::uint64_t position, void* bytes, std::size_t size) const {
+  char* const data = static_cast<char*>(bytes);
+  for (std::size_t done = 0; done < size;) {
+    const ssize_t count = uninterrupted([&] {
+      return ::pread(descriptor_, data + done, size - done, static_cast<off_t>(position + done));
+    });
+    if (count < 0) fail("it cannot be read back", errno);
+    if (count == 0) fail("it became shorter while it was written");
+    done += static_cast<std::size_t>(count);
+  }
+}
+
 void OutputFile::requirePositions(const std::string& why) const {
   if (!hasPositions()) fail("it is a device or a pipe, " + why + ". Name a file");
 }
 
 void OutputFile::commit() {
   flush();
-  // Some file systems report a full disk only here.
-  const int closed = ::close(descriptor_);
-  descriptor_ = -1;
-  if (closed != 0) fail("it cannot be written completely", errno);
-  if (temporary_.empty()) return;
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
-    fail("the finished file cannot be renamed to it", errno);
-  }
+  // Some file systems report a full disk only in these two.
+  const bool renamed = !temporary_.empty();
+  if (renamed && !synced(descriptor_)) fail("it cannot be written completely", errno);
+  const int closed = ::close(std::exchange(descriptor_, -1));
+  if (closed != 0 && errno != EINTR) fail("it cannot be written completely", errno);
+  if (!renamed) return;
+  replaceFile(temporary_, target_);
   temporary_.clear();
 }
 
-void OutputFile::fail(const std::string& what, int error) const {
-  fail(what + ": " + std::generic_category().message(error));
+void OutputFile::fail(const std::string& reason, int error) const {
+  failToWrite(target_, reason, error);
 }
 
-void OutputFile::fail(const std::string& reason) const {
-  throw Error(ErrorCode::FileWrite,
-              target_.string() + ": the file was not written because " + reason + ".");
+TextFile::TextFile(const std::filesystem::path& file)
+    : output_(std::make_unique<OutputFile>(file)) {}
+
+TextFile::~TextFile() = default;
+
+void TextFile::commit(std::string_view text) {
+  output_->write(text);
+  output_->commit();
 }
 
 std::mutex& libraryLock() {

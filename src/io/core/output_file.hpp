@@ -75,9 +75,39 @@ template <class T>
   return place;
 }
 
-/// A buffered file that is written to a temporary beside its target and renamed by commit().
-/// Without commit() the temporary vanishes and the target stays as it was. A target that exists and
-/// is no regular file (a device, a pipe) is written directly.
+/// Throws Error FileWrite.
+/// @param reason  why the target was not written
+/// @param error   the system's number of the reason, or 0
+[[noreturn]] void failToWrite(const std::filesystem::path& target, const std::string& reason,
+                              int error = 0);
+
+/// A name in the folder of a target that this process has not used yet; one of another process or
+/// machine may be there already.
+[[nodiscard]] std::filesystem::path temporaryBeside(const std::filesystem::path& target);
+
+/// What a target is in the end if it is a link: renaming onto a link would replace the link.
+[[nodiscard]] std::filesystem::path realTarget(const std::filesystem::path& target);
+
+/// The folder of a target, opened before the target is renamed: afterwards nothing but sync() can
+/// fail. What functions of this header throw is Error FileWrite.
+class ChangedFolder {
+ public:
+  explicit ChangedFolder(const std::filesystem::path& target);
+  ~ChangedFolder();
+  ChangedFolder(const ChangedFolder&) = delete;
+  ChangedFolder& operator=(const ChangedFolder&) = delete;
+
+  /// Makes the new name survive a power failure.
+  void sync() const;
+
+ private:
+  std::filesystem::path target_;
+  int descriptor_;
+};
+
+/// A buffered file that is written to a temporary beside its target and, when it is safe on the
+/// disk, renamed by commit(). Without commit() the temporary vanishes and the target stays as it
+/// was. A target that exists and is no regular file (a device, a pipe) is written directly.
 ///
 /// Every function throws Error FileWrite, with the target and the system's reason, if it fails.
 class OutputFile {
@@ -121,6 +151,8 @@ class OutputFile {
   /// Writes memory at a position, whatever is written elsewhere in whatever order; only if
   /// hasPositions(). The buffered functions above go on where they were. Thread-safe.
   void writeBytesAt(std::uint64_t position, const void* bytes, std::size_t size) const;
+  /// Reads back what was written there; only if hasPositions().
+  void readBytesAt(std::uint64_t position, void* bytes, std::size_t size) const;
 
   /// Where the buffered functions write next.
   [[nodiscard]] std::uint64_t position() const noexcept { return written_ + used_; }
@@ -133,9 +165,8 @@ class OutputFile {
   /// What commit() renames, for libraries that write a file by its name and close it before; empty
   /// if the target is written directly.
   [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
-  /// Throws Error FileWrite.
-  /// @param reason  why the file was not written
-  [[noreturn]] void fail(const std::string& reason) const;
+  /// As failToWrite().
+  [[noreturn]] void fail(const std::string& reason, int error = 0) const;
 
  private:
   // Large enough that system calls cost nothing, small enough for the cache.
@@ -148,7 +179,6 @@ class OutputFile {
   template <class Write>
   void writeAll(const void* bytes, std::size_t size, const Write& write) const;
   void writeThrough(const void* bytes, std::size_t size);
-  [[noreturn]] void fail(const std::string& what, int error) const;
 
   std::filesystem::path target_;
   std::filesystem::path temporary_;  ///< empty if the target is written directly

@@ -49,13 +49,10 @@ struct OptionalWriter {
 };
 #if defined(HEXHEX_HAS_HDF5)
 constexpr OptionalWriter kVtkHdf = {.write = writeVtkHdf};
-#else
-constexpr OptionalWriter kVtkHdf = {.missing = "HDF5 (libhdf5-dev)"};
-#endif
-#if defined(HEXHEX_HAS_CGNS)
 constexpr OptionalWriter kCgns = {.write = writeCgns};
 #else
-constexpr OptionalWriter kCgns = {.missing = "CGNS (libcgns-dev)"};
+constexpr OptionalWriter kVtkHdf = {.missing = "HDF5 (libhdf5-dev)"};
+constexpr OptionalWriter kCgns = kVtkHdf;
 #endif
 #if defined(HEXHEX_HAS_EXODUS)
 constexpr OptionalWriter kExodus = {.write = writeExodus};

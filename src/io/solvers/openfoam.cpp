@@ -2,10 +2,10 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -18,6 +18,7 @@
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
+#include <io/core/output_folder.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/solvers/solvers.hpp>
 
@@ -174,22 +175,15 @@ class PolyMeshWriter {
 
 bool isMarker(const std::filesystem::path& file) { return lowerCaseExtension(file) == ".foam"; }
 
-/// The folder of the mesh, which is created.
-std::filesystem::path folderFor(const std::filesystem::path& file) {
-  std::filesystem::path folder =
-      isMarker(file) ? file.parent_path() / "constant" / "polyMesh" : file;
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!error && std::filesystem::is_directory(folder, error)) return folder;
-  throw Error(ErrorCode::FileWrite, folder.string() + ": the folder cannot be created: " +
-                                        (error ? error.message() : "it is a file") + ".");
-}
-
 }  // namespace
 
 void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
                    const WriteOptions& options, Context& context) {
   Stage stage(context, "write mesh");
+  // First, so that what is not writable shows at once.
+  OutputFolder folder(isMarker(file) ? file.parent_path() / "constant" / "polyMesh" : file);
+  std::optional<OutputFile> marker;
+  if (isMarker(file)) marker.emplace(file);
   QuadGroups quads;
   PolyMesh poly;
   withThreads(context.threads(), [&] {
@@ -199,12 +193,23 @@ void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
   addPatches(quads, poly);
   requireInt32(mesh.points.size(), "OpenFOAM numbers vertices");
   requireInt32(poly.faces.size(), "OpenFOAM numbers faces");
-  PolyMeshWriter writer(folderFor(file), context.threads());
-  writer.write(mesh, poly, stage);
-  // Without regions there are no zones, which has to be said where an earlier mesh had some.
-  writer.writeZones(mesh.regions.empty() ? CellGroups{} : groupCells(mesh));
-  writer.commit();
-  if (isMarker(file)) OutputFile(file).commit();
+  try {
+    PolyMeshWriter writer(folder.temporary(), context.threads());
+    writer.write(mesh, poly, stage);
+    // Without regions there are no zones, which has to be said where an earlier mesh had some.
+    writer.writeZones(mesh.regions.empty() ? CellGroups{} : groupCells(mesh));
+    writer.commit();
+  } catch (const Error& error) {
+    throw folder.named(error);
+  }
+  folder.commit();
+  if (!marker) return;
+  try {
+    marker->commit();
+  } catch (...) {
+    folder.takeBack();
+    throw;
+  }
 }
 
 }  // namespace hexhex

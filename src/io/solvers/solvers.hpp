@@ -22,13 +22,12 @@ namespace hexhex {
 void writeAbaqus(const HexMesh& mesh, const std::filesystem::path& file,
                  const WriteOptions& options, Context& context);
 
-/// `.cgns`: the CFD General Notation System, in HDF5; only in builds with its library
-/// (HEXHEX_HAS_CGNS). Writes one base with one unstructured zone: a section HEXA_8 for each region,
+/// `.cgns`: the CFD General Notation System, in HDF5; only in builds with HDF5
+/// (HEXHEX_HAS_HDF5). Writes one base with one unstructured zone: a section HEXA_8 for each region,
 /// QUAD_4 for each group of boundary quads and tagged quads inside, BAR_2 and NODE for the tags of
 /// edges and vertices, named as their groups; and a boundary condition, of the type
 /// FamilySpecified, for each group of boundary quads. The cells are in order of their regions.
-/// @throws Error  also InvalidArgument for an empty mesh, and TooLarge for more elements than the
-///         library's integers can number
+/// @throws Error  also InvalidArgument for an empty mesh
 void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
                Context& context);
 
@@ -57,8 +56,8 @@ void writeMfem(const HexMesh& mesh, const std::filesystem::path& file, const Wri
 /// out.
 /// @param file  `CASE/X.foam`, which becomes an empty file, as ParaView opens it, next to
 ///              `CASE/constant/polyMesh`; or the name of the folder `polyMesh` itself. Folders are
-///              created; other files in them stay. Each file appears complete or not at all, and
-///              all at the end.
+///              created. `polyMesh` is replaced as a whole, in one step; what else was in it is in
+///              the new one, too.
 /// @throws Error  also InvalidArgument for faces of more than two cells, and TooLarge for more than
 ///         2^31 - 1 vertices, faces or cells
 void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,

@@ -1,70 +1,17 @@
 #include <array>
 #include <cstdint>
 #include <hdf5.h>
-#include <mutex>
 #include <string>
 #include <string_view>
 
-#include <hexhex/error.hpp>
-
 #include <base/stage.hpp>
+#include <io/core/hdf_file.hpp>
 #include <io/core/output_file.hpp>
 #include <io/vtk/vtk.hpp>
 #include <io/vtk/vtk_data_set.hpp>
 
 namespace hexhex {
 namespace {
-
-/// Keeps HDF5 from printing its errors, in its scope.
-class QuietHdf {
- public:
-  QuietHdf() {
-    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~QuietHdf() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-  QuietHdf(const QuietHdf&) = delete;
-  QuietHdf& operator=(const QuietHdf&) = delete;
-
- private:
-  H5E_auto2_t function_ = nullptr;
-  void* data_ = nullptr;
-};
-
-/// An open object of HDF5.
-class Handle {
- public:
-  using Close = herr_t (*)(hid_t);
-  Handle(const OutputFile& file, hid_t id, Close function)
-      : file_(file), id_(id), close_(function) {
-    if (id_ < 0) refuse();
-  }
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-
-  [[nodiscard]] hid_t id() const noexcept { return id_; }
-  /// Closes it now, since closing may fail, too.
-  void close() {
-    const hid_t id = id_;
-    id_ = -1;
-    require(close_(id));
-  }
-  void require(herr_t status) const {
-    if (status < 0) refuse();
-  }
-
- private:
-  [[noreturn]] void refuse() const {
-    file_.fail("HDF5 could not write it; perhaps the disk is full");
-  }
-
-  const OutputFile& file_;
-  hid_t id_;
-  Close close_;
-};
 
 /// HDF5's type of the numbers that VTK's XML calls so, in memory.
 hid_t typeOf(std::string_view name) {
@@ -79,11 +26,9 @@ hid_t typeOf(std::string_view name) {
 class VtkHdfWriter {
  public:
   VtkHdfWriter(const OutputFile& file, const VtkDataSet& data, Stage& stage)
-      : file_(file),
-        data_(data),
-        root_(file, H5Fcreate(file.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
-              H5Fclose),
-        grid_(file, createGroup(root_.id(), "VTKHDF"), H5Gclose),
+      : data_(data),
+        file_(file, HdfFile::Order::OfNames),
+        grid_(file_.group(file_.root(), "VTKHDF")),
         progress_(stage, data.points + data.cells) {}
 
   void write() {
@@ -101,34 +46,18 @@ class VtkHdfWriter {
     writeGroup("CellData", VtkSection::CellData);
     writeGroup("FieldData", VtkSection::FieldData);
     grid_.close();
-    root_.close();
+    file_.close();
   }
 
  private:
-  static hid_t createGroup(hid_t parent, const char* name) {
-    return H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  }
-
   /// The attributes by which VTK knows the format.
   void writeKind() {
     constexpr std::array<std::int64_t, 2> kVersion = {1, 0};
-    const hsize_t two = 2;
-    const Handle pair(file_, H5Screate_simple(1, &two, nullptr), H5Sclose);
-    const Handle version(
-        file_,
-        H5Acreate2(grid_.id(), "Version", H5T_STD_I64LE, pair.id(), H5P_DEFAULT, H5P_DEFAULT),
-        H5Aclose);
-    version.require(H5Awrite(version.id(), H5T_NATIVE_INT64, kVersion.data()));
+    file_.writeAttribute(grid_.id(), "Version", H5T_NATIVE_INT64, file_.space({2}),
+                         kVersion.data());
     const std::string kind = "UnstructuredGrid";
-    const Handle type(file_, H5Tcopy(H5T_C_S1), H5Tclose);
-    type.require(H5Tset_size(type.id(), kind.size()));
-    type.require(H5Tset_strpad(type.id(), H5T_STR_NULLPAD));
-    type.require(H5Tset_cset(type.id(), H5T_CSET_ASCII));
-    const Handle one(file_, H5Screate(H5S_SCALAR), H5Sclose);
-    const Handle name(file_,
-                      H5Acreate2(grid_.id(), "Type", type.id(), one.id(), H5P_DEFAULT, H5P_DEFAULT),
-                      H5Aclose);
-    name.require(H5Awrite(name.id(), type.id(), kind.data()));
+    const HdfObject text = file_.text(kind.size(), H5T_STR_NULLPAD);
+    file_.writeAttribute(grid_.id(), "Type", text.id(), file_.space({}), kind.data());
   }
 
   void count(const char* name, std::uint64_t number) {
@@ -145,24 +74,22 @@ class VtkHdfWriter {
   }
 
   /// Writes a dataset, piece by piece as the array's bytes come.
-  void writeRows(const Handle& group, const char* name, const VtkArray& array) {
+  void writeRows(const HdfObject& group, const char* name, const VtkArray& array) {
     const hid_t memory = typeOf(array.type);
     const hid_t stored = array.section == VtkSection::Cells && memory == H5T_NATIVE_INT32
                              ? H5T_STD_I64LE  // whatever the number of points
                              : memory;
-    const int rank = array.components == 1 ? 1 : 2;
-    const std::array<hsize_t, 2> shape = {array.rows, array.components};
-    const Handle space(file_, H5Screate_simple(rank, shape.data(), nullptr), H5Sclose);
-    const Handle set(
-        file_,
-        H5Dcreate2(group.id(), name, stored, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-        H5Dclose);
+    const auto spaceOf = [&](hsize_t rows) {
+      return array.components == 1 ? file_.space({rows}) : file_.space({rows, array.components});
+    };
+    const HdfObject space = spaceOf(array.rows);
+    const HdfObject set = file_.dataset(group.id(), name, stored, space);
     std::array<hsize_t, 2> begin = {0, 0};
     array.write([&](const void* bytes, std::size_t size) {
       if (size == 0) return;
       const std::array<hsize_t, 2> count = {size / (array.components * H5Tget_size(memory)),
                                             array.components};
-      const Handle part(file_, H5Screate_simple(rank, count.data(), nullptr), H5Sclose);
+      const HdfObject part = spaceOf(count[0]);
       space.require(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, begin.data(), nullptr,
                                         count.data(), nullptr));
       set.require(H5Dwrite(set.id(), memory, part.id(), space.id(), H5P_DEFAULT, bytes));
@@ -182,16 +109,15 @@ class VtkHdfWriter {
   }
 
   void writeGroup(const char* name, VtkSection section) {
-    const Handle group(file_, createGroup(grid_.id(), name), H5Gclose);
+    const HdfObject group = file_.group(grid_.id(), name);
     for (const VtkArray& array : data_.arrays()) {
       if (array.section == section) writeRows(group, std::string(array.name).c_str(), array);
     }
   }
 
-  const OutputFile& file_;
   const VtkDataSet& data_;
-  Handle root_;
-  Handle grid_;
+  HdfFile file_;
+  HdfObject grid_;
   LoopProgress progress_;
 };
 
@@ -204,11 +130,7 @@ void writeVtkHdf(const HexMesh& mesh, const std::filesystem::path& file,
   VtkPiece piece;
   const VtkDataSet data = hexDataSet(mesh, options, piece, context);
   Stage stage(context, "write mesh");
-  {
-    const std::lock_guard lock(libraryLock());
-    const QuietHdf quiet;
-    VtkHdfWriter(target, data, stage).write();
-  }
+  VtkHdfWriter(target, data, stage).write();
   target.commit();
 }
 

@@ -1,0 +1,202 @@
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <new>
+
+#include <io/core/hdf_file.hpp>
+#if __has_include(<H5FDdevelop.h>)
+#include <H5FDdevelop.h>
+#endif
+
+namespace hexhex {
+namespace {
+
+/// What HDF5 knows as an open file; the first member is its own.
+struct OpenFile {
+  H5FD_t ofHdf;
+  HdfTarget* target;
+  haddr_t allocated;  ///< bytes that HDF5 has given away
+  haddr_t written;    ///< up to where
+};
+
+/// What the properties of access hold.
+struct Info {
+  HdfTarget* target;
+};
+
+OpenFile& fileOf(H5FD_t* file) { return *reinterpret_cast<OpenFile*>(file); }
+const OpenFile& fileOf(const H5FD_t* file) { return *reinterpret_cast<const OpenFile*>(file); }
+
+/// Calls f() unless something went wrong before, and keeps what goes wrong in it.
+template <class F>
+void guarded(HdfTarget& target, const F& f) noexcept {
+  if (target.failure) return;
+  try {
+    f();
+  } catch (...) {
+    target.failure = std::current_exception();
+  }
+}
+
+H5FD_t* openFile(const char* /*name*/, unsigned /*flags*/, hid_t access, haddr_t /*most*/) {
+  const auto* const info = static_cast<const Info*>(H5Pget_driver_info(access));
+  auto* const file = new (std::nothrow) OpenFile{};
+  if (file == nullptr || info == nullptr) return nullptr;
+  file->target = info->target;
+  return &file->ofHdf;
+}
+
+herr_t closeFile(H5FD_t* file) {
+  delete &fileOf(file);
+  return 0;
+}
+
+herr_t query(const H5FD_t* /*file*/, unsigned long* features) {
+  *features = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
+              H5FD_FEAT_AGGREGATE_SMALLDATA;
+  return 0;
+}
+
+haddr_t allocatedIn(const H5FD_t* file, H5FD_mem_t /*type*/) { return fileOf(file).allocated; }
+herr_t allocateIn(H5FD_t* file, H5FD_mem_t /*type*/, haddr_t end) {
+  fileOf(file).allocated = end;
+  return 0;
+}
+haddr_t writtenOf(const H5FD_t* file, H5FD_mem_t /*type*/) { return fileOf(file).written; }
+
+herr_t read(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t from, std::size_t size,
+            void* bytes) {
+  const OpenFile& open = fileOf(file);
+  const std::size_t there =
+      from < open.written ? std::min<std::size_t>(size, open.written - from) : 0;
+  std::fill_n(static_cast<char*>(bytes), size, char{0});
+  guarded(*open.target, [&] { open.target->output.readBytesAt(from, bytes, there); });
+  return 0;
+}
+
+herr_t write(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t to, std::size_t size,
+             const void* bytes) {
+  OpenFile& open = fileOf(file);
+  guarded(*open.target, [&] { open.target->output.writeBytesAt(to, bytes, size); });
+  open.written = std::max<haddr_t>(open.written, to + size);
+  return 0;
+}
+
+/// Readers want the file as long as what was given away in it.
+herr_t makeLong(H5FD_t* file, hid_t transfer, hbool_t /*closing*/) {
+  const OpenFile& open = fileOf(file);
+  if (open.written >= open.allocated) return 0;
+  return write(file, H5FD_MEM_DEFAULT, transfer, open.allocated - 1, 1, "");
+}
+
+H5FD_class_t driverClass() {
+  constexpr H5FD_mem_t kMap[] = H5FD_FLMAP_DICHOTOMY;
+  H5FD_class_t driver{};
+#if defined(H5FD_CLASS_VERSION)
+  driver.version = H5FD_CLASS_VERSION;
+  driver.value = 600;  // of those that are for anybody
+#endif
+  driver.name = "hexhex";
+  driver.maxaddr = std::numeric_limits<std::int64_t>::max();
+  driver.fc_degree = H5F_CLOSE_STRONG;
+  driver.fapl_size = sizeof(Info);
+  driver.open = openFile;
+  driver.close = closeFile;
+  driver.query = query;
+  driver.get_eoa = allocatedIn;
+  driver.set_eoa = allocateIn;
+  driver.get_eof = writtenOf;
+  driver.read = read;
+  driver.write = write;
+  driver.truncate = makeLong;
+  std::copy(std::begin(kMap), std::end(kMap), std::begin(driver.fl_map));
+  return driver;
+}
+
+hid_t registerDriver() {
+  const H5FD_class_t driver = driverClass();
+  return H5FDregister(&driver);
+}
+
+}  // namespace
+
+void HdfTarget::require(std::int64_t status) const {
+  if (failure) std::rethrow_exception(failure);
+  if (status < 0) output.fail("HDF5 could not make it; perhaps memory is exhausted");
+}
+
+void HdfObject::close() {
+  const hid_t id = id_;
+  id_ = -1;
+  require(close_(id));
+}
+
+HdfFile::QuietErrors::QuietErrors() {
+  H5Eget_auto2(H5E_DEFAULT, &function, &data);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+HdfFile::QuietErrors::~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, function, data); }
+
+HdfFile::HdfFile(const OutputFile& output, Order order)
+    : lock_(libraryLock()),
+      target_{output},
+      driver_(target_, registerDriver(), H5FDunregister),
+      ofFiles_(target_, H5Pcreate(H5P_FILE_CREATE), H5Pclose),
+      ofGroups_(target_, H5Pcreate(H5P_GROUP_CREATE), H5Pclose),
+      ofDatasets_(target_, H5Pcreate(H5P_DATASET_CREATE), H5Pclose),
+      access_(target_, H5Pcreate(H5P_FILE_ACCESS), H5Pclose),
+      file_(target_, create(order), H5Fclose) {}
+
+HdfFile::~HdfFile() = default;
+
+hid_t HdfFile::create(Order order) {
+  for (const HdfObject* const creation : {&ofFiles_, &ofGroups_, &ofDatasets_}) {
+    creation->require(H5Pset_obj_track_times(creation->id(), false));
+  }
+  if (order == Order::OfCreation) {
+    constexpr unsigned kKnown = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
+    ofFiles_.require(H5Pset_link_creation_order(ofFiles_.id(), kKnown));
+    ofGroups_.require(H5Pset_link_creation_order(ofGroups_.id(), kKnown));
+    access_.require(H5Pset_libver_bounds(access_.id(), H5F_LIBVER_V18, H5F_LIBVER_V18));
+  }
+  const Info info{&target_};
+  access_.require(H5Pset_driver(access_.id(), driver_.id(), &info));
+  return H5Fcreate("hexhex", H5F_ACC_TRUNC, ofFiles_.id(), access_.id());
+}
+
+HdfObject HdfFile::group(hid_t parent, const std::string& name) const {
+  return {target_, H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, ofGroups_.id(), H5P_DEFAULT),
+          H5Gclose};
+}
+
+HdfObject HdfFile::space(std::initializer_list<hsize_t> shape) const {
+  const int rank = static_cast<int>(shape.size());
+  return {target_,
+          rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, shape.begin(), nullptr),
+          H5Sclose};
+}
+
+HdfObject HdfFile::dataset(hid_t parent, const std::string& name, hid_t type,
+                           const HdfObject& space) const {
+  return {target_,
+          H5Dcreate2(parent, name.c_str(), type, space.id(), H5P_DEFAULT, ofDatasets_.id(),
+                     H5P_DEFAULT),
+          H5Dclose};
+}
+
+void HdfFile::writeAttribute(hid_t object, const char* name, hid_t type, const HdfObject& space,
+                             const void* values) const {
+  HdfObject attribute(target_, H5Acreate2(object, name, type, space.id(), H5P_DEFAULT, H5P_DEFAULT),
+                      H5Aclose);
+  attribute.require(H5Awrite(attribute.id(), type, values));
+}
+
+HdfObject HdfFile::text(std::size_t bytes, H5T_str_t padding) const {
+  HdfObject type(target_, H5Tcopy(H5T_C_S1), H5Tclose);
+  type.require(H5Tset_size(type.id(), bytes));
+  type.require(H5Tset_strpad(type.id(), padding));
+  return type;
+}
+
+}  // namespace hexhex

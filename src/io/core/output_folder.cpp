@@ -1,0 +1,143 @@
+#include <cerrno>
+#include <cstdio>
+#include <fcntl.h>
+#include <new>
+#include <string>
+#include <sys/stat.h>
+#include <system_error>
+#include <unistd.h>
+
+#include <io/core/output_file.hpp>
+#include <io/core/output_folder.hpp>
+
+namespace hexhex {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr mode_t kPermissions = 0777;  // less what the user's umask takes away
+
+/// Gives each of two folders the other's name, by way of a third one where the system does not know
+/// how to do it at once.
+/// @return whether it worked; otherwise errno says why, and all is as it was
+bool exchange(const fs::path& a, const fs::path& b, const fs::path& aside) noexcept {
+#if defined(RENAME_EXCHANGE)
+  if (::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0) return true;
+  if (errno != EINVAL && errno != ENOSYS) return false;
+#endif
+  if (::rename(b.c_str(), aside.c_str()) != 0) return false;
+  if (::rename(a.c_str(), b.c_str()) == 0) return ::rename(aside.c_str(), a.c_str()) == 0;
+  const int error = errno;
+  static_cast<void>(::rename(aside.c_str(), b.c_str()));
+  errno = error;
+  return false;
+}
+
+/// Copies a file, a link, or a folder with all that is in it; nothing is left if it fails.
+/// @param way  whether files are linked or copied
+std::error_code copyAs(const fs::path& from, const fs::path& to, fs::copy_options way) {
+  std::error_code error;
+  fs::copy(from, to, way | fs::copy_options::recursive | fs::copy_options::copy_symlinks, error);
+  std::error_code ignored;
+  if (error) fs::remove_all(to, ignored);
+  return error;
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const fs::path& target) : target_(realTarget(target)) {
+  std::error_code error;
+  replaces_ = fs::is_directory(target_, error);
+  if (!replaces_ && fs::exists(target_, error)) failToWrite(target_, "it is a file", ENOTDIR);
+  makeParents();
+  do {
+    temporary_ = temporaryBeside(target_);
+    aside_ = temporary_.native() + "-aside";
+    if (::mkdir(temporary_.c_str(), kPermissions) == 0) return;
+  } while (errno == EEXIST);
+  const int reason = errno;
+  removeParents();
+  failToWrite(target_, "no folder can be created beside it", reason);
+}
+
+OutputFolder::~OutputFolder() {
+  try {
+    std::error_code ignored;
+    fs::remove_all(temporary_, ignored);
+  } catch (const std::bad_alloc&) {
+    // What is left then has a name that says whose it is.
+  }
+  if (!committed_) removeParents();
+}
+
+Error OutputFolder::named(const Error& error) const {
+  std::string sentence = error.what();
+  const std::size_t place = sentence.find(temporary_.native());
+  if (place != std::string::npos) {
+    sentence.replace(place, temporary_.native().size(), target_.native());
+  }
+  return {error.code(), sentence, error.place()};
+}
+
+void OutputFolder::makeParents() {
+  std::error_code error;
+  for (fs::path folder = target_.parent_path(); !folder.empty() && !fs::exists(folder, error);
+       folder = folder.parent_path()) {
+    parents_.push_back(folder);
+  }
+  for (auto folder = parents_.rbegin(); folder != parents_.rend(); ++folder) {
+    if (::mkdir(folder->c_str(), kPermissions) == 0 || errno == EEXIST) continue;
+    const int reason = errno;
+    removeParents();
+    failToWrite(target_, "the folder " + folder->string() + " cannot be created", reason);
+  }
+}
+
+void OutputFolder::removeParents() noexcept {
+  for (const fs::path& folder : parents_) static_cast<void>(::rmdir(folder.c_str()));
+}
+
+void OutputFolder::carryOver() const {
+  std::error_code error;
+  for (fs::directory_iterator entry(target_, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const fs::path place = temporary_ / entry->path().filename();
+    std::error_code missing;
+    if (fs::exists(fs::symlink_status(place, missing))) continue;
+    // Links to files take no room, and leave the old folder whole until it is replaced.
+    if (!copyAs(entry->path(), place, fs::copy_options::create_hard_links)) continue;
+    const std::error_code failure = copyAs(entry->path(), place, fs::copy_options::none);
+    if (!failure) continue;
+    failToWrite(target_, "what else is in it cannot be kept, " + entry->path().string(),
+                failure.value());
+  }
+  if (error) failToWrite(target_, "it cannot be read", error.value());
+}
+
+void OutputFolder::commit() {
+  if (replaces_) carryOver();
+  ChangedFolder(temporary_ / ".").sync();
+  const ChangedFolder folder(target_);
+  const bool named = replaces_ ? exchange(temporary_, target_, aside_)
+                               : ::rename(temporary_.c_str(), target_.c_str()) == 0;
+  if (!named) failToWrite(target_, "the finished folder cannot be renamed to it", errno);
+  committed_ = true;
+  try {
+    folder.sync();
+    for (const fs::path& parent : parents_) ChangedFolder(parent).sync();
+  } catch (...) {
+    takeBack();
+    throw;
+  }
+}
+
+void OutputFolder::takeBack() noexcept {
+  committed_ = false;
+  if (replaces_) {
+    static_cast<void>(exchange(temporary_, target_, aside_));
+  } else {
+    static_cast<void>(::rename(target_.c_str(), temporary_.c_str()));
+  }
+}
+
+}  // namespace hexhex
