@@ -61,8 +61,8 @@ const char* explanation(ErrorCode code) {
              "not tell its edges apart, at any scale. Give singular edges a valence of two or "
              "more.";
     case ErrorCode::TooLarge:
-      return "A parameter or a size is larger than the library represents. Translate charts "
-             "towards the origin, or lower the scale.";
+      return "A coordinate, parameter or size is larger than the library represents. Translate the "
+             "object or its charts towards the origin, or lower the scale.";
     default:
       return "";
   }

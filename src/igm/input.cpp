@@ -16,6 +16,9 @@ constexpr std::size_t kGrain = 1024;
 /// nearly all, are not moved at all. It costs ten of the 52 bits of a coordinate.
 constexpr double kMinChartGrid = 1024;
 
+/// Volumes in space are to be finite: products of three differences of coordinates.
+constexpr double kMaxCoordinate = 0x1p300;
+
 /// Beyond, a double has no fractional bits worth the name.
 constexpr double kMaxParameter = 0x1p48;
 
@@ -180,7 +183,11 @@ OrientedMap readInput(const TetMapView& map, Stage& stage, DefectCollector& defe
     return oriented;
   }
   parallelFor(stage, map.points.size(), kGrain, [&](std::size_t v) {
-    if (!isFinite(map.points[v])) defects.add(ErrorCode::NotFinite, {PlaceKind::Vertex, v}, 0);
+    const auto isSmall = [](double x) { return std::abs(x) <= kMaxCoordinate; };
+    const Vec3& p = map.points[v];
+    if (isSmall(p[0]) && isSmall(p[1]) && isSmall(p[2])) return;
+    defects.add(isFinite(p) ? ErrorCode::TooLarge : ErrorCode::NotFinite, {PlaceKind::Vertex, v},
+                0);
   });
   const Measures measures = measureTets(map, stage, defects);
   const PairMask& positive = measures.positive;

@@ -31,24 +31,37 @@ constexpr double kLargestNoise = 0.05;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Affine coordinates of points with respect to one tet of any orientation.
-class TetInSpace {
+/// Smaller determinants are taken for 0: their terms may have lost digits below the smallest
+/// numbers, 2^-1022.
+constexpr double kLeastVolume = 0x1p-960;
+
+/// In tets that are too flat in space, so many lattice points are looked at.
+constexpr double kMostCandidates = 4096;
+
+/// The largest component: unlike a length, it is not 0 where numbers are tiny.
+double extentOf(const Vec3& v) {
+  return std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
+}
+
+/// Affine coordinates of points with respect to one tet of any orientation, in space or in the map.
+class AffineTet {
  public:
-  TetInSpace(const TetMapView& map, const Tet& tet) : origin_(map.points[tet[0]]) {
+  explicit AffineTet(const TetParameters& corners) : origin_(corners[0]) {
     std::array<Vec3, 3> edges;
-    for (std::size_t i = 0; i < 3; ++i) edges[i] = minus(map.points[tet[i + 1]], origin_);
+    for (std::size_t i = 0; i < 3; ++i) edges[i] = minus(corners[i + 1], origin_);
     std::array<Vec3, 4> normals = {};
     for (std::size_t i = 0; i < 3; ++i) {
       normals[i + 1] = cross(edges[(i + 1) % 3], edges[(i + 2) % 3]);
       normals[0] = minus(normals[0], normals[i + 1]);
       size_ = std::max({size_, length(edges[i]), length(minus(edges[i], edges[(i + 1) % 3]))});
     }
-    const double volume = dot(edges[0], normals[1]);
+    double volume = dot(edges[0], normals[1]);
+    if (std::abs(volume) < kLeastVolume) volume = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       const Vec3 gradient = {normals[i][0] / volume, normals[i][1] / volume,
                              normals[i][2] / volume};
       gradients_[i] = gradient;
-      for (const double coordinate : map.points[tet[i]]) {
+      for (const double coordinate : corners[i]) {
         largestCoordinate_ = std::max(largestCoordinate_, std::abs(coordinate));
       }
     }
@@ -65,10 +78,10 @@ class TetInSpace {
     return result;
   }
 
-  /// Whether a point with these coordinates is inside, or outside by no more than rounding. False
-  /// for not-a-number.
-  [[nodiscard]] bool contains(const std::array<double, 4>& weights) const {
-    const double distance = kContainment * size_ + positionError();
+  /// Whether a point with these coordinates is inside, or outside by no more than rounding and a
+  /// further distance. False for not-a-number.
+  [[nodiscard]] bool contains(const std::array<double, 4>& weights, double further = 0) const {
+    const double distance = kContainment * size_ + positionError() + further;
     for (std::size_t i = 0; i < 4; ++i) {
       // The gradient is the inverse of the height over face i.
       if (!(weights[i] >= -distance * length(gradients_[i]))) return false;
@@ -77,7 +90,9 @@ class TetInSpace {
   }
 
   /// How far a position here may be off, in units of space.
-  [[nodiscard]] double positionError() const { return kPositionError * largestCoordinate_; }
+  [[nodiscard]] double positionError() const {
+    return kPositionError * largestCoordinate_ + TetLocator::kLeastMargin;
+  }
   [[nodiscard]] const Vec3& gradient(std::size_t corner) const { return gradients_[corner]; }
 
  private:
@@ -96,24 +111,26 @@ class LatticeDistance {
 
   /// Distance of p from the lattice in hex edges (largest coordinate difference) as tet t sees it,
   /// 0 if within what is allowed; infinite if p is not in the tet.
-  /// @param ifFlat  returned for a point in the bounding box of a tet that is too flat in space to
-  ///                tell
-  [[nodiscard]] double inTet(Index t, const Vec3& p, double ifFlat) const {
-    const TetInSpace tet(map_, map_.tets[t]);
+  [[nodiscard]] double inTet(Index t, const Vec3& p) const {
+    TetParameters points;
+    for (std::size_t i = 0; i < 4; ++i) points[i] = map_.points[map_.tets[t][i]];
+    const AffineTet tet(points);
     const std::array<double, 4> weights = tet.weights(p);
-    const TetParameters& parameters = map_.parameters[t];
+    TetParameters parameters = map_.parameters[t];
+    const Vec3 near = parameters[0];
     Vec3 position{};
     double noise = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-      Vec3 corner;
       for (std::size_t k = 0; k < 3; ++k) {
-        corner[k] = scale_ * (parameters[i][k] - std::round(parameters[0][k]));
-        position[k] += weights[i] * corner[k];
+        parameters[i][k] = scale_ * (parameters[i][k] - std::round(near[k]));
+        position[k] += weights[i] * parameters[i][k];
       }
-      noise += length(tet.gradient(i)) * length(corner);
+      noise += length(tet.gradient(i)) * length(parameters[i]);
     }
     noise *= tet.positionError();
-    if (!(noise <= kLargestNoise)) return inBox(t, tet, p) ? ifFlat : kInfinity;
+    if (!(noise <= kLargestNoise)) {
+      return isLatticePoint(p, points, tet.positionError(), parameters) ? 0 : kInfinity;
+    }
     if (!tet.contains(weights)) return kInfinity;
     double distance = 0;
     for (const double u : position) distance = std::max(distance, std::abs(u - std::round(u)));
@@ -121,18 +138,39 @@ class LatticeDistance {
   }
 
  private:
-  [[nodiscard]] bool inBox(Index t, const TetInSpace& tet, const Vec3& p) const {
-    for (std::size_t k = 0; k < 3; ++k) {
-      double low = kInfinity;
-      double high = -kInfinity;
-      for (const Index corner : map_.tets[t]) {
-        low = std::min(low, map_.points[corner][k]);
-        high = std::max(high, map_.points[corner][k]);
-      }
-      const double slack = kContainment * (high - low) + tet.positionError();
-      if (!(p[k] >= low - slack && p[k] <= high + slack)) return false;
+  /// Whether a lattice point of a tet is at p in space, for tets that are flat there; so far as
+  /// that can be told with few candidates.
+  [[nodiscard]] bool isLatticePoint(const Vec3& p, const TetParameters& points, double error,
+                                    const TetParameters& parameters) const {
+    const AffineTet tet(parameters);
+    for (std::size_t i = 1; i < 4; ++i) {
+      error += 2 * allowed_ * length(tet.gradient(i)) * extentOf(minus(points[i], points[0]));
     }
-    return true;
+    Vec3 low = {kInfinity, kInfinity, kInfinity};
+    Vec3 high = {-kInfinity, -kInfinity, -kInfinity};
+    double candidates = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const Vec3& u : parameters) {
+        low[k] = std::min(low[k], std::ceil(u[k] - allowed_));
+        high[k] = std::max(high[k], std::floor(u[k] + allowed_));
+      }
+      candidates *= high[k] - low[k] + 1;
+    }
+    if (candidates > kMostCandidates) return true;
+    for (Vec3 z = low; z[0] <= high[0]; z[0] += 1) {
+      for (z[1] = low[1]; z[1] <= high[1]; z[1] += 1) {
+        for (z[2] = low[2]; z[2] <= high[2]; z[2] += 1) {
+          const std::array<double, 4> weights = tet.weights(z);
+          if (!tet.contains(weights, 2 * allowed_)) continue;
+          Vec3 rest = p;
+          for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) rest[k] -= weights[i] * points[i][k];
+          }
+          if (extentOf(rest) <= 2 * error) return true;
+        }
+      }
+    }
+    return false;
   }
 
   const TetMapView& map_;
@@ -147,8 +185,7 @@ Array<double> distancesByHints(const LatticeDistance& lattice, const TetMapView&
   const bool hints = mesh.generatorTet.size() == mesh.points.size();
   parallelFor(stage, distances.size(), kGrain, [&](std::size_t v) {
     const Index tet = hints ? mesh.generatorTet[v] : kNone;
-    // Flat tets are legal, and a point that a flat tet is said to own cannot be checked: it passes.
-    distances[v] = tet < map.tets.size() ? lattice.inTet(tet, mesh.points[v], 0) : kInfinity;
+    distances[v] = tet < map.tets.size() ? lattice.inTet(tet, mesh.points[v]) : kInfinity;
   });
   return distances;
 }
@@ -161,7 +198,7 @@ void searchTets(const LatticeDistance& lattice, const TetMapView& map, const Hex
     double best = distances[v];
     if (best == 0) return;
     (void)locator.anyAround(mesh.points[v], [&](Index tet) {
-      best = std::min(best, lattice.inTet(tet, mesh.points[v], kInfinity));
+      best = std::min(best, lattice.inTet(tet, mesh.points[v]));
       return best == 0;
     });
     distances[v] = best;

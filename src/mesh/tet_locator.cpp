@@ -42,7 +42,8 @@ Box enlarged(Box box, TetLocator::Margin margin) {
     size = std::max(size, box.upper[k] - box.lower[k]);
     coordinate = std::max({coordinate, std::abs(box.lower[k]), std::abs(box.upper[k])});
   }
-  const double distance = margin.ofSize * size + margin.ofCoordinates * coordinate;
+  const double distance =
+      margin.ofSize * size + margin.ofCoordinates * coordinate + TetLocator::kLeastMargin;
   for (std::size_t k = 0; k < 3; ++k) {
     box.lower[k] -= distance;
     box.upper[k] += distance;
@@ -95,7 +96,7 @@ void TetLocator::sortTets(const TetMapView& map, Stage& stage) {
   for (const Tet& tet : map.tets) all = enclose(all, boxAround(map, tet));
   double side = 0;
   for (std::size_t k = 0; k < 3; ++k) side = std::max(side, all.upper[k] - all.lower[k]);
-  const double perLength = side > 0 ? 2097152 / side : 0;  // 2^21
+  const double perLength = side > 0x1p-1000 ? 2097152 / side : 0;  // 2^21; finite
 
   struct Coded {
     std::uint64_t code;

@@ -32,6 +32,9 @@ class TetLocator {
     double ofCoordinates = 0;
   };
 
+  /// What rounding can do to the smallest numbers.
+  static constexpr double kLeastMargin = 0x1p-1064;
+
   /// @param map  with indices in range and finite points
   TetLocator(const TetMapView& map, Margin margin, Stage& stage);
 

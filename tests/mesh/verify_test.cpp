@@ -373,8 +373,8 @@ TEST(VerifyPositions, FlatTetsAreIgnored) {
   EXPECT_EQ(failedItems(verified(boxExpectation(3), map, mesh)), Names());
 }
 
-TEST(VerifyPositions, PointsOwnedByFlatTetsCannotBeChecked) {
-  // All points in one plane: a legal map, in which no position tells anything.
+TEST(VerifyPositions, PointsOfFlatTetsAreImagesOfLatticePoints) {
+  // All points in one plane: a legal map, in which positions do not tell parameters.
   TetMap map = identityMap(2);
   HexMesh mesh = gridMesh(2);
   for (Vec3& p : map.points) p[2] = 0;
@@ -387,9 +387,16 @@ TEST(VerifyPositions, PointsOwnedByFlatTetsCannotBeChecked) {
       }
     }
   }
-  EXPECT_EQ(failedItems(verified(boxExpectation(2), map, mesh)), Names());
-  mesh.points[5][0] += 10;  // outside of everything
-  EXPECT_EQ(failedItems(verified(boxExpectation(2), map, mesh)), Names({"vertices_off_lattice"}));
+  for (const bool hints : {true, false}) {
+    if (!hints) mesh.generatorTet.clear();
+    EXPECT_EQ(failedItems(verified(boxExpectation(2), map, mesh)), Names());
+    for (const double move : {0.25, 10.0}) {
+      HexMesh moved = mesh;
+      moved.points[5][0] += move;
+      EXPECT_EQ(failedItems(verified(boxExpectation(2), map, moved)),
+                Names({"vertices_off_lattice"}));
+    }
+  }
 }
 
 TEST(VerifyPositions, FlatTetsBetweenOthersDoNotMatter) {
