@@ -51,6 +51,7 @@ Matrix matrixOf(const Rotation& rotation, bool mirrored) {
 /// The integers nearest to what is left of the parameters of the face's corners after the rotation.
 /// (The pipeline has moved charts towards the origin; here they are the caller's.)
 std::array<double, 3> translationOf(const TetMapView& map, const ChartJump& jump) {
+  std::array<double, 3> first{};  // sums of large numbers would be rounded
   std::array<double, 3> sum{};
   for (const Index vertex : jump.vertices) {
     std::array<Vec3, 2> u{};
@@ -62,11 +63,13 @@ std::array<double, 3> translationOf(const TetMapView& map, const ChartJump& jump
     }
     for (std::size_t row = 0; row < 3; ++row) {
       const auto& r = jump.rotation[row];
-      sum[row] += u[1][row] - (r[0] * u[0][0] + r[1] * u[0][1] + r[2] * u[0][2]);
+      const double rest = u[1][row] - (r[0] * u[0][0] + r[1] * u[0][1] + r[2] * u[0][2]);
+      if (vertex == jump.vertices[0]) first[row] = std::nearbyint(rest) + 0.0;  // no -0
+      sum[row] += rest - first[row];
     }
   }
-  for (double& component : sum) component = std::nearbyint(component / 3) + 0.0;  // no -0
-  return sum;
+  for (std::size_t row = 0; row < 3; ++row) first[row] += std::nearbyint(sum[row] / 3);
+  return first;
 }
 
 bool isIdentity(const ChartJump& jump) {

@@ -19,8 +19,9 @@ constexpr double kMinChartGrid = 1024;
 /// Volumes in space are to be finite: products of three differences of coordinates.
 constexpr double kMaxCoordinate = 0x1p300;
 
-/// Beyond, a double has no fractional bits worth the name.
-constexpr double kMaxParameter = 0x1p48;
+/// Beyond, doubles are not even all integers. (What a chart far away has rounded before shows as
+/// any other inexactness does.)
+constexpr double kMaxParameter = 0x1p53;
 
 /// Translations between charts are 32-bit integers: with coordinates below this they, and twice
 /// them, fit. (Sanitization, which knows the scale, allows no more either.)
