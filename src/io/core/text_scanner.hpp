@@ -290,7 +290,7 @@ template <class Read>
 template <class Read>
 void readElements(TextScanner& scanner, const TokenIndex* index, Stage& stage, std::size_t n,
                   std::size_t tokensEach, const Read& read) {
-  if (index == nullptr) {
+  if (index == nullptr || n <= kElementGrain) {
     LoopProgress progress(stage, n);
     for (std::size_t i = 0; i < n; ++i) {
       if (i % kElementGrain == 0) progress.advance(std::min(kElementGrain, n - i));

@@ -72,6 +72,8 @@ class TetReader : OvmCellReader<4, kTetOrders.size()> {
 
   TetMap read() {
     requireMap();
+    // Four sides of faces each, none of them twice: else the check throws before there is room.
+    if (2 * topology_.cells.size() > topology_.faces.size()) requireProper();
     map_.points.assign(mesh_.points.begin(), mesh_.points.end());
     map_.parameters.resize(topology_.cells.size());
     if (!properties_[OvmInteger::Transition].empty()) map_.rotations.resize(topology_.cells.size());

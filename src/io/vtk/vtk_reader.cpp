@@ -172,15 +172,17 @@ constexpr std::size_t kPointMapComponents = 3;
 
 /// Finds the map among the arrays that are known, or goes on to others.
 const VtkSourceArray* findMap(VtkSource& source, std::string_view name) {
+  std::size_t looked = 0;  // at so many arrays before
   do {
-    if (const auto* const found =
-            source.find(VtkSection::CellData, name, kCellMapComponents, VtkNumbers::Reals)) {
+    if (const auto* const found = source.find(VtkSection::CellData, name, kCellMapComponents,
+                                              VtkNumbers::Reals, looked)) {
       return found;
     }
-    if (const auto* const found =
-            source.find(VtkSection::PointData, name, kPointMapComponents, VtkNumbers::Reals)) {
+    if (const auto* const found = source.find(VtkSection::PointData, name, kPointMapComponents,
+                                              VtkNumbers::Reals, looked)) {
       return found;
     }
+    looked = source.arrays.size();
   } while (source.readOn());
   return nullptr;
 }
@@ -188,6 +190,7 @@ const VtkSourceArray* findMap(VtkSource& source, std::string_view name) {
 [[noreturn]] void failWithoutMap(const VtkSource& source, std::size_t tets, std::string_view name) {
   std::string found;
   for (const std::string& array : source.seen) found += (found.empty() ? "" : ", ") + array;
+  if (source.unnamed > 0) found += ", and " + std::to_string(source.unnamed) + " more";
   source.fail(ErrorCode::FileUnsupported,
               "the file holds " + std::to_string(tets) + " tets, but no map: no cell array \"" +
                   std::string(name) +

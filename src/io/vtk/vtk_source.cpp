@@ -56,8 +56,10 @@ std::size_t bytesOf(const VtkScalar& scalar) {
 }
 
 const VtkSourceArray* VtkSource::find(VtkSection section, std::string_view name,
-                                      std::size_t components, VtkNumbers numbers) const {
-  const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const VtkSourceArray& array) {
+                                      std::size_t components, VtkNumbers numbers,
+                                      std::size_t begin) const {
+  const auto first = arrays.begin() + static_cast<std::ptrdiff_t>(begin);
+  const auto found = std::find_if(first, arrays.end(), [&](const VtkSourceArray& array) {
     return array.section == section && array.name == name && array.components == components &&
            array.numbers == numbers;
   });
@@ -90,6 +92,11 @@ template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, Inde
 template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, CornerSet*) const;
 
 void VtkSource::see(std::string_view name, bool ofCells, std::size_t components) {
+  constexpr std::size_t kMostSeen = 20;  // that a sentence can name
+  if (seen.size() == kMostSeen) {
+    ++unnamed;
+    return;
+  }
   seen.push_back('"' + std::string(name) + (ofCells ? "\" (cells, " : "\" (points, ") +
                  std::to_string(components) + (components == 1 ? " component)" : " components)"));
 }

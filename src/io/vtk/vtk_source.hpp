@@ -110,7 +110,9 @@ class VtkSource {
   std::size_t gap = 0;  ///< how many numbers stand in `connectivity` in front of a cell's corners
 
   std::vector<VtkSourceArray> arrays;
-  std::vector<std::string> seen;  ///< arrays of points and cells, for messages
+  /// Arrays of points and cells, for messages: the first of them, and how many more there are.
+  std::vector<std::string> seen;
+  std::size_t unnamed = 0;
 
   /// Goes on to more arrays; false if all are known.
   virtual bool readOn() { return false; }
@@ -118,8 +120,10 @@ class VtkSource {
   virtual void requireIndexable() const {}
 
   /// The first array of a section with this name and form; null if there is none.
+  /// @param begin  how many arrays are passed over
   [[nodiscard]] const VtkSourceArray* find(VtkSection section, std::string_view name,
-                                           std::size_t components, VtkNumbers numbers) const;
+                                           std::size_t components, VtkNumbers numbers,
+                                           std::size_t begin = 0) const;
   /// Its numbers: a tuple for each point or cell, if it belongs to them.
   [[nodiscard]] VtkColumn load(const VtkSourceArray& array) const;
 

@@ -167,6 +167,11 @@ class VtuFile final : public VtkSource {
     VtkSourceArray array;
     array.section = section;
     array.name = tag.attribute("Name");
+    // Of arrays without a name, only the last one of the points is looked for.
+    if (section != VtkSection::Points && array.name.empty()) return;
+    if (section == VtkSection::Points && !arrays.empty() && arrays.back().section == section) {
+      arrays.pop_back();
+    }
     array.numbers = numbersOf(tag.attribute("type"));
     const std::string_view components = tag.attribute("NumberOfComponents");
     std::from_chars(components.data(), components.data() + components.size(), array.components);
