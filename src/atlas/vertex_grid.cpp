@@ -3,7 +3,6 @@
 #include <atlas/overlaps.hpp>
 #include <atlas/vertex_grid.hpp>
 #include <base/workspaces.hpp>
-#include <lattice/few_points.hpp>
 
 namespace hexhex {
 
@@ -63,15 +62,10 @@ void VertexGrid<Id>::sweep(CellCenters& cells, Stage& stage, SweepObserver* obse
       const auto tet = static_cast<Index>(t);
       std::vector<SweptLine>& ofVertices = lines.next();
       std::vector<SweptLine>& ofCenters = centers.next();
-      const LatticeTet& corners = map_.exact.corners[t];
-      const bool isSwept =
-          fewPoints && sweepFewPoints(corners, map_.exact.unit, ofVertices, ofCenters);
-      if (!isSwept || observer != nullptr) {
-        TetRasterizer rasterizer(corners, map_.exact.unit);
-        if (!isSwept) rasterizer.append(kVertexGrid, ofVertices);
-        if (!isSwept) rasterizer.append(kCenterGrid, ofCenters);
-        if (observer != nullptr) observer->add(block, tet, rasterizer);
-      }
+      TetRasterizer rasterizer(map_.exact.corners[t], map_.exact.unit, 0, fewPoints);
+      rasterizer.append(kVertexGrid, ofVertices);
+      rasterizer.append(kCenterGrid, ofCenters);
+      if (observer != nullptr) observer->add(block, tet, rasterizer);
       cells.begin[t] = 0;
       counter.countNothing(tet);
       if (const auto own = centers.last(); !own.empty()) {

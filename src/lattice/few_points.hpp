@@ -1,25 +1,118 @@
-// Lattice points and cell centres in the tets of a coarse map: which of the few points of the
-// bounding box are inside, by a floating-point filter with a proven bound, and by exact predicates
-// where it cannot tell.
+// Grid points in a tet whose bounding box has few: all of them are compared with its faces, by a
+// floating-point filter with a proven bound, and by exact predicates where it cannot tell.
 //
-// A special case beside TetRasterizer. With lines alone, whole extractions of maps with 0.1 cells
-// per tet take 7 % (sphere_blocks_low) to 12 % (s17c_sphere_r0.1) longer (docs/ablation.md).
+// A special case of TetRasterizer. With lines alone, whole extractions of maps with 0.1 cells per
+// tet take 7 % (sphere_blocks_low) to 12 % (s17c_sphere_r0.1) longer (docs/ablation.md).
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <vector>
 
-#include <lattice/tet_rasterizer.hpp>
+#include <base/pair.hpp>
+#include <lattice/swept_line.hpp>
 
 namespace hexhex {
 
-/// Appends the lines of lattice points and of cell centres, the same as TetRasterizer's, if there
-/// are few of either in the bounding box.
-/// @param unit  a power of two, at least 2
-/// @return false, and nothing is appended, if there are more, or if the tet is so far away that
-///         doubles do not hold its corners
-[[nodiscard]] bool sweepFewPoints(const LatticeTet& corners, std::int64_t unit,
-                                  std::vector<SweptLine>& vertices,
-                                  std::vector<SweptLine>& centers);
+/// A tet in halves of grid units, and its bounding box in the grid of that width. All is exact if
+/// doubles hold the corners.
+struct HalvedTet {
+  std::array<Pair, 3> of01;  ///< corners, by axis
+  std::array<Pair, 3> of23;
+  IntPair firstXy;  ///< point of the box
+  std::int32_t firstZ;
+  IntPair stepsXy;  ///< from the first to the last point; -1 if there are none
+  std::int32_t stepsZ;
+  double mostSteps;  ///< along an axis
+  double largest;    ///< coordinate of a corner
+
+  HalvedTet(const LatticeTet& corners, double perHalf) noexcept;
+};
+
+/// A number for each corner of a tet.
+struct CornerWeights {
+  Pair of01;
+  Pair of23;
+
+  [[nodiscard]] double least() const noexcept;
+  [[nodiscard]] std::array<double, 4> byCorner() const noexcept {
+    return {of01[0], of01[1], of23[0], of23[1]};
+  }
+};
+
+/// The weights of points, as volumes, in halves of grid units: positive inside of the face opposite
+/// a corner.
+struct WeightField {
+  std::array<CornerWeights, 3> gradient;  ///< by axis
+  std::array<CornerWeights, 3> zero;      ///< by axis, a point where the weight vanishes
+
+  WeightField() = default;
+  explicit WeightField(const HalvedTet& tet) noexcept;
+  [[nodiscard]] CornerWeights at(const std::array<double, 3>& point) const noexcept;
+};
+
+/// One tet.
+class FewPoints {
+ public:
+  /// @param corners  must outlive this
+  /// @param unit     a power of two, at least 2 unless just vertices are swept
+  FewPoints(const LatticeTet& corners, std::int64_t unit) noexcept;
+
+  /// Whether the bounding box has few points of every grid, and doubles hold the corners: nothing
+  /// else may be asked otherwise.
+  [[nodiscard]] bool areFew() const noexcept { return areFew_; }
+
+  /// As TetRasterizer::sweep().
+  template <class Visit>
+  void sweep(HalfGrid grid, const Visit& visit) {
+    Lines lines;  // NOLINT: written before it is read
+    const std::size_t count = find(grid, lines);
+    for (std::size_t i = 0; i < count; ++i) visit(lines[i]);
+  }
+
+ private:
+  /// More points take longer one by one than by lines.
+  static constexpr std::int32_t kFewPoints = 16;
+  using Lines = std::array<SweptLine, kFewPoints>;
+  using Halves = std::array<std::int32_t, 3>;
+  /// Weights of points, the last coordinate changing fastest, and one more.
+  using WeightsOf = std::array<CornerWeights, kFewPoints + 1>;
+
+  /// Those of a grid in the bounding box.
+  struct Points {
+    IntPair firstXy;  ///< in halves
+    std::int32_t firstZ;
+    IntPair countXy;  ///< along each axis
+    std::int32_t countZ;
+
+    [[nodiscard]] std::int32_t all() const noexcept { return countXy[0] * countXy[1] * countZ; }
+    /// A point by steps from the first one, in halves.
+    [[nodiscard]] Halves at(const std::array<std::int32_t, 3>& steps) const noexcept {
+      return {firstXy[0] + 2 * steps[0], firstXy[1] + 2 * steps[1], firstZ + 2 * steps[2]};
+    }
+  };
+
+  [[nodiscard]] Points pointsOf(HalfGrid grid) const noexcept;
+  /// @return how many lines
+  [[nodiscard]] std::size_t find(HalfGrid grid, Lines& lines) noexcept;
+  [[nodiscard]] std::size_t findOne(const Points& points, const std::array<std::int32_t, 3>& at,
+                                    const CornerWeights& weights, SweepAxes order,
+                                    SweptLine& line) const noexcept;
+  [[nodiscard]] std::size_t findCandidates(const Points& points, const WeightsOf& weights,
+                                           std::uint32_t candidates, Lines& lines) const noexcept;
+  void weigh(const Points& points, WeightsOf& weights) const noexcept;
+  [[nodiscard]] std::uint32_t candidates(const WeightsOf& weights,
+                                         std::int32_t points) const noexcept;
+  [[nodiscard]] CornerMask simplexOf(const Halves& halves,
+                                     const CornerWeights& weights) const noexcept;
+
+  const LatticeTet& corners_;
+  std::int64_t unit_;
+  HalvedTet halved_;
+  bool areFew_;
+  bool measured_ = false;
+  WeightField field_;
+  double error_;  ///< bound of the error of weights in the box
+};
 
 }  // namespace hexhex

@@ -39,21 +39,10 @@ GridBox TetBounds::gridBox(std::int64_t unit, HalfGrid grid) const noexcept {
   return box;
 }
 
-SweepAxes chooseSweepAxes(const GridBox& box) noexcept {
-  std::array<std::int64_t, 3> counts{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    counts[axis] = std::int64_t{box.range[axis].last} - box.range[axis].first;
-  }
-  // By which axes have fewer points than others before them: 1 than 0, 2 than 1, 2 than 0.
-  constexpr std::array<std::uint8_t, 8> kOrders = {0, 2, 1, 5, 0, 3, 4, 5};
-  const unsigned fewer = (counts[1] < counts[0] ? 1U : 0U) | (counts[2] < counts[1] ? 2U : 0U) |
-                         (counts[2] < counts[0] ? 4U : 0U);
-  return {kOrders[fewer]};
-}
-
 /// Sets what the lines of all grids have in common.
 void TetRasterizer::measure() noexcept {
   measured_ = true;
+  bounds_ = TetBounds(corners_);
   const int shift = shiftOf(unit_);
   const double scale = 1.0 / static_cast<double>(unit_);
   double size = 0;

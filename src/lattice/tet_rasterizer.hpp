@@ -13,50 +13,16 @@
 #include <utility>
 #include <vector>
 
-#include <lattice/tet_geometry.hpp>
+#include <lattice/few_points.hpp>
 
 namespace hexhex {
-
-/// The integer grid, moved by one half along some axes: bit k for axis k. Grid point z names the
-/// point that it is moved to: the centre of a cell is named by the cell's smallest corner.
-using HalfGrid = std::uint8_t;
-/// Those of hex vertices, and of the centres of hex cells.
-inline constexpr HalfGrid kVertexGrid = 0;
-inline constexpr HalfGrid kCenterGrid = 7;
-
-/// The order in which a tet is swept: planes of constant coordinate axes[0], in them lines of
-/// constant axes[1], along axes[2].
-struct SweepAxes {
-  std::uint8_t index = 0;  ///< of the six permutations
-
-  static constexpr std::array<std::array<std::uint8_t, 3>, 6> kPermutations = {
-      {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
-
-  [[nodiscard]] constexpr const std::array<std::uint8_t, 3>& operator()() const noexcept {
-    return kPermutations[index];
-  }
-};
-
-/// Range of grid coordinates, inclusive; empty if first > last.
-struct GridRange {
-  std::int32_t first = 0;
-  std::int32_t last = -1;
-};
-
-/// The points of a grid in the bounding box of a tet.
-struct GridBox {
-  std::array<GridRange, 3> range;
-  [[nodiscard]] bool empty() const noexcept {
-    return range[0].first > range[0].last || range[1].first > range[1].last ||
-           range[2].first > range[2].last;
-  }
-};
 
 /// The bounding box of a tet on the lattice, by axis.
 struct TetBounds {
   std::array<std::int64_t, 3> low;
   std::array<std::int64_t, 3> high;
 
+  TetBounds() = default;
   explicit TetBounds(const LatticeTet& corners) noexcept;
   /// @param unit  a power of two, at least 2 unless `grid` is that of vertices
   [[nodiscard]] GridBox gridBox(std::int64_t unit, HalfGrid grid = kVertexGrid) const noexcept;
@@ -67,43 +33,6 @@ struct TetBounds {
   return TetBounds(corners).gridBox(unit, grid);
 }
 
-/// Fewest planes first, longest lines last; ties in order of the axes. (Section 5.2.1)
-[[nodiscard]] SweepAxes chooseSweepAxes(const GridBox& box) noexcept;
-
-/// A non-empty line of grid points of a closed tet, along the third sweep axis.
-struct SweptLine {
-  std::int32_t level;  ///< coordinate along the first sweep axis
-  std::int32_t row;    ///< along the second
-  std::int32_t first;  ///< along the third, of the first point
-  std::uint32_t count;
-  CornerMask left;   ///< simplex of the first point
-  CornerMask right;  ///< of the last point
-  SweepAxes axes;    ///< the same for all lines of a tet
-
-  /// The simplex of all points between: the smallest that contains both ends, by convexity.
-  /// (Appendix A.1, its six rules in one)
-  [[nodiscard]] CornerMask inner() const noexcept { return static_cast<CornerMask>(left | right); }
-  /// The simplex of the i-th point.
-  [[nodiscard]] CornerMask simplex(std::uint32_t i) const noexcept {
-    return i == 0 ? left : (i + 1 == count ? right : inner());
-  }
-  /// The i-th point.
-  [[nodiscard]] GridPoint point(std::uint32_t i) const noexcept {
-    const std::array<std::uint8_t, 3>& a = axes();
-    GridPoint z{};
-    z[a[0]] = level;
-    z[a[1]] = row;
-    z[a[2]] = first + static_cast<std::int32_t>(i);
-    return z;
-  }
-  /// Which point a grid point on the line is; not below `count` if it is none.
-  [[nodiscard]] std::uint32_t indexOf(const GridPoint& z) const noexcept {
-    return static_cast<std::uint32_t>(z[axes()[2]]) - static_cast<std::uint32_t>(first);
-  }
-  /// Whether all points lie in the interior of the tet.
-  [[nodiscard]] bool allInside() const noexcept { return left == kWholeTet && right == kWholeTet; }
-};
-
 class TetRasterizer {
  public:
   /// @param corners  of a positive tet; must outlive this
@@ -112,15 +41,25 @@ class TetRasterizer {
   ///                 result: if it is positive, exact predicates decide at the ends of all lines,
   ///                 from wherever the enlarged tet begins (Section 5.2.3), and if it is infinite,
   ///                 on the whole bounding box.
-  TetRasterizer(const LatticeTet& corners, std::int64_t unit, double epsilon = 0) noexcept
-      : corners_(corners), unit_(unit), epsilon_(epsilon), bounds_(corners) {}
+  /// @param fewPoints  whether points may be compared one by one where there are few
+  TetRasterizer(const LatticeTet& corners, std::int64_t unit, double epsilon = 0,
+                bool fewPoints = true) noexcept
+      : corners_(corners),
+        unit_(unit),
+        epsilon_(epsilon),
+        fewPoints_(corners, unit),
+        areFew_(fewPoints && !(epsilon > 0) && fewPoints_.areFew()) {}
 
   /// Calls visit(SweptLine) for every line of a grid that meets the closed tet, in sweep order.
   template <class Visit>
   void sweep(HalfGrid grid, const Visit& visit) {
+    if (areFew_) {
+      fewPoints_.sweep(grid, visit);
+      return;
+    }
+    if (!measured_) measure();
     const GridBox box = bounds_.gridBox(unit_, grid);
     if (box.empty()) return;
-    if (!measured_) measure();
     Search search;
     if (!prepare(grid, box, search)) return;
     SweptLine line;
@@ -189,9 +128,11 @@ class TetRasterizer {
   const LatticeTet& corners_;
   std::int64_t unit_;
   double epsilon_;
-  TetBounds bounds_;
+  FewPoints fewPoints_;
+  bool areFew_;
   bool measured_ = false;
-  // Then, in grid units relative to a grid point near the tet:
+  TetBounds bounds_;
+  // In grid units relative to a grid point near the tet:
   std::array<std::int32_t, 3> origin_;  ///< that point
   std::array<ByFace, 3> gradients_;     ///< of the faces' planes, by axis
   std::array<ByFace, 3> zeros_;         ///< points of the planes, by axis

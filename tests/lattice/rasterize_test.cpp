@@ -9,7 +9,6 @@
 
 #include <gtest/gtest.h>
 
-#include <lattice/few_points.hpp>
 #include <lattice/tet_rasterizer.hpp>
 
 #include "oracle.hpp"
@@ -113,42 +112,8 @@ std::string describe(const ScaledTet& scaled) {
   return text;
 }
 
-/// Lines of a box, as points.
-void expectPoints(const GridBox& box, const std::vector<SweptLine>& lines,
-                  const std::vector<CornerMask>& expected) {
-  SimplexGrid grid(box);
-  for (const SweptLine& line : lines) {
-    ASSERT_EQ(line.axes.index, chooseSweepAxes(box).index);
-    for (std::uint32_t i = 0; i < line.count; ++i) {
-      ASSERT_TRUE(grid.covers(line.point(i)));
-      grid[line.point(i)] = line.simplex(i);
-    }
-  }
-  ASSERT_EQ(grid.simplices(), expected);
-}
-
-/// sweepFewPoints(), if there are few: for the tet as it is, and moved by one half, as centres.
-void expectTheSameOfFewPoints(const ScaledTet& scaled, const std::vector<CornerMask>& expected) {
-  const GridBox box = gridBox(scaled.corners, scaled.unit);
-  std::vector<SweptLine> lines;
-  std::vector<SweptLine> others;
-  if (sweepFewPoints(scaled.corners, scaled.unit, lines, others)) {
-    ASSERT_NO_FATAL_FAILURE(expectPoints(box, lines, expected));
-  } else {
-    ASSERT_TRUE(lines.empty() && others.empty());
-  }
-  LatticeTet moved = scaled.corners;
-  for (LatticePoint& p : moved) {
-    for (std::int64_t& coordinate : p) coordinate += scaled.unit / 2;
-  }
-  lines.clear();
-  if (sweepFewPoints(moved, scaled.unit, others, lines)) {
-    ASSERT_NO_FATAL_FAILURE(expectPoints(box, lines, expected));
-  }
-}
-
-/// Rasterizes with every kind of epsilon, and in every grid the tet that is moved like the grid,
-/// and compares with brute force.
+/// Rasterizes with every kind of epsilon, by lines only and one by one where there are few points,
+/// and in every grid the tet that is moved like the grid; and compares with brute force.
 template <class Integer>
 void expectAgreement(const ScaledTet& scaled) {
   const GridBox box = gridBox(scaled.corners, scaled.unit);
@@ -158,16 +123,19 @@ void expectAgreement(const ScaledTet& scaled) {
     ASSERT_NO_FATAL_FAILURE(expectLines(rasterizer, kVertexGrid, box, expected))
         << describe(scaled) << " epsilon " << epsilon;
   }
+  TetRasterizer byLines(scaled.corners, scaled.unit, 0, false);
+  ASSERT_NO_FATAL_FAILURE(expectLines(byLines, kVertexGrid, box, expected)) << describe(scaled);
   if (scaled.unit == 1) return;  // there are no halves
-  ASSERT_NO_FATAL_FAILURE(expectTheSameOfFewPoints(scaled, expected)) << describe(scaled);
   for (HalfGrid grid = 1; grid < 8; ++grid) {
     LatticeTet moved = scaled.corners;
     for (LatticePoint& p : moved) {
       for (std::size_t k = 0; k < 3; ++k) p[k] += ((grid >> k) & 1) * (scaled.unit / 2);
     }
-    TetRasterizer rasterizer(moved, scaled.unit);
-    ASSERT_NO_FATAL_FAILURE(expectLines(rasterizer, grid, box, expected))
-        << describe(scaled) << " grid " << int{grid};
+    for (const bool fewPoints : {false, true}) {
+      TetRasterizer rasterizer(moved, scaled.unit, 0, fewPoints);
+      ASSERT_NO_FATAL_FAILURE(expectLines(rasterizer, grid, box, expected))
+          << describe(scaled) << " grid " << int{grid} << " few points " << fewPoints;
+    }
   }
 }
 
@@ -373,7 +341,7 @@ TEST(Rasterize, FindsAllGridsOfOneTet) {
     const auto kind = static_cast<TetSource::Kind>(random.index(TetSource::kKinds));
     ScaledTet scaled = source(kind, std::int64_t{1} << random.between(2, 20));
     translate(scaled, anyOffset(random, 1000));
-    TetRasterizer rasterizer(scaled.corners, scaled.unit);
+    TetRasterizer rasterizer(scaled.corners, scaled.unit, 0, random.oneIn(2));
     for (HalfGrid half = 0; half < 8; ++half) {
       const GridBox box = gridBox(scaled.corners, scaled.unit, half);
       SimplexGrid expected(box);
