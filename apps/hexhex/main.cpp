@@ -1,8 +1,11 @@
 // `hexhex`: parses the command line, runs the subcommand, and turns errors into a sentence and an
 // exit code.
 #include <array>
+#include <atomic>
 #include <csignal>
+#include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
@@ -51,6 +54,21 @@ std::string usageProblem(const CLI::App* app, const CLI::Error& error) {
                      error.what(), app->get_display_name());
 }
 
+/// Memory for the time when there is no more: what is given back here the first time lets small
+/// work go on, such as a destructor's, which may not fail; the second time, it lets all be cleaned
+/// up.
+std::array<std::atomic<void*>, 2> spareMemory;
+
+void reserveMemory() {
+  constexpr std::size_t kBytes = std::size_t{1} << 18;
+  for (std::atomic<void*>& spare : spareMemory) spare = std::malloc(kBytes);
+  std::set_new_handler([] {
+    if (void* const first = spareMemory[0].exchange(nullptr)) return std::free(first);
+    std::free(spareMemory[1].exchange(nullptr));
+    throw std::bad_alloc();
+  });
+}
+
 /// Says so without any memory.
 int failForMemory() noexcept {
   static_cast<void>(std::fputs(
@@ -59,6 +77,11 @@ int failForMemory() noexcept {
       "[OutOfMemory]\n",
       stderr));
   return kFailure;
+}
+
+/// First of all: the validators of CLI11 are made before main(), where nothing can be caught.
+[[gnu::constructor(101)]] void endWithoutMemory() {
+  std::set_new_handler([] { std::_Exit(failForMemory()); });
 }
 
 /// Runs a subcommand; every error ends here.
@@ -109,6 +132,7 @@ int main(int argc, char** argv) {
   // A limit on the size of files shall be an error like a full disk, not the end of the process.
   std::signal(SIGXFSZ, SIG_IGN);
 #endif
+  reserveMemory();
   try {
     const int code = run(argc, argv);
     if (std::fflush(stdout) == 0 || code != kSuccess) return code;

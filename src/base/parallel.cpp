@@ -10,6 +10,7 @@
 #include <mutex>
 #include <new>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -220,15 +221,20 @@ class Workforce {
     // All or none, and a few to spare: oneTBB may start a thread more while another is about to
     // sleep.
     if (!haveSpareThreads(wanted - hired_ + kSpare)) return hired_;
-    arenaPool().with(wanted, [wanted](auto& arena) { startWorkers(arena, wanted); });
+    try {
+      arenaPool().with(wanted, [wanted](auto& arena) { startWorkers(arena, wanted); });
+    } catch (const std::runtime_error&) {
+      throw std::bad_alloc();  // how oneTBB says that it could not start a thread
+    }
     hired_ = wanted;
     return hired_;
   }
+  [[nodiscard]] int hired() const noexcept { return hired_; }
 
  private:
   static constexpr int kSpare = 2;
   std::mutex mutex_;
-  int hired_ = 1;
+  std::atomic<int> hired_{1};
 };
 
 Workforce& workforce() {
@@ -249,7 +255,8 @@ void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
     if (progress != nullptr) progress->advance(end - begin);
   };
 #if HEXHEX_HAS_TBB
-  if (blocks > 1 && currentThreads() > 1) {
+  // Outside of withThreads(), only with threads that have been started.
+  if (blocks > 1 && currentThreads() > 1 && workforce().hired() > 1) {
     LoopOutcome outcome;
     {
       const KnownOrder loop(KnownOrder::Of::Loop);

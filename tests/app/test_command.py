@@ -245,6 +245,31 @@ class FileProblems(CommandTest):
                 self.assertIn("File too large. [FileWrite]", result.stderr)
             self.assertEqual(self.files(), before)
 
+    @unittest.skipUnless(sys.platform == "linux", "limits of address space")
+    def test_scarce_memory(self):
+        map_file = self.generate("box", "--cells", "1", "--refine", "1")
+        import resource
+
+        def run(kilobytes):
+            limit = (1024 * kilobytes, 1024 * kilobytes)
+            return subprocess.run(
+                [self.command, "extract", map_file, "-o", "a.vtu", "--quiet", "--threads", "1"], cwd=self.folder,
+                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, limit), capture_output=True, check=False)
+
+        # From where all libraries can be loaded on; the sanitizers want terabytes.
+        least, most = 0, 400_000
+        if run(most).returncode != SUCCESS:
+            self.skipTest("it takes more address space than that")
+        while most - least > 20:
+            middle = (least + most) // 2
+            least, most = (middle, most) if run(middle).returncode == 127 else (least, middle)
+        for kilobytes in range(most, most + 6000, 60):
+            result = run(kilobytes)
+            self.assertIn(result.returncode, [SUCCESS, FAILURE, 127], result.stderr)
+            if result.returncode == FAILURE:
+                self.assertIn(b"[OutOfMemory]", result.stderr)
+            self.assertLessEqual(set(self.files()), {"map.hexex", "a.vtu"})
+
     def test_links_that_lead_nowhere(self):
         map_file = self.generate("box", "--cells", "1", "--refine", "1")
         (self.folder / "loop").symlink_to("loop")

@@ -139,7 +139,7 @@ HdfFile::QuietErrors::QuietErrors() {
 HdfFile::QuietErrors::~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, function, data); }
 
 HdfFile::HdfFile(const OutputFile& output, Order order)
-    : lock_(libraryLock()),
+    : lock_((requireSpareMemory(), libraryLock())),
       target_{output},
       driver_(target_, registerDriver(), H5FDunregister),
       ofFiles_(target_, H5Pcreate(H5P_FILE_CREATE), H5Pclose),

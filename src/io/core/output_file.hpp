@@ -236,4 +236,8 @@ class FilePart {
 /// libraries holds this lock.
 [[nodiscard]] std::mutex& libraryLock();
 
+/// Throws std::bad_alloc if there is no more memory than what such a library may need for itself:
+/// HDF5 crashes, and Exodus leaves arrays out, if there is not enough in the midst of their work.
+void requireSpareMemory();
+
 }  // namespace hexhex

@@ -61,11 +61,15 @@ OutputFolder::OutputFolder(const fs::path& target) : target_(realTarget(target))
 }
 
 OutputFolder::~OutputFolder() {
-  try {
-    std::error_code ignored;
-    fs::remove_all(temporary_, ignored);
-  } catch (const std::bad_alloc&) {
-    // What is left then has a name that says whose it is.
+  // Looking into a folder takes memory and a descriptor, which a moment later there may be again.
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    try {
+      std::error_code error;
+      fs::remove_all(temporary_, error);
+      if (!error) break;
+    } catch (const std::bad_alloc&) {
+      continue;
+    }
   }
   if (!committed_) removeParents();
 }

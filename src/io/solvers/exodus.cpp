@@ -4,11 +4,13 @@
 // cache.
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdint>
 #include <exodusII.h>
 #include <limits>
 #include <mutex>
 #include <netcdf.h>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,7 +38,9 @@ class ExodusFile {
   ExodusFile(const OutputFile& file, int mode) : file_(file) {
     int wordInMemory = sizeof(double);
     int wordInFile = sizeof(double);
+    requireSpareMemory();
     ex_opts(0);  // print nothing
+    errno = 0;
     id_ = ex_create(file.temporary().c_str(), EX_CLOBBER | mode, &wordInMemory, &wordInFile);
     require(id_);
   }
@@ -50,6 +54,8 @@ class ExodusFile {
   /// @param status  of a call: negative if it failed; positive values are warnings
   void require(int status) const {
     if (status < 0) file_.fail("the Exodus library could not write it; perhaps the disk is full");
+    // It goes on, and leaves out what it had no memory for.
+    if (errno == ENOMEM) throw std::bad_alloc();
   }
   void close() { require(ex_close(std::exchange(id_, -1))); }
 
