@@ -158,7 +158,8 @@ double minimize(Energy& energy, Unknowns& x) {
   parameters.past = 8;
   parameters.delta = 1e-5;
   double value = 0;
-  static_cast<void>(lbfgs(x.size(), x.data(), &value, evaluate, nullptr, &energy, &parameters));
+  const int end = lbfgs(x.size(), x.data(), &value, evaluate, nullptr, &energy, &parameters);
+  if (end == LBFGSERR_OUTOFMEMORY) throw std::bad_alloc();  // all other ends are as good as any
   std::vector<double> unused(static_cast<std::size_t>(x.size()));
   return energy.evaluate(x.data(), unused.data());
 }

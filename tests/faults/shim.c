@@ -17,6 +17,7 @@
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
+#include <execinfo.h>
 #include <fcntl.h>
 #include <malloc.h>
 #include <pthread.h>
@@ -56,11 +57,21 @@ static int logging = -1;
   static __typeof__(&name) next;                             \
   if (next == NULL) *(void **)&next = dlsym(RTLD_NEXT, #name)
 
+/* Tells where the call is that fails, if FAULT_TRACE is in the environment. */
+static void trace(void) {
+  void *frames[24];
+  fault.armed = 0; /* it takes memory itself */
+  if (getenv("FAULT_TRACE") != NULL) backtrace_symbols_fd(frames, backtrace(frames, 24), 2);
+  fault.armed = 1;
+}
+
 /* Whether this call of the kind is the one. */
 static int hits(enum Kind kind) {
   if (!fault.armed || fault.kind != kind) return 0;
   const long call = atomic_fetch_add(calls, 1) + 1;
-  return fault.at > 0 && (call == fault.at || (fault.persistent && call > fault.at));
+  if (fault.at == 0 || call < fault.at || (call > fault.at && !fault.persistent)) return 0;
+  if (call == fault.at) trace();
+  return 1;
 }
 
 static int fails(enum Kind kind, int error) {

@@ -52,7 +52,7 @@ herr_t closeFile(H5FD_t* file) {
   return 0;
 }
 
-herr_t query(const H5FD_t* /*file*/, unsigned long* features) {
+herr_t listFeatures(const H5FD_t* /*file*/, unsigned long* features) {
   *features = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
               H5FD_FEAT_AGGREGATE_SMALLDATA;
   return 0;
@@ -65,8 +65,8 @@ herr_t allocateIn(H5FD_t* file, H5FD_mem_t /*type*/, haddr_t end) {
 }
 haddr_t writtenOf(const H5FD_t* file, H5FD_mem_t /*type*/) { return fileOf(file).written; }
 
-herr_t read(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t from, std::size_t size,
-            void* bytes) {
+herr_t readBytes(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t from,
+                 std::size_t size, void* bytes) {
   const OpenFile& open = fileOf(file);
   const std::size_t there =
       from < open.written ? std::min<std::size_t>(size, open.written - from) : 0;
@@ -75,8 +75,8 @@ herr_t read(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t from,
   return 0;
 }
 
-herr_t write(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t to, std::size_t size,
-             const void* bytes) {
+herr_t writeBytes(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t to,
+                  std::size_t size, const void* bytes) {
   OpenFile& open = fileOf(file);
   guarded(*open.target, [&] { open.target->output.writeBytesAt(to, bytes, size); });
   open.written = std::max<haddr_t>(open.written, to + size);
@@ -87,7 +87,7 @@ herr_t write(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t to, 
 herr_t makeLong(H5FD_t* file, hid_t transfer, hbool_t /*closing*/) {
   const OpenFile& open = fileOf(file);
   if (open.written >= open.allocated) return 0;
-  return write(file, H5FD_MEM_DEFAULT, transfer, open.allocated - 1, 1, "");
+  return writeBytes(file, H5FD_MEM_DEFAULT, transfer, open.allocated - 1, 1, "");
 }
 
 H5FD_class_t driverClass() {
@@ -103,12 +103,12 @@ H5FD_class_t driverClass() {
   driver.fapl_size = sizeof(Info);
   driver.open = openFile;
   driver.close = closeFile;
-  driver.query = query;
+  driver.query = listFeatures;
   driver.get_eoa = allocatedIn;
   driver.set_eoa = allocateIn;
   driver.get_eof = writtenOf;
-  driver.read = read;
-  driver.write = write;
+  driver.read = readBytes;
+  driver.write = writeBytes;
   driver.truncate = makeLong;
   std::copy(std::begin(kMap), std::end(kMap), std::begin(driver.fl_map));
   return driver;

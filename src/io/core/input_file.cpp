@@ -11,6 +11,7 @@
 
 #include <base/parallel.hpp>
 #include <io/core/input_file.hpp>
+#include <io/core/system_call.hpp>
 
 namespace hexhex {
 namespace {
@@ -32,7 +33,9 @@ InputFile::Descriptor::~Descriptor() {
 }
 
 InputFile::InputFile(std::filesystem::path file)
-    : path_(std::move(file)), descriptor_{::open(path_.c_str(), O_RDONLY | O_CLOEXEC)} {
+    : path_(std::move(file)), descriptor_{uninterrupted([this] {
+        return ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+      })} {
   struct stat status {};
   if (descriptor_.value < 0 || ::fstat(descriptor_.value, &status) != 0) fail(reasonOf(errno));
   if (S_ISDIR(status.st_mode)) fail("it is a folder");
@@ -43,8 +46,8 @@ InputFile::InputFile(std::filesystem::path file)
 void InputFile::readAt(std::uint64_t position, void* bytes, std::size_t size) const {
   char* place = static_cast<char*>(bytes);
   while (size > 0) {
-    const ssize_t count = ::pread(descriptor_.value, place, size, static_cast<off_t>(position));
-    if (count < 0 && errno == EINTR) continue;
+    const ssize_t count = uninterrupted(
+        [&] { return ::pread(descriptor_.value, place, size, static_cast<off_t>(position)); });
     if (count < 0) fail(reasonOf(errno));
     if (count == 0) fail("it became shorter while it was read");
     place += count;
@@ -54,11 +57,9 @@ void InputFile::readAt(std::uint64_t position, void* bytes, std::size_t size) co
 }
 
 std::size_t InputFile::read(void* bytes, std::size_t size) const {
-  while (true) {
-    const ssize_t count = ::read(descriptor_.value, bytes, size);
-    if (count >= 0) return static_cast<std::size_t>(count);
-    if (errno != EINTR) fail(reasonOf(errno));
-  }
+  const ssize_t count = uninterrupted([&] { return ::read(descriptor_.value, bytes, size); });
+  if (count < 0) fail(reasonOf(errno));
+  return static_cast<std::size_t>(count);
 }
 
 void InputFile::moveTo(std::uint64_t position) const {

@@ -12,6 +12,7 @@
 #include <hexhex/io.hpp>
 
 #include <io/core/output_file.hpp>
+#include <io/core/system_call.hpp>
 
 namespace hexhex {
 namespace {
@@ -27,15 +28,6 @@ std::string temporaryName() {
 
 std::filesystem::path folderOf(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-}
-
-/// Calls a function of the system again if a signal interrupted it.
-template <class Call>
-auto uninterrupted(const Call& call) {
-  while (true) {
-    const auto result = call();
-    if (result >= 0 || errno != EINTR) return result;
-  }
 }
 
 /// Makes what was written survive a power failure, where the file system knows how to.

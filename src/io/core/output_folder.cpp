@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t kPermissions = 0777;  // less what the user's umask takes away
+constexpr mode_t kFolderPermissions = 0777;  // less what the user's umask takes away
 
 /// Gives each of two folders the other's name, by way of a third one where the system does not know
 /// how to do it at once.
@@ -53,7 +53,7 @@ OutputFolder::OutputFolder(const fs::path& target) : target_(realTarget(target))
   do {
     temporary_ = temporaryBeside(target_);
     aside_ = temporary_.native() + "-aside";
-    if (::mkdir(temporary_.c_str(), kPermissions) == 0) return;
+    if (::mkdir(temporary_.c_str(), kFolderPermissions) == 0) return;
   } while (errno == EEXIST);
   const int reason = errno;
   removeParents();
@@ -90,7 +90,7 @@ void OutputFolder::makeParents() {
     parents_.push_back(folder);
   }
   for (auto folder = parents_.rbegin(); folder != parents_.rend(); ++folder) {
-    if (::mkdir(folder->c_str(), kPermissions) == 0 || errno == EEXIST) continue;
+    if (::mkdir(folder->c_str(), kFolderPermissions) == 0 || errno == EEXIST) continue;
     const int reason = errno;
     removeParents();
     failToWrite(target_, "the folder " + folder->string() + " cannot be created", reason);
