@@ -25,18 +25,6 @@ void checkOptions(const ExtractOptions& options) {
   }
 }
 
-std::uint64_t scaledCells(std::uint64_t volume, int scale, double limit) {
-  const double estimate = static_cast<double>(volume) * std::pow(scale, 3);
-  if (estimate >= limit) {
-    throw Error(ErrorCode::TooLarge,
-                "The mesh would have about " + std::to_string(std::llround(estimate / 1e6)) +
-                    " million cells, more than the " + std::to_string(std::llround(limit / 1e6)) +
-                    " million that can be numbered. Lower the scale.");
-  }
-  const auto s = static_cast<std::uint64_t>(scale);
-  return volume * s * s * s;
-}
-
 namespace {
 
 /// Whether a repair is to be tried, even if this build can only say that it cannot: for flipped and

@@ -11,14 +11,14 @@
 
 #include <base/parallel.hpp>
 #include <base/switches.hpp>
-#include <igm/prepare.hpp>
+#include <igm/measures.hpp>
 #include <sweep/vertex_numbers.hpp>
 
 namespace hexhex {
 
 /// As many cells as 32-bit indices can number, and as pieces can.
 inline constexpr double kMaxCells = kNone;
-inline constexpr double kMaxStreamedCells = 0x1p60;
+inline constexpr double kMaxStreamedCells = kMaxCountedCells;
 
 /// @throws Error InvalidArgument for an epsilon out of range
 void checkOptions(const ExtractOptions& options);
@@ -43,11 +43,6 @@ struct ValidMap {
 [[nodiscard]] ValidMap prepareValid(const TetMapView& map, int maxScale,
                                     const EngineOptions& options, Context& context,
                                     ExtractStatistics& statistics);
-
-/// The number of cells at a scale.
-/// @param volume  at scale 1
-/// @throws Error TooLarge if there were `limit` or more
-[[nodiscard]] std::uint64_t scaledCells(std::uint64_t volume, int scale, double limit);
 
 /// All stages behind the scaling. Adds to the map's topology what the engine needs.
 /// @param map       scaled

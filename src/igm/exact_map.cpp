@@ -385,6 +385,9 @@ ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters
                 map);
   checkOrientations(unfinished, parameters, stage, defects, map);
   map.sixfoldVolume = sixfoldVolume(survey, map, stage);
+  const auto unit = static_cast<double>(map.unit);
+  const double cells = map.sixfoldVolume.toDouble() / (6 * unit * unit * unit);
+  if (defects.empty() && cells >= kMaxCountedCells) defects.add(ErrorCode::TooLarge, {}, cells);
   return map;
 }
 

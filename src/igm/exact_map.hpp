@@ -10,6 +10,9 @@
 
 namespace hexhex {
 
+/// Maps have fewer cells: so many can be counted, and their faces and edges, in 64 bits.
+inline constexpr double kMaxCountedCells = 0x1p60;
+
 /// Parameters as integers, in units of 1 / unit. Transitions carry corners over exactly.
 struct ExactMap {
   Array<LatticeTet> corners;  ///< per tet

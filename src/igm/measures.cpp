@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <functional>
 
@@ -108,6 +109,21 @@ std::int64_t latticeLength(const SingularEdge& edge, const ExactMap& map) {
   return std::abs(e[0]) + std::abs(e[1]) + std::abs(e[2]);
 }
 
+std::uint64_t scaledCells(std::uint64_t volume, int scale, double limit) {
+  const double estimate = static_cast<double>(volume) * std::pow(scale, 3);
+  if (estimate >= limit) {
+    const auto millions = [](double cells) {
+      const std::string digits = std::to_string(std::round(cells / 1e6));
+      return digits.substr(0, digits.find('.'));
+    };
+    throw Error(ErrorCode::TooLarge, "The mesh would have about " + millions(estimate) +
+                                         " million cells, more than the " + millions(limit) +
+                                         " million that can be numbered. Lower the scale.");
+  }
+  const auto s = static_cast<std::uint64_t>(scale);
+  return volume * s * s * s;
+}
+
 std::uint64_t componentCount(const TetTopology& topology) {
   DisjointSets sets(topology.tetCount());
   for (HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
@@ -152,7 +168,7 @@ std::vector<std::int64_t> boundaryGenus(const TetTopology& topology) {
 Expectation computeExpectation(const PreparedMap& map, std::uint64_t edges, int scale) {
   const auto s = static_cast<std::uint64_t>(scale);
   Expectation expected;
-  expected.cells = parametricVolume(map.exact) * s * s * s;
+  expected.cells = scaledCells(parametricVolume(map.exact), scale);
   expected.boundaryQuads = boundaryArea(map.topology, map.exact) * s * s;
   // One length is below 2^54, but there may be 2^32 of them.
   std::map<int, Int128> inner;

@@ -27,6 +27,12 @@ namespace hexhex {
 /// Parametric length of a singular edge in unit lengths times map.unit.
 [[nodiscard]] std::int64_t latticeLength(const SingularEdge& edge, const ExactMap& map);
 
+/// The number of cells at a scale.
+/// @param volume  at scale 1
+/// @throws Error TooLarge if there were `limit` or more
+[[nodiscard]] std::uint64_t scaledCells(std::uint64_t volume, int scale,
+                                        double limit = kMaxCountedCells);
+
 /// Number of connected components of the tet mesh (through faces).
 [[nodiscard]] std::uint64_t componentCount(const TetTopology& topology);
 
@@ -36,6 +42,7 @@ namespace hexhex {
 /// Everything that follows from a valid map about its mesh.
 /// @param edges  of its tets
 /// @param scale  of the mesh; `map` itself is not scaled
+/// @throws Error TooLarge for kMaxCountedCells
 [[nodiscard]] Expectation computeExpectation(const PreparedMap& map, std::uint64_t edges,
                                              int scale);
 

@@ -2,12 +2,17 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include <gtest/gtest.h>
+
+#include <hexhex/check.hpp>
+#include <hexhex/partial.hpp>
 
 #include <mesh/grid_meshes.hpp>
 
 #include "extract/support.hpp"
+#include "support/error_of.hpp"
 
 namespace hexhex::test {
 
@@ -66,6 +71,78 @@ TEST(Limits, ValencesOfAThousand) {
       EXPECT_EQ(mesh.cells.size(), valence * static_cast<std::size_t>(scale * scale * scale));
     }
   }
+}
+
+/// A box of one cube in space.
+TetMap boxOf(double x, double y, double z) {
+  TetMap map = testing::identityMap(1);
+  for (TetParameters& u : map.parameters) {
+    for (Vec3& corner : u) corner = {x * corner[0], y * corner[1], z * corner[2]};
+  }
+  return map;
+}
+
+TEST(Limits, AreasAndVolumesOf10To12) {
+  const Expectation cube = check(boxOf(1e4, 1e4, 1e4)).expected;
+  EXPECT_EQ(cube.cells, 1'000'000'000'000U);
+  EXPECT_EQ(cube.boundaryQuads, 600'000'000U);
+  const CheckReport plate = check(boxOf(1e6, 1e6, 1), {1e-2, 10});
+  EXPECT_EQ(plate.expected.cells, 1'000'000'000'000'000U);
+  EXPECT_EQ(plate.expected.boundaryQuads, 200'000'400'000'000U);
+  EXPECT_EQ(plate.expected.boundarySingularEdges.at(1), 80'000'040U);
+  EXPECT_EQ(codeOf([] { static_cast<void>(extract(boxOf(1e4, 1e4, 1e4))); }), ErrorCode::TooLarge);
+}
+
+/// 2^60 cells are counted no more, neither by the map's own size nor by the scale.
+TEST(Limits, CellsThatCannotBeCounted) {
+  for (const double size : {0x1p20, 0x1p21, 0x1p22, 0x1p22 + 1, 0x1p24, 0x1p26}) {
+    const TetMap map = boxOf(size, size, size);
+    EXPECT_EQ(codeOf([&] { static_cast<void>(extract(map)); }), ErrorCode::TooLarge) << size;
+    const CheckReport report = check(map);
+    ASSERT_EQ(report.defects.size(), 1U) << size;
+    EXPECT_EQ(report.defects[0].code, ErrorCode::TooLarge);
+  }
+  EXPECT_EQ(check(boxOf(1, 1, 1), {1e-2, 1'000'000}).expected.cells, 1'000'000'000'000'000'000U);
+  EXPECT_EQ(codeOf([] {
+              static_cast<void>(check(boxOf(1, 1, 1), {1e-2, 1 << 20}));
+            }),
+            ErrorCode::TooLarge);
+  for (const int scale :
+       {1'626, 1 << 16, 1 << 21, 1 << 22, 1 << 27, 1 << 28, 1 << 30, 0x7fffffff}) {
+    ExtractOptions options;
+    options.scale = scale;
+    const Error error = errorOf([&] { static_cast<void>(extract(boxOf(1, 1, 1), options)); });
+    EXPECT_EQ(error.code(), ErrorCode::TooLarge) << scale;
+  }
+}
+
+/// Views that say that they have more tets than there are indices for, and nothing behind them.
+TEST(Limits, TetsThatCannotBeNumbered) {
+  const TetMap one = boxOf(1, 1, 1);
+  for (const std::size_t tets :
+       {std::size_t{1} << 30, std::size_t{1} << 31, std::size_t{1} << 40}) {
+    TetMapView view = one;
+    view.tets = std::span(one.tets.data(), tets);
+    view.parameters = std::span(one.parameters.data(), tets);
+    const CheckReport report = check(view);
+    ASSERT_EQ(report.defects.size(), 1U);
+    EXPECT_EQ(report.defects[0].code, ErrorCode::TooLarge);
+    Context context;
+    EXPECT_EQ(codeOf([&] { static_cast<void>(extract(view)); }), ErrorCode::TooLarge);
+    EXPECT_EQ(codeOf([&] { static_cast<void>(extractPartial(view, {}, context)); }),
+              ErrorCode::TooLarge);
+    EXPECT_FALSE(verify(view, {}).passed());
+  }
+}
+
+/// 12 unit lengths of singular edges each.
+TEST(Limits, AMillionComponents) {
+  const auto count = static_cast<std::size_t>(cases(1 << 20));
+  const TetMap map = separateCubes(count);
+  const HexMesh mesh = extract(map);
+  EXPECT_EQ(mesh.cells.size(), count);
+  const VerifyReport report = verify(map, mesh);
+  EXPECT_TRUE(report.passed()) << failures(report);
 }
 
 /// The lattice has 2^50 points per unit length here: 64 bits hold 8,191 unit lengths.
