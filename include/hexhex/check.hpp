@@ -69,7 +69,7 @@ struct CheckOptions {
 };
 
 /// Examines a map and collects every violated condition instead of stopping at the first. Throws
-/// only for arguments out of range (TooLarge for a scale with 2^60 cells) and for cancellation.
+/// only for arguments out of range and for cancellation.
 [[nodiscard]] CheckReport check(const TetMapView& map, const CheckOptions& options,
                                 Context& context);
 [[nodiscard]] CheckReport check(const TetMapView& map, const CheckOptions& options = {});

@@ -105,6 +105,11 @@ CheckReport check(const TetMapView& map, const CheckOptions& options, Context& c
     DefectCollector defects;
     PreparedMap prepared = prepareMap(map, options.tolerance, options.scale, context, defects);
     Stage stage(context, "measures");
+    if (defects.empty()) {
+      const double cells =
+          static_cast<double>(parametricVolume(prepared.exact)) * std::pow(options.scale, 3);
+      if (cells >= kMaxCountedCells) defects.add(ErrorCode::TooLarge, {}, cells);
+    }
     report.defects = defects.defects();
     report.mirrored = prepared.input.mirrored;
     report.cornersReversed = prepared.input.cornersReversed;
