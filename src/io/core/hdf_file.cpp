@@ -20,11 +20,6 @@ struct OpenFile {
   haddr_t written;    ///< up to where
 };
 
-/// What the properties of access hold.
-struct Info {
-  HdfTarget* target;
-};
-
 OpenFile& fileOf(H5FD_t* file) { return *reinterpret_cast<OpenFile*>(file); }
 const OpenFile& fileOf(const H5FD_t* file) { return *reinterpret_cast<const OpenFile*>(file); }
 
@@ -40,10 +35,10 @@ void guarded(HdfTarget& target, const F& f) noexcept {
 }
 
 H5FD_t* openFile(const char* /*name*/, unsigned /*flags*/, hid_t access, haddr_t /*most*/) {
-  const auto* const info = static_cast<const Info*>(H5Pget_driver_info(access));
-  auto* const file = new (std::nothrow) OpenFile{};
-  if (file == nullptr || info == nullptr) return nullptr;
-  file->target = info->target;
+  const auto* const target = static_cast<HdfTarget* const*>(H5Pget_driver_info(access));
+  auto* const file = target == nullptr ? nullptr : new (std::nothrow) OpenFile{};
+  if (file == nullptr) return nullptr;
+  file->target = *target;
   return &file->ofHdf;
 }
 
@@ -100,7 +95,7 @@ H5FD_class_t driverClass() {
   driver.name = "hexhex";
   driver.maxaddr = std::numeric_limits<std::int64_t>::max();
   driver.fc_degree = H5F_CLOSE_STRONG;
-  driver.fapl_size = sizeof(Info);
+  driver.fapl_size = sizeof(HdfTarget*);
   driver.open = openFile;
   driver.close = closeFile;
   driver.query = listFeatures;
@@ -160,8 +155,8 @@ hid_t HdfFile::create(Order order) {
     ofGroups_.require(H5Pset_link_creation_order(ofGroups_.id(), kKnown));
     access_.require(H5Pset_libver_bounds(access_.id(), H5F_LIBVER_V18, H5F_LIBVER_V18));
   }
-  const Info info{&target_};
-  access_.require(H5Pset_driver(access_.id(), driver_.id(), &info));
+  HdfTarget* const target = &target_;
+  access_.require(H5Pset_driver(access_.id(), driver_.id(), &target));
   return H5Fcreate("hexhex", H5F_ACC_TRUNC, ofFiles_.id(), access_.id());
 }
 

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <fcntl.h>
 #include <new>
+#include <ranges>
 #include <string>
 #include <sys/stat.h>
 #include <system_error>
@@ -49,15 +50,21 @@ OutputFolder::OutputFolder(const fs::path& target) : target_(realTarget(target))
   std::error_code error;
   replaces_ = fs::is_directory(target_, error);
   if (!replaces_ && fs::exists(target_, error)) failToWrite(target_, "it is a file", ENOTDIR);
+  takeName();
   makeParents();
-  do {
-    temporary_ = temporaryBeside(target_);
-    aside_ = temporary_.native() + "-aside";
-    if (::mkdir(temporary_.c_str(), kFolderPermissions) == 0) return;
-  } while (errno == EEXIST);
-  const int reason = errno;
-  removeParents();
-  failToWrite(target_, "no folder can be created beside it", reason);
+  while (::mkdir(temporary_.c_str(), kFolderPermissions) != 0) {
+    if (errno != EEXIST) {
+      const int reason = errno;
+      removeParents();
+      failToWrite(target_, "no folder can be created beside it", reason);
+    }
+    takeName();
+  }
+}
+
+void OutputFolder::takeName() {
+  temporary_ = temporaryBeside(target_);
+  aside_ = temporary_.native() + "-aside";
 }
 
 OutputFolder::~OutputFolder() {
@@ -89,11 +96,11 @@ void OutputFolder::makeParents() {
        folder = folder.parent_path()) {
     parents_.push_back(folder);
   }
-  for (auto folder = parents_.rbegin(); folder != parents_.rend(); ++folder) {
-    if (::mkdir(folder->c_str(), kFolderPermissions) == 0 || errno == EEXIST) continue;
+  for (const fs::path& folder : std::views::reverse(parents_)) {
+    if (::mkdir(folder.c_str(), kFolderPermissions) == 0 || errno == EEXIST) continue;
     const int reason = errno;
     removeParents();
-    failToWrite(target_, "the folder " + folder->string() + " cannot be created", reason);
+    failToWrite(target_, "the folder " + folder.string() + " cannot be created", reason);
   }
 }
 

@@ -34,6 +34,7 @@ class OutputFolder {
   [[nodiscard]] Error named(const Error& error) const;
 
  private:
+  void takeName();
   void makeParents();
   void removeParents() noexcept;
   void carryOver() const;

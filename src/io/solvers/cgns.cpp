@@ -178,7 +178,7 @@ class CgnsWriter {
     Array<Number> vertices((group.end - group.begin) * corners);
     Number* place = vertices.data();
     for (std::size_t i = group.begin; i < group.end; ++i) {
-      for (const Index vertex : elementAt(i)) *place++ = static_cast<Number>(vertex + 1);
+      for (const Index vertex : elementAt(i)) *place++ = static_cast<Number>(vertex) + 1;
     }
     const auto end = static_cast<Number>(next_ + static_cast<Number>(group.end - group.begin));
     const std::array<Number, 2> range = {next_, static_cast<Number>(end - 1)};
