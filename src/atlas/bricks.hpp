@@ -49,13 +49,15 @@ inline constexpr std::uint32_t kBrickSide = 8;
 inline constexpr std::size_t kBrickPoints = std::size_t{kBrickSide} * kBrickSide * kBrickSide;
 
 /// Names a brick: chart and brick coordinates, modulo 2^16 each. Charts and places that the modulus
-/// makes equal overlap, no more (see lattice/gauge.hpp).
+/// makes equal overlap, no more (see lattice/gauge.hpp). What it takes off coordinates changes the
+/// chart, or tets longer than 2^19 grid units would overlap themselves.
 using BrickKey = std::uint64_t;
 inline constexpr BrickKey kNoBrick = std::numeric_limits<BrickKey>::max();
 
 [[nodiscard]] constexpr BrickKey brickKey(Index chart, const ChartPoint& c) noexcept {
   const auto part = [](std::uint32_t value) { return std::uint64_t{value & 0xffffU}; };
-  const BrickKey key = part(chart) << 48 | part(c[2] / kBrickSide) << 32 |
+  const std::uint32_t sheet = chart ^ c[0] >> 17 ^ c[1] >> 15;  // and c[2] >> 19
+  const BrickKey key = (std::uint64_t{sheet} << 48 ^ std::uint64_t{c[2] / kBrickSide} << 32) |
                        part(c[1] / kBrickSide) << 16 | part(c[0] / kBrickSide);
   return key == kNoBrick ? 0 : key;
 }

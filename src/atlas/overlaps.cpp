@@ -55,8 +55,8 @@ class TetMover {
     }
     for (std::size_t i = 0; i < contested_.size(); ++i) {
       if (pending_[contested_[i]->tet] == kNone) continue;
+      // Only a tet that overlaps itself does not fit an empty chart.
       fill(charts_.count++, i);
-      // Only a tet that overlaps itself (modulo 2^19 grid units) does not fit an empty chart.
       pending_[contested_[i]->tet] = kNone;
     }
   }
@@ -77,11 +77,13 @@ class TetMover {
     }
   }
 
-  /// Claims all points of a tet in a chart if none of them belongs to another vertex.
+  /// Claims all points of a tet in a chart if none of them belongs to another vertex, be it one of
+  /// the tet's own.
   bool tryClaim(const TetClaims& tet, Index chart) {
+    const auto brickAt = [&](const ChartPoint& c) { return grid_.find(brickKey(chart, c)); };
     bool isFree = true;
     forEachEntry<Id>(
-        tet, [&](const ChartPoint& c) { return isFree ? grid_.find(brickKey(chart, c)) : nullptr; },
+        tet, [&](const ChartPoint& c) { return isFree ? brickAt(c) : nullptr; },
         [&](Id entry, Id vertex) {
           isFree = isFree && (!Brick<Id>::isVertex(entry) || entry == vertex);
         });
@@ -89,6 +91,13 @@ class TetMover {
     forEachEntry<Id>(
         tet, [&](const ChartPoint& c) { return &grid_.add(brickKey(chart, c)); },
         [](Id& entry, Id vertex) { entry = vertex; });
+    forEachEntry<Id>(tet, brickAt,
+                     [&](Id entry, Id vertex) { isFree = isFree && entry == vertex; });
+    if (!isFree) {
+      forEachEntry<Id>(tet, brickAt,
+                       [](Id& entry, Id /*vertex*/) { entry = Brick<Id>::kContested; });
+      return false;
+    }
     charts_.chart[tet.tet] = chart;
     pending_[tet.tet] = kNone;
     return true;

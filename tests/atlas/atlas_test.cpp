@@ -9,6 +9,7 @@
 #include <hexhex/stream.hpp>
 
 #include <atlas/atlas.hpp>
+#include <atlas/overlaps.hpp>
 #include <atlas/vertex_grid.hpp>
 #include <igm/measures.hpp>
 
@@ -206,6 +207,27 @@ TEST(Cuts, WouldSpoilTheMeshIfTheyWereNotMarked) {
   const HexMesh wrong =
       runAtlas(map, parametricVolume(map.exact), context, statistics, {.markCuts = false});
   EXPECT_FALSE(sameBits(right, wrong));
+}
+
+/// A tet that claims one place for two vertices fits no chart, not even an empty one.
+TEST(Overlaps, OfATetWithItself) {
+  const Sample sample = sampleOf(SampleKind::Star, 2, 1);
+  const PreparedMap map = prepared(sample.map);
+  Context context(1);
+  Stage stage(context, "test");
+  Charts charts = buildCharts(map, stage);
+  const Charts before = charts;
+  constexpr Index kTet = 3;
+  const ChartRow row{charts.chart[kTet], {1, 2, 3}, direction(0, 1), 1};
+  BrickGrid<Index> grid;
+  const std::vector<std::vector<BrickKey>> keys = {{brickKey(row.chart, row.start)}};
+  grid.build(keys, stage);
+  const std::vector<TetClaims> claims = {{kTet, {{row, 5}, {row, 9}}}};
+  EXPECT_EQ(resolveOverlaps(map, claims, charts, grid, stage), 1U);
+  for (Index tet = 0; tet < map.topology.tetCount(); ++tet) {
+    EXPECT_EQ(charts.chart[tet], tet == kTet ? Charts::kNoChart : before.chart[tet]);
+  }
+  EXPECT_EQ(BrickCache<Index>(grid).idAt(row.chart, row.start), Brick<Index>::kContested);
 }
 
 /// Every tet that has a chart finds all its lattice points there as its own vertices, whatever the
