@@ -171,8 +171,9 @@ void comparePositions(const TetMapView& map, const HexMesh& mesh, const VerifyOp
 /// "2 defects, first: FlippedTet, tet 7"
 std::string describe(const std::vector<Defect>& defects) {
   std::string text = "no: " + std::string(name(defects.front().code));
-  if (!defects.front().worst.empty())
-    text += " at " + toString(defects.front().worst.front().place);
+  const auto& worst = defects.front().worst;
+  const std::string place = worst.empty() ? "" : toString(worst.front().place);
+  if (!place.empty()) text += " at " + place;
   const std::size_t more = defects.size() - 1;
   if (more > 0) text += ", and " + std::to_string(more) + " more kinds of defects";
   return text;

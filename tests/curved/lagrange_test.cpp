@@ -14,6 +14,7 @@
 #include <hexhex/curved.hpp>
 
 #include "curved/curved_maps.hpp"
+#include "support/error_of.hpp"
 
 namespace hexhex::test {
 
@@ -250,6 +251,33 @@ TEST(LagrangeWriter, RefusesTagsThatNoCellHas) {
   expectRefused({{}, {{{cell[0], cell[2]}, 1}}, {}});                    // a diagonal
   expectRefused({{}, {}, {{{cell[0], cell[1], cell[6], cell[7]}, 1}}});  // across the cell
   expectRefused({{{static_cast<Index>(good.vertexCount), 1}}, {}, {}});  // no hex vertex
+}
+
+TEST(LagrangeMesh, ArraysThatDoNotFitAreRefused) {
+  const LagrangeMesh good = lagrange(generateSample(SampleKind::Box).map, 2);
+  EXPECT_NO_THROW(static_cast<void>(straightMesh(good)));
+  const auto expectRefused = [&good](const char* part, const auto& change) {
+    LagrangeMesh mesh = good;
+    change(mesh);
+    const Error error = errorOf([&] { static_cast<void>(straightMesh(mesh)); });
+    EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  };
+  expectRefused("order of the cells is 0", [](LagrangeMesh& m) { m.order = 0; });
+  expectRefused("order of the cells is 10", [](LagrangeMesh& m) { m.order = kMaxOrder + 1; });
+  expectRefused("no multiple", [](LagrangeMesh& m) { m.nodes.pop_back(); });
+  expectRefused("cannot be hex vertices",
+                [](LagrangeMesh& m) { m.vertexCount = m.points.size() + 1; });
+  expectRefused("generators", [](LagrangeMesh& m) { m.generatorTet.pop_back(); });
+  expectRefused("generators", [](LagrangeMesh& m) {
+    m.generatorTet.pop_back();
+    m.generatorCorners.pop_back();
+  });
+  expectRefused("names node",
+                [](LagrangeMesh& m) { m.nodes[30] = static_cast<Index>(m.points.size()); });
+  expectRefused("regions", [](LagrangeMesh& m) { m.regions.resize(1); });
+  expectRefused("A corner of cell 1 is none of the first",
+                [](LagrangeMesh& m) { m.nodes[27] = static_cast<Index>(m.vertexCount); });
 }
 
 /// A file with one cell of order 1, whose nodes have these numbers.

@@ -441,6 +441,19 @@ TEST(Verify, DoesNotDependOnThreads) {
   }
 }
 
+TEST(Verify, TellsWhatIsWrongWithTheMap) {
+  const TetMap map = identityMap(2);
+  EXPECT_TRUE(verify(map, gridMesh(2)).passed());
+  TetMap flipped = map;
+  std::swap(flipped.parameters[7][1], flipped.parameters[7][2]);
+  const VerifyReport report = verify(flipped, gridMesh(2));
+  EXPECT_EQ(failedItems(report), Names({"map_valid"}));
+  EXPECT_EQ(report.items.size(), 1U);
+  EXPECT_TRUE(report.items[0].found.starts_with("no: ")) << report.items[0].found;
+  TetMap empty;
+  EXPECT_EQ(verify(empty, {}).items[0].found, "no: EmptyMesh");
+}
+
 TEST(Verify, EndsWhenCancelled) {
   Context context;
   Stage stage(context, "test");

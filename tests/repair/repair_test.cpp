@@ -76,6 +76,25 @@ TEST(Repair, LeavesAValidMapAlone) {
   EXPECT_EQ(same.tets, map.tets);
 }
 
+/// What the file knows of rotations and valences is used in the place of what damaged tets say.
+TEST(Repair, BelievesWhatIsKnown) {
+  if (!canRepair()) GTEST_SKIP() << "skipped: built without libLBFGS";
+  SampleOptions options;
+  options.refine = 4;
+  options.features = true;  // its curves are the edges of the box
+  const TetMap sound = sample(SampleKind::Box, options);
+  for (const DefectKind kind : {DefectKind::Interior, DefectKind::Singular}) {
+    options.defects = 6;
+    options.defectKind = kind;
+    TetMap damaged = sample(SampleKind::Box, options);
+    damaged.rotations.assign(damaged.tets.size(), {0, 0, 0, 0});
+    for (const FeatureEdge& edge : damaged.features.edges) {
+      damaged.edgeValences.push_back({edge.vertices[0], edge.vertices[1], -1});
+    }
+    expectRepaired(damaged, sound);
+  }
+}
+
 class DamagedSamples : public ::testing::TestWithParam<DefectKind> {
  protected:
   void SetUp() override {
