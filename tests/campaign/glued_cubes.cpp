@@ -1,6 +1,7 @@
 // Structures of cubes: beside each other in space, glued at random, or without a boundary.
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -151,8 +152,14 @@ class Gluer {
   }
 
   [[nodiscard]] static bool isValid(const std::vector<BlockCorners>& blocks) {
+    std::map<std::set<Index>, int> blocksAtFace;
     for (const BlockCorners& block : blocks) {
       if (std::set<Index>(block.begin(), block.end()).size() < 8) return false;
+      for (const std::array<std::size_t, 4>& face : kFaces) {
+        std::set<Index> corners;
+        for (const std::size_t c : face) corners.insert(block[c]);
+        if (++blocksAtFace[corners] > 2) return false;
+      }
     }
     try {
       return isManifold(BlockComplex(blocks));
