@@ -4,6 +4,7 @@
 //     read_fuzz --reader=vtu tests/fuzz/corpus/vtu -runs=100000
 //
 // Sanitizers find what is read or computed wrongly; meshes that come back are checked here.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdio>
@@ -26,6 +27,10 @@
 #include <io/medit/medit.hpp>
 #include <io/ovm/ovm.hpp>
 #include <io/vtk/vtk.hpp>
+
+#include "mutators.hpp"
+
+extern "C" std::size_t LLVMFuzzerMutate(unsigned char* data, std::size_t size, std::size_t most);
 
 namespace {
 
@@ -112,19 +117,34 @@ void readLagrange(std::string_view text) {
   require(mesh.vertexCount <= mesh.points.size(), "there are fewer points than vertices");
 }
 
+/// Changes a file such that it keeps its structure.
+using Change = std::string (*)(const std::string& file, fuzz::Dice& dice,
+                               const fuzz::ChangeBytes& change);
+
+std::string changeText(const std::string& file, fuzz::Dice& dice,
+                       const fuzz::ChangeBytes& /*change*/) {
+  return fuzz::changeText(file, dice);
+}
+
 struct Reader {
   std::string_view name;
   void (*read)(std::string_view text);
+  Change change = changeText;
 };
 
-constexpr std::array kReaders = {
-    Reader{"hexex", read<parse<readHexex>>},     Reader{"mesh", read<parse<readMedit>>},
-    Reader{"meshb", read<parse<readMeshb>>},     Reader{"msh", read<parse<readGmsh>>},
-    Reader{"vtk", read<parse<readVtkLegacy>>},   Reader{"vtu", read<parse<readVtu>>},
-    Reader{"vtk-map", read<parseVtkLegacyMap>},  Reader{"vtu-map", read<parseVtuMap>},
-    Reader{"vtu-lagrange", readLagrange},        Reader{"ovm-map", read<parse<readOvmMap>>},
-    Reader{"ovm", read<parse<readOvmHexMesh>>},  Reader{"ovmb-map", read<parse<readOvmbMap>>},
-    Reader{"ovmb", read<parse<readOvmbHexMesh>>}};
+constexpr std::array kReaders = {Reader{"hexex", read<parse<readHexex>>},
+                                 Reader{"mesh", read<parse<readMedit>>},
+                                 Reader{"meshb", read<parse<readMeshb>>, fuzz::changeMeshb},
+                                 Reader{"msh", read<parse<readGmsh>>},
+                                 Reader{"vtk", read<parse<readVtkLegacy>>},
+                                 Reader{"vtu", read<parse<readVtu>>, fuzz::changeAppended},
+                                 Reader{"vtk-map", read<parseVtkLegacyMap>},
+                                 Reader{"vtu-map", read<parseVtuMap>, fuzz::changeAppended},
+                                 Reader{"vtu-lagrange", readLagrange, fuzz::changeAppended},
+                                 Reader{"ovm-map", read<parse<readOvmMap>>},
+                                 Reader{"ovm", read<parse<readOvmHexMesh>>},
+                                 Reader{"ovmb-map", read<parse<readOvmbMap>>, fuzz::changeOvmb},
+                                 Reader{"ovmb", read<parse<readOvmbHexMesh>>, fuzz::changeOvmb}};
 
 const Reader* chosen = nullptr;
 
@@ -148,6 +168,24 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
   }
   __sanitizer_install_malloc_and_free_hooks(onAllocation, onRelease);
   return 0;
+}
+
+/// Half of the changes are libFuzzer's own; the others keep the structure of the reader's format.
+extern "C" std::size_t LLVMFuzzerCustomMutator(unsigned char* data, std::size_t size,
+                                               std::size_t most, unsigned seed) {
+  fuzz::Dice dice(seed);
+  if (dice.below(2) == 0) return LLVMFuzzerMutate(data, size, most);
+  const std::string file(reinterpret_cast<const char*>(data), size);
+  const std::string changed = chosen->change(file, dice, [most](const std::string& bytes) {
+    std::string buffer = bytes;
+    buffer.resize(std::max(bytes.size(), most));
+    buffer.resize(LLVMFuzzerMutate(reinterpret_cast<unsigned char*>(buffer.data()), bytes.size(),
+                                   buffer.size()));
+    return buffer;
+  });
+  if (changed == file || changed.size() > most) return LLVMFuzzerMutate(data, size, most);
+  std::copy(changed.begin(), changed.end(), data);
+  return changed.size();
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
