@@ -22,17 +22,30 @@ bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
   return whole(a) == whole(b) && !std::filesystem::is_other(a, missing);
 }
 
+/// A sentence for the terminal, which shall not obey what names in files from elsewhere tell it.
+std::string printable(std::string_view sentence) {
+  std::string text(sentence);
+  for (char& c : text) {
+    constexpr unsigned char kDelete = 0x7f;
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < ' ' || byte == kDelete) c = '?';
+  }
+  return text;
+}
+
 }  // namespace
 
 void printLine(std::string_view label, std::string_view value) {
   fmt::print("  {:<26}{}\n", label, value);
 }
 
-void printWarning(std::string_view sentence) { printToStderr("hexhex: warning: {}\n", sentence); }
+void printWarning(std::string_view sentence) {
+  printToStderr("hexhex: warning: {}\n", printable(sentence));
+}
 
 void printError(const Error& error) {
   const std::string place = toString(error.place());
-  printToStderr("hexhex: error: {} [{}{}{}]\n", error.what(), name(error.code()),
+  printToStderr("hexhex: error: {} [{}{}{}]\n", printable(error.what()), name(error.code()),
                 place.empty() ? "" : ", ", place);
 }
 

@@ -28,33 +28,40 @@ hexhex_status hexhex_context_create(const hexhex_context_options* options, hexhe
                           "The number of threads is " + std::to_string(given.threads) +
                               ". Choose it from 1, or 0 for all cores.");
     }
-    require(context, "context") = new hexhex_context(given.threads, given.progress, given.user);
+    require(context, "context");
+    *context = enter(std::make_unique<hexhex_context>(given.threads, given.progress, given.user));
   });
 }
 
-void hexhex_context_destroy(hexhex_context* context) { delete context; }
+void hexhex_context_destroy(hexhex_context* context) { hexhex::c::destroy(context); }
 
 void hexhex_context_cancel(hexhex_context* context) {
-  if (context != nullptr) context->context.cancel();
+  if (const hexhex::c::Used used(context, std::nothrow, hexhex::c::Use::Look); used) {
+    used->context.cancel();
+  }
 }
 
 int hexhex_context_cancelled(const hexhex_context* context) {
-  return context != nullptr && context->context.cancelled() ? 1 : 0;
+  const hexhex::c::Used used(context, std::nothrow, hexhex::c::Use::Look);
+  return used && used->context.cancelled() ? 1 : 0;
 }
 
 int hexhex_context_threads(const hexhex_context* context) {
-  return context != nullptr ? context->context.threads() : 0;
+  const hexhex::c::Used used(context, std::nothrow, hexhex::c::Use::Look);
+  return used ? used->context.threads() : 0;
 }
 
 size_t hexhex_context_stage_count(const hexhex_context* context) {
-  return context != nullptr ? context->context.stageTimes().size() : 0;
+  const hexhex::c::Used used(context, std::nothrow);
+  return used ? used->context.stageTimes().size() : 0;
 }
 
 hexhex_status hexhex_context_stage(const hexhex_context* context, size_t stage, const char** name,
                                    double* seconds, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const auto& times = require(context, "context").context.stageTimes();
+    const Used used(context, "context");
+    const auto& times = used->context.stageTimes();
     if (stage >= times.size()) {
       throw hexhex::Error(hexhex::ErrorCode::InvalidArgument,
                           "There is no stage " + std::to_string(stage) + ".");

@@ -12,14 +12,24 @@ hexhex::PiecewiseLinearParts partsOf(int patches) {
                       : hexhex::PiecewiseLinearParts::Arcs;
 }
 
-/// The map that a mesh was made of: the caller's, unless it had to be repaired.
-hexhex::TetMapView extractedMap(const hexhex_piecewise_mesh& mesh, const hexhex_map* map) {
-  const hexhex::TetMapView& given = hexhex::c::require(map, "map").view;
-  const auto& repaired = mesh.straight.repaired.map;
-  return repaired ? hexhex::TetMapView(*repaired) : given;
+/// Calls write(map) with the map that a mesh was made of: the caller's, unless it had to be
+/// repaired.
+template <class Write>
+void withExtractedMap(const hexhex_piecewise_mesh& mesh, const hexhex_map* map,
+                      const Write& write) {
+  const hexhex::c::Used given(map, "map");
+  const auto& repaired = mesh.straight->repaired.map;
+  write(repaired ? hexhex::TetMapView(*repaired) : given->view);
 }
 
 }  // namespace
+
+void hexhex_piecewise_mesh::take(hexhex::PiecewiseLinearMesh&& made) {
+  piecewise = std::make_shared<const hexhex::PiecewiseLinearMesh>(std::move(made));
+  auto lent = std::make_unique<hexhex_mesh>();
+  lent->lent = {piecewise, &piecewise->mesh};
+  straight = hexhex::c::enter(std::move(lent));
+}
 
 hexhex_status hexhex_extract_piecewise(const hexhex_map* map, int patches,
                                        const hexhex_extract_options* options,
@@ -29,9 +39,8 @@ hexhex_status hexhex_extract_piecewise(const hexhex_map* map, int patches,
   return runExtract(options, context, mesh, statistics, error,
                     [&](hexhex_piecewise_mesh& made, const hexhex::ExtractOptions& given,
                         hexhex::Context& used, hexhex::ExtractStatistics& filled) {
-                      made.piecewise = hexhex::extractPiecewiseLinear(
-                          require(map, "map").view, partsOf(patches), given, used, &filled);
-                      made.straight.lent = &made.piecewise.mesh;
+                      made.take(hexhex::extractPiecewiseLinear(
+                          Used(map, "map")->view, partsOf(patches), given, used, &filled));
                     });
 }
 
@@ -42,26 +51,28 @@ hexhex_status hexhex_extractor_extract_piecewise(hexhex_extractor* extractor, in
                                                  hexhex_statistics* statistics,
                                                  hexhex_error* error) {
   using namespace hexhex::c;
-  return runExtract(options, context, mesh, statistics, error,
-                    [&](hexhex_piecewise_mesh& made, const hexhex::ExtractOptions& given,
-                        hexhex::Context& used, hexhex::ExtractStatistics& filled) {
-                      made.piecewise = OccupiedExtractor(extractor)->extractPiecewiseLinear(
-                          partsOf(patches), given, used, &filled);
-                      made.straight.lent = &made.piecewise.mesh;
-                    });
+  return runExtract(
+      options, context, mesh, statistics, error,
+      [&](hexhex_piecewise_mesh& made, const hexhex::ExtractOptions& given, hexhex::Context& used,
+          hexhex::ExtractStatistics& filled) {
+        made.take(Used(extractor, "extractor")
+                      ->extractor.extractPiecewiseLinear(partsOf(patches), given, used, &filled));
+      });
 }
 
-void hexhex_piecewise_mesh_destroy(hexhex_piecewise_mesh* mesh) { delete mesh; }
+void hexhex_piecewise_mesh_destroy(hexhex_piecewise_mesh* mesh) { hexhex::c::destroy(mesh); }
 
 const hexhex_mesh* hexhex_piecewise_mesh_straight(const hexhex_piecewise_mesh* mesh) {
-  return mesh != nullptr ? &mesh->straight : nullptr;
+  const hexhex::c::Used used(mesh, std::nothrow, hexhex::c::Use::Look);
+  return used ? used->straight : nullptr;
 }
 
 hexhex_status hexhex_piecewise_mesh_get_arcs(const hexhex_piecewise_mesh* mesh,
                                              hexhex_arc_arrays* arrays, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex::Arcs& arcs = require(mesh, "mesh").piecewise.arcs;
+    const Used used(mesh, "mesh");
+    const hexhex::Arcs& arcs = used->piecewise->arcs;
     const hexhex_arc_arrays result = {
         .size = sizeof(hexhex_arc_arrays),
         .arc_count = arcs.count(),
@@ -83,7 +94,8 @@ hexhex_status hexhex_piecewise_mesh_get_patches(const hexhex_piecewise_mesh* mes
                                                 hexhex_patch_arrays* arrays, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex::Patches& p = require(mesh, "mesh").piecewise.patches;
+    const Used used(mesh, "mesh");
+    const hexhex::Patches& p = used->piecewise->patches;
     const hexhex_patch_arrays result = {
         .size = sizeof(hexhex_patch_arrays),
         .face_count = p.count(),
@@ -111,7 +123,7 @@ hexhex_status hexhex_piecewise_mesh_write_arcs(const hexhex_piecewise_mesh* mesh
   using namespace hexhex::c;
   return guarded(error, [&] {
     ContextOrDefault used(context);
-    hexhex::writeArcs(require(mesh, "mesh").piecewise, &require(file, "file"), *used);
+    hexhex::writeArcs(*Used(mesh, "mesh")->piecewise, &require(file, "file"), *used);
   });
 }
 
@@ -121,7 +133,7 @@ hexhex_status hexhex_piecewise_mesh_write_patches(const hexhex_piecewise_mesh* m
   using namespace hexhex::c;
   return guarded(error, [&] {
     ContextOrDefault used(context);
-    hexhex::writePatches(require(mesh, "mesh").piecewise, &require(file, "file"), *used);
+    hexhex::writePatches(*Used(mesh, "mesh")->piecewise, &require(file, "file"), *used);
   });
 }
 
@@ -131,9 +143,11 @@ hexhex_status hexhex_piecewise_mesh_write_arcs_with_map(const hexhex_piecewise_m
                                                         hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex_piecewise_mesh& given = require(mesh, "mesh");
+    const Used given(mesh, "mesh");
     ContextOrDefault used(context);
-    hexhex::writeArcs(given.piecewise, extractedMap(given, map), &require(file, "file"), *used);
+    withExtractedMap(*given, map, [&](const hexhex::TetMapView& extracted) {
+      hexhex::writeArcs(*given->piecewise, extracted, &require(file, "file"), *used);
+    });
   });
 }
 
@@ -143,8 +157,10 @@ hexhex_status hexhex_piecewise_mesh_write_patches_with_map(const hexhex_piecewis
                                                            hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex_piecewise_mesh& given = require(mesh, "mesh");
+    const Used given(mesh, "mesh");
     ContextOrDefault used(context);
-    hexhex::writePatches(given.piecewise, extractedMap(given, map), &require(file, "file"), *used);
+    withExtractedMap(*given, map, [&](const hexhex::TetMapView& extracted) {
+      hexhex::writePatches(*given->piecewise, extracted, &require(file, "file"), *used);
+    });
   });
 }

@@ -57,7 +57,7 @@ hexhex_status hexhex_extract(const hexhex_map* map, const hexhex_extract_options
   return runExtract(options, context, mesh, statistics, error,
                     [&](hexhex_mesh& made, const hexhex::ExtractOptions& given,
                         hexhex::Context& used, hexhex::ExtractStatistics& filled) {
-                      made.own = hexhex::extract(require(map, "map").view, given, used, &filled);
+                      made.own = hexhex::extract(Used(map, "map")->view, given, used, &filled);
                     });
 }
 
@@ -68,8 +68,8 @@ hexhex_status hexhex_extractor_create(const hexhex_map* map, double tolerance, i
   return guarded(error, [&] {
     require(extractor, "extractor");
     ContextOrDefault used(context);
-    *extractor = new hexhex_extractor{hexhex::Extractor(
-        require(map, "map").view, {.tolerance = tolerance, .maxScale = max_scale}, *used)};
+    *extractor = enter(std::make_unique<hexhex_extractor>(
+        map, hexhex::ExtractorOptions{.tolerance = tolerance, .maxScale = max_scale}, *used));
   });
 }
 
@@ -81,12 +81,14 @@ hexhex_status hexhex_extractor_extract(hexhex_extractor* extractor,
   return runExtract(options, context, mesh, statistics, error,
                     [&](hexhex_mesh& made, const hexhex::ExtractOptions& given,
                         hexhex::Context& used, hexhex::ExtractStatistics& filled) {
-                      made.own = OccupiedExtractor(extractor)->extract(given, used, &filled);
+                      made.own =
+                          Used(extractor, "extractor")->extractor.extract(given, used, &filled);
                     });
 }
 
-void hexhex_extractor_destroy(hexhex_extractor* extractor) { delete extractor; }
+void hexhex_extractor_destroy(hexhex_extractor* extractor) { hexhex::c::destroy(extractor); }
 
 uint64_t hexhex_extractor_cells(const hexhex_extractor* extractor) {
-  return extractor != nullptr ? extractor->extractor.cellsAtScaleOne() : 0;
+  const hexhex::c::Used used(extractor, std::nothrow, hexhex::c::Use::Look);
+  return used ? used->extractor.cellsAtScaleOne() : 0;
 }

@@ -71,13 +71,13 @@ hexhex_status hexhex_map_write(const hexhex_map* map, const char* file,
                                hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex_map& given = require(map, "map");
+    const Used given(map, "map");
     ContextOrDefault used(context);
     const hexhex::WriteOptions how = writeOptions(options, 0);
-    if (given.owned) {
-      hexhex::writeMap(*given.owned, &require(file, "file"), how, *used);
+    if (given->owned) {
+      hexhex::writeMap(*given->owned, &require(file, "file"), how, *used);
     } else {
-      hexhex::writeMap(copyOf(given), &require(file, "file"), how, *used);
+      hexhex::writeMap(copyOf(*given), &require(file, "file"), how, *used);
     }
   });
 }
@@ -118,7 +118,8 @@ hexhex_status hexhex_mesh_write(const hexhex_mesh* mesh, const char* file,
                                 hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex::HexMesh& given = require(mesh, "mesh").mesh();
+    const Used handle(mesh, "mesh");
+    const hexhex::HexMesh& given = handle->mesh();
     ContextOrDefault used(context);
     hexhex::writeHexMesh(given, &require(file, "file"), writeOptions(options, given.cells.size()),
                          *used);

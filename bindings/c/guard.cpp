@@ -84,6 +84,12 @@ void throwBusy(const char* argument) {
                   "` is in use by another call. Give each call one of its own.");
 }
 
+void throwCount(const char* argument, std::size_t count) {
+  throw Error(ErrorCode::InvalidArgument, std::string("The array `") + argument + "` cannot have " +
+                                              std::to_string(count) +
+                                              " elements. Set the number of those that it has.");
+}
+
 }  // namespace hexhex::c
 
 const char* hexhex_version() { return hexhex::version(); }

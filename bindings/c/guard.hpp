@@ -33,6 +33,7 @@ hexhex_status guarded(hexhex_error* error, const Work& work) noexcept {
 [[noreturn]] void throwNull(const char* argument);
 [[noreturn]] void throwSize(const char* argument);
 [[noreturn]] void throwBusy(const char* argument);
+[[noreturn]] void throwCount(const char* argument, std::size_t count);
 
 /// A pointer that may not be null.
 template <class T>
@@ -41,13 +42,20 @@ T& require(T* pointer, const char* argument) {
   return *pointer;
 }
 
+/// Whether a struct may be so large: those of today have some hundred bytes, and what was never set
+/// is mostly another number.
+[[nodiscard]] constexpr bool isStructSize(std::size_t size) noexcept {
+  constexpr std::size_t kLargest = 4096;
+  return size >= sizeof(std::size_t) && size <= kLargest;
+}
+
 /// The caller's struct, of which it knows `size` bytes, over the defaults. Bytes that this library
 /// does not know have to be zero.
 template <class T>
 T readStruct(const T* given, T value, const char* argument) {
   if (given == nullptr) return value;
   const std::size_t size = given->size;
-  if (size < sizeof(std::size_t)) throwSize(argument);
+  if (!isStructSize(size)) throwSize(argument);
   const auto* const bytes = reinterpret_cast<const unsigned char*>(given);
   for (std::size_t i = sizeof(T); i < size; ++i) {
     if (bytes[i] != 0) throwSize(argument);
@@ -61,7 +69,7 @@ T readStruct(const T* given, T value, const char* argument) {
 template <class T>
 void writeStruct(const T& value, T& out, const char* argument) {
   const std::size_t size = out.size;
-  if (size < sizeof(std::size_t)) throwSize(argument);
+  if (!isStructSize(size)) throwSize(argument);
   std::memset(&out, 0, size);
   std::memcpy(&out, &value, std::min(size, sizeof(T)));
   out.size = size;

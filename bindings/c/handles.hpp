@@ -1,8 +1,10 @@
 // What the opaque handles are.
 #pragma once
 
-#include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -23,6 +25,7 @@
 #include <hexhex/verify.hpp>
 
 #include "guard.hpp"
+#include "handle_table.hpp"
 
 namespace hexhex::c {
 
@@ -34,33 +37,33 @@ struct Repaired {
 
 }  // namespace hexhex::c
 
-struct hexhex_context {
+struct hexhex_context : hexhex::c::RestingMemory {
   hexhex_context(int threads, hexhex_progress progress, void* user);
   hexhex::Context context;
-  std::atomic<bool> busy{false};
   hexhex::c::Repaired repaired = {};  ///< of the last extraction in pieces
 };
 
-struct hexhex_map {
+struct hexhex_map : hexhex::c::RestingMemory {
   std::shared_ptr<const hexhex::TetMap> owned;  ///< null if the arrays are the caller's
   hexhex::TetMapView view;
   std::shared_ptr<const hexhex::SampleAnswer> answer;  ///< null if it was not generated
 };
 
-struct hexhex_map_structure {
+struct hexhex_map_structure : hexhex::c::RestingMemory {
   std::vector<hexhex_chart_jump> chartJumps;
   std::vector<hexhex_singular_tet_edge> singularEdges;
   std::size_t defects = 0;
 };
 
-struct hexhex_mesh {
+struct hexhex_mesh : hexhex::c::RestingMemory {
   hexhex::HexMesh own;
-  const hexhex::HexMesh* lent = nullptr;  ///< this one instead, which belongs to another handle
+  /// This one instead, which belongs to another handle, and so does this handle.
+  std::shared_ptr<const hexhex::HexMesh> lent = nullptr;
   [[nodiscard]] const hexhex::HexMesh& mesh() const noexcept { return lent ? *lent : own; }
   hexhex::c::Repaired repaired = {};  ///< of the extraction that made it
 };
 
-struct hexhex_buffer {
+struct hexhex_buffer : hexhex::c::RestingMemory {
   std::variant<hexhex::Array<hexhex::Vec3>, hexhex::Array<hexhex::Hex>,
                hexhex::Array<hexhex::Index>, hexhex::Array<hexhex::CornerSet>,
                hexhex::Array<std::int32_t>, std::vector<hexhex::FeatureVertex>,
@@ -69,41 +72,56 @@ struct hexhex_buffer {
       array;
 };
 
-struct hexhex_extractor {
+struct hexhex_extractor : hexhex::c::RestingMemory {
+  hexhex_extractor(const hexhex_map* given, const hexhex::ExtractorOptions& options,
+                   hexhex::Context& used)
+      : map(given, "map"), extractor(map->view, options, used) {}
+  hexhex::c::Used<const hexhex_map> map;  ///< which is there as long as this
   hexhex::Extractor extractor;
-  std::atomic<bool> busy{false};
 };
 
-struct hexhex_check_report {
+struct hexhex_check_report : hexhex::c::RestingMemory {
   hexhex::CheckReport report;
 };
 
-struct hexhex_verify_report {
+struct hexhex_verify_report : hexhex::c::RestingMemory {
   hexhex::VerifyReport report;
 };
 
-struct hexhex_repair_report {
+struct hexhex_repair_report : hexhex::c::RestingMemory {
   hexhex::RepairReport report;
 };
 
-struct hexhex_holes {
+struct hexhex_holes : hexhex::c::RestingMemory {
   std::vector<hexhex::Hole> holes;
   std::uint64_t invalidTets = 0;
   double missingCells = 0;
   std::uint64_t faceConflicts = 0;
 };
 
-struct hexhex_piecewise_mesh {
-  hexhex::PiecewiseLinearMesh piecewise;
-  hexhex_mesh straight;  ///< the mesh in it, for the caller to see
+struct hexhex_piecewise_mesh : hexhex::c::RestingMemory {
+  hexhex_piecewise_mesh() = default;
+  ~hexhex_piecewise_mesh() { hexhex::c::destroy(straight); }
+  hexhex_piecewise_mesh(const hexhex_piecewise_mesh&) = delete;
+  hexhex_piecewise_mesh& operator=(const hexhex_piecewise_mesh&) = delete;
+  /// Makes the handle of the mesh in it, for the caller to see.
+  void take(hexhex::PiecewiseLinearMesh&& made);
+  std::shared_ptr<const hexhex::PiecewiseLinearMesh> piecewise;
+  hexhex_mesh* straight = nullptr;
 };
 
-struct hexhex_lagrange_mesh {
+struct hexhex_lagrange_mesh : hexhex::c::RestingMemory {
   hexhex::LagrangeMesh mesh;
   hexhex::c::Repaired repaired = {};
 };
 
-struct hexhex_mesh_writer {
+struct hexhex_mesh_writer : hexhex::c::RestingMemory {
+  /// @param context  or null; it is there as long as this
+  explicit hexhex_mesh_writer(hexhex_context* context) {
+    if (context != nullptr) given.emplace(context, "context", hexhex::c::Use::Look);
+  }
+  [[nodiscard]] hexhex::Context& context() { return given ? (*given)->context : own; }
+  std::optional<hexhex::c::Used<hexhex_context>> given;
   hexhex::Context own;
   std::unique_ptr<hexhex::MeshSink> sink;
   hexhex::SurveySink* survey = nullptr;  ///< the sink, if it has no file
@@ -112,42 +130,28 @@ struct hexhex_mesh_writer {
 
 namespace hexhex::c {
 
-/// The caller's extractor, which serves one call at a time.
-class OccupiedExtractor {
- public:
-  explicit OccupiedExtractor(hexhex_extractor* given) : given_(require(given, "extractor")) {
-    if (given_.busy.exchange(true)) throwBusy("extractor");
-  }
-  ~OccupiedExtractor() { given_.busy.store(false); }
-  OccupiedExtractor(const OccupiedExtractor&) = delete;
-  OccupiedExtractor& operator=(const OccupiedExtractor&) = delete;
-  Extractor* operator->() noexcept { return &given_.extractor; }
-
- private:
-  hexhex_extractor& given_;
-};
-
 /// The caller's context, or one with defaults.
 class ContextOrDefault {
  public:
-  explicit ContextOrDefault(hexhex_context* given) : given_(given) {
-    if (given_ != nullptr && given_->busy.exchange(true)) throwBusy("context");
+  explicit ContextOrDefault(hexhex_context* given) {
+    if (given != nullptr) given_.emplace(given, "context");
   }
-  ~ContextOrDefault() {
-    if (given_ != nullptr) given_->busy.store(false);
-  }
-  ContextOrDefault(const ContextOrDefault&) = delete;
-  ContextOrDefault& operator=(const ContextOrDefault&) = delete;
-  Context& operator*() noexcept { return given_ != nullptr ? given_->context : own_; }
+  Context& operator*() noexcept { return given_ ? (*given_)->context : own_; }
   /// For hexhex_context_get_repair().
   void keep(Repaired&& repaired) noexcept {
-    if (given_ != nullptr) given_->repaired = std::move(repaired);
+    if (given_) (*given_)->repaired = std::move(repaired);
   }
 
  private:
-  hexhex_context* given_;
+  std::optional<Used<hexhex_context>> given_;
   Context own_;
 };
+
+/// Refuses a number of elements that no memory can have.
+template <class T>
+void requireCount(std::size_t count, const char* argument) {
+  if (count > static_cast<std::size_t>(PTRDIFF_MAX) / sizeof(T)) throwCount(argument, count);
+}
 
 /// A pointer to the scalars of an array; NULL if it is empty.
 template <class Scalar, class List>
@@ -159,6 +163,7 @@ const Scalar* flat(const List& array) {
 template <class List, class Scalar>
 List copied(const Scalar* data, std::size_t count, const char* argument) {
   if (count != 0 && data == nullptr) throwNull(argument);
+  requireCount<typename List::value_type>(count, argument);
   const auto* const first = reinterpret_cast<const typename List::value_type*>(data);
   return {first, first + count};
 }
@@ -167,6 +172,7 @@ List copied(const Scalar* data, std::size_t count, const char* argument) {
 template <class T, class Scalar>
 std::span<const T> borrowed(const Scalar* data, std::size_t count, const char* argument) {
   if (count != 0 && data == nullptr) throwNull(argument);
+  requireCount<T>(count, argument);
   return {reinterpret_cast<const T*>(data), count};
 }
 

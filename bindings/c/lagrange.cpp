@@ -37,7 +37,7 @@ hexhex_status hexhex_extract_lagrange(const hexhex_map* map, int order,
   return runExtract(options, context, mesh, statistics, error,
                     [&](hexhex_lagrange_mesh& made, const hexhex::ExtractOptions& given,
                         hexhex::Context& used, hexhex::ExtractStatistics& filled) {
-                      made.mesh = hexhex::extractLagrange(require(map, "map").view, order, given,
+                      made.mesh = hexhex::extractLagrange(Used(map, "map")->view, order, given,
                                                           used, &filled);
                     });
 }
@@ -49,15 +49,16 @@ hexhex_status hexhex_extractor_extract_lagrange(hexhex_extractor* extractor, int
                                                 hexhex_statistics* statistics,
                                                 hexhex_error* error) {
   using namespace hexhex::c;
-  return runExtract(options, context, mesh, statistics, error,
-                    [&](hexhex_lagrange_mesh& made, const hexhex::ExtractOptions& given,
-                        hexhex::Context& used, hexhex::ExtractStatistics& filled) {
-                      made.mesh = OccupiedExtractor(extractor)->extractLagrange(order, given, used,
-                                                                                &filled);
-                    });
+  return runExtract(
+      options, context, mesh, statistics, error,
+      [&](hexhex_lagrange_mesh& made, const hexhex::ExtractOptions& given, hexhex::Context& used,
+          hexhex::ExtractStatistics& filled) {
+        made.mesh =
+            Used(extractor, "extractor")->extractor.extractLagrange(order, given, used, &filled);
+      });
 }
 
-void hexhex_lagrange_mesh_destroy(hexhex_lagrange_mesh* mesh) { delete mesh; }
+void hexhex_lagrange_mesh_destroy(hexhex_lagrange_mesh* mesh) { hexhex::c::destroy(mesh); }
 
 hexhex_status hexhex_lagrange_mesh_copy(const hexhex_lagrange_arrays* arrays,
                                         hexhex_lagrange_mesh** mesh, hexhex_error* error) {
@@ -75,7 +76,7 @@ hexhex_status hexhex_lagrange_mesh_copy(const hexhex_lagrange_arrays* arrays,
     made.nodes =
         copied<decltype(made.nodes)>(given.nodes, given.cell_count * made.nodesPerCell(), "nodes");
     copyBesides(given, given.point_count, made);
-    *mesh = handle.release();
+    *mesh = enter(std::move(handle));
   });
 }
 
@@ -87,7 +88,7 @@ hexhex_status hexhex_lagrange_mesh_read(const char* file, hexhex_context* contex
     ContextOrDefault used(context);
     auto handle = std::make_unique<hexhex_lagrange_mesh>();
     handle->mesh = hexhex::readLagrangeMesh(&require(file, "file"), *used);
-    *mesh = handle.release();
+    *mesh = enter(std::move(handle));
   });
 }
 
@@ -105,7 +106,8 @@ hexhex_status hexhex_lagrange_mesh_get_arrays(const hexhex_lagrange_mesh* mesh,
                                               hexhex_lagrange_arrays* arrays, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex::LagrangeMesh& m = require(mesh, "mesh").mesh;
+    const Used used(mesh, "mesh");
+    const hexhex::LagrangeMesh& m = used->mesh;
     const hexhex_lagrange_arrays result = {
         .size = sizeof(hexhex_lagrange_arrays),
         .order = m.order,
@@ -132,8 +134,9 @@ hexhex_status hexhex_lagrange_mesh_take(hexhex_lagrange_mesh* mesh, hexhex_mesh_
   using namespace hexhex::c;
   return guarded(error, [&] {
     require(buffer, "buffer");
-    hexhex::LagrangeMesh& own = require(mesh, "mesh").mesh;
-    *buffer = takeArray(own, own.nodes, array).release();
+    const Used used(mesh, "mesh");
+    hexhex::LagrangeMesh& own = used->mesh;
+    *buffer = enter(takeArray(own, own.nodes, array));
   });
 }
 
@@ -143,9 +146,10 @@ hexhex_status hexhex_lagrange_mesh_straight(const hexhex_lagrange_mesh* mesh,
   return guarded(error, [&] {
     require(straight, "straight");
     auto handle = std::make_unique<hexhex_mesh>();
-    handle->own = hexhex::straightMesh(require(mesh, "mesh").mesh);
-    handle->repaired = mesh->repaired;
-    *straight = handle.release();
+    const Used used(mesh, "mesh");
+    handle->own = hexhex::straightMesh(used->mesh);
+    handle->repaired = used->repaired;
+    *straight = enter(std::move(handle));
   });
 }
 
@@ -155,7 +159,7 @@ hexhex_status hexhex_lagrange_mesh_quality(const hexhex_lagrange_mesh* mesh,
   using namespace hexhex::c;
   return guarded(error, [&] {
     ContextOrDefault used(context);
-    const auto jacobians = hexhex::scaledJacobians(require(mesh, "mesh").mesh, *used);
+    const auto jacobians = hexhex::scaledJacobians(Used(mesh, "mesh")->mesh, *used);
     if (scaled_jacobians != nullptr) {
       std::copy(jacobians.begin(), jacobians.end(), scaled_jacobians);
     }
@@ -168,7 +172,8 @@ hexhex_status hexhex_lagrange_mesh_write(const hexhex_lagrange_mesh* mesh, const
                                          hexhex_context* context, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex::LagrangeMesh& given = require(mesh, "mesh").mesh;
+    const Used handle(mesh, "mesh");
+    const hexhex::LagrangeMesh& given = handle->mesh;
     ContextOrDefault used(context);
     hexhex::writeLagrangeMesh(given, &require(file, "file"),
                               writeOptions(options, given.cellCount()), *used);

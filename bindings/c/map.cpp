@@ -65,7 +65,7 @@ void give(std::shared_ptr<const TetMap> map, hexhex_map** out) {
   auto handle = std::make_unique<hexhex_map>();
   handle->view = *map;
   handle->owned = std::move(map);
-  *out = handle.release();
+  *out = enter(std::move(handle));
 }
 
 void give(TetMap&& map, hexhex_map** out) {
@@ -85,7 +85,7 @@ hexhex_status hexhex_map_borrow(const hexhex_map_arrays* arrays, hexhex_map** ma
     require(map, "map");
     auto handle = std::make_unique<hexhex_map>();
     handle->view = viewOf(given);
-    *map = handle.release();
+    *map = enter(std::move(handle));
   });
 }
 
@@ -114,7 +114,8 @@ hexhex_status hexhex_map_get_arrays(const hexhex_map* map, hexhex_map_arrays* ar
                                     hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex::TetMapView& view = require(map, "map").view;
+    const Used used(map, "map");
+    const hexhex::TetMapView& view = used->view;
     hexhex_map_arrays result = HEXHEX_MAP_ARRAYS_INIT;
     result.points = flat<double>(view.points);
     result.point_count = view.points.size();
@@ -135,4 +136,4 @@ hexhex_status hexhex_map_get_arrays(const hexhex_map* map, hexhex_map_arrays* ar
   });
 }
 
-void hexhex_map_destroy(hexhex_map* map) { delete map; }
+void hexhex_map_destroy(hexhex_map* map) { hexhex::c::destroy(map); }

@@ -26,7 +26,7 @@ hexhex_status hexhex_map_find_structure(const hexhex_map* map, double tolerance,
     require(structure, "structure");
     ContextOrDefault used(context);
     const hexhex::MapStructure found =
-        hexhex::findMapStructure(require(map, "map").view, tolerance, *used);
+        hexhex::findMapStructure(Used(map, "map")->view, tolerance, *used);
     auto made = std::make_unique<hexhex_map_structure>();
     made->chartJumps.reserve(found.chartJumps.size());
     for (const hexhex::ChartJump& jump : found.chartJumps) made->chartJumps.push_back(plain(jump));
@@ -36,18 +36,21 @@ hexhex_status hexhex_map_find_structure(const hexhex_map* map, double tolerance,
           {{edge.vertex0, edge.vertex1}, edge.valence, edge.boundary ? 1U : 0U});
     }
     made->defects = found.defects.size();
-    *structure = made.release();
+    *structure = enter(std::move(made));
   });
 }
 
-void hexhex_map_structure_destroy(hexhex_map_structure* structure) { delete structure; }
+void hexhex_map_structure_destroy(hexhex_map_structure* structure) {
+  hexhex::c::destroy(structure);
+}
 
 hexhex_status hexhex_map_structure_get_arrays(const hexhex_map_structure* structure,
                                               hexhex_map_structure_arrays* arrays,
                                               hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex_map_structure& s = require(structure, "structure");
+    const Used used(structure, "structure");
+    const hexhex_map_structure& s = *used;
     const hexhex_map_structure_arrays result = {
         .size = sizeof(hexhex_map_structure_arrays),
         .chart_jumps = flat<hexhex_chart_jump>(s.chartJumps),

@@ -33,7 +33,7 @@ namespace hexhex::c {
 void give(HexMesh&& mesh, hexhex_mesh** out) {
   auto handle = std::make_unique<hexhex_mesh>();
   handle->own = std::move(mesh);
-  *out = handle.release();
+  *out = enter(std::move(handle));
 }
 
 void writeSurvey(const MeshSurvey& survey, hexhex_survey* out) {
@@ -72,7 +72,8 @@ hexhex_status hexhex_mesh_get_arrays(const hexhex_mesh* mesh, hexhex_mesh_arrays
                                      hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex::HexMesh& m = require(mesh, "mesh").mesh();
+    const Used used(mesh, "mesh");
+    const hexhex::HexMesh& m = used->mesh();
     hexhex_mesh_arrays result = HEXHEX_MESH_ARRAYS_INIT;
     result.points = flat<double>(m.points);
     result.point_count = m.points.size();
@@ -96,26 +97,32 @@ hexhex_status hexhex_mesh_take(hexhex_mesh* mesh, hexhex_mesh_array array, hexhe
   using namespace hexhex::c;
   return guarded(error, [&] {
     require(buffer, "buffer");
-    hexhex::HexMesh& own = require(mesh, "mesh").own;
-    *buffer = takeArray(own, own.cells, array).release();
+    const Used used(mesh, "mesh");
+    hexhex::HexMesh& own = used->own;
+    *buffer = enter(takeArray(own, own.cells, array));
   });
 }
 
 void* hexhex_buffer_data(hexhex_buffer* buffer) {
-  if (buffer == nullptr) return nullptr;
+  const hexhex::c::Used used(buffer, std::nothrow, hexhex::c::Use::Read);
+  if (!used) return nullptr;
   return std::visit([](auto& array) -> void* { return array.empty() ? nullptr : array.data(); },
-                    buffer->array);
+                    used->array);
 }
 
 size_t hexhex_buffer_bytes(const hexhex_buffer* buffer) {
-  if (buffer == nullptr) return 0;
-  return std::visit([](const auto& array) { return array.size() * sizeof(array[0]); },
-                    buffer->array);
+  const hexhex::c::Used used(buffer, std::nothrow);
+  if (!used) return 0;
+  return std::visit([](const auto& array) { return array.size() * sizeof(array[0]); }, used->array);
 }
 
-void hexhex_buffer_destroy(hexhex_buffer* buffer) { delete buffer; }
+void hexhex_buffer_destroy(hexhex_buffer* buffer) { hexhex::c::destroy(buffer); }
 
-void hexhex_mesh_destroy(hexhex_mesh* mesh) { delete mesh; }
+void hexhex_mesh_destroy(hexhex_mesh* mesh) {
+  using namespace hexhex::c;
+  const Used used(mesh, std::nothrow, Use::Look);
+  if (used && used->lent == nullptr) destroy(mesh);
+}
 
 hexhex_status hexhex_mesh_boundary_patches(const hexhex_mesh* mesh, double angle,
                                            hexhex_context* context, hexhex_buffer** quads,
@@ -125,8 +132,8 @@ hexhex_status hexhex_mesh_boundary_patches(const hexhex_mesh* mesh, double angle
     require(quads, "quads");
     ContextOrDefault used(context);
     auto buffer = std::make_unique<hexhex_buffer>();
-    buffer->array = hexhex::boundaryPatches(require(mesh, "mesh").mesh(), angle, *used);
-    *quads = buffer.release();
+    buffer->array = hexhex::boundaryPatches(Used(mesh, "mesh")->mesh(), angle, *used);
+    *quads = enter(std::move(buffer));
   });
 }
 
@@ -136,7 +143,7 @@ hexhex_status hexhex_mesh_structure(const hexhex_mesh* mesh, hexhex_context* con
   using namespace hexhex::c;
   return guarded(error, [&] {
     ContextOrDefault used(context);
-    const auto found = hexhex::findStructure(require(mesh, "mesh").mesh(), *used);
+    const auto found = hexhex::findStructure(Used(mesh, "mesh")->mesh(), *used);
     auto buffer = std::make_unique<hexhex_buffer>();
     if (singular_edges != nullptr) buffer->array = singularEdges(found);
     if (structure != nullptr) {
@@ -146,7 +153,7 @@ hexhex_status hexhex_mesh_structure(const hexhex_mesh* mesh, hexhex_context* con
           found.eulerCharacteristic};
       writeStruct(result, *structure, "structure");
     }
-    if (singular_edges != nullptr) *singular_edges = buffer.release();
+    if (singular_edges != nullptr) *singular_edges = enter(std::move(buffer));
   });
 }
 
@@ -155,7 +162,7 @@ hexhex_status hexhex_mesh_survey(const hexhex_mesh* mesh, hexhex_context* contex
   using namespace hexhex::c;
   return guarded(error, [&] {
     ContextOrDefault used(context);
-    writeSurvey(hexhex::survey(require(mesh, "mesh").mesh(), *used), survey);
+    writeSurvey(hexhex::survey(Used(mesh, "mesh")->mesh(), *used), survey);
   });
 }
 
@@ -188,7 +195,7 @@ hexhex_status hexhex_mesh_quality(const hexhex_mesh* mesh, hexhex_context* conte
   using namespace hexhex::c;
   return guarded(error, [&] {
     ContextOrDefault used(context);
-    const auto jacobians = hexhex::scaledJacobians(require(mesh, "mesh").mesh(), *used);
+    const auto jacobians = hexhex::scaledJacobians(Used(mesh, "mesh")->mesh(), *used);
     if (scaled_jacobians != nullptr) {
       std::copy(jacobians.begin(), jacobians.end(), scaled_jacobians);
     }

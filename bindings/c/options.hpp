@@ -26,7 +26,7 @@ void writeStatistics(const ExtractStatistics& statistics, hexhex_statistics* out
 [[nodiscard]] inline Repaired& repairedIn(hexhex_mesh& mesh) { return mesh.repaired; }
 [[nodiscard]] inline Repaired& repairedIn(hexhex_lagrange_mesh& mesh) { return mesh.repaired; }
 [[nodiscard]] inline Repaired& repairedIn(hexhex_piecewise_mesh& mesh) {
-  return mesh.straight.repaired;
+  return mesh.straight->repaired;
 }
 
 /// Runs an extraction and gives a handle of its result.
@@ -44,7 +44,7 @@ hexhex_status runExtract(const hexhex_extract_options* options, hexhex_context* 
     extract(*handle, given, *used, filled);
     writeStatistics(filled, statistics);
     repairedIn(*handle) = repairedBy(std::move(filled));
-    *result = handle.release();
+    *result = enter(std::move(handle));
   });
 }
 

@@ -5,9 +5,10 @@
 
 namespace {
 
-const std::map<int, std::uint64_t>* tableOf(const hexhex_check_report* report,
-                                            hexhex_valence_table table) {
-  if (report == nullptr) return nullptr;
+using UsedReport = hexhex::c::Used<const hexhex_check_report>;
+
+const std::map<int, std::uint64_t>* tableOf(const UsedReport& report, hexhex_valence_table table) {
+  if (!report) return nullptr;
   const hexhex::CheckReport& r = report->report;
   switch (table) {
     case HEXHEX_INNER_HEX_EDGES:
@@ -31,18 +32,21 @@ hexhex_status hexhex_check(const hexhex_map* map, double tolerance, int scale,
   return guarded(error, [&] {
     require(report, "report");
     ContextOrDefault used(context);
-    *report = new hexhex_check_report{
-        hexhex::check(require(map, "map").view, {.tolerance = tolerance, .scale = scale}, *used)};
+    auto made = std::make_unique<hexhex_check_report>();
+    made->report =
+        hexhex::check(Used(map, "map")->view, {.tolerance = tolerance, .scale = scale}, *used);
+    *report = enter(std::move(made));
   });
 }
 
-void hexhex_check_report_destroy(hexhex_check_report* report) { delete report; }
+void hexhex_check_report_destroy(hexhex_check_report* report) { hexhex::c::destroy(report); }
 
 hexhex_status hexhex_check_get_summary(const hexhex_check_report* report,
                                        hexhex_check_summary* summary, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex::CheckReport& r = require(report, "report").report;
+    const Used used(report, "report");
+    const hexhex::CheckReport& r = used->report;
     const hexhex_check_summary result = {.size = sizeof(hexhex_check_summary),
                                          .valid = r.valid() ? 1 : 0,
                                          .defect_count = r.defects.size(),
@@ -73,7 +77,8 @@ hexhex_status hexhex_check_get_defect(const hexhex_check_report* report, size_t 
                                       hexhex_defect* out, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex::Defect& d = at(require(report, "report").report.defects, defect, "defects");
+    const Used used(report, "report");
+    const hexhex::Defect& d = at(used->report.defects, defect, "defects");
     const hexhex_defect result = {sizeof(hexhex_defect), statusOf(d.code), d.sentence.c_str(),
                                   d.count, d.worst.size()};
     writeStruct(result, require(out, "out"), "out");
@@ -85,7 +90,8 @@ hexhex_status hexhex_check_get_occurrence(const hexhex_check_report* report, siz
                                           hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex::Defect& d = at(require(report, "report").report.defects, defect, "defects");
+    const Used used(report, "report");
+    const hexhex::Defect& d = at(used->report.defects, defect, "defects");
     const hexhex::Defect::Occurrence& found = at(d.worst, occurrence, "places of that defect");
     if (place != nullptr) *place = placeOf(found.place);
     if (amount != nullptr) *amount = found.amount;
@@ -95,13 +101,15 @@ hexhex_status hexhex_check_get_occurrence(const hexhex_check_report* report, siz
 void hexhex_check_boundary_genus(const hexhex_check_report* report, size_t component,
                                  int64_t* genus) {
   if (genus == nullptr) return;
-  const bool known = report != nullptr && component < report->report.boundaryGenus.size();
-  *genus = known ? report->report.boundaryGenus[component] : -1;
+  const UsedReport used(report, std::nothrow);
+  const bool known = used && component < used->report.boundaryGenus.size();
+  *genus = known ? used->report.boundaryGenus[component] : -1;
 }
 
 uint64_t hexhex_check_edges_of_valence(const hexhex_check_report* report,
                                        hexhex_valence_table table, int valence) {
-  const auto* const edges = tableOf(report, table);
+  const UsedReport used(report, std::nothrow);
+  const auto* const edges = tableOf(used, table);
   if (edges == nullptr) return 0;
   const auto found = edges->find(valence);
   return found != edges->end() ? found->second : 0;
@@ -109,7 +117,8 @@ uint64_t hexhex_check_edges_of_valence(const hexhex_check_report* report,
 
 int hexhex_check_next_valence(const hexhex_check_report* report, hexhex_valence_table table,
                               int valence) {
-  const auto* const edges = tableOf(report, table);
+  const UsedReport used(report, std::nothrow);
+  const auto* const edges = tableOf(used, table);
   if (edges == nullptr) return -1;
   const auto next = edges->upper_bound(valence);
   return next != edges->end() ? next->first : -1;
@@ -122,27 +131,31 @@ hexhex_status hexhex_verify(const hexhex_map* map, const hexhex_mesh* mesh, doub
   return guarded(error, [&] {
     require(report, "report");
     ContextOrDefault used(context);
-    *report = new hexhex_verify_report{
-        hexhex::verify(require(map, "map").view, require(mesh, "mesh").mesh(),
-                       {.scale = scale, .tolerance = tolerance}, *used)};
+    auto made = std::make_unique<hexhex_verify_report>();
+    made->report = hexhex::verify(Used(map, "map")->view, Used(mesh, "mesh")->mesh(),
+                                  {.scale = scale, .tolerance = tolerance}, *used);
+    *report = enter(std::move(made));
   });
 }
 
-void hexhex_verify_report_destroy(hexhex_verify_report* report) { delete report; }
+void hexhex_verify_report_destroy(hexhex_verify_report* report) { hexhex::c::destroy(report); }
 
 int hexhex_verify_passed(const hexhex_verify_report* report) {
-  return report != nullptr && report->report.passed() ? 1 : 0;
+  const hexhex::c::Used used(report, std::nothrow);
+  return used && used->report.passed() ? 1 : 0;
 }
 
 size_t hexhex_verify_item_count(const hexhex_verify_report* report) {
-  return report != nullptr ? report->report.items.size() : 0;
+  const hexhex::c::Used used(report, std::nothrow);
+  return used ? used->report.items.size() : 0;
 }
 
 hexhex_status hexhex_verify_get_item(const hexhex_verify_report* report, size_t item,
                                      hexhex_verify_item* out, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex::VerifyItem& found = at(require(report, "report").report.items, item, "items");
+    const Used used(report, "report");
+    const hexhex::VerifyItem& found = at(used->report.items, item, "items");
     const hexhex_verify_item result = {sizeof(hexhex_verify_item), found.name.c_str(),
                                        found.expected.c_str(), found.found.c_str(),
                                        found.passed ? 1 : 0};

@@ -44,13 +44,13 @@ hexhex::SampleOptions sampleOptions(const hexhex_sample_options* given) {
           .defectKind = static_cast<hexhex::DefectKind>(options.defect_kind)};
 }
 
-const hexhex::SampleAnswer& answerOf(const hexhex_map* map) {
-  const hexhex_map& given = hexhex::c::require(map, "map");
-  if (!given.answer) {
+std::shared_ptr<const hexhex::SampleAnswer> answerOf(const hexhex_map* map) {
+  const hexhex::c::Used given(map, "map");
+  if (!given->answer) {
     throw Error(ErrorCode::InvalidArgument,
                 "The map was not generated, so nothing is known of its mesh. Use hexhex_check().");
   }
-  return *given.answer;
+  return given->answer;
 }
 
 /// work(table) of the table that a number means.
@@ -110,7 +110,8 @@ hexhex_status hexhex_map_get_answer(const hexhex_map* map, hexhex_sample_answer*
                                     hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex::SampleAnswer& known = answerOf(map);
+    const auto answerOfMap = answerOf(map);
+    const hexhex::SampleAnswer& known = *answerOfMap;
     const hexhex_sample_answer result = {.size = sizeof(hexhex_sample_answer),
                                          .cells = known.expected.cells,
                                          .vertices = known.vertices,
@@ -127,7 +128,7 @@ hexhex_status hexhex_map_count_answer(const hexhex_map* map, hexhex_answer_table
                                       size_t* entries, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    withTable(answerOf(map), table,
+    withTable(*answerOf(map), table,
               [&](const auto& found) { require(entries, "entries") = found.size(); });
   });
 }
@@ -137,7 +138,7 @@ hexhex_status hexhex_map_get_answer_entry(const hexhex_map* map, hexhex_answer_t
                                           hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    withTable(answerOf(map), table, [&](const auto& found) {
+    withTable(*answerOf(map), table, [&](const auto& found) {
       if (number >= found.size()) {
         throw Error(ErrorCode::InvalidArgument, "There are " + std::to_string(found.size()) +
                                                     " entries; there is no number " +

@@ -82,18 +82,20 @@ class Target {
  public:
   explicit Target(const hexhex_sink* sink) : callbacks_(sink) {
     if (callbacks_.given().end == &writerEnd) {
-      writer_ = static_cast<hexhex_mesh_writer*>(callbacks_.given().user);
+      writer_ = std::make_unique<UsedWriter>(
+          static_cast<hexhex_mesh_writer*>(callbacks_.given().user), "sink");
     }
   }
-  MeshSink& operator*() noexcept { return writer_ != nullptr ? *writer_->sink : callbacks_; }
+  MeshSink& operator*() noexcept { return writer_ ? *(*writer_)->sink : callbacks_; }
   /// Nothing has failed.
   void finish() noexcept {
-    if (writer_ != nullptr) writer_->ended = true;
+    if (writer_) (*writer_)->ended = true;
   }
 
  private:
   CallbackSink callbacks_;
-  hexhex_mesh_writer* writer_ = nullptr;
+  using UsedWriter = hexhex::c::Used<hexhex_mesh_writer>;
+  std::unique_ptr<UsedWriter> writer_;
 };
 
 }  // namespace
@@ -107,7 +109,7 @@ hexhex_status hexhex_extract_to(const hexhex_sink* sink, const hexhex_map* map,
     ContextOrDefault used(context);
     used.keep({});
     hexhex::ExtractStatistics filled;
-    hexhex::extractTo(*target, require(map, "map").view, extractOptions(options), *used, &filled);
+    hexhex::extractTo(*target, Used(map, "map")->view, extractOptions(options), *used, &filled);
     target.finish();
     writeStatistics(filled, statistics);
     used.keep(repairedBy(std::move(filled)));
@@ -124,7 +126,8 @@ hexhex_status hexhex_extractor_extract_to(hexhex_extractor* extractor, const hex
     ContextOrDefault used(context);
     used.keep({});
     hexhex::ExtractStatistics filled;
-    OccupiedExtractor(extractor)->extractTo(*target, extractOptions(options), *used, &filled);
+    Used(extractor, "extractor")
+        ->extractor.extractTo(*target, extractOptions(options), *used, &filled);
     target.finish();
     writeStatistics(filled, statistics);
   });
@@ -138,7 +141,7 @@ hexhex_status hexhex_extract_to_file(const char* file, const hexhex_map* map,
     ContextOrDefault used(context);
     used.keep({});
     hexhex::ExtractStatistics filled;
-    hexhex::extractToFile(&require(file, "file"), require(map, "map").view, extractOptions(options),
+    hexhex::extractToFile(&require(file, "file"), Used(map, "map")->view, extractOptions(options),
                           *used, &filled);
     writeStatistics(filled, statistics);
     used.keep(repairedBy(std::move(filled)));
@@ -162,12 +165,11 @@ hexhex_status hexhex_survey_writer_create(hexhex_context* context, hexhex_mesh_w
   using namespace hexhex::c;
   return guarded(error, [&] {
     require(writer, "writer");
-    auto handle = std::make_unique<hexhex_mesh_writer>();
-    hexhex::Context& used = context != nullptr ? context->context : handle->own;
-    auto survey = std::make_unique<hexhex::SurveySink>(used);
+    auto handle = std::make_unique<hexhex_mesh_writer>(context);
+    auto survey = std::make_unique<hexhex::SurveySink>(handle->context());
     handle->survey = survey.get();
     handle->sink = std::move(survey);
-    *writer = handle.release();
+    *writer = enter(std::move(handle));
   });
 }
 
@@ -175,13 +177,13 @@ hexhex_status hexhex_survey_writer_get(const hexhex_mesh_writer* writer, hexhex_
                                        hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    const hexhex_mesh_writer& given = require(writer, "writer");
-    if (given.survey == nullptr || !given.ended) {
+    const Used given(writer, "writer");
+    if (given->survey == nullptr || !given->ended) {
       throw Error(ErrorCode::InvalidArgument,
                   "The writer has added nothing up: make it with hexhex_survey_writer_create(), "
                   "and ask after its end.");
     }
-    writeSurvey(given.survey->result(), survey);
+    writeSurvey(given->survey->result(), survey);
   });
 }
 
@@ -189,8 +191,9 @@ hexhex_status hexhex_mesh_writer_sink(hexhex_mesh_writer* writer, hexhex_sink* s
                                       hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
+    const Used used(writer, "writer");
     const hexhex_sink result = {.size = sizeof(hexhex_sink),
-                                .user = &require(writer, "writer"),
+                                .user = writer,
                                 .begin = writerBegin,
                                 .points = writerPoints,
                                 .cells = writerCells,
@@ -206,17 +209,17 @@ hexhex_status hexhex_mesh_writer_create(const char* file, const hexhex_write_opt
   using namespace hexhex::c;
   return guarded(error, [&] {
     require(writer, "writer");
-    auto handle = std::make_unique<hexhex_mesh_writer>();
-    hexhex::Context& used = context != nullptr ? context->context : handle->own;
-    handle->sink = hexhex::openMeshSink(&require(file, "file"), writeOptions(options, 0), used);
-    *writer = handle.release();
+    auto handle = std::make_unique<hexhex_mesh_writer>(context);
+    handle->sink =
+        hexhex::openMeshSink(&require(file, "file"), writeOptions(options, 0), handle->context());
+    *writer = enter(std::move(handle));
   });
 }
 
 hexhex_status hexhex_mesh_writer_begin(hexhex_mesh_writer* writer, uint64_t point_count,
                                        uint64_t cell_count, hexhex_error* error) {
   using namespace hexhex::c;
-  return guarded(error, [&] { require(writer, "writer").sink->begin(point_count, cell_count); });
+  return guarded(error, [&] { Used(writer, "writer")->sink->begin(point_count, cell_count); });
 }
 
 hexhex_status hexhex_mesh_writer_points(hexhex_mesh_writer* writer, uint64_t first, size_t count,
@@ -231,7 +234,7 @@ hexhex_status hexhex_mesh_writer_points(hexhex_mesh_writer* writer, uint64_t fir
       piece.generatorTet = {generator_tet, count};
       piece.generatorCorners = {generator_corners, count};
     }
-    require(writer, "writer").sink->points(piece);
+    Used(writer, "writer")->sink->points(piece);
   });
 }
 
@@ -239,7 +242,7 @@ hexhex_status hexhex_mesh_writer_cells(hexhex_mesh_writer* writer, uint64_t firs
                                        const uint32_t* cells, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    require(writer, "writer").sink->cells(first, borrowed<hexhex::Hex>(cells, count, "cells"));
+    Used(writer, "writer")->sink->cells(first, borrowed<hexhex::Hex>(cells, count, "cells"));
   });
 }
 
@@ -247,16 +250,17 @@ hexhex_status hexhex_mesh_writer_cells64(hexhex_mesh_writer* writer, uint64_t fi
                                          const uint64_t* cells, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    require(writer, "writer").sink->cells(first, borrowed<hexhex::Hex64>(cells, count, "cells"));
+    Used(writer, "writer")->sink->cells(first, borrowed<hexhex::Hex64>(cells, count, "cells"));
   });
 }
 
 hexhex_status hexhex_mesh_writer_end(hexhex_mesh_writer* writer, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
-    require(writer, "writer").sink->end();
-    writer->ended = true;
+    const Used used(writer, "writer");
+    used->sink->end();
+    used->ended = true;
   });
 }
 
-void hexhex_mesh_writer_destroy(hexhex_mesh_writer* writer) { delete writer; }
+void hexhex_mesh_writer_destroy(hexhex_mesh_writer* writer) { hexhex::c::destroy(writer); }

@@ -114,6 +114,17 @@ class CommandTest(unittest.TestCase):
 
 
 class Help(CommandTest):
+    def test_terminal_is_not_told_what_to_do(self):
+        """Names in files are text, also for the terminal."""
+        self.write("a.vtu", '<VTKFile type="UnstructuredGrid"><UnstructuredGrid>'
+                   '<Piece NumberOfPoints="0" NumberOfCells="0"><PointData>'
+                   '<DataArray type="Float64" Name="\x1b[31mred\x07" format="ascii"></DataArray>'
+                   '</PointData></Piece>')
+        for arguments, name in [(["check", "a.vtu", "--quiet"], "?[31mred?"), (["info", "a\n\x1b[2J.x"], "a??[2J.x")]:
+            errors = self.run_command(*arguments, expect=FILE_PROBLEM).stderr
+            self.assertIn(name, errors)
+            self.assertTrue(errors.rstrip("\n").isprintable(), errors)
+
     def test_help_and_version(self):
         text = self.run_command("--help").stdout
         for word in ["extract", "check", "verify", "generate", "info", "view", "Exit codes", "Examples"]:

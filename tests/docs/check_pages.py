@@ -64,8 +64,18 @@ def threads_of_c():
              if said.count(name) > 1])
 
 
+def misused_in_c():
+    """Functions with handles that tests/c/misuse_test.c does not call with wrong ones."""
+    header, test = text("bindings/c/include/hexhex.h"), text("tests/c/misuse_test.c")
+    kinds = re.findall(r"HEXHEX_API void (hexhex_\w+)_destroy\(", header)
+    takes_handle = re.compile(rf"\b({'|'.join(kinds)})\* \w+")
+    return [f"tests/c/misuse_test.c lacks {name}" for name, parameters
+            in re.findall(r"HEXHEX_API [^;]*?\b(hexhex_\w+)\(([^;]*)\);", header)
+            if takes_handle.search(parameters) and not re.search(rf"\b{name}\(", test)]
+
+
 def main():
-    missing = threads_of_c()
+    missing = threads_of_c() + misused_in_c()
     pages = (("docs/errors.md", error_codes(), None), ("docs/troubleshooting.md", error_codes(), None),
              ("docs/api-c.md", c_functions(), "c"), ("docs/api-cpp.md", cpp_functions(), "cpp"),
              ("docs/api-python.md", python_names(), "python"))

@@ -18,6 +18,9 @@
  *   unless both only read it (parameters that are pointers to const). hexhex_context_cancel() and
  *   hexhex_context_cancelled() may be called at any time. docs/api-c.md says it function by
  *   function.
+ * - Handles that are NULL, destroyed, of another kind, or in use elsewhere are
+ *   HEXHEX_INVALID_ARGUMENT; functions without a status then return 0, NULL, or do nothing. What
+ *   cannot be known is in docs/reliability.md.
  * - Enumerations are checked: a number that is none of theirs is HEXHEX_INVALID_ARGUMENT.
  *
  * Corners of a hexahedron are in the order of VTK_HEXAHEDRON: 0 1 2 3 around one face, 4 5 6 7
@@ -696,7 +699,8 @@ HEXHEX_API hexhex_status hexhex_holes_get(const hexhex_holes* holes, size_t numb
 /** A prepared map, for several meshes of it. See <hexhex/extractor.hpp>. */
 typedef struct hexhex_extractor hexhex_extractor;
 
-/** @param map        must outlive the extractor
+/** @param map        which the extractor keeps: its handle may be destroyed before; arrays that it
+ *                    borrows may not
  *  @param tolerance  as in hexhex_extract_options
  *  @param max_scale  the largest scale that will be asked for, times the order; below 256, meshes
  *                    are the same as those of hexhex_extract(), bit for bit */
@@ -760,7 +764,7 @@ typedef struct hexhex_mesh_writer hexhex_mesh_writer;
 
 /** Then: begin, all points in order, all cells in order, end. The file appears, complete, with end;
  * a writer that is destroyed before leaves nothing.
- * @param context  serves this writer alone, which it must outlive; or NULL */
+ * @param context  serves this writer alone, which keeps it; or NULL */
 HEXHEX_API hexhex_status hexhex_mesh_writer_create(const char* file,
                                                    const hexhex_write_options* options,
                                                    hexhex_context* context,
