@@ -7,10 +7,14 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
+
+#include <hexhex/error.hpp>
 
 #include <base/stage.hpp>
 
@@ -121,15 +125,21 @@ void withThreadsHere(int threads, const F& f) {
 
 /// Replaces counts by their exclusive prefix sums; the last element, an unused slot, receives the
 /// total, which is returned. Sequential: it runs at the speed of memory.
+/// @throws Error TooLarge for a total that T does not hold
 template <class T>
 T exclusiveScan(std::span<T> counts) {
-  T sum{};
+  std::uint64_t sum = 0;
   for (T& entry : counts) {
     const T count = entry;
-    entry = sum;
-    sum = static_cast<T>(sum + count);
+    entry = static_cast<T>(sum);
+    sum += count;
   }
-  return sum;
+  if (sum != static_cast<T>(sum)) {
+    throw Error(ErrorCode::TooLarge, "There are " + std::to_string(sum) +
+                                         " items to number, too many for 32 bits. Lower the scale "
+                                         "or split the mesh.");
+  }
+  return static_cast<T>(sum);
 }
 
 }  // namespace hexhex

@@ -50,6 +50,12 @@ void append(Configurations& to, const StarConnectivity::Result& structure) {
 
 /// Appends those of a block of generators.
 void append(Configurations& to, const Configurations& block) {
+  if (to.slots.size() + block.slots.size() >= kNone) {  // the longest of these arrays
+    throw Error(
+        ErrorCode::TooLarge,
+        "Irregular vertices have more than 2^32 hex faces around their edges. Use the atlas "
+        "engine.");
+  }
   const auto propellerBase = static_cast<Index>(to.propellers.size());
   const auto slotBase = static_cast<Index>(to.slots.size());
   const auto cornerBase = static_cast<Index>(to.corners.size());

@@ -99,5 +99,13 @@ TEST(WithThreads, CallersDoNotWaitForEachOther) {
   EXPECT_EQ(arrived.load(), kCallers);
 }
 
+TEST(ExclusiveScan, RefusesTotalsThatDoNotFit) {
+  std::vector<std::uint32_t> counts = {0x7fffffff, 0x80000000, 0};
+  EXPECT_EQ(exclusiveScan(std::span(counts)), 0xffffffffU);
+  EXPECT_EQ(counts, (std::vector<std::uint32_t>{0, 0x7fffffff, 0xffffffff}));
+  counts = {0x7fffffff, 0x80000001, 0};
+  EXPECT_THROW(exclusiveScan(std::span(counts)), Error);
+}
+
 }  // namespace
 }  // namespace hexhex
