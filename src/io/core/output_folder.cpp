@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <fcntl.h>
 #include <new>
-#include <ranges>
 #include <string>
 #include <sys/stat.h>
 #include <system_error>
@@ -96,11 +95,11 @@ void OutputFolder::makeParents() {
        folder = folder.parent_path()) {
     parents_.push_back(folder);
   }
-  for (const fs::path& folder : std::views::reverse(parents_)) {
-    if (::mkdir(folder.c_str(), kFolderPermissions) == 0 || errno == EEXIST) continue;
+  for (auto folder = parents_.rbegin(); folder != parents_.rend(); ++folder) {
+    if (::mkdir(folder->c_str(), kFolderPermissions) == 0 || errno == EEXIST) continue;
     const int reason = errno;
     removeParents();
-    failToWrite(target_, "the folder " + folder.string() + " cannot be created", reason);
+    failToWrite(target_, "the folder " + folder->string() + " cannot be created", reason);
   }
 }
 
