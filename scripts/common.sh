@@ -96,7 +96,7 @@ can_install() {
 
 # What `hexhex view` takes beside the packages of the command. Some machines have npm from elsewhere.
 viewer_packages() {
-  printf '%s\n' zlib1g-dev pkg-config libcpp-httplib-dev
+  printf '%s\n' zlib1g-dev
   if ! command -v npm >/dev/null; then printf '%s\n' nodejs npm; fi
 }
 

@@ -2,6 +2,7 @@
 //
 // The output is C++: the page in pieces, cut at the places where the program puts title, data and
 // permissions in.
+import { createHash } from "node:crypto";
 import { readFile, writeFile } from "node:fs/promises";
 import { build } from "esbuild";
 
@@ -35,8 +36,17 @@ const style = (await build({ entryPoints: ["src/style.css"], minify: true, write
 
 const fixed = { STYLE: style, SCRIPT: script };
 const template = await readFile("src/page.html", "utf8");
-const pieces = template
-  .replace(/@(STYLE|SCRIPT)@/g, (_, name) => fixed[name])
+const filled = template.replace(/@(STYLE|SCRIPT)@/g, (_, name) => fixed[name]);
+
+/** What an element's text has to be for a Content-Security-Policy to let it in. */
+function hashOf(tag) {
+  const texts = [...filled.matchAll(new RegExp(`<${tag}>([^]*?)</${tag}>`, "g"))];
+  if (texts.length !== 1) throw new Error(`the page has ${texts.length} elements <${tag}>`);
+  return `sha256-${createHash("sha256").update(texts[0][1]).digest("base64")}`;
+}
+
+const pieces = filled
+  .replace(/@(STYLE|SCRIPT)_HASH@/g, (_, name) => hashOf(name.toLowerCase()))
   .split(/@(CONNECT|TITLE|INFO|DATA)@/);
 const names = pieces.filter((_, i) => i % 2 === 1);
 if (names.join() !== "CONNECT,TITLE,INFO,DATA") throw new Error(`unexpected places: ${names}`);

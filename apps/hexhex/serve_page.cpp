@@ -1,108 +1,277 @@
 #include "serve_page.hpp"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
+#include <cerrno>
 #include <chrono>
 #include <cstddef>
-#include <httplib.h>
-#include <thread>
+#include <cstdint>
+#include <initializer_list>
+#include <list>
+#include <netinet/in.h>
+#include <poll.h>
+#include <span>
+#include <string>
+#include <string_view>
+#include <sys/socket.h>
+#include <unistd.h>
 #include <vector>
 
+#include <arpa/inet.h>
 #include <fmt/core.h>
 
 #include <hexhex/error.hpp>
 
+#include "http_request.hpp"
+
 namespace hexhex::command {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 constexpr const char* kLoopback = "127.0.0.1";
 
 /// How long after Ctrl-C the server ends, at most: short for people, long for the processor.
 constexpr std::chrono::milliseconds kPatience{100};
 
-/// Stops a server when a context is cancelled.
-class StopOnCancel {
+/// What a client may take: for its request, until it has read something of the answer, and to close
+/// the connection. Browsers on the same machine take milliseconds.
+constexpr std::chrono::seconds kRequestTime{5};
+constexpr std::chrono::seconds kAnswerTime{30};
+constexpr std::chrono::seconds kFarewellTime{2};
+
+/// Browsers send less than one kilobyte.
+constexpr std::size_t kMaxRequest = 8192;
+
+/// Browsers open up to six.
+constexpr std::size_t kMaxConnections = 32;
+
+/// Closes itself.
+class Socket {
  public:
-  StopOnCancel(httplib::Server& server, const Context& context)
-      : thread_([this, &server, &context] {
-          while (!ended_ && !context.cancelled()) std::this_thread::sleep_for(kPatience);
-          server.stop();
-        }) {}
-  ~StopOnCancel() {
-    ended_ = true;
-    thread_.join();
+  explicit Socket(int number) : number_(number) {}
+  ~Socket() {
+    if (number_ >= 0) ::close(number_);
   }
-  StopOnCancel(const StopOnCancel&) = delete;
-  StopOnCancel& operator=(const StopOnCancel&) = delete;
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
+  [[nodiscard]] int number() const noexcept { return number_; }
 
  private:
-  std::atomic<bool> ended_{false};
-  std::thread thread_;
+  int number_;
 };
 
-/// The chunks of the mesh as one body, without a copy.
-void sendMesh(const ServedPage& page, httplib::Response& response) {
-  std::size_t size = 0;
-  for (const std::string& chunk : page.data) size += chunk.size();
-  response.set_content_provider(
-      size, "application/octet-stream",
-      [&page](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-        std::size_t begin = 0;
-        for (const std::string& chunk : page.data) {
-          if (offset < begin + chunk.size()) {
-            const std::size_t skipped = offset - begin;
-            return sink.write(chunk.data() + skipped, std::min(length, chunk.size() - skipped));
-          }
-          begin += chunk.size();
-        }
-        return false;
-      });
+/// Whether a call would only have had to wait.
+bool onlyEarly() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
+
+enum class Phase { Request, Answer, Farewell, Over };
+
+struct Connection {
+  explicit Connection(int number) : socket(number) {}
+  Socket socket;
+  Phase phase = Phase::Request;
+  Clock::time_point deadline = Clock::now() + kRequestTime;
+  std::string request;                  ///< as far as it has come
+  std::string head;                     ///< of the answer
+  std::span<const std::string> body{};  ///< of the answer, piece by piece
+  std::size_t piece = 0;                ///< what is sent next: 0 for the head, then the body
+  std::size_t sent = 0;                 ///< of that piece
+
+  void enter(Phase next, Clock::duration time) {
+    phase = next;
+    deadline = Clock::now() + time;
+  }
+};
+
+/// What is sent to whom.
+class Pages {
+ public:
+  Pages(const ServedPage& page, int port)
+      : page_(page), port_(port), path_("/" + makeSecret() + "/") {}
+
+  [[nodiscard]] std::string address() const {
+    return fmt::format("http://{}:{}{}", kLoopback, port_, path_);
+  }
+
+  /// Sets head and body.
+  void answer(Connection& client) const {
+    const auto request = parseHttpRequest(client.request);
+    if (!request) return refuse(client, "400 Bad Request");
+    if (!isHost(request->host)) return refuse(client, "403 Forbidden");
+    const bool headOnly = request->method == "HEAD";
+    if (!headOnly && request->method != "GET") return refuse(client, "405 Method Not Allowed");
+    if (sameSecret(request->target, path_)) {
+      succeed(client, "text/html; charset=utf-8", std::span(&page_.html, 1), headOnly);
+    } else if (sameSecret(request->target, path_ + kMeshUrl)) {
+      succeed(client, "application/octet-stream", page_.data, headOnly);
+    } else {
+      refuse(client, "404 Not Found");
+    }
+  }
+
+  static void refuse(Connection& client, std::string_view status) {
+    client.head = headOf(status, "text/plain", status.size() + 1) + fmt::format("{}\n", status);
+    client.body = {};
+    client.enter(Phase::Answer, kAnswerTime);
+  }
+
+ private:
+  [[nodiscard]] bool isHost(std::string_view given) const {
+    constexpr int kUnnamed = 80;  // that browsers leave out
+    return std::ranges::any_of(std::initializer_list<std::string_view>{kLoopback, "localhost"},
+                               [&](std::string_view name) {
+                                 return given == fmt::format("{}:{}", name, port_) ||
+                                        (port_ == kUnnamed && given == name);
+                               });
+  }
+
+  static void succeed(Connection& client, std::string_view type, std::span<const std::string> body,
+                      bool headOnly) {
+    std::size_t size = 0;
+    for (const std::string& part : body) size += part.size();
+    client.head = headOf("200 OK", type, size);
+    if (!headOnly) client.body = body;
+    client.enter(Phase::Answer, kAnswerTime);
+  }
+
+  /// The page's own Content-Security-Policy is in it; this one adds what cannot be said there.
+  static std::string headOf(std::string_view status, std::string_view type, std::size_t size) {
+    return fmt::format(
+        "HTTP/1.1 {}\r\nContent-Type: {}\r\nContent-Length: {}\r\nConnection: close\r\n"
+        "Allow: GET, HEAD\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n"
+        "Referrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\n"
+        "Cross-Origin-Opener-Policy: same-origin\r\n"
+        "Content-Security-Policy: frame-ancestors 'none'\r\n\r\n",
+        status, type, size);
+  }
+
+  const ServedPage& page_;
+  int port_;
+  std::string path_;
+};
+
+/// Reads what has come of a request, and answers it once it is complete.
+void receive(Connection& client, const Pages& pages) {
+  std::array<char, kMaxRequest> bytes;
+  const ssize_t count = ::recv(client.socket.number(), bytes.data(), bytes.size(), 0);
+  if (count <= 0) {
+    if (count == 0 || !onlyEarly()) client.phase = Phase::Over;
+    return;
+  }
+  if (client.phase == Phase::Farewell) return;  // what comes after a request is of no interest
+  client.request.append(bytes.data(), static_cast<std::size_t>(count));
+  constexpr std::string_view kEnd = "\r\n\r\n";
+  const std::size_t end = client.request.find(kEnd);
+  if (end != std::string::npos && end + kEnd.size() <= kMaxRequest) {
+    client.request.resize(end + kEnd.size());
+    pages.answer(client);
+  } else if (client.request.size() >= kMaxRequest) {
+    Pages::refuse(client, "431 Request Header Fields Too Large");
+  }
 }
 
-void addRoutes(httplib::Server& server, const ServedPage& page, int port) {
-  const std::vector<std::string> hosts = {fmt::format("{}:{}", kLoopback, port),
-                                          fmt::format("localhost:{}", port)};
-  server.set_default_headers(
-      {{"Cache-Control", "no-store"}, {"X-Content-Type-Options", "nosniff"}});
-  server.set_pre_routing_handler(
-      [hosts](const httplib::Request& request, httplib::Response& response) {
-        if (std::ranges::find(hosts, request.get_header_value("Host")) != hosts.end())
-          return httplib::Server::HandlerResponse::Unhandled;
-        response.status = 403;
-        return httplib::Server::HandlerResponse::Handled;
-      });
-  server.Get("/", [&page](const httplib::Request& /*request*/, httplib::Response& response) {
-    response.set_content(page.html, "text/html; charset=utf-8");
-  });
-  server.Get(kMeshUrl, [&page](const httplib::Request& /*request*/, httplib::Response& response) {
-    sendMesh(page, response);
-  });
-  // Browsers ask for it unasked.
-  server.Get("/favicon.ico", [](const httplib::Request& /*request*/, httplib::Response& response) {
-    response.status = 204;
-  });
+/// Sends as much as the client takes.
+void send(Connection& client) {
+  while (client.piece <= client.body.size()) {
+    const std::string& piece = client.piece == 0 ? client.head : client.body[client.piece - 1];
+    const std::string_view rest = std::string_view(piece).substr(client.sent);
+    const ssize_t count =
+        ::send(client.socket.number(), rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (count < 0) {
+      if (!onlyEarly()) client.phase = Phase::Over;
+      return;
+    }
+    client.deadline = Clock::now() + kAnswerTime;
+    client.sent += static_cast<std::size_t>(count);
+    if (client.sent < piece.size()) return;
+    ++client.piece;
+    client.sent = 0;
+  }
+  // To close at once would take the answer away from clients that are still sending.
+  ::shutdown(client.socket.number(), SHUT_WR);
+  client.enter(Phase::Farewell, kFarewellTime);
 }
+
+/// A listening socket.
+int listenAt(int port, sockaddr_in& address) {
+  const int number = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  auto* const general = reinterpret_cast<sockaddr*>(&address);
+  socklen_t size = sizeof address;
+  const int yes = 1;  // or a port would be taken for a minute after its last connection
+  if (number >= 0 && ::setsockopt(number, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&
+      ::bind(number, general, size) == 0 && ::listen(number, SOMAXCONN) == 0 &&
+      ::getsockname(number, general, &size) == 0) {
+    return number;
+  }
+  if (number >= 0) ::close(number);
+  throw Error(
+      ErrorCode::InvalidArgument,
+      fmt::format("Port {} of this machine cannot be used. Leave out --port for a free one.",
+                  port));
+}
+
+/// All connections, in the order in which they came.
+class Connections {
+ public:
+  Connections(int listener, const Pages& pages) : listener_(listener), pages_(pages) {}
+
+  /// Waits until something happens, but not for long, and does what is to be done.
+  void serve() {
+    std::vector<pollfd> waiting = {{listener_, POLLIN, 0}};
+    for (const Connection& client : clients_) {
+      const short event = client.phase == Phase::Answer ? POLLOUT : POLLIN;
+      waiting.push_back({client.socket.number(), event, 0});
+    }
+    if (::poll(waiting.data(), waiting.size(), static_cast<int>(kPatience.count())) < 0) return;
+    auto found = waiting.begin();
+    for (Connection& client : clients_) {
+      if ((++found)->revents != 0)
+        client.phase == Phase::Answer ? send(client) : receive(client, pages_);
+    }
+    const auto now = Clock::now();
+    clients_.remove_if([now](const Connection& client) {
+      return client.phase == Phase::Over || client.deadline < now;
+    });
+    if (waiting.front().revents != 0) acceptOne();
+  }
+
+ private:
+  void acceptOne() {
+    const int number = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (number >= 0) {
+      clients_.emplace_back(number);
+      if (clients_.size() > kMaxConnections) dropOne();
+    } else if (!onlyEarly()) {
+      // No descriptor is left, or the like: one place has to become free.
+      if (!clients_.empty()) dropOne();
+      ::poll(nullptr, 0, static_cast<int>(kPatience.count()));
+    }
+  }
+
+  /// The oldest one that has not asked yet, so that strangers do not keep the page from its owner.
+  void dropOne() {
+    const auto idle = std::ranges::find(clients_, Phase::Request, &Connection::phase);
+    clients_.erase(idle != clients_.end() ? idle : clients_.begin());
+  }
+
+  int listener_;
+  const Pages& pages_;
+  std::list<Connection> clients_;
+};
 
 }  // namespace
 
 void servePage(const ServedPage& page, int port,
                const std::function<void(const std::string& address)>& onReady, Context& context) {
-  httplib::Server server;
-  // By default several servers may share a port, and browsers would meet either.
-  server.set_socket_options([](socket_t /*socket*/) {});
-  const int bound = port == 0                              ? server.bind_to_any_port(kLoopback)
-                    : server.bind_to_port(kLoopback, port) ? port
-                                                           : -1;
-  if (bound <= 0) {
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("Port {} of this machine cannot be used. Leave out --port for a free "
-                            "one.",
-                            port));
-  }
-  addRoutes(server, page, bound);
-  const StopOnCancel stopOnCancel(server, context);
-  onReady(fmt::format("http://{}:{}/", kLoopback, bound));
-  server.listen_after_bind();
+  sockaddr_in address{};
+  const Socket listener(listenAt(port, address));
+  const Pages pages(page, ntohs(address.sin_port));
+  Connections connections(listener.number(), pages);
+  onReady(pages.address());
+  while (!context.cancelled()) connections.serve();
 }
 
 }  // namespace hexhex::command

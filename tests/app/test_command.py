@@ -18,7 +18,6 @@ import sys
 import tempfile
 import time
 import unittest
-import urllib.error
 import urllib.request
 import zlib
 
@@ -1014,46 +1013,28 @@ class View(CommandTest):
             self.run_command("view", "a.mesh", *arguments, expect=BAD_USAGE)
 
     def test_serve(self):
+        """What is served; test_server.py is about who gets it."""
         with subprocess.Popen([self.command, "view", "a.mesh", "--serve", "--quiet"],
                               cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               text=True) as process:
             address = process.stdout.readline().strip()
-            if not address and "without a server" in process.stderr.read():
-                self.skipTest("this hexhex was built without a server")
             try:
-                self.assertRegex(address, r"^http://127\.0\.0\.1:\d+/$")
                 with urllib.request.urlopen(address, timeout=60) as page:
                     info = self.info(page.read().decode())
-                with urllib.request.urlopen(address + info["data"].lstrip("/"), timeout=60) as mesh:
+                with urllib.request.urlopen(address + info["data"], timeout=60) as mesh:
                     data = mesh.read()
-                self.assertEqual(len(data), sum(sum(t["chunkBytes"]) for t in info["tables"]))
-                at = sum(info["tables"][0]["chunkBytes"])
-                cells = info["tables"][1]
-                chunks = []
-                for size in cells["chunkBytes"]:
-                    chunks.append(data[at:at + size])
-                    at += size
-                self.assertEqual(self.unpack(cells, chunks), self.mesh()[1])
-                # A page from elsewhere that has got hold of this address may not read it.
-                request = urllib.request.Request(address, headers={"Host": "example.org"})
-                with self.assertRaises(urllib.error.HTTPError) as refused:
-                    urllib.request.urlopen(request, timeout=60)
-                self.assertEqual(refused.exception.code, 403)
-                refused.exception.close()
-                for path in ["../../etc/passwd", "%2e%2e/%2e%2e/etc/passwd", "a.mesh", "mesh/",
-                             "//etc/passwd"]:
-                    with self.assertRaises(urllib.error.HTTPError) as missing:
-                        urllib.request.urlopen(address + path, timeout=60)
-                    self.assertEqual(missing.exception.code, 404, path)
-                    missing.exception.close()
-                port = address.rstrip("/").rsplit(":", 1)[1]
-                run = self.run_command("view", "a.mesh", "--serve", "--port", port,
-                                       expect=BAD_USAGE)
-                self.assertIn("cannot be used", run.stderr)
             finally:
                 process.send_signal(signal.SIGINT)
                 _, errors = process.communicate(timeout=60)
             self.assertEqual(process.returncode, SUCCESS, errors)
+        self.assertEqual(len(data), sum(sum(t["chunkBytes"]) for t in info["tables"]))
+        at = sum(info["tables"][0]["chunkBytes"])
+        cells = info["tables"][1]
+        chunks = []
+        for size in cells["chunkBytes"]:
+            chunks.append(data[at:at + size])
+            at += size
+        self.assertEqual(self.unpack(cells, chunks), self.mesh()[1])
         self.assertEqual(set(self.files()), {"map.hexex", "a.mesh"})
 
 

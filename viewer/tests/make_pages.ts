@@ -1,6 +1,6 @@
 // Makes the pages that the tests look at, with the command under test.
-import { execFileSync } from "node:child_process";
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { type ChildProcess, execFileSync, spawn } from "node:child_process";
+import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
 export const kPages = process.env.HEXHEX_VIEWER_PAGES ?? join(import.meta.dirname, "../pages");
@@ -12,6 +12,19 @@ export function hexhex(...args: string[]): string {
   const command = process.env.HEXHEX_COMMAND;
   if (!command) throw new Error("HEXHEX_COMMAND shall name the hexhex command");
   return execFileSync(command, args, { cwd: kPages, encoding: "utf8" });
+}
+
+/** `hexhex view --serve`: the process, and the page's address. */
+export async function serve(mesh: string): Promise<{ server: ChildProcess; address: string }> {
+  const server = spawn(process.env.HEXHEX_COMMAND!, ["view", mesh, "--serve", "--quiet"], {
+    cwd: kPages,
+    stdio: ["ignore", "pipe", "inherit"],
+  });
+  const line = await new Promise<string>((resolve, reject) => {
+    server.stdout!.setEncoding("utf8").once("data", resolve);
+    server.once("exit", (code) => reject(new Error(`hexhex view has ended with ${code}`)));
+  });
+  return { server, address: line.trim() };
 }
 
 /** Turns a cell of a MEDIT mesh inside out: its first two corners change places. */
@@ -56,6 +69,11 @@ export default function makePages(): void {
     ...corners.map((corner) => `${corner} 0`), "Hexahedra", "1", "1 2 3 4 5 6 7 8 0", "End", ""]
     .join("\n"));
   hexhex("view", mesh, "--quiet");
+
+  // A map whose name means harm, too.
+  const map = kHostileName.replace(/html$/, "hexex");
+  copyFileSync(join(kPages, "box.hexex"), join(kPages, map));
+  hexhex("view", "box.mesh", "--map", map, "-o", "hostile-map.html", "--quiet");
 
   // A mesh that has tagged edges and faces.
   hexhex("generate", "cylinder", "--cells", "4", "--refine", "2", "--features", "-o",

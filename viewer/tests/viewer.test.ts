@@ -1,7 +1,7 @@
 import { mkdirSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
-import { kHostileName, kPages } from "./make_pages";
-import { coloursOnCanvas, expect, kept, lookAtCanvas, open, press, quads, settle, test } from "./page";
+import { kHostileName, kPages, serve } from "./make_pages";
+import { coloursOnCanvas, complaintsOf, expect, kept, lookAtCanvas, open, press, quads, settle, test } from "./page";
 
 const kPictures = process.env.HEXHEX_VIEWER_PICTURES ?? join(kPages, "../pictures");
 mkdirSync(kPictures, { recursive: true });
@@ -264,6 +264,80 @@ test("takes any name, and a mesh of one cell", async ({ page }) => {
   expect([await kept(page), await quads(page)]).toEqual([1, 6]);
   await press(page, "w");
   await expect(page.locator("#picked-cell")).toHaveText("0");
+});
+
+test("shows the name of the map as text", async ({ page }) => {
+  await open(page, "hostile-map.html");
+  await expect(page.locator("#stat-verification")).toContainText(kHostileName.replace(/html$/, "hexex"));
+  expect(await page.locator("#panel img, #panel script").count()).toBe(0);
+  expect(await page.evaluate(() => "stolen" in window)).toBe(false);
+});
+
+test("runs nothing and asks nobody, even if HTML got into it", async ({ page }) => {
+  await open(page, "box.html");
+  const answered: string[] = [];
+  page.on("requestfinished", (request) => answered.push(request.url()));
+  const refused = await page.evaluate(async () => {
+    const directives: string[] = [];
+    document.addEventListener("securitypolicyviolation", (event) => directives.push(event.effectiveDirective));
+    const mark = `window["stolen"] = 1`;
+    const holder = document.createElement("div");
+    holder.innerHTML = `<img src="data:," onerror='${mark}'><a href='javascript:${mark}'></a>
+      <img src="https://example.org/a.png"><iframe src="https://example.org"></iframe>
+      <form action="https://example.org"></form><p style="color: red"></p>
+      <link rel="stylesheet" href="https://example.org/a.css">
+      <object data="https://example.org"></object><video src="https://example.org/a.mp4"></video>`;
+    document.body.append(holder);
+    holder.querySelector("a")!.click();
+    holder.querySelector("form")!.submit();
+    for (const text of [mark, ""]) {
+      const script = document.createElement("script");
+      if (text) script.textContent = text;
+      else script.src = "https://example.org/a.js";
+      document.body.append(script);
+    }
+    document.head.append(Object.assign(document.createElement("base"), { href: "https://example.org" }));
+    await fetch("https://example.org").catch(() => {});
+    await fetch(location.href).catch(() => {});
+    navigator.sendBeacon("https://example.org", "1");
+    try { new WebSocket("wss://example.org"); } catch { /* refused */ }
+    try { new Worker("data:text/javascript,1"); } catch { /* refused */ }
+    await new Promise((resolve) => setTimeout(resolve, 1000));
+    return [...new Set(directives)].sort();
+  });
+  expect(await page.evaluate(() => "stolen" in window)).toBe(false);
+  expect(refused).toEqual(["base-uri", "connect-src", "form-action", "frame-src", "img-src", "media-src",
+    "object-src", "script-src-attr", "script-src-elem", "style-src-attr", "style-src-elem",
+    "worker-src"]);
+  expect(answered).toEqual([]);
+  // What the browser says it has refused.
+  for (const text of complaintsOf(page)) {
+    expect(text).toMatch(/Content Security Policy|^request: https:\/\/example.org\/a\.(png|css|js)$/);
+  }
+  complaintsOf(page).length = 0;
+});
+
+test("is served, with the mesh beside it", async ({ page }) => {
+  const { server, address } = await serve("sphere.vtu");
+  try {
+    await page.goto(address);
+    await settle(page);
+    expect([await kept(page), await quads(page)]).toEqual([kSphereCells, 6 * kSide ** 2]);
+    expect(complaintsOf(page)).toEqual([`request: ${address}mesh`]);
+    complaintsOf(page).length = 0;
+    // Another page of this machine, under another address, gets nothing.
+    const other = await serve("box.mesh");
+    try {
+      await page.goto(other.address);
+      const taken = await page.evaluate((url) => fetch(url, { mode: "no-cors" }).then(String, String), address);
+      expect(taken).toContain("TypeError");
+    } finally {
+      other.server.kill("SIGINT");
+    }
+    complaintsOf(page).length = 0;
+  } finally {
+    server.kill("SIGINT");
+  }
 });
 
 test("lists the keys, and is dark on request", async ({ page }) => {
