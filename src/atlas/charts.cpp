@@ -4,6 +4,7 @@
 
 #include <atlas/charts.hpp>
 #include <base/disjoint_sets.hpp>
+#include <base/low_level.hpp>
 
 namespace hexhex {
 
@@ -26,8 +27,7 @@ class Patches {
       const auto first = static_cast<HalfFace>(4 * t);
       for (HalfFace h = first; h < first + 4; ++h) {
         smaller[count] = tetOf(mate[h]);
-        count += static_cast<std::size_t>(mate[h] < first) &
-                 static_cast<std::size_t>(!map.exact.transitions.isNonTrivial(h));
+        count += allOf(mate[h] < first, !map.exact.transitions.isNonTrivial(h)) ? 1 : 0;
       }
       auto patch = static_cast<Index>(t);
       for (std::size_t i = 0; i < count; ++i) patch = sets.unite(patch, smaller[i]);

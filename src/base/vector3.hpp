@@ -6,6 +6,8 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/pair.hpp>
+
 namespace hexhex {
 
 [[nodiscard]] constexpr Vec3 minus(const Vec3& a, const Vec3& b) noexcept {
@@ -48,6 +50,18 @@ namespace hexhex {
 /// larger one of both is a number other than the smaller one, and exact (Dekker).
 [[nodiscard]] inline double restOfSum(double sum, double a, double b) noexcept {
   return std::abs((sum - a) - b) + std::abs((sum - b) - a);
+}
+
+[[nodiscard]] inline bool isFinite(const Vec3& v) noexcept {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+/// Of all corners.
+[[nodiscard]] inline bool isFinite(const TetParameters& corners) noexcept {
+  // 0 times a number is 0 if that is finite. Two overlapping pairs have all three coordinates.
+  Pair rest = {0, 0};
+  for (const Vec3& u : corners) rest += 0 * loadPair(&u[0]) + 0 * loadPair(&u[1]);
+  return rest[0] + rest[1] == 0;
 }
 
 [[nodiscard]] inline double length(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }

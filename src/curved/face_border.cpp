@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <curved/face_border.hpp>
 #include <curved/simplex_point.hpp>
@@ -16,42 +17,35 @@ void failToCut(Index tet, const char* what) {
 
 namespace {
 
-/// The vertices of a simplex of less than four, ascending; kNone behind them.
-using SimplexVertices = std::array<Index, 3>;
-
-SimplexVertices verticesOf(const Tet& tet, CornerMask simplex) noexcept {
-  SimplexVertices found = {kNone, kNone, kNone};
-  std::size_t count = 0;
-  for (int i = 0; i < 4; ++i) {
-    if (contains(simplex, i)) found[count++] = tet[static_cast<std::size_t>(i)];
-  }
-  std::sort(found.begin(), found.end());  // kNone is above all
-  return found;
+/// The ends of an edge, the smaller first; a vertex twice.
+std::pair<Index, Index> endsOf(const Tet& tet, CornerMask simplex) noexcept {
+  return std::minmax({tet[firstCorner(simplex)], tet[lastCorner(simplex)]});
 }
 
 /// Tells a simplex of less than four corners from others that are given by their owners.
 class SimplexMatcher {
  public:
   SimplexMatcher(const TetTopology& topology, Index tet, CornerMask simplex)
-      : topology_(topology), isFace_(dimension(simplex) == 2) {
-    // The owner of an edge is found by a walk around it only, so edges are known by their vertices.
-    if (isFace_) {
+      : topology_(topology), dimension_(dimension(simplex)) {
+    // The owner of an edge is found by a walk around it only, so edges are known by their ends.
+    if (dimension_ == 2) {
       face_ = ownedFace(topology, tet, oppositeCorner(simplex));
     } else {
-      vertices_ = verticesOf(topology.tets[tet], simplex);
+      ends_ = endsOf(topology.tets[tet], simplex);
     }
   }
 
   [[nodiscard]] bool operator()(const OwnedSimplex& other) const {
-    if (isFace_) return other.tet == face_.tet && other.corners == face_.corners;
-    return verticesOf(topology_.tets[other.tet], other.corners) == vertices_;
+    if (dimension_ == 2) return other.tet == face_.tet && other.corners == face_.corners;
+    return dimension(other.corners) == dimension_ &&
+           endsOf(topology_.tets[other.tet], other.corners) == ends_;
   }
 
  private:
   const TetTopology& topology_;
-  bool isFace_;
+  int dimension_;
   OwnedSimplex face_{};
-  SimplexVertices vertices_{};
+  std::pair<Index, Index> ends_{};
 };
 
 /// Corners of the square, counter-clockwise.
@@ -210,10 +204,11 @@ void FaceBorder::finish(Index tet) {
 }
 
 PatchPoint FaceBorder::arcPoint(std::size_t side, std::uint64_t point) const noexcept {
-  const double t = input_.arcs.parameters[point];
-  const double forward = isReversed(side) ? 1 - t : t;
+  // The parameter is turned round if the arc or the side runs backward. Without branches, which
+  // cannot be predicted.
+  const bool isTurned = isReversed(side) != (side >= 2);
   PatchPoint result{static_cast<Index>(vertexCount_ + point), {}};
-  result.parameter[side % 2] = side < 2 ? forward : 1 - forward;
+  result.parameter[side % 2] = std::abs((isTurned ? 1.0 : 0.0) - input_.arcs.parameters[point]);
   result.parameter[1 - side % 2] = boundsAtOne(side) ? 1 : 0;
   return result;
 }

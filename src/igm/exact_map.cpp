@@ -67,55 +67,45 @@ LatticePoint nearestPoint(const Vec3& u, const Vec3& large, double unit) {
           static_cast<std::int64_t>(z[0])};
 }
 
-/// By how much a coordinate changes at most.
-/// @param resolution  1 / unit, exact
-double displacementOf(const Vec3& before, const LatticePoint& after, double resolution) {
-  double largest = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    largest = std::max(largest, std::abs(static_cast<double>(after[k]) * resolution - before[k]));
-  }
-  return largest;
-}
+/// What is rounded, onto which lattice, and where the results go.
+struct Sanitization {
+  const TetTopology& topology;
+  const LocalParameters& parameters;
+  double tolerance;
+  DefectCollector& defects;
+  ExactMap& map;
+  double unit = static_cast<double>(map.unit);
+  Grains grains{unit};
+};
 
 /// Rounds corners at regular and flat vertices, which do not depend on others.
 class CornerRounder {
  public:
-  CornerRounder(const TetTopology& topology, const Grains& grains, double tolerance,
-                DefectCollector& defects, ExactMap& map)
-      : topology_(topology),
-        grains_(grains),
-        tolerance_(tolerance),
-        defects_(defects),
-        map_(map),
-        unit_(static_cast<double>(map.unit)) {}
+  explicit CornerRounder(const Sanitization& in) : in_(in) {}
 
   /// @param rounding  other than by the star
-  void run(CornerIndex index, const Vec3& u, Rounding rounding) {
-    LatticePoint& corner = map_.corners[index / 4][index % 4];
-    corner = nearestPoint(u, grains_.at(rounding), unit_);
-    const double displacement = displacementOf(u, corner, 1 / unit_);
+  void run(CornerIndex index, Rounding rounding) {
+    const Vec3 u = in_.parameters(tetOf(index), localOf(index));
+    LatticePoint& corner = in_.map.corners[index / 4][index % 4];
+    corner = nearestPoint(u, in_.grains.at(rounding), in_.unit);
+    const double displacement = displacementOf(u, corner, in_.unit);
     maxDisplacement_ = std::max(maxDisplacement_, displacement);
-    if (displacement > tolerance_) report(index, rounding, displacement);
+    if (displacement > in_.tolerance) report(index, rounding, displacement);
   }
 
   [[nodiscard]] double maxDisplacement() const noexcept { return maxDisplacement_; }
 
  private:
   void report(CornerIndex index, Rounding rounding, double displacement) {
-    const Index vertex = topology_.vertex(index);
+    const Index vertex = in_.topology.vertex(index);
     // The same at all corners of the vertex, and to be reported once.
-    if (topology_.vertexTet[vertex] != tetOf(index)) return;
-    defects_.add(
+    if (in_.topology.vertexTet[vertex] != tetOf(index)) return;
+    in_.defects.add(
         rounding != Rounding::Free ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual,
         {PlaceKind::Vertex, vertex}, displacement);
   }
 
-  const TetTopology& topology_;
-  const Grains& grains_;
-  double tolerance_;
-  DefectCollector& defects_;
-  ExactMap& map_;
-  double unit_;
+  const Sanitization& in_;
   double maxDisplacement_ = 0;
 };
 
@@ -132,35 +122,28 @@ class StarSanitizer {
  public:
   using Star = std::span<const VertexStar::Member>;
 
-  StarSanitizer(const LocalParameters& parameters, const Singularities& singularities,
-                const Grains& grains, double tolerance, DefectCollector& defects, ExactMap& map)
-      : parameters_(parameters),
-        singularities_(singularities),
-        grains_(grains),
-        tolerance_(tolerance),
-        defects_(defects),
-        map_(map),
-        unit_(static_cast<double>(map.unit)) {}
+  StarSanitizer(const Sanitization& in, const Singularities& singularities)
+      : in_(in), singularities_(singularities) {}
 
   /// @param planes  of the boundary faces, in the chart of the star's first member
   void run(Index v, Star star, AxisSet planes) {
     const CornerIndex representative = star[0].corner;
     if (values_.size() <= star.size()) values_.resize(2 * star.size());
-    values_[0] = nearestPoint(parameters_(tetOf(representative), localOf(representative)),
-                              grains_.at(fixedAxes(v, star, planes)), unit_);
+    values_[0] = nearestPoint(in_.parameters(tetOf(representative), localOf(representative)),
+                              in_.grains.at(fixedAxes(v, star, planes)), in_.unit);
     if (!spread(star)) {
-      defects_.add(ErrorCode::HalfIntegerFixedPoint, {PlaceKind::Vertex, v}, 0);
+      in_.defects.add(ErrorCode::HalfIntegerFixedPoint, {PlaceKind::Vertex, v}, 0);
     }
     double displacement = 0;
     for (std::size_t i = 0; i < star.size(); ++i) {
       const CornerIndex corner = star[i].corner;
-      map_.corners[corner / 4][corner % 4] = values_[i];
-      const Vec3 before = parameters_(tetOf(corner), localOf(corner));
-      displacement = std::max(displacement, displacementOf(before, values_[i], 1 / unit_));
+      in_.map.corners[corner / 4][corner % 4] = values_[i];
+      const Vec3 before = in_.parameters(tetOf(corner), localOf(corner));
+      displacement = std::max(displacement, displacementOf(before, values_[i], in_.unit));
     }
     maxDisplacement_ = std::max(maxDisplacement_, displacement);
-    if (displacement > tolerance_) {
-      defects_.add(causeOfDisplacement(v, planes), {PlaceKind::Vertex, v}, displacement);
+    if (displacement > in_.tolerance) {
+      in_.defects.add(causeOfDisplacement(v, planes), {PlaceKind::Vertex, v}, displacement);
     }
   }
 
@@ -173,7 +156,7 @@ class StarSanitizer {
     AxisSet fixed = planes;
     for (const Index e : singularities_.at(v)) {
       const SingularEdge& edge = singularities_.edges[e];
-      const AxisSet across = kAllAxes & ~(1U << edgeAxis(parameters_, edge));
+      const AxisSet across = kAllAxes & ~(1U << edgeAxis(in_.parameters, edge));
       const auto member =
           std::find_if(star.begin(), star.end(),
                        [&edge](const VertexStar::Member& m) { return m.tet() == edge.tet; });
@@ -208,8 +191,8 @@ class StarSanitizer {
   }
 
   [[nodiscard]] LatticePoint carried(const LatticePoint& value, HalfFace halfFace) const {
-    if (!map_.transitions.isNonTrivial(halfFace)) return value;
-    const LatticePoint image = map_.transitions.across(halfFace)(value, map_.unit);
+    if (!in_.map.transitions.isNonTrivial(halfFace)) return value;
+    const LatticePoint image = in_.map.transitions.across(halfFace)(value, in_.map.unit);
     return outOfRange(image) ? value : image;
   }
 
@@ -219,13 +202,8 @@ class StarSanitizer {
     return planes != 0 ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual;
   }
 
-  const LocalParameters& parameters_;
+  const Sanitization& in_;
   const Singularities& singularities_;
-  const Grains& grains_;
-  double tolerance_;
-  DefectCollector& defects_;
-  ExactMap& map_;
-  double unit_;
   double maxDisplacement_ = 0;
   std::vector<LatticePoint> values_;  ///< per member of a star
 };
@@ -253,32 +231,27 @@ Vec3 cornerOf(const Coordinates& coordinates, std::size_t corner) {
 /// sphere_blocks_low take 7 % longer, and with a CornerRounder those of s17c_sphere_r0.1 8 %.)
 class TetRounder {
  public:
-  TetRounder(const TetTopology& topology, const LocalParameters& parameters,
-             std::span<const Rounding> rounding, const Grains& grains, ExactMap& map)
-      : topology_(topology),
-        parameters_(parameters),
+  TetRounder(const Sanitization& in, std::span<const Rounding> rounding)
+      : in_(in),
         rounding_(rounding),
-        grains_(grains),
-        map_(map),
-        unit_(static_cast<double>(map.unit)),
-        leastDeterminant_(leastCertainDeterminant(parameters, unit_)) {}
+        leastDeterminant_(leastCertainDeterminant(in.parameters, in.unit)) {}
 
   /// @return whether the tet is finished, and certainly positive
   bool run(Index t) {
     TetParameters scratch;
-    const TetParameters& u = parameters_.see(t, scratch);
+    const TetParameters& u = in_.parameters.see(t, scratch);
     std::array<Rounding, 4> rounding{};
-    for (std::size_t i = 0; i < 4; ++i) rounding[i] = rounding_[topology_.tets[t][i]];
+    for (std::size_t i = 0; i < 4; ++i) rounding[i] = rounding_[in_.topology.tets[t][i]];
     const Coordinates given = inARow(u[0], u[1], u[2], u[3]);
-    const Coordinates large = inARow(grains_.at(rounding[0]), grains_.at(rounding[1]),
-                                     grains_.at(rounding[2]), grains_.at(rounding[3]));
-    const double resolution = 1 / unit_;
+    const Coordinates large = inARow(in_.grains.at(rounding[0]), in_.grains.at(rounding[1]),
+                                     in_.grains.at(rounding[2]), in_.grains.at(rounding[3]));
+    const double resolution = 1 / in_.unit;
     Coordinates rounded;
     for (std::size_t i = 0; i < 6; ++i) {
-      rounded[i] = nearestMultiples(given[i] * unit_, large[i]);
+      rounded[i] = nearestMultiples(given[i] * in_.unit, large[i]);
       displacement_ = larger(displacement_, magnitudeOf(rounded[i] * resolution - given[i]));
     }
-    LatticeTet& corners = map_.corners[t];
+    LatticeTet& corners = in_.map.corners[t];
     for (std::size_t i = 0; i < 12; ++i) {
       corners[i / 3][i % 3] = static_cast<std::int64_t>(rounded[i / 2][i % 2]);
     }
@@ -299,12 +272,8 @@ class TetRounder {
     return (bits & static_cast<unsigned>(Rounding::ByStar)) != 0;
   }
 
-  const TetTopology& topology_;
-  const LocalParameters& parameters_;
+  const Sanitization& in_;
   std::span<const Rounding> rounding_;
-  const Grains& grains_;
-  ExactMap& map_;
-  double unit_;
   double leastDeterminant_;
   Pair displacement_ = {0, 0};
 };
@@ -312,24 +281,20 @@ class TetRounder {
 /// Rounds all corners, but those that stars decide in vain.
 /// @return tets with such corners, and those that are not certainly positive; in lists to be worked
 /// on in parallel
-std::vector<std::vector<Index>> roundTets(const TetTopology& topology,
-                                          const LocalParameters& parameters,
-                                          std::span<const Rounding> rounding, double tolerance,
-                                          Stage& stage, DefectCollector& defects, ExactMap& map) {
-  const std::size_t tets = topology.tetCount();
+std::vector<std::vector<Index>> roundTets(const Sanitization& in,
+                                          std::span<const Rounding> rounding, Stage& stage) {
+  const std::size_t tets = in.topology.tetCount();
   std::vector<std::vector<Index>> unfinished(blockCount(tets, kGrain));
   std::vector<double> displacements(unfinished.size());
-  const Grains grains(static_cast<double>(map.unit));
   const auto report = [&](Index begin, Index end) {
-    CornerRounder rounder(topology, grains, tolerance, defects, map);
+    CornerRounder rounder(in);
     for (CornerIndex corner = 4 * begin; corner < 4 * end; ++corner) {
-      const Rounding how = rounding[topology.vertex(corner)];
-      if (how == Rounding::ByStar) continue;
-      rounder.run(corner, parameters(tetOf(corner), localOf(corner)), how);
+      const Rounding how = rounding[in.topology.vertex(corner)];
+      if (how != Rounding::ByStar) rounder.run(corner, how);
     }
   };
   parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    TetRounder rounder(topology, parameters, rounding, grains, map);
+    TetRounder rounder(in, rounding);
     std::array<Index, kGrain + 1> list;  // NOLINT: written before it is read
     std::size_t count = 0;
     for (auto t = static_cast<Index>(begin); t < end; ++t) {
@@ -338,35 +303,39 @@ std::vector<std::vector<Index>> roundTets(const TetTopology& topology,
     }
     unfinished[block].assign(list.begin(), list.begin() + count);
     displacements[block] = rounder.maxDisplacement();
-    if (displacements[block] > tolerance) {
+    if (displacements[block] > in.tolerance) {
       report(static_cast<Index>(begin), static_cast<Index>(end));
     }
   });
-  noteDisplacements(displacements, map);
+  noteDisplacements(displacements, in.map);
   return unfinished;
 }
 
 /// Makes corners what the stars of their vertices demand.
-void sanitizeStars(const TetTopology& topology, const LocalParameters& parameters,
-                   std::span<const StarBlock> stars, const Singularities& singularities,
-                   double tolerance, Stage& stage, DefectCollector& defects, ExactMap& map) {
+void sanitizeStars(const Sanitization& in, std::span<const StarBlock> stars,
+                   const Singularities& singularities, Stage& stage) {
   std::vector<double> displacements(stars.size());
-  const Grains grains(static_cast<double>(map.unit));
   parallelFor(stage, stars.size(), 1, [&](std::size_t block) {
-    StarSanitizer sanitizer(parameters, singularities, grains, tolerance, defects, map);
+    StarSanitizer sanitizer(in, singularities);
     for (std::size_t i = 0; i < stars[block].vertices.size(); ++i) {
       sanitizer.run(stars[block].vertices[i], stars[block].star(i), stars[block].planes[i]);
     }
-    CornerRounder rounder(topology, grains, tolerance, defects, map);
-    for (const auto& [corner, rounding] : stars[block].planeCorners) {
-      rounder.run(corner, parameters(tetOf(corner), localOf(corner)), rounding);
-    }
+    CornerRounder rounder(in);
+    for (const auto& [corner, rounding] : stars[block].planeCorners) rounder.run(corner, rounding);
     displacements[block] = std::max(sanitizer.maxDisplacement(), rounder.maxDisplacement());
   });
-  noteDisplacements(displacements, map);
+  noteDisplacements(displacements, in.map);
 }
 
 }  // namespace
+
+double displacementOf(const Vec3& before, const LatticePoint& after, double unit) noexcept {
+  double largest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    largest = std::max(largest, std::abs(static_cast<double>(after[k]) / unit - before[k]));
+  }
+  return largest;
+}
 
 ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters,
                   Transitions transitions, const RegularVertices& survey,
@@ -379,10 +348,9 @@ ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters
   map.unit = std::int64_t{1} << fractionBits(parameters.largest(), maxScale, defects);
   if (defects.has(ErrorCode::TooLarge)) return map;
   map.corners.resize(topology.tetCount());
-  const auto unfinished =
-      roundTets(topology, parameters, vertices.rounding, tolerance, stage, defects, map);
-  sanitizeStars(topology, parameters, vertices.blocks, singularities, tolerance, stage, defects,
-                map);
+  const Sanitization sanitization{topology, parameters, tolerance, defects, map};
+  const auto unfinished = roundTets(sanitization, vertices.rounding, stage);
+  sanitizeStars(sanitization, vertices.blocks, singularities, stage);
   checkOrientations(unfinished, parameters, stage, defects, map);
   map.sixfoldVolume = sixfoldVolume(survey, map, stage);
   const auto unit = static_cast<double>(map.unit);

@@ -40,6 +40,11 @@ struct ExactMap {
                                 double tolerance, int maxScale, Stage& stage,
                                 DefectCollector& defects);
 
+/// How far sanitization moved a parameter, along any axis.
+/// @param unit  of the lattice
+[[nodiscard]] double displacementOf(const Vec3& before, const LatticePoint& after,
+                                    double unit) noexcept;
+
 /// Multiplies all parameters by an integer, exactly.
 void scaleMap(ExactMap& map, int scale, Stage& stage);
 

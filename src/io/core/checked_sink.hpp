@@ -2,7 +2,6 @@
 // comes, time and cancellation.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -21,14 +20,6 @@
 #include <base/stage.hpp>
 
 namespace hexhex {
-
-[[nodiscard]] inline bool isFinite(const Vec3& v) noexcept {
-  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-}
-[[nodiscard]] inline bool isFinite(const TetParameters& corners) noexcept {
-  return isFinite(corners[0]) && isFinite(corners[1]) && isFinite(corners[2]) &&
-         isFinite(corners[3]);
-}
 
 /// The first point with a coordinate that is infinite or no number, or the number of points.
 [[nodiscard]] std::size_t firstNotFinite(std::span<const Vec3> points, Stage& stage);

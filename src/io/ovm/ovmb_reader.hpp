@@ -12,6 +12,7 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <base/vector3.hpp>
 #include <io/core/bytes.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/ovm/ovm_mesh.hpp>

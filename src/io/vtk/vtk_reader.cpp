@@ -5,6 +5,7 @@
 #include <hexhex/stream.hpp>
 
 #include <base/parallel.hpp>
+#include <base/vector3.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/vtk/vtk_reader.hpp>
 
