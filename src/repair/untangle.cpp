@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -124,9 +125,28 @@ class Energy {
   double epsilon_ = 1;
 };
 
+/// One run of the solver.
+struct Descent {
+  static constexpr int kPast = 8;
+  const Energy& energy;
+  std::array<double, kPast> past{};  ///< energies of as many iterations
+};
+
 lbfgsfloatval_t evaluate(void* instance, const lbfgsfloatval_t* x, lbfgsfloatval_t* gradient, int,
                          lbfgsfloatval_t) {
-  return static_cast<const Energy*>(instance)->evaluate(x, gradient);
+  return static_cast<const Descent*>(instance)->energy.evaluate(x, gradient);
+}
+
+/// Ends a run in which hardly anything happens any more. (The solver could do so by itself, but
+/// would go on if it lacked memory for the past.)
+int isSlow(void* instance, const lbfgsfloatval_t*, const lbfgsfloatval_t*, lbfgsfloatval_t energy,
+           lbfgsfloatval_t, lbfgsfloatval_t, lbfgsfloatval_t, int, int iteration, int) {
+  constexpr double kLeastChange = 1e-5;
+  double& past =
+      static_cast<Descent*>(instance)->past[static_cast<std::size_t>(iteration % Descent::kPast)];
+  const double change = std::abs(past - energy);
+  past = energy;
+  return iteration > Descent::kPast && change < kLeastChange * std::abs(energy) ? 1 : 0;
 }
 
 /// The unknowns in memory as the solver wants it.
@@ -155,10 +175,8 @@ double minimize(Energy& energy, Unknowns& x) {
   parameters.m = 12;
   parameters.max_iterations = kIterations;
   parameters.epsilon = 1e-7;
-  parameters.past = 8;
-  parameters.delta = 1e-5;
-  double value = 0;
-  const int end = lbfgs(x.size(), x.data(), &value, evaluate, nullptr, &energy, &parameters);
+  Descent descent{energy};
+  const int end = lbfgs(x.size(), x.data(), nullptr, evaluate, isSlow, &descent, &parameters);
   if (end == LBFGSERR_OUTOFMEMORY) throw std::bad_alloc();  // all other ends are as good as any
   std::vector<double> unused(static_cast<std::size_t>(x.size()));
   return energy.evaluate(x.data(), unused.data());
