@@ -95,7 +95,7 @@ H5FD_class_t driverClass() {
   driver.name = "hexhex";
   driver.maxaddr = std::numeric_limits<std::int64_t>::max();
   driver.fc_degree = H5F_CLOSE_STRONG;
-  driver.fapl_size = sizeof(HdfTarget*);
+  driver.fapl_size = sizeof(void*);  // the target
   driver.open = openFile;
   driver.close = closeFile;
   driver.query = listFeatures;

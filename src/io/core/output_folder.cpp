@@ -1,4 +1,5 @@
 #include <cerrno>
+#include <cstddef>
 #include <cstdio>
 #include <fcntl.h>
 #include <new>
@@ -95,11 +96,12 @@ void OutputFolder::makeParents() {
        folder = folder.parent_path()) {
     parents_.push_back(folder);
   }
-  for (auto folder = parents_.rbegin(); folder != parents_.rend(); ++folder) {
-    if (::mkdir(folder->c_str(), kFolderPermissions) == 0 || errno == EEXIST) continue;
+  for (std::size_t i = parents_.size(); i-- > 0;) {
+    if (::mkdir(parents_[i].c_str(), kFolderPermissions) == 0 || errno == EEXIST) continue;
     const int reason = errno;
+    const std::string folder = parents_[i].string();
     removeParents();
-    failToWrite(target_, "the folder " + folder->string() + " cannot be created", reason);
+    failToWrite(target_, "the folder " + folder + " cannot be created", reason);
   }
 }
 
