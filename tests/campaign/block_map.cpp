@@ -28,11 +28,16 @@ using samples::TetGrid;
 
 /// Most maps are small, so that many are tried: what is rare is so in their structure.
 struct Limits {
-  std::uint64_t tets = 800;
-  std::uint64_t cells = 800;
+  std::uint64_t tets = 0;
+  std::uint64_t cells = 0;
 };
-constexpr Limits kUsual{};
-constexpr Limits kLarge{4000, 6000};
+
+Limits drawLimits(Random& random) {
+  const std::uint64_t choice = random.below(50);
+  if (choice == 0) return {4000, 6000};
+  if (choice < 7) return {800, 800};
+  return {60, 60};
+}
 
 /// Per block and axis: a factor for the number of cells along it. Equal where blocks meet.
 using Lengths = std::vector<std::array<std::int64_t, 3>>;
@@ -295,7 +300,7 @@ DrawnMap drawBlockMap(Random& random) {
   DrawnMap drawn{structure.kind + (manifold ? "" : ", not manifold"), {}, {}};
 
   const std::size_t blocks = complex.blockCount();
-  const Limits& limits = random.below(10) == 0 ? kLarge : kUsual;
+  const Limits limits = drawLimits(random);
   const int cells = drawWithin(blocks, 1, limits.cells, 8, random);
   const int least = arePairsUnique(complex, structure.model.blocks) ? 1 : 2;
   const int refine = std::max(least, drawWithin(blocks, 12, limits.tets, 5, random));

@@ -11,6 +11,11 @@ namespace hexhex::campaign {
 
 using samples::Random;
 
+/// Mostly small things are drawn: they are fast, and large ones find little that they do not.
+inline std::uint64_t oftenOr(std::uint64_t usual, std::uint64_t rare, Random& random) {
+  return random.below(4) > 0 ? usual : rare;
+}
+
 struct BlockStructure {
   std::string kind;  ///< of structure, for statistics
   samples::BlockModel model;

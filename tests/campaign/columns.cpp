@@ -74,7 +74,7 @@ Polygons drawPolygons(Random& random) {
     plane.points.push_back(onCircle(static_cast<double>(i) / static_cast<double>(corners)));
     plane.polygons[0].push_back(static_cast<Index>(i));
   }
-  const std::size_t cuts = random.below(7);
+  const std::size_t cuts = random.below(oftenOr(4, 7, random));
   for (std::size_t i = 0; i < cuts; ++i) {
     const std::size_t chosen = random.below(plane.polygons.size());
     const std::vector<Index> polygon = plane.polygons[chosen];

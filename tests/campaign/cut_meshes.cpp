@@ -97,7 +97,7 @@ TetMesh drawTets(Random& random) {
     return {sample.map.points, sample.map.tets};
   }
   TetMesh mesh{{{-1, -1, -1}, {1, 1, -1}, {-1, 1, 1}, {1, -1, 1}}, {{0, 1, 2, 3}}};
-  const std::size_t changes = random.below(8);
+  const std::size_t changes = random.below(oftenOr(4, 8, random));
   for (std::size_t i = 0; i < changes; ++i) {
     if (random.below(2) == 0) {
       cutTet(mesh, random);
@@ -117,7 +117,7 @@ BlockStructure drawCutTets(Random& random) {
 BlockStructure drawHexMesh(Random& random) {
   const auto kinds = sampleKinds();
   SampleOptions options;
-  options.cells = static_cast<int>(1 + random.below(2));
+  options.cells = static_cast<int>(oftenOr(1, 2, random));
   options.refine = 1;
   options.valence = static_cast<int>(3 + random.below(4));
   const Sample sample = generateSample(kinds[random.below(kinds.size())].kind, options);

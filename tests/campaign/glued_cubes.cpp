@@ -191,8 +191,9 @@ BlockStructure drawPolycube(Random& random) {
 }
 
 BlockStructure drawGluedCubes(Random& random) {
-  Gluer gluer(1 + random.below(12), random);
-  const std::size_t gluings = random.below(16);
+  const std::uint64_t most = oftenOr(5, 12, random);
+  Gluer gluer(1 + random.below(most), random);
+  const std::size_t gluings = random.below(most + 4);
   for (std::size_t i = 0; i < gluings; ++i) gluer.glueAnyTwo(random.below(3) > 0);
   BlockStructure structure{"glued cubes", gluer.model()};
   scatter(structure.model, random);
@@ -202,7 +203,8 @@ BlockStructure drawGluedCubes(Random& random) {
 BlockStructure drawClosedManifold(Random& random) {
   if (random.below(2) == 0) {
     GridPoint size{};
-    for (std::int32_t& length : size) length = static_cast<std::int32_t>(3 + random.below(3));
+    for (std::int32_t& length : size)
+      length = static_cast<std::int32_t>(3 + random.below(oftenOr(1, 3, random)));
     std::set<GridPoint> cubes;
     for (GridPoint cube{}; cube[2] < size[2]; ++cube[2]) {
       for (cube[1] = 0; cube[1] < size[1]; ++cube[1]) {

@@ -43,8 +43,9 @@ T oneOf(const std::array<T, count>& values, Random& random) {
 DrawnMap drawSample(Random& random) {
   const SampleKindName& kind = sampleKinds()[random.below(sampleKinds().size())];
   SampleOptions options;
-  options.cells = static_cast<int>(1 + random.below(random.below(6) == 0 ? 7 : 4));
-  options.refine = static_cast<int>(1 + random.below(random.below(3) == 0 ? 3 : 2));
+  // Mostly small: samples have up to 12 blocks of cells^3 cells and 12 refine^3 tets.
+  options.cells = static_cast<int>(1 + random.below(random.below(12) == 0 ? 7 : 2));
+  options.refine = static_cast<int>(1 + random.below(random.below(12) == 0 ? 3 : 1));
   options.valence = static_cast<int>(3 + random.below(10));
   options.charts = chartStyles()[random.below(chartStyles().size())].kind;
   options.jitter = oneOf(std::array{0.0, 0.1, 0.5, 1.0}, random);
@@ -57,14 +58,14 @@ DrawnMap drawSample(Random& random) {
   return {"sample " + std::string(kind.name), std::move(sample.map), std::move(sample.answer)};
 }
 
-/// Hundreds of columns of three blocks each that do not touch.
+/// Columns of three blocks each that do not touch; sometimes dozens of them.
 DrawnMap drawManyComponents(Random& random) {
   SampleOptions options;
   options.cells = 1;
   options.refine = 1;
   options.valence = 3;
   options.charts = ChartStyle::Random;
-  const std::size_t count = 20 + random.below(60);
+  const std::size_t count = 2 + random.below(random.below(8) == 0 ? 80 : 10);
   DrawnMap drawn{"many components", {}, SampleAnswer{}};
   for (std::size_t i = 0; i < count; ++i) {
     options.seed = random.next();
