@@ -43,9 +43,7 @@ if(HEXHEX_HAS_TBB)
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libtbb-dev")
 endif()
 get_property(component_libraries GLOBAL PROPERTY HEXHEX_COMPONENT_LIBRARIES)
-foreach(pair IN ITEMS "hdf5=libhdf5-dev" "exo=libexodusii-dev"
-    "netcdf=libnetcdf-dev"
-    "lbfgs=liblbfgs-dev" "z[.]=zlib1g-dev")
+foreach(pair IN ITEMS "hdf5=libhdf5-dev" "lbfgs=liblbfgs-dev" "z[.]=zlib1g-dev")
   string(REPLACE "=" ";" pair ${pair})
   list(GET pair 0 name)
   list(GET pair 1 package)
@@ -59,6 +57,12 @@ set(CPACK_COMPONENT_DEV_DESCRIPTION "${PROJECT_DESCRIPTION} (C++ and C headers, 
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME hexhex)
 if(NOT HEXHEX_HAS_VIEWER)  # with it, the command holds the static library
   set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS "${exact}")
+endif()
+# What is loaded only when a file needs it.
+get_property(loaded_packages GLOBAL PROPERTY HEXHEX_LOADED_PACKAGES)
+if(loaded_packages)
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS ${loaded_packages})
+  set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS ${loaded_packages})
 endif()
 set(CPACK_COMPONENT_COMMAND_DESCRIPTION "${PROJECT_DESCRIPTION} (the command)")
 

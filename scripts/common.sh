@@ -68,8 +68,8 @@ install_python_programs() {
   export HEXHEX_PYTHON=$python/bin/python
 }
 
-# Libraries of optional parts: .vtkhdf, .cgns, .exo, repair. Without them these are left out.
-optional_packages=(liblbfgs-dev libhdf5-dev libexodusii-dev)
+# Libraries of optional parts: .vtkhdf, .cgns, repair. Without them these are left out.
+optional_packages=(liblbfgs-dev libhdf5-dev)
 # ... and what only tests need, which skip without it: VTK reads curved meshes. ParaView's Python has
 # VTK, too, and Debian has either of them installed.
 vtk_packages=(python3-vtk9)

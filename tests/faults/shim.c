@@ -11,7 +11,7 @@
  *
  * FAULT='KIND N PERSISTENT' in the environment makes one such run without all that, for debuggers.
  *
- * What runs before main() and after it, in libraries, is left alone.
+ * What runs before main() and after it, in libraries, is left alone, and what they do when they are loaded.
  */
 #define _GNU_SOURCE
 #include <dirent.h>
@@ -305,6 +305,14 @@ int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*
   NEXT(pthread_create);
   if (hits(THREAD)) return EAGAIN;
   return next(thread, attributes, function, argument);
+}
+
+void *dlopen(const char *name, int mode) {
+  NEXT(dlopen);
+  const int armed = atomic_exchange(&fault.armed, 0);
+  void *const library = next(name, mode);
+  fault.armed = armed;
+  return library;
 }
 
 /* The server. */

@@ -19,6 +19,7 @@
 #include <io/file_size_limit.hpp>
 #include <io/io_test_support.hpp>
 #include <io/other_programs.hpp>
+#include <io/solvers/solvers.hpp>
 
 namespace hexhex::test {
 namespace {
@@ -84,13 +85,9 @@ struct Check {
 
 void PrintTo(const Check& check, std::ostream* stream) { *stream << check.format; }
 
-class OptionalFormats : public testing::TestWithParam<Check> {};
-
-TEST_P(OptionalFormats, VtkReadsWhatWeWrite) {
-  const Check& check = GetParam();
-  const TemporaryFolder folder;
+/// Has VTK read the file of meshWithTags().
+void expectRead(const Check& check, const TemporaryFolder& folder) {
   const HexMesh mesh = meshWithTags();
-  if (!write(mesh, folder / check.file)) GTEST_SKIP() << check.format << " is not built in";
   const std::string output = (folder / "out").string();
   const int code =
       runScript("read_optional.py",
@@ -109,18 +106,55 @@ TEST_P(OptionalFormats, VtkReadsWhatWeWrite) {
   EXPECT_EQ(contentOf(output + ".groups"), check.groups);
 }
 
+class OptionalFormats : public testing::TestWithParam<Check> {};
+
+TEST_P(OptionalFormats, VtkReadsWhatWeWrite) {
+  const Check& check = GetParam();
+  const TemporaryFolder folder;
+  if (!write(meshWithTags(), folder / check.file)) {
+    GTEST_SKIP() << check.format << " is not built in";
+  }
+  expectRead(check, folder);
+}
+
 // 32 boundary quads, three of them with a tag, and one tagged quad inside.
+const char* const kExodusGroups =
+    "boundary 29\ncurve_5 3\npoint_1 2\npoint_2 1\nregion_2 4\nregion_4 8\n"
+    "surface_3 1\nsurface_7 2\n";
 INSTANTIATE_TEST_SUITE_P(
     Formats, OptionalFormats,
     testing::Values(Check{"vtkhdf", "a.vtkhdf", false, false,
                           "region_2 4\nregion_4 8\nsurface_3 2\nsurface_7 2\n"},
-                    Check{"exodus", "a.exo", true, false,
-                          "boundary 29\ncurve_5 3\npoint_1 2\npoint_2 1\nregion_2 4\nregion_4 8\n"
-                          "surface_3 1\nsurface_7 2\n"},
+                    Check{"exodus", "a.exo", true, false, kExodusGroups},
                     Check{"cgns", "a.cgns", true, false, "patches 3\nquads 32\n"},
                     Check{"openfoam", "a.foam", false, true,
                           "boundary 29\nregion_2 4\nregion_4 8\nsurface_3 1\nsurface_7 2\n"}),
     [](const auto& test) { return test.param.format; });
+
+// The layout of meshes whose arrays take 4 GB, for one that is small.
+TEST(Exodus, VtkReadsWideFiles) {
+  const TemporaryFolder folder;
+  Context context;
+  const HexMesh mesh = meshWithTags();
+  const std::uint64_t largest = mesh.points.size() * sizeof(double);
+  writeExodus(mesh, folder / "a.exo", {}, context, largest - 1);
+  EXPECT_EQ(contentOf(folder / "a.exo").substr(0, 4), "CDF\5");
+  expectRead({"exodus", "a.exo", true, false, kExodusGroups}, folder);
+  writeExodus(mesh, folder / "a.exo", {}, context, largest);
+  EXPECT_EQ(contentOf(folder / "a.exo").substr(0, 4), "CDF\2");
+}
+
+TEST(Exodus, BytesDoNotDependOnThreads) {
+  const TemporaryFolder folder;
+  const HexMesh mesh = gridMesh(40, 30, 20);
+  std::vector<std::string> bytes;
+  for (const int threads : {1, 2, 5}) {
+    Context context(threads);
+    writeHexMesh(mesh, folder / "a.exo", context);
+    bytes.push_back(contentOf(folder / "a.exo"));
+  }
+  EXPECT_TRUE(bytes[0] == bytes[1] && bytes[0] == bytes[2]);
+}
 
 /// The numbers of one file of a polyMesh, without its head.
 std::vector<std::int64_t> numbersIn(const std::filesystem::path& file) {
@@ -231,7 +265,12 @@ TEST(OptionalFormats, FilesAppearCompleteOrNotAtAll) {
         << name;
     EXPECT_EQ(failureOf([&] { write(mesh, folder / "no/such/folder" / name); }).code,
               ErrorCode::FileWrite);
-    EXPECT_EQ(failureOf([&] { write(mesh, "/dev/null", format); }).code, ErrorCode::FileWrite);
+    // HDF5 writes at any position.
+    if (std::string(format) == "exodus") {
+      EXPECT_TRUE(write(mesh, "/dev/null", format));
+    } else {
+      EXPECT_EQ(failureOf([&] { write(mesh, "/dev/null", format); }).code, ErrorCode::FileWrite);
+    }
     EXPECT_TRUE(contentOf(folder / name) == bytes) << name;
     EXPECT_EQ(folder.fileCount(), files) << name;
     // Empty meshes are legal, but the CGNS library does not take them.

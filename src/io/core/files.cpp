@@ -10,6 +10,7 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
+#include <io/core/hdf5_library.hpp>
 #include <io/core/registry.hpp>
 #include <io/core/zlib_blocks.hpp>
 
@@ -45,6 +46,7 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
            "this program was built without zlib and cannot compress files. Write the file without "
            "compression.");
   }
+  if (format.overHdf5) requireHdf5(file);
   return format;
 }
 

@@ -35,7 +35,7 @@ void guarded(HdfTarget& target, const F& f) noexcept {
 }
 
 H5FD_t* openFile(const char* /*name*/, unsigned /*flags*/, hid_t access, haddr_t /*most*/) {
-  const auto* const target = static_cast<HdfTarget* const*>(H5Pget_driver_info(access));
+  const auto* const target = static_cast<HdfTarget* const*>(HDF5(H5Pget_driver_info)(access));
   auto* const file = target == nullptr ? nullptr : new (std::nothrow) OpenFile{};
   if (file == nullptr) return nullptr;
   file->target = *target;
@@ -109,9 +109,22 @@ H5FD_class_t driverClass() {
   return driver;
 }
 
+/// Throws std::bad_alloc if there is no more memory than what HDF5 may need for itself: it crashes
+/// if there is not enough in the midst of its work.
+void requireSpareMemory() {
+  constexpr std::size_t kMost = std::size_t{1} << 24;  // its caches take 2 MB to 4 MB
+  const Array<char> spare(kMost);
+}
+
+/// HDF5 keeps its state in global variables.
+std::mutex& hdf5Lock() {
+  static std::mutex lock;
+  return lock;
+}
+
 hid_t registerDriver() {
   const H5FD_class_t driver = driverClass();
-  return H5FDregister(&driver);
+  return HDF5(H5FDregister)(&driver);
 }
 
 }  // namespace
@@ -128,69 +141,71 @@ void HdfObject::close() {
 }
 
 HdfFile::QuietErrors::QuietErrors() {
-  H5Eget_auto2(H5E_DEFAULT, &function, &data);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  HDF5(H5Eget_auto2)(H5E_DEFAULT, &function, &data);
+  HDF5(H5Eset_auto2)(H5E_DEFAULT, nullptr, nullptr);
 }
-HdfFile::QuietErrors::~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, function, data); }
+HdfFile::QuietErrors::~QuietErrors() { HDF5(H5Eset_auto2)(H5E_DEFAULT, function, data); }
 
 HdfFile::HdfFile(const OutputFile& output, Order order)
-    : lock_((requireSpareMemory(), libraryLock())),
+    : lock_((requireSpareMemory(), hdf5Lock())),
       target_{output},
-      driver_(target_, registerDriver(), H5FDunregister),
-      ofFiles_(target_, H5Pcreate(H5P_FILE_CREATE), H5Pclose),
-      ofGroups_(target_, H5Pcreate(H5P_GROUP_CREATE), H5Pclose),
-      ofDatasets_(target_, H5Pcreate(H5P_DATASET_CREATE), H5Pclose),
-      access_(target_, H5Pcreate(H5P_FILE_ACCESS), H5Pclose),
-      file_(target_, create(order), H5Fclose) {}
+      driver_(target_, registerDriver(), HDF5(H5FDunregister)),
+      ofFiles_(target_, HDF5(H5Pcreate)(HDF5(H5P_CLS_FILE_CREATE_ID_g)), HDF5(H5Pclose)),
+      ofGroups_(target_, HDF5(H5Pcreate)(HDF5(H5P_CLS_GROUP_CREATE_ID_g)), HDF5(H5Pclose)),
+      ofDatasets_(target_, HDF5(H5Pcreate)(HDF5(H5P_CLS_DATASET_CREATE_ID_g)), HDF5(H5Pclose)),
+      access_(target_, HDF5(H5Pcreate)(HDF5(H5P_CLS_FILE_ACCESS_ID_g)), HDF5(H5Pclose)),
+      file_(target_, create(order), HDF5(H5Fclose)) {}
 
 HdfFile::~HdfFile() = default;
 
 hid_t HdfFile::create(Order order) {
   for (const HdfObject* const creation : {&ofFiles_, &ofGroups_, &ofDatasets_}) {
-    creation->require(H5Pset_obj_track_times(creation->id(), false));
+    creation->require(HDF5(H5Pset_obj_track_times)(creation->id(), false));
   }
   if (order == Order::OfCreation) {
     constexpr unsigned kKnown = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
-    ofFiles_.require(H5Pset_link_creation_order(ofFiles_.id(), kKnown));
-    ofGroups_.require(H5Pset_link_creation_order(ofGroups_.id(), kKnown));
-    access_.require(H5Pset_libver_bounds(access_.id(), H5F_LIBVER_V18, H5F_LIBVER_V18));
+    ofFiles_.require(HDF5(H5Pset_link_creation_order)(ofFiles_.id(), kKnown));
+    ofGroups_.require(HDF5(H5Pset_link_creation_order)(ofGroups_.id(), kKnown));
+    access_.require(HDF5(H5Pset_libver_bounds)(access_.id(), H5F_LIBVER_V18, H5F_LIBVER_V18));
   }
   HdfTarget* const target = &target_;
-  access_.require(H5Pset_driver(access_.id(), driver_.id(), &target));
-  return H5Fcreate("hexhex", H5F_ACC_TRUNC, ofFiles_.id(), access_.id());
+  access_.require(HDF5(H5Pset_driver)(access_.id(), driver_.id(), &target));
+  return HDF5(H5Fcreate)("hexhex", H5F_ACC_TRUNC, ofFiles_.id(), access_.id());
 }
 
 HdfObject HdfFile::group(hid_t parent, const std::string& name) const {
-  return {target_, H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, ofGroups_.id(), H5P_DEFAULT),
-          H5Gclose};
+  return {target_, HDF5(H5Gcreate2)(parent, name.c_str(), H5P_DEFAULT, ofGroups_.id(), H5P_DEFAULT),
+          HDF5(H5Gclose)};
 }
 
 HdfObject HdfFile::space(std::initializer_list<hsize_t> shape) const {
   const int rank = static_cast<int>(shape.size());
   return {target_,
-          rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, shape.begin(), nullptr),
-          H5Sclose};
+          rank == 0 ? HDF5(H5Screate)(H5S_SCALAR)
+                    : HDF5(H5Screate_simple)(rank, shape.begin(), nullptr),
+          HDF5(H5Sclose)};
 }
 
 HdfObject HdfFile::dataset(hid_t parent, const std::string& name, hid_t type,
                            const HdfObject& space) const {
   return {target_,
-          H5Dcreate2(parent, name.c_str(), type, space.id(), H5P_DEFAULT, ofDatasets_.id(),
-                     H5P_DEFAULT),
-          H5Dclose};
+          HDF5(H5Dcreate2)(parent, name.c_str(), type, space.id(), H5P_DEFAULT, ofDatasets_.id(),
+                           H5P_DEFAULT),
+          HDF5(H5Dclose)};
 }
 
 void HdfFile::writeAttribute(hid_t object, const char* name, hid_t type, const HdfObject& space,
                              const void* values) const {
-  HdfObject attribute(target_, H5Acreate2(object, name, type, space.id(), H5P_DEFAULT, H5P_DEFAULT),
-                      H5Aclose);
-  attribute.require(H5Awrite(attribute.id(), type, values));
+  HdfObject attribute(target_,
+                      HDF5(H5Acreate2)(object, name, type, space.id(), H5P_DEFAULT, H5P_DEFAULT),
+                      HDF5(H5Aclose));
+  attribute.require(HDF5(H5Awrite)(attribute.id(), type, values));
 }
 
 HdfObject HdfFile::text(std::size_t bytes, H5T_str_t padding) const {
-  HdfObject type(target_, H5Tcopy(H5T_C_S1), H5Tclose);
-  type.require(H5Tset_size(type.id(), bytes));
-  type.require(H5Tset_strpad(type.id(), padding));
+  HdfObject type(target_, HDF5(H5Tcopy)(HDF5(H5T_C_S1_g)), HDF5(H5Tclose));
+  type.require(HDF5(H5Tset_size)(type.id(), bytes));
+  type.require(HDF5(H5Tset_strpad)(type.id(), padding));
   return type;
 }
 

@@ -13,7 +13,24 @@
 #include <string>
 #include <utility>
 
+#include <io/core/hdf5_library.hpp>
 #include <io/core/output_file.hpp>
+
+/// HDF5(H5Dwrite) is that function, HDF5(H5T_NATIVE_INT32_g) that value of the library.
+#if defined(HEXHEX_HDF5_NAME)
+#define HDF5(name)                                                                             \
+  (*[] {                                                                                       \
+    static const auto symbol = reinterpret_cast<decltype(&::name)>(hexhex::hdf5Symbol(#name)); \
+    return symbol;                                                                             \
+  }())
+// Constants of its headers call it to see whether it is ready.
+#undef H5OPEN
+#undef H5CHECK
+#define H5OPEN
+#define H5CHECK
+#else
+#define HDF5(name) ::name
+#endif
 
 namespace hexhex {
 

@@ -203,14 +203,4 @@ void TextFile::commit(std::string_view text) {
   output_->commit();
 }
 
-void requireSpareMemory() {
-  constexpr std::size_t kMost = std::size_t{1} << 24;  // their caches take 2 MB to 4 MB
-  const Array<char> spare(kMost);
-}
-
-std::mutex& libraryLock() {
-  static std::mutex lock;
-  return lock;
-}
-
 }  // namespace hexhex

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -69,7 +68,14 @@ template <class T>
   return std::copy(bytes.begin(), bytes.end(), place);
 }
 
-/// The same of three coordinates.
+/// Puts the bytes of a number, the largest first, and returns the place behind.
+template <class T>
+[[nodiscard]] char* putBigBytes(char* place, T number) {
+  const auto bytes = littleBytes(number);
+  return std::reverse_copy(bytes.begin(), bytes.end(), place);
+}
+
+/// putBytes() of three coordinates.
 [[nodiscard]] inline char* putBytes(char* place, const Vec3& point) {
   for (const double coordinate : point) place = putBytes(place, coordinate);
   return place;
@@ -112,8 +118,7 @@ class ChangedFolder {
 /// Every function throws Error FileWrite, with the target and the system's reason, if it fails.
 class OutputFile {
  public:
-  /// What the target may be. Libraries, which write the temporary by its name and at any position,
-  /// need a regular file.
+  /// What the target may be. Libraries, which write at any position, need a regular file.
   enum class Target { Any, Regular };
 
   explicit OutputFile(std::filesystem::path target, Target kind = Target::Any);
@@ -162,9 +167,6 @@ class OutputFile {
   /// Writes what is buffered, closes the file, and gives it its name.
   void commit();
 
-  /// What commit() renames, for libraries that write a file by its name and close it before; empty
-  /// if the target is written directly.
-  [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
   /// As failToWrite().
   [[noreturn]] void fail(const std::string& reason, int error = 0) const;
 
@@ -231,13 +233,5 @@ class FilePart {
   std::unique_ptr<char[]> buffer_;
   std::size_t used_ = 0;
 };
-
-/// HDF5, and what is built on it, keeps its state in global variables: whoever uses one of these
-/// libraries holds this lock.
-[[nodiscard]] std::mutex& libraryLock();
-
-/// Throws std::bad_alloc if there is no more memory than what such a library may need for itself:
-/// HDF5 crashes, and Exodus leaves arrays out, if there is not enough in the midst of their work.
-void requireSpareMemory();
 
 }  // namespace hexhex

@@ -41,24 +41,19 @@ TetCells readHexexTets(const Input& input, Context& context) {
   return tets;
 }
 
-/// The writer of a format over a library that not every build has, or what has to be installed.
-struct OptionalWriter {
-  void (*write)(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
-                Context& context) = nullptr;
-  std::string_view missing = {};
-};
+// Formats over HDF5, which not every build has.
 #if defined(HEXHEX_HAS_HDF5)
-constexpr OptionalWriter kVtkHdf = {.write = writeVtkHdf};
-constexpr OptionalWriter kCgns = {.write = writeCgns};
+constexpr auto kWriteVtkHdf = writeVtkHdf;
+constexpr auto kWriteCgns = writeCgns;
 #else
-constexpr OptionalWriter kVtkHdf = {.missing = "HDF5 (libhdf5-dev)"};
-constexpr OptionalWriter kCgns = kVtkHdf;
+constexpr decltype(&writeVtkHdf) kWriteVtkHdf = nullptr;
+constexpr decltype(&writeCgns) kWriteCgns = nullptr;
 #endif
-#if defined(HEXHEX_HAS_EXODUS)
-constexpr OptionalWriter kExodus = {.write = writeExodus};
-#else
-constexpr OptionalWriter kExodus = {.missing = "Exodus (libexodusii-dev)"};
-#endif
+
+void writeExodusFile(const HexMesh& mesh, const std::filesystem::path& file,
+                     const WriteOptions& options, Context& context) {
+  writeExodus(mesh, file, options, context);
+}
 
 constexpr std::array kFormatTable = {
     Format{.label = {"hexex", ".hexex", "text of parametrized tets"},
@@ -111,17 +106,11 @@ constexpr std::array kFormatTable = {
     Format{.label = {"openfoam", ".foam", "OpenFOAM polyMesh, a folder"},
            .meshes = {.write = writeOpenFoam}},
     Format{.label = {"vtkhdf", ".vtkhdf", "VTKHDF"},
-           .meshes = {.write = kVtkHdf.write},
-           .missing = kVtkHdf.missing},
-    Format{.label = {"cgns", ".cgns", "CGNS"},
-           .meshes = {.write = kCgns.write},
-           .missing = kCgns.missing},
-    Format{.label = {"exodus", ".exo", "Exodus II"},
-           .meshes = {.write = kExodus.write},
-           .missing = kExodus.missing},
-    Format{.label = {"exodus-e", ".e", "Exodus II"},
-           .meshes = {.write = kExodus.write},
-           .missing = kExodus.missing},
+           .meshes = {.write = kWriteVtkHdf},
+           .overHdf5 = true},
+    Format{.label = {"cgns", ".cgns", "CGNS"}, .meshes = {.write = kWriteCgns}, .overHdf5 = true},
+    Format{.label = {"exodus", ".exo", "Exodus II"}, .meshes = {.write = writeExodusFile}},
+    Format{.label = {"exodus-e", ".e", "Exodus II"}, .meshes = {.write = writeExodusFile}},
 };
 
 /// Other names for formats.
@@ -144,7 +133,7 @@ bool holdsMaps(const Format& format) {
   return format.maps.read != nullptr || format.maps.write != nullptr;
 }
 bool holdsMeshes(const Format& format) {
-  return format.meshes.read != nullptr || format.meshes.write != nullptr || !format.missing.empty();
+  return format.meshes.read != nullptr || format.meshes.write != nullptr || format.overHdf5;
 }
 
 /// What a format is looked for.
@@ -228,11 +217,7 @@ const Format& findFormat(const std::filesystem::path& file, std::string_view nam
                                    : formatWith(usual, &FormatLabel::name, purpose.fits);
   if (format == nullptr && !usual.empty()) failToName(file, usual, purpose);
   if (format == nullptr) failToExtend(file, extension, content);
-  if (content != FileContent::HexMesh || format->missing.empty()) return *format;
-  throw Error(ErrorCode::FileUnsupported, file.string() +
-                                              ": this build of hexhex cannot write the format \"" +
-                                              std::string(format->label.name) + "\". Install " +
-                                              std::string(format->missing) + " and build it anew.");
+  return *format;
 }
 
 std::string streamingFormats() {
@@ -244,7 +229,7 @@ std::span<const FileFormat> fileFormats() {
   static const std::vector<FileFormat> list = [] {
     std::vector<FileFormat> result;
     for (const Format& format : kFormatTable) {
-      if (!format.missing.empty()) continue;
+      if (format.overHdf5 && format.meshes.write == nullptr) continue;  // not in this build
       result.push_back({format.label.name, format.label.extension, format.label.description,
                         format.maps.read != nullptr, format.maps.write != nullptr,
                         format.readTets != nullptr, format.meshes.read != nullptr,

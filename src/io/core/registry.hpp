@@ -51,16 +51,15 @@ struct Format {
   } pieces = {};
 
   bool compresses = false;  ///< heeds WriteOptions::compress
-  /// The library without which this build cannot write the format: then all functions are null.
-  std::string_view missing = {};
+  /// Writing takes requireHdf5(); in builds without HDF5 all functions are null.
+  bool overHdf5 = false;
 };
 
 enum class FileContent : std::uint8_t { Map, HexMesh, MapOrHexMesh, Tets };
 
 /// The format of a file that holds, or will hold, such content: the one of this name or, if it is
 /// empty, what the extension means. It reads or writes such files, if not both.
-/// @throws Error FileUnsupported, naming the extensions or the formats that are known; for hex
-///         meshes also if this build cannot write the format
+/// @throws Error FileUnsupported, naming the extensions or the formats that are known
 [[nodiscard]] const Format& findFormat(const std::filesystem::path& file, std::string_view name,
                                        FileContent content);
 

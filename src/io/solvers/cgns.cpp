@@ -36,18 +36,18 @@ struct CgnsData {
 
   CgnsData() = default;
   CgnsData(std::string_view text, std::initializer_list<hsize_t> size)
-      : type("C1"), ofHdf(H5T_NATIVE_CHAR), values(text.data()), shape(size) {}
+      : type("C1"), ofHdf(HDF5(H5T_NATIVE_SCHAR_g)), values(text.data()), shape(size) {}
   template <class T>
   CgnsData(const T* numbers, std::initializer_list<hsize_t> size) : values(numbers), shape(size) {
     if constexpr (std::same_as<T, double>) {
-      type = "R8", ofHdf = H5T_NATIVE_DOUBLE;
+      type = "R8", ofHdf = HDF5(H5T_NATIVE_DOUBLE_g);
     } else if constexpr (std::same_as<T, float>) {
-      type = "R4", ofHdf = H5T_NATIVE_FLOAT;
+      type = "R4", ofHdf = HDF5(H5T_NATIVE_FLOAT_g);
     } else if constexpr (std::same_as<T, std::int64_t>) {
-      type = "I8", ofHdf = H5T_NATIVE_INT64;
+      type = "I8", ofHdf = HDF5(H5T_NATIVE_INT64_g);
     } else {
       static_assert(std::same_as<T, std::int32_t>);
-      type = "I4", ofHdf = H5T_NATIVE_INT32;
+      type = "I4", ofHdf = HDF5(H5T_NATIVE_INT32_g);
     }
   }
 };
@@ -61,7 +61,7 @@ class CgnsFile {
         std::endian::native == std::endian::little ? "IEEE_LITTLE_32" : "IEEE_BIG_32";
     writeSet(file_.root(), " format", {format, {format.size() + 1}});
     std::array<unsigned, 3> version{};
-    H5get_libversion(&version[0], &version[1], &version[2]);
+    HDF5(H5get_libversion)(&version[0], &version[1], &version[2]);
     std::string text = "HDF5 Version " + std::to_string(version[0]) + "." +
                        std::to_string(version[1]) + "." + std::to_string(version[2]);
     text.resize(kTextBytes);
@@ -76,7 +76,7 @@ class CgnsFile {
     constexpr std::int32_t kFlags = 1;
     HdfObject node = file_.group(parent, name);
     describe(node.id(), name, label, data.type);
-    file_.writeAttribute(node.id(), "flags", H5T_NATIVE_INT32, file_.space({1}), &kFlags);
+    file_.writeAttribute(node.id(), "flags", HDF5(H5T_NATIVE_INT32_g), file_.space({1}), &kFlags);
     if (data.values != nullptr) writeSet(node.id(), " data", data);
     return node;
   }
@@ -104,7 +104,7 @@ class CgnsFile {
 
   void writeSet(hid_t node, const char* name, const CgnsData& data) const {
     const HdfObject set = file_.dataset(node, name, data.ofHdf, file_.space(data.shape));
-    set.require(H5Dwrite(set.id(), data.ofHdf, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.values));
+    set.require(HDF5(H5Dwrite)(set.id(), data.ofHdf, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.values));
   }
 
   HdfFile file_;

@@ -1,16 +1,7 @@
-// The library defines an array when it is told of a block or a set, which lengthens the file's
-// head; netCDF then moves all arrays behind it. So room for the head is set aside at once, and
-// everything is defined before the first long array is written; those go in slices that stay in the
-// cache.
-#include <algorithm>
+// What an Exodus file is: dimensions, attributes and variables of a NetCDF file that have the names
+// by which its library knows them.
 #include <array>
-#include <cerrno>
 #include <cstdint>
-#include <exodusII.h>
-#include <limits>
-#include <mutex>
-#include <netcdf.h>
-#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,59 +10,21 @@
 
 #include <base/stage.hpp>
 #include <io/core/mesh_groups.hpp>
-#include <io/core/output_file.hpp>
+#include <io/solvers/netcdf.hpp>
 #include <io/solvers/solvers.hpp>
 
 namespace hexhex {
 namespace {
 
-/// Points or cells of a slice: a few hundred kilobytes, so that it is in the cache when netCDF
-/// reverses the order of its bytes.
-constexpr std::size_t kSlice = std::size_t{1} << 13;
-
 /// Exodus' numbers of the faces of kHexFaces.
-constexpr std::array<int, 6> kSideNumbers = {4, 2, 1, 3, 5, 6};
+constexpr std::array<std::int32_t, 6> kSideNumbers = {4, 2, 1, 3, 5, 6};
 
-/// An open file of the library.
-class ExodusFile {
- public:
-  ExodusFile(const OutputFile& file, int mode) : file_(file) {
-    int wordInMemory = sizeof(double);
-    int wordInFile = sizeof(double);
-    requireSpareMemory();
-    ex_opts(0);  // print nothing
-    errno = 0;
-    id_ = ex_create(file.temporary().c_str(), EX_CLOBBER | mode, &wordInMemory, &wordInFile);
-    require(id_);
-  }
-  ~ExodusFile() {
-    if (id_ >= 0) ex_close(id_);
-  }
-  ExodusFile(const ExodusFile&) = delete;
-  ExodusFile& operator=(const ExodusFile&) = delete;
+/// Bytes of a name; the last one is 0.
+constexpr std::size_t kNameBytes = 33;
+constexpr std::size_t kLineBytes = 81;
 
-  [[nodiscard]] int id() const noexcept { return id_; }
-  /// @param status  of a call: negative if it failed; positive values are warnings
-  void require(int status) const {
-    if (status < 0) file_.fail("the Exodus library could not write it; perhaps the disk is full");
-    // It goes on, and leaves out what it had no memory for.
-    if (errno == ENOMEM) throw std::bad_alloc();
-  }
-  void close() { require(ex_close(std::exchange(id_, -1))); }
-
- private:
-  const OutputFile& file_;
-  int id_ = -1;
-};
-
-/// A set of vertices or of sides of cells.
-struct ExodusSet {
-  ex_entity_type type;
-  std::int64_t number;
-  std::string name;
-  std::vector<int> elements;  ///< vertices or cells, from 1 on
-  std::vector<int> sides;     ///< of the cells
-};
+/// Exodus counts from 1 on.
+constexpr std::int32_t fromOne(std::size_t i) { return static_cast<std::int32_t>(i) + 1; }
 
 /// Where each cell stands in the order of the blocks; empty: as they are.
 Array<Index> placesOf(const CellGroups& cells) {
@@ -80,153 +33,184 @@ Array<Index> placesOf(const CellGroups& cells) {
   return places;
 }
 
-/// The sides of each group of boundary quads, and the vertices of those of edges and vertices.
-std::vector<ExodusSet> findSets(const MeshGroups& groups) {
-  std::vector<ExodusSet> sets;
-  const Array<Index> places = placesOf(groups.cells);
-  for (const ElementGroup& group : groups.quads.groups) {
-    ExodusSet set{EX_SIDE_SET, group.number, group.name, {}, {}};
-    const std::size_t end = groups.quads.boundaryEnd(group);  // behind it, quads inside the mesh
-    for (std::size_t i = group.begin; i < end; ++i) {
-      const std::size_t cell = groups.quads.places[i] / 8;
-      set.elements.push_back(static_cast<int>(places.empty() ? cell : places[cell]) + 1);
-      set.sides.push_back(kSideNumbers[groups.quads.places[i] % 8]);
-    }
-    if (!set.elements.empty()) sets.push_back(std::move(set));
+/// What is said of all blocks, or all sets of a kind.
+struct ExodusList {
+  std::vector<std::int32_t> numbers;
+  std::vector<std::string> names;
+
+  /// @return  the end of the names of its variables
+  std::string add(std::int32_t number, const std::string& name) {
+    numbers.push_back(number);
+    names.push_back(name);
+    return std::to_string(names.size());
   }
-  std::int64_t number = 0;
-  const auto addNodeSets = [&](const auto& ofKind) {
-    for (const ElementGroup& group : ofKind.groups) {
-      sets.push_back({EX_NODE_SET, ++number, group.name, {}, {}});
-      for (const Index vertex : verticesOf(ofKind, group)) {
-        sets.back().elements.push_back(static_cast<int>(vertex) + 1);
-      }
-    }
-  };
-  addNodeSets(groups.edges);
-  addNodeSets(groups.vertices);
-  return sets;
-}
+};
 
-class ExodusWriter {
+class ExodusFile {
  public:
-  ExodusWriter(const OutputFile& file, int mode, const HexMesh& mesh, Stage& stage)
-      : file_(file, mode), mesh_(mesh), progress_(stage, mesh.points.size() + mesh.cells.size()) {}
+  ExodusFile(const HexMesh& mesh, const MeshGroups& groups, Stage& stage)
+      : mesh_(mesh), groups_(groups), progress_(stage, 3 * mesh.points.size() + mesh.cells.size()) {
+    describe();
+    if (!mesh.points.empty()) addPoints();
+    if (!mesh.cells.empty()) addBlocks();
+    addSideSets();
+    addNodeSets();
+    addVariable("time_whole", NetcdfType::Double, {addDimension("time_step", 0)}, {});
+  }
 
-  void write(const MeshGroups& groups) {
-    const CellGroups& cells = groups.cells;
-    const std::vector<ExodusSet> sets = findSets(groups);
-    reserveHead(cells.groups.size() + sets.size());
-    define(cells, sets);
-    writePoints();
-    for (const ElementGroup& group : cells.groups) writeCells(cells, group);
-    for (const ExodusSet& set : sets) {
-      file_.require(ex_put_set(file_.id(), set.type, set.number, set.elements.data(),
-                               set.sides.empty() ? nullptr : set.sides.data()));
-    }
-    file_.close();
+  void write(OutputFile& output, int threads, std::uint64_t mostBytes) const {
+    file_.write(output, threads, mostBytes);
   }
 
  private:
-  static std::int64_t size(std::size_t number) { return static_cast<std::int64_t>(number); }
+  using Write = std::function<void(LineWriter&)>;
 
-  /// Sets room for the head aside, which netCDF does only where there is a variable: the text.
-  void reserveHead(std::size_t groups) {
-    // What Exodus puts there takes half as much.
-    constexpr std::size_t kBytes = 8192;
-    constexpr std::size_t kBytesOfGroup = 1024;
-    constexpr std::size_t kAlignment = 4;
-    std::string text = std::string("by hexhex ") + version();
-    char* line = text.data();
-    file_.require(ex_put_info(file_.id(), 1, &line));
-    requireNetcdf(nc_redef(file_.id()));
-    requireNetcdf(
-        nc__enddef(file_.id(), kBytes + groups * kBytesOfGroup, kAlignment, 0, kAlignment));
+  /// @return  its place
+  std::uint32_t addDimension(const std::string& name, std::size_t length) {
+    file_.dimensions.push_back({name, length});
+    return static_cast<std::uint32_t>(file_.dimensions.size() - 1);
   }
-  void requireNetcdf(int status) const { file_.require(status == NC_NOERR ? 0 : -1); }
-
-  /// Everything but the long arrays.
-  void define(const CellGroups& cells, const std::vector<ExodusSet>& sets) {
-    const std::int64_t nodeSets = std::count_if(
-        sets.begin(), sets.end(), [](const ExodusSet& set) { return set.type == EX_NODE_SET; });
-    file_.require(ex_put_init(file_.id(), "hexahedral mesh by hexhex", 3, size(mesh_.points.size()),
-                              size(mesh_.cells.size()), size(cells.groups.size()), nodeSets,
-                              size(sets.size()) - nodeSets));
-    for (const ElementGroup& group : cells.groups) {
-      file_.require(ex_put_block(file_.id(), EX_ELEM_BLOCK, group.number, "HEX8",
-                                 size(group.end - group.begin), 8, 0, 0, 0));
-      file_.require(ex_put_name(file_.id(), EX_ELEM_BLOCK, group.number, group.name.c_str()));
-    }
-    for (const ExodusSet& set : sets) {
-      file_.require(
-          ex_put_set_param(file_.id(), set.type, set.number, size(set.elements.size()), 0));
-      file_.require(ex_put_name(file_.id(), set.type, set.number, set.name.c_str()));
-    }
+  /// @param text  of an attribute, if there is one
+  void addVariable(const std::string& name, NetcdfType type, std::vector<std::uint32_t> dimensions,
+                   Write write, const char* attribute = nullptr, const std::string& text = {}) {
+    file_.variables.push_back({name, type, std::move(dimensions), {}, std::move(write)});
+    if (attribute == nullptr) return;
+    file_.variables.back().attributes.push_back({attribute, text + '\0'});
   }
-
-  /// Calls f(begin, count) for slices of n elements.
-  template <class F>
-  void forEachSlice(std::size_t n, const F& f) {
-    for (std::size_t begin = 0; begin < n; begin += kSlice) {
-      const std::size_t count = std::min(kSlice, n - begin);
-      f(begin, count);
-      progress_.advance(count);
-    }
+  void addNumbers(const std::string& name, std::uint32_t dimension,
+                  std::vector<std::int32_t> numbers, const char* attribute = nullptr) {
+    const Write write = [numbers = std::move(numbers)](LineWriter& values) {
+      const auto put = [&](char* place, std::size_t i) { return putBigBytes(place, numbers[i]); };
+      values.write(numbers.size(), sizeof(std::int32_t), put, nullptr);
+    };
+    addVariable(name, NetcdfType::Int, {dimension}, write, attribute, "ID");
+  }
+  void addTexts(const std::string& name, std::uint32_t dimension, std::uint32_t ofBytes,
+                std::size_t bytes, std::vector<std::string> texts) {
+    for (std::string& text : texts) text.resize(bytes);
+    const Write write = [texts = std::move(texts), bytes](LineWriter& values) {
+      const auto copy = [&](char* place, std::size_t i) { return put(place, texts[i]); };
+      values.write(texts.size(), bytes, copy, nullptr);
+    };
+    addVariable(name, NetcdfType::Char, {dimension, ofBytes}, write);
+  }
+  /// @param prefix  of the variables' names
+  void addList(const std::string& prefix, const char* dimension, const ExodusList& list) {
+    if (list.names.empty()) return;
+    const std::uint32_t length = addDimension(dimension, list.names.size());
+    addNumbers(prefix + "_status", length, std::vector<std::int32_t>(list.names.size(), 1));
+    addNumbers(prefix + "_prop1", length, list.numbers, "name");
+    addTexts(prefix + "_names", length, ofNames_, kNameBytes, list.names);
   }
 
-  void writePoints() {
-    std::array<Array<double>, 3> values;
-    for (Array<double>& ofAxis : values) ofAxis.resize(std::min(kSlice, mesh_.points.size()));
-    forEachSlice(mesh_.points.size(), [&](std::size_t begin, std::size_t count) {
-      for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          values[axis][i] = mesh_.points[begin + i][axis];
+  void describe() {
+    constexpr float kVersion = 6.02F;
+    file_.attributes = {{"api_version", kVersion},
+                        {"version", kVersion},
+                        {"floating_point_word_size", std::int32_t{sizeof(double)}},
+                        {"file_size", std::int32_t{1}},  // each axis is a variable
+                        {"maximum_name_length", std::int32_t{kNameBytes - 1}},
+                        {"int64_status", std::int32_t{0}},  // integers have 32 bits
+                        {"title", std::string("hexahedral mesh by hexhex") + '\0'}};
+    ofNames_ = addDimension("len_name", kNameBytes);
+    addTexts("coor_names", addDimension("num_dim", 3), ofNames_, kNameBytes, {"x", "y", "z"});
+    addTexts("info_records", addDimension("num_info", 1), addDimension("len_line", kLineBytes),
+             kLineBytes, {std::string("by hexhex ") + version()});
+  }
+
+  void addPoints() {
+    const std::uint32_t length = addDimension("num_nodes", mesh_.points.size());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Write write = [this, axis](LineWriter& values) {
+        const auto put = [&](char* place, std::size_t i) {
+          return putBigBytes(place, mesh_.points[i][axis]);
+        };
+        values.write(mesh_.points.size(), sizeof(double), put, &progress_);
+      };
+      addVariable(
+          std::string("coord") + "xyz" [axis], NetcdfType::Double, { length }, write);
+    }
+  }
+
+  void addBlocks() {
+    addDimension("num_elem", mesh_.cells.size());
+    ExodusList blocks;
+    for (const ElementGroup& group : groups_.cells.groups) {
+      const std::size_t count = group.end - group.begin;
+      const std::string n = blocks.add(static_cast<std::int32_t>(group.number), group.name);
+      const Write write = [this, &group, count](LineWriter& values) {
+        const auto put = [&](char* place, std::size_t i) {
+          for (const Index vertex : mesh_.cells[groups_.cells.at(group.begin + i)]) {
+            place = putBigBytes(place, fromOne(vertex));
+          }
+          return place;
+        };
+        values.write(count, 8 * sizeof(std::int32_t), put, &progress_);
+      };
+      const std::uint32_t length = addDimension("num_el_in_blk" + n, count);
+      addVariable("connect" + n, NetcdfType::Int, {length, addDimension("num_nod_per_el" + n, 8)},
+                  write, "elem_type", "HEX8");
+    }
+    addList("eb", "num_el_blk", blocks);
+  }
+
+  /// The sides of each group of boundary quads.
+  void addSideSets() {
+    const Array<Index> places = placesOf(groups_.cells);
+    ExodusList sets;
+    for (const ElementGroup& group : groups_.quads.groups) {
+      std::vector<std::int32_t> cells;
+      std::vector<std::int32_t> sides;
+      const std::size_t end = groups_.quads.boundaryEnd(group);  // behind it, quads inside the mesh
+      for (std::size_t i = group.begin; i < end; ++i) {
+        const std::size_t cell = groups_.quads.places[i] / 8;
+        cells.push_back(fromOne(places.empty() ? cell : places[cell]));
+        sides.push_back(kSideNumbers[groups_.quads.places[i] % 8]);
       }
-      file_.require(ex_put_partial_coord(file_.id(), size(begin + 1), size(count), values[0].data(),
-                                         values[1].data(), values[2].data()));
-    });
+      if (cells.empty()) continue;
+      const std::string n = sets.add(static_cast<std::int32_t>(group.number), group.name);
+      const std::uint32_t length = addDimension("num_side_ss" + n, cells.size());
+      addNumbers("elem_ss" + n, length, std::move(cells));
+      addNumbers("side_ss" + n, length, std::move(sides));
+    }
+    addList("ss", "num_side_sets", sets);
   }
 
-  void writeCells(const CellGroups& cells, const ElementGroup& group) {
-    const std::size_t cellCount = group.end - group.begin;
-    Array<int> vertices(8 * std::min(kSlice, cellCount));
-    forEachSlice(cellCount, [&](std::size_t begin, std::size_t count) {
-      for (std::size_t i = 0; i < count; ++i) {
-        const Hex& cell = mesh_.cells[cells.at(group.begin + begin + i)];
-        for (std::size_t k = 0; k < 8; ++k) vertices[8 * i + k] = static_cast<int>(cell[k]) + 1;
+  /// The vertices of each group of edges and of vertices.
+  void addNodeSets() {
+    ExodusList sets;
+    const auto add = [&](const auto& ofKind) {
+      for (const ElementGroup& group : ofKind.groups) {
+        std::vector<std::int32_t> vertices;
+        for (const Index vertex : verticesOf(ofKind, group)) vertices.push_back(fromOne(vertex));
+        const std::string n = sets.add(fromOne(sets.names.size()), group.name);
+        const std::uint32_t length = addDimension("num_nod_ns" + n, vertices.size());
+        addNumbers("node_ns" + n, length, std::move(vertices));
       }
-      file_.require(ex_put_n_elem_conn(file_.id(), group.number, size(begin + 1), size(count),
-                                       vertices.data()));
-    });
+    };
+    add(groups_.edges);
+    add(groups_.vertices);
+    addList("ns", "num_node_sets", sets);
   }
 
-  ExodusFile file_;
   const HexMesh& mesh_;
-  LoopProgress progress_;
+  const MeshGroups& groups_;
+  mutable LoopProgress progress_;
+  NetcdfFile file_;
+  std::uint32_t ofNames_ = 0;  ///< the dimension of their bytes
 };
-
-/// With 64-bit offsets an array takes at most 4 GB.
-int modeFor(const HexMesh& mesh) {
-  constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max() - 8;
-  const std::size_t largest =
-      std::max(mesh.points.size() * sizeof(double), mesh.cells.size() * 8 * sizeof(std::int32_t));
-  return largest > kMostBytes ? EX_NETCDF4 : EX_LARGE_MODEL;
-}
 
 }  // namespace
 
 void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
-                 const WriteOptions& options, Context& context) {
+                 const WriteOptions& options, Context& context, std::uint64_t mostBytes) {
   Stage stage(context, "write mesh");
   // First, so that a folder that is not writable shows at once.
-  OutputFile target(file, OutputFile::Target::Regular);
+  OutputFile target(file);
   requireInt32(mesh.points.size(), "An Exodus file numbers vertices");
   requireInt32(mesh.cells.size(), "An Exodus file numbers cells");
   const MeshGroups groups(mesh, options.patchAngle, stage);
-  {
-    const std::lock_guard lock(libraryLock());
-    ExodusWriter(target, modeFor(mesh), mesh, stage).write(groups);
-  }
+  ExodusFile(mesh, groups, stage).write(target, context.threads(), mostBytes);
   target.commit();
 }
 

@@ -3,6 +3,7 @@
 // All throw Error FileWrite, and InvalidArgument for features that are not in the mesh.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include <hexhex/context.hpp>
@@ -31,16 +32,19 @@ void writeAbaqus(const HexMesh& mesh, const std::filesystem::path& file,
 void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
                Context& context);
 
-/// `.exo`, `.e`: Exodus II, for the codes of Sandia and MOOSE; only in builds with its library
-/// (HEXHEX_HAS_EXODUS). Writes an element block HEX8 for each region, a side set for each group of
-/// boundary quads, and node sets for the tags of edges and vertices; sets and blocks are named as
-/// their groups. Side sets and blocks have the numbers of their groups. Tagged quads inside the
-/// mesh are left out. The cells are in order of their regions.
+/// `.exo`, `.e`: Exodus II, for the codes of Sandia and MOOSE. Writes an element block HEX8 for
+/// each region, a side set for each group of boundary quads, and node sets for the tags of edges
+/// and vertices; sets and blocks are named as their groups. Side sets and blocks have the numbers
+/// of their groups. Tagged quads inside the mesh are left out. The cells are in order of their
+/// regions.
 ///
-/// NetCDF with 64-bit offsets; NetCDF 4, which takes larger arrays, for meshes that need it.
+/// NetCDF's classic format with 64-bit offsets; its newest variant, with 64-bit sizes, for meshes
+/// that need it.
+/// @param mostBytes  of an array before that: 4 GB, and less in tests
 /// @throws Error  also TooLarge for more than 2^31 - 1 vertices or cells
 void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
-                 const WriteOptions& options, Context& context);
+                 const WriteOptions& options, Context& context,
+                 std::uint64_t mostBytes = 0xffff'fff0);
 
 /// MFEM mesh v1.0, only by the name of the format, since MFEM's files have the extension of
 /// MEDIT's. Writes cells (attribute 1), boundary quads and tagged quads inside (attribute: the

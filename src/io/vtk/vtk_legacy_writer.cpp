@@ -47,8 +47,7 @@ struct VtkBigBytes {
 
   template <class T>
   static char* number(char* place, T number) {
-    const auto bytes = littleBytes(number);
-    return std::reverse_copy(bytes.begin(), bytes.end(), place);
+    return putBigBytes(place, number);
   }
   template <class T, std::size_t n>
   static char* numbers(char* place, const std::array<T, n>& numbers) {

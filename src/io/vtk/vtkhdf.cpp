@@ -15,11 +15,11 @@ namespace {
 
 /// HDF5's type of the numbers that VTK's XML calls so, in memory.
 hid_t typeOf(std::string_view name) {
-  if (name == "Float64") return H5T_NATIVE_DOUBLE;
-  if (name == "Int64") return H5T_NATIVE_INT64;
-  if (name == "Int32") return H5T_NATIVE_INT32;
-  if (name == "UInt32") return H5T_NATIVE_UINT32;
-  return H5T_NATIVE_UINT8;
+  if (name == "Float64") return HDF5(H5T_NATIVE_DOUBLE_g);
+  if (name == "Int64") return HDF5(H5T_NATIVE_INT64_g);
+  if (name == "Int32") return HDF5(H5T_NATIVE_INT32_g);
+  if (name == "UInt32") return HDF5(H5T_NATIVE_UINT32_g);
+  return HDF5(H5T_NATIVE_UINT8_g);
 }
 
 /// Writes one file.
@@ -53,7 +53,7 @@ class VtkHdfWriter {
   /// The attributes by which VTK knows the format.
   void writeKind() {
     constexpr std::array<std::int64_t, 2> kVersion = {1, 0};
-    file_.writeAttribute(grid_.id(), "Version", H5T_NATIVE_INT64, file_.space({2}),
+    file_.writeAttribute(grid_.id(), "Version", HDF5(H5T_NATIVE_INT64_g), file_.space({2}),
                          kVersion.data());
     const std::string kind = "UnstructuredGrid";
     const HdfObject text = file_.text(kind.size(), H5T_STR_NULLPAD);
@@ -76,8 +76,8 @@ class VtkHdfWriter {
   /// Writes a dataset, piece by piece as the array's bytes come.
   void writeRows(const HdfObject& group, const char* name, const VtkArray& array) {
     const hid_t memory = typeOf(array.type);
-    const hid_t stored = array.section == VtkSection::Cells && memory == H5T_NATIVE_INT32
-                             ? H5T_STD_I64LE  // whatever the number of points
+    const hid_t stored = array.section == VtkSection::Cells && memory == HDF5(H5T_NATIVE_INT32_g)
+                             ? HDF5(H5T_STD_I64LE_g)  // whatever the number of points
                              : memory;
     const auto spaceOf = [&](hsize_t rows) {
       return array.components == 1 ? file_.space({rows}) : file_.space({rows, array.components});
@@ -87,12 +87,12 @@ class VtkHdfWriter {
     std::array<hsize_t, 2> begin = {0, 0};
     array.write([&](const void* bytes, std::size_t size) {
       if (size == 0) return;
-      const std::array<hsize_t, 2> count = {size / (array.components * H5Tget_size(memory)),
+      const std::array<hsize_t, 2> count = {size / (array.components * HDF5(H5Tget_size)(memory)),
                                             array.components};
       const HdfObject part = spaceOf(count[0]);
-      space.require(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, begin.data(), nullptr,
-                                        count.data(), nullptr));
-      set.require(H5Dwrite(set.id(), memory, part.id(), space.id(), H5P_DEFAULT, bytes));
+      space.require(HDF5(H5Sselect_hyperslab)(space.id(), H5S_SELECT_SET, begin.data(), nullptr,
+                                              count.data(), nullptr));
+      set.require(HDF5(H5Dwrite)(set.id(), memory, part.id(), space.id(), H5P_DEFAULT, bytes));
       begin[0] += count[0];
     });
   }

@@ -1,0 +1,67 @@
+#include <array>
+#include <cstddef>
+#include <cstdlib>
+#include <string>
+
+#include <hexhex/error.hpp>
+#include <hexhex/types.hpp>
+
+#include <io/core/hdf5_library.hpp>
+#if defined(HEXHEX_HAS_HDF5)
+#include <dlfcn.h>
+
+#include <io/core/hdf_file.hpp>
+#endif
+
+namespace hexhex {
+
+#if defined(HEXHEX_HDF5_NAME)
+namespace {
+
+void* load(const std::filesystem::path& file) {
+  // They take 21 MB of address space; some of those behind it complain where memory ends meanwhile.
+  constexpr std::size_t kBytes = std::size_t{1} << 25;
+  static_cast<void>(Array<char>(kBytes));
+  const char* const chosen = std::getenv("HEXHEX_HDF5");
+  void* library = dlopen(chosen != nullptr ? chosen : HEXHEX_HDF5_NAME, RTLD_NOW);
+  std::string problem = library == nullptr ? dlerror() : "";
+  // Where it was when hexhex was built, no folder of the system's perhaps.
+  if (library == nullptr && chosen == nullptr) library = dlopen(HEXHEX_HDF5_FILE, RTLD_NOW);
+  if (library != nullptr) {
+    std::array<unsigned, 3> version{};
+    void* const query = dlsym(library, "H5get_libversion");
+    problem = query == nullptr ? dlerror() : "";
+    if (query != nullptr) {
+      reinterpret_cast<decltype(&H5get_libversion)>(query)(&version[0], &version[1], &version[2]);
+      problem = "its version is " + std::to_string(version[0]) + "." + std::to_string(version[1]);
+    }
+    if (version[0] == H5_VERS_MAJOR && version[1] == H5_VERS_MINOR) return library;
+  }
+  throw Error(ErrorCode::FileUnsupported,
+              file.string() + ": such files take the library HDF5, version " +
+                  std::to_string(H5_VERS_MAJOR) + "." + std::to_string(H5_VERS_MINOR) +
+                  ", which cannot be loaded (" + problem +
+                  "). Install " HEXHEX_HDF5_PACKAGE ", or choose another format.");
+}
+
+void* library(const std::filesystem::path& file) {
+  static void* const loaded = load(file);
+  return loaded;
+}
+
+}  // namespace
+
+void requireHdf5(const std::filesystem::path& file) { static_cast<void>(library(file)); }
+void* hdf5Symbol(const char* name) { return dlsym(library({}), name); }
+#elif defined(HEXHEX_HAS_HDF5)
+void requireHdf5(const std::filesystem::path& /*file*/) {}
+#else
+void requireHdf5(const std::filesystem::path& file) {
+  throw Error(ErrorCode::FileUnsupported,
+              file.string() +
+                  ": this build of hexhex cannot write such files. Install HDF5 "
+                  "(libhdf5-dev) and build it anew.");
+}
+#endif
+
+}  // namespace hexhex
