@@ -98,7 +98,8 @@ HexFaces findFaces(const HexMesh& mesh, const VertexCells& around, Stage& stage)
   parallelBlocks(stage, mesh.points.size(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    HexFaces& sum = blocks[block];
-                   for (std::size_t v = end; v-- > begin;) {
+                   for (std::size_t v = end; v > begin;) {
+                     --v;
                      if (around(v).empty()) {
                        sum.firstUnusedVertex = static_cast<Index>(v);
                      } else {

@@ -248,7 +248,7 @@ bool FaceBorder::findEnds(const SimplexInTet& carrier, std::size_t side, const S
     part = partIn(carrier, side);
     if (part == kNoPart) return false;
   }
-  if (!first.isSquareCorner && !first.isKnown) firstPoint = arcPoint(side, part - 1 + backward);
+  if (!first.isSquareCorner && !first.isKnown) firstPoint = arcPoint(side, part + backward - 1);
   if (!second.isSquareCorner && !second.isKnown) secondPoint = arcPoint(side, part - backward);
   return true;
 }

@@ -159,7 +159,7 @@ void FaceCutter::addNeighbours(std::size_t piece) {
   {
     const Slice& slice = pieces_[piece].slice;
     const std::size_t entry = pieces_[piece].from == kLast ? slice.size() : pieces_[piece].entry;
-    open = ((1U << slice.size()) - 1) & ~slice.borderSides & ~(1U << entry);
+    open = ((1U << slice.size()) - 1) & ~(slice.borderSides | 1U << entry);
   }
   for (; open != 0; open &= open - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(open));

@@ -283,7 +283,8 @@ void indexByVertex(Singularities& singularities, std::size_t pointCount) {
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   // Backwards, so that where each vertex's edges end becomes where they begin.
   singularities.incident.resize(2 * edges.size());
-  for (std::size_t e = edges.size(); e-- > 0;) {
+  for (std::size_t e = edges.size(); e > 0;) {
+    --e;
     singularities.incident[--begin[edges[e].vertex0]] = static_cast<Index>(e);
     singularities.incident[--begin[edges[e].vertex1]] = static_cast<Index>(e);
   }

@@ -8,6 +8,7 @@
 
 #include <hexhex/partial.hpp>
 
+#include <igm/measures.hpp>
 #include <lattice/tet_rasterizer.hpp>
 #include <repair/cell_flood.hpp>
 #include <repair/valid_tets.hpp>
@@ -120,6 +121,14 @@ double volumeOf(const ExactMap& map, std::size_t t) {
   return orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() / (6 * unit * unit * unit);
 }
 
+/// Cells are collected, each with names for its corners, before they are numbered.
+void requireNumbers(const PreparedMap& map, std::span<const std::uint8_t> valid) {
+  double cells = 0;
+  for (std::size_t t = 0; t < valid.size(); ++t) cells += valid[t] * volumeOf(map.exact, t);
+  static_cast<void>(
+      scaledCells(static_cast<std::uint64_t>(std::min(cells, kMaxCountedCells)), 1, kNone));
+}
+
 /// Connected tets that are not covered.
 void collectHoles(const PreparedMap& map, std::span<const std::uint8_t> valid,
                   const std::vector<Found>& blocks, PartialMesh& result) {
@@ -168,6 +177,7 @@ PartialMesh extractPartial(const TetMapView& map, const PartialOptions& options,
       valid = findValidTets(prepared, LocalParameters(prepared.input), options.tolerance, stage);
       scaleMap(prepared.exact, options.scale, stage);
     }
+    requireNumbers(prepared, valid);
     std::vector<Found> blocks(blockCount(valid.size(), kTetGrain));
     Stage stage(context, "cells");
     parallelBlocks(stage, valid.size(), kTetGrain,

@@ -76,11 +76,26 @@ std::array<Vec3, 3> inverseOf(const Edges& columns) {
   return rows;
 }
 
-Edges edgesInSpace(const TetMapView& map, Index tet) {
+Edges edgesInSpace(const TetMapView& map, Index tet, double magnification) {
   const Tet& t = map.tets[tet];
-  const Vec3& origin = map.points[t[0]];
-  return {minus(map.points[t[1]], origin), minus(map.points[t[2]], origin),
-          minus(map.points[t[3]], origin)};
+  Edges edges{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    edges[i] = minus(map.points[t[i + 1]], map.points[t[0]]);
+    for (double& x : edges[i]) x *= magnification;
+  }
+  return edges;
+}
+
+/// A power of two that makes the longest edge of a patch in space about as long as 1: so that no
+/// volume underflows, however small the object is.
+double magnificationOf(const TetMapView& map, const Patch& patch) {
+  double longest = 0;
+  for (const Index t : patch.tets) {
+    for (const Vec3& edge : edgesInSpace(map, t, 1)) {
+      for (const double x : edge) longest = std::max(longest, std::abs(x));
+    }
+  }
+  return longest > 0 ? std::ldexp(1.0, std::clamp(-std::ilogb(longest), -1000, 1000)) : 1;
 }
 
 /// A regular tet with six times the volume given.
@@ -131,7 +146,11 @@ std::vector<PatchVertex> findFreedom(const LocalParameters& parameters, const Pa
 PatchProblem::PatchProblem(const TetMapView& map, const TetTopology& topology,
                            const LocalParameters& parameters, const Patch& patch,
                            std::span<const PatchVertex> vertices)
-    : map_(map), topology_(topology), parameters_(parameters), vertices_(vertices) {
+    : map_(map),
+      topology_(topology),
+      parameters_(parameters),
+      vertices_(vertices),
+      magnification_(magnificationOf(map, patch)) {
   unknowns_.resize(vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -152,7 +171,7 @@ double PatchProblem::parametricScale(const Patch& patch) const {
   double inSpace = 0;
   for (const Index t : patch.tets) {
     inMap += determinantOf(parameters_(t));
-    inSpace += std::abs(determinant(edgesInSpace(map_, t)));
+    inSpace += std::abs(determinant(edgesInSpace(map_, t, magnification_)));
   }
   // A patch that is flipped as a whole, or flat in space, is hopeless; any scale will do.
   return inMap > 0 && inSpace > 0 ? inMap / inSpace : 1;
@@ -161,7 +180,7 @@ double PatchProblem::parametricScale(const Patch& patch) const {
 void PatchProblem::addTet(Index tet, double scale) {
   UntangleTet entry;
   for (int c = 0; c < 4; ++c) entry.corners[static_cast<std::size_t>(c)] = cornerOf(tet, c);
-  Edges ideal = edgesInSpace(map_, tet);
+  Edges ideal = edgesInSpace(map_, tet, magnification_);
   const double stretch = std::cbrt(scale);
   double longest = 0;
   for (Vec3& edge : ideal) {

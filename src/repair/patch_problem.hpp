@@ -66,6 +66,7 @@ class PatchProblem {
   const TetTopology& topology_;
   const LocalParameters& parameters_;
   std::span<const PatchVertex> vertices_;
+  double magnification_;                      ///< of edges in space
   std::vector<std::array<int, 3>> unknowns_;  ///< per vertex and axis of its first chart, or -1
   UntangleProblem problem_;
 };

@@ -32,8 +32,10 @@ namespace {
 constexpr std::array<int, 4> kRings = {2, 3, 5, 8};
 /// How often edges are split.
 constexpr int kMaxRefinements = 5;
-/// Volumes of maps without noise differ by less than this: far above rounding, far below a cell.
+/// Volumes of maps without noise differ by less than this, far below a cell, or than this share of
+/// them: far above rounding.
 constexpr double kVolumeSlack = 0.05;
+constexpr double kVolumeSlackShare = 0x1p-40;
 
 /// One look at the map as it is at the moment.
 struct Snapshot {
@@ -313,9 +315,10 @@ class Repairer {
     complaint_.clear();
     const std::uint64_t cells = parametricVolume(now_->prepared.exact);
     // Sanitization moves the boundary, and nothing else changes the volume.
-    const double slack = kVolumeSlack + 2 * now_->prepared.exact.maxDisplacement *
-                                            static_cast<double>(boundaryArea(
-                                                now_->prepared.topology, now_->prepared.exact));
+    const double slack =
+        kVolumeSlack + kVolumeSlackShare * volume_ +
+        2 * now_->prepared.exact.maxDisplacement *
+            static_cast<double>(boundaryArea(now_->prepared.topology, now_->prepared.exact));
     if (!options_.round && !(std::abs(volume_ - static_cast<double>(cells)) <= slack)) {
       complaint_ = "the volume of the map changed to " + std::to_string(cells) + " cells from " +
                    shortNumber(volume_);
