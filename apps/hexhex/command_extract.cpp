@@ -129,6 +129,9 @@ void printWarnings(const ExtractionRecord& record, const TetMap& map) {
                  " of the input are inverted in space. The mesh has the right connectivity, but "
                  "cells there may be inverted, too.");
   }
+  if (record.certificate && record.certificate->refuted > 0) {
+    printWarning(refutationAsText(*record.certificate));
+  }
   if (statistics.mirrored) {
     printWarning("The map reverses orientation; it was mirrored before the extraction.");
   }
@@ -168,7 +171,7 @@ void printSummary(const ExtractionRecord& record) {
     printLine("repair", fmt::format("{:.3f} s, {}", statistics.repair.seconds,
                                     counted(statistics.repair.regions.size(), "place")));
   }
-  if (record.quality) printLine("scaled Jacobian", qualityAsText(*record.quality));
+  if (record.certificate) printQuality(*record.certificate);
   if (record.order > 1) {
     printLine("order", fmt::format("{}, {} nodes", record.order, record.nodes));
   }
@@ -221,10 +224,9 @@ void extractWhole(const Arguments& arguments, const TetMap& map, Context& contex
     writePatches(all, extractedMap(map, record.statistics), arguments.patches, context);
     record.patches = {arguments.patches, all.patches.count(), all.patches.polygonTet.size()};
   }
-  const Array<double> quality = scaledJacobians(mesh, context);
-  record.quality = summarize(quality);
+  record.certificate = certify(mesh, context);
   WriteOptions writing = arguments.choice.options();
-  writing.scaledJacobians = quality;
+  writing.scaledJacobians = record.certificate->scaledJacobians;
   writing.patchAngle = arguments.patchAngle;
   writeHexMesh(mesh, arguments.output, writing, context);
   record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
@@ -239,10 +241,9 @@ void extractCurved(const Arguments& arguments, const TetMap& map, Context& conte
   const LagrangeMesh mesh =
       extractLagrange(map, arguments.order, arguments.options, context, &record.statistics);
   verifyMesh(arguments, map, straightMesh(mesh), context, record);
-  const Array<double> quality = scaledJacobians(mesh, context);
-  record.quality = summarize(quality);
+  record.certificate = certify(mesh, context);
   WriteOptions options;
-  options.scaledJacobians = quality;
+  options.scaledJacobians = record.certificate->scaledJacobians;
   options.patchAngle = arguments.patchAngle;
   writeLagrangeMesh(mesh, arguments.output, options, context);
   record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),

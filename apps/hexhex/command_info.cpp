@@ -77,9 +77,10 @@ void printMesh(const HexMesh& mesh, Context& context) {
   printLine("vertices", std::to_string(mesh.points.size()));
   printBoundingBox(mesh.points);
   if (mesh.cells.empty()) return;
-  const QualitySummary quality = summarize(scaledJacobians(mesh, context));
-  printLine("scaled Jacobian", qualityAsText(quality));
-  printHistogram(quality);
+  const Certificate certificate = certify(mesh, context);
+  printQuality(certificate);
+  if (certificate.refuted > 0) printLine("refuted", refutationAsText(certificate));
+  printHistogram(certificate.quality);
 }
 
 /// What is known without the whole mesh in memory.

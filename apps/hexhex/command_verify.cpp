@@ -6,11 +6,13 @@
 #include <fmt/core.h>
 
 #include <hexhex/io.hpp>
+#include <hexhex/quality.hpp>
 #include <hexhex/verify.hpp>
 
 #include "command.hpp"
 #include "exit_codes.hpp"
 #include "interrupt.hpp"
+#include "output.hpp"
 #include "progress.hpp"
 #include "shared_options.hpp"
 
@@ -48,20 +50,32 @@ void printTable(const VerifyReport& report) {
                                         : "The mesh does not agree with the map.");
 }
 
-VerifyReport compare(const Arguments& arguments) {
+struct Comparison {
+  VerifyReport report;
+  Certificate certificate;  ///< a cell may be where it belongs and yet not be valid
+};
+
+Comparison compare(const Arguments& arguments) {
   ProgressDisplay progress(arguments.quiet);
   Context context(arguments.threads, progress.callback());
   const CancelOnSignal cancelOnSignal(context);
   const TetMap map = readMap(arguments.map, context);
   HexMesh mesh = readHexMesh(arguments.mesh, context);
   mesh.generatorTet.clear();  // what a file says about itself is not to be trusted here
-  return verify(map, mesh, arguments.options, context);
+  Comparison result;
+  result.report = verify(map, mesh, arguments.options, context);
+  if (!arguments.quiet) result.certificate = certify(mesh, context);
+  return result;
 }
 
 int run(const Arguments& arguments) {
-  const VerifyReport report = compare(arguments);
-  if (!arguments.quiet) printTable(report);
-  return report.passed() ? kSuccess : kFailure;
+  const Comparison result = compare(arguments);
+  if (!arguments.quiet) {
+    printTable(result.report);
+    printQuality(result.certificate);
+    if (result.certificate.refuted > 0) printWarning(refutationAsText(result.certificate));
+  }
+  return result.report.passed() ? kSuccess : kFailure;
 }
 
 }  // namespace

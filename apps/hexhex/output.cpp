@@ -69,12 +69,28 @@ std::string valencesAsText(const std::map<int, std::uint64_t>& countByValence) {
   return text.empty() ? "none" : text;
 }
 
-std::string qualityAsText(const QualitySummary& quality) {
-  const std::string inverted = quality.notPositive == 0
-                                   ? "all positive"
-                                   : counted(quality.notPositive, "cell") + " not positive";
-  return fmt::format("at least {:.4g}, {:.4g} on average; {}", quality.minimum, quality.mean,
-                     inverted);
+void printQuality(const Certificate& certificate) {
+  if (certificate.validity.empty()) return;
+  const QualitySummary& quality = certificate.quality;
+  printLine("scaled Jacobian",
+            fmt::format("at least {:.4g}, {:.4g} on average", quality.minimum, quality.mean));
+  std::string text = "certified positive everywhere";
+  if (!certificate.allPositive()) {
+    text = counted(certificate.refuted, "cell") + " not positive";
+    if (certificate.undecided > 0) text += fmt::format(", {} undecided", certificate.undecided);
+  }
+  printLine("validity",
+            fmt::format("{}; scaled Jacobian at least {:.4g} inside", text, certificate.minimum));
+}
+
+std::string refutationAsText(const Certificate& certificate) {
+  const RefutedCell& bad = certificate.worst.front();
+  return fmt::format(
+      "{} not positive everywhere. The worst is cell {}: its scaled Jacobian is {:.4g} at ({:.3g}, "
+      "{:.3g}, {:.3g}) in the cell, at the point ({:.6g}, {:.6g}, {:.6g}).",
+      certificate.refuted == 1 ? "1 cell is" : fmt::format("{} cells are", certificate.refuted),
+      bad.cell, bad.scaledJacobian, bad.place[0], bad.place[1], bad.place[2], bad.position[0],
+      bad.position[1], bad.position[2]);
 }
 
 void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b) {

@@ -49,8 +49,11 @@ void printError(const Error& error);
 /// "12 of valence 3, 4 of valence 5", or "none".
 [[nodiscard]] std::string valencesAsText(const std::map<int, std::uint64_t>& countByValence);
 
-/// "at least 0.3, 0.9 on average; 2 cells not positive"
-[[nodiscard]] std::string qualityAsText(const QualitySummary& quality);
+/// Two lines: the scaled Jacobian at corners and everywhere, and whether cells are positive.
+void printQuality(const Certificate& certificate);
+
+/// Which cells are not positive, and where: a sentence.
+[[nodiscard]] std::string refutationAsText(const Certificate& certificate);
 
 /// Throws InvalidArgument if two names mean one file, or would once both are written.
 void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b);

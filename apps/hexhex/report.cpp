@@ -37,12 +37,29 @@ Json byKind(const std::array<std::uint64_t, 4>& counts) {
   return {{"vertex", counts[0]}, {"edge", counts[1]}, {"face", counts[2]}, {"cell", counts[3]}};
 }
 
-Json qualityAsJson(const std::optional<QualitySummary>& quality) {
-  if (!quality) return nullptr;
-  return {{"minimum", quality->minimum},
-          {"mean", quality->mean},
-          {"not_positive", quality->notPositive},
-          {"histogram", quality->histogram}};
+Json qualityAsJson(const std::optional<Certificate>& certificate) {
+  if (!certificate) return nullptr;
+  const QualitySummary& quality = certificate->quality;
+  return {{"minimum", quality.minimum},
+          {"mean", quality.mean},
+          {"not_positive", quality.notPositive},
+          {"histogram", quality.histogram}};
+}
+
+Json validityAsJson(const std::optional<Certificate>& certificate) {
+  if (!certificate) return nullptr;
+  Json worst = Json::array();
+  for (const RefutedCell& bad : certificate->worst) {
+    worst.push_back({{"cell", bad.cell},
+                     {"place", bad.place},
+                     {"position", bad.position},
+                     {"scaled_jacobian", bad.scaledJacobian}});
+  }
+  return {{"positive", certificate->positive},
+          {"refuted", certificate->refuted},
+          {"undecided", certificate->undecided},
+          {"minimum", certificate->minimum},
+          {"worst", std::move(worst)}};
 }
 
 Json checksumsAsJson(const std::optional<MeshSurvey>& streamed) {
@@ -113,7 +130,8 @@ std::string reportAsJson(const ExtractionRecord& record) {
                        {"max_transition_residual", statistics.maxTransitionResidual},
                        {"mirrored", statistics.mirrored},
                        {"tets_inverted_in_space", statistics.tetsInvertedInSpace},
-                       {"quality", qualityAsJson(record.quality)},
+                       {"quality", qualityAsJson(record.certificate)},
+                       {"validity", validityAsJson(record.certificate)},
                        {"verification", verificationAsJson(record.verification)},
                        {"repair", repairAsJson(statistics.repair)},
                        {"streamed", record.streamed.has_value()},

@@ -44,7 +44,7 @@ struct ExtractionRecord {
   std::array<std::uint64_t, 3> tags{};  ///< tagged vertices, edges and quads of the mesh
   ExtractStatistics statistics;
   std::vector<StageTime> stages;
-  std::optional<QualitySummary> quality;     ///< empty if the mesh was never whole
+  std::optional<Certificate> certificate;    ///< empty if the mesh was never whole
   std::optional<VerifyReport> verification;  ///< empty if it was skipped
   std::optional<MeshSurvey> streamed;        ///< of a mesh that was written in pieces
 };

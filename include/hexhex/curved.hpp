@@ -148,9 +148,14 @@ struct LagrangeMesh {
 
 /// Per cell: the smallest determinant of the Jacobian matrix, divided by the lengths of its
 /// columns, at the nodes and at the Gauss points of order p + 1. In [-1, 1]; a bad cell has a value
-/// that is not positive; one that is bad elsewhere only is not found.
+/// that is not positive; certify() finds also those that are bad elsewhere only.
 /// @throws Error InvalidArgument for arrays that do not fit each other
 [[nodiscard]] Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context);
+
+/// Quality and validity of every cell, as of straight ones. Where doubles do not tell the sign,
+/// integers do at corners, and up to order 3 everywhere.
+/// @throws Error InvalidArgument for arrays that do not fit each other
+[[nodiscard]] Certificate certify(const LagrangeMesh& mesh, Context& context);
 
 /// Writes the arcs of a mesh. `.vtu` and `.vtp` (VTK XML, binary appended): hex vertices and inner
 /// points, and a line per segment with the number of its hex edge; arrays docs/curved.md explains.

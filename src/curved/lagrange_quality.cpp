@@ -9,6 +9,8 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <curved/lagrange.hpp>
+#include <mesh/bezier.hpp>
+#include <mesh/certificates.hpp>
 #include <mesh/lagrange_check.hpp>
 
 namespace hexhex {
@@ -17,40 +19,43 @@ namespace {
 
 constexpr std::size_t kGrain = 64;
 
-/// Values and derivatives of the Lagrange polynomials of an order at some places in [0, 1].
+/// Values and derivatives of the Lagrange polynomials of an order at some places in [0, 1]: a row
+/// per place, a column per polynomial.
 struct Basis {
-  std::size_t nodes;  ///< order + 1
-  std::size_t places;
-  std::vector<double> value;       ///< of polynomial i at place q: [q * nodes + i]
-  std::vector<double> derivative;  ///< likewise
+  Matrix<double> value;
+  Matrix<double> derivative;
 
   Basis(int order, const std::vector<double>& at)
-      : nodes(static_cast<std::size_t>(order) + 1),
-        places(at.size()),
-        value(nodes * at.size()),
-        derivative(nodes * at.size()) {
+      : value{at.size(), static_cast<std::size_t>(order) + 1, {}}, derivative(value) {
     const auto node = [order](std::size_t i) {
       return static_cast<double>(i) / static_cast<double>(order);
     };
-    for (std::size_t q = 0; q < places; ++q) {
-      for (std::size_t i = 0; i < nodes; ++i) {
+    for (const double place : at) {
+      for (std::size_t i = 0; i < value.columns; ++i) {
         double product = 1;
         double sum = 0;
-        for (std::size_t j = 0; j < nodes; ++j) {
+        for (std::size_t j = 0; j < value.columns; ++j) {
           if (j == i) continue;
-          product *= (at[q] - node(j)) / (node(i) - node(j));
+          product *= (place - node(j)) / (node(i) - node(j));
           double without = 1 / (node(i) - node(j));
-          for (std::size_t k = 0; k < nodes; ++k) {
-            if (k != i && k != j) without *= (at[q] - node(k)) / (node(i) - node(k));
+          for (std::size_t k = 0; k < value.columns; ++k) {
+            if (k != i && k != j) without *= (place - node(k)) / (node(i) - node(k));
           }
           sum += without;
         }
-        value[q * nodes + i] = product;
-        derivative[q * nodes + i] = sum;
+        value.entries.push_back(product);
+        derivative.entries.push_back(sum);
       }
     }
   }
 };
+
+void nodesOf(const LagrangeMesh& mesh, std::size_t cell, std::vector<Vec3>& nodes) {
+  nodes.resize(mesh.nodesPerCell());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    nodes[i] = mesh.points[mesh.nodes[cell * nodes.size() + i]];
+  }
+}
 
 std::vector<double> equidistant(int order) {
   std::vector<double> places;
@@ -86,16 +91,19 @@ class Evaluator {
 
   /// The smallest scaled determinant.
   [[nodiscard]] double smallest(const std::vector<Vec3>& nodes) {
-    const std::vector<double>* const v = &basis_.value;
-    const std::vector<double>* const d = &basis_.derivative;
-    contract(nodes, {d, v, v}, columns_[0]);
-    contract(nodes, {v, d, v}, columns_[1]);
-    contract(nodes, {v, v, d}, columns_[2]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Bezier<Vec3>& column = columns_[axis];
+      column.size.fill(basis_.value.columns);
+      column.values = nodes;
+      for (std::size_t a = 0; a < 3; ++a) {
+        apply(a == axis ? basis_.derivative : basis_.value, a, column, scratch_);
+      }
+    }
     double smallest = 1;
-    for (std::size_t q = 0; q < columns_[0].size(); ++q) {
-      const Vec3& a = columns_[0][q];
-      const Vec3& b = columns_[1][q];
-      const Vec3& c = columns_[2][q];
+    for (std::size_t q = 0; q < columns_[0].values.size(); ++q) {
+      const Vec3& a = columns_[0].values[q];
+      const Vec3& b = columns_[1].values[q];
+      const Vec3& c = columns_[2].values[q];
       const double scaled = tripleProduct(a, b, c) / (length(a) * length(b) * length(c));
       smallest = std::min(smallest, std::isfinite(scaled) ? scaled : 0.0);
     }
@@ -103,65 +111,67 @@ class Evaluator {
   }
 
  private:
-  /// Replaces nodes by places, one axis after the other.
-  void contract(const std::vector<Vec3>& nodes,
-                const std::array<const std::vector<double>*, 3>& matrices,
-                std::vector<Vec3>& result) {
-    std::array<std::size_t, 3> size = {basis_.nodes, basis_.nodes, basis_.nodes};
-    result = nodes;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::array<std::size_t, 3> newSize = size;
-      newSize[axis] = basis_.places;
-      scratch_.assign(newSize[0] * newSize[1] * newSize[2], Vec3{});
-      const std::size_t stride = axis == 0 ? 1 : (axis == 1 ? size[0] : size[0] * size[1]);
-      const std::size_t outer = size[0] * size[1] * size[2] / (stride * size[axis]);
-      const std::vector<double>& matrix = *matrices[axis];
-      for (std::size_t o = 0; o < outer; ++o) {
-        for (std::size_t q = 0; q < basis_.places; ++q) {
-          for (std::size_t i = 0; i < basis_.nodes; ++i) {
-            const double factor = matrix[q * basis_.nodes + i];
-            for (std::size_t s = 0; s < stride; ++s) {
-              const Vec3& from = result[s + stride * (i + size[axis] * o)];
-              Vec3& to = scratch_[s + stride * (q + basis_.places * o)];
-              for (std::size_t k = 0; k < 3; ++k) to[k] += factor * from[k];
-            }
-          }
-        }
-      }
-      result.swap(scratch_);
-      size = newSize;
-    }
-  }
-
   const Basis& basis_;
-  std::array<std::vector<Vec3>, 3> columns_;
+  std::array<Bezier<Vec3>, 3> columns_;
   std::vector<Vec3> scratch_;
 };
+
+/// Calls use(cell, its nodes, its scaled Jacobian, block) for all cells.
+template <class Use>
+void forCells(const LagrangeMesh& mesh, Stage& stage, const Use& use) {
+  const Basis atNodes(mesh.order, equidistant(mesh.order));
+  const Basis atGauss(mesh.order, gaussPoints(mesh.order + 1));
+  parallelBlocks(
+      stage, mesh.cellCount(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+        Evaluator nodes(atNodes);
+        Evaluator gauss(atGauss);
+        std::vector<Vec3> points;
+        for (std::size_t c = begin; c < end; ++c) {
+          nodesOf(mesh, c, points);
+          use(c, points, std::min(nodes.smallest(points), gauss.smallest(points)), block);
+        }
+      });
+}
 
 }  // namespace
 
 Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context) {
   requireConsistent(mesh);
   Stage stage(context, "quality");
-  const Basis atNodes(mesh.order, equidistant(mesh.order));
-  const Basis atGauss(mesh.order, gaussPoints(mesh.order + 1));
-  const std::size_t perCell = mesh.nodesPerCell();
   Array<double> result(mesh.cellCount());
   withThreads(context.threads(), [&] {
-    parallelBlocks(stage, result.size(), kGrain,
-                   [&](std::size_t begin, std::size_t end, std::size_t) {
-                     Evaluator nodes(atNodes);
-                     Evaluator gauss(atGauss);
-                     std::vector<Vec3> points(perCell);
-                     for (std::size_t c = begin; c < end; ++c) {
-                       for (std::size_t i = 0; i < perCell; ++i) {
-                         points[i] = mesh.points[mesh.nodes[c * perCell + i]];
-                       }
-                       result[c] = std::min(nodes.smallest(points), gauss.smallest(points));
-                     }
-                   });
+    forCells(mesh, stage, [&](std::size_t cell, const auto&, double scaled, std::size_t /*block*/) {
+      result[cell] = scaled;
+    });
   });
   return result;
+}
+
+Certificate certify(const LagrangeMesh& mesh, Context& context) {
+  requireConsistent(mesh);
+  Stage stage(context, "quality");
+  Certificate certificate;
+  const std::size_t n = mesh.cellCount();
+  if (n == 0) return certificate;
+  certificate.scaledJacobians.resize(n);
+  certificate.validity.resize(n);
+  const CellValidity cells(mesh.order);
+  withThreads(context.threads(), [&] {
+    std::vector<BlockFindings> blocks(blockCount(n, kGrain));
+    forCells(mesh, stage,
+             [&](std::size_t cell, const auto& nodes, double scaled, std::size_t block) {
+               const CellCertificate known = cells.examine(nodes);
+               certificate.scaledJacobians[cell] = scaled;
+               certificate.validity[cell] = known.validity;
+               blocks[block].add(cell, scaled, known);
+             });
+    BlockFindings::finish(
+        blocks, cells,
+        [&](std::uint64_t cell, std::vector<Vec3>& nodes) { nodesOf(mesh, cell, nodes); }, stage,
+        certificate);
+  });
+  certificate.quality = summarize(certificate.scaledJacobians);
+  return certificate;
 }
 
 HexMesh straightMesh(const LagrangeMesh& mesh) {

@@ -65,7 +65,7 @@ REPORT_KEYS = {
     "generators", "vertices_by_generator", "local_propellers", "global_propellers", "charts",
     "cut_faces", "overlapping_tets", "traced_cells", "singular_edges", "chart_jumps", "inner_faces",
     "max_displacement", "max_transition_residual", "mirrored", "tets_inverted_in_space", "quality",
-    "verification", "streamed", "checksums", "repair", "order", "nodes", "arcs", "patches",
+    "validity", "verification", "streamed", "checksums", "repair", "order", "nodes", "arcs", "patches",
 }
 
 
@@ -464,6 +464,12 @@ class Pipeline(CommandTest):
                     self.assertIsNone(report["epsilon"])
                 self.assertEqual(sum(report["quality"]["histogram"]), report["cells"])
                 self.assertEqual(len(report["quality"]["histogram"]), 20)
+                validity = report["validity"]
+                self.assertEqual(validity["positive"], report["cells"])
+                self.assertEqual((validity["refuted"], validity["undecided"]), (0, 0))
+                self.assertEqual(validity["worst"], [])
+                self.assertLessEqual(validity["minimum"], report["quality"]["minimum"])
+                self.assertGreater(validity["minimum"], 0)
                 self.assertFalse(report["streamed"])
                 self.assertIsNone(report["checksums"])
 

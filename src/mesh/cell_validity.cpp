@@ -1,0 +1,465 @@
+// Bezier coefficients of the Jacobian determinant decide: the cell is positive where all of them
+// are, and not where one at a corner is not; elsewhere it is divided. This is the scheme of
+// Johnen, Remacle and Geuzaine (Geometrical validity of curvilinear finite elements, 2013), of
+// straight cells that of Johnen, Weill and Remacle (Robust and efficient validation of the linear
+// hexahedral element, 2017). Signs are those of doubles beyond a bound of their error, and else of
+// integers.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include <base/vector3.hpp>
+#include <mesh/cell_validity.hpp>
+
+namespace hexhex {
+namespace {
+
+constexpr double kRounding = std::numeric_limits<double>::epsilon() / 2;
+
+/// Parts that a cell is divided into at most. Of random cells, one of a million takes more than
+/// 300; one that takes all, where it is zero along a surface, costs milliseconds.
+constexpr std::size_t kMostParts = 4096;
+
+/// The same while a least scaled Jacobian is looked for.
+constexpr std::size_t kMostPartsOfLeast = 256;
+
+/// Whole determinants of a higher order are not computed in integers, which would take seconds.
+constexpr std::size_t kMostExactOrder = 3;
+
+/// Lengths of columns beyond this, after scaling, would lead products out of the range of doubles.
+constexpr double kShortest = 0x1p-200;
+
+bool isAbove(double value, double error) { return value > error; }
+bool isAbove(const BigInteger& value, double /*error*/) { return value.sign() > 0; }
+bool isBelow(double value, double error) { return value <= -error; }
+bool isBelow(const BigInteger& value, double /*error*/) { return value.sign() <= 0; }
+
+/// A part of the cell.
+struct Part {
+  Vec3 lower = {0, 0, 0};
+  Vec3 size = {1, 1, 1};
+
+  [[nodiscard]] Vec3 corner(std::size_t corner) const {
+    Vec3 place = lower;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if ((corner >> axis & 1U) != 0) place[axis] += size[axis];
+    }
+    return place;
+  }
+  [[nodiscard]] Part half(std::size_t axis, std::size_t which) const {
+    Part part = *this;
+    part.size[axis] /= 2;
+    if (which == 1) part.lower[axis] += part.size[axis];
+    return part;
+  }
+};
+
+std::size_t longestAxis(const Part& part) {
+  return static_cast<std::size_t>(std::max_element(part.size.begin(), part.size.end()) -
+                                  part.size.begin());
+}
+
+/// The axis along which coefficients are bent most: bounds differ from values by about as much.
+std::size_t axisToHalve(const Part& /*part*/, const Bezier<double>& polynomial) {
+  std::array<double, 3> bend{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t stride = polynomial.stride(axis);
+    for (std::size_t i = 0; i < polynomial.values.size(); ++i) {
+      const std::size_t along = i / stride % polynomial.size[axis];
+      if (along == 0 || along + 1 == polynomial.size[axis]) continue;
+      const auto& values = polynomial.values;
+      bend[axis] = std::max(bend[axis], std::abs((values[i + stride] - values[i]) -
+                                                 (values[i] - values[i - stride])));
+    }
+  }
+  return static_cast<std::size_t>(std::max_element(bend.begin(), bend.end()) - bend.begin());
+}
+std::size_t axisToHalve(const Part& part, const Bezier<BigInteger>& /*polynomial*/) {
+  return longestAxis(part);
+}
+
+/// @param error   of coefficients
+/// @param growth  of the error, each time that they are halved
+template <class T>
+CellCertificate divide(Bezier<T> whole, double error, double growth) {
+  struct Piece {
+    Part part;
+    Bezier<T> polynomial;
+    double error;
+  };
+  std::vector<Piece> pieces;
+  pieces.push_back({{}, std::move(whole), error});
+  for (std::size_t count = 0; !pieces.empty(); ++count) {
+    const Piece piece = std::move(pieces.back());
+    pieces.pop_back();
+    const auto& values = piece.polynomial.values;
+    const auto isPositive = [&](const T& value) { return isAbove(value, piece.error); };
+    if (std::all_of(values.begin(), values.end(), isPositive)) continue;
+    bool unclear = count >= kMostParts;
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      const T& value = values[piece.polynomial.cornerAt(corner)];
+      if (isBelow(value, piece.error)) return {Validity::Refuted, -1, piece.part.corner(corner), 0};
+      unclear = unclear || !isPositive(value);
+    }
+    if (unclear) return {Validity::Undecided, -1, {}, 0};
+    const std::size_t axis = axisToHalve(piece.part, piece.polynomial);
+    std::array<Bezier<T>, 2> both = halves(piece.polynomial, axis);
+    for (std::size_t h = 2; h-- > 0;) {
+      pieces.push_back({piece.part.half(axis, h), std::move(both[h]), piece.error + growth});
+    }
+  }
+  return {Validity::Positive, -1, {}, 0};
+}
+
+double ratio(double determinant, double lengths) {
+  const double value = determinant / lengths;
+  return std::isfinite(value) ? std::clamp(value, -1.0, 1.0) : (determinant < 0 ? -1.0 : 0.0);
+}
+
+double leastOf(const Bezier<double>& polynomial) {
+  return *std::min_element(polynomial.values.begin(), polynomial.values.end());
+}
+
+double largestOf(const Bezier<double>& polynomial) {
+  return *std::max_element(polynomial.values.begin(), polynomial.values.end());
+}
+
+Bezier<double> productOf(Bezier<double> a, Bezier<double> b) {
+  Bezier<double> product;
+  weigh(a, false);
+  weigh(b, false);
+  addConvolution(a, b, 1.0, product);
+  weigh(product, true);
+  return product;
+}
+
+/// The square of the length of a column.
+Bezier<double> squareOf(const std::array<Bezier<double>, 3>& column) {
+  Bezier<double> sum = productOf(column[0], column[0]);
+  for (std::size_t k = 1; k < 3; ++k) {
+    const Bezier<double> square = productOf(column[k], column[k]);
+    for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += square.values[i];
+  }
+  return sum;
+}
+
+/// Determinants over lengths in a part of a cell. Bezier coefficients of a quotient of squares
+/// bound it: it is a mean of the quotients of coefficients, with weights that are positive.
+struct Quotient {
+  Part part = {};
+  Bezier<double> determinant = {};
+  Bezier<double> square = {};   ///< of the determinant
+  Bezier<double> lengths = {};  ///< of the columns: the product of their squares
+  double error = 0;             ///< of the determinant
+  double bound = -1;            ///< it is nowhere less
+
+  /// Bounds a quotient that was made or halved.
+  /// @param rounding  of coefficients of the two squares, relative to the largest of each
+  void close(double rounding) {
+    const double least = leastOf(determinant) - error;
+    const double lengthsError = rounding * largestOf(lengths);
+    if (!(least > 0)) {
+      const double shortest = leastOf(lengths) - lengthsError;
+      bound = shortest > 0 ? ratio(least, std::sqrt(shortest) * (1 - rounding)) : -1;
+      return;
+    }
+    const double squareError = rounding * largestOf(square) + 2 * error * largestOf(determinant);
+    double smallest = 1;
+    for (std::size_t i = 0; i < square.values.size(); ++i) {
+      smallest =
+          std::min(smallest, (square.values[i] - squareError) / (lengths.values[i] + lengthsError));
+    }
+    bound = std::sqrt(std::max(smallest, 0.0)) * (1 - rounding);
+  }
+
+  [[nodiscard]] std::array<Quotient, 2> halved(std::size_t axis) const {
+    std::array<Quotient, 2> both;
+    const auto halve = [&](Bezier<double> Quotient::*polynomial) {
+      std::array<Bezier<double>, 2> parts = halves(this->*polynomial, axis);
+      for (std::size_t h = 0; h < 2; ++h) both[h].*polynomial = std::move(parts[h]);
+    };
+    halve(&Quotient::determinant);
+    halve(&Quotient::square);
+    halve(&Quotient::lengths);
+    for (std::size_t h = 0; h < 2; ++h) both[h].part = part.half(axis, h);
+    return both;
+  }
+};
+
+Bezier<double> restricted(Bezier<double> polynomial, const Vec3& place) {
+  std::vector<double> scratch;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t degree = polynomial.size[axis] - 1;
+    const std::vector<std::int64_t> row = binomials(degree);
+    Matrix<double> weights = {1, degree + 1, {}};
+    for (std::size_t i = 0; i <= degree; ++i) {
+      weights.entries.push_back(static_cast<double>(row[i]) *
+                                std::pow(place[axis], static_cast<double>(i)) *
+                                std::pow(1 - place[axis], static_cast<double>(degree - i)));
+    }
+    apply(weights, axis, polynomial, scratch);
+  }
+  return polynomial;
+}
+
+/// Nodes times a power of two, which brings the largest coordinate near 1.
+std::vector<Vec3> scaledNodes(std::span<const Vec3> nodes) {
+  double largest = 0;
+  for (const Vec3& node : nodes) {
+    for (const double x : node) largest = std::max(largest, std::abs(x));
+  }
+  int exponent = 0;
+  static_cast<void>(std::frexp(largest, &exponent));
+  std::vector<Vec3> result(nodes.begin(), nodes.end());
+  for (Vec3& node : result) {
+    for (double& x : node) x = std::ldexp(x, -exponent);
+  }
+  return result;
+}
+
+/// The largest sum of magnitudes of a row.
+double normOf(const Matrix<double>& matrix) {
+  double norm = 0;
+  for (std::size_t row = 0; row < matrix.rows; ++row) {
+    double sum = 0;
+    for (std::size_t column = 0; column < matrix.columns; ++column) {
+      sum += std::abs(matrix.entries[row * matrix.columns + column]);
+    }
+    norm = std::max(norm, sum);
+  }
+  return norm;
+}
+
+}  // namespace
+
+CellValidity::CellValidity(int order)
+    : order_(static_cast<std::size_t>(order)),
+      matrices_(nodeMatrices<double>(order_)),
+      fineMatrices_(nodeMatrices<Twofold>(order_)),
+      exactMatrices_(nodeMatrices<BigInteger>(order_)) {
+  const double norm = normOf(matrices_.differences) * std::pow(normOf(matrices_.values), 2);
+  // Three sums of at most ten products, of which each is right to within 2^-98.
+  conversionError_ = order_ == 1 ? 0 : 0x1p-92 * norm;
+}
+
+template <class T>
+Columns<T> CellValidity::columnsOf(const std::vector<std::array<T, 3>>& nodes,
+                                   const NodeMatrices<T>& matrices) const {
+  Columns<T> columns;
+  std::vector<T> scratch;
+  const std::size_t n = order_ + 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Bezier<T>& grid = columns[axis][k];
+      grid.size = {n, n, n};
+      const std::size_t stride = grid.stride(axis);
+      grid.size[axis] = order_;
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (i / stride % n < order_) grid.values.push_back(nodes[i + stride][k] - nodes[i][k]);
+      }
+      if (order_ == 1) continue;  // the matrices are 1
+      for (std::size_t a = 0; a < 3; ++a) {
+        apply(a == axis ? matrices.differences : matrices.values, a, grid, scratch);
+      }
+    }
+  }
+  return columns;
+}
+
+Columns<double> CellValidity::roundedColumnsOf(const std::vector<Vec3>& nodes) const {
+  if (order_ == 1) return columnsOf(nodes, matrices_);
+  std::vector<std::array<Twofold, 3>> fineNodes;
+  fineNodes.reserve(nodes.size());
+  for (const Vec3& node : nodes) fineNodes.push_back({{{node[0], 0}, {node[1], 0}, {node[2], 0}}});
+  const Columns<Twofold> fine = columnsOf(fineNodes, fineMatrices_);
+  Columns<double> columns;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      columns[axis][k].size = fine[axis][k].size;
+      for (const Twofold& value : fine[axis][k].values)
+        columns[axis][k].values.push_back(value.high);
+    }
+  }
+  return columns;
+}
+
+CellValidity::Form CellValidity::formOf(std::span<const Vec3> nodes) const {
+  Form form;
+  const std::vector<Vec3> scaled = scaledNodes(nodes);
+  form.columns = roundedColumnsOf(scaled);
+  form.determinant = determinantOf(form.columns);
+  for (const double value : form.determinant.values)
+    form.size = std::max(form.size, std::abs(value));
+
+  // Largest components of columns, with their errors.
+  std::array<double, 3> largest{};
+  std::array<double, 3> errors{};
+  const std::size_t n = order_ + 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t stride = axis == 0 ? 1 : (axis == 1 ? n : n * n);
+    double difference = 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (i / stride % n == order_) continue;
+      const Vec3 d = minus(scaled[i + stride], scaled[i]);
+      for (const double x : d) difference = std::max(difference, std::abs(x));
+    }
+    for (const Bezier<double>& coordinate : form.columns[axis]) {
+      for (const double x : coordinate.values) largest[axis] = std::max(largest[axis], std::abs(x));
+    }
+    errors[axis] = kRounding * largest[axis] + conversionError_ * difference;
+    largest[axis] += errors[axis];
+    if (largest[axis] < kShortest) form.error = std::numeric_limits<double>::infinity();
+  }
+  // A coefficient is a mean of determinants of six products of components each. Sums have at most
+  // (p + 1)^3 terms twice, and 40 is more than all other roundings; twice that.
+  const double terms = 2 * std::pow(static_cast<double>(n), 3) + 40;
+  const double product = largest[0] * largest[1] * largest[2];
+  form.error += 2 * 6 *
+                (terms * kRounding * product + errors[0] * largest[1] * largest[2] +
+                 largest[0] * errors[1] * largest[2] + largest[0] * largest[1] * errors[2]);
+  return form;
+}
+
+CellCertificate CellValidity::decide(std::span<const Vec3> nodes, const Form& form) const {
+  const double growth = static_cast<double>(3 * order_ + 2) * kRounding * form.size;
+  CellCertificate result = {Validity::Undecided, -1, {}, 0};
+  if (std::isfinite(form.error)) result = divide(form.determinant, form.error, growth);
+  if (result.validity == Validity::Undecided) result = decideExactly(nodes);
+  if (result.validity == Validity::Refuted) {
+    Vec3 lengths{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Vec3 column{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        column[k] = restricted(form.columns[axis][k], result.place).values[0];
+      }
+      lengths[axis] = length(column);
+    }
+    const double value = restricted(form.determinant, result.place).values[0];
+    result.scaledJacobian = std::min(0.0, ratio(value, lengths[0] * lengths[1] * lengths[2]));
+  }
+  return result;
+}
+
+CellCertificate CellValidity::decideExactly(std::span<const Vec3> nodes) const {
+  // All coordinates as multiples of the lowest bit of any.
+  int shift = std::numeric_limits<int>::min();
+  for (const Vec3& node : nodes) {
+    for (const double x : node) {
+      if (x == 0) continue;
+      int exponent = 0;
+      const double fraction = std::frexp(x, &exponent);
+      const auto bits = static_cast<std::uint64_t>(std::ldexp(std::abs(fraction), 53));
+      shift = std::max(shift, 53 - exponent - std::countr_zero(bits));
+    }
+  }
+  std::vector<std::array<BigInteger, 3>> integers;
+  for (const Vec3& node : nodes) {
+    integers.push_back(
+        {BigInteger(node[0], shift), BigInteger(node[1], shift), BigInteger(node[2], shift)});
+  }
+  const Columns<BigInteger> columns = columnsOf(integers, exactMatrices_);
+  for (std::size_t corner = 0; corner < 8; ++corner) {  // most of what comes here is flat there
+    Columns<BigInteger> there;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Bezier<BigInteger>& all = columns[axis][k];
+        there[axis][k] = {{1, 1, 1}, {all.values[all.cornerAt(corner)]}};
+      }
+    }
+    if (determinantOf(there).values[0].sign() > 0) continue;
+    return {Validity::Refuted, -1, Part{}.corner(corner), 0};
+  }
+  if (order_ > kMostExactOrder) return {Validity::Undecided, -1, {}, 0};
+  return divide(determinantOf(columns), 0, 0);
+}
+
+CellCertificate CellValidity::examine(std::span<const Vec3> nodes) const {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (isFinite(nodes[i])) continue;
+    const auto p = static_cast<double>(order_);
+    const std::size_t n = order_ + 1;
+    const std::array<std::size_t, 3> at = {i % n, i / n % n, i / n / n};
+    CellCertificate result = {Validity::Refuted, -1, {}, 0};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      result.place[axis] = static_cast<double>(at[axis]) / p;
+    }
+    return result;
+  }
+  const Form form = formOf(nodes);
+  CellCertificate result = decide(nodes, form);
+  if (std::isfinite(form.error)) {
+    const double least = leastOf(form.determinant) - form.error;
+    if (least > 0) result.minimum = ratio(least, form.largestLengths);
+  }
+  return result;
+}
+
+CellCertificate CellValidity::findLeast(std::span<const Vec3> nodes, double target) const {
+  CellCertificate result = examine(nodes);
+  if (!std::all_of(nodes.begin(), nodes.end(), [](const Vec3& v) { return isFinite(v); })) {
+    return result;
+  }
+  const Form form = formOf(nodes);
+  if (!std::isfinite(form.error)) return result;
+  if (result.validity != Validity::Refuted) result.scaledJacobian = 1;
+
+  // Sums of so many products as a convolution has, in the squares and their products, of columns
+  // whose lengths are wrong by a few roundings, too.
+  const double rounding = 64 * static_cast<double>(form.determinant.values.size()) * kRounding;
+  const double growth = static_cast<double>(3 * order_ + 2) * kRounding * form.size;
+  const auto isLess = [](const Quotient& a, const Quotient& b) { return a.bound > b.bound; };
+  std::priority_queue<Quotient, std::vector<Quotient>, decltype(isLess)> parts(isLess);
+  const auto add = [&](Quotient quotient, double error) {
+    quotient.error = error;
+    quotient.close(rounding);
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      const double value = quotient.determinant.values[quotient.determinant.cornerAt(corner)];
+      const double lengths = quotient.lengths.values[quotient.lengths.cornerAt(corner)];
+      const double scaled = ratio(value, std::sqrt(lengths));
+      if (scaled >= result.scaledJacobian) continue;
+      // Where a cell was refuted, it is bad for sure.
+      if (result.validity == Validity::Refuted && value >= -error) continue;
+      result.scaledJacobian = scaled;
+      result.place = quotient.part.corner(corner);
+    }
+    parts.push(std::move(quotient));
+  };
+  add({{},
+       form.determinant,
+       productOf(form.determinant, form.determinant),
+       productOf(productOf(squareOf(form.columns[0]), squareOf(form.columns[1])),
+                 squareOf(form.columns[2])),
+       0,
+       -1},
+      form.error);
+  const std::size_t most = kMostPartsOfLeast / (order_ * order_);
+  for (std::size_t count = 0;; ++count) {
+    const Quotient worst = parts.top();
+    result.minimum = worst.bound;
+    const double wanted = std::min(target, result.scaledJacobian) - kMinimumTolerance;
+    if (worst.bound >= wanted || count >= most) return result;
+    parts.pop();
+    for (Quotient& half : worst.halved(longestAxis(worst.part))) {
+      add(std::move(half), worst.error + growth);
+    }
+  }
+}
+
+Vec3 CellValidity::pointAt(std::span<const Vec3> nodes, const Vec3& place) const {
+  const std::size_t n = order_ + 1;
+  Vec3 point{};
+  std::vector<double> scratch;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Bezier<double> grid = {{n, n, n}, {}};
+    for (const Vec3& node : nodes) grid.values.push_back(node[k]);
+    for (std::size_t axis = 0; axis < 3 && order_ > 1; ++axis) {
+      apply(matrices_.values, axis, grid, scratch);
+    }
+    point[k] = restricted(std::move(grid), place).values[0];
+  }
+  return point;
+}
+
+}  // namespace hexhex
