@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint64_t aligned(std::uint64_t bytes) { return (bytes + 3) / 4 * 4; }
 
-std::uint64_t bytesOf(const NetcdfFile& file, const NetcdfVariable& variable) {
+std::uint64_t bytesInFile(const NetcdfFile& file, const NetcdfVariable& variable) {
   std::uint64_t bytes = variable.type == NetcdfType::Char     ? 1
                         : variable.type == NetcdfType::Double ? 8
                                                               : 4;
@@ -76,7 +76,7 @@ std::string headOf(const NetcdfFile& file, bool wide, std::uint64_t begin) {
     for (const std::uint32_t place : variable.dimensions) head.addCount(place);
     head.addAttributes(variable.attributes);
     head.add(variable.type);
-    const std::uint64_t bytes = aligned(bytesOf(file, variable));
+    const std::uint64_t bytes = aligned(bytesInFile(file, variable));
     head.addCount(bytes);
     head.add(begin);
     begin += bytes;
@@ -88,13 +88,13 @@ std::string headOf(const NetcdfFile& file, bool wide, std::uint64_t begin) {
 
 void NetcdfFile::write(OutputFile& output, int threads, std::uint64_t mostBytes) const {
   const bool wide = std::any_of(variables.begin(), variables.end(), [&](const NetcdfVariable& v) {
-    return bytesOf(*this, v) > mostBytes;
+    return bytesInFile(*this, v) > mostBytes;
   });
   output.write(headOf(*this, wide, headOf(*this, wide, 0).size()));
   LineWriter values(output, threads);
   for (const NetcdfVariable& variable : variables) {
     if (variable.write != nullptr) variable.write(values);
-    const std::uint64_t bytes = bytesOf(*this, variable);
+    const std::uint64_t bytes = bytesInFile(*this, variable);
     output.write(std::string(aligned(bytes) - bytes, '\0'));
   }
 }
