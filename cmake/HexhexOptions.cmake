@@ -62,5 +62,5 @@ function(hexhex_folder name)
   # Only what a public header declares leaves the shared library.
   set_target_properties(hexhex_${name} PROPERTIES
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-  hexhex_unit_names(hexhex_${name} kGrain Side)
+  hexhex_unit_names(hexhex_${name} kGrain kRounding Side)
 endfunction()
