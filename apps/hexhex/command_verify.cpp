@@ -44,10 +44,7 @@ void printTable(const VerifyReport& report) {
   };
   printRow(head, "result");
   for (const VerifyItem& item : report.items) printRow(item, item.passed ? "ok" : "FAILED");
-  fmt::print("{}\n", report.passed()    ? "The mesh agrees with the map."
-                     : report.ambiguous ? "The mesh cannot be verified: different edges or faces "
-                                          "have the same vertices. Use a larger scale."
-                                        : "The mesh does not agree with the map.");
+  fmt::print("The mesh {} with the map.\n", report.passed() ? "agrees" : "does not agree");
 }
 
 struct Comparison {
@@ -60,8 +57,7 @@ Comparison compare(const Arguments& arguments) {
   Context context(arguments.threads, progress.callback());
   const CancelOnSignal cancelOnSignal(context);
   const TetMap map = readMap(arguments.map, context);
-  HexMesh mesh = readHexMesh(arguments.mesh, context);
-  mesh.generatorTet.clear();  // what a file says about itself is not to be trusted here
+  const HexMesh mesh = readHexMesh(arguments.mesh, context);
   Comparison result;
   result.report = verify(map, mesh, arguments.options, context);
   if (!arguments.quiet) result.certificate = certify(mesh, context);
@@ -82,12 +78,18 @@ int run(const Arguments& arguments) {
 
 Command addVerify(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
+  arguments->options.countElements = true;
   CLI::App* const parser =
       app.add_subcommand("verify", "Compare a hexahedral mesh with the map that it came from");
   addMapSourceBefore(*parser, arguments->map, "MAP", arguments->mesh, "MESH",
                      "The mesh, in any format that is read");
   addScale(*parser, arguments->options.scale, "The scale that the mesh was extracted with");
   addTolerance(*parser, arguments->options.tolerance);
+  parser
+      ->add_option("--digits", arguments->options.digits,
+                   "Significant digits of the mesh's coordinates\n"
+                   "(default: 7 if all are single-precision numbers, otherwise 17)")
+      ->check(CLI::Range(1, 17));
   addThreads(*parser, arguments->threads);
   addQuiet(*parser, arguments->quiet, "Print nothing but errors: the exit code tells");
   parser->footer(

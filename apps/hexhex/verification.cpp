@@ -10,12 +10,6 @@ namespace hexhex::command {
 
 void requirePassed(const VerifyReport& report, std::string_view problem, std::string_view advice) {
   if (report.passed()) return;
-  if (report.ambiguous) {
-    throw Error(ErrorCode::AmbiguousMesh,
-                "The map is so coarse that different edges or faces of the mesh have the same "
-                "vertices, and vertices are all that names them. Use --scale 2 or 3. (--no-verify "
-                "writes the mesh regardless.)");
-  }
   std::string items;
   for (const VerifyItem& item : report.items) {
     if (item.passed) continue;

@@ -71,9 +71,11 @@ Dict asDict(const CheckReport& r) {
 using VerifyRow = std::tuple<std::string, std::string, std::string, bool>;
 
 std::vector<VerifyRow> verifyMesh(const ArrayMap& map, const HexMesh& mesh, int scale,
-                                  double tolerance, int threads, const Progress& progress) {
+                                  double tolerance, int digits, int threads,
+                                  const Progress& progress) {
   const VerifyReport report = run(threads, progress, [&](Context& context) {
-    return verify(map.view(), mesh, {.scale = scale, .tolerance = tolerance}, context);
+    return verify(map.view(), mesh, {.scale = scale, .tolerance = tolerance, .digits = digits},
+                  context);
   });
   std::vector<VerifyRow> rows;
   for (const VerifyItem& item : report.items) {
@@ -93,8 +95,8 @@ void bindReports(nb::module_& module) {
         }));
       },
       "map"_a, "tolerance"_a, "scale"_a, "threads"_a, "progress"_a.none());
-  module.def("verify", &verifyMesh, "map"_a, "mesh"_a, "scale"_a, "tolerance"_a, "threads"_a,
-             "progress"_a.none());
+  module.def("verify", &verifyMesh, "map"_a, "mesh"_a, "scale"_a, "tolerance"_a, "digits"_a,
+             "threads"_a, "progress"_a.none());
 }
 
 }  // namespace hexhex::python

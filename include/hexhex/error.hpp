@@ -35,7 +35,7 @@ enum class ErrorCode {
   OutOfMemory,            ///< memory was exhausted
   VerificationFailed,     ///< the result does not agree with the map
   Internal,               ///< a bug of this library
-  AmbiguousMesh           ///< different edges or faces of the mesh have the same vertices
+  AmbiguousMesh           ///< a cell around an inner edge: faces of it have the same vertices
 };
 
 /// The name of a code, e.g. "FlippedTet".

@@ -21,10 +21,6 @@ struct VerifyItem {
 
 struct VerifyReport {
   std::vector<VerifyItem> items;
-  /// The mesh has the right cells and vertices, but different edges or faces of it have the same
-  /// vertices: the map is so coarse that a cell meets itself, or another one twice. No comparison
-  /// that is about edges or faces says anything then.
-  bool ambiguous = false;
   [[nodiscard]] bool passed() const noexcept {
     for (const VerifyItem& item : items) {
       if (!item.passed) return false;
@@ -36,13 +32,21 @@ struct VerifyReport {
 struct VerifyOptions {
   int scale = 1;            ///< the scale that the mesh was extracted with
   double tolerance = 1e-2;  ///< of the map, as in ExtractOptions
+  /// Significant digits of the mesh's coordinates, relative to the largest of them: 1 to 17. 0: 7 if
+  /// all are single-precision numbers, otherwise 17.
+  int digits = 0;
+  /// Whether to count faces, edges and components of the mesh as well: a second opinion, which takes
+  /// longer than the first.
+  bool countElements = false;
 };
 
-/// Checks in linear time: cells = parametric volume, boundary quads = parametric boundary area,
-/// singular hex edges by valence = parametric length of singular tet edges, faces shared by at most
-/// two cells in opposite directions, Euler characteristic, components, boundary closed and with as
-/// many components as that of the tets, every vertex used, and every vertex on a lattice point
-/// (located in the tet mesh; `generatorTet` serves as a hint if the mesh has it).
+/// Passes if and only if the mesh is that of the map, up to the numbers of vertices and of cells and
+/// the 24 orientations of each cell. Linear time, and memory in proportion to map and mesh.
+///
+/// A mesh in canonical order is proven right lattice point by lattice point, by code that shares
+/// the prepared map with extraction, and no decision; any other one is compared with a mesh that
+/// was proven right (docs/verification.md). Vertices at the same place are told apart by their
+/// cells.
 [[nodiscard]] VerifyReport verify(const TetMapView& map, const HexMesh& mesh,
                                   const VerifyOptions& options, Context& context);
 [[nodiscard]] VerifyReport verify(const TetMapView& map, const HexMesh& mesh,

@@ -134,7 +134,7 @@ static void test_everything_once(const char* folder) {
   CHECK(statistics.charts > 0 && statistics.seconds > 0 && statistics.singular_edges > 0);
   hexhex_verify_report* verified = NULL;
   CHECK_OK(hexhex_verify(map, mesh, 1e-2, 2, NULL, &verified, &error));
-  CHECK(hexhex_verify_passed(verified) && hexhex_verify_item_count(verified) > 10);
+  CHECK(hexhex_verify_passed(verified) && hexhex_verify_item_count(verified) >= 10);
   hexhex_verify_item item = HEXHEX_VERIFY_ITEM_INIT;
   CHECK_OK(hexhex_verify_get_item(verified, 2, &item, &error));
   CHECK(strcmp(item.name, "cells") == 0 && strcmp(item.found, "3584") == 0 && item.passed);

@@ -52,6 +52,7 @@ inline HexMesh verifiedExtraction(const TetMapView& map, const ExtractOptions& o
   VerifyOptions verifyOptions;
   verifyOptions.scale = options.scale;
   verifyOptions.tolerance = options.tolerance;
+  verifyOptions.countElements = true;
   const VerifyReport report = verify(map, mesh, verifyOptions);
   EXPECT_TRUE(report.passed()) << failures(report);
   Context other(threads);

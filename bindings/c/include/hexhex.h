@@ -953,7 +953,8 @@ HEXHEX_API hexhex_status hexhex_map_structure_get_arrays(const hexhex_map_struct
 /** Whether a mesh agrees with its map, check by check. */
 typedef struct hexhex_verify_report hexhex_verify_report;
 
-/** A mesh that does not agree is no error of this function.
+/** Passes the mesh of the map in any numbering, with cells in any orientation, and no other mesh. One
+ * that does not agree is no error of this function.
  * @param tolerance  of the map, as in hexhex_extract_options
  * @param scale      that the mesh was extracted with */
 HEXHEX_API hexhex_status hexhex_verify(const hexhex_map* map, const hexhex_mesh* mesh,

@@ -1,0 +1,43 @@
+// What is collected for a VerifyReport.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include <hexhex/verify.hpp>
+
+namespace hexhex {
+
+class Comparisons {
+ public:
+  void add(std::string name, std::string expected, std::string found, bool passed) {
+    report_.items.push_back({std::move(name), std::move(expected), std::move(found), passed});
+  }
+
+  template <class Number>
+  void addEqual(const char* name, Number expected, Number found) {
+    add(name, std::to_string(expected), std::to_string(found), expected == found);
+  }
+
+  /// Something that must not occur. @param first  where it does, in words
+  void addNone(const char* name, std::uint64_t count, const std::string& first) {
+    add(name, "0", count == 0 ? "0" : std::to_string(count) + " (first: " + first + ")",
+        count == 0);
+  }
+
+  [[nodiscard]] bool passed() const noexcept { return report_.passed(); }
+  [[nodiscard]] VerifyReport take() { return std::move(report_); }
+
+ private:
+  VerifyReport report_;
+};
+
+[[nodiscard]] inline std::string vertexName(std::size_t vertex) {
+  return "vertex " + std::to_string(vertex);
+}
+[[nodiscard]] inline std::string cellName(std::size_t cell) {
+  return "cell " + std::to_string(cell);
+}
+
+}  // namespace hexhex

@@ -1,0 +1,237 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <verify/half_diagonals.hpp>
+
+namespace hexhex {
+
+namespace {
+
+LatticePoint scaled(const GridPoint& z, std::int64_t unit) {
+  return {z[0] * unit, z[1] * unit, z[2] * unit};
+}
+
+/// Sum of distances along the axes, which all transitions keep.
+std::int64_t distance(const LatticePoint& a, const LatticePoint& b) {
+  return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
+}
+
+/// A simplex of one tet as that of another one, or kNoSimplex if that does not have it.
+CornerMask simplexIn(const TetTopology& topology, Index from, CornerMask simplex, Index to) {
+  const Tet& there = topology.tets[to];
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!contains(simplex, static_cast<int>(i))) continue;
+    if (std::find(there.begin(), there.end(), topology.tets[from][i]) == there.end()) {
+      return kNoSimplex;
+    }
+  }
+  return topology.translated(simplex, from, to);
+}
+
+/// The edges of a tet, by corners.
+constexpr std::array<std::pair<std::size_t, std::size_t>, 6> kEdges = {
+    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+
+/// By face: the edges opposite to its corners, in the order of kFaceCorners.
+constexpr auto kFaceEdges = [] {
+  std::array<std::array<std::size_t, 3>, 4> edges{};
+  for (std::size_t face = 0; face < 4; ++face) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto a = static_cast<std::size_t>(kFaceCorners[face][(k + 1) % 3]);
+      const auto b = static_cast<std::size_t>(kFaceCorners[face][(k + 2) % 3]);
+      for (std::size_t e = 0; e < 6; ++e) {
+        if (kEdges[e] == std::pair(std::min(a, b), std::max(a, b))) edges[face][k] = e;
+      }
+    }
+  }
+  return edges;
+}();
+
+/// By the set of edges i < j with a negative area: the face whose three areas are negative, all
+/// around in the order of kFaceCorners.
+constexpr auto kExits = [] {
+  std::array<int, 64> exits{};
+  for (unsigned negative = 0; negative < 64; ++negative) {
+    exits[negative] = kNoExit;
+    for (std::size_t face = 0; face < 4; ++face) {
+      bool isExit = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const bool ascends = kFaceCorners[face][(k + 1) % 3] < kFaceCorners[face][(k + 2) % 3];
+        isExit = isExit && ((negative >> kFaceEdges[face][k] & 1U) != 0) == ascends;
+      }
+      if (isExit) exits[negative] = static_cast<int>(face);
+    }
+  }
+  return exits;
+}();
+
+}  // namespace
+
+bool areSamePoint(const PreparedMap& map, const LatticePlace& a, CornerMask simplex,
+                  const LatticePlace& b) {
+  if (a.tet == b.tet && a.z == b.z) return true;
+  if (dimension(simplex) == 3) return false;
+  const TetTopology& topology = map.topology;
+  const ExactMap& exact = map.exact;
+  if (dimension(simplex) == 2) {
+    const HalfFace face = halfFaceOf(a.tet, oppositeCorner(simplex));
+    if (topology.isBoundary(face) || tetOf(topology.mate[face]) != b.tet) return false;
+    return exact.transitions.across(face)(a.z) == b.z;
+  }
+  // The same vertex, or the same edge, as far from its vertices.
+  const CornerMask there = simplexIn(topology, a.tet, simplex, b.tet);
+  if (there == kNoSimplex || simplexOf(exact.corners[b.tet], b.z, exact.unit) != there) {
+    return false;
+  }
+  const std::size_t corner = firstCorner(simplex);
+  const Index vertex = topology.tets[a.tet][corner];
+  const auto cornerThere = static_cast<std::size_t>(topology.localCorner(b.tet, vertex));
+  return distance(exact.corners[a.tet][corner], scaled(a.z, exact.unit)) ==
+         distance(exact.corners[b.tet][cornerThere], scaled(b.z, exact.unit));
+}
+
+bool HalfDiagonals::endsAt(Index tet, const GridPoint& cell, const GridPoint& offset,
+                           const LatticePlace& place) {
+  Segment segment{tet, {}, {}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    segment.start[k] = (2 * std::int64_t{cell[k]} + 1) * half_;
+    segment.end[k] = (2 * (std::int64_t{cell[k]} + offset[k])) * half_;
+  }
+  // Tets may be passed more than once only if the map is not what preparation says.
+  for (std::size_t steps = 0; steps <= map_.topology.tetCount(); ++steps) {
+    int exit = 0;
+    const Step step = look(segment, exit);
+    if (step == Step::IsUncertain) break;
+    if (step == Step::EndsInside) {
+      const End end = endOf(segment, kWholeTet);
+      return areSamePoint(map_, end.place, end.simplex, place);
+    }
+    const std::optional<Segment> next = across(segment, exit);
+    if (!next) return false;
+    segment = *next;
+    // A lattice point of the tet is one that the segment comes to within the tet.
+    if (segment.tet == place.tet && isAtEnd(segment, place.z)) return true;
+  }
+  const std::optional<End> end = followExactly(segment);
+  return end && areSamePoint(map_, end->place, end->simplex, place);
+}
+
+bool HalfDiagonals::isAtEnd(const Segment& segment, const GridPoint& z) const noexcept {
+  const std::int64_t unit = map_.exact.unit;
+  return segment.end[0] == z[0] * unit && segment.end[1] == z[1] * unit &&
+         segment.end[2] == z[2] * unit;
+}
+
+/// Seen along the segment, the corners of the tet are points (x, y) of a plane with the segment at
+/// its origin, at a depth. The segment leaves through the triangle that has the origin inside and
+/// turns its back.
+HalfDiagonals::Step HalfDiagonals::look(const Segment& segment, int& exit) const noexcept {
+  std::array<double, 4> x;
+  std::array<double, 4> y;
+  std::array<double, 4> depth;
+  std::array<double, 4> size;
+  const LatticeTet& tet = map_.exact.corners[segment.tet];
+  std::array<double, 3> along;
+  for (std::size_t k = 0; k < 3; ++k) along[k] = segment.end[k] > segment.start[k] ? 1 : -1;
+  for (std::size_t i = 0; i < 4; ++i) {
+    std::array<double, 3> r;
+    for (std::size_t k = 0; k < 3; ++k) {
+      r[k] = along[k] * static_cast<double>(tet[i][k] - segment.start[k]);
+    }
+    x[i] = r[0] - r[2];
+    y[i] = r[1] - r[2];
+    depth[i] = r[0] + r[1] + r[2];
+    size[i] = std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]);
+  }
+  // Twice the areas of the triangles between the origin and two corners.
+  std::array<double, 6> areas;
+  unsigned negative = 0;
+  const double mirror = along[0] * along[1] * along[2];
+  for (std::size_t e = 0; e < 6; ++e) {
+    const auto [i, j] = kEdges[e];
+    areas[e] = mirror * (x[i] * y[j] - y[i] * x[j]);
+    negative |= (areas[e] < 0 ? 1U : 0U) << e;
+  }
+  exit = kExits[negative];
+  if (exit == kNoExit) return Step::IsUncertain;
+  // Both coordinates carry a conversion and a subtraction, so areas err by less than 12 * 2^-53 of
+  // the product of sizes. The depth of the triangle at the origin is the mean of those of its
+  // corners, weighted by the areas opposite to them; each product errs by less than 2^-48 of its
+  // magnitudes.
+  const std::array<std::size_t, 3>& edges = kFaceEdges[static_cast<std::size_t>(exit)];
+  const double end = 3 * static_cast<double>(half_);
+  double beyond = 0;
+  double sum = 0;
+  bool isCertain = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto corner = static_cast<std::size_t>(kFaceCorners[static_cast<std::size_t>(exit)][k]);
+    const auto [i, j] = kEdges[edges[k]];
+    const double area = std::abs(areas[edges[k]]);
+    isCertain = isCertain && area > 0x1p-49 * size[i] * size[j];
+    beyond += area * (depth[corner] - end);
+    sum += size[corner];
+  }
+  if (!isCertain || std::abs(beyond) <= 0x1p-47 * sum * sum * (sum + end)) {
+    return Step::IsUncertain;
+  }
+  return beyond > 0 ? Step::EndsInside : Step::Leaves;
+}
+
+/// The same segment in the neighbour across a face, if there is one.
+std::optional<HalfDiagonals::Segment> HalfDiagonals::across(const Segment& segment,
+                                                            int face) const noexcept {
+  const HalfFace halfFace = halfFaceOf(segment.tet, face);
+  if (map_.topology.isBoundary(halfFace)) return std::nullopt;
+  Segment next{tetOf(map_.topology.mate[halfFace]), segment.start, segment.end};
+  const ExactMap& exact = map_.exact;
+  if (exact.transitions.isNonTrivial(halfFace)) {
+    const Transition& transition = exact.transitions.across(halfFace);
+    next.start = transition(segment.start, exact.unit);
+    next.end = transition(segment.end, exact.unit);
+  }
+  return next;
+}
+
+/// All tets that the segment can come into, until one holds its end.
+std::optional<HalfDiagonals::End> HalfDiagonals::followExactly(const Segment& segment) {
+  segments_.assign(1, segment);
+  for (std::size_t head = 0; head < segments_.size(); ++head) {
+    const Segment here = segments_[head];
+    const LatticeTet& tet = map_.exact.corners[here.tet];
+    const CornerMask simplex = simplexOf(tet, here.end);
+    if (simplex != kNoSimplex) return endOf(here, simplex);
+    for (int face = 0; face < 4; ++face) {
+      if (!crossesFirst(here, tet, face)) continue;
+      const std::optional<Segment> next = across(here, face);
+      if (next && std::none_of(segments_.begin(), segments_.end(),
+                               [&](const Segment& known) { return known.tet == next->tet; })) {
+        segments_.push_back(*next);
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// Whether the segment goes from the inner side of a face, or from its plane, to the outer side,
+/// and meets the closed triangle in one point.
+bool HalfDiagonals::crossesFirst(const Segment& segment, const LatticeTet& tet, int face) {
+  const auto f = static_cast<std::size_t>(face);
+  if (sideOfFace(tet, f, segment.end) >= 0 || sideOfFace(tet, f, segment.start) < 0) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const LatticePoint& p = tet[static_cast<std::size_t>(kFaceCorners[f][i])];
+    const LatticePoint& q = tet[static_cast<std::size_t>(kFaceCorners[f][(i + 1) % 3])];
+    if (orientation(segment.start, segment.end, p, q) > 0) return false;
+  }
+  return true;
+}
+
+HalfDiagonals::End HalfDiagonals::endOf(const Segment& segment, CornerMask simplex) const noexcept {
+  End end{{segment.tet, {}}, simplex};
+  for (std::size_t k = 0; k < 3; ++k) {
+    end.place.z[k] = static_cast<std::int32_t>(segment.end[k] / map_.exact.unit);
+  }
+  return end;
+}
+
+}  // namespace hexhex

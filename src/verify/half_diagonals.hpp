@@ -1,0 +1,73 @@
+// Follows half diagonals, from the centre of a cell straight to its corners, to tell which lattice
+// points the corners are. Verification has a way of its own (the engines follow them in
+// sweep/cell_tracer), so that it shares no decision with what it verifies.
+//
+// Inside the open unit cube of a cell the map is one to one. So whichever triangles a path crosses,
+// it comes to the same lattice point, if each of them has a point inside of the cube. Here that is
+// a point of the segment itself, which may well be on an edge of the triangle: no segment is
+// tilted, and where there are several triangles to cross, any of them will do.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include <igm/prepare.hpp>
+
+namespace hexhex {
+
+/// A lattice point of a closed tet, in the tet's chart.
+struct LatticePlace {
+  Index tet = kNone;
+  GridPoint z{};
+};
+
+/// All are written before they are read.
+template <>
+inline constexpr bool kLeftUninitialized<LatticePlace> = true;
+
+/// Whether two places are the same point of the map.
+/// @param simplex  of the tet of `a`, the one that has the point in its interior
+[[nodiscard]] bool areSamePoint(const PreparedMap& map, const LatticePlace& a, CornerMask simplex,
+                                const LatticePlace& b);
+
+/// One per thread.
+class HalfDiagonals {
+ public:
+  explicit HalfDiagonals(const PreparedMap& map) noexcept : map_(map), half_(map.exact.unit / 2) {}
+
+  /// Whether a half diagonal ends at a lattice point.
+  /// @param tet     contains the centre of the cell
+  /// @param cell    its smallest corner in the chart of the tet
+  /// @param offset  of the corner from it, each 0 or 1
+  /// @param place   a lattice point of its closed tet
+  [[nodiscard]] bool endsAt(Index tet, const GridPoint& cell, const GridPoint& offset,
+                            const LatticePlace& place);
+
+ private:
+  /// A segment as a tet sees it, in lattice units.
+  struct Segment {
+    Index tet;
+    LatticePoint start;
+    LatticePoint end;
+  };
+  struct End {
+    LatticePlace place;
+    CornerMask simplex;
+  };
+
+  /// What floating point proves about a tet on the way.
+  enum class Step : std::uint8_t { EndsInside, Leaves, IsUncertain };
+  [[nodiscard]] Step look(const Segment& segment, int& exit) const noexcept;
+  [[nodiscard]] bool isAtEnd(const Segment& segment, const GridPoint& z) const noexcept;
+  [[nodiscard]] static bool crossesFirst(const Segment& segment, const LatticeTet& tet, int face);
+  [[nodiscard]] std::optional<Segment> across(const Segment& segment, int face) const noexcept;
+  [[nodiscard]] std::optional<End> followExactly(const Segment& segment);
+  [[nodiscard]] End endOf(const Segment& segment, CornerMask simplex) const noexcept;
+
+  const PreparedMap& map_;
+  std::int64_t half_;              ///< of a grid unit, in lattice units
+  std::vector<Segment> segments_;  ///< working memory
+};
+
+}  // namespace hexhex

@@ -1,0 +1,170 @@
+// The mesh of a map is compared with the map itself if it is in canonical order (proof.hpp), and
+// otherwise with another one that is, and that was proven to be right (match.hpp).
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include <adjacency/hex_topology.hpp>
+#include <verify/match.hpp>
+#include <verify/mesh_sums.hpp>
+#include <verify/proof.hpp>
+
+#include <hexhex/error.hpp>
+#include <hexhex/extract.hpp>
+#include <hexhex/verify.hpp>
+
+#include <base/parallel.hpp>
+#include <extract/steps.hpp>
+#include <igm/measures.hpp>
+
+namespace hexhex {
+namespace {
+
+/// "FlippedTet at tet 7, and 2 more kinds of defects"
+std::string describe(const std::vector<Defect>& defects) {
+  std::string text = "no: " + std::string(name(defects.front().code));
+  const auto& worst = defects.front().worst;
+  const std::string place = worst.empty() ? "" : toString(worst.front().place);
+  if (!place.empty()) text += " at " + place;
+  const std::size_t more = defects.size() - 1;
+  if (more > 0) text += ", and " + std::to_string(more) + " more kinds of defects";
+  return text;
+}
+
+/// Adds "indices_in_range"; returns whether it passed.
+bool compareIndices(const HexMesh& mesh, Stage& stage, Comparisons& comparisons) {
+  const std::size_t bad = firstCellOutOfRange(mesh, stage);
+  const bool inRange = bad == mesh.cells.size();
+  comparisons.add("indices_in_range", "yes", inRange ? "yes" : "no (first: " + cellName(bad) + ")",
+                  inRange);
+  return inRange;
+}
+
+/// How far a vertex may be from its place: digits behind those that coordinates have are unknown.
+double toleranceOf(const HexMesh& mesh, const Array<Vec3>& right, int digits) {
+  if (digits == 0) {
+    const auto isFloat = [](double x) { return static_cast<double>(static_cast<float>(x)) == x; };
+    const auto areFloats = [&](const Vec3& p) {
+      return isFloat(p[0]) && isFloat(p[1]) && isFloat(p[2]);
+    };
+    digits = std::all_of(mesh.points.begin(), mesh.points.end(), areFloats) ? 7 : 17;
+  }
+  double largest = 0;
+  for (const Vec3& p : right) {
+    for (const double x : p) largest = std::max(largest, std::abs(x));
+  }
+  // Positions are computed with an error of a few roundings; below 2^-1022, numbers lose digits.
+  return largest * std::max(0x1p-46, 0.5 * std::pow(10.0, 1 - digits)) + 0x1p-1060;
+}
+
+void compareMeshes(const HexMesh& right, const HexMesh& mesh, int digits, Stage& stage,
+                   Comparisons& comparisons) {
+  const Mismatch mismatch =
+      matchMeshes(right, mesh, toleranceOf(mesh, right.points, digits), stage);
+  const auto addVertices = [&](const char* name, const Odd& odd) {
+    comparisons.addNone(name, odd.count, vertexName(odd.first));
+  };
+  const auto addCells = [&](const char* name, const Odd& odd, const char* which = "") {
+    comparisons.addNone(name, odd.count, which + cellName(odd.first));
+  };
+  addVertices("vertices_off_lattice", mismatch.strangeVertices);
+  addVertices("glued_vertices", mismatch.gluedVertices);
+  addVertices("split_vertices", mismatch.splitVertices);
+  addVertices("unused_vertices", mismatch.unusedVertices);
+  addCells("wrong_cells", mismatch.strangeCells);
+  addCells("missing_cells", mismatch.missingCells, "in canonical order, ");
+}
+
+/// A map, ready to be compared with meshes.
+class Verification {
+ public:
+  Verification(PreparedMap& map, const VerifyOptions& options, Context& context, Stage& stage)
+      : map_(map), options_(options), context_(context), stage_(stage) {
+    addStars(map.topology, stage);
+    expected_ = computeExpectation(map, countEdges(map.topology, stage), options.scale);
+    scaleMap(map.exact, options.scale, stage);
+  }
+
+  void compare(const HexMesh& mesh, Comparisons& comparisons) {
+    if (!compareIndices(mesh, stage_, comparisons)) return;
+    compareCells(mesh, comparisons);
+    if (options_.countElements) compareSums(expected_, mesh, stage_, comparisons);
+  }
+
+ private:
+  void compareCells(const HexMesh& mesh, Comparisons& comparisons) {
+    const std::uint64_t vertices = expectedElements(expected_).vertices;
+    comparisons.addEqual<std::uint64_t>("cells", expected_.cells, mesh.cells.size());
+    comparisons.addEqual<std::uint64_t>("vertices", vertices, mesh.points.size());
+    if (comparisons.passed()) {
+      Proof proof;
+      prove(map_, expected_, mesh, stage_, proof);
+      if (proof.passed()) {
+        addNothingWrong(comparisons);
+        return;
+      }
+    }
+    // Beside a mesh of quite another size, no vertex or cell is worth a name.
+    if (mesh.cells.size() / 2 > expected_.cells || expected_.cells / 2 > mesh.cells.size()) return;
+    compareWithRightOne(mesh, comparisons);
+  }
+
+  static void addNothingWrong(Comparisons& comparisons) {
+    for (const char* name : {"vertices_off_lattice", "glued_vertices", "split_vertices",
+                             "unused_vertices", "wrong_cells", "missing_cells"}) {
+      comparisons.addNone(name, 0, "");
+    }
+  }
+
+  void compareWithRightOne(const HexMesh& mesh, Comparisons& comparisons) {
+    ExtractOptions options;
+    options.scale = options_.scale;
+    options.tolerance = options_.tolerance;
+    ExtractStatistics statistics;
+    const HexMesh right = runEngine(map_, expected_.cells, options, context_, statistics);
+    Proof proof;
+    prove(map_, expected_, right, stage_, proof);
+    if (!proof.passed()) {
+      comparisons.add("extraction", "right", "wrong: please report this with the map", false);
+    }
+    compareMeshes(right, mesh, options_.digits, stage_, comparisons);
+  }
+
+  PreparedMap& map_;
+  const VerifyOptions& options_;
+  Context& context_;
+  Stage& stage_;
+  Expectation expected_;
+};
+
+}  // namespace
+
+VerifyReport verify(const TetMapView& map, const HexMesh& mesh, const VerifyOptions& options,
+                    Context& context) {
+  if (options.digits < 0 || options.digits > 17) {
+    throw Error(ErrorCode::InvalidArgument, "The number of digits is " +
+                                                std::to_string(options.digits) +
+                                                ". Choose 1 to 17, or 0 to have it found out.");
+  }
+  Comparisons comparisons;
+  withThreads(context.threads(), [&] {
+    DefectCollector defects;
+    PreparedMap prepared =
+        prepareMap(map, options.tolerance, options.scale, context, defects, ChartChoice::Unfolded);
+    const bool valid = defects.empty();
+    comparisons.add("map_valid", "yes", valid ? "yes" : describe(defects.defects()), valid);
+    if (!valid) return;
+    Stage stage(context, "verification");
+    Verification verification(prepared, options, context, stage);
+    verification.compare(mesh, comparisons);
+  });
+  return comparisons.take();
+}
+
+VerifyReport verify(const TetMapView& map, const HexMesh& mesh, const VerifyOptions& options) {
+  Context context;
+  return verify(map, mesh, options, context);
+}
+
+}  // namespace hexhex
