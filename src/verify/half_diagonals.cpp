@@ -107,9 +107,7 @@ bool HalfDiagonals::endsAt(Index tet, const GridPoint& cell, const GridPoint& of
       const End end = endOf(segment, kWholeTet);
       return areSamePoint(map_, end.place, end.simplex, place);
     }
-    const std::optional<Segment> next = across(segment, exit);
-    if (!next) return false;
-    segment = *next;
+    if (!cross(segment, exit)) return false;
     // A lattice point of the tet is one that the segment comes to within the tet.
     if (segment.tet == place.tet && isAtEnd(segment, place.z)) return true;
   }
@@ -178,19 +176,18 @@ HalfDiagonals::Step HalfDiagonals::look(const Segment& segment, int& exit) const
   return beyond > 0 ? Step::EndsInside : Step::Leaves;
 }
 
-/// The same segment in the neighbour across a face, if there is one.
-std::optional<HalfDiagonals::Segment> HalfDiagonals::across(const Segment& segment,
-                                                            int face) const noexcept {
+/// Goes on into the neighbour across a face, if there is one.
+bool HalfDiagonals::cross(Segment& segment, int face) const noexcept {
   const HalfFace halfFace = halfFaceOf(segment.tet, face);
-  if (map_.topology.isBoundary(halfFace)) return std::nullopt;
-  Segment next{tetOf(map_.topology.mate[halfFace]), segment.start, segment.end};
+  if (map_.topology.isBoundary(halfFace)) return false;
+  segment.tet = tetOf(map_.topology.mate[halfFace]);
   const ExactMap& exact = map_.exact;
   if (exact.transitions.isNonTrivial(halfFace)) {
     const Transition& transition = exact.transitions.across(halfFace);
-    next.start = transition(segment.start, exact.unit);
-    next.end = transition(segment.end, exact.unit);
+    segment.start = transition(segment.start, exact.unit);
+    segment.end = transition(segment.end, exact.unit);
   }
-  return next;
+  return true;
 }
 
 /// All tets that the segment can come into, until one holds its end.
@@ -203,10 +200,11 @@ std::optional<HalfDiagonals::End> HalfDiagonals::followExactly(const Segment& se
     if (simplex != kNoSimplex) return endOf(here, simplex);
     for (int face = 0; face < 4; ++face) {
       if (!crossesFirst(here, tet, face)) continue;
-      const std::optional<Segment> next = across(here, face);
-      if (next && std::none_of(segments_.begin(), segments_.end(),
-                               [&](const Segment& known) { return known.tet == next->tet; })) {
-        segments_.push_back(*next);
+      Segment next = here;
+      if (cross(next, face) &&
+          std::none_of(segments_.begin(), segments_.end(),
+                       [&](const Segment& known) { return known.tet == next.tet; })) {
+        segments_.push_back(next);
       }
     }
   }

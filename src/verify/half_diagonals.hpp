@@ -61,7 +61,7 @@ class HalfDiagonals {
   [[nodiscard]] Step look(const Segment& segment, int& exit) const noexcept;
   [[nodiscard]] bool isAtEnd(const Segment& segment, const GridPoint& z) const noexcept;
   [[nodiscard]] static bool crossesFirst(const Segment& segment, const LatticeTet& tet, int face);
-  [[nodiscard]] std::optional<Segment> across(const Segment& segment, int face) const noexcept;
+  [[nodiscard]] bool cross(Segment& segment, int face) const noexcept;
   [[nodiscard]] std::optional<End> followExactly(const Segment& segment);
   [[nodiscard]] End endOf(const Segment& segment, CornerMask simplex) const noexcept;
 
