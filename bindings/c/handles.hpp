@@ -246,4 +246,8 @@ void give(HexMesh&& mesh, hexhex_mesh** out);
 void writeSurvey(const MeshSurvey& survey, hexhex_survey* out);
 void writeQuality(const QualitySummary& summary, hexhex_quality& out);
 
+/// What hexhex_mesh_certify() fills; null pointers are left out.
+void writeCertificate(const Certificate& certificate, std::uint8_t* validity,
+                      double* scaledJacobians, hexhex_certificate* out);
+
 }  // namespace hexhex::c

@@ -167,6 +167,18 @@ hexhex_status hexhex_lagrange_mesh_quality(const hexhex_lagrange_mesh* mesh,
   });
 }
 
+hexhex_status hexhex_lagrange_mesh_certify(const hexhex_lagrange_mesh* mesh,
+                                           hexhex_context* context, uint8_t* validity,
+                                           double* scaled_jacobians,
+                                           hexhex_certificate* certificate, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    ContextOrDefault used(context);
+    writeCertificate(hexhex::certify(Used(mesh, "mesh")->mesh, *used), validity, scaled_jacobians,
+                     certificate);
+  });
+}
+
 hexhex_status hexhex_lagrange_mesh_write(const hexhex_lagrange_mesh* mesh, const char* file,
                                          const hexhex_write_options* options,
                                          hexhex_context* context, hexhex_error* error) {

@@ -51,6 +51,31 @@ void writeQuality(const QualitySummary& summary, hexhex_quality& out) {
   writeStruct(result, out, "quality");
 }
 
+void writeCertificate(const Certificate& certificate, std::uint8_t* validity,
+                      double* scaledJacobians, hexhex_certificate* out) {
+  hexhex_certificate result = HEXHEX_CERTIFICATE_INIT;
+  result.positive = certificate.positive;
+  result.refuted = certificate.refuted;
+  result.undecided = certificate.undecided;
+  result.minimum = certificate.minimum;
+  for (const RefutedCell& bad : certificate.worst) {
+    hexhex_refuted_cell& cell = result.worst[result.worst_count++];
+    cell.cell = bad.cell;
+    std::copy(bad.place.begin(), bad.place.end(), cell.place);
+    std::copy(bad.position.begin(), bad.position.end(), cell.position);
+    cell.scaled_jacobian = bad.scaledJacobian;
+  }
+  if (out != nullptr) writeStruct(result, *out, "certificate");
+  if (validity != nullptr) {
+    std::transform(certificate.validity.begin(), certificate.validity.end(), validity,
+                   [](Validity each) { return static_cast<std::uint8_t>(each); });
+  }
+  if (scaledJacobians != nullptr) {
+    std::copy(certificate.scaledJacobians.begin(), certificate.scaledJacobians.end(),
+              scaledJacobians);
+  }
+}
+
 }  // namespace hexhex::c
 
 hexhex_status hexhex_mesh_copy(const hexhex_mesh_arrays* arrays, hexhex_mesh** mesh,
@@ -200,6 +225,17 @@ hexhex_status hexhex_mesh_quality(const hexhex_mesh* mesh, hexhex_context* conte
       std::copy(jacobians.begin(), jacobians.end(), scaled_jacobians);
     }
     if (quality != nullptr) writeQuality(hexhex::summarize(jacobians), *quality);
+  });
+}
+
+hexhex_status hexhex_mesh_certify(const hexhex_mesh* mesh, hexhex_context* context,
+                                  uint8_t* validity, double* scaled_jacobians,
+                                  hexhex_certificate* certificate, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    ContextOrDefault used(context);
+    writeCertificate(hexhex::certify(Used(mesh, "mesh")->mesh(), *used), validity, scaled_jacobians,
+                     certificate);
   });
 }
 

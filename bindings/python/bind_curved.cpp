@@ -117,12 +117,10 @@ void bindCurved(nb::module_& module) {
   module.def("extract_lagrange", &extractOrder, "map"_a, "order"_a, "options"_a, "threads"_a,
              "progress"_a.none());
   module.def(
-      "scaled_jacobians",
+      "certify",
       [](const LagrangeMesh& mesh, int threads, const Progress& progress) {
-        auto values = run(threads, progress,
-                          [&](Context& context) { return scaledJacobians(mesh, context); });
-        const std::size_t n = values.size();
-        return ownedArray<double, 1>(std::move(values), {n});
+        return asTuple(
+            run(threads, progress, [&](Context& context) { return certify(mesh, context); }));
       },
       "mesh"_a, "threads"_a, "progress"_a.none());
   module.def(

@@ -73,6 +73,23 @@ nb::tuple structureOf(const HexMesh& mesh, int threads, const Progress& progress
 
 }  // namespace
 
+nb::tuple asTuple(Certificate&& certificate) {
+  const QualitySummary& s = certificate.quality;
+  nb::list histogram;
+  for (const std::uint64_t count : s.histogram) histogram.append(count);
+  const auto point = [](const Vec3& p) { return nb::make_tuple(p[0], p[1], p[2]); };
+  nb::list worst;
+  for (const RefutedCell& bad : certificate.worst) {
+    worst.append(
+        nb::make_tuple(bad.cell, point(bad.place), point(bad.position), bad.scaledJacobian));
+  }
+  const std::size_t n = certificate.validity.size();
+  return nb::make_tuple(
+      ownedArray<double, 1>(std::move(certificate.scaledJacobians), {n}), s.minimum, s.mean,
+      s.notPositive, histogram, ownedArray<std::uint8_t, 1>(std::move(certificate.validity), {n}),
+      certificate.positive, certificate.refuted, certificate.undecided, certificate.minimum, worst);
+}
+
 void bindMesh(nb::module_& module) {
   nb::class_<HexMesh> binding(module, "Mesh", "A mesh in the library's own arrays.");
   binding
@@ -98,12 +115,10 @@ void bindMesh(nb::module_& module) {
   defineArrays(binding);
 
   module.def(
-      "scaled_jacobians",
+      "certify",
       [](const HexMesh& mesh, int threads, const Progress& progress) {
-        auto values = run(threads, progress,
-                          [&](Context& context) { return scaledJacobians(mesh, context); });
-        const std::size_t n = values.size();
-        return ownedArray<double, 1>(std::move(values), {n});
+        return asTuple(
+            run(threads, progress, [&](Context& context) { return certify(mesh, context); }));
       },
       "mesh"_a, "threads"_a, "progress"_a.none());
   module.def("structure", &structureOf, "mesh"_a, "threads"_a, "progress"_a.none());
@@ -132,16 +147,6 @@ void bindMesh(nb::module_& module) {
         }));
       },
       "file"_a, "format"_a, "threads"_a, "progress"_a.none());
-  module.def(
-      "summarize",
-      [](const In1<double>& values) {
-        const auto given = elements<double>(values);
-        const QualitySummary s = summarize(Array<double>(given.begin(), given.end()));
-        nb::list histogram;
-        for (const std::uint64_t count : s.histogram) histogram.append(count);
-        return nb::make_tuple(s.minimum, s.mean, s.notPositive, histogram);
-      },
-      "values"_a.noconvert());
   module.def(
       "scaled_jacobian",
       [](const In<double, 3>& corners) {

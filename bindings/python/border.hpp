@@ -16,6 +16,7 @@
 #include <hexhex/check.hpp>
 #include <hexhex/context.hpp>
 #include <hexhex/extract.hpp>
+#include <hexhex/quality.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex::python {
@@ -121,6 +122,9 @@ struct Options {
 
 /// (statistics, report of the repair or None, repaired map or None)
 [[nodiscard]] nb::tuple asTuple(const Notes& notes);
+
+/// The fields of the class Quality, in their order.
+[[nodiscard]] nb::tuple asTuple(Certificate&& certificate);
 [[nodiscard]] Dict asDict(const RepairReport& report);
 [[nodiscard]] Dict asDict(const Expectation& expected);
 [[nodiscard]] nb::list asList(const std::vector<Defect>& defects);

@@ -130,9 +130,22 @@ nlohmann::json tablesAsJson(const std::vector<PackedTable>& tables) {
   return result;
 }
 
-/// @param quality  scaled Jacobian of each cell
-PageContent makeContent(const Subject& subject, const Array<double>& quality,
+nlohmann::json validityAsJson(const Certificate& certificate) {
+  nlohmann::json worst = nlohmann::json::array();
+  for (const RefutedCell& bad : certificate.worst) {
+    worst.push_back(
+        {{"cell", bad.cell}, {"place", bad.place}, {"scaledJacobian", bad.scaledJacobian}});
+  }
+  return {{"refuted", certificate.refuted},
+          {"undecided", certificate.undecided},
+          {"minimum", certificate.minimum},
+          {"worst", std::move(worst)}};
+}
+
+PageContent makeContent(const Subject& subject, const Certificate& certificate,
                         const ViewOptions& options, Context& context) {
+  Array<double> quality(options.scaledJacobians.begin(), options.scaledJacobians.end());
+  if (quality.empty()) quality = certificate.scaledJacobians;
   const HexMesh& mesh = subject.mesh;
   const Quantization quantization = quantizationOf(mesh, subject.nodes);
   const MeshStructure structure = findStructure(mesh, context);
@@ -159,6 +172,7 @@ PageContent makeContent(const Subject& subject, const Array<double>& quality,
        {{"minimum", summary.minimum},
         {"mean", summary.mean},
         {"notPositive", summary.notPositive}}},
+      {"validity", validityAsJson(certificate)},
       {"topology",
        {{"boundaryQuads", structure.boundaryQuads},
         {"boundaryComponents", structure.boundaryComponents},
@@ -172,26 +186,17 @@ PageContent makeContent(const Subject& subject, const Array<double>& quality,
   return content;
 }
 
-/// The quality that the caller gave, or what `compute` returns.
-template <class Compute>
-Array<double> qualityOf(const ViewOptions& options, const Compute& compute) {
-  if (options.scaledJacobians.empty()) return compute();
-  return {options.scaledJacobians.begin(), options.scaledJacobians.end()};
-}
-
 PageContent makeContent(const HexMesh& mesh, const ViewOptions& options, Context& context) {
   const SurfaceNodes straight;
   requireShowable({mesh, straight}, options);
-  const auto quality = qualityOf(options, [&] { return scaledJacobians(mesh, context); });
-  return makeContent({mesh, straight}, quality, options, context);
+  return makeContent({mesh, straight}, certify(mesh, context), options, context);
 }
 
 PageContent makeContent(const LagrangeMesh& mesh, const ViewOptions& options, Context& context) {
   const SurfaceNodes nodes = surfaceNodesOf(mesh);
   const HexMesh corners = straightMesh(mesh);
   requireShowable({corners, nodes}, options);
-  const auto quality = qualityOf(options, [&] { return scaledJacobians(mesh, context); });
-  return makeContent({corners, nodes}, quality, options, context);
+  return makeContent({corners, nodes}, certify(mesh, context), options, context);
 }
 
 std::string replaced(std::string_view text, char character, std::string_view by) {

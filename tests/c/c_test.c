@@ -152,7 +152,33 @@ static void test_everything_once(const char* folder) {
   double minimum = 1;
   for (size_t c = 0; c < m.cell_count; ++c) minimum = fmin(minimum, jacobians[c]);
   CHECK(minimum == quality.minimum && quality.not_positive == 0);
+
+  uint8_t* validity = malloc(m.cell_count);
+  hexhex_certificate certificate = HEXHEX_CERTIFICATE_INIT;
+  CHECK_OK(hexhex_mesh_certify(mesh, NULL, validity, jacobians, &certificate, &error));
+  CHECK(certificate.positive == m.cell_count && certificate.refuted == 0);
+  CHECK(certificate.undecided == 0 && certificate.worst_count == 0);
+  CHECK(certificate.minimum > 0 && certificate.minimum <= minimum);
+  for (size_t c = 0; c < m.cell_count; ++c) CHECK(validity[c] == HEXHEX_POSITIVE);
+  CHECK_OK(hexhex_mesh_certify(mesh, NULL, NULL, NULL, NULL, &error));
+  free(validity);
   free(jacobians);
+
+  const double points[24] = {0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1,
+                             0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  const uint32_t corners[8] = {0, 1, 2, 3, 4, 5, 6, 7}; /* upside down */
+  hexhex_mesh_arrays inverted = HEXHEX_MESH_ARRAYS_INIT;
+  inverted.point_count = 8;
+  inverted.points = points;
+  inverted.cell_count = 1;
+  inverted.cells = corners;
+  hexhex_mesh* bad = NULL;
+  CHECK_OK(hexhex_mesh_copy(&inverted, &bad, &error));
+  uint8_t verdict = HEXHEX_POSITIVE;
+  CHECK_OK(hexhex_mesh_certify(bad, NULL, &verdict, NULL, &certificate, &error));
+  CHECK(verdict == HEXHEX_REFUTED && certificate.refuted == 1 && certificate.worst_count == 1);
+  CHECK(certificate.worst[0].cell == 0 && certificate.worst[0].scaled_jacobian == -1);
+  hexhex_mesh_destroy(bad);
 
   hexhex_survey survey = HEXHEX_SURVEY_INIT;
   hexhex_survey other = HEXHEX_SURVEY_INIT;
@@ -591,6 +617,10 @@ static void test_curved(const char* folder) {
   hexhex_quality quality = HEXHEX_QUALITY_INIT;
   CHECK_OK(hexhex_lagrange_mesh_quality(curved, NULL, jacobians, &quality, &error));
   CHECK(quality.minimum <= jacobians[0]);
+  hexhex_certificate certificate = HEXHEX_CERTIFICATE_INIT;
+  CHECK_OK(hexhex_lagrange_mesh_certify(curved, NULL, NULL, NULL, &certificate, &error));
+  CHECK(certificate.positive + certificate.refuted + certificate.undecided == nodes.cell_count);
+  CHECK(certificate.minimum <= quality.minimum);
   free(jacobians);
   snprintf(file, sizeof file, "%s/curved.vtu", folder);
   CHECK_OK(hexhex_lagrange_mesh_write(curved, file, NULL, NULL, &error));
@@ -798,8 +828,7 @@ static void test_numbers_that_are_none(void) {
     hexhex_extractor_destroy(extractor);
     CHECK(no_mesh == NULL && no_curved == NULL && no_pieces == NULL);
 
-    CHECK(hexhex_mesh_take(mesh, (hexhex_mesh_array)n, &buffer, &error) ==
-          HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_mesh_take(mesh, (hexhex_mesh_array)n, &buffer, &error) == HEXHEX_INVALID_ARGUMENT);
     CHECK(hexhex_lagrange_mesh_take(curved, (hexhex_mesh_array)n, &buffer, &error) ==
           HEXHEX_INVALID_ARGUMENT);
     CHECK(buffer == NULL);
@@ -843,8 +872,7 @@ static void test_answers(void) {
     CHECK(answer.euler_characteristic == structure.euler_characteristic);
     CHECK(answer.components == 1 && answer.boundary_components == structure.boundary_components);
     const uint64_t in_mesh[] = {hexhex_buffer_bytes(singular) / sizeof(hexhex_singular_edge), 0,
-                                m.feature_vertex_count, m.feature_edge_count,
-                                m.feature_quad_count};
+                                m.feature_vertex_count, m.feature_edge_count, m.feature_quad_count};
     uint64_t sums[5] = {0};
     for (int table = 0; table < 5; ++table) {
       size_t entries = 0;
@@ -853,8 +881,8 @@ static void test_answers(void) {
       for (size_t e = 0; e < entries; ++e) {
         int32_t key = -1;
         uint64_t count = 0;
-        CHECK_OK(hexhex_map_get_answer_entry(map, (hexhex_answer_table)table, e, &key, &count,
-                                             &error));
+        CHECK_OK(
+            hexhex_map_get_answer_entry(map, (hexhex_answer_table)table, e, &key, &count, &error));
         CHECK(key > last && count > 0);
         last = key;
         sums[table < 2 ? 0 : table] += count;
@@ -933,8 +961,7 @@ static void test_map_structure(void) {
   CHECK_OK(hexhex_check(map, 1e-2, 1, NULL, &report, &error));
   CHECK_OK(hexhex_check_get_summary(report, &summary, &error));
   CHECK(s.chart_jump_count == summary.chart_jumps);
-  CHECK(s.singular_edge_count ==
-        hexhex_check_edges_of_valence(report, HEXHEX_INNER_TET_EDGES, 3));
+  CHECK(s.singular_edge_count == hexhex_check_edges_of_valence(report, HEXHEX_INNER_TET_EDGES, 3));
   hexhex_check_report_destroy(report);
   for (size_t e = 0; e < s.singular_edge_count; ++e) {
     const hexhex_singular_tet_edge edge = s.singular_edges[e];
@@ -1034,8 +1061,7 @@ static void test_lagrange(const char* folder) {
     hexhex_mesh* straight = NULL;
     CHECK_OK(hexhex_lagrange_mesh_copy(&b, &other, &error));
     CHECK(hexhex_lagrange_mesh_straight(other, &straight, &error) == HEXHEX_INVALID_ARGUMENT);
-    CHECK(hexhex_lagrange_mesh_quality(other, NULL, NULL, NULL, &error) ==
-          HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_lagrange_mesh_quality(other, NULL, NULL, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
     CHECK(hexhex_lagrange_mesh_write(other, file, NULL, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
     hexhex_lagrange_mesh_destroy(other);
   }
@@ -1063,8 +1089,8 @@ static void test_lagrange(const char* folder) {
     CHECK(memcmp(a.regions, b.regions, 4 * a.cell_count) == 0);
     hexhex_lagrange_mesh_destroy(other);
     options.scale = 2;
-    CHECK_OK(hexhex_extractor_extract_piecewise(extractor, 0, &options, NULL, &pieces, NULL,
-                                                &error));
+    CHECK_OK(
+        hexhex_extractor_extract_piecewise(extractor, 0, &options, NULL, &pieces, NULL, &error));
     CHECK_OK(hexhex_piecewise_mesh_get_arcs(pieces, &arcs, &error));
     CHECK(arcs.arc_count == 3 * 16 * 17 * 17);
     hexhex_piecewise_mesh_destroy(pieces);
@@ -1252,11 +1278,12 @@ static hexhex_status work_on(const hexhex_map* map, const hexhex_extract_options
   if (!status) status = hexhex_extract_to(&sink, map, options, context, NULL, error);
   if (!status) status = hexhex_extractor_create(map, 1e-2, 8, context, &extractor, error);
   if (!status && curved) {
-    status = hexhex_extractor_extract_piecewise(extractor, 1, options, context, &pieces, NULL, error);
+    status =
+        hexhex_extractor_extract_piecewise(extractor, 1, options, context, &pieces, NULL, error);
   }
   if (!status && curved) {
-    status = hexhex_extractor_extract_lagrange(extractor, 2, options, context, &lagrange, NULL,
-                                               error);
+    status =
+        hexhex_extractor_extract_lagrange(extractor, 2, options, context, &lagrange, NULL, error);
   }
   if (!status && curved) {
     status = hexhex_lagrange_mesh_quality(lagrange, context, NULL, &quality, error);

@@ -121,6 +121,7 @@ static hexhex_mesh_arrays out_mesh_arrays = HEXHEX_MESH_ARRAYS_INIT;
 static hexhex_patch_arrays out_patch_arrays = HEXHEX_PATCH_ARRAYS_INIT;
 static hexhex_place out_place;
 static hexhex_quality out_quality = HEXHEX_QUALITY_INIT;
+static hexhex_certificate out_certificate = HEXHEX_CERTIFICATE_INIT;
 static hexhex_repair_summary out_repair_summary = HEXHEX_REPAIR_SUMMARY_INIT;
 static hexhex_repaired_region out_repaired_region = HEXHEX_REPAIRED_REGION_INIT;
 static hexhex_sample_answer out_sample_answer = HEXHEX_SAMPLE_ANSWER_INIT;
@@ -365,6 +366,7 @@ static void call_all(const handles* h, enum kind kind, const char* file) {
   }
   if (concerns(k_mesh | k_context)) {
     REFUSED(hexhex_mesh_quality(h->mesh, h->context, NULL, &out_quality, &error));
+    REFUSED(hexhex_mesh_certify(h->mesh, h->context, NULL, NULL, &out_certificate, &error));
   }
   if (concerns(k_map | k_context)) {
     REFUSED(
@@ -432,6 +434,8 @@ static void call_all(const handles* h, enum kind kind, const char* file) {
   }
   if (concerns(k_lagrange_mesh | k_context)) {
     REFUSED(hexhex_lagrange_mesh_quality(h->lagrange_mesh, h->context, NULL, &out_quality, &error));
+    REFUSED(hexhex_lagrange_mesh_certify(h->lagrange_mesh, h->context, NULL, NULL, &out_certificate,
+                                         &error));
   }
   if (concerns(k_lagrange_mesh | k_context)) {
     REFUSED(hexhex_lagrange_mesh_write(h->lagrange_mesh, file, NULL, h->context, &error));
@@ -594,6 +598,8 @@ static void test_sizes_of_structs(const char* file) {
           hexhex_verify_get_item(h.verify_report, 0, &s, &error));
     WRONG(quality, HEXHEX_QUALITY_INIT, hexhex_mesh_quality(h.mesh, NULL, NULL, &s, &error));
     WRONG(quality, HEXHEX_QUALITY_INIT, hexhex_summarize_quality(NULL, 0, &s, &error));
+    WRONG(certificate, HEXHEX_CERTIFICATE_INIT,
+          hexhex_mesh_certify(h.mesh, NULL, NULL, NULL, &s, &error));
     WRONG(arc_arrays, HEXHEX_ARC_ARRAYS_INIT,
           hexhex_piecewise_mesh_get_arcs(h.piecewise_mesh, &s, &error));
     WRONG(patch_arrays, HEXHEX_PATCH_ARRAYS_INIT,

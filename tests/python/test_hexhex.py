@@ -267,6 +267,7 @@ def test_curved(sphere, tmp_path):
     del mesh  # arrays keep what they show alive
     assert patches.points.sum() == total and address(curved.nodes) == address_of_nodes
     assert hexhex.quality(curved).scaled_jacobians.shape == (448,)
+    assert hexhex.quality(curved).validity.shape == (448,)
     for what, name in ((curved, "c.vtu"), (curved, "c.msh"), (arcs, "a.vtp"), (patches, "p.ovmb")):
         hexhex.write(what, tmp_path / name)
         assert (tmp_path / name).stat().st_size > 1000
@@ -507,6 +508,12 @@ def test_small_things(sphere, tmp_path):
     quality = hexhex.quality(mesh)
     assert sum(quality.histogram) == 448 and quality.minimum == quality.scaled_jacobians.min()
     assert abs(quality.mean - quality.scaled_jacobians.mean()) < 1e-12
+    assert quality.all_positive and quality.positive == 448 and quality.worst == []
+    assert quality.validity.dtype == np.uint8 and not quality.validity.any()
+    assert 0 < quality.minimum_everywhere <= quality.minimum
+    mirrored = hexhex.quality(hexhex.Mesh(-mesh.points, mesh.cells))
+    assert not mirrored.all_positive and (mirrored.validity == 1).all()
+    assert len(mirrored.worst) == 10 and mirrored.worst[0].scaled_jacobian < mirrored.minimum + 1e-12 < 0
     one = hexhex.scaled_jacobian(mesh.points[mesh.cells[7]])
     assert one == quality.scaled_jacobians[7]
     for corners in (mesh.points[:7], mesh.points[:8, :2], 3):

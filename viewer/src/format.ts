@@ -35,6 +35,13 @@ export interface MeshInfo {
   /** Length of one unit of the quantized coordinates. */
   step: number;
   quality: { minimum: number; mean: number; notPositive: number };
+  /** Whether cells are positive everywhere; the worst that are not. */
+  validity: {
+    refuted: number;
+    undecided: number;
+    minimum: number;
+    worst: { cell: number; place: [number, number, number]; scaledJacobian: number }[];
+  };
   topology: {
     boundaryQuads: number;
     boundaryComponents: number;

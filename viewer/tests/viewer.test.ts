@@ -96,6 +96,8 @@ test("finds cells that are not positive", async ({ page }) => {
   await press(page, "w");
   await expect(page.locator("#picked-cell")).toHaveText("21");
   expect(Number(await page.locator("#picked-quality").textContent())).toBeLessThanOrEqual(0);
+  await expect(page.locator("#stat-validity")).toContainText("not positive");
+  await expect(page.locator("#picked-refuted")).toContainText("-");
   await page.locator("#quality-to").fill("0");
   await page.locator("#quality-to").press("Enter");
   await settle(page);

@@ -273,9 +273,9 @@ HEXHEX_API hexhex_status hexhex_map_from_pair(const hexhex_map_arrays* tets,
                                               hexhex_error* error);
 
 typedef enum hexhex_chart_style HEXHEX_AS_INT {
-  HEXHEX_CHARTS_ALIGNED = 0, /**< as many identity transitions as possible */
-  HEXHEX_CHARTS_BLOCKS = 1,  /**< a random chart per block */
-  HEXHEX_CHARTS_RANDOM = 2,  /**< a random chart per tet */
+  HEXHEX_CHARTS_ALIGNED = 0,  /**< as many identity transitions as possible */
+  HEXHEX_CHARTS_BLOCKS = 1,   /**< a random chart per block */
+  HEXHEX_CHARTS_RANDOM = 2,   /**< a random chart per tet */
   HEXHEX_CHARTS_SCATTERED = 3 /**< a random chart for one tet in eight, aligned for the others */
 } hexhex_chart_style;
 
@@ -1009,6 +1009,47 @@ HEXHEX_API hexhex_status hexhex_mesh_quality(const hexhex_mesh* mesh, hexhex_con
 HEXHEX_API hexhex_status hexhex_summarize_quality(const double* values, size_t count,
                                                   hexhex_quality* quality, hexhex_error* error);
 
+/** Whether the determinant of a cell's Jacobian matrix is positive everywhere: see Validity in
+ * <hexhex/quality.hpp>. */
+typedef enum hexhex_validity HEXHEX_AS_INT {
+  HEXHEX_POSITIVE = 0,
+  HEXHEX_REFUTED = 1,  /**< negative or zero somewhere, or not finite */
+  HEXHEX_UNDECIDED = 2 /**< closer to zero than a search of bounded length tells */
+} hexhex_validity;
+
+/** A cell that is not positive, and where. */
+typedef struct hexhex_refuted_cell {
+  uint64_t cell;
+  double place[3]; /**< in the cell: u, v, w in [0, 1], along the edges from corner 0 to 1, 3, 4 */
+  double position[3];     /**< in space */
+  double scaled_jacobian; /**< there; not positive */
+} hexhex_refuted_cell;
+
+/** What is proven of a mesh: see Certificate in <hexhex/quality.hpp>. */
+typedef struct hexhex_certificate {
+  size_t size;
+  uint64_t positive; /**< numbers of cells */
+  uint64_t refuted;
+  uint64_t undecided;
+  double minimum;     /**< the scaled Jacobian is nowhere less, inside of cells included */
+  size_t worst_count; /**< at most 10 */
+  hexhex_refuted_cell worst[10]; /**< the most negative first */
+} hexhex_certificate;
+#define HEXHEX_CERTIFICATE_INIT                  \
+  {                                              \
+    sizeof(hexhex_certificate), 0, 0, 0, 0, 0, { \
+      { 0, {0, 0, 0}, {0, 0, 0}, 0 }             \
+    }                                            \
+  }
+
+/** Whether cells are positive everywhere; one pass gives their quality, too.
+ *  @param[out] validity          a hexhex_validity per cell, or NULL
+ *  @param[out] scaled_jacobians  one per cell, as of hexhex_mesh_quality(), or NULL
+ *  @param[out] certificate       made with HEXHEX_CERTIFICATE_INIT, or NULL */
+HEXHEX_API hexhex_status hexhex_mesh_certify(const hexhex_mesh* mesh, hexhex_context* context,
+                                             uint8_t* validity, double* scaled_jacobians,
+                                             hexhex_certificate* certificate, hexhex_error* error);
+
 /* ---- Curved meshes --------------------------------------------------------------------------- */
 
 /** A mesh with the exact shapes of its edges (arcs) and faces (patches), piece by piece: see
@@ -1188,6 +1229,13 @@ HEXHEX_API hexhex_status hexhex_lagrange_mesh_quality(const hexhex_lagrange_mesh
                                                       hexhex_context* context,
                                                       double* scaled_jacobians,
                                                       hexhex_quality* quality, hexhex_error* error);
+
+/** As hexhex_mesh_certify(), of curved cells. */
+HEXHEX_API hexhex_status hexhex_lagrange_mesh_certify(const hexhex_lagrange_mesh* mesh,
+                                                      hexhex_context* context, uint8_t* validity,
+                                                      double* scaled_jacobians,
+                                                      hexhex_certificate* certificate,
+                                                      hexhex_error* error);
 /** .vtu, .msh, .mesh (MFEM). */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_write(const hexhex_lagrange_mesh* mesh,
                                                     const char* file,

@@ -44,6 +44,7 @@ from ._types import (
     PartialMesh,
     Patches,
     Quality,
+    RefutedCell,
     RepairedRegion,
     RepairReport,
     SampleKind,
@@ -67,7 +68,7 @@ __all__ = [
     "Arcs", "ArgumentError", "CancelledError", "CheckReport", "Defect", "Extractor", "Features",
     "FileError", "FileFormat", "HexhexError", "Hole", "InternalError", "LagrangeMesh", "Map",
     "MapError", "MapStructure", "MemoryExhaustedError", "Mesh", "MeshSink", "MeshWriter",
-    "PartialMesh", "Patches", "Quality", "RepairReport", "RepairedRegion", "SampleKind", "Survey",
+    "PartialMesh", "Patches", "Quality", "RefutedCell", "RepairReport", "RepairedRegion", "SampleKind", "Survey",
     "SurveySink", "VerifyItem", "VerifyReport", "can_repair", "check", "defect_kinds", "extract",
     "extract_partial", "extract_to", "extract_to_file", "formats", "generate", "holds_curved",
     "map_from_pair", "map_structure", "quality", "read", "read_curved", "read_map", "read_mesh",
@@ -740,13 +741,13 @@ def formats() -> list[FileFormat]:
 def quality(mesh: Mesh | LagrangeMesh, *, threads: int | None = None,
             progress: Progress | None = None) -> Quality:
     """Scaled Jacobian of each cell: of straight ones as in the Verdict library, of curved ones
-    (``mesh.curved``) the smallest at nodes and Gauss points.
+    (``mesh.curved``) the smallest at nodes and Gauss points; and whether it is positive everywhere.
 
     >>> hexhex.quality(hexhex.extract(hexhex.generate("box"))).minimum
     1.0
     """
-    values = _hexhex.scaled_jacobians(mesh._handle, _threads(threads), progress)
-    return Quality(values, *_hexhex.summarize(values))
+    *values, worst = _hexhex.certify(mesh._handle, _threads(threads), progress)
+    return Quality(*values, [RefutedCell(*each) for each in worst])
 
 
 def scaled_jacobian(corners: npt.ArrayLike) -> float:

@@ -676,11 +676,33 @@ class VerifyReport:
 
 
 @dataclasses.dataclass(frozen=True)
+class RefutedCell:
+    """A cell that is not positive, and where it is least."""
+
+    cell: int
+    place: tuple[float, float, float]  #: in the cell: (u, v, w) in [0, 1]^3
+    position: tuple[float, float, float]  #: in space
+    scaled_jacobian: float  #: there; not positive
+
+
+@dataclasses.dataclass(frozen=True)
 class Quality:
-    """Scaled Jacobians of a mesh."""
+    """Scaled Jacobians of a mesh, and whether cells are valid: the determinant of the Jacobian
+    matrix is proven to be positive everywhere in the cell, not only at corners."""
 
     scaled_jacobians: Floats  #: one per cell in [-1, 1], 1 for a cube; float64 (m,)
     minimum: float  #: 0 for a mesh without cells
     mean: float
     not_positive: int  #: cells with scaled Jacobian <= 0
     histogram: list[int]  #: of [-1, 1] in steps of 0.1
+    validity: npt.NDArray[np.uint8]  #: 0 positive everywhere, 1 refuted, 2 undecided; uint8 (m,)
+    positive: int  #: numbers of cells
+    refuted: int
+    undecided: int
+    minimum_everywhere: float  #: the scaled Jacobian is nowhere less, inside of cells included
+    worst: list[RefutedCell]  #: at most ten, the most negative first
+
+    @property
+    def all_positive(self) -> bool:
+        """Whether all cells are proven to be positive everywhere."""
+        return self.refuted + self.undecided == 0

@@ -14,6 +14,20 @@ const curvedFacts = (info: MeshInfo): [string, string, string][] => [
   ["nodes on faces", grouped(info.points - info.vertices), "stat-nodes"],
 ];
 
+function validityOf({ validity }: MeshInfo): string {
+  const { refuted, undecided } = validity;
+  if (refuted + undecided === 0) return "certified positive everywhere";
+  return `${grouped(refuted)} not positive, ${grouped(undecided)} undecided`;
+}
+
+/** Where one of the worst cells is not positive. */
+function refutationFacts(cell: number, info: MeshInfo): [string, string, string][] {
+  const bad = info.validity.worst.find((each) => each.cell === cell);
+  if (!bad) return [];
+  return [["least, at place in the cell",
+           `${bad.scaledJacobian.toFixed(4)} at ${place(bad.place)}`, "picked-refuted"]];
+}
+
 export function showStatistics(info: MeshInfo, pageBytes: number): void {
   const { topology, quality } = info;
   fillFacts(element("statistics"), [
@@ -27,6 +41,8 @@ export function showStatistics(info: MeshInfo, pageBytes: number): void {
     ["scaled Jacobian, least", quality.minimum.toFixed(4), "stat-minimum"],
     ["mean", quality.mean.toFixed(4), "stat-mean"],
     ["not positive", grouped(quality.notPositive), "stat-not-positive"],
+    ["validity", validityOf(info), "stat-validity"],
+    ["scaled Jacobian everywhere, at least", info.validity.minimum.toFixed(4), "stat-everywhere"],
     ["singular edges inside", valences(info.singular.inner), "stat-inner"],
     ["on the boundary", valences(info.singular.boundary), "stat-boundary"],
     ["from", place(info.lower)],
@@ -64,6 +80,7 @@ export function showPicked(cell: number | null, info: MeshInfo, mesh: LoadedMesh
   element("picked-cell").textContent = String(cell);
   fillFacts(element("picked-facts"), [
     ["scaled Jacobian", qualityOf(mesh.quality[cell]!).toFixed(4), "picked-quality"],
+    ...refutationFacts(cell, info),
     ["layer", String(mesh.layers[cell]!)],
     ...regionFacts(cell, mesh),
   ]);
