@@ -1,8 +1,9 @@
 """Prints lines and branches per folder that were executed, and lists those that were not.
 
-    report.py EXPORT.json EXPORT.lcov MISSING.txt FOLDER...
+    report.py EXPORT.json EXPORT.lcov MISSING.txt [--executed] FOLDER...
 
-Of files below the folders. A branch is a condition with one of its two outcomes. Instantiations of a template count together.
+Of files below the folders, or those of them of which anything was executed. A branch is a condition
+with one of its two outcomes. Instantiations of a template count together.
 """
 import collections
 import json
@@ -44,6 +45,7 @@ def share(hit, total):
 
 
 def main(export, lcov, missing_name, *folders):
+    only_executed = "--executed" in folders
     lines = line_counts(lcov)
     branches = branch_counts(export)
     totals = collections.defaultdict(lambda: [0, 0, 0, 0])
@@ -51,6 +53,8 @@ def main(export, lcov, missing_name, *folders):
     for file in sorted(lines):
         path = pathlib.Path(file).relative_to(ROOT)
         if not any(path.is_relative_to(folder) for folder in folders):
+            continue
+        if only_executed and not any(lines[file].values()):
             continue
         source = pathlib.Path(file).read_text().splitlines()
         sums = totals["/".join(path.parts[1:-1])]

@@ -135,8 +135,9 @@ class Repairs : public ::testing::Test {
     if (!canRepair()) GTEST_SKIP() << "skipped: built without libLBFGS";
   }
 
-  static TetMap damaged(int defects = 6) {
+  static TetMap damaged(int defects = 6, int cells = 4) {
     SampleOptions options;
+    options.cells = cells;
     options.refine = 4;
     options.defects = defects;
     options.charts = ChartStyle::Random;
@@ -144,8 +145,8 @@ class Repairs : public ::testing::Test {
   }
 };
 
-TEST_F(Repairs, TouchNothingOutsideOfThePatch) {
-  const TetMap before = damaged();
+/// What changes is what the report says, in one patch.
+void expectReportOf(const TetMap& before) {
   Context context;
   RepairReport report;
   const TetMap after = repair(before, {}, context, &report);
@@ -170,6 +171,11 @@ TEST_F(Repairs, TouchNothingOutsideOfThePatch) {
   EXPECT_EQ(largest, report.largestMove);
   EXPECT_LE(tets.size(), report.regions[0].tets);
   EXPECT_LT(tets.size(), before.tets.size() / 4);
+}
+
+TEST_F(Repairs, TouchNothingOutsideOfThePatch) {
+  // Tets as long as cells, and a quarter of that: there, all moves are below 1.
+  for (const int cells : {4, 1}) expectReportOf(damaged(6, cells));
 }
 
 TEST_F(Repairs, AreTheSameForAnyNumberOfThreads) {
