@@ -152,6 +152,19 @@ def test_files(sphere, tmp_path):
     assert hexhex.verify(sphere, copy)
 
 
+def test_every_format_of_this_build(sphere, tmp_path):
+    """Also in a wheel, which brings no library for them along."""
+    mesh = hexhex.extract(sphere)
+    formats = [f for f in hexhex.formats() if f.writes_meshes]
+    assert {"exodus", "vtu", "msh", "openfoam"} <= {f.name for f in formats}
+    for f in formats:
+        file = tmp_path / (f.name + (f.extension or ".mfem"))
+        hexhex.write(mesh, file, format=f.name)
+        assert file.exists()
+        if f.reads_meshes:
+            np.testing.assert_array_equal(hexhex.read(file, format=f.name).cells, mesh.cells)
+
+
 def test_progress(sphere):
     seen = []
     hexhex.extract(sphere, progress=lambda stage, share: seen.append((stage, share)))
