@@ -68,23 +68,20 @@ constexpr auto kExits = [] {
 
 }  // namespace
 
-bool areSamePoint(const PreparedMap& map, const LatticePlace& a, CornerMask simplex,
-                  const LatticePlace& b) {
+bool areSamePoint(const PreparedMap& map, const LatticePlace& a, const LatticePlace& b) {
   if (a.tet == b.tet && a.z == b.z) return true;
-  if (dimension(simplex) == 3) return false;
+  const int kind = dimension(a.simplex);
+  if (kind == 3 || kind != dimension(b.simplex)) return false;
   const TetTopology& topology = map.topology;
   const ExactMap& exact = map.exact;
-  if (dimension(simplex) == 2) {
-    const HalfFace face = halfFaceOf(a.tet, oppositeCorner(simplex));
+  if (kind == 2) {
+    const HalfFace face = halfFaceOf(a.tet, oppositeCorner(a.simplex));
     if (topology.isBoundary(face) || tetOf(topology.mate[face]) != b.tet) return false;
     return exact.transitions.across(face)(a.z) == b.z;
   }
   // The same vertex, or the same edge, as far from its vertices.
-  const CornerMask there = simplexIn(topology, a.tet, simplex, b.tet);
-  if (there == kNoSimplex || simplexOf(exact.corners[b.tet], b.z, exact.unit) != there) {
-    return false;
-  }
-  const std::size_t corner = firstCorner(simplex);
+  if (simplexIn(topology, a.tet, a.simplex, b.tet) != b.simplex) return false;
+  const std::size_t corner = firstCorner(a.simplex);
   const Index vertex = topology.tets[a.tet][corner];
   const auto cornerThere = static_cast<std::size_t>(topology.localCorner(b.tet, vertex));
   return distance(exact.corners[a.tet][corner], scaled(a.z, exact.unit)) ==
@@ -104,15 +101,14 @@ bool HalfDiagonals::endsAt(Index tet, const GridPoint& cell, const GridPoint& of
     const Step step = look(segment, exit);
     if (step == Step::IsUncertain) break;
     if (step == Step::EndsInside) {
-      const End end = endOf(segment, kWholeTet);
-      return areSamePoint(map_, end.place, end.simplex, place);
+      return areSamePoint(map_, endOf(segment, kWholeTet), place);
     }
     if (!cross(segment, exit)) return false;
     // A lattice point of the tet is one that the segment comes to within the tet.
     if (segment.tet == place.tet && isAtEnd(segment, place.z)) return true;
   }
-  const std::optional<End> end = followExactly(segment);
-  return end && areSamePoint(map_, end->place, end->simplex, place);
+  const std::optional<LatticePlace> end = followExactly(segment);
+  return end && areSamePoint(map_, *end, place);
 }
 
 bool HalfDiagonals::isAtEnd(const Segment& segment, const GridPoint& z) const noexcept {
@@ -191,7 +187,7 @@ bool HalfDiagonals::cross(Segment& segment, int face) const noexcept {
 }
 
 /// All tets that the segment can come into, until one holds its end.
-std::optional<HalfDiagonals::End> HalfDiagonals::followExactly(const Segment& segment) {
+std::optional<LatticePlace> HalfDiagonals::followExactly(const Segment& segment) {
   segments_.assign(1, segment);
   for (std::size_t head = 0; head < segments_.size(); ++head) {
     const Segment here = segments_[head];
@@ -224,12 +220,12 @@ bool HalfDiagonals::crossesFirst(const Segment& segment, const LatticeTet& tet, 
   return true;
 }
 
-HalfDiagonals::End HalfDiagonals::endOf(const Segment& segment, CornerMask simplex) const noexcept {
-  End end{{segment.tet, {}}, simplex};
+LatticePlace HalfDiagonals::endOf(const Segment& segment, CornerMask simplex) const noexcept {
+  LatticePlace place{segment.tet, {}, simplex};
   for (std::size_t k = 0; k < 3; ++k) {
-    end.place.z[k] = static_cast<std::int32_t>(segment.end[k] / map_.exact.unit);
+    place.z[k] = static_cast<std::int32_t>(segment.end[k] / map_.exact.unit);
   }
-  return end;
+  return place;
 }
 
 }  // namespace hexhex

@@ -20,6 +20,7 @@ namespace hexhex {
 struct LatticePlace {
   Index tet = kNone;
   GridPoint z{};
+  CornerMask simplex = kNoSimplex;  ///< of the tet: the one that has the point in its interior
 };
 
 /// All are written before they are read.
@@ -27,8 +28,7 @@ template <>
 inline constexpr bool kLeftUninitialized<LatticePlace> = true;
 
 /// Whether two places are the same point of the map.
-/// @param simplex  of the tet of `a`, the one that has the point in its interior
-[[nodiscard]] bool areSamePoint(const PreparedMap& map, const LatticePlace& a, CornerMask simplex,
+[[nodiscard]] bool areSamePoint(const PreparedMap& map, const LatticePlace& a,
                                 const LatticePlace& b);
 
 /// One per thread.
@@ -51,19 +51,14 @@ class HalfDiagonals {
     LatticePoint start;
     LatticePoint end;
   };
-  struct End {
-    LatticePlace place;
-    CornerMask simplex;
-  };
-
   /// What floating point proves about a tet on the way.
   enum class Step : std::uint8_t { EndsInside, Leaves, IsUncertain };
   [[nodiscard]] Step look(const Segment& segment, int& exit) const noexcept;
   [[nodiscard]] bool isAtEnd(const Segment& segment, const GridPoint& z) const noexcept;
   [[nodiscard]] static bool crossesFirst(const Segment& segment, const LatticeTet& tet, int face);
   [[nodiscard]] bool cross(Segment& segment, int face) const noexcept;
-  [[nodiscard]] std::optional<End> followExactly(const Segment& segment);
-  [[nodiscard]] End endOf(const Segment& segment, CornerMask simplex) const noexcept;
+  [[nodiscard]] std::optional<LatticePlace> followExactly(const Segment& segment);
+  [[nodiscard]] LatticePlace endOf(const Segment& segment, CornerMask simplex) const noexcept;
 
   const PreparedMap& map_;
   std::int64_t half_;              ///< of a grid unit, in lattice units

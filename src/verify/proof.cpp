@@ -27,9 +27,7 @@ LatticePoint centerPoint(const GridPoint& z, std::int64_t unit) {
 /// Whether lines are in order, and the simplices at their ends are right; then, by convexity, so
 /// are those of all points between.
 template <class PointOf>
-bool areInTet(const LatticeTet& tet, std::span<const SweptLine> lines, const PointOf& pointOf) {
-  if (lines.empty()) return true;
-  const FaceSides sides(tet);
+bool areInTet(const FaceSides& sides, std::span<const SweptLine> lines, const PointOf& pointOf) {
   const SweptLine* before = nullptr;
   for (const SweptLine& line : lines) {
     if (before != nullptr &&
@@ -75,7 +73,7 @@ class Places {
       return;
     }
     std::uint64_t left = end - first;
-    bool right = areInTet(map_.exact.corners[tet], lines,
+    bool right = areInTet(FaceSides(map_.exact.corners[tet]), lines,
                           [this](const GridPoint& z) { return vertexPoint(z, map_.exact.unit); });
     const SpaceOfTet space(map_, tet);
     const SweepAxes axes = lines.front().axes;
@@ -89,7 +87,7 @@ class Places {
                     [&](std::size_t i) { proof.positions.add(run.first + i); });
       for (std::uint64_t v = run.first; v < run.first + run.count; ++v, ++z[axes()[2]]) {
         right = right && places_[v].tet == kNone;
-        places_[v] = {tet, z};
+        places_[v] = {tet, z, run.simplex};
       }
     });
     if (!right || left != 0) proof.sweep.add(tet);
@@ -164,13 +162,18 @@ class CellProver {
     const std::span<const SweptLine> lines = centers_.linesOf(map_.exact, tet, lines_);
     std::uint64_t cell = centers_.begin[tet];
     const std::uint64_t end = centers_.begin[tet + 1];
-    bool right = areInTet(map_.exact.corners[tet], lines,
+    if (lines.empty()) {
+      if (cell != end) proof_.sweep.add(tet);
+      return;
+    }
+    const FaceSides sides(map_.exact.corners[tet]);
+    bool right = areInTet(sides, lines,
                           [this](const GridPoint& z) { return centerPoint(z, map_.exact.unit); });
     if (cell != end) begin(lines);
     forEachOwnedCenter(map_.topology, tet, lines, [&](const SweptLine& line, std::uint32_t i) {
       right = right && cell < end;
       if (!right) return;
-      if (!isRight(tet, line.point(i), mesh_.cells[cell])) proof_.cells.add(cell);
+      if (!isRight(tet, sides, line.point(i), mesh_.cells[cell])) proof_.cells.add(cell);
       ++cell;
     });
     if (!right || cell != end) proof_.sweep.add(tet);
@@ -186,10 +189,10 @@ class CellProver {
     }
   }
 
-  bool isRight(Index tet, const GridPoint& z, const Hex& cell) {
+  bool isRight(Index tet, const FaceSides& sides, const GridPoint& z, const Hex& cell) {
     if (!known_.isUsed()) {
       for (std::size_t c = 0; c < 8; ++c) {
-        if (!isCorner(tet, z, c, cell[c])) return false;
+        if (!isCorner(tet, sides, z, c, cell[c])) return false;
       }
       return true;
     }
@@ -197,19 +200,24 @@ class CellProver {
     for (std::size_t c = 0; c < 8; ++c) {
       Index& vertex = known[steps_[c]];
       if (vertex == cell[c]) continue;
-      if (vertex != kNone || !isCorner(tet, z, c, cell[c])) return false;
+      if (vertex != kNone || !isCorner(tet, sides, z, c, cell[c])) return false;
       vertex = cell[c];
     }
     return true;
   }
 
-  bool isCorner(Index tet, const GridPoint& z, std::size_t corner, Index vertex) {
+  bool isCorner(Index tet, const FaceSides& sides, const GridPoint& z, std::size_t corner,
+                Index vertex) {
     const LatticePlace& place = places_[vertex];
     const GridPoint& offset = kCellCorners[corner];
+    const GridPoint end = {z[0] + offset[0], z[1] + offset[1], z[2] + offset[2]};
     // A lattice point of the tet is one that the half diagonal comes to within the tet.
-    if (place.tet == tet && place.z[0] == z[0] + offset[0] && place.z[1] == z[1] + offset[1] &&
-        place.z[2] == z[2] + offset[2]) {
+    if (place.tet == tet && place.z[0] == end[0] && place.z[1] == end[1] && place.z[2] == end[2]) {
       return true;
+    }
+    if (place.simplex != kWholeTet) {
+      const CornerMask simplex = sides.simplexOf(vertexPoint(end, map_.exact.unit));
+      if (simplex != kNoSimplex) return areSamePoint(map_, {tet, end, simplex}, place);
     }
     return diagonals_.endsAt(tet, z, offset, place);
   }
