@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <queue>
 
 #include <base/vector3.hpp>
@@ -204,6 +205,28 @@ Bezier<double> restricted(Bezier<double> polynomial, const Vec3& place) {
   return polynomial;
 }
 
+/// Where, nearly, a determinant of degree 2 that is positive at corners is not on an edge: b0 b2 is
+/// at most b1^2 there, and b1 negative. No division would end at a double root that is at 1/3.
+std::optional<Vec3> zeroOnEdge(const Bezier<BigInteger>& exact, const Bezier<double>& rounded) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t stride = exact.stride(axis);
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      if ((corner >> axis & 1U) != 0) continue;
+      const std::size_t at = exact.cornerAt(corner);
+      const BigInteger& middle = exact.values[at + stride];
+      const BigInteger product = exact.values[at] * exact.values[at + 2 * stride];
+      if (middle.sign() >= 0 || (middle * middle - product).sign() < 0) continue;
+      Vec3 place = Part{}.corner(corner);
+      const double slope = rounded.values[at] - rounded.values[at + stride];
+      const double end = rounded.values[at + 2 * stride] - rounded.values[at + stride];
+      const double along = slope / (slope + end);
+      place[axis] = along >= 0 && along <= 1 ? along : 0.5;
+      return place;
+    }
+  }
+  return std::nullopt;
+}
+
 /// Nodes times a power of two, which brings the largest coordinate near 1.
 std::vector<Vec3> scaledNodes(std::span<const Vec3> nodes) {
   double largest = 0;
@@ -326,7 +349,7 @@ CellCertificate CellValidity::decide(std::span<const Vec3> nodes, const Form& fo
   const double growth = static_cast<double>(3 * order_ + 2) * kRounding * form.size;
   CellCertificate result = {Validity::Undecided, -1, {}, 0};
   if (std::isfinite(form.error)) result = divide(form.determinant, form.error, growth);
-  if (result.validity == Validity::Undecided) result = decideExactly(nodes);
+  if (result.validity == Validity::Undecided) result = decideExactly(nodes, form);
   if (result.validity == Validity::Refuted) {
     Vec3 lengths{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -342,7 +365,7 @@ CellCertificate CellValidity::decide(std::span<const Vec3> nodes, const Form& fo
   return result;
 }
 
-CellCertificate CellValidity::decideExactly(std::span<const Vec3> nodes) const {
+CellCertificate CellValidity::decideExactly(std::span<const Vec3> nodes, const Form& form) const {
   // All coordinates as multiples of the lowest bit of any.
   int shift = std::numeric_limits<int>::min();
   for (const Vec3& node : nodes) {
@@ -372,7 +395,13 @@ CellCertificate CellValidity::decideExactly(std::span<const Vec3> nodes) const {
     return {Validity::Refuted, -1, Part{}.corner(corner), 0};
   }
   if (order_ > kMostExactOrder) return {Validity::Undecided, -1, {}, 0};
-  return divide(determinantOf(columns), 0, 0);
+  Bezier<BigInteger> determinant = determinantOf(columns);
+  if (order_ == 1) {
+    if (const std::optional<Vec3> zero = zeroOnEdge(determinant, form.determinant)) {
+      return {Validity::Refuted, -1, *zero, 0};
+    }
+  }
+  return divide(std::move(determinant), 0, 0);
 }
 
 CellCertificate CellValidity::examine(std::span<const Vec3> nodes) const {

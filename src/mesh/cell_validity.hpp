@@ -45,7 +45,7 @@ class CellValidity {
   [[nodiscard]] Columns<double> roundedColumnsOf(const std::vector<Vec3>& nodes) const;
   [[nodiscard]] Form formOf(std::span<const Vec3> nodes) const;
   [[nodiscard]] CellCertificate decide(std::span<const Vec3> nodes, const Form& form) const;
-  [[nodiscard]] CellCertificate decideExactly(std::span<const Vec3> nodes) const;
+  [[nodiscard]] CellCertificate decideExactly(std::span<const Vec3> nodes, const Form& form) const;
 
   std::size_t order_;
   NodeMatrices<double> matrices_;

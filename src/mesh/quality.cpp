@@ -68,31 +68,37 @@ double scaledJacobianOfAnySize(const Corners& corners) {
   return std::clamp(std::min(smallest, normalizedProduct(axes)), -1.0, 1.0);
 }
 
-PairQuality qualityOf(const Corners& a, const Corners& b) {
+/// @param corner  (which cell, place): a corner of one of two cells
+template <class CornerAt>
+PairQuality qualityOf(const CornerAt& corner) {
   std::array<PairVector, 8> at;
   for (std::size_t place = 0; place < 8; ++place) {
-    for (std::size_t k = 0; k < 3; ++k) at[place][k] = Pair{a[place][k], b[place][k]};
+    const Vec3& first = corner(0, place);
+    const Vec3& second = corner(1, place);
+    for (std::size_t k = 0; k < 3; ++k) at[place][k] = Pair{first[k], second[k]};
   }
   return measurePair(at);
 }
 
-double scaledJacobianOf(const PairQuality& quality, std::size_t which, const Corners& corners) {
-  if (quality.inRange[which] == 0) return scaledJacobianOfAnySize(corners);
+/// @param corners  gives those of the cell, where they are needed
+template <class CornersOf>
+double scaledJacobianOf(const PairQuality& quality, std::size_t which, const CornersOf& corners) {
+  if (quality.inRange[which] == 0) return scaledJacobianOfAnySize(corners());
   return std::clamp(quality.scaled[which], -1.0, 1.0);  // rounding may lead beyond
 }
 
-/// Calls use(cell, scaled Jacobian, corners, quality of two cells, which of them).
+/// Calls use(cell, scaled Jacobian, quality of two cells, which of them).
 template <class Use>
 void forCells(const HexMesh& mesh, std::size_t begin, std::size_t end, const Use& use) {
-  std::array<Corners, 2> corners;
   for (std::size_t c = begin; c < end; c += 2) {
     const std::size_t count = std::min<std::size_t>(2, end - c);
-    corners[0] = cornersOf(mesh, c);
-    corners[1] = cornersOf(mesh, c + count - 1);
-    const PairQuality quality = qualityOf(corners[0], corners[1]);
+    const std::array<const Hex*, 2> cells = {&mesh.cells[c], &mesh.cells[c + count - 1]};
+    const PairQuality quality = qualityOf([&](std::size_t which, std::size_t place) -> const Vec3& {
+      return mesh.points[(*cells[which])[kVtkCorner[place]]];
+    });
     for (std::size_t which = 0; which < count; ++which) {
-      use(c + which, scaledJacobianOf(quality, which, corners[which]), corners[which], quality,
-          which);
+      const auto corners = [&] { return cornersOf(mesh, c + which); };
+      use(c + which, scaledJacobianOf(quality, which, corners), quality, which);
     }
   }
 }
@@ -121,8 +127,8 @@ QualitySummary united(const std::vector<QualitySummary>& blocks, std::size_t cou
   return all;
 }
 
-void judge(const PairQuality& quality, std::size_t which, const Corners& corners, double scaled,
-           std::size_t cell, const CellValidity& cells, Certificate& certificate,
+void judge(const HexMesh& mesh, std::size_t cell, double scaled, const PairQuality& quality,
+           std::size_t which, const CellValidity& cells, Certificate& certificate,
            BlockFindings& findings) {
   CellCertificate known = {Validity::Positive, -1, {}, 0};
   const double error = quality.error[which];
@@ -131,7 +137,7 @@ void judge(const PairQuality& quality, std::size_t which, const Corners& corners
   } else if (quality.inRange[which] != 0 && quality.corner[which] < -error) {
     known.validity = Validity::Refuted;
   } else {
-    known = cells.examine(corners);
+    known = cells.examine(cornersOf(mesh, cell));
   }
   certificate.validity[cell] = known.validity;
   findings.add(cell, scaled, known);
@@ -141,7 +147,9 @@ void judge(const PairQuality& quality, std::size_t which, const Corners& corners
 
 double scaledJacobian(const std::array<Vec3, 8>& corners) noexcept {
   const Corners ordered = byPlace(corners);
-  return scaledJacobianOf(qualityOf(ordered, ordered), 0, ordered);
+  const PairQuality quality = qualityOf(
+      [&](std::size_t /*which*/, std::size_t place) -> const Vec3& { return ordered[place]; });
+  return scaledJacobianOf(quality, 0, [&] { return ordered; });
 }
 
 Array<double> scaledJacobians(const HexMesh& mesh, Context& context) {
@@ -187,11 +195,10 @@ Certificate certify(const HexMesh& mesh, Context& context) {
     parallelBlocks(stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
       summaries[block].minimum = 1;
       forCells(mesh, begin, end,
-               [&](std::size_t cell, double scaled, const Corners& corners,
-                   const PairQuality& quality, std::size_t which) {
+               [&](std::size_t cell, double scaled, const PairQuality& quality, std::size_t which) {
                  certificate.scaledJacobians[cell] = scaled;
                  addTo(summaries[block], scaled);
-                 judge(quality, which, corners, scaled, cell, cells, certificate, blocks[block]);
+                 judge(mesh, cell, scaled, quality, which, cells, certificate, blocks[block]);
                });
     });
     certificate.quality = united(summaries, n);

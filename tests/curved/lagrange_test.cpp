@@ -14,6 +14,7 @@
 #include <hexhex/curved.hpp>
 
 #include "curved/curved_maps.hpp"
+#include "mesh/grid_meshes.hpp"
 #include "support/error_of.hpp"
 
 namespace hexhex::test {
@@ -357,6 +358,88 @@ TEST(LagrangeQuality, VanishingEdgeIsNotPositive) {
   Context context;
   const auto flat = [](double x, double y, double) { return Vec3{x, y, 0}; };
   EXPECT_EQ(scaledJacobians(oneCell(2, flat), context).front(), 0.0);
+}
+
+TEST(LagrangeCertificate, AgreesWithStraightCells) {
+  Context context;
+  hexhex::testing::Random random(9);
+  int refuted = 0;
+  for (int i = 0; i < 90; ++i) {
+    std::array<Vec3, 8> corners;  // by place: bits x, y, z
+    for (std::size_t c = 0; c < 8; ++c) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        corners[c][k] = static_cast<double>(c >> k & 1U) + 1.1 * (random.real() - 0.5);
+      }
+    }
+    const auto trilinear = [&](double x, double y, double z) {
+      Vec3 point{};
+      for (std::size_t c = 0; c < 8; ++c) {
+        const double weight =
+            ((c & 1U) != 0 ? x : 1 - x) * ((c & 2U) != 0 ? y : 1 - y) * ((c & 4U) != 0 ? z : 1 - z);
+        for (std::size_t k = 0; k < 3; ++k) point[k] += weight * corners[c][k];
+      }
+      return point;
+    };
+    std::array<Vec3, 8> vtk = corners;
+    std::swap(vtk[2], vtk[3]);
+    std::swap(vtk[6], vtk[7]);
+    const CellCertificate straight = certify(vtk);
+    if (straight.validity == Validity::Refuted) ++refuted;
+    const int order = 1 + i % 5;
+    const LagrangeMesh mesh = oneCell(order, trilinear);
+    const Certificate certificate = certify(mesh, context);
+    EXPECT_EQ(certificate.validity.front(), straight.validity) << "order " << order;
+    EXPECT_EQ(certificate.scaledJacobians, scaledJacobians(mesh, context));
+    EXPECT_LE(certificate.minimum, straight.scaledJacobian + 1e-9);
+    if (certificate.worst.empty()) continue;
+    const auto& [cell, place, position, scaled] = certificate.worst.front();
+    const Vec3 there = trilinear(place[0], place[1], place[2]);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(position[k], there[k], 1e-9);
+    EXPECT_LE(scaled, 0);
+  }
+  EXPECT_GT(refuted, 10);
+  EXPECT_LT(refuted, 80);
+}
+
+TEST(LagrangeCertificate, EveryOrder) {
+  Context context;
+  for (int order = 1; order <= kMaxOrder; ++order) {
+    SCOPED_TRACE(order);
+    const auto verdict = [&](const auto& place) { return certify(oneCell(order, place), context); };
+    const Certificate cube = verdict([](double x, double y, double z) { return Vec3{x, y, z}; });
+    EXPECT_TRUE(cube.allPositive());
+    EXPECT_GT(cube.minimum, 0.9);
+    const auto flat = [](double x, double y, double) { return Vec3{x, y, 0}; };
+    EXPECT_EQ(verdict(flat).refuted, 1U);
+    const auto mirrored = [](double x, double y, double z) { return Vec3{-x, y, z}; };
+    EXPECT_EQ(verdict(mirrored).refuted, 1U);
+    if (order < 2) continue;
+    const auto bent = [](double x, double y, double z) {
+      return Vec3{x, y + x * x, z + 0.2 * x * y};
+    };
+    EXPECT_TRUE(verdict(bent).allPositive());
+    const auto folded = [](double x, double y, double z) { return Vec3{x - x * x, y, z}; };
+    EXPECT_EQ(verdict(folded).refuted, 1U);
+  }
+}
+
+TEST(LagrangeCertificate, FindsWhatSamplesMiss) {
+  // dx/ds = 2 (s - 0.3)^2 + c: for c = -0.001, it is negative around 0.3, and positive at the nodes
+  // and Gauss points of order 3.
+  Context context;
+  for (const double c : {-0.001, 0.001}) {
+    const LagrangeMesh mesh = oneCell(3, [&](double s, double y, double z) {
+      const double d = s - 0.3;
+      return Vec3{2 * d * d * d / 3 + c * s, y, z};
+    });
+    const Certificate certificate = certify(mesh, context);
+    EXPECT_GT(certificate.quality.minimum, 0);
+    EXPECT_EQ(certificate.positive, c > 0 ? 1U : 0U);
+    EXPECT_EQ(certificate.refuted, c < 0 ? 1U : 0U);
+    if (c < 0) {
+      EXPECT_NEAR(certificate.worst.front().place[0], 0.3, 0.03);
+    }
+  }
 }
 
 }  // namespace
