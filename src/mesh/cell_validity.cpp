@@ -13,6 +13,7 @@
 
 #include <base/vector3.hpp>
 #include <mesh/cell_validity.hpp>
+#include <mesh/jacobian_quotient.hpp>
 
 namespace hexhex {
 namespace {
@@ -37,33 +38,13 @@ bool isAbove(const BigInteger& value, double /*error*/) { return value.sign() > 
 bool isBelow(double value, double error) { return value <= -error; }
 bool isBelow(const BigInteger& value, double /*error*/) { return value.sign() <= 0; }
 
-/// A part of the cell.
-struct Part {
-  Vec3 lower = {0, 0, 0};
-  Vec3 size = {1, 1, 1};
-
-  [[nodiscard]] Vec3 corner(std::size_t corner) const {
-    Vec3 place = lower;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if ((corner >> axis & 1U) != 0) place[axis] += size[axis];
-    }
-    return place;
-  }
-  [[nodiscard]] Part half(std::size_t axis, std::size_t which) const {
-    Part part = *this;
-    part.size[axis] /= 2;
-    if (which == 1) part.lower[axis] += part.size[axis];
-    return part;
-  }
-};
-
-std::size_t longestAxis(const Part& part) {
+std::size_t longestAxis(const CellPart& part) {
   return static_cast<std::size_t>(std::max_element(part.size.begin(), part.size.end()) -
                                   part.size.begin());
 }
 
 /// The axis along which coefficients are bent most: bounds differ from values by about as much.
-std::size_t axisToHalve(const Part& /*part*/, const Bezier<double>& polynomial) {
+std::size_t axisToHalve(const CellPart& /*part*/, const Bezier<double>& polynomial) {
   std::array<double, 3> bend{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t stride = polynomial.stride(axis);
@@ -77,7 +58,7 @@ std::size_t axisToHalve(const Part& /*part*/, const Bezier<double>& polynomial) 
   }
   return static_cast<std::size_t>(std::max_element(bend.begin(), bend.end()) - bend.begin());
 }
-std::size_t axisToHalve(const Part& part, const Bezier<BigInteger>& /*polynomial*/) {
+std::size_t axisToHalve(const CellPart& part, const Bezier<BigInteger>& /*polynomial*/) {
   return longestAxis(part);
 }
 
@@ -86,7 +67,7 @@ std::size_t axisToHalve(const Part& part, const Bezier<BigInteger>& /*polynomial
 template <class T>
 CellCertificate divide(Bezier<T> whole, double error, double growth) {
   struct Piece {
-    Part part;
+    CellPart part;
     Bezier<T> polynomial;
     double error;
   };
@@ -113,81 +94,6 @@ CellCertificate divide(Bezier<T> whole, double error, double growth) {
   }
   return {Validity::Positive, -1, {}, 0};
 }
-
-double ratio(double determinant, double lengths) {
-  const double value = determinant / lengths;
-  return std::isfinite(value) ? std::clamp(value, -1.0, 1.0) : (determinant < 0 ? -1.0 : 0.0);
-}
-
-double leastOf(const Bezier<double>& polynomial) {
-  return *std::min_element(polynomial.values.begin(), polynomial.values.end());
-}
-
-double largestOf(const Bezier<double>& polynomial) {
-  return *std::max_element(polynomial.values.begin(), polynomial.values.end());
-}
-
-Bezier<double> productOf(Bezier<double> a, Bezier<double> b) {
-  Bezier<double> product;
-  weigh(a, false);
-  weigh(b, false);
-  addConvolution(a, b, 1.0, product);
-  weigh(product, true);
-  return product;
-}
-
-/// The square of the length of a column.
-Bezier<double> squareOf(const std::array<Bezier<double>, 3>& column) {
-  Bezier<double> sum = productOf(column[0], column[0]);
-  for (std::size_t k = 1; k < 3; ++k) {
-    const Bezier<double> square = productOf(column[k], column[k]);
-    for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += square.values[i];
-  }
-  return sum;
-}
-
-/// Determinants over lengths in a part of a cell. Bezier coefficients of a quotient of squares
-/// bound it: it is a mean of the quotients of coefficients, with weights that are positive.
-struct Quotient {
-  Part part = {};
-  Bezier<double> determinant = {};
-  Bezier<double> square = {};   ///< of the determinant
-  Bezier<double> lengths = {};  ///< of the columns: the product of their squares
-  double error = 0;             ///< of the determinant
-  double bound = -1;            ///< it is nowhere less
-
-  /// Bounds a quotient that was made or halved.
-  /// @param rounding  of coefficients of the two squares, relative to the largest of each
-  void close(double rounding) {
-    const double least = leastOf(determinant) - error;
-    const double lengthsError = rounding * largestOf(lengths);
-    if (!(least > 0)) {
-      const double shortest = leastOf(lengths) - lengthsError;
-      bound = shortest > 0 ? ratio(least, std::sqrt(shortest) * (1 - rounding)) : -1;
-      return;
-    }
-    const double squareError = rounding * largestOf(square) + 2 * error * largestOf(determinant);
-    double smallest = 1;
-    for (std::size_t i = 0; i < square.values.size(); ++i) {
-      smallest =
-          std::min(smallest, (square.values[i] - squareError) / (lengths.values[i] + lengthsError));
-    }
-    bound = std::sqrt(std::max(smallest, 0.0)) * (1 - rounding);
-  }
-
-  [[nodiscard]] std::array<Quotient, 2> halved(std::size_t axis) const {
-    std::array<Quotient, 2> both;
-    const auto halve = [&](Bezier<double> Quotient::*polynomial) {
-      std::array<Bezier<double>, 2> parts = halves(this->*polynomial, axis);
-      for (std::size_t h = 0; h < 2; ++h) both[h].*polynomial = std::move(parts[h]);
-    };
-    halve(&Quotient::determinant);
-    halve(&Quotient::square);
-    halve(&Quotient::lengths);
-    for (std::size_t h = 0; h < 2; ++h) both[h].part = part.half(axis, h);
-    return both;
-  }
-};
 
 Bezier<double> restricted(Bezier<double> polynomial, const Vec3& place) {
   std::vector<double> scratch;
@@ -216,7 +122,7 @@ std::optional<Vec3> zeroOnEdge(const Bezier<BigInteger>& exact, const Bezier<dou
       const BigInteger& middle = exact.values[at + stride];
       const BigInteger product = exact.values[at] * exact.values[at + 2 * stride];
       if (middle.sign() >= 0 || (middle * middle - product).sign() < 0) continue;
-      Vec3 place = Part{}.corner(corner);
+      Vec3 place = CellPart{}.corner(corner);
       const double slope = rounded.values[at] - rounded.values[at + stride];
       const double end = rounded.values[at + 2 * stride] - rounded.values[at + stride];
       const double along = slope / (slope + end);
@@ -360,7 +266,8 @@ CellCertificate CellValidity::decide(std::span<const Vec3> nodes, const Form& fo
       lengths[axis] = length(column);
     }
     const double value = restricted(form.determinant, result.place).values[0];
-    result.scaledJacobian = std::min(0.0, ratio(value, lengths[0] * lengths[1] * lengths[2]));
+    result.scaledJacobian =
+        std::min(0.0, scaledDeterminant(value, lengths[0] * lengths[1] * lengths[2]));
   }
   return result;
 }
@@ -392,7 +299,7 @@ CellCertificate CellValidity::decideExactly(std::span<const Vec3> nodes, const F
       }
     }
     if (determinantOf(there).values[0].sign() > 0) continue;
-    return {Validity::Refuted, -1, Part{}.corner(corner), 0};
+    return {Validity::Refuted, -1, CellPart{}.corner(corner), 0};
   }
   if (order_ > kMostExactOrder) return {Validity::Undecided, -1, {}, 0};
   Bezier<BigInteger> determinant = determinantOf(columns);
@@ -420,7 +327,7 @@ CellCertificate CellValidity::examine(std::span<const Vec3> nodes) const {
   CellCertificate result = decide(nodes, form);
   if (std::isfinite(form.error)) {
     const double least = leastOf(form.determinant) - form.error;
-    if (least > 0) result.minimum = ratio(least, form.largestLengths);
+    if (least > 0) result.minimum = scaledDeterminant(least, form.largestLengths);
   }
   return result;
 }
@@ -438,15 +345,18 @@ CellCertificate CellValidity::findLeast(std::span<const Vec3> nodes, double targ
   // whose lengths are wrong by a few roundings, too.
   const double rounding = 64 * static_cast<double>(form.determinant.values.size()) * kRounding;
   const double growth = static_cast<double>(3 * order_ + 2) * kRounding * form.size;
-  const auto isLess = [](const Quotient& a, const Quotient& b) { return a.bound > b.bound; };
-  std::priority_queue<Quotient, std::vector<Quotient>, decltype(isLess)> parts(isLess);
-  const auto add = [&](Quotient quotient, double error) {
+  const auto isLess = [](const JacobianQuotient& a, const JacobianQuotient& b) {
+    return a.bound > b.bound;
+  };
+  std::priority_queue<JacobianQuotient, std::vector<JacobianQuotient>, decltype(isLess)> parts(
+      isLess);
+  const auto add = [&](JacobianQuotient quotient, double error) {
     quotient.error = error;
     quotient.close(rounding);
     for (std::size_t corner = 0; corner < 8; ++corner) {
       const double value = quotient.determinant.values[quotient.determinant.cornerAt(corner)];
       const double lengths = quotient.lengths.values[quotient.lengths.cornerAt(corner)];
-      const double scaled = ratio(value, std::sqrt(lengths));
+      const double scaled = scaledDeterminant(value, std::sqrt(lengths));
       if (scaled >= result.scaledJacobian) continue;
       // Where a cell was refuted, it is bad for sure.
       if (result.validity == Validity::Refuted && value >= -error) continue;
@@ -465,12 +375,12 @@ CellCertificate CellValidity::findLeast(std::span<const Vec3> nodes, double targ
       form.error);
   const std::size_t most = kMostPartsOfLeast / (order_ * order_);
   for (std::size_t count = 0;; ++count) {
-    const Quotient worst = parts.top();
+    const JacobianQuotient worst = parts.top();
     result.minimum = worst.bound;
     const double wanted = std::min(target, result.scaledJacobian) - kMinimumTolerance;
     if (worst.bound >= wanted || count >= most) return result;
     parts.pop();
-    for (Quotient& half : worst.halved(longestAxis(worst.part))) {
+    for (JacobianQuotient& half : worst.halved(longestAxis(worst.part))) {
       add(std::move(half), worst.error + growth);
     }
   }
