@@ -17,6 +17,7 @@ class BigInteger {
 
   /// value * 2^shift, an integer.
   BigInteger(double value, int shift) {
+    if (value == 0) return;  // whatever the shift, which a cell of zeros leaves open
     constexpr int kBits = std::numeric_limits<double>::digits;
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);  // value = fraction 2^exponent
