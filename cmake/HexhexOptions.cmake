@@ -16,12 +16,13 @@ if(HEXHEX_SANITIZE)
     -fsanitize=${HEXHEX_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(hexhex_options INTERFACE -fsanitize=${HEXHEX_SANITIZE})
   if(HEXHEX_SANITIZE MATCHES integer)
-    # With its hash as a definition, as ccache does not know that compilers read it.
+    # A copy with its hash in the name, as ccache does not know that compilers read it.
     set(wraps ${PROJECT_SOURCE_DIR}/tests/integer-ignorelist.txt)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${wraps})
     file(SHA1 ${wraps} hash)
+    file(COPY_FILE ${wraps} ${PROJECT_BINARY_DIR}/ignorelist-${hash}.txt ONLY_IF_DIFFERENT)
     target_compile_options(hexhex_options INTERFACE
-      -fsanitize-ignorelist=${wraps} -DHEXHEX_IGNORELIST=${hash})
+      -fsanitize-ignorelist=${PROJECT_BINARY_DIR}/ignorelist-${hash}.txt)
   endif()
 endif()
 
