@@ -32,16 +32,16 @@ struct VerifyReport {
 struct VerifyOptions {
   int scale = 1;            ///< the scale that the mesh was extracted with
   double tolerance = 1e-2;  ///< of the map, as in ExtractOptions
-  /// Significant digits of the mesh's coordinates, relative to the largest of them: 1 to 17. 0: 7 if
-  /// all are single-precision numbers, otherwise 17.
+  /// Significant digits of the mesh's coordinates, relative to the largest of them: 1 to 17. 0: 7
+  /// if all are single-precision numbers, otherwise 17.
   int digits = 0;
-  /// Whether to count faces, edges and components of the mesh as well: a second opinion, which takes
-  /// longer than the first.
+  /// Whether to count faces, edges and components of the mesh as well: a second opinion, which
+  /// takes longer than the first.
   bool countElements = false;
 };
 
-/// Passes if and only if the mesh is that of the map, up to the numbers of vertices and of cells and
-/// the 24 orientations of each cell. Linear time, and memory in proportion to map and mesh.
+/// Passes if and only if the mesh is that of the map, up to the numbers of vertices and of cells
+/// and the 24 orientations of each cell. Linear time, and memory in proportion to map and mesh.
 ///
 /// A mesh in canonical order is proven right lattice point by lattice point, by code that shares
 /// the prepared map with extraction, and no decision; any other one is compared with a mesh that

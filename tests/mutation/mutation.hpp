@@ -2,7 +2,8 @@
 // their mutant is switched on, so that one build holds all mutants.
 //
 //     HEXHEX_MUTANT=7               switches mutant 7 on; they are numbered from 1 on
-//     HEXHEX_MUTANTS_REACHED=FILE   appends the numbers of all mutants that were executed to the file
+//     HEXHEX_MUTANTS_REACHED=FILE   appends the numbers of all mutants that were executed to the
+//     file
 #pragma once
 
 #include <cstddef>
@@ -49,24 +50,24 @@ constexpr Number constant(int mutant, Number right) {
 }
 
 // `a < Less{7} < b` is `a < b`, or with mutant 7 `a <= b`: the operators keep their precedence.
-#define HEXHEX_MUTATED(Name, Right, Wrong)                                         \
-  struct Name {                                                                    \
-    int mutant;                                                                    \
-  };                                                                               \
-  template <class Left>                                                            \
-  struct Name##Left {                                                              \
-    Left&& left;                                                                   \
-    int mutant;                                                                    \
-  };                                                                               \
-  template <class Left>                                                            \
-  constexpr Name##Left<Left> operator Right(Left&& left, Name mutated) {           \
-    return {std::forward<Left>(left), mutated.mutant};                             \
-  }                                                                                \
-  template <class Left, class Operand>                                             \
-  constexpr auto operator Right(Name##Left<Left> left, Operand&& operand) {        \
-    using Result = std::remove_cvref_t<decltype(left.left Right operand)>;         \
-    if (on(left.mutant)) return static_cast<Result>(left.left Wrong operand);      \
-    return static_cast<Result>(left.left Right operand);                           \
+#define HEXHEX_MUTATED(Name, Right, Wrong)                                    \
+  struct Name {                                                               \
+    int mutant;                                                               \
+  };                                                                          \
+  template <class Left>                                                       \
+  struct Name##Left {                                                         \
+    Left&& left;                                                              \
+    int mutant;                                                               \
+  };                                                                          \
+  template <class Left>                                                       \
+  constexpr Name##Left<Left> operator Right(Left&& left, Name mutated) {      \
+    return {std::forward<Left>(left), mutated.mutant};                        \
+  }                                                                           \
+  template <class Left, class Operand>                                        \
+  constexpr auto operator Right(Name##Left<Left> left, Operand&& operand) {   \
+    using Result = std::remove_cvref_t<decltype(left.left Right operand)>;    \
+    if (on(left.mutant)) return static_cast<Result>(left.left Wrong operand); \
+    return static_cast<Result>(left.left Right operand);                      \
   }
 
 HEXHEX_MUTATED(Less, <, <=)

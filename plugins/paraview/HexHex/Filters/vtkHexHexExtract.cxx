@@ -51,12 +51,6 @@ void requireVerified(
   {
     return;
   }
-  if (report.ambiguous)
-  {
-    throw hexhex::Error(hexhex::ErrorCode::AmbiguousMesh,
-      "The map is so coarse that different edges or faces of the mesh have the same vertices. Use a "
-      "larger scale, such as 2 or 3.");
-  }
   std::string sentence = "The mesh does not agree with the map:";
   for (const hexhex::VerifyItem& item : report.items)
   {
