@@ -12,8 +12,9 @@ namespace {
 /// What a position may err by, relative to the coordinates of its tet: a few roundings, and the
 /// conversion to text with 17 digits.
 constexpr double kRounding = 0x1p-48;
-/// Weights that lose more digits than this are computed exactly.
-constexpr double kMaxCondition = 0x1p20;
+/// Weights that lose more digits than this are computed exactly. Extraction does so from 2^20 on,
+/// as it measures it, which is at least a sixth of what is measured here.
+constexpr double kMaxCondition = 0x1p23;
 
 }  // namespace
 
