@@ -747,7 +747,8 @@ def quality(mesh: Mesh | LagrangeMesh, *, threads: int | None = None,
     1.0
     """
     *values, worst = _hexhex.certify(mesh._handle, _threads(threads), progress)
-    return Quality(*values, [RefutedCell(*each) for each in worst])
+    values.append([RefutedCell(*each) for each in worst])
+    return Quality(*values)
 
 
 def scaled_jacobian(corners: npt.ArrayLike) -> float:
