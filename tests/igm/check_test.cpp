@@ -246,33 +246,65 @@ TEST(Check, FindsDegenerateTets) {
   EXPECT_EQ(report.defects[0].worst[0].amount, 0);
 }
 
-TEST(Check, FindsTheBoundaryOffTheLattice) {
-  TetMap map = generateSample(SampleKind::Box).map;
-  const Prepared before(map);
-  const TetTopology& topology = before.topology();
-  // A vertex inside a wall of the box: not on an edge of the box, but on its boundary.
+/// A vertex inside a wall of a box: not on an edge of the box, but on its boundary.
+struct WallVertex {
   Index vertex = kNone;
-  std::size_t axis = 0;
-  std::size_t faces = 0;
-  for (Index v = 0; v < map.points.size() && vertex == kNone; ++v) {
-    if (before.singularities().degree(v) != 0) continue;
+  std::size_t axis = 0;   ///< across the wall
+  std::size_t faces = 0;  ///< boundary triangles at it
+};
+
+std::vector<WallVertex> wallVertices(const TetMap& map, const Prepared& prepared) {
+  const TetTopology& topology = prepared.topology();
+  std::vector<WallVertex> found;
+  for (Index v = 0; v < map.points.size(); ++v) {
+    if (prepared.singularities().degree(v) != 0) continue;
+    WallVertex wall;
     for (const CornerIndex corner : topology.star(v)) {
       for (const HalfFace face : {0U, 1U, 2U, 3U}) {
         if (face == corner % 4 || !topology.isBoundary(4 * (corner / 4) + face)) continue;
-        vertex = v;
-        ++faces;
+        wall.vertex = v;
+        ++wall.faces;
         const TetParameters& u = map.parameters[corner / 4];
         const std::array<int, 3>& local = kFaceCorners[face];
         const auto at = [&](std::size_t k, std::size_t a) {
           return u[static_cast<std::size_t>(local[k])][a];
         };
         for (std::size_t a = 0; a < 3; ++a) {
-          if (at(0, a) == at(1, a) && at(0, a) == at(2, a)) axis = a;
+          if (at(0, a) == at(1, a) && at(0, a) == at(2, a)) wall.axis = a;
         }
       }
     }
+    if (wall.vertex != kNone) found.push_back(wall);
   }
-  ASSERT_NE(vertex, kNone);
+  return found;
+}
+
+/// Wherever a vertex is among the corners of its triangles.
+TEST(Check, FindsEveryVertexOffItsWall) {
+  const TetMap sound = generateSample(SampleKind::Box, {.jitter = 0.3}).map;
+  const Prepared before(sound);
+  const std::vector<WallVertex> walls = wallVertices(sound, before);
+  ASSERT_GT(walls.size(), 5U);
+  for (const auto& [vertex, axis, faces] : walls) {
+    SCOPED_TRACE(vertex);
+    TetMap map = sound;
+    Vec3 shift{};
+    shift[axis] = -0.1;
+    moveParameters(map, vertex, shift);
+    const CheckReport report = check(map);
+    const Defect* const defect = find(report, ErrorCode::BoundaryOffLattice);
+    ASSERT_NE(defect, nullptr);
+    EXPECT_EQ(defect->count, faces + 1);  // its triangles, and the vertex itself
+  }
+}
+
+TEST(Check, FindsTheBoundaryOffTheLattice) {
+  TetMap map = generateSample(SampleKind::Box).map;
+  const Prepared before(map);
+  const TetTopology& topology = before.topology();
+  const std::vector<WallVertex> walls = wallVertices(map, before);
+  ASSERT_FALSE(walls.empty());
+  const auto& [vertex, axis, faces] = walls.front();
   Vec3 shift{};
   shift[axis] = 0.1;
   moveParameters(map, vertex, shift);
@@ -296,6 +328,29 @@ TEST(Check, FindsTheBoundaryOffTheLattice) {
   }
   EXPECT_EQ(vertices, 1U);
   EXPECT_TRUE(check(map, {.tolerance = 0.11}).valid());
+}
+
+/// What finds regular vertices fast may be left out, also where vertices have no tets.
+TEST(Check, FindsTheSameWithoutShortcuts) {
+  for (const ChartStyle charts : {ChartStyle::Aligned, ChartStyle::Random}) {
+    TetMap map = generateSample(SampleKind::Sphere, {.charts = charts, .noise = 1e-4}).map;
+    const Index last = static_cast<Index>(map.points.size()) - 1;
+    map.points.push_back({7, 7, 7});
+    std::swap(map.points[0], map.points.back());
+    for (Tet& tet : map.tets) {
+      for (Index& v : tet) v = v == 0 ? last + 1 : v;
+    }
+    EngineSwitches slow;
+    slow.regularVertices = false;
+    Context context;
+    DefectCollector defects;
+    const PreparedMap expected =
+        prepareMap(map, 1e-2, 1, context, defects, ChartChoice::AsGiven, slow);
+    ASSERT_TRUE(defects.empty());
+    const Prepared found(map);
+    EXPECT_EQ(found.exact().corners, expected.exact.corners);
+    EXPECT_EQ(found.singularities().edges.size(), expected.singularities.edges.size());
+  }
 }
 
 /// In terms of the caller's corners, also if those are reversed.

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <base/disjoint_sets.hpp>
+#include <igm/transition_fit.hpp>
 #include <igm/unfold_charts.hpp>
 
 #include "map_samples.hpp"
@@ -110,6 +111,25 @@ TEST(Gauges, AgreeEverywhereInABox) {
     }
     EXPECT_EQ(disagreements, 0U);
   }
+}
+
+/// Two tets in two blocks: one triangle connects these, and both tets are in one chart thereafter.
+TEST(Gauges, JoinBlocksThatHaveOneTriangleInCommon) {
+  TetMap map = test::identityMap({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}},
+                                 {{0, 1, 2, 3}, {4, 1, 3, 2}});
+  for (Vec3& u : map.parameters[1]) u = {u[1] + 3, u[2] - 4, u[0] + 5};
+  const test::Topology read(map);
+  ASSERT_TRUE(read.defects.empty());
+  Context context(1);
+  Stage stage(context, "test");
+  const LocalParameters parameters(read.input);
+  const Array<Gauge> gauges = computeGauges(read.topology, parameters, stage, 1);
+  HalfFace shared = 0;
+  while (read.topology.mate[shared] == kNone) ++shared;
+  const Transition across =
+      fitTransition(SharedTriangle(read.topology, parameters, shared)).transition;
+  EXPECT_FALSE(across.isIdentity());
+  EXPECT_EQ(gauges[tetOf(read.topology.mate[shared])] * across, gauges[tetOf(shared)]);
 }
 
 }  // namespace

@@ -187,6 +187,7 @@ void expectDefect(const TetMap& map, ErrorCode code, const std::string& place,
   EXPECT_FALSE(defect.sentence.empty());
   ASSERT_FALSE(defect.worst.empty());
   EXPECT_EQ(toString(defect.worst[0].place), place);
+  EXPECT_EQ(defect.worst[0].amount, 0);  // there is nothing to measure
 
   const Prepared prepared(map);
   try {

@@ -125,6 +125,26 @@ TEST_P(DamagedSamples, ComeOutRight) {
   }
 }
 
+/// Everything but the damage fits exactly, and must. Four cells around an edge of valence 8 are as
+/// much as no turn at all, so only angles tell that it is singular.
+TEST_P(DamagedSamples, ComeOutRightWithoutAnyTolerance) {
+  for (const SampleKind kind : {SampleKind::Box, SampleKind::Cylinder, SampleKind::Star}) {
+    for (const int valence : {3, 5, 8}) {
+      SampleOptions options;
+      options.valence = valence;
+      options.refine = 3;
+      options.charts = ChartStyle::Random;
+      const HexMesh wanted = extract(sample(kind, options));
+      options.defectKind = GetParam();
+      options.defects = 3;
+      SCOPED_TRACE(nameOf(kind) + ", valence " + std::to_string(valence));
+      Context context;
+      const TetMap repaired = repair(sample(kind, options), {.tolerance = 0}, context);
+      EXPECT_TRUE(sameConnectivity(verifiedExtraction(repaired, {.tolerance = 0}), wanted));
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, DamagedSamples,
                          ::testing::Values(DefectKind::Interior, DefectKind::Singular,
                                            DefectKind::Boundary, DefectKind::Sliver));
