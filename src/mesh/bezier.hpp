@@ -39,6 +39,16 @@ struct Bezier {
   }
 };
 
+/// Calls visit(the first place of a line) for all lines along an axis.
+template <class T, class Visit>
+void forLines(const Bezier<T>& grid, std::size_t axis, const Visit& visit) {
+  const std::size_t stride = grid.stride(axis);
+  const std::size_t slab = stride * grid.size[axis];
+  for (std::size_t outer = 0; outer < grid.values.size(); outer += slab) {
+    for (std::size_t at = outer; at < outer + stride; ++at) visit(at);
+  }
+}
+
 /// A fraction whose denominator is one for all, which integers do without.
 template <class T>
 [[nodiscard]] T fraction(std::int64_t numerator, std::int64_t denominator) {
@@ -104,19 +114,23 @@ void apply(const Matrix<S>& matrix, std::size_t axis, Bezier<T>& grid, std::vect
 template <class T>
 void weigh(Bezier<T>& grid, bool divide) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (grid.size[axis] <= 2) continue;  // the binomials are 1
     const std::vector<std::int64_t> row = binomials(grid.size[axis] - 1);
     std::int64_t multiple = 1;
     for (const std::int64_t binomial : row) multiple = std::lcm(multiple, binomial);
-    const std::size_t stride = grid.stride(axis);
     std::vector<T> factors;
     factors.reserve(row.size());
     for (const std::int64_t binomial : row) {
       factors.push_back(divide ? fraction<T>(multiple / binomial, multiple)
                                : fraction<T>(binomial, 1));
     }
-    for (std::size_t i = 0; i < grid.values.size(); ++i) {
-      grid.values[i] = grid.values[i] * factors[i / stride % row.size()];
-    }
+    const std::size_t stride = grid.stride(axis);
+    forLines(grid, axis, [&](std::size_t at) {
+      for (const T& factor : factors) {
+        grid.values[at] = grid.values[at] * factor;
+        at += stride;
+      }
+    });
   }
 }
 
@@ -178,15 +192,14 @@ template <class T>
   const std::size_t stride = whole.stride(axis);
   const std::size_t degree = whole.size[axis] - 1;
   std::vector<T> line(degree + 1);
-  for (std::size_t i = 0; i < whole.values.size(); ++i) {
-    if (i / stride % (degree + 1) != 0) continue;  // no beginning of a line
-    for (std::size_t k = 0; k <= degree; ++k) line[k] = whole.values[i + k * stride];
+  forLines(whole, axis, [&](std::size_t at) {
+    for (std::size_t k = 0; k <= degree; ++k) line[k] = whole.values[at + k * stride];
     for (std::size_t step = 0; step <= degree; ++step) {
-      result[0].values[i + step * stride] = halved(line[0], step, degree);
-      result[1].values[i + (degree - step) * stride] = halved(line[degree - step], step, degree);
+      result[0].values[at + step * stride] = halved(line[0], step, degree);
+      result[1].values[at + (degree - step) * stride] = halved(line[degree - step], step, degree);
       for (std::size_t k = 0; k + step < degree; ++k) line[k] = line[k] + line[k + 1];
     }
-  }
+  });
   return result;
 }
 

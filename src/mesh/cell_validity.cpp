@@ -48,13 +48,13 @@ std::size_t axisToHalve(const CellPart& /*part*/, const Bezier<double>& polynomi
   std::array<double, 3> bend{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t stride = polynomial.stride(axis);
-    for (std::size_t i = 0; i < polynomial.values.size(); ++i) {
-      const std::size_t along = i / stride % polynomial.size[axis];
-      if (along == 0 || along + 1 == polynomial.size[axis]) continue;
-      const auto& values = polynomial.values;
-      bend[axis] = std::max(bend[axis], std::abs((values[i + stride] - values[i]) -
-                                                 (values[i] - values[i - stride])));
-    }
+    const auto& values = polynomial.values;
+    forLines(polynomial, axis, [&](std::size_t at) {
+      for (std::size_t k = 2; k < polynomial.size[axis]; ++k, at += stride) {
+        bend[axis] = std::max(bend[axis], std::abs((values[at + 2 * stride] - values[at + stride]) -
+                                                   (values[at + stride] - values[at])));
+      }
+    });
   }
   return static_cast<std::size_t>(std::max_element(bend.begin(), bend.end()) - bend.begin());
 }
@@ -234,10 +234,15 @@ CellValidity::Form CellValidity::formOf(std::span<const Vec3> nodes) const {
       const Vec3 d = minus(scaled[i + stride], scaled[i]);
       for (const double x : d) difference = std::max(difference, std::abs(x));
     }
-    for (const Bezier<double>& coordinate : form.columns[axis]) {
-      for (const double x : coordinate.values) largest[axis] = std::max(largest[axis], std::abs(x));
+    const auto& [x, y, z] = form.columns[axis];
+    double longest = 0;
+    for (std::size_t i = 0; i < x.values.size(); ++i) {
+      const Vec3 column = {x.values[i], y.values[i], z.values[i]};
+      for (const double c : column) largest[axis] = std::max(largest[axis], std::abs(c));
+      longest = std::max(longest, length(column));
     }
     errors[axis] = kRounding * largest[axis] + conversionError_ * difference;
+    form.largestLengths *= (1 + 16 * kRounding) * (longest + 2 * errors[axis]);
     largest[axis] += errors[axis];
     if (largest[axis] < kShortest) form.error = std::numeric_limits<double>::infinity();
   }
@@ -311,9 +316,10 @@ CellCertificate CellValidity::decideExactly(std::span<const Vec3> nodes, const F
   return divide(std::move(determinant), 0, 0);
 }
 
-CellCertificate CellValidity::examine(std::span<const Vec3> nodes) const {
+CellCertificate CellValidity::examine(std::span<const Vec3> nodes, Form& form) const {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (isFinite(nodes[i])) continue;
+    form.error = std::numeric_limits<double>::infinity();
     const auto p = static_cast<double>(order_);
     const std::size_t n = order_ + 1;
     const std::array<std::size_t, 3> at = {i % n, i / n % n, i / n / n};
@@ -323,7 +329,7 @@ CellCertificate CellValidity::examine(std::span<const Vec3> nodes) const {
     }
     return result;
   }
-  const Form form = formOf(nodes);
+  form = formOf(nodes);
   CellCertificate result = decide(nodes, form);
   if (std::isfinite(form.error)) {
     const double least = leastOf(form.determinant) - form.error;
@@ -332,12 +338,14 @@ CellCertificate CellValidity::examine(std::span<const Vec3> nodes) const {
   return result;
 }
 
+CellCertificate CellValidity::examine(std::span<const Vec3> nodes) const {
+  Form form;
+  return examine(nodes, form);
+}
+
 CellCertificate CellValidity::findLeast(std::span<const Vec3> nodes, double target) const {
-  CellCertificate result = examine(nodes);
-  if (!std::all_of(nodes.begin(), nodes.end(), [](const Vec3& v) { return isFinite(v); })) {
-    return result;
-  }
-  const Form form = formOf(nodes);
+  Form form;
+  CellCertificate result = examine(nodes, form);
   if (!std::isfinite(form.error)) return result;
   if (result.validity != Validity::Refuted) result.scaledJacobian = 1;
 
@@ -375,14 +383,14 @@ CellCertificate CellValidity::findLeast(std::span<const Vec3> nodes, double targ
       form.error);
   const std::size_t most = kMostPartsOfLeast / (order_ * order_);
   for (std::size_t count = 0;; ++count) {
-    const JacobianQuotient worst = parts.top();
+    const JacobianQuotient& worst = parts.top();
     result.minimum = worst.bound;
     const double wanted = std::min(target, result.scaledJacobian) - kMinimumTolerance;
     if (worst.bound >= wanted || count >= most) return result;
+    const double error = worst.error + growth;
+    std::array<JacobianQuotient, 2> halves = worst.halved(longestAxis(worst.part));
     parts.pop();
-    for (JacobianQuotient& half : worst.halved(longestAxis(worst.part))) {
-      add(std::move(half), worst.error + growth);
-    }
+    for (JacobianQuotient& half : halves) add(std::move(half), error);
   }
 }
 

@@ -43,6 +43,7 @@ class CellValidity {
   [[nodiscard]] Columns<T> columnsOf(const std::vector<std::array<T, 3>>& nodes,
                                      const NodeMatrices<T>& matrices) const;
   [[nodiscard]] Columns<double> roundedColumnsOf(const std::vector<Vec3>& nodes) const;
+  [[nodiscard]] CellCertificate examine(std::span<const Vec3> nodes, Form& form) const;
   [[nodiscard]] Form formOf(std::span<const Vec3> nodes) const;
   [[nodiscard]] CellCertificate decide(std::span<const Vec3> nodes, const Form& form) const;
   [[nodiscard]] CellCertificate decideExactly(std::span<const Vec3> nodes, const Form& form) const;

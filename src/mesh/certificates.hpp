@@ -48,7 +48,12 @@ class BlockFindings {
     certificate.undecided = all.counts_[static_cast<std::size_t>(Validity::Undecided)];
 
     std::sort(all.open_.begin(), all.open_.end());
-    const std::size_t looked = std::min(all.open_.size(), std::max(kMostWorst, cells.looks()));
+    const std::size_t most = std::min(all.open_.size(), std::max(kMostWorst, cells.looks()));
+    // The others stay as they are; no look at a cell pays that is no worse.
+    const double rest = most < all.open_.size() ? all.open_[most].value : 1;
+    const auto end = std::partition_point(all.open_.begin(), all.open_.end(),
+                                          [&](const Entry& e) { return e.value < rest; });
+    const auto looked = static_cast<std::size_t>(end - all.open_.begin());
     parallelFor(stage, looked, 1, [&](std::size_t i) {
       std::vector<Vec3> nodes;
       nodesOf(all.open_[i].cell, nodes);

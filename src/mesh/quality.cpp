@@ -10,7 +10,7 @@
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
-#include <mesh/cell_pair.hpp>
+#include <mesh/cell_measures.hpp>
 #include <mesh/cell_validity.hpp>
 #include <mesh/certificates.hpp>
 
@@ -68,38 +68,27 @@ double scaledJacobianOfAnySize(const Corners& corners) {
   return std::clamp(std::min(smallest, normalizedProduct(axes)), -1.0, 1.0);
 }
 
-/// @param corner  (which cell, place): a corner of one of two cells
-template <class CornerAt>
-PairQuality qualityOf(const CornerAt& corner) {
-  std::array<PairVector, 8> at;
-  for (std::size_t place = 0; place < 8; ++place) {
-    const Vec3& first = corner(0, place);
-    const Vec3& second = corner(1, place);
-    for (std::size_t k = 0; k < 3; ++k) at[place][k] = Pair{first[k], second[k]};
-  }
-  return measurePair(at);
-}
-
-/// @param corners  gives those of the cell, where they are needed
-template <class CornersOf>
-double scaledJacobianOf(const PairQuality& quality, std::size_t which, const CornersOf& corners) {
-  if (quality.inRange[which] == 0) return scaledJacobianOfAnySize(corners());
-  return std::clamp(quality.scaled[which], -1.0, 1.0);  // rounding may lead beyond
-}
-
-/// Calls use(cell, scaled Jacobian, quality of two cells, which of them).
+/// Calls use(first, measures, n) for n cells at a time, measured.
 template <class Use>
-void forCells(const HexMesh& mesh, std::size_t begin, std::size_t end, const Use& use) {
-  for (std::size_t c = begin; c < end; c += 2) {
-    const std::size_t count = std::min<std::size_t>(2, end - c);
-    const std::array<const Hex*, 2> cells = {&mesh.cells[c], &mesh.cells[c + count - 1]};
-    const PairQuality quality = qualityOf([&](std::size_t which, std::size_t place) -> const Vec3& {
-      return mesh.points[(*cells[which])[kVtkCorner[place]]];
-    });
-    for (std::size_t which = 0; which < count; ++which) {
-      const auto corners = [&] { return cornersOf(mesh, c + which); };
-      use(c + which, scaledJacobianOf(quality, which, corners), quality, which);
+void forCells(const HexMesh& mesh, std::size_t begin, std::size_t end, Stage& stage,
+              const Use& use) {
+  const MeasureCells measure = measuresOfCells().back();
+  CellMeasures measures;
+  for (std::size_t c = begin; c < end; c += CellMeasures::kMost) {
+    const std::size_t n = std::min(CellMeasures::kMost, end - c);
+    const auto cells = std::span(mesh.cells).subspan(c, n);
+    Index largest = 0;
+    for (const Hex& cell : cells) {
+      for (const Index corner : cell) largest = std::max(largest, corner);
     }
+    if (largest >= mesh.points.size()) requireCornersInRange(mesh, stage);
+    measure(mesh.points.data(), cells, measures);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (measures.inRange[i] == 0) {
+        measures.scaled[i] = scaledJacobianOfAnySize(cornersOf(mesh, c + i));
+      }
+    }
+    use(c, measures, n);
   }
 }
 
@@ -109,8 +98,9 @@ void addTo(QualitySummary& summary, double value) {
   summary.mean += value;
   if (value <= 0) ++summary.notPositive;
   // 10 * value is exact enough for -0.9, -0.8, ... to fall in the bins that they begin.
-  const double bin = std::clamp(std::floor(10 * value) + 10, 0.0, 19.0);
-  ++summary.histogram[static_cast<std::size_t>(bin)];
+  const auto towardsZero = static_cast<int>(10 * value);
+  const int bin = 10 + towardsZero - (10 * value < towardsZero ? 1 : 0);
+  ++summary.histogram[static_cast<std::size_t>(std::clamp(bin, 0, 19))];
 }
 
 /// Of `count` values, from the sums of blocks.
@@ -127,42 +117,38 @@ QualitySummary united(const std::vector<QualitySummary>& blocks, std::size_t cou
   return all;
 }
 
-void judge(const HexMesh& mesh, std::size_t cell, double scaled, const PairQuality& quality,
-           std::size_t which, const CellValidity& cells, Certificate& certificate,
-           BlockFindings& findings) {
-  CellCertificate known = {Validity::Positive, -1, {}, 0};
-  const double error = quality.error[which];
-  if (quality.inRange[which] != 0 && quality.least[which] > error) {
-    known.minimum = (quality.least[which] - 2 * error) / quality.volume[which];
-  } else if (quality.inRange[which] != 0 && quality.corner[which] < -error) {
-    known.validity = Validity::Refuted;
-  } else {
-    known = cells.examine(cornersOf(mesh, cell));
+CellCertificate certificateOf(const HexMesh& mesh, std::size_t cell, const CellMeasures& measures,
+                              std::size_t i, const CellValidity& cells) {
+  const double error = measures.errorOf(i);
+  if (measures.inRange[i] != 0 && measures.least[i] > error) {
+    return {Validity::Positive, (measures.least[i] - 2 * error) / measures.volume[i], {}, 0};
   }
-  certificate.validity[cell] = known.validity;
-  findings.add(cell, scaled, known);
+  if (measures.inRange[i] != 0 && measures.corner[i] < -error) {
+    return {Validity::Refuted, -1, {}, 0};
+  }
+  return cells.examine(cornersOf(mesh, cell));
 }
 
 }  // namespace
 
 double scaledJacobian(const std::array<Vec3, 8>& corners) noexcept {
-  const Corners ordered = byPlace(corners);
-  const PairQuality quality = qualityOf(
-      [&](std::size_t /*which*/, std::size_t place) -> const Vec3& { return ordered[place]; });
-  return scaledJacobianOf(quality, 0, [&] { return ordered; });
+  CellMeasures measures;
+  const Hex cell = {0, 1, 2, 3, 4, 5, 6, 7};
+  measuresOfCells().back()(corners.data(), std::span(&cell, 1), measures);
+  return measures.inRange[0] != 0 ? measures.scaled[0] : scaledJacobianOfAnySize(byPlace(corners));
 }
 
 Array<double> scaledJacobians(const HexMesh& mesh, Context& context) {
   Stage stage(context, "quality");
   Array<double> result(mesh.cells.size());
   withThreads(context.threads(), [&] {
-    requireCornersInRange(mesh, stage);
-    parallelBlocks(
-        stage, mesh.cells.size(), kGrain,
-        [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-          forCells(mesh, begin, end,
-                   [&](std::size_t cell, double scaled, const auto&...) { result[cell] = scaled; });
-        });
+    parallelBlocks(stage, mesh.cells.size(), kGrain,
+                   [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                     forCells(mesh, begin, end, stage,
+                              [&](std::size_t first, const CellMeasures& measures, std::size_t n) {
+                                std::copy_n(measures.scaled.begin(), n, &result[first]);
+                              });
+                   });
   });
   return result;
 }
@@ -189,16 +175,20 @@ Certificate certify(const HexMesh& mesh, Context& context) {
   certificate.validity.resize(n);
   const CellValidity cells(1);
   withThreads(context.threads(), [&] {
-    requireCornersInRange(mesh, stage);
     std::vector<BlockFindings> blocks(blockCount(n, kGrain));
     std::vector<QualitySummary> summaries(blocks.size());
     parallelBlocks(stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
       summaries[block].minimum = 1;
-      forCells(mesh, begin, end,
-               [&](std::size_t cell, double scaled, const PairQuality& quality, std::size_t which) {
-                 certificate.scaledJacobians[cell] = scaled;
-                 addTo(summaries[block], scaled);
-                 judge(mesh, cell, scaled, quality, which, cells, certificate, blocks[block]);
+      forCells(mesh, begin, end, stage,
+               [&](std::size_t first, const CellMeasures& measures, std::size_t count) {
+                 std::copy_n(measures.scaled.begin(), count, &certificate.scaledJacobians[first]);
+                 for (std::size_t i = 0; i < count; ++i)
+                   addTo(summaries[block], measures.scaled[i]);
+                 for (std::size_t i = 0; i < count; ++i) {
+                   const CellCertificate known = certificateOf(mesh, first + i, measures, i, cells);
+                   certificate.validity[first + i] = known.validity;
+                   blocks[block].add(first + i, measures.scaled[i], known);
+                 }
                });
     });
     certificate.quality = united(summaries, n);

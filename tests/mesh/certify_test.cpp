@@ -1,9 +1,11 @@
 // Certificates of cells against exact subdivision by independent code, and of meshes.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
 #include <optional>
+#include <tuple>
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
@@ -11,6 +13,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/quality.hpp>
 
+#include <mesh/cell_measures.hpp>
 #include <mesh/cell_validity.hpp>
 #include <mesh/grid_meshes.hpp>
 
@@ -278,6 +281,37 @@ std::array<Vec3, 8> cube() {
   return corners;
 }
 
+TEST(Measures, AreTheSameInAllRegisters) {
+  Random random(8);
+  std::vector<Vec3> points(1000);
+  for (Vec3& p : points) {
+    for (double& x : p) x = std::ldexp(random.real() - 0.5, static_cast<int>(random.below(20)));
+  }
+  points[7] = {1e200, 0, 0};
+  points[8] = {0, std::nan(""), 0};
+  std::vector<Hex> cells(CellMeasures::kMost);
+  for (int round = 0; round < 200; ++round) {
+    for (Hex& cell : cells) {
+      for (Index& corner : cell) corner = static_cast<Index>(random.below(points.size()));
+    }
+    const std::size_t count = 1 + random.below(cells.size());
+    std::vector<CellMeasures> all;
+    for (const MeasureCells measure : measuresOfCells()) {
+      measure(points.data(), std::span(cells).first(count), all.emplace_back());
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto bits = [&](const CellMeasures& of) {
+        const bool known = of.inRange[i] != 0;
+        return std::tuple(of.inRange[i], std::bit_cast<std::uint64_t>(known ? of.scaled[i] : 0),
+                          std::bit_cast<std::uint64_t>(known ? of.corner[i] : 0),
+                          std::bit_cast<std::uint64_t>(known ? of.least[i] : 0),
+                          std::bit_cast<std::uint64_t>(known ? of.volume[i] : 0));
+      };
+      for (const CellMeasures& one : all) ASSERT_EQ(bits(one), bits(all[0]));
+    }
+  }
+}
+
 TEST(Certify, OneCell) {
   const CellCertificate of = certify(cube());
   EXPECT_EQ(of.validity, Validity::Positive);
@@ -388,6 +422,37 @@ TEST(Certify, MinimumIsABoundThatIsReached) {
     }
   }
   EXPECT_GT(inside, 0);
+}
+
+TEST(Certify, FirstBoundIsABoundInAnyUnits) {
+  Random random(6);
+  int positive = 0;
+  for (int i = 0; i < 200; ++i) {
+    std::array<Vec3, 8> corners = cube();
+    for (Vec3& corner : corners) {
+      for (double& x : corner) x += 0.6 * (random.real() - 0.5);
+    }
+    double largest = 0;
+    for (Vec3& corner : corners) {
+      for (double& x : corner) {
+        x -= 0.5;
+        largest = std::max(largest, std::abs(x));
+      }
+    }
+    for (Vec3& corner : corners) {
+      for (double& x : corner) x *= (i % 2 == 0 ? 0.51 : 0.99) / largest;
+    }
+    std::array<Vec3, 8> byPlace;
+    for (std::size_t c = 0; c < 8; ++c) {
+      byPlace[static_cast<std::size_t>(kPlaces[c][0] + 2 * kPlaces[c][1] + 4 * kPlaces[c][2])] =
+          corners[c];
+    }
+    const CellCertificate first = CellValidity(1).examine(byPlace);
+    const CellCertificate known = certify(corners);
+    if (known.validity == Validity::Positive) ++positive;
+    EXPECT_LE(first.minimum, known.scaledJacobian);
+  }
+  EXPECT_GT(positive, 50);
 }
 
 /// A grid with vertices moved at random by up to half of this.
