@@ -178,6 +178,29 @@ TEST(Features, TaggedEdgesLieOnTaggedTetEdges) {
   EXPECT_TRUE(std::all_of(mesh.features.edges.begin(), mesh.features.edges.end(), isEdge));
 }
 
+/// Where tags change in the midst of a hex edge, it gets the one at its smaller vertex: here, each
+/// edge of a cube of one cell consists of tet edges with tags of their own.
+TEST(Features, TagsOfEdgesAreThoseAtTheSmallerVertex) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SampleOptions options;
+    options.cells = 1;
+    options.refine = 2;
+    options.charts = ChartStyle::Random;
+    options.features = true;
+    options.seed = seed;
+    TetMap map = generateSample(SampleKind::Box, options).map;
+    std::int32_t next = 1;
+    for (FeatureEdge& edge : map.features.edges) edge.tag = next++;
+    const HexMesh mesh = extractWith(map, Engine::Atlas, 1, 1);
+    ASSERT_EQ(mesh.features.edges.size(), 12 * 2U);
+    for (const FeatureEdge& edge : mesh.features.edges) {
+      const auto& ends = map.features.edges[static_cast<std::size_t>(edge.tag) - 1].vertices;
+      const Index smaller = std::min(edge.vertices[0], edge.vertices[1]);
+      EXPECT_LT(distance(mesh.points[smaller], map.points[ends[0]], map.points[ends[1]]), 1e-12);
+    }
+  }
+}
+
 // Inner faces and edges are tagged like those of the boundary: here the planes between the blocks
 // of a box, and the lines in which they meet, found by their coordinates.
 TEST(Features, InnerFacesAndEdges) {

@@ -104,7 +104,7 @@ Coefficients half(const Coefficients& whole, std::size_t axis, bool upper) {
 /// Whether it is positive everywhere, if so many levels of eight parts tell.
 std::optional<bool> isPositive(const Coefficients& c, int levels) {
   if (std::all_of(c.begin(), c.end(), [](const Integer& x) { return x > 0; })) return true;
-  for (const std::size_t corner : {0, 2, 6, 8, 18, 20, 24, 26}) {
+  for (const std::size_t corner : {0U, 2U, 6U, 8U, 18U, 20U, 24U, 26U}) {
     if (c[corner] <= 0) return false;
   }
   if (levels == 0) return std::nullopt;

@@ -30,6 +30,18 @@ TEST(ThinTets, AreNoThickerThanSevenTimesTheNoise) {
   EXPECT_FALSE(isThin(tetOfHeight(1e-9), 0));
 }
 
+/// Far away from the origin, coordinates have few digits left for heights.
+TEST(FlatTets, AreBadIfRoundingMayHaveFlippedThem) {
+  const auto tetAt = [](double place, double height) {
+    return TetParameters{Vec3{place, 0, 0}, {place + 1, 0, 0}, {place, 1, 0}, {place, 0, height}};
+  };
+  EXPECT_TRUE(isBad(tetAt(0, 0)));
+  EXPECT_TRUE(isBad(tetAt(0, -1)));
+  EXPECT_FALSE(isBad(tetAt(0, 0x1p-40)));
+  EXPECT_TRUE(isBad(tetAt(0x1p20, 0x1p-40)));
+  EXPECT_FALSE(isBad(tetAt(0x1p20, 0x1p-20)));
+}
+
 /// Of a grid of 6 x 6 x 6 cubes, the tets of some.
 std::vector<Index> tetsOfCubes(const testing::CellFilter& isIn) {
   std::vector<Index> tets;

@@ -366,7 +366,7 @@ TEST(Verify, KnowsTheTwoSidesOfASlit) {
 
 TEST(Verify, TellsCellsAtOnePlaceApart) {
   // The same box twice, one in the other, and a longer box in both.
-  for (const std::size_t longer : {2, 4}) {
+  for (const std::size_t longer : {2U, 4U}) {
     const TetMap box = identityMap(2);
     const TetMap second = identityMap(longer);
     TetMap map = joined(box, second);
