@@ -1,0 +1,139 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <quantize/bend.hpp>
+#include <quantize/bend_split.hpp>
+#include <quantize/edge_turns.hpp>
+#include <quantize/newton.hpp>
+
+#include <lattice/tet_geometry.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// More rounds of splitting have not helped any map.
+constexpr int kMostRounds = 12;
+/// Coordinates are multiples of 2^-30, or coarser ones where numbers are large: sanitization keeps
+/// them even if the map is going to be scaled by thousands.
+constexpr int kFractionBits = 30;
+constexpr int kSignificantBits = 42;
+
+/// Of the penalty after a split, which leaves most of the map good.
+constexpr double kLaterEpsilon = 0.1;
+
+/// One mesh and its unknowns: what is new after each round of splitting.
+class Round {
+ public:
+  Round(BendState& state, Stage& stage) : state_(state), stage_(stage) {
+    topology_.tets = state.problem.tets;
+    topology_.pointCount = state.problem.points.size();
+    if (!matchFaces(topology_, stage)) {
+      throw Error(ErrorCode::Internal, "What is to be bent is no manifold.");
+    }
+    addStars(topology_, stage);
+    unknowns_ = findUnknowns(state.problem, topology_, stage);
+  }
+
+  [[nodiscard]] const TetTopology& topology() const noexcept { return topology_; }
+  [[nodiscard]] const VertexUnknowns& unknowns() const noexcept { return unknowns_; }
+
+  /// Bends the tets and rounds their corners. Fills `bent`, and what the map knows of this.
+  void run(bool isFirst, int polishing, BentMap& map) {
+    const BendEnergy energy(topology_, state_.problem.reference, unknowns_);
+    NewtonSolver solver(energy, stage_);
+    Vector x = isFirst ? Vector(Vector::Zero(energy.unknownCount())) : unknownsOf(energy);
+    if (isFirst) solver.start(x);
+    if (solver.untangle(x, isFirst ? 1 : kLaterEpsilon)) solver.polish(x, polishing);
+    map.iterations += solver.iterations();
+    map.flippedTets = round(energy, x);
+    if (map.flippedTets.empty()) {
+      map.flippedTets = tetsAtOtherTurns(topology_, state_.problem.reference, state_.bent, stage_);
+    }
+    map.energy = energy.value({EnergyKind::Name::FoldoverFree, 0}, x, stage_);
+  }
+
+ private:
+  /// Where the representatives are.
+  [[nodiscard]] Vector unknownsOf(const BendEnergy& energy) const {
+    Vector x(energy.unknownCount());
+    for (Index v = 0; v < topology_.pointCount; ++v) {
+      if (unknowns_.fixed[v] == kAllAxes) continue;
+      const Index t = topology_.vertexTet[v];
+      const Vec3& u = state_.bent[t][static_cast<std::size_t>(topology_.localCorner(t, v))];
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (energy.unknownsOf(v)[k] >= 0) x[energy.unknownsOf(v)[k]] = u[k];
+      }
+    }
+    return x;
+  }
+
+  /// Rounds unknowns, and derives all corners.
+  /// @return tets that are not positive, exactly
+  std::vector<Index> round(const BendEnergy& energy, Vector& x) {
+    const double largest = x.size() == 0 ? 0 : x.cwiseAbs().maxCoeff();
+    const int bits = std::min(kFractionBits, kSignificantBits - std::ilogb(largest + 1));
+    const double unit = std::ldexp(1, bits);
+    for (double& value : x) value = std::nearbyint(value * unit) / unit;
+    return collectFromBlocks<Index>(
+        stage_, topology_.tetCount(), 1024, [&](std::size_t begin, std::size_t end, auto& list) {
+          for (auto t = static_cast<Index>(begin); t < end; ++t) {
+            const auto columns = energy.corners(t, x);
+            LatticeTet lattice;
+            for (std::size_t i = 0; i < 4; ++i) {
+              for (std::size_t k = 0; k < 3; ++k) {
+                const double u =
+                    columns(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i));
+                state_.bent[t][i][k] = u;
+                lattice[i][k] = static_cast<std::int64_t>(u * unit);
+              }
+            }
+            if (orientation(lattice[0], lattice[1], lattice[2], lattice[3]) <= 0) list.push_back(t);
+          }
+        });
+  }
+
+  BendState& state_;
+  Stage& stage_;
+  TetTopology topology_;
+  VertexUnknowns unknowns_;
+};
+
+BendState initialState(BendProblem problem) {
+  BendState state;
+  state.problem = std::move(problem);
+  state.bent.resize(state.problem.tets.size());
+  state.parentTet.resize(state.problem.tets.size());
+  std::iota(state.parentTet.begin(), state.parentTet.end(), Index{0});
+  return state;
+}
+
+}  // namespace
+
+BentMap bend(BendProblem problem, const BendOptions& options, Stage& stage) {
+  const auto mostTets = static_cast<std::size_t>(
+      std::floor(options.maxGrowth * static_cast<double>(problem.tets.size())));
+  BendState state = initialState(std::move(problem));
+  BentMap map;
+  for (map.rounds = 1;; ++map.rounds) {
+    Round round(state, stage);
+    map.contradictions = round.unknowns().contradictions;
+    if (!map.contradictions.empty()) break;
+    round.run(map.rounds == 1, options.polishing, map);
+    if (map.flippedTets.empty() || map.rounds == kMostRounds) break;
+    const auto edges =
+        edgesToSplit(state.problem, round.topology(), round.unknowns(), map.flippedTets);
+    if (!splitEdges(state, edges, mostTets)) break;
+  }
+  map.points = std::move(state.problem.points);
+  map.tets = std::move(state.problem.tets);
+  map.reference = std::move(state.problem.reference);
+  map.parentTet = std::move(state.parentTet);
+  map.splitEdges = std::move(state.splitEdges);
+  if (map.contradictions.empty()) map.parameters = std::move(state.bent);
+  return map;
+}
+
+}  // namespace hexhex

@@ -1,0 +1,77 @@
+// Bends a seamless map onto integers that have been chosen for it, without flipped tets: the last
+// step of quantization.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
+#include <lattice/transition.hpp>
+
+namespace hexhex {
+
+/// The plane that a boundary triangle is to lie in, in its tet's chart.
+struct BoundaryPlane {
+  std::int8_t axis = -1;        ///< 0..2, or -1: the triangle is free, or not on the boundary
+  std::int32_t coordinate = 0;  ///< of its three corners along the axis
+
+  [[nodiscard]] bool operator==(const BoundaryPlane&) const = default;
+};
+
+/// What is to be bent: a tet mesh with a seamless map, and the integers that it shall have.
+/// Half-face 4 * tet + f is the triangle opposite corner f.
+struct BendProblem {
+  std::vector<Vec3> points;
+  std::vector<Tet> tets;
+  /// Positive seamless parameters, times the scale wanted: the shape that each tet should keep.
+  std::vector<TetParameters> reference;
+  /// Per half-face: from the tet's chart into its neighbour's. The rotation is that of the
+  /// reference, the translation may be any integers that are consistent: around a regular edge
+  /// transitions compose to the identity. Not used on the boundary.
+  std::vector<Transition> transitions;
+  std::vector<BoundaryPlane> planes;  ///< per half-face
+};
+
+struct BendOptions {
+  /// Tets may be split until there are so many times as many.
+  double maxGrowth = 2;
+  /// Newton steps that lower distortion once no tet is flipped.
+  int polishing = 10;
+};
+
+/// An edge that was split: its middle is a new vertex, numbered after all others.
+using SplitEdge = std::array<Index, 2>;
+
+struct BentMap {
+  std::vector<Vec3> points;
+  std::vector<Tet> tets;
+  /// An integer-grid map, exactly: multiples of a power of two. Empty if `contradictions` is not.
+  std::vector<TetParameters> parameters;
+  std::vector<TetParameters> reference;  ///< of tets as they are now
+  std::vector<Index> parentTet;          ///< per tet: that of the problem which it is part of
+  std::vector<SplitEdge>
+      splitEdges;  ///< in order: that of vertex points.size() of the problem first
+
+  /// Vertices whose planes and transitions contradict each other, or do not fix integers.
+  std::vector<Index> contradictions;
+  /// Not positive in the end, or, if all are, around edges that the map winds otherwise than the
+  /// reference does; empty after success.
+  std::vector<Index> flippedTets;
+
+  double energy = 0;  ///< mean of the foldover-free energy, by volume; 5 where nothing is distorted
+  int iterations = 0;  ///< Newton steps in all
+  int rounds = 0;      ///< of splitting and untangling
+
+  [[nodiscard]] bool isValid() const noexcept {
+    return contradictions.empty() && flippedTets.empty();
+  }
+};
+
+/// Deterministic with any number of threads.
+[[nodiscard]] BentMap bend(BendProblem problem, const BendOptions& options, Stage& stage);
+
+}  // namespace hexhex

@@ -1,0 +1,88 @@
+// The energy of a bent map as a function of its unknowns, with gradient and a positive semidefinite
+// stand-in for the Hessian matrix.
+//
+// V. Garanzha, I. Kaporin, L. Kudryavtseva, F. Protais, N. Ray, D. Sokolov, "Foldover-free maps in
+// 50 lines of code", ACM Transactions on Graphics 40 (2021).
+#pragma once
+
+#include <array>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <quantize/vertex_unknowns.hpp>
+
+namespace hexhex {
+
+using Matrix = Eigen::SparseMatrix<double>;  ///< the lower triangle of a symmetric one
+using Vector = Eigen::VectorXd;
+
+/// Which energy: of the Jacobian matrix J of a tet, from its reference to its bent shape.
+struct EnergyKind {
+  enum class Name : std::uint8_t {
+    Dirichlet,    ///< |J - 1|^2: quadratic, blind to flipped tets
+    FoldoverFree  ///< |J|^2 / chi^(2/3) + (det^2 + 1) / chi: angles, and volumes
+  };
+  Name name = Name::Dirichlet;
+  /// Of chi, the positive stand-in for the determinant. With 0 it is the determinant itself, and
+  /// the energy infinite unless that is positive.
+  double epsilon = 0;
+};
+
+/// A positive stand-in for a determinant: near it if it is positive, near 0 if it is negative.
+[[nodiscard]] double regularized(double epsilon, double det) noexcept;
+
+/// How far a map is from one without flipped tets.
+struct Folding {
+  double leastDeterminant = std::numeric_limits<double>::infinity();
+  Index flippedTets = 0;  ///< or flat
+};
+
+class BendEnergy {
+ public:
+  /// All arguments must outlive this. Needs the stars of the topology.
+  BendEnergy(const TetTopology& topology, std::span<const TetParameters> reference,
+             const VertexUnknowns& unknowns);
+
+  /// The unknowns that are the coordinates of a vertex's representative; -1: fixed.
+  [[nodiscard]] const std::array<int, 3>& unknownsOf(Index vertex) const noexcept {
+    return numbers_[vertex];
+  }
+  [[nodiscard]] int unknownCount() const noexcept { return count_; }
+
+  /// Corners of a tet in its chart, as columns.
+  [[nodiscard]] Eigen::Matrix<double, 3, 4> corners(Index tet, const Vector& x) const;
+
+  [[nodiscard]] Folding folding(const Vector& x, Stage& stage) const;
+
+  /// Mean over the reference volume.
+  [[nodiscard]] double value(EnergyKind kind, const Vector& x, Stage& stage) const;
+
+  /// All pairs of unknowns of one edge or vertex.
+  [[nodiscard]] Matrix emptyHessian() const;
+
+  /// @param[out] gradient  by unknown
+  /// @param[out] hessian   with the entries of emptyHessian(): without the terms that come from the
+  ///                       curvature of determinants and of chi
+  void derivatives(EnergyKind kind, const Vector& x, Vector& gradient, Matrix& hessian) const;
+
+ private:
+  struct Shape {
+    /// Row i: how the Jacobian matrix depends on corner i.
+    Eigen::Matrix<double, 4, 3> gradients;
+    double weight = 0;
+  };
+
+  void numberUnknowns();
+  void measureShapes(std::span<const TetParameters> reference);
+
+  const TetTopology& topology_;
+  const VertexUnknowns& unknowns_;
+  std::vector<std::array<int, 3>> numbers_;  ///< per vertex
+  int count_ = 0;
+  std::vector<Shape> shapes_;  ///< per tet
+};
+
+}  // namespace hexhex
