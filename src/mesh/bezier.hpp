@@ -109,6 +109,12 @@ void apply(const Matrix<S>& matrix, std::size_t axis, Bezier<T>& grid, std::vect
   return row;
 }
 
+[[nodiscard]] inline std::int64_t leastMultiple(const std::vector<std::int64_t>& row) {
+  std::int64_t multiple = 1;
+  for (const std::int64_t number : row) multiple = std::lcm(multiple, number);
+  return multiple;
+}
+
 /// Times the product of the binomials of the three places, or divided by it: coefficients of powers
 /// (1 - u)^(n - i) u^i, of which products are convolutions.
 template <class T>
@@ -116,12 +122,13 @@ void weigh(Bezier<T>& grid, bool divide) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (grid.size[axis] <= 2) continue;  // the binomials are 1
     const std::vector<std::int64_t> row = binomials(grid.size[axis] - 1);
-    std::int64_t multiple = 1;
-    for (const std::int64_t binomial : row) multiple = std::lcm(multiple, binomial);
+    // Only integers need one denominator for all; that of degree 52 takes more than 64 bits.
+    const std::int64_t multiple = std::is_same_v<T, BigInteger> ? leastMultiple(row) : 1;
     std::vector<T> factors;
     factors.reserve(row.size());
     for (const std::int64_t binomial : row) {
-      factors.push_back(divide ? fraction<T>(multiple / binomial, multiple)
+      const std::int64_t denominator = std::is_same_v<T, BigInteger> ? multiple : binomial;
+      factors.push_back(divide ? fraction<T>(denominator / binomial, denominator)
                                : fraction<T>(binomial, 1));
     }
     const std::size_t stride = grid.stride(axis);
@@ -215,8 +222,7 @@ struct NodeMatrices {
 template <class T>
 [[nodiscard]] NodeMatrices<T> nodeMatrices(std::size_t order) {
   const std::vector<std::int64_t> row = binomials(order);
-  std::int64_t multiple = 1;
-  for (const std::int64_t binomial : row) multiple = std::lcm(multiple, binomial);
+  const std::int64_t multiple = leastMultiple(row);
   std::int64_t denominator = multiple;
   for (std::size_t i = 2; i <= order; ++i) denominator *= static_cast<std::int64_t>(i);
 

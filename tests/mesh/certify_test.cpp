@@ -13,6 +13,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/quality.hpp>
 
+#include <mesh/bezier.hpp>
 #include <mesh/cell_measures.hpp>
 #include <mesh/cell_validity.hpp>
 #include <mesh/grid_meshes.hpp>
@@ -309,6 +310,17 @@ TEST(Measures, AreTheSameInAllRegisters) {
       };
       for (const CellMeasures& one : all) ASSERT_EQ(bits(one), bits(all[0]));
     }
+  }
+}
+/// Bounds of the least scaled Jacobian are of degree 6 p - 2: up to 52, for which the multiple of
+/// all binomials is beyond 64 bits.
+TEST(Bezier, WeightsOfHighDegreesCancel) {
+  for (const std::size_t size : {3U, 27U, 47U, 53U}) {
+    Bezier<double> grid = {{size, 1, 1}, std::vector<double>(size, 1.0)};
+    weigh(grid, false);
+    EXPECT_GT(grid.values[1], 1);
+    weigh(grid, true);
+    for (const double value : grid.values) EXPECT_NEAR(value, 1, 1e-15);
   }
 }
 
