@@ -353,6 +353,20 @@ TEST(Check, FindsTheSameWithoutShortcuts) {
   }
 }
 
+/// Whichever corner it is, and in whichever direction.
+TEST(Check, FindsTheOneCornerThatIsTooFarAway) {
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (const double far : {0x1p30, -0x1p30}) {
+        TetMap map =
+            test::identityMap({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}});
+        map.parameters[0][corner][axis] = far;
+        EXPECT_NE(find(check(map), ErrorCode::TooLarge), nullptr);
+      }
+    }
+  }
+}
+
 /// In terms of the caller's corners, also if those are reversed.
 TEST(Check, NamesFacesOfReversedTetsAsTheCallerDoes) {
   TetMap map = generateSample(SampleKind::Box).map;

@@ -59,6 +59,19 @@ TEST(Orientation, HoldsAtTheEndsOfTheRange) {
   }
 }
 
+/// Where all coordinates but one have few bits, that one may still decide.
+TEST(Orientation, OneCoordinateHasManyBits) {
+  Random random(12);
+  for (int i = cases(30'000); i > 0; --i) {
+    LatticeTet t = coplanar(random, std::int64_t{1} << 12);
+    for (LatticePoint& p : t) {
+      for (std::int64_t& x : p) x <<= 44;
+    }
+    t[random.index(4)][random.index(3)] += random.between(-2, 2);
+    ASSERT_NO_FATAL_FAILURE(expectOrientation(t));
+  }
+}
+
 TEST(Orientation, RandomFullRange) {
   Random random(11);
   for (int i = cases(300'000); i > 0; --i) {

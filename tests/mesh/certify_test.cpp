@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <optional>
+#include <random>
 #include <tuple>
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -312,6 +313,17 @@ TEST(Measures, AreTheSameInAllRegisters) {
     }
   }
 }
+/// All 106 digits of products.
+TEST(Twofold, ProductsAreExact) {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const auto a = static_cast<std::int64_t>(random() >> 11U);
+    const auto b = -static_cast<std::int64_t>(random() >> (11U + static_cast<unsigned>(i) % 40));
+    const Twofold product = exactProduct(static_cast<double>(a), static_cast<double>(b));
+    EXPECT_EQ(Integer(product.high) + Integer(product.low), Integer(a) * b);
+  }
+}
+
 /// Bounds of the least scaled Jacobian are of degree 6 p - 2: up to 52, for which the multiple of
 /// all binomials is beyond 64 bits.
 TEST(Bezier, WeightsOfHighDegreesCancel) {

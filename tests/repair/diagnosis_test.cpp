@@ -71,6 +71,19 @@ TEST(InvertedRegions, AreManyTetsAroundOneWithoutAnyGoodTetNear) {
   EXPECT_EQ(large.size(), 384U);
   EXPECT_EQ(codeOf([&] { refuseInvertedRegions(prepared.topology, large); }),
             ErrorCode::FlippedTet);
+  // One tet more than is refused, in any case, and as many as are not.
+  std::vector<Index> some = ball(3);
+  for (const Index t : large) {
+    if (some.size() < 201 && !std::binary_search(some.begin(), some.begin() + 162, t)) {
+      some.push_back(t);
+    }
+  }
+  const Index last = some.back();
+  some.pop_back();
+  std::sort(some.begin(), some.end());
+  EXPECT_NO_THROW(refuseInvertedRegions(prepared.topology, some));
+  some.insert(std::upper_bound(some.begin(), some.end(), last), last);
+  EXPECT_EQ(codeOf([&] { refuseInvertedRegions(prepared.topology, some); }), ErrorCode::FlippedTet);
   // Few tets, and many in one layer: each of these has good ones at its corners.
   const std::vector<Index> small = ball(3);
   EXPECT_EQ(small.size(), 162U);

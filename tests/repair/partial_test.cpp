@@ -105,6 +105,23 @@ TEST(Partial, LeavesHolesAtDefects) {
   }
 }
 
+/// Moving an inner vertex changes no volume, so holes have exactly what cells lack. All tets at
+/// vertex (1, 1, 1) are part of the hole, also the first tet of the map.
+TEST(Partial, HolesHaveTheVolumeThatIsMissing) {
+  TetMap map = testing::identityMap(3);
+  for (TetParameters& corners : map.parameters) {
+    for (Vec3& u : corners) {
+      if (u == Vec3{1, 1, 1}) u = {1.75, 1.5, 2.25};
+    }
+  }
+  Context context;
+  const PartialMesh partial = extractPartial(map, {}, context);
+  EXPECT_LT(partial.mesh.cells.size(), 27U);
+  ASSERT_EQ(partial.holes.size(), 1U);
+  EXPECT_EQ(partial.holes[0].tet, 0U);
+  EXPECT_NEAR(partial.missingCells, 27.0 - static_cast<double>(partial.mesh.cells.size()), 1e-12);
+}
+
 TEST(Partial, ManagesAMapBeyondRepair) {
   const char* chosen = std::getenv("HEXHEX_DATA");
   const std::filesystem::path file =

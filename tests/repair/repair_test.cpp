@@ -10,6 +10,9 @@
 
 #include <hexhex/hexhex.hpp>
 
+#include <base/vector3.hpp>
+#include <repair/valid_tets.hpp>
+
 #include "extract/support.hpp"
 #include "repair/same_connectivity.hpp"
 #include "support/error_of.hpp"
@@ -165,6 +168,19 @@ class Repairs : public ::testing::Test {
   }
 };
 
+/// The mean of the vertices of all tets without positive volume, in space.
+Vec3 middleOfBadTets(const TetMap& map) {
+  Vec3 sum{};
+  double vertices = 0;
+  for (std::size_t t = 0; t < map.tets.size(); ++t) {
+    if (determinantOf(map.parameters[t]) > 0) continue;
+    vertices += 4;
+    for (const Index v : map.tets[t]) sum = plus(sum, map.points[v]);
+  }
+  for (double& x : sum) x /= vertices;
+  return sum;
+}
+
 /// What changes is what the report says, in one patch.
 void expectReportOf(const TetMap& before) {
   Context context;
@@ -189,6 +205,11 @@ void expectReportOf(const TetMap& before) {
   }
   EXPECT_EQ(moved.size(), report.movedVertices);
   EXPECT_EQ(largest, report.largestMove);
+  EXPECT_EQ(report.regions[0].badTets, report.badTets);
+  const Vec3 middle = middleOfBadTets(before);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(report.regions[0].position[k], middle[k], 1e-12);
+  }
   EXPECT_LE(tets.size(), report.regions[0].tets);
   EXPECT_LT(tets.size(), before.tets.size() / 4);
 }
