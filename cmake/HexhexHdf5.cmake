@@ -1,3 +1,5 @@
+include(${CMAKE_CURRENT_LIST_DIR}/HexhexLoadedLibrary.cmake)
+
 # hexhex_hdf5(SOURCE...): adds formats over HDF5, the serial library, which is loaded when a file needs it
 # or, if it cannot be, linked.
 function(hexhex_hdf5)
@@ -20,22 +22,10 @@ function(hexhex_hdf5)
     hexhex_component(HDF5 "${HDF5_INCLUDE_DIR}" "${HDF5_LIBRARY}" ${ARGN})
     return()
   endif()
-  # By the name that stands for its binary interface: libhdf5_serial.so.103
-  file(REAL_PATH ${HDF5_LIBRARY} file)
-  cmake_path(GET file FILENAME name)
-  if(CMAKE_READELF)
-    execute_process(COMMAND ${CMAKE_READELF} -d ${file} OUTPUT_VARIABLE about ERROR_QUIET)
-    if(about MATCHES "SONAME[^[]*[[]([^]]+)[]]")
-      set(name ${CMAKE_MATCH_1})
-      cmake_path(REPLACE_FILENAME file ${name})
-    endif()
-  endif()
   # Who has no such library is told of the package that this one is from.
-  set(package "HDF5")
-  execute_process(COMMAND dpkg -S ${file} OUTPUT_VARIABLE owner ERROR_QUIET RESULT_VARIABLE status)
-  if(status EQUAL 0 AND owner MATCHES "^([^:, ]+)")
-    set(package ${CMAKE_MATCH_1})
-    set_property(GLOBAL PROPERTY HEXHEX_LOADED_PACKAGES ${package})
+  hexhex_loaded_library(${HDF5_LIBRARY} name file package)
+  if(NOT package)
+    set(package "HDF5")
   endif()
   set(loader "")
   if(CMAKE_DL_LIBS)

@@ -61,6 +61,7 @@ endif()
 # What is loaded only when a file needs it.
 get_property(loaded_packages GLOBAL PROPERTY HEXHEX_LOADED_PACKAGES)
 if(loaded_packages)
+  list(JOIN loaded_packages ", " loaded_packages)
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS ${loaded_packages})
   set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS ${loaded_packages})
 endif()

@@ -1,0 +1,23 @@
+# hexhex_loaded_library(LIBRARY NAME FILE PACKAGE): about a shared library that is loaded when it is needed: the
+# name that stands for its binary interface (libhdf5_serial.so.103), its file of that name, and the package
+# that it is from, which packages of ours recommend.
+function(hexhex_loaded_library library name_variable file_variable package_variable)
+  file(REAL_PATH ${library} file)
+  cmake_path(GET file FILENAME name)
+  if(CMAKE_READELF)
+    execute_process(COMMAND ${CMAKE_READELF} -d ${file} OUTPUT_VARIABLE about ERROR_QUIET)
+    if(about MATCHES "SONAME[^[]*[[]([^]]+)[]]")
+      set(name ${CMAKE_MATCH_1})
+      cmake_path(REPLACE_FILENAME file ${name})
+    endif()
+  endif()
+  set(package "")
+  execute_process(COMMAND dpkg -S ${file} OUTPUT_VARIABLE owner ERROR_QUIET RESULT_VARIABLE status)
+  if(status EQUAL 0 AND owner MATCHES "^([^:, ]+)")
+    set(package ${CMAKE_MATCH_1})
+    set_property(GLOBAL APPEND PROPERTY HEXHEX_LOADED_PACKAGES ${package})
+  endif()
+  set(${name_variable} ${name} PARENT_SCOPE)
+  set(${file_variable} ${file} PARENT_SCOPE)
+  set(${package_variable} ${package} PARENT_SCOPE)
+endfunction()

@@ -1,0 +1,77 @@
+// From a seamless map to an integer-grid map: chooses integers for translations, planes and
+// singular curves, and bends the map onto them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <hexhex/context.hpp>
+#include <hexhex/error.hpp>
+#include <hexhex/export.h>
+#include <hexhex/types.hpp>
+
+namespace hexhex HEXHEX_API_NAMESPACE {
+
+/// How fine the mesh is to be. Exactly one of the first three is given, the others are 0.
+struct QuantizeOptions {
+  double cells = 0;       ///< hexahedra wanted
+  double scale = 0;       ///< the map's parameters are to be multiplied by about so much
+  double edgeLength = 0;  ///< of a hexahedron in space, on the average
+  /// If no valid map is found so: takes a denser one, the first one that works.
+  bool densify = false;
+  /// A map may be so far from being seamless, as a share of its largest coordinate.
+  double tolerance = 1e-5;
+};
+
+/// How well the edges of small cubes in the map form a cube in space: the scaled Jacobian of a
+/// tet's inverse map, at most 1.
+struct MapDistortion {
+  double worst = 1;
+  double median = 1;
+};
+
+struct QuantizeReport {
+  double cellsWanted = 0;
+  std::uint64_t cells = 0;
+  double scale = 0;             ///< of the seamless map's parameters, finally
+  double displacement = 0;      ///< largest change of a parameter that made the map seamless
+  std::uint64_t blocks = 0;     ///< of the motorcycle complex
+  std::uint64_t arcs = 0;
+  std::uint64_t shortestArc = 0;  ///< in hexahedra
+  std::uint64_t longestArc = 0;
+  std::string integersBy;         ///< "CBC", or "rounding" where CBC is missing
+  std::uint64_t attempts = 0;     ///< numbers of cells that were tried
+  std::uint64_t splitEdges = 0;   ///< each adds a vertex to the tet mesh
+  std::uint64_t addedTets = 0;    ///< by that
+  MapDistortion distortionBefore;
+  MapDistortion distortionAfter;
+};
+
+struct QuantizedMap {
+  TetMap map;
+  QuantizeReport report;
+};
+
+/// Whether this build can quantize (it was made with Eigen).
+[[nodiscard]] bool canQuantize() noexcept;
+
+/// What becomes of a map without singularities or with axis-aligned ones whose charts differ by
+/// rotations of the grid and any translations, whose boundary triangles are perpendicular to an
+/// axis, and whose tets are positive. Valences of singular curves, the topology, tagged features
+/// and regions stay as they are; edges of the tet mesh may be split. Deterministic.
+///
+/// The map is made exactly seamless, cut into boxes by its motorcycle complex (Brueckner et al.
+/// 2022), integers for the arcs of that are found by an integer program, and the map is bent onto
+/// these by a foldover-free energy (Garanzha et al. 2021). The result has passed the exact check.
+///
+/// @throws Error  TransitionResidual, FlippedTet and others with their places for a map that is not
+///                seamless; FlippedTet if it cannot be bent onto the integers, and densify is not
+///                set; InvalidArgument for options out of range, or if canQuantize() is false
+[[nodiscard]] QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options,
+                                    Context& context);
+
+/// The same with all cores and without progress.
+[[nodiscard]] QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options);
+
+}  // namespace HEXHEX_API_NAMESPACE

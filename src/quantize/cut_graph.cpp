@@ -1,0 +1,185 @@
+#include <quantize/cut_graph.hpp>
+
+#include <base/disjoint_sets.hpp>
+#include <base/vector3.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// Numbers the six edges of a tet by the set of their corners.
+constexpr std::array<std::uint8_t, 16> kEdgeOfCorners = {0, 0, 0, 0, 0, 1, 2, 0,
+                                                         0, 3, 4, 0, 5, 0, 0, 0};
+
+std::size_t numberOf(CornerMask ends) { return kEdgeOfCorners[ends]; }
+
+CornerMask endsOf(const EdgeCorner& at) {
+  return static_cast<CornerMask>(cornerBit(at.corner0) | cornerBit(at.corner1));
+}
+
+/// How charts are moved on their way from tet to tet.
+struct Motion {
+  Rotation rotation;
+  Vec3 translation{};
+
+  [[nodiscard]] Vec3 operator()(const Vec3& u) const {
+    return plus(rotation(u), translation);
+  }
+};
+
+/// The same triangle's middle in both its tets.
+std::array<Vec3, 2> middles(const TetTopology& topology, HalfFace halfFace,
+                            std::span<const TetParameters> parameters) {
+  const HalfFace mate = topology.mate[halfFace];
+  const SharedFace face(topology, halfFace, mate);
+  std::array<Vec3, 2> sums{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    sums[0] = plus(sums[0], parameters[tetOf(halfFace)][face.here(k)]);
+    sums[1] = plus(sums[1], parameters[tetOf(mate)][face.there(k)]);
+  }
+  for (Vec3& sum : sums) {
+    for (double& x : sum) x /= 3;
+  }
+  return sums;
+}
+
+/// Walks a tree of each component and puts all tets into the chart of its first one.
+/// @return the motion of each tet; marks triangles of the tree in `isTree`
+std::vector<Motion> moveAlongTree(const TetTopology& topology,
+                                  std::span<const TetParameters> parameters,
+                                  std::span<const Rotation> rotations, std::vector<bool>& isTree) {
+  std::vector<Motion> motions(topology.tetCount());
+  std::vector<bool> isMoved(topology.tetCount());
+  std::vector<Index> queue;
+  queue.reserve(topology.tetCount());
+  for (Index root = 0; root < topology.tetCount(); ++root) {
+    if (isMoved[root]) continue;
+    isMoved[root] = true;
+    queue.push_back(root);
+    for (std::size_t next = queue.size() - 1; next < queue.size(); ++next) {
+      const Motion& here = motions[queue[next]];
+      for (int face = 0; face < 4; ++face) {
+        const HalfFace out = halfFaceOf(queue[next], face);
+        const HalfFace mate = topology.mate[out];
+        if (mate == kNone || isMoved[tetOf(mate)]) continue;
+        Motion& there = motions[tetOf(mate)];
+        there.rotation = here.rotation * rotations[out].inverse();
+        const auto middle = middles(topology, out, parameters);
+        there.translation = minus(here(middle[0]), there.rotation(middle[1]));
+        isTree[out] = isTree[mate] = true;
+        isMoved[tetOf(mate)] = true;
+        queue.push_back(tetOf(mate));
+      }
+    }
+  }
+  return motions;
+}
+
+/// Takes triangles out of the cut that are its last ones at an edge around which nothing rotates.
+void mendCut(const TetTopology& topology, const EdgeFans& edges, CutGraph& graph) {
+  std::vector<Index> cutFaces(edges.size());  // half-faces, that is, two for each triangle
+  std::vector<Index> ends;
+  const auto lookAt = [&](Index edge) {
+    if (cutFaces[edge] == 2 && !edges.isBoundary(edge)) ends.push_back(edge);
+  };
+  for (Index edge = 0; edge < edges.size(); ++edge) {
+    for (const EdgeCorner& at : edges(edge)) {
+      forEachFaceAt(at, [&](HalfFace h) { cutFaces[edge] += graph.isCut[h] ? 1 : 0; });
+    }
+    lookAt(edge);
+  }
+  const auto mend = [&](HalfFace halfFace) {
+    graph.isCut[halfFace] = graph.isCut[topology.mate[halfFace]] = false;
+    for (int i = 0; i < 4; ++i) {
+      if (i == localOf(halfFace)) continue;
+      const CornerMask ends4 =
+          static_cast<CornerMask>(kWholeTet ^ cornerBit(i) ^ cornerBit(localOf(halfFace)));
+      const Index edge = edges.edgeOf(tetOf(halfFace), ends4);
+      cutFaces[edge] -= 2;
+      lookAt(edge);
+    }
+  };
+  while (!ends.empty()) {
+    const Index edge = ends.back();
+    ends.pop_back();
+    if (cutFaces[edge] != 2) continue;
+    HalfFace last = kNone;
+    for (const EdgeCorner& at : edges(edge)) {
+      forEachFaceAt(at, [&](HalfFace h) { last = graph.isCut[h] ? h : last; });
+    }
+    if (graph.rotations[last].isIdentity()) mend(last);
+  }
+}
+
+/// Numbers corners at a vertex alike that uncut triangles connect.
+void numberSectors(const TetTopology& topology, CutGraph& graph) {
+  DisjointSets sets(4 * topology.tetCount());
+  for (HalfFace h = 0; h < topology.mate.size(); ++h) {
+    const HalfFace mate = topology.mate[h];
+    if (mate == kNone || mate < h || graph.isCut[h]) continue;
+    const SharedFace face(topology, h, mate);
+    for (std::size_t k = 0; k < 3; ++k) {
+      sets.unite(halfFaceOf(tetOf(h), static_cast<int>(face.here(k))),
+                 halfFaceOf(tetOf(mate), static_cast<int>(face.there(k))));
+    }
+  }
+  graph.sectors.resize(4 * topology.tetCount());
+  for (CornerIndex corner = 0; corner < graph.sectors.size(); ++corner) {
+    // The smallest corner of a set has come before.
+    const CornerIndex first = sets.find(corner);
+    graph.sectors[corner] =
+        first == corner ? static_cast<Index>(graph.sectorCount++) : graph.sectors[first];
+  }
+}
+
+}  // namespace
+
+EdgeFans::EdgeFans(const TetTopology& topology)
+    : topology_(topology), edges_(topology.tetCount()) {
+  std::vector<EdgeCorner> scratch;
+  for (Index v = 0; v < topology.pointCount; ++v) {
+    forEachEdge(topology, v, scratch, [this](Index /*w*/, std::span<const EdgeCorner> fan) {
+      for (const EdgeCorner& at : fan) {
+        edges_[at.tet][numberOf(endsOf(at))] = static_cast<Index>(size());
+      }
+      corners_.insert(corners_.end(), fan.begin(), fan.end());
+      begin_.push_back(corners_.size());
+    });
+  }
+}
+
+Index EdgeFans::edgeOf(Index tet, CornerMask ends) const noexcept {
+  return edges_[tet][numberOf(ends)];
+}
+
+CutGraph cutOpen(const TetTopology& topology, const EdgeFans& edges,
+                 std::span<const TetParameters> parameters, std::span<const Rotation> rotations) {
+  CutGraph graph;
+  std::vector<bool> isTree(topology.mate.size());
+  const std::vector<Motion> motions = moveAlongTree(topology, parameters, rotations, isTree);
+  graph.parameters.assign(parameters.begin(), parameters.end());
+  for (std::size_t t = 0; t < graph.parameters.size(); ++t) {
+    for (Vec3& u : graph.parameters[t]) u = motions[t](u);
+  }
+  graph.rotations.resize(topology.mate.size());
+  graph.isCut.resize(topology.mate.size());
+  for (HalfFace h = 0; h < topology.mate.size(); ++h) {
+    const HalfFace mate = topology.mate[h];
+    if (mate == kNone) continue;
+    graph.rotations[h] =
+        motions[tetOf(mate)].rotation * rotations[h] * motions[tetOf(h)].rotation.inverse();
+    graph.isCut[h] = !isTree[h];
+  }
+  mendCut(topology, edges, graph);
+  numberSectors(topology, graph);
+  return graph;
+}
+
+HalfFace nextCutAround(const TetTopology& topology, const CutGraph& graph, CornerMask edge,
+                       HalfFace halfFace) {
+  EdgeTurn turn(topology, tetOf(halfFace), edge, otherFaceAtEdge(edge, localOf(halfFace)));
+  while (turn.next() != kNone && !graph.isCut[turn.out()]) turn.step();
+  return turn.next() == kNone ? kNone : turn.out();
+}
+
+}  // namespace hexhex

@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+#include <Eigen/Dense>
+
+#include <quantize/integer_form.hpp>
+
+namespace hexhex {
+
+std::int64_t IntegerForm::coefficient(Index variable) const noexcept {
+  const auto at = std::lower_bound(terms_.begin(), terms_.end(), variable,
+                                   [](const Term& term, Index v) { return term.first < v; });
+  return at != terms_.end() && at->first == variable ? at->second : 0;
+}
+
+void IntegerForm::add(const IntegerForm& other, std::int64_t factor) {
+  std::vector<Term> sum;
+  sum.reserve(terms_.size() + other.terms_.size());
+  auto a = terms_.begin();
+  auto b = other.terms_.begin();
+  while (a != terms_.end() || b != other.terms_.end()) {
+    if (b == other.terms_.end() || (a != terms_.end() && a->first < b->first)) {
+      sum.push_back(*a++);
+    } else if (a == terms_.end() || b->first < a->first) {
+      sum.emplace_back(b->first, factor * b->second);
+      ++b;
+    } else {
+      sum.emplace_back(a->first, a->second + factor * b->second);
+      ++a;
+      ++b;
+    }
+    if (sum.back().second == 0) sum.pop_back();
+  }
+  terms_ = std::move(sum);
+}
+
+void IntegerForm::multiply(std::int64_t factor) {
+  if (factor == 0) terms_.clear();
+  for (Term& term : terms_) term.second *= factor;
+}
+
+void IntegerForm::divide(std::int64_t divisor) {
+  for (Term& term : terms_) term.second /= divisor;
+}
+
+std::int64_t IntegerForm::commonDivisor(std::int64_t with) const noexcept {
+  std::int64_t divisor = std::abs(with);
+  for (const Term& term : terms_) divisor = std::gcd(divisor, term.second);
+  return divisor;
+}
+
+IntegerSystem::IntegerSystem(std::size_t variableCount, std::vector<IntegerForm> equations)
+    : variableCount_(variableCount), solvedBy_(variableCount, kNone) {
+  // The same equation comes from many vertices.
+  for (IntegerForm& form : equations) {
+    if (form.isZero()) continue;
+    const std::int64_t divisor = form.commonDivisor();
+    form.divide(form.terms().front().second < 0 ? -divisor : divisor);
+  }
+  std::sort(equations.begin(), equations.end());
+  equations.erase(std::unique(equations.begin(), equations.end()), equations.end());
+  for (IntegerForm& form : equations) addEquation(std::move(form));
+  for (Index v = 0; v < variableCount; ++v) {
+    if (solvedBy_[v] == kNone) free_.push_back(v);
+  }
+}
+
+void IntegerSystem::addEquation(IntegerForm form) {
+  // Puts in what earlier equations say, in their order: each brings in variables of later ones.
+  for (const Solved& solved : solved_) {
+    const std::int64_t factor = form.coefficient(solved.variable);
+    if (factor == 0) continue;
+    form.add({solved.variable, 1}, -factor);
+    form.multiply(solved.coefficient);
+    form.add(solved.rest, -factor);
+    form.divide(std::max<std::int64_t>(form.commonDivisor(), 1));
+  }
+  if (form.isZero()) return;
+  // A coefficient of one keeps all integer; they are rarely others.
+  const auto pivot = std::min_element(
+      form.terms().begin(), form.terms().end(),
+      [](const auto& a, const auto& b) { return std::abs(a.second) < std::abs(b.second); });
+  Solved solved{pivot->first, pivot->second, form};
+  solved.rest.add({solved.variable, 1}, -solved.coefficient);
+  solvedBy_[solved.variable] = static_cast<Index>(solved_.size());
+  solved_.push_back(std::move(solved));
+}
+
+std::vector<double> IntegerSystem::nearest(const std::vector<double>& wanted) const {
+  // Each variable as a combination of the free ones.
+  const auto n = static_cast<Eigen::Index>(variableCount_);
+  Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(free_.size()));
+  for (std::size_t k = 0; k < free_.size(); ++k) basis(free_[k], static_cast<Eigen::Index>(k)) = 1;
+  for (auto solved = solved_.rbegin(); solved != solved_.rend(); ++solved) {
+    for (const auto& [variable, factor] : solved->rest.terms()) {
+      basis.row(solved->variable) -= static_cast<double>(factor) /
+                                     static_cast<double>(solved->coefficient) *
+                                     basis.row(variable);
+    }
+  }
+  const Eigen::Map<const Eigen::VectorXd> target(wanted.data(), n);
+  const Eigen::VectorXd free =
+      (basis.transpose() * basis).ldlt().solve(basis.transpose() * target);
+  const Eigen::VectorXd solution = basis * free;
+  return {solution.data(), solution.data() + n};
+}
+
+std::vector<std::int64_t> IntegerSystem::roundedTo(const std::vector<double>& solution,
+                                                   std::int64_t step) const {
+  std::vector<std::int64_t> values(variableCount_);
+  for (const Index v : free_) {
+    values[v] = std::llround(solution[v] / static_cast<double>(step)) * step;
+  }
+  for (auto solved = solved_.rbegin(); solved != solved_.rend(); ++solved) {
+    const auto rest = solved->rest(std::span<const std::int64_t>(values));
+    if (rest % solved->coefficient != 0) return {};
+    values[solved->variable] = -rest / solved->coefficient;
+  }
+  return values;
+}
+
+}  // namespace hexhex

@@ -1,0 +1,82 @@
+// Linear forms with integer coefficients, and systems of equations of them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+namespace hexhex {
+
+/// A sum of integer multiples of variables.
+class IntegerForm {
+ public:
+  using Term = std::pair<Index, std::int64_t>;  ///< variable and coefficient
+
+  IntegerForm() = default;
+  IntegerForm(Index variable, std::int64_t coefficient) : terms_{{variable, coefficient}} {}
+
+  [[nodiscard]] bool isZero() const noexcept { return terms_.empty(); }
+  /// Ascending by variable, no coefficient zero.
+  [[nodiscard]] std::span<const Term> terms() const noexcept { return terms_; }
+  [[nodiscard]] std::int64_t coefficient(Index variable) const noexcept;
+
+  /// Adds `factor` times `other`.
+  void add(const IntegerForm& other, std::int64_t factor);
+  void multiply(std::int64_t factor);
+  /// Divides by an integer that divides all coefficients.
+  void divide(std::int64_t divisor);
+  /// The greatest common divisor of all coefficients and `with`.
+  [[nodiscard]] std::int64_t commonDivisor(std::int64_t with = 0) const noexcept;
+
+  template <class Number>
+  [[nodiscard]] Number operator()(std::span<const Number> values) const noexcept {
+    Number sum{};
+    for (const auto& [variable, factor] : terms_) {
+      sum += static_cast<Number>(factor) * values[variable];
+    }
+    return sum;
+  }
+
+  [[nodiscard]] auto operator<=>(const IntegerForm&) const = default;
+
+ private:
+  std::vector<Term> terms_;
+};
+
+/// Homogeneous equations in integer variables, solved for as many of them as there are independent
+/// equations; the other ones are free.
+class IntegerSystem {
+ public:
+  /// @param equations  forms that are to vanish
+  IntegerSystem(std::size_t variableCount, std::vector<IntegerForm> equations);
+
+  /// The solution nearest to `wanted` (least squares).
+  [[nodiscard]] std::vector<double> nearest(const std::vector<double>& wanted) const;
+
+  /// The solution whose free variables are `rounded` to multiples of `step`.
+  /// @return no values if another variable is not an integer then
+  [[nodiscard]] std::vector<std::int64_t> roundedTo(const std::vector<double>& solution,
+                                                    std::int64_t step) const;
+
+  [[nodiscard]] const std::vector<Index>& freeVariables() const noexcept { return free_; }
+
+ private:
+  /// coefficient * variable + rest = 0, where `rest` has free variables and those of later ones.
+  struct Solved {
+    Index variable;
+    std::int64_t coefficient;
+    IntegerForm rest;
+  };
+
+  void addEquation(IntegerForm form);
+
+  std::size_t variableCount_;
+  std::vector<Solved> solved_;
+  std::vector<Index> solvedBy_;  ///< per variable: its place in `solved_`, or kNone
+  std::vector<Index> free_;
+};
+
+}  // namespace hexhex

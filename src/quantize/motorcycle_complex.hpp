@@ -1,0 +1,63 @@
+// The blocks into which walls cut a seamless map, and the arcs and patches between them: a
+// decomposition into boxes whose sides meet in T-junctions.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include <quantize/walls.hpp>
+
+namespace hexhex {
+
+/// Between two nodes: edges in a line where walls meet other than flat.
+struct Arc {
+  std::array<Index, 2> nodes{};
+  std::int64_t length = 0;  ///< in units
+};
+
+/// An arc as it borders a patch on one side, or a block: from where to where it goes in the block's
+/// chart.
+struct ArcSide {
+  Index arc = 0;
+  std::uint8_t axis = 0;  ///< along which it goes
+  std::int8_t sign = 1;   ///< up or down that axis
+  LatticePoint start{};
+  LatticePoint end{};
+  [[nodiscard]] auto operator<=>(const ArcSide&) const = default;
+};
+
+/// A rectangle between two blocks, or between a block and nothing, as seen from the first of them.
+struct PatchSide {
+  Index block = 0;
+  HalfFace first = 0;               ///< one of its triangles
+  std::vector<ArcSide> border;      ///< anticlockwise, from inside of the block
+};
+
+struct MotorcycleComplex {
+  WallMesh mesh;
+  std::vector<Index> blockOf;         ///< per tet of the mesh
+  std::vector<ChartChange> toBlock;   ///< per tet: from its chart to that of its block
+  std::size_t blockCount = 0;
+  std::vector<Arc> arcs;
+  std::vector<Index> patchOf;         ///< per half-face on a wall: the side of a patch, else kNone
+  std::vector<PatchSide> patches;     ///< each side
+
+  /// The other side of a patch, or kNone on the boundary.
+  [[nodiscard]] Index acrossPatch(Index side) const {
+    const HalfFace mate = mesh.mate[patches[side].first];
+    return mate == kNone ? kNone : patchOf[mate];
+  }
+  /// From the chart of a tet's block into that beyond one of its faces.
+  [[nodiscard]] ChartChange across(HalfFace h) const {
+    return toBlock[tetOf(mesh.mate[h])] * mesh.change[h] * toBlock[tetOf(h)].inverse();
+  }
+};
+
+/// Walls, and blocks between them that all are boxes.
+/// @throws Error if the map cannot be cut so
+[[nodiscard]] MotorcycleComplex traceComplex(const SeamlessMap& map, Context& context);
+
+}  // namespace hexhex

@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include <hexhex/check.hpp>
+
+#include <base/vector3.hpp>
+#include <igm/defects.hpp>
+#include <quantize/quantized_map.hpp>
+#include <quantize/walls.hpp>
+
+namespace hexhex {
+
+namespace {
+
+using EdgeKey = std::array<Index, 2>;
+
+EdgeKey keyOf(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+
+/// The scaled Jacobian of the inverse map of a tet: of the edges that a small cube gets in space.
+double inverseJacobian(const std::array<Vec3, 4>& points, const TetParameters& u) {
+  std::array<Vec3, 3> x{};
+  std::array<Vec3, 3> p{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    x[i] = minus(points[i + 1], points[0]);
+    p[i] = minus(u[i + 1], u[0]);
+  }
+  // Columns of X P^-1, but for the factor det P.
+  const std::array<Vec3, 3> rows = {cross(p[1], p[2]), cross(p[2], p[0]), cross(p[0], p[1])};
+  std::array<Vec3, 3> columns{};
+  double product = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) columns[k][j] += x[i][j] * rows[i][k];
+    }
+    product *= std::sqrt(dot(columns[k], columns[k]));
+  }
+  return product > 0 ? tripleProduct(columns[0], columns[1], columns[2]) / product : 0;
+}
+
+MapDistortion distortionOf(const std::vector<Vec3>& points, const std::vector<Tet>& tets,
+                           const std::vector<TetParameters>& parameters) {
+  std::vector<double> values(tets.size());
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    std::array<Vec3, 4> corners{};
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = points[tets[t][i]];
+    values[t] = inverseJacobian(corners, parameters[t]);
+  }
+  MapDistortion distortion;
+  distortion.worst = *std::min_element(values.begin(), values.end());
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  distortion.median = *middle;
+  return distortion;
+}
+
+/// Features of the tet mesh after its edges were split.
+Features splitFeatures(const FeaturesView& given, std::size_t pointCount,
+                       const std::vector<SplitEdge>& splits) {
+  Features features{{given.vertices.begin(), given.vertices.end()},
+                    {given.edges.begin(), given.edges.end()},
+                    {given.faces.begin(), given.faces.end()}};
+  for (std::size_t s = 0; s < splits.size(); ++s) {
+    const auto middle = static_cast<Index>(pointCount + s);
+    const auto has = [](const auto& feature, Index v) {
+      return std::find(feature.vertices.begin(), feature.vertices.end(), v) !=
+             feature.vertices.end();
+    };
+    const auto split = [&](auto& list) {
+      const std::size_t count = list.size();
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!has(list[i], splits[s][0]) || !has(list[i], splits[s][1])) continue;
+        auto other = list[i];
+        std::replace(other.vertices.begin(), other.vertices.end(), splits[s][0], middle);
+        std::replace(list[i].vertices.begin(), list[i].vertices.end(), splits[s][1], middle);
+        list.push_back(other);
+      }
+    };
+    split(features.edges);
+    split(features.faces);
+  }
+  return features;
+}
+
+/// Quarter turns around edges that are not regular.
+std::map<EdgeKey, int> irregularEdges(const SeamlessMap& map) {
+  const EdgeFans edges(map.topology);
+  const std::vector<int> quarters = quartersAround(map, edges);
+  std::map<EdgeKey, int> irregular;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (quarters[e] == (edges.isBoundary(e) ? 2 : 4)) continue;
+    const EdgeCorner& at = edges(e).front();
+    const Tet& tet = map.topology.tets[at.tet];
+    irregular[keyOf(tet[at.corner0], tet[at.corner1])] = quarters[e];
+  }
+  return irregular;
+}
+
+/// Singular curves must be what they were.
+void requireSameSingularities(const SeamlessMap& before, const TetMap& after,
+                              const std::vector<SplitEdge>& splits, Context& context) {
+  std::map<EdgeKey, int> expected = irregularEdges(before);
+  for (std::size_t s = 0; s < splits.size(); ++s) {
+    const auto found = expected.find(keyOf(splits[s][0], splits[s][1]));
+    if (found == expected.end()) continue;
+    const auto middle = static_cast<Index>(before.topology.pointCount + s);
+    for (const Index end : splits[s]) expected[keyOf(end, middle)] = found->second;
+    expected.erase(keyOf(splits[s][0], splits[s][1]));
+  }
+  if (irregularEdges(makeSeamless(after, 0x1p-20, context)) != expected) {
+    throw Error(ErrorCode::Internal,
+                "Quantization has changed singular curves of the map. This is a bug.");
+  }
+}
+
+}  // namespace
+
+QuantizedMap finishQuantization(const SeamlessMap& seamless, const TetMapView& given, BentMap bent,
+                                const QuantizeReport& report, Context& context) {
+  QuantizedMap result;
+  result.report = report;
+  result.report.distortionAfter = distortionOf(bent.points, bent.tets, bent.parameters);
+  result.report.distortionBefore = distortionOf(bent.points, bent.tets, bent.reference);
+  TetMap& map = result.map;
+  map.features = splitFeatures(given.features, given.points.size(), bent.splitEdges);
+  if (!given.regions.empty()) {
+    for (const Index parent : bent.parentTet) map.regions.push_back(given.regions[parent]);
+  }
+  map.points = std::move(bent.points);
+  map.tets = std::move(bent.tets);
+  map.parameters = std::move(bent.parameters);
+  const CheckReport checked = check(map, {.tolerance = 0}, context);
+  if (!checked.valid()) {
+    throw Error(ErrorCode::Internal, "Quantization has made a map that is not valid (" +
+                                         std::string(name(checked.defects.front().code)) +
+                                         "). This is a bug.");
+  }
+  requireSameSingularities(seamless, map, bent.splitEdges, context);
+  return result;
+}
+
+}  // namespace hexhex

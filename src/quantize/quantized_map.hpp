@@ -1,0 +1,19 @@
+// A bent map as the caller gets it: with features and regions of the map that it came from, and
+// checked.
+#pragma once
+
+#include <hexhex/quantize.hpp>
+
+#include <quantize/bend.hpp>
+#include <quantize/seamless_map.hpp>
+
+namespace hexhex {
+
+/// @param given  whose features and regions come along
+/// @param report  as far as it is known
+/// @throws Error Internal if the map does not pass the exact check, or has other singular edges
+[[nodiscard]] QuantizedMap finishQuantization(const SeamlessMap& seamless, const TetMapView& given,
+                                              BentMap bent, const QuantizeReport& report,
+                                              Context& context);
+
+}  // namespace hexhex

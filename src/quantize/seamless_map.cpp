@@ -1,0 +1,306 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include <base/vector3.hpp>
+#include <igm/defects.hpp>
+#include <igm/transition_fit.hpp>
+#include <quantize/seamless_conditions.hpp>
+#include <quantize/seamless_map.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// Coordinates on the lattice stay below this.
+constexpr double kLargest = 0x1p48;
+
+/// Shared unknowns are multiples of this, so that half of them are on the lattice, too.
+constexpr std::int64_t kStep = 64;
+
+std::vector<Rotation> fitRotations(const TetTopology& topology,
+                                   std::span<const TetParameters> parameters) {
+  std::vector<Rotation> rotations(topology.mate.size());
+  for (HalfFace h = 0; h < rotations.size(); ++h) {
+    const HalfFace mate = topology.mate[h];
+    if (mate == kNone || mate < h) continue;
+    const SharedFace face(topology, h, mate);
+    const TetParameters& here = parameters[tetOf(h)];
+    const TetParameters& there = parameters[tetOf(mate)];
+    rotations[h] = bestRotation(
+        {minus(here[face.here(1)], here[face.here(0)]), minus(here[face.here(2)], here[face.here(0)])},
+        {minus(there[face.there(1)], there[face.there(0)]),
+         minus(there[face.there(2)], there[face.there(0)])});
+    rotations[mate] = rotations[h].inverse();
+  }
+  return rotations;
+}
+
+/// The axis to which a triangle is perpendicular.
+std::uint8_t axisOf(const CutGraph& graph, HalfFace h) {
+  const TetParameters& u = graph.parameters[tetOf(h)];
+  const auto corner = [&](std::size_t k) {
+    return u[static_cast<std::size_t>(kFaceCorners[h % 4][k])];
+  };
+  return static_cast<std::uint8_t>(
+      dominantAxis(cross(minus(corner(1), corner(0)), minus(corner(2), corner(0)))));
+}
+
+bool areLevel(const TetParameters& u, std::size_t a, std::size_t b, std::size_t axis,
+              double tolerance) {
+  return std::abs(u[a][axis] - u[b][axis]) <= tolerance;
+}
+
+/// The tets of a feature edge, or of a feature triangle (as half-faces).
+std::optional<EdgeCorner> findEdge(const TetTopology& topology, Index v, Index w) {
+  for (const CornerIndex corner : topology.star(v)) {
+    const Tet& tet = topology.tets[corner / 4];
+    for (std::uint8_t i = 0; i < 4; ++i) {
+      if (tet[i] == w) return EdgeCorner{w, corner / 4, static_cast<std::uint8_t>(corner % 4), i};
+    }
+  }
+  return std::nullopt;
+}
+
+HalfFace findFace(const TetTopology& topology, const std::array<Index, 3>& triangle) {
+  for (const CornerIndex corner : topology.star(triangle[0])) {
+    const Tet& tet = topology.tets[corner / 4];
+    for (int face = 0; face < 4; ++face) {
+      const auto isOn = [&](Index v) {
+        const auto at = std::find(tet.begin(), tet.end(), v);
+        return at != tet.end() && at - tet.begin() != face;
+      };
+      if (isOn(triangle[0]) && isOn(triangle[1]) && isOn(triangle[2])) {
+        return halfFaceOf(corner / 4, face);
+      }
+    }
+  }
+  return kNone;
+}
+
+/// The boundary, and those features that are aligned within the tolerance: the others are not in
+/// the way of a seamless map, and will not be lines or planes of the mesh.
+Alignment findAlignment(SeamlessMap& map, const CutGraph& graph, double tolerance) {
+  const TetTopology& topology = map.topology;
+  Alignment alignment;
+  alignment.axes.assign(topology.mate.size(), kFree);
+  for (HalfFace h = 0; h < topology.mate.size(); ++h) {
+    if (topology.mate[h] == kNone) alignment.axes[h] = axisOf(graph, h);
+  }
+  const FeaturesView& features = map.input.view.features;
+  for (const FeatureFace& feature : features.faces) {
+    const HalfFace h = findFace(topology, feature.vertices);
+    if (h == kNone || topology.mate[h] == kNone) continue;
+    const std::uint8_t axis = axisOf(graph, h);
+    const auto& c = kFaceCorners[h % 4];
+    const TetParameters& u = graph.parameters[tetOf(h)];
+    const auto corner = [&](std::size_t k) { return static_cast<std::size_t>(c[k]); };
+    if (!areLevel(u, corner(0), corner(1), axis, tolerance) ||
+        !areLevel(u, corner(0), corner(2), axis, tolerance)) {
+      continue;
+    }
+    alignment.axes[h] = axis;
+    map.featureFaces.push_back(h);
+  }
+  for (const FeatureEdge& feature : features.edges) {
+    const auto at = findEdge(topology, feature.vertices[0], feature.vertices[1]);
+    if (!at) continue;
+    const TetParameters& u = graph.parameters[at->tet];
+    const auto along =
+        static_cast<std::uint8_t>(dominantAxis(minus(u[at->corner1], u[at->corner0])));
+    if (!areLevel(u, at->corner0, at->corner1, (along + 1U) % 3, tolerance) ||
+        !areLevel(u, at->corner0, at->corner1, (along + 2U) % 3, tolerance)) {
+      continue;
+    }
+    alignment.edges.push_back({*at, along});
+    map.featureEdges.push_back(*at);
+  }
+  return alignment;
+}
+
+double largestCoordinate(const CutGraph& graph) {
+  double largest = 0;
+  for (const TetParameters& tet : graph.parameters) {
+    for (const Vec3& u : tet) {
+      for (const double x : u) largest = std::max(largest, std::abs(x));
+    }
+  }
+  return largest;
+}
+
+/// Exact parameters of a vertex in all its sectors.
+class VertexSolver {
+ public:
+  VertexSolver(const TetTopology& topology, const CutGraph& graph,
+               std::span<const std::int64_t> values, double unit)
+      : topology_(topology), graph_(graph), values_(values), unit_(unit),
+        bySector_(graph.sectorCount) {}
+
+  /// @return false if a coordinate that is fixed is not on the lattice
+  bool solve(Index vertex, const VertexConditions& conditions) {
+    LatticePoint u = meanOf(vertex, conditions);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const VertexConditions::Fixed& fixed = conditions.fixed[k];
+      if (fixed.factor == 0) continue;
+      const std::int64_t rest = fixed.rest(values_);
+      if (rest % fixed.factor != 0) return false;
+      u[k] = -rest / fixed.factor;
+    }
+    for (const VertexConditions::Sector& sector : conditions.sectors) {
+      bySector_[sector.sector] = sector.rotation(u) + translationOf(sector);
+    }
+    return true;
+  }
+
+  [[nodiscard]] const LatticePoint& operator[](Index sector) const { return bySector_[sector]; }
+
+ private:
+  [[nodiscard]] LatticePoint translationOf(const VertexConditions::Sector& sector) const {
+    return {sector.translation[0](values_), sector.translation[1](values_),
+            sector.translation[2](values_)};
+  }
+
+  /// Of the parameters given at all its corners, seen from the first sector.
+  [[nodiscard]] LatticePoint meanOf(Index vertex, const VertexConditions& conditions) const {
+    Vec3 sum{};
+    for (const CornerIndex corner : topology_.star(vertex)) {
+      const auto sector = std::find_if(
+          conditions.sectors.begin(), conditions.sectors.end(),
+          [&](const auto& each) { return each.sector == graph_.sectors[corner]; });
+      const LatticePoint t = translationOf(*sector);
+      Vec3 u = graph_.parameters[corner / 4][corner % 4];
+      for (std::size_t k = 0; k < 3; ++k) u[k] = u[k] * unit_ - static_cast<double>(t[k]);
+      sum = plus(sum, sector->rotation.inverse()(u));
+    }
+    LatticePoint mean;
+    const auto n = static_cast<double>(topology_.star(vertex).size());
+    for (std::size_t k = 0; k < 3; ++k) mean[k] = std::llround(sum[k] / n);
+    return mean;
+  }
+
+  const TetTopology& topology_;
+  const CutGraph& graph_;
+  std::span<const std::int64_t> values_;
+  double unit_;
+  std::vector<LatticePoint> bySector_;
+};
+
+[[noreturn]] void notSeamless(const std::string& what, Place place) {
+  throw Error(ErrorCode::TransitionResidual,
+              "The map is not seamless: " + what + " Quantization needs a map whose charts differ by "
+              "rotations of the grid, and whose boundary and singular curves are aligned with axes.",
+              place);
+}
+
+/// Exact corners from conditions and values of shared unknowns.
+void solveVertices(SeamlessMap& map, const CutGraph& graph,
+                   const std::vector<VertexConditions>& conditions,
+                   std::span<const std::int64_t> values) {
+  VertexSolver solver(map.topology, graph, values, map.unit);
+  for (Index v = 0; v < map.topology.pointCount; ++v) {
+    if (map.topology.isIsolated(v)) continue;
+    if (!solver.solve(v, conditions[v])) {
+      notSeamless("transitions around a vertex have no common fixed point.",
+                  {PlaceKind::Vertex, v});
+    }
+  }
+  map.corners.resize(map.topology.tetCount());
+  for (CornerIndex corner = 0; corner < graph.sectors.size(); ++corner) {
+    map.corners[corner / 4][corner % 4] = solver[graph.sectors[corner]];
+  }
+}
+
+/// Between charts as they are after the cut.
+void findChanges(SeamlessMap& map, const CutGraph& graph) {
+  map.changes.resize(map.topology.mate.size());
+  for (HalfFace h = 0; h < map.changes.size(); ++h) {
+    const HalfFace mate = map.topology.mate[h];
+    if (mate == kNone) continue;
+    const SharedFace face(map.topology, h, mate);
+    const LatticeTet& here = map.corners[tetOf(h)];
+    const LatticeTet& there = map.corners[tetOf(mate)];
+    ChartChange& change = map.changes[h];
+    if (graph.isCut[h]) change.rotation = graph.rotations[h];
+    change.translation = there[face.there(0)] - change.rotation(here[face.here(0)]);
+    for (std::size_t k = 1; k < 3; ++k) {
+      if (change(here[face.here(k)]) == there[face.there(k)]) continue;
+      throw Error(ErrorCode::Internal, "A map that was made seamless is not. This is a bug.",
+                  {PlaceKind::Face, tetOf(h), h % 4});
+    }
+  }
+}
+
+void measureDisplacement(SeamlessMap& map, const CutGraph& graph, double tolerance) {
+  Place worst;
+  for (Index t = 0; t < map.corners.size(); ++t) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double moved = std::abs(static_cast<double>(map.corners[t][i][k]) / map.unit -
+                                      graph.parameters[t][i][k]);
+        if (moved <= map.maxDisplacement) continue;
+        map.maxDisplacement = moved;
+        worst = {PlaceKind::Tet, t};
+      }
+    }
+  }
+  if (map.maxDisplacement > tolerance) {
+    notSeamless("the nearest seamless map is " + std::to_string(map.maxDisplacement) +
+                    " off, more than the tolerance of " + std::to_string(tolerance) + ".",
+                worst);
+  }
+}
+
+void requirePositiveTets(const SeamlessMap& map) {
+  DefectCollector defects;
+  defects.setCornersReversed(map.input.cornersReversed);
+  for (Index t = 0; t < map.corners.size(); ++t) {
+    const LatticeTet& u = map.corners[t];
+    if (orientation(u[0], u[1], u[2], u[3]) <= 0) {
+      defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, 0);
+    }
+  }
+  defects.throwIfAny();
+}
+
+}  // namespace
+
+SeamlessMap makeSeamless(const TetMapView& map, double tolerance, Context& context) {
+  Stage stage(context, "seamless map");
+  DefectCollector defects;
+  SeamlessMap result;
+  result.input = readInput(map, stage, defects);
+  defects.throwIfAny();
+  result.topology = buildTopology(result.input.view, stage, defects);
+  defects.throwIfAny();
+  addStars(result.topology, stage);
+  const TetTopology& topology = result.topology;
+  const EdgeFans edges(topology);
+  const std::span<const TetParameters> parameters = result.input.view.parameters;
+  const CutGraph graph = cutOpen(topology, edges, parameters, fitRotations(topology, parameters));
+  const SharedUnknowns unknowns(topology, edges, graph, findAlignment(result, graph, tolerance));
+  std::vector<IntegerForm> equations = unknowns.equations();
+  std::vector<VertexConditions> conditions(topology.pointCount);
+  for (Index v = 0; v < topology.pointCount; ++v) {
+    if (topology.isIsolated(v)) continue;
+    conditions[v] = conditionsOf(v, topology, graph, unknowns, equations);
+    if (!conditions[v].isAxisParallel) {
+      notSeamless("a singular curve is not parallel to an axis.", {PlaceKind::Vertex, v});
+    }
+  }
+  const IntegerSystem system(unknowns.size(), std::move(equations));
+  result.unit = std::exp2(std::floor(std::log2(kLargest / std::max(largestCoordinate(graph), 1e-300))));
+  std::vector<double> wanted = system.nearest(unknowns.measured());
+  for (double& x : wanted) x *= result.unit;
+  const std::vector<std::int64_t> values = system.roundedTo(wanted, kStep);
+  if (values.size() != unknowns.size()) {
+    notSeamless("conditions of singular curves have no solution on the lattice.", {});
+  }
+  solveVertices(result, graph, conditions, values);
+  findChanges(result, graph);
+  measureDisplacement(result, graph, tolerance);
+  requirePositiveTets(result);
+  return result;
+}
+
+}  // namespace hexhex

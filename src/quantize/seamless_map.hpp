@@ -1,0 +1,38 @@
+// The seamless map nearest to one that is nearly seamless: what quantization begins with.
+//
+// A map is seamless if charts of neighbours differ by a rotation of the grid and any translation,
+// boundary triangles are perpendicular to an axis, and singular edges parallel to one. An
+// integer-grid map is a seamless map whose translations, planes and lines are integers.
+#pragma once
+
+#include <vector>
+
+#include <adjacency/tet_topology.hpp>
+
+#include <hexhex/context.hpp>
+#include <hexhex/types.hpp>
+
+#include <igm/input.hpp>
+#include <quantize/chart_change.hpp>
+
+namespace hexhex {
+
+/// An exactly seamless map on a dyadic lattice: a coordinate is a parameter times `unit`.
+struct SeamlessMap {
+  OrientedMap input;
+  TetTopology topology;  ///< with stars
+  std::vector<LatticeTet> corners;   ///< per tet, in charts that mostly agree
+  std::vector<ChartChange> changes;  ///< per half-face, from here to the neighbour's chart
+  /// Features that are aligned with axes, and to stay so: edges that are not singular, inner faces.
+  std::vector<EdgeCorner> featureEdges;
+  std::vector<HalfFace> featureFaces;
+  double unit = 1;
+  double maxDisplacement = 0;  ///< of a parameter from that given, along an axis
+};
+
+/// @param tolerance  for displacements, in units of the map's parameters
+/// @throws Error where the mesh is not a manifold, the map is not even nearly seamless, or a tet is
+/// not positive
+[[nodiscard]] SeamlessMap makeSeamless(const TetMapView& map, double tolerance, Context& context);
+
+}  // namespace hexhex

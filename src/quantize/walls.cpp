@@ -1,0 +1,346 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <base/vector3.hpp>
+#include <quantize/walls.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// A wall that crosses an edge so close to its end, as a share of the edge, moves the end.
+constexpr double kClose = 0.25;
+
+Vec3 toVector(const LatticePoint& u) {
+  return {static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2])};
+}
+
+/// Of a tet at one of its edges, in the map.
+double dihedralAngle(const LatticeTet& tet, std::size_t a, std::size_t b) {
+  std::array<std::size_t, 2> others{};
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (i != a && i != b) others[n++] = i;
+  }
+  const Vec3 edge = toVector(tet[b] - tet[a]);
+  const Vec3 left = cross(edge, toVector(tet[others[0]] - tet[a]));
+  const Vec3 right = cross(edge, toVector(tet[others[1]] - tet[a]));
+  const Vec3 normal = cross(left, right);
+  return std::atan2(std::sqrt(dot(normal, normal)), dot(left, right));
+}
+
+int otherAxis(std::size_t a, std::size_t b) { return static_cast<int>(3 - a - b); }
+
+}  // namespace
+
+std::vector<int> quartersAround(const SeamlessMap& map, const EdgeFans& edges) {
+  std::vector<int> quarters(edges.size());
+  for (std::size_t edge = 0; edge < edges.size(); ++edge) {
+    double sum = 0;
+    for (const EdgeCorner& at : edges(edge)) {
+      sum += dihedralAngle(map.corners[at.tet], at.corner0, at.corner1);
+    }
+    quarters[edge] = static_cast<int>(std::lround(sum / (std::numbers::pi / 2)));
+  }
+  return quarters;
+}
+
+AxisPlane AxisPlane::beyond(const ChartChange& change) const noexcept {
+  const Direction to = change.rotation(direction(static_cast<int>(axis), 1));
+  const auto there = static_cast<std::size_t>(axisOf(to));
+  return {there, signOf(to) * value + change.translation[there]};
+}
+
+AxisPlane planeOf(const WallMesh& mesh, HalfFace wall) {
+  const auto& c = kFaceCorners[wall % 4];
+  const LatticeTet& u = mesh.corners[tetOf(wall)];
+  const auto corner = [&](std::size_t k) { return u[static_cast<std::size_t>(c[k])]; };
+  std::size_t axis = 0;
+  while (corner(0)[axis] != corner(1)[axis] || corner(0)[axis] != corner(2)[axis]) ++axis;
+  return {axis, corner(0)[axis]};
+}
+
+namespace {
+
+/// Turns around an edge until it meets a plane through the edge, on whose `side` it begins.
+PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side, WallTurn turn) {
+  PlaneMeeting meeting;
+  while (true) {
+    const Index tet = turn.edge().tet;
+    const int sideAhead = side * plane.sideOf(mesh.at(tet, turn.ahead()));
+    if (sideAhead < 0) {
+      meeting.kind = PlaneMeeting::Kind::Inside;
+      // From the corner behind to that ahead.
+      meeting.crossed = {tet, static_cast<std::uint8_t>(localOf(turn.out())),
+                         static_cast<std::uint8_t>(turn.ahead())};
+      meeting.plane = plane;
+      return meeting;
+    }
+    if (sideAhead == 0) {
+      meeting.kind = PlaneMeeting::Kind::Face;
+      meeting.face = turn.out();
+      return meeting;
+    }
+    if (turn.isAtBoundary()) return meeting;
+    meeting.wallBefore = meeting.wallBefore || mesh.isWall[turn.out()];
+    const ChartChange& change = mesh.change[turn.out()];
+    const Direction to = change.rotation(direction(static_cast<int>(plane.axis), 1));
+    plane = plane.beyond(change);
+    side *= signOf(to);
+    turn.step();
+  }
+}
+
+/// Half a turn from a wall, around one of its edges.
+PlaneMeeting meetOpposite(const WallMesh& mesh, HalfFace wall, Index v, Index w) {
+  const Index tet = tetOf(wall);
+  const TetEdge edge{tet, mesh.cornerOf(tet, v), mesh.cornerOf(tet, w)};
+  const AxisPlane plane = planeOf(mesh, wall);
+  const int side = plane.sideOf(mesh.at(tet, static_cast<std::size_t>(localOf(wall))));
+  return turnTo(mesh, plane, side, WallTurn(mesh, edge, otherFaceAtEdge(edge.mask(), localOf(wall))));
+}
+
+}  // namespace
+
+int WallTracer::moveEnd(const TetEdge& edge, const AxisPlane& plane) {
+  const std::int64_t begin = mesh_.at(edge.tet, edge.corner0)[plane.axis];
+  const std::int64_t end = mesh_.at(edge.tet, edge.corner1)[plane.axis];
+  const double share = static_cast<double>(plane.value - begin) / static_cast<double>(end - begin);
+  int corner = -1;
+  if (share < kClose) corner = edge.corner0;
+  if (share > 1 - kClose) corner = edge.corner1;
+  if (corner < 0) return corner;
+  const auto moved = static_cast<std::uint8_t>(corner);
+  return mesh_.moveInto(edge.tet, moved, plane.axis, plane.value) ? corner : -1;
+}
+
+HalfFace WallTracer::wallAt(const PlaneMeeting& meeting) {
+  HalfFace face = meeting.face;
+  if (meeting.kind == PlaneMeeting::Kind::Inside) {
+    const auto& [tet, corner0, corner1] = meeting.crossed;
+    const int moved = moveEnd(meeting.crossed, meeting.plane);
+    if (moved < 0) mesh_.split(meeting.crossed, meeting.plane.axis, meeting.plane.value);
+    face = halfFaceOf(tet, moved == corner0 ? corner1 : corner0);
+  }
+  mesh_.markWall(face);
+  return face;
+}
+
+void WallTracer::push(HalfFace wall, const std::array<Index, 2>& edge,
+                      const std::array<double, 2>& distances) {
+  // Distance grows by one per unit away from the edge, linearly (the update of fast marching).
+  const Index tet = tetOf(wall);
+  const auto point = [&](Index vertex) { return toVector(mesh_.at(tet, mesh_.cornerOf(tet, vertex))); };
+  Index third = kNone;
+  for (const int corner : kFaceCorners[wall % 4]) {
+    const Index vertex = mesh_.tets[tet][static_cast<std::size_t>(corner)];
+    if (vertex != edge[0] && vertex != edge[1]) third = vertex;
+  }
+  const Vec3 along = minus(point(edge[1]), point(edge[0]));
+  const Vec3 toThird = minus(point(third), point(edge[0]));
+  const double length = std::sqrt(dot(along, along));
+  const double slope = std::clamp((distances[1] - distances[0]) / length, -1.0, 1.0);
+  const double parallel = dot(toThird, along) / length;
+  const double across = std::sqrt(std::max(dot(toThird, toThird) - parallel * parallel, 0.0));
+  const double distance = distances[0] + slope * parallel + std::sqrt(1 - slope * slope) * across;
+  push({edge[0], third}, {distances[0], distance}, tet);
+  push({edge[1], third}, {distances[1], distance}, tet);
+}
+
+void WallTracer::push(const std::array<Index, 2>& edge, const std::array<double, 2>& distances,
+                      Index tet) {
+  fronts_.push({(distances[0] + distances[1]) / 2, order_++, edge, distances, tet});
+}
+
+void WallTracer::startAt(const TetEdge& edge, int face) {
+  const std::array<Index, 2> ends = {mesh_.tets[edge.tet][edge.corner0],
+                                     mesh_.tets[edge.tet][edge.corner1]};
+  const LatticePoint origin = mesh_.at(edge.tet, edge.corner0);
+  const LatticePoint along = mesh_.at(edge.tet, edge.corner1) - origin;
+  std::size_t axis = 0;
+  while (along[axis] == 0) ++axis;
+  const std::size_t a = (axis + 1) % 3;
+  const std::size_t b = (axis + 2) % 3;
+  // The first direction of the grid that a turn from `face` meets, if that is not in it.
+  HalfFace wall = halfFaceOf(edge.tet, face);
+  const LatticePoint behind =
+      mesh_.at(edge.tet, static_cast<std::size_t>(otherFaceAtEdge(edge.mask(), face))) - origin;
+  if (behind[a] != 0 && behind[b] != 0) {
+    const LatticePoint ahead = mesh_.at(edge.tet, static_cast<std::size_t>(face)) - origin;
+    const int turn = sign(static_cast<Int128>(behind[a]) * ahead[b] -
+                          static_cast<Int128>(behind[b]) * ahead[a]);
+    const bool sameSigns = (behind[a] > 0) == (behind[b] > 0);
+    const std::size_t zero = (turn > 0) == sameSigns ? a : b;
+    wall = wallAt(turnTo(mesh_, {zero, origin[zero]}, behind[zero] > 0 ? 1 : -1,
+                         WallTurn(mesh_, edge, otherFaceAtEdge(edge.mask(), face))));
+  } else {
+    mesh_.markWall(wall);
+  }
+  const auto thirdOf = [&](HalfFace h) {
+    for (const int corner : kFaceCorners[h % 4]) {
+      const Index vertex = mesh_.tets[tetOf(h)][static_cast<std::size_t>(corner)];
+      if (vertex != ends[0] && vertex != ends[1]) return vertex;
+    }
+    return kNone;
+  };
+  const Index first = thirdOf(wall);
+  if (!mesh_.isBoundary(wall)) push(wall, ends, {0, 0});
+  // Quarter turn by quarter turn, always from the far side of the wall.
+  bool isStart = true;
+  while (true) {
+    const HalfFace from = isStart && mesh_.isBoundary(wall) ? wall : mesh_.mate[wall];
+    isStart = false;
+    const Index tet = tetOf(from);
+    const TetEdge here{tet, mesh_.cornerOf(tet, ends[0]), mesh_.cornerOf(tet, ends[1])};
+    const LatticePoint out =
+        mesh_.at(tet, mesh_.cornerOf(tet, thirdOf(from))) - mesh_.at(tet, here.corner0);
+    const LatticePoint line = mesh_.at(tet, here.corner1) - mesh_.at(tet, here.corner0);
+    std::size_t lineAxis = 0;
+    while (line[lineAxis] == 0) ++lineAxis;
+    const auto next = static_cast<std::size_t>(otherAxis(lineAxis, planeOf(mesh_, from).axis));
+    const PlaneMeeting meeting =
+        turnTo(mesh_, {next, mesh_.at(tet, here.corner0)[next]}, out[next] > 0 ? 1 : -1,
+               WallTurn(mesh_, here, otherFaceAtEdge(here.mask(), localOf(from))));
+    if (meeting.kind == PlaneMeeting::Kind::Boundary) return;
+    wall = wallAt(meeting);
+    if (mesh_.isBoundary(wall) || thirdOf(wall) == first) return;
+    push(wall, ends, {0, 0});
+  }
+}
+
+bool WallTracer::startIn(Index tet, const AxisPlane& plane) {
+  // Splits edges until the plane runs along triangles of parts of the tet.
+  std::vector<Index> parts = {tet};
+  for (std::size_t next = 0; next < parts.size(); ++next) {
+    const Index t = parts[next];
+    for (std::uint8_t a = 0; a < 4; ++a) {
+      for (std::uint8_t b = 0; b < 4; ++b) {
+        if (plane.sideOf(mesh_.at(t, a)) >= 0 || plane.sideOf(mesh_.at(t, b)) <= 0) continue;
+        if (moveEnd({t, a, b}, plane) >= 0) continue;
+        mesh_.split({t, a, b}, plane.axis, plane.value);
+        parts.push_back(tetOf(mesh_.mate[halfFaceOf(t, a)]));
+      }
+    }
+  }
+  bool isStarted = false;
+  for (const Index t : parts) {
+    for (int face = 0; face < 4; ++face) {
+      const auto& c = kFaceCorners[static_cast<std::size_t>(face)];
+      std::array<Index, 3> triangle{};
+      bool isInPlane = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto corner = static_cast<std::size_t>(c[k]);
+        triangle[k] = mesh_.tets[t][corner];
+        isInPlane = isInPlane && plane.sideOf(mesh_.at(t, corner)) == 0;
+      }
+      const HalfFace wall = halfFaceOf(t, face);
+      if (!isInPlane || mesh_.isWall[wall]) continue;
+      mesh_.markWall(wall);
+      isStarted = true;
+      for (std::size_t k = 0; k < 3; ++k) push({triangle[k], triangle[(k + 1) % 3]}, {0, 0}, t);
+    }
+  }
+  return isStarted;
+}
+
+HalfFace WallTracer::someWall(const TetEdge& edge) const {
+  for (int face = 0; face < 4; ++face) {
+    if (contains(edge.mask(), face)) continue;
+    WallTurn turn(mesh_, edge, face);
+    while (true) {
+      if (mesh_.isWall[turn.out()]) return turn.out();
+      if (turn.isAtBoundary()) break;
+      turn.step();
+      if (turn.edge().tet == edge.tet) break;
+    }
+  }
+  return kNone;
+}
+
+void WallTracer::grow() {
+  while (!fronts_.empty()) {
+    const Front front = fronts_.top();
+    fronts_.pop();
+    grow(front);
+  }
+}
+
+void WallTracer::grow(const Front& front) {
+  const auto [v, w] = front.vertices;
+  const WallMesh::Found found = mesh_.find(v, w, front.tet);
+  if (!found.edge) {
+    const double middle = (front.distances[0] + front.distances[1]) / 2;
+    push({v, found.middle}, {front.distances[0], middle}, front.tet);
+    push({found.middle, w}, {middle, front.distances[1]}, front.tet);
+    return;
+  }
+  const HalfFace wall = someWall(*found.edge);
+  if (wall == kNone) {
+    throw Error(ErrorCode::Internal, "An edge of a wall has lost its wall. This is a bug.",
+                {PlaceKind::Edge, v, w});
+  }
+  if (mesh_.isBoundary(wall)) return;
+  const PlaneMeeting one = meetOpposite(mesh_, wall, v, w);
+  const PlaneMeeting other = meetOpposite(mesh_, mesh_.mate[wall], v, w);
+  if (one.kind == PlaneMeeting::Kind::Boundary || other.kind == PlaneMeeting::Kind::Boundary) return;
+  if (one.kind == PlaneMeeting::Kind::Face && mesh_.isWall[one.face]) return;
+  // It ends where another wall passes.
+  if (one.wallBefore && other.wallBefore) return;
+  push(wallAt(one), front.vertices, front.distances);
+}
+
+HalfFace wallOpposite(const WallMesh& mesh, HalfFace wall, Index v, Index w) {
+  const auto meeting = meetOpposite(mesh, wall, v, w);
+  const bool isWall = meeting.kind == PlaneMeeting::Kind::Face && mesh.isWall[meeting.face];
+  return isWall ? meeting.face : kNone;
+}
+
+void WallTracer::startAlong(Index v, Index w, Index tet) {
+  // Walls of other edges may have split it.
+  mesh_.forEachPart(v, w, tet, [this](TetEdge edge) {
+    int face = 0;
+    while (contains(edge.mask(), face)) ++face;
+    WallTurn turn(mesh_, edge, face);
+    const TetEdge first = edge;
+    do {
+      if (turn.isAtBoundary()) {
+        // Anew from the boundary, inwards.
+        startAt(turn.edge(), localOf(turn.out()));
+        return;
+      }
+      turn.step();
+    } while (turn.edge().tet != first.tet);
+    startAt(edge, face);
+  });
+}
+
+void WallTracer::startAt(HalfFace feature) {
+  mesh_.markWall(feature);
+  const Tet& tet = mesh_.tets[tetOf(feature)];
+  const auto& c = kFaceCorners[feature % 4];
+  for (std::size_t k = 0; k < 3; ++k) {
+    push({tet[static_cast<std::size_t>(c[k])], tet[static_cast<std::size_t>(c[(k + 1) % 3])]},
+         {0, 0}, tetOf(feature));
+  }
+}
+
+WallMesh traceWalls(const SeamlessMap& map, const EdgeFans& edges) {
+  WallMesh mesh(map);
+  WallTracer tracer(mesh);
+  for (const HalfFace feature : map.featureFaces) tracer.startAt(feature);
+  const std::vector<int> quarters = quartersAround(map, edges);
+  const auto start = [&](const EdgeCorner& at) {
+    const Tet& tet = map.topology.tets[at.tet];
+    tracer.startAlong(tet[at.corner0], tet[at.corner1], at.tet);
+  };
+  for (std::size_t edge = 0; edge < edges.size(); ++edge) {
+    if (quarters[edge] != (edges.isBoundary(edge) ? 2 : 4)) start(edges(edge).front());
+  }
+  for (const EdgeCorner& at : map.featureEdges) start(at);
+  std::fill(mesh.isHeld.begin(), mesh.isHeld.end(), false);
+  tracer.grow();
+  return mesh;
+}
+
+}  // namespace hexhex
