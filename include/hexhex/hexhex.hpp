@@ -13,6 +13,7 @@
 #include <hexhex/partial.hpp>        // IWYU pragma: export
 #include <hexhex/patches.hpp>        // IWYU pragma: export
 #include <hexhex/quality.hpp>        // IWYU pragma: export
+#include <hexhex/quantize.hpp>       // IWYU pragma: export
 #include <hexhex/repair.hpp>         // IWYU pragma: export
 #include <hexhex/samples.hpp>        // IWYU pragma: export
 #include <hexhex/stream.hpp>         // IWYU pragma: export

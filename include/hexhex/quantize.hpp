@@ -20,6 +20,9 @@ struct QuantizeOptions {
   double edgeLength = 0;  ///< of a hexahedron in space, on the average
   /// If no valid map is found so: takes a denser one, the first one that works.
   bool densify = false;
+  /// Tagged triangles inside of the object stay planes of the mesh, as those between regions do.
+  /// (Walls of a motorcycle complex in a .hexex file, tag 2, need not.)
+  bool keepInnerFaces = true;
   /// A map may be so far from being seamless, as a share of its largest coordinate.
   double tolerance = 1e-5;
 };
@@ -34,16 +37,16 @@ struct MapDistortion {
 struct QuantizeReport {
   double cellsWanted = 0;
   std::uint64_t cells = 0;
-  double scale = 0;             ///< of the seamless map's parameters, finally
-  double displacement = 0;      ///< largest change of a parameter that made the map seamless
-  std::uint64_t blocks = 0;     ///< of the motorcycle complex
+  double scale = 0;          ///< of the seamless map's parameters, finally
+  double displacement = 0;   ///< largest change of a parameter that made the map seamless
+  std::uint64_t blocks = 0;  ///< of the motorcycle complex
   std::uint64_t arcs = 0;
   std::uint64_t shortestArc = 0;  ///< in hexahedra
   std::uint64_t longestArc = 0;
-  std::string integersBy;         ///< "CBC", or "rounding" where CBC is missing
-  std::uint64_t attempts = 0;     ///< numbers of cells that were tried
-  std::uint64_t splitEdges = 0;   ///< each adds a vertex to the tet mesh
-  std::uint64_t addedTets = 0;    ///< by that
+  std::string integersBy;        ///< "CBC", or "rounding" where CBC is missing
+  std::uint64_t attempts = 0;    ///< numbers of cells that were tried
+  std::uint64_t splitEdges = 0;  ///< each adds a vertex to the tet mesh
+  std::uint64_t addedTets = 0;   ///< by that
   MapDistortion distortionBefore;
   MapDistortion distortionAfter;
 };

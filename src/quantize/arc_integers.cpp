@@ -8,8 +8,8 @@ namespace hexhex {
 namespace {
 
 [[noreturn]] void failClosed(const char* what) {
-  throw Error(ErrorCode::Internal, std::string("Integers of arcs do not fit together: ") + what +
-                                       " This is a bug.");
+  throw Error(ErrorCode::Internal,
+              std::string("Integers of arcs do not fit together: ") + what + " This is a bug.");
 }
 
 }  // namespace
@@ -75,7 +75,8 @@ void BlockIntegers::findPositions(const MotorcycleComplex& complex,
     }
     if (positions.size() != steps[block].size()) failClosed("a block's arcs are not connected.");
     // The first position, in the order of coordinates, is a corner of the box.
-    cells_ += static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
+    cells_ +=
+        static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
   }
 }
 

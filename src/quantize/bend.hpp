@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <set>
 #include <vector>
 
 #include <hexhex/types.hpp>
@@ -14,9 +16,9 @@
 
 namespace hexhex {
 
-/// The plane that a boundary triangle is to lie in, in its tet's chart.
+/// The plane that a triangle of the boundary or of a feature is to lie in, in its tet's chart.
 struct BoundaryPlane {
-  std::int8_t axis = -1;        ///< 0..2, or -1: the triangle is free, or not on the boundary
+  std::int8_t axis = -1;        ///< 0..2, or -1: the triangle is free
   std::int32_t coordinate = 0;  ///< of its three corners along the axis
 
   [[nodiscard]] bool operator==(const BoundaryPlane&) const = default;
@@ -34,6 +36,10 @@ struct BendProblem {
   /// transitions compose to the identity. Not used on the boundary.
   std::vector<Transition> transitions;
   std::vector<BoundaryPlane> planes;  ///< per half-face
+  /// Further planes for single corners, by their index 4 * tet + corner: of features.
+  std::map<std::uint32_t, std::vector<BoundaryPlane>> fixedCorners = {};
+  /// Edges that must not be split, by their vertices in ascending order: of features.
+  std::set<std::array<Index, 2>> keptEdges = {};
 };
 
 struct BendOptions {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include <quantize/bend_problem.hpp>
@@ -46,6 +47,36 @@ Transition toTransition(const ChartChange& change) {
   return {change.rotation, {toInt32(t[0]), toInt32(t[1]), toInt32(t[2])}};
 }
 
+/// The triangles, edges and vertices of features that are aligned.
+void fixFeatures(const MotorcycleComplex& complex, const BlockIntegers& integers,
+                 const std::vector<ChartChange>& ways, BendProblem& problem) {
+  const WallMesh& mesh = complex.mesh;
+  const auto toPlane = [&](Index tet, std::size_t axis, const LatticePoint& node) {
+    const AxisPlane plane = AxisPlane{axis, node[axis]}.beyond(ways[tet]);
+    return BoundaryPlane{static_cast<std::int8_t>(plane.axis), toInt32(plane.value)};
+  };
+  for (HalfFace h = 0; h < mesh.mate.size(); ++h) {
+    if (!mesh.isFeature[h] || mesh.originalFace[h] == kInside) continue;
+    const Index tet = tetOf(h);
+    const PatchSide& patch = complex.patches[complex.patchOf[h]];
+    const std::size_t axis = planeOf(mesh, h).beyond(complex.toBlock[tet]).axis;
+    problem.planes[halfFaceOf(mesh.original[tet], mesh.originalFace[h])] =
+        toPlane(tet, axis, integers(patch.block, patch.border.front().start));
+  }
+  for (const FeatureCorner& at : complex.featureCorners) {
+    const Index vertex = mesh.tets[at.tet][at.corner];
+    if (vertex >= problem.points.size()) continue;
+    const Index tet = mesh.original[at.tet];
+    auto& planes = problem.fixedCorners[4 * tet + localCorner(problem.tets[tet], vertex)];
+    const LatticePoint node = integers(complex.blockOf[at.tet], at.node);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const BoundaryPlane plane = toPlane(at.tet, axis, node);
+      const bool isKnown = std::find(planes.begin(), planes.end(), plane) != planes.end();
+      if (axis != at.freeAxis && !isKnown) planes.push_back(plane);
+    }
+  }
+}
+
 }  // namespace
 
 BendProblem bendProblem(const SeamlessMap& map, const MotorcycleComplex& complex,
@@ -63,6 +94,10 @@ BendProblem bendProblem(const SeamlessMap& map, const MotorcycleComplex& complex
         problem.reference[t][i][k] = static_cast<double>(u[k]) / map.unit * scale;
       }
     }
+  }
+  for (const EdgeCorner& at : map.featureEdges) {
+    const Tet& tet = problem.tets[at.tet];
+    problem.keptEdges.insert(pairOf(tet[at.corner0], tet[at.corner1]));
   }
   problem.transitions.resize(4 * problem.tets.size());
   problem.planes.resize(4 * problem.tets.size());
@@ -82,6 +117,7 @@ BendProblem bendProblem(const SeamlessMap& map, const MotorcycleComplex& complex
           ways[tetOf(mesh.mate[h])] * integers.across(complex, h) * ways[tet].inverse());
     }
   }
+  fixFeatures(complex, integers, ways, problem);
   return problem;
 }
 

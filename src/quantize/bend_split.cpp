@@ -77,6 +77,7 @@ std::vector<SplitEdge> freeingEdges(const BendProblem& problem, const TetTopolog
     forEachEdgeOf(problem.tets[t], [&](const SplitEdge& edge, CornerMask corners) {
       const int ends =
           std::min(std::popcount(unknowns.fixed[edge[0]]), std::popcount(unknowns.fixed[edge[1]]));
+      if (problem.keptEdges.contains(edge)) return;
       if (ends > 0 && reader.fixedCount(t, corners) < ends) edges.push_back(edge);
     });
   }
@@ -124,6 +125,10 @@ void cutTet(BendState& state, Stars& stars, Index t, const SplitEdge& edge, Inde
     problem.transitions[inner] = {};
     problem.planes[inner] = {};
   }
+  if (auto fixed = problem.fixedCorners.extract(static_cast<CornerIndex>(4 * t + b))) {
+    fixed.key() = static_cast<CornerIndex>(4 * second + b);
+    problem.fixedCorners.insert(std::move(fixed));
+  }
   for (const Index v : problem.tets[second]) stars[v].push_back(second);
   stars[vertex].push_back(t);
   std::erase(stars[edge[1]], t);
@@ -138,8 +143,9 @@ std::vector<SplitEdge> edgesToSplit(const BendProblem& problem, const TetTopolog
   edges = freeingEdges(problem, topology, unknowns, withNeighbours(topology, tets));
   if (!edges.empty()) return edges;
   for (const Index t : tets) {
-    forEachEdgeOf(problem.tets[t],
-                  [&](const SplitEdge& edge, CornerMask /*corners*/) { edges.push_back(edge); });
+    forEachEdgeOf(problem.tets[t], [&](const SplitEdge& edge, CornerMask /*corners*/) {
+      if (!problem.keptEdges.contains(edge)) edges.push_back(edge);
+    });
   }
   sortOut(edges);
   return edges;

@@ -4,8 +4,9 @@
 
 #include <quantize/integer_program.hpp>
 #if defined(HEXHEX_CBC_NAME)
-#include <coin/Cbc_C_Interface.h>
 #include <dlfcn.h>
+
+#include <coin/Cbc_C_Interface.h>
 #endif
 
 namespace hexhex {

@@ -22,9 +22,7 @@ struct Motion {
   Rotation rotation;
   Vec3 translation{};
 
-  [[nodiscard]] Vec3 operator()(const Vec3& u) const {
-    return plus(rotation(u), translation);
-  }
+  [[nodiscard]] Vec3 operator()(const Vec3& u) const { return plus(rotation(u), translation); }
 };
 
 /// The same triangle's middle in both its tets.
@@ -134,8 +132,17 @@ void numberSectors(const TetTopology& topology, CutGraph& graph) {
 
 }  // namespace
 
-EdgeFans::EdgeFans(const TetTopology& topology)
-    : topology_(topology), edges_(topology.tetCount()) {
+double dihedralAngle(const TetParameters& tet, std::size_t a, std::size_t b) {
+  const std::size_t c = firstCorner(static_cast<CornerMask>(kWholeTet ^ (1U << a) ^ (1U << b)));
+  const std::size_t d = 6 - a - b - c;
+  const Vec3 edge = minus(tet[b], tet[a]);
+  const Vec3 left = cross(edge, minus(tet[c], tet[a]));
+  const Vec3 right = cross(edge, minus(tet[d], tet[a]));
+  const Vec3 normal = cross(left, right);
+  return std::atan2(std::sqrt(dot(normal, normal)), dot(left, right));
+}
+
+EdgeFans::EdgeFans(const TetTopology& topology) : topology_(topology), edges_(topology.tetCount()) {
   std::vector<EdgeCorner> scratch;
   for (Index v = 0; v < topology.pointCount; ++v) {
     forEachEdge(topology, v, scratch, [this](Index /*w*/, std::span<const EdgeCorner> fan) {

@@ -2,6 +2,9 @@
 // takes.
 #pragma once
 
+#include <cmath>
+#include <numbers>
+#include <span>
 #include <vector>
 
 #include <adjacency/tet_topology.hpp>
@@ -12,6 +15,9 @@
 #include <lattice/rotation.hpp>
 
 namespace hexhex {
+
+/// Of a tet at its edge (a, b).
+[[nodiscard]] double dihedralAngle(const TetParameters& tet, std::size_t a, std::size_t b);
 
 /// The edges of a tet mesh, each with the tets around it.
 class EdgeFans {
@@ -25,6 +31,9 @@ class EdgeFans {
   }
   /// The edge of two corners of a tet.
   [[nodiscard]] Index edgeOf(Index tet, CornerMask ends) const noexcept;
+  [[nodiscard]] Index edgeOf(const EdgeCorner& at) const noexcept {
+    return edgeOf(at.tet, static_cast<CornerMask>(cornerBit(at.corner0) | cornerBit(at.corner1)));
+  }
   [[nodiscard]] bool isBoundary(std::size_t edge) const noexcept {
     return boundaryFacesAt(topology_, (*this)(edge)) != 0;
   }
@@ -35,6 +44,30 @@ class EdgeFans {
   std::vector<EdgeCorner> corners_;
   std::vector<std::array<Index, 6>> edges_;  ///< per tet
 };
+
+/// Quarter turns around each edge: the sum of its tets' angles in the map.
+/// @tparam Corners  four points each, of whatever numbers
+template <class Corners>
+[[nodiscard]] std::vector<int> quartersAround(const EdgeFans& edges, std::span<const Corners> map) {
+  std::vector<int> quarters(edges.size());
+  for (std::size_t edge = 0; edge < edges.size(); ++edge) {
+    double sum = 0;
+    for (const EdgeCorner& at : edges(edge)) {
+      TetParameters u{};
+      for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) u[i][k] = static_cast<double>(map[at.tet][i][k]);
+      }
+      sum += dihedralAngle(u, at.corner0, at.corner1);
+    }
+    quarters[edge] = static_cast<int>(std::lround(sum / (std::numbers::pi / 2)));
+  }
+  return quarters;
+}
+
+/// As many are around an edge that is not singular.
+[[nodiscard]] inline int regularQuarters(const EdgeFans& edges, std::size_t edge) {
+  return edges.isBoundary(edge) ? 2 : 4;
+}
 
 /// A seamless map in charts that agree across all triangles but those of a cut.
 struct CutGraph {

@@ -82,7 +82,8 @@ std::vector<std::int64_t> solveGreedily(const IntegerProgram& program, Stage& st
     if (best == nullptr) break;
     for (const auto& [arc, by] : best->arcs) integers[arc] += bestSign * by;
   }
-  if (std::any_of(integers.begin(), integers.end(), [](std::int64_t x) { return x < 1; })) return {};
+  if (std::any_of(integers.begin(), integers.end(), [](std::int64_t x) { return x < 1; }))
+    return {};
   return integers;
 }
 

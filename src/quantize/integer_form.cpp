@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include <Eigen/Dense>
-
 #include <quantize/integer_form.hpp>
 
 namespace hexhex {
@@ -96,13 +95,11 @@ std::vector<double> IntegerSystem::nearest(const std::vector<double>& wanted) co
   for (auto solved = solved_.rbegin(); solved != solved_.rend(); ++solved) {
     for (const auto& [variable, factor] : solved->rest.terms()) {
       basis.row(solved->variable) -= static_cast<double>(factor) /
-                                     static_cast<double>(solved->coefficient) *
-                                     basis.row(variable);
+                                     static_cast<double>(solved->coefficient) * basis.row(variable);
     }
   }
   const Eigen::Map<const Eigen::VectorXd> target(wanted.data(), n);
-  const Eigen::VectorXd free =
-      (basis.transpose() * basis).ldlt().solve(basis.transpose() * target);
+  const Eigen::VectorXd free = (basis.transpose() * basis).ldlt().solve(basis.transpose() * target);
   const Eigen::VectorXd solution = basis * free;
   return {solution.data(), solution.data() + n};
 }

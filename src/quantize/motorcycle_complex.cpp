@@ -2,8 +2,9 @@
 #include <set>
 #include <string>
 
-#include <base/disjoint_sets.hpp>
 #include <quantize/motorcycle_complex.hpp>
+
+#include <base/disjoint_sets.hpp>
 
 namespace hexhex {
 
@@ -11,7 +12,7 @@ namespace {
 
 /// Where blocks do not close up: a way around through which charts differ.
 struct Holonomy {
-  Index tet = kNone;  ///< where it was noticed
+  Index tet = kNone;   ///< where it was noticed
   ChartChange change;  ///< of the block's chart
 };
 
@@ -104,7 +105,8 @@ class ArcFinder {
   }
 
   [[nodiscard]] bool isNode(Index vertex) const {
-    return !edgesAt_[vertex].empty() && edgesAt_[vertex].size() != 2;
+    if (edgesAt_[vertex].empty()) return false;
+    return edgesAt_[vertex].size() != 2 || complex_.mesh.featureVertices.contains(vertex);
   }
 
   /// How a directed edge lies in its arc: the arc, and whether it goes the arc's way; how far from
@@ -157,8 +159,7 @@ class ArcFinder {
       if (other == kNone || sameTriangle(each.halfFace, other)) return false;
     }
     for (const WallEdge& each : same) {
-      sides_.unite(each.halfFace,
-                   wallOpposite(complex_.mesh, each.halfFace, each.tail, each.head));
+      sides_.unite(each.halfFace, wallOpposite(complex_.mesh, each.halfFace, each.tail, each.head));
     }
     return true;
   }
@@ -183,6 +184,7 @@ class ArcFinder {
       here.first = vertex;
       here.offset = arc.length;
       arc.length += here.length;
+      arc.isFeature = arc.isFeature || complex_.mesh.featureEdges.contains(here.vertices);
       vertex = here.vertices[0] == vertex ? here.vertices[1] : here.vertices[0];
       if (isNode(vertex)) break;
       edge = edgesAt_[vertex][0] == edge ? edgesAt_[vertex][1] : edgesAt_[vertex][0];
@@ -269,6 +271,14 @@ void findPatches(MotorcycleComplex& complex, const ArcFinder& arcs, DisjointSets
       side.start[side.axis] -= side.sign * behind;
       side.end[side.axis] += side.sign * (length - behind);
       borders[complex.patchOf[h]].insert(side);
+      for (const std::size_t corner : {tail, head}) {
+        const Index vertex = mesh.tets[tet][corner];
+        const bool isNode = arcs.isNode(vertex) && mesh.featureVertices.contains(vertex);
+        if (!isNode && !complex.arcs[at.arc].isFeature) continue;
+        const LatticePoint here = complex.toBlock[tet](mesh.at(tet, corner));
+        complex.featureCorners.push_back(
+            {tet, corner, isNode ? 3 : std::size_t{side.axis}, isNode ? here : side.start});
+      }
     }
   }
   for (std::size_t p = 0; p < borders.size(); ++p) {
@@ -279,6 +289,7 @@ void findPatches(MotorcycleComplex& complex, const ArcFinder& arcs, DisjointSets
 void findArcsAndPatches(MotorcycleComplex& complex) {
   complex.arcs.clear();
   complex.patches.clear();
+  complex.featureCorners.clear();
   DisjointSets sides(complex.mesh.mate.size());
   ArcFinder arcs(complex, sides);
   arcs.collect();
@@ -331,13 +342,22 @@ bool removeWalls(MotorcycleComplex& complex) {
     }
     return thick;
   };
+  std::vector<bool> isFeature(complex.patches.size());
+  for (HalfFace h = 0; h < complex.patchOf.size(); ++h) {
+    if (complex.mesh.isFeature[h]) isFeature[complex.patchOf[h]] = true;
+  }
+  for (Index p = 0; p < complex.patches.size(); ++p) {
+    for (const ArcSide& side : complex.patches[p].border) {
+      if (complex.arcs[side.arc].isFeature) isFeature[p] = true;
+    }
+  }
   std::vector<std::pair<std::int64_t, Index>> removable;
   for (Index p = 0; p < complex.patches.size(); ++p) {
     const Index other = complex.acrossPatch(p);
     if (other == kNone || other < p) continue;
     const PatchSide& here = complex.patches[p];
     const PatchSide& there = complex.patches[other];
-    if (here.block == there.block) continue;
+    if (here.block == there.block || isFeature[p]) continue;
     const std::int64_t a = thickness(here);
     const std::int64_t b = thickness(there);
     if (a != 0 && b != 0) removable.emplace_back(std::min(a, b), p);
@@ -354,7 +374,8 @@ bool removeWalls(MotorcycleComplex& complex) {
     isRemoved[p] = isRemoved[other] = true;
   }
   for (HalfFace h = 0; h < complex.patchOf.size(); ++h) {
-    if (complex.patchOf[h] != kNone && isRemoved[complex.patchOf[h]]) complex.mesh.isWall[h] = false;
+    if (complex.patchOf[h] != kNone && isRemoved[complex.patchOf[h]])
+      complex.mesh.isWall[h] = false;
   }
   return !removable.empty();
 }
@@ -391,7 +412,8 @@ void requireBoxes(const MotorcycleComplex& complex) {
     box.addProduct(static_cast<Int128>(size[0]) * size[1], -6 * size[2]);
     box += extent.sixfoldVolume;
     if (box.sign() != 0) {
-      throw Error(ErrorCode::Internal, "A block of the motorcycle complex is no box. This is a bug.",
+      throw Error(ErrorCode::Internal,
+                  "A block of the motorcycle complex is no box. This is a bug.",
                   {PlaceKind::Tet, complex.mesh.original[extent.tet]});
     }
   }
@@ -401,7 +423,7 @@ void requireBoxes(const MotorcycleComplex& complex) {
 
 MotorcycleComplex traceComplex(const SeamlessMap& map, Context& context) {
   Stage stage(context, "motorcycle complex");
-  MotorcycleComplex complex{traceWalls(map, EdgeFans(map.topology)), {}, {}, 0, {}, {}, {}};
+  MotorcycleComplex complex{.mesh = traceWalls(map, EdgeFans(map.topology))};
   for (Holonomy ring = findBlocks(complex); ring.tet != kNone; ring = findBlocks(complex)) {
     context.throwIfCancelled();
     cutAcross(complex, ring);

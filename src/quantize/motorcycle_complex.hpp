@@ -16,6 +16,16 @@ namespace hexhex {
 struct Arc {
   std::array<Index, 2> nodes{};
   std::int64_t length = 0;  ///< in units
+  bool isFeature = false;   ///< which has to stay an arc
+};
+
+/// A corner of the mesh on a feature, and what fixes it: its two coordinates across an arc, or all
+/// three of a node.
+struct FeatureCorner {
+  Index tet = 0;
+  std::size_t corner = 0;
+  std::size_t freeAxis = 3;  ///< of its block, or 3
+  LatticePoint node{};       ///< of the arc, in its block's chart
 };
 
 /// An arc as it borders a patch on one side, or a block: from where to where it goes in the block's
@@ -32,18 +42,19 @@ struct ArcSide {
 /// A rectangle between two blocks, or between a block and nothing, as seen from the first of them.
 struct PatchSide {
   Index block = 0;
-  HalfFace first = 0;               ///< one of its triangles
-  std::vector<ArcSide> border;      ///< anticlockwise, from inside of the block
+  HalfFace first = 0;           ///< one of its triangles
+  std::vector<ArcSide> border;  ///< anticlockwise, from inside of the block
 };
 
 struct MotorcycleComplex {
   WallMesh mesh;
-  std::vector<Index> blockOf;         ///< per tet of the mesh
-  std::vector<ChartChange> toBlock;   ///< per tet: from its chart to that of its block
+  std::vector<Index> blockOf = {};        ///< per tet of the mesh
+  std::vector<ChartChange> toBlock = {};  ///< per tet: from its chart to that of its block
   std::size_t blockCount = 0;
-  std::vector<Arc> arcs;
-  std::vector<Index> patchOf;         ///< per half-face on a wall: the side of a patch, else kNone
-  std::vector<PatchSide> patches;     ///< each side
+  std::vector<Arc> arcs = {};
+  std::vector<Index> patchOf = {};  ///< per half-face on a wall: the side of a patch, else kNone
+  std::vector<PatchSide> patches = {};  ///< each side
+  std::vector<FeatureCorner> featureCorners = {};
 
   /// The other side of a patch, or kNone on the boundary.
   [[nodiscard]] Index acrossPatch(Index side) const {

@@ -10,9 +10,10 @@
 #include <optional>
 #include <utility>
 
-#include <base/vector3.hpp>
 #include <quantize/bend_problem.hpp>
 #include <quantize/quantized_map.hpp>
+
+#include <base/vector3.hpp>
 #endif
 
 namespace hexhex {
@@ -88,9 +89,10 @@ double cellsWanted(const TetMapView& map, const SeamlessMap& seamless,
   if (options.scale > 0) cells = std::pow(options.scale, 3) * volumeOf(seamless);
   if (options.edgeLength > 0) cells = spaceVolume(map) / std::pow(options.edgeLength, 3);
   if (cells > kMostCells) {
-    throw Error(ErrorCode::TooLarge, "A mesh of more than 4,000,000,000 cells cannot be numbered. "
-                                     "Ask for fewer cells, or quantize for a part of them and "
-                                     "extract with a scale.");
+    throw Error(ErrorCode::TooLarge,
+                "A mesh of more than 4,000,000,000 cells cannot be numbered. "
+                "Ask for fewer cells, or quantize for a part of them and "
+                "extract with a scale.");
   }
   return std::max(cells, 1.0);
 }
@@ -107,7 +109,8 @@ class Quantizer {
   Quantizer(const TetMapView& map, const QuantizeOptions& options, Context& context)
       : options_(options),
         context_(context),
-        seamless_(makeSeamless(map, options.tolerance * largestCoordinate(map), context)),
+        seamless_(makeSeamless(
+            map, {options.tolerance * largestCoordinate(map), options.keepInnerFaces}, context)),
         complex_(traceComplex(seamless_, context)),
         map_(map) {
     program_.equations = arcEquations(complex_);
@@ -138,8 +141,8 @@ class Quantizer {
     if (!choice || choice->integers == last_) return std::nullopt;
     last_ = choice->integers;
     ++report_.attempts;
-    BendProblem problem = bendProblem(seamless_, complex_,
-                                      BlockIntegers(complex_, choice->integers), choice->scale);
+    BendProblem problem =
+        bendProblem(seamless_, complex_, BlockIntegers(complex_, choice->integers), choice->scale);
     Stage stage(context_, "bending");
     BentMap bent = bend(std::move(problem), {}, stage);
     if (!bent.isValid()) {

@@ -4,20 +4,17 @@
 #include <string>
 #include <utility>
 
+#include <quantize/quantized_map.hpp>
+#include <quantize/walls.hpp>
+
 #include <hexhex/check.hpp>
 
 #include <base/vector3.hpp>
 #include <igm/defects.hpp>
-#include <quantize/quantized_map.hpp>
-#include <quantize/walls.hpp>
 
 namespace hexhex {
 
 namespace {
-
-using EdgeKey = std::array<Index, 2>;
-
-EdgeKey keyOf(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
 /// The scaled Jacobian of the inverse map of a tet: of the edges that a small cube gets in space.
 double inverseJacobian(const std::array<Vec3, 4>& points, const TetParameters& u) {
@@ -85,15 +82,17 @@ Features splitFeatures(const FeaturesView& given, std::size_t pointCount,
 }
 
 /// Quarter turns around edges that are not regular.
-std::map<EdgeKey, int> irregularEdges(const SeamlessMap& map) {
-  const EdgeFans edges(map.topology);
-  const std::vector<int> quarters = quartersAround(map, edges);
-  std::map<EdgeKey, int> irregular;
+template <class Corners>
+std::map<VertexPair, int> irregularEdges(const TetTopology& topology,
+                                         std::span<const Corners> corners) {
+  const EdgeFans edges(topology);
+  const std::vector<int> quarters = quartersAround(edges, corners);
+  std::map<VertexPair, int> irregular;
   for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (quarters[e] == (edges.isBoundary(e) ? 2 : 4)) continue;
+    if (quarters[e] == regularQuarters(edges, e)) continue;
     const EdgeCorner& at = edges(e).front();
-    const Tet& tet = map.topology.tets[at.tet];
-    irregular[keyOf(tet[at.corner0], tet[at.corner1])] = quarters[e];
+    const Tet& tet = topology.tets[at.tet];
+    irregular[pairOf(tet[at.corner0], tet[at.corner1])] = quarters[e];
   }
   return irregular;
 }
@@ -101,15 +100,23 @@ std::map<EdgeKey, int> irregularEdges(const SeamlessMap& map) {
 /// Singular curves must be what they were.
 void requireSameSingularities(const SeamlessMap& before, const TetMap& after,
                               const std::vector<SplitEdge>& splits, Context& context) {
-  std::map<EdgeKey, int> expected = irregularEdges(before);
+  auto expected = irregularEdges(before.topology, std::span(before.corners));
   for (std::size_t s = 0; s < splits.size(); ++s) {
-    const auto found = expected.find(keyOf(splits[s][0], splits[s][1]));
+    const auto found = expected.find(pairOf(splits[s][0], splits[s][1]));
     if (found == expected.end()) continue;
     const auto middle = static_cast<Index>(before.topology.pointCount + s);
-    for (const Index end : splits[s]) expected[keyOf(end, middle)] = found->second;
-    expected.erase(keyOf(splits[s][0], splits[s][1]));
+    for (const Index end : splits[s]) expected[pairOf(end, middle)] = found->second;
+    expected.erase(pairOf(splits[s][0], splits[s][1]));
   }
-  if (irregularEdges(makeSeamless(after, 0x1p-20, context)) != expected) {
+  Stage stage(context, "singular curves");
+  TetTopology topology;
+  topology.tets = after.tets;
+  topology.pointCount = after.points.size();
+  if (!matchFaces(topology, stage)) {
+    throw Error(ErrorCode::Internal, "Quantization has made a mesh that is no manifold.");
+  }
+  addStars(topology, stage);
+  if (irregularEdges(topology, std::span(after.parameters)) != expected) {
     throw Error(ErrorCode::Internal,
                 "Quantization has changed singular curves of the map. This is a bug.");
   }

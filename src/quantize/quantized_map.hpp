@@ -2,10 +2,10 @@
 // checked.
 #pragma once
 
-#include <hexhex/quantize.hpp>
-
 #include <quantize/bend.hpp>
 #include <quantize/seamless_map.hpp>
+
+#include <hexhex/quantize.hpp>
 
 namespace hexhex {
 

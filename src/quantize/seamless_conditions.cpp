@@ -2,8 +2,9 @@
 #include <cstdlib>
 #include <numeric>
 
-#include <base/disjoint_sets.hpp>
 #include <quantize/seamless_conditions.hpp>
+
+#include <base/disjoint_sets.hpp>
 
 namespace hexhex {
 
@@ -52,7 +53,8 @@ void eliminate(std::vector<Row>& rows, VertexConditions& vertex,
     std::size_t best = kNone;
     for (std::size_t r = done; r < rows.size(); ++r) {
       const std::int64_t size = std::abs(rows[r].coefficients[column]);
-      if (size != 0 && (best == kNone || size < std::abs(rows[best].coefficients[column]))) best = r;
+      if (size != 0 && (best == kNone || size < std::abs(rows[best].coefficients[column])))
+        best = r;
     }
     if (best == kNone) continue;
     std::swap(rows[done], rows[best]);
@@ -209,8 +211,7 @@ std::vector<double> SharedUnknowns::measured() const {
 }
 
 VertexConditions conditionsOf(Index vertex, const TetTopology& topology, const CutGraph& graph,
-                              const SharedUnknowns& unknowns,
-                              std::vector<IntegerForm>& equations) {
+                              const SharedUnknowns& unknowns, std::vector<IntegerForm>& equations) {
   VertexConditions conditions;
   std::vector<Row> rows;
   // All sectors from the first one, across the cut; each further way between them is a condition.

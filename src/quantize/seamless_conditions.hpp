@@ -1,5 +1,5 @@
-// What makes a map seamless, as integer equations: for each vertex, what translations and planes say
-// about its parameter, and what they say about each other.
+// What makes a map seamless, as integer equations: for each vertex, what translations and planes
+// say about its parameter, and what they say about each other.
 #pragma once
 
 #include <array>
@@ -33,7 +33,9 @@ class SharedUnknowns {
   /// Component of the translation across a half-face of the cut.
   [[nodiscard]] IntegerForm translation(HalfFace halfFace, std::size_t axis) const;
   /// The plane that fixes a coordinate of a sector, or kNone.
-  [[nodiscard]] Index plane(Index sector, std::size_t axis) const { return planes_[3 * sector + axis]; }
+  [[nodiscard]] Index plane(Index sector, std::size_t axis) const {
+    return planes_[3 * sector + axis];
+  }
   /// Equations between translations alone.
   [[nodiscard]] const std::vector<IntegerForm>& equations() const noexcept { return equations_; }
   /// Means of what the map has.

@@ -3,11 +3,12 @@
 #include <optional>
 #include <string>
 
+#include <quantize/seamless_conditions.hpp>
+#include <quantize/seamless_map.hpp>
+
 #include <base/vector3.hpp>
 #include <igm/defects.hpp>
 #include <igm/transition_fit.hpp>
-#include <quantize/seamless_conditions.hpp>
-#include <quantize/seamless_map.hpp>
 
 namespace hexhex {
 
@@ -28,10 +29,10 @@ std::vector<Rotation> fitRotations(const TetTopology& topology,
     const SharedFace face(topology, h, mate);
     const TetParameters& here = parameters[tetOf(h)];
     const TetParameters& there = parameters[tetOf(mate)];
-    rotations[h] = bestRotation(
-        {minus(here[face.here(1)], here[face.here(0)]), minus(here[face.here(2)], here[face.here(0)])},
-        {minus(there[face.there(1)], there[face.there(0)]),
-         minus(there[face.there(2)], there[face.there(0)])});
+    rotations[h] = bestRotation({minus(here[face.here(1)], here[face.here(0)]),
+                                 minus(here[face.here(2)], here[face.here(0)])},
+                                {minus(there[face.there(1)], there[face.there(0)]),
+                                 minus(there[face.there(2)], there[face.there(0)])});
     rotations[mate] = rotations[h].inverse();
   }
   return rotations;
@@ -79,38 +80,52 @@ HalfFace findFace(const TetTopology& topology, const std::array<Index, 3>& trian
   return kNone;
 }
 
+/// Triangles between regions, and tagged ones.
+std::vector<HalfFace> innerFaces(const SeamlessMap& map, bool tagged) {
+  const TetTopology& topology = map.topology;
+  const TetMapView& view = map.input.view;
+  std::vector<HalfFace> faces;
+  for (HalfFace h = 0; h < topology.mate.size() && !view.regions.empty(); ++h) {
+    const HalfFace mate = topology.mate[h];
+    if (mate == kNone || mate < h) continue;
+    if (view.regions[tetOf(h)] != view.regions[tetOf(mate)]) faces.push_back(h);
+  }
+  for (const FeatureFace& feature : view.features.faces) {
+    const HalfFace h = tagged ? findFace(topology, feature.vertices) : kNone;
+    if (h != kNone && topology.mate[h] != kNone) faces.push_back(h);
+  }
+  return faces;
+}
+
 /// The boundary, and those features that are aligned within the tolerance: the others are not in
 /// the way of a seamless map, and will not be lines or planes of the mesh.
-Alignment findAlignment(SeamlessMap& map, const CutGraph& graph, double tolerance) {
+Alignment findAlignment(SeamlessMap& map, const CutGraph& graph, const SeamlessOptions& options) {
   const TetTopology& topology = map.topology;
   Alignment alignment;
   alignment.axes.assign(topology.mate.size(), kFree);
   for (HalfFace h = 0; h < topology.mate.size(); ++h) {
     if (topology.mate[h] == kNone) alignment.axes[h] = axisOf(graph, h);
   }
-  const FeaturesView& features = map.input.view.features;
-  for (const FeatureFace& feature : features.faces) {
-    const HalfFace h = findFace(topology, feature.vertices);
-    if (h == kNone || topology.mate[h] == kNone) continue;
+  for (const HalfFace h : innerFaces(map, options.keepInnerFaces)) {
     const std::uint8_t axis = axisOf(graph, h);
     const auto& c = kFaceCorners[h % 4];
     const TetParameters& u = graph.parameters[tetOf(h)];
     const auto corner = [&](std::size_t k) { return static_cast<std::size_t>(c[k]); };
-    if (!areLevel(u, corner(0), corner(1), axis, tolerance) ||
-        !areLevel(u, corner(0), corner(2), axis, tolerance)) {
+    if (!areLevel(u, corner(0), corner(1), axis, options.tolerance) ||
+        !areLevel(u, corner(0), corner(2), axis, options.tolerance)) {
       continue;
     }
     alignment.axes[h] = axis;
     map.featureFaces.push_back(h);
   }
-  for (const FeatureEdge& feature : features.edges) {
+  for (const FeatureEdge& feature : map.input.view.features.edges) {
     const auto at = findEdge(topology, feature.vertices[0], feature.vertices[1]);
     if (!at) continue;
     const TetParameters& u = graph.parameters[at->tet];
     const auto along =
         static_cast<std::uint8_t>(dominantAxis(minus(u[at->corner1], u[at->corner0])));
-    if (!areLevel(u, at->corner0, at->corner1, (along + 1U) % 3, tolerance) ||
-        !areLevel(u, at->corner0, at->corner1, (along + 2U) % 3, tolerance)) {
+    if (!areLevel(u, at->corner0, at->corner1, (along + 1U) % 3, options.tolerance) ||
+        !areLevel(u, at->corner0, at->corner1, (along + 2U) % 3, options.tolerance)) {
       continue;
     }
     alignment.edges.push_back({*at, along});
@@ -134,7 +149,10 @@ class VertexSolver {
  public:
   VertexSolver(const TetTopology& topology, const CutGraph& graph,
                std::span<const std::int64_t> values, double unit)
-      : topology_(topology), graph_(graph), values_(values), unit_(unit),
+      : topology_(topology),
+        graph_(graph),
+        values_(values),
+        unit_(unit),
         bySector_(graph.sectorCount) {}
 
   /// @return false if a coordinate that is fixed is not on the lattice
@@ -165,9 +183,9 @@ class VertexSolver {
   [[nodiscard]] LatticePoint meanOf(Index vertex, const VertexConditions& conditions) const {
     Vec3 sum{};
     for (const CornerIndex corner : topology_.star(vertex)) {
-      const auto sector = std::find_if(
-          conditions.sectors.begin(), conditions.sectors.end(),
-          [&](const auto& each) { return each.sector == graph_.sectors[corner]; });
+      const auto sector =
+          std::find_if(conditions.sectors.begin(), conditions.sectors.end(),
+                       [&](const auto& each) { return each.sector == graph_.sectors[corner]; });
       const LatticePoint t = translationOf(*sector);
       Vec3 u = graph_.parameters[corner / 4][corner % 4];
       for (std::size_t k = 0; k < 3; ++k) u[k] = u[k] * unit_ - static_cast<double>(t[k]);
@@ -187,10 +205,12 @@ class VertexSolver {
 };
 
 [[noreturn]] void notSeamless(const std::string& what, Place place) {
-  throw Error(ErrorCode::TransitionResidual,
-              "The map is not seamless: " + what + " Quantization needs a map whose charts differ by "
-              "rotations of the grid, and whose boundary and singular curves are aligned with axes.",
-              place);
+  throw Error(
+      ErrorCode::TransitionResidual,
+      "The map is not seamless: " + what +
+          " Quantization needs a map whose charts differ by "
+          "rotations of the grid, and whose boundary and singular curves are aligned with axes.",
+      place);
 }
 
 /// Exact corners from conditions and values of shared unknowns.
@@ -265,7 +285,7 @@ void requirePositiveTets(const SeamlessMap& map) {
 
 }  // namespace
 
-SeamlessMap makeSeamless(const TetMapView& map, double tolerance, Context& context) {
+SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, Context& context) {
   Stage stage(context, "seamless map");
   DefectCollector defects;
   SeamlessMap result;
@@ -278,7 +298,7 @@ SeamlessMap makeSeamless(const TetMapView& map, double tolerance, Context& conte
   const EdgeFans edges(topology);
   const std::span<const TetParameters> parameters = result.input.view.parameters;
   const CutGraph graph = cutOpen(topology, edges, parameters, fitRotations(topology, parameters));
-  const SharedUnknowns unknowns(topology, edges, graph, findAlignment(result, graph, tolerance));
+  const SharedUnknowns unknowns(topology, edges, graph, findAlignment(result, graph, options));
   std::vector<IntegerForm> equations = unknowns.equations();
   std::vector<VertexConditions> conditions(topology.pointCount);
   for (Index v = 0; v < topology.pointCount; ++v) {
@@ -289,7 +309,8 @@ SeamlessMap makeSeamless(const TetMapView& map, double tolerance, Context& conte
     }
   }
   const IntegerSystem system(unknowns.size(), std::move(equations));
-  result.unit = std::exp2(std::floor(std::log2(kLargest / std::max(largestCoordinate(graph), 1e-300))));
+  result.unit =
+      std::exp2(std::floor(std::log2(kLargest / std::max(largestCoordinate(graph), 1e-300))));
   std::vector<double> wanted = system.nearest(unknowns.measured());
   for (double& x : wanted) x *= result.unit;
   const std::vector<std::int64_t> values = system.roundedTo(wanted, kStep);
@@ -298,7 +319,7 @@ SeamlessMap makeSeamless(const TetMapView& map, double tolerance, Context& conte
   }
   solveVertices(result, graph, conditions, values);
   findChanges(result, graph);
-  measureDisplacement(result, graph, tolerance);
+  measureDisplacement(result, graph, options.tolerance);
   requirePositiveTets(result);
   return result;
 }

@@ -8,19 +8,19 @@
 #include <vector>
 
 #include <adjacency/tet_topology.hpp>
+#include <quantize/chart_change.hpp>
 
 #include <hexhex/context.hpp>
 #include <hexhex/types.hpp>
 
 #include <igm/input.hpp>
-#include <quantize/chart_change.hpp>
 
 namespace hexhex {
 
 /// An exactly seamless map on a dyadic lattice: a coordinate is a parameter times `unit`.
 struct SeamlessMap {
   OrientedMap input;
-  TetTopology topology;  ///< with stars
+  TetTopology topology;              ///< with stars
   std::vector<LatticeTet> corners;   ///< per tet, in charts that mostly agree
   std::vector<ChartChange> changes;  ///< per half-face, from here to the neighbour's chart
   /// Features that are aligned with axes, and to stay so: edges that are not singular, inner faces.
@@ -30,9 +30,14 @@ struct SeamlessMap {
   double maxDisplacement = 0;  ///< of a parameter from that given, along an axis
 };
 
-/// @param tolerance  for displacements, in units of the map's parameters
+struct SeamlessOptions {
+  double tolerance = 0;        ///< for displacements, in units of the map's parameters
+  bool keepInnerFaces = true;  ///< as in QuantizeOptions
+};
+
 /// @throws Error where the mesh is not a manifold, the map is not even nearly seamless, or a tet is
 /// not positive
-[[nodiscard]] SeamlessMap makeSeamless(const TetMapView& map, double tolerance, Context& context);
+[[nodiscard]] SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options,
+                                       Context& context);
 
 }  // namespace hexhex

@@ -118,6 +118,9 @@ class StarReader {
     for (std::size_t i = 0; i < members.size(); ++i) {
       unknowns_.toCorner[members[i].corner] = charts_[i];
       for (std::size_t k = 0; k < 3; ++k) look(members[i], k, charts_[i], equations);
+      const auto fixed = problem_.fixedCorners.find(members[i].corner);
+      if (fixed == problem_.fixedCorners.end()) continue;
+      for (const BoundaryPlane& plane : fixed->second) addPlane(charts_[i], plane, equations);
     }
     return equations.solve(unknowns_.fixed[vertex], unknowns_.fixedPosition[vertex]);
   }
@@ -130,11 +133,9 @@ class StarReader {
   void look(const VertexStar::Member& member, std::size_t k, const Transition& chart,
             PointEquations& equations) const {
     const HalfFace halfFace = member.halfFace(k);
-    if (member.neighbour[k] == kNone) {
-      const BoundaryPlane& plane = problem_.planes[halfFace];
-      if (plane.axis >= 0) addPlane(chart, plane, equations);
-      return;
-    }
+    const BoundaryPlane& plane = problem_.planes[halfFace];
+    if (plane.axis >= 0) addPlane(chart, plane, equations);
+    if (member.neighbour[k] == kNone) return;
     const Transition loop = charts_[member.neighbour[k]].inverse() * (across(halfFace) * chart);
     if (!loop.isIdentity()) addFixedPoint(loop, equations);
   }

@@ -48,11 +48,14 @@ WallMesh::WallMesh(const SeamlessMap& map)
     isWall[h] = mate[h] == kNone;
   }
   for (const HalfFace h : map.featureFaces) isFeature[h] = isFeature[mate[h]] = true;
-  for (const EdgeCorner& at : map.featureEdges) {
-    const VertexPair edge = pairOf(tets[at.tet][at.corner0], tets[at.tet][at.corner1]);
-    featureEdges.insert(edge);
-    isHeld[edge[0]] = isHeld[edge[1]] = true;
+  for (const FeatureVertex& feature : map.input.view.features.vertices) {
+    featureVertices.insert(feature.vertex);
   }
+}
+
+void WallMesh::keepEdge(Index v, Index w) {
+  featureEdges.insert(pairOf(v, w));
+  isHeld[v] = isHeld[w] = true;
 }
 
 void WallTurn::step() noexcept {
@@ -64,7 +67,8 @@ void WallTurn::step() noexcept {
   face_ = mesh_.cornerOf(tet, last);
 }
 
-std::vector<WallMesh::Around> WallMesh::tetsAround(const TetEdge& edge, const LatticePoint& u) const {
+std::vector<WallMesh::Around> WallMesh::tetsAround(const TetEdge& edge,
+                                                   const LatticePoint& u) const {
   std::vector<Around> ring = {{edge, u}};
   const auto walk = [&](int face) {
     WallTurn turn(*this, edge, face);
@@ -102,7 +106,8 @@ Index WallMesh::split(const TetEdge& edge, std::size_t axis, std::int64_t value)
   for (const auto& [at, u] : ring) {
     const Index first = at.tet;
     const Index second = secondOf(first);
-    parts_.push_back({second, firstPart_[first], tets[first][at.corner0], tets[first][at.corner1], middle});
+    parts_.push_back(
+        {second, firstPart_[first], tets[first][at.corner0], tets[first][at.corner1], middle});
     firstPart_[first] = static_cast<Index>(parts_.size() - 1);
     for (int face = 0; face < 4; ++face) {
       const HalfFace h = halfFaceOf(second, face);

@@ -53,6 +53,9 @@ class WallMesh {
     if (mate[h] != kNone) isWall[mate[h]] = true;
   }
 
+  /// Makes an edge one of a feature, at which walls are to start.
+  void keepEdge(Index v, Index w);
+
   /// Splits an edge, and all tets around it, where a coordinate of its tet's chart has a value that
   /// lies between those at its ends. The other coordinates are rounded to the lattice.
   /// @return the new vertex
@@ -88,18 +91,19 @@ class WallMesh {
   std::vector<Tet> tets;
   std::vector<LatticeTet> corners;
   std::vector<HalfFace> mate;
-  std::vector<ChartChange> change;        ///< per half-face
-  std::vector<bool> isWall;               ///< per half-face; the boundary is a wall, too
-  std::vector<bool> isFeature;            ///< per half-face
-  std::set<VertexPair> featureEdges;
-  std::vector<bool> isHeld;               ///< per vertex: on an edge that walls are still to start at
-  std::vector<Index> original;            ///< per tet: of which tet of the map it is a part
-  std::vector<std::uint8_t> originalFace; ///< per half-face: on which face of that, or kInside
+  std::vector<ChartChange> change;    ///< per half-face
+  std::vector<bool> isWall;           ///< per half-face; the boundary is a wall, too
+  std::vector<bool> isFeature;        ///< per half-face
+  std::set<VertexPair> featureEdges;  ///< that are aligned and not singular
+  std::set<Index> featureVertices;
+  std::vector<bool> isHeld;     ///< per vertex: on an edge that walls are still to start at
+  std::vector<Index> original;  ///< per tet: of which tet of the map it is a part
+  std::vector<std::uint8_t> originalFace;  ///< per half-face: on which face of that, or kInside
 
  private:
   struct Part {
     Index tet;
-    Index next;  ///< another part, in `parts_`, of the same tet, or kNone
+    Index next;                 ///< another part, in `parts_`, of the same tet, or kNone
     Index kept, given, middle;  ///< the edge that was split: its end here, that there, its middle
   };
   /// A tet at an edge, and a point of the edge in its chart.

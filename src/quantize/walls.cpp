@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include <quantize/walls.hpp>
 
 #include <base/vector3.hpp>
-#include <quantize/walls.hpp>
 
 namespace hexhex {
 
@@ -16,35 +16,9 @@ Vec3 toVector(const LatticePoint& u) {
   return {static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2])};
 }
 
-/// Of a tet at one of its edges, in the map.
-double dihedralAngle(const LatticeTet& tet, std::size_t a, std::size_t b) {
-  std::array<std::size_t, 2> others{};
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (i != a && i != b) others[n++] = i;
-  }
-  const Vec3 edge = toVector(tet[b] - tet[a]);
-  const Vec3 left = cross(edge, toVector(tet[others[0]] - tet[a]));
-  const Vec3 right = cross(edge, toVector(tet[others[1]] - tet[a]));
-  const Vec3 normal = cross(left, right);
-  return std::atan2(std::sqrt(dot(normal, normal)), dot(left, right));
-}
-
 int otherAxis(std::size_t a, std::size_t b) { return static_cast<int>(3 - a - b); }
 
 }  // namespace
-
-std::vector<int> quartersAround(const SeamlessMap& map, const EdgeFans& edges) {
-  std::vector<int> quarters(edges.size());
-  for (std::size_t edge = 0; edge < edges.size(); ++edge) {
-    double sum = 0;
-    for (const EdgeCorner& at : edges(edge)) {
-      sum += dihedralAngle(map.corners[at.tet], at.corner0, at.corner1);
-    }
-    quarters[edge] = static_cast<int>(std::lround(sum / (std::numbers::pi / 2)));
-  }
-  return quarters;
-}
 
 AxisPlane AxisPlane::beyond(const ChartChange& change) const noexcept {
   const Direction to = change.rotation(direction(static_cast<int>(axis), 1));
@@ -98,7 +72,8 @@ PlaneMeeting meetOpposite(const WallMesh& mesh, HalfFace wall, Index v, Index w)
   const TetEdge edge{tet, mesh.cornerOf(tet, v), mesh.cornerOf(tet, w)};
   const AxisPlane plane = planeOf(mesh, wall);
   const int side = plane.sideOf(mesh.at(tet, static_cast<std::size_t>(localOf(wall))));
-  return turnTo(mesh, plane, side, WallTurn(mesh, edge, otherFaceAtEdge(edge.mask(), localOf(wall))));
+  return turnTo(mesh, plane, side,
+                WallTurn(mesh, edge, otherFaceAtEdge(edge.mask(), localOf(wall))));
 }
 
 }  // namespace
@@ -131,7 +106,9 @@ void WallTracer::push(HalfFace wall, const std::array<Index, 2>& edge,
                       const std::array<double, 2>& distances) {
   // Distance grows by one per unit away from the edge, linearly (the update of fast marching).
   const Index tet = tetOf(wall);
-  const auto point = [&](Index vertex) { return toVector(mesh_.at(tet, mesh_.cornerOf(tet, vertex))); };
+  const auto point = [&](Index vertex) {
+    return toVector(mesh_.at(tet, mesh_.cornerOf(tet, vertex)));
+  };
   Index third = kNone;
   for (const int corner : kFaceCorners[wall % 4]) {
     const Index vertex = mesh_.tets[tet][static_cast<std::size_t>(corner)];
@@ -168,8 +145,8 @@ void WallTracer::startAt(const TetEdge& edge, int face) {
       mesh_.at(edge.tet, static_cast<std::size_t>(otherFaceAtEdge(edge.mask(), face))) - origin;
   if (behind[a] != 0 && behind[b] != 0) {
     const LatticePoint ahead = mesh_.at(edge.tet, static_cast<std::size_t>(face)) - origin;
-    const int turn = sign(static_cast<Int128>(behind[a]) * ahead[b] -
-                          static_cast<Int128>(behind[b]) * ahead[a]);
+    const int turn =
+        sign(static_cast<Int128>(behind[a]) * ahead[b] - static_cast<Int128>(behind[b]) * ahead[a]);
     const bool sameSigns = (behind[a] > 0) == (behind[b] > 0);
     const std::size_t zero = (turn > 0) == sameSigns ? a : b;
     wall = wallAt(turnTo(mesh_, {zero, origin[zero]}, behind[zero] > 0 ? 1 : -1,
@@ -283,7 +260,8 @@ void WallTracer::grow(const Front& front) {
   if (mesh_.isBoundary(wall)) return;
   const PlaneMeeting one = meetOpposite(mesh_, wall, v, w);
   const PlaneMeeting other = meetOpposite(mesh_, mesh_.mate[wall], v, w);
-  if (one.kind == PlaneMeeting::Kind::Boundary || other.kind == PlaneMeeting::Kind::Boundary) return;
+  if (one.kind == PlaneMeeting::Kind::Boundary || other.kind == PlaneMeeting::Kind::Boundary)
+    return;
   if (one.kind == PlaneMeeting::Kind::Face && mesh_.isWall[one.face]) return;
   // It ends where another wall passes.
   if (one.wallBefore && other.wallBefore) return;
@@ -328,16 +306,23 @@ void WallTracer::startAt(HalfFace feature) {
 WallMesh traceWalls(const SeamlessMap& map, const EdgeFans& edges) {
   WallMesh mesh(map);
   WallTracer tracer(mesh);
-  for (const HalfFace feature : map.featureFaces) tracer.startAt(feature);
-  const std::vector<int> quarters = quartersAround(map, edges);
+  const std::vector<int> quarters = quartersAround(edges, std::span(map.corners));
+  std::vector<EdgeCorner> features;
+  for (const EdgeCorner& at : map.featureEdges) {
+    const Index edge = edges.edgeOf(at);
+    if (quarters[edge] != regularQuarters(edges, edge)) continue;
+    features.push_back(at);
+    mesh.keepEdge(mesh.tets[at.tet][at.corner0], mesh.tets[at.tet][at.corner1]);
+  }
   const auto start = [&](const EdgeCorner& at) {
     const Tet& tet = map.topology.tets[at.tet];
     tracer.startAlong(tet[at.corner0], tet[at.corner1], at.tet);
   };
+  for (const HalfFace feature : map.featureFaces) tracer.startAt(feature);
   for (std::size_t edge = 0; edge < edges.size(); ++edge) {
-    if (quarters[edge] != (edges.isBoundary(edge) ? 2 : 4)) start(edges(edge).front());
+    if (quarters[edge] != regularQuarters(edges, edge)) start(edges(edge).front());
   }
-  for (const EdgeCorner& at : map.featureEdges) start(at);
+  for (const EdgeCorner& at : features) start(at);
   std::fill(mesh.isHeld.begin(), mesh.isHeld.end(), false);
   tracer.grow();
   return mesh;

@@ -11,10 +11,6 @@
 
 namespace hexhex {
 
-/// Quarter turns around each edge, from the angles of its tets in the map: 4 at regular inner edges,
-/// 2 on flat parts of the boundary.
-[[nodiscard]] std::vector<int> quartersAround(const SeamlessMap& map, const EdgeFans& edges);
-
 /// A plane perpendicular to an axis, in the chart of some tet.
 struct AxisPlane {
   std::size_t axis = 0;
@@ -74,7 +70,8 @@ class WallTracer {
   /// @return its corner, or -1 if neither end is close, or may move
   int moveEnd(const TetEdge& edge, const AxisPlane& plane);
   HalfFace wallAt(const PlaneMeeting& meeting);
-  void push(HalfFace wall, const std::array<Index, 2>& edge, const std::array<double, 2>& distances);
+  void push(HalfFace wall, const std::array<Index, 2>& edge,
+            const std::array<double, 2>& distances);
   void push(const std::array<Index, 2>& edge, const std::array<double, 2>& distances, Index tet);
   [[nodiscard]] HalfFace someWall(const TetEdge& edge) const;
 
@@ -86,8 +83,8 @@ class WallTracer {
 /// The axis to which a triangle of a wall is perpendicular, in the chart of the half-face's tet.
 [[nodiscard]] AxisPlane planeOf(const WallMesh& mesh, HalfFace wall);
 
-/// The wall, if any, that continues a wall's triangle beyond its edge (v, w), on the same side; kNone
-/// if there is none or the edge is on the boundary.
+/// The wall, if any, that continues a wall's triangle beyond its edge (v, w), on the same side;
+/// kNone if there is none or the edge is on the boundary.
 [[nodiscard]] HalfFace wallOpposite(const WallMesh& mesh, HalfFace wall, Index v, Index w);
 
 /// A mesh whose walls are the motorcycle complex of a map.
