@@ -26,9 +26,9 @@ struct StreamedMesh {
 };
 
 /// Extracts a mesh piece by piece into a file. If wanted, the file is read again, piece by piece,
-/// before it gets its name: its counts and checksums must be those of the pieces, and its numbers
-/// of cells and vertices those that follow from the map. On failure there is no new file.
-/// @throws Error  as extractTo(), openMeshSink() and surveyFile(); VerificationFailed
+/// before it gets its name: it must hold the mesh of the map, which is proven piece by piece, with
+/// the checksums of what was extracted. On failure there is no new file.
+/// @throws Error  as extractTo(), openMeshSink() and readHexMeshTo(); VerificationFailed
 [[nodiscard]] StreamedMesh extractStreamed(const TetMapView& map,
                                            const std::filesystem::path& output,
                                            const WriteOptions& writing,

@@ -1,12 +1,14 @@
 // Does a hexahedral mesh agree with the map that it came from? Independent of how it was made.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <hexhex/check.hpp>
 #include <hexhex/context.hpp>
 #include <hexhex/export.h>
+#include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex HEXHEX_API_NAMESPACE {
@@ -51,5 +53,28 @@ struct VerifyOptions {
                                   const VerifyOptions& options, Context& context);
 [[nodiscard]] VerifyReport verify(const TetMapView& map, const HexMesh& mesh,
                                   const VerifyOptions& options = {});
+
+/// Verifies a mesh that comes in pieces: by the same proof, which passes if and only if the mesh is
+/// that of the map in canonical order, as extractTo() hands it over. Memory: what a map of this
+/// many tets needs, and a few bytes per vertex.
+class VerifySink : public MeshSink {
+ public:
+  /// @param map      outlives the sink, and so does the context
+  /// @param options  scale and tolerance; coordinates have all their digits
+  VerifySink(const TetMapView& map, const VerifyOptions& options, Context& context);
+  ~VerifySink() override;
+  void begin(std::uint64_t pointCount, std::uint64_t cellCount) override;
+  void points(const PointPiece& piece) override;
+  void cells(std::uint64_t first, std::span<const Hex> cells) override;
+  void cells(std::uint64_t first, std::span<const Hex64> cells) override;
+  void end() override;
+
+  /// Complete after end().
+  [[nodiscard]] const VerifyReport& report() const noexcept;
+
+ private:
+  class HEXHEX_HIDDEN Prover;
+  std::unique_ptr<Prover> prover_;
+};
 
 }  // namespace HEXHEX_API_NAMESPACE

@@ -27,6 +27,7 @@ class Comparisons {
   }
 
   [[nodiscard]] bool passed() const noexcept { return report_.passed(); }
+  [[nodiscard]] const VerifyReport& report() const noexcept { return report_; }
   [[nodiscard]] VerifyReport take() { return std::move(report_); }
 
  private:

@@ -1,109 +1,25 @@
 #include <algorithm>
+#include <limits>
 
-#include <verify/face_sides.hpp>
-#include <verify/half_diagonals.hpp>
 #include <verify/proof.hpp>
-#include <verify/space_of_tet.hpp>
+
+#include <hexhex/stream.hpp>
 
 #include <base/workspaces.hpp>
 #include <lattice/cell_corners.hpp>
-#include <sweep/cell_centers.hpp>
-#include <sweep/vertex_numbers.hpp>
 
 namespace hexhex {
 
 namespace {
 
-LatticePoint vertexPoint(const GridPoint& z, std::int64_t unit) {
-  return {z[0] * unit, z[1] * unit, z[2] * unit};
-}
-
-LatticePoint centerPoint(const GridPoint& z, std::int64_t unit) {
-  const std::int64_t half = unit / 2;
-  return {(2 * std::int64_t{z[0]} + 1) * half, (2 * std::int64_t{z[1]} + 1) * half,
-          (2 * std::int64_t{z[2]} + 1) * half};
-}
-
-/// Whether lines are in order, and the simplices at their ends are right; then, by convexity, so
-/// are those of all points between.
-template <class PointOf>
-bool areInTet(const FaceSides& sides, std::span<const SweptLine> lines, const PointOf& pointOf) {
-  const SweptLine* before = nullptr;
-  for (const SweptLine& line : lines) {
-    if (before != nullptr &&
-        std::pair(before->level, before->row) >= std::pair(line.level, line.row)) {
-      return false;
-    }
-    before = &line;
-    if (line.count == 0 || sides.simplexOf(pointOf(line.point(0))) != line.left ||
-        (line.count > 1 && sides.simplexOf(pointOf(line.point(line.count - 1))) != line.right)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// Step 1: the lattice points of vertices.
-class Places {
- public:
-  Places(const PreparedMap& map, const HexMesh& mesh, Stage& stage, Proof& proof)
-      : map_(map), mesh_(mesh), swept_(sweepVertices(map, stage)), places_(mesh.points.size()) {
-    if (swept_.numbers.count() != places_.size()) {
-      places_ = {};
-      return;
-    }
-    parallelFor(stage, map.topology.tetCount(), kSweepBlock,
-                [&](std::size_t t) { place(static_cast<Index>(t), proof); });
-    swept_.lines = TetLines(0);
-  }
-
-  [[nodiscard]] bool areKnown() const noexcept { return places_.size() == mesh_.points.size(); }
-  [[nodiscard]] const LatticePlace& operator[](Index vertex) const noexcept {
-    return places_[vertex];
-  }
-
- private:
-  void place(Index tet, Proof& proof) {
-    const std::size_t first = swept_.numbers.begin[tet];
-    const std::size_t end = swept_.numbers.begin[tet + 1];
-    for (std::size_t v = first; v < end; ++v) places_[v].tet = kNone;
-    const std::span<const SweptLine> lines = swept_.lines.of(tet);
-    if (lines.empty()) {
-      if (first != end) proof.sweep.add(tet);
-      return;
-    }
-    std::uint64_t left = end - first;
-    bool right = areInTet(FaceSides(map_.exact.corners[tet]), lines,
-                          [this](const GridPoint& z) { return vertexPoint(z, map_.exact.unit); });
-    const SpaceOfTet space(map_, tet);
-    const SweepAxes axes = lines.front().axes;
-    TetNumbering(map_, swept_.numbers, tet, axes).run(lines, [&](const VertexRun& run) {
-      if (!run.owned) return;
-      right = right && run.count <= left && run.first >= first && run.first + run.count <= end;
-      if (!right) return;
-      left -= run.count;
-      GridPoint z = run.line->point(run.offset);
-      space.compare(z, axes()[2], std::span(mesh_.points).subspan(run.first, run.count),
-                    [&](std::size_t i) { proof.positions.add(run.first + i); });
-      for (std::uint64_t v = run.first; v < run.first + run.count; ++v, ++z[axes()[2]]) {
-        right = right && places_[v].tet == kNone;
-        places_[v] = {tet, z, run.simplex};
-      }
-    });
-    if (!right || left != 0) proof.sweep.add(tet);
-  }
-
-  const PreparedMap& map_;
-  const HexMesh& mesh_;
-  SweptVertices swept_;
-  Array<LatticePlace> places_;
-};
-
 /// What is known about the corners of the cells of one tet. Cells whose centres are in one tet
 /// agree about the lattice point at some coordinates: a point that both half diagonals can be bent
 /// to, inside of their cells, is the middle between their centres, which is in the tet as well.
+template <class Number>
 class CornerTable {
  public:
+  static constexpr Number kUnknown = std::numeric_limits<Number>::max();
+
   /// @param lines  of the centres of a tet
   void begin(std::span<const SweptLine> lines) {
     std::size_t centers = 0;
@@ -125,12 +41,12 @@ class CornerTable {
     }
     // A long thin tet has few centres for its box: its corners are followed one by one.
     isUsed_ = volume <= 32 * static_cast<double>(centers) + 64;
-    if (isUsed_) vertices_.assign(size_[0] * size_[1] * size_[2], kNone);
+    if (isUsed_) vertices_.assign(size_[0] * size_[1] * size_[2], kUnknown);
   }
 
   [[nodiscard]] bool isUsed() const noexcept { return isUsed_; }
-  /// Where the vertex at a lattice point is: kNone if it is not known yet.
-  [[nodiscard]] Index* at(const GridPoint& z) noexcept {
+  /// Where the vertex at a lattice point is: kUnknown if it is not known yet.
+  [[nodiscard]] Number* at(const GridPoint& z) noexcept {
     const auto from = [&](std::size_t k) { return static_cast<std::size_t>(z[k] - first_[k]); };
     return &vertices_[(from(0) * size_[1] + from(1)) * size_[2] + from(2)];
   }
@@ -143,43 +59,46 @@ class CornerTable {
   bool isUsed_ = false;
   GridPoint first_{};
   std::array<std::size_t, 3> size_{};
-  std::vector<Index> vertices_;
+  std::vector<Number> vertices_;
 };
 
 /// Steps 2 and 3, for the cells of one tet after the other. One per thread.
+template <class Cell>
 class CellProver {
  public:
-  CellProver(const PreparedMap& map, const HexMesh& mesh, const CellCenters& centers,
-             const Places& places, Proof& proof)
+  CellProver(const PreparedMap& map, const CellCenters& centers, const LatticePlaces& places,
+             Faults& hints, Faults& wrong)
       : map_(map),
-        mesh_(mesh),
         centers_(centers),
-        places_(places),
+        vertices_(places.count()),
+        finder_(places),
         diagonals_(map),
-        proof_(proof) {}
+        hints_(hints),
+        wrong_(wrong) {}
 
-  void prove(Index tet) {
+  /// @param first  the number of the first of some cells, among them some of the tet
+  void prove(Index tet, std::uint64_t first, std::span<const Cell> cells) {
     const std::span<const SweptLine> lines = centers_.linesOf(map_.exact, tet, lines_);
     std::uint64_t cell = centers_.begin[tet];
     const std::uint64_t end = centers_.begin[tet + 1];
-    if (lines.empty()) {
-      if (cell != end) proof_.sweep.add(tet);
-      return;
-    }
+    if (cell == end) return;
+    if (lines.empty()) return hints_.add(tet);
     const FaceSides sides(map_.exact.corners[tet]);
-    bool right = areInTet(sides, lines,
-                          [this](const GridPoint& z) { return centerPoint(z, map_.exact.unit); });
-    if (cell != end) begin(lines);
+    bool right = areInTet(map_, sides, lines, map_.exact.unit / 2);
+    begin(lines);
     forEachOwnedCenter(map_.topology, tet, lines, [&](const SweptLine& line, std::uint32_t i) {
       right = right && cell < end;
       if (!right) return;
-      if (!isRight(tet, sides, line.point(i), mesh_.cells[cell])) proof_.cells.add(cell);
-      ++cell;
+      const std::uint64_t place = cell++ - first;
+      if (place >= cells.size()) return;  // of another piece, before or behind
+      if (!isRight(tet, sides, line.point(i), cells[place])) wrong_.add(first + place);
     });
-    if (!right || cell != end) proof_.sweep.add(tet);
+    if (!right || cell != end) hints_.add(tet);
   }
 
  private:
+  using Number = typename Cell::value_type;
+
   void begin(std::span<const SweptLine> lines) {
     known_.begin(lines);
     const std::array<std::size_t, 3> strides = known_.strides();
@@ -189,26 +108,28 @@ class CellProver {
     }
   }
 
-  bool isRight(Index tet, const FaceSides& sides, const GridPoint& z, const Hex& cell) {
+  bool isRight(Index tet, const FaceSides& sides, const GridPoint& z, const Cell& cell) {
     if (!known_.isUsed()) {
       for (std::size_t c = 0; c < 8; ++c) {
         if (!isCorner(tet, sides, z, c, cell[c])) return false;
       }
       return true;
     }
-    Index* const known = known_.at(z);
+    Number* const known = known_.at(z);
     for (std::size_t c = 0; c < 8; ++c) {
-      Index& vertex = known[steps_[c]];
-      if (vertex == cell[c]) continue;
-      if (vertex != kNone || !isCorner(tet, sides, z, c, cell[c])) return false;
+      Number& vertex = known[steps_[c]];
+      if (vertex == cell[c] && vertex != CornerTable<Number>::kUnknown) continue;
+      if (vertex != CornerTable<Number>::kUnknown || !isCorner(tet, sides, z, c, cell[c]))
+        return false;
       vertex = cell[c];
     }
     return true;
   }
 
   bool isCorner(Index tet, const FaceSides& sides, const GridPoint& z, std::size_t corner,
-                Index vertex) {
-    const LatticePlace& place = places_[vertex];
+                Number vertex) {
+    if (vertex >= vertices_) return false;
+    const LatticePlace place = finder_.find(vertex, tet);
     const GridPoint& offset = kCellCorners[corner];
     const GridPoint end = {z[0] + offset[0], z[1] + offset[1], z[2] + offset[2]};
     // A lattice point of the tet is one that the half diagonal comes to within the tet.
@@ -216,19 +137,21 @@ class CellProver {
       return true;
     }
     if (place.simplex != kWholeTet) {
-      const CornerMask simplex = sides.simplexOf(vertexPoint(end, map_.exact.unit));
+      const std::int64_t unit = map_.exact.unit;
+      const CornerMask simplex = sides.simplexOf({end[0] * unit, end[1] * unit, end[2] * unit});
       if (simplex != kNoSimplex) return areSamePoint(map_, {tet, end, simplex}, place);
     }
     return diagonals_.endsAt(tet, z, offset, place);
   }
 
   const PreparedMap& map_;
-  const HexMesh& mesh_;
   const CellCenters& centers_;
-  const Places& places_;
+  std::uint64_t vertices_;
+  PlaceFinder finder_;
   HalfDiagonals diagonals_;
-  Proof& proof_;
-  CornerTable known_;
+  Faults& hints_;
+  Faults& wrong_;
+  CornerTable<Number> known_;
   std::array<std::size_t, 8> steps_{};  ///< in the table, from a cell's smallest corner to each
   std::vector<SweptLine> lines_;
 };
@@ -261,22 +184,41 @@ ElementCounts expectedElements(const Expectation& expected) noexcept {
   return counts;
 }
 
-void prove(const PreparedMap& map, const Expectation& expected, const HexMesh& mesh, Stage& stage,
-           Proof& proof) {
-  proof.numbersAgree = mesh.cells.size() == expected.cells &&
-                       mesh.points.size() == expectedElements(expected).vertices;
-  if (!proof.numbersAgree) return;
-  const Places places(map, mesh, stage, proof);
-  const CellCenters centers = findCells(map, stage);
-  if (!places.areKnown() || centers.count() != expected.cells) {
-    proof.numbersAgree = false;
-    return;
+Proof::Proof(const PreparedMap& map, const Expectation& expected, Stage& stage)
+    : map_(map), places_(map, stage), centers_(findCells(map, stage)) {
+  if (places_.count() == expectedElements(expected).vertices &&
+      centers_.count() == expected.cells) {
+    places_.prove(stage, hints_);
+  } else {
+    hints_.add(0);
   }
-  if (proof.sweep.count() > 0) return;
+}
+
+template <class Cell>
+void Proof::compare(std::uint64_t first, std::span<const Cell> cells, Stage& stage) {
+  const auto [begin, end] = tetsWith(centers_.begin, first, first + cells.size());
   parallelForWith(
-      stage, map.topology.tetCount(), kSweepBlock / 8,
-      [&] { return CellProver(map, mesh, centers, places, proof); },
-      [](std::size_t tet, CellProver& prover) { prover.prove(static_cast<Index>(tet)); });
+      stage, end - begin, kSweepBlock / 8,
+      [&] { return CellProver<Cell>(map_, centers_, places_, hints_, cells_); },
+      [&, begin = begin](std::size_t i, CellProver<Cell>& prover) {
+        prover.prove(static_cast<Index>(begin + i), first, cells);
+      });
+}
+template void Proof::compare(std::uint64_t first, std::span<const Hex> cells, Stage& stage);
+template void Proof::compare(std::uint64_t first, std::span<const Hex64> cells, Stage& stage);
+
+bool isProven(const PreparedMap& map, const Expectation& expected, const HexMesh& mesh,
+              Stage& stage) {
+  if (mesh.cells.size() != expected.cells ||
+      mesh.points.size() != expectedElements(expected).vertices) {
+    return false;
+  }
+  Proof proof(map, expected, stage);
+  if (!proof.passed()) return false;
+  proof.compare(0, mesh.points, stage);
+  proof.hasAllPoints(stage);
+  proof.compare(0, std::span<const Hex>(mesh.cells), stage);
+  return proof.passed();
 }
 
 }  // namespace hexhex

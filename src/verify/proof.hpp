@@ -13,30 +13,16 @@
 // prove or refute. What is believed are the prepared map and the exact predicates.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
+#include <span>
+
+#include <verify/lattice_places.hpp>
 
 #include <hexhex/check.hpp>
 
-#include <base/parallel.hpp>
-#include <igm/prepare.hpp>
+#include <sweep/cell_centers.hpp>
 
 namespace hexhex {
-
-/// Things that are wrong, found by several threads: how many, and the first.
-class Faults {
- public:
-  void add(std::size_t place) noexcept {
-    ++count_;
-    lowerTo(place, first_);
-  }
-  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
-  [[nodiscard]] std::size_t first() const noexcept { return first_; }
-
- private:
-  std::atomic<std::uint64_t> count_{0};
-  std::atomic<std::size_t> first_{static_cast<std::size_t>(-1)};
-};
 
 /// How many vertices, edges and faces the mesh of a map has.
 struct ElementCounts {
@@ -46,22 +32,42 @@ struct ElementCounts {
 };
 [[nodiscard]] ElementCounts expectedElements(const Expectation& expected) noexcept;
 
-struct Proof {
-  Faults sweep;               ///< tets of which the hints are wrong
-  Faults positions;           ///< vertices that are not where their lattice points are
-  Faults cells;               ///< cells with wrong corners
-  bool numbersAgree = false;  ///< as many vertices and cells as expected
+/// Looks at a mesh, as a whole or piece by piece. It has as many points and cells as expected.
+class Proof {
+ public:
+  /// @param map       scaled; must outlive this
+  /// @param expected  of the scaled map
+  Proof(const PreparedMap& map, const Expectation& expected, Stage& stage);
 
-  [[nodiscard]] bool passed() const noexcept {
-    return numbersAgree && sweep.count() + positions.count() + cells.count() == 0;
+  /// Points from number `first` on. To be called only as long as the hints are right.
+  void compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage) {
+    places_.compare(first, points, stage, positions_);
   }
+  /// Makes cells faster to compare, and takes 20 bytes per vertex. No more points may come.
+  void hasAllPoints(Stage& stage) { places_.spread(stage); }
+  /// Cells from number `first` on; likewise.
+  template <class Cell>
+  void compare(std::uint64_t first, std::span<const Cell> cells, Stage& stage);
+
+  [[nodiscard]] const Faults& hints() const noexcept { return hints_; }  ///< tets
+  [[nodiscard]] const Faults& positions() const noexcept { return positions_; }
+  [[nodiscard]] const Faults& cells() const noexcept { return cells_; }
+  /// All that was compared so far.
+  [[nodiscard]] bool passed() const noexcept {
+    return hints_.count() + positions_.count() + cells_.count() == 0;
+  }
+
+ private:
+  const PreparedMap& map_;
+  LatticePlaces places_;
+  CellCenters centers_;
+  Faults hints_;
+  Faults positions_;
+  Faults cells_;
 };
 
-/// Fills `proof`.
-/// @param map       scaled
-/// @param expected  of the scaled map
-/// @param mesh      with corners in range; in any order, but only one in canonical order can pass
-void prove(const PreparedMap& map, const Expectation& expected, const HexMesh& mesh, Stage& stage,
-           Proof& proof);
+/// Looks at a whole mesh. Only one in canonical order can pass.
+[[nodiscard]] bool isProven(const PreparedMap& map, const Expectation& expected,
+                            const HexMesh& mesh, Stage& stage);
 
 }  // namespace hexhex

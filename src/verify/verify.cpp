@@ -76,15 +76,50 @@ void compareMeshes(const HexMesh& right, const HexMesh& mesh, int digits, Stage&
   addCells("missing_cells", mismatch.missingCells, "in canonical order, ");
 }
 
+/// A scaled map, and what follows from it.
+struct Truth {
+  PreparedMap map;
+  Expectation expected;
+};
+
+/// Adds "map_valid"; nothing if it did not pass.
+std::optional<Truth> truthOf(const TetMapView& map, const VerifyOptions& options, Context& context,
+                             Comparisons& comparisons) {
+  DefectCollector defects;
+  PreparedMap prepared =
+      prepareMap(map, options.tolerance, options.scale, context, defects, ChartChoice::Unfolded);
+  const bool valid = defects.empty();
+  comparisons.add("map_valid", "yes", valid ? "yes" : describe(defects.defects()), valid);
+  if (!valid) return std::nullopt;
+  Stage stage(context, "verification");
+  addStars(prepared.topology, stage);
+  Expectation expected =
+      computeExpectation(prepared, countEdges(prepared.topology, stage), options.scale);
+  scaleMap(prepared.exact, options.scale, stage);
+  return Truth{std::move(prepared), std::move(expected)};
+}
+
+/// Adds "cells" and "vertices"; returns whether all passed so far.
+bool compareCounts(const Expectation& expected, std::uint64_t cells, std::uint64_t vertices,
+                   Comparisons& comparisons) {
+  comparisons.addEqual<std::uint64_t>("cells", expected.cells, cells);
+  comparisons.addEqual<std::uint64_t>("vertices", expectedElements(expected).vertices, vertices);
+  return comparisons.passed();
+}
+
+void addWrongExtraction(Comparisons& comparisons) {
+  comparisons.add("extraction", "right", "wrong: please report this with the map", false);
+}
+
 /// A map, ready to be compared with meshes.
 class Verification {
  public:
-  Verification(PreparedMap& map, const VerifyOptions& options, Context& context, Stage& stage)
-      : map_(map), options_(options), context_(context), stage_(stage) {
-    addStars(map.topology, stage);
-    expected_ = computeExpectation(map, countEdges(map.topology, stage), options.scale);
-    scaleMap(map.exact, options.scale, stage);
-  }
+  Verification(Truth& truth, const VerifyOptions& options, Context& context, Stage& stage)
+      : map_(truth.map),
+        options_(options),
+        context_(context),
+        stage_(stage),
+        expected_(truth.expected) {}
 
   void compare(const HexMesh& mesh, Comparisons& comparisons) {
     if (!compareIndices(mesh, stage_, comparisons)) return;
@@ -94,16 +129,10 @@ class Verification {
 
  private:
   void compareCells(const HexMesh& mesh, Comparisons& comparisons) {
-    const std::uint64_t vertices = expectedElements(expected_).vertices;
-    comparisons.addEqual<std::uint64_t>("cells", expected_.cells, mesh.cells.size());
-    comparisons.addEqual<std::uint64_t>("vertices", vertices, mesh.points.size());
-    if (comparisons.passed()) {
-      Proof proof;
-      prove(map_, expected_, mesh, stage_, proof);
-      if (proof.passed()) {
-        addNothingWrong(comparisons);
-        return;
-      }
+    if (compareCounts(expected_, mesh.cells.size(), mesh.points.size(), comparisons) &&
+        isProven(map_, expected_, mesh, stage_)) {
+      addNothingWrong(comparisons);
+      return;
     }
     // Beside a mesh of quite another size, no vertex or cell is worth a name.
     if (mesh.cells.size() / 2 > expected_.cells || expected_.cells / 2 > mesh.cells.size()) return;
@@ -123,10 +152,8 @@ class Verification {
     options.tolerance = options_.tolerance;
     ExtractStatistics statistics;
     const HexMesh right = runEngine(map_, expected_.cells, options, context_, statistics);
-    Proof proof;
-    prove(map_, expected_, right, stage_, proof);
-    if (!proof.passed()) {
-      comparisons.add("extraction", "right", "wrong: please report this with the map", false);
+    if (!isProven(map_, expected_, right, stage_)) {
+      addWrongExtraction(comparisons);
     }
     compareMeshes(right, mesh, options_.digits, stage_, comparisons);
   }
@@ -135,7 +162,7 @@ class Verification {
   const VerifyOptions& options_;
   Context& context_;
   Stage& stage_;
-  Expectation expected_;
+  const Expectation& expected_;
 };
 
 }  // namespace
@@ -149,14 +176,10 @@ VerifyReport verify(const TetMapView& map, const HexMesh& mesh, const VerifyOpti
   }
   Comparisons comparisons;
   withThreads(context.threads(), [&] {
-    DefectCollector defects;
-    PreparedMap prepared =
-        prepareMap(map, options.tolerance, options.scale, context, defects, ChartChoice::Unfolded);
-    const bool valid = defects.empty();
-    comparisons.add("map_valid", "yes", valid ? "yes" : describe(defects.defects()), valid);
-    if (!valid) return;
+    std::optional<Truth> truth = truthOf(map, options, context, comparisons);
+    if (!truth) return;
     Stage stage(context, "verification");
-    Verification verification(prepared, options, context, stage);
+    Verification verification(*truth, options, context, stage);
     verification.compare(mesh, comparisons);
   });
   return comparisons.take();
@@ -166,5 +189,73 @@ VerifyReport verify(const TetMapView& map, const HexMesh& mesh, const VerifyOpti
   Context context;
   return verify(map, mesh, options, context);
 }
+
+class VerifySink::Prover {
+ public:
+  Prover(const TetMapView& map, const VerifyOptions& options, Context& context)
+      : quiet_(context.threads()) {
+    withThreads(context.threads(), [&] {
+      truth_ = truthOf(map, options, context, comparisons_);
+      if (!truth_) return;
+      Stage stage(context, "verification");
+      proof_.emplace(truth_->map, truth_->expected, stage);
+    });
+  }
+
+  void points(const PointPiece& piece) {
+    if (truth_)
+      compare(piece.first, piece.points, expectedElements(truth_->expected).vertices, points_);
+  }
+  template <class Cell>
+  void cells(std::uint64_t first, std::span<const Cell> cells) {
+    if (truth_) compare(first, cells, truth_->expected.cells, cells_);
+  }
+
+  void end() {
+    if (!truth_ || !compareCounts(truth_->expected, cells_, points_, comparisons_)) return;
+    if (proof_->hints().count() > 0) addWrongExtraction(comparisons_);
+    const Faults& positions = proof_->positions();
+    const Faults& cells = proof_->cells();
+    comparisons_.addNone("vertices_off_lattice", positions.count(), vertexName(positions.first()));
+    comparisons_.addNone("wrong_cells", cells.count(), cellName(cells.first()));
+  }
+
+  [[nodiscard]] const VerifyReport& report() const noexcept { return comparisons_.report(); }
+
+ private:
+  /// @param come  how many came before, in order
+  template <class T>
+  void compare(std::uint64_t first, std::span<const T> items, std::uint64_t expected,
+               std::uint64_t& come) {
+    if (first == come) come += items.size();
+    if (come > expected || first + items.size() > come || proof_->hints().count() > 0) return;
+    withThreads(quiet_.threads(), [&] {
+      Stage stage(quiet_, "verification");
+      proof_->compare(first, items, stage);
+    });
+  }
+
+  Context quiet_;  ///< pieces come while somebody else reports progress
+  Comparisons comparisons_;
+  std::optional<Truth> truth_;
+  std::optional<Proof> proof_;
+  std::uint64_t points_ = 0;
+  std::uint64_t cells_ = 0;
+};
+
+VerifySink::VerifySink(const TetMapView& map, const VerifyOptions& options, Context& context)
+    : prover_(std::make_unique<Prover>(map, options, context)) {}
+VerifySink::~VerifySink() = default;
+
+void VerifySink::begin(std::uint64_t /*pointCount*/, std::uint64_t /*cellCount*/) {}
+void VerifySink::points(const PointPiece& piece) { prover_->points(piece); }
+void VerifySink::cells(std::uint64_t first, std::span<const Hex> cells) {
+  prover_->cells(first, cells);
+}
+void VerifySink::cells(std::uint64_t first, std::span<const Hex64> cells) {
+  prover_->cells(first, cells);
+}
+void VerifySink::end() { prover_->end(); }
+const VerifyReport& VerifySink::report() const noexcept { return prover_->report(); }
 
 }  // namespace hexhex

@@ -731,7 +731,7 @@ class Stream(CommandTest):
                     self.run_command("extract", map_file, "-o", whole, "--scale", "2")
                     text = self.run_command("extract", map_file, "-o", pieces, "--scale", "2",
                                             "--stream").stdout
-                    self.assertRegex(text, r"verification +passed, 7 checks of counts and checksums")
+                    self.assertRegex(text, r"verification +passed, 7 checks, of the file")
                     self.assertNotIn("Jacobian", text)
                     self.run_command("verify", map_file, pieces, "--scale", "2", "--quiet")
                     surveys = [self.run_command("info", "--pieces", file).stdout.splitlines()[1:]
@@ -752,8 +752,8 @@ class Stream(CommandTest):
         self.assertIn("read mesh", [stage["name"] for stage in report["stages"]])
         self.assertTrue(report["verification"]["passed"])
         found = {item["name"]: item["found"] for item in report["verification"]["items"]}
-        self.assertEqual(set(found), {"map_valid", "cells", "vertices", "cells_read_back",
-                                      "vertices_read_back", "cell_checksum", "vertex_checksum"})
+        self.assertEqual(set(found), {"map_valid", "cells", "vertices", "vertices_off_lattice",
+                                      "wrong_cells", "cell_checksum", "vertex_checksum"})
         self.assertEqual(found["cells"], str(report["cells"]))
         self.assertEqual(report["checksums"],
                          {"cells": found["cell_checksum"], "vertices": found["vertex_checksum"]})
@@ -839,8 +839,8 @@ class Stream(CommandTest):
         moved = "".join([*lines[:first], "7 7 7 0\n", *lines[first + 1:]])
         fewer = good.replace("Hexahedra\n512\n", "Hexahedra\n511\n")
         self.assertNotEqual(good, fewer)
-        for change, words in [(good, []), (moved, ["vertex_checksum"]),
-                              (fewer, ["cells", "cells_read_back", "cell_checksum"])]:
+        for change, words in [(good, []), (moved, ["vertices_off_lattice", "vertex_checksum"]),
+                              (fewer, ["cells", "cell_checksum"])]:
             script = 'mkfifo ".hexhex-$$-unread.mesh" && exec "$@"'
             with subprocess.Popen(["sh", "-c", script, "sh", self.command, "extract", map_file,
                                    "-o", "a.mesh", "--stream", "--quiet"], cwd=self.folder,

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -495,6 +496,86 @@ TEST(Verify, IsNotImpressedByHugeMeshes) {
   const VerifyReport report = verify(map, mesh);
   EXPECT_FALSE(report.passed());
   EXPECT_EQ(foundOf(report, "cells"), "100000");
+}
+
+/// Hands over a mesh in pieces of random sizes.
+template <class Cell>
+VerifyReport verifiedInPieces(const TetMap& map, const HexMesh& mesh, Random& random) {
+  Context context(1 + static_cast<int>(random.below(3)));
+  VerifySink sink(map, {}, context);
+  std::vector<Cell> cells;
+  for (const Hex& cell : mesh.cells) {
+    std::copy(cell.begin(), cell.end(), cells.emplace_back().begin());
+  }
+  sink.begin(mesh.points.size(), mesh.cells.size());
+  const auto inPieces = [&](std::size_t count, const auto& take) {
+    for (std::size_t first = 0; first < count;) {
+      const std::size_t size = std::min<std::size_t>(count - first, 1 + random.below(100));
+      take(first, size);
+      first += size;
+    }
+  };
+  inPieces(mesh.points.size(), [&](std::size_t first, std::size_t size) {
+    sink.points({first, std::span(mesh.points).subspan(first, size), {}, {}});
+  });
+  inPieces(cells.size(), [&](std::size_t first, std::size_t size) {
+    sink.cells(first, std::span<const Cell>(cells).subspan(first, size));
+  });
+  sink.end();
+  return sink.report();
+}
+
+TEST(VerifySink, PassesTheMeshAndNoOther) {
+  std::vector<int> applied(mutations().size());
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const TetMap map = drawMap(seed);
+    const HexMesh mesh = extract(map);
+    Random random(seed);
+    const VerifyReport right = verifiedInPieces<Hex>(map, mesh, random);
+    EXPECT_TRUE(right.passed()) << seed;
+    EXPECT_EQ(right.items.size(), 5U);
+    EXPECT_TRUE(verifiedInPieces<Hex64>(map, mesh, random).passed()) << seed;
+    for (std::size_t i = 0; i < mutations().size(); ++i) {
+      HexMesh wrong = mesh;
+      if (!mutations()[i].apply(wrong, random)) continue;
+      ++applied[i];
+      const VerifyReport report = seed % 2 == 0 ? verifiedInPieces<Hex>(map, wrong, random)
+                                                : verifiedInPieces<Hex64>(map, wrong, random);
+      EXPECT_FALSE(report.passed()) << mutations()[i].name << ", seed " << seed;
+    }
+  }
+  for (std::size_t i = 0; i < applied.size(); ++i) EXPECT_GT(applied[i], 20) << mutations()[i].name;
+}
+
+TEST(VerifySink, NamesWhatIsWrong) {
+  const TetMap map = identityMap(3);
+  const HexMesh mesh = extract(map);
+  Random random(1);
+  const auto found = [&](const std::function<void(HexMesh&)>& damage, const std::string& name) {
+    HexMesh wrong = mesh;
+    damage(wrong);
+    return foundOf(verifiedInPieces<Hex>(map, wrong, random), name);
+  };
+  EXPECT_EQ(found([](HexMesh& m) { m.points[9][0] += 0.1; }, "vertices_off_lattice"),
+            "1 (first: vertex 9)");
+  EXPECT_EQ(found([](HexMesh& m) { std::swap(m.cells[7], m.cells[9]); }, "wrong_cells"),
+            "2 (first: cell 7)");
+  EXPECT_EQ(found([](HexMesh& m) { m.cells[7][3] = 64; }, "wrong_cells"), "1 (first: cell 7)");
+  EXPECT_EQ(found([](HexMesh& m) { m.cells.pop_back(); }, "cells"), "26");
+  EXPECT_EQ(found([](HexMesh& m) { m.points.push_back({9, 9, 9}); }, "vertices"), "65");
+  TetMap flipped = map;
+  std::swap(flipped.parameters[7][1], flipped.parameters[7][2]);
+  EXPECT_EQ(verifiedInPieces<Hex>(flipped, mesh, random).items.size(), 1U);
+
+  // A piece that is missing, or comes twice, is one of the mesh's own, and yet not the mesh.
+  Context context;
+  VerifySink sink(map, {}, context);
+  sink.begin(mesh.points.size(), mesh.cells.size());
+  sink.points({0, mesh.points, {}, {}});
+  for (int twice = 0; twice < 2; ++twice) sink.cells(0, std::span(mesh.cells).first(20));
+  sink.end();
+  EXPECT_EQ(foundOf(sink.report(), "cells"), "20");
+  EXPECT_FALSE(sink.report().passed());
 }
 
 }  // namespace
