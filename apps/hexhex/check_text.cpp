@@ -116,9 +116,10 @@ void printCheck(const CheckReport& report, int scale) {
   fmt::print("The map is valid.\n");
 }
 
-std::string checkAsJson(const CheckReport& report, int scale) {
+std::string checkAsJson(const CheckReport& report, int scale, const std::string& kind) {
   const Json json = {
       {"valid", report.valid()},
+      {"kind", kind},
       {"points", report.points},
       {"tets", report.tets},
       {"edges", report.edges},

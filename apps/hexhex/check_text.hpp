@@ -14,6 +14,7 @@ void printCheck(const CheckReport& report, int scale);
 void printExpectation(const Expectation& expected);
 
 /// The same as JSON text, ending with a line break. docs/report.md explains the keys.
-[[nodiscard]] std::string checkAsJson(const CheckReport& report, int scale);
+[[nodiscard]] std::string checkAsJson(const CheckReport& report, int scale,
+                                      const std::string& kind);
 
 }  // namespace hexhex::command

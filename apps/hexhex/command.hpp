@@ -17,6 +17,7 @@ struct Command {
 [[nodiscard]] Command addVerify(CLI::App& app);
 [[nodiscard]] Command addGenerate(CLI::App& app);
 [[nodiscard]] Command addRepair(CLI::App& app);
+[[nodiscard]] Command addQuantize(CLI::App& app);
 [[nodiscard]] Command addInfo(CLI::App& app);
 [[nodiscard]] Command addConvert(CLI::App& app);
 [[nodiscard]] Command addFormats(CLI::App& app);

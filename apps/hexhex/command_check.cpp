@@ -1,15 +1,19 @@
 // `hexhex check`: what a map is and what is wrong with it.
 #include <memory>
+#include <optional>
+#include <string>
 
 #include <fmt/core.h>
 
 #include <hexhex/check.hpp>
+#include <hexhex/quantize.hpp>
 
 #include "check_text.hpp"
 #include "command.hpp"
 #include "exit_codes.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "quantize_options.hpp"
 #include "shared_options.hpp"
 
 namespace hexhex::command {
@@ -23,20 +27,35 @@ struct Arguments {
   bool quiet = false;
 };
 
-CheckReport examine(const Arguments& arguments) {
+/// What a map is, and whether it is seamless if it is not integer.
+struct Examination {
+  CheckReport report;
+  std::optional<SeamlessReport> seamless;
+};
+
+Examination examine(const Arguments& arguments) {
   ProgressDisplay progress(arguments.quiet || arguments.json);
   Context context(arguments.threads, progress.callback());
   const CancelOnSignal cancelOnSignal(context);
   const TetMap map = readMap(arguments.input, context);
-  return check(map, arguments.options, context);
+  Examination result{check(map, arguments.options, context), std::nullopt};
+  if (!result.report.valid() && canQuantize() &&
+      mayBeSeamless(result.report.defects.front().code)) {
+    result.seamless = examineSeamless(map, context);
+  }
+  return result;
 }
 
 int run(const Arguments& arguments) {
-  const CheckReport report = examine(arguments);
+  const auto [report, seamless] = examine(arguments);
   if (arguments.json) {
-    fmt::print("{}", checkAsJson(report, arguments.options.scale));
+    const char* kind = seamless ? kindName(seamless->kind) : "neither";
+    fmt::print("{}",
+               checkAsJson(report, arguments.options.scale, report.valid() ? "integer" : kind));
   } else if (!arguments.quiet) {
     printCheck(report, arguments.options.scale);
+    const std::string advice = seamless ? adviceFor(*seamless, arguments.input) : "";
+    if (!advice.empty()) fmt::print("{}\n", advice);
   }
   return report.valid() ? kSuccess : kInvalidMap;
 }

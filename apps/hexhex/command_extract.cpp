@@ -14,6 +14,7 @@
 #include <hexhex/io.hpp>
 #include <hexhex/partial.hpp>
 #include <hexhex/quality.hpp>
+#include <hexhex/quantize.hpp>
 #include <hexhex/verify.hpp>
 
 #include "command.hpp"
@@ -23,6 +24,7 @@
 #include "output.hpp"
 #include "partial_text.hpp"
 #include "progress.hpp"
+#include "quantize_options.hpp"
 #include "repair_text.hpp"
 #include "report.hpp"
 #include "shared_options.hpp"
@@ -40,6 +42,8 @@ struct Arguments {
   std::string patches;
   int order = 1;
   ExtractOptions options;
+  bool quantize = false;
+  QuantizeOptions quantizeOptions;
   double patchAngle = WriteOptions{}.patchAngle;
   int threads = 0;
   bool stream = false;
@@ -151,6 +155,7 @@ void printSummary(const ExtractionRecord& record) {
   printLine("map", fmt::format("{}, {}, {} of {} with a chart jump", counted(record.tets, "tet"),
                                counted(record.points, "point"), statistics.chartJumps,
                                counted(statistics.innerFaces, "inner face")));
+  if (record.quantized) printLine("quantization", quantizeSummary(*record.quantized));
   printLine(
       "mesh",
       fmt::format("{}, {}", counted(record.cells, "cell"),
@@ -285,6 +290,14 @@ int extractWhatIsValid(const Arguments& arguments, const TetMap& map, const Erro
   return kInvalidMap;
 }
 
+/// Says of a map that is not integer, but seamless, what to do.
+void adviseQuantization(const Arguments& arguments, const TetMap& map, const Error& error,
+                        Context& context) {
+  if (arguments.quantize || !canQuantize() || !mayBeSeamless(error.code())) return;
+  const std::string advice = adviceFor(examineSeamless(map, context), arguments.input);
+  if (!advice.empty()) throw Error(error.code(), advice);
+}
+
 int run(const Arguments& arguments) {
   ProgressDisplay progress(arguments.quiet);
   Context context(arguments.threads, progress.callback());
@@ -292,15 +305,24 @@ int run(const Arguments& arguments) {
   requireOutputs(arguments);
   const std::unique_ptr<TextFile> report = openReport(arguments.report);
 
-  const TetMap map = readMap(arguments.input, context);
+  TetMap map = readMap(arguments.input, context);
   ExtractionRecord record;
   record.order = arguments.order;
+  if (arguments.quantize) {
+    QuantizedMap quantized =
+        quantize(map, optionsFor(arguments.input, arguments.quantizeOptions), context);
+    map = std::move(quantized.map);
+    record.quantized = std::move(quantized.report);
+  }
   const auto make =
       arguments.stream ? extractInPieces : (arguments.order > 1 ? extractCurved : extractWhole);
   try {
     make(arguments, map, context, record);
   } catch (const Error& error) {
-    if (!arguments.partial || exitCodeOf(error.code()) != kInvalidMap) throw;
+    if (!arguments.partial || exitCodeOf(error.code()) != kInvalidMap) {
+      adviseQuantization(arguments, map, error, context);
+      throw;
+    }
     return extractWhatIsValid(arguments, map, error, context, progress, report.get());
   }
   progress.clear();
@@ -337,6 +359,18 @@ void addRepairOptions(CLI::App& parser, Arguments& arguments) {
   parser.add_flag("--partial", arguments.partial,
                   "Write what can be extracted of a map beyond repair, cells\n"
                   "at holes as region 1, and list the holes; exit code 1");
+}
+
+/// From seamless maps.
+void addQuantization(CLI::App& parser, Arguments& arguments) {
+  CLI::Option* const flag =
+      parser.add_flag("--quantize", arguments.quantize,
+                      "The map is seamless: make it an integer-grid map first, with\n"
+                      "--cells, --map-scale or --edge-length (`hexhex quantize --help`)");
+  addQuantizeOptions(parser, arguments.quantizeOptions, "--map-scale");
+  for (const char* name : {"--cells", "--map-scale", "--edge-length", "--densify"}) {
+    parser.get_option(name)->needs(flag);
+  }
 }
 
 /// Options that change how a mesh is made, but not the mesh.
@@ -402,6 +436,7 @@ Command addExtract(CLI::App& app) {
   addTolerance(*parser, arguments->options.tolerance);
   addPatchAngle(*parser, arguments->patchAngle);
   addRepairOptions(*parser, *arguments);
+  addQuantization(*parser, *arguments);
   parser->add_flag("--no-verify", arguments->noVerify, "Write the mesh without verifying it");
   addReport(*parser, arguments->report,
             "Write a report in JSON: times, counts, quality,\nverification");

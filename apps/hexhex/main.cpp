@@ -33,6 +33,7 @@ constexpr const char* kFooter = R"(Examples:
   hexhex extract sphere.hexex -o fine.mesh --scale 4 --report fine.json
   hexhex verify sphere.hexex fine.mesh --scale 4
   hexhex info fine.mesh
+  hexhex extract seamless.hexex -o mesh.vtu --quantize --cells 50000
   hexhex convert sphere.vtu sphere.msh           for Gmsh
   hexhex view sphere.vtu --map sphere.hexex      a page that shows it in any browser
 
@@ -108,9 +109,9 @@ int run(int argc, char** argv) {
   app.footer(kFooter);
   app.require_subcommand(1);
   app.failure_message(usageProblem);
-  const std::array commands = {addExtract(app),  addCheck(app),   addVerify(app),
-                               addGenerate(app), addRepair(app),  addInfo(app),
-                               addConvert(app),  addFormats(app), addView(app)};
+  const std::array commands = {addExtract(app),  addCheck(app),  addVerify(app), addGenerate(app),
+                               addQuantize(app), addRepair(app), addInfo(app),   addConvert(app),
+                               addFormats(app),  addView(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

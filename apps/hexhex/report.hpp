@@ -10,6 +10,7 @@
 
 #include <hexhex/extract.hpp>
 #include <hexhex/quality.hpp>
+#include <hexhex/quantize.hpp>
 #include <hexhex/survey.hpp>
 #include <hexhex/verify.hpp>
 
@@ -43,6 +44,7 @@ struct ExtractionRecord {
   std::uint64_t cells = 0;
   std::array<std::uint64_t, 3> tags{};  ///< tagged vertices, edges and quads of the mesh
   ExtractStatistics statistics;
+  std::optional<QuantizeReport> quantized;  ///< empty for a map that was integer
   std::vector<StageTime> stages;
   std::optional<Certificate> certificate;    ///< empty if the mesh was never whole
   std::optional<VerifyReport> verification;  ///< empty if it was skipped

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include <hexhex/context.hpp>
 #include <hexhex/error.hpp>
@@ -20,9 +19,9 @@ struct QuantizeOptions {
   double edgeLength = 0;  ///< of a hexahedron in space, on the average
   /// If no valid map is found so: takes a denser one, the first one that works.
   bool densify = false;
-  /// Tagged triangles inside of the object stay planes of the mesh, as those between regions do.
-  /// (Walls of a motorcycle complex in a .hexex file, tag 2, need not.)
-  bool keepInnerFaces = true;
+  /// Tagged triangles inside of the object stay planes of the mesh, but for those with this tag (0:
+  /// none): walls of a motorcycle complex, to which readMap() gives the tag 2 in a .hexex file.
+  std::int32_t wallTag = 0;
   /// A map may be so far from being seamless, as a share of its largest coordinate.
   double tolerance = 1e-5;
 };
@@ -55,6 +54,25 @@ struct QuantizedMap {
   TetMap map;
   QuantizeReport report;
 };
+
+/// What lies between a map and an integer-grid map.
+enum class SeamlessKind : std::uint8_t {
+  Seamless,        ///< charts differ by rotations and translations, all is aligned with axes
+  AlmostSeamless,  ///< up to a hundredth of its size
+  Neither
+};
+
+struct SeamlessReport {
+  SeamlessKind kind = SeamlessKind::Neither;
+  double displacement = 0;  ///< of the nearest seamless map, in parameter units; if there is one
+  double cells = 0;         ///< volume of that in unit cubes
+  std::string problem;      ///< why it is neither
+};
+
+/// Whether quantize() can begin with a map: seamless to within the tolerance of QuantizeOptions, or
+/// nearly so. Flipped tets are left to others.
+/// @pre canQuantize()
+[[nodiscard]] SeamlessReport examineSeamless(const TetMapView& map, Context& context);
 
 /// Whether this build can quantize (it was made with Eigen).
 [[nodiscard]] bool canQuantize() noexcept;

@@ -21,6 +21,8 @@ namespace hexhex {
 #if defined(HEXHEX_HAS_QUANTIZE)
 namespace {
 
+/// As a share of its largest coordinate, an almost seamless map may be so far from a seamless one.
+constexpr double kAlmost = 0.01;
 /// More hexahedra have more vertices than indices.
 constexpr double kMostCells = 4e9;
 /// The search for a scale ends when it is as near to the number of cells wanted as this.
@@ -41,15 +43,6 @@ double spaceVolume(const TetMapView& map) {
               6;
   }
   return std::abs(volume);
-}
-
-/// In parameter units.
-double volumeOf(const SeamlessMap& map) {
-  double volume = 0;
-  for (const LatticeTet& u : map.corners) {
-    volume += orientationDeterminant(u[0], u[1], u[2], u[3]).toDouble() / 6;
-  }
-  return volume / (map.unit * map.unit * map.unit);
 }
 
 double largestCoordinate(const TetMapView& map) {
@@ -97,6 +90,13 @@ double cellsWanted(const TetMapView& map, const SeamlessMap& seamless,
   return std::max(cells, 1.0);
 }
 
+SeamlessMap seamlessMap(const TetMapView& map, const QuantizeOptions& options, Context& context) {
+  const double tolerance = options.tolerance * largestCoordinate(map);
+  SeamlessMap seamless = makeSeamless(map, {tolerance, tolerance, options.wallTag}, context);
+  requirePositiveTets(seamless);
+  return seamless;
+}
+
 /// Integers for all arcs at one scale.
 struct Choice {
   double scale = 0;
@@ -109,12 +109,12 @@ class Quantizer {
   Quantizer(const TetMapView& map, const QuantizeOptions& options, Context& context)
       : options_(options),
         context_(context),
-        seamless_(makeSeamless(
-            map, {options.tolerance * largestCoordinate(map), options.keepInnerFaces}, context)),
+        seamless_(seamlessMap(map, options, context)),
+        cellsWanted_(cellsWanted(map, seamless_, options)),
         complex_(traceComplex(seamless_, context)),
         map_(map) {
     program_.equations = arcEquations(complex_);
-    report_.cellsWanted = cellsWanted(map, seamless_, options);
+    report_.cellsWanted = cellsWanted_;
     report_.displacement = seamless_.maxDisplacement;
     report_.blocks = complex_.blockCount;
     report_.arcs = complex_.arcs.size();
@@ -212,6 +212,7 @@ class Quantizer {
   const QuantizeOptions& options_;
   Context& context_;
   SeamlessMap seamless_;
+  double cellsWanted_;
   MotorcycleComplex complex_;
   const TetMapView& map_;
   IntegerProgram program_;
@@ -224,6 +225,23 @@ class Quantizer {
 
 bool canQuantize() noexcept { return true; }
 
+SeamlessReport examineSeamless(const TetMapView& map, Context& context) {
+  SeamlessReport report;
+  const double size = largestCoordinate(map);
+  try {
+    const SeamlessMap seamless = makeSeamless(map, {kAlmost * size, 0, 0}, context);
+    report.displacement = seamless.maxDisplacement;
+    report.cells = volumeOf(seamless);
+    report.kind = report.displacement <= QuantizeOptions{}.tolerance * size
+                      ? SeamlessKind::Seamless
+                      : SeamlessKind::AlmostSeamless;
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::Cancelled) throw;
+    report.problem = error.what();
+  }
+  return report;
+}
+
 QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options, Context& context) {
   checkOptions(options);
   QuantizedMap result;
@@ -232,6 +250,8 @@ QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options, Con
 }
 #else
 bool canQuantize() noexcept { return false; }
+
+SeamlessReport examineSeamless(const TetMapView& /*map*/, Context& /*context*/) { return {}; }
 
 QuantizedMap quantize(const TetMapView& /*map*/, const QuantizeOptions& /*options*/,
                       Context& /*context*/) {

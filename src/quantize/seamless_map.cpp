@@ -81,7 +81,7 @@ HalfFace findFace(const TetTopology& topology, const std::array<Index, 3>& trian
 }
 
 /// Triangles between regions, and tagged ones.
-std::vector<HalfFace> innerFaces(const SeamlessMap& map, bool tagged) {
+std::vector<HalfFace> innerFaces(const SeamlessMap& map, std::int32_t wallTag) {
   const TetTopology& topology = map.topology;
   const TetMapView& view = map.input.view;
   std::vector<HalfFace> faces;
@@ -91,7 +91,8 @@ std::vector<HalfFace> innerFaces(const SeamlessMap& map, bool tagged) {
     if (view.regions[tetOf(h)] != view.regions[tetOf(mate)]) faces.push_back(h);
   }
   for (const FeatureFace& feature : view.features.faces) {
-    const HalfFace h = tagged ? findFace(topology, feature.vertices) : kNone;
+    if (wallTag != 0 && feature.tag == wallTag) continue;
+    const HalfFace h = findFace(topology, feature.vertices);
     if (h != kNone && topology.mate[h] != kNone) faces.push_back(h);
   }
   return faces;
@@ -106,13 +107,13 @@ Alignment findAlignment(SeamlessMap& map, const CutGraph& graph, const SeamlessO
   for (HalfFace h = 0; h < topology.mate.size(); ++h) {
     if (topology.mate[h] == kNone) alignment.axes[h] = axisOf(graph, h);
   }
-  for (const HalfFace h : innerFaces(map, options.keepInnerFaces)) {
+  for (const HalfFace h : innerFaces(map, options.wallTag)) {
     const std::uint8_t axis = axisOf(graph, h);
     const auto& c = kFaceCorners[h % 4];
     const TetParameters& u = graph.parameters[tetOf(h)];
     const auto corner = [&](std::size_t k) { return static_cast<std::size_t>(c[k]); };
-    if (!areLevel(u, corner(0), corner(1), axis, options.tolerance) ||
-        !areLevel(u, corner(0), corner(2), axis, options.tolerance)) {
+    if (!areLevel(u, corner(0), corner(1), axis, options.featureTolerance) ||
+        !areLevel(u, corner(0), corner(2), axis, options.featureTolerance)) {
       continue;
     }
     alignment.axes[h] = axis;
@@ -124,8 +125,8 @@ Alignment findAlignment(SeamlessMap& map, const CutGraph& graph, const SeamlessO
     const TetParameters& u = graph.parameters[at->tet];
     const auto along =
         static_cast<std::uint8_t>(dominantAxis(minus(u[at->corner1], u[at->corner0])));
-    if (!areLevel(u, at->corner0, at->corner1, (along + 1U) % 3, options.tolerance) ||
-        !areLevel(u, at->corner0, at->corner1, (along + 2U) % 3, options.tolerance)) {
+    if (!areLevel(u, at->corner0, at->corner1, (along + 1U) % 3, options.featureTolerance) ||
+        !areLevel(u, at->corner0, at->corner1, (along + 2U) % 3, options.featureTolerance)) {
       continue;
     }
     alignment.edges.push_back({*at, along});
@@ -271,6 +272,16 @@ void measureDisplacement(SeamlessMap& map, const CutGraph& graph, double toleran
   }
 }
 
+}  // namespace
+
+double volumeOf(const SeamlessMap& map) {
+  double volume = 0;
+  for (const LatticeTet& u : map.corners) {
+    volume += orientationDeterminant(u[0], u[1], u[2], u[3]).toDouble() / 6;
+  }
+  return volume / (map.unit * map.unit * map.unit);
+}
+
 void requirePositiveTets(const SeamlessMap& map) {
   DefectCollector defects;
   defects.setCornersReversed(map.input.cornersReversed);
@@ -282,8 +293,6 @@ void requirePositiveTets(const SeamlessMap& map) {
   }
   defects.throwIfAny();
 }
-
-}  // namespace
 
 SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, Context& context) {
   Stage stage(context, "seamless map");
@@ -320,7 +329,6 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   solveVertices(result, graph, conditions, values);
   findChanges(result, graph);
   measureDisplacement(result, graph, options.tolerance);
-  requirePositiveTets(result);
   return result;
 }
 

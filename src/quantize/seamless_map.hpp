@@ -31,13 +31,19 @@ struct SeamlessMap {
 };
 
 struct SeamlessOptions {
-  double tolerance = 0;        ///< for displacements, in units of the map's parameters
-  bool keepInnerFaces = true;  ///< as in QuantizeOptions
+  double tolerance = 0;         ///< for displacements, in units of the map's parameters
+  double featureTolerance = 0;  ///< features that are aligned so well become it exactly
+  std::int32_t wallTag = 0;     ///< as in QuantizeOptions
 };
 
-/// @throws Error where the mesh is not a manifold, the map is not even nearly seamless, or a tet is
-/// not positive
+/// @throws Error where the mesh is not a manifold, or the map is not even nearly seamless
 [[nodiscard]] SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options,
                                        Context& context);
+
+/// @throws Error FlippedTet if a tet is not positive
+void requirePositiveTets(const SeamlessMap& map);
+
+/// In unit cubes.
+[[nodiscard]] double volumeOf(const SeamlessMap& map);
 
 }  // namespace hexhex

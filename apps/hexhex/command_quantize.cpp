@@ -1,0 +1,115 @@
+// `hexhex quantize`: from a seamless map to an integer-grid map.
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include <hexhex/error.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/quantize.hpp>
+
+#include "command.hpp"
+#include "exit_codes.hpp"
+#include "interrupt.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "quantize_options.hpp"
+#include "shared_options.hpp"
+
+namespace hexhex::command {
+namespace {
+
+struct Arguments {
+  MapSource input;
+  std::string output;
+  OutputChoice choice;
+  std::string report;
+  QuantizeOptions options;
+  int threads = 0;
+  bool quiet = false;
+};
+
+void requireAllDifferent(const Arguments& arguments) {
+  for (const std::filesystem::path& input : arguments.input.files()) {
+    requireDifferent(input, arguments.output);
+    if (!arguments.report.empty()) requireDifferent(input, arguments.report);
+  }
+  if (!arguments.report.empty()) requireDifferent(arguments.output, arguments.report);
+}
+
+void printQuantized(const QuantizeReport& report) {
+  printLine("quantization", quantizeSummary(report));
+  printLine("motorcycle complex", counted(report.blocks, "block"));
+  printLine("integers", report.integersBy == "CBC"
+                            ? "by CBC"
+                            : "by rounding; the library CBC (coinor-libcbc3) finds better ones");
+  printLine("moved to be seamless", fmt::format("at most {:.3g}", report.displacement));
+  printLine("scaled Jacobian",
+            fmt::format("{:.3f} (worst) and {:.3f} (median) of the map; {:.3f} and {:.3f} before",
+                        report.distortionAfter.worst, report.distortionAfter.median,
+                        report.distortionBefore.worst, report.distortionBefore.median));
+}
+
+int run(const Arguments& arguments) {
+  const WriteOptions writing = arguments.choice.options();
+  requireMapFormat(arguments.output, writing);
+  requireAllDifferent(arguments);
+  ProgressDisplay progress(arguments.quiet);
+  Context context(arguments.threads, progress.callback());
+  const CancelOnSignal cancelOnSignal(context);
+  requireWritable(arguments.output);
+  const std::unique_ptr<TextFile> reportFile = openReport(arguments.report);
+  const TetMap map = readMap(arguments.input, context);
+  const QuantizedMap result =
+      quantize(map, optionsFor(arguments.input, arguments.options), context);
+  writeMap(result.map, arguments.output, writing, context);
+  progress.clear();
+  if (reportFile) {
+    nlohmann::ordered_json json = quantizeAsJson(result.report);
+    for (const StageTime& stage : context.stageTimes())
+      json["seconds"][stage.stage] = stage.seconds;
+    reportFile->commit(json.dump(2) + "\n");
+  }
+  if (arguments.quiet) return kSuccess;
+  fmt::print("{} -> {}\n", arguments.input.description(), arguments.output);
+  printQuantized(result.report);
+  return kSuccess;
+}
+
+}  // namespace
+
+Command addQuantize(CLI::App& app) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const parser =
+      app.add_subcommand("quantize", "Make a seamless map an integer-grid map");
+  addMapSource(*parser, arguments->input);
+  parser
+      ->add_option("-o,--output", arguments->output,
+                   "The map to write, " + extensionsThat(&FileFormat::writesMaps))
+      ->required()
+      ->option_text("FILE REQUIRED");
+  addOutputChoice(*parser, arguments->choice);
+  addQuantizeOptions(*parser, arguments->options, "--scale");
+  parser
+      ->add_option("--tolerance", arguments->options.tolerance,
+                   "The map may be so far from a seamless one, as a share of\nits size")
+      ->check(CLI::Range(0.0, 0.01))
+      ->option_text("NUMBER [1e-5]");
+  addThreads(*parser, arguments->threads);
+  addReport(*parser, arguments->report, "Write in JSON what was made, and how long each step took");
+  addQuiet(*parser, arguments->quiet);
+  parser->footer(
+      "One of --cells, --scale and --edge-length says how fine the mesh is to be. Exit code 1: "
+      "the\n"
+      "map is not seamless, or cannot be bent onto so few cells (--densify); nothing is written.\n"
+      "docs/quantize.md explains what happens.\n\n"
+      "Example:\n"
+      "  hexhex quantize seamless.hexex -o integer.hexex --cells 50000\n"
+      "  hexhex extract integer.hexex -o mesh.vtu\n"
+      "  hexhex extract seamless.hexex -o mesh.vtu --quantize --cells 50000     in one go");
+  return {parser, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace hexhex::command

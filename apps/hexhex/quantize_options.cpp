@@ -1,0 +1,120 @@
+#include "quantize_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "output.hpp"
+
+namespace hexhex::command {
+
+namespace {
+
+/// What the reader of .hexex files gives walls of a motorcycle complex.
+constexpr std::int32_t kWallTag = 2;
+
+}  // namespace
+
+void addQuantizeOptions(CLI::App& parser, QuantizeOptions& options, const std::string& scaleName) {
+  const auto positive = [](const std::string& text) {
+    double value = 0;
+    return CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value)
+               ? std::string()
+               : "'" + text + "' is not a number greater than 0";
+  };
+  CLI::Option* const cells = parser.add_option("--cells", options.cells, "About so many hexahedra")
+                                 ->check(positive)
+                                 ->option_text("NUMBER");
+  CLI::Option* const scale =
+      parser
+          .add_option(scaleName, options.scale,
+                      "Multiply the seamless map's parameters by about so much")
+          ->check(positive)
+          ->option_text("NUMBER");
+  CLI::Option* const edge = parser
+                                .add_option("--edge-length", options.edgeLength,
+                                            "Hexahedra with edges of about this length in space")
+                                ->check(positive)
+                                ->option_text("LENGTH");
+  cells->excludes(scale)->excludes(edge);
+  scale->excludes(edge);
+  parser.add_flag("--densify", options.densify,
+                  "If the map cannot be bent onto so few cells: take the\n"
+                  "next density that works, and say which");
+}
+
+QuantizeOptions optionsFor(const MapSource& input, QuantizeOptions options) {
+  const bool isHexex =
+      input.format == "hexex" || (input.format.empty() && input.file.ends_with(".hexex"));
+  if (isHexex) options.wallTag = kWallTag;
+  return options;
+}
+
+std::string quantizeSummary(const QuantizeReport& report) {
+  std::string text = fmt::format(
+      "{} of {:.0f} asked for; {} of {} to {} hexahedra", counted(report.cells, "cell"),
+      report.cellsWanted, counted(report.arcs, "arc"), report.shortestArc, report.longestArc);
+  if (report.addedTets > 0) {
+    text += fmt::format("; {} added to the map by splits", counted(report.addedTets, "tet"));
+  }
+  return text;
+}
+
+nlohmann::ordered_json quantizeAsJson(const QuantizeReport& report) {
+  const auto distortion = [](const MapDistortion& d) {
+    return nlohmann::ordered_json{{"worst", d.worst}, {"median", d.median}};
+  };
+  return {{"cells_wanted", report.cellsWanted},
+          {"cells", report.cells},
+          {"scale", report.scale},
+          {"displacement", report.displacement},
+          {"blocks", report.blocks},
+          {"arcs", report.arcs},
+          {"shortest_arc", report.shortestArc},
+          {"longest_arc", report.longestArc},
+          {"integers_by", report.integersBy},
+          {"attempts", report.attempts},
+          {"split_edges", report.splitEdges},
+          {"added_tets", report.addedTets},
+          {"scaled_jacobian_before", distortion(report.distortionBefore)},
+          {"scaled_jacobian_after", distortion(report.distortionAfter)}};
+}
+
+const char* kindName(SeamlessKind kind) noexcept {
+  switch (kind) {
+    case SeamlessKind::Seamless:
+      return "seamless";
+    case SeamlessKind::AlmostSeamless:
+      return "almost seamless";
+    default:
+      return "neither";
+  }
+}
+
+bool mayBeSeamless(ErrorCode code) noexcept {
+  // Rounding to integers flips tets of a map that is not integer.
+  return code == ErrorCode::FlippedTet || code == ErrorCode::TransitionResidual ||
+         code == ErrorCode::BoundaryOffLattice || code == ErrorCode::SingularityOffLattice ||
+         code == ErrorCode::HalfIntegerFixedPoint;
+}
+
+std::string adviceFor(const SeamlessReport& report, const MapSource& input) {
+  if (report.kind == SeamlessKind::Neither) return {};
+  const std::string command = fmt::format("`hexhex quantize {} -o integer.hexex --cells {:.0f}`",
+                                          input.description(), std::max(report.cells, 1000.0));
+  if (report.kind == SeamlessKind::Seamless) {
+    return fmt::format(
+        "The map is seamless (to within {:.3g}), but its translations are no integers. Make it an "
+        "integer-grid map: {}.",
+        report.displacement, command);
+  }
+  return fmt::format(
+      "The map is almost seamless: the nearest map that is differs by up to {:.3g}. Let the map's "
+      "solver converge further, or write more digits; or take that one: {} with --tolerance.",
+      report.displacement, command);
+}
+
+}  // namespace hexhex::command

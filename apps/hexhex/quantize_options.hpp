@@ -1,0 +1,34 @@
+// Options of quantization, and what it tells.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
+
+#include <hexhex/quantize.hpp>
+
+#include "shared_options.hpp"
+
+namespace hexhex::command {
+
+/// Adds --cells, --target-scale, --edge-length, --densify.
+void addQuantizeOptions(CLI::App& parser, QuantizeOptions& options, const std::string& scaleName);
+
+/// Those options, with what the input's format says about its tags.
+[[nodiscard]] QuantizeOptions optionsFor(const MapSource& input, QuantizeOptions options);
+
+/// "5109 cells of 5000 asked for; 31 arcs of 1 to 26 hexahedra"
+[[nodiscard]] std::string quantizeSummary(const QuantizeReport& report);
+
+[[nodiscard]] nlohmann::ordered_json quantizeAsJson(const QuantizeReport& report);
+
+/// What a map is that is no integer-grid map: "integer", "seamless", "almost seamless", "neither".
+[[nodiscard]] const char* kindName(SeamlessKind kind) noexcept;
+
+/// Whether a map is worth a look at whether it is seamless, by the defect that was found first.
+[[nodiscard]] bool mayBeSeamless(ErrorCode code) noexcept;
+
+/// A sentence for a map that is not integer, with the command to go on with; empty if it is
+/// neither.
+[[nodiscard]] std::string adviceFor(const SeamlessReport& report, const MapSource& input);
+
+}  // namespace hexhex::command
