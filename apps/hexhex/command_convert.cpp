@@ -103,8 +103,8 @@ int run(const Arguments& arguments) {
   if (arguments.quiet) return kSuccess;
   std::error_code unknown;  // the size of a pipe
   const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
-  fmt::print("{} -> {}: {}{}\n", arguments.input.description(), arguments.output, what,
-             unknown ? "" : ", " + bytesAsText(bytes));
+  printFiles(arguments.input.description(), arguments.output,
+             ": " + what + (unknown ? "" : ", " + bytesAsText(bytes)));
   return kSuccess;
 }
 

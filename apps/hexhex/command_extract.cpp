@@ -151,7 +151,7 @@ std::string verificationAsText(const ExtractionRecord& record) {
 
 void printSummary(const ExtractionRecord& record) {
   const ExtractStatistics& statistics = record.statistics;
-  fmt::print("{} -> {}\n", record.input.file.string(), record.output.file.string());
+  printFiles(record.input.file, record.output.file);
   printLine("map", fmt::format("{}, {}, {} of {} with a chart jump", counted(record.tets, "tet"),
                                counted(record.points, "point"), statistics.chartJumps,
                                counted(statistics.innerFaces, "inner face")));
@@ -285,7 +285,7 @@ int extractWhatIsValid(const Arguments& arguments, const TetMap& map, const Erro
   printError(problem);
   if (arguments.quiet) return kInvalidMap;
   printWarning("Only a part of the mesh was extracted, as --partial asks for.");
-  fmt::print("{} -> {}\n", arguments.input.description(), arguments.output);
+  printFiles(arguments.input.description(), arguments.output);
   printPartial(partial);
   return kInvalidMap;
 }

@@ -60,7 +60,7 @@ int run(const Arguments& arguments) {
   context.throwIfCancelled();
   writeMap(sample.map, arguments.output, writing, context);
   if (arguments.quiet) return kSuccess;
-  fmt::print("{}\n", arguments.output);
+  fmt::print("{}\n", printable(arguments.output));
   printLine("map", fmt::format("{}, {}", counted(sample.map.tets.size(), "tet"),
                                counted(sample.map.points.size(), "point")));
   fmt::print("Mesh to expect at scale 1\n");

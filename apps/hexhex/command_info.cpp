@@ -96,7 +96,7 @@ void printSurvey(const MeshSurvey& survey) {
 int run(const Arguments& arguments) {
   Context context;
   const CancelOnSignal cancelOnSignal(context);
-  const std::string name = arguments.source.description();
+  const std::string name = printable(arguments.source.description());
   if (arguments.pieces && arguments.source.isPair()) {
     throw Error(ErrorCode::InvalidArgument,
                 "--pieces reads hexahedral meshes, but --tets and --polycube are a map.");

@@ -57,7 +57,7 @@ int run(const Arguments& arguments) {
   progress.clear();
   if (reportFile) reportFile->commit(repairAsJson(report).dump(2) + "\n");
   if (arguments.quiet) return kSuccess;
-  fmt::print("{} -> {}\n", arguments.input.description(), arguments.output);
+  printFiles(arguments.input.description(), arguments.output);
   if (!report.changed) {
     fmt::print("The map is valid; it was written as it is.\n");
     return kSuccess;

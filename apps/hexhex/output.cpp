@@ -22,18 +22,22 @@ bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
   return whole(a) == whole(b) && !std::filesystem::is_other(a, missing);
 }
 
-/// A sentence for the terminal, which shall not obey what names in files from elsewhere tell it.
-std::string printable(std::string_view sentence) {
-  std::string text(sentence);
-  for (char& c : text) {
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string shown(text);
+  for (char& c : shown) {
     constexpr unsigned char kDelete = 0x7f;
     const auto byte = static_cast<unsigned char>(c);
     if (byte < ' ' || byte == kDelete) c = '?';
   }
-  return text;
+  return shown;
 }
 
-}  // namespace
+void printFiles(const std::filesystem::path& from, const std::filesystem::path& to,
+                std::string_view besides) {
+  fmt::print("{} -> {}{}\n", printable(from.string()), printable(to.string()), besides);
+}
 
 void printLine(std::string_view label, std::string_view value) {
   fmt::print("  {:<26}{}\n", label, value);

@@ -27,6 +27,13 @@ void printToStderr(fmt::format_string<Args...> format, Args&&... args) {
   static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
 }
 
+/// For the terminal, which shall not obey what names of files, or in files, tell it.
+[[nodiscard]] std::string printable(std::string_view text);
+
+/// "from -> to" on the standard output, and what is to be said besides.
+void printFiles(const std::filesystem::path& from, const std::filesystem::path& to,
+                std::string_view besides = "");
+
 /// "  label      value" on the standard output.
 void printLine(std::string_view label, std::string_view value);
 

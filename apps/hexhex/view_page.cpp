@@ -131,7 +131,7 @@ int writePage(const ViewArguments& arguments, ProgressDisplay& progress, Context
   progress.clear();
   printWarnings(subject);
   if (!arguments.quiet) {
-    fmt::print("{} -> {}\n", arguments.mesh, page.string());
+    printFiles(arguments.mesh, page);
     printLine("mesh", counted(subject.cellCount(), "cell"));
     std::error_code unknown;  // the size of a pipe
     const std::uintmax_t bytes = std::filesystem::file_size(page, unknown);
@@ -158,7 +158,7 @@ int serve(const ViewArguments& arguments, ProgressDisplay& progress, Context& co
     if (arguments.quiet) {
       fmt::print("{}\n", address);
     } else {
-      fmt::print("{} is at {} until you press Ctrl-C.\n", arguments.mesh, address);
+      fmt::print("{} is at {} until you press Ctrl-C.\n", printable(arguments.mesh), address);
     }
     std::fflush(stdout);
   };

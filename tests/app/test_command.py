@@ -124,6 +124,16 @@ class Help(CommandTest):
             self.assertIn(name, errors)
             self.assertTrue(errors.rstrip("\n").isprintable(), errors)
 
+    def test_terminal_is_not_told_what_to_do_by_names_of_files(self):
+        name = "a\x1b[31m.hexex"
+        said = [self.run_command("generate", "box", "-o", name).stdout]
+        for arguments in [["info", name], ["extract", name, "-o", "b\a.vtu"], ["info", "b\a.vtu"],
+                          ["convert", "b\a.vtu", "c\r.mesh"], ["repair", name, "-o", "d\x7f.hexex"]]:
+            said.append(self.run_command(*arguments).stdout)
+        for text in said:
+            self.assertIn("?", text)
+            self.assertTrue(all(line.isprintable() for line in text.split("\n")), text)
+
     def test_help_and_version(self):
         text = self.run_command("--help").stdout
         for word in ["extract", "check", "verify", "generate", "info", "view", "Exit codes", "Examples"]:

@@ -12,16 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static int failures = 0;
-
-#define CHECK(condition)                                                      \
-  do {                                                                        \
-    if (!(condition)) {                                                       \
-      fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, #condition); \
-      ++failures;                                                             \
-    }                                                                         \
-  } while (0)
-#define CHECK_OK(call) CHECK((call) == HEXHEX_OK)
+#include "check.h"
 
 static hexhex_map* sphere(int refine) {
   hexhex_sample_options options = HEXHEX_SAMPLE_OPTIONS_INIT;

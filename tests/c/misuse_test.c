@@ -9,16 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int failures = 0;
+#include "check.h"
 
-#define CHECK(condition)                                                      \
-  do {                                                                        \
-    if (!(condition)) {                                                       \
-      fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, #condition); \
-      ++failures;                                                             \
-    }                                                                         \
-  } while (0)
-#define CHECK_OK(call) CHECK((call) == HEXHEX_OK)
 #define REFUSED(call)                                                             \
   do {                                                                            \
     hexhex_error error;                                                           \

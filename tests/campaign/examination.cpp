@@ -105,15 +105,20 @@ const FileFormat& drawFormat(const Fits& fits, Random& random) {
   return *formats[random.below(formats.size())];
 }
 
+WriteOptions drawWriting(const FileFormat& format, Random& random) {
+  WriteOptions writing;
+  writing.format = format.name;
+  writing.compress = format.compresses && random.below(2) == 0;
+  return writing;
+}
+
 void sendMapThroughFile(const TetMap& map, Random& random, const std::filesystem::path& file) {
   const FileFormat& format =
       drawFormat([](const FileFormat& f) { return f.readsMaps && f.writesMaps; }, random);
   SCOPED_TRACE("a map as " + std::string(format.name));
-  WriteOptions writing;
-  writing.format = format.name;
-  writing.compress = format.compresses && random.below(2) == 0;
   ReadOptions reading;
   reading.format = format.name;
+  const WriteOptions writing = drawWriting(format, random);
   Context context(drawThreads(random));
   writeMap(map, file, writing, context);
   const TetMap read = readMap(file, reading, context);
@@ -139,9 +144,7 @@ void sendMeshThroughFile(const HexMesh& mesh, Random& random, const std::filesys
   const FileFormat& format =
       drawFormat([](const FileFormat& f) { return f.readsHexMeshes && f.writesHexMeshes; }, random);
   SCOPED_TRACE("a mesh as " + std::string(format.name));
-  WriteOptions writing;
-  writing.format = format.name;
-  writing.compress = format.compresses && random.below(2) == 0;
+  const WriteOptions writing = drawWriting(format, random);
   Context context(drawThreads(random));
   writeHexMesh(mesh, file, writing, context);
   expectMeshInFile(mesh, format, context, file);
