@@ -42,10 +42,12 @@ class Round {
 
   /// Bends the tets and rounds their corners. Fills `bent`, and what the map knows of this.
   void run(bool isFirst, int polishing, BentMap& map) {
-    const BendEnergy energy(topology_, state_.problem.reference, unknowns_);
+    BendEnergy energy(topology_, state_.problem.reference, unknowns_);
     NewtonSolver solver(energy, stage_);
     Vector x = isFirst ? Vector(Vector::Zero(energy.unknownCount())) : unknownsOf(energy);
     if (isFirst) solver.start(x);
+    energy.adaptScale(x);
+    if (isFirst) solver.start(x);  // again, towards shapes of the right size
     if (solver.untangle(x, isFirst ? 1 : kLaterEpsilon)) solver.polish(x, polishing);
     map.iterations += solver.iterations();
     map.flippedTets = round(energy, x);

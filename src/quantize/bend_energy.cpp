@@ -162,6 +162,15 @@ Corners BendEnergy::corners(Index tet, const Vector& x) const {
   return columns;
 }
 
+void BendEnergy::adaptScale(const Vector& x) {
+  double ratio = 0;
+  for (Index t = 0; t < shapes_.size(); ++t) {
+    ratio += shapes_[t].weight * (corners(t, x) * shapes_[t].gradients).determinant();
+  }
+  if (ratio <= 0) return;
+  for (Shape& shape : shapes_) shape.gradients /= std::cbrt(ratio);
+}
+
 Folding BendEnergy::folding(const Vector& x, Stage& stage) const {
   std::vector<Folding> parts(blockCount(shapes_.size(), kGrain));
   parallelBlocks(stage, shapes_.size(), kGrain,

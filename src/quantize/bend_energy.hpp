@@ -57,6 +57,10 @@ class BendEnergy {
 
   [[nodiscard]] Folding folding(const Vector& x, Stage& stage) const;
 
+  /// Makes the reference as large as the bent map, whose volume follows from its integers alone: at
+  /// low densities that is several times as much, and tets would fight for their size.
+  void adaptScale(const Vector& x);
+
   /// Mean over the reference volume.
   [[nodiscard]] double value(EnergyKind kind, const Vector& x, Stage& stage) const;
 

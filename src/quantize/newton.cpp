@@ -13,7 +13,7 @@ namespace {
 constexpr int kMostFactored = 8000;
 constexpr int kMostSteps = 150;
 /// Steps after which there are to be fewer flipped tets than ever before.
-constexpr int kPatience = 12;
+constexpr int kPatience = 25;
 /// Regularization where no tet is bad any more.
 constexpr double kLeastEpsilon = 1e-9;
 
@@ -34,7 +34,7 @@ Vector NewtonSolver::direction() {
     if (cholesky_.info() == Eigen::Success) return cholesky_.solve(-gradient_);
   }
   Eigen::ConjugateGradient<Matrix, Eigen::Lower> gradients;
-  gradients.setTolerance(1e-4);
+  gradients.setTolerance(1e-3);
   gradients.setMaxIterations(1000);
   gradients.compute(hessian_);
   const Vector direction = gradients.solve(-gradient_);
