@@ -60,6 +60,47 @@ TEST_F(Untangle, FindsTheIdealShape) {
   }
 }
 
+/// What untangle() makes small, of a tet that is to be the corner of a cube.
+double energyOf(const TetParameters& u) {
+  const std::array<Vec3, 3> edges = {minus(u[1], u[0]), minus(u[2], u[0]), minus(u[3], u[0])};
+  double squares = 0;
+  for (const Vec3& edge : edges) squares += dot(edge, edge);
+  const double det = tripleProduct(edges[0], edges[1], edges[2]);
+  return squares / std::cbrt(det * det) + (det * det + 1) / det;
+}
+
+/// A vertex between two tets, of which each would have it elsewhere: for one it is the first
+/// corner, for the other the last.
+TEST_F(Untangle, FindsTheBestPlaceForTwoTets) {
+  const auto tetsAt = [](double z) {
+    const Vec3 middle = {0.3, 0.2, z};
+    return std::array{TetParameters{Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, middle},
+                      TetParameters{middle, Vec3{0, 1, 1.5}, {0, 0, 1.5}, {1, 0, 1.5}}};
+  };
+  const auto energyAt = [&](double z) {
+    const auto tets = tetsAt(z);
+    return energyOf(tets[0]) + energyOf(tets[1]);
+  };
+  double best = 0.1;
+  for (double z = 0.1; z < 1.4; z += 1e-4) best = energyAt(z) < energyAt(best) ? z : best;
+  EXPECT_GT(std::abs(best - 0.75), 0.02);
+
+  UntangleProblem problem;
+  problem.x = {2.5};
+  const auto tets = tetsAt(0);
+  for (std::size_t t = 0; t < 2; ++t) {
+    UntangleTet tet;
+    tet.inverseShape = {Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (std::size_t i = 0; i < 4; ++i) tet.corners[i].constant = tets[t][i];
+    UntangleCorner& free = tet.corners[t == 0 ? 3 : 0];
+    free.unknown[2] = 0;
+    free.sign[2] = 1;
+    problem.tets.push_back(tet);
+  }
+  EXPECT_GT(untangle(problem, stage), 0);
+  EXPECT_NEAR(problem.x[0], best, 1e-3);
+}
+
 /// Shapes in space are what a patch aims at, made as large as its volume in the map.
 TEST_F(Untangle, LeavesAPatchWithoutDefectsAsItIs) {
   TetMap map = testing::identityMap(4);
