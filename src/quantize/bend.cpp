@@ -21,9 +21,6 @@ constexpr int kMostRounds = 12;
 constexpr int kFractionBits = 30;
 constexpr int kSignificantBits = 42;
 
-/// Of the penalty after a split, which leaves most of the map good.
-constexpr double kLaterEpsilon = 0.1;
-
 /// One mesh and its unknowns: what is new after each round of splitting.
 class Round {
  public:
@@ -41,23 +38,30 @@ class Round {
   [[nodiscard]] const VertexUnknowns& unknowns() const noexcept { return unknowns_; }
 
   /// Bends the tets and rounds their corners. Fills `bent`, and what the map knows of this.
-  void run(bool isFirst, int polishing, BentMap& map) {
+  /// @param isFresh  not from where they are bent to
+  /// @return whether it is worth while to go on from there
+  bool run(bool isFresh, int polishing, BentMap& map) {
     BendEnergy energy(topology_, state_.problem.reference, unknowns_);
     NewtonSolver solver(energy, stage_);
-    Vector x = isFirst ? Vector(Vector::Zero(energy.unknownCount())) : unknownsOf(energy);
-    if (isFirst) solver.start(x);
+    Vector x = isFresh ? Vector(Vector::Zero(energy.unknownCount())) : unknownsOf(energy);
+    if (isFresh) solver.start(x);
     energy.adaptScale(x);
-    if (isFirst) solver.start(x);  // again, towards shapes of the right size
-    if (solver.untangle(x, isFirst ? 1 : kLaterEpsilon)) solver.polish(x, polishing);
+    if (isFresh) solver.start(x);  // again, towards shapes of the right size
+    if (untangle(solver, isFresh, x)) solver.polish(x, polishing);
     map.iterations += solver.iterations();
     map.flippedTets = round(energy, x);
-    if (map.flippedTets.empty()) {
-      map.flippedTets = tetsAtOtherTurns(topology_, state_.problem.reference, state_.bent, stage_);
-    }
     map.energy = energy.value({EnergyKind::Name::FoldoverFree, 0}, x, stage_);
+    if (!map.flippedTets.empty()) return true;
+    map.flippedTets = tetsAtOtherTurns(topology_, state_.problem.reference, state_.bent, stage_);
+    return false;
   }
 
  private:
+  /// After a split, most of the map is good: a small penalty leaves it so, and often suffices.
+  static bool untangle(NewtonSolver& solver, bool isFresh, Vector& x) {
+    return isFresh ? solver.untangle(x, 1) : solver.untangle(x, 1e-3) || solver.untangle(x, 0.1);
+  }
+
   /// Where the representatives are.
   [[nodiscard]] Vector unknownsOf(const BendEnergy& energy) const {
     Vector x(energy.unknownCount());
@@ -119,11 +123,12 @@ BentMap bend(BendProblem problem, const BendOptions& options, Stage& stage) {
       std::floor(options.maxGrowth * static_cast<double>(problem.tets.size())));
   BendState state = initialState(std::move(problem));
   BentMap map;
+  bool isFresh = true;
   for (map.rounds = 1;; ++map.rounds) {
     Round round(state, stage);
     map.contradictions = round.unknowns().contradictions;
     if (!map.contradictions.empty()) break;
-    round.run(map.rounds == 1, options.polishing, map);
+    isFresh = !round.run(isFresh, options.polishing, map);
     if (map.flippedTets.empty() || map.rounds == kMostRounds) break;
     const auto edges =
         edgesToSplit(state.problem, round.topology(), round.unknowns(), map.flippedTets);

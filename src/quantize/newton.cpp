@@ -66,11 +66,13 @@ void NewtonSolver::start(Vector& x) {
 bool NewtonSolver::untangle(Vector& x, double epsilon) {
   Folding folding = energy_.folding(x, stage_);
   Index fewest = folding.flippedTets;
+  Vector best = x;
   int idle = 0;
   for (int i = 0; i < kMostSteps && idle < kPatience && fewest > 0 && x.size() > 0; ++i) {
     const double decrease = step({EnergyKind::Name::FoldoverFree, epsilon}, x);
     folding = energy_.folding(x, stage_);
     idle = folding.flippedTets < fewest ? 0 : idle + 1;
+    if (folding.flippedTets <= fewest) best = x;
     fewest = std::min(fewest, folding.flippedTets);
     // The penalty grows as fast as the energy can follow (their Section 3, Theorem 1), and at least
     // as much as one step of Newton's method makes up for.
@@ -78,7 +80,8 @@ bool NewtonSolver::untangle(Vector& x, double epsilon) {
     const double aim = (1 - std::max(decrease, 0.5)) * regularized(epsilon, least);
     epsilon = std::max(kLeastEpsilon, 2 * std::sqrt(std::max(0.0, aim * (aim - least))));
   }
-  return folding.flippedTets == 0;
+  x = best;
+  return fewest == 0;
 }
 
 void NewtonSolver::polish(Vector& x, int steps) {

@@ -14,7 +14,8 @@ class NewtonSolver {
   /// Minimizes the Dirichlet energy.
   void start(Vector& x);
 
-  /// Goes on until no tet is flipped, or nothing helps any more.
+  /// Goes on until no tet is flipped, or nothing helps any more. Never ends with more flipped tets
+  /// than it began with.
   /// @param epsilon  of the penalty in the beginning
   /// @return whether no tet is flipped
   bool untangle(Vector& x, double epsilon);
