@@ -91,6 +91,9 @@ void addSampleOptions(CLI::App& parser, SampleOptions& options) {
   add("--valence", options.valence, "Hexahedra around the inner edge of a star, 3 to 12")
       ->check(wholeNumberFrom(3));
   add("--jitter", options.jitter, "Move free tet vertices by this share of a sub-block,\n0 to 1");
+  add("--stretch", options.stretch,
+      "Make the map seamless instead of integer: a random length\nof hexahedra along each chain of "
+      "blocks, up to this far\nfrom 1, 0 to 0.9");
   add("--on-lattice", options.onLattice,
       "Share of free tet coordinates to put exactly on\nintegers, 0 to 1");
   add("--noise", options.noise, "Add up to this to every corner on its own");

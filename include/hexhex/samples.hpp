@@ -50,6 +50,10 @@ struct SampleOptions {
                       ///< and at most cells / (72 refine), so that the answer stays true
   double offset = 0;  ///< chart translations are integers from [-offset, offset], up to 1e9; one
                       ///< for all blocks if aligned. Below 1: none if aligned, else up to 20
+  /// Makes the map seamless instead of integer: a hexahedron gets a random length from [1 -
+  /// stretch, 1 + stretch) along each chain of opposite block edges. 0 to 0.9, without jitter and
+  /// onLattice. The answer is that of the map that is not stretched.
+  double stretch = 0;
   /// Tags corners, sharp and singular curves, and the smooth patches of the boundary between them,
   /// each kind from 1 on, and numbers the blocks, from 1 on, as regions.
   bool features = false;

@@ -68,7 +68,7 @@ std::vector<std::int64_t> solveByCbc(const IntegerProgram& program) {
   // One column for each number of hexahedra, one for its distance from the length.
   Model model;
   const auto n = static_cast<int>(program.lengths.size());
-  for (int a = 0; a < n; ++a) model.addColumn(1, 0, true);
+  for (const int least : program.least) model.addColumn(least, 0, true);
   for (const double length : program.lengths) model.addColumn(0, 1 / std::max(length, 1.0), false);
   for (int a = 0; a < n; ++a) {
     const double length = program.lengths[static_cast<std::size_t>(a)];

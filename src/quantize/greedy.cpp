@@ -9,12 +9,12 @@ namespace hexhex {
 
 namespace {
 
-/// Costs more than any distance: a number below one.
+/// Costs more than any distance: a number below its bound.
 constexpr double kTooSmall = 1e6;
 
-double cost(std::int64_t integer, double length) {
+double cost(std::int64_t integer, double length, int least) {
   const double distance = std::abs(static_cast<double>(integer) - length) / std::max(length, 1.0);
-  return distance + kTooSmall * static_cast<double>(std::max<std::int64_t>(1 - integer, 0));
+  return distance + kTooSmall * static_cast<double>(std::max<std::int64_t>(least - integer, 0));
 }
 
 /// A change of arcs that keeps all equations.
@@ -71,7 +71,9 @@ std::vector<std::int64_t> solveGreedily(const IntegerProgram& program, Stage& st
         double gain = 0;
         for (const auto& [arc, by] : move.arcs) {
           const double length = program.lengths[arc];
-          gain += cost(integers[arc], length) - cost(integers[arc] + sign * by, length);
+          const int least = program.least[arc];
+          gain +=
+              cost(integers[arc], length, least) - cost(integers[arc] + sign * by, length, least);
         }
         if (gain <= bestGain) continue;
         bestGain = gain;
@@ -82,8 +84,9 @@ std::vector<std::int64_t> solveGreedily(const IntegerProgram& program, Stage& st
     if (best == nullptr) break;
     for (const auto& [arc, by] : best->arcs) integers[arc] += bestSign * by;
   }
-  if (std::any_of(integers.begin(), integers.end(), [](std::int64_t x) { return x < 1; }))
-    return {};
+  for (std::size_t a = 0; a < n; ++a) {
+    if (integers[a] < program.least[a]) return {};
+  }
   return integers;
 }
 

@@ -14,9 +14,11 @@ namespace hexhex {
 /// A sum of arcs, with signs, that has to be zero: arc and factor, ascending.
 using ArcEquation = std::vector<std::pair<Index, int>>;
 
-/// Integers n of at least 1 that fulfil the equations, with the least sum of |n - l| / max(l, 1).
+/// Integers n that fulfil the equations and are not below their bounds, with the least sum of |n -
+/// l| / max(l, 1).
 struct IntegerProgram {
   std::vector<double> lengths;  ///< l
+  std::vector<int> least;       ///< bounds: 1, or 0 for what has no length but noise
   std::vector<ArcEquation> equations;
 };
 

@@ -229,12 +229,20 @@ void cutAcross(MotorcycleComplex& complex, const Holonomy& holonomy) {
       if (arcs.isNode(mesh.tets[t][i])) value = complex.toBlock[t](mesh.at(t, i))[axis];
     }
   }
+  // The chart is unrolled somewhere: the plane may lie one way around from there.
   WallTracer tracer(mesh);
-  for (const Index t : tets) {
-    const AxisPlane plane = AxisPlane{axis, value}.beyond(complex.toBlock[t].inverse());
-    if (tracer.startIn(t, plane)) break;
+  const std::int64_t around = holonomy.change.translation[axis];
+  for (const std::int64_t shift : {std::int64_t{0}, around, -around}) {
+    const AxisPlane plane{axis, value + shift};
+    const auto found = std::find_if(tets.begin(), tets.end(), [&](Index t) {
+      return tracer.startIn(t, plane.beyond(complex.toBlock[t].inverse()));
+    });
+    if (found == tets.end()) continue;
+    tracer.grow();
+    return;
   }
-  tracer.grow();
+  throw Error(ErrorCode::Internal, "A ring of the motorcycle complex cannot be cut. This is a bug.",
+              {PlaceKind::Tet, mesh.original[holonomy.tet]});
 }
 
 /// The sides of patches, with their borders.

@@ -23,6 +23,10 @@ namespace {
 
 /// As a share of its largest coordinate, an almost seamless map may be so far from a seamless one.
 constexpr double kAlmost = 0.01;
+/// Arcs are longer than this share of the map's size, and than so many times what has made it
+/// seamless.
+constexpr double kNoise = 1e-9;
+constexpr double kNoiseShare = 16;
 /// More hexahedra have more vertices than indices.
 constexpr double kMostCells = 4e9;
 /// The search for a scale ends when it is as near to the number of cells wanted as this.
@@ -114,6 +118,12 @@ class Quantizer {
         complex_(traceComplex(seamless_, context)),
         map_(map) {
     program_.equations = arcEquations(complex_);
+    // Walls that would be one but for noise may become one.
+    const double noise =
+        std::max(kNoise * largestCoordinate(map), kNoiseShare * seamless_.maxDisplacement);
+    for (const Arc& arc : complex_.arcs) {
+      program_.least.push_back(static_cast<double>(arc.length) < noise * seamless_.unit ? 0 : 1);
+    }
     report_.cellsWanted = cellsWanted_;
     report_.displacement = seamless_.maxDisplacement;
     report_.blocks = complex_.blockCount;

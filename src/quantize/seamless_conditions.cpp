@@ -184,6 +184,16 @@ IntegerForm SharedUnknowns::translation(HalfFace halfFace, std::size_t axis) con
   return rotated(graph_.rotations[halfFace], there)[axis];
 }
 
+std::vector<HalfFace> SharedUnknowns::cutPieces() const {
+  std::vector<HalfFace> pieces;
+  for (HalfFace h = 0; h < first_.size(); ++h) {
+    if (first_[h] == kNone) continue;
+    pieces.push_back(h);
+    pieces.push_back(topology_.mate[h]);
+  }
+  return pieces;
+}
+
 std::vector<double> SharedUnknowns::measured() const {
   std::vector<double> sums(size_);
   std::vector<double> counts(size_);

@@ -38,6 +38,8 @@ class SharedUnknowns {
   }
   /// Equations between translations alone.
   [[nodiscard]] const std::vector<IntegerForm>& equations() const noexcept { return equations_; }
+  /// A half-face of each piece of the cut, on both of its sides.
+  [[nodiscard]] std::vector<HalfFace> cutPieces() const;
   /// Means of what the map has.
   [[nodiscard]] std::vector<double> measured() const;
 

@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <sstream>
 #include <string>
+#include <tuple>
 
 #include <quantize/seamless_conditions.hpp>
 #include <quantize/seamless_map.hpp>
@@ -15,10 +18,16 @@ namespace hexhex {
 namespace {
 
 /// Coordinates on the lattice stay below this.
-constexpr double kLargest = 0x1p48;
+constexpr double kLargest = 0x1p52;
 
-/// Shared unknowns are multiples of this, so that half of them are on the lattice, too.
-constexpr std::int64_t kStep = 64;
+/// Shared unknowns are multiples of this: half of them are on the lattice, too, and two planes are
+/// the same or so far apart that points between them can be rounded to the lattice.
+constexpr std::int64_t kStep = 1 << 16;
+
+/// Planes that are less apart than this share of the map's size are meant to be one.
+constexpr double kNoise = 1e-9;
+/// So many planes are compared with each other at most.
+constexpr std::size_t kMostPlanes = 200'000;
 
 std::vector<Rotation> fitRotations(const TetTopology& topology,
                                    std::span<const TetParameters> parameters) {
@@ -39,7 +48,7 @@ std::vector<Rotation> fitRotations(const TetTopology& topology,
 }
 
 /// The axis to which a triangle is perpendicular.
-std::uint8_t axisOf(const CutGraph& graph, HalfFace h) {
+std::uint8_t normalAxis(const CutGraph& graph, HalfFace h) {
   const TetParameters& u = graph.parameters[tetOf(h)];
   const auto corner = [&](std::size_t k) {
     return u[static_cast<std::size_t>(kFaceCorners[h % 4][k])];
@@ -105,10 +114,10 @@ Alignment findAlignment(SeamlessMap& map, const CutGraph& graph, const SeamlessO
   Alignment alignment;
   alignment.axes.assign(topology.mate.size(), kFree);
   for (HalfFace h = 0; h < topology.mate.size(); ++h) {
-    if (topology.mate[h] == kNone) alignment.axes[h] = axisOf(graph, h);
+    if (topology.mate[h] == kNone) alignment.axes[h] = normalAxis(graph, h);
   }
   for (const HalfFace h : innerFaces(map, options.wallTag)) {
-    const std::uint8_t axis = axisOf(graph, h);
+    const std::uint8_t axis = normalAxis(graph, h);
     const auto& c = kFaceCorners[h % 4];
     const TetParameters& u = graph.parameters[tetOf(h)];
     const auto corner = [&](std::size_t k) { return static_cast<std::size_t>(c[k]); };
@@ -252,8 +261,8 @@ void findChanges(SeamlessMap& map, const CutGraph& graph) {
   }
 }
 
-void measureDisplacement(SeamlessMap& map, const CutGraph& graph, double tolerance) {
-  Place worst;
+void measureDisplacement(SeamlessMap& map, const CutGraph& graph) {
+  map.maxDisplacement = 0;
   for (Index t = 0; t < map.corners.size(); ++t) {
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -261,15 +270,110 @@ void measureDisplacement(SeamlessMap& map, const CutGraph& graph, double toleran
                                       graph.parameters[t][i][k]);
         if (moved <= map.maxDisplacement) continue;
         map.maxDisplacement = moved;
-        worst = {PlaceKind::Tet, t};
+        map.mostDisplaced = t;
       }
     }
   }
-  if (map.maxDisplacement > tolerance) {
-    notSeamless("the nearest seamless map is " + std::to_string(map.maxDisplacement) +
-                    " off, more than the tolerance of " + std::to_string(tolerance) + ".",
-                worst);
+}
+
+void requireDisplacement(const SeamlessMap& map, double tolerance) {
+  if (map.maxDisplacement <= tolerance) return;
+  std::ostringstream what;
+  what << "the nearest seamless map is " << map.maxDisplacement
+       << " off, more than the tolerance of " << tolerance << '.';
+  notSeamless(what.str(), {PlaceKind::Tet, map.mostDisplaced});
+}
+
+/// The seamless map that is nearest under all equations.
+/// @return the values of shared unknowns
+std::vector<std::int64_t> solve(SeamlessMap& map, const CutGraph& graph,
+                                const SharedUnknowns& unknowns,
+                                const std::vector<VertexConditions>& conditions,
+                                const std::vector<IntegerForm>& equations) {
+  const IntegerSystem system(unknowns.size(), equations);
+  std::vector<double> wanted = system.nearest(unknowns.measured());
+  for (double& x : wanted) x *= map.unit;
+  const std::vector<std::int64_t> values = system.roundedTo(wanted, kStep);
+  if (values.size() != unknowns.size()) {
+    notSeamless("conditions of singular curves have no solution on the lattice.", {});
   }
+  solveVertices(map, graph, conditions, values);
+  measureDisplacement(map, graph);
+  return values;
+}
+
+/// A coordinate that conditions fix, times two.
+struct FixedCoordinate {
+  std::size_t axis = 0;
+  IntegerForm form;
+
+  [[nodiscard]] auto operator<=>(const FixedCoordinate&) const = default;
+};
+
+/// All of a vertex, in the charts of its sectors.
+void collectFixed(const VertexConditions& conditions, std::set<FixedCoordinate>& all) {
+  for (const VertexConditions::Sector& sector : conditions.sectors) {
+    for (int from = 0; from < 3; ++from) {
+      const auto& [factor, rest] = conditions.fixed[static_cast<std::size_t>(from)];
+      if (factor == 0 || 2 % factor != 0) continue;
+      const Direction to = sector.rotation(direction(from, 1));
+      FixedCoordinate fixed;
+      fixed.axis = static_cast<std::size_t>(axisOf(to));
+      fixed.form.add(rest, -signOf(to) * 2 / factor);
+      fixed.form.add(sector.translation[fixed.axis], 2);
+      all.insert(std::move(fixed));
+    }
+  }
+}
+
+/// The same planes as they are beyond pieces of the cut.
+std::set<FixedCoordinate> beyondCut(const std::set<FixedCoordinate>& here, const CutGraph& graph,
+                                    const SharedUnknowns& unknowns) {
+  std::set<FixedCoordinate> all = here;
+  for (const HalfFace h : unknowns.cutPieces()) {
+    for (const FixedCoordinate& fixed : here) {
+      const Direction to = graph.rotations[h](direction(static_cast<int>(fixed.axis), 1));
+      FixedCoordinate there;
+      there.axis = static_cast<std::size_t>(axisOf(to));
+      there.form.add(fixed.form, signOf(to));
+      there.form.add(unknowns.translation(h, there.axis), 2);
+      all.insert(std::move(there));
+    }
+  }
+  return all;
+}
+
+/// Equations for what is fixed at nearly the same coordinate of the common charts: as symmetric
+/// objects have it.
+/// @return whether there are any
+bool addCoincidences(const CutGraph& graph, const SharedUnknowns& unknowns,
+                     const std::vector<VertexConditions>& conditions,
+                     std::span<const std::int64_t> values, double noise,
+                     std::vector<IntegerForm>& equations) {
+  std::set<FixedCoordinate> all;
+  for (const VertexConditions& vertex : conditions) collectFixed(vertex, all);
+  // Walls cross the cut, some of them twice.
+  for (int crossing = 0; crossing < 2; ++crossing) {
+    if (all.size() * unknowns.cutPieces().size() > kMostPlanes) break;
+    all = beyondCut(all, graph, unknowns);
+  }
+  std::vector<std::tuple<std::size_t, std::int64_t, const IntegerForm*>> sorted;
+  for (const FixedCoordinate& each : all) {
+    sorted.emplace_back(each.axis, each.form(values), &each.form);
+  }
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+    return std::tie(std::get<0>(a), std::get<1>(a)) < std::tie(std::get<0>(b), std::get<1>(b));
+  });
+  const std::size_t count = equations.size();
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    const auto& [axis, value, form] = sorted[i];
+    const auto& [otherAxis, otherValue, otherForm] = sorted[i - 1];
+    const auto apart = static_cast<double>(value - otherValue);
+    if (axis != otherAxis || apart == 0 || apart > 2 * noise) continue;
+    equations.push_back(*form);
+    equations.back().add(*otherForm, -1);
+  }
+  return equations.size() > count;
 }
 
 }  // namespace
@@ -317,18 +421,16 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
       notSeamless("a singular curve is not parallel to an axis.", {PlaceKind::Vertex, v});
     }
   }
-  const IntegerSystem system(unknowns.size(), std::move(equations));
   result.unit =
       std::exp2(std::floor(std::log2(kLargest / std::max(largestCoordinate(graph), 1e-300))));
-  std::vector<double> wanted = system.nearest(unknowns.measured());
-  for (double& x : wanted) x *= result.unit;
-  const std::vector<std::int64_t> values = system.roundedTo(wanted, kStep);
-  if (values.size() != unknowns.size()) {
-    notSeamless("conditions of singular curves have no solution on the lattice.", {});
+  const std::vector<std::int64_t> values = solve(result, graph, unknowns, conditions, equations);
+  // Once more with all planes as one that noise alone keeps apart: walls between them were a mess.
+  const double noise = std::max(kNoise * largestCoordinate(graph), result.maxDisplacement);
+  if (addCoincidences(graph, unknowns, conditions, values, noise * result.unit, equations)) {
+    static_cast<void>(solve(result, graph, unknowns, conditions, equations));
   }
-  solveVertices(result, graph, conditions, values);
   findChanges(result, graph);
-  measureDisplacement(result, graph, options.tolerance);
+  requireDisplacement(result, options.tolerance);
   return result;
 }
 

@@ -28,6 +28,7 @@ struct SeamlessMap {
   std::vector<HalfFace> featureFaces;
   double unit = 1;
   double maxDisplacement = 0;  ///< of a parameter from that given, along an axis
+  Index mostDisplaced = 0;     ///< a tet
 };
 
 struct SeamlessOptions {

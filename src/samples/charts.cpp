@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include <base/disjoint_sets.hpp>
 #include <samples/random.hpp>
 #include <samples/steps.hpp>
 
@@ -17,6 +18,7 @@ constexpr std::int64_t kSmallOffset = 20;
 /// Independent streams of random numbers.
 constexpr std::uint64_t kChartStream = 3;
 constexpr std::uint64_t kNoiseStream = 4;
+constexpr std::uint64_t kStretchStream = 6;
 
 /// Translations of random charts are drawn from [-limit, limit].
 std::int64_t translationLimit(const SampleOptions& options) {
@@ -80,6 +82,32 @@ std::vector<Transition> blockCharts(const BlockComplex& complex, const SampleOpt
   return charts;
 }
 
+/// How long a hexahedron is along each axis of each block: 1, or as random as `stretch` says, the
+/// same for all edges that are opposite each other in blocks.
+std::vector<Vec3> stretchedLengths(const BlockComplex& complex, const SampleOptions& options) {
+  std::vector<Vec3> lengths(complex.blockCount(), Vec3{1, 1, 1});
+  if (options.stretch == 0) return lengths;
+  DisjointSets chains(3 * complex.blockCount());
+  for (const CoarseCell& cell : complex.cells()) {
+    if (cell.dimension != 1) continue;
+    const auto axisOfEdge = [](const Occurrence& at) {
+      return static_cast<Index>(3 * at.block + static_cast<std::size_t>(axisOf(at.axes[0])));
+    };
+    for (const Occurrence& at : cell.occurrences) {
+      chains.unite(axisOfEdge(cell.occurrences.front()), axisOfEdge(at));
+    }
+  }
+  Random random(options.seed, kStretchStream);
+  std::vector<double> ofChain(3 * complex.blockCount());
+  for (double& length : ofChain) length = 1 + random.realUpTo(options.stretch);
+  for (Index block = 0; block < lengths.size(); ++block) {
+    for (Index axis = 0; axis < 3; ++axis) {
+      lengths[block][axis] = ofChain[chains.find(3 * block + axis)];
+    }
+  }
+  return lengths;
+}
+
 /// Applies a random even permutation of the corners: positive tets stay positive.
 void permuteCorners(Tet& tet, std::array<Int3, 4>& corners, Random& random) {
   const auto swap = [&](std::size_t a, std::size_t b) {
@@ -100,10 +128,12 @@ void permuteCorners(Tet& tet, std::array<Int3, 4>& corners, Random& random) {
 /// Writes the 12 tets of each sub-block.
 class MapWriter {
  public:
-  MapWriter(const TetGrid& grid, std::vector<Transition> charts, const SampleOptions& options,
-            Random chartRandom)
+  /// @param lengths  of a hexahedron in each block, along each axis
+  MapWriter(const TetGrid& grid, std::vector<Transition> charts, std::vector<Vec3> lengths,
+            const SampleOptions& options, Random chartRandom)
       : grid_(grid),
         charts_(std::move(charts)),
+        lengths_(std::move(lengths)),
         style_(options.charts),
         limit_(translationLimit(options)),
         noise_(options.noise),
@@ -114,16 +144,15 @@ class MapWriter {
     const std::array<Index, 8> vertices = grid_.cornerVertices(subBlock);
     const std::array<Int3, 8> parameters = grid_.cornerParameters(subBlock);
     const Int3 centre = grid_.centreParameters[subBlock];
-    const Transition& chart = charts_[subBlock / grid_.subBlocksPerBlock()];
+    const std::size_t block = subBlock / grid_.subBlocksPerBlock();
     for (const SurfaceTriangle& t : surfaceTriangles(vertices)) {
       Tet tet = {grid_.centreVertex(subBlock), vertices[t[0]], vertices[t[1]], vertices[t[2]]};
       std::array<Int3, 4> corners = {centre, parameters[t[0]], parameters[t[1]], parameters[t[2]]};
       const bool isOwn = hasOwnChart();
-      const Transition own = isOwn ? randomChart(limit_, chartRandom_) : chart;
-      for (Int3& corner : corners) corner = own(corner, kUnitsPerCell);
+      const Transition own = isOwn ? randomChart(limit_, chartRandom_) : charts_[block];
       if (isOwn) permuteCorners(tet, corners, chartRandom_);
       map.tets.push_back(tet);
-      map.parameters.push_back(rounded(corners));
+      map.parameters.push_back(inChart(corners, lengths_[block], own));
     }
   }
 
@@ -133,20 +162,24 @@ class MapWriter {
     return style_ == ChartStyle::Random ||
            (style_ == ChartStyle::Scattered && chartRandom_.below(8) == 0);
   }
-  /// To double, which is exact, and noise on top.
-  TetParameters rounded(const std::array<Int3, 4>& corners) {
+  /// To double, which is exact unless blocks are stretched, and noise on top.
+  TetParameters inChart(const std::array<Int3, 4>& corners, const Vec3& length,
+                        const Transition& chart) {
     TetParameters result{};
     for (std::size_t c = 0; c < 4; ++c) {
+      Vec3 u{};
       for (std::size_t a = 0; a < 3; ++a) {
-        result[c][a] = static_cast<double>(corners[c][a]) / static_cast<double>(kUnitsPerCell);
-        if (noise_ > 0) result[c][a] += noiseRandom_.realUpTo(noise_);
+        u[a] = static_cast<double>(corners[c][a]) / static_cast<double>(kUnitsPerCell) * length[a];
       }
+      result[c] = chart(u, 1.0);
+      for (double& x : result[c]) x += noise_ > 0 ? noiseRandom_.realUpTo(noise_) : 0;
     }
     return result;
   }
 
   const TetGrid& grid_;
   std::vector<Transition> charts_;
+  std::vector<Vec3> lengths_;
   ChartStyle style_;
   std::int64_t limit_;
   double noise_;
@@ -160,7 +193,7 @@ void addCharts(TetGrid&& grid, const BlockComplex& complex, const SampleOptions&
                TetMap& map) {
   Random random(options.seed, kChartStream);
   std::vector<Transition> charts = blockCharts(complex, options, random);
-  MapWriter writer(grid, std::move(charts), options, random);
+  MapWriter writer(grid, std::move(charts), stretchedLengths(complex, options), options, random);
   map.tets.reserve(12 * grid.subBlockCount());
   map.parameters.reserve(12 * grid.subBlockCount());
   for (std::size_t sub = 0; sub < grid.subBlockCount(); ++sub) writer.write(sub, map);

@@ -101,9 +101,15 @@ void requireLegal(SampleKind kind, const SampleOptions& options) {
   requireInteger("defects", options.defects, 0, kMaxDefects);
   requireReal("jitter", options.jitter, 1, "from 0 to 1");
   requireReal("onLattice", options.onLattice, 1, "from 0 to 1");
+  requireReal("stretch", options.stretch, 0.9, "from 0 to 0.9");
   requireReal("offset", options.offset, kMaxOffset, "from 0 to 1e9");
   requireOption(options.noise >= 0 && options.noise < kNoiseEnd, "noise", options.noise,
                 "from 0 to below 0.25");
+  if (options.stretch > 0 && (options.jitter > 0 || options.onLattice > 0)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "A sample cannot be stretched and jittered or put on the lattice: blocks on the "
+                "two sides of a vertex are stretched differently. Choose one.");
+  }
   const double limit = kNoisePerSubBlock * options.cells / options.refine;
   if (options.noise > limit) {
     throw Error(ErrorCode::InvalidArgument,
