@@ -1,6 +1,7 @@
 // The sanitized map fulfils all constraints exactly, changes little, and depends on nothing but the
 // map.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -200,6 +201,28 @@ TEST_P(SanitizeKind, DoesNotDependOnNumbering) {
     for (std::size_t t = 0; t < map.tets.size(); ++t) {
       ASSERT_EQ(after.exact().corners[newTet[t]], before.exact().corners[t]);
     }
+  }
+}
+
+/// Tets list their corners in any order that keeps their orientation.
+TEST_P(SanitizeKind, DoesNotDependOnTheOrderOfCorners) {
+  constexpr std::array<std::array<std::size_t, 4>, 4> kOrders = {
+      {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 0, 1, 3}, {3, 1, 0, 2}}};
+  for (const ChartStyle charts : test::kChartStyles) {
+    const TetMap map = generateSample(kind(), {.charts = charts, .jitter = 0.4}).map;
+    TetMap turned = map;
+    for (std::size_t t = 0; t < map.tets.size(); ++t) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        turned.tets[t][i] = map.tets[t][kOrders[t % 4][i]];
+        turned.parameters[t][i] = map.parameters[t][kOrders[t % 4][i]];
+      }
+    }
+    const Prepared before(map);
+    const Prepared after(turned);
+    ASSERT_TRUE(after.defects().empty());
+    expectExact(after, after.exact());
+    EXPECT_EQ(after.exact().maxDisplacement, 0);
+    EXPECT_EQ(after.exact().unit, before.exact().unit);
   }
 }
 
