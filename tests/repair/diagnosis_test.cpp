@@ -71,15 +71,22 @@ TEST(InvertedRegions, AreManyTetsAroundOneWithoutAnyGoodTetNear) {
   EXPECT_EQ(large.size(), 384U);
   EXPECT_EQ(codeOf([&] { refuseInvertedRegions(prepared.topology, large); }),
             ErrorCode::FlippedTet);
-  // 200 tets around a cube, and one far away: none too many.
+  // 200 connected tets around a cube, and one far away: none too many. One more is.
   std::vector<Index> some = ball(3);
-  for (const Index t : large) {
-    const bool isNew = !std::binary_search(some.begin(), some.begin() + 162, t);
-    if (some.size() < 200 && isNew) some.push_back(t);
-  }
+  const auto addNeighbour = [&] {
+    const auto isIn = [&](Index t) { return std::binary_search(some.begin(), some.end(), t); };
+    for (HalfFace face = 0; face < prepared.topology.mate.size(); ++face) {
+      const HalfFace mate = prepared.topology.mate[face];
+      if (mate == kNone || !isIn(tetOf(face)) || isIn(tetOf(mate))) continue;
+      some.insert(std::upper_bound(some.begin(), some.end(), tetOf(mate)), tetOf(mate));
+      return;
+    }
+  };
+  while (some.size() < 200) addNeighbour();
   some.push_back(static_cast<Index>(map.tets.size()) - 1);
-  std::sort(some.begin(), some.end());
   EXPECT_NO_THROW(refuseInvertedRegions(prepared.topology, some));
+  addNeighbour();
+  EXPECT_EQ(codeOf([&] { refuseInvertedRegions(prepared.topology, some); }), ErrorCode::FlippedTet);
   // Few tets, and many in one layer: each of these has good ones at its corners.
   const std::vector<Index> small = ball(3);
   EXPECT_EQ(small.size(), 162U);
