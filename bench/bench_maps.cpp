@@ -1,6 +1,7 @@
 #include "bench_maps.hpp"
 
 #include <cstdlib>
+#include <initializer_list>
 #include <optional>
 
 #include <hexhex/io.hpp>
@@ -66,14 +67,13 @@ std::optional<BenchMap> real(const std::string& name, int scale) {
   return map;
 }
 
-void addReal(std::vector<BenchMap>& maps) {
-  struct Real {
-    const char* name;
-    int scale;
-  };
-  constexpr std::array<Real, 4> kReal = {
-      {{"s17c_sphere_r0.1", 1}, {"s17c_sphere_r10", 1}, {"s17c_sphere_r100", 2}, {"rockerarm", 8}}};
-  for (const Real& r : kReal) {
+struct Real {
+  const char* name;
+  int scale;
+};
+
+void addReal(std::vector<BenchMap>& maps, std::initializer_list<Real> names) {
+  for (const Real& r : names) {
     std::optional<BenchMap> map = real(r.name, r.scale);
     if (!map) continue;
     map->name += "_x" + std::to_string(r.scale);
@@ -127,7 +127,24 @@ const std::vector<BenchMap>& benchMaps() {
     std::vector<BenchMap> all;
     addGenerated(all);
     addMillionTets(all);
-    addReal(all);
+    addReal(all, {{"s17c_sphere_r0.1", 1},
+                  {"s17c_sphere_r10", 1},
+                  {"s17c_sphere_r100", 2},
+                  {"rockerarm", 8}});
+    return all;
+  }();
+  return maps;
+}
+
+const std::vector<BenchMap>& checkedMaps() {
+  static const std::vector<BenchMap> maps = [] {
+    std::vector<BenchMap> all = {middleMap()};
+    addReal(all, {{"rockerarm", 1},
+                  {"s17c_sphere_r10", 1},
+                  {"fandisk_r100", 1},
+                  {"rockerarm", 8},
+                  {"rockerarm", 12},
+                  {"s17c_sphere_r100", 2}});
     return all;
   }();
   return maps;

@@ -31,6 +31,9 @@ struct BenchMap {
 /// generated one of scalableMaps() at a large scale.
 [[nodiscard]] const std::vector<BenchMap>& ablationMaps();
 
+/// Maps whose meshes are verified and certified: few, 50 and more than 100 hexahedra per tet.
+[[nodiscard]] const std::vector<BenchMap>& checkedMaps();
+
 /// Generated maps of one kind, from 0.01 to 1000 hexahedra per tet.
 [[nodiscard]] const std::vector<BenchMap>& densityMaps();
 

@@ -16,7 +16,8 @@ void registerDensities();
 /// epsilon/: the propeller engine for different enlargements of tets.
 void registerEpsilon();
 
-/// Quality and verification of a finished mesh.
+/// check/: verification, quality and certificates beside the extraction; command/: whole runs of
+/// the command.
 void registerMesh();
 
 /// Reading and writing maps and meshes.

@@ -5,13 +5,9 @@
 #include <array>
 #include <chrono>
 #include <ctime>
-#include <fcntl.h>
 #include <limits>
 #include <memory>
-#include <random>
 #include <string>
-#include <system_error>
-#include <unistd.h>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -24,44 +20,13 @@
 #include "bench_maps.hpp"
 #include "benchmarks.hpp"
 #include "memory.hpp"
+#include "plain_write.hpp"
 
 namespace hexhex::bench {
 
 namespace {
 
 constexpr std::array<int, 2> kThreads = {1, 2};
-
-/// A folder for temporary files; it lives as long as this object.
-class TemporaryFolder {
- public:
-  TemporaryFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("hexhex_bench_" + std::to_string(std::random_device()()))) {
-    std::filesystem::create_directory(path_);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
-const TemporaryFolder& folder() {
-  static const TemporaryFolder folder;
-  return folder;
-}
-
-double secondsSince(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 /// Time of all threads of this process together: what others do on this machine is not in it.
 double cpuSeconds() {
@@ -139,25 +104,6 @@ const BenchMesh& denseMesh() {
 const BenchMesh& lessDenseMesh() {
   static const BenchMesh mesh = makeMesh(lessDenseMap());
   return mesh;
-}
-
-/// Seconds for writing as many bytes from memory that is in use already, with one thread.
-double secondsOfPlainWrite(std::uint64_t bytes) {
-  constexpr std::size_t kSlice = std::size_t{1} << 22;
-  static const std::vector<char> slice(kSlice, 'x');
-  const std::filesystem::path file = folder() / "plain";
-  const auto begin = std::chrono::steady_clock::now();
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  while (bytes > 0) {
-    const ssize_t written =
-        ::write(descriptor, slice.data(), std::min<std::uint64_t>(bytes, kSlice));
-    if (written <= 0) break;
-    bytes -= static_cast<std::uint64_t>(written);
-  }
-  ::close(descriptor);
-  const double seconds = secondsSince(begin);
-  std::filesystem::remove(file);
-  return seconds;
 }
 
 /// Of a file, or of all files in a folder: some formats are folders.

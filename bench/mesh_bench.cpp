@@ -1,65 +1,191 @@
-// What happens to a finished mesh: quality and verification.
+// What the command does beside an extraction: verification, quality with certificates, and all of
+// it, from a file to a file.
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <spawn.h>
+#include <string>
+#include <sys/wait.h>
+#include <vector>
+
 #include <benchmark/benchmark.h>
 
 #include <hexhex/extract.hpp>
+#include <hexhex/io.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/verify.hpp>
 
 #include "bench_maps.hpp"
 #include "benchmarks.hpp"
+#include "memory.hpp"
+#include "plain_write.hpp"
+
+extern char** environ;  // NOLINT(readability-redundant-declaration): not in all systems' headers
 
 namespace hexhex::bench {
 
 namespace {
 
-const HexMesh& middleMesh() {
-  static const HexMesh mesh = extract(load(middleMap()));
-  return mesh;
+/// Adds the time of f() to `sum`.
+template <class F>
+void measure(double& sum, const F& f) {
+  const auto begin = std::chrono::steady_clock::now();
+  f();
+  sum += secondsSince(begin);
 }
 
-/// Throughput in terms of the mesh's points and cells.
-void setCounters(benchmark::State& state, const HexMesh& mesh) {
-  const std::size_t bytes = mesh.points.size() * sizeof(Vec3) + mesh.cells.size() * sizeof(Hex);
-  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes));
-  state.counters["million_hexes"] = static_cast<double>(mesh.cells.size()) * 1e-6;
+/// Seconds of the three, or of several runs together.
+struct Seconds {
+  double extraction = 0;
+  double verification = 0;
+  double quality = 0;
+};
+
+/// @return the number of cells, or 0 if the mesh failed its verification
+std::size_t checkOnce(const TetMap& map, int scale, int threads, Seconds& seconds) {
+  Context context(threads);
+  ExtractOptions extracting;
+  extracting.scale = scale;
+  VerifyOptions verifying;
+  verifying.scale = scale;
+  HexMesh mesh;
+  bool passed = false;
+  measure(seconds.extraction, [&] { mesh = extract(map, extracting, context); });
+  measure(seconds.verification, [&] { passed = verify(map, mesh, verifying, context).passed(); });
+  measure(seconds.quality, [&] { benchmark::DoNotOptimize(certify(mesh, context)); });
+  return passed ? mesh.cells.size() : 0;
 }
 
-/// With certificates, as `hexhex extract` takes both.
-void quality(benchmark::State& state) {
-  const HexMesh& mesh = middleMesh();
+void checking(benchmark::State& state, const BenchMap& which, int threads) {
+  const TetMap& map = load(which);
+  const std::uint64_t bytes = peakOf("check " + which.name + std::to_string(threads), [&] {
+    Seconds ignored;
+    checkOnce(map, which.scale, threads, ignored);
+  });
+  Seconds seconds;
+  std::size_t hexes = 0;
   for (auto _ : state) {
-    Context context(static_cast<int>(state.range(0)));
-    benchmark::DoNotOptimize(certify(mesh, context));
-  }
-  setCounters(state, mesh);
-}
-
-void verification(benchmark::State& state) {
-  const HexMesh& mesh = middleMesh();
-  const TetMap& map = load(middleMap());
-  for (auto _ : state) {
-    Context context(1);
-    if (!verify(map, mesh, {}, context).passed()) {
+    releaseFreeMemory();
+    warmFreeMemory(bytes, threads);
+    Seconds once;
+    hexes = checkOnce(map, which.scale, threads, once);
+    if (hexes == 0) {
       state.SkipWithError("the mesh failed its verification");
       return;
     }
+    state.SetIterationTime(once.verification + once.quality);
+    seconds.extraction += once.extraction;
+    seconds.verification += once.verification;
+    seconds.quality += once.quality;
   }
-  setCounters(state, mesh);
+  const auto runs = static_cast<double>(state.iterations());
+  state.counters["tets"] = static_cast<double>(map.tets.size());
+  state.counters["hexes"] = static_cast<double>(hexes);
+  state.counters["extraction_seconds"] = seconds.extraction / runs;
+  state.counters["verification_seconds"] = seconds.verification / runs;
+  state.counters["quality_seconds"] = seconds.quality / runs;
+}
+
+#ifdef HEXHEX_COMMAND
+/// What a run of the command took.
+struct Run {
+  double seconds = 0;
+  double peakBytes = 0;
+  bool succeeded = false;
+};
+
+/// @param report  where the command writes its report
+Run runCommand(std::vector<std::string> words, const std::filesystem::path& report) {
+  words.insert(words.end(), {"--report", report.string()});
+  // As a child of a shell: that of this process would count its memory as its own.
+  words.insert(words.begin(), {"/bin/sh", "-c", "\"$@\"; exit $?", "sh"});
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  Run run;
+  measure(run.seconds, [&] {
+    pid_t child = 0;
+    int status = 1;
+    if (posix_spawn(&child, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0) return;
+    run.succeeded = waitpid(child, &status, 0) == child && status == 0;
+  });
+  std::ifstream file(report);
+  const std::string text(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>{});
+  const std::string key = "\"peak_memory_bytes\":";
+  const std::size_t place = text.find(key);
+  if (place == std::string::npos) {
+    run.succeeded = false;
+  } else {
+    run.peakBytes = std::stod(text.substr(place + key.size()));
+  }
+  return run;
+}
+
+/// `hexhex extract` with its defaults, into a .vtu file.
+void commanding(benchmark::State& state, const BenchMap& which, int threads) {
+  const TetMap& map = load(which);
+  const std::filesystem::path input = folder() / "map.hexex";
+  const std::filesystem::path output = folder() / "mesh.vtu";
+  writeMap(map, input);
+  const std::string scale = std::to_string(which.scale);
+  double total = 0;
+  double extraction = 0;
+  double write = 0;
+  double memory = 0;
+  double known = 0;
+  for (auto _ : state) {
+    std::filesystem::remove(output);
+    const Run run = runCommand({HEXHEX_COMMAND, "extract", input.string(), "-o", output.string(),
+                                "--quiet", "--scale", scale, "--threads", std::to_string(threads)},
+                               folder() / "report.json");
+    if (!run.succeeded) {
+      state.SkipWithError("the command failed");
+      return;
+    }
+    state.SetIterationTime(run.seconds);
+    total += run.seconds;
+    memory += run.peakBytes;
+    write += secondsOfPlainWrite(std::filesystem::file_size(output));
+    Context context(threads);
+    ExtractOptions options;
+    options.scale = which.scale;
+    releaseFreeMemory();
+    HexMesh mesh;
+    measure(extraction, [&] { mesh = extract(map, options, context); });
+    known = static_cast<double>((mesh.points.size() + map.points.size()) * sizeof(Vec3) +
+                                mesh.cells.size() * sizeof(Hex) +
+                                map.tets.size() * (sizeof(Tet) + 4 * sizeof(Vec3)));
+  }
+  std::filesystem::remove(output);
+  std::filesystem::remove(input);
+  const auto runs = static_cast<double>(state.iterations());
+  state.counters["extraction_seconds"] = extraction / runs;
+  state.counters["plain_write_seconds"] = write / runs;
+  state.counters["ratio_to_both"] = total / (extraction + write);
+  state.counters["peak_bytes"] = memory / runs;
+  state.counters["bytes_of_mesh_and_map"] = known;
+}
+
+#endif
+
+template <class F>
+void add(const std::string& family, const BenchMap& map, const F& f) {
+  for (const int threads : {1, 2}) {
+    const std::string name = family + "/" + map.name + "/threads:" + std::to_string(threads);
+    benchmark::RegisterBenchmark(
+        name.c_str(), [f, map, threads](benchmark::State& state) { f(state, map, threads); })
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond);
+  }
 }
 
 }  // namespace
 
 void registerMesh() {
-  benchmark::RegisterBenchmark(("quality/" + middleMap().name).c_str(), quality)
-      ->ArgName("threads")
-      ->Arg(1)
-      ->Arg(2)
-      ->UseRealTime()
-      ->Unit(benchmark::kMillisecond);
-  const std::string suffix = "/" + middleMap().name + "/threads:1";
-  benchmark::RegisterBenchmark(("verify" + suffix).c_str(), verification)
-      ->UseRealTime()
-      ->Unit(benchmark::kMillisecond);
+  for (const BenchMap& map : checkedMaps()) add("check", map, checking);
+#ifdef HEXHEX_COMMAND
+  for (const BenchMap& map : checkedMaps()) add("command", map, commanding);
+#endif
 }
 
 }  // namespace hexhex::bench

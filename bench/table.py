@@ -10,7 +10,8 @@ from evaluation import results, tables
 def main() -> None:
     runs = results.read_file(Path(sys.argv[1]))
     parts = [tables.extraction(runs), tables.stages(runs), tables.scales(runs), tables.epsilon(runs),
-             tables.curved(runs), tables.checks(runs), tables.files(runs)]
+             tables.curved(runs), tables.checks(runs), tables.commands(runs),
+             tables.files(runs)]
     print("\n".join(part for part in parts if part))
     if wrong := results.failures(runs):
         sys.exit("FAILED: " + "; ".join(wrong))

@@ -26,6 +26,7 @@ def _parts(runs: list[Run], about: dict[str, str]) -> dict[str, Parts]:
         "table-curved": lambda: tables.curved(runs),
         "table-files": lambda: tables.files(runs),
         "table-checks": lambda: tables.checks(runs),
+        "table-commands": lambda: tables.commands(runs),
     }, "ablation.md": {
         "machine-of-ablation": lambda: tables.machine(about),
         "table-ablation": lambda: tables.ablation(runs),

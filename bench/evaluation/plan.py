@@ -30,7 +30,7 @@ FULL = [
     Step("rasterization", ABLATION, "^rasterization/", 5),
     Step("lookup", ABLATION, "^lookup/", 5),
     Step("ablation", ABLATION, "^ablation/", 7),
-    Step("mesh", BENCH, "^(quality|verify)/", 5),
+    Step("mesh", BENCH, "^(check|command)/", 5),
     Step("curved", BENCH, "^arcs_and_patches/.*engine:atlas/threads:1", 3),
     Step("files", BENCH, "^(read|write|copy|survey)_", 3),
 ]
@@ -46,7 +46,7 @@ QUICK = [
     Step("rasterization", ABLATION, "^rasterization/.*/scale:[1-8]/", 1, 0.01),
     Step("lookup", ABLATION, "^lookup/.*/scale:[1-8]/", 1, 0.01),
     Step("ablation", ABLATION, "^ablation/(sphere_blocks_(low|middle)|s17c)", 3, 0.01),
-    Step("mesh", BENCH, "^(quality|verify)/", 1, 0.01),
+    Step("mesh", BENCH, "^(check|command)/", 1, 0.01),
     Step("curved", BENCH, "^arcs_and_patches/(sphere_blocks_low|s17c).*engine:atlas/threads:1", 1, 0.01),
     Step("files", BENCH, "^(read|write|copy|survey)_", 1, 0.01),
 ]

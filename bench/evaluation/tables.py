@@ -222,11 +222,44 @@ def files(runs: list[Run]) -> str:
     return table(["MB per second", *columns, "time of writing / plain write"], rows)
 
 
+def _by_threads(runs: list[Run], family: str) -> list[tuple[Run, Run | None]]:
+    """With one thread, and with two."""
+    found = select(runs, family)
+    two = {run.map: run for run in found if run.threads == 2}
+    return [(run, two.get(run.map)) for run in found if run.threads == 1]
+
+
+def _times_as_fast(one: Run, two: Run | None, name: str) -> str:
+    return _ratio(one[name], two[name] if two else None)
+
+
 def checks(runs: list[Run]) -> str:
-    """Quality and verification of a finished mesh."""
-    rows = [[run.family, run.map, number(run["ms"])]
-            for run in runs if run.family in ("quality", "verify") and not run.error]
-    return table(["what", "map", "ms"], rows, texts=2) if rows else ""
+    """Verification, and quality with certificates, beside the extraction of the same run."""
+    rows = [[one.map, number(one.density), number(one["extraction_seconds"] * 1e3),
+             number(one["verification_seconds"] * 1e9 / one["hexes"]),
+             number(one["quality_seconds"] * 1e9 / one["hexes"]),
+             _ratio(one["verification_seconds"], one["extraction_seconds"]),
+             _ratio(one["quality_seconds"], one["extraction_seconds"]),
+             _times_as_fast(one, two, "verification_seconds"),
+             _times_as_fast(one, two, "quality_seconds")]
+            for one, two in _by_threads(runs, "check")]
+    return table(["map", "hexes per tet", "extraction: ms", "verification: ns per hex",
+                  "quality: ns per hex", "verification / extraction", "quality / extraction",
+                  "verification, two threads: times as fast",
+                  "quality, two threads: times as fast"], rows) if rows else ""
+
+
+def commands(runs: list[Run]) -> str:
+    """Whole runs of the command beside what they cannot do without."""
+    rows = [[one.map, number(one["extraction_seconds"] * 1e3),
+             number(one["plain_write_seconds"] * 1e3), number(one["ms"]),
+             number(one["ratio_to_both"]), number(one["peak_bytes"] * 1e-6),
+             _ratio(one["peak_bytes"], one["bytes_of_mesh_and_map"]),
+             _times_as_fast(one, two, "ms")]
+            for one, two in _by_threads(runs, "command")]
+    return table(["map", "extraction: ms", "plain write: ms", "whole run: ms",
+                  "whole run / both", "peak: MB", "peak / (mesh + map)",
+                  "two threads: times as fast"], rows) if rows else ""
 
 
 @dataclass(frozen=True)

@@ -82,7 +82,7 @@ void forCells(const HexMesh& mesh, std::size_t begin, std::size_t end, Stage& st
       for (const Index corner : cell) largest = std::max(largest, corner);
     }
     if (largest >= mesh.points.size()) requireCornersInRange(mesh, stage);
-    // (Without this, quality takes 5 % longer.)
+    // Points of the next cells come meanwhile. (Without this, quality takes 5 % longer.)
     for (std::size_t next = c + n; next < std::min(c + 2 * n, end); ++next) {
       for (const Index corner : mesh.cells[next]) __builtin_prefetch(mesh.points.data() + corner);
     }

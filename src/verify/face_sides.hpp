@@ -37,6 +37,7 @@ class FaceSides {
     }
     // Each term carries four roundings, and the sum two more: less than 7 * 2^-53.
     if (std::abs(value) > 0x1p-49 * magnitude) return value > 0 ? 1 : -1;
+    if (magnitude == 0) return 0;  // no term is rounded to 0: in faces along the grid, all are 0
     return sideOfFace(tet_, face, point);
   }
 
