@@ -15,11 +15,12 @@ namespace hexhex {
 namespace {
 
 /// More rounds of splitting have not helped any map.
-constexpr int kMostRounds = 12;
-/// Coordinates are multiples of 2^-30, or coarser ones where numbers are large: sanitization keeps
-/// them even if the map is going to be scaled by thousands.
+constexpr int kMostRounds = 16;
+/// Coordinates are multiples of 2^-30: sanitization keeps them exactly up to 2^22, and if the map
+/// is going to be scaled by some hundreds.
 constexpr int kFractionBits = 30;
-constexpr int kSignificantBits = 42;
+/// Of tets around flipped ones that may move to make room for them.
+constexpr int kRings = 4;
 
 /// One mesh and its unknowns: what is new after each round of splitting.
 class Round {
@@ -37,9 +38,24 @@ class Round {
   [[nodiscard]] const TetTopology& topology() const noexcept { return topology_; }
   [[nodiscard]] const VertexUnknowns& unknowns() const noexcept { return unknowns_; }
 
+  /// From now on, only vertices near these tets move.
+  void moveOnlyNear(std::span<const Index> tets) {
+    std::vector<bool> isNear(topology_.pointCount, false);
+    std::vector<Index> region(tets.begin(), tets.end());
+    for (int ring = 0; ring < kRings; ++ring) region = withNeighbours(topology_, region);
+    for (const Index t : region) {
+      for (const Index v : topology_.tets[t]) isNear[v] = true;
+    }
+    for (Index v = 0; v < topology_.pointCount; ++v) {
+      if (isNear[v] || topology_.isIsolated(v)) continue;
+      unknowns_.fixed[v] = kAllAxes;
+      unknowns_.fixedPosition[v] = representative(v);
+    }
+  }
+
   /// Bends the tets and rounds their corners. Fills `bent`, and what the map knows of this.
   /// @param isFresh  not from where they are bent to
-  /// @return whether it is worth while to go on from there
+  /// @return whether nothing good comes from going on from there: tets are positive, but wind
   bool run(bool isFresh, int polishing, BentMap& map) {
     BendEnergy energy(topology_, state_.problem.reference, unknowns_);
     NewtonSolver solver(energy, stage_);
@@ -51,9 +67,9 @@ class Round {
     map.iterations += solver.iterations();
     map.flippedTets = round(energy, x);
     map.energy = energy.value({EnergyKind::Name::FoldoverFree, 0}, x, stage_);
-    if (!map.flippedTets.empty()) return true;
+    if (!map.flippedTets.empty()) return false;
     map.flippedTets = tetsAtOtherTurns(topology_, state_.problem.reference, state_.bent, stage_);
-    return false;
+    return !map.flippedTets.empty();
   }
 
  private:
@@ -62,15 +78,17 @@ class Round {
     return isFresh ? solver.untangle(x, 1) : solver.untangle(x, 1e-3) || solver.untangle(x, 0.1);
   }
 
-  /// Where the representatives are.
+  [[nodiscard]] const Vec3& representative(Index v) const {
+    const Index t = topology_.vertexTet[v];
+    return state_.bent[t][static_cast<std::size_t>(topology_.localCorner(t, v))];
+  }
+
   [[nodiscard]] Vector unknownsOf(const BendEnergy& energy) const {
     Vector x(energy.unknownCount());
     for (Index v = 0; v < topology_.pointCount; ++v) {
       if (unknowns_.fixed[v] == kAllAxes) continue;
-      const Index t = topology_.vertexTet[v];
-      const Vec3& u = state_.bent[t][static_cast<std::size_t>(topology_.localCorner(t, v))];
       for (std::size_t k = 0; k < 3; ++k) {
-        if (energy.unknownsOf(v)[k] >= 0) x[energy.unknownsOf(v)[k]] = u[k];
+        if (energy.unknownsOf(v)[k] >= 0) x[energy.unknownsOf(v)[k]] = representative(v)[k];
       }
     }
     return x;
@@ -79,10 +97,8 @@ class Round {
   /// Rounds unknowns, and derives all corners.
   /// @return tets that are not positive, exactly
   std::vector<Index> round(const BendEnergy& energy, Vector& x) {
-    const double largest = x.size() == 0 ? 0 : x.cwiseAbs().maxCoeff();
-    const int bits = std::min(kFractionBits, kSignificantBits - std::ilogb(largest + 1));
-    const double unit = std::ldexp(1, bits);
-    for (double& value : x) value = std::nearbyint(value * unit) / unit;
+    constexpr double kUnit = 1 << kFractionBits;
+    for (double& value : x) value = std::nearbyint(value * kUnit) / kUnit;
     return collectFromBlocks<Index>(
         stage_, topology_.tetCount(), 1024, [&](std::size_t begin, std::size_t end, auto& list) {
           for (auto t = static_cast<Index>(begin); t < end; ++t) {
@@ -93,7 +109,7 @@ class Round {
                 const double u =
                     columns(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i));
                 state_.bent[t][i][k] = u;
-                lattice[i][k] = static_cast<std::int64_t>(u * unit);
+                lattice[i][k] = static_cast<std::int64_t>(u * kUnit);
               }
             }
             if (orientation(lattice[0], lattice[1], lattice[2], lattice[3]) <= 0) list.push_back(t);
@@ -124,12 +140,18 @@ BentMap bend(BendProblem problem, const BendOptions& options, Stage& stage) {
   BendState state = initialState(std::move(problem));
   BentMap map;
   bool isFresh = true;
-  for (map.rounds = 1;; ++map.rounds) {
+  bool isLocal = false;
+  for (map.rounds = 1; map.rounds <= kMostRounds; ++map.rounds) {
     Round round(state, stage);
     map.contradictions = round.unknowns().contradictions;
     if (!map.contradictions.empty()) break;
-    isFresh = !round.run(isFresh, options.polishing, map);
-    if (map.flippedTets.empty() || map.rounds == kMostRounds) break;
+    isLocal = !isFresh && !map.flippedTets.empty();
+    if (isLocal) round.moveOnlyNear(map.flippedTets);
+    isFresh = round.run(isFresh, options.polishing, map);
+    if (map.flippedTets.empty() && !isLocal) break;
+    // What is flipped gets a second try, more exactly and without the rest, before it is split; the
+    // whole map is polished in the end.
+    if (map.flippedTets.empty() || !(isLocal || isFresh)) continue;
     const auto edges =
         edgesToSplit(state.problem, round.topology(), round.unknowns(), map.flippedTets);
     if (!splitEdges(state, edges, mostTets)) break;

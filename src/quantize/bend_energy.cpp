@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -230,8 +231,9 @@ void BendEnergy::derivatives(EnergyKind kind, const Vector& x, Vector& gradient,
   gradient.setZero(count_);
   hessian.coeffs().setZero();
   for (Index t = 0; t < shapes_.size(); ++t) {
-    const TetDerivatives tet = tetDerivatives(kind, corners(t, x), shapes_[t].gradients);
     const TetUnknowns own(topology_.tets[t], &unknowns_.toCorner[4 * t], numbers_);
+    if (std::all_of(own.number.begin(), own.number.end(), [](int n) { return n < 0; })) continue;
+    const TetDerivatives tet = tetDerivatives(kind, corners(t, x), shapes_[t].gradients);
     for (std::size_t p = 0; p < 12; ++p) {
       if (own.number[p] < 0) continue;
       const auto row = static_cast<Eigen::Index>(p);

@@ -85,19 +85,6 @@ std::vector<SplitEdge> freeingEdges(const BendProblem& problem, const TetTopolog
   return edges;
 }
 
-/// All tets at the vertices of some.
-std::vector<Index> withNeighbours(const TetTopology& topology, std::span<const Index> tets) {
-  std::vector<Index> around;
-  for (const Index t : tets) {
-    for (const Index v : topology.tets[t]) {
-      for (const CornerIndex corner : topology.star(v)) around.push_back(tetOf(corner));
-    }
-  }
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
-  return around;
-}
-
 /// Which tets are at each vertex, while they are cut.
 using Stars = std::vector<std::vector<Index>>;
 
@@ -135,6 +122,18 @@ void cutTet(BendState& state, Stars& stars, Index t, const SplitEdge& edge, Inde
 }
 
 }  // namespace
+
+std::vector<Index> withNeighbours(const TetTopology& topology, std::span<const Index> tets) {
+  std::vector<Index> around;
+  for (const Index t : tets) {
+    for (const Index v : topology.tets[t]) {
+      for (const CornerIndex corner : topology.star(v)) around.push_back(tetOf(corner));
+    }
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  return around;
+}
 
 std::vector<SplitEdge> edgesToSplit(const BendProblem& problem, const TetTopology& topology,
                                     const VertexUnknowns& unknowns, std::span<const Index> tets) {

@@ -17,6 +17,10 @@ struct BendState {
   std::vector<SplitEdge> splitEdges;
 };
 
+/// All tets at the vertices of some, ascending. Needs the stars of the topology.
+[[nodiscard]] std::vector<Index> withNeighbours(const TetTopology& topology,
+                                                std::span<const Index> tets);
+
 /// Edges at which splitting helps, of these tets or, if there are none, of their neighbours; all
 /// edges of the tets if there are none, either. Ascending.
 [[nodiscard]] std::vector<SplitEdge> edgesToSplit(const BendProblem& problem,
