@@ -556,6 +556,72 @@ static void test_repair(void) {
   hexhex_map_destroy(map);
 }
 
+/* Its parameters multiplied by an irrational number, a map is seamless, and no integer-grid map. */
+static hexhex_map* seamless_sphere(int cells) {
+  hexhex_error error;
+  hexhex_map* map = sphere(cells);
+  hexhex_map_arrays arrays = HEXHEX_MAP_ARRAYS_INIT;
+  hexhex_map* seamless = NULL;
+  CHECK_OK(hexhex_map_get_arrays(map, &arrays, &error));
+  double* const parameters = malloc(12 * arrays.tet_count * sizeof *parameters);
+  for (size_t i = 0; i < 12 * arrays.tet_count; ++i) {
+    parameters[i] = sqrt(2.0) * arrays.parameters[i];
+  }
+  arrays.parameters = parameters;
+  CHECK_OK(hexhex_map_copy(&arrays, &seamless, &error));
+  free(parameters);
+  hexhex_map_destroy(map);
+  return seamless;
+}
+
+static void test_quantize(void) {
+  hexhex_error error;
+  hexhex_map* seamless = seamless_sphere(2);
+  hexhex_map* quantized = NULL;
+  hexhex_mesh* mesh = NULL;
+  hexhex_context* context = NULL;
+  struct progress progress = {0, 1000000, -1};
+  hexhex_context_options context_options = HEXHEX_CONTEXT_OPTIONS_INIT;
+  context_options.progress = on_progress;
+  context_options.user = &progress;
+  CHECK_OK(hexhex_context_create(&context_options, &context, &error));
+  hexhex_quantize_options options = HEXHEX_QUANTIZE_OPTIONS_INIT;
+  hexhex_quantize_report report = HEXHEX_QUANTIZE_REPORT_INIT;
+  options.scale = sqrt(0.5);
+  CHECK(hexhex_extract(seamless, NULL, NULL, &mesh, NULL, &error) == HEXHEX_TRANSITION_RESIDUAL);
+  if (!hexhex_can_quantize()) {
+    CHECK(hexhex_quantize(seamless, &options, context, &quantized, &report, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+  } else {
+    CHECK_OK(hexhex_quantize(seamless, &options, context, &quantized, &report, &error));
+    CHECK(progress.calls > 0 && hexhex_context_stage_count(context) > 2);
+    CHECK(report.size == sizeof report && report.blocks > 0 && report.attempts > 0);
+    CHECK(report.arcs > 0 && report.shortest_arc > 0 && report.longest_arc >= report.shortest_arc);
+    CHECK(fabs(report.cells_wanted - 448) < 1e-6 && report.cells == 448);
+    CHECK(fabs(report.scale / options.scale - 1) < 0.1 && report.displacement < 1e-9);
+    CHECK(strcmp(report.integers_by, "CBC") == 0 || strcmp(report.integers_by, "rounding") == 0);
+    CHECK(report.worst_before > 0 && report.worst_before <= report.median_before);
+    CHECK(report.worst_after > 0 && report.median_after <= 1);
+    CHECK_OK(hexhex_extract(quantized, NULL, NULL, &mesh, NULL, &error));
+    hexhex_verify_report* verified = NULL;
+    CHECK_OK(hexhex_verify(quantized, mesh, 1e-2, 1, NULL, &verified, &error));
+    CHECK(hexhex_verify_passed(verified));
+    hexhex_mesh_arrays arrays = HEXHEX_MESH_ARRAYS_INIT;
+    CHECK_OK(hexhex_mesh_get_arrays(mesh, &arrays, &error));
+    CHECK(arrays.cell_count == report.cells);
+    hexhex_verify_report_destroy(verified);
+    hexhex_mesh_destroy(mesh);
+    hexhex_map_destroy(quantized);
+    quantized = NULL;
+    progress.stop_after = progress.calls + 2;
+    CHECK(hexhex_quantize(seamless, &options, context, &quantized, NULL, &error) ==
+          HEXHEX_CANCELLED);
+    CHECK(quantized == NULL);
+  }
+  hexhex_context_destroy(context);
+  hexhex_map_destroy(seamless);
+}
+
 static void test_curved(const char* folder) {
   hexhex_error error;
   char file[512];
@@ -1363,6 +1429,7 @@ int main(void) {
   test_sink(folder);
   test_features(folder);
   test_repair();
+  test_quantize();
   test_curved(folder);
   test_numbers_that_are_none();
   test_answers();

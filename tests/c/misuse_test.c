@@ -3,6 +3,7 @@
  * and nothing changes. Prints what fails; exit code 0 if nothing does. */
 #include <hexhex.h>
 #include <limits.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -216,6 +217,11 @@ static void call_all(const handles* h, enum kind kind, const char* file) {
   }
   if (concerns(k_map | k_context)) {
     REFUSED(hexhex_repair(h->map, NULL, h->context, &made.map, &made.repair_report, &error));
+  }
+  if (concerns(k_map | k_context)) {
+    hexhex_quantize_options quantize = HEXHEX_QUANTIZE_OPTIONS_INIT;
+    quantize.scale = 1;
+    REFUSED(hexhex_quantize(h->map, &quantize, h->context, &made.map, NULL, &error));
   }
   if (concerns(k_repair_report)) {
     hexhex_repair_report_destroy(h->repair_report);
@@ -573,6 +579,12 @@ static void test_sizes_of_structs(const char* file) {
           hexhex_repair(h.map, &s, NULL, &map, NULL, &error));
     WRONG(repair_summary, HEXHEX_REPAIR_SUMMARY_INIT,
           hexhex_repair_get_summary(h.repair_report, &s, &error));
+    WRONG(quantize_options, HEXHEX_QUANTIZE_OPTIONS_INIT,
+          hexhex_quantize(h.map, &s, NULL, &map, NULL, &error));
+    hexhex_quantize_options unscaled = HEXHEX_QUANTIZE_OPTIONS_INIT;
+    unscaled.scale = 1;
+    WRONG(quantize_report, HEXHEX_QUANTIZE_REPORT_INIT,
+          hexhex_quantize(h.map, &unscaled, NULL, &map, &s, &error));
     WRONG(extract_options, HEXHEX_EXTRACT_OPTIONS_INIT,
           hexhex_extract(h.map, &s, NULL, &mesh, NULL, &error));
     WRONG(statistics, HEXHEX_STATISTICS_INIT, hexhex_extract(h.map, NULL, NULL, &mesh, &s, &error));
@@ -718,6 +730,41 @@ static void test_numbers(const char* file) {
   destroy_all(&h);
 }
 
+/* Densities that are none, several, or beyond all indices; and none at all. */
+static void test_densities(const char* file) {
+  static const double numbers[] = {0, -1, NAN, INFINITY, -INFINITY};
+  handles h;
+  make(&h, file);
+  hexhex_map* map = NULL;
+  hexhex_quantize_report report = HEXHEX_QUANTIZE_REPORT_INIT;
+  report.cells = 17;
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i) {
+    for (int which = 0; which < 3; ++which) {
+      hexhex_quantize_options options = HEXHEX_QUANTIZE_OPTIONS_INIT;
+      double* const densities[] = {&options.cells, &options.scale, &options.edge_length};
+      *densities[which] = numbers[i];
+      REFUSED(hexhex_quantize(h.map, &options, NULL, &map, &report, &error));
+      *densities[which] = 1;
+      *densities[(which + 1) % 3] = numbers[i] == 0 ? 2 : numbers[i];
+      REFUSED(hexhex_quantize(h.map, &options, NULL, &map, &report, &error));
+      *densities[(which + 1) % 3] = 0;
+      options.tolerance = numbers[i] == 0 ? 0.5 : numbers[i];
+      REFUSED(hexhex_quantize(h.map, &options, NULL, &map, &report, &error));
+    }
+  }
+  hexhex_quantize_options many = HEXHEX_QUANTIZE_OPTIONS_INIT;
+  many.cells = 1e12;
+  hexhex_status status = hexhex_quantize(h.map, &many, NULL, &map, &report, NULL);
+  CHECK(status == (hexhex_can_quantize() ? HEXHEX_TOO_LARGE : HEXHEX_INVALID_ARGUMENT));
+  REFUSED(hexhex_quantize(h.map, NULL, NULL, &map, &report, &error));
+  CHECK(map == NULL && report.cells == 17); /* as nothing was quantized */
+  hexhex_quantize_options options = HEXHEX_QUANTIZE_OPTIONS_INIT;
+  options.scale = 1;
+  REFUSED(hexhex_quantize(h.map, &options, NULL, NULL, &report, &error));
+  check_alive(&h);
+  destroy_all(&h);
+}
+
 /* ---- Threads -------------------------------------------------------------------------------- */
 
 typedef struct shared {
@@ -847,6 +894,7 @@ int main(void) {
   test_sizes_of_structs(file);
   test_counts(file);
   test_numbers(file);
+  test_densities(file);
   test_threads(file);
   char command[64];
   snprintf(command, sizeof command, "rm -r %s", folder);

@@ -579,6 +579,56 @@ HEXHEX_API hexhex_status hexhex_repair_get_region(const hexhex_repair_report* re
                                                   hexhex_repaired_region* region,
                                                   hexhex_error* error);
 
+/* ---- Quantization ---------------------------------------------------------------------------- */
+
+/** 1 if this build can quantize (it was made with Eigen). */
+HEXHEX_API int hexhex_can_quantize(void);
+
+/** See QuantizeOptions in <hexhex/quantize.hpp>: exactly one of the first three is not 0. */
+typedef struct hexhex_quantize_options {
+  size_t size;
+  double cells;         /**< hexahedra wanted */
+  double scale;         /**< the map's parameters are to be multiplied by about so much */
+  double edge_length;   /**< of a hexahedron in space, on the average */
+  int densify;          /**< 1: if no valid map is found so, takes the first denser one that works */
+  int keep_inner_faces; /**< 0: tagged triangles inside of the object need not stay planes */
+  double tolerance;     /**< share of the map's largest coordinate by which it may miss being
+                             seamless */
+} hexhex_quantize_options;
+#define HEXHEX_QUANTIZE_OPTIONS_INIT \
+  { sizeof(hexhex_quantize_options), 0, 0, 0, 0, 1, 1e-5 }
+
+/** What a quantization did. See QuantizeReport and MapDistortion in <hexhex/quantize.hpp>. */
+typedef struct hexhex_quantize_report {
+  size_t size;
+  double cells_wanted;
+  uint64_t cells;
+  double scale;        /**< of the seamless map's parameters, finally */
+  double displacement; /**< largest change of a parameter that made the map seamless */
+  uint64_t blocks;     /**< of the motorcycle complex */
+  uint64_t arcs;
+  uint64_t shortest_arc; /**< in hexahedra */
+  uint64_t longest_arc;
+  char integers_by[16]; /**< "CBC", or "rounding" where CBC is missing */
+  uint64_t attempts;    /**< numbers of cells that were tried */
+  uint64_t split_edges; /**< each adds a vertex to the tet mesh */
+  uint64_t added_tets;
+  double worst_before; /**< distortion of the map as scaled Jacobian, at most 1 */
+  double median_before;
+  double worst_after;
+  double median_after;
+} hexhex_quantize_report;
+#define HEXHEX_QUANTIZE_REPORT_INIT \
+  { sizeof(hexhex_quantize_report), 0, 0, 0, 0, 0, 0, 0, 0, {0}, 0, 0, 0, 0, 0, 0, 0 }
+
+/** An integer-grid map from a seamless one. See <hexhex/quantize.hpp>.
+ * @param options      how fine the mesh is to be: not NULL
+ * @param[out] report  made with HEXHEX_QUANTIZE_REPORT_INIT, or NULL */
+HEXHEX_API hexhex_status hexhex_quantize(const hexhex_map* map,
+                                         const hexhex_quantize_options* options,
+                                         hexhex_context* context, hexhex_map** quantized,
+                                         hexhex_quantize_report* report, hexhex_error* error);
+
 /* ---- Extraction ------------------------------------------------------------------------------ */
 
 typedef enum hexhex_engine HEXHEX_AS_INT {

@@ -1,0 +1,56 @@
+#include <hexhex/quantize.hpp>
+
+#include <utility>
+
+#include "handles.hpp"
+
+namespace {
+
+hexhex_quantize_report reportOf(const hexhex::QuantizeReport& r) {
+  hexhex_quantize_report result = {.size = sizeof(hexhex_quantize_report),
+                                   .cells_wanted = r.cellsWanted,
+                                   .cells = r.cells,
+                                   .scale = r.scale,
+                                   .displacement = r.displacement,
+                                   .blocks = r.blocks,
+                                   .arcs = r.arcs,
+                                   .shortest_arc = r.shortestArc,
+                                   .longest_arc = r.longestArc,
+                                   .integers_by = {},
+                                   .attempts = r.attempts,
+                                   .split_edges = r.splitEdges,
+                                   .added_tets = r.addedTets,
+                                   .worst_before = r.distortionBefore.worst,
+                                   .median_before = r.distortionBefore.median,
+                                   .worst_after = r.distortionAfter.worst,
+                                   .median_after = r.distortionAfter.median};
+  r.integersBy.copy(result.integers_by, sizeof result.integers_by - 1);
+  return result;
+}
+
+}  // namespace
+
+int hexhex_can_quantize(void) { return hexhex::canQuantize() ? 1 : 0; }
+
+hexhex_status hexhex_quantize(const hexhex_map* map, const hexhex_quantize_options* options,
+                              hexhex_context* context, hexhex_map** quantized,
+                              hexhex_quantize_report* report, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(quantized, "quantized");
+    const Used given(map, "map");
+    const hexhex_quantize_options o =
+        readStruct(&require(options, "options"), HEXHEX_QUANTIZE_OPTIONS_INIT, "options");
+    ContextOrDefault used(context);
+    hexhex::QuantizedMap made = hexhex::quantize(given->view,
+                                                 {.cells = o.cells,
+                                                  .scale = o.scale,
+                                                  .edgeLength = o.edge_length,
+                                                  .densify = o.densify != 0,
+                                                  .keepInnerFaces = o.keep_inner_faces != 0,
+                                                  .tolerance = o.tolerance},
+                                                 *used);
+    if (report != nullptr) writeStruct(reportOf(made.report), *report, "report");
+    give(std::move(made.map), quantized);
+  });
+}
