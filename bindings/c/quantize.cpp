@@ -1,6 +1,6 @@
-#include <hexhex/quantize.hpp>
-
 #include <utility>
+
+#include <hexhex/quantize.hpp>
 
 #include "handles.hpp"
 
@@ -47,10 +47,26 @@ hexhex_status hexhex_quantize(const hexhex_map* map, const hexhex_quantize_optio
                                                   .scale = o.scale,
                                                   .edgeLength = o.edge_length,
                                                   .densify = o.densify != 0,
-                                                  .keepInnerFaces = o.keep_inner_faces != 0,
+                                                  .wallTag = o.wall_tag,
                                                   .tolerance = o.tolerance},
                                                  *used);
     if (report != nullptr) writeStruct(reportOf(made.report), *report, "report");
     give(std::move(made.map), quantized);
+  });
+}
+
+hexhex_status hexhex_examine_seamless(const hexhex_map* map, hexhex_context* context,
+                                      hexhex_seamless_report* report, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const Used given(map, "map");
+    ContextOrDefault used(context);
+    const hexhex::SeamlessReport found = hexhex::examineSeamless(given->view, *used);
+    hexhex_seamless_report result = HEXHEX_SEAMLESS_REPORT_INIT;
+    result.kind = static_cast<hexhex_seamless_kind>(found.kind);
+    result.displacement = found.displacement;
+    result.cells = found.cells;
+    found.problem.copy(result.problem, sizeof result.problem - 1);
+    writeStruct(result, require(report, "report"), "report");
   });
 }

@@ -556,16 +556,18 @@ static void test_repair(void) {
   hexhex_map_destroy(map);
 }
 
-/* Its parameters multiplied by an irrational number, a map is seamless, and no integer-grid map. */
-static hexhex_map* seamless_sphere(int cells) {
+/* Its parameters multiplied by an irrational number, a map is seamless, and no integer-grid map;
+ * its charts sheared, it is neither. */
+static hexhex_map* seamless_sphere(int refine, double shear) {
   hexhex_error error;
-  hexhex_map* map = sphere(cells);
+  hexhex_map* map = sphere(refine);
   hexhex_map_arrays arrays = HEXHEX_MAP_ARRAYS_INIT;
   hexhex_map* seamless = NULL;
   CHECK_OK(hexhex_map_get_arrays(map, &arrays, &error));
   double* const parameters = malloc(12 * arrays.tet_count * sizeof *parameters);
   for (size_t i = 0; i < 12 * arrays.tet_count; ++i) {
-    parameters[i] = sqrt(2.0) * arrays.parameters[i];
+    const double* const of_corner = arrays.parameters + i / 3 * 3;
+    parameters[i] = sqrt(2.0) * (arrays.parameters[i] + shear * of_corner[(i + 1) % 3]);
   }
   arrays.parameters = parameters;
   CHECK_OK(hexhex_map_copy(&arrays, &seamless, &error));
@@ -576,7 +578,7 @@ static hexhex_map* seamless_sphere(int cells) {
 
 static void test_quantize(void) {
   hexhex_error error;
-  hexhex_map* seamless = seamless_sphere(2);
+  hexhex_map* seamless = seamless_sphere(2, 0);
   hexhex_map* quantized = NULL;
   hexhex_mesh* mesh = NULL;
   hexhex_context* context = NULL;
@@ -593,6 +595,10 @@ static void test_quantize(void) {
     CHECK(hexhex_quantize(seamless, &options, context, &quantized, &report, &error) ==
           HEXHEX_INVALID_ARGUMENT);
   } else {
+    hexhex_seamless_report found = HEXHEX_SEAMLESS_REPORT_INIT;
+    CHECK_OK(hexhex_examine_seamless(seamless, context, &found, &error));
+    CHECK(found.kind == HEXHEX_SEAMLESS && found.displacement < 1e-9 && found.problem[0] == 0);
+    CHECK(fabs(found.cells - 448 * pow(2, 1.5)) < 1e-6);
     CHECK_OK(hexhex_quantize(seamless, &options, context, &quantized, &report, &error));
     CHECK(progress.calls > 0 && hexhex_context_stage_count(context) > 2);
     CHECK(report.size == sizeof report && report.blocks > 0 && report.attempts > 0);
@@ -617,6 +623,13 @@ static void test_quantize(void) {
     CHECK(hexhex_quantize(seamless, &options, context, &quantized, NULL, &error) ==
           HEXHEX_CANCELLED);
     CHECK(quantized == NULL);
+    hexhex_map* sheared = seamless_sphere(2, 0.1);
+    CHECK_OK(hexhex_examine_seamless(sheared, NULL, &found, &error));
+    CHECK(found.kind == HEXHEX_NOT_SEAMLESS && strlen(found.problem) > 20 && found.cells == 0);
+    CHECK(hexhex_quantize(sheared, &options, NULL, &quantized, &report, &error) ==
+          HEXHEX_TRANSITION_RESIDUAL);
+    CHECK(quantized == NULL);
+    hexhex_map_destroy(sheared);
   }
   hexhex_context_destroy(context);
   hexhex_map_destroy(seamless);

@@ -118,6 +118,7 @@ static hexhex_certificate out_certificate = HEXHEX_CERTIFICATE_INIT;
 static hexhex_repair_summary out_repair_summary = HEXHEX_REPAIR_SUMMARY_INIT;
 static hexhex_repaired_region out_repaired_region = HEXHEX_REPAIRED_REGION_INIT;
 static hexhex_sample_answer out_sample_answer = HEXHEX_SAMPLE_ANSWER_INIT;
+static hexhex_seamless_report out_seamless_report = HEXHEX_SEAMLESS_REPORT_INIT;
 static hexhex_sink out_sink = HEXHEX_SINK_INIT;
 static size_t out_size;
 static hexhex_structure out_structure = HEXHEX_STRUCTURE_INIT;
@@ -222,6 +223,7 @@ static void call_all(const handles* h, enum kind kind, const char* file) {
     hexhex_quantize_options quantize = HEXHEX_QUANTIZE_OPTIONS_INIT;
     quantize.scale = 1;
     REFUSED(hexhex_quantize(h->map, &quantize, h->context, &made.map, NULL, &error));
+    REFUSED(hexhex_examine_seamless(h->map, h->context, &out_seamless_report, &error));
   }
   if (concerns(k_repair_report)) {
     hexhex_repair_report_destroy(h->repair_report);
@@ -585,6 +587,8 @@ static void test_sizes_of_structs(const char* file) {
     unscaled.scale = 1;
     WRONG(quantize_report, HEXHEX_QUANTIZE_REPORT_INIT,
           hexhex_quantize(h.map, &unscaled, NULL, &map, &s, &error));
+    WRONG(seamless_report, HEXHEX_SEAMLESS_REPORT_INIT,
+          hexhex_examine_seamless(h.map, NULL, &s, &error));
     WRONG(extract_options, HEXHEX_EXTRACT_OPTIONS_INIT,
           hexhex_extract(h.map, &s, NULL, &mesh, NULL, &error));
     WRONG(statistics, HEXHEX_STATISTICS_INIT, hexhex_extract(h.map, NULL, NULL, &mesh, &s, &error));

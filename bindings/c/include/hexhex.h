@@ -587,16 +587,15 @@ HEXHEX_API int hexhex_can_quantize(void);
 /** See QuantizeOptions in <hexhex/quantize.hpp>: exactly one of the first three is not 0. */
 typedef struct hexhex_quantize_options {
   size_t size;
-  double cells;         /**< hexahedra wanted */
-  double scale;         /**< the map's parameters are to be multiplied by about so much */
-  double edge_length;   /**< of a hexahedron in space, on the average */
-  int densify;          /**< 1: if no valid map is found so, takes the first denser one that works */
-  int keep_inner_faces; /**< 0: tagged triangles inside of the object need not stay planes */
-  double tolerance;     /**< share of the map's largest coordinate by which it may miss being
-                             seamless */
+  double cells;       /**< hexahedra wanted */
+  double scale;       /**< the map's parameters are to be multiplied by about so much */
+  double edge_length; /**< of a hexahedron in space, on the average */
+  int densify;        /**< 1: if no valid map is found so, takes the first denser one that works */
+  int32_t wall_tag;   /**< inner triangles with this tag need not stay planes; 0: none */
+  double tolerance; /**< share of the largest coordinate by which the map may miss being seamless */
 } hexhex_quantize_options;
 #define HEXHEX_QUANTIZE_OPTIONS_INIT \
-  { sizeof(hexhex_quantize_options), 0, 0, 0, 0, 1, 1e-5 }
+  { sizeof(hexhex_quantize_options), 0, 0, 0, 0, 0, 1e-5 }
 
 /** What a quantization did. See QuantizeReport and MapDistortion in <hexhex/quantize.hpp>. */
 typedef struct hexhex_quantize_report {
@@ -628,6 +627,32 @@ HEXHEX_API hexhex_status hexhex_quantize(const hexhex_map* map,
                                          const hexhex_quantize_options* options,
                                          hexhex_context* context, hexhex_map** quantized,
                                          hexhex_quantize_report* report, hexhex_error* error);
+
+/** What lies between a map and an integer-grid map. */
+typedef enum hexhex_seamless_kind HEXHEX_AS_INT {
+  HEXHEX_SEAMLESS = 0,        /**< for hexhex_quantize() with its default tolerance */
+  HEXHEX_ALMOST_SEAMLESS = 1, /**< up to a hundredth of its size */
+  HEXHEX_NOT_SEAMLESS = 2     /**< also where hexhex_can_quantize() is 0 */
+} hexhex_seamless_kind;
+
+/** See SeamlessReport in <hexhex/quantize.hpp>. */
+typedef struct hexhex_seamless_report {
+  size_t size;
+  hexhex_seamless_kind kind;
+  double displacement; /**< of the nearest seamless map, in parameter units; 0 if there is none */
+  double cells;        /**< volume of that in unit cubes */
+  char problem[1024];  /**< why it is not seamless; UTF-8, cut off if longer */
+} hexhex_seamless_report;
+#define HEXHEX_SEAMLESS_REPORT_INIT                                  \
+  {                                                                  \
+    sizeof(hexhex_seamless_report), HEXHEX_NOT_SEAMLESS, 0, 0, { 0 } \
+  }
+
+/** Whether hexhex_quantize() can begin with a map.
+ * @param[out] report  made with HEXHEX_SEAMLESS_REPORT_INIT */
+HEXHEX_API hexhex_status hexhex_examine_seamless(const hexhex_map* map, hexhex_context* context,
+                                                 hexhex_seamless_report* report,
+                                                 hexhex_error* error);
 
 /* ---- Extraction ------------------------------------------------------------------------------ */
 
@@ -1003,8 +1028,8 @@ HEXHEX_API hexhex_status hexhex_map_structure_get_arrays(const hexhex_map_struct
 /** Whether a mesh agrees with its map, check by check. */
 typedef struct hexhex_verify_report hexhex_verify_report;
 
-/** Passes the mesh of the map in any numbering, with cells in any orientation, and no other mesh. One
- * that does not agree is no error of this function.
+/** Passes the mesh of the map in any numbering, with cells in any orientation, and no other mesh.
+ * One that does not agree is no error of this function.
  * @param tolerance  of the map, as in hexhex_extract_options
  * @param scale      that the mesh was extracted with */
 HEXHEX_API hexhex_status hexhex_verify(const hexhex_map* map, const hexhex_mesh* mesh,
