@@ -58,7 +58,7 @@ set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME hexhex)
 if(NOT HEXHEX_HAS_VIEWER)  # with it, the command holds the static library
   set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS "${exact}")
 endif()
-# What is loaded only when a file needs it.
+# What is loaded only when a file or a quantization needs it.
 get_property(loaded_packages GLOBAL PROPERTY HEXHEX_LOADED_PACKAGES)
 if(loaded_packages)
   list(JOIN loaded_packages ", " loaded_packages)
