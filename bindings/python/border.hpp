@@ -135,5 +135,6 @@ void bindExtract(nb::module_& module);
 void bindCurved(nb::module_& module);
 void bindFiles(nb::module_& module);
 void bindReports(nb::module_& module);
+void bindQuantize(nb::module_& module);
 
 }  // namespace hexhex::python

@@ -56,6 +56,7 @@ NB_MODULE(_hexhex, module) {
   bindCurved(module);
   bindFiles(module);
   bindReports(module);
+  bindQuantize(module);
 }
 
 }  // namespace hexhex::python

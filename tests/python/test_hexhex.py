@@ -1,6 +1,7 @@
 """The Python package: results, arrays without copies, threads, signals, errors, other libraries."""
 
 import doctest
+import itertools
 import subprocess
 import sys
 import threading
@@ -309,6 +310,134 @@ def test_repair():
     assert mesh.repair.changed and np.array_equal(mesh.repaired_map.igm, good.igm)
     assert hexhex.verify(mesh.repaired_map, mesh)
     assert hexhex.extract(good, repair=True).repair is None
+
+
+def seamless(map, factor=2**0.5, **rest):
+    """The same map with charts that no longer are integer."""
+    return hexhex.Map(map.points, map.tets, map.igm * factor, **rest)
+
+
+def needs_quantization():
+    if not hexhex.can_quantize():
+        pytest.skip("without Eigen")
+
+
+def quantized_cells(map, **density):
+    made, report = hexhex.quantize(map, **density)
+    mesh = hexhex.extract(made)
+    assert hexhex.check(made).valid and hexhex.verify(made, mesh)
+    assert report.cells == len(mesh.cells)
+    return len(mesh.cells)
+
+
+@pytest.mark.parametrize("kind", ["box", "sphere", "torus", "handle-body"])
+def test_quantization_of_integer_grid_maps(kind):
+    needs_quantization()
+    map = hexhex.generate(kind, cells=3, charts="random")
+    expected = hexhex.check(map).expected["cells"]
+    assert hexhex.examine_seamless(map).kind == "seamless"
+    assert quantized_cells(map, scale=1) == expected
+    assert quantized_cells(seamless(map), scale=0.5**0.5) == expected
+    assert quantized_cells(seamless(map), cells=8 * expected) == 8 * expected
+
+
+def test_quantization_report():
+    needs_quantization()
+    map = hexhex.generate("sphere", cells=4)
+    told = []
+    made, report = hexhex.quantize(seamless(map), scale=0.5**0.5,
+                                   progress=lambda stage, share: told.append(stage))
+    assert "bending" in told and "bending" in [name for name, seconds in report.stages]
+    assert report.cells == 448 and abs(report.cells_wanted - 448) < 1e-6
+    assert report.displacement < 1e-9 and report.integers_by in ("CBC", "rounding")
+    assert 0 < report.blocks <= report.arcs and 1 <= report.shortest_arc <= report.longest_arc
+    assert 0 < report.worst_after <= report.median_after <= 1
+    assert 0 < report.worst_before <= report.median_before <= 1
+    assert len(made.tets) == len(map.tets) + report.added_tets
+    assert len(made.points) == len(map.points) + report.split_edges
+    # As many as asked, by each way to ask.
+    for density in ({"cells": 448}, {"edge_length": (4.18 / 448) ** (1 / 3)}):
+        assert hexhex.quantize(seamless(map), **density)[1].cells == 448
+    # The result does not depend on threads.
+    assert np.array_equal(made.igm, hexhex.quantize(seamless(map), scale=0.5**0.5, threads=1)[0].igm)
+
+
+def moved_charts(map, seed):
+    """Each tet's chart rotated and shifted at random: the same seamless map."""
+    random = np.random.default_rng(seed)
+    rotations = [np.eye(3)[list(order)] * signs for order in itertools.permutations(range(3))
+                 for signs in itertools.product((1, -1), repeat=3)]
+    rotations = np.array([r for r in rotations if np.linalg.det(r) > 0])
+    igm = np.einsum("tij,tkj->tki", rotations[random.integers(24, size=len(map.tets))], map.igm)
+    return hexhex.Map(map.points, map.tets, igm + random.uniform(-9, 9, (len(map.tets), 1, 3)))
+
+
+def test_quantization_of_moved_charts():
+    needs_quantization()
+    map = seamless(hexhex.generate("sphere", cells=3, jitter=0.05))
+    expected = [quantized_cells(map, cells=cells) for cells in (100, 1000)]
+    for seed in range(2):
+        moved = moved_charts(map, seed)
+        with pytest.raises(hexhex.MapError):
+            hexhex.extract(moved)
+        assert [quantized_cells(moved, cells=cells) for cells in (100, 1000)] == expected
+
+
+def test_quantization_keeps_features():
+    needs_quantization()
+    map = hexhex.generate("box", cells=2, features=True)
+    made, report = hexhex.quantize(
+        seamless(map, features=map.features, regions=map.regions), scale=0.5**0.5)
+    mesh, before = hexhex.extract(made), hexhex.extract(map)
+    assert report.cells == 64
+    for dimension in ("vertices", "edges", "faces"):
+        assert len(getattr(mesh.features, dimension)) == len(getattr(before.features, dimension)) > 0
+    assert np.array_equal(np.bincount(mesh.regions), np.bincount(before.regions))
+
+
+def test_quantization_refuses():
+    needs_quantization()
+    map = seamless(hexhex.generate("sphere"))
+    for options in ({}, {"cells": 0}, {"cells": -1}, {"cells": float("nan")}, {"scale": 0},
+                    {"cells": 10, "scale": 1}, {"cells": 0, "scale": 1}, {"edge_length": -1},
+                    {"cells": 10, "tolerance": 0.5}, {"cells": 10, "threads": 0}):
+        with pytest.raises(hexhex.ArgumentError):
+            hexhex.quantize(map, **options)
+    with pytest.raises(hexhex.MapError) as caught:
+        hexhex.quantize(map, cells=1e12)
+    assert caught.value.code == "TooLarge"
+    sheared = np.array(map.igm)
+    sheared[..., 0] += 0.1 * sheared[..., 1]
+    none = hexhex.Map(map.points, map.tets, sheared)
+    report = hexhex.examine_seamless(none)
+    assert report.kind == "neither" and len(report.problem) > 20
+    with pytest.raises(hexhex.MapError):
+        hexhex.quantize(none, cells=100)
+    with pytest.raises(ZeroDivisionError):
+        hexhex.quantize(map, cells=100, progress=lambda stage, share: 1 / 0)
+
+
+def test_interrupts_after_quantization():
+    """CBC handles signals while it works; afterwards Ctrl-C is ours again. Several at once."""
+    needs_quantization()
+    code = """
+import os, signal, threading, hexhex
+map = hexhex.generate("sphere")
+map = hexhex.Map(map.points, map.tets, map.igm * 2**0.5)
+made = []
+threads = [threading.Thread(target=lambda: made.append(hexhex.quantize(map, cells=500)[1].cells))
+           for _ in range(4)]
+for thread in threads: thread.start()
+for thread in threads: thread.join()
+assert len(made) == 4 and len(set(made)) == 1, made
+try:
+    os.kill(os.getpid(), signal.SIGINT)
+    for _ in range(1000): pass
+except KeyboardInterrupt:
+    raise SystemExit(0)
+raise SystemExit("Ctrl-C does nothing any more")
+"""
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
 
 
 def test_pieces(sphere, tmp_path):

@@ -44,10 +44,12 @@ from ._types import (
     PartialMesh,
     Patches,
     Quality,
+    QuantizeReport,
     RefutedCell,
     RepairedRegion,
     RepairReport,
     SampleKind,
+    SeamlessReport,
     Survey,
     VerifyItem,
     VerifyReport,
@@ -68,12 +70,13 @@ __all__ = [
     "Arcs", "ArgumentError", "CancelledError", "CheckReport", "Defect", "Extractor", "Features",
     "FileError", "FileFormat", "HexhexError", "Hole", "InternalError", "LagrangeMesh", "Map",
     "MapError", "MapStructure", "MemoryExhaustedError", "Mesh", "MeshSink", "MeshWriter",
-    "PartialMesh", "Patches", "Quality", "RefutedCell", "RepairReport", "RepairedRegion", "SampleKind", "Survey",
-    "SurveySink", "VerifyItem", "VerifyReport", "can_repair", "check", "defect_kinds", "extract",
-    "extract_partial", "extract_to", "extract_to_file", "formats", "generate", "holds_curved",
-    "map_from_pair", "map_structure", "quality", "read", "read_curved", "read_map", "read_mesh",
-    "read_pair", "read_tets", "read_to", "repair", "require_format", "sample_kinds",
-    "scaled_jacobian", "survey", "verify", "write",
+    "PartialMesh", "Patches", "Quality", "QuantizeReport", "RefutedCell", "RepairReport",
+    "RepairedRegion", "SampleKind", "SeamlessReport", "Survey", "SurveySink", "VerifyItem",
+    "VerifyReport", "can_quantize", "can_repair", "check", "defect_kinds", "examine_seamless",
+    "extract", "extract_partial", "extract_to", "extract_to_file", "formats", "generate",
+    "holds_curved", "map_from_pair", "map_structure", "quality", "quantize", "read", "read_curved",
+    "read_map", "read_mesh", "read_pair", "read_tets", "read_to", "repair", "require_format",
+    "sample_kinds", "scaled_jacobian", "survey", "verify", "write",
 ]
 
 
@@ -448,6 +451,61 @@ def repair(map: Map, *, tolerance: float = 1e-2, scale: int = 1, round: bool = F
     error = make(code, message, place, index, second)
     error.repair = report
     raise error
+
+
+def can_quantize() -> bool:
+    """Whether this build can quantize maps (it was made with Eigen).
+
+    >>> isinstance(hexhex.can_quantize(), bool)
+    True
+    """
+    return _hexhex.can_quantize()
+
+
+def quantize(map: Map, *, cells: float | None = None, scale: float | None = None,
+             edge_length: float | None = None, densify: bool = False, wall_tag: int = 0,
+             tolerance: float = 1e-5, threads: int | None = None,
+             progress: Progress | None = None) -> tuple[Map, QuantizeReport]:
+    """An integer-grid map from a seamless one: chooses integers, and bends the map onto them.
+    Features and regions come along; edges of tets may be split.
+
+    Args:
+        cells: hexahedra wanted; or one of the next two instead.
+        scale: the map's parameters are to be multiplied by about so much.
+        edge_length: of a hexahedron in space, on the average.
+        densify: if no valid map is found so, takes the first denser one that works.
+        wall_tag: tagged triangles inside of the object stay planes of the mesh, but for those with
+            this tag; 0 for none. In .hexex files, walls of a motorcycle complex have the tag 2.
+        tolerance: share of its largest coordinate by which the map may miss being seamless.
+        threads, progress: as in extract().
+
+    Raises:
+        MapError: if the map is not seamless, or cannot be bent onto integers.
+        ArgumentError: for options out of range, or if can_quantize() is False.
+
+    >>> map = hexhex.generate("sphere")  # 448 cells
+    >>> if hexhex.can_quantize():
+    ...     finer, report = hexhex.quantize(map, cells=3500)
+    ...     report.cells == len(hexhex.extract(finer).cells) == 3584
+    ... else: True
+    True
+    """
+    # 0 is what stands for None there, and is no number of cells.
+    many, factor, length = (0.0 if value is None else float(value) or float("nan")
+                            for value in (cells, scale, edge_length))
+    handle, values = _hexhex.quantize(map._arrays(), many, factor, length, densify, wall_tag,
+                                      tolerance, _threads(threads), progress)
+    return Map._from_handle(handle), QuantizeReport(**values)
+
+
+def examine_seamless(map: Map, *, threads: int | None = None,
+                     progress: Progress | None = None) -> SeamlessReport:
+    """Whether quantize() can begin with a map.
+
+    >>> hexhex.examine_seamless(hexhex.generate("box")).kind if hexhex.can_quantize() else "seamless"
+    'seamless'
+    """
+    return SeamlessReport(*_hexhex.examine_seamless(map._arrays(), _threads(threads), progress))
 
 
 def extract_partial(map: Map, *, scale: int = 1, tolerance: float = 1e-2,

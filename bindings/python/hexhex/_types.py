@@ -223,6 +223,40 @@ class RepairReport:
 
 
 @dataclasses.dataclass(frozen=True)
+class SeamlessReport:
+    """Whether a map is seamless: charts differ by rotations and translations, and singular edges and
+    the boundary are aligned with axes."""
+
+    kind: str  #: "seamless", "almost seamless" (up to a hundredth of its size), or "neither"
+    displacement: float  #: of the nearest seamless map, in parameter units; 0 if there is none
+    cells: float  #: volume of that in unit cubes
+    problem: str  #: why it is neither; empty where can_quantize() is False
+
+
+@dataclasses.dataclass(frozen=True)
+class QuantizeReport:
+    """What a quantization did. Distortion is the scaled Jacobian of the map, at most 1."""
+
+    cells_wanted: float
+    cells: int
+    scale: float  #: of the seamless map's parameters, finally
+    displacement: float  #: largest change of a parameter that made the map seamless
+    blocks: int  #: of the motorcycle complex
+    arcs: int
+    shortest_arc: int  #: in hexahedra
+    longest_arc: int
+    integers_by: str  #: "CBC", or "rounding" where CBC is missing
+    attempts: int  #: numbers of cells that were tried
+    split_edges: int  #: each adds a vertex to the tet mesh
+    added_tets: int  #: by that
+    worst_before: float
+    median_before: float
+    worst_after: float
+    median_after: float
+    stages: list[tuple[str, float]]  #: name and seconds
+
+
+@dataclasses.dataclass(frozen=True)
 class Arcs:
     """Hex edges as polylines: arc e has the inner points point_begin[e] to point_begin[e + 1] - 1,
     and one segment more than inner points, from number point_begin[e] + e on."""

@@ -1,0 +1,71 @@
+// From seamless maps to integer-grid maps.
+#include <nanobind/stl/string.h>
+
+#include <hexhex/quantize.hpp>
+
+#include "border.hpp"
+
+using namespace nanobind::literals;
+
+namespace hexhex::python {
+namespace {
+
+Dict asDict(const QuantizeReport& r) {
+  Dict d;
+  d["cells_wanted"] = r.cellsWanted;
+  d["cells"] = r.cells;
+  d["scale"] = r.scale;
+  d["displacement"] = r.displacement;
+  d["blocks"] = r.blocks;
+  d["arcs"] = r.arcs;
+  d["shortest_arc"] = r.shortestArc;
+  d["longest_arc"] = r.longestArc;
+  d["integers_by"] = r.integersBy;
+  d["attempts"] = r.attempts;
+  d["split_edges"] = r.splitEdges;
+  d["added_tets"] = r.addedTets;
+  d["worst_before"] = r.distortionBefore.worst;
+  d["median_before"] = r.distortionBefore.median;
+  d["worst_after"] = r.distortionAfter.worst;
+  d["median_after"] = r.distortionAfter.median;
+  return d;
+}
+
+nb::tuple quantizeMap(const ArrayMap& map, double cells, double scale, double edgeLength,
+                      bool densify, std::int32_t wallTag, double tolerance, int threads,
+                      const Progress& progress) {
+  const QuantizeOptions options = {.cells = cells,
+                                   .scale = scale,
+                                   .edgeLength = edgeLength,
+                                   .densify = densify,
+                                   .wallTag = wallTag,
+                                   .tolerance = tolerance};
+  std::vector<StageTime> times;
+  QuantizedMap made = run(
+      threads, progress, [&](Context& context) { return quantize(map.view(), options, context); },
+      &times);
+  Dict report = asDict(made.report);
+  nb::list stages;
+  for (const StageTime& time : times) stages.append(nb::make_tuple(time.stage, time.seconds));
+  report["stages"] = stages;
+  return nb::make_tuple(std::move(made.map), report);
+}
+
+nb::tuple examineMap(const ArrayMap& map, int threads, const Progress& progress) {
+  const SeamlessReport report = run(
+      threads, progress, [&](Context& context) { return examineSeamless(map.view(), context); });
+  constexpr std::array kKinds = {"seamless", "almost seamless", "neither"};
+  return nb::make_tuple(kKinds.at(static_cast<std::size_t>(report.kind)), report.displacement,
+                        report.cells, report.problem);
+}
+
+}  // namespace
+
+void bindQuantize(nb::module_& module) {
+  module.def("can_quantize", &canQuantize);
+  module.def("quantize", &quantizeMap, "map"_a, "cells"_a, "scale"_a, "edge_length"_a, "densify"_a,
+             "wall_tag"_a, "tolerance"_a, "threads"_a, "progress"_a.none());
+  module.def("examine_seamless", &examineMap, "map"_a, "threads"_a, "progress"_a.none());
+}
+
+}  // namespace hexhex::python
