@@ -418,18 +418,12 @@ def test_quantization_refuses():
 
 
 def test_interrupts_after_quantization():
-    """CBC handles signals while it works; afterwards Ctrl-C is ours again. Several at once."""
+    """CBC handles signals while it works; afterwards Ctrl-C is ours again."""
     needs_quantization()
     code = """
-import os, signal, threading, hexhex
+import os, signal, hexhex
 map = hexhex.generate("sphere")
-map = hexhex.Map(map.points, map.tets, map.igm * 2**0.5)
-made = []
-threads = [threading.Thread(target=lambda: made.append(hexhex.quantize(map, cells=500)[1].cells))
-           for _ in range(4)]
-for thread in threads: thread.start()
-for thread in threads: thread.join()
-assert len(made) == 4 and len(set(made)) == 1, made
+hexhex.quantize(hexhex.Map(map.points, map.tets, map.igm * 2**0.5), cells=500)
 try:
     os.kill(os.getpid(), signal.SIGINT)
     for _ in range(1000): pass
