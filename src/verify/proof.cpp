@@ -10,8 +10,6 @@
 
 namespace hexhex {
 
-namespace {
-
 /// What is known about the corners of the cells of one tet. Cells whose centres are in one tet
 /// agree about the lattice point at some coordinates: a point that both half diagonals can be bent
 /// to, inside of their cells, is the middle between their centres, which is in the tet as well.
@@ -155,8 +153,6 @@ class CellProver {
   std::array<std::size_t, 8> steps_{};  ///< in the table, from a cell's smallest corner to each
   std::vector<SweptLine> lines_;
 };
-
-}  // namespace
 
 ElementCounts expectedElements(const Expectation& expected) noexcept {
   // The 12 edges of all cells are regular edges, of four cells or, on the boundary, of two, and

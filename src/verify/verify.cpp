@@ -19,6 +19,13 @@
 #include <igm/measures.hpp>
 
 namespace hexhex {
+
+/// A scaled map, and what follows from it.
+struct Truth {
+  PreparedMap map;
+  Expectation expected;
+};
+
 namespace {
 
 /// "FlippedTet at tet 7, and 2 more kinds of defects"
@@ -75,12 +82,6 @@ void compareMeshes(const HexMesh& right, const HexMesh& mesh, int digits, Stage&
   addCells("wrong_cells", mismatch.strangeCells);
   addCells("missing_cells", mismatch.missingCells, "in canonical order, ");
 }
-
-/// A scaled map, and what follows from it.
-struct Truth {
-  PreparedMap map;
-  Expectation expected;
-};
 
 /// Adds "map_valid"; nothing if it did not pass.
 std::optional<Truth> truthOf(const TetMapView& map, const VerifyOptions& options, Context& context,
