@@ -65,7 +65,8 @@ REPORT_KEYS = {
     "generators", "vertices_by_generator", "local_propellers", "global_propellers", "charts",
     "cut_faces", "overlapping_tets", "traced_cells", "singular_edges", "chart_jumps", "inner_faces",
     "max_displacement", "max_transition_residual", "mirrored", "tets_inverted_in_space", "quality",
-    "validity", "verification", "streamed", "checksums", "repair", "order", "nodes", "arcs", "patches",
+    "validity", "verification", "streamed", "checksums", "repair", "quantization", "order", "nodes",
+    "arcs", "patches",
 }
 
 
