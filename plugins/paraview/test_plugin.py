@@ -214,6 +214,23 @@ def check_repair():
             "no error without repair")
 
 
+def check_quantize():
+    """A seamless map has a mesh as soon as it is quantized: the command's."""
+    run("generate", "sphere", "--cells", "4", "-o", "integer.hexex")
+    tets = fetch(OpenDataFile(os.path.join(OUT, "integer.hexex")), 0)
+    parameters = tets.GetCellData().GetArray("hexhex_parameters")
+    for t in range(parameters.GetNumberOfTuples()):
+        parameters.SetTuple(t, [2 ** 0.5 * u for u in parameters.GetTuple(t)])
+    source = TrivialProducer()
+    source.GetClientSideObject().SetOutput(tets)
+    source.UpdatePipeline()
+    require(messages_of(HexHexExtract(Input=source), "TransitionResidual"),
+            "no error without quantization")
+    filter_ = HexHexExtract(Input=source, Quantize=1, Cells=3584)
+    filter_.UpdatePipeline()
+    require(cells(filter_) == 3584, f"{cells(filter_)} cells of a quantized map")
+
+
 def check_errors():
     """Errors have code and place, in ParaView's own message window."""
     with open(os.path.join(OUT, "bad.hexex"), "w", encoding="utf-8") as file:
@@ -296,6 +313,7 @@ check_curved()
 check_map_blocks()
 check_cancel()
 check_repair()
+check_quantize()
 check_errors()
 take_picture(sphere, "sphere.png")
 real = os.path.join(DATA, "maps", "s17c_sphere_r1.hexex")

@@ -6,6 +6,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/quality.hpp>
+#include <hexhex/quantize.hpp>
 #include <hexhex/structure.hpp>
 #include <hexhex/verify.hpp>
 
@@ -37,6 +38,8 @@ struct Request
 {
   hexhex::ExtractOptions options;
   int order = 1;
+  bool quantize = false;
+  double cells = 0; // to quantize for
   bool verify = true;
   bool arcs = false;
   bool patches = false;
@@ -118,6 +121,8 @@ void vtkHexHexExtract::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Order: " << this->Order << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "Repair: " << this->Repair << "\n";
+  os << indent << "Quantize: " << this->Quantize << "\n";
+  os << indent << "Cells: " << this->Cells << "\n";
   os << indent << "Verify: " << this->Verify << "\n";
   os << indent << "Arcs: " << this->Arcs << "\n";
   os << indent << "Patches: " << this->Patches << "\n";
@@ -151,13 +156,20 @@ int vtkHexHexExtract::RequestData(
   request.options.tolerance = this->Tolerance;
   request.options.repair = this->Repair != 0 ? hexhex::RepairMode::Auto : hexhex::RepairMode::Off;
   request.order = this->Order;
+  request.quantize = this->Quantize != 0;
+  request.cells = this->Cells;
   request.verify = this->Verify != 0;
   request.arcs = this->Arcs != 0;
   request.patches = this->Patches != 0;
   Extracted result;
   const std::string problem =
     hexhex::paraview::runGuarded(*this, this->Threads, [&](hexhex::Context& context) {
-      result = extractAll(hexhex::paraview::mapOf(*input, parameters), request, context);
+      hexhex::TetMap map = hexhex::paraview::mapOf(*input, parameters);
+      if (request.quantize)
+      {
+        map = hexhex::quantize(map, { .cells = request.cells }, context).map;
+      }
+      result = extractAll(map, request, context);
     });
   if (this->GetAbortExecute())
   {

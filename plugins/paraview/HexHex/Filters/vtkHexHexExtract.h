@@ -37,6 +37,11 @@ public:
   /** Whether flipped and flat tets of the map are repaired first, with a warning. */
   vtkSetMacro(Repair, vtkTypeBool);
   vtkGetMacro(Repair, vtkTypeBool);
+  /** Whether a seamless map is made an integer-grid map of about Cells cells first. */
+  vtkSetMacro(Quantize, vtkTypeBool);
+  vtkGetMacro(Quantize, vtkTypeBool);
+  vtkSetMacro(Cells, double);
+  vtkGetMacro(Cells, double);
   /** Whether the mesh is compared with the map. */
   vtkSetMacro(Verify, vtkTypeBool);
   vtkGetMacro(Verify, vtkTypeBool);
@@ -64,6 +69,8 @@ private:
   int Order = 1;
   double Tolerance = 0.01;
   vtkTypeBool Repair = 1;
+  vtkTypeBool Quantize = 0;
+  double Cells = 10000;
   vtkTypeBool Verify = 1;
   vtkTypeBool Arcs = 0;
   vtkTypeBool Patches = 0;
