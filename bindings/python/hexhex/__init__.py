@@ -8,8 +8,8 @@
 >>> bool(hexhex.verify(map, mesh, scale=2))
 True
 
-All functions may be called from several threads at once. They release the GIL while they work, and
-Ctrl-C cancels them.
+All functions but quantize() may be called from several threads at once. They release the GIL while
+they work, and Ctrl-C cancels them.
 """
 
 from __future__ import annotations
@@ -467,7 +467,8 @@ def quantize(map: Map, *, cells: float | None = None, scale: float | None = None
              tolerance: float = 1e-5, threads: int | None = None,
              progress: Progress | None = None) -> tuple[Map, QuantizeReport]:
     """An integer-grid map from a seamless one: chooses integers, and bends the map onto them.
-    Features and regions come along; edges of tets may be split.
+    Features and regions come along; edges of tets may be split. To be called from one thread at a
+    time, as CBC has global state.
 
     Args:
         cells: hexahedra wanted; or one of the next two instead.
