@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <mutex>
 
 #include <quantize/integer_program.hpp>
 #if defined(HEXHEX_CBC_NAME)
@@ -60,11 +60,27 @@ class Model {
   decltype(&Cbc_deleteModel) deleteModel_;
 };
 
+/// Leaves the caller's way of dealing with Ctrl-C as it is.
+class KeptInterrupt {
+ public:
+  KeptInterrupt() { sigaction(SIGINT, nullptr, &handler_); }
+  KeptInterrupt(const KeptInterrupt&) = delete;
+  KeptInterrupt& operator=(const KeptInterrupt&) = delete;
+  ~KeptInterrupt() { sigaction(SIGINT, &handler_, nullptr); }
+
+ private:
+  struct sigaction handler_ {};
+};
+
 }  // namespace
 
 bool canLoadCbc() { return library() != nullptr; }
 
 std::vector<std::int64_t> solveByCbc(const IntegerProgram& program) {
+  // CBC keeps its arguments in global variables, and catches Ctrl-C while it solves.
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  const KeptInterrupt kept;
   // One column for each number of hexahedra, one for its distance from the length.
   Model model;
   const auto n = static_cast<int>(program.lengths.size());

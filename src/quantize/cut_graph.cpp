@@ -41,6 +41,25 @@ std::array<Vec3, 2> middles(const TetTopology& topology, HalfFace halfFace,
   return sums;
 }
 
+/// The one after which two edges of a tet come last in the alphabet: the same in whatever chart the
+/// tet is given.
+Rotation canonicalRotation(const TetParameters& u) {
+  Rotation best;
+  std::array<Vec3, 2> last{};
+  for (int r = 0; r < Rotation::kCount; ++r) {
+    const Rotation rotation(r);
+    std::array<Vec3, 2> image = {rotation(minus(u[1], u[0])), rotation(minus(u[2], u[0]))};
+    for (Vec3& v : image) {
+      for (double& x : v) x = static_cast<double>(static_cast<float>(x));  // but for noise
+    }
+    if (r == 0 || image > last) {
+      best = rotation;
+      last = image;
+    }
+  }
+  return best;
+}
+
 /// Walks a tree of each component and puts all tets into the chart of its first one.
 /// @return the motion of each tet; marks triangles of the tree in `isTree`
 std::vector<Motion> moveAlongTree(const TetTopology& topology,
@@ -53,6 +72,7 @@ std::vector<Motion> moveAlongTree(const TetTopology& topology,
   for (Index root = 0; root < topology.tetCount(); ++root) {
     if (isMoved[root]) continue;
     isMoved[root] = true;
+    motions[root].rotation = canonicalRotation(parameters[root]);
     queue.push_back(root);
     for (std::size_t next = queue.size() - 1; next < queue.size(); ++next) {
       const Motion& here = motions[queue[next]];

@@ -429,7 +429,7 @@ void requireBoxes(const MotorcycleComplex& complex) {
 
 }  // namespace
 
-MotorcycleComplex traceComplex(const SeamlessMap& map, Context& context) {
+MotorcycleComplex traceComplex(const SeamlessMap& map, bool reduced, Context& context) {
   Stage stage(context, "motorcycle complex");
   MotorcycleComplex complex{.mesh = traceWalls(map, EdgeFans(map.topology))};
   for (Holonomy ring = findBlocks(complex); ring.tet != kNone; ring = findBlocks(complex)) {
@@ -438,7 +438,7 @@ MotorcycleComplex traceComplex(const SeamlessMap& map, Context& context) {
   }
   requireBoxes(complex);
   findArcsAndPatches(complex);
-  while (removeWalls(complex)) {
+  while (reduced && removeWalls(complex)) {
     context.throwIfCancelled();
     findBlocks(complex);
     findArcsAndPatches(complex);

@@ -68,7 +68,9 @@ struct MotorcycleComplex {
 };
 
 /// Walls, and blocks between them that all are boxes.
+/// @param reduced  without walls between two blocks that are one box without them
 /// @throws Error if the map cannot be cut so
-[[nodiscard]] MotorcycleComplex traceComplex(const SeamlessMap& map, Context& context);
+[[nodiscard]] MotorcycleComplex traceComplex(const SeamlessMap& map, bool reduced,
+                                             Context& context);
 
 }  // namespace hexhex

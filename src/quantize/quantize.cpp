@@ -7,8 +7,10 @@
 #if defined(HEXHEX_HAS_QUANTIZE)
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <quantize/bend_problem.hpp>
 #include <quantize/quantized_map.hpp>
@@ -26,14 +28,30 @@ constexpr double kAlmost = 0.01;
 /// Arcs are longer than this share of the map's size, and than so many times what has made it
 /// seamless.
 constexpr double kNoise = 1e-9;
+constexpr double kLengthUnits = 0x1p20;
 constexpr double kNoiseShare = 16;
 /// More hexahedra have more vertices than indices.
 constexpr double kMostCells = 4e9;
 /// The search for a scale ends when it is as near to the number of cells wanted as this.
 constexpr double kNearEnough = 1.03;
 constexpr int kScaleSteps = 6;
-/// If a map cannot be bent onto its integers, others near to them may do.
-constexpr std::array<double, 4> kOtherDensities = {1, 1.08, 0.93, 1.16};
+/// If a map cannot be bent onto its integers, others near to them may do, or those of a complex
+/// that has all its walls.
+struct Attempt {
+  double density;
+  bool reduced;
+};
+constexpr std::array<Attempt, 9> kAttempts = {{{1, true},
+                                               {1, false},
+                                               {1.1, true},
+                                               {0.92, true},
+                                               {1.35, true},
+                                               {1.1, false},
+                                               {0.85, true},
+                                               {1.2, false},
+                                               {1.2, true}}};
+/// Edges are split until there are so many times as many tets: more rarely helps.
+constexpr double kMostGrowth = 1.25;
 /// Steps of a search for a density that works, and how many there are at most.
 constexpr double kDenser = 1.3;
 constexpr int kMostDensities = 24;
@@ -101,6 +119,76 @@ SeamlessMap seamlessMap(const TetMapView& map, const QuantizeOptions& options, C
   return seamless;
 }
 
+/// The same map with tets and corners in an order that depends on vertices alone: so that the
+/// outcome does not depend on the caller's.
+/// @param[out] order  whose number each tet had
+TetMap inCanonicalOrder(const TetMapView& map, std::vector<Index>& order) {
+  const auto key = [&map](Index t) {
+    Tet tet = map.tets[t];
+    std::sort(tet.begin(), tet.end());
+    return tet;
+  };
+  order.resize(map.tets.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return std::pair(key(a), a) < std::pair(key(b), b); });
+  TetMap sorted;
+  sorted.points.assign(map.points.begin(), map.points.end());
+  for (const Index t : order) {
+    Tet tet = map.tets[t];
+    TetParameters u = map.parameters[t];
+    // Even permutations only: two swaps each.
+    const auto swap = [&](std::size_t a, std::size_t b) {
+      std::swap(tet[a], tet[b]);
+      std::swap(u[a], u[b]);
+    };
+    const auto first =
+        static_cast<std::size_t>(std::min_element(tet.begin(), tet.end()) - tet.begin());
+    if (first != 0) {
+      swap(0, first);
+      swap(first == 1 ? 2 : 1, first == 3 ? 2 : 3);
+    }
+    while (tet[1] > tet[2] || tet[1] > tet[3]) {
+      swap(1, 2);
+      swap(2, 3);
+    }
+    sorted.tets.push_back(tet);
+    sorted.parameters.push_back(u);
+    if (!map.regions.empty()) sorted.regions.push_back(map.regions[t]);
+  }
+  sorted.features.vertices.assign(map.features.vertices.begin(), map.features.vertices.end());
+  sorted.features.edges.assign(map.features.edges.begin(), map.features.edges.end());
+  sorted.features.faces.assign(map.features.faces.begin(), map.features.faces.end());
+  return sorted;
+}
+
+/// Whether tets name points that exist, and regions are as many.
+bool areInRange(const TetMapView& map) {
+  if (!map.regions.empty() && map.regions.size() != map.tets.size()) return false;
+  return std::all_of(map.tets.begin(), map.tets.end(), [&map](const Tet& tet) {
+    return std::all_of(tet.begin(), tet.end(), [&map](Index v) { return v < map.points.size(); });
+  });
+}
+
+/// An error that names a tet, by the caller's number.
+Error inCallersTerms(const Error& error, const std::vector<Index>& order) {
+  Place place = error.place();
+  const bool isTet = place.kind == PlaceKind::Tet || place.kind == PlaceKind::Face;
+  if (isTet && place.index < order.size()) place.index = order[place.index];
+  return {error.code(), error.what(), place};
+}
+
+/// Gives tets the caller's numbers; parts that were split off come behind.
+void restoreOrder(const std::vector<Index>& order, TetMap& map) {
+  const auto restore = [&order](auto& values) {
+    auto sorted = values;
+    for (std::size_t i = 0; i < order.size(); ++i) values[order[i]] = sorted[i];
+  };
+  restore(map.tets);
+  restore(map.parameters);
+  if (!map.regions.empty()) restore(map.regions);
+}
+
 /// Integers for all arcs at one scale.
 struct Choice {
   double scale = 0;
@@ -115,29 +203,19 @@ class Quantizer {
         context_(context),
         seamless_(seamlessMap(map, options, context)),
         cellsWanted_(cellsWanted(map, seamless_, options)),
-        complex_(traceComplex(seamless_, context)),
         map_(map) {
-    program_.equations = arcEquations(complex_);
-    // Walls that would be one but for noise may become one.
-    const double noise =
-        std::max(kNoise * largestCoordinate(map), kNoiseShare * seamless_.maxDisplacement);
-    for (const Arc& arc : complex_.arcs) {
-      program_.least.push_back(static_cast<double>(arc.length) < noise * seamless_.unit ? 0 : 1);
-    }
     report_.cellsWanted = cellsWanted_;
     report_.displacement = seamless_.maxDisplacement;
-    report_.blocks = complex_.blockCount;
-    report_.arcs = complex_.arcs.size();
     report_.integersBy = canLoadCbc() ? "CBC" : "rounding";
   }
 
   QuantizedMap run() {
     double density = 1;
     for (int step = 0; step < (options_.densify ? kMostDensities : 1); ++step) {
-      for (const double other : kOtherDensities) {
-        if (std::optional<QuantizedMap> result = tryCells(report_.cellsWanted * density * other)) {
-          return std::move(*result);
-        }
+      for (const Attempt& attempt : kAttempts) {
+        cutIntoBlocks(attempt.reduced);
+        const double cells = report_.cellsWanted * density * attempt.density;
+        if (std::optional<QuantizedMap> result = tryCells(cells)) return std::move(*result);
       }
       density *= kDenser;
       if (report_.cellsWanted * density > kMostCells) break;
@@ -146,6 +224,23 @@ class Quantizer {
   }
 
  private:
+  /// @param reduced  whether walls that nothing needs are taken away
+  void cutIntoBlocks(bool reduced) {
+    if (!complex_.arcs.empty() && isReduced_ == reduced) return;
+    isReduced_ = reduced;
+    complex_ = traceComplex(seamless_, reduced, context_);
+    program_.equations = arcEquations(complex_);
+    // Walls that would be one but for noise may become one.
+    const double noise =
+        std::max(kNoise * largestCoordinate(map_), kNoiseShare * seamless_.maxDisplacement);
+    program_.least.clear();
+    for (const Arc& arc : complex_.arcs) {
+      program_.least.push_back(static_cast<double>(arc.length) < noise * seamless_.unit ? 0 : 1);
+    }
+    report_.blocks = complex_.blockCount;
+    report_.arcs = complex_.arcs.size();
+  }
+
   std::optional<QuantizedMap> tryCells(double cells) {
     const std::optional<Choice> choice = choose(cells);
     if (!choice || choice->integers == last_) return std::nullopt;
@@ -154,7 +249,7 @@ class Quantizer {
     BendProblem problem =
         bendProblem(seamless_, complex_, BlockIntegers(complex_, choice->integers), choice->scale);
     Stage stage(context_, "bending");
-    BentMap bent = bend(std::move(problem), {}, stage);
+    BentMap bent = bend(std::move(problem), {.maxGrowth = kMostGrowth}, stage);
     if (!bent.isValid()) {
       if (!bent.flippedTets.empty()) firstFlipped_ = bent.parentTet[bent.flippedTets.front()];
       return std::nullopt;
@@ -182,7 +277,9 @@ class Quantizer {
       context_.throwIfCancelled();
       program_.lengths.clear();
       for (const Arc& arc : complex_.arcs) {
-        program_.lengths.push_back(static_cast<double>(arc.length) / seamless_.unit * scale);
+        // Without the noise that would decide between integers that are equally good.
+        const double length = static_cast<double>(arc.length) / seamless_.unit * scale;
+        program_.lengths.push_back(std::round(length * kLengthUnits) / kLengthUnits);
       }
       Choice choice{scale, canLoadCbc() ? solveByCbc(program_) : solveGreedily(program_, stage), 0};
       if (choice.integers.empty()) {
@@ -223,7 +320,8 @@ class Quantizer {
   Context& context_;
   SeamlessMap seamless_;
   double cellsWanted_;
-  MotorcycleComplex complex_;
+  MotorcycleComplex complex_{.mesh = WallMesh(seamless_)};
+  bool isReduced_ = false;
   const TetMapView& map_;
   IntegerProgram program_;
   QuantizeReport report_;
@@ -255,7 +353,20 @@ SeamlessReport examineSeamless(const TetMapView& map, Context& context) {
 QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options, Context& context) {
   checkOptions(options);
   QuantizedMap result;
-  withThreads(context.threads(), [&] { result = Quantizer(map, options, context).run(); });
+  withThreads(context.threads(), [&] {
+    // What is wrong with the caller's arrays is found in them.
+    if (map.parameters.size() != map.tets.size() || !areInRange(map)) {
+      static_cast<void>(makeSeamless(map, {}, context));
+    }
+    std::vector<Index> order;
+    const TetMap sorted = inCanonicalOrder(map, order);
+    try {
+      result = Quantizer(sorted, options, context).run();
+    } catch (const Error& error) {
+      throw inCallersTerms(error, order);
+    }
+    restoreOrder(order, result.map);
+  });
   return result;
 }
 #else

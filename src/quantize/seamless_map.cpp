@@ -293,7 +293,11 @@ std::vector<std::int64_t> solve(SeamlessMap& map, const CutGraph& graph,
   const IntegerSystem system(unknowns.size(), equations);
   std::vector<double> wanted = system.nearest(unknowns.measured());
   for (double& x : wanted) x *= map.unit;
-  const std::vector<std::int64_t> values = system.roundedTo(wanted, kStep);
+  // Nearly all that depends on others is their sum, or half of it; some is a third ...
+  std::vector<std::int64_t> values;
+  for (const std::int64_t divisible : {1, 3, 15, 105}) {
+    if (values.empty()) values = system.roundedTo(wanted, divisible * kStep);
+  }
   if (values.size() != unknowns.size()) {
     notSeamless("conditions of singular curves have no solution on the lattice.", {});
   }

@@ -96,7 +96,8 @@ HalfFace WallTracer::wallAt(const PlaneMeeting& meeting) {
     const auto& [tet, corner0, corner1] = meeting.crossed;
     const int moved = moveEnd(meeting.crossed, meeting.plane);
     if (moved < 0) mesh_.split(meeting.crossed, meeting.plane.axis, meeting.plane.value);
-    face = halfFaceOf(tet, moved == corner0 ? corner1 : corner0);
+    // Always as a half-face of the tet before it: a turn goes on from its mate.
+    face = moved == corner0 ? mesh_.mate[halfFaceOf(tet, corner1)] : halfFaceOf(tet, corner0);
   }
   mesh_.markWall(face);
   return face;

@@ -1,0 +1,274 @@
+// Quantization as a whole: whatever seamless map comes in, the map that comes out is an
+// integer-grid map whose mesh is right.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <quantize/motorcycle_complex.hpp>
+#include <rapidcheck/gtest.h>
+
+#include <hexhex/hexhex.hpp>
+
+#include <lattice/rotation.hpp>
+
+#include "extract/support.hpp"
+#include "support/error_of.hpp"
+
+namespace hexhex::test {
+
+namespace {
+
+TetMap scaled(TetMap map, double factor) {
+  for (TetParameters& tet : map.parameters) {
+    for (Vec3& u : tet) {
+      for (double& x : u) x *= factor;
+    }
+  }
+  return map;
+}
+
+/// A chart of its own for each tet.
+TetMap withMovedCharts(TetMap map, std::uint64_t seed) {
+  std::uint64_t state = seed;
+  const auto next = [&state] {
+    return (state = state * 6364136223846793005U + 1442695040888963407U) >> 33;
+  };
+  for (TetParameters& tet : map.parameters) {
+    const Rotation rotation(static_cast<int>(next() % Rotation::kCount));
+    const Vec3 move = {static_cast<double>(next() % 1000) / 7,
+                       static_cast<double>(next() % 1000) / 7,
+                       static_cast<double>(next() % 1000) / 7};
+    for (Vec3& u : tet) {
+      u = rotation(u);
+      for (std::size_t k = 0; k < 3; ++k) u[k] += move[k];
+    }
+  }
+  return map;
+}
+
+TetMap withDigits(TetMap map, int digits) {
+  for (TetParameters& tet : map.parameters) {
+    for (Vec3& u : tet) {
+      for (double& x : u) {
+        std::ostringstream out;
+        out.precision(digits);
+        out << x;
+        x = std::strtod(out.str().c_str(), nullptr);
+      }
+    }
+  }
+  return map;
+}
+
+QuantizeOptions cells(double number) {
+  QuantizeOptions options;
+  options.cells = number;
+  options.wallTag = 2;
+  return options;
+}
+
+QuantizeOptions sameScale() {
+  QuantizeOptions options;
+  options.scale = 1;
+  return options;
+}
+
+/// Quantizes, checks without any tolerance, extracts and verifies.
+QuantizedMap expectRightMesh(const TetMap& map, const QuantizeOptions& options) {
+  QuantizedMap result = quantize(map, options);
+  EXPECT_TRUE(check(result.map, {.tolerance = 0}).valid());
+  ExtractOptions exact;
+  exact.tolerance = 0;
+  EXPECT_EQ(verifiedExtraction(result.map, exact).cells.size(), result.report.cells);
+  return result;
+}
+
+SampleKind anyKind() {
+  return sampleKinds()[*rc::gen::inRange<std::size_t>(0, sampleKinds().size())].kind;
+}
+
+RC_GTEST_PROP(Quantize, GivesAnIntegerGridMapItsIntegersBack, ()) {
+  SampleOptions options;
+  options.cells = *rc::gen::inRange(1, 6);
+  options.jitter = *rc::gen::element(0.0, 0.3, 0.8);
+  options.charts = *rc::gen::element(ChartStyle::Aligned, ChartStyle::Blocks, ChartStyle::Random);
+  options.seed = *rc::gen::arbitrary<std::uint64_t>();
+  const Sample sample = generateSample(anyKind(), options);
+  const QuantizedMap result = expectRightMesh(sample.map, sameScale());
+  const Expectation expected = check(result.map).expected;
+  RC_ASSERT(expected.cells == sample.answer.expected.cells);
+  RC_ASSERT(expected.boundaryQuads == sample.answer.expected.boundaryQuads);
+  RC_ASSERT(expected.innerSingularEdges == sample.answer.expected.innerSingularEdges);
+  RC_ASSERT(expected.boundarySingularEdges == sample.answer.expected.boundarySingularEdges);
+  RC_ASSERT(result.report.addedTets == 0U);
+}
+
+RC_GTEST_PROP(Quantize, TakesAnySeamlessSample, ()) {
+  SampleOptions options;
+  options.cells = *rc::gen::inRange(2, 6);
+  options.stretch = *rc::gen::element(0.1, 0.5, 0.9);
+  options.charts = *rc::gen::element(ChartStyle::Aligned, ChartStyle::Blocks, ChartStyle::Random);
+  options.noise = *rc::gen::element(0.0, 1e-9);
+  options.seed = *rc::gen::arbitrary<std::uint64_t>();
+  const Sample sample = generateSample(anyKind(), options);
+  const QuantizedMap result = expectRightMesh(sample.map, sameScale());
+  const CheckReport before = check(sample.map);
+  const CheckReport after = check(result.map);
+  // The same curves of the same valences, the same topology.
+  const Expectation& known = sample.answer.expected;
+  const auto valences = [](const auto& counts) {
+    std::vector<int> list;
+    for (const auto& [valence, count] : counts) list.push_back(valence);
+    return list;
+  };
+  RC_ASSERT(valences(after.expected.innerSingularEdges) == valences(known.innerSingularEdges));
+  RC_ASSERT(valences(after.expected.boundarySingularEdges) ==
+            valences(known.boundarySingularEdges));
+  RC_ASSERT(after.expected.eulerCharacteristic == known.eulerCharacteristic);
+  RC_ASSERT(after.boundaryGenus == before.boundaryGenus);
+}
+
+RC_GTEST_PROP(Quantize, DoesNotCareForChartsAndOrder, ()) {
+  SampleOptions options;
+  options.jitter = *rc::gen::element(0.0, 0.5);
+  options.seed = *rc::gen::arbitrary<std::uint64_t>();
+  TetMap map = scaled(generateSample(anyKind(), options).map, 0.618);
+  const std::uint64_t expected = expectRightMesh(map, sameScale()).report.cells;
+  RC_ASSERT(quantize(withMovedCharts(map, options.seed), sameScale()).report.cells == expected);
+  std::reverse(map.tets.begin(), map.tets.end());
+  std::reverse(map.parameters.begin(), map.parameters.end());
+  RC_ASSERT(quantize(map, sameScale()).report.cells == expected);
+}
+
+TEST(Quantize, DoesNotDependOnThreads) {
+  const TetMap map = scaled(generateSample(SampleKind::Sphere, {.jitter = 0.5}).map, 0.7);
+  Context one(1);
+  Context two(2);
+  const QuantizedMap a = quantize(map, sameScale(), one);
+  const QuantizedMap b = quantize(map, sameScale(), two);
+  EXPECT_EQ(a.map.parameters, b.map.parameters);
+  EXPECT_EQ(a.map.tets, b.map.tets);
+}
+
+TEST(Quantize, KeepsFeaturesAndRegions) {
+  SampleOptions options;
+  options.features = true;
+  options.jitter = 0.4;
+  const Sample sample = generateSample(SampleKind::Cylinder, options);
+  const QuantizedMap result = expectRightMesh(scaled(sample.map, 0.77), sameScale());
+  const HexMesh mesh = extract(result.map);
+  // As many curves as before, all of them on edges of the mesh; blocks as regions.
+  std::map<std::int32_t, std::uint64_t> edges;
+  for (const FeatureEdge& edge : mesh.features.edges) ++edges[edge.tag];
+  EXPECT_EQ(edges.size(), sample.answer.features.edges.size());
+  EXPECT_EQ(mesh.features.vertices.size(), sample.answer.features.vertices.size());
+  EXPECT_EQ(mesh.regions.size(), mesh.cells.size());
+  EXPECT_EQ(static_cast<std::uint64_t>(*std::max_element(mesh.regions.begin(), mesh.regions.end())),
+            sample.answer.features.regions);
+}
+
+TEST(Quantize, RefusesOptionsThatMakeNoSense) {
+  const TetMap map = generateSample(SampleKind::Box).map;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const QuantizeOptions& options :
+       {QuantizeOptions{}, QuantizeOptions{.cells = -1}, QuantizeOptions{.cells = nan},
+        QuantizeOptions{.cells = 10, .scale = 1}, QuantizeOptions{.scale = 1, .tolerance = 2}}) {
+    EXPECT_EQ(codeOf([&] { static_cast<void>(quantize(map, options)); }),
+              ErrorCode::InvalidArgument);
+  }
+  EXPECT_EQ(codeOf([&] { static_cast<void>(quantize(map, cells(1e12))); }), ErrorCode::TooLarge);
+}
+
+TEST(Quantize, RefusesMapsThatAreNotSeamless) {
+  TetMap noisy = generateSample(SampleKind::Sphere, {.noise = 0.005}).map;
+  EXPECT_EQ(codeOf([&] { static_cast<void>(quantize(noisy, sameScale())); }),
+            ErrorCode::TransitionResidual);
+  const TetMap flipped =
+      generateSample(SampleKind::Sphere, {.cells = 8, .refine = 6, .defects = 5}).map;
+  EXPECT_EQ(codeOf([&] { static_cast<void>(quantize(flipped, sameScale())); }),
+            ErrorCode::FlippedTet);
+  EXPECT_EQ(codeOf([&] { static_cast<void>(quantize(TetMap{}, sameScale())); }),
+            ErrorCode::EmptyMesh);
+}
+
+TEST(Quantize, TellsSeamlessMapsFromOthers) {
+  Context context;
+  const auto kindOf = [&](const TetMap& map) { return examineSeamless(map, context).kind; };
+  EXPECT_EQ(kindOf(generateSample(SampleKind::Torus, {.stretch = 0.5}).map),
+            SeamlessKind::Seamless);
+  EXPECT_EQ(kindOf(generateSample(SampleKind::Torus, {.noise = 0.005}).map),
+            SeamlessKind::AlmostSeamless);
+  TetMap wild = generateSample(SampleKind::Torus).map;
+  for (TetParameters& tet : wild.parameters) tet[1][0] += 3 * std::sin(tet[0][1] + tet[2][2]);
+  EXPECT_EQ(kindOf(wild), SeamlessKind::Neither);
+}
+
+TEST(MotorcycleComplex, ConsistsOfBoxes) {
+  for (const SampleKindName& kind : sampleKinds()) {
+    SCOPED_TRACE(kind.name);
+    Context context;
+    const TetMap map = generateSample(kind.kind, {.charts = ChartStyle::Random, .jitter = 0.6}).map;
+    const SeamlessMap seamless = makeSeamless(map, {1e-6, 0, 0}, context);
+    for (const bool reduced : {false, true}) {
+      // That blocks are boxes is proven inside, by their volumes.
+      const MotorcycleComplex complex = traceComplex(seamless, reduced, context);
+      for (const PatchSide& patch : complex.patches) {
+        std::array<std::int64_t, 3> sum{};
+        for (const ArcSide& side : patch.border) {
+          sum[side.axis] += side.sign * complex.arcs[side.arc].length;
+        }
+        EXPECT_EQ(sum, (std::array<std::int64_t, 3>{}));
+      }
+    }
+  }
+}
+
+/// Seamless maps of real models.
+std::vector<std::filesystem::path> realMaps() {
+  const char* chosen = std::getenv("HEXHEX_DATA");
+  const auto folder =
+      std::filesystem::path(chosen != nullptr ? chosen : HEXHEX_DATA_DIR) / "seamless";
+  std::vector<std::filesystem::path> files;
+  if (!std::filesystem::exists(folder)) return files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  files.resize(std::min(files.size(), static_cast<std::size_t>(cases(13))));
+  return files;
+}
+
+TEST(QuantizeRealMaps, AtAllDensities) {
+  if (realMaps().empty()) GTEST_SKIP() << "no real maps";
+  for (const std::filesystem::path& file : realMaps()) {
+    const TetMap map = readMap(file);
+    for (const double density : {0.1, 1.0, 10.0}) {
+      SCOPED_TRACE(file.stem().string() + " at " + std::to_string(density));
+      const double wanted = density * static_cast<double>(map.tets.size());
+      const QuantizeReport report = expectRightMesh(map, cells(wanted)).report;
+      const double ratio = static_cast<double>(report.cells) / wanted;
+      EXPECT_LT(std::max(ratio, 1 / ratio), density < 1 ? 2 : 1.25);
+      EXPECT_LE(static_cast<double>(report.addedTets), 0.2 * static_cast<double>(map.tets.size()));
+    }
+  }
+}
+
+TEST(QuantizeRealMaps, WithFewDigitsAndOtherCharts) {
+  if (realMaps().empty()) GTEST_SKIP() << "no real maps";
+  for (const std::filesystem::path& file : realMaps()) {
+    SCOPED_TRACE(file.stem().string());
+    const TetMap map = readMap(file);
+    const auto wanted = static_cast<double>(map.tets.size());
+    expectRightMesh(withDigits(map, 6), cells(wanted));
+    expectRightMesh(withMovedCharts(map, 7), cells(wanted));
+  }
+}
+
+}  // namespace
+
+}  // namespace hexhex::test
