@@ -4,6 +4,7 @@
 
 #include <quantize/integer_program.hpp>
 #if defined(HEXHEX_CBC_NAME)
+#include <csignal>
 #include <dlfcn.h>
 
 #include <coin/Cbc_C_Interface.h>
@@ -25,6 +26,7 @@ Function* symbol(Function* /*declared*/, const char* name) {
   return reinterpret_cast<Function*>(dlsym(library(), name));
 }
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a name
 #define HEXHEX_CBC(function) symbol(&function, #function)
 
 constexpr double kInfinity = 1e30;

@@ -110,7 +110,7 @@ void mendCut(const TetTopology& topology, const EdgeFans& edges, CutGraph& graph
     graph.isCut[halfFace] = graph.isCut[topology.mate[halfFace]] = false;
     for (int i = 0; i < 4; ++i) {
       if (i == localOf(halfFace)) continue;
-      const CornerMask ends4 =
+      const auto ends4 =
           static_cast<CornerMask>(kWholeTet ^ cornerBit(i) ^ cornerBit(localOf(halfFace)));
       const Index edge = edges.edgeOf(tetOf(halfFace), ends4);
       cutFaces[edge] -= 2;

@@ -92,10 +92,11 @@ std::vector<double> IntegerSystem::nearest(const std::vector<double>& wanted) co
   const auto n = static_cast<Eigen::Index>(variableCount_);
   Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(free_.size()));
   for (std::size_t k = 0; k < free_.size(); ++k) basis(free_[k], static_cast<Eigen::Index>(k)) = 1;
-  for (auto solved = solved_.rbegin(); solved != solved_.rend(); ++solved) {
-    for (const auto& [variable, factor] : solved->rest.terms()) {
-      basis.row(solved->variable) -= static_cast<double>(factor) /
-                                     static_cast<double>(solved->coefficient) * basis.row(variable);
+  for (std::size_t i = solved_.size(); i-- > 0;) {
+    const Solved& solved = solved_[i];
+    for (const auto& [variable, factor] : solved.rest.terms()) {
+      basis.row(solved.variable) -= static_cast<double>(factor) /
+                                    static_cast<double>(solved.coefficient) * basis.row(variable);
     }
   }
   const Eigen::Map<const Eigen::VectorXd> target(wanted.data(), n);
@@ -110,10 +111,11 @@ std::vector<std::int64_t> IntegerSystem::roundedTo(const std::vector<double>& so
   for (const Index v : free_) {
     values[v] = std::llround(solution[v] / static_cast<double>(step)) * step;
   }
-  for (auto solved = solved_.rbegin(); solved != solved_.rend(); ++solved) {
-    const auto rest = solved->rest(std::span<const std::int64_t>(values));
-    if (rest % solved->coefficient != 0) return {};
-    values[solved->variable] = -rest / solved->coefficient;
+  for (std::size_t i = solved_.size(); i-- > 0;) {
+    const Solved& solved = solved_[i];
+    const auto rest = solved.rest(std::span<const std::int64_t>(values));
+    if (rest % solved.coefficient != 0) return {};
+    values[solved.variable] = -rest / solved.coefficient;
   }
   return values;
 }

@@ -246,53 +246,73 @@ void cutAcross(MotorcycleComplex& complex, const Holonomy& holonomy) {
 }
 
 /// The sides of patches, with their borders.
-void findPatches(MotorcycleComplex& complex, const ArcFinder& arcs, DisjointSets& sides) {
-  const WallMesh& mesh = complex.mesh;
-  complex.patchOf.assign(mesh.mate.size(), kNone);
-  std::vector<std::set<ArcSide>> borders;
-  for (HalfFace h = 0; h < mesh.mate.size(); ++h) {
-    if (!mesh.isWall[h]) continue;
-    const HalfFace first = sides.find(h);
-    if (first == h) {
-      complex.patchOf[h] = static_cast<Index>(complex.patches.size());
-      complex.patches.push_back({complex.blockOf[tetOf(h)], h, {}});
-      borders.emplace_back();
+class PatchFinder {
+ public:
+  PatchFinder(MotorcycleComplex& complex, const ArcFinder& arcs, DisjointSets& sides)
+      : complex_(complex), arcs_(arcs), sides_(sides) {}
+
+  void run() {
+    const WallMesh& mesh = complex_.mesh;
+    complex_.patchOf.assign(mesh.mate.size(), kNone);
+    for (HalfFace h = 0; h < mesh.mate.size(); ++h) {
+      if (mesh.isWall[h]) addTriangle(h);
     }
-    complex.patchOf[h] = complex.patchOf[first];
-    const Index tet = tetOf(h);
+    for (std::size_t p = 0; p < borders_.size(); ++p) {
+      complex_.patches[p].border.assign(borders_[p].begin(), borders_[p].end());
+    }
+  }
+
+ private:
+  void addTriangle(HalfFace h) {
+    const HalfFace first = sides_.find(h);
+    if (first == h) {
+      complex_.patchOf[h] = static_cast<Index>(complex_.patches.size());
+      complex_.patches.push_back({complex_.blockOf[tetOf(h)], h, {}});
+      borders_.emplace_back();
+    }
+    complex_.patchOf[h] = complex_.patchOf[first];
     const auto& c = kFaceCorners[h % 4];
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto tail = static_cast<std::size_t>(c[k]);
-      const auto head = static_cast<std::size_t>(c[(k + 1) % 3]);
-      const auto at = arcs.positionOf(mesh.tets[tet][tail], mesh.tets[tet][head]);
-      if (at.arc == kNone) continue;
-      const LatticePoint from = complex.toBlock[tet](mesh.at(tet, tail));
-      const LatticePoint along = complex.toBlock[tet](mesh.at(tet, head)) - from;
-      ArcSide side;
-      side.arc = at.arc;
-      while (along[side.axis] == 0) ++side.axis;
-      side.sign = along[side.axis] > 0 ? 1 : -1;
-      // The arc's node from which the side comes lies this far behind.
-      const std::int64_t length = complex.arcs[at.arc].length;
-      const std::int64_t behind = at.isForward ? at.offset : length - at.offset;
-      side.start = side.end = from;
-      side.start[side.axis] -= side.sign * behind;
-      side.end[side.axis] += side.sign * (length - behind);
-      borders[complex.patchOf[h]].insert(side);
-      for (const std::size_t corner : {tail, head}) {
-        const Index vertex = mesh.tets[tet][corner];
-        const bool isNode = arcs.isNode(vertex) && mesh.featureVertices.contains(vertex);
-        if (!isNode && !complex.arcs[at.arc].isFeature) continue;
-        const LatticePoint here = complex.toBlock[tet](mesh.at(tet, corner));
-        complex.featureCorners.push_back(
-            {tet, corner, isNode ? 3 : std::size_t{side.axis}, isNode ? here : side.start});
-      }
+      addEdge(h, static_cast<std::size_t>(c[k]), static_cast<std::size_t>(c[(k + 1) % 3]));
     }
   }
-  for (std::size_t p = 0; p < borders.size(); ++p) {
-    complex.patches[p].border.assign(borders[p].begin(), borders[p].end());
+
+  /// A directed edge of a triangle, if it is one of an arc.
+  void addEdge(HalfFace h, std::size_t tail, std::size_t head) {
+    const Index tet = tetOf(h);
+    const WallMesh& mesh = complex_.mesh;
+    const auto at = arcs_.positionOf(mesh.tets[tet][tail], mesh.tets[tet][head]);
+    if (at.arc == kNone) return;
+    const LatticePoint from = complex_.toBlock[tet](mesh.at(tet, tail));
+    const LatticePoint along = complex_.toBlock[tet](mesh.at(tet, head)) - from;
+    ArcSide side;
+    side.arc = at.arc;
+    while (along[side.axis] == 0) ++side.axis;
+    side.sign = along[side.axis] > 0 ? 1 : -1;
+    // The arc's node from which the side comes lies this far behind.
+    const std::int64_t length = complex_.arcs[at.arc].length;
+    const std::int64_t behind = at.isForward ? at.offset : length - at.offset;
+    side.start = side.end = from;
+    side.start[side.axis] -= side.sign * behind;
+    side.end[side.axis] += side.sign * (length - behind);
+    borders_[complex_.patchOf[h]].insert(side);
+    for (const std::size_t corner : {tail, head}) addFeature(tet, corner, side);
   }
-}
+
+  void addFeature(Index tet, std::size_t corner, const ArcSide& side) {
+    const Index vertex = complex_.mesh.tets[tet][corner];
+    const bool isNode = arcs_.isNode(vertex) && complex_.mesh.featureVertices.contains(vertex);
+    if (!isNode && !complex_.arcs[side.arc].isFeature) return;
+    const LatticePoint here = complex_.toBlock[tet](complex_.mesh.at(tet, corner));
+    complex_.featureCorners.push_back(
+        {tet, corner, isNode ? 3 : std::size_t{side.axis}, isNode ? here : side.start});
+  }
+
+  MotorcycleComplex& complex_;
+  const ArcFinder& arcs_;
+  DisjointSets& sides_;
+  std::vector<std::set<ArcSide>> borders_;
+};
 
 void findArcsAndPatches(MotorcycleComplex& complex) {
   complex.arcs.clear();
@@ -302,44 +322,86 @@ void findArcsAndPatches(MotorcycleComplex& complex) {
   ArcFinder arcs(complex, sides);
   arcs.collect();
   arcs.follow();
-  findPatches(complex, arcs, sides);
+  PatchFinder(complex, arcs, sides).run();
 }
 
-/// From the lowest corner to the highest one of what a patch's border encloses.
-LatticePoint sizeOf(const PatchSide& patch) {
-  LatticePoint low = patch.border.front().start;
-  LatticePoint high = low;
-  for (const ArcSide& side : patch.border) {
+/// From the lowest corner to the highest one.
+struct Extent {
+  LatticePoint low{};
+  LatticePoint high{};
+  bool isEmpty = true;
+
+  void add(const LatticePoint& point) {
+    if (isEmpty) low = high = point;
+    isEmpty = false;
     for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], side.start[k]);
-      high[k] = std::max(high[k], side.start[k]);
+      low[k] = std::min(low[k], point[k]);
+      high[k] = std::max(high[k], point[k]);
     }
   }
-  return high - low;
-}
+  void add(const PatchSide& patch) {
+    for (const ArcSide& side : patch.border) add(side.start);
+  }
+};
 
 /// Takes away walls between two blocks that are one box without it: arcs that nothing needs would
 /// only demand hexahedra (the reduced complex of Brueckner et al.). Thin blocks go first.
-/// @return whether there were any
-bool removeWalls(MotorcycleComplex& complex) {
-  std::vector<LatticePoint> low(complex.blockCount);
-  std::vector<LatticePoint> high(complex.blockCount);
-  std::vector<bool> isKnown(complex.blockCount);
-  for (const PatchSide& patch : complex.patches) {
-    for (const ArcSide& side : patch.border) {
-      const Index b = patch.block;
-      if (!isKnown[b]) low[b] = high[b] = side.start;
-      isKnown[b] = true;
-      for (std::size_t k = 0; k < 3; ++k) {
-        low[b][k] = std::min(low[b][k], side.start[k]);
-        high[b][k] = std::max(high[b][k], side.start[k]);
+class WallRemover {
+ public:
+  explicit WallRemover(MotorcycleComplex& complex)
+      : complex_(complex), blocks_(complex.blockCount), isFeature_(complex.patches.size()) {
+    for (const PatchSide& patch : complex.patches) blocks_[patch.block].add(patch);
+    for (HalfFace h = 0; h < complex.patchOf.size(); ++h) {
+      if (complex.mesh.isFeature[h]) isFeature_[complex.patchOf[h]] = true;
+    }
+    for (Index p = 0; p < complex.patches.size(); ++p) {
+      for (const ArcSide& side : complex.patches[p].border) {
+        if (complex.arcs[side.arc].isFeature) isFeature_[p] = true;
       }
     }
   }
-  // A patch that is a whole side of a block: then how thick the block is there, otherwise nothing.
-  const auto thickness = [&](const PatchSide& patch) -> std::int64_t {
-    const LatticePoint size = sizeOf(patch);
-    const LatticePoint whole = high[patch.block] - low[patch.block];
+
+  /// @return whether there were any
+  bool run() {
+    std::vector<std::pair<std::int64_t, Index>> removable;
+    for (Index p = 0; p < complex_.patches.size(); ++p) {
+      const std::int64_t thick = thicknessBeside(p);
+      if (thick > 0) removable.emplace_back(thick, p);
+    }
+    std::sort(removable.begin(), removable.end());
+    std::vector<bool> isChanged(complex_.blockCount);
+    std::vector<bool> isRemoved(complex_.patches.size());
+    for (const auto& [thick, p] : removable) {
+      const Index other = complex_.acrossPatch(p);
+      const Index a = complex_.patches[p].block;
+      const Index b = complex_.patches[other].block;
+      if (isChanged[a] || isChanged[b]) continue;
+      isChanged[a] = isChanged[b] = true;
+      isRemoved[p] = isRemoved[other] = true;
+    }
+    for (HalfFace h = 0; h < complex_.patchOf.size(); ++h) {
+      const Index p = complex_.patchOf[h];
+      if (p != kNone && isRemoved[p]) complex_.mesh.isWall[h] = false;
+    }
+    return !removable.empty();
+  }
+
+ private:
+  /// Of the thinner block beside a wall that may go, otherwise 0.
+  [[nodiscard]] std::int64_t thicknessBeside(Index p) const {
+    const Index other = complex_.acrossPatch(p);
+    if (other == kNone || other < p || isFeature_[p]) return 0;
+    const PatchSide& here = complex_.patches[p];
+    const PatchSide& there = complex_.patches[other];
+    if (here.block == there.block) return 0;
+    return std::min(thickness(here), thickness(there));
+  }
+  /// How thick a block is behind a patch that is a whole side of it, otherwise 0.
+  [[nodiscard]] std::int64_t thickness(const PatchSide& patch) const {
+    Extent own;
+    own.add(patch);
+    const LatticePoint size = own.high - own.low;
+    const LatticePoint whole = blocks_[patch.block].high - blocks_[patch.block].low;
     std::int64_t thick = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       if (size[k] == 0) {
@@ -349,80 +411,41 @@ bool removeWalls(MotorcycleComplex& complex) {
       }
     }
     return thick;
-  };
-  std::vector<bool> isFeature(complex.patches.size());
-  for (HalfFace h = 0; h < complex.patchOf.size(); ++h) {
-    if (complex.mesh.isFeature[h]) isFeature[complex.patchOf[h]] = true;
   }
-  for (Index p = 0; p < complex.patches.size(); ++p) {
-    for (const ArcSide& side : complex.patches[p].border) {
-      if (complex.arcs[side.arc].isFeature) isFeature[p] = true;
-    }
-  }
-  std::vector<std::pair<std::int64_t, Index>> removable;
-  for (Index p = 0; p < complex.patches.size(); ++p) {
-    const Index other = complex.acrossPatch(p);
-    if (other == kNone || other < p) continue;
-    const PatchSide& here = complex.patches[p];
-    const PatchSide& there = complex.patches[other];
-    if (here.block == there.block || isFeature[p]) continue;
-    const std::int64_t a = thickness(here);
-    const std::int64_t b = thickness(there);
-    if (a != 0 && b != 0) removable.emplace_back(std::min(a, b), p);
-  }
-  std::sort(removable.begin(), removable.end());
-  std::vector<bool> isChanged(complex.blockCount);
-  std::vector<bool> isRemoved(complex.patches.size());
-  for (const auto& [thick, p] : removable) {
-    const Index other = complex.acrossPatch(p);
-    const Index a = complex.patches[p].block;
-    const Index b = complex.patches[other].block;
-    if (isChanged[a] || isChanged[b]) continue;
-    isChanged[a] = isChanged[b] = true;
-    isRemoved[p] = isRemoved[other] = true;
-  }
-  for (HalfFace h = 0; h < complex.patchOf.size(); ++h) {
-    if (complex.patchOf[h] != kNone && isRemoved[complex.patchOf[h]])
-      complex.mesh.isWall[h] = false;
-  }
-  return !removable.empty();
-}
+
+  MotorcycleComplex& complex_;
+  std::vector<Extent> blocks_;
+  std::vector<bool> isFeature_;  ///< per side of a patch: it has to stay
+};
 
 /// A block is a box if it has the volume of its bounding box.
 void requireBoxes(const MotorcycleComplex& complex) {
-  struct Extent {
-    LatticePoint low{}, high{};
-    Int192 sixfoldVolume;
-    Index tet = kNone;
-  };
   std::vector<Extent> extents(complex.blockCount);
+  std::vector<Int192> sixfoldVolumes(complex.blockCount);
+  std::vector<Index> someTet(complex.blockCount);
   for (Index t = 0; t < complex.mesh.tetCount(); ++t) {
-    Extent& extent = extents[complex.blockOf[t]];
+    const Index block = complex.blockOf[t];
+    someTet[block] = t;
     LatticeTet u = complex.mesh.corners[t];
-    for (LatticePoint& corner : u) corner = complex.toBlock[t](corner);
-    if (extent.tet == kNone) extent = {u[0], u[0], {}, t};
-    for (const LatticePoint& corner : u) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        extent.low[k] = std::min(extent.low[k], corner[k]);
-        extent.high[k] = std::max(extent.high[k], corner[k]);
-      }
+    for (LatticePoint& corner : u) {
+      corner = complex.toBlock[t](corner);
+      extents[block].add(corner);
     }
     const Int192 volume = orientationDeterminant(u[0], u[1], u[2], u[3]);
     if (volume.sign() <= 0) {
       throw Error(ErrorCode::FlippedTet, "A tet is too thin in the map to be cut by a wall.",
                   {PlaceKind::Tet, complex.mesh.original[t]});
     }
-    extent.sixfoldVolume += volume;
+    sixfoldVolumes[block] += volume;
   }
-  for (const Extent& extent : extents) {
-    const LatticePoint size = extent.high - extent.low;
-    Int192 box;
-    box.addProduct(static_cast<Int128>(size[0]) * size[1], -6 * size[2]);
-    box += extent.sixfoldVolume;
-    if (box.sign() != 0) {
+  for (Index block = 0; block < complex.blockCount; ++block) {
+    const LatticePoint size = extents[block].high - extents[block].low;
+    Int192 difference = sixfoldVolumes[block];
+    difference.addProduct(static_cast<Int128>(size[0]) * size[1], -6 * size[2]);
+    if (difference.sign() != 0) {
       throw Error(ErrorCode::Internal,
                   "A block of the motorcycle complex is no box. This is a bug.",
-                  {PlaceKind::Tet, complex.mesh.original[extent.tet]});
+                  {PlaceKind::Tet, complex.mesh.original[someTet[block]]});
     }
   }
 }
@@ -438,7 +461,7 @@ MotorcycleComplex traceComplex(const SeamlessMap& map, bool reduced, Context& co
   }
   requireBoxes(complex);
   findArcsAndPatches(complex);
-  while (reduced && removeWalls(complex)) {
+  while (reduced && WallRemover(complex).run()) {
     context.throwIfCancelled();
     findBlocks(complex);
     findArcsAndPatches(complex);

@@ -74,6 +74,40 @@ void eliminate(std::vector<Row>& rows, VertexConditions& vertex,
   for (std::size_t r = done; r < rows.size(); ++r) equations.push_back(std::move(rows[r].rest));
 }
 
+/// Two ways to a sector give the same parameter there.
+void addDifference(const VertexConditions::Sector& reached, const VertexConditions::Sector& known,
+                   std::vector<Row>& rows) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    Row row;
+    for (int from = 0; from < 3; ++from) {
+      const auto column = static_cast<std::size_t>(from);
+      const Direction a = reached.rotation(direction(from, 1));
+      const Direction b = known.rotation(direction(from, 1));
+      if (static_cast<std::size_t>(axisOf(a)) == k) row.coefficients[column] += signOf(a);
+      if (static_cast<std::size_t>(axisOf(b)) == k) row.coefficients[column] -= signOf(b);
+    }
+    row.rest = reached.translation[k];
+    row.rest.add(known.translation[k], -1);
+    rows.push_back(std::move(row));
+  }
+}
+
+/// What planes say in a sector.
+void addPlanes(const VertexConditions::Sector& sector, const SharedUnknowns& unknowns,
+               std::vector<Row>& rows) {
+  for (int from = 0; from < 3; ++from) {
+    const Direction to = sector.rotation(direction(from, 1));
+    const auto axis = static_cast<std::size_t>(axisOf(to));
+    const Index plane = unknowns.plane(sector.sector, axis);
+    if (plane == kNone) continue;
+    Row row;
+    row.coefficients[static_cast<std::size_t>(from)] = signOf(to);
+    row.rest = sector.translation[axis];
+    row.rest.add({plane, 1}, -1);
+    rows.push_back(std::move(row));
+  }
+}
+
 /// A way from one sector at a vertex to another, across the cut.
 struct Crossing {
   Index from;
@@ -246,33 +280,11 @@ VertexConditions conditionsOf(Index vertex, const TetTopology& topology, const C
         conditions.sectors.push_back(std::move(reached));
         continue;
       }
-      for (std::size_t k = 0; k < 3; ++k) {
-        Row row;
-        for (int from3 = 0; from3 < 3; ++from3) {
-          const auto column = static_cast<std::size_t>(from3);
-          const Direction a = reached.rotation(direction(from3, 1));
-          const Direction b = known->rotation(direction(from3, 1));
-          if (static_cast<std::size_t>(axisOf(a)) == k) row.coefficients[column] += signOf(a);
-          if (static_cast<std::size_t>(axisOf(b)) == k) row.coefficients[column] -= signOf(b);
-        }
-        row.rest = reached.translation[k];
-        row.rest.add(known->translation[k], -1);
-        rows.push_back(std::move(row));
-      }
+      addDifference(reached, *known, rows);
     }
   }
   for (const VertexConditions::Sector& sector : conditions.sectors) {
-    for (int from = 0; from < 3; ++from) {
-      const Direction to = sector.rotation(direction(from, 1));
-      const auto axis = static_cast<std::size_t>(axisOf(to));
-      const Index plane = unknowns.plane(sector.sector, axis);
-      if (plane == kNone) continue;
-      Row row;
-      row.coefficients[static_cast<std::size_t>(from)] = signOf(to);
-      row.rest = sector.translation[axis];
-      row.rest.add({plane, 1}, -1);
-      rows.push_back(std::move(row));
-    }
+    addPlanes(sector, unknowns, rows);
   }
   eliminate(rows, conditions, equations);
   return conditions;

@@ -362,6 +362,7 @@ bool addCoincidences(const CutGraph& graph, const SharedUnknowns& unknowns,
     all = beyondCut(all, graph, unknowns);
   }
   std::vector<std::tuple<std::size_t, std::int64_t, const IntegerForm*>> sorted;
+  sorted.reserve(all.size());
   for (const FixedCoordinate& each : all) {
     sorted.emplace_back(each.axis, each.form(values), &each.form);
   }

@@ -181,14 +181,17 @@ bool WallMesh::moveInto(Index tet, std::uint8_t corner, std::size_t axis, std::i
 }
 
 void WallMesh::appendCopy(Index tet) {
-  tets.push_back(Tet(tets[tet]));
-  corners.push_back(LatticeTet(corners[tet]));
+  const Tet copy = tets[tet];
+  const LatticeTet corner = corners[tet];
+  tets.push_back(copy);
+  corners.push_back(corner);
   original.push_back(Index{original[tet]});
   firstPart_.push_back(kNone);
   moved_.push_back(kNone);
   for (HalfFace h = 4 * tet; h < 4 * tet + 4; ++h) {
     mate.push_back(HalfFace{mate[h]});
-    change.push_back(ChartChange(change[h]));
+    const ChartChange across = change[h];
+    change.push_back(across);
     isWall.push_back(bool{isWall[h]});
     isFeature.push_back(bool{isFeature[h]});
     originalFace.push_back(std::uint8_t{originalFace[h]});

@@ -11,6 +11,8 @@ namespace {
 
 /// A wall that crosses an edge so close to its end, as a share of the edge, moves the end.
 constexpr double kClose = 0.25;
+/// Of distances between which priorities tell, on the lattice of 2^52 units.
+constexpr double kDistanceUnits = 0x1p28;
 
 Vec3 toVector(const LatticePoint& u) {
   return {static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2])};
@@ -128,7 +130,9 @@ void WallTracer::push(HalfFace wall, const std::array<Index, 2>& edge,
 
 void WallTracer::push(const std::array<Index, 2>& edge, const std::array<double, 2>& distances,
                       Index tet) {
-  fronts_.push({(distances[0] + distances[1]) / 2, order_++, edge, distances, tet});
+  // Without the noise that would decide who comes first in symmetric maps.
+  const double distance = std::round((distances[0] + distances[1]) / kDistanceUnits);
+  fronts_.push({distance, order_++, edge, distances, tet});
 }
 
 void WallTracer::startAt(const TetEdge& edge, int face) {
