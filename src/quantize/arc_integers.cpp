@@ -25,7 +25,10 @@ std::vector<ArcEquation> arcEquations(const MotorcycleComplex& complex) {
         if (side.axis == axis) sum[side.arc] += side.sign;
       }
       std::erase_if(sum, [](const auto& term) { return term.second == 0; });
-      if (!sum.empty()) equations.emplace_back(sum.begin(), sum.end());
+      if (sum.empty()) continue;
+      const int sign = sum.begin()->second < 0 ? -1 : 1;
+      ArcEquation& equation = equations.emplace_back();
+      for (const auto& [arc, factor] : sum) equation.emplace_back(arc, sign * factor);
     }
   }
   std::sort(equations.begin(), equations.end());

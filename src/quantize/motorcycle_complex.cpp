@@ -10,6 +10,9 @@ namespace hexhex {
 
 namespace {
 
+/// By this power of two, on the lattice of 2^52 units, thicknesses have to differ to matter.
+constexpr int kThicknessBits = 28;
+
 /// Where blocks do not close up: a way around through which charts differ.
 struct Holonomy {
   Index tet = kNone;   ///< where it was noticed
@@ -366,7 +369,8 @@ class WallRemover {
     std::vector<std::pair<std::int64_t, Index>> removable;
     for (Index p = 0; p < complex_.patches.size(); ++p) {
       const std::int64_t thick = thicknessBeside(p);
-      if (thick > 0) removable.emplace_back(thick, p);
+      // Without noise that would decide in symmetric maps.
+      if (thick > 0) removable.emplace_back(thick >> kThicknessBits, p);
     }
     std::sort(removable.begin(), removable.end());
     std::vector<bool> isChanged(complex_.blockCount);
