@@ -367,9 +367,9 @@ void addQuantization(CLI::App& parser, Arguments& arguments) {
       parser.add_flag("--quantize", arguments.quantize,
                       "The map is seamless: make it an integer-grid map first, with\n"
                       "--cells, --map-scale or --edge-length (`hexhex quantize --help`)");
-  addQuantizeOptions(parser, arguments.quantizeOptions, "--map-scale");
-  for (const char* name : {"--cells", "--map-scale", "--edge-length", "--densify"}) {
-    parser.get_option(name)->needs(flag);
+  for (CLI::Option* const option :
+       addQuantizeOptions(parser, arguments.quantizeOptions, "--map-scale")) {
+    option->needs(flag);
   }
 }
 

@@ -18,7 +18,8 @@ constexpr std::int32_t kWallTag = 2;
 
 }  // namespace
 
-void addQuantizeOptions(CLI::App& parser, QuantizeOptions& options, const std::string& scaleName) {
+std::array<CLI::Option*, 4> addQuantizeOptions(CLI::App& parser, QuantizeOptions& options,
+                                               const std::string& scaleName) {
   const auto positive = [](const std::string& text) {
     double value = 0;
     return CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value)
@@ -41,9 +42,11 @@ void addQuantizeOptions(CLI::App& parser, QuantizeOptions& options, const std::s
                                 ->option_text("LENGTH");
   cells->excludes(scale)->excludes(edge);
   scale->excludes(edge);
-  parser.add_flag("--densify", options.densify,
-                  "If the map cannot be bent onto so few cells: take the\n"
-                  "next density that works, and say which");
+  CLI::Option* const densify =
+      parser.add_flag("--densify", options.densify,
+                      "If the map cannot be bent onto so few cells: take the\n"
+                      "next density that works, and say which");
+  return {cells, scale, edge, densify};
 }
 
 QuantizeOptions optionsFor(const MapSource& input, QuantizeOptions options) {

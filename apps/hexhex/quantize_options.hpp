@@ -1,6 +1,9 @@
 // Options of quantization, and what it tells.
 #pragma once
 
+#include <array>
+#include <string>
+
 #include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
 
@@ -10,8 +13,10 @@
 
 namespace hexhex::command {
 
-/// Adds --cells, --target-scale, --edge-length, --densify.
-void addQuantizeOptions(CLI::App& parser, QuantizeOptions& options, const std::string& scaleName);
+/// Adds --cells, an option of this name for the scale, --edge-length and --densify.
+/// @return all of them
+std::array<CLI::Option*, 4> addQuantizeOptions(CLI::App& parser, QuantizeOptions& options,
+                                               const std::string& scaleName);
 
 /// Those options, with what the input's format says about its tags.
 [[nodiscard]] QuantizeOptions optionsFor(const MapSource& input, QuantizeOptions options);
