@@ -27,9 +27,9 @@ namespace {
 constexpr double kAlmost = 0.01;
 /// Arcs are longer than this share of the map's size, and than so many times what has made it
 /// seamless.
-constexpr double kNoise = 1e-9;
+constexpr double kArcNoise = 1e-9;
 constexpr double kLengthUnits = 0x1p20;
-constexpr double kNoiseShare = 16;
+constexpr double kArcNoiseShare = 16;
 /// More hexahedra have more vertices than indices.
 constexpr double kMostCells = 4e9;
 /// The search for a scale ends when it is as near to the number of cells wanted as this.
@@ -232,7 +232,7 @@ class Quantizer {
     program_.equations = arcEquations(complex_);
     // Walls that would be one but for noise may become one.
     const double noise =
-        std::max(kNoise * largestCoordinate(map_), kNoiseShare * seamless_.maxDisplacement);
+        std::max(kArcNoise * largestCoordinate(map_), kArcNoiseShare * seamless_.maxDisplacement);
     program_.least.clear();
     for (const Arc& arc : complex_.arcs) {
       program_.least.push_back(static_cast<double>(arc.length) < noise * seamless_.unit ? 0 : 1);
