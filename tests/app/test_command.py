@@ -621,6 +621,38 @@ class Repair(CommandTest):
         self.assertIn("It was repaired", run.stderr)
         self.run_command("extract", map_file, "-o", "mesh.vtu", "--arcs", "arcs.vtu", "--quiet")
 
+    def test_quantize(self):
+        self.run_command("generate", "sphere", "--stretch", "0.5", "--charts", "random", "--quiet",
+                         "-o", "seamless.hexex")
+        if "cannot quantize" in self.run_command("quantize", "seamless.hexex", "-o", "x.hexex",
+                                                 "--cells", "500", expect=None).stderr:
+            self.skipTest("built without Eigen")
+        # What the other commands say of it.
+        run = self.run_command("check", "seamless.hexex", expect=INVALID_MAP)
+        self.assertIn("The map is seamless", run.stdout)
+        run = self.run_command("check", "seamless.hexex", "--json", expect=INVALID_MAP)
+        self.assertEqual(json.loads(run.stdout)["kind"], "seamless")
+        run = self.run_command("extract", "seamless.hexex", "-o", "m.vtu", expect=INVALID_MAP)
+        self.assertIn("hexhex quantize seamless.hexex", run.stderr)
+        # In two steps and in one.
+        run = self.run_command("quantize", "seamless.hexex", "-o", "integer.hexex", "--cells", "500",
+                               "--report", "q.json")
+        report = json.loads((self.folder / "q.json").read_text())
+        self.assertIn(f"{report['cells']} cells of 500 asked for", run.stdout)
+        self.run_command("check", "integer.hexex", "--tolerance", "0", "--quiet")
+        self.run_command("extract", "integer.hexex", "-o", "two.vtu", "--quiet")
+        self.run_command("extract", "seamless.hexex", "-o", "one.vtu", "--quantize", "--cells", "500",
+                         "--report", "r.json")
+        self.assertEqual((self.folder / "one.vtu").read_bytes(), (self.folder / "two.vtu").read_bytes())
+        self.assertEqual(json.loads((self.folder / "r.json").read_text())["quantization"]["cells"],
+                         report["cells"])
+        for options in [[], ["--cells", "0"], ["--cells", "5", "--scale", "1"], ["--cells", "x"]]:
+            self.run_command("quantize", "seamless.hexex", "-o", "bad.hexex", *options, expect=BAD_USAGE)
+        self.assert_fails("quantize", "seamless.hexex", "-o", "bad.hexex", "--cells", "1e12",
+                          expect=INVALID_MAP, code="TooLarge")
+        self.run_command("extract", "seamless.hexex", "-o", "bad.vtu", "--cells", "5", expect=BAD_USAGE)
+        self.assertFalse((self.folder / "bad.hexex").exists())
+
     def test_partial(self):
         map_file = self.damaged()
         run = self.run_command("extract", map_file, "-o", "part.vtu", "--repair", "off",
