@@ -87,9 +87,10 @@ class CellProver {
     forEachOwnedCenter(map_.topology, tet, lines, [&](const SweptLine& line, std::uint32_t i) {
       right = right && cell < end;
       if (!right) return;
-      const std::uint64_t place = cell++ - first;
-      if (place >= cells.size()) return;  // of another piece, before or behind
-      if (!isRight(tet, sides, line.point(i), cells[place])) wrong_.add(first + place);
+      const std::uint64_t number = cell++;
+      // Of another piece, before or behind.
+      if (number < first || number - first >= cells.size()) return;
+      if (!isRight(tet, sides, line.point(i), cells[number - first])) wrong_.add(number);
     });
     if (!right || cell != end) hints_.add(tet);
   }
