@@ -31,16 +31,20 @@ std::filesystem::path realFile(const std::filesystem::path& target) {
   return real;
 }
 
+/// Beside `file`, with the extension of `target`, but not its name, which may be as long as the
+/// file system allows. As one string: libstdc++'s paths that grow leave a broken path where memory
+/// ends.
+std::string nameBeside(const std::filesystem::path& file, const std::filesystem::path& target) {
+  const std::string folder = file.has_parent_path() ? file.parent_path().string() + '/' : "";
+  return fmt::format("{}.hexhex-{}-unread{}", folder, ::getpid(), target.extension().string());
+}
+
 }  // namespace
 
 void requireReadableBack(const std::filesystem::path& file) { static_cast<void>(realFile(file)); }
 
 PendingFile::PendingFile(const std::filesystem::path& target)
-    : target_(target), real_(realFile(target)), pending_(real_) {
-  // Not the target's own name, which may be as long as the file system allows.
-  pending_.replace_filename(
-      fmt::format(".hexhex-{}-unread{}", ::getpid(), target.extension().string()));
-}
+    : target_(target), real_(realFile(target)), pending_(nameBeside(real_, target)) {}
 
 PendingFile::~PendingFile() {
   std::error_code ignored;  // e.g. if it was never written

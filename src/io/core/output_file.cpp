@@ -44,7 +44,8 @@ void failToWrite(const std::filesystem::path& target, const std::string& reason,
 }
 
 std::filesystem::path temporaryBeside(const std::filesystem::path& target) {
-  return folderOf(target) / temporaryName();
+  // As one string: libstdc++'s paths that grow leave a broken path where memory ends.
+  return folderOf(target).string() + '/' + temporaryName();
 }
 
 std::filesystem::path realTarget(const std::filesystem::path& target) {
