@@ -6,9 +6,11 @@
 
 #if defined(HEXHEX_HAS_QUANTIZE)
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -41,17 +43,19 @@ struct Attempt {
   double density;
   bool reduced;
 };
-constexpr std::array<Attempt, 9> kAttempts = {{{1, true},
-                                               {1, false},
-                                               {1.1, true},
-                                               {0.92, true},
-                                               {1.35, true},
-                                               {1.1, false},
-                                               {0.85, true},
-                                               {1.2, false},
-                                               {1.2, true}}};
-/// Edges are split until there are so many times as many tets: more rarely helps.
-constexpr double kMostGrowth = 1.25;
+constexpr std::array<Attempt, 10> kAttempts = {{{1, true},
+                                                {1, false},
+                                                {1.1, true},
+                                                {0.92, true},
+                                                {1.35, true},
+                                                {1.1, false},
+                                                {0.85, true},
+                                                {1.2, false},
+                                                {1.2, true},
+                                                {1.6, true}}};
+/// Tets are split until there are so many times as many: first not at all, as other integers are
+/// cheaper than tets; more rarely helps.
+constexpr std::array<double, 2> kGrowths = {1, 1.25};
 /// Steps of a search for a density that works, and how many there are at most.
 constexpr double kDenser = 1.3;
 constexpr int kMostDensities = 24;
@@ -212,10 +216,14 @@ class Quantizer {
   QuantizedMap run() {
     double density = 1;
     for (int step = 0; step < (options_.densify ? kMostDensities : 1); ++step) {
-      for (const Attempt& attempt : kAttempts) {
-        cutIntoBlocks(attempt.reduced);
-        const double cells = report_.cellsWanted * density * attempt.density;
-        if (std::optional<QuantizedMap> result = tryCells(cells)) return std::move(*result);
+      const double cells = report_.cellsWanted * density;
+      for (const double growth : kGrowths) {
+        failed_.clear();
+        for (const Attempt& attempt : kAttempts) {
+          cutIntoBlocks(attempt.reduced);
+          std::optional<QuantizedMap> result = tryCells(cells * attempt.density, growth);
+          if (result) return std::move(*result);
+        }
       }
       density *= kDenser;
       if (report_.cellsWanted * density > kMostCells) break;
@@ -241,16 +249,16 @@ class Quantizer {
     report_.arcs = complex_.arcs.size();
   }
 
-  std::optional<QuantizedMap> tryCells(double cells) {
+  std::optional<QuantizedMap> tryCells(double cells, double growth) {
     const std::optional<Choice> choice = choose(cells);
-    if (!choice || choice->integers == last_) return std::nullopt;
-    last_ = choice->integers;
+    if (!choice || failed_.contains({complex_.blockCount, choice->integers})) return std::nullopt;
     ++report_.attempts;
     BendProblem problem =
         bendProblem(seamless_, complex_, BlockIntegers(complex_, choice->integers), choice->scale);
     Stage stage(context_, "bending");
-    BentMap bent = bend(std::move(problem), {.maxGrowth = kMostGrowth}, stage);
+    BentMap bent = bend(std::move(problem), {.maxGrowth = growth}, stage);
     if (!bent.isValid()) {
+      failed_.insert({complex_.blockCount, choice->integers});
       if (!bent.flippedTets.empty()) firstFlipped_ = bent.parentTet[bent.flippedTets.front()];
       return std::nullopt;
     }
@@ -298,7 +306,7 @@ class Quantizer {
   [[noreturn]] void fail() const {
     std::string message = "The map cannot be bent onto integers for about " +
                           std::to_string(std::llround(report_.cellsWanted)) + " cells";
-    if (last_.empty()) {
+    if (failed_.empty()) {
       throw Error(ErrorCode::FlippedTet,
                   message + ": none were found for the " + std::to_string(report_.arcs) +
                       " arcs of its motorcycle complex. Ask for more cells" +
@@ -325,7 +333,8 @@ class Quantizer {
   const TetMapView& map_;
   IntegerProgram program_;
   QuantizeReport report_;
-  std::vector<std::int64_t> last_;
+  /// Integers that the map cannot be bent onto, of the complex with so many blocks.
+  std::set<std::pair<std::size_t, std::vector<std::int64_t>>> failed_;
   Index firstFlipped_ = kNone;
 };
 

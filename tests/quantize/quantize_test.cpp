@@ -247,12 +247,15 @@ TEST(QuantizeRealMaps, AtAllDensities) {
   if (realMaps().empty()) GTEST_SKIP() << "no real maps";
   for (const std::filesystem::path& file : realMaps()) {
     const TetMap map = readMap(file);
-    for (const double density : {0.1, 1.0, 10.0}) {
+    for (const double density : {0.01, 0.1, 1.0, 10.0}) {
       SCOPED_TRACE(file.stem().string() + " at " + std::to_string(density));
       const double wanted = density * static_cast<double>(map.tets.size());
       const QuantizeReport report = expectRightMesh(map, cells(wanted)).report;
       const double ratio = static_cast<double>(report.cells) / wanted;
-      EXPECT_LT(std::max(ratio, 1 / ratio), density < 1 ? 2 : 1.25);
+      // At the lowest density, some curves are longer than that with one cell each.
+      if (density >= 0.1) {
+        EXPECT_LT(std::max(ratio, 1 / ratio), density < 1 ? 2 : 1.25);
+      }
       EXPECT_LE(static_cast<double>(report.addedTets), 0.2 * static_cast<double>(map.tets.size()));
     }
   }
