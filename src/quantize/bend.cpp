@@ -58,13 +58,8 @@ class Round {
   /// @return whether nothing good comes from going on from there: tets are positive, but wind
   bool run(bool isFresh, int polishing, BentMap& map) {
     BendEnergy energy(topology_, state_.problem.reference, unknowns_);
-    NewtonSolver solver(energy, stage_);
     Vector x = isFresh ? Vector(Vector::Zero(energy.unknownCount())) : unknownsOf(energy);
-    if (isFresh) solver.start(x);
-    energy.adaptScale(x);
-    if (isFresh) solver.start(x);  // again, towards shapes of the right size
-    if (untangle(solver, isFresh, x)) solver.polish(x, polishing);
-    map.iterations += solver.iterations();
+    map.iterations += solve(energy, isFresh, polishing, x);
     map.flippedTets = round(energy, x);
     map.energy = energy.value({EnergyKind::Name::FoldoverFree, 0}, x, stage_);
     if (!map.flippedTets.empty()) return false;
@@ -73,6 +68,16 @@ class Round {
   }
 
  private:
+  /// @return Newton steps
+  int solve(BendEnergy& energy, bool isFresh, int polishing, Vector& x) {
+    NewtonSolver solver(energy, stage_);
+    if (isFresh) solver.start(x);
+    energy.adaptScale(x);
+    if (isFresh) solver.start(x);  // again, towards shapes of the right size
+    if (untangle(solver, isFresh, x)) solver.polish(x, polishing);
+    return solver.iterations();
+  }
+
   /// After a split, most of the map is good: a small penalty leaves it so, and often suffices.
   static bool untangle(NewtonSolver& solver, bool isFresh, Vector& x) {
     return isFresh ? solver.untangle(x, 1) : solver.untangle(x, 1e-3) || solver.untangle(x, 0.1);
@@ -99,6 +104,7 @@ class Round {
   std::vector<Index> round(const BendEnergy& energy, Vector& x) {
     constexpr double kUnit = 1 << kFractionBits;
     for (double& value : x) value = std::nearbyint(value * kUnit) / kUnit;
+    state_.bent.resize(topology_.tetCount());
     return collectFromBlocks<Index>(
         stage_, topology_.tetCount(), 1024, [&](std::size_t begin, std::size_t end, auto& list) {
           for (auto t = static_cast<Index>(begin); t < end; ++t) {
@@ -126,7 +132,6 @@ class Round {
 BendState initialState(BendProblem problem) {
   BendState state;
   state.problem = std::move(problem);
-  state.bent.resize(state.problem.tets.size());
   state.parentTet.resize(state.problem.tets.size());
   std::iota(state.parentTet.begin(), state.parentTet.end(), Index{0});
   return state;

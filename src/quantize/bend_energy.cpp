@@ -208,21 +208,26 @@ double BendEnergy::value(EnergyKind kind, const Vector& x, Stage& stage) const {
 }
 
 Matrix BendEnergy::emptyHessian() const {
-  std::vector<Eigen::Triplet<double>> entries;
-  const auto addPairs = [&](Index v, Index w) {
-    for (const int column : numbers_[v]) {
-      for (const int row : numbers_[w]) {
-        if (column >= 0 && row >= column) entries.emplace_back(row, column, 0);
+  std::vector<EdgeCorner> scratch;
+  const auto forEachEntry = [&](const auto& visit) {
+    const auto pair = [&](Index v, Index w) {
+      for (const int column : numbers_[v]) {
+        for (const int row : numbers_[w]) {
+          if (column >= 0 && row >= column) visit(row, column);
+        }
       }
+    };
+    for (Index v = 0; v < topology_.pointCount; ++v) {
+      pair(v, v);
+      forEachEdge(topology_, v, scratch, [&](Index w, const auto& /*fan*/) { pair(v, w); });
     }
   };
-  std::vector<EdgeCorner> scratch;
-  for (Index v = 0; v < topology_.pointCount; ++v) {
-    addPairs(v, v);
-    forEachEdge(topology_, v, scratch, [&](Index w, const auto& /*fan*/) { addPairs(v, w); });
-  }
+  std::vector<int> sizes(static_cast<std::size_t>(count_), 0);
+  forEachEntry([&](int /*row*/, int column) { ++sizes[static_cast<std::size_t>(column)]; });
   Matrix hessian(count_, count_);
-  hessian.setFromTriplets(entries.begin(), entries.end());
+  hessian.reserve(sizes);
+  forEachEntry([&](int row, int column) { hessian.insert(row, column) = 0; });
+  hessian.makeCompressed();
   return hessian;
 }
 

@@ -12,7 +12,7 @@ namespace hexhex {
 /// A map while it is bent.
 struct BendState {
   BendProblem problem;
-  std::vector<TetParameters> bent;  ///< per tet: where its corners are now
+  std::vector<TetParameters> bent;  ///< per tet: where its corners are now; empty at first
   std::vector<Index> parentTet;
   std::vector<SplitEdge> splitEdges;
 };

@@ -1,6 +1,12 @@
 // Changes between charts of a seamless map: rotations of the grid, and any translation.
 #pragma once
 
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
 #include <lattice/rotation.hpp>
 #include <lattice/tet_geometry.hpp>
 
@@ -35,6 +41,28 @@ struct ChartChange {
   friend constexpr ChartChange operator*(const ChartChange& a, const ChartChange& b) noexcept {
     return {a.rotation * b.rotation, a(b.translation)};
   }
+};
+
+/// A change for each half-face: nearly all are the identity, and those across a patch of a cut one.
+class FaceChanges {
+ public:
+  explicit FaceChanges(std::size_t halfFaces = 0) : places_(halfFaces, 0) {}
+
+  [[nodiscard]] const ChartChange& operator[](HalfFace h) const noexcept {
+    return distinct_[places_[h]];
+  }
+  void set(HalfFace h, const ChartChange& change) {
+    const auto [found, isNew] = placeOf_.try_emplace({change.rotation.index(), change.translation},
+                                                     static_cast<Index>(distinct_.size()));
+    if (isNew) distinct_.push_back(change);
+    places_[h] = found->second;
+  }
+  void appendCopyOf(HalfFace h) { places_.push_back(Index{places_[h]}); }
+
+ private:
+  std::vector<Index> places_;  ///< in `distinct_`, per half-face
+  std::vector<ChartChange> distinct_ = {{}};
+  std::map<std::pair<int, LatticePoint>, Index> placeOf_ = {{{0, {}}, 0}};
 };
 
 }  // namespace hexhex

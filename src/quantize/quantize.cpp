@@ -202,13 +202,13 @@ struct Choice {
 
 class Quantizer {
  public:
-  Quantizer(const TetMapView& map, const QuantizeOptions& options, Context& context)
+  Quantizer(TetMap map, const QuantizeOptions& options, Context& context)
       : options_(options),
         context_(context),
-        seamless_(seamlessMap(map, options, context)),
-        cellsWanted_(cellsWanted(map, seamless_, options)),
-        map_(map) {
-    report_.cellsWanted = cellsWanted_;
+        map_(std::move(map)),
+        seamless_(seamlessMap(map_, options, context)) {
+    std::vector<TetParameters>().swap(map_.parameters);  // which are large
+    report_.cellsWanted = cellsWanted(map_, seamless_, options);
     report_.displacement = seamless_.maxDisplacement;
     report_.integersBy = canLoadCbc() ? "CBC" : "rounding";
   }
@@ -234,32 +234,39 @@ class Quantizer {
  private:
   /// @param reduced  whether walls that nothing needs are taken away
   void cutIntoBlocks(bool reduced) {
-    if (!complex_.arcs.empty() && isReduced_ == reduced) return;
+    if (complex_ && isReduced_ == reduced) return;
     isReduced_ = reduced;
+    complex_.reset();
     complex_ = traceComplex(seamless_, reduced, context_);
-    program_.equations = arcEquations(complex_);
+    program_.equations = arcEquations(*complex_);
     // Walls that would be one but for noise may become one.
-    const double noise =
-        std::max(kArcNoise * largestCoordinate(map_), kArcNoiseShare * seamless_.maxDisplacement);
+    const double noise = std::max(kArcNoise * seamless_.input.largestCoordinate,
+                                  kArcNoiseShare * seamless_.maxDisplacement);
     program_.least.clear();
-    for (const Arc& arc : complex_.arcs) {
+    for (const Arc& arc : complex_->arcs) {
       program_.least.push_back(static_cast<double>(arc.length) < noise * seamless_.unit ? 0 : 1);
     }
-    report_.blocks = complex_.blockCount;
-    report_.arcs = complex_.arcs.size();
+    report_.blocks = complex_->blockCount;
+    report_.arcs = complex_->arcs.size();
   }
 
   std::optional<QuantizedMap> tryCells(double cells, double growth) {
     const std::optional<Choice> choice = choose(cells);
-    if (!choice || failed_.contains({complex_.blockCount, choice->integers})) return std::nullopt;
+    if (!choice || failed_.contains({report_.blocks, choice->integers})) return std::nullopt;
     ++report_.attempts;
-    BendProblem problem =
-        bendProblem(seamless_, complex_, BlockIntegers(complex_, choice->integers), choice->scale);
+    BendProblem problem = bendProblem(seamless_, *complex_,
+                                      BlockIntegers(*complex_, choice->integers), choice->scale);
+    // Bending needs the memory, and rarely fails.
+    const std::vector<Index> blockOf = std::move(complex_->blockOf);
+    complex_.reset();
     Stage stage(context_, "bending");
     BentMap bent = bend(std::move(problem), {.maxGrowth = growth}, stage);
     if (!bent.isValid()) {
-      failed_.insert({complex_.blockCount, choice->integers});
-      if (!bent.flippedTets.empty()) firstFlipped_ = bent.parentTet[bent.flippedTets.front()];
+      failed_.insert({report_.blocks, choice->integers});
+      if (!bent.flippedTets.empty()) {
+        flippedTet_ = bent.parentTet[bent.flippedTets.front()];
+        flippedBlock_ = blockOf[flippedTet_];
+      }
       return std::nullopt;
     }
     report_.scale = choice->scale;
@@ -284,7 +291,7 @@ class Quantizer {
     for (int step = 0; step < kScaleSteps; ++step) {
       context_.throwIfCancelled();
       program_.lengths.clear();
-      for (const Arc& arc : complex_.arcs) {
+      for (const Arc& arc : complex_->arcs) {
         // Without the noise that would decide between integers that are equally good.
         const double length = static_cast<double>(arc.length) / seamless_.unit * scale;
         program_.lengths.push_back(std::round(length * kLengthUnits) / kLengthUnits);
@@ -295,7 +302,7 @@ class Quantizer {
         scale *= 1.2;
         continue;
       }
-      choice.cells = BlockIntegers(complex_, choice.integers).cellCount();
+      choice.cells = BlockIntegers(*complex_, choice.integers).cellCount();
       scale *= std::cbrt(cells / choice.cells);
       if (!best || distance(choice) < distance(*best)) best = std::move(choice);
       if (distance(*best) < std::log(kNearEnough)) break;
@@ -312,30 +319,29 @@ class Quantizer {
                       " arcs of its motorcycle complex. Ask for more cells" +
                       (canLoadCbc() ? "." : ", or install CBC (coinor-libcbc3)."));
     }
-    if (firstFlipped_ == kNone) {
+    if (flippedTet_ == kNone) {
       throw Error(ErrorCode::HalfIntegerFixedPoint,
                   message + ": they leave no position for a vertex. Ask for more cells.");
     }
     throw Error(ErrorCode::FlippedTet,
-                message + ": tets stay flipped in block " +
-                    std::to_string(complex_.blockOf[firstFlipped_]) + " of " +
+                message + ": tets stay flipped in block " + std::to_string(flippedBlock_) + " of " +
                     std::to_string(report_.blocks) +
                     ". Ask for more cells, or let it choose a density that works (densify).",
-                {PlaceKind::Tet, firstFlipped_});
+                {PlaceKind::Tet, flippedTet_});
   }
 
   const QuantizeOptions& options_;
   Context& context_;
+  TetMap map_;  ///< without parameters
   SeamlessMap seamless_;
-  double cellsWanted_;
-  MotorcycleComplex complex_{.mesh = WallMesh(seamless_)};
+  std::optional<MotorcycleComplex> complex_;
   bool isReduced_ = false;
-  const TetMapView& map_;
   IntegerProgram program_;
   QuantizeReport report_;
   /// Integers that the map cannot be bent onto, of the complex with so many blocks.
-  std::set<std::pair<std::size_t, std::vector<std::int64_t>>> failed_;
-  Index firstFlipped_ = kNone;
+  std::set<std::pair<std::uint64_t, std::vector<std::int64_t>>> failed_;
+  Index flippedTet_ = kNone;
+  Index flippedBlock_ = kNone;
 };
 
 }  // namespace
@@ -368,9 +374,9 @@ QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options, Con
       static_cast<void>(makeSeamless(map, {}, context));
     }
     std::vector<Index> order;
-    const TetMap sorted = inCanonicalOrder(map, order);
+    TetMap sorted = inCanonicalOrder(map, order);
     try {
-      result = Quantizer(sorted, options, context).run();
+      result = Quantizer(std::move(sorted), options, context).run();
     } catch (const Error& error) {
       throw inCallersTerms(error, order);
     }

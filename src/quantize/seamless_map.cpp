@@ -243,16 +243,17 @@ void solveVertices(SeamlessMap& map, const CutGraph& graph,
 
 /// Between charts as they are after the cut.
 void findChanges(SeamlessMap& map, const CutGraph& graph) {
-  map.changes.resize(map.topology.mate.size());
-  for (HalfFace h = 0; h < map.changes.size(); ++h) {
+  map.changes = FaceChanges(map.topology.mate.size());
+  for (HalfFace h = 0; h < map.topology.mate.size(); ++h) {
     const HalfFace mate = map.topology.mate[h];
     if (mate == kNone) continue;
     const SharedFace face(map.topology, h, mate);
     const LatticeTet& here = map.corners[tetOf(h)];
     const LatticeTet& there = map.corners[tetOf(mate)];
-    ChartChange& change = map.changes[h];
+    ChartChange change;
     if (graph.isCut[h]) change.rotation = graph.rotations[h];
     change.translation = there[face.there(0)] - change.rotation(here[face.here(0)]);
+    map.changes.set(h, change);
     for (std::size_t k = 1; k < 3; ++k) {
       if (change(here[face.here(k)]) == there[face.there(k)]) continue;
       throw Error(ErrorCode::Internal, "A map that was made seamless is not. This is a bug.",
@@ -436,6 +437,8 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   }
   findChanges(result, graph);
   requireDisplacement(result, options.tolerance);
+  result.input.view.parameters = {};
+  result.input.parameters = {};
   return result;
 }
 

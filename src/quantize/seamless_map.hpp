@@ -19,10 +19,10 @@ namespace hexhex {
 
 /// An exactly seamless map on a dyadic lattice: a coordinate is a parameter times `unit`.
 struct SeamlessMap {
-  OrientedMap input;
-  TetTopology topology;              ///< with stars
-  std::vector<LatticeTet> corners;   ///< per tet, in charts that mostly agree
-  std::vector<ChartChange> changes;  ///< per half-face, from here to the neighbour's chart
+  OrientedMap input;                ///< without parameters
+  TetTopology topology;             ///< with stars
+  std::vector<LatticeTet> corners;  ///< per tet, in charts that mostly agree
+  FaceChanges changes;              ///< from here to the neighbour's chart
   /// Features that are aligned with axes, and to stay so: edges that are not singular, inner faces.
   std::vector<EdgeCorner> featureEdges;
   std::vector<HalfFace> featureFaces;

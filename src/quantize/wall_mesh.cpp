@@ -190,8 +190,7 @@ void WallMesh::appendCopy(Index tet) {
   moved_.push_back(kNone);
   for (HalfFace h = 4 * tet; h < 4 * tet + 4; ++h) {
     mate.push_back(HalfFace{mate[h]});
-    const ChartChange across = change[h];
-    change.push_back(across);
+    change.appendCopyOf(h);
     isWall.push_back(bool{isWall[h]});
     isFeature.push_back(bool{isFeature[h]});
     originalFace.push_back(std::uint8_t{originalFace[h]});
@@ -202,7 +201,7 @@ void WallMesh::joinInside(HalfFace a, HalfFace b) {
   mate[a] = b;
   mate[b] = a;
   for (const HalfFace h : {a, b}) {
-    change[h] = {};
+    change.set(h, {});
     isWall[h] = isFeature[h] = false;
     originalFace[h] = kInside;
   }

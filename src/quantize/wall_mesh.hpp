@@ -91,7 +91,7 @@ class WallMesh {
   std::vector<Tet> tets;
   std::vector<LatticeTet> corners;
   std::vector<HalfFace> mate;
-  std::vector<ChartChange> change;    ///< per half-face
+  FaceChanges change;
   std::vector<bool> isWall;           ///< per half-face; the boundary is a wall, too
   std::vector<bool> isFeature;        ///< per half-face
   std::set<VertexPair> featureEdges;  ///< that are aligned and not singular
