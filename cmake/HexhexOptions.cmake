@@ -31,6 +31,30 @@ if(CMAKE_UNITY_BUILD)
   target_compile_options(hexhex_options INTERFACE -Wno-shadow)  # of what another file declares
 endif()
 
+# hexhex_needs(WHAT PACKAGE=DEBIAN-PACKAGE...): finds packages of CMake; if any are missing, says which ones
+# of Debian and Ubuntu bring them.
+macro(hexhex_needs what)
+  set(missing "")
+  set(missing_packages "")
+  foreach(pair IN ITEMS ${ARGN})
+    string(REPLACE "=" ";" pair ${pair})
+    list(GET pair 0 name)
+    list(GET pair 1 package)
+    find_package(${name} QUIET)
+    if(NOT ${name}_FOUND)
+      list(APPEND missing ${name})
+      list(APPEND missing_packages ${package})
+    endif()
+  endforeach()
+  if(missing)
+    list(JOIN missing ", " missing)
+    list(JOIN missing_packages " " missing_packages)
+    # With a space in front, CMake leaves lines as they are.
+    message(FATAL_ERROR "hexhex: ${what} needs ${missing}. On Debian and Ubuntu:\n"
+      "  sudo apt-get install ${missing_packages}")
+  endif()
+endmacro()
+
 # hexhex_unit_names(TARGET NAME...): files of the target share an unnamed namespace then, in which each
 # has these names for itself.
 function(hexhex_unit_names target)

@@ -119,8 +119,13 @@ run_logged() {
   return 1
 }
 
-# configure PRESET [cmake argument...]
-configure() { run_logged "$1-configure" cmake --preset "$@"; }
+# configure PRESET [cmake argument...]: a new build compiles ten files as one, in a third of the time. Who
+# edits may prefer `cmake --preset PRESET -DCMAKE_UNITY_BUILD=OFF`, which stays as it is chosen.
+configure() {
+  local unity=()
+  if [[ ! -f build/$1/CMakeCache.txt ]]; then unity=(-DCMAKE_UNITY_BUILD=ON); fi
+  run_logged "$1-configure" cmake --preset "$1" "${unity[@]}" "${@:2}"
+}
 
 # configure_release PART [cmake argument...]: the release build, at least with PART (COMMAND or
 # BENCH). What takes more packages stays off, unless an earlier run of run-tests has switched it on.

@@ -70,10 +70,55 @@ Dict patchesOf(nb::handle self) {
   return d;
 }
 
+/// An array of a dict as rows of a list of the library.
+template <class Array, class List>
+void take(List& list, const nb::dict& arrays, const char* name) {
+  using Element = typename List::value_type;
+  const Array array = nb::cast<Array>(arrays[name]);
+  assign(list, elements<Element>(array));
+}
+
+/// The inverse of arcsOf() and patchesOf(): what was pickled.
+PiecewiseLinearMesh piecewiseOf(const HexMesh& mesh, const nb::dict& arcs,
+                                const nb::dict& patches) {
+  PiecewiseLinearMesh all;
+  all.mesh = mesh;
+  Arcs& a = all.arcs;
+  take<In<Index, 2>>(a.ends, arcs, "ends");
+  take<In1<std::uint64_t>>(a.pointBegin, arcs, "point_begin");
+  take<InPoints>(a.points, arcs, "points");
+  take<In1<double>>(a.parameters, arcs, "parameters");
+  take<In1<Index>>(a.generatorTet, arcs, "generator_tet");
+  take<In1<CornerSet>>(a.generatorCorners, arcs, "generator_corners");
+  take<In1<Index>>(a.segmentTet, arcs, "segment_tet");
+  take<In1<CornerSet>>(a.segmentCorners, arcs, "segment_corners");
+  Patches& p = all.patches;
+  take<In<Index, 4>>(p.vertices, patches, "vertices");
+  take<In<Index, 4>>(p.arcs, patches, "arcs");
+  take<In1<std::uint8_t>>(p.reversedArcs, patches, "reversed_arcs");
+  take<In1<std::uint64_t>>(p.polygonBegin, patches, "polygon_begin");
+  take<In1<std::uint64_t>>(p.cornerBegin, patches, "corner_begin");
+  take<In1<Index>>(p.polygonTet, patches, "polygon_tet");
+  take<In1<CornerSet>>(p.polygonCorners, patches, "polygon_corners");
+  take<In1<Index>>(p.corners, patches, "corners");
+  take<In<double, 2>>(p.parameters, patches, "parameters");
+  take<InPoints>(p.points, patches, "points");
+  take<In1<Index>>(p.generatorTet, patches, "generator_tet");
+  take<In1<CornerSet>>(p.generatorCorners, patches, "generator_corners");
+  return all;
+}
+
 }  // namespace
 
 void bindCurved(nb::module_& module) {
   nb::class_<PiecewiseLinearMesh>(module, "PiecewiseMesh")
+      .def(
+          "__init__",
+          [](PiecewiseLinearMesh* self, const HexMesh& mesh, const nb::dict& arcs,
+             const nb::dict& patches) {
+            new (self) PiecewiseLinearMesh(piecewiseOf(mesh, arcs, patches));
+          },
+          "mesh"_a, "arcs"_a, "patches"_a)
       .def_prop_ro(
           "mesh", [](PiecewiseLinearMesh& self) -> HexMesh& { return self.mesh; },
           nb::rv_policy::reference_internal)

@@ -22,8 +22,12 @@ auto kindNamed(const Table& table, const std::string& name, const char* what) {
   for (const auto& entry : table) {
     if (entry.name == name) return entry.kind;
   }
-  throw Error(ErrorCode::InvalidArgument,
-              std::string("There is no ") + what + " \"" + name + "\".");
+  std::string known;
+  for (const auto& entry : table) {
+    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  throw Error(ErrorCode::InvalidArgument, std::string("There is no ") + what + " \"" + name +
+                                              "\". Choose one of " + known + ".");
 }
 
 Dict answerAsDict(const SampleAnswer& answer) {
@@ -73,8 +77,8 @@ nb::list kindsOfDefects() {
 }
 
 /// Arrays of jumps and edges, and the defects.
-nb::tuple structureOf(const ArrayMap& map, double tolerance, int threads,
-                      const Progress& progress) {
+nb::tuple mapStructureOf(const ArrayMap& map, double tolerance, int threads,
+                         const Progress& progress) {
   const MapStructure s = run(threads, progress, [&](Context& context) {
     return findMapStructure(map.view(), tolerance, context);
   });
@@ -191,7 +195,7 @@ void bindMap(nb::module_& module) {
              "defect_kind"_a);
   module.def("sample_kinds", &kindsOfMaps);
   module.def("defect_kinds", &kindsOfDefects);
-  module.def("map_structure", &structureOf, "map"_a, "tolerance"_a, "threads"_a,
+  module.def("map_structure", &mapStructureOf, "map"_a, "tolerance"_a, "threads"_a,
              "progress"_a.none());
   module.def("map_from_pair", &pairOf, "points"_a.noconvert(), "tets"_a.noconvert(),
              "polycube_points"_a.noconvert(), "polycube_tets"_a.noconvert(), "threads"_a);

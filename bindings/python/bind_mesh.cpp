@@ -52,7 +52,7 @@ class PySurvey {
 };
 
 /// Vertices, valence, on the boundary, and the counts.
-nb::tuple structureOf(const HexMesh& mesh, int threads, const Progress& progress) {
+nb::tuple meshStructureOf(const HexMesh& mesh, int threads, const Progress& progress) {
   const MeshStructure s =
       run(threads, progress, [&](Context& context) { return findStructure(mesh, context); });
   const std::size_t n = s.singularEdges.size();
@@ -121,7 +121,7 @@ void bindMesh(nb::module_& module) {
             run(threads, progress, [&](Context& context) { return certify(mesh, context); }));
       },
       "mesh"_a, "threads"_a, "progress"_a.none());
-  module.def("structure", &structureOf, "mesh"_a, "threads"_a, "progress"_a.none());
+  module.def("structure", &meshStructureOf, "mesh"_a, "threads"_a, "progress"_a.none());
   module.def(
       "boundary_patches",
       [](const HexMesh& mesh, double angle, int threads) {

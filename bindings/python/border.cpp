@@ -112,7 +112,7 @@ Dict asDict(const RepairReport& report) {
 
 namespace {
 
-nb::list asList(const std::array<std::uint64_t, 4>& counts) {
+nb::list countsAsList(const std::array<std::uint64_t, 4>& counts) {
   nb::list list;
   for (const std::uint64_t count : counts) list.append(count);
   return list;
@@ -134,8 +134,8 @@ nb::tuple asTuple(const Notes& notes) {
   d["chart_jumps"] = s.chartJumps;
   d["inner_faces"] = s.innerFaces;
   d["singular_edges"] = s.singularEdges;
-  d["generators"] = asList(s.generators);
-  d["vertices"] = asList(s.vertices);
+  d["generators"] = countsAsList(s.generators);
+  d["vertices"] = countsAsList(s.vertices);
   d["local_propellers"] = s.localPropellers;
   d["global_propellers"] = s.globalPropellers;
   d["charts"] = s.charts;

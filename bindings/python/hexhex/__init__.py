@@ -15,11 +15,12 @@ they work, and Ctrl-C cancels them.
 from __future__ import annotations
 
 import os
+import sys
 from typing import TYPE_CHECKING, Any, Callable, Optional, Protocol, Union
 
 import numpy as np
 
-from . import _hexhex
+from . import _hexhex, _npz
 from ._errors import (
     ArgumentError,
     CancelledError,
@@ -30,6 +31,7 @@ from ._errors import (
     MemoryExhaustedError,
     make,
 )
+from ._progress import TqdmProgress
 from ._types import (
     Arcs,
     CheckReport,
@@ -56,6 +58,7 @@ from ._types import (
     _floats,
     _generators,
     _indices,
+    _whole,
 )
 
 if TYPE_CHECKING:
@@ -71,13 +74,17 @@ __all__ = [
     "FileError", "FileFormat", "HexhexError", "Hole", "InternalError", "LagrangeMesh", "Map",
     "MapError", "MapStructure", "MemoryExhaustedError", "Mesh", "MeshSink", "MeshWriter",
     "PartialMesh", "Patches", "Quality", "QuantizeReport", "RefutedCell", "RepairReport",
-    "RepairedRegion", "SampleKind", "SeamlessReport", "Survey", "SurveySink", "VerifyItem",
-    "VerifyReport", "can_quantize", "can_repair", "check", "defect_kinds", "examine_seamless",
+    "RepairedRegion", "SampleKind", "SeamlessReport", "Survey", "SurveySink", "TqdmProgress",
+    "VerifyItem", "VerifyReport", "can_quantize", "can_repair", "check", "defect_kinds", "examine_seamless",
     "extract", "extract_partial", "extract_to", "extract_to_file", "formats", "generate",
     "holds_curved", "map_from_pair", "map_structure", "quality", "quantize", "read", "read_curved",
     "read_map", "read_mesh", "read_pair", "read_tets", "read_to", "repair", "require_format",
     "sample_kinds", "scaled_jacobian", "survey", "verify", "write",
 ]
+
+
+if sys.modules.get("pyvista") is not None:
+    from . import _accessor  # noqa: F401  where nobody else makes PyVista find it
 
 
 def _map_of(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None,
@@ -96,12 +103,14 @@ def _options(scale: int, engine: str, tolerance: float, epsilon: float, repair: 
     if engine not in ("atlas", "propeller"):
         raise ArgumentError(f'There is no engine "{engine}". Choose "atlas" or "propeller".',
                             "InvalidArgument")
-    return _hexhex.Options(scale, engine == "propeller", tolerance, epsilon, repair, round)
+    return _hexhex.Options(_whole(scale, "scale"), engine == "propeller", tolerance, epsilon, repair,
+                           round)
 
 
 def _threads(threads: Optional[int]) -> int:
     if threads is None:
         return 0
+    threads = _whole(threads, "number of threads")
     if threads < 1:
         raise ArgumentError(f"The number of threads is {threads}. Choose it from 1, or None for "
                             "all cores.", "InvalidArgument")
@@ -132,7 +141,7 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
         tolerance: how far the map may be from its integer conditions, below 0.25.
         epsilon: of the propeller engine; changes the time, never the result.
         progress: called with the name of the stage and its finished share in [0, 1], from any
-            thread. What it raises ends the extraction and is raised here.
+            thread; a TqdmProgress shows a bar. What it raises ends the extraction and is raised here.
 
     Returns:
         The mesh, with ``mesh.statistics`` of the extraction, and tags and regions of the map.
@@ -155,7 +164,7 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
     return _assembled(
         order, arcs, patches, lambda: _hexhex.extract(arrays, *last),
         lambda: _hexhex.extract_piecewise(arrays, patches, *last),
-        lambda: _hexhex.extract_lagrange(arrays, order, *last))
+        lambda: _hexhex.extract_lagrange(arrays, _whole(order, "order"), *last))
 
 
 def _assembled(order: int, arcs: bool, patches: bool, extract_straight: Callable[[], Any],
@@ -164,9 +173,9 @@ def _assembled(order: int, arcs: bool, patches: bool, extract_straight: Callable
     if arcs or patches:
         pieces, notes = extract_pieces()
         mesh = Mesh._from_handle(pieces.mesh, notes)
-        mesh.arcs = Arcs(**pieces.arcs, _handle=pieces)
+        mesh.arcs = Arcs._of(pieces)
         if patches:
-            mesh.patches = Patches(**pieces.patches, _handle=pieces)
+            mesh.patches = Patches._of(pieces)
     if order != 1:
         curved, notes = extract_order()
         if not (arcs or patches):
@@ -387,7 +396,8 @@ class Extractor:
                  igm: npt.ArrayLike | None = None, *, tolerance: float = 1e-2, max_scale: int = 64,
                  threads: int | None = None, progress: Progress | None = None) -> None:
         self._extractor = _hexhex.Extractor(_map_of(points, tets, igm)._arrays(), tolerance,
-                                            max_scale, _threads(threads), progress)
+                                            _whole(max_scale, "largest scale"), _threads(threads),
+                                            progress)
 
     @property
     def cells(self) -> int:
@@ -403,7 +413,7 @@ class Extractor:
         return _assembled(
             order, arcs, patches, lambda: self._extractor.extract(*last),
             lambda: self._extractor.extract_piecewise(patches, *last),
-            lambda: self._extractor.extract_lagrange(order, *last))
+            lambda: self._extractor.extract_lagrange(_whole(order, "order"), *last))
 
     def extract_to(self, sink: MeshSink, *, scale: int = 1, threads: int | None = None,
                    progress: Progress | None = None) -> dict[str, Any]:
@@ -442,7 +452,7 @@ def repair(map: Map, *, tolerance: float = 1e-2, scale: int = 1, round: bool = F
     >>> report.changed, report.bad_tets
     (False, 0)
     """
-    handle, values = _hexhex.repair(map._arrays(), tolerance, scale, round, refine,
+    handle, values = _hexhex.repair(map._arrays(), tolerance, _whole(scale, "scale"), round, refine,
                                     _threads(threads), progress)
     report = RepairReport._of(values)
     if not isinstance(handle, tuple):
@@ -521,7 +531,7 @@ def extract_partial(map: Map, *, scale: int = 1, tolerance: float = 1e-2,
     >>> len(part.holes) > 0, len(part.mesh.cells) < 3584
     (True, True)
     """
-    handle, holes, *rest = _hexhex.extract_partial(map._arrays(), scale, tolerance,
+    handle, holes, *rest = _hexhex.extract_partial(map._arrays(), _whole(scale, "scale"), tolerance,
                                                    _threads(threads), progress)
     return PartialMesh(Mesh._from_handle(handle), [Hole(*hole) for hole in holes], *rest)
 
@@ -535,8 +545,8 @@ def check(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
     >>> report.valid, report.expected["cells"], report.expected["inner_singular_edges"]
     (True, 3584, {3: 160})
     """
-    counts: dict[str, Any] = _hexhex.check(_map_of(points, tets, igm)._arrays(), tolerance, scale,
-                                           _threads(threads), progress)
+    counts: dict[str, Any] = _hexhex.check(_map_of(points, tets, igm)._arrays(), tolerance,
+                                           _whole(scale, "scale"), _threads(threads), progress)
     defects = [Defect(*defect) for defect in counts.pop("defects")]
     return CheckReport(counts, defects, counts.pop("expected"))
 
@@ -569,8 +579,8 @@ def verify(map: Map, mesh: Mesh, *, scale: int = 1, tolerance: float = 1e-2, dig
     >>> report.passed, report.items[2].name
     (True, 'cells')
     """
-    rows = _hexhex.verify(map._arrays(), mesh._handle, scale, tolerance, digits,
-                          _threads(threads), progress)
+    rows = _hexhex.verify(map._arrays(), mesh._handle, _whole(scale, "scale"), tolerance,
+                          _whole(digits, "number of digits"), _threads(threads), progress)
     return VerifyReport([VerifyItem(*row) for row in rows])
 
 
@@ -601,8 +611,10 @@ def generate(kind: str, *, cells: int = 4, refine: int = 2, valence: int = 5,
     """
     if seed < 0:
         raise ArgumentError(f"The seed is {seed}. Choose it from 0.", "InvalidArgument")
-    handle, answer = _hexhex.generate(kind, cells, refine, valence, charts, jitter, on_lattice, noise,
-                                      offset, seed, features, defects, defect_kind)
+    handle, answer = _hexhex.generate(
+        kind, _whole(cells, "number of cells"), _whole(refine, "refinement"),
+        _whole(valence, "valence"), charts, jitter, on_lattice, noise, offset, seed, features,
+        _whole(defects, "number of defects"), defect_kind)
     map = Map._from_handle(handle)
     map.answer = answer
     return map
@@ -629,14 +641,25 @@ def defect_kinds() -> list[str]:
 
 def read_map(file: Path, *, format: str | None = None, map_array: str = "igm",
              threads: int | None = None, progress: Progress | None = None) -> Map:
-    """Reads a map: .hexex, .ovm, .ovmb, .vtu, .vtk. Raises FileError with the line as its place.
+    """Reads a map: .hexex, .ovm, .ovmb, .vtu, .vtk, .npz. Raises FileError with the line as its
+    place; of a missing file it is a FileNotFoundError, too.
 
     Args:
         format: whatever the extension is: see formats().
         map_array: the name of the array that holds the map in .vtu and .vtk files.
     """
+    if _npz.is_npz(os.fspath(file), format):
+        return _read_npz(file, Map)  # type: ignore[no-any-return]
     return Map._from_handle(_hexhex.read_map(os.fspath(file), format or "", map_array,
                                              _threads(threads), progress))
+
+
+def _read_npz(file: Path, kind: type[Any]) -> Any:
+    found = _npz.read(os.fspath(file))
+    if isinstance(found, kind):
+        return found
+    raise make("FileUnsupported", f"{os.fspath(file)}: there is a {type(found).__name__} in it, and no "
+               f"{kind.__name__}.", "", 0, 0)
 
 
 def read_tets(file: Path, *, format: str | None = None, threads: int | None = None,
@@ -671,7 +694,10 @@ def map_from_pair(points: npt.ArrayLike, tets: npt.ArrayLike, polycube_points: n
 
 def read_mesh(file: Path, *, format: str | None = None, threads: int | None = None,
               progress: Progress | None = None) -> Mesh:
-    """Reads a hexahedral mesh: .mesh, .meshb, .vtu, .vtk, .msh, .ovm, .ovmb. Raises FileError."""
+    """Reads a hexahedral mesh: .mesh, .meshb, .vtu, .vtk, .msh, .ovm, .ovmb, .npz. Raises
+    FileError."""
+    if _npz.is_npz(os.fspath(file), format):
+        return _read_npz(file, Mesh)  # type: ignore[no-any-return]
     return Mesh._from_handle(_hexhex.read_mesh(os.fspath(file), format or "", _threads(threads),
                                                progress))
 
@@ -714,6 +740,8 @@ def read(file: Path, *, format: str | None = None, map_array: str = "igm",
     ...     hexhex.read(pathlib.Path(folder) / "box.hexex")
     <hexhex.Map: 768 tets, 189 points>
     """
+    if _npz.is_npz(os.fspath(file), format):
+        return _npz.read(os.fspath(file))
     found = _hexhex.read(os.fspath(file), format or "", map_array, _threads(threads), progress)
     return Map._from_handle(found) if isinstance(found, _hexhex.Map) else Mesh._from_handle(found)
 
@@ -728,9 +756,10 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
 
     Args:
         what: a Map (.hexex, .ovm, .ovmb, .vtu, .vtk), a Mesh (see formats()), ``mesh.curved``
-            (.vtu, .msh, .mesh), ``mesh.arcs`` or ``mesh.patches`` (.vtu, .vtp, .ovmb).
-        format: of a map or mesh, whatever the extension is: see formats().
-        compress: arrays of .vtu files, with zlib; of a map or mesh.
+            (.vtu, .msh, .mesh), ``mesh.arcs`` or ``mesh.patches`` (.vtu, .vtp, .ovmb). Maps and
+            meshes also as .npz: their arrays by name, for numpy.load().
+        format: of a map or mesh, whatever the extension is: see formats(), or "npz".
+        compress: arrays of .vtu and .npz files, with zlib; of a map or mesh.
         patch_angle: of a mesh, curved or not, without tagged quads, for formats with groups: where
             the boundary turns by more degrees, a group ends; 0 to 180.
         map_array: the name of the array that holds the map in .vtu and .vtk files.
@@ -745,6 +774,8 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
         ArgumentError: for options out of range.
     """
     name, workers = os.fspath(file), _threads(threads)
+    if _npz.is_npz(name, format):
+        return _npz.write(what, name, compress)
     tets = None if map is None else map._arrays()
     jacobians = _floats([] if scaled_jacobians is None else scaled_jacobians, (),
                         "scaled_jacobians")

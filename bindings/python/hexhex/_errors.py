@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -28,13 +30,48 @@ class HexhexError(Exception):
         self.second = second
         self.repair: RepairReport | None = None
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return (make, (self.code, str(self), self.place, self.index, self.second),
+                {"repair": self.repair})
+
 
 class ArgumentError(HexhexError, ValueError):
     """An option or array is out of range."""
 
 
 class FileError(HexhexError, OSError):
-    """A file cannot be read, understood, or written."""
+    """A file cannot be read, understood, or written. ``errno`` is the system's reason, if it has one;
+    then it is also a FileNotFoundError, PermissionError, IsADirectoryError or NotADirectoryError
+    where it fits."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class _NotFound(FileError, FileNotFoundError):
+    pass
+
+
+class _Forbidden(FileError, PermissionError):
+    pass
+
+
+class _IsFolder(FileError, IsADirectoryError):
+    pass
+
+
+class _NoFolder(FileError, NotADirectoryError):
+    pass
+
+
+_BY_ERRNO: dict[int, type[FileError]] = {
+    errno.ENOENT: _NotFound, errno.EACCES: _Forbidden, errno.EPERM: _Forbidden,
+    errno.EISDIR: _IsFolder, errno.ENOTDIR: _NoFolder}
+for _class in (_NotFound, _Forbidden, _IsFolder, _NoFolder):
+    _class.__doc__ = FileError.__doc__
+# The library ends its sentences with the system's.
+_ERRNOS = {os.strerror(number): number for number in errno.errorcode}
+_ERRNOS["it is a folder"] = errno.EISDIR
 
 
 class MapError(HexhexError, ValueError):
@@ -68,4 +105,19 @@ _FAMILIES: dict[str, type[HexhexError]] = {
 
 def make(code: str, message: str, place: str, index: int, second: int) -> HexhexError:
     """The error for a code of the library."""
-    return _FAMILIES.get(code, MapError)(message, code, place, index, second)
+    family = _FAMILIES.get(code, MapError)
+    number = None
+    if family is FileError:
+        number = _ERRNOS.get(message.rstrip(".").rpartition(": ")[2])
+        family = _BY_ERRNO.get(number or 0, FileError)
+    error = family(message, code, place, index, second)
+    if isinstance(error, FileError) and number is not None:
+        error.errno, error.strerror = number, os.strerror(number)
+        error.filename = message.partition(": ")[0]
+    return error
+
+
+def from_os_error(code: str, file: str, what: str, error: OSError) -> HexhexError:
+    """The same for a file that Python could not read or write."""
+    reason = os.strerror(error.errno) if error.errno else str(error)
+    return make(code, f"{file}: the file {what}: {reason}.", "", 0, 0)

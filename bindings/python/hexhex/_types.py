@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import copyreg
 import dataclasses
+import operator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _hexhex
+from . import _hexhex, _interchange, _picture
 from ._errors import ArgumentError
 
 if TYPE_CHECKING:
@@ -72,6 +74,20 @@ def _ints(values: npt.ArrayLike | None, width: int, name: str,
     return np.ascontiguousarray(array, dtype=dtype)
 
 
+def _whole(value: object, name: str) -> int:
+    """A whole number of 32 bits; also 2.0."""
+    try:
+        if isinstance(value, (float, np.floating)) and float(value).is_integer():
+            value = int(value)
+        number = operator.index(value)  # type: ignore[arg-type]
+    except TypeError:
+        raise ArgumentError(f"The {name} is {value!r}; it has to be a whole number.",
+                            "InvalidArgument") from None
+    if abs(number) >= 2**31:
+        raise ArgumentError(f"The {name} is {number}, which is too large.", "InvalidArgument")
+    return number
+
+
 def _generators(tet: npt.ArrayLike | None, corners: npt.ArrayLike | None,
                 count: int) -> tuple[Indices, Corners]:
     """Both, one per point, or none."""
@@ -117,7 +133,7 @@ class Features:
         return bool(len(self.vertices) or len(self.edges) or len(self.faces))
 
 
-class Map:
+class Map(_interchange.Wrappable):
     """A tetrahedral mesh with an integer-grid map.
 
     Attributes:
@@ -180,6 +196,42 @@ class Map:
 
     def __repr__(self) -> str:
         return f"<hexhex.Map: {len(self.tets)} tets, {len(self.points)} points>"
+
+    def _repr_html_(self) -> str:
+        """For notebooks: with a picture of the boundary, on which the integer grid is a checkerboard."""
+        return _picture.html(repr(self), lambda: _picture.of_map(self.points, self.tets, self.igm))
+
+    @classmethod
+    def from_pyvista(cls, grid: Any, array: str = "igm") -> Map:
+        """The tetrahedra of a PyVista (or VTK) data set, with the map in an array of cells with 12
+        components, or of points with 3; tags and regions as to_pyvista() names them.
+
+        Raises:
+            ArgumentError: without tetrahedra or such an array.
+            ImportError: without pyvista.
+        """
+        return _interchange.map_of_grid(
+            _interchange.from_pyvista(grid, _interchange.TETRA, "tetrahedra"), array)
+
+    def to_vtk(self) -> Any:
+        """A ``vtkUnstructuredGrid`` of tetrahedra on the same memory, with the map in the cell array
+        ``igm`` of 12 components, tags and regions as in .vtu files. Raises ImportError without vtk."""
+        return _interchange.to_vtk(_interchange.grid_of_map(self), _interchange.TETRA)
+
+    def to_pyvista(self) -> Any:
+        """The same as a ``pyvista.UnstructuredGrid``. Raises ImportError without pyvista."""
+        return _interchange.to_pyvista(_interchange.grid_of_map(self), _interchange.TETRA)
+
+    @classmethod
+    def from_meshio(cls, mesh: Any, array: str = "igm") -> Map:
+        """The tetrahedra of a ``meshio.Mesh``, with a map as of from_pyvista()."""
+        return _interchange.map_of_grid(
+            _interchange.from_meshio(mesh, "tetra", "tetrahedra"), array)
+
+    def to_meshio(self) -> Any:
+        """A ``meshio.Mesh`` with the map in the cell array ``igm``, regions, and tags of vertices.
+        Raises ImportError without meshio."""
+        return _interchange.to_meshio(_interchange.grid_of_map(self), "tetra")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -274,6 +326,16 @@ class Arcs:
     def __len__(self) -> int:
         return len(self.ends)
 
+    def __repr__(self) -> str:
+        return f"<hexhex.Arcs: {len(self)} arcs, {len(self.points)} inner points>"
+
+    def __reduce__(self) -> Any:
+        return Arcs._of, (self._handle,)
+
+    @classmethod
+    def _of(cls, handle: _hexhex.PiecewiseMesh) -> Arcs:
+        return cls(**handle.arcs, _handle=handle)
+
 
 @dataclasses.dataclass(frozen=True)
 class Patches:
@@ -297,48 +359,19 @@ class Patches:
     def __len__(self) -> int:
         return len(self.vertices)
 
+    def __repr__(self) -> str:
+        return (f"<hexhex.Patches: {len(self)} faces, {len(self.polygon_tet)} polygons, "
+                f"{len(self.points)} inner points>")
 
-def _vtk_order(p: int) -> npt.NDArray[np.int64]:
-    """Nodes of a cell of order p in the order of VTK_LAGRANGE_HEXAHEDRON (VTK 9.1 and later)."""
-    inner = range(1, p)
-    nodes = [(0, 0, 0), (p, 0, 0), (p, p, 0), (0, p, 0), (0, 0, p), (p, 0, p), (p, p, p), (0, p, p)]
-    for k in (0, p):
-        nodes += [(i, 0, k) for i in inner] + [(p, j, k) for j in inner]
-        nodes += [(i, p, k) for i in inner] + [(0, j, k) for j in inner]
-    for i, j in ((0, 0), (p, 0), (p, p), (0, p)):
-        nodes += [(i, j, k) for k in inner]
-    nodes += [(i, j, k) for i in (0, p) for k in inner for j in inner]
-    nodes += [(i, j, k) for j in (0, p) for k in inner for i in inner]
-    nodes += [(i, j, k) for k in (0, p) for j in inner for i in inner]
-    nodes += [(i, j, k) for k in inner for j in inner for i in inner]
-    return np.array([i + (p + 1) * (j + (p + 1) * k) for i, j, k in nodes])
+    def __reduce__(self) -> Any:
+        return Patches._of, (self._handle,)
+
+    @classmethod
+    def _of(cls, handle: _hexhex.PiecewiseMesh) -> Patches:
+        return cls(**handle.patches, _handle=handle)
 
 
-def _vtk_grid(points: Floats, cells: npt.NDArray[np.int64], cell_type: int, kind: Corners,
-              regions: Ints) -> Any:
-    """A vtkUnstructuredGrid of cells of one type; needs vtk alone."""
-    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-    from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
-
-    grid = vtkUnstructuredGrid()
-    places = vtkPoints()
-    places.SetData(numpy_to_vtk(points, deep=True))
-    grid.SetPoints(places)
-    array = vtkCellArray()
-    if len(cells):
-        array.SetData(cells.shape[1], numpy_to_vtkIdTypeArray(cells.ravel(), deep=True))
-    grid.SetCells(cell_type, array)
-    for values, name, data in ((kind, "generator_kind", grid.GetPointData()),
-                               (regions, "region", grid.GetCellData())):
-        if len(values):
-            column = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
-            column.SetName(name)
-            data.AddArray(column)
-    return grid
-
-
-class LagrangeMesh:
+class LagrangeMesh(_interchange.Wrappable):
     """Hexahedra of an order p: ``mesh.curved`` of ``extract(..., order=p)``, from read_curved(), or of
     arrays of one's own, which are copied.
 
@@ -363,6 +396,7 @@ class LagrangeMesh:
                  generator_corners: npt.ArrayLike | None = None,
                  features: Features | None = None, regions: npt.ArrayLike | None = None) -> None:
         highest = 9
+        order, vertex_count = _whole(order, "order"), operator.index(vertex_count)
         if not 1 <= order <= highest or vertex_count < 0:
             raise ArgumentError(f"The order is {order}, and {vertex_count} nodes are vertices. "
                                 "Choose the order from 1 to 9.", "InvalidArgument")
@@ -382,6 +416,10 @@ class LagrangeMesh:
 
     def __repr__(self) -> str:
         return f"<hexhex.LagrangeMesh: {len(self.nodes)} cells of order {self.order}>"
+
+    def _repr_html_(self) -> str:
+        """For notebooks: with a picture of the straight mesh."""
+        return _picture.html(repr(self), lambda: _picture.of_mesh(self.straight()))
 
     @property
     def order(self) -> int:
@@ -430,29 +468,26 @@ class LagrangeMesh:
         ArgumentError for nodes that do not exist."""
         return Mesh._from_handle(self._handle.straight())
 
-    def _vtk_nodes(self) -> npt.NDArray[np.int64]:
-        return self.nodes.astype(np.int64)[:, _vtk_order(self.order)]
+    def _grid(self) -> _interchange.Grid:
+        kind = {"generator_kind": _kind(self.generator_corners)} if len(self.generator_tet) else {}
+        regions = {"region": self.regions} if len(self.regions) else {}
+        return _interchange.Grid(self.points, self.nodes[:, _interchange.vtk_order(self.order)],
+                                 kind, regions, {})
 
     def to_meshio(self) -> Any:
         """A ``meshio.Mesh`` of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without meshio."""
-        import meshio
-
-        return meshio.Mesh(self.points, [("VTK_LAGRANGE_HEXAHEDRON", self._vtk_nodes())])
+        return _interchange.to_meshio(self._grid(), "VTK_LAGRANGE_HEXAHEDRON")
 
     def to_vtk(self) -> Any:
         """A ``vtkUnstructuredGrid`` of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without vtk."""
-        lagrange_hexahedron = 72
-        return _vtk_grid(self.points, self._vtk_nodes(), lagrange_hexahedron,
-                         _kind(self.generator_corners), _ints(None, 0, ""))
+        return _interchange.to_vtk(self._grid(), _interchange.LAGRANGE_HEXAHEDRON)
 
     def to_pyvista(self) -> Any:
         """The same as a ``pyvista.UnstructuredGrid``. Raises ImportError without pyvista."""
-        import pyvista
-
-        return pyvista.wrap(self.to_vtk())
+        return _interchange.to_pyvista(self._grid(), _interchange.LAGRANGE_HEXAHEDRON)
 
 
-class Mesh:
+class Mesh(_interchange.Wrappable):
     """A hexahedral mesh.
 
     ``Mesh(points, cells)`` copies arrays of one's own: float64 (n, 3) and integers (m, 8), and if
@@ -502,6 +537,10 @@ class Mesh:
 
     def __repr__(self) -> str:
         return f"<hexhex.Mesh: {len(self.cells)} cells, {len(self.points)} points>"
+
+    def _repr_html_(self) -> str:
+        """For notebooks: with a picture."""
+        return _picture.html(repr(self), lambda: _picture.of_mesh(self))
 
     @property
     def points(self) -> Floats:
@@ -574,25 +613,46 @@ class Mesh:
         rows: Indices = _hexhex.structure(self._handle, 0, None)[0]
         return rows[:, :2], rows[:, 2].astype(np.int64), rows[:, 3] != 0
 
+    def _scaled_jacobians(self) -> Floats:
+        jacobians: Floats = _hexhex.certify(self._handle, 0, None)[0]
+        return jacobians
+
+    @classmethod
+    def from_pyvista(cls, grid: Any) -> Mesh:
+        """The hexahedra of a PyVista (or VTK) data set, with generators, tags and regions as
+        to_pyvista() names them. Raises ArgumentError without hexahedra, ImportError without pyvista."""
+        return _interchange.mesh_of_grid(
+            _interchange.from_pyvista(grid, _interchange.HEXAHEDRON, "hexahedra"))
+
+    @classmethod
+    def from_meshio(cls, mesh: Any) -> Mesh:
+        """The hexahedra of a ``meshio.Mesh``, likewise."""
+        return _interchange.mesh_of_grid(
+            _interchange.from_meshio(mesh, "hexahedron", "hexahedra"))
+
     def to_meshio(self) -> Any:
-        """The mesh as a ``meshio.Mesh``. Raises ImportError without meshio."""
-        import meshio
+        """The mesh as a ``meshio.Mesh`` with generators, regions, and tags of vertices as arrays.
+        Raises ImportError without meshio."""
+        return _interchange.to_meshio(_interchange.grid_of_mesh(self, False), "hexahedron")
 
-        # meshio wants signed indices for some of its writers.
-        return meshio.Mesh(self.points, [("hexahedron", self.cells.astype(np.int64))])
+    def to_vtk(self, *, quality: bool = True) -> Any:
+        """The mesh as a ``vtkUnstructuredGrid`` on the same memory: what is written to points there
+        is in the mesh. Its arrays are those of .vtu files, if they are known: of points
+        ``generator_kind``, ``generator_tet``, ``generator_corners`` and ``feature_vertex``, of
+        cells ``scaled_jacobian`` and ``region``, of the field ``feature_edges`` and
+        ``feature_quads``. Raises ImportError without vtk.
 
-    def to_vtk(self) -> Any:
-        """The mesh as a ``vtkUnstructuredGrid``, with the arrays ``generator_kind`` (points) and
-        ``region`` (cells) if they are known. Raises ImportError without vtk."""
-        hexahedron = 12
-        kind = self.generator_kind if len(self.generator_corners) else self.generator_corners
-        return _vtk_grid(self.points, self.cells.astype(np.int64), hexahedron, kind, self.regions)
+        Args:
+            quality: whether to compute scaled Jacobians.
+        """
+        return _interchange.to_vtk(_interchange.grid_of_mesh(self, quality),
+                                   _interchange.HEXAHEDRON)
 
-    def to_pyvista(self) -> Any:
-        """The same as a ``pyvista.UnstructuredGrid``. Raises ImportError without pyvista."""
-        import pyvista
-
-        return pyvista.wrap(self.to_vtk())
+    def to_pyvista(self, *, quality: bool = True) -> Any:
+        """The same as a ``pyvista.UnstructuredGrid``; ``pyvista.wrap(mesh)`` is one, too. Raises
+        ImportError without pyvista."""
+        return _interchange.to_pyvista(_interchange.grid_of_mesh(self, quality),
+                                       _interchange.HEXAHEDRON)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -615,6 +675,10 @@ class PartialMesh:
     invalid_tets: int
     missing_cells: float
     face_conflicts: int
+
+    def __repr__(self) -> str:
+        return (f"<hexhex.PartialMesh: {len(self.mesh.cells)} cells, {len(self.holes)} holes where "
+                f"{self.missing_cells:.0f} cells are missing>")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -669,6 +733,10 @@ class MapStructure:
     boundary: npt.NDArray[np.bool_]  #: whether it is on the boundary, bool (k,)
     defects: list[Defect]  #: as of check(); what one keeps from being found is left out above
 
+    def __repr__(self) -> str:
+        return (f"<hexhex.MapStructure: {len(self.jump_tets)} faces between charts, "
+                f"{len(self.edges)} singular edges, {len(self.defects)} defects>")
+
 
 @dataclasses.dataclass(frozen=True)
 class CheckReport:
@@ -682,6 +750,12 @@ class CheckReport:
     def valid(self) -> bool:
         """Whether there are no defects."""
         return not self.defects
+
+    def __repr__(self) -> str:
+        if self.expected is not None:
+            return f"<hexhex.CheckReport: valid, {self.expected['cells']} cells>"
+        found = ", ".join(f"{d.code} ({d.count})" for d in self.defects)
+        return f"<hexhex.CheckReport: {found or 'valid'}>"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -707,6 +781,12 @@ class VerifyReport:
 
     def __bool__(self) -> bool:
         return self.passed
+
+    def __repr__(self) -> str:
+        bad = ", ".join(item.name for item in self.items if not item.passed)
+        good = sum(item.passed for item in self.items)
+        return (f"<hexhex.VerifyReport: {good} of {len(self.items)} checks passed"
+                f"{', not ' + bad if bad else ''}>")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -740,3 +820,18 @@ class Quality:
     def all_positive(self) -> bool:
         """Whether all cells are proven to be positive everywhere."""
         return self.refuted + self.undecided == 0
+
+    def __repr__(self) -> str:
+        return (f"<hexhex.Quality: {len(self.scaled_jacobians)} cells, scaled Jacobian "
+                f"{self.minimum:.3f} to mean {self.mean:.3f}, {self.positive} positive everywhere>")
+
+
+# How to pickle what the library holds: by the arrays that it is made of. Everything else is a plain
+# object.
+_of_hexes = operator.attrgetter("generator_tet", "generator_corners", "feature_vertices",
+                                "feature_edges", "feature_quads", "regions")
+copyreg.pickle(_hexhex.Mesh, lambda h: (_hexhex.Mesh, (h.points, h.cells, *_of_hexes(h))))
+copyreg.pickle(_hexhex.LagrangeMesh, lambda h: (
+    _hexhex.LagrangeMesh, (h.order, h.points, h.nodes, h.vertex_count, *_of_hexes(h))))
+copyreg.pickle(_hexhex.PiecewiseMesh, lambda h: (
+    _hexhex.PiecewiseMesh, (h.mesh, h.arcs, h.patches)))

@@ -1,0 +1,275 @@
+"""Meshes and maps of other packages: VTK, PyVista and meshio, which are imported when they are used.
+Arrays have the names of .vtu files (docs/formats.md)."""
+
+from __future__ import annotations
+
+import dataclasses
+import sys
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._errors import ArgumentError
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from ._types import Features, Map, Mesh
+
+    Arrays = dict[str, npt.NDArray[Any]]
+
+TETRA, HEXAHEDRON, LAGRANGE_HEXAHEDRON = 10, 12, 72  # numbers of VTK
+
+
+@dataclasses.dataclass(frozen=True)
+class Grid:
+    """Points, cells of one type, and arrays by name; a feature array has rows of vertices and a tag."""
+
+    points: npt.NDArray[np.float64]
+    cells: npt.NDArray[Any]
+    of_points: Arrays
+    of_cells: Arrays
+    of_field: Arrays
+
+
+def _features(features: Features, faces: str, points: int, grid_points: Arrays,
+              grid_field: Arrays) -> None:
+    if len(features.vertices):
+        tags = np.zeros(points, dtype=np.int32)
+        tags[features.vertices[:, 0]] = features.vertices[:, 1]
+        grid_points["feature_vertex"] = tags
+    if len(features.edges):
+        grid_field["feature_edges"] = features.edges
+    if len(features.faces):
+        grid_field[faces] = features.faces
+
+
+def grid_of_mesh(mesh: Mesh, quality: bool) -> Grid:
+    """A mesh with what is known of it."""
+    of_points: Arrays = {}
+    of_cells: Arrays = {}
+    of_field: Arrays = {}
+    if len(mesh.generator_tet):
+        of_points.update(generator_tet=mesh.generator_tet, generator_kind=mesh.generator_kind,
+                         generator_corners=mesh.generator_corners)
+    if quality and len(mesh.cells):
+        of_cells["scaled_jacobian"] = mesh._scaled_jacobians()
+    if len(mesh.regions):
+        of_cells["region"] = mesh.regions
+    _features(mesh.features, "feature_quads", len(mesh.points), of_points, of_field)
+    return Grid(mesh.points, mesh.cells, of_points, of_cells, of_field)
+
+
+def grid_of_map(map: Map) -> Grid:
+    """A map: its parameters are the cell array igm of 12 components."""
+    of_points: Arrays = {}
+    of_cells: Arrays = {"igm": map.igm.reshape(len(map.igm), 12)}
+    of_field: Arrays = {}
+    if len(map.regions):
+        of_cells["region"] = map.regions
+    _features(map.features, "feature_triangles", len(map.points), of_points, of_field)
+    return Grid(map.points, map.tets, of_points, of_cells, of_field)
+
+
+def _known(names: Arrays, name: str, count: int, width: int) -> npt.NDArray[Any] | None:
+    """An array if it is one of integers with so many rows."""
+    array = names.get(name)
+    fits = (array is not None and array.dtype.kind in "iu" and len(array) == count
+            and array.shape[1:] == ((width,) if width else ()))
+    return array if fits else None
+
+
+def _tags_of(grid: Grid, faces: str, corners: int) -> dict[str, Any]:
+    """Arguments of Features."""
+    vertex = _known(grid.of_points, "feature_vertex", len(grid.points), 0)
+    tagged = None
+    if vertex is not None and vertex.any():
+        found = np.flatnonzero(vertex)
+        tagged = np.column_stack((found, vertex[found])).astype(np.int32)
+    rows: dict[str, Any] = {"vertices": tagged, "corners": corners}
+    for argument, name, width in (("edges", "feature_edges", 3), ("faces", faces, corners + 1)):
+        array = grid.of_field.get(name)
+        rows[argument] = None if array is None else np.reshape(array, (-1, width))
+    return rows
+
+
+def mesh_of_grid(grid: Grid) -> Mesh:
+    """The inverse of grid_of_mesh()."""
+    from ._types import Features, Mesh
+
+    count = len(grid.points)
+    tet = _known(grid.of_points, "generator_tet", count, 0)
+    corners = _known(grid.of_points, "generator_corners", count, 0)
+    if tet is None or corners is None:
+        tet = corners = None
+    return Mesh(grid.points, grid.cells, generator_tet=tet, generator_corners=corners,
+                features=Features(**_tags_of(grid, "feature_quads", 4)),
+                regions=_known(grid.of_cells, "region", len(grid.cells), 0))
+
+
+def map_of_grid(grid: Grid, name: str) -> Map:
+    """The inverse of grid_of_map(). The array may also be one of points, with three components."""
+    from ._types import Features, Map
+
+    igm = grid.of_cells.get(name)
+    of_point = grid.of_points.get(name)
+    if igm is not None and igm.ndim > 1 and igm[0:1].size in (0, 12):
+        igm = igm.reshape(-1, 4, 3)
+    elif of_point is not None and of_point.shape[1:] == (3,):
+        igm = of_point[grid.cells]  # one chart
+    else:
+        known = ", ".join(sorted({*grid.of_cells, *grid.of_points})) or "none"
+        raise ArgumentError(
+            f'There is no map in an array "{name}": it takes one of cells with 12 components, or one '
+            f"of points with 3. The arrays are: {known}.", "InvalidArgument")
+    return Map(grid.points, grid.cells, igm,
+               features=Features(**_tags_of(grid, "feature_triangles", 3)),
+               regions=_known(grid.of_cells, "region", len(grid.cells), 0))
+
+
+def none_of(what: str, where: str) -> ArgumentError:
+    """There are no cells of the type that is wanted."""
+    return ArgumentError(f"The {where} has no {what}.", "InvalidArgument")
+
+
+# meshio ---------------------------------------------------------------------------------------
+
+def to_meshio(grid: Grid, name: str) -> Any:
+    """A meshio.Mesh of cells of one type, with the arrays of points and cells."""
+    import meshio
+
+    # meshio wants signed indices for some of its writers.
+    return meshio.Mesh(grid.points, [(name, grid.cells.astype(np.int64))],
+                       point_data=grid.of_points,
+                       cell_data={key: [array] for key, array in grid.of_cells.items()})
+
+
+def from_meshio(mesh: Any, name: str, what: str) -> Grid:
+    """All blocks of a type; arrays of cells are those that all of these blocks have."""
+    blocks = [i for i, block in enumerate(mesh.cells) if block.type == name]
+    if not blocks:
+        raise none_of(what, "mesh")
+    of_cells = {key: np.concatenate([np.asarray(lists[i]) for i in blocks])
+                for key, lists in mesh.cell_data.items()}
+    return Grid(np.asarray(mesh.points, dtype=np.float64),
+                np.concatenate([np.asarray(mesh.cells[i].data) for i in blocks]),
+                {key: np.asarray(array) for key, array in mesh.point_data.items()}, of_cells, {})
+
+
+# VTK and PyVista ------------------------------------------------------------------------------
+
+def _vtk_array(values: npt.NDArray[Any], name: str = "") -> Any:
+    """A VTK array on the same memory, which it keeps alive."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+
+    array = numpy_to_vtk(np.ascontiguousarray(values), deep=False)
+    array.SetName(name)
+    return array
+
+
+def _vtk_cells(cells: npt.NDArray[Any]) -> Any:
+    """A vtkCellArray. VTK knows indices of 32 bits, with a sign: larger ones are copied."""
+    from vtkmodules.vtkCommonCore import vtkTypeInt32Array, vtkTypeInt64Array
+    from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+    array = vtkCellArray()
+    if not len(cells):
+        return array
+    small = cells.size < 2**31 and cells.dtype == np.uint32
+    kind, dtype = (vtkTypeInt32Array, np.int32) if small else (vtkTypeInt64Array, np.int64)
+    flat = np.ascontiguousarray(cells).reshape(-1)
+    corners = flat.view(np.int32) if small else flat.astype(np.int64)
+    ends = np.arange(0, cells.size + 1, cells.shape[1], dtype=dtype)
+    arrays = []
+    for values in (ends, corners):
+        arrays.append(kind())
+        arrays[-1].SetVoidArray(values, len(values), 1)
+        arrays[-1].__dict__["_numpy_reference"] = values  # lives as long
+    array.SetData(*arrays)
+    return array
+
+
+def to_vtk(grid: Grid, cell_type: int) -> Any:
+    """A vtkUnstructuredGrid of cells of one type, on the same memory; needs vtk alone."""
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
+
+    made = vtkUnstructuredGrid()
+    places = vtkPoints()
+    if len(grid.points):
+        places.SetData(_vtk_array(grid.points))
+    made.SetPoints(places)
+    made.SetCells(cell_type, _vtk_cells(grid.cells))
+    for arrays, data in ((grid.of_points, made.GetPointData()), (grid.of_cells, made.GetCellData()),
+                         (grid.of_field, made.GetFieldData())):
+        for name, values in arrays.items():
+            data.AddArray(_vtk_array(values, name))
+    return made
+
+
+def to_pyvista(grid: Grid, cell_type: int) -> Any:
+    """The same as a pyvista.UnstructuredGrid."""
+    import pyvista
+
+    from . import _accessor  # noqa: F401  grid.hexhex from now on
+
+    made = pyvista.wrap(to_vtk(grid, cell_type))
+    if "scaled_jacobian" in grid.of_cells:
+        made.set_active_scalars("scaled_jacobian", preference="cell")
+    return made
+
+
+def from_pyvista(given: Any, cell_type: int, what: str) -> Grid:
+    """The cells of a type of a PyVista or VTK data set."""
+    import pyvista
+
+    data = pyvista.wrap(given)
+    if not isinstance(data, pyvista.UnstructuredGrid):
+        if not isinstance(data, pyvista.DataSet):
+            raise ArgumentError(f"A {type(given).__name__} is no data set of cells.",
+                                "InvalidArgument")
+        data = data.cast_to_unstructured_grid()
+    chosen = data.celltypes == cell_type
+    if not chosen.any():
+        raise none_of(what, "data set")
+
+    def arrays(of: Any, rows: Any = slice(None)) -> Arrays:
+        return {name: np.asarray(of[name])[rows] for name in of.keys()
+                if np.asarray(of[name]).dtype.kind in "iuf"}
+
+    return Grid(np.asarray(data.points, dtype=np.float64), data.cells_dict[cell_type],
+                arrays(data.point_data), arrays(data.cell_data, chosen), arrays(data.field_data))
+
+
+def vtk_order(p: int) -> npt.NDArray[np.int64]:
+    """Nodes of a cell of order p in the order of VTK_LAGRANGE_HEXAHEDRON (VTK 9.1 and later)."""
+    inner = range(1, p)
+    nodes = [(0, 0, 0), (p, 0, 0), (p, p, 0), (0, p, 0), (0, 0, p), (p, 0, p), (p, p, p), (0, p, p)]
+    for k in (0, p):
+        nodes += [(i, 0, k) for i in inner] + [(p, j, k) for j in inner]
+        nodes += [(i, p, k) for i in inner] + [(0, j, k) for j in inner]
+    for i, j in ((0, 0), (p, 0), (p, p), (0, p)):
+        nodes += [(i, j, k) for k in inner]
+    nodes += [(i, j, k) for i in (0, p) for k in inner for j in inner]
+    nodes += [(i, j, k) for j in (0, p) for k in inner for i in inner]
+    nodes += [(i, j, k) for k in (0, p) for j in inner for i in inner]
+    nodes += [(i, j, k) for k in inner for j in inner for i in inner]
+    return np.array([i + (p + 1) * (j + (p + 1) * k) for i, j, k in nodes])
+
+
+class _AsGrid:
+    """Stands where PyVista keeps its classes for those of VTK; makes a grid instead."""
+
+    def __new__(cls, mesh: Any) -> Any:
+        return mesh.to_pyvista()
+
+
+class Wrappable:
+    """What pyvista.wrap() takes: it asks for the name of a class of VTK, and looks it up."""
+
+    def GetClassName(self) -> str:
+        """A name that PyVista finds."""
+        pyvista = sys.modules.get("pyvista")
+        if pyvista is not None:
+            pyvista._wrappers.setdefault("hexhex", _AsGrid)
+        return "hexhex"
