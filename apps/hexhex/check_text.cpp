@@ -3,14 +3,11 @@
 #include <algorithm>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "output.hpp"
 
 namespace hexhex::command {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string genusAsText(const std::vector<std::int64_t>& genus) {
   std::string text;
@@ -24,6 +21,8 @@ std::string orientationAsText(const CheckReport& report) {
   if (report.cornersReversed) text += "; tets list their corners in negative order";
   return text;
 }
+
+}  // namespace
 
 void printMap(const CheckReport& report) {
   fmt::print("Map\n");
@@ -52,7 +51,7 @@ void printMap(const CheckReport& report) {
 }
 
 void printDefects(const CheckReport& report) {
-  fmt::print("The map is not valid:\n");
+  fmt::print("Defects\n");
   for (const Defect& defect : report.defects) {
     fmt::print("  {}, {}: {}\n", name(defect.code),
                defect.count == 1 ? "once" : fmt::format("{} times", defect.count), defect.sentence);
@@ -62,39 +61,6 @@ void printDefects(const CheckReport& report) {
   }
 }
 
-Json valencesAsJson(const std::map<int, std::uint64_t>& countByValence) {
-  Json object = Json::object();
-  for (const auto& [valence, count] : countByValence) object[std::to_string(valence)] = count;
-  return object;
-}
-
-Json expectationAsJson(const Expectation& expected) {
-  return {{"cells", expected.cells},
-          {"boundary_quads", expected.boundaryQuads},
-          {"inner_singular_edges", valencesAsJson(expected.innerSingularEdges)},
-          {"boundary_singular_edges", valencesAsJson(expected.boundarySingularEdges)},
-          {"euler_characteristic", expected.eulerCharacteristic},
-          {"components", expected.components},
-          {"boundary_components", expected.boundaryComponents}};
-}
-
-Json defectsAsJson(const std::vector<Defect>& defects) {
-  Json list = Json::array();
-  for (const Defect& defect : defects) {
-    Json worst = Json::array();
-    for (const Defect::Occurrence& occurrence : defect.worst) {
-      worst.push_back({{"place", toString(occurrence.place)}, {"amount", occurrence.amount}});
-    }
-    list.push_back({{"code", name(defect.code)},
-                    {"sentence", defect.sentence},
-                    {"count", defect.count},
-                    {"worst", std::move(worst)}});
-  }
-  return list;
-}
-
-}  // namespace
-
 void printExpectation(const Expectation& expected) {
   printLine("cells", std::to_string(expected.cells));
   printLine("boundary quads", std::to_string(expected.boundaryQuads));
@@ -103,44 +69,6 @@ void printExpectation(const Expectation& expected) {
   printLine("Euler characteristic", std::to_string(expected.eulerCharacteristic));
   printLine("components", std::to_string(expected.components));
   printLine("boundary components", std::to_string(expected.boundaryComponents));
-}
-
-void printCheck(const CheckReport& report, int scale) {
-  printMap(report);
-  if (!report.valid()) {
-    printDefects(report);
-    return;
-  }
-  fmt::print("Mesh to expect at scale {}\n", scale);
-  printExpectation(report.expected);
-  fmt::print("The map is valid.\n");
-}
-
-std::string checkAsJson(const CheckReport& report, int scale, const std::string& kind) {
-  const Json json = {
-      {"valid", report.valid()},
-      {"kind", kind},
-      {"points", report.points},
-      {"tets", report.tets},
-      {"edges", report.edges},
-      {"faces", report.faces},
-      {"inner_faces", report.innerFaces},
-      {"boundary_faces", report.boundaryFaces},
-      {"chart_jumps", report.chartJumps},
-      {"isolated_vertices", report.isolatedVertices},
-      {"tets_inverted_in_space", report.tetsInvertedInSpace},
-      {"mirrored", report.mirrored},
-      {"corners_reversed", report.cornersReversed},
-      {"max_transition_residual", report.maxTransitionResidual},
-      {"max_displacement", report.maxDisplacement},
-      {"inner_singular_tet_edges", valencesAsJson(report.innerSingularTetEdges)},
-      {"boundary_singular_tet_edges", valencesAsJson(report.boundarySingularTetEdges)},
-      {"singular_nodes", report.singularNodes},
-      {"boundary_genus", report.boundaryGenus},
-      {"defects", defectsAsJson(report.defects)},
-      {"scale", scale},
-      {"expected", report.valid() ? expectationAsJson(report.expected) : Json(nullptr)}};
-  return json.dump(2) + "\n";
 }
 
 }  // namespace hexhex::command

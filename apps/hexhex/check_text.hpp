@@ -1,4 +1,4 @@
-// A CheckReport and an Expectation for people and for programs.
+// A CheckReport and an Expectation for people.
 #pragma once
 
 #include <string>
@@ -7,14 +7,13 @@
 
 namespace hexhex::command {
 
-/// Prints what the map is, what its mesh will be, and what is wrong with it.
-void printCheck(const CheckReport& report, int scale);
+/// Prints what the map consists of.
+void printMap(const CheckReport& report);
+
+/// Prints what is wrong with it, and where most.
+void printDefects(const CheckReport& report);
 
 /// Prints the numbers that a mesh can be compared with.
 void printExpectation(const Expectation& expected);
-
-/// The same as JSON text, ending with a line break. docs/report.md explains the keys.
-[[nodiscard]] std::string checkAsJson(const CheckReport& report, int scale,
-                                      const std::string& kind);
 
 }  // namespace hexhex::command

@@ -22,5 +22,7 @@ struct Command {
 [[nodiscard]] Command addConvert(CLI::App& app);
 [[nodiscard]] Command addFormats(CLI::App& app);
 [[nodiscard]] Command addView(CLI::App& app);
+/// After all others, which it explains.
+[[nodiscard]] Command addHelp(CLI::App& app);
 
 }  // namespace hexhex::command

@@ -11,8 +11,9 @@
 #include "check_text.hpp"
 #include "command.hpp"
 #include "exit_codes.hpp"
-#include "interrupt.hpp"
-#include "progress.hpp"
+#include "json.hpp"
+#include "long_run.hpp"
+#include "output.hpp"
 #include "quantize_options.hpp"
 #include "shared_options.hpp"
 
@@ -22,9 +23,8 @@ namespace {
 struct Arguments {
   MapSource input;
   CheckOptions options;
-  int threads = 0;
+  RunOptions run;
   bool json = false;
-  bool quiet = false;
 };
 
 /// What a map is, and whether it is seamless if it is not integer.
@@ -34,9 +34,9 @@ struct Examination {
 };
 
 Examination examine(const Arguments& arguments) {
-  ProgressDisplay progress(arguments.quiet || arguments.json);
-  Context context(arguments.threads, progress.callback());
-  const CancelOnSignal cancelOnSignal(context);
+  LongRun longRun(arguments.run,
+                  {{"readMap", 1}, {"readMapPair", 1}, {"check", 4}, {"examineSeamless", 8}});
+  Context& context = longRun.context();
   const TetMap map = readMap(arguments.input, context);
   Examination result{check(map, arguments.options, context), std::nullopt};
   if (!result.report.valid() && canQuantize() &&
@@ -46,16 +46,30 @@ Examination examine(const Arguments& arguments) {
   return result;
 }
 
+/// What the map is, in a sentence, and what to do with it.
+std::string classify(const Examination& found, const MapSource& input) {
+  if (found.report.valid()) return "The map is valid.";
+  const std::string advice = found.seamless ? adviceFor(*found.seamless, input) : "";
+  if (!advice.empty()) return advice;
+  return fmt::format("The map is defective: {} of {}.",
+                     counted(found.report.defects.size(), "kind"),
+                     found.report.defects.size() == 1 ? "defect" : "defects");
+}
+
 int run(const Arguments& arguments) {
-  const auto [report, seamless] = examine(arguments);
+  const Examination found = examine(arguments);
+  const CheckReport& report = found.report;
   if (arguments.json) {
-    const char* kind = seamless ? kindName(seamless->kind) : "neither";
-    fmt::print("{}",
-               checkAsJson(report, arguments.options.scale, report.valid() ? "integer" : kind));
-  } else if (!arguments.quiet) {
-    printCheck(report, arguments.options.scale);
-    const std::string advice = seamless ? adviceFor(*seamless, arguments.input) : "";
-    if (!advice.empty()) fmt::print("{}\n", advice);
+    fmt::print("{}", jsonText(checkAsJson(report, arguments.options.scale, found.seamless)));
+  } else if (!arguments.run.quiet) {
+    fmt::print("{}\n", classify(found, arguments.input));
+    printMap(report);
+    if (report.valid()) {
+      fmt::print("Mesh to expect at scale {}\n", arguments.options.scale);
+      printExpectation(report.expected);
+    } else if (!found.seamless || found.seamless->kind == SeamlessKind::Neither) {
+      printDefects(report);
+    }
   }
   return report.valid() ? kSuccess : kInvalidMap;
 }
@@ -69,9 +83,8 @@ Command addCheck(CLI::App& app) {
   addMapSource(*parser, arguments->input);
   addTolerance(*parser, arguments->options.tolerance);
   addScale(*parser, arguments->options.scale, "Tell what to expect at this scale");
-  addThreads(*parser, arguments->threads);
   parser->add_flag("--json", arguments->json, "Print JSON instead of text");
-  addQuiet(*parser, arguments->quiet, "Print no text: the exit code tells");
+  addRunOptions(*parser, arguments->run, "Print no text: the exit code tells");
   parser->footer(
       "Exit code 0: the map is valid; 1: it is not.\n\nExample:\n"
       "  hexhex check sphere.hexex");

@@ -11,9 +11,8 @@
 
 #include "command.hpp"
 #include "exit_codes.hpp"
-#include "interrupt.hpp"
+#include "long_run.hpp"
 #include "output.hpp"
-#include "progress.hpp"
 #include "shared_options.hpp"
 
 namespace hexhex::command {
@@ -23,10 +22,9 @@ struct Arguments {
   MapSource input;
   std::string output;
   OutputChoice choice;
-  int threads = 0;
+  RunOptions run;
   double patchAngle = WriteOptions{}.patchAngle;
   bool stream = false;
-  bool quiet = false;
 };
 
 /// That neither maps nor hex meshes can be written is known before anything is read.
@@ -94,13 +92,15 @@ int run(const Arguments& arguments) {
                 "--stream converts hexahedral meshes, but --tets and --polycube are a map.");
   }
   requireAnyFormat(arguments);
-  ProgressDisplay progress(arguments.quiet);
-  Context context(arguments.threads, progress.callback());
-  const CancelOnSignal cancelOnSignal(context);
+  const std::vector<WorkStep> whole = {
+      {"readMapPair", 1}, {"readMapOrHexMesh", 1}, {"writeMap", 1}, {"writeHexMesh", 1}};
+  LongRun longRun(arguments.run,
+                  arguments.stream ? std::vector<WorkStep>{{"readHexMeshTo", 1}} : whole);
+  Context& context = longRun.context();
   requireWritable(arguments.output);
   const std::string what = (arguments.stream ? convertInPieces : convertWhole)(arguments, context);
-  progress.clear();
-  if (arguments.quiet) return kSuccess;
+  longRun.finish();
+  if (arguments.run.quiet) return kSuccess;
   std::error_code unknown;  // the size of a pipe
   const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
   printFiles(arguments.input.description(), arguments.output,
@@ -120,15 +120,15 @@ Command addConvert(CLI::App& app) {
   parser
       ->add_option("--input-format", arguments->input.format,
                    "Read this format, whatever the extension")
+      ->check(formatName())
       ->option_text("NAME");
   addPatchAngle(*parser, arguments->patchAngle);
-  addThreads(*parser, arguments->threads);
   parser->add_flag("--stream", arguments->stream,
                    "Read and write a mesh piece by piece, for meshes larger\n"
                    "than the memory, from .vtu to " +
                        extensionsThat(&FileFormat::streams) +
                        ";\nwithout boundary quads and quality");
-  addQuiet(*parser, arguments->quiet);
+  addRunOptions(*parser, arguments->run);
   parser->footer(
       "Maps become maps, and hexahedral meshes become hexahedral meshes: the input's content "
       "decides.\n`hexhex formats` lists the formats.\n\nExamples:\n"

@@ -1,7 +1,6 @@
 // `hexhex extract`: from a map to a verified hexahedral mesh.
 #include <array>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -20,14 +19,16 @@
 #include "command.hpp"
 #include "exit_codes.hpp"
 #include "extract_stream.hpp"
-#include "interrupt.hpp"
+#include "extract_text.hpp"
+#include "json.hpp"
+#include "long_run.hpp"
 #include "output.hpp"
 #include "partial_text.hpp"
-#include "progress.hpp"
 #include "quantize_options.hpp"
 #include "repair_text.hpp"
 #include "report.hpp"
 #include "shared_options.hpp"
+#include "suggestions.hpp"
 #include "verification.hpp"
 
 namespace hexhex::command {
@@ -45,11 +46,10 @@ struct Arguments {
   bool quantize = false;
   QuantizeOptions quantizeOptions;
   double patchAngle = WriteOptions{}.patchAngle;
-  int threads = 0;
+  RunOptions run;
   bool stream = false;
   bool partial = false;
   bool noVerify = false;
-  bool quiet = false;
 };
 
 void requireAllDifferent(const Arguments& arguments) {
@@ -121,85 +121,13 @@ void requireOutputs(const Arguments& arguments) {
   }
 }
 
-void printWarnings(const ExtractionRecord& record, const TetMap& map) {
-  const ExtractStatistics& statistics = record.statistics;
-  if (record.streamed && !(map.features.empty() && map.regions.empty())) {
-    printWarning(
-        "The tags and regions of the map are not in the mesh; leave out --stream for them.");
-  }
-  if (statistics.repair.changed) printWarning(repairNotice(statistics.repair));
-  if (statistics.tetsInvertedInSpace > 0) {
-    printWarning(counted(statistics.tetsInvertedInSpace, "tet") +
-                 " of the input are inverted in space. The mesh has the right connectivity, but "
-                 "cells there may be inverted, too.");
-  }
-  if (record.certificate && record.certificate->refuted > 0) {
-    printWarning(refutationAsText(*record.certificate));
-  }
-  if (statistics.mirrored) {
-    printWarning("The map reverses orientation; it was mirrored before the extraction.");
-  }
-}
-
-std::string verificationAsText(const ExtractionRecord& record) {
-  if (!record.verification) return "skipped";
-  std::string passed =
-      fmt::format("passed, {}", counted(record.verification->items.size(), "check"));
-  if (!record.streamed) return passed;
-  return passed + ", of the file as it was read back";
-}
-
-void printSummary(const ExtractionRecord& record) {
-  const ExtractStatistics& statistics = record.statistics;
-  printFiles(record.input.file, record.output.file);
-  printLine("map", fmt::format("{}, {}, {} of {} with a chart jump", counted(record.tets, "tet"),
-                               counted(record.points, "point"), statistics.chartJumps,
-                               counted(statistics.innerFaces, "inner face")));
-  if (record.quantized) printLine("quantization", quantizeSummary(*record.quantized));
-  printLine(
-      "mesh",
-      fmt::format("{}, {}", counted(record.cells, "cell"),
-                  record.vertices == 1 ? "1 vertex" : fmt::format("{} vertices", record.vertices)));
-  if (record.tags != std::array<std::uint64_t, 3>{}) {
-    printLine(
-        "tagged",
-        fmt::format("{}, {}, {}",
-                    record.tags[0] == 1 ? "1 vertex" : fmt::format("{} vertices", record.tags[0]),
-                    counted(record.tags[1], "edge"), counted(record.tags[2], "quad")));
-  }
-  if (record.engine != Engine::Atlas) printLine("engine", engineName(record.engine));
-  printLine("extraction",
-            fmt::format("{:.3f} s on {}{}, peak memory {}", statistics.seconds,
-                        counted(static_cast<std::uint64_t>(statistics.threads), "thread"),
-                        record.streamed ? ", writing included" : "", bytesAsText(peakMemory())));
-  if (statistics.repair.changed) {
-    printLine("repair", fmt::format("{:.3f} s, {}", statistics.repair.seconds,
-                                    counted(statistics.repair.regions.size(), "place")));
-  }
-  if (record.certificate) printQuality(*record.certificate);
-  if (record.order > 1) {
-    printLine("order", fmt::format("{}, {} nodes", record.order, record.nodes));
-  }
-  for (const auto& [what, part] :
-       {std::pair("arcs", &record.arcs), std::pair("patches", &record.patches)}) {
-    if (part->file.empty()) continue;
-    printLine(what, fmt::format("{} with {} {}, {}", part->count, part->pieces,
-                                what == std::string("arcs") ? "inner points" : "polygons",
-                                part->file.string()));
-  }
-  printLine("verification", verificationAsText(record));
-  if (record.streamed) {
-    printLine("checksum of cells", checksumAsText(record.streamed->cellChecksum));
-    printLine("checksum of vertices", checksumAsText(record.streamed->pointChecksum));
-  }
-  printLine("file", bytesAsText(record.output.bytes));
-}
-
 void verifyMesh(const Arguments& arguments, const TetMap& map, const HexMesh& mesh,
-                Context& context, ExtractionRecord& record) {
+                LongRun& longRun, ExtractionRecord& record) {
   if (arguments.noVerify) return;
-  record.verification = verify(extractedMap(map, record.statistics), mesh,
-                               {arguments.options.scale, arguments.options.tolerance}, context);
+  record.verification = longRun.part("verification", [&] {
+    return verify(extractedMap(map, record.statistics), mesh,
+                  {arguments.options.scale, arguments.options.tolerance}, longRun.context());
+  });
   requirePassed(*record.verification, "The mesh does not agree with the map and was not written",
                 "Please report this with the map.");
 }
@@ -216,24 +144,30 @@ PiecewiseLinearMesh extractParts(const Arguments& arguments, const TetMap& map, 
 }
 
 /// Extracts, verifies and writes a mesh in memory.
-void extractWhole(const Arguments& arguments, const TetMap& map, Context& context,
+void extractWhole(const Arguments& arguments, const TetMap& map, LongRun& longRun,
                   ExtractionRecord& record) {
-  const PiecewiseLinearMesh all = extractParts(arguments, map, context, record);
+  Context& context = longRun.context();
+  const PiecewiseLinearMesh all =
+      longRun.part("extraction", [&] { return extractParts(arguments, map, context, record); });
   const HexMesh& mesh = all.mesh;
-  verifyMesh(arguments, map, mesh, context, record);
+  verifyMesh(arguments, map, mesh, longRun, record);
   if (!arguments.arcs.empty()) {
-    writeArcs(all, extractedMap(map, record.statistics), arguments.arcs, context);
+    longRun.part("writing", [&] {
+      writeArcs(all, extractedMap(map, record.statistics), arguments.arcs, context);
+    });
     record.arcs = {arguments.arcs, all.arcs.count(), all.arcs.points.size()};
   }
   if (!arguments.patches.empty()) {
-    writePatches(all, extractedMap(map, record.statistics), arguments.patches, context);
+    longRun.part("writing", [&] {
+      writePatches(all, extractedMap(map, record.statistics), arguments.patches, context);
+    });
     record.patches = {arguments.patches, all.patches.count(), all.patches.polygonTet.size()};
   }
-  record.certificate = certify(mesh, context);
+  record.certificate = longRun.part("quality", [&] { return certify(mesh, context); });
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = record.certificate->scaledJacobians;
   writing.patchAngle = arguments.patchAngle;
-  writeHexMesh(mesh, arguments.output, writing, context);
+  longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
   record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
                  mesh.features.quads.size()};
   record.vertices = mesh.points.size();
@@ -241,16 +175,18 @@ void extractWhole(const Arguments& arguments, const TetMap& map, Context& contex
 }
 
 /// Cells of higher order.
-void extractCurved(const Arguments& arguments, const TetMap& map, Context& context,
+void extractCurved(const Arguments& arguments, const TetMap& map, LongRun& longRun,
                    ExtractionRecord& record) {
-  const LagrangeMesh mesh =
-      extractLagrange(map, arguments.order, arguments.options, context, &record.statistics);
-  verifyMesh(arguments, map, straightMesh(mesh), context, record);
-  record.certificate = certify(mesh, context);
+  Context& context = longRun.context();
+  const LagrangeMesh mesh = longRun.part("extraction", [&] {
+    return extractLagrange(map, arguments.order, arguments.options, context, &record.statistics);
+  });
+  verifyMesh(arguments, map, straightMesh(mesh), longRun, record);
+  record.certificate = longRun.part("quality", [&] { return certify(mesh, context); });
   WriteOptions options;
   options.scaledJacobians = record.certificate->scaledJacobians;
   options.patchAngle = arguments.patchAngle;
-  writeLagrangeMesh(mesh, arguments.output, options, context);
+  longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, options, context); });
   record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
                  mesh.features.quads.size()};
   record.vertices = mesh.vertexCount;
@@ -259,11 +195,11 @@ void extractCurved(const Arguments& arguments, const TetMap& map, Context& conte
 }
 
 /// The same in pieces, verified after it was written.
-void extractInPieces(const Arguments& arguments, const TetMap& map, Context& context,
+void extractInPieces(const Arguments& arguments, const TetMap& map, LongRun& longRun,
                      ExtractionRecord& record) {
   StreamedMesh mesh =
       extractStreamed(map, arguments.output, arguments.choice.options(), arguments.options,
-                      !arguments.noVerify, context, record.statistics);
+                      !arguments.noVerify, longRun, record.statistics);
   record.verification = std::move(mesh.verification);
   record.vertices = mesh.written.points;
   record.cells = mesh.written.cells;
@@ -272,19 +208,21 @@ void extractInPieces(const Arguments& arguments, const TetMap& map, Context& con
 
 /// What is left of a map beyond repair. Always an invalid map, by its exit code.
 int extractWhatIsValid(const Arguments& arguments, const TetMap& map, const Error& problem,
-                       Context& context, ProgressDisplay& progress, TextFile* report) {
+                       LongRun& longRun, Report& report) {
+  Context& context = longRun.context();
   const PartialMesh partial =
       extractPartial(map, {arguments.options.scale, arguments.options.tolerance}, context);
   WriteOptions options = arguments.choice.options();
   options.patchAngle = arguments.patchAngle;
   writeHexMesh(partial.mesh, arguments.output, options, context);
-  if (report != nullptr) {
-    report->commit(partialReportAsJson(partial, problem, arguments.options.scale));
+  longRun.finish();
+  if (report.isWanted()) {
+    report.write(partialReportAsJson(partial, problem, arguments.options.scale));
   }
-  progress.clear();
   printError(problem);
-  if (arguments.quiet) return kInvalidMap;
+  if (arguments.run.quiet) return kInvalidMap;
   printWarning("Only a part of the mesh was extracted, as --partial asks for.");
+  if (report.isOnOutput()) return kInvalidMap;
   printFiles(arguments.input.description(), arguments.output);
   printPartial(partial);
   return kInvalidMap;
@@ -298,62 +236,87 @@ void adviseQuantization(const Arguments& arguments, const TetMap& map, const Err
   if (!advice.empty()) throw Error(error.code(), advice);
 }
 
-int run(const Arguments& arguments) {
-  ProgressDisplay progress(arguments.quiet);
-  Context context(arguments.threads, progress.callback());
-  const CancelOnSignal cancelOnSignal(context);
-  requireOutputs(arguments);
-  const std::unique_ptr<TextFile> report = openReport(arguments.report);
+/// The functions of the library that a run calls; weights are their seconds for a mesh of seven
+/// million cells.
+std::vector<WorkStep> stepsOf(const Arguments& arguments) {
+  std::vector<WorkStep> steps = {{"readMap", 0.05}, {"readMapPair", 0.05}};
+  if (arguments.quantize) steps.push_back({"quantize", 20});
+  const std::vector<WorkStep> rest =
+      arguments.stream
+          ? std::vector<WorkStep>{{"extractTo", 4}, {"VerifySink", 0.5}, {"readHexMeshTo", 3}}
+          : std::vector<WorkStep>{{arguments.order > 1 ? "extractLagrange" : "extract", 4},
+                                  {"extractPiecewiseLinear", 20},
+                                  {"verify", 2.5},
+                                  {"writeArcs", 2},
+                                  {"writePatches", 5},
+                                  {"certify", 0.5},
+                                  {"writeHexMesh", 1},
+                                  {"writeLagrangeMesh", 4}};
+  steps.insert(steps.end(), rest.begin(), rest.end());
+  return steps;
+}
 
-  TetMap map = readMap(arguments.input, context);
-  ExtractionRecord record;
-  record.order = arguments.order;
-  if (arguments.quantize) {
-    QuantizedMap quantized =
-        quantize(map, optionsFor(arguments.input, arguments.quantizeOptions), context);
-    map = std::move(quantized.map);
-    record.quantized = std::move(quantized.report);
-  }
-  const auto make =
-      arguments.stream ? extractInPieces : (arguments.order > 1 ? extractCurved : extractWhole);
-  try {
-    make(arguments, map, context, record);
-  } catch (const Error& error) {
-    if (!arguments.partial || exitCodeOf(error.code()) != kInvalidMap) {
-      adviseQuantization(arguments, map, error, context);
-      throw;
-    }
-    return extractWhatIsValid(arguments, map, error, context, progress, report.get());
-  }
-  progress.clear();
+TetMap readAndQuantize(const Arguments& arguments, LongRun& longRun, ExtractionRecord& record) {
+  TetMap map = longRun.part("reading", [&] { return readMap(arguments.input, longRun.context()); });
+  if (!arguments.quantize) return map;
+  QuantizedMap quantized = longRun.part("quantization", [&] {
+    return quantize(map, optionsFor(arguments.input, arguments.quantizeOptions), longRun.context());
+  });
+  record.quantized = std::move(quantized.report);
+  return std::move(quantized.map);
+}
 
+/// What is known beside what the steps have noted.
+void fillRecord(const Arguments& arguments, const TetMap& map, LongRun& longRun,
+                ExtractionRecord& record) {
   std::error_code unknown;  // the size of a pipe
   record.input.file = arguments.input.description();
   for (const std::filesystem::path& file : arguments.input.files()) {
     record.input.bytes += std::filesystem::file_size(file, unknown);
   }
   record.output = {arguments.output, std::filesystem::file_size(arguments.output, unknown)};
+  record.order = arguments.order;
   record.scale = arguments.options.scale;
   record.engine = arguments.options.engine;
   record.points = map.points.size();
   record.tets = map.tets.size();
-  record.stages = context.stageTimes();
-  if (report) report->commit(reportAsJson(record));
-  if (!arguments.quiet) {
-    printWarnings(record, map);
-    printSummary(record);
+  record.stages = longRun.context().stageTimes();
+  record.parts = longRun.parts();
+  record.partsAsText = longRun.partsAsText();
+}
+
+int run(const Arguments& arguments) {
+  LongRun longRun(arguments.run, stepsOf(arguments));
+  requireOutputs(arguments);
+  Report report(arguments.report);
+  ExtractionRecord record;
+  const TetMap map = readAndQuantize(arguments, longRun, record);
+  const auto make =
+      arguments.stream ? extractInPieces : (arguments.order > 1 ? extractCurved : extractWhole);
+  try {
+    make(arguments, map, longRun, record);
+  } catch (const Error& error) {
+    if (!arguments.partial || exitCodeOf(error.code()) != kInvalidMap) {
+      adviseQuantization(arguments, map, error, longRun.context());
+      throw;
+    }
+    return extractWhatIsValid(arguments, map, error, longRun, report);
   }
+  longRun.finish();
+  fillRecord(arguments, map, longRun, record);
+  if (report.isWanted()) report.write(reportAsJson(record));
+  if (arguments.run.quiet) return kSuccess;
+  printWarnings(record, map);
+  if (!report.isOnOutput()) printSummary(record);
   return kSuccess;
 }
 
 /// What happens to maps that are not valid.
 void addRepairOptions(CLI::App& parser, Arguments& arguments) {
-  parser
-      .add_option("--repair", arguments.options.repair,
-                  "auto: repair flipped and flat tets of the map first, with a\n"
-                  "notice; off: they are an error. Valid maps pay nothing")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, RepairMode>{{"auto", RepairMode::Auto}, {"off", RepairMode::Off}}))
+  addChoice<RepairMode>(parser, "--repair", arguments.options.repair,
+                        {{"auto", RepairMode::Auto}, {"off", RepairMode::Off}},
+                        "auto: repair flipped and flat tets of the map first, with a\n"
+                        "notice; off: they are an error. Valid maps pay nothing")
       ->option_text("MODE [auto]");
   addRound(parser, arguments.options.round);
   parser.add_flag("--partial", arguments.partial,
@@ -375,14 +338,11 @@ void addQuantization(CLI::App& parser, Arguments& arguments) {
 
 /// Options that change how a mesh is made, but not the mesh.
 void addMethod(CLI::App& parser, Arguments& arguments) {
-  addThreads(parser, arguments.threads);
-  parser
-      .add_option("--engine", arguments.options.engine,
-                  "atlas: reads most cells off large charts of the map;\n"
-                  "propeller: the algorithm of the paper, slower. Both give\n"
-                  "the same mesh, bit for bit")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Engine>{
-          {"atlas", Engine::Atlas}, {"propeller", Engine::Propeller}}))
+  addChoice<Engine>(parser, "--engine", arguments.options.engine,
+                    {{"atlas", Engine::Atlas}, {"propeller", Engine::Propeller}},
+                    "atlas: reads most cells off large charts of the map;\n"
+                    "propeller: the algorithm of the paper, slower. Both give\n"
+                    "the same mesh, bit for bit")
       ->option_text("ENGINE [atlas]");
   parser
       .add_option("--epsilon", arguments.options.epsilon,
@@ -440,7 +400,7 @@ Command addExtract(CLI::App& app) {
   parser->add_flag("--no-verify", arguments->noVerify, "Write the mesh without verifying it");
   addReport(*parser, arguments->report,
             "Write a report in JSON: times, counts, quality,\nverification");
-  addQuiet(*parser, arguments->quiet);
+  addRunOptions(*parser, arguments->run);
   parser->footer(
       "The mesh is verified against the map before it is written; with --stream, the file is read\n"
       "again before it gets its name: it must hold what was extracted, and as many cells and\n"

@@ -17,6 +17,7 @@
 #include "interrupt.hpp"
 #include "output.hpp"
 #include "shared_options.hpp"
+#include "suggestions.hpp"
 
 namespace hexhex::command {
 namespace {
@@ -109,7 +110,7 @@ Command addGenerate(CLI::App& app) {
       app.add_subcommand("generate", "Generate a map whose mesh is known in advance");
   parser->add_option("KIND", arguments->kind, "What to generate: one of the kinds below")
       ->required()
-      ->check(CLI::IsMember(namesOf(sampleKinds())))
+      ->check(oneOf(namesOf(sampleKinds())))
       ->option_text("REQUIRED");
   parser
       ->add_option("-o,--output", arguments->output,
@@ -126,7 +127,7 @@ Command addGenerate(CLI::App& app) {
                    "aligned: as many identities as possible; blocks: a\n"
                    "random rotation and integer translation per block;\nrandom: per tet; "
                    "scattered: for one tet in eight")
-      ->check(CLI::IsMember(namesOf(chartStyles())))
+      ->check(oneOf(namesOf(chartStyles())))
       ->option_text("STYLE [aligned]");
   addSampleOptions(*parser, arguments->options);
   parser->add_flag(
@@ -142,7 +143,7 @@ Command addGenerate(CLI::App& app) {
       ->add_option("--defect-kind", arguments->defectKind,
                    "Which vertices are moved: interior, singular, boundary\n"
                    "(until tets flip), or sliver (until they collapse)")
-      ->check(CLI::IsMember(namesOf(defectKinds())))
+      ->check(oneOf(namesOf(defectKinds())))
       ->option_text("KIND [interior]");
   addQuiet(*parser, arguments->quiet);
   parser->footer(describeKinds());

@@ -1,7 +1,9 @@
 // `hexhex info`: what a file holds.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -15,7 +17,8 @@
 
 #include "command.hpp"
 #include "exit_codes.hpp"
-#include "interrupt.hpp"
+#include "json.hpp"
+#include "long_run.hpp"
 #include "output.hpp"
 #include "shared_options.hpp"
 
@@ -25,39 +28,85 @@ namespace {
 struct Arguments {
   MapSource source;
   bool pieces = false;
+  bool json = false;
 };
 
-void printBox(const Vec3& lower, const Vec3& upper) {
-  printLine("bounding box",
-            fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", lower[0], lower[1],
-                        lower[2], upper[0], upper[1], upper[2]));
-}
+struct Box {
+  Vec3 lower{};
+  Vec3 upper{};
+};
 
-void printBoundingBox(std::span<const Vec3> points) {
-  if (points.empty()) return;
-  Vec3 lower = points.front();
-  Vec3 upper = points.front();
+/// Empty without points.
+std::optional<Box> boxOf(std::span<const Vec3> points) {
+  if (points.empty()) return std::nullopt;
+  Box box{points.front(), points.front()};
   for (const Vec3& point : points) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], point[axis]);
-      upper[axis] = std::max(upper[axis], point[axis]);
+      box.lower[axis] = std::min(box.lower[axis], point[axis]);
+      box.upper[axis] = std::max(box.upper[axis], point[axis]);
     }
   }
-  printBox(lower, upper);
+  return box;
 }
 
-void printMap(const TetMap& map) {
-  fmt::print("a tetrahedral mesh with an integer-grid map\n");
-  printLine("tets", std::to_string(map.tets.size()));
-  printLine("points", std::to_string(map.points.size()));
-  printBoundingBox(map.points);
-  double largest = 0;
+/// What a file holds; what is empty does not apply.
+struct FileContent {
+  std::uint64_t tets = 0;  ///< a map if there are any
+  std::uint64_t cells = 0;
+  std::uint64_t points = 0;
+  std::optional<Box> box;
+  double largestParameter = 0;
+  std::optional<Certificate> certificate;
+  std::optional<MeshSurvey> survey;
+  bool isMap = false;
+};
+
+FileContent contentOf(const TetMap& map) {
+  FileContent content;
+  content.isMap = true;
+  content.tets = map.tets.size();
+  content.points = map.points.size();
+  content.box = boxOf(map.points);
   for (const TetParameters& corners : map.parameters) {
     for (const Vec3& corner : corners) {
-      for (const double parameter : corner) largest = std::max(largest, std::abs(parameter));
+      for (const double x : corner) {
+        content.largestParameter = std::max(content.largestParameter, std::abs(x));
+      }
     }
   }
-  printLine("parameters", fmt::format("up to {:.6g} in size", largest));
+  return content;
+}
+
+FileContent contentOf(const HexMesh& mesh, Context& context) {
+  FileContent content;
+  content.cells = mesh.cells.size();
+  content.points = mesh.points.size();
+  content.box = boxOf(mesh.points);
+  if (!mesh.cells.empty()) content.certificate = certify(mesh, context);
+  return content;
+}
+
+/// What is known without the whole mesh in memory.
+FileContent contentOf(const MeshSurvey& survey) {
+  FileContent content;
+  content.cells = survey.cells;
+  content.points = survey.points;
+  if (survey.points > 0) content.box = Box{survey.lower, survey.upper};
+  content.survey = survey;
+  return content;
+}
+
+FileContent read(const Arguments& arguments, Context& context) {
+  const MapSource& source = arguments.source;
+  if (arguments.pieces && source.isPair()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--pieces reads hexahedral meshes, but --tets and --polycube are a map.");
+  }
+  if (arguments.pieces) return contentOf(surveyFile(source.file, source.options(), context));
+  if (source.isPair()) return contentOf(readMap(source, context));
+  const auto content = readMapOrHexMesh(source.file, source.options(), context);
+  if (const auto* const map = std::get_if<TetMap>(&content)) return contentOf(*map);
+  return contentOf(std::get<HexMesh>(content), context);
 }
 
 void printHistogram(const QualitySummary& quality) {
@@ -71,55 +120,59 @@ void printHistogram(const QualitySummary& quality) {
   }
 }
 
-void printMesh(const HexMesh& mesh, Context& context) {
-  fmt::print("a hexahedral mesh\n");
-  printLine("cells", std::to_string(mesh.cells.size()));
-  printLine("vertices", std::to_string(mesh.points.size()));
-  printBoundingBox(mesh.points);
-  if (mesh.cells.empty()) return;
-  const Certificate certificate = certify(mesh, context);
-  printQuality(certificate);
-  if (certificate.refuted > 0) printLine("refuted", refutationAsText(certificate));
-  printHistogram(certificate.quality);
+void print(const FileContent& content) {
+  fmt::print("{}\n",
+             content.isMap ? "a tetrahedral mesh with an integer-grid map" : "a hexahedral mesh");
+  printLine(content.isMap ? "tets" : "cells",
+            std::to_string(content.isMap ? content.tets : content.cells));
+  printLine(content.isMap ? "points" : "vertices", std::to_string(content.points));
+  if (content.box) {
+    const auto& [lower, upper] = *content.box;
+    printLine("bounding box",
+              fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", lower[0],
+                          lower[1], lower[2], upper[0], upper[1], upper[2]));
+  }
+  if (content.isMap) {
+    printLine("parameters", fmt::format("up to {:.6g} in size", content.largestParameter));
+  }
+  if (content.survey) {
+    printLine("checksum of cells", checksumAsText(content.survey->cellChecksum));
+    printLine("checksum of vertices", checksumAsText(content.survey->pointChecksum));
+  }
+  if (!content.certificate) return;
+  printQuality(*content.certificate);
+  if (content.certificate->refuted > 0) {
+    printLine("refuted", refutationAsText(*content.certificate));
+  }
+  printHistogram(content.certificate->quality);
 }
 
-/// What is known without the whole mesh in memory.
-void printSurvey(const MeshSurvey& survey) {
-  fmt::print("a hexahedral mesh\n");
-  printLine("cells", std::to_string(survey.cells));
-  printLine("vertices", std::to_string(survey.points));
-  if (survey.points > 0) printBox(survey.lower, survey.upper);
-  printLine("checksum of cells", checksumAsText(survey.cellChecksum));
-  printLine("checksum of vertices", checksumAsText(survey.pointChecksum));
+Json asJson(const FileContent& content, const std::string& file) {
+  Json json = {{"file", file}, {"kind", content.isMap ? "map" : "mesh"}};
+  json[content.isMap ? "tets" : "cells"] = content.isMap ? content.tets : content.cells;
+  json[content.isMap ? "points" : "vertices"] = content.points;
+  json["lower"] = content.box ? Json(content.box->lower) : Json(nullptr);
+  json["upper"] = content.box ? Json(content.box->upper) : Json(nullptr);
+  if (content.isMap) json["largest_parameter"] = content.largestParameter;
+  if (content.survey) json["checksums"] = checksumsAsJson(*content.survey);
+  if (content.certificate) {
+    json["quality"] = qualityAsJson(*content.certificate);
+    json["validity"] = validityAsJson(*content.certificate);
+  }
+  return json;
 }
 
 int run(const Arguments& arguments) {
-  Context context;
-  const CancelOnSignal cancelOnSignal(context);
-  const std::string name = printable(arguments.source.description());
-  if (arguments.pieces && arguments.source.isPair()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--pieces reads hexahedral meshes, but --tets and --polycube are a map.");
-  }
-  if (arguments.pieces) {
-    const MeshSurvey survey =
-        surveyFile(arguments.source.file, arguments.source.options(), context);
-    fmt::print("{}: ", name);
-    printSurvey(survey);
-    return kSuccess;
-  }
-  if (arguments.source.isPair()) {
-    const TetMap map = readMap(arguments.source, context);
-    fmt::print("{}: ", name);
-    printMap(map);
-    return kSuccess;
-  }
-  const auto content = readMapOrHexMesh(arguments.source.file, arguments.source.options(), context);
-  fmt::print("{}: ", name);
-  if (const auto* const map = std::get_if<TetMap>(&content)) {
-    printMap(*map);
+  LongRun longRun(
+      {}, {{"readMapPair", 1}, {"readMapOrHexMesh", 2}, {"readHexMeshTo", 2}, {"certify", 0.5}});
+  const FileContent content = read(arguments, longRun.context());
+  longRun.finish();
+  const std::string name = arguments.source.description();
+  if (arguments.json) {
+    fmt::print("{}", jsonText(asJson(content, name)));
   } else {
-    printMesh(std::get<HexMesh>(content), context);
+    fmt::print("{}: ", printable(name));
+    print(content);
   }
   return kSuccess;
 }
@@ -134,10 +187,12 @@ Command addInfo(CLI::App& app) {
   parser
       ->add_option("--input-format", arguments->source.format,
                    "Read this format, whatever the extension")
+      ->check(formatName())
       ->option_text("NAME");
   parser->add_flag("--pieces", arguments->pieces,
                    "Read a mesh piece by piece, which needs hardly any\n"
                    "memory for .vtu; with checksums instead of quality");
+  parser->add_flag("--json", arguments->json, "Print JSON instead of text");
   parser->footer("Example:\n  hexhex info sphere.vtu");
   return {parser, [arguments] { return run(*arguments); }};
 }

@@ -4,7 +4,6 @@
 #include <string>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
@@ -12,9 +11,9 @@
 
 #include "command.hpp"
 #include "exit_codes.hpp"
-#include "interrupt.hpp"
+#include "json.hpp"
+#include "long_run.hpp"
 #include "output.hpp"
-#include "progress.hpp"
 #include "quantize_options.hpp"
 #include "shared_options.hpp"
 
@@ -27,8 +26,7 @@ struct Arguments {
   OutputChoice choice;
   std::string report;
   QuantizeOptions options;
-  int threads = 0;
-  bool quiet = false;
+  RunOptions run;
 };
 
 void requireAllDifferent(const Arguments& arguments) {
@@ -56,23 +54,23 @@ int run(const Arguments& arguments) {
   const WriteOptions writing = arguments.choice.options();
   requireMapFormat(arguments.output, writing);
   requireAllDifferent(arguments);
-  ProgressDisplay progress(arguments.quiet);
-  Context context(arguments.threads, progress.callback());
-  const CancelOnSignal cancelOnSignal(context);
+  LongRun longRun(arguments.run,
+                  {{"readMap", 1}, {"readMapPair", 1}, {"quantize", 20}, {"writeMap", 0.5}});
+  Context& context = longRun.context();
   requireWritable(arguments.output);
-  const std::unique_ptr<TextFile> reportFile = openReport(arguments.report);
+  Report reportFile(arguments.report);
   const TetMap map = readMap(arguments.input, context);
   const QuantizedMap result =
       quantize(map, optionsFor(arguments.input, arguments.options), context);
   writeMap(result.map, arguments.output, writing, context);
-  progress.clear();
-  if (reportFile) {
-    nlohmann::ordered_json json = quantizeAsJson(result.report);
+  longRun.finish();
+  if (reportFile.isWanted()) {
+    Json json = quantizeAsJson(result.report);
     for (const StageTime& stage : context.stageTimes())
       json["seconds"][stage.stage] = stage.seconds;
-    reportFile->commit(json.dump(2) + "\n");
+    reportFile.write(jsonText(json));
   }
-  if (arguments.quiet) return kSuccess;
+  if (arguments.run.quiet || reportFile.isOnOutput()) return kSuccess;
   fmt::print("{} -> {}\n", arguments.input.description(), arguments.output);
   printQuantized(result.report);
   return kSuccess;
@@ -97,9 +95,8 @@ Command addQuantize(CLI::App& app) {
                    "The map may be so far from a seamless one, as a share of\nits size")
       ->check(CLI::Range(0.0, 0.01))
       ->option_text("NUMBER [1e-5]");
-  addThreads(*parser, arguments->threads);
   addReport(*parser, arguments->report, "Write in JSON what was made, and how long each step took");
-  addQuiet(*parser, arguments->quiet);
+  addRunOptions(*parser, arguments->run);
   parser->footer(
       "One of --cells, --scale and --edge-length says how fine the mesh is to be. Exit code 1: "
       "the\n"

@@ -12,9 +12,8 @@
 
 #include "command.hpp"
 #include "exit_codes.hpp"
-#include "interrupt.hpp"
+#include "long_run.hpp"
 #include "output.hpp"
-#include "progress.hpp"
 #include "repair_text.hpp"
 #include "shared_options.hpp"
 
@@ -27,9 +26,8 @@ struct Arguments {
   OutputChoice choice;
   std::string report;
   RepairOptions options;
-  int threads = 0;
+  RunOptions run;
   bool noRefine = false;
-  bool quiet = false;
 };
 
 void requireAllDifferent(const Arguments& arguments) {
@@ -44,19 +42,19 @@ int run(const Arguments& arguments) {
   const WriteOptions writing = arguments.choice.options();
   requireMapFormat(arguments.output, writing);
   requireAllDifferent(arguments);
-  ProgressDisplay progress(arguments.quiet);
-  Context context(arguments.threads, progress.callback());
-  const CancelOnSignal cancelOnSignal(context);
+  LongRun longRun(arguments.run,
+                  {{"readMap", 1}, {"readMapPair", 1}, {"repair", 20}, {"writeMap", 0.5}});
+  Context& context = longRun.context();
   requireWritable(arguments.output);
-  const std::unique_ptr<TextFile> reportFile = openReport(arguments.report);
+  Report reportFile(arguments.report);
   RepairOptions options = arguments.options;
   options.refine = !arguments.noRefine;
   RepairReport report;
   const TetMap map = repair(readMap(arguments.input, context), options, context, &report);
   writeMap(map, arguments.output, writing, context);
-  progress.clear();
-  if (reportFile) reportFile->commit(repairAsJson(report).dump(2) + "\n");
-  if (arguments.quiet) return kSuccess;
+  longRun.finish();
+  if (reportFile.isWanted()) reportFile.write(repairAsJson(report).dump(2) + "\n");
+  if (arguments.run.quiet || reportFile.isOnOutput()) return kSuccess;
   printFiles(arguments.input.description(), arguments.output);
   if (!report.changed) {
     fmt::print("The map is valid; it was written as it is.\n");
@@ -87,9 +85,8 @@ Command addRepair(CLI::App& app) {
   parser->add_flag("--no-refine", arguments->noRefine,
                    "Never split edges of the tet mesh, not even where\n"
                    "moving parameters cannot work");
-  addThreads(*parser, arguments->threads);
   addReport(*parser, arguments->report, "Write in JSON what was moved, where, and by how much");
-  addQuiet(*parser, arguments->quiet);
+  addRunOptions(*parser, arguments->run);
   parser->footer(
       "A valid map is written as it is. Exit code 1: the map cannot be repaired; the message says\n"
       "why, and nothing is written. docs/defects.md explains what can be repaired and how.\n\n"

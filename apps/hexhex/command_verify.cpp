@@ -1,6 +1,9 @@
 // `hexhex verify`: does a mesh agree with its map?
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include <fmt/core.h>
@@ -11,9 +14,9 @@
 
 #include "command.hpp"
 #include "exit_codes.hpp"
-#include "interrupt.hpp"
+#include "json.hpp"
+#include "long_run.hpp"
 #include "output.hpp"
-#include "progress.hpp"
 #include "shared_options.hpp"
 
 namespace hexhex::command {
@@ -23,8 +26,8 @@ struct Arguments {
   MapSource map;
   std::string mesh;
   VerifyOptions options;
-  int threads = 0;
-  bool quiet = false;
+  RunOptions run;
+  bool json = false;
 };
 
 /// One row per check, columns as wide as their longest entry.
@@ -47,27 +50,55 @@ void printTable(const VerifyReport& report) {
   fmt::print("The mesh {} with the map.\n", report.passed() ? "agrees" : "does not agree");
 }
 
+/// The scale at which the map has as many cells as the mesh, if that is another one.
+std::optional<int> likelyScale(const VerifyReport& report, int scale) {
+  const auto isCells = [](const VerifyItem& item) { return item.name == "cells"; };
+  const auto cells = std::find_if(report.items.begin(), report.items.end(), isCells);
+  if (cells == report.items.end() || cells->passed) return std::nullopt;
+  const double expected = std::stod(cells->expected) / std::pow(scale, 3);
+  const double found = std::stod(cells->found);
+  const double likely = std::round(std::cbrt(found / expected));
+  constexpr double kMost = 1e6;  // cubes up to here, and their products, are exact enough
+  if (!(likely >= 1 && likely < kMost) || expected * std::pow(likely, 3) != found) {
+    return std::nullopt;
+  }
+  return static_cast<int>(likely);
+}
+
 struct Comparison {
   VerifyReport report;
   Certificate certificate;  ///< a cell may be where it belongs and yet not be valid
 };
 
 Comparison compare(const Arguments& arguments) {
-  ProgressDisplay progress(arguments.quiet);
-  Context context(arguments.threads, progress.callback());
-  const CancelOnSignal cancelOnSignal(context);
+  LongRun longRun(arguments.run, {{"readMap", 0.05},
+                                  {"readMapPair", 0.05},
+                                  {"readHexMesh", 3},
+                                  {"verify", 2.5},
+                                  {"certify", 0.5}});
+  Context& context = longRun.context();
   const TetMap map = readMap(arguments.map, context);
   const HexMesh mesh = readHexMesh(arguments.mesh, context);
   Comparison result;
   result.report = verify(map, mesh, arguments.options, context);
-  if (!arguments.quiet) result.certificate = certify(mesh, context);
+  if (arguments.json || !arguments.run.quiet) result.certificate = certify(mesh, context);
+  longRun.finish();
   return result;
 }
 
 int run(const Arguments& arguments) {
   const Comparison result = compare(arguments);
-  if (!arguments.quiet) {
+  const std::optional<int> scale = likelyScale(result.report, arguments.options.scale);
+  if (arguments.json) {
+    Json json = verificationAsJson(result.report);
+    json["scale"] = arguments.options.scale;
+    json["likely_scale"] = scale ? Json(*scale) : Json(nullptr);
+    json["quality"] = qualityAsJson(result.certificate);
+    json["validity"] = validityAsJson(result.certificate);
+    fmt::print("{}", jsonText(json));
+  } else if (!arguments.run.quiet) {
     printTable(result.report);
+    if (scale) fmt::print("This looks like scale {}: try --scale {}.\n", *scale, *scale);
     printQuality(result.certificate);
     if (result.certificate.refuted > 0) printWarning(refutationAsText(result.certificate));
   }
@@ -90,8 +121,8 @@ Command addVerify(CLI::App& app) {
                    "Significant digits of the mesh's coordinates\n"
                    "(default: 7 if all are single-precision numbers, otherwise 17)")
       ->check(CLI::Range(1, 17));
-  addThreads(*parser, arguments->threads);
-  addQuiet(*parser, arguments->quiet, "Print nothing but errors: the exit code tells");
+  parser->add_flag("--json", arguments->json, "Print JSON instead of text");
+  addRunOptions(*parser, arguments->run, "Print nothing but errors: the exit code tells");
   parser->footer(
       "Exit code 0: they agree; 4: they do not.\n\nExample:\n"
       "  hexhex verify sphere.hexex sphere.vtu --scale 2");

@@ -36,7 +36,6 @@ Command addView(CLI::App& app) {
       ->check(CLI::Range(1, kMaxOrder))
       ->option_text("INTEGER [1]");
   addTolerance(*parser, arguments->options.tolerance);
-  addThreads(*parser, arguments->threads);
   CLI::Option* const serve =
       parser
           ->add_flag("--serve", arguments->serve,
@@ -48,7 +47,7 @@ Command addView(CLI::App& app) {
       ->check(CLI::Range(0, 65535))
       ->needs(serve)
       ->option_text("INTEGER [0]");
-  addQuiet(*parser, arguments->quiet);
+  addRunOptions(*parser, arguments->run);
   parser->footer(
       "Exit code 4: the mesh does not agree with the map; the page is written and says so.\n\n"
       "Examples:\n  hexhex view sphere.vtu --map sphere.hexex --scale 2\n"

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
@@ -56,6 +57,19 @@ VerifyReport compare(VerifyReport report, const MeshSurvey& written, const MeshS
   return report;
 }
 
+/// Reads a file piece by piece.
+VerifyReport readAndProve(const std::filesystem::path& file, std::string_view format,
+                          const TetMapView& map, const VerifyOptions& options,
+                          const MeshSurvey& written, Context& context) {
+  ReadOptions reading;
+  reading.format = format;
+  SurveySink read(context);
+  VerifySink proof(map, options, context);
+  TwoSinks both(read, proof);
+  readHexMeshTo(both, file, reading, context);
+  return compare(proof.report(), written, read.result());
+}
+
 }  // namespace
 
 void requireStreamable(const std::filesystem::path& output, const WriteOptions& writing,
@@ -73,25 +87,24 @@ void requireStreamable(const std::filesystem::path& output, const WriteOptions& 
 
 StreamedMesh extractStreamed(const TetMapView& map, const std::filesystem::path& output,
                              const WriteOptions& writing, const ExtractOptions& options,
-                             bool verified, Context& context, ExtractStatistics& statistics) {
+                             bool verified, LongRun& longRun, ExtractStatistics& statistics) {
+  Context& context = longRun.context();
   PendingFile pending(output);
   StreamedMesh result;
-  ReadOptions reading;
-  reading.format = writing.format;
   try {
-    SurveySink survey(context);
-    {
+    result.written = longRun.part("extraction and writing", [&] {
+      SurveySink survey(context);
       const std::unique_ptr<MeshSink> file = openMeshSink(pending.path(), writing, context);
       TwoSinks both(*file, survey);
       extractTo(both, map, options, context, &statistics);
-    }
-    result.written = survey.result();
+      return survey.result();
+    });
     if (verified) {
-      SurveySink read(context);
-      VerifySink proof(extractedMap(map, statistics), {options.scale, options.tolerance}, context);
-      TwoSinks both(read, proof);
-      readHexMeshTo(both, pending.path(), reading, context);
-      result.verification = compare(proof.report(), result.written, read.result());
+      const VerifyOptions proof{options.scale, options.tolerance};
+      result.verification = longRun.part("verification", [&] {
+        return readAndProve(pending.path(), writing.format, extractedMap(map, statistics), proof,
+                            result.written, context);
+      });
       requirePassed(*result.verification,
                     "The file, as it was read back, does not hold the mesh that was extracted, or "
                     "not the one of the map, and was removed",

@@ -11,6 +11,8 @@
 #include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
 
+#include "long_run.hpp"
+
 namespace hexhex::command {
 
 /// Everything that can be known to fail before long work.
@@ -33,6 +35,6 @@ struct StreamedMesh {
                                            const std::filesystem::path& output,
                                            const WriteOptions& writing,
                                            const ExtractOptions& options, bool verified,
-                                           Context& context, ExtractStatistics& statistics);
+                                           LongRun& longRun, ExtractStatistics& statistics);
 
 }  // namespace hexhex::command

@@ -10,6 +10,7 @@
 #include <new>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -19,6 +20,7 @@
 #include "command.hpp"
 #include "exit_codes.hpp"
 #include "output.hpp"
+#include "suggestions.hpp"
 
 namespace hexhex::command {
 namespace {
@@ -51,8 +53,12 @@ Exit codes:
 Output files appear complete or not at all.)";
 
 std::string usageProblem(const CLI::App* app, const CLI::Error& error) {
-  return fmt::format("hexhex: error: {}\nRun `{} --help` for the options and examples.\n",
-                     error.what(), app->get_display_name());
+  // A misspelt word is said to be one, and not that what it was meant for is missing.
+  const std::string unexpected = unexpectedAsText(*app);
+  const std::vector<CLI::App*> given = app->get_subcommands();
+  return fmt::format("hexhex: error: {}\nRun `hexhex {}--help` for the options and examples.\n",
+                     printable(unexpected.empty() ? error.what() : unexpected),
+                     given.empty() ? "" : given.front()->get_name() + " ");
 }
 
 /// Memory for the time when there is no more: what is given back here the first time lets small
@@ -111,7 +117,11 @@ int run(int argc, char** argv) {
   app.failure_message(usageProblem);
   const std::array commands = {addExtract(app),  addCheck(app),  addVerify(app), addGenerate(app),
                                addQuantize(app), addRepair(app), addInfo(app),   addConvert(app),
-                               addFormats(app),  addView(app)};
+                               addFormats(app),  addView(app),   addHelp(app)};
+  if (argc == 1) {
+    fmt::print("{}", app.help());
+    return kSuccess;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

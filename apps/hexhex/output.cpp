@@ -110,8 +110,16 @@ void requireWritable(const std::filesystem::path& file) {
   if (!std::filesystem::is_other(file, missing)) static_cast<void>(TextFile(file));
 }
 
-std::unique_ptr<TextFile> openReport(const std::string& file) {
-  return file.empty() ? nullptr : std::make_unique<TextFile>(file);
+Report::Report(const std::string& file) : isOnOutput_(file == "-") {
+  if (!file.empty() && !isOnOutput_) file_ = std::make_unique<TextFile>(file);
+}
+
+void Report::write(const std::string& text) {
+  if (isOnOutput_) {
+    fmt::print("{}", text);
+  } else {
+    file_->commit(text);
+  }
 }
 
 }  // namespace hexhex::command

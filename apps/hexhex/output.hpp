@@ -69,8 +69,20 @@ void requireDifferent(const std::filesystem::path& a, const std::filesystem::pat
 /// folder: to fail before long work.
 void requireWritable(const std::filesystem::path& file);
 
-/// A report that is going to be written; null if the name is empty.
-/// @throws Error FileWrite
-[[nodiscard]] std::unique_ptr<TextFile> openReport(const std::string& file);
+/// A report that is asked for: a file, or "-" for the standard output, which then holds nothing
+/// else; or none.
+class Report {
+ public:
+  /// @throws Error FileWrite, before long work
+  explicit Report(const std::string& file);
+
+  [[nodiscard]] bool isWanted() const noexcept { return file_ != nullptr || isOnOutput_; }
+  [[nodiscard]] bool isOnOutput() const noexcept { return isOnOutput_; }
+  void write(const std::string& text);
+
+ private:
+  bool isOnOutput_;
+  std::unique_ptr<TextFile> file_;
+};
 
 }  // namespace hexhex::command

@@ -1,6 +1,8 @@
-// Progress on the standard error output: a bar on a terminal, a line per stage elsewhere.
+// Progress on the standard error output: one bar for a whole run on a terminal, or a line per
+// stage.
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,8 +13,11 @@ namespace hexhex::command {
 
 class ProgressDisplay {
  public:
-  /// @param quiet  show nothing
-  explicit ProgressDisplay(bool quiet);
+  /// A bar if the standard error output is a terminal, from the second second on; elsewhere
+  /// nothing.
+  /// @param quiet    nothing at all
+  /// @param verbose  a line per stage instead, everywhere
+  explicit ProgressDisplay(bool quiet, bool verbose = false);
   /// Removes the bar.
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
@@ -25,10 +30,15 @@ class ProgressDisplay {
   void clear();
 
  private:
-  void show(std::string_view stage, double share);
+  using Clock = std::chrono::steady_clock;
+  enum class Style { Nothing, Bar, Lines };
 
-  bool quiet_;
-  bool onTerminal_;
+  void show(std::string_view stage, double share);
+  void showBar(std::string_view stage, double share);
+
+  Style style_;
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point drawn_;
   bool barIsVisible_ = false;
   std::vector<std::string> printed_;  ///< stages that had their line
 };

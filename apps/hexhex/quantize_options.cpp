@@ -5,7 +5,6 @@
 #include <string>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "output.hpp"
 
@@ -66,58 +65,28 @@ std::string quantizeSummary(const QuantizeReport& report) {
   return text;
 }
 
-nlohmann::ordered_json quantizeAsJson(const QuantizeReport& report) {
-  const auto distortion = [](const MapDistortion& d) {
-    return nlohmann::ordered_json{{"worst", d.worst}, {"median", d.median}};
-  };
-  return {{"cells_wanted", report.cellsWanted},
-          {"cells", report.cells},
-          {"scale", report.scale},
-          {"displacement", report.displacement},
-          {"blocks", report.blocks},
-          {"arcs", report.arcs},
-          {"shortest_arc", report.shortestArc},
-          {"longest_arc", report.longestArc},
-          {"integers_by", report.integersBy},
-          {"attempts", report.attempts},
-          {"split_edges", report.splitEdges},
-          {"added_tets", report.addedTets},
-          {"scaled_jacobian_before", distortion(report.distortionBefore)},
-          {"scaled_jacobian_after", distortion(report.distortionAfter)}};
-}
-
-const char* kindName(SeamlessKind kind) noexcept {
-  switch (kind) {
-    case SeamlessKind::Seamless:
-      return "seamless";
-    case SeamlessKind::AlmostSeamless:
-      return "almost seamless";
-    default:
-      return "neither";
-  }
-}
-
-bool mayBeSeamless(ErrorCode code) noexcept {
-  // Rounding to integers flips tets of a map that is not integer.
-  return code == ErrorCode::FlippedTet || code == ErrorCode::TransitionResidual ||
-         code == ErrorCode::BoundaryOffLattice || code == ErrorCode::SingularityOffLattice ||
-         code == ErrorCode::HalfIntegerFixedPoint;
-}
-
 std::string adviceFor(const SeamlessReport& report, const MapSource& input) {
   if (report.kind == SeamlessKind::Neither) return {};
-  const std::string command = fmt::format("`hexhex quantize {} -o integer.hexex --cells {:.0f}`",
-                                          input.description(), std::max(report.cells, 1000.0));
+  const std::string command =
+      fmt::format("`hexhex quantize {} -o integer.hexex", input.description());
+  if (report.integerFactor > 0) {
+    return fmt::format(
+        "The map is integer up to a scale: multiply its parameters by {0:.12g}, as {1} --scale "
+        "{0:.12g}` does.",
+        report.integerFactor, command);
+  }
+  const double cells = std::max(report.cells, 1000.0);
   if (report.kind == SeamlessKind::Seamless) {
     return fmt::format(
-        "The map is seamless (to within {:.3g}), but its translations are no integers. Make it an "
-        "integer-grid map: {}.",
-        report.displacement, command);
+        "The map is seamless (to within {:.3g}), but not integer. Make it an integer-grid map: {} "
+        "--cells {:.0f}`.",
+        report.displacement, command, cells);
   }
   return fmt::format(
       "The map is almost seamless: the nearest map that is differs by up to {:.3g}. Let the map's "
-      "solver converge further, or write more digits; or take that one: {} with --tolerance.",
-      report.displacement, command);
+      "solver converge further, or write more digits; or take that one: {} --cells {:.0f}` with "
+      "--tolerance.",
+      report.displacement, command, cells);
 }
 
 }  // namespace hexhex::command

@@ -5,7 +5,6 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json_fwd.hpp>
 
 #include <hexhex/quantize.hpp>
 
@@ -23,14 +22,6 @@ std::array<CLI::Option*, 4> addQuantizeOptions(CLI::App& parser, QuantizeOptions
 
 /// "5109 cells of 5000 asked for; 31 arcs of 1 to 26 hexahedra"
 [[nodiscard]] std::string quantizeSummary(const QuantizeReport& report);
-
-[[nodiscard]] nlohmann::ordered_json quantizeAsJson(const QuantizeReport& report);
-
-/// What a map is that is no integer-grid map: "integer", "seamless", "almost seamless", "neither".
-[[nodiscard]] const char* kindName(SeamlessKind kind) noexcept;
-
-/// Whether a map is worth a look at whether it is seamless, by the defect that was found first.
-[[nodiscard]] bool mayBeSeamless(ErrorCode code) noexcept;
 
 /// A sentence for a map that is not integer, with the command to go on with; empty if it is
 /// neither.

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <sys/resource.h>
 
-#include <nlohmann/json.hpp>
-
 #include <hexhex/version.hpp>
 
+#include "json.hpp"
 #include "output.hpp"
 #include "quantize_options.hpp"
 #include "repair_text.hpp"
@@ -15,8 +14,10 @@
 namespace hexhex::command {
 namespace {
 
-// Keys in the order in which they are added: easier to read than alphabetical.
-using Json = nlohmann::ordered_json;
+template <class Value, class AsJson>
+Json orNull(const std::optional<Value>& value, const AsJson& asJson) {
+  return value ? asJson(*value) : Json(nullptr);
+}
 
 Json fileAsJson(const FileSize& file) {
   return {{"file", file.file.string()}, {"bytes", file.bytes}};
@@ -34,51 +35,15 @@ Json stagesAsJson(const std::vector<StageTime>& stages) {
   return list;
 }
 
+/// {"reading": 0.01, "extraction": 3.85, ...}
+Json partsAsJson(const std::vector<StageTime>& parts) {
+  Json json = Json::object();
+  for (const StageTime& part : parts) json[part.stage] = part.seconds;
+  return json;
+}
+
 Json byKind(const std::array<std::uint64_t, 4>& counts) {
   return {{"vertex", counts[0]}, {"edge", counts[1]}, {"face", counts[2]}, {"cell", counts[3]}};
-}
-
-Json qualityAsJson(const std::optional<Certificate>& certificate) {
-  if (!certificate) return nullptr;
-  const QualitySummary& quality = certificate->quality;
-  return {{"minimum", quality.minimum},
-          {"mean", quality.mean},
-          {"not_positive", quality.notPositive},
-          {"histogram", quality.histogram}};
-}
-
-Json validityAsJson(const std::optional<Certificate>& certificate) {
-  if (!certificate) return nullptr;
-  Json worst = Json::array();
-  for (const RefutedCell& bad : certificate->worst) {
-    worst.push_back({{"cell", bad.cell},
-                     {"place", bad.place},
-                     {"position", bad.position},
-                     {"scaled_jacobian", bad.scaledJacobian}});
-  }
-  return {{"positive", certificate->positive},
-          {"refuted", certificate->refuted},
-          {"undecided", certificate->undecided},
-          {"minimum", certificate->minimum},
-          {"worst", std::move(worst)}};
-}
-
-Json checksumsAsJson(const std::optional<MeshSurvey>& streamed) {
-  if (!streamed) return nullptr;
-  return {{"cells", checksumAsText(streamed->cellChecksum)},
-          {"vertices", checksumAsText(streamed->pointChecksum)}};
-}
-
-Json verificationAsJson(const std::optional<VerifyReport>& verification) {
-  if (!verification) return nullptr;
-  Json items = Json::array();
-  for (const VerifyItem& item : verification->items) {
-    items.push_back({{"name", item.name},
-                     {"expected", item.expected},
-                     {"found", item.found},
-                     {"passed", item.passed}});
-  }
-  return {{"passed", verification->passed()}, {"items", std::move(items)}};
 }
 
 Json partsAsJson(const PartsRecord& parts, const char* pieces) {
@@ -102,6 +67,7 @@ std::string reportAsJson(const ExtractionRecord& record) {
       {"input", fileAsJson(record.input)},
       {"output", fileAsJson(record.output)},
       {"extract_seconds", statistics.seconds},
+      {"seconds", partsAsJson(record.parts)},
       {"cells", record.cells},
       {"vertices", record.vertices},
       {"tets", record.tets},
@@ -132,15 +98,14 @@ std::string reportAsJson(const ExtractionRecord& record) {
       {"max_transition_residual", statistics.maxTransitionResidual},
       {"mirrored", statistics.mirrored},
       {"tets_inverted_in_space", statistics.tetsInvertedInSpace},
-      {"quality", qualityAsJson(record.certificate)},
-      {"validity", validityAsJson(record.certificate)},
-      {"verification", verificationAsJson(record.verification)},
+      {"quality", orNull(record.certificate, qualityAsJson)},
+      {"validity", orNull(record.certificate, validityAsJson)},
+      {"verification", orNull(record.verification, verificationAsJson)},
       {"repair", repairAsJson(statistics.repair)},
       {"quantization", record.quantized ? quantizeAsJson(*record.quantized) : Json(nullptr)},
       {"streamed", record.streamed.has_value()},
-      {"checksums", checksumsAsJson(record.streamed)}};
-  // File names need not be valid UTF-8; bytes that are not are replaced.
-  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+      {"checksums", orNull(record.streamed, checksumsAsJson)}};
+  return jsonText(report);
 }
 
 std::uint64_t peakMemory() {

@@ -46,6 +46,8 @@ struct ExtractionRecord {
   ExtractStatistics statistics;
   std::optional<QuantizeReport> quantized;  ///< empty for a map that was integer
   std::vector<StageTime> stages;
+  std::vector<StageTime> parts;  ///< of the whole run: "reading", "extraction", ...
+  std::string partsAsText;
   std::optional<Certificate> certificate;    ///< empty if the mesh was never whole
   std::optional<VerifyReport> verification;  ///< empty if it was skipped
   std::optional<MeshSurvey> streamed;        ///< of a mesh that was written in pieces

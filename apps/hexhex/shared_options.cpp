@@ -1,11 +1,16 @@
 #include "shared_options.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/core.h>
+
+#include <hexhex/error.hpp>
+
+#include "suggestions.hpp"
 
 namespace hexhex::command {
 
@@ -72,6 +77,23 @@ void addMapOptions(CLI::App& parser, MapSource& source) {
 
 namespace {
 
+void requireMesh(const std::filesystem::path& file, const WriteOptions& options) {
+  requireHexMeshFormat(file, options);
+}
+
+/// Whether a format is known by this name, too.
+bool isOtherName(const std::string& name) {
+  for (const auto require : {requireMapFormat, requireMesh}) {
+    try {
+      require("", WriteOptions{.format = name});
+      return true;
+    } catch (const Error&) {
+      // Not in this table.
+    }
+  }
+  return false;
+}
+
 /// Either a file or two.
 void requireOneSource(const MapSource& source, const std::string& argument) {
   if (source.file.empty() && !source.isPair()) throw CLI::RequiredError(argument);
@@ -114,10 +136,22 @@ WriteOptions OutputChoice::options() const {
   return options;
 }
 
+CLI::Validator formatName() {
+  const auto check = [](const std::string& name) -> std::string {
+    std::vector<std::string> names;
+    for (const FileFormat& format : fileFormats()) names.emplace_back(format.name);
+    if (std::find(names.begin(), names.end(), name) != names.end() || isOtherName(name)) return {};
+    return fmt::format("there is no format \"{}\"; `hexhex formats` lists them.{}", name,
+                       suggestionFor(name, names));
+  };
+  return CLI::Validator(check, "");
+}
+
 void addOutputChoice(CLI::App& parser, OutputChoice& choice) {
   parser
       .add_option("--format", choice.format,
                   "Write this format, whatever the extension;\n`hexhex formats` lists them")
+      ->check(formatName())
       ->option_text("NAME");
   parser.add_flag("--compress", choice.compress, "Compress a .vtu file with zlib");
 }
@@ -132,7 +166,8 @@ void addPatchAngle(CLI::App& parser, double& angle) {
 }
 
 void addReport(CLI::App& parser, std::string& file, const std::string& description) {
-  parser.add_option("--report", file, description)->option_text("FILE");
+  parser.add_option("--report", file, description + "; - for the standard output")
+      ->option_text("FILE");
 }
 
 void addQuiet(CLI::App& parser, bool& quiet, const std::string& description) {
@@ -143,12 +178,6 @@ void addScale(CLI::App& parser, int& scale, const std::string& description) {
   parser.add_option("--scale", scale, description)
       ->check(wholeNumberFrom(1))
       ->option_text("INTEGER [1]");
-}
-
-void addThreads(CLI::App& parser, int& threads) {
-  parser.add_option("--threads", threads, "Number of threads; 0 = all cores")
-      ->check(wholeNumberFrom(0))
-      ->option_text("INTEGER [0]");
 }
 
 void addTolerance(CLI::App& parser, double& tolerance) {

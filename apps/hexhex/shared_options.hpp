@@ -62,6 +62,9 @@ struct OutputChoice {
   [[nodiscard]] WriteOptions options() const;
 };
 
+/// Accepts names of formats.
+[[nodiscard]] CLI::Validator formatName();
+
 /// Adds --format and --compress.
 void addOutputChoice(CLI::App& parser, OutputChoice& choice);
 
@@ -73,7 +76,6 @@ void addQuiet(CLI::App& parser, bool& quiet,
               const std::string& description = "Print nothing but errors");
 
 void addScale(CLI::App& parser, int& scale, const std::string& description);
-void addThreads(CLI::App& parser, int& threads);
 void addTolerance(CLI::App& parser, double& tolerance);
 void addRound(CLI::App& parser, bool& round);
 

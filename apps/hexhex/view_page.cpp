@@ -14,9 +14,8 @@
 #include <hexhex/view.hpp>
 
 #include "exit_codes.hpp"
-#include "interrupt.hpp"
+#include "long_run.hpp"
 #include "output.hpp"
-#include "progress.hpp"
 #include "repair_text.hpp"
 #include "serve_page.hpp"
 #include "verification.hpp"
@@ -119,7 +118,8 @@ void printWarnings(const Subject& subject) {
                "; the page lists the checks that failed.");
 }
 
-int writePage(const ViewArguments& arguments, ProgressDisplay& progress, Context& context) {
+int writePage(const ViewArguments& arguments, LongRun& longRun) {
+  Context& context = longRun.context();
   const std::filesystem::path page = pageOf(arguments);
   requireDifferent(arguments.mesh, page);
   if (!arguments.map.empty()) requireDifferent(arguments.map, page);
@@ -128,9 +128,9 @@ int writePage(const ViewArguments& arguments, ProgressDisplay& progress, Context
   std::visit(
       [&](const auto& mesh) { writeViewPage(mesh, page, optionsOf(arguments, subject), context); },
       subject.mesh);
-  progress.clear();
+  longRun.finish();
   printWarnings(subject);
-  if (!arguments.quiet) {
+  if (!arguments.run.quiet) {
     printFiles(arguments.mesh, page);
     printLine("mesh", counted(subject.cellCount(), "cell"));
     std::error_code unknown;  // the size of a pipe
@@ -142,20 +142,21 @@ int writePage(const ViewArguments& arguments, ProgressDisplay& progress, Context
 }
 
 /// Serves until Ctrl-C, which is no failure here.
-int serve(const ViewArguments& arguments, ProgressDisplay& progress, Context& context) {
+int serve(const ViewArguments& arguments, LongRun& longRun) {
+  Context& context = longRun.context();
   Subject subject = readSubject(arguments, context);
   const ServedPage page = std::visit(
       [&](const auto& mesh) {
         return makeServedPage(mesh, kMeshUrl, optionsOf(arguments, subject), context);
       },
       subject.mesh);
-  progress.clear();
+  longRun.finish();
   printWarnings(subject);
   const bool agrees = subject.agrees();
   subject = {};  // the page has all of it
   const auto announce = [&arguments](const std::string& address) {
     // The address is what --serve is for, so --quiet does not silence it.
-    if (arguments.quiet) {
+    if (arguments.run.quiet) {
       fmt::print("{}\n", address);
     } else {
       fmt::print("{} is at {} until you press Ctrl-C.\n", printable(arguments.mesh), address);
@@ -169,11 +170,15 @@ int serve(const ViewArguments& arguments, ProgressDisplay& progress, Context& co
 }  // namespace
 
 int view(const ViewArguments& arguments) {
-  ProgressDisplay progress(arguments.quiet);
-  Context context(arguments.threads, progress.callback());
-  const CancelOnSignal cancelOnSignal(context);
-  if (arguments.serve) return serve(arguments, progress, context);
-  return writePage(arguments, progress, context);
+  LongRun longRun(arguments.run, {{"readLagrangeMesh", 2},
+                                  {"readMapOrHexMesh", 2},
+                                  {"extract", 4},
+                                  {"extractLagrange", 4},
+                                  {"readMap", 0.05},
+                                  {"verify", 2.5},
+                                  {"makeServedPage", 10},
+                                  {"writeViewPage", 10}});
+  return arguments.serve ? serve(arguments, longRun) : writePage(arguments, longRun);
 }
 
 }  // namespace hexhex::command

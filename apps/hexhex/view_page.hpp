@@ -5,6 +5,8 @@
 
 #include <hexhex/verify.hpp>
 
+#include "long_run.hpp"
+
 namespace hexhex::command {
 
 struct ViewArguments {
@@ -13,10 +15,9 @@ struct ViewArguments {
   std::string map;   ///< empty: none
   VerifyOptions options;
   int order = 1;  ///< of the cells that are extracted
-  int threads = 0;
   bool serve = false;
   int port = 0;  ///< 0: any free one
-  bool quiet = false;
+  RunOptions run;
 };
 
 /// Writes or serves the page; returns the exit code.

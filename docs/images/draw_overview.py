@@ -3,8 +3,8 @@
 
     docs/images/draw_overview.py PATH-OF-HEXHEX > docs/images/overview.svg
 
-All three panels show the same ball with one octant cut out: the tets, coloured by the chart's
-parameters; the planes where a parameter is an integer; the cells that hexhex extracts.
+All three panels show a bearing bracket: its tets, coloured by the parameters of their charts; the
+lines where a parameter is an integer; the cells that hexhex extracts.
 """
 import math
 import subprocess
@@ -12,9 +12,13 @@ import sys
 import tempfile
 from pathlib import Path
 
+from bracket import Bracket
 from figure import Figure, boundary_triangles, dot, isolines, minus, read_map, read_mesh
 
-PANEL = 300
+PANEL = 320
+HEIGHT = 250
+SIZE = 0.158 * PANEL  # of a unit
+CENTER = (0.0, 0.0, 0.85)
 TITLES = ("a map: tets with parameters", "its integer grid", "the hexahedra")
 TINT = ((228, 87, 86), (84, 162, 75), (76, 120, 168))  # of u, v, w
 QUADS = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
@@ -26,17 +30,12 @@ def rotation(turn, tilt):
     return ((-s, c, 0), (-st * c, -st * s, ct), (ct * c, ct * s, st))
 
 
-VIEW = rotation(math.radians(38), math.radians(30))
+VIEW = rotation(math.radians(-58), math.radians(24))
 LIGHT = (0.25, 0.55, 0.8)
 
 
 def middle(points):
     return tuple(sum(p[k] for p in points) / len(points) for k in range(3))
-
-
-def is_cut_away(points):
-    """Whether an element lies in the octant towards the viewer."""
-    return all(x > 0 for x in middle(points))
 
 
 def seen(point):
@@ -65,13 +64,13 @@ def blend(color, share):
 def tint(parameters, scale):
     """A mixture of the three colours, by the mean of a triangle's parameters."""
     shares = [min(1.0, abs(sum(u[k] for u in parameters)) / 3 / scale) for k in range(3)]
-    return tuple(255 - sum(share * (255 - TINT[k][i]) for k, share in enumerate(shares)) / 1.9
+    return tuple(255 - sum(share * (255 - TINT[k][i]) for k, share in enumerate(shares)) / 1.4
                  for i in range(3))
 
 
 def place(panel, point):
-    x, y, _ = seen(point)
-    return (PANEL * (panel + 0.5) + 0.44 * PANEL * x, 0.47 * PANEL - 0.44 * PANEL * y)
+    x, y, _ = seen(minus(point, CENTER))
+    return (PANEL * (panel + 0.5) + SIZE * x, 0.47 * HEIGHT - SIZE * y)
 
 
 def back_to_front(faces):
@@ -79,8 +78,7 @@ def back_to_front(faces):
 
 
 def tet_panels(figure, points, tets):
-    kept = [t for t in tets if not is_cut_away([points[v] for v in t[0]])]
-    triangles = [([points[v] for v in vertices], u) for vertices, u in boundary_triangles(kept)]
+    triangles = [([points[v] for v in vertices], u) for vertices, u in boundary_triangles(tets)]
     scale = max(abs(x) for _, u in triangles for corner in u for x in corner)
     for panel in (0, 1):
         for corners, u in back_to_front(triangles):
@@ -99,9 +97,8 @@ def tet_panels(figure, points, tets):
 
 
 def hex_panel(figure, points, cells):
-    kept = [c for c in cells if not is_cut_away([points[v] for v in c])]
     quads = {}
-    for cell in kept:
+    for cell in cells:
         for quad in QUADS:
             vertices = [cell[i] for i in quad]
             quads.setdefault(tuple(sorted(vertices)), []).append(vertices)
@@ -117,18 +114,17 @@ def main():
     command = sys.argv[1]
     with tempfile.TemporaryDirectory() as folder:
         map_file, mesh_file = Path(folder) / "map.hexex", Path(folder) / "mesh.mesh"
-        subprocess.run([command, "generate", "sphere", "--cells", "6", "--refine", "4",
-                        "-o", map_file, "--quiet"], check=True)
+        Bracket().write(map_file)
         subprocess.run([command, "extract", map_file, "-o", mesh_file, "--quiet"], check=True)
         points, tets = read_map(map_file)
         hex_points, cells = read_mesh(mesh_file)
-    figure = Figure(3 * PANEL, PANEL + 10)
+    figure = Figure(3 * PANEL, HEIGHT + 10)
     tet_panels(figure, points, tets)
     hex_panel(figure, hex_points, cells)
     for panel, title in enumerate(TITLES):
-        figure.text((PANEL * (panel + 0.5), PANEL), title, 15)
+        figure.text((PANEL * (panel + 0.5), HEIGHT), title, 15)
     for panel in (1, 2):
-        figure.arrow((PANEL * panel - 14, 0.47 * PANEL), (PANEL * panel + 14, 0.47 * PANEL),
+        figure.arrow((PANEL * panel - 14, 0.3 * HEIGHT), (PANEL * panel + 14, 0.3 * HEIGHT),
                      "#22344d", 3)
     print(figure.finish())
 

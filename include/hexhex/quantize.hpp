@@ -64,13 +64,16 @@ enum class SeamlessKind : std::uint8_t {
 
 struct SeamlessReport {
   SeamlessKind kind = SeamlessKind::Neither;
-  double displacement = 0;  ///< of the nearest seamless map, in parameter units; if there is one
-  double cells = 0;         ///< volume of that in unit cubes
-  std::string problem;      ///< why it is neither
+  double displacement = 0;   ///< of the nearest seamless map, in parameter units; if there is one
+  double cells = 0;          ///< volume of that in unit cubes
+  double integerFactor = 0;  ///< smallest number with which all parameters have to be multiplied to
+                             ///< be those of an integer-grid map, which needs no quantization; 0:
+                             ///< there is none
+  std::string problem;       ///< why it is neither
 };
 
 /// Whether quantize() can begin with a map: seamless to within the tolerance of QuantizeOptions, or
-/// nearly so. Flipped tets are left to others.
+/// nearly so; a seamless map has no flipped tets.
 /// @pre canQuantize()
 [[nodiscard]] SeamlessReport examineSeamless(const TetMapView& map, Context& context);
 

@@ -1,3 +1,4 @@
+#include <array>
 #include <atomic>
 #include <limits>
 #include <string>
@@ -25,6 +26,21 @@ void requireExpected(std::uint64_t cells, std::uint64_t expected) {
                   std::to_string(cells) +
                   " cell centres were found. This is a bug; please report it with the map.");
 }
+
+constexpr std::array<WorkStep, 6> kEngineSteps = {{{"charts", 0.01},
+                                                   {"sweep", 0.8},
+                                                   {"grid", 1.5},
+                                                   {"overlaps", 0.15},
+                                                   {"cuts", 0.05},
+                                                   {"cells", 1.3}}};
+/// ... where writing a piece is a part of making it.
+constexpr std::array<WorkStep, 7> kStreamSteps = {{{"charts", 0.01},
+                                                   {"sweep", 0.3},
+                                                   {"grid", 0.4},
+                                                   {"overlaps", 0.3},
+                                                   {"cuts", 0.05},
+                                                   {"points", 0.6},
+                                                   {"cells", 1.2}}};
 
 /// The stages up to a complete grid of vertices.
 template <class Id>
@@ -147,6 +163,7 @@ std::uint64_t emitCells(const PreparedMap& map, const Atlas<Id>& atlas, const Pi
 template <class Id>
 void streamPoints(const VertexGrid<Id>& vertices, MeshSink& sink, Context& context) {
   Stage stage(context, "points");
+  stage.setTotal(vertices.numbers().begin.size() - 1);
   Array<Vec3> points;
   Array<Index> tets;
   Array<CornerSet> corners;
@@ -166,6 +183,7 @@ template <class Id>
 void streamCells(const PreparedMap& map, const Atlas<Id>& atlas, MeshSink& sink, Context& context,
                  ExtractStatistics& statistics) {
   Stage stage(context, "cells");
+  stage.setTotal(map.topology.tetCount());
   using Cell = typename CellEmitter<Id>::Cell;
   Array<Cell> cells;
   forEachPiece(atlas.cells().begin, [&](const Piece& piece) {
@@ -190,6 +208,7 @@ void streamFrom(Atlas<Id>& atlas, const PreparedMap& map, MeshSink& sink, Contex
 HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& context,
                  ExtractStatistics& statistics, const EngineSwitches& switches,
                  SweepObserver* observer) {
+  const WorkSteps steps(context, "engine", kEngineSteps);
   Atlas<Index> atlas(map, true, context, switches);
   const std::uint64_t count = atlas.sweep(expectedCells, observer);
   if (count > kMaxNarrowVertices) {
@@ -216,6 +235,7 @@ HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& c
 
 void streamAtlas(const PreparedMap& map, std::uint64_t expectedCells, MeshSink& sink,
                  Context& context, ExtractStatistics& statistics, const EngineSwitches& switches) {
+  const WorkSteps steps(context, "engine", kStreamSteps);
   if (!switches.wideIds) {
     Atlas<std::uint32_t> atlas(map, false, context, switches);
     if (atlas.sweep(expectedCells) <= kMaxNarrowVertices) {

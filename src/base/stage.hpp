@@ -4,7 +4,9 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <span>
 #include <string_view>
+#include <type_traits>
 
 #include <hexhex/context.hpp>
 
@@ -16,7 +18,7 @@ class Stage {
   Stage(Context& context, std::string_view name)
       : context_(context), name_(name), begin_(std::chrono::steady_clock::now()) {
     context_.throwIfCancelled();
-    context_.report(name_, 0.0);
+    context_.begin(name_);
   }
   ~Stage() { finish(); }
   Stage(const Stage&) = delete;
@@ -30,21 +32,60 @@ class Stage {
     context_.addStageTime(name_, seconds.count());
   }
 
+  /// All loops of the stage together run over this many elements, more or less: progress is that
+  /// of the stage. Otherwise the first loop's is all that is seen.
+  void setTotal(std::size_t total) { total_ = total; }
+
   [[nodiscard]] Context& context() const noexcept { return context_; }
   [[nodiscard]] std::string_view name() const noexcept { return name_; }
 
  private:
+  friend class LoopProgress;
   Context& context_;
   std::string_view name_;
   std::chrono::steady_clock::time_point begin_;
   bool finished_ = false;
+  std::size_t total_ = 0;  ///< 0: each loop has its own
+  std::atomic<std::size_t> done_{0};
 };
+
+/// Runs the work of a public function, which reports progress from 0 to 1.
+/// @param name   of the function
+/// @param steps  its stages, and other public functions that it calls; weights are their seconds on
+///               a map of the evaluation with millions of cells
+template <class Work>
+std::invoke_result_t<Work> inSteps(Context& context, std::string_view name,
+                                   std::span<const WorkStep> steps, const Work& work) {
+  WorkSteps all(context, name, steps);
+  if constexpr (std::is_void_v<std::invoke_result_t<Work>>) {
+    work();
+    all.finish();
+  } else {
+    auto result = work();
+    all.finish();
+    return result;
+  }
+}
+
+/// The same for a function with one stage: work(stage).
+template <class Work>
+std::invoke_result_t<Work, Stage&> inStage(Context& context, std::string_view name,
+                                           std::string_view stageName, const Work& work) {
+  const WorkStep only{stageName, 1};
+  return inSteps(context, name, {&only, 1}, [&] {
+    Stage stage(context, stageName);
+    return work(stage);
+  });
+}
 
 /// Progress of a loop over `total` elements, reported at most a hundred times; also the place where
 /// cancellation takes effect.
 class LoopProgress {
  public:
-  LoopProgress(Stage& stage, std::size_t total) : stage_(stage), total_(total) {}
+  LoopProgress(Stage& stage, std::size_t total)
+      : stage_(stage),
+        total_(stage.total_ != 0 ? stage.total_ : total),
+        done_(stage.total_ != 0 ? stage.done_ : own_) {}
 
   /// `count` more elements are done. Thread-safe.
   void advance(std::size_t count) {
@@ -59,7 +100,8 @@ class LoopProgress {
  private:
   Stage& stage_;
   std::size_t total_;
-  std::atomic<std::size_t> done_{0};
+  std::atomic<std::size_t> own_{0};
+  std::atomic<std::size_t>& done_;
 };
 
 }  // namespace hexhex

@@ -77,7 +77,8 @@ PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map, PiecewiseLinea
                                            ExtractStatistics* statistics) {
   checkOptions(options);
   PiecewiseLinearMesh result;
-  runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
+  const ReportedCall call{"extractPiecewiseLinear", kPiecewiseSteps};
+  runExtraction(call, {}, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {}, context, filled);
     result = withParts(scaled.map, parts, options.engine, context, [&](SweepObserver* observer) {
       return extractScaled(scaled, options, context, filled, observer);
@@ -91,7 +92,8 @@ LagrangeMesh extractLagrange(const TetMapView& map, int order, const ExtractOpti
   requireOrder(order);
   checkOptions(options);
   LagrangeMesh result;
-  runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
+  const ReportedCall call{"extractLagrange", kLagrangeSteps};
+  runExtraction(call, {}, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {order}, context, filled);
     result = withNodes(extractScaled(scaled, options, context, filled), scaled.map, order, context);
   });
@@ -103,13 +105,14 @@ PiecewiseLinearMesh Extractor::extractPiecewiseLinear(PiecewiseLinearParts parts
                                                       Context& context,
                                                       ExtractStatistics* statistics) {
   PiecewiseLinearMesh result;
-  prepared_->run(
-      options, {}, context, statistics, [&](std::uint64_t cells, ExtractStatistics& filled) {
-        result = withParts(prepared_->map(), parts, options.engine, context,
-                           [&](SweepObserver* observer) {
-                             return prepared_->mesh(cells, options, context, filled, observer);
-                           });
-      });
+  prepared_->run({"Extractor::extractPiecewiseLinear", kPiecewiseSteps}, options, {}, context,
+                 statistics, [&](std::uint64_t cells, ExtractStatistics& filled) {
+                   result = withParts(prepared_->map(), parts, options.engine, context,
+                                      [&](SweepObserver* observer) {
+                                        return prepared_->mesh(cells, options, context, filled,
+                                                               observer);
+                                      });
+                 });
   return result;
 }
 
@@ -117,8 +120,8 @@ LagrangeMesh Extractor::extractLagrange(int order, const ExtractOptions& options
                                         ExtractStatistics* statistics) {
   requireOrder(order);
   LagrangeMesh result;
-  prepared_->run(options, {order}, context, statistics,
-                 [&](std::uint64_t cells, ExtractStatistics& filled) {
+  prepared_->run({"Extractor::extractLagrange", kLagrangeSteps}, options, {order}, context,
+                 statistics, [&](std::uint64_t cells, ExtractStatistics& filled) {
                    HexMesh mesh = prepared_->mesh(cells, options, context, filled);
                    result = withNodes(std::move(mesh), prepared_->mapToScale(), order, context);
                  });

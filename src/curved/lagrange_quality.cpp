@@ -1,5 +1,6 @@
 // How much Lagrange cells are distorted.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -137,40 +138,43 @@ void forCells(const LagrangeMesh& mesh, Stage& stage, const Use& use) {
 
 Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context) {
   requireConsistent(mesh);
-  Stage stage(context, "quality");
-  Array<double> result(mesh.cellCount());
-  withThreads(context.threads(), [&] {
-    forCells(mesh, stage, [&](std::size_t cell, const auto&, double scaled, std::size_t /*block*/) {
-      result[cell] = scaled;
+  return inStage(context, "scaledJacobians", "quality", [&](Stage& stage) {
+    Array<double> result(mesh.cellCount());
+    withThreads(context.threads(), [&] {
+      forCells(mesh, stage,
+               [&](std::size_t cell, const auto&, double scaled, std::size_t /*block*/) {
+                 result[cell] = scaled;
+               });
     });
+    return result;
   });
-  return result;
 }
 
 Certificate certify(const LagrangeMesh& mesh, Context& context) {
   requireConsistent(mesh);
-  Stage stage(context, "quality");
   Certificate certificate;
   const std::size_t n = mesh.cellCount();
   if (n == 0) return certificate;
-  certificate.scaledJacobians.resize(n);
-  certificate.validity.resize(n);
-  const CellValidity cells(mesh.order);
-  withThreads(context.threads(), [&] {
-    std::vector<BlockFindings> blocks(blockCount(n, kGrain));
-    forCells(mesh, stage,
-             [&](std::size_t cell, const auto& nodes, double scaled, std::size_t block) {
-               const CellCertificate known = cells.examine(nodes);
-               certificate.scaledJacobians[cell] = scaled;
-               certificate.validity[cell] = known.validity;
-               blocks[block].add(cell, scaled, known);
-             });
-    BlockFindings::finish(
-        blocks, cells,
-        [&](std::uint64_t cell, std::vector<Vec3>& nodes) { nodesOf(mesh, cell, nodes); }, stage,
-        certificate);
+  inStage(context, "certify", "quality", [&](Stage& stage) {
+    certificate.scaledJacobians.resize(n);
+    certificate.validity.resize(n);
+    const CellValidity cells(mesh.order);
+    withThreads(context.threads(), [&] {
+      std::vector<BlockFindings> blocks(blockCount(n, kGrain));
+      forCells(mesh, stage,
+               [&](std::size_t cell, const auto& nodes, double scaled, std::size_t block) {
+                 const CellCertificate known = cells.examine(nodes);
+                 certificate.scaledJacobians[cell] = scaled;
+                 certificate.validity[cell] = known.validity;
+                 blocks[block].add(cell, scaled, known);
+               });
+      BlockFindings::finish(
+          blocks, cells,
+          [&](std::uint64_t cell, std::vector<Vec3>& nodes) { nodesOf(mesh, cell, nodes); }, stage,
+          certificate);
+    });
+    certificate.quality = summarize(certificate.scaledJacobians);
   });
-  certificate.quality = summarize(certificate.scaledJacobians);
   return certificate;
 }
 

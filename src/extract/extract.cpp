@@ -1,4 +1,5 @@
 // The public entries: options and errors around the engines.
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -90,11 +91,22 @@ ValidMap prepareValid(const TetMapView& map, int maxScale, const EngineOptions& 
   return valid;
 }
 
+namespace {
+
+constexpr std::array<WorkStep, 5> kPropellerSteps = {{{"stars", 0.1},
+                                                      {"vertices", 4},
+                                                      {"local connectivity", 8},
+                                                      {"global connectivity", 12},
+                                                      {"cells", 8}}};
+
+}  // namespace
+
 HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells, const EngineOptions& options,
                   Context& context, ExtractStatistics& statistics, SweepObserver* observer) {
   if (options.engine == Engine::Atlas) {
     return runAtlas(map, expectedCells, context, statistics, options.switches, observer);
   }
+  const WorkSteps steps(context, "engine", kPropellerSteps);
   {
     Stage stage(context, "stars");
     addStars(map.topology, stage);
@@ -137,7 +149,7 @@ HexMesh extractWith(const TetMapView& map, const EngineOptions& options, Context
                     ExtractStatistics* statistics) {
   checkOptions(options);
   HexMesh mesh;
-  runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
+  runExtraction({"extract"}, {}, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {}, context, filled);
     mesh = extractScaled(scaled, options, context, filled);
   });
@@ -152,7 +164,7 @@ HexMesh extract(const TetMapView& map, const ExtractOptions& options, Context& c
 void extractTo(MeshSink& sink, const TetMapView& map, const ExtractOptions& options,
                Context& context, ExtractStatistics* statistics) {
   checkOptions(options);
-  runExtraction({}, context, statistics, [&](ExtractStatistics& filled) {
+  runExtraction({"extractTo"}, {}, context, statistics, [&](ExtractStatistics& filled) {
     const ScaledMap scaled = prepareScaled(map, options, {1, kMaxStreamedCells}, context, filled);
     streamAtlas(scaled.map, scaled.expectedCells, sink, context, filled);
   });

@@ -22,7 +22,7 @@ Extractor& Extractor::operator=(Extractor&& other) noexcept = default;
 HexMesh Extractor::extract(const ExtractOptions& options, Context& context,
                            ExtractStatistics* statistics) {
   HexMesh mesh;
-  prepared_->run(options, {}, context, statistics,
+  prepared_->run({"Extractor::extract"}, options, {}, context, statistics,
                  [&](std::uint64_t cells, ExtractStatistics& filled) {
                    mesh = prepared_->mesh(cells, options, context, filled);
                  });
@@ -38,7 +38,7 @@ HexMesh Extractor::extract(int scale) {
 
 void Extractor::extractTo(MeshSink& sink, const ExtractOptions& options, Context& context,
                           ExtractStatistics* statistics) {
-  prepared_->run(options, {1, kMaxStreamedCells}, context, statistics,
+  prepared_->run({"Extractor::extractTo"}, options, {1, kMaxStreamedCells}, context, statistics,
                  [&](std::uint64_t cells, ExtractStatistics& filled) {
                    streamAtlas(prepared_->map(), cells, sink, context, filled);
                  });

@@ -18,7 +18,7 @@ class Extractor::Prepared {
  public:
   Prepared(const TetMapView& map, const ExtractorOptions& options, Context& context)
       : given_(map), maxScale_(options.maxScale) {
-    runExtraction({}, context, &known_, [&](ExtractStatistics& filled) {
+    runExtraction({"Extractor"}, {}, context, &known_, [&](ExtractStatistics& filled) {
       ExtractOptions prepare;  // without a repair
       prepare.tolerance = options.tolerance;
       map_ = prepareValid(map, options.maxScale, prepare, context, filled).prepared;
@@ -28,8 +28,8 @@ class Extractor::Prepared {
 
   /// Scales the map, and runs work(number of cells, statistics).
   template <class Work>
-  void run(const ExtractOptions& options, const ScaleLimits& limits, Context& context,
-           ExtractStatistics* statistics, const Work& work) {
+  void run(const ReportedCall& call, const ExtractOptions& options, const ScaleLimits& limits,
+           Context& context, ExtractStatistics* statistics, const Work& work) {
     checkOptions(options);
     if (options.scale < 1 || options.scale > maxScale_ / limits.furtherScale) {
       const bool curved = limits.furtherScale > 1;
@@ -39,7 +39,7 @@ class Extractor::Prepared {
                       ". Choose it from 1" + (curved ? ", and its product with the order up" : "") +
                       " to " + std::to_string(maxScale_) + ", which the extractor was made for.");
     }
-    runExtraction(known_, context, statistics, [&](ExtractStatistics& filled) {
+    runExtraction(call, known_, context, statistics, [&](ExtractStatistics& filled) {
       const std::uint64_t cells = scaledCells(volume_, options.scale, limits.cells);
       setScale(options.scale, context);
       work(cells, filled);

@@ -1,10 +1,13 @@
 // The steps of an extraction, as the public functions combine them.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
 #include <new>
+#include <span>
+#include <string_view>
 
 #include <hexhex/extract.hpp>
 #include <hexhex/stream.hpp>
@@ -82,18 +85,51 @@ struct ScaleLimits {
 
 [[noreturn]] void throwOutOfMemory();
 
+/// From a map to its mesh; weights as inSteps() has them.
+inline constexpr std::array<WorkStep, 6> kExtractSteps = {{{"prepare", 0.1},
+                                                           {"repair", 0.3},
+                                                           {"prepare", 0.1},
+                                                           {"scaling", 0.1},
+                                                           {"engine", 4},
+                                                           {"features", 0.5}}};
+/// ... with what an observer of it gains afterwards.
+inline constexpr std::array<WorkStep, 8> kPiecewiseSteps = {{{"prepare", 0.1},
+                                                             {"repair", 0.3},
+                                                             {"prepare", 0.1},
+                                                             {"scaling", 0.1},
+                                                             {"engine", 4},
+                                                             {"features", 0.5},
+                                                             {"arcs", 6},
+                                                             {"patches", 12}}};
+/// ... with the nodes of order 2.
+inline constexpr std::array<WorkStep, 8> kLagrangeSteps = {{{"prepare", 0.1},
+                                                            {"repair", 0.3},
+                                                            {"prepare", 0.1},
+                                                            {"scaling", 0.1},
+                                                            {"engine", 4},
+                                                            {"features", 0.5},
+                                                            {"cell centres", 1},
+                                                            {"nodes", 10}}};
+
+/// What a public function reports.
+struct ReportedCall {
+  std::string_view name;
+  std::span<const WorkStep> steps = kExtractSteps;
+};
+
 /// Runs work(statistics) with the context's threads; translates what may escape from it, and notes
 /// the time.
 /// @param known  what the statistics begin with
 template <class Work>
-void runExtraction(const ExtractStatistics& known, Context& context, ExtractStatistics* statistics,
-                   const Work& work) {
+void runExtraction(const ReportedCall& call, const ExtractStatistics& known, Context& context,
+                   ExtractStatistics* statistics, const Work& work) {
   const auto begin = std::chrono::steady_clock::now();
   ExtractStatistics local;
   ExtractStatistics& filled = statistics != nullptr ? *statistics : local;
   filled = known;
   try {
-    withThreads(context.threads(), [&] { work(filled); });
+    inSteps(context, call.name, call.steps,
+            [&] { withThreads(context.threads(), [&] { work(filled); }); });
   } catch (const std::bad_alloc&) {
     throwOutOfMemory();
   }

@@ -1,5 +1,6 @@
 // What do the first steps of Section 5.1 find out about a map, without extracting its mesh: its
 // measures, defects, singular edges and transitions?
+#include <array>
 #include <cmath>
 
 #include <hexhex/check.hpp>
@@ -98,6 +99,8 @@ void addChartJumps(const TetMapView& map, const PreparedMap& prepared, MapStruct
 }  // namespace
 
 CheckReport check(const TetMapView& map, const CheckOptions& options, Context& context) {
+  constexpr std::array<WorkStep, 2> kSteps = {{{"prepare", 3}, {"measures", 1}}};
+  WorkSteps steps(context, "check", kSteps);
   CheckReport report;
   report.points = map.points.size();
   report.tets = map.tets.size();
@@ -126,6 +129,7 @@ CheckReport check(const TetMapView& map, const CheckOptions& options, Context& c
     report.boundaryGenus = boundaryGenus(prepared.topology);
     if (report.valid()) report.expected = computeExpectation(prepared, report.edges, options.scale);
   });
+  steps.finish();
   return report;
 }
 
@@ -135,6 +139,8 @@ CheckReport check(const TetMapView& map, const CheckOptions& options) {
 }
 
 MapStructure findMapStructure(const TetMapView& map, double tolerance, Context& context) {
+  constexpr std::array<WorkStep, 2> kSteps = {{{"prepare", 3}, {"map structure", 1}}};
+  WorkSteps steps(context, "findMapStructure", kSteps);
   MapStructure result;
   withThreads(context.threads(), [&] {
     DefectCollector defects;
@@ -146,6 +152,7 @@ MapStructure findMapStructure(const TetMapView& map, double tolerance, Context& 
     }
     if (!prepared.exact.transitions.ofFace.empty()) addChartJumps(map, prepared, result);
   });
+  steps.finish();
   return result;
 }
 

@@ -1,3 +1,4 @@
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -39,6 +40,15 @@ Array<std::uint8_t> usedVertices(const TetTopology& topology) {
   for (Index v = 0; v < topology.pointCount; ++v) used[v] = topology.isIsolated(v) ? 0 : 1;
   return used;
 }
+
+/// On maps of a million tets.
+constexpr std::array<WorkStep, 7> kPrepareSteps = {{{"input", 0.5},
+                                                    {"topology", 4},
+                                                    {"unfolding", 1},
+                                                    {"regular vertices", 2},
+                                                    {"transitions", 1},
+                                                    {"singularities", 1},
+                                                    {"sanitization", 3}}};
 
 /// One preparation, step by step.
 class Preparation {
@@ -150,6 +160,7 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
                        const EngineSwitches& switches) {
   checkArguments(tolerance, maxScale);
   if (!switches.unfoldCharts) charts = ChartChoice::AsGiven;
+  const WorkSteps steps(context, "prepare", kPrepareSteps);
   PreparedMap prepared =
       Preparation(map, tolerance, maxScale, context, defects, switches).run(charts);
   if (defects.empty() || !prepared.isUnfolded) return prepared;

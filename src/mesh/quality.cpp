@@ -1,6 +1,7 @@
 // The scaled Jacobian, as defined by Knupp et al., "The Verdict Geometric Quality Library",
 // Sandia Report SAND2007-1751 (2006); and certificates of straight cells in the same pass.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -143,18 +144,20 @@ double scaledJacobian(const std::array<Vec3, 8>& corners) noexcept {
 }
 
 Array<double> scaledJacobians(const HexMesh& mesh, Context& context) {
-  Stage stage(context, "quality");
-  Array<double> result(mesh.cells.size());
-  withThreads(context.threads(), [&] {
-    parallelBlocks(stage, mesh.cells.size(), kGrain,
-                   [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                     forCells(mesh, begin, end, stage,
-                              [&](std::size_t first, const CellMeasures& measures, std::size_t n) {
-                                std::copy_n(measures.scaled.begin(), n, &result[first]);
-                              });
-                   });
+  return inStage(context, "scaledJacobians", "quality", [&](Stage& stage) {
+    Array<double> result(mesh.cells.size());
+    withThreads(context.threads(), [&] {
+      parallelBlocks(stage, mesh.cells.size(), kGrain,
+                     [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                       forCells(
+                           mesh, begin, end, stage,
+                           [&](std::size_t first, const CellMeasures& measures, std::size_t n) {
+                             std::copy_n(measures.scaled.begin(), n, &result[first]);
+                           });
+                     });
+    });
+    return result;
   });
-  return result;
 }
 
 QualitySummary summarize(const Array<double>& scaledJacobians) {
@@ -171,38 +174,40 @@ CellCertificate certify(const std::array<Vec3, 8>& corners) {
 }
 
 Certificate certify(const HexMesh& mesh, Context& context) {
-  Stage stage(context, "quality");
   const std::size_t n = mesh.cells.size();
   Certificate certificate;
   if (n == 0) return certificate;
-  certificate.scaledJacobians.resize(n);
-  certificate.validity.resize(n);
-  const CellValidity cells(1);
-  withThreads(context.threads(), [&] {
-    std::vector<BlockFindings> blocks(blockCount(n, kGrain));
-    std::vector<QualitySummary> summaries(blocks.size());
-    parallelBlocks(stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-      summaries[block].minimum = 1;
-      forCells(mesh, begin, end, stage,
-               [&](std::size_t first, const CellMeasures& measures, std::size_t count) {
-                 std::copy_n(measures.scaled.begin(), count, &certificate.scaledJacobians[first]);
-                 for (std::size_t i = 0; i < count; ++i)
-                   addTo(summaries[block], measures.scaled[i]);
-                 for (std::size_t i = 0; i < count; ++i) {
-                   const CellCertificate known = certificateOf(mesh, first + i, measures, i, cells);
-                   certificate.validity[first + i] = known.validity;
-                   blocks[block].add(first + i, measures.scaled[i], known);
-                 }
-               });
+  inStage(context, "certify", "quality", [&](Stage& stage) {
+    certificate.scaledJacobians.resize(n);
+    certificate.validity.resize(n);
+    const CellValidity cells(1);
+    withThreads(context.threads(), [&] {
+      std::vector<BlockFindings> blocks(blockCount(n, kGrain));
+      std::vector<QualitySummary> summaries(blocks.size());
+      parallelBlocks(stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+        summaries[block].minimum = 1;
+        forCells(mesh, begin, end, stage,
+                 [&](std::size_t first, const CellMeasures& measures, std::size_t count) {
+                   std::copy_n(measures.scaled.begin(), count, &certificate.scaledJacobians[first]);
+                   for (std::size_t i = 0; i < count; ++i)
+                     addTo(summaries[block], measures.scaled[i]);
+                   for (std::size_t i = 0; i < count; ++i) {
+                     const CellCertificate known =
+                         certificateOf(mesh, first + i, measures, i, cells);
+                     certificate.validity[first + i] = known.validity;
+                     blocks[block].add(first + i, measures.scaled[i], known);
+                   }
+                 });
+      });
+      certificate.quality = united(summaries, n);
+      BlockFindings::finish(
+          blocks, cells,
+          [&](std::uint64_t cell, std::vector<Vec3>& nodes) {
+            const Corners corners = cornersOf(mesh, cell);
+            nodes.assign(corners.begin(), corners.end());
+          },
+          stage, certificate);
     });
-    certificate.quality = united(summaries, n);
-    BlockFindings::finish(
-        blocks, cells,
-        [&](std::uint64_t cell, std::vector<Vec3>& nodes) {
-          const Corners corners = cornersOf(mesh, cell);
-          nodes.assign(corners.begin(), corners.end());
-        },
-        stage, certificate);
   });
   return certificate;
 }

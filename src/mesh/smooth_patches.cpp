@@ -109,25 +109,26 @@ SmoothPatches findSmoothPatches(std::span<const Vec3> points, std::span<const Qu
 
 std::vector<FeatureQuad> boundaryPatches(const HexMesh& mesh, double angle, Context& context) {
   requirePatchAngle(angle);
-  Stage stage(context, "patches");
-  std::vector<FeatureQuad> tagged;
-  withThreads(context.threads(), [&] {
-    requireCornersInRange(mesh, stage);
-    for (const FeatureEdge& edge : mesh.features.edges) {
-      if (std::max(edge.vertices[0], edge.vertices[1]) < mesh.points.size()) continue;
-      throw Error(ErrorCode::InvalidArgument,
-                  "A feature edge names a vertex that is not one of the mesh.",
-                  Place{PlaceKind::Edge, edge.vertices[0], edge.vertices[1]});
-    }
-    const Array<Quad> quads = quadsAt(mesh, boundaryPlaces(mesh, stage));
-    const SmoothPatches patches =
-        findSmoothPatches(mesh.points, quads, angle, mesh.features.edges, stage);
-    tagged.resize(quads.size());
-    for (std::size_t q = 0; q < quads.size(); ++q) {
-      tagged[q] = {quads[q], static_cast<std::int32_t>(patches.patchOf[q] + 1)};
-    }
+  return inStage(context, "boundaryPatches", "patches", [&](Stage& stage) {
+    std::vector<FeatureQuad> tagged;
+    withThreads(context.threads(), [&] {
+      requireCornersInRange(mesh, stage);
+      for (const FeatureEdge& edge : mesh.features.edges) {
+        if (std::max(edge.vertices[0], edge.vertices[1]) < mesh.points.size()) continue;
+        throw Error(ErrorCode::InvalidArgument,
+                    "A feature edge names a vertex that is not one of the mesh.",
+                    Place{PlaceKind::Edge, edge.vertices[0], edge.vertices[1]});
+      }
+      const Array<Quad> quads = quadsAt(mesh, boundaryPlaces(mesh, stage));
+      const SmoothPatches patches =
+          findSmoothPatches(mesh.points, quads, angle, mesh.features.edges, stage);
+      tagged.resize(quads.size());
+      for (std::size_t q = 0; q < quads.size(); ++q) {
+        tagged[q] = {quads[q], static_cast<std::int32_t>(patches.patchOf[q] + 1)};
+      }
+    });
+    return tagged;
   });
-  return tagged;
 }
 
 }  // namespace hexhex

@@ -8,21 +8,22 @@
 namespace hexhex {
 
 MeshStructure findStructure(const HexMesh& mesh, Context& context) {
-  Stage stage(context, "structure");
-  MeshStructure result;
-  withThreads(context.threads(), [&] {
-    const VertexCells around = cellsAroundVertices(mesh, stage);
-    const HexFaces faces = findFaces(mesh, around, stage);
-    HexEdges edges = findEdges(mesh, around, faces, stage);
-    result.singularEdges = std::move(edges.singular);
-    result.faces = faces.count;
-    result.edges = edges.count;
-    result.boundaryQuads = faces.boundaryCount;
-    result.components = faces.components;
-    result.boundaryComponents = edges.boundaryComponents;
-    result.eulerCharacteristic = eulerCharacteristic(mesh, faces, edges);
+  return inStage(context, "findStructure", "structure", [&](Stage& stage) {
+    MeshStructure result;
+    withThreads(context.threads(), [&] {
+      const VertexCells around = cellsAroundVertices(mesh, stage);
+      const HexFaces faces = findFaces(mesh, around, stage);
+      HexEdges edges = findEdges(mesh, around, faces, stage);
+      result.singularEdges = std::move(edges.singular);
+      result.faces = faces.count;
+      result.edges = edges.count;
+      result.boundaryQuads = faces.boundaryCount;
+      result.components = faces.components;
+      result.boundaryComponents = edges.boundaryComponents;
+      result.eulerCharacteristic = eulerCharacteristic(mesh, faces, edges);
+    });
+    return result;
   });
-  return result;
 }
 
 }  // namespace hexhex

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <quantize/bend_problem.hpp>
+#include <quantize/integer_factor.hpp>
 #include <quantize/quantized_map.hpp>
 
 #include <base/vector3.hpp>
@@ -349,6 +350,8 @@ class Quantizer {
 bool canQuantize() noexcept { return true; }
 
 SeamlessReport examineSeamless(const TetMapView& map, Context& context) {
+  constexpr std::array<WorkStep, 2> kSteps = {{{"seamless map", 4}, {"prepare", 1}}};
+  WorkSteps steps(context, "examineSeamless", kSteps);
   SeamlessReport report;
   const double size = largestCoordinate(map);
   try {
@@ -358,15 +361,25 @@ SeamlessReport examineSeamless(const TetMapView& map, Context& context) {
     report.kind = report.displacement <= QuantizeOptions{}.tolerance * size
                       ? SeamlessKind::Seamless
                       : SeamlessKind::AlmostSeamless;
+    if (report.kind == SeamlessKind::Seamless) requirePositiveTets(seamless);
+    report.integerFactor = integerFactor(map, seamless, context);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::Cancelled) throw;
+    report.kind = SeamlessKind::Neither;
     report.problem = error.what();
   }
+  steps.finish();
   return report;
 }
 
 QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options, Context& context) {
+  constexpr std::array<WorkStep, 5> kSteps = {{{"seamless map", 1},
+                                               {"motorcycle complex", 2},
+                                               {"integers", 2},
+                                               {"bending", 4},
+                                               {"singular curves", 0.2}}};
   checkOptions(options);
+  WorkSteps steps(context, "quantize", kSteps);
   QuantizedMap result;
   withThreads(context.threads(), [&] {
     // What is wrong with the caller's arrays is found in them.
@@ -382,6 +395,7 @@ QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options, Con
     }
     restoreOrder(order, result.map);
   });
+  steps.finish();
   return result;
 }
 #else

@@ -166,6 +166,9 @@ void collectHoles(const PreparedMap& map, std::span<const std::uint8_t> valid,
 }  // namespace
 
 PartialMesh extractPartial(const TetMapView& map, const PartialOptions& options, Context& context) {
+  constexpr std::array<WorkStep, 3> kSteps = {
+      {{"prepare", 0.1}, {"valid tets", 0.1}, {"cells", 1}}};
+  WorkSteps steps(context, "extractPartial", kSteps);
   PartialMesh result;
   withThreads(context.threads(), [&] {
     DefectCollector defects;
@@ -192,6 +195,7 @@ PartialMesh extractPartial(const TetMapView& map, const PartialOptions& options,
     matchFaces(boundaryWalls, stage, result);
     collectHoles(prepared, valid, blocks, result);
   });
+  steps.finish();
   return result;
 }
 

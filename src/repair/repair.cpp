@@ -414,6 +414,9 @@ bool canRepair() noexcept { return canUntangle(); }
 
 TetMap repairInArena(TetMap map, const RepairOptions& options, Context& context,
                      RepairReport& report) {
+  constexpr std::array<WorkStep, 5> kSteps = {
+      {{"prepare", 1}, {"defects", 0.1}, {"diagnosis", 0.5}, {"repair", 10}, {"prepare", 1}}};
+  WorkSteps steps(context, "repair", kSteps);
   report = {};
   const auto begin = std::chrono::steady_clock::now();
   const auto stop = [&] {
@@ -423,6 +426,7 @@ TetMap repairInArena(TetMap map, const RepairOptions& options, Context& context,
   try {
     TetMap repaired = Repairer(std::move(map), options, context, report).run();
     stop();
+    steps.finish();
     return repaired;
   } catch (...) {
     stop();

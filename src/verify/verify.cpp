@@ -1,6 +1,7 @@
 // The mesh of a map is compared with the map itself if it is in canonical order (proof.hpp), and
 // otherwise with another one that is, and that was proven to be right (match.hpp).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -170,11 +171,14 @@ class Verification {
 
 VerifyReport verify(const TetMapView& map, const HexMesh& mesh, const VerifyOptions& options,
                     Context& context) {
+  constexpr std::array<WorkStep, 3> kSteps = {
+      {{"prepare", 0.1}, {"verification", 0.01}, {"verification", 2.5}}};
   if (options.digits < 0 || options.digits > 17) {
     throw Error(ErrorCode::InvalidArgument, "The number of digits is " +
                                                 std::to_string(options.digits) +
                                                 ". Choose 1 to 17, or 0 to have it found out.");
   }
+  WorkSteps steps(context, "verify", kSteps);
   Comparisons comparisons;
   withThreads(context.threads(), [&] {
     std::optional<Truth> truth = truthOf(map, options, context, comparisons);
@@ -183,6 +187,7 @@ VerifyReport verify(const TetMapView& map, const HexMesh& mesh, const VerifyOpti
     Verification verification(*truth, options, context, stage);
     verification.compare(mesh, comparisons);
   });
+  steps.finish();
   return comparisons.take();
 }
 
@@ -195,12 +200,15 @@ class VerifySink::Prover {
  public:
   Prover(const TetMapView& map, const VerifyOptions& options, Context& context)
       : quiet_(context.threads()) {
+    constexpr std::array<WorkStep, 2> kSteps = {{{"prepare", 1}, {"verification", 0.1}}};
+    WorkSteps steps(context, "VerifySink", kSteps);
     withThreads(context.threads(), [&] {
       truth_ = truthOf(map, options, context, comparisons_);
       if (!truth_) return;
       Stage stage(context, "verification");
       proof_.emplace(truth_->map, truth_->expected, stage);
     });
+    steps.finish();
   }
 
   void points(const PointPiece& piece) {

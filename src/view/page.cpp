@@ -1,5 +1,6 @@
 // The page: the template with title, a JSON text, and the packed mesh.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <span>
@@ -236,9 +237,13 @@ std::string pageHead(const PageContent& content, const ViewOptions& options,
   return head;
 }
 
+constexpr std::array<WorkStep, 4> kPageSteps = {
+    {{"certify", 0.5}, {"findStructure", 2}, {"pack mesh", 5}, {"write page", 3}}};
+
 template <class Mesh>
 void writePage(const Mesh& mesh, const std::filesystem::path& file, const ViewOptions& options,
                Context& context) {
+  WorkSteps steps(context, "writeViewPage", kPageSteps);
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
   const PageContent content = makeContent(mesh, options, context);
   const Stage stage(context, "write page");
@@ -252,11 +257,13 @@ void writePage(const Mesh& mesh, const std::filesystem::path& file, const ViewOp
   }
   output.write(pageTemplate()->end);
   output.commit();
+  steps.finish();
 }
 
 template <class Mesh>
 ServedPage makePage(const Mesh& mesh, const std::string& dataUrl, const ViewOptions& options,
                     Context& context) {
+  WorkSteps steps(context, "makeServedPage", kPageSteps);
   PageContent content = makeContent(mesh, options, context);
   content.info["data"] = dataUrl;
   ServedPage served;
@@ -265,6 +272,7 @@ ServedPage makePage(const Mesh& mesh, const std::string& dataUrl, const ViewOpti
   for (PackedTable& table : content.tables) {
     for (std::string& chunk : table.chunks) served.data.push_back(std::move(chunk));
   }
+  steps.finish();
   return served;
 }
 

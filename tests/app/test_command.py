@@ -11,6 +11,7 @@ import itertools
 import json
 import os
 import pathlib
+import pty
 import re
 import signal
 import subprocess
@@ -60,7 +61,7 @@ End
 KINDS = ["box", "cylinder", "sphere", "star", "tetrahedron", "torus", "shell", "handle-body"]
 
 REPORT_KEYS = {
-    "hexhex_version", "input", "output", "extract_seconds", "cells", "vertices", "tets", "points",
+    "hexhex_version", "input", "output", "extract_seconds", "seconds", "cells", "vertices", "tets", "points",
     "scale", "threads", "engine", "epsilon", "epsilon_fallback", "stages", "peak_memory_bytes",
     "generators", "vertices_by_generator", "local_propellers", "global_propellers", "charts",
     "cut_faces", "overlapping_tets", "traced_cells", "singular_edges", "chart_jumps", "inner_faces",
@@ -149,7 +150,53 @@ class Help(CommandTest):
             self.assertIn(f"\n  {kind} ", text)
 
 
+    def test_help_without_anything_and_as_a_subcommand(self):
+        text = self.run_command("--help").stdout
+        self.assertEqual(self.run_command().stdout, text)
+        self.assertEqual(self.run_command("help").stdout, text)
+        for subcommand in ["extract", "formats", "help"]:
+            self.assertEqual(self.run_command("help", subcommand).stdout,
+                             self.run_command(subcommand, "--help").stdout)
+
+
 class BadUsage(CommandTest):
+    def test_did_you_mean(self):
+        self.generate("box")
+        extract = ["extract", "map.hexex", "-o", "a.vtu"]
+        for arguments, sentence in [
+            (["extrct"], 'There is no subcommand "extrct". Did you mean extract?'),
+            (["convrt", "a", "b"], 'There is no subcommand "convrt". Did you mean convert?'),
+            (["xyzzy"], 'There is no subcommand "xyzzy".'),
+            (["--versoin"], "There is no option --versoin. Did you mean --version?"),
+            (["help", "quantise"], "Did you mean quantize?"),
+            ([*extract, "--sclae", "2"], "There is no option --sclae. Did you mean --scale?"),
+            ([*extract, "--no-verfy"], "There is no option --no-verfy. Did you mean --no-verify?"),
+            ([*extract, "--scael=2"], "There is no option --scael. Did you mean --scale?"),
+            ([*extract, "--quite"], "There is no option --quite. Did you mean --quiet?"),
+            ([*extract, "--red"], "There is no option --red."),
+            ([*extract, "b.vtu"], 'Nothing is expected to be "b.vtu".'),
+            ([*extract, "--engine", "atals"],
+             '--engine: there is no "atals"; choose atlas or propeller. Did you mean atlas?'),
+            ([*extract, "--repair", "maybe"],
+             '--repair: there is no "maybe"; choose auto or off.'),
+            ([*extract, "--format", "vtk-binry"],
+             '--format: there is no format "vtk-binry"; `hexhex formats` lists them. Did you mean '
+             "vtk-binary?"),
+            (["generate", "spehre", "-o", "b.hexex"], "Did you mean sphere?"),
+            (["generate", "box", "-o", "b.hexex", "--charts", "randm"], "Did you mean random?"),
+        ]:
+            with self.subTest(arguments=arguments):
+                result = self.run_command(*arguments, expect=BAD_USAGE)
+                self.assertIn(f"{sentence}\n", result.stderr)
+                given = "extract " if arguments[0] == "extract" else ""
+                if given:
+                    self.assertIn("Run `hexhex extract --help`", result.stderr)
+                self.assertEqual(set(self.files()), {"map.hexex"})
+
+    def test_other_names_of_formats_are_known(self):
+        self.generate("box")
+        self.run_command("extract", "map.hexex", "-o", "a.x", "--format", "gmsh22", "--quiet")
+
     def test_files_that_are_the_same(self):
         self.generate("box")
         (self.folder / "link.mesh").symlink_to(self.folder / "map.hexex")
@@ -167,7 +214,7 @@ class BadUsage(CommandTest):
     def test_wrong_options(self):
         self.write("map.hexex", ONE_TET)
         for arguments in [
-            [], ["explode"], ["extract"], ["extract", "map.hexex"],
+            ["explode"], ["extract"], ["extract", "map.hexex"],
             ["extract", "map.hexex", "-o", "a.vtu", "--colour", "red"],
             ["extract", "map.hexex", "-o", "a.vtu", "--scale", "0"],
             ["extract", "map.hexex", "-o", "a.vtu", "--scale", "1.5"],
@@ -539,8 +586,48 @@ class Pipeline(CommandTest):
             cells.append(json.loads((self.folder / "r.json").read_text())["cells"])
         self.assertEqual(cells[1], 8 * cells[0])
         # The mesh at scale 2 does not agree with the map at scale 1.
-        result = self.run_command("verify", map_file, "a.vtu", expect=FAILURE)
-        self.assertIn("FAILED", result.stdout)
+        for scale in [1, 3]:
+            result = self.run_command("verify", map_file, "a.vtu", "--scale", scale, expect=FAILURE)
+            self.assertIn("FAILED", result.stdout)
+            self.assertIn("\nThis looks like scale 2: try --scale 2.\n", result.stdout)
+        other = self.generate("box", name="box.hexex")
+        self.assertNotIn("looks like",
+                         self.run_command("verify", other, "a.vtu", expect=FAILURE).stdout)
+
+    def test_json_instead_of_text(self):
+        map_file = self.generate("cylinder", "--cells", "2")
+        self.run_command("extract", map_file, "-o", "a.vtu", "--scale", "2", "--quiet")
+
+        def told(*arguments, expect=SUCCESS):
+            result = self.run_command(*arguments, "--json", expect=expect)
+            self.assertEqual(result.stderr, "")
+            return json.loads(result.stdout)
+
+        report = told("verify", map_file, "a.vtu", "--scale", "2")
+        self.assertTrue(report["passed"])
+        self.assertIsNone(report["likely_scale"])
+        self.assertGreater(report["quality"]["minimum"], 0)
+        report = told("verify", map_file, "a.vtu", expect=FAILURE)
+        self.assertFalse(report["passed"])
+        self.assertEqual((report["scale"], report["likely_scale"]), (1, 2))
+        mesh, pieces, info = (told("info", "a.vtu"), told("info", "a.vtu", "--pieces"),
+                              told("info", map_file))
+        self.assertEqual((mesh["kind"], pieces["kind"], info["kind"]), ("mesh", "mesh", "map"))
+        for key in ["cells", "vertices", "lower", "upper"]:
+            self.assertEqual(mesh[key], pieces[key])
+        self.assertEqual(mesh["validity"]["positive"], mesh["cells"])
+        self.assertRegex(pieces["checksums"]["cells"], "^[0-9a-f]{16}$")
+        self.assertEqual(told("check", map_file)["tets"], info["tets"])
+
+    def test_report_on_the_standard_output(self):
+        map_file = self.generate("box")
+        result = self.run_command("extract", map_file, "-o", "a.vtu", "--report", "-")
+        self.assertEqual(json.loads(result.stdout).keys(), REPORT_KEYS)
+        self.assertEqual(set(self.files()), {"map.hexex", "a.vtu"})
+        result = self.run_command("repair", map_file, "-o", "b.hexex", "--report", "-", "--quiet",
+                                  expect=None)
+        if result.returncode == SUCCESS:
+            self.assertIsNone(json.loads(result.stdout))  # nothing was to be repaired
 
     def test_quiet_is_silent(self):
         map_file = self.generate("box")
@@ -549,10 +636,68 @@ class Pipeline(CommandTest):
             result = self.run_command(*arguments, "--quiet")
             self.assertEqual(result.stdout + result.stderr, "")
 
-    def test_progress_is_plain_without_a_terminal(self):
-        result = self.run_command("extract", self.generate("box"), "-o", "a.vtu")
-        self.assertNotIn("\r", result.stderr)
-        self.assertIn("hexhex: read map\n", result.stderr)
+    def test_pipes_get_stages_only_if_asked(self):
+        map_file = self.generate("box")
+        self.assertEqual(self.run_command("extract", map_file, "-o", "a.vtu").stderr, "")
+        result = self.run_command("extract", map_file, "-o", "a.vtu", "--verbose")
+        lines = result.stderr.splitlines()
+        self.assertIn("hexhex: read map", lines)
+        self.assertIn("hexhex: write mesh", lines)
+        self.assertEqual(len(lines), len(set(lines)))
+        self.assertTrue(all(line.startswith("hexhex: ") for line in lines), lines)
+
+    def on_terminal(self, *arguments, pauses=0):
+        """What a run writes to its standard error output, a terminal, if it sleeps now and then."""
+        ours, its = pty.openpty()
+        with subprocess.Popen([self.command, *arguments], cwd=self.folder, stderr=its,
+                              stdout=subprocess.DEVNULL) as process:
+            os.close(its)
+            for _ in range(pauses):
+                time.sleep(0.1)
+                process.send_signal(signal.SIGSTOP)
+                time.sleep(0.5)
+                process.send_signal(signal.SIGCONT)
+            written = b""
+            try:
+                while piece := os.read(ours, 1 << 16):
+                    written += piece
+            except OSError:  # how a terminal ends
+                pass
+            os.close(ours)
+        self.assertEqual(process.returncode, SUCCESS, written)
+        return written.decode()
+
+    def test_one_bar_that_never_goes_back(self):
+        map_file = self.generate("box", "--cells", "40", "--refine", "8")
+        text = self.on_terminal("extract", map_file, "-o", "a.vtu", pauses=4)
+        shares = [int(share) for share in re.findall(r"(\d+) %", text)]
+        self.assertGreater(len(shares), 0)
+        self.assertEqual(shares, sorted(shares))
+        self.assertLessEqual(shares[-1], 100)
+        self.assertRegex(text, r"\[#* *\] +\d+ % +(\d+ (s|min|h) left)?")
+        self.assertTrue(text.endswith("\r\x1b[K"), text[-80:])  # nothing is left of it
+        self.assertNotIn("\n", text)
+
+    def test_terminal_gets_no_bar_with_quiet_or_for_short_runs(self):
+        map_file = self.generate("box")
+        for arguments in [["--quiet"], []]:
+            begin = time.monotonic()
+            text = self.on_terminal("extract", map_file, "-o", "a.vtu", *arguments)
+            if arguments or time.monotonic() - begin < 1:
+                self.assertEqual(text, "")
+
+    def test_summary_tells_the_time_of_each_part(self):
+        map_file = self.generate("box")
+        text = self.run_command("extract", map_file, "-o", "a.vtu", "--report", "r.json").stdout
+        parts = ["reading", "extraction", "verification", "quality", "writing"]
+        self.assertRegex(text, r"\n  time +\d+\.\d\d s: " + ", ".join(part + r" \d+\.\d\d"
+                                                                    for part in parts) + r"\n")
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(list(report["seconds"]), parts)
+        self.assertTrue(all(seconds >= 0 for seconds in report["seconds"].values()))
+        text = self.run_command("extract", map_file, "-o", "a.vtu", "--stream").stdout
+        self.assertRegex(text, r"\n  time +\S+ s: reading \S+, extraction and writing \S+, "
+                         r"verification \S+\n")
 
     def test_nothing_but_the_outputs_is_left(self):
         map_file = self.generate("box")
@@ -620,6 +765,46 @@ class Repair(CommandTest):
         run = self.run_command("extract", map_file, "-o", "curved.vtu", "--order", "2")
         self.assertIn("It was repaired", run.stderr)
         self.run_command("extract", map_file, "-o", "mesh.vtu", "--arcs", "arcs.vtu", "--quiet")
+
+    def in_other_units(self, map_file, factor, name):
+        """The same map with its parameters multiplied."""
+        lines = (self.folder / map_file).read_text().split("\n")
+        points = int(lines[0])
+        tets = int(lines[points + 1])
+        for i in range(points + 2, points + 2 + tets):
+            words = lines[i].split()
+            parameters = [repr(float(word) * factor) for word in words[4:]]
+            lines[i] = " ".join(words[:4] + parameters)
+        return self.write(name, "\n".join(lines))
+
+    def test_first_line_of_check_says_what_a_map_is(self):
+        def first_line(map_file, expect=INVALID_MAP):
+            return self.run_command("check", map_file, expect=expect).stdout.split("\n")[0]
+
+        valid = self.generate("sphere", "--charts", "blocks")
+        self.assertEqual(first_line(valid, SUCCESS), "The map is valid.")
+        self.generate("sphere", "--defects", "3", name="defective.hexex")
+        self.assertRegex(first_line("defective.hexex"), r"^The map is defective: \d+ kinds? of defects?\.$")
+        if "cannot quantize" in self.run_command("quantize", valid, "-o", "x.hexex", "--cells",
+                                                 "500", expect=None).stderr:
+            self.skipTest("built without Eigen")
+        for factor, inverse in [(0.25, "4"), (1 / 3, "3"), (0.4, "2.5"), (10 / 7, "0.7")]:
+            scaled = self.in_other_units(valid, factor, "scaled.hexex")
+            self.assertEqual(
+                first_line(scaled),
+                f"The map is integer up to a scale: multiply its parameters by {inverse}, as `hexhex "
+                f"quantize scaled.hexex -o integer.hexex --scale {inverse}` does.")
+            # What it says, it can do.
+            self.run_command("quantize", scaled, "-o", "integer.hexex", "--scale", inverse, "--quiet")
+            self.assertIn("  cells                     448\n",
+                          self.run_command("check", "integer.hexex").stdout)
+            found = json.loads(self.run_command("check", scaled, "--json", expect=INVALID_MAP).stdout)
+            self.assertEqual(found["kind"], "integer up to a scale")
+            self.assertAlmostEqual(found["integer_factor"], float(inverse))
+        self.generate("sphere", "--stretch", "0.5", "--charts", "random", name="seamless.hexex")
+        text = self.run_command("check", "seamless.hexex", expect=INVALID_MAP).stdout
+        self.assertTrue(text.startswith("The map is seamless"), text)
+        self.assertNotIn("OffLattice", text)
 
     def test_quantize(self):
         self.run_command("generate", "sphere", "--stretch", "0.5", "--charts", "random", "--quiet",
@@ -768,7 +953,8 @@ class Stream(CommandTest):
     def test_same_mesh_as_in_memory(self):
         for kind in KINDS:
             map_file = self.generate(kind, "--charts", "random", "--jitter", "0.3", "--cells", "3")
-            for extension in ["vtu", "mesh"]:
+            others = ["meshb", "vtk", "msh"] if kind == "sphere" else []
+            for extension in ["vtu", "mesh", *others]:
                 with self.subTest(kind=kind, extension=extension):
                     whole, pieces = f"whole.{extension}", f"pieces.{extension}"
                     self.run_command("extract", map_file, "-o", whole, "--scale", "2")
@@ -800,6 +986,18 @@ class Stream(CommandTest):
         self.assertEqual(found["cells"], str(report["cells"]))
         self.assertEqual(report["checksums"],
                          {"cells": found["cell_checksum"], "vertices": found["vertex_checksum"]})
+
+    def test_memory(self):
+        """Neither a mesh of a million cells nor its file is in memory, also while it is verified."""
+        map_file = self.generate("box", "--cells", "25")
+        for name in ["vtu", "mesh", "meshb", "vtk", "vtk-binary", "msh"]:
+            with self.subTest(format=name):
+                self.run_command("extract", map_file, "-o", "a.x", "--format", name, "--stream",
+                                 "--scale", "2", "--report", "r.json")
+                report = json.loads((self.folder / "r.json").read_text())
+                self.assertEqual(report["cells"], 1_000_000)
+                self.assertTrue(report["verification"]["passed"])
+                self.assertLess(report["peak_memory_bytes"], 80_000_000)
 
     def test_without_verification(self):
         map_file = self.generate("box")
@@ -911,6 +1109,7 @@ class Stream(CommandTest):
 class Interruption(CommandTest):
     def interrupt(self, last_line, *arguments):
         """Ctrl-C soon after a line of progress."""
+        arguments = ["--verbose", *arguments]
         map_file = self.generate("box", "--cells", "40", "--refine", "8")
         with subprocess.Popen([self.command, "extract", map_file, "-o", "a.mesh", *arguments],
                               cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,

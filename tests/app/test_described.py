@@ -58,9 +58,11 @@ class DescribedTest(unittest.TestCase):
           complete_words() {{ COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _hexhex
             echo "${{COMPREPLY[*]}}"; }}
           complete_words hexhex ver; complete_words hexhex extract --sc
-          complete_words hexhex extract --engine p; complete_words hexhex generate tor"""
+          complete_words hexhex extract --engine p; complete_words hexhex generate tor
+          complete_words hexhex help quan; complete_words hexhex extract --repair o"""
         result = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
-        self.assertEqual(result.stdout.split(), ["verify", "--scale", "propeller", "torus"])
+        self.assertEqual(result.stdout.split(), ["verify", "--scale", "propeller", "torus", "quantize",
+                                                  "off"])
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Whether the pages of docs/ have all that they should: every error code; in their snippets, which other
 tests run, every function of the libraries for C++, C and Python; and for every C function once, who may
-call it from several threads."""
+call it from several threads. And whether all tables of the pages are whole."""
 
 import ast
 import pathlib
@@ -74,8 +74,39 @@ def misused_in_c():
             if takes_handle.search(parameters) and not re.search(rf"\b{name}\(", test)]
 
 
+def cells_of(row):
+    """Columns of a row of a table. A bar in a code span still ends a cell, unless it is escaped."""
+    return len(re.split(r"(?<!\\)\|", row.strip())) - 2
+
+
+def broken_tables():
+    """Rows without a table, of another width than their table, or that go on in a second line."""
+    broken = []
+    pages = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *ROOT.glob("*/*/README.md")]
+    for page in pages:
+        lines, columns, in_code = page.read_text(encoding="utf-8").splitlines(), 0, False
+        for number, line in enumerate(lines, 1):
+            place = f"{page.relative_to(ROOT)}, line {number}"
+            in_code ^= line.startswith("```")
+            if in_code or not line.startswith("|"):
+                if columns > 0 and line.strip() and not line.startswith(("```", "<!--")):
+                    broken.append(f"{place}: the row of a table above goes on here")
+                columns = 0
+                continue
+            if not line.rstrip().endswith("|"):
+                broken.append(f"{place}: the row of a table has no end")
+            if columns == 0:
+                columns = cells_of(line)
+                rule = lines[number] if number < len(lines) else ""
+                if not re.fullmatch(r"\|( *:?-+:? *\|)+", rule.strip()):
+                    broken.append(f"{place}: the row belongs to no table")
+            if cells_of(line) != columns:
+                broken.append(f"{place}: {cells_of(line)} cells in a table of {columns} columns")
+    return broken
+
+
 def main():
-    missing = threads_of_c() + misused_in_c()
+    missing = threads_of_c() + misused_in_c() + broken_tables()
     pages = (("docs/errors.md", error_codes(), None), ("docs/troubleshooting.md", error_codes(), None),
              ("docs/api-c.md", c_functions(), "c"), ("docs/api-cpp.md", cpp_functions(), "cpp"),
              ("docs/api-python.md", python_names(), "python"))

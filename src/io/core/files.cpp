@@ -1,4 +1,5 @@
 // Reads and writes files of any format, after a look at whether the format can do what is wanted.
+#include <array>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -16,6 +17,14 @@
 
 namespace hexhex {
 namespace {
+
+constexpr std::array<WorkStep, 1> kReadMap = {{{"read map", 1}}};
+constexpr std::array<WorkStep, 1> kReadTets = {{{"read tets", 1}}};
+constexpr std::array<WorkStep, 1> kReadMesh = {{{"read mesh", 1}}};
+constexpr std::array<WorkStep, 2> kReadAny = {{{"read mesh", 1}, {"read map", 1}}};
+constexpr std::array<WorkStep, 1> kWriteMap = {{{"write map", 1}}};
+/// Its indices are looked at first.
+constexpr std::array<WorkStep, 2> kWriteMesh = {{{"write mesh", 0.02}, {"write mesh", 1}}};
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& sentence) {
   throw Error(ErrorCode::FileUnsupported, file.string() + ": " + sentence);
@@ -55,7 +64,8 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
 TetMap readMap(const std::filesystem::path& file, const ReadOptions& options, Context& context) {
   const Format& format = findFormat(file, options.format, FileContent::Map);
   if (format.maps.read == nullptr) failToRead(file, format);
-  return format.maps.read(file, options, context);
+  return inSteps(context, "readMap", kReadMap,
+                 [&] { return format.maps.read(file, options, context); });
 }
 
 TetMap readMap(const std::filesystem::path& file, Context& context) {
@@ -69,16 +79,21 @@ TetMap readMap(const std::filesystem::path& file) {
 
 TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& options,
                     Context& context) {
-  const TetCells tets = findFormat(file, options.format, FileContent::Tets).readTets(file, context);
-  TetMesh mesh;
-  mesh.points.assign(tets.points.begin(), tets.points.end());
-  mesh.tets.assign(tets.cells.begin(), tets.cells.end());
-  return mesh;
+  const Format& format = findFormat(file, options.format, FileContent::Tets);
+  return inSteps(context, "readTetMesh", kReadTets, [&] {
+    const TetCells tets = format.readTets(file, context);
+    TetMesh mesh;
+    mesh.points.assign(tets.points.begin(), tets.points.end());
+    mesh.tets.assign(tets.cells.begin(), tets.cells.end());
+    return mesh;
+  });
 }
 
 HexMesh readHexMesh(const std::filesystem::path& file, const ReadOptions& options,
                     Context& context) {
-  return readableFormat(file, options.format).meshes.read(file, context);
+  const Format& format = readableFormat(file, options.format);
+  return inSteps(context, "readHexMesh", kReadMesh,
+                 [&] { return format.meshes.read(file, context); });
 }
 
 HexMesh readHexMesh(const std::filesystem::path& file, Context& context) {
@@ -94,23 +109,28 @@ std::variant<TetMap, HexMesh> readMapOrHexMesh(const std::filesystem::path& file
                                                const ReadOptions& options, Context& context) {
   const Format& format = findFormat(file, options.format, FileContent::MapOrHexMesh);
   if (format.meshes.read == nullptr && format.maps.read == nullptr) failToRead(file, format);
-  if (format.meshes.read == nullptr) return format.maps.read(file, options, context);
-  if (format.maps.read == nullptr) return format.meshes.read(file, context);
-  try {
-    return format.meshes.read(file, context);
-  } catch (const Error& error) {
-    // That there are no hexahedra; what else is wrong, the other reader will find, too.
-    if (error.code() != ErrorCode::FileUnsupported) throw;
-    return format.maps.read(file, options, context);
-  }
+  using Content = std::variant<TetMap, HexMesh>;
+  return inSteps(context, "readMapOrHexMesh", kReadAny, [&]() -> Content {
+    if (format.meshes.read == nullptr) return format.maps.read(file, options, context);
+    if (format.maps.read == nullptr) return format.meshes.read(file, context);
+    try {
+      return format.meshes.read(file, context);
+    } catch (const Error& error) {
+      // That there are no hexahedra; what else is wrong, the other reader will find, too.
+      if (error.code() != ErrorCode::FileUnsupported) throw;
+      return format.maps.read(file, options, context);
+    }
+  });
 }
 
 void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, const ReadOptions& options,
                    Context& context) {
   const Format& format = readableFormat(file, options.format);
-  withThreads(context.threads(), [&] {
-    if (format.pieces.read != nullptr) return format.pieces.read(sink, file, context);
-    sendTo(sink, format.meshes.read(file, context));
+  inSteps(context, "readHexMeshTo", kReadMesh, [&] {
+    withThreads(context.threads(), [&] {
+      if (format.pieces.read != nullptr) return format.pieces.read(sink, file, context);
+      sendTo(sink, format.meshes.read(file, context));
+    });
   });
 }
 
@@ -120,7 +140,8 @@ void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, Context& c
 
 void writeMap(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
               Context& context) {
-  writableFormat(file, options, FileContent::Map).maps.write(map, file, options, context);
+  const Format& format = writableFormat(file, options, FileContent::Map);
+  inSteps(context, "writeMap", kWriteMap, [&] { format.maps.write(map, file, options, context); });
 }
 
 void writeMap(const TetMap& map, const std::filesystem::path& file, Context& context) {
@@ -135,11 +156,13 @@ void writeMap(const TetMap& map, const std::filesystem::path& file) {
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
                   const WriteOptions& options, Context& context) {
   const Format& format = writableFormat(file, options, FileContent::HexMesh);
-  {
-    Stage stage(context, "write mesh");
-    withThreads(context.threads(), [&] { requireWritable(mesh, options, stage); });
-  }
-  format.meshes.write(mesh, file, options, context);
+  inSteps(context, "writeHexMesh", kWriteMesh, [&] {
+    {
+      Stage stage(context, "write mesh");
+      withThreads(context.threads(), [&] { requireWritable(mesh, options, stage); });
+    }
+    format.meshes.write(mesh, file, options, context);
+  });
 }
 
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file, Context& context) {

@@ -1,5 +1,6 @@
 // A map as two tet meshes.
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include <hexhex/error.hpp>
@@ -78,17 +79,24 @@ TetMap combine(const TetMesh& tets, const TetMesh& polycube, const PairNames& na
 
 TetMap mapFromPair(const TetMesh& tets, const TetMesh& polycube, Context& context) {
   const PairNames names = {"The mesh", "the polycube", ErrorCode::InvalidArgument};
-  return inStage(context, "pair meshes",
-                 [&](Stage& stage) { return combine(tets, polycube, names, stage); });
+  constexpr std::array<WorkStep, 1> kOnly = {{{"pair meshes", 1}}};
+  return inSteps(context, "mapFromPair", kOnly, [&] {
+    return inStage(context, "pair meshes",
+                   [&](Stage& stage) { return combine(tets, polycube, names, stage); });
+  });
 }
 
 TetMap readMapPair(const std::filesystem::path& tets, const std::filesystem::path& polycube,
                    Context& context) {
-  const TetMesh first = readTetMesh(tets, {}, context);
-  const TetMesh second = readTetMesh(polycube, {}, context);
-  const PairNames names = {tets.string(), polycube.string(), ErrorCode::FileUnsupported};
-  return inStage(context, "pair meshes",
-                 [&](Stage& stage) { return combine(first, second, names, stage); });
+  constexpr std::array<WorkStep, 3> kSteps = {
+      {{"readTetMesh", 1}, {"readTetMesh", 1}, {"pair meshes", 0.2}}};
+  return inSteps(context, "readMapPair", kSteps, [&] {
+    const TetMesh first = readTetMesh(tets, {}, context);
+    const TetMesh second = readTetMesh(polycube, {}, context);
+    const PairNames names = {tets.string(), polycube.string(), ErrorCode::FileUnsupported};
+    return inStage(context, "pair meshes",
+                   [&](Stage& stage) { return combine(first, second, names, stage); });
+  });
 }
 
 }  // namespace hexhex

@@ -63,26 +63,35 @@ constexpr const char* kArcs = "arcs";
 constexpr const char* kPatches = "patches";
 constexpr const char* kCells = "cells of higher order";
 
+constexpr std::array<WorkStep, 1> kArcsSteps = {{{"write arcs", 1}}};
+constexpr std::array<WorkStep, 1> kPatchesSteps = {{{"write patches", 1}}};
+constexpr std::array<WorkStep, 1> kReadSteps = {{{"read mesh", 1}}};
+constexpr std::array<WorkStep, 1> kWriteSteps = {{{"write mesh", 1}}};
+
 }  // namespace
 
 void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                Context& context) {
-  find(kArcFormats, file, kArcs)(mesh, nullptr, file, context);
+  const auto write = find(kArcFormats, file, kArcs);
+  inSteps(context, "writeArcs", kArcsSteps, [&] { write(mesh, nullptr, file, context); });
 }
 
 void writeArcs(const PiecewiseLinearMesh& mesh, const TetMapView& map,
                const std::filesystem::path& file, Context& context) {
-  find(kArcFormats, file, kArcs)(mesh, &map, file, context);
+  const auto write = find(kArcFormats, file, kArcs);
+  inSteps(context, "writeArcs", kArcsSteps, [&] { write(mesh, &map, file, context); });
 }
 
 void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                   Context& context) {
-  find(kPatchFormats, file, kPatches)(mesh, nullptr, file, context);
+  const auto write = find(kPatchFormats, file, kPatches);
+  inSteps(context, "writePatches", kPatchesSteps, [&] { write(mesh, nullptr, file, context); });
 }
 
 void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
                   const std::filesystem::path& file, Context& context) {
-  find(kPatchFormats, file, kPatches)(mesh, &map, file, context);
+  const auto write = find(kPatchFormats, file, kPatches);
+  inSteps(context, "writePatches", kPatchesSteps, [&] { write(mesh, &map, file, context); });
 }
 
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
@@ -95,7 +104,7 @@ void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& fi
                     " scaled Jacobians of " + std::to_string(mesh.cellCount()) +
                     " cells. Give one for each, or none.");
   }
-  write(mesh, file, options, context);
+  inSteps(context, "writeLagrangeMesh", kWriteSteps, [&] { write(mesh, file, options, context); });
 }
 
 bool holdsLagrangeCells(const std::filesystem::path& file, Context& context) {
@@ -107,7 +116,8 @@ LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& contex
     throw Error(ErrorCode::FileUnsupported,
                 file.string() + ": cells of higher order are read from .vtu files only.");
   }
-  return readLagrangeVtu(file, context);
+  return inSteps(context, "readLagrangeMesh", kReadSteps,
+                 [&] { return readLagrangeVtu(file, context); });
 }
 
 void requireArcFormat(const std::filesystem::path& file) {

@@ -20,6 +20,9 @@ namespace hexhex {
 /// @throws Error FileNotFound, FileSyntax (with line, or byte of a binary file), FileUnsupported,
 ///         IndexOutOfRange, NotFinite, TooLarge
 [[nodiscard]] HexMesh readGmsh(const Input& input, Context& context);
+/// The same in pieces, of binary files of version 4.1 with one block of nodes, which are numbered
+/// from 1, and one of hexahedra; of other files as a whole.
+void readGmshTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
 /// The same for tetrahedra instead of hexahedra.
 [[nodiscard]] TetCells readGmshTets(const Input& input, Context& context);
 

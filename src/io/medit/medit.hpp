@@ -33,6 +33,11 @@ namespace hexhex {
 ///         computers with the other byte order
 [[nodiscard]] HexMesh readMeshb(const Input& input, Context& context);
 
+/// The same in pieces, of files with one section Vertices in front of one section Hexahedra and
+/// without comments; of other files as a whole.
+void readMeditTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
+void readMeshbTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
+
 /// The same for tetrahedra instead of hexahedra.
 [[nodiscard]] TetCells readMeditTets(const Input& input, Context& context);
 [[nodiscard]] TetCells readMeshbTets(const Input& input, Context& context);

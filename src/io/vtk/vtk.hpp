@@ -79,6 +79,9 @@ void writePatchesVtk(const PiecewiseLinearMesh& mesh, const std::filesystem::pat
 /// @throws Error FileNotFound, FileSyntax (with the line), FileUnsupported, IndexOutOfRange,
 ///         NotFinite, TooLarge
 [[nodiscard]] HexMesh readVtkLegacy(const Input& input, Context& context);
+/// The same in pieces, of files up to version 4 with nothing but hexahedra; of other files as a
+/// whole.
+void readVtkLegacyTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
 
 /// The same for tetrahedra and for maps, as of `.vtu`.
 [[nodiscard]] TetCells readVtkLegacyTets(const Input& input, Context& context);

@@ -1,0 +1,158 @@
+#include "json.hpp"
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "output.hpp"
+
+namespace hexhex::command {
+namespace {
+
+Json valencesAsJson(const std::map<int, std::uint64_t>& countByValence) {
+  Json object = Json::object();
+  for (const auto& [valence, count] : countByValence) object[std::to_string(valence)] = count;
+  return object;
+}
+
+Json expectationAsJson(const Expectation& expected) {
+  return {{"cells", expected.cells},
+          {"boundary_quads", expected.boundaryQuads},
+          {"inner_singular_edges", valencesAsJson(expected.innerSingularEdges)},
+          {"boundary_singular_edges", valencesAsJson(expected.boundarySingularEdges)},
+          {"euler_characteristic", expected.eulerCharacteristic},
+          {"components", expected.components},
+          {"boundary_components", expected.boundaryComponents}};
+}
+
+Json defectsAsJson(const std::vector<Defect>& defects) {
+  Json list = Json::array();
+  for (const Defect& defect : defects) {
+    Json worst = Json::array();
+    for (const Defect::Occurrence& occurrence : defect.worst) {
+      worst.push_back({{"place", toString(occurrence.place)}, {"amount", occurrence.amount}});
+    }
+    list.push_back({{"code", name(defect.code)},
+                    {"sentence", defect.sentence},
+                    {"count", defect.count},
+                    {"worst", std::move(worst)}});
+  }
+  return list;
+}
+
+}  // namespace
+
+Json checkAsJson(const CheckReport& report, int scale,
+                 const std::optional<SeamlessReport>& seamless) {
+  const double factor = seamless ? seamless->integerFactor : 0;
+  const char* kind = seamless ? kindName(*seamless) : "neither";
+  if (report.valid()) kind = "integer";
+  return {{"valid", report.valid()},
+          {"kind", kind},
+          {"integer_factor", factor > 0 ? Json(factor) : Json(nullptr)},
+          {"points", report.points},
+          {"tets", report.tets},
+          {"edges", report.edges},
+          {"faces", report.faces},
+          {"inner_faces", report.innerFaces},
+          {"boundary_faces", report.boundaryFaces},
+          {"chart_jumps", report.chartJumps},
+          {"isolated_vertices", report.isolatedVertices},
+          {"tets_inverted_in_space", report.tetsInvertedInSpace},
+          {"mirrored", report.mirrored},
+          {"corners_reversed", report.cornersReversed},
+          {"max_transition_residual", report.maxTransitionResidual},
+          {"max_displacement", report.maxDisplacement},
+          {"inner_singular_tet_edges", valencesAsJson(report.innerSingularTetEdges)},
+          {"boundary_singular_tet_edges", valencesAsJson(report.boundarySingularTetEdges)},
+          {"singular_nodes", report.singularNodes},
+          {"boundary_genus", report.boundaryGenus},
+          {"defects", defectsAsJson(report.defects)},
+          {"scale", scale},
+          {"expected", report.valid() ? expectationAsJson(report.expected) : Json(nullptr)}};
+}
+
+Json qualityAsJson(const Certificate& certificate) {
+  const QualitySummary& quality = certificate.quality;
+  return {{"minimum", quality.minimum},
+          {"mean", quality.mean},
+          {"not_positive", quality.notPositive},
+          {"histogram", quality.histogram}};
+}
+
+Json validityAsJson(const Certificate& certificate) {
+  Json worst = Json::array();
+  for (const RefutedCell& bad : certificate.worst) {
+    worst.push_back({{"cell", bad.cell},
+                     {"place", bad.place},
+                     {"position", bad.position},
+                     {"scaled_jacobian", bad.scaledJacobian}});
+  }
+  return {{"positive", certificate.positive},
+          {"refuted", certificate.refuted},
+          {"undecided", certificate.undecided},
+          {"minimum", certificate.minimum},
+          {"worst", std::move(worst)}};
+}
+
+Json verificationAsJson(const VerifyReport& verification) {
+  Json items = Json::array();
+  for (const VerifyItem& item : verification.items) {
+    items.push_back({{"name", item.name},
+                     {"expected", item.expected},
+                     {"found", item.found},
+                     {"passed", item.passed}});
+  }
+  return {{"passed", verification.passed()}, {"items", std::move(items)}};
+}
+
+Json checksumsAsJson(const MeshSurvey& survey) {
+  return {{"cells", checksumAsText(survey.cellChecksum)},
+          {"vertices", checksumAsText(survey.pointChecksum)}};
+}
+
+Json quantizeAsJson(const QuantizeReport& report) {
+  const auto distortion = [](const MapDistortion& d) {
+    return Json{{"worst", d.worst}, {"median", d.median}};
+  };
+  return {{"cells_wanted", report.cellsWanted},
+          {"cells", report.cells},
+          {"scale", report.scale},
+          {"displacement", report.displacement},
+          {"blocks", report.blocks},
+          {"arcs", report.arcs},
+          {"shortest_arc", report.shortestArc},
+          {"longest_arc", report.longestArc},
+          {"integers_by", report.integersBy},
+          {"attempts", report.attempts},
+          {"split_edges", report.splitEdges},
+          {"added_tets", report.addedTets},
+          {"scaled_jacobian_before", distortion(report.distortionBefore)},
+          {"scaled_jacobian_after", distortion(report.distortionAfter)}};
+}
+
+const char* kindName(const SeamlessReport& report) noexcept {
+  if (report.integerFactor > 0) return "integer up to a scale";
+  switch (report.kind) {
+    case SeamlessKind::Seamless:
+      return "seamless";
+    case SeamlessKind::AlmostSeamless:
+      return "almost seamless";
+    default:
+      return "neither";
+  }
+}
+
+bool mayBeSeamless(ErrorCode code) noexcept {
+  // Rounding to integers flips tets of a map that is not integer.
+  return code == ErrorCode::FlippedTet || code == ErrorCode::TransitionResidual ||
+         code == ErrorCode::BoundaryOffLattice || code == ErrorCode::SingularityOffLattice ||
+         code == ErrorCode::HalfIntegerFixedPoint;
+}
+
+std::string jsonText(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace hexhex::command

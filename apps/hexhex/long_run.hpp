@@ -1,0 +1,77 @@
+// What subcommands with long work have in common: threads, progress, Ctrl-C, and how long each part
+// took.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <hexhex/context.hpp>
+
+#include "interrupt.hpp"
+#include "progress.hpp"
+
+namespace hexhex::command {
+
+struct RunOptions {
+  int threads = 0;
+  bool quiet = false;
+  bool verbose = false;
+};
+
+/// Adds --threads, --verbose and --quiet.
+void addRunOptions(CLI::App& parser, RunOptions& options,
+                   const std::string& quiet = "Print nothing but errors");
+
+class LongRun {
+ public:
+  /// @param steps  the functions of the library that are going to be called, and how long they take
+  LongRun(const RunOptions& options, std::vector<WorkStep> steps);
+
+  [[nodiscard]] Context& context() noexcept { return context_; }
+
+  /// Runs work(), whose time is that of the part.
+  template <class Work>
+  std::invoke_result_t<Work> part(std::string_view name, const Work& work) {
+    const Watch watch(*this, name);
+    return work();
+  }
+
+  /// The work is over; results may be printed.
+  void finish() { progress_.clear(); }
+
+  /// In order.
+  [[nodiscard]] const std::vector<StageTime>& parts() const noexcept { return parts_; }
+  /// "7.72 s: reading 0.01, extraction 3.85, writing 0.80"
+  [[nodiscard]] std::string partsAsText() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// Adds the time that it lives to a part.
+  class Watch {
+   public:
+    Watch(LongRun& run, std::string_view name) : run_(run), name_(name) {}
+    ~Watch();
+    Watch(const Watch&) = delete;
+    Watch& operator=(const Watch&) = delete;
+
+   private:
+    LongRun& run_;
+    std::string_view name_;
+    Clock::time_point begin_ = Clock::now();
+  };
+
+  ProgressDisplay progress_;
+  Context context_;
+  CancelOnSignal cancelOnSignal_{context_};
+  std::vector<WorkStep> names_;
+  WorkSteps steps_;
+  std::vector<StageTime> parts_;
+};
+
+}  // namespace hexhex::command
