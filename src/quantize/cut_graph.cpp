@@ -1,3 +1,7 @@
+#include <utility>
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
 #include <quantize/cut_graph.hpp>
 
 #include <base/disjoint_sets.hpp>
@@ -129,6 +133,44 @@ void mendCut(const TetTopology& topology, const EdgeFans& edges, CutGraph& graph
   }
 }
 
+/// Moves charts such that corners differ as little as can be across uncut triangles (least
+/// squares): along the tree alone, the noise of each triangle adds to that of those before.
+void levelCharts(const TetTopology& topology, CutGraph& graph) {
+  const auto n = static_cast<Eigen::Index>(topology.tetCount());
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixX3d differences = Eigen::MatrixX3d::Zero(n, 3);
+  for (HalfFace h = 0; h < topology.mate.size(); ++h) {
+    const HalfFace mate = topology.mate[h];
+    if (mate == kNone || mate < h || graph.isCut[h]) continue;
+    const Index t = tetOf(h);
+    const Index other = tetOf(mate);
+    const auto middle = middles(topology, h, graph.parameters);
+    const Vec3 apart = minus(middle[1], middle[0]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      differences(t, static_cast<Eigen::Index>(k)) += apart[k];
+      differences(other, static_cast<Eigen::Index>(k)) -= apart[k];
+    }
+    for (const auto& [a, b] : {std::pair(t, other), std::pair(other, t)}) {
+      entries.emplace_back(a, a, 1);
+      entries.emplace_back(a, b, -1);
+    }
+  }
+  if (differences.isZero(0)) return;
+  // All charts may move together.
+  for (Eigen::Index t = 0; t < n; ++t) entries.emplace_back(t, t, 1e-9);
+  Eigen::SparseMatrix<double> matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver;
+  solver.setTolerance(1e-6);
+  solver.compute(matrix);
+  const Eigen::MatrixX3d moves = solver.solve(differences);
+  for (Eigen::Index t = 0; t < n; ++t) {
+    for (Vec3& u : graph.parameters[static_cast<std::size_t>(t)]) {
+      u = plus(u, {moves(t, 0), moves(t, 1), moves(t, 2)});
+    }
+  }
+}
+
 /// Numbers corners at a vertex alike that uncut triangles connect.
 void numberSectors(const TetTopology& topology, CutGraph& graph) {
   DisjointSets sets(4 * topology.tetCount());
@@ -198,6 +240,7 @@ CutGraph cutOpen(const TetTopology& topology, const EdgeFans& edges,
     graph.isCut[h] = !isTree[h];
   }
   mendCut(topology, edges, graph);
+  levelCharts(topology, graph);
   numberSectors(topology, graph);
   return graph;
 }

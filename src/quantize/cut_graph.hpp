@@ -69,6 +69,14 @@ template <class Corners>
   return edges.isBoundary(edge) ? 2 : 4;
 }
 
+/// Whether an edge is singular, but charts agree around it: an inner one with several full turns,
+/// or one of the boundary, which turns back on itself there. Nothing else makes it follow an axis.
+[[nodiscard]] inline bool isSingularByTurnsAlone(const EdgeFans& edges, std::size_t edge,
+                                                 int quarters) {
+  const int regular = regularQuarters(edges, edge);
+  return quarters != regular && quarters % regular == 0;
+}
+
 /// A seamless map in charts that agree across all triangles but those of a cut.
 struct CutGraph {
   std::vector<TetParameters> parameters;  ///< per tet, in the common charts

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Dense>
 #include <quantize/integer_form.hpp>
@@ -50,8 +52,17 @@ std::int64_t IntegerForm::commonDivisor(std::int64_t with) const noexcept {
   return divisor;
 }
 
-IntegerSystem::IntegerSystem(std::size_t variableCount, std::vector<IntegerForm> equations)
+IntegerSystem::IntegerSystem(std::size_t variableCount, std::vector<IntegerForm> equations,
+                             std::vector<IntegerForm> wishes)
     : variableCount_(variableCount), solvedBy_(variableCount, kNone) {
+  addEquations(std::move(equations), std::numeric_limits<std::int64_t>::max());
+  addEquations(std::move(wishes), 2);
+  for (Index v = 0; v < variableCount; ++v) {
+    if (solvedBy_[v] == kNone) free_.push_back(v);
+  }
+}
+
+void IntegerSystem::addEquations(std::vector<IntegerForm> equations, std::int64_t largestPivot) {
   // The same equation comes from many vertices.
   for (IntegerForm& form : equations) {
     if (form.isZero()) continue;
@@ -60,13 +71,10 @@ IntegerSystem::IntegerSystem(std::size_t variableCount, std::vector<IntegerForm>
   }
   std::sort(equations.begin(), equations.end());
   equations.erase(std::unique(equations.begin(), equations.end()), equations.end());
-  for (IntegerForm& form : equations) addEquation(std::move(form));
-  for (Index v = 0; v < variableCount; ++v) {
-    if (solvedBy_[v] == kNone) free_.push_back(v);
-  }
+  for (IntegerForm& form : equations) addEquation(std::move(form), largestPivot);
 }
 
-void IntegerSystem::addEquation(IntegerForm form) {
+void IntegerSystem::addEquation(IntegerForm form, std::int64_t largestPivot) {
   // Puts in what earlier equations say, in their order: each brings in variables of later ones.
   for (const Solved& solved : solved_) {
     const std::int64_t factor = form.coefficient(solved.variable);
@@ -81,6 +89,7 @@ void IntegerSystem::addEquation(IntegerForm form) {
   const auto pivot = std::min_element(
       form.terms().begin(), form.terms().end(),
       [](const auto& a, const auto& b) { return std::abs(a.second) < std::abs(b.second); });
+  if (std::abs(pivot->second) > largestPivot) return;
   Solved solved{pivot->first, pivot->second, form};
   solved.rest.add({solved.variable, 1}, -solved.coefficient);
   solvedBy_[solved.variable] = static_cast<Index>(solved_.size());

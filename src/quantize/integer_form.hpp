@@ -51,7 +51,9 @@ class IntegerForm {
 class IntegerSystem {
  public:
   /// @param equations  forms that are to vanish
-  IntegerSystem(std::size_t variableCount, std::vector<IntegerForm> equations);
+  /// @param wishes     further ones, but for those that would make fractions other than halves
+  IntegerSystem(std::size_t variableCount, std::vector<IntegerForm> equations,
+                std::vector<IntegerForm> wishes = {});
 
   /// The solution nearest to `wanted` (least squares).
   [[nodiscard]] std::vector<double> nearest(const std::vector<double>& wanted) const;
@@ -71,7 +73,8 @@ class IntegerSystem {
     IntegerForm rest;
   };
 
-  void addEquation(IntegerForm form);
+  void addEquations(std::vector<IntegerForm> equations, std::int64_t largestPivot);
+  void addEquation(IntegerForm form, std::int64_t largestPivot);
 
   std::size_t variableCount_;
   std::vector<Solved> solved_;

@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 #include <sstream>
 #include <string>
-#include <tuple>
 
+#include <quantize/coincidences.hpp>
 #include <quantize/seamless_conditions.hpp>
 #include <quantize/seamless_map.hpp>
 
@@ -26,8 +25,10 @@ constexpr std::int64_t kStep = 1 << 16;
 
 /// Planes that are less apart than this share of the map's size are meant to be one.
 constexpr double kNoise = 1e-9;
-/// So many planes are compared with each other at most.
-constexpr std::size_t kMostPlanes = 200'000;
+/// The map moves by so many times its noise at most so that they are.
+constexpr double kChainedNoise = 16;
+/// Planes that come together may bring others near to each other; nearly all are found at once.
+constexpr int kRoundsOfWishes = 3;
 
 std::vector<Rotation> fitRotations(const TetTopology& topology,
                                    std::span<const TetParameters> parameters) {
@@ -107,9 +108,11 @@ std::vector<HalfFace> innerFaces(const SeamlessMap& map, std::int32_t wallTag) {
   return faces;
 }
 
-/// The boundary, and those features that are aligned within the tolerance: the others are not in
-/// the way of a seamless map, and will not be lines or planes of the mesh.
-Alignment findAlignment(SeamlessMap& map, const CutGraph& graph, const SeamlessOptions& options) {
+/// The boundary, singular edges that charts do not tell of, and those features that are aligned
+/// within the tolerance: the others are not in the way of a seamless map, and will not be lines or
+/// planes of the mesh.
+Alignment findAlignment(SeamlessMap& map, const EdgeFans& edges, const CutGraph& graph,
+                        const SeamlessOptions& options) {
   const TetTopology& topology = map.topology;
   Alignment alignment;
   alignment.axes.assign(topology.mate.size(), kFree);
@@ -128,18 +131,29 @@ Alignment findAlignment(SeamlessMap& map, const CutGraph& graph, const SeamlessO
     alignment.axes[h] = axis;
     map.featureFaces.push_back(h);
   }
+  const auto addEdge = [&](const EdgeCorner& at, std::uint8_t along) {
+    alignment.edges.push_back({at, along});
+    map.featureEdges.push_back(at);
+  };
+  const auto axisAlong = [&graph](const EdgeCorner& at) {
+    const TetParameters& u = graph.parameters[at.tet];
+    return static_cast<std::uint8_t>(dominantAxis(minus(u[at.corner1], u[at.corner0])));
+  };
+  const std::vector<int> quarters = quartersAround(edges, std::span(graph.parameters));
+  for (std::size_t edge = 0; edge < edges.size(); ++edge) {
+    if (!isSingularByTurnsAlone(edges, edge, quarters[edge])) continue;
+    addEdge(edges(edge).front(), axisAlong(edges(edge).front()));
+  }
   for (const FeatureEdge& feature : map.input.view.features.edges) {
     const auto at = findEdge(topology, feature.vertices[0], feature.vertices[1]);
     if (!at) continue;
     const TetParameters& u = graph.parameters[at->tet];
-    const auto along =
-        static_cast<std::uint8_t>(dominantAxis(minus(u[at->corner1], u[at->corner0])));
+    const std::uint8_t along = axisAlong(*at);
     if (!areLevel(u, at->corner0, at->corner1, (along + 1U) % 3, options.featureTolerance) ||
         !areLevel(u, at->corner0, at->corner1, (along + 2U) % 3, options.featureTolerance)) {
       continue;
     }
-    alignment.edges.push_back({*at, along});
-    map.featureEdges.push_back(*at);
+    addEdge(*at, along);
   }
   return alignment;
 }
@@ -285,101 +299,22 @@ void requireDisplacement(const SeamlessMap& map, double tolerance) {
   notSeamless(what.str(), {PlaceKind::Tet, map.mostDisplaced});
 }
 
-/// The seamless map that is nearest under all equations.
-/// @return the values of shared unknowns
-std::vector<std::int64_t> solve(SeamlessMap& map, const CutGraph& graph,
-                                const SharedUnknowns& unknowns,
-                                const std::vector<VertexConditions>& conditions,
-                                const std::vector<IntegerForm>& equations) {
-  const IntegerSystem system(unknowns.size(), equations);
+/// Values of shared unknowns for the seamless map that is nearest under all equations.
+/// @param wishes  further equations, as far as they make no fractions
+/// @return empty if they are not on the lattice
+std::vector<std::int64_t> nearestValues(const SharedUnknowns& unknowns, double unit,
+                                        const std::vector<IntegerForm>& equations,
+                                        const std::vector<IntegerForm>& wishes = {}) {
+  const IntegerSystem system(unknowns.size(), equations, wishes);
   std::vector<double> wanted = system.nearest(unknowns.measured());
-  for (double& x : wanted) x *= map.unit;
+  for (double& x : wanted) x *= unit;
   // Nearly all that depends on others is their sum, or half of it; some is a third ...
   std::vector<std::int64_t> values;
   for (const std::int64_t divisible : {1, 3, 15, 105}) {
     if (values.empty()) values = system.roundedTo(wanted, divisible * kStep);
   }
-  if (values.size() != unknowns.size()) {
-    notSeamless("conditions of singular curves have no solution on the lattice.", {});
-  }
-  solveVertices(map, graph, conditions, values);
-  measureDisplacement(map, graph);
+  if (values.size() != unknowns.size()) values.clear();
   return values;
-}
-
-/// A coordinate that conditions fix, times two.
-struct FixedCoordinate {
-  std::size_t axis = 0;
-  IntegerForm form;
-
-  [[nodiscard]] auto operator<=>(const FixedCoordinate&) const = default;
-};
-
-/// All of a vertex, in the charts of its sectors.
-void collectFixed(const VertexConditions& conditions, std::set<FixedCoordinate>& all) {
-  for (const VertexConditions::Sector& sector : conditions.sectors) {
-    for (int from = 0; from < 3; ++from) {
-      const auto& [factor, rest] = conditions.fixed[static_cast<std::size_t>(from)];
-      if (factor == 0 || 2 % factor != 0) continue;
-      const Direction to = sector.rotation(direction(from, 1));
-      FixedCoordinate fixed;
-      fixed.axis = static_cast<std::size_t>(axisOf(to));
-      fixed.form.add(rest, -signOf(to) * 2 / factor);
-      fixed.form.add(sector.translation[fixed.axis], 2);
-      all.insert(std::move(fixed));
-    }
-  }
-}
-
-/// The same planes as they are beyond pieces of the cut.
-std::set<FixedCoordinate> beyondCut(const std::set<FixedCoordinate>& here, const CutGraph& graph,
-                                    const SharedUnknowns& unknowns) {
-  std::set<FixedCoordinate> all = here;
-  for (const HalfFace h : unknowns.cutPieces()) {
-    for (const FixedCoordinate& fixed : here) {
-      const Direction to = graph.rotations[h](direction(static_cast<int>(fixed.axis), 1));
-      FixedCoordinate there;
-      there.axis = static_cast<std::size_t>(axisOf(to));
-      there.form.add(fixed.form, signOf(to));
-      there.form.add(unknowns.translation(h, there.axis), 2);
-      all.insert(std::move(there));
-    }
-  }
-  return all;
-}
-
-/// Equations for what is fixed at nearly the same coordinate of the common charts: as symmetric
-/// objects have it.
-/// @return whether there are any
-bool addCoincidences(const CutGraph& graph, const SharedUnknowns& unknowns,
-                     const std::vector<VertexConditions>& conditions,
-                     std::span<const std::int64_t> values, double noise,
-                     std::vector<IntegerForm>& equations) {
-  std::set<FixedCoordinate> all;
-  for (const VertexConditions& vertex : conditions) collectFixed(vertex, all);
-  // Walls cross the cut, some of them twice.
-  for (int crossing = 0; crossing < 2; ++crossing) {
-    if (all.size() * unknowns.cutPieces().size() > kMostPlanes) break;
-    all = beyondCut(all, graph, unknowns);
-  }
-  std::vector<std::tuple<std::size_t, std::int64_t, const IntegerForm*>> sorted;
-  sorted.reserve(all.size());
-  for (const FixedCoordinate& each : all) {
-    sorted.emplace_back(each.axis, each.form(values), &each.form);
-  }
-  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
-    return std::tie(std::get<0>(a), std::get<1>(a)) < std::tie(std::get<0>(b), std::get<1>(b));
-  });
-  const std::size_t count = equations.size();
-  for (std::size_t i = 1; i < sorted.size(); ++i) {
-    const auto& [axis, value, form] = sorted[i];
-    const auto& [otherAxis, otherValue, otherForm] = sorted[i - 1];
-    const auto apart = static_cast<double>(value - otherValue);
-    if (axis != otherAxis || apart == 0 || apart > 2 * noise) continue;
-    equations.push_back(*form);
-    equations.back().add(*otherForm, -1);
-  }
-  return equations.size() > count;
 }
 
 }  // namespace
@@ -417,7 +352,8 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   const EdgeFans edges(topology);
   const std::span<const TetParameters> parameters = result.input.view.parameters;
   const CutGraph graph = cutOpen(topology, edges, parameters, fitRotations(topology, parameters));
-  const SharedUnknowns unknowns(topology, edges, graph, findAlignment(result, graph, options));
+  const SharedUnknowns unknowns(topology, edges, graph,
+                                findAlignment(result, edges, graph, options));
   std::vector<IntegerForm> equations = unknowns.equations();
   std::vector<VertexConditions> conditions(topology.pointCount);
   for (Index v = 0; v < topology.pointCount; ++v) {
@@ -429,12 +365,29 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   }
   result.unit =
       std::exp2(std::floor(std::log2(kLargest / std::max(largestCoordinate(graph), 1e-300))));
-  const std::vector<std::int64_t> values = solve(result, graph, unknowns, conditions, equations);
+  const std::vector<std::int64_t> values = nearestValues(unknowns, result.unit, equations);
+  if (values.empty() && unknowns.size() > 0) {
+    notSeamless("conditions of singular curves have no solution on the lattice.", {});
+  }
+  const auto take = [&](std::span<const std::int64_t> chosen) {
+    solveVertices(result, graph, conditions, chosen);
+    measureDisplacement(result, graph);
+  };
+  take(values);
   // Once more with all planes as one that noise alone keeps apart: walls between them were a mess.
   const double noise = std::max(kNoise * largestCoordinate(graph), result.maxDisplacement);
-  if (addCoincidences(graph, unknowns, conditions, values, noise * result.unit, equations)) {
-    static_cast<void>(solve(result, graph, unknowns, conditions, equations));
+  std::vector<IntegerForm> wishes;
+  std::vector<std::int64_t> best = values;
+  for (int round = 0; round < kRoundsOfWishes; ++round) {
+    const auto more = coincidences(graph, unknowns, conditions, best, noise * result.unit);
+    if (more.empty()) break;
+    wishes.insert(wishes.end(), more.begin(), more.end());
+    best = nearestValues(unknowns, result.unit, equations, wishes);
+    if (best.empty()) break;
+    take(best);
   }
+  // Chains of near coincidences may lead far away.
+  if (result.maxDisplacement > kChainedNoise * noise) take(values);
   findChanges(result, graph);
   requireDisplacement(result, options.tolerance);
   result.input.view.parameters = {};

@@ -23,7 +23,8 @@ struct SeamlessMap {
   TetTopology topology;             ///< with stars
   std::vector<LatticeTet> corners;  ///< per tet, in charts that mostly agree
   FaceChanges changes;              ///< from here to the neighbour's chart
-  /// Features that are aligned with axes, and to stay so: edges that are not singular, inner faces.
+  /// Features that are aligned with axes, and to stay so, and what else charts do not tell of:
+  /// edges, inner faces.
   std::vector<EdgeCorner> featureEdges;
   std::vector<HalfFace> featureFaces;
   double unit = 1;

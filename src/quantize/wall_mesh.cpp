@@ -40,6 +40,7 @@ WallMesh::WallMesh(const SeamlessMap& map)
       isHeld(map.topology.pointCount),
       original(tets.size()),
       originalFace(mate.size()),
+      originalVertices_(static_cast<Index>(map.topology.pointCount)),
       moved_(tets.size(), kNone),
       firstPart_(tets.size(), kNone) {
   for (Index t = 0; t < tets.size(); ++t) original[t] = t;

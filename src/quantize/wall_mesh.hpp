@@ -40,6 +40,8 @@ class WallMesh {
   [[nodiscard]] std::size_t tetCount() const noexcept { return tets.size(); }
   [[nodiscard]] std::size_t vertexCount() const noexcept { return isHeld.size(); }
   [[nodiscard]] bool isBoundary(HalfFace h) const noexcept { return mate[h] == kNone; }
+  /// Whether a vertex is none of the map's.
+  [[nodiscard]] bool isNew(Index vertex) const noexcept { return vertex >= originalVertices_; }
   [[nodiscard]] const LatticePoint& at(Index tet, std::size_t corner) const noexcept {
     return corners[tet][corner];
   }
@@ -94,7 +96,7 @@ class WallMesh {
   FaceChanges change;
   std::vector<bool> isWall;           ///< per half-face; the boundary is a wall, too
   std::vector<bool> isFeature;        ///< per half-face
-  std::set<VertexPair> featureEdges;  ///< that are aligned and not singular
+  std::set<VertexPair> featureEdges;  ///< that walls alone keep where they are
   std::set<Index> featureVertices;
   std::vector<bool> isHeld;     ///< per vertex: on an edge that walls are still to start at
   std::vector<Index> original;  ///< per tet: of which tet of the map it is a part
@@ -122,6 +124,7 @@ class WallMesh {
   void appendCopy(Index tet);
   void joinInside(HalfFace a, HalfFace b);
 
+  Index originalVertices_;
   std::vector<Index> moved_;  ///< per tet: its place in a list, while one is made; else kNone
   std::vector<Part> parts_;
   std::vector<Index> firstPart_;  ///< per tet

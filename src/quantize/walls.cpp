@@ -92,12 +92,49 @@ int WallTracer::moveEnd(const TetEdge& edge, const AxisPlane& plane) {
   return mesh_.moveInto(edge.tet, moved, plane.axis, plane.value) ? corner : -1;
 }
 
+void WallTracer::split(const TetEdge& edge, const AxisPlane& plane) {
+  struct Crossed {
+    std::array<Index, 2> vertices;
+    Index tet;
+    AxisPlane plane;
+  };
+  std::vector<Crossed> others;
+  const auto collect = [&](Index tet, const AxisPlane& here) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b < 4; ++b) {
+        if (here.sideOf(mesh_.at(tet, a)) >= 0 || here.sideOf(mesh_.at(tet, b)) <= 0) continue;
+        others.push_back({{mesh_.tets[tet][a], mesh_.tets[tet][b]}, tet, here});
+      }
+    }
+  };
+  const Tet& tet = mesh_.tets[edge.tet];
+  if (mesh_.isNew(tet[edge.corner0]) || mesh_.isNew(tet[edge.corner1])) {
+    bool isClosed = false;
+    for (int face = 0; face < 4 && !isClosed; ++face) {
+      if (contains(edge.mask(), face)) continue;
+      WallTurn turn(mesh_, edge, face);
+      AxisPlane here = plane;
+      while (!isClosed && !turn.isAtBoundary()) {
+        here = here.beyond(mesh_.change[turn.out()]);
+        turn.step();
+        isClosed = turn.edge().tet == edge.tet;
+        if (!isClosed) collect(turn.edge().tet, here);
+      }
+    }
+  }
+  mesh_.split(edge, plane.axis, plane.value);
+  for (const Crossed& other : others) {
+    const WallMesh::Found found = mesh_.find(other.vertices[0], other.vertices[1], other.tet);
+    if (found.edge) mesh_.split(*found.edge, other.plane.axis, other.plane.value);
+  }
+}
+
 HalfFace WallTracer::wallAt(const PlaneMeeting& meeting) {
   HalfFace face = meeting.face;
   if (meeting.kind == PlaneMeeting::Kind::Inside) {
     const auto& [tet, corner0, corner1] = meeting.crossed;
     const int moved = moveEnd(meeting.crossed, meeting.plane);
-    if (moved < 0) mesh_.split(meeting.crossed, meeting.plane.axis, meeting.plane.value);
+    if (moved < 0) split(meeting.crossed, meeting.plane);
     // Always as a half-face of the tet before it: a turn goes on from its mate.
     face = moved == corner0 ? mesh_.mate[halfFaceOf(tet, corner1)] : halfFaceOf(tet, corner0);
   }
@@ -315,8 +352,9 @@ WallMesh traceWalls(const SeamlessMap& map, const EdgeFans& edges) {
   std::vector<EdgeCorner> features;
   for (const EdgeCorner& at : map.featureEdges) {
     const Index edge = edges.edgeOf(at);
-    if (quarters[edge] != regularQuarters(edges, edge)) continue;
-    features.push_back(at);
+    const bool isSingular = quarters[edge] != regularQuarters(edges, edge);
+    if (isSingular && !isSingularByTurnsAlone(edges, edge, quarters[edge])) continue;
+    if (!isSingular) features.push_back(at);
     mesh.keepEdge(mesh.tets[at.tet][at.corner0], mesh.tets[at.tet][at.corner1]);
   }
   const auto start = [&](const EdgeCorner& at) {

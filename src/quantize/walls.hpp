@@ -69,6 +69,10 @@ class WallTracer {
   /// Moves an end of an edge into a plane that crosses the edge close by.
   /// @return its corner, or -1 if neither end is close, or may move
   int moveEnd(const TetEdge& edge, const AxisPlane& plane);
+  /// Splits an edge where a plane crosses it. If it ends at a vertex of another wall, so are all
+  /// edges of tets around it that the plane crosses: two walls that cross one edge would otherwise
+  /// split what the other has made, by turns and without end, beside that edge.
+  void split(const TetEdge& edge, const AxisPlane& plane);
   HalfFace wallAt(const PlaneMeeting& meeting);
   void push(HalfFace wall, const std::array<Index, 2>& edge,
             const std::array<double, 2>& distances);

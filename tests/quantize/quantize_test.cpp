@@ -146,6 +146,34 @@ RC_GTEST_PROP(Quantize, DoesNotCareForChartsAndOrder, ()) {
   RC_ASSERT(quantize(map, sameScale()).report.cells == expected);
 }
 
+TEST(Quantize, KeepsCurvesWithSeveralFullTurns) {
+  // Around them charts agree, so that nothing but their valence tells of them.
+  for (const int valence : {8, 12}) {
+    SampleOptions options;
+    options.valence = valence;
+    options.stretch = 0.5;
+    options.noise = 1e-7;
+    const TetMap map = generateSample(SampleKind::Star, options).map;
+    const Expectation after = check(expectRightMesh(map, sameScale()).map).expected;
+    ASSERT_EQ(after.innerSingularEdges.size(), 1U);
+    EXPECT_EQ(after.innerSingularEdges.begin()->first, valence);
+  }
+}
+
+TEST(Quantize, TakesTetsThatSeveralWallsCross) {
+  // Few and badly shaped tets: walls of parallel planes cross the same edges.
+  for (const SampleKindName& kind : sampleKinds()) {
+    for (const double jitter : {0.8, 1.0}) {
+      SCOPED_TRACE(std::string(kind.name) + ", jitter " + std::to_string(jitter));
+      SampleOptions options;
+      options.cells = 5;
+      options.refine = 1;
+      options.jitter = jitter;
+      expectRightMesh(scaled(generateSample(kind.kind, options).map, 0.618), sameScale());
+    }
+  }
+}
+
 TEST(Quantize, DoesNotDependOnThreads) {
   const TetMap map = scaled(generateSample(SampleKind::Sphere, {.jitter = 0.5}).map, 0.7);
   Context one(1);
