@@ -18,6 +18,7 @@
 
 #include "command.hpp"
 #include "exit_codes.hpp"
+#include "extract_parts.hpp"
 #include "extract_stream.hpp"
 #include "extract_text.hpp"
 #include "json.hpp"
@@ -48,6 +49,7 @@ struct Arguments {
   double patchAngle = WriteOptions{}.patchAngle;
   RunOptions run;
   bool stream = false;
+  PartsChoice parts;
   bool partial = false;
   bool noVerify = false;
 };
@@ -90,6 +92,21 @@ void requireCurvedOutputs(const Arguments& arguments) {
   }
 }
 
+/// Parts are straight cells of a valid map.
+void requirePartsOutputs(const Arguments& arguments) {
+  if (arguments.options.engine != Engine::Atlas || arguments.order > 1 || arguments.partial ||
+      !arguments.arcs.empty() || !arguments.patches.empty()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--parts makes straight cells with the engine atlas, of valid maps. Leave out "
+                "--parts, or --engine, --order, --arcs, --patches and --partial.");
+  }
+  if (arguments.choice.compress) {
+    throw Error(ErrorCode::InvalidArgument,
+                "Files of parts are not compressed. Leave out --parts or --compress.");
+  }
+  requirePartFormat(arguments.output, arguments.choice.options());
+}
+
 /// What is left of a map beyond repair is a straight mesh in memory.
 void requirePartialOutputs(const Arguments& arguments) {
   if (!arguments.partial) return;
@@ -110,13 +127,15 @@ void requireOutputs(const Arguments& arguments) {
   requireAllDifferent(arguments);
   requireCurvedOutputs(arguments);
   requirePartialOutputs(arguments);
-  if (arguments.order > 1) {
+  if (arguments.parts.parts) {
+    requirePartsOutputs(arguments);
+  } else if (arguments.order > 1) {
     requireLagrangeFormat(arguments.output);
   } else {
     requireHexMeshFormat(arguments.output, arguments.choice.options());
   }
   requireWritable(arguments.output);
-  if (arguments.stream) {
+  if (arguments.stream && !arguments.parts.parts) {
     requireStreamable(arguments.output, arguments.choice.options(), arguments.options);
   }
 }
@@ -133,8 +152,8 @@ void verifyMesh(const Arguments& arguments, const TetMap& map, const HexMesh& me
 }
 
 /// Extracts the mesh with the arcs and patches that are asked for.
-PiecewiseLinearMesh extractParts(const Arguments& arguments, const TetMap& map, Context& context,
-                                 ExtractionRecord& record) {
+PiecewiseLinearMesh extractWithCurves(const Arguments& arguments, const TetMap& map,
+                                      Context& context, ExtractionRecord& record) {
   if (arguments.arcs.empty() && arguments.patches.empty()) {
     return {extract(map, arguments.options, context, &record.statistics), {}, {}};
   }
@@ -147,8 +166,8 @@ PiecewiseLinearMesh extractParts(const Arguments& arguments, const TetMap& map, 
 void extractWhole(const Arguments& arguments, const TetMap& map, LongRun& longRun,
                   ExtractionRecord& record) {
   Context& context = longRun.context();
-  const PiecewiseLinearMesh all =
-      longRun.part("extraction", [&] { return extractParts(arguments, map, context, record); });
+  const PiecewiseLinearMesh all = longRun.part(
+      "extraction", [&] { return extractWithCurves(arguments, map, context, record); });
   const HexMesh& mesh = all.mesh;
   verifyMesh(arguments, map, mesh, longRun, record);
   if (!arguments.arcs.empty()) {
@@ -206,6 +225,19 @@ void extractInPieces(const Arguments& arguments, const TetMap& map, LongRun& lon
   record.streamed = mesh.written;
 }
 
+/// The same in parts.
+void extractAllParts(const Arguments& arguments, const TetMap& map, LongRun& longRun,
+                     ExtractionRecord& record) {
+  WriteOptions options = arguments.choice.options();
+  options.patchAngle = arguments.patchAngle;
+  record.meshParts = longRun.part("extraction", [&] {
+    return extractInParts(map, arguments.output, options, arguments.options,
+                          arguments.parts.chosen(), longRun.context(), record.statistics);
+  });
+  record.vertices = record.meshParts->summary.vertices;
+  record.cells = record.meshParts->summary.cells;
+}
+
 /// What is left of a map beyond repair. Always an invalid map, by its exit code.
 int extractWhatIsValid(const Arguments& arguments, const TetMap& map, const Error& problem,
                        LongRun& longRun, Report& report) {
@@ -241,6 +273,10 @@ void adviseQuantization(const Arguments& arguments, const TetMap& map, const Err
 std::vector<WorkStep> stepsOf(const Arguments& arguments) {
   std::vector<WorkStep> steps = {{"readMap", 0.05}, {"readMapPair", 0.05}};
   if (arguments.quantize) steps.push_back({"quantize", 20});
+  if (arguments.parts.parts) {
+    steps.push_back({"extractParts", 4});
+    return steps;
+  }
   const std::vector<WorkStep> rest =
       arguments.stream
           ? std::vector<WorkStep>{{"extractTo", 4}, {"VerifySink", 0.5}, {"readHexMeshTo", 3}}
@@ -274,7 +310,9 @@ void fillRecord(const Arguments& arguments, const TetMap& map, LongRun& longRun,
   for (const std::filesystem::path& file : arguments.input.files()) {
     record.input.bytes += std::filesystem::file_size(file, unknown);
   }
-  record.output = {arguments.output, std::filesystem::file_size(arguments.output, unknown)};
+  record.output.file = arguments.output;
+  const auto bytes = std::filesystem::file_size(arguments.output, unknown);
+  if (!unknown) record.output.bytes = bytes;  // the files of parts may have other names
   record.order = arguments.order;
   record.scale = arguments.options.scale;
   record.engine = arguments.options.engine;
@@ -291,8 +329,11 @@ int run(const Arguments& arguments) {
   Report report(arguments.report);
   ExtractionRecord record;
   const TetMap map = readAndQuantize(arguments, longRun, record);
-  const auto make =
-      arguments.stream ? extractInPieces : (arguments.order > 1 ? extractCurved : extractWhole);
+  const auto make = [&arguments] {
+    if (arguments.parts.parts) return extractAllParts;
+    if (arguments.stream) return extractInPieces;
+    return arguments.order > 1 ? extractCurved : extractWhole;
+  }();
   try {
     make(arguments, map, longRun, record);
   } catch (const Error& error) {
@@ -355,6 +396,7 @@ void addMethod(CLI::App& parser, Arguments& arguments) {
                       extensionsThat(&FileFormat::streams) +
                       ".\nNothing that takes the whole mesh: no scaled Jacobians,\n"
                       "no boundary quads; verified when the file is read back");
+  addPartsOptions(parser, arguments.parts);
 }
 
 /// Meshes that follow the map more closely.

@@ -14,6 +14,7 @@ namespace hexhex::command {
 namespace {
 
 std::string verificationAsText(const ExtractionRecord& record) {
+  if (record.meshParts) return "passed: parts agree on what they share, and make up one mesh";
   if (!record.verification) return "skipped";
   std::string passed =
       fmt::format("passed, {}", counted(record.verification->items.size(), "check"));
@@ -81,12 +82,13 @@ void printSummary(const ExtractionRecord& record) {
                                 what == std::string("arcs") ? "inner points" : "polygons",
                                 part->file.string()));
   }
+  if (record.meshParts) printParts(*record.meshParts);
   printLine("verification", verificationAsText(record));
   if (record.streamed) {
     printLine("checksum of cells", checksumAsText(record.streamed->cellChecksum));
     printLine("checksum of vertices", checksumAsText(record.streamed->pointChecksum));
   }
-  printLine("file", bytesAsText(record.output.bytes));
+  if (!record.meshParts) printLine("file", bytesAsText(record.output.bytes));
 }
 
 }  // namespace hexhex::command

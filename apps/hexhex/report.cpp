@@ -46,7 +46,32 @@ Json byKind(const std::array<std::uint64_t, 4>& counts) {
   return {{"vertex", counts[0]}, {"edge", counts[1]}, {"face", counts[2]}, {"cell", counts[3]}};
 }
 
-Json partsAsJson(const PartsRecord& parts, const char* pieces) {
+const char* partitionName(PartitionMethod method) {
+  switch (method) {
+    case PartitionMethod::Scotch:
+      return "scotch";
+    case PartitionMethod::Metis:
+      return "metis";
+    case PartitionMethod::Curve:
+      break;
+  }
+  return "curve";
+}
+
+Json meshPartsAsJson(const PartsRecord& record) {
+  const PartsSummary& summary = record.summary;
+  return {{"count", record.options.parts},
+          {"partition", partitionName(record.options.method)},
+          {"ghost_layers", record.options.ghostLayers},
+          {"largest", summary.largest},
+          {"smallest", summary.smallest},
+          {"empty", summary.empty},
+          {"shared_vertices", summary.sharedVertices},
+          {"shared_faces", summary.sharedFaces},
+          {"most_neighbours", summary.mostNeighbours}};
+}
+
+Json curvesAsJson(const CurvesRecord& parts, const char* pieces) {
   if (parts.file.empty()) return nullptr;
   return {{"file", parts.file.string()}, {"count", parts.count}, {pieces, parts.pieces}};
 }
@@ -75,8 +100,8 @@ std::string reportAsJson(const ExtractionRecord& record) {
       {"scale", record.scale},
       {"order", record.order},
       {"nodes", record.order > 1 ? record.nodes : record.vertices},
-      {"arcs", partsAsJson(record.arcs, "inner_points")},
-      {"patches", partsAsJson(record.patches, "polygons")},
+      {"arcs", curvesAsJson(record.arcs, "inner_points")},
+      {"patches", curvesAsJson(record.patches, "polygons")},
       {"threads", statistics.threads},
       {"engine", engineName(record.engine)},
       {"epsilon", finiteOrNull(statistics.epsilon)},
@@ -104,7 +129,8 @@ std::string reportAsJson(const ExtractionRecord& record) {
       {"repair", repairAsJson(statistics.repair)},
       {"quantization", record.quantized ? quantizeAsJson(*record.quantized) : Json(nullptr)},
       {"streamed", record.streamed.has_value()},
-      {"checksums", orNull(record.streamed, checksumsAsJson)}};
+      {"checksums", orNull(record.streamed, checksumsAsJson)},
+      {"parts", orNull(record.meshParts, meshPartsAsJson)}};
   return jsonText(report);
 }
 

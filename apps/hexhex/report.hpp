@@ -14,6 +14,8 @@
 #include <hexhex/survey.hpp>
 #include <hexhex/verify.hpp>
 
+#include "extract_parts.hpp"
+
 namespace hexhex::command {
 
 struct FileSize {
@@ -22,7 +24,7 @@ struct FileSize {
 };
 
 /// Arcs or patches that were written.
-struct PartsRecord {
+struct CurvesRecord {
   std::filesystem::path file;  ///< empty if there are none
   std::uint64_t count = 0;     ///< arcs, or patches
   std::uint64_t pieces = 0;    ///< inner points, or polygons
@@ -36,8 +38,8 @@ struct ExtractionRecord {
   Engine engine = Engine::Atlas;
   int order = 1;
   std::uint64_t nodes = 0;  ///< of cells of higher order
-  PartsRecord arcs;
-  PartsRecord patches;
+  CurvesRecord arcs;
+  CurvesRecord patches;
   std::uint64_t points = 0;
   std::uint64_t tets = 0;
   std::uint64_t vertices = 0;
@@ -51,6 +53,7 @@ struct ExtractionRecord {
   std::optional<Certificate> certificate;    ///< empty if the mesh was never whole
   std::optional<VerifyReport> verification;  ///< empty if it was skipped
   std::optional<MeshSurvey> streamed;        ///< of a mesh that was written in pieces
+  std::optional<PartsRecord> meshParts;      ///< of a mesh that was written in parts
 };
 
 [[nodiscard]] const char* engineName(Engine engine) noexcept;

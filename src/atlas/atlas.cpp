@@ -48,7 +48,7 @@ class Atlas {
  public:
   Atlas(const PreparedMap& map, bool keepLines, Context& context, const EngineSwitches& switches)
       : map_(map),
-        vertices_(map, charts_, keepLines),
+        vertices_(map, charts_, numbers_, keepLines),
         cells_(map.topology.tetCount(), keepLines),
         context_(context),
         switches_(switches) {
@@ -98,6 +98,7 @@ class Atlas {
  private:
   const PreparedMap& map_;
   Charts charts_;
+  VertexNumbers numbers_;
   VertexGrid<Id> vertices_;
   CellCenters cells_;
   CutTransitions transitions_;

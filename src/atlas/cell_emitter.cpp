@@ -55,10 +55,8 @@ std::uint64_t CellEmitter<Id>::emit(Index tet, std::span<const SweptLine> lines,
   for (const SweptLine& line : lines) {
     const auto [first, count] = owner.owned(line);
     if (count == 0) continue;
-    const Cells some{line, first, cells.first(count)};
+    resolved += emitSome(frame, {line, first, cells.first(count)});
     cells = cells.subspan(count);
-    resolved +=
-        frame.chart != Charts::kNoChart ? emitLine(frame, some) : emitWithoutChart(frame, some);
   }
   return resolved;
 }

@@ -32,6 +32,13 @@ class CellEmitter {
   /// @param lines  the tet's lines of centres
   /// @return how many have a corner that their chart does not show
   std::uint64_t emit(Index tet, std::span<const SweptLine> lines, std::span<Cell> cells);
+  /// Writes consecutive cells with centres on one of the tet's lines, whoever owns these.
+  /// @param first  of the centres
+  /// @return likewise
+  std::uint64_t emitOn(Index tet, const SweptLine& line, std::uint32_t first,
+                       std::span<Cell> cells) {
+    return emitSome(frameOf(tet, line.axes), {line, first, cells});
+  }
 
  private:
   /// A tet in its chart.
@@ -52,6 +59,10 @@ class CellEmitter {
   };
 
   [[nodiscard]] Frame frameOf(Index tet, SweepAxes axes) const;
+  std::uint64_t emitSome(const Frame& frame, const Cells& cells) {
+    return frame.chart != Charts::kNoChart ? emitLine(frame, cells)
+                                           : emitWithoutChart(frame, cells);
+  }
   std::uint64_t emitLine(const Frame& frame, const Cells& cells);
   std::uint64_t emitWithoutChart(const Frame& frame, const Cells& cells);
   template <std::size_t Permutation>

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
@@ -5,6 +6,7 @@
 #include <atlas/cut_marks.hpp>
 #include <base/workspaces.hpp>
 #include <lattice/triangle_cells.hpp>
+#include <sweep/tet_lines.hpp>
 
 namespace hexhex {
 
@@ -24,10 +26,36 @@ SweepFrame cellFrame(const Gauge& gauge) noexcept {
   return {{gauge.rotation, gauge.cell(GridPoint{})}, {0, 1, 2}};
 }
 
+/// A half-face at which a chart ends, and where cells are to be marked, in its tet's chart.
+struct CutFace {
+  HalfFace halfFace;
+  std::span<const GridBox> boxes;  ///< none: everywhere
+};
+
+/// Those of a region. Of a face between two of its tets the half-face of one is enough, as their
+/// boxes agree.
+std::vector<CutFace> findCuts(const PreparedMap& map, const Charts& charts,
+                              const GridRegion& region, Stage& stage) {
+  return collectFromBlocks<CutFace>(
+      stage, region.tets.size(), kSweepBlock,
+      [&](std::size_t begin, std::size_t end, std::vector<CutFace>& cuts) {
+        for (std::size_t i = begin; i < end; ++i) {
+          for (int face = 0; face < 4; ++face) {
+            const HalfFace here = halfFaceOf(region.tets[i], face);
+            const HalfFace mate = map.topology.mate[here];
+            if (mate == kNone || charts.isGlued(map.topology, map.exact.transitions, here))
+              continue;
+            if (mate > here && charts.chart[tetOf(mate)] != Charts::kNoChart) continue;
+            cuts.push_back({here, region.boxesOf(i)});
+          }
+        }
+      });
+}
+
 /// One half-face of each inner face that is cut.
 /// @param identitiesGlue  as in markCutCells()
-std::vector<HalfFace> findCuts(const PreparedMap& map, const Charts& charts, bool identitiesGlue,
-                               Stage& stage) {
+std::vector<CutFace> findCuts(const PreparedMap& map, const Charts& charts, bool identitiesGlue,
+                              Stage& stage) {
   constexpr std::size_t kGrain = 4096;
   const auto isCut = [&](HalfFace halfFace) {
     return !charts.isGlued(map.topology, map.exact.transitions, halfFace);
@@ -35,20 +63,20 @@ std::vector<HalfFace> findCuts(const PreparedMap& map, const Charts& charts, boo
   if (identitiesGlue) {
     // Both half-faces of a face with another transition are neighbours, behind the identity.
     const Array<HalfFace>& halfFaces = map.exact.transitions.halfFaces;
-    return collectFromBlocks<HalfFace>(
+    return collectFromBlocks<CutFace>(
         stage, halfFaces.size() / 2, kGrain,
-        [&](std::size_t begin, std::size_t end, std::vector<HalfFace>& cuts) {
+        [&](std::size_t begin, std::size_t end, std::vector<CutFace>& cuts) {
           for (std::size_t i = begin; i < end; ++i) {
-            if (isCut(halfFaces[2 * i + 1])) cuts.push_back(halfFaces[2 * i + 1]);
+            if (isCut(halfFaces[2 * i + 1])) cuts.push_back({halfFaces[2 * i + 1], {}});
           }
         });
   }
   const Array<HalfFace>& mate = map.topology.mate;
-  return collectFromBlocks<HalfFace>(
+  return collectFromBlocks<CutFace>(
       stage, mate.size(), kGrain,
-      [&](std::size_t begin, std::size_t end, std::vector<HalfFace>& cuts) {
+      [&](std::size_t begin, std::size_t end, std::vector<CutFace>& cuts) {
         for (std::size_t h = begin; h < end; ++h) {
-          if (mate[h] < h && isCut(mate[h])) cuts.push_back(mate[h]);
+          if (mate[h] < h && isCut(mate[h])) cuts.push_back({mate[h], {}});
         }
       });
 }
@@ -112,15 +140,17 @@ class CutMarker {
       : map_(map), charts_(charts), transitions_(transitions), grid_(grid), cache_(grid) {}
 
   /// @param lone  receives cut cells without a brick
-  void mark(HalfFace halfFace, CutTransitionId transition, std::vector<LoneCut>& lone) {
+  void mark(const CutFace& cut, CutTransitionId transition, std::vector<LoneCut>& lone) {
+    const HalfFace halfFace = cut.halfFace;
     const Triangle triangle = triangleOf(map_.exact, halfFace);
     // Made when first needed, as most small triangles meet no half diagonal.
     std::optional<BothSides> sides;
     TriangleCells(triangle, map_.exact.unit).run([&](const GridPoint& z, CellCornerSet corners) {
       if (!sides) sides.emplace(sidesOf(halfFace, transition));
       for (const Side& side : *sides) {
-        add(side.chart, side.frame(z[0], z[1], z[2]), turned(side.rotation, corners),
-            side.transition, lone);
+        add(
+            {side.chart, side.frame(z[0], z[1], z[2])}, turned(side.rotation, corners),
+            side.transition, [&] { return isWanted(cut.boxes, z); }, lone);
       }
     });
   }
@@ -135,6 +165,11 @@ class CutMarker {
   };
   using BothSides = std::array<Side, 2>;
 
+  [[nodiscard]] static bool isWanted(std::span<const GridBox> boxes, const GridPoint& z) {
+    return boxes.empty() || std::any_of(boxes.begin(), boxes.end(),
+                                        [&](const GridBox& box) { return holdsCell(box, z); });
+  }
+
   [[nodiscard]] BothSides sidesOf(HalfFace halfFace, CutTransitionId transition) const {
     const Index here = tetOf(halfFace);
     const Index there = tetOf(map_.topology.mate[halfFace]);
@@ -146,14 +181,21 @@ class CutMarker {
             Side{charts_.chart[there], gaugeThere.rotation, cellFrame(gaugeThere), back}};
   }
 
-  void add(Index chart, const ChartPoint& c, CellCornerSet corners, CutTransitionId transition,
-           std::vector<LoneCut>& lone) {
+  struct Place {
+    Index chart;
+    ChartPoint point;
+  };
+  /// @param isWanted  whether the cell gets a brick if there is none
+  template <class IsWanted>
+  void add(const Place& place, CellCornerSet corners, CutTransitionId transition,
+           const IsWanted& isWanted, std::vector<LoneCut>& lone) {
+    const auto& [chart, c] = place;
     if (chart == Charts::kNoChart) return;
     Brick<Id>* const brick = cache_.find(chart, c);
     if (brick != nullptr) {
       CutCells& cuts = grid_.cutsOf(*brick);
       cuts.add(placeInBrick(c), corners, transition);
-    } else {
+    } else if (isWanted()) {
       lone.push_back({brickKey(chart, c), placeInBrick(c), corners, transition});
     }
   }
@@ -167,27 +209,28 @@ class CutMarker {
 
 }  // namespace detail
 
+namespace {
+
 template <class Id>
-Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool identitiesGlue,
-                  BrickGrid<Id>& grid, Stage& stage) {
-  const std::vector<HalfFace> halfFaces = findCuts(map, charts, identitiesGlue, stage);
+Cuts markCells(const PreparedMap& map, const Charts& charts, const std::vector<CutFace>& faces,
+               BrickGrid<Id>& grid, Stage& stage) {
   Cuts cuts;
-  cuts.faces = halfFaces.size();
+  cuts.faces = faces.size();
   std::vector<CutTransitionId> transitions;
-  transitions.reserve(halfFaces.size());
-  for (const HalfFace halfFace : halfFaces) {
-    transitions.push_back(cuts.transitions.across(map, charts, halfFace));
+  transitions.reserve(faces.size());
+  for (const CutFace& face : faces) {
+    transitions.push_back(cuts.transitions.across(map, charts, face.halfFace));
   }
   constexpr std::size_t kFaces = 32;  // one may meet thousands of cells
   using detail::CutMarker;
   using detail::LoneCut;
-  std::vector<std::vector<LoneCut>> lone(blockCount(halfFaces.size(), kFaces));
+  std::vector<std::vector<LoneCut>> lone(blockCount(faces.size(), kFaces));
   parallelBlocksWith(
-      stage, halfFaces.size(), kFaces,
+      stage, faces.size(), kFaces,
       [&] { return CutMarker<Id>(map, charts, cuts.transitions, grid); },
       [&](std::size_t begin, std::size_t end, std::size_t block, CutMarker<Id>& marker) {
         for (std::size_t i = begin; i < end; ++i) {
-          marker.mark(halfFaces[i], transitions[i], lone[block]);
+          marker.mark(faces[i], transitions[i], lone[block]);
         }
       });
   for (const LoneCut& cell : joined<LoneCut>(lone)) {
@@ -196,9 +239,28 @@ Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool identitiesG
   return cuts;
 }
 
+}  // namespace
+
+template <class Id>
+Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool identitiesGlue,
+                  BrickGrid<Id>& grid, Stage& stage) {
+  return markCells(map, charts, findCuts(map, charts, identitiesGlue, stage), grid, stage);
+}
+
+template <class Id>
+Cuts markCutCells(const PreparedMap& map, const Charts& charts, const GridRegion& region,
+                  BrickGrid<Id>& grid, Stage& stage) {
+  return markCells(map, charts, findCuts(map, charts, region, stage), grid, stage);
+}
+
 template Cuts markCutCells(const PreparedMap&, const Charts&, bool, BrickGrid<std::uint32_t>&,
                            Stage&);
 template Cuts markCutCells(const PreparedMap&, const Charts&, bool, BrickGrid<std::uint64_t>&,
                            Stage&);
+
+template Cuts markCutCells(const PreparedMap&, const Charts&, const GridRegion&,
+                           BrickGrid<std::uint32_t>&, Stage&);
+template Cuts markCutCells(const PreparedMap&, const Charts&, const GridRegion&,
+                           BrickGrid<std::uint64_t>&, Stage&);
 
 }  // namespace hexhex

@@ -11,6 +11,7 @@
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
 #include <atlas/cut_cells.hpp>
+#include <atlas/grid_region.hpp>
 #include <igm/prepare.hpp>
 
 namespace hexhex {
@@ -60,5 +61,10 @@ struct Cuts {
 template <class Id>
 [[nodiscard]] Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool identitiesGlue,
                                 BrickGrid<Id>& grid, Stage& stage);
+
+/// The same for the cells in the boxes of a region; faces to tets without a chart are cut.
+template <class Id>
+[[nodiscard]] Cuts markCutCells(const PreparedMap& map, const Charts& charts,
+                                const GridRegion& region, BrickGrid<Id>& grid, Stage& stage);
 
 }  // namespace hexhex

@@ -86,6 +86,30 @@ void VertexGrid<Id>::sweep(CellCenters& cells, Stage& stage, SweepObserver* obse
   exclusiveScan(std::span(cells.begin));
 }
 
+/// Lists the bricks of a region. Only these are made, so that claims beyond the boxes are left out.
+template <class Id>
+void VertexGrid<Id>::collectRegion(Stage& stage) {
+  const std::size_t tets = tetCount();
+  keys_.resize(blockCount(tets, kSweepBlock));
+  parallelBlocks(stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t b) {
+    KeyFilter filter;
+    std::vector<SweptLine> scratch;
+    std::vector<SweptLine> clipped;
+    for (std::size_t i = begin; i < end; ++i) {
+      clipped.clear();
+      BoxedLines boxed(region_->boxesOf(i), 0);
+      for (const SweptLine& line : linesOf(tetAt(i), scratch)) {
+        for (const auto& [first, count] : boxed.of(line)) {
+          clipped.push_back(line);
+          clipped.back().first += static_cast<std::int32_t>(first);
+          clipped.back().count = count;
+        }
+      }
+      collectKeys(tetAt(i), clipped, filter, keys_[b]);
+    }
+  });
+}
+
 /// Calls visit(ChartPoint) with the first point of each row of the tet's points in each brick.
 template <class Id>
 template <class Visit>
@@ -183,13 +207,14 @@ void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
     const auto enter = [&](const ChartRow& row, std::uint64_t first) {
       row.forEachPart([&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count,
                           std::ptrdiff_t stride) {
-        Bricks& brick = *cache.find(row.chart, c);
-        const BrickLock<Id> lock(brick);
-        overlapsHere |= enterVertices(brick, placeInBrick(c), stride, first + offset, count);
+        Bricks* const brick = cache.find(row.chart, c);
+        if (brick == nullptr) return;  // beyond the region
+        const BrickLock<Id> lock(*brick);
+        overlapsHere |= enterVertices(*brick, placeInBrick(c), stride, first + offset, count);
       });
     };
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto tet = static_cast<Index>(t);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Index tet = tetAt(i);
       if (stored_ && stored_->areEmpty(tet)) continue;
       std::optional<TetPositions> positions;
       forEachClaim(
@@ -199,8 +224,7 @@ void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
     if (overlapsHere) overlaps.store(true, std::memory_order_relaxed);
   };
   parallelBlocksWith(
-      stage, map_.topology.tetCount(), kSweepBlock, [this] { return BrickCache<Id>(grid_); },
-      fillBlock);
+      stage, tetCount(), kSweepBlock, [this] { return BrickCache<Id>(grid_); }, fillBlock);
   overlaps_ = overlaps.load();
 }
 
@@ -231,12 +255,11 @@ std::uint64_t VertexGrid<Id>::resolveOverlaps(Stage& stage) {
     }
     BrickCache<Id> cache(grid_);
     std::vector<SweptLine> scratch;
-    for (auto tet = static_cast<Index>(begin); tet < end; ++tet) {
-      if (isNearContested(tet, scratch, cache)) list.push_back(tet);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (isNearContested(tetAt(i), scratch, cache)) list.push_back(tetAt(i));
     }
   };
-  const auto tets =
-      collectFromBlocks<Index>(stage, map_.topology.tetCount(), kSweepBlock, listTets);
+  const auto tets = collectFromBlocks<Index>(stage, tetCount(), kSweepBlock, listTets);
   // Listed once, as finding the owners of vertices takes longer than all that follows.
   std::vector<TetClaims> claims(tets.size());
   constexpr std::size_t kFewTets = 64;

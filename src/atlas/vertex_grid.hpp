@@ -10,6 +10,7 @@
 
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
+#include <atlas/grid_region.hpp>
 #include <igm/prepare.hpp>
 #include <sweep/cell_centers.hpp>
 #include <sweep/tet_positions.hpp>
@@ -40,18 +41,30 @@ struct VertexArrays {
   CornerSet* corners = nullptr;
 };
 
-/// Owns the numbers of all hex vertices and the grid that finds them again.
+/// The grid that finds hex vertices by their places in charts.
 ///
 /// Every tet claims its lattice points (those of its closure) in its chart for the vertices there.
 /// A point that two vertices claim is contested, and the tets that claim it move to other charts.
 /// In the end, all points of a tet that has a chart belong to its own vertices there.
+///
+/// With a region, all that holds for its tets and the points in their boxes; the others have no
+/// chart.
 template <class Id>
 class VertexGrid {
  public:
   /// @param charts     may receive further charts
+  /// @param numbers    of all vertices of the map, which sweep() fills
   /// @param keepLines  whether to store lines between the steps or to sweep again
-  VertexGrid(const PreparedMap& map, Charts& charts, bool keepLines) : map_(map), charts_(charts) {
+  VertexGrid(const PreparedMap& map, Charts& charts, VertexNumbers& numbers, bool keepLines)
+      : map_(map), charts_(charts), numbers_(numbers) {
     if (keepLines) stored_.emplace(map.topology.tetCount());
+  }
+  /// Of a part of the map, in place of sweep().
+  /// @param charts  a chart for each tet of the region, and none for others
+  VertexGrid(const PreparedMap& map, Charts& charts, VertexNumbers& numbers,
+             const GridRegion& region, Stage& stage)
+      : map_(map), charts_(charts), numbers_(numbers), region_(&region) {
+    collectRegion(stage);
   }
 
   /// Sweeps all tets, for vertices and for cells, and numbers both.
@@ -95,6 +108,13 @@ class VertexGrid {
     BlockLines centers;
   };
 
+  void collectRegion(Stage& stage);
+  [[nodiscard]] std::size_t tetCount() const noexcept {
+    return region_ != nullptr ? region_->tets.size() : map_.topology.tetCount();
+  }
+  [[nodiscard]] Index tetAt(std::size_t i) const noexcept {
+    return region_ != nullptr ? region_->tets[i] : static_cast<Index>(i);
+  }
   template <class Visit>
   void forEachBrick(Index tet, std::span<const SweptLine> lines, const Visit& visit) const;
   void collectKeys(Index tet, std::span<const SweptLine> lines, KeyFilter& filter,
@@ -113,8 +133,9 @@ class VertexGrid {
 
   const PreparedMap& map_;
   Charts& charts_;
+  VertexNumbers& numbers_;
+  const GridRegion* region_ = nullptr;  ///< null: all tets
   std::optional<TetLines> stored_;
-  VertexNumbers numbers_;
   std::vector<std::vector<BrickKey>> keys_;  ///< bricks with points of each block of tets
   BrickGrid<Id> grid_;
   bool overlaps_ = false;  ///< some point was claimed by two vertices

@@ -308,32 +308,40 @@ std::vector<FeatureQuad> uniqueQuads(std::vector<FeatureQuad> quads) {
 }
 
 void tagEdgesAndQuads(const TetMapView& given, const PreparedMap& prepared,
-                      const CellCenters& centers, HexMesh& mesh, Stage& stage) {
+                      const TaggedCells& cells, HexMesh& mesh, Stage& stage) {
   const TagTable<2> edgeTags(given.features.edges);
   const TagTable<3> faceTags(given.features.faces);
   const Marks marks(given, mesh, stage);
-  const std::size_t tets = prepared.topology.tetCount();
-  std::vector<std::vector<Seen::Edge>> edges(blockCount(tets, kSweepBlock));
+  std::vector<std::vector<Seen::Edge>> edges(blockCount(cells.groups, kSweepBlock));
   std::vector<std::vector<FeatureQuad>> quads(edges.size());
-  parallelBlocks(stage, tets, kSweepBlock,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   CellViewer viewer(given, prepared, mesh, edgeTags, faceTags, marks);
-                   Seen seen;
-                   for (std::size_t t = begin; t < end; ++t) {
-                     const auto tet = static_cast<Index>(t);
-                     std::uint64_t cell = centers.begin[t];
-                     if (cell == centers.begin[t + 1]) continue;
-                     forEachOwnedCenter(prepared.topology, tet, centers.lines->of(tet),
-                                        [&](const SweptLine& line, std::uint32_t i) {
-                                          viewer.view(mesh.cells[cell++], tet, line.point(i),
-                                                      line.simplex(i), seen);
-                                        });
-                   }
-                   edges[block] = std::move(seen.edges);
-                   quads[block] = std::move(seen.quads);
-                 });
+  parallelBlocks(
+      stage, cells.groups, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t block) {
+        CellViewer viewer(given, prepared, mesh, edgeTags, faceTags, marks);
+        Seen seen;
+        for (std::size_t group = begin; group < end; ++group) {
+          cells.forEach(group,
+                        [&](std::uint64_t cell, Index tet, const GridPoint& z, CornerMask simplex) {
+                          viewer.view(mesh.cells[cell], tet, z, simplex, seen);
+                        });
+        }
+        edges[block] = std::move(seen.edges);
+        quads[block] = std::move(seen.quads);
+      });
   mesh.features.edges = uniqueEdges(joined<Seen::Edge>(edges));
   mesh.features.quads = uniqueQuads(joined<FeatureQuad>(quads));
+}
+
+/// All cells, by tet.
+TaggedCells allCells(const PreparedMap& prepared, const CellCenters& centers) {
+  return {prepared.topology.tetCount(), [&](std::size_t t, const TaggedCells::Visit& visit) {
+            const auto tet = static_cast<Index>(t);
+            std::uint64_t cell = centers.begin[t];
+            if (cell == centers.begin[t + 1]) return;
+            forEachOwnedCenter(prepared.topology, tet, centers.lines->of(tet),
+                               [&](const SweptLine& line, std::uint32_t i) {
+                                 visit(cell++, tet, line.point(i), line.simplex(i));
+                               });
+          }};
 }
 
 void fillRegions(const TetMapView& given, const CellCenters& centers, HexMesh& mesh, Stage& stage) {
@@ -404,8 +412,15 @@ void carryTags(const TetMapView& given, const PreparedMap& prepared, HexMesh& me
   if (!given.features.vertices.empty()) mesh.features.vertices = tagVertices(given, mesh, stage);
   if (!byCells && given.regions.empty()) return;
   const CellCenters centers = findCells(prepared, stage);
-  if (byCells) tagEdgesAndQuads(given, prepared, centers, mesh, stage);
+  if (byCells) tagEdgesAndQuads(given, prepared, allCells(prepared, centers), mesh, stage);
   if (!given.regions.empty()) fillRegions(given, centers, mesh, stage);
+}
+
+void carryFeatures(const TetMapView& given, const PreparedMap& prepared, const TaggedCells& cells,
+                   HexMesh& mesh, Stage& stage) {
+  if (!given.features.vertices.empty()) mesh.features.vertices = tagVertices(given, mesh, stage);
+  if (given.features.edges.empty() && given.features.faces.empty()) return;
+  tagEdgesAndQuads(given, prepared, cells, mesh, stage);
 }
 
 }  // namespace hexhex

@@ -6,6 +6,9 @@
 // Section 4.2). Only the cells with a corner at a tagged simplex are looked at.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+
 #include <hexhex/types.hpp>
 
 #include <igm/prepare.hpp>
@@ -21,5 +24,18 @@ void requireValidTags(const TetMapView& map);
 /// @param prepared  scaled, as `mesh` was extracted from it
 void carryTags(const TetMapView& given, const PreparedMap& prepared, HexMesh& mesh,
                Context& context);
+
+/// Cells that are looked at for tags, by groups that different threads may take.
+struct TaggedCells {
+  /// Of (number in the mesh, owner, smallest corner, simplex of the owner with the centre).
+  using Visit = std::function<void(std::uint64_t, Index, const GridPoint&, CornerMask)>;
+  std::size_t groups = 0;
+  std::function<void(std::size_t group, const Visit&)> forEach;
+};
+
+/// Fills mesh.features from some cells of a mesh. Vertices may have any numbers in the order of
+/// those of extract().
+void carryFeatures(const TetMapView& given, const PreparedMap& prepared, const TaggedCells& cells,
+                   HexMesh& mesh, Stage& stage);
 
 }  // namespace hexhex

@@ -67,7 +67,7 @@ REPORT_KEYS = {
     "cut_faces", "overlapping_tets", "traced_cells", "singular_edges", "chart_jumps", "inner_faces",
     "max_displacement", "max_transition_residual", "mirrored", "tets_inverted_in_space", "quality",
     "validity", "verification", "streamed", "checksums", "repair", "quantization", "order", "nodes",
-    "arcs", "patches",
+    "arcs", "patches", "parts",
 }
 
 

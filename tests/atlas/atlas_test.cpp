@@ -244,7 +244,8 @@ TEST(Property, PointsOfTetsBelongToTheirOwnVertices) {
     Context context(1);
     Stage stage(context, "test");
     Charts charts = buildCharts(map, stage);
-    VertexGrid<Index> grid(map, charts, true);
+    VertexNumbers numbers;
+    VertexGrid<Index> grid(map, charts, numbers, true);
     CellCenters cells(map.topology.tetCount(), false);
     grid.sweep(cells, stage);
     grid.fill({}, stage);

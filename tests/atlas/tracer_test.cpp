@@ -79,7 +79,8 @@ TEST(Property, TheResolverFindsTheTracedCorners) {
     Context context(1);
     Stage stage(context, "test");
     Charts charts = buildCharts(map, stage);
-    VertexGrid<Index> vertices(map, charts, true);
+    VertexNumbers numbers;
+    VertexGrid<Index> vertices(map, charts, numbers, true);
     CellCenters cells(map.topology.tetCount(), false);
     vertices.sweep(cells, stage);
     vertices.fill({}, stage);

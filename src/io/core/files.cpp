@@ -46,6 +46,10 @@ const Format& readableFormat(const std::filesystem::path& file, std::string_view
 const Format& writableFormat(const std::filesystem::path& file, const WriteOptions& options,
                              FileContent content) {
   const Format& format = findFormat(file, options.format, content);
+  if (content == FileContent::HexMesh && format.meshes.write == nullptr && !format.overHdf5) {
+    refuse(file, "files of the format \"" + std::string(format.label.name) +
+                     "\" are read; they are written by `hexhex extract --parts` alone.");
+  }
   if (options.compress && !format.compresses) {
     refuse(file, "the format \"" + std::string(format.label.name) +
                      "\" knows no compression; only .vtu does.");

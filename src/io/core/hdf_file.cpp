@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <iterator>
 #include <limits>
@@ -192,6 +193,40 @@ HdfObject HdfFile::dataset(hid_t parent, const std::string& name, hid_t type,
           HDF5(H5Dcreate2)(parent, name.c_str(), type, space.id(), H5P_DEFAULT, ofDatasets_.id(),
                            H5P_DEFAULT),
           HDF5(H5Dclose)};
+}
+
+HdfObject HdfFile::growing(hid_t parent, const std::string& name, hid_t type,
+                           hsize_t components) const {
+  constexpr hsize_t kChunkRows = hsize_t{1} << 14;
+  const int rank = components == 1 ? 1 : 2;
+  const std::array<hsize_t, 2> none = {0, components};
+  const std::array<hsize_t, 2> most = {H5S_UNLIMITED, components};
+  const std::array<hsize_t, 2> chunk = {kChunkRows, components};
+  const HdfObject rows(target_, HDF5(H5Screate_simple)(rank, none.data(), most.data()),
+                       HDF5(H5Sclose));
+  const HdfObject creation(target_, HDF5(H5Pcopy)(ofDatasets_.id()), HDF5(H5Pclose));
+  creation.require(HDF5(H5Pset_chunk)(creation.id(), rank, chunk.data()));
+  return {target_,
+          HDF5(H5Dcreate2)(parent, name.c_str(), type, rows.id(), H5P_DEFAULT, creation.id(),
+                           H5P_DEFAULT),
+          HDF5(H5Dclose)};
+}
+
+void HdfFile::append(const HdfObject& set, hid_t memoryType, hsize_t components, hsize_t& rows,
+                     const void* values, hsize_t count) const {
+  if (count == 0) return;
+  const int rank = components == 1 ? 1 : 2;
+  const std::array<hsize_t, 2> begin = {rows, 0};
+  const std::array<hsize_t, 2> added = {count, components};
+  const std::array<hsize_t, 2> all = {rows + count, components};
+  set.require(HDF5(H5Dset_extent)(set.id(), all.data()));
+  const HdfObject place(target_, HDF5(H5Dget_space)(set.id()), HDF5(H5Sclose));
+  place.require(HDF5(H5Sselect_hyperslab)(place.id(), H5S_SELECT_SET, begin.data(), nullptr,
+                                          added.data(), nullptr));
+  const HdfObject from(target_, HDF5(H5Screate_simple)(rank, added.data(), nullptr),
+                       HDF5(H5Sclose));
+  set.require(HDF5(H5Dwrite)(set.id(), memoryType, from.id(), place.id(), H5P_DEFAULT, values));
+  rows += count;
 }
 
 void HdfFile::writeAttribute(hid_t object, const char* name, hid_t type, const HdfObject& space,

@@ -90,6 +90,13 @@ class HdfFile {
   [[nodiscard]] HdfObject space(std::initializer_list<hsize_t> shape) const;
   [[nodiscard]] HdfObject dataset(hid_t parent, const std::string& name, hid_t type,
                                   const HdfObject& space) const;
+  /// A dataset without rows, to which append() adds some. @param components  of a row; 1: numbers
+  [[nodiscard]] HdfObject growing(hid_t parent, const std::string& name, hid_t type,
+                                  hsize_t components) const;
+  /// Writes rows behind the last one.
+  /// @param rows  that there are; counted on
+  void append(const HdfObject& set, hid_t memoryType, hsize_t components, hsize_t& rows,
+              const void* values, hsize_t count) const;
   void writeAttribute(hid_t object, const char* name, hid_t type, const HdfObject& space,
                       const void* values) const;
   /// A type of text of so many bytes. @param padding  what is behind shorter texts

@@ -43,20 +43,23 @@ std::string groupName(const GroupWords& words, Tag tag) {
   return words.tagged + (wide < 0 ? "_m" : "_") + std::to_string(wide < 0 ? -wide : wide);
 }
 
+/// Whether groups are numbered by tags: the largest one needs a successor for untagged elements.
+bool numbersAreTags(std::span<const Tag> tags) {
+  return std::all_of(tags.begin(), tags.end(),
+                     [](Tag tag) { return tag >= 0 && tag < std::numeric_limits<Tag>::max(); });
+}
+
 /// @param order  of all elements, by tag
 std::vector<ElementGroup> groupsOf(std::span<const Tag> tags, std::span<const std::size_t> order,
                                    const GroupWords& words) {
-  // The largest tag needs a successor for the untagged elements.
-  const bool numbersAreTags = std::all_of(tags.begin(), tags.end(), [](Tag tag) {
-    return tag >= 0 && tag < std::numeric_limits<Tag>::max();
-  });
+  const bool byTag = numbersAreTags(tags);
   std::vector<ElementGroup> groups;
   std::uint32_t last = 0;
   for (std::size_t begin = 0; begin < order.size();) {
     const Tag tag = tags[order[begin]];
     std::size_t end = begin + 1;
     while (end < order.size() && tags[order[end]] == tag) ++end;
-    last = numbersAreTags && tag != 0 ? static_cast<std::uint32_t>(tag) : last + 1;
+    last = byTag && tag != 0 ? static_cast<std::uint32_t>(tag) : last + 1;
     groups.push_back({last, groupName(words, tag), begin, end, tag});
     begin = end;
   }
@@ -123,10 +126,12 @@ void tagPatches(const HexMesh& mesh, double angle, TaggedQuads& found, Stage& st
   }
 }
 
-TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage) {
+TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
+                      const std::function<bool(std::uint64_t)>& isInside) {
   const std::vector<FeatureQuad>& features = mesh.features.quads;
   TaggedQuads found;
   found.places = boundaryPlaces(mesh, stage);
+  if (isInside) std::erase_if(found.places, isInside);
   found.quads = quadsAt(mesh, found.places);
   found.tags.resize(found.quads.size());
   std::fill(found.tags.begin(), found.tags.end(), Tag{0});
@@ -167,14 +172,34 @@ EdgeGroups groupEdges(const HexMesh& mesh) {
   return groupFeatures<2>(mesh, mesh.features.edges, "edge", {"curve"});
 }
 
-QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage) {
+void addMissingGroups(std::vector<ElementGroup>& groups, std::vector<std::int32_t> tags,
+                      bool untagged, const std::string& word, const char* nameless) {
+  std::vector<ElementGroup> all;
+  const bool byTag = numbersAreTags(tags);
+  if (untagged) tags.push_back(0);
+  auto own = groups.begin();
+  std::uint32_t last = 0;
+  std::size_t begin = 0;
+  for (const std::int32_t tag : tags) {
+    last = byTag && tag != 0 ? static_cast<std::uint32_t>(tag) : last + 1;
+    const bool has = own != groups.end() && own->tag == tag;
+    const std::size_t end = has ? own->end : begin;
+    all.push_back({last, groupName({word, nameless}, tag), begin, end, tag});
+    begin = end;
+    if (has) ++own;
+  }
+  groups = std::move(all);
+}
+
+QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
+                      const std::function<bool(std::uint64_t)>& isInside) {
   for (std::size_t i = 0; i < mesh.features.quads.size(); ++i) {
     requireVertices(mesh, mesh.features.quads[i].vertices, "quad", i);
   }
   for (std::size_t i = 0; i < mesh.features.edges.size(); ++i) {
     requireVertices(mesh, mesh.features.edges[i].vertices, "edge", i);
   }
-  const TaggedQuads found = findQuads(mesh, patchAngle, stage);
+  const TaggedQuads found = findQuads(mesh, patchAngle, stage, isInside);
   const Array<std::size_t> order = orderByTag(found.tags);
   QuadGroups result{{groupsOf(found.tags, order, {found.kind}), {}}, {}};
   result.elements.resize(order.size());

@@ -7,7 +7,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hexhex/types.hpp>
@@ -57,7 +59,14 @@ struct QuadGroups : ElementGroups<4> {
 /// those inside as the features list them.
 /// @param patchAngle  in degrees; 0: no patches
 /// @throws Error InvalidArgument for a feature with a vertex that is none of the mesh
-[[nodiscard]] QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage);
+/// @param isInside  of a place: whether its quad is inside the mesh though it has one cell only, as
+///                  quads between parts have; null: there are none
+[[nodiscard]] QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
+                                    const std::function<bool(std::uint64_t)>& isInside = nullptr);
+
+/// The name of the group of quads with a tag, of those that have one, and of boundary quads
+/// without.
+[[nodiscard]] std::string quadGroupName(std::int32_t tag);
 
 /// The cells by region, for formats that list them group by group.
 struct CellGroups {
@@ -73,6 +82,15 @@ struct CellGroups {
 /// Names are "region_TAG", and "hexahedra" for cells of region 0 and in meshes without regions.
 [[nodiscard]] CellGroups groupCells(const HexMesh& mesh);
 
+/// Adds groups without elements, so that groups, their numbers and names are the same for all
+/// meshes with these tags.
+/// @param tags      ascending, without 0
+/// @param untagged  whether there is a group of elements without tag, too
+/// @param word      of names: "surface"
+/// @param nameless  the name of the group without tag
+void addMissingGroups(std::vector<ElementGroup>& groups, std::vector<std::int32_t> tags,
+                      bool untagged, const std::string& word, const char* nameless);
+
 /// Everything that formats list by group.
 struct MeshGroups {
   VertexGroups vertices;
@@ -82,6 +100,11 @@ struct MeshGroups {
 
   /// @throws Error InvalidArgument for a feature with a vertex that is none of the mesh
   MeshGroups(const HexMesh& mesh, double patchAngle, Stage& stage);
+  MeshGroups(VertexGroups vertices_, EdgeGroups edges_, QuadGroups quads_, CellGroups cells_)
+      : vertices(std::move(vertices_)),
+        edges(std::move(edges_)),
+        quads(std::move(quads_)),
+        cells(std::move(cells_)) {}
   /// Of cells alone.
   explicit MeshGroups(std::size_t cellCount) : cells{{{1, "hexahedra", 0, cellCount}}, {}} {}
 

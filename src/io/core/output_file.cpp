@@ -178,6 +178,19 @@ void OutputFile::requirePositions(const std::string& why) const {
   if (!hasPositions()) fail("it is a device or a pipe, " + why + ". Name a file");
 }
 
+void OutputFile::suspend() {
+  flush();
+  buffer_.reset();
+  const int closed = ::close(std::exchange(descriptor_, -1));
+  if (closed != 0 && errno != EINTR) fail("it cannot be written completely", errno);
+}
+
+void OutputFile::resume() {
+  buffer_.reset(new char[kBufferSize]);
+  descriptor_ = uninterrupted([this] { return ::open(temporary_.c_str(), O_RDWR | O_CLOEXEC); });
+  if (descriptor_ < 0) fail("it cannot be opened again", errno);
+}
+
 void OutputFile::commit() {
   flush();
   // Some file systems report a full disk only in these two.

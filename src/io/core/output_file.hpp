@@ -164,6 +164,12 @@ class OutputFile {
   /// Writes what is buffered; afterwards, writeBytesAt() may replace it.
   void flush();
 
+  /// Writes what is buffered, and lets go of the descriptor and the buffer until resume(), for
+  /// those who have more files than the system allows to be open. Only if hasPositions(); nothing
+  /// but resume() may follow.
+  void suspend();
+  void resume();
+
   /// Writes what is buffered, closes the file, and gives it its name.
   void commit();
 

@@ -16,6 +16,7 @@
 #include <io/hexex/hexex.hpp>
 #include <io/medit/medit.hpp>
 #include <io/ovm/ovm.hpp>
+#include <io/parts/parts.hpp>
 #include <io/solvers/solvers.hpp>
 #include <io/vtk/vtk.hpp>
 
@@ -73,6 +74,8 @@ constexpr std::array kFormatTable = {
            .meshes = {readVtu, writeVtu},
            .pieces = {openVtuSink, readVtuTo},
            .compresses = true},
+    Format{.label = {"pvtu", ".pvtu", "VTK XML in pieces (extract --parts)"},
+           .meshes = {.read = readPvtu}},
     Format{.label = {"vtk", ".vtk", "legacy VTK 2.0, text"},
            .maps = {readVtkLegacyMap, writeVtkLegacyMap},
            .readTets = readVtkLegacyTets,

@@ -5,11 +5,16 @@
 #include <bit>
 #include <concepts>
 #include <cstdint>
+#include <deque>
 #include <hdf5.h>
 #include <initializer_list>
 #include <limits>
+#include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <hexhex/error.hpp>
 
@@ -17,6 +22,9 @@
 #include <io/core/hdf_file.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
+#include <io/parts/file_set.hpp>
+#include <io/parts/part_groups.hpp>
+#include <io/parts/parts.hpp>
 #include <io/solvers/solvers.hpp>
 
 namespace hexhex {
@@ -110,35 +118,27 @@ class CgnsFile {
   HdfFile file_;
 };
 
+/// Begins the tree. @return  the base, in which zones are
+HdfObject addBase(const CgnsFile& file) {
+  constexpr float kVersion = 3.4F;
+  constexpr std::array<std::int32_t, 2> kDimensions = {3, 3};
+  static_cast<void>(
+      file.add(file.root(), "CGNSLibraryVersion", "CGNSLibraryVersion_t", {&kVersion, {1}}));
+  return file.add(file.root(), "Base", "CGNSBase_t", {kDimensions.data(), {2}});
+}
+
 /// @tparam Number  numbers all vertices and elements from 1 on
 template <class Number>
 class CgnsWriter {
  public:
-  CgnsWriter(const OutputFile& output, const HexMesh& mesh, Stage& stage)
-      : file_(output), mesh_(mesh), progress_(stage, mesh.points.size() + mesh.cells.size()) {}
+  CgnsWriter(const CgnsFile& file, const HexMesh& mesh, Stage& stage)
+      : file_(file), mesh_(mesh), progress_(stage, mesh.points.size() + mesh.cells.size()) {}
 
-  void write(const MeshGroups& groups) {
-    constexpr float kVersion = 3.4F;
-    constexpr std::array<std::int32_t, 2> kDimensions = {3, 3};
-    static_cast<void>(
-        file_.add(file_.root(), "CGNSLibraryVersion", "CGNSLibraryVersion_t", {&kVersion, {1}}));
-    {
-      const HdfObject base =
-          file_.add(file_.root(), "Base", "CGNSBase_t", {kDimensions.data(), {2}});
-      for (const ElementGroup& group : groups.quads.groups) {
-        if (groups.quads.boundaryEnd(group) == group.begin) continue;
-        static_cast<void>(file_.add(base.id(), group.name, "Family_t"));
-      }
-      writeZone(base.id(), groups);
-    }
-    file_.close();
-  }
-
- private:
-  void writeZone(hid_t base, const MeshGroups& groups) {
+  /// @param name  of the zone
+  HdfObject writeZone(hid_t base, const std::string& name, const MeshGroups& groups) {
     const std::array<Number, 3> size = {static_cast<Number>(mesh_.points.size()),
-                                        static_cast<Number>(mesh_.cells.size()), 0};
-    const HdfObject zone = file_.add(base, "Zone", "Zone_t", {size.data(), {3, 1}});
+                                        static_cast<Number>(groups.cells.groups.back().end), 0};
+    HdfObject zone = file_.add(base, name, "Zone_t", {size.data(), {3, 1}});
     static_cast<void>(file_.addText(zone.id(), "ZoneType", "ZoneType_t", "Unstructured"));
     writePoints(zone.id());
     for (const ElementGroup& group : groups.cells.groups) {
@@ -157,8 +157,10 @@ class CgnsWriter {
     writeBoundary(zone.id(), groups.quads, firstQuad);
     writeAll(groups.edges);
     writeAll(groups.vertices);
+    return zone;
   }
 
+ private:
   void writePoints(hid_t zone) {
     const HdfObject points = file_.add(zone, "GridCoordinates", "GridCoordinates_t");
     Array<double> values(mesh_.points.size());
@@ -211,10 +213,112 @@ class CgnsWriter {
     }
   }
 
-  CgnsFile file_;
+  const CgnsFile& file_;
   const HexMesh& mesh_;
   LoopProgress progress_;
   Number next_ = 1;  ///< number of the next element
+};
+
+/// Whether libraries, which count the numbers of a section with the same integers, need wide ones.
+bool needsWide(const HexMesh& mesh, const MeshGroups& groups) {
+  const auto largest =
+      std::max<std::uint64_t>({mesh.points.size(), groups.elementCount(), 8 * mesh.cells.size()});
+  return largest > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max());
+}
+
+/// A zone for each part. Which vertices are the same in two zones is said when both are there.
+class CgnsPartSink final : public PartSink {
+ public:
+  CgnsPartSink(const std::filesystem::path& path, Context& context)
+      : context_(context), target_(path, OutputFile::Target::Regular) {}
+
+  void begin(const PartsInfo& info) override {
+    info_ = info;
+    refuseGhosts(info.ghostLayers, "Zones of CGNS files");
+    file_.emplace(target_);
+    base_.emplace(addBase(*file_));
+    std::vector<ElementGroup> families;
+    addMissingGroups(families, info.quadTags, true, "surface", "boundary");
+    for (const ElementGroup& family : families) {
+      static_cast<void>(file_->add(base_->id(), family.name, "Family_t"));
+    }
+  }
+
+  void part(MeshPart&& part) override {
+    Stage stage(context_, "write mesh");
+    std::optional<HdfObject>& zone = zones_.emplace_back();
+    shared_.emplace_back();
+    if (part.ownCells == 0) return;
+    const MeshGroups groups = groupPart(part, info_, stage);
+    if (needsWide(part.mesh, groups)) {
+      throw Error(ErrorCode::TooLarge,
+                  "A part is too large for a zone of a CGNS file. Ask for more parts.");
+    }
+    zone.emplace(CgnsWriter<std::int32_t>(*file_, part.mesh, stage)
+                     .writeZone(base_->id(), nameOf(part.part), groups));
+    for (const PartNeighbour& neighbour : part.neighbours) {
+      std::vector<std::int32_t>& list = shared_.back()[neighbour.part];
+      for (const Index v : neighbour.vertices) list.push_back(static_cast<std::int32_t>(v) + 1);
+    }
+    addGlobal(zone->id(), "GlobalNodeNumber", "Vertex", part.globalPoints,
+              [](std::size_t i) { return i; });
+    addGlobal(zone->id(), "GlobalCellNumber", "CellCenter", part.globalCells,
+              [&groups](std::size_t i) { return groups.cells.at(i); });
+  }
+
+  void end() override {
+    Stage stage(context_, "write mesh");
+    for (std::uint32_t p = 0; p < zones_.size(); ++p) {
+      if (!shared_[p].empty()) connect(p);
+    }
+    zones_.clear();
+    base_->close();
+    file_->close();
+    target_.commit();
+  }
+
+ private:
+  [[nodiscard]] std::string nameOf(std::uint32_t part) const {
+    return "Part_" + padded(part, info_.parts);
+  }
+  /// Numbers in the mesh, from 1 on, as a solution of the zone's vertices or cells.
+  template <class At>
+  void addGlobal(hid_t zone, const char* name, const char* location,
+                 const Array<std::uint64_t>& numbers, const At& at) const {
+    std::vector<std::int64_t> values;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      values.push_back(static_cast<std::int64_t>(numbers[at(i)]) + 1);
+    }
+    const HdfObject solution = file_->add(zone, name, "FlowSolution_t");
+    static_cast<void>(file_->addText(solution.id(), "GridLocation", "GridLocation_t", location));
+    static_cast<void>(
+        file_->add(solution.id(), name, "DataArray_t", {values.data(), {values.size()}}));
+  }
+  void connect(std::uint32_t part) const {
+    const HdfObject all =
+        file_->add(zones_[part]->id(), "ZoneGridConnectivity", "ZoneGridConnectivity_t");
+    for (const auto& [other, vertices] : shared_[part]) {
+      const std::string donor = nameOf(other);
+      const HdfObject to =
+          file_->add(all.id(), "to_" + donor, "GridConnectivity_t", {donor, {donor.size()}});
+      static_cast<void>(file_->addText(to.id(), "GridConnectivityType", "GridConnectivityType_t",
+                                       "Abutting1to1"));
+      static_cast<void>(file_->addText(to.id(), "GridLocation", "GridLocation_t", "Vertex"));
+      const std::vector<std::int32_t>& there = shared_[other].at(part);
+      static_cast<void>(file_->add(to.id(), "PointList", "IndexArray_t",
+                                   {vertices.data(), {vertices.size(), 1}}));
+      static_cast<void>(
+          file_->add(to.id(), "PointListDonor", "IndexArray_t", {there.data(), {there.size(), 1}}));
+    }
+  }
+
+  Context& context_;
+  OutputFile target_;
+  PartsInfo info_;
+  std::optional<CgnsFile> file_;
+  std::optional<HdfObject> base_;
+  std::deque<std::optional<HdfObject>> zones_;                              ///< none if empty
+  std::vector<std::map<std::uint32_t, std::vector<std::int32_t>>> shared_;  ///< by neighbour
 };
 
 }  // namespace
@@ -229,15 +333,28 @@ void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const Wri
                 file.string() + ": the mesh is empty, which a CGNS file cannot hold.");
   }
   const MeshGroups groups(mesh, options.patchAngle, stage);
-  // Libraries count the numbers of a section with the same integers.
-  const auto largest =
-      std::max<std::uint64_t>({mesh.points.size(), groups.elementCount(), 8 * mesh.cells.size()});
-  if (largest <= static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max())) {
-    CgnsWriter<std::int32_t>(target, mesh, stage).write(groups);
-  } else {
-    CgnsWriter<std::int64_t>(target, mesh, stage).write(groups);
+  CgnsFile tree(target);
+  {
+    const HdfObject base = addBase(tree);
+    for (const ElementGroup& group : groups.quads.groups) {
+      if (groups.quads.boundaryEnd(group) == group.begin) continue;
+      static_cast<void>(tree.add(base.id(), group.name, "Family_t"));
+    }
+    if (needsWide(mesh, groups)) {
+      static_cast<void>(
+          CgnsWriter<std::int64_t>(tree, mesh, stage).writeZone(base.id(), "Zone", groups));
+    } else {
+      static_cast<void>(
+          CgnsWriter<std::int32_t>(tree, mesh, stage).writeZone(base.id(), "Zone", groups));
+    }
   }
+  tree.close();
   target.commit();
+}
+
+std::unique_ptr<PartSink> openCgnsPartSink(const std::filesystem::path& file,
+                                           const WriteOptions& /*options*/, Context& context) {
+  return std::make_unique<CgnsPartSink>(file, context);
 }
 
 }  // namespace hexhex

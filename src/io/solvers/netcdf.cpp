@@ -84,12 +84,26 @@ std::string headOf(const NetcdfFile& file, bool wide, std::uint64_t begin) {
   return std::move(head.bytes);
 }
 
+/// Whether the file takes the newer layout.
+bool isWide(const NetcdfFile& file, std::uint64_t mostBytes) {
+  return std::any_of(
+      file.variables.begin(), file.variables.end(),
+      [&](const NetcdfVariable& variable) { return bytesInFile(file, variable) > mostBytes; });
+}
+
 }  // namespace
 
+std::uint64_t NetcdfFile::positionOf(std::string_view name, std::uint64_t mostBytes) const {
+  std::uint64_t position = headOf(*this, isWide(*this, mostBytes), 0).size();
+  for (const NetcdfVariable& variable : variables) {
+    if (variable.name == name) break;
+    position += aligned(bytesInFile(*this, variable));
+  }
+  return position;
+}
+
 void NetcdfFile::write(OutputFile& output, int threads, std::uint64_t mostBytes) const {
-  const bool wide = std::any_of(variables.begin(), variables.end(), [&](const NetcdfVariable& v) {
-    return bytesInFile(*this, v) > mostBytes;
-  });
+  const bool wide = isWide(*this, mostBytes);
   output.write(headOf(*this, wide, headOf(*this, wide, 0).size()));
   LineWriter values(output, threads);
   for (const NetcdfVariable& variable : variables) {

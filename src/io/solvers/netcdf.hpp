@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -41,6 +42,9 @@ struct NetcdfFile {
   std::vector<NetcdfDimension> dimensions;
   std::vector<NetcdfAttribute> attributes;
   std::vector<NetcdfVariable> variables;  ///< those of records last
+
+  /// Where the values of a variable begin in the file.
+  [[nodiscard]] std::uint64_t positionOf(std::string_view variable, std::uint64_t mostBytes) const;
 
   /// @param threads    as in Context
   /// @param mostBytes  of a variable in the layout "CDF-2"; larger ones take the newer "CDF-5"

@@ -52,6 +52,10 @@ inline constexpr std::string_view kVtkEdgeTags = "feature_edges";
 inline constexpr std::string_view kVtkTriangleTags = "feature_triangles";
 inline constexpr std::string_view kVtkQuadTags = "feature_quads";
 inline constexpr std::string_view kVtkRegions = "region";
+// Those of VTK's own.
+inline constexpr std::string_view kVtkGlobalPoints = "GlobalPointIds";
+inline constexpr std::string_view kVtkGlobalCells = "GlobalCellIds";
+inline constexpr std::string_view kVtkGhosts = "vtkGhostType";
 
 /// Takes bytes of an array, front to back.
 using VtkBytes = std::function<void(const void* bytes, std::size_t size)>;

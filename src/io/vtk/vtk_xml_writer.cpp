@@ -39,6 +39,17 @@ std::string tagOf(const VtkArray& array, std::uint64_t offset) {
   return tag + " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
 }
 
+/// Says of an array of global numbers that it is one.
+std::string globalNumbersIn(const VtkDataSet& data, VtkSection section) {
+  for (const VtkArray& array : data.arrays()) {
+    if (array.section != section) continue;
+    if (array.name == kVtkGlobalPoints || array.name == kVtkGlobalCells) {
+      return " GlobalIds=\"" + std::string(array.name) + '"';
+    }
+  }
+  return {};
+}
+
 /// The beginning of a file, up to its data.
 /// @param offsets  of the arrays, counted from the beginning of the data
 std::string headOf(const VtkDataSet& data, std::span<const std::uint64_t> offsets,
@@ -52,7 +63,7 @@ std::string headOf(const VtkDataSet& data, std::span<const std::uint64_t> offset
   if (compressed) head += " compressor=\"vtkZLibDataCompressor\"";
   head += ">\n  <" + type + ">\n";
   const auto addSection = [&](std::string_view name, VtkSection section) {
-    head.append("      <").append(name).append(">\n");
+    head.append("      <").append(name).append(globalNumbersIn(data, section)).append(">\n");
     for (std::size_t i = 0; i < offsets.size(); ++i) {
       if (data.arrays()[i].section == section) head += tagOf(data.arrays()[i], offsets[i]);
     }

@@ -9,18 +9,10 @@
 #include <io/core/output_file.hpp>
 #include <io/vtk/vtk.hpp>
 #include <io/vtk/vtk_data_set.hpp>
+#include <io/vtk/vtkhdf_kind.hpp>
 
 namespace hexhex {
 namespace {
-
-/// HDF5's type of the numbers that VTK's XML calls so, in memory.
-hid_t typeOf(std::string_view name) {
-  if (name == "Float64") return HDF5(H5T_NATIVE_DOUBLE_g);
-  if (name == "Int64") return HDF5(H5T_NATIVE_INT64_g);
-  if (name == "Int32") return HDF5(H5T_NATIVE_INT32_g);
-  if (name == "UInt32") return HDF5(H5T_NATIVE_UINT32_g);
-  return HDF5(H5T_NATIVE_UINT8_g);
-}
 
 /// Writes one file.
 class VtkHdfWriter {
@@ -32,7 +24,7 @@ class VtkHdfWriter {
         progress_(stage, data.points + data.cells) {}
 
   void write() {
-    writeKind();
+    writeVtkHdfKind(file_, grid_.id());
     count("NumberOfPoints", data_.points);
     count("NumberOfCells", data_.cells);
     count("NumberOfConnectivityIds", 8 * data_.cells);
@@ -50,16 +42,6 @@ class VtkHdfWriter {
   }
 
  private:
-  /// The attributes by which VTK knows the format.
-  void writeKind() {
-    constexpr std::array<std::int64_t, 2> kVersion = {1, 0};
-    file_.writeAttribute(grid_.id(), "Version", HDF5(H5T_NATIVE_INT64_g), file_.space({2}),
-                         kVersion.data());
-    const std::string kind = "UnstructuredGrid";
-    const HdfObject text = file_.text(kind.size(), H5T_STR_NULLPAD);
-    file_.writeAttribute(grid_.id(), "Type", text.id(), file_.space({}), kind.data());
-  }
-
   void count(const char* name, std::uint64_t number) {
     writeNumbers(name, 1, [number](std::size_t) { return number; });
   }
@@ -75,7 +57,7 @@ class VtkHdfWriter {
 
   /// Writes a dataset, piece by piece as the array's bytes come.
   void writeRows(const HdfObject& group, const char* name, const VtkArray& array) {
-    const hid_t memory = typeOf(array.type);
+    const hid_t memory = vtkHdfTypeOf(array.type);
     const hid_t stored = array.section == VtkSection::Cells && memory == HDF5(H5T_NATIVE_INT32_g)
                              ? HDF5(H5T_STD_I64LE_g)  // whatever the number of points
                              : memory;

@@ -1,0 +1,65 @@
+#include "extract_parts.hpp"
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "output.hpp"
+#include "shared_options.hpp"
+
+namespace hexhex::command {
+
+void addPartsOptions(CLI::App& parser, PartsChoice& choice) {
+  std::string extensions;
+  for (const PartFormat& format : partFormats()) {
+    if (format.extension.empty()) continue;
+    extensions += (extensions.empty() ? "" : ", ") + std::string(format.extension);
+  }
+  CLI::Option* const parts =
+      parser
+          .add_option("--parts", choice.parts,
+                      "Write the mesh in so many parts, for solvers on many\nmachines, a file for "
+                      "each or all in one: " +
+                          extensions)
+          ->check(CLI::Range(1U, kMaxParts))
+          ->option_text("N");
+  parser
+      .add_option("--ghosts", choice.options.ghostLayers,
+                  "Layers of cells of other parts around each part")
+      ->check(CLI::Range(0U, kMaxGhostLayers))
+      ->option_text("LAYERS [0]")
+      ->needs(parts);
+  parser
+      .add_option("--partition", choice.options.method,
+                  "Who cuts the mesh: curve, along a space-filling curve;\nscotch or metis, if "
+                  "that library is on this machine")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, PartitionMethod>{{"curve", PartitionMethod::Curve},
+                                                 {"scotch", PartitionMethod::Scotch},
+                                                 {"metis", PartitionMethod::Metis}}))
+      ->option_text("METHOD [curve]")
+      ->needs(parts);
+}
+
+void printParts(const PartsRecord& record) {
+  const PartsSummary& summary = record.summary;
+  printLine("parts", fmt::format("{}, of {} to {} cells", record.options.parts, summary.smallest,
+                                 summary.largest));
+  printLine("shared", fmt::format("{} vertices, {}, at most {} of a part", summary.sharedVertices,
+                                  counted(summary.sharedFaces, "face"),
+                                  counted(summary.mostNeighbours, "neighbour")));
+}
+
+PartsRecord extractInParts(const TetMap& map, const std::filesystem::path& output,
+                           const WriteOptions& writing, const ExtractOptions& extraction,
+                           const PartOptions& options, Context& context,
+                           ExtractStatistics& statistics) {
+  const std::unique_ptr<PartSink> files = openPartSink(output, writing, context);
+  PartSurvey survey(*files);
+  extractParts(survey, map, extraction, options, context, &statistics);
+  return {options, survey.result()};
+}
+
+}  // namespace hexhex::command

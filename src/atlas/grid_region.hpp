@@ -1,0 +1,62 @@
+// A part of a map, for a grid of the vertices of that part alone.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <lattice/swept_line.hpp>
+
+namespace hexhex {
+
+/// Some tets, and in the chart of each the boxes of grid points that may be asked for. What lies
+/// beyond may be in the grid or not.
+struct GridRegion {
+  std::vector<Index> tets;         ///< ascending
+  std::vector<std::size_t> begin;  ///< of each of them (+1): its boxes; none if all of it counts
+  std::vector<GridBox> boxes;
+
+  [[nodiscard]] std::span<const GridBox> boxesOf(std::size_t i) const noexcept {
+    return std::span(boxes).subspan(begin[i], begin[i + 1] - begin[i]);
+  }
+};
+
+/// Whether a box holds all corners of the cell with smallest corner z.
+[[nodiscard]] constexpr bool holdsCell(const GridBox& box, const GridPoint& z) noexcept {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (z[k] < box.range[k].first || z[k] >= box.range[k].last) return false;
+  }
+  return true;
+}
+
+/// Consecutive points of a line.
+struct LinePoints {
+  std::uint32_t first;
+  std::uint32_t count;
+};
+
+/// The points of one tet's lines that are in boxes.
+class BoxedLines {
+ public:
+  /// @param boxes   if there are none, everything is
+  /// @param beyond  0 for points; 1 for cells, by smallest corner: all their corners are in a box
+  BoxedLines(std::span<const GridBox> boxes, std::int32_t beyond) noexcept
+      : boxes_(boxes), beyond_(beyond) {}
+
+  /// Ascending ranges that do not touch.
+  [[nodiscard]] std::span<const LinePoints> of(const SweptLine& line);
+
+ private:
+  std::span<const GridBox> boxes_;
+  std::int32_t beyond_;
+  std::int32_t level_ = 0;
+  bool hasLevel_ = false;
+  std::vector<GridBox> atLevel_;
+  std::vector<LinePoints> found_;
+};
+
+}  // namespace hexhex

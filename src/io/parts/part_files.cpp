@@ -1,0 +1,76 @@
+// The table of formats for meshes in parts.
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include <hexhex/error.hpp>
+
+#include <io/core/hdf5_library.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/parts/parts.hpp>
+
+namespace hexhex {
+namespace {
+
+#if defined(HEXHEX_HAS_HDF5)
+constexpr OpenPartSink* kOpenVtkHdf = openVtkHdfPartSink;
+constexpr OpenPartSink* kOpenCgns = openCgnsPartSink;
+#else
+constexpr OpenPartSink* kOpenVtkHdf = nullptr;
+constexpr OpenPartSink* kOpenCgns = nullptr;
+#endif
+
+constexpr std::array kPartFormats = {
+    PartFormat{"pvtu", ".pvtu", "VTK XML: NAME.pvtu, and pieces in the folder NAME"},
+    PartFormat{"vtkhdf", ".vtkhdf", "VTKHDF: one file"},
+    PartFormat{"msh", ".msh", "Gmsh 4.1, binary: one file with partitioned entities"},
+    PartFormat{"msh-split", "", "Gmsh 4.1, binary: NAME_K.msh, K from 1 on"},
+    PartFormat{"openfoam", ".foam", "OpenFOAM: processorK/constant/polyMesh beside NAME.foam"},
+    PartFormat{"exodus-e", ".e", "Exodus with Nemesis maps: NAME.e.N.K"},
+    PartFormat{"exodus", ".exo", "Exodus with Nemesis maps: NAME.exo.N.K"},
+    PartFormat{"mfem", "", "MFEM parallel mesh v1.2: NAME.000000 ..."},
+    PartFormat{"cgns", ".cgns", "CGNS: one file with a zone for each part"},
+};
+constexpr std::array<OpenPartSink*, kPartFormats.size()> kOpen = {
+    openPvtuSink,          kOpenVtkHdf,          openGmshPartSink,
+    openSplitGmshPartSink, openOpenFoamPartSink, openExodusPartSink,
+    openExodusPartSink,    openMfemPartSink,     kOpenCgns};
+
+/// @throws Error FileUnsupported
+std::size_t findFormat(const std::filesystem::path& file, std::string_view name) {
+  const std::string extension = lowerCaseExtension(file);
+  std::string known;
+  for (std::size_t i = 0; i < kPartFormats.size(); ++i) {
+    const PartFormat& format = kPartFormats[i];
+    if (name.empty() ? format.extension == extension && !extension.empty() : format.name == name) {
+      return i;
+    }
+    known += (known.empty() ? "" : ", ") + std::string(format.name);
+  }
+  const std::string what =
+      name.empty() ? "the extension \"" + extension + '"' : '"' + std::string(name) + '"';
+  throw Error(
+      ErrorCode::FileUnsupported,
+      file.string() + ": " + what + " is no format of meshes in parts. Formats: " + known + '.');
+}
+
+bool isOverHdf5(std::size_t format) {
+  return kPartFormats[format].name == "vtkhdf" || kPartFormats[format].name == "cgns";
+}
+
+}  // namespace
+
+std::unique_ptr<PartSink> openPartSink(const std::filesystem::path& file,
+                                       const WriteOptions& options, Context& context) {
+  const std::size_t format = findFormat(file, options.format);
+  if (isOverHdf5(format)) requireHdf5(file);
+  return kOpen[format](file, options, context);
+}
+
+void requirePartFormat(const std::filesystem::path& file, const WriteOptions& options) {
+  static_cast<void>(findFormat(file, options.format));
+}
+
+std::span<const PartFormat> partFormats() noexcept { return kPartFormats; }
+
+}  // namespace hexhex

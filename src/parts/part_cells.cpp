@@ -1,0 +1,132 @@
+#include <algorithm>
+
+#include <parts/part_cells.hpp>
+
+#include <base/workspaces.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// Tets that one thread works on at a time: a part may have few, each with many cells.
+constexpr std::size_t kFewTets = 8;
+
+}  // namespace
+
+template <class Id>
+PartGrid<Id>::PartGrid(const PreparedMap& map, ElementCounts& counts, const Partition& partition,
+                       Charts& charts, std::span<const Index> chartOf, const GridRegion& region,
+                       Stage& stage)
+    : map_(map),
+      counts_(counts),
+      partition_(partition),
+      charts_(charts),
+      region_(region),
+      stage_(stage) {
+  for (const Index tet : region.tets) charts_.chart[tet] = chartOf[tet];
+  vertices_.emplace(map, charts_, counts.vertices, region, stage);
+  vertices_->fill({}, stage);
+  vertices_->resolveOverlaps(stage);
+  transitions_ = markCutCells(map, charts_, region, vertices_->grid(), stage).transitions;
+}
+
+template <class Id>
+PartGrid<Id>::~PartGrid() {
+  for (const Index tet : region_.tets) charts_.chart[tet] = Charts::kNoChart;
+}
+
+template <class Id>
+std::vector<SweptLine> PartGrid<Id>::centersOf(Index tet) const {
+  std::vector<SweptLine> lines;
+  if (counts_.cells[tet] == counts_.cells[std::size_t{tet} + 1]) return lines;
+  TetRasterizer(map_.exact.corners[tet], map_.exact.unit).append(kCenterGrid, lines);
+  return lines;
+}
+
+template <class Id>
+GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part) const {
+  const std::span<const Index> tets = partition_.tetsOf(part);
+  std::vector<std::uint64_t> begin(tets.size() + 1, 0);
+  parallelFor(stage_, tets.size(), kFewTets, [&](std::size_t i) {
+    const Index tet = tets[i];
+    if (partition_.blocksOf(tet) == nullptr) {
+      begin[i] = counts_.cells[std::size_t{tet} + 1] - counts_.cells[tet];
+      return;
+    }
+    forEachRun(map_, partition_, part, tet, centersOf(tet),
+               [&](const SweptLine&, std::uint32_t, std::uint32_t count, std::uint64_t) {
+                 begin[i] += count;
+               });
+  });
+  GlobalCells<Id> cells;
+  const std::uint64_t count = exclusiveScan(std::span(begin));
+  cells.numbers.resize(count);
+  cells.corners.resize(count);
+  parallelForWith(
+      stage_, tets.size(), kFewTets,
+      [&] { return CellEmitter<Id>(map_, *vertices_, transitions_, true); },
+      [&](std::size_t i, CellEmitter<Id>& emitter) {
+        std::uint64_t at = begin[i];
+        const Index tet = tets[i];
+        forEachRun(map_, partition_, part, tet, centersOf(tet),
+                   [&](const SweptLine& line, std::uint32_t first, std::uint32_t run,
+                       std::uint64_t number) {
+                     emitter.emitOn(tet, line, first, std::span(cells.corners).subspan(at, run));
+                     for (std::uint32_t k = 0; k < run; ++k) {
+                       cells.numbers[at++] = counts_.cells[tet] + number + k;
+                     }
+                   });
+      });
+  return cells;
+}
+
+template <class Id>
+std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part) const {
+  using Nearby = NearbyCell<Id>;
+  std::vector<std::vector<Nearby>> blocks(blockCount(region_.tets.size(), kFewTets));
+  struct Workspace {
+    CellEmitter<Id> emitter;
+    std::vector<std::array<Id, 8>> cells;
+  };
+  const auto addTet = [&](std::size_t i, Workspace& workspace, std::vector<Nearby>& list) {
+    const Index tet = region_.tets[i];
+    const std::vector<SweptLine> lines = centersOf(tet);
+    BoxedLines boxed(region_.boxesOf(i), 1);
+    CenterOwner owner(map_.topology, tet);
+    std::uint64_t number = counts_.cells[tet];
+    for (const SweptLine& line : lines) {
+      const auto [first, count] = owner.owned(line);
+      for (const LinePoints& range : boxed.of(line)) {
+        const std::uint32_t from = std::max(first, range.first);
+        const std::uint32_t to = std::min(first + count, range.first + range.count);
+        if (from >= to) continue;
+        workspace.cells.resize(to - from);
+        workspace.emitter.emitOn(tet, line, from, workspace.cells);
+        for (std::uint32_t k = from; k < to; ++k) {
+          const CellPlace place{tet, line.simplex(k), line.point(k)};
+          const std::uint32_t other = partition_.partOf(tet, place.z);
+          if (other == part) continue;
+          list.push_back({number + (k - first), other, place, workspace.cells[k - from]});
+        }
+      }
+      number += count;
+    }
+  };
+  parallelBlocksWith(
+      stage_, region_.tets.size(), kFewTets,
+      [&] {
+        return Workspace{CellEmitter<Id>(map_, *vertices_, transitions_, true), {}};
+      },
+      [&](std::size_t begin, std::size_t end, std::size_t block, Workspace& workspace) {
+        for (std::size_t i = begin; i < end; ++i) {
+          // Without boxes it is a tet of the part alone.
+          if (!region_.boxesOf(i).empty()) addTet(i, workspace, blocks[block]);
+        }
+      });
+  return joined<Nearby>(blocks);
+}
+
+template class PartGrid<std::uint32_t>;
+template class PartGrid<std::uint64_t>;
+
+}  // namespace hexhex

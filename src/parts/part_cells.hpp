@@ -1,0 +1,103 @@
+// The cells of a part and those around them, with global vertex numbers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <parts/partition.hpp>
+
+#include <hexhex/types.hpp>
+
+#include <atlas/cell_emitter.hpp>
+#include <atlas/charts.hpp>
+#include <atlas/cut_marks.hpp>
+#include <atlas/grid_region.hpp>
+
+namespace hexhex {
+
+/// A cell by its place: a centre on a line of its owner.
+struct CellPlace {
+  Index tet;
+  CornerMask simplex;  ///< of the tet, in whose interior the centre lies
+  GridPoint z;         ///< smallest corner
+};
+
+/// Cells by global numbers, ascending.
+template <class Id>
+struct GlobalCells {
+  Array<std::uint64_t> numbers;
+  Array<std::array<Id, 8>> corners;
+};
+
+/// Of another part.
+template <class Id>
+struct NearbyCell {
+  std::uint64_t number;
+  std::uint32_t part;
+  CellPlace place;
+  std::array<Id, 8> corners;
+};
+
+/// Calls visit(line, first, count, number) for runs of cells that a tet owns and a part has:
+/// centres `first` and so on of a line, the first of which is cell `number` of those that the tet
+/// owns.
+/// @param whole  whether the part has all of them
+template <class Visit>
+void forEachRun(const PreparedMap& map, const Partition& partition, std::uint32_t part, Index tet,
+                std::span<const SweptLine> lines, const Visit& visit) {
+  CenterOwner owner(map.topology, tet);
+  const bool whole = partition.blocksOf(tet) == nullptr;
+  std::uint64_t number = 0;
+  for (const SweptLine& line : lines) {
+    const auto [first, count] = owner.owned(line);
+    if (whole) {
+      if (count > 0) visit(line, first, count, number);
+      number += count;
+      continue;
+    }
+    std::uint32_t run = 0;
+    for (std::uint32_t i = 0; i <= count; ++i) {
+      if (i < count && partition.partOf(tet, line.point(first + i)) == part) {
+        ++run;
+      } else if (run > 0) {
+        visit(line, first + i - run, run, number + i - run);
+        run = 0;
+      }
+    }
+    number += count;
+  }
+}
+
+/// The vertices in the region of a part, in charts.
+template <class Id>
+class PartGrid {
+ public:
+  /// @param charts  of the whole map, but no tet is in one; likewise afterwards
+  PartGrid(const PreparedMap& map, ElementCounts& counts, const Partition& partition,
+           Charts& charts, std::span<const Index> chartOf, const GridRegion& region, Stage& stage);
+  ~PartGrid();
+  PartGrid(const PartGrid&) = delete;
+  PartGrid& operator=(const PartGrid&) = delete;
+
+  [[nodiscard]] GlobalCells<Id> ownCells(std::uint32_t part) const;
+  /// All cells of other parts in the boxes of the region, ascending.
+  [[nodiscard]] std::vector<NearbyCell<Id>> nearbyCells(std::uint32_t part) const;
+
+ private:
+  [[nodiscard]] std::vector<SweptLine> centersOf(Index tet) const;
+
+  const PreparedMap& map_;
+  const ElementCounts& counts_;
+  const Partition& partition_;
+  Charts& charts_;
+  const GridRegion& region_;
+  Stage& stage_;
+  std::optional<VertexGrid<Id>> vertices_;
+  CutTransitions transitions_;
+};
+
+extern template class PartGrid<std::uint32_t>;
+extern template class PartGrid<std::uint64_t>;
+
+}  // namespace hexhex

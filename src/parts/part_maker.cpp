@@ -1,0 +1,333 @@
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include <parts/part_borders.hpp>
+#include <parts/part_cells.hpp>
+#include <parts/part_maker.hpp>
+#include <parts/part_positions.hpp>
+#include <parts/part_region.hpp>
+#include <parts/vertex_set.hpp>
+
+#include <extract/features.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// More vertices than this need wide ids: two values are reserved.
+constexpr std::uint64_t kMaxNarrowVertices = std::numeric_limits<std::uint32_t>::max() - 1;
+
+template <class Cell>
+void renumber(const Cell& from, VertexSet::Cache& vertices, Hex& to) {
+  for (std::size_t k = 0; k < 8; ++k) to[k] = vertices.rank(from[k]);
+}
+
+std::vector<std::int32_t> different(std::vector<std::int32_t> tags) {
+  std::sort(tags.begin(), tags.end());
+  tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
+  return tags;
+}
+
+template <class Features>
+std::vector<std::int32_t> tagsOf(const Features& features) {
+  std::vector<std::int32_t> tags;
+  for (const auto& feature : features) {
+    if (feature.tag != 0) tags.push_back(feature.tag);
+  }
+  return different(std::move(tags));
+}
+
+/// The cells of other parts around a part, layer by layer.
+template <class Id>
+class GhostLayers {
+ public:
+  GhostLayers(std::vector<NearbyCell<Id>> nearby, std::span<const std::array<Id, 8>> own,
+              Stage& stage)
+      : nearby_(std::move(nearby)), stage_(stage), reached_(own, stage) {}
+
+  /// The next layer: cells that are in none so far, with a vertex of those that are.
+  [[nodiscard]] std::vector<NearbyCell<Id>> next() {
+    std::vector<NearbyCell<Id>> layer;
+    std::vector<std::array<Id, 8>> corners;
+    std::vector<NearbyCell<Id>> rest;
+    VertexSet::Cache cache(reached_);
+    for (const NearbyCell<Id>& cell : nearby_) {
+      const bool touches = std::any_of(cell.corners.begin(), cell.corners.end(),
+                                       [&](Id vertex) { return cache.rank(vertex) != kNone; });
+      (touches ? layer : rest).push_back(cell);
+      if (touches) corners.push_back(cell.corners);
+    }
+    nearby_ = std::move(rest);
+    // What is farther away touches the layer itself.
+    reached_ = VertexSet(std::span<const std::array<Id, 8>>(corners), stage_);
+    return layer;
+  }
+
+ private:
+  std::vector<NearbyCell<Id>> nearby_;
+  Stage& stage_;
+  VertexSet reached_;
+};
+
+template <class Id>
+class Maker final : public PartMaker {
+ public:
+  Maker(const PartsOfMap& map, const PartOptions& options, ElementCounts counts,
+        Partition partition, Charts charts, Context& context)
+      : map_(map),
+        options_(options),
+        counts_(std::move(counts)),
+        partition_(std::move(partition)),
+        charts_(std::move(charts)),
+        chartOf_(std::move(charts_.chart)),
+        regions_(map.map, partition_),
+        context_(context) {
+    charts_.chart.assign(chartOf_.size(), Charts::kNoChart);
+  }
+
+  PartsInfo info() const override {
+    const TetMapView& source = map_.source;
+    PartsInfo info;
+    info.parts = options_.parts;
+    info.ghostLayers = options_.ghostLayers;
+    info.pointCount = counts_.vertices.count();
+    info.cellCount = counts_.cells.back();
+    info.vertexTags = tagsOf(source.features.vertices);
+    info.edgeTags = tagsOf(source.features.edges);
+    info.quadTags = tagsOf(source.features.faces);
+    info.regions = different({source.regions.begin(), source.regions.end()});
+    return info;
+  }
+
+  MeshPart make(std::uint32_t number) override {
+    Stage stage(context_, "parts");
+    MeshPart part;
+    part.part = number;
+    part.parts = options_.parts;
+    if (partition_.tetsOf(number).empty()) return part;
+    std::vector<std::vector<NearbyCell<Id>>> layers;
+    GlobalCells<Id> own;
+    {
+      // One more, which knows the owners of the vertices of the last.
+      const std::uint32_t around = options_.ghostLayers + 1;
+      const GridRegion region = regions_.find(number, around);
+      const PartGrid<Id> grid(map_.map, counts_, partition_, charts_, chartOf_, region, stage);
+      own = grid.ownCells(number);
+      GhostLayers<Id> ghosts(grid.nearbyCells(number), own.corners, stage);
+      for (std::uint32_t i = 0; i < around; ++i) layers.push_back(ghosts.next());
+    }
+    Assembly assembly{part, layers, stage};
+    takeOwn(assembly, std::move(own));
+    takeGhosts(assembly);
+    addTags(assembly);
+    return part;
+  }
+
+ private:
+  struct Assembly {
+    MeshPart& part;
+    const std::vector<std::vector<NearbyCell<Id>>>& layers;
+    Stage& stage;
+  };
+
+  static void requireNarrow(std::uint64_t count, const char* what) {
+    if (count < kNone) return;
+    throw Error(ErrorCode::TooLarge, "A part would have " + std::to_string(count) + ' ' + what +
+                                         ", more than 32-bit indices can number. Ask for more "
+                                         "parts.");
+  }
+
+  /// Own cells, their vertices, and what these share with neighbours.
+  void takeOwn(const Assembly& assembly, GlobalCells<Id> own) const {
+    const auto& [part, layers, stage] = assembly;
+    requireNarrow(own.numbers.size(), "cells");
+    const VertexSet vertices(std::span<const std::array<Id, 8>>(own.corners), stage);
+    requireNarrow(vertices.size(), "vertices");
+    part.globalPoints = vertices.list();
+    part.ownPoints = vertices.size();
+    part.ownCells = own.numbers.size();
+    part.globalCells = std::move(own.numbers);
+    if constexpr (std::is_same_v<Id, Index>) {
+      part.mesh.cells = std::move(own.corners);
+    } else {
+      part.mesh.cells.resize(part.ownCells);
+    }
+    constexpr std::size_t kGrain = 4096;
+    parallelBlocks(stage, part.ownCells, kGrain,
+                   [&, &p = part](std::size_t begin, std::size_t end, std::size_t) {
+                     VertexSet::Cache cache(vertices);
+                     for (std::size_t i = begin; i < end; ++i) {
+                       if constexpr (std::is_same_v<Id, Index>) {
+                         renumber(Hex(p.mesh.cells[i]), cache, p.mesh.cells[i]);
+                       } else {
+                         renumber(own.corners[i], cache, p.mesh.cells[i]);
+                       }
+                     }
+                   });
+    VertexSet::Cache cache(vertices);
+    std::vector<BorderCell> around;
+    around.reserve(layers[0].size());
+    part.pointOwners.assign(part.ownPoints, part.part);
+    for (const NearbyCell<Id>& cell : layers[0]) {
+      around.push_back({cell.number, cell.part, {}});
+      renumber(cell.corners, cache, around.back().corners);
+    }
+    findNeighbours(part, around);
+    for (const PartNeighbour& neighbour : part.neighbours) {
+      for (const Index v : neighbour.vertices) {
+        part.pointOwners[v] = std::min(part.pointOwners[v], neighbour.part);
+      }
+    }
+    part.mesh.points.resize(part.ownPoints);
+    part.mesh.generatorTet.resize(part.ownPoints);
+    part.mesh.generatorCorners.resize(part.ownPoints);
+    describeVertices(map_.map, counts_, part.globalPoints, 0, part.mesh, stage);
+  }
+
+  /// Adds ghosts and their vertices behind own ones.
+  void takeGhosts(const Assembly& assembly) const {
+    const auto& [part, layers, stage] = assembly;
+    std::vector<std::array<Id, 8>> corners;
+    for (std::size_t layer = 0; layer + 1 < layers.size(); ++layer) {
+      for (const NearbyCell<Id>& cell : layers[layer]) {
+        corners.push_back(cell.corners);
+        part.globalCells.push_back(cell.number);
+        part.ghostParts.push_back(cell.part);
+        part.ghostLayers.push_back(static_cast<std::uint32_t>(layer + 1));
+      }
+    }
+    if (corners.empty()) return;
+    std::vector<std::uint64_t> added;
+    const auto own = std::span(part.globalPoints).first(part.ownPoints);
+    for (const std::array<Id, 8>& cell : corners) {
+      for (const Id vertex : cell) {
+        if (!std::binary_search(own.begin(), own.end(), vertex)) added.push_back(vertex);
+      }
+    }
+    std::sort(added.begin(), added.end());
+    added.erase(std::unique(added.begin(), added.end()), added.end());
+    const std::uint64_t count = part.ownPoints + added.size();
+    requireNarrow(count, "vertices");
+    requireNarrow(part.globalCells.size(), "cells");
+    const auto localOf = [&](std::uint64_t vertex) {
+      const auto points = std::span<const std::uint64_t>(part.globalPoints).first(part.ownPoints);
+      const auto here = std::lower_bound(points.begin(), points.end(), vertex);
+      if (here != points.end() && *here == vertex) {
+        return static_cast<Index>(here - points.begin());
+      }
+      const auto there = std::lower_bound(added.begin(), added.end(), vertex);
+      if (there == added.end() || *there != vertex) return kNone;
+      return static_cast<Index>(part.ownPoints + static_cast<std::size_t>(there - added.begin()));
+    };
+    part.mesh.cells.reserve(part.globalCells.size());
+    for (const std::array<Id, 8>& cell : corners) {
+      Hex& hex = part.mesh.cells.emplace_back();
+      for (std::size_t k = 0; k < 8; ++k) hex[k] = localOf(cell[k]);
+    }
+    part.pointOwners.resize(count, part.parts);
+    for (const auto& layer : layers) {
+      for (const NearbyCell<Id>& cell : layer) {
+        for (const Id vertex : cell.corners) {
+          const Index v = localOf(vertex);
+          if (v != kNone) part.pointOwners[v] = std::min(part.pointOwners[v], cell.part);
+        }
+      }
+    }
+    part.globalPoints.insert(part.globalPoints.end(), added.begin(), added.end());
+    part.mesh.points.resize(count);
+    part.mesh.generatorTet.resize(count);
+    part.mesh.generatorCorners.resize(count);
+    describeVertices(map_.map, counts_, added, part.ownPoints, part.mesh, stage);
+  }
+
+  void addTags(const Assembly& assembly) const {
+    const auto& [part, layers, stage] = assembly;
+    const std::span<const Index> tets = partition_.tetsOf(part.part);
+    if (!map_.source.features.empty()) {
+      carryFeatures(map_.source, map_.map, cellsOf(part), part.mesh, stage);
+    }
+    if (map_.source.regions.empty()) return;
+    Array<std::int32_t>& regions = part.mesh.regions;
+    regions.reserve(part.mesh.cells.size());
+    for (std::size_t c = 0; c < part.ownCells; ++c) {
+      const auto behind =
+          std::upper_bound(counts_.cells.begin(), counts_.cells.end(), part.globalCells[c]);
+      const auto tet = static_cast<std::size_t>(behind - counts_.cells.begin()) - 1;
+      while (c < part.ownCells && part.globalCells[c] < *behind) {
+        regions.push_back(map_.source.regions[tet]);
+        ++c;
+      }
+      --c;
+    }
+    for (std::size_t layer = 0; layer + 1 < layers.size(); ++layer) {
+      for (const NearbyCell<Id>& cell : layers[layer]) {
+        regions.push_back(map_.source.regions[cell.place.tet]);
+      }
+    }
+  }
+
+  /// The part's own cells for carryFeatures(), a group for each tet.
+  [[nodiscard]] TaggedCells cellsOf(const MeshPart& part) const {
+    const std::span<const Index> tets = partition_.tetsOf(part.part);
+    return {tets.size(), [this, &part, tets](std::size_t i, const TaggedCells::Visit& visit) {
+              const Index tet = tets[i];
+              const std::uint64_t first = counts_.cells[tet];
+              if (first == counts_.cells[std::size_t{tet} + 1]) return;
+              const auto own = std::span(part.globalCells).first(part.ownCells);
+              auto cell = static_cast<std::uint64_t>(
+                  std::lower_bound(own.begin(), own.end(), first) - own.begin());
+              std::vector<SweptLine> lines;
+              TetRasterizer(map_.map.exact.corners[tet], map_.map.exact.unit)
+                  .append(kCenterGrid, lines);
+              forEachRun(map_.map, partition_, part.part, tet, lines,
+                         [&](const SweptLine& line, std::uint32_t begin, std::uint32_t count,
+                             std::uint64_t) {
+                           for (std::uint32_t k = begin; k < begin + count; ++k) {
+                             visit(cell++, tet, line.point(k), line.simplex(k));
+                           }
+                         });
+            }};
+  }
+
+  PartsOfMap map_;
+  PartOptions options_;
+  ElementCounts counts_;
+  Partition partition_;
+  Charts charts_;
+  Array<Index> chartOf_;  ///< per tet
+  RegionFinder regions_;
+  Context& context_;
+};
+
+}  // namespace
+
+std::unique_ptr<PartMaker> makePartMaker(const PartsOfMap& map, const PartOptions& options,
+                                         Context& context, ExtractStatistics& statistics) {
+  Charts charts;
+  {
+    Stage stage(context, "charts");
+    charts = buildCharts(map.map, stage);
+  }
+  statistics.charts = charts.count;
+  ElementCounts counts;
+  {
+    Stage stage(context, "sweep");
+    counts = countElements(map.map, map.expectedCells, stage);
+  }
+  statistics.generators = counts.vertices.generatorCounts;
+  statistics.vertices = counts.vertices.vertexCounts;
+  Partition partition;
+  {
+    Stage stage(context, "partition");
+    partition = makePartition(map.map, counts, options.parts, options.method, stage);
+  }
+  const auto make = [&]<class Id>(Id /*type*/) -> std::unique_ptr<PartMaker> {
+    return std::make_unique<Maker<Id>>(map, options, std::move(counts), std::move(partition),
+                                       std::move(charts), context);
+  };
+  if (counts.vertices.count() > kMaxNarrowVertices) return make(std::uint64_t{});
+  return make(Index{});
+}
+
+}  // namespace hexhex

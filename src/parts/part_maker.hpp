@@ -1,0 +1,39 @@
+// Makes the parts of a mesh, one after the other and each by itself: from counts per tet, and a
+// sweep of its own tets and those that its cells touch.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include <hexhex/parts.hpp>
+
+#include <igm/prepare.hpp>
+
+namespace hexhex {
+
+/// A map that has passed all checks and is scaled, with the caller's tags.
+struct PartsOfMap {
+  const PreparedMap& map;
+  const TetMapView& source;
+  std::uint64_t expectedCells;
+};
+
+class PartMaker {
+ public:
+  PartMaker() = default;
+  PartMaker(const PartMaker&) = delete;
+  PartMaker& operator=(const PartMaker&) = delete;
+  virtual ~PartMaker() = default;
+
+  [[nodiscard]] virtual PartsInfo info() const = 0;
+  /// Any part, in any order.
+  [[nodiscard]] virtual MeshPart make(std::uint32_t part) = 0;
+};
+
+/// Counts what all tets own, and decides on the parts.
+/// @param statistics  receives the numbers of vertices and generators
+[[nodiscard]] std::unique_ptr<PartMaker> makePartMaker(const PartsOfMap& map,
+                                                       const PartOptions& options, Context& context,
+                                                       ExtractStatistics& statistics);
+
+}  // namespace hexhex

@@ -1,0 +1,20 @@
+// Where vertices lie in space that are known by global numbers alone.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <parts/counts.hpp>
+
+#include <hexhex/types.hpp>
+
+namespace hexhex {
+
+/// Describes vertices in some places of mesh.points, mesh.generatorTet and mesh.generatorCorners.
+/// @param numbers  of the vertices, ascending
+/// @param first    the place of the first one
+void describeVertices(const PreparedMap& map, const ElementCounts& counts,
+                      std::span<const std::uint64_t> numbers, std::size_t first, HexMesh& mesh,
+                      Stage& stage);
+
+}  // namespace hexhex

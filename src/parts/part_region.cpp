@@ -1,0 +1,216 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <parts/part_region.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// Boxes around large faces would be as large as tets.
+constexpr std::int32_t kFacePiece = 12;
+
+using Triangle = std::array<LatticePoint, 3>;
+
+Triangle triangleOf(const PreparedMap& map, HalfFace halfFace) {
+  const LatticeTet& corners = map.exact.corners[tetOf(halfFace)];
+  const std::array<int, 3>& face = kFaceCorners[halfFace % 4];
+  return {corners[static_cast<std::size_t>(face[0])], corners[static_cast<std::size_t>(face[1])],
+          corners[static_cast<std::size_t>(face[2])]};
+}
+
+/// The smallest box of grid points around a triangle, and `reach` more on all sides.
+GridBox boxAround(const Triangle& triangle, std::int64_t unit, std::int32_t reach) {
+  const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
+  GridBox box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [low, high] = std::minmax({triangle[0][k], triangle[1][k], triangle[2][k]});
+    // Shifts round down.
+    box.range[k] = {static_cast<std::int32_t>(low >> shift) - reach,
+                    static_cast<std::int32_t>(-(-high >> shift)) + reach};
+  }
+  return box;
+}
+
+/// Calls visit(triangle) for pieces of a triangle that are no longer than `size` along any axis.
+template <class Visit>
+void cutUp(const Triangle& triangle, std::int64_t size, const Visit& visit) {
+  std::size_t longest = 0;
+  std::int64_t most = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const LatticePoint along = triangle[(i + 1) % 3] - triangle[i];
+    for (const std::int64_t extent : along) {
+      if (std::abs(extent) > most) {
+        most = std::abs(extent);
+        longest = i;
+      }
+    }
+  }
+  if (most <= size) {
+    visit(triangle);
+    return;
+  }
+  const LatticePoint& a = triangle[longest];
+  const LatticePoint& b = triangle[(longest + 1) % 3];
+  const LatticePoint& c = triangle[(longest + 2) % 3];
+  LatticePoint middle;
+  for (std::size_t k = 0; k < 3; ++k) middle[k] = a[k] + (b[k] - a[k]) / 2;
+  cutUp({a, middle, c}, size, visit);
+  cutUp({middle, b, c}, size, visit);
+}
+
+/// Whether a triangle may meet a closed box: no axis of the grid and not the triangle's normal
+/// separates them, with room for roundings.
+bool mayMeet(const Triangle& triangle, const GridBox& box, std::int64_t unit) {
+  std::array<Vec3, 3> corners;
+  Vec3 middle;
+  Vec3 half;
+  const double grid = 1 / static_cast<double>(unit);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::int64_t origin = std::int64_t{box.range[k].first} * unit;
+    for (std::size_t i = 0; i < 3; ++i) {
+      corners[i][k] = static_cast<double>(triangle[i][k] - origin) * grid;
+    }
+    const auto size = static_cast<double>(std::int64_t{box.range[k].last} - box.range[k].first);
+    half[k] = size / 2 + 0.01;  // far more than roundings
+    middle[k] = size / 2;
+    const auto [low, high] = std::minmax({corners[0][k], corners[1][k], corners[2][k]});
+    if (low > middle[k] + half[k] || high < middle[k] - half[k]) return false;
+  }
+  double distance = 0;
+  double radius = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t i = (k + 1) % 3;
+    const std::size_t j = (k + 2) % 3;
+    const double normal = (corners[1][i] - corners[0][i]) * (corners[2][j] - corners[0][j]) -
+                          (corners[1][j] - corners[0][j]) * (corners[2][i] - corners[0][i]);
+    distance += normal * (middle[k] - corners[0][k]);
+    radius += std::abs(normal) * half[k];
+  }
+  return std::abs(distance) <= radius * (1 + 1e-6);
+}
+
+GridBox carried(const Transition& transition, const GridBox& box) {
+  GridPoint low;
+  GridPoint high;
+  for (std::size_t k = 0; k < 3; ++k) {
+    low[k] = box.range[k].first;
+    high[k] = box.range[k].last;
+  }
+  const GridPoint a = transition(low);
+  const GridPoint b = transition(high);
+  GridBox image;
+  for (std::size_t k = 0; k < 3; ++k) image.range[k] = {std::min(a[k], b[k]), std::max(a[k], b[k])};
+  return image;
+}
+
+bool contains(const GridBox& outer, const GridBox& inner) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (inner.range[k].first < outer.range[k].first || inner.range[k].last > outer.range[k].last) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+RegionFinder::RegionFinder(const PreparedMap& map, const Partition& partition)
+    : map_(map), partition_(partition), entryOfTet_(map.topology.tetCount(), kNone) {}
+
+GridRegion RegionFinder::find(std::uint32_t part, std::uint32_t layers) {
+  const std::span<const Index> tets = partition_.tetsOf(part);
+  const auto reach = static_cast<std::int32_t>(layers);
+  enterWhole(tets);
+  for (const Index tet : tets) {
+    if (const TetBlocks* const blocks = partition_.blocksOf(tet)) {
+      startAtBlocks(*blocks, part, reach);
+    } else {
+      startAtFaces(tet, reach + 1);
+    }
+  }
+  for (std::size_t head = 0; head < queue_.size(); ++head) {
+    const Reached at = queue_[head];
+    cross(at.tet, entries_[entryOfTet_[at.tet]].boxes[at.box]);
+  }
+  queue_.clear();
+  for (const Entry& entry : entries_) entryOfTet_[entry.tet] = kNone;
+  std::sort(entries_.begin(), entries_.end(),
+            [](const Entry& a, const Entry& b) { return a.tet < b.tet; });
+  GridRegion region;
+  for (const Entry& entry : entries_) {
+    region.tets.push_back(entry.tet);
+    region.begin.push_back(region.boxes.size());
+    region.boxes.insert(region.boxes.end(), entry.boxes.begin(), entry.boxes.end());
+  }
+  region.begin.push_back(region.boxes.size());
+  entries_.clear();
+  return region;
+}
+
+void RegionFinder::enterWhole(std::span<const Index> tets) {
+  for (const Index tet : tets) {
+    if (partition_.blocksOf(tet) == nullptr) entryOf(tet).whole = true;
+  }
+}
+
+/// Where a path may leave a tet of the part. Cells through the tet reach one unit beyond it.
+void RegionFinder::startAtFaces(Index tet, std::int32_t reach) {
+  const std::int64_t unit = map_.exact.unit;
+  for (int face = 0; face < 4; ++face) {
+    const HalfFace halfFace = halfFaceOf(tet, face);
+    const HalfFace mate = map_.topology.mate[halfFace];
+    if (mate == kNone) continue;
+    const Index entry = entryOfTet_[tetOf(mate)];
+    if (entry != kNone && entries_[entry].whole) continue;
+    const Transition& across = map_.exact.transitions.across(halfFace);
+    cutUp(triangleOf(map_, halfFace), kFacePiece * unit, [&](const Triangle& piece) {
+      this->reach(tetOf(mate), carried(across, boxAround(piece, unit, reach)));
+    });
+  }
+}
+
+void RegionFinder::startAtBlocks(const TetBlocks& blocks, std::uint32_t part, std::int32_t reach) {
+  for (std::size_t b = 0; b < blocks.count(); ++b) {
+    if (partition_.ofBlock[blocks.first + b] != part) continue;
+    const GridPoint low = blocks.lowOf(b);
+    GridBox box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.range[k] = {low[k] - reach, low[k] + blocks.side + reach};
+    }
+    this->reach(blocks.tet, box);
+  }
+}
+
+/// Enters a box unless another one holds it.
+void RegionFinder::reach(Index tet, const GridBox& box) {
+  Entry& entry = entryOf(tet);
+  if (entry.whole) return;
+  if (std::any_of(entry.boxes.begin(), entry.boxes.end(),
+                  [&](const GridBox& known) { return contains(known, box); })) {
+    return;
+  }
+  queue_.push_back({tet, entry.boxes.size()});
+  entry.boxes.push_back(box);
+}
+
+void RegionFinder::cross(Index tet, const GridBox& box) {
+  const GridBox from = box;  // its array may grow
+  for (int face = 0; face < 4; ++face) {
+    const HalfFace halfFace = halfFaceOf(tet, face);
+    const HalfFace mate = map_.topology.mate[halfFace];
+    if (mate == kNone || !mayMeet(triangleOf(map_, halfFace), from, map_.exact.unit)) continue;
+    reach(tetOf(mate), carried(map_.exact.transitions.across(halfFace), from));
+  }
+}
+
+RegionFinder::Entry& RegionFinder::entryOf(Index tet) {
+  if (entryOfTet_[tet] == kNone) {
+    entryOfTet_[tet] = static_cast<Index>(entries_.size());
+    entries_.push_back({tet, false, {}});
+  }
+  return entries_[entryOfTet_[tet]];
+}
+
+}  // namespace hexhex

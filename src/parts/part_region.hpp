@@ -1,0 +1,54 @@
+// Where a part reaches: the tets that its cells and the cells around them may touch, and where in
+// these.
+//
+// Take a chain of cells, the first one in the part, each next one with a vertex of the one before,
+// and a path from centre to centre through their common vertices. Where it leaves the part's tets
+// for the last time, it crosses a face (or is in a block of a tet that several parts share), and
+// all that follows lies within a box around that face (that block), developed along the path. So
+// such boxes are carried from tet to tet, through all faces that they meet.
+#pragma once
+
+#include <vector>
+
+#include <parts/partition.hpp>
+
+#include <hexhex/types.hpp>
+
+#include <atlas/grid_region.hpp>
+
+namespace hexhex {
+
+/// Finds regions of one part after another.
+class RegionFinder {
+ public:
+  RegionFinder(const PreparedMap& map, const Partition& partition);
+
+  /// @param layers  of cells around the part's own
+  [[nodiscard]] GridRegion find(std::uint32_t part, std::uint32_t layers);
+
+ private:
+  struct Reached {
+    Index tet;
+    std::size_t box;  ///< in boxes_[of the tet]
+  };
+  struct Entry {
+    Index tet = kNone;
+    bool whole = false;  ///< a tet of the part
+    std::vector<GridBox> boxes;
+  };
+
+  void enterWhole(std::span<const Index> tets);
+  void startAtFaces(Index tet, std::int32_t reach);
+  void startAtBlocks(const TetBlocks& blocks, std::uint32_t part, std::int32_t reach);
+  void reach(Index tet, const GridBox& box);
+  void cross(Index tet, const GridBox& box);
+  Entry& entryOf(Index tet);
+
+  const PreparedMap& map_;
+  const Partition& partition_;
+  std::vector<Index> entryOfTet_;  ///< kNone for all tets but those of the current part
+  std::vector<Entry> entries_;
+  std::vector<Reached> queue_;
+};
+
+}  // namespace hexhex

@@ -1,0 +1,92 @@
+// Which part each cell is in. Known before there are cells: from their numbers per tet.
+//
+// Tets are dealt out as a whole, unless one has so many cells that parts could not be even: its
+// cells are dealt out by blocks of its chart. So parts differ by about 3 % of their cells at most,
+// however few tets there are.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <parts/counts.hpp>
+
+#include <hexhex/parts.hpp>
+
+namespace hexhex {
+
+/// The blocks of a tet: cubes of `side` cells along each axis of its chart.
+struct TetBlocks {
+  Index tet = 0;
+  std::int32_t side = 1;
+  GridPoint low{};                      ///< smallest corner of the first one's first cell
+  std::array<std::uint32_t, 3> size{};  ///< blocks along each axis
+  std::size_t first = 0;                ///< of all blocks
+
+  [[nodiscard]] std::size_t count() const noexcept {
+    return std::size_t{size[0]} * size[1] * size[2];
+  }
+  /// The block of the cell with smallest corner z, counted from the tet's first one.
+  [[nodiscard]] std::size_t blockOf(const GridPoint& z) const noexcept {
+    std::size_t block = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      block = block * size[k] + static_cast<std::size_t>((z[k] - low[k]) / side);
+    }
+    return block;
+  }
+  /// The smallest corner of the first cell of a block.
+  [[nodiscard]] GridPoint lowOf(std::size_t block) const noexcept {
+    GridPoint z = low;
+    for (std::size_t k = 3; k-- > 0; block /= size[k]) {
+      z[k] += static_cast<std::int32_t>(block % size[k]) * side;
+    }
+    return z;
+  }
+};
+
+/// What is dealt out in one piece: a whole tet, or a block of one.
+struct PartitionElement {
+  Index tet;
+  Index blocks;         ///< index in Partition::blocks, or kNone for a whole tet
+  std::size_t block;    ///< of these
+  std::uint64_t cells;  ///< may be none
+  Vec3 place;           ///< in space, about the middle
+};
+
+class Partition {
+ public:
+  std::uint32_t parts = 1;
+  std::vector<TetBlocks> blocks;  ///< of tets that are not dealt out as a whole; ascending by tet
+
+  /// The part of a cell, by its owner and smallest corner.
+  [[nodiscard]] std::uint32_t partOf(Index tet, const GridPoint& z) const noexcept {
+    const std::uint32_t part = ofTet[tet];
+    if (part < kSplit) return part;
+    const TetBlocks& split = blocks[part - kSplit];
+    return ofBlock[split.first + split.blockOf(z)];
+  }
+  /// The blocks of a tet, or null if it is dealt out as a whole.
+  [[nodiscard]] const TetBlocks* blocksOf(Index tet) const noexcept {
+    return ofTet[tet] < kSplit ? nullptr : &blocks[ofTet[tet] - kSplit];
+  }
+  /// The tets that are in a part, as a whole or with a block with cells, ascending.
+  [[nodiscard]] std::span<const Index> tetsOf(std::uint32_t part) const noexcept {
+    return std::span(tets).subspan(begin[part], begin[part + 1] - begin[part]);
+  }
+
+  static constexpr std::uint32_t kSplit = 1U << 31;
+  std::vector<std::uint32_t> ofTet;    ///< per tet: its part, or kSplit + its place in `blocks`
+  std::vector<std::uint32_t> ofBlock;  ///< per block of all: its part
+  std::vector<std::size_t> begin;      ///< per part (+1): its tets
+  std::vector<Index> tets;
+};
+
+/// @param method  with a library that is not here it is an InvalidArgument
+[[nodiscard]] Partition makePartition(const PreparedMap& map, const ElementCounts& counts,
+                                      std::uint32_t parts, PartitionMethod method, Stage& stage);
+
+/// The elements in the order of Hilbert's curve through their places.
+void sortAlongCurve(std::vector<PartitionElement>& elements, Stage& stage);
+
+}  // namespace hexhex

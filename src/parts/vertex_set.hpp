@@ -1,0 +1,146 @@
+// A set of global vertex numbers that knows the rank of each: from global to local numbers.
+//
+// Numbers come in runs, so they are kept as bits in pages, about a fifth of a byte for a vertex.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <base/parallel.hpp>
+
+namespace hexhex {
+
+class VertexSet {
+ public:
+  static constexpr std::uint64_t kPageBits = 1024;
+
+  /// Looks up pages without a search while numbers stay close. One per thread.
+  class Cache {
+   public:
+    explicit Cache(const VertexSet& set) noexcept : set_(set) {}
+    /// The rank of a number, or kNone if it is not in the set.
+    [[nodiscard]] Index rank(std::uint64_t vertex) noexcept {
+      const Entry& entry = look(vertex / kPageBits);
+      if (entry.page == kNoPage) return kNone;
+      const std::size_t bit = vertex % kPageBits;
+      const Page& page = set_.pages_[entry.page];
+      const std::uint64_t word = page.bits[bit / 64];
+      if ((word >> (bit % 64) & 1U) == 0) return kNone;
+      const std::uint64_t below = word & ((std::uint64_t{1} << (bit % 64)) - 1);
+      return page.before[bit / 64] + static_cast<Index>(std::popcount(below));
+    }
+
+   private:
+    static constexpr std::size_t kNoPage = ~std::size_t{0};
+    struct Entry {
+      std::uint64_t key = ~std::uint64_t{0};
+      std::size_t page = kNoPage;
+    };
+    const Entry& look(std::uint64_t key) noexcept {
+      Entry& entry = entries_[key % entries_.size()];
+      if (entry.key != key) entry = {key, set_.find(key)};
+      return entry;
+    }
+    const VertexSet& set_;
+    std::array<Entry, 64> entries_;
+  };
+
+  VertexSet() = default;
+  /// The corners of cells.
+  template <class Cell>
+  VertexSet(std::span<const Cell> cells, Stage& stage) {
+    collectPages(cells, stage);
+    parallelBlocks(stage, cells.size(), kGrain,
+                   [&](std::size_t begin, std::size_t end, std::size_t) {
+                     std::uint64_t key = ~std::uint64_t{0};
+                     std::size_t page = 0;
+                     for (std::size_t i = begin; i < end; ++i) {
+                       for (const std::uint64_t vertex : cells[i]) {
+                         if (vertex / kPageBits != key) {
+                           key = vertex / kPageBits;
+                           page = find(key);
+                         }
+                         const std::size_t bit = vertex % kPageBits;
+                         const std::atomic_ref word(pages_[page].bits[bit / 64]);
+                         const std::uint64_t mask = std::uint64_t{1} << (bit % 64);
+                         if ((word.load(std::memory_order_relaxed) & mask) == 0) {
+                           word.fetch_or(mask, std::memory_order_relaxed);
+                         }
+                       }
+                     }
+                   });
+    count();
+  }
+
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+
+  /// All numbers, ascending.
+  [[nodiscard]] Array<std::uint64_t> list() const {
+    Array<std::uint64_t> all;
+    all.reserve(size_);
+    for (std::size_t p = 0; p < pages_.size(); ++p) {
+      for (std::size_t w = 0; w < kWords; ++w) {
+        for (std::uint64_t rest = pages_[p].bits[w]; rest != 0; rest &= rest - 1) {
+          all.push_back(keys_[p] * kPageBits + w * 64 +
+                        static_cast<std::uint64_t>(std::countr_zero(rest)));
+        }
+      }
+    }
+    return all;
+  }
+
+ private:
+  static constexpr std::size_t kWords = kPageBits / 64;
+  static constexpr std::size_t kGrain = 4096;
+  struct Page {
+    std::array<std::uint64_t, kWords> bits{};
+    std::array<Index, kWords> before{};  ///< numbers in the set below each word
+  };
+
+  template <class Cell>
+  void collectPages(std::span<const Cell> cells, Stage& stage) {
+    keys_ = collectFromBlocks<std::uint64_t>(
+        stage, cells.size(), kGrain,
+        [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& keys) {
+          std::array<std::uint64_t, 64> recent;
+          recent.fill(~std::uint64_t{0});
+          for (std::size_t i = begin; i < end; ++i) {
+            for (const std::uint64_t vertex : cells[i]) {
+              const std::uint64_t key = vertex / kPageBits;
+              if (recent[key % recent.size()] == key) continue;
+              recent[key % recent.size()] = key;
+              keys.push_back(key);
+            }
+          }
+        });
+    std::sort(keys_.begin(), keys_.end());
+    keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+    pages_.resize(keys_.size());
+  }
+  void count() {
+    for (Page& page : pages_) {
+      for (std::size_t w = 0; w < kWords; ++w) {
+        page.before[w] = static_cast<Index>(size_);
+        size_ += static_cast<std::uint64_t>(std::popcount(page.bits[w]));
+      }
+    }
+  }
+  [[nodiscard]] std::size_t find(std::uint64_t key) const noexcept {
+    const auto found = std::lower_bound(keys_.begin(), keys_.end(), key);
+    if (found == keys_.end() || *found != key) return ~std::size_t{0};
+    return static_cast<std::size_t>(found - keys_.begin());
+  }
+
+  std::vector<std::uint64_t> keys_;  ///< ascending
+  std::vector<Page> pages_;
+  std::uint64_t size_ = 0;
+};
+
+}  // namespace hexhex

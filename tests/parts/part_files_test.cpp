@@ -1,0 +1,164 @@
+// Files of parts, glued, are the mesh in one piece.
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/parts.hpp>
+#include <hexhex/samples.hpp>
+
+#include "support/damaged_maps.hpp"
+
+namespace hexhex {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PartFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        fs::temp_directory_path() / ("hexhex-parts-" + std::to_string(std::random_device()()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static TetMap sample(bool features) {
+    SampleOptions options;
+    options.cells = 3;
+    options.features = features;
+    options.jitter = 0.5;
+    return generateSample(SampleKind::Shell, options).map;
+  }
+  void write(const TetMap& map, const fs::path& file, const PartOptions& parts,
+             const WriteOptions& writing = {}) const {
+    Context context;
+    const std::unique_ptr<PartSink> sink = openPartSink(file, writing, context);
+    PartSurvey survey(*sink);
+    extractParts(survey, map, {}, parts, context);
+  }
+  static std::string textOf(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+  }
+
+  fs::path folder_;
+};
+
+void expectSame(const HexMesh& a, const HexMesh& b) {
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.cells, b.cells);
+  EXPECT_EQ(a.generatorTet, b.generatorTet);
+  EXPECT_EQ(a.generatorCorners, b.generatorCorners);
+  EXPECT_EQ(a.features, b.features);
+  EXPECT_EQ(a.regions, b.regions);
+}
+
+TEST_F(PartFiles, OfVtkAreGluedToTheMesh) {
+  for (const bool features : {false, true}) {
+    const TetMap map = sample(features);
+    const HexMesh whole = extract(map);
+    for (const std::uint32_t parts : {1U, 30U, 4U}) {
+      for (const std::uint32_t ghosts : {0U, 1U}) {
+        write(map, folder_ / "mesh.pvtu", {parts, ghosts});
+        expectSame(readHexMesh(folder_ / "mesh.pvtu"), whole);
+        const auto pieces = std::distance(fs::directory_iterator(folder_ / "mesh"), {});
+        EXPECT_EQ(pieces, parts) << "those of earlier runs are gone";
+      }
+    }
+  }
+}
+
+TEST_F(PartFiles, AreManyAndMostlyEmpty) {
+  SampleOptions options;
+  options.cells = 2;
+  const TetMap map = generateSample(SampleKind::Box, options).map;
+  write(map, folder_ / "mesh.pvtu", {512, 1});
+  expectSame(readHexMesh(folder_ / "mesh.pvtu"), extract(map));
+}
+
+TEST_F(PartFiles, AreTheSameForAnyNumberOfThreads) {
+  const TetMap map = sample(true);
+  const auto writeWith = [&](int threads, const std::string& name) {
+    Context context(threads);
+    const std::unique_ptr<PartSink> sink = openPartSink(folder_ / name / "m.pvtu", {}, context);
+    extractParts(*sink, map, {}, {5, 1}, context);
+  };
+  fs::create_directories(folder_ / "one");
+  fs::create_directories(folder_ / "four");
+  writeWith(1, "one");
+  writeWith(4, "four");
+  for (const std::string file :
+       {"m.pvtu", "m/m_0.vtu", "m/m_1.vtu", "m/m_2.vtu", "m/m_3.vtu", "m/m_4.vtu"}) {
+    EXPECT_EQ(textOf(folder_ / "one" / file), textOf(folder_ / "four" / file)) << file;
+  }
+}
+
+TEST_F(PartFiles, AppearWhenAllAreWrittenOrNotAtAll) {
+  for (const PartFormat& format : partFormats()) {
+    WriteOptions writing;
+    writing.format = format.name;
+    const fs::path file = folder_ / ("x" + std::string(format.extension));
+    Context context;
+    {
+      const std::unique_ptr<PartSink> sink = openPartSink(file, writing, context);
+      std::vector<MeshPart> parts = extractParts(sample(true), {}, {3}, context);
+      sink->begin({3, 0, 1000, 1000});
+      sink->part(std::move(parts[0]));
+    }
+    EXPECT_TRUE(fs::is_empty(folder_)) << format.name;
+  }
+}
+
+TEST_F(PartFiles, OfManyMapsAreWritten) {
+  std::mt19937_64 random(3);
+  for (const PartFormat& format : partFormats()) {
+    for (int i = 0; i < 3; ++i) {
+      test::MapDamage draw(random());
+      const TetMap map = draw.sample();
+      WriteOptions writing;
+      writing.format = format.name;
+      // More parts than cells, too.
+      const fs::path file = folder_ / std::to_string(i) / ("x" + std::string(format.extension));
+      fs::create_directories(file.parent_path());
+      EXPECT_NO_THROW(write(map, file, {1U << draw.below(6U)}, writing)) << format.name;
+    }
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+}
+
+TEST_F(PartFiles, OfOtherFormatsAreRefused) {
+  Context context;
+  EXPECT_THROW(static_cast<void>(openPartSink(folder_ / "x.obj", {}, context)), Error);
+  EXPECT_THROW(requirePartFormat("x.hexex", {}), Error);
+}
+
+TEST_F(PartFiles, ThatDoNotFitTogetherAreRefused) {
+  const TetMap map = sample(false);
+  write(map, folder_ / "a.pvtu", {3});
+  const std::string index = textOf(folder_ / "a.pvtu");
+  const auto refuse = [&](const std::string& text) {
+    std::ofstream(folder_ / "b.pvtu") << text;
+    EXPECT_THROW(static_cast<void>(readHexMesh(folder_ / "b.pvtu")), Error) << text;
+  };
+  const auto without = [&](const std::string& what) {
+    std::string text = index;
+    const std::size_t place = text.find(what);
+    EXPECT_NE(place, std::string::npos);
+    return text.erase(place, what.size());
+  };
+  refuse("");
+  refuse("<VTKFile><PUnstructuredGrid></PUnstructuredGrid></VTKFile>");
+  refuse(without("a/a_1.vtu"));
+  refuse(without("    <Piece Source=\"a/a_1.vtu\"/>\n"));
+  fs::remove(folder_ / "a" / "a_2.vtu");
+  EXPECT_THROW(static_cast<void>(readHexMesh(folder_ / "a.pvtu")), Error);
+}
+
+}  // namespace
+}  // namespace hexhex

@@ -1,0 +1,114 @@
+// Parts make up the mesh in one piece, whatever the map, the number of parts and that of threads.
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/samples.hpp>
+
+#include "support/coarse_maps.hpp"
+#include "support/damaged_maps.hpp"
+#include "support/part_check.hpp"
+
+namespace hexhex {
+namespace {
+
+using test::comparePartsWithWhole;
+
+TEST(Parts, MakeUpRandomSamples) {
+  std::mt19937_64 random(27);
+  const int cases = 30;
+  for (int i = 0; i < cases; ++i) {
+    test::MapDamage draw(random());
+    const TetMap map = draw.sample();
+    ExtractOptions options;
+    options.scale = map.tets.size() < 1000 ? 1 + draw.below(3) : 1;
+    PartOptions parts;
+    parts.parts = 1U << draw.below(7U);
+    if (draw.below(2) == 0) parts.parts += draw.below(5U);
+    parts.ghostLayers = draw.below(3U);
+    EXPECT_EQ(comparePartsWithWhole(map, options, parts), "")
+        << "case " << i << ": " << map.tets.size() << " tets, scale " << options.scale << ", "
+        << parts.parts << " parts, " << parts.ghostLayers << " layers";
+  }
+}
+
+TEST(Parts, MakeUpMeshesThatAreCoarserThanTheirTets) {
+  for (const Index cells : {1U, 2U, 3U}) {
+    for (const std::uint32_t parts : {2U, 3U, 8U}) {
+      EXPECT_EQ(comparePartsWithWhole(test::threeTorus(cells), {}, {parts, 1}), "");
+      EXPECT_EQ(comparePartsWithWhole(test::rolledUp(cells), {}, {parts, 1}), "");
+    }
+  }
+}
+
+/// Largest part over the mean, and vertices of more than one part, once in each.
+struct Cut {
+  double imbalance;
+  std::uint64_t shared;
+};
+Cut cutOf(const TetMap& map, const PartOptions& options, int scale) {
+  class Nothing final : public PartSink {
+   public:
+    void begin(const PartsInfo& /*info*/) override {}
+    void part(MeshPart&& /*part*/) override {}
+    void end() override {}
+  };
+  Nothing nothing;
+  PartSurvey survey(nothing);
+  Context context;
+  ExtractOptions extraction;
+  extraction.scale = scale;
+  extractParts(survey, map, extraction, options, context);
+  const PartsSummary& summary = survey.result();
+  return {static_cast<double>(summary.largest) * options.parts / static_cast<double>(summary.cells),
+          summary.sharedVertices};
+}
+
+TEST(Parts, AreEven) {
+  SampleOptions options;
+  options.cells = 8;
+  for (const SampleKind kind : {SampleKind::Box, SampleKind::Shell}) {
+    // 96 tets and 576: parts are far smaller than tets, and a few tets large.
+    const TetMap map = generateSample(kind, options).map;
+    for (const std::uint32_t parts : {3U, 16U, 100U}) {
+      EXPECT_LE(cutOf(map, {parts}, 2).imbalance, 1.05) << parts;
+    }
+  }
+}
+
+TEST(Parts, OfMetisAndScotchMakeUpTheMeshToo) {
+  SampleOptions options;
+  options.cells = 6;
+  const TetMap map = generateSample(SampleKind::Torus, options).map;
+  for (const PartitionMethod method : {PartitionMethod::Metis, PartitionMethod::Scotch}) {
+    const PartOptions parts{16, 0, method};
+    Cut cut{};
+    try {
+      cut = cutOf(map, parts, 1);
+    } catch (const Error& error) {
+      ASSERT_EQ(error.code(), ErrorCode::InvalidArgument) << error.what();
+      GTEST_SKIP() << error.what();
+    }
+    EXPECT_EQ(comparePartsWithWhole(map, {}, parts), "");
+    EXPECT_LE(cut.imbalance, 1.08);
+    const Cut curve = cutOf(map, {16}, 1);
+    EXPECT_LE(static_cast<double>(curve.shared), 1.5 * static_cast<double>(cut.shared));
+  }
+}
+
+TEST(Parts, AreRefusedForOptionsOutOfRange) {
+  Context context;
+  const TetMap map = generateSample(SampleKind::Box).map;
+  for (const PartOptions& options :
+       {PartOptions{0}, PartOptions{kMaxParts + 1}, PartOptions{2, kMaxGhostLayers + 1}}) {
+    try {
+      static_cast<void>(extractParts(map, {}, options, context));
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hexhex

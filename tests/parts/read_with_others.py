@@ -1,0 +1,279 @@
+#!/usr/bin/env python3
+"""Has other programs read meshes in parts, and compares what they find with the mesh in one piece.
+
+    read_with_others.py PATH-OF-HEXHEX
+
+VTK reads .pvtu and .vtkhdf, gmsh the partitioned .msh, OpenFOAM checks and reconstructs decomposed
+cases, PETSc loads cells by global numbers on four ranks. What is not on this machine is skipped with
+a word; exit code 77 if nothing is there. HEXHEX_PYTHON names a Python with vtk and gmsh.
+"""
+
+import json
+import os
+import pathlib
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).parent
+PYTHONS = [p for p in (os.environ.get("HEXHEX_PYTHON"), "/usr/bin/python3", sys.executable) if p]
+
+
+def check(condition, message):
+    if not condition:
+        sys.exit(f"FAILED: {message}")
+
+
+def python_with(module):
+    """A Python that has a module, or None."""
+    for python in PYTHONS:
+        if os.access(python, os.X_OK) and subprocess.run(
+                [python, "-c", f"import {module}"], capture_output=True, check=False).returncode == 0:
+            return python
+    return None
+
+
+def run(*command, **options):
+    done = subprocess.run([str(c) for c in command], stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, check=False, **options)
+    check(done.returncode == 0, f"{' '.join(map(str, command))}:\n{done.stdout[-3000:]}")
+    return done.stdout
+
+
+class Mesh:
+    """What is known of a mesh in one piece."""
+
+    def __init__(self, file):
+        text = file.read_text()
+
+        def count(section):
+            return int(re.search(rf"(?m)^{section}\n(\d+)$", text)[1])
+        self.points = count("Vertices")
+        self.quads = count("Quadrilaterals")
+        self.cells = count("Hexahedra")
+
+
+VTK_SCRIPT = """
+import sys, vtk
+path, ghosts = sys.argv[1], int(sys.argv[2])
+if path.endswith(".pvtu"):
+    reader = vtk.vtkXMLPUnstructuredGridReader()
+elif hasattr(vtk, "vtkHDFReader"):
+    reader = vtk.vtkHDFReader()
+else:
+    print("none"); sys.exit()
+reader.SetFileName(path)
+reader.Update()
+grid = reader.GetOutput()
+if hasattr(grid, "GetBlock") or grid.IsA("vtkPartitionedDataSet"):
+    append = vtk.vtkAppendFilter()
+    for i in range(grid.GetNumberOfPartitions()):
+        append.AddInputData(grid.GetPartition(i))
+    append.Update()
+    grid = append.GetOutput()
+ids = grid.GetCellData().GetArray("GlobalCellIds")
+owned = set()
+ghost = grid.GetCellData().GetArray("vtkGhostType")
+points = grid.GetPointData().GetArray("GlobalPointIds")
+# Merge points by global number, as a parallel reader would.
+cells = {}
+for c in range(grid.GetNumberOfCells()):
+    cell = grid.GetCell(c)
+    corners = tuple(int(points.GetValue(cell.GetPointId(k))) for k in range(8))
+    number = int(ids.GetValue(c))
+    if ghost is None or ghost.GetValue(c) == 0:
+        assert number not in owned
+        owned.add(number)
+    assert cells.setdefault(number, corners) == corners
+if ghosts:
+    # Each piece alone: with ghosts, faces between parts are no surface.
+    quads = 0
+    for piece in range(int(sys.argv[3])):
+        reader.UpdatePiece(piece, int(sys.argv[3]), 0)
+        part = reader.GetOutput()
+        part_surface = vtk.vtkGeometryFilter()
+        part_surface.SetInputData(part)
+        part_surface.Update()
+        faces = part_surface.GetOutput()
+        marks = faces.GetCellData().GetArray("vtkGhostType")
+        quads += sum(1 for i in range(faces.GetNumberOfCells())
+                     if marks is None or marks.GetValue(i) == 0)
+else:
+    quads = -1
+print(len(owned), len({p for c in cells.values() for p in c}), quads)
+"""
+
+
+def judge_vtk(command, map_file, mesh, folder):
+    python = python_with("vtk")
+    if python is None:
+        return "no VTK"
+    for parts in (1, 5):
+        for ghosts in (0, 1):
+            file = folder / f"v{parts}{ghosts}.pvtu"
+            run(command, "extract", map_file, "-o", file, "--parts", parts, "--ghosts", ghosts, "--quiet")
+            found = run(python, "-c", VTK_SCRIPT, file, ghosts, parts).split()
+            check(found[:2] == [str(mesh.cells), str(mesh.points)], f"VTK: {file} has {found}")
+            if ghosts:
+                check(int(found[2]) == mesh.quads,
+                      f"VTK: the surface of {file} has {found[2]} quads, not {mesh.quads}")
+    file = folder / "v.vtkhdf"
+    run(command, "extract", map_file, "-o", file, "--parts", 5, "--quiet")
+    found = run(python, "-c", VTK_SCRIPT, file, 0, 5).split()
+    if found != ["none"]:
+        check(found[:2] == [str(mesh.cells), str(mesh.points)], f"VTK: {file} has {found}")
+    return None
+
+
+GMSH_SCRIPT = """
+import sys, gmsh
+gmsh.initialize()
+gmsh.option.setNumber("General.Terminal", 0)
+cells, nodes, ghosts, quads = set(), set(), 0, 0
+for file in sys.argv[1:]:
+    gmsh.clear()
+    gmsh.open(file)
+    nodes |= set(int(n) for n in gmsh.model.mesh.getNodes()[0])
+    for dim, tag in gmsh.model.getEntities(3):
+        types, tags, _ = gmsh.model.mesh.getElements(3, tag)
+        for of_type in tags:
+            cells |= set(int(e) for e in of_type)
+    for dim, tag in gmsh.model.getEntities(2):
+        quads += sum(len(t) for t in gmsh.model.mesh.getElements(2, tag)[1])
+print(len(cells), len(nodes), quads, gmsh.model.getNumberOfPartitions())
+"""
+
+
+def judge_gmsh(command, map_file, mesh, folder):
+    python = python_with("gmsh")
+    if python is None:
+        return "no gmsh"
+    for ghosts in (0, 1):
+        file = folder / f"g{ghosts}.msh"
+        run(command, "extract", map_file, "-o", file, "--parts", 4, "--ghosts", ghosts, "--quiet")
+        found = run(python, "-c", GMSH_SCRIPT, file).split()
+        check(found[-4:] == [str(n) for n in (mesh.cells, mesh.points, mesh.quads, 4)],
+              f"gmsh: {file} has {found}")
+    run(command, "extract", map_file, "-o", folder / "s.msh", "--parts", 4, "--format", "msh-split",
+        "--quiet")
+    found = run(python, "-c", GMSH_SCRIPT, *[folder / f"s_{k}.msh" for k in range(1, 5)]).split()
+    check(found[-4:-1] == [str(n) for n in (mesh.cells, mesh.points, mesh.quads)],
+          f"gmsh: the files of four parts have {found}")
+    return None
+
+
+CONTROL = """FoamFile {{ version 2.0; format ascii; class dictionary; object {0}; }}
+application icoFoam; startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1;
+writeControl timeStep; writeInterval 1; writeFormat ascii; writePrecision 17;
+ddtSchemes {{}} gradSchemes {{}} divSchemes {{}} laplacianSchemes {{}} interpolationSchemes {{}}
+snGradSchemes {{}} solvers {{}} numberOfSubdomains 4; method simple;
+"""
+
+
+def judge_openfoam(command, map_file, mesh, folder):
+    if not shutil.which("checkMesh") or not shutil.which("mpirun"):
+        return "no OpenFOAM"
+    case = folder / "case"
+    (case / "system").mkdir(parents=True)
+    for name in ("controlDict", "fvSchemes", "fvSolution", "decomposeParDict"):
+        (case / "system" / name).write_text(CONTROL.format(name))
+    run(command, "extract", map_file, "-o", case / "m.foam", "--parts", 4, "--quiet")
+    environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1",
+                   "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                   "OMPI_MCA_rmaps_base_oversubscribe": "1",
+                   # Where Debian has its settings.
+                   "WM_PROJECT_DIR": os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam")}
+    said = run("mpirun", "-n", 4, "checkMesh", "-parallel", "-constant", "-case", case,
+               env=environment)
+    check(re.search(rf"cells:\s+{mesh.cells}\b", said), f"checkMesh counts cells:\n{said}")
+    check("Mesh OK." in said, f"checkMesh:\n{said}")
+    run("reconstructParMesh", "-constant", "-case", case, "-mergeTol", "1e-7",
+        env=environment)
+    said = run("checkMesh", "-constant", "-case", case, env=environment)
+    check(re.search(rf"cells:\s+{mesh.cells}\b", said), f"reconstructParMesh:\n{said}")
+    check(re.search(rf"points:\s+{mesh.points}\b", said), f"reconstructParMesh:\n{said}")
+    return None
+
+
+def judge_petsc(command, map_file, mesh, folder):
+    if not shutil.which("mpicc") or subprocess.run(
+            ["pkg-config", "--exists", "PETSc"], check=False).returncode != 0:
+        return "no PETSc"
+    flags = run("pkg-config", "--cflags", "--libs", "PETSc").split()
+    run("mpicc", HERE / "petsc_parts.c", "-o", folder / "petsc_parts", *flags)
+    run(command, "extract", map_file, "-o", folder / "p", "--format", "msh-split", "--parts", 4,
+        "--report", folder / "r.json", "--quiet")
+    between = json.loads((folder / "r.json").read_text())["parts"]["shared_faces"]
+    for rank in range(4):
+        points, cells = read_split_gmsh(folder / f"p_{rank + 1}")
+        with open(folder / f"rank{rank}.bin", "wb") as file:
+            file.write(struct.pack("<qq", len(points), len(cells)))
+            for number, position in points:
+                file.write(struct.pack("<q3d", number, *position))
+            for corners in cells:
+                file.write(struct.pack("<8q", *corners))
+    said = run("mpirun", "--allow-run-as-root", "--oversubscribe", "-n", 4, folder / "petsc_parts",
+               folder, mesh.points)
+    check(said.split()[-3:] == [str(n) for n in (mesh.cells, mesh.points, mesh.quads + 2 * between)],
+          f"PETSc has {said}")
+    return None
+
+
+def read_split_gmsh(file):
+    """Nodes and hexahedra of a file of one part, from 0 on, by what the format says."""
+    data = file.read_bytes()
+
+    def section(name):
+        begin = data.index(f"${name}\n".encode()) + len(name) + 2
+        return memoryview(data)[begin:]
+    nodes = section("Nodes")
+    blocks, _, _, _ = struct.unpack_from("<4Q", nodes)
+    at, points = 32, []
+    for _ in range(blocks):
+        _, _, _, count = struct.unpack_from("<3iQ", nodes, at)
+        at += 20
+        numbers = struct.unpack_from(f"<{count}Q", nodes, at)
+        at += 8 * count
+        points += [(numbers[i] - 1, struct.unpack_from("<3d", nodes, at + 24 * i))
+                   for i in range(count)]
+        at += 24 * count
+    elements = section("Elements")
+    blocks, _, _, _ = struct.unpack_from("<4Q", elements)
+    at, cells = 32, []
+    for _ in range(blocks):
+        dimension, _, _, count = struct.unpack_from("<3iQ", elements, at)
+        at += 20
+        size = 9 if dimension == 3 else 5
+        if dimension == 3:
+            for i in range(count):
+                cells.append([n - 1 for n in
+                              struct.unpack_from("<9Q", elements, at + 72 * i)[1:]])
+        at += 8 * size * count
+    return points, cells
+
+
+def main():
+    command = pathlib.Path(sys.argv[1]).resolve()
+    skipped = 0
+    judges = {"VTK": judge_vtk, "gmsh": judge_gmsh, "OpenFOAM": judge_openfoam,
+              "PETSc": judge_petsc}
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        map_file = folder / "map.hexex"
+        run(command, "generate", "torus", "-o", map_file, "--cells", 3, "--quiet")
+        run(command, "extract", map_file, "-o", folder / "whole.mesh", "--quiet")
+        mesh = Mesh(folder / "whole.mesh")
+        for judge, function in judges.items():
+            place = folder / judge
+            place.mkdir()
+            missing = function(command, map_file, mesh, place)
+            skipped += missing is not None
+            print(f"{judge}: {'skipped, ' + missing if missing else 'passed'}", flush=True)
+    sys.exit(77 if skipped == len(judges) else 0)
+
+
+if __name__ == "__main__":
+    main()
