@@ -136,5 +136,6 @@ void bindCurved(nb::module_& module);
 void bindFiles(nb::module_& module);
 void bindReports(nb::module_& module);
 void bindQuantize(nb::module_& module);
+void bindParts(nb::module_& module);
 
 }  // namespace hexhex::python

@@ -57,6 +57,7 @@ NB_MODULE(_hexhex, module) {
   bindFiles(module);
   bindReports(module);
   bindQuantize(module);
+  bindParts(module);
 }
 
 }  // namespace hexhex::python

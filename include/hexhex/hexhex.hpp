@@ -11,6 +11,7 @@
 #include <hexhex/io.hpp>             // IWYU pragma: export
 #include <hexhex/map_structure.hpp>  // IWYU pragma: export
 #include <hexhex/partial.hpp>        // IWYU pragma: export
+#include <hexhex/parts.hpp>          // IWYU pragma: export
 #include <hexhex/patches.hpp>        // IWYU pragma: export
 #include <hexhex/quality.hpp>        // IWYU pragma: export
 #include <hexhex/quantize.hpp>       // IWYU pragma: export

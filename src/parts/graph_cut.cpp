@@ -27,7 +27,7 @@ struct Graph {
 using PartGraph = int (*)(std::int32_t* vertices, std::int32_t* constraints, std::int32_t* begin,
                           std::int32_t* neighbours, std::int32_t* vertexWeights,
                           std::int32_t* vertexSizes, std::int32_t* edgeWeights, std::int32_t* parts,
-                          float* partWeights, float* imbalance, std::int32_t* options,
+                          void* partWeights, void* imbalance, std::int32_t* options,
                           std::int32_t* cut, std::int32_t* partOf);
 
 struct Library {
@@ -268,13 +268,16 @@ std::vector<std::uint32_t> cutGraph(const PreparedMap& map, const Partition& par
   std::int32_t constraints = 1;
   auto parts = static_cast<std::int32_t>(partition.parts);
   // Elements are a thirty-second of a part: with these, 5 % are kept.
-  float imbalance = 1.02F;
+  float forMetis = 1.02F;
+  double forScotch = 0.02;  // what is above the mean
+  void* const imbalance = method == PartitionMethod::Metis ? static_cast<void*>(&forMetis)
+                                                           : static_cast<void*>(&forScotch);
   std::int32_t cut = 0;
   std::vector<std::int32_t> partOf(elements.size(), 0);
   constexpr int kMetisOk = 1;
   const int status = partGraph(&vertices, &constraints, graph.begin.data(), graph.neighbours.data(),
                                graph.cells.data(), nullptr, graph.edgeWeights.data(), &parts,
-                               nullptr, &imbalance, nullptr, &cut, partOf.data());
+                               nullptr, imbalance, nullptr, &cut, partOf.data());
   const bool isRight = std::all_of(partOf.begin(), partOf.end(), [parts](std::int32_t part) {
     return part >= 0 && part < parts;
   });

@@ -948,6 +948,40 @@ class Convert(CommandTest):
             self.assertRegex(run.stdout, rf"(?m)^{name} ")
 
 
+class Parts(CommandTest):
+    """extract --parts"""
+
+    def test_pieces_are_the_mesh(self):
+        map_file = self.generate("shell", "--cells", "3", "--features", "--charts", "random")
+        self.run_command("extract", map_file, "-o", "whole.vtu", "--scale", "2", "--quiet")
+        text = self.run_command("extract", map_file, "-o", "parts.pvtu", "--scale", "2", "--stream", "--parts", "5",
+                                "--ghosts", "1", "--report", "r.json").stdout
+        self.assertRegex(text, r"parts +5, of \d+ to \d+ cells")
+        parts = json.loads((self.folder / "r.json").read_text())["parts"]
+        self.assertEqual((parts["count"], parts["partition"], parts["ghost_layers"]), (5, "curve", 1))
+        surveys = [self.run_command("info", "--pieces", file).stdout.splitlines()[1:]
+                   for file in ["whole.vtu", "parts.pvtu"]]
+        self.assertEqual(surveys[0], surveys[1])
+        for file in ["whole", "parts"]:
+            self.run_command("convert", f"{file}.{'vtu' if file == 'whole' else 'pvtu'}", f"{file}.mesh", "--quiet")
+        self.assertEqual((self.folder / "whole.mesh").read_bytes(), (self.folder / "parts.mesh").read_bytes())
+        self.run_command("verify", map_file, "parts.pvtu", "--scale", "2", "--quiet")
+
+    def test_what_is_refused(self):
+        map_file = self.generate("box", "--cells", "1")
+        for arguments, word, code in [
+                (["a.pvtu", "--parts", "0"], "--parts", BAD_USAGE), (["a.pvtu", "--parts", "-2"], "--parts", BAD_USAGE),
+                (["a.pvtu", "--parts", "2", "--ghosts", "17"], "--ghosts", BAD_USAGE),
+                (["a.vtu", "--parts", "2"], "no format of meshes in parts", FILE_PROBLEM),
+                (["a.foam", "--parts", "2", "--ghosts", "1"], "no ghost cells", FILE_PROBLEM),
+                (["a.pvtu", "--parts", "2", "--order", "2"], "--parts", BAD_USAGE)]:
+            with self.subTest(arguments=arguments):
+                self.assert_fails("extract", map_file, "-o", *arguments, expect=code, words=[word])
+        self.assert_fails("extract", map_file, "-o", "a.pvtu", expect=FILE_PROBLEM, words=["--parts"])
+        (self.folder / "processor2").mkdir()
+        self.assert_fails("extract", map_file, "-o", "a.foam", "--parts", "2", expect=FILE_PROBLEM, words=["processor2"])
+
+
 class Stream(CommandTest):
     """extract --stream"""
 

@@ -16,7 +16,7 @@ using test::comparePartsWithWhole;
 
 TEST(Parts, MakeUpRandomSamples) {
   std::mt19937_64 random(27);
-  const int cases = 30;
+  const int cases = 12;
   for (int i = 0; i < cases; ++i) {
     test::MapDamage draw(random());
     const TetMap map = draw.sample();
@@ -32,11 +32,10 @@ TEST(Parts, MakeUpRandomSamples) {
   }
 }
 
-TEST(Parts, MakeUpMeshesThatAreCoarserThanTheirTets) {
-  for (const Index cells : {1U, 2U, 3U}) {
+TEST(Parts, MakeUpMeshesWhoseCellsMeetThemselves) {
+  for (const Index cells : {1U, 2U}) {
     for (const std::uint32_t parts : {2U, 3U, 8U}) {
-      EXPECT_EQ(comparePartsWithWhole(test::threeTorus(cells), {}, {parts, 1}), "");
-      EXPECT_EQ(comparePartsWithWhole(test::rolledUp(cells), {}, {parts, 1}), "");
+      EXPECT_EQ(comparePartsWithWhole(test::threeTorus(cells), {}, {parts, 1}), "") << cells;
     }
   }
 }
@@ -90,7 +89,7 @@ TEST(Parts, OfMetisAndScotchMakeUpTheMeshToo) {
       GTEST_SKIP() << error.what();
     }
     EXPECT_EQ(comparePartsWithWhole(map, {}, parts), "");
-    EXPECT_LE(cut.imbalance, 1.08);
+    EXPECT_LE(cut.imbalance, 1.05);
     const Cut curve = cutOf(map, {16}, 1);
     EXPECT_LE(static_cast<double>(curve.shared), 1.5 * static_cast<double>(cut.shared));
   }

@@ -43,7 +43,9 @@ from ._types import (
     Map,
     MapStructure,
     Mesh,
+    MeshPart,
     PartialMesh,
+    PartNeighbour,
     Patches,
     Quality,
     QuantizeReport,
@@ -72,14 +74,15 @@ __version__: str = _hexhex.version()
 __all__ = [
     "Arcs", "ArgumentError", "CancelledError", "CheckReport", "Defect", "Extractor", "Features",
     "FileError", "FileFormat", "HexhexError", "Hole", "InternalError", "LagrangeMesh", "Map",
-    "MapError", "MapStructure", "MemoryExhaustedError", "Mesh", "MeshSink", "MeshWriter",
-    "PartialMesh", "Patches", "Quality", "QuantizeReport", "RefutedCell", "RepairReport",
-    "RepairedRegion", "SampleKind", "SeamlessReport", "Survey", "SurveySink", "TqdmProgress",
-    "VerifyItem", "VerifyReport", "can_quantize", "can_repair", "check", "defect_kinds", "examine_seamless",
-    "extract", "extract_partial", "extract_to", "extract_to_file", "formats", "generate",
-    "holds_curved", "map_from_pair", "map_structure", "quality", "quantize", "read", "read_curved",
-    "read_map", "read_mesh", "read_pair", "read_tets", "read_to", "repair", "require_format",
-    "sample_kinds", "scaled_jacobian", "survey", "verify", "write",
+    "MapError", "MapStructure", "MemoryExhaustedError", "Mesh", "MeshPart", "MeshSink",
+    "MeshWriter", "PartNeighbour", "PartialMesh", "Patches", "Quality", "QuantizeReport",
+    "RefutedCell", "RepairReport", "RepairedRegion", "SampleKind", "SeamlessReport", "Survey",
+    "SurveySink", "TqdmProgress", "VerifyItem", "VerifyReport", "can_quantize", "can_repair",
+    "check", "defect_kinds", "examine_seamless", "extract", "extract_partial", "extract_parts",
+    "extract_parts_to_file", "extract_to", "extract_to_file", "formats", "generate", "holds_curved",
+    "map_from_pair", "map_structure", "quality", "quantize", "read", "read_curved", "read_map",
+    "read_mesh", "read_pair", "read_tets", "read_to", "repair", "require_format", "sample_kinds",
+    "scaled_jacobian", "survey", "verify", "write",
 ]
 
 
@@ -255,6 +258,70 @@ def extract_to_file(file: Path, map: Map, *, scale: int = 1, format: str | None 
     options = _options(scale, "atlas", tolerance, 0, repair, round)
     return _with_repair(_hexhex.extract_to_file(
         os.fspath(file), map._arrays(), options, format or "", _threads(threads), progress))
+
+
+def _partition(parts: int, ghosts: int, partition: str) -> tuple[int, int, str]:
+    if partition not in ("curve", "metis", "scotch"):
+        raise ArgumentError(f'There is no partition "{partition}". Choose "curve", "metis" or '
+                            '"scotch".', "InvalidArgument")
+    if not 1 <= parts <= 1 << 20 or not 0 <= ghosts <= 16:
+        raise ArgumentError(f"{parts} parts with {ghosts} layers of ghosts are out of range. Choose "
+                            "1 to 1048576, and 0 to 16.", "InvalidArgument")
+    return parts, ghosts, partition
+
+
+def extract_parts(map: Map, parts: int, *, ghosts: int = 0, partition: str = "curve",
+                  scale: int = 1, threads: int | None = None, repair: bool = False,
+                  round: bool = False, tolerance: float = 1e-2,
+                  progress: Progress | None = None) -> list[MeshPart]:
+    """The mesh of extract() in parts, for programs that work on many machines. docs/parts.md tells
+    what a part has.
+
+    Args:
+        parts: how many; some may be empty.
+        ghosts: layers of cells of other parts around each part.
+        partition: who cuts the mesh: "curve"; "metis" or "scotch", if that library is there.
+        scale, threads, repair, round, tolerance, progress: as in extract().
+
+    Raises:
+        ArgumentError: for numbers out of range, and without the library; and as extract().
+
+    >>> parts = hexhex.extract_parts(hexhex.generate("box"), 4)
+    >>> [part.own_cells for part in parts]
+    [128, 128, 128, 128]
+    >>> here, there = parts[0], parts[parts[0].neighbours[0].part]
+    >>> back = next(n for n in there.neighbours if n.part == here.part)
+    >>> bool((here.global_points[here.neighbours[0].vertices]
+    ...       == there.global_points[back.vertices]).all())
+    True
+    """
+    options = _options(scale, "atlas", tolerance, 0, repair, round)
+    return [MeshPart._of(values) for values in _hexhex.extract_parts(
+        map._arrays(), *_partition(parts, ghosts, partition), options, _threads(threads), progress)]
+
+
+def extract_parts_to_file(file: Path, map: Map, parts: int, *, ghosts: int = 0,
+                          partition: str = "curve", scale: int = 1, format: str | None = None,
+                          threads: int | None = None, repair: bool = False, round: bool = False,
+                          tolerance: float = 1e-2,
+                          progress: Progress | None = None) -> dict[str, Any]:
+    """The same into files; docs/parts.md has the formats. One part at a time is in memory. Returns
+    how even parts are, and how much they share.
+
+    Raises:
+        FileError: if they cannot be written; and as extract_parts().
+
+    >>> import pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder) / "box.pvtu"
+    ...     summary = hexhex.extract_parts_to_file(file, hexhex.generate("box"), 4, ghosts=1)
+    ...     summary["largest"], len(hexhex.read(file).cells)
+    (128, 512)
+    """
+    options = _options(scale, "atlas", tolerance, 0, repair, round)
+    return _hexhex.extract_parts_to_file(
+        os.fspath(file), map._arrays(), *_partition(parts, ghosts, partition), options,
+        format or "", _threads(threads), progress)
 
 
 class MeshWriter:

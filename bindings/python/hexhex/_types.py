@@ -5,7 +5,7 @@ from __future__ import annotations
 import copyreg
 import dataclasses
 import operator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -835,3 +835,34 @@ copyreg.pickle(_hexhex.LagrangeMesh, lambda h: (
     _hexhex.LagrangeMesh, (h.order, h.points, h.nodes, h.vertex_count, *_of_hexes(h))))
 copyreg.pickle(_hexhex.PiecewiseMesh, lambda h: (
     _hexhex.PiecewiseMesh, (h.mesh, h.arcs, h.patches)))
+
+
+class PartNeighbour(NamedTuple):
+    """What a part has in common with another one; both have the same lists, in the same order."""
+
+    part: int
+    vertices: Indices  #: local, ascending, uint32 of shape (n,)
+    faces: npt.NDArray[np.uint64]  #: of shape (m, 3): own cell, its side, global number of the other
+
+
+@dataclasses.dataclass(frozen=True)
+class MeshPart:
+    """One part of a mesh: of extract_parts(). Numbers are local but for those that are called
+    global, which are those of the mesh in one piece."""
+
+    mesh: Mesh  #: own vertices and cells, then those of ghosts
+    part: int
+    own_points: int
+    own_cells: int
+    global_points: npt.NDArray[np.uint64]  #: per vertex
+    global_cells: npt.NDArray[np.uint64]  #: per cell
+    point_owners: Indices  #: per vertex: the smallest part with a cell at it
+    ghost_parts: Indices  #: per ghost: whose own cell it is
+    ghost_layers: Indices  #: per ghost: from 1 on
+    neighbours: list[PartNeighbour]  #: ascending by part
+
+    @classmethod
+    def _of(cls, values: tuple[Any, ...]) -> MeshPart:
+        mesh, *others, neighbours = values
+        return cls(Mesh._from_handle(mesh), *others,
+                   [PartNeighbour(*neighbour) for neighbour in neighbours])
