@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include <hexhex/error.hpp>
+#include <hexhex/parts.hpp>
 
 #include "suggestions.hpp"
 
@@ -140,6 +141,7 @@ CLI::Validator formatName() {
   const auto check = [](const std::string& name) -> std::string {
     std::vector<std::string> names;
     for (const FileFormat& format : fileFormats()) names.emplace_back(format.name);
+    for (const PartFormat& format : partFormats()) names.emplace_back(format.name);
     if (std::find(names.begin(), names.end(), name) != names.end() || isOtherName(name)) return {};
     return fmt::format("there is no format \"{}\"; `hexhex formats` lists them.{}", name,
                        suggestionFor(name, names));
