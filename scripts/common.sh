@@ -78,6 +78,9 @@ vtk_packages=(python3-vtk9)
 paraview_packages=(paraview-dev python3-paraview libopenmpi-dev liblz4-dev libdouble-conversion-dev
   xvfb xauth)
 
+# What compiles for WebAssembly: a compiler of its own, about a gigabyte with what it brings.
+wasm_packages=(emscripten libfast-float-dev libfmt-dev nlohmann-json3-dev libeigen3-dev)
+
 # The same for packages that can be done without.
 install_optional() {
   install_missing "$@" || say "Without $*, what needs them is left out."

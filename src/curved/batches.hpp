@@ -59,10 +59,10 @@ void parallelBatches(Stage& stage, std::size_t n, std::size_t grain, const F& f,
 
 /// The number of tets in a block, so that it has a few hundred of the elements that they own.
 [[nodiscard]] inline std::size_t tetsPerBlock(std::uint64_t elements, std::size_t tets) {
-  constexpr std::size_t kElements = 256;
-  constexpr std::size_t kLargestBlock = 4096;
-  return std::clamp(kElements * tets / std::max<std::uint64_t>(elements, 1), std::size_t{1},
-                    kLargestBlock);
+  constexpr std::uint64_t kElements = 256;
+  constexpr std::uint64_t kLargestBlock = 4096;
+  return static_cast<std::size_t>(std::clamp(
+      kElements * tets / std::max<std::uint64_t>(elements, 1), std::uint64_t{1}, kLargestBlock));
 }
 
 /// Lengthens an array of which a share is complete then. What is reserved beyond is memory that is

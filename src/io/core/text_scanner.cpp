@@ -84,7 +84,7 @@ std::size_t TextScanner::readCount(std::string_view what, std::size_t bytesEach)
 std::string_view TextScanner::takeLine() {
   const char* const begin = position_;
   skipLine();
-  const std::string_view line(begin, position_);
+  const std::string_view line(begin, static_cast<std::size_t>(position_ - begin));
   if (position_ != end_) ++position_;
   token_ = position_;
   return line;

@@ -129,7 +129,9 @@ class TextScanner {
   [[nodiscard]] std::size_t position() const noexcept {
     return static_cast<std::size_t>(position_ - begin_);
   }
-  [[nodiscard]] std::string_view text() const noexcept { return {begin_, end_}; }
+  [[nodiscard]] std::string_view text() const noexcept {
+    return {begin_, static_cast<std::size_t>(end_ - begin_)};
+  }
 
   /// Moves to the next token; false at the end of the text.
   bool skipSpace() {

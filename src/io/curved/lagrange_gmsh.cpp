@@ -172,8 +172,9 @@ Array<Index> gmshQuadNodes(const LagrangeMesh& mesh, const QuadGroups& quads,
   nodes.reserve(quads.elements.size() * list.size());
   for (std::size_t i = 0; i < quads.elements.size(); ++i) {
     const std::uint64_t place = quads.places[i];
-    const auto [cell, face] = place == kNoPlace ? finder.find(quads.elements[i], kHexFaces, "quad")
-                                                : ElementPlace{place / 8, place % 8};
+    const auto [cell, face] = place == kNoPlace
+                                  ? finder.find(quads.elements[i], kHexFaces, "quad")
+                                  : ElementPlace{place / 8, static_cast<std::size_t>(place % 8)};
     const auto& corners = kHexFaces[face];
     appendNodes(mesh, cell, {corners[0], corners[1], corners[3]}, list, nodes);
   }

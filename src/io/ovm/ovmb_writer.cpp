@@ -49,7 +49,7 @@ class OvmbWriter {
   void put(T value) {
     writeBytesOf(output_, value);
   }
-  void putBytes(std::initializer_list<std::size_t> bytes) {
+  void putBytes(std::initializer_list<std::uint64_t> bytes) {
     for (const std::size_t byte : bytes) put(static_cast<std::uint8_t>(byte));
   }
   void putZeros(std::size_t count) {
@@ -170,7 +170,7 @@ void OvmbWriter::writeTopology(OvmEntity entity, std::size_t valence,
   writeChunk("TOPO", kHeaderBytes + varying + handles.size() * bytesEach, [&] {
     putSpan(count);
     const std::size_t bytesOfValence = varying > 0 ? 1 : 0;
-    putBytes({static_cast<std::size_t>(entity), valence, bytesOfValence, bytesEach});
+    putBytes({static_cast<std::uint64_t>(entity), valence, bytesOfValence, bytesEach});
     put(std::uint64_t{0});  // OpenVolumeMesh misreads other offsets of edges
     for (std::size_t i = 0; i < varying; ++i) putBytes({offsets[i + 1] - offsets[i]});
     if (bytesEach == 1) putArray<std::uint8_t>(handles);

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <new>
 #include <vector>
 
 #include <base/parallel.hpp>
@@ -133,6 +134,13 @@ constexpr const char* kIncomplete = "the data of this array are incomplete.";
 constexpr const char* kIncompleteOrNoBase64 =
     "the data of this array are incomplete, or no base64.";
 
+/// A size that a file tells, which may have more bits than sizes have here.
+std::size_t memorySize(std::uint64_t bytes) {
+  const auto size = static_cast<std::size_t>(bytes);
+  if (size != bytes) throw std::bad_alloc();
+  return size;
+}
+
 }  // namespace
 
 Array<char> decodeVtuArray(std::string_view text, const VtuEncoding& encoding, Stage& stage,
@@ -151,15 +159,16 @@ Array<char> decodeVtuArray(std::string_view text, const VtuEncoding& encoding, S
   if (!readBlocks(source, encoding.lengthBytes, blocks)) fail(kIncomplete);
   const std::size_t count = blocks.begins.size() - 1;
   if (count == 0) return {};
-  Array<char> compressed(blocks.begins.back());
+  Array<char> compressed(memorySize(blocks.begins.back()));
   if (!source.read(compressed.data(), compressed.size())) fail(kIncompleteOrNoBase64);
-  Array<char> bytes((count - 1) * blocks.size + blocks.lastSize);
+  Array<char> bytes(memorySize((count - 1) * blocks.size + blocks.lastSize));
   constexpr std::size_t kGrain = 8;  // blocks of some tens of kilobytes
   const auto inflate = [&](std::size_t i) {
-    const std::uint64_t begin = blocks.begins[i];
-    return inflateBlock(
-        {compressed.data() + begin, blocks.begins[i + 1] - begin},
-        {bytes.data() + i * blocks.size, i + 1 < count ? blocks.size : blocks.lastSize});
+    const auto begin = static_cast<std::size_t>(blocks.begins[i]);
+    const auto end = static_cast<std::size_t>(blocks.begins[i + 1]);
+    const auto place = static_cast<std::size_t>(i * blocks.size);
+    const auto size = static_cast<std::size_t>(i + 1 < count ? blocks.size : blocks.lastSize);
+    return inflateBlock({compressed.data() + begin, end - begin}, {bytes.data() + place, size});
   };
   if (firstFault(stage, count, inflate, kGrain) < count) {
     fail("the compressed data of this array are damaged.");

@@ -1,0 +1,174 @@
+// What goes in and what comes out. Keys of reports are those of the command's JSON: docs/report.md.
+
+/** Called with a stage's name and its finished share in [0, 1], some hundred times in all. */
+export type Progress = (stage: string, share: number) => void;
+
+export interface Place {
+  /** As sentences have it: "tet 12", "edge 3-17". */
+  text: string;
+  kind: "none" | "tet" | "face" | "edge" | "vertex" | "line" | "cell";
+  /** The tet (of a face, too), vertex, line (from 1) or cell; the first vertex of an edge. */
+  index: number;
+  /** The corner opposite a face, 0 to 3; the second vertex of an edge. */
+  second: number;
+}
+
+/** What the library throws: what is wrong, where, and what to do. docs/errors.md has the codes. */
+export class HexhexError extends Error {
+  override readonly name = "HexhexError";
+  constructor(
+    readonly code: string,
+    message: string,
+    readonly place: Place,
+  ) {
+    super(message);
+  }
+}
+
+export interface FileFormat {
+  name: string;
+  /** With the dot; empty: has to be asked for by name. */
+  extension: string;
+  description: string;
+  readsMaps: boolean;
+  writesMaps: boolean;
+  readsHexMeshes: boolean;
+  writesHexMeshes: boolean;
+}
+
+export interface SampleOptions {
+  /** Hexahedra along each block edge, 1 to 10000. */
+  cells?: number;
+  /** Sub-blocks of tets along each block edge, 1 to 500: 12 tets each. */
+  refine?: number;
+  /** Of "star", 3 to 12. */
+  valence?: number;
+  charts?: "aligned" | "blocks" | "random" | "scattered";
+  jitter?: number;
+  onLattice?: number;
+  noise?: number;
+  offset?: number;
+  /** Makes the map seamless instead of integer: 0 to 0.9. */
+  stretch?: number;
+  features?: boolean;
+  seed?: number;
+  /** At least so many tets are flipped or flat. */
+  defects?: number;
+  defectKind?: "interior" | "singular" | "boundary" | "sliver";
+}
+
+export interface ReadOptions {
+  /** A format by its name, whatever the file's name ends in. */
+  format?: string;
+  /** The array that holds the map in .vtu and .vtk files; "igm" if it is not given. */
+  mapArray?: string;
+}
+
+export interface WriteOptions {
+  format?: string;
+  /** Of boundary groups, in degrees. */
+  patchAngle?: number;
+  /** Arrays of .vtu files with zlib. */
+  compress?: boolean;
+}
+
+export interface CheckOptions {
+  /** What the expectation is for. */
+  scale?: number;
+  tolerance?: number;
+}
+
+export interface Defect {
+  code: string;
+  sentence: string;
+  count: number;
+  /** At most ten, the worst first. */
+  worst: { place: Place; amount: number }[];
+}
+
+export interface Expectation {
+  cells: number;
+  boundary_quads: number;
+  inner_singular_edges: Record<string, number>;
+  boundary_singular_edges: Record<string, number>;
+  euler_characteristic: number;
+  components: number;
+  boundary_components: number;
+}
+
+export interface CheckReport {
+  valid: boolean;
+  kind: "integer" | "integer up to a scale" | "seamless" | "almost seamless" | "neither";
+  /** What parameters are to be multiplied by, of a map that is integer up to a scale; or null. */
+  integer_factor: number | null;
+  points: number;
+  tets: number;
+  edges: number;
+  faces: number;
+  inner_faces: number;
+  boundary_faces: number;
+  chart_jumps: number;
+  isolated_vertices: number;
+  tets_inverted_in_space: number;
+  mirrored: boolean;
+  corners_reversed: boolean;
+  max_transition_residual: number;
+  max_displacement: number;
+  inner_singular_tet_edges: Record<string, number>;
+  boundary_singular_tet_edges: Record<string, number>;
+  singular_nodes: number;
+  boundary_genus: number[];
+  defects: Defect[];
+  scale: number;
+  /** null for a map that is not valid. */
+  expected: Expectation | null;
+}
+
+export interface ExtractOptions {
+  /** Multiplies all parameters: scale^3 times as many cells. */
+  scale?: number;
+  tolerance?: number;
+}
+
+/** One of the first three. */
+export interface QuantizeOptions {
+  cells?: number;
+  scale?: number;
+  edgeLength?: number;
+  densify?: boolean;
+  wallTag?: number;
+  tolerance?: number;
+}
+
+export interface QuantizeReport {
+  cells_wanted: number;
+  cells: number;
+  scale: number;
+  displacement: number;
+  blocks: number;
+  arcs: number;
+  shortest_arc: number;
+  longest_arc: number;
+  integers_by: string;
+  attempts: number;
+  split_edges: number;
+  added_tets: number;
+  scaled_jacobian_before: { worst: number; median: number };
+  scaled_jacobian_after: { worst: number; median: number };
+}
+
+export interface VerifyReport {
+  passed: boolean;
+  items: { name: string; expected: string; found: string; passed: boolean }[];
+}
+
+export interface Certificate {
+  quality: { minimum: number; mean: number; not_positive: number; histogram: number[] };
+  validity: {
+    positive: number;
+    refuted: number;
+    undecided: number;
+    minimum: number;
+    worst: { cell: number; place: number[]; position: number[]; scaled_jacobian: number }[];
+  };
+}

@@ -1,0 +1,209 @@
+// The page hexhex.html, from file://, with files that are really dragged onto it.
+import { type Page, test as base, expect } from "@playwright/test";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, truncateSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+
+/** Every test fails if the console says anything, or the page asks for anything but itself. */
+const test = base.extend<{ page: Page }>({
+  page: async ({ page }, use) => {
+    const seen: string[] = [];
+    page.on("console", (message) => {
+      if (!/GPU stall due to ReadPixels|example\.org/.test(message.text())) seen.push(message.text());
+    });
+    page.on("pageerror", (error) => seen.push(error.message));
+    page.on("request", (request) => {
+      if (!/^(blob|data):/.test(request.url()) && request.url() !== address) seen.push(request.url());
+    });
+    await page.goto(address);
+    await page.waitForSelector('body[data-ready="true"]');
+    await use(page);
+    expect(seen).toEqual([]);
+  },
+});
+
+const address = `file://${process.env.HEXHEX_PAGE}`;
+const folder = mkdtempSync(join(tmpdir(), "hexhex-page-"));
+const at = (name: string) => join(folder, name);
+const hexhex = (...args: string[]) =>
+  execFileSync(process.env.HEXHEX_COMMAND!, args, { cwd: folder, encoding: "utf8", stdio: "pipe" });
+
+test.beforeAll(() => {
+  hexhex("generate", "sphere", "--cells", "4", "--refine", "2", "--charts", "random", "-o", "sphere.hexex");
+  hexhex("extract", "sphere.hexex", "--scale", "2", "-o", "two.mesh", "--quiet");
+  hexhex("generate", "torus", "--cells", "3", "--refine", "2", "-o", "torus.ovm");
+  hexhex("generate", "sphere", "--cells", "6", "--refine", "3", "--defects", "4", "-o", "damaged.hexex");
+  hexhex("generate", "cylinder", "--cells", "4", "--refine", "3", "--stretch", "0.3", "-o", "seamless.hexex");
+});
+test.afterAll(() => rmSync(folder, { recursive: true }));
+
+/** Drags files from outside of the browser onto the page, and lets them fall. */
+async function drop(page: Page, ...names: string[]): Promise<void> {
+  const session = await page.context().newCDPSession(page);
+  const data = { items: [], files: names.map(at), dragOperationsMask: 1 };
+  for (const type of ["dragEnter", "dragOver", "drop"] as const) {
+    await session.send("Input.dispatchDragEvent", { type, x: 300, y: 300, data });
+  }
+  await session.detach();
+}
+
+const idle = (page: Page) => page.waitForSelector('body[data-working="false"]');
+async function dropAndWait(page: Page, ...names: string[]): Promise<void> {
+  const before = await page.locator("body").getAttribute("data-done");
+  await drop(page, ...names);
+  await page.waitForSelector(`body:not([data-done="${before}"])`);
+}
+async function click(page: Page, id: string): Promise<void> {
+  await page.locator(id).click();
+  await idle(page);
+}
+const text = (page: Page, id: string) => page.locator(id).textContent();
+const problem = (page: Page) => page.locator("#problem");
+
+async function setScale(page: Page, scale: number): Promise<void> {
+  await page.locator("#scale").fill(String(scale));
+}
+
+/** The viewer's page inside of the page, when its mesh is there. */
+async function meshView(page: Page) {
+  const frame = page.frameLocator("#mesh-view");
+  await frame.locator('body[data-loaded="true"]').waitFor();
+  return frame;
+}
+
+async function saved(page: Page, extension: string): Promise<Buffer> {
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    page.locator("#downloads button", { hasText: new RegExp(`^${extension}$`) }).click(),
+  ]);
+  await idle(page);
+  return readFileSync(await download.path());
+}
+
+test("a good map becomes the mesh that the command makes", async ({ page }) => {
+  await dropAndWait(page, "sphere.hexex");
+  await expect(page.locator("#verdict")).toHaveText("The map is valid.");
+  expect(await text(page, "#cells")).toBe("448");
+  await setScale(page, 2);
+  expect(await text(page, "#cells")).toBe("3,584");
+  await click(page, "#extract");
+  expect(await text(page, "#verification")).toContain("Verified");
+  expect(await text(page, "#valid-cells")).toBe("all cells, proven");
+  const frame = await meshView(page);
+  await expect(frame.locator("#all-cells")).toHaveText("3,584");
+  await expect(frame.locator("#verification")).toContainText("sphere.hexex");
+  for (const extension of [".vtu", ".mesh", ".msh", ".vtk", ".ovm"]) {
+    hexhex("extract", "sphere.hexex", "--scale", "2", "-o", `sphere-2${extension}`, "--quiet");
+    expect((await saved(page, extension)).equals(readFileSync(at(`sphere-2${extension}`)))).toBe(true);
+  }
+});
+
+test("defects of a map are places on the object", async ({ page }) => {
+  await dropAndWait(page, "damaged.hexex");
+  await expect(page.locator("#verdict")).toHaveText("The map is not valid:");
+  await expect(page.locator("#defects .bad").first()).toContainText("FlippedTet");
+  const before = await page.locator("#canvas").screenshot();
+  await page.locator("#defects button").first().click();
+  await expect(page.locator("#extracting")).toBeHidden();
+  expect((await page.locator("#canvas").screenshot()).equals(before)).toBe(false);
+});
+
+test("a seamless map is quantized", async ({ page }) => {
+  await dropAndWait(page, "seamless.hexex");
+  await expect(page.locator("#quantize-hint")).toContainText("The map is seamless");
+  await page.locator("#wanted").fill("500");
+  await click(page, "#quantize");
+  await expect(page.locator("#verdict")).toHaveText("The map is valid.");
+  await click(page, "#extract");
+  expect(await text(page, "#verification")).toContain("Verified");
+});
+
+test("a mesh is viewed, and verified if its map is there", async ({ page }) => {
+  await dropAndWait(page, "two.mesh");
+  expect(await text(page, "#verification")).toContain("no valid map");
+  await expect((await meshView(page)).locator("#all-cells")).toHaveText("3,584");
+  await dropAndWait(page, "two.mesh", "sphere.hexex");
+  expect(await text(page, "#verification")).toBe("Verified: it is the mesh of sphere.hexex at scale 2.");
+  await dropAndWait(page, "two.mesh", "torus.ovm");
+  expect(await text(page, "#verification")).toContain("It is not the mesh of torus.ovm");
+});
+
+test("wrong and empty files get a sentence", async ({ page }) => {
+  const hostile = `<img src=x onerror="document.title='stolen'">.hexex`;
+  writeFileSync(at(hostile), "no map at all");
+  writeFileSync(at("empty.hexex"), "");
+  writeFileSync(at("letter.txt"), "Dear reader");
+  await dropAndWait(page, hostile);
+  await expect(problem(page)).toContainText(hostile.slice(0, 4));
+  await expect(problem(page)).toContainText("line 1");
+  expect(await page.locator("main img").count()).toBe(0);
+  await dropAndWait(page, "empty.hexex");
+  await expect(problem(page)).toContainText("empty.hexex");
+  await dropAndWait(page, "letter.txt");
+  await expect(problem(page)).toContainText("letter.txt");
+  await dropAndWait(page, "sphere.hexex", "torus.ovm");
+  await expect(problem(page)).toContainText("two of a kind");
+  await dropAndWait(page, "sphere.hexex");
+  await expect(problem(page)).toBeHidden();
+  expect(await page.title()).toBe("hexhex");
+});
+
+test("names of files are text in the page of the mesh, too", async ({ page }) => {
+  const hostile = `"'<img src=x onerror=alert(1)><!--&lt;.mesh`;
+  writeFileSync(at(hostile), readFileSync(at("two.mesh")));
+  await dropAndWait(page, hostile);
+  expect(await text(page, "#mesh-name")).toBe(hostile);
+  const frame = await meshView(page);
+  await expect(frame.locator("#title")).toHaveText(hostile);
+  expect(await frame.locator("img").count()).toBe(0);
+});
+
+test("500 MB of zeros are no map, and the page goes on", async ({ page }) => {
+  writeFileSync(at("zeros.hexex"), "");
+  truncateSync(at("zeros.hexex"), 500e6);
+  await dropAndWait(page, "zeros.hexex");
+  await expect(problem(page)).toContainText("zeros.hexex");
+  await dropAndWait(page, "sphere.hexex");
+  await click(page, "#extract");
+  expect(await text(page, "#verification")).toContain("Verified");
+});
+
+test("work can be cancelled in the middle, and done again", async ({ page }) => {
+  await dropAndWait(page, "sphere.hexex");
+  await setScale(page, 30);
+  await page.locator("#extract").click();
+  // Some stage has begun.
+  await expect(page.locator("#progress")).toContainText("%");
+  await page.locator("#cancel").click();
+  await idle(page);
+  await expect(problem(page)).toBeHidden();
+  await expect(page.locator("#mesh")).toBeHidden();
+  await setScale(page, 2);
+  await click(page, "#extract");
+  expect(await text(page, "#mesh-cells")).toBe("3,584");
+});
+
+test("a second map has the memory of the first", async ({ page }) => {
+  await dropAndWait(page, "sphere.hexex");
+  await setScale(page, 12);
+  await click(page, "#extract");
+  const workers = () => page.workers().length;
+  const after = workers();
+  for (const name of ["torus.ovm", "sphere.hexex", "torus.ovm"]) await dropAndWait(page, name);
+  // One worker, which began with an empty memory.
+  expect(workers()).toBeLessThanOrEqual(after);
+  expect(Number.parseInt((await text(page, "#memory"))!)).toBeLessThan(100);
+});
+
+test("samples are in a menu, and nothing reaches the network", async ({ page }) => {
+  await page.locator("#samples").selectOption({ label: "cylinder, seamless" });
+  await page.waitForSelector("#quantizing:not([hidden])");
+  await idle(page);
+  const refused = await page.evaluate(() => fetch("https://example.org").then(() => "reached", () => "refused"))
+    .catch(() => "refused");
+  expect(refused).toBe("refused");
+  const policy = await page.locator("meta[http-equiv]").getAttribute("content");
+  expect(policy).toContain("default-src 'none'");
+  expect(policy).not.toContain("connect-src");
+});
