@@ -88,24 +88,20 @@ bool areSamePoint(const PreparedMap& map, const LatticePlace& a, const LatticePl
          distance(exact.corners[b.tet][cornerThere], scaled(b.z, exact.unit));
 }
 
-bool HalfDiagonals::endsAt(Index tet, const GridPoint& cell, const GridPoint& offset,
-                           const LatticePlace& place) {
-  Segment segment{tet, {}, {}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    segment.start[k] = (2 * std::int64_t{cell[k]} + 1) * half_;
-    segment.end[k] = (2 * (std::int64_t{cell[k]} + offset[k])) * half_;
-  }
+bool HalfDiagonals::endsAt(Segment segment, int exit, const LatticePlace& place) {
   // Tets may be passed more than once only if the map is not what preparation says.
   for (std::size_t steps = 0; steps <= map_.topology.tetCount(); ++steps) {
-    int exit = 0;
-    const Step step = look(segment, exit);
-    if (step == Step::IsUncertain) break;
-    if (step == Step::EndsInside) {
-      return areSamePoint(map_, endOf(segment, kWholeTet), place);
+    if (exit == kNoExit) {
+      const Step step = look(segment, exit);
+      if (step == Step::IsUncertain) break;
+      if (step == Step::EndsInside) {
+        return areSamePoint(map_, endOf(segment, kWholeTet), place);
+      }
     }
     if (!cross(segment, exit)) return false;
     // A lattice point of the tet is one that the segment comes to within the tet.
     if (segment.tet == place.tet && isAtEnd(segment, place.z)) return true;
+    exit = kNoExit;
   }
   const std::optional<LatticePlace> end = followExactly(segment);
   return end && areSamePoint(map_, *end, place);

@@ -36,21 +36,19 @@ class HalfDiagonals {
  public:
   explicit HalfDiagonals(const PreparedMap& map) noexcept : map_(map), half_(map.exact.unit / 2) {}
 
-  /// Whether a half diagonal ends at a lattice point.
-  /// @param tet     contains the centre of the cell
-  /// @param cell    its smallest corner in the chart of the tet
-  /// @param offset  of the corner from it, each 0 or 1
-  /// @param place   a lattice point of its closed tet
-  [[nodiscard]] bool endsAt(Index tet, const GridPoint& cell, const GridPoint& offset,
-                            const LatticePlace& place);
-
- private:
-  /// A segment as a tet sees it, in lattice units.
+  /// A half diagonal, or what is left of it, as a tet sees it, in lattice units.
   struct Segment {
     Index tet;
-    LatticePoint start;
+    LatticePoint start;  ///< in the tet, or, seen from farther tets, before it
     LatticePoint end;
   };
+
+  /// Whether a half diagonal ends at a lattice point.
+  /// @param exit   the face through which it leaves the tet, or kNoExit: unknown
+  /// @param place  a lattice point of its closed tet
+  [[nodiscard]] bool endsAt(Segment segment, int exit, const LatticePlace& place);
+
+ private:
   /// What floating point proves about a tet on the way.
   enum class Step : std::uint8_t { EndsInside, Leaves, IsUncertain };
   [[nodiscard]] Step look(const Segment& segment, int& exit) const noexcept;

@@ -38,7 +38,8 @@ std::pair<std::size_t, std::size_t> tetsWith(const Array<std::uint64_t>& begin, 
           static_cast<std::size_t>(high - begin.begin())};
 }
 
-void LatticePlaces::prove(Stage& stage, Faults& wrong) const {
+void LatticePlaces::prove(bool listed, Stage& stage, Faults& wrong) {
+  if (listed) places_.resize(count());
   parallelForWith(
       stage, map_.topology.tetCount(), kSweepBlock, [] { return std::vector<char>(); },
       [&](std::size_t tet, std::vector<char>& seen) {
@@ -46,13 +47,13 @@ void LatticePlaces::prove(Stage& stage, Faults& wrong) const {
       });
 }
 
-bool LatticePlaces::isProven(Index tet, std::vector<char>& seen) const {
+bool LatticePlaces::isProven(Index tet, std::vector<char>& seen) {
   const std::uint64_t first = swept_.numbers.begin[tet];
   std::uint64_t left = swept_.numbers.begin[tet + 1] - first;
   const std::span<const SweptLine> lines = swept_.lines.of(tet);
   if (lines.empty()) return left == 0;
   seen.assign(left, 0);
-  bool right = areInTet(map_, FaceSides(map_.exact.corners[tet]), lines, 0);
+  bool right = areInTet(map_, FaceSides(map_.exact.corners[tet], map_.exact.unit), lines, 0);
   forEachRun(tet, [&](const VertexRun& run) {
     right = right && run.count <= left && run.first >= first &&
             run.first - first + run.count <= seen.size();
@@ -61,8 +62,17 @@ bool LatticePlaces::isProven(Index tet, std::vector<char>& seen) const {
     char* const begin = &seen[run.first - first];
     right = std::find(begin, begin + run.count, 1) == begin + run.count;
     std::fill_n(begin, run.count, 1);
+    if (!places_.empty()) list(tet, run);
   });
   return right && left == 0;
+}
+
+void LatticePlaces::list(Index tet, const VertexRun& run) {
+  GridPoint z = run.line->point(run.offset);
+  for (std::uint64_t v = run.first; v < run.first + run.count; ++v) {
+    places_[v] = {tet, z, run.simplex};
+    ++z[run.line->axes()[2]];
+  }
 }
 
 void LatticePlaces::compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage,
@@ -82,20 +92,6 @@ void LatticePlaces::compare(std::uint64_t first, std::span<const Vec3> points, S
                     [&](std::size_t k) { wrong.add(low + k); });
     });
   });
-}
-
-void LatticePlaces::spread(Stage& stage) {
-  places_.resize(count());
-  parallelFor(stage, map_.topology.tetCount(), kSweepBlock, [&](std::size_t tet) {
-    forEachRun(static_cast<Index>(tet), [&](const VertexRun& run) {
-      GridPoint z = run.line->point(run.offset);
-      for (std::uint64_t v = run.first; v < run.first + run.count; ++v) {
-        places_[v] = {static_cast<Index>(tet), z, run.simplex};
-        ++z[run.line->axes()[2]];
-      }
-    });
-  });
-  swept_.lines = TetLines(0);
 }
 
 LatticePlace PlaceFinder::search(std::uint64_t point, Index likely) {

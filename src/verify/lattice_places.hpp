@@ -39,15 +39,24 @@ class LatticePlaces {
   [[nodiscard]] std::uint64_t count() const noexcept { return swept_.numbers.count(); }
 
   /// Whether all points of each tet are in it, and have different numbers of its own.
-  /// @param wrong  receives tets where this is not so
-  void prove(Stage& stage, Faults& wrong) const;
+  /// @param listed  whether to make a list of all places
+  /// @param wrong   receives tets where this is not so
+  void prove(bool listed, Stage& stage, Faults& wrong);
   /// Are points where the map has their lattice points?
   /// @param first  number of the first
   void compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage,
                Faults& wrong) const;
-  /// Makes an array of all places, and forgets the lines of the tets. (With a search for each place
-  /// instead, verification takes twice as long.)
-  void spread(Stage& stage);
+  /// Gives the lines of the tets back: only listed places are needed from now on.
+  void forgetLines() { swept_.lines = TetLines(0); }
+
+  /// Calls visit(number, z) for the lattice points that a tet owns, if places are listed.
+  template <class Visit>
+  void forEachListed(Index tet, const Visit& visit) const {
+    if (places_.empty()) return;
+    for (std::uint64_t v = swept_.numbers.begin[tet]; v < swept_.numbers.begin[tet + 1]; ++v) {
+      visit(v, places_[v].z);
+    }
+  }
 
  private:
   friend class PlaceFinder;
@@ -62,11 +71,13 @@ class LatticePlaces {
           if (run.owned) visit(run);
         });
   }
-  [[nodiscard]] bool isProven(Index tet, std::vector<char>& seen) const;
+  [[nodiscard]] bool isProven(Index tet, std::vector<char>& seen);
+  void list(Index tet, const VertexRun& run);
 
   const PreparedMap& map_;
   SweptVertices swept_;
-  Array<LatticePlace> places_;  ///< or empty
+  /// Or empty. (With a search for each place instead, verification takes twice as long.)
+  Array<LatticePlace> places_;
 };
 
 /// One per thread.

@@ -10,9 +10,9 @@
 
 namespace hexhex {
 
-/// What is known about the corners of the cells of one tet. Cells whose centres are in one tet
-/// agree about the lattice point at some coordinates: a point that both half diagonals can be bent
-/// to, inside of their cells, is the middle between their centres, which is in the tet as well.
+/// Which vertices are at the corners of the cells of one tet, by coordinates in its chart. Cells
+/// whose centres are in one tet agree about that: a point that both half diagonals can be bent to,
+/// inside of their cells, is the middle between their centres, which is in the tet as well.
 template <class Number>
 class CornerTable {
  public:
@@ -39,24 +39,39 @@ class CornerTable {
     }
     // A long thin tet has few centres for its box: its corners are followed one by one.
     isUsed_ = volume <= 32 * static_cast<double>(centers) + 64;
-    if (isUsed_) vertices_.assign(size_[0] * size_[1] * size_[2], kUnknown);
+    if (!isUsed_) return;
+    const std::array<std::uint8_t, 3>& axes = lines.front().axes();
+    strides_[axes[2]] = 1;
+    strides_[axes[1]] = size_[axes[2]];
+    strides_[axes[0]] = size_[axes[2]] * size_[axes[1]];
+    vertices_.assign(size_[0] * size_[1] * size_[2], kUnknown);
   }
 
   [[nodiscard]] bool isUsed() const noexcept { return isUsed_; }
-  /// Where the vertex at a lattice point is: kUnknown if it is not known yet.
+  [[nodiscard]] const std::array<std::size_t, 3>& strides() const noexcept { return strides_; }
+
+  /// Where the vertex at a corner is: kUnknown if it is not known yet.
   [[nodiscard]] Number* at(const GridPoint& z) noexcept {
-    const auto from = [&](std::size_t k) { return static_cast<std::size_t>(z[k] - first_[k]); };
-    return &vertices_[(from(0) * size_[1] + from(1)) * size_[2] + from(2)];
+    std::size_t place = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      place += static_cast<std::size_t>(z[k] - first_[k]) * strides_[k];
+    }
+    return &vertices_[place];
   }
-  /// From one to the next along each axis.
-  [[nodiscard]] std::array<std::size_t, 3> strides() const noexcept {
-    return {size_[1] * size_[2], size_[2], 1};
+
+  /// Enters a vertex if it is the corner of any cell.
+  void enter(const GridPoint& z, Number vertex) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (static_cast<std::size_t>(std::int64_t{z[k]} - first_[k]) >= size_[k]) return;
+    }
+    *at(z) = vertex;
   }
 
  private:
   bool isUsed_ = false;
   GridPoint first_{};
   std::array<std::size_t, 3> size_{};
+  std::array<std::size_t, 3> strides_{};
   std::vector<Number> vertices_;
 };
 
@@ -68,7 +83,7 @@ class CellProver {
              Faults& hints, Faults& wrong)
       : map_(map),
         centers_(centers),
-        vertices_(places.count()),
+        places_(places),
         finder_(places),
         diagonals_(map),
         hints_(hints),
@@ -81,9 +96,9 @@ class CellProver {
     const std::uint64_t end = centers_.begin[tet + 1];
     if (cell == end) return;
     if (lines.empty()) return hints_.add(tet);
-    const FaceSides sides(map_.exact.corners[tet]);
+    const FaceSides sides(map_.exact.corners[tet], map_.exact.unit / 2);
     bool right = areInTet(map_, sides, lines, map_.exact.unit / 2);
-    begin(lines);
+    begin(tet, lines);
     forEachOwnedCenter(map_.topology, tet, lines, [&](const SweptLine& line, std::uint32_t i) {
       right = right && cell < end;
       if (!right) return;
@@ -97,14 +112,20 @@ class CellProver {
 
  private:
   using Number = typename Cell::value_type;
+  static constexpr Number kUnknown = CornerTable<Number>::kUnknown;
 
-  void begin(std::span<const SweptLine> lines) {
+  void begin(Index tet, std::span<const SweptLine> lines) {
     known_.begin(lines);
-    const std::array<std::size_t, 3> strides = known_.strides();
+    if (!known_.isUsed()) return;
+    const std::array<std::size_t, 3>& strides = known_.strides();
     for (std::size_t c = 0; c < 8; ++c) {
       steps_[c] = 0;
       for (std::size_t k = 0; k < 3; ++k) steps_[c] += kCellCorners[c][k] != 0 ? strides[k] : 0;
     }
+    // A lattice point of the tet is one that the half diagonal comes to within the tet.
+    places_.forEachListed(tet, [this](std::uint64_t vertex, const GridPoint& z) {
+      known_.enter(z, static_cast<Number>(vertex));
+    });
   }
 
   bool isRight(Index tet, const FaceSides& sides, const GridPoint& z, const Cell& cell) {
@@ -115,11 +136,17 @@ class CellProver {
       return true;
     }
     Number* const known = known_.at(z);
+    Number differences = 0;
+    bool isKnown = true;
+    for (std::size_t c = 0; c < 8; ++c) {
+      differences |= known[steps_[c]] ^ cell[c];
+      isKnown = isKnown && cell[c] != kUnknown;
+    }
+    if (differences == 0 && isKnown) return true;
     for (std::size_t c = 0; c < 8; ++c) {
       Number& vertex = known[steps_[c]];
-      if (vertex == cell[c] && vertex != CornerTable<Number>::kUnknown) continue;
-      if (vertex != CornerTable<Number>::kUnknown || !isCorner(tet, sides, z, c, cell[c]))
-        return false;
+      if (vertex == cell[c] && vertex != kUnknown) continue;
+      if (vertex != kUnknown || !isCorner(tet, sides, z, c, cell[c])) return false;
       vertex = cell[c];
     }
     return true;
@@ -127,25 +154,26 @@ class CellProver {
 
   bool isCorner(Index tet, const FaceSides& sides, const GridPoint& z, std::size_t corner,
                 Number vertex) {
-    if (vertex >= vertices_) return false;
+    if (vertex >= places_.count()) return false;
     const LatticePlace place = finder_.find(vertex, tet);
     const GridPoint& offset = kCellCorners[corner];
     const GridPoint end = {z[0] + offset[0], z[1] + offset[1], z[2] + offset[2]};
-    // A lattice point of the tet is one that the half diagonal comes to within the tet.
-    if (place.tet == tet && place.z[0] == end[0] && place.z[1] == end[1] && place.z[2] == end[2]) {
-      return true;
+    if (place.tet == tet && place.z == end) return true;
+    const std::int64_t unit = map_.exact.unit;
+    LatticePoint start;
+    LatticePoint stop;
+    for (std::size_t k = 0; k < 3; ++k) {
+      start[k] = z[k] * unit + unit / 2;
+      stop[k] = end[k] * unit;
     }
-    if (place.simplex != kWholeTet) {
-      const std::int64_t unit = map_.exact.unit;
-      const CornerMask simplex = sides.simplexOf({end[0] * unit, end[1] * unit, end[2] * unit});
-      if (simplex != kNoSimplex) return areSamePoint(map_, {tet, end, simplex}, place);
-    }
-    return diagonals_.endsAt(tet, z, offset, place);
+    const FaceSides::Place where = sides.placeOf(stop);
+    if (where.beyond == 0) return areSamePoint(map_, {tet, end, where.simplex}, place);
+    return diagonals_.endsAt({tet, start, stop}, sides.exit(start, where), place);
   }
 
   const PreparedMap& map_;
   const CellCenters& centers_;
-  std::uint64_t vertices_;
+  const LatticePlaces& places_;
   PlaceFinder finder_;
   HalfDiagonals diagonals_;
   Faults& hints_;
@@ -181,11 +209,11 @@ ElementCounts expectedElements(const Expectation& expected) noexcept {
   return counts;
 }
 
-Proof::Proof(const PreparedMap& map, const Expectation& expected, Stage& stage)
+Proof::Proof(const PreparedMap& map, const Expectation& expected, bool listed, Stage& stage)
     : map_(map), places_(map, stage), centers_(findCells(map, stage)) {
   if (places_.count() == expectedElements(expected).vertices &&
       centers_.count() == expected.cells) {
-    places_.prove(stage, hints_);
+    places_.prove(listed, stage, hints_);
   } else {
     hints_.add(0);
   }
@@ -210,10 +238,10 @@ bool isProven(const PreparedMap& map, const Expectation& expected, const HexMesh
       mesh.points.size() != expectedElements(expected).vertices) {
     return false;
   }
-  Proof proof(map, expected, stage);
+  Proof proof(map, expected, true, stage);
   if (!proof.passed()) return false;
   proof.compare(0, mesh.points, stage);
-  proof.hasAllPoints(stage);
+  proof.hasAllPoints();
   proof.compare(0, std::span<const Hex>(mesh.cells), stage);
   return proof.passed();
 }

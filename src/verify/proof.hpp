@@ -37,14 +37,15 @@ class Proof {
  public:
   /// @param map       scaled; must outlive this
   /// @param expected  of the scaled map
-  Proof(const PreparedMap& map, const Expectation& expected, Stage& stage);
+  /// @param listed    whether to make a list of 20 bytes per vertex, with which cells are faster
+  Proof(const PreparedMap& map, const Expectation& expected, bool listed, Stage& stage);
 
   /// Points from number `first` on. To be called only as long as the hints are right.
   void compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage) {
     places_.compare(first, points, stage, positions_);
   }
-  /// Makes cells faster to compare, and takes 20 bytes per vertex. No more points may come.
-  void hasAllPoints(Stage& stage) { places_.spread(stage); }
+  /// To be called before cells, if there is a list and no more points come: saves memory.
+  void hasAllPoints() { places_.forgetLines(); }
   /// Cells from number `first` on; likewise.
   template <class Cell>
   void compare(std::uint64_t first, std::span<const Cell> cells, Stage& stage);

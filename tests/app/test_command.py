@@ -631,6 +631,56 @@ class Pipeline(CommandTest):
         if result.returncode == SUCCESS:
             self.assertIsNone(json.loads(result.stdout))  # nothing was to be repaired
 
+    def test_verify_says_what_is_no_mesh(self):
+        self.generate("box", "--cells", "1")
+        self.run_command("extract", "map.hexex", "-o", "right.mesh", "--quiet")
+        lines = (self.folder / "right.mesh").read_text().splitlines()
+
+        def section(name):
+            begin = lines.index(name) + 2
+            return [" ".join(line.split()[:-1]) for line in lines[begin:begin + int(lines[begin - 1])]]
+
+        points, cells = section("Vertices"), section("Hexahedra")
+        self.assertEqual((len(points), len(cells)), (27, 8))
+
+        def verify(points, cells, expect=FAILURE):
+            text = ["MeshVersionFormatted 2", "Dimension 3", f"Vertices {len(points)}", *(f"{p} 0" for p in points),
+                    f"Hexahedra {len(cells)}", *(f"{c} 0" for c in cells), "End"]
+            self.write("a.mesh", "\n".join(text) + "\n")
+            return self.run_command("verify", "map.hexex", "a.mesh", expect=expect)
+
+        verify(points, cells, SUCCESS)
+        first = cells[0].split()
+        for corners in ("1 1 1 1 1 1 1 1", "1 2 3 4 1 2 3 4", " ".join(first[4:] + first[:4])):
+            self.assertIn("wrong_cells", verify(points, [corners] + cells[1:]).stdout)
+            verify(points, [corners] * 8)
+        verify(points, cells * 100)
+        for point in ("5 5 5", "1e308 -1e308 0"):
+            self.assertIn("vertices_off_lattice", verify([point] + points[1:], cells).stdout)
+        for corner in ("0", "28", "4294967295", "-1"):
+            corners = " ".join(first[:7] + [corner])
+            self.assertIn("line", verify(points, [corners] + cells[1:], FILE_PROBLEM).stderr)
+        # Whether a file says so or its mesh is refused.
+        for arguments in [(points, []), ([], []), (["nan 0 0"] + points[1:], cells)]:
+            self.assertIn(verify(*arguments, expect=None).returncode, (FAILURE, FILE_PROBLEM))
+
+    def test_verify_takes_memory_for_its_mesh_alone(self):
+        self.generate("box", "--cells", "1", name="box.hexex")
+        self.run_command("extract", "box.hexex", "-o", "million.vtu", "--scale", "50", "--no-verify", "--quiet")
+        size = (self.folder / "million.vtu").stat().st_size
+
+        def peak(*arguments):
+            run = subprocess.Popen([self.command, "verify", *arguments, "--quiet"], cwd=self.folder)
+            _, status, usage = os.wait4(run.pid, 0)
+            run.returncode = os.waitstatus_to_exitcode(status)
+            self.assertEqual(run.returncode, FAILURE)
+            return 1024 * usage.ru_maxrss
+
+        # A mesh 125,000 times too large, of a million cells, and one that is as much too small.
+        self.assertLess(peak("box.hexex", "million.vtu"), 5 * size + 50e6)
+        self.run_command("extract", "box.hexex", "-o", "box.vtu", "--quiet")
+        self.assertLess(peak("box.hexex", "box.vtu", "--scale", "50"), 50e6)
+
     def test_quiet_is_silent(self):
         map_file = self.generate("box")
         for arguments in [["generate", "box", "-o", "b.hexex"], ["check", map_file],

@@ -24,6 +24,37 @@ static hexhex_map* sphere(int refine) {
   return map;
 }
 
+/* Meshes that are none get a verdict. */
+static void test_verify_of_bad_meshes(void) {
+  hexhex_error error;
+  hexhex_map* map = sphere(1);
+  const double nan_points[24] = {NAN, NAN, NAN, NAN};
+  const double far_points[24] = {1e308, -1e308, INFINITY};
+  const double zeros[24] = {0};
+  const double* points[3] = {nan_points, far_points, zeros};
+  const uint32_t cells[4][8] = {{0, 1, 2, 3, 4, 5, 6, 7},
+                                {0, 0, 1, 1, 2, 2, 3, 3},
+                                {0, 0, 0, 0, 0, 0, 0, 0},
+                                {0, 1, 2, 3, 4, 5, 6, 8}};
+  for (int p = 0; p < 3; ++p) {
+    for (int c = 0; c <= 4; ++c) {
+      hexhex_mesh_arrays arrays = HEXHEX_MESH_ARRAYS_INIT;
+      hexhex_mesh* mesh = NULL;
+      hexhex_verify_report* report = NULL;
+      arrays.point_count = 8;
+      arrays.points = points[p];
+      arrays.cell_count = c < 4; /* the last one has no cells */
+      arrays.cells = cells[c % 4];
+      CHECK_OK(hexhex_mesh_copy(&arrays, &mesh, &error));
+      CHECK_OK(hexhex_verify(map, mesh, 1e-2, 1, NULL, &report, &error));
+      CHECK(!hexhex_verify_passed(report));
+      hexhex_verify_report_destroy(report);
+      hexhex_mesh_destroy(mesh);
+    }
+  }
+  hexhex_map_destroy(map);
+}
+
 static double corner_determinant(const double* p, const uint32_t* cell) {
   const double* o = p + 3 * cell[0];
   double e[3][3];
@@ -1436,6 +1467,7 @@ int main(void) {
   /* First: oneTBB has no threads yet, which would not survive the fork. */
   test_memory();
   test_corner_order();
+  test_verify_of_bad_meshes();
   test_everything_once(folder);
   test_errors(folder);
   test_context();

@@ -140,6 +140,31 @@ def test_errors(sphere, tmp_path):
         hexhex.generate("banana")
 
 
+def test_verify_meshes_that_are_none(sphere):
+    mesh = hexhex.extract(sphere)
+
+    def damaged(points=None, cells=None):
+        return hexhex.verify(sphere, hexhex.Mesh(mesh.points if points is None else points,
+                                                 mesh.cells if cells is None else cells))
+
+    assert damaged()
+    for value in (np.nan, np.inf, 1e308, 0):
+        points = np.array(mesh.points)
+        points[7] = value
+        assert not damaged(points=points)
+        assert not damaged(points=np.full_like(points, value))
+    for corners in ([0] * 8, [0, 1, 2, 3] * 2):
+        cells = np.array(mesh.cells)
+        cells[5] = corners
+        assert not damaged(cells=cells)
+        assert not damaged(cells=np.full_like(cells, corners))
+    assert not damaged(cells=mesh.cells[:0])
+    assert not damaged(cells=np.tile(mesh.cells, (100, 1)))
+    cells = np.array(mesh.cells)
+    cells[5, 3] = len(mesh.points)
+    assert not damaged(cells=cells)
+
+
 def test_files(sphere, tmp_path):
     hexhex.write(sphere, tmp_path / "map.hexex")
     assert np.array_equal(hexhex.read(tmp_path / "map.hexex").igm, sphere.igm)

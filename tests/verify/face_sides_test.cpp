@@ -26,7 +26,7 @@ TEST(FaceSides, AreThoseOfTheExactPredicate) {
     const int sign = orientation(tet[0], tet[1], tet[2], tet[3]);
     if (sign == 0) continue;
     if (sideOfFace(tet, 0, tet[0]) < 0) std::swap(tet[0], tet[1]);
-    const FaceSides sides(tet);
+    const FaceSides sides(tet, unit);
     for (int p = 0; p < 20; ++p) {
       const LatticePoint point = draw();
       const CornerMask simplex = sides.simplexOf(point);
