@@ -1,12 +1,15 @@
 # Compile options shared by every target of the project: interface target hexhex_options.
 add_library(hexhex_options INTERFACE)
 target_compile_features(hexhex_options INTERFACE cxx_std_20)
-target_compile_options(hexhex_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wshadow
-  # The same doubles on every machine: no fused multiply-add where the source has none.
-  -ffp-contract=off)
-if(HEXHEX_WARNINGS_AS_ERRORS)
-  target_compile_options(hexhex_options INTERFACE -Werror)
+# The same doubles on every machine: no fused multiply-add where the source has none.
+if(MSVC)  # clang-cl
+  target_compile_options(hexhex_options INTERFACE /W3 /utf-8 /bigobj /EHsc /clang:-ffp-contract=off)
+else()
+  target_compile_options(hexhex_options INTERFACE
+    -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off)
+  if(HEXHEX_WARNINGS_AS_ERRORS)
+    target_compile_options(hexhex_options INTERFACE -Werror)
+  endif()
 endif()
 
 # HEXHEX_SANITIZE=address,undefined or thread: set by the presets.
@@ -40,7 +43,9 @@ macro(hexhex_needs what)
     string(REPLACE "=" ";" pair ${pair})
     list(GET pair 0 name)
     list(GET pair 1 package)
-    find_package(${name} QUIET)
+    if(NOT ${name}_FOUND)
+      find_package(${name} QUIET)
+    endif()
     if(NOT ${name}_FOUND)
       list(APPEND missing ${name})
       list(APPEND missing_packages ${package})

@@ -2,7 +2,16 @@
 
 #include <array>
 #include <cmath>
+#if defined(_WIN32)
+#if !defined(NOMINMAX)
+#define NOMINMAX
+#endif
+#include <windows.h>
+// After it, as it needs it.
+#include <psapi.h>
+#else
 #include <sys/resource.h>
+#endif
 
 #include <hexhex/version.hpp>
 
@@ -135,6 +144,12 @@ std::string reportAsJson(const ExtractionRecord& record) {
 }
 
 std::uint64_t peakMemory() {
+#if defined(_WIN32)
+  PROCESS_MEMORY_COUNTERS counters{};
+  return K32GetProcessMemoryInfo(GetCurrentProcess(), &counters, sizeof counters) != 0
+             ? counters.PeakWorkingSetSize
+             : 0;
+#else
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
 #ifdef __APPLE__
@@ -143,6 +158,7 @@ std::uint64_t peakMemory() {
   constexpr std::uint64_t kUnit = 1024;
 #endif
   return static_cast<std::uint64_t>(usage.ru_maxrss) * kUnit;
+#endif
 }
 
 }  // namespace hexhex::command

@@ -223,7 +223,7 @@ class Survey {
     const TetParameters& v = parameters_.given(tetOf(mate));
     const auto& here = kAscendingFaceCorners[topology_.order[tetOf(halfFace)]][halfFace % 4];
     const auto& there = kAscendingFaceCorners[topology_.order[tetOf(mate)]][mate % 4];
-    const auto bits = [](const double* x) { return reinterpret_cast<PairMask>(loadPair(x)); };
+    const auto bits = [](const double* x) { return bitsAs<PairMask>(loadPair(x)); };
     PairMask difference = {0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
       // Two overlapping pairs have all three coordinates.

@@ -55,9 +55,9 @@ HalvedTet::HalvedTet(const LatticeTet& corners, double perHalf) noexcept {
   const Pair lengthXy = floorOf(afterXy) + minusFirstXy;
   const Pair endsZ = floorOf(aroundZ);
   const double lengthZ = endsZ[0] + endsZ[1];
-  firstXy = -__builtin_convertvector(minusFirstXy, IntPair);
+  firstXy = -truncated<IntPair>(minusFirstXy);
   firstZ = -static_cast<std::int32_t>(endsZ[0]);
-  stepsXy = __builtin_convertvector(lengthXy, IntPair);
+  stepsXy = truncated<IntPair>(lengthXy);
   stepsZ = static_cast<std::int32_t>(lengthZ);
   mostSteps = std::max(std::max(lengthXy[0], lengthXy[1]), lengthZ);
   const Pair bounds = larger(larger(beforeXy, afterXy), aroundZ);

@@ -13,16 +13,19 @@
 #include <cstring>
 #include <utility>
 
+#include <base/lanes.hpp>
 #include <mesh/cell_measures.hpp>
 
+#if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi"
+#endif
 
 namespace hexhex {
 namespace {
 
 /// Numbers that are worked with at once. Each behaves as it would alone.
-using Two = double __attribute__((vector_size(16)));
-using Four = double __attribute__((vector_size(32)));
+using Two = Lanes<double, 2>;
+using Four = Lanes<double, 4>;
 
 /// One truth value for each: 0 or -1.
 template <class V>
@@ -48,20 +51,10 @@ Vector<V> cross(const Vector<V>& a, const Vector<V>& b) noexcept {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// As std::min.
-template <class V>
-[[gnu::always_inline]] inline V smaller(const V& a, const V& b) noexcept {
-  return a < b ? a : b;
-}
-template <class V>
-[[gnu::always_inline]] inline V larger(const V& a, const V& b) noexcept {
-  return a < b ? b : a;
-}
-
 /// x -> x |x|, which keeps order and sign, so that one root is taken instead of nine.
 template <class V>
 [[gnu::always_inline]] inline V signedSquare(const V& x) noexcept {
-  return x * reinterpret_cast<V>(reinterpret_cast<Mask<V>>(x) & std::int64_t{0x7fffffffffffffff});
+  return x * bitsAs<V>(bitsAs<Mask<V>>(x) & std::int64_t{0x7fffffffffffffff});
 }
 
 /// Edges along the three axes, by the two other coordinates of their place, the lower axis in bit
@@ -218,7 +211,9 @@ void measureAll(const Vec3* points, std::span<const Hex> cells, CellMeasures& me
   }
 }
 
-#if defined(__x86_64__)
+// Windows aligns stacks too little for wide registers.
+#if defined(__x86_64__) && !defined(_WIN32) && !defined(HEXHEX_PLAIN_VECTORS)
+#define HEXHEX_FOUR_LANES 1
 [[gnu::target("avx2"), gnu::flatten]] void measureFour(const Vec3* points,
                                                        std::span<const Hex> cells,
                                                        CellMeasures& measures) noexcept {
@@ -229,7 +224,7 @@ void measureAll(const Vec3* points, std::span<const Hex> cells, CellMeasures& me
 }  // namespace
 
 std::span<const MeasureCells> measuresOfCells() noexcept {
-#if defined(__x86_64__)
+#if defined(HEXHEX_FOUR_LANES)
   static const std::array<MeasureCells, 2> all = {measureAll<Two>, measureFour};
   return std::span(all).first(__builtin_cpu_supports("avx2") ? 2 : 1);
 #else

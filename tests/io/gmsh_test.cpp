@@ -24,12 +24,6 @@ Failure failure(const std::string& text) {
   return failureOf([&] { static_cast<void>(parse(text)); });
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t place = text.find(from);
-  EXPECT_NE(place, std::string::npos) << from;
-  return text.replace(place, from.size(), to);
-}
-
 template <class T>
 std::string bytes(T value) {
   return {reinterpret_cast<const char*>(&value), sizeof(value)};

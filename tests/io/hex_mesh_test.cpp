@@ -26,12 +26,6 @@ HexMesh vtu(const std::string& text) {
   return readVtu({text, "m.vtu"}, context);
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t place = text.find(from);
-  EXPECT_NE(place, std::string::npos) << from;
-  return text.replace(place, from.size(), to);
-}
-
 const std::string kHead = "MeshVersionFormatted 2\nDimension 3\n";
 const std::string kCorners =
     "Vertices\n8\n0 0 0 0\n1 0 0 0\n1 1 0 0\n0 1 0 0\n0 0 1 0\n1 0 1 0\n1 1 1 0\n0 1 1 0\n";

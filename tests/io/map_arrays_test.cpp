@@ -17,12 +17,6 @@
 namespace hexhex::test {
 namespace {
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t place = text.find(from);
-  EXPECT_NE(place, std::string::npos) << from;
-  return text.replace(place, from.size(), to);
-}
-
 TetMap vtu(const std::string& text, std::string_view array = "igm") {
   Context context;
   ReadOptions options;

@@ -9,6 +9,7 @@
 
 #include <io/ovm/ovm.hpp>
 
+#include "io_test_support.hpp"
 #include "ovm_test_support.hpp"
 
 namespace hexhex::test {
@@ -22,12 +23,6 @@ TetMap map(const std::string& text) {
 HexMesh mesh(const std::string& text) {
   Context context;
   return readOvmHexMesh({text, "m.ovm"}, context);
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t place = text.find(from);
-  EXPECT_NE(place, std::string::npos) << from;
-  return text.replace(place, from.size(), to);
 }
 
 const std::string kGeometry =

@@ -22,12 +22,6 @@ Failure failure(const std::string& text) {
   return failureOf([&] { static_cast<void>(parse(text)); });
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t place = text.find(from);
-  EXPECT_NE(place, std::string::npos) << from;
-  return text.replace(place, from.size(), to);
-}
-
 /// Numbers with the largest byte first.
 template <class T>
 std::string big(std::initializer_list<T> values) {

@@ -144,6 +144,9 @@ def test_pictures(tagged, mesh):
         assert len(columns) == 0 or len(columns) == columns[-1] - columns[0] + 1
     flat = hexhex.Mesh(np.zeros((8, 3)), [list(range(8))])
     assert "Mesh: 1 cells" in flat._repr_html_()
+    wrong = hexhex.Mesh(np.zeros((8, 3)), [list(range(1, 9))])
+    assert wrong._repr_html_() == "<code>&lt;hexhex.Mesh: 1 cells, 8 points&gt;</code>"
+    assert "img" not in hexhex.Map(np.zeros((2, 3)), [[0, 1, 2, 3]], np.zeros((1, 12)))._repr_html_()
     assert "img" not in hexhex.Mesh(np.empty((0, 3)), np.empty((0, 8), dtype=np.uint32))._repr_html_()
 
 

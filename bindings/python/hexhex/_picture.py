@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
 
+from ._errors import HexhexError
+
 if TYPE_CHECKING:
     import numpy.typing as npt
 
@@ -23,8 +25,11 @@ _EVEN, _ODD = np.array([0.93, 0.75, 0.40]), np.array([0.98, 0.93, 0.80])  # of t
 
 
 def html(title: str, draw: Callable[[], bytes | None]) -> str:
-    """A title and a picture below."""
-    picture = draw()
+    """A title and a picture below, if there is something to draw."""
+    try:
+        picture = draw()
+    except (HexhexError, IndexError):  # of vertices that do not exist, which functions tell of
+        picture = None
     title = f"<code>{text.escape(title)}</code>"
     if picture is None:
         return title

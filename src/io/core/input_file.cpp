@@ -1,10 +1,7 @@
 #include <algorithm>
 #include <cerrno>
-#include <fcntl.h>
 #include <string>
-#include <sys/stat.h>
 #include <system_error>
-#include <unistd.h>
 #include <utility>
 
 #include <hexhex/error.hpp>
@@ -29,25 +26,27 @@ std::string reasonOf(int error) { return std::generic_category().message(error);
 }  // namespace
 
 InputFile::Descriptor::~Descriptor() {
-  if (value >= 0) ::close(value);
+  if (value >= 0) system_call::close(value);
 }
 
 InputFile::InputFile(std::filesystem::path file)
     : path_(std::move(file)), descriptor_{uninterrupted([this] {
-        return ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+        return system_call::openToRead(path_);
       })} {
-  struct stat status {};
-  if (descriptor_.value < 0 || ::fstat(descriptor_.value, &status) != 0) fail(reasonOf(errno));
-  if (S_ISDIR(status.st_mode)) fail("it is a folder");
-  regular_ = S_ISREG(status.st_mode);
-  if (regular_) size_ = static_cast<std::uint64_t>(status.st_size);
+  system_call::Status status;
+  const bool opened =
+      descriptor_.value >= 0 && system_call::statusOf(descriptor_.value, status) == 0;
+  if (status.isFolder || (!opened && errno == EISDIR)) fail("it is a folder");
+  if (!opened) fail(reasonOf(errno));
+  regular_ = status.isRegular;
+  if (regular_) size_ = status.size;
 }
 
 void InputFile::readAt(std::uint64_t position, void* bytes, std::size_t size) const {
   char* place = static_cast<char*>(bytes);
   while (size > 0) {
-    const ssize_t count = uninterrupted(
-        [&] { return ::pread(descriptor_.value, place, size, static_cast<off_t>(position)); });
+    const std::ptrdiff_t count = uninterrupted(
+        [&] { return system_call::readAt(descriptor_.value, place, size, position); });
     if (count < 0) fail(reasonOf(errno));
     if (count == 0) fail("it became shorter while it was read");
     place += count;
@@ -57,13 +56,14 @@ void InputFile::readAt(std::uint64_t position, void* bytes, std::size_t size) co
 }
 
 std::size_t InputFile::read(void* bytes, std::size_t size) const {
-  const ssize_t count = uninterrupted([&] { return ::read(descriptor_.value, bytes, size); });
+  const std::ptrdiff_t count =
+      uninterrupted([&] { return system_call::read(descriptor_.value, bytes, size); });
   if (count < 0) fail(reasonOf(errno));
   return static_cast<std::size_t>(count);
 }
 
 void InputFile::moveTo(std::uint64_t position) const {
-  if (::lseek(descriptor_.value, static_cast<off_t>(position), SEEK_SET) < 0) fail(reasonOf(errno));
+  if (system_call::moveTo(descriptor_.value, position) < 0) fail(reasonOf(errno));
 }
 
 void InputFile::fail(const std::string& reason) const {

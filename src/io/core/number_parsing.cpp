@@ -68,7 +68,7 @@ NumberProblem parseDecimal(std::string_view decimal, double& value) {
   if (decimal.empty()) return NumberProblem::NotANumber;
   double parsed = 0;
   const char* const end = decimal.data() + decimal.size();
-  const auto result = std::from_chars(decimal.data(), end, parsed);
+  const auto result = doubleFromChars(decimal.data(), end, parsed);
   if (result.ec == std::errc::invalid_argument || result.ptr != end) {
     return NumberProblem::NotANumber;
   }

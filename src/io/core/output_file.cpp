@@ -2,10 +2,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <system_error>
-#include <unistd.h>
 #include <utility>
 
 #include <hexhex/error.hpp>
@@ -17,13 +14,12 @@
 namespace hexhex {
 namespace {
 
-constexpr mode_t kPermissions = 0666;  // less what the user's umask takes away
-
 /// A name that no other file of this process uses; other processes are kept out by O_EXCL. It does
 /// not contain the target's name, which may be as long as the file system allows.
 std::string temporaryName() {
   static std::atomic<unsigned> counter{0};
-  return ".hexhex-" + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp";
+  return ".hexhex-" + std::to_string(system_call::processId()) + "-" + std::to_string(counter++) +
+         ".tmp";
 }
 
 std::filesystem::path folderOf(const std::filesystem::path& file) {
@@ -32,7 +28,8 @@ std::filesystem::path folderOf(const std::filesystem::path& file) {
 
 /// Makes what was written survive a power failure, where the file system knows how to.
 bool synced(int descriptor) {
-  return uninterrupted([descriptor] { return ::fsync(descriptor); }) == 0 || errno == EINVAL;
+  return uninterrupted([descriptor] { return system_call::sync(descriptor); }) == 0 ||
+         errno == EINVAL;
 }
 
 }  // namespace
@@ -60,15 +57,14 @@ std::filesystem::path realTarget(const std::filesystem::path& target) {
 }
 
 ChangedFolder::ChangedFolder(const std::filesystem::path& target)
-    : target_(target), descriptor_(uninterrupted([&target] {
-        return ::open(folderOf(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-      })) {
+    : target_(target),
+      descriptor_(uninterrupted([&target] { return system_call::openFolder(folderOf(target)); })) {
   // A folder may be one that can be written, but not read.
   if (descriptor_ < 0 && errno != EACCES) failToWrite(target, "its folder cannot be opened", errno);
 }
 
 ChangedFolder::~ChangedFolder() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  if (descriptor_ >= 0) system_call::close(descriptor_);
 }
 
 void ChangedFolder::sync() const {
@@ -81,7 +77,7 @@ void ChangedFolder::sync() const {
 
 void replaceFile(const std::filesystem::path& finished, const std::filesystem::path& target) {
   const ChangedFolder folder(target);
-  if (::rename(finished.c_str(), target.c_str()) != 0) {
+  if (system_call::rename(finished, target) != 0) {
     failToWrite(target, "the finished file cannot be renamed to it", errno);
   }
   folder.sync();
@@ -95,27 +91,27 @@ OutputFile::OutputFile(std::filesystem::path target, Target kind)
     fail("it is no regular file, which this format needs");
   }
   target_ = realTarget(target_);
-  struct stat status {};
-  const bool exists = ::stat(target_.c_str(), &status) == 0;
-  if (exists && S_ISDIR(status.st_mode)) fail("it is a folder", EISDIR);
-  if (!exists || S_ISREG(status.st_mode)) {
+  system_call::Status status;
+  const bool exists = system_call::statusOf(target_, status) == 0;
+  if (status.isFolder) fail("it is a folder", EISDIR);
+  if (!exists || status.isRegular) {
     openTemporary();
     return;
   }
-  descriptor_ = uninterrupted([this] { return ::open(target_.c_str(), O_WRONLY | O_CLOEXEC); });
+  descriptor_ = uninterrupted([this] { return system_call::openToWrite(target_); });
   if (descriptor_ < 0) fail("it cannot be opened", errno);
 }
 
 OutputFile::~OutputFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (descriptor_ >= 0) system_call::close(descriptor_);
+  if (!temporary_.empty()) system_call::remove(temporary_);
 }
 
 void OutputFile::openTemporary() {
   // A signal may interrupt open(); a file of that name may be there from an earlier process.
   do {
     temporary_ = temporaryBeside(target_);
-    descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kPermissions);
+    descriptor_ = system_call::create(temporary_);
   } while (descriptor_ < 0 && (errno == EEXIST || errno == EINTR));
   if (descriptor_ >= 0) return;
   const int error = errno;
@@ -143,7 +139,8 @@ template <class Write>
 void OutputFile::writeAll(const void* bytes, std::size_t size, const Write& write) const {
   const char* const data = static_cast<const char*>(bytes);
   for (std::size_t done = 0; done < size;) {
-    const ssize_t written = uninterrupted([&] { return write(data + done, size - done, done); });
+    const std::ptrdiff_t written =
+        uninterrupted([&] { return write(data + done, size - done, done); });
     if (written < 0) fail("it cannot be written completely", errno);
     done += static_cast<std::size_t>(written);
   }
@@ -152,21 +149,21 @@ void OutputFile::writeAll(const void* bytes, std::size_t size, const Write& writ
 void OutputFile::writeThrough(const void* bytes, std::size_t size) {
   written_ += size;
   writeAll(bytes, size, [this](const char* data, std::size_t count, std::size_t /*done*/) {
-    return ::write(descriptor_, data, count);
+    return system_call::write(descriptor_, data, count);
   });
 }
 
 void OutputFile::writeBytesAt(std::uint64_t position, const void* bytes, std::size_t size) const {
   writeAll(bytes, size, [&](const char* data, std::size_t count, std::size_t done) {
-    return ::pwrite(descriptor_, data, count, static_cast<off_t>(position + done));
+    return system_call::writeAt(descriptor_, data, count, position + done);
   });
 }
 
 void OutputFile::readBytesAt(std::uint64_t position, void* bytes, std::size_t size) const {
   char* const data = static_cast<char*>(bytes);
   for (std::size_t done = 0; done < size;) {
-    const ssize_t count = uninterrupted([&] {
-      return ::pread(descriptor_, data + done, size - done, static_cast<off_t>(position + done));
+    const std::ptrdiff_t count = uninterrupted([&] {
+      return system_call::readAt(descriptor_, data + done, size - done, position + done);
     });
     if (count < 0) fail("it cannot be read back", errno);
     if (count == 0) fail("it became shorter while it was written");
@@ -196,7 +193,7 @@ void OutputFile::commit() {
   // Some file systems report a full disk only in these two.
   const bool renamed = !temporary_.empty();
   if (renamed && !synced(descriptor_)) fail("it cannot be written completely", errno);
-  const int closed = ::close(std::exchange(descriptor_, -1));
+  const int closed = system_call::close(std::exchange(descriptor_, -1));
   if (closed != 0 && errno != EINTR) fail("it cannot be written completely", errno);
   if (!renamed) return;
   replaceFile(temporary_, target_);

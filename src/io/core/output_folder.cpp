@@ -1,35 +1,28 @@
 #include <cerrno>
 #include <cstddef>
-#include <cstdio>
-#include <fcntl.h>
 #include <new>
 #include <string>
-#include <sys/stat.h>
 #include <system_error>
-#include <unistd.h>
 
 #include <io/core/output_file.hpp>
 #include <io/core/output_folder.hpp>
+#include <io/core/system_call.hpp>
 
 namespace hexhex {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t kFolderPermissions = 0777;  // less what the user's umask takes away
-
 /// Gives each of two folders the other's name, by way of a third one where the system does not know
 /// how to do it at once.
 /// @return whether it worked; otherwise errno says why, and all is as it was
 bool exchange(const fs::path& a, const fs::path& b, const fs::path& aside) noexcept {
-#if defined(RENAME_EXCHANGE)
-  if (::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0) return true;
+  if (system_call::exchange(a, b) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;
-#endif
-  if (::rename(b.c_str(), aside.c_str()) != 0) return false;
-  if (::rename(a.c_str(), b.c_str()) == 0) return ::rename(aside.c_str(), a.c_str()) == 0;
+  if (system_call::rename(b, aside) != 0) return false;
+  if (system_call::rename(a, b) == 0) return system_call::rename(aside, a) == 0;
   const int error = errno;
-  static_cast<void>(::rename(aside.c_str(), b.c_str()));
+  static_cast<void>(system_call::rename(aside, b));
   errno = error;
   return false;
 }
@@ -52,7 +45,7 @@ OutputFolder::OutputFolder(const fs::path& target) : target_(realTarget(target))
   if (!replaces_ && fs::exists(target_, error)) failToWrite(target_, "it is a file", ENOTDIR);
   takeName();
   makeParents();
-  while (::mkdir(temporary_.c_str(), kFolderPermissions) != 0) {
+  while (system_call::makeFolder(temporary_) != 0) {
     if (errno != EEXIST) {
       const int reason = errno;
       removeParents();
@@ -64,7 +57,7 @@ OutputFolder::OutputFolder(const fs::path& target) : target_(realTarget(target))
 
 void OutputFolder::takeName() {
   temporary_ = temporaryBeside(target_);
-  aside_ = temporary_.native() + "-aside";
+  aside_ = temporary_.string() + "-aside";
 }
 
 OutputFolder::~OutputFolder() {
@@ -83,10 +76,9 @@ OutputFolder::~OutputFolder() {
 
 Error OutputFolder::named(const Error& error) const {
   std::string sentence = error.what();
-  const std::size_t place = sentence.find(temporary_.native());
-  if (place != std::string::npos) {
-    sentence.replace(place, temporary_.native().size(), target_.native());
-  }
+  const std::string temporary = temporary_.string();
+  const std::size_t place = sentence.find(temporary);
+  if (place != std::string::npos) sentence.replace(place, temporary.size(), target_.string());
   return {error.code(), sentence, error.place()};
 }
 
@@ -97,7 +89,7 @@ void OutputFolder::makeParents() {
     parents_.push_back(folder);
   }
   for (std::size_t i = parents_.size(); i-- > 0;) {
-    if (::mkdir(parents_[i].c_str(), kFolderPermissions) == 0 || errno == EEXIST) continue;
+    if (system_call::makeFolder(parents_[i]) == 0 || errno == EEXIST) continue;
     const int reason = errno;
     const std::string folder = parents_[i].string();
     removeParents();
@@ -106,7 +98,7 @@ void OutputFolder::makeParents() {
 }
 
 void OutputFolder::removeParents() noexcept {
-  for (const fs::path& folder : parents_) static_cast<void>(::rmdir(folder.c_str()));
+  for (const fs::path& folder : parents_) system_call::removeFolder(folder);
 }
 
 void OutputFolder::carryOver() const {
@@ -131,7 +123,7 @@ void OutputFolder::commit() {
   ChangedFolder(temporary_ / ".").sync();
   const ChangedFolder folder(target_);
   const bool named = replaces_ ? exchange(temporary_, target_, aside_)
-                               : ::rename(temporary_.c_str(), target_.c_str()) == 0;
+                               : system_call::rename(temporary_, target_) == 0;
   if (!named) failToWrite(target_, "the finished folder cannot be renamed to it", errno);
   committed_ = true;
   try {
@@ -148,7 +140,7 @@ void OutputFolder::takeBack() noexcept {
   if (replaces_) {
     static_cast<void>(exchange(temporary_, target_, aside_));
   } else {
-    static_cast<void>(::rename(target_.c_str(), temporary_.c_str()));
+    static_cast<void>(system_call::rename(target_, temporary_));
   }
 }
 

@@ -18,6 +18,7 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/core/double_from_chars.hpp>
 
 namespace hexhex {
 
@@ -151,7 +152,7 @@ class TextScanner {
   /// Reads a finite number: decimal, correctly rounded, or rational (see parseNumber).
   bool readNumber(double& value) {
     if (!skipSpace()) return false;
-    const auto result = std::from_chars(position_, end_, value);
+    const auto result = doubleFromChars(position_, end_, value);
     if (result.ec == std::errc{} && endsToken(result.ptr) && std::isfinite(value)) {
       position_ = result.ptr;
       return true;

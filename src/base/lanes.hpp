@@ -1,0 +1,157 @@
+// Some numbers that are worked with at once. Each behaves as it would alone. Compilers like GCC and
+// Clang have types for the processor's registers; elsewhere, or with HEXHEX_PLAIN_VECTORS, a class
+// stands in for them, which optimizers see through more or less.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#if !defined(__GNUC__) && !defined(HEXHEX_PLAIN_VECTORS)
+#define HEXHEX_PLAIN_VECTORS 1
+#endif
+
+namespace hexhex {
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"  // all is inline
+#endif
+
+/// The same bits as another type of the same size.
+template <class To, class From>
+#if defined(__GNUC__)
+[[gnu::always_inline]]
+#endif
+[[nodiscard]] inline To
+bitsAs(const From& x) noexcept {
+  static_assert(sizeof(To) == sizeof(From));
+  To bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+
+#if defined(HEXHEX_PLAIN_VECTORS)
+
+/// @tparam T  double or an integer; truth values are integers of its size, 0 or -1
+template <class T, std::size_t n>
+struct Lanes {
+  using Truth =
+      Lanes<std::conditional_t<sizeof(T) == sizeof(std::int64_t), std::int64_t, std::int32_t>, n>;
+
+  Lanes() = default;
+  // As those of compilers do, numbers become lanes that are all the same.
+  constexpr Lanes(T all) noexcept {
+    for (T& each : lanes) each = all;
+  }
+  template <std::convertible_to<T>... Numbers>
+  requires(sizeof...(Numbers) == n) constexpr Lanes(Numbers... numbers) noexcept
+      : lanes{static_cast<T>(numbers)...} {}
+
+  [[nodiscard]] constexpr T& operator[](std::size_t i) noexcept { return lanes[i]; }
+  [[nodiscard]] constexpr const T& operator[](std::size_t i) const noexcept { return lanes[i]; }
+
+#define HEXHEX_LANES_OPERATOR(symbol)                                                 \
+  friend constexpr Lanes operator symbol(const Lanes& a, const Lanes& b) noexcept {   \
+    Lanes result;                                                                     \
+    for (std::size_t i = 0; i < n; ++i) result[i] = static_cast<T>(a[i] symbol b[i]); \
+    return result;                                                                    \
+  }                                                                                   \
+  constexpr Lanes& operator symbol##=(const Lanes& b) noexcept { return *this = *this symbol b; }
+  HEXHEX_LANES_OPERATOR(+)
+  HEXHEX_LANES_OPERATOR(-)
+  HEXHEX_LANES_OPERATOR(*)
+  HEXHEX_LANES_OPERATOR(/)
+  HEXHEX_LANES_OPERATOR(&)
+  HEXHEX_LANES_OPERATOR(|)
+  HEXHEX_LANES_OPERATOR(^)
+  HEXHEX_LANES_OPERATOR(<<)
+  HEXHEX_LANES_OPERATOR(>>)
+#undef HEXHEX_LANES_OPERATOR
+#define HEXHEX_LANES_COMPARISON(symbol)                                             \
+  friend constexpr Truth operator symbol(const Lanes& a, const Lanes& b) noexcept { \
+    Truth result;                                                                   \
+    for (std::size_t i = 0; i < n; ++i) result[i] = a[i] symbol b[i] ? -1 : 0;      \
+    return result;                                                                  \
+  }
+  HEXHEX_LANES_COMPARISON(<)
+  HEXHEX_LANES_COMPARISON(>)
+  HEXHEX_LANES_COMPARISON(<=)
+  HEXHEX_LANES_COMPARISON(>=)
+  HEXHEX_LANES_COMPARISON(==)
+  HEXHEX_LANES_COMPARISON(!=)
+#undef HEXHEX_LANES_COMPARISON
+  constexpr Lanes operator-() const noexcept {
+    Lanes result;
+    for (std::size_t i = 0; i < n; ++i) result[i] = -lanes[i];
+    return result;
+  }
+  constexpr Lanes operator~() const noexcept {
+    Lanes result;
+    for (std::size_t i = 0; i < n; ++i) result[i] = ~lanes[i];
+    return result;
+  }
+
+  /// Of each, the first where the truth value is set, elsewhere the second.
+  [[nodiscard]] static constexpr Lanes choose(const Truth& first, const Lanes& a,
+                                              const Lanes& b) noexcept {
+    Lanes result;
+    for (std::size_t i = 0; i < n; ++i) result[i] = first[i] != 0 ? a[i] : b[i];
+    return result;
+  }
+
+  T lanes[n];  // NOLINT: no std::array, whose element functions are not inlined in debug builds
+};
+
+/// The nearest numbers towards zero.
+template <class To, class T, std::size_t n>
+[[nodiscard]] constexpr To truncated(const Lanes<T, n>& x) noexcept {
+  To result;
+  for (std::size_t i = 0; i < n; ++i) {
+    result[i] = static_cast<std::remove_cvref_t<decltype(result[i])>>(x[i]);
+  }
+  return result;
+}
+template <class T, std::size_t n>
+[[nodiscard]] constexpr Lanes<T, n> larger(const Lanes<T, n>& a, const Lanes<T, n>& b) noexcept {
+  return Lanes<T, n>::choose(a < b, b, a);
+}
+template <class T, std::size_t n>
+[[nodiscard]] constexpr Lanes<T, n> smaller(const Lanes<T, n>& a, const Lanes<T, n>& b) noexcept {
+  return Lanes<T, n>::choose(a < b, a, b);
+}
+
+#else
+
+template <class T, std::size_t n>
+struct LanesOf {
+  using Type __attribute__((vector_size(n * sizeof(T)))) = T;
+};
+template <class T, std::size_t n>
+using Lanes = typename LanesOf<T, n>::Type;
+
+/// The nearest numbers towards zero.
+template <class To, class From>
+[[nodiscard]] inline To truncated(const From& x) noexcept {
+  return __builtin_convertvector(x, To);
+}
+/// As std::max.
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V larger(const V& a, const V& b) noexcept {
+  return a < b ? b : a;
+}
+/// As std::min.
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V smaller(const V& a, const V& b) noexcept {
+  return a < b ? a : b;
+}
+
+#endif
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+}  // namespace hexhex
