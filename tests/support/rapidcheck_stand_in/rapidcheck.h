@@ -47,9 +47,8 @@ Gen<T> arbitrary() {
 template <class Container>
 auto elementOf(const Container& list) {
   using T = typename Container::value_type;
-  return Gen<T>{[kept = std::vector<T>(list.begin(), list.end())] {
-    return kept[source()() % kept.size()];
-  }};
+  return Gen<T>{
+      [kept = std::vector<T>(list.begin(), list.end())] { return kept[source()() % kept.size()]; }};
 }
 template <class T, class... More>
 Gen<T> element(T first, More... more) {

@@ -1,9 +1,9 @@
 // See ../rapidcheck.h.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <rapidcheck.h>
+
+#include <gtest/gtest.h>
 
 #define RC_GTEST_PROP(Suite, Name, Arguments)                          \
   void property##Suite##Name Arguments;                                \
