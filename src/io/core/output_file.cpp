@@ -178,13 +178,13 @@ void OutputFile::requirePositions(const std::string& why) const {
 void OutputFile::suspend() {
   flush();
   buffer_.reset();
-  const int closed = ::close(std::exchange(descriptor_, -1));
+  const int closed = system_call::close(std::exchange(descriptor_, -1));
   if (closed != 0 && errno != EINTR) fail("it cannot be written completely", errno);
 }
 
 void OutputFile::resume() {
   buffer_.reset(new char[kBufferSize]);
-  descriptor_ = uninterrupted([this] { return ::open(temporary_.c_str(), O_RDWR | O_CLOEXEC); });
+  descriptor_ = uninterrupted([this] { return system_call::openAgain(temporary_); });
   if (descriptor_ < 0) fail("it cannot be opened again", errno);
 }
 

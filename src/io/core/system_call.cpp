@@ -27,6 +27,7 @@ int openToWrite(const Path& file) noexcept { return ::open(file.c_str(), O_WRONL
 int create(const Path& file) noexcept {
   return ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kFilePermissions);
 }
+int openAgain(const Path& file) noexcept { return ::open(file.c_str(), O_RDWR | O_CLOEXEC); }
 int openFolder(const Path& folder) noexcept {
   return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 }
@@ -180,6 +181,7 @@ int openToRead(const Path& file) noexcept {
 }
 int openToWrite(const Path& file) noexcept { return open(file, _O_WRONLY); }
 int create(const Path& file) noexcept { return open(file, _O_RDWR | _O_CREAT | _O_EXCL); }
+int openAgain(const Path& file) noexcept { return open(file, _O_RDWR); }
 int openFolder(const Path& folder) noexcept {
   Status status;
   if (statusOf(folder, status) == 0) errno = status.isFolder ? EACCES : ENOTDIR;

@@ -34,6 +34,8 @@ struct Status {
 [[nodiscard]] int openToWrite(const Path& file) noexcept;
 /// A new file, to write and read back; fails with EEXIST if there is one of the name.
 [[nodiscard]] int create(const Path& file) noexcept;
+/// A file that create() made.
+[[nodiscard]] int openAgain(const Path& file) noexcept;
 /// To sync() it. Fails with EACCES if that is possible, but not for this folder, or this system.
 [[nodiscard]] int openFolder(const Path& folder) noexcept;
 
