@@ -34,7 +34,7 @@ std::string timeLeft(double seconds, double share) {
 
 }  // namespace
 
-ProgressDisplay::ProgressDisplay(bool quiet, bool verbose) : style_(Style::Nothing) {
+ProgressDisplay::ProgressDisplay(bool quiet, bool verbose) {
   if (quiet) return;
   if (verbose) {
     style_ = Style::Lines;

@@ -36,7 +36,7 @@ class ProgressDisplay {
   void show(std::string_view stage, double share);
   void showBar(std::string_view stage, double share);
 
-  Style style_;
+  Style style_ = Style::Nothing;
   Clock::time_point begin_ = Clock::now();
   Clock::time_point drawn_;
   bool barIsVisible_ = false;

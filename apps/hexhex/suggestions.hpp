@@ -26,6 +26,7 @@ CLI::Option* addChoice(CLI::App& parser, const std::string& name, Value& value,
                        const std::map<std::string, Value>& choices,
                        const std::string& description) {
   std::vector<std::string> words;
+  words.reserve(choices.size());
   for (const auto& choice : choices) words.push_back(choice.first);
   const auto take = [&value, choices](const std::string& word) { value = choices.at(word); };
   return parser.add_option_function<std::string>(name, take, description)->check(oneOf(words));

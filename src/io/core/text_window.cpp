@@ -20,7 +20,7 @@ TextWindow::TextWindow(const InputFile& file, std::string name, Context& context
 void TextWindow::moveTo(std::uint64_t position) {
   begin_ = position;
   size_ = 0;
-  scanner_.emplace(std::string_view(bytes_.data(), 0), name_);
+  scanner_.emplace(std::string_view(), name_);
   index_.emplace(scanner_->text(), stage_);
   fill();
 }
