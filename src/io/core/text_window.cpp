@@ -29,7 +29,7 @@ bool TextWindow::fill() {
   context_.throwIfCancelled();
   const std::size_t behind = scanner_->position();
   const std::size_t kept = size_ - behind;
-  std::memmove(bytes_.data(), bytes_.data() + behind, kept);
+  if (kept > 0) std::memmove(bytes_.data(), bytes_.data() + behind, kept);
   begin_ += behind;
   const std::uint64_t left = file_.size() - std::min(file_.size(), begin_ + kept);
   const auto more = static_cast<std::size_t>(std::min<std::uint64_t>(bytes_.size() - kept, left));
