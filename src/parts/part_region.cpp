@@ -20,15 +20,20 @@ Triangle triangleOf(const PreparedMap& map, HalfFace halfFace) {
           corners[static_cast<std::size_t>(face[2])]};
 }
 
-/// The smallest box of grid points around a triangle, and `reach` more on all sides.
+/// Boxes begin and end at multiples of this, so that those of small faces near each other are the
+/// same: without, as many come to each tet as there are faces around, and are compared.
+constexpr std::int32_t kBoxRounding = 4;
+
+/// A box of grid points around a triangle, and at least `reach` more on all sides.
 GridBox boxAround(const Triangle& triangle, std::int64_t unit, std::int32_t reach) {
   const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
   GridBox box;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto [low, high] = std::minmax({triangle[0][k], triangle[1][k], triangle[2][k]});
     // Shifts round down.
-    box.range[k] = {static_cast<std::int32_t>(low >> shift) - reach,
-                    static_cast<std::int32_t>(-(-high >> shift)) + reach};
+    const std::int32_t first = static_cast<std::int32_t>(low >> shift) - reach;
+    const std::int32_t last = static_cast<std::int32_t>(-(-high >> shift)) + reach;
+    box.range[k] = {first & ~(kBoxRounding - 1), (last + kBoxRounding - 1) & ~(kBoxRounding - 1)};
   }
   return box;
 }

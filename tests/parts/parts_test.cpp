@@ -91,7 +91,10 @@ TEST(Parts, OfMetisAndScotchMakeUpTheMeshToo) {
     EXPECT_EQ(comparePartsWithWhole(map, {}, parts), "");
     EXPECT_LE(cut.imbalance, 1.05);
     const Cut curve = cutOf(map, {16}, 1);
-    EXPECT_LE(static_cast<double>(curve.shared), 1.5 * static_cast<double>(cut.shared));
+    EXPECT_LE(cut.shared, curve.shared);
+    if (method == PartitionMethod::Metis) {
+      EXPECT_LE(static_cast<double>(curve.shared), 1.5 * static_cast<double>(cut.shared));
+    }
   }
 }
 
