@@ -365,18 +365,6 @@ void addRepairOptions(CLI::App& parser, Arguments& arguments) {
                   "at holes as region 1, and list the holes; exit code 1");
 }
 
-/// From seamless maps.
-void addQuantization(CLI::App& parser, Arguments& arguments) {
-  CLI::Option* const flag =
-      parser.add_flag("--quantize", arguments.quantize,
-                      "The map is seamless: make it an integer-grid map first, with\n"
-                      "--cells, --map-scale or --edge-length (`hexhex quantize --help`)");
-  for (CLI::Option* const option :
-       addQuantizeOptions(parser, arguments.quantizeOptions, "--map-scale")) {
-    option->needs(flag);
-  }
-}
-
 /// Options that change how a mesh is made, but not the mesh.
 void addMethod(CLI::App& parser, Arguments& arguments) {
   addChoice<Engine>(parser, "--engine", arguments.options.engine,
@@ -438,7 +426,7 @@ Command addExtract(CLI::App& app) {
   addTolerance(*parser, arguments->options.tolerance);
   addPatchAngle(*parser, arguments->patchAngle);
   addRepairOptions(*parser, *arguments);
-  addQuantization(*parser, *arguments);
+  addQuantization(*parser, arguments->quantize, arguments->quantizeOptions);
   parser->add_flag("--no-verify", arguments->noVerify, "Write the mesh without verifying it");
   addReport(*parser, arguments->report,
             "Write a report in JSON: times, counts, quality,\nverification");

@@ -4,6 +4,7 @@
 #include <hexhex/curved.hpp>
 
 #include "command.hpp"
+#include "quantize_options.hpp"
 #include "shared_options.hpp"
 #include "view_page.hpp"
 
@@ -35,6 +36,7 @@ Command addView(CLI::App& app) {
       ->check(wholeNumberFrom(1))
       ->check(CLI::Range(1, kMaxOrder))
       ->option_text("INTEGER [1]");
+  addQuantization(*parser, arguments->quantize, arguments->quantizeOptions);
   addTolerance(*parser, arguments->options.tolerance);
   CLI::Option* const serve =
       parser
@@ -51,7 +53,8 @@ Command addView(CLI::App& app) {
   parser->footer(
       "Exit code 4: the mesh does not agree with the map; the page is written and says so.\n\n"
       "Examples:\n  hexhex view sphere.vtu --map sphere.hexex --scale 2\n"
-      "  hexhex view sphere.hexex --order 3");
+      "  hexhex view sphere.hexex --order 3\n"
+      "  hexhex view seamless.hexex --quantize --cells 5000");
   return {parser, [arguments] { return view(*arguments); }};
 }
 

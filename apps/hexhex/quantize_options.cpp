@@ -48,6 +48,16 @@ std::array<CLI::Option*, 4> addQuantizeOptions(CLI::App& parser, QuantizeOptions
   return {cells, scale, edge, densify};
 }
 
+void addQuantization(CLI::App& parser, bool& quantize, QuantizeOptions& options) {
+  CLI::Option* const flag =
+      parser.add_flag("--quantize", quantize,
+                      "The map is seamless: make it an integer-grid map first, with\n"
+                      "--cells, --map-scale or --edge-length (`hexhex quantize --help`)");
+  for (CLI::Option* const option : addQuantizeOptions(parser, options, "--map-scale")) {
+    option->needs(flag);
+  }
+}
+
 QuantizeOptions optionsFor(const MapSource& input, QuantizeOptions options) {
   const bool isHexex =
       input.format == "hexex" || (input.format.empty() && input.file.ends_with(".hexex"));

@@ -17,6 +17,10 @@ namespace hexhex::command {
 std::array<CLI::Option*, 4> addQuantizeOptions(CLI::App& parser, QuantizeOptions& options,
                                                const std::string& scaleName);
 
+/// Adds --quantize and the same options, for subcommands that go on with the map; the scale is
+/// --map-scale.
+void addQuantization(CLI::App& parser, bool& quantize, QuantizeOptions& options);
+
 /// Those options, with what the input's format says about its tags.
 [[nodiscard]] QuantizeOptions optionsFor(const MapSource& input, QuantizeOptions options);
 

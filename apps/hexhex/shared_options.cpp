@@ -10,6 +10,7 @@
 
 #include <hexhex/error.hpp>
 #include <hexhex/parts.hpp>
+#include <hexhex/quantize.hpp>
 
 #include "suggestions.hpp"
 
@@ -26,11 +27,17 @@ CLI::Validator wholeNumberFrom(int minimum) {
   return CLI::Validator(check, fmt::format("from {}", minimum));
 }
 
-std::string MapSource::description() const { return isPair() ? tets + " and " + polycube : file; }
+std::string MapSource::description() const {
+  return isPair() ? tets + " and " + (flags.empty() ? polycube : flags) : file;
+}
 
 std::vector<std::filesystem::path> MapSource::files() const {
-  if (isPair()) return {tets, polycube};
-  return {file};
+  if (!isPair()) return {file};
+  std::vector<std::filesystem::path> all = {tets};
+  for (const std::string* const each : {&polycube, &flags, &surface}) {
+    if (!each->empty()) all.emplace_back(*each);
+  }
+  return all;
 }
 
 ReadOptions MapSource::options() const {
@@ -67,8 +74,25 @@ void addMapOptions(CLI::App& parser, MapSource& source) {
           .add_option("--polycube", source.polycube,
                       "... and the same tets with the parameters as vertices")
           ->option_text("FILE");
-  tets->needs(polycube);
-  polycube->needs(tets);
+  CLI::Option* const flags =
+      parser
+          .add_option("--flags", source.flags,
+                      "... or labels 0 to 5 (+x -x +y -y +z -z) of its boundary:\n"
+                      "a polycube's seamless map is made of them. Text with four\n"
+                      "per tet, or one per triangle of --surface; or .vtu, .vtk\n"
+                      "with triangles (docs/quantize.md)")
+          ->option_text("FILE");
+  polycube->needs(tets)->excludes(flags);
+  flags->needs(tets);
+  parser
+      .add_option("--surface", source.surface, "The .obj file whose triangles the labels belong to")
+      ->needs(flags)
+      ->option_text("FILE");
+  parser
+      .add_option("--flags-array", source.flagsArray,
+                  "The cell array of .vtu and .vtk files that holds the labels")
+      ->needs(flags)
+      ->option_text("NAME [flags]");
   parser
       .add_option("--map-array", source.mapArray,
                   "The array of .vtu and .vtk files that holds the map:\n"
@@ -98,8 +122,11 @@ bool isOtherName(const std::string& name) {
 /// Either a file or two.
 void requireOneSource(const MapSource& source, const std::string& argument) {
   if (source.file.empty() && !source.isPair()) throw CLI::RequiredError(argument);
+  if (source.isPair() && source.polycube.empty() && source.flags.empty()) {
+    throw CLI::ValidationError("--tets", "requires --polycube or --flags");
+  }
   if (source.file.empty() || !source.isPair()) return;
-  throw CLI::ValidationError(argument, "cannot be given beside --tets and --polycube");
+  throw CLI::ValidationError(argument, "cannot be given beside --tets");
 }
 
 }  // namespace
@@ -125,6 +152,11 @@ void addMapSourceBefore(CLI::App& parser, MapSource& source, const std::string& 
 }
 
 TetMap readMap(const MapSource& source, Context& context) {
+  if (!source.flags.empty()) {
+    const TetMesh tets = readTetMesh(source.tets, {}, context);
+    const FlagsFile flags = {source.flags, source.surface, source.flagsArray};
+    return mapFromFlags(tets, readFlags(flags, tets, context), context);
+  }
   if (source.isPair()) return readMapPair(source.tets, source.polycube, context);
   return hexhex::readMap(source.file, source.options(), context);
 }

@@ -16,16 +16,19 @@ namespace hexhex::command {
 /// Accepts whole numbers from `minimum` that fit in an int.
 [[nodiscard]] CLI::Validator wholeNumberFrom(int minimum);
 
-/// Where a subcommand has its map from: a file, or two meshes.
+/// Where a subcommand has its map from: a file, two meshes, or a mesh and labels.
 struct MapSource {
   std::string file;
   std::string tets;
   std::string polycube;
+  std::string flags;    ///< labels of the boundary of `tets`, instead of `polycube`
+  std::string surface;  ///< that the labels belong to, or empty
+  std::string flagsArray = "flags";
   std::string mapArray = "igm";
   std::string format;
 
   [[nodiscard]] bool isPair() const noexcept { return !tets.empty(); }
-  /// "sphere.hexex", "tets.mesh and polycube.mesh"
+  /// "sphere.hexex", "tets.mesh and polycube.mesh", "tets.mesh and labels.txt"
   [[nodiscard]] std::string description() const;
   /// All files that are read.
   [[nodiscard]] std::vector<std::filesystem::path> files() const;
@@ -38,7 +41,7 @@ struct MapSource {
 /// For arguments that name a map to read.
 [[nodiscard]] std::string mapDescription();
 
-/// Adds --tets, --polycube and --map-array.
+/// Adds --tets, --polycube, --flags, --surface, --flags-array and --map-array.
 void addMapOptions(CLI::App& parser, MapSource& source);
 /// Adds an argument and the same options; one of both has to be given.
 void addMapSource(CLI::App& parser, MapSource& source, const std::string& argument = "MAP",
@@ -50,7 +53,7 @@ void addMapSourceBefore(CLI::App& parser, MapSource& source, const std::string& 
                         std::string& other, const std::string& otherArgument,
                         const std::string& otherDescription);
 
-/// @throws Error  as readMap() and readMapPair()
+/// @throws Error  as readMap(), readMapPair(), readFlags() and mapFromFlags()
 [[nodiscard]] TetMap readMap(const MapSource& source, Context& context);
 
 /// How a subcommand writes its result.

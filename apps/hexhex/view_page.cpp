@@ -16,6 +16,7 @@
 #include "exit_codes.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
+#include "quantize_options.hpp"
 #include "repair_text.hpp"
 #include "serve_page.hpp"
 #include "verification.hpp"
@@ -46,12 +47,17 @@ VerifyReport compare(const TetMapView& map, const Subject& subject, const Verify
 }
 
 /// The mesh of a map.
-Subject extractSubject(const ViewArguments& arguments, const TetMap& map, Context& context) {
+Subject extractSubject(const ViewArguments& arguments, TetMap map, Context& context) {
   if (!arguments.map.empty()) {
     throw Error(ErrorCode::InvalidArgument,
                 arguments.mesh +
                     " is a map itself, and its mesh is compared with it anyway. Leave "
                     "out --map.");
+  }
+  if (arguments.quantize) {
+    MapSource input;
+    input.file = arguments.mesh;
+    map = quantize(map, optionsFor(input, arguments.quantizeOptions), context).map;
   }
   ExtractOptions options;
   options.scale = arguments.options.scale;
@@ -77,16 +83,16 @@ Subject readSubject(const ViewArguments& arguments, Context& context) {
     subject.mesh = readLagrangeMesh(arguments.mesh, context);
   } else {
     auto content = readMapOrHexMesh(arguments.mesh, {}, context);
-    if (const auto* const map = std::get_if<TetMap>(&content)) {
-      return extractSubject(arguments, *map, context);
+    if (auto* const map = std::get_if<TetMap>(&content)) {
+      return extractSubject(arguments, std::move(*map), context);
     }
     subject.mesh = std::move(std::get<HexMesh>(content));
   }
-  if (arguments.order > 1) {
+  if (arguments.order > 1 || arguments.quantize) {
     throw Error(ErrorCode::InvalidArgument,
                 arguments.mesh +
-                    " is a mesh, whose cells are what they are. Leave out --order, or "
-                    "name the map.");
+                    " is a mesh, whose cells are what they are. Leave out --order and --quantize, "
+                    "or name the map.");
   }
   if (!arguments.map.empty()) {
     subject.map = arguments.map;

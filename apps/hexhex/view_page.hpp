@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include <hexhex/quantize.hpp>
 #include <hexhex/verify.hpp>
 
 #include "long_run.hpp"
@@ -15,6 +16,8 @@ struct ViewArguments {
   std::string map;   ///< empty: none
   VerifyOptions options;
   int order = 1;  ///< of the cells that are extracted
+  bool quantize = false;
+  QuantizeOptions quantizeOptions;
   bool serve = false;
   int port = 0;  ///< 0: any free one
   RunOptions run;

@@ -3,6 +3,7 @@
 
 #include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/quantize.hpp>
 
 #include "options.hpp"
 
@@ -63,6 +64,21 @@ hexhex_status hexhex_map_read_pair(const char* tets, const char* polycube, hexhe
     require(map, "map");
     ContextOrDefault used(context);
     give(hexhex::readMapPair(&require(tets, "tets"), &require(polycube, "polycube"), *used), map);
+  });
+}
+
+hexhex_status hexhex_map_read_flags(const char* tets, const char* flags, const char* surface,
+                                    const char* array, hexhex_context* context, hexhex_map** map,
+                                    hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(map, "map");
+    ContextOrDefault used(context);
+    const hexhex::TetMesh mesh = hexhex::readTetMesh(&require(tets, "tets"), {}, *used);
+    hexhex::FlagsFile file = {.file = &require(flags, "flags")};
+    if (surface != nullptr) file.surface = surface;
+    if (array != nullptr) file.array = array;
+    give(hexhex::mapFromFlags(mesh, hexhex::readFlags(file, mesh, *used), *used), map);
   });
 }
 

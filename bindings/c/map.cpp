@@ -1,4 +1,5 @@
 #include <hexhex/io.hpp>
+#include <hexhex/quantize.hpp>
 
 #include "handles.hpp"
 
@@ -107,6 +108,20 @@ hexhex_status hexhex_map_from_pair(const hexhex_map_arrays* tets, const hexhex_m
     require(map, "map");
     ContextOrDefault used(context);
     give(hexhex::mapFromPair(tetMeshOf(tets, "tets"), tetMeshOf(polycube, "polycube"), *used), map);
+  });
+}
+
+hexhex_status hexhex_map_from_flags(const hexhex_map_arrays* tets, const int8_t* flags,
+                                    hexhex_context* context, hexhex_map** map,
+                                    hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    require(map, "map");
+    const hexhex::TetMesh mesh = tetMeshOf(tets, "tets");
+    ContextOrDefault used(context);
+    give(hexhex::mapFromFlags(mesh, borrowed<hexhex::FaceFlags>(flags, mesh.tets.size(), "flags"),
+                              *used),
+         map);
   });
 }
 

@@ -7,6 +7,7 @@
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/quantize.hpp>
 
 #include "border.hpp"
 
@@ -117,6 +118,16 @@ void bindFiles(nb::module_& module) {
                    [&](Context& context) { return readMapPair(tets, polycube, context); });
       },
       "tets"_a, "polycube"_a, "threads"_a, "progress"_a.none());
+  module.def(
+      "read_flags",
+      [](const std::string& tets, const std::string& flags, const std::string& surface,
+         const std::string& array, int threads, const Progress& progress) {
+        return run(threads, progress, [&](Context& context) {
+          const TetMesh mesh = readTetMesh(tets, {}, context);
+          return mapFromFlags(mesh, readFlags({flags, surface, array}, mesh, context), context);
+        });
+      },
+      "tets"_a, "flags"_a, "surface"_a, "array"_a, "threads"_a, "progress"_a.none());
   module.def(
       "read_mesh",
       [](const std::string& file, const std::string& format, int threads,

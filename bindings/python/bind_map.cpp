@@ -6,6 +6,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/map_structure.hpp>
+#include <hexhex/quantize.hpp>
 #include <hexhex/samples.hpp>
 
 #include "border.hpp"
@@ -112,13 +113,21 @@ nb::tuple mapStructureOf(const ArrayMap& map, double tolerance, int threads,
                         asList(s.defects));
 }
 
+TetMesh meshOf(const InPoints& points, const InTets& tets) {
+  const auto vertices = elements<Vec3>(points);
+  const auto corners = elements<Tet>(tets);
+  return {{vertices.begin(), vertices.end()}, {corners.begin(), corners.end()}};
+}
+
+TetMap mapOfFlags(const InPoints& points, const InTets& tets, const In<std::int8_t, 4>& flags,
+                  int threads, const Progress& progress) {
+  return run(threads, progress, [&](Context& context) {
+    return mapFromFlags(meshOf(points, tets), elements<FaceFlags>(flags), context);
+  });
+}
+
 TetMap pairOf(const InPoints& points, const InTets& tets, const InPoints& polycubePoints,
               const InTets& polycubeTets, int threads) {
-  const auto meshOf = [](const InPoints& p, const InTets& t) {
-    const auto vertices = elements<Vec3>(p);
-    const auto corners = elements<Tet>(t);
-    return TetMesh{{vertices.begin(), vertices.end()}, {corners.begin(), corners.end()}};
-  };
   return run(threads, {}, [&](Context& context) {
     return mapFromPair(meshOf(points, tets), meshOf(polycubePoints, polycubeTets), context);
   });
@@ -199,6 +208,8 @@ void bindMap(nb::module_& module) {
              "progress"_a.none());
   module.def("map_from_pair", &pairOf, "points"_a.noconvert(), "tets"_a.noconvert(),
              "polycube_points"_a.noconvert(), "polycube_tets"_a.noconvert(), "threads"_a);
+  module.def("map_from_flags", &mapOfFlags, "points"_a.noconvert(), "tets"_a.noconvert(),
+             "flags"_a.noconvert(), "threads"_a, "progress"_a.none());
 }
 
 }  // namespace hexhex::python

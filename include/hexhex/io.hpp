@@ -1,11 +1,14 @@
 // Files. The format follows from the file name's extension (letter case does not matter).
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include <hexhex/context.hpp>
 #include <hexhex/export.h>
@@ -55,6 +58,27 @@ struct ReadOptions {
 /// @throws Error  as readTetMesh(); FileUnsupported if the two do not belong together
 [[nodiscard]] TetMap readMapPair(const std::filesystem::path& tets,
                                  const std::filesystem::path& polycube, Context& context);
+
+/// Where the labels of a polycube are, and how they are found.
+struct FlagsFile {
+  std::filesystem::path file;
+  /// For a text with a number per triangle: the triangles, as an `.obj` file. Its vertices are
+  /// those of the tets by their positions.
+  std::filesystem::path surface = {};
+  std::string_view array = "flags";  ///< name of the cell array in `.vtu` and `.vtk` files
+};
+
+/// Reads the labels of a tet mesh's boundary, see FaceFlags in <hexhex/quantize.hpp>:
+/// - text: four numbers for each tet, one for the face opposite each corner, -1 where there is
+///   none; or, with a surface, a number per triangle;
+/// - `.vtu` and `.vtk`: a cell array of whole numbers, one for each triangle among the cells, whose
+///   points are those of the tet mesh.
+/// Triangles that are not on the boundary are an error.
+/// @return per tet
+/// @throws Error FileNotFound, FileSyntax, FileUnsupported if the numbers do not fit the mesh
+[[nodiscard]] std::vector<std::array<std::int8_t, 4>> readFlags(const FlagsFile& flags,
+                                                                const TetMesh& tets,
+                                                                Context& context);
 
 /// Reads a hexahedral mesh: `.mesh` and `.meshb` (MEDIT ASCII and binary), `.vtu`, `.vtk` (legacy
 /// VTK, ASCII and binary), `.msh` (Gmsh 4.1 and 2.x, ASCII and binary), `.ovm`, `.ovmb`. Other

@@ -2,7 +2,9 @@
 // singular curves, and bends the map onto them.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include <hexhex/context.hpp>
@@ -97,5 +99,20 @@ struct SeamlessReport {
 
 /// The same with all cores and without progress.
 [[nodiscard]] QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options);
+
+/// Labels of a tet's faces, each opposite its corner: which way a boundary triangle is to face in a
+/// polycube, 0 to 5 for +x, -x, +y, -y, +z, -z; and -1 for triangles inside of the object.
+using FaceFlags = std::array<std::int8_t, 4>;
+
+/// The seamless map of a polycube, from labels of the boundary triangles: each connected piece of
+/// one axis becomes a plane, and the tets are bent onto these planes with little distortion and
+/// without flips. Parameters are in units of space. Edges of the tets may be split. What quantize()
+/// makes of the map is the polycube's mesh.
+/// @param flags  per tet
+/// @throws Error InvalidArgument for other labels than these (with the face), or those of no
+///               polycube, or if canQuantize() is false; FlippedTet for tets that are not positive
+///               in space, or cannot be bent; those of broken meshes
+[[nodiscard]] TetMap mapFromFlags(const TetMesh& tets, std::span<const FaceFlags> flags,
+                                  Context& context);
 
 }  // namespace HEXHEX_API_NAMESPACE

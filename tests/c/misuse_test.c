@@ -166,6 +166,8 @@ static void call_all(const handles* h, enum kind kind, const char* file) {
   }
   if (concerns(k_context)) {
     REFUSED(hexhex_map_from_pair(NULL, NULL, h->context, &made.map, &error));
+    REFUSED(hexhex_map_from_flags(NULL, NULL, h->context, &made.map, &error));
+    REFUSED(hexhex_map_read_flags(file, file, NULL, NULL, h->context, &made.map, &error));
   }
   if (concerns(k_map)) {
     REFUSED(hexhex_map_get_answer(h->map, &out_sample_answer, &error));

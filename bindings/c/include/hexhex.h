@@ -271,6 +271,21 @@ HEXHEX_API hexhex_status hexhex_map_from_pair(const hexhex_map_arrays* tets,
                                               const hexhex_map_arrays* polycube,
                                               hexhex_context* context, hexhex_map** map,
                                               hexhex_error* error);
+/** The seamless map of a polycube, of which hexhex_quantize() makes an integer-grid map, from
+ * labels of boundary triangles. See mapFromFlags() in <hexhex/quantize.hpp>.
+ * @param tets   of which points and tets are used
+ * @param flags  4 per tet, of the faces opposite its corners: 0 to 5 for +x, -x, +y, -y, +z, -z;
+ *               -1 inside */
+HEXHEX_API hexhex_status hexhex_map_from_flags(const hexhex_map_arrays* tets, const int8_t* flags,
+                                               hexhex_context* context, hexhex_map** map,
+                                               hexhex_error* error);
+/** The same of files. See readFlags() in <hexhex/io.hpp>.
+ * @param surface  NULL: none
+ * @param array    NULL: "flags" */
+HEXHEX_API hexhex_status hexhex_map_read_flags(const char* tets, const char* flags,
+                                               const char* surface, const char* array,
+                                               hexhex_context* context, hexhex_map** map,
+                                               hexhex_error* error);
 
 typedef enum hexhex_chart_style HEXHEX_AS_INT {
   HEXHEX_CHARTS_ALIGNED = 0,  /**< as many identity transitions as possible */

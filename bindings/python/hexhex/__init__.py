@@ -80,7 +80,7 @@ __all__ = [
     "SurveySink", "TqdmProgress", "VerifyItem", "VerifyReport", "can_quantize", "can_repair",
     "check", "defect_kinds", "examine_seamless", "extract", "extract_partial", "extract_parts",
     "extract_parts_to_file", "extract_to", "extract_to_file", "formats", "generate", "holds_curved",
-    "map_from_pair", "map_structure", "quality", "quantize", "read", "read_curved", "read_map",
+    "map_from_flags", "map_from_pair", "map_structure", "quality", "quantize", "read", "read_curved", "read_flags", "read_map",
     "read_mesh", "read_pair", "read_tets", "read_to", "repair", "require_format", "sample_kinds",
     "scaled_jacobian", "survey", "verify", "write",
 ]
@@ -757,6 +757,48 @@ def map_from_pair(points: npt.ArrayLike, tets: npt.ArrayLike, polycube_points: n
     return Map._from_handle(_hexhex.map_from_pair(
         _floats(points, (3,), "points"), corners, _floats(polycube_points, (3,), "polycube_points"),
         others, 0))
+
+
+def read_flags(tets: Path, flags: Path, *, surface: Path | None = None, array: str = "flags",
+               threads: int | None = None, progress: Progress | None = None) -> Map:
+    """The seamless map of a polycube, which quantize() makes an integer-grid map, from a tet mesh and
+    labels of its boundary triangles: 0 to 5 for +x, -x, +y, -y, +z, -z.
+
+    Args:
+        flags: a text with four numbers per tet, one for the face opposite each corner, -1 inside; or
+            with one per triangle of ``surface``; or a .vtu or .vtk file with triangles.
+        surface: an .obj file.
+        array: name of the cell array of .vtu and .vtk files that holds the labels.
+
+    Raises:
+        FileError: for files that cannot be read, or do not fit together.
+        ArgumentError: for labels of no polycube, or if can_quantize() is False.
+        MapError: for tets that are inverted in space, or cannot be bent.
+    """
+    return Map._from_handle(_hexhex.read_flags(
+        os.fspath(tets), os.fspath(flags), "" if surface is None else os.fspath(surface), array,
+        _threads(threads), progress))
+
+
+def map_from_flags(points: npt.ArrayLike, tets: npt.ArrayLike, flags: npt.ArrayLike, *,
+                   threads: int | None = None, progress: Progress | None = None) -> Map:
+    """The same of arrays: float64 (n, 3), integers (m, 4), integers (m, 4): a label for the face
+    opposite each corner, -1 inside. Raises ArgumentError, MapError.
+
+    >>> import numpy
+    >>> hexhex.map_from_flags(numpy.eye(4, 3), [[0, 1, 2, 3]], [[6, 1, 3, 5]])
+    Traceback (most recent call last):
+        ...
+    ArgumentError: ...
+    """
+    labels = np.asarray(flags)
+    if labels.ndim != 2 or labels.shape[1] != 4 or not np.issubdtype(labels.dtype, np.integer):
+        raise ArgumentError("flags are integers of the shape (m, 4).", "InvalidArgument")
+    if labels.size and (labels.min() < -1 or labels.max() > 5):
+        raise ArgumentError("flags are from -1 to 5.", "InvalidArgument")
+    return Map._from_handle(_hexhex.map_from_flags(
+        _floats(points, (3,), "points"), _indices(tets, 4, "tets"),
+        np.ascontiguousarray(labels, dtype=np.int8), _threads(threads), progress))
 
 
 def read_mesh(file: Path, *, format: str | None = None, threads: int | None = None,

@@ -45,4 +45,8 @@ template <>
 inline constexpr CellKind kCellKind<8> = {8, "hexahedron", "hexahedra",    "Hexahedra", 10,
                                           5, 12,           PlaceKind::Cell};
 
+/// Triangles, which carry labels.
+inline constexpr CellKind kTriangleKind = {
+    .corners = 3, .singular = "triangle", .plural = "triangles", .vtkType = 5};
+
 }  // namespace hexhex

@@ -5,6 +5,7 @@
 
 #include <base/stage.hpp>
 #include <io/core/input_file.hpp>
+#include <io/core/triangle_labels.hpp>
 #include <io/vtk/vtk.hpp>
 #include <io/vtk/vtk_reader.hpp>
 
@@ -88,6 +89,18 @@ TetCells readVtuTets(const Input& input, Context& context) {
 TetMap readVtuMap(const Input& input, const ReadOptions& options, Context& context) {
   return inStage(context, "read map", [&](Stage& stage) {
     return readVtkMap(*openVtuFile(input, stage), options.mapArray, stage);
+  });
+}
+
+TriangleLabels readVtuLabels(const Input& input, std::string_view array, Context& context) {
+  return inStage(context, "read labels", [&](Stage& stage) {
+    return readVtkLabels(*openVtuFile(input, stage), array, stage);
+  });
+}
+
+TriangleLabels readVtkLegacyLabels(const Input& input, std::string_view array, Context& context) {
+  return inStage(context, "read labels", [&](Stage& stage) {
+    return readVtkLabels(*openVtkLegacyFile(input, false, stage), array, stage);
   });
 }
 

@@ -303,13 +303,15 @@ class VtkLegacyFile final : public VtkSource {
     see(name, ofCells_, components);
     const std::size_t count = components * tuples;
     const std::size_t begin = scanner_.position();
-    if (isBehindMesh() && tuples == elements() && isReal(type.scalar)) {
+    const bool isNumbers = type.name != "string" && type.name != "bit";
+    if (isBehindMesh() && tuples == elements() && isNumbers) {
       arrays.push_back({ofCells_ ? VtkSection::CellData : VtkSection::PointData,
-                        decodedVtkName(name), VtkNumbers::Reals, components, false,
-                        [this, begin, count, &type](VtkNumbers numbers, auto&&) {
+                        decodedVtkName(name),
+                        isReal(type.scalar) ? VtkNumbers::Reals : VtkNumbers::Integers, components,
+                        false, [this, begin, count, &type](VtkNumbers numbers, auto&&) {
                           scanner_.moveTo(begin);
                           return readNumbers(count, type, numbers,
-                                             [](std::size_t) { return "a parameter of the map"; });
+                                             [](std::size_t) { return "a number of an array"; });
                         }});
     }
     skipNumbers(count, type);

@@ -188,16 +188,21 @@ const VtkSourceArray* findMap(VtkSource& source, std::string_view name) {
   return nullptr;
 }
 
-[[noreturn]] void failWithoutMap(const VtkSource& source, std::size_t tets, std::string_view name) {
+/// For messages.
+std::string arraysIn(const VtkSource& source) {
   std::string found;
   for (const std::string& array : source.seen) found += (found.empty() ? "" : ", ") + array;
   if (source.unnamed > 0) found += ", and " + std::to_string(source.unnamed) + " more";
+  return found.empty() ? "none" : found;
+}
+
+[[noreturn]] void failWithoutMap(const VtkSource& source, std::size_t tets, std::string_view name) {
   source.fail(ErrorCode::FileUnsupported,
               "the file holds " + std::to_string(tets) + " tets, but no map: no cell array \"" +
                   std::string(name) +
                   "\" of 12 floating-point numbers (u v w of each corner), and no point array of "
                   "this name with 3, for a map with one chart. Arrays in the file: " +
-                  (found.empty() ? "none" : found) +
+                  arraysIn(source) +
                   ". Name the map's array (--map-array), or give the map as a second mesh "
                   "(--polycube).");
 }
@@ -351,6 +356,33 @@ TetMap readVtkMap(VtkSource& source, std::string_view mapArray, Stage& stage) {
   }
   map.features = readVtkTetFeatures(source);
   return map;
+}
+
+TriangleLabels readVtkLabels(VtkSource& source, std::string_view name, Stage& stage) {
+  source.requireIndexable();
+  TriangleLabels labels;
+  Array<std::size_t> numbers;
+  const auto makeRoom = [&labels](std::size_t count) {
+    labels.triangles.resize(count);
+    return count == 0 ? nullptr : labels.triangles.front().data();
+  };
+  readVtkCells(source, kTriangleKind, makeRoom, &numbers, stage);
+  const VtkSourceArray* array = nullptr;
+  do {
+    array = source.find(VtkSection::CellData, name, 1, VtkNumbers::Integers);
+  } while (array == nullptr && source.readOn());
+  if (array == nullptr) {
+    source.fail(ErrorCode::FileUnsupported,
+                "no cell array \"" + std::string(name) +
+                    "\" of whole numbers, which are to be the labels of " +
+                    std::to_string(numbers.size()) +
+                    " triangles. Arrays in the file: " + arraysIn(source) + ".");
+  }
+  const VtkColumn column = source.load(*array);
+  for (const std::size_t number : numbers) {
+    source.copy(column, number, 1, &labels.labels.emplace_back());
+  }
+  return labels;
 }
 
 }  // namespace hexhex

@@ -18,6 +18,7 @@
 
 #include <base/stage.hpp>
 #include <io/core/cell_mesh.hpp>
+#include <io/core/triangle_labels.hpp>
 #include <io/vtk/vtk_source.hpp>
 
 namespace hexhex {
@@ -81,5 +82,9 @@ void readVtkGenerators(const VtkSource& source, Array<Index>& tets, Array<Corner
 /// @param mapArray  its name
 /// @throws Error FileUnsupported without such an array; NotFinite
 [[nodiscard]] TetMap readVtkMap(VtkSource& source, std::string_view mapArray, Stage& stage);
+
+/// Reads triangles with a whole number each.
+/// @param name  of the cell array
+[[nodiscard]] TriangleLabels readVtkLabels(VtkSource& source, std::string_view name, Stage& stage);
 
 }  // namespace hexhex

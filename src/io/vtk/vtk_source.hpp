@@ -157,7 +157,7 @@ class VtkSource {
 [[nodiscard]] std::unique_ptr<VtkSource> openVtuFile(const Input& input, Stage& stage);
 
 /// Opens a legacy `.vtk` file, and reads as far as the first array behind the sections of a mesh.
-/// Of arrays, only floating-point numbers are offered, and the regions of cells.
+/// Of arrays, those of numbers are offered that come behind the mesh, and the regions of cells.
 /// @param withRegions  reads the regions of cells if they follow as this library writes them
 /// @throws Error FileSyntax, FileUnsupported, NotFinite or TooLarge, with the line
 [[nodiscard]] std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegions,

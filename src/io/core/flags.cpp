@@ -1,0 +1,274 @@
+// Labels of a tet mesh's boundary: which way each triangle is to face in a polycube.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <hexhex/error.hpp>
+#include <hexhex/io.hpp>
+
+#include <io/core/input_file.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/core/triangle_labels.hpp>
+#include <lattice/tet_geometry.hpp>
+
+namespace hexhex {
+namespace {
+
+using Flags = std::vector<std::array<std::int8_t, 4>>;
+using SurfaceTriangle = std::array<Index, 3>;
+
+/// As a share of the object's size, positions of a surface may differ from those of the tets: text
+/// has six digits.
+constexpr double kSamePosition = 1e-5;
+
+[[noreturn]] void refuseFlags(const std::filesystem::path& file, const std::string& sentence,
+                              Place place = {}) {
+  throw Error(ErrorCode::FileUnsupported, file.string() + ": " + sentence, place);
+}
+
+SurfaceTriangle sortedCorners(SurfaceTriangle triangle) {
+  std::sort(triangle.begin(), triangle.end());
+  return triangle;
+}
+
+/// The faces of tets that only one of them has.
+class TetBoundary {
+ public:
+  explicit TetBoundary(const TetMesh& tets) {
+    for (Index t = 0; t < tets.tets.size(); ++t) {
+      for (std::size_t face = 0; face < 4; ++face) {
+        SurfaceTriangle corners{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          corners[k] = tets.tets[t][static_cast<std::size_t>(kFaceCorners[face][k])];
+        }
+        const auto [found, isNew] = faces_.try_emplace(sortedCorners(corners), Face{t, face});
+        if (!isNew) found->second.isInner = true;
+      }
+    }
+  }
+
+  struct Face {
+    Index tet = 0;
+    std::size_t face = 0;
+    bool isInner = false;
+  };
+  /// nullptr if no tet has such a face.
+  [[nodiscard]] const Face* find(const SurfaceTriangle& triangle) const {
+    const auto found = faces_.find(sortedCorners(triangle));
+    return found == faces_.end() ? nullptr : &found->second;
+  }
+  [[nodiscard]] bool isOn(Index tet, std::size_t face, const TetMesh& tets) const {
+    SurfaceTriangle corners{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = tets.tets[tet][static_cast<std::size_t>(kFaceCorners[face][k])];
+    }
+    return !find(corners)->isInner;
+  }
+  [[nodiscard]] std::size_t size() const {
+    return static_cast<std::size_t>(std::count_if(faces_.begin(), faces_.end(),
+                                                  [](const auto& f) { return !f.second.isInner; }));
+  }
+  /// All vertices on it, ascending.
+  [[nodiscard]] std::vector<Index> vertices() const {
+    std::vector<Index> all;
+    for (const auto& [triangle, face] : faces_) {
+      if (!face.isInner) all.insert(all.end(), triangle.begin(), triangle.end());
+    }
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+  }
+
+ private:
+  std::map<SurfaceTriangle, Face> faces_;
+};
+
+/// Gives labels of triangles to the faces that they are.
+Flags placed(const TriangleLabels& found, const TetMesh& tets, const TetBoundary& boundary,
+             const std::filesystem::path& file) {
+  Flags flags(tets.tets.size(), {-1, -1, -1, -1});
+  for (std::size_t i = 0; i < found.triangles.size(); ++i) {
+    const TetBoundary::Face* const face = boundary.find(found.triangles[i]);
+    if (face == nullptr || face->isInner) {
+      refuseFlags(file, "triangle " + std::to_string(i) + " (counted from 0) is " +
+                            (face == nullptr ? "no face of a tet." : "inside of the tet mesh."));
+    }
+    if (found.labels[i] < 0 || found.labels[i] > 5) {
+      refuseFlags(file, "triangle " + std::to_string(i) + " (counted from 0) has the label " +
+                            std::to_string(found.labels[i]) +
+                            "; labels are 0 to 5 for +x -x +y -y +z -z.");
+    }
+    flags[face->tet][face->face] = static_cast<std::int8_t>(found.labels[i]);
+  }
+  return flags;
+}
+
+std::vector<std::int64_t> readLabelNumbers(const Input& input, Stage& stage) {
+  Array<char> room;
+  TextScanner scanner(input.text(room, stage), input.name(), TextScanner::Comments::Hash);
+  std::vector<std::int64_t> numbers;
+  while (scanner.skipSpace()) numbers.push_back(scanner.integer("a label"));
+  return numbers;
+}
+
+/// Vertices and triangles of an `.obj` file; other elements are passed over.
+struct ObjSurface {
+  std::vector<Vec3> points;
+  std::vector<SurfaceTriangle> triangles;
+};
+ObjSurface readSurface(const Input& input, Stage& stage) {
+  Array<char> room;
+  TextScanner scanner(input.text(room, stage), input.name(), TextScanner::Comments::Hash);
+  ObjSurface surface;
+  while (scanner.skipSpace()) {
+    const std::string_view keyword = scanner.readToken();
+    if (keyword == "v") {
+      Vec3& p = surface.points.emplace_back();
+      for (double& x : p) x = scanner.number("a coordinate");
+    } else if (keyword == "f") {
+      SurfaceTriangle& triangle = surface.triangles.emplace_back();
+      for (Index& v : triangle) {
+        // "7", "7/2", "7/2/3" or "7//3": the first number is the vertex, counted from 1.
+        const std::string_view token = scanner.readToken();
+        const std::string_view number = token.substr(0, token.find('/'));
+        const auto result = std::from_chars(number.data(), number.data() + number.size(), v);
+        if (result.ec == std::errc{} && v >= 1 && v <= surface.points.size()) {
+          --v;
+          continue;
+        }
+        scanner.fail(ErrorCode::FileSyntax, "a corner of a face is " + quoted(token) +
+                                                ", which names no vertex before it.");
+      }
+      // More corners would stand on the same line.
+      if (scanner.takeLine().find_first_not_of(" \t\r") != std::string_view::npos) {
+        scanner.fail(ErrorCode::FileUnsupported, "a face has more than three corners.");
+      }
+      continue;
+    }
+    static_cast<void>(scanner.takeLine());
+  }
+  return surface;
+}
+
+/// Finds boundary vertices by their positions.
+class Positions {
+ public:
+  Positions(const TetMesh& tets, const TetBoundary& boundary) : tets_(tets) {
+    double size = 0;
+    for (const Vec3& p : tets.points) {
+      for (const double x : p) size = std::max(size, std::abs(x));
+    }
+    tolerance_ = std::max(kSamePosition * size, 1e-300);
+    for (const Index v : boundary.vertices()) buckets_[bucketOf(tets.points[v])].push_back(v);
+  }
+
+  /// The nearest vertex within the tolerance.
+  [[nodiscard]] std::optional<Index> find(const Vec3& p) const {
+    std::optional<Index> best;
+    double least = tolerance_ * tolerance_;
+    const Bucket middle = bucketOf(p);
+    for (int i = 0; i < 27; ++i) {
+      const auto bucket =
+          buckets_.find({middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1});
+      if (bucket == buckets_.end()) continue;
+      for (const Index v : bucket->second) {
+        double squared = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          squared += (p[k] - tets_.points[v][k]) * (p[k] - tets_.points[v][k]);
+        }
+        if (squared > least) continue;
+        least = squared;
+        best = v;
+      }
+    }
+    return best;
+  }
+
+ private:
+  using Bucket = std::array<std::int64_t, 3>;
+  [[nodiscard]] Bucket bucketOf(const Vec3& p) const {
+    Bucket bucket{};
+    for (std::size_t k = 0; k < 3; ++k) bucket[k] = std::llround(p[k] / tolerance_);
+    return bucket;
+  }
+
+  const TetMesh& tets_;
+  double tolerance_ = 0;
+  std::map<Bucket, std::vector<Index>> buckets_;
+};
+
+/// A number per triangle of a surface.
+TriangleLabels onSurface(const FlagsFile& flags, std::vector<std::int64_t> labels,
+                         const TetMesh& tets, const TetBoundary& boundary, Stage& stage) {
+  const ObjSurface surface = readSurface(flags.surface, stage);
+  if (labels.size() != surface.triangles.size()) {
+    refuseFlags(flags.file, "there are " + std::to_string(labels.size()) + " labels, but " +
+                                std::to_string(surface.triangles.size()) + " triangles in " +
+                                flags.surface.string() + ".");
+  }
+  const Positions positions(tets, boundary);
+  std::vector<Index> vertexOf;
+  for (const Vec3& p : surface.points) {
+    const std::optional<Index> vertex = positions.find(p);
+    vertexOf.push_back(vertex.value_or(kNone));
+  }
+  TriangleLabels result{surface.triangles, std::move(labels)};
+  for (SurfaceTriangle& triangle : result.triangles) {
+    for (Index& v : triangle) {
+      if (vertexOf[v] == kNone) {
+        refuseFlags(flags.surface,
+                    "vertex " + std::to_string(v + 1) +
+                        " is no boundary vertex of the tet mesh: no position agrees.");
+      }
+      v = vertexOf[v];
+    }
+  }
+  return result;
+}
+
+/// Four numbers per tet.
+Flags perFace(const std::vector<std::int64_t>& numbers, const FlagsFile& flags, const TetMesh& tets,
+              const TetBoundary& boundary) {
+  if (numbers.size() != 4 * tets.tets.size()) {
+    refuseFlags(
+        flags.file,
+        "there are " + std::to_string(numbers.size()) + " labels; expected four for each of " +
+            std::to_string(tets.tets.size()) + " tets" +
+            (numbers.size() == boundary.size()
+                 ? ". They are as many as the boundary has triangles: name the surface whose "
+                   "triangles they belong to (--surface)."
+                 : ", or one for each triangle of a surface (--surface)."));
+  }
+  Flags result(tets.tets.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (numbers[i] < -1 || numbers[i] > 5) {
+      refuseFlags(flags.file, "label " + std::to_string(i) + " (counted from 0) is " +
+                                  std::to_string(numbers[i]) +
+                                  "; labels are 0 to 5 for +x -x +y -y +z -z, and -1 for none.");
+    }
+    result[i / 4][i % 4] = static_cast<std::int8_t>(numbers[i]);
+  }
+  return result;
+}
+
+}  // namespace
+
+Flags readFlags(const FlagsFile& flags, const TetMesh& tets, Context& context) {
+  const std::string extension = lowerCaseExtension(flags.file);
+  const TetBoundary boundary(tets);
+  if (extension == ".vtu" || extension == ".vtk") {
+    const auto read = extension == ".vtu" ? readVtuLabels : readVtkLegacyLabels;
+    return placed(read(flags.file, flags.array, context), tets, boundary, flags.file);
+  }
+  return inStage(context, "read labels", [&](Stage& stage) {
+    std::vector<std::int64_t> numbers = readLabelNumbers(flags.file, stage);
+    if (flags.surface.empty()) return perFace(numbers, flags, tets, boundary);
+    return placed(onSurface(flags, std::move(numbers), tets, boundary, stage), tets, boundary,
+                  flags.file);
+  });
+}
+
+}  // namespace hexhex
