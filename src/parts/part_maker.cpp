@@ -187,7 +187,10 @@ class Maker final : public PartMaker {
 
   /// Adds ghosts and their vertices behind own ones.
   void takeGhosts(const Assembly& assembly) const {
-    const auto& [part, layers, stage] = assembly;
+    // No structured binding: clang 14 captures none in a lambda.
+    auto& part = assembly.part;
+    const auto& layers = assembly.layers;
+    Stage& stage = assembly.stage;
     std::vector<std::array<Id, 8>> corners;
     for (std::size_t layer = 0; layer + 1 < layers.size(); ++layer) {
       for (const NearbyCell<Id>& cell : layers[layer]) {
