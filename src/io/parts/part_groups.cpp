@@ -8,7 +8,8 @@ namespace hexhex {
 namespace {
 
 CellGroups groupOwnCells(const MeshPart& part, const PartsInfo& info) {
-  if (info.regions.empty()) return {{{1, "hexahedra", 0, part.ownCells}}, {}};
+  if (info.regions.empty())
+    return {{{1, "hexahedra", 0, static_cast<std::size_t>(part.ownCells)}}, {}};
   HexMesh own;  // regions alone
   own.cells.resize(part.ownCells);
   own.regions.assign(part.mesh.regions.begin(),
