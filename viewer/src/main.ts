@@ -30,6 +30,15 @@ async function start(): Promise<void> {
   await load(info, worker);
 }
 
+// Inside of hexhex.html, files that are dropped on the mesh are for that page.
+if (window.parent !== window) {
+  document.addEventListener("dragover", (event) => event.preventDefault());
+  document.addEventListener("drop", (event) => {
+    event.preventDefault();
+    window.parent.postMessage([...(event.dataTransfer?.files ?? [])], "*");
+  });
+}
+
 if (document.createElement("canvas").getContext("webgl2")) {
   start().catch((error: unknown) => showProblem(String(error)));
 } else {

@@ -249,19 +249,26 @@ function download(extension: string): Promise<void> {
   });
 }
 
-/** Files that are dropped on a document are opened here. */
-function bindDrop(target: Document): void {
+function openFiles(files: File[]): void {
+  if (files.length > 0 && document.body.dataset.working === "false") void open({ files });
+}
+
+function bindDrop(): void {
   const over = (is: boolean) => document.body.classList.toggle("over", is);
-  target.addEventListener("dragover", (event) => {
+  document.addEventListener("dragover", (event) => {
     event.preventDefault();
     over(true);
   });
-  target.addEventListener("dragleave", () => over(false));
-  target.addEventListener("drop", (event) => {
+  document.addEventListener("dragleave", () => over(false));
+  document.addEventListener("drop", (event) => {
     event.preventDefault();
     over(false);
-    const files = [...(event.dataTransfer?.files ?? [])];
-    if (files.length > 0 && document.body.dataset.working === "false") void open({ files });
+    openFiles([...(event.dataTransfer?.files ?? [])]);
+  });
+  // What is dropped on the mesh, which is a page of its own.
+  window.addEventListener("message", (event) => {
+    if (event.source !== element<HTMLIFrameElement>("mesh-view").contentWindow) return;
+    openFiles((event.data as File[]).filter((file) => file instanceof File));
   });
 }
 
@@ -320,9 +327,7 @@ async function start(): Promise<void> {
     (bytes) => (element("memory").textContent = `${Math.round(bytes / 2 ** 20)} MB of memory in use`),
   );
   bind(await session.restart());
-  bindDrop(document);
-  const view = element<HTMLIFrameElement>("mesh-view");
-  view.addEventListener("load", () => view.contentDocument && bindDrop(view.contentDocument));
+  bindDrop();
   setWorking(false);
   document.body.dataset.ready = "true";
 }

@@ -186,8 +186,9 @@ test("work can be cancelled in the middle, and done again", async ({ page }) => 
 
 test("a second map has the memory of the first", async ({ page }) => {
   await dropAndWait(page, "sphere.hexex");
-  await setScale(page, 12);
+  await setScale(page, 6);
   await click(page, "#extract");
+  await meshView(page);
   const workers = () => page.workers().length;
   const after = workers();
   for (const name of ["torus.ovm", "sphere.hexex", "torus.ovm"]) await dropAndWait(page, name);
