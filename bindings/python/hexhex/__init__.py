@@ -80,9 +80,9 @@ __all__ = [
     "SurveySink", "TqdmProgress", "VerifyItem", "VerifyReport", "can_quantize", "can_repair",
     "check", "defect_kinds", "examine_seamless", "extract", "extract_partial", "extract_parts",
     "extract_parts_to_file", "extract_to", "extract_to_file", "formats", "generate", "holds_curved",
-    "map_from_flags", "map_from_pair", "map_structure", "quality", "quantize", "read", "read_curved", "read_flags", "read_map",
-    "read_mesh", "read_pair", "read_tets", "read_to", "repair", "require_format", "sample_kinds",
-    "scaled_jacobian", "survey", "verify", "write",
+    "map_from_flags", "map_from_pair", "map_structure", "quality", "quantize", "read",
+    "read_curved", "read_flags", "read_map", "read_mesh", "read_pair", "read_tets", "read_to",
+    "repair", "require_format", "sample_kinds", "scaled_jacobian", "survey", "verify", "write",
 ]
 
 
