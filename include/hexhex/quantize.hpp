@@ -24,7 +24,7 @@ struct QuantizeOptions {
   /// Tagged triangles inside of the object stay planes of the mesh, but for those with this tag (0:
   /// none): walls of a motorcycle complex, to which readMap() gives the tag 2 in a .hexex file.
   std::int32_t wallTag = 0;
-  /// A map may be so far from being seamless, as a share of its largest coordinate.
+  /// A map may be so far from being seamless, as a share of its size in parameters.
   double tolerance = 1e-5;
 };
 

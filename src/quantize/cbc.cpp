@@ -5,9 +5,14 @@
 #include <quantize/integer_program.hpp>
 #if defined(HEXHEX_CBC_NAME)
 #include <csignal>
+#include <cstddef>
 #include <dlfcn.h>
+#include <string>
 
 #include <coin/Cbc_C_Interface.h>
+
+#include <hexhex/error.hpp>
+#include <hexhex/types.hpp>
 #endif
 
 namespace hexhex {
@@ -15,9 +20,25 @@ namespace hexhex {
 #if defined(HEXHEX_CBC_NAME)
 namespace {
 
+/// CBC ends the process where its memory ends, so it only begins if there is so much.
+void requireMemory() { static_cast<void>(Array<char>(std::size_t{1} << 25)); }
+
+void* load() {
+  requireMemory();
+  void* const loaded = dlopen(HEXHEX_CBC_NAME, RTLD_NOW);
+  const std::string problem = loaded == nullptr ? dlerror() : "";
+  // Without it, integers are others: that must not depend on what happens to fail.
+  if (loaded == nullptr && problem.find("No such file") == std::string::npos) {
+    throw Error(ErrorCode::FileUnsupported,
+                "The library CBC is there, but cannot be loaded (" + problem +
+                    "). Install it anew, or remove it: integers are then found by rounding.");
+  }
+  return loaded;
+}
+
 /// Loaded when the first program is to be solved: it brings fifteen libraries along.
 void* library() {
-  static void* const loaded = dlopen(HEXHEX_CBC_NAME, RTLD_NOW);
+  static void* const loaded = load();
   return loaded;
 }
 
@@ -83,6 +104,7 @@ std::vector<std::int64_t> solveByCbc(const IntegerProgram& program) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   const KeptInterrupt kept;
+  requireMemory();
   // One column for each number of hexahedra, one for its distance from the length.
   Model model;
   const auto n = static_cast<int>(program.lengths.size());

@@ -225,8 +225,13 @@ CutGraph cutOpen(const TetTopology& topology, const EdgeFans& edges,
                  std::span<const TetParameters> parameters, std::span<const Rotation> rotations) {
   CutGraph graph;
   std::vector<bool> isTree(topology.mate.size());
-  const std::vector<Motion> motions = moveAlongTree(topology, parameters, rotations, isTree);
+  // Charts may lie anywhere: far away, sums would lose what differences still have.
   graph.parameters.assign(parameters.begin(), parameters.end());
+  for (TetParameters& tet : graph.parameters) {
+    const Vec3 origin = tet[0];
+    for (Vec3& u : tet) u = minus(u, origin);
+  }
+  const std::vector<Motion> motions = moveAlongTree(topology, graph.parameters, rotations, isTree);
   for (std::size_t t = 0; t < graph.parameters.size(); ++t) {
     for (Vec3& u : graph.parameters[t]) u = motions[t](u);
   }

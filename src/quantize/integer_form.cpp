@@ -3,12 +3,43 @@
 #include <cstdlib>
 #include <limits>
 #include <numeric>
+#include <string>
 #include <utility>
 
 #include <Eigen/Dense>
 #include <quantize/integer_form.hpp>
 
+#include <hexhex/error.hpp>
+
+#include <lattice/wide_int.hpp>
+
 namespace hexhex {
+
+namespace {
+
+/// Of the matrix that has all variables as combinations of the free ones: one gigabyte.
+constexpr std::size_t kMostEntries = std::size_t{1} << 27;
+
+/// Of coefficients; those of values, which stay far below, are sums of a few of them.
+constexpr std::int64_t kLargestCoefficient = std::int64_t{1} << 40;
+constexpr std::int64_t kLargestValue = std::int64_t{1} << 60;
+
+[[noreturn]] void failForSize() {
+  throw Error(
+      ErrorCode::TooLarge,
+      "The conditions that keep the map's charts, planes and singular curves together have "
+      "too large coefficients: it is not seamless, or only in a way that cannot be computed "
+      "with.");
+}
+
+/// sum + a * b
+std::int64_t plusProduct(std::int64_t sum, std::int64_t a, std::int64_t b) {
+  const Int128 result = sum + static_cast<Int128>(a) * b;
+  if (result > kLargestCoefficient || result < -kLargestCoefficient) failForSize();
+  return static_cast<std::int64_t>(result);
+}
+
+}  // namespace
 
 std::int64_t IntegerForm::coefficient(Index variable) const noexcept {
   const auto at = std::lower_bound(terms_.begin(), terms_.end(), variable,
@@ -25,10 +56,10 @@ void IntegerForm::add(const IntegerForm& other, std::int64_t factor) {
     if (b == other.terms_.end() || (a != terms_.end() && a->first < b->first)) {
       sum.push_back(*a++);
     } else if (a == terms_.end() || b->first < a->first) {
-      sum.emplace_back(b->first, factor * b->second);
+      sum.emplace_back(b->first, plusProduct(0, factor, b->second));
       ++b;
     } else {
-      sum.emplace_back(a->first, a->second + factor * b->second);
+      sum.emplace_back(a->first, plusProduct(a->second, factor, b->second));
       ++a;
       ++b;
     }
@@ -39,11 +70,20 @@ void IntegerForm::add(const IntegerForm& other, std::int64_t factor) {
 
 void IntegerForm::multiply(std::int64_t factor) {
   if (factor == 0) terms_.clear();
-  for (Term& term : terms_) term.second *= factor;
+  for (Term& term : terms_) term.second = plusProduct(0, term.second, factor);
 }
 
 void IntegerForm::divide(std::int64_t divisor) {
   for (Term& term : terms_) term.second /= divisor;
+}
+
+std::int64_t IntegerForm::operator()(std::span<const std::int64_t> values) const {
+  Int128 sum = 0;
+  for (const auto& [variable, factor] : terms_) {
+    sum += static_cast<Int128>(factor) * values[variable];
+  }
+  if (sum > kLargestValue || sum < -kLargestValue) failForSize();
+  return static_cast<std::int64_t>(sum);
 }
 
 std::int64_t IntegerForm::commonDivisor(std::int64_t with) const noexcept {
@@ -74,11 +114,18 @@ void IntegerSystem::addEquations(std::vector<IntegerForm> equations, std::int64_
   for (IntegerForm& form : equations) addEquation(std::move(form), largestPivot);
 }
 
+/// Of the variables in a form, the place of that which was solved for first; kNone if none was.
+Index IntegerSystem::firstSolvedIn(const IntegerForm& form) const noexcept {
+  Index first = kNone;
+  for (const auto& [variable, factor] : form.terms()) first = std::min(first, solvedBy_[variable]);
+  return first;
+}
+
 void IntegerSystem::addEquation(IntegerForm form, std::int64_t largestPivot) {
   // Puts in what earlier equations say, in their order: each brings in variables of later ones.
-  for (const Solved& solved : solved_) {
+  for (Index place = firstSolvedIn(form); place != kNone; place = firstSolvedIn(form)) {
+    const Solved& solved = solved_[place];
     const std::int64_t factor = form.coefficient(solved.variable);
-    if (factor == 0) continue;
     form.add({solved.variable, 1}, -factor);
     form.multiply(solved.coefficient);
     form.add(solved.rest, -factor);
@@ -98,6 +145,12 @@ void IntegerSystem::addEquation(IntegerForm form, std::int64_t largestPivot) {
 
 std::vector<double> IntegerSystem::nearest(const std::vector<double>& wanted) const {
   // Each variable as a combination of the free ones.
+  if (variableCount_ * free_.size() > kMostEntries) {
+    throw Error(ErrorCode::TooLarge,
+                "The map's charts differ in too many ways (" + std::to_string(variableCount_) +
+                    " shared unknowns, of which " + std::to_string(free_.size()) +
+                    " are free): it is far from seamless, or too large to be made so.");
+  }
   const auto n = static_cast<Eigen::Index>(variableCount_);
   Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(free_.size()));
   for (std::size_t k = 0; k < free_.size(); ++k) basis(free_[k], static_cast<Eigen::Index>(k)) = 1;
@@ -122,7 +175,7 @@ std::vector<std::int64_t> IntegerSystem::roundedTo(const std::vector<double>& so
   }
   for (std::size_t i = solved_.size(); i-- > 0;) {
     const Solved& solved = solved_[i];
-    const auto rest = solved.rest(std::span<const std::int64_t>(values));
+    const auto rest = solved.rest(values);
     if (rest % solved.coefficient != 0) return {};
     values[solved.variable] = -rest / solved.coefficient;
   }

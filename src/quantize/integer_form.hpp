@@ -24,6 +24,7 @@ class IntegerForm {
   [[nodiscard]] std::int64_t coefficient(Index variable) const noexcept;
 
   /// Adds `factor` times `other`.
+  /// @throws Error TooLarge, as multiply() and operator(), beyond 64 bits
   void add(const IntegerForm& other, std::int64_t factor);
   void multiply(std::int64_t factor);
   /// Divides by an integer that divides all coefficients.
@@ -31,14 +32,7 @@ class IntegerForm {
   /// The greatest common divisor of all coefficients and `with`.
   [[nodiscard]] std::int64_t commonDivisor(std::int64_t with = 0) const noexcept;
 
-  template <class Number>
-  [[nodiscard]] Number operator()(std::span<const Number> values) const noexcept {
-    Number sum{};
-    for (const auto& [variable, factor] : terms_) {
-      sum += static_cast<Number>(factor) * values[variable];
-    }
-    return sum;
-  }
+  [[nodiscard]] std::int64_t operator()(std::span<const std::int64_t> values) const;
 
   [[nodiscard]] auto operator<=>(const IntegerForm&) const = default;
 
@@ -56,6 +50,7 @@ class IntegerSystem {
                 std::vector<IntegerForm> wishes = {});
 
   /// The solution nearest to `wanted` (least squares).
+  /// @throws Error TooLarge for more variables than charts of real maps bring
   [[nodiscard]] std::vector<double> nearest(const std::vector<double>& wanted) const;
 
   /// The solution whose free variables are `rounded` to multiples of `step`.
@@ -75,6 +70,7 @@ class IntegerSystem {
 
   void addEquations(std::vector<IntegerForm> equations, std::int64_t largestPivot);
   void addEquation(IntegerForm form, std::int64_t largestPivot);
+  [[nodiscard]] Index firstSolvedIn(const IntegerForm& form) const noexcept;
 
   std::size_t variableCount_;
   std::vector<Solved> solved_;

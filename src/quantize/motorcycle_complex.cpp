@@ -435,12 +435,7 @@ void requireBoxes(const MotorcycleComplex& complex) {
       corner = complex.toBlock[t](corner);
       extents[block].add(corner);
     }
-    const Int192 volume = orientationDeterminant(u[0], u[1], u[2], u[3]);
-    if (volume.sign() <= 0) {
-      throw Error(ErrorCode::FlippedTet, "A tet is too thin in the map to be cut by a wall.",
-                  {PlaceKind::Tet, complex.mesh.original[t]});
-    }
-    sixfoldVolumes[block] += volume;
+    sixfoldVolumes[block] += orientationDeterminant(u[0], u[1], u[2], u[3]);
   }
   for (Index block = 0; block < complex.blockCount; ++block) {
     const LatticePoint size = extents[block].high - extents[block].low;

@@ -26,7 +26,7 @@ namespace hexhex {
 #if defined(HEXHEX_HAS_QUANTIZE)
 namespace {
 
-/// As a share of its largest coordinate, an almost seamless map may be so far from a seamless one.
+/// As a share of its size, an almost seamless map may be so far from a seamless one.
 constexpr double kAlmost = 0.01;
 /// Arcs are longer than this share of the map's size, and than so many times what has made it
 /// seamless.
@@ -72,16 +72,6 @@ double spaceVolume(const TetMapView& map) {
   return std::abs(volume);
 }
 
-double largestCoordinate(const TetMapView& map) {
-  double largest = 0;
-  for (const TetParameters& tet : map.parameters) {
-    for (const Vec3& u : tet) {
-      for (const double x : u) largest = std::max(largest, std::abs(x));
-    }
-  }
-  return largest;
-}
-
 void checkOptions(const QuantizeOptions& options) {
   int given = 0;
   for (const double each : {options.cells, options.scale, options.edgeLength}) {
@@ -108,7 +98,7 @@ double cellsWanted(const TetMapView& map, const SeamlessMap& seamless,
   double cells = options.cells;
   if (options.scale > 0) cells = std::pow(options.scale, 3) * volumeOf(seamless);
   if (options.edgeLength > 0) cells = spaceVolume(map) / std::pow(options.edgeLength, 3);
-  if (cells > kMostCells) {
+  if (!(cells <= kMostCells)) {
     throw Error(ErrorCode::TooLarge,
                 "A mesh of more than 4,000,000,000 cells cannot be numbered. "
                 "Ask for fewer cells, or quantize for a part of them and "
@@ -118,8 +108,8 @@ double cellsWanted(const TetMapView& map, const SeamlessMap& seamless,
 }
 
 SeamlessMap seamlessMap(const TetMapView& map, const QuantizeOptions& options, Context& context) {
-  const double tolerance = options.tolerance * largestCoordinate(map);
-  SeamlessMap seamless = makeSeamless(map, {tolerance, tolerance, options.wallTag}, context);
+  SeamlessMap seamless =
+      makeSeamless(map, {options.tolerance, options.tolerance, options.wallTag}, context);
   requirePositiveTets(seamless);
   return seamless;
 }
@@ -241,8 +231,8 @@ class Quantizer {
     complex_ = traceComplex(seamless_, reduced, context_);
     program_.equations = arcEquations(*complex_);
     // Walls that would be one but for noise may become one.
-    const double noise = std::max(kArcNoise * seamless_.input.largestCoordinate,
-                                  kArcNoiseShare * seamless_.maxDisplacement);
+    const double noise =
+        std::max(kArcNoise * seamless_.size, kArcNoiseShare * seamless_.maxDisplacement);
     program_.least.clear();
     for (const Arc& arc : complex_->arcs) {
       program_.least.push_back(static_cast<double>(arc.length) < noise * seamless_.unit ? 0 : 1);
@@ -353,12 +343,11 @@ SeamlessReport examineSeamless(const TetMapView& map, Context& context) {
   constexpr std::array<WorkStep, 2> kSteps = {{{"seamless map", 4}, {"prepare", 1}}};
   WorkSteps steps(context, "examineSeamless", kSteps);
   SeamlessReport report;
-  const double size = largestCoordinate(map);
   try {
-    const SeamlessMap seamless = makeSeamless(map, {kAlmost * size, 0, 0}, context);
+    const SeamlessMap seamless = makeSeamless(map, {kAlmost, 0, 0}, context);
     report.displacement = seamless.maxDisplacement;
     report.cells = volumeOf(seamless);
-    report.kind = report.displacement <= QuantizeOptions{}.tolerance * size
+    report.kind = report.displacement <= QuantizeOptions{}.tolerance * seamless.size
                       ? SeamlessKind::Seamless
                       : SeamlessKind::AlmostSeamless;
     if (report.kind == SeamlessKind::Seamless) requirePositiveTets(seamless);

@@ -19,6 +19,9 @@ namespace {
 /// Coordinates on the lattice stay below this.
 constexpr double kLargest = 0x1p52;
 
+/// Of a map's size, and its inverse: products of eight lengths stay finite.
+constexpr double kMostSize = 0x1p100;
+
 /// Shared unknowns are multiples of this: half of them are on the lattice, too, and two planes are
 /// the same or so far apart that points between them can be rounded to the lattice.
 constexpr std::int64_t kStep = 1 << 16;
@@ -114,6 +117,7 @@ std::vector<HalfFace> innerFaces(const SeamlessMap& map, std::int32_t wallTag) {
 Alignment findAlignment(SeamlessMap& map, const EdgeFans& edges, const CutGraph& graph,
                         const SeamlessOptions& options) {
   const TetTopology& topology = map.topology;
+  const double tolerance = options.featureTolerance * map.size;
   Alignment alignment;
   alignment.axes.assign(topology.mate.size(), kFree);
   for (HalfFace h = 0; h < topology.mate.size(); ++h) {
@@ -124,8 +128,8 @@ Alignment findAlignment(SeamlessMap& map, const EdgeFans& edges, const CutGraph&
     const auto& c = kFaceCorners[h % 4];
     const TetParameters& u = graph.parameters[tetOf(h)];
     const auto corner = [&](std::size_t k) { return static_cast<std::size_t>(c[k]); };
-    if (!areLevel(u, corner(0), corner(1), axis, options.featureTolerance) ||
-        !areLevel(u, corner(0), corner(2), axis, options.featureTolerance)) {
+    if (!areLevel(u, corner(0), corner(1), axis, tolerance) ||
+        !areLevel(u, corner(0), corner(2), axis, tolerance)) {
       continue;
     }
     alignment.axes[h] = axis;
@@ -149,8 +153,8 @@ Alignment findAlignment(SeamlessMap& map, const EdgeFans& edges, const CutGraph&
     if (!at) continue;
     const TetParameters& u = graph.parameters[at->tet];
     const std::uint8_t along = axisAlong(*at);
-    if (!areLevel(u, at->corner0, at->corner1, (along + 1U) % 3, options.featureTolerance) ||
-        !areLevel(u, at->corner0, at->corner1, (along + 2U) % 3, options.featureTolerance)) {
+    if (!areLevel(u, at->corner0, at->corner1, (along + 1U) % 3, tolerance) ||
+        !areLevel(u, at->corner0, at->corner1, (along + 2U) % 3, tolerance)) {
       continue;
     }
     addEdge(*at, along);
@@ -158,6 +162,7 @@ Alignment findAlignment(SeamlessMap& map, const EdgeFans& edges, const CutGraph&
   return alignment;
 }
 
+/// The first tet of each component begins at the origin.
 double largestCoordinate(const CutGraph& graph) {
   double largest = 0;
   for (const TetParameters& tet : graph.parameters) {
@@ -235,6 +240,40 @@ class VertexSolver {
           " Quantization needs a map whose charts differ by "
           "rotations of the grid, and whose boundary and singular curves are aligned with axes.",
       place);
+}
+
+void requireSize(double size) {
+  if (size >= 1 / kMostSize && size <= kMostSize) return;
+  std::ostringstream what;
+  what << "The map's parameters extend over " << size
+       << ". Quantization takes maps of 1e-30 to 1e30: multiply them by a constant.";
+  throw Error(ErrorCode::TooLarge, what.str());
+}
+
+/// No corner may move by more than the tolerance: so transitions of a triangle's corners differ by
+/// four of them at most. Asked early, as what is far from seamless has no end of conditions.
+void requireTransitions(const TetTopology& topology, const CutGraph& graph, double tolerance) {
+  for (HalfFace h = 0; h < topology.mate.size(); ++h) {
+    const HalfFace mate = topology.mate[h];
+    if (mate == kNone || mate < h) continue;
+    const SharedFace face(topology, h, mate);
+    const Rotation rotation = graph.isCut[h] ? graph.rotations[h] : Rotation{};
+    const TetParameters& here = graph.parameters[tetOf(h)];
+    const TetParameters& there = graph.parameters[tetOf(mate)];
+    std::array<Vec3, 3> translations;
+    for (std::size_t k = 0; k < 3; ++k) {
+      translations[k] = minus(there[face.there(k)], rotation(here[face.here(k)]));
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto [least, most] =
+          std::minmax({translations[0][axis], translations[1][axis], translations[2][axis]});
+      if (most - least <= 4 * tolerance) continue;
+      std::ostringstream what;
+      what << "a triangle differs by " << most - least
+           << " between its two tets, more than four times the tolerance of " << tolerance << '.';
+      notSeamless(what.str(), {PlaceKind::Face, tetOf(h), h % 4});
+    }
+  }
 }
 
 /// Exact corners from conditions and values of shared unknowns.
@@ -347,11 +386,16 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   defects.throwIfAny();
   result.topology = buildTopology(result.input.view, stage, defects);
   defects.throwIfAny();
-  addStars(result.topology, stage);
+  // Walks around edges and vertices come back only on manifolds.
+  collectTopologyDefects(result.topology, stage, defects);
+  defects.throwIfAny();
   const TetTopology& topology = result.topology;
   const EdgeFans edges(topology);
   const std::span<const TetParameters> parameters = result.input.view.parameters;
   const CutGraph graph = cutOpen(topology, edges, parameters, fitRotations(topology, parameters));
+  result.size = largestCoordinate(graph);
+  requireSize(result.size);
+  requireTransitions(topology, graph, options.tolerance * result.size);
   const SharedUnknowns unknowns(topology, edges, graph,
                                 findAlignment(result, edges, graph, options));
   std::vector<IntegerForm> equations = unknowns.equations();
@@ -363,8 +407,7 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
       notSeamless("a singular curve is not parallel to an axis.", {PlaceKind::Vertex, v});
     }
   }
-  result.unit =
-      std::exp2(std::floor(std::log2(kLargest / std::max(largestCoordinate(graph), 1e-300))));
+  result.unit = std::exp2(std::floor(std::log2(kLargest / result.size)));
   const std::vector<std::int64_t> values = nearestValues(unknowns, result.unit, equations);
   if (values.empty() && unknowns.size() > 0) {
     notSeamless("conditions of singular curves have no solution on the lattice.", {});
@@ -375,7 +418,7 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   };
   take(values);
   // Once more with all planes as one that noise alone keeps apart: walls between them were a mess.
-  const double noise = std::max(kNoise * largestCoordinate(graph), result.maxDisplacement);
+  const double noise = std::max(kNoise * result.size, result.maxDisplacement);
   std::vector<IntegerForm> wishes;
   std::vector<std::int64_t> best = values;
   for (int round = 0; round < kRoundsOfWishes; ++round) {
@@ -389,7 +432,7 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   // Chains of near coincidences may lead far away.
   if (result.maxDisplacement > kChainedNoise * noise) take(values);
   findChanges(result, graph);
-  requireDisplacement(result, options.tolerance);
+  requireDisplacement(result, options.tolerance * result.size);
   result.input.view.parameters = {};
   result.input.parameters = {};
   return result;

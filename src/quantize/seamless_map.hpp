@@ -28,13 +28,14 @@ struct SeamlessMap {
   std::vector<EdgeCorner> featureEdges;
   std::vector<HalfFace> featureFaces;
   double unit = 1;
+  double size = 0;             ///< extent from a corner, along the axis where it is longest
   double maxDisplacement = 0;  ///< of a parameter from that given, along an axis
   Index mostDisplaced = 0;     ///< a tet
 };
 
 struct SeamlessOptions {
-  double tolerance = 0;         ///< for displacements, in units of the map's parameters
-  double featureTolerance = 0;  ///< features that are aligned so well become it exactly
+  double tolerance = 0;         ///< for displacements, as a share of the map's size
+  double featureTolerance = 0;  ///< features that are aligned so well, too, become it exactly
   std::int32_t wallTag = 0;     ///< as in QuantizeOptions
 };
 

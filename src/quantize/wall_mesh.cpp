@@ -126,8 +126,20 @@ Index WallMesh::split(const TetEdge& edge, std::size_t axis, std::int64_t value)
     tets[at.tet][at.corner1] = tets[second][at.corner0] = middle;
     corners[at.tet][at.corner1] = corners[second][at.corner0] = u;
     joinInside(halfFaceOf(at.tet, at.corner0), halfFaceOf(second, at.corner1));
+    requirePositive(at.tet);
+    requirePositive(second);
   }
   return middle;
+}
+
+void WallMesh::requirePositive(Index tet) const {
+  const LatticeTet& u = corners[tet];
+  if (orientation(u[0], u[1], u[2], u[3]) > 0) return;
+  throw Error(
+      ErrorCode::FlippedTet,
+      "A tet is too thin in the map to be cut by a wall of its motorcycle complex. Make tets "
+      "of the map thicker, by moving vertices in it.",
+      {PlaceKind::Tet, original[tet]});
 }
 
 bool WallMesh::mayMove(const MovedCorner& moved) const {

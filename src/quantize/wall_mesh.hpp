@@ -61,6 +61,7 @@ class WallMesh {
   /// Splits an edge, and all tets around it, where a coordinate of its tet's chart has a value that
   /// lies between those at its ends. The other coordinates are rounded to the lattice.
   /// @return the new vertex
+  /// @throws Error FlippedTet if rounding leaves nothing of a part
   Index split(const TetEdge& edge, std::size_t axis, std::int64_t value);
 
   /// Moves a vertex along an axis of its tet's chart, into a plane close by, so that no flat tets
@@ -121,6 +122,7 @@ class WallMesh {
     LatticePoint by;
   };
   [[nodiscard]] bool mayMove(const MovedCorner& moved) const;
+  void requirePositive(Index tet) const;
   void appendCopy(Index tet);
   void joinInside(HalfFace a, HalfFace b);
 

@@ -33,7 +33,13 @@ AxisPlane planeOf(const WallMesh& mesh, HalfFace wall) {
   const LatticeTet& u = mesh.corners[tetOf(wall)];
   const auto corner = [&](std::size_t k) { return u[static_cast<std::size_t>(c[k])]; };
   std::size_t axis = 0;
-  while (corner(0)[axis] != corner(1)[axis] || corner(0)[axis] != corner(2)[axis]) ++axis;
+  while (axis < 3 && (corner(0)[axis] != corner(1)[axis] || corner(0)[axis] != corner(2)[axis])) {
+    ++axis;
+  }
+  if (axis == 3) {
+    throw Error(ErrorCode::Internal, "A wall does not lie in a plane. This is a bug.",
+                {PlaceKind::Tet, mesh.original[tetOf(wall)]});
+  }
   return {axis, corner(0)[axis]};
 }
 

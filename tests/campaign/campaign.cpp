@@ -4,8 +4,10 @@
 //     campaign --maps 1000                 the maps 0 to 999 of seed 1
 //     campaign --seed 7 --seconds 300      as many as fit into five minutes
 //     campaign --seed 7 --only 123         map 123 of seed 7 again, e.g. in a debugger
+//     campaign --quantized 20              also quantizes one map in 20
 //
 // A map that fails is saved as a .hexex file beside the command that draws it again.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -38,6 +40,7 @@ struct Options {
   std::uint64_t first = 0;
   std::uint64_t maps = static_cast<std::uint64_t>(-1);
   double seconds = 1e18;
+  std::uint64_t quantized = 0;
   std::filesystem::path found = "campaign-found";
 };
 
@@ -58,7 +61,8 @@ extern "C" void onCrash(int signal) {
 
 [[noreturn]] void explain(int status) {
   std::printf(
-      "campaign [--seed S] [--first N] [--maps COUNT] [--seconds T] [--only N] [--found FOLDER]\n");
+      "campaign [--seed S] [--first N] [--maps COUNT] [--seconds T] [--only N] [--quantized N] "
+      "[--found FOLDER]\n");
   std::exit(status);
 }
 
@@ -79,6 +83,8 @@ Options parse(int count, char** arguments) {
       options.maps = std::strtoull(value, nullptr, 10);
     } else if (name == "--seconds") {
       options.seconds = std::strtod(value, nullptr);
+    } else if (name == "--quantized") {
+      options.quantized = std::strtoull(value, nullptr, 10);
     } else if (name == "--found") {
       options.found = value;
     } else {
@@ -97,6 +103,8 @@ struct Totals {
   std::uint64_t maps = 0;
   std::uint64_t tets = 0;
   std::uint64_t cells = 0;
+  std::uint64_t quantized = 0;
+  std::uint64_t notQuantized = 0;
   int failures = 0;
 };
 
@@ -113,10 +121,12 @@ void run(std::uint64_t number, const Options& options, const std::filesystem::pa
     drawn = drawMap(random);
     if (options.only)
       std::printf("map %llu: %s\n", static_cast<unsigned long long>(number), drawn.kind.c_str());
-    const ExaminedSizes sizes = examine(drawn, random, folder);
+    const ExaminedSizes sizes = examine(drawn, random, options.quantized, folder);
     ++totals.kinds[drawn.kind];
     totals.tets += sizes.tets;
     totals.cells += sizes.cells;
+    totals.quantized += sizes.quantized;
+    totals.notQuantized += sizes.notQuantized;
   } catch (const std::exception& error) {
     ++totals.failures;
     std::filesystem::create_directories(options.found);
@@ -159,6 +169,11 @@ int main(int count, char** arguments) {
   }
   for (const auto& [kind, maps] : totals.kinds) {
     std::printf("%8llu  %s\n", static_cast<unsigned long long>(maps), kind.c_str());
+  }
+  if (options.quantized > 0) {
+    std::printf("%llu quantized, %llu could not be\n",
+                static_cast<unsigned long long>(totals.quantized),
+                static_cast<unsigned long long>(totals.notQuantized));
   }
   std::printf(
       "seed %llu, maps %llu to %llu: %llu tets, %llu cells, %.0f s (%.1f maps per second), "

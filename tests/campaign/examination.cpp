@@ -15,6 +15,7 @@
 #include "extract/support.hpp"
 #include "support/collecting_sink.hpp"
 #include "support/error_of.hpp"
+#include "support/scaled_map.hpp"
 
 namespace hexhex::campaign {
 
@@ -185,6 +186,50 @@ void expectSameCurves(const TetMap& map, const ExtractOptions& options, const He
   EXPECT_EQ(lagrange.points, extractLagrange(map, 2, options, one).points);
 }
 
+template <class Counts>
+std::vector<int> valences(const Counts& counts) {
+  std::vector<int> found;
+  for (const auto& [valence, count] : counts) {
+    if (count > 0) found.push_back(valence);
+  }
+  return found;
+}
+
+/// The map at a scale that makes it seamless instead of integer, quantized, with one thread as with
+/// several: its curves and topology stay, and its mesh is right.
+/// @return false if it cannot be quantized: random maps have tets that are hardly any
+bool expectQuantized(const SampleAnswer& answer, const TetMap& integerMap, Random& random) {
+  constexpr std::array<double, 4> kFactors = {1, 0.618, 1.414, 2.2};
+  const TetMap map = scaled(integerMap, kFactors[random.below(kFactors.size())]);
+  QuantizeOptions options;
+  options.scale = 1;
+  options.densify = true;
+  Context one(1);
+  Context several(drawThreads(random));
+  QuantizedMap quantized;
+  try {
+    quantized = quantize(map, options, one);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::FlippedTet) << error.what();
+    return false;
+  }
+  const TetMap same = quantize(map, options, several).map;
+  EXPECT_EQ(same.tets, quantized.map.tets);
+  EXPECT_EQ(same.parameters, quantized.map.parameters);
+  const CheckReport report = check(quantized.map, {.tolerance = 0});
+  EXPECT_TRUE(report.valid()) << report.defects[0].sentence;
+  EXPECT_EQ(report.expected.cells, quantized.report.cells);
+  EXPECT_EQ(report.expected.components, answer.expected.components);
+  EXPECT_EQ(report.expected.eulerCharacteristic, answer.expected.eulerCharacteristic);
+  EXPECT_EQ(report.expected.boundaryComponents, answer.expected.boundaryComponents);
+  EXPECT_EQ(valences(report.expected.innerSingularEdges),
+            valences(answer.expected.innerSingularEdges));
+  EXPECT_EQ(valences(report.expected.boundarySingularEdges),
+            valences(answer.expected.boundarySingularEdges));
+  verifyAll(quantized.map, extract(quantized.map, {.tolerance = 0}, several), 1);
+  return true;
+}
+
 /// Mostly 1, and such that there are few cells, but for one map in a hundred.
 int drawScale(std::uint64_t cells, Random& random) {
   constexpr std::array<std::uint64_t, 6> kScales = {1, 1, 1, 1, 2, 3};
@@ -195,7 +240,8 @@ int drawScale(std::uint64_t cells, Random& random) {
 
 }  // namespace
 
-ExaminedSizes examine(const DrawnMap& drawn, Random& random, const std::filesystem::path& folder) {
+ExaminedSizes examine(const DrawnMap& drawn, Random& random, std::uint64_t quantizedOneIn,
+                      const std::filesystem::path& folder) {
   const TetMap& map = drawn.map;
   if (!drawn.answer) {
     const ErrorCode code = codeOf([&] { static_cast<void>(extract(map)); });
@@ -220,7 +266,11 @@ ExaminedSizes examine(const DrawnMap& drawn, Random& random, const std::filesyst
   if (mesh.cells.size() < 1000 && map.tets.size() < 2000 && random.below(6) == 0) {
     expectSameCurves(map, options, mesh, random);
   }
-  return {map.tets.size(), mesh.cells.size()};
+  ExaminedSizes sizes{map.tets.size(), mesh.cells.size()};
+  if (quantizedOneIn > 0 && map.tets.size() < 1000 && random.below(quantizedOneIn) == 0) {
+    ++(expectQuantized(*drawn.answer, map, random) ? sizes.quantized : sizes.notQuantized);
+  }
+  return sizes;
 }
 
 }  // namespace hexhex::campaign

@@ -10,13 +10,17 @@ namespace hexhex::campaign {
 struct ExaminedSizes {
   std::uint64_t tets = 0;
   std::uint64_t cells = 0;
+  std::uint64_t quantized = 0;     ///< 1 if the map was quantized, too
+  std::uint64_t notQuantized = 0;  ///< 1 if its tets are too thin for that, or leave no room
 };
 
 /// Extracts a map in all ways, which must agree in every bit with each other and with its answer,
 /// verifies the mesh, and sends both through files. Draws the scale, formats and numbers of
 /// threads.
+/// @param quantizedOneIn  so many maps; 0 for none
 /// @param folder  for files
 /// @throws std::exception  at the first disagreement, also as a failed expectation of GoogleTest
-ExaminedSizes examine(const DrawnMap& drawn, Random& random, const std::filesystem::path& folder);
+ExaminedSizes examine(const DrawnMap& drawn, Random& random, std::uint64_t quantizedOneIn,
+                      const std::filesystem::path& folder);
 
 }  // namespace hexhex::campaign

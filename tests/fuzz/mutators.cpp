@@ -27,7 +27,8 @@ std::int64_t oddNumber(std::int64_t right, Dice& dice) {
   constexpr std::array<std::int64_t, 12> kOdd = {
       0, 1, -1, 2, 127, 256, 1 << 16, 2147483647, 4294967295, 4294967296, 1LL << 62, -(1LL << 62)};
   if (dice.below(2) == 0) return kOdd[dice.below(kOdd.size())];
-  return right + static_cast<std::int64_t>(dice.below(5)) - 2;
+  // Modulo 2^64: the number in the file can be any.
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(right) + dice.below(5) - 2);
 }
 
 /// Loses, doubles, moves or exchanges one of the parts, or changes the inside of one.

@@ -20,6 +20,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
+#include <io/core/cell_mesh.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/curved/lagrange_files.hpp>
 #include <io/gmsh/gmsh.hpp>
@@ -72,6 +73,10 @@ void examine(const HexMesh& mesh) {
   }
   for (const FeatureEdge& each : mesh.features.edges) requireVertices(each.vertices, points);
   for (const FeatureQuad& each : mesh.features.quads) requireVertices(each.vertices, points);
+}
+
+void examine(const TetCells& tets) {
+  for (const Tet& tet : tets.cells) requireVertices(tet, tets.points.size());
 }
 
 void examine(const TetMap& map) {
@@ -132,19 +137,27 @@ struct Reader {
   Change change = changeText;
 };
 
-constexpr std::array kReaders = {Reader{"hexex", read<parse<readHexex>>},
-                                 Reader{"mesh", read<parse<readMedit>>},
-                                 Reader{"meshb", read<parse<readMeshb>>, fuzz::changeMeshb},
-                                 Reader{"msh", read<parse<readGmsh>>},
-                                 Reader{"vtk", read<parse<readVtkLegacy>>},
-                                 Reader{"vtu", read<parse<readVtu>>, fuzz::changeAppended},
-                                 Reader{"vtk-map", read<parseVtkLegacyMap>},
-                                 Reader{"vtu-map", read<parseVtuMap>, fuzz::changeAppended},
-                                 Reader{"vtu-lagrange", readLagrange, fuzz::changeAppended},
-                                 Reader{"ovm-map", read<parse<readOvmMap>>},
-                                 Reader{"ovm", read<parse<readOvmHexMesh>>},
-                                 Reader{"ovmb-map", read<parse<readOvmbMap>>, fuzz::changeOvmb},
-                                 Reader{"ovmb", read<parse<readOvmbHexMesh>>, fuzz::changeOvmb}};
+constexpr std::array kReaders = {
+    Reader{"hexex", read<parse<readHexex>>},
+    Reader{"mesh", read<parse<readMedit>>},
+    Reader{"mesh-tets", read<parse<readMeditTets>>},
+    Reader{"meshb", read<parse<readMeshb>>, fuzz::changeMeshb},
+    Reader{"meshb-tets", read<parse<readMeshbTets>>, fuzz::changeMeshb},
+    Reader{"msh", read<parse<readGmsh>>},
+    Reader{"msh-tets", read<parse<readGmshTets>>},
+    Reader{"vtk", read<parse<readVtkLegacy>>},
+    Reader{"vtu", read<parse<readVtu>>, fuzz::changeAppended},
+    Reader{"vtk-map", read<parseVtkLegacyMap>},
+    Reader{"vtk-tets", read<parse<readVtkLegacyTets>>},
+    Reader{"vtu-map", read<parseVtuMap>, fuzz::changeAppended},
+    Reader{"vtu-tets", read<parse<readVtuTets>>, fuzz::changeAppended},
+    Reader{"vtu-lagrange", readLagrange, fuzz::changeAppended},
+    Reader{"ovm-map", read<parse<readOvmMap>>},
+    Reader{"ovm-tets", read<parse<readOvmTets>>},
+    Reader{"ovm", read<parse<readOvmHexMesh>>},
+    Reader{"ovmb-map", read<parse<readOvmbMap>>, fuzz::changeOvmb},
+    Reader{"ovmb-tets", read<parse<readOvmbTets>>, fuzz::changeOvmb},
+    Reader{"ovmb", read<parse<readOvmbHexMesh>>, fuzz::changeOvmb}};
 
 const Reader* chosen = nullptr;
 

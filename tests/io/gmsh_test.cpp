@@ -1,5 +1,8 @@
 // `.msh` files: exact content, what other programs write and ours does not, errors.
 #include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -10,6 +13,7 @@
 #include <hexhex/patches.hpp>
 
 #include <io/gmsh/gmsh.hpp>
+#include <io/gmsh/gmsh_tags.hpp>
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {
@@ -79,6 +83,14 @@ TEST(Gmsh, WritesExactlyTheSectionsOfVersion41) {
             "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n$EndNodes\n"
             "$Elements\n2 7 1 7 \n2 1 3 6 \n1 1 5 8 4 \n2 2 3 7 6 \n3 1 2 6 5 \n4 4 8 7 3 \n"
             "5 1 4 3 2 \n6 5 6 7 8 \n3 1 5 1 \n7 1 2 3 4 5 6 7 8 \n$EndElements\n");
+}
+
+TEST(Gmsh, NamesOfGroupsHaveOneSign) {
+  EXPECT_EQ(tagInGroupName("curve_m12"), -12);
+  EXPECT_EQ(tagInGroupName("point_m2147483648"), std::numeric_limits<std::int32_t>::min());
+  for (const char* name : {"point_m-9223372036854775808", "point_m-1", "point_m", "region_1x"}) {
+    EXPECT_EQ(tagInGroupName(name), std::nullopt) << name;
+  }
 }
 
 TEST(Gmsh, TagsOfNodesAreFree) {

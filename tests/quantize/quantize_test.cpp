@@ -19,19 +19,11 @@
 
 #include "extract/support.hpp"
 #include "support/error_of.hpp"
+#include "support/scaled_map.hpp"
 
 namespace hexhex::test {
 
 namespace {
-
-TetMap scaled(TetMap map, double factor) {
-  for (TetParameters& tet : map.parameters) {
-    for (Vec3& u : tet) {
-      for (double& x : u) x *= factor;
-    }
-  }
-  return map;
-}
 
 /// A chart of its own for each tet.
 TetMap withMovedCharts(TetMap map, std::uint64_t seed) {

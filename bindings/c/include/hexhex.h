@@ -607,7 +607,7 @@ typedef struct hexhex_quantize_options {
   double edge_length; /**< of a hexahedron in space, on the average */
   int densify;        /**< 1: if no valid map is found so, takes the first denser one that works */
   int32_t wall_tag;   /**< inner triangles with this tag need not stay planes; 0: none */
-  double tolerance; /**< share of the largest coordinate by which the map may miss being seamless */
+  double tolerance; /**< share of the map's size by which it may miss being seamless */
 } hexhex_quantize_options;
 #define HEXHEX_QUANTIZE_OPTIONS_INIT \
   { sizeof(hexhex_quantize_options), 0, 0, 0, 0, 0, 1e-5 }

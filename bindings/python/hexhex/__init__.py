@@ -554,7 +554,7 @@ def quantize(map: Map, *, cells: float | None = None, scale: float | None = None
         densify: if no valid map is found so, takes the first denser one that works.
         wall_tag: tagged triangles inside of the object stay planes of the mesh, but for those with
             this tag; 0 for none. In .hexex files, walls of a motorcycle complex have the tag 2.
-        tolerance: share of its largest coordinate by which the map may miss being seamless.
+        tolerance: share of its size by which the map may miss being seamless.
         threads, progress: as in extract().
 
     Raises:

@@ -37,6 +37,7 @@ using GmshGroup = std::pair<std::int64_t, std::int64_t>;
     std::string_view digits = name.substr(prefix.size());
     const bool negative = digits.starts_with('m');
     if (negative) digits.remove_prefix(1);
+    if (negative && digits.starts_with('-')) return {};  // one sign is enough
     std::int64_t tag = 0;
     const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), tag);
     if (result.ec != std::errc{} || result.ptr != digits.data() + digits.size()) return {};
