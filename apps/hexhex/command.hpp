@@ -18,6 +18,7 @@ struct Command {
 [[nodiscard]] Command addGenerate(CLI::App& app);
 [[nodiscard]] Command addRepair(CLI::App& app);
 [[nodiscard]] Command addQuantize(CLI::App& app);
+[[nodiscard]] Command addImprove(CLI::App& app);
 [[nodiscard]] Command addInfo(CLI::App& app);
 [[nodiscard]] Command addConvert(CLI::App& app);
 [[nodiscard]] Command addFormats(CLI::App& app);

@@ -10,6 +10,7 @@
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/extract.hpp>
+#include <hexhex/improve.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/partial.hpp>
 #include <hexhex/quality.hpp>
@@ -21,6 +22,7 @@
 #include "extract_parts.hpp"
 #include "extract_stream.hpp"
 #include "extract_text.hpp"
+#include "improve_options.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
@@ -46,6 +48,8 @@ struct Arguments {
   ExtractOptions options;
   bool quantize = false;
   QuantizeOptions quantizeOptions;
+  bool improve = false;
+  ImproveOptions improveOptions;
   double patchAngle = WriteOptions{}.patchAngle;
   RunOptions run;
   bool stream = false;
@@ -107,6 +111,21 @@ void requirePartsOutputs(const Arguments& arguments) {
   requirePartFormat(arguments.output, arguments.choice.options());
 }
 
+/// Vertices move in a mesh that is whole and straight.
+void requireImprovable(const Arguments& arguments) {
+  if (!arguments.improve) return;
+  if (arguments.stream || arguments.partial || arguments.parts.parts) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--improve needs the whole mesh in memory. Leave it out, or --stream, "
+                "--parts and --partial; `hexhex improve` takes a file.");
+  }
+  if (arguments.order > 1 || !arguments.arcs.empty() || !arguments.patches.empty()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--improve moves vertices of straight cells, away from the map that curved ones "
+                "follow. Leave out --improve, or --order, --arcs and --patches.");
+  }
+}
+
 /// What is left of a map beyond repair is a straight mesh in memory.
 void requirePartialOutputs(const Arguments& arguments) {
   if (!arguments.partial) return;
@@ -127,6 +146,7 @@ void requireOutputs(const Arguments& arguments) {
   requireAllDifferent(arguments);
   requireCurvedOutputs(arguments);
   requirePartialOutputs(arguments);
+  requireImprovable(arguments);
   if (arguments.parts.parts) {
     requirePartsOutputs(arguments);
   } else if (arguments.order > 1) {
@@ -166,9 +186,9 @@ PiecewiseLinearMesh extractWithCurves(const Arguments& arguments, const TetMap& 
 void extractWhole(const Arguments& arguments, const TetMap& map, LongRun& longRun,
                   ExtractionRecord& record) {
   Context& context = longRun.context();
-  const PiecewiseLinearMesh all = longRun.part(
+  PiecewiseLinearMesh all = longRun.part(
       "extraction", [&] { return extractWithCurves(arguments, map, context, record); });
-  const HexMesh& mesh = all.mesh;
+  HexMesh& mesh = all.mesh;
   verifyMesh(arguments, map, mesh, longRun, record);
   if (!arguments.arcs.empty()) {
     longRun.part("writing", [&] {
@@ -182,7 +202,14 @@ void extractWhole(const Arguments& arguments, const TetMap& map, LongRun& longRu
     });
     record.patches = {arguments.patches, all.patches.count(), all.patches.polygonTet.size()};
   }
-  record.certificate = longRun.part("quality", [&] { return certify(mesh, context); });
+  if (arguments.improve) {
+    record.improved = longRun.part("improvement", [&] {
+      return improve(mesh, extractedMap(map, record.statistics), arguments.improveOptions, context);
+    });
+    record.certificate = record.improved->after;
+  } else {
+    record.certificate = longRun.part("quality", [&] { return certify(mesh, context); });
+  }
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = record.certificate->scaledJacobians;
   writing.patchAngle = arguments.patchAngle;
@@ -365,6 +392,17 @@ void addRepairOptions(CLI::App& parser, Arguments& arguments) {
                   "at holes as region 1, and list the holes; exit code 1");
 }
 
+/// After the extraction.
+void addImprovement(CLI::App& parser, Arguments& arguments) {
+  CLI::Option* const flag =
+      parser.add_flag("--improve", arguments.improve,
+                      "Move vertices after the verification: all cells become\n"
+                      "positive, and better (`hexhex improve --help`)");
+  for (CLI::Option* const option : addImproveOptions(parser, arguments.improveOptions)) {
+    option->needs(flag);
+  }
+}
+
 /// Options that change how a mesh is made, but not the mesh.
 void addMethod(CLI::App& parser, Arguments& arguments) {
   addChoice<Engine>(parser, "--engine", arguments.options.engine,
@@ -427,6 +465,7 @@ Command addExtract(CLI::App& app) {
   addPatchAngle(*parser, arguments->patchAngle);
   addRepairOptions(*parser, *arguments);
   addQuantization(*parser, arguments->quantize, arguments->quantizeOptions);
+  addImprovement(*parser, *arguments);
   parser->add_flag("--no-verify", arguments->noVerify, "Write the mesh without verifying it");
   addReport(*parser, arguments->report,
             "Write a report in JSON: times, counts, quality,\nverification");

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "improve_options.hpp"
 #include "output.hpp"
 #include "quantize_options.hpp"
 #include "repair_text.hpp"
@@ -36,7 +37,7 @@ void printWarnings(const ExtractionRecord& record, const TetMap& map) {
                  " of the input are inverted in space. The mesh has the right connectivity, but "
                  "cells there may be inverted, too.");
   }
-  if (record.certificate && record.certificate->refuted > 0) {
+  if (record.certificate && record.certificate->refuted > 0 && !record.improved) {
     printWarning(refutationAsText(*record.certificate));
   }
   if (statistics.mirrored) {
@@ -71,7 +72,11 @@ void printSummary(const ExtractionRecord& record) {
     printLine("repair", fmt::format("{:.3f} s, {}", statistics.repair.seconds,
                                     counted(statistics.repair.regions.size(), "place")));
   }
-  if (record.certificate) printQuality(*record.certificate);
+  if (record.improved) {
+    printImprovement(*record.improved);
+  } else if (record.certificate) {
+    printQuality(*record.certificate);
+  }
   if (record.order > 1) {
     printLine("order", fmt::format("{}, {} nodes", record.order, record.nodes));
   }

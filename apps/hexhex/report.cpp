@@ -15,6 +15,7 @@
 
 #include <hexhex/version.hpp>
 
+#include "improve_options.hpp"
 #include "json.hpp"
 #include "output.hpp"
 #include "quantize_options.hpp"
@@ -137,6 +138,7 @@ std::string reportAsJson(const ExtractionRecord& record) {
       {"verification", orNull(record.verification, verificationAsJson)},
       {"repair", repairAsJson(statistics.repair)},
       {"quantization", record.quantized ? quantizeAsJson(*record.quantized) : Json(nullptr)},
+      {"improvement", record.improved ? improvementAsJson(*record.improved) : Json(nullptr)},
       {"streamed", record.streamed.has_value()},
       {"checksums", orNull(record.streamed, checksumsAsJson)},
       {"parts", orNull(record.meshParts, meshPartsAsJson)}};

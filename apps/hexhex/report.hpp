@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <hexhex/extract.hpp>
+#include <hexhex/improve.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/quantize.hpp>
 #include <hexhex/survey.hpp>
@@ -47,6 +48,7 @@ struct ExtractionRecord {
   std::array<std::uint64_t, 3> tags{};  ///< tagged vertices, edges and quads of the mesh
   ExtractStatistics statistics;
   std::optional<QuantizeReport> quantized;  ///< empty for a map that was integer
+  std::optional<ImproveReport> improved;    ///< empty for a mesh as it was extracted
   std::vector<StageTime> stages;
   std::vector<StageTime> parts;  ///< of the whole run: "reading", "extraction", ...
   std::string partsAsText;

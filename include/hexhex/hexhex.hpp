@@ -8,6 +8,7 @@
 #include <hexhex/extract.hpp>        // IWYU pragma: export
 #include <hexhex/extractor.hpp>      // IWYU pragma: export
 #include <hexhex/features.hpp>       // IWYU pragma: export
+#include <hexhex/improve.hpp>        // IWYU pragma: export
 #include <hexhex/io.hpp>             // IWYU pragma: export
 #include <hexhex/map_structure.hpp>  // IWYU pragma: export
 #include <hexhex/partial.hpp>        // IWYU pragma: export

@@ -231,6 +231,20 @@ def check_quantize():
     require(cells(filter_) == 3584, f"{cells(filter_)} cells of a quantized map")
 
 
+def check_improve():
+    """Before and after: what the command makes of a distorted mesh, and no worse cell than there was."""
+    run("generate", "torus", "--jitter", "0.9", "--cells", "3", "-o", "rough.hexex")
+    reader = OpenDataFile(os.path.join(OUT, "rough.hexex"))
+    worst = []
+    for improve in (0, 1):
+        filter_ = HexHexExtract(Input=OutputPort(reader, 0), Scale=2, Improve=improve)
+        filter_.UpdatePipeline()
+        worst.append(fetch(filter_, 0).GetCellData().GetArray("scaled_jacobian").GetRange()[0])
+    require(worst[0] < worst[1] > 0, f"scaled Jacobians {worst} before and after")
+    both = HexHexExtract(Input=OutputPort(reader, 0), Improve=1, Order=2)
+    require(messages_of(both, "InvalidArgument"), "no error for curved cells")
+
+
 def check_errors():
     """Errors have code and place, in ParaView's own message window."""
     with open(os.path.join(OUT, "bad.hexex"), "w", encoding="utf-8") as file:
@@ -314,6 +328,7 @@ check_map_blocks()
 check_cancel()
 check_repair()
 check_quantize()
+check_improve()
 check_errors()
 take_picture(sphere, "sphere.png")
 real = os.path.join(DATA, "maps", "s17c_sphere_r1.hexex")

@@ -66,8 +66,8 @@ REPORT_KEYS = {
     "generators", "vertices_by_generator", "local_propellers", "global_propellers", "charts",
     "cut_faces", "overlapping_tets", "traced_cells", "singular_edges", "chart_jumps", "inner_faces",
     "max_displacement", "max_transition_residual", "mirrored", "tets_inverted_in_space", "quality",
-    "validity", "verification", "streamed", "checksums", "repair", "quantization", "order", "nodes",
-    "arcs", "patches", "parts",
+    "validity", "verification", "streamed", "checksums", "repair", "quantization", "improvement", "order",
+    "nodes", "arcs", "patches", "parts",
 }
 
 
@@ -889,6 +889,35 @@ class Repair(CommandTest):
                           expect=INVALID_MAP, code="TooLarge")
         self.run_command("extract", "seamless.hexex", "-o", "bad.vtu", "--cells", "5", expect=BAD_USAGE)
         self.assertFalse((self.folder / "bad.hexex").exists())
+
+    def test_improve(self):
+        self.run_command("generate", "torus", "--jitter", "0.9", "--cells", "3", "--quiet", "-o", "map.hexex")
+        self.run_command("extract", "map.hexex", "-o", "rough.vtu", "--scale", "2", "--quiet")
+        # With the map, in two steps and in one; without it.
+        run = self.run_command("improve", "rough.vtu", "--map", "map.hexex", "-o", "two.vtu", "--report", "i.json")
+        self.assertIn("certified positive everywhere", run.stdout)
+        report = json.loads((self.folder / "i.json").read_text())
+        self.assertEqual(report["not_positive"], [])
+        self.assertGreaterEqual(report["after"]["quality"]["minimum"], report["before"]["quality"]["minimum"])
+        self.assertGreater(report["moved_vertices"], 0)
+        self.run_command("extract", "map.hexex", "-o", "one.vtu", "--scale", "2", "--improve", "--report", "r.json")
+        self.assertEqual((self.folder / "one.vtu").read_bytes(), (self.folder / "two.vtu").read_bytes())
+        extraction = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(extraction["improvement"]["moved_vertices"], report["moved_vertices"])
+        self.assertEqual(extraction["quality"], report["after"]["quality"])
+        self.run_command("improve", "two.vtu", "-o", "own.mesh", "--fix-boundary", "--passes", "0", "--quiet")
+        # Formats that do not tell generators, options out of range, names that are the same.
+        self.run_command("convert", "rough.vtu", "rough.mesh", "--quiet")
+        self.assert_fails("improve", "rough.mesh", "--map", "map.hexex", "-o", "bad.vtu", expect=BAD_USAGE,
+                          code="InvalidArgument")
+        self.assert_fails("improve", "rough.vtu", "-o", "rough.vtu", expect=BAD_USAGE, code="InvalidArgument")
+        for options in [["--target", "2"], ["--passes", "-1"], ["--slack", "x"], ["--feature-angle", "181"]]:
+            self.run_command("improve", "rough.vtu", "-o", "bad.vtu", *options, expect=BAD_USAGE)
+        for options in [["--stream"], ["--order", "2"], ["--partial"], ["--arcs", "arcs.vtu"]]:
+            self.assert_fails("extract", "map.hexex", "-o", "bad.vtu", "--improve", *options, expect=BAD_USAGE,
+                              code="InvalidArgument")
+        self.run_command("extract", "map.hexex", "-o", "bad.vtu", "--target", "0.5", expect=BAD_USAGE)
+        self.assertFalse((self.folder / "bad.vtu").exists())
 
     def test_partial(self):
         map_file = self.damaged()

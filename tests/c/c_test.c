@@ -607,6 +607,39 @@ static hexhex_map* seamless_sphere(int refine, double shear) {
   return seamless;
 }
 
+static void test_improve(void) {
+  hexhex_error error;
+  hexhex_map* map = NULL;
+  hexhex_mesh* mesh = NULL;
+  hexhex_sample_options sample = HEXHEX_SAMPLE_OPTIONS_INIT;
+  sample.cells = 3;
+  sample.jitter = 0.9;
+  CHECK_OK(hexhex_map_generate("torus", &sample, &map, &error));
+  hexhex_extract_options extraction = HEXHEX_EXTRACT_OPTIONS_INIT;
+  extraction.scale = 2;
+  CHECK_OK(hexhex_extract(map, &extraction, NULL, &mesh, NULL, &error));
+  hexhex_improve_options options = HEXHEX_IMPROVE_OPTIONS_INIT;
+  hexhex_improve_report report = HEXHEX_IMPROVE_REPORT_INIT;
+  options.target = 2;
+  CHECK(hexhex_mesh_improve(mesh, map, &options, NULL, &report, &error) == HEXHEX_INVALID_ARGUMENT);
+  CHECK_OK(hexhex_mesh_improve(mesh, map, NULL, NULL, &report, &error));
+  CHECK(report.size == sizeof report && report.not_positive_after == 0);
+  CHECK(report.minimum_after >= report.minimum_before && report.minimum_after > 0);
+  CHECK(report.mean_after > 0 && report.mean_before > 0 && report.diagonal > 0);
+  CHECK(report.moved_vertices > 0 && report.largest_move >= report.mean_move);
+  CHECK(report.patch_vertices > 0 && report.free_vertices > 0 && report.off_surface == 0);
+  hexhex_certificate proven = HEXHEX_CERTIFICATE_INIT;
+  CHECK_OK(hexhex_mesh_certify(mesh, NULL, NULL, NULL, &proven, &error));
+  CHECK(proven.refuted == 0 && proven.undecided == 0);
+  /* Once more, with the boundary as the surface: it changes little. */
+  options.target = 0;
+  options.fix_boundary = 1;
+  CHECK_OK(hexhex_mesh_improve(mesh, NULL, &options, NULL, &report, &error));
+  CHECK(report.patch_vertices == 0 && report.curve_vertices == 0 && report.fixed_vertices > 0);
+  hexhex_mesh_destroy(mesh);
+  hexhex_map_destroy(map);
+}
+
 static void test_quantize(void) {
   hexhex_error error;
   hexhex_map* seamless = seamless_sphere(2, 0);
@@ -1474,6 +1507,7 @@ int main(void) {
   test_sink(folder);
   test_features(folder);
   test_repair();
+  test_improve();
   test_quantize();
   test_curved(folder);
   test_numbers_that_are_none();

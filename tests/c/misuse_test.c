@@ -227,6 +227,9 @@ static void call_all(const handles* h, enum kind kind, const char* file) {
     REFUSED(hexhex_quantize(h->map, &quantize, h->context, &made.map, NULL, &error));
     REFUSED(hexhex_examine_seamless(h->map, h->context, &out_seamless_report, &error));
   }
+  if (concerns(k_mesh | k_context)) { /* a map may be NULL */
+    REFUSED(hexhex_mesh_improve(h->mesh, h->map, NULL, h->context, NULL, &error));
+  }
   if (concerns(k_repair_report)) {
     hexhex_repair_report_destroy(h->repair_report);
   }
@@ -589,6 +592,10 @@ static void test_sizes_of_structs(const char* file) {
     unscaled.scale = 1;
     WRONG(quantize_report, HEXHEX_QUANTIZE_REPORT_INIT,
           hexhex_quantize(h.map, &unscaled, NULL, &map, &s, &error));
+    WRONG(improve_options, HEXHEX_IMPROVE_OPTIONS_INIT,
+          hexhex_mesh_improve(h.mesh, NULL, &s, NULL, NULL, &error));
+    WRONG(improve_report, HEXHEX_IMPROVE_REPORT_INIT,
+          hexhex_mesh_improve(h.mesh, NULL, NULL, NULL, &s, &error));
     WRONG(seamless_report, HEXHEX_SEAMLESS_REPORT_INIT,
           hexhex_examine_seamless(h.map, NULL, &s, &error));
     WRONG(extract_options, HEXHEX_EXTRACT_OPTIONS_INIT,

@@ -347,6 +347,24 @@ def needs_quantization():
         pytest.skip("without Eigen")
 
 
+def test_improve_moves_a_copy_until_cells_are_positive():
+    map = hexhex.generate("torus", cells=3, jitter=0.9)
+    mesh = hexhex.extract(map, scale=2)
+    points = mesh.points.copy()
+    better, report = hexhex.improve(mesh, map)
+    assert np.array_equal(mesh.points, points) and np.array_equal(better.cells, mesh.cells)
+    assert report.after.all_positive and len(report.not_positive) == 0
+    assert report.after.minimum >= report.before.minimum == hexhex.quality(mesh).minimum
+    assert report.after.minimum == hexhex.quality(better).minimum
+    assert report.moved_vertices == (better.points != points).any(axis=1).sum()
+    moved = np.linalg.norm(better.points - points, axis=1).max()
+    assert np.isclose(report.largest_move * report.diagonal, moved)
+    fixed, report = hexhex.improve(mesh, fix_boundary=True, passes=0)
+    assert report.patch_vertices == 0 < report.fixed_vertices
+    with pytest.raises(hexhex.ArgumentError):
+        hexhex.improve(mesh, target=2)
+
+
 def quantized_cells(map, **density):
     made, report = hexhex.quantize(map, **density)
     mesh = hexhex.extract(made)

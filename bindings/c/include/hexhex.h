@@ -1140,6 +1140,58 @@ HEXHEX_API hexhex_status hexhex_mesh_certify(const hexhex_mesh* mesh, hexhex_con
                                              uint8_t* validity, double* scaled_jacobians,
                                              hexhex_certificate* certificate, hexhex_error* error);
 
+/* ---- Improvement ----------------------------------------------------------------------------- */
+
+/** See ImproveOptions in <hexhex/improve.hpp>. */
+typedef struct hexhex_improve_options {
+  size_t size;
+  double target;        /**< cells with a smaller scaled Jacobian are improved; 0 to 1 */
+  int passes;           /**< over all vertices in the end; 0 to 1000 */
+  int fix_boundary;     /**< 1: vertices on the surface stay */
+  double feature_angle; /**< where the surface turns by more is a curve; degrees, 0 to 180 */
+  double
+      slack; /**< so far may vertices leave the surface if nothing else helps; diagonals, to 0.1 */
+} hexhex_improve_options;
+#define HEXHEX_IMPROVE_OPTIONS_INIT \
+  { sizeof(hexhex_improve_options), 0.3, 2, 0, 40, 1e-3 }
+
+/** What an improvement did. See ImproveReport in <hexhex/improve.hpp>; lengths are in diagonals of
+ * the surface's bounding box. hexhex_mesh_certify() says which cells are not positive. */
+typedef struct hexhex_improve_report {
+  size_t size;
+  uint64_t not_positive_before; /**< cells that are not certified positive everywhere */
+  uint64_t not_positive_after;
+  double minimum_before; /**< of scaled Jacobians */
+  double minimum_after;
+  double mean_before;
+  double mean_after;
+  double diagonal;
+  double from_mesh_before;    /**< largest distance from the mesh to the surface, */
+  double from_surface_before; /**< and from the surface to the mesh */
+  double from_mesh_after;
+  double from_surface_after;
+  uint64_t free_vertices;
+  uint64_t patch_vertices; /**< that slide on the surface, */
+  uint64_t curve_vertices; /**< on curves, */
+  uint64_t fixed_vertices; /**< and not at all */
+  uint64_t moved_vertices;
+  double largest_move;
+  double mean_move;     /**< of those that moved */
+  uint64_t off_surface; /**< vertices that used the slack */
+  double seconds;
+} hexhex_improve_report;
+#define HEXHEX_IMPROVE_REPORT_INIT \
+  { sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+
+/** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>.
+ * @param map          that the mesh was extracted from, or NULL: the surface is the mesh's boundary
+ * @param options      or NULL
+ * @param[out] report  made with HEXHEX_IMPROVE_REPORT_INIT, or NULL */
+HEXHEX_API hexhex_status hexhex_mesh_improve(hexhex_mesh* mesh, const hexhex_map* map,
+                                             const hexhex_improve_options* options,
+                                             hexhex_context* context, hexhex_improve_report* report,
+                                             hexhex_error* error);
+
 /* ---- Curved meshes --------------------------------------------------------------------------- */
 
 /** A mesh with the exact shapes of its edges (arcs) and faces (patches), piece by piece: see

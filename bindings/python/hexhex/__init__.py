@@ -39,6 +39,7 @@ from ._types import (
     Features,
     FileFormat,
     Hole,
+    ImproveReport,
     LagrangeMesh,
     Map,
     MapStructure,
@@ -73,13 +74,15 @@ __version__: str = _hexhex.version()
 
 __all__ = [
     "Arcs", "ArgumentError", "CancelledError", "CheckReport", "Defect", "Extractor", "Features",
-    "FileError", "FileFormat", "HexhexError", "Hole", "InternalError", "LagrangeMesh", "Map",
+    "FileError", "FileFormat", "HexhexError", "Hole", "ImproveReport", "InternalError",
+    "LagrangeMesh", "Map",
     "MapError", "MapStructure", "MemoryExhaustedError", "Mesh", "MeshPart", "MeshSink",
     "MeshWriter", "PartNeighbour", "PartialMesh", "Patches", "Quality", "QuantizeReport",
     "RefutedCell", "RepairReport", "RepairedRegion", "SampleKind", "SeamlessReport", "Survey",
     "SurveySink", "TqdmProgress", "VerifyItem", "VerifyReport", "can_quantize", "can_repair",
     "check", "defect_kinds", "examine_seamless", "extract", "extract_partial", "extract_parts",
     "extract_parts_to_file", "extract_to", "extract_to_file", "formats", "generate", "holds_curved",
+    "improve",
     "map_from_flags", "map_from_pair", "map_structure", "quality", "quantize", "read",
     "read_curved", "read_flags", "read_map", "read_mesh", "read_pair", "read_tets", "read_to",
     "repair", "require_format", "sample_kinds", "scaled_jacobian", "survey", "verify", "write",
@@ -945,9 +948,44 @@ def quality(mesh: Mesh | LagrangeMesh, *, threads: int | None = None,
     >>> hexhex.quality(hexhex.extract(hexhex.generate("box"))).minimum
     1.0
     """
-    *values, worst = _hexhex.certify(mesh._handle, _threads(threads), progress)
+    return _quality_of(_hexhex.certify(mesh._handle, _threads(threads), progress))
+
+
+def _quality_of(fields: Any) -> Quality:
+    *values, worst = fields
     values.append([RefutedCell(*each) for each in worst])
     return Quality(*values)
+
+
+def improve(mesh: Mesh, map: Map | None = None, *, target: float = 0.3, passes: int = 2,
+            fix_boundary: bool = False, feature_angle: float = 40.0, slack: float = 1e-3,
+            threads: int | None = None,
+            progress: Progress | None = None) -> tuple[Mesh, ImproveReport]:
+    """The same mesh with vertices moved: all cells become positive, then the worst ones better, then
+    all. Vertices on the surface slide on it; the given mesh stays as it is.
+
+    Args:
+        map: that the mesh was extracted from, whose surface is the one to stay on. Without, that is
+            the boundary of the mesh.
+        target: cells with a smaller scaled Jacobian are improved until nothing helps, 0 to 1.
+        passes: over all vertices in the end, 0 to 1000.
+        fix_boundary: vertices on the surface stay where they are.
+        feature_angle: edges where the surface turns by more degrees are curves, and so are tagged
+            ones: vertices do not leave them.
+        slack: where nothing else makes cells positive, vertices without tags may leave the surface
+            by so much, in diagonals of its bounding box, 0 to 0.1.
+        threads, progress: as in extract().
+
+    >>> map = hexhex.generate("torus", cells=2, jitter=0.6)
+    >>> better, report = hexhex.improve(hexhex.extract(map), map)
+    >>> report.after.all_positive and report.after.minimum >= report.before.minimum
+    True
+    """
+    handle, before, after, bad, values = _hexhex.improve(
+        mesh._handle, None if map is None else map._arrays(), target, passes, fix_boundary,
+        feature_angle, slack, _threads(threads), progress)
+    return (Mesh._from_handle(handle),
+            ImproveReport(_quality_of(before), _quality_of(after), bad, **values))
 
 
 def scaled_jacobian(corners: npt.ArrayLike) -> float:

@@ -826,6 +826,30 @@ class Quality:
                 f"{self.minimum:.3f} to mean {self.mean:.3f}, {self.positive} positive everywhere>")
 
 
+
+@dataclasses.dataclass(frozen=True)
+class ImproveReport:
+    """What an improvement did. Lengths are in diagonals of the surface's bounding box."""
+
+    before: Quality
+    after: Quality
+    not_positive: npt.NDArray[np.uint64]  #: cells that are not certified in the end, ascending
+    diagonal: float
+    from_mesh_before: float  #: largest distance from the mesh to the surface,
+    from_surface_before: float  #: and from the surface to the mesh
+    from_mesh_after: float
+    from_surface_after: float
+    free_vertices: int
+    patch_vertices: int  #: that slide on the surface,
+    curve_vertices: int  #: on curves,
+    fixed_vertices: int  #: and not at all
+    moved_vertices: int
+    largest_move: float
+    mean_move: float  #: of those that moved
+    off_surface: int  #: vertices that used the slack
+    seconds: float
+
+
 # How to pickle what the library holds: by the arrays that it is made of. Everything else is a plain
 # object.
 _of_hexes = operator.attrgetter("generator_tet", "generator_corners", "feature_vertices",

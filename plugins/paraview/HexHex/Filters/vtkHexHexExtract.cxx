@@ -5,6 +5,7 @@
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/extract.hpp>
+#include <hexhex/improve.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/quantize.hpp>
 #include <hexhex/structure.hpp>
@@ -40,6 +41,8 @@ struct Request
   int order = 1;
   bool quantize = false;
   double cells = 0; // to quantize for
+  bool improve = false;
+  double target = 0; // of improvement
   bool verify = true;
   bool arcs = false;
   bool patches = false;
@@ -83,10 +86,20 @@ Extracted extractAll(const hexhex::TetMap& map, const Request& request, hexhex::
   const hexhex::TetMapView repaired = result.statistics.repairedMap
     ? hexhex::TetMapView(*result.statistics.repairedMap)
     : hexhex::TetMapView(map);
-  const hexhex::HexMesh& mesh = result.linear.mesh;
+  hexhex::HexMesh& mesh = result.linear.mesh;
   if (request.verify)
   {
     requireVerified(repaired, mesh, request.options.scale, request.options.tolerance, context);
+  }
+  if (request.improve)
+  {
+    if (request.order > 1 || request.arcs || request.patches)
+    {
+      throw hexhex::Error(hexhex::ErrorCode::InvalidArgument,
+        "Improve moves vertices of straight cells, away from the map that curved ones follow. Switch "
+        "off Improve, or Arcs and Patches, and set Order to 1.");
+    }
+    hexhex::improve(mesh, repaired, { .target = request.target }, context);
   }
   result.structure = hexhex::findStructure(mesh, context);
   if (request.order == 1)
@@ -123,6 +136,8 @@ void vtkHexHexExtract::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Repair: " << this->Repair << "\n";
   os << indent << "Quantize: " << this->Quantize << "\n";
   os << indent << "Cells: " << this->Cells << "\n";
+  os << indent << "Improve: " << this->Improve << "\n";
+  os << indent << "Target: " << this->Target << "\n";
   os << indent << "Verify: " << this->Verify << "\n";
   os << indent << "Arcs: " << this->Arcs << "\n";
   os << indent << "Patches: " << this->Patches << "\n";
@@ -158,6 +173,8 @@ int vtkHexHexExtract::RequestData(
   request.order = this->Order;
   request.quantize = this->Quantize != 0;
   request.cells = this->Cells;
+  request.improve = this->Improve != 0;
+  request.target = this->Target;
   request.verify = this->Verify != 0;
   request.arcs = this->Arcs != 0;
   request.patches = this->Patches != 0;

@@ -42,6 +42,12 @@ public:
   vtkGetMacro(Quantize, vtkTypeBool);
   vtkSetMacro(Cells, double);
   vtkGetMacro(Cells, double);
+  /** Whether vertices move until all cells are positive, and none has a scaled Jacobian below Target
+   * if that can be. */
+  vtkSetMacro(Improve, vtkTypeBool);
+  vtkGetMacro(Improve, vtkTypeBool);
+  vtkSetMacro(Target, double);
+  vtkGetMacro(Target, double);
   /** Whether the mesh is compared with the map. */
   vtkSetMacro(Verify, vtkTypeBool);
   vtkGetMacro(Verify, vtkTypeBool);
@@ -71,6 +77,8 @@ private:
   vtkTypeBool Repair = 1;
   vtkTypeBool Quantize = 0;
   double Cells = 10000;
+  vtkTypeBool Improve = 0;
+  double Target = 0.3;
   vtkTypeBool Verify = 1;
   vtkTypeBool Arcs = 0;
   vtkTypeBool Patches = 0;

@@ -1,0 +1,114 @@
+// `hexhex improve`: a mesh whose cells are positive, and better.
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <fmt/core.h>
+
+#include <hexhex/improve.hpp>
+#include <hexhex/io.hpp>
+
+#include "command.hpp"
+#include "exit_codes.hpp"
+#include "improve_options.hpp"
+#include "json.hpp"
+#include "long_run.hpp"
+#include "output.hpp"
+#include "shared_options.hpp"
+
+namespace hexhex::command {
+namespace {
+
+struct Arguments {
+  std::string mesh;
+  std::string output;
+  std::string map;
+  OutputChoice choice;
+  std::string report;
+  double patchAngle = WriteOptions{}.patchAngle;
+  ImproveOptions options;
+  RunOptions run;
+};
+
+void requireAllDifferent(const Arguments& arguments) {
+  for (const std::string* const input : {&arguments.mesh, &arguments.map}) {
+    for (const std::string* const output : {&arguments.output, &arguments.report}) {
+      if (!input->empty() && !output->empty()) requireDifferent(*input, *output);
+    }
+  }
+  if (!arguments.report.empty()) requireDifferent(arguments.output, arguments.report);
+}
+
+ImproveReport improveMesh(const Arguments& arguments, HexMesh& mesh, LongRun& longRun) {
+  Context& context = longRun.context();
+  if (arguments.map.empty()) {
+    return longRun.part("improvement", [&] { return improve(mesh, arguments.options, context); });
+  }
+  const TetMap map = longRun.part("reading", [&] { return readMap(arguments.map, {}, context); });
+  return longRun.part("improvement",
+                      [&] { return improve(mesh, map, arguments.options, context); });
+}
+
+int run(const Arguments& arguments) {
+  requireHexMeshFormat(arguments.output, arguments.choice.options());
+  requireAllDifferent(arguments);
+  LongRun longRun(arguments.run, {{"readHexMesh", 1},
+                                  {"readMap", 0.5},
+                                  {"certify", 0.2},
+                                  {"improve", 20},
+                                  {"writeHexMesh", 0.5}});
+  Context& context = longRun.context();
+  requireWritable(arguments.output);
+  Report reportFile(arguments.report);
+  HexMesh mesh = longRun.part("reading", [&] { return readHexMesh(arguments.mesh, context); });
+  const ImproveReport report = improveMesh(arguments, mesh, longRun);
+  WriteOptions writing = arguments.choice.options();
+  writing.scaledJacobians = report.after.scaledJacobians;
+  writing.patchAngle = arguments.patchAngle;
+  longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
+  longRun.finish();
+  if (reportFile.isWanted()) reportFile.write(jsonText(improvementAsJson(report)));
+  if (arguments.run.quiet || reportFile.isOnOutput()) return kSuccess;
+  printFiles(arguments.mesh, arguments.output);
+  printImprovement(report);
+  return kSuccess;
+}
+
+}  // namespace
+
+Command addImprove(CLI::App& app) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const parser =
+      app.add_subcommand("improve", "Make all cells of a mesh positive, and better");
+  parser->add_option("MESH", arguments->mesh, "The mesh, in any format that is read")
+      ->required()
+      ->option_text("FILE REQUIRED");
+  parser
+      ->add_option("-o,--output", arguments->output,
+                   "The mesh to write; `hexhex formats` lists the formats")
+      ->required()
+      ->option_text("FILE REQUIRED");
+  parser
+      ->add_option("--map", arguments->map,
+                   "The map that the mesh was extracted from: its surface\n"
+                   "is the one to stay on. MESH is .vtu, .ovm or .ovmb, which\n"
+                   "tell where vertices lie. Else: the boundary of the mesh")
+      ->option_text("FILE");
+  addImproveOptions(*parser, arguments->options);
+  addOutputChoice(*parser, arguments->choice);
+  addPatchAngle(*parser, arguments->patchAngle);
+  addReport(*parser, arguments->report,
+            "Write in JSON: quality and certificates before and after,\n"
+            "distances to the surface, how far vertices moved");
+  addRunOptions(*parser, arguments->run);
+  parser->footer(
+      "Cells that are not positive come first, then those below --target, then all. Vertices on "
+      "the\n"
+      "surface slide on it. A mesh of which cells stay that are not positive is written, with a\n"
+      "warning; --report lists them. docs/improve.md explains what happens.\n\nExample:\n"
+      "  hexhex improve mesh.vtu --map map.hexex -o better.vtu\n"
+      "  hexhex extract map.hexex -o better.vtu --improve     in one go");
+  return {parser, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace hexhex::command

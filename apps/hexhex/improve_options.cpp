@@ -1,0 +1,88 @@
+#include "improve_options.hpp"
+
+#include <fmt/core.h>
+
+#include "output.hpp"
+#include "report.hpp"
+#include "shared_options.hpp"
+
+namespace hexhex::command {
+
+std::vector<CLI::Option*> addImproveOptions(CLI::App& parser, ImproveOptions& options) {
+  return {parser
+              .add_option("--target", options.target,
+                          "Improve cells whose scaled Jacobian is below that until\n"
+                          "none is, or nothing helps any more; 0: only untangle")
+              ->check(CLI::Range(0.0, 1.0))
+              ->option_text("NUMBER [0.3]"),
+          parser.add_option("--passes", options.passes, "Then smooth the whole mesh so many times")
+              ->check(CLI::Range(0, 1000))
+              ->option_text("N [2]"),
+          parser.add_flag("--fix-boundary", options.fixBoundary,
+                          "Leave vertices on the surface where they are"),
+          parser
+              .add_option("--feature-angle", options.featureAngle,
+                          "Vertices stay on edges of the surface where it turns by\n"
+                          "more than that, in degrees, and on tagged edges")
+              ->check(CLI::Range(0.0, 180.0))
+              ->option_text("ANGLE [40]"),
+          parser
+              .add_option("--slack", options.slack,
+                          "Where nothing else helps, vertices without tags may leave\n"
+                          "the surface by so many diagonals of its bounding box")
+              ->check(CLI::Range(0.0, 0.1))
+              ->option_text("NUMBER [1e-3]")};
+}
+
+void printImprovement(const ImproveReport& report) {
+  const std::uint64_t bad = report.before.refuted + report.before.undecided;
+  const std::uint64_t left = report.notPositive.size();
+  printLine("mended", bad == 0 ? "all cells were positive"
+                               : fmt::format("{} of {} that were not positive", bad - left,
+                                             counted(bad, "cell")));
+  printLine("scaled Jacobian before",
+            fmt::format("at least {:.4g}, {:.4g} on average", report.before.quality.minimum,
+                        report.before.quality.mean));
+  printQuality(report.after);
+  printLine("moved",
+            fmt::format("{} vertices, by {:.2g} of the diagonal on average, at most {:.2g}",
+                        report.movedVertices, report.meanMove, report.largestMove));
+  printLine(
+      "distance to the surface",
+      fmt::format("{:.2g} of the diagonal ({:.2g} from it to the mesh); before {:.2g} ({:.2g})",
+                  report.distanceAfter.fromMesh, report.distanceAfter.fromSurface,
+                  report.distanceBefore.fromMesh, report.distanceBefore.fromSurface));
+  if (report.offSurface > 0) {
+    printLine("off the surface", fmt::format("{} vertices, where nothing else made cells positive",
+                                             report.offSurface));
+  }
+  if (left > 0) printWarning(refutationAsText(report.after));
+}
+
+Json improvementAsJson(const ImproveReport& report) {
+  const auto distance = [](const SurfaceDistance& d) {
+    return Json{
+        {"from_mesh", d.fromMesh}, {"from_surface", d.fromSurface}, {"hausdorff", d.hausdorff()}};
+  };
+  return {
+      {"before",
+       {{"quality", qualityAsJson(report.before)}, {"validity", validityAsJson(report.before)}}},
+      {"after",
+       {{"quality", qualityAsJson(report.after)}, {"validity", validityAsJson(report.after)}}},
+      {"not_positive", report.notPositive},
+      {"diagonal", report.diagonal},
+      {"distance_before", distance(report.distanceBefore)},
+      {"distance_after", distance(report.distanceAfter)},
+      {"vertices",
+       {{"free", report.vertices[0]},
+        {"on_patches", report.vertices[1]},
+        {"on_curves", report.vertices[2]},
+        {"fixed", report.vertices[3]}}},
+      {"moved_vertices", report.movedVertices},
+      {"largest_move", report.largestMove},
+      {"mean_move", report.meanMove},
+      {"off_surface", report.offSurface},
+      {"seconds", report.seconds}};
+}
+
+}  // namespace hexhex::command

@@ -1,0 +1,24 @@
+// Options of improvement, and what it tells.
+#pragma once
+
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <hexhex/improve.hpp>
+
+#include "json.hpp"
+
+namespace hexhex::command {
+
+/// Adds --target, --passes, --fix-boundary, --feature-angle and --slack.
+/// @return all of them
+std::vector<CLI::Option*> addImproveOptions(CLI::App& parser, ImproveOptions& options);
+
+/// What happened, in some lines on the standard output; cells that stay bad as a warning.
+void printImprovement(const ImproveReport& report);
+
+/// docs/report.md explains the keys.
+[[nodiscard]] Json improvementAsJson(const ImproveReport& report);
+
+}  // namespace hexhex::command

@@ -1,0 +1,55 @@
+#include <optional>
+
+#include <hexhex/improve.hpp>
+
+#include "handles.hpp"
+
+namespace {
+
+hexhex_improve_report reportOf(const hexhex::ImproveReport& r) {
+  return {.size = sizeof(hexhex_improve_report),
+          .not_positive_before = r.before.refuted + r.before.undecided,
+          .not_positive_after = r.notPositive.size(),
+          .minimum_before = r.before.quality.minimum,
+          .minimum_after = r.after.quality.minimum,
+          .mean_before = r.before.quality.mean,
+          .mean_after = r.after.quality.mean,
+          .diagonal = r.diagonal,
+          .from_mesh_before = r.distanceBefore.fromMesh,
+          .from_surface_before = r.distanceBefore.fromSurface,
+          .from_mesh_after = r.distanceAfter.fromMesh,
+          .from_surface_after = r.distanceAfter.fromSurface,
+          .free_vertices = r.vertices[0],
+          .patch_vertices = r.vertices[1],
+          .curve_vertices = r.vertices[2],
+          .fixed_vertices = r.vertices[3],
+          .moved_vertices = r.movedVertices,
+          .largest_move = r.largestMove,
+          .mean_move = r.meanMove,
+          .off_surface = r.offSurface,
+          .seconds = r.seconds};
+}
+
+}  // namespace
+
+hexhex_status hexhex_mesh_improve(hexhex_mesh* mesh, const hexhex_map* map,
+                                  const hexhex_improve_options* options, hexhex_context* context,
+                                  hexhex_improve_report* report, hexhex_error* error) {
+  using namespace hexhex::c;
+  return guarded(error, [&] {
+    const Used used(mesh, "mesh");
+    std::optional<Used<const hexhex_map>> given;
+    if (map != nullptr) given.emplace(map, "map");
+    const hexhex_improve_options o = readStruct(options, HEXHEX_IMPROVE_OPTIONS_INIT, "options");
+    const hexhex::ImproveOptions chosen = {.target = o.target,
+                                           .passes = o.passes,
+                                           .fixBoundary = o.fix_boundary != 0,
+                                           .featureAngle = o.feature_angle,
+                                           .slack = o.slack};
+    ContextOrDefault working(context);
+    const hexhex::ImproveReport made =
+        given ? hexhex::improve(used->own, (*given)->view, chosen, *working)
+              : hexhex::improve(used->own, chosen, *working);
+    if (report != nullptr) writeStruct(reportOf(made), *report, "report");
+  });
+}

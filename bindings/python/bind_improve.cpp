@@ -1,0 +1,57 @@
+// Meshes whose cells are positive, and better.
+#include <utility>
+
+#include <hexhex/improve.hpp>
+
+#include "border.hpp"
+
+using namespace nanobind::literals;
+
+namespace hexhex::python {
+namespace {
+
+/// A mesh that is moved, of a copy of one that others may hold.
+nb::tuple improveMesh(const HexMesh& mesh, const ArrayMap* map, double target, int passes,
+                      bool fixBoundary, double featureAngle, double slack, int threads,
+                      const Progress& progress) {
+  const ImproveOptions options = {.target = target,
+                                  .passes = passes,
+                                  .fixBoundary = fixBoundary,
+                                  .featureAngle = featureAngle,
+                                  .slack = slack};
+  HexMesh moved;
+  ImproveReport report = run(threads, progress, [&](Context& context) {
+    moved = mesh;
+    return map != nullptr ? improve(moved, map->view(), options, context)
+                          : improve(moved, options, context);
+  });
+  Dict d;
+  d["diagonal"] = report.diagonal;
+  d["from_mesh_before"] = report.distanceBefore.fromMesh;
+  d["from_surface_before"] = report.distanceBefore.fromSurface;
+  d["from_mesh_after"] = report.distanceAfter.fromMesh;
+  d["from_surface_after"] = report.distanceAfter.fromSurface;
+  d["free_vertices"] = report.vertices[0];
+  d["patch_vertices"] = report.vertices[1];
+  d["curve_vertices"] = report.vertices[2];
+  d["fixed_vertices"] = report.vertices[3];
+  d["moved_vertices"] = report.movedVertices;
+  d["largest_move"] = report.largestMove;
+  d["mean_move"] = report.meanMove;
+  d["off_surface"] = report.offSurface;
+  d["seconds"] = report.seconds;
+  const std::size_t bad = report.notPositive.size();
+  nb::object notPositive =
+      nb::cast(ownedArray<std::uint64_t, 1>(std::move(report.notPositive), {bad}));
+  return nb::make_tuple(std::move(moved), asTuple(std::move(report.before)),
+                        asTuple(std::move(report.after)), notPositive, d);
+}
+
+}  // namespace
+
+void bindImprove(nb::module_& module) {
+  module.def("improve", &improveMesh, "mesh"_a, "map"_a.none(), "target"_a, "passes"_a,
+             "fix_boundary"_a, "feature_angle"_a, "slack"_a, "threads"_a, "progress"_a.none());
+}
+
+}  // namespace hexhex::python

@@ -1,0 +1,76 @@
+// From a mesh that was extracted to one that a solver takes: cells become positive everywhere, then
+// the worst ones better, then all. Vertices of the boundary stay on the surface of the object.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <hexhex/context.hpp>
+#include <hexhex/export.h>
+#include <hexhex/quality.hpp>
+#include <hexhex/types.hpp>
+
+namespace hexhex HEXHEX_API_NAMESPACE {
+
+struct ImproveOptions {
+  /// Cells whose scaled Jacobian is below are improved until none is, or no vertex helps any more.
+  /// 0 to 1; 0: cells are only made positive.
+  double target = 0.3;
+  /// Over all vertices in the end, for the mean. 0 to 1000.
+  int passes = 2;
+  bool fixBoundary = false;  ///< vertices on the surface and on tagged faces inside stay
+  /// Edges of the surface where it turns by more than that are curves, which vertices on them do
+  /// not leave; in degrees, 0 to 180. Tagged edges are curves, too, and without any, so are edges
+  /// of the boundary with other than two cells.
+  double featureAngle = 40;
+  /// Where vertices on the surface cannot make cells positive, those without tags may leave it by
+  /// so much, in diagonals of the bounding box. 0 to 0.1.
+  double slack = 1e-3;
+};
+
+/// Between the surface and the boundary of the mesh, in diagonals of the surface's bounding box.
+struct SurfaceDistance {
+  double fromMesh = 0;     ///< largest of boundary vertices and centres of boundary quads
+  double fromSurface = 0;  ///< largest of vertices and centres of the surface's triangles
+
+  [[nodiscard]] double hausdorff() const noexcept {
+    return fromMesh > fromSurface ? fromMesh : fromSurface;
+  }
+};
+
+struct ImproveReport {
+  Certificate before;
+  Certificate after;
+  Array<std::uint64_t> notPositive;  ///< cells that are not certified in the end, ascending
+  double diagonal = 0;               ///< of the surface's bounding box
+  SurfaceDistance distanceBefore;
+  SurfaceDistance distanceAfter;
+  std::array<std::uint64_t, 4> vertices{};  ///< that move freely, on patches, on curves, not at all
+  std::uint64_t movedVertices = 0;
+  double largestMove = 0;        ///< in diagonals
+  double meanMove = 0;           ///< of those that moved
+  std::uint64_t offSurface = 0;  ///< vertices that used the slack
+  double seconds = 0;
+};
+
+/// Moves vertices. The surface is that of the map: its boundary, tagged triangles and those between
+/// regions.
+///
+/// The least scaled Jacobian is no less in the end, and no cell that is certified loses that.
+/// Connectivity, tags and regions stay as they are; so do vertices at corners. Vertices on tagged
+/// curves and patches stay on them. The result does not depend on the number of threads.
+///
+/// @param mesh  with generators in the map: what extract() returns, or what was read from `.vtu`,
+///              `.ovm` or `.ovmb`
+/// @throws Error InvalidArgument for options out of range, vertices that do not exist, and
+///         generators that are not in the map; NotFinite for a coordinate; Orientation if the
+///         cells are inside out; EmptyMesh
+ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions& options,
+                      Context& context);
+
+/// The surface is the boundary of the mesh itself, and its tagged quads: each is divided into two
+/// triangles.
+/// @throws Error  as above
+ImproveReport improve(HexMesh& mesh, const ImproveOptions& options, Context& context);
+
+}  // namespace HEXHEX_API_NAMESPACE

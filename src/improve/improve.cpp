@@ -1,0 +1,172 @@
+// Untangling, then the worst cells, then the mean.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <span>
+#include <string>
+
+#include <adjacency/hex_topology.hpp>
+
+#include <hexhex/error.hpp>
+#include <hexhex/improve.hpp>
+
+#include <base/parallel.hpp>
+#include <base/vector3.hpp>
+#include <improve/surface_distance.hpp>
+#include <improve/sweeps.hpp>
+#include <improve/vertex_places.hpp>
+
+namespace hexhex {
+
+namespace {
+
+void requireRange(double value, double most, const char* what) {
+  if (value >= 0 && value <= most) return;
+  throw Error(ErrorCode::InvalidArgument, std::string(what) + " is " + std::to_string(value) +
+                                              ". Choose a number from 0 to " +
+                                              std::to_string(most) + ".");
+}
+
+void requireOptions(const ImproveOptions& options) {
+  requireRange(options.target, 1, "The target of improvement");
+  requireRange(options.passes, 1000, "The number of passes");
+  requireRange(options.featureAngle, 180, "The angle of curves");
+  requireRange(options.slack, 0.1, "The slack of the surface");
+}
+
+void requireCells(const HexMesh& mesh, Context& context) {
+  Stage stage(context, "input");
+  if (mesh.cells.empty()) {
+    throw Error(ErrorCode::EmptyMesh, "The mesh has no cells. There is nothing to improve.");
+  }
+  requireCornersInRange(mesh, stage);
+  const std::size_t bad = firstFault(stage, mesh.points.size(),
+                                     [&](std::size_t v) { return isFinite(mesh.points[v]); });
+  if (bad == mesh.points.size()) return;
+  throw Error(ErrorCode::NotFinite,
+              "A coordinate of vertex " + std::to_string(bad) +
+                  " is not a finite number. Correct the mesh first.",
+              Place{PlaceKind::Vertex, bad, 0});
+}
+
+/// Whatever is wrong inside, the boundary encloses a positive volume, unless cells list their
+/// corners the other way round.
+void requireOrientation(const Array<Vec3>& points, std::span<const Quad> quads) {
+  double volume = 0;
+  for (const Quad& quad : quads) {
+    const Vec3& origin = points[quads[0][0]];
+    const auto at = [&](std::size_t i) { return minus(points[quad[i]], origin); };
+    volume += tripleProduct(at(0), at(1), at(2)) + tripleProduct(at(0), at(2), at(3));
+  }
+  if (volume >= 0) return;
+  throw Error(ErrorCode::Orientation,
+              "The mesh is inside out: corners of its cells are not in the order of "
+              "VTK_HEXAHEDRON, or mirrored. List corners 4 to 7 before 0 to 3.");
+}
+
+void reportMoves(const Array<Vec3>& before, const Array<Vec3>& points, ImproveReport& report) {
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    const double move = length(minus(points[v], before[v])) / report.diagonal;
+    if (move == 0) continue;
+    ++report.movedVertices;
+    report.largestMove = std::max(report.largestMove, move);
+    report.meanMove += move;
+  }
+  if (report.movedVertices > 0) report.meanMove /= static_cast<double>(report.movedVertices);
+}
+
+/// Vertices that are farther from their triangle or segment than rounding leaves them.
+void reportOff(const Array<Vec3>& points, const VertexPlaces& places, ImproveReport& report) {
+  constexpr double kOn = 1e-9;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    const Vec3& point = points[v];
+    Vec3 nearest = point;
+    if (places.freedom[v] == Freedom::OnPatch) {
+      nearest = nearestOf(places.surface.triangle(places.simplex[v]), point);
+    } else if (places.freedom[v] == Freedom::OnCurve) {
+      nearest = nearestOf(places.surface.segment(places.simplex[v]), point);
+    }
+    if (length(minus(point, nearest)) > kOn * report.diagonal) ++report.offSurface;
+  }
+}
+
+void fixBoundary(VertexPlaces& places) {
+  for (Freedom& freedom : places.freedom) {
+    if (freedom != Freedom::Free) freedom = Freedom::Fixed;
+  }
+}
+
+/// @param placesOf  of (mesh, stage)
+template <class PlacesOf>
+ImproveReport improveOn(HexMesh& mesh, const ImproveOptions& options, Context& context,
+                        const PlacesOf& placesOf) {
+  requireOptions(options);
+  const auto begin = std::chrono::steady_clock::now();
+  constexpr std::array<WorkStep, 4> kSteps = {
+      {{"input", 0.1}, {"certify", 0.4}, {"findMapStructure", 0.1}, {"moving", 10}}};
+  WorkSteps steps(context, "improve", kSteps);
+  ImproveReport report;
+  withThreads(context.threads(), [&] {
+    requireCells(mesh, context);
+    report.before = certify(mesh, context);
+    Stage stage(context, "moving");
+    const Array<Quad> quads = quadsAt(mesh, boundaryPlaces(mesh, stage));
+    requireOrientation(mesh.points, quads);
+    VertexPlaces places = placesOf(mesh, stage);
+    if (options.fixBoundary) fixBoundary(places);
+    for (const Freedom freedom : places.freedom) {
+      ++report.vertices[static_cast<std::size_t>(freedom)];
+    }
+    report.diagonal = diagonalOf(places.surface);
+    const TriangleTree tree = treeOf(places.surface);
+    const auto distance = [&] {
+      return distanceBetween(mesh.points, quads, places.surface, tree, report.diagonal, stage);
+    };
+    report.distanceBefore = distance();
+    const Array<Vec3> points = mesh.points;
+    {
+      Sweeps sweeps(mesh, places, report.diagonal, stage);
+      sweeps.untangle(options.slack * report.diagonal);
+      sweeps.raiseWorst(options.target);
+      sweeps.smooth(options.passes, std::max(options.target, report.before.quality.minimum));
+    }
+    report.distanceAfter = distance();
+    reportMoves(points, mesh.points, report);
+    reportOff(mesh.points, places, report);
+    stage.finish();
+    report.after = certify(mesh, context);
+    for (std::size_t c = 0; c < report.after.validity.size(); ++c) {
+      if (report.after.validity[c] != Validity::Positive) report.notPositive.push_back(c);
+    }
+  });
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  report.seconds = seconds.count();
+  steps.finish();
+  return report;
+}
+
+/// How to find places on the surface of a map, and on the mesh's own.
+auto onMap(const TetMapView& map, const ImproveOptions& options, Context& context) {
+  return [&map, &options, &context](const HexMesh& mesh, Stage& stage) {
+    return placesOnMap(mesh, map, options.featureAngle, context, stage);
+  };
+}
+auto onItself(const ImproveOptions& options) {
+  return [&options](const HexMesh& mesh, Stage& stage) {
+    return placesOnMesh(mesh, options.featureAngle, stage);
+  };
+}
+
+}  // namespace
+
+ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions& options,
+                      Context& context) {
+  return improveOn(mesh, options, context, onMap(map, options, context));
+}
+
+ImproveReport improve(HexMesh& mesh, const ImproveOptions& options, Context& context) {
+  return improveOn(mesh, options, context, onItself(options));
+}
+
+}  // namespace hexhex

@@ -1,0 +1,245 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <base/disjoint_sets.hpp>
+#include <base/parallel.hpp>
+#include <base/vector3.hpp>
+#include <improve/reference_surface.hpp>
+
+namespace hexhex {
+
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+
+/// An edge of a triangle, its vertices ascending.
+struct TriangleEdge {
+  std::array<Index, 2> vertices;
+  Index triangle;
+  auto operator<=>(const TriangleEdge&) const = default;
+};
+
+std::array<Index, 2> ascending(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+
+Vec3 normalOf(const std::array<Vec3, 3>& t) { return cross(minus(t[1], t[0]), minus(t[2], t[0])); }
+
+double cosineBetween(const Vec3& a, const Vec3& b) {
+  const double lengths = length(a) * length(b);
+  return lengths > 0 ? dot(a, b) / lengths : 1;
+}
+
+template <std::size_t n>
+VertexLists<Index> listAt(std::size_t points, const std::vector<std::array<Index, n>>& simplices,
+                          Stage& stage) {
+  return {points, stage, [&](const auto& add) {
+            for (std::size_t s = 0; s < simplices.size(); ++s) {
+              for (const Index v : simplices[s]) add(v, static_cast<Index>(s));
+            }
+          }};
+}
+
+Vec3 along(const Vec3& from, const Vec3& step, double share) {
+  return {from[0] + share * step[0], from[1] + share * step[1], from[2] + share * step[2]};
+}
+
+double squaredDistance(const Vec3& a, const Vec3& b) {
+  const Vec3 d = minus(a, b);
+  return dot(d, d);
+}
+
+/// From simplex to simplex as long as one of those at the corners is nearer.
+template <std::size_t n, class Corners, class Allowed>
+SurfacePlace walk(const Vec3& point, Index start,
+                  const std::vector<std::array<Index, n>>& simplices, const VertexLists<Index>& at,
+                  const Corners& cornersOf, const Allowed& isAllowed) {
+  SurfacePlace best{nearestOf(cornersOf(start), point), start};
+  double distance = squaredDistance(best.point, point);
+  for (bool moved = true; moved && distance > 0;) {
+    moved = false;
+    for (const Index corner : simplices[best.simplex]) {
+      if (!isAllowed(corner)) continue;
+      for (const Index next : at(corner)) {
+        const Vec3 nearest = nearestOf(cornersOf(next), point);
+        const double other = squaredDistance(nearest, point);
+        if (other >= distance || !isAllowed(corner, next)) continue;
+        best = {nearest, next};
+        distance = other;
+        moved = true;
+      }
+      if (moved) break;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+Vec3 nearestOf(const std::array<Vec3, 2>& segment, const Vec3& point) noexcept {
+  const Vec3 step = minus(segment[1], segment[0]);
+  const double square = dot(step, step);
+  const double share = square > 0 ? dot(minus(point, segment[0]), step) / square : 0;
+  if (share <= 0) return segment[0];
+  if (share >= 1) return segment[1];
+  return along(segment[0], step, share);
+}
+
+Vec3 nearestOf(const std::array<Vec3, 3>& t, const Vec3& point) noexcept {
+  const Vec3 normal = normalOf(t);
+  const double square = dot(normal, normal);
+  bool inside = square > 0;
+  for (std::size_t i = 0; i < 3 && inside; ++i) {
+    inside = tripleProduct(normal, minus(t[(i + 1) % 3], t[i]), minus(point, t[i])) >= 0;
+  }
+  if (inside) return along(point, normal, -dot(minus(point, t[0]), normal) / square);
+  Vec3 best = t[0];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 nearest = nearestOf(std::array<Vec3, 2>{t[i], t[(i + 1) % 3]}, point);
+    if (squaredDistance(nearest, point) < squaredDistance(best, point)) best = nearest;
+  }
+  return best;
+}
+
+ReferenceSurface::ReferenceSurface(SurfaceParts parts, Stage& stage)
+    : points_(std::move(parts.points)) {
+  triangles_.reserve(parts.triangles.size());
+  for (const FeatureFace& face : parts.triangles) {
+    triangles_.push_back(face.vertices);
+    taggedTriangles_.push_back(face.tag != 0);
+  }
+  findCurves(parts, stage);
+  trianglesAt_ = listAt(points_.size(), triangles_, stage);
+  segmentsAt_ = listAt(points_.size(), segments_, stage);
+  findCorners(parts);
+}
+
+bool ReferenceSurface::isCurve(std::span<const Index> around, const SurfaceParts& parts,
+                               double limit) const {
+  if (around.size() != 2) return true;
+  const auto [a, b] = std::pair(around[0], around[1]);
+  if (parts.triangles[a].tag != parts.triangles[b].tag) return true;
+  if (!parts.groups.empty() && parts.groups[a] == parts.groups[b]) return false;
+  return cosineBetween(normalOf(triangle(a)), normalOf(triangle(b))) < limit;
+}
+
+void ReferenceSurface::findCurves(const SurfaceParts& parts, Stage& stage) {
+  std::vector<TriangleEdge> edges;
+  edges.reserve(3 * triangles_.size());
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      edges.push_back(
+          {ascending(triangles_[t][i], triangles_[t][(i + 1) % 3]), static_cast<Index>(t)});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (const std::array<Index, 2>& curve : parts.curves) {
+    segments_.push_back(ascending(curve[0], curve[1]));
+  }
+  std::sort(segments_.begin(), segments_.end());
+  segments_.erase(std::unique(segments_.begin(), segments_.end()), segments_.end());
+  const std::vector<std::array<Index, 2>> given = segments_;
+  const double limit = std::cos(parts.angle * std::numbers::pi / 180);
+  DisjointSets sets(triangles_.size());
+  std::vector<Index> around;
+  for (std::size_t begin = 0; begin < edges.size();) {
+    std::size_t end = begin;
+    around.clear();
+    for (; end < edges.size() && edges[end].vertices == edges[begin].vertices; ++end) {
+      around.push_back(edges[end].triangle);
+    }
+    const std::array<Index, 2>& vertices = edges[begin].vertices;
+    begin = end;
+    if (std::binary_search(given.begin(), given.end(), vertices)) continue;
+    if (isCurve(around, parts, limit)) {
+      segments_.push_back(vertices);
+    } else {
+      sets.unite(around[0], around[1]);
+    }
+  }
+  std::sort(segments_.begin(), segments_.end());
+  for (const std::array<Index, 2>& segment : segments_) {
+    taggedSegments_.push_back(parts.areTagged &&
+                              std::binary_search(given.begin(), given.end(), segment));
+  }
+  patches_.resize(triangles_.size());
+  parallelFor(stage, triangles_.size(), kGrain,
+              [&](std::size_t t) { patches_[t] = sets.find(static_cast<Index>(t)); });
+}
+
+void ReferenceSurface::findCorners(const SurfaceParts& parts) {
+  corners_ = parts.corners;
+  const double limit = std::cos(parts.angle * std::numbers::pi / 180);
+  for (std::size_t v = 0; v < points_.size(); ++v) {
+    const std::span<const Index> at = segmentsAt_(v);
+    if (at.empty()) continue;
+    bool isCorner = at.size() != 2;
+    if (!isCorner) {
+      std::array<Vec3, 2> steps{};
+      for (std::size_t i = 0; i < 2; ++i) {
+        const std::array<Index, 2>& s = segments_[at[i]];
+        steps[i] = minus(points_[s[0] == v ? s[1] : s[0]], points_[v]);
+      }
+      isCorner = -cosineBetween(steps[0], steps[1]) < limit;
+    }
+    if (isCorner) corners_.push_back(static_cast<Index>(v));
+  }
+  std::sort(corners_.begin(), corners_.end());
+  corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+}
+
+std::array<Vec3, 3> ReferenceSurface::triangle(Index t) const noexcept {
+  const auto& [a, b, c] = triangles_[t];
+  return {points_[a], points_[b], points_[c]};
+}
+std::array<Vec3, 2> ReferenceSurface::segment(Index s) const noexcept {
+  return {points_[segments_[s][0]], points_[segments_[s][1]]};
+}
+
+Freedom ReferenceSurface::freedomAt(std::span<const Index> corners, Index& simplex) const {
+  const auto holdsAll = [&](const auto& candidate) {
+    return std::all_of(corners.begin(), corners.end(), [&](Index c) {
+      return std::find(candidate.begin(), candidate.end(), c) != candidate.end();
+    });
+  };
+  if (corners.size() == 1 && std::binary_search(corners_.begin(), corners_.end(), corners[0])) {
+    return Freedom::Fixed;
+  }
+  for (const Index s : segmentsAt_(corners[0])) {
+    if (!holdsAll(segments_[s])) continue;
+    simplex = s;
+    return Freedom::OnCurve;
+  }
+  for (const Index t : trianglesAt_(corners[0])) {
+    if (!holdsAll(triangles_[t])) continue;
+    simplex = t;
+    return Freedom::OnPatch;
+  }
+  return Freedom::Free;
+}
+
+SurfacePlace ReferenceSurface::onPatch(const Vec3& point, Index triangle) const {
+  struct Allowed {
+    const std::vector<Index>& patches;
+    Index patch;
+    bool operator()(Index /*corner*/) const { return true; }
+    bool operator()(Index /*corner*/, Index next) const { return patches[next] == patch; }
+  };
+  return walk(
+      point, triangle, triangles_, trianglesAt_, [this](Index t) { return this->triangle(t); },
+      Allowed{patches_, patches_[triangle]});
+}
+
+SurfacePlace ReferenceSurface::onCurve(const Vec3& point, Index segment) const {
+  struct Allowed {
+    const std::vector<Index>& corners;
+    bool operator()(Index corner) const {
+      return !std::binary_search(corners.begin(), corners.end(), corner);
+    }
+    bool operator()(Index /*corner*/, Index /*next*/) const { return true; }
+  };
+  return walk(
+      point, segment, segments_, segmentsAt_, [this](Index s) { return this->segment(s); },
+      Allowed{corners_});
+}
+
+}  // namespace hexhex

@@ -1,0 +1,89 @@
+// The surface that a mesh must not leave: triangles in smooth patches, between curves that end at
+// corners.
+//
+// A point on it is moved from where it is known to be, over neighbouring triangles of the patch (or
+// segments of the curve): so the other side of a thin wall is out of reach, however near.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <adjacency/vertex_lists.hpp>
+
+#include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
+
+namespace hexhex {
+
+/// What a surface is made of.
+struct SurfaceParts {
+  Array<Vec3> points;
+  std::vector<FeatureFace> triangles;        ///< those of different tags do not share a patch
+  std::vector<Index> groups;                 ///< per triangle: no curve between those of one group
+  std::vector<std::array<Index, 2>> curves;  ///< edges of triangles, or not
+  bool areTagged = false;                    ///< the curves
+  std::vector<Index> corners;                ///< points
+  double angle = 40;  ///< in degrees: edges where the surface turns by more are curves, too
+};
+
+/// How a vertex may move.
+enum class Freedom : std::uint8_t { Free, OnPatch, OnCurve, Fixed };
+
+/// A place on the surface: the point, and the triangle or segment that holds it.
+struct SurfacePlace {
+  Vec3 point{};
+  Index simplex = kNone;
+};
+
+class ReferenceSurface {
+ public:
+  ReferenceSurface() = default;
+  ReferenceSurface(SurfaceParts parts, Stage& stage);
+
+  [[nodiscard]] const Array<Vec3>& points() const noexcept { return points_; }
+  [[nodiscard]] std::size_t triangleCount() const noexcept { return triangles_.size(); }
+  [[nodiscard]] std::array<Vec3, 3> triangle(Index t) const noexcept;
+  [[nodiscard]] std::array<Vec3, 2> segment(Index s) const noexcept;
+  [[nodiscard]] std::size_t segmentCount() const noexcept { return segments_.size(); }
+  [[nodiscard]] std::span<const Index> corners() const noexcept { return corners_; }
+
+  /// How a vertex may move that lies inside of a simplex with these corners.
+  /// @param corners  one to three points
+  /// @param[out] simplex  that holds the place, unless it is Free or Fixed
+  [[nodiscard]] Freedom freedomAt(std::span<const Index> corners, Index& simplex) const;
+
+  /// Whether a triangle or curve has a tag.
+  [[nodiscard]] bool isTagged(Freedom freedom, Index simplex) const noexcept {
+    return freedom == Freedom::OnCurve ? taggedSegments_[simplex] : taggedTriangles_[simplex];
+  }
+
+  /// The nearest place of the patch around a triangle, as a walk downhill finds it.
+  [[nodiscard]] SurfacePlace onPatch(const Vec3& point, Index triangle) const;
+  /// The nearest place of the curve around a segment, up to its ends.
+  [[nodiscard]] SurfacePlace onCurve(const Vec3& point, Index segment) const;
+
+ private:
+  void findCurves(const SurfaceParts& parts, Stage& stage);
+  void findCorners(const SurfaceParts& parts);
+  [[nodiscard]] bool isCurve(std::span<const Index> around, const SurfaceParts& parts,
+                             double limit) const;
+
+  Array<Vec3> points_;
+  std::vector<std::array<Index, 3>> triangles_;
+  std::vector<Index> patches_;  ///< per triangle
+  std::vector<bool> taggedTriangles_;
+  std::vector<std::array<Index, 2>> segments_;
+  std::vector<bool> taggedSegments_;
+  std::vector<Index> corners_;  ///< points, ascending
+  VertexLists<Index> trianglesAt_;
+  VertexLists<Index> segmentsAt_;
+};
+
+/// The nearest point of a triangle, or of a segment.
+[[nodiscard]] Vec3 nearestOf(const std::array<Vec3, 3>& triangle, const Vec3& point) noexcept;
+[[nodiscard]] Vec3 nearestOf(const std::array<Vec3, 2>& segment, const Vec3& point) noexcept;
+
+}  // namespace hexhex

@@ -1,0 +1,51 @@
+// From vertex to vertex, many at a time: cells become positive, then the worst ones better, then
+// all.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <adjacency/hex_topology.hpp>
+
+#include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
+#include <improve/cell_points.hpp>
+#include <improve/vertex_energy.hpp>
+#include <improve/vertex_mover.hpp>
+#include <improve/vertex_places.hpp>
+
+namespace hexhex {
+
+class Sweeps {
+ public:
+  /// The first two must outlive this.
+  /// @param diagonal  of the surface
+  Sweeps(HexMesh& mesh, VertexPlaces& places, double diagonal, Stage& stage);
+
+  /// Moves vertices around cells that are not certified until all are, or nothing helps any more.
+  /// What did not become better stays as it was.
+  /// @param slack  so far may vertices without tags leave the surface if nothing else helps
+  void untangle(double slack);
+
+  /// Moves vertices around cells whose scaled Jacobian is below the target.
+  void raiseWorst(double target);
+
+  /// Moves all vertices, so many times. Scaled Jacobians below the floor do not fall.
+  void smooth(int passes, double floor);
+
+ private:
+  [[nodiscard]] CellPoints cellPoints() const;
+  template <class Move>
+  void sweep(std::span<const Index> vertices, double slack, const Move& move);
+
+  HexMesh& mesh_;
+  VertexPlaces& places_;
+  Stage& stage_;
+  VertexCells around_;
+  Array<IdealBox> boxes_;         ///< per cell
+  Array<std::uint8_t> boundary_;  ///< per cell: as of HexFaces
+  double chord_;                  ///< as of MovingMesh
+};
+
+}  // namespace hexhex

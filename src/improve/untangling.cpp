@@ -1,0 +1,100 @@
+#include <algorithm>
+
+#include <base/disjoint_sets.hpp>
+#include <improve/untangling.hpp>
+
+namespace hexhex {
+
+namespace {
+
+/// Rounds without fewer bad cells until more points around take part, and how many rings do.
+constexpr int kPatience = 10;
+constexpr int kMostRings = 4;
+/// The slack grows from a tenth of what is allowed.
+constexpr double kFirstSlack = 0.1;
+constexpr double kSlackGrowth = 2.16;
+
+std::vector<Index> untangleWithin(const CellPoints& mesh, const VertexPlaces& places,
+                                  const UntanglingMoves& moves, double slack,
+                                  std::vector<Index> bad) {
+  std::size_t fewest = bad.size();
+  int since = 0;
+  for (int rings = 1; rings <= kMostRings && !bad.empty();) {
+    std::vector<Index> cells = bad;
+    std::vector<Index> points = pointsOf(mesh, rings, cells);
+    std::erase_if(points, [&](Index v) { return places.freedom[v] == Freedom::Fixed; });
+    moves.sweep(points, slack);
+    bad = moves.badAmong(cells);
+    ++since;
+    if (bad.size() < fewest) {
+      fewest = bad.size();
+      since = 0;
+    } else if (since > kPatience) {
+      since = 0;
+      ++rings;
+    }
+  }
+  return bad;
+}
+
+}  // namespace
+
+void makeUnique(std::vector<Index>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+std::vector<Index> pointsOf(const CellPoints& mesh, int rings, std::vector<Index>& cells) {
+  std::vector<Index> points;
+  for (int ring = 0; ring <= rings; ++ring) {
+    points.clear();
+    for (const Index cell : cells) {
+      points.insert(points.end(), mesh.of(cell).begin(), mesh.of(cell).end());
+    }
+    makeUnique(points);
+    for (const Index v : points) {
+      cells.insert(cells.end(), mesh.around(v).begin(), mesh.around(v).end());
+    }
+    makeUnique(cells);
+  }
+  return points;
+}
+
+std::vector<Index> untangleCells(const CellPoints& mesh, const VertexPlaces& places,
+                                 const UntanglingMoves& moves, double slack,
+                                 std::vector<Index> bad) {
+  bad = untangleWithin(mesh, places, moves, 0, std::move(bad));
+  for (double used = kFirstSlack * slack; slack > 0 && used < 1.01 * slack && !bad.empty();
+       used *= kSlackGrowth) {
+    bad = untangleWithin(mesh, places, moves, used, std::move(bad));
+  }
+  return bad;
+}
+
+void putBack(const CellPoints& mesh, std::span<const Index> cells, const Array<Vec3>& before,
+             const Array<Index>& placesBefore, Array<Vec3>& points, VertexPlaces& places) {
+  DisjointSets sets(points.size());
+  const auto isMoved = [&](Index v) { return points[v] != before[v]; };
+  for (std::size_t c = 0; c < mesh.cellCount(); ++c) {
+    Index first = kNone;
+    for (const Index v : mesh.of(c)) {
+      if (!isMoved(v)) continue;
+      if (first != kNone) sets.unite(first, v);
+      first = v;
+    }
+  }
+  std::vector<Index> back;
+  for (const Index cell : cells) {
+    for (const Index v : mesh.of(cell)) {
+      if (isMoved(v)) back.push_back(sets.find(v));
+    }
+  }
+  makeUnique(back);
+  for (Index v = 0; v < points.size(); ++v) {
+    if (!isMoved(v) || !std::binary_search(back.begin(), back.end(), sets.find(v))) continue;
+    points[v] = before[v];
+    places.simplex[v] = placesBefore[v];
+  }
+}
+
+}  // namespace hexhex

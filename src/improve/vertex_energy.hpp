@@ -1,0 +1,82 @@
+// The energy of the cells around a vertex as a function of that vertex alone.
+//
+// At a place of a cell let J be the Jacobian matrix, relative to the cell's ideal box. Moving one
+// vertex changes J by a matrix of rank one, hence det J linearly and |J|^2 quadratically. So
+// |J|^3 / det J, the shape measure of V. Garanzha et al., "Foldover-free maps in 50 lines of code",
+// ACM Transactions on Graphics 40 (2021) to the power 3/2, is convex where determinants are
+// positive, and so is any power of it. In its place for determinants that are not, they take a
+// positive number chi(det).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+namespace hexhex {
+
+[[nodiscard]] constexpr Vec3 times(double factor, const Vec3& a) noexcept {
+  return {factor * a[0], factor * a[1], factor * a[2]};
+}
+
+/// What one place of a cell contributes, for a step d of the vertex.
+struct EnergyTerm {
+  double square = 0;  ///< |J|^2 = square + 2 slope d + growth d^2
+  Vec3 slope{};
+  double growth = 0;
+  double determinant = 0;  ///< det J = determinant + normal d
+  Vec3 normal{};
+
+  [[nodiscard]] double squareAt(const Vec3& d) const noexcept;
+  [[nodiscard]] double determinantAt(const Vec3& d) const noexcept;
+};
+
+/// What a place contributes of which the columns of J are known, and the derivatives of these by
+/// the vertex that moves: weights[axis] times the identity.
+[[nodiscard]] EnergyTerm termOf(const std::array<Vec3, 3>& columns, const Vec3& weights) noexcept;
+
+/// The energy: the sum of (|J|^3 / (3 sqrt(3) chi))^power, each at least 1.
+struct EnergyKind {
+  int power = 1;  ///< 1, 2, 4 or 8: the larger, the more the worst term counts
+  /// Of chi. With 0 it is the determinant, and the energy infinite unless that is positive.
+  double epsilon = 0;
+  double volume = 0;  ///< weight of (det^2 + 1) / chi, which keeps cells from shrinking
+};
+
+[[nodiscard]] double energyAt(const std::vector<EnergyTerm>& terms, const EnergyKind& kind,
+                              const Vec3& step) noexcept;
+
+/// Derivatives where the vertex is.
+struct EnergySlope {
+  double energy = 0;
+  Vec3 gradient{};
+  /// xx, xy, xz, yy, yz, zz; of the convex part.
+  std::array<double, 6> hessian{};
+};
+[[nodiscard]] EnergySlope slopeOf(const std::vector<EnergyTerm>& terms,
+                                  const EnergyKind& kind) noexcept;
+
+/// Newton's step within the span of one, two or three orthonormal directions.
+/// @return zero if there is none downhill
+[[nodiscard]] Vec3 newtonStep(const EnergySlope& slope, std::span<const Vec3> directions) noexcept;
+
+/// Lengths of the three edges of the ideal box of a cell.
+using IdealBox = std::array<float, 3>;
+
+/// With these lengths, but no edge less than a ten-thousandth of the longest.
+[[nodiscard]] IdealBox idealBox(const Vec3& lengths) noexcept;
+
+/// The terms of the four corners of a cell whose determinants depend on one of them.
+/// @param corners  by place: bits 0, 1, 2 are u, v, w
+/// @param moving   place of the corner that moves
+void addCornerTerms(const std::array<Vec3, 8>& corners, std::size_t moving, const IdealBox& box,
+                    std::vector<EnergyTerm>& terms);
+
+/// The terms of all Bezier coefficients of the determinant that depend on a corner, in place of
+/// determinants at their places: where all of them are positive, so is the cell.
+void addBezierTerms(const std::array<Vec3, 8>& corners, std::size_t moving, const IdealBox& box,
+                    std::vector<EnergyTerm>& terms);
+
+}  // namespace hexhex

@@ -1,0 +1,211 @@
+#include <algorithm>
+#include <string>
+
+#include <adjacency/hex_topology.hpp>
+#include <adjacency/tet_topology.hpp>
+
+#include <hexhex/error.hpp>
+#include <hexhex/extract.hpp>
+#include <hexhex/map_structure.hpp>
+
+#include <base/parallel.hpp>
+#include <base/vector3.hpp>
+#include <improve/vertex_places.hpp>
+
+namespace hexhex {
+
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+
+template <std::size_t n>
+std::array<Index, n> sorted(std::array<Index, n> vertices) {
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
+/// Triangles of the boundary and between regions, with tags if they have some.
+std::vector<FeatureFace> trianglesOf(const TetMapView& map, Stage& stage) {
+  TetTopology topology;
+  topology.tets = map.tets;
+  topology.pointCount = map.points.size();
+  if (!matchFaces(topology, stage)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "The tets of the map are no manifold: a triangle belongs to more than two of them, "
+                "or to two on the same side. `hexhex check` tells where.");
+  }
+  std::vector<FeatureFace> triangles;
+  for (const FeatureFace& face : map.features.faces) {
+    if (face.tag != 0) triangles.push_back({sorted(face.vertices), face.tag});
+  }
+  const auto byVertices = [](const FeatureFace& a, const FeatureFace& b) {
+    return a.vertices < b.vertices;
+  };
+  std::sort(triangles.begin(), triangles.end(), byVertices);
+  const std::vector<FeatureFace> tagged = triangles;
+  triangles.clear();
+  for (HalfFace face = 0; face < 4 * map.tets.size(); ++face) {
+    const HalfFace mate = topology.mate[face];
+    if (mate != kNone && mate < face) continue;
+    FeatureFace triangle;
+    const auto vertices = faceVertices(map.tets[tetOf(face)], face % 4);
+    triangle.vertices = sorted(vertices);
+    const auto found = std::lower_bound(tagged.begin(), tagged.end(), triangle, byVertices);
+    if (found != tagged.end() && found->vertices == triangle.vertices) triangle.tag = found->tag;
+    const bool betweenRegions = mate != kNone && !map.regions.empty() &&
+                                map.regions[tetOf(face)] != map.regions[tetOf(mate)];
+    if (mate != kNone && triangle.tag == 0 && !betweenRegions) continue;
+    triangle.vertices = {vertices[0], vertices[2], vertices[1]};  // facing outwards
+    triangles.push_back(triangle);
+  }
+  return triangles;
+}
+
+void requireGenerators(const HexMesh& mesh, const TetMapView& map, Stage& stage) {
+  const std::size_t n = mesh.points.size();
+  const bool complete = mesh.generatorTet.size() == n && mesh.generatorCorners.size() == n;
+  const std::size_t bad = !complete ? 0 : firstFault(stage, n, [&](std::size_t v) {
+    return mesh.generatorTet[v] < map.tets.size() && mesh.generatorCorners[v] >= 1 &&
+           mesh.generatorCorners[v] <= 15;
+  });
+  if (complete && bad == n) return;
+  throw Error(ErrorCode::InvalidArgument,
+              complete ? "The generator of vertex " + std::to_string(bad) +
+                             " is not in the map. Give the map that the mesh was extracted from."
+                       : "The mesh does not tell which simplex of the map each vertex lies in. "
+                         "Write it as .vtu, .ovm or .ovmb, or leave out the map.",
+              Place{PlaceKind::Vertex, bad, 0});
+}
+
+/// Tagged vertices and edges, and singular edges if there are no tags.
+void addCurves(const auto& features, const auto& singularEdges, SurfaceParts& parts) {
+  for (const FeatureVertex& vertex : features.vertices) {
+    if (vertex.tag != 0) parts.corners.push_back(vertex.vertex);
+  }
+  for (const FeatureEdge& edge : features.edges) {
+    if (edge.tag != 0) parts.curves.push_back(edge.vertices);
+  }
+  parts.areTagged = !parts.curves.empty();
+  if (parts.areTagged) return;
+  for (const auto& edge : singularEdges) {
+    if (edge.boundary) parts.curves.push_back({edge.vertex0, edge.vertex1});
+  }
+}
+
+void addQuad(const Array<Vec3>& points, Quad quad, std::int32_t tag, SurfaceParts& parts) {
+  const auto squared = [&](std::size_t i, std::size_t j) {
+    const Vec3 d = minus(points[quad[i]], points[quad[j]]);
+    return dot(d, d);
+  };
+  if (squared(1, 3) < squared(0, 2)) quad = {quad[1], quad[2], quad[3], quad[0]};
+  const auto group = static_cast<Index>(parts.triangles.size());
+  parts.triangles.push_back({{quad[0], quad[1], quad[2]}, tag});
+  parts.triangles.push_back({{quad[0], quad[2], quad[3]}, tag});
+  parts.groups.insert(parts.groups.end(), 2, group);
+}
+
+/// Boundary quads and tagged ones inside.
+void addQuads(const HexMesh& mesh, Stage& stage, SurfaceParts& parts) {
+  std::vector<FeatureQuad> tagged = mesh.features.quads;
+  std::erase_if(tagged, [](const FeatureQuad& quad) { return quad.tag == 0; });
+  const auto byVertices = [](const FeatureQuad& a, const FeatureQuad& b) {
+    return sorted(a.vertices) < sorted(b.vertices);
+  };
+  std::sort(tagged.begin(), tagged.end(), byVertices);
+  std::vector<bool> isAdded(tagged.size());
+  for (const Quad& quad : quadsAt(mesh, boundaryPlaces(mesh, stage))) {
+    const auto found =
+        std::lower_bound(tagged.begin(), tagged.end(), FeatureQuad{quad, 1}, byVertices);
+    const bool isTagged = found != tagged.end() && sorted(found->vertices) == sorted(quad);
+    if (isTagged) isAdded[static_cast<std::size_t>(found - tagged.begin())] = true;
+    addQuad(mesh.points, quad, isTagged ? found->tag : 0, parts);
+  }
+  for (std::size_t i = 0; i < tagged.size(); ++i) {
+    if (!isAdded[i]) addQuad(mesh.points, tagged[i].vertices, tagged[i].tag, parts);
+  }
+}
+
+void requireFeatures(const HexFeatures& features, std::size_t points) {
+  bool inRange = true;
+  for (const FeatureVertex& vertex : features.vertices) inRange &= vertex.vertex < points;
+  for (const FeatureEdge& edge : features.edges) {
+    for (const Index v : edge.vertices) inRange &= v < points;
+  }
+  for (const FeatureQuad& quad : features.quads) {
+    for (const Index v : quad.vertices) inRange &= v < points;
+  }
+  if (inRange) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "A feature names a vertex that does not exist (there are " + std::to_string(points) +
+                  "). Correct the features, or leave them out.");
+}
+
+/// @param generatorOf  (vertex, list): the points whose simplex holds a vertex, or held it once
+template <class GeneratorOf>
+void place(const Array<Vec3>& points, const GeneratorOf& generatorOf, VertexPlaces& places,
+           Stage& stage) {
+  const std::size_t n = points.size();
+  places.freedom.resize(n);
+  places.simplex.resize(n);
+  parallelFor(stage, n, kGrain, [&](std::size_t v) {
+    std::array<Index, 4> corners{};
+    const std::size_t count = generatorOf(v, corners);
+    places.simplex[v] = kNone;
+    places.freedom[v] =
+        count > 3 ? Freedom::Free
+                  : places.surface.freedomAt(std::span(corners).first(count), places.simplex[v]);
+    const auto vertex = static_cast<Index>(v);
+    places.simplex[v] = places.nearest(vertex, points[v]).simplex;
+  });
+}
+
+}  // namespace
+
+VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angle, Context& context,
+                         Stage& stage) {
+  requireGenerators(mesh, map, stage);
+  SurfaceParts parts;
+  parts.angle = angle;
+  parts.points.assign(map.points.begin(), map.points.end());
+  parts.triangles = trianglesOf(map, stage);
+  addCurves(map.features, findMapStructure(map, ExtractOptions{}.tolerance, context).singularEdges,
+            parts);
+  VertexPlaces places;
+  places.surface = ReferenceSurface(std::move(parts), stage);
+  place(
+      mesh.points,
+      [&](std::size_t v, std::array<Index, 4>& corners) {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+          if ((mesh.generatorCorners[v] >> i & 1U) != 0) {
+            corners[count++] = map.tets[mesh.generatorTet[v]][i];
+          }
+        }
+        return count;
+      },
+      places, stage);
+  return places;
+}
+
+VertexPlaces placesOnMesh(const HexMesh& mesh, double angle, Stage& stage) {
+  requireFeatures(mesh.features, mesh.points.size());
+  SurfaceParts parts;
+  parts.angle = angle;
+  parts.points = mesh.points;
+  addQuads(mesh, stage, parts);
+  const VertexCells around = cellsAroundVertices(mesh, stage);
+  addCurves(mesh.features, findEdges(mesh, around, findFaces(mesh, around, stage), stage).singular,
+            parts);
+  VertexPlaces places;
+  places.surface = ReferenceSurface(std::move(parts), stage);
+  place(
+      mesh.points,
+      [](std::size_t v, std::array<Index, 4>& corners) {
+        corners[0] = static_cast<Index>(v);
+        return std::size_t{1};
+      },
+      places, stage);
+  return places;
+}
+
+}  // namespace hexhex

@@ -1,0 +1,37 @@
+// How each vertex of a mesh may move: freely, on a patch of the surface, on a curve, or not at all.
+#pragma once
+
+#include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
+#include <improve/reference_surface.hpp>
+
+namespace hexhex {
+
+struct VertexPlaces {
+  ReferenceSurface surface;
+  Array<Freedom> freedom;  ///< per vertex
+  Array<Index> simplex;    ///< per vertex: the triangle or segment that holds it, or kNone
+
+  /// The place nearest to a point that a vertex may move to.
+  [[nodiscard]] SurfacePlace nearest(Index vertex, const Vec3& point) const {
+    if (freedom[vertex] == Freedom::OnPatch) return surface.onPatch(point, simplex[vertex]);
+    if (freedom[vertex] == Freedom::OnCurve) return surface.onCurve(point, simplex[vertex]);
+    return {point, simplex[vertex]};
+  }
+};
+
+/// The surface is that of the map: its boundary, tagged triangles, and those between regions. A
+/// vertex is where its generator is.
+/// @param mesh  with generators in the map
+/// @param angle  as of SurfaceParts
+/// @throws Error InvalidArgument for generators that are not in the map, and for a map whose tets
+///         do not form a manifold
+[[nodiscard]] VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angle,
+                                       Context& context, Stage& stage);
+
+/// The surface is the mesh's own boundary with its tagged quads, two triangles each.
+/// @throws Error InvalidArgument for features that are not in the mesh
+[[nodiscard]] VertexPlaces placesOnMesh(const HexMesh& mesh, double angle, Stage& stage);
+
+}  // namespace hexhex

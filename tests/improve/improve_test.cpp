@@ -1,0 +1,304 @@
+// Meshes end positive, on their surface, and no worse.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/extract.hpp>
+#include <hexhex/improve.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/samples.hpp>
+
+#include "mesh/grid_meshes.hpp"
+#include "support/error_of.hpp"
+
+namespace hexhex::test {
+
+namespace {
+
+using hexhex::testing::gridMesh;
+using hexhex::testing::Random;
+
+ImproveReport improved(HexMesh& mesh, const ImproveOptions& options = {}, int threads = 2) {
+  Context context(threads);
+  return improve(mesh, options, context);
+}
+
+ImproveReport improvedOn(HexMesh& mesh, const TetMap& map, const ImproveOptions& options = {},
+                         int threads = 2) {
+  Context context(threads);
+  return improve(mesh, map, options, context);
+}
+
+HexMesh extracted(const TetMap& map, int scale) {
+  ExtractOptions options;
+  options.scale = scale;
+  Context context(2);
+  return extract(map, options, context);
+}
+
+/// What holds of every mesh.
+void expectNoWorse(const ImproveReport& report) {
+  EXPECT_GE(report.after.quality.minimum, report.before.quality.minimum);
+  for (std::size_t c = 0; c < report.before.validity.size(); ++c) {
+    if (report.before.validity[c] != Validity::Positive) continue;
+    EXPECT_EQ(report.after.validity[c], Validity::Positive) << "cell " << c;
+  }
+  EXPECT_EQ(report.notPositive.size(), report.after.refuted + report.after.undecided);
+}
+
+/// Moves all vertices by up to so much; those of the boundary of [0, n]^3 within it, and by no more
+/// than a third of a cell: it is the surface.
+void distort(HexMesh& mesh, double n, double amount, std::uint64_t seed) {
+  Random random(seed);
+  for (Vec3& point : mesh.points) {
+    const bool isInside =
+        std::all_of(point.begin(), point.end(), [n](double x) { return x > 0 && x < n; });
+    const double most = isInside ? amount : std::min(amount, 0.3);
+    for (double& x : point) {
+      const double move = most * (2 * random.real() - 1);
+      if (x > 0 && x < n) x += move;
+    }
+  }
+}
+
+bool isOnCube(const Vec3& point, double n) {
+  return std::any_of(point.begin(), point.end(), [n](double x) { return x == 0 || x == n; });
+}
+
+}  // namespace
+
+TEST(Improve, MendsDistortedGrids) {
+  int bad = 0;
+  int mended = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    HexMesh mesh = gridMesh(6);
+    distort(mesh, 6, 0.3 + 0.05 * static_cast<double>(seed % 6), seed);
+    const ImproveReport report = improved(mesh);
+    expectNoWorse(report);
+    if (report.before.allPositive()) continue;
+    ++bad;
+    if (report.after.allPositive()) ++mended;
+  }
+  EXPECT_GE(bad, 8);
+  EXPECT_EQ(mended, bad);
+}
+
+TEST(Improve, KeepsVerticesOnFacesEdgesAndCornersOfACube) {
+  const HexMesh cube = gridMesh(5);
+  HexMesh mesh = cube;
+  distort(mesh, 5, 0.55, 3);
+  const HexMesh before = mesh;
+  const ImproveReport report = improved(mesh);
+  EXPECT_EQ(report.vertices[3], 8U);
+  EXPECT_EQ(report.vertices[2], 12U * 4);
+  EXPECT_EQ(report.vertices[1], 6U * 16);
+  EXPECT_EQ(report.vertices[0], 64U);
+  EXPECT_GT(report.movedVertices, 100U);
+  EXPECT_LT(report.distanceAfter.hausdorff(), 1e-12);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (cube.points[v][k] != 0 && cube.points[v][k] != 5) continue;
+      EXPECT_NEAR(mesh.points[v][k], cube.points[v][k], 1e-9) << "vertex " << v;
+    }
+  }
+}
+
+TEST(Improve, LeavesTheBoundaryIfAsked) {
+  HexMesh mesh = gridMesh(5);
+  distort(mesh, 5, 0.45, 4);
+  const HexMesh before = mesh;
+  ImproveOptions options;
+  options.fixBoundary = true;
+  const ImproveReport report = improved(mesh, options);
+  expectNoWorse(report);
+  EXPECT_GT(report.movedVertices, 0U);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    if (isOnCube(before.points[v], 5)) {
+      EXPECT_EQ(mesh.points[v], before.points[v]);
+    }
+  }
+}
+
+TEST(Improve, GivesTheSameBytesWithAnyNumberOfThreads) {
+  HexMesh one = gridMesh(9);
+  distort(one, 9, 0.5, 5);
+  HexMesh two = one;
+  improved(one, {}, 1);
+  improved(two, {}, 2);
+  EXPECT_EQ(one.points, two.points);
+}
+
+TEST(Improve, ReachesTheTarget) {
+  HexMesh mesh = gridMesh(8);
+  distort(mesh, 8, 0.4, 6);
+  ImproveOptions options;
+  options.passes = 0;
+  options.target = 0.5;
+  const ImproveReport report = improved(mesh, options);
+  EXPECT_LT(report.before.quality.minimum, 0);
+  EXPECT_GE(report.after.quality.minimum, 0.5);
+  HexMesh smooth = mesh;
+  options.passes = 5;
+  const ImproveReport smoother = improved(smooth, options);
+  EXPECT_GE(smoother.after.quality.minimum, 0.5);
+  EXPECT_GT(smoother.after.quality.mean, report.after.quality.mean);
+}
+
+TEST(Improve, DoesNotCrossAThinPlate) {
+  // Two cells across a plate that is a fiftieth as thick as it is wide, and wavy.
+  HexMesh mesh = gridMesh(8, [](std::size_t, std::size_t, std::size_t z) { return z < 2; });
+  const HexMesh grid = mesh;
+  const auto middle = [](const Vec3& at) { return 0.2 * std::sin(at[0]) * std::cos(at[1]); };
+  for (Vec3& point : mesh.points) point[2] = middle(point) + 0.08 * (point[2] - 1);
+  Random random(7);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const Vec3& at = grid.points[v];
+    if (at[2] != 1 || at[0] == 0 || at[0] == 8 || at[1] == 0 || at[1] == 8) continue;
+    for (std::size_t k = 0; k < 2; ++k) mesh.points[v][k] += 0.5 * random.real() - 0.25;
+    mesh.points[v][2] += 0.1 * random.real() - 0.05;
+  }
+  const ImproveReport report = improved(mesh);
+  expectNoWorse(report);
+  EXPECT_FALSE(report.before.allPositive());
+  EXPECT_LT(report.after.refuted, report.before.refuted);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const double above = mesh.points[v][2] - middle(mesh.points[v]);
+    if (grid.points[v][2] == 0) {
+      EXPECT_LT(above, -0.01);
+    }
+    if (grid.points[v][2] == 2) {
+      EXPECT_GT(above, 0.01);
+    }
+  }
+}
+
+TEST(Improve, StaysInsideSharpWedgesAndNeedles) {
+  for (const double narrow : {0.1, 0.01}) {
+    HexMesh mesh = gridMesh(6);
+    distort(mesh, 6, 0.3, 8);
+    // A wedge whose edge x = 0 is thin, then a needle with a thin end.
+    for (Vec3& point : mesh.points) {
+      const double width = narrow + point[0] / 6;
+      point[1] = (point[1] - 3) * width;
+      if (narrow < 0.1) point[2] = (point[2] - 3) * width;
+    }
+    const ImproveReport report = improved(mesh);
+    expectNoWorse(report);
+    EXPECT_TRUE(report.after.allPositive()) << narrow;
+    EXPECT_LT(report.distanceAfter.hausdorff(), 1e-3);
+  }
+}
+
+TEST(Improve, KeepsTaggedVerticesOfATorusOnItsSurface) {
+  SampleOptions options;
+  options.cells = 3;
+  options.jitter = 0.6;
+  options.features = true;
+  const Sample sample = generateSample(SampleKind::Torus, options);
+  HexMesh mesh = extracted(sample.map, 2);
+  const HexMesh before = mesh;
+  const ImproveReport report = improvedOn(mesh, sample.map);
+  expectNoWorse(report);
+  EXPECT_TRUE(report.after.allPositive());
+  EXPECT_EQ(report.offSurface, 0U);
+  EXPECT_EQ(mesh.features, before.features);
+  EXPECT_EQ(mesh.cells, before.cells);
+  EXPECT_GE(report.after.quality.mean, report.before.quality.mean);
+}
+
+TEST(Improve, MendsSamplesOfAllKinds) {
+  int bad = 0;
+  int mended = 0;
+  for (const SampleKindName& kind : sampleKinds()) {
+    SampleOptions options;
+    options.cells = 3;
+    options.jitter = 0.9;
+    options.seed = 11;
+    const Sample sample = generateSample(kind.kind, options);
+    HexMesh mesh = extracted(sample.map, 2);
+    const ImproveReport report = improvedOn(mesh, sample.map);
+    expectNoWorse(report);
+    if (report.before.allPositive()) continue;
+    ++bad;
+    mended += report.after.allPositive() ? 1 : 0;
+  }
+  EXPECT_EQ(mended, bad);
+}
+
+TEST(Improve, MendsMeshesOfRealMaps) {
+  const char* const chosen = std::getenv("HEXHEX_DATA");
+  const std::filesystem::path folder =
+      std::filesystem::path(chosen != nullptr ? chosen : HEXHEX_DATA_DIR) / "maps";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "without real maps";
+  for (const auto& [name, scale] :
+       {std::pair("fandisk_r0.01", 2), std::pair("s17c_sphere_r0.1", 4)}) {
+    Context context(2);
+    const TetMap map = readMap(folder / (std::string(name) + ".hexex"), {}, context);
+    HexMesh mesh = extracted(map, scale);
+    const ImproveReport report = improvedOn(mesh, map);
+    expectNoWorse(report);
+    EXPECT_FALSE(report.before.allPositive()) << name;
+    EXPECT_TRUE(report.after.allPositive()) << name;
+    EXPECT_GE(report.after.quality.minimum, 0.3) << name;
+    EXPECT_EQ(report.offSurface, 0U) << name;
+  }
+}
+
+TEST(Improve, SaysWhatIsWrongWithItsInput) {
+  HexMesh empty;
+  EXPECT_EQ(codeOf([&] { improved(empty); }), ErrorCode::EmptyMesh);
+  HexMesh mesh = gridMesh(2);
+  mesh.points[3][1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(codeOf([&] { improved(mesh); }), ErrorCode::NotFinite);
+  mesh = gridMesh(2);
+  mesh.cells[1][2] = 1000;
+  EXPECT_EQ(codeOf([&] { improved(mesh); }), ErrorCode::InvalidArgument);
+  mesh = gridMesh(2);
+  for (Hex& cell : mesh.cells) cell = hexhex::testing::reversed(cell);
+  EXPECT_EQ(codeOf([&] { improved(mesh); }), ErrorCode::Orientation);
+  mesh = gridMesh(2);
+  mesh.features.edges.push_back({{0, 1000}, 1});
+  EXPECT_EQ(codeOf([&] { improved(mesh); }), ErrorCode::InvalidArgument);
+  mesh = gridMesh(2);
+  const TetMap map = hexhex::testing::identityMap(2);
+  EXPECT_EQ(codeOf([&] { improvedOn(mesh, map); }), ErrorCode::InvalidArgument);
+  for (const double bad : {-1.0, 2.0, std::numeric_limits<double>::quiet_NaN()}) {
+    ImproveOptions options;
+    options.target = bad;
+    EXPECT_EQ(codeOf([&] { improved(mesh, options); }), ErrorCode::InvalidArgument);
+    options = {};
+    options.slack = bad;
+    EXPECT_EQ(codeOf([&] { improved(mesh, options); }), ErrorCode::InvalidArgument);
+  }
+}
+
+TEST(Improve, EndsForWhateverCellsThereAre) {
+  // Points that coincide, repeated vertices, faces of three cells, cells that share an edge only.
+  HexMesh mesh = gridMesh(3);
+  for (std::size_t v = 0; v < 20; ++v) mesh.points[v] = mesh.points[0];
+  expectNoWorse(improved(mesh));
+  mesh = gridMesh(3);
+  mesh.cells[4][1] = mesh.cells[4][0];
+  expectNoWorse(improved(mesh));
+  mesh = gridMesh(3);
+  mesh.cells.push_back(mesh.cells[0]);
+  mesh.cells.push_back(mesh.cells[0]);
+  expectNoWorse(improved(mesh));
+  mesh = gridMesh(2, [](std::size_t x, std::size_t y, std::size_t) { return x == y; });
+  expectNoWorse(improved(mesh));
+}
+
+TEST(Improve, CanBeCancelled) {
+  HexMesh mesh = gridMesh(6);
+  distort(mesh, 6, 0.5, 9);
+  Context context(1);
+  context.cancel();
+  EXPECT_EQ(codeOf([&] { improve(mesh, ImproveOptions{}, context); }), ErrorCode::Cancelled);
+}
+
+}  // namespace hexhex::test

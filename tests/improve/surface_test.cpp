@@ -1,0 +1,125 @@
+// Nearest places on surfaces, and what holds a vertex.
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <base/vector3.hpp>
+#include <improve/reference_surface.hpp>
+#include <improve/triangle_tree.hpp>
+#include <improve/vertex_places.hpp>
+
+#include "mesh/grid_meshes.hpp"
+
+namespace hexhex::test {
+
+namespace {
+
+using hexhex::testing::Random;
+
+Vec3 randomPoint(Random& random) { return {random.real(), random.real(), random.real()}; }
+
+double distance(const Vec3& a, const Vec3& b) { return length(minus(a, b)); }
+
+}  // namespace
+
+TEST(Surface, NearestPointOfATriangleIsNoFartherThanAnyOther) {
+  Random random(1);
+  for (int trial = 0; trial < 500; ++trial) {
+    const std::array<Vec3, 3> t = {randomPoint(random), randomPoint(random), randomPoint(random)};
+    const Vec3 point = randomPoint(random);
+    const Vec3 nearest = nearestOf(t, point);
+    for (int k = 0; k < 30; ++k) {
+      double a = random.real();
+      double b = random.real();
+      if (a + b > 1) a = 1 - a, b = 1 - b;
+      Vec3 other = t[0];
+      for (std::size_t i = 0; i < 3; ++i) {
+        other[i] += a * (t[1][i] - t[0][i]) + b * (t[2][i] - t[0][i]);
+      }
+      EXPECT_LE(distance(nearest, point), distance(other, point) + 1e-12);
+    }
+  }
+}
+
+TEST(Surface, ATreeFindsWhatASearchFinds) {
+  Random random(2);
+  for (const std::size_t n : {1U, 3U, 4U, 5U, 17U, 100U}) {
+    std::vector<std::array<Vec3, 3>> triangles;
+    for (std::size_t i = 0; i < n; ++i) {
+      triangles.push_back({randomPoint(random), randomPoint(random), randomPoint(random)});
+    }
+    const TriangleTree tree(triangles);
+    for (int trial = 0; trial < 100; ++trial) {
+      Vec3 point = randomPoint(random);
+      point[0] = 3 * point[0] - 1;
+      double least = std::numeric_limits<double>::infinity();
+      for (const auto& t : triangles) least = std::min(least, distance(nearestOf(t, point), point));
+      EXPECT_EQ(tree.distanceTo(point), least);
+    }
+  }
+  EXPECT_EQ(TriangleTree({}).distanceTo({}), std::numeric_limits<double>::infinity());
+}
+
+TEST(Surface, AWalkStaysOnItsPatchAndItsCurve) {
+  const HexMesh mesh = hexhex::testing::gridMesh(4);
+  Context context(1);
+  Stage stage(context, "test");
+  const VertexPlaces places = placesOnMesh(mesh, 40, stage);
+  EXPECT_EQ(places.surface.corners().size(), 8U);
+  EXPECT_EQ(places.surface.segmentCount(), 12U * 4);
+  Random random(3);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    // Two coordinates stay on a curve, one on a patch; the others go wherever the point is.
+    const Vec3 far = {6 * random.real() - 1, 6 * random.real() - 1, 6 * random.real() - 1};
+    const Vec3& from = mesh.points[v];
+    if (places.freedom[v] != Freedom::OnPatch && places.freedom[v] != Freedom::OnCurve) continue;
+    const bool onPatch = places.freedom[v] == Freedom::OnPatch;
+    const SurfacePlace place = onPatch ? places.surface.onPatch(far, places.simplex[v])
+                                       : places.surface.onCurve(far, places.simplex[v]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool fixed = from[k] == 0 || from[k] == 4;
+      EXPECT_NEAR(place.point[k], fixed ? from[k] : std::clamp(far[k], 0.0, 4.0), 1e-12);
+    }
+  }
+}
+
+TEST(Surface, TagsOfAMapHoldVertices) {
+  TetMap map = hexhex::testing::identityMap(2);
+  HexMesh mesh = hexhex::testing::gridMesh(2);
+  mesh.generatorTet.resize(mesh.points.size());
+  mesh.generatorCorners.resize(mesh.points.size());
+  for (Index v = 0; v < mesh.points.size(); ++v) {
+    for (auto t = static_cast<Index>(map.tets.size()); t-- > 0;) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (map.points[map.tets[t][i]] != mesh.points[v]) continue;
+        mesh.generatorTet[v] = t;
+        mesh.generatorCorners[v] = static_cast<CornerSet>(1U << i);
+      }
+    }
+  }
+  Context context(1);
+  Stage stage(context, "test");
+  const auto count = [&](Freedom freedom) {
+    const VertexPlaces places = placesOnMap(mesh, map, 40, context, stage);
+    return std::count(places.freedom.begin(), places.freedom.end(), freedom);
+  };
+  EXPECT_EQ(count(Freedom::Free), 1);
+  EXPECT_EQ(count(Freedom::OnPatch), 6);
+  EXPECT_EQ(count(Freedom::OnCurve), 12);
+  EXPECT_EQ(count(Freedom::Fixed), 8);
+  // Regions meet in planes, which the middle of the box is held by; a tagged vertex stays.
+  for (const Tet& tet : map.tets) {
+    double x = 0;
+    for (const Index v : tet) x += map.points[v][0] / 4;
+    map.regions.push_back(x < 1 ? 0 : 1);
+  }
+  EXPECT_EQ(count(Freedom::Free), 0);
+  EXPECT_EQ(count(Freedom::OnPatch), 3);  // of x = 0, 1 and 2
+  const auto centre = std::find(map.points.begin(), map.points.end(), Vec3{1, 1, 1});
+  map.features.vertices.push_back({static_cast<std::uint32_t>(centre - map.points.begin()), 1});
+  EXPECT_EQ(count(Freedom::Fixed), 13);  // and where the four edges of that plane end
+}
+
+}  // namespace hexhex::test

@@ -1,0 +1,124 @@
+// Energies, derivatives and Bezier coefficients against other ways to compute them.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <base/vector3.hpp>
+#include <improve/vertex_energy.hpp>
+#include <mesh/cell_measures.hpp>
+
+#include "mesh/grid_meshes.hpp"
+
+namespace hexhex::test {
+
+namespace {
+
+using hexhex::testing::Random;
+
+/// A unit cube with corners moved by up to so much, by place.
+std::array<Vec3, 8> randomCell(Random& random, double amount) {
+  std::array<Vec3, 8> corners;
+  for (std::size_t place = 0; place < 8; ++place) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[place][k] = static_cast<double>(place >> k & 1U) + amount * (2 * random.real() - 1);
+    }
+  }
+  return corners;
+}
+
+CellMeasures measured(const std::array<Vec3, 8>& corners) {
+  std::array<Vec3, 8> points;
+  for (std::size_t place = 0; place < 8; ++place) points[kVtkCorner[place]] = corners[place];
+  const Hex cell = {0, 1, 2, 3, 4, 5, 6, 7};
+  CellMeasures measures;
+  measuresOfCells().back()(points.data(), std::span(&cell, 1), measures);
+  return measures;
+}
+
+}  // namespace
+
+TEST(VertexEnergy, IsOneForEachTermOfTheIdealBox) {
+  Random random(1);
+  std::array<Vec3, 8> corners = randomCell(random, 0);
+  for (Vec3& corner : corners) corner = {2 * corner[0], 3 * corner[1], 0.5 * corner[2]};
+  for (std::size_t moving = 0; moving < 8; ++moving) {
+    std::vector<EnergyTerm> terms;
+    addCornerTerms(corners, moving, {2, 3, 0.5F}, terms);
+    EXPECT_EQ(terms.size(), 4U);
+    EXPECT_NEAR(energyAt(terms, {}, {}), 4, 1e-12);
+    addBezierTerms(corners, moving, {2, 3, 0.5F}, terms);
+    EXPECT_EQ(terms.size(), 24U);
+    EXPECT_NEAR(energyAt(terms, {}, {}), 24, 1e-12);
+  }
+}
+
+TEST(VertexEnergy, KnowsTheLeastBezierCoefficientWhereverTheVertexGoes) {
+  Random random(2);
+  for (int trial = 0; trial < 300; ++trial) {
+    std::array<Vec3, 8> corners = randomCell(random, 0.6);
+    const Vec3 step = {random.real() - 0.5, random.real() - 0.5, random.real() - 0.5};
+    // All corners together have all coefficients.
+    double least = 1e9;
+    std::vector<EnergyTerm> terms;
+    for (std::size_t moving = 0; moving < 8; ++moving) {
+      terms.clear();
+      addBezierTerms(corners, moving, {1, 1, 1}, terms);
+      std::array<Vec3, 8> moved = corners;
+      moved[moving] = plus(moved[moving], step);
+      double here = 1e9;
+      for (const EnergyTerm& term : terms) {
+        least = std::min(least, term.determinant);
+        here = std::min(here, term.determinantAt(step));
+      }
+      EXPECT_GE(here, measured(moved).least[0] - 1e-12);
+    }
+    EXPECT_NEAR(least, measured(corners).least[0], 1e-12);
+  }
+}
+
+TEST(VertexEnergy, HasTheSlopeOfDifferences) {
+  Random random(3);
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::array<Vec3, 8> corners = randomCell(random, 0.5);
+    std::vector<EnergyTerm> terms;
+    addBezierTerms(corners, random.below(8), {1, 1.5F, 0.7F}, terms);
+    const EnergyKind kind{trial % 2 == 0 ? 1 : 4, 0.3, trial % 3 == 0 ? 0.1 : 0.0};
+    const EnergySlope slope = slopeOf(terms, kind);
+    EXPECT_NEAR(slope.energy, energyAt(terms, kind, {}), 1e-9 * slope.energy);
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vec3 step{};
+      step[k] = 1e-5;
+      Vec3 back{};
+      back[k] = -1e-5;
+      const double difference = (energyAt(terms, kind, step) - energyAt(terms, kind, back)) / 2e-5;
+      EXPECT_NEAR(slope.gradient[k], difference, 1e-4 * (slope.energy + std::abs(difference)));
+    }
+  }
+}
+
+TEST(VertexEnergy, HasTheCurvatureOfDifferencesWhereItIsConvex) {
+  Random random(4);
+  for (int trial = 0; trial < 100; ++trial) {
+    const std::array<Vec3, 8> corners = randomCell(random, 0.15);
+    std::vector<EnergyTerm> terms;
+    addCornerTerms(corners, random.below(8), {1, 1, 1}, terms);
+    const EnergyKind kind{trial % 2 == 0 ? 1 : 8, 0, 0};
+    const EnergySlope slope = slopeOf(terms, kind);
+    const Vec3 step = {1e-4 * random.real(), 1e-4 * random.real(), 1e-4 * random.real()};
+    const Vec3 back = {-step[0], -step[1], -step[2]};
+    const double difference =
+        energyAt(terms, kind, step) + energyAt(terms, kind, back) - 2 * slope.energy;
+    const auto& h = slope.hessian;
+    const double expected =
+        h[0] * step[0] * step[0] + h[3] * step[1] * step[1] + h[5] * step[2] * step[2] +
+        2 * (h[1] * step[0] * step[1] + h[2] * step[0] * step[2] + h[4] * step[1] * step[2]);
+    EXPECT_NEAR(difference, expected, 1e-2 * expected + 1e-12);
+    // Hence Newton's step leads downhill.
+    const std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+    const Vec3 newton = newtonStep(slope, axes);
+    EXPECT_LE(dot(newton, slope.gradient), 0);
+  }
+}
+
+}  // namespace hexhex::test
