@@ -6,6 +6,7 @@
 
 #include <base/disjoint_sets.hpp>
 #include <base/vector3.hpp>
+#include <igm/transition_fit.hpp>
 
 namespace hexhex {
 
@@ -219,6 +220,24 @@ EdgeFans::EdgeFans(const TetTopology& topology) : topology_(topology), edges_(to
 
 Index EdgeFans::edgeOf(Index tet, CornerMask ends) const noexcept {
   return edges_[tet][numberOf(ends)];
+}
+
+std::vector<Rotation> fitRotations(const TetTopology& topology,
+                                   std::span<const TetParameters> parameters) {
+  std::vector<Rotation> rotations(topology.mate.size());
+  for (HalfFace h = 0; h < rotations.size(); ++h) {
+    const HalfFace mate = topology.mate[h];
+    if (mate == kNone || mate < h) continue;
+    const SharedFace face(topology, h, mate);
+    const TetParameters& here = parameters[tetOf(h)];
+    const TetParameters& there = parameters[tetOf(mate)];
+    rotations[h] = bestRotation({minus(here[face.here(1)], here[face.here(0)]),
+                                 minus(here[face.here(2)], here[face.here(0)])},
+                                {minus(there[face.there(1)], there[face.there(0)]),
+                                 minus(there[face.there(2)], there[face.there(0)])});
+    rotations[mate] = rotations[h].inverse();
+  }
+  return rotations;
 }
 
 CutGraph cutOpen(const TetTopology& topology, const EdgeFans& edges,

@@ -77,6 +77,10 @@ template <class Corners>
   return quarters != regular && quarters % regular == 0;
 }
 
+/// Per half-face, the rotation of the grid that takes its triangle nearest to the neighbour's.
+[[nodiscard]] std::vector<Rotation> fitRotations(const TetTopology& topology,
+                                                 std::span<const TetParameters> parameters);
+
 /// A seamless map in charts that agree across all triangles but those of a cut.
 struct CutGraph {
   std::vector<TetParameters> parameters;  ///< per tet, in the common charts

@@ -3,24 +3,26 @@
 #include <utility>
 #include <vector>
 
+#include <quantize/cut_graph.hpp>
 #include <quantize/integer_factor.hpp>
 
 #include <hexhex/extract.hpp>
 
+#include <base/vector3.hpp>
 #include <igm/prepare.hpp>
 
 namespace hexhex {
 namespace {
 
-/// The coordinate of the face opposite a vertex along the axis that it is perpendicular to.
-double planeOf(const Tet& tet, const TetParameters& corners, Index opposite) {
+/// The coordinate of a face along the axis that it is perpendicular to.
+double planeOf(const TetParameters& corners, HalfFace face) {
   double least = INFINITY;
   double plane = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double lower = INFINITY;
     double upper = -INFINITY;
     for (std::size_t i = 0; i < 4; ++i) {
-      if (tet[i] == opposite) continue;
+      if (i == face % 4) continue;
       lower = std::min(lower, corners[i][axis]);
       upper = std::max(upper, corners[i][axis]);
     }
@@ -31,23 +33,23 @@ double planeOf(const Tet& tet, const TetParameters& corners, Index opposite) {
   return plane;
 }
 
-/// Sizes of all that has to be an integer.
-std::vector<double> conditions(const TetMapView& map, const SeamlessMap& seamless) {
+/// Sizes of all that has to be an integer, in the charts given: those of the seamless map begin
+/// anywhere.
+std::vector<double> conditions(const TetTopology& topology,
+                               std::span<const TetParameters> parameters) {
   std::vector<double> sizes;
-  const std::size_t tets = map.tets.size();
-  for (Index t = 0; t < tets; ++t) {
-    for (int opposite = 0; opposite < 4; ++opposite) {
-      const HalfFace h = halfFaceOf(t, opposite);
-      if (seamless.topology.isBoundary(h)) {
-        // By its vertex: the topology may list corners in another order than the caller.
-        const Index vertex = seamless.topology.tets[t][static_cast<std::size_t>(opposite)];
-        sizes.push_back(std::abs(planeOf(map.tets[t], map.parameters[t], vertex)));
-        continue;
-      }
-      for (const std::int64_t x : seamless.changes[h].translation) {
-        sizes.push_back(std::abs(static_cast<double>(x)) / seamless.unit);
-      }
+  const std::vector<Rotation> rotations = fitRotations(topology, parameters);
+  for (HalfFace h = 0; h < topology.mate.size(); ++h) {
+    const TetParameters& here = parameters[tetOf(h)];
+    if (topology.isBoundary(h)) {
+      sizes.push_back(std::abs(planeOf(here, h)));
+      continue;
     }
+    const HalfFace mate = topology.mate[h];
+    const SharedFace face(topology, h, mate);
+    const Vec3 translation =
+        minus(parameters[tetOf(mate)][face.there(0)], rotations[h](here[face.here(0)]));
+    for (const double x : translation) sizes.push_back(std::abs(x));
   }
   std::sort(sizes.begin(), sizes.end());
   sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
@@ -98,7 +100,11 @@ bool isInteger(const TetMapView& map, double factor, Context& context) {
 }  // namespace
 
 double integerFactor(const TetMapView& map, const SeamlessMap& seamless, Context& context) {
-  const std::vector<double> sizes = conditions(map, seamless);
+  Stage stage(context, "seamless map");
+  DefectCollector defects;
+  const OrientedMap input = readInput(map, stage, defects);
+  const std::vector<double> sizes = conditions(seamless.topology, input.view.parameters);
+  stage.finish();
   if (sizes.empty()) return 0;
   // Twice what made it seamless, and what is lost in sums of doubles.
   const double noise = 2 * seamless.maxDisplacement + 1e-12 * sizes.back();

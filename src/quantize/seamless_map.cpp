@@ -10,7 +10,6 @@
 
 #include <base/vector3.hpp>
 #include <igm/defects.hpp>
-#include <igm/transition_fit.hpp>
 
 namespace hexhex {
 
@@ -32,24 +31,6 @@ constexpr double kNoise = 1e-9;
 constexpr double kChainedNoise = 16;
 /// Planes that come together may bring others near to each other; nearly all are found at once.
 constexpr int kRoundsOfWishes = 3;
-
-std::vector<Rotation> fitRotations(const TetTopology& topology,
-                                   std::span<const TetParameters> parameters) {
-  std::vector<Rotation> rotations(topology.mate.size());
-  for (HalfFace h = 0; h < rotations.size(); ++h) {
-    const HalfFace mate = topology.mate[h];
-    if (mate == kNone || mate < h) continue;
-    const SharedFace face(topology, h, mate);
-    const TetParameters& here = parameters[tetOf(h)];
-    const TetParameters& there = parameters[tetOf(mate)];
-    rotations[h] = bestRotation({minus(here[face.here(1)], here[face.here(0)]),
-                                 minus(here[face.here(2)], here[face.here(0)])},
-                                {minus(there[face.there(1)], there[face.there(0)]),
-                                 minus(there[face.there(2)], there[face.there(0)])});
-    rotations[mate] = rotations[h].inverse();
-  }
-  return rotations;
-}
 
 /// The axis to which a triangle is perpendicular.
 std::uint8_t normalAxis(const CutGraph& graph, HalfFace h) {
