@@ -62,7 +62,7 @@ double VertexMover::chordErrorAt(Index vertex) const {
     for (std::size_t face = 0; face < kHexFaces.size(); ++face) {
       if ((boundary_[cell] >> face & 1U) == 0) continue;
       const Quad quad = faceVertices(mesh_.cells[cell], face);
-      const std::size_t at =
+      const auto at =
           static_cast<std::size_t>(std::find(quad.begin(), quad.end(), vertex) - quad.begin());
       if (at == quad.size()) continue;
       Vec3 centre{};

@@ -135,8 +135,9 @@ GridRegion RegionFinder::find(std::uint32_t part, std::uint32_t layers) {
       startAtFaces(tet, reach + 1);
     }
   }
-  for (std::size_t head = 0; head < queue_.size(); ++head) {
-    const Reached at = queue_[head];
+  std::size_t head = 0;
+  while (head < queue_.size()) {  // which grows
+    const Reached at = queue_[head++];
     cross(at.tet, entries_[entryOfTet_[at.tet]].boxes[at.box]);
   }
   queue_.clear();

@@ -13,7 +13,7 @@
 #if defined(__APPLE__)
 #include <xlocale.h>
 #elif !defined(_WIN32)
-#include <locale.h>
+#include <locale.h>  // NOLINT(modernize-deprecated-headers): POSIX has more in it than C++
 #endif
 
 namespace hexhex {

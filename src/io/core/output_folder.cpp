@@ -61,7 +61,8 @@ void OutputFolder::takeName() {
 }
 
 OutputFolder::~OutputFolder() {
-  // Looking into a folder takes memory and a descriptor, which a moment later there may be again.
+  std::vector<char>().swap(spare_);
+  // It takes a descriptor, too, which a moment later there may be again.
   for (int attempt = 0; attempt < 3; ++attempt) {
     try {
       std::error_code error;

@@ -39,6 +39,11 @@ class OutputFolder {
   void removeParents() noexcept;
   void carryOver() const;
 
+  /// Looking into a folder, to remove it, takes memory, of which there may be none then: that of
+  /// four folders inside of each other.
+  static constexpr std::size_t kSpareBytes = std::size_t{4} * 40 * 1024;
+
+  std::vector<char> spare_ = std::vector<char>(kSpareBytes);
   std::filesystem::path target_;
   std::filesystem::path temporary_;             ///< after commit() what there was before
   std::filesystem::path aside_;                 ///< a name for the time between two steps

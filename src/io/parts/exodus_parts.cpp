@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hexhex/error.hpp>
@@ -208,8 +209,8 @@ class NemesisFile final : public ExodusFile {
 
 class ExodusSink final : public PartSink {
  public:
-  ExodusSink(const std::filesystem::path& file, Context& context)
-      : context_(context), file_(file) {}
+  ExodusSink(std::filesystem::path file, Context& context)
+      : context_(context), file_(std::move(file)) {}
 
   void begin(const PartsInfo& info) override {
     info_ = info;

@@ -98,7 +98,8 @@ class SharedByGroup {
 
 class MfemSink final : public PartSink {
  public:
-  MfemSink(const std::filesystem::path& file, Context& context) : context_(context), file_(file) {}
+  MfemSink(std::filesystem::path file, Context& context)
+      : context_(context), file_(std::move(file)) {}
 
   [[nodiscard]] std::uint32_t neededGhostLayers() const override { return 1; }
 

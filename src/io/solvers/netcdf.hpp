@@ -43,8 +43,8 @@ struct NetcdfFile {
   std::vector<NetcdfAttribute> attributes;
   std::vector<NetcdfVariable> variables;  ///< those of records last
 
-  /// Where the values of a variable begin in the file.
-  [[nodiscard]] std::uint64_t positionOf(std::string_view variable, std::uint64_t mostBytes) const;
+  /// Where the values of the variable of that name begin in the file.
+  [[nodiscard]] std::uint64_t positionOf(std::string_view name, std::uint64_t mostBytes) const;
 
   /// @param threads    as in Context
   /// @param mostBytes  of a variable in the layout "CDF-2"; larger ones take the newer "CDF-5"
