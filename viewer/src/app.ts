@@ -1,5 +1,4 @@
 // The loaded page: one state; what changes it, and what it changes.
-import { Vector3 } from "three";
 import { featureColour, valenceColour } from "./colours";
 import { EdgeCurves, kCellEdges } from "./curves";
 import { type MeshInfo, qualityOf, storedQuality } from "./format";
@@ -8,7 +7,7 @@ import { thinLines, type Segments, wideLines } from "./scene/lines";
 import { type ColourMode, kColourModes, Surface } from "./scene/surface";
 import { Viewport } from "./scene/viewport";
 import { sceneOf } from "./scene_box";
-import { type Flag, fromFragment, kFlags, kStart, type SliceDirection, toFragment, type ViewState } from "./state";
+import { type Flag, fromFragment, kFlags, kStart, type Normal, type SliceDirection, toFragment, type ViewState } from "./state";
 import { element, grouped } from "./ui/dom";
 import { Histogram } from "./ui/histogram";
 import { Legend } from "./ui/legend";
@@ -60,7 +59,6 @@ export class App {
   /** Whether the lines are those of curved cells. */
   private curvedLines: boolean;
   private pickedOutline = wideLines({ vertices: [], colours: [] }, new Float32Array(0), null, 1);
-  private readonly colourRange: [number, number];
   private fragmentTimer = 0;
 
   constructor(
@@ -70,13 +68,10 @@ export class App {
   ) {
     this.state = fromFragment(location.hash);
     if (this.state.picked !== null && this.state.picked >= info.cells) this.state.picked = null;
-    // Down to a tenth below the worst cell; what is not positive has a colour of its own.
-    this.colourRange = [Math.max(0, Math.floor(info.quality.minimum * 10) / 10), 1];
-    if (this.colourRange[0] >= 1) this.colourRange[0] = 0;
 
     const { half } = sceneOf(info);
     const canvas = element<HTMLCanvasElement>("canvas");
-    this.viewport = new Viewport(canvas, new Vector3(...half).length(), () => this.saveFragment());
+    this.viewport = new Viewport(canvas, half, () => this.saveFragment());
     this.surface = new Surface(mesh);
     this.viewport.setSurface(this.surface);
     this.curves = mesh.order > 1 ? new EdgeCurves(mesh) : null;
@@ -85,9 +80,9 @@ export class App {
     this.histogram = new Histogram(
       element<HTMLCanvasElement>("histogram"),
       info.quality.minimum,
-      () => this.colourRange,
       (range) => this.change({ quality: range }),
     );
+    worker.onLit = (light) => this.showLit(light);
     worker.onVisible = (visible, curved, milliseconds) => this.showVisible(visible, curved, milliseconds);
     this.fillControls();
     if (this.state.camera) this.viewport.cameraState = this.state.camera;
@@ -107,7 +102,10 @@ export class App {
   /** Slices through the middle; another click on the same direction switches the slice off. */
   slice(direction: SliceDirection): void {
     if (direction === "off" || direction === this.state.slice) return this.change({ slice: "off" });
-    const normal = direction === "view" ? this.viewport.viewDirection() : kAxes[direction];
+    const towards = this.viewport.viewDirection();
+    // The cut is what one wants to see.
+    const away = towards["xyz".indexOf(direction)]! < 0;
+    const normal = direction === "view" ? towards : (kAxes[direction].map((n) => (away ? -n : n) + 0) as Normal);
     this.change({ slice: direction, normal, position: 0.5 });
   }
 
@@ -236,6 +234,8 @@ export class App {
       plane: slice === "off" ? null : { normal, offset: (2 * position - 1) * reach },
       firstLayer: peel,
       quality: this.storedRange(),
+      dug: this.state.dug,
+      isolated: this.state.isolated ? this.state.picked : null,
     };
   }
 
@@ -245,17 +245,19 @@ export class App {
     this.worker.show(this.filter(), this.curved());
     if (this.curvedLines !== this.curved()) this.remakeLines();
     document.body.dataset.busy = "true";
-    this.surface.setColouring(state.colour, this.colourRange);
+    this.surface.setColouring(state.colour);
     this.surface.showGrid(state.grid);
     this.surface.setPicked(state.picked);
     this.lines.inner.visible = state.inner;
     this.lines.boundary.visible = state.boundary;
     this.lines.features.visible = state.features;
-    this.lines.outline.visible = state.outline;
+    this.lines.creases.visible = state.ghost;
+    this.surface.showGhost(state.ghost, state.isolated);
+    this.surface.showRounded(state.rounded);
     this.outlinePicked();
     this.showControls();
     this.histogram.setRange(state.quality);
-    this.legend.update(state, this.info, this.mesh, this.colourRange);
+    this.legend.update(state, this.info, this.mesh);
     showPicked(state.picked, this.info, this.mesh);
     this.viewport.redraw();
   }
@@ -266,13 +268,13 @@ export class App {
   }
 
   private makeLines() {
-    const { positions, singularEdges, featureEdges, boundaryEdges } = this.mesh;
+    const { positions, singularEdges, featureEdges, creases } = this.mesh;
     const curves = this.curvedLines ? this.curves : null;
     const lines = {
       inner: wideLines(singularSegments(singularEdges, false), positions, curves, 3),
       boundary: wideLines(singularSegments(singularEdges, true), positions, curves, 2),
       features: wideLines(featureSegments(featureEdges), positions, curves, 2.5),
-      outline: thinLines(boundaryEdges, positions, curves),
+      creases: thinLines(creases, positions, curves),
     };
     for (const object of Object.values(lines)) this.viewport.add(object);
     return lines;
@@ -304,14 +306,19 @@ export class App {
   }
 
   private showVisible(visible: Visible, curved: CurvedFaces | null, milliseconds: number): void {
-    this.surface.setQuads(visible.quads, curved);
+    this.surface.setQuads(visible, curved);
     element("curved-pieces").hidden = curved === null;
     element("drawn-pieces").textContent = String((curved?.pieces ?? 1) ** 2);
     element("kept-cells").textContent = grouped(visible.kept);
     element("drawn-quads").textContent = grouped(visible.quads.length / 6);
     this.histogram.set(visible.histogramCandidates, visible.histogramKept);
-    document.body.dataset.busy = String(!this.worker.idle);
     document.body.dataset.milliseconds = milliseconds.toFixed(1);
+    this.viewport.redraw();
+  }
+
+  private showLit(light: Uint8Array<ArrayBuffer>): void {
+    this.surface.setLight(light);
+    document.body.dataset.busy = "false";
     this.viewport.redraw();
   }
 

@@ -6,8 +6,23 @@ const kViridis = [
   0xbddf26, 0xfde725,
 ];
 
-/** For cells that are not positive: far from all of viridis. */
-export const kBadColour = 0xd81b60;
+/** For cells that are not positive: no other colour of a cell is near it. */
+export const kBadColour = 0xc2006f;
+
+/** What is outside of the mesh is cool, what a cut shows is warm. */
+export const kSkinColour = 0xc9d6e6;
+export const kInsideColour = 0xfcecc3;
+
+/**
+ * Scaled Jacobians from 0 to 1: good cells are calm, bad ones glow. Both ramps grow lighter all the
+ * way, so grey printers and people with colour-blindness can read them.
+ */
+const kSkinRamp = [
+  0xb5131f, 0xd03327, 0xe46845, 0xe6a07c, 0xdec3b2, 0xd3cfd0, 0xcbd4de, 0xc9d6e6, 0xc9d6e6, 0xc9d6e6, 0xc9d6e6,
+];
+const kInsideRamp = [
+  0xb5131f, 0xd03327, 0xe66540, 0xf19a5e, 0xf5c285, 0xf9dba4, 0xfbe7b8, 0xfcecc3, 0xfcecc3, 0xfcecc3, 0xfcecc3,
+];
 
 export type Rgb = [number, number, number];
 
@@ -19,22 +34,27 @@ export function cssOf(hex: number): string {
   return `#${hex.toString(16).padStart(6, "0")}`;
 }
 
-/** @param share  in [0, 1] */
-export function viridis(share: number): Rgb {
-  const place = Math.min(Math.max(share, 0), 1) * (kViridis.length - 1);
-  const i = Math.min(Math.floor(place), kViridis.length - 2);
-  const from = rgbOf(kViridis[i]!);
-  const to = rgbOf(kViridis[i + 1]!);
+/** Linear between evenly spaced colours. @param share  in [0, 1] */
+function ramp(colours: readonly number[], share: number): Rgb {
+  const place = Math.min(Math.max(share, 0), 1) * (colours.length - 1);
+  const i = Math.min(Math.floor(place), colours.length - 2);
+  const from = rgbOf(colours[i]!);
+  const to = rgbOf(colours[i + 1]!);
   const t = place - i;
   return [0, 1, 2].map((c) => Math.round(from[c]! + t * (to[c]! - from[c]!))) as Rgb;
 }
+
+export const viridis = (share: number): Rgb => ramp(kViridis, share);
+export const skinQuality = (share: number): Rgb => ramp(kSkinRamp, share);
+export const insideQuality = (share: number): Rgb => ramp(kInsideRamp, share);
 
 /** Okabe and Ito's palette, for categories. */
 export const kCategories = [
   0xe69f00, 0x56b4e9, 0x009e73, 0xf0e442, 0x0072b2, 0xd55e00, 0xcc79a7, 0x8d6e63,
 ];
 
-export const kPlainColour = 0xb9c3cc;
+/** For what has no category. */
+export const kNoCategory = 0xb9c3cc;
 
 /** By kind: vertex, edge, face, cell of the tets. */
 export const kGeneratorColours = [0xd55e00, 0xe69f00, 0x56b4e9, 0xdfe5ea];

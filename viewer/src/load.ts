@@ -13,6 +13,7 @@ declare const WORKER_SOURCE: string;
 
 export class MeshWorker {
   onVisible: (visible: Visible, curved: CurvedFaces | null, milliseconds: number) => void = () => {};
+  onLit: (light: Uint8Array<ArrayBuffer>) => void = () => {};
   private readonly worker: Worker;
   private running = false;
   private next: [Filter, boolean] | null = null;
@@ -53,6 +54,9 @@ export class MeshWorker {
         return this.onProgress(message.what, message.share);
       case "loaded":
         return this.onLoaded(message.mesh);
+      case "lit":
+        // Of faces that are on their way out if something else was asked for since.
+        return this.running ? undefined : this.onLit(message.light);
       case "failed":
         return this.onFailed(message.message);
       case "visible": {

@@ -5,10 +5,12 @@ import type { CameraState } from "./scene/viewport";
 
 export type SliceDirection = "off" | "x" | "y" | "z" | "view";
 
+export type Normal = [number, number, number];
+
 export interface ViewState {
   slice: SliceDirection;
   /** Outwards normal of the kept side. */
-  normal: [number, number, number];
+  normal: Normal;
   /** Share of the mesh along the normal that is kept. */
   position: number;
   peel: number;
@@ -17,11 +19,17 @@ export interface ViewState {
   grid: boolean;
   inner: boolean;
   boundary: boolean;
-  outline: boolean;
+  /** Whether what is cut away is drawn as if of glass. */
+  ghost: boolean;
   features: boolean;
   /** Whether cells of higher order are drawn as they are. */
   curved: boolean;
+  rounded: boolean;
+  /** Cells that were taken away one by one, in this order. */
+  dug: number[];
   picked: number | null;
+  /** Whether the picked cell is shown alone. */
+  isolated: boolean;
   theme: "system" | "dark" | "light";
   camera: CameraState | null;
 }
@@ -34,17 +42,20 @@ export const kStart: ViewState = {
   quality: [-1, 1],
   colour: "quality",
   grid: true,
-  inner: true,
+  inner: false,
   boundary: false,
-  outline: false,
+  ghost: true,
   features: true,
   curved: true,
+  rounded: false,
+  dug: [],
   picked: null,
+  isolated: false,
   theme: "system",
   camera: null,
 };
 
-export const kFlags = ["grid", "inner", "boundary", "outline", "features", "curved"] as const;
+export const kFlags = ["grid", "inner", "boundary", "ghost", "features", "curved", "rounded"] as const;
 export type Flag = (typeof kFlags)[number];
 const short = (x: number) => String(Number(x.toPrecision(6)));
 const list = (numbers: number[]) => numbers.map(short).join(",");
@@ -59,7 +70,9 @@ export function toFragment(state: ViewState): string {
   if (state.quality[0] > -1 || state.quality[1] < 1) parts.set("quality", list(state.quality));
   if (state.colour !== kStart.colour) parts.set("colour", state.colour);
   for (const flag of kFlags) if (state[flag] !== kStart[flag]) parts.set(flag, state[flag] ? "1" : "0");
+  if (state.dug.length > 0) parts.set("dug", list(state.dug));
   if (state.picked !== null) parts.set("cell", String(state.picked));
+  if (state.isolated) parts.set("alone", "1");
   if (state.theme !== "system") parts.set("theme", state.theme);
   if (state.camera) parts.set("camera", list([...state.camera.position, ...state.camera.target]));
   return parts.toString().replaceAll("%2C", ",");
@@ -97,8 +110,11 @@ export function fromFragment(fragment: string): ViewState {
   const colour = kColourModes.find((mode) => mode === parts.get("colour"));
   if (colour) state.colour = colour;
   for (const flag of kFlags) if (parts.has(flag)) state[flag] = parts.get(flag) === "1";
-  const cell = numbers(parts.get("cell"), 1)?.[0];
-  if (cell !== undefined && Number.isInteger(cell) && cell >= 0) state.picked = cell;
+  const cellsOf = (name: string) =>
+    (parts.get(name) ?? "").split(",").filter((text) => /^\d{1,8}$/.test(text)).map(Number);
+  state.dug = cellsOf("dug");
+  state.picked = cellsOf("cell")[0] ?? null;
+  state.isolated = state.picked !== null && parts.get("alone") === "1";
   const theme = parts.get("theme");
   if (theme === "dark" || theme === "light") state.theme = theme;
   const camera = numbers(parts.get("camera"), 6);

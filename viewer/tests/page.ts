@@ -56,9 +56,11 @@ export async function press(page: Page, keys: string): Promise<void> {
   }
 }
 
-/** Of the canvas: the number of different colours, 1 if nothing is drawn; and of pixels that are not
- * as the one in the corner. */
-export async function lookAtCanvas(page: Page): Promise<{ colours: number; covered: number }> {
+/** Of the canvas: the number of different colours, 1 if nothing is drawn; of pixels that are not as the
+ * one in the corner; and red, green and blue in the middle. */
+export async function lookAtCanvas(
+  page: Page,
+): Promise<{ colours: number; covered: number; middle: number[] }> {
   const bytes = (await page.locator("#canvas").screenshot()).toString("base64");
   return page.evaluate(async (png) => {
     const image = new Image();
@@ -71,13 +73,16 @@ export async function lookAtCanvas(page: Page): Promise<{ colours: number; cover
     context.drawImage(image, 0, 0);
     const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
     const pixels = new Uint32Array(data.buffer);
+    const middle = 4 * (Math.floor(image.height / 2) * image.width + Math.floor(image.width / 2));
     return {
       colours: new Set(pixels).size,
       covered: pixels.reduce((sum, pixel) => sum + Number(pixel !== pixels[0]), 0),
+      middle: [...data.slice(middle, middle + 3)],
     };
   }, bytes);
 }
 
+export const colourInTheMiddle = async (page: Page) => (await lookAtCanvas(page)).middle;
 export const coloursOnCanvas = async (page: Page) => (await lookAtCanvas(page)).colours;
 
 export { expect };

@@ -1,7 +1,7 @@
 import { mkdirSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { kHostileName, kPages, serve } from "./make_pages";
-import { coloursOnCanvas, complaintsOf, expect, kept, lookAtCanvas, open, press, quads, settle, test } from "./page";
+import { colourInTheMiddle, coloursOnCanvas, complaintsOf, expect, kept, lookAtCanvas, open, press, quads, settle, test } from "./page";
 
 const kPictures = process.env.HEXHEX_VIEWER_PICTURES ?? join(kPages, "../pictures");
 mkdirSync(kPictures, { recursive: true });
@@ -42,6 +42,26 @@ test("slices with whole cells, on either side", async ({ page }) => {
   const half = await kept(page);
   expect(half).toBeGreaterThan(16);
   expect(half).toBeLessThan(48);
+});
+
+test("turns the cut towards the eye, with a ghost of what is gone", async ({ page }) => {
+  await open(page, "box.html");
+  await page.locator("#show-grid").uncheck();
+  await settle(page);
+  for (const look of ["0,0,4", "0,4,1", "4,1,0", "0,-4,1", "-4,1,0", "0,1,-4"]) {
+    await open(page, "box.html", `#grid=0&camera=${look},0,0,0`);
+    const axis = look.split(",").findIndex((part) => part.includes("4"));
+    await press(page, "xyz"[axis]!);
+    // Inside colours are warm: more red than blue. Nothing but the cut is to be seen in the middle.
+    const [red, , blue] = await colourInTheMiddle(page);
+    expect(red!).toBeGreaterThan(blue! + 20);
+    const withGhost = (await lookAtCanvas(page)).covered;
+    await press(page, "o");
+    expect((await lookAtCanvas(page)).covered).toBeLessThan(withGhost);
+    await press(page, "f");
+    const [skinRed, , skinBlue] = await colourInTheMiddle(page);
+    expect(skinBlue!).toBeGreaterThan(skinRed!);
+  }
 });
 
 test("peels layers", async ({ page }) => {
@@ -142,6 +162,8 @@ test("colours, and says in the legend how", async ({ page }) => {
   await open(page, "sphere.html");
   const legend = page.locator("#legend");
   await expect(legend).toContainText("scaled Jacobian");
+  await expect(legend).not.toContainText("valence");
+  await page.locator("#show-inner").check();
   await expect(legend).toContainText(`3 (${20 * kSide})`);
   await page.locator("#colour").selectOption("generator");
   await expect(legend).toContainText("vertex lies in a");
@@ -346,7 +368,7 @@ test("lists the keys, and is dark on request", async ({ page }) => {
   await open(page, "sphere.html");
   await press(page, "?");
   await expect(page.locator("#shortcuts")).toBeVisible();
-  await expect(page.locator("#shortcut-list dt")).toHaveCount(27);
+  await expect(page.locator("#shortcut-list dt")).toHaveCount(28);
   await page.keyboard.press("Escape");
   await expect(page.locator("#shortcuts")).toBeHidden();
   const back = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);

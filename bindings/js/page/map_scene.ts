@@ -14,8 +14,8 @@ import { Viewport } from "../viewer/scene/viewport";
 import type { MapShape } from "./messages";
 
 const kBad = 0xd81b60;
-/** Half the diagonal of the box of the scene. */
-const kRadius = Math.sqrt(3) / 2;
+/** Half the sides of the box of the scene. */
+const kHalf: [number, number, number] = [0.5, 0.5, 0.5];
 
 function surfaceOf(shape: MapShape): Mesh {
   const { positions, triangles } = shape;
@@ -66,7 +66,7 @@ export class MapScene {
   private objects: Object3D[] = [];
 
   constructor(canvas: HTMLCanvasElement) {
-    this.viewport = new Viewport(canvas, kRadius, () => undefined);
+    this.viewport = new Viewport(canvas, kHalf, () => undefined);
     const applyTheme = () =>
       this.viewport.setBackground(getComputedStyle(document.documentElement).getPropertyValue("--back").trim());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", applyTheme);

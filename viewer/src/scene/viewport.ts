@@ -20,7 +20,11 @@ export interface CameraState {
   target: [number, number, number];
 }
 
-const kFieldOfView = 35;
+const kFieldOfView = 30;
+/** Share of the canvas that the mesh fills at first. */
+const kFilled = 0.9;
+
+type Triple = [number, number, number];
 
 export class Viewport {
   readonly scene = new Scene();
@@ -32,10 +36,10 @@ export class Viewport {
   private frame = 0;
   private picking: Surface | null = null;
 
-  /** @throws if the browser has no WebGL 2 */
+  /** @param half  half the sides of the box around what is drawn  @throws if the browser has no WebGL 2 */
   constructor(
     private readonly canvas: HTMLCanvasElement,
-    private readonly radius: number,
+    private readonly half: Triple,
     onMoved: () => void,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true });
@@ -69,7 +73,7 @@ export class Viewport {
 
   setSurface(surface: Surface): void {
     this.picking = surface;
-    this.scene.add(surface.mesh);
+    this.scene.add(surface.mesh, surface.ghost);
     this.pickScene.add(surface.pickMesh);
   }
 
@@ -80,16 +84,29 @@ export class Viewport {
 
   /** Looks at the whole mesh from a direction. */
   look(from: [number, number, number]): void {
-    const narrow = Math.min(1, this.camera.aspect);
-    const half = (kFieldOfView / 2) * (Math.PI / 180);
-    const distance = (0.95 * this.radius) / Math.sin(Math.atan(Math.tan(half) * narrow));
     // A camera straight above would not know which way is up.
     const direction = new Vector3(...from).normalize();
     if (Math.abs(direction.z) > 0.999) direction.y -= 1e-4;
     this.controls.target.set(0, 0, 0);
-    this.camera.position.copy(direction.multiplyScalar(distance));
+    this.camera.position.copy(direction.multiplyScalar(this.distanceAlong(direction)));
     this.controls.update();
     this.redraw();
+  }
+
+  /** From where on a direction all corners of the box are in the picture. */
+  private distanceAlong(direction: Vector3): number {
+    const right = new Vector3(0, 0, 1).cross(direction).normalize();
+    const up = direction.clone().cross(right);
+    const tall = Math.tan((kFieldOfView / 2) * (Math.PI / 180)) * kFilled;
+    const wide = tall * this.camera.aspect;
+    let distance = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const [x, y, z] = this.half.map((side, axis) => (corner >> axis & 1 ? side : -side)) as Triple;
+      const place = new Vector3(x, y, z);
+      const across = Math.max(Math.abs(place.dot(right)) / wide, Math.abs(place.dot(up)) / tall);
+      distance = Math.max(distance, across + place.dot(direction));
+    }
+    return distance;
   }
 
   /** Turns the camera to a place without changing the direction of view. */

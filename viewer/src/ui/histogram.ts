@@ -1,5 +1,5 @@
 // The histogram of the scaled Jacobian, which filters when it is brushed.
-import { cssOf, kBadColour, viridis } from "../colours";
+import { cssOf, kBadColour, insideQuality } from "../colours";
 import { kHistogramBins } from "../worker/visible";
 
 /** Values of the shown range and of what is kept in it. */
@@ -14,7 +14,6 @@ export class Histogram {
   constructor(
     private readonly canvas: HTMLCanvasElement,
     lowest: number,
-    private readonly colourRange: () => [number, number],
     private readonly onBrush: (range: [number, number]) => void,
   ) {
     this.firstBin = Math.min(kHistogramBins - 8, Math.floor(((lowest + 1) / 2) * kHistogramBins));
@@ -75,7 +74,6 @@ export class Histogram {
     const bins = kHistogramBins - this.firstBin;
     const base = height - 14;
     const most = Math.max(1, ...this.candidates);
-    const [from, to] = this.colourRange();
     for (let i = 0; i < bins; ++i) {
       const bin = this.firstBin + i;
       const centre = ((bin + 0.5) / kHistogramBins) * 2 - 1;
@@ -86,8 +84,7 @@ export class Histogram {
         context.fillRect((i * width) / bins + 0.5, base - tall, width / bins - 1, tall);
       };
       bar(this.candidates[bin]!, style.getPropertyValue("--line"));
-      const colour =
-        centre <= 0 ? cssOf(kBadColour) : `rgb(${viridis((centre - from) / (to - from)).join()})`;
+      const colour = centre <= 0 ? cssOf(kBadColour) : `rgb(${insideQuality(centre).join()})`;
       bar(this.kept[bin]!, colour);
     }
     const x = (value: number) => ((value - this.lowest) / (1 - this.lowest)) * width;

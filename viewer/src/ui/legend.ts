@@ -1,7 +1,7 @@
 // The legend: as elements of the page, and drawn into saved pictures.
 import {
-  cssOf, featureColour, kBadColour, kGeneratorColours, kGeneratorNames, kPlainColour, valenceColour,
-  viridis,
+  cssOf, featureColour, insideQuality, kBadColour, kGeneratorColours, kGeneratorNames, kInsideColour,
+  kNoCategory, kSkinColour, type Rgb, skinQuality, valenceColour, viridis,
 } from "../colours";
 import type { MeshInfo } from "../format";
 import type { ViewState } from "../state";
@@ -16,8 +16,8 @@ interface Chip {
 
 interface Part {
   title: string;
-  /** Both ends of the colour map, if there is one. */
-  scale?: [string, string];
+  /** Both ends of the colour map, if there is one, and its colours, above one another. */
+  scale?: { ends: [string, string]; ramps: ((share: number) => Rgb)[] };
   chips: Chip[];
 }
 
@@ -26,19 +26,22 @@ const chip = (hex: number, text: string, edge = false): Chip => ({ colour: cssOf
 /** Chips for the first of many tags. */
 function tagChips(tags: number[]): Chip[] {
   const chips = tags.slice(0, 12).map((tag, i) => chip(featureColour(i), String(tag)));
-  if (tags.length > chips.length) chips.push(chip(kPlainColour, `${tags.length - chips.length} more`));
+  if (tags.length > chips.length) chips.push(chip(kNoCategory, `${tags.length - chips.length} more`));
   return chips;
 }
 
-function cellPart(state: ViewState, info: MeshInfo, mesh: LoadedMesh,
-                  range: [number, number]): Part | null {
+const kSkinAndCut = [chip(kSkinColour, "boundary"), chip(kInsideColour, "cut")];
+
+function cellPart(state: ViewState, info: MeshInfo, mesh: LoadedMesh): Part | null {
   const { quadTags, regionTags, deepestLayer } = mesh;
   switch (state.colour) {
     case "quality":
       return {
         title: "scaled Jacobian",
-        scale: [range[0].toFixed(2), range[1].toFixed(2)],
-        chips: info.quality.notPositive > 0 ? [chip(kBadColour, "not positive")] : [],
+        scale: { ends: ["0", "1"], ramps: [skinQuality, insideQuality] },
+        chips: info.quality.notPositive > 0
+          ? [...kSkinAndCut, chip(kBadColour, "not positive")]
+          : kSkinAndCut,
       };
     case "generator":
       return {
@@ -56,9 +59,13 @@ function cellPart(state: ViewState, info: MeshInfo, mesh: LoadedMesh,
         chips: tagChips(regionTags),
       };
     case "layer":
-      return { title: "layer from the boundary", scale: ["0", String(deepestLayer)], chips: [] };
+      return {
+        title: "layer from the boundary",
+        scale: { ends: ["0", String(deepestLayer)], ramps: [viridis] },
+        chips: [],
+      };
     case "plain":
-      return null;
+      return { title: "", chips: kSkinAndCut };
   }
 }
 
@@ -76,9 +83,9 @@ export class Legend {
 
   constructor(private readonly box: HTMLElement) {}
 
-  update(state: ViewState, info: MeshInfo, mesh: LoadedMesh, range: [number, number]): void {
+  update(state: ViewState, info: MeshInfo, mesh: LoadedMesh): void {
     const parts = [
-      cellPart(state, info, mesh, range),
+      cellPart(state, info, mesh),
       state.inner ? edgePart("valence of singular edges inside", info.singular.inner, false) : null,
       state.boundary
         ? edgePart("valence of singular edges on the boundary", info.singular.boundary, true)
@@ -89,14 +96,18 @@ export class Legend {
   }
 
   private elementsOf(part: Part): HTMLElement[] {
-    const made: HTMLElement[] = [make("h3", part.title)];
+    const made: HTMLElement[] = part.title ? [make("h3", part.title)] : [];
     if (part.scale) {
-      const bar = make("div", "", "bar");
-      const stops = Array.from({ length: 11 }, (_, i) => `rgb(${viridis(i / 10).join()})`);
-      bar.style.background = `linear-gradient(to right, ${stops.join()})`;
+      const { ends, ramps } = part.scale;
+      for (const ramp of ramps) {
+        const bar = make("div", "", "bar");
+        const stops = Array.from({ length: 21 }, (_, i) => `rgb(${ramp(i / 20).join()})`);
+        bar.style.background = `linear-gradient(to right, ${stops.join()})`;
+        made.push(bar);
+      }
       const ticks = make("div", "", "ticks");
-      ticks.append(make("span", part.scale[0]), make("span", part.scale[1]));
-      made.push(bar, ticks);
+      ticks.append(make("span", ends[0]), make("span", ends[1]));
+      made.push(ticks);
     }
     const list = make("ul");
     for (const { colour, text, edge } of part.chips) {
@@ -122,15 +133,19 @@ export class Legend {
       context.fillText(part.title, 12, y);
       y += 16;
       if (part.scale) {
-        for (let i = 0; i < 200; ++i) {
-          context.fillStyle = `rgb(${viridis(i / 199).join()})`;
-          context.fillRect(12 + i, y - 9, 1.5, 10);
-        }
+        const { ends, ramps } = part.scale;
+        const tall = 10 / ramps.length;
+        ramps.forEach((ramp, row) => {
+          for (let i = 0; i < 200; ++i) {
+            context.fillStyle = `rgb(${ramp(i / 199).join()})`;
+            context.fillRect(12 + i, y - 9 + row * tall, 1.5, tall);
+          }
+        });
         context.fillStyle = text;
         y += 16;
-        context.fillText(part.scale[0], 12, y - 2);
+        context.fillText(ends[0], 12, y - 2);
         context.textAlign = "right";
-        context.fillText(part.scale[1], 212, y - 2);
+        context.fillText(ends[1], 212, y - 2);
         context.textAlign = "left";
         y += 16;
       }

@@ -23,7 +23,8 @@ export interface LoadedMesh {
   quality: Uint16Array<ArrayBuffer>;
   layers: Uint16Array<ArrayBuffer>;
   deepestLayer: number;
-  boundaryEdges: Uint32Array<ArrayBuffer>;
+  /** The sharp edges of the boundary, two vertices each. */
+  creases: Uint32Array<ArrayBuffer>;
   /** Three numbers per edge: two vertices, and 2 * valence + (1 on the boundary). */
   singularEdges: Uint32Array<ArrayBuffer>;
   /** Three numbers per edge: two vertices, and the tag. */
@@ -39,4 +40,6 @@ export type FromWorker =
   | { kind: "progress"; what: string; share: number }
   | { kind: "loaded"; mesh: LoadedMesh }
   | { kind: "visible"; visible: Visible; curved: CurvedFaces | null; milliseconds: number }
+  /** The light at the corners of the quads that were sent last, as in Occlusion. */
+  | { kind: "lit"; light: Uint8Array<ArrayBuffer> }
   | { kind: "failed"; message: string };

@@ -108,22 +108,50 @@ export function findLayers(neighbours: Uint32Array): { layers: Uint16Array<Array
   return { layers, deepest };
 }
 
+/** The faces without a neighbour. */
+export function findSkin(neighbours: Uint32Array): Uint32Array<ArrayBuffer> {
+  const faces: number[] = [];
+  for (let face = 0; face < neighbours.length; ++face) {
+    if (neighbours[face] === kNone) faces.push(face);
+  }
+  return new Uint32Array(faces);
+}
+
+/** The cosine of the angle from which on an edge of the boundary is sharp: 40 degrees. */
+const kSharp = 0.77;
+
 /**
- * The edges of the boundary, two vertices each. Neighbouring quads run through their common edge in
- * opposite directions, so taking it where it ascends takes it once.
+ * The sharp edges of the boundary, two vertices each. Neighbouring quads run through their common
+ * edge in opposite directions.
  */
-export function findBoundaryEdges(
+export function findCreases(
   cells: Uint32Array,
-  neighbours: Uint32Array,
+  skin: Uint32Array,
+  positions: Float32Array,
 ): Uint32Array<ArrayBuffer> {
   const edges: number[] = [];
-  for (let face = 0; face < neighbours.length; ++face) {
-    if (neighbours[face] !== kNone) continue;
+  const normals = new Float32Array(3 * skin.length);
+  const open = new Map<number, number>();
+  skin.forEach((face, place) => {
+    const at = [0, 1, 2, 3].map((i) => 4 * faceVertex(cells, face, i));
+    const [ax, ay, az] = [0, 1, 2].map((k) => positions[at[2]! + k]! - positions[at[0]! + k]!);
+    const [bx, by, bz] = [0, 1, 2].map((k) => positions[at[3]! + k]! - positions[at[1]! + k]!);
+    const normal = [ay! * bz! - az! * by!, az! * bx! - ax! * bz!, ax! * by! - ay! * bx!];
+    const length = Math.hypot(...normal) || 1;
+    normal.forEach((n, k) => (normals[3 * place + k] = n / length));
     for (let i = 0; i < 4; ++i) {
-      const a = faceVertex(cells, face, i);
-      const b = faceVertex(cells, face, i + 1);
-      if (a < b) edges.push(a, b);
+      const a = at[i]! / 4;
+      const b = at[(i + 1) & 3]! / 4;
+      const other = open.get(b * 2 ** 24 + a);
+      if (other === undefined) {
+        open.set(a * 2 ** 24 + b, place);
+        continue;
+      }
+      open.delete(b * 2 ** 24 + a);
+      let cosine = 0;
+      for (let k = 0; k < 3; ++k) cosine += normals[3 * place + k]! * normals[3 * other + k]!;
+      if (cosine < kSharp) edges.push(a, b);
     }
-  }
+  });
   return new Uint32Array(edges);
 }

@@ -9,13 +9,24 @@ export interface Filter {
   firstLayer: number;
   /** Scaled Jacobian, as stored, from and to, both included. */
   quality: [number, number];
+  /** Cells that were taken away one by one. */
+  dug: number[];
+  /** The only cell to keep, whatever else is asked for, or null. */
+  isolated: number | null;
 }
 
 export const kHistogramBins = 64;
 
 export interface Visible {
-  /** Six numbers per quad: four vertices, the cell, and the feature of the quad (0: none). */
+  /**
+   * Six numbers per quad: four vertices, the cell, and twice the feature of the quad (0: none), plus 1
+   * where the quad is not on the boundary of the mesh.
+   */
   quads: Uint32Array<ArrayBuffer>;
+  /** The same for the outline of what is not kept: the boundary, or the cells around a single one. */
+  ghost: Uint32Array<ArrayBuffer>;
+  /** What is known of the light on the quads at once, as in Occlusion. */
+  light: Uint8Array<ArrayBuffer>;
   kept: number;
   /** Kept cells by quality, and all cells that fulfil the rest of the filter. */
   histogramKept: Uint32Array<ArrayBuffer>;
@@ -28,9 +39,13 @@ export interface Mesh {
   centres: Float32Array;
   layers: Uint16Array<ArrayBuffer>;
   neighbours: Uint32Array;
+  /** The faces of the boundary: 6 * cell + face. */
+  skin: Uint32Array;
   /** Per face of a cell the feature of its quad, 1 and up; null if the mesh has none. */
   quadFeatures: Uint16Array | null;
 }
+
+const binOf = (quality: number) => (quality * kHistogramBins) >>> 16;
 
 function markKept(mesh: Mesh, filter: Filter, kept: Uint8Array, result: Visible): void {
   const { quality, centres, layers } = mesh;
@@ -45,52 +60,79 @@ function markKept(mesh: Mesh, filter: Filter, kept: Uint8Array, result: Visible)
     const at = 3 * cell;
     if (x * centres[at]! + y * centres[at + 1]! + z * centres[at + 2]! > offset) continue;
     const value = quality[cell]!;
-    const bin = (value * kHistogramBins) >>> 16;
+    const bin = binOf(value);
     ++result.histogramCandidates[bin]!;
     if (value < from || value > to) continue;
     ++result.histogramKept[bin]!;
     kept[cell] = 1;
     ++count;
   }
+  for (const cell of filter.dug) {
+    if (kept[cell] !== 1) continue;
+    kept[cell] = 0;
+    --count;
+    --result.histogramKept[binOf(quality[cell]!)]!;
+  }
+  if (filter.isolated !== null) {
+    kept.fill(0);
+    kept[filter.isolated] = count = 1;
+  }
   result.kept = count;
 }
 
-function isOuter(mesh: Mesh, kept: Uint8Array, face: number): boolean {
-  const neighbour = mesh.neighbours[face]!;
-  return neighbour === kNone || kept[neighbour] === 0;
+function quadsOf(mesh: Mesh, faces: ArrayLike<number>): Uint32Array<ArrayBuffer> {
+  const quads = new Uint32Array(6 * faces.length);
+  let next = 0;
+  for (let i = 0; i < faces.length; ++i) {
+    const face = faces[i]!;
+    const cell = Math.floor(face / 6);
+    const corner = 4 * (face - 6 * cell);
+    for (let k = 0; k < 4; ++k) quads[next++] = mesh.cells[8 * cell + kFaceCorners[corner + k]!]!;
+    quads[next++] = cell;
+    const feature = mesh.quadFeatures ? mesh.quadFeatures[face]! : 0;
+    quads[next++] = 2 * feature + Number(mesh.neighbours[face] !== kNone);
+  }
+  return quads;
 }
 
-function countQuads(mesh: Mesh, kept: Uint8Array): number {
-  let count = 0;
-  for (let cell = 0; cell < kept.length; ++cell) {
-    if (kept[cell] === 0) continue;
+/** The faces between marked cells and others. */
+function facesAround(mesh: Mesh, marked: Uint8Array): number[] {
+  const faces: number[] = [];
+  for (let cell = 0; cell < marked.length; ++cell) {
+    if (marked[cell] === 0) continue;
     for (let face = 6 * cell; face < 6 * cell + 6; ++face) {
-      if (isOuter(mesh, kept, face)) ++count;
+      const neighbour = mesh.neighbours[face]!;
+      if (neighbour === kNone || marked[neighbour] === 0) faces.push(face);
     }
   }
-  return count;
+  return faces;
+}
+
+/** The outline of all cells that have a vertex of this cell. */
+function facesAroundRing(mesh: Mesh, cell: number): number[] {
+  const corners = mesh.cells.subarray(8 * cell, 8 * cell + 8);
+  const ring = new Uint8Array(mesh.cells.length / 8);
+  for (let i = 0; i < mesh.cells.length; ++i) {
+    if (corners.includes(mesh.cells[i]!)) ring[i >>> 3] = 1;
+  }
+  return facesAround(mesh, ring);
 }
 
 /** Finds the faces between kept cells and all else. @param kept  room for one byte per cell */
 export function findVisible(mesh: Mesh, filter: Filter, kept: Uint8Array): Visible {
   const result: Visible = {
     quads: new Uint32Array(0),
+    ghost: new Uint32Array(0),
+    light: new Uint8Array(0),
     kept: 0,
     histogramKept: new Uint32Array(kHistogramBins),
     histogramCandidates: new Uint32Array(kHistogramBins),
   };
   markKept(mesh, filter, kept, result);
-  const quads = new Uint32Array(6 * countQuads(mesh, kept));
-  let next = 0;
-  for (let cell = 0; cell < kept.length; ++cell) {
-    if (kept[cell] === 0) continue;
-    for (let f = 0; f < 6; ++f) {
-      if (!isOuter(mesh, kept, 6 * cell + f)) continue;
-      for (let i = 0; i < 4; ++i) quads[next++] = mesh.cells[8 * cell + kFaceCorners[4 * f + i]!]!;
-      quads[next++] = cell;
-      quads[next++] = mesh.quadFeatures ? mesh.quadFeatures[6 * cell + f]! : 0;
-    }
-  }
-  result.quads = quads;
+  result.quads = quadsOf(mesh, facesAround(mesh, kept));
+  const ghost = filter.isolated === null
+    ? mesh.skin.filter((face) => kept[Math.floor(face / 6)] === 0)
+    : facesAroundRing(mesh, filter.isolated);
+  result.ghost = quadsOf(mesh, ghost);
   return result;
 }

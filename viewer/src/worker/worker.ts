@@ -4,8 +4,9 @@ import { decodeBase64, decodeChunk, inflate, type MeshInfo, type TableInfo } fro
 import { kTextureWidth, sceneOf } from "../scene_box";
 import { curvedFaces } from "./curved_faces";
 import type { FromWorker, LoadedMesh, ToWorker } from "./messages";
-import { findBoundaryEdges, findLayers, findNeighbours, kFaceCorners } from "./topology";
-import { findVisible, type Mesh } from "./visible";
+import { carriedLight, Occlusion } from "./occlusion";
+import { findCreases, findLayers, findNeighbours, findSkin, kFaceCorners } from "./topology";
+import { type Filter, findVisible, type Mesh } from "./visible";
 
 // The library for pages types `self` as a window; this is all that is used of it.
 const worker = self as unknown as {
@@ -20,6 +21,11 @@ let received = 0;
 let mesh: Mesh;
 let kept: Uint8Array;
 let curvedCells: CurvedCells;
+/** What is on the screen, and what is known of its light. */
+let lit = { quads: new Uint32Array(0), light: new Uint8Array(0) };
+
+/** Milliseconds of work after which the worker listens again. */
+const kPieceOfWork = 30;
 
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
   worker.postMessage(message, transfer);
@@ -127,13 +133,12 @@ function finish(): void {
     quality,
     layers,
     neighbours,
+    skin: findSkin(neighbours),
     centres: findCentres(cells, positions),
     quadFeatures: features.places,
   };
   kept = new Uint8Array(info.cells);
-  // The page gets the positions for good; only curved faces need them here, too.
-  const own = info.order > 1 ? positions.slice() : positions;
-  curvedCells = { order: info.order, cells, nodes, positions: own };
+  curvedCells = { order: info.order, cells, nodes, positions: positions.slice() };
   const loaded: LoadedMesh = {
     positions,
     cells,
@@ -144,14 +149,14 @@ function finish(): void {
     quality,
     layers,
     deepestLayer: deepest,
-    boundaryEdges: findBoundaryEdges(cells, neighbours),
+    creases: findCreases(cells, mesh.skin, positions),
     singularEdges: takeTable("singular_edges"),
     featureEdges: takeTable("feature_edges"),
     quadTags: features.tags,
   };
   tell({ kind: "loaded", mesh: loaded }, [
     loaded.positions.buffer,
-    loaded.boundaryEdges.buffer,
+    loaded.creases.buffer,
     loaded.singularEdges.buffer,
     loaded.featureEdges.buffer,
     loaded.regions.buffer,
@@ -170,15 +175,33 @@ function handle(message: ToWorker): void | Promise<void> {
       return decode(message.table, message.chunk, message.data);
     case "end":
       return finish();
-    case "show": {
-      const begin = performance.now();
-      const visible = findVisible(mesh, message.filter, kept);
-      const curved = message.curved ? curvedFaces(curvedCells, visible.quads) : null;
-      const buffers = [visible.quads.buffer];
-      if (curved) buffers.push(curved.points.buffer);
-      tell({ kind: "visible", visible, curved, milliseconds: performance.now() - begin }, buffers);
-    }
+    case "show":
+      return show(message.filter, message.curved);
   }
+}
+
+function show(filter: Filter, curvedWanted: boolean): void {
+  const begin = performance.now();
+  const visible = findVisible(mesh, filter, kept);
+  const curved = curvedWanted ? curvedFaces(curvedCells, visible.quads) : null;
+  visible.light = carriedLight(lit.quads, lit.light, visible.quads);
+  lit = { quads: visible.quads.slice(), light: visible.light.slice() };
+  const buffers = [visible.quads.buffer, visible.ghost.buffer, visible.light.buffer];
+  if (curved) buffers.push(curved.points.buffer);
+  tell({ kind: "visible", visible, curved, milliseconds: performance.now() - begin }, buffers);
+  light(new Occlusion(lit.quads, curvedCells.positions));
+}
+
+/** Finds the light in pieces, and gives up when something else is to be shown. */
+function light(occlusion: Occlusion): void {
+  if (occlusion.quads !== lit.quads) return;
+  occlusion.work(kPieceOfWork);
+  if (!occlusion.finished) {
+    setTimeout(() => light(occlusion));
+    return;
+  }
+  lit.light = occlusion.shares;
+  tell({ kind: "lit", light: occlusion.shares });
 }
 
 worker.onmessage = (event) => {
