@@ -1,9 +1,10 @@
 // The loaded page: one state; what changes it, and what it changes.
-import { featureColour, valenceColour } from "./colours";
+import { kPickedColour } from "./colours";
 import { EdgeCurves, kCellEdges } from "./curves";
 import { type MeshInfo, qualityOf, storedQuality } from "./format";
 import type { MeshWorker } from "./load";
-import { thinLines, type Segments, wideLines } from "./scene/lines";
+import { thinLines, wideLines } from "./scene/lines";
+import { badSegments, featureSegments, singularSegments } from "./scene/segments";
 import { type ColourMode, kColourModes, Surface } from "./scene/surface";
 import { Viewport } from "./scene/viewport";
 import { sceneOf } from "./scene_box";
@@ -11,6 +12,7 @@ import { type Flag, fromFragment, kFlags, kStart, type Normal, type SliceDirecti
 import { element, grouped } from "./ui/dom";
 import { Histogram } from "./ui/histogram";
 import { Legend } from "./ui/legend";
+import { askedPicture, savePng } from "./ui/picture";
 import { showPicked } from "./ui/statistics";
 import type { LoadedMesh } from "./worker/messages";
 import type { CurvedFaces } from "./worker/curved_faces";
@@ -25,29 +27,6 @@ const kAxes: Record<"x" | "y" | "z", [number, number, number]> = {
 /** A share of a cell of a mesh of 100 cells per side: steps of the slice by keys. */
 const kSliceStep = 0.01;
 
-function singularSegments(edges: Uint32Array, boundary: boolean): Segments {
-  const segments: Segments = { vertices: [], colours: [] };
-  for (let i = 0; i < edges.length; i += 3) {
-    const code = edges[i + 2]!;
-    if ((code & 1) !== Number(boundary)) continue;
-    segments.vertices.push(edges[i]!, edges[i + 1]!);
-    segments.colours.push(valenceColour(code >> 1, boundary));
-  }
-  return segments;
-}
-
-function featureSegments(edges: Uint32Array): Segments {
-  const tags = new Map<number, number>();
-  const segments: Segments = { vertices: [], colours: [] };
-  for (let i = 0; i < edges.length; i += 3) {
-    const tag = edges[i + 2]!;
-    if (!tags.has(tag)) tags.set(tag, tags.size);
-    segments.vertices.push(edges[i]!, edges[i + 1]!);
-    segments.colours.push(featureColour(tags.get(tag)!));
-  }
-  return segments;
-}
-
 export class App {
   private state: ViewState;
   private readonly viewport: Viewport;
@@ -60,6 +39,8 @@ export class App {
   private curvedLines: boolean;
   private pickedOutline = wideLines({ vertices: [], colours: [] }, new Float32Array(0), null, 1);
   private fragmentTimer = 0;
+  /** Whether clicks take cells away. */
+  private digging = false;
 
   constructor(
     private readonly info: MeshInfo,
@@ -67,7 +48,7 @@ export class App {
     private readonly worker: MeshWorker,
   ) {
     this.state = fromFragment(location.hash);
-    if (this.state.picked !== null && this.state.picked >= info.cells) this.state.picked = null;
+    this.dropUnknownCells();
 
     const { half } = sceneOf(info);
     const canvas = element<HTMLCanvasElement>("canvas");
@@ -149,24 +130,59 @@ export class App {
     this.saveFragment();
   }
 
-  pickAt(x: number, y: number): void {
-    this.change({ picked: this.viewport.pick(x, y) });
+  /** What a click does: picks a cell, or takes it away. */
+  clickAt(x: number, y: number, dig: boolean): void {
+    const cell = this.viewport.pick(x, y);
+    if (!dig && !this.digging) return this.change({ picked: cell, isolated: false });
+    if (cell === null) return;
+    const picked = this.state.picked === cell ? null : this.state.picked;
+    this.change({ dug: [...this.state.dug, cell], picked, isolated: false });
+  }
+
+  toggleDigging(): void {
+    this.digging = !this.digging;
+    this.showControls();
+  }
+
+  /** Puts the cell back that was taken away last. */
+  undo(): void {
+    this.change({ dug: this.state.dug.slice(0, -1) });
   }
 
   unpick(): void {
-    this.change({ picked: null });
+    this.change({ picked: null, isolated: false });
   }
 
-  /** Picks the worst of the cells that the filter keeps, and turns to it. */
+  /** Shows the picked cell alone, or with all others again. */
+  isolate(): void {
+    if (this.state.picked !== null) this.change({ isolated: !this.state.isolated });
+  }
+
+  /** Picks the worst of the cells that the filter keeps, goes close to it, and shows it alone. */
   pickWorst(): void {
+    const worst = this.worstKept();
+    if (worst === null) return;
+    const centre = this.centreOf(worst);
+    let radius = 0;
+    for (let k = 0; k < 8; ++k) {
+      const at = 4 * this.mesh.cells[8 * worst + k]!;
+      const away = centre.map((x, axis) => this.mesh.positions[at + axis]! - x);
+      radius = Math.max(radius, Math.hypot(...away));
+    }
+    this.viewport.approach(centre, radius);
+    this.change({ picked: worst, isolated: true });
+  }
+
+  private worstKept(): number | null {
     const [from, to] = this.storedRange();
     const { quality, layers } = this.mesh;
     const side = this.filter().plane;
+    const dug = new Set(this.state.dug);
     let worst: number | null = null;
     for (let cell = 0; cell < quality.length; ++cell) {
       const value = quality[cell]!;
       if (value < from || value > to || layers[cell]! < this.state.peel) continue;
-      if (worst !== null && value >= quality[worst]!) continue;
+      if ((worst !== null && value >= quality[worst]!) || dug.has(cell)) continue;
       if (side) {
         const [x, y, z] = this.centreOf(cell);
         const along = side.normal[0] * x + side.normal[1] * y + side.normal[2] * z;
@@ -174,24 +190,21 @@ export class App {
       }
       worst = cell;
     }
-    if (worst === null) return;
-    this.viewport.lookAt(this.centreOf(worst));
-    this.change({ picked: worst });
+    return worst;
   }
 
-  /** Saves what is on the canvas, with the legend. */
+  /** Saves what is on the canvas, as large as is asked for. */
   async savePicture(): Promise<void> {
-    const picture = this.viewport.picture();
-    const ratio = picture.width / element("canvas").clientWidth;
-    const text = getComputedStyle(document.documentElement).getPropertyValue("--text");
-    this.legend.draw(picture, ratio, text);
-    const blob = await new Promise<Blob | null>((resolve) => picture.toBlob(resolve));
-    if (!blob) throw new Error("The browser could not make a picture.");
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(blob);
-    link.download = `${this.info.title.replace(/\.[^.]*$/, "")}.png`;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+    const wanted = askedPicture(element("canvas"));
+    if (!wanted) return;
+    const picture = this.viewport.picture(wanted.width, wanted.height, wanted.transparent);
+    if (wanted.legend) {
+      const { clientWidth, clientHeight } = element("canvas");
+      const ratio = Math.min(picture.width / clientWidth, picture.height / clientHeight);
+      const text = getComputedStyle(document.documentElement).getPropertyValue("--text");
+      this.legend.draw(picture, ratio, text);
+    }
+    await savePng(picture, `${this.info.title.replace(/\.[^.]*$/, "")}.png`);
   }
 
   async copyLink(): Promise<void> {
@@ -206,11 +219,20 @@ export class App {
   private restore(fragment: string): void {
     if (fragment.replace(/^#/, "") === toFragment(this.state)) return;
     this.state = fromFragment(fragment);
-    if (this.state.picked !== null && this.state.picked >= this.info.cells) this.state.picked = null;
+    this.dropUnknownCells();
     if (this.state.camera) this.viewport.cameraState = this.state.camera;
     else this.viewport.look([1, -1.6, 0.9]);
     this.applyTheme();
     this.update();
+  }
+
+  /** An address may come from another mesh. */
+  private dropUnknownCells(): void {
+    const { state, info } = this;
+    state.dug = state.dug.filter((cell) => cell < info.cells);
+    if (state.picked === null || state.picked < info.cells) return;
+    state.picked = null;
+    state.isolated = false;
   }
 
   private centreOf(cell: number): [number, number, number] {
@@ -247,11 +269,12 @@ export class App {
     document.body.dataset.busy = "true";
     this.surface.setColouring(state.colour);
     this.surface.showGrid(state.grid);
-    this.surface.setPicked(state.picked);
+    this.surface.setPicked(state.isolated ? null : state.picked);
     this.lines.inner.visible = state.inner;
     this.lines.boundary.visible = state.boundary;
     this.lines.features.visible = state.features;
-    this.lines.creases.visible = state.ghost;
+    this.lines.creases.visible = state.ghost && !state.isolated;
+    this.lines.bad.visible = state.colour === "quality" && !state.isolated;
     this.surface.showGhost(state.ghost, state.isolated);
     this.surface.showRounded(state.rounded);
     this.outlinePicked();
@@ -274,6 +297,7 @@ export class App {
       inner: wideLines(singularSegments(singularEdges, false), positions, curves, 3),
       boundary: wideLines(singularSegments(singularEdges, true), positions, curves, 2),
       features: wideLines(featureSegments(featureEdges), positions, curves, 2.5),
+      bad: wideLines(badSegments(this.mesh), positions, curves, 2),
       creases: thinLines(creases, positions, curves),
     };
     for (const object of Object.values(lines)) this.viewport.add(object);
@@ -299,7 +323,7 @@ export class App {
     const cell = this.state.picked;
     const vertices =
       cell === null ? [] : kCellEdges.map((corner) => this.mesh.cells[8 * cell + corner]!);
-    const colours = vertices.slice(0, vertices.length / 2).map(() => 0xff3b30);
+    const colours = vertices.slice(0, vertices.length / 2).map(() => kPickedColour);
     const curves = this.curved() ? this.curves : null;
     this.pickedOutline = wideLines({ vertices, colours }, this.mesh.positions, curves, 2.5);
     this.viewport.add(this.pickedOutline);
@@ -350,6 +374,11 @@ export class App {
     const lowest = Math.max(state.quality[0], Math.floor(qualityOf(0)));
     element<HTMLInputElement>("quality-from").value = String(Number(lowest.toFixed(4)));
     element<HTMLInputElement>("quality-to").value = String(Number(state.quality[1].toFixed(4)));
+    element("dig").setAttribute("aria-pressed", String(this.digging));
+    element<HTMLButtonElement>("undo").disabled = state.dug.length === 0;
+    element("dug").textContent = state.dug.length === 0 ? "" : `${grouped(state.dug.length)} taken away`;
+    element("isolate").setAttribute("aria-pressed", String(state.isolated));
+    element("canvas").classList.toggle("digging", this.digging);
     element<HTMLSelectElement>("colour").value = state.colour;
     for (const flag of kFlags) {
       element<HTMLInputElement>(`show-${flag}`).checked = state[flag];

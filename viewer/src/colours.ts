@@ -9,6 +9,9 @@ const kViridis = [
 /** For cells that are not positive: no other colour of a cell is near it. */
 export const kBadColour = 0xc2006f;
 
+/** Around the picked cell. */
+export const kPickedColour = 0x0b63b5;
+
 /** What is outside of the mesh is cool, what a cut shows is warm. */
 export const kSkinColour = 0xc9d6e6;
 export const kInsideColour = 0xfcecc3;

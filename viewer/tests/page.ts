@@ -1,5 +1,6 @@
 // What the tests do with a page: open it, watch it, read its panel.
 import { type Page, test as base, expect } from "@playwright/test";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { kPages } from "./make_pages";
 
@@ -56,15 +57,12 @@ export async function press(page: Page, keys: string): Promise<void> {
   }
 }
 
-/** Of the canvas: the number of different colours, 1 if nothing is drawn; of pixels that are not as the
- * one in the corner; and red, green and blue in the middle. */
-export async function lookAtCanvas(
-  page: Page,
-): Promise<{ colours: number; covered: number; middle: number[] }> {
-  const bytes = (await page.locator("#canvas").screenshot()).toString("base64");
-  return page.evaluate(async (png) => {
+/** Of a picture: the number of different colours, 1 if nothing is drawn; of pixels that are not as the one
+ * in the corner; and red, green, blue and opacity there and in the middle. */
+async function lookAt(page: Page, png: Buffer) {
+  return page.evaluate(async (base64) => {
     const image = new Image();
-    image.src = `data:image/png;base64,${png}`;
+    image.src = `data:image/png;base64,${base64}`;
     await image.decode();
     const canvas = document.createElement("canvas");
     canvas.width = image.width;
@@ -77,12 +75,22 @@ export async function lookAtCanvas(
     return {
       colours: new Set(pixels).size,
       covered: pixels.reduce((sum, pixel) => sum + Number(pixel !== pixels[0]), 0),
-      middle: [...data.slice(middle, middle + 3)],
+      corner: [...data.slice(0, 4)],
+      middle: [...data.slice(middle, middle + 4)],
     };
-  }, bytes);
+  }, png.toString("base64"));
 }
 
-export const colourInTheMiddle = async (page: Page) => (await lookAtCanvas(page)).middle;
+export const lookAtCanvas = async (page: Page) => lookAt(page, await page.locator("#canvas").screenshot());
 export const coloursOnCanvas = async (page: Page) => (await lookAtCanvas(page)).colours;
+export const colourInTheMiddle = async (page: Page) => (await lookAtCanvas(page)).middle;
+export const pixelsOfPng = (page: Page, path: string) => lookAt(page, readFileSync(path));
+
+/** Width and height, from the file's header; throws if it is no PNG. */
+export function sizeOfPng(path: string): [number, number] {
+  const bytes = readFileSync(path);
+  expect(bytes.subarray(1, 4).toString()).toBe("PNG");
+  return [bytes.readUInt32BE(16), bytes.readUInt32BE(20)];
+}
 
 export { expect };

@@ -1,7 +1,7 @@
 import { mkdirSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { kHostileName, kPages, serve } from "./make_pages";
-import { colourInTheMiddle, coloursOnCanvas, complaintsOf, expect, kept, lookAtCanvas, open, press, quads, settle, test } from "./page";
+import { colourInTheMiddle, coloursOnCanvas, complaintsOf, expect, kept, lookAtCanvas, open, pixelsOfPng, press, quads, settle, sizeOfPng, test } from "./page";
 
 const kPictures = process.env.HEXHEX_VIEWER_PICTURES ?? join(kPages, "../pictures");
 mkdirSync(kPictures, { recursive: true });
@@ -118,10 +118,59 @@ test("finds cells that are not positive", async ({ page }) => {
   expect(Number(await page.locator("#picked-quality").textContent())).toBeLessThanOrEqual(0);
   await expect(page.locator("#stat-validity")).toContainText("not positive");
   await expect(page.locator("#picked-refuted")).toContainText("-");
+  // Alone and close, with the outline of all cells around it: cell 21 is no outer one of the 4^3.
+  expect([await kept(page), await quads(page)]).toEqual([1, 6]);
+  const alone = await lookAtCanvas(page);
+  await page.screenshot(shot("worst"));
+  await press(page, "o");
+  expect((await lookAtCanvas(page)).covered).toBeLessThan(0.8 * alone.covered);
+  await press(page, "oi");
+  expect(await kept(page)).toBe(64);
   await page.locator("#quality-to").fill("0");
   await page.locator("#quality-to").press("Enter");
   await settle(page);
   expect(await kept(page)).toBe(1);
+});
+
+test("takes single cells away, and puts them back", async ({ page }) => {
+  await open(page, "box.html", "#colour=plain&grid=0&camera=0.1,0.1,4,0.1,0.1,0");
+  const box = (await page.locator("#canvas").boundingBox())!;
+  const middle: [number, number] = [box.x + box.width / 2, box.y + box.height / 2];
+  const before = await colourInTheMiddle(page);
+  const seen = [];
+  await page.locator("#dig").click();
+  for (let dug = 1; dug <= 3; ++dug) {
+    await page.mouse.click(...middle);
+    await settle(page);
+    // Of a hole of one cell one sees its walls, too: four more faces for each cell.
+    expect([await kept(page), await quads(page)]).toEqual([64 - dug, 96 + 4 * dug]);
+    seen.push((await colourInTheMiddle(page))[1]!);
+  }
+  // Deeper means darker, and inside is warmer than outside.
+  expect(seen[1]).toBeLessThan(seen[0]!);
+  expect(seen[2]).toBeLessThan(seen[1]!);
+  await page.screenshot(shot("dug"));
+  await expect(page.locator("#picked")).toBeHidden();
+  await page.locator("#share").click();
+  expect(page.url()).toMatch(/dug=\d+,\d+,\d+/);
+  await page.keyboard.press("Control+z");
+  await settle(page);
+  await press(page, "k");
+  await page.keyboard.press("Backspace");
+  await settle(page);
+  await page.locator("#undo").click();
+  await settle(page);
+  await expect(page.locator("#undo")).toBeDisabled();
+  expect([await kept(page), await quads(page)]).toEqual([64, 96]);
+  expect(await colourInTheMiddle(page)).toEqual(before);
+  // Otherwise a click picks, unless Shift is down; the last cell of a column leaves a hole.
+  await page.keyboard.down("Shift");
+  for (let dug = 1; dug <= 5; ++dug) await page.mouse.click(...middle).then(() => settle(page));
+  await page.keyboard.up("Shift");
+  expect(await kept(page)).toBe(60);
+  await page.mouse.click(...middle);
+  await settle(page);
+  await expect(page.locator("#picked")).toBeHidden();
 });
 
 test("tells about a cell that is clicked", async ({ page }) => {
@@ -252,8 +301,34 @@ test("saves a picture", async ({ page }) => {
   expect(file.suggestedFilename()).toBe("sphere.png");
   const path = join(kPictures, "saved.png");
   await file.saveAs(path);
-  expect(readFileSync(path).subarray(1, 4).toString()).toBe("PNG");
+  const { width, height } = (await page.locator("#canvas").boundingBox())!;
+  expect(sizeOfPng(path)).toEqual([width, height]);
   expect(statSync(path).size).toBeGreaterThan(20000);
+
+  // Any size, and nothing behind the mesh.
+  const before = await page.locator("#canvas").screenshot();
+  await page.locator("#picture-width").fill("900");
+  await page.locator("#picture-height").fill("1200");
+  await page.locator("#picture-transparent").check();
+  await page.locator("#picture-legend").uncheck();
+  const large = page.waitForEvent("download");
+  await page.locator("#picture").click();
+  const largePath = join(kPictures, "saved-large.png");
+  await (await large).saveAs(largePath);
+  expect(sizeOfPng(largePath)).toEqual([900, 1200]);
+  const { corner, middle } = await pixelsOfPng(page, largePath);
+  expect(corner).toEqual([0, 0, 0, 0]);
+  expect(middle[3]).toBe(255);
+  await settle(page);
+  expect((await page.locator("#canvas").screenshot()).equals(before)).toBe(true);
+  // No size at all, and one that no browser draws.
+  for (const [wide, problem] of [["7", false], ["16000", true]] as const) {
+    await page.locator("#picture-width").fill(wide);
+    await page.locator("#picture-height").fill(wide);
+    await page.locator("#picture").click();
+    await expect(page.locator("#problem")).toBeVisible({ visible: problem });
+  }
+  await expect(page.locator("#problem")).toContainText("16000 by 16000");
 });
 
 test("keeps the view in the address", async ({ page, context }) => {
@@ -368,7 +443,7 @@ test("lists the keys, and is dark on request", async ({ page }) => {
   await open(page, "sphere.html");
   await press(page, "?");
   await expect(page.locator("#shortcuts")).toBeVisible();
-  await expect(page.locator("#shortcut-list dt")).toHaveCount(28);
+  await expect(page.locator("#shortcut-list dt")).toHaveCount(31);
   await page.keyboard.press("Escape");
   await expect(page.locator("#shortcuts")).toBeHidden();
   const back = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);

@@ -23,14 +23,18 @@ ivec2 texel(uint index) {
 
 /** Lines along the borders of squares, and the light: for faces and ghosts alike. */
 const kLook = /* glsl */ `
+/** Pixels of the picture per pixel of the page. */
+uniform float pixelRatio;
+
 /**
- * How much of a pixel the borders of the square cover: lines of a width in pixels that fade where they
- * would take too much of the square, however they lie.
+ * How much of a pixel the borders of the square cover: lines of a width in pixels of the page that fade
+ * where they would take too much of the square, however they lie.
  */
 float borders(vec2 square, float wide) {
-  vec2 pixel = max(fwidth(square), vec2(1e-6));
+  vec2 pixel = max(fwidth(square) * pixelRatio, vec2(1e-6));
   vec2 away = min(square, 1.0 - square) / pixel;
-  vec2 cover = 1.0 - smoothstep(0.5 * wide - 0.5, 0.5 * wide + 0.5, away);
+  float soft = 0.5 / pixelRatio;
+  vec2 cover = 1.0 - smoothstep(0.5 * wide - soft, 0.5 * wide + soft, away);
   cover *= min(vec2(1.0), 0.07 / pixel);
   return 1.0 - (1.0 - cover.x) * (1.0 - cover.y);
 }
@@ -148,13 +152,13 @@ vec3 base(bool inside) {
 
 /** Where the cell is rounded: 0 inside of its face, 1 at an edge. */
 vec2 rounding() {
-  return rounded ? smoothstep(vec2(0.32), vec2(0.5), abs(vSquare - 0.5)) : vec2(0.0);
+  return rounded ? smoothstep(vec2(0.28), vec2(0.5), abs(vSquare - 0.5)) : vec2(0.0);
 }
 
 vec3 normalHere() {
   vec3 normal = facing(vNormal, vPlace);
   vec2 tilt = rounding() * sign(vSquare - 0.5);
-  return normalize(normal + 1.1 * (tilt.x * normalize(vRight) + tilt.y * normalize(vUp)));
+  return normalize(normal + 1.2 * (tilt.x * normalize(vRight) + tilt.y * normalize(vUp)));
 }
 
 void main() {

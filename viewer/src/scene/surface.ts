@@ -112,6 +112,7 @@ export class Surface {
   private readonly ghostMaterial: RawShaderMaterial;
   private curvedTexture: DataTexture | null = null;
   private ghostWanted = true;
+  private readonly pixelRatio = { value: 1 };
 
   constructor(loaded: LoadedMesh) {
     const rows = loaded.positions.length / 4 / kTextureWidth;
@@ -129,6 +130,7 @@ export class Surface {
       picked: { value: 0xffffffff },
       showGrid: { value: true },
       rounded: { value: false },
+      pixelRatio: this.pixelRatio,
     };
     const options = {
       glslVersion: GLSL3,
@@ -147,7 +149,7 @@ export class Surface {
       glslVersion: GLSL3,
       vertexShader: kGhostVertexShader,
       fragmentShader: kGhostFragmentShader,
-      uniforms: { positions, tint: { value: kGhostTint }, grid: { value: 0 } },
+      uniforms: { positions, tint: { value: kGhostTint }, grid: { value: 0 }, pixelRatio: this.pixelRatio },
       side: DoubleSide,
       transparent: true,
       depthWrite: false,
@@ -193,6 +195,11 @@ export class Surface {
 
   setPicked(cell: number | null): void {
     this.material.uniforms.picked!.value = cell ?? 0xffffffff;
+  }
+
+  /** @param ratio  pixels of the picture per pixel of the page */
+  setPixelRatio(ratio: number): void {
+    this.pixelRatio.value = ratio;
   }
 
   showGrid(on: boolean): void {

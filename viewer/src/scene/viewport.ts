@@ -23,6 +23,8 @@ export interface CameraState {
 const kFieldOfView = 30;
 /** Share of the canvas that the mesh fills at first. */
 const kFilled = 0.9;
+/** The same for a ball that one goes close to. */
+const kApproached = 0.4;
 
 type Triple = [number, number, number];
 
@@ -34,7 +36,7 @@ export class Viewport {
   private readonly controls: OrbitControls;
   private readonly pickTarget = new WebGLRenderTarget(1, 1);
   private frame = 0;
-  private picking: Surface | null = null;
+  private surface: Surface | null = null;
 
   /** @param half  half the sides of the box around what is drawn  @throws if the browser has no WebGL 2 */
   constructor(
@@ -42,7 +44,7 @@ export class Viewport {
     private readonly half: Triple,
     onMoved: () => void,
   ) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true });
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     // Colours are written as they are: those of the legend are those on the screen.
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.camera.up.set(0, 0, 1);
@@ -72,7 +74,8 @@ export class Viewport {
   }
 
   setSurface(surface: Surface): void {
-    this.picking = surface;
+    this.surface = surface;
+    surface.setPixelRatio(this.renderer.getPixelRatio());
     this.scene.add(surface.mesh, surface.ghost);
     this.pickScene.add(surface.pickMesh);
   }
@@ -109,11 +112,12 @@ export class Viewport {
     return distance;
   }
 
-  /** Turns the camera to a place without changing the direction of view. */
-  lookAt(place: [number, number, number]): void {
-    const shift = new Vector3(...place).sub(this.controls.target);
-    this.controls.target.add(shift);
-    this.camera.position.add(shift);
+  /** Goes close to a ball without changing the direction of view. */
+  approach(place: Triple, radius: number): void {
+    const distance = radius / (kApproached * Math.tan((kFieldOfView / 2) * (Math.PI / 180)));
+    const direction = new Vector3(...this.viewDirection());
+    this.controls.target.set(...place);
+    this.camera.position.copy(this.controls.target).addScaledVector(direction, distance);
     this.controls.update();
     this.redraw();
   }
@@ -148,8 +152,9 @@ export class Viewport {
 
   /** The cell under a point of the canvas in CSS pixels, or null. */
   pick(x: number, y: number): number | null {
-    if (!this.picking?.pickMesh.visible) return null;
+    if (!this.surface?.pickMesh.visible) return null;
     const { clientWidth, clientHeight } = this.canvas;
+    this.fitDepth();
     this.camera.setViewOffset(clientWidth, clientHeight, x, y, 1, 1);
     this.renderer.setRenderTarget(this.pickTarget);
     this.renderer.setClearColor(0, 0);
@@ -163,28 +168,67 @@ export class Viewport {
     return id === 0 ? null : id - 1;
   }
 
-  /** What is on the canvas, at once. */
-  picture(): HTMLCanvasElement {
-    this.draw();
-    const copy = document.createElement("canvas");
-    copy.width = this.canvas.width;
-    copy.height = this.canvas.height;
-    copy.getContext("2d")!.drawImage(this.canvas, 0, 0);
-    return copy;
+  /**
+   * What is on the canvas, in pixels of a size; where its shape is another one, more is to be seen.
+   * @throws if the browser does not draw pictures of that size
+   */
+  picture(width: number, height: number, transparent: boolean): HTMLCanvasElement {
+    const { background } = this.scene;
+    const { aspect } = this.camera;
+    if (transparent) this.scene.background = null;
+    const narrower = Math.max(1, (aspect * height) / width);
+    this.camera.fov = (360 / Math.PI) * Math.atan(narrower * Math.tan((kFieldOfView * Math.PI) / 360));
+    try {
+      this.setSize(width, height, Math.min(width / this.canvas.clientWidth, height / this.canvas.clientHeight));
+      const { drawingBufferWidth, drawingBufferHeight } = this.renderer.getContext();
+      if (drawingBufferWidth !== width || drawingBufferHeight !== height) {
+        throw new Error(`This browser draws no pictures of ${width} by ${height} pixels: take fewer.`);
+      }
+      this.draw();
+      const copy = document.createElement("canvas");
+      copy.width = width;
+      copy.height = height;
+      copy.getContext("2d")!.drawImage(this.canvas, 0, 0);
+      return copy;
+    } finally {
+      this.scene.background = background;
+      this.camera.fov = kFieldOfView;
+      this.resize();
+      this.draw();
+    }
   }
 
   private draw(): void {
+    this.fitDepth();
     this.renderer.render(this.scene, this.camera);
+  }
+
+  /** Depth from before to behind the scene and no further, so that near things are told apart. */
+  private fitDepth(): void {
+    const distance = this.camera.position.length();
+    const radius = 1.05 * Math.hypot(...this.half);
+    const closest = 0.02 * this.camera.position.distanceTo(this.controls.target);
+    this.camera.near = Math.max(distance - radius, closest);
+    this.camera.far = Math.max(distance + radius, 2 * this.camera.near);
+    this.camera.updateProjectionMatrix();
   }
 
   private resize(): void {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return;
     // More pixels than two per CSS pixel cost time and show nothing.
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    this.renderer.setSize(clientWidth, clientHeight, false);
-    this.camera.aspect = clientWidth / clientHeight;
-    this.camera.updateProjectionMatrix();
+    const ratio = Math.min(window.devicePixelRatio, 2);
+    this.setSize(Math.floor(clientWidth * ratio), Math.floor(clientHeight * ratio), ratio);
     this.redraw();
+  }
+
+  /** @param ratio  pixels of the picture per pixel of the page */
+  private setSize(width: number, height: number, ratio: number): void {
+    this.renderer.setPixelRatio(ratio);
+    // Halves, so that products that are rounded down are the numbers that are meant.
+    this.renderer.setSize((width + 0.5) / ratio, (height + 0.5) / ratio, false);
+    this.surface?.setPixelRatio(ratio);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
   }
 }

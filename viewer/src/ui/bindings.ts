@@ -28,7 +28,10 @@ const kShortcuts: Shortcut[] = [
   { keys: ["r"], shown: "R", what: "rounded cells", run: (app) => app.toggle("rounded") },
   { keys: ["t"], shown: "T", what: "tagged edges", run: (app) => app.toggle("features") },
   { keys: ["u"], shown: "U", what: "curved or straight cells, if they are of higher order", run: (app) => app.toggle("curved") },
-  { keys: ["w"], shown: "W", what: "go to the worst of the kept cells", run: (app) => app.pickWorst() },
+  { keys: ["k"], shown: "K", what: "clicks take cells away, or pick them", run: (app) => app.toggleDigging() },
+  { keys: ["Backspace"], shown: "Backspace", what: "put the last cell back", run: (app) => app.undo() },
+  { keys: ["w"], shown: "W", what: "go to the worst of the kept cells, and show it alone", run: (app) => app.pickWorst() },
+  { keys: ["i"], shown: "I", what: "the picked cell alone, or all again", run: (app) => app.isolate() },
   { keys: ["h"], shown: "H", what: "the view at the start", run: (app) => app.look("home") },
   { keys: ["1"], shown: "1", what: "look from +x", run: (app) => app.look("x") },
   { keys: ["2"], shown: "2", what: "look from +y", run: (app) => app.look("y") },
@@ -82,6 +85,9 @@ function bindControls(app: App): void {
   }
   onClick("slice-flip", () => app.flip());
   onClick("quality-all", () => app.setQuality([-1, 1]));
+  onClick("dig", () => app.toggleDigging());
+  onClick("undo", () => app.undo());
+  onClick("isolate", () => app.isolate());
   onClick("worst", () => app.pickWorst());
   onClick("share", () => void app.copyLink());
   onClick("theme", () => app.toggleTheme());
@@ -92,12 +98,14 @@ function bindControls(app: App): void {
 
 function bindKeys(app: App): void {
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    const undo = (event.ctrlKey || event.metaKey) && event.key === "z";
+    if ((event.ctrlKey || event.altKey || event.metaKey) && !undo) return;
     const target = event.target as HTMLElement;
     // Where people type, keys are text. A dialog that was just closed may still have the focus.
     if (target.matches("input[type=number], select, dialog[open] *")) return;
+    const pressed = undo ? "Backspace" : event.key;
     const shortcut = kShortcuts.find(({ keys }) =>
-      keys.includes(event.key.length === 1 ? event.key.toLowerCase() : event.key));
+      keys.includes(pressed.length === 1 ? pressed.toLowerCase() : pressed));
     if (!shortcut) return;
     event.preventDefault();
     shortcut.run(app);
@@ -116,7 +124,7 @@ function bindPicking(app: App): void {
   canvas.addEventListener("pointerup", (event) => {
     if (!begin || !event.isPrimary) return;
     const moved = Math.hypot(event.offsetX - begin.x, event.offsetY - begin.y);
-    if (moved < 6 && event.timeStamp - begin.time < 600) app.pickAt(event.offsetX, event.offsetY);
+    if (moved < 6 && event.timeStamp - begin.time < 600) app.clickAt(event.offsetX, event.offsetY, event.shiftKey);
     begin = null;
   });
 }
