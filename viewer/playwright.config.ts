@@ -4,6 +4,7 @@ import { defineConfig } from "@playwright/test";
 export default defineConfig({
   testDir: "tests",
   outputDir: process.env.HEXHEX_VIEWER_RESULTS ?? "test-results",
+  snapshotPathTemplate: "{testDir}/pictures/{arg}{ext}",
   globalSetup: "./tests/make_pages.ts",
   workers: 1,
   timeout: 120_000,

@@ -86,6 +86,18 @@ export const coloursOnCanvas = async (page: Page) => (await lookAtCanvas(page)).
 export const colourInTheMiddle = async (page: Page) => (await lookAtCanvas(page)).middle;
 export const pixelsOfPng = (page: Page, path: string) => lookAt(page, readFileSync(path));
 
+/** Saves a picture as the panel does. @return  where it is */
+export async function savePicture(
+  page: Page,
+  { width, height, legend }: { width: number; height: number; legend: boolean },
+): Promise<string> {
+  await page.locator("#picture-width").fill(String(width));
+  await page.locator("#picture-height").fill(String(height));
+  await page.locator("#picture-legend").setChecked(legend);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#picture").click()]);
+  return download.path();
+}
+
 /** Width and height, from the file's header; throws if it is no PNG. */
 export function sizeOfPng(path: string): [number, number] {
   const bytes = readFileSync(path);
