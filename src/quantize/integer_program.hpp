@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <hexhex/context.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
@@ -26,9 +27,12 @@ struct IntegerProgram {
 /// can be loaded.
 [[nodiscard]] bool canLoadCbc();
 
-/// By CBC, to within 1 % of the minimum. Deterministic: its limit is one of nodes.
+/// By CBC, in a process of its own, to within 1 % of the minimum. Deterministic: its limit is one
+/// of nodes.
 /// @return empty if there is no solution, or none is found. @pre canLoadCbc()
-[[nodiscard]] std::vector<std::int64_t> solveByCbc(const IntegerProgram& program);
+/// @throws Error OutOfMemory if it crashes; Cancelled
+[[nodiscard]] std::vector<std::int64_t> solveByCbc(const IntegerProgram& program,
+                                                   const Context& context);
 
 /// By rounding the nearest real solution and then changing it step by step along integer solutions
 /// of the equations. Finds good solutions where lengths are large, and none in some cases where

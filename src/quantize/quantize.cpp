@@ -287,7 +287,8 @@ class Quantizer {
         const double length = static_cast<double>(arc.length) / seamless_.unit * scale;
         program_.lengths.push_back(std::round(length * kLengthUnits) / kLengthUnits);
       }
-      Choice choice{scale, canLoadCbc() ? solveByCbc(program_) : solveGreedily(program_, stage), 0};
+      Choice choice{
+          scale, canLoadCbc() ? solveByCbc(program_, context_) : solveGreedily(program_, stage), 0};
       if (choice.integers.empty()) {
         // Rounding finds some where arcs are longer.
         scale *= 1.2;

@@ -51,6 +51,7 @@ static struct {
 } fault;
 static atomic_long *calls; /* shared with the server */
 static int logging = -1;
+static pid_t command; /* gets the signals, also for what its children do */
 
 /* Functions behind ours. */
 #define NEXT(name)                                           \
@@ -75,7 +76,7 @@ static int hits(enum Kind kind) {
 }
 
 static int fails(enum Kind kind, int error) {
-  if (hits(SIGNAL)) kill(getpid(), fault.number);
+  if (hits(SIGNAL)) kill(command, fault.number);
   if (!hits(kind)) return 0;
   errno = error;
   return 1;
@@ -273,7 +274,7 @@ int link(const char *from, const char *to) {
 }
 int unlink(const char *name) {
   NEXT(unlink);
-  if (hits(SIGNAL)) kill(getpid(), fault.number);
+  if (hits(SIGNAL)) kill(command, fault.number);
   return next(name);
 }
 
@@ -327,6 +328,7 @@ static void reopen(int descriptor, const char *folder, const char *name) {
 }
 
 static int alone(int argc, char **argv, char **environment) {
+  command = getpid();
   fault.armed = 1;
   const int code = main_of_command(argc, argv, environment);
   fault.armed = 0;

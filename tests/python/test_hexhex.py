@@ -461,7 +461,7 @@ def test_quantization_refuses():
 
 
 def test_interrupts_after_quantization():
-    """CBC handles signals while it works; afterwards Ctrl-C is ours again."""
+    """CBC handles signals while it works, in a process of its own: Ctrl-C stays ours."""
     needs_quantization()
     code = """
 import os, signal, hexhex

@@ -547,8 +547,7 @@ def quantize(map: Map, *, cells: float | None = None, scale: float | None = None
              tolerance: float = 1e-5, threads: int | None = None,
              progress: Progress | None = None) -> tuple[Map, QuantizeReport]:
     """An integer-grid map from a seamless one: chooses integers, and bends the map onto them.
-    Features and regions come along; edges of tets may be split. To be called from one thread at a
-    time, as CBC has global state.
+    Features and regions come along; edges of tets may be split.
 
     Args:
         cells: hexahedra wanted; or one of the next two instead.
