@@ -222,8 +222,10 @@ void addMeditBombs(std::vector<Bomb>& bombs) {
                    }});
   bombs.push_back({"points.meshb", [](std::size_t n) {
                      std::string bytes = bytesOf(1, 1) + bytesOf(3, 20, 3);  // single precision
-                     const int count = static_cast<int>(n / 16);
-                     bytes += bytesOf(4, 32 + 16 * count, count) + std::string(16U * count, '\1');
+                     const std::size_t count = n / 16;
+                     bytes +=
+                         bytesOf(4, static_cast<int>(32 + 16 * count), static_cast<int>(count)) +
+                         std::string(16 * count, '\1');
                      return bytes + bytesOf(10, 0, 0);
                    }});
   bombs.push_back({"counts.meshb", [](std::size_t n) {

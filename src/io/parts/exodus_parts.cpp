@@ -249,7 +249,7 @@ class ExodusSink final : public PartSink {
 
  private:
   [[nodiscard]] std::filesystem::path fileOf(std::uint32_t part) const {
-    return file_.native() + '.' + std::to_string(info_.parts) + '.' + padded(part, info_.parts);
+    return file_.string() + '.' + std::to_string(info_.parts) + '.' + padded(part, info_.parts);
   }
 
   Context& context_;

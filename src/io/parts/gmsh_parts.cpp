@@ -417,9 +417,9 @@ class ManyGmshFiles final : public GmshSink {
 
   void part(MeshPart&& part) override {
     Stage stage(context_, "write mesh");
-    std::filesystem::path file = file_;
-    file.replace_filename(file_.stem().native() + '_' + std::to_string(part.part + 1) +
-                          file_.extension().native());
+    std::string file = file_.string();
+    file.insert(file.size() - file_.extension().string().size(),
+                '_' + std::to_string(part.part + 1));
     OutputFile& output = files_.add(file);
     FileSums sums;
     const PartSections sections = sectionsOf(part, false, sums, stage);

@@ -113,7 +113,7 @@ class MfemSink final : public PartSink {
     constexpr std::size_t kDigits = 6;
     std::string number = std::to_string(part.part);
     number.insert(0, kDigits - std::min(kDigits, number.size()), '0');
-    OutputFile& output = files_.add(file_.native() + '.' + number);
+    OutputFile& output = files_.add(file_.string() + '.' + number);
     writeSerial(output, part, stage);
     writeShared(output, SharedByGroup(part).groups(), part.part);
     files_.finishLast();
