@@ -1,7 +1,7 @@
 import { mkdirSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { kHostileName, kPages, serve } from "./make_pages";
-import { colourInTheMiddle, coloursOnCanvas, complaintsOf, expect, kept, lookAtCanvas, open, pixelsOfPng, press, quads, settle, sizeOfPng, test } from "./page";
+import { colourInTheMiddle, coloursOnCanvas, complaintsOf, expect, kept, lookAtCanvas, open, pixelsOfPng, press, quads, settle, shotOfCanvas, sizeOfPng, test } from "./page";
 
 const kPictures = process.env.HEXHEX_VIEWER_PICTURES ?? join(kPages, "../pictures");
 mkdirSync(kPictures, { recursive: true });
@@ -306,7 +306,7 @@ test("saves a picture", async ({ page }) => {
   expect(statSync(path).size).toBeGreaterThan(20000);
 
   // Any size, and nothing behind the mesh.
-  const before = await page.locator("#canvas").screenshot();
+  const before = await shotOfCanvas(page);
   await page.locator("#picture-width").fill("900");
   await page.locator("#picture-height").fill("1200");
   await page.locator("#picture-transparent").check();
@@ -320,7 +320,7 @@ test("saves a picture", async ({ page }) => {
   expect(corner).toEqual([0, 0, 0, 0]);
   expect(middle[3]).toBe(255);
   await settle(page);
-  expect((await page.locator("#canvas").screenshot()).equals(before)).toBe(true);
+  expect((await shotOfCanvas(page)).equals(before)).toBe(true);
   // No size at all, and one that no browser draws.
   for (const [wide, problem] of [["7", false], ["16000", true]] as const) {
     await page.locator("#picture-width").fill(wide);

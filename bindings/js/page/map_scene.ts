@@ -16,6 +16,8 @@ import type { MapShape } from "./messages";
 const kBad = 0xd81b60;
 /** Half the sides of the box of the scene. */
 const kHalf: [number, number, number] = [0.5, 0.5, 0.5];
+/** The radius of what is shown around a place, in that scene. */
+const kAround = 0.15;
 
 function surfaceOf(shape: MapShape): Mesh {
   const { positions, triangles } = shape;
@@ -81,6 +83,6 @@ export class MapScene {
   }
 
   lookAt(place: [number, number, number]): void {
-    this.viewport.lookAt(place);
+    this.viewport.approach(place, kAround);
   }
 }
