@@ -888,5 +888,6 @@ class MeshPart:
     @classmethod
     def _of(cls, values: tuple[Any, ...]) -> MeshPart:
         mesh, *others, neighbours = values
-        return cls(Mesh._from_handle(mesh), *others,
-                   [PartNeighbour(*neighbour) for neighbour in neighbours])
+        fields: list[Any] = [Mesh._from_handle(mesh), *others,
+                             [PartNeighbour(*neighbour) for neighbour in neighbours]]
+        return cls(*fields)
