@@ -30,11 +30,11 @@ class PlainMesh {
   /// Goes to the first vertex.
   virtual void beginPoints() = 0;
   /// Reads the next vertices.
-  virtual void read(std::span<Vec3> points) = 0;
+  virtual void read(std::span<Vec3> to) = 0;
   /// Goes to the first hexahedron.
   virtual void beginCells() = 0;
   /// Reads the next hexahedra.
-  virtual void read(std::span<Hex64> cells) = 0;
+  virtual void read(std::span<Hex64> to) = 0;
 
   std::uint64_t points = 0;
   std::uint64_t cells = 0;

@@ -57,16 +57,16 @@ class GmshPieces final : public PlainMesh {
   }
 
   void beginPoints() override { source_.moveTo(points_); }
-  void read(std::span<Vec3> points) override {
-    source_.records(points.size(), kPoint, [&](BinaryRecord& record, std::size_t i) {
-      for (double& x : points[i]) x = record.real("a coordinate of a node");
+  void read(std::span<Vec3> to) override {
+    source_.records(to.size(), kPoint, [&](BinaryRecord& record, std::size_t i) {
+      for (double& x : to[i]) x = record.real("a coordinate of a node");
     });
   }
   void beginCells() override { source_.moveTo(cells_); }
-  void read(std::span<Hex64> cells) override {
-    source_.records(cells.size(), {.sizes = 9}, [&](BinaryRecord& record, std::size_t i) {
+  void read(std::span<Hex64> to) override {
+    source_.records(to.size(), {.sizes = 9}, [&](BinaryRecord& record, std::size_t i) {
       static_cast<void>(record.size("the tag of an element"));
-      for (std::uint64_t& vertex : cells[i]) {
+      for (std::uint64_t& vertex : to[i]) {
         vertex = vertexOfNumber(record.size("a node of an element"), points);
       }
     });

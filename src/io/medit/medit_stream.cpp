@@ -31,17 +31,17 @@ class MeditTextPieces final : public PlainMesh {
   }
 
   void beginPoints() override { text_.moveTo(positionOfPoints_); }
-  void read(std::span<Vec3> points) override {
-    text_.elements(points.size(), 4, [&](TextScanner& scanner, std::size_t i) {
-      for (double& x : points[i]) x = scanner.number("a coordinate of a vertex");
+  void read(std::span<Vec3> to) override {
+    text_.elements(to.size(), 4, [&](TextScanner& scanner, std::size_t i) {
+      for (double& x : to[i]) x = scanner.number("a coordinate of a vertex");
       readReference(scanner);
     });
   }
 
   void beginCells() override { text_.moveTo(positionOfCells_); }
-  void read(std::span<Hex64> cells) override {
-    text_.elements(cells.size(), 9, [&](TextScanner& scanner, std::size_t i) {
-      for (std::uint64_t& vertex : cells[i]) {
+  void read(std::span<Hex64> to) override {
+    text_.elements(to.size(), 9, [&](TextScanner& scanner, std::size_t i) {
+      for (std::uint64_t& vertex : to[i]) {
         const std::int64_t number = scanner.integer("a vertex of a hexahedron");
         vertex = vertexOfNumber(static_cast<std::uint64_t>(number), points);
       }
@@ -107,17 +107,17 @@ class MeditBytePieces final : public PlainMesh {
   }
 
   void beginPoints() override { source_.moveTo(points_); }
-  void read(std::span<Vec3> points) override {
-    source_.records(points.size(), point(), [&](BinaryRecord& record, std::size_t i) {
-      for (double& x : points[i]) x = record.real("a coordinate of a vertex");
+  void read(std::span<Vec3> to) override {
+    source_.records(to.size(), point(), [&](BinaryRecord& record, std::size_t i) {
+      for (double& x : to[i]) x = record.real("a coordinate of a vertex");
       static_cast<void>(integer(record));
     });
   }
 
   void beginCells() override { source_.moveTo(cells_); }
-  void read(std::span<Hex64> cells) override {
-    source_.records(cells.size(), cell(), [&](BinaryRecord& record, std::size_t i) {
-      for (std::uint64_t& vertex : cells[i]) vertex = vertexOfNumber(integer(record), points);
+  void read(std::span<Hex64> to) override {
+    source_.records(to.size(), cell(), [&](BinaryRecord& record, std::size_t i) {
+      for (std::uint64_t& vertex : to[i]) vertex = vertexOfNumber(integer(record), points);
       static_cast<void>(integer(record));
     });
   }

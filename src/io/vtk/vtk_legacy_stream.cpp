@@ -99,16 +99,16 @@ class VtkTextPieces final : public VtkSections {
   }
 
   void beginPoints() override { text_.moveTo(positionOfPoints_); }
-  void read(std::span<Vec3> points) override {
-    text_.elements(points.size(), 3, [&](TextScanner& scanner, std::size_t i) {
-      for (double& x : points[i]) x = scanner.number("a coordinate of a point");
+  void read(std::span<Vec3> to) override {
+    text_.elements(to.size(), 3, [&](TextScanner& scanner, std::size_t i) {
+      for (double& x : to[i]) x = scanner.number("a coordinate of a point");
     });
   }
   void beginCells() override { text_.moveTo(positionOfCells_); }
-  void read(std::span<Hex64> cells) override {
-    text_.elements(cells.size(), kNumbers, [&](TextScanner& scanner, std::size_t i) {
+  void read(std::span<Hex64> to) override {
+    text_.elements(to.size(), kNumbers, [&](TextScanner& scanner, std::size_t i) {
       requireCorners(scanner.integer("a number of corners"));
-      for (std::uint64_t& vertex : cells[i]) {
+      for (std::uint64_t& vertex : to[i]) {
         vertex = vertexAt(scanner.integer("a corner of a cell"), points);
       }
     });
@@ -142,17 +142,17 @@ class VtkBytePieces final : public VtkSections {
   }
 
   void beginPoints() override { next_ = positionOfPoints_; }
-  void read(std::span<Vec3> points) override {
-    if (isFloat_) return readPoints<float>(points);
-    readPoints<double>(points);
+  void read(std::span<Vec3> to) override {
+    if (isFloat_) return readPoints<float>(to);
+    readPoints<double>(to);
   }
   void beginCells() override { next_ = positionOfCells_; }
-  void read(std::span<Hex64> cells) override {
-    const char* const bytes = take(cells.size() * kNumbers * 4);
-    forEach(cells.size(), [&](std::size_t i) {
+  void read(std::span<Hex64> to) override {
+    const char* const bytes = take(to.size() * kNumbers * 4);
+    forEach(to.size(), [&](std::size_t i) {
       const char* place = bytes + i * kNumbers * 4;
       requireCorners(loadBig<std::int32_t>(place));
-      for (std::uint64_t& vertex : cells[i]) {
+      for (std::uint64_t& vertex : to[i]) {
         vertex = vertexAt(loadBig<std::int32_t>(place += 4), points);
       }
     });
@@ -183,12 +183,12 @@ class VtkBytePieces final : public VtkSections {
   }
 
   template <class T>
-  void readPoints(std::span<Vec3> points) {
-    const char* const bytes = take(points.size() * 3 * sizeof(T));
-    forEach(points.size(), [&](std::size_t i) {
+  void readPoints(std::span<Vec3> to) {
+    const char* const bytes = take(to.size() * 3 * sizeof(T));
+    forEach(to.size(), [&](std::size_t i) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        points[i][axis] = loadBig<T>(bytes + (3 * i + axis) * sizeof(T));
-        if (!std::isfinite(points[i][axis])) {
+        to[i][axis] = loadBig<T>(bytes + (3 * i + axis) * sizeof(T));
+        if (!std::isfinite(to[i][axis])) {
           throw Error(ErrorCode::NotFinite, "A coordinate is not finite.");
         }
       }
