@@ -254,7 +254,9 @@ TEST(OptionalFormats, FilesAppearCompleteOrNotAtAll) {
   const TemporaryFolder folder;
   const std::array<std::array<const char*, 2>, 4> all = {
       {{"vtkhdf", "a.vtkhdf"}, {"cgns", "a.cgns"}, {"exodus", "a.exo"}, {"exodus", "a.e"}}};
-  for (const auto& [format, name] : all) {
+  for (const auto& entry : all) {
+    const char* const format = entry[0];
+    const char* const name = entry[1];
     const HexMesh mesh = meshWithTags();
     if (!write(mesh, folder / name)) continue;
     const std::size_t files = folder.fileCount();
