@@ -6,7 +6,8 @@ export default defineConfig({
   testMatch: "*.spec.ts",
   outputDir: "test-results",
   workers: 1,
-  timeout: 60_000,
+  timeout: 120_000,
+  expect: { timeout: 30_000 },
   reporter: [["list"], ["junit", { outputFile: process.env.HEXHEX_PAGE_JUNIT ?? "junit.xml" }]],
   use: {
     viewport: { width: 1000, height: 700 },

@@ -38,13 +38,24 @@ test.beforeAll(() => {
 });
 test.afterAll(() => rmSync(folder, { recursive: true }));
 
-/** Drags files from outside of the browser onto the page, and lets them fall. */
+/**
+ * Drags files from outside of the browser onto the page, and lets them fall.
+ *
+ * Until Chromium has drawn the page without the frame of a mesh, it still sends a drag there, and never
+ * answers: then the drag enters again.
+ */
 async function drop(page: Page, ...names: string[]): Promise<void> {
   const session = await page.context().newCDPSession(page);
   const data = { items: [], files: names.map(at), dragOperationsMask: 1 };
-  for (const type of ["dragEnter", "dragOver", "drop"] as const) {
-    await session.send("Input.dispatchDragEvent", { type, x: 300, y: 300, data });
-  }
+  const send = (type: "dragEnter" | "dragOver" | "drop") =>
+    session.send("Input.dispatchDragEvent", { type, x: 300, y: 300, data });
+  await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+  await expect(async () => {
+    const entered = send("dragEnter").then(() => true, () => false);
+    expect(await Promise.race([entered, page.waitForTimeout(5000)])).toBe(true);
+  }).toPass();
+  await send("dragOver");
+  await send("drop");
   await session.detach();
 }
 
@@ -185,16 +196,19 @@ test("work can be cancelled in the middle, and done again", async ({ page }) => 
 });
 
 test("a second map has the memory of the first", async ({ page }) => {
+  const megabytes = async () => Number.parseInt((await text(page, "#memory"))!);
   await dropAndWait(page, "sphere.hexex");
-  await setScale(page, 6);
+  await setScale(page, 12);
   await click(page, "#extract");
-  await meshView(page);
-  const workers = () => page.workers().length;
-  const after = workers();
-  for (const name of ["torus.ovm", "sphere.hexex", "torus.ovm"]) await dropAndWait(page, name);
-  // One worker, which began with an empty memory.
-  expect(workers()).toBeLessThanOrEqual(after);
-  expect(Number.parseInt((await text(page, "#memory"))!)).toBeLessThan(100);
+  expect(await megabytes()).toBeGreaterThan(100);
+  await page.locator("#show-map").click();
+  const workers = page.workers().length;
+  for (const name of ["torus.ovm", "sphere.hexex", "torus.ovm"]) {
+    await dropAndWait(page, name);
+    // The worker is another one, which began with an empty memory.
+    expect(await megabytes()).toBeLessThan(50);
+  }
+  expect(page.workers().length).toBeLessThanOrEqual(workers);
 });
 
 test("samples are in a menu, and nothing reaches the network", async ({ page }) => {
