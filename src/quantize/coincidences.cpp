@@ -11,6 +11,9 @@ namespace {
 /// So many planes are compared with each other at most.
 constexpr std::size_t kMostPlanes = 200'000;
 
+/// In place of an axis: not a coordinate, but a difference.
+constexpr std::size_t kMoves = 3;
+
 /// A coordinate that conditions fix, times two.
 struct FixedCoordinate {
   std::size_t axis = 0;
@@ -52,6 +55,22 @@ std::set<FixedCoordinate> beyondCut(const std::set<FixedCoordinate>& here, const
   return all;
 }
 
+/// What ways around move along axes that they do not turn, and nothing: a wall that comes back to
+/// its beginning meets it, or misses it by more than noise.
+void collectMoves(const CutGraph& graph, const SharedUnknowns& unknowns,
+                  std::set<FixedCoordinate>& all) {
+  all.insert({kMoves, {}});
+  for (const HalfFace h : unknowns.cutPieces()) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Direction d = direction(static_cast<int>(axis), 1);
+      if (graph.rotations[h](d) != d) continue;
+      FixedCoordinate move{kMoves, {}};
+      move.form.add(unknowns.translation(h, axis), 2);
+      all.insert(std::move(move));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<IntegerForm> coincidences(const CutGraph& graph, const SharedUnknowns& unknowns,
@@ -65,6 +84,7 @@ std::vector<IntegerForm> coincidences(const CutGraph& graph, const SharedUnknown
     if (all.size() * unknowns.cutPieces().size() > kMostPlanes) break;
     all = beyondCut(all, graph, unknowns);
   }
+  collectMoves(graph, unknowns, all);
   std::vector<std::tuple<std::size_t, std::int64_t, const IntegerForm*>> sorted;
   sorted.reserve(all.size());
   for (const FixedCoordinate& each : all) {

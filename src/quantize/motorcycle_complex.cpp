@@ -1,31 +1,26 @@
 #include <algorithm>
-#include <set>
-#include <string>
+#include <cmath>
+#include <cstdlib>
 
+#include <quantize/arcs_and_patches.hpp>
 #include <quantize/motorcycle_complex.hpp>
-
-#include <base/disjoint_sets.hpp>
+#include <quantize/wall_remover.hpp>
 
 namespace hexhex {
 
 namespace {
 
-/// By this power of two, on the lattice of 2^52 units, thicknesses have to differ to matter.
-constexpr int kThicknessBits = 28;
-
-/// Where blocks do not close up: a way around through which charts differ.
-struct Holonomy {
-  Index tet = kNone;   ///< where it was noticed
-  ChartChange change;  ///< of the block's chart
-};
+/// By this power of two less than others, ways around a ring lead along an axis by noise alone.
+constexpr int kNoiseBits = 24;
 
 /// Numbers the parts between walls, each in one chart.
-Holonomy findBlocks(MotorcycleComplex& complex) {
+/// @return a tet where a block does not close up, as it is a ring; or kNone
+Index findBlocks(MotorcycleComplex& complex) {
   const WallMesh& mesh = complex.mesh;
   complex.blockOf.assign(mesh.tetCount(), kNone);
   complex.toBlock.assign(mesh.tetCount(), {});
   complex.blockCount = 0;
-  Holonomy holonomy;
+  Index inRing = kNone;
   std::vector<Index> queue;
   for (Index root = 0; root < mesh.tetCount(); ++root) {
     if (complex.blockOf[root] != kNone) continue;
@@ -37,389 +32,131 @@ Holonomy findBlocks(MotorcycleComplex& complex) {
         const HalfFace h = halfFaceOf(queue[next], face);
         if (mesh.isWall[h]) continue;
         const Index there = tetOf(mesh.mate[h]);
-        const ChartChange way = complex.toBlock[queue[next]] * mesh.change[h].inverse();
         if (complex.blockOf[there] == kNone) {
           complex.blockOf[there] = block;
-          complex.toBlock[there] = way;
+          complex.toBlock[there] = complex.toBlock[queue[next]] * mesh.change[h].inverse();
           queue.push_back(there);
-        } else if (holonomy.tet == kNone && !(way == complex.toBlock[there])) {
-          holonomy = {there, way * complex.toBlock[there].inverse()};
+        } else if (inRing == kNone && !complex.across(h).isIdentity()) {
+          inRing = there;
         }
       }
     }
   }
-  return holonomy;
+  return inRing;
 }
-
-/// A directed edge of a wall's triangle.
-struct WallEdge {
-  std::array<Index, 2> key{};  ///< ascending
-  Index tail = 0;
-  Index head = 0;
-  HalfFace halfFace = 0;
-  [[nodiscard]] auto operator<=>(const WallEdge&) const = default;
-};
-
-std::vector<WallEdge> wallEdges(const WallMesh& mesh) {
-  std::vector<WallEdge> edges;
-  for (HalfFace h = 0; h < mesh.mate.size(); ++h) {
-    if (!mesh.isWall[h]) continue;
-    const auto& c = kFaceCorners[h % 4];
-    const Tet& tet = mesh.tets[tetOf(h)];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Index tail = tet[static_cast<std::size_t>(c[k])];
-      const Index head = tet[static_cast<std::size_t>(c[(k + 1) % 3])];
-      edges.push_back({{std::min(tail, head), std::max(tail, head)}, tail, head, h});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
-
-/// The complex's edges, and which arc each belongs to.
-class ArcFinder {
- public:
-  ArcFinder(MotorcycleComplex& complex, DisjointSets& sides) : complex_(complex), sides_(sides) {}
-
-  /// Finds the complex's edges, and joins sides of triangles that lie in one plane.
-  void collect() {
-    const std::vector<WallEdge> edges = wallEdges(complex_.mesh);
-    forEachRun(
-        std::span<const WallEdge>(edges),
-        [](const WallEdge& a, const WallEdge& b) { return a.key == b.key; },
-        [this](std::span<const WallEdge> same) { addEdge(same); });
-    linkEdges();
-  }
-
-  /// Numbers arcs. After collect().
-  void follow() {
-    for (Index edge = 0; edge < edges_.size(); ++edge) {
-      for (const bool fromHead : {false, true}) {
-        const Index start = edges_[edge].vertices[fromHead ? 1 : 0];
-        if (isNode(start) && edges_[edge].arc == kNone) follow(edge, start);
-      }
-    }
-    for (const Edge& edge : edges_) {
-      if (edge.arc == kNone) {
-        throw Error(ErrorCode::Internal, "An arc of the motorcycle complex has no nodes.",
-                    {PlaceKind::Edge, edge.vertices[0], edge.vertices[1]});
-      }
-    }
-  }
-
-  [[nodiscard]] bool isNode(Index vertex) const {
-    if (edgesAt_[vertex].empty()) return false;
-    return edgesAt_[vertex].size() != 2 || complex_.mesh.featureVertices.contains(vertex);
-  }
-
-  /// How a directed edge lies in its arc: the arc, and whether it goes the arc's way; how far from
-  /// the arc's first node it begins.
-  struct Position {
-    Index arc = kNone;  ///< kNone: not an edge of the complex
-    bool isForward = true;
-    std::int64_t offset = 0;  ///< of its tail, along the arc
-  };
-  [[nodiscard]] Position positionOf(Index tail, Index head) const {
-    const auto found = byKey_.find({std::min(tail, head), std::max(tail, head)});
-    if (found == byKey_.end()) return {};
-    const Edge& edge = edges_[found->second];
-    const bool isForward = edge.first == tail;
-    return {edge.arc, isForward, isForward ? edge.offset : edge.offset + edge.length};
-  }
-
- private:
-  struct Edge {
-    std::array<Index, 2> vertices{};
-    std::int64_t length = 0;
-    Index arc = kNone;
-    Index first = kNone;      ///< its end that is nearer to the arc's first node
-    std::int64_t offset = 0;  ///< of that end
-  };
-
-  /// An edge with all triangles of walls at it.
-  void addEdge(std::span<const WallEdge> same) {
-    const WallMesh& mesh = complex_.mesh;
-    std::size_t triangles = 0;
-    for (const WallEdge& each : same) {
-      const HalfFace mate = mesh.mate[each.halfFace];
-      triangles += mate == kNone || each.halfFace < mate ? 1 : 0;
-    }
-    if (triangles == 2 && joinIfFlat(same)) return;
-    const Index tet = tetOf(same[0].halfFace);
-    const LatticePoint along = mesh.at(tet, mesh.cornerOf(tet, same[0].key[1])) -
-                               mesh.at(tet, mesh.cornerOf(tet, same[0].key[0]));
-    Edge edge;
-    edge.vertices = same[0].key;
-    for (const std::int64_t x : along) edge.length += std::abs(x);
-    byKey_.emplace(edge.vertices, static_cast<Index>(edges_.size()));
-    edges_.push_back(edge);
-  }
-
-  /// Of two triangles at an edge: joins them if they lie in a plane.
-  bool joinIfFlat(std::span<const WallEdge> same) {
-    for (const WallEdge& each : same) {
-      const HalfFace other = wallOpposite(complex_.mesh, each.halfFace, each.tail, each.head);
-      if (other == kNone || sameTriangle(each.halfFace, other)) return false;
-    }
-    for (const WallEdge& each : same) {
-      sides_.unite(each.halfFace, wallOpposite(complex_.mesh, each.halfFace, each.tail, each.head));
-    }
-    return true;
-  }
-  [[nodiscard]] bool sameTriangle(HalfFace a, HalfFace b) const {
-    return a == b || complex_.mesh.mate[a] == b;
-  }
-
-  void linkEdges() {
-    edgesAt_.resize(complex_.mesh.vertexCount());
-    for (Index e = 0; e < edges_.size(); ++e) {
-      for (const Index v : edges_[e].vertices) edgesAt_[v].push_back(e);
-    }
-  }
-  /// Numbers the arc that begins with an edge.
-  void follow(Index edge, Index start) {
-    Arc arc;
-    arc.nodes[0] = start;
-    Index vertex = start;
-    while (true) {
-      Edge& here = edges_[edge];
-      here.arc = static_cast<Index>(complex_.arcs.size());
-      here.first = vertex;
-      here.offset = arc.length;
-      arc.length += here.length;
-      arc.isFeature = arc.isFeature || complex_.mesh.featureEdges.contains(here.vertices);
-      vertex = here.vertices[0] == vertex ? here.vertices[1] : here.vertices[0];
-      if (isNode(vertex)) break;
-      edge = edgesAt_[vertex][0] == edge ? edgesAt_[vertex][1] : edgesAt_[vertex][0];
-    }
-    arc.nodes[1] = vertex;
-    complex_.arcs.push_back(arc);
-  }
-
-  MotorcycleComplex& complex_;
-  DisjointSets& sides_;
-  std::vector<Edge> edges_;
-  std::map<std::array<Index, 2>, Index> byKey_;
-  std::vector<std::vector<Index>> edgesAt_;
-};
 
 /// Cuts a block that returns to itself, and is no box, across.
-void cutAcross(MotorcycleComplex& complex, const Holonomy& holonomy) {
-  // Along the axis that the way around returns to, moved.
-  const Rotation turn = holonomy.change.rotation;
-  std::size_t axis = 3;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Direction d = direction(static_cast<int>(k), 1);
-    if (turn(d) == d && holonomy.change.translation[k] != 0) axis = k;
-  }
-  const Index block = complex.blockOf[holonomy.tet];
-  if (axis == 3) {
-    throw Error(ErrorCode::TransitionResidual,
-                "A part of the map returns to itself turned over; it has no motorcycle complex.",
-                {PlaceKind::Tet, complex.mesh.original[holonomy.tet]});
-  }
-  // Through a node, so that no short arcs arise, and a tet that reaches to both sides of it.
-  WallMesh& mesh = complex.mesh;
-  DisjointSets sides(mesh.mate.size());
-  ArcFinder arcs(complex, sides);
-  arcs.collect();
-  std::vector<Index> tets;
-  std::int64_t value = complex.toBlock[holonomy.tet](mesh.at(holonomy.tet, 0))[axis];
-  for (Index t = 0; t < mesh.tetCount(); ++t) {
-    if (complex.blockOf[t] != block) continue;
-    tets.push_back(t);
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (arcs.isNode(mesh.tets[t][i])) value = complex.toBlock[t](mesh.at(t, i))[axis];
+class RingCutter {
+ public:
+  /// @param inRing  a tet of the block
+  RingCutter(MotorcycleComplex& complex, Index inRing)
+      : complex_(complex), mesh_(complex.mesh), inRing_(inRing) {
+    for (Index t = 0; t < mesh_.tetCount(); ++t) {
+      if (complex.blockOf[t] == complex.blockOf[inRing]) tets_.push_back(t);
     }
   }
-  // The chart is unrolled somewhere: the plane may lie one way around from there.
-  WallTracer tracer(mesh);
-  const std::int64_t around = holonomy.change.translation[axis];
-  for (const std::int64_t shift : {std::int64_t{0}, around, -around}) {
-    const AxisPlane plane{axis, value + shift};
-    const auto found = std::find_if(tets.begin(), tets.end(), [&](Index t) {
-      return tracer.startIn(t, plane.beyond(complex.toBlock[t].inverse()));
-    });
-    if (found == tets.end()) continue;
-    tracer.grow();
-    return;
-  }
-  throw Error(ErrorCode::Internal, "A ring of the motorcycle complex cannot be cut. This is a bug.",
-              {PlaceKind::Tet, mesh.original[holonomy.tet]});
-}
-
-/// The sides of patches, with their borders.
-class PatchFinder {
- public:
-  PatchFinder(MotorcycleComplex& complex, const ArcFinder& arcs, DisjointSets& sides)
-      : complex_(complex), arcs_(arcs), sides_(sides) {}
 
   void run() {
-    const WallMesh& mesh = complex_.mesh;
-    complex_.patchOf.assign(mesh.mate.size(), kNone);
-    for (HalfFace h = 0; h < mesh.mate.size(); ++h) {
-      if (mesh.isWall[h]) addTriangle(h);
+    const LatticePoint moves = findMoves();
+    const std::size_t axis = axisOfMost(moves);
+    if (moves[axis] == 0) {
+      throw Error(ErrorCode::TransitionResidual,
+                  "A part of the map returns to itself turned over; it has no motorcycle complex.",
+                  {PlaceKind::Tet, mesh_.original[inRing_]});
     }
-    for (std::size_t p = 0; p < borders_.size(); ++p) {
-      complex_.patches[p].border.assign(borders_[p].begin(), borders_[p].end());
+    // The chart is unrolled somewhere: the plane may lie one way around from there.
+    for (const std::int64_t shift : {std::int64_t{0}, moves[axis], -moves[axis]}) {
+      if (startAt({axis, somePlace()[axis] + shift}, moves)) return;
     }
+    throw Error(ErrorCode::Internal,
+                "A ring of the motorcycle complex cannot be cut. This is a bug.",
+                {PlaceKind::Tet, mesh_.original[inRing_]});
   }
 
  private:
-  void addTriangle(HalfFace h) {
-    const HalfFace first = sides_.find(h);
-    if (first == h) {
-      complex_.patchOf[h] = static_cast<Index>(complex_.patches.size());
-      complex_.patches.push_back({complex_.blockOf[tetOf(h)], h, {}});
-      borders_.emplace_back();
+  /// How far the block moves along each axis when one comes back from it, at most.
+  [[nodiscard]] LatticePoint findMoves() const {
+    LatticePoint most{};
+    for (const Index t : tets_) {
+      for (int face = 0; face < 4; ++face) {
+        const HalfFace h = halfFaceOf(t, face);
+        if (mesh_.isWall[h]) continue;
+        const ChartChange way = complex_.across(h);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Direction d = direction(static_cast<int>(k), 1);
+          if (way.rotation(d) == d) most[k] = std::max(most[k], std::abs(way.translation[k]));
+        }
+      }
     }
-    complex_.patchOf[h] = complex_.patchOf[first];
-    const auto& c = kFaceCorners[h % 4];
-    for (std::size_t k = 0; k < 3; ++k) {
-      addEdge(h, static_cast<std::size_t>(c[k]), static_cast<std::size_t>(c[(k + 1) % 3]));
-    }
+    return most;
+  }
+  static std::size_t axisOfMost(const LatticePoint& moves) {
+    return static_cast<std::size_t>(std::max_element(moves.begin(), moves.end()) - moves.begin());
   }
 
-  /// A directed edge of a triangle, if it is one of an arc.
-  void addEdge(HalfFace h, std::size_t tail, std::size_t head) {
-    const Index tet = tetOf(h);
-    const WallMesh& mesh = complex_.mesh;
-    const auto at = arcs_.positionOf(mesh.tets[tet][tail], mesh.tets[tet][head]);
-    if (at.arc == kNone) return;
-    const LatticePoint from = complex_.toBlock[tet](mesh.at(tet, tail));
-    const LatticePoint along = complex_.toBlock[tet](mesh.at(tet, head)) - from;
-    ArcSide side;
-    side.arc = at.arc;
-    while (along[side.axis] == 0) ++side.axis;
-    side.sign = along[side.axis] > 0 ? 1 : -1;
-    // The arc's node from which the side comes lies this far behind.
-    const std::int64_t length = complex_.arcs[at.arc].length;
-    const std::int64_t behind = at.isForward ? at.offset : length - at.offset;
-    side.start = side.end = from;
-    side.start[side.axis] -= side.sign * behind;
-    side.end[side.axis] += side.sign * (length - behind);
-    borders_[complex_.patchOf[h]].insert(side);
-    for (const std::size_t corner : {tail, head}) addFeature(tet, corner, side);
+  /// A node, so that no short arcs arise.
+  [[nodiscard]] LatticePoint somePlace() const {
+    const std::vector<bool> isNode = findNodes(complex_);
+    LatticePoint place = complex_.toBlock[inRing_](mesh_.at(inRing_, 0));
+    for (const Index t : tets_) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (isNode[mesh_.tets[t][i]]) place = complex_.toBlock[t](mesh_.at(t, i));
+      }
+    }
+    return place;
   }
 
-  void addFeature(Index tet, std::size_t corner, const ArcSide& side) {
-    const Index vertex = complex_.mesh.tets[tet][corner];
-    const bool isNode = arcs_.isNode(vertex) && complex_.mesh.featureVertices.contains(vertex);
-    if (!isNode && !complex_.arcs[side.arc].isFeature) return;
-    const LatticePoint here = complex_.toBlock[tet](complex_.mesh.at(tet, corner));
-    complex_.featureCorners.push_back(
-        {tet, corner, isNode ? 3 : std::size_t{side.axis}, isNode ? here : side.start});
+  /// Cuts along a plane of the block's chart. Where ways around lead along several axes, a wall
+  /// alone may wind for ever: two that begin at one point end at each other.
+  /// @return false if no tet reaches to both sides of the plane
+  bool startAt(const AxisPlane& plane, const LatticePoint& moves) {
+    WallTracer tracer(mesh_);
+    const auto before = static_cast<Index>(mesh_.tetCount());
+    for (const Index t : tets_) {
+      const ChartChange back = complex_.toBlock[t].inverse();
+      const LatticePoint point = complex_.toBlock[t](pointIn(t, plane.beyond(back)));
+      if (!tracer.startIn(t, plane.beyond(back))) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (k == plane.axis || moves[k] <= moves[plane.axis] >> kNoiseBits) continue;
+        for (Index part = 0; part < mesh_.tetCount(); ++part) {
+          const bool isPart = part >= before && mesh_.original[part] == mesh_.original[t];
+          if (part == t || isPart) tracer.startIn(part, AxisPlane{k, point[k]}.beyond(back));
+        }
+      }
+      tracer.grow();
+      return true;
+    }
+    return false;
+  }
+
+  /// In the middle of where a plane cuts a tet, in the tet's chart, if it does.
+  [[nodiscard]] LatticePoint pointIn(Index t, const AxisPlane& plane) const {
+    Vec3 sum{};
+    double count = 0;
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b < 4; ++b) {
+        const LatticePoint& from = mesh_.at(t, a);
+        const LatticePoint& to = mesh_.at(t, b);
+        if (plane.sideOf(from) * plane.sideOf(to) > 0 || from[plane.axis] == to[plane.axis]) {
+          continue;
+        }
+        const double share = static_cast<double>(plane.value - from[plane.axis]) /
+                             static_cast<double>(to[plane.axis] - from[plane.axis]);
+        for (std::size_t k = 0; k < 3; ++k) {
+          sum[k] += static_cast<double>(from[k]) + share * static_cast<double>(to[k] - from[k]);
+        }
+        ++count;
+      }
+    }
+    LatticePoint point;
+    for (std::size_t k = 0; k < 3; ++k) point[k] = std::llround(sum[k] / std::max(count, 1.0));
+    return point;
   }
 
   MotorcycleComplex& complex_;
-  const ArcFinder& arcs_;
-  DisjointSets& sides_;
-  std::vector<std::set<ArcSide>> borders_;
-};
-
-void findArcsAndPatches(MotorcycleComplex& complex) {
-  complex.arcs.clear();
-  complex.patches.clear();
-  complex.featureCorners.clear();
-  DisjointSets sides(complex.mesh.mate.size());
-  ArcFinder arcs(complex, sides);
-  arcs.collect();
-  arcs.follow();
-  PatchFinder(complex, arcs, sides).run();
-}
-
-/// From the lowest corner to the highest one.
-struct Extent {
-  LatticePoint low{};
-  LatticePoint high{};
-  bool isEmpty = true;
-
-  void add(const LatticePoint& point) {
-    if (isEmpty) low = high = point;
-    isEmpty = false;
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], point[k]);
-      high[k] = std::max(high[k], point[k]);
-    }
-  }
-  void add(const PatchSide& patch) {
-    for (const ArcSide& side : patch.border) add(side.start);
-  }
-};
-
-/// Takes away walls between two blocks that are one box without it: arcs that nothing needs would
-/// only demand hexahedra (the reduced complex of Brueckner et al.). Thin blocks go first.
-class WallRemover {
- public:
-  explicit WallRemover(MotorcycleComplex& complex)
-      : complex_(complex), blocks_(complex.blockCount), isFeature_(complex.patches.size()) {
-    for (const PatchSide& patch : complex.patches) blocks_[patch.block].add(patch);
-    for (HalfFace h = 0; h < complex.patchOf.size(); ++h) {
-      if (complex.mesh.isFeature[h]) isFeature_[complex.patchOf[h]] = true;
-    }
-    for (Index p = 0; p < complex.patches.size(); ++p) {
-      for (const ArcSide& side : complex.patches[p].border) {
-        if (complex.arcs[side.arc].isFeature) isFeature_[p] = true;
-      }
-    }
-  }
-
-  /// @return whether there were any
-  bool run() {
-    std::vector<std::pair<std::int64_t, Index>> removable;
-    for (Index p = 0; p < complex_.patches.size(); ++p) {
-      const std::int64_t thick = thicknessBeside(p);
-      // Without noise that would decide in symmetric maps.
-      if (thick > 0) removable.emplace_back(thick >> kThicknessBits, p);
-    }
-    std::sort(removable.begin(), removable.end());
-    std::vector<bool> isChanged(complex_.blockCount);
-    std::vector<bool> isRemoved(complex_.patches.size());
-    for (const auto& [thick, p] : removable) {
-      const Index other = complex_.acrossPatch(p);
-      const Index a = complex_.patches[p].block;
-      const Index b = complex_.patches[other].block;
-      if (isChanged[a] || isChanged[b]) continue;
-      isChanged[a] = isChanged[b] = true;
-      isRemoved[p] = isRemoved[other] = true;
-    }
-    for (HalfFace h = 0; h < complex_.patchOf.size(); ++h) {
-      const Index p = complex_.patchOf[h];
-      if (p != kNone && isRemoved[p]) complex_.mesh.isWall[h] = false;
-    }
-    return !removable.empty();
-  }
-
- private:
-  /// Of the thinner block beside a wall that may go, otherwise 0.
-  [[nodiscard]] std::int64_t thicknessBeside(Index p) const {
-    const Index other = complex_.acrossPatch(p);
-    if (other == kNone || other < p || isFeature_[p]) return 0;
-    const PatchSide& here = complex_.patches[p];
-    const PatchSide& there = complex_.patches[other];
-    if (here.block == there.block) return 0;
-    return std::min(thickness(here), thickness(there));
-  }
-  /// How thick a block is behind a patch that is a whole side of it, otherwise 0.
-  [[nodiscard]] std::int64_t thickness(const PatchSide& patch) const {
-    Extent own;
-    own.add(patch);
-    const LatticePoint size = own.high - own.low;
-    const LatticePoint whole = blocks_[patch.block].high - blocks_[patch.block].low;
-    std::int64_t thick = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (size[k] == 0) {
-        thick = whole[k];
-      } else if (size[k] != whole[k]) {
-        return 0;
-      }
-    }
-    return thick;
-  }
-
-  MotorcycleComplex& complex_;
-  std::vector<Extent> blocks_;
-  std::vector<bool> isFeature_;  ///< per side of a patch: it has to stay
+  WallMesh& mesh_;
+  Index inRing_;
+  std::vector<Index> tets_;  ///< of the block
 };
 
 /// A block is a box if it has the volume of its bounding box.
@@ -449,23 +186,60 @@ void requireBoxes(const MotorcycleComplex& complex) {
   }
 }
 
+/// A patch is a rectangle if it has the area of its bounding rectangle.
+void requireRectangles(const MotorcycleComplex& complex) {
+  const WallMesh& mesh = complex.mesh;
+  std::vector<Extent> extents(complex.patches.size());
+  std::vector<Int128> twofoldAreas(complex.patches.size());
+  for (HalfFace h = 0; h < mesh.mate.size(); ++h) {
+    const Index p = complex.patchOf[h];
+    if (p == kNone) continue;
+    const Index tet = tetOf(h);
+    std::array<LatticePoint, 3> u;
+    for (std::size_t k = 0; k < 3; ++k) {
+      u[k] = complex.toBlock[tet](mesh.at(tet, static_cast<std::size_t>(kFaceCorners[h % 4][k])));
+      extents[p].add(u[k]);
+    }
+    const LatticePoint a = u[1] - u[0];
+    const LatticePoint b = u[2] - u[0];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t i = (k + 1) % 3;
+      const std::size_t j = (k + 2) % 3;
+      const Int128 area = static_cast<Int128>(a[i]) * b[j] - static_cast<Int128>(a[j]) * b[i];
+      twofoldAreas[p] += area < 0 ? -area : area;
+    }
+  }
+  for (Index p = 0; p < complex.patches.size(); ++p) {
+    const LatticePoint size = extents[p].high - extents[p].low;
+    Int128 area = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      area += static_cast<Int128>(size[k]) * size[(k + 1) % 3];
+    }
+    if (twofoldAreas[p] == 2 * area) continue;
+    throw Error(ErrorCode::Internal,
+                "A patch of the motorcycle complex is no rectangle. This is a bug.",
+                {PlaceKind::Tet, mesh.original[tetOf(complex.patches[p].first)]});
+  }
+}
+
 }  // namespace
 
 MotorcycleComplex traceComplex(const SeamlessMap& map, bool reduced, Context& context) {
   Stage stage(context, "motorcycle complex");
   MotorcycleComplex complex{.mesh = traceWalls(map, EdgeFans(map.topology))};
-  for (Holonomy ring = findBlocks(complex); ring.tet != kNone; ring = findBlocks(complex)) {
+  for (Index ring = findBlocks(complex); ring != kNone; ring = findBlocks(complex)) {
     context.throwIfCancelled();
-    cutAcross(complex, ring);
+    RingCutter(complex, ring).run();
   }
   requireBoxes(complex);
   findArcsAndPatches(complex);
-  while (reduced && WallRemover(complex).run()) {
+  while (reduced && removeNeedlessWalls(complex)) {
     context.throwIfCancelled();
     findBlocks(complex);
     findArcsAndPatches(complex);
   }
   requireBoxes(complex);
+  requireRectangles(complex);
   return complex;
 }
 

@@ -2,9 +2,9 @@
 // decomposition into boxes whose sides meet in T-junctions.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <map>
 #include <span>
 #include <vector>
 
@@ -64,6 +64,25 @@ struct MotorcycleComplex {
   /// From the chart of a tet's block into that beyond one of its faces.
   [[nodiscard]] ChartChange across(HalfFace h) const {
     return toBlock[tetOf(mesh.mate[h])] * mesh.change[h] * toBlock[tetOf(h)].inverse();
+  }
+};
+
+/// A box, from its lowest corner to its highest one.
+struct Extent {
+  LatticePoint low{};
+  LatticePoint high{};
+  bool isEmpty = true;
+
+  void add(const LatticePoint& point) {
+    if (isEmpty) low = high = point;
+    isEmpty = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], point[k]);
+      high[k] = std::max(high[k], point[k]);
+    }
+  }
+  void add(const PatchSide& patch) {
+    for (const ArcSide& side : patch.border) add(side.start);
   }
 };
 
