@@ -40,9 +40,10 @@ void requireAllDifferent(const Arguments& arguments) {
 void printQuantized(const QuantizeReport& report) {
   printLine("quantization", quantizeSummary(report));
   printLine("motorcycle complex", counted(report.blocks, "block"));
-  printLine("integers", report.integersBy == "CBC"
-                            ? "by CBC"
-                            : "by rounding; the library CBC (coinor-libcbc3) finds better ones");
+  const bool isRounded = report.integersBy == "rounding";
+  printLine("integers",
+            "by " + report.integersBy +
+                (isRounded ? "; the library CBC (coinor-libcbc3) finds better ones" : ""));
   printLine("moved to be seamless", fmt::format("at most {:.3g}", report.displacement));
   printLine("scaled Jacobian",
             fmt::format("{:.3f} (worst) and {:.3f} (median) of the map; {:.3f} and {:.3f} before",

@@ -112,6 +112,13 @@ struct TetUnknowns {
 
 Eigen::Vector3d toEigen(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
+/// From the first corner of a tet, as columns.
+Matrix3 edgesOf(const TetParameters& u) {
+  Matrix3 edges;
+  edges << toEigen(minus(u[1], u[0])), toEigen(minus(u[2], u[0])), toEigen(minus(u[3], u[0]));
+  return edges;
+}
+
 }  // namespace
 
 double regularized(double epsilon, double det) noexcept {
@@ -121,9 +128,9 @@ double regularized(double epsilon, double det) noexcept {
 
 BendEnergy::BendEnergy(const TetTopology& topology, std::span<const TetParameters> reference,
                        const VertexUnknowns& unknowns)
-    : topology_(topology), unknowns_(unknowns) {
+    : topology_(topology), reference_(reference), unknowns_(unknowns) {
   numberUnknowns();
-  measureShapes(reference);
+  for (const TetParameters& u : reference) volume_ += edgesOf(u).determinant();
 }
 
 void BendEnergy::numberUnknowns() {
@@ -135,19 +142,13 @@ void BendEnergy::numberUnknowns() {
   }
 }
 
-void BendEnergy::measureShapes(std::span<const TetParameters> reference) {
-  double volume = 0;
-  for (const TetParameters& u : reference) {
-    Matrix3 edges;
-    edges << toEigen(minus(u[1], u[0])), toEigen(minus(u[2], u[0])), toEigen(minus(u[3], u[0]));
-    Shape shape;
-    shape.gradients.bottomRows<3>() = edges.inverse();
-    shape.gradients.row(0) = -shape.gradients.bottomRows<3>().colwise().sum();
-    shape.weight = edges.determinant();
-    volume += shape.weight;
-    shapes_.push_back(shape);
-  }
-  for (Shape& shape : shapes_) shape.weight /= volume;
+BendEnergy::Shape BendEnergy::shape(Index tet) const {
+  const Matrix3 edges = edgesOf(reference_[tet]);
+  Shape shape;
+  shape.gradients.bottomRows<3>() = edges.inverse() / scale_;
+  shape.gradients.row(0) = -shape.gradients.bottomRows<3>().colwise().sum();
+  shape.weight = edges.determinant() / volume_;
+  return shape;
 }
 
 Corners BendEnergy::corners(Index tet, const Vector& x) const {
@@ -165,20 +166,20 @@ Corners BendEnergy::corners(Index tet, const Vector& x) const {
 
 void BendEnergy::adaptScale(const Vector& x) {
   double ratio = 0;
-  for (Index t = 0; t < shapes_.size(); ++t) {
-    ratio += shapes_[t].weight * (corners(t, x) * shapes_[t].gradients).determinant();
+  for (Index t = 0; t < topology_.tetCount(); ++t) {
+    const auto [gradients, weight] = shape(t);
+    ratio += weight * (corners(t, x) * gradients).determinant();
   }
-  if (ratio <= 0) return;
-  for (Shape& shape : shapes_) shape.gradients /= std::cbrt(ratio);
+  if (ratio > 0) scale_ *= std::cbrt(ratio);
 }
 
 Folding BendEnergy::folding(const Vector& x, Stage& stage) const {
-  std::vector<Folding> parts(blockCount(shapes_.size(), kGrain));
-  parallelBlocks(stage, shapes_.size(), kGrain,
+  std::vector<Folding> parts(blockCount(topology_.tetCount(), kGrain));
+  parallelBlocks(stage, topology_.tetCount(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    Folding& part = parts[block];
                    for (auto t = static_cast<Index>(begin); t < end; ++t) {
-                     const double det = (corners(t, x) * shapes_[t].gradients).determinant();
+                     const double det = (corners(t, x) * shape(t).gradients).determinant();
                      part.leastDeterminant = std::min(part.leastDeterminant, det);
                      part.flippedTets += det > 0 ? 0 : 1;
                    }
@@ -192,14 +193,15 @@ Folding BendEnergy::folding(const Vector& x, Stage& stage) const {
 }
 
 double BendEnergy::value(EnergyKind kind, const Vector& x, Stage& stage) const {
-  std::vector<double> sums(blockCount(shapes_.size(), kGrain));
-  parallelBlocks(stage, shapes_.size(), kGrain,
+  std::vector<double> sums(blockCount(topology_.tetCount(), kGrain));
+  parallelBlocks(stage, topology_.tetCount(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    for (auto t = static_cast<Index>(begin); t < end; ++t) {
-                     const Matrix3 j = corners(t, x) * shapes_[t].gradients;
-                     sums[block] += shapes_[t].weight * (kind.name == EnergyKind::Name::Dirichlet
-                                                             ? dirichlet(j).value
-                                                             : foldoverFree(j, kind.epsilon));
+                     const auto [gradients, weight] = shape(t);
+                     const Matrix3 j = corners(t, x) * gradients;
+                     sums[block] += weight * (kind.name == EnergyKind::Name::Dirichlet
+                                                  ? dirichlet(j).value
+                                                  : foldoverFree(j, kind.epsilon));
                    }
                  });
   double sum = 0;
@@ -235,14 +237,15 @@ void BendEnergy::derivatives(EnergyKind kind, const Vector& x, Vector& gradient,
                              Matrix& hessian) const {
   gradient.setZero(count_);
   hessian.coeffs().setZero();
-  for (Index t = 0; t < shapes_.size(); ++t) {
+  for (Index t = 0; t < topology_.tetCount(); ++t) {
     const TetUnknowns own(topology_.tets[t], &unknowns_.toCorner[4 * t], numbers_);
     if (std::all_of(own.number.begin(), own.number.end(), [](int n) { return n < 0; })) continue;
-    const TetDerivatives tet = tetDerivatives(kind, corners(t, x), shapes_[t].gradients);
+    const auto [gradients, weightOfTet] = shape(t);
+    const TetDerivatives tet = tetDerivatives(kind, corners(t, x), gradients);
     for (std::size_t p = 0; p < 12; ++p) {
       if (own.number[p] < 0) continue;
       const auto row = static_cast<Eigen::Index>(p);
-      const double weight = shapes_[t].weight * own.sign[p];
+      const double weight = weightOfTet * own.sign[p];
       gradient[own.number[p]] += weight * tet.gradient[row];
       for (std::size_t q = 0; q < 12; ++q) {
         if (own.number[q] < 0 || own.number[q] > own.number[p]) continue;

@@ -80,13 +80,16 @@ class BendEnergy {
   };
 
   void numberUnknowns();
-  void measureShapes(std::span<const TetParameters> reference);
+  /// Computed anew each time: all of them would be the largest array of a quantization.
+  [[nodiscard]] Shape shape(Index tet) const;
 
   const TetTopology& topology_;
+  std::span<const TetParameters> reference_;
   const VertexUnknowns& unknowns_;
   std::vector<std::array<int, 3>> numbers_;  ///< per vertex
   int count_ = 0;
-  std::vector<Shape> shapes_;  ///< per tet
+  double volume_ = 0;  ///< of the reference
+  double scale_ = 1;   ///< by which the reference is to be enlarged
 };
 
 }  // namespace hexhex

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include <Eigen/IterativeLinearSolvers>
@@ -206,6 +207,11 @@ double dihedralAngle(const TetParameters& tet, std::size_t a, std::size_t b) {
 }
 
 EdgeFans::EdgeFans(const TetTopology& topology) : topology_(topology), edges_(topology.tetCount()) {
+  // As many edges as Euler's formula has, where no component is a closed space.
+  const auto boundary =
+      static_cast<std::size_t>(std::count(topology.mate.begin(), topology.mate.end(), kNone));
+  begin_.reserve(topology.pointCount + topology.tetCount() + boundary / 2 + 1);
+  corners_.reserve(6 * topology.tetCount());
   std::vector<EdgeCorner> scratch;
   for (Index v = 0; v < topology.pointCount; ++v) {
     forEachEdge(topology, v, scratch, [this](Index /*w*/, std::span<const EdgeCorner> fan) {

@@ -43,9 +43,7 @@ std::vector<Move> movesOf(const IntegerSystem& system, std::size_t arcCount) {
   return moves;
 }
 
-}  // namespace
-
-std::vector<std::int64_t> solveGreedily(const IntegerProgram& program, Stage& stage) {
+std::vector<std::int64_t> solveByRounding(const IntegerProgram& program, const Context& context) {
   std::vector<IntegerForm> forms;
   for (const ArcEquation& equation : program.equations) {
     IntegerForm form;
@@ -62,7 +60,7 @@ std::vector<std::int64_t> solveGreedily(const IntegerProgram& program, Stage& st
   const std::vector<Move> moves = movesOf(system, n);
   // The best step, again and again, until none makes it better.
   while (true) {
-    stage.context().throwIfCancelled();
+    context.throwIfCancelled();
     double bestGain = 1e-9;
     const Move* best = nullptr;
     int bestSign = 0;
@@ -88,6 +86,17 @@ std::vector<std::int64_t> solveGreedily(const IntegerProgram& program, Stage& st
     if (integers[a] < program.least[a]) return {};
   }
   return integers;
+}
+
+}  // namespace
+
+IntegerSolver roundingSolver() { return {"rounding", solveByRounding}; }
+
+IntegerSolver integerSolver() {
+  for (const IntegerSolver& solver : {cbcSolver(), highsSolver()}) {
+    if (solver.name != nullptr) return solver;
+  }
+  return roundingSolver();
 }
 
 }  // namespace hexhex

@@ -1,4 +1,4 @@
-// The integer program of quantization, for whatever solves it.
+// The integer program of quantization, and what solves it.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,6 @@
 
 #include <hexhex/context.hpp>
 #include <hexhex/types.hpp>
-
-#include <base/stage.hpp>
 
 namespace hexhex {
 
@@ -23,20 +21,29 @@ struct IntegerProgram {
   std::vector<ArcEquation> equations;
 };
 
-/// Whether CBC (Forrest et al., COIN-OR branch and cut) was there when the library was built, and
-/// can be loaded.
-[[nodiscard]] bool canLoadCbc();
+struct IntegerSolver {
+  const char* name = nullptr;  ///< "CBC", "HiGHS", "rounding"; nullptr: there is none
 
-/// By CBC, in a process of its own, to within 1 % of the minimum. Deterministic: its limit is one
-/// of nodes.
-/// @return empty if there is no solution, or none is found. @pre canLoadCbc()
-/// @throws Error OutOfMemory if it crashes; Cancelled
-[[nodiscard]] std::vector<std::int64_t> solveByCbc(const IntegerProgram& program,
-                                                   const Context& context);
+  /// Deterministic. The libraries come to within 1 % of the minimum, unless it takes too long.
+  /// @return empty if there is no solution, or none is found
+  /// @throws Error OutOfMemory if it crashes; Cancelled
+  std::vector<std::int64_t> (*solve)(const IntegerProgram& program,
+                                     const Context& context) = nullptr;
+};
 
-/// By rounding the nearest real solution and then changing it step by step along integer solutions
-/// of the equations. Finds good solutions where lengths are large, and none in some cases where
-/// they are small.
-[[nodiscard]] std::vector<std::int64_t> solveGreedily(const IntegerProgram& program, Stage& stage);
+/// CBC (Forrest et al., COIN-OR branch and cut), if it was there when hexhex was built, and can be
+/// loaded.
+[[nodiscard]] IntegerSolver cbcSolver();
+
+/// HiGHS (Huangfu and Hall 2018, "Parallelizing the dual revised simplex method"), likewise.
+[[nodiscard]] IntegerSolver highsSolver();
+
+/// Rounds the nearest real solution, and then changes it step by step along integer solutions of
+/// the equations. Finds good solutions where lengths are large, and none in some cases where they
+/// are small.
+[[nodiscard]] IntegerSolver roundingSolver();
+
+/// The first of these that there is.
+[[nodiscard]] IntegerSolver integerSolver();
 
 }  // namespace hexhex

@@ -13,6 +13,9 @@
 #include <set>
 #include <utility>
 #include <vector>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #include <quantize/bend_problem.hpp>
 #include <quantize/integer_factor.hpp>
@@ -184,6 +187,14 @@ void restoreOrder(const std::vector<Index>& order, TetMap& map) {
   if (!map.regions.empty()) restore(map.regions);
 }
 
+/// Gives what is free back to the system, before a step that takes much memory. The C library keeps
+/// what lies between blocks in use, and puts large arrays elsewhere.
+void returnFreeMemory() noexcept {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
+}
+
 /// Integers for all arcs at one scale.
 struct Choice {
   double scale = 0;
@@ -201,7 +212,7 @@ class Quantizer {
     std::vector<TetParameters>().swap(map_.parameters);  // which are large
     report_.cellsWanted = cellsWanted(map_, seamless_, options);
     report_.displacement = seamless_.maxDisplacement;
-    report_.integersBy = canLoadCbc() ? "CBC" : "rounding";
+    report_.integersBy = solver_.name;
   }
 
   QuantizedMap run() {
@@ -250,6 +261,7 @@ class Quantizer {
     // Bending needs the memory, and rarely fails.
     const std::vector<Index> blockOf = std::move(complex_->blockOf);
     complex_.reset();
+    returnFreeMemory();
     Stage stage(context_, "bending");
     BentMap bent = bend(std::move(problem), {.maxGrowth = growth}, stage);
     if (!bent.isValid()) {
@@ -268,7 +280,9 @@ class Quantizer {
     report_.longestArc = static_cast<std::uint64_t>(*most);
     report_.splitEdges = bent.splitEdges.size();
     report_.addedTets = bent.tets.size() - seamless_.corners.size();
-    return finishQuantization(seamless_, map_, std::move(bent), report_, context_);
+    stage.finish();
+    returnFreeMemory();
+    return finishQuantization(std::move(seamless_), map_, std::move(bent), report_, context_);
   }
 
   /// Integers whose number of cells is near to what is wanted.
@@ -287,8 +301,7 @@ class Quantizer {
         const double length = static_cast<double>(arc.length) / seamless_.unit * scale;
         program_.lengths.push_back(std::round(length * kLengthUnits) / kLengthUnits);
       }
-      Choice choice{
-          scale, canLoadCbc() ? solveByCbc(program_, context_) : solveGreedily(program_, stage), 0};
+      Choice choice{scale, solver_.solve(program_, context_), 0};
       if (choice.integers.empty()) {
         // Rounding finds some where arcs are longer.
         scale *= 1.2;
@@ -306,10 +319,11 @@ class Quantizer {
     std::string message = "The map cannot be bent onto integers for about " +
                           std::to_string(std::llround(report_.cellsWanted)) + " cells";
     if (failed_.empty()) {
-      throw Error(ErrorCode::FlippedTet,
-                  message + ": none were found for the " + std::to_string(report_.arcs) +
-                      " arcs of its motorcycle complex. Ask for more cells" +
-                      (canLoadCbc() ? "." : ", or install CBC (coinor-libcbc3)."));
+      throw Error(
+          ErrorCode::FlippedTet,
+          message + ": none were found for the " + std::to_string(report_.arcs) +
+              " arcs of its motorcycle complex. Ask for more cells" +
+              (report_.integersBy == "rounding" ? ", or install CBC (coinor-libcbc3)." : "."));
     }
     if (flippedTet_ == kNone) {
       throw Error(ErrorCode::HalfIntegerFixedPoint,
@@ -328,6 +342,7 @@ class Quantizer {
   SeamlessMap seamless_;
   std::optional<MotorcycleComplex> complex_;
   bool isReduced_ = false;
+  IntegerSolver solver_ = integerSolver();
   IntegerProgram program_;
   QuantizeReport report_;
   /// Integers that the map cannot be bent onto, of the complex with so many blocks.

@@ -82,12 +82,13 @@ Features splitFeatures(const FeaturesView& given, std::size_t pointCount,
 }
 
 /// Quarter turns around edges that are not regular.
+using IrregularEdges = std::map<VertexPair, int>;
+
 template <class Corners>
-std::map<VertexPair, int> irregularEdges(const TetTopology& topology,
-                                         std::span<const Corners> corners) {
+IrregularEdges irregularEdges(const TetTopology& topology, std::span<const Corners> corners) {
   const EdgeFans edges(topology);
   const std::vector<int> quarters = quartersAround(edges, corners);
-  std::map<VertexPair, int> irregular;
+  IrregularEdges irregular;
   for (std::size_t e = 0; e < edges.size(); ++e) {
     if (quarters[e] == regularQuarters(edges, e)) continue;
     const EdgeCorner& at = edges(e).front();
@@ -97,26 +98,29 @@ std::map<VertexPair, int> irregularEdges(const TetTopology& topology,
   return irregular;
 }
 
-/// Singular curves must be what they were.
-void requireSameSingularities(const SeamlessMap& before, const TetMap& after,
-                              const std::vector<SplitEdge>& splits, Context& context) {
-  auto expected = irregularEdges(before.topology, std::span(before.corners));
+/// What becomes of singular edges when edges are split.
+void splitIrregular(const std::vector<SplitEdge>& splits, std::size_t pointCount,
+                    IrregularEdges& irregular) {
   for (std::size_t s = 0; s < splits.size(); ++s) {
-    const auto found = expected.find(pairOf(splits[s][0], splits[s][1]));
-    if (found == expected.end()) continue;
-    const auto middle = static_cast<Index>(before.topology.pointCount + s);
-    for (const Index end : splits[s]) expected[pairOf(end, middle)] = found->second;
-    expected.erase(pairOf(splits[s][0], splits[s][1]));
+    const auto found = irregular.find(pairOf(splits[s][0], splits[s][1]));
+    if (found == irregular.end()) continue;
+    const auto middle = static_cast<Index>(pointCount + s);
+    for (const Index end : splits[s]) irregular[pairOf(end, middle)] = found->second;
+    irregular.erase(pairOf(splits[s][0], splits[s][1]));
   }
+}
+
+/// Singular curves must be what they were.
+void requireSingularities(const IrregularEdges& expected, const TetMap& map, Context& context) {
   Stage stage(context, "singular curves");
   TetTopology topology;
-  topology.tets = after.tets;
-  topology.pointCount = after.points.size();
+  topology.tets = map.tets;
+  topology.pointCount = map.points.size();
   if (!matchFaces(topology, stage)) {
     throw Error(ErrorCode::Internal, "Quantization has made a mesh that is no manifold.");
   }
   addStars(topology, stage);
-  if (irregularEdges(topology, std::span(after.parameters)) != expected) {
+  if (irregularEdges(topology, std::span<const TetParameters>(map.parameters)) != expected) {
     throw Error(ErrorCode::Internal,
                 "Quantization has changed singular curves of the map. This is a bug.");
   }
@@ -124,12 +128,17 @@ void requireSameSingularities(const SeamlessMap& before, const TetMap& after,
 
 }  // namespace
 
-QuantizedMap finishQuantization(const SeamlessMap& seamless, const TetMapView& given, BentMap bent,
+QuantizedMap finishQuantization(SeamlessMap seamless, const TetMapView& given, BentMap bent,
                                 const QuantizeReport& report, Context& context) {
   QuantizedMap result;
   result.report = report;
   result.report.distortionAfter = distortionOf(bent.points, bent.tets, bent.parameters);
   result.report.distortionBefore = distortionOf(bent.points, bent.tets, bent.reference);
+  std::vector<TetParameters>().swap(bent.reference);
+  IrregularEdges singular =
+      irregularEdges(seamless.topology, std::span<const LatticeTet>(seamless.corners));
+  splitIrregular(bent.splitEdges, given.points.size(), singular);
+  seamless = SeamlessMap();
   TetMap& map = result.map;
   map.features = splitFeatures(given.features, given.points.size(), bent.splitEdges);
   if (!given.regions.empty()) {
@@ -144,7 +153,7 @@ QuantizedMap finishQuantization(const SeamlessMap& seamless, const TetMapView& g
                                          std::string(name(checked.defects.front().code)) +
                                          "). This is a bug.");
   }
-  requireSameSingularities(seamless, map, bent.splitEdges, context);
+  requireSingularities(singular, map, context);
   return result;
 }
 

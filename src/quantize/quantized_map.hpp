@@ -9,10 +9,11 @@
 
 namespace hexhex {
 
+/// @param seamless  what was bent; it is used up, as checks need its memory
 /// @param given  whose features and regions come along
 /// @param report  as far as it is known
 /// @throws Error Internal if the map does not pass the exact check, or has other singular edges
-[[nodiscard]] QuantizedMap finishQuantization(const SeamlessMap& seamless, const TetMapView& given,
+[[nodiscard]] QuantizedMap finishQuantization(SeamlessMap seamless, const TetMapView& given,
                                               BentMap bent, const QuantizeReport& report,
                                               Context& context);
 

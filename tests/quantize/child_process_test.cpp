@@ -1,4 +1,4 @@
-// Work in a process of its own, and CBC, which needs one.
+// Work in a process of its own, and solvers, which need one.
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
@@ -119,18 +119,22 @@ IntegerProgram hardProgram() {
   return program;
 }
 
-TEST_F(ChildProcess, CbcEndsByInterruption) {
-  if (!canLoadCbc()) GTEST_SKIP() << "without CBC";
-  interrupted = &context_;
-  const auto before = std::signal(SIGINT, [](int) { interrupted->cancel(); });
-  std::thread user([] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    kill(getpid(), SIGINT);
-  });
-  EXPECT_EQ(codeOf([&] { static_cast<void>(solveByCbc(hardProgram(), context_)); }),
-            ErrorCode::Cancelled);
-  user.join();
-  std::signal(SIGINT, before);
+TEST_F(ChildProcess, SolversEndByInterruption) {
+  for (const IntegerSolver& solver : {cbcSolver(), highsSolver()}) {
+    if (solver.name == nullptr) continue;
+    SCOPED_TRACE(solver.name);
+    Context context;
+    interrupted = &context;
+    const auto before = std::signal(SIGINT, [](int) { interrupted->cancel(); });
+    std::thread user([] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      kill(getpid(), SIGINT);
+    });
+    EXPECT_EQ(codeOf([&] { static_cast<void>(solver.solve(hardProgram(), context)); }),
+              ErrorCode::Cancelled);
+    user.join();
+    std::signal(SIGINT, before);
+  }
 }
 
 }  // namespace
