@@ -4,11 +4,14 @@
 // this page, so their hashes have to be allowed here, too.
 import { createHash } from "node:crypto";
 import { readFile, writeFile } from "node:fs/promises";
-import { deflateSync } from "node:zlib";
+import { deflateSync, gzipSync } from "node:zlib";
 import { build } from "esbuild";
 
 const [wasmFile, templateFile, output] = process.argv.slice(2);
 if (!output) throw new Error("usage: node page/build.mjs HEXHEX.wasm PAGE_TEMPLATE.cpp OUTPUT.html");
+
+/** Gzipped, as servers send the page: what people wait for. */
+const kMostBytes = 2e6;
 
 async function bundle(entry, define = {}) {
   const result = await build({
@@ -55,4 +58,6 @@ const page = (await readFile("page/page.html", "utf8"))
   .replace("@SCRIPT@", () => script)
   .replace("@WASM@", () => wasm);
 await writeFile(output, page);
-console.log(`${output}: ${Math.round(page.length / 1024)} KiB`);
+const sent = gzipSync(page, { level: 9 }).length;
+console.log(`${output}: ${Math.round(page.length / 1024)} KiB, ${Math.round(sent / 1024)} KiB gzipped`);
+if (sent > kMostBytes) throw new Error(`${output} is too large: ${sent} bytes gzipped`);

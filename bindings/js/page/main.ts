@@ -8,8 +8,8 @@ import { Session, TaskError } from "./session";
 
 ColorManagement.enabled = false;
 
-/** What browsers have memory for: see docs/browser.md. */
-const kMostCells = 20e6;
+/** Their .vtu has 1.9 GB, and Chromium holds no file beyond 2 GB; memory ends later: docs/browser.md. */
+const kMostCells = 25e6;
 const kDownloads = [".vtu", ".mesh", ".msh", ".vtk", ".ovm"];
 /** Beside the plain samples: what else the page can do. */
 const kMoreSamples = [
@@ -43,10 +43,20 @@ function setWorking(working: boolean): void {
   }
 }
 
+async function bytesOf(file: File): Promise<ArrayBuffer> {
+  try {
+    return await file.arrayBuffer();
+  } catch {
+    throw new Error(
+      `${file.name} cannot be read: it is a folder, has changed meanwhile, or has more than the 2 GB ` +
+      "that browsers read at once.");
+  }
+}
+
 async function contentOf(): Promise<Source> {
   if (!source) throw new Error("There is nothing to read.");
   if ("sample" in source) return source.sample;
-  const files = source.files.map(async (file) => ({ name: file.name, bytes: await file.arrayBuffer() }));
+  const files = source.files.map(async (file) => ({ name: file.name, bytes: await bytesOf(file) }));
   return { files: await Promise.all(files) };
 }
 
@@ -118,7 +128,8 @@ function showDefects({ report, shape }: OpenedMap): void {
     const times = defect.count === 1 ? "once" : `${grouped(defect.count)} times`;
     box.append(make("p", `${defect.code}, ${times}: ${defect.sentence}`, "bad"));
     defect.worst.forEach(({ place, amount }, i) => {
-      const button = make("button", `${place.text} (${amount.toPrecision(3)})`);
+      if (place.kind === "none") return;
+      const button = make("button", amount === 0 ? place.text : `${place.text} (${amount.toPrecision(3)})`);
       button.type = "button";
       button.addEventListener("click", () => {
         showView("map");
@@ -240,7 +251,7 @@ function quantize(): Promise<void> {
 function download(extension: string): Promise<void> {
   return work(async () => {
     const name = mesh!.name.replace(/\.[^.]*$/, "") + extension;
-    const bytes = await session.run("write", ["mesh", name]);
+    const bytes = await session.run("write", [name]);
     const link = make("a");
     link.href = URL.createObjectURL(new Blob([bytes]));
     link.download = name;
@@ -332,4 +343,8 @@ async function start(): Promise<void> {
   document.body.dataset.ready = "true";
 }
 
-start().catch((error: unknown) => tell(String(error)));
+start().catch((error: unknown) => {
+  // Browsers that are older lack one of these.
+  const old = typeof DecompressionStream === "undefined" || error instanceof WebAssembly.CompileError;
+  tell(old ? "This page needs a newer browser: Chrome 95, Firefox 113, Safari 16.4, or later ones." : messageOf(error));
+});

@@ -55,8 +55,8 @@ export interface Tasks {
   reopen: (source: Source, wanted: number) => null;
   quantize: (wanted: number) => OpenedMap;
   extract: (scale: number) => OpenedMesh;
-  /** A file's content. */
-  write: (what: "map" | "mesh", name: string) => Uint8Array<ArrayBuffer>;
+  /** A file's content: of the mesh. */
+  write: (name: string) => Uint8Array<ArrayBuffer>;
 }
 export type TaskName = keyof Tasks;
 

@@ -122,8 +122,13 @@ const tasks: { [Name in TaskName]: (...given: Parameters<Tasks[Name]>) => Return
     meshName = `${withoutExtension(mapName)}${scale > 1 ? `-${scale}` : ""}.vtu`;
     return examineMesh(scale);
   },
-  write(what, name) {
-    return what === "map" ? library.writeMap(requireMap(), name) : library.writeMesh(mesh!, name);
+  write(name) {
+    try {
+      return library.writeMesh(mesh!, name);
+    } catch (error) {
+      if (!(error instanceof RangeError)) throw error;
+      throw new Error(`${name} would have more than 2 GB, which browsers do not hold. Try another format, or a smaller scale.`);
+    }
   },
 };
 

@@ -67,6 +67,9 @@ export async function load(options: LoadOptions = {}): Promise<Hexhex> {
     print: () => undefined,
     printErr: () => undefined,
   });
+  // A folder of their own for files, whatever they are called.
+  made.FS.mkdir(kFolder);
+  made.FS.chdir(kFolder);
   return new Hexhex(made);
 }
 
@@ -288,7 +291,9 @@ export class Hexhex {
   }
 }
 
+const kFolder = "/files";
+
 /** Where a file is put: only its last part counts, as in sentences about it. */
 function pathOf(name: string): string {
-  return name.replace(/^.*[/\\]/, "") || "file";
+  return name.replace(/^.*[/\\]/, "").replace(/^\.*$/, "file");
 }

@@ -4,7 +4,8 @@ export interface FileSystem {
   writeFile(path: string, bytes: Uint8Array, options?: { canOwn?: boolean }): void;
   readFile(path: string): Uint8Array<ArrayBuffer>;
   unlink(path: string): void;
-  analyzePath(path: string): { exists: boolean };
+  mkdir(path: string): void;
+  chdir(path: string): void;
 }
 
 export interface Module {

@@ -1,7 +1,7 @@
 // The page hexhex.html, from file://, with files that are really dragged onto it.
 import { type Page, test as base, expect } from "@playwright/test";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, truncateSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, truncateSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
@@ -104,6 +104,8 @@ test("a good map becomes the mesh that the command makes", async ({ page }) => {
   const frame = await meshView(page);
   await expect(frame.locator("#all-cells")).toHaveText("3,584");
   await expect(frame.locator("#verification")).toContainText("sphere.hexex");
+  // As docs/browser.md shows it.
+  await page.screenshot({ path: `${process.env.HEXHEX_PAGE_PICTURES ?? "test-results"}/browser.png` });
   for (const extension of [".vtu", ".mesh", ".msh", ".vtk", ".ovm"]) {
     hexhex("extract", "sphere.hexex", "--scale", "2", "-o", `sphere-2${extension}`, "--quiet");
     expect((await saved(page, extension)).equals(readFileSync(at(`sphere-2${extension}`)))).toBe(true);
@@ -153,6 +155,9 @@ test("wrong and empty files get a sentence", async ({ page }) => {
   await expect(problem(page)).toContainText("empty.hexex");
   await dropAndWait(page, "letter.txt");
   await expect(problem(page)).toContainText("letter.txt");
+  mkdirSync(at("folder.hexex"));
+  await dropAndWait(page, "folder.hexex");
+  await expect(problem(page)).toContainText("folder.hexex cannot be read: it is a folder");
   await dropAndWait(page, "sphere.hexex", "torus.ovm");
   await expect(problem(page)).toContainText("two of a kind");
   await dropAndWait(page, "sphere.hexex");
@@ -209,6 +214,14 @@ test("a second map has the memory of the first", async ({ page }) => {
     expect(await megabytes()).toBeLessThan(50);
   }
   expect(page.workers().length).toBeLessThanOrEqual(workers);
+});
+
+test("an old browser gets a sentence", async ({ browser }) => {
+  const page = await browser.newPage();
+  await page.addInitScript(() => Reflect.deleteProperty(window, "DecompressionStream"));
+  await page.goto(address);
+  await expect(problem(page)).toContainText("This page needs a newer browser");
+  await page.close();
 });
 
 test("samples are in a menu, and nothing reaches the network", async ({ page }) => {

@@ -4,19 +4,19 @@ import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
-import { load } from "../../build/wasm/js/dist/index.js";
 
+const { load } = await import(join(process.env.HEXHEX_JS, "dist/index.js"));
 const repetitions = Number(process.argv[2] ?? 3);
 const command = process.env.HEXHEX_COMMAND;
 const folder = mkdtempSync(join(tmpdir(), "hexhex-"));
-const real = join(import.meta.dirname, "../../../shared/data/maps");
+const real = join(process.env.HEXHEX_TEST_DATA, "maps");
 const run = (...args) => execFileSync(command, args, { cwd: folder, maxBuffer: 1 << 28 });
 
 /** About 100 hexahedra per tet, and about a million tets. */
 function makeMaps() {
   const maps = ["s17c_sphere_r100.hexex", "fandisk_r100.hexex"]
     .map((name) => join(real, name)).filter((file) => existsSync(file));
-  run("generate", "sphere", "--cells", "40", "--refine", "10", "--charts", "random", "-o", "dense.ovmb", "--quiet");
+  run("generate", "sphere", "--cells", "64", "--refine", "6", "--charts", "random", "-o", "dense.ovmb", "--quiet");
   run("generate", "sphere", "--cells", "23", "--refine", "23", "--charts", "scattered", "-o", "million.ovmb", "--quiet");
   return [...maps, join(folder, "dense.ovmb"), join(folder, "million.ovmb")];
 }
