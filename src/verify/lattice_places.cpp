@@ -94,7 +94,7 @@ void LatticePlaces::compare(std::uint64_t first, std::span<const Vec3> points, S
   });
 }
 
-LatticePlace PlaceFinder::search(std::uint64_t point, Index likely) {
+PlaceFinder::Found PlaceFinder::search(std::uint64_t point, Index likely) {
   const Array<std::uint64_t>& begin = places_.swept_.numbers.begin;
   Index tet = likely;
   if (point < begin[tet] || begin[tet + 1] <= point) {
@@ -112,9 +112,7 @@ LatticePlace PlaceFinder::search(std::uint64_t point, Index likely) {
   const auto behind =
       std::upper_bound(of.runs.begin(), of.runs.end(), point,
                        [](std::uint64_t value, const VertexRun& run) { return value < run.first; });
-  const VertexRun& run = *(behind - 1);
-  return {tet, run.line->point(run.offset + static_cast<std::uint32_t>(point - run.first)),
-          run.simplex};
+  return {tet, *(behind - 1)};
 }
 
 }  // namespace hexhex

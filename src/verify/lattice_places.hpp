@@ -2,7 +2,9 @@
 // proven before they are used.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -49,10 +51,19 @@ class LatticePlaces {
   /// Gives the lines of the tets back: only listed places are needed from now on.
   void forgetLines() { swept_.lines = TetLines(0); }
 
-  /// Calls visit(number, z) for the lattice points that a tet owns, if places are listed.
+  /// Calls visit(number, z) for the lattice points that a tet owns.
   template <class Visit>
-  void forEachListed(Index tet, const Visit& visit) const {
-    if (places_.empty()) return;
+  void forEachOwned(Index tet, const Visit& visit) const {
+    if (places_.empty()) {
+      forEachRun(tet, [&visit](const VertexRun& run) {
+        GridPoint z = run.line->point(run.offset);
+        for (std::uint64_t v = run.first; v < run.first + run.count; ++v) {
+          visit(v, z);
+          ++z[run.line->axes()[2]];
+        }
+      });
+      return;
+    }
     for (std::uint64_t v = swept_.numbers.begin[tet]; v < swept_.numbers.begin[tet + 1]; ++v) {
       visit(v, places_[v].z);
     }
@@ -86,9 +97,13 @@ class PlaceFinder {
   explicit PlaceFinder(const LatticePlaces& places)
       : places_(places), tets_(places.places_.empty() ? kTets : 0) {}
 
-  /// @param likely  a tet that may have the point
-  [[nodiscard]] LatticePlace find(std::uint64_t point, Index likely) {
-    return places_.places_.empty() ? search(point, likely) : places_.places_[point];
+  /// @param corner  of a cell of `tet`: that of the next cell is often the next point of a line
+  [[nodiscard]] LatticePlace find(std::uint64_t point, Index tet, std::size_t corner) {
+    if (!places_.places_.empty()) return places_.places_[point];
+    Found& last = last_[corner];
+    if (point - last.run.first >= last.run.count) last = search(point, tet);
+    const auto behind = static_cast<std::uint32_t>(point - last.run.first);
+    return {last.tet, last.run.line->point(last.run.offset + behind), last.run.simplex};
   }
 
  private:
@@ -99,9 +114,15 @@ class PlaceFinder {
     Index tet = kNone;
     std::vector<VertexRun> runs = {};
   };
-  [[nodiscard]] LatticePlace search(std::uint64_t point, Index likely);
+  struct Found {
+    Index tet = kNone;
+    VertexRun run{};
+  };
+  /// @param likely  a tet that may have the point
+  [[nodiscard]] Found search(std::uint64_t point, Index likely);
 
   const LatticePlaces& places_;
+  std::array<Found, 8> last_;
   std::vector<TetRuns> tets_;  ///< by number, modulo kTets
 };
 

@@ -123,7 +123,7 @@ class CellProver {
       for (std::size_t k = 0; k < 3; ++k) steps_[c] += kCellCorners[c][k] != 0 ? strides[k] : 0;
     }
     // A lattice point of the tet is one that the half diagonal comes to within the tet.
-    places_.forEachListed(tet, [this](std::uint64_t vertex, const GridPoint& z) {
+    places_.forEachOwned(tet, [this](std::uint64_t vertex, const GridPoint& z) {
       known_.enter(z, static_cast<Number>(vertex));
     });
   }
@@ -155,7 +155,7 @@ class CellProver {
   bool isCorner(Index tet, const FaceSides& sides, const GridPoint& z, std::size_t corner,
                 Number vertex) {
     if (vertex >= places_.count()) return false;
-    const LatticePlace place = finder_.find(vertex, tet);
+    const LatticePlace place = finder_.find(vertex, tet, corner);
     const GridPoint& offset = kCellCorners[corner];
     const GridPoint end = {z[0] + offset[0], z[1] + offset[1], z[2] + offset[2]};
     if (place.tet == tet && place.z == end) return true;
