@@ -3,9 +3,15 @@
 #include <cstring>
 #include <utility>
 
+#include <base/parallel.hpp>
 #include <io/core/text_window.hpp>
 
 namespace hexhex {
+namespace {
+
+constexpr std::size_t kReadAtOnce = std::size_t{1} << 20;
+
+}  // namespace
 
 TextWindow::TextWindow(const InputFile& file, std::string name, Context& context, std::size_t size)
     : file_(file),
@@ -33,7 +39,10 @@ bool TextWindow::fill() {
   begin_ += behind;
   const std::uint64_t left = file_.size() - std::min(file_.size(), begin_ + kept);
   const auto more = static_cast<std::size_t>(std::min<std::uint64_t>(bytes_.size() - kept, left));
-  file_.readAt(begin_ + kept, bytes_.data() + kept, more);
+  parallelBlocks(stage_, more, kReadAtOnce,
+                 [&](std::size_t from, std::size_t to, std::size_t /*block*/) {
+                   file_.readAt(begin_ + kept + from, bytes_.data() + kept + from, to - from);
+                 });
   size_ = kept + more;
   // A token that may go on waits for its rest.
   std::string_view text(bytes_.data(), size_);
