@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Whether the pages of docs/ have all that they should: every error code; in their snippets, which other
 tests run, every function of the libraries for C++, C and Python; and for every C function once, who may
-call it from several threads. And whether all tables of the pages are whole."""
+call it from several threads. And whether all tables of the pages are whole, and links lead somewhere."""
 
 import ast
 import pathlib
@@ -79,11 +79,36 @@ def cells_of(row):
     return len(re.split(r"(?<!\\)\|", row.strip())) - 2
 
 
+def pages():
+    return [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *ROOT.glob("*/*/README.md")]
+
+
+def anchors(page):
+    """Of the headings of a page, as GitHub names them."""
+    prose = re.sub(r"(?ms)^```.*?^```$", "", page.read_text(encoding="utf-8"))
+    headings = [re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading)
+                for heading in re.findall(r"(?m)^#+ (.*)$", prose)]
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def broken_links():
+    """Links to files that are not there, or to headings that a page does not have."""
+    broken = []
+    for page in pages():
+        for link in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
+            if re.match(r"\w+:", link):  # to the world outside
+                continue
+            file, _, anchor = link.partition("#")
+            target = page.parent / file if file else page
+            if not target.exists() or (anchor and anchor not in anchors(target)):
+                broken.append(f"{page.relative_to(ROOT)}: the link to {link} leads nowhere")
+    return broken
+
+
 def broken_tables():
     """Rows without a table, of another width than their table, or that go on in a second line."""
     broken = []
-    pages = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *ROOT.glob("*/*/README.md")]
-    for page in pages:
+    for page in pages():
         lines, columns, in_code = page.read_text(encoding="utf-8").splitlines(), 0, False
         for number, line in enumerate(lines, 1):
             place = f"{page.relative_to(ROOT)}, line {number}"
@@ -106,11 +131,11 @@ def broken_tables():
 
 
 def main():
-    missing = threads_of_c() + misused_in_c() + broken_tables()
-    pages = (("docs/errors.md", error_codes(), None), ("docs/troubleshooting.md", error_codes(), None),
+    missing = threads_of_c() + misused_in_c() + broken_tables() + broken_links()
+    contents = (("docs/errors.md", error_codes(), None), ("docs/troubleshooting.md", error_codes(), None),
              ("docs/api-c.md", c_functions(), "c"), ("docs/api-cpp.md", cpp_functions(), "cpp"),
              ("docs/api-python.md", python_names(), "python"))
-    for page, names, language in pages:
+    for page, names, language in contents:
         if len(names) < 10:
             missing.append(f"{page}: nothing found to look for")
         content = text(page)
@@ -125,3 +150,4 @@ def main():
 
 if __name__ == "__main__":
     main()
+
