@@ -24,13 +24,14 @@ struct PackedTable {
   std::size_t rows = 0;
   std::size_t columns = 0;
   std::size_t rowsPerChunk = 0;
+  bool byRows = false;  ///< whether numbers are packed row by row, otherwise column by column
   std::vector<std::string> chunks;  ///< a zlib stream each
 };
 
 /// Writes the numbers of rows [begin, end), row by row, to `to`. Called from several threads.
 using FillRows = std::function<void(std::size_t begin, std::size_t end, std::uint32_t* to)>;
 
-/// Packs a table. Neighbouring rows should be similar, and so should the columns of a row.
+/// Packs a table. Neighbouring rows should be similar.
 /// The result does not depend on the number of threads.
 [[nodiscard]] PackedTable packTable(std::string_view name, std::size_t rows, std::size_t columns,
                                     const FillRows& fill, Stage& stage);
@@ -66,10 +67,11 @@ struct Quantization {
 /// Scaled Jacobians in 16 bits: 0 stands for -1, this for 1. As in viewer/src/format.ts.
 inline constexpr double kQualitySteps = 65534;
 
-/// Tables `points` (3 columns: vertices, then nodes), `cells` (8), `quality` (1) and, where the
-/// mesh has them, `nodes` (SurfaceNodes::perCell), `generator_kinds` (1), `regions` (1),
-/// `singular_edges` (vertex, vertex, 2 * valence + (1 on the boundary)), `feature_edges` (vertex,
-/// vertex, tag) and `feature_quads` (4 vertices, tag).
+/// Tables `points` (3 columns: vertices, then nodes), `cells` (8), `quality` (1), `skin` (1: the
+/// faces of the boundary, 6 * cell + face) and, where the mesh has them, `nodes`
+/// (SurfaceNodes::perCell), `generator_kinds` (1), `regions` (1), `singular_edges` (vertex, vertex,
+/// 2 * valence + (1 on the boundary)), `feature_edges` (vertex, vertex, tag) and `feature_quads` (4
+/// vertices, tag).
 [[nodiscard]] std::vector<PackedTable> packMesh(const HexMesh& mesh,
                                                 const Quantization& quantization,
                                                 std::span<const double> scaledJacobians,

@@ -126,6 +126,7 @@ nlohmann::json tablesAsJson(const std::vector<PackedTable>& tables) {
                       {"rows", table.rows},
                       {"columns", table.columns},
                       {"rowsPerChunk", table.rowsPerChunk},
+                      {"byRows", table.byRows},
                       {"chunkBytes", std::move(sizes)}});
   }
   return result;

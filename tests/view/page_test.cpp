@@ -55,12 +55,13 @@ std::vector<std::uint32_t> unpacked(const PackedTable& table) {
       for (std::size_t row = 0; row < rows; ++row) {
         std::uint32_t code = 0;
         for (std::size_t plane = 0; plane < planes; ++plane) {
-          const std::size_t at = 1 + plane * rows * table.columns + column * rows + row;
+          const std::size_t place =
+              table.byRows ? row * table.columns + column : column * rows + row;
+          const std::size_t at = 1 + plane * rows * table.columns + place;
           code |= std::uint32_t{static_cast<unsigned char>(bytes.at(at))} << (8 * plane);
         }
         value += (code >> 1U) ^ (0U - (code & 1U));
-        std::uint32_t* const here = numbers.data() + begin + row * table.columns;
-        here[column] = column == 0 ? value : value + here[0];
+        numbers[begin + row * table.columns + column] = value;
       }
     }
   }
@@ -100,6 +101,23 @@ TEST(TableCodec, KeepsTablesOfSeveralChunksWithAnyNumberOfThreads) {
   EXPECT_GT(one.chunks.size(), 2U);
   EXPECT_EQ(unpacked(one), numbers);
   EXPECT_EQ(packed(numbers, 3, 4).chunks, one.chunks);
+}
+
+TEST(TableCodec, TakesTheOrderThatPacksBetter) {
+  std::vector<std::uint32_t> alike;   // the columns of a row are the same
+  std::vector<std::uint32_t> steady;  // all columns but one stay as they are
+  std::uint32_t state = 1;
+  for (std::uint32_t row = 0; row < 40000; ++row) {
+    state = state * 1664525U + 1013904223U;
+    for (std::uint32_t column = 0; column < 8; ++column) {
+      alike.push_back(state >> 8U);
+      steady.push_back(column == 0 ? state >> 8U : column);
+    }
+  }
+  EXPECT_TRUE(packed(alike, 8, 1).byRows);
+  EXPECT_FALSE(packed(steady, 8, 1).byRows);
+  EXPECT_EQ(unpacked(packed(alike, 8, 1)), alike);
+  EXPECT_EQ(unpacked(packed(steady, 8, 1)), steady);
 }
 
 TEST(Base64, FollowsItsStandard) {
@@ -341,7 +359,7 @@ TEST(ServedPage, HasTheMeshApart) {
   EXPECT_TRUE(contains(page.html, "connect-src 'self'"));
   EXPECT_TRUE(contains(page.html, "\"data\":\"/mesh\""));
   EXPECT_FALSE(contains(page.html, "id=\"data-cells-0\""));
-  EXPECT_EQ(page.data.size(), 4U);  // points, cells, quality, singular edges
+  EXPECT_EQ(page.data.size(), 5U);  // points, cells, quality, skin, singular edges
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ import { askedPicture, savePng } from "./ui/picture";
 import { showPicked } from "./ui/statistics";
 import type { LoadedMesh } from "./worker/messages";
 import type { CurvedFaces } from "./worker/curved_faces";
+import type { Layers } from "./worker/topology";
 import type { Filter, Visible } from "./worker/visible";
 
 const kAxes: Record<"x" | "y" | "z", [number, number, number]> = {
@@ -39,6 +40,8 @@ export class App {
   private curvedLines: boolean;
   private pickedOutline = wideLines({ vertices: [], colours: [] }, new Float32Array(0), null, 1);
   private fragmentTimer = 0;
+  /** Known a while after the mesh is there. */
+  private layers: Layers | null = null;
   /** Whether clicks take cells away. */
   private digging = false;
 
@@ -64,6 +67,7 @@ export class App {
       (range) => this.change({ quality: range }),
     );
     worker.onLit = (light) => this.showLit(light);
+    worker.onLayers = (layers) => this.setLayers(layers);
     worker.onVisible = (visible, curved, milliseconds) => this.showVisible(visible, curved, milliseconds);
     this.fillControls();
     if (this.state.camera) this.viewport.cameraState = this.state.camera;
@@ -102,7 +106,7 @@ export class App {
   }
 
   peel(layers: number): void {
-    this.change({ peel: Math.min(Math.max(layers, 0), this.mesh.deepestLayer) });
+    this.change({ peel: Math.max(layers, 0) });
   }
 
   morePeel(by: number): void {
@@ -175,13 +179,14 @@ export class App {
 
   private worstKept(): number | null {
     const [from, to] = this.storedRange();
-    const { quality, layers } = this.mesh;
+    const { quality } = this.mesh;
+    const layers = this.layers?.ofCells;
     const side = this.filter().plane;
     const dug = new Set(this.state.dug);
     let worst: number | null = null;
     for (let cell = 0; cell < quality.length; ++cell) {
       const value = quality[cell]!;
-      if (value < from || value > to || layers[cell]! < this.state.peel) continue;
+      if (value < from || value > to || (layers && layers[cell]! < this.state.peel)) continue;
       if ((worst !== null && value >= quality[worst]!) || dug.has(cell)) continue;
       if (side) {
         const [x, y, z] = this.centreOf(cell);
@@ -263,7 +268,7 @@ export class App {
 
   private update(): void {
     const { state } = this;
-    state.peel = Math.min(state.peel, this.mesh.deepestLayer);
+    state.peel = Math.min(state.peel, this.layers?.deepest ?? state.peel);
     this.worker.show(this.filter(), this.curved());
     if (this.curvedLines !== this.curved()) this.remakeLines();
     document.body.dataset.busy = "true";
@@ -280,9 +285,14 @@ export class App {
     this.outlinePicked();
     this.showControls();
     this.histogram.setRange(state.quality);
-    this.legend.update(state, this.info, this.mesh);
-    showPicked(state.picked, this.info, this.mesh);
+    this.showFacts();
     this.viewport.redraw();
+  }
+
+  /** What panel and legend say of the mesh. */
+  private showFacts(): void {
+    this.legend.update(this.state, this.info, this.mesh, this.layers);
+    showPicked(this.state.picked, this.info, this.mesh, this.layers);
   }
 
   /** Whether cells are drawn curved. */
@@ -340,6 +350,19 @@ export class App {
     this.viewport.redraw();
   }
 
+  private setLayers(layers: Layers): void {
+    this.layers = layers;
+    this.surface.setLayers(layers);
+    element("peel-most").textContent = String(layers.deepest);
+    const slider = element<HTMLInputElement>("peel");
+    slider.max = String(layers.deepest);
+    slider.disabled = false;
+    if (this.state.peel > layers.deepest) this.change({ peel: layers.deepest });
+    slider.value = String(this.state.peel);
+    this.showFacts();
+    this.viewport.redraw();
+  }
+
   private showLit(light: Uint8Array<ArrayBuffer>): void {
     this.surface.setLight(light);
     document.body.dataset.busy = "false";
@@ -349,8 +372,6 @@ export class App {
   /** What does not change any more. */
   private fillControls(): void {
     element("all-cells").textContent = grouped(this.info.cells);
-    element("peel-most").textContent = String(this.mesh.deepestLayer);
-    element<HTMLInputElement>("peel").max = String(this.mesh.deepestLayer);
     const colours = element<HTMLSelectElement>("colour");
     for (const option of colours.options) {
       option.disabled = !this.hasColour(option.value as ColourMode);

@@ -8,6 +8,8 @@ export interface TableInfo {
   columns: number;
   /** Rows per chunk; the last chunk has what is left. */
   rowsPerChunk: number;
+  /** Whether numbers are packed row by row, otherwise column by column. */
+  byRows: boolean;
   /** Compressed bytes of each chunk. */
   chunkBytes: number[];
 }
@@ -69,14 +71,13 @@ export function storedQuality(quality: number): number {
 }
 
 /**
- * Decodes one chunk: a byte with the number of byte planes, then the planes of all its numbers,
- * column by column. A number is the zigzag code of the difference to the row above (0 above the
- * first), after column 0 was subtracted from the other columns, modulo 2^32.
+ * Decodes one chunk: a byte with the number of byte planes, then the planes of all its numbers. A
+ * number is the zigzag code of the difference to the row above (0 above the first), modulo 2^32.
  */
 export function decodeChunk(
   bytes: Uint8Array,
   rows: number,
-  columns: number,
+  { columns, byRows }: TableInfo,
   to: Uint32Array,
   firstRow: number,
 ): void {
@@ -86,15 +87,12 @@ export function decodeChunk(
   const first = firstRow * columns;
   for (let column = 0; column < columns; ++column) {
     let value = 0;
-    const begin = 1 + column * rows;
-    for (let row = 0; row < rows; ++row) {
+    let at = byRows ? 1 + column : 1 + column * rows;
+    for (let row = 0; row < rows; ++row, at += byRows ? columns : 1) {
       let code = 0;
-      for (let plane = 0; plane < planes; ++plane) {
-        code |= bytes[begin + row + plane * count]! << (8 * plane);
-      }
+      for (let plane = 0; plane < planes; ++plane) code |= bytes[at + plane * count]! << (8 * plane);
       value = (value + ((code >>> 1) ^ -(code & 1))) | 0;
-      const place = first + row * columns;
-      to[place + column] = column === 0 ? value : value + to[place]!;
+      to[first + row * columns + column] = value;
     }
   }
 }

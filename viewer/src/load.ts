@@ -4,6 +4,7 @@ import { element, grouped, make } from "./ui/dom";
 import { memoryEstimate } from "./ui/statistics";
 import type { FromWorker, LoadedMesh, ToWorker } from "./worker/messages";
 import type { CurvedFaces } from "./worker/curved_faces";
+import type { Layers } from "./worker/topology";
 import type { Filter, Visible } from "./worker/visible";
 
 /** From here on a browser may run out of memory, so the page asks before it loads. */
@@ -14,6 +15,7 @@ declare const WORKER_SOURCE: string;
 export class MeshWorker {
   onVisible: (visible: Visible, curved: CurvedFaces | null, milliseconds: number) => void = () => {};
   onLit: (light: Uint8Array<ArrayBuffer>) => void = () => {};
+  onLayers: (layers: Layers) => void = () => {};
   private readonly worker: Worker;
   private running = false;
   private next: [Filter, boolean] | null = null;
@@ -57,6 +59,8 @@ export class MeshWorker {
       case "lit":
         // Of faces that are on their way out if something else was asked for since.
         return this.running ? undefined : this.onLit(message.light);
+      case "layers":
+        return this.onLayers(message.layers);
       case "failed":
         return this.onFailed(message.message);
       case "visible": {

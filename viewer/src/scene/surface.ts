@@ -27,6 +27,7 @@ import { kQualitySteps } from "../format";
 import { kTextureWidth } from "../scene_box";
 import type { CurvedFaces } from "../worker/curved_faces";
 import type { LoadedMesh } from "../worker/messages";
+import type { Layers } from "../worker/topology";
 import type { Visible } from "../worker/visible";
 import {
   kColourRows, kFragmentShader, kGhostFragmentShader, kGhostVertexShader, kVertexShader,
@@ -120,13 +121,13 @@ export class Surface {
     const uniforms = {
       positions,
       cellValues: { value: cellTexture(loaded.quality, (q) => (q / kQualitySteps) * 2 - 1) },
-      cellLayers: { value: cellTexture(loaded.layers, (layer) => layer) },
+      cellLayers: { value: noTexture() },
       cellRegions: { value: cellTexture(loaded.regions, (place) => place - 1) },
       surface: { value: noTexture() },
       pieces: { value: 0 },
       colours: { value: colourTexture() },
       mode: { value: 0 },
-      deepestLayer: { value: loaded.deepestLayer },
+      deepestLayer: { value: 1 },
       picked: { value: 0xffffffff },
       showGrid: { value: true },
       rounded: { value: false },
@@ -191,6 +192,11 @@ export class Surface {
 
   setColouring(mode: ColourMode): void {
     this.material.uniforms.mode!.value = kColourModes.indexOf(mode);
+  }
+
+  setLayers({ ofCells, deepest }: Layers): void {
+    this.material.uniforms.cellLayers!.value = cellTexture(ofCells, (layer) => layer);
+    this.material.uniforms.deepestLayer!.value = deepest;
   }
 
   setPicked(cell: number | null): void {

@@ -6,6 +6,7 @@ import {
 import type { MeshInfo } from "../format";
 import type { ViewState } from "../state";
 import type { LoadedMesh } from "../worker/messages";
+import type { Layers } from "../worker/topology";
 import { grouped, make } from "./dom";
 
 interface Chip {
@@ -32,8 +33,8 @@ function tagChips(tags: number[]): Chip[] {
 
 const kSkinAndCut = [chip(kSkinColour, "boundary"), chip(kInsideColour, "cut")];
 
-function cellPart(state: ViewState, info: MeshInfo, mesh: LoadedMesh): Part | null {
-  const { quadTags, regionTags, deepestLayer } = mesh;
+function cellPart(state: ViewState, info: MeshInfo, mesh: LoadedMesh, layers: Layers | null): Part | null {
+  const { quadTags, regionTags } = mesh;
   switch (state.colour) {
     case "quality":
       return {
@@ -61,7 +62,7 @@ function cellPart(state: ViewState, info: MeshInfo, mesh: LoadedMesh): Part | nu
     case "layer":
       return {
         title: "layer from the boundary",
-        scale: { ends: ["0", String(deepestLayer)], ramps: [viridis] },
+        scale: { ends: ["0", String(layers?.deepest ?? "...")], ramps: [viridis] },
         chips: [],
       };
     case "plain":
@@ -83,9 +84,9 @@ export class Legend {
 
   constructor(private readonly box: HTMLElement) {}
 
-  update(state: ViewState, info: MeshInfo, mesh: LoadedMesh): void {
+  update(state: ViewState, info: MeshInfo, mesh: LoadedMesh, layers: Layers | null): void {
     const parts = [
-      cellPart(state, info, mesh),
+      cellPart(state, info, mesh, layers),
       state.inner ? edgePart("valence of singular edges inside", info.singular.inner, false) : null,
       state.boundary
         ? edgePart("valence of singular edges on the boundary", info.singular.boundary, true)

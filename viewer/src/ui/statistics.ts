@@ -2,6 +2,7 @@
 import { type MeshInfo, qualityOf } from "../format";
 import { kTextureWidth, sceneOf } from "../scene_box";
 import type { LoadedMesh } from "../worker/messages";
+import type { Layers } from "../worker/topology";
 import { element, fillFacts, grouped, make } from "./dom";
 
 const valences = (counts: [number, number][]) =>
@@ -73,7 +74,12 @@ function regionFacts(cell: number, mesh: LoadedMesh): [string, string, string][]
   return [["region", String(mesh.regionTags[mesh.regions[cell]! - 1]!), "picked-region"]];
 }
 
-export function showPicked(cell: number | null, info: MeshInfo, mesh: LoadedMesh): void {
+export function showPicked(
+  cell: number | null,
+  info: MeshInfo,
+  mesh: LoadedMesh,
+  layers: Layers | null,
+): void {
   const box = element("picked");
   box.hidden = cell === null;
   if (cell === null) return;
@@ -81,7 +87,7 @@ export function showPicked(cell: number | null, info: MeshInfo, mesh: LoadedMesh
   fillFacts(element("picked-facts"), [
     ["scaled Jacobian", qualityOf(mesh.quality[cell]!).toFixed(4), "picked-quality"],
     ...refutationFacts(cell, info),
-    ["layer", String(mesh.layers[cell]!)],
+    ["layer", String(layers?.ofCells[cell] ?? "...")],
     ...regionFacts(cell, mesh),
   ]);
   const { scale, centre } = sceneOf(info);

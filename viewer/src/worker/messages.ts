@@ -1,6 +1,7 @@
 // What the page and its worker say to each other.
 import type { MeshInfo } from "../format";
 import type { CurvedFaces } from "./curved_faces";
+import type { Layers } from "./topology";
 import type { Filter, Visible } from "./visible";
 
 export type ToWorker =
@@ -21,8 +22,6 @@ export interface LoadedMesh {
   /** As in CurvedCells. */
   nodes: Uint32Array<ArrayBuffer>;
   quality: Uint16Array<ArrayBuffer>;
-  layers: Uint16Array<ArrayBuffer>;
-  deepestLayer: number;
   /** The sharp edges of the boundary, two vertices each. */
   creases: Uint32Array<ArrayBuffer>;
   /** Three numbers per edge: two vertices, and 2 * valence + (1 on the boundary). */
@@ -39,6 +38,8 @@ export interface LoadedMesh {
 export type FromWorker =
   | { kind: "progress"; what: string; share: number }
   | { kind: "loaded"; mesh: LoadedMesh }
+  /** What takes longer to find than the faces of the boundary, and comes after them. */
+  | { kind: "layers"; layers: Layers }
   | { kind: "visible"; visible: Visible; curved: CurvedFaces | null; milliseconds: number }
   /** The light at the corners of the quads that were sent last, as in Occlusion. */
   | { kind: "lit"; light: Uint8Array<ArrayBuffer> }

@@ -80,8 +80,13 @@ export function findNeighbours(cells: Uint32Array, vertexCount: number): Uint32A
   return neighbours;
 }
 
-/** Layer of each cell: 0 at the boundary, otherwise one more than its outermost neighbour's. */
-export function findLayers(neighbours: Uint32Array): { layers: Uint16Array<ArrayBuffer>; deepest: number } {
+export interface Layers {
+  /** Of each cell: 0 at the boundary, otherwise one more than its outermost neighbour's. */
+  ofCells: Uint16Array<ArrayBuffer>;
+  deepest: number;
+}
+
+export function findLayers(neighbours: Uint32Array): Layers {
   const cellCount = neighbours.length / 6;
   const layers = new Uint16Array(cellCount).fill(0xffff);
   const queue = new Uint32Array(cellCount);
@@ -105,16 +110,7 @@ export function findLayers(neighbours: Uint32Array): { layers: Uint16Array<Array
       queue[queued++] = next;
     }
   }
-  return { layers, deepest };
-}
-
-/** The faces without a neighbour. */
-export function findSkin(neighbours: Uint32Array): Uint32Array<ArrayBuffer> {
-  const faces: number[] = [];
-  for (let face = 0; face < neighbours.length; ++face) {
-    if (neighbours[face] === kNone) faces.push(face);
-  }
-  return new Uint32Array(faces);
+  return { ofCells: layers, deepest };
 }
 
 /** The cosine of the angle from which on an edge of the boundary is sharp: 40 degrees. */

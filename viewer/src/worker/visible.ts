@@ -1,4 +1,5 @@
 // Which cells are kept, and the faces by which one sees them.
+import { kQualitySteps } from "../format";
 import { kFaceCorners, kNone } from "./topology";
 
 /** What is kept: cells that fulfil all of it. */
@@ -33,12 +34,16 @@ export interface Visible {
   histogramCandidates: Uint32Array<ArrayBuffer>;
 }
 
-export interface Mesh {
-  cells: Uint32Array<ArrayBuffer>;
-  quality: Uint16Array<ArrayBuffer>;
+/** What tells which faces are between kept cells and others: only the whole mesh needs none of it. */
+export interface Inside {
   centres: Float32Array;
   layers: Uint16Array<ArrayBuffer>;
   neighbours: Uint32Array;
+}
+
+export interface Mesh {
+  cells: Uint32Array<ArrayBuffer>;
+  quality: Uint16Array<ArrayBuffer>;
   /** The faces of the boundary: 6 * cell + face. */
   skin: Uint32Array;
   /** Per face of a cell the feature of its quad, 1 and up; null if the mesh has none. */
@@ -47,8 +52,9 @@ export interface Mesh {
 
 const binOf = (quality: number) => (quality * kHistogramBins) >>> 16;
 
-function markKept(mesh: Mesh, filter: Filter, kept: Uint8Array, result: Visible): void {
-  const { quality, centres, layers } = mesh;
+function markKept(mesh: Mesh, inside: Inside, filter: Filter, kept: Uint8Array, result: Visible): void {
+  const { quality } = mesh;
+  const { centres, layers } = inside;
   const [from, to] = filter.quality;
   const plane = filter.plane;
   const [x, y, z] = plane ? plane.normal : [0, 0, 0];
@@ -80,7 +86,8 @@ function markKept(mesh: Mesh, filter: Filter, kept: Uint8Array, result: Visible)
   result.kept = count;
 }
 
-function quadsOf(mesh: Mesh, faces: ArrayLike<number>): Uint32Array<ArrayBuffer> {
+/** @param inside  null: all faces are on the boundary */
+function quadsOf(mesh: Mesh, inside: Inside | null, faces: ArrayLike<number>): Uint32Array<ArrayBuffer> {
   const quads = new Uint32Array(6 * faces.length);
   let next = 0;
   for (let i = 0; i < faces.length; ++i) {
@@ -90,18 +97,18 @@ function quadsOf(mesh: Mesh, faces: ArrayLike<number>): Uint32Array<ArrayBuffer>
     for (let k = 0; k < 4; ++k) quads[next++] = mesh.cells[8 * cell + kFaceCorners[corner + k]!]!;
     quads[next++] = cell;
     const feature = mesh.quadFeatures ? mesh.quadFeatures[face]! : 0;
-    quads[next++] = 2 * feature + Number(mesh.neighbours[face] !== kNone);
+    quads[next++] = 2 * feature + Number(inside !== null && inside.neighbours[face] !== kNone);
   }
   return quads;
 }
 
 /** The faces between marked cells and others. */
-function facesAround(mesh: Mesh, marked: Uint8Array): number[] {
+function facesAround({ neighbours }: Inside, marked: Uint8Array): number[] {
   const faces: number[] = [];
   for (let cell = 0; cell < marked.length; ++cell) {
     if (marked[cell] === 0) continue;
     for (let face = 6 * cell; face < 6 * cell + 6; ++face) {
-      const neighbour = mesh.neighbours[face]!;
+      const neighbour = neighbours[face]!;
       if (neighbour === kNone || marked[neighbour] === 0) faces.push(face);
     }
   }
@@ -109,18 +116,17 @@ function facesAround(mesh: Mesh, marked: Uint8Array): number[] {
 }
 
 /** The outline of all cells that have a vertex of this cell. */
-function facesAroundRing(mesh: Mesh, cell: number): number[] {
+function facesAroundRing(mesh: Mesh, inside: Inside, cell: number): number[] {
   const corners = mesh.cells.subarray(8 * cell, 8 * cell + 8);
   const ring = new Uint8Array(mesh.cells.length / 8);
   for (let i = 0; i < mesh.cells.length; ++i) {
     if (corners.includes(mesh.cells[i]!)) ring[i >>> 3] = 1;
   }
-  return facesAround(mesh, ring);
+  return facesAround(inside, ring);
 }
 
-/** Finds the faces between kept cells and all else. @param kept  room for one byte per cell */
-export function findVisible(mesh: Mesh, filter: Filter, kept: Uint8Array): Visible {
-  const result: Visible = {
+function nothingVisible(): Visible {
+  return {
     quads: new Uint32Array(0),
     ghost: new Uint32Array(0),
     light: new Uint8Array(0),
@@ -128,11 +134,32 @@ export function findVisible(mesh: Mesh, filter: Filter, kept: Uint8Array): Visib
     histogramKept: new Uint32Array(kHistogramBins),
     histogramCandidates: new Uint32Array(kHistogramBins),
   };
-  markKept(mesh, filter, kept, result);
-  result.quads = quadsOf(mesh, facesAround(mesh, kept));
+}
+
+export function keepsAll({ plane, firstLayer, quality, dug, isolated }: Filter): boolean {
+  const [from, to] = quality;
+  return plane === null && firstLayer === 0 && from <= 0 && to >= kQualitySteps && dug.length === 0 &&
+    isolated === null;
+}
+
+/** The same as findVisible() where all cells are kept. */
+export function findWhole(mesh: Mesh): Visible {
+  const result = nothingVisible();
+  for (const value of mesh.quality) ++result.histogramKept[binOf(value)]!;
+  result.histogramCandidates.set(result.histogramKept);
+  result.kept = mesh.quality.length;
+  result.quads = quadsOf(mesh, null, mesh.skin);
+  return result;
+}
+
+/** Finds the faces between kept cells and all else. @param kept  room for one byte per cell */
+export function findVisible(mesh: Mesh, inside: Inside, filter: Filter, kept: Uint8Array): Visible {
+  const result = nothingVisible();
+  markKept(mesh, inside, filter, kept, result);
+  result.quads = quadsOf(mesh, inside, facesAround(inside, kept));
   const ghost = filter.isolated === null
     ? mesh.skin.filter((face) => kept[Math.floor(face / 6)] === 0)
-    : facesAroundRing(mesh, filter.isolated);
-  result.ghost = quadsOf(mesh, ghost);
+    : facesAroundRing(mesh, inside, filter.isolated);
+  result.ghost = quadsOf(mesh, inside, ghost);
   return result;
 }

@@ -5,8 +5,8 @@ import { kTextureWidth, sceneOf } from "../scene_box";
 import { curvedFaces } from "./curved_faces";
 import type { FromWorker, LoadedMesh, ToWorker } from "./messages";
 import { carriedLight, Occlusion } from "./occlusion";
-import { findCreases, findLayers, findNeighbours, findSkin, kFaceCorners } from "./topology";
-import { type Filter, findVisible, type Mesh } from "./visible";
+import { findCreases, findLayers, findNeighbours, kFaceCorners } from "./topology";
+import { type Filter, findVisible, findWhole, type Inside, keepsAll, type Mesh } from "./visible";
 
 // The library for pages types `self` as a window; this is all that is used of it.
 const worker = self as unknown as {
@@ -19,6 +19,8 @@ const tables = new Map<string, Uint32Array<ArrayBuffer>>();
 let pending: Promise<void> = Promise.resolve();
 let received = 0;
 let mesh: Mesh;
+/** Found when it is needed, or when there is nothing else to do. */
+let inside: Inside | null = null;
 let kept: Uint8Array;
 let curvedCells: CurvedCells;
 /** What is on the screen, and what is known of its light. */
@@ -48,7 +50,7 @@ async function decode(name: string, chunk: number, data: string | ArrayBuffer): 
   if (packed.length !== table.chunkBytes[chunk]) throw new Error("The page is incomplete.");
   const first = chunk * table.rowsPerChunk;
   const rows = Math.min(table.rowsPerChunk, table.rows - first);
-  decodeChunk(await inflate(packed), rows, table.columns, tables.get(name)!, first);
+  decodeChunk(await inflate(packed), rows, table, tables.get(name)!, first);
   const total = info.tables.reduce((sum, each) => sum + each.chunkBytes.length, 0);
   tell({ kind: "progress", what: "Unpacking", share: ++received / total });
 }
@@ -123,20 +125,8 @@ function finish(): void {
   const positions = decodePositions();
   const nodes = takeTable("nodes");
   const regions = numberRegions();
-  tell({ kind: "progress", what: "Finding neighbours", share: 0 });
-  const neighbours = findNeighbours(cells, info.vertices);
-  tell({ kind: "progress", what: "Finding layers", share: 0.7 });
-  const { layers, deepest } = findLayers(neighbours);
   const features = placeQuadFeatures(cells);
-  mesh = {
-    cells,
-    quality,
-    layers,
-    neighbours,
-    skin: findSkin(neighbours),
-    centres: findCentres(cells, positions),
-    quadFeatures: features.places,
-  };
+  mesh = { cells, quality, skin: takeTable("skin"), quadFeatures: features.places };
   kept = new Uint8Array(info.cells);
   curvedCells = { order: info.order, cells, nodes, positions: positions.slice() };
   const loaded: LoadedMesh = {
@@ -147,8 +137,6 @@ function finish(): void {
     regions: regions.places,
     regionTags: regions.tags,
     quality,
-    layers,
-    deepestLayer: deepest,
     creases: findCreases(cells, mesh.skin, positions),
     singularEdges: takeTable("singular_edges"),
     featureEdges: takeTable("feature_edges"),
@@ -180,9 +168,20 @@ function handle(message: ToWorker): void | Promise<void> {
   }
 }
 
+/** Who touches whom, and where: what every filter needs. */
+function lookInside(): Inside {
+  if (inside) return inside;
+  const neighbours = findNeighbours(mesh.cells, info.vertices);
+  const layers = findLayers(neighbours);
+  const centres = findCentres(mesh.cells, curvedCells.positions);
+  inside = { neighbours, centres, layers: layers.ofCells };
+  tell({ kind: "layers", layers });
+  return inside;
+}
+
 function show(filter: Filter, curvedWanted: boolean): void {
   const begin = performance.now();
-  const visible = findVisible(mesh, filter, kept);
+  const visible = keepsAll(filter) ? findWhole(mesh) : findVisible(mesh, lookInside(), filter, kept);
   const curved = curvedWanted ? curvedFaces(curvedCells, visible.quads) : null;
   visible.light = carriedLight(lit.quads, lit.light, visible.quads);
   lit = { quads: visible.quads.slice(), light: visible.light.slice() };
@@ -202,6 +201,7 @@ function light(occlusion: Occlusion): void {
   }
   lit.light = occlusion.shares;
   tell({ kind: "lit", light: occlusion.shares });
+  setTimeout(lookInside);
 }
 
 worker.onmessage = (event) => {
