@@ -83,7 +83,7 @@ TEST(PagePool, FillsSlabsBeforeItMakesOthers) {
   for (int i = 0; i < 64; ++i) blocks.push_back(pool.allocate(kBytes));
   EXPECT_EQ(pool.slabCount(), 1);
   // What is given back is the next to be taken, be it the first, the last or in between.
-  for (const std::size_t i : {0, 31, 63}) {
+  for (const std::size_t i : {0U, 31U, 63U}) {
     EXPECT_TRUE(pool.release(blocks[i], kBytes));
     EXPECT_EQ(pool.allocate(kBytes), blocks[i]);
   }

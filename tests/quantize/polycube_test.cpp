@@ -160,7 +160,7 @@ TEST(Polycube, RefusesLabelsThatMakeNoSense) {
 }
 
 /// Writes text into a file of a folder of its own.
-class FlagFiles : public testing::Test {
+class FlagFiles : public ::testing::Test {
  protected:
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_.path() / name) << text;
