@@ -894,7 +894,21 @@ class Repair(CommandTest):
         self.assert_fails("quantize", "seamless.hexex", "-o", "bad.hexex", "--cells", "1e12",
                           expect=INVALID_MAP, code="TooLarge")
         self.run_command("extract", "seamless.hexex", "-o", "bad.vtu", "--cells", "5", expect=BAD_USAGE)
-        self.assertFalse((self.folder / "bad.hexex").exists())
+        # Maps that it cannot take.
+        self.run_command("generate", "sphere", "--refine", "6", "--cells", "8", "--defects", "5", "--quiet",
+                         "-o", "flipped.hexex")
+        self.run_command("generate", "sphere", "--noise", "0.005", "--quiet", "-o", "noisy.hexex")
+        for map, code in ("flipped.hexex", "FlippedTet"), ("noisy.hexex", "TransitionResidual"):
+            for densify in [], ["--densify"]:
+                self.assert_fails("quantize", map, "-o", "bad.hexex", "--cells", "500", *densify,
+                                  expect=INVALID_MAP, code=code)
+                self.assert_fails("extract", map, "-o", "bad.vtu", "--quantize", "--cells", "500", *densify,
+                                  expect=INVALID_MAP, code=code)
+        # What works is not made denser.
+        self.run_command("quantize", "seamless.hexex", "-o", "same.hexex", "--cells", "500", "--densify",
+                         "--quiet")
+        self.assertEqual((self.folder / "same.hexex").read_bytes(), (self.folder / "integer.hexex").read_bytes())
+        self.assertEqual(list(self.folder.glob("bad*")), [])
 
     def test_improve(self):
         self.run_command("generate", "torus", "--jitter", "0.9", "--cells", "3", "--quiet", "-o", "map.hexex")

@@ -268,7 +268,8 @@ ExaminedSizes examine(const DrawnMap& drawn, Random& random, std::uint64_t quant
     expectSameCurves(map, options, mesh, random);
   }
   ExaminedSizes sizes{map.tets.size(), mesh.cells.size()};
-  if (quantizedOneIn > 0 && map.tets.size() < 1000 && random.below(quantizedOneIn) == 0) {
+  if (quantizedOneIn > 0 && canQuantize() && map.tets.size() < 1000 &&
+      random.below(quantizedOneIn) == 0) {
     ++(expectQuantized(*drawn.answer, map, random) ? sizes.quantized : sizes.notQuantized);
   }
   return sizes;

@@ -1,6 +1,8 @@
 // Quantization of maps and with options at the ends of what numbers can hold; docs/limits.md lists
 // them.
+#include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -79,6 +81,47 @@ TEST(QuantizeLimits, NothingAtRandomIsSeamless) {
   EXPECT_EQ(examineSeamless(map, context).kind, SeamlessKind::Neither);
   EXPECT_EQ(codeOf([&] { static_cast<void>(quantize(map, scale(1))); }),
             ErrorCode::TransitionResidual);
+}
+
+/// Around a curve from (0, 0, 0) to (1, 1, 1), the grid turns by a third.
+TetMap withADiagonalCurve() {
+  const std::array<Vec3, 3> along = {{{0, 0, 0}, {0.5, 0.5, 0.5}, {1, 1, 1}}};
+  const std::array<Vec3, 4> around = {{{1, 0, 0}, {1, 0.6, 0.2}, {0.6, 1, 0.1}, {0, 1, 0}}};
+  TetMap map;
+  map.points = {{0, 0, 0}, {0, 0, 0.5}, {0, 0, 1}, {1, 0, 0}, {-0.5, 0.8, 0}, {-0.5, -0.8, 0}};
+  for (Index k = 0; k < 3; ++k) {
+    for (Index i = 0; i < 2; ++i) {
+      map.tets.push_back({i, i + 1, 3 + k, 3 + (k + 1) % 3});
+      map.parameters.push_back({along[i], along[i + 1], around[k], around[k + 1]});
+    }
+  }
+  return map;
+}
+
+TEST(QuantizeLimits, SingularCurvesThatAreNotParallelToAnAxisAreNamed) {
+  const TetMap map = withADiagonalCurve();
+  try {
+    static_cast<void>(quantize(map, scale(1)));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::TransitionResidual);
+    EXPECT_NE(std::string(error.what()).find("a singular curve is not parallel to an axis"),
+              std::string::npos)
+        << error.what();
+    EXPECT_EQ(error.place().kind, PlaceKind::Vertex);
+  }
+}
+
+/// Arcs are as long as edges of tets, which are flat if these have no length.
+TEST(QuantizeLimits, ArcsWithoutALengthAreRefused) {
+  TetMap map = generateSample(SampleKind::Box, {.stretch = 0.5}).map;
+  for (TetParameters& tet : map.parameters) {
+    for (Vec3& u : tet) u[2] = 0;
+  }
+  const ErrorCode code = codeOf([&] { static_cast<void>(quantize(map, scale(1))); });
+  EXPECT_TRUE(code == ErrorCode::TransitionResidual || code == ErrorCode::FlippedTet) << name(code);
+  Context context;
+  EXPECT_EQ(examineSeamless(map, context).kind, SeamlessKind::Neither);
 }
 
 /// Left from a map are tets that hang together at edges and vertices only.
