@@ -67,7 +67,7 @@ TEST(Array, IsFreedBySharedOwnersInOtherThreads) {
   for (const std::size_t n : kSizes) {
     std::shared_ptr<Index[]> owner = countTo(n).release();
     std::thread last([other = std::move(owner), n]() mutable {
-      EXPECT_EQ(other[n - 1], n - 1);
+      EXPECT_EQ(other.get()[n - 1], n - 1);
       other.reset();
     });
     last.join();
