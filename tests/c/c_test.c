@@ -695,6 +695,19 @@ static void test_quantize(void) {
           HEXHEX_TRANSITION_RESIDUAL);
     CHECK(quantized == NULL);
     hexhex_map_destroy(sheared);
+    /* Flipped tets, with densify as without. */
+    hexhex_map* flipped = NULL;
+    hexhex_sample_options sample = HEXHEX_SAMPLE_OPTIONS_INIT;
+    sample.cells = 8;
+    sample.refine = 6;
+    sample.defects = 5;
+    CHECK_OK(hexhex_map_generate("sphere", &sample, &flipped, &error));
+    for (options.densify = 0; options.densify < 2; ++options.densify) {
+      CHECK(hexhex_quantize(flipped, &options, NULL, &quantized, &report, &error) ==
+            HEXHEX_FLIPPED_TET);
+      CHECK(quantized == NULL && strlen(error.message) > 20);
+    }
+    hexhex_map_destroy(flipped);
   }
   hexhex_context_destroy(context);
   hexhex_map_destroy(seamless);

@@ -454,8 +454,13 @@ def test_quantization_refuses():
     none = hexhex.Map(map.points, map.tets, sheared)
     report = hexhex.examine_seamless(none)
     assert report.kind == "neither" and len(report.problem) > 20
-    with pytest.raises(hexhex.MapError):
-        hexhex.quantize(none, cells=100)
+    flipped = hexhex.generate("sphere", cells=8, refine=6, defects=5)
+    for wrong, code in (none, "TransitionResidual"), (flipped, "FlippedTet"):
+        for densify in (False, True):
+            with pytest.raises(hexhex.MapError) as caught:
+                hexhex.quantize(wrong, cells=100, densify=densify)
+            assert caught.value.code == code
+    assert quantized_cells(map, cells=100, densify=True) == quantized_cells(map, cells=100)
     with pytest.raises(ZeroDivisionError):
         hexhex.quantize(map, cells=100, progress=lambda stage, share: 1 / 0)
 
