@@ -1388,7 +1388,7 @@ static void test_repair_of_others(const char* folder) {
   hexhex_map_destroy(map);
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(HEXHEX_SANITIZED)
 #define SANITIZED 1
 #else
 #define SANITIZED 0

@@ -13,15 +13,6 @@
 
 #include "ovm_test_support.hpp"
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define HEXHEX_TEST_SANITIZED 1
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define HEXHEX_TEST_SANITIZED 1
-#endif
-
 namespace hexhex::test {
 namespace {
 
@@ -31,7 +22,7 @@ namespace {
 class MemoryLimit {
  public:
   MemoryLimit() {
-#if !defined(HEXHEX_TEST_SANITIZED)
+#if !defined(HEXHEX_SANITIZED)
     ::getrlimit(RLIMIT_AS, &before_);
     long pages = 0;
     std::ifstream("/proc/self/statm") >> pages;
@@ -214,7 +205,7 @@ TEST(DamagedOvm, HexMeshes) {
   damage(contentOf(folder / "a.ovm"), readOvmHexMesh, false);
 }
 
-#if !defined(HEXHEX_TEST_SANITIZED)
+#if !defined(HEXHEX_SANITIZED)
 TEST(DamagedOvm, MemoryIsLimitedHere) {
   const MemoryLimit limit;
   EXPECT_THROW(Array<char>(std::size_t{1} << 28), std::bad_alloc);

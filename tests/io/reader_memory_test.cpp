@@ -675,7 +675,7 @@ std::vector<Bomb> allBombs() {
   return bombs;
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(HEXHEX_SANITIZED)
 constexpr bool kSanitized = true;  // which takes memory and time of its own
 #else
 constexpr bool kSanitized = false;
