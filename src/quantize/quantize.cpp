@@ -11,6 +11,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 #if defined(__GLIBC__)
@@ -220,7 +221,6 @@ class Quantizer {
     for (int step = 0; step < (options_.densify ? kMostDensities : 1); ++step) {
       const double cells = report_.cellsWanted * density;
       for (const double growth : kGrowths) {
-        failed_.clear();
         for (const Attempt& attempt : kAttempts) {
           cutIntoBlocks(attempt.reduced);
           std::optional<QuantizedMap> result = tryCells(cells * attempt.density, growth);
@@ -254,7 +254,8 @@ class Quantizer {
 
   std::optional<QuantizedMap> tryCells(double cells, double growth) {
     const std::optional<Choice> choice = choose(cells);
-    if (!choice || failed_.contains({report_.blocks, choice->integers})) return std::nullopt;
+    if (!choice || failed_.contains({growth, report_.blocks, choice->integers}))
+      return std::nullopt;
     ++report_.attempts;
     BendProblem problem = bendProblem(seamless_, *complex_,
                                       BlockIntegers(*complex_, choice->integers), choice->scale);
@@ -265,7 +266,7 @@ class Quantizer {
     Stage stage(context_, "bending");
     BentMap bent = bend(std::move(problem), {.maxGrowth = growth}, stage);
     if (!bent.isValid()) {
-      failed_.insert({report_.blocks, choice->integers});
+      failed_.insert({growth, report_.blocks, choice->integers});
       if (!bent.flippedTets.empty()) {
         flippedTet_ = bent.parentTet[bent.flippedTets.front()];
         flippedBlock_ = blockOf[flippedTet_];
@@ -345,8 +346,9 @@ class Quantizer {
   IntegerSolver solver_ = integerSolver();
   IntegerProgram program_;
   QuantizeReport report_;
-  /// Integers that the map cannot be bent onto, of the complex with so many blocks.
-  std::set<std::pair<std::uint64_t, std::vector<std::int64_t>>> failed_;
+  /// Integers that the map cannot be bent onto, if tets may grow so many times in number, of the
+  /// complex with so many blocks. Those of the next density are often the same.
+  std::set<std::tuple<double, std::uint64_t, std::vector<std::int64_t>>> failed_;
   Index flippedTet_ = kNone;
   Index flippedBlock_ = kNone;
 };
