@@ -1,12 +1,15 @@
 // What JavaScript calls: one function, which takes a request as JSON and answers with JSON. Arrays
 // stay where they are: answers hold their addresses, and JavaScript looks at the memory
-// (memory.ts). Files are those of emscripten's file system in memory. The keys of reports are the
+// (src/index.ts). Files are those of emscripten's file system in memory. The keys of reports are the
 // command's.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <emscripten.h>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <map>
 #include <new>
 #include <optional>
@@ -65,10 +68,26 @@ T& get(const Json& request, const char* key) {
   return *object;
 }
 
+/// Json converts any number to integers, without a word: fractions, and what has more bits.
+/// @throws Error InvalidArgument for a number that T does not hold
+template <class T>
+void requireWhole(const Json& number, const char* key) {
+  const auto value = number.get<double>();
+  const double end = std::ldexp(1.0, std::numeric_limits<T>::digits);
+  const bool holds =
+      value == std::floor(value) && value >= (std::is_signed_v<T> ? -end : 0) && value < end;
+  if (holds) return;
+  throw Error(ErrorCode::InvalidArgument, "The option " + std::string(key) + " is " +
+                                              number.dump() + ". Give an integer that it can be.");
+}
+
 /// Sets what the request has, and leaves the default otherwise.
 template <class T>
 void take(const Json& options, const char* key, T& value) {
-  if (const auto found = options.find(key); found != options.end()) found->get_to(value);
+  const auto found = options.find(key);
+  if (found == options.end()) return;
+  if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) requireWhole<T>(*found, key);
+  found->get_to(value);
 }
 
 /// What has this name. @throws Error InvalidArgument

@@ -94,7 +94,7 @@ async function work(run: () => Promise<void>): Promise<void> {
     const code = error instanceof TaskError ? error.code : "";
     if (code !== "Cancelled") tell(messageOf(error));
     // The memory of the work comes back with another worker.
-    if (code === "Cancelled" || code === "OutOfMemory") await recoverOrForget();
+    if (["Cancelled", "OutOfMemory", "Fault"].includes(code)) await recoverOrForget();
   } finally {
     setWorking(false);
   }

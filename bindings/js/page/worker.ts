@@ -147,6 +147,10 @@ function failureOf(error: unknown): { code: string; message: string } {
   if (error instanceof RangeError) {
     return { code: "OutOfMemory", message: "Memory is exhausted. Use a smaller scale, or the command." };
   }
+  if (error instanceof WebAssembly.RuntimeError) {
+    const message = `This is a fault of hexhex (${error.message}). Please report it, with what you did.`;
+    return { code: "Fault", message };
+  }
   return { code: "", message: error instanceof Error ? error.message : String(error) };
 }
 

@@ -73,7 +73,19 @@ test("errors have a code, a sentence and a place", () => {
   assert.throws(() => hexhex.readMap(new Uint8Array(0), "a.hexex"), (error) => error.code === "FileSyntax");
   assert.throws(() => hexhex.generate("cow"), (error) => error.code === "InvalidArgument");
   assert.throws(() => hexhex.generate("box", { cells: "many" }), (error) => error.code === "InvalidArgument");
-  assert.throws(() => hexhex.extract(hexhex.generate("box"), { scale: 0 }), (error) => error.code === "InvalidArgument");
+  for (const scale of [0, 1.5, 2 ** 31, 2 ** 32 + 1, -(2 ** 32) + 1, "2", NaN]) {
+    assert.throws(() => hexhex.extract(hexhex.generate("box"), { scale }), (error) => error.code === "InvalidArgument");
+  }
+});
+
+test("sizes that files tell may have more than 32 bits", () => {
+  const text = (line) => new TextEncoder().encode(line);
+  const binary = (...values) => new Uint8Array(new Int32Array(values).buffer);
+  // 1 + tags + nodes integers of four bytes: 2^32 in all.
+  const file = Buffer.concat([text("$MeshFormat\n2.2 1 8\n"), binary(1), text("\n$EndMeshFormat\n$Nodes\n1\n"),
+    new Uint8Array(28).fill(1, 0, 1), text("\n$EndNodes\n$Elements\n1\n"), binary(5, 1, 2 ** 30 - 9, 0),
+    text("\n$EndElements\n")]);
+  assert.throws(() => hexhex.readMesh(file, "a.msh"), (error) => error.code === "FileSyntax" && /room/.test(error.message));
 });
 
 test("what was freed cannot be used", () => {

@@ -165,14 +165,22 @@ test("wrong and empty files get a sentence", async ({ page }) => {
   expect(await page.title()).toBe("hexhex");
 });
 
-test("names of files are text in the page of the mesh, too", async ({ page }) => {
-  const hostile = `"'<img src=x onerror=alert(1)><!--&lt;.mesh`;
-  writeFileSync(at(hostile), readFileSync(at("two.mesh")));
-  await dropAndWait(page, hostile);
-  expect(await text(page, "#mesh-name")).toBe(hostile);
+test("names of files and arrays are text", async ({ page }) => {
+  const hostile = `"'<img src=x onerror=alert(1)><!--&lt;`;
+  writeFileSync(at(`${hostile}.hexex`), readFileSync(at("sphere.hexex")));
+  await dropAndWait(page, `${hostile}.hexex`);
+  expect(await text(page, "#map-name")).toBe(`${hostile}.hexex`);
+  hexhex("generate", "torus", "--cells", "2", "--refine", "1", "-o", "torus.vtk");
+  const file = readFileSync(at("torus.vtk"), "latin1");
+  writeFileSync(at("torus.vtk"), file.replace("\nigm ", "\n<img/src=x> "), "latin1");
+  await dropAndWait(page, "torus.vtk");
+  await expect(problem(page)).toContainText("<img/src=x>");
+  writeFileSync(at(`${hostile}.mesh`), readFileSync(at("two.mesh")));
+  await dropAndWait(page, `${hostile}.mesh`);
+  expect(await text(page, "#mesh-name")).toBe(`${hostile}.mesh`);
   const frame = await meshView(page);
-  await expect(frame.locator("#title")).toHaveText(hostile);
-  expect(await frame.locator("img").count()).toBe(0);
+  await expect(frame.locator("#title")).toHaveText(`${hostile}.mesh`);
+  for (const images of [page.locator("img"), frame.locator("img")]) expect(await images.count()).toBe(0);
 });
 
 test("500 MB of zeros are no map, and the page goes on", async ({ page }) => {

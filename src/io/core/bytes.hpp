@@ -7,12 +7,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <new>
 #include <string>
 #include <string_view>
 
 #include <hexhex/error.hpp>
 
 namespace hexhex {
+
+/// A size that a file tells, which may have more bits than sizes have here.
+[[nodiscard]] inline std::size_t memorySize(std::uint64_t bytes) {
+  const auto size = static_cast<std::size_t>(bytes);
+  if (size != bytes) throw std::bad_alloc();
+  return size;
+}
 
 /// The number at a place of any alignment.
 template <class T>

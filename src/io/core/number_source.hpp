@@ -30,7 +30,10 @@ struct RecordShape {
   std::size_t reals = 0;     ///< double precision: 8 bytes
 
   [[nodiscard]] std::size_t tokens() const { return sizes + integers + reals; }
-  [[nodiscard]] std::size_t bytes() const { return 8 * sizes + 4 * integers + 8 * reals; }
+  /// With 64 bits, as a file can tell any number of tags.
+  [[nodiscard]] std::uint64_t bytes() const {
+    return std::uint64_t{8} * sizes + std::uint64_t{4} * integers + std::uint64_t{8} * reals;
+  }
 };
 
 /// Numbers as text.

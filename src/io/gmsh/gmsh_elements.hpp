@@ -177,10 +177,11 @@ class GmshElements {
     const std::int64_t dimension = source.integer("the dimension of an entity");
     const std::int64_t entity = source.integer("the tag of an entity");
     block.type = source.integer("the type of elements");
-    block.count = source.size("the number of elements of a block");
+    const std::uint64_t count = source.size("the number of elements of a block");
     block.tag = tags_.ofEntity({dimension, entity});
     block.nodes = readNodeCount(source, block.type);
-    requireRoom(source, block.count, block.shape(), "elements");
+    requireRoom(source, count, block.shape(), "elements");
+    block.count = static_cast<std::size_t>(count);
     block.position = source.position();
     return block;
   }

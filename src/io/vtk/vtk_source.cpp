@@ -2,6 +2,7 @@
 #include <array>
 #include <type_traits>
 
+#include <io/core/bytes.hpp>
 #include <io/vtk/vtk_source.hpp>
 
 namespace hexhex {
@@ -105,7 +106,7 @@ VtkColumn textColumn(VtkNumbers numbers, std::size_t count) {
   VtkColumn column;
   column.scalar = numbers == VtkNumbers::Reals ? VtkScalar(double{}) : VtkScalar(std::int64_t{});
   column.count = count;
-  column.decoded.resize(count * sizeof(double));
+  column.decoded.resize(memorySize(std::uint64_t{count} * sizeof(double)));
   return column;
 }
 

@@ -2,10 +2,10 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <new>
 #include <vector>
 
 #include <base/parallel.hpp>
+#include <io/core/bytes.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/vtk/vtu_decoding.hpp>
@@ -133,13 +133,6 @@ bool readBlocks(EncodedBytes& source, std::size_t lengthBytes, Blocks& blocks) {
 constexpr const char* kIncomplete = "the data of this array are incomplete.";
 constexpr const char* kIncompleteOrNoBase64 =
     "the data of this array are incomplete, or no base64.";
-
-/// A size that a file tells, which may have more bits than sizes have here.
-std::size_t memorySize(std::uint64_t bytes) {
-  const auto size = static_cast<std::size_t>(bytes);
-  if (size != bytes) throw std::bad_alloc();
-  return size;
-}
 
 }  // namespace
 
