@@ -3,6 +3,9 @@
 #include <fstream>
 #include <random>
 #include <sstream>
+#if !defined(_WIN32)
+#include <sys/stat.h>
+#endif
 
 #include <gtest/gtest.h>
 
@@ -156,6 +159,21 @@ TEST_F(PartFiles, ThatDoNotFitTogetherAreRefused) {
   refuse("<VTKFile><PUnstructuredGrid></PUnstructuredGrid></VTKFile>");
   refuse(without("a/a_1.vtu"));
   refuse(without("    <Piece Source=\"a/a_1.vtu\"/>\n"));
+  const auto with = [&](const std::string& file) {
+    std::string text = index;
+    return text.insert(text.find("    <Piece"), "    <Piece Source=\"" + file + "\"/>\n");
+  };
+  // The same pieces again and again: a small file that takes much memory.
+  refuse(with("a/a_1.vtu"));
+  refuse(with("./a/../a/a_1.vtu"));
+  // What has no end.
+  refuse(with("/dev/zero"));
+#if !defined(_WIN32)
+  ASSERT_EQ(::mkfifo((folder_ / "pipe.vtu").c_str(), 0600), 0);
+  refuse(with("pipe.vtu"));
+#endif
+  refuse(with("a"));
+  refuse(with("b.pvtu"));
   fs::remove(folder_ / "a" / "a_2.vtu");
   EXPECT_THROW(static_cast<void>(readHexMesh(folder_ / "a.pvtu")), Error);
 }

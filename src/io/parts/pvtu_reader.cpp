@@ -27,6 +27,28 @@ std::string unescaped(std::string_view text) {
   return result;
 }
 
+/// Whoever wrote the file chose what is opened: no pipes and devices, which may never end, and no
+/// file twice, so that all pieces together are no larger than what is on the disk.
+void requireFiles(const Input& input, const std::vector<std::filesystem::path>& pieces) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& piece : pieces) {
+    std::error_code missing;
+    const std::filesystem::path file = std::filesystem::canonical(piece, missing);
+    const std::filesystem::file_status status = std::filesystem::status(file, missing);
+    // Whoever opens it will tell why it cannot be read.
+    if (missing || std::filesystem::is_directory(status)) continue;
+    files.push_back(file);
+    if (std::filesystem::is_regular_file(status)) continue;
+    throw Error(ErrorCode::FileUnsupported,
+                input.name() + ": the piece " + piece.string() + " is a pipe or a device.");
+  }
+  std::sort(files.begin(), files.end());
+  const auto twice = std::adjacent_find(files.begin(), files.end());
+  if (twice == files.end()) return;
+  throw Error(ErrorCode::FileSyntax,
+              input.name() + ": two pieces are the same file, " + twice->string() + '.');
+}
+
 /// The files of all pieces.
 std::vector<std::filesystem::path> findPieces(const Input& input, Stage& stage) {
   Array<char> room;
@@ -38,7 +60,7 @@ std::vector<std::filesystem::path> findPieces(const Input& input, Stage& stage) 
     if (tag.name == "PUnstructuredGrid") inGrid = !tag.closing;
     if (tag.name != "Piece" || tag.closing || !inGrid) continue;
     const std::string source = unescaped(tag.attribute("Source"));
-    if (source.empty()) {
+    if (source.empty() || source.find('\0') != std::string::npos) {
       tags.fail(ErrorCode::FileSyntax, "a piece without Source, the name of its file.", tag);
     }
     pieces.push_back(input.path().parent_path() / source);
@@ -48,6 +70,7 @@ std::vector<std::filesystem::path> findPieces(const Input& input, Stage& stage) 
                                            ": the file names no pieces: there is no <Piece> in a "
                                            "<PUnstructuredGrid>.");
   }
+  requireFiles(input, pieces);
   return pieces;
 }
 
