@@ -1,5 +1,7 @@
 // Polycubes by labels: from a tet mesh whose boundary triangles say which way they are to face.
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <string>
 
@@ -258,6 +260,39 @@ TEST_F(FlagFiles, BelongToTheTrianglesOfASurface) {
   EXPECT_EQ(codeOfSurface(obj + "f 1 2 1000\n"), ErrorCode::FileSyntax);
   EXPECT_EQ(codeOfSurface(obj + "v 1 2\n"), ErrorCode::FileSyntax);
   EXPECT_EQ(codeOfSurface("v 77 77 77\n" + obj), ErrorCode::FileUnsupported);
+  // A corner of the box.
+  const std::size_t vertex = obj.rfind("\nv") + 1;
+  for (const char* const place : {"v 1e300 0 0", "v -1e18 -1e18 1e18", "v 0 -1e308 1e-320"}) {
+    const std::string moved = obj.substr(0, vertex) + place + obj.substr(obj.find('\n', vertex));
+    EXPECT_EQ(codeOfSurface(moved), ErrorCode::FileUnsupported) << place;
+  }
+}
+
+/// In whatever units, within those of positions.
+TEST_F(FlagFiles, BelongToSurfacesOfAnySize) {
+  const auto original = input_.tets.points;
+  for (const double factor : {1e-200, 1e-30, 1e30, 1e200}) {
+    std::string obj;
+    for (std::size_t v = 0; v < original.size(); ++v) {
+      obj += "v";
+      for (std::size_t k = 0; k < 3; ++k) {
+        input_.tets.points[v][k] = factor * original[v][k];
+        std::array<char, 40> digits{};
+        std::snprintf(digits.data(), digits.size(), " %.9g", input_.tets.points[v][k]);
+        obj += digits.data();
+      }
+      obj += '\n';
+    }
+    std::string labels;
+    forEachLabelled([&](int label, const std::array<Index, 3>& vertices) {
+      labels += std::to_string(label) + '\n';
+      obj += "f";
+      for (const Index v : vertices) obj += ' ' + std::to_string(v + 1);
+      obj += '\n';
+    });
+    EXPECT_EQ(read({write("labels.txt", labels), write("surface.obj", obj)}), input_.flags);
+  }
+  input_.tets.points = original;
 }
 
 TEST_F(FlagFiles, AreTrianglesOfVtkFiles) {

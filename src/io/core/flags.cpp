@@ -1,6 +1,7 @@
 // Labels of a tet mesh's boundary: which way each triangle is to face in a polycube.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -161,14 +162,14 @@ class Positions {
     for (const Vec3& p : tets.points) {
       for (const double x : p) size = std::max(size, std::abs(x));
     }
-    tolerance_ = std::max(kSamePosition * size, 1e-300);
+    tolerance_ = std::max(kSamePosition * size, std::numeric_limits<double>::min());
     for (const Index v : boundary.vertices()) buckets_[bucketOf(tets.points[v])].push_back(v);
   }
 
   /// The nearest vertex within the tolerance.
   [[nodiscard]] std::optional<Index> find(const Vec3& p) const {
     std::optional<Index> best;
-    double least = tolerance_ * tolerance_;
+    double least = 1;
     const Bucket middle = bucketOf(p);
     for (int i = 0; i < 27; ++i) {
       const auto bucket =
@@ -177,7 +178,8 @@ class Positions {
       for (const Index v : bucket->second) {
         double squared = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-          squared += (p[k] - tets_.points[v][k]) * (p[k] - tets_.points[v][k]);
+          const double d = (p[k] - tets_.points[v][k]) / tolerance_;
+          squared += d * d;
         }
         if (squared > least) continue;
         least = squared;
@@ -191,7 +193,11 @@ class Positions {
   using Bucket = std::array<std::int64_t, 3>;
   [[nodiscard]] Bucket bucketOf(const Vec3& p) const {
     Bucket bucket{};
-    for (std::size_t k = 0; k < 3; ++k) bucket[k] = std::llround(p[k] / tolerance_);
+    // All vertices are far below the limit; numbers that are none count as one.
+    constexpr double kLimit = 0x1p60;
+    for (std::size_t k = 0; k < 3; ++k) {
+      bucket[k] = std::llround(std::fmin(std::fmax(p[k] / tolerance_, -kLimit), kLimit));
+    }
     return bucket;
   }
 
