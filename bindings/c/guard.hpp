@@ -65,6 +65,12 @@ T readStruct(const T* given, T value, const char* argument) {
   return value;
 }
 
+/// Before something is changed: whether writeStruct() will work.
+template <class T>
+void requireStruct(const T* out, const char* argument) {
+  if (out != nullptr && !isStructSize(out->size)) throwSize(argument);
+}
+
 /// Our struct into the caller's, as far as it goes. What the caller knows beyond ours becomes zero.
 template <class T>
 void writeStruct(const T& value, T& out, const char* argument) {

@@ -46,6 +46,7 @@ hexhex_status hexhex_mesh_improve(hexhex_mesh* mesh, const hexhex_map* map,
                                            .fixBoundary = o.fix_boundary != 0,
                                            .featureAngle = o.feature_angle,
                                            .slack = o.slack};
+    requireStruct(report, "report");
     ContextOrDefault working(context);
     const hexhex::ImproveReport made =
         given ? hexhex::improve(used->own, (*given)->view, chosen, *working)

@@ -58,13 +58,15 @@ struct ImproveReport {
 ///
 /// The least scaled Jacobian is no less in the end, and no cell that is certified loses that.
 /// Connectivity, tags and regions stay as they are; so do vertices at corners. Vertices on tagged
-/// curves and patches stay on them. The result does not depend on the number of threads.
+/// curves and patches stay on them. The result does not depend on the number of threads. If it
+/// throws, the mesh is as it was.
 ///
 /// @param mesh  with generators in the map: what extract() returns, or what was read from `.vtu`,
 ///              `.ovm` or `.ovmb`
 /// @throws Error InvalidArgument for options out of range, vertices that do not exist, and
-///         generators that are not in the map; NotFinite for a coordinate; Orientation if the
-///         cells are inside out; EmptyMesh
+///         generators that are not in the map; NotFinite for a coordinate; TooLarge unless the mesh
+///         extends over 1e-10 to 1e30; Orientation if the cells are inside out; EmptyMesh; those of
+///         broken maps
 ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions& options,
                       Context& context);
 

@@ -353,23 +353,9 @@ void fillRegions(const TetMapView& given, const CellCenters& centers, HexMesh& m
   });
 }
 
-template <class Vertices>
-void requirePoints(const TetMapView& map, const Vertices& vertices, const char* what,
-                   std::size_t i) {
-  for (const Index vertex : vertices) {
-    if (vertex < map.points.size()) continue;
-    throw Error(ErrorCode::InvalidArgument,
-                std::string("Feature ") + what + " " + std::to_string(i) + " names vertex " +
-                    std::to_string(vertex) + ", but the map has " +
-                    std::to_string(map.points.size()) + " vertices, numbered from 0.");
-  }
-}
-
 void requireValidVertices(const TetMapView& map) {
   std::vector<FeatureVertex> tagged;
-  for (std::size_t i = 0; i < map.features.vertices.size(); ++i) {
-    const FeatureVertex& feature = map.features.vertices[i];
-    requirePoints(map, std::array{feature.vertex}, "vertex", i);
+  for (const FeatureVertex& feature : map.features.vertices) {
     if (feature.tag != 0) tagged.push_back(feature);
   }
   std::sort(tagged.begin(), tagged.end(),
@@ -390,18 +376,8 @@ void requireValidVertices(const TetMapView& map) {
 
 void requireValidTags(const TetMapView& map) {
   requireValidVertices(map);
-  for (std::size_t i = 0; i < map.features.edges.size(); ++i) {
-    requirePoints(map, map.features.edges[i].vertices, "edge", i);
-  }
-  for (std::size_t i = 0; i < map.features.faces.size(); ++i) {
-    requirePoints(map, map.features.faces[i].vertices, "face", i);
-  }
   TagTable<2>(map.features.edges).requireOne();
   TagTable<3>(map.features.faces).requireOne();
-  if (map.regions.empty() || map.regions.size() == map.tets.size()) return;
-  throw Error(ErrorCode::InvalidArgument,
-              "The map has " + std::to_string(map.tets.size()) + " tets, but regions for " +
-                  std::to_string(map.regions.size()) + ". Give one for each tet, or none.");
 }
 
 void carryTags(const TetMapView& given, const PreparedMap& prepared, HexMesh& mesh,

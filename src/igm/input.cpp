@@ -27,6 +27,27 @@ constexpr double kMaxParameter = 0x1p53;
 /// them, fit. (Sanitization, which knows the scale, allows no more either.)
 constexpr double kMaxLocalParameter = 0x1p28;
 
+/// @param corners  of a feature, the i-th of its kind
+void checkFeature(const TetMapView& map, std::span<const Index> corners, const char* kind,
+                  std::size_t i) {
+  for (const Index vertex : corners) {
+    if (vertex < map.points.size()) continue;
+    throw Error(ErrorCode::InvalidArgument,
+                std::string("Feature ") + kind + " " + std::to_string(i) + " names vertex " +
+                    std::to_string(vertex) + ", but the map has " +
+                    std::to_string(map.points.size()) + " vertices, numbered from 0.");
+  }
+}
+
+void checkFeatures(const TetMapView& map) {
+  const auto& [vertices, edges, faces] = map.features;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    checkFeature(map, {&vertices[i].vertex, 1}, "vertex", i);
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) checkFeature(map, edges[i].vertices, "edge", i);
+  for (std::size_t i = 0; i < faces.size(); ++i) checkFeature(map, faces[i].vertices, "face", i);
+}
+
 void checkSizes(const TetMapView& map) {
   if (map.parameters.size() != map.tets.size()) {
     throw Error(ErrorCode::InvalidArgument, "The map has " + std::to_string(map.parameters.size()) +
@@ -38,6 +59,11 @@ void checkSizes(const TetMapView& map) {
     throw Error(ErrorCode::InvalidArgument,
                 "The map has rotations for " + std::to_string(map.rotations.size()) + " of " +
                     std::to_string(map.tets.size()) + " tets. Give four per tet, or none.");
+  }
+  if (!map.regions.empty() && map.regions.size() != map.tets.size()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "The map has " + std::to_string(map.tets.size()) + " tets, but regions for " +
+                    std::to_string(map.regions.size()) + ". Give one for each tet, or none.");
   }
   for (const EdgeValence& edge : map.edgeValences) {
     if (edge.vertex0 >= map.points.size() || edge.vertex1 >= map.points.size()) {
@@ -167,6 +193,7 @@ void reorient(OrientedMap& oriented, const TetMapView& map, Stage& stage) {
 OrientedMap readInput(const TetMapView& map, Stage& stage, DefectCollector& defects) {
   OrientedMap oriented;
   checkSizes(map);
+  checkFeatures(map);
   if (map.tets.empty()) defects.add(ErrorCode::EmptyMesh, {}, 0);
   if (map.tets.size() > kMaxTets || map.points.size() >= kNone) {
     defects.add(ErrorCode::TooLarge, {}, 0);

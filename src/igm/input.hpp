@@ -61,8 +61,8 @@ struct OrientedMap {
 
 /// Checks indices and numbers, and orients the map. After a defect (indices out of range, a vertex
 /// twice in a tet, numbers that are not finite, no tets or too many) the result must not be used.
-/// @throws Error InvalidArgument for arrays whose sizes do not match, and edge valences of vertices
-/// that do not exist
+/// @throws Error InvalidArgument for arrays whose sizes do not match, and edge valences and
+/// features of vertices that do not exist
 [[nodiscard]] OrientedMap readInput(const TetMapView& map, Stage& stage, DefectCollector& defects);
 
 /// Parameters near the origin. Charts may sit far away (translations of 1e9 occur), which would

@@ -35,19 +35,37 @@ void requireOptions(const ImproveOptions& options) {
   requireRange(options.slack, 0.1, "The slack of the surface");
 }
 
+/// Squares of areas and products of them are computed, and lengths of cells as floats.
+constexpr double kFarthest = 1e30;
+constexpr double kSmallest = 1e-10;
+
+[[noreturn]] void refuseSize(const std::string& what) {
+  throw Error(ErrorCode::TooLarge,
+              what +
+                  ". Meshes are improved that extend over 1e-10 to 1e30: multiply all positions "
+                  "by a constant.");
+}
+
+/// @param whose  "the mesh", "the map"
+void requirePositions(std::span<const Vec3> points, const std::string& whose, Stage& stage) {
+  const std::size_t bad = firstFault(stage, points.size(), [&](std::size_t v) {
+    return std::all_of(points[v].begin(), points[v].end(),
+                       [](double x) { return std::abs(x) <= kFarthest; });
+  });
+  if (bad == points.size()) return;
+  const std::string where = "A coordinate of vertex " + std::to_string(bad) + " of " + whose;
+  if (isFinite(points[bad])) refuseSize(where + " is beyond 1e30");
+  throw Error(ErrorCode::NotFinite, where + " is not a finite number. Correct the mesh first.",
+              Place{PlaceKind::Vertex, bad, 0});
+}
+
 void requireCells(const HexMesh& mesh, Context& context) {
   Stage stage(context, "input");
   if (mesh.cells.empty()) {
     throw Error(ErrorCode::EmptyMesh, "The mesh has no cells. There is nothing to improve.");
   }
   requireCornersInRange(mesh, stage);
-  const std::size_t bad = firstFault(stage, mesh.points.size(),
-                                     [&](std::size_t v) { return isFinite(mesh.points[v]); });
-  if (bad == mesh.points.size()) return;
-  throw Error(ErrorCode::NotFinite,
-              "A coordinate of vertex " + std::to_string(bad) +
-                  " is not a finite number. Correct the mesh first.",
-              Place{PlaceKind::Vertex, bad, 0});
+  requirePositions(mesh.points, "the mesh", stage);
 }
 
 /// Whatever is wrong inside, the boundary encloses a positive volume, unless cells list their
@@ -97,6 +115,21 @@ void fixBoundary(VertexPlaces& places) {
   }
 }
 
+void movePoints(HexMesh& mesh, VertexPlaces& places, const ImproveOptions& options,
+                const ImproveReport& report, Stage& stage) {
+  Sweeps sweeps(mesh, places, report.diagonal, stage);
+  sweeps.untangle(options.slack * report.diagonal);
+  sweeps.raiseWorst(options.target);
+  sweeps.smooth(options.passes, std::max(options.target, report.before.quality.minimum));
+}
+
+void certifyAfter(const HexMesh& mesh, ImproveReport& report, Context& context) {
+  report.after = certify(mesh, context);
+  for (std::size_t c = 0; c < report.after.validity.size(); ++c) {
+    if (report.after.validity[c] != Validity::Positive) report.notPositive.push_back(c);
+  }
+}
+
 /// @param placesOf  of (mesh, stage)
 template <class PlacesOf>
 ImproveReport improveOn(HexMesh& mesh, const ImproveOptions& options, Context& context,
@@ -119,25 +152,23 @@ ImproveReport improveOn(HexMesh& mesh, const ImproveOptions& options, Context& c
       ++report.vertices[static_cast<std::size_t>(freedom)];
     }
     report.diagonal = diagonalOf(places.surface);
+    if (report.diagonal < kSmallest) refuseSize("The surface is smaller than 1e-10");
     const TriangleTree tree = treeOf(places.surface);
     const auto distance = [&] {
       return distanceBetween(mesh.points, quads, places.surface, tree, report.diagonal, stage);
     };
     report.distanceBefore = distance();
     const Array<Vec3> points = mesh.points;
-    {
-      Sweeps sweeps(mesh, places, report.diagonal, stage);
-      sweeps.untangle(options.slack * report.diagonal);
-      sweeps.raiseWorst(options.target);
-      sweeps.smooth(options.passes, std::max(options.target, report.before.quality.minimum));
-    }
-    report.distanceAfter = distance();
-    reportMoves(points, mesh.points, report);
-    reportOff(mesh.points, places, report);
-    stage.finish();
-    report.after = certify(mesh, context);
-    for (std::size_t c = 0; c < report.after.validity.size(); ++c) {
-      if (report.after.validity[c] != Validity::Positive) report.notPositive.push_back(c);
+    try {
+      movePoints(mesh, places, options, report, stage);
+      report.distanceAfter = distance();
+      reportMoves(points, mesh.points, report);
+      reportOff(mesh.points, places, report);
+      stage.finish();
+      certifyAfter(mesh, report, context);
+    } catch (...) {
+      std::copy(points.begin(), points.end(), mesh.points.begin());
+      throw;
     }
   });
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
@@ -149,6 +180,7 @@ ImproveReport improveOn(HexMesh& mesh, const ImproveOptions& options, Context& c
 /// How to find places on the surface of a map, and on the mesh's own.
 auto onMap(const TetMapView& map, const ImproveOptions& options, Context& context) {
   return [&map, &options, &context](const HexMesh& mesh, Stage& stage) {
+    requirePositions(map.points, "the map", stage);
     return placesOnMap(mesh, map, options.featureAngle, context, stage);
   };
 }

@@ -77,6 +77,18 @@ void requireGenerators(const HexMesh& mesh, const TetMapView& map, Stage& stage)
               Place{PlaceKind::Vertex, bad, 0});
 }
 
+/// Flipped tets do not matter here, but all of their corners are to be there.
+void requireCorners(const TetMapView& map, Stage& stage) {
+  const std::size_t bad = firstFault(stage, map.tets.size(), [&](std::size_t t) {
+    return std::all_of(map.tets[t].begin(), map.tets[t].end(),
+                       [&](Index v) { return v < map.points.size(); });
+  });
+  if (bad == map.tets.size()) return;
+  throw Error(ErrorCode::IndexOutOfRange,
+              "Tet " + std::to_string(bad) + " of the map names a vertex that does not exist.",
+              Place{PlaceKind::Tet, bad, 0});
+}
+
 /// Tagged vertices and edges, and singular edges if there are no tags.
 void addCurves(const auto& features, const auto& singularEdges, SurfaceParts& parts) {
   for (const FeatureVertex& vertex : features.vertices) {
@@ -164,12 +176,14 @@ void place(const Array<Vec3>& points, const GeneratorOf& generatorOf, VertexPlac
 VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angle, Context& context,
                          Stage& stage) {
   requireGenerators(mesh, map, stage);
+  requireCorners(map, stage);
+  // Looks whether features are there, too.
+  const MapStructure structure = findMapStructure(map, ExtractOptions{}.tolerance, context);
   SurfaceParts parts;
   parts.angle = angle;
   parts.points.assign(map.points.begin(), map.points.end());
   parts.triangles = trianglesOf(map, stage);
-  addCurves(map.features, findMapStructure(map, ExtractOptions{}.tolerance, context).singularEdges,
-            parts);
+  addCurves(map.features, structure.singularEdges, parts);
   VertexPlaces places;
   places.surface = ReferenceSurface(std::move(parts), stage);
   place(

@@ -778,6 +778,62 @@ static void test_densities(const char* file) {
   destroy_all(&h);
 }
 
+/* Improvements that are refused leave the mesh alone, even if only the report cannot be filled. */
+static void test_improvements(const char* file) {
+  static const double numbers[] = {-1, NAN, INFINITY, -INFINITY, 1e300};
+  handles h;
+  make(&h, file);
+  hexhex_improve_report report = HEXHEX_IMPROVE_REPORT_INIT;
+  report.moved_vertices = 17;
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i) {
+    for (int which = 0; which < 3; ++which) {
+      hexhex_improve_options options = HEXHEX_IMPROVE_OPTIONS_INIT;
+      double* const members[] = {&options.target, &options.feature_angle, &options.slack};
+      *members[which] = numbers[i];
+      REFUSED(hexhex_mesh_improve(h.mesh, NULL, &options, NULL, &report, &error));
+    }
+  }
+  hexhex_improve_options options = HEXHEX_IMPROVE_OPTIONS_INIT;
+  options.passes = -1;
+  REFUSED(hexhex_mesh_improve(h.mesh, NULL, &options, NULL, &report, &error));
+  options.passes = INT_MAX;
+  REFUSED(hexhex_mesh_improve(h.mesh, NULL, &options, NULL, &report, &error));
+  CHECK(report.moved_vertices == 17);
+
+  /* Vertices inside of a cube, which would be moved. */
+  hexhex_mesh_arrays arrays = HEXHEX_MESH_ARRAYS_INIT;
+  CHECK_OK(hexhex_mesh_get_arrays(h.mesh, &arrays, NULL));
+  double low = arrays.points[0];
+  double high = low;
+  for (size_t i = 0; i < 3 * arrays.point_count; ++i) {
+    low = fmin(low, arrays.points[i]);
+    high = fmax(high, arrays.points[i]);
+  }
+  double* const points = malloc(arrays.point_count * 3 * sizeof(double));
+  memcpy(points, arrays.points, arrays.point_count * 3 * sizeof(double));
+  for (size_t v = 0; v < arrays.point_count; ++v) {
+    const double* const p = arrays.points + 3 * v;
+    int inside = 1;
+    for (int k = 0; k < 3; ++k) inside &= p[k] > low + 1e-9 && p[k] < high - 1e-9;
+    if (inside) points[3 * v] += 0.3 * (high - low) / 4;
+  }
+  hexhex_mesh_arrays moved = arrays;
+  moved.points = points;
+  hexhex_mesh* mesh = NULL;
+  CHECK_OK(hexhex_mesh_copy(&moved, &mesh, NULL));
+  report.size = 1;
+  REFUSED(hexhex_mesh_improve(mesh, NULL, NULL, NULL, &report, &error));
+  CHECK_OK(hexhex_mesh_get_arrays(mesh, &arrays, NULL));
+  CHECK(memcmp(points, arrays.points, arrays.point_count * 3 * sizeof(double)) == 0);
+  report.size = sizeof report;
+  CHECK_OK(hexhex_mesh_improve(mesh, NULL, NULL, NULL, &report, NULL));
+  CHECK(report.moved_vertices > 0);
+  hexhex_mesh_destroy(mesh);
+  free(points);
+  check_alive(&h);
+  destroy_all(&h);
+}
+
 /* ---- Threads -------------------------------------------------------------------------------- */
 
 typedef struct shared {
@@ -908,6 +964,7 @@ int main(void) {
   test_counts(file);
   test_numbers(file);
   test_densities(file);
+  test_improvements(file);
   test_threads(file);
   char command[64];
   snprintf(command, sizeof command, "rm -r %s", folder);

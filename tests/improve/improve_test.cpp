@@ -293,12 +293,82 @@ TEST(Improve, EndsForWhateverCellsThereAre) {
   expectNoWorse(improved(mesh));
 }
 
-TEST(Improve, CanBeCancelled) {
-  HexMesh mesh = gridMesh(6);
-  distort(mesh, 6, 0.5, 9);
-  Context context(1);
-  context.cancel();
-  EXPECT_EQ(codeOf([&] { improve(mesh, ImproveOptions{}, context); }), ErrorCode::Cancelled);
+TEST(Improve, LooksWhetherMapsAreWhole) {
+  TetMap map = generateSample(SampleKind::Box, {.cells = 2}).map;
+  HexMesh mesh = extracted(map, 1);
+  const auto codeWith = [&](const auto& damage) {
+    TetMap damaged = map;
+    damage(damaged);
+    return codeOf([&] { improvedOn(mesh, damaged); });
+  };
+  EXPECT_EQ(codeWith([](TetMap& m) { m.tets[5][2] = 0xfffffffe; }), ErrorCode::IndexOutOfRange);
+  EXPECT_EQ(codeWith([](TetMap& m) {
+              m.features.faces = {{{0, 1, 0x7fffffff}, 1}};
+            }),
+            ErrorCode::InvalidArgument);
+  EXPECT_EQ(codeWith([](TetMap& m) {
+              m.features.vertices = {{0x7fffffff, 1}};
+            }),
+            ErrorCode::InvalidArgument);
+  EXPECT_EQ(codeWith([](TetMap& m) { m.regions = {1, 2}; }), ErrorCode::InvalidArgument);
+  EXPECT_EQ(codeWith([](TetMap& m) { m.points[7][0] = std::numeric_limits<double>::infinity(); }),
+            ErrorCode::NotFinite);
+}
+
+/// Beyond, squares of areas overflow or vanish: without an end, or without an effect.
+TEST(Improve, RefusesSizesThatItCannotCompute) {
+  const auto scaled = [](double factor, auto points) {
+    for (Vec3& point : points) {
+      for (double& x : point) x *= factor;
+    }
+    return points;
+  };
+  const HexMesh grid = gridMesh(3);
+  const TetMap map = generateSample(SampleKind::Sphere, {.cells = 2}).map;
+  const HexMesh ball = extracted(map, 1);
+  for (const double factor : {1e-320, 1e-100, 1e-12, 1e31, 1e38, 1e60, 1e160, 1e300}) {
+    HexMesh mesh = grid;
+    mesh.points = scaled(factor, grid.points);
+    EXPECT_EQ(codeOf([&] { improved(mesh); }), ErrorCode::TooLarge) << factor;
+    TetMap other = map;
+    other.points = scaled(factor, map.points);
+    mesh = ball;
+    EXPECT_EQ(codeOf([&] { improvedOn(mesh, other); }), ErrorCode::TooLarge) << factor;
+  }
+  HexMesh distorted = grid;
+  distort(distorted, 3, 0.2, 4);
+  for (const double factor : {1e-10, 1e-3, 1e29}) {
+    HexMesh mesh = distorted;
+    mesh.points = scaled(factor, distorted.points);
+    EXPECT_GT(improved(mesh).movedVertices, 0U) << factor;
+  }
+}
+
+/// Cancelled from within, after so many calls.
+TEST(Improve, LeavesTheMeshAloneIfItIsCancelled) {
+  HexMesh mesh = gridMesh(8);
+  distort(mesh, 8, 0.6, 9);
+  const HexMesh before = mesh;
+  int interrupted = 0;
+  for (int calls = 0; calls < 2000; calls = calls * 2 + 1) {
+    int left = calls;
+    Context* running = nullptr;
+    Context context(1, [&](std::string_view /*stage*/, double /*share*/) {
+      if (left-- == 0) running->cancel();
+    });
+    running = &context;
+    try {
+      improve(mesh, ImproveOptions{}, context);
+      break;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::Cancelled);
+    }
+    ++interrupted;
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+      ASSERT_EQ(mesh.points[v], before.points[v]) << calls;
+    }
+  }
+  EXPECT_GT(interrupted, 2);
 }
 
 }  // namespace hexhex::test

@@ -162,6 +162,32 @@ TEST(QuantizeLimits, OptionsBeyondAnyMeshAreRefused) {
   EXPECT_EQ(code({.edgeLength = 1e-200}), ErrorCode::TooLarge);
 }
 
+TEST(QuantizeLimits, ArraysThatDoNotFitAreRefused) {
+  const TetMap map = generateSample(SampleKind::Star, {.stretch = 0.5}).map;
+  const auto codeWith = [&map](const auto& damage) {
+    TetMap damaged = map;
+    damage(damaged);
+    Context context;
+    EXPECT_EQ(codeOf([&] { static_cast<void>(check(damaged, {}, context)); }),
+              codeOf([&] { static_cast<void>(quantize(damaged, scale(1))); }));
+    return codeOf([&] { static_cast<void>(quantize(damaged, scale(1))); });
+  };
+  constexpr Index kBeyond = 0x7fffffff;
+  EXPECT_EQ(codeWith([](TetMap& m) {
+              m.features.vertices = {{kBeyond, 1}};
+            }),
+            ErrorCode::InvalidArgument);
+  EXPECT_EQ(codeWith([](TetMap& m) {
+              m.features.edges = {{{0, kBeyond}, 1}};
+            }),
+            ErrorCode::InvalidArgument);
+  EXPECT_EQ(codeWith([](TetMap& m) {
+              m.features.faces = {{{0, 1, kBeyond}, 1}};
+            }),
+            ErrorCode::InvalidArgument);
+  EXPECT_EQ(codeWith([](TetMap& m) { m.regions = {1, 2, 3}; }), ErrorCode::InvalidArgument);
+}
+
 TEST(QuantizeLimits, SmallAndLargeMapsAreTheSameButForTheirScale) {
   const TetMap map = generateSample(SampleKind::Star, {.stretch = 0.5}).map;
   const QuantizedMap expected = quantize(map, {.cells = 300});
