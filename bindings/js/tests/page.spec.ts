@@ -125,11 +125,17 @@ test("defects of a map are places on the object", async ({ page }) => {
 test("a seamless map is quantized", async ({ page }) => {
   await dropAndWait(page, "seamless.hexex");
   await expect(page.locator("#quantize-hint")).toContainText("The map is seamless");
+  const tets = await text(page, "#map-tets");
   await page.locator("#wanted").fill("500");
   await click(page, "#quantize");
   await expect(page.locator("#verdict")).toHaveText("The map is valid.");
+  expect(await text(page, "#map-tets")).toBe(tets);  // of this map, none is split
+  const cells = Number(await text(page, "#cells"));
+  expect(cells).toBeGreaterThan(250);
+  expect(cells).toBeLessThan(1000);
   await click(page, "#extract");
   expect(await text(page, "#verification")).toContain("Verified");
+  expect(await text(page, "#mesh-cells")).toBe(String(cells));
 });
 
 test("a mesh is viewed, and verified if its map is there", async ({ page }) => {
