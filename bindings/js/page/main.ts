@@ -133,7 +133,7 @@ function showDefects({ report, shape }: OpenedMap): void {
       button.type = "button";
       button.addEventListener("click", () => {
         showView("map");
-        scene!.lookAt(shape.places[d]![i]!.centre);
+        scene?.lookAt(shape.places[d]![i]!.centre);
       });
       box.append(button);
     });
@@ -176,8 +176,12 @@ function showMap(opened: OpenedMap): void {
   element("quantize-hint").textContent =
     `The map is ${report.kind}: its integers are still to be chosen.`;
   showView("map");
-  scene ??= new MapScene(element<HTMLCanvasElement>("canvas"));
-  scene.show(opened.shape);
+  try {
+    scene ??= new MapScene(element<HTMLCanvasElement>("canvas"));
+    scene.show(opened.shape);
+  } catch (error) {
+    tell(`The map cannot be drawn, but all else works. ${messageOf(error)}`);
+  }
 }
 
 function showMesh(opened: OpenedMesh): void {

@@ -238,6 +238,18 @@ test("an old browser gets a sentence", async ({ browser }) => {
   await page.close();
 });
 
+test("without WebGL, nothing is drawn, but all else works", async ({ browser }) => {
+  const page = await browser.newPage({ acceptDownloads: true });
+  await page.addInitScript(() => (HTMLCanvasElement.prototype.getContext = () => null));
+  await page.goto(address);
+  await page.waitForSelector('body[data-ready="true"]');
+  await dropAndWait(page, "sphere.hexex", "two.mesh");
+  await expect(problem(page)).toContainText("The map cannot be drawn");
+  expect(await text(page, "#verification")).toContain("Verified");
+  expect((await saved(page, ".mesh")).equals(readFileSync(at("two.mesh")))).toBe(true);
+  await page.close();
+});
+
 test("samples are in a menu, and nothing reaches the network", async ({ page }) => {
   await page.locator("#samples").selectOption({ label: "cylinder, seamless" });
   await page.waitForSelector("#quantizing:not([hidden])");
