@@ -1,7 +1,9 @@
 // `hexhex extract`: from a map to a verified hexahedral mesh.
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -10,6 +12,7 @@
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/extract.hpp>
+#include <hexhex/extractor.hpp>
 #include <hexhex/improve.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/partial.hpp>
@@ -160,36 +163,49 @@ void requireOutputs(const Arguments& arguments) {
   }
 }
 
-void verifyMesh(const Arguments& arguments, const TetMap& map, const HexMesh& mesh,
+/// What extracts a mesh and then verifies it.
+Extractor prepareExtractor(const Arguments& arguments, const TetMap& map, LongRun& longRun) {
+  const ExtractOptions& options = arguments.options;
+  // Where there is no such number, the extraction says so.
+  const bool fits = options.scale <= std::numeric_limits<int>::max() / arguments.order;
+  const int maxScale = fits ? options.scale * arguments.order : options.scale;
+  return longRun.part("extraction", [&] {
+    return Extractor(map, {options.tolerance, maxScale, options.repair, options.round},
+                     longRun.context());
+  });
+}
+
+void verifyMesh(const Arguments& arguments, Extractor& extractor, const HexMesh& mesh,
                 LongRun& longRun, ExtractionRecord& record) {
   if (arguments.noVerify) return;
   record.verification = longRun.part("verification", [&] {
-    return verify(extractedMap(map, record.statistics), mesh,
-                  {arguments.options.scale, arguments.options.tolerance}, longRun.context());
+    return extractor.verify(mesh, {.scale = arguments.options.scale}, longRun.context());
   });
   requirePassed(*record.verification, "The mesh does not agree with the map and was not written",
                 "Please report this with the map.");
 }
 
 /// Extracts the mesh with the arcs and patches that are asked for.
-PiecewiseLinearMesh extractWithCurves(const Arguments& arguments, const TetMap& map,
+PiecewiseLinearMesh extractWithCurves(const Arguments& arguments, Extractor& extractor,
                                       Context& context, ExtractionRecord& record) {
   if (arguments.arcs.empty() && arguments.patches.empty()) {
-    return {extract(map, arguments.options, context, &record.statistics), {}, {}};
+    return {extractor.extract(arguments.options, context, &record.statistics), {}, {}};
   }
   const auto parts =
       arguments.patches.empty() ? PiecewiseLinearParts::Arcs : PiecewiseLinearParts::ArcsAndPatches;
-  return extractPiecewiseLinear(map, parts, arguments.options, context, &record.statistics);
+  return extractor.extractPiecewiseLinear(parts, arguments.options, context, &record.statistics);
 }
 
 /// Extracts, verifies and writes a mesh in memory.
 void extractWhole(const Arguments& arguments, const TetMap& map, LongRun& longRun,
                   ExtractionRecord& record) {
   Context& context = longRun.context();
+  std::optional<Extractor> extractor = prepareExtractor(arguments, map, longRun);
   PiecewiseLinearMesh all = longRun.part(
-      "extraction", [&] { return extractWithCurves(arguments, map, context, record); });
+      "extraction", [&] { return extractWithCurves(arguments, *extractor, context, record); });
   HexMesh& mesh = all.mesh;
-  verifyMesh(arguments, map, mesh, longRun, record);
+  verifyMesh(arguments, *extractor, mesh, longRun, record);
+  extractor.reset();  // its memory serves what follows
   if (!arguments.arcs.empty()) {
     longRun.part("writing", [&] {
       writeArcs(all, extractedMap(map, record.statistics), arguments.arcs, context);
@@ -224,10 +240,13 @@ void extractWhole(const Arguments& arguments, const TetMap& map, LongRun& longRu
 void extractCurved(const Arguments& arguments, const TetMap& map, LongRun& longRun,
                    ExtractionRecord& record) {
   Context& context = longRun.context();
+  std::optional<Extractor> extractor = prepareExtractor(arguments, map, longRun);
   const LagrangeMesh mesh = longRun.part("extraction", [&] {
-    return extractLagrange(map, arguments.order, arguments.options, context, &record.statistics);
+    return extractor->extractLagrange(arguments.order, arguments.options, context,
+                                      &record.statistics);
   });
-  verifyMesh(arguments, map, straightMesh(mesh), longRun, record);
+  verifyMesh(arguments, *extractor, straightMesh(mesh), longRun, record);
+  extractor.reset();
   record.certificate = longRun.part("quality", [&] { return certify(mesh, context); });
   WriteOptions options;
   options.scaledJacobians = record.certificate->scaledJacobians;
@@ -307,14 +326,16 @@ std::vector<WorkStep> stepsOf(const Arguments& arguments) {
   const std::vector<WorkStep> rest =
       arguments.stream
           ? std::vector<WorkStep>{{"extractTo", 4}, {"VerifySink", 0.5}, {"readHexMeshTo", 3}}
-          : std::vector<WorkStep>{{arguments.order > 1 ? "extractLagrange" : "extract", 4},
-                                  {"extractPiecewiseLinear", 20},
-                                  {"verify", 2.5},
-                                  {"writeArcs", 2},
-                                  {"writePatches", 5},
-                                  {"certify", 0.5},
-                                  {"writeHexMesh", 1},
-                                  {"writeLagrangeMesh", 4}};
+          : std::vector<WorkStep>{
+                {"Extractor", 0.3},
+                {arguments.order > 1 ? "Extractor::extractLagrange" : "Extractor::extract", 4},
+                {"Extractor::extractPiecewiseLinear", 20},
+                {"Extractor::verify", 2.5},
+                {"writeArcs", 2},
+                {"writePatches", 5},
+                {"certify", 0.5},
+                {"writeHexMesh", 1},
+                {"writeLagrangeMesh", 4}};
   steps.insert(steps.end(), rest.begin(), rest.end());
   return steps;
 }

@@ -12,6 +12,7 @@
 #include <hexhex/extract.hpp>
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
+#include <hexhex/verify.hpp>
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
@@ -22,6 +23,9 @@ struct ExtractorOptions {
   /// order. Large ones leave less room for digits
   /// behind the point.
   int maxScale = 64;
+  /// As in ExtractOptions. The repaired map is `repairedMap` of all statistics.
+  RepairMode repair = RepairMode::Off;
+  bool round = false;
 };
 
 /// A map that has passed all checks, with its topology, transitions and sanitized parameters, for
@@ -70,6 +74,12 @@ class Extractor {
   /// The same in pieces, as extractTo().
   void extractTo(MeshSink& sink, const ExtractOptions& options, Context& context,
                  ExtractStatistics* statistics = nullptr);
+
+  /// Whether a mesh is that of the map at options.scale, as hexhex::verify(), but without preparing
+  /// the map once more. options.tolerance is ignored.
+  /// @throws Error  likewise
+  [[nodiscard]] VerifyReport verify(const HexMesh& mesh, const VerifyOptions& options,
+                                    Context& context);
 
   /// Number of cells of the mesh at scale 1; scale^3 times as many at others.
   [[nodiscard]] std::uint64_t cellsAtScaleOne() const noexcept;

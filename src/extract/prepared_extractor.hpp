@@ -19,9 +19,12 @@ class Extractor::Prepared {
   Prepared(const TetMapView& map, const ExtractorOptions& options, Context& context)
       : given_(map), maxScale_(options.maxScale) {
     runExtraction({"Extractor"}, {}, context, &known_, [&](ExtractStatistics& filled) {
-      ExtractOptions prepare;  // without a repair
+      ExtractOptions prepare;
       prepare.tolerance = options.tolerance;
+      prepare.repair = options.repair;
+      prepare.round = options.round;
       map_ = prepareValid(map, options.maxScale, prepare, context, filled).prepared;
+      if (filled.repairedMap) given_ = *filled.repairedMap;
       volume_ = parametricVolume(map_.exact);
     });
   }
@@ -54,7 +57,8 @@ class Extractor::Prepared {
     return result;
   }
 
-  [[nodiscard]] const PreparedMap& map() const noexcept { return map_; }
+  /// Not to be scaled; stages may add to its topology.
+  [[nodiscard]] PreparedMap& map() noexcept { return map_; }
   /// To scale it further: the next call begins with the unscaled one again.
   [[nodiscard]] PreparedMap& mapToScale() {
     keepUnscaled();
@@ -89,9 +93,9 @@ class Extractor::Prepared {
     scale_ = scale;
   }
 
-  TetMapView given_;
+  TetMapView given_;  ///< or what a repair made of it
   int maxScale_;
-  ExtractStatistics known_;
+  ExtractStatistics known_;  ///< owns the repaired map
   std::uint64_t volume_ = 0;
   PreparedMap map_;
   int scale_ = 1;  ///< of map_

@@ -166,7 +166,7 @@ std::vector<std::int64_t> boundaryGenus(const TetTopology& topology) {
 }
 
 Expectation computeExpectation(const PreparedMap& map, std::uint64_t edges, int scale) {
-  const auto s = static_cast<std::uint64_t>(scale);
+  const auto s = static_cast<std::uint64_t>(scale / map.exact.scale);
   Expectation expected;
   expected.cells = scaledCells(parametricVolume(map.exact), scale);
   expected.boundaryQuads = boundaryArea(map.topology, map.exact) * s * s;

@@ -41,7 +41,7 @@ namespace hexhex {
 
 /// Everything that follows from a valid map about its mesh.
 /// @param edges  of its tets
-/// @param scale  of the mesh; `map` itself is not scaled
+/// @param scale  of the mesh; a multiple of that of `map`
 /// @throws Error TooLarge for kMaxCountedCells
 [[nodiscard]] Expectation computeExpectation(const PreparedMap& map, std::uint64_t edges,
                                              int scale);

@@ -46,7 +46,8 @@ void TetRasterizer::measure() noexcept {
   const int shift = shiftOf(unit_);
   const double scale = 1.0 / static_cast<double>(unit_);
   double size = 0;
-  std::array<ByFace, 3> first;  // edges of faces
+  std::int64_t bits = std::max<std::int64_t>(unit_ / 2, 1);  // points are multiples of this
+  std::array<ByFace, 3> first;                               // edges of faces
   std::array<ByFace, 3> second;
   for (std::size_t k = 0; k < 3; ++k) {
     origin_[k] = static_cast<std::int32_t>(bounds_.low[k] >> shift);
@@ -55,6 +56,7 @@ void TetRasterizer::measure() noexcept {
     ByFace relative;  // corners
     for (std::size_t i = 0; i < 4; ++i) {
       relative[i] = static_cast<double>(corners_[i][k] - origin) * scale;
+      bits |= corners_[i][k] - origin;
     }
     for (std::size_t face = 0; face < 4; ++face) {
       const auto corner = [&](std::size_t i) {
@@ -81,6 +83,9 @@ void TetRasterizer::measure() noexcept {
   // 56 size^3, and three additions of at most 48 size^3: below 264 + 168 + 144 < 2^10 size^3. 2^13
   // covers terms of second order, and conversions of the ends of lines to integers.
   error_ = 0x1p-40 * size * size * size;
+  // Without roundings, none of these sums of products exceeds 48 size^3.
+  const double latticeSize = size * static_cast<double>(unit_);
+  isExact_ = 48 * latticeSize * latticeSize * latticeSize < exactBelow(bits);
 }
 
 bool TetRasterizer::prepare(HalfGrid grid, const GridBox& box, Search& search) const noexcept {
@@ -191,8 +196,9 @@ bool TetRasterizer::findExactly(const Search& search, const ByFace& values, std:
   const auto simplexAt = [&](std::int32_t i) {
     point[axes[2]] = (search.first[2] + i) * unit_ + moved(search.grid, axes[2], unit_);
     return simplexBySides([&](std::size_t face) {
-      const bool isInside =
-          !(epsilon_ > 0) && values[face] + search.slopes[2][face] * i > search.errors[face];
+      const double value = values[face] + search.slopes[2][face] * i;
+      if (isExact_) return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0);
+      const bool isInside = !(epsilon_ > 0) && value > search.errors[face];
       return isInside ? 1 : sideOfFace(corners_, face, point);
     });
   };

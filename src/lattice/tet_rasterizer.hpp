@@ -137,6 +137,7 @@ class TetRasterizer {
   std::array<ByFace, 3> gradients_;     ///< of the faces' planes, by axis
   std::array<ByFace, 3> zeros_;         ///< points of the planes, by axis
   double error_;                        ///< bound of the error of values, see measure()
+  bool isExact_;                        ///< so few digits that values have no error at all
 };
 
 }  // namespace hexhex

@@ -1,5 +1,5 @@
 // The grid points of every tet as lines: of the lattice (hex vertices), or of the lattice shifted
-// by one half (cell centres).
+// by one half (cell centres). The same lists hold other things of tets.
 #pragma once
 
 #include <algorithm>
@@ -19,78 +19,83 @@ namespace hexhex {
 /// Tets are worked on in blocks of this many.
 inline constexpr std::size_t kSweepBlock = 256;
 
-/// The lines of a block of tets, one tet after the other.
-class BlockLines {
+/// The items of a block of tets, one tet after the other.
+template <class Item>
+class BlockLists {
  public:
-  /// @param keep  whether to keep the lines of all tets, or just those of the last one
-  explicit BlockLines(bool keep) noexcept : keep_(keep) {}
+  /// @param keep  whether to keep the items of all tets, or just those of the last one
+  explicit BlockLists(bool keep) noexcept : keep_(keep) {}
 
   /// Begins another block.
   void clear() noexcept {
-    lines_.clear();
+    items_.clear();
     tets_ = 0;
   }
-  /// Gives memory for many lines back, as each thread has such a list.
+  /// Gives memory for many items back, as each thread has such a list.
   void shrink() noexcept {
     constexpr std::size_t kFew = 1024;
-    if (lines_.capacity() > kFew) lines_ = std::vector<SweptLine>();
+    if (items_.capacity() > kFew) items_ = std::vector<Item>();
   }
 
-  /// Begins the next tet. Its lines are to be appended to what this returns.
-  [[nodiscard]] std::vector<SweptLine>& next() noexcept {
-    if (!keep_) lines_.clear();
-    begins_[tets_++] = static_cast<Index>(lines_.size());
-    return lines_;
+  /// Begins the next tet. Its items are to be appended to what this returns.
+  [[nodiscard]] std::vector<Item>& next() noexcept {
+    if (!keep_) items_.clear();
+    begins_[tets_++] = static_cast<Index>(items_.size());
+    return items_;
   }
   /// Those of the last tet.
-  [[nodiscard]] std::span<const SweptLine> last() const noexcept {
-    return std::span(lines_).subspan(begins_[tets_ - 1]);
+  [[nodiscard]] std::span<const Item> last() const noexcept {
+    return std::span(items_).subspan(begins_[tets_ - 1]);
   }
-  [[nodiscard]] std::span<const SweptLine> all() const noexcept { return lines_; }
+  [[nodiscard]] std::span<const Item> all() const noexcept { return items_; }
   [[nodiscard]] std::span<const Index> begins() const noexcept {
     return std::span(begins_).first(tets_);
   }
 
  private:
   bool keep_;
-  std::vector<SweptLine> lines_;
+  std::vector<Item> items_;
   std::array<Index, kSweepBlock> begins_;
   std::size_t tets_ = 0;
 };
 
-/// The lines of all tets, stored by block.
-class TetLines {
+/// The items of all tets, stored by block.
+template <class Item>
+class TetLists {
  public:
   /// @param tets  number of tets
-  explicit TetLines(std::size_t tets)
-      : lineBegin_(tets + blockCount(tets, kSweepBlock)), blocks_(blockCount(tets, kSweepBlock)) {}
+  explicit TetLists(std::size_t tets)
+      : itemBegin_(tets + blockCount(tets, kSweepBlock)), blocks_(blockCount(tets, kSweepBlock)) {}
 
-  void store(std::size_t block, const BlockLines& lines) {
-    blocks_[block].assign(lines.all().begin(), lines.all().end());
-    const auto place = lineBegin_.begin() + static_cast<std::ptrdiff_t>(block * (kSweepBlock + 1));
-    *std::copy(lines.begins().begin(), lines.begins().end(), place) =
-        static_cast<Index>(lines.all().size());
+  void store(std::size_t block, const BlockLists<Item>& items) {
+    blocks_[block].assign(items.all().begin(), items.all().end());
+    const auto place = itemBegin_.begin() + static_cast<std::ptrdiff_t>(block * (kSweepBlock + 1));
+    *std::copy(items.begins().begin(), items.begins().end(), place) =
+        static_cast<Index>(items.all().size());
   }
 
   [[nodiscard]] bool areEmpty(Index tet) const noexcept {
     const std::size_t place = placeOf(tet);
-    return lineBegin_[place] == lineBegin_[place + 1];
+    return itemBegin_[place] == itemBegin_[place + 1];
   }
-  [[nodiscard]] std::span<const SweptLine> of(Index tet) const noexcept {
+  [[nodiscard]] std::span<const Item> of(Index tet) const noexcept {
     const std::size_t place = placeOf(tet);
     return std::span(blocks_[tet / kSweepBlock])
-        .subspan(lineBegin_[place], lineBegin_[place + 1] - lineBegin_[place]);
+        .subspan(itemBegin_[place], itemBegin_[place + 1] - itemBegin_[place]);
   }
-  /// Takes the lines of a block away, one tet after the other.
-  [[nodiscard]] Array<SweptLine> takeBlock(std::size_t block) noexcept {
+  /// Takes the items of a block away, one tet after the other.
+  [[nodiscard]] Array<Item> takeBlock(std::size_t block) noexcept {
     return std::exchange(blocks_[block], {});
   }
 
  private:
   static std::size_t placeOf(Index tet) noexcept { return std::size_t{tet} + tet / kSweepBlock; }
 
-  Array<Index> lineBegin_;  ///< per tet, within its block, and at the end of each block
-  std::vector<Array<SweptLine>> blocks_;
+  Array<Index> itemBegin_;  ///< per tet, within its block, and at the end of each block
+  std::vector<Array<Item>> blocks_;
 };
+
+using BlockLines = BlockLists<SweptLine>;
+using TetLines = TetLists<SweptLine>;
 
 }  // namespace hexhex

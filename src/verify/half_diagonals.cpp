@@ -88,23 +88,38 @@ bool areSamePoint(const PreparedMap& map, const LatticePlace& a, const LatticePl
          distance(exact.corners[b.tet][cornerThere], scaled(b.z, exact.unit));
 }
 
-bool HalfDiagonals::endsAt(Segment segment, int exit, const LatticePlace& place) {
+bool HalfDiagonals::isAt(const LatticePlace& place, std::uint64_t point) {
+  // Points in the interior of a face belong to one of two tets.
+  if (dimension(place.simplex) == 2) {
+    const HalfFace mate = map_.topology.mate[halfFaceOf(place.tet, oppositeCorner(place.simplex))];
+    owner_ = places_.owns(place.tet, point) || mate == kNone ? place.tet : tetOf(mate);
+  } else if (place.simplex == kWholeTet) {
+    owner_ = place.tet;
+  }
+  if (!places_.owns(owner_, point)) owner_ = places_.ownerOf(point);
+  return areSamePoint(map_, place, places_.placeIn(owner_, point));
+}
+
+bool HalfDiagonals::endsAt(Segment segment, int exit, std::uint64_t point) {
   // Tets may be passed more than once only if the map is not what preparation says.
   for (std::size_t steps = 0; steps <= map_.topology.tetCount(); ++steps) {
     if (exit == kNoExit) {
       const Step step = look(segment, exit);
       if (step == Step::IsUncertain) break;
       if (step == Step::EndsInside) {
-        return areSamePoint(map_, endOf(segment, kWholeTet), place);
+        return isAt(endOf(segment, kWholeTet), point);
       }
     }
     if (!cross(segment, exit)) return false;
     // A lattice point of the tet is one that the segment comes to within the tet.
-    if (segment.tet == place.tet && isAtEnd(segment, place.z)) return true;
+    if (places_.owns(segment.tet, point) &&
+        isAtEnd(segment, places_.placeIn(segment.tet, point).z)) {
+      return true;
+    }
     exit = kNoExit;
   }
   const std::optional<LatticePlace> end = followExactly(segment);
-  return end && areSamePoint(map_, *end, place);
+  return end && isAt(*end, point);
 }
 
 bool HalfDiagonals::isAtEnd(const Segment& segment, const GridPoint& z) const noexcept {

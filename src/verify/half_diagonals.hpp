@@ -12,20 +12,9 @@
 #include <optional>
 #include <vector>
 
-#include <igm/prepare.hpp>
+#include <verify/lattice_places.hpp>
 
 namespace hexhex {
-
-/// A lattice point of a closed tet, in the tet's chart.
-struct LatticePlace {
-  Index tet = kNone;
-  GridPoint z{};
-  CornerMask simplex = kNoSimplex;  ///< of the tet: the one that has the point in its interior
-};
-
-/// All are written before they are read.
-template <>
-inline constexpr bool kLeftUninitialized<LatticePlace> = true;
 
 /// Whether two places are the same point of the map.
 [[nodiscard]] bool areSamePoint(const PreparedMap& map, const LatticePlace& a,
@@ -34,7 +23,9 @@ inline constexpr bool kLeftUninitialized<LatticePlace> = true;
 /// One per thread.
 class HalfDiagonals {
  public:
-  explicit HalfDiagonals(const PreparedMap& map) noexcept : map_(map), half_(map.exact.unit / 2) {}
+  /// @param places  proven
+  HalfDiagonals(const PreparedMap& map, const LatticePlaces& places) noexcept
+      : map_(map), places_(places), half_(map.exact.unit / 2) {}
 
   /// A half diagonal, or what is left of it, as a tet sees it, in lattice units.
   struct Segment {
@@ -45,8 +36,10 @@ class HalfDiagonals {
 
   /// Whether a half diagonal ends at a lattice point.
   /// @param exit   the face through which it leaves the tet, or kNoExit: unknown
-  /// @param place  a lattice point of its closed tet
-  [[nodiscard]] bool endsAt(Segment segment, int exit, const LatticePlace& place);
+  /// @param point  its number
+  [[nodiscard]] bool endsAt(Segment segment, int exit, std::uint64_t point);
+  /// Whether a place is that of a lattice point.
+  [[nodiscard]] bool isAt(const LatticePlace& place, std::uint64_t point);
 
  private:
   /// What floating point proves about a tet on the way.
@@ -59,7 +52,9 @@ class HalfDiagonals {
   [[nodiscard]] LatticePlace endOf(const Segment& segment, CornerMask simplex) const noexcept;
 
   const PreparedMap& map_;
+  const LatticePlaces& places_;
   std::int64_t half_;              ///< of a grid unit, in lattice units
+  Index owner_ = 0;                ///< of the point that was looked for last
   std::vector<Segment> segments_;  ///< working memory
 };
 

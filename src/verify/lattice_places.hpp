@@ -2,16 +2,13 @@
 // proven before they are used.
 #pragma once
 
-#include <array>
 #include <atomic>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include <verify/face_sides.hpp>
-#include <verify/half_diagonals.hpp>
 
 #include <base/parallel.hpp>
 #include <sweep/vertex_numbers.hpp>
@@ -33,97 +30,63 @@ class Faults {
   std::atomic<std::size_t> first_{static_cast<std::size_t>(-1)};
 };
 
+/// A lattice point of a closed tet, in the tet's chart.
+struct LatticePlace {
+  Index tet = kNone;
+  GridPoint z{};
+  CornerMask simplex = kNoSimplex;  ///< of the tet: the one that has the point in its interior
+};
+
+/// Lattice points of a tet in the interior of one of its simplices, along an axis, with consecutive
+/// numbers.
+struct PlaceRun {
+  Index first;  ///< number of the first point, counted from the first that the tet owns
+  Index count;
+  GridPoint z;  ///< the first point
+  CornerMask simplex;
+  std::uint8_t axis;
+};
+
 class LatticePlaces {
  public:
-  LatticePlaces(const PreparedMap& map, Stage& stage)
-      : map_(map), swept_(sweepVertices(map, stage)) {}
+  /// @param indexed  whether to keep two bytes per lattice point, with which each is found at once
+  LatticePlaces(const PreparedMap& map, bool indexed, Stage& stage);
 
-  [[nodiscard]] std::uint64_t count() const noexcept { return swept_.numbers.count(); }
+  [[nodiscard]] std::uint64_t count() const noexcept { return begin_.back(); }
 
-  /// Whether all points of each tet are in it, and have different numbers of its own.
-  /// @param listed  whether to make a list of all places
-  /// @param wrong   receives tets where this is not so
-  void prove(bool listed, Stage& stage, Faults& wrong);
+  /// Whether all points of each tet are in it, and have different numbers of its own. To be called
+  /// once, before all that follows.
+  /// @param wrong  receives tets where this is not so
+  void prove(Stage& stage, Faults& wrong);
   /// Are points where the map has their lattice points?
   /// @param first  number of the first
   void compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage,
                Faults& wrong) const;
-  /// Gives the lines of the tets back: only listed places are needed from now on.
-  void forgetLines() { swept_.lines = TetLines(0); }
-
-  /// Calls visit(number, z) for the lattice points that a tet owns.
-  template <class Visit>
-  void forEachOwned(Index tet, const Visit& visit) const {
-    if (places_.empty()) {
-      forEachRun(tet, [&visit](const VertexRun& run) {
-        GridPoint z = run.line->point(run.offset);
-        for (std::uint64_t v = run.first; v < run.first + run.count; ++v) {
-          visit(v, z);
-          ++z[run.line->axes()[2]];
-        }
-      });
-      return;
-    }
-    for (std::uint64_t v = swept_.numbers.begin[tet]; v < swept_.numbers.begin[tet + 1]; ++v) {
-      visit(v, places_[v].z);
-    }
+  [[nodiscard]] bool owns(Index tet, std::uint64_t number) const noexcept {
+    return begin_[tet] <= number && number < begin_[tet + 1];
   }
+  [[nodiscard]] Index ownerOf(std::uint64_t number) const;
+  /// Where a lattice point is.
+  [[nodiscard]] LatticePlace placeIn(Index owner, std::uint64_t number) const;
+
+  /// The lattice points that a tet owns, ascending.
+  [[nodiscard]] std::span<const PlaceRun> runsOf(Index tet) const noexcept { return runs_.of(tet); }
+  /// The number of the first one.
+  [[nodiscard]] std::uint64_t firstOf(Index tet) const noexcept { return begin_[tet]; }
 
  private:
-  friend class PlaceFinder;
+  /// In the index: a run is to be searched.
+  static constexpr std::uint16_t kUnknownRun = 0xffff;
 
-  /// Calls visit(VertexRun) for the lattice points that a tet owns.
-  template <class Visit>
-  void forEachRun(Index tet, const Visit& visit) const {
-    const std::span<const SweptLine> lines = swept_.lines.of(tet);
-    if (lines.empty()) return;
-    TetNumbering(map_, swept_.numbers, tet, lines.front().axes)
-        .run(lines, [&](const VertexRun& run) {
-          if (run.owned) visit(run);
-        });
-  }
-  [[nodiscard]] bool isProven(Index tet, std::vector<char>& seen);
-  void list(Index tet, const VertexRun& run);
+  void collectRuns(Index tet, std::vector<PlaceRun>& runs) const;
+  void enterInIndex(Index tet, std::span<const PlaceRun> runs);
 
   const PreparedMap& map_;
-  SweptVertices swept_;
-  /// Or empty. (With a search for each place instead, verification takes twice as long.)
-  Array<LatticePlace> places_;
-};
-
-/// One per thread.
-class PlaceFinder {
- public:
-  explicit PlaceFinder(const LatticePlaces& places)
-      : places_(places), tets_(places.places_.empty() ? kTets : 0) {}
-
-  /// @param corner  of a cell of `tet`: that of the next cell is often the next point of a line
-  [[nodiscard]] LatticePlace find(std::uint64_t point, Index tet, std::size_t corner) {
-    if (!places_.places_.empty()) return places_.places_[point];
-    Found& last = last_[corner];
-    if (point - last.run.first >= last.run.count) last = search(point, tet);
-    const auto behind = static_cast<std::uint32_t>(point - last.run.first);
-    return {last.tet, last.run.line->point(last.run.offset + behind), last.run.simplex};
-  }
-
- private:
-  static constexpr std::size_t kTets = 256;
-
-  /// The lattice points of one tet, ascending.
-  struct TetRuns {
-    Index tet = kNone;
-    std::vector<VertexRun> runs = {};
-  };
-  struct Found {
-    Index tet = kNone;
-    VertexRun run{};
-  };
-  /// @param likely  a tet that may have the point
-  [[nodiscard]] Found search(std::uint64_t point, Index likely);
-
-  const LatticePlaces& places_;
-  std::array<Found, 8> last_;
-  std::vector<TetRuns> tets_;  ///< by number, modulo kTets
+  bool indexed_;
+  SweptVertices swept_;         ///< until they are proven
+  Array<std::uint64_t> begin_;  ///< per tet (+1): the first lattice point that it owns
+  TetLists<PlaceRun> runs_;
+  Array<std::uint16_t> runOf_;  ///< per lattice point: its run among those of the tet; or empty
 };
 
 /// The tets that own something of [first, end), as a range.

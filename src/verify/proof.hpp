@@ -37,15 +37,13 @@ class Proof {
  public:
   /// @param map       scaled; must outlive this
   /// @param expected  of the scaled map
-  /// @param listed    whether to make a list of 20 bytes per vertex, with which cells are faster
-  Proof(const PreparedMap& map, const Expectation& expected, bool listed, Stage& stage);
+  /// @param indexed   as of LatticePlaces
+  Proof(const PreparedMap& map, const Expectation& expected, bool indexed, Stage& stage);
 
   /// Points from number `first` on. To be called only as long as the hints are right.
   void compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage) {
     places_.compare(first, points, stage, positions_);
   }
-  /// To be called before cells, if there is a list and no more points come: saves memory.
-  void hasAllPoints() { places_.forgetLines(); }
   /// Cells from number `first` on; likewise.
   template <class Cell>
   void compare(std::uint64_t first, std::span<const Cell> cells, Stage& stage);

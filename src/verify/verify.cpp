@@ -16,7 +16,7 @@
 #include <hexhex/verify.hpp>
 
 #include <base/parallel.hpp>
-#include <extract/steps.hpp>
+#include <extract/prepared_extractor.hpp>
 #include <igm/measures.hpp>
 
 namespace hexhex {
@@ -29,6 +29,8 @@ struct Truth {
 
 namespace {
 
+constexpr std::array<WorkStep, 1> kCompareSteps = {{{"verification", 2.5}}};
+
 /// "FlippedTet at tet 7, and 2 more kinds of defects"
 std::string describe(const std::vector<Defect>& defects) {
   std::string text = "no: " + std::string(name(defects.front().code));
@@ -38,6 +40,13 @@ std::string describe(const std::vector<Defect>& defects) {
   const std::size_t more = defects.size() - 1;
   if (more > 0) text += ", and " + std::to_string(more) + " more kinds of defects";
   return text;
+}
+
+void checkOptions(const VerifyOptions& options) {
+  if (options.digits >= 0 && options.digits <= 17) return;
+  throw Error(ErrorCode::InvalidArgument, "The number of digits is " +
+                                              std::to_string(options.digits) +
+                                              ". Choose 1 to 17, or 0 to have it found out.");
 }
 
 /// Adds "indices_in_range"; returns whether it passed.
@@ -84,6 +93,12 @@ void compareMeshes(const HexMesh& right, const HexMesh& mesh, int digits, Stage&
   addCells("missing_cells", mismatch.missingCells, "in canonical order, ");
 }
 
+/// What follows from a scaled map, whose topology gets stars.
+Expectation expectationOf(PreparedMap& map, Stage& stage) {
+  addStars(map.topology, stage);
+  return computeExpectation(map, countEdges(map.topology, stage), map.exact.scale);
+}
+
 /// Adds "map_valid"; nothing if it did not pass.
 std::optional<Truth> truthOf(const TetMapView& map, const VerifyOptions& options, Context& context,
                              Comparisons& comparisons) {
@@ -94,10 +109,8 @@ std::optional<Truth> truthOf(const TetMapView& map, const VerifyOptions& options
   comparisons.add("map_valid", "yes", valid ? "yes" : describe(defects.defects()), valid);
   if (!valid) return std::nullopt;
   Stage stage(context, "verification");
-  addStars(prepared.topology, stage);
-  Expectation expected =
-      computeExpectation(prepared, countEdges(prepared.topology, stage), options.scale);
   scaleMap(prepared.exact, options.scale, stage);
+  Expectation expected = expectationOf(prepared, stage);
   return Truth{std::move(prepared), std::move(expected)};
 }
 
@@ -116,12 +129,10 @@ void addWrongExtraction(Comparisons& comparisons) {
 /// A map, ready to be compared with meshes.
 class Verification {
  public:
-  Verification(Truth& truth, const VerifyOptions& options, Context& context, Stage& stage)
-      : map_(truth.map),
-        options_(options),
-        context_(context),
-        stage_(stage),
-        expected_(truth.expected) {}
+  /// @param map  scaled
+  Verification(PreparedMap& map, const Expectation& expected, const VerifyOptions& options,
+               Context& context, Stage& stage)
+      : map_(map), options_(options), context_(context), stage_(stage), expected_(expected) {}
 
   void compare(const HexMesh& mesh, Comparisons& comparisons) {
     // A proof looks at all corners, too; so what passes is not looked at twice.
@@ -177,21 +188,33 @@ VerifyReport verify(const TetMapView& map, const HexMesh& mesh, const VerifyOpti
                     Context& context) {
   constexpr std::array<WorkStep, 3> kSteps = {
       {{"prepare", 0.1}, {"verification", 0.01}, {"verification", 2.5}}};
-  if (options.digits < 0 || options.digits > 17) {
-    throw Error(ErrorCode::InvalidArgument, "The number of digits is " +
-                                                std::to_string(options.digits) +
-                                                ". Choose 1 to 17, or 0 to have it found out.");
-  }
+  checkOptions(options);
   WorkSteps steps(context, "verify", kSteps);
   Comparisons comparisons;
   withThreads(context.threads(), [&] {
     std::optional<Truth> truth = truthOf(map, options, context, comparisons);
     if (!truth) return;
     Stage stage(context, "verification");
-    Verification verification(*truth, options, context, stage);
-    verification.compare(mesh, comparisons);
+    Verification(truth->map, truth->expected, options, context, stage).compare(mesh, comparisons);
   });
   steps.finish();
+  return comparisons.take();
+}
+
+VerifyReport Extractor::verify(const HexMesh& mesh, const VerifyOptions& options,
+                               Context& context) {
+  checkOptions(options);
+  Comparisons comparisons;
+  ExtractOptions scaling;
+  scaling.scale = options.scale;
+  prepared_->run({"Extractor::verify", kCompareSteps}, scaling, {1, kMaxCountedCells}, context,
+                 nullptr, [&](std::uint64_t /*cells*/, ExtractStatistics& /*filled*/) {
+                   comparisons.add("map_valid", "yes", "yes", true);
+                   Stage stage(context, "verification");
+                   PreparedMap& map = prepared_->map();
+                   const Expectation expected = expectationOf(map, stage);
+                   Verification(map, expected, options, context, stage).compare(mesh, comparisons);
+                 });
   return comparisons.take();
 }
 

@@ -79,6 +79,30 @@ TEST(Extractor, GivesOtherOrdersAndOutputsLikeTheFunctions) {
   }
 }
 
+TEST(Extractor, VerifiesMeshesOfAllScalesAsTheFunctionDoes) {
+  const TetMap map = sampleMap(ChartStyle::Random);
+  Extractor extractor(map);
+  Context context;
+  for (const int scale : {2, 1, 3}) {
+    SCOPED_TRACE(scale);
+    HexMesh mesh = extractor.extract(scale);
+    VerifyOptions options;
+    options.scale = scale;
+    EXPECT_TRUE(extractor.verify(mesh, options, context).passed());
+    std::swap(mesh.points[1], mesh.points[2]);
+    const VerifyReport found = extractor.verify(mesh, options, context);
+    const VerifyReport expected = verify(map, mesh, options, context);
+    EXPECT_FALSE(found.passed());
+    ASSERT_EQ(found.items.size(), expected.items.size());
+    for (std::size_t i = 0; i < found.items.size(); ++i) {
+      EXPECT_EQ(found.items[i].name, expected.items[i].name);
+      EXPECT_EQ(found.items[i].expected, expected.items[i].expected);
+      EXPECT_EQ(found.items[i].found, expected.items[i].found);
+      EXPECT_EQ(found.items[i].passed, expected.items[i].passed);
+    }
+  }
+}
+
 TEST(Extractor, IsUsableAfterACancellationInTheMiddleOfScaling) {
   const TetMap map = sampleMap(ChartStyle::Random);
   Extractor extractor(map);
