@@ -62,8 +62,13 @@ async function drop(page: Page, ...names: string[]): Promise<void> {
 const idle = (page: Page) => page.waitForSelector('body[data-working="false"]');
 async function dropAndWait(page: Page, ...names: string[]): Promise<void> {
   const before = await page.locator("body").getAttribute("data-done");
-  await drop(page, ...names);
-  await page.waitForSelector(`body:not([data-done="${before}"])`);
+  const isDone = `body:not([data-done="${before}"])`;
+  // What Chromium sends to a frame that has gone is lost.
+  await expect(async () => {
+    await drop(page, ...names);
+    await page.waitForSelector(`body[data-working="true"], ${isDone}`, { timeout: 15_000 });
+  }).toPass();
+  await page.waitForSelector(isDone);
 }
 async function click(page: Page, id: string): Promise<void> {
   await page.locator(id).click();
