@@ -214,7 +214,7 @@ class ServerTest(unittest.TestCase):
     def test_lets_down_who_does_not_read(self):
         self.end()
         for arguments in ["generate sphere --cells 12 --refine 6 --jitter 0.05 -o map.hexex",
-                          "extract map.hexex --scale 4 --no-verify -o large.vtu"]:
+                          "extract map.hexex --scale 5 --no-verify -o large.vtu"]:
             subprocess.run([self.command, *arguments.split(), "--quiet"], cwd=self.folder, check=True)
         self.start("large.vtu")
         idle = self.descriptors()
