@@ -1303,10 +1303,10 @@ class View(CommandTest):
             above = [0] * columns
             for row in range(count):
                 for column in range(columns):
-                    code = sum(plane[column * count + row] << 8 * p for p, plane in enumerate(planes))
+                    at = row * columns + column if table["byRows"] else column * count + row
+                    code = sum(plane[at] << 8 * p for p, plane in enumerate(planes))
                     above[column] += code >> 1 if code & 1 == 0 else -(code + 1 >> 1)
-                first = above[0] % 2**32
-                rows.append([first] + [(value + first) % 2**32 for value in above[1:]])
+                rows.append([value % 2**32 for value in above])
         return rows
 
     def tables(self, html):
@@ -1329,7 +1329,7 @@ class View(CommandTest):
         html = (self.folder / "a.html").read_text()
         info, tables = self.info(html), self.tables(html)
         points, cells = self.mesh()
-        self.assertEqual(tables["cells"], cells)
+        self.assertTrue(tables["cells"] == cells)  # nobody waits for what differs in thousands of rows
         self.assertEqual(len(tables["points"]), len(points))
         for stored, point in zip(tables["points"], points):
             for axis in range(3):
@@ -1414,7 +1414,7 @@ class View(CommandTest):
         for size in cells["chunkBytes"]:
             chunks.append(data[at:at + size])
             at += size
-        self.assertEqual(self.unpack(cells, chunks), self.mesh()[1])
+        self.assertTrue(self.unpack(cells, chunks) == self.mesh()[1])
         self.assertEqual(set(self.files()), {"map.hexex", "a.mesh"})
 
 
