@@ -437,6 +437,7 @@ void addMethod(CLI::App& parser, Arguments& arguments) {
                   "Enlargement of tets while the propeller engine searches\n"
                   "lattice points, in parameter units; inf is legal. Never\n"
                   "changes the result, only the time")
+      ->check(CLI::Range(0.0, std::numeric_limits<double>::infinity()))
       ->option_text("NUMBER [1e-6]");
   parser.add_flag("--stream", arguments.stream,
                   "Write the mesh piece by piece, for meshes larger than the\nmemory: " +
