@@ -1,7 +1,7 @@
 // What JavaScript calls: one function, which takes a request as JSON and answers with JSON. Arrays
 // stay where they are: answers hold their addresses, and JavaScript looks at the memory
-// (src/index.ts). Files are those of emscripten's file system in memory. The keys of reports are the
-// command's.
+// (src/index.ts). Files are those of emscripten's file system in memory. The keys of reports are
+// the command's.
 #include <algorithm>
 #include <array>
 #include <cmath>
