@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <adjacency/corner_range.hpp>
 #include <adjacency/hex_topology.hpp>
 
 #include <hexhex/error.hpp>
@@ -70,25 +71,6 @@ VertexCells cellsAroundVertices(const HexMesh& mesh, Stage& stage) {
       for (const Index v : mesh.cells[c]) add(v, static_cast<Index>(c));
     });
   });
-}
-
-std::size_t firstCellOutOfRange(const HexMesh& mesh, Stage& stage) {
-  const auto vertices = static_cast<Index>(std::min<std::size_t>(mesh.points.size(), kNone));
-  return firstFault(stage, mesh.cells.size(), [&](std::size_t c) {
-    unsigned outside = 0;
-    for (const Index corner : mesh.cells[c]) outside |= corner >= vertices ? 1U : 0U;
-    return outside == 0;
-  });
-}
-
-void requireCornersInRange(const HexMesh& mesh, Stage& stage) {
-  const std::size_t bad = firstCellOutOfRange(mesh, stage);
-  if (bad == mesh.cells.size()) return;
-  throw Error(ErrorCode::InvalidArgument,
-              "Cell " + std::to_string(bad) +
-                  " of the hexahedral mesh names a vertex that does not exist (the mesh has " +
-                  std::to_string(mesh.points.size()) + " vertices). Correct the cell.",
-              Place{PlaceKind::Cell, bad, 0});
 }
 
 HexFaces findFaces(const HexMesh& mesh, const VertexCells& around, Stage& stage) {

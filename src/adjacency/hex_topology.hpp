@@ -31,12 +31,6 @@ using VertexCells = VertexLists<Index, std::uint64_t>;
 ///         2^32 - 1 cells or more
 [[nodiscard]] VertexCells cellsAroundVertices(const HexMesh& mesh, Stage& stage);
 
-/// The first cell with a corner that is not a vertex of the mesh, or the number of cells.
-[[nodiscard]] std::size_t firstCellOutOfRange(const HexMesh& mesh, Stage& stage);
-
-/// @throws Error InvalidArgument, with the first cell, if a corner is not a vertex of the mesh
-void requireCornersInRange(const HexMesh& mesh, Stage& stage);
-
 /// How often something wrong occurs, and where first (by smallest vertex, then cell).
 struct FaceFault {
   std::uint64_t count = 0;

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include <adjacency/corner_range.hpp>
 #include <adjacency/hex_topology.hpp>
 
 #include <hexhex/error.hpp>

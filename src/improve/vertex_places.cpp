@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include <adjacency/corner_range.hpp>
 #include <adjacency/hex_topology.hpp>
 #include <adjacency/tet_topology.hpp>
 
@@ -75,18 +76,6 @@ void requireGenerators(const HexMesh& mesh, const TetMapView& map, Stage& stage)
                        : "The mesh does not tell which simplex of the map each vertex lies in. "
                          "Write it as .vtu, .ovm or .ovmb, or leave out the map.",
               Place{PlaceKind::Vertex, bad, 0});
-}
-
-/// Flipped tets do not matter here, but all of their corners are to be there.
-void requireCorners(const TetMapView& map, Stage& stage) {
-  const std::size_t bad = firstFault(stage, map.tets.size(), [&](std::size_t t) {
-    return std::all_of(map.tets[t].begin(), map.tets[t].end(),
-                       [&](Index v) { return v < map.points.size(); });
-  });
-  if (bad == map.tets.size()) return;
-  throw Error(ErrorCode::IndexOutOfRange,
-              "Tet " + std::to_string(bad) + " of the map names a vertex that does not exist.",
-              Place{PlaceKind::Tet, bad, 0});
 }
 
 /// Tagged vertices and edges, and singular edges if there are no tags.
@@ -176,7 +165,7 @@ void place(const Array<Vec3>& points, const GeneratorOf& generatorOf, VertexPlac
 VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angle, Context& context,
                          Stage& stage) {
   requireGenerators(mesh, map, stage);
-  requireCorners(map, stage);
+  requireCornersInRange(map, stage);  // flipped tets do not matter
   // Looks whether features are there, too.
   const MapStructure structure = findMapStructure(map, ExtractOptions{}.tolerance, context);
   SurfaceParts parts;

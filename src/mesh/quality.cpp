@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include <adjacency/hex_topology.hpp>
+#include <adjacency/corner_range.hpp>
 
 #include <hexhex/quality.hpp>
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <adjacency/corner_range.hpp>
 #include <adjacency/hex_topology.hpp>
 #include <adjacency/vertex_lists.hpp>
 

@@ -161,6 +161,7 @@ class ArcFinder {
   std::map<std::array<Index, 2>, Index> byKey_;
   std::vector<std::vector<Index>> edgesAt_;
 };
+
 /// The sides of patches, with their borders.
 class PatchFinder {
  public:

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include <adjacency/hex_topology.hpp>
+#include <adjacency/corner_range.hpp>
 #include <verify/match.hpp>
 #include <verify/mesh_sums.hpp>
 #include <verify/proof.hpp>

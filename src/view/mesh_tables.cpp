@@ -91,11 +91,17 @@ PackedTable packTable(std::string_view name, std::size_t rows, std::size_t colum
     fill(begin, end, table.data());
     return deflated(bytePlanes(differences(table, end - begin, columns, byRows)));
   };
+  if (rows == 0) return packed;
   const std::size_t first = std::min(rows, packed.rowsPerChunk);
-  packed.byRows = columns > 1 && pack(0, first, true).size() < pack(0, first, false).size();
-  parallelBlocks(stage, rows, packed.rowsPerChunk,
+  packed.chunks[0] = pack(0, first, false);
+  if (columns > 1) {
+    std::string byRows = pack(0, first, true);
+    packed.byRows = byRows.size() < packed.chunks[0].size();
+    if (packed.byRows) packed.chunks[0] = std::move(byRows);
+  }
+  parallelBlocks(stage, rows - first, packed.rowsPerChunk,
                  [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-                   packed.chunks[chunk] = pack(begin, end, packed.byRows);
+                   packed.chunks[chunk + 1] = pack(first + begin, first + end, packed.byRows);
                  });
   return packed;
 }

@@ -341,6 +341,7 @@ async function start(): Promise<void> {
     (stage, share) => (element("progress").textContent = `${stage} ... ${Math.round(share * 100)} %`),
     (bytes) => (element("memory").textContent = `${Math.round(bytes / 2 ** 20)} MB of memory in use`),
   );
+  element<HTMLInputElement>("wanted").max = String(kMostCells);
   bind(await session.restart());
   bindDrop();
   setWorking(false);

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include <adjacency/hex_topology.hpp>
+#include <adjacency/corner_range.hpp>
 
 #include <hexhex/error.hpp>
 

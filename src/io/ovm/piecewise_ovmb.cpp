@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include <adjacency/corner_range.hpp>
+
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
@@ -79,14 +81,8 @@ class TetSimplices {
 
  private:
   static std::span<const Tet> requireInRange(const TetMapView& map, Stage& stage) {
-    const std::size_t fault = firstFault(stage, map.tets.size(), [&map](std::size_t t) {
-      return std::all_of(map.tets[t].begin(), map.tets[t].end(),
-                         [&map](Index vertex) { return vertex < map.points.size(); });
-    });
-    if (fault == map.tets.size()) return map.tets;
-    throw Error(ErrorCode::IndexOutOfRange,
-                "Tet " + std::to_string(fault) + " names a vertex that does not exist.",
-                Place{PlaceKind::Tet, fault});
+    requireCornersInRange(map, stage);
+    return map.tets;
   }
 
   [[nodiscard]] Index faceWithout(Index tet, Index vertex) const {
