@@ -268,8 +268,15 @@ class FileProblems(CommandTest):
 
     def test_folder_as_input(self):
         (self.folder / "folder.hexex").mkdir()
-        self.assert_fails("check", "folder.hexex", expect=FILE_PROBLEM, words=["folder"],
+        self.assert_fails("check", "folder.hexex", expect=FILE_PROBLEM, words=["it is a folder"],
                           code="FileNotFound")
+        (self.folder / "plain").mkdir()
+        self.assert_fails("check", "plain", expect=FILE_PROBLEM, words=["it is a folder"],
+                          code="FileUnsupported")
+
+    def test_mesh_is_no_map(self):
+        self.run_command("extract", self.generate("box", "--cells", "1", "--refine", "1"), "-o", "a.vtu", "--quiet")
+        self.assert_fails("check", "a.vtu", expect=FILE_PROBLEM, words=["it holds hexahedra"], code="FileUnsupported")
 
     def test_unknown_extensions(self):
         self.write("map.hexex", ONE_TET)

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <sstream>
 #include <string>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -715,6 +716,25 @@ TEST(ReaderCost, OfBombs) {
     expectInProportion(folder / bomb.name, kContent, small);
     std::filesystem::remove(folder / bomb.name);
     std::filesystem::remove(small);
+  }
+}
+
+// Its first bytes tell that a file is no mesh; the rest of it is not read. Holes take no disk.
+TEST(ReaderCost, OfLargeFilesThatAreNoMeshes) {
+  if (kSanitized) GTEST_SKIP();
+  constexpr std::size_t kSize = std::size_t{1} << 28;
+  const TemporaryFolder folder;
+  for (const std::string& head : {std::string(), std::string("PK\x03\x04"), std::string("<\0", 2),
+                                  std::string(std::size_t{1} << 17, ' ')}) {
+    for (const Reader& reader : readers()) {
+      std::istringstream extensions(std::string(reader.extensions) + " .pvtu");
+      for (std::string extension; extensions >> extension;) {
+        const std::filesystem::path file = folder / ("large" + extension);
+        writeText(file, head);
+        std::filesystem::resize_file(file, kSize);
+        EXPECT_LE(costOf(reader, file).bytes, kSize / 8) << file << ", " << reader.name;
+      }
+    }
   }
 }
 

@@ -232,6 +232,9 @@ def test_broken_npz(mesh, tmp_path):
         file.write_bytes(content)
         with pytest.raises(hexhex.FileError, match="a.npz: "):
             hexhex.read(file)
+    file.write_bytes(b"no archive")  # numpy's own sentence advises to unpickle it
+    with pytest.raises(hexhex.FileError, match="zip"):
+        hexhex.read(file)
 
 
 def test_tqdm(tagged):

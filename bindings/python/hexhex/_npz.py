@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import os
 import secrets
+import zipfile
 from typing import Any
 
 import numpy as np
@@ -59,6 +60,9 @@ def read(file: str) -> Map | Mesh:
 
     try:
         with open(file, "rb") as source:
+            if not zipfile.is_zipfile(source):
+                raise ValueError("numpy.savez() writes zip archives")
+            source.seek(0)
             archive = np.load(source, allow_pickle=False)
             arrays = {name: archive[name] for name in archive.files}
     except OSError as error:

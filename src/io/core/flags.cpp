@@ -109,7 +109,8 @@ Flags placed(const TriangleLabels& found, const TetMesh& tets, const TetBoundary
 
 std::vector<std::int64_t> readLabelNumbers(const Input& input, Stage& stage) {
   Array<char> room;
-  TextScanner scanner(input.text(room, stage), input.name(), TextScanner::Comments::Hash);
+  TextScanner scanner(input.text(room, stage, "#+-0123456789"), input.name(),
+                      TextScanner::Comments::Hash);
   std::vector<std::int64_t> numbers;
   while (scanner.skipSpace()) numbers.push_back(scanner.integer("a label"));
   return numbers;
@@ -122,7 +123,8 @@ struct ObjSurface {
 };
 ObjSurface readSurface(const Input& input, Stage& stage) {
   Array<char> room;
-  TextScanner scanner(input.text(room, stage), input.name(), TextScanner::Comments::Hash);
+  TextScanner scanner(input.text(room, stage, "#abcdefghijklmnopqrstuvwxyz"), input.name(),
+                      TextScanner::Comments::Hash);
   ObjSurface surface;
   while (scanner.skipSpace()) {
     const std::string_view keyword = scanner.readToken();

@@ -9,6 +9,7 @@
 #include <base/parallel.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/system_call.hpp>
+#include <io/core/text_scanner.hpp>
 
 namespace hexhex {
 namespace {
@@ -21,7 +22,20 @@ constexpr std::size_t kMinimumStep = std::size_t{1} << 20;
 // files of some megabytes have work for several threads.
 constexpr std::size_t kGrain = std::size_t{1} << 20;
 
+// How much of a file shows what it is.
+constexpr std::size_t kHead = std::size_t{1} << 16;
+
 std::string reasonOf(int error) { return std::generic_category().message(error); }
+
+/// Whether a file may go on behind a head: it begins with one of these characters, and is no row of
+/// zero bytes.
+bool mayBegin(std::string_view head, std::string_view first) {
+  constexpr std::size_t kWord = 8;  // all formats begin with a word, or with numbers in digits
+  head.remove_prefix(
+      static_cast<std::size_t>(std::find_if_not(head.begin(), head.end(), isSpace) - head.begin()));
+  return !head.empty() && first.find(head.front()) != std::string_view::npos &&
+         head.substr(0, kWord).find('\0') == std::string_view::npos;
+}
 
 }  // namespace
 
@@ -71,23 +85,36 @@ void InputFile::fail(const std::string& reason) const {
               path_.string() + ": the file cannot be read: " + reason + ".");
 }
 
-Array<char> readWholeFile(const std::filesystem::path& file, Stage& stage) {
+Array<char> readWholeFile(const std::filesystem::path& file, Stage& stage, std::string_view first) {
   const InputFile input(file);
-  // One byte more than the size, so that the end of the file shows without growing the array.
-  std::size_t size = input.size();
-  Array<char> bytes(input.isRegular() ? size + 1 : 0);
-  parallelBlocks(stage, size, kGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   input.readAt(begin, bytes.data() + begin, end - begin);
-                 });
-  // The rest: of a file without a size everything, and what was appended in the meantime.
-  if (size > 0) input.moveTo(size);
-  while (true) {
-    if (size == bytes.size()) bytes.resize(size + std::max(size, kMinimumStep));
+  Array<char> bytes(kHead + 1);
+  std::size_t size = 0;
+  const auto readOn = [&] {
     const std::size_t count = input.read(bytes.data() + size, bytes.size() - size);
-    if (count == 0) break;
     size += count;
+    return count > 0;
+  };
+  while (size < bytes.size() && readOn()) {
   }
+  if (size > kHead && !first.empty() && !mayBegin(asText(bytes), first)) {
+    throw Error(ErrorCode::FileSyntax,
+                file.string() + ": no file of this format begins with these bytes. Is its " +
+                    "extension right, and is it complete?");
+  }
+  if (input.size() > size) {
+    // One byte more than the size, so that the end of the file shows without growing the array.
+    bytes.resize(input.size() + 1);
+    parallelBlocks(stage, input.size() - size, kGrain,
+                   [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                     input.readAt(size + begin, bytes.data() + size + begin, end - begin);
+                   });
+    size = input.size();
+    input.moveTo(size);
+  }
+  // The rest: of a file without a size everything, and what was appended in the meantime.
+  do {
+    if (size == bytes.size()) bytes.resize(size + std::max(size, kMinimumStep));
+  } while (readOn());
   bytes.resize(size);
   return bytes;
 }

@@ -55,8 +55,12 @@ class InputFile {
 };
 
 /// The bytes of a file.
-/// @throws Error FileNotFound if it does not exist, is a folder, or cannot be read to its end
-[[nodiscard]] Array<char> readWholeFile(const std::filesystem::path& file, Stage& stage);
+/// @param first  what the file begins with, white space aside: one of these characters
+/// @throws Error FileNotFound if it does not exist, is a folder, or cannot be read to its end;
+///         FileSyntax, before the rest is read, if it is larger than 64 KiB and begins otherwise
+///         (of a smaller one, who parses it says more)
+[[nodiscard]] Array<char> readWholeFile(const std::filesystem::path& file, Stage& stage,
+                                        std::string_view first = {});
 
 /// The same bytes as text.
 [[nodiscard]] inline std::string_view asText(const Array<char>& bytes) noexcept {
@@ -74,10 +78,11 @@ class Input {
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   [[nodiscard]] const std::optional<std::string_view>& bytes() const noexcept { return bytes_; }
-  /// All bytes. Those of a file go to `room`.
-  [[nodiscard]] std::string_view text(Array<char>& room, Stage& stage) const {
+  /// All bytes. Those of a file go to `room`; what `first` is says readWholeFile().
+  [[nodiscard]] std::string_view text(Array<char>& room, Stage& stage,
+                                      std::string_view first) const {
     if (bytes_) return *bytes_;
-    room = readWholeFile(path_, stage);
+    room = readWholeFile(path_, stage, first);
     return asText(room);
   }
 
@@ -97,8 +102,9 @@ template <class Work>
 }
 
 /// What a reader makes of an input.
-/// @tparam Reader  made from a text, a name for error messages and a stage; has read(). If it can
-///         be made from an open file, too, a regular file is never in memory as a whole
+/// @tparam Reader  made from a text, a name for error messages and a stage; has read(), and kFirst,
+///         what a text begins with (as of readWholeFile()). If it can be made from an open file,
+///         too, a regular file is never in memory as a whole
 /// @param more  what else the reader's constructor takes
 template <class Reader, class... More>
 [[nodiscard]] auto readWith(const Input& input, std::string_view stageName, Context& context,
@@ -115,7 +121,7 @@ template <class Reader, class... More>
       }
     }
     Array<char> room;
-    return read(input.text(room, stage));
+    return read(input.text(room, stage, Reader::kFirst));
   });
 }
 

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -192,9 +193,11 @@ const Format* formatWith(std::string_view key, std::string_view FormatLabel::*me
 
 [[noreturn]] void failToExtend(const std::filesystem::path& file, const std::string& extension,
                                FileContent content) {
+  std::error_code unknown;
   const std::string problem =
       extension.empty()
-          ? "the file name has no extension"
+          ? (std::filesystem::is_directory(file, unknown) ? "it is a folder"
+                                                          : "the file name has no extension")
           : "the extension \"" + extension + "\" is no format of " + purposeOf(content).what;
   const bool tetsOnly =
       content == FileContent::Map &&

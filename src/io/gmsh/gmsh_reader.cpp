@@ -282,6 +282,8 @@ class GmshNodes {
 template <std::size_t corners>
 class GmshReader {
  public:
+  static constexpr std::string_view kFirst = "$";
+
   GmshReader(std::string_view text, const std::string& fileName, Stage& stage)
       : file_(text, fileName, stage), fileName_(fileName) {}
 

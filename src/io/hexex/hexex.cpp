@@ -50,6 +50,8 @@ void removeRepeated(std::vector<Feature>& features) {
 /// Reads one file from top to bottom.
 class HexexReader {
  public:
+  static constexpr std::string_view kFirst = "+0123456789";  // a number of vertices
+
   HexexReader(std::string_view text, const std::string& fileName, Stage& stage)
       : scanner_(text, fileName), index_(text, stage), stage_(stage) {}
 

@@ -26,6 +26,7 @@ constexpr CellKind kMeditQuads = {
 class MeditText {
  public:
   static constexpr bool kIsText = true;
+  static constexpr std::string_view kFirst = "M#";
 
   MeditText(std::string_view text, const std::string& fileName, Stage& stage)
       : scanner_(text, fileName, TextScanner::Comments::Hash) {
@@ -94,6 +95,7 @@ class MeditText {
 class MeditBytes {
  public:
   static constexpr bool kIsText = false;
+  static constexpr std::string_view kFirst = {};  // its head says more
 
   /// @param file  the bytes of the file, or the open file, a regular one
   template <class File>
@@ -210,6 +212,8 @@ class SeenReferences {
 template <class Encoding, std::size_t corners>
 class MeditReader {
  public:
+  static constexpr std::string_view kFirst = Encoding::kFirst;
+
   template <class File>
   requires std::is_constructible_v<Encoding, const File&, const std::string&, Stage&> MeditReader(
       const File& file, const std::string& fileName, Stage& stage)

@@ -18,7 +18,8 @@ Result read(const Input& input, Context& context, std::string_view stageName, Pa
   return inStage(context, stageName, [&](Stage& stage) {
     const auto parsed = [&] {
       Array<char> room;  // given back before cells are made
-      return parse(input.text(room, stage), input.name(), stage);
+      // "OVM ASCII" or "Vertices" in any case, a comment, or "OVMB".
+      return parse(input.text(room, stage, "OoVv#"), input.name(), stage);
     };
     return convert(parsed(), input.name(), stage);
   });

@@ -52,7 +52,7 @@ void requireFiles(const Input& input, const std::vector<std::filesystem::path>& 
 /// The files of all pieces.
 std::vector<std::filesystem::path> findPieces(const Input& input, Stage& stage) {
   Array<char> room;
-  XmlTags tags(input.text(room, stage), input.name());
+  XmlTags tags(input.text(room, stage, kXmlFirst), input.name());
   std::vector<std::filesystem::path> pieces;
   XmlTag tag;
   bool inGrid = false;

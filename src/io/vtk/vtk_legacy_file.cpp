@@ -412,7 +412,7 @@ class VtkLegacyFile final : public VtkSource {
 
 std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegions, Stage& stage) {
   VtkFileBytes bytes;
-  bytes.text = input.text(bytes.room, stage);
+  bytes.text = input.text(bytes.room, stage, "#");
   auto file = std::make_unique<VtkLegacyFile>(std::move(bytes), input.name(), stage);
   if (withRegions) file->readRegions();
   return file;

@@ -309,10 +309,14 @@ void readVtkCells(const VtkSource& source, const CellKind& cells,
 }
 
 void failWithoutVtkCells(const VtkSource& source, const CellKind& cells) {
-  source.fail(ErrorCode::FileUnsupported, "the file holds no " + std::string(cells.plural) +
-                                              ": none of its " + std::to_string(source.cells) +
-                                              " cells has the type " +
-                                              std::to_string(cells.vtkType) + ".");
+  const CellKind& others = cells.corners == 4 ? kCellKind<8> : kCellKind<4>;
+  const std::size_t found =
+      countVtkCells(source, others, 0, std::min<std::uint64_t>(source.cells, kGrain));
+  source.fail(ErrorCode::FileUnsupported,
+              "the file holds no " + std::string(cells.plural) + ": none of its " +
+                  std::to_string(source.cells) + " cells has the type " +
+                  std::to_string(cells.vtkType) +
+                  (found > 0 ? "; it holds " + std::string(others.plural) : "") + ".");
 }
 
 HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {

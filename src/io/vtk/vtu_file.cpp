@@ -371,7 +371,7 @@ std::unique_ptr<VtkSource> openVtuFile(const Input& input, Stage& stage) {
   }
   if (bytes.text.empty()) {
     bytes.file.reset();
-    bytes.text = input.text(bytes.room, stage);
+    bytes.text = input.text(bytes.room, stage, kXmlFirst);
   }
   return std::make_unique<VtuFile>(std::move(bytes), input.name(), stage);
 }

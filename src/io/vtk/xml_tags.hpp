@@ -13,6 +13,9 @@
 
 namespace hexhex {
 
+/// What an XML file begins with: a tag, or the mark of UTF-8.
+inline constexpr std::string_view kXmlFirst = "<\xEF";
+
 /// One tag; refers to the text that was scanned.
 struct XmlTag {
   std::string_view name;
