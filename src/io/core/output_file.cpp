@@ -75,11 +75,18 @@ void ChangedFolder::sync() const {
                   std::generic_category().message(errno) + ".");
 }
 
+namespace {
+
+void giveName(const std::filesystem::path& finished, const std::filesystem::path& target) {
+  if (system_call::rename(finished, target) == 0) return;
+  failToWrite(target, "the finished file cannot be renamed to it", errno);
+}
+
+}  // namespace
+
 void replaceFile(const std::filesystem::path& finished, const std::filesystem::path& target) {
   const ChangedFolder folder(target);
-  if (system_call::rename(finished, target) != 0) {
-    failToWrite(target, "the finished file cannot be renamed to it", errno);
-  }
+  giveName(finished, target);
   folder.sync();
 }
 
@@ -196,8 +203,10 @@ void OutputFile::commit() {
   const int closed = system_call::close(std::exchange(descriptor_, -1));
   if (closed != 0 && errno != EINTR) fail("it cannot be written completely", errno);
   if (!renamed) return;
-  replaceFile(temporary_, target_);
+  const ChangedFolder folder(target_);
+  giveName(temporary_, target_);
   temporary_.clear();
+  folder.sync();
 }
 
 void OutputFile::fail(const std::string& reason, int error) const {

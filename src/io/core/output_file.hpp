@@ -172,6 +172,8 @@ class OutputFile {
 
   /// Writes what is buffered, closes the file, and gives it its name.
   void commit();
+  /// Whether commit() gave a temporary its name, also if its folder could not be synced then.
+  [[nodiscard]] bool isNamed() const noexcept { return descriptor_ < 0 && temporary_.empty(); }
 
   /// As failToWrite().
   [[noreturn]] void fail(const std::string& reason, int error = 0) const;

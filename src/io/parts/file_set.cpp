@@ -17,6 +17,7 @@ void FileSet::commit(const std::function<void(std::size_t i, OutputFile& file)>&
     }
   } catch (...) {
     std::error_code unknown;
+    if (done < files_.size() && files_[done].output->isNamed()) ++done;
     while (done-- > 0) std::filesystem::remove(files_[done].path, unknown);
     throw;
   }

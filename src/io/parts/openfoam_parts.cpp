@@ -282,7 +282,8 @@ class OpenFoamSink final : public PartSink {
       for (; done < folders_.size(); ++done) folders_[done].commit();
       if (marker_) marker_->commit();
     } catch (...) {
-      while (done-- > 0) folders_[done].takeBack();
+      const bool complete = marker_ && marker_->isNamed();
+      while (!complete && done-- > 0) folders_[done].takeBack();
       throw;
     }
   }

@@ -6,11 +6,17 @@ namespace hexhex {
 
 void PartFolder::commit(std::uint32_t parts) {
   folder_.commit();
-  // From now on nothing names them.
-  std::error_code error;
-  for (std::uint32_t part = parts; std::filesystem::remove_all(target_ / name_(part), error) > 0;) {
-    if (error) break;
-    ++part;
+  try {
+    // From now on nothing names them.
+    std::error_code error;
+    for (std::uint32_t part = parts;
+         std::filesystem::remove_all(target_ / name_(part), error) > 0;) {
+      if (error) break;
+      ++part;
+    }
+  } catch (...) {  // no memory for a name
+    takeBack();
+    throw;
   }
 }
 

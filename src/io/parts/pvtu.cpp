@@ -73,7 +73,7 @@ class PvtuSink final : public PartSink {
     try {
       index_.commit();
     } catch (...) {
-      folder_.takeBack();
+      if (!index_.isNamed()) folder_.takeBack();
       throw;
     }
   }

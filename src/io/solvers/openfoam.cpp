@@ -108,7 +108,7 @@ void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
   try {
     marker->commit();
   } catch (...) {
-    folder.takeBack();
+    if (!marker->isNamed()) folder.takeBack();
     throw;
   }
 }
