@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <string>
 #include <vector>
@@ -15,6 +14,8 @@
 #include <hexhex/extract.hpp>
 #include <hexhex/samples.hpp>
 #include <hexhex/verify.hpp>
+
+#include "support/effort.hpp"
 
 namespace hexhex::test {
 
@@ -148,13 +149,6 @@ inline ::testing::AssertionResult sameUpToNumbering(const HexMesh& a, const HexM
   std::sort(cellsB.begin(), cellsB.end());
   if (cellsA != cellsB) return ::testing::AssertionFailure() << "different cells";
   return ::testing::AssertionSuccess();
-}
-
-/// Scales the number of random cases: HEXHEX_TEST_EFFORT, e.g. 0.1 for sanitizer runs.
-inline int cases(int count) {
-  const char* effort = std::getenv("HEXHEX_TEST_EFFORT");
-  const double factor = effort != nullptr ? std::atof(effort) : 1.0;
-  return std::max(1, static_cast<int>(count * factor));
 }
 
 }  // namespace hexhex::test

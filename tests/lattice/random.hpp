@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 
 #include <lattice/direction.hpp>
 #include <lattice/tet_geometry.hpp>
+
+#include "support/effort.hpp"
 
 namespace hexhex::testing {
 
@@ -41,10 +42,6 @@ class Random {
   std::uint64_t state_;
 };
 
-/// `full` cases, times the environment variable HEXHEX_TEST_EFFORT (slow builds set, say, 0.05).
-inline int cases(int full) {
-  const char* factor = std::getenv("HEXHEX_TEST_EFFORT");
-  return factor == nullptr ? full : std::max(1, static_cast<int>(full * std::atof(factor)));
-}
+using test::cases;
 
 }  // namespace hexhex::testing

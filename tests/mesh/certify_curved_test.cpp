@@ -2,7 +2,6 @@
 // in powers of u, v, w with integer coefficients, and from these to Bezier coefficients.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iostream>
 #include <numeric>
 #include <optional>
@@ -13,6 +12,8 @@
 
 #include <mesh/cell_validity.hpp>
 #include <mesh/grid_meshes.hpp>
+
+#include "support/effort.hpp"
 
 namespace hexhex {
 namespace {
@@ -193,8 +194,7 @@ std::vector<Node> draw(std::size_t order, std::size_t number, Random& random) {
 
 /// HEXHEX_TEST_EFFORT=N takes N times as many.
 TEST(Certificates, OfCurvedCellsAreRight) {
-  const char* const text = std::getenv("HEXHEX_TEST_EFFORT");
-  const double effort = text == nullptr ? 1 : std::atof(text);
+  const double effort = test::effort();
   for (const std::size_t order : {2U, 3U}) {
     const CellValidity cells(static_cast<int>(order));
     Random random(order);

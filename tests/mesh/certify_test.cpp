@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <iostream>
 #include <optional>
 #include <random>
@@ -18,6 +17,8 @@
 #include <mesh/cell_measures.hpp>
 #include <mesh/cell_validity.hpp>
 #include <mesh/grid_meshes.hpp>
+
+#include "support/effort.hpp"
 
 namespace hexhex {
 namespace {
@@ -183,11 +184,6 @@ Cell draw(std::size_t kind, Random& random) {
   return cell;
 }
 
-double effort() {
-  const char* const value = std::getenv("HEXHEX_TEST_EFFORT");
-  return value == nullptr ? 1 : std::atof(value);
-}
-
 struct Tally {
   std::uint64_t cells = 0;
   std::uint64_t positive = 0;
@@ -252,7 +248,7 @@ TEST(Certificates, AreRight) {
   for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
     Random random(77 + kind);
     Tally sum;
-    auto left = static_cast<std::size_t>(3000 * effort());
+    auto left = static_cast<std::size_t>(3000 * test::effort());
     while (left > 0) {
       const std::size_t count = std::min<std::size_t>(left, 100000);
       left -= count;

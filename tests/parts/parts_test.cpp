@@ -7,6 +7,7 @@
 
 #include "support/coarse_maps.hpp"
 #include "support/damaged_maps.hpp"
+#include "support/effort.hpp"
 #include "support/part_check.hpp"
 
 namespace hexhex {
@@ -16,8 +17,7 @@ using test::comparePartsWithWhole;
 
 TEST(Parts, MakeUpRandomSamples) {
   std::mt19937_64 random(27);
-  const int cases = 12;
-  for (int i = 0; i < cases; ++i) {
+  for (int i = 0; i < test::cases(12); ++i) {
     test::MapDamage draw(random());
     const TetMap map = draw.sample();
     ExtractOptions options;
