@@ -211,6 +211,42 @@ TEST(Improve, KeepsTaggedVerticesOfATorusOnItsSurface) {
   EXPECT_GE(report.after.quality.mean, report.before.quality.mean);
 }
 
+TEST(Improve, KeepsTaggedQuadsInsideWhereTheyAre) {
+  const HexMesh grid = gridMesh(6);
+  HexMesh mesh = grid;
+  distort(mesh, 6, 0.45, 9);
+  const auto numberOf = [&](const Vec3& at) {
+    return static_cast<Index>(std::find(grid.points.begin(), grid.points.end(), at) -
+                              grid.points.begin());
+  };
+  // A wall in the middle, and the bottom.
+  for (double a = 0; a < 6; ++a) {
+    for (double b = 0; b < 6; ++b) {
+      mesh.features.quads.push_back({{numberOf({3, a, b}), numberOf({3, a + 1, b}),
+                                      numberOf({3, a + 1, b + 1}), numberOf({3, a, b + 1})},
+                                     7});
+      mesh.features.quads.push_back({{numberOf({a, b, 0}), numberOf({a + 1, b, 0}),
+                                      numberOf({a + 1, b + 1, 0}), numberOf({a, b + 1, 0})},
+                                     8});
+    }
+  }
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    if (grid.points[v][0] == 3) mesh.points[v][0] = 3;
+  }
+  const HexMesh before = mesh;
+  const ImproveReport report = improved(mesh);
+  expectNoWorse(report);
+  EXPECT_FALSE(report.before.allPositive());
+  EXPECT_TRUE(report.after.allPositive());
+  std::size_t moved = 0;
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    if (grid.points[v][0] != 3) continue;
+    EXPECT_NEAR(mesh.points[v][0], 3, 1e-9) << "vertex " << v;
+    moved += mesh.points[v] == before.points[v] ? 0 : 1;
+  }
+  EXPECT_GT(moved, 10U);
+}
+
 TEST(Improve, MendsSamplesOfAllKinds) {
   int bad = 0;
   int mended = 0;
@@ -311,6 +347,19 @@ TEST(Improve, LooksWhetherMapsAreWhole) {
             }),
             ErrorCode::InvalidArgument);
   EXPECT_EQ(codeWith([](TetMap& m) { m.regions = {1, 2}; }), ErrorCode::InvalidArgument);
+  // A triangle of three tets; a map that has fewer tets than the one that the mesh comes from.
+  EXPECT_EQ(codeWith([](TetMap& m) {
+              m.tets.push_back(m.tets[0]);
+              m.parameters.push_back(m.parameters[0]);
+            }),
+            ErrorCode::InvalidArgument);
+  EXPECT_EQ(codeWith([](TetMap& m) {
+              m.tets.resize(1);
+              m.parameters.resize(1);
+            }),
+            ErrorCode::InvalidArgument);
+  mesh.generatorCorners[4] = 16;
+  EXPECT_EQ(codeWith([](TetMap&) {}), ErrorCode::InvalidArgument);
   EXPECT_EQ(codeWith([](TetMap& m) { m.points[7][0] = std::numeric_limits<double>::infinity(); }),
             ErrorCode::NotFinite);
 }

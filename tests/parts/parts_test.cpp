@@ -79,6 +79,7 @@ TEST(Parts, OfMetisAndScotchMakeUpTheMeshToo) {
   SampleOptions options;
   options.cells = 6;
   const TetMap map = generateSample(SampleKind::Torus, options).map;
+  const TetMap large = generateSample(SampleKind::Shell).map;  // tets that are cut into cubes
   for (const PartitionMethod method : {PartitionMethod::Metis, PartitionMethod::Scotch}) {
     const PartOptions parts{16, 0, method};
     Cut cut{};
@@ -89,6 +90,7 @@ TEST(Parts, OfMetisAndScotchMakeUpTheMeshToo) {
       GTEST_SKIP() << error.what();
     }
     EXPECT_EQ(comparePartsWithWhole(map, {}, parts), "");
+    EXPECT_EQ(comparePartsWithWhole(large, {.scale = 4}, {5, 1, method}), "");
     EXPECT_LE(cut.imbalance, 1.05);
     const Cut curve = cutOf(map, {16}, 1);
     EXPECT_LE(cut.shared, curve.shared);
@@ -96,6 +98,54 @@ TEST(Parts, OfMetisAndScotchMakeUpTheMeshToo) {
       EXPECT_LE(static_cast<double>(curve.shared), 1.5 * static_cast<double>(cut.shared));
     }
   }
+}
+
+TEST(Parts, ThatDoNotFitTogetherAreRefused) {
+  class Counter final : public PartSink {
+   public:
+    void begin(const PartsInfo& /*info*/) override {}
+    void part(MeshPart&& /*part*/) override {}
+    void end() override { ++ends; }
+    int ends = 0;
+  };
+  const TetMap map = generateSample(SampleKind::Sphere).map;
+  Context context;
+  const std::vector<MeshPart> parts = extractParts(map, {}, {3}, context);
+  const HexMesh mesh = extract(map);
+  const auto refusedWith = [&](const auto& change) {
+    std::vector<MeshPart> changed = parts;
+    change(changed[1]);
+    Counter counter;
+    PartSurvey survey(counter);
+    survey.begin({3, 0, mesh.points.size(), mesh.cells.size()});
+    for (MeshPart& part : changed) survey.part(std::move(part));
+    try {
+      survey.end();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::VerificationFailed);
+      EXPECT_EQ(counter.ends, 0);
+      return true;
+    }
+    EXPECT_EQ(counter.ends, 1);
+    return false;
+  };
+  EXPECT_FALSE(refusedWith([](MeshPart&) {}));
+  EXPECT_TRUE(refusedWith([](MeshPart& part) { --part.ownCells; }));
+  EXPECT_TRUE(refusedWith([](MeshPart& part) { ++part.globalCells[0]; }));
+  EXPECT_TRUE(refusedWith([](MeshPart& part) {
+    const auto own = std::find(part.pointOwners.begin(), part.pointOwners.end(), 1U);
+    part.pointOwners[static_cast<std::size_t>(own - part.pointOwners.begin())] = 0;
+  }));
+  EXPECT_TRUE(refusedWith([](MeshPart& part) {
+    const auto own = std::find(part.pointOwners.begin(), part.pointOwners.end(), 1U);
+    ++part.globalPoints[static_cast<std::size_t>(own - part.pointOwners.begin())];
+  }));
+  EXPECT_TRUE(refusedWith([](MeshPart& part) { part.neighbours.pop_back(); }));
+  EXPECT_TRUE(refusedWith([](MeshPart& part) { part.neighbours[0].vertices.pop_back(); }));
+  EXPECT_TRUE(refusedWith([](MeshPart& part) { part.neighbours[0].faces.pop_back(); }));
+  EXPECT_TRUE(refusedWith([](MeshPart& part) {
+    std::swap(part.neighbours[0].vertices[0], part.neighbours[0].vertices[1]);
+  }));
 }
 
 TEST(Parts, AreRefusedForOptionsOutOfRange) {

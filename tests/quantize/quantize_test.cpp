@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 #include <quantize/motorcycle_complex.hpp>
+#include <quantize/quantized_map.hpp>
 #include <rapidcheck/gtest.h>
 
 #include <hexhex/hexhex.hpp>
@@ -42,6 +43,50 @@ TetMap withMovedCharts(TetMap map, std::uint64_t seed) {
     }
   }
   return map;
+}
+
+/// The map with all tets at an edge cut in two at its middle.
+BentMap splitAt(const TetMap& map, const SplitEdge& edge) {
+  BentMap bent;
+  bent.points.assign(map.points.begin(), map.points.end());
+  bent.splitEdges = {edge};
+  const auto middle = static_cast<Index>(map.points.size());
+  Vec3& point = bent.points.emplace_back();
+  for (std::size_t k = 0; k < 3; ++k) {
+    point[k] = (map.points[edge[0]][k] + map.points[edge[1]][k]) / 2;
+  }
+  for (Index t = 0; t < map.tets.size(); ++t) {
+    const Tet& tet = map.tets[t];
+    const auto placeOf = [&tet](Index v) {
+      return std::find(tet.begin(), tet.end(), v) - tet.begin();
+    };
+    const auto a = static_cast<std::size_t>(placeOf(edge[0]));
+    const auto b = static_cast<std::size_t>(placeOf(edge[1]));
+    const bool isCut = a < 4 && b < 4;
+    for (const std::size_t replaced : {a, b}) {
+      Tet half = tet;
+      TetParameters parameters = map.parameters[t];
+      if (isCut) {
+        half[replaced] = middle;
+        for (std::size_t k = 0; k < 3; ++k) {
+          parameters[replaced][k] = (map.parameters[t][a][k] + map.parameters[t][b][k]) / 2;
+        }
+      }
+      bent.tets.push_back(half);
+      bent.parameters.push_back(parameters);
+      bent.parentTet.push_back(t);
+      if (!isCut) break;
+    }
+  }
+  bent.reference = bent.parameters;
+  return bent;
+}
+
+SplitEdge firstSingularEdge(const TetMap& map, Context& context) {
+  for (const auto& edge : findMapStructure(map, 0.01, context).singularEdges) {
+    if (!edge.boundary) return {edge.vertex0, edge.vertex1};
+  }
+  throw Error(ErrorCode::InvalidArgument, "The map has no inner singular edge.");
 }
 
 TetMap withDigits(TetMap map, int digits) {
@@ -191,6 +236,31 @@ TEST(Quantize, KeepsFeaturesAndRegions) {
   EXPECT_EQ(mesh.regions.size(), mesh.cells.size());
   EXPECT_EQ(static_cast<std::uint64_t>(*std::max_element(mesh.regions.begin(), mesh.regions.end())),
             sample.answer.features.regions);
+}
+
+TEST(Quantize, TagsAndSingularEdgesGoToBothHalvesOfASplitEdge) {
+  SampleOptions options;
+  options.features = true;
+  const TetMap map = generateSample(SampleKind::Cylinder, options).map;
+  Context context;
+  const CheckReport before = check(map);
+  ASSERT_FALSE(before.expected.innerSingularEdges.empty());
+  for (const SplitEdge edge :
+       {map.features.edges.front().vertices, firstSingularEdge(map, context)}) {
+    BentMap bent = splitAt(map, edge);
+    SeamlessMap seamless = makeSeamless(map, {1e-5, 1e-5}, context);
+    const QuantizedMap result = finishQuantization(std::move(seamless), map, bent, {}, context);
+    const Expectation after = check(result.map).expected;
+    EXPECT_EQ(after.cells, before.expected.cells);
+    EXPECT_EQ(after.innerSingularEdges, before.expected.innerSingularEdges);
+    EXPECT_EQ(after.boundarySingularEdges, before.expected.boundarySingularEdges);
+    const HexFeatures whole = extract(map).features;
+    const HexFeatures split = extract(result.map).features;
+    EXPECT_EQ(split.edges.size(), whole.edges.size());
+    EXPECT_EQ(split.quads.size(), whole.quads.size());
+    EXPECT_GT(result.map.features.edges.size() + result.map.features.faces.size(),
+              map.features.edges.size() + map.features.faces.size());
+  }
 }
 
 TEST(Quantize, RefusesOptionsThatMakeNoSense) {
