@@ -14,14 +14,21 @@ foreach(kind IN ITEMS shared static)
     FILE hexhex-${kind}.cmake COMPONENT dev)
 endforeach()
 
+set(no_headers PATTERN "view.hpp" EXCLUDE)  # of the command; no installed library has it
+if(HEXHEX_HAS_MPI)
+  install(TARGETS hexhex_mpi ARCHIVE COMPONENT dev)
+else()
+  list(APPEND no_headers PATTERN "mpi.hpp" EXCLUDE)
+endif()
 install(DIRECTORY include/hexhex
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev
   FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h"
-  PATTERN "view.hpp" EXCLUDE)  # of the command; no installed library has it
+  ${no_headers})
 install(FILES bindings/c/include/hexhex.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 
 configure_package_config_file(cmake/hexhexConfig.cmake.in ${PROJECT_BINARY_DIR}/hexhexConfig.cmake
-  INSTALL_DESTINATION ${package_dir})
+  INSTALL_DESTINATION ${package_dir}
+  PATH_VARS CMAKE_INSTALL_LIBDIR)
 if(PROJECT_VERSION_MAJOR EQUAL 0)
   set(compatibility SameMinorVersion)
 else()

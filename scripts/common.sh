@@ -78,6 +78,9 @@ vtk_packages=(python3-vtk9)
 paraview_packages=(paraview-dev python3-paraview libopenmpi-dev liblz4-dev libdouble-conversion-dev
   xvfb xauth)
 
+# Meshes in parts on MPI; any other MPI will do, too.
+mpi_packages=(openmpi-bin libopenmpi-dev)
+
 # What compiles for WebAssembly: a compiler of its own, about a gigabyte with what it brings.
 wasm_packages=(emscripten libfast-float-dev libfmt-dev nlohmann-json3-dev libeigen3-dev)
 

@@ -21,6 +21,7 @@
 #include <hexhex/stream.hpp>         // IWYU pragma: export
 #include <hexhex/structure.hpp>      // IWYU pragma: export
 #include <hexhex/survey.hpp>         // IWYU pragma: export
+#include <hexhex/team.hpp>           // IWYU pragma: export
 #include <hexhex/types.hpp>          // IWYU pragma: export
 #include <hexhex/verify.hpp>         // IWYU pragma: export
 #include <hexhex/version.hpp>        // IWYU pragma: export

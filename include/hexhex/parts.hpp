@@ -17,6 +17,8 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
+class ProcessTeam;  // <hexhex/team.hpp>
+
 /// Who says which cells make a part.
 enum class PartitionMethod : std::uint8_t {
   Curve,   ///< Hilbert's space-filling curve, cut where cells are even; always there
@@ -134,10 +136,11 @@ struct PartsSummary {
 
 /// Hands parts on to another sink, and compares what they say of each other: any two that are
 /// neighbours have the same lists of vertices and faces, by global numbers, but for an accident of
-/// one in 2^64; and all numbers of cells and vertices are there.
+/// one in 2^64; and all numbers of cells and vertices are there. In a team of processes, each has
+/// a survey of its part, and end() adds them up.
 class PartSurvey final : public PartSink {
  public:
-  explicit PartSurvey(PartSink& sink) : sink_(sink) {}
+  explicit PartSurvey(PartSink& sink, ProcessTeam* team = nullptr) : sink_(sink), team_(team) {}
   void begin(const PartsInfo& info) override;
   void part(MeshPart&& part) override;
   /// @throws Error VerificationFailed if parts disagree; then the other sink's end() is not called
@@ -149,7 +152,10 @@ class PartSurvey final : public PartSink {
   [[nodiscard]] const PartsSummary& result() const noexcept { return summary_; }
 
  private:
+  void addUp();
+
   PartSink& sink_;
+  ProcessTeam* team_;
   PartsInfo info_;
   PartsSummary summary_;
   std::uint64_t cellSum_ = 0;    ///< of the numbers of all own cells
@@ -162,13 +168,19 @@ class PartSurvey final : public PartSink {
 /// the same names are replaced; those of earlier runs with more parts go away.
 /// @param options  the format and the patch angle count
 /// @param context  outlives the sink
-/// @throws Error FileUnsupported for a format without parts; FileWrite, now and later; NotFinite;
-///         TooLarge for numbers that the format does not hold
+/// @param team     if not null, each of its processes opens a sink, in ProcessTeam::run(), whose
+///                 functions are called in all of them together, for the process's own part: that
+///                 of its rank
+/// @throws Error FileUnsupported for a format without parts, or that a team cannot write;
+///         FileWrite, now and later; NotFinite; TooLarge for numbers that the format does not hold
 [[nodiscard]] std::unique_ptr<PartSink> openPartSink(const std::filesystem::path& file,
-                                                     const WriteOptions& options, Context& context);
+                                                     const WriteOptions& options, Context& context,
+                                                     ProcessTeam* team = nullptr);
 
 /// Throws FileUnsupported unless openPartSink() knows the format.
-void requirePartFormat(const std::filesystem::path& file, const WriteOptions& options);
+/// @param byTeam  whether for a team
+void requirePartFormat(const std::filesystem::path& file, const WriteOptions& options,
+                       bool byTeam = false);
 
 /// A format of parts: its name and extension are those of the format of whole meshes, if there is
 /// one.
@@ -176,6 +188,7 @@ struct PartFormat {
   std::string_view name;
   std::string_view extension;
   std::string_view description;  ///< which files there are
+  bool byTeams = false;          ///< whether processes can write it together
 };
 [[nodiscard]] std::span<const PartFormat> partFormats() noexcept;
 

@@ -1,12 +1,16 @@
 // The public functions.
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstring>
 #include <string>
 #include <utility>
 
+#include <parts/number_hash.hpp>
 #include <parts/part_maker.hpp>
 
 #include <hexhex/parts.hpp>
+#include <hexhex/team.hpp>
 
 #include <extract/steps.hpp>
 
@@ -48,14 +52,15 @@ class Collector final : public PartSink {
   std::vector<MeshPart>& parts_;
 };
 
-}  // namespace
-
-void extractParts(PartSink& sink, const TetMapView& map, const ExtractOptions& options,
-                  const PartOptions& parts, Context& context, ExtractStatistics* statistics) {
+/// Prepares a map, and calls make(maker): which parts are made is left to it.
+template <class Make>
+void runParts(std::uint32_t sinkLayers, const TetMapView& map, const ExtractOptions& options,
+              const PartOptions& parts, Context& context, ExtractStatistics* statistics,
+              const Make& make) {
   checkOptions(options);
   checkOptions(parts);
   PartOptions needed = parts;
-  needed.ghostLayers = std::max(needed.ghostLayers, sink.neededGhostLayers());
+  needed.ghostLayers = std::max(needed.ghostLayers, sinkLayers);
   runExtraction({"extractParts", kPartsSteps}, {}, context, statistics,
                 [&](ExtractStatistics& filled) {
                   const ScaledMap scaled =
@@ -64,10 +69,62 @@ void extractParts(PartSink& sink, const TetMapView& map, const ExtractOptions& o
                       {scaled.map, scaled.source, scaled.expectedCells}, needed, context, filled);
                   PartsInfo info = maker->info();
                   info.ghostLayers = parts.ghostLayers;
-                  sink.begin(info);
-                  for (std::uint32_t p = 0; p < needed.parts; ++p) sink.part(maker->make(p));
-                  sink.end();
+                  make(*maker, info);
                 });
+}
+
+void addBytes(NumberHash& hash, std::span<const std::byte> bytes) {
+  constexpr std::size_t kWord = sizeof(std::uint64_t);
+  hash.add(bytes.size());
+  for (std::size_t i = 0; i < bytes.size(); i += kWord) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + i, std::min(kWord, bytes.size() - i));
+    hash.add(word);
+  }
+}
+
+/// Of all that a mesh in parts depends on.
+std::uint64_t hashOf(const TetMapView& map, const ExtractOptions& options,
+                     const PartOptions& parts) {
+  NumberHash hash;
+  addBytes(hash, std::as_bytes(map.points));
+  addBytes(hash, std::as_bytes(map.tets));
+  addBytes(hash, std::as_bytes(map.parameters));
+  addBytes(hash, std::as_bytes(map.edgeValences));
+  addBytes(hash, std::as_bytes(map.rotations));
+  addBytes(hash, std::as_bytes(map.features.vertices));
+  addBytes(hash, std::as_bytes(map.features.edges));
+  addBytes(hash, std::as_bytes(map.features.faces));
+  addBytes(hash, std::as_bytes(map.regions));
+  hash.add(static_cast<std::uint64_t>(options.scale));
+  hash.add(std::bit_cast<std::uint64_t>(options.tolerance));
+  hash.add(static_cast<std::uint64_t>(options.repair));
+  hash.add(options.round ? 1 : 0);
+  hash.add(parts.ghostLayers);
+  hash.add(static_cast<std::uint64_t>(parts.method));
+  return hash.value();
+}
+
+void requireSame(ProcessTeam& team, std::uint64_t hash) {
+  const GatheredNumbers all = team.gather(std::span(&hash, 1));
+  for (std::uint32_t r = 1; r < team.size(); ++r) {
+    if (all.numbers[r] == all.numbers[0]) continue;
+    throw Error(ErrorCode::InvalidArgument,
+                "Processes 0 and " + std::to_string(r) +
+                    " have different maps or options. Give all of them the same.");
+  }
+}
+
+}  // namespace
+
+void extractParts(PartSink& sink, const TetMapView& map, const ExtractOptions& options,
+                  const PartOptions& parts, Context& context, ExtractStatistics* statistics) {
+  runParts(sink.neededGhostLayers(), map, options, parts, context, statistics,
+           [&](PartMaker& maker, const PartsInfo& info) {
+             sink.begin(info);
+             for (std::uint32_t p = 0; p < parts.parts; ++p) sink.part(maker.make(p));
+             sink.end();
+           });
 }
 
 std::vector<MeshPart> extractParts(const TetMapView& map, const ExtractOptions& options,
@@ -77,6 +134,38 @@ std::vector<MeshPart> extractParts(const TetMapView& map, const ExtractOptions& 
   Collector collector(all);
   extractParts(collector, map, options, parts, context, statistics);
   return all;
+}
+
+void extractPart(ProcessTeam& team, PartSink& sink, const TetMapView& map,
+                 const ExtractOptions& options, const PartOptions& parts, Context& context,
+                 ExtractStatistics* statistics, PartsSummary* summary) {
+  team.run([&] {
+    if (parts.parts != 1 && parts.parts != team.size()) {
+      throw Error(ErrorCode::InvalidArgument,
+                  "There are " + std::to_string(parts.parts) + " parts and " +
+                      std::to_string(team.size()) +
+                      " processes. Each process makes one part: leave out the number of parts.");
+    }
+    PartOptions all = parts;
+    all.parts = team.size();
+    requireSame(team, hashOf(map, options, parts));
+    PartSurvey survey(sink, &team);
+    runParts(sink.neededGhostLayers(), map, options, all, context, statistics,
+             [&](PartMaker& maker, const PartsInfo& info) {
+               survey.begin(info);
+               survey.part(maker.make(team.rank()));
+               survey.end();
+             });
+    if (summary != nullptr) *summary = survey.result();
+  });
+}
+
+MeshPart extractPart(ProcessTeam& team, const TetMapView& map, const ExtractOptions& options,
+                     const PartOptions& parts, Context& context, ExtractStatistics* statistics) {
+  std::vector<MeshPart> own;
+  Collector collector(own);
+  extractPart(team, collector, map, options, parts, context, statistics);
+  return std::move(own.front());
 }
 
 }  // namespace hexhex

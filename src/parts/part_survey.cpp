@@ -1,34 +1,22 @@
 #include <algorithm>
+#include <array>
+#include <span>
 #include <string>
 #include <utility>
 
 #include <adjacency/cell_faces.hpp>
+#include <parts/number_hash.hpp>
 
 #include <hexhex/parts.hpp>
+#include <hexhex/team.hpp>
 
 namespace hexhex {
 
 namespace {
 
-/// A hash of numbers in their order: the finalizer of SplitMix64 (Steele, Lea, Flood, "Fast
-/// splittable pseudorandom number generators", 2014) after each.
-class Hash {
- public:
-  void add(std::uint64_t number) noexcept {
-    value_ += number + 0x9e3779b97f4a7c15U;
-    value_ = (value_ ^ (value_ >> 30U)) * 0xbf58476d1ce4e5b9U;
-    value_ = (value_ ^ (value_ >> 27U)) * 0x94d049bb133111ebU;
-    value_ ^= value_ >> 31U;
-  }
-  [[nodiscard]] std::uint64_t value() const noexcept { return value_; }
-
- private:
-  std::uint64_t value_ = 0;
-};
-
 /// Of what a part shares with a neighbour; the same from both sides.
 std::uint64_t borderOf(const MeshPart& part, const PartNeighbour& neighbour) {
-  Hash hash;
+  NumberHash hash;
   hash.add(std::min(part.part, neighbour.part));
   hash.add(std::max(part.part, neighbour.part));
   hash.add(neighbour.vertices.size());
@@ -79,7 +67,34 @@ void PartSurvey::part(MeshPart&& part) {
   sink_.part(std::move(part));
 }
 
+/// Adds up what the processes have seen.
+void PartSurvey::addUp() {
+  const PartsSummary& own = summary_;
+  const std::array<std::uint64_t, 11> mine = {
+      own.cells,       own.vertices,       own.largest, own.smallest, own.empty, own.sharedVertices,
+      own.sharedFaces, own.mostNeighbours, cellSum_,    vertexSum_,   borders_};
+  const GatheredNumbers all = team_->gather(mine);
+  summary_ = {};
+  summary_.smallest = info_.cellCount;
+  cellSum_ = vertexSum_ = borders_ = 0;
+  for (std::uint32_t r = 0; r < team_->size(); ++r) {
+    const std::span<const std::uint64_t> numbers = all.of(r);
+    summary_.cells += numbers[0];
+    summary_.vertices += numbers[1];
+    summary_.largest = std::max(summary_.largest, numbers[2]);
+    summary_.smallest = std::min(summary_.smallest, numbers[3]);
+    summary_.empty += numbers[4];
+    summary_.sharedVertices += numbers[5];
+    summary_.sharedFaces += numbers[6];
+    summary_.mostNeighbours = std::max(summary_.mostNeighbours, numbers[7]);
+    cellSum_ += numbers[8];
+    vertexSum_ += numbers[9];
+    borders_ ^= numbers[10];
+  }
+}
+
 void PartSurvey::end() {
+  if (team_ != nullptr) addUp();
   const bool complete =
       summary_.cells == info_.cellCount && summary_.vertices == info_.pointCount &&
       cellSum_ == sumBelow(info_.cellCount) && vertexSum_ == sumBelow(info_.pointCount);

@@ -35,7 +35,7 @@ def cpp_functions():
             continue
         names.update(re.findall(
             r"^(?:  )?(?:\[\[nodiscard\]\] )?[A-Za-z][\w:<>,&* ]*?[ &*]([a-z]\w+)\(",
-            header.read_text(encoding="utf-8"), re.M))
+            re.sub(r"(?ms)^ private:.*?^};", "", header.read_text(encoding="utf-8")), re.M))
     return sorted(names - INTERNAL)
 
 

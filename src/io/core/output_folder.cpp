@@ -76,10 +76,15 @@ OutputFolder::~OutputFolder() {
 }
 
 Error OutputFolder::named(const Error& error) const {
+  return inTermsOf(target_, temporary_, error);
+}
+
+Error inTermsOf(const fs::path& target, const fs::path& temporary, const Error& error) {
   std::string sentence = error.what();
-  const std::string temporary = temporary_.string();
-  const std::size_t place = sentence.find(temporary);
-  if (place != std::string::npos) sentence.replace(place, temporary.size(), target_.string());
+  const std::size_t place = sentence.find(temporary.string());
+  if (place != std::string::npos) {
+    sentence.replace(place, temporary.string().size(), target.string());
+  }
   return {error.code(), sentence, error.place()};
 }
 

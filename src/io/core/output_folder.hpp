@@ -9,6 +9,10 @@
 
 namespace hexhex {
 
+/// The same error, with the name of the target in place of that of a temporary.
+[[nodiscard]] Error inTermsOf(const std::filesystem::path& target,
+                              const std::filesystem::path& temporary, const Error& error);
+
 /// A folder that is filled beside its target and takes the target's place by commit(). Without
 /// commit() it vanishes, with the folders above it that it took, and the target stays as it was.
 ///

@@ -209,8 +209,8 @@ class NemesisFile final : public ExodusFile {
 
 class ExodusSink final : public PartSink {
  public:
-  ExodusSink(std::filesystem::path file, Context& context)
-      : context_(context), file_(std::move(file)) {}
+  ExodusSink(std::filesystem::path file, Context& context, ProcessTeam* team)
+      : context_(context), file_(std::move(file)), team_(team), files_(team) {}
 
   void begin(const PartsInfo& info) override {
     info_ = info;
@@ -235,6 +235,7 @@ class ExodusSink final : public PartSink {
 
   void end() override {
     Stage stage(context_, "write mesh");
+    if (team_ != nullptr) addUp();
     files_.commit([&](std::size_t p, OutputFile& file) {
       for (std::size_t i = 0; i < counts_[p].size(); ++i) {
         std::string bytes(sizeof(std::int32_t) * sums_[i].size(), '\0');
@@ -248,12 +249,27 @@ class ExodusSink final : public PartSink {
   }
 
  private:
+  /// Sums of all processes; their lists have the same lengths.
+  void addUp() {
+    std::vector<std::uint64_t> mine;
+    for (const auto& sums : sums_) mine.insert(mine.end(), sums.begin(), sums.end());
+    const GatheredNumbers all = team_->gather(mine);
+    std::size_t next = 0;
+    for (auto& sums : sums_) {
+      for (std::uint64_t& sum : sums) {
+        sum = 0;
+        for (std::uint32_t r = 0; r < team_->size(); ++r) sum += all.of(r)[next];
+        ++next;
+      }
+    }
+  }
   [[nodiscard]] std::filesystem::path fileOf(std::uint32_t part) const {
     return file_.string() + '.' + std::to_string(info_.parts) + '.' + padded(part, info_.parts);
   }
 
   Context& context_;
   std::filesystem::path file_;
+  ProcessTeam* team_;
   PartsInfo info_;
   FileSet files_;
   std::vector<std::vector<GlobalCounts>> counts_;  ///< per part
@@ -263,8 +279,9 @@ class ExodusSink final : public PartSink {
 }  // namespace
 
 std::unique_ptr<PartSink> openExodusPartSink(const std::filesystem::path& file,
-                                             const WriteOptions& /*options*/, Context& context) {
-  return std::make_unique<ExodusSink>(file, context);
+                                             const WriteOptions& /*options*/, Context& context,
+                                             ProcessTeam* team) {
+  return std::make_unique<ExodusSink>(file, context, team);
 }
 
 }  // namespace hexhex

@@ -7,6 +7,7 @@
 namespace hexhex {
 
 void FileSet::commit(const std::function<void(std::size_t i, OutputFile& file)>& change) {
+  agree(team_);  // all are written
   std::size_t done = 0;
   try {
     for (; done < files_.size(); ++done) {
@@ -15,6 +16,7 @@ void FileSet::commit(const std::function<void(std::size_t i, OutputFile& file)>&
       if (change) change(done, output);
       output.commit();
     }
+    agree(team_);
   } catch (...) {
     std::error_code unknown;
     if (done < files_.size() && files_[done].output->isNamed()) ++done;

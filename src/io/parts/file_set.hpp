@@ -7,13 +7,25 @@
 #include <string>
 #include <vector>
 
+#include <hexhex/team.hpp>
+
 #include <io/core/output_file.hpp>
 
 namespace hexhex {
 
-/// One file for each part, side by side.
+// Sinks work in one process, without a team, or in each process of one.
+[[nodiscard]] inline bool isFirst(const ProcessTeam* team) {
+  return team == nullptr || team->rank() == 0;
+}
+inline void agree(ProcessTeam* team) {
+  if (team != nullptr) team->agree();
+}
+
+/// One file for each part, side by side; in a team, those of all processes get names, or none.
 class FileSet {
  public:
+  explicit FileSet(ProcessTeam* team) : team_(team) {}
+
   /// Begins the file of the next part.
   OutputFile& add(const std::filesystem::path& file) {
     files_.push_back({file, std::make_unique<OutputFile>(file, OutputFile::Target::Regular)});
@@ -33,6 +45,7 @@ class FileSet {
     std::filesystem::path path;
     std::unique_ptr<OutputFile> output;
   };
+  ProcessTeam* team_;
   std::vector<File> files_;
 };
 

@@ -365,9 +365,8 @@ class GmshSink : public PartSink {
   }
 
  protected:
-  [[nodiscard]] PartSections sectionsOf(const MeshPart& part, bool onlyOwned, FileSums& sums,
-                                        Stage& stage) {
-    const MeshGroups groups = groupPart(part, info_, stage);
+  [[nodiscard]] PartSections sectionsOf(const MeshPart& part, const MeshGroups& groups,
+                                        bool onlyOwned, FileSums& sums) {
     PartSections sections = SectionMaker(part, groups, *numbers_, onlyOwned).make();
     sums.add(sections, numbers_->nextQuads(0) - 1);
     return sections;
@@ -389,7 +388,7 @@ class OneGmshFile final : public GmshSink {
 
   void part(MeshPart&& part) override {
     Stage stage(context_, "write mesh");
-    const PartSections sections = sectionsOf(part, true, sums_, stage);
+    const PartSections sections = sectionsOf(part, groupPart(part, info_, stage), true, sums_);
     nodes_.write(sections.nodes.text());
     writeBlocks(elements_, sections);
   }
@@ -412,8 +411,8 @@ class OneGmshFile final : public GmshSink {
 
 class ManyGmshFiles final : public GmshSink {
  public:
-  ManyGmshFiles(std::filesystem::path file, Context& context)
-      : GmshSink(context), file_(std::move(file)) {}
+  ManyGmshFiles(std::filesystem::path file, Context& context, ProcessTeam* team)
+      : GmshSink(context), file_(std::move(file)), team_(team), files_(team) {}
 
   void part(MeshPart&& part) override {
     Stage stage(context_, "write mesh");
@@ -422,7 +421,9 @@ class ManyGmshFiles final : public GmshSink {
                 '_' + std::to_string(part.part + 1));
     OutputFile& output = files_.add(file);
     FileSums sums;
-    const PartSections sections = sectionsOf(part, false, sums, stage);
+    const MeshGroups groups = groupPart(part, info_, stage);
+    if (team_ != nullptr) passQuadsBefore(groups.quads.elements.size());
+    const PartSections sections = sectionsOf(part, groups, false, sums);
     writeHead(output, *numbers_, info_, sums);
     output.write(sections.nodes.text());
     beginElements(output, sums);
@@ -433,20 +434,31 @@ class ManyGmshFiles final : public GmshSink {
   void end() override { files_.commit(); }
 
  private:
+  /// Quads of processes before this one have smaller numbers.
+  void passQuadsBefore(std::uint64_t own) {
+    const GatheredNumbers all = team_->gather(std::span(&own, 1));
+    for (std::uint32_t r = 0; r < team_->rank(); ++r) {
+      static_cast<void>(numbers_->nextQuads(all.numbers[r]));
+    }
+  }
+
   std::filesystem::path file_;
+  ProcessTeam* team_;
   FileSet files_;
 };
 
 }  // namespace
 
 std::unique_ptr<PartSink> openGmshPartSink(const std::filesystem::path& file,
-                                           const WriteOptions& /*options*/, Context& context) {
+                                           const WriteOptions& /*options*/, Context& context,
+                                           ProcessTeam* /*team*/) {
   return std::make_unique<OneGmshFile>(file, context);
 }
 
 std::unique_ptr<PartSink> openSplitGmshPartSink(const std::filesystem::path& file,
-                                                const WriteOptions& /*options*/, Context& context) {
-  return std::make_unique<ManyGmshFiles>(file, context);
+                                                const WriteOptions& /*options*/, Context& context,
+                                                ProcessTeam* team) {
+  return std::make_unique<ManyGmshFiles>(file, context, team);
 }
 
 }  // namespace hexhex

@@ -98,8 +98,8 @@ class SharedByGroup {
 
 class MfemSink final : public PartSink {
  public:
-  MfemSink(std::filesystem::path file, Context& context)
-      : context_(context), file_(std::move(file)) {}
+  MfemSink(std::filesystem::path file, Context& context, ProcessTeam* team)
+      : context_(context), file_(std::move(file)), files_(team) {}
 
   [[nodiscard]] std::uint32_t neededGhostLayers() const override { return 1; }
 
@@ -197,8 +197,9 @@ class MfemSink final : public PartSink {
 }  // namespace
 
 std::unique_ptr<PartSink> openMfemPartSink(const std::filesystem::path& file,
-                                           const WriteOptions& /*options*/, Context& context) {
-  return std::make_unique<MfemSink>(file, context);
+                                           const WriteOptions& /*options*/, Context& context,
+                                           ProcessTeam* team) {
+  return std::make_unique<MfemSink>(file, context, team);
 }
 
 }  // namespace hexhex

@@ -392,7 +392,8 @@ class OpenFoamSink final : public PartSink {
 }  // namespace
 
 std::unique_ptr<PartSink> openOpenFoamPartSink(const std::filesystem::path& file,
-                                               const WriteOptions& /*options*/, Context& context) {
+                                               const WriteOptions& /*options*/, Context& context,
+                                               ProcessTeam* /*team*/) {
   return std::make_unique<OpenFoamSink>(file, context);
 }
 

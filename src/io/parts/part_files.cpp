@@ -21,14 +21,14 @@ constexpr OpenPartSink* kOpenCgns = nullptr;
 #endif
 
 constexpr std::array kPartFormats = {
-    PartFormat{"pvtu", ".pvtu", "VTK XML: NAME.pvtu, and pieces in the folder NAME"},
+    PartFormat{"pvtu", ".pvtu", "VTK XML: NAME.pvtu, and pieces in the folder NAME", true},
     PartFormat{"vtkhdf", ".vtkhdf", "VTKHDF: one file"},
     PartFormat{"msh", ".msh", "Gmsh 4.1, binary: one file with partitioned entities"},
-    PartFormat{"msh-split", "", "Gmsh 4.1, binary: NAME_K.msh, K from 1 on"},
+    PartFormat{"msh-split", "", "Gmsh 4.1, binary: NAME_K.msh, K from 1 on", true},
     PartFormat{"openfoam", ".foam", "OpenFOAM: processorK/constant/polyMesh beside NAME.foam"},
-    PartFormat{"exodus-e", ".e", "Exodus with Nemesis maps: NAME.e.N.K"},
-    PartFormat{"exodus", ".exo", "Exodus with Nemesis maps: NAME.exo.N.K"},
-    PartFormat{"mfem", "", "MFEM parallel mesh v1.2: NAME.000000 ..."},
+    PartFormat{"exodus-e", ".e", "Exodus with Nemesis maps: NAME.e.N.K", true},
+    PartFormat{"exodus", ".exo", "Exodus with Nemesis maps: NAME.exo.N.K", true},
+    PartFormat{"mfem", "", "MFEM parallel mesh v1.2: NAME.000000 ...", true},
     PartFormat{"cgns", ".cgns", "CGNS: one file with a zone for each part"},
 };
 constexpr std::array<OpenPartSink*, kPartFormats.size()> kOpen = {
@@ -54,6 +54,17 @@ std::size_t findFormat(const std::filesystem::path& file, std::string_view name)
       file.string() + ": " + what + " is no format of meshes in parts. Formats: " + known + '.');
 }
 
+void requireForTeams(const std::filesystem::path& file, std::size_t format) {
+  if (kPartFormats[format].byTeams) return;
+  std::string known;
+  for (const PartFormat& each : kPartFormats) {
+    if (each.byTeams) known += (known.empty() ? "" : ", ") + std::string(each.name);
+  }
+  throw Error(ErrorCode::FileUnsupported, file.string() + ": several processes cannot write \"" +
+                                              std::string(kPartFormats[format].name) +
+                                              "\" together. They can write: " + known + '.');
+}
+
 bool isOverHdf5(std::size_t format) {
   return kPartFormats[format].name == "vtkhdf" || kPartFormats[format].name == "cgns";
 }
@@ -61,14 +72,18 @@ bool isOverHdf5(std::size_t format) {
 }  // namespace
 
 std::unique_ptr<PartSink> openPartSink(const std::filesystem::path& file,
-                                       const WriteOptions& options, Context& context) {
+                                       const WriteOptions& options, Context& context,
+                                       ProcessTeam* team) {
   const std::size_t format = findFormat(file, options.format);
+  if (team != nullptr) requireForTeams(file, format);
   if (isOverHdf5(format)) requireHdf5(file);
-  return kOpen[format](file, options, context);
+  return kOpen[format](file, options, context, team);
 }
 
-void requirePartFormat(const std::filesystem::path& file, const WriteOptions& options) {
-  static_cast<void>(findFormat(file, options.format));
+void requirePartFormat(const std::filesystem::path& file, const WriteOptions& options,
+                       bool byTeam) {
+  const std::size_t format = findFormat(file, options.format);
+  if (byTeam) requireForTeams(file, format);
 }
 
 std::span<const PartFormat> partFormats() noexcept { return kPartFormats; }

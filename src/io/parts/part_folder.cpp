@@ -5,7 +5,7 @@
 namespace hexhex {
 
 void PartFolder::commit(std::uint32_t parts) {
-  folder_.commit();
+  folder_->commit();
   try {
     // From now on nothing names them.
     std::error_code error;

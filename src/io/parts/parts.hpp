@@ -12,7 +12,8 @@
 namespace hexhex {
 
 using OpenPartSink = std::unique_ptr<PartSink>(const std::filesystem::path& file,
-                                               const WriteOptions& options, Context& context);
+                                               const WriteOptions& options, Context& context,
+                                               ProcessTeam* team);
 
 /// `NAME.pvtu`, and in the folder NAME a piece `NAME_K.vtu` for each part: as writeVtu() writes it,
 /// without scaled_jacobian, with GlobalPointIds and GlobalCellIds and, if there are ghosts,

@@ -42,13 +42,18 @@ std::string escaped(const std::string& text) {
 
 class PvtuSink final : public PartSink {
  public:
-  PvtuSink(const std::filesystem::path& file, Context& context)
+  PvtuSink(const std::filesystem::path& file, Context& context, ProcessTeam* team)
       : stem_(file.stem().string()),
         context_(context),
-        index_(file),
-        folder_(file.parent_path() / stem_, [stem = stem_](std::uint32_t part) {
-          return stem + '_' + std::to_string(part) + ".vtu";
-        }) {}
+        team_(team),
+        folder_(
+            file.parent_path() / stem_,
+            [stem = stem_](std::uint32_t part) {
+              return stem + '_' + std::to_string(part) + ".vtu";
+            },
+            team) {
+    if (isFirst(team)) index_.emplace(file);
+  }
 
   void begin(const PartsInfo& info) override { info_ = info; }
 
@@ -61,24 +66,33 @@ class PvtuSink final : public PartSink {
       OutputFile output(folder_.fileOf(part.part));
       writeVtkXml(output, data, false, stage);
     });
-    tail_ += "    <Piece Source=\"" +
-             escaped(stem_ + '/' + folder_.fileOf(part.part).filename().string()) + "\"/>\n";
   }
 
   void end() override {
     Stage stage(context_, "write mesh");
-    index_.write(head_).write(tail_).write("  </PUnstructuredGrid>\n</VTKFile>\n");
-    index_.flush();
+    agree(team_);  // all pieces are written
+    if (index_) nameAll(*index_);
+    agree(team_);
+  }
+
+ private:
+  void nameAll(OutputFile& index) {
+    index.write(head_);
+    for (std::uint32_t part = 0; part < info_.parts; ++part) {
+      const std::string piece = folder_.fileOf(part).filename().string();
+      index.write("    <Piece Source=\"" + escaped(stem_ + '/' + piece) + "\"/>\n");
+    }
+    index.write("  </PUnstructuredGrid>\n</VTKFile>\n");
+    index.flush();
     folder_.commit(info_.parts);
     try {
-      index_.commit();
+      index.commit();
     } catch (...) {
       if (!index_.isNamed()) folder_.takeBack();
       throw;
     }
   }
 
- private:
   /// What is the same in all pieces.
   [[nodiscard]] std::string headOf(const VtkDataSet& data) const {
     const bool little = std::endian::native == std::endian::little;
@@ -114,18 +128,19 @@ class PvtuSink final : public PartSink {
 
   std::string stem_;
   Context& context_;
-  OutputFile index_;
+  ProcessTeam* team_;
+  std::optional<OutputFile> index_;  ///< of the first process
   PartFolder folder_;
   PartsInfo info_;
   std::string head_;
-  std::string tail_;
 };
 
 }  // namespace
 
 std::unique_ptr<PartSink> openPvtuSink(const std::filesystem::path& file,
-                                       const WriteOptions& /*options*/, Context& context) {
-  return std::make_unique<PvtuSink>(file, context);
+                                       const WriteOptions& /*options*/, Context& context,
+                                       ProcessTeam* team) {
+  return std::make_unique<PvtuSink>(file, context, team);
 }
 
 }  // namespace hexhex

@@ -174,7 +174,8 @@ class VtkHdfSink final : public PartSink {
 }  // namespace
 
 std::unique_ptr<PartSink> openVtkHdfPartSink(const std::filesystem::path& file,
-                                             const WriteOptions& /*options*/, Context& context) {
+                                             const WriteOptions& /*options*/, Context& context,
+                                             ProcessTeam* /*team*/) {
   return std::make_unique<VtkHdfSink>(file, context);
 }
 

@@ -353,7 +353,8 @@ void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const Wri
 }
 
 std::unique_ptr<PartSink> openCgnsPartSink(const std::filesystem::path& file,
-                                           const WriteOptions& /*options*/, Context& context) {
+                                           const WriteOptions& /*options*/, Context& context,
+                                           ProcessTeam* /*team*/) {
   return std::make_unique<CgnsPartSink>(file, context);
 }
 

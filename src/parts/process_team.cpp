@@ -1,0 +1,139 @@
+#include <algorithm>
+#include <array>
+#include <new>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include <parts/number_hash.hpp>
+
+#include <hexhex/error.hpp>
+#include <hexhex/team.hpp>
+
+namespace hexhex {
+
+// All functions of a team begin with the same question, whether all processes are well. One that
+// has failed answers it with no, whichever function the others are in, and all learn why.
+struct ProcessTeam::Failure {
+  Error error;
+};
+
+void ProcessTeam::run(const std::function<void()>& work) {
+  if (running_) return work();
+  running_ = true;
+  failed_ = false;
+  std::optional<Failure> failure;
+  const auto fail = [&failure](const Error& error) { failure.emplace(Failure{error}); };
+  try {
+    work();
+  } catch (const Error& error) {
+    fail(error);
+  } catch (const std::bad_alloc&) {
+    fail({ErrorCode::OutOfMemory, "The memory of this machine does not suffice."});
+  } catch (const std::system_error& error) {
+    fail({ErrorCode::OutOfMemory,
+          std::string("The system refuses threads or memory: ") + error.what()});
+  } catch (const std::exception& error) {
+    fail({ErrorCode::Internal, error.what()});
+  }
+  running_ = false;
+  if (failed_) throw failure->error;
+  settle(failure ? &*failure : nullptr);
+}
+
+void ProcessTeam::settle(const Failure* failure) {
+  if (doAllSay(failure == nullptr)) return;
+  failed_ = true;
+  throw firstError(failure);
+}
+
+/// Without memory for this, the others would wait for ever: the process ends.
+Error ProcessTeam::firstError(const Failure* failure) noexcept {
+  constexpr std::size_t kNumbers = 5;
+  std::array<std::uint64_t, kNumbers> mine{};
+  std::string text;
+  if (failure != nullptr) {
+    const Place& place = failure->error.place();
+    text = failure->error.what();
+    mine = {static_cast<std::uint64_t>(failure->error.code()) + 1, text.size(),
+            static_cast<std::uint64_t>(place.kind), place.index, place.second};
+  }
+  const std::vector<std::uint64_t> counts(size(), kNumbers);
+  std::vector<std::uint64_t> all(kNumbers * counts.size());
+  doGather(mine, counts, all);
+  std::uint32_t first = 0;
+  while (all[kNumbers * first] == 0) ++first;
+  const auto numbers = std::span(all).subspan(kNumbers * first, kNumbers);
+  text.resize(numbers[1]);
+  doShare(first, std::as_writable_bytes(std::span(text)));
+  if (first > 0) text = "Process " + std::to_string(first) + ": " + text;
+  return {static_cast<ErrorCode>(numbers[0] - 1),
+          text,
+          {static_cast<PlaceKind>(numbers[2]), numbers[3], numbers[4]}};
+}
+
+void ProcessTeam::agree() { settle(nullptr); }
+
+void ProcessTeam::share(std::span<std::byte> bytes) {
+  agree();
+  if (!bytes.empty()) doShare(0, bytes);
+}
+
+std::string ProcessTeam::shareText(const std::string& text) {
+  std::uint64_t length = text.size();
+  share(std::as_writable_bytes(std::span(&length, 1)));
+  std::string shared = text;
+  shared.resize(length);
+  share(std::as_writable_bytes(std::span(shared)));
+  return shared;
+}
+
+GatheredNumbers ProcessTeam::gather(std::span<const std::uint64_t> mine) {
+  GatheredNumbers gathered;
+  std::vector<std::uint64_t> counts(size());
+  const std::vector<std::uint64_t> ones(size(), 1);
+  gathered.begin.resize(counts.size() + 1);
+  agree();
+  const std::uint64_t count = mine.size();
+  doGather(std::span(&count, 1), ones, counts);
+  for (std::size_t r = 0; r < counts.size(); ++r) {
+    gathered.begin[r + 1] = gathered.begin[r] + counts[r];
+  }
+  gathered.numbers.resize(gathered.begin.back());
+  agree();  // where there is no memory for it, nobody waits
+  doGather(mine, counts, gathered.numbers);
+  return gathered;
+}
+
+namespace {
+
+template <class T>
+void shareArray(ProcessTeam& team, std::span<const T> mine, std::vector<T>& theirs) {
+  std::uint64_t size = mine.size();
+  team.share(std::as_writable_bytes(std::span(&size, 1)));
+  if (team.rank() > 0) theirs.resize(size);
+  // Process 0 gives, and its bytes stay as they are.
+  const std::span<T> items =
+      team.rank() > 0 ? std::span(theirs) : std::span(const_cast<T*>(mine.data()), mine.size());
+  team.share(std::as_writable_bytes(items));
+}
+
+}  // namespace
+
+TetMap shareMap(ProcessTeam& team, const TetMapView& map) {
+  TetMap shared;
+  team.run([&] {
+    shareArray(team, map.points, shared.points);
+    shareArray(team, map.tets, shared.tets);
+    shareArray(team, map.parameters, shared.parameters);
+    shareArray(team, map.edgeValences, shared.edgeValences);
+    shareArray(team, map.rotations, shared.rotations);
+    shareArray(team, map.features.vertices, shared.features.vertices);
+    shareArray(team, map.features.edges, shared.features.edges);
+    shareArray(team, map.features.faces, shared.features.faces);
+    shareArray(team, map.regions, shared.regions);
+  });
+  return shared;
+}
+
+}  // namespace hexhex
