@@ -81,7 +81,7 @@ class Maker final : public PartMaker {
         partition_(std::move(partition)),
         charts_(std::move(charts)),
         chartOf_(std::move(charts_.chart)),
-        regions_(map.map, partition_),
+        regions_(map.map, partition_, counts_.cells.back()),
         context_(context) {
     charts_.chart.assign(chartOf_.size(), Charts::kNoChart);
   }

@@ -121,8 +121,11 @@ bool contains(const GridBox& outer, const GridBox& inner) {
 
 }  // namespace
 
-RegionFinder::RegionFinder(const PreparedMap& map, const Partition& partition)
-    : map_(map), partition_(partition), entryOfTet_(map.topology.tetCount(), kNone) {}
+RegionFinder::RegionFinder(const PreparedMap& map, const Partition& partition, std::uint64_t cells)
+    : map_(map),
+      partition_(partition),
+      mostBoxes_(map.topology.tetCount() + cells),
+      entryOfTet_(map.topology.tetCount(), kNone) {}
 
 GridRegion RegionFinder::find(std::uint32_t part, std::uint32_t layers) {
   const std::span<const Index> tets = partition_.tetsOf(part);
@@ -137,6 +140,10 @@ GridRegion RegionFinder::find(std::uint32_t part, std::uint32_t layers) {
   }
   std::size_t head = 0;
   while (head < queue_.size()) {  // which grows
+    if (queue_.size() > mostBoxes_) {
+      enterAll();
+      break;
+    }
     const Reached at = queue_[head++];
     cross(at.tet, entries_[entryOfTet_[at.tet]].boxes[at.box]);
   }
@@ -208,6 +215,18 @@ void RegionFinder::cross(Index tet, const GridBox& box) {
     const HalfFace mate = map_.topology.mate[halfFace];
     if (mate == kNone || !mayMeet(triangleOf(map_, halfFace), from, map_.exact.unit)) continue;
     reach(tetOf(mate), carried(map_.exact.transitions.across(halfFace), from));
+  }
+}
+
+/// All tets, with boxes around them unless they are the part's.
+void RegionFinder::enterAll() {
+  for (std::size_t t = 0; t < map_.topology.tetCount(); ++t) {
+    const auto tet = static_cast<Index>(t);
+    Entry& entry = entryOf(tet);
+    if (entry.whole) continue;
+    GridBox box = gridBox(map_.exact.corners[t], map_.exact.unit);
+    for (auto& range : box.range) range = {range.first - 1, range.last + 1};
+    entry.boxes.assign(1, box);
   }
 }
 
