@@ -88,7 +88,7 @@ class PvtuSink final : public PartSink {
     try {
       index.commit();
     } catch (...) {
-      if (!index_.isNamed()) folder_.takeBack();
+      if (!index.isNamed()) folder_.takeBack();
       throw;
     }
   }
