@@ -114,7 +114,7 @@ void requirePartsOutputs(const Arguments& arguments) {
   requirePartFormat(arguments.output, arguments.choice.options());
 }
 
-/// Vertices move in a mesh that is whole and straight.
+/// Vertices move in a mesh that is whole.
 void requireImprovable(const Arguments& arguments) {
   if (!arguments.improve) return;
   if (arguments.stream || arguments.partial || arguments.parts.parts) {
@@ -122,10 +122,10 @@ void requireImprovable(const Arguments& arguments) {
                 "--improve needs the whole mesh in memory. Leave it out, or --stream, "
                 "--parts and --partial; `hexhex improve` takes a file.");
   }
-  if (arguments.order > 1 || !arguments.arcs.empty() || !arguments.patches.empty()) {
+  if (arguments.order > 3 || !arguments.arcs.empty() || !arguments.patches.empty()) {
     throw Error(ErrorCode::InvalidArgument,
-                "--improve moves vertices of straight cells, away from the map that curved ones "
-                "follow. Leave out --improve, or --order, --arcs and --patches.");
+                "--improve moves nodes of cells up to order 3, away from the map that arcs and "
+                "patches follow. Leave out --improve, or --arcs and --patches, or lower --order.");
   }
 }
 
@@ -196,6 +196,20 @@ PiecewiseLinearMesh extractWithCurves(const Arguments& arguments, Extractor& ext
   return extractor.extractPiecewiseLinear(parts, arguments.options, context, &record.statistics);
 }
 
+/// @param mesh  straight or curved
+void improveOrCertify(const Arguments& arguments, const TetMap& map, auto& mesh, LongRun& longRun,
+                      ExtractionRecord& record) {
+  Context& context = longRun.context();
+  if (!arguments.improve) {
+    record.certificate = longRun.part("quality", [&] { return certify(mesh, context); });
+    return;
+  }
+  record.improved = longRun.part("improvement", [&] {
+    return improve(mesh, extractedMap(map, record.statistics), arguments.improveOptions, context);
+  });
+  record.certificate = record.improved->after;
+}
+
 /// Extracts, verifies and writes a mesh in memory.
 void extractWhole(const Arguments& arguments, const TetMap& map, LongRun& longRun,
                   ExtractionRecord& record) {
@@ -218,14 +232,7 @@ void extractWhole(const Arguments& arguments, const TetMap& map, LongRun& longRu
     });
     record.patches = {arguments.patches, all.patches.count(), all.patches.polygonTet.size()};
   }
-  if (arguments.improve) {
-    record.improved = longRun.part("improvement", [&] {
-      return improve(mesh, extractedMap(map, record.statistics), arguments.improveOptions, context);
-    });
-    record.certificate = record.improved->after;
-  } else {
-    record.certificate = longRun.part("quality", [&] { return certify(mesh, context); });
-  }
+  improveOrCertify(arguments, map, mesh, longRun, record);
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = record.certificate->scaledJacobians;
   writing.patchAngle = arguments.patchAngle;
@@ -241,13 +248,13 @@ void extractCurved(const Arguments& arguments, const TetMap& map, LongRun& longR
                    ExtractionRecord& record) {
   Context& context = longRun.context();
   std::optional<Extractor> extractor = prepareExtractor(arguments, map, longRun);
-  const LagrangeMesh mesh = longRun.part("extraction", [&] {
+  LagrangeMesh mesh = longRun.part("extraction", [&] {
     return extractor->extractLagrange(arguments.order, arguments.options, context,
                                       &record.statistics);
   });
   verifyMesh(arguments, *extractor, straightMesh(mesh), longRun, record);
   extractor.reset();
-  record.certificate = longRun.part("quality", [&] { return certify(mesh, context); });
+  improveOrCertify(arguments, map, mesh, longRun, record);
   WriteOptions options;
   options.scaledJacobians = record.certificate->scaledJacobians;
   options.patchAngle = arguments.patchAngle;

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/improve.hpp>
 #include <hexhex/io.hpp>
 
@@ -39,7 +40,8 @@ void requireAllDifferent(const Arguments& arguments) {
   if (!arguments.report.empty()) requireDifferent(arguments.output, arguments.report);
 }
 
-ImproveReport improveMesh(const Arguments& arguments, HexMesh& mesh, LongRun& longRun) {
+/// @param mesh  straight or curved
+ImproveReport improveMesh(const Arguments& arguments, auto& mesh, LongRun& longRun) {
   Context& context = longRun.context();
   if (arguments.map.empty()) {
     return longRun.part("improvement", [&] { return improve(mesh, arguments.options, context); });
@@ -49,23 +51,57 @@ ImproveReport improveMesh(const Arguments& arguments, HexMesh& mesh, LongRun& lo
                       [&] { return improve(mesh, map, arguments.options, context); });
 }
 
-int run(const Arguments& arguments) {
-  requireHexMeshFormat(arguments.output, arguments.choice.options());
-  requireAllDifferent(arguments);
-  LongRun longRun(arguments.run, {{"readHexMesh", 1},
-                                  {"readMap", 0.5},
-                                  {"certify", 0.2},
-                                  {"improve", 20},
-                                  {"writeHexMesh", 0.5}});
+ImproveReport improveStraight(const Arguments& arguments, LongRun& longRun) {
   Context& context = longRun.context();
-  requireWritable(arguments.output);
-  Report reportFile(arguments.report);
   HexMesh mesh = longRun.part("reading", [&] { return readHexMesh(arguments.mesh, context); });
-  const ImproveReport report = improveMesh(arguments, mesh, longRun);
+  ImproveReport report = improveMesh(arguments, mesh, longRun);
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = report.after.scaledJacobians;
   writing.patchAngle = arguments.patchAngle;
   longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
+  return report;
+}
+
+ImproveReport improveCurved(const Arguments& arguments, LongRun& longRun) {
+  Context& context = longRun.context();
+  LagrangeMesh mesh =
+      longRun.part("reading", [&] { return readLagrangeMesh(arguments.mesh, context); });
+  ImproveReport report = improveMesh(arguments, mesh, longRun);
+  WriteOptions writing;
+  writing.scaledJacobians = report.after.scaledJacobians;
+  writing.patchAngle = arguments.patchAngle;
+  longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, writing, context); });
+  return report;
+}
+
+/// @return whether the mesh is curved
+bool requireFormats(const Arguments& arguments, Context& context) {
+  if (!holdsLagrangeCells(arguments.mesh, context)) {
+    requireHexMeshFormat(arguments.output, arguments.choice.options());
+    return false;
+  }
+  if (!arguments.choice.format.empty() || arguments.choice.compress) {
+    throw Error(ErrorCode::InvalidArgument,
+                "The extension alone decides on the format of a mesh of higher order. Leave out "
+                "--format and --compress.");
+  }
+  requireLagrangeFormat(arguments.output);
+  return true;
+}
+
+int run(const Arguments& arguments) {
+  requireAllDifferent(arguments);
+  LongRun longRun(arguments.run, {{"readHexMesh", 1},
+                                  {"readLagrangeMesh", 1},
+                                  {"readMap", 0.5},
+                                  {"certify", 0.2},
+                                  {"improve", 20},
+                                  {"writeHexMesh", 0.5},
+                                  {"writeLagrangeMesh", 1}});
+  const bool isCurved = requireFormats(arguments, longRun.context());
+  requireWritable(arguments.output);
+  Report reportFile(arguments.report);
+  const ImproveReport report = (isCurved ? improveCurved : improveStraight)(arguments, longRun);
   longRun.finish();
   if (reportFile.isWanted()) reportFile.write(jsonText(improvementAsJson(report)));
   if (arguments.run.quiet || reportFile.isOnOutput()) return kSuccess;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include <hexhex/context.hpp>
+#include <hexhex/curved.hpp>
 #include <hexhex/export.h>
 #include <hexhex/quality.hpp>
 #include <hexhex/types.hpp>
@@ -74,5 +75,14 @@ ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions
 /// triangles.
 /// @throws Error  as above
 ImproveReport improve(HexMesh& mesh, const ImproveOptions& options, Context& context);
+
+/// Cells of order 1 to 3: all nodes move, each where its generator lets it; certificates are those
+/// of curved cells. Vertices in the report are nodes, and its distances those of the grid of quads
+/// between them.
+/// @throws Error  as above; InvalidArgument also for higher orders, and for arrays that do not fit
+///         each other
+ImproveReport improve(LagrangeMesh& mesh, const TetMapView& map, const ImproveOptions& options,
+                      Context& context);
+ImproveReport improve(LagrangeMesh& mesh, const ImproveOptions& options, Context& context);
 
 }  // namespace HEXHEX_API_NAMESPACE

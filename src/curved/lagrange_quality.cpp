@@ -10,7 +10,7 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <curved/lagrange.hpp>
-#include <mesh/bezier.hpp>
+#include <curved/lagrange_quality.hpp>
 #include <mesh/certificates.hpp>
 #include <mesh/lagrange_check.hpp>
 
@@ -20,48 +20,11 @@ namespace {
 
 constexpr std::size_t kGrain = 64;
 
-/// Values and derivatives of the Lagrange polynomials of an order at some places in [0, 1]: a row
-/// per place, a column per polynomial.
-struct Basis {
-  Matrix<double> value;
-  Matrix<double> derivative;
-
-  Basis(int order, const std::vector<double>& at)
-      : value{at.size(), static_cast<std::size_t>(order) + 1, {}}, derivative(value) {
-    const auto node = [order](std::size_t i) {
-      return static_cast<double>(i) / static_cast<double>(order);
-    };
-    for (const double place : at) {
-      for (std::size_t i = 0; i < value.columns; ++i) {
-        double product = 1;
-        double sum = 0;
-        for (std::size_t j = 0; j < value.columns; ++j) {
-          if (j == i) continue;
-          product *= (place - node(j)) / (node(i) - node(j));
-          double without = 1 / (node(i) - node(j));
-          for (std::size_t k = 0; k < value.columns; ++k) {
-            if (k != i && k != j) without *= (place - node(k)) / (node(i) - node(k));
-          }
-          sum += without;
-        }
-        value.entries.push_back(product);
-        derivative.entries.push_back(sum);
-      }
-    }
-  }
-};
-
 void nodesOf(const LagrangeMesh& mesh, std::size_t cell, std::vector<Vec3>& nodes) {
   nodes.resize(mesh.nodesPerCell());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     nodes[i] = mesh.points[mesh.nodes[cell * nodes.size() + i]];
   }
-}
-
-std::vector<double> equidistant(int order) {
-  std::vector<double> places;
-  for (int i = 0; i <= order; ++i) places.push_back(static_cast<double>(i) / order);
-  return places;
 }
 
 /// Gauss points in [0, 1]: zeros of the Legendre polynomial of degree n, by Newton's method.
@@ -85,56 +48,87 @@ std::vector<double> gaussPoints(int n) {
   return places;
 }
 
-/// Evaluates cells of one order at one grid of places.
-class Evaluator {
- public:
-  explicit Evaluator(const Basis& basis) : basis_(basis) {}
-
-  /// The smallest scaled determinant.
-  [[nodiscard]] double smallest(const std::vector<Vec3>& nodes) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      Bezier<Vec3>& column = columns_[axis];
-      column.size.fill(basis_.value.columns);
-      column.values = nodes;
-      for (std::size_t a = 0; a < 3; ++a) {
-        apply(a == axis ? basis_.derivative : basis_.value, a, column, scratch_);
-      }
-    }
-    double smallest = 1;
-    for (std::size_t q = 0; q < columns_[0].values.size(); ++q) {
-      const Vec3& a = columns_[0].values[q];
-      const Vec3& b = columns_[1].values[q];
-      const Vec3& c = columns_[2].values[q];
-      const double scaled = tripleProduct(a, b, c) / (length(a) * length(b) * length(c));
-      smallest = std::min(smallest, std::isfinite(scaled) ? scaled : 0.0);
-    }
-    return std::clamp(smallest, -1.0, 1.0);
+/// The smallest scaled determinant.
+double smallestOf(const LagrangeColumns::Values& values) {
+  double smallest = 1;
+  for (std::size_t q = 0; q < values.columns[0].values.size(); ++q) {
+    const Vec3& a = values.columns[0].values[q];
+    const Vec3& b = values.columns[1].values[q];
+    const Vec3& c = values.columns[2].values[q];
+    const double scaled = tripleProduct(a, b, c) / (length(a) * length(b) * length(c));
+    smallest = std::min(smallest, std::isfinite(scaled) ? scaled : 0.0);
   }
-
- private:
-  const Basis& basis_;
-  std::array<Bezier<Vec3>, 3> columns_;
-  std::vector<Vec3> scratch_;
-};
+  return std::clamp(smallest, -1.0, 1.0);
+}
 
 /// Calls use(cell, its nodes, its scaled Jacobian, block) for all cells.
 template <class Use>
 void forCells(const LagrangeMesh& mesh, Stage& stage, const Use& use) {
-  const Basis atNodes(mesh.order, equidistant(mesh.order));
-  const Basis atGauss(mesh.order, gaussPoints(mesh.order + 1));
-  parallelBlocks(
-      stage, mesh.cellCount(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-        Evaluator nodes(atNodes);
-        Evaluator gauss(atGauss);
-        std::vector<Vec3> points;
-        for (std::size_t c = begin; c < end; ++c) {
-          nodesOf(mesh, c, points);
-          use(c, points, std::min(nodes.smallest(points), gauss.smallest(points)), block);
-        }
-      });
+  const LagrangeQuality quality(mesh.order);
+  parallelBlocks(stage, mesh.cellCount(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   LagrangeColumns::Values values;
+                   std::vector<Vec3> points;
+                   for (std::size_t c = begin; c < end; ++c) {
+                     nodesOf(mesh, c, points);
+                     use(c, points, quality.smallest(points, values), block);
+                   }
+                 });
 }
 
 }  // namespace
+
+std::vector<double> equidistant(int order) {
+  std::vector<double> places;
+  for (int i = 0; i <= order; ++i) places.push_back(static_cast<double>(i) / order);
+  return places;
+}
+
+LagrangeColumns::LagrangeColumns(int order, const std::vector<double>& places)
+    : value{places.size(), static_cast<std::size_t>(order) + 1, {}}, derivative(value) {
+  const auto node = [order](std::size_t i) {
+    return static_cast<double>(i) / static_cast<double>(order);
+  };
+  for (const double place : places) {
+    for (std::size_t i = 0; i < value.columns; ++i) {
+      double product = 1;
+      double sum = 0;
+      for (std::size_t j = 0; j < value.columns; ++j) {
+        if (j == i) continue;
+        product *= (place - node(j)) / (node(i) - node(j));
+        double without = 1 / (node(i) - node(j));
+        for (std::size_t k = 0; k < value.columns; ++k) {
+          if (k != i && k != j) without *= (place - node(k)) / (node(i) - node(k));
+        }
+        sum += without;
+      }
+      value.entries.push_back(product);
+      derivative.entries.push_back(sum);
+    }
+  }
+}
+
+void LagrangeColumns::evaluate(const std::vector<Vec3>& nodes, Values& result) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Bezier<Vec3>& column = result.columns[axis];
+    column.size.fill(value.columns);
+    column.values = nodes;
+    for (std::size_t a = 0; a < 3; ++a) {
+      apply(a == axis ? derivative : value, a, column, result.scratch);
+    }
+  }
+}
+
+LagrangeQuality::LagrangeQuality(int order)
+    : atNodes_(order, equidistant(order)), atGauss_(order, gaussPoints(order + 1)) {}
+
+double LagrangeQuality::smallest(const std::vector<Vec3>& nodes,
+                                 LagrangeColumns::Values& values) const {
+  atNodes_.evaluate(nodes, values);
+  const double least = smallestOf(values);
+  atGauss_.evaluate(nodes, values);
+  return std::min(least, smallestOf(values));
+}
 
 Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context) {
   requireConsistent(mesh);

@@ -3,8 +3,10 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <adjacency/corner_range.hpp>
 #include <adjacency/hex_topology.hpp>
@@ -14,9 +16,12 @@
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
+#include <improve/curved_cells.hpp>
 #include <improve/surface_distance.hpp>
 #include <improve/sweeps.hpp>
+#include <improve/untangling.hpp>
 #include <improve/vertex_places.hpp>
+#include <mesh/lagrange_check.hpp>
 
 namespace hexhex {
 
@@ -116,24 +121,63 @@ void fixBoundary(VertexPlaces& places) {
   }
 }
 
-void movePoints(HexMesh& mesh, VertexPlaces& places, const ImproveOptions& options,
-                const ImproveReport& report, Stage& stage) {
-  Sweeps sweeps(mesh, places, report.diagonal, stage);
+/// Cells that lost their certificate, or whose scaled Jacobian fell below the least there was.
+std::vector<Index> worsened(const ImproveReport& report) {
+  std::vector<Index> cells;
+  for (Index c = 0; c < report.after.validity.size(); ++c) {
+    const bool isLost = report.before.validity[c] == Validity::Positive &&
+                        report.after.validity[c] != Validity::Positive;
+    if (isLost || report.after.scaledJacobians[c] < report.before.quality.minimum) {
+      cells.push_back(c);
+    }
+  }
+  return cells;
+}
+
+/// What is improved: a mesh whose points move, and the curved cells between these, if there are
+/// any.
+struct Subject {
+  HexMesh& mesh;
+  LagrangeMesh* curved = nullptr;
+
+  [[nodiscard]] Certificate certifyNow(Context& context) const {
+    if (curved == nullptr) return certify(mesh, context);
+    std::copy(mesh.points.begin(), mesh.points.end(), curved->points.begin());
+    return certify(*curved, context);
+  }
+  void putBack(const Array<Vec3>& points) const {
+    std::copy(points.begin(), points.end(), mesh.points.begin());
+    if (curved != nullptr) std::copy(points.begin(), points.end(), curved->points.begin());
+  }
+};
+
+/// Moves points and certifies. What did not become better in spite of all is put back.
+void movePoints(const Subject& subject, VertexPlaces& places, const ImproveOptions& options,
+                const Array<Vec3>& before, ImproveReport& report, Context& context, Stage& stage) {
+  std::optional<CurvedCells> curved;
+  if (subject.curved != nullptr) curved.emplace(*subject.curved);
+  const Array<Index> simplices = places.simplex;
+  Sweeps sweeps(subject.mesh, curved ? &*curved : nullptr, places, report.diagonal, stage);
   sweeps.untangle(options.slack * report.diagonal);
   sweeps.raiseWorst(options.target);
   sweeps.smooth(options.passes, std::max(options.target, report.before.quality.minimum));
+  report.after = subject.certifyNow(context);
+  const std::vector<Index> worse = worsened(report);
+  if (worse.empty()) return;
+  putBack(sweeps.cellPoints(), worse, before, simplices, subject.mesh.points, places);
+  report.after = subject.certifyNow(context);
 }
 
-void certifyAfter(const HexMesh& mesh, ImproveReport& report, Context& context) {
-  report.after = certify(mesh, context);
+void listNotPositive(ImproveReport& report) {
   for (std::size_t c = 0; c < report.after.validity.size(); ++c) {
     if (report.after.validity[c] != Validity::Positive) report.notPositive.push_back(c);
   }
 }
 
-/// @param placesOf  of (mesh, stage)
-template <class PlacesOf>
-ImproveReport improveOn(HexMesh& mesh, const ImproveOptions& options, Context& context,
+/// @param subjectOf  of (stage), once the options are right
+/// @param placesOf   of (mesh, stage)
+template <class SubjectOf, class PlacesOf>
+ImproveReport improveOn(const ImproveOptions& options, Context& context, const SubjectOf& subjectOf,
                         const PlacesOf& placesOf) {
   requireOptions(options);
   const auto begin = std::chrono::steady_clock::now();
@@ -142,8 +186,9 @@ ImproveReport improveOn(HexMesh& mesh, const ImproveOptions& options, Context& c
   WorkSteps steps(context, "improve", kSteps);
   ImproveReport report;
   withThreads(context.threads(), [&] {
-    requireCells(mesh, context);
-    report.before = certify(mesh, context);
+    const Subject subject = subjectOf(context);
+    HexMesh& mesh = subject.mesh;
+    report.before = subject.certifyNow(context);
     Stage stage(context, "moving");
     const Array<Quad> quads = quadsAt(mesh, boundaryPlaces(mesh, stage));
     requireOrientation(mesh.points, quads);
@@ -161,14 +206,14 @@ ImproveReport improveOn(HexMesh& mesh, const ImproveOptions& options, Context& c
     report.distanceBefore = distance();
     const Array<Vec3> points = mesh.points;
     try {
-      movePoints(mesh, places, options, report, stage);
+      movePoints(subject, places, options, points, report, context, stage);
       report.distanceAfter = distance();
       reportMoves(points, mesh.points, report);
       reportOff(mesh.points, places, report);
+      listNotPositive(report);
       stage.finish();
-      certifyAfter(mesh, report, context);
     } catch (...) {
-      std::copy(points.begin(), points.end(), mesh.points.begin());
+      subject.putBack(points);
       throw;
     }
   });
@@ -191,15 +236,59 @@ auto onItself(const ImproveOptions& options) {
   };
 }
 
+template <class PlacesOf>
+ImproveReport improveStraight(HexMesh& mesh, const ImproveOptions& options, Context& context,
+                              const PlacesOf& placesOf) {
+  const auto subjectOf = [&mesh](Context& working) {
+    requireCells(mesh, working);
+    return Subject{mesh};
+  };
+  return improveOn(options, context, subjectOf, placesOf);
+}
+
+void requireImprovable(const LagrangeMesh& mesh) {
+  requireConsistent(mesh);
+  if (mesh.order <= CurvedCells::kMaxOrder) return;
+  throw Error(ErrorCode::InvalidArgument, "Cells of order " + std::to_string(mesh.order) +
+                                              " are not improved, only those of orders 1 to " +
+                                              std::to_string(CurvedCells::kMaxOrder) +
+                                              ". Choose a lower order.");
+}
+
+template <class PlacesOf>
+ImproveReport improveCurved(LagrangeMesh& mesh, const ImproveOptions& options, Context& context,
+                            const PlacesOf& placesOf) {
+  HexMesh refined;
+  const auto subjectOf = [&](Context& working) {
+    requireImprovable(mesh);
+    {
+      Stage stage(working, "nodes");
+      refined = refinedMesh(mesh, stage);
+    }
+    requireCells(refined, working);
+    return Subject{refined, &mesh};
+  };
+  return improveOn(options, context, subjectOf, placesOf);
+}
+
 }  // namespace
 
 ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions& options,
                       Context& context) {
-  return improveOn(mesh, options, context, onMap(map, options, context));
+  return improveStraight(mesh, options, context, onMap(map, options, context));
 }
 
 ImproveReport improve(HexMesh& mesh, const ImproveOptions& options, Context& context) {
-  return improveOn(mesh, options, context, onItself(options));
+  return improveStraight(mesh, options, context, onItself(options));
+}
+
+ImproveReport improve(LagrangeMesh& mesh, const TetMapView& map, const ImproveOptions& options,
+                      Context& context) {
+  return improveCurved(mesh, options, context, onMap(map, options, context));
+}
+
+ImproveReport improve(LagrangeMesh& mesh, const ImproveOptions& options, Context& context) {
+  return improveCurved(mesh, options, context, onItself(options));
 }
 
 }  // namespace hexhex

@@ -3,10 +3,10 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <base/workspaces.hpp>
+#include <improve/cell_states.hpp>
 #include <improve/colours.hpp>
 #include <improve/sweeps.hpp>
 #include <improve/untangling.hpp>
-#include <mesh/cell_measures.hpp>
 
 namespace hexhex {
 
@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kGrain = 1024;
 /// Vertices: a block takes some tenths of a millisecond.
 constexpr std::size_t kVertexGrain = 64;
+constexpr std::size_t kCurvedGrain = 8;
 
 /// Rounds for the worst cells; the power of the energy meanwhile.
 constexpr int kWorstRounds = 40;
@@ -26,77 +27,78 @@ constexpr double kStill = 1e-3;
 /// promised for all of the surface, since only centres are looked at.
 constexpr double kChord = 3e-4;
 
-IdealBox boxOf(const HexMesh& mesh, std::size_t cell) {
+IdealBox boxOf(const Array<Vec3>& points, const Hex& cell) {
   Vec3 sums{};
   for (std::size_t e = 0; e < kHexEdges.size(); ++e) {
     const auto [a, b] = kHexEdges[e];
     const std::size_t axis = e >= 8 ? 2 : e % 2;  // in VTK's order
-    sums[axis] +=
-        length(minus(mesh.points[mesh.cells[cell][a]], mesh.points[mesh.cells[cell][b]])) / 4;
+    sums[axis] += length(minus(points[cell[a]], points[cell[b]])) / 4;
   }
   return idealBox(sums);
 }
 
-/// The cells, of n that `cellAt` lists, for which isWanted(scaled Jacobian, certified) holds.
-template <class CellAt, class Wanted>
-std::vector<Index> cellsThat(const HexMesh& mesh, std::size_t n, const CellAt& cellAt,
-                             const Wanted& isWanted, Stage& stage) {
-  const MeasureCells measure = measuresOfCells().back();
-  return collectFromBlocks<Index>(
-      stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
-        CellMeasures measures;
-        std::array<Hex, CellMeasures::kMost> cells;
-        for (std::size_t c = begin; c < end; c += CellMeasures::kMost) {
-          const std::size_t count = std::min(CellMeasures::kMost, end - c);
-          for (std::size_t i = 0; i < count; ++i) cells[i] = mesh.cells[cellAt(c + i)];
-          measure(mesh.points.data(), std::span(cells).first(count), measures);
-          for (std::size_t i = 0; i < count; ++i) {
-            const bool certified =
-                measures.inRange[i] != 0 && measures.least[i] > measures.errorOf(i);
-            if (isWanted(measures.scaled[i], certified)) found.push_back(cellAt(c + i));
-          }
-        }
-      });
-}
-
 constexpr auto kAllCells = [](std::size_t c) { return static_cast<Index>(c); };
-constexpr auto kIsBad = [](double /*scaled*/, bool certified) { return !certified; };
+constexpr auto kIsBad = [](const CellState& state) { return !state.certified; };
 
 }  // namespace
 
-Sweeps::Sweeps(HexMesh& mesh, VertexPlaces& places, double diagonal, Stage& stage)
+Sweeps::Sweeps(HexMesh& mesh, const CurvedCells* curved, VertexPlaces& places, double diagonal,
+               Stage& stage)
     : mesh_(mesh),
+      curved_(curved),
       places_(places),
       stage_(stage),
-      around_(cellsAroundVertices(mesh, stage)),
-      boxes_(mesh.cells.size()),
-      boundary_(findFaces(mesh, around_, stage).boundary),
+      meshAround_(cellsAroundVertices(mesh, stage)),
+      nodeAround_(curved != nullptr ? curved->cellsAroundNodes(stage) : VertexCells()),
+      boundary_(findFaces(mesh, meshAround_, stage).boundary),
       chord_(kChord * diagonal) {
-  parallelFor(stage, boxes_.size(), kGrain, [&](std::size_t c) { boxes_[c] = boxOf(mesh, c); });
+  boxes_.resize(cellPoints().cellCount());
+  parallelFor(stage, boxes_.size(), kGrain, [&](std::size_t c) {
+    boxes_[c] = boxOf(mesh.points, curved != nullptr ? curved->cornersOf(c) : mesh.cells[c]);
+  });
+}
+
+CellPoints Sweeps::cellPoints() const {
+  if (curved_ != nullptr) return curved_->points(nodeAround_);
+  static_assert(sizeof(Hex) == 8 * sizeof(Index));
+  return {{reinterpret_cast<const Index*>(mesh_.cells.data()), 8 * mesh_.cells.size()},
+          8,
+          meshAround_,
+          mesh_.points.size()};
+}
+
+template <class CellAt, class Wanted>
+std::vector<Index> Sweeps::cellsThat(std::size_t n, const CellAt& cellAt,
+                                     const Wanted& isWanted) const {
+  return collectFromBlocks<Index>(
+      stage_, n, curved_ != nullptr ? kCurvedGrain : kGrain,
+      [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
+        CurvedCells::Scratch scratch;
+        std::vector<Index> list;
+        for (std::size_t c = begin; c < end; ++c) list.push_back(cellAt(c));
+        forStates(mesh_, curved_, list, scratch, [&](Index cell, const CellState& state) {
+          if (isWanted(state)) found.push_back(cell);
+        });
+      });
 }
 
 template <class Move>
 void Sweeps::sweep(std::span<const Index> vertices, double slack, const Move& move) {
-  const Colours colours(cellPoints(), vertices);
-  const MovingMesh all{mesh_, places_, around_, boxes_, boundary_, chord_};
+  const CellPoints cells = cellPoints();
+  const Colours colours(cells, vertices);
+  const ChordError chordError{mesh_, places_, meshAround_, boundary_, chord_};
+  const MovingMesh all{mesh_, curved_, cells, boxes_, places_, chordError};
   for (std::size_t colour = 0; colour < colours.count(); ++colour) {
     const std::span<const Index> group = colours.of(colour);
     parallelForWith(
-        stage_, group.size(), kVertexGrain, [&] { return VertexMover(all, slack); },
+        stage_, group.size(), curved_ != nullptr ? kCurvedGrain : kVertexGrain,
+        [&] { return VertexMover(all, slack); },
         [&](std::size_t i, VertexMover& mover) { move(mover, group[i]); });
   }
 }
 
-CellPoints Sweeps::cellPoints() const {
-  static_assert(sizeof(Hex) == 8 * sizeof(Index));
-  return {{reinterpret_cast<const Index*>(mesh_.cells.data()), 8 * mesh_.cells.size()},
-          8,
-          around_,
-          mesh_.points.size()};
-}
-
 void Sweeps::untangle(double slack) {
-  std::vector<Index> bad = cellsThat(mesh_, mesh_.cells.size(), kAllCells, kIsBad, stage_);
+  std::vector<Index> bad = cellsThat(boxes_.size(), kAllCells, kIsBad);
   if (bad.empty()) return;
   const Array<Vec3> points = mesh_.points;
   const Array<Index> simplices = places_.simplex;
@@ -106,17 +108,18 @@ void Sweeps::untangle(double slack) {
       },
       [&](std::span<const Index> cells) {
         return cellsThat(
-            mesh_, cells.size(), [&](std::size_t c) { return cells[c]; }, kIsBad, stage_);
+            cells.size(), [&](std::size_t c) { return cells[c]; }, kIsBad);
       }};
   bad = untangleCells(cellPoints(), places_, moves, slack, std::move(bad));
   if (!bad.empty()) putBack(cellPoints(), bad, points, simplices, mesh_.points, places_);
 }
 
 void Sweeps::raiseWorst(double target) {
-  const auto isLow = [target](double scaled, bool certified) {
-    return certified && scaled < target;
+  const auto isLow = [target](const CellState& state) {
+    return state.certified && state.scaled < target;
   };
-  std::vector<Index> low = cellsThat(mesh_, mesh_.cells.size(), kAllCells, isLow, stage_);
+  std::vector<Index> low = cellsThat(boxes_.size(), kAllCells, isLow);
+  const CellPoints all = cellPoints();
   // The last round in which a vertex moved: only where something moved is there something to do.
   std::vector<std::uint8_t> lastMove(low.empty() ? 0 : mesh_.points.size(), 0);
   for (int round = 1; round <= kWorstRounds && !low.empty(); ++round) {
@@ -125,8 +128,8 @@ void Sweeps::raiseWorst(double target) {
     std::erase_if(vertices, [&](Index v) {
       if (places_.freedom[v] == Freedom::Fixed) return true;
       bool isAwake = false;
-      for (const Index cell : around_(v)) {
-        for (const Index other : mesh_.cells[cell]) isAwake |= lastMove[other] + 1 == round;
+      for (const Index cell : all.around(v)) {
+        for (const Index other : all.of(cell)) isAwake |= lastMove[other] + 1 == round;
       }
       return !isAwake;
     });
@@ -137,7 +140,7 @@ void Sweeps::raiseWorst(double target) {
       }
     });
     low = cellsThat(
-        mesh_, cells.size(), [&](std::size_t c) { return cells[c]; }, isLow, stage_);
+        cells.size(), [&](std::size_t c) { return cells[c]; }, isLow);
   }
 }
 
@@ -145,7 +148,8 @@ void Sweeps::smooth(int passes, double floor) {
   if (passes == 0) return;
   std::vector<Index> vertices;
   for (Index v = 0; v < mesh_.points.size(); ++v) {
-    if (places_.freedom[v] != Freedom::Fixed && !around_(v).empty()) vertices.push_back(v);
+    if (places_.freedom[v] != Freedom::Fixed && !cellPoints().around(v).empty())
+      vertices.push_back(v);
   }
   for (int pass = 0; pass < passes; ++pass) {
     sweep(vertices, 0, [&](VertexMover& mover, Index v) { mover.smooth(v, 1, floor); });

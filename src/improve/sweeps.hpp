@@ -11,6 +11,7 @@
 
 #include <base/stage.hpp>
 #include <improve/cell_points.hpp>
+#include <improve/curved_cells.hpp>
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_mover.hpp>
 #include <improve/vertex_places.hpp>
@@ -19,9 +20,13 @@ namespace hexhex {
 
 class Sweeps {
  public:
-  /// The first two must outlive this.
+  /// The first three must outlive this.
+  /// @param mesh      whose points move; of curved cells the refined mesh
+  /// @param curved    cells between the same points that are to be improved in place of the mesh's,
+  ///                  or null
   /// @param diagonal  of the surface
-  Sweeps(HexMesh& mesh, VertexPlaces& places, double diagonal, Stage& stage);
+  Sweeps(HexMesh& mesh, const CurvedCells* curved, VertexPlaces& places, double diagonal,
+         Stage& stage);
 
   /// Moves vertices around cells that are not certified until all are, or nothing helps any more.
   /// What did not become better stays as it was.
@@ -34,18 +39,26 @@ class Sweeps {
   /// Moves all vertices, so many times. Scaled Jacobians below the floor do not fall.
   void smooth(int passes, double floor);
 
- private:
+  /// The cells, with their points.
   [[nodiscard]] CellPoints cellPoints() const;
+
+ private:
+  /// The cells, of n that `cellAt` lists, whose CellState is wanted.
+  template <class CellAt, class Wanted>
+  [[nodiscard]] std::vector<Index> cellsThat(std::size_t n, const CellAt& cellAt,
+                                             const Wanted& isWanted) const;
   template <class Move>
   void sweep(std::span<const Index> vertices, double slack, const Move& move);
 
   HexMesh& mesh_;
+  const CurvedCells* curved_;
   VertexPlaces& places_;
   Stage& stage_;
-  VertexCells around_;
+  VertexCells meshAround_;
+  VertexCells nodeAround_;        ///< of curved cells
   Array<IdealBox> boxes_;         ///< per cell
-  Array<std::uint8_t> boundary_;  ///< per cell: as of HexFaces
-  double chord_;                  ///< as of MovingMesh
+  Array<std::uint8_t> boundary_;  ///< per cell of the mesh: as of HexFaces
+  double chord_;                  ///< as of ChordError
 };
 
 }  // namespace hexhex

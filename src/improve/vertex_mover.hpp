@@ -1,14 +1,13 @@
 // Moves one vertex at a time, within what its place allows, for the better of the cells around it.
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <vector>
-
-#include <adjacency/hex_topology.hpp>
 
 #include <hexhex/types.hpp>
 
+#include <improve/cell_points.hpp>
+#include <improve/chord_error.hpp>
+#include <improve/curved_cells.hpp>
 #include <improve/point_mover.hpp>
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_places.hpp>
@@ -17,12 +16,12 @@ namespace hexhex {
 
 /// What movers work on; all of it outlives them.
 struct MovingMesh {
-  HexMesh& mesh;
+  HexMesh& mesh;                 ///< whose points move
+  const CurvedCells* curved;     ///< in place of its cells, or null
+  const CellPoints& cells;       ///< of one or the other
+  const Array<IdealBox>& boxes;  ///< per cell
   VertexPlaces& places;
-  const VertexCells& around;
-  const Array<IdealBox>& boxes;         ///< per cell
-  const Array<std::uint8_t>& boundary;  ///< per cell: as of HexFaces
-  double chord;  ///< so far may boundary quads be from the surface, if they are not farther anyway
+  const ChordError& chordError;
 };
 
 /// A vertex with all that a step of it takes. One per thread.
@@ -31,13 +30,7 @@ class VertexMover {
   /// Vertices of one cell must not move at the same time.
   /// @param slack  so far may vertices leave patches and curves without tags
   VertexMover(const MovingMesh& all, double slack)
-      : mesh_(all.mesh),
-        places_(all.places),
-        around_(all.around),
-        boxes_(all.boxes),
-        boundary_(all.boundary),
-        chord_(all.chord),
-        mover_(all.mesh.points, all.places, slack) {}
+      : all_(all), mover_(all.mesh.points, all.places, slack) {}
 
   /// Brings all Bezier coefficients of the cells nearer to being positive.
   /// @return the share of the cells' size that it moved by
@@ -51,27 +44,16 @@ class VertexMover {
   double smooth(Index vertex, int power, double floor);
 
  private:
-  /// What the cells around a vertex are like.
-  struct StarQuality {
-    double scaled = 1;  ///< the least scaled Jacobian
-    bool certified = true;
-  };
   void collect(Index vertex, bool bezier);
-  [[nodiscard]] StarQuality qualityAt(Index vertex) const;
+  void collectStraight(Index vertex, Index cell, bool bezier);
+  /// Of the worst of the cells around a vertex.
+  [[nodiscard]] CellState stateAt(Index vertex);
   [[nodiscard]] double sizeAt(Index vertex) const;
 
-  /// How far the centres of boundary quads at a vertex, and of edges on its curve, are from the
-  /// surface.
-  [[nodiscard]] double chordErrorAt(Index vertex) const;
-
-  HexMesh& mesh_;
-  VertexPlaces& places_;
-  const VertexCells& around_;
-  const Array<IdealBox>& boxes_;
-  const Array<std::uint8_t>& boundary_;
-  double chord_;
+  MovingMesh all_;
   PointMover mover_;
   std::vector<EnergyTerm> terms_;
+  CurvedCells::Scratch scratch_;
 };
 
 }  // namespace hexhex

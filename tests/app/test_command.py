@@ -940,9 +940,20 @@ class Repair(CommandTest):
         self.assert_fails("improve", "rough.vtu", "-o", "rough.vtu", expect=BAD_USAGE, code="InvalidArgument")
         for options in [["--target", "2"], ["--passes", "-1"], ["--slack", "x"], ["--feature-angle", "181"]]:
             self.run_command("improve", "rough.vtu", "-o", "bad.vtu", *options, expect=BAD_USAGE)
-        for options in [["--stream"], ["--order", "2"], ["--partial"], ["--arcs", "arcs.vtu"]]:
+        for options in [["--stream"], ["--order", "4"], ["--partial"], ["--arcs", "arcs.vtu"]]:
             self.assert_fails("extract", "map.hexex", "-o", "bad.vtu", "--improve", *options, expect=BAD_USAGE,
                               code="InvalidArgument")
+        # Curved cells, in two steps and in one.
+        self.run_command("generate", "sphere", "--jitter", "0.5", "--cells", "1", "--quiet", "-o", "ball.hexex")
+        curved = ["--order", "2", "--quiet"]
+        self.run_command("extract", "ball.hexex", "-o", "curved.vtu", *curved)
+        self.run_command("extract", "ball.hexex", "-o", "one.vtu", "--improve", "--passes", "1", *curved)
+        run = self.run_command("improve", "curved.vtu", "--map", "ball.hexex", "--passes", "1", "-o", "two.vtu")
+        self.assertIn("mended", run.stdout)
+        self.assertEqual((self.folder / "one.vtu").read_bytes(), (self.folder / "two.vtu").read_bytes())
+        self.assertNotEqual((self.folder / "one.vtu").read_bytes(), (self.folder / "curved.vtu").read_bytes())
+        self.assert_fails("improve", "curved.vtu", "-o", "bad.vtu", "--compress", expect=BAD_USAGE,
+                          code="InvalidArgument")
         self.run_command("extract", "map.hexex", "-o", "bad.vtu", "--target", "0.5", expect=BAD_USAGE)
         self.assertFalse((self.folder / "bad.vtu").exists())
 

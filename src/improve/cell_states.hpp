@@ -1,0 +1,38 @@
+// Scaled Jacobians and certificates of some cells, straight or curved.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include <hexhex/types.hpp>
+
+#include <improve/curved_cells.hpp>
+#include <mesh/cell_measures.hpp>
+
+namespace hexhex {
+
+/// Calls use(cell, CellState) for the cells of a list.
+/// @param curved  in place of the cells of the mesh, or null
+template <class Use>
+void forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const Index> list,
+               CurvedCells::Scratch& scratch, const Use& use) {
+  if (curved != nullptr) {
+    for (const Index cell : list) use(cell, curved->stateOf(mesh.points, cell, scratch));
+    return;
+  }
+  static const MeasureCells measure = measuresOfCells().back();
+  CellMeasures measures;
+  std::array<Hex, CellMeasures::kMost> cells;
+  for (std::size_t begin = 0; begin < list.size(); begin += CellMeasures::kMost) {
+    const std::size_t n = std::min(CellMeasures::kMost, list.size() - begin);
+    for (std::size_t i = 0; i < n; ++i) cells[i] = mesh.cells[list[begin + i]];
+    measure(mesh.points.data(), std::span(cells).first(n), measures);
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool certified = measures.inRange[i] != 0 && measures.least[i] > measures.errorOf(i);
+      use(list[begin + i], CellState{measures.scaled[i], certified});
+    }
+  }
+}
+
+}  // namespace hexhex
