@@ -34,6 +34,7 @@
 #include "repair_text.hpp"
 #include "report.hpp"
 #include "shared_options.hpp"
+#include "started_team.hpp"
 #include "suggestions.hpp"
 #include "verification.hpp"
 
@@ -57,6 +58,7 @@ struct Arguments {
   RunOptions run;
   bool stream = false;
   PartsChoice parts;
+  ProcessTeam* team = nullptr;  ///< of which this is one process
   bool partial = false;
   bool noVerify = false;
 };
@@ -111,7 +113,7 @@ void requirePartsOutputs(const Arguments& arguments) {
     throw Error(ErrorCode::InvalidArgument,
                 "Files of parts are not compressed. Leave out --parts or --compress.");
   }
-  requirePartFormat(arguments.output, arguments.choice.options());
+  requirePartFormat(arguments.output, arguments.choice.options(), arguments.team != nullptr);
 }
 
 /// Vertices move in a mesh that is whole.
@@ -150,6 +152,10 @@ void requireOutputs(const Arguments& arguments) {
   requireCurvedOutputs(arguments);
   requirePartialOutputs(arguments);
   requireImprovable(arguments);
+  if (!arguments.parts.parts && arguments.parts.isOfParts()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--ghosts and --partition say how a mesh is cut. Leave them out, or add --parts.");
+  }
   if (arguments.parts.parts) {
     requirePartsOutputs(arguments);
   } else if (arguments.order > 1) {
@@ -285,7 +291,8 @@ void extractAllParts(const Arguments& arguments, const TetMap& map, LongRun& lon
   options.patchAngle = arguments.patchAngle;
   record.meshParts = longRun.part("extraction", [&] {
     return extractInParts(map, arguments.output, options, arguments.options,
-                          arguments.parts.chosen(), longRun.context(), record.statistics);
+                          arguments.parts.chosen(), arguments.team, longRun.context(),
+                          record.statistics);
   });
   record.vertices = record.meshParts->summary.vertices;
   record.cells = record.meshParts->summary.cells;
@@ -357,6 +364,15 @@ TetMap readAndQuantize(const Arguments& arguments, LongRun& longRun, ExtractionR
   return std::move(quantized.map);
 }
 
+/// In a team, the first process reads, and all others get what it has.
+TetMap readForTeam(const Arguments& arguments, LongRun& longRun, ExtractionRecord& record) {
+  if (arguments.team == nullptr) return readAndQuantize(arguments, longRun, record);
+  const bool reads = arguments.team->rank() == 0;
+  TetMap read = reads ? readAndQuantize(arguments, longRun, record) : TetMap{};
+  TetMap shared = longRun.part("broadcast", [&] { return shareMap(*arguments.team, read); });
+  return reads ? std::move(read) : std::move(shared);
+}
+
 /// What is known beside what the steps have noted.
 void fillRecord(const Arguments& arguments, const TetMap& map, LongRun& longRun,
                 ExtractionRecord& record) {
@@ -378,12 +394,12 @@ void fillRecord(const Arguments& arguments, const TetMap& map, LongRun& longRun,
   record.partsAsText = longRun.partsAsText();
 }
 
-int run(const Arguments& arguments) {
+int extractMesh(const Arguments& arguments) {
   LongRun longRun(arguments.run, stepsOf(arguments));
   requireOutputs(arguments);
   Report report(arguments.report);
   ExtractionRecord record;
-  const TetMap map = readAndQuantize(arguments, longRun, record);
+  const TetMap map = readForTeam(arguments, longRun, record);
   const auto make = [&arguments] {
     if (arguments.parts.parts) return extractAllParts;
     if (arguments.stream) return extractInPieces;
@@ -404,6 +420,21 @@ int run(const Arguments& arguments) {
   if (arguments.run.quiet) return kSuccess;
   printWarnings(record, map);
   if (!report.isOnOutput()) printSummary(record);
+  return kSuccess;
+}
+
+int run(const Arguments& given) {
+  if (!isInTeam(given.parts.mpi)) return extractMesh(given);
+  const StartedTeam started;
+  Arguments arguments = given;
+  arguments.team = &started.team();
+  if (!arguments.parts.parts) arguments.parts.parts = arguments.team->size();
+  if (arguments.run.threads == 0) arguments.run.threads = threadsInTeam();
+  if (!isSpeaker()) {
+    arguments.report.clear();
+    arguments.run.quiet = true;
+  }
+  arguments.team->run([&arguments] { static_cast<void>(extractMesh(arguments)); });
   return kSuccess;
 }
 

@@ -17,20 +17,18 @@ void addPartsOptions(CLI::App& parser, PartsChoice& choice) {
     if (format.extension.empty()) continue;
     extensions += (extensions.empty() ? "" : ", ") + std::string(format.extension);
   }
-  CLI::Option* const parts =
-      parser
-          .add_option("--parts", choice.parts,
-                      "Write the mesh in so many parts, for solvers on many\nmachines, a file for "
-                      "each or all in one: " +
-                          extensions)
-          ->check(CLI::Range(1U, kMaxParts))
-          ->option_text("N");
+  parser
+      .add_option("--parts", choice.parts,
+                  "Write the mesh in so many parts, for solvers on many\nmachines, a file for "
+                  "each or all in one: " +
+                      extensions)
+      ->check(CLI::Range(1U, kMaxParts))
+      ->option_text("N");
   parser
       .add_option("--ghosts", choice.options.ghostLayers,
                   "Layers of cells of other parts around each part")
       ->check(CLI::Range(0U, kMaxGhostLayers))
-      ->option_text("LAYERS [0]")
-      ->needs(parts);
+      ->option_text("LAYERS [0]");
   parser
       .add_option("--partition", choice.options.method,
                   "Who cuts the mesh: curve, along a space-filling curve;\nscotch or metis, if "
@@ -39,8 +37,10 @@ void addPartsOptions(CLI::App& parser, PartsChoice& choice) {
           std::map<std::string, PartitionMethod>{{"curve", PartitionMethod::Curve},
                                                  {"scotch", PartitionMethod::Scotch},
                                                  {"metis", PartitionMethod::Metis}}))
-      ->option_text("METHOD [curve]")
-      ->needs(parts);
+      ->option_text("METHOD [curve]");
+  parser.add_flag("--mpi", choice.mpi,
+                  "Make one part in each process of an MPI. Several ones that\nmpirun starts do "
+                  "that anyway");
 }
 
 void printParts(const PartsRecord& record) {
@@ -54,8 +54,14 @@ void printParts(const PartsRecord& record) {
 
 PartsRecord extractInParts(const TetMap& map, const std::filesystem::path& output,
                            const WriteOptions& writing, const ExtractOptions& extraction,
-                           const PartOptions& options, Context& context,
+                           const PartOptions& options, ProcessTeam* team, Context& context,
                            ExtractStatistics& statistics) {
+  if (team != nullptr) {
+    PartsSummary summary;
+    const std::unique_ptr<PartSink> files = openPartSink(output, writing, context, team);
+    extractPart(*team, *files, map, extraction, options, context, &statistics, &summary);
+    return {options, summary};
+  }
   const std::unique_ptr<PartSink> files = openPartSink(output, writing, context);
   PartSurvey survey(*files);
   extractParts(survey, map, extraction, options, context, &statistics);

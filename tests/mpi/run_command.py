@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""`mpirun -n N hexhex extract` writes what one process writes, or one message and nothing.
+
+    run_command.py COMMAND MPIRUN
+
+Skipped (77) where MPI cannot start processes."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+COMMAND, MPIRUN = sys.argv[1:]
+SKIPPED, BAD_USAGE, FILE_PROBLEM = 77, 2, 3
+EXTENSIONS = {"pvtu": ".pvtu", "msh-split": ".msh", "exodus-e": ".e", "mfem": ""}
+
+
+def run(*command, folder, fails=False):
+    result = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True,
+                            timeout=100)
+    if (result.returncode != 0) != fails:
+        sys.exit(f"{command} ended with {result.returncode}:\n{result.stdout}{result.stderr}")
+    return result
+
+
+def contents(folder):
+    return {path.relative_to(folder).as_posix(): path.read_bytes()
+            for path in folder.rglob("*") if path.is_file()}
+
+
+def require(condition, what):
+    if not condition:
+        sys.exit(what)
+
+
+def check_files(folder, map_file):
+    """The same files as one process writes, and, glued, the same bytes as the mesh in one piece."""
+    run(COMMAND, "extract", map_file, "-o", "whole.vtu", "--quiet", folder=folder)
+    for processes in (1, 2, 3, 4, 8):
+        for name, extension in EXTENSIONS.items():
+            if name != "pvtu" and processes != 3:
+                continue
+            one, many = folder / "one", folder / "many"
+            one.mkdir(), many.mkdir()
+            said = run(MPIRUN, "-n", processes, COMMAND, "extract", map_file, "-o", many / f"x{extension}",
+                       "--format", name, "--mpi", folder=folder).stdout
+            run(COMMAND, "extract", map_file, "-o", one / f"x{extension}", "--format", name, "--parts",
+                processes, "--quiet", folder=folder)
+            require(contents(one) == contents(many), f"{name}: {processes} processes write other files than one")
+            require(said.count("peak memory") == 1, f"one process shall speak, and not: {said}")
+            if name == "pvtu":
+                run(COMMAND, "convert", many / "x.pvtu", "glued.vtu", "--quiet", folder=folder)
+                run(COMMAND, "convert", "whole.vtu", "copy.vtu", "--quiet", folder=folder)
+                require((folder / "glued.vtu").read_bytes() == (folder / "copy.vtu").read_bytes(),
+                        f"{processes} parts are not glued to the whole")
+            for path in (one, many):
+                run("rm", "-r", path, folder=folder)
+
+
+def check_failures(folder, map_file):
+    def fails(arguments, text, code, command=(COMMAND,)):
+        before = contents(folder)
+        result = run(MPIRUN, "-n", 3, *command, "extract", *arguments, folder=folder, fails=True)
+        require(result.stderr.count("hexhex: error:") == 1 and text in result.stderr,
+                f"{arguments}: one message with '{text}' is due, not\n{result.stderr}")
+        require(result.returncode == code, f"{arguments}: {result.returncode} is no {code}")
+        require(contents(folder) == before, f"{arguments}: something was written")
+
+    fails(["none.hexex", "-o", "x.pvtu"], "none.hexex", FILE_PROBLEM)
+    fails([map_file, "-o", "x.vtkhdf"], "several processes cannot write", FILE_PROBLEM)
+    fails([map_file, "-o", "x.vtu"], "no format of meshes in parts", FILE_PROBLEM)
+    fails([map_file, "-o", "x.pvtu", "--parts", "2"], "2 parts and 3 processes", BAD_USAGE)
+    # One process cannot write where the others can: it works in another folder.
+    (folder / "there").mkdir()
+    elsewhere = "test ${OMPI_COMM_WORLD_RANK:-$PMI_RANK} = 1 && cd /; exec \"$@\""
+    fails([map_file, "-o", "there/x.msh", "--format", "msh-split"], "Process 1:", FILE_PROBLEM,
+          ["bash", "-c", elsewhere, "bash", COMMAND])
+
+
+def main():
+    try:
+        subprocess.run([MPIRUN, "-n", "2", "true"], check=True, capture_output=True, timeout=60)
+    except (OSError, subprocess.SubprocessError) as error:
+        print(f"skipped: {error}")
+        sys.exit(SKIPPED)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        map_file = folder / "map.ovm"
+        run(COMMAND, "generate", "shell", "-o", map_file, "--cells", 2, "--features", folder=folder)
+        check_files(folder, map_file)
+        check_failures(folder, map_file)
+    print("The command works on MPI.")
+
+
+main()
