@@ -40,6 +40,15 @@ TEST(Parts, MakeUpMeshesWhoseCellsMeetThemselves) {
   }
 }
 
+TEST(Parts, MakeUpMeshesOfLargeTets) {
+  // Faces are so large that what may leave a part through them is bounded piece by piece.
+  SampleOptions options;
+  options.cells = 1;
+  options.charts = ChartStyle::Random;
+  const TetMap map = generateSample(SampleKind::Box, options).map;
+  EXPECT_EQ(comparePartsWithWhole(map, {.scale = 16}, {3, 1}), "");
+}
+
 /// Largest part over the mean, and vertices of more than one part, once in each.
 struct Cut {
   double imbalance;

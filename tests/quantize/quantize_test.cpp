@@ -299,6 +299,17 @@ TEST(Quantize, TellsSeamlessMapsFromOthers) {
   EXPECT_EQ(kindOf(wild), SeamlessKind::Neither);
 }
 
+TEST(Quantize, FindsTheFactorOfMapsThatAreIntegerUpToAScale) {
+  Context context;
+  const TetMap whole = generateSample(SampleKind::Shell, {.cells = 1}).map;
+  for (const double scale : {1.0 / 3, 0.25, 0.618}) {
+    EXPECT_NEAR(examineSeamless(scaled(whole, scale), context).integerFactor, 1 / scale, 1e-5)
+        << scale;
+  }
+  const TetMap stretched = generateSample(SampleKind::Torus, {.stretch = 0.5}).map;
+  EXPECT_EQ(examineSeamless(stretched, context).integerFactor, 0);
+}
+
 TEST(MotorcycleComplex, ConsistsOfBoxes) {
   for (const SampleKindName& kind : sampleKinds()) {
     SCOPED_TRACE(kind.name);
