@@ -49,6 +49,16 @@ TEST(Parts, MakeUpMeshesOfLargeTets) {
   EXPECT_EQ(comparePartsWithWhole(map, {.scale = 16}, {3, 1}), "");
 }
 
+/// Where the region of a part is the whole map: without that, each of these takes seconds.
+TEST(Parts, OfCoarseMapsAroundSingularitiesMakeUpTheMesh) {
+  SampleOptions options;
+  options.cells = 3;
+  const TetMap map = generateSample(SampleKind::Sphere, options).map;
+  for (const std::uint32_t ghosts : {0U, 2U}) {
+    EXPECT_EQ(comparePartsWithWhole(map, {}, {4, ghosts}), "");
+  }
+}
+
 /// Largest part over the mean, and vertices of more than one part, once in each.
 struct Cut {
   double imbalance;
