@@ -30,7 +30,7 @@ MpiTeam::MpiTeam(MPI_Comm communicator) {
 MpiTeam::~MpiTeam() { MPI_Comm_free(&communicator_); }
 
 /// Here processes wait for slower ones, which may want the cores that MPI's own waiting would keep
-/// busy: four processes on two busy cores took a minute for what takes a second with sleep.
+/// busy.
 bool MpiTeam::doAllSay(bool yes) {
   const int mine = yes ? 1 : 0;
   int all = 0;
