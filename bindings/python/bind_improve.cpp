@@ -10,8 +10,9 @@ using namespace nanobind::literals;
 namespace hexhex::python {
 namespace {
 
-/// A mesh that is moved, of a copy of one that others may hold.
-nb::tuple improveMesh(const HexMesh& mesh, const ArrayMap* map, double target, int passes,
+/// A mesh that is moved, straight or curved, of a copy of one that others may hold.
+template <class AnyMesh>
+nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, double target, int passes,
                       bool fixBoundary, double featureAngle, double slack, int threads,
                       const Progress& progress) {
   const ImproveOptions options = {.target = target,
@@ -19,7 +20,7 @@ nb::tuple improveMesh(const HexMesh& mesh, const ArrayMap* map, double target, i
                                   .fixBoundary = fixBoundary,
                                   .featureAngle = featureAngle,
                                   .slack = slack};
-  HexMesh moved;
+  AnyMesh moved;
   ImproveReport report = run(threads, progress, [&](Context& context) {
     moved = mesh;
     return map != nullptr ? improve(moved, map->view(), options, context)
@@ -50,8 +51,12 @@ nb::tuple improveMesh(const HexMesh& mesh, const ArrayMap* map, double target, i
 }  // namespace
 
 void bindImprove(nb::module_& module) {
-  module.def("improve", &improveMesh, "mesh"_a, "map"_a.none(), "target"_a, "passes"_a,
-             "fix_boundary"_a, "feature_angle"_a, "slack"_a, "threads"_a, "progress"_a.none());
+  const auto define = [&module](auto function) {
+    module.def("improve", function, "mesh"_a, "map"_a.none(), "target"_a, "passes"_a,
+               "fix_boundary"_a, "feature_angle"_a, "slack"_a, "threads"_a, "progress"_a.none());
+  };
+  define(&improveMesh<HexMesh>);
+  define(&improveMesh<LagrangeMesh>);
 }
 
 }  // namespace hexhex::python

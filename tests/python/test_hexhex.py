@@ -365,6 +365,16 @@ def test_improve_moves_a_copy_until_cells_are_positive():
         hexhex.improve(mesh, target=2)
 
 
+def test_improve_moves_nodes_of_curved_cells():
+    map = hexhex.generate("sphere", cells=1, jitter=0.5)
+    curved = hexhex.extract(map, order=2).curved
+    better, report = hexhex.improve(curved, map, target=0.1, passes=1)
+    assert isinstance(better, hexhex.LagrangeMesh) and np.array_equal(better.nodes, curved.nodes)
+    assert report.moved_vertices == (better.points != curved.points).any(axis=1).sum() > 0
+    assert report.after.minimum >= report.before.minimum
+    assert report.after.minimum == hexhex.quality(better).minimum
+
+
 def quantized_cells(map, **density):
     made, report = hexhex.quantize(map, **density)
     mesh = hexhex.extract(made)

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import os
 import sys
-from typing import TYPE_CHECKING, Any, Callable, Optional, Protocol, Union
+from typing import TYPE_CHECKING, Any, Callable, Optional, Protocol, TypeVar, Union
 
 import numpy as np
 
@@ -69,6 +69,8 @@ if TYPE_CHECKING:
 
     Progress = Callable[[str, float], object]
     Path = Union[str, "os.PathLike[str]"]
+
+AnyMesh = TypeVar("AnyMesh", Mesh, LagrangeMesh)
 
 __version__: str = _hexhex.version()
 
@@ -956,14 +958,15 @@ def _quality_of(fields: Any) -> Quality:
     return Quality(*values)
 
 
-def improve(mesh: Mesh, map: Map | None = None, *, target: float = 0.3, passes: int = 2,
+def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passes: int = 2,
             fix_boundary: bool = False, feature_angle: float = 40.0, slack: float = 1e-3,
             threads: int | None = None,
-            progress: Progress | None = None) -> tuple[Mesh, ImproveReport]:
+            progress: Progress | None = None) -> tuple[AnyMesh, ImproveReport]:
     """The same mesh with vertices moved: all cells become positive, then the worst ones better, then
     all. Vertices on the surface slide on it; the given mesh stays as it is.
 
     Args:
+        mesh: straight, or curved of order 1 to 3 (``mesh.curved``), of which all nodes move.
         map: that the mesh was extracted from, whose surface is the one to stay on. Without, that is
             the boundary of the mesh.
         target: cells with a smaller scaled Jacobian are improved until nothing helps, 0 to 1.
@@ -983,7 +986,7 @@ def improve(mesh: Mesh, map: Map | None = None, *, target: float = 0.3, passes: 
     handle, before, after, bad, values = _hexhex.improve(
         mesh._handle, None if map is None else map._arrays(), target, passes, fix_boundary,
         feature_angle, slack, _threads(threads), progress)
-    return (Mesh._from_handle(handle),
+    return (type(mesh)._from_handle(handle),
             ImproveReport(_quality_of(before), _quality_of(after), bad, **values))
 
 
