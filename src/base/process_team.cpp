@@ -5,8 +5,6 @@
 #include <string>
 #include <system_error>
 
-#include <parts/number_hash.hpp>
-
 #include <hexhex/error.hpp>
 #include <hexhex/team.hpp>
 
@@ -103,37 +101,6 @@ GatheredNumbers ProcessTeam::gather(std::span<const std::uint64_t> mine) {
   agree();  // where there is no memory for it, nobody waits
   doGather(mine, counts, gathered.numbers);
   return gathered;
-}
-
-namespace {
-
-template <class T>
-void shareArray(ProcessTeam& team, std::span<const T> mine, std::vector<T>& theirs) {
-  std::uint64_t size = mine.size();
-  team.share(std::as_writable_bytes(std::span(&size, 1)));
-  if (team.rank() > 0) theirs.resize(size);
-  // Process 0 gives, and its bytes stay as they are.
-  const std::span<T> items =
-      team.rank() > 0 ? std::span(theirs) : std::span(const_cast<T*>(mine.data()), mine.size());
-  team.share(std::as_writable_bytes(items));
-}
-
-}  // namespace
-
-TetMap shareMap(ProcessTeam& team, const TetMapView& map) {
-  TetMap shared;
-  team.run([&] {
-    shareArray(team, map.points, shared.points);
-    shareArray(team, map.tets, shared.tets);
-    shareArray(team, map.parameters, shared.parameters);
-    shareArray(team, map.edgeValences, shared.edgeValences);
-    shareArray(team, map.rotations, shared.rotations);
-    shareArray(team, map.features.vertices, shared.features.vertices);
-    shareArray(team, map.features.edges, shared.features.edges);
-    shareArray(team, map.features.faces, shared.features.faces);
-    shareArray(team, map.regions, shared.regions);
-  });
-  return shared;
 }
 
 }  // namespace hexhex
