@@ -223,7 +223,8 @@ HexMesh refinedMesh(const LagrangeMesh& mesh, Stage& stage) {
   refined.generatorCorners = mesh.generatorCorners;
   refineFeatures(mesh, refined.features);
   const int p = mesh.order;
-  const auto parts = static_cast<std::size_t>(p * p * p);
+  const auto width = static_cast<std::size_t>(p);
+  const std::size_t parts = width * width * width;
   refined.cells.resize(parts * mesh.cellCount());
   parallelFor(stage, mesh.cellCount(), kGrain, [&](std::size_t cell) {
     const NodeGrid grid(mesh, cell);
