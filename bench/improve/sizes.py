@@ -21,19 +21,14 @@ BALLS = {
 }
 
 
-def run(words):
-    """@return seconds by the clock, seconds of processors, peak memory in bytes"""
+def run(words, report):
+    """@return seconds by the clock, seconds of processors, and what the command reports"""
     begin = time.perf_counter()
-    child = subprocess.Popen(words)
+    child = subprocess.Popen([*words, "--report", report])
     _, status, usage = os.wait4(child.pid, 0)
     if status != 0:
         sys.exit(f"{' '.join(map(str, words))}: failed")
-    return time.perf_counter() - begin, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
-
-
-def cells_of(hexhex, mesh):
-    told = subprocess.run([hexhex, "info", mesh, "--json"], check=True, capture_output=True, text=True).stdout
-    return json.loads(told)["cells"]
+    return time.perf_counter() - begin, usage.ru_utime + usage.ru_stime, json.loads(report.read_text())
 
 
 def measure(hexhex, folder, name):
@@ -42,9 +37,9 @@ def measure(hexhex, folder, name):
     subprocess.run([hexhex, "generate", "sphere", *options, "-o", ball, "--quiet"], check=True)
     for scale in scales:
         words = [hexhex, "extract", ball, "--scale", str(scale), "--improve", "--no-verify", "--quiet", "-o", mesh]
-        one, processor, memory = run([*words, "--threads", "1"])
-        two = run([*words, "--threads", "2"])[0]
-        cells = cells_of(hexhex, mesh)
+        one, processor, told = run([*words, "--threads", "1"], folder / "report.json")
+        two = run([*words, "--threads", "2"], folder / "report.json")[0]
+        cells, memory = told["cells"], told["peak_memory_bytes"]
         print(f"| {name} | {cells:,} | {processor:.2f} s | {1e6 * processor / cells:.1f} µs | {one / two:.2f} | "
               f"{memory / cells:.0f} bytes |", flush=True)
         yield cells, processor
