@@ -17,14 +17,15 @@ from evaluation import style
 
 BALLS = {
     "all positive": (["--cells", "8", "--refine", "4", "--jitter", "0.05"], (1, 3, 7, 14)),
-    "a tenth not positive": (["--cells", "4", "--jitter", "0.5"], (4, 7, 14)),
+    "a tenth not positive": (["--cells", "4", "--jitter", "0.5"], (4, 7)),
 }
 
 
 def run(words, report):
     """@return seconds by the clock, seconds of processors, and what the command reports"""
     begin = time.perf_counter()
-    child = subprocess.Popen([*words, "--report", report])
+    # As a child of a shell: the memory of this process would count as its own.
+    child = subprocess.Popen(["/bin/sh", "-c", '"$@"; exit $?', "sh", *words, "--report", report])
     _, status, usage = os.wait4(child.pid, 0)
     if status != 0:
         sys.exit(f"{' '.join(map(str, words))}: failed")
