@@ -434,7 +434,14 @@ int run(const Arguments& given) {
     arguments.report.clear();
     arguments.run.quiet = true;
   }
-  arguments.team->run([&arguments] { static_cast<void>(extractMesh(arguments)); });
+  try {
+    arguments.team->run([&arguments] { static_cast<void>(extractMesh(arguments)); });
+  } catch (const Error& error) {
+    // As long as all are there: when one has failed, mpirun stops the others.
+    if (isSpeaker()) printError(error);
+    beSilent();
+    throw;
+  }
   return kSuccess;
 }
 

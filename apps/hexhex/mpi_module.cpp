@@ -19,6 +19,7 @@ HEXHEX_API hexhex::ProcessTeam* hexhexBeginMpi() {
 }
 
 HEXHEX_API void hexhexEndMpi() {
+  MPI_Barrier(MPI_COMM_WORLD);  // what others have to say, they have said
   world.reset();
   MPI_Finalize();
 }

@@ -81,6 +81,8 @@ StartedTeam::~StartedTeam() = default;
 
 bool isSpeaker() noexcept { return speaks; }
 
+void beSilent() noexcept { speaks = false; }
+
 int threadsInTeam() {
   const int here = environmentNumber({"OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"});
   return std::max(static_cast<int>(std::thread::hardware_concurrency()) / here, 1);
