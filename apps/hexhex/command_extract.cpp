@@ -430,17 +430,17 @@ int run(const Arguments& given) {
   arguments.team = &started.team();
   if (!arguments.parts.parts) arguments.parts.parts = arguments.team->size();
   if (arguments.run.threads == 0) arguments.run.threads = threadsInTeam();
-  if (!isSpeaker()) {
+  const bool speaks = arguments.team->rank() == 0;
+  if (!speaks) {
     arguments.report.clear();
     arguments.run.quiet = true;
   }
   try {
     arguments.team->run([&arguments] { static_cast<void>(extractMesh(arguments)); });
   } catch (const Error& error) {
-    // As long as all are there: when one has failed, mpirun stops the others.
-    if (isSpeaker()) printError(error);
-    beSilent();
-    throw;
+    // Here, where all are still there: when one has ended so, mpirun stops the others.
+    if (speaks) printError(error);
+    return exitCodeOf(error.code());
   }
   return kSuccess;
 }

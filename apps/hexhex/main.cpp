@@ -20,7 +20,6 @@
 #include "command.hpp"
 #include "exit_codes.hpp"
 #include "output.hpp"
-#include "started_team.hpp"
 #include "suggestions.hpp"
 
 namespace hexhex::command {
@@ -98,7 +97,7 @@ int runGuarded(const Command& command) {
   try {
     return command.run();
   } catch (const Error& error) {
-    if (isSpeaker()) printError(error);
+    printError(error);
     return exitCodeOf(error.code());
   } catch (const std::bad_alloc&) {
     return failForMemory();

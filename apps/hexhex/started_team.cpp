@@ -16,8 +16,6 @@
 namespace hexhex::command {
 namespace {
 
-bool speaks = true;
-
 /// A whole number from the first of these variables that is set, or else 1.
 int environmentNumber(std::initializer_list<const char*> names) {
   for (const char* const variable : names) {
@@ -65,7 +63,6 @@ StartedTeam::StartedTeam() {
   end_ = reinterpret_cast<void (*)()>(dlsym(module, "hexhexEndMpi"));
   if (begin == nullptr || end_ == nullptr) refuse("its module for MPI is of another version.");
   team_ = begin();
-  speaks = team_->rank() == 0;
   const int started = startedProcesses();
   if (started > 1 && team_->size() == 1) {
     end_();
@@ -78,10 +75,6 @@ StartedTeam::~StartedTeam() { end_(); }
 StartedTeam::StartedTeam() { refuse("this build of it knows no MPI."); }
 StartedTeam::~StartedTeam() = default;
 #endif
-
-bool isSpeaker() noexcept { return speaks; }
-
-void beSilent() noexcept { speaks = false; }
 
 int threadsInTeam() {
   const int here = environmentNumber({"OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"});

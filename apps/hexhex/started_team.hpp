@@ -24,12 +24,6 @@ class StartedTeam {
   void (*end_)() = nullptr;
 };
 
-/// Whether this process says what goes wrong: in a team, only the first one does.
-[[nodiscard]] bool isSpeaker() noexcept;
-
-/// From here on, no process does.
-void beSilent() noexcept;
-
 /// As many threads as leave cores to other processes on this machine.
 [[nodiscard]] int threadsInTeam();
 

@@ -1,16 +1,12 @@
 // See run. A drag over the canvas turns the mesh; each frame that the browser has drawn meanwhile counts.
 import { statSync } from "node:fs";
-import { createRequire } from "node:module";
-import { join } from "node:path";
+import { resolve } from "node:path";
+import { launch } from "../browser.mjs";
 
-const { chromium } = createRequire(join(process.argv[2], "package.json"))("@playwright/test");
-const page = process.env.HEXHEX_PAGE;
+const [packages, page] = process.argv.slice(2).map((path) => resolve(path));
 const kSeconds = 5;
 
-const browser = await chromium.launch({
-  executablePath: process.env.HEXHEX_CHROMIUM ?? "/usr/bin/chromium",
-  args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-});
+const browser = await launch(packages);
 const tab = await browser.newPage({ viewport: { width: 1280, height: 800 } });
 tab.setDefaultTimeout(300_000);
 const begin = performance.now();

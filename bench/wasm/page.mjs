@@ -1,20 +1,16 @@
 // See run. The time is from the address to the page that takes a map, in a browser that has just begun: the
 // median. The largest mesh is what the slider offers for a sample.
 import { readFileSync, statSync } from "node:fs";
-import { createRequire } from "node:module";
 import { join } from "node:path";
 import { gzipSync } from "node:zlib";
+import { launch } from "../browser.mjs";
 
 const js = process.env.HEXHEX_JS;
-const { chromium } = createRequire(join(js, "package.json"))("@playwright/test");
 const page = process.env.HEXHEX_PAGE ?? join(js, "../hexhex.html");
 
 /** A tab with the page, ready, in a new browser; and the seconds that it took. */
 async function open() {
-  const browser = await chromium.launch({
-    executablePath: process.env.HEXHEX_CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-  });
+  const browser = await launch(js);
   const tab = await browser.newPage();
   tab.setDefaultTimeout(1_800_000);
   const begin = performance.now();

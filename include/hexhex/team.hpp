@@ -67,9 +67,8 @@ class ProcessTeam {
                         std::span<std::uint64_t> all) = 0;
 
  private:
-  struct Failure;
-  void settle(const Failure* failure);
-  [[nodiscard]] Error firstError(const Failure* failure) noexcept;
+  void settle(const Error* failure);
+  [[nodiscard]] Error firstError(const Error* failure) noexcept;
 
   bool running_ = false;
   bool failed_ = false;

@@ -12,48 +12,43 @@ namespace hexhex {
 
 // All functions of a team begin with the same question, whether all processes are well. One that
 // has failed answers it with no, whichever function the others are in, and all learn why.
-struct ProcessTeam::Failure {
-  Error error;
-};
-
 void ProcessTeam::run(const std::function<void()>& work) {
   if (running_) return work();
   running_ = true;
   failed_ = false;
-  std::optional<Failure> failure;
-  const auto fail = [&failure](const Error& error) { failure.emplace(Failure{error}); };
+  std::optional<Error> failure;
   try {
     work();
   } catch (const Error& error) {
-    fail(error);
+    failure = error;
   } catch (const std::bad_alloc&) {
-    fail({ErrorCode::OutOfMemory, "The memory of this machine does not suffice."});
+    failure.emplace(ErrorCode::OutOfMemory, "The memory of this machine does not suffice.");
   } catch (const std::system_error& error) {
-    fail({ErrorCode::OutOfMemory,
-          std::string("The system refuses threads or memory: ") + error.what()});
+    failure.emplace(ErrorCode::OutOfMemory,
+                    std::string("The system refuses threads or memory: ") + error.what());
   } catch (const std::exception& error) {
-    fail({ErrorCode::Internal, error.what()});
+    failure.emplace(ErrorCode::Internal, error.what());
   }
   running_ = false;
-  if (failed_) throw failure->error;
+  if (failed_) throw *failure;
   settle(failure ? &*failure : nullptr);
 }
 
-void ProcessTeam::settle(const Failure* failure) {
+void ProcessTeam::settle(const Error* failure) {
   if (doAllSay(failure == nullptr)) return;
   failed_ = true;
   throw firstError(failure);
 }
 
 /// Without memory for this, the others would wait for ever: the process ends.
-Error ProcessTeam::firstError(const Failure* failure) noexcept {
+Error ProcessTeam::firstError(const Error* failure) noexcept {
   constexpr std::size_t kNumbers = 5;
   std::array<std::uint64_t, kNumbers> mine{};
   std::string text;
   if (failure != nullptr) {
-    const Place& place = failure->error.place();
-    text = failure->error.what();
-    mine = {static_cast<std::uint64_t>(failure->error.code()) + 1, text.size(),
+    const Place& place = failure->place();
+    text = failure->what();
+    mine = {static_cast<std::uint64_t>(failure->code()) + 1, text.size(),
             static_cast<std::uint64_t>(place.kind), place.index, place.second};
   }
   const std::vector<std::uint64_t> counts(size(), kNumbers);

@@ -146,10 +146,10 @@ void Sweeps::raiseWorst(double target) {
 
 void Sweeps::smooth(int passes, double floor) {
   if (passes == 0) return;
+  const CellPoints all = cellPoints();
   std::vector<Index> vertices;
   for (Index v = 0; v < mesh_.points.size(); ++v) {
-    if (places_.freedom[v] != Freedom::Fixed && !cellPoints().around(v).empty())
-      vertices.push_back(v);
+    if (places_.freedom[v] != Freedom::Fixed && !all.around(v).empty()) vertices.push_back(v);
   }
   for (int pass = 0; pass < passes; ++pass) {
     sweep(vertices, 0, [&](VertexMover& mover, Index v) { mover.smooth(v, 1, floor); });
