@@ -80,6 +80,8 @@ paraview_packages=(paraview-dev python3-paraview libopenmpi-dev liblz4-dev libdo
 
 # Meshes in parts on MPI; any other MPI will do, too.
 mpi_packages=(openmpi-bin libopenmpi-dev)
+# Libraries that cut meshes, and programs that judge parts; what is missing is not asked.
+parts_packages=(libmetis5 libscotch-7.0 openfoam petsc-dev libexodusii-dev libdeal.ii-dev)
 
 # What compiles for WebAssembly: a compiler of its own, about a gigabyte with what it brings.
 wasm_packages=(emscripten libfast-float-dev libfmt-dev nlohmann-json3-dev libeigen3-dev)

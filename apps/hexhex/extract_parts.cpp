@@ -30,9 +30,10 @@ void addPartsOptions(CLI::App& parser, PartsChoice& choice) {
       ->check(CLI::Range(0U, kMaxGhostLayers))
       ->option_text("LAYERS [0]");
   parser
-      .add_option("--partition", choice.options.method,
-                  "Who cuts the mesh: curve, along a space-filling curve;\nscotch or metis, if "
-                  "that library is on this machine")
+      .add_option(
+          "--partition", choice.options.method,
+          "Who cuts the mesh: curve, into halves of halves along a\ncurve; scotch or metis, "
+          "if that library is on this machine")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, PartitionMethod>{{"curve", PartitionMethod::Curve},
                                                  {"scotch", PartitionMethod::Scotch},

@@ -21,13 +21,14 @@ class ProcessTeam;  // <hexhex/team.hpp>
 
 /// Who says which cells make a part.
 enum class PartitionMethod : std::uint8_t {
-  Curve,   ///< Hilbert's space-filling curve, cut where cells are even; always there
+  Curve,   ///< a curve through halves of halves of the object; always there
   Scotch,  ///< Scotch, if its library is on this machine: smaller borders
   Metis    ///< METIS 5, likewise
 };
 
 struct PartOptions {
-  /// Number of parts, from 1 to kMaxParts. Parts may be empty: all beyond the number of cells are.
+  /// Number of parts, from 1 to kMaxParts. Parts may be empty, as some are if there are more than
+  /// cells.
   std::uint32_t parts = 1;
   /// Layers of cells of other parts that a part has beside its own, from 0 to kMaxGhostLayers: the
   /// first one are the cells with a vertex of the part, each further one those with a vertex of the

@@ -112,20 +112,6 @@ class Elements {
   std::vector<PartitionElement> elements_;
 };
 
-/// Cuts the curve where cells are even: an element goes where its middle is.
-std::vector<std::uint32_t> cutCurve(const std::vector<PartitionElement>& elements,
-                                    std::uint64_t cells, std::uint32_t parts) {
-  std::vector<std::uint32_t> partOf(elements.size());
-  std::uint64_t before = 0;
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    const UInt128 middle = UInt128{2} * before + elements[i].cells;
-    const auto part = static_cast<std::uint64_t>(middle * parts / (UInt128{2} * cells));
-    partOf[i] = static_cast<std::uint32_t>(std::min<std::uint64_t>(part, parts - 1));
-    before += elements[i].cells;
-  }
-  return partOf;
-}
-
 /// Enters what was decided, and lists the tets of each part.
 void assign(const std::vector<PartitionElement>& elements, const std::vector<std::uint32_t>& partOf,
             Partition& partition) {
@@ -158,18 +144,16 @@ void assign(const std::vector<PartitionElement>& elements, const std::vector<std
 }  // namespace
 
 Partition makePartition(const PreparedMap& map, const ElementCounts& counts, std::uint32_t parts,
-                        PartitionMethod method, Stage& stage) {
+                        PartitionMethod method) {
   Partition partition;
   partition.parts = parts;
   const std::uint64_t cells = counts.cells.back();
   const std::uint64_t most = std::max<std::uint64_t>(cells / parts / kElementsPerPart, 1);
   std::vector<PartitionElement> elements = Elements(map, counts, most, partition).list();
-  if (method == PartitionMethod::Curve) {
-    sortAlongCurve(elements, stage);
-    assign(elements, cutCurve(elements, cells, parts), partition);
-  } else {
-    assign(elements, cutGraph(map, partition, elements, method), partition);
-  }
+  const std::vector<std::uint32_t> partOf = method == PartitionMethod::Curve
+                                                ? bisect(elements, parts)
+                                                : cutGraph(map, partition, elements, method);
+  assign(elements, partOf, partition);
   return partition;
 }
 

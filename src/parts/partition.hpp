@@ -84,9 +84,12 @@ class Partition {
 
 /// @param method  with a library that is not here it is an InvalidArgument
 [[nodiscard]] Partition makePartition(const PreparedMap& map, const ElementCounts& counts,
-                                      std::uint32_t parts, PartitionMethod method, Stage& stage);
+                                      std::uint32_t parts, PartitionMethod method);
 
-/// The elements in the order of Hilbert's curve through their places.
-void sortAlongCurve(std::vector<PartitionElement>& elements, Stage& stage);
+/// Cuts elements by their places, with about the same number of cells in each part.
+/// @param elements  are put in another order
+/// @return  the part of each, in that order
+[[nodiscard]] std::vector<std::uint32_t> bisect(std::vector<PartitionElement>& elements,
+                                                std::uint32_t parts);
 
 }  // namespace hexhex

@@ -3,9 +3,10 @@
 
     read_with_others.py PATH-OF-HEXHEX
 
-VTK reads .pvtu and .vtkhdf, gmsh the partitioned .msh, OpenFOAM checks and reconstructs decomposed
-cases, PETSc loads cells by global numbers on four ranks. What is not on this machine is skipped with
-a word; exit code 77 if nothing is there. HEXHEX_PYTHON names a Python with vtk and gmsh.
+VTK reads .pvtu, .vtkhdf and the pieces of Exodus, gmsh the partitioned .msh, OpenFOAM checks and
+reconstructs decomposed cases, SEACAS' libraries join Exodus by Nemesis' maps, PETSc and deal.II load
+cells by global numbers on four ranks. What is not on this machine is skipped with a word; exit code 77
+if nothing is there. HEXHEX_PYTHON names a Python with vtk and gmsh.
 """
 
 import json
@@ -18,7 +19,7 @@ import subprocess
 import sys
 import tempfile
 
-HERE = pathlib.Path(__file__).parent
+JUDGES = pathlib.Path(__file__).parent / "judges"
 PYTHONS = [p for p in (os.environ.get("HEXHEX_PYTHON"), "/usr/bin/python3", sys.executable) if p]
 
 
@@ -107,6 +108,22 @@ print(len(owned), len({p for c in cells.values() for p in c}), quads)
 """
 
 
+PIECES_SCRIPT = """
+import sys, vtk
+prefix, last = sys.argv[1], int(sys.argv[2]) - 1
+controller = vtk.vtkDummyController()
+vtk.vtkMultiProcessController.SetGlobalController(controller)
+reader = vtk.vtkPExodusIIReader()
+reader.SetController(controller)
+reader.SetFilePattern("%s.%i")
+reader.SetFilePrefix(prefix)
+reader.SetFileRange(0, last)
+reader.SetFileName(prefix + ".0")
+reader.Update()
+print(reader.GetOutput().GetNumberOfCells())
+"""
+
+
 def judge_vtk(command, map_file, mesh, folder):
     python = python_with("vtk")
     if python is None:
@@ -125,6 +142,10 @@ def judge_vtk(command, map_file, mesh, folder):
     found = run(python, "-c", VTK_SCRIPT, file, 0, 5).split()
     if found != ["none"]:
         check(found[:2] == [str(mesh.cells), str(mesh.points)], f"VTK: {file} has {found}")
+    if subprocess.run([python, "-c", "import vtk; vtk.vtkPExodusIIReader"], check=False).returncode == 0:
+        run(command, "extract", map_file, "-o", folder / "v.e", "--parts", 5, "--quiet")
+        found = run(python, "-c", PIECES_SCRIPT, folder / "v.e.5", 5).split()
+        check(found == [str(mesh.cells)], f"VTK: pieces of Exodus have {found}")
     return None
 
 
@@ -198,32 +219,72 @@ def judge_openfoam(command, map_file, mesh, folder):
     return None
 
 
+def judge_exodus(command, map_file, mesh, folder):
+    if not shutil.which("cc") or not pathlib.Path("/usr/include/ne_nemesisI.h").exists():
+        return "no SEACAS"
+    run("cc", JUDGES / "nemesis_parts.c", "-o", folder / "nemesis_parts", "-lnemesis", "-lexoIIv2c")
+    for parts in (1, 4):
+        run(command, "extract", map_file, "-o", folder / "e.e", "--format", "exodus-e", "--parts", parts,
+            "--quiet")
+        found = run(folder / "nemesis_parts", parts, folder / f"e.e.{parts}").split()
+        check(found == [str(mesh.cells), str(mesh.points)], f"SEACAS: {parts} pieces have {found}")
+    return None
+
+
 def judge_petsc(command, map_file, mesh, folder):
     if not shutil.which("mpicc") or subprocess.run(
             ["pkg-config", "--exists", "PETSc"], check=False).returncode != 0:
         return "no PETSc"
     flags = run("pkg-config", "--cflags", "--libs", "PETSc").split()
-    run("mpicc", HERE / "petsc_parts.c", "-o", folder / "petsc_parts", *flags)
-    run(command, "extract", map_file, "-o", folder / "p", "--format", "msh-split", "--parts", 4,
-        "--report", folder / "r.json", "--quiet")
-    between = json.loads((folder / "r.json").read_text())["parts"]["shared_faces"]
-    for rank in range(4):
-        points, cells = read_split_gmsh(folder / f"p_{rank + 1}")
-        with open(folder / f"rank{rank}.bin", "wb") as file:
-            file.write(struct.pack("<qq", len(points), len(cells)))
-            for number, position in points:
-                file.write(struct.pack("<q3d", number, *position))
-            for corners in cells:
-                file.write(struct.pack("<8q", *corners))
-    said = run("mpirun", "--allow-run-as-root", "--oversubscribe", "-n", 4, folder / "petsc_parts",
-               folder, mesh.points)
+    run("mpicc", JUDGES / "petsc_parts.c", "-o", folder / "petsc_parts", *flags)
+    between = write_ranks(command, map_file, folder, ghosts=0)
+    said = run(*ON_FOUR_RANKS, folder / "petsc_parts", folder, mesh.points)
     check(said.split()[-3:] == [str(n) for n in (mesh.cells, mesh.points, mesh.quads + 2 * between)],
           f"PETSc has {said}")
     return None
 
 
-def read_split_gmsh(file):
-    """Nodes and hexahedra of a file of one part, from 0 on, by what the format says."""
+def judge_dealii(command, map_file, mesh, folder):
+    if not shutil.which("mpirun") or not pathlib.Path("/usr/share/cmake/deal.II").exists():
+        return "no deal.II"
+    run("cmake", "-S", JUDGES, "-B", folder / "build")
+    run("cmake", "--build", folder / "build")
+    write_ranks(command, map_file, folder, ghosts=1)
+    said = run(*ON_FOUR_RANKS, folder / "build/dealii_parts", folder)
+    check(said.split()[-3:] == [str(n) for n in (mesh.cells, mesh.points, mesh.quads)],
+          f"deal.II has {said}")
+    return None
+
+
+ON_FOUR_RANKS = ("mpirun", "--allow-run-as-root", "--oversubscribe", "-n", 4)
+
+
+def write_ranks(command, map_file, folder, ghosts):
+    """What four ranks have of a mesh, read from Gmsh's files of parts.
+
+    A file per rank, all numbers of 64 bits: how many vertices, own cells and cells with ghosts there
+    are; number and position of each vertex; number, owner and eight vertices of each cell.
+    @return how many faces lie between ranks
+    """
+    run(command, "extract", map_file, "-o", folder / "p", "--format", "msh-split", "--parts", 4,
+        "--ghosts", ghosts, "--report", folder / "r.json", "--quiet")
+    for rank in range(4):
+        points, cells = read_split_gmsh(folder / f"p_{rank + 1}", rank)
+        with open(folder / f"rank{rank}.bin", "wb") as file:
+            own = sum(owner == rank for _, owner, *_ in cells)
+            file.write(struct.pack("<3q", len(points), own, len(cells)))
+            for number, position in points:
+                file.write(struct.pack("<q3d", number, *position))
+            for cell in cells:
+                file.write(struct.pack("<10q", *cell))
+    return json.loads((folder / "r.json").read_text())["parts"]["shared_faces"]
+
+
+def read_split_gmsh(file, rank):
+    """Nodes and hexahedra of a file of one part, numbers from 0 on, by what the format says.
+
+    @return numbers and positions; number, owner and nodes of cells
+    """
     data = file.read_bytes()
 
     def section(name):
@@ -249,17 +310,30 @@ def read_split_gmsh(file):
         size = 9 if dimension == 3 else 5
         if dimension == 3:
             for i in range(count):
-                cells.append([n - 1 for n in
-                              struct.unpack_from("<9Q", elements, at + 72 * i)[1:]])
+                number, *corners = (n - 1 for n in struct.unpack_from("<9Q", elements, at + 72 * i))
+                cells.append([number, rank, *corners])
         at += 8 * size * count
+    if b"$GhostElements\n" in data:
+        set_owners(cells, section("GhostElements"))
     return points, cells
+
+
+def set_owners(cells, ghosts):
+    count, = struct.unpack_from("<Q", ghosts, 0)
+    at, owners = 8, {}
+    for _ in range(count):
+        element, owner, others = struct.unpack_from("<QiQ", ghosts, at)
+        at += 20 + 4 * others
+        owners[element - 1] = owner - 1
+    for cell in cells:
+        cell[1] = owners.get(cell[0], cell[1])
 
 
 def main():
     command = pathlib.Path(sys.argv[1]).resolve()
     skipped = 0
     judges = {"VTK": judge_vtk, "gmsh": judge_gmsh, "OpenFOAM": judge_openfoam,
-              "PETSc": judge_petsc}
+              "SEACAS": judge_exodus, "PETSc": judge_petsc, "deal.II": judge_dealii}
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         map_file = folder / "map.hexex"

@@ -70,6 +70,11 @@ std::string headOf(const NetcdfFile& file, bool wide, std::uint64_t begin) {
   }
   head.addAttributes(file.attributes);
   head.beginList(11, file.variables.size());
+  // Records, of which there are none, begin behind all else: NetCDF refuses a file otherwise.
+  std::uint64_t records = begin;
+  for (const NetcdfVariable& variable : file.variables) {
+    records += aligned(bytesInFile(file, variable));
+  }
   for (const NetcdfVariable& variable : file.variables) {
     head.addText(variable.name);
     head.addCount(variable.dimensions.size());
@@ -78,7 +83,7 @@ std::string headOf(const NetcdfFile& file, bool wide, std::uint64_t begin) {
     head.add(variable.type);
     const std::uint64_t bytes = aligned(bytesInFile(file, variable));
     head.addCount(bytes);
-    head.add(begin);
+    head.add(bytes == 0 ? records : begin);
     begin += bytes;
   }
   return std::move(head.bytes);

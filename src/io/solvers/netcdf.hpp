@@ -41,7 +41,7 @@ struct NetcdfVariable {
 struct NetcdfFile {
   std::vector<NetcdfDimension> dimensions;
   std::vector<NetcdfAttribute> attributes;
-  std::vector<NetcdfVariable> variables;  ///< those of records last
+  std::vector<NetcdfVariable> variables;
 
   /// Where the values of the variable of that name begin in the file.
   [[nodiscard]] std::uint64_t positionOf(std::string_view name, std::uint64_t mostBytes) const;

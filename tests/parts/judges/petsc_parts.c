@@ -3,8 +3,7 @@
 //
 //     mpirun -n R petsc_parts FOLDER GLOBAL-VERTICES
 //
-// FOLDER has rank0.bin and so on: the numbers of vertices and cells; number and position of each
-// vertex; eight global numbers for each cell.
+// FOLDER has rank0.bin and so on, as read_with_others.py writes them.
 #include <petscdmplex.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -29,7 +28,7 @@ int main(int argc, char **argv) {
   snprintf(name, sizeof name, "%s/rank%d.bin", argv[1], rank);
   FILE *file = fopen(name, "rb");
   require(file != NULL, "cannot open its file");
-  int64_t counts[2];
+  int64_t counts[3];  // vertices, own cells, cells
   require(fread(counts, sizeof counts, 1, file) == 1, "a short file");
 
   // PETSc wants the positions of a consecutive range of vertices on each rank: all positions are
@@ -50,11 +49,11 @@ int main(int argc, char **argv) {
   for (int64_t i = 0; i < 3 * global; ++i) all[i] += least[i];
   PetscInt *cells = malloc((size_t)(8 * counts[1] + 1) * sizeof(PetscInt));
   for (int64_t c = 0; c < counts[1]; ++c) {
-    int64_t corners[8];
-    require(fread(corners, sizeof corners, 1, file) == 1, "a short file");
+    int64_t cell[10];  // its number, its owner, its vertices
+    require(fread(cell, sizeof cell, 1, file) == 1, "a short file");
     // PETSc's hexahedra run around the bottom the other way.
     const int order[8] = {0, 3, 2, 1, 4, 5, 6, 7};
-    for (int k = 0; k < 8; ++k) cells[8 * c + k] = (PetscInt)corners[order[k]];
+    for (int k = 0; k < 8; ++k) cells[8 * c + k] = (PetscInt)cell[2 + order[k]];
   }
   fclose(file);
   const int64_t begin = global * rank / ranks;
