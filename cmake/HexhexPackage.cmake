@@ -74,6 +74,7 @@ endif()
 set(CPACK_COMPONENT_COMMAND_DESCRIPTION "${PROJECT_DESCRIPTION} (the command)")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-hexhex)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-mpi4py)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 if(HEXHEX_BUILD_PYTHON)
   # The extension is made for one version of Python.

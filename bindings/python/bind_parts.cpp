@@ -1,21 +1,12 @@
 // Meshes in parts.
 #include <nanobind/stl/string.h>
 
-#include <hexhex/parts.hpp>
-
-#include "border.hpp"
+#include "part_arrays.hpp"
 
 using namespace nanobind::literals;
 
 namespace hexhex::python {
 namespace {
-
-PartOptions optionsOf(std::uint32_t parts, std::uint32_t ghosts, const std::string& partition) {
-  PartOptions options{parts, ghosts};
-  if (partition == "metis") options.method = PartitionMethod::Metis;
-  if (partition == "scotch") options.method = PartitionMethod::Scotch;
-  return options;
-}
 
 template <class T>
 auto listOf(Array<T>&& values) {
@@ -24,7 +15,7 @@ auto listOf(Array<T>&& values) {
 }
 
 /// (part, vertices, faces): faces as rows of cell, side and the other cell.
-nb::tuple asTuple(PartNeighbour&& neighbour) {
+nb::tuple neighbourTuple(PartNeighbour&& neighbour) {
   Array<std::uint64_t> rows;
   rows.reserve(3 * neighbour.faces.size());
   for (const PartFace& face : neighbour.faces) {
@@ -38,10 +29,19 @@ nb::tuple asTuple(PartNeighbour&& neighbour) {
       ownedArray<std::uint64_t, 2>(std::move(rows), std::array<std::size_t, 2>{faces, 3}));
 }
 
+}  // namespace
+
+PartOptions partOptions(std::uint32_t parts, std::uint32_t ghosts, const std::string& partition) {
+  PartOptions options{parts, ghosts};
+  if (partition == "metis") options.method = PartitionMethod::Metis;
+  if (partition == "scotch") options.method = PartitionMethod::Scotch;
+  return options;
+}
+
 nb::tuple asTuple(MeshPart&& part) {
   nb::list neighbours;
   for (PartNeighbour& neighbour : part.neighbours) {
-    neighbours.append(asTuple(std::move(neighbour)));
+    neighbours.append(neighbourTuple(std::move(neighbour)));
   }
   return nb::make_tuple(std::move(part.mesh), part.part, part.ownPoints, part.ownCells,
                         listOf(std::move(part.globalPoints)), listOf(std::move(part.globalCells)),
@@ -49,28 +49,7 @@ nb::tuple asTuple(MeshPart&& part) {
                         listOf(std::move(part.ghostLayers)), neighbours);
 }
 
-nb::list extractAll(const ArrayMap& map, std::uint32_t parts, std::uint32_t ghosts,
-                    const std::string& partition, const Options& options, int threads,
-                    const Progress& progress) {
-  std::vector<MeshPart> made = run(threads, progress, [&](Context& context) {
-    return extractParts(map.view(), options.get(), optionsOf(parts, ghosts, partition), context);
-  });
-  nb::list list;
-  for (MeshPart& part : made) list.append(asTuple(std::move(part)));
-  return list;
-}
-
-Dict extractIntoFiles(const std::string& file, const ArrayMap& map, std::uint32_t parts,
-                      std::uint32_t ghosts, const std::string& partition, const Options& options,
-                      const std::string& format, int threads, const Progress& progress) {
-  const PartsSummary summary = run(threads, progress, [&](Context& context) {
-    WriteOptions writing;
-    writing.format = format;
-    const std::unique_ptr<PartSink> sink = openPartSink(file, writing, context);
-    PartSurvey survey(*sink);
-    extractParts(survey, map.view(), options.get(), optionsOf(parts, ghosts, partition), context);
-    return survey.result();
-  });
+Dict asDict(const PartsSummary& summary) {
   Dict d;
   d["cells"] = summary.cells;
   d["vertices"] = summary.vertices;
@@ -81,6 +60,32 @@ Dict extractIntoFiles(const std::string& file, const ArrayMap& map, std::uint32_
   d["shared_faces"] = summary.sharedFaces;
   d["most_neighbours"] = summary.mostNeighbours;
   return d;
+}
+
+namespace {
+
+nb::list extractAll(const ArrayMap& map, std::uint32_t parts, std::uint32_t ghosts,
+                    const std::string& partition, const Options& options, int threads,
+                    const Progress& progress) {
+  std::vector<MeshPart> made = run(threads, progress, [&](Context& context) {
+    return extractParts(map.view(), options.get(), partOptions(parts, ghosts, partition), context);
+  });
+  nb::list list;
+  for (MeshPart& part : made) list.append(asTuple(std::move(part)));
+  return list;
+}
+
+Dict extractIntoFiles(const std::string& file, const ArrayMap& map, std::uint32_t parts,
+                      std::uint32_t ghosts, const std::string& partition, const Options& options,
+                      const std::string& format, int threads, const Progress& progress) {
+  return asDict(run(threads, progress, [&](Context& context) {
+    WriteOptions writing;
+    writing.format = format;
+    const std::unique_ptr<PartSink> sink = openPartSink(file, writing, context);
+    PartSurvey survey(*sink);
+    extractParts(survey, map.view(), options.get(), partOptions(parts, ghosts, partition), context);
+    return survey.result();
+  }));
 }
 
 }  // namespace

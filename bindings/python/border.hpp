@@ -137,6 +137,7 @@ void bindFiles(nb::module_& module);
 void bindReports(nb::module_& module);
 void bindQuantize(nb::module_& module);
 void bindParts(nb::module_& module);
+void bindTeam(nb::module_& module);
 void bindImprove(nb::module_& module);
 
 }  // namespace hexhex::python

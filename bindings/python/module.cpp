@@ -58,6 +58,7 @@ NB_MODULE(_hexhex, module) {
   bindReports(module);
   bindQuantize(module);
   bindParts(module);
+  bindTeam(module);
   bindImprove(module);
 }
 
