@@ -3,11 +3,16 @@
 // stands in for them, which optimizers see through more or less.
 #pragma once
 
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 #if !defined(__GNUC__) && !defined(HEXHEX_PLAIN_VECTORS)
 #define HEXHEX_PLAIN_VECTORS 1
@@ -125,6 +130,8 @@ template <class T, std::size_t n>
 
 #else
 
+/// In programs for narrower registers, GCC aligns these as the narrower ones, and in functions for
+/// wide ones counts on more: what is in memory there needs alignas.
 template <class T, std::size_t n>
 struct LanesOf {
   using Type __attribute__((vector_size(n * sizeof(T)))) = T;
@@ -149,6 +156,28 @@ template <class V>
 }
 
 #endif
+
+/// Square roots of doubles.
+template <class V>
+#if defined(__GNUC__)
+[[gnu::always_inline]]
+#endif
+[[nodiscard]] inline V
+rootOf(const V& x) noexcept {
+  V roots;
+#if defined(__SSE2__) && !defined(HEXHEX_PLAIN_VECTORS)
+  // Compilers call a function for each that is negative, so that it may tell of an error.
+  for (std::size_t i = 0; i < sizeof x / sizeof(__m128d); ++i) {
+    __m128d two;
+    std::memcpy(&two, reinterpret_cast<const char*>(&x) + i * sizeof two, sizeof two);
+    two = _mm_sqrt_pd(two);
+    std::memcpy(reinterpret_cast<char*>(&roots) + i * sizeof two, &two, sizeof two);
+  }
+#else
+  for (std::size_t i = 0; i < sizeof x / sizeof(double); ++i) roots[i] = std::sqrt(x[i]);
+#endif
+  return roots;
+}
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop

@@ -4,35 +4,36 @@
 
 namespace hexhex {
 
-Colours::Colours(const CellPoints& mesh, std::span<const Index> vertices) {
-  // Each vertex gets the first colour that no neighbour has.
-  std::vector<Index> colourOf(mesh.pointCount, kNone);
-  std::vector<std::size_t> sizes;
+Colours::Colours(const CellPoints& mesh) : colourOf_(mesh.pointCount) {
+  // Each vertex gets the first colour that none before it has around.
   std::vector<Index> takenBy;  // per colour: the last vertex with a neighbour of it
-  for (const Index v : vertices) {
+  for (Index v = 0; v < mesh.pointCount; ++v) {
     for (const Index cell : mesh.around(v)) {
       for (const Index other : mesh.of(cell)) {
-        if (colourOf[other] != kNone) takenBy[colourOf[other]] = v;
+        if (other < v) takenBy[colourOf_[other]] = v;
       }
     }
     const auto colour = static_cast<std::size_t>(
         std::find_if(takenBy.begin(), takenBy.end(), [v](Index by) { return by != v; }) -
         takenBy.begin());
-    if (colour == sizes.size()) {
-      sizes.push_back(0);
-      takenBy.push_back(kNone);
-    }
-    ++sizes[colour];
-    colourOf[v] = static_cast<Index>(colour);
+    if (colour == takenBy.size()) takenBy.push_back(kNone);
+    colourOf_[v] = static_cast<std::uint16_t>(colour);
   }
-  ends_ = sizes;
-  std::vector<std::size_t> next(sizes.size());
-  for (std::size_t c = 1; c < ends_.size(); ++c) {
-    next[c] = ends_[c - 1];
-    ends_[c] += ends_[c - 1];
+  count_ = takenBy.size();
+}
+
+Colours::Groups Colours::groupsOf(std::span<const Index> vertices) const {
+  Groups groups;
+  groups.ends.resize(count_);
+  for (const Index v : vertices) ++groups.ends[colourOf_[v]];
+  std::vector<std::size_t> next(count_);
+  for (std::size_t c = 1; c < count_; ++c) {
+    next[c] = groups.ends[c - 1];
+    groups.ends[c] += groups.ends[c - 1];
   }
-  vertices_.resize(vertices.size());
-  for (const Index v : vertices) vertices_[next[colourOf[v]]++] = v;
+  groups.vertices.resize(vertices.size());
+  for (const Index v : vertices) groups.vertices[next[colourOf_[v]]++] = v;
+  return groups;
 }
 
 }  // namespace hexhex

@@ -2,6 +2,7 @@
 // does not depend on threads.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -13,19 +14,19 @@ namespace hexhex {
 
 class Colours {
  public:
-  /// @param vertices  ascending
-  Colours(const CellPoints& mesh, std::span<const Index> vertices);
+  explicit Colours(const CellPoints& mesh);
 
-  [[nodiscard]] std::size_t count() const noexcept { return ends_.size(); }
-  /// Ascending.
-  [[nodiscard]] std::span<const Index> of(std::size_t colour) const noexcept {
-    const std::size_t begin = colour == 0 ? 0 : ends_[colour - 1];
-    return std::span(vertices_).subspan(begin, ends_[colour] - begin);
-  }
+  /// Vertices by their colour, otherwise in the order of the list: each group ends where the next
+  /// begins.
+  struct Groups {
+    std::vector<Index> vertices;
+    std::vector<std::size_t> ends;
+  };
+  [[nodiscard]] Groups groupsOf(std::span<const Index> vertices) const;
 
  private:
-  std::vector<Index> vertices_;  ///< by colour
-  std::vector<std::size_t> ends_;
+  std::vector<std::uint16_t> colourOf_;  ///< per vertex
+  std::size_t count_ = 0;
 };
 
 }  // namespace hexhex

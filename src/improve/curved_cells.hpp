@@ -34,6 +34,7 @@ class CurvedCells {
     Bezier<Vec3> normals;
     std::vector<double> numbers;
     std::vector<EnergyTerm> terms;
+    std::vector<EnergyTerm> found;  ///< of all cells around a node
   };
 
   /// @param mesh  of an order up to kMaxOrder; outlives this

@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <base/vector3.hpp>
 #include <improve/point_mover.hpp>
@@ -23,9 +21,8 @@ Vec3 normalized(const Vec3& a) {
 
 }  // namespace
 
-EnergyKind PointMover::untangling(std::span<const EnergyTerm> terms) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const EnergyTerm& term : terms) least = std::min(least, term.determinant);
+EnergyKind PointMover::untangling(const EnergyTerms& terms) {
+  const double least = terms.leastDeterminantAt({});
   EnergyKind kind;
   kind.volume = kVolume;
   kind.epsilon =

@@ -24,14 +24,14 @@ class PointMover {
   [[nodiscard]] bool canMove(Index point) const { return places_.freedom[point] != Freedom::Fixed; }
 
   /// The energy that makes determinants positive: of terms by Bezier coefficients.
-  [[nodiscard]] static EnergyKind untangling(std::span<const EnergyTerm> terms);
+  [[nodiscard]] static EnergyKind untangling(const EnergyTerms& terms);
 
   /// Takes one step of Newton's method, or a part of it that lowers the energy.
   /// @param terms       where the point is
   /// @param isAccepted  called when the point has moved; if false, a shorter step is tried
   /// @return how far it moved
   template <class Accept>
-  double descend(Index point, const std::vector<EnergyTerm>& terms, const EnergyKind& kind,
+  double descend(Index point, const EnergyTerms& terms, const EnergyKind& kind,
                  const Accept& isAccepted) {
     std::array<Vec3, 3> directions;
     const std::size_t count = directionsAt(point, directions);

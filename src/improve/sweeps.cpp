@@ -4,7 +4,6 @@
 #include <base/vector3.hpp>
 #include <base/workspaces.hpp>
 #include <improve/cell_states.hpp>
-#include <improve/colours.hpp>
 #include <improve/sweeps.hpp>
 #include <improve/untangling.hpp>
 
@@ -17,9 +16,10 @@ constexpr std::size_t kGrain = 1024;
 constexpr std::size_t kVertexGrain = 64;
 constexpr std::size_t kCurvedGrain = 8;
 
-/// Rounds for the worst cells; the power of the energy meanwhile.
-constexpr int kWorstRounds = 40;
-constexpr int kWorstPower = 8;
+/// Powers of the energy for the worst cells, and rounds for each: the low ones get far soon where
+/// many cells are bad, the high ones help the last.
+constexpr std::array<int, 4> kWorstPowers = {1, 2, 4, 8};
+constexpr int kWorstRounds = 10;
 /// A step smaller than this share of the cells' size does not wake the neighbours.
 constexpr double kStill = 1e-3;
 
@@ -85,11 +85,14 @@ std::vector<Index> Sweeps::cellsThat(std::size_t n, const CellAt& cellAt,
 template <class Move>
 void Sweeps::sweep(std::span<const Index> vertices, double slack, const Move& move) {
   const CellPoints cells = cellPoints();
-  const Colours colours(cells, vertices);
+  if (!colours_) colours_.emplace(cells);
+  const Colours::Groups groups = colours_->groupsOf(vertices);
   const ChordError chordError{mesh_, places_, meshAround_, boundary_, chord_};
   const MovingMesh all{mesh_, curved_, cells, boxes_, places_, chordError};
-  for (std::size_t colour = 0; colour < colours.count(); ++colour) {
-    const std::span<const Index> group = colours.of(colour);
+  std::size_t begin = 0;
+  for (const std::size_t end : groups.ends) {
+    const auto group = std::span(groups.vertices).subspan(begin, end - begin);
+    begin = end;
     parallelForWith(
         stage_, group.size(), curved_ != nullptr ? kCurvedGrain : kVertexGrain,
         [&] { return VertexMover(all, slack); },
@@ -110,7 +113,8 @@ void Sweeps::untangle(double slack) {
         return cellsThat(
             cells.size(), [&](std::size_t c) { return cells[c]; }, kIsBad);
       }};
-  bad = untangleCells(cellPoints(), places_, moves, slack, std::move(bad));
+  Neighbourhoods near(cellPoints());
+  bad = untangleCells(near, places_, moves, slack, std::move(bad));
   if (!bad.empty()) putBack(cellPoints(), bad, points, simplices, mesh_.points, places_);
 }
 
@@ -119,28 +123,32 @@ void Sweeps::raiseWorst(double target) {
     return state.certified && state.scaled < target;
   };
   std::vector<Index> low = cellsThat(boxes_.size(), kAllCells, isLow);
+  if (low.empty()) return;
   const CellPoints all = cellPoints();
+  Neighbourhoods near(all);
   // The last round in which a vertex moved: only where something moved is there something to do.
-  std::vector<std::uint8_t> lastMove(low.empty() ? 0 : mesh_.points.size(), 0);
-  for (int round = 1; round <= kWorstRounds && !low.empty(); ++round) {
-    std::vector<Index> cells = low;
-    std::vector<Index> vertices = pointsOf(cellPoints(), 1, cells);
-    std::erase_if(vertices, [&](Index v) {
-      if (places_.freedom[v] == Freedom::Fixed) return true;
-      bool isAwake = false;
-      for (const Index cell : all.around(v)) {
-        for (const Index other : all.of(cell)) isAwake |= lastMove[other] + 1 == round;
-      }
-      return !isAwake;
-    });
-    if (vertices.empty()) break;
-    sweep(vertices, 0, [&](VertexMover& mover, Index v) {
-      if (mover.smooth(v, kWorstPower, target) > kStill) {
-        lastMove[v] = static_cast<std::uint8_t>(round);
-      }
-    });
-    low = cellsThat(
-        cells.size(), [&](std::size_t c) { return cells[c]; }, isLow);
+  std::vector<std::uint8_t> lastMove(mesh_.points.size(), 0);
+  std::uint8_t round = 0;
+  for (const int power : kWorstPowers) {
+    for (int i = 0; i < kWorstRounds && !low.empty(); ++i) {
+      std::vector<Index> cells = low;
+      std::vector<Index> vertices = near.pointsOf(1, cells);
+      std::erase_if(vertices, [&](Index v) {
+        if (places_.freedom[v] == Freedom::Fixed) return true;
+        bool isAwake = i == 0;
+        for (const Index cell : all.around(v)) {
+          for (const Index other : all.of(cell)) isAwake |= lastMove[other] == round;
+        }
+        return !isAwake;
+      });
+      if (vertices.empty()) break;
+      ++round;
+      sweep(vertices, 0, [&](VertexMover& mover, Index v) {
+        if (mover.smooth(v, power, target) > kStill) lastMove[v] = round;
+      });
+      low = cellsThat(
+          cells.size(), [&](std::size_t c) { return cells[c]; }, isLow);
+    }
   }
 }
 

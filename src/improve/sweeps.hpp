@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <adjacency/hex_topology.hpp>
@@ -11,6 +12,7 @@
 
 #include <base/stage.hpp>
 #include <improve/cell_points.hpp>
+#include <improve/colours.hpp>
 #include <improve/curved_cells.hpp>
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_mover.hpp>
@@ -55,10 +57,11 @@ class Sweeps {
   VertexPlaces& places_;
   Stage& stage_;
   VertexCells meshAround_;
-  VertexCells nodeAround_;        ///< of curved cells
-  Array<IdealBox> boxes_;         ///< per cell
-  Array<std::uint8_t> boundary_;  ///< per cell of the mesh: as of HexFaces
-  double chord_;                  ///< as of ChordError
+  VertexCells nodeAround_;          ///< of curved cells
+  Array<IdealBox> boxes_;           ///< per cell
+  Array<std::uint8_t> boundary_;    ///< per cell of the mesh: as of HexFaces
+  double chord_;                    ///< as of ChordError
+  std::optional<Colours> colours_;  ///< once they are asked for
 };
 
 }  // namespace hexhex

@@ -14,14 +14,14 @@ constexpr int kMostRings = 4;
 constexpr double kFirstSlack = 0.1;
 constexpr double kSlackGrowth = 2.16;
 
-std::vector<Index> untangleWithin(const CellPoints& mesh, const VertexPlaces& places,
+std::vector<Index> untangleWithin(Neighbourhoods& near, const VertexPlaces& places,
                                   const UntanglingMoves& moves, double slack,
                                   std::vector<Index> bad) {
   std::size_t fewest = bad.size();
   int since = 0;
-  for (int rings = 1; rings <= kMostRings && !bad.empty();) {
+  for (int rings = 0; rings <= kMostRings && !bad.empty();) {
     std::vector<Index> cells = bad;
-    std::vector<Index> points = pointsOf(mesh, rings, cells);
+    std::vector<Index> points = near.pointsOf(rings, cells);
     std::erase_if(points, [&](Index v) { return places.freedom[v] == Freedom::Fixed; });
     moves.sweep(points, slack);
     bad = moves.badAmong(cells);
@@ -39,34 +39,37 @@ std::vector<Index> untangleWithin(const CellPoints& mesh, const VertexPlaces& pl
 
 }  // namespace
 
-void makeUnique(std::vector<Index>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
-std::vector<Index> pointsOf(const CellPoints& mesh, int rings, std::vector<Index>& cells) {
+std::vector<Index> Neighbourhoods::pointsOf(int rings, std::vector<Index>& cells) {
+  for (const Index cell : cells) isCell_[cell] = 1;
   std::vector<Index> points;
+  std::size_t cellsDone = 0;
+  std::size_t pointsDone = 0;
   for (int ring = 0; ring <= rings; ++ring) {
-    points.clear();
-    for (const Index cell : cells) {
-      points.insert(points.end(), mesh.of(cell).begin(), mesh.of(cell).end());
+    for (; cellsDone < cells.size(); ++cellsDone) {
+      for (const Index v : mesh_.of(cells[cellsDone])) {
+        if (isPoint_[v] == 0) points.push_back(v);
+        isPoint_[v] = 1;
+      }
     }
-    makeUnique(points);
-    for (const Index v : points) {
-      cells.insert(cells.end(), mesh.around(v).begin(), mesh.around(v).end());
+    for (; pointsDone < points.size(); ++pointsDone) {
+      for (const Index cell : mesh_.around(points[pointsDone])) {
+        if (isCell_[cell] == 0) cells.push_back(cell);
+        isCell_[cell] = 1;
+      }
     }
-    makeUnique(cells);
   }
+  for (const Index cell : cells) isCell_[cell] = 0;
+  for (const Index v : points) isPoint_[v] = 0;
   return points;
 }
 
-std::vector<Index> untangleCells(const CellPoints& mesh, const VertexPlaces& places,
+std::vector<Index> untangleCells(Neighbourhoods& near, const VertexPlaces& places,
                                  const UntanglingMoves& moves, double slack,
                                  std::vector<Index> bad) {
-  bad = untangleWithin(mesh, places, moves, 0, std::move(bad));
+  bad = untangleWithin(near, places, moves, 0, std::move(bad));
   for (double used = kFirstSlack * slack; slack > 0 && used < 1.01 * slack && !bad.empty();
        used *= kSlackGrowth) {
-    bad = untangleWithin(mesh, places, moves, used, std::move(bad));
+    bad = untangleWithin(near, places, moves, used, std::move(bad));
   }
   return bad;
 }
@@ -89,7 +92,7 @@ void putBack(const CellPoints& mesh, std::span<const Index> cells, const Array<V
       if (isMoved(v)) back.push_back(sets.find(v));
     }
   }
-  makeUnique(back);
+  std::sort(back.begin(), back.end());
   for (Index v = 0; v < points.size(); ++v) {
     if (!isMoved(v) || !std::binary_search(back.begin(), back.end(), sets.find(v))) continue;
     points[v] = before[v];

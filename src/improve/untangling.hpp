@@ -1,6 +1,7 @@
 // Makes cells positive: around those that are not, points move until there are none.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -19,18 +20,27 @@ struct UntanglingMoves {
   std::function<std::vector<Index>(std::span<const Index> cells)> badAmong;
 };
 
-/// Sorted, each once.
-void makeUnique(std::vector<Index>& list);
+/// What is near some cells.
+class Neighbourhoods {
+ public:
+  /// @param mesh  outlives this
+  explicit Neighbourhoods(const CellPoints& mesh)
+      : mesh_(mesh), isPoint_(mesh.pointCount, 0), isCell_(mesh.cellCount(), 0) {}
 
-/// The points of cells, of cells at those, and so on.
-/// @param[in,out] cells  become those around the points
-[[nodiscard]] std::vector<Index> pointsOf(const CellPoints& mesh, int rings,
-                                          std::vector<Index>& cells);
+  /// The points of cells, of cells at those, and so on; each once.
+  /// @param[in,out] cells  become those around the points
+  [[nodiscard]] std::vector<Index> pointsOf(int rings, std::vector<Index>& cells);
+
+ private:
+  CellPoints mesh_;
+  std::vector<std::uint8_t> isPoint_;  ///< found so far; 0 between calls
+  std::vector<std::uint8_t> isCell_;
+};
 
 /// @param bad    cells that are not certified
 /// @param slack  so far may points without tags leave the surface if nothing else helps
 /// @return cells that are not certified in the end
-[[nodiscard]] std::vector<Index> untangleCells(const CellPoints& mesh, const VertexPlaces& places,
+[[nodiscard]] std::vector<Index> untangleCells(Neighbourhoods& near, const VertexPlaces& places,
                                                const UntanglingMoves& moves, double slack,
                                                std::vector<Index> bad);
 

@@ -15,6 +15,8 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/lanes.hpp>
+
 namespace hexhex {
 
 [[nodiscard]] constexpr Vec3 times(double factor, const Vec3& a) noexcept {
@@ -28,14 +30,65 @@ struct EnergyTerm {
   double growth = 0;
   double determinant = 0;  ///< det J = determinant + normal d
   Vec3 normal{};
-
-  [[nodiscard]] double squareAt(const Vec3& d) const noexcept;
-  [[nodiscard]] double determinantAt(const Vec3& d) const noexcept;
 };
 
 /// What a place contributes of which the columns of J are known, and the derivatives of these by
 /// the vertex that moves: weights[axis] times the identity.
 [[nodiscard]] EnergyTerm termOf(const std::array<Vec3, 3>& columns, const Vec3& weights) noexcept;
+
+/// Lengths of the three edges of the ideal box of a cell.
+using IdealBox = std::array<float, 3>;
+
+/// With these lengths, but no edge less than a ten-thousandth of the longest.
+[[nodiscard]] IdealBox idealBox(const Vec3& lengths) noexcept;
+
+/// A cell of which one corner moves, mirrored such that this is the one at (0, 0, 0).
+struct MovingCell {
+  std::array<const Vec3*, 8> corners;  ///< by place: bits 0, 1, 2 are u, v, w
+  Vec3 scale;                          ///< inverse lengths of the ideal box
+};
+
+/// @param corners  by place
+/// @param moving   place of the corner that moves
+[[nodiscard]] MovingCell movingCell(const std::array<const Vec3*, 8>& corners, std::size_t moving,
+                                    const IdealBox& box) noexcept;
+
+/// Four terms at once, one in each lane.
+struct alignas(4 * sizeof(double)) TermLanes {
+  static constexpr std::size_t kCount = 4;
+  using Number = Lanes<double, kCount>;
+  Number square{};
+  std::array<Number, 3> slope{};
+  Number growth{};
+  Number determinant{};
+  std::array<Number, 3> normal{};
+  Number weight{};  ///< 1, or 0 where there is no term
+};
+
+/// What all places of the cells around a vertex contribute.
+class EnergyTerms {
+ public:
+  void clear() noexcept {
+    blocks_.clear();
+    free_ = 0;
+  }
+  void add(const EnergyTerm& term);
+  /// The terms of the four corners of each cell whose determinants depend on one of them.
+  void addCorners(std::span<const MovingCell> cells);
+  /// The terms of all Bezier coefficients of the determinant that depend on a corner, in place of
+  /// determinants at their places: where all of them are positive, so is the cell.
+  void addBezier(std::span<const MovingCell> cells);
+
+  [[nodiscard]] std::span<const TermLanes> blocks() const noexcept { return blocks_; }
+  [[nodiscard]] double leastDeterminantAt(const Vec3& step) const noexcept;
+
+ private:
+  void addCells(std::span<const MovingCell> cells, std::size_t perCell,
+                void (*termsOf)(std::span<const MovingCell>, TermLanes*) noexcept);
+
+  std::vector<TermLanes> blocks_;
+  std::size_t free_ = 0;  ///< lanes of the last block
+};
 
 /// The energy: the sum of (|J|^3 / (3 sqrt(3) chi))^power, each at least 1.
 struct EnergyKind {
@@ -45,7 +98,7 @@ struct EnergyKind {
   double volume = 0;  ///< weight of (det^2 + 1) / chi, which keeps cells from shrinking
 };
 
-[[nodiscard]] double energyAt(const std::vector<EnergyTerm>& terms, const EnergyKind& kind,
+[[nodiscard]] double energyAt(const EnergyTerms& terms, const EnergyKind& kind,
                               const Vec3& step) noexcept;
 
 /// Derivatives where the vertex is.
@@ -55,28 +108,10 @@ struct EnergySlope {
   /// xx, xy, xz, yy, yz, zz; of the convex part.
   std::array<double, 6> hessian{};
 };
-[[nodiscard]] EnergySlope slopeOf(const std::vector<EnergyTerm>& terms,
-                                  const EnergyKind& kind) noexcept;
+[[nodiscard]] EnergySlope slopeOf(const EnergyTerms& terms, const EnergyKind& kind) noexcept;
 
 /// Newton's step within the span of one, two or three orthonormal directions.
 /// @return zero if there is none downhill
 [[nodiscard]] Vec3 newtonStep(const EnergySlope& slope, std::span<const Vec3> directions) noexcept;
-
-/// Lengths of the three edges of the ideal box of a cell.
-using IdealBox = std::array<float, 3>;
-
-/// With these lengths, but no edge less than a ten-thousandth of the longest.
-[[nodiscard]] IdealBox idealBox(const Vec3& lengths) noexcept;
-
-/// The terms of the four corners of a cell whose determinants depend on one of them.
-/// @param corners  by place: bits 0, 1, 2 are u, v, w
-/// @param moving   place of the corner that moves
-void addCornerTerms(const std::array<Vec3, 8>& corners, std::size_t moving, const IdealBox& box,
-                    std::vector<EnergyTerm>& terms);
-
-/// The terms of all Bezier coefficients of the determinant that depend on a corner, in place of
-/// determinants at their places: where all of them are positive, so is the cell.
-void addBezierTerms(const std::array<Vec3, 8>& corners, std::size_t moving, const IdealBox& box,
-                    std::vector<EnergyTerm>& terms);
 
 }  // namespace hexhex

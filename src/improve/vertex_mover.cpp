@@ -9,30 +9,38 @@
 
 namespace hexhex {
 
-void VertexMover::collectStraight(Index vertex, Index cell, bool bezier) {
-  std::array<Vec3, 8> corners;
-  std::size_t moving = 0;
-  for (std::size_t place = 0; place < 8; ++place) {
-    const Index corner = all_.mesh.cells[cell][kVtkCorner[place]];
-    corners[place] = all_.mesh.points[corner];
-    if (corner == vertex) moving = place;
-  }
-  (bezier ? addBezierTerms : addCornerTerms)(corners, moving, all_.boxes[cell], terms_);
-}
-
 void VertexMover::collect(Index vertex, bool bezier) {
   terms_.clear();
+  straight_.clear();
+  scratch_.found.clear();
   Index previous = kNone;
   for (const Index cell : all_.cells.around(vertex)) {
     if (cell == previous) continue;
     previous = cell;
     if (all_.curved == nullptr) {
-      collectStraight(vertex, cell, bezier);
+      straight_.push_back(straightCell(vertex, cell));
     } else {
       all_.curved->addTerms(all_.mesh.points, cell, vertex, all_.boxes[cell], bezier, scratch_,
-                            terms_);
+                            scratch_.found);
     }
   }
+  if (bezier) {
+    terms_.addBezier(straight_);
+  } else {
+    terms_.addCorners(straight_);
+  }
+  for (const EnergyTerm& term : scratch_.found) terms_.add(term);
+}
+
+MovingCell VertexMover::straightCell(Index vertex, Index cell) const {
+  std::array<const Vec3*, 8> corners;
+  std::size_t moving = 0;
+  for (std::size_t place = 0; place < 8; ++place) {
+    const Index corner = all_.mesh.cells[cell][kVtkCorner[place]];
+    corners[place] = &all_.mesh.points[corner];
+    if (corner == vertex) moving = place;
+  }
+  return movingCell(corners, moving, all_.boxes[cell]);
 }
 
 double VertexMover::sizeAt(Index vertex) const {

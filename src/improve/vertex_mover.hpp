@@ -45,14 +45,15 @@ class VertexMover {
 
  private:
   void collect(Index vertex, bool bezier);
-  void collectStraight(Index vertex, Index cell, bool bezier);
+  [[nodiscard]] MovingCell straightCell(Index vertex, Index cell) const;
   /// Of the worst of the cells around a vertex.
   [[nodiscard]] CellState stateAt(Index vertex);
   [[nodiscard]] double sizeAt(Index vertex) const;
 
   MovingMesh all_;
   PointMover mover_;
-  std::vector<EnergyTerm> terms_;
+  EnergyTerms terms_;
+  std::vector<MovingCell> straight_;
   CurvedCells::Scratch scratch_;
 };
 

@@ -1,13 +1,5 @@
 // Compiled for several widths of registers: a vector type of the compiler goes through all of it,
 // and what is called for one width takes everything inline.
-//
-// x(u, v, w) is linear along each axis, so x_u is bilinear in (v, w) with the four u-edges as
-// coefficients, and so on. det(x_u, x_v, x_w) has degree 2 along each axis: 27 Bezier coefficients
-// b[a][b][c], between the least and the largest of which all values are. Those at corners are the
-// values there, [u, v, w] of the three edges. On edges, 2 b is the sum of two such products that
-// mix the edges of both ends. The remaining seven follow, as det has no term with two squares
-// (u^2 v^2 needs two equal columns): second differences along two axes vanish, whence on faces
-// 4 b = 2 (sum over sides) - (sum over corners), and likewise in the middle layer for the centre.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -15,6 +7,7 @@
 
 #include <base/lanes.hpp>
 #include <mesh/cell_measures.hpp>
+#include <mesh/jacobian_lanes.hpp>
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -31,46 +24,11 @@ using Four = Lanes<double, 4>;
 template <class V>
 using Mask = decltype(V{} < V{});
 
-template <class V>
-using Vector = std::array<V, 3>;
-
-template <class V>
-Vector<V> operator+(const Vector<V>& a, const Vector<V>& b) noexcept {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-template <class V>
-Vector<V> operator-(const Vector<V>& a, const Vector<V>& b) noexcept {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-template <class V>
-[[gnu::always_inline]] inline V dot(const Vector<V>& a, const Vector<V>& b) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-template <class V>
-Vector<V> cross(const Vector<V>& a, const Vector<V>& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 /// x -> x |x|, which keeps order and sign, so that one root is taken instead of nine.
 template <class V>
 [[gnu::always_inline]] inline V signedSquare(const V& x) noexcept {
   return x * bitsAs<V>(bitsAs<Mask<V>>(x) & std::int64_t{0x7fffffffffffffff});
 }
-
-/// Edges along the three axes, by the two other coordinates of their place, the lower axis in bit
-/// 0.
-template <class V>
-struct Edges {
-  std::array<Vector<V>, 4> u;
-  std::array<Vector<V>, 4> v;
-  std::array<Vector<V>, 4> w;
-
-  /// @param at  points of both cells by place, bits as above
-  explicit Edges(const std::array<Vector<V>, 8>& at) noexcept
-      : u{at[1] - at[0], at[3] - at[2], at[5] - at[4], at[7] - at[6]},
-        v{at[2] - at[0], at[3] - at[1], at[6] - at[4], at[7] - at[5]},
-        w{at[4] - at[0], at[5] - at[1], at[6] - at[2], at[7] - at[3]} {}
-};
 
 template <class V, std::size_t n>
 [[gnu::always_inline]] inline V leastOf(const std::array<V, n>& values) noexcept {
@@ -84,56 +42,15 @@ template <class V>
   return larger(larger(s[0], s[1]), larger(s[2], s[3]));
 }
 
-/// The coefficients, times 2 on edges, 4 on faces and 8 at the centre.
+/// Of all 27 coefficients.
 template <class V>
-struct Coefficients {
-  std::array<V, 8> corners;
-  std::array<V, 4> u;  ///< on the u-edges, and so on
-  std::array<V, 4> v;
-  std::array<V, 4> w;
-
-  explicit Coefficients(const Edges<V>& edges) noexcept {
-    for (std::size_t k = 0; k < 2; ++k) {
-      std::array<Vector<V>, 4> normals;
-      for (std::size_t ij = 0; ij < 4; ++ij) {
-        normals[ij] = cross(edges.u[(ij >> 1U) + 2 * k], edges.v[(ij & 1U) + 2 * k]);
-        corners[ij + 4 * k] = dot(normals[ij], edges.w[ij]);
-      }
-      for (std::size_t e = 0; e < 2; ++e) {
-        const std::size_t f = 2 * e;
-        u[e + 2 * k] = dot(normals[f], edges.w[f + 1]) + dot(normals[f + 1], edges.w[f]);
-        v[e + 2 * k] = dot(normals[e], edges.w[e + 2]) + dot(normals[e + 2], edges.w[e]);
-      }
-    }
-    // The w-edges: products that mix both ends are those of sums without those of each end.
-    const std::array<Vector<V>, 2> uSum = {edges.u[0] + edges.u[2], edges.u[1] + edges.u[3]};
-    const std::array<Vector<V>, 2> vSum = {edges.v[0] + edges.v[2], edges.v[1] + edges.v[3]};
-    for (std::size_t ij = 0; ij < 4; ++ij) {
-      w[ij] =
-          dot(cross(uSum[ij >> 1U], vSum[ij & 1U]), edges.w[ij]) - corners[ij] - corners[ij + 4];
-    }
-  }
-
-  [[gnu::always_inline]] V sumOfCorners(std::size_t a, std::size_t b, std::size_t c,
-                                        std::size_t d) const noexcept {
-    return (corners[a] + corners[b]) + (corners[c] + corners[d]);
-  }
-
-  /// Of all 27.
-  [[gnu::always_inline]] V least() const noexcept {
-    const std::array<V, 4> upright = {(u[0] + u[2]) + (w[0] + w[1]) - sumOfCorners(0, 1, 4, 5),
-                                      (u[1] + u[3]) + (w[2] + w[3]) - sumOfCorners(2, 3, 6, 7),
-                                      (v[0] + v[2]) + (w[0] + w[2]) - sumOfCorners(0, 2, 4, 6),
-                                      (v[1] + v[3]) + (w[1] + w[3]) - sumOfCorners(1, 3, 5, 7)};
-    const std::array<V, 2> lying = {(u[0] + u[1]) + (v[0] + v[1]) - sumOfCorners(0, 1, 2, 3),
-                                    (u[2] + u[3]) + (v[2] + v[3]) - sumOfCorners(4, 5, 6, 7)};
-    const V centre =
-        (upright[0] + upright[1]) + (upright[2] + upright[3]) - ((w[0] + w[1]) + (w[2] + w[3]));
-    const V edges = smaller(smaller(leastOf(u), leastOf(v)), leastOf(w));
-    const V faces = smaller(leastOf(upright), leastOf(lying));
-    return smaller(smaller(leastOf(corners), 0.5 * edges), smaller(0.25 * faces, 0.125 * centre));
-  }
-};
+[[gnu::always_inline]] inline V leastOf(const JacobianCoefficients<V>& all) noexcept {
+  const std::array<V, 4> upright = all.upright();
+  const V edges = smaller(smaller(leastOf(all.u), leastOf(all.v)), leastOf(all.w));
+  const V faces = smaller(leastOf(upright), leastOf(all.lying()));
+  return smaller(smaller(leastOf(all.corners), 0.5 * edges),
+                 smaller(0.25 * faces, 0.125 * all.centre(upright)));
+}
 
 template <class V>
 void store(const V& values, double* to) noexcept {
@@ -143,9 +60,9 @@ void store(const V& values, double* to) noexcept {
 /// Measures some cells, all but the roots.
 /// @param at  points of the cells by place, bits as above
 template <class V>
-void measure(const std::array<Vector<V>, 8>& at, std::size_t first, CellMeasures& measures) {
-  const Edges<V> edges(at);
-  const Coefficients<V> coefficients(edges);
+void measure(const std::array<LaneVector<V>, 8>& at, std::size_t first, CellMeasures& measures) {
+  const CellEdges<V> edges(at);
+  const JacobianCoefficients<V> coefficients(edges);
   std::array<V, 4> uu;
   std::array<V, 4> vv;
   std::array<V, 4> ww;
@@ -156,9 +73,9 @@ void measure(const std::array<Vector<V>, 8>& at, std::size_t first, CellMeasures
   }
 
   // The centre, by principal axes, then the corners.
-  const Vector<V> x = (edges.u[0] + edges.u[2]) + (edges.u[1] + edges.u[3]);
-  const Vector<V> y = (edges.v[0] + edges.v[2]) + (edges.v[1] + edges.v[3]);
-  const Vector<V> z = (edges.w[0] + edges.w[1]) + (edges.w[2] + edges.w[3]);
+  const LaneVector<V> x = (edges.u[0] + edges.u[2]) + (edges.u[1] + edges.u[3]);
+  const LaneVector<V> y = (edges.v[0] + edges.v[2]) + (edges.v[1] + edges.v[3]);
+  const LaneVector<V> z = (edges.w[0] + edges.w[1]) + (edges.w[2] + edges.w[3]);
   V smallestLengths = dot(x, x) * dot(y, y) * dot(z, z);
   V ratio = signedSquare(dot(cross(x, y), z)) / smallestLengths;
   for (std::size_t c = 0; c < 8; ++c) {
@@ -176,7 +93,7 @@ void measure(const std::array<Vector<V>, 8>& at, std::size_t first, CellMeasures
                           (smallestLengths > 0x1p-300);
   store(ratio, &measures.scaled[first]);
   store(leastOf(coefficients.corners), &measures.corner[first]);
-  store(coefficients.least(), &measures.least[first]);
+  store(leastOf(coefficients), &measures.least[first]);
   store(V(uLongest * vLongest * wLongest), &measures.volume[first]);
   std::memcpy(&measures.inRange[first], &inRange, sizeof inRange);
 }
@@ -191,7 +108,7 @@ template <class V>
 void measureAll(const Vec3* points, std::span<const Hex> cells, CellMeasures& measures) noexcept {
   constexpr std::size_t kLanes = sizeof(V) / sizeof(double);
   for (std::size_t first = 0; first < cells.size(); first += kLanes) {
-    std::array<Vector<V>, 8> at;
+    std::array<LaneVector<V>, 8> at;
     for (std::size_t place = 0; place < 8; ++place) {
       std::array<const Vec3*, kLanes> corners;
       for (std::size_t lane = 0; lane < kLanes; ++lane) {

@@ -8,6 +8,7 @@
 #include <hexhex/improve.hpp>
 #include <hexhex/samples.hpp>
 
+#include <base/vector3.hpp>
 #include <improve/curved_cells.hpp>
 
 #include "mesh/grid_meshes.hpp"
@@ -79,8 +80,10 @@ TEST(ImproveCurved, TermsTellHowDeterminantsChange) {
         ASSERT_EQ(before.size(), after.size());
         ASSERT_FALSE(before.empty());
         for (std::size_t t = 0; t < before.size(); ++t) {
-          EXPECT_NEAR(before[t].determinantAt(step), after[t].determinant, 1e-7);
-          EXPECT_NEAR(before[t].squareAt(step), after[t].square, 1e-7);
+          const EnergyTerm& term = before[t];
+          EXPECT_NEAR(term.determinant + dot(term.normal, step), after[t].determinant, 1e-7);
+          EXPECT_NEAR(term.square + 2 * dot(term.slope, step) + term.growth * dot(step, step),
+                      after[t].square, 1e-7);
         }
       }
     }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <base/vector3.hpp>
+#include <improve/energy_kernels.hpp>
 #include <improve/vertex_energy.hpp>
 #include <mesh/cell_measures.hpp>
 
@@ -36,6 +37,28 @@ CellMeasures measured(const std::array<Vec3, 8>& corners) {
   return measures;
 }
 
+MovingCell moving(const std::array<Vec3, 8>& corners, std::size_t place, const IdealBox& box) {
+  std::array<const Vec3*, 8> pointers;
+  for (std::size_t i = 0; i < 8; ++i) pointers[i] = &corners[i];
+  return movingCell(pointers, place, box);
+}
+
+EnergyTerms cornerTerms(const std::array<Vec3, 8>& corners, std::size_t place,
+                        const IdealBox& box) {
+  EnergyTerms terms;
+  const MovingCell cell = moving(corners, place, box);
+  terms.addCorners(std::span(&cell, 1));
+  return terms;
+}
+
+EnergyTerms bezierTerms(const std::array<Vec3, 8>& corners, std::size_t place,
+                        const IdealBox& box) {
+  EnergyTerms terms;
+  const MovingCell cell = moving(corners, place, box);
+  terms.addBezier(std::span(&cell, 1));
+  return terms;
+}
+
 }  // namespace
 
 TEST(VertexEnergy, IsOneForEachTermOfTheIdealBox) {
@@ -43,13 +66,8 @@ TEST(VertexEnergy, IsOneForEachTermOfTheIdealBox) {
   std::array<Vec3, 8> corners = randomCell(random, 0);
   for (Vec3& corner : corners) corner = {2 * corner[0], 3 * corner[1], 0.5 * corner[2]};
   for (std::size_t moving = 0; moving < 8; ++moving) {
-    std::vector<EnergyTerm> terms;
-    addCornerTerms(corners, moving, {2, 3, 0.5F}, terms);
-    EXPECT_EQ(terms.size(), 4U);
-    EXPECT_NEAR(energyAt(terms, {}, {}), 4, 1e-12);
-    addBezierTerms(corners, moving, {2, 3, 0.5F}, terms);
-    EXPECT_EQ(terms.size(), 24U);
-    EXPECT_NEAR(energyAt(terms, {}, {}), 24, 1e-12);
+    EXPECT_NEAR(energyAt(cornerTerms(corners, moving, {2, 3, 0.5F}), {}, {}), 4, 1e-12);
+    EXPECT_NEAR(energyAt(bezierTerms(corners, moving, {2, 3, 0.5F}), {}, {}), 20, 1e-12);
   }
 }
 
@@ -60,18 +78,12 @@ TEST(VertexEnergy, KnowsTheLeastBezierCoefficientWhereverTheVertexGoes) {
     const Vec3 step = {random.real() - 0.5, random.real() - 0.5, random.real() - 0.5};
     // All corners together have all coefficients.
     double least = 1e9;
-    std::vector<EnergyTerm> terms;
     for (std::size_t moving = 0; moving < 8; ++moving) {
-      terms.clear();
-      addBezierTerms(corners, moving, {1, 1, 1}, terms);
+      const EnergyTerms terms = bezierTerms(corners, moving, {1, 1, 1});
       std::array<Vec3, 8> moved = corners;
       moved[moving] = plus(moved[moving], step);
-      double here = 1e9;
-      for (const EnergyTerm& term : terms) {
-        least = std::min(least, term.determinant);
-        here = std::min(here, term.determinantAt(step));
-      }
-      EXPECT_GE(here, measured(moved).least[0] - 1e-12);
+      least = std::min(least, terms.leastDeterminantAt({}));
+      EXPECT_GE(terms.leastDeterminantAt(step), measured(moved).least[0] - 1e-12);
     }
     EXPECT_NEAR(least, measured(corners).least[0], 1e-12);
   }
@@ -81,8 +93,7 @@ TEST(VertexEnergy, HasTheSlopeOfDifferences) {
   Random random(3);
   for (int trial = 0; trial < 200; ++trial) {
     const std::array<Vec3, 8> corners = randomCell(random, 0.5);
-    std::vector<EnergyTerm> terms;
-    addBezierTerms(corners, random.below(8), {1, 1.5F, 0.7F}, terms);
+    const EnergyTerms terms = bezierTerms(corners, random.below(8), {1, 1.5F, 0.7F});
     const EnergyKind kind{trial % 2 == 0 ? 1 : 4, 0.3, trial % 3 == 0 ? 0.1 : 0.0};
     const EnergySlope slope = slopeOf(terms, kind);
     EXPECT_NEAR(slope.energy, energyAt(terms, kind, {}), 1e-9 * slope.energy);
@@ -101,8 +112,7 @@ TEST(VertexEnergy, HasTheCurvatureOfDifferencesWhereItIsConvex) {
   Random random(4);
   for (int trial = 0; trial < 100; ++trial) {
     const std::array<Vec3, 8> corners = randomCell(random, 0.15);
-    std::vector<EnergyTerm> terms;
-    addCornerTerms(corners, random.below(8), {1, 1, 1}, terms);
+    const EnergyTerms terms = cornerTerms(corners, random.below(8), {1, 1, 1});
     const EnergyKind kind{trial % 2 == 0 ? 1 : 8, 0, 0};
     const EnergySlope slope = slopeOf(terms, kind);
     const Vec3 step = {1e-4 * random.real(), 1e-4 * random.real(), 1e-4 * random.real()};
@@ -118,6 +128,59 @@ TEST(VertexEnergy, HasTheCurvatureOfDifferencesWhereItIsConvex) {
     const std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
     const Vec3 newton = newtonStep(slope, axes);
     EXPECT_LE(dot(newton, slope.gradient), 0);
+  }
+}
+
+TEST(VertexEnergy, IsTheSameBitsForAllWidthsOfRegisters) {
+  Random random(5);
+  std::array<std::array<Vec3, 8>, 3> corners;
+  std::array<MovingCell, 3> cells;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    corners[i] = randomCell(random, 0.4);
+    cells[i] = moving(corners[i], i, {1, 2, 3});
+  }
+  const EnergyKind kind{2, 0.1, 0.1};
+  const Vec3 step = {0.1, -0.2, 0.05};
+  const auto results = [&](const EnergyKernels& kernels) {
+    std::array<TermLanes, kBezierTerms + kCornerTerms> terms;
+    kernels.bezierTerms(cells, terms.data());
+    kernels.cornerTerms(cells, &terms[kBezierTerms]);
+    EnergySlope slope;
+    kernels.slope(terms, kind, slope);
+    return std::pair(kernels.energy(terms, kind, step), slope);
+  };
+  const auto [energy, slope] = results(energyKernels().front());
+  for (const EnergyKernels& kernels : energyKernels()) {
+    const auto [sameEnergy, sameSlope] = results(kernels);
+    EXPECT_EQ(sameEnergy, energy);
+    EXPECT_EQ(sameSlope.energy, slope.energy);
+    EXPECT_EQ(sameSlope.gradient, slope.gradient);
+    EXPECT_EQ(sameSlope.hessian, slope.hessian);
+  }
+}
+
+/// Lanes that are not used count nothing.
+TEST(VertexEnergy, IsTheSumOverCells) {
+  Random random(6);
+  for (std::size_t n = 1; n <= 9; ++n) {
+    std::vector<std::array<Vec3, 8>> corners(n);
+    std::vector<MovingCell> cells;
+    for (std::array<Vec3, 8>& cell : corners) {
+      cell = randomCell(random, 0.2);
+      cells.push_back(moving(cell, random.below(8), {1, 1, 1}));
+    }
+    const EnergyKind kind{4, 0.1, 0.1};
+    EnergyTerms together;
+    together.addBezier(cells);
+    double sum = 0;
+    EnergyTerms terms;
+    for (const MovingCell& cell : cells) {
+      terms.clear();
+      terms.addBezier(std::span(&cell, 1));
+      sum += energyAt(terms, kind, {});
+    }
+    EXPECT_NEAR(energyAt(together, kind, {}), sum, 1e-12 * sum);
+    EXPECT_NEAR(slopeOf(together, kind).energy, sum, 1e-12 * sum);
   }
 }
 

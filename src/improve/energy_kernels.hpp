@@ -1,0 +1,30 @@
+// Terms of energies, four at a time: those of up to four cells at the same place.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include <base/lanes.hpp>
+#include <improve/vertex_energy.hpp>
+
+namespace hexhex {
+
+struct EnergyKernels {
+  /// The 4 terms of corners, or the 20 of coefficients, of one to four cells.
+  void (*cornerTerms)(std::span<const MovingCell> cells, TermLanes* terms) noexcept;
+  void (*bezierTerms)(std::span<const MovingCell> cells, TermLanes* terms) noexcept;
+  double (*energy)(std::span<const TermLanes> terms, const EnergyKind& kind,
+                   const Vec3& step) noexcept;
+  void (*slope)(std::span<const TermLanes> terms, const EnergyKind& kind,
+                EnergySlope& slope) noexcept;
+};
+
+inline constexpr std::size_t kCornerTerms = 4;
+inline constexpr std::size_t kBezierTerms = 20;
+
+/// For each width of registers that the processor has, the widest last. All give the same, bit for
+/// bit.
+[[nodiscard]] std::span<const EnergyKernels> energyKernels() noexcept;
+
+}  // namespace hexhex
