@@ -38,7 +38,7 @@ PartOptions partOptions(std::uint32_t parts, std::uint32_t ghosts, const std::st
   return options;
 }
 
-nb::tuple asTuple(MeshPart&& part) {
+nb::tuple partTuple(MeshPart&& part) {
   nb::list neighbours;
   for (PartNeighbour& neighbour : part.neighbours) {
     neighbours.append(neighbourTuple(std::move(neighbour)));
@@ -49,7 +49,7 @@ nb::tuple asTuple(MeshPart&& part) {
                         listOf(std::move(part.ghostLayers)), neighbours);
 }
 
-Dict asDict(const PartsSummary& summary) {
+Dict partsDict(const PartsSummary& summary) {
   Dict d;
   d["cells"] = summary.cells;
   d["vertices"] = summary.vertices;
@@ -71,14 +71,14 @@ nb::list extractAll(const ArrayMap& map, std::uint32_t parts, std::uint32_t ghos
     return extractParts(map.view(), options.get(), partOptions(parts, ghosts, partition), context);
   });
   nb::list list;
-  for (MeshPart& part : made) list.append(asTuple(std::move(part)));
+  for (MeshPart& part : made) list.append(partTuple(std::move(part)));
   return list;
 }
 
 Dict extractIntoFiles(const std::string& file, const ArrayMap& map, std::uint32_t parts,
                       std::uint32_t ghosts, const std::string& partition, const Options& options,
                       const std::string& format, int threads, const Progress& progress) {
-  return asDict(run(threads, progress, [&](Context& context) {
+  return partsDict(run(threads, progress, [&](Context& context) {
     WriteOptions writing;
     writing.format = format;
     const std::unique_ptr<PartSink> sink = openPartSink(file, writing, context);

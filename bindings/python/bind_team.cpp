@@ -88,10 +88,10 @@ nb::tuple extractOne(const nb::object& connected, const ArrayMap* map, const std
                      std::uint32_t ghosts, const std::string& partition, const Options& options,
                      int threads, const Progress& progress) {
   const PartOptions parts = partOptions(1, ghosts, partition);
-  return asTuple(runTogether(connected, map, path, threads, progress,
-                             [&](PythonTeam& team, const TetMapView& view, Context& context) {
-                               return extractPart(team, view, options.get(), parts, context);
-                             }));
+  return partTuple(runTogether(connected, map, path, threads, progress,
+                               [&](PythonTeam& team, const TetMapView& view, Context& context) {
+                                 return extractPart(team, view, options.get(), parts, context);
+                               }));
 }
 
 Dict extractTogether(const nb::object& connected, const std::string& file, const ArrayMap* map,
@@ -101,7 +101,7 @@ Dict extractTogether(const nb::object& connected, const std::string& file, const
   const PartOptions parts = partOptions(1, ghosts, partition);
   WriteOptions writing;
   writing.format = format;
-  return asDict(runTogether(
+  return partsDict(runTogether(
       connected, map, path, threads, progress,
       [&](PythonTeam& team, const TetMapView& view, Context& context) {
         const std::unique_ptr<PartSink> sink = openPartSink(file, writing, context, &team);

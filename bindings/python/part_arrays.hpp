@@ -10,7 +10,7 @@ namespace hexhex::python {
 [[nodiscard]] PartOptions partOptions(std::uint32_t parts, std::uint32_t ghosts,
                                       const std::string& partition);
 /// The fields of the class MeshPart, in their order.
-[[nodiscard]] nb::tuple asTuple(MeshPart&& part);
-[[nodiscard]] Dict asDict(const PartsSummary& summary);
+[[nodiscard]] nb::tuple partTuple(MeshPart&& part);
+[[nodiscard]] Dict partsDict(const PartsSummary& summary);
 
 }  // namespace hexhex::python
