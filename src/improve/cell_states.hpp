@@ -35,4 +35,12 @@ void forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const I
   }
 }
 
+/// What is kept of the state of a cell: its scaled Jacobian, or less than any if it is not
+/// certified.
+[[nodiscard]] inline double certifiedQuality(const CellState& state) noexcept {
+  constexpr double kNotCertified = -2;
+  return state.certified ? state.scaled : kNotCertified;
+}
+[[nodiscard]] inline bool isCertified(double quality) noexcept { return quality >= -1; }
+
 }  // namespace hexhex

@@ -40,7 +40,7 @@ class PointMover {
     const double promised = dot(slope.gradient, direction);
     if (!(promised < -kLeastPromise * slope.energy)) return 0;
     const SurfacePlace old{points_[point], places_.simplex[point]};
-    double share = 1;
+    double share = kind.power > 2 ? 1 : kOverrelaxation;
     for (int i = 0; i < kHalvings; ++i, share *= 0.5) {
       const Step step = stepBy(point, direction, share);
       const double energy = energyAt(terms, kind, step.moved);
@@ -53,6 +53,9 @@ class PointMover {
   }
 
  private:
+  /// The first share of Newton's step that is tried with low powers. As neighbours follow, sweeps
+  /// get far sooner with more than one (successive overrelaxation).
+  static constexpr double kOverrelaxation = 1.6;
   /// Halvings of a step until it is given up.
   static constexpr int kHalvings = 8;
   /// Share of the decrease that the slope promises.

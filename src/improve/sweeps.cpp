@@ -16,10 +16,12 @@ constexpr std::size_t kGrain = 1024;
 constexpr std::size_t kVertexGrain = 64;
 constexpr std::size_t kCurvedGrain = 8;
 
-/// Powers of the energy for the worst cells, and rounds for each: the low ones get far soon where
-/// many cells are bad, the high ones help the last.
-constexpr std::array<int, 4> kWorstPowers = {1, 2, 4, 8};
+/// Powers of the energy for the worst cells: the low ones get far soon where many cells are bad,
+/// the high one helps the last. For each, rounds, and visits per vertex of the mesh.
+constexpr std::array<int, 3> kWorstPowers = {1, 2, 8};
 constexpr int kWorstRounds = 10;
+constexpr std::size_t kMostVisits = 4;
+
 /// A step smaller than this share of the cells' size does not wake the neighbours.
 constexpr double kStill = 1e-3;
 
@@ -37,8 +39,7 @@ IdealBox boxOf(const Array<Vec3>& points, const Hex& cell) {
   return idealBox(sums);
 }
 
-constexpr auto kAllCells = [](std::size_t c) { return static_cast<Index>(c); };
-constexpr auto kIsBad = [](const CellState& state) { return !state.certified; };
+constexpr auto kIsBad = [](double quality) { return !isCertified(quality); };
 
 }  // namespace
 
@@ -56,6 +57,8 @@ Sweeps::Sweeps(HexMesh& mesh, const CurvedCells* curved, VertexPlaces& places, d
   parallelFor(stage, boxes_.size(), kGrain, [&](std::size_t c) {
     boxes_[c] = boxOf(mesh.points, curved != nullptr ? curved->cornersOf(c) : mesh.cells[c]);
   });
+  qualities_.resize(boxes_.size());
+  measureAll();
 }
 
 CellPoints Sweeps::cellPoints() const {
@@ -67,19 +70,37 @@ CellPoints Sweeps::cellPoints() const {
           mesh_.points.size()};
 }
 
-template <class CellAt, class Wanted>
-std::vector<Index> Sweeps::cellsThat(std::size_t n, const CellAt& cellAt,
-                                     const Wanted& isWanted) const {
-  return collectFromBlocks<Index>(
-      stage_, n, curved_ != nullptr ? kCurvedGrain : kGrain,
-      [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
-        CurvedCells::Scratch scratch;
-        std::vector<Index> list;
-        for (std::size_t c = begin; c < end; ++c) list.push_back(cellAt(c));
-        forStates(mesh_, curved_, list, scratch, [&](Index cell, const CellState& state) {
-          if (isWanted(state)) found.push_back(cell);
-        });
-      });
+template <class CellAt>
+void Sweeps::measure(std::size_t n, const CellAt& cellAt) {
+  parallelBlocks(stage_, n, curved_ != nullptr ? kCurvedGrain : kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   CurvedCells::Scratch scratch;
+                   std::vector<Index> list;
+                   for (std::size_t c = begin; c < end; ++c) list.push_back(cellAt(c));
+                   forStates(mesh_, curved_, list, scratch,
+                             [&](Index cell, const CellState& state) {
+                               qualities_[cell] = certifiedQuality(state);
+                             });
+                 });
+}
+
+void Sweeps::measureAll() {
+  measure(boxes_.size(), [](std::size_t c) { return static_cast<Index>(c); });
+}
+
+template <class Wanted>
+std::vector<Index> Sweeps::cellsThat(const Wanted& isWanted) const {
+  std::vector<Index> list;
+  for (Index cell = 0; cell < qualities_.size(); ++cell) {
+    if (isWanted(qualities_[cell])) list.push_back(cell);
+  }
+  return list;
+}
+
+template <class Wanted>
+std::vector<Index> Sweeps::cellsThat(std::vector<Index> list, const Wanted& isWanted) const {
+  std::erase_if(list, [&](Index cell) { return !isWanted(qualities_[cell]); });
+  return list;
 }
 
 template <class Move>
@@ -88,7 +109,7 @@ void Sweeps::sweep(std::span<const Index> vertices, double slack, const Move& mo
   if (!colours_) colours_.emplace(cells);
   const Colours::Groups groups = colours_->groupsOf(vertices);
   const ChordError chordError{mesh_, places_, meshAround_, boundary_, chord_};
-  const MovingMesh all{mesh_, curved_, cells, boxes_, places_, chordError};
+  const MovingMesh all{mesh_, curved_, cells, boxes_, places_, chordError, qualities_};
   std::size_t begin = 0;
   for (const std::size_t end : groups.ends) {
     const auto group = std::span(groups.vertices).subspan(begin, end - begin);
@@ -101,7 +122,7 @@ void Sweeps::sweep(std::span<const Index> vertices, double slack, const Move& mo
 }
 
 void Sweeps::untangle(double slack) {
-  std::vector<Index> bad = cellsThat(boxes_.size(), kAllCells, kIsBad);
+  std::vector<Index> bad = cellsThat(kIsBad);
   if (bad.empty()) return;
   const Array<Vec3> points = mesh_.points;
   const Array<Index> simplices = places_.simplex;
@@ -110,19 +131,19 @@ void Sweeps::untangle(double slack) {
         sweep(vertices, used, [](VertexMover& mover, Index v) { mover.untangle(v); });
       },
       [&](std::span<const Index> cells) {
-        return cellsThat(
-            cells.size(), [&](std::size_t c) { return cells[c]; }, kIsBad);
+        measure(cells.size(), [&](std::size_t c) { return cells[c]; });
+        return cellsThat(std::vector<Index>(cells.begin(), cells.end()), kIsBad);
       }};
   Neighbourhoods near(cellPoints());
   bad = untangleCells(near, places_, moves, slack, std::move(bad));
-  if (!bad.empty()) putBack(cellPoints(), bad, points, simplices, mesh_.points, places_);
+  if (bad.empty()) return;
+  putBack(cellPoints(), bad, points, simplices, mesh_.points, places_);
+  measureAll();
 }
 
 void Sweeps::raiseWorst(double target) {
-  const auto isLow = [target](const CellState& state) {
-    return state.certified && state.scaled < target;
-  };
-  std::vector<Index> low = cellsThat(boxes_.size(), kAllCells, isLow);
+  const auto isLow = [target](double quality) { return isCertified(quality) && quality < target; };
+  std::vector<Index> low = cellsThat(isLow);
   if (low.empty()) return;
   const CellPoints all = cellPoints();
   Neighbourhoods near(all);
@@ -130,7 +151,8 @@ void Sweeps::raiseWorst(double target) {
   std::vector<std::uint8_t> lastMove(mesh_.points.size(), 0);
   std::uint8_t round = 0;
   for (const int power : kWorstPowers) {
-    for (int i = 0; i < kWorstRounds && !low.empty(); ++i) {
+    std::size_t visits = 0;
+    for (int i = 0; i < kWorstRounds && visits < kMostVisits * mesh_.points.size(); ++i) {
       std::vector<Index> cells = low;
       std::vector<Index> vertices = near.pointsOf(1, cells);
       std::erase_if(vertices, [&](Index v) {
@@ -142,12 +164,12 @@ void Sweeps::raiseWorst(double target) {
         return !isAwake;
       });
       if (vertices.empty()) break;
+      visits += vertices.size();
       ++round;
       sweep(vertices, 0, [&](VertexMover& mover, Index v) {
         if (mover.smooth(v, power, target) > kStill) lastMove[v] = round;
       });
-      low = cellsThat(
-          cells.size(), [&](std::size_t c) { return cells[c]; }, isLow);
+      low = cellsThat(std::move(cells), isLow);
     }
   }
 }

@@ -45,10 +45,15 @@ class Sweeps {
   [[nodiscard]] CellPoints cellPoints() const;
 
  private:
-  /// The cells, of n that `cellAt` lists, whose CellState is wanted.
-  template <class CellAt, class Wanted>
-  [[nodiscard]] std::vector<Index> cellsThat(std::size_t n, const CellAt& cellAt,
-                                             const Wanted& isWanted) const;
+  /// Takes the qualities of n cells that `cellAt` lists.
+  template <class CellAt>
+  void measure(std::size_t n, const CellAt& cellAt);
+  void measureAll();
+  /// The cells whose quality is wanted, of all or of a list.
+  template <class Wanted>
+  [[nodiscard]] std::vector<Index> cellsThat(const Wanted& isWanted) const;
+  template <class Wanted>
+  [[nodiscard]] std::vector<Index> cellsThat(std::vector<Index> list, const Wanted& isWanted) const;
   template <class Move>
   void sweep(std::span<const Index> vertices, double slack, const Move& move);
 
@@ -59,6 +64,7 @@ class Sweeps {
   VertexCells meshAround_;
   VertexCells nodeAround_;          ///< of curved cells
   Array<IdealBox> boxes_;           ///< per cell
+  Array<double> qualities_;         ///< per cell: certifiedQuality(), of where points are
   Array<std::uint8_t> boundary_;    ///< per cell of the mesh: as of HexFaces
   double chord_;                    ///< as of ChordError
   std::optional<Colours> colours_;  ///< once they are asked for

@@ -51,14 +51,15 @@ double VertexMover::sizeAt(Index vertex) const {
   return size;
 }
 
-CellState VertexMover::stateAt(Index vertex) {
-  CellState worst;
+double VertexMover::measureAround(Index vertex) {
+  measured_.clear();
+  double least = 1;
   forStates(all_.mesh, all_.curved, all_.cells.around(vertex), scratch_,
-            [&worst](Index /*cell*/, const CellState& state) {
-              worst.certified = worst.certified && state.certified;
-              worst.scaled = std::min(worst.scaled, state.scaled);
+            [&](Index cell, const CellState& state) {
+              measured_.emplace_back(cell, certifiedQuality(state));
+              least = std::min(least, measured_.back().second);
             });
-  return worst;
+  return least;
 }
 
 double VertexMover::untangle(Index vertex) {
@@ -70,17 +71,20 @@ double VertexMover::untangle(Index vertex) {
 
 double VertexMover::smooth(Index vertex, int power, double floor) {
   if (!mover_.canMove(vertex)) return 0;
-  const CellState before = stateAt(vertex);
-  if (!before.certified) return 0;
+  double before = 1;
+  for (const Index cell : all_.cells.around(vertex)) {
+    before = std::min(before, all_.qualities[cell]);
+  }
+  if (!isCertified(before)) return 0;
   collect(vertex, false);
-  const double least = std::min(before.scaled, floor);
+  const double least = std::min(before, floor);
   const bool bounded = all_.places.freedom[vertex] != Freedom::Free;
   const double farthest = bounded ? std::max(all_.chordError.chord, all_.chordError.at(vertex)) : 0;
   const double moved = mover_.descend(vertex, terms_, EnergyKind{power, 0, 0}, [&] {
-    const CellState after = stateAt(vertex);
-    return after.certified && after.scaled >= least &&
-           (!bounded || all_.chordError.at(vertex) <= farthest);
+    return measureAround(vertex) >= least && (!bounded || all_.chordError.at(vertex) <= farthest);
   });
+  if (moved == 0) return 0;
+  for (const auto& [cell, quality] : measured_) all_.qualities[cell] = quality;
   return moved / sizeAt(vertex);
 }
 

@@ -1,6 +1,7 @@
 // Moves one vertex at a time, within what its place allows, for the better of the cells around it.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <hexhex/types.hpp>
@@ -22,6 +23,7 @@ struct MovingMesh {
   const Array<IdealBox>& boxes;  ///< per cell
   VertexPlaces& places;
   const ChordError& chordError;
+  Array<double>& qualities;  ///< per cell: certifiedQuality(), while vertices are smoothed
 };
 
 /// A vertex with all that a step of it takes. One per thread.
@@ -46,14 +48,16 @@ class VertexMover {
  private:
   void collect(Index vertex, bool bezier);
   [[nodiscard]] MovingCell straightCell(Index vertex, Index cell) const;
-  /// Of the worst of the cells around a vertex.
-  [[nodiscard]] CellState stateAt(Index vertex);
+  /// Takes the qualities of the cells around a vertex that has moved.
+  /// @return the least
+  double measureAround(Index vertex);
   [[nodiscard]] double sizeAt(Index vertex) const;
 
   MovingMesh all_;
   PointMover mover_;
   EnergyTerms terms_;
   std::vector<MovingCell> straight_;
+  std::vector<std::pair<Index, double>> measured_;  ///< by measureAround(): cells, qualities
   CurvedCells::Scratch scratch_;
 };
 
