@@ -182,16 +182,14 @@ HEXHEX_INLINE CellEdges<Number> edgesOf(const LaneCells& cells) noexcept {
 }
 
 /// At a corner next to the one that moves, across `edge`.
-HEXHEX_INLINE TermLanes besideTerm(const Number& scale, const Vector& edge, const Vector& b,
-                                   const Vector& c) noexcept {
+HEXHEX_INLINE void besideTerm(const Number& scale, const Vector& edge, const Vector& b,
+                              const Vector& c, TermLanes& term) noexcept {
   const Vector cofactor = cross(b, c);
-  TermLanes term;
   term.square = dot(edge, edge) + dot(b, b) + dot(c, c);
   term.slope = scaled(-scale, edge);
   term.growth = scale * scale;
   term.determinant = dot(edge, cofactor);
   term.normal = scaled(-scale, cofactor);
-  return term;
 }
 
 HEXHEX_INLINE void cornerTermsOf(std::span<const MovingCell> list, TermLanes* terms) noexcept {
@@ -207,9 +205,9 @@ HEXHEX_INLINE void cornerTermsOf(std::span<const MovingCell> list, TermLanes* te
   at.determinant = dot(u[0], vw);
   at.normal = Vector{} - scaled(s[0], vw) - scaled(s[1], cross(w[0], u[0])) -
               scaled(s[2], cross(u[0], v[0]));
-  terms[1] = besideTerm(s[0], u[0], v[1], w[1]);
-  terms[2] = besideTerm(s[1], v[0], w[2], u[1]);
-  terms[3] = besideTerm(s[2], w[0], u[2], v[2]);
+  besideTerm(s[0], u[0], v[1], w[1], terms[1]);
+  besideTerm(s[1], v[0], w[2], u[1], terms[2]);
+  besideTerm(s[2], w[0], u[2], v[2], terms[3]);
   for (std::size_t i = 0; i < kCornerTerms; ++i) terms[i].weight = cells.weight;
 }
 

@@ -24,15 +24,23 @@ Vec3 applied(const std::array<double, 6>& m, const Vec3& x) noexcept {
 
 }  // namespace
 
+TermLanes* EnergyTerms::moreBlocks(std::size_t n) {
+  const std::size_t first = size_;
+  size_ += n;
+  if (size_ > blocks_.size()) blocks_.resize(size_);
+  return blocks_.data() + first;
+}
+
 void EnergyTerms::add(const EnergyTerm& term) {
   if (free_ == 0) {
-    blocks_.push_back({});
-    blocks_.back().square += 1;  // lanes without weight are no poles
-    blocks_.back().determinant += 1;
+    TermLanes& fresh = *moreBlocks(1);
+    fresh = TermLanes{};
+    fresh.square += 1;  // lanes without weight are no poles
+    fresh.determinant += 1;
     free_ = TermLanes::kCount;
   }
   const std::size_t lane = TermLanes::kCount - free_--;
-  TermLanes& block = blocks_.back();
+  TermLanes& block = blocks_[size_ - 1];
   block.square[lane] = term.square;
   block.growth[lane] = term.growth;
   block.determinant[lane] = term.determinant;
@@ -45,11 +53,10 @@ void EnergyTerms::add(const EnergyTerm& term) {
 
 void EnergyTerms::addCells(std::span<const MovingCell> cells, std::size_t perCell,
                            void (*termsOf)(std::span<const MovingCell>, TermLanes*) noexcept) {
-  std::size_t at = blocks_.size();
-  blocks_.resize(at + (cells.size() + TermLanes::kCount - 1) / TermLanes::kCount * perCell);
   free_ = 0;
-  for (std::size_t first = 0; first < cells.size(); first += TermLanes::kCount, at += perCell) {
-    termsOf(cells.subspan(first, std::min(TermLanes::kCount, cells.size() - first)), &blocks_[at]);
+  for (std::size_t first = 0; first < cells.size(); first += TermLanes::kCount) {
+    termsOf(cells.subspan(first, std::min(TermLanes::kCount, cells.size() - first)),
+            moreBlocks(perCell));
   }
 }
 
@@ -63,7 +70,7 @@ void EnergyTerms::addBezier(std::span<const MovingCell> cells) {
 
 double EnergyTerms::leastDeterminantAt(const Vec3& step) const noexcept {
   double least = std::numeric_limits<double>::infinity();
-  for (const TermLanes& block : blocks_) {
+  for (const TermLanes& block : blocks()) {
     for (std::size_t lane = 0; lane < TermLanes::kCount; ++lane) {
       if (block.weight[lane] == 0) continue;
       double determinant = block.determinant[lane];

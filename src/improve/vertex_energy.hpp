@@ -57,19 +57,19 @@ struct MovingCell {
 struct alignas(4 * sizeof(double)) TermLanes {
   static constexpr std::size_t kCount = 4;
   using Number = Lanes<double, kCount>;
-  Number square{};
-  std::array<Number, 3> slope{};
-  Number growth{};
-  Number determinant{};
-  std::array<Number, 3> normal{};
-  Number weight{};  ///< 1, or 0 where there is no term
+  Number square;
+  std::array<Number, 3> slope;
+  Number growth;
+  Number determinant;
+  std::array<Number, 3> normal;
+  Number weight;  ///< 1, or 0 where there is no term
 };
 
 /// What all places of the cells around a vertex contribute.
 class EnergyTerms {
  public:
   void clear() noexcept {
-    blocks_.clear();
+    size_ = 0;
     free_ = 0;
   }
   void add(const EnergyTerm& term);
@@ -79,14 +79,20 @@ class EnergyTerms {
   /// determinants at their places: where all of them are positive, so is the cell.
   void addBezier(std::span<const MovingCell> cells);
 
-  [[nodiscard]] std::span<const TermLanes> blocks() const noexcept { return blocks_; }
+  [[nodiscard]] std::span<const TermLanes> blocks() const noexcept {
+    return std::span(blocks_).first(size_);
+  }
   [[nodiscard]] double leastDeterminantAt(const Vec3& step) const noexcept;
 
  private:
   void addCells(std::span<const MovingCell> cells, std::size_t perCell,
                 void (*termsOf)(std::span<const MovingCell>, TermLanes*) noexcept);
 
-  std::vector<TermLanes> blocks_;
+  /// @return the first of so many more blocks
+  TermLanes* moreBlocks(std::size_t n);
+
+  std::vector<TermLanes> blocks_;  ///< those beyond the size are kept for later
+  std::size_t size_ = 0;
   std::size_t free_ = 0;  ///< lanes of the last block
 };
 
