@@ -41,6 +41,7 @@ std::vector<CutFace> findCuts(const PreparedMap& map, const Charts& charts,
       [&](std::size_t begin, std::size_t end, std::vector<CutFace>& cuts) {
         for (std::size_t i = begin; i < end; ++i) {
           for (int face = 0; face < 4; ++face) {
+            if ((region.faces[i] >> face & 1) == 0) continue;
             const HalfFace here = halfFaceOf(region.tets[i], face);
             const HalfFace mate = map.topology.mate[here];
             if (mate == kNone || charts.isGlued(map.topology, map.exact.transitions, here))

@@ -19,6 +19,9 @@ struct GridRegion {
   std::vector<Index> tets;         ///< ascending
   std::vector<std::size_t> begin;  ///< of each of them (+1): its boxes; none if all of it counts
   std::vector<GridBox> boxes;
+  /// Of each tet: its faces that the boxes may meet, a bit for each. The tets behind are in the
+  /// region, too.
+  std::vector<std::uint8_t> faces;
 
   [[nodiscard]] std::span<const GridBox> boxesOf(std::size_t i) const noexcept {
     return std::span(boxes).subspan(begin[i], begin[i + 1] - begin[i]);

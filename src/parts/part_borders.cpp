@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <array>
-#include <map>
+#include <bit>
 #include <vector>
 
 #include <adjacency/cell_faces.hpp>
 #include <parts/part_borders.hpp>
+
+#include <lattice/cell_corners.hpp>
+#include <lattice/wide_int.hpp>
 
 namespace hexhex {
 
@@ -12,7 +15,7 @@ namespace {
 
 /// A face of a cell, own or not, all of whose vertices are shared.
 struct SharedSide {
-  Quad sorted;           ///< its vertices
+  UInt128 vertices;      ///< ascending
   std::uint64_t number;  ///< global, of its cell
   std::uint8_t side;
   Index cell;   ///< own, or kNone
@@ -26,16 +29,32 @@ struct Pairing {
   PartFace face;  ///< as this part has it
 };
 
+UInt128 nameOf(Quad quad) {
+  std::sort(quad.begin(), quad.end());
+  UInt128 name = 0;
+  for (const Index v : quad) name = name << 32U | v;
+  return name;
+}
+
+/// The corners of each side, as a set.
+constexpr std::array<CellCornerSet, 6> kSideCorners = [] {
+  std::array<CellCornerSet, 6> sets{};
+  for (std::size_t side = 0; side < 6; ++side) {
+    for (const std::uint8_t corner : kHexFaces[side]) sets[side] |= 1U << corner;
+  }
+  return sets;
+}();
+
 void addSides(const Hex& corners, std::uint64_t number, Index cell, Index other,
               const std::vector<bool>& isShared, std::vector<SharedSide>& sides) {
+  CellCornerSet shared = 0;
+  for (std::size_t k = 0; k < 8; ++k) {
+    if (corners[k] != kNone && isShared[corners[k]]) shared |= 1U << k;
+  }
+  if (std::popcount(shared) < 4) return;
   for (std::uint8_t side = 0; side < 6; ++side) {
-    Quad quad = faceVertices(corners, side);
-    if (!std::all_of(quad.begin(), quad.end(),
-                     [&](Index v) { return v != kNone && isShared[v]; })) {
-      continue;
-    }
-    std::sort(quad.begin(), quad.end());
-    sides.push_back({quad, number, side, cell, other});
+    if ((kSideCorners[side] & ~shared) != 0) continue;
+    sides.push_back({nameOf(faceVertices(corners, side)), number, side, cell, other});
   }
 }
 
@@ -48,12 +67,12 @@ class FacePairs {
   /// where more do, because cells meet themselves, both parts pair them in the same order.
   [[nodiscard]] std::vector<Pairing> find(std::vector<SharedSide>& sides) {
     std::sort(sides.begin(), sides.end(), [](const SharedSide& a, const SharedSide& b) {
-      if (a.sorted != b.sorted) return a.sorted < b.sorted;
+      if (a.vertices != b.vertices) return a.vertices < b.vertices;
       return a.number != b.number ? a.number < b.number : a.side < b.side;
     });
     forEachRun(
         std::span<const SharedSide>(sides),
-        [](const SharedSide& a, const SharedSide& b) { return a.sorted == b.sorted; },
+        [](const SharedSide& a, const SharedSide& b) { return a.vertices == b.vertices; },
         [&](std::span<const SharedSide> run) { pairUp(run); });
     return std::move(pairs_);
   }
@@ -88,32 +107,43 @@ class FacePairs {
   std::vector<Pairing> pairs_;
 };
 
-}  // namespace
-
-void findNeighbours(MeshPart& part, std::span<const BorderCell> around) {
-  struct Shared {
+/// Lists the vertices in common with each part.
+/// @return per vertex of own cells: whether any part has it, too
+std::vector<bool> shareVertices(MeshPart& part, std::span<const BorderCell> around) {
+  struct OfPart {
     std::uint32_t part;
-    Index vertex;
-    auto operator<=>(const Shared&) const = default;
+    Index other;  ///< place in the list of other cells
+    auto operator<=>(const OfPart&) const = default;
   };
-  std::vector<Shared> shared;
-  std::vector<bool> isShared(part.ownPoints, false);
-  for (const BorderCell& cell : around) {
-    for (const Index v : cell.corners) {
-      if (v == kNone) continue;
-      shared.push_back({cell.part, v});
-      isShared[v] = true;
-    }
+  std::vector<OfPart> others;
+  others.reserve(around.size());
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    others.push_back({around[i].part, static_cast<Index>(i)});
   }
-  std::sort(shared.begin(), shared.end());
-  shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
-  for (const Shared& each : shared) {
+  std::sort(others.begin(), others.end());
+  std::vector<std::uint32_t> sharedWith(part.ownPoints, part.part);  // the last part seen
+  std::vector<bool> isShared(part.ownPoints, false);
+  for (const OfPart& each : others) {
     if (part.neighbours.empty() || part.neighbours.back().part != each.part) {
       part.neighbours.push_back({each.part, {}, {}});
     }
-    part.neighbours.back().vertices.push_back(each.vertex);
+    for (const Index v : around[each.other].corners) {
+      if (v == kNone || sharedWith[v] == each.part) continue;
+      sharedWith[v] = each.part;
+      isShared[v] = true;
+      part.neighbours.back().vertices.push_back(v);
+    }
   }
+  for (PartNeighbour& neighbour : part.neighbours) {
+    std::sort(neighbour.vertices.begin(), neighbour.vertices.end());
+  }
+  return isShared;
+}
 
+}  // namespace
+
+void findNeighbours(MeshPart& part, std::span<const BorderCell> around) {
+  const std::vector<bool> isShared = shareVertices(part, around);
   std::vector<SharedSide> sides;
   for (std::size_t c = 0; c < part.ownCells; ++c) {
     addSides(part.mesh.cells[c], part.globalCells[c], static_cast<Index>(c), kNone, isShared,

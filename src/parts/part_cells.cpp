@@ -100,14 +100,17 @@ std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part) const 
         const std::uint32_t from = std::max(first, range.first);
         const std::uint32_t to = std::min(first + count, range.first + range.count);
         if (from >= to) continue;
-        workspace.cells.resize(to - from);
-        workspace.emitter.emitOn(tet, line, from, workspace.cells);
-        for (std::uint32_t k = from; k < to; ++k) {
-          const CellPlace place{tet, line.simplex(k), line.point(k)};
-          const std::uint32_t other = partition_.partOf(tet, place.z);
-          if (other == part) continue;
-          list.push_back({number + (k - first), other, place, workspace.cells[k - from]});
-        }
+        partition_.forEachPiece(
+            tet, line, from, to - from,
+            [&](std::uint32_t other, std::uint32_t at, std::uint32_t run) {
+              if (other == part) return;
+              workspace.cells.resize(run);
+              workspace.emitter.emitOn(tet, line, at, workspace.cells);
+              for (std::uint32_t k = 0; k < run; ++k) {
+                const CellPlace place{tet, line.simplex(at + k), line.point(at + k)};
+                list.push_back({number + (at + k - first), other, place, workspace.cells[k]});
+              }
+            });
       }
       number += count;
     }

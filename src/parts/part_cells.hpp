@@ -42,29 +42,18 @@ struct NearbyCell {
 /// Calls visit(line, first, count, number) for runs of cells that a tet owns and a part has:
 /// centres `first` and so on of a line, the first of which is cell `number` of those that the tet
 /// owns.
-/// @param whole  whether the part has all of them
 template <class Visit>
 void forEachRun(const PreparedMap& map, const Partition& partition, std::uint32_t part, Index tet,
                 std::span<const SweptLine> lines, const Visit& visit) {
   CenterOwner owner(map.topology, tet);
-  const bool whole = partition.blocksOf(tet) == nullptr;
   std::uint64_t number = 0;
   for (const SweptLine& line : lines) {
     const auto [first, count] = owner.owned(line);
-    if (whole) {
-      if (count > 0) visit(line, first, count, number);
-      number += count;
-      continue;
-    }
-    std::uint32_t run = 0;
-    for (std::uint32_t i = 0; i <= count; ++i) {
-      if (i < count && partition.partOf(tet, line.point(first + i)) == part) {
-        ++run;
-      } else if (run > 0) {
-        visit(line, first + i - run, run, number + i - run);
-        run = 0;
-      }
-    }
+    const std::uint64_t before = number - first;
+    partition.forEachPiece(tet, line, first, count,
+                           [&](std::uint32_t owned, std::uint32_t at, std::uint32_t run) {
+                             if (owned == part) visit(line, at, run, before + at);
+                           });
     number += count;
   }
 }

@@ -23,6 +23,24 @@ void renumber(const Cell& from, VertexSet::Cache& vertices, Hex& to) {
   for (std::size_t k = 0; k < 8; ++k) to[k] = vertices.rank(from[k]);
 }
 
+/// The same for cells whose corners are all in the set, into a place that may be theirs. Where a
+/// corner follows that of the cell before, so do their ranks.
+template <class Cell>
+void renumber(std::span<const Cell> from, const VertexSet& vertices, Hex* to) {
+  if (from.empty()) return;
+  VertexSet::Cache cache(vertices);
+  Cell before = from.front();
+  Hex ranks{};
+  for (const Cell& cell : from) {
+    const Cell here = cell;
+    for (std::size_t k = 0; k < 8; ++k) {
+      ranks[k] = here[k] == before[k] + 1 ? ranks[k] + 1 : cache.rank(here[k]);
+    }
+    before = here;
+    *to++ = ranks;
+  }
+}
+
 std::vector<std::int32_t> different(std::vector<std::int32_t> tags) {
   std::sort(tags.begin(), tags.end());
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
@@ -42,16 +60,16 @@ std::vector<std::int32_t> tagsOf(const Features& features) {
 template <class Id>
 class GhostLayers {
  public:
-  GhostLayers(std::vector<NearbyCell<Id>> nearby, std::span<const std::array<Id, 8>> own,
-              Stage& stage)
-      : nearby_(std::move(nearby)), stage_(stage), reached_(own, stage) {}
+  /// @param own  the part's vertices; outlives this
+  GhostLayers(std::vector<NearbyCell<Id>> nearby, const VertexSet& own, Stage& stage)
+      : nearby_(std::move(nearby)), stage_(stage), reached_(&own) {}
 
   /// The next layer: cells that are in none so far, with a vertex of those that are.
   [[nodiscard]] std::vector<NearbyCell<Id>> next() {
     std::vector<NearbyCell<Id>> layer;
     std::vector<std::array<Id, 8>> corners;
     std::vector<NearbyCell<Id>> rest;
-    VertexSet::Cache cache(reached_);
+    VertexSet::Cache cache(*reached_);
     for (const NearbyCell<Id>& cell : nearby_) {
       const bool touches = std::any_of(cell.corners.begin(), cell.corners.end(),
                                        [&](Id vertex) { return cache.rank(vertex) != kNone; });
@@ -60,14 +78,16 @@ class GhostLayers {
     }
     nearby_ = std::move(rest);
     // What is farther away touches the layer itself.
-    reached_ = VertexSet(std::span<const std::array<Id, 8>>(corners), stage_);
+    ofLayer_ = VertexSet(std::span<const std::array<Id, 8>>(corners), stage_);
+    reached_ = &ofLayer_;
     return layer;
   }
 
  private:
   std::vector<NearbyCell<Id>> nearby_;
   Stage& stage_;
-  VertexSet reached_;
+  VertexSet ofLayer_;  ///< the last one
+  const VertexSet* reached_;
 };
 
 template <class Id>
@@ -108,16 +128,18 @@ class Maker final : public PartMaker {
     if (partition_.tetsOf(number).empty()) return part;
     std::vector<std::vector<NearbyCell<Id>>> layers;
     GlobalCells<Id> own;
+    VertexSet vertices;
     {
       // One more, which knows the owners of the vertices of the last.
       const std::uint32_t around = options_.ghostLayers + 1;
       const GridRegion region = regions_.find(number, around);
       const PartGrid<Id> grid(map_.map, counts_, partition_, charts_, chartOf_, region, stage);
       own = grid.ownCells(number);
-      GhostLayers<Id> ghosts(grid.nearbyCells(number), own.corners, stage);
+      vertices = VertexSet(std::span<const std::array<Id, 8>>(own.corners), stage);
+      GhostLayers<Id> ghosts(grid.nearbyCells(number), vertices, stage);
       for (std::uint32_t i = 0; i < around; ++i) layers.push_back(ghosts.next());
     }
-    Assembly assembly{part, layers, stage};
+    Assembly assembly{part, layers, vertices, stage};
     takeOwn(assembly, std::move(own));
     takeGhosts(assembly);
     addTags(assembly);
@@ -128,6 +150,7 @@ class Maker final : public PartMaker {
   struct Assembly {
     MeshPart& part;
     const std::vector<std::vector<NearbyCell<Id>>>& layers;
+    const VertexSet& vertices;  ///< of own cells
     Stage& stage;
   };
 
@@ -140,31 +163,32 @@ class Maker final : public PartMaker {
 
   /// Own cells, their vertices, and what these share with neighbours.
   void takeOwn(const Assembly& assembly, GlobalCells<Id> own) const {
-    const auto& [part, layers, stage] = assembly;
+    // No structured binding: clang 14 captures none in a lambda.
+    auto& part = assembly.part;
+    const auto& layers = assembly.layers;
+    const VertexSet& vertices = assembly.vertices;
+    Stage& stage = assembly.stage;
     requireNarrow(own.numbers.size(), "cells");
-    const VertexSet vertices(std::span<const std::array<Id, 8>>(own.corners), stage);
     requireNarrow(vertices.size(), "vertices");
     part.globalPoints = vertices.list();
     part.ownPoints = vertices.size();
     part.ownCells = own.numbers.size();
     part.globalCells = std::move(own.numbers);
+    const auto renumberAll = [&](const auto& from) {
+      part.mesh.cells.resize(from.size());
+      constexpr std::size_t kGrain = 4096;
+      parallelBlocks(stage, from.size(), kGrain,
+                     [&](std::size_t begin, std::size_t end, std::size_t) {
+                       renumber(std::span(from).subspan(begin, end - begin), vertices,
+                                &part.mesh.cells[begin]);
+                     });
+    };
     if constexpr (std::is_same_v<Id, Index>) {
       part.mesh.cells = std::move(own.corners);
+      renumberAll(part.mesh.cells);
     } else {
-      part.mesh.cells.resize(part.ownCells);
+      renumberAll(own.corners);
     }
-    constexpr std::size_t kGrain = 4096;
-    parallelBlocks(stage, part.ownCells, kGrain,
-                   [&, &p = part](std::size_t begin, std::size_t end, std::size_t) {
-                     VertexSet::Cache cache(vertices);
-                     for (std::size_t i = begin; i < end; ++i) {
-                       if constexpr (std::is_same_v<Id, Index>) {
-                         renumber(Hex(p.mesh.cells[i]), cache, p.mesh.cells[i]);
-                       } else {
-                         renumber(own.corners[i], cache, p.mesh.cells[i]);
-                       }
-                     }
-                   });
     VertexSet::Cache cache(vertices);
     std::vector<BorderCell> around;
     around.reserve(layers[0].size());
@@ -187,7 +211,6 @@ class Maker final : public PartMaker {
 
   /// Adds ghosts and their vertices behind own ones.
   void takeGhosts(const Assembly& assembly) const {
-    // No structured binding: clang 14 captures none in a lambda.
     auto& part = assembly.part;
     const auto& layers = assembly.layers;
     Stage& stage = assembly.stage;
@@ -245,7 +268,7 @@ class Maker final : public PartMaker {
   }
 
   void addTags(const Assembly& assembly) const {
-    const auto& [part, layers, stage] = assembly;
+    const auto& [part, layers, vertices, stage] = assembly;
     const std::span<const Index> tets = partition_.tetsOf(part.part);
     if (!map_.source.features.empty()) {
       carryFeatures(map_.source, map_.map, cellsOf(part), part.mesh, stage);

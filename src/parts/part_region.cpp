@@ -13,6 +13,11 @@ constexpr std::int32_t kFacePiece = 12;
 
 using Triangle = std::array<LatticePoint, 3>;
 
+constexpr std::uint8_t kAllFaces = 0xf;
+constexpr std::uint8_t bitOf(HalfFace halfFace) {
+  return static_cast<std::uint8_t>(1U << halfFace % 4);
+}
+
 Triangle triangleOf(const PreparedMap& map, HalfFace halfFace) {
   const LatticeTet& corners = map.exact.corners[tetOf(halfFace)];
   const std::array<int, 3>& face = kFaceCorners[halfFace % 4];
@@ -156,6 +161,7 @@ GridRegion RegionFinder::find(std::uint32_t part, std::uint32_t layers) {
     region.tets.push_back(entry.tet);
     region.begin.push_back(region.boxes.size());
     region.boxes.insert(region.boxes.end(), entry.boxes.begin(), entry.boxes.end());
+    region.faces.push_back(entry.whole ? kAllFaces : entry.faces);
   }
   region.begin.push_back(region.boxes.size());
   entries_.clear();
@@ -177,10 +183,8 @@ void RegionFinder::startAtFaces(Index tet, std::int32_t reach) {
     if (mate == kNone) continue;
     const Index entry = entryOfTet_[tetOf(mate)];
     if (entry != kNone && entries_[entry].whole) continue;
-    const Transition& across = map_.exact.transitions.across(halfFace);
-    cutUp(triangleOf(map_, halfFace), kFacePiece * unit, [&](const Triangle& piece) {
-      this->reach(tetOf(mate), carried(across, boxAround(piece, unit, reach)));
-    });
+    cutUp(triangleOf(map_, halfFace), kFacePiece * unit,
+          [&](const Triangle& piece) { through(halfFace, boxAround(piece, unit, reach)); });
   }
 }
 
@@ -214,8 +218,16 @@ void RegionFinder::cross(Index tet, const GridBox& box) {
     const HalfFace halfFace = halfFaceOf(tet, face);
     const HalfFace mate = map_.topology.mate[halfFace];
     if (mate == kNone || !mayMeet(triangleOf(map_, halfFace), from, map_.exact.unit)) continue;
-    reach(tetOf(mate), carried(map_.exact.transitions.across(halfFace), from));
+    through(halfFace, from);
   }
+}
+
+/// Carries a box that may meet an inner face to the tet behind.
+void RegionFinder::through(HalfFace halfFace, const GridBox& box) {
+  const HalfFace mate = map_.topology.mate[halfFace];
+  entryOf(tetOf(halfFace)).faces |= bitOf(halfFace);
+  entryOf(tetOf(mate)).faces |= bitOf(mate);
+  reach(tetOf(mate), carried(map_.exact.transitions.across(halfFace), box));
 }
 
 /// All tets, with boxes around them unless they are the part's.
@@ -227,13 +239,14 @@ void RegionFinder::enterAll() {
     GridBox box = gridBox(map_.exact.corners[t], map_.exact.unit);
     for (auto& range : box.range) range = {range.first - 1, range.last + 1};
     entry.boxes.assign(1, box);
+    entry.faces = kAllFaces;
   }
 }
 
 RegionFinder::Entry& RegionFinder::entryOf(Index tet) {
   if (entryOfTet_[tet] == kNone) {
     entryOfTet_[tet] = static_cast<Index>(entries_.size());
-    entries_.push_back({tet, false, {}});
+    entries_.push_back({tet, false, 0, {}});
   }
   return entries_[entryOfTet_[tet]];
 }

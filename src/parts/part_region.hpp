@@ -34,7 +34,8 @@ class RegionFinder {
   };
   struct Entry {
     Index tet = kNone;
-    bool whole = false;  ///< a tet of the part
+    bool whole = false;      ///< a tet of the part
+    std::uint8_t faces = 0;  ///< as in GridRegion
     std::vector<GridBox> boxes;
   };
 
@@ -43,6 +44,7 @@ class RegionFinder {
   void startAtBlocks(const TetBlocks& blocks, std::uint32_t part, std::int32_t reach);
   void reach(Index tet, const GridBox& box);
   void cross(Index tet, const GridBox& box);
+  void through(HalfFace halfFace, const GridBox& box);
   void enterAll();
   Entry& entryOf(Index tet);
 

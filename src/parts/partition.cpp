@@ -59,9 +59,17 @@ std::vector<std::uint64_t> countCells(const PreparedMap& map, const TetBlocks& b
   std::vector<std::uint64_t> counts(blocks.count(), 0);
   std::vector<SweptLine> lines;
   TetRasterizer(map.exact.corners[blocks.tet], map.exact.unit).append(kCenterGrid, lines);
-  forEachOwnedCenter(map.topology, blocks.tet, lines, [&](const SweptLine& line, std::uint32_t i) {
-    ++counts[blocks.blockOf(line.point(i))];
-  });
+  CenterOwner owner(map.topology, blocks.tet);
+  for (const SweptLine& line : lines) {
+    auto [first, count] = owner.owned(line);
+    while (count > 0) {
+      const GridPoint z = line.point(first);
+      const std::uint32_t run = std::min(count, blocks.cellsAhead(z, line.axes));
+      counts[blocks.blockOf(z)] += run;
+      first += run;
+      count -= run;
+    }
+  }
   return counts;
 }
 

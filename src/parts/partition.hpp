@@ -5,6 +5,7 @@
 // however few tets there are.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -13,6 +14,8 @@
 #include <parts/counts.hpp>
 
 #include <hexhex/parts.hpp>
+
+#include <lattice/swept_line.hpp>
 
 namespace hexhex {
 
@@ -34,6 +37,11 @@ struct TetBlocks {
       block = block * size[k] + static_cast<std::size_t>((z[k] - low[k]) / side);
     }
     return block;
+  }
+  /// How many cells from z on are in the same block, along a sweep's lines.
+  [[nodiscard]] std::uint32_t cellsAhead(const GridPoint& z, SweepAxes axes) const noexcept {
+    const std::size_t along = axes()[2];
+    return static_cast<std::uint32_t>(side - (z[along] - low[along]) % side);
   }
   /// The smallest corner of the first cell of a block.
   [[nodiscard]] GridPoint lowOf(std::size_t block) const noexcept {
@@ -65,6 +73,21 @@ class Partition {
     if (part < kSplit) return part;
     const TetBlocks& split = blocks[part - kSplit];
     return ofBlock[split.first + split.blockOf(z)];
+  }
+  /// Calls visit(part, first, count) for some cells of a tet's line, in pieces that are each in one
+  /// part.
+  template <class Visit>
+  void forEachPiece(Index tet, const SweptLine& line, std::uint32_t first, std::uint32_t count,
+                    const Visit& visit) const {
+    const TetBlocks* const split = blocksOf(tet);
+    const std::uint32_t end = first + count;
+    while (first < end) {
+      const GridPoint z = line.point(first);
+      const std::uint32_t piece =
+          split == nullptr ? end - first : std::min(end - first, split->cellsAhead(z, line.axes));
+      visit(partOf(tet, z), first, piece);
+      first += piece;
+    }
   }
   /// The blocks of a tet, or null if it is dealt out as a whole.
   [[nodiscard]] const TetBlocks* blocksOf(Index tet) const noexcept {

@@ -38,6 +38,7 @@ class VertexSet {
     }
 
    private:
+    friend class VertexSet;
     static constexpr std::size_t kNoPage = ~std::size_t{0};
     struct Entry {
       std::uint64_t key = ~std::uint64_t{0};
@@ -59,22 +60,12 @@ class VertexSet {
     collectPages(cells, stage);
     parallelBlocks(stage, cells.size(), kGrain,
                    [&](std::size_t begin, std::size_t end, std::size_t) {
-                     std::uint64_t key = ~std::uint64_t{0};
-                     std::size_t page = 0;
-                     for (std::size_t i = begin; i < end; ++i) {
-                       for (const std::uint64_t vertex : cells[i]) {
-                         if (vertex / kPageBits != key) {
-                           key = vertex / kPageBits;
-                           page = find(key);
-                         }
-                         const std::size_t bit = vertex % kPageBits;
-                         const std::atomic_ref word(pages_[page].bits[bit / 64]);
-                         const std::uint64_t mask = std::uint64_t{1} << (bit % 64);
-                         if ((word.load(std::memory_order_relaxed) & mask) == 0) {
-                           word.fetch_or(mask, std::memory_order_relaxed);
-                         }
-                       }
-                     }
+                     Cache cache(*this);
+                     forEachRange(cells.subspan(begin, end - begin),
+                                  [&](std::uint64_t first, std::uint64_t last) {
+                                    for (; first <= last; first = enter(first, last, cache)) {
+                                    }
+                                  });
                    });
     count();
   }
@@ -104,6 +95,37 @@ class VertexSet {
     std::array<Index, kWords> before{};  ///< numbers in the set below each word
   };
 
+  /// Calls visit(first, last) for numbers that make up all corners of cells. Of consecutive cells
+  /// on a line, each corner mostly follows that of the cell before.
+  template <class Cell, class Visit>
+  static void forEachRange(std::span<const Cell> cells, const Visit& visit) {
+    if (cells.empty()) return;
+    for (std::size_t k = 0; k < 8; ++k) {
+      std::uint64_t first = cells[0][k];
+      std::uint64_t last = first;
+      for (const Cell& cell : cells.subspan(1)) {
+        if (cell[k] == last + 1) {
+          ++last;
+          continue;
+        }
+        visit(first, last);
+        first = last = cell[k];
+      }
+      visit(first, last);
+    }
+  }
+  /// Enters numbers of one word. Thread-safe. @return the first number beyond
+  [[nodiscard]] std::uint64_t enter(std::uint64_t first, std::uint64_t last, Cache& cache) {
+    const std::uint64_t next = std::min(last, first | 63U) + 1;
+    const std::size_t bit = first % 64;
+    const std::uint64_t mask = (~std::uint64_t{0} >> (64 - (next - first))) << bit;
+    Page& page = pages_[cache.look(first / kPageBits).page];
+    const std::atomic_ref word(page.bits[first % kPageBits / 64]);
+    if ((word.load(std::memory_order_relaxed) & mask) != mask) {
+      word.fetch_or(mask, std::memory_order_relaxed);
+    }
+    return next;
+  }
   template <class Cell>
   void collectPages(std::span<const Cell> cells, Stage& stage) {
     keys_ = collectFromBlocks<std::uint64_t>(
@@ -111,14 +133,14 @@ class VertexSet {
         [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& keys) {
           std::array<std::uint64_t, 64> recent;
           recent.fill(~std::uint64_t{0});
-          for (std::size_t i = begin; i < end; ++i) {
-            for (const std::uint64_t vertex : cells[i]) {
-              const std::uint64_t key = vertex / kPageBits;
-              if (recent[key % recent.size()] == key) continue;
-              recent[key % recent.size()] = key;
-              keys.push_back(key);
-            }
-          }
+          forEachRange(
+              cells.subspan(begin, end - begin), [&](std::uint64_t first, std::uint64_t last) {
+                for (std::uint64_t key = first / kPageBits; key <= last / kPageBits; ++key) {
+                  if (recent[key % recent.size()] == key) continue;
+                  recent[key % recent.size()] = key;
+                  keys.push_back(key);
+                }
+              });
         });
     std::sort(keys_.begin(), keys_.end());
     keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
