@@ -1,3 +1,5 @@
+#include <limits>
+
 #include <atlas/grid_region.hpp>
 
 namespace hexhex {
@@ -9,42 +11,58 @@ std::span<const LinePoints> BoxedLines::of(const SweptLine& line) {
     return found_;
   }
   const std::array<std::uint8_t, 3>& axes = line.axes();
-  const auto holds = [&](const GridBox& box, std::size_t k, std::int32_t at) {
-    const GridRange& range = box.range[axes[k]];
-    return range.first <= at && at <= range.last - beyond_;
-  };
-  if (!hasLevel_ || level_ != line.level) {
-    hasLevel_ = true;
-    level_ = line.level;
-    atLevel_.clear();
-    for (const GridBox& box : boxes_) {
-      if (holds(box, 0, level_)) atLevel_.push_back(box);
-    }
+  if (!levels_.holds(line.level)) {
+    levels_ = select(boxes_, axes[0], line.level, atLevel_);
+    rows_ = {};
   }
-  const std::int64_t end = std::int64_t{line.first} + line.count;
-  for (const GridBox& box : atLevel_) {
-    if (!holds(box, 1, line.row)) continue;
-    const GridRange& along = box.range[axes[2]];
-    const std::int64_t first = std::max<std::int64_t>(line.first, along.first);
-    const std::int64_t stop = std::min<std::int64_t>(end, std::int64_t{along.last} - beyond_ + 1);
-    if (first >= stop) continue;
+  if (!rows_.holds(line.row)) {
+    rows_ = select(atLevel_, axes[1], line.row, atRow_);
+    join(axes[2]);
+  }
+  const std::int64_t last = std::int64_t{line.first} + line.count - 1;
+  for (const GridRange& range : ranges_) {
+    const std::int64_t first = std::max(line.first, range.first);
+    const std::int64_t end = std::min<std::int64_t>(last, range.last) + 1;
+    if (first >= end) continue;
     found_.push_back(
-        {static_cast<std::uint32_t>(first - line.first), static_cast<std::uint32_t>(stop - first)});
+        {static_cast<std::uint32_t>(first - line.first), static_cast<std::uint32_t>(end - first)});
   }
-  if (found_.size() < 2) return found_;
-  std::sort(found_.begin(), found_.end(),
-            [](const LinePoints& a, const LinePoints& b) { return a.first < b.first; });
-  std::size_t last = 0;
-  for (const LinePoints& next : std::span(found_).subspan(1)) {
-    LinePoints& before = found_[last];
-    if (next.first > before.first + before.count) {
-      found_[++last] = next;
-    } else {
-      before.count = std::max(before.count, next.first + next.count - before.first);
+  return found_;
+}
+
+BoxedLines::Known BoxedLines::select(std::span<const GridBox> from, std::size_t axis,
+                                     std::int64_t at, std::vector<GridBox>& selected) const {
+  selected.clear();
+  Known known{at, std::numeric_limits<std::int64_t>::max()};
+  for (const GridBox& box : from) {
+    const std::int64_t end = std::int64_t{box.range[axis].last} - beyond_ + 1;
+    if (at < box.range[axis].first) {
+      known.end = std::min<std::int64_t>(known.end, box.range[axis].first);
+    } else if (at < end) {
+      known.end = std::min(known.end, end);
+      selected.push_back(box);
     }
   }
-  found_.resize(last + 1);
-  return found_;
+  return known;
+}
+
+/// Joins the boxes of a row to ranges along it.
+void BoxedLines::join(std::size_t axis) {
+  ranges_.clear();
+  for (const GridBox& box : atRow_) {
+    ranges_.push_back({box.range[axis].first, box.range[axis].last - beyond_});
+  }
+  std::sort(ranges_.begin(), ranges_.end(),
+            [](const GridRange& a, const GridRange& b) { return a.first < b.first; });
+  std::size_t count = 0;
+  for (const GridRange& next : ranges_) {
+    if (count == 0 || next.first > ranges_[count - 1].last + 1) {
+      ranges_[count++] = next;
+    } else {
+      ranges_[count - 1].last = std::max(ranges_[count - 1].last, next.last);
+    }
+  }
+  ranges_.resize(count);
 }
 
 }  // namespace hexhex

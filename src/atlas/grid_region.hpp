@@ -54,11 +54,27 @@ class BoxedLines {
   [[nodiscard]] std::span<const LinePoints> of(const SweptLine& line);
 
  private:
+  /// Coordinates for which something was found; no others.
+  struct Known {
+    std::int64_t first = 0;
+    std::int64_t end = 0;
+
+    [[nodiscard]] bool holds(std::int64_t at) const noexcept { return first <= at && at < end; }
+  };
+  /// The boxes that hold a coordinate.
+  /// @return up to where these are the same
+  [[nodiscard]] Known select(std::span<const GridBox> from, std::size_t axis, std::int64_t at,
+                             std::vector<GridBox>& selected) const;
+  void join(std::size_t axis);
+
   std::span<const GridBox> boxes_;
   std::int32_t beyond_;
-  std::int32_t level_ = 0;
-  bool hasLevel_ = false;
+  // Many lines in a row are in the same boxes.
+  Known levels_;
+  Known rows_;
   std::vector<GridBox> atLevel_;
+  std::vector<GridBox> atRow_;
+  std::vector<GridRange> ranges_;  ///< along lines, ascending, apart
   std::vector<LinePoints> found_;
 };
 

@@ -128,7 +128,9 @@ std::uint64_t resolveOverlaps(const PreparedMap& map, const std::vector<TetClaim
                    for (std::size_t i = begin; i < end; ++i) {
                      forEachOf(cache, claims[i], [](Id& shared, Id vertex) {
                        const std::atomic_ref entry(shared);
-                       if (entry.load(std::memory_order_relaxed) == vertex) return;
+                       const Id claimed = entry.load(std::memory_order_relaxed);
+                       // Beyond the boxes of a region, claims may be left out.
+                       if (claimed == vertex || claimed == Brick<Id>::kEmpty) return;
                        entry.store(Brick<Id>::kContested, std::memory_order_relaxed);
                      });
                    }

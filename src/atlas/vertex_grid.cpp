@@ -137,18 +137,26 @@ void VertexGrid<Id>::collectKeys(Index tet, std::span<const SweptLine> lines, Ke
 
 template <class Id>
 template <class VisitRun, class VisitRow>
-void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, const VisitRun& visitRun,
-                                  const VisitRow& visitRow) const {
+void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, std::span<const GridBox> boxes,
+                                  const VisitRun& visitRun, const VisitRow& visitRow) const {
   std::vector<SweptLine> scratch;
   const std::span<const SweptLine> lines = linesOf(tet, scratch);
   if (lines.empty()) return;
   const SweepAxes axes = lines.front().axes;
   const SweepFrame frame(charts_.gauge(tet), axes());
   const Index chart = charts_.chart[tet];
+  BoxedLines boxed(boxes, 0);
   TetNumbering numbering(map_, numbers_, tet, axes);
   numbering.run(lines, [&](const VertexRun& run) {
     visitRun(run);
-    visitRow(rowOf(run, frame, chart), run.first);
+    for (const auto& [first, count] : boxed.of(*run.line)) {
+      VertexRun part = run;
+      part.offset = std::max(run.offset, first);
+      const std::uint32_t end = std::min(run.offset + run.count, first + count);
+      if (part.offset >= end) continue;
+      part.count = end - part.offset;
+      visitRow(rowOf(part, frame, chart), run.first + (part.offset - run.offset));
+    }
   });
   if (faces == Faces::Owned) return;
   for (int face = 0; face < 4; ++face) {
@@ -218,7 +226,7 @@ void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
       if (stored_ && stored_->areEmpty(tet)) continue;
       std::optional<TetPositions> positions;
       forEachClaim(
-          tet, Faces::OwnedAndCut,
+          tet, Faces::OwnedAndCut, boxesAt(i),
           [&](const VertexRun& run) { write(run, tet, positions, arrays); }, enter);
     }
     if (overlapsHere) overlaps.store(true, std::memory_order_relaxed);
@@ -232,7 +240,7 @@ template <class Id>
 void VertexGrid<Id>::describe(Index tet, const VertexArrays& arrays) const {
   std::optional<TetPositions> positions;
   forEachClaim(
-      tet, Faces::Owned, [&](const VertexRun& run) { write(run, tet, positions, arrays); },
+      tet, Faces::Owned, {}, [&](const VertexRun& run) { write(run, tet, positions, arrays); },
       [](const ChartRow&, std::uint64_t) {});
 }
 
@@ -247,7 +255,7 @@ std::uint64_t VertexGrid<Id>::resolveOverlaps(Stage& stage) {
     });
     return isNear;
   };
-  const auto listTets = [&](std::size_t begin, std::size_t end, std::vector<Index>& list) {
+  const auto listTets = [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& list) {
     const std::vector<BrickKey>& keys = keys_[begin / kSweepBlock];
     if (std::none_of(keys.begin(), keys.end(),
                      [this](BrickKey key) { return grid_.find(key)->contested != 0; })) {
@@ -256,21 +264,21 @@ std::uint64_t VertexGrid<Id>::resolveOverlaps(Stage& stage) {
     BrickCache<Id> cache(grid_);
     std::vector<SweptLine> scratch;
     for (std::size_t i = begin; i < end; ++i) {
-      if (isNearContested(tetAt(i), scratch, cache)) list.push_back(tetAt(i));
+      if (isNearContested(tetAt(i), scratch, cache)) list.push_back(i);
     }
   };
-  const auto tets = collectFromBlocks<Index>(stage, tetCount(), kSweepBlock, listTets);
+  const auto tets = collectFromBlocks<std::size_t>(stage, tetCount(), kSweepBlock, listTets);
   // Listed once, as finding the owners of vertices takes longer than all that follows.
   std::vector<TetClaims> claims(tets.size());
   constexpr std::size_t kFewTets = 64;
   const auto list = [&](std::size_t i, std::vector<Claim>& scratch) {
     scratch.clear();
     forEachClaim(
-        tets[i], Faces::All, [](const VertexRun&) {},
+        tetAt(tets[i]), Faces::All, boxesAt(tets[i]), [](const VertexRun&) {},
         [&](const ChartRow& row, std::uint64_t first) {
           scratch.push_back({row, first});
         });
-    claims[i] = {tets[i], scratch};
+    claims[i] = {tetAt(tets[i]), scratch};
   };
   parallelForWith(
       stage, tets.size(), kFewTets, [] { return std::vector<Claim>(); }, list);

@@ -47,17 +47,11 @@ template <class Id>
 GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part) const {
   const std::span<const Index> tets = partition_.tetsOf(part);
   std::vector<std::uint64_t> begin(tets.size() + 1, 0);
-  parallelFor(stage_, tets.size(), kFewTets, [&](std::size_t i) {
-    const Index tet = tets[i];
-    if (partition_.blocksOf(tet) == nullptr) {
-      begin[i] = counts_.cells[std::size_t{tet} + 1] - counts_.cells[tet];
-      return;
-    }
-    forEachRun(map_, partition_, part, tet, centersOf(tet),
-               [&](const SweptLine&, std::uint32_t, std::uint32_t count, std::uint64_t) {
-                 begin[i] += count;
-               });
-  });
+  for (std::size_t i = 0; i < tets.size(); ++i) {
+    const TetBlocks* const blocks = partition_.blocksOf(tets[i]);
+    begin[i] = blocks != nullptr ? partition_.cellsOf(*blocks, part)
+                                 : counts_.cells[std::size_t{tets[i]} + 1] - counts_.cells[tets[i]];
+  }
   GlobalCells<Id> cells;
   const std::uint64_t count = exclusiveScan(std::span(begin));
   cells.numbers.resize(count);
@@ -81,11 +75,13 @@ GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part) const {
 }
 
 template <class Id>
-std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part) const {
+std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part,
+                                                      const VertexSet* touched) const {
   using Nearby = NearbyCell<Id>;
   std::vector<std::vector<Nearby>> blocks(blockCount(region_.tets.size(), kFewTets));
   struct Workspace {
     CellEmitter<Id> emitter;
+    std::optional<VertexSet::Cache> touched;
     std::vector<std::array<Id, 8>> cells;
   };
   const auto addTet = [&](std::size_t i, Workspace& workspace, std::vector<Nearby>& list) {
@@ -107,6 +103,7 @@ std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part) const 
               workspace.cells.resize(run);
               workspace.emitter.emitOn(tet, line, at, workspace.cells);
               for (std::uint32_t k = 0; k < run; ++k) {
+                if (workspace.touched && !workspace.touched->holdsAny(workspace.cells[k])) continue;
                 const CellPlace place{tet, line.simplex(at + k), line.point(at + k)};
                 list.push_back({number + (at + k - first), other, place, workspace.cells[k]});
               }
@@ -118,7 +115,9 @@ std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part) const 
   parallelBlocksWith(
       stage_, region_.tets.size(), kFewTets,
       [&] {
-        return Workspace{CellEmitter<Id>(map_, *vertices_, transitions_, true), {}};
+        Workspace workspace{CellEmitter<Id>(map_, *vertices_, transitions_, true), {}, {}};
+        if (touched != nullptr) workspace.touched.emplace(*touched);
+        return workspace;
       },
       [&](std::size_t begin, std::size_t end, std::size_t block, Workspace& workspace) {
         for (std::size_t i = begin; i < end; ++i) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <parts/partition.hpp>
+#include <parts/vertex_set.hpp>
 
 #include <hexhex/types.hpp>
 
@@ -70,8 +71,10 @@ class PartGrid {
   PartGrid& operator=(const PartGrid&) = delete;
 
   [[nodiscard]] GlobalCells<Id> ownCells(std::uint32_t part) const;
-  /// All cells of other parts in the boxes of the region, ascending.
-  [[nodiscard]] std::vector<NearbyCell<Id>> nearbyCells(std::uint32_t part) const;
+  /// The cells of other parts in the boxes of the region, ascending.
+  /// @param touched  if not null, only those with one of these vertices
+  [[nodiscard]] std::vector<NearbyCell<Id>> nearbyCells(std::uint32_t part,
+                                                        const VertexSet* touched) const;
 
  private:
   [[nodiscard]] std::vector<SweptLine> centersOf(Index tet) const;

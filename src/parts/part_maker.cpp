@@ -71,8 +71,7 @@ class GhostLayers {
     std::vector<NearbyCell<Id>> rest;
     VertexSet::Cache cache(*reached_);
     for (const NearbyCell<Id>& cell : nearby_) {
-      const bool touches = std::any_of(cell.corners.begin(), cell.corners.end(),
-                                       [&](Id vertex) { return cache.rank(vertex) != kNone; });
+      const bool touches = cache.holdsAny(cell.corners);
       (touches ? layer : rest).push_back(cell);
       if (touches) corners.push_back(cell.corners);
     }
@@ -136,7 +135,8 @@ class Maker final : public PartMaker {
       const PartGrid<Id> grid(map_.map, counts_, partition_, charts_, chartOf_, region, stage);
       own = grid.ownCells(number);
       vertices = VertexSet(std::span<const std::array<Id, 8>>(own.corners), stage);
-      GhostLayers<Id> ghosts(grid.nearbyCells(number), vertices, stage);
+      GhostLayers<Id> ghosts(grid.nearbyCells(number, around == 1 ? &vertices : nullptr), vertices,
+                             stage);
       for (std::uint32_t i = 0; i < around; ++i) layers.push_back(ghosts.next());
     }
     Assembly assembly{part, layers, vertices, stage};

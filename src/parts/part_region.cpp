@@ -189,12 +189,15 @@ void RegionFinder::startAtFaces(Index tet, std::int32_t reach) {
 }
 
 void RegionFinder::startAtBlocks(const TetBlocks& blocks, std::uint32_t part, std::int32_t reach) {
+  const auto isOwn = [&](std::size_t b) { return partition_.ofBlock[blocks.first + b] == part; };
   for (std::size_t b = 0; b < blocks.count(); ++b) {
-    if (partition_.ofBlock[blocks.first + b] != part) continue;
+    if (!isOwn(b)) continue;
     const GridPoint low = blocks.lowOf(b);
+    std::int32_t length = blocks.side;
+    for (; (b + 1) % blocks.size[2] != 0 && isOwn(b + 1); ++b) length += blocks.side;
     GridBox box;
     for (std::size_t k = 0; k < 3; ++k) {
-      box.range[k] = {low[k] - reach, low[k] + blocks.side + reach};
+      box.range[k] = {low[k] - reach, low[k] + (k == 2 ? length : blocks.side) + reach};
     }
     this->reach(blocks.tet, box);
   }

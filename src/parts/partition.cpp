@@ -110,6 +110,7 @@ class Elements {
     }
     partition_.ofTet[tet] = Partition::kSplit + number;
     partition_.ofBlock.resize(blocks.first + blocks.count(), kNone);
+    partition_.inBlock.insert(partition_.inBlock.end(), cells.begin(), cells.end());
     partition_.blocks.push_back(blocks);
   }
 

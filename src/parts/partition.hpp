@@ -93,6 +93,14 @@ class Partition {
   [[nodiscard]] const TetBlocks* blocksOf(Index tet) const noexcept {
     return ofTet[tet] < kSplit ? nullptr : &blocks[ofTet[tet] - kSplit];
   }
+  /// How many cells of a tet a part has.
+  [[nodiscard]] std::uint64_t cellsOf(const TetBlocks& split, std::uint32_t part) const noexcept {
+    std::uint64_t cells = 0;
+    for (std::size_t b = split.first; b < split.first + split.count(); ++b) {
+      if (ofBlock[b] == part) cells += inBlock[b];
+    }
+    return cells;
+  }
   /// The tets that are in a part, as a whole or with a block with cells, ascending.
   [[nodiscard]] std::span<const Index> tetsOf(std::uint32_t part) const noexcept {
     return std::span(tets).subspan(begin[part], begin[part + 1] - begin[part]);
@@ -101,6 +109,7 @@ class Partition {
   static constexpr std::uint32_t kSplit = 1U << 31;
   std::vector<std::uint32_t> ofTet;    ///< per tet: its part, or kSplit + its place in `blocks`
   std::vector<std::uint32_t> ofBlock;  ///< per block of all: its part
+  std::vector<std::uint64_t> inBlock;  ///< likewise: how many cells it has
   std::vector<std::size_t> begin;      ///< per part (+1): its tets
   std::vector<Index> tets;
 };

@@ -37,6 +37,13 @@ class VertexSet {
       return page.before[bit / 64] + static_cast<Index>(std::popcount(below));
     }
 
+    /// Whether any corner of a cell is in the set.
+    template <class Cell>
+    [[nodiscard]] bool holdsAny(const Cell& cell) noexcept {
+      return std::any_of(cell.begin(), cell.end(),
+                         [this](std::uint64_t vertex) { return rank(vertex) != kNone; });
+    }
+
    private:
     friend class VertexSet;
     static constexpr std::size_t kNoPage = ~std::size_t{0};

@@ -222,6 +222,7 @@ TEST(Overlaps, OfATetWithItself) {
   BrickGrid<Index> grid;
   const std::vector<std::vector<BrickKey>> keys = {{brickKey(row.chart, row.start)}};
   grid.build(keys, stage);
+  grid.find(keys[0][0])->ids[placeInBrick(row.start)] = 9;
   const std::vector<TetClaims> claims = {{kTet, {{row, 5}, {row, 9}}}};
   EXPECT_EQ(resolveOverlaps(map, claims, charts, grid, stage), 1U);
   for (Index tet = 0; tet < map.topology.tetCount(); ++tet) {

@@ -49,6 +49,19 @@ TEST(Parts, MakeUpMeshesOfLargeTets) {
   EXPECT_EQ(comparePartsWithWhole(map, {.scale = 16}, {3, 1}), "");
 }
 
+TEST(Parts, MakeUpTheMeshIfThereAreHundreds) {
+  SampleOptions options;
+  options.charts = ChartStyle::Random;
+  options.cells = 8;
+  options.refine = 2;
+  const TetMap small = generateSample(SampleKind::Sphere, options).map;
+  EXPECT_EQ(comparePartsWithWhole(small, {}, {512, 0}), "");
+  options.cells = 2;
+  options.refine = 1;
+  const TetMap large = generateSample(SampleKind::Sphere, options).map;  // tets larger than parts
+  EXPECT_EQ(comparePartsWithWhole(large, {.scale = 5}, {512, 1}), "");
+}
+
 /// Where the region of a part is the whole map: without that, each of these takes seconds.
 TEST(Parts, OfCoarseMapsAroundSingularitiesMakeUpTheMesh) {
   SampleOptions options;
