@@ -37,6 +37,7 @@
 #include "started_team.hpp"
 #include "suggestions.hpp"
 #include "verification.hpp"
+#include "view_page.hpp"
 
 namespace hexhex::command {
 namespace {
@@ -48,6 +49,7 @@ struct Arguments {
   std::string report;
   std::string arcs;
   std::string patches;
+  std::string page;  ///< empty: none
   int order = 1;
   ExtractOptions options;
   bool quantize = false;
@@ -66,7 +68,7 @@ struct Arguments {
 void requireAllDifferent(const Arguments& arguments) {
   std::vector<std::filesystem::path> files = arguments.input.files();
   for (const std::string& output :
-       {arguments.output, arguments.report, arguments.arcs, arguments.patches}) {
+       {arguments.output, arguments.report, arguments.arcs, arguments.patches, arguments.page}) {
     for (const std::filesystem::path& file : files) {
       if (!output.empty()) requireDifferent(file, output);
     }
@@ -131,6 +133,17 @@ void requireImprovable(const Arguments& arguments) {
   }
 }
 
+/// A page shows a mesh that is whole and valid.
+void requirePageOutput(const Arguments& arguments) {
+  if (arguments.page.empty()) return;
+  if (arguments.stream || arguments.partial || arguments.parts.parts) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--view shows a whole mesh that was in memory. Leave it out, or --stream, --parts "
+                "and --partial; `hexhex view` takes a file.");
+  }
+  requirePage(arguments.page);
+}
+
 /// What is left of a map beyond repair is a straight mesh in memory.
 void requirePartialOutputs(const Arguments& arguments) {
   if (!arguments.partial) return;
@@ -152,6 +165,7 @@ void requireOutputs(const Arguments& arguments) {
   requireCurvedOutputs(arguments);
   requirePartialOutputs(arguments);
   requireImprovable(arguments);
+  requirePageOutput(arguments);
   if (!arguments.parts.parts && arguments.parts.isOfParts()) {
     throw Error(ErrorCode::InvalidArgument,
                 "--ghosts and --partition say how a mesh is cut. Leave them out, or add --parts.");
@@ -203,17 +217,34 @@ PiecewiseLinearMesh extractWithCurves(const Arguments& arguments, Extractor& ext
 }
 
 /// @param mesh  straight or curved
-void improveOrCertify(const Arguments& arguments, const TetMap& map, auto& mesh, LongRun& longRun,
-                      ExtractionRecord& record) {
+/// @return where its points were before; empty without an improvement, and if no page shows them
+Array<Vec3> improveOrCertify(const Arguments& arguments, const TetMap& map, auto& mesh,
+                             LongRun& longRun, ExtractionRecord& record) {
   Context& context = longRun.context();
   if (!arguments.improve) {
     record.certificate = longRun.part("quality", [&] { return certify(mesh, context); });
-    return;
+    return {};
   }
+  Array<Vec3> before = arguments.page.empty() ? Array<Vec3>() : mesh.points;
   record.improved = longRun.part("improvement", [&] {
     return improve(mesh, extractedMap(map, record.statistics), arguments.improveOptions, context);
   });
   record.certificate = record.improved->after;
+  return before;
+}
+
+/// @param mesh  straight or curved  @param before  as improveOrCertify() returned it
+void writeMeshPage(const Arguments& arguments, const auto& mesh, const Array<Vec3>& before,
+                   LongRun& longRun, const ExtractionRecord& record) {
+  if (arguments.page.empty()) return;
+  ViewOptions options;
+  if (record.verification) options.verification = &*record.verification;
+  options.mapName = std::filesystem::path(arguments.input.description()).filename().string();
+  options.scaledJacobians = record.certificate->scaledJacobians;
+  options.pointsBefore = before;
+  longRun.part("page", [&] {
+    writePage(mesh, arguments.page, arguments.output, options, longRun.context());
+  });
 }
 
 /// Extracts, verifies and writes a mesh in memory.
@@ -238,11 +269,12 @@ void extractWhole(const Arguments& arguments, const TetMap& map, LongRun& longRu
     });
     record.patches = {arguments.patches, all.patches.count(), all.patches.polygonTet.size()};
   }
-  improveOrCertify(arguments, map, mesh, longRun, record);
+  const Array<Vec3> before = improveOrCertify(arguments, map, mesh, longRun, record);
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = record.certificate->scaledJacobians;
   writing.patchAngle = arguments.patchAngle;
   longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
+  writeMeshPage(arguments, mesh, before, longRun, record);
   record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
                  mesh.features.quads.size()};
   record.vertices = mesh.points.size();
@@ -260,11 +292,12 @@ void extractCurved(const Arguments& arguments, const TetMap& map, LongRun& longR
   });
   verifyMesh(arguments, *extractor, straightMesh(mesh), longRun, record);
   extractor.reset();
-  improveOrCertify(arguments, map, mesh, longRun, record);
+  const Array<Vec3> before = improveOrCertify(arguments, map, mesh, longRun, record);
   WriteOptions options;
   options.scaledJacobians = record.certificate->scaledJacobians;
   options.patchAngle = arguments.patchAngle;
   longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, options, context); });
+  writeMeshPage(arguments, mesh, before, longRun, record);
   record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
                  mesh.features.quads.size()};
   record.vertices = mesh.vertexCount;
@@ -349,7 +382,8 @@ std::vector<WorkStep> stepsOf(const Arguments& arguments) {
                 {"writePatches", 5},
                 {"certify", 0.5},
                 {"writeHexMesh", 1},
-                {"writeLagrangeMesh", 4}};
+                {"writeLagrangeMesh", 4},
+                {"writeViewPage", 10}};
   steps.insert(steps.end(), rest.begin(), rest.end());
   return steps;
 }
@@ -382,6 +416,7 @@ void fillRecord(const Arguments& arguments, const TetMap& map, LongRun& longRun,
     record.input.bytes += std::filesystem::file_size(file, unknown);
   }
   record.output.file = arguments.output;
+  record.page = arguments.page;
   const auto bytes = std::filesystem::file_size(arguments.output, unknown);
   if (!unknown) record.output.bytes = bytes;  // the files of parts may have other names
   record.order = arguments.order;
@@ -536,6 +571,8 @@ Command addExtract(CLI::App& app) {
   parser->add_flag("--no-verify", arguments->noVerify, "Write the mesh without verifying it");
   addReport(*parser, arguments->report,
             "Write a report in JSON: times, counts, quality,\nverification");
+  addPage(*parser, arguments->page,
+          "Also write a page that shows the mesh in any browser; with\n--improve before and after");
   addRunOptions(*parser, arguments->run);
   parser->footer(
       "The mesh is verified against the map before it is written; with --stream, the file is read\n"

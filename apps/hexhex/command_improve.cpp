@@ -16,6 +16,7 @@
 #include "long_run.hpp"
 #include "output.hpp"
 #include "shared_options.hpp"
+#include "view_page.hpp"
 
 namespace hexhex::command {
 namespace {
@@ -24,6 +25,7 @@ struct Arguments {
   std::string mesh;
   std::string output;
   std::string map;
+  std::string page;  ///< empty: none
   OutputChoice choice;
   std::string report;
   double patchAngle = WriteOptions{}.patchAngle;
@@ -33,11 +35,34 @@ struct Arguments {
 
 void requireAllDifferent(const Arguments& arguments) {
   for (const std::string* const input : {&arguments.mesh, &arguments.map}) {
-    for (const std::string* const output : {&arguments.output, &arguments.report}) {
+    for (const std::string* const output :
+         {&arguments.output, &arguments.report, &arguments.page}) {
       if (!input->empty() && !output->empty()) requireDifferent(*input, *output);
     }
   }
   if (!arguments.report.empty()) requireDifferent(arguments.output, arguments.report);
+  if (!arguments.page.empty()) requireDifferent(arguments.output, arguments.page);
+  if (!arguments.page.empty() && !arguments.report.empty()) {
+    requireDifferent(arguments.page, arguments.report);
+  }
+}
+
+/// Positions that a page is to show, taken before they change.
+Array<Vec3> pointsForPage(const Arguments& arguments, const Array<Vec3>& points) {
+  return arguments.page.empty() ? Array<Vec3>() : points;
+}
+
+/// @param mesh    straight or curved
+/// @param before  its points before
+void writeComparison(const Arguments& arguments, const auto& mesh, const Array<Vec3>& before,
+                     const ImproveReport& report, LongRun& longRun) {
+  if (arguments.page.empty()) return;
+  ViewOptions options;
+  options.scaledJacobians = report.after.scaledJacobians;
+  options.pointsBefore = before;
+  longRun.part("page", [&] {
+    writePage(mesh, arguments.page, arguments.output, options, longRun.context());
+  });
 }
 
 /// @param mesh  straight or curved
@@ -54,11 +79,13 @@ ImproveReport improveMesh(const Arguments& arguments, auto& mesh, LongRun& longR
 ImproveReport improveStraight(const Arguments& arguments, LongRun& longRun) {
   Context& context = longRun.context();
   HexMesh mesh = longRun.part("reading", [&] { return readHexMesh(arguments.mesh, context); });
+  const Array<Vec3> before = pointsForPage(arguments, mesh.points);
   ImproveReport report = improveMesh(arguments, mesh, longRun);
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = report.after.scaledJacobians;
   writing.patchAngle = arguments.patchAngle;
   longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
+  writeComparison(arguments, mesh, before, report, longRun);
   return report;
 }
 
@@ -66,11 +93,13 @@ ImproveReport improveCurved(const Arguments& arguments, LongRun& longRun) {
   Context& context = longRun.context();
   LagrangeMesh mesh =
       longRun.part("reading", [&] { return readLagrangeMesh(arguments.mesh, context); });
+  const Array<Vec3> before = pointsForPage(arguments, mesh.points);
   ImproveReport report = improveMesh(arguments, mesh, longRun);
   WriteOptions writing;
   writing.scaledJacobians = report.after.scaledJacobians;
   writing.patchAngle = arguments.patchAngle;
   longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, writing, context); });
+  writeComparison(arguments, mesh, before, report, longRun);
   return report;
 }
 
@@ -97,15 +126,18 @@ int run(const Arguments& arguments) {
                                   {"certify", 0.2},
                                   {"improve", 20},
                                   {"writeHexMesh", 0.5},
-                                  {"writeLagrangeMesh", 1}});
+                                  {"writeLagrangeMesh", 1},
+                                  {"writeViewPage", 1}});
   const bool isCurved = requireFormats(arguments, longRun.context());
   requireWritable(arguments.output);
+  requirePage(arguments.page);
   Report reportFile(arguments.report);
   const ImproveReport report = (isCurved ? improveCurved : improveStraight)(arguments, longRun);
   longRun.finish();
   if (reportFile.isWanted()) reportFile.write(jsonText(improvementAsJson(report)));
   if (arguments.run.quiet || reportFile.isOnOutput()) return kSuccess;
   printFiles(arguments.mesh, arguments.output);
+  if (!arguments.page.empty()) printLine("page", arguments.page);
   printImprovement(report);
   return kSuccess;
 }
@@ -136,6 +168,8 @@ Command addImprove(CLI::App& app) {
   addReport(*parser, arguments->report,
             "Write in JSON: quality and certificates before and after,\n"
             "distances to the surface, how far vertices moved");
+  addPage(*parser, arguments->page,
+          "Write a page that shows the mesh in any browser, before\nand after");
   addRunOptions(*parser, arguments->run);
   parser->footer(
       "Cells that are not positive come first, then those below --target, then all. Vertices on "

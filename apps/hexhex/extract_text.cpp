@@ -87,6 +87,7 @@ void printSummary(const ExtractionRecord& record) {
                                 what == std::string("arcs") ? "inner points" : "polygons",
                                 part->file.string()));
   }
+  if (!record.page.empty()) printLine("page", record.page);
   if (record.meshParts) printParts(*record.meshParts);
   printLine("verification", verificationAsText(record));
   if (record.streamed) {

@@ -41,6 +41,7 @@ struct ExtractionRecord {
   std::uint64_t nodes = 0;  ///< of cells of higher order
   CurvesRecord arcs;
   CurvesRecord patches;
+  std::string page;  ///< empty: none
   std::uint64_t points = 0;
   std::uint64_t tets = 0;
   std::uint64_t vertices = 0;

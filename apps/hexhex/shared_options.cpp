@@ -204,6 +204,10 @@ void addReport(CLI::App& parser, std::string& file, const std::string& descripti
       ->option_text("FILE");
 }
 
+void addPage(CLI::App& parser, std::string& page, const std::string& description) {
+  parser.add_option("--view", page, description)->option_text("FILE");
+}
+
 void addQuiet(CLI::App& parser, bool& quiet, const std::string& description) {
   parser.add_flag("--quiet", quiet, description);
 }

@@ -75,6 +75,8 @@ void addOutputChoice(CLI::App& parser, OutputChoice& choice);
 void addPatchAngle(CLI::App& parser, double& angle);
 /// Adds --report. @param description  of what is in it
 void addReport(CLI::App& parser, std::string& file, const std::string& description);
+/// Adds --view. @param description  of what the page shows
+void addPage(CLI::App& parser, std::string& page, const std::string& description);
 void addQuiet(CLI::App& parser, bool& quiet,
               const std::string& description = "Print nothing but errors");
 

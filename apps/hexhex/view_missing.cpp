@@ -1,15 +1,34 @@
-// `hexhex view` of a command that was built without the viewer page.
+// `hexhex view` and --view of a command that was built without the viewer page.
 #include <hexhex/error.hpp>
 
 #include "view_page.hpp"
 
 namespace hexhex::command {
+namespace {
 
-int view(const ViewArguments& /*arguments*/) {
+[[noreturn]] void refuse() {
   throw Error(ErrorCode::FileUnsupported,
               "This hexhex was built without the viewer page. Install nodejs, npm and zlib1g-dev, "
               "configure with -DHEXHEX_BUILD_VIEWER=ON, and build again; or write a .vtu file and "
               "open it in ParaView.");
+}
+
+}  // namespace
+
+int view(const ViewArguments& /*arguments*/) { refuse(); }
+
+void requirePage(const std::string& page) {
+  if (!page.empty()) refuse();
+}
+
+void writePage(const HexMesh& /*mesh*/, const std::string& /*page*/, const std::string& /*output*/,
+               ViewOptions /*options*/, Context& /*context*/) {
+  refuse();
+}
+
+void writePage(const LagrangeMesh& /*mesh*/, const std::string& /*page*/,
+               const std::string& /*output*/, ViewOptions /*options*/, Context& /*context*/) {
+  refuse();
 }
 
 }  // namespace hexhex::command

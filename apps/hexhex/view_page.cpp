@@ -102,12 +102,14 @@ Subject readSubject(const ViewArguments& arguments, Context& context) {
   return subject;
 }
 
+std::string nameOf(const std::filesystem::path& file) { return file.filename().string(); }
+
 ViewOptions optionsOf(const ViewArguments& arguments, const Subject& subject) {
   ViewOptions options;
-  options.title = std::filesystem::path(arguments.mesh).filename().string();
+  options.title = nameOf(arguments.mesh);
   if (subject.verification) {
     options.verification = &*subject.verification;
-    options.mapName = std::filesystem::path(subject.map).filename().string();
+    options.mapName = nameOf(subject.map);
   }
   return options;
 }
@@ -124,7 +126,7 @@ void printWarnings(const Subject& subject) {
                "; the page lists the checks that failed.");
 }
 
-int writePage(const ViewArguments& arguments, LongRun& longRun) {
+int writeOwnPage(const ViewArguments& arguments, LongRun& longRun) {
   Context& context = longRun.context();
   const std::filesystem::path page = pageOf(arguments);
   requireDifferent(arguments.mesh, page);
@@ -184,7 +186,23 @@ int view(const ViewArguments& arguments) {
                                   {"verify", 2.5},
                                   {"makeServedPage", 10},
                                   {"writeViewPage", 10}});
-  return arguments.serve ? serve(arguments, longRun) : writePage(arguments, longRun);
+  return arguments.serve ? serve(arguments, longRun) : writeOwnPage(arguments, longRun);
+}
+
+void requirePage(const std::string& page) {
+  if (!page.empty()) requireWritable(page);
+}
+
+void writePage(const HexMesh& mesh, const std::string& page, const std::string& output,
+               ViewOptions options, Context& context) {
+  options.title = nameOf(output);
+  writeViewPage(mesh, page, options, context);
+}
+
+void writePage(const LagrangeMesh& mesh, const std::string& page, const std::string& output,
+               ViewOptions options, Context& context) {
+  options.title = nameOf(output);
+  writeViewPage(mesh, page, options, context);
 }
 
 }  // namespace hexhex::command

@@ -1,10 +1,13 @@
-// What `hexhex view` does after its options are known.
+// What `hexhex view` does after its options are known, and pages that other commands write.
 #pragma once
 
 #include <string>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/quantize.hpp>
+#include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
+#include <hexhex/view.hpp>
 
 #include "long_run.hpp"
 
@@ -26,5 +29,16 @@ struct ViewArguments {
 /// Writes or serves the page; returns the exit code.
 /// @throws Error  FileUnsupported if the command was built without the viewer
 int view(const ViewArguments& arguments);
+
+/// That a page can be written there; nothing if no page is asked for.
+/// @throws Error  FileWrite; FileUnsupported if the command was built without the viewer
+void requirePage(const std::string& page);
+
+/// The page of a mesh that a command has made.
+/// @param output  the file of the mesh, which the page is named after
+void writePage(const HexMesh& mesh, const std::string& page, const std::string& output,
+               ViewOptions options, Context& context);
+void writePage(const LagrangeMesh& mesh, const std::string& page, const std::string& output,
+               ViewOptions options, Context& context);
 
 }  // namespace hexhex::command

@@ -24,11 +24,16 @@ struct ViewOptions {
 
   /// What scaledJacobians() returned for this mesh, if the caller has it. Empty: computed.
   std::span<const double> scaledJacobians = {};
+
+  /// Where the vertices (of a LagrangeMesh: all nodes) were before the mesh was improved: the page
+  /// goes back and forth between both. Empty: it shows the mesh as it is.
+  std::span<const Vec3> pointsBefore = {};
 };
 
 /// Writes one self-contained HTML file: mesh and script are in it, and it may not use the network.
 /// Positions are rounded to a millionth of the longest side of the bounding box, scaled Jacobians
-/// to 16 bits. About 3 to 10 bytes per cell.
+/// to 16 bits. About 3 to 10 bytes per cell; with positions before an improvement, up to twice
+/// that.
 ///
 /// The file appears complete or not at all.
 /// @throws Error EmptyMesh without cells; InvalidArgument if arrays disagree, or a cell or a

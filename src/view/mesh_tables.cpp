@@ -214,10 +214,11 @@ class TableList {
 
 }  // namespace
 
-Quantization quantizationOf(const HexMesh& mesh, const SurfaceNodes& nodes) {
+Quantization quantizationOf(const HexMesh& mesh, const SurfaceNodes& nodes,
+                            const StateBefore& before) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Quantization result{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}, 1};
-  const auto enclose = [&result](const Array<Vec3>& points, const char* what) {
+  const auto enclose = [&result](std::span<const Vec3> points, const char* what) {
     for (std::size_t v = 0; v < points.size(); ++v) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double coordinate = points[v][axis];
@@ -234,6 +235,8 @@ Quantization quantizationOf(const HexMesh& mesh, const SurfaceNodes& nodes) {
   };
   enclose(mesh.points, "hex vertex ");
   enclose(nodes.points, "node ");
+  enclose(before.points, "an earlier hex vertex ");
+  enclose(before.nodes, "an earlier node ");
   double longest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     longest = std::max(longest, result.upper[axis] - result.lower[axis]);
@@ -251,25 +254,33 @@ Quantization quantizationOf(const HexMesh& mesh, const SurfaceNodes& nodes) {
 }
 
 std::vector<PackedTable> packMesh(const HexMesh& mesh, const Quantization& quantization,
-                                  std::span<const double> scaledJacobians,
+                                  const CellQuality& quality,
                                   std::span<const SingularHexEdge> singularEdges, Stage& stage,
-                                  const SurfaceNodes& nodes) {
+                                  const SurfaceNodes& nodes, const StateBefore& before) {
   TableList list(stage);
   const std::size_t vertices = mesh.points.size();
+  const auto stored = [&quantization](const Vec3& point, std::size_t axis) {
+    const double offset = point[axis] - quantization.lower[axis];
+    return static_cast<std::uint32_t>(std::lround(offset / quantization.step));
+  };
+  const auto addQuality = [&list](const CellQuality& of, const std::string& suffix) {
+    list.addColumn("quality" + suffix, of.scaledJacobians.size(), [&](std::size_t c) {
+      return std::lround((std::clamp(of.scaledJacobians[c], -1.0, 1.0) + 1) / 2 * kQualitySteps);
+    });
+    list.addColumn("not_positive" + suffix, of.notPositive.size(),
+                   [&](std::size_t i) { return of.notPositive[i]; });
+  };
+  const auto pointAt = [&](std::size_t v) {
+    return v < vertices ? mesh.points[v] : nodes.points[v - vertices];
+  };
   list.add("points", vertices + nodes.points.size(), 3, [&](std::size_t v, std::uint32_t* to) {
-    const Vec3& point = v < vertices ? mesh.points[v] : nodes.points[v - vertices];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double offset = point[axis] - quantization.lower[axis];
-      *to++ = static_cast<std::uint32_t>(std::lround(offset / quantization.step));
-    }
+    for (std::size_t axis = 0; axis < 3; ++axis) *to++ = stored(pointAt(v), axis);
     return to;
   });
   list.add("cells", mesh.cells.size(), 8, [&](std::size_t c, std::uint32_t* to) {
     return std::ranges::copy(mesh.cells[c], to).out;
   });
-  list.addColumn("quality", scaledJacobians.size(), [&](std::size_t c) {
-    return std::lround((std::clamp(scaledJacobians[c], -1.0, 1.0) + 1) / 2 * kQualitySteps);
-  });
+  addQuality(quality, "");
   const std::vector<std::uint64_t> skin = boundaryPlaces(mesh, stage);
   list.addColumn("skin", skin.size(), [&](std::size_t i) { return skin[i] / 8 * 6 + skin[i] % 8; });
   list.add("nodes", nodes.perCell > 0 ? mesh.cells.size() : 0, nodes.perCell,
@@ -287,6 +298,16 @@ std::vector<PackedTable> packMesh(const HexMesh& mesh, const Quantization& quant
   });
   list.addFeatures("feature_edges", mesh.features.edges);
   list.addFeatures("feature_quads", mesh.features.quads);
+  // Most vertices move by little: differences take half the bytes of positions.
+  list.add("points_before", before.points.size() + before.nodes.size(), 3,
+           [&](std::size_t v, std::uint32_t* to) {
+             const Vec3& was = v < vertices ? before.points[v] : before.nodes[v - vertices];
+             for (std::size_t axis = 0; axis < 3; ++axis) {
+               *to++ = stored(was, axis) - stored(pointAt(v), axis);
+             }
+             return to;
+           });
+  addQuality(before.quality, "_before");
   return list.take();
 }
 

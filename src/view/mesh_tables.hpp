@@ -53,6 +53,19 @@ struct SurfaceNodes {
 /// @throws Error  as requireConsistent() of the mesh
 [[nodiscard]] SurfaceNodes surfaceNodesOf(const LagrangeMesh& mesh);
 
+/// How good the cells are.
+struct CellQuality {
+  std::span<const double> scaledJacobians;
+  std::vector<Index> notPositive = {};  ///< cells that are not certified, ascending
+};
+
+/// The same mesh before it was improved. Without points: the page shows one state.
+struct StateBefore {
+  std::span<const Vec3> points;  ///< of the vertices
+  std::span<const Vec3> nodes;   ///< in the order of SurfaceNodes::points
+  CellQuality quality = {};
+};
+
 /// Where quantized coordinates are: coordinate = lower + step * number, the same step on all axes.
 struct Quantization {
   Vec3 lower{};
@@ -60,9 +73,11 @@ struct Quantization {
   double step = 1;
 };
 
-/// The smallest box around vertices and nodes, in 2^20 - 1 steps along its longest side.
+/// The smallest box around vertices and nodes, of both states, in 2^20 - 1 steps along its longest
+/// side.
 /// @throws Error NotFinite; TooLarge if the longest side exceeds the largest double
-[[nodiscard]] Quantization quantizationOf(const HexMesh& mesh, const SurfaceNodes& nodes = {});
+[[nodiscard]] Quantization quantizationOf(const HexMesh& mesh, const SurfaceNodes& nodes = {},
+                                          const StateBefore& before = {});
 
 /// Scaled Jacobians in 16 bits: 0 stands for -1, this for 1. As in viewer/src/format.ts.
 inline constexpr double kQualitySteps = 65534;
@@ -70,12 +85,14 @@ inline constexpr double kQualitySteps = 65534;
 /// Tables `points` (3 columns: vertices, then nodes), `cells` (8), `quality` (1), `skin` (1: the
 /// faces of the boundary, 6 * cell + face) and, where the mesh has them, `nodes`
 /// (SurfaceNodes::perCell), `generator_kinds` (1), `regions` (1), `singular_edges` (vertex, vertex,
-/// 2 * valence + (1 on the boundary)), `feature_edges` (vertex, vertex, tag) and `feature_quads` (4
-/// vertices, tag).
+/// 2 * valence + (1 on the boundary)), `feature_edges` (vertex, vertex, tag), `feature_quads` (4
+/// vertices, tag), `not_positive` (1), `points_before` (3: what is to be added to `points`, modulo
+/// 2^32), `quality_before` (1) and `not_positive_before` (1).
 [[nodiscard]] std::vector<PackedTable> packMesh(const HexMesh& mesh,
                                                 const Quantization& quantization,
-                                                std::span<const double> scaledJacobians,
+                                                const CellQuality& quality,
                                                 std::span<const SingularHexEdge> singularEdges,
-                                                Stage& stage, const SurfaceNodes& nodes = {});
+                                                Stage& stage, const SurfaceNodes& nodes = {},
+                                                const StateBefore& before = {});
 
 }  // namespace hexhex

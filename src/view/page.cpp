@@ -41,6 +41,7 @@ struct PageContent {
 struct Subject {
   const HexMesh& mesh;
   const SurfaceNodes& nodes;
+  StateBefore before = {};
 };
 
 void requireSize(const Subject& subject) {
@@ -144,20 +145,40 @@ nlohmann::json validityAsJson(const Certificate& certificate) {
           {"worst", std::move(worst)}};
 }
 
+nlohmann::json qualityAsJson(const QualitySummary& summary) {
+  return {
+      {"minimum", summary.minimum}, {"mean", summary.mean}, {"notPositive", summary.notPositive}};
+}
+
+std::vector<Index> notPositive(const Certificate& certificate) {
+  std::vector<Index> cells;
+  if (certificate.allPositive()) return cells;
+  for (std::size_t c = 0; c < certificate.validity.size(); ++c) {
+    if (certificate.validity[c] != Validity::Positive) cells.push_back(static_cast<Index>(c));
+  }
+  return cells;
+}
+
+/// @param points  of the vertices  @param nodes  as SurfaceNodes::points
+StateBefore stateBefore(std::span<const Vec3> points, std::span<const Vec3> nodes,
+                        const Certificate& certificate) {
+  return {points, nodes, {certificate.scaledJacobians, notPositive(certificate)}};
+}
+
+/// @param before  of subject.before, if that has points
 PageContent makeContent(const Subject& subject, const Certificate& certificate,
-                        const ViewOptions& options, Context& context) {
+                        const Certificate& before, const ViewOptions& options, Context& context) {
   Array<double> quality(options.scaledJacobians.begin(), options.scaledJacobians.end());
   if (quality.empty()) quality = certificate.scaledJacobians;
   const HexMesh& mesh = subject.mesh;
-  const Quantization quantization = quantizationOf(mesh, subject.nodes);
+  const Quantization quantization = quantizationOf(mesh, subject.nodes, subject.before);
   const MeshStructure structure = findStructure(mesh, context);
-  const QualitySummary summary = summarize(quality);
 
   PageContent content;
   withThreads(context.threads(), [&] {
     Stage stage(context, "pack mesh");
-    content.tables =
-        packMesh(mesh, quantization, quality, structure.singularEdges, stage, subject.nodes);
+    content.tables = packMesh(mesh, quantization, {quality, notPositive(certificate)},
+                              structure.singularEdges, stage, subject.nodes, subject.before);
   });
   content.info = {
       {"format", 1},
@@ -170,10 +191,7 @@ PageContent makeContent(const Subject& subject, const Certificate& certificate,
       {"lower", quantization.lower},
       {"upper", quantization.upper},
       {"step", quantization.step},
-      {"quality",
-       {{"minimum", summary.minimum},
-        {"mean", summary.mean},
-        {"notPositive", summary.notPositive}}},
+      {"quality", qualityAsJson(summarize(quality))},
       {"validity", validityAsJson(certificate)},
       {"topology",
        {{"boundaryQuads", structure.boundaryQuads},
@@ -185,20 +203,45 @@ PageContent makeContent(const Subject& subject, const Certificate& certificate,
       {"hasGenerators", !mesh.generatorCorners.empty()},
       {"verification", verificationAsJson(options)},
       {"tables", tablesAsJson(content.tables)}};
+  if (!subject.before.points.empty()) {
+    content.info["before"] = {{"quality", qualityAsJson(before.quality)},
+                              {"validity", validityAsJson(before)}};
+  }
   return content;
 }
 
 PageContent makeContent(const HexMesh& mesh, const ViewOptions& options, Context& context) {
   const SurfaceNodes straight;
   requireShowable({mesh, straight}, options);
-  return makeContent({mesh, straight}, certify(mesh, context), options, context);
+  requireOnePer("earlier positions", options.pointsBefore.size(), "vertices", mesh.points.size());
+  Certificate before;
+  if (!options.pointsBefore.empty()) {
+    HexMesh earlier;
+    earlier.points.assign(options.pointsBefore.begin(), options.pointsBefore.end());
+    earlier.cells = mesh.cells;
+    before = certify(earlier, context);
+  }
+  const Subject subject{mesh, straight, stateBefore(options.pointsBefore, {}, before)};
+  return makeContent(subject, certify(mesh, context), before, options, context);
 }
 
 PageContent makeContent(const LagrangeMesh& mesh, const ViewOptions& options, Context& context) {
   const SurfaceNodes nodes = surfaceNodesOf(mesh);
   const HexMesh corners = straightMesh(mesh);
   requireShowable({corners, nodes}, options);
-  return makeContent({corners, nodes}, certify(mesh, context), options, context);
+  requireOnePer("earlier positions", options.pointsBefore.size(), "nodes", mesh.points.size());
+  Certificate before;
+  SurfaceNodes nodesBefore;
+  std::span<const Vec3> verticesBefore;
+  if (!options.pointsBefore.empty()) {
+    LagrangeMesh earlier = mesh;
+    earlier.points.assign(options.pointsBefore.begin(), options.pointsBefore.end());
+    before = certify(earlier, context);
+    nodesBefore = surfaceNodesOf(earlier);
+    verticesBefore = options.pointsBefore.first(mesh.vertexCount);
+  }
+  const Subject subject{corners, nodes, stateBefore(verticesBefore, nodesBefore.points, before)};
+  return makeContent(subject, certify(mesh, context), before, options, context);
 }
 
 std::string replaced(std::string_view text, char character, std::string_view by) {

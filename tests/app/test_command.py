@@ -1398,6 +1398,46 @@ class View(CommandTest):
         vertices, points = self.info(file)["vertices"], self.info(file)["points"]
         self.assertEqual({n for row in tables["nodes"] for n in row}, set(range(vertices, points)))
 
+    def test_page_before_and_after(self):
+        """What `improve` and `extract --improve` write beside the mesh."""
+        self.generate("torus", "--jitter", "0.9", "--cells", "3")
+        self.run_command("extract", "map.hexex", "-o", "rough.vtu", "--quiet")
+        run = self.run_command("improve", "rough.vtu", "--map", "map.hexex", "-o", "fine.vtu", "--view", "b.html")
+        self.assertIn("page                      b.html", run.stdout)
+        self.run_command("extract", "map.hexex", "-o", "same.vtu", "--improve", "--view", "c.html", "--quiet")
+        self.run_command("view", "rough.vtu", "-o", "rough.html", "--quiet")
+        self.run_command("view", "fine.vtu", "-o", "fine.html", "--quiet")
+        both, extracted, rough, fine = [(self.folder / f"{name}.html").read_text()
+                                        for name in ["b", "c", "rough", "fine"]]
+        info, tables = self.info(both), self.tables(both)
+        for key in ["quality", "validity"]:
+            self.assertEqual(info["before"][key], self.info(rough)[key])
+            self.assertEqual(info[key], self.info(fine)[key])
+        self.assertGreater(info["before"]["validity"]["refuted"], 0)
+        self.assertEqual(info["validity"]["refuted"], 0)
+        self.assertEqual(tables["quality_before"], self.tables(rough)["quality"])
+        self.assertEqual(len(tables["not_positive_before"]), info["before"]["validity"]["refuted"])
+        self.assertEqual(tables, self.tables(extracted))
+        self.assertTrue(self.info(extracted)["verification"]["passed"])
+        earlier = [[(a + b) % 2**32 for a, b in zip(after, added)]
+                   for after, added in zip(tables["points"], tables["points_before"])]
+        place = lambda of, row: [of["lower"][axis] + of["step"] * row[axis] for axis in range(3)]
+        for row, expected in zip(earlier, self.tables(rough)["points"]):
+            for a, b in zip(place(info, row), place(self.info(rough), expected)):
+                self.assertAlmostEqual(a, b, delta=2 * info["step"])
+        # Without an improvement, the page is that of `view`, but for its title.
+        self.run_command("extract", "map.hexex", "-o", "rough.vtu", "--view", "d.html", "--quiet")
+        self.assertEqual(self.tables((self.folder / "d.html").read_text()), self.tables(rough))
+        self.assertNotIn("points_before-0", rough + fine)
+        self.assert_fails("improve", "fine.vtu", "-o", "bad.vtu", "--view", "fine.vtu", expect=BAD_USAGE,
+                          words=["same file"])
+        self.assert_fails("improve", "fine.vtu", "-o", "bad.vtu", "--view", "no/folder/a.html", expect=FILE_PROBLEM,
+                          code="FileWrite")
+        for option in ["--stream", "--partial"]:
+            self.assert_fails("extract", "map.hexex", "-o", "bad.vtu", "--view", "e.html", option, expect=BAD_USAGE,
+                              code="InvalidArgument")
+        self.assertFalse((self.folder / "bad.vtu").exists())
+
     def test_page_problems(self):
         self.assert_fails("view", "a.mesh", "-o", "a.mesh", expect=BAD_USAGE, words=["same file"])
         self.assert_fails("view", "none.mesh", expect=FILE_PROBLEM, code="FileNotFound")

@@ -143,7 +143,7 @@ TEST(Quantization, RoundsToAMillionthOfTheLongestSide) {
   Context context;
   Stage stage(context, "test");
   const Array<double> quality = scaledJacobians(mesh, context);
-  const std::vector<PackedTable> tables = packMesh(mesh, quantization, quality, {}, stage);
+  const std::vector<PackedTable> tables = packMesh(mesh, quantization, {quality}, {}, stage);
   const std::vector<std::uint32_t> stored = unpacked(tables.at(0));
   ASSERT_EQ(stored.size(), 3 * mesh.points.size());
   for (std::size_t i = 0; i < stored.size(); ++i) {
@@ -283,6 +283,70 @@ TEST_F(Page, TakesHugeAndTinyMeshes) {
   }
 }
 
+/// The grid's inner vertices are somewhere else.
+HexMesh shaken(HexMesh mesh, double by) {
+  for (Vec3& point : mesh.points) {
+    const bool isInside = std::ranges::all_of(point, [](double x) { return x > 0.5 && x < 2.5; });
+    if (isInside) point = {point[0] + by, point[1] - by / 2, point[2]};
+  }
+  return mesh;
+}
+
+const PackedTable& tableNamed(const std::vector<PackedTable>& tables, const std::string& name) {
+  return *std::ranges::find(tables, name, &PackedTable::name);
+}
+
+TEST(StateBefore, AddsToThePositionsAfter) {
+  const HexMesh mesh = gridMesh(3);
+  const HexMesh earlier = shaken(mesh, 1.7);
+  Context context;
+  const Certificate now = certify(mesh, context);
+  const Certificate then = certify(earlier, context);
+  const StateBefore before{earlier.points, {}, {then.scaledJacobians, {3, 5}}};
+  const Quantization quantization = quantizationOf(mesh, {}, before);
+  EXPECT_GT(quantization.upper[0], 3);  // vertices were outside of the box of today
+  Stage stage(context, "test");
+  const auto tables =
+      packMesh(mesh, quantization, {now.scaledJacobians}, {}, stage, SurfaceNodes(), before);
+  const auto after = unpacked(tableNamed(tables, "points"));
+  const auto added = unpacked(tableNamed(tables, "points_before"));
+  ASSERT_EQ(added.size(), after.size());
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    const double place = quantization.lower[i % 3] + quantization.step * (after[i] + added[i]);
+    EXPECT_NEAR(place, earlier.points[i / 3][i % 3], 0.501 * quantization.step);
+  }
+  const auto values = unpacked(tableNamed(tables, "quality_before"));
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    EXPECT_NEAR(values[c] / kQualitySteps * 2 - 1, then.scaledJacobians[c], 2e-5);
+  }
+  EXPECT_EQ(unpacked(tableNamed(tables, "not_positive_before")),
+            (std::vector<std::uint32_t>{3, 5}));
+}
+
+TEST_F(Page, HoldsAnEarlierStateOnlyIfThereIsOne) {
+  const HexMesh mesh = gridMesh(3);
+  const std::string alone = write(mesh);
+  for (const char* const word : {"id=\"data-points_before", "id=\"data-quality_before",
+                                 "id=\"data-not_positive", "\"before\":{"}) {
+    EXPECT_FALSE(contains(alone, word)) << word;
+  }
+  const HexMesh earlier = shaken(mesh, 1.7);
+  ViewOptions options;
+  options.pointsBefore = earlier.points;
+  const std::string both = write(mesh, options);
+  for (const char* const word : {"id=\"data-points_before-0", "id=\"data-quality_before-0",
+                                 "id=\"data-not_positive_before-0", "\"before\":{"}) {
+    EXPECT_TRUE(contains(both, word)) << word;
+  }
+}
+
+TEST_F(Page, RefusesAnEarlierStateOfAnotherMesh) {
+  const HexMesh other = gridMesh(2);
+  ViewOptions options;
+  options.pointsBefore = other.points;
+  expectRefused(gridMesh(3), ErrorCode::InvalidArgument, options);
+}
+
 /// A grid of side^3 cells with nodes halfway between vertices.
 LagrangeMesh quadraticGrid(std::size_t side) {
   const std::size_t n = 2 * side + 1;
@@ -350,6 +414,26 @@ TEST_F(Page, HoldsCurvedCells) {
   broken.nodes.pop_back();
   EXPECT_EQ(test::codeOf([&] { static_cast<void>(makeServedPage(broken, "/mesh", {}, context)); }),
             ErrorCode::InvalidArgument);
+}
+
+TEST(ServedPage, HoldsAnEarlierStateOfCurvedCells) {
+  Context context;
+  const LagrangeMesh mesh = quadraticGrid(2);
+  LagrangeMesh earlier = mesh;
+  for (Vec3& point : earlier.points) point[0] = -point[0];
+  ViewOptions options;
+  options.pointsBefore = earlier.points;
+  const ServedPage page = makeServedPage(mesh, "/mesh", options, context);
+  EXPECT_TRUE(contains(page.html, "\"refuted\":8"));  // mirrored: all of them
+  EXPECT_TRUE(contains(page.html, "\"name\":\"points_before\",\"rows\":117,"));
+  // Points, cells, quality, skin, nodes, singular edges; and before: points, quality, the bad
+  // cells.
+  EXPECT_EQ(page.data.size(), 9U);
+  earlier.points[3][1] = std::nan("");
+  options.pointsBefore = earlier.points;
+  EXPECT_EQ(
+      test::codeOf([&] { static_cast<void>(makeServedPage(mesh, "/mesh", options, context)); }),
+      ErrorCode::NotFinite);
 }
 
 TEST(ServedPage, HasTheMeshApart) {

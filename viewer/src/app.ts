@@ -3,6 +3,7 @@ import { kPickedColour } from "./colours";
 import { EdgeCurves, kCellEdges } from "./curves";
 import { type MeshInfo, qualityOf, storedQuality } from "./format";
 import type { MeshWorker } from "./load";
+import { isBefore, Moments } from "./moments";
 import { thinLines, wideLines } from "./scene/lines";
 import { badSegments, featureSegments, singularSegments } from "./scene/segments";
 import { type ColourMode, kColourModes, Surface } from "./scene/surface";
@@ -13,7 +14,7 @@ import { element, grouped } from "./ui/dom";
 import { Histogram } from "./ui/histogram";
 import { Legend } from "./ui/legend";
 import { askedPicture, savePng } from "./ui/picture";
-import { showPicked } from "./ui/statistics";
+import { infoAt, showImprovement, showPicked, showStatistics } from "./ui/statistics";
 import type { LoadedMesh } from "./worker/messages";
 import type { CurvedFaces } from "./worker/curved_faces";
 import type { Layers } from "./worker/topology";
@@ -34,6 +35,7 @@ export class App {
   private readonly surface: Surface;
   private readonly histogram: Histogram;
   private readonly legend = new Legend(element("legend"));
+  private readonly moments: Moments;
   private readonly curves: EdgeCurves | null;
   private lines;
   /** Whether the lines are those of curved cells. */
@@ -51,19 +53,22 @@ export class App {
     private readonly worker: MeshWorker,
   ) {
     this.state = fromFragment(location.hash);
-    this.dropUnknownCells();
+    this.dropUnknown();
 
     const { half } = sceneOf(info);
     const canvas = element<HTMLCanvasElement>("canvas");
     this.viewport = new Viewport(canvas, half, () => this.saveFragment());
-    this.surface = new Surface(mesh);
+    this.moments = new Moments(mesh.after, mesh.before);
+    this.moments.show(this.state.moment);
+    this.surface = new Surface(mesh, this.moments);
     this.viewport.setSurface(this.surface);
-    this.curves = mesh.order > 1 ? new EdgeCurves(mesh) : null;
+    const { positions } = this.moments;
+    this.curves = mesh.order > 1 ? new EdgeCurves({ ...mesh, positions }) : null;
     this.curvedLines = this.curved();
     this.lines = this.makeLines();
     this.histogram = new Histogram(
       element<HTMLCanvasElement>("histogram"),
-      info.quality.minimum,
+      Math.min(info.quality.minimum, info.before?.quality.minimum ?? 1),
       (range) => this.change({ quality: range }),
     );
     worker.onLit = (light) => this.showLit(light);
@@ -123,6 +128,11 @@ export class App {
     this.change({ [flag]: !this.state[flag] });
   }
 
+  /** Goes from before to after the improvement, or back. */
+  otherMoment(): void {
+    if (this.info.before) this.change({ moment: isBefore(this.state.moment) ? 1 : 0 });
+  }
+
   look(direction: "home" | "x" | "y" | "z"): void {
     this.viewport.look(direction === "home" ? [1, -1.6, 0.9] : kAxes[direction]);
     this.saveFragment();
@@ -170,7 +180,7 @@ export class App {
     let radius = 0;
     for (let k = 0; k < 8; ++k) {
       const at = 4 * this.mesh.cells[8 * worst + k]!;
-      const away = centre.map((x, axis) => this.mesh.positions[at + axis]! - x);
+      const away = centre.map((x, axis) => this.moments.positions[at + axis]! - x);
       radius = Math.max(radius, Math.hypot(...away));
     }
     this.viewport.approach(centre, radius);
@@ -179,7 +189,7 @@ export class App {
 
   private worstKept(): number | null {
     const [from, to] = this.storedRange();
-    const { quality } = this.mesh;
+    const { quality } = this.moments;
     const layers = this.layers?.ofCells;
     const side = this.filter().plane;
     const dug = new Set(this.state.dug);
@@ -224,7 +234,7 @@ export class App {
   private restore(fragment: string): void {
     if (fragment.replace(/^#/, "") === toFragment(this.state)) return;
     this.state = fromFragment(fragment);
-    this.dropUnknownCells();
+    this.dropUnknown();
     if (this.state.camera) this.viewport.cameraState = this.state.camera;
     else this.viewport.look([1, -1.6, 0.9]);
     this.applyTheme();
@@ -232,8 +242,9 @@ export class App {
   }
 
   /** An address may come from another mesh. */
-  private dropUnknownCells(): void {
+  private dropUnknown(): void {
     const { state, info } = this;
+    if (!info.before) state.moment = kStart.moment;
     state.dug = state.dug.filter((cell) => cell < info.cells);
     if (state.picked === null || state.picked < info.cells) return;
     state.picked = null;
@@ -244,7 +255,7 @@ export class App {
     const sum: [number, number, number] = [0, 0, 0];
     for (let k = 0; k < 8; ++k) {
       const at = 4 * this.mesh.cells[8 * cell + k]!;
-      for (let axis = 0; axis < 3; ++axis) sum[axis]! += this.mesh.positions[at + axis]! / 8;
+      for (let axis = 0; axis < 3; ++axis) sum[axis]! += this.moments.positions[at + axis]! / 8;
     }
     return sum;
   }
@@ -269,8 +280,10 @@ export class App {
   private update(): void {
     const { state } = this;
     state.peel = Math.min(state.peel, this.layers?.deepest ?? state.peel);
-    this.worker.show(this.filter(), this.curved());
-    if (this.curvedLines !== this.curved()) this.remakeLines();
+    this.worker.show({ filter: this.filter(), curved: this.curved(), moment: state.moment });
+    const moved = this.moments.show(state.moment);
+    if (moved) this.surface.showMoment();
+    if (moved || this.curvedLines !== this.curved()) this.remakeLines();
     document.body.dataset.busy = "true";
     this.surface.setColouring(state.colour);
     this.surface.showGrid(state.grid);
@@ -291,8 +304,10 @@ export class App {
 
   /** What panel and legend say of the mesh. */
   private showFacts(): void {
-    this.legend.update(this.state, this.info, this.mesh, this.layers);
-    showPicked(this.state.picked, this.info, this.mesh, this.layers);
+    const info = infoAt(this.info, this.state.moment);
+    this.legend.update(this.state, info, this.mesh, this.layers);
+    showPicked(this.state.picked, info, this.mesh, this.moments, this.layers);
+    showStatistics(info);
   }
 
   /** Whether cells are drawn curved. */
@@ -301,13 +316,14 @@ export class App {
   }
 
   private makeLines() {
-    const { positions, singularEdges, featureEdges, creases } = this.mesh;
+    const { singularEdges, featureEdges, creases } = this.mesh;
+    const { positions } = this.moments;
     const curves = this.curvedLines ? this.curves : null;
     const lines = {
       inner: wideLines(singularSegments(singularEdges, false), positions, curves, 3),
       boundary: wideLines(singularSegments(singularEdges, true), positions, curves, 2),
       features: wideLines(featureSegments(featureEdges), positions, curves, 2.5),
-      bad: wideLines(badSegments(this.mesh), positions, curves, 2),
+      bad: wideLines(badSegments(this.mesh.cells, this.moments), positions, curves, 2),
       creases: thinLines(creases, positions, curves),
     };
     for (const object of Object.values(lines)) this.viewport.add(object);
@@ -335,7 +351,7 @@ export class App {
       cell === null ? [] : kCellEdges.map((corner) => this.mesh.cells[8 * cell + corner]!);
     const colours = vertices.slice(0, vertices.length / 2).map(() => kPickedColour);
     const curves = this.curved() ? this.curves : null;
-    this.pickedOutline = wideLines({ vertices, colours }, this.mesh.positions, curves, 2.5);
+    this.pickedOutline = wideLines({ vertices, colours }, this.moments.positions, curves, 2.5);
     this.viewport.add(this.pickedOutline);
   }
 
@@ -376,6 +392,8 @@ export class App {
     for (const option of colours.options) {
       option.disabled = !this.hasColour(option.value as ColourMode);
     }
+    element("moments").hidden = !this.info.before;
+    showImprovement(this.info);
     element("show-curved").closest("label")!.hidden = this.mesh.order === 1;
     const noFeatures = this.mesh.featureEdges.length === 0;
     element("show-features").closest("label")!.hidden = noFeatures;
@@ -387,6 +405,10 @@ export class App {
     for (const button of document.querySelectorAll<HTMLElement>("[data-slice]")) {
       button.setAttribute("aria-pressed", String(button.dataset.slice === state.slice));
     }
+    for (const button of document.querySelectorAll<HTMLElement>("[data-moment]")) {
+      button.setAttribute("aria-pressed", String(Number(button.dataset.moment) === state.moment));
+    }
+    element<HTMLInputElement>("moment").value = String(state.moment * 1000);
     const slider = element<HTMLInputElement>("slice-position");
     slider.disabled = state.slice === "off";
     slider.value = String(state.position * 1000);

@@ -21,6 +21,20 @@ export interface CheckItem {
   passed: boolean;
 }
 
+export interface QualityInfo {
+  minimum: number;
+  mean: number;
+  notPositive: number;
+}
+
+/** Whether cells are positive everywhere; the worst that are not. */
+export interface ValidityInfo {
+  refuted: number;
+  undecided: number;
+  minimum: number;
+  worst: { cell: number; place: [number, number, number]; scaledJacobian: number }[];
+}
+
 export interface MeshInfo {
   format: number;
   title: string;
@@ -36,14 +50,10 @@ export interface MeshInfo {
   upper: [number, number, number];
   /** Length of one unit of the quantized coordinates. */
   step: number;
-  quality: { minimum: number; mean: number; notPositive: number };
-  /** Whether cells are positive everywhere; the worst that are not. */
-  validity: {
-    refuted: number;
-    undecided: number;
-    minimum: number;
-    worst: { cell: number; place: [number, number, number]; scaledJacobian: number }[];
-  };
+  quality: QualityInfo;
+  validity: ValidityInfo;
+  /** The same before the mesh was improved, if the page shows that, too. */
+  before?: { quality: QualityInfo; validity: ValidityInfo };
   topology: {
     boundaryQuads: number;
     boundaryComponents: number;

@@ -2,10 +2,10 @@
 import type { MeshInfo } from "./format";
 import { element, grouped, make } from "./ui/dom";
 import { memoryEstimate } from "./ui/statistics";
-import type { FromWorker, LoadedMesh, ToWorker } from "./worker/messages";
+import type { FromWorker, LoadedMesh, ToWorker, Wanted } from "./worker/messages";
 import type { CurvedFaces } from "./worker/curved_faces";
 import type { Layers } from "./worker/topology";
-import type { Filter, Visible } from "./worker/visible";
+import type { Visible } from "./worker/visible";
 
 /** From here on a browser may run out of memory, so the page asks before it loads. */
 const kManyCells = 5e6;
@@ -18,7 +18,7 @@ export class MeshWorker {
   onLayers: (layers: Layers) => void = () => {};
   private readonly worker: Worker;
   private running = false;
-  private next: [Filter, boolean] | null = null;
+  private next: Wanted | null = null;
 
   constructor(
     private readonly onProgress: (what: string, share: number) => void,
@@ -36,13 +36,13 @@ export class MeshWorker {
   }
 
   /** Asks for the faces of a filter. While one is being worked on, only the last one waits. */
-  show(filter: Filter, curved: boolean): void {
+  show(wanted: Wanted): void {
     if (this.running) {
-      this.next = [filter, curved];
+      this.next = wanted;
       return;
     }
     this.running = true;
-    this.send({ kind: "show", filter, curved });
+    this.send({ kind: "show", ...wanted });
   }
 
   /** Whether no answer is awaited. */
@@ -67,7 +67,7 @@ export class MeshWorker {
         this.running = false;
         const next = this.next;
         this.next = null;
-        if (next) this.show(...next);
+        if (next) this.show(next);
         this.onVisible(message.visible, message.curved, message.milliseconds);
       }
     }

@@ -16,8 +16,7 @@ async function start(): Promise<void> {
   bindPage();
   const info = readInfo();
   element("title").textContent = info.title;
-  const bytes = info.tables.flatMap((table) => table.chunkBytes).reduce((sum, n) => sum + n, 0);
-  showStatistics(info, bytes);
+  showStatistics(info);
   const worker = new MeshWorker(
     (what, share) => (element("progress").textContent = `${what} ... ${Math.round(share * 100)} %`),
     (mesh) => {

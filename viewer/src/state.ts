@@ -15,6 +15,8 @@ export interface ViewState {
   position: number;
   peel: number;
   quality: [number, number];
+  /** From before an improvement (0) to after it (1), if the page shows both. */
+  moment: number;
   colour: ColourMode;
   grid: boolean;
   inner: boolean;
@@ -40,6 +42,7 @@ export const kStart: ViewState = {
   position: 0.5,
   peel: 0,
   quality: [-1, 1],
+  moment: 1,
   colour: "quality",
   grid: true,
   inner: false,
@@ -68,6 +71,7 @@ export function toFragment(state: ViewState): string {
   }
   if (state.peel > 0) parts.set("peel", String(state.peel));
   if (state.quality[0] > -1 || state.quality[1] < 1) parts.set("quality", list(state.quality));
+  if (state.moment !== kStart.moment) parts.set("moment", short(state.moment));
   if (state.colour !== kStart.colour) parts.set("colour", state.colour);
   for (const flag of kFlags) if (state[flag] !== kStart[flag]) parts.set(flag, state[flag] ? "1" : "0");
   if (state.dug.length > 0) parts.set("dug", list(state.dug));
@@ -107,6 +111,8 @@ export function fromFragment(fragment: string): ViewState {
     const [from, to] = quality.map((value) => Math.min(Math.max(value, -1), 1)).sort((a, b) => a - b);
     state.quality = [from!, to!];
   }
+  const moment = numbers(parts.get("moment"), 1)?.[0] ?? kStart.moment;
+  state.moment = Math.min(Math.max(moment, 0), 1);
   const colour = kColourModes.find((mode) => mode === parts.get("colour"));
   if (colour) state.colour = colour;
   for (const flag of kFlags) if (parts.has(flag)) state[flag] = parts.get(flag) === "1";

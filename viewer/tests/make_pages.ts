@@ -62,6 +62,16 @@ export default function makePages(): void {
   hexhex("view", "curved.vtu", "--quiet");
   hexhex("view", "ball.ovmb", "--order", "2", "-o", "map.html", "--quiet");
 
+  // A mesh with many cells that are not positive, and what an improvement makes of it; curved, too.
+  hexhex("generate", "sphere", "--cells", "6", "--refine", "3", "--jitter", "0.3", "--seed", "3", "-o",
+    "rough.hexex", "--quiet");
+  hexhex("extract", "rough.hexex", "-o", "rough.vtu", "--quiet");
+  hexhex("improve", "rough.vtu", "--map", "rough.hexex", "-o", "improved.vtu", "--view", "improved.html", "--quiet");
+  hexhex("view", "improved.vtu", "-o", "after.html", "--quiet");
+  hexhex("generate", "sphere", "--cells", "2", "--jitter", "0.9", "-o", "rough-ball.hexex", "--quiet");
+  hexhex("extract", "rough-ball.hexex", "--order", "2", "-o", "improved-ball.vtu", "--improve", "--passes", "1",
+    "--view", "improved-curved.html", "--quiet");
+
   // One cell, in a file that somebody has named who means harm.
   const mesh = kHostileName.replace(/html$/, "mesh");
   const corners = ["0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 0 1", "1 0 1", "1 1 1", "0 1 1"];

@@ -132,6 +132,92 @@ test("finds cells that are not positive", async ({ page }) => {
   expect(await kept(page)).toBe(1);
 });
 
+test("goes back and forth between before and after an improvement", async ({ page }) => {
+  await open(page, "improved.html");
+  await expect(page.locator("#moments")).toBeVisible();
+  const info = await page.evaluate(() => JSON.parse(document.getElementById("mesh-info")!.textContent!));
+  const bad = info.before.validity.refuted;
+  expect(bad).toBeGreaterThan(10);
+  await expect(page.locator("#moment-bad")).toHaveText(`${bad.toLocaleString("en")} → 0`);
+  await expect(page.locator("#stat-validity")).toHaveText("certified positive everywhere");
+  await expect(page.locator("#legend")).not.toContainText("not positive");
+  const after = await lookAtCanvas(page);
+
+  await press(page, "a");
+  await expect(page.locator('[data-moment="0"]')).toHaveAttribute("aria-pressed", "true");
+  await expect(page.locator("#legend")).toContainText("not positive");
+  await expect(page.locator("#stat-validity")).toContainText(`${bad.toLocaleString("en")} not positive`);
+  await expect(page.locator("#stat-minimum")).toHaveText(info.before.quality.minimum.toFixed(4));
+  const before = await lookAtCanvas(page);
+  expect(before.colours).not.toBe(after.colours);
+  // The worst cell, and where: those of the mesh before.
+  await press(page, "w");
+  expect(Number(await page.locator("#picked-quality").textContent())).toBeCloseTo(info.before.quality.minimum, 3);
+  const cornerOf = () => page.locator("#picked-corners tbody").innerText();
+  const corner = await cornerOf();
+  await press(page, "a");
+  expect(Number(await page.locator("#picked-quality").textContent())).toBeGreaterThan(0);
+  expect(await cornerOf()).not.toBe(corner);
+  await page.keyboard.press("Escape");
+  await press(page, "h");
+
+  // Filters take the values of what is shown, and cuts its positions.
+  await page.locator("#quality-to").fill("0");
+  await page.locator("#quality-to").press("Enter");
+  await settle(page);
+  expect(await kept(page)).toBe(0);
+  await page.locator('[data-moment="0"]').click();
+  await settle(page);
+  expect(await kept(page)).toBe(info.before.quality.notPositive);
+  await page.locator("#quality-all").click();
+  await press(page, "x");
+  const keptBefore = await kept(page);
+  await page.locator("#title").scrollIntoViewIfNeeded();
+  await page.screenshot(shot("improved-before"));
+  await press(page, "a");
+  expect(await kept(page)).not.toBe(keptBefore);
+  await press(page, "x");
+  expect((await lookAtCanvas(page)).covered).toBe(after.covered);
+
+  // In between, positions are on their way; values are those of the nearer end.
+  await page.locator("#moment").fill("400");
+  await settle(page);
+  await expect(page.locator("#legend")).toContainText("not positive");
+  const between = await lookAtCanvas(page);
+  expect([before.covered, after.covered]).not.toContain(between.covered);
+  await page.locator("#share").click();
+  expect(page.url()).toContain("moment=0.4");
+  await open(page, "improved.html", "#moment=0");
+  await expect(page.locator("#legend")).toContainText("not positive");
+});
+
+test("has after an improvement what a page of that mesh has", async ({ page }) => {
+  await open(page, "after.html", "#camera=1.5,-2.5,1.45,0,0,0");
+  await expect(page.locator("#moments")).toBeHidden();
+  await press(page, "a");
+  const facts = ["#stat-minimum", "#stat-mean", "#stat-validity", "#stat-everywhere", "#kept-cells"];
+  const read = () => Promise.all(facts.map((id) => page.locator(id).textContent()));
+  const alone = await read();
+  await open(page, "improved.html", "#camera=1.5,-2.5,1.45,0,0,0");
+  expect(await read()).toEqual(alone);
+  // What the page holds beside it are the positions before, and their values.
+  const [both, one] = ["improved.html", "after.html"].map((name) => readFileSync(join(kPages, name), "utf8"));
+  expect(both).toContain("points_before");
+  for (const word of ["points_before-", '"before"', "not_positive-"]) expect(one!.includes(`data-${word}`)).toBe(false);
+});
+
+test("shows curved cells before and after an improvement", async ({ page }) => {
+  await open(page, "improved-curved.html");
+  await expect(page.locator("#moment-bad")).toHaveText("56 → 0");
+  const after = await lookAtCanvas(page);
+  await press(page, "a");
+  const before = await lookAtCanvas(page);
+  expect(before.covered).not.toBe(after.covered);
+  await page.screenshot(shot("improved-curved-before"));
+  await press(page, "a");
+  expect((await lookAtCanvas(page)).covered).toBe(after.covered);
+});
+
 test("takes single cells away, and puts them back", async ({ page }) => {
   await open(page, "box.html", "#colour=plain&grid=0&camera=0.1,0.1,4,0.1,0.1,0");
   const box = (await page.locator("#canvas").boundingBox())!;
@@ -443,7 +529,7 @@ test("lists the keys, and is dark on request", async ({ page }) => {
   await open(page, "sphere.html");
   await press(page, "?");
   await expect(page.locator("#shortcuts")).toBeVisible();
-  await expect(page.locator("#shortcut-list dt")).toHaveCount(31);
+  await expect(page.locator("#shortcut-list dt")).toHaveCount(32);
   await page.keyboard.press("Escape");
   await expect(page.locator("#shortcuts")).toBeHidden();
   const back = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);

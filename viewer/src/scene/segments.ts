@@ -1,8 +1,7 @@
 // Which edges of a mesh are drawn as lines, and in which colours.
 import { featureColour, kBadColour, valenceColour } from "../colours";
 import { kCellEdges } from "../curves";
-import { storedQuality } from "../format";
-import type { LoadedMesh } from "../worker/messages";
+import type { Moments } from "../moments";
 import type { Segments } from "./lines";
 
 export function singularSegments(edges: Uint32Array, boundary: boolean): Segments {
@@ -28,15 +27,11 @@ export function featureSegments(edges: Uint32Array): Segments {
   return segments;
 }
 
-/** Edges of cells that are not positive, of so many that they can still be told apart. */
-export function badSegments(mesh: LoadedMesh): Segments {
+/** Edges of the worst cells that are not positive: of so many that they can still be told apart. */
+export function badSegments(cells: Uint32Array, { notPositive, quality }: Moments): Segments {
   const segments: Segments = { vertices: [], colours: [] };
-  const mostCells = 1000;
-  const zero = storedQuality(0);
-  for (let cell = 0, found = 0; cell < mesh.quality.length && found < mostCells; ++cell) {
-    if (mesh.quality[cell]! > zero) continue;
-    ++found;
-    for (const corner of kCellEdges) segments.vertices.push(mesh.cells[8 * cell + corner]!);
+  for (const cell of notPositive.slice().sort((a, b) => quality[a]! - quality[b]!).subarray(0, 100)) {
+    for (const corner of kCellEdges) segments.vertices.push(cells[8 * cell + corner]!);
     for (let edge = 0; edge < 12; ++edge) segments.colours.push(kBadColour);
   }
   return segments;

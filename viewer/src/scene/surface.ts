@@ -23,7 +23,8 @@ import {
   featureColour, insideQuality, kBadColour, kGeneratorColours, kInsideColour, kSkinColour, rgbOf,
   skinQuality, viridis,
 } from "../colours";
-import { kQualitySteps } from "../format";
+import { qualityOf } from "../format";
+import type { Moments } from "../moments";
 import { kTextureWidth } from "../scene_box";
 import type { CurvedFaces } from "../worker/curved_faces";
 import type { LoadedMesh } from "../worker/messages";
@@ -73,6 +74,14 @@ function valueTexture(data: Float32Array<ArrayBuffer>, rows: number, four: boole
   return texture;
 }
 
+/** Scaled Jacobians. Cells that are positive at their corners, but not everywhere, are not positive. */
+function valuesOf({ quality, notPositive }: Moments): DataTexture {
+  const texture = cellTexture(quality, qualityOf);
+  const values = texture.image.data as Float32Array;
+  for (const cell of notPositive) values[cell] = Math.min(values[cell]!, 0);
+  return texture;
+}
+
 let emptyTexture: DataTexture | null = null;
 
 /** Stands where no texture is needed. */
@@ -115,12 +124,15 @@ export class Surface {
   private ghostWanted = true;
   private readonly pixelRatio = { value: 1 };
 
-  constructor(loaded: LoadedMesh) {
-    const rows = loaded.positions.length / 4 / kTextureWidth;
-    const positions = { value: valueTexture(loaded.positions, rows, true) };
+  private readonly positions: DataTexture;
+
+  constructor(loaded: LoadedMesh, private readonly moments: Moments) {
+    const rows = moments.positions.length / 4 / kTextureWidth;
+    this.positions = valueTexture(moments.positions, rows, true);
+    const positions = { value: this.positions };
     const uniforms = {
       positions,
-      cellValues: { value: cellTexture(loaded.quality, (q) => (q / kQualitySteps) * 2 - 1) },
+      cellValues: { value: valuesOf(moments) },
       cellLayers: { value: noTexture() },
       cellRegions: { value: cellTexture(loaded.regions, (place) => place - 1) },
       surface: { value: noTexture() },
@@ -159,6 +171,14 @@ export class Surface {
     this.pickMesh = new Mesh(this.mesh.geometry, pick);
     this.ghost = new Mesh(new BufferGeometry(), this.ghostMaterial);
     for (const mesh of [this.mesh, this.pickMesh, this.ghost]) mesh.frustumCulled = false;
+  }
+
+  /** Draws the positions and values that the moments show now. */
+  showMoment(): void {
+    this.positions.needsUpdate = true;
+    const { cellValues } = this.material.uniforms;
+    (cellValues!.value as DataTexture).dispose();
+    cellValues!.value = valuesOf(this.moments);
   }
 
   /** @param curved  points of the faces that are drawn, or null for straight ones */

@@ -52,11 +52,11 @@ export class Viewport {
     this.controls.zoomToCursor = true;
     this.controls.minDistance = 0.005;
     this.controls.maxDistance = 20;
+    this.resize();  // first: how far away is far enough depends on the canvas' shape
     this.look([1, -1.6, 0.9]);
     this.controls.addEventListener("change", () => this.redraw());
     this.controls.addEventListener("end", onMoved);
     new ResizeObserver(() => this.resize()).observe(canvas);
-    this.resize();
   }
 
   add(object: Object3D): void {

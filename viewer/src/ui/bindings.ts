@@ -11,6 +11,7 @@ interface Shortcut {
 }
 
 const kShortcuts: Shortcut[] = [
+  { keys: ["a"], shown: "A", what: "before or after the improvement, if the page shows both", run: (app) => app.otherMoment() },
   { keys: ["x"], shown: "X", what: "slice across x, or none", run: (app) => app.slice("x") },
   { keys: ["y"], shown: "Y", what: "slice across y, or none", run: (app) => app.slice("y") },
   { keys: ["z"], shown: "Z", what: "slice across z, or none", run: (app) => app.slice("z") },
@@ -67,12 +68,16 @@ function bindControls(app: App): void {
   for (const button of document.querySelectorAll<HTMLElement>("[data-slice]")) {
     button.addEventListener("click", () => app.slice(button.dataset.slice as SliceDirection));
   }
+  for (const button of document.querySelectorAll<HTMLElement>("[data-moment]")) {
+    button.addEventListener("click", () => app.change({ moment: Number(button.dataset.moment) }));
+  }
   for (const button of document.querySelectorAll<HTMLElement>("[data-look]")) {
     button.addEventListener("click", () => app.look(button.dataset.look as "home"));
   }
   const number = (id: string) => element<HTMLInputElement>(id).valueAsNumber;
   element("slice-position").addEventListener("input", () =>
     app.change({ position: number("slice-position") / 1000 }));
+  element("moment").addEventListener("input", () => app.change({ moment: number("moment") / 1000 }));
   element("peel").addEventListener("input", () => app.peel(number("peel")));
   for (const id of ["quality-from", "quality-to"]) {
     element(id).addEventListener("change", () =>

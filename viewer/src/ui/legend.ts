@@ -40,7 +40,7 @@ function cellPart(state: ViewState, info: MeshInfo, mesh: LoadedMesh, layers: La
       return {
         title: "scaled Jacobian",
         scale: { ends: ["0", "1"], ramps: [skinQuality, insideQuality] },
-        chips: info.quality.notPositive > 0
+        chips: info.validity.refuted + info.validity.undecided > 0
           ? [...kSkinAndCut, chip(kBadColour, "not positive")]
           : kSkinAndCut,
       };

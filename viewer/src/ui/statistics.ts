@@ -1,5 +1,6 @@
 // What the mesh adds up to, whether it agrees with its map, and what a picked cell is.
-import { type MeshInfo, qualityOf } from "../format";
+import { type MeshInfo, qualityOf, type ValidityInfo } from "../format";
+import { isBefore, type Moments } from "../moments";
 import { kTextureWidth, sceneOf } from "../scene_box";
 import type { LoadedMesh } from "../worker/messages";
 import type { Layers } from "../worker/topology";
@@ -29,7 +30,25 @@ function refutationFacts(cell: number, info: MeshInfo): [string, string, string]
            `${bad.scaledJacobian.toFixed(4)} at ${place(bad.place)}`, "picked-refuted"]];
 }
 
-export function showStatistics(info: MeshInfo, pageBytes: number): void {
+/** What is known of the mesh before or after its improvement. */
+export function infoAt(info: MeshInfo, moment: number): MeshInfo {
+  return isBefore(moment) ? { ...info, ...info.before } : info;
+}
+
+/** Both ends side by side. */
+export function showImprovement({ before, quality, validity }: MeshInfo): void {
+  if (!before) return;
+  const bad = (of: ValidityInfo) => grouped(of.refuted + of.undecided);
+  fillFacts(element("moment-facts"), [
+    ["cells not positive", `${bad(before.validity)} \u2192 ${bad(validity)}`, "moment-bad"],
+    ["scaled Jacobian, least",
+     `${before.quality.minimum.toFixed(4)} \u2192 ${quality.minimum.toFixed(4)}`, "moment-minimum"],
+    ["mean", `${before.quality.mean.toFixed(4)} \u2192 ${quality.mean.toFixed(4)}`, "moment-mean"],
+  ]);
+}
+
+export function showStatistics(info: MeshInfo): void {
+  const pageBytes = info.tables.flatMap((table) => table.chunkBytes).reduce((sum, n) => sum + n, 0);
   const { topology, quality } = info;
   fillFacts(element("statistics"), [
     ["cells", grouped(info.cells), "stat-cells"],
@@ -78,6 +97,7 @@ export function showPicked(
   cell: number | null,
   info: MeshInfo,
   mesh: LoadedMesh,
+  { quality, positions }: Moments,
   layers: Layers | null,
 ): void {
   const box = element("picked");
@@ -85,7 +105,7 @@ export function showPicked(
   if (cell === null) return;
   element("picked-cell").textContent = String(cell);
   fillFacts(element("picked-facts"), [
-    ["scaled Jacobian", qualityOf(mesh.quality[cell]!).toFixed(4), "picked-quality"],
+    ["scaled Jacobian", qualityOf(quality[cell]!).toFixed(4), "picked-quality"],
     ...refutationFacts(cell, info),
     ["layer", String(layers?.ofCells[cell] ?? "...")],
     ...regionFacts(cell, mesh),
@@ -96,7 +116,7 @@ export function showPicked(
   const rows = Array.from({ length: 8 }, (_, k) => {
     const vertex = mesh.cells[8 * cell + k]!;
     const at = [0, 1, 2].map((axis) =>
-      (mesh.positions[4 * vertex + axis]! / scale + centre[axis]!).toFixed(Math.min(digits, 12)));
+      (positions[4 * vertex + axis]! / scale + centre[axis]!).toFixed(Math.min(digits, 12)));
     const row = make("tr");
     for (const text of [String(k), String(vertex), ...at]) row.append(make("td", text));
     return row;
@@ -106,7 +126,8 @@ export function showPicked(
 
 /** Bytes of memory that a mesh takes in the browser, the worker included. */
 export function memoryEstimate(info: MeshInfo): number {
-  const textures = Math.ceil(info.points / kTextureWidth) * kTextureWidth * 32;
+  const moments = info.before ? 3 : 1;
+  const textures = Math.ceil(info.points / kTextureWidth) * kTextureWidth * 32 * moments;
   const columns = info.tables.find((table) => table.name === "nodes")?.columns ?? 0;
   return textures + info.cells * columns * 2 * 4 + info.cells * (2 * 32 + 3 * 24 + 12 + 12);
 }

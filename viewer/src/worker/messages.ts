@@ -1,5 +1,6 @@
 // What the page and its worker say to each other.
 import type { MeshInfo } from "../format";
+import type { Moment } from "../moments";
 import type { CurvedFaces } from "./curved_faces";
 import type { Layers } from "./topology";
 import type { Filter, Visible } from "./visible";
@@ -9,19 +10,28 @@ export type ToWorker =
   /** The next chunk of a table, in base64 or as bytes. */
   | { kind: "chunk"; table: string; chunk: number; data: string | ArrayBuffer }
   | { kind: "end" }
-  /** @param curved  whether the points of curved faces are wanted */
-  | { kind: "show"; filter: Filter; curved: boolean };
+  | ({ kind: "show" } & Wanted);
+
+/** What the page asks for. */
+export interface Wanted {
+  filter: Filter;
+  /** Whether the points of curved faces are wanted. */
+  curved: boolean;
+  /** From before an improvement (0) to after it (1). */
+  moment: number;
+}
 
 /** What the page keeps of the mesh. */
 export interface LoadedMesh {
-  /** Four numbers per vertex or node: a position in scene coordinates, the kind of its generator. */
-  positions: Float32Array<ArrayBuffer>;
+  /** Positions in scene coordinates, and as a fourth number the kind of the vertex' generator. */
+  after: Moment;
+  /** Null if the page shows one moment only. */
+  before: Moment | null;
   cells: Uint32Array<ArrayBuffer>;
   /** 1: straight cells. */
   order: number;
   /** As in CurvedCells. */
   nodes: Uint32Array<ArrayBuffer>;
-  quality: Uint16Array<ArrayBuffer>;
   /** The sharp edges of the boundary, two vertices each. */
   creases: Uint32Array<ArrayBuffer>;
   /** Three numbers per edge: two vertices, and 2 * valence + (1 on the boundary). */

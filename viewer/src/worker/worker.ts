@@ -1,12 +1,13 @@
 // The worker: decodes the mesh, and finds the faces to draw while the page stays fluid.
 import type { CurvedCells } from "../curves";
 import { decodeBase64, decodeChunk, inflate, type MeshInfo, type TableInfo } from "../format";
+import { type Moment, Moments } from "../moments";
 import { kTextureWidth, sceneOf } from "../scene_box";
 import { curvedFaces } from "./curved_faces";
-import type { FromWorker, LoadedMesh, ToWorker } from "./messages";
+import type { FromWorker, LoadedMesh, ToWorker, Wanted } from "./messages";
 import { carriedLight, Occlusion } from "./occlusion";
 import { findCreases, findLayers, findNeighbours, kFaceCorners } from "./topology";
-import { type Filter, findVisible, findWhole, type Inside, keepsAll, type Mesh } from "./visible";
+import { findVisible, findWhole, type Inside, keepsAll, type Mesh } from "./visible";
 
 // The library for pages types `self` as a window; this is all that is used of it.
 const worker = self as unknown as {
@@ -19,6 +20,7 @@ const tables = new Map<string, Uint32Array<ArrayBuffer>>();
 let pending: Promise<void> = Promise.resolve();
 let received = 0;
 let mesh: Mesh;
+let moments: Moments;
 /** Found when it is needed, or when there is nothing else to do. */
 let inside: Inside | null = null;
 let kept: Uint8Array;
@@ -55,9 +57,7 @@ async function decode(name: string, chunk: number, data: string | ArrayBuffer): 
   tell({ kind: "progress", what: "Unpacking", share: ++received / total });
 }
 
-function decodePositions(): Float32Array<ArrayBuffer> {
-  const stored = takeTable("points");
-  const kinds = takeTable("generator_kinds");
+function decodePositions(stored: Uint32Array, kinds: Uint32Array): Float32Array<ArrayBuffer> {
   const { scale, centre } = sceneOf(info);
   // Rows of the texture are full.
   const positions = new Float32Array(4 * kTextureWidth * Math.ceil(info.points / kTextureWidth));
@@ -69,6 +69,26 @@ function decodePositions(): Float32Array<ArrayBuffer> {
     positions[4 * v + 3] = v < kinds.length ? kinds[v]! : 0;
   }
   return positions;
+}
+
+/** @param suffix  of the names of its tables */
+function decodeMoment(stored: Uint32Array, kinds: Uint32Array, suffix: string): Moment {
+  return {
+    positions: decodePositions(stored, kinds),
+    quality: Uint16Array.from(takeTable(`quality${suffix}`)),
+    notPositive: takeTable(`not_positive${suffix}`),
+  };
+}
+
+function decodeMoments(): { after: Moment; before: Moment | null } {
+  const stored = takeTable("points");
+  const kinds = takeTable("generator_kinds");
+  const after = decodeMoment(stored, kinds, "");
+  if (!info.before) return { after, before: null };
+  const added = takeTable("points_before");
+  // Sums modulo 2^32.
+  for (let i = 0; i < stored.length; ++i) stored[i] = stored[i]! + added[i]!;
+  return { after, before: decodeMoment(stored, kinds, "_before") };
 }
 
 function findCentres(cells: Uint32Array, positions: Float32Array): Float32Array {
@@ -121,29 +141,27 @@ function numberRegions(): { places: Uint32Array<ArrayBuffer>; tags: number[] } {
 
 function finish(): void {
   const cells = takeTable("cells");
-  const quality = Uint16Array.from(takeTable("quality"));
-  const positions = decodePositions();
+  const ends = decodeMoments();
+  moments = new Moments(ends.after, ends.before);
   const nodes = takeTable("nodes");
   const regions = numberRegions();
   const features = placeQuadFeatures(cells);
-  mesh = { cells, quality, skin: takeTable("skin"), quadFeatures: features.places };
+  mesh = { cells, quality: moments.quality, skin: takeTable("skin"), quadFeatures: features.places };
   kept = new Uint8Array(info.cells);
-  curvedCells = { order: info.order, cells, nodes, positions: positions.slice() };
+  curvedCells = { order: info.order, cells, nodes, positions: moments.positions };
   const loaded: LoadedMesh = {
-    positions,
+    ...ends,
     cells,
     order: info.order,
     nodes,
     regions: regions.places,
     regionTags: regions.tags,
-    quality,
-    creases: findCreases(cells, mesh.skin, positions),
+    creases: findCreases(cells, mesh.skin, moments.positions),
     singularEdges: takeTable("singular_edges"),
     featureEdges: takeTable("feature_edges"),
     quadTags: features.tags,
   };
   tell({ kind: "loaded", mesh: loaded }, [
-    loaded.positions.buffer,
     loaded.creases.buffer,
     loaded.singularEdges.buffer,
     loaded.featureEdges.buffer,
@@ -164,7 +182,7 @@ function handle(message: ToWorker): void | Promise<void> {
     case "end":
       return finish();
     case "show":
-      return show(message.filter, message.curved);
+      return show(message);
   }
 }
 
@@ -179,8 +197,12 @@ function lookInside(): Inside {
   return inside;
 }
 
-function show(filter: Filter, curvedWanted: boolean): void {
+function show({ filter, curved: curvedWanted, moment }: Wanted): void {
   const begin = performance.now();
+  if (moments.show(moment)) {
+    mesh.quality = moments.quality;
+    if (inside) inside.centres = findCentres(mesh.cells, curvedCells.positions);
+  }
   const visible = keepsAll(filter) ? findWhole(mesh) : findVisible(mesh, lookInside(), filter, kept);
   const curved = curvedWanted ? curvedFaces(curvedCells, visible.quads) : null;
   visible.light = carriedLight(lit.quads, lit.light, visible.quads);
