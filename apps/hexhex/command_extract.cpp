@@ -322,10 +322,11 @@ void extractAllParts(const Arguments& arguments, const TetMap& map, LongRun& lon
                      ExtractionRecord& record) {
   WriteOptions options = arguments.choice.options();
   options.patchAngle = arguments.patchAngle;
+  PartOptions parts = arguments.parts.chosen();
+  parts.verify = !arguments.noVerify;
   record.meshParts = longRun.part("extraction", [&] {
-    return extractInParts(map, arguments.output, options, arguments.options,
-                          arguments.parts.chosen(), arguments.team, longRun.context(),
-                          record.statistics);
+    return extractInParts(map, arguments.output, options, arguments.options, parts,
+                          arguments.team, longRun.context(), record.statistics);
   });
   record.vertices = record.meshParts->summary.vertices;
   record.cells = record.meshParts->summary.cells;
@@ -577,8 +578,8 @@ Command addExtract(CLI::App& app) {
   parser->footer(
       "The mesh is verified against the map before it is written; with --stream, the file is read\n"
       "again before it gets its name: it must hold what was extracted, and as many cells and\n"
-      "vertices as follow from the map. The same input gives the same bytes with any number of\n"
-      "threads.\n\nExample:\n"
+      "vertices as follow from the map. Parts are verified one by one. The same input gives the\n"
+      "same bytes with any number of threads.\n\nExample:\n"
       "  hexhex extract sphere.hexex -o sphere.vtu --scale 2 --report sphere.json");
   return {parser, [arguments] { return run(*arguments); }};
 }

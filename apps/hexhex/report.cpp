@@ -73,6 +73,7 @@ Json meshPartsAsJson(const PartsRecord& record) {
   return {{"count", record.options.parts},
           {"partition", partitionName(record.options.method)},
           {"ghost_layers", record.options.ghostLayers},
+          {"verified", record.options.verify},
           {"largest", summary.largest},
           {"smallest", summary.smallest},
           {"empty", summary.empty},

@@ -31,8 +31,10 @@ nb::tuple neighbourTuple(PartNeighbour&& neighbour) {
 
 }  // namespace
 
-PartOptions partOptions(std::uint32_t parts, std::uint32_t ghosts, const std::string& partition) {
+PartOptions partOptions(std::uint32_t parts, std::uint32_t ghosts, const std::string& partition,
+                        bool verify) {
   PartOptions options{parts, ghosts};
+  options.verify = verify;
   if (partition == "metis") options.method = PartitionMethod::Metis;
   if (partition == "scotch") options.method = PartitionMethod::Scotch;
   return options;
@@ -65,10 +67,11 @@ Dict partsDict(const PartsSummary& summary) {
 namespace {
 
 nb::list extractAll(const ArrayMap& map, std::uint32_t parts, std::uint32_t ghosts,
-                    const std::string& partition, const Options& options, int threads,
+                    const std::string& partition, bool verify, const Options& options, int threads,
                     const Progress& progress) {
   std::vector<MeshPart> made = run(threads, progress, [&](Context& context) {
-    return extractParts(map.view(), options.get(), partOptions(parts, ghosts, partition), context);
+    return extractParts(map.view(), options.get(), partOptions(parts, ghosts, partition, verify),
+                        context);
   });
   nb::list list;
   for (MeshPart& part : made) list.append(partTuple(std::move(part)));
@@ -76,14 +79,16 @@ nb::list extractAll(const ArrayMap& map, std::uint32_t parts, std::uint32_t ghos
 }
 
 Dict extractIntoFiles(const std::string& file, const ArrayMap& map, std::uint32_t parts,
-                      std::uint32_t ghosts, const std::string& partition, const Options& options,
-                      const std::string& format, int threads, const Progress& progress) {
+                      std::uint32_t ghosts, const std::string& partition, bool verify,
+                      const Options& options, const std::string& format, int threads,
+                      const Progress& progress) {
   return partsDict(run(threads, progress, [&](Context& context) {
     WriteOptions writing;
     writing.format = format;
     const std::unique_ptr<PartSink> sink = openPartSink(file, writing, context);
     PartSurvey survey(*sink);
-    extractParts(survey, map.view(), options.get(), partOptions(parts, ghosts, partition), context);
+    extractParts(survey, map.view(), options.get(), partOptions(parts, ghosts, partition, verify),
+                 context);
     return survey.result();
   }));
 }
@@ -92,9 +97,9 @@ Dict extractIntoFiles(const std::string& file, const ArrayMap& map, std::uint32_
 
 void bindParts(nb::module_& module) {
   module.def("extract_parts", &extractAll, "map"_a, "parts"_a, "ghosts"_a, "partition"_a,
-             "options"_a, "threads"_a, "progress"_a.none());
+             "verify"_a, "options"_a, "threads"_a, "progress"_a.none());
   module.def("extract_parts_to_file", &extractIntoFiles, "file"_a, "map"_a, "parts"_a, "ghosts"_a,
-             "partition"_a, "options"_a, "format"_a, "threads"_a, "progress"_a.none());
+             "partition"_a, "verify"_a, "options"_a, "format"_a, "threads"_a, "progress"_a.none());
 }
 
 }  // namespace hexhex::python

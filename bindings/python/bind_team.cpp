@@ -85,9 +85,9 @@ auto runTogether(const nb::object& connected, const ArrayMap* map, const std::st
 }
 
 nb::tuple extractOne(const nb::object& connected, const ArrayMap* map, const std::string& path,
-                     std::uint32_t ghosts, const std::string& partition, const Options& options,
-                     int threads, const Progress& progress) {
-  const PartOptions parts = partOptions(1, ghosts, partition);
+                     std::uint32_t ghosts, const std::string& partition, bool verify,
+                     const Options& options, int threads, const Progress& progress) {
+  const PartOptions parts = partOptions(1, ghosts, partition, verify);
   return partTuple(runTogether(connected, map, path, threads, progress,
                                [&](PythonTeam& team, const TetMapView& view, Context& context) {
                                  return extractPart(team, view, options.get(), parts, context);
@@ -96,9 +96,9 @@ nb::tuple extractOne(const nb::object& connected, const ArrayMap* map, const std
 
 Dict extractTogether(const nb::object& connected, const std::string& file, const ArrayMap* map,
                      const std::string& path, std::uint32_t ghosts, const std::string& partition,
-                     const Options& options, const std::string& format, int threads,
+                     bool verify, const Options& options, const std::string& format, int threads,
                      const Progress& progress) {
-  const PartOptions parts = partOptions(1, ghosts, partition);
+  const PartOptions parts = partOptions(1, ghosts, partition, verify);
   WriteOptions writing;
   writing.format = format;
   return partsDict(runTogether(
@@ -115,9 +115,9 @@ Dict extractTogether(const nb::object& connected, const std::string& file, const
 
 void bindTeam(nb::module_& module) {
   module.def("extract_part_of_team", &extractOne, "team"_a, "map"_a.none(), "path"_a, "ghosts"_a,
-             "partition"_a, "options"_a, "threads"_a, "progress"_a.none());
+             "partition"_a, "verify"_a, "options"_a, "threads"_a, "progress"_a.none());
   module.def("extract_to_file_of_team", &extractTogether, "team"_a, "file"_a, "map"_a.none(),
-             "path"_a, "ghosts"_a, "partition"_a, "options"_a, "format"_a, "threads"_a,
+             "path"_a, "ghosts"_a, "partition"_a, "verify"_a, "options"_a, "format"_a, "threads"_a,
              "progress"_a.none());
 }
 

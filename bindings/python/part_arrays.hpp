@@ -8,7 +8,7 @@
 namespace hexhex::python {
 
 [[nodiscard]] PartOptions partOptions(std::uint32_t parts, std::uint32_t ghosts,
-                                      const std::string& partition);
+                                      const std::string& partition, bool verify);
 /// The fields of the class MeshPart, in their order.
 [[nodiscard]] nb::tuple partTuple(MeshPart&& part);
 [[nodiscard]] Dict partsDict(const PartsSummary& summary);

@@ -35,6 +35,9 @@ struct PartOptions {
   /// one before.
   std::uint32_t ghostLayers = 0;
   PartitionMethod method = PartitionMethod::Curve;
+  /// Whether each part is proven to be one of the mesh of the map before a sink gets it, as
+  /// verify() proves whole meshes.
+  bool verify = false;
 };
 
 inline constexpr std::uint32_t kMaxParts = 1U << 20;

@@ -3,11 +3,15 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include <parts/number_hash.hpp>
 #include <parts/part_maker.hpp>
+#include <verify/part_proof.hpp>
+#include <verify/proof.hpp>
 
 #include <hexhex/parts.hpp>
 #include <hexhex/team.hpp>
@@ -19,14 +23,15 @@ namespace hexhex {
 namespace {
 
 /// Weights as inSteps() has them.
-constexpr std::array<WorkStep, 8> kPartsSteps = {{{"prepare", 0.1},
+constexpr std::array<WorkStep, 9> kPartsSteps = {{{"prepare", 0.1},
                                                   {"repair", 0.3},
                                                   {"prepare", 0.1},
                                                   {"scaling", 0.1},
                                                   {"charts", 0.1},
                                                   {"sweep", 0.5},
                                                   {"partition", 0.2},
-                                                  {"parts", 4}}};
+                                                  {"parts", 4},
+                                                  {"verification", 1}}};
 
 void checkOptions(const PartOptions& options) {
   if (options.parts < 1 || options.parts > kMaxParts) {
@@ -52,6 +57,37 @@ class Collector final : public PartSink {
   std::vector<MeshPart>& parts_;
 };
 
+/// Makes parts, and proves them if that is wanted.
+class ProvenParts {
+ public:
+  ProvenParts(ScaledMap& scaled, const PartOptions& options, Context& context,
+              ExtractStatistics& statistics)
+      : context_(context) {
+    Expectation expected;
+    if (options.verify) {
+      Stage stage(context, "verification");
+      expected = expectationOf(scaled.map, stage);
+    }
+    maker_ = makePartMaker({scaled.map, scaled.source, scaled.expectedCells}, options, context,
+                           statistics);
+    if (options.verify) proof_.emplace(scaled.map, expected, maker_->counts());
+  }
+
+  [[nodiscard]] PartsInfo info() const { return maker_->info(); }
+  [[nodiscard]] MeshPart make(std::uint32_t number) {
+    MeshPart part = maker_->make(number);
+    if (!proof_) return part;
+    Stage stage(context_, "verification");
+    proof_->compare(part, stage);
+    return part;
+  }
+
+ private:
+  Context& context_;
+  std::unique_ptr<PartMaker> maker_;
+  std::optional<PartProof> proof_;
+};
+
 /// Prepares a map, and calls make(maker): which parts are made is left to it.
 template <class Make>
 void runParts(std::uint32_t sinkLayers, const TetMapView& map, const ExtractOptions& options,
@@ -61,16 +97,14 @@ void runParts(std::uint32_t sinkLayers, const TetMapView& map, const ExtractOpti
   checkOptions(parts);
   PartOptions needed = parts;
   needed.ghostLayers = std::max(needed.ghostLayers, sinkLayers);
-  runExtraction({"extractParts", kPartsSteps}, {}, context, statistics,
-                [&](ExtractStatistics& filled) {
-                  const ScaledMap scaled =
-                      prepareScaled(map, options, {1, kMaxStreamedCells}, context, filled);
-                  const std::unique_ptr<PartMaker> maker = makePartMaker(
-                      {scaled.map, scaled.source, scaled.expectedCells}, needed, context, filled);
-                  PartsInfo info = maker->info();
-                  info.ghostLayers = parts.ghostLayers;
-                  make(*maker, info);
-                });
+  runExtraction(
+      {"extractParts", kPartsSteps}, {}, context, statistics, [&](ExtractStatistics& filled) {
+        ScaledMap scaled = prepareScaled(map, options, {1, kMaxStreamedCells}, context, filled);
+        ProvenParts maker(scaled, needed, context, filled);
+        PartsInfo info = maker.info();
+        info.ghostLayers = parts.ghostLayers;
+        make(maker, info);
+      });
 }
 
 void addBytes(NumberHash& hash, std::span<const std::byte> bytes) {
@@ -120,7 +154,7 @@ void requireSame(ProcessTeam& team, std::uint64_t hash) {
 void extractParts(PartSink& sink, const TetMapView& map, const ExtractOptions& options,
                   const PartOptions& parts, Context& context, ExtractStatistics* statistics) {
   runParts(sink.neededGhostLayers(), map, options, parts, context, statistics,
-           [&](PartMaker& maker, const PartsInfo& info) {
+           [&](ProvenParts& maker, const PartsInfo& info) {
              sink.begin(info);
              for (std::uint32_t p = 0; p < parts.parts; ++p) sink.part(maker.make(p));
              sink.end();
@@ -151,7 +185,7 @@ void extractPart(ProcessTeam& team, PartSink& sink, const TetMapView& map,
     requireSame(team, hashOf(map, options, parts));
     PartSurvey survey(sink, &team);
     runParts(sink.neededGhostLayers(), map, options, all, context, statistics,
-             [&](PartMaker& maker, const PartsInfo& info) {
+             [&](ProvenParts& maker, const PartsInfo& info) {
                survey.begin(info);
                survey.part(maker.make(team.rank()));
                survey.end();

@@ -119,6 +119,8 @@ class Maker final : public PartMaker {
     return info;
   }
 
+  const ElementCounts& counts() const noexcept override { return counts_; }
+
   MeshPart make(std::uint32_t number) override {
     Stage stage(context_, "parts");
     MeshPart part;

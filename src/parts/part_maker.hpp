@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <memory>
 
+#include <parts/counts.hpp>
+
 #include <hexhex/parts.hpp>
 
 #include <igm/prepare.hpp>
@@ -26,6 +28,7 @@ class PartMaker {
   virtual ~PartMaker() = default;
 
   [[nodiscard]] virtual PartsInfo info() const = 0;
+  [[nodiscard]] virtual const ElementCounts& counts() const noexcept = 0;
   /// Any part, in any order.
   [[nodiscard]] virtual MeshPart make(std::uint32_t part) = 0;
 };

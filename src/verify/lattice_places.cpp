@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 
 #include <verify/lattice_places.hpp>
 #include <verify/space_of_tet.hpp>
@@ -46,11 +47,20 @@ LatticePlaces::LatticePlaces(const PreparedMap& map, bool indexed, Stage& stage)
       begin_(swept_.numbers.begin),
       runs_(0) {}
 
-void LatticePlaces::collectRuns(Index tet, std::vector<PlaceRun>& runs) const {
-  const std::span<const SweptLine> lines = swept_.lines.of(tet);
+LatticePlaces::LatticePlaces(const PreparedMap& map, const VertexNumbers& numbers)
+    : map_(map),
+      indexed_(false),
+      swept_{TetLines(0), {}},
+      given_(&numbers),
+      begin_(numbers.begin),
+      runs_(0) {}
+
+void LatticePlaces::collectRuns(Index tet, const VertexNumbers& numbers,
+                                std::span<const SweptLine> lines,
+                                std::vector<PlaceRun>& runs) const {
   if (lines.empty()) return;
   const auto firstRun = static_cast<std::ptrdiff_t>(runs.size());
-  TetNumbering(map_, swept_.numbers, tet, lines.front().axes).run(lines, [&](const VertexRun& run) {
+  TetNumbering(map_, numbers, tet, lines.front().axes).run(lines, [&](const VertexRun& run) {
     if (!run.owned) return;
     runs.push_back({static_cast<Index>(run.first - begin_[tet]), run.count,
                     run.line->point(run.offset), run.simplex, run.line->axes()[2]});
@@ -68,6 +78,21 @@ void LatticePlaces::enterInIndex(Index tet, std::span<const PlaceRun> runs) {
   }
 }
 
+void LatticePlaces::proveTet(Index tet, const VertexNumbers& numbers,
+                             std::span<const SweptLine> lines, BlockLists<PlaceRun>& runs,
+                             Faults& wrong) {
+  collectRuns(tet, numbers, lines, runs.next());
+  bool right = areInTet(map_, FaceSides(map_.exact.corners[tet], map_.exact.unit), lines, 0);
+  Index next = 0;
+  for (const PlaceRun& run : runs.last()) {
+    right = right && run.first == next;
+    next += run.count;
+  }
+  right = right && next == begin_[tet + 1] - begin_[tet];
+  if (!right) wrong.add(tet);
+  if (right && indexed_) enterInIndex(tet, runs.last());
+}
+
 void LatticePlaces::prove(Stage& stage, Faults& wrong) {
   if (indexed_) runOf_.resize(count());
   runs_ = TetLists<PlaceRun>(map_.topology.tetCount());
@@ -77,22 +102,39 @@ void LatticePlaces::prove(Stage& stage, Faults& wrong) {
         runs.clear();
         for (std::size_t t = begin; t < end; ++t) {
           const auto tet = static_cast<Index>(t);
-          collectRuns(tet, runs.next());
-          bool right = areInTet(map_, FaceSides(map_.exact.corners[tet], map_.exact.unit),
-                                swept_.lines.of(tet), 0);
-          Index next = 0;
-          for (const PlaceRun& run : runs.last()) {
-            right = right && run.first == next;
-            next += run.count;
-          }
-          right = right && next == begin_[tet + 1] - begin_[tet];
-          if (!right) wrong.add(tet);
-          if (right && indexed_) enterInIndex(tet, runs.last());
+          proveTet(tet, swept_.numbers, swept_.lines.of(tet), runs, wrong);
         }
         runs_.store(block, runs);
         runs.shrink();
       });
   swept_ = {TetLines(0), {}};
+}
+
+void LatticePlaces::proveOnly(std::span<const Index> tets, Stage& stage, Faults& wrong) {
+  runs_ = TetLists<PlaceRun>(map_.topology.tetCount());
+  struct Working {
+    BlockLists<PlaceRun> runs{true};
+    std::vector<SweptLine> lines;
+  };
+  parallelBlocksWith(
+      stage, map_.topology.tetCount(), kSweepBlock, [] { return Working(); },
+      [&](std::size_t begin, std::size_t end, std::size_t block, Working& working) {
+        auto next = std::lower_bound(tets.begin(), tets.end(), begin);
+        working.runs.clear();
+        for (std::size_t t = begin; t < end; ++t) {
+          const auto tet = static_cast<Index>(t);
+          if (next == tets.end() || *next != tet) {
+            static_cast<void>(working.runs.next());  // no runs
+            continue;
+          }
+          ++next;
+          working.lines.clear();
+          TetRasterizer(map_.exact.corners[tet], map_.exact.unit)
+              .append(kVertexGrid, working.lines);
+          proveTet(tet, *given_, working.lines, working.runs, wrong);
+        }
+        runs_.store(block, working.runs);
+      });
 }
 
 void LatticePlaces::compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage,
@@ -116,22 +158,54 @@ void LatticePlaces::compare(std::uint64_t first, std::span<const Vec3> points, S
   });
 }
 
+void LatticePlaces::compare(std::span<const std::uint64_t> numbers, std::span<const Vec3> points,
+                            Stage& stage, Faults& wrong) const {
+  constexpr std::size_t kGrain = 4096;
+  parallelBlocks(stage, numbers.size(), kGrain,
+                 [&](std::size_t at, std::size_t end, std::size_t /*block*/) {
+                   std::optional<SpaceOfTet> space;
+                   Index tet = kNone;
+                   while (at < end) {
+                     const std::uint64_t first = numbers[at];
+                     if (first >= count()) return wrong.add(first);
+                     if (tet == kNone || !owns(tet, first)) {
+                       tet = ownerOf(first);
+                       space.emplace(map_, tet);
+                     }
+                     const PlaceRun& run = runWith(tet, first);
+                     const std::uint64_t offset = first - begin_[tet] - run.first;
+                     std::size_t behind = at + 1;
+                     while (behind < end && behind - at < run.count - offset &&
+                            numbers[behind] == first + (behind - at)) {
+                       ++behind;
+                     }
+                     GridPoint z = run.z;
+                     z[run.axis] += static_cast<std::int32_t>(offset);
+                     space->compare(z, run.axis, points.subspan(at, behind - at),
+                                    [&](std::size_t k) { wrong.add(first + k); });
+                     at = behind;
+                   }
+                 });
+}
+
 Index LatticePlaces::ownerOf(std::uint64_t number) const {
   return static_cast<Index>(std::upper_bound(begin_.begin(), begin_.end(), number) -
                             begin_.begin() - 1);
 }
 
-LatticePlace LatticePlaces::placeIn(Index owner, std::uint64_t number) const {
-  const auto offset = static_cast<Index>(number - begin_[owner]);
+const PlaceRun& LatticePlaces::runWith(Index owner, std::uint64_t number) const {
   const std::span<const PlaceRun> runs = runsOf(owner);
-  const auto search = [&] {
-    const auto isBefore = [](Index value, const PlaceRun& run) { return value < run.first; };
-    return std::upper_bound(runs.begin(), runs.end(), offset, isBefore) - runs.begin() - 1;
-  };
   const std::uint16_t known = indexed_ ? runOf_[number] : kUnknownRun;
-  const PlaceRun& run = runs[known != kUnknownRun ? known : static_cast<std::size_t>(search())];
+  if (known != kUnknownRun) return runs[known];
+  const auto isBefore = [](Index value, const PlaceRun& run) { return value < run.first; };
+  const auto offset = static_cast<Index>(number - begin_[owner]);
+  return *(std::upper_bound(runs.begin(), runs.end(), offset, isBefore) - 1);
+}
+
+LatticePlace LatticePlaces::placeIn(Index owner, std::uint64_t number) const {
+  const PlaceRun& run = runWith(owner, number);
   LatticePlace place{owner, run.z, run.simplex};
-  place.z[run.axis] += static_cast<std::int32_t>(offset - run.first);
+  place.z[run.axis] += static_cast<std::int32_t>(number - begin_[owner] - run.first);
   return place;
 }
 

@@ -51,6 +51,9 @@ class LatticePlaces {
  public:
   /// @param indexed  whether to keep two bytes per lattice point, with which each is found at once
   LatticePlaces(const PreparedMap& map, bool indexed, Stage& stage);
+  /// For parts of a mesh: lattice points are known of the tets that were proven last.
+  /// @param numbers  hints; outlives this
+  LatticePlaces(const PreparedMap& map, const VertexNumbers& numbers);
 
   [[nodiscard]] std::uint64_t count() const noexcept { return begin_.back(); }
 
@@ -58,9 +61,14 @@ class LatticePlaces {
   /// once, before all that follows.
   /// @param wrong  receives tets where this is not so
   void prove(Stage& stage, Faults& wrong);
+  /// The same for some tets, ascending.
+  void proveOnly(std::span<const Index> tets, Stage& stage, Faults& wrong);
   /// Are points where the map has their lattice points?
   /// @param first  number of the first
   void compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage,
+               Faults& wrong) const;
+  /// The same for points with numbers of their own, ascending.
+  void compare(std::span<const std::uint64_t> numbers, std::span<const Vec3> points, Stage& stage,
                Faults& wrong) const;
   [[nodiscard]] bool owns(Index tet, std::uint64_t number) const noexcept {
     return begin_[tet] <= number && number < begin_[tet + 1];
@@ -71,6 +79,8 @@ class LatticePlaces {
 
   /// The lattice points that a tet owns, ascending.
   [[nodiscard]] std::span<const PlaceRun> runsOf(Index tet) const noexcept { return runs_.of(tet); }
+  /// Per tet (+1): the first lattice point that it owns.
+  [[nodiscard]] const Array<std::uint64_t>& begin() const noexcept { return begin_; }
   /// The number of the first one.
   [[nodiscard]] std::uint64_t firstOf(Index tet) const noexcept { return begin_[tet]; }
 
@@ -78,12 +88,17 @@ class LatticePlaces {
   /// In the index: a run is to be searched.
   static constexpr std::uint16_t kUnknownRun = 0xffff;
 
-  void collectRuns(Index tet, std::vector<PlaceRun>& runs) const;
+  void proveTet(Index tet, const VertexNumbers& numbers, std::span<const SweptLine> lines,
+                BlockLists<PlaceRun>& runs, Faults& wrong);
+  void collectRuns(Index tet, const VertexNumbers& numbers, std::span<const SweptLine> lines,
+                   std::vector<PlaceRun>& runs) const;
+  [[nodiscard]] const PlaceRun& runWith(Index owner, std::uint64_t number) const;
   void enterInIndex(Index tet, std::span<const PlaceRun> runs);
 
   const PreparedMap& map_;
   bool indexed_;
-  SweptVertices swept_;         ///< until they are proven
+  SweptVertices swept_;  ///< until they are proven
+  const VertexNumbers* given_ = nullptr;
   Array<std::uint64_t> begin_;  ///< per tet (+1): the first lattice point that it owns
   TetLists<PlaceRun> runs_;
   Array<std::uint16_t> runOf_;  ///< per lattice point: its run among those of the tet; or empty

@@ -54,7 +54,7 @@ void compareSums(const Expectation& expected, const HexMesh& mesh, Stage& stage,
   const VertexCells around = cellsAroundVertices(mesh, stage);
   const HexFaces faces = findFaces(mesh, around, stage);
   const HexEdges edges = findEdges(mesh, around, faces, stage);
-  const ElementCounts all = expectedElements(expected);
+  const ExpectedElements all = expectedElements(expected);
   if (mesh.cells.size() == expected.cells && faces.usedVertices == all.vertices &&
       edges.count <= all.edges && faces.count <= all.faces &&
       edges.count + faces.count < all.edges + all.faces) {

@@ -24,13 +24,16 @@
 
 namespace hexhex {
 
+/// What follows from a scaled map, whose topology gets stars.
+[[nodiscard]] Expectation expectationOf(PreparedMap& map, Stage& stage);
+
 /// How many vertices, edges and faces the mesh of a map has.
-struct ElementCounts {
+struct ExpectedElements {
   std::uint64_t vertices = 0;
   std::uint64_t edges = 0;
   std::uint64_t faces = 0;
 };
-[[nodiscard]] ElementCounts expectedElements(const Expectation& expected) noexcept;
+[[nodiscard]] ExpectedElements expectedElements(const Expectation& expected) noexcept;
 
 /// Looks at a mesh, as a whole or piece by piece. It has as many points and cells as expected.
 class Proof {

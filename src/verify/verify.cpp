@@ -93,12 +93,6 @@ void compareMeshes(const HexMesh& right, const HexMesh& mesh, int digits, Stage&
   addCells("missing_cells", mismatch.missingCells, "in canonical order, ");
 }
 
-/// What follows from a scaled map, whose topology gets stars.
-Expectation expectationOf(PreparedMap& map, Stage& stage) {
-  addStars(map.topology, stage);
-  return computeExpectation(map, countEdges(map.topology, stage), map.exact.scale);
-}
-
 /// Adds "map_valid"; nothing if it did not pass.
 std::optional<Truth> truthOf(const TetMapView& map, const VerifyOptions& options, Context& context,
                              Comparisons& comparisons) {

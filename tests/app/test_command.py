@@ -1077,6 +1077,7 @@ class Parts(CommandTest):
         self.assertRegex(text, r"parts +5, of \d+ to \d+ cells")
         parts = json.loads((self.folder / "r.json").read_text())["parts"]
         self.assertEqual((parts["count"], parts["partition"], parts["ghost_layers"]), (5, "curve", 1))
+        self.assertTrue(parts["verified"])
         surveys = [self.run_command("info", "--pieces", file).stdout.splitlines()[1:]
                    for file in ["whole.vtu", "parts.pvtu"]]
         self.assertEqual(surveys[0], surveys[1])

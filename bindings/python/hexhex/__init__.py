@@ -265,19 +265,20 @@ def extract_to_file(file: Path, map: Map, *, scale: int = 1, format: str | None 
         os.fspath(file), map._arrays(), options, format or "", _threads(threads), progress))
 
 
-def _partition(parts: int, ghosts: int, partition: str) -> tuple[int, int, str]:
+def _partition(parts: int, ghosts: int, partition: str,
+               verify: bool) -> tuple[int, int, str, bool]:
     if partition not in ("curve", "metis", "scotch"):
         raise ArgumentError(f'There is no partition "{partition}". Choose "curve", "metis" or '
                             '"scotch".', "InvalidArgument")
     if not 1 <= parts <= 1 << 20 or not 0 <= ghosts <= 16:
         raise ArgumentError(f"{parts} parts with {ghosts} layers of ghosts are out of range. Choose "
                             "1 to 1048576, and 0 to 16.", "InvalidArgument")
-    return parts, ghosts, partition
+    return parts, ghosts, partition, verify
 
 
 def extract_parts(map: Map, parts: int, *, ghosts: int = 0, partition: str = "curve",
-                  scale: int = 1, threads: int | None = None, repair: bool = False,
-                  round: bool = False, tolerance: float = 1e-2,
+                  verify: bool = False, scale: int = 1, threads: int | None = None,
+                  repair: bool = False, round: bool = False, tolerance: float = 1e-2,
                   progress: Progress | None = None) -> list[MeshPart]:
     """The mesh of extract() in parts, for programs that work on many machines. docs/parts.md tells
     what a part has.
@@ -286,6 +287,7 @@ def extract_parts(map: Map, parts: int, *, ghosts: int = 0, partition: str = "cu
         parts: how many; some may be empty.
         ghosts: layers of cells of other parts around each part.
         partition: who cuts the mesh: "curve"; "metis" or "scotch", if that library is there.
+        verify: whether each part is proven to be one of the mesh of the map, as verify() does.
         scale, threads, repair, round, tolerance, progress: as in extract().
 
     Raises:
@@ -302,13 +304,13 @@ def extract_parts(map: Map, parts: int, *, ghosts: int = 0, partition: str = "cu
     """
     options = _options(scale, "atlas", tolerance, 0, repair, round)
     return [MeshPart._of(values) for values in _hexhex.extract_parts(
-        map._arrays(), *_partition(parts, ghosts, partition), options, _threads(threads), progress)]
+        map._arrays(), *_partition(parts, ghosts, partition, verify), options, _threads(threads), progress)]
 
 
 def extract_parts_to_file(file: Path, map: Map, parts: int, *, ghosts: int = 0,
-                          partition: str = "curve", scale: int = 1, format: str | None = None,
-                          threads: int | None = None, repair: bool = False, round: bool = False,
-                          tolerance: float = 1e-2,
+                          partition: str = "curve", verify: bool = False, scale: int = 1,
+                          format: str | None = None, threads: int | None = None,
+                          repair: bool = False, round: bool = False, tolerance: float = 1e-2,
                           progress: Progress | None = None) -> dict[str, Any]:
     """The same into files; docs/parts.md has the formats. One part at a time is in memory. Returns
     how even parts are, and how much they share.
@@ -325,7 +327,7 @@ def extract_parts_to_file(file: Path, map: Map, parts: int, *, ghosts: int = 0,
     """
     options = _options(scale, "atlas", tolerance, 0, repair, round)
     return _hexhex.extract_parts_to_file(
-        os.fspath(file), map._arrays(), *_partition(parts, ghosts, partition), options,
+        os.fspath(file), map._arrays(), *_partition(parts, ghosts, partition, verify), options,
         format or "", _threads(threads), progress)
 
 

@@ -27,8 +27,8 @@ __all__ = ["extract_part", "extract_parts_to_file"]
 
 
 def extract_part(comm: MPI.Comm, map: Map | Path | None, *, ghosts: int = 0,
-                 partition: str = "curve", scale: int = 1, threads: int | None = 1,
-                 repair: bool = False, round: bool = False, tolerance: float = 1e-2,
+                 partition: str = "curve", verify: bool = False, scale: int = 1,
+                 threads: int | None = 1, repair: bool = False, round: bool = False, tolerance: float = 1e-2,
                  progress: Progress | None = None) -> MeshPart:
     """The part of this process, with the same numbers as the one of that rank in extract_parts().
 
@@ -36,22 +36,23 @@ def extract_part(comm: MPI.Comm, map: Map | Path | None, *, ghosts: int = 0,
         comm: as many parts as it has processes are made.
         map: a map or its file; only that of the first process counts, and is sent to all others.
         threads: of each process; None for as many as there are cores.
-        ghosts, partition, scale, repair, round, tolerance, progress: as in extract_parts().
+        ghosts, partition, verify, scale, repair, round, tolerance, progress: as in extract_parts().
 
     Raises:
         ArgumentError: where MPI was initialized for one thread, and as extract_parts(); of the
             first process that failed, in all of them.
     """
+    _partition(1, ghosts, partition, verify)
     with _Team(comm) as team:
         return MeshPart._of(_hexhex.extract_part_of_team(
-            team, *_given(map, team), *_partition(1, ghosts, partition)[1:],
+            team, *_given(map, team), ghosts, partition, verify,
             _options(scale, "atlas", tolerance, 0, repair, round), _threads(threads), progress))
 
 
 def extract_parts_to_file(comm: MPI.Comm, file: Path, map: Map | Path | None, *, ghosts: int = 0,
-                          partition: str = "curve", scale: int = 1, format: str | None = None,
-                          threads: int | None = 1, repair: bool = False, round: bool = False,
-                          tolerance: float = 1e-2,
+                          partition: str = "curve", verify: bool = False, scale: int = 1,
+                          format: str | None = None, threads: int | None = 1,
+                          repair: bool = False, round: bool = False, tolerance: float = 1e-2,
                           progress: Progress | None = None) -> dict[str, Any]:
     """The same into files that all processes write together; docs/parts.md has the formats. Returns
     what hexhex.extract_parts_to_file() does, in all processes.
@@ -59,9 +60,10 @@ def extract_parts_to_file(comm: MPI.Comm, file: Path, map: Map | Path | None, *,
     Raises:
         FileError: if they cannot be written; and as extract_part().
     """
+    _partition(1, ghosts, partition, verify)
     with _Team(comm) as team:
         return _hexhex.extract_to_file_of_team(
-            team, os.fspath(file), *_given(map, team), *_partition(1, ghosts, partition)[1:],
+            team, os.fspath(file), *_given(map, team), ghosts, partition, verify,
             _options(scale, "atlas", tolerance, 0, repair, round), format or "", _threads(threads),
             progress)
 

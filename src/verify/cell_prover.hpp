@@ -1,0 +1,235 @@
+// Whether cells are those of a map: the centres and half diagonals of one tet after the other.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include <verify/half_diagonals.hpp>
+
+#include <lattice/cell_corners.hpp>
+#include <sweep/cell_centers.hpp>
+
+namespace hexhex {
+
+/// Which vertices are at the corners of the cells of one tet, by coordinates in its chart. Cells
+/// whose centres are in one tet agree about that: a point that both half diagonals can be bent to,
+/// inside of their cells, is the middle between their centres, which is in the tet as well.
+template <class Number>
+class CornerTable {
+ public:
+  static constexpr Number kUnknown = std::numeric_limits<Number>::max();
+
+  /// @param lines  of the centres of a tet
+  void begin(std::span<const SweptLine> lines) {
+    std::size_t centers = 0;
+    GridPoint last{};
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+      centers += lines[l].count;
+      for (const std::uint32_t i : {std::uint32_t{0}, lines[l].count - 1}) {
+        const GridPoint z = lines[l].point(i);
+        for (std::size_t k = 0; k < 3; ++k) {
+          first_[k] = l == 0 && i == 0 ? z[k] : std::min(first_[k], z[k]);
+          last[k] = l == 0 && i == 0 ? z[k] : std::max(last[k], z[k]);
+        }
+      }
+    }
+    double volume = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      size_[k] = static_cast<std::size_t>(std::int64_t{last[k]} - first_[k] + 2);
+      volume *= static_cast<double>(size_[k]);
+    }
+    // A long thin tet has few centres for its box: its corners are followed one by one. (With a
+    // table only up to 32 numbers a centre, verification of s17c_sphere_r100 at scale 2 takes 18 %
+    // more instructions.)
+    isUsed_ = volume <= 512 * static_cast<double>(centers);
+    if (!isUsed_) return;
+    const std::array<std::uint8_t, 3>& axes = lines.front().axes();
+    strides_[axes[2]] = 1;
+    strides_[axes[1]] = size_[axes[2]];
+    strides_[axes[0]] = size_[axes[2]] * size_[axes[1]];
+    vertices_.assign(size_[0] * size_[1] * size_[2], kUnknown);
+  }
+
+  [[nodiscard]] bool isUsed() const noexcept { return isUsed_; }
+  [[nodiscard]] const std::array<std::size_t, 3>& strides() const noexcept { return strides_; }
+
+  /// Where the vertex at a corner is: kUnknown if it is not known yet.
+  [[nodiscard]] Number* at(const GridPoint& z) noexcept {
+    std::size_t place = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      place += static_cast<std::size_t>(z[k] - first_[k]) * strides_[k];
+    }
+    return &vertices_[place];
+  }
+
+  /// Enters vertices with consecutive numbers, so far as they are corners of any cells.
+  /// @param vertex  the first one
+  void enter(const PlaceRun& run, Number vertex) noexcept {
+    std::int64_t begin = 0;
+    std::int64_t end = run.count;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int64_t offset = std::int64_t{first_[k]} - run.z[k];
+      const std::int64_t behind = offset + static_cast<std::int64_t>(size_[k]);
+      if (k == run.axis) {
+        begin = std::max(begin, offset);
+        end = std::min(end, behind);
+      } else if (offset > 0 || behind <= 0) {
+        return;
+      }
+    }
+    if (begin >= end) return;
+    GridPoint z = run.z;
+    z[run.axis] += static_cast<std::int32_t>(begin);
+    Number* place = at(z);
+    for (std::int64_t i = begin; i < end; ++i, place += strides_[run.axis]) {
+      *place = static_cast<Number>(vertex + static_cast<Number>(i));
+    }
+  }
+
+ private:
+  bool isUsed_ = false;
+  GridPoint first_{};
+  std::array<std::size_t, 3> size_{};
+  std::array<std::size_t, 3> strides_{};
+  std::vector<Number> vertices_;
+};
+
+/// Cells with consecutive numbers.
+template <class Cell>
+struct ConsecutiveCells {
+  std::uint64_t first;
+  std::span<const Cell> cells;
+
+  /// The cell of that number, or null.
+  [[nodiscard]] const Cell* find(std::uint64_t number) const noexcept {
+    return number < first || number - first >= cells.size() ? nullptr : &cells[number - first];
+  }
+};
+
+/// Cells with numbers of their own, ascending.
+template <class Cell>
+struct NumberedCells {
+  std::span<const std::uint64_t> numbers;
+  std::span<const Cell> cells;
+  std::size_t next = 0;
+
+  /// To find those from a number on.
+  [[nodiscard]] NumberedCells from(std::uint64_t number) const {
+    const auto first = std::lower_bound(numbers.begin(), numbers.end(), number);
+    return {numbers, cells, static_cast<std::size_t>(first - numbers.begin())};
+  }
+  /// The same, for ascending numbers.
+  [[nodiscard]] const Cell* find(std::uint64_t number) noexcept {
+    while (next < numbers.size() && numbers[next] < number) ++next;
+    return next < numbers.size() && numbers[next] == number ? &cells[next] : nullptr;
+  }
+};
+
+/// Steps 2 and 3 of a proof (proof.hpp), for the cells of one tet after the other. One per thread.
+template <class Cell>
+class CellProver {
+ public:
+  CellProver(const PreparedMap& map, const CellCenters& centers, const LatticePlaces& places,
+             Faults& hints, Faults& wrong)
+      : map_(map),
+        centers_(centers),
+        places_(places),
+        diagonals_(map, places),
+        hints_(hints),
+        wrong_(wrong) {}
+
+  /// @param cells  some cells, among them some of the tet: cells.find(number) is called for all of
+  ///               the tet, ascending
+  template <class Cells>
+  void prove(Index tet, Cells cells) {
+    const std::span<const SweptLine> lines = centers_.linesOf(map_.exact, tet, lines_);
+    std::uint64_t cell = centers_.begin[tet];
+    const std::uint64_t end = centers_.begin[tet + 1];
+    if (cell == end) return;
+    if (lines.empty()) return hints_.add(tet);
+    const FaceSides sides(map_.exact.corners[tet], map_.exact.unit / 2);
+    bool right = areInTet(map_, sides, lines, map_.exact.unit / 2);
+    begin(tet, lines);
+    forEachOwnedCenter(map_.topology, tet, lines, [&](const SweptLine& line, std::uint32_t i) {
+      right = right && cell < end;
+      if (!right) return;
+      const std::uint64_t number = cell++;
+      const Cell* const given = cells.find(number);
+      if (given != nullptr && !isRight(tet, sides, line.point(i), *given)) wrong_.add(number);
+    });
+    if (!right || cell != end) hints_.add(tet);
+  }
+
+ private:
+  using Number = typename Cell::value_type;
+  static constexpr Number kUnknown = CornerTable<Number>::kUnknown;
+
+  void begin(Index tet, std::span<const SweptLine> lines) {
+    known_.begin(lines);
+    if (!known_.isUsed()) return;
+    const std::array<std::size_t, 3>& strides = known_.strides();
+    for (std::size_t c = 0; c < 8; ++c) {
+      steps_[c] = 0;
+      for (std::size_t k = 0; k < 3; ++k) steps_[c] += kCellCorners[c][k] != 0 ? strides[k] : 0;
+    }
+    // A lattice point of the tet is one that the half diagonal comes to within the tet.
+    for (const PlaceRun& run : places_.runsOf(tet)) {
+      known_.enter(run, static_cast<Number>(places_.firstOf(tet) + run.first));
+    }
+  }
+
+  bool isRight(Index tet, const FaceSides& sides, const GridPoint& z, const Cell& cell) {
+    if (!known_.isUsed()) {
+      for (std::size_t c = 0; c < 8; ++c) {
+        if (!isCorner(tet, sides, z, c, cell[c])) return false;
+      }
+      return true;
+    }
+    Number* const known = known_.at(z);
+    Number differences = 0;
+    bool isKnown = true;
+    for (std::size_t c = 0; c < 8; ++c) {
+      differences |= known[steps_[c]] ^ cell[c];
+      isKnown = isKnown && cell[c] != kUnknown;
+    }
+    if (differences == 0 && isKnown) return true;
+    for (std::size_t c = 0; c < 8; ++c) {
+      Number& vertex = known[steps_[c]];
+      if (vertex == cell[c] && vertex != kUnknown) continue;
+      if (vertex != kUnknown || !isCorner(tet, sides, z, c, cell[c])) return false;
+      vertex = cell[c];
+    }
+    return true;
+  }
+
+  bool isCorner(Index tet, const FaceSides& sides, const GridPoint& z, std::size_t corner,
+                Number vertex) {
+    if (vertex >= places_.count()) return false;
+    const std::int64_t unit = map_.exact.unit;
+    const GridPoint& offset = kCellCorners[corner];
+    GridPoint end;
+    LatticePoint start;
+    LatticePoint stop;
+    for (std::size_t k = 0; k < 3; ++k) {
+      end[k] = z[k] + offset[k];
+      start[k] = z[k] * unit + unit / 2;
+      stop[k] = end[k] * unit;
+    }
+    const FaceSides::Place where = sides.placeOf(stop);
+    if (where.beyond == 0) return diagonals_.isAt({tet, end, where.simplex}, vertex);
+    return diagonals_.endsAt({tet, start, stop}, sides.exit(start, where), vertex);
+  }
+
+  const PreparedMap& map_;
+  const CellCenters& centers_;
+  const LatticePlaces& places_;
+  HalfDiagonals diagonals_;
+  Faults& hints_;
+  Faults& wrong_;
+  CornerTable<Number> known_;
+  std::array<std::size_t, 8> steps_{};  ///< in the table, from a cell's smallest corner to each
+  std::vector<SweptLine> lines_;
+};
+
+}  // namespace hexhex

@@ -1,0 +1,137 @@
+// The proof of parts passes those of random maps, and nothing else.
+#include <gtest/gtest.h>
+#include <parts/counts.hpp>
+#include <verify/part_proof.hpp>
+#include <verify/proof.hpp>
+
+#include <base/parallel.hpp>
+#include <igm/defects.hpp>
+
+#include "verify/mutations.hpp"
+
+namespace hexhex::test {
+namespace {
+
+/// How many maps of each test, at HEXHEX_TEST_EFFORT 1.
+constexpr int kMaps = 100;
+
+/// A map that is ready to prove parts.
+class Truth {
+ public:
+  explicit Truth(const TetMapView& map)
+      : map_(prepare(map)),
+        stage_(context_, "verification"),
+        expected_(expectationOf(map_, stage_)),
+        counts_(countElements(map_, expected_.cells, stage_)),
+        proof_(map_, expected_, counts_) {}
+
+  [[nodiscard]] bool passes(const MeshPart& part) {
+    try {
+      proof_.compare(part, stage_);
+      return true;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::VerificationFailed);
+      return false;
+    }
+  }
+
+ private:
+  PreparedMap prepare(const TetMapView& map) {
+    DefectCollector defects;
+    return prepareMap(map, ExtractOptions().tolerance, 1, context_, defects, ChartChoice::Unfolded);
+  }
+
+  Context context_{1};
+  PreparedMap map_;
+  Stage stage_;
+  Expectation expected_;
+  ElementCounts counts_;
+  PartProof proof_;
+};
+
+PartOptions drawParts(Random& random) {
+  PartOptions options;
+  options.parts = static_cast<std::uint32_t>(1 + random.below(6));
+  options.ghostLayers = static_cast<std::uint32_t>(random.below(3));
+  options.verify = true;
+  return options;
+}
+
+std::vector<MeshPart> partsOf(const TetMapView& map, const PartOptions& options) {
+  Context context(1);
+  return extractParts(map, {}, options, context);
+}
+
+TEST(PartProof, PassesWhatIsExtracted) {
+  for (int i = 0; i < cases(kMaps); ++i) {
+    Random random(static_cast<std::uint64_t>(i));
+    const TetMap map = drawMap(random.next());
+    const PartOptions options = drawParts(random);
+    EXPECT_NO_THROW(static_cast<void>(partsOf(map, options))) << "map " << i;
+    Context context(2);
+    ExtractOptions scaled;
+    scaled.scale = 2;
+    EXPECT_NO_THROW(static_cast<void>(extractParts(map, scaled, options, context))) << "map " << i;
+  }
+}
+
+TEST(PartProof, RefusesOtherMeshes) {
+  std::map<std::string, int> refused;
+  for (int i = 0; i < cases(kMaps); ++i) {
+    const auto seed = static_cast<std::uint64_t>(i);
+    Random random(seed);
+    const TetMap map = drawMap(seed);
+    const std::vector<MeshPart> parts = partsOf(map, drawParts(random));
+    const MeshPart& part = parts[random.below(parts.size())];
+    if (part.mesh.cells.empty()) continue;
+    Truth truth(map);
+    ASSERT_TRUE(truth.passes(part)) << "map " << i;
+    for (const Mutation& mutation : mutations()) {
+      MeshPart wrong = part;
+      if (!mutation.apply(wrong.mesh, random)) continue;
+      // Parts list as many numbers as they have vertices and cells: no mutation of the lists.
+      if (wrong.mesh.points.size() != part.mesh.points.size() ||
+          wrong.mesh.cells.size() != part.mesh.cells.size()) {
+        continue;
+      }
+      EXPECT_FALSE(truth.passes(wrong)) << mutation.name << ", map " << i;
+      ++refused[mutation.name];
+    }
+    EXPECT_TRUE(truth.passes(part)) << "map " << i;
+  }
+  EXPECT_GE(refused.size(), 10U);
+}
+
+TEST(PartProof, RefusesOtherNumbers) {
+  const TetMap map = generateSample(SampleKind::Torus).map;
+  const MeshPart part = partsOf(map, {.parts = 3, .ghostLayers = 1}).at(1);
+  Truth truth(map);
+  const auto refuses = [&](const auto& change) {
+    MeshPart wrong = part;
+    change(wrong);
+    return !truth.passes(wrong);
+  };
+  EXPECT_TRUE(truth.passes(part));
+  EXPECT_TRUE(refuses([](MeshPart& p) { std::swap(p.globalPoints[0], p.globalPoints[1]); }));
+  EXPECT_TRUE(refuses([](MeshPart& p) { std::swap(p.globalCells[0], p.globalCells[1]); }));
+  EXPECT_TRUE(refuses([](MeshPart& p) { ++p.globalPoints.back(); }));
+  EXPECT_TRUE(refuses([](MeshPart& p) { p.globalCells.back() = 0; }));
+  EXPECT_TRUE(refuses([](MeshPart& p) { p.globalPoints[2] = kNone; }));
+  EXPECT_TRUE(refuses([](MeshPart& p) { p.globalCells[2] = std::uint64_t{1} << 63U; }));
+}
+
+TEST(PartProof, WantsAsManyElementsAsTheMapHas) {
+  const TetMap map = generateSample(SampleKind::Box).map;
+  Context context(1);
+  DefectCollector defects;
+  PreparedMap prepared = prepareMap(map, 1e-2, 1, context, defects, ChartChoice::Unfolded);
+  Stage stage(context, "verification");
+  Expectation expected = expectationOf(prepared, stage);
+  const ElementCounts counts = countElements(prepared, expected.cells, stage);
+  EXPECT_NO_THROW(PartProof(prepared, expected, counts));
+  ++expected.cells;
+  EXPECT_THROW(PartProof(prepared, expected, counts), Error);
+}
+
+}  // namespace
+}  // namespace hexhex::test
