@@ -325,8 +325,8 @@ void extractAllParts(const Arguments& arguments, const TetMap& map, LongRun& lon
   PartOptions parts = arguments.parts.chosen();
   parts.verify = !arguments.noVerify;
   record.meshParts = longRun.part("extraction", [&] {
-    return extractInParts(map, arguments.output, options, arguments.options, parts,
-                          arguments.team, longRun.context(), record.statistics);
+    return extractInParts(map, arguments.output, options, arguments.options, parts, arguments.team,
+                          longRun.context(), record.statistics);
   });
   record.vertices = record.meshParts->summary.vertices;
   record.cells = record.meshParts->summary.cells;
