@@ -9,14 +9,17 @@
 
 namespace hexhex {
 
+class ProcessTeam;
+
 struct ElementCounts {
   VertexNumbers vertices;
   Array<std::uint64_t> cells;  ///< per tet (+1): the first cell that it owns
 };
 
 /// Sweeps all tets, and keeps nothing but counts.
+/// @param team  if not null, its processes, which all call this, share the work
 /// @throws Error Internal if there are not as many cells as the map's parametric volume
 [[nodiscard]] ElementCounts countElements(const PreparedMap& map, std::uint64_t expectedCells,
-                                          Stage& stage);
+                                          ProcessTeam* team, Stage& stage);
 
 }  // namespace hexhex

@@ -60,7 +60,7 @@ class Collector final : public PartSink {
 /// Makes parts, and proves them if that is wanted.
 class ProvenParts {
  public:
-  ProvenParts(ScaledMap& scaled, const PartOptions& options, Context& context,
+  ProvenParts(ProcessTeam* team, ScaledMap& scaled, const PartOptions& options, Context& context,
               ExtractStatistics& statistics)
       : context_(context) {
     Expectation expected;
@@ -68,8 +68,8 @@ class ProvenParts {
       Stage stage(context, "verification");
       expected = expectationOf(scaled.map, stage);
     }
-    maker_ = makePartMaker({scaled.map, scaled.source, scaled.expectedCells}, options, context,
-                           statistics);
+    maker_ = makePartMaker({scaled.map, scaled.source, scaled.expectedCells, team}, options,
+                           context, statistics);
     if (options.verify) proof_.emplace(scaled.map, expected, maker_->counts());
   }
 
@@ -89,10 +89,11 @@ class ProvenParts {
 };
 
 /// Prepares a map, and calls make(maker): which parts are made is left to it.
+/// @param team  null for one process
 template <class Make>
-void runParts(std::uint32_t sinkLayers, const TetMapView& map, const ExtractOptions& options,
-              const PartOptions& parts, Context& context, ExtractStatistics* statistics,
-              const Make& make) {
+void runParts(ProcessTeam* team, std::uint32_t sinkLayers, const TetMapView& map,
+              const ExtractOptions& options, const PartOptions& parts, Context& context,
+              ExtractStatistics* statistics, const Make& make) {
   checkOptions(options);
   checkOptions(parts);
   PartOptions needed = parts;
@@ -100,7 +101,7 @@ void runParts(std::uint32_t sinkLayers, const TetMapView& map, const ExtractOpti
   runExtraction(
       {"extractParts", kPartsSteps}, {}, context, statistics, [&](ExtractStatistics& filled) {
         ScaledMap scaled = prepareScaled(map, options, {1, kMaxStreamedCells}, context, filled);
-        ProvenParts maker(scaled, needed, context, filled);
+        ProvenParts maker(team, scaled, needed, context, filled);
         PartsInfo info = maker.info();
         info.ghostLayers = parts.ghostLayers;
         make(maker, info);
@@ -153,7 +154,7 @@ void requireSame(ProcessTeam& team, std::uint64_t hash) {
 
 void extractParts(PartSink& sink, const TetMapView& map, const ExtractOptions& options,
                   const PartOptions& parts, Context& context, ExtractStatistics* statistics) {
-  runParts(sink.neededGhostLayers(), map, options, parts, context, statistics,
+  runParts(nullptr, sink.neededGhostLayers(), map, options, parts, context, statistics,
            [&](ProvenParts& maker, const PartsInfo& info) {
              sink.begin(info);
              for (std::uint32_t p = 0; p < parts.parts; ++p) sink.part(maker.make(p));
@@ -184,7 +185,7 @@ void extractPart(ProcessTeam& team, PartSink& sink, const TetMapView& map,
     all.parts = team.size();
     requireSame(team, hashOf(map, options, parts));
     PartSurvey survey(sink, &team);
-    runParts(sink.neededGhostLayers(), map, options, all, context, statistics,
+    runParts(&team, sink.neededGhostLayers(), map, options, all, context, statistics,
              [&](ProvenParts& maker, const PartsInfo& info) {
                survey.begin(info);
                survey.part(maker.make(team.rank()));

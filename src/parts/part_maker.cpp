@@ -341,7 +341,7 @@ std::unique_ptr<PartMaker> makePartMaker(const PartsOfMap& map, const PartOption
   ElementCounts counts;
   {
     Stage stage(context, "sweep");
-    counts = countElements(map.map, map.expectedCells, stage);
+    counts = countElements(map.map, map.expectedCells, map.team, stage);
   }
   statistics.generators = counts.vertices.generatorCounts;
   statistics.vertices = counts.vertices.vertexCounts;

@@ -18,6 +18,7 @@ struct PartsOfMap {
   const PreparedMap& map;
   const TetMapView& source;
   std::uint64_t expectedCells;
+  ProcessTeam* team = nullptr;  ///< if there is one, all of it counts
 };
 
 class PartMaker {

@@ -30,18 +30,22 @@ TEST(Team, MakesThePartsOfOneProcess) {
     options.parts = size;
     options.ghostLayers = draw.below(2U);
     Context context;
-    const std::vector<MeshPart> expected = extractParts(map, {}, options, context);
+    ExtractStatistics whole;
+    const std::vector<MeshPart> expected = extractParts(map, {}, options, context, &whole);
     std::vector<MeshPart> parts(size);
+    std::vector<ExtractStatistics> statistics(size);
     const auto errors = ThreadTeam(size).run([&](ProcessTeam& team) {
       // Only the first process has the map.
       const TetMap shared = shareMap(team, team.rank() == 0 ? TetMapView(map) : TetMapView());
       Context own(1);
-      parts[team.rank()] =
-          extractPart(team, team.rank() == 0 ? map : shared, {}, {1, options.ghostLayers}, own);
+      parts[team.rank()] = extractPart(team, team.rank() == 0 ? map : shared, {},
+                                       {1, options.ghostLayers}, own, &statistics[team.rank()]);
     });
     for (std::uint32_t r = 0; r < size; ++r) {
       EXPECT_FALSE(errors[r]) << errors[r]->what();
       EXPECT_TRUE(test::isSamePart(parts[r], expected[r])) << r << " of " << size;
+      EXPECT_EQ(statistics[r].vertices, whole.vertices);
+      EXPECT_EQ(statistics[r].generators, whole.generators);
     }
   }
 }
