@@ -52,6 +52,10 @@ class ProcessTeam {
   /// The same for a text of any length. @return that of process 0
   [[nodiscard]] std::string shareText(const std::string& text);
   [[nodiscard]] GatheredNumbers gather(std::span<const std::uint64_t> mine);
+  /// Shows all processes what each has, one after the other, by take(rank, numbers): where each
+  /// needs little of what others have. It takes memory for the numbers of one process.
+  void showAll(std::span<const std::uint64_t> mine,
+               const std::function<void(std::uint32_t, std::span<const std::uint64_t>)>& take);
 
  protected:
   // What a team takes, all of it called by all processes in the same order. What these functions
@@ -68,6 +72,7 @@ class ProcessTeam {
 
  private:
   void settle(const Error* failure);
+  [[nodiscard]] std::vector<std::uint64_t> gatherCounts(std::uint64_t count);
   [[nodiscard]] Error firstError(const Error* failure) noexcept;
 
   bool running_ = false;

@@ -81,14 +81,18 @@ std::string ProcessTeam::shareText(const std::string& text) {
   return shared;
 }
 
-GatheredNumbers ProcessTeam::gather(std::span<const std::uint64_t> mine) {
-  GatheredNumbers gathered;
+std::vector<std::uint64_t> ProcessTeam::gatherCounts(std::uint64_t count) {
   std::vector<std::uint64_t> counts(size());
   const std::vector<std::uint64_t> ones(size(), 1);
-  gathered.begin.resize(counts.size() + 1);
   agree();
-  const std::uint64_t count = mine.size();
   doGather(std::span(&count, 1), ones, counts);
+  return counts;
+}
+
+GatheredNumbers ProcessTeam::gather(std::span<const std::uint64_t> mine) {
+  GatheredNumbers gathered;
+  const std::vector<std::uint64_t> counts = gatherCounts(mine.size());
+  gathered.begin.resize(counts.size() + 1);
   for (std::size_t r = 0; r < counts.size(); ++r) {
     gathered.begin[r + 1] = gathered.begin[r] + counts[r];
   }
@@ -96,6 +100,20 @@ GatheredNumbers ProcessTeam::gather(std::span<const std::uint64_t> mine) {
   agree();  // where there is no memory for it, nobody waits
   doGather(mine, counts, gathered.numbers);
   return gathered;
+}
+
+void ProcessTeam::showAll(
+    std::span<const std::uint64_t> mine,
+    const std::function<void(std::uint32_t, std::span<const std::uint64_t>)>& take) {
+  const std::vector<std::uint64_t> counts = gatherCounts(mine.size());
+  std::vector<std::uint64_t> shown(*std::max_element(counts.begin(), counts.end()));
+  for (std::uint32_t r = 0; r < counts.size(); ++r) {
+    const std::span<std::uint64_t> numbers = std::span(shown).first(counts[r]);
+    if (r == rank()) std::copy(mine.begin(), mine.end(), numbers.begin());
+    agree();  // where there was no memory, nobody waits
+    doShare(r, std::as_writable_bytes(numbers));
+    take(r, numbers);
+  }
 }
 
 }  // namespace hexhex

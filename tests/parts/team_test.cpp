@@ -15,6 +15,9 @@
 
 #include "support/damaged_maps.hpp"
 #include "support/thread_team.hpp"
+#if !defined(_WIN32)  // where builds have no HDF5
+#include "io/other_programs.hpp"
+#endif
 
 namespace hexhex {
 namespace {
@@ -195,14 +198,45 @@ class TeamFiles : public testing::Test {
     return contents;
   }
 
+  /// Whether two folders have the same files. Those of HDF5 have the same contents, not the same
+  /// bytes.
+  static void expectSame(const fs::path& one, const fs::path& many, const std::string& what) {
+    auto expected = contentsOf(one);
+    auto found = contentsOf(many);
+#if !defined(_WIN32)
+    if (expected.erase("x.vtkhdf") + found.erase("x.vtkhdf") == 2) {
+      const fs::path script = fs::path(__FILE__).parent_path() / "same_vtkhdf.py";
+      const int code = test::runCommand(test::interpreter() + " '" + script.string() + "' '" +
+                                        (one / "x.vtkhdf").string() + "' '" +
+                                        (many / "x.vtkhdf").string() + "'");
+      EXPECT_TRUE(code == 0 || test::isMissing(code)) << what;
+    }
+#endif
+    EXPECT_EQ(expected, found) << what;
+  }
+  /// Formats that teams write, in this build.
+  [[nodiscard]] std::vector<PartFormat> formatsOfTeams() const {
+    std::vector<PartFormat> formats;
+    Context context;
+    for (const PartFormat& format : partFormats()) {
+      if (!format.byTeams) continue;
+      try {
+        static_cast<void>(openPartSink(folder_ / "x", writingOf(format), context));
+        formats.push_back(format);
+      } catch (const Error& error) {
+        EXPECT_EQ(format.name, "vtkhdf") << error.what();  // a build without HDF5
+      }
+    }
+    return formats;
+  }
+
   fs::path folder_;
   TetMap map_;
 };
 
 TEST_F(TeamFiles, AreThoseOfOneProcess) {
-  for (const PartFormat& format : partFormats()) {
-    if (!format.byTeams) continue;
-    for (const std::uint32_t size : {1U, 4U}) {
+  for (const PartFormat& format : formatsOfTeams()) {
+    for (const std::uint32_t size : {1U, 4U, 9U}) {
       const fs::path one = folder_ / "one" / ("x" + std::string(format.extension));
       const fs::path many = folder_ / "many" / one.filename();
       fs::create_directories(one.parent_path());
@@ -216,8 +250,8 @@ TEST_F(TeamFiles, AreThoseOfOneProcess) {
         extractPart(team, *part, map_, {}, {}, own);
       });
       EXPECT_FALSE(errors[0]) << errors[0]->what();
-      EXPECT_EQ(contentsOf(folder_ / "one"), contentsOf(folder_ / "many"))
-          << format.name << ", " << size;
+      expectSame(folder_ / "one", folder_ / "many",
+                 std::string(format.name) + ", " + std::to_string(size));
       fs::remove_all(folder_ / "one");
       fs::remove_all(folder_ / "many");
     }
@@ -244,8 +278,7 @@ class Failing final : public PartSink {
 };
 
 TEST_F(TeamFiles, DoNotAppearWhereOneProcessFails) {
-  for (const PartFormat& format : partFormats()) {
-    if (!format.byTeams) continue;
+  for (const PartFormat& format : formatsOfTeams()) {
     const fs::path file = folder_ / ("x" + std::string(format.extension));
     const auto errors = ThreadTeam(3).run([&](ProcessTeam& team) {
       Context context(1);

@@ -229,6 +229,19 @@ void HdfFile::append(const HdfObject& set, hid_t memoryType, hsize_t components,
   rows += count;
 }
 
+std::uint64_t HdfFile::reserve(hid_t parent, const std::string& name, hid_t type, hsize_t rows,
+                               hsize_t components) const {
+  const HdfObject creation(target_, HDF5(H5Pcopy)(ofDatasets_.id()), HDF5(H5Pclose));
+  creation.require(HDF5(H5Pset_alloc_time)(creation.id(), H5D_ALLOC_TIME_EARLY));
+  creation.require(HDF5(H5Pset_fill_time)(creation.id(), H5D_FILL_TIME_NEVER));
+  const HdfObject shape = components == 1 ? space({rows}) : space({rows, components});
+  const HdfObject set(target_,
+                      HDF5(H5Dcreate2)(parent, name.c_str(), type, shape.id(), H5P_DEFAULT,
+                                       creation.id(), H5P_DEFAULT),
+                      HDF5(H5Dclose));
+  return HDF5(H5Dget_offset)(set.id());
+}
+
 void HdfFile::writeAttribute(hid_t object, const char* name, hid_t type, const HdfObject& space,
                              const void* values) const {
   HdfObject attribute(target_,

@@ -97,6 +97,10 @@ class HdfFile {
   /// @param rows  that there are; counted on
   void append(const HdfObject& set, hid_t memoryType, hsize_t components, hsize_t& rows,
               const void* values, hsize_t count) const;
+  /// A dataset whose values lie one behind the other, from that byte of the file on, and are not
+  /// written: others do that.
+  [[nodiscard]] std::uint64_t reserve(hid_t parent, const std::string& name, hid_t type,
+                                      hsize_t rows, hsize_t components) const;
   void writeAttribute(hid_t object, const char* name, hid_t type, const HdfObject& space,
                       const void* values) const;
   /// A type of text of so many bytes. @param padding  what is behind shorter texts

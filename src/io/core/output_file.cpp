@@ -109,6 +109,11 @@ OutputFile::OutputFile(std::filesystem::path target, Target kind)
   if (descriptor_ < 0) fail("it cannot be opened", errno);
 }
 
+OutputFile::OutputFile(std::filesystem::path target, std::filesystem::path temporary)
+    : target_(std::move(target)), temporary_(std::move(temporary)) {
+  resume();
+}
+
 OutputFile::~OutputFile() {
   if (descriptor_ >= 0) system_call::close(descriptor_);
   if (!temporary_.empty()) system_call::remove(temporary_);
@@ -195,18 +200,27 @@ void OutputFile::resume() {
   if (descriptor_ < 0) fail("it cannot be opened again", errno);
 }
 
-void OutputFile::commit() {
+void OutputFile::finish(bool sync) {
   flush();
   // Some file systems report a full disk only in these two.
-  const bool renamed = !temporary_.empty();
-  if (renamed && !synced(descriptor_)) fail("it cannot be written completely", errno);
+  if (sync && !synced(descriptor_)) fail("it cannot be written completely", errno);
   const int closed = system_call::close(std::exchange(descriptor_, -1));
   if (closed != 0 && errno != EINTR) fail("it cannot be written completely", errno);
+}
+
+void OutputFile::commit() {
+  const bool renamed = !temporary_.empty();
+  finish(renamed);
   if (!renamed) return;
   const ChangedFolder folder(target_);
   giveName(temporary_, target_);
   temporary_.clear();
   folder.sync();
+}
+
+void OutputFile::handOver() {
+  finish(true);
+  temporary_.clear();
 }
 
 void OutputFile::fail(const std::string& reason, int error) const {

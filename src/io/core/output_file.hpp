@@ -122,6 +122,9 @@ class OutputFile {
   enum class Target { Any, Regular };
 
   explicit OutputFile(std::filesystem::path target, Target kind = Target::Any);
+  /// The temporary of another process, which gives it its name when this one is done with it; until
+  /// then it vanishes with any of them.
+  OutputFile(std::filesystem::path target, std::filesystem::path temporary);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -172,6 +175,10 @@ class OutputFile {
 
   /// Writes what is buffered, closes the file, and gives it its name.
   void commit();
+  /// The same without a name: for another process's temporary, which stays.
+  void handOver();
+  /// Empty if the target is written directly.
+  [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
   /// Whether commit() gave a temporary its name, also if its folder could not be synced then.
   [[nodiscard]] bool isNamed() const noexcept { return descriptor_ < 0 && temporary_.empty(); }
 
@@ -186,6 +193,7 @@ class OutputFile {
     if (used_ + size > kBufferSize) flush();
   }
   void openTemporary();
+  void finish(bool sync);
   template <class Write>
   void writeAll(const void* bytes, std::size_t size, const Write& write) const;
   void writeThrough(const void* bytes, std::size_t size);

@@ -1,8 +1,8 @@
 // OpenFOAM's decomposed case: `processorK/constant/polyMesh` for each part, with the addresses that
 // decomposePar writes.
 #include <algorithm>
-#include <array>
 #include <deque>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,6 +12,7 @@
 #include <adjacency/hex_topology.hpp>
 
 #include <hexhex/error.hpp>
+#include <hexhex/team.hpp>
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
@@ -24,92 +25,121 @@
 namespace hexhex {
 namespace {
 
-/// A face by one of its cells: 8 * the cell's global number + which one it is.
-using FaceCode = std::uint64_t;
-
-/// The numbers of faces in the mesh in one piece, as writeOpenFoam() lists them: inner ones by the
-/// smaller of their cells, then by the larger; boundary ones by tag, cell and side. Known when all
-/// parts are. A byte for each cell.
-class FaceNumbers {
+/// Faces of a part, in the order that they have in the mesh in one piece. They follow one another
+/// there, too, as long as their cells do, which are a run then: there are about as many runs as
+/// tets, however many cells.
+class FaceRuns {
  public:
-  void resize(std::uint64_t cells) { counts_.assign(cells, 0); }
-  /// How many inner faces a cell has whose other cell is larger.
-  void setOwned(std::uint64_t cell, std::size_t count) {
-    counts_[cell] = static_cast<std::uint8_t>(count);
+  struct Run {
+    std::uint64_t cell;    ///< its first one
+    std::uint64_t before;  ///< faces of the part
+  };
+
+  /// Adds a face. @param run  the first cell of that of its cell
+  void add(std::uint64_t run) {
+    if (runs_.empty() || runs_.back().cell != run) runs_.push_back({run, count_});
+    ++count_;
   }
-  void addBoundary(std::int32_t tag, FaceCode face) { boundary_[tag].push_back(face); }
-  /// When all are there.
-  void finish() {
-    for (std::size_t c = 0; c < counts_.size(); ++c) {
-      if (c % kBlock == 0) before_.push_back(inner_);
-      inner_ += counts_[c];
-    }
-    std::uint64_t first = inner_;
-    for (auto& [tag, faces] : boundary_) {
-      std::sort(faces.begin(), faces.end());
-      begin_[tag] = first;
-      first += faces.size();
-    }
-    total_ = first;
-  }
-  [[nodiscard]] std::uint64_t total() const noexcept { return total_; }
-  /// All tags of boundary faces, in order: those without come last.
-  [[nodiscard]] std::vector<std::int32_t> tags() const {
-    std::vector<std::int32_t> tags;
-    for (const auto& [tag, faces] : boundary_) tags.push_back(tag);
-    return tags;
-  }
-  [[nodiscard]] std::uint64_t inner(FaceCode face) const {
-    const std::uint64_t cell = face / 8;
-    std::uint64_t number = before_[cell / kBlock] + face % 8;
-    for (std::uint64_t c = cell / kBlock * kBlock; c < cell; ++c) number += counts_[c];
-    return number;
-  }
-  [[nodiscard]] std::uint64_t boundary(std::int32_t tag, FaceCode face) const {
-    const std::vector<FaceCode>& faces = boundary_.at(tag);
-    const auto place = std::lower_bound(faces.begin(), faces.end(), face);
-    return begin_.at(tag) + static_cast<std::uint64_t>(place - faces.begin());
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+  [[nodiscard]] const std::vector<Run>& runs() const noexcept { return runs_; }
+  /// Where a run ends, by faces of the part.
+  [[nodiscard]] std::uint64_t endOf(std::size_t run) const {
+    return run + 1 < runs_.size() ? runs_[run + 1].before : count_;
   }
 
  private:
-  static constexpr std::size_t kBlock = 64;
-  struct UntaggedLast {
-    bool operator()(std::int32_t a, std::int32_t b) const {
-      return (a == 0) != (b == 0) ? b == 0 : a < b;
+  std::vector<Run> runs_;
+  std::uint64_t count_ = 0;
+};
+
+/// The numbers of faces of one kind in the mesh in one piece, as writeOpenFoam() lists them: inner
+/// ones by the smaller of their cells, then by the larger; boundary ones of a tag by cell and side.
+class FaceNumbers {
+ public:
+  void add(const FaceRuns& faces) {
+    for (std::size_t i = 0; i < faces.runs().size(); ++i) {
+      const FaceRuns::Run& run = faces.runs()[i];
+      table_.insert(table_.end(), {run.cell, faces.endOf(i) - run.before});
     }
-  };
-  std::vector<std::uint8_t> counts_;
-  std::vector<std::uint64_t> before_;  ///< inner faces of cells before each block
-  std::uint64_t inner_ = 0;
-  std::uint64_t total_ = 0;
-  std::map<std::int32_t, std::vector<FaceCode>, UntaggedLast> boundary_;
-  std::map<std::int32_t, std::uint64_t> begin_;
+  }
+  /// When all are there. @param first  the number of the first. @return  that behind the last
+  std::uint64_t finish(std::uint64_t first, ProcessTeam* team) {
+    if (team != nullptr) table_ = team->gather(table_).numbers;
+    begins_.resize(table_.size() / 2);
+    for (std::size_t i = 0; i < begins_.size(); ++i) {
+      begins_[i] = {table_[2 * i], table_[2 * i + 1]};
+    }
+    std::vector<std::uint64_t>().swap(table_);
+    std::sort(begins_.begin(), begins_.end());
+    std::uint64_t next = first;
+    for (auto& [cell, number] : begins_) {
+      const std::uint64_t faces = number;
+      number = next;
+      next += faces;
+    }
+    return next;
+  }
+  [[nodiscard]] bool empty() const noexcept { return begins_.empty(); }
+
+  /// Calls use(number) for all faces of a part, in order.
+  template <class Use>
+  void forEach(const FaceRuns& faces, const Use& use) const {
+    for (std::size_t i = 0; i < faces.runs().size(); ++i) {
+      const FaceRuns::Run& run = faces.runs()[i];
+      const std::uint64_t first = beginOf(run.cell);
+      for (std::uint64_t f = run.before; f < faces.endOf(i); ++f) use(first + f - run.before);
+    }
+  }
+  /// That of one face of a part.
+  [[nodiscard]] std::uint64_t of(const FaceRuns& faces, std::uint64_t face) const {
+    const auto run = std::prev(std::upper_bound(
+        faces.runs().begin(), faces.runs().end(), face,
+        [](std::uint64_t f, const FaceRuns::Run& each) { return f < each.before; }));
+    return beginOf(run->cell) + face - run->before;
+  }
+
+ private:
+  [[nodiscard]] std::uint64_t beginOf(std::uint64_t run) const {
+    return std::lower_bound(begins_.begin(), begins_.end(), std::pair(run, std::uint64_t{0}))
+        ->second;
+  }
+
+  std::vector<std::uint64_t> table_;                             ///< cells and numbers of faces
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> begins_;  ///< per run, by its first cell
 };
 
 /// A face of a part that is not between two of its cells.
 struct OuterFace {
   std::int32_t tag;
+  std::uint64_t run;  ///< as of FaceRuns
   Index cell;
   std::uint8_t side;
 };
+
+/// Tags are in order, and faces without come last.
+bool comesBefore(std::int32_t a, std::int32_t b) { return (a == 0) != (b == 0) ? b == 0 : a < b; }
+
+/// Of a face that a part has, but whose smaller cell is in another.
+constexpr std::uint64_t kOfOther = ~std::uint64_t{0};
 
 /// What is left to be written of a part when all are known.
 struct OpenPart {
   struct Border {
     std::uint32_t part;
-    std::vector<FaceCode> faces;  ///< by the smaller cell; known to the part that has it
-    std::vector<bool> isOwner;    ///< whether that is this part
+    std::vector<std::uint64_t> faces;  ///< of `owned`, or kOfOther
   };
-  std::size_t innerFaces = 0;
-  std::vector<std::pair<std::int32_t, std::size_t>> patches;  ///< tags and faces, in order
+  std::uint32_t part = 0;
+  FaceRuns owned;  ///< inner faces by their smaller cells, those of borders, too
+  std::vector<std::pair<std::int32_t, FaceRuns>> patches;  ///< by tags, in order
   std::vector<Border> borders;
 };
 
 /// The faces of one part, as its polyMesh lists them.
 class PartFaces {
  public:
-  PartFaces(const MeshPart& part, FaceNumbers& numbers, Stage& stage)
-      : part_(part), numbers_(numbers), neighbours_(findFaceNeighbours(part.mesh, stage)) {
+  PartFaces(const MeshPart& part, Stage& stage)
+      : part_(part), neighbours_(findFaceNeighbours(part.mesh, stage)) {
+    open.part = part.part;
     for (const PartNeighbour& neighbour : part.neighbours) {
       for (const PartFace& face : neighbour.faces) {
         outside_[sideOf(face.cell, face.side)] = face.otherCell;
@@ -125,25 +155,21 @@ class PartFaces {
   void run() {
     std::vector<OuterFace> outer;
     for (std::size_t c = 0; c < part_.mesh.cells.size(); ++c) addCell(static_cast<Index>(c), outer);
-    open.innerFaces = poly.faces.size();
     std::stable_sort(outer.begin(), outer.end(), [](const OuterFace& a, const OuterFace& b) {
-      return (a.tag == 0) != (b.tag == 0) ? b.tag == 0 : a.tag < b.tag;
+      return comesBefore(a.tag, b.tag);
     });
     for (const OuterFace& face : outer) {
       if (open.patches.empty() || open.patches.back().first != face.tag) {
-        open.patches.emplace_back(face.tag, 0);
+        open.patches.emplace_back(face.tag, FaceRuns());
       }
-      ++open.patches.back().second;
+      open.patches.back().second.add(face.run);
       add(face.cell, face.side);
-      codes.push_back(8 * part_.globalCells[face.cell] + face.side);
-      numbers_.addBoundary(face.tag, codes.back());
     }
     for (const PartNeighbour& neighbour : part_.neighbours) addBorder(neighbour);
   }
 
   PolyMesh poly;
   OpenPart open;
-  std::vector<FaceCode> codes;  ///< of inner and boundary faces
 
  private:
   static std::uint64_t sideOf(std::size_t cell, std::size_t side) { return 8 * cell + side; }
@@ -168,13 +194,14 @@ class PartFaces {
   void addCell(Index cell, std::vector<OuterFace>& outer) {
     owned_.clear();
     const std::uint64_t number = part_.globalCells[cell];
+    if (cell == 0 || number != part_.globalCells[cell - 1] + 1) run_ = number;
     for (std::uint8_t side = 0; side < 6; ++side) {
       const Index other = neighbours_[cell][side];
       const auto outside = other != kNone ? outside_.end() : outside_.find(sideOf(cell, side));
       if (other != kNone) {
         if (other > cell) owned_.push_back({part_.globalCells[other], side, other});
       } else if (outside == outside_.end()) {
-        outer.push_back({tagOf(cell, side), cell, side});
+        outer.push_back({tagOf(cell, side), run_, cell, side});
       } else if (outside->second > number) {
         owned_.push_back({outside->second, side, kNone});
       }
@@ -182,16 +209,12 @@ class PartFaces {
     std::sort(owned_.begin(), owned_.end(), [](const Owned& a, const Owned& b) {
       return a.other != b.other ? a.other < b.other : a.side < b.side;
     });
-    numbers_.setOwned(number, owned_.size());
-    for (std::size_t i = 0; i < owned_.size(); ++i) {
-      const FaceCode code = 8 * number + i;
-      if (owned_[i].local == kNone) {
-        outerCodes_[sideOf(cell, owned_[i].side)] = code;
-        continue;
-      }
-      add(cell, owned_[i].side);
-      poly.neighbours.push_back(owned_[i].local);
-      codes.push_back(code);
+    for (const Owned& face : owned_) {
+      if (face.local == kNone) outerFaces_[sideOf(cell, face.side)] = open.owned.count();
+      open.owned.add(run_);
+      if (face.local == kNone) continue;
+      add(cell, face.side);
+      poly.neighbours.push_back(face.local);
     }
   }
 
@@ -204,9 +227,8 @@ class PartFaces {
       add(face.cell, face.side);
       Quad& quad = poly.faces.back();
       std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
-      const auto code = outerCodes_.find(sideOf(face.cell, face.side));
-      border.isOwner.push_back(code != outerCodes_.end());
-      border.faces.push_back(code != outerCodes_.end() ? code->second : 0);
+      const auto owned = outerFaces_.find(sideOf(face.cell, face.side));
+      border.faces.push_back(owned != outerFaces_.end() ? owned->second : kOfOther);
     }
   }
 
@@ -218,11 +240,11 @@ class PartFaces {
   };
 
   const MeshPart& part_;
-  FaceNumbers& numbers_;
   FaceNeighbours neighbours_;
-  std::vector<Owned> owned_;                        ///< of one cell
-  std::map<std::uint64_t, std::uint64_t> outside_;  ///< of faces between parts: the other cell
-  std::map<std::uint64_t, FaceCode> outerCodes_;    ///< of those whose smaller cell is here
+  std::vector<Owned> owned_;                           ///< of one cell
+  std::uint64_t run_ = 0;                              ///< of that cell
+  std::map<std::uint64_t, std::uint64_t> outside_;     ///< of faces between parts: the other cell
+  std::map<std::uint64_t, std::uint64_t> outerFaces_;  ///< of those whose smaller cell is here
   std::vector<std::pair<Quad, std::int32_t>> tags_;
 };
 
@@ -235,9 +257,12 @@ std::string processorPatch(std::uint32_t here, std::uint32_t there) {
 
 class OpenFoamSink final : public PartSink {
  public:
-  OpenFoamSink(const std::filesystem::path& file, Context& context)
-      : context_(context), case_(lowerCaseExtension(file) == ".foam" ? file.parent_path() : file) {
-    if (case_ != file) marker_.emplace(file);
+  OpenFoamSink(const std::filesystem::path& file, Context& context, ProcessTeam* team)
+      : context_(context),
+        file_(file),
+        case_(lowerCaseExtension(file) == ".foam" ? file.parent_path() : file),
+        team_(team) {
+    if (case_ != file && isFirst(team)) marker_.emplace(file);
   }
 
   void begin(const PartsInfo& info) override {
@@ -252,7 +277,8 @@ class OpenFoamSink final : public PartSink {
                   next.string() + " is there, of a case with more parts than " +
                       std::to_string(info.parts) + ". Remove the old processor folders first.");
     }
-    numbers_.resize(info.cellCount);
+    for (const std::int32_t tag : info.quadTags) boundary_[tag];
+    boundary_[0];
   }
 
   void part(MeshPart&& part) override {
@@ -268,36 +294,25 @@ class OpenFoamSink final : public PartSink {
 
   void end() override {
     Stage stage(context_, "write mesh");
-    numbers_.finish();
-    requireInt32(numbers_.total(), "OpenFOAM numbers faces");
-    for (std::uint32_t p = 0; p < open_.size(); ++p) {
+    numberFaces();
+    for (std::size_t p = 0; p < open_.size(); ++p) {
       try {
-        finishPart(p, stage);
+        finishPart(open_[p], folders_[p], stage);
       } catch (const Error& error) {
         throw folders_[p].named(error);
       }
     }
-    std::size_t done = 0;
-    try {
-      for (; done < folders_.size(); ++done) folders_[done].commit();
-      if (marker_) marker_->commit();
-    } catch (...) {
-      const bool complete = marker_ && marker_->isNamed();
-      while (!complete && done-- > 0) folders_[done].takeBack();
-      throw;
-    }
+    agree(team_);  // all parts are written
+    nameAll();
   }
 
  private:
   [[nodiscard]] std::filesystem::path folderOf(std::uint32_t part) const {
     return case_ / ("processor" + std::to_string(part)) / "constant" / "polyMesh";
   }
-  static std::filesystem::path codesIn(const OutputFolder& folder) {
-    return folder.temporary() / "faceCodes";
-  }
 
   void writePart(const MeshPart& part, const OutputFolder& folder, Stage& stage) {
-    PartFaces faces(part, numbers_, stage);
+    PartFaces faces(part, stage);
     faces.run();
     PolyMeshWriter writer(folder.temporary(), context_.threads());
     writer.write(part.mesh, faces.poly, stage);
@@ -310,25 +325,49 @@ class OpenFoamSink final : public PartSink {
     writer.writeLabels("cellProcAddressing", part.globalCells.size(), stage,
                        label(part.globalCells));
     writer.commit();
-    OutputFile codes(codesIn(folder));
-    codes.writeBytes(faces.codes.data(), faces.codes.size() * sizeof(FaceCode));
-    codes.commit();
     open_.push_back(std::move(faces.open));
   }
 
-  /// What takes the numbers of all faces.
-  void finishPart(std::uint32_t part, Stage& stage) {
-    const OpenPart& open = open_[part];
-    const OutputFolder& folder = folders_[part];
-    const Array<char> bytes = readWholeFile(codesIn(folder), stage);
-    std::vector<FaceCode> codes(bytes.size() / sizeof(FaceCode));
-    std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char*>(codes.data()));
-    std::filesystem::remove(codesIn(folder));
-
-    std::vector<std::int64_t> addresses;
-    for (std::size_t i = 0; i < open.innerFaces; ++i) {
-      addresses.push_back(addressOf(numbers_.inner(codes[i])));
+  void numberFaces() {
+    for (const OpenPart& open : open_) {
+      inner_.add(open.owned);
+      for (const auto& [tag, faces] : open.patches) boundary_.at(tag).add(faces);
     }
+    std::uint64_t next = inner_.finish(0, team_);
+    for (auto& [tag, numbers] : boundary_) next = numbers.finish(next, team_);
+    requireInt32(next, "OpenFOAM numbers faces");
+    for (const OpenPart& open : open_) {
+      for (const OpenPart::Border& border : open.borders) {
+        std::vector<std::uint64_t>& numbers = borders_[{open.part, border.part}];
+        for (const std::uint64_t face : border.faces) {
+          numbers.push_back(face == kOfOther ? kOfOther : inner_.of(open.owned, face));
+        }
+      }
+    }
+    if (team_ != nullptr) exchangeBorders();
+  }
+
+  /// Takes the numbers of common faces from other processes.
+  void exchangeBorders() {
+    std::vector<std::uint64_t> mine;
+    for (const auto& [parts, numbers] : borders_) {
+      mine.insert(mine.end(), {parts.second, numbers.size()});
+      mine.insert(mine.end(), numbers.begin(), numbers.end());
+    }
+    team_->showAll(mine, [&](std::uint32_t from, std::span<const std::uint64_t> theirs) {
+      while (!theirs.empty()) {
+        const std::span<const std::uint64_t> numbers = theirs.subspan(2, theirs[1]);
+        if (theirs[0] == team_->rank()) {
+          borders_[{from, team_->rank()}].assign(numbers.begin(), numbers.end());
+        }
+        theirs = theirs.subspan(2 + numbers.size());
+      }
+    });
+  }
+
+  /// What takes the numbers of all faces.
+  void finishPart(const OpenPart& open, const OutputFolder& folder, Stage& stage) {
+    std::vector<std::int64_t> addresses = innerAddresses(open);
     std::vector<PolyMesh::Patch> patches;
     std::vector<std::int64_t> patchAddresses;
     std::map<std::int32_t, std::string> names;
@@ -336,28 +375,28 @@ class OpenFoamSink final : public PartSink {
     addMissingGroups(groups, info_.quadTags, true, "surface", "boundary");
     for (const ElementGroup& group : groups) names[group.tag] = group.name;
     auto own = open.patches.begin();
-    for (const std::int32_t tag : numbers_.tags()) {
-      const bool has = own != open.patches.end() && own->first == tag;
+    for (const auto& [tag, numbers] : boundary_) {
+      if (numbers.empty()) continue;
       const std::size_t begin = addresses.size();
-      const std::size_t count = has ? own->second : 0;
-      for (std::size_t i = 0; i < count; ++i) {
-        addresses.push_back(addressOf(numbers_.boundary(tag, codes[addresses.size()])));
+      if (own != open.patches.end() && own->first == tag) {
+        numbers.forEach(own->second,
+                        [&](std::uint64_t number) { addresses.push_back(addressOf(number)); });
+        ++own;
       }
-      if (has) ++own;
       patchAddresses.push_back(static_cast<std::int64_t>(patches.size()));
-      patches.push_back({names.at(tag), begin, begin + count, {}});
+      patches.push_back({names.at(tag), begin, addresses.size(), {}});
     }
     for (const OpenPart::Border& border : open.borders) {
       const std::size_t begin = addresses.size();
-      const OpenPart::Border& back = borderOf(border.part, part);
-      for (std::size_t i = 0; i < border.faces.size(); ++i) {
-        const bool isOwner = border.isOwner[i];
-        const auto number = addressOf(numbers_.inner(isOwner ? border.faces[i] : back.faces[i]));
-        addresses.push_back(isOwner ? number : -number);
+      const std::vector<std::uint64_t>& here = borders_.at({open.part, border.part});
+      const std::vector<std::uint64_t>& there = borders_.at({border.part, open.part});
+      for (std::size_t i = 0; i < here.size(); ++i) {
+        addresses.push_back(here[i] != kOfOther ? addressOf(here[i]) : -addressOf(there[i]));
       }
       patchAddresses.push_back(-1);
-      patches.push_back({"procBoundary" + std::to_string(part) + "to" + std::to_string(border.part),
-                         begin, addresses.size(), processorPatch(part, border.part)});
+      patches.push_back(
+          {"procBoundary" + std::to_string(open.part) + "to" + std::to_string(border.part), begin,
+           addresses.size(), processorPatch(open.part, border.part)});
     }
     PolyMeshWriter writer(folder.temporary(), context_.threads());
     writer.writeBoundary(patches);
@@ -371,30 +410,69 @@ class OpenFoamSink final : public PartSink {
                        label(patchAddresses));
     writer.commit();
   }
+
+  /// Of faces between two cells of the part.
+  [[nodiscard]] std::vector<std::int64_t> innerAddresses(const OpenPart& open) const {
+    std::vector<bool> isOuter(open.owned.count(), false);
+    for (const OpenPart::Border& border : open.borders) {
+      for (const std::uint64_t face : border.faces) {
+        if (face != kOfOther) isOuter[face] = true;
+      }
+    }
+    std::vector<std::int64_t> addresses;
+    std::size_t face = 0;
+    inner_.forEach(open.owned, [&](std::uint64_t number) {
+      if (!isOuter[face++]) addresses.push_back(addressOf(number));
+    });
+    return addresses;
+  }
   /// From 1 on, so that a sign can say that the face is turned around.
   static std::int64_t addressOf(std::uint64_t face) { return static_cast<std::int64_t>(face) + 1; }
 
-  [[nodiscard]] const OpenPart::Border& borderOf(std::uint32_t part, std::uint32_t to) const {
-    const std::vector<OpenPart::Border>& borders = open_[part].borders;
-    return *std::find_if(borders.begin(), borders.end(),
-                         [to](const OpenPart::Border& border) { return border.part == to; });
+  /// Gives all folders their names, and the marker, which comes last.
+  void nameAll() {
+    std::size_t done = 0;
+    try {
+      for (; done < folders_.size(); ++done) folders_[done].commit();
+      agree(team_);
+      if (marker_) marker_->commit();
+      agree(team_);
+    } catch (...) {
+      // A marker that is there is only not yet safe on the disk; other processes cannot know.
+      const bool isNamed = marker_ && marker_->isNamed();
+      if (isNamed && team_ == nullptr) throw;
+      std::error_code unknown;
+      if (isNamed) std::filesystem::remove(file_, unknown);
+      while (done-- > 0) folders_[done].takeBack();
+      throw;
+    }
   }
 
+  struct Before {
+    bool operator()(std::int32_t a, std::int32_t b) const { return comesBefore(a, b); }
+  };
+
   Context& context_;
+  std::filesystem::path file_;
   std::filesystem::path case_;
-  std::optional<OutputFile> marker_;
+  ProcessTeam* team_;
+  std::optional<OutputFile> marker_;  ///< of the first process
   PartsInfo info_;
-  FaceNumbers numbers_;
   std::deque<OutputFolder> folders_;
-  std::vector<OpenPart> open_;
+  std::vector<OpenPart> open_;  ///< those of this process
+  FaceNumbers inner_;
+  std::map<std::int32_t, FaceNumbers, Before> boundary_;  ///< by tag
+  /// From one part to another: numbers of their common faces, of those whose smaller cell the first
+  /// has.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint64_t>> borders_;
 };
 
 }  // namespace
 
 std::unique_ptr<PartSink> openOpenFoamPartSink(const std::filesystem::path& file,
                                                const WriteOptions& /*options*/, Context& context,
-                                               ProcessTeam* /*team*/) {
-  return std::make_unique<OpenFoamSink>(file, context);
+                                               ProcessTeam* team) {
+  return std::make_unique<OpenFoamSink>(file, context, team);
 }
 
 }  // namespace hexhex

@@ -7,6 +7,7 @@
 
 #include <io/core/hdf5_library.hpp>
 #include <io/core/text_scanner.hpp>
+#include <io/parts/file_set.hpp>
 #include <io/parts/parts.hpp>
 
 namespace hexhex {
@@ -22,10 +23,11 @@ constexpr OpenPartSink* kOpenCgns = nullptr;
 
 constexpr std::array kPartFormats = {
     PartFormat{"pvtu", ".pvtu", "VTK XML: NAME.pvtu, and pieces in the folder NAME", true},
-    PartFormat{"vtkhdf", ".vtkhdf", "VTKHDF: one file"},
+    PartFormat{"vtkhdf", ".vtkhdf", "VTKHDF: one file", true},
     PartFormat{"msh", ".msh", "Gmsh 4.1, binary: one file with partitioned entities"},
     PartFormat{"msh-split", "", "Gmsh 4.1, binary: NAME_K.msh, K from 1 on", true},
-    PartFormat{"openfoam", ".foam", "OpenFOAM: processorK/constant/polyMesh beside NAME.foam"},
+    PartFormat{"openfoam", ".foam", "OpenFOAM: processorK/constant/polyMesh beside NAME.foam",
+               true},
     PartFormat{"exodus-e", ".e", "Exodus with Nemesis maps: NAME.e.N.K", true},
     PartFormat{"exodus", ".exo", "Exodus with Nemesis maps: NAME.exo.N.K", true},
     PartFormat{"mfem", "", "MFEM parallel mesh v1.2: NAME.000000 ...", true},
@@ -76,7 +78,7 @@ std::unique_ptr<PartSink> openPartSink(const std::filesystem::path& file,
                                        ProcessTeam* team) {
   const std::size_t format = findFormat(file, options.format);
   if (team != nullptr) requireForTeams(file, format);
-  if (isOverHdf5(format)) requireHdf5(file);
+  if (isOverHdf5(format) && isFirst(team)) requireHdf5(file);
   return kOpen[format](file, options, context, team);
 }
 
