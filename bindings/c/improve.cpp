@@ -30,11 +30,12 @@ hexhex_improve_report reportOf(const hexhex::ImproveReport& r) {
           .seconds = r.seconds};
 }
 
-}  // namespace
-
-hexhex_status hexhex_mesh_improve(hexhex_mesh* mesh, const hexhex_map* map,
-                                  const hexhex_improve_options* options, hexhex_context* context,
-                                  hexhex_improve_report* report, hexhex_error* error) {
+/// @param meshOf  the mesh of a handle
+template <class Handle, class MeshOf>
+hexhex_status improveMesh(Handle* mesh, const hexhex_map* map,
+                          const hexhex_improve_options* options, hexhex_context* context,
+                          hexhex_improve_report* report, hexhex_error* error,
+                          const MeshOf& meshOf) {
   using namespace hexhex::c;
   return guarded(error, [&] {
     const Used used(mesh, "mesh");
@@ -48,9 +49,28 @@ hexhex_status hexhex_mesh_improve(hexhex_mesh* mesh, const hexhex_map* map,
                                            .slack = o.slack};
     requireStruct(report, "report");
     ContextOrDefault working(context);
+    auto& improved = meshOf(*used);
     const hexhex::ImproveReport made =
-        given ? hexhex::improve(used->own, (*given)->view, chosen, *working)
-              : hexhex::improve(used->own, chosen, *working);
+        given ? hexhex::improve(improved, (*given)->view, chosen, *working)
+              : hexhex::improve(improved, chosen, *working);
     if (report != nullptr) writeStruct(reportOf(made), *report, "report");
   });
+}
+
+}  // namespace
+
+hexhex_status hexhex_mesh_improve(hexhex_mesh* mesh, const hexhex_map* map,
+                                  const hexhex_improve_options* options, hexhex_context* context,
+                                  hexhex_improve_report* report, hexhex_error* error) {
+  return improveMesh(mesh, map, options, context, report, error,
+                     [](hexhex_mesh& handle) -> hexhex::HexMesh& { return handle.own; });
+}
+
+hexhex_status hexhex_lagrange_mesh_improve(hexhex_lagrange_mesh* mesh, const hexhex_map* map,
+                                           const hexhex_improve_options* options,
+                                           hexhex_context* context, hexhex_improve_report* report,
+                                           hexhex_error* error) {
+  return improveMesh(
+      mesh, map, options, context, report, error,
+      [](hexhex_lagrange_mesh& handle) -> hexhex::LagrangeMesh& { return handle.mesh; });
 }

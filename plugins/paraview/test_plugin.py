@@ -241,8 +241,22 @@ def check_improve():
         filter_.UpdatePipeline()
         worst.append(fetch(filter_, 0).GetCellData().GetArray("scaled_jacobian").GetRange()[0])
     require(worst[0] < worst[1] > 0, f"scaled Jacobians {worst} before and after")
-    both = HexHexExtract(Input=OutputPort(reader, 0), Improve=1, Order=2)
-    require(messages_of(both, "InvalidArgument"), "no error for curved cells")
+    # Nodes of curved cells, and singular edges with them.
+    run("generate", "sphere", "--jitter", "0.3", "--cells", "1", "-o", "ball.hexex")
+    reader = OpenDataFile(os.path.join(OUT, "ball.hexex"))
+    run("extract", "ball.hexex", "--order", "2", "--improve", "-o", "ball.vtu")
+    expected = fetch(OpenDataFile(os.path.join(OUT, "ball.vtu")), 0)
+    curved = HexHexExtract(Input=OutputPort(reader, 0), Improve=1, Order=2)
+    curved.UpdatePipeline()
+    found = fetch(curved, 0)
+    places = [[tuple(mesh.GetPoint(i)) for i in range(mesh.GetNumberOfPoints())] for mesh in (expected, found)]
+    require(places[0] == places[1], "curved cells are not improved as the command does it")
+    lines = fetch(curved, 1)
+    ends = {tuple(lines.GetPoint(i)) for i in range(lines.GetNumberOfPoints())}
+    require(ends and ends <= set(places[1]), "singular edges are not where the cells are")
+    for options in ({"Order": 4}, {"Arcs": 1}):
+        refused = HexHexExtract(Input=OutputPort(reader, 0), Improve=1, **options)
+        require(messages_of(refused, "InvalidArgument"), f"no error for {options}")
 
 
 def check_errors():

@@ -640,6 +640,47 @@ static void test_improve(void) {
   hexhex_map_destroy(map);
 }
 
+/* Curved cells: extracted, improved, written, and read again. */
+static void test_improve_curved(const char* folder) {
+  hexhex_error error;
+  char file[512];
+  hexhex_map* map = NULL;
+  hexhex_lagrange_mesh* mesh = NULL;
+  hexhex_sample_options sample = HEXHEX_SAMPLE_OPTIONS_INIT;
+  sample.cells = 1;
+  sample.jitter = 0.2;
+  CHECK_OK(hexhex_map_generate("sphere", &sample, &map, &error));
+  hexhex_improve_options options = HEXHEX_IMPROVE_OPTIONS_INIT;
+  options.passes = 1;
+  for (int order = 2; order <= 4; ++order) {
+    hexhex_improve_report report = HEXHEX_IMPROVE_REPORT_INIT;
+    CHECK_OK(hexhex_extract_lagrange(map, order, NULL, NULL, &mesh, NULL, &error));
+    hexhex_certificate before = HEXHEX_CERTIFICATE_INIT;
+    hexhex_certificate after = HEXHEX_CERTIFICATE_INIT;
+    CHECK_OK(hexhex_lagrange_mesh_certify(mesh, NULL, NULL, NULL, &before, &error));
+    if (order == 4) {
+      CHECK(hexhex_lagrange_mesh_improve(mesh, map, &options, NULL, &report, &error) ==
+            HEXHEX_INVALID_ARGUMENT);
+      hexhex_lagrange_mesh_destroy(mesh);
+      continue;
+    }
+    CHECK_OK(hexhex_lagrange_mesh_improve(mesh, map, &options, NULL, &report, &error));
+    CHECK(report.not_positive_before == before.refuted + before.undecided);
+    CHECK(report.minimum_after >= report.minimum_before && report.moved_vertices > 0);
+    snprintf(file, sizeof file, "%s/improved%d.vtu", folder, order);
+    CHECK_OK(hexhex_lagrange_mesh_write(mesh, file, NULL, NULL, &error));
+    hexhex_lagrange_mesh_destroy(mesh);
+    CHECK_OK(hexhex_lagrange_mesh_read(file, NULL, &mesh, &error));
+    CHECK_OK(hexhex_lagrange_mesh_certify(mesh, NULL, NULL, NULL, &after, &error));
+    CHECK(report.not_positive_after == after.refuted + after.undecided);
+    CHECK(before.positive <= after.positive && after.refuted == 0 && before.refuted > 0);
+    /* Its own boundary as the surface: no worse. */
+    CHECK_OK(hexhex_lagrange_mesh_improve(mesh, NULL, &options, NULL, NULL, &error));
+    hexhex_lagrange_mesh_destroy(mesh);
+  }
+  hexhex_map_destroy(map);
+}
+
 static void test_quantize(void) {
   hexhex_error error;
   hexhex_map* seamless = seamless_sphere(2, 0);
@@ -1522,6 +1563,7 @@ int main(void) {
   test_features(folder);
   test_repair();
   test_improve();
+  test_improve_curved(folder);
   test_quantize();
   test_curved(folder);
   test_numbers_that_are_none();

@@ -442,6 +442,9 @@ static void call_all(const handles* h, enum kind kind, const char* file) {
     REFUSED(hexhex_lagrange_mesh_certify(h->lagrange_mesh, h->context, NULL, NULL, &out_certificate,
                                          &error));
   }
+  if (concerns(k_lagrange_mesh | k_context)) { /* a map may be NULL */
+    REFUSED(hexhex_lagrange_mesh_improve(h->lagrange_mesh, h->map, NULL, h->context, NULL, &error));
+  }
   if (concerns(k_lagrange_mesh | k_context)) {
     REFUSED(hexhex_lagrange_mesh_write(h->lagrange_mesh, file, NULL, h->context, &error));
   }

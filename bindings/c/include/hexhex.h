@@ -607,7 +607,7 @@ typedef struct hexhex_quantize_options {
   double edge_length; /**< of a hexahedron in space, on the average */
   int densify;        /**< 1: if no valid map is found so, takes the first denser one that works */
   int32_t wall_tag;   /**< inner triangles with this tag need not stay planes; 0: none */
-  double tolerance; /**< share of the map's size by which it may miss being seamless */
+  double tolerance;   /**< share of the map's size by which it may miss being seamless */
 } hexhex_quantize_options;
 #define HEXHEX_QUANTIZE_OPTIONS_INIT \
   { sizeof(hexhex_quantize_options), 0, 0, 0, 0, 0, 1e-5 }
@@ -1378,6 +1378,11 @@ HEXHEX_API hexhex_status hexhex_lagrange_mesh_certify(const hexhex_lagrange_mesh
                                                       double* scaled_jacobians,
                                                       hexhex_certificate* certificate,
                                                       hexhex_error* error);
+/** As hexhex_mesh_improve(), of cells of order 1 to 3: all nodes move, and vertices in the report
+ * are nodes. */
+HEXHEX_API hexhex_status hexhex_lagrange_mesh_improve(
+    hexhex_lagrange_mesh* mesh, const hexhex_map* map, const hexhex_improve_options* options,
+    hexhex_context* context, hexhex_improve_report* report, hexhex_error* error);
 /** .vtu, .msh, .mesh (MFEM). */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_write(const hexhex_lagrange_mesh* mesh,
                                                     const char* file,

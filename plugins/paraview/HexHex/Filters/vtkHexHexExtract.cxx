@@ -68,6 +68,26 @@ void requireVerified(
   throw hexhex::Error(hexhex::ErrorCode::VerificationFailed, sentence);
 }
 
+/// Moves vertices, or the nodes of cells of higher order.
+void improveAll(Extracted& result, const hexhex::TetMapView& map, const Request& request,
+  hexhex::Context& context)
+{
+  if (request.order > 3 || request.arcs || request.patches)
+  {
+    throw hexhex::Error(hexhex::ErrorCode::InvalidArgument,
+      "Improve moves nodes of cells up to order 3, away from the map that arcs and patches follow. "
+      "Switch off Improve, or Arcs and Patches, or lower Order.");
+  }
+  if (request.order == 1)
+  {
+    hexhex::improve(result.linear.mesh, map, { .target = request.target }, context);
+    return;
+  }
+  hexhex::improve(result.curved, map, { .target = request.target }, context);
+  // Singular edges end where corners of cells are.
+  result.linear.mesh = hexhex::straightMesh(result.curved);
+}
+
 Extracted extractAll(const hexhex::TetMap& map, const Request& request, hexhex::Context& context)
 {
   Extracted result;
@@ -91,26 +111,17 @@ Extracted extractAll(const hexhex::TetMap& map, const Request& request, hexhex::
   {
     requireVerified(repaired, mesh, request.options.scale, request.options.tolerance, context);
   }
-  if (request.improve)
-  {
-    if (request.order > 1 || request.arcs || request.patches)
-    {
-      throw hexhex::Error(hexhex::ErrorCode::InvalidArgument,
-        "Improve moves vertices of straight cells, away from the map that curved ones follow. Switch "
-        "off Improve, or Arcs and Patches, and set Order to 1.");
-    }
-    hexhex::improve(mesh, repaired, { .target = request.target }, context);
-  }
-  result.structure = hexhex::findStructure(mesh, context);
-  if (request.order == 1)
-  {
-    result.quality = hexhex::scaledJacobians(mesh, context);
-  }
-  else
+  if (request.order > 1)
   {
     result.curved = hexhex::extractLagrange(repaired, request.order, request.options, context);
-    result.quality = hexhex::scaledJacobians(result.curved, context);
   }
+  if (request.improve)
+  {
+    improveAll(result, repaired, request, context);
+  }
+  result.structure = hexhex::findStructure(mesh, context);
+  result.quality = request.order == 1 ? hexhex::scaledJacobians(mesh, context)
+                                      : hexhex::scaledJacobians(result.curved, context);
   return result;
 }
 
