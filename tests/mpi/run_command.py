@@ -13,7 +13,7 @@ import tempfile
 
 COMMAND, MPIRUN = sys.argv[1:]
 SKIPPED, BAD_USAGE, FILE_PROBLEM = 77, 2, 3
-EXTENSIONS = {"pvtu": ".pvtu", "msh-split": ".msh", "exodus-e": ".e", "mfem": "", "openfoam": ".foam",
+EXTENSIONS = {"pvtu": ".pvtu", "msh": ".msh", "msh-split": ".msh", "exodus-e": ".e", "mfem": "", "openfoam": ".foam",
               "vtkhdf": ".vtkhdf"}
 OFTEN = ["pvtu", "openfoam", "vtkhdf"]  # with each number of processes
 SAME_VTKHDF = pathlib.Path(__file__).parents[1] / "parts" / "same_vtkhdf.py"
@@ -54,7 +54,7 @@ def check_files(folder, map_file):
         for name, extension in EXTENSIONS.items():
             if name not in OFTEN and processes != 3:
                 continue
-            ghosts = ["--ghosts", 1] if name == "vtkhdf" and processes == 3 else []
+            ghosts = ["--ghosts", 1] if name in ("vtkhdf", "msh") and processes == 3 else []
             one, many = folder / "one", folder / "many"
             one.mkdir(), many.mkdir()
             said = run(MPIRUN, "-n", processes, COMMAND, "extract", map_file, "-o", many / f"x{extension}",

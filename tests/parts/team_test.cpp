@@ -322,10 +322,10 @@ TEST_F(TeamFiles, ThatCannotBeNamedTakeTheOthersBack) {
 TEST_F(TeamFiles, OfOtherFormatsAreRefused) {
   const auto errors = ThreadTeam(2).run([&](ProcessTeam& team) {
     Context context(1);
-    static_cast<void>(openPartSink(folder_ / "x.msh", {}, context, &team));
+    static_cast<void>(openPartSink(folder_ / "x.cgns", {}, context, &team));
   });
   expectAll(errors, ErrorCode::FileUnsupported, "several processes cannot write");
-  EXPECT_THROW(requirePartFormat("x.msh", {}, true), Error);
+  EXPECT_THROW(requirePartFormat("x.cgns", {}, true), Error);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ constexpr OpenPartSink* kOpenCgns = nullptr;
 constexpr std::array kPartFormats = {
     PartFormat{"pvtu", ".pvtu", "VTK XML: NAME.pvtu, and pieces in the folder NAME", true},
     PartFormat{"vtkhdf", ".vtkhdf", "VTKHDF: one file", true},
-    PartFormat{"msh", ".msh", "Gmsh 4.1, binary: one file with partitioned entities"},
+    PartFormat{"msh", ".msh", "Gmsh 4.1, binary: one file with partitioned entities", true},
     PartFormat{"msh-split", "", "Gmsh 4.1, binary: NAME_K.msh, K from 1 on", true},
     PartFormat{"openfoam", ".foam", "OpenFOAM: processorK/constant/polyMesh beside NAME.foam",
                true},
