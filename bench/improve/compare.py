@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""hexhex improve beside other programs that move vertices of hexahedra: MFEM's TMOP, VTK's constrained smoothing, Gmsh.
+"""hexhex improve beside other programs that move vertices: MFEM's TMOP, VTK's constrained smoothing, PyVista's, Gmsh.
 
     bench/improve/compare.py HEXHEX MAP.hexex:SCALE...
 
-Prints a table in Markdown. Needs mfem, gmsh, vtk and meshio of PyPI. All start from the same mesh, each in a process of its own with
+Prints a table in Markdown. Needs mfem, gmsh, vtk, pyvista and meshio of PyPI. All start from the same mesh, each in a process of its own with
 one thread; time is processor time without reading and writing, of hexhex that of the command. Certificates are hexhex's; the distance is the largest
 one of boundary vertices to the boundary of the map, in diagonals.
 
 TMOP: the untangling metric 352 if a corner is not positive, then the shape metric 303, at Gauss-Lobatto points; boundary vertices stay,
-50 steps of Newton's method. VTK: vtkConstrainedSmoothingFilter, 20 iterations, vertices of the boundary stay. Gmsh:
+50 steps of Newton's method. VTK: vtkConstrainedSmoothingFilter, 20 iterations, vertices of the boundary stay. PyVista has
+no smoothing of cells, only of surfaces: smooth_taubin() of the mesh's boundary, 20 iterations, vertices inside stay. Gmsh:
 UntangleMeshGeometry, and Relocate3D, of a discrete volume without geometry."""
 import json
 import multiprocessing
@@ -62,6 +63,21 @@ def smoothed_by_vtk(points, cells, _file, _bad):
     begin = time.process_time()
     smoothing.Update()
     return vtk_to_numpy(smoothing.GetOutput().GetPoints().GetData()), time.process_time() - begin
+
+
+def smoothed_by_pyvista(points, cells, _file, _bad):
+    import pyvista
+
+    quads = boundary_quads(cells)
+    border, corners = np.unique(quads, return_inverse=True)
+    faces = np.hstack([np.full((len(quads), 1), 4), corners.reshape(-1, 4)])
+    surface = pyvista.PolyData(points[border], faces)
+    begin = time.process_time()
+    smooth = surface.smooth_taubin(n_iter=20)
+    seconds = time.process_time() - begin
+    result = points.copy()
+    result[border] = smooth.points
+    return result, seconds
 
 
 def optimized_by_mfem(points, _cells, file, bad):
@@ -221,6 +237,7 @@ def tool_rows(map_file, scale, folder, hexhex):
     edges = [(0, 1, 3, 4), (1, 2, 0, 5), (2, 3, 1, 6), (3, 0, 2, 7), (4, 7, 5, 0), (5, 4, 6, 1), (6, 5, 7, 2), (7, 6, 4, 3)]
     bad = min(np.linalg.det(corners[:, e[1:]] - corners[:, e[:1]]).min() for e in edges)
     for name, tool in (("MFEM TMOP", optimized_by_mfem), ("VTK constrained smoothing", smoothed_by_vtk),
+                       ("PyVista smooth_taubin, boundary only", smoothed_by_pyvista),
                        ("Gmsh UntangleMeshGeometry", optimized_by_gmsh("UntangleMeshGeometry")),
                        ("Gmsh Relocate3D", optimized_by_gmsh("Relocate3D"))):
         result = limited(tool, points, cells, folder / "mfem.mesh", bad)

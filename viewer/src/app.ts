@@ -15,6 +15,7 @@ import { Histogram } from "./ui/histogram";
 import { Legend } from "./ui/legend";
 import { askedPicture, savePng } from "./ui/picture";
 import { infoAt, showImprovement, showPicked, showStatistics } from "./ui/statistics";
+import { ballAround, worstKept } from "./worst";
 import type { LoadedMesh } from "./worker/messages";
 import type { CurvedFaces } from "./worker/curved_faces";
 import type { Layers } from "./worker/topology";
@@ -174,38 +175,11 @@ export class App {
 
   /** Picks the worst of the cells that the filter keeps, goes close to it, and shows it alone. */
   pickWorst(): void {
-    const worst = this.worstKept();
+    const worst = worstKept(this.mesh.cells, this.moments, this.layers, this.filter());
     if (worst === null) return;
-    const centre = this.centreOf(worst);
-    let radius = 0;
-    for (let k = 0; k < 8; ++k) {
-      const at = 4 * this.mesh.cells[8 * worst + k]!;
-      const away = centre.map((x, axis) => this.moments.positions[at + axis]! - x);
-      radius = Math.max(radius, Math.hypot(...away));
-    }
+    const { centre, radius } = ballAround(this.mesh.cells, this.moments, worst);
     this.viewport.approach(centre, radius);
     this.change({ picked: worst, isolated: true });
-  }
-
-  private worstKept(): number | null {
-    const [from, to] = this.storedRange();
-    const { quality } = this.moments;
-    const layers = this.layers?.ofCells;
-    const side = this.filter().plane;
-    const dug = new Set(this.state.dug);
-    let worst: number | null = null;
-    for (let cell = 0; cell < quality.length; ++cell) {
-      const value = quality[cell]!;
-      if (value < from || value > to || (layers && layers[cell]! < this.state.peel)) continue;
-      if ((worst !== null && value >= quality[worst]!) || dug.has(cell)) continue;
-      if (side) {
-        const [x, y, z] = this.centreOf(cell);
-        const along = side.normal[0] * x + side.normal[1] * y + side.normal[2] * z;
-        if (along > side.offset) continue;
-      }
-      worst = cell;
-    }
-    return worst;
   }
 
   /** Saves what is on the canvas, as large as is asked for. */
@@ -249,15 +223,6 @@ export class App {
     if (state.picked === null || state.picked < info.cells) return;
     state.picked = null;
     state.isolated = false;
-  }
-
-  private centreOf(cell: number): [number, number, number] {
-    const sum: [number, number, number] = [0, 0, 0];
-    for (let k = 0; k < 8; ++k) {
-      const at = 4 * this.mesh.cells[8 * cell + k]!;
-      for (let axis = 0; axis < 3; ++axis) sum[axis]! += this.moments.positions[at + axis]! / 8;
-    }
-    return sum;
   }
 
   private storedRange(): [number, number] {
