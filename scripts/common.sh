@@ -78,8 +78,8 @@ vtk_packages=(python3-vtk9)
 paraview_packages=(paraview-dev python3-paraview libopenmpi-dev liblz4-dev libdouble-conversion-dev
   xvfb xauth)
 
-# Meshes in parts on MPI; any other MPI will do, too.
-mpi_packages=(openmpi-bin libopenmpi-dev)
+# Meshes in parts on MPI, and parallel HDF5 to read them; any other MPI will do, too.
+mpi_packages=(openmpi-bin libopenmpi-dev libhdf5-openmpi-dev)
 # Libraries that cut meshes, and programs that judge parts; what is missing is not asked.
 parts_packages=(libmetis5 libscotch-7.0 openfoam petsc-dev libexodusii-dev libdeal.ii-dev)
 

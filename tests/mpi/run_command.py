@@ -15,7 +15,7 @@ COMMAND, MPIRUN = sys.argv[1:]
 SKIPPED, BAD_USAGE, FILE_PROBLEM = 77, 2, 3
 EXTENSIONS = {"pvtu": ".pvtu", "msh": ".msh", "msh-split": ".msh", "exodus-e": ".e", "mfem": "", "openfoam": ".foam",
               "vtkhdf": ".vtkhdf"}
-OFTEN = ["pvtu", "openfoam", "vtkhdf"]  # with each number of processes
+OFTEN = {"pvtu": (1, 2, 3, 4, 8), "vtkhdf": (1, 2, 3, 4, 8), "openfoam": (1, 3, 8)}  # others with 3 processes
 SAME_VTKHDF = pathlib.Path(__file__).parents[1] / "parts" / "same_vtkhdf.py"
 
 
@@ -47,12 +47,37 @@ def check_vtkhdf(one, many):
     require([path.name for path in many.parent.iterdir()] == ["x.vtkhdf"], "one file is due")
 
 
+def compile_parallel_hdf5(folder):
+    """A program over HDF5's library for the MPI that is here; None without one."""
+    version = subprocess.run([MPIRUN, "--version"], capture_output=True, text=True).stdout
+    package = "hdf5-openmpi" if "Open" in version else "hdf5-mpich"
+    try:
+        flags = run("pkg-config", "--cflags", "--libs", package, folder=folder).stdout.split()
+    except (SystemExit, OSError):
+        print(f"without {package}, parallel HDF5 is not asked")
+        return None
+    program = folder / "parallel_hdf5"
+    run("mpicc", pathlib.Path(__file__).with_name("parallel_hdf5.c"), "-o", program, *flags, folder=folder)
+    return program
+
+
+def check_parallel_hdf5(folder, map_file):
+    """Each rank of parallel HDF5 reads its piece, and writes the same file."""
+    program = compile_parallel_hdf5(folder)
+    for processes in (1, 4) if program else ():
+        run(MPIRUN, "-n", processes, COMMAND, "extract", map_file, "-o", "pieces.vtkhdf", "--ghosts", 1, "--mpi",
+            folder=folder)
+        (folder / "copy").mkdir(exist_ok=True)
+        run(MPIRUN, "-n", processes, program, "pieces.vtkhdf", "copy/x.vtkhdf", folder=folder)
+        check_vtkhdf(folder / "pieces.vtkhdf", folder / "copy/x.vtkhdf")
+
+
 def check_files(folder, map_file):
     """The same files as one process writes, and, glued, the same bytes as the mesh in one piece."""
     run(COMMAND, "extract", map_file, "-o", "whole.vtu", "--quiet", folder=folder)
     for processes in (1, 2, 3, 4, 8):
         for name, extension in EXTENSIONS.items():
-            if name not in OFTEN and processes != 3:
+            if processes not in OFTEN.get(name, (3,)):
                 continue
             ghosts = ["--ghosts", 1] if name in ("vtkhdf", "msh") and processes == 3 else []
             one, many = folder / "one", folder / "many"
@@ -120,6 +145,7 @@ def main():
         map_file = folder / "map.ovm"
         run(COMMAND, "generate", "shell", "-o", map_file, "--cells", 2, "--features", folder=folder)
         check_files(folder, map_file)
+        check_parallel_hdf5(folder, map_file)
         check_failures(folder, map_file)
         check_killed(folder, map_file)
     print("The command works on MPI.")
