@@ -6,7 +6,7 @@
 namespace hexhex::command {
 namespace {
 
-[[noreturn]] void refuse() {
+[[noreturn]] void refuseWithoutViewer() {
   throw Error(ErrorCode::FileUnsupported,
               "This hexhex was built without the viewer page. Install nodejs, npm and zlib1g-dev, "
               "configure with -DHEXHEX_BUILD_VIEWER=ON, and build again; or write a .vtu file and "
@@ -15,20 +15,20 @@ namespace {
 
 }  // namespace
 
-int view(const ViewArguments& /*arguments*/) { refuse(); }
+int view(const ViewArguments& /*arguments*/) { refuseWithoutViewer(); }
 
 void requirePage(const std::string& page) {
-  if (!page.empty()) refuse();
+  if (!page.empty()) refuseWithoutViewer();
 }
 
 void writePage(const HexMesh& /*mesh*/, const std::string& /*page*/, const std::string& /*output*/,
                ViewOptions /*options*/, Context& /*context*/) {
-  refuse();
+  refuseWithoutViewer();
 }
 
 void writePage(const LagrangeMesh& /*mesh*/, const std::string& /*page*/,
                const std::string& /*output*/, ViewOptions /*options*/, Context& /*context*/) {
-  refuse();
+  refuseWithoutViewer();
 }
 
 }  // namespace hexhex::command

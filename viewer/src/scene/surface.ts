@@ -125,10 +125,12 @@ export class Surface {
   private readonly pixelRatio = { value: 1 };
 
   private readonly positions: DataTexture;
+  private drawnQuality: Uint16Array;
 
   constructor(loaded: LoadedMesh, private readonly moments: Moments) {
     const rows = moments.positions.length / 4 / kTextureWidth;
     this.positions = valueTexture(moments.positions, rows, true);
+    this.drawnQuality = moments.quality;
     const positions = { value: this.positions };
     const uniforms = {
       positions,
@@ -176,6 +178,8 @@ export class Surface {
   /** Draws the positions and values that the moments show now. */
   showMoment(): void {
     this.positions.needsUpdate = true;
+    if (this.moments.quality === this.drawnQuality) return;
+    this.drawnQuality = this.moments.quality;
     const { cellValues } = this.material.uniforms;
     (cellValues!.value as DataTexture).dispose();
     cellValues!.value = valuesOf(this.moments);
