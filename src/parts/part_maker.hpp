@@ -5,11 +5,10 @@
 #include <cstdint>
 #include <memory>
 
-#include <parts/counts.hpp>
-
 #include <hexhex/parts.hpp>
 
 #include <igm/prepare.hpp>
+#include <sweep/tet_counts.hpp>
 
 namespace hexhex {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include <parts/counts.hpp>
-
 #include <hexhex/types.hpp>
+
+#include <sweep/tet_counts.hpp>
 
 namespace hexhex {
 

@@ -11,11 +11,10 @@
 #include <span>
 #include <vector>
 
-#include <parts/counts.hpp>
-
 #include <hexhex/parts.hpp>
 
 #include <lattice/swept_line.hpp>
+#include <sweep/tet_counts.hpp>
 
 namespace hexhex {
 

@@ -8,13 +8,13 @@
 #include <span>
 #include <vector>
 
-#include <parts/counts.hpp>
 #include <verify/lattice_places.hpp>
 
 #include <hexhex/check.hpp>
 #include <hexhex/parts.hpp>
 
 #include <sweep/cell_centers.hpp>
+#include <sweep/tet_counts.hpp>
 
 namespace hexhex {
 

@@ -1,11 +1,11 @@
 // The proof of parts passes those of random maps, and nothing else.
 #include <gtest/gtest.h>
-#include <parts/counts.hpp>
 #include <verify/part_proof.hpp>
 #include <verify/proof.hpp>
 
 #include <base/parallel.hpp>
 #include <igm/defects.hpp>
+#include <sweep/tet_counts.hpp>
 
 #include "verify/mutations.hpp"
 
@@ -22,7 +22,7 @@ class Truth {
       : map_(prepare(map)),
         stage_(context_, "verification"),
         expected_(expectationOf(map_, stage_)),
-        counts_(countElements(map_, expected_.cells, stage_)),
+        counts_(countElements(map_, expected_.cells, nullptr, stage_)),
         proof_(map_, expected_, counts_) {}
 
   [[nodiscard]] bool passes(const MeshPart& part) {
@@ -127,7 +127,7 @@ TEST(PartProof, WantsAsManyElementsAsTheMapHas) {
   PreparedMap prepared = prepareMap(map, 1e-2, 1, context, defects, ChartChoice::Unfolded);
   Stage stage(context, "verification");
   Expectation expected = expectationOf(prepared, stage);
-  const ElementCounts counts = countElements(prepared, expected.cells, stage);
+  const ElementCounts counts = countElements(prepared, expected.cells, nullptr, stage);
   EXPECT_NO_THROW(PartProof(prepared, expected, counts));
   ++expected.cells;
   EXPECT_THROW(PartProof(prepared, expected, counts), Error);

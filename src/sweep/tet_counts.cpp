@@ -1,11 +1,10 @@
 #include <string>
 
-#include <parts/counts.hpp>
-
 #include <hexhex/team.hpp>
 
 #include <base/workspaces.hpp>
 #include <sweep/cell_centers.hpp>
+#include <sweep/tet_counts.hpp>
 
 namespace hexhex {
 
