@@ -102,8 +102,7 @@ class OneGmshFile final : public GmshSink {
   void writeTogether(const PartSections& own) {
     const std::array<const std::string*, kSections> mine = {&own.nodes.text(), &own.elements.text(),
                                                             &own.ghosts.text()};
-    std::vector<std::uint64_t> numbers;
-    for (const std::string* section : mine) numbers.push_back(section->size());
+    std::vector<std::uint64_t> numbers = {mine[0]->size(), mine[1]->size(), mine[2]->size()};
     const std::vector<std::uint64_t> packed = own.sums.packed();
     numbers.insert(numbers.end(), packed.begin(), packed.end());
     const GatheredNumbers gathered = team_->gather(numbers);

@@ -176,8 +176,9 @@ class VtkHdfSink final : public PartSink {
   }
 
   void writeTogether(const std::vector<Column>& columns) {
-    std::vector<std::uint64_t> rows;
-    for (const Column& column : columns) rows.push_back(column.array->rows);
+    std::vector<std::uint64_t> rows(columns.size());
+    std::transform(columns.begin(), columns.end(), rows.begin(),
+                   [](const Column& column) { return column.array->rows; });
     const GatheredNumbers ofAll = team_->gather(rows);
     std::vector<std::uint64_t> before(columns.size(), 0);
     std::vector<std::uint64_t> total(columns.size(), 0);
