@@ -98,7 +98,7 @@ std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part,
         if (from >= to) continue;
         partition_.forEachPiece(
             tet, line, from, to - from,
-            [&](std::uint32_t other, std::uint32_t at, std::uint32_t run) {
+            [&, first = first](std::uint32_t other, std::uint32_t at, std::uint32_t run) {
               if (other == part) return;
               workspace.cells.resize(run);
               workspace.emitter.emitOn(tet, line, at, workspace.cells);
