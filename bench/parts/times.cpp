@@ -3,12 +3,15 @@
 //
 //   hexhex_part_times MAP SCALE PARTS...
 //
-// Prints a line of JSON for each number of parts; for 0, the mesh in one piece.
+// Prints a line of JSON for each number of parts; for 0, the mesh in one piece. Seconds, and bytes.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <type_traits>
 
 #include <hexhex/io.hpp>
 #include <hexhex/parts.hpp>
@@ -23,10 +26,7 @@ namespace {
 /// Of the processor: other programs may run beside this one.
 double secondsNow() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-template <class T>
-std::uint64_t bytesOf(const Array<T>& array) {
-  return array.size() * sizeof(T);
-}
+std::uint64_t bytesOf(const auto& array) { return std::span(array).size_bytes(); }
 
 std::uint64_t bytesOf(const MeshPart& part) {
   std::uint64_t bytes = bytesOf(part.mesh.points) + bytesOf(part.mesh.cells) +
@@ -43,8 +43,10 @@ std::uint64_t bytesOf(const MeshPart& part) {
 /// Measures parts, and forgets them.
 class Stopwatch final : public PartSink {
  public:
+  Stopwatch() { next(); }
   void begin(const PartsInfo& /*info*/) override {
     preparation = secondsNow() - begin_;
+    tables = memory_->growth().value_or(0);
     next();
   }
   void part(MeshPart&& part) override {
@@ -63,6 +65,7 @@ class Stopwatch final : public PartSink {
   void end() override {}
 
   double preparation = 0;
+  std::uint64_t tables = 0;  ///< by which preparation made the process grow
   double sum = 0;
   double slowest = 0;
   std::uint64_t mostMemory = 0;  ///< by which a part made the process grow
@@ -75,7 +78,7 @@ class Stopwatch final : public PartSink {
     begin_ = secondsNow();
   }
   std::optional<bench::PeakMemory> memory_;
-  double begin_ = secondsNow();
+  double begin_ = 0;
 };
 
 double secondsOf(const Context& context, std::string_view stage) {
@@ -86,18 +89,42 @@ double secondsOf(const Context& context, std::string_view stage) {
   return seconds;
 }
 
+std::uint64_t bytesOf(const TetMap& map) {
+  return bytesOf(map.points) + bytesOf(map.tets) + bytesOf(map.parameters);
+}
+
+/// What processes tell each other when they share the counting: two numbers for a tet, and one for
+/// each of its vertices, edges and faces with hex vertices.
+std::uint64_t bytesOfCounts(const TetMap& map, const ExtractStatistics& statistics) {
+  const auto& generators = statistics.generators;
+  return (2 * map.tets.size() + generators[0] + generators[1] + generators[2]) *
+         sizeof(std::uint64_t);
+}
+
 void timeParts(const TetMap& map, const ExtractOptions& options, std::uint32_t parts) {
   Context context(1);
   Stopwatch watch;
-  const bench::PeakMemory memory;
-  extractParts(watch, map, options, {parts}, context);
-  std::printf(
-      "{\"parts\": %u, \"preparation\": %.4f, \"counting\": %.4f, \"sum\": %.4f, \"slowest\": "
-      "%.4f, \"memory\": %llu, \"bytes\": %llu, \"cells\": %llu}\n",
-      parts, watch.preparation, secondsOf(context, "sweep"), watch.sum, watch.slowest,
-      static_cast<unsigned long long>(watch.mostMemory),
-      static_cast<unsigned long long>(watch.bytes),
-      static_cast<unsigned long long>(watch.mostCells));
+  ExtractStatistics statistics;
+  extractParts(watch, map, options, {parts}, context, &statistics);
+  const auto print = [](const char* name, auto value) {
+    if constexpr (std::is_floating_point_v<decltype(value)>) {
+      std::printf(", \"%s\": %.4f", name, value);
+    } else {
+      std::printf(", \"%s\": %llu", name, static_cast<unsigned long long>(value));
+    }
+  };
+  std::printf("{\"parts\": %u", parts);
+  print("preparation", watch.preparation);
+  print("counting", secondsOf(context, "sweep"));
+  print("sum", watch.sum);
+  print("slowest", watch.slowest);
+  print("map", bytesOf(map));
+  print("counts", bytesOfCounts(map, statistics));
+  print("tables", watch.tables);
+  print("memory", watch.mostMemory);
+  print("bytes", watch.bytes);
+  print("cells", watch.mostCells);
+  std::printf("}\n");
 }
 
 /// Where a mesh in one piece goes.

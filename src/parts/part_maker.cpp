@@ -348,7 +348,7 @@ std::unique_ptr<PartMaker> makePartMaker(const PartsOfMap& map, const PartOption
   Partition partition;
   {
     Stage stage(context, "partition");
-    partition = makePartition(map.map, counts, options.parts, options.method);
+    partition = makePartition({map.map, counts, map.team}, options.parts, options.method, stage);
   }
   const auto make = [&]<class Id>(Id /*type*/) -> std::unique_ptr<PartMaker> {
     return std::make_unique<Maker<Id>>(map, options, std::move(counts), std::move(partition),

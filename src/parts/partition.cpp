@@ -4,6 +4,8 @@
 #include <parts/graph_cut.hpp>
 #include <parts/partition.hpp>
 
+#include <hexhex/team.hpp>
+
 #include <lattice/wide_int.hpp>
 #include <sweep/cell_centers.hpp>
 #include <sweep/tet_positions.hpp>
@@ -55,8 +57,7 @@ TetBlocks coverWithBlocks(const PreparedMap& map, Index tet, std::uint64_t cells
 }
 
 /// How many cells of the tet each of its blocks has.
-std::vector<std::uint64_t> countCells(const PreparedMap& map, const TetBlocks& blocks) {
-  std::vector<std::uint64_t> counts(blocks.count(), 0);
+void countCells(const PreparedMap& map, const TetBlocks& blocks, std::span<std::uint64_t> counts) {
   std::vector<SweptLine> lines;
   TetRasterizer(map.exact.corners[blocks.tet], map.exact.unit).append(kCenterGrid, lines);
   CenterOwner owner(map.topology, blocks.tet);
@@ -70,56 +71,69 @@ std::vector<std::uint64_t> countCells(const PreparedMap& map, const TetBlocks& b
       count -= run;
     }
   }
-  return counts;
 }
 
-class Elements {
- public:
-  Elements(const PreparedMap& map, const ElementCounts& counts, std::uint64_t most,
-           Partition& partition)
-      : map_(map), counts_(counts), most_(most), partition_(partition) {}
-
-  [[nodiscard]] std::vector<PartitionElement> list() {
-    const std::size_t tets = map_.topology.tetCount();
-    partition_.ofTet.assign(tets, 0);
-    for (std::size_t t = 0; t < tets; ++t) {
-      const auto tet = static_cast<Index>(t);
-      const std::uint64_t cells = counts_.cells[t + 1] - counts_.cells[t];
-      if (cells > most_) {
-        split(tet, cells);
-      } else {
-        elements_.push_back({tet, kNone, 0, cells, middleOf(map_, tet)});
-      }
-    }
-    return std::move(elements_);
+/// Cuts tets into blocks that have more cells than an element may have.
+void makeBlocks(const PartitionInput& input, std::uint64_t most, Partition& partition) {
+  const std::size_t tets = input.map.topology.tetCount();
+  partition.ofTet.assign(tets, 0);
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < tets; ++t) {
+    const std::uint64_t cells = input.counts.cells[t + 1] - input.counts.cells[t];
+    if (cells <= most) continue;
+    partition.ofTet[t] = Partition::kSplit + static_cast<std::uint32_t>(partition.blocks.size());
+    partition.blocks.push_back(coverWithBlocks(input.map, static_cast<Index>(t), cells, most));
+    partition.blocks.back().first = count;
+    count += partition.blocks.back().count();
   }
+  partition.ofBlock.assign(count, kNone);
+  partition.inBlock.assign(count, 0);
+}
 
- private:
-  void split(Index tet, std::uint64_t cellsOfTet) {
-    TetBlocks blocks = coverWithBlocks(map_, tet, cellsOfTet, most_);
-    blocks.first = partition_.ofBlock.size();
-    const auto number = static_cast<Index>(partition_.blocks.size());
-    const GridBox box = gridBox(map_.exact.corners[tet], map_.exact.unit);
-    const TetPositions positions(map_, tet, chooseSweepAxes(box));
-    const std::vector<std::uint64_t> cells = countCells(map_, blocks);
-    for (std::size_t b = 0; b < cells.size(); ++b) {
-      if (cells[b] == 0) continue;
-      GridPoint z = blocks.lowOf(b);
-      for (std::int32_t& coordinate : z) coordinate += blocks.side / 2;
-      elements_.push_back({tet, number, b, cells[b], positions.at(kWholeTet, z)});
+/// Counts the cells of all blocks. The processes of a team share the work.
+void countCells(const PartitionInput& input, Partition& partition, Stage& stage) {
+  const std::vector<TetBlocks>& blocks = partition.blocks;
+  const auto [first, end] = shareOf(input.team, blocks.size());
+  const auto placeOf = [&](std::size_t i) {
+    return i < blocks.size() ? blocks[i].first : partition.inBlock.size();
+  };
+  constexpr std::size_t kFewTets = 8;
+  const std::size_t skipped = first;
+  parallelFor(stage, end - first, kFewTets, [&](std::size_t i) {
+    const TetBlocks& some = blocks[skipped + i];
+    countCells(input.map, some, std::span(partition.inBlock).subspan(some.first, some.count()));
+  });
+  if (input.team == nullptr) return;
+  const auto mine =
+      std::span(partition.inBlock).subspan(placeOf(first), placeOf(end) - placeOf(first));
+  partition.inBlock = input.team->gather(mine).numbers;
+}
+
+std::vector<PartitionElement> listElements(const PartitionInput& input,
+                                           const Partition& partition) {
+  const PreparedMap& map = input.map;
+  const Array<std::uint64_t>& cells = input.counts.cells;
+  std::vector<PartitionElement> elements;
+  for (std::size_t t = 0; t < map.topology.tetCount(); ++t) {
+    const auto tet = static_cast<Index>(t);
+    const TetBlocks* const blocks = partition.blocksOf(tet);
+    if (blocks == nullptr) {
+      elements.push_back({tet, kNone, 0, cells[t + 1] - cells[t], middleOf(map, tet)});
+      continue;
     }
-    partition_.ofTet[tet] = Partition::kSplit + number;
-    partition_.ofBlock.resize(blocks.first + blocks.count(), kNone);
-    partition_.inBlock.insert(partition_.inBlock.end(), cells.begin(), cells.end());
-    partition_.blocks.push_back(blocks);
+    const GridBox box = gridBox(map.exact.corners[tet], map.exact.unit);
+    const TetPositions positions(map, tet, chooseSweepAxes(box));
+    for (std::size_t b = 0; b < blocks->count(); ++b) {
+      const std::uint64_t inBlock = partition.inBlock[blocks->first + b];
+      if (inBlock == 0) continue;
+      GridPoint z = blocks->lowOf(b);
+      for (std::int32_t& coordinate : z) coordinate += blocks->side / 2;
+      const Index number = partition.ofTet[t] - Partition::kSplit;
+      elements.push_back({tet, number, b, inBlock, positions.at(kWholeTet, z)});
+    }
   }
-
-  const PreparedMap& map_;
-  const ElementCounts& counts_;
-  std::uint64_t most_;
-  Partition& partition_;
-  std::vector<PartitionElement> elements_;
-};
+  return elements;
+}
 
 /// Enters what was decided, and lists the tets of each part.
 void assign(const std::vector<PartitionElement>& elements, const std::vector<std::uint32_t>& partOf,
@@ -152,16 +166,17 @@ void assign(const std::vector<PartitionElement>& elements, const std::vector<std
 
 }  // namespace
 
-Partition makePartition(const PreparedMap& map, const ElementCounts& counts, std::uint32_t parts,
-                        PartitionMethod method) {
+Partition makePartition(const PartitionInput& input, std::uint32_t parts, PartitionMethod method,
+                        Stage& stage) {
   Partition partition;
   partition.parts = parts;
-  const std::uint64_t cells = counts.cells.back();
-  const std::uint64_t most = std::max<std::uint64_t>(cells / parts / kElementsPerPart, 1);
-  std::vector<PartitionElement> elements = Elements(map, counts, most, partition).list();
+  const std::uint64_t cells = input.counts.cells.back();
+  makeBlocks(input, std::max<std::uint64_t>(cells / parts / kElementsPerPart, 1), partition);
+  countCells(input, partition, stage);
+  std::vector<PartitionElement> elements = listElements(input, partition);
   const std::vector<std::uint32_t> partOf = method == PartitionMethod::Curve
                                                 ? bisect(elements, parts)
-                                                : cutGraph(map, partition, elements, method);
+                                                : cutGraph(input.map, partition, elements, method);
   assign(elements, partOf, partition);
   return partition;
 }

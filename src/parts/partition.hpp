@@ -113,9 +113,15 @@ class Partition {
   std::vector<Index> tets;
 };
 
+struct PartitionInput {
+  const PreparedMap& map;
+  const ElementCounts& counts;
+  ProcessTeam* team;  ///< if not null, its processes, which all call this, share the work
+};
+
 /// @param method  with a library that is not here it is an InvalidArgument
-[[nodiscard]] Partition makePartition(const PreparedMap& map, const ElementCounts& counts,
-                                      std::uint32_t parts, PartitionMethod method);
+[[nodiscard]] Partition makePartition(const PartitionInput& input, std::uint32_t parts,
+                                      PartitionMethod method, Stage& stage);
 
 /// Cuts elements by their places, with about the same number of cells in each part.
 /// @param elements  are put in another order

@@ -10,20 +10,8 @@ namespace hexhex {
 
 namespace {
 
-/// Consecutive tets.
-struct TetRange {
-  std::size_t first;
-  std::size_t end;
-};
-
-/// Those that a process counts for its team.
-TetRange rangeOf(const ProcessTeam* team, std::size_t tets) {
-  if (team == nullptr) return {0, tets};
-  return {tets * team->rank() / team->size(), tets * (team->rank() + 1) / team->size()};
-}
-
 /// Cells of some tets are counted, not numbered; no other tet has any vertices or cells.
-ElementCounts countSome(const PreparedMap& map, const TetRange& range, Stage& stage) {
+ElementCounts countSome(const PreparedMap& map, const ItemRange& range, Stage& stage) {
   const std::size_t tets = map.topology.tetCount();
   ElementCounts counts;
   counts.cells.assign(tets + 1, 0);
@@ -49,7 +37,7 @@ ElementCounts countSome(const PreparedMap& map, const TetRange& range, Stage& st
 
 /// From what each process of a team has counted to what all tets have. Two numbers are sent for a
 /// tet, and one for each of its simplices with vertices.
-ElementCounts gatherCounts(ProcessTeam& team, const ElementCounts& some, const TetRange& range) {
+ElementCounts gatherCounts(ProcessTeam& team, const ElementCounts& some, const ItemRange& range) {
   constexpr unsigned kByte = 8;
   std::vector<std::uint64_t> mine;
   const VertexNumbers& own = some.vertices;
@@ -93,9 +81,14 @@ ElementCounts gatherCounts(ProcessTeam& team, const ElementCounts& some, const T
 
 }  // namespace
 
+ItemRange shareOf(const ProcessTeam* team, std::size_t items) {
+  if (team == nullptr) return {0, items};
+  return {items * team->rank() / team->size(), items * (team->rank() + 1) / team->size()};
+}
+
 ElementCounts countElements(const PreparedMap& map, std::uint64_t expectedCells, ProcessTeam* team,
                             Stage& stage) {
-  const TetRange range = rangeOf(team, map.topology.tetCount());
+  const ItemRange range = shareOf(team, map.topology.tetCount());
   ElementCounts counts = countSome(map, range, stage);
   if (team != nullptr) counts = gatherCounts(*team, counts, range);
   const std::uint64_t cells = exclusiveScan(std::span(counts.cells));
