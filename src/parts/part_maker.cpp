@@ -345,11 +345,8 @@ std::unique_ptr<PartMaker> makePartMaker(const PartsOfMap& map, const PartOption
   }
   statistics.generators = counts.vertices.generatorCounts;
   statistics.vertices = counts.vertices.vertexCounts;
-  Partition partition;
-  {
-    Stage stage(context, "partition");
-    partition = makePartition({map.map, counts, map.team}, options.parts, options.method, stage);
-  }
+  Partition partition =
+      makePartition({map.map, counts, map.team}, options.parts, options.method, context);
   const auto make = [&]<class Id>(Id /*type*/) -> std::unique_ptr<PartMaker> {
     return std::make_unique<Maker<Id>>(map, options, std::move(counts), std::move(partition),
                                        std::move(charts), context);

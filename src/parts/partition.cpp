@@ -167,12 +167,16 @@ void assign(const std::vector<PartitionElement>& elements, const std::vector<std
 }  // namespace
 
 Partition makePartition(const PartitionInput& input, std::uint32_t parts, PartitionMethod method,
-                        Stage& stage) {
+                        Context& context) {
   Partition partition;
   partition.parts = parts;
   const std::uint64_t cells = input.counts.cells.back();
   makeBlocks(input, std::max<std::uint64_t>(cells / parts / kElementsPerPart, 1), partition);
-  countCells(input, partition, stage);
+  {
+    Stage stage(context, "sweep");
+    countCells(input, partition, stage);
+  }
+  const Stage stage(context, "partition");
   std::vector<PartitionElement> elements = listElements(input, partition);
   const std::vector<std::uint32_t> partOf = method == PartitionMethod::Curve
                                                 ? bisect(elements, parts)

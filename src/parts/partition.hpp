@@ -121,7 +121,7 @@ struct PartitionInput {
 
 /// @param method  with a library that is not here it is an InvalidArgument
 [[nodiscard]] Partition makePartition(const PartitionInput& input, std::uint32_t parts,
-                                      PartitionMethod method, Stage& stage);
+                                      PartitionMethod method, Context& context);
 
 /// Cuts elements by their places, with about the same number of cells in each part.
 /// @param elements  are put in another order
