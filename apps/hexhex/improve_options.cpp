@@ -1,5 +1,7 @@
 #include "improve_options.hpp"
 
+#include <algorithm>
+
 #include <fmt/core.h>
 
 #include "output.hpp"
@@ -52,9 +54,22 @@ void printImprovement(const ImproveReport& report) {
       fmt::format("{:.2g} of the diagonal ({:.2g} from it to the mesh); before {:.2g} ({:.2g})",
                   report.distanceAfter.fromMesh, report.distanceAfter.fromSurface,
                   report.distanceBefore.fromMesh, report.distanceBefore.fromSurface));
+  if (!report.farCells.empty() || report.farCellsBefore > 0) {
+    printLine("far from the surface",
+              fmt::format("{}, by more than {:g} of the diagonal; before {}",
+                          counted(report.farCells.size(), "cell"), kSurfaceTolerance,
+                          report.farCellsBefore));
+  }
   if (report.offSurface > 0) {
     printLine("off the surface", fmt::format("{} vertices, where nothing else made cells positive",
                                              report.offSurface));
+  }
+  // Rounding is no distance.
+  const double limit = 1.00001 * std::max(report.distanceBefore.hausdorff(), kSurfaceTolerance);
+  if (report.distanceAfter.hausdorff() > limit) {
+    printWarning(
+        "The mesh came farther from the surface where cells could not be good nearer to it; "
+        "--report lists what is far from it.");
   }
   if (left > 0) printWarning(refutationAsText(report.after));
 }
@@ -73,6 +88,8 @@ Json improvementAsJson(const ImproveReport& report) {
       {"diagonal", report.diagonal},
       {"distance_before", distance(report.distanceBefore)},
       {"distance_after", distance(report.distanceAfter)},
+      {"far_cells_before", report.farCellsBefore},
+      {"far_cells", report.farCells},
       {"vertices",
        {{"free", report.vertices[0]},
         {"on_patches", report.vertices[1]},

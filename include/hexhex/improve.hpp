@@ -31,13 +31,18 @@ struct ImproveOptions {
 
 /// Between the surface and the boundary of the mesh, in diagonals of the surface's bounding box.
 struct SurfaceDistance {
-  double fromMesh = 0;     ///< largest of boundary vertices and centres of boundary quads
+  double fromMesh = 0;     ///< largest of vertices, centres and middles of edges of boundary quads
   double fromSurface = 0;  ///< largest of vertices and centres of the surface's triangles
 
   [[nodiscard]] double hausdorff() const noexcept {
     return fromMesh > fromSurface ? fromMesh : fromSurface;
   }
 };
+
+/// So far may the boundary of a mesh be from the surface, in diagonals of its bounding box, until
+/// ImproveReport says which cells are farther. What lets it come farther than that, and than it was
+/// anywhere before, is undone, unless cells would become worse.
+inline constexpr double kSurfaceTolerance = 1e-3;
 
 struct ImproveReport {
   Certificate before;
@@ -46,6 +51,8 @@ struct ImproveReport {
   double diagonal = 0;               ///< of the surface's bounding box
   SurfaceDistance distanceBefore;
   SurfaceDistance distanceAfter;
+  std::uint64_t farCellsBefore = 0;         ///< whose boundary is beyond kSurfaceTolerance
+  Array<std::uint64_t> farCells;            ///< those of the end, ascending
   std::array<std::uint64_t, 4> vertices{};  ///< that move freely, on patches, on curves, not at all
   std::uint64_t movedVertices = 0;
   double largestMove = 0;        ///< in diagonals

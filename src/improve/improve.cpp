@@ -151,21 +151,63 @@ struct Subject {
   }
 };
 
+/// The boundary of the mesh, and the surface that it must be near.
+struct Boundary {
+  std::vector<std::uint64_t> faces;  ///< as of boundaryPlaces()
+  Array<Quad> quads;
+  TriangleTree surface{{}};
+
+  [[nodiscard]] BoundaryDistance distanceTo(const VertexPlaces& places, const Array<Vec3>& points,
+                                            double diagonal, Stage& stage) const {
+    return distanceBetween(points, quads, places.surface, surface, diagonal, stage);
+  }
+  /// @param parts  cells of the mesh for each that counts
+  [[nodiscard]] Array<std::uint64_t> cellsBeyond(double limit, const BoundaryDistance& distance,
+                                                 std::size_t parts) const {
+    Array<std::uint64_t> cells;
+    for (const Index q : distance.quadsBeyond(limit)) {
+      const std::uint64_t cell = faces[q] / 8 / parts;
+      if (cells.empty() || cells.back() != cell) cells.push_back(cell);
+    }
+    return cells;
+  }
+};
+
+/// Rounds in which vertices go back where they came too far from the surface.
+constexpr int kReturns = 8;
+/// Of distances that are the same but for rounding.
+constexpr double kSame = 1 + 1e-6;
+
 /// Moves points and certifies. What did not become better in spite of all is put back.
-void movePoints(const Subject& subject, VertexPlaces& places, const ImproveOptions& options,
-                const Array<Vec3>& before, ImproveReport& report, Context& context, Stage& stage) {
+/// @return how far the boundary is in the end
+BoundaryDistance movePoints(const Subject& subject, const Boundary& boundary, VertexPlaces& places,
+                            const ImproveOptions& options, const Array<Vec3>& before,
+                            ImproveReport& report, Context& context, Stage& stage) {
   std::optional<CurvedCells> curved;
   if (subject.curved != nullptr) curved.emplace(*subject.curved);
   const Array<Index> simplices = places.simplex;
+  const auto distance = [&] {
+    return boundary.distanceTo(places, subject.mesh.points, report.diagonal, stage);
+  };
   Sweeps sweeps(subject.mesh, curved ? &*curved : nullptr, places, report.diagonal, stage);
   sweeps.untangle(options.slack * report.diagonal);
   sweeps.raiseWorst(options.target);
-  sweeps.smooth(options.passes, std::max(options.target, report.before.quality.minimum));
+  const double floor = std::max(options.target, report.before.quality.minimum);
+  sweeps.smooth(options.passes, floor);
+  BoundaryDistance after = distance();
+  const double limit = kSame * std::max(report.distanceBefore.hausdorff(), kSurfaceTolerance);
+  for (int i = 0; i < kReturns && after.largest.hausdorff() > limit; ++i) {
+    Array<Quad> far;
+    for (const Index q : after.quadsBeyond(limit)) far.push_back(boundary.quads[q]);
+    sweeps.moveBack(far, before, simplices, floor);
+    after = distance();
+  }
   report.after = subject.certifyNow(context);
   const std::vector<Index> worse = worsened(report);
-  if (worse.empty()) return;
+  if (worse.empty()) return after;
   putBack(sweeps.cellPoints(), worse, before, simplices, subject.mesh.points, places);
   report.after = subject.certifyNow(context);
+  return distance();
 }
 
 void listNotPositive(ImproveReport& report) {
@@ -190,8 +232,10 @@ ImproveReport improveOn(const ImproveOptions& options, Context& context, const S
     HexMesh& mesh = subject.mesh;
     report.before = subject.certifyNow(context);
     Stage stage(context, "moving");
-    const Array<Quad> quads = quadsAt(mesh, boundaryPlaces(mesh, stage));
-    requireOrientation(mesh.points, quads);
+    Boundary boundary;
+    boundary.faces = boundaryPlaces(mesh, stage);
+    boundary.quads = quadsAt(mesh, boundary.faces);
+    requireOrientation(mesh.points, boundary.quads);
     VertexPlaces places = placesOf(mesh, stage);
     if (options.fixBoundary) fixBoundary(places);
     for (const Freedom freedom : places.freedom) {
@@ -199,15 +243,20 @@ ImproveReport improveOn(const ImproveOptions& options, Context& context, const S
     }
     report.diagonal = diagonalOf(places.surface);
     if (report.diagonal < kSmallest) refuseSize("The surface is smaller than 1e-10");
-    const TriangleTree tree = treeOf(places.surface);
-    const auto distance = [&] {
-      return distanceBetween(mesh.points, quads, places.surface, tree, report.diagonal, stage);
-    };
-    report.distanceBefore = distance();
+    boundary.surface = treeOf(places.surface);
+    const std::size_t parts = mesh.cells.size() / report.before.validity.size();
+    {
+      const BoundaryDistance distance =
+          boundary.distanceTo(places, mesh.points, report.diagonal, stage);
+      report.distanceBefore = distance.largest;
+      report.farCellsBefore = boundary.cellsBeyond(kSurfaceTolerance, distance, parts).size();
+    }
     const Array<Vec3> points = mesh.points;
     try {
-      movePoints(subject, places, options, points, report, context, stage);
-      report.distanceAfter = distance();
+      const BoundaryDistance distance =
+          movePoints(subject, boundary, places, options, points, report, context, stage);
+      report.distanceAfter = distance.largest;
+      report.farCells = boundary.cellsBeyond(kSurfaceTolerance, distance, parts);
       reportMoves(points, mesh.points, report);
       reportOff(mesh.points, places, report);
       listNotPositive(report);

@@ -52,6 +52,22 @@ class PointMover {
     return 0;
   }
 
+  /// Moves a point to a place where it was, or a part of the way.
+  /// @param isAccepted  as above
+  template <class Accept>
+  bool moveBack(Index point, const SurfacePlace& target, const Accept& isAccepted) {
+    const SurfacePlace old{points_[point], places_.simplex[point]};
+    take(point, target);
+    if (isAccepted()) return true;
+    for (double share = 0.5; share > 0.1; share *= 0.5) {
+      take(point, old);
+      take(point, stepBy(point, minus(target.point, old.point), share).place);
+      if (isAccepted()) return true;
+    }
+    take(point, old);
+    return false;
+  }
+
  private:
   /// The first share of Newton's step that is tried with low powers. As neighbours follow, sweeps
   /// get far sooner with more than one (successive overrelaxation).

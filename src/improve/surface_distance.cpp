@@ -19,19 +19,41 @@ Vec3 centreOf(std::span<const Vec3> corners) {
   return sum;
 }
 
-/// The largest of distances of samples.
-template <class Samples>
-double largestDistance(const TriangleTree& tree, std::size_t n, const Samples& samplesOf,
-                       Stage& stage) {
-  std::vector<double> largest(blockCount(n, kGrain));
-  parallelBlocks(stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    for (std::size_t i = begin; i < end; ++i) {
-      for (const Vec3& point : samplesOf(i)) {
-        largest[block] = std::max(largest[block], tree.distanceTo(point));
-      }
+std::array<Vec3, 4> cornersOf(const Array<Vec3>& points, const Quad& quad) {
+  return {points[quad[0]], points[quad[1]], points[quad[2]], points[quad[3]]};
+}
+
+/// Four triangles for each.
+TriangleTree treeOf(const Array<Vec3>& points, std::span<const Quad> quads) {
+  std::vector<std::array<Vec3, 3>> triangles;
+  triangles.reserve(4 * quads.size());
+  for (const Quad& quad : quads) {
+    const std::array<Vec3, 4> corners = cornersOf(points, quad);
+    const Vec3 centre = centreOf(corners);
+    for (std::size_t i = 0; i < 4; ++i) {
+      triangles.push_back({corners[i], corners[(i + 1) % 4], centre});
     }
-  });
-  return largest.empty() ? 0 : *std::max_element(largest.begin(), largest.end());
+  }
+  return TriangleTree(triangles);
+}
+
+/// Of vertices, centres and middles of edges; edges are those of two quads in most cases, and one
+/// of these asks.
+double distanceOf(const Array<Vec3>& points, const Quad& quad, const TriangleTree& tree) {
+  const std::array<Vec3, 4> corners = cornersOf(points, quad);
+  double largest = tree.nearest(centreOf(corners)).distance;
+  for (std::size_t i = 0; i < 4; ++i) {
+    largest = std::max(largest, tree.nearest(corners[i]).distance);
+    const std::size_t next = (i + 1) % 4;
+    if (quad[i] > quad[next]) continue;
+    const std::array<Vec3, 2> ends = {corners[i], corners[next]};
+    largest = std::max(largest, tree.nearest(centreOf(ends)).distance);
+  }
+  return largest;
+}
+
+double largestOf(std::span<const double> distances) {
+  return distances.empty() ? 0 : *std::max_element(distances.begin(), distances.end());
 }
 
 }  // namespace
@@ -56,45 +78,48 @@ TriangleTree treeOf(const ReferenceSurface& surface) {
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     triangles[t] = surface.triangle(static_cast<Index>(t));
   }
-  return TriangleTree(std::move(triangles));
+  return TriangleTree(triangles);
 }
 
-SurfaceDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad> quads,
-                                const ReferenceSurface& surface, const TriangleTree& tree,
-                                double diagonal, Stage& stage) {
-  const auto cornersOf = [&](std::size_t q) {
-    return std::array<Vec3, 4>{points[quads[q][0]], points[quads[q][1]], points[quads[q][2]],
-                               points[quads[q][3]]};
-  };
-  SurfaceDistance distance;
-  // Each vertex is the first of about one quad, but not each of any.
-  distance.fromMesh = largestDistance(
-      tree, quads.size(),
-      [&](std::size_t q) {
-        const std::array<Vec3, 4> corners = cornersOf(q);
-        return std::array<Vec3, 5>{corners[0], corners[1], corners[2], corners[3],
-                                   centreOf(corners)};
-      },
-      stage);
-  std::vector<std::array<Vec3, 3>> triangles;
-  triangles.reserve(4 * quads.size());
-  for (std::size_t q = 0; q < quads.size(); ++q) {
-    const std::array<Vec3, 4> corners = cornersOf(q);
-    const Vec3 centre = centreOf(corners);
-    for (std::size_t i = 0; i < 4; ++i) {
-      triangles.push_back({corners[i], corners[(i + 1) % 4], centre});
-    }
+std::vector<Index> BoundaryDistance::quadsBeyond(double limit) const {
+  std::vector<Index> quads;
+  for (Index q = 0; q < ofQuads.size(); ++q) {
+    if (ofQuads[q] > limit) quads.push_back(q);
   }
-  const TriangleTree ofMesh(std::move(triangles));
-  distance.fromSurface = largestDistance(
-      ofMesh, surface.triangleCount(),
-      [&](std::size_t t) {
-        const std::array<Vec3, 3> corners = surface.triangle(static_cast<Index>(t));
-        return std::array<Vec3, 4>{corners[0], corners[1], corners[2], centreOf(corners)};
-      },
-      stage);
-  distance.fromMesh /= diagonal;
-  distance.fromSurface /= diagonal;
+  return quads;
+}
+
+BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad> quads,
+                                 const ReferenceSurface& surface, const TriangleTree& tree,
+                                 double diagonal, Stage& stage) {
+  BoundaryDistance distance;
+  distance.ofQuads.resize(quads.size());
+  parallelFor(stage, quads.size(), kGrain, [&](std::size_t q) {
+    distance.ofQuads[q] = distanceOf(points, quads[q], tree) / diagonal;
+  });
+  distance.largest.fromMesh = largestOf(distance.ofQuads);
+
+  struct FromSurface {
+    std::size_t quad;
+    double distance;
+  };
+  const TriangleTree ofMesh = treeOf(points, quads);
+  const std::vector<FromSurface> found = collectFromBlocks<FromSurface>(
+      stage, surface.triangleCount(), kGrain,
+      [&](std::size_t begin, std::size_t end, std::vector<FromSurface>& list) {
+        for (std::size_t t = begin; t < end; ++t) {
+          const std::array<Vec3, 3> corners = surface.triangle(static_cast<Index>(t));
+          for (const Vec3& point : {corners[0], corners[1], corners[2], centreOf(corners)}) {
+            const TriangleTree::Nearest nearest = ofMesh.nearest(point);
+            list.push_back({nearest.triangle / 4, nearest.distance / diagonal});
+          }
+        }
+      });
+  for (const FromSurface& sample : found) {
+    double& ofQuad = distance.ofQuads[sample.quad];
+    ofQuad = std::max(ofQuad, sample.distance);
+    distance.largest.fromSurface = std::max(distance.largest.fromSurface, sample.distance);
+  }
   return distance;
 }
 

@@ -186,4 +186,19 @@ void Sweeps::smooth(int passes, double floor) {
   }
 }
 
+void Sweeps::moveBack(std::span<const Quad> quads, const Array<Vec3>& before,
+                      const Array<Index>& simplicesBefore, double floor) {
+  std::vector<Index> vertices;
+  for (const Quad& quad : quads) {
+    for (const Index v : quad) {
+      if (mesh_.points[v] != before[v]) vertices.push_back(v);
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  sweep(vertices, 0, [&](VertexMover& mover, Index v) {
+    mover.moveBack(v, {before[v], simplicesBefore[v]}, floor);
+  });
+}
+
 }  // namespace hexhex

@@ -41,6 +41,12 @@ class Sweeps {
   /// Moves all vertices, so many times. Scaled Jacobians below the floor do not fall.
   void smooth(int passes, double floor);
 
+  /// Moves vertices of quads of the boundary towards where they were, as far as no cell becomes
+  /// worse than smooth() would leave it.
+  /// @param before, simplicesBefore  of all vertices
+  void moveBack(std::span<const Quad> quads, const Array<Vec3>& before,
+                const Array<Index>& simplicesBefore, double floor);
+
   /// The cells, with their points.
   [[nodiscard]] CellPoints cellPoints() const;
 

@@ -25,8 +25,11 @@ double TriangleTree::Box::squaredDistance(const Vec3& point) const noexcept {
   return sum;
 }
 
-TriangleTree::TriangleTree(std::vector<std::array<Vec3, 3>> triangles)
-    : triangles_(std::move(triangles)) {
+TriangleTree::TriangleTree(std::span<const std::array<Vec3, 3>> triangles) {
+  triangles_.reserve(triangles.size());
+  for (const std::array<Vec3, 3>& corners : triangles) {
+    triangles_.push_back({corners, triangles_.size()});
+  }
   std::size_t nodes = 1;
   for (std::size_t leaves = 1; leaves * kLeaf < triangles_.size(); leaves *= 2) nodes += 2 * leaves;
   boxes_.resize(nodes);
@@ -36,7 +39,7 @@ TriangleTree::TriangleTree(std::vector<std::array<Vec3, 3>> triangles)
 void TriangleTree::build(std::size_t node, std::size_t begin, std::size_t end) {
   Box box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
   for (std::size_t t = begin; t < end; ++t) {
-    for (const Vec3& corner : triangles_[t]) {
+    for (const Vec3& corner : triangles_[t].corners) {
       for (std::size_t k = 0; k < 3; ++k) {
         box.low[k] = std::min(box.low[k], corner[k]);
         box.high[k] = std::max(box.high[k], corner[k]);
@@ -50,14 +53,15 @@ void TriangleTree::build(std::size_t node, std::size_t begin, std::size_t end) {
   const auto at = [this](std::size_t i) {
     return triangles_.begin() + static_cast<std::ptrdiff_t>(i);
   };
-  std::nth_element(at(begin), at(middle), at(end), [axis](const auto& a, const auto& b) {
+  std::nth_element(at(begin), at(middle), at(end), [axis](const Triangle& s, const Triangle& t) {
+    const auto& [a, b] = std::pair(s.corners, t.corners);
     return a[0][axis] + a[1][axis] + a[2][axis] < b[0][axis] + b[1][axis] + b[2][axis];
   });
   build(2 * node + 1, begin, middle);
   build(2 * node + 2, middle, end);
 }
 
-double TriangleTree::distanceTo(const Vec3& point) const {
+TriangleTree::Nearest TriangleTree::nearest(const Vec3& point) const {
   struct Range {
     std::size_t node;
     std::size_t begin;
@@ -65,6 +69,7 @@ double TriangleTree::distanceTo(const Vec3& point) const {
     double squared;
   };
   double best = kFar;
+  std::size_t triangle = 0;
   std::vector<Range> open = {{0, 0, triangles_.size(), boxes_[0].squaredDistance(point)}};
   while (!open.empty()) {
     const Range range = open.back();
@@ -72,8 +77,10 @@ double TriangleTree::distanceTo(const Vec3& point) const {
     if (range.squared >= best) continue;
     if (2 * range.node + 2 >= boxes_.size()) {
       for (std::size_t t = range.begin; t < range.end; ++t) {
-        const Vec3 d = minus(nearestOf(triangles_[t], point), point);
-        best = std::min(best, dot(d, d));
+        const Vec3 d = minus(nearestOf(triangles_[t].corners, point), point);
+        if (dot(d, d) >= best) continue;
+        best = dot(d, d);
+        triangle = triangles_[t].number;
       }
       continue;
     }
@@ -85,7 +92,7 @@ double TriangleTree::distanceTo(const Vec3& point) const {
     open.push_back(low);
     open.push_back(high);
   }
-  return std::sqrt(best);
+  return {std::sqrt(best), triangle};
 }
 
 }  // namespace hexhex

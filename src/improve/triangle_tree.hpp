@@ -11,10 +11,13 @@ namespace hexhex {
 
 class TriangleTree {
  public:
-  explicit TriangleTree(std::vector<std::array<Vec3, 3>> triangles);
+  explicit TriangleTree(std::span<const std::array<Vec3, 3>> triangles);
 
-  /// @return the distance to the nearest triangle; infinity without triangles
-  [[nodiscard]] double distanceTo(const Vec3& point) const;
+  struct Nearest {
+    double distance = 0;  ///< infinity without triangles
+    std::size_t triangle = 0;
+  };
+  [[nodiscard]] Nearest nearest(const Vec3& point) const;
 
  private:
   struct Box {
@@ -24,8 +27,12 @@ class TriangleTree {
   };
   void build(std::size_t node, std::size_t begin, std::size_t end);
 
-  std::vector<std::array<Vec3, 3>> triangles_;  ///< in order of the leaves
-  std::vector<Box> boxes_;  ///< of a complete binary tree: children 2 i + 1, 2 i + 2
+  struct Triangle {
+    std::array<Vec3, 3> corners;
+    std::size_t number;
+  };
+  std::vector<Triangle> triangles_;  ///< in order of the leaves
+  std::vector<Box> boxes_;           ///< of a complete binary tree: children 2 i + 1, 2 i + 2
 };
 
 }  // namespace hexhex

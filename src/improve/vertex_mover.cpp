@@ -69,12 +69,21 @@ double VertexMover::untangle(Index vertex) {
          sizeAt(vertex);
 }
 
+double VertexMover::leastQualityAt(Index vertex) const {
+  double least = 1;
+  for (const Index cell : all_.cells.around(vertex)) {
+    least = std::min(least, all_.qualities[cell]);
+  }
+  return least;
+}
+
+void VertexMover::keepMeasured() {
+  for (const auto& [cell, quality] : measured_) all_.qualities[cell] = quality;
+}
+
 double VertexMover::smooth(Index vertex, int power, double floor) {
   if (!mover_.canMove(vertex)) return 0;
-  double before = 1;
-  for (const Index cell : all_.cells.around(vertex)) {
-    before = std::min(before, all_.qualities[cell]);
-  }
+  const double before = leastQualityAt(vertex);
   if (!isCertified(before)) return 0;
   collect(vertex, false);
   const double least = std::min(before, floor);
@@ -84,8 +93,16 @@ double VertexMover::smooth(Index vertex, int power, double floor) {
     return measureAround(vertex) >= least && (!bounded || all_.chordError.at(vertex) <= farthest);
   });
   if (moved == 0) return 0;
-  for (const auto& [cell, quality] : measured_) all_.qualities[cell] = quality;
+  keepMeasured();
   return moved / sizeAt(vertex);
+}
+
+void VertexMover::moveBack(Index vertex, const SurfacePlace& place, double floor) {
+  const double least = std::min(leastQualityAt(vertex), floor);
+  if (!isCertified(least)) return;
+  if (mover_.moveBack(vertex, place, [&] { return measureAround(vertex) >= least; })) {
+    keepMeasured();
+  }
 }
 
 }  // namespace hexhex

@@ -45,9 +45,15 @@ class VertexMover {
   /// @return as untangle()
   double smooth(Index vertex, int power, double floor);
 
+  /// Moves a vertex of the boundary towards a place where it was, if the cells around stay as good
+  /// as smooth() would leave them.
+  void moveBack(Index vertex, const SurfacePlace& place, double floor);
+
  private:
   void collect(Index vertex, bool bezier);
   [[nodiscard]] MovingCell straightCell(Index vertex, Index cell) const;
+  [[nodiscard]] double leastQualityAt(Index vertex) const;
+  void keepMeasured();
   /// Takes the qualities of the cells around a vertex that has moved.
   /// @return the least
   double measureAround(Index vertex);

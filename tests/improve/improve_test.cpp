@@ -49,6 +49,8 @@ void expectNoWorse(const ImproveReport& report) {
     EXPECT_EQ(report.after.validity[c], Validity::Positive) << "cell " << c;
   }
   EXPECT_EQ(report.notPositive.size(), report.after.refuted + report.after.undecided);
+  EXPECT_EQ(report.farCells.empty(), report.distanceAfter.hausdorff() <= kSurfaceTolerance);
+  EXPECT_EQ(report.farCellsBefore == 0, report.distanceBefore.hausdorff() <= kSurfaceTolerance);
 }
 
 /// Moves all vertices by up to so much; those of the boundary of [0, n]^3 within it, and by no more
@@ -264,6 +266,23 @@ TEST(Improve, MendsSamplesOfAllKinds) {
     mended += report.after.allPositive() ? 1 : 0;
   }
   EXPECT_EQ(mended, bad);
+}
+
+/// Vertices go back where the boundary came farther; otherwise, these would be 1.4 to 2.2 times as
+/// far as before.
+TEST(Improve, ComesNoFartherFromCurvedSurfaces) {
+  for (const SampleKind kind :
+       {SampleKind::Sphere, SampleKind::Cylinder, SampleKind::Shell, SampleKind::Torus}) {
+    const TetMap map = generateSample(kind, {.cells = 1, .jitter = 0.3}).map;
+    HexMesh mesh = extracted(map, 2);
+    const Array<Vec3> before = mesh.points;
+    const ImproveReport report = improvedOn(mesh, map);
+    expectNoWorse(report);
+    EXPECT_GT(report.distanceBefore.hausdorff(), kSurfaceTolerance);
+    EXPECT_LE(report.distanceAfter.hausdorff(), 1.00001 * report.distanceBefore.hausdorff());
+    EXPECT_GT(report.movedVertices, before.size() / 2);
+    EXPECT_FALSE(report.farCells.empty());
+  }
 }
 
 TEST(Improve, MendsMeshesOfRealMaps) {

@@ -56,10 +56,10 @@ TEST(Surface, ATreeFindsWhatASearchFinds) {
       point[0] = 3 * point[0] - 1;
       double least = std::numeric_limits<double>::infinity();
       for (const auto& t : triangles) least = std::min(least, distance(nearestOf(t, point), point));
-      EXPECT_EQ(tree.distanceTo(point), least);
+      EXPECT_EQ(tree.nearest(point).distance, least);
     }
   }
-  EXPECT_EQ(TriangleTree({}).distanceTo({}), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(TriangleTree({}).nearest({}).distance, std::numeric_limits<double>::infinity());
 }
 
 TEST(Surface, AWalkStaysOnItsPatchAndItsCurve) {
