@@ -102,12 +102,16 @@ class TagRows {
   }
   /// Leaves those of all processes in the first one, and none in others.
   void gather(ProcessTeam& team) {
-    const auto* const mine = reinterpret_cast<const std::uint64_t*>(rows_.data());
-    const GatheredNumbers all = team.gather(std::span(mine, n * rows_.size()));
-    rows_.assign(team.rank() == 0 ? all.numbers.size() / n : 0, {});
-    for (std::size_t i = 0; i < n * rows_.size(); ++i) {
-      rows_[i / n][i % n] = static_cast<std::int64_t>(all.numbers[i]);
-    }
+    const std::vector<std::array<std::int64_t, n>> own = std::move(rows_);
+    rows_.clear();
+    const auto* const mine = reinterpret_cast<const std::uint64_t*>(own.data());
+    team.showAll(std::span(mine, n * own.size()),
+                 [&](std::uint32_t /*rank*/, std::span<const std::uint64_t> theirs) {
+                   if (team.rank() != 0) return;
+                   for (; !theirs.empty(); theirs = theirs.subspan(n)) {
+                     std::copy_n(theirs.begin(), n, rows_.emplace_back().begin());
+                   }
+                 });
   }
   void write(const HdfFile& file, hid_t grid, std::string_view name) {
     if (rows_.empty()) return;
