@@ -1,5 +1,4 @@
 // `hexhex extract`: from a map to a verified hexahedral mesh.
-#include <array>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -22,10 +21,10 @@
 
 #include "command.hpp"
 #include "exit_codes.hpp"
+#include "extract_arguments.hpp"
 #include "extract_parts.hpp"
 #include "extract_stream.hpp"
 #include "extract_text.hpp"
-#include "improve_options.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
@@ -35,156 +34,14 @@
 #include "report.hpp"
 #include "shared_options.hpp"
 #include "started_team.hpp"
-#include "suggestions.hpp"
 #include "verification.hpp"
 #include "view_page.hpp"
 
 namespace hexhex::command {
 namespace {
 
-struct Arguments {
-  MapSource input;
-  std::string output;
-  OutputChoice choice;
-  std::string report;
-  std::string arcs;
-  std::string patches;
-  std::string page;  ///< empty: none
-  int order = 1;
-  ExtractOptions options;
-  bool quantize = false;
-  QuantizeOptions quantizeOptions;
-  bool improve = false;
-  ImproveOptions improveOptions;
-  double patchAngle = WriteOptions{}.patchAngle;
-  RunOptions run;
-  bool stream = false;
-  PartsChoice parts;
-  ProcessTeam* team = nullptr;  ///< of which this is one process
-  bool partial = false;
-  bool noVerify = false;
-};
-
-void requireAllDifferent(const Arguments& arguments) {
-  std::vector<std::filesystem::path> files = arguments.input.files();
-  for (const std::string& output :
-       {arguments.output, arguments.report, arguments.arcs, arguments.patches, arguments.page}) {
-    for (const std::filesystem::path& file : files) {
-      if (!output.empty()) requireDifferent(file, output);
-    }
-    if (!output.empty()) files.emplace_back(output);
-  }
-}
-
-void requireCurvedOutputs(const Arguments& arguments) {
-  const bool piecewise = !arguments.arcs.empty() || !arguments.patches.empty();
-  if (arguments.stream && (piecewise || arguments.order > 1)) {
-    throw Error(ErrorCode::InvalidArgument,
-                "Curved meshes are made as a whole. Leave out --stream, or --arcs, --patches and "
-                "--order.");
-  }
-  if (piecewise && arguments.order > 1) {
-    throw Error(ErrorCode::InvalidArgument,
-                "Arcs and patches belong to meshes of order 1. Leave out --order, or --arcs and "
-                "--patches.");
-  }
-  if (arguments.order > 1 && (!arguments.choice.format.empty() || arguments.choice.compress)) {
-    throw Error(ErrorCode::InvalidArgument,
-                "The extension alone decides on the format of a mesh of higher order. Leave out "
-                "--format and --compress.");
-  }
-  if (!arguments.arcs.empty()) {
-    requireArcFormat(arguments.arcs);
-    requireWritable(arguments.arcs);
-  }
-  if (!arguments.patches.empty()) {
-    requirePatchFormat(arguments.patches);
-    requireWritable(arguments.patches);
-  }
-}
-
-/// Parts are straight cells of a valid map.
-void requirePartsOutputs(const Arguments& arguments) {
-  if (arguments.options.engine != Engine::Atlas || arguments.order > 1 || arguments.partial ||
-      !arguments.arcs.empty() || !arguments.patches.empty()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--parts makes straight cells with the engine atlas, of valid maps. Leave out "
-                "--parts, or --engine, --order, --arcs, --patches and --partial.");
-  }
-  if (arguments.choice.compress) {
-    throw Error(ErrorCode::InvalidArgument,
-                "Files of parts are not compressed. Leave out --parts or --compress.");
-  }
-  requirePartFormat(arguments.output, arguments.choice.options(), arguments.team != nullptr);
-}
-
-/// Vertices move in a mesh that is whole.
-void requireImprovable(const Arguments& arguments) {
-  if (!arguments.improve) return;
-  if (arguments.stream || arguments.partial || arguments.parts.parts) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--improve needs the whole mesh in memory. Leave it out, or --stream, "
-                "--parts and --partial; `hexhex improve` takes a file.");
-  }
-  if (arguments.order > 3 || !arguments.arcs.empty() || !arguments.patches.empty()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--improve moves nodes of cells up to order 3, away from the map that arcs and "
-                "patches follow. Leave out --improve, or --arcs and --patches, or lower --order.");
-  }
-}
-
-/// A page shows a mesh that is whole and valid.
-void requirePageOutput(const Arguments& arguments) {
-  if (arguments.page.empty()) return;
-  if (arguments.stream || arguments.partial || arguments.parts.parts) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--view shows a whole mesh that was in memory. Leave it out, or --stream, --parts "
-                "and --partial; `hexhex view` takes a file.");
-  }
-  requirePage(arguments.page);
-}
-
-/// What is left of a map beyond repair is a straight mesh in memory.
-void requirePartialOutputs(const Arguments& arguments) {
-  if (!arguments.partial) return;
-  if (arguments.stream) {
-    throw Error(
-        ErrorCode::InvalidArgument,
-        "--partial needs the whole mesh in memory. Leave out one of --stream and --partial.");
-  }
-  if (arguments.order > 1 || !arguments.arcs.empty() || !arguments.patches.empty()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--partial writes straight cells only: beside holes, there is no map for curved "
-                "ones to follow. Leave out --partial, or --order, --arcs and --patches.");
-  }
-}
-
-/// Everything that can be known to fail before long work.
-void requireOutputs(const Arguments& arguments) {
-  requireAllDifferent(arguments);
-  requireCurvedOutputs(arguments);
-  requirePartialOutputs(arguments);
-  requireImprovable(arguments);
-  requirePageOutput(arguments);
-  if (!arguments.parts.parts && arguments.parts.isOfParts()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--ghosts and --partition say how a mesh is cut. Leave them out, or add --parts.");
-  }
-  if (arguments.parts.parts) {
-    requirePartsOutputs(arguments);
-  } else if (arguments.order > 1) {
-    requireLagrangeFormat(arguments.output);
-  } else {
-    requireHexMeshFormat(arguments.output, arguments.choice.options());
-  }
-  requireWritable(arguments.output);
-  if (arguments.stream && !arguments.parts.parts) {
-    requireStreamable(arguments.output, arguments.choice.options(), arguments.options);
-  }
-}
-
 /// What extracts a mesh and then verifies it.
-Extractor prepareExtractor(const Arguments& arguments, const TetMap& map, LongRun& longRun) {
+Extractor prepareExtractor(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun) {
   const ExtractOptions& options = arguments.options;
   // Where there is no such number, the extraction says so.
   const bool fits = options.scale <= std::numeric_limits<int>::max() / arguments.order;
@@ -195,7 +52,7 @@ Extractor prepareExtractor(const Arguments& arguments, const TetMap& map, LongRu
   });
 }
 
-void verifyMesh(const Arguments& arguments, Extractor& extractor, const HexMesh& mesh,
+void verifyMesh(const ExtractArguments& arguments, Extractor& extractor, const HexMesh& mesh,
                 LongRun& longRun, ExtractionRecord& record) {
   if (arguments.noVerify) return;
   record.verification = longRun.part("verification", [&] {
@@ -206,7 +63,7 @@ void verifyMesh(const Arguments& arguments, Extractor& extractor, const HexMesh&
 }
 
 /// Extracts the mesh with the arcs and patches that are asked for.
-PiecewiseLinearMesh extractWithCurves(const Arguments& arguments, Extractor& extractor,
+PiecewiseLinearMesh extractWithCurves(const ExtractArguments& arguments, Extractor& extractor,
                                       Context& context, ExtractionRecord& record) {
   if (arguments.arcs.empty() && arguments.patches.empty()) {
     return {extractor.extract(arguments.options, context, &record.statistics), {}, {}};
@@ -218,7 +75,7 @@ PiecewiseLinearMesh extractWithCurves(const Arguments& arguments, Extractor& ext
 
 /// @param mesh  straight or curved
 /// @return where its points were before; empty without an improvement, and if no page shows them
-Array<Vec3> improveOrCertify(const Arguments& arguments, const TetMap& map, auto& mesh,
+Array<Vec3> improveOrCertify(const ExtractArguments& arguments, const TetMap& map, auto& mesh,
                              LongRun& longRun, ExtractionRecord& record) {
   Context& context = longRun.context();
   if (!arguments.improve) {
@@ -234,7 +91,7 @@ Array<Vec3> improveOrCertify(const Arguments& arguments, const TetMap& map, auto
 }
 
 /// @param mesh  straight or curved  @param before  as improveOrCertify() returned it
-void writeMeshPage(const Arguments& arguments, const auto& mesh, const Array<Vec3>& before,
+void writeMeshPage(const ExtractArguments& arguments, const auto& mesh, const Array<Vec3>& before,
                    LongRun& longRun, const ExtractionRecord& record) {
   if (arguments.page.empty()) return;
   ViewOptions options;
@@ -248,7 +105,7 @@ void writeMeshPage(const Arguments& arguments, const auto& mesh, const Array<Vec
 }
 
 /// Extracts, verifies and writes a mesh in memory.
-void extractWhole(const Arguments& arguments, const TetMap& map, LongRun& longRun,
+void extractWhole(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                   ExtractionRecord& record) {
   Context& context = longRun.context();
   std::optional<Extractor> extractor = prepareExtractor(arguments, map, longRun);
@@ -282,7 +139,7 @@ void extractWhole(const Arguments& arguments, const TetMap& map, LongRun& longRu
 }
 
 /// Cells of higher order.
-void extractCurved(const Arguments& arguments, const TetMap& map, LongRun& longRun,
+void extractCurved(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                    ExtractionRecord& record) {
   Context& context = longRun.context();
   std::optional<Extractor> extractor = prepareExtractor(arguments, map, longRun);
@@ -306,7 +163,7 @@ void extractCurved(const Arguments& arguments, const TetMap& map, LongRun& longR
 }
 
 /// The same in pieces, verified after it was written.
-void extractInPieces(const Arguments& arguments, const TetMap& map, LongRun& longRun,
+void extractInPieces(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                      ExtractionRecord& record) {
   StreamedMesh mesh =
       extractStreamed(map, arguments.output, arguments.choice.options(), arguments.options,
@@ -318,7 +175,7 @@ void extractInPieces(const Arguments& arguments, const TetMap& map, LongRun& lon
 }
 
 /// The same in parts.
-void extractAllParts(const Arguments& arguments, const TetMap& map, LongRun& longRun,
+void extractAllParts(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                      ExtractionRecord& record) {
   WriteOptions options = arguments.choice.options();
   options.patchAngle = arguments.patchAngle;
@@ -333,7 +190,7 @@ void extractAllParts(const Arguments& arguments, const TetMap& map, LongRun& lon
 }
 
 /// What is left of a map beyond repair. Always an invalid map, by its exit code.
-int extractWhatIsValid(const Arguments& arguments, const TetMap& map, const Error& problem,
+int extractWhatIsValid(const ExtractArguments& arguments, const TetMap& map, const Error& problem,
                        LongRun& longRun, Report& report) {
   Context& context = longRun.context();
   const PartialMesh partial =
@@ -355,7 +212,7 @@ int extractWhatIsValid(const Arguments& arguments, const TetMap& map, const Erro
 }
 
 /// Says of a map that is not integer, but seamless, what to do.
-void adviseQuantization(const Arguments& arguments, const TetMap& map, const Error& error,
+void adviseQuantization(const ExtractArguments& arguments, const TetMap& map, const Error& error,
                         Context& context) {
   if (arguments.quantize || !canQuantize() || !mayBeSeamless(error.code())) return;
   const std::string advice = adviceFor(examineSeamless(map, context), arguments.input);
@@ -364,7 +221,7 @@ void adviseQuantization(const Arguments& arguments, const TetMap& map, const Err
 
 /// The functions of the library that a run calls; weights are their seconds for a mesh of seven
 /// million cells.
-std::vector<WorkStep> stepsOf(const Arguments& arguments) {
+std::vector<WorkStep> stepsOf(const ExtractArguments& arguments) {
   std::vector<WorkStep> steps = {{"readMap", 0.05}, {"readMapPair", 0.05}};
   if (arguments.quantize) steps.push_back({"quantize", 20});
   if (arguments.parts.parts) {
@@ -389,7 +246,8 @@ std::vector<WorkStep> stepsOf(const Arguments& arguments) {
   return steps;
 }
 
-TetMap readAndQuantize(const Arguments& arguments, LongRun& longRun, ExtractionRecord& record) {
+TetMap readAndQuantize(const ExtractArguments& arguments, LongRun& longRun,
+                       ExtractionRecord& record) {
   TetMap map = longRun.part("reading", [&] { return readMap(arguments.input, longRun.context()); });
   if (!arguments.quantize) return map;
   QuantizedMap quantized = longRun.part("quantization", [&] {
@@ -400,7 +258,7 @@ TetMap readAndQuantize(const Arguments& arguments, LongRun& longRun, ExtractionR
 }
 
 /// In a team, the first process reads, and all others get what it has.
-TetMap readForTeam(const Arguments& arguments, LongRun& longRun, ExtractionRecord& record) {
+TetMap readForTeam(const ExtractArguments& arguments, LongRun& longRun, ExtractionRecord& record) {
   if (arguments.team == nullptr) return readAndQuantize(arguments, longRun, record);
   const bool reads = arguments.team->rank() == 0;
   TetMap read = reads ? readAndQuantize(arguments, longRun, record) : TetMap{};
@@ -409,7 +267,7 @@ TetMap readForTeam(const Arguments& arguments, LongRun& longRun, ExtractionRecor
 }
 
 /// What is known beside what the steps have noted.
-void fillRecord(const Arguments& arguments, const TetMap& map, LongRun& longRun,
+void fillRecord(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                 ExtractionRecord& record) {
   std::error_code unknown;  // the size of a pipe
   record.input.file = arguments.input.description();
@@ -430,7 +288,7 @@ void fillRecord(const Arguments& arguments, const TetMap& map, LongRun& longRun,
   record.partsAsText = longRun.partsAsText();
 }
 
-int extractMesh(const Arguments& arguments) {
+int extractMesh(const ExtractArguments& arguments) {
   LongRun longRun(arguments.run, stepsOf(arguments));
   requireOutputs(arguments);
   Report report(arguments.report);
@@ -459,10 +317,10 @@ int extractMesh(const Arguments& arguments) {
   return kSuccess;
 }
 
-int run(const Arguments& given) {
+int run(const ExtractArguments& given) {
   if (!isInTeam(given.parts.mpi)) return extractMesh(given);
   const StartedTeam started;
-  Arguments arguments = given;
+  ExtractArguments arguments = given;
   arguments.team = &started.team();
   if (!arguments.parts.parts) arguments.parts.parts = arguments.team->size();
   if (arguments.run.threads == 0) arguments.run.threads = threadsInTeam();
@@ -481,106 +339,12 @@ int run(const Arguments& given) {
   return kSuccess;
 }
 
-/// What happens to maps that are not valid.
-void addRepairOptions(CLI::App& parser, Arguments& arguments) {
-  addChoice<RepairMode>(parser, "--repair", arguments.options.repair,
-                        {{"auto", RepairMode::Auto}, {"off", RepairMode::Off}},
-                        "auto: repair flipped and flat tets of the map first, with a\n"
-                        "notice; off: they are an error. Valid maps pay nothing")
-      ->option_text("MODE [auto]");
-  addRound(parser, arguments.options.round);
-  parser.add_flag("--partial", arguments.partial,
-                  "Write what can be extracted of a map beyond repair, cells\n"
-                  "at holes as region 1, and list the holes; exit code 1");
-}
-
-/// After the extraction.
-void addImprovement(CLI::App& parser, Arguments& arguments) {
-  CLI::Option* const flag =
-      parser.add_flag("--improve", arguments.improve,
-                      "Move vertices after the verification: all cells become\n"
-                      "positive, and better (`hexhex improve --help`)");
-  for (CLI::Option* const option : addImproveOptions(parser, arguments.improveOptions)) {
-    option->needs(flag);
-  }
-}
-
-/// Options that change how a mesh is made, but not the mesh.
-void addMethod(CLI::App& parser, Arguments& arguments) {
-  addChoice<Engine>(parser, "--engine", arguments.options.engine,
-                    {{"atlas", Engine::Atlas}, {"propeller", Engine::Propeller}},
-                    "atlas: reads most cells off large charts of the map;\n"
-                    "propeller: the algorithm of the paper, slower. Both give\n"
-                    "the same mesh, bit for bit")
-      ->option_text("ENGINE [atlas]");
-  parser
-      .add_option("--epsilon", arguments.options.epsilon,
-                  "Enlargement of tets while the propeller engine searches\n"
-                  "lattice points, in parameter units; inf is legal. Never\n"
-                  "changes the result, only the time")
-      ->check(CLI::Range(0.0, std::numeric_limits<double>::infinity()))
-      ->option_text("NUMBER [1e-6]");
-  parser.add_flag("--stream", arguments.stream,
-                  "Write the mesh piece by piece, for meshes larger than the\nmemory: " +
-                      extensionsThat(&FileFormat::streams) +
-                      ".\nNothing that takes the whole mesh: no scaled Jacobians,\n"
-                      "no boundary quads; verified when the file is read back");
-  addPartsOptions(parser, arguments.parts);
-}
-
-/// Meshes that follow the map more closely.
-void addCurved(CLI::App& parser, Arguments& arguments) {
-  parser
-      .add_option(
-          "--order", arguments.order,
-          "Write cells of this order, whose nodes are on the images\nof a finer grid: .vtu, "
-          ".msh, or .mesh (MFEM)")
-      ->check(CLI::Range(1, kMaxOrder))
-      ->option_text("P [1]");
-  parser
-      .add_option("--arcs", arguments.arcs,
-                  "Also write hex edges as polylines through the tets,\n.vtu, .vtp or .ovmb")
-      ->option_text("FILE");
-  parser
-      .add_option("--patches", arguments.patches,
-                  "Also write hex faces as polygons, tet by tet: .vtu, .vtp\nor .ovmb")
-      ->option_text("FILE");
-}
-
 }  // namespace
 
 Command addExtract(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
-  arguments->options.repair = RepairMode::Auto;
+  const auto arguments = std::make_shared<ExtractArguments>();
   CLI::App* const parser = app.add_subcommand("extract", "Extract the hexahedral mesh of a map");
-  addMapSource(*parser, arguments->input);
-  parser
-      ->add_option("-o,--output", arguments->output,
-                   "The mesh to write; `hexhex formats` lists the formats")
-      ->required()
-      ->option_text("FILE REQUIRED");
-  addOutputChoice(*parser, arguments->choice);
-  addScale(*parser, arguments->options.scale,
-           "Multiply all parameters by this integer: its cube as\nmany cells");
-  addCurved(*parser, *arguments);
-  addMethod(*parser, *arguments);
-  addTolerance(*parser, arguments->options.tolerance);
-  addPatchAngle(*parser, arguments->patchAngle);
-  addRepairOptions(*parser, *arguments);
-  addQuantization(*parser, arguments->quantize, arguments->quantizeOptions);
-  addImprovement(*parser, *arguments);
-  parser->add_flag("--no-verify", arguments->noVerify, "Write the mesh without verifying it");
-  addReport(*parser, arguments->report,
-            "Write a report in JSON: times, counts, quality,\nverification");
-  addPage(*parser, arguments->page,
-          "Also write a page that shows the mesh in any browser; with\n--improve before and after");
-  addRunOptions(*parser, arguments->run);
-  parser->footer(
-      "The mesh is verified against the map before it is written; with --stream, the file is read\n"
-      "again before it gets its name: it must hold what was extracted, and as many cells and\n"
-      "vertices as follow from the map. Parts are verified one by one. The same input gives the\n"
-      "same bytes with any number of threads.\n\nExample:\n"
-      "  hexhex extract sphere.hexex -o sphere.vtu --scale 2 --report sphere.json");
+  addExtractOptions(*parser, *arguments);
   return {parser, [arguments] { return run(*arguments); }};
 }
 
