@@ -186,26 +186,32 @@ BoundaryDistance movePoints(const Subject& subject, const Boundary& boundary, Ve
   std::optional<CurvedCells> curved;
   if (subject.curved != nullptr) curved.emplace(*subject.curved);
   const Array<Index> simplices = places.simplex;
+  const auto newSweeps = [&] {
+    return Sweeps(subject.mesh, curved ? &*curved : nullptr, places, report.diagonal, stage);
+  };
   const auto distance = [&] {
     return boundary.distanceTo(places, subject.mesh.points, report.diagonal, stage);
   };
-  Sweeps sweeps(subject.mesh, curved ? &*curved : nullptr, places, report.diagonal, stage);
-  sweeps.untangle(options.slack * report.diagonal);
-  sweeps.raiseWorst(options.target);
-  const double floor = std::max(options.target, report.before.quality.minimum);
-  sweeps.smooth(options.passes, floor);
-  BoundaryDistance after = distance();
-  const double limit = kSame * std::max(report.distanceBefore.hausdorff(), kSurfaceTolerance);
-  for (int i = 0; i < kReturns && after.largest.hausdorff() > limit; ++i) {
-    Array<Quad> far;
-    for (const Index q : after.quadsBeyond(limit)) far.push_back(boundary.quads[q]);
-    sweeps.moveBack(far, before, simplices, floor);
+  BoundaryDistance after;
+  {
+    Sweeps sweeps = newSweeps();
+    sweeps.untangle(options.slack * report.diagonal);
+    sweeps.raiseWorst(options.target);
+    const double floor = std::max(options.target, report.before.quality.minimum);
+    sweeps.smooth(options.passes, floor);
     after = distance();
-  }
+    const double limit = kSame * std::max(report.distanceBefore.hausdorff(), kSurfaceTolerance);
+    for (int i = 0; i < kReturns && after.largest.hausdorff() > limit; ++i) {
+      Array<Quad> far;
+      for (const Index q : after.quadsBeyond(limit)) far.push_back(boundary.quads[q]);
+      sweeps.moveBack(far, before, simplices, floor);
+      after = distance();
+    }
+  }  // its memory is free for certificates
   report.after = subject.certifyNow(context);
   const std::vector<Index> worse = worsened(report);
   if (worse.empty()) return after;
-  putBack(sweeps.cellPoints(), worse, before, simplices, subject.mesh.points, places);
+  putBack(newSweeps().cellPoints(), worse, before, simplices, subject.mesh.points, places);
   report.after = subject.certifyNow(context);
   return distance();
 }
