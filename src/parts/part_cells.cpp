@@ -75,54 +75,58 @@ GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part) const {
 }
 
 template <class Id>
+struct PartGrid<Id>::Surroundings {
+  std::uint32_t part;
+  CellEmitter<Id> emitter;
+  std::optional<VertexSet::Cache> touched;
+  std::vector<std::array<Id, 8>> cells;  ///< working memory
+};
+
+template <class Id>
+void PartGrid<Id>::addNearby(std::size_t i, Surroundings& around,
+                             std::vector<NearbyCell<Id>>& list) const {
+  const Index tet = region_.tets[i];
+  const std::vector<SweptLine> lines = centersOf(tet);
+  BoxedLines boxed(region_.boxesOf(i), 1);
+  CenterOwner owner(map_.topology, tet);
+  std::uint64_t number = counts_.cells[tet];
+  for (const SweptLine& line : lines) {
+    const auto [first, count] = owner.owned(line);
+    const auto add = [&, first = first](std::uint32_t other, std::uint32_t at, std::uint32_t run) {
+      if (other == around.part) return;
+      around.cells.resize(run);
+      around.emitter.emitOn(tet, line, at, around.cells);
+      for (std::uint32_t k = 0; k < run; ++k) {
+        if (around.touched && !around.touched->holdsAny(around.cells[k])) continue;
+        const CellPlace place{tet, line.simplex(at + k), line.point(at + k)};
+        list.push_back({number + (at + k - first), other, place, around.cells[k]});
+      }
+    };
+    for (const LinePoints& range : boxed.of(line)) {
+      const std::uint32_t from = std::max(first, range.first);
+      const std::uint32_t to = std::min(first + count, range.first + range.count);
+      if (from < to) partition_.forEachPiece(tet, line, from, to - from, add);
+    }
+    number += count;
+  }
+}
+
+template <class Id>
 std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part,
                                                       const VertexSet* touched) const {
   using Nearby = NearbyCell<Id>;
   std::vector<std::vector<Nearby>> blocks(blockCount(region_.tets.size(), kFewTets));
-  struct Workspace {
-    CellEmitter<Id> emitter;
-    std::optional<VertexSet::Cache> touched;
-    std::vector<std::array<Id, 8>> cells;
-  };
-  const auto addTet = [&](std::size_t i, Workspace& workspace, std::vector<Nearby>& list) {
-    const Index tet = region_.tets[i];
-    const std::vector<SweptLine> lines = centersOf(tet);
-    BoxedLines boxed(region_.boxesOf(i), 1);
-    CenterOwner owner(map_.topology, tet);
-    std::uint64_t number = counts_.cells[tet];
-    for (const SweptLine& line : lines) {
-      const auto [first, count] = owner.owned(line);
-      for (const LinePoints& range : boxed.of(line)) {
-        const std::uint32_t from = std::max(first, range.first);
-        const std::uint32_t to = std::min(first + count, range.first + range.count);
-        if (from >= to) continue;
-        partition_.forEachPiece(
-            tet, line, from, to - from,
-            [&, first = first](std::uint32_t other, std::uint32_t at, std::uint32_t run) {
-              if (other == part) return;
-              workspace.cells.resize(run);
-              workspace.emitter.emitOn(tet, line, at, workspace.cells);
-              for (std::uint32_t k = 0; k < run; ++k) {
-                if (workspace.touched && !workspace.touched->holdsAny(workspace.cells[k])) continue;
-                const CellPlace place{tet, line.simplex(at + k), line.point(at + k)};
-                list.push_back({number + (at + k - first), other, place, workspace.cells[k]});
-              }
-            });
-      }
-      number += count;
-    }
-  };
   parallelBlocksWith(
       stage_, region_.tets.size(), kFewTets,
       [&] {
-        Workspace workspace{CellEmitter<Id>(map_, *vertices_, transitions_, true), {}, {}};
-        if (touched != nullptr) workspace.touched.emplace(*touched);
-        return workspace;
+        Surroundings around{part, CellEmitter<Id>(map_, *vertices_, transitions_, true), {}, {}};
+        if (touched != nullptr) around.touched.emplace(*touched);
+        return around;
       },
-      [&](std::size_t begin, std::size_t end, std::size_t block, Workspace& workspace) {
+      [&](std::size_t begin, std::size_t end, std::size_t block, Surroundings& around) {
         for (std::size_t i = begin; i < end; ++i) {
           // Without boxes it is a tet of the part alone.
-          if (!region_.boxesOf(i).empty()) addTet(i, workspace, blocks[block]);
+          if (!region_.boxesOf(i).empty()) addNearby(i, around, blocks[block]);
         }
       });
   return joined<Nearby>(blocks);

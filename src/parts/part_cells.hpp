@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <parts/partition.hpp>
@@ -77,7 +78,11 @@ class PartGrid {
                                                         const VertexSet* touched) const;
 
  private:
+  struct Surroundings;
+
   [[nodiscard]] std::vector<SweptLine> centersOf(Index tet) const;
+  /// Adds the nearby cells of a tet of the region.
+  void addNearby(std::size_t i, Surroundings& around, std::vector<NearbyCell<Id>>& list) const;
 
   const PreparedMap& map_;
   const ElementCounts& counts_;

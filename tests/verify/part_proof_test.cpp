@@ -13,7 +13,7 @@ namespace hexhex::test {
 namespace {
 
 /// How many maps of each test, at HEXHEX_TEST_EFFORT 1.
-constexpr int kMaps = 100;
+constexpr int kPartMaps = 100;
 
 /// A map that is ready to prove parts.
 class Truth {
@@ -63,7 +63,7 @@ std::vector<MeshPart> partsOf(const TetMapView& map, const PartOptions& options)
 }
 
 TEST(PartProof, PassesWhatIsExtracted) {
-  for (int i = 0; i < cases(kMaps); ++i) {
+  for (int i = 0; i < cases(kPartMaps); ++i) {
     Random random(static_cast<std::uint64_t>(i));
     const TetMap map = drawMap(random.next());
     const PartOptions options = drawParts(random);
@@ -77,7 +77,7 @@ TEST(PartProof, PassesWhatIsExtracted) {
 
 TEST(PartProof, RefusesOtherMeshes) {
   std::map<std::string, int> refused;
-  for (int i = 0; i < cases(kMaps); ++i) {
+  for (int i = 0; i < cases(kPartMaps); ++i) {
     const auto seed = static_cast<std::uint64_t>(i);
     Random random(seed);
     const TetMap map = drawMap(seed);
