@@ -19,6 +19,8 @@ hexhex_improve_report reportOf(const hexhex::ImproveReport& r) {
           .from_surface_before = r.distanceBefore.fromSurface,
           .from_mesh_after = r.distanceAfter.fromMesh,
           .from_surface_after = r.distanceAfter.fromSurface,
+          .far_cells_before = r.farCellsBefore,
+          .far_cells_after = r.farCells.size(),
           .free_vertices = r.vertices[0],
           .patch_vertices = r.vertices[1],
           .curve_vertices = r.vertices[2],

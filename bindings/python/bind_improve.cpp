@@ -26,7 +26,14 @@ nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, double target, i
     return map != nullptr ? improve(moved, map->view(), options, context)
                           : improve(moved, options, context);
   });
+  const auto listOfCells = [](Array<std::uint64_t>&& cells) {
+    const std::size_t count = cells.size();
+    return nb::cast(ownedArray<std::uint64_t, 1>(std::move(cells), {count}));
+  };
   Dict d;
+  d["not_positive"] = listOfCells(std::move(report.notPositive));
+  d["far_cells"] = listOfCells(std::move(report.farCells));
+  d["far_cells_before"] = report.farCellsBefore;
   d["diagonal"] = report.diagonal;
   d["from_mesh_before"] = report.distanceBefore.fromMesh;
   d["from_surface_before"] = report.distanceBefore.fromSurface;
@@ -41,11 +48,8 @@ nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, double target, i
   d["mean_move"] = report.meanMove;
   d["off_surface"] = report.offSurface;
   d["seconds"] = report.seconds;
-  const std::size_t bad = report.notPositive.size();
-  nb::object notPositive =
-      nb::cast(ownedArray<std::uint64_t, 1>(std::move(report.notPositive), {bad}));
   return nb::make_tuple(std::move(moved), asTuple(std::move(report.before)),
-                        asTuple(std::move(report.after)), notPositive, d);
+                        asTuple(std::move(report.after)), d);
 }
 
 }  // namespace

@@ -626,6 +626,8 @@ static void test_improve(void) {
   CHECK(report.size == sizeof report && report.not_positive_after == 0);
   CHECK(report.minimum_after >= report.minimum_before && report.minimum_after > 0);
   CHECK(report.mean_after > 0 && report.mean_before > 0 && report.diagonal > 0);
+  CHECK((report.far_cells_before > 0) == (report.from_mesh_before > 1e-3));
+  CHECK((report.far_cells_after > 0) == (report.from_mesh_after > 1e-3));
   CHECK(report.moved_vertices > 0 && report.largest_move >= report.mean_move);
   CHECK(report.patch_vertices > 0 && report.free_vertices > 0 && report.off_surface == 0);
   hexhex_certificate proven = HEXHEX_CERTIFICATE_INIT;

@@ -354,6 +354,8 @@ def test_improve_moves_a_copy_until_cells_are_positive():
     better, report = hexhex.improve(mesh, map)
     assert np.array_equal(mesh.points, points) and np.array_equal(better.cells, mesh.cells)
     assert report.after.all_positive and len(report.not_positive) == 0
+    assert (len(report.far_cells) > 0) == (report.from_mesh_after > 1e-3)
+    assert (report.far_cells_before > 0) == (report.from_mesh_before > 1e-3)
     assert report.after.minimum >= report.before.minimum == hexhex.quality(mesh).minimum
     assert report.after.minimum == hexhex.quality(better).minimum
     assert report.moved_vertices == (better.points != points).any(axis=1).sum()

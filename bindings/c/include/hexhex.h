@@ -1170,6 +1170,8 @@ typedef struct hexhex_improve_report {
   double from_surface_before; /**< and from the surface to the mesh */
   double from_mesh_after;
   double from_surface_after;
+  uint64_t far_cells_before; /**< cells whose boundary is more than 1e-3 from the surface */
+  uint64_t far_cells_after;
   uint64_t free_vertices;
   uint64_t patch_vertices; /**< that slide on the surface, */
   uint64_t curve_vertices; /**< on curves, */
@@ -1181,7 +1183,7 @@ typedef struct hexhex_improve_report {
   double seconds;
 } hexhex_improve_report;
 #define HEXHEX_IMPROVE_REPORT_INIT \
-  { sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+  { sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>.
  * @param map          that the mesh was extracted from, or NULL: the surface is the mesh's boundary

@@ -985,11 +985,11 @@ def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passe
     >>> report.after.all_positive and report.after.minimum >= report.before.minimum
     True
     """
-    handle, before, after, bad, values = _hexhex.improve(
+    handle, before, after, values = _hexhex.improve(
         mesh._handle, None if map is None else map._arrays(), target, passes, fix_boundary,
         feature_angle, slack, _threads(threads), progress)
     return (type(mesh)._from_handle(handle),
-            ImproveReport(_quality_of(before), _quality_of(after), bad, **values))
+            ImproveReport(_quality_of(before), _quality_of(after), **values))
 
 
 def scaled_jacobian(corners: npt.ArrayLike) -> float:

@@ -834,6 +834,8 @@ class ImproveReport:
     before: Quality
     after: Quality
     not_positive: npt.NDArray[np.uint64]  #: cells that are not certified in the end, ascending
+    far_cells: npt.NDArray[np.uint64]  #: whose boundary ends more than 1e-3 from the surface
+    far_cells_before: int  #: how many were
     diagonal: float
     from_mesh_before: float  #: largest distance from the mesh to the surface,
     from_surface_before: float  #: and from the surface to the mesh
