@@ -51,11 +51,11 @@ void forEachRun(const PreparedMap& map, const Partition& partition, std::uint32_
   std::uint64_t number = 0;
   for (const SweptLine& line : lines) {
     const auto [first, count] = owner.owned(line);
-    const std::uint64_t before = number - first;
-    partition.forEachPiece(tet, line, first, count,
-                           [&](std::uint32_t owned, std::uint32_t at, std::uint32_t run) {
-                             if (owned == part) visit(line, at, run, before + at);
-                           });
+    partition.forEachPiece(
+        tet, line, first, count,
+        [&, first = first](std::uint32_t owned, std::uint32_t at, std::uint32_t run) {
+          if (owned == part) visit(line, at, run, number + (at - first));
+        });
     number += count;
   }
 }

@@ -45,8 +45,9 @@ struct TetBlocks {
   /// The smallest corner of the first cell of a block.
   [[nodiscard]] GridPoint lowOf(std::size_t block) const noexcept {
     GridPoint z = low;
-    for (std::size_t k = 3; k-- > 0; block /= size[k]) {
+    for (const std::size_t k : {2U, 1U, 0U}) {
       z[k] += static_cast<std::int32_t>(block % size[k]) * side;
+      block /= size[k];
     }
     return z;
   }
