@@ -1,8 +1,8 @@
 // Recursive coordinate bisection: Berger and Bokhari, "A partitioning strategy for nonuniform
 // problems on multiprocessors", IEEE Transactions on Computers 36 (1987). Places are cut across the
 // longest side of their box, where cells are even, and so is each half. Parts follow one another
-// along the curve that visits one half before the other; beside Hilbert's curve, cuts depend on the
-// shape of the object.
+// along the curve that visits one half before the other. Unlike along Hilbert's curve, cuts follow
+// the shape of the object.
 #include <algorithm>
 #include <limits>
 

@@ -44,11 +44,6 @@ void addOwners(const Array<std::uint64_t>& begin, std::span<const std::uint64_t>
   }
 }
 
-void sortAndUnite(std::vector<Index>& tets) {
-  std::sort(tets.begin(), tets.end());
-  tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
-}
-
 /// @throws Error VerificationFailed if anything is wrong
 void requireNone(const Faults& wrong, std::uint32_t part, const char* what) {
   if (wrong.count() == 0) return;
@@ -99,7 +94,8 @@ std::vector<Index> PartProof::tetsOf(const MeshPart& part, Faults& wrongPoints,
   std::vector<Index> tets;
   addOwners(places_.begin(), part.globalPoints, tets, wrongPoints);
   addOwners(centers_.begin, part.globalCells, tets, wrongCells);
-  sortAndUnite(tets);
+  std::sort(tets.begin(), tets.end());
+  tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
   return tets;
 }
 

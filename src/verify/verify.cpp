@@ -17,7 +17,6 @@
 
 #include <base/parallel.hpp>
 #include <extract/prepared_extractor.hpp>
-#include <igm/measures.hpp>
 
 namespace hexhex {
 

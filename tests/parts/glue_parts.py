@@ -16,16 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-
-def check(condition, message):
-    if not condition:
-        sys.exit(f"FAILED: {message}")
-
-
-def run(*command):
-    done = subprocess.run([str(c) for c in command], stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, check=False)
-    check(done.returncode == 0, f"{' '.join(map(str, command))}:\n{done.stdout[-3000:]}")
+from common import check, read_gmsh, run
 
 
 class Glue:
@@ -103,39 +94,12 @@ def glue_cgns(folder, _parts, _command):
     return glue
 
 
-def read_gmsh(file):
-    """Nodes and hexahedra of a binary .msh file: {number: position}, {number: nodes}."""
-    data = memoryview(file.read_bytes())
-    text = bytes(data)
-
-    def section(name):
-        return data[text.index(f"${name}\n".encode()) + len(name) + 2:]
-    nodes, points, at = section("Nodes"), {}, 32
-    for _ in range(struct.unpack_from("<Q", nodes)[0]):
-        count = struct.unpack_from("<3iQ", nodes, at)[3]
-        numbers = struct.unpack_from(f"<{count}Q", nodes, at + 20)
-        at += 20 + 8 * count
-        for i, number in enumerate(numbers):
-            points[number - 1] = struct.unpack_from("<3d", nodes, at + 24 * i)
-        at += 24 * count
-    elements, cells, at = section("Elements"), {}, 32
-    for _ in range(struct.unpack_from("<Q", elements)[0]):
-        dimension, _, _, count = struct.unpack_from("<3iQ", elements, at)
-        at += 20
-        size = 9 if dimension == 3 else 5
-        for i in range(count if dimension == 3 else 0):
-            number, *corners = struct.unpack_from("<9Q", elements, at + 72 * i)
-            cells[number - 1] = [n - 1 for n in corners]
-        at += 8 * size * count
-    return points, cells
-
-
 def glue_gmsh(folder, parts, _command):
     glue = Glue()
     files = sorted(folder.glob("m_*"))
     check(len(files) == parts, f"{len(files)} files of {parts} parts")
     for file in files:
-        points, cells = read_gmsh(file)
+        points, cells, _ = read_gmsh(file)
         place = {number: i for i, number in enumerate(points)}
         glue.add(list(points), points.values(), list(cells),
                  [[place[n] for n in cell] for cell in cells.values()])
@@ -144,7 +108,7 @@ def glue_gmsh(folder, parts, _command):
 
 def glue_one_gmsh(folder, _parts, _command):
     glue = Glue()
-    glue.points, cells = read_gmsh(folder / "m.msh")
+    glue.points, cells, _ = read_gmsh(folder / "m.msh")
     glue.cells = {number: tuple(cell) for number, cell in cells.items()}
     return glue
 

@@ -19,13 +19,10 @@ import subprocess
 import sys
 import tempfile
 
+from common import check, read_gmsh, run
+
 JUDGES = pathlib.Path(__file__).parent / "judges"
 PYTHONS = [p for p in (os.environ.get("HEXHEX_PYTHON"), "/usr/bin/python3", sys.executable) if p]
-
-
-def check(condition, message):
-    if not condition:
-        sys.exit(f"FAILED: {message}")
 
 
 def python_with(module):
@@ -35,13 +32,6 @@ def python_with(module):
                 [python, "-c", f"import {module}"], capture_output=True, check=False).returncode == 0:
             return python
     return None
-
-
-def run(*command, **options):
-    done = subprocess.run([str(c) for c in command], stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, check=False, **options)
-    check(done.returncode == 0, f"{' '.join(map(str, command))}:\n{done.stdout[-3000:]}")
-    return done.stdout
 
 
 class Mesh:
@@ -269,64 +259,14 @@ def write_ranks(command, map_file, folder, ghosts):
     run(command, "extract", map_file, "-o", folder / "p", "--format", "msh-split", "--parts", 4,
         "--ghosts", ghosts, "--report", folder / "r.json", "--quiet")
     for rank in range(4):
-        points, cells = read_split_gmsh(folder / f"p_{rank + 1}", rank)
+        points, cells, owners = read_gmsh(folder / f"p_{rank + 1}")
         with open(folder / f"rank{rank}.bin", "wb") as file:
-            own = sum(owner == rank for _, owner, *_ in cells)
-            file.write(struct.pack("<3q", len(points), own, len(cells)))
-            for number, position in points:
+            file.write(struct.pack("<3q", len(points), len(cells) - len(owners), len(cells)))
+            for number, position in points.items():
                 file.write(struct.pack("<q3d", number, *position))
-            for cell in cells:
-                file.write(struct.pack("<10q", *cell))
+            for number, corners in cells.items():
+                file.write(struct.pack("<10q", number, owners.get(number, rank), *corners))
     return json.loads((folder / "r.json").read_text())["parts"]["shared_faces"]
-
-
-def read_split_gmsh(file, rank):
-    """Nodes and hexahedra of a file of one part, numbers from 0 on, by what the format says.
-
-    @return numbers and positions; number, owner and nodes of cells
-    """
-    data = file.read_bytes()
-
-    def section(name):
-        begin = data.index(f"${name}\n".encode()) + len(name) + 2
-        return memoryview(data)[begin:]
-    nodes = section("Nodes")
-    blocks, _, _, _ = struct.unpack_from("<4Q", nodes)
-    at, points = 32, []
-    for _ in range(blocks):
-        _, _, _, count = struct.unpack_from("<3iQ", nodes, at)
-        at += 20
-        numbers = struct.unpack_from(f"<{count}Q", nodes, at)
-        at += 8 * count
-        points += [(numbers[i] - 1, struct.unpack_from("<3d", nodes, at + 24 * i))
-                   for i in range(count)]
-        at += 24 * count
-    elements = section("Elements")
-    blocks, _, _, _ = struct.unpack_from("<4Q", elements)
-    at, cells = 32, []
-    for _ in range(blocks):
-        dimension, _, _, count = struct.unpack_from("<3iQ", elements, at)
-        at += 20
-        size = 9 if dimension == 3 else 5
-        if dimension == 3:
-            for i in range(count):
-                number, *corners = (n - 1 for n in struct.unpack_from("<9Q", elements, at + 72 * i))
-                cells.append([number, rank, *corners])
-        at += 8 * size * count
-    if b"$GhostElements\n" in data:
-        set_owners(cells, section("GhostElements"))
-    return points, cells
-
-
-def set_owners(cells, ghosts):
-    count, = struct.unpack_from("<Q", ghosts, 0)
-    at, owners = 8, {}
-    for _ in range(count):
-        element, owner, others = struct.unpack_from("<QiQ", ghosts, at)
-        at += 20 + 4 * others
-        owners[element - 1] = owner - 1
-    for cell in cells:
-        cell[1] = owners.get(cell[0], cell[1])
 
 
 def main():

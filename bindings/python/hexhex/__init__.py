@@ -265,15 +265,13 @@ def extract_to_file(file: Path, map: Map, *, scale: int = 1, format: str | None 
         os.fspath(file), map._arrays(), options, format or "", _threads(threads), progress))
 
 
-def _partition(parts: int, ghosts: int, partition: str,
-               verify: bool) -> tuple[int, int, str, bool]:
+def _check_partition(parts: int, ghosts: int, partition: str) -> None:
     if partition not in ("curve", "metis", "scotch"):
         raise ArgumentError(f'There is no partition "{partition}". Choose "curve", "metis" or '
                             '"scotch".', "InvalidArgument")
     if not 1 <= parts <= 1 << 20 or not 0 <= ghosts <= 16:
         raise ArgumentError(f"{parts} parts with {ghosts} layers of ghosts are out of range. Choose "
                             "1 to 1048576, and 0 to 16.", "InvalidArgument")
-    return parts, ghosts, partition, verify
 
 
 def extract_parts(map: Map, parts: int, *, ghosts: int = 0, partition: str = "curve",
@@ -302,9 +300,10 @@ def extract_parts(map: Map, parts: int, *, ghosts: int = 0, partition: str = "cu
     ...       == there.global_points[back.vertices]).all())
     True
     """
+    _check_partition(parts, ghosts, partition)
     options = _options(scale, "atlas", tolerance, 0, repair, round)
     return [MeshPart._of(values) for values in _hexhex.extract_parts(
-        map._arrays(), *_partition(parts, ghosts, partition, verify), options, _threads(threads), progress)]
+        map._arrays(), parts, ghosts, partition, verify, options, _threads(threads), progress)]
 
 
 def extract_parts_to_file(file: Path, map: Map, parts: int, *, ghosts: int = 0,
@@ -325,9 +324,10 @@ def extract_parts_to_file(file: Path, map: Map, parts: int, *, ghosts: int = 0,
     ...     summary["largest"], len(hexhex.read(file).cells)
     (128, 512)
     """
+    _check_partition(parts, ghosts, partition)
     options = _options(scale, "atlas", tolerance, 0, repair, round)
     return _hexhex.extract_parts_to_file(
-        os.fspath(file), map._arrays(), *_partition(parts, ghosts, partition, verify), options,
+        os.fspath(file), map._arrays(), parts, ghosts, partition, verify, options,
         format or "", _threads(threads), progress)
 
 

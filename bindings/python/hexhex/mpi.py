@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 
-from . import Map, MeshPart, _hexhex, _options, _partition, _threads
+from . import Map, MeshPart, _check_partition, _hexhex, _options, _threads
 from ._errors import ArgumentError
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def extract_part(comm: MPI.Comm, map: Map | Path | None, *, ghosts: int = 0,
         ArgumentError: where MPI was initialized for one thread, and as extract_parts(); of the
             first process that failed, in all of them.
     """
-    _partition(1, ghosts, partition, verify)
+    _check_partition(1, ghosts, partition)
     with _Team(comm) as team:
         return MeshPart._of(_hexhex.extract_part_of_team(
             team, *_given(map, team), ghosts, partition, verify,
@@ -60,7 +60,7 @@ def extract_parts_to_file(comm: MPI.Comm, file: Path, map: Map | Path | None, *,
     Raises:
         FileError: if they cannot be written; and as extract_part().
     """
-    _partition(1, ghosts, partition, verify)
+    _check_partition(1, ghosts, partition)
     with _Team(comm) as team:
         return _hexhex.extract_to_file_of_team(
             team, os.fspath(file), *_given(map, team), ghosts, partition, verify,
