@@ -735,7 +735,7 @@ class Pipeline(CommandTest):
 
     def test_one_bar_that_never_goes_back(self):
         map_file = self.generate("box", "--cells", "40", "--refine", "8")
-        text = self.on_terminal("extract", map_file, "-o", "a.vtu", pauses=4)
+        text = self.on_terminal("extract", map_file, "-o", "a.vtu", "--scale", "2", pauses=4)
         shares = [int(share) for share in re.findall(r"(\d+) %", text)]
         self.assertGreater(len(shares), 0)
         self.assertEqual(shares, sorted(shares))
