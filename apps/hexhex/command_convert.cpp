@@ -116,6 +116,7 @@ Command addConvert(CLI::App& app) {
       app.add_subcommand("convert", "Write a map or a hexahedral mesh in another format");
   addMapSourceBefore(*parser, arguments->input, "INPUT", arguments->output, "OUTPUT",
                      "The file to write");
+  addKeepWalls(*parser, arguments->input);
   addOutputChoice(*parser, arguments->choice);
   parser
       ->add_option("--input-format", arguments->input.format,

@@ -250,9 +250,8 @@ TetMap readAndQuantize(const ExtractArguments& arguments, LongRun& longRun,
                        ExtractionRecord& record) {
   TetMap map = longRun.part("reading", [&] { return readMap(arguments.input, longRun.context()); });
   if (!arguments.quantize) return map;
-  QuantizedMap quantized = longRun.part("quantization", [&] {
-    return quantize(map, optionsFor(arguments.input, arguments.quantizeOptions), longRun.context());
-  });
+  QuantizedMap quantized = longRun.part(
+      "quantization", [&] { return quantize(map, arguments.quantizeOptions, longRun.context()); });
   record.quantized = std::move(quantized.report);
   return std::move(quantized.map);
 }

@@ -61,8 +61,7 @@ int run(const Arguments& arguments) {
   requireWritable(arguments.output);
   Report reportFile(arguments.report);
   const TetMap map = readMap(arguments.input, context);
-  const QuantizedMap result =
-      quantize(map, optionsFor(arguments.input, arguments.options), context);
+  const QuantizedMap result = quantize(map, arguments.options, context);
   writeMap(result.map, arguments.output, writing, context);
   longRun.finish();
   if (reportFile.isWanted()) {
@@ -84,6 +83,7 @@ Command addQuantize(CLI::App& app) {
   CLI::App* const parser =
       app.add_subcommand("quantize", "Make a seamless map an integer-grid map");
   addMapSource(*parser, arguments->input);
+  addKeepWalls(*parser, arguments->input);
   parser
       ->add_option("-o,--output", arguments->output,
                    "The map to write, " + extensionsThat(&FileFormat::writesMaps))

@@ -184,6 +184,7 @@ void addCurved(CLI::App& parser, ExtractArguments& arguments) {
 void addExtractOptions(CLI::App& parser, ExtractArguments& arguments) {
   arguments.options.repair = RepairMode::Auto;
   addMapSource(parser, arguments.input);
+  addKeepWalls(parser, arguments.input);
   parser
       .add_option("-o,--output", arguments.output,
                   "The mesh to write; `hexhex formats` lists the formats")

@@ -54,6 +54,10 @@ void printImprovement(const ImproveReport& report) {
       fmt::format("{:.2g} of the diagonal ({:.2g} from it to the mesh); before {:.2g} ({:.2g})",
                   report.distanceAfter.fromMesh, report.distanceAfter.fromSurface,
                   report.distanceBefore.fromMesh, report.distanceBefore.fromSurface));
+  if (report.innerDistanceBefore > 0 || report.innerDistanceAfter > 0) {
+    printLine("faces inside", fmt::format("at most {:.2g} of the diagonal off; before {:.2g}",
+                                          report.innerDistanceAfter, report.innerDistanceBefore));
+  }
   if (!report.farCells.empty() || report.farCellsBefore > 0) {
     printLine("far from the surface",
               fmt::format("{}, by more than {:g} of the diagonal; before {}",
@@ -88,6 +92,8 @@ Json improvementAsJson(const ImproveReport& report) {
       {"diagonal", report.diagonal},
       {"distance_before", distance(report.distanceBefore)},
       {"distance_after", distance(report.distanceAfter)},
+      {"inner_distance_before", report.innerDistanceBefore},
+      {"inner_distance_after", report.innerDistanceAfter},
       {"far_cells_before", report.farCellsBefore},
       {"far_cells", report.farCells},
       {"vertices",

@@ -10,13 +10,6 @@
 
 namespace hexhex::command {
 
-namespace {
-
-/// What the reader of .hexex files gives walls of a motorcycle complex.
-constexpr std::int32_t kWallTag = 2;
-
-}  // namespace
-
 std::array<CLI::Option*, 4> addQuantizeOptions(CLI::App& parser, QuantizeOptions& options,
                                                const std::string& scaleName) {
   const auto positive = [](const std::string& text) {
@@ -56,13 +49,6 @@ void addQuantization(CLI::App& parser, bool& quantize, QuantizeOptions& options)
   for (CLI::Option* const option : addQuantizeOptions(parser, options, "--map-scale")) {
     option->needs(flag);
   }
-}
-
-QuantizeOptions optionsFor(const MapSource& input, QuantizeOptions options) {
-  const bool isHexex =
-      input.format == "hexex" || (input.format.empty() && input.file.ends_with(".hexex"));
-  if (isHexex) options.wallTag = kWallTag;
-  return options;
 }
 
 std::string quantizeSummary(const QuantizeReport& report) {

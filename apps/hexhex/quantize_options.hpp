@@ -21,9 +21,6 @@ std::array<CLI::Option*, 4> addQuantizeOptions(CLI::App& parser, QuantizeOptions
 /// --map-scale.
 void addQuantization(CLI::App& parser, bool& quantize, QuantizeOptions& options);
 
-/// Those options, with what the input's format says about its tags.
-[[nodiscard]] QuantizeOptions optionsFor(const MapSource& input, QuantizeOptions options);
-
 /// "5109 cells of 5000 asked for; 31 arcs of 1 to 26 hexahedra"
 [[nodiscard]] std::string quantizeSummary(const QuantizeReport& report);
 

@@ -44,6 +44,7 @@ ReadOptions MapSource::options() const {
   ReadOptions options;
   options.format = format;
   options.mapArray = mapArray;
+  options.keepWalls = keepWalls;
   return options;
 }
 
@@ -98,6 +99,14 @@ void addMapOptions(CLI::App& parser, MapSource& source) {
                   "The array of .vtu and .vtk files that holds the map:\n"
                   "12 numbers per cell, or 3 per point")
       ->option_text("NAME [igm]");
+}
+
+void addKeepWalls(CLI::App& parser, MapSource& source) {
+  parser
+      .add_flag("--keep-walls", source.keepWalls,
+                "Walls of a motorcycle complex that a .hexex file lists\n"
+                "become features with the tag 2: faces between blocks")
+      ->excludes("--tets");
 }
 
 namespace {

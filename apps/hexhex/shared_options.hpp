@@ -26,6 +26,7 @@ struct MapSource {
   std::string flagsArray = "flags";
   std::string mapArray = "igm";
   std::string format;
+  bool keepWalls = false;
 
   [[nodiscard]] bool isPair() const noexcept { return !tets.empty(); }
   /// "sphere.hexex", "tets.mesh and polycube.mesh", "tets.mesh and labels.txt"
@@ -37,6 +38,9 @@ struct MapSource {
 
 /// ".mesh, .vtu or .vtk": the extensions of the formats that can do this.
 [[nodiscard]] std::string extensionsThat(bool FileFormat::*can);
+
+/// Adds --keep-walls, for a source whose options are there.
+void addKeepWalls(CLI::App& parser, MapSource& source);
 
 /// For arguments that name a map to read.
 [[nodiscard]] std::string mapDescription();

@@ -54,11 +54,7 @@ Subject extractSubject(const ViewArguments& arguments, TetMap map, Context& cont
                     " is a map itself, and its mesh is compared with it anyway. Leave "
                     "out --map.");
   }
-  if (arguments.quantize) {
-    MapSource input;
-    input.file = arguments.mesh;
-    map = quantize(map, optionsFor(input, arguments.quantizeOptions), context).map;
-  }
+  if (arguments.quantize) map = quantize(map, arguments.quantizeOptions, context).map;
   ExtractOptions options;
   options.scale = arguments.options.scale;
   options.tolerance = arguments.options.tolerance;

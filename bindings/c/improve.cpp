@@ -29,7 +29,9 @@ hexhex_improve_report reportOf(const hexhex::ImproveReport& r) {
           .largest_move = r.largestMove,
           .mean_move = r.meanMove,
           .off_surface = r.offSurface,
-          .seconds = r.seconds};
+          .seconds = r.seconds,
+          .inner_distance_before = r.innerDistanceBefore,
+          .inner_distance_after = r.innerDistanceAfter};
 }
 
 /// @param meshOf  the mesh of a handle

@@ -133,6 +133,7 @@ ReadOptions readOptions(const Json& request) {
   };
   text("format", options.format);
   text("mapArray", options.mapArray);
+  take(request, "keepWalls", options.keepWalls);
   return options;
 }
 

@@ -91,12 +91,13 @@ void bindFiles(nb::module_& module) {
   module.def(
       "read_map",
       [](const std::string& file, const std::string& format, const std::string& mapArray,
-         int threads, const Progress& progress) {
+         bool keepWalls, int threads, const Progress& progress) {
         return run(threads, progress, [&](Context& context) {
-          return readMap(file, {.format = format, .mapArray = mapArray}, context);
+          return readMap(file, {.format = format, .mapArray = mapArray, .keepWalls = keepWalls},
+                         context);
         });
       },
-      "file"_a, "format"_a, "map_array"_a, "threads"_a, "progress"_a.none());
+      "file"_a, "format"_a, "map_array"_a, "keep_walls"_a, "threads"_a, "progress"_a.none());
   module.def(
       "read_tets",
       [](const std::string& file, const std::string& format, int threads,
@@ -140,12 +141,13 @@ void bindFiles(nb::module_& module) {
   module.def(
       "read",
       [](const std::string& file, const std::string& format, const std::string& mapArray,
-         int threads, const Progress& progress) {
+         bool keepWalls, int threads, const Progress& progress) {
         return run(threads, progress, [&](Context& context) {
-          return readMapOrHexMesh(file, {.format = format, .mapArray = mapArray}, context);
+          return readMapOrHexMesh(
+              file, {.format = format, .mapArray = mapArray, .keepWalls = keepWalls}, context);
         });
       },
-      "file"_a, "format"_a, "map_array"_a, "threads"_a, "progress"_a.none());
+      "file"_a, "format"_a, "map_array"_a, "keep_walls"_a, "threads"_a, "progress"_a.none());
   module.def(
       "write_mesh",
       [](const HexMesh& mesh, const std::string& file, const std::string& format, double patchAngle,

@@ -39,6 +39,8 @@ nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, double target, i
   d["from_surface_before"] = report.distanceBefore.fromSurface;
   d["from_mesh_after"] = report.distanceAfter.fromMesh;
   d["from_surface_after"] = report.distanceAfter.fromSurface;
+  d["inner_distance_before"] = report.innerDistanceBefore;
+  d["inner_distance_after"] = report.innerDistanceAfter;
   d["free_vertices"] = report.vertices[0];
   d["patch_vertices"] = report.vertices[1];
   d["curve_vertices"] = report.vertices[2];

@@ -29,10 +29,11 @@ struct ImproveOptions {
   double slack = 1e-3;
 };
 
-/// Between the surface and the boundary of the mesh, in diagonals of the surface's bounding box.
+/// Between the boundaries of the object and of the mesh, in diagonals of the surface's bounding
+/// box.
 struct SurfaceDistance {
   double fromMesh = 0;     ///< largest of vertices, centres and middles of edges of boundary quads
-  double fromSurface = 0;  ///< largest of vertices and centres of the surface's triangles
+  double fromSurface = 0;  ///< largest of vertices and centres of the object's boundary triangles
 
   [[nodiscard]] double hausdorff() const noexcept {
     return fromMesh > fromSurface ? fromMesh : fromSurface;
@@ -51,6 +52,10 @@ struct ImproveReport {
   double diagonal = 0;               ///< of the surface's bounding box
   SurfaceDistance distanceBefore;
   SurfaceDistance distanceAfter;
+  /// Of faces inside that are tagged, or between regions of the map: the largest distance of such a
+  /// face from such triangles, in diagonals. 0 if there are none.
+  double innerDistanceBefore = 0;
+  double innerDistanceAfter = 0;
   std::uint64_t farCellsBefore = 0;         ///< whose boundary is beyond kSurfaceTolerance
   Array<std::uint64_t> farCells;            ///< those of the end, ascending
   std::array<std::uint64_t, 4> vertices{};  ///< that move freely, on patches, on curves, not at all

@@ -30,6 +30,9 @@ struct ReadOptions {
   /// components (u0 v0 w0 u1 ... w3: the parameters of the corners in their order), or of points,
   /// with 3, for maps with one chart.
   std::string_view mapArray = "igm";
+  /// `.hexex` files of other programs list walls of a motorcycle complex, which are no features.
+  /// Those inside of the object become features with the tag 2 all the same: faces between blocks.
+  bool keepWalls = false;
 };
 
 /// Reads a tetrahedral mesh with an integer-grid map: `.hexex`, `.ovm`, `.ovmb`, `.vtu`, `.vtk`.

@@ -22,7 +22,7 @@ struct QuantizeOptions {
   /// If no valid map is found so: takes a denser one, the first one that works.
   bool densify = false;
   /// Tagged triangles inside of the object stay planes of the mesh, but for those with this tag (0:
-  /// none): walls of a motorcycle complex, to which readMap() gives the tag 2 in a .hexex file.
+  /// none), such as walls of another motorcycle complex (2, if ReadOptions::keepWalls read them).
   std::int32_t wallTag = 0;
   /// A map may be so far from being seamless, as a share of its size in parameters.
   double tolerance = 1e-5;

@@ -225,6 +225,9 @@ HexMesh refinedMesh(const LagrangeMesh& mesh, Stage& stage) {
   const int p = mesh.order;
   const auto width = static_cast<std::size_t>(p);
   const std::size_t parts = width * width * width;
+  for (const std::int32_t region : mesh.regions) {
+    refined.regions.insert(refined.regions.end(), parts, region);
+  }
   refined.cells.resize(parts * mesh.cellCount());
   parallelFor(stage, mesh.cellCount(), kGrain, [&](std::size_t cell) {
     const NodeGrid grid(mesh, cell);

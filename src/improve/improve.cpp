@@ -115,6 +115,11 @@ void reportOff(const Array<Vec3>& points, const VertexPlaces& places, ImproveRep
   }
 }
 
+double distanceInside(const VertexPlaces& places, const HexMesh& mesh, const ImproveReport& report,
+                      Stage& stage) {
+  return innerDistance(mesh.points, places.innerQuads, places.surface, report.diagonal, stage);
+}
+
 void fixBoundary(VertexPlaces& places) {
   for (Freedom& freedom : places.freedom) {
     if (freedom != Freedom::Free) freedom = Freedom::Fixed;
@@ -255,6 +260,7 @@ ImproveReport improveOn(const ImproveOptions& options, Context& context, const S
       const BoundaryDistance distance =
           boundary.distanceTo(places, mesh.points, report.diagonal, stage);
       report.distanceBefore = distance.largest;
+      report.innerDistanceBefore = distanceInside(places, mesh, report, stage);
       report.farCellsBefore = boundary.cellsBeyond(kSurfaceTolerance, distance, parts).size();
     }
     const Array<Vec3> points = mesh.points;
@@ -262,6 +268,7 @@ ImproveReport improveOn(const ImproveOptions& options, Context& context, const S
       const BoundaryDistance distance =
           movePoints(subject, boundary, places, options, points, report, context, stage);
       report.distanceAfter = distance.largest;
+      report.innerDistanceAfter = distanceInside(places, mesh, report, stage);
       report.farCells = boundary.cellsBeyond(kSurfaceTolerance, distance, parts);
       reportMoves(points, mesh.points, report);
       reportOff(mesh.points, places, report);

@@ -101,7 +101,7 @@ Vec3 nearestOf(const std::array<Vec3, 3>& t, const Vec3& point) noexcept {
 }
 
 ReferenceSurface::ReferenceSurface(SurfaceParts parts, Stage& stage)
-    : points_(std::move(parts.points)) {
+    : points_(std::move(parts.points)), boundaryTriangles_(parts.boundaryTriangles) {
   triangles_.reserve(parts.triangles.size());
   for (const FeatureFace& face : parts.triangles) {
     triangles_.push_back(face.vertices);

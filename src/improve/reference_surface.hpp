@@ -22,6 +22,7 @@ namespace hexhex {
 struct SurfaceParts {
   Array<Vec3> points;
   std::vector<FeatureFace> triangles;        ///< those of different tags do not share a patch
+  std::size_t boundaryTriangles = 0;         ///< come first; the others are inside of the object
   std::vector<Index> groups;                 ///< per triangle: no curve between those of one group
   std::vector<std::array<Index, 2>> curves;  ///< edges of triangles, or not
   bool areTagged = false;                    ///< the curves
@@ -45,6 +46,8 @@ class ReferenceSurface {
 
   [[nodiscard]] const Array<Vec3>& points() const noexcept { return points_; }
   [[nodiscard]] std::size_t triangleCount() const noexcept { return triangles_.size(); }
+  /// The first so many triangles are the boundary of the object; the others are inside.
+  [[nodiscard]] std::size_t boundaryCount() const noexcept { return boundaryTriangles_; }
   [[nodiscard]] std::array<Vec3, 3> triangle(Index t) const noexcept;
   [[nodiscard]] std::array<Vec3, 2> segment(Index s) const noexcept;
   [[nodiscard]] std::size_t segmentCount() const noexcept { return segments_.size(); }
@@ -73,6 +76,7 @@ class ReferenceSurface {
 
   Array<Vec3> points_;
   std::vector<std::array<Index, 3>> triangles_;
+  std::size_t boundaryTriangles_ = 0;
   std::vector<Index> patches_;  ///< per triangle
   std::vector<bool> taggedTriangles_;
   std::vector<std::array<Index, 2>> segments_;

@@ -37,6 +37,15 @@ TriangleTree treeOf(const Array<Vec3>& points, std::span<const Quad> quads) {
   return TriangleTree(triangles);
 }
 
+TriangleTree treeOf(const ReferenceSurface& surface, std::size_t begin, std::size_t end) {
+  std::vector<std::array<Vec3, 3>> triangles;
+  triangles.reserve(end - begin);
+  for (std::size_t t = begin; t < end; ++t) {
+    triangles.push_back(surface.triangle(static_cast<Index>(t)));
+  }
+  return TriangleTree(triangles);
+}
+
 /// Of vertices, centres and middles of edges; edges are those of two quads in most cases, and one
 /// of these asks.
 double distanceOf(const Array<Vec3>& points, const Quad& quad, const TriangleTree& tree) {
@@ -50,6 +59,15 @@ double distanceOf(const Array<Vec3>& points, const Quad& quad, const TriangleTre
     largest = std::max(largest, tree.nearest(centreOf(ends)).distance);
   }
   return largest;
+}
+
+/// In diagonals.
+std::vector<double> distancesOf(const Array<Vec3>& points, std::span<const Quad> quads,
+                                const TriangleTree& tree, double diagonal, Stage& stage) {
+  std::vector<double> distances(quads.size());
+  parallelFor(stage, quads.size(), kGrain,
+              [&](std::size_t q) { distances[q] = distanceOf(points, quads[q], tree) / diagonal; });
+  return distances;
 }
 
 double largestOf(std::span<const double> distances) {
@@ -74,11 +92,7 @@ double diagonalOf(const ReferenceSurface& surface) {
 }
 
 TriangleTree treeOf(const ReferenceSurface& surface) {
-  std::vector<std::array<Vec3, 3>> triangles(surface.triangleCount());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    triangles[t] = surface.triangle(static_cast<Index>(t));
-  }
-  return TriangleTree(triangles);
+  return treeOf(surface, 0, surface.boundaryCount());
 }
 
 std::vector<Index> BoundaryDistance::quadsBeyond(double limit) const {
@@ -93,10 +107,7 @@ BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad
                                  const ReferenceSurface& surface, const TriangleTree& tree,
                                  double diagonal, Stage& stage) {
   BoundaryDistance distance;
-  distance.ofQuads.resize(quads.size());
-  parallelFor(stage, quads.size(), kGrain, [&](std::size_t q) {
-    distance.ofQuads[q] = distanceOf(points, quads[q], tree) / diagonal;
-  });
+  distance.ofQuads = distancesOf(points, quads, tree, diagonal, stage);
   distance.largest.fromMesh = largestOf(distance.ofQuads);
 
   struct FromSurface {
@@ -105,7 +116,7 @@ BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad
   };
   const TriangleTree ofMesh = treeOf(points, quads);
   const std::vector<FromSurface> found = collectFromBlocks<FromSurface>(
-      stage, surface.triangleCount(), kGrain,
+      stage, surface.boundaryCount(), kGrain,
       [&](std::size_t begin, std::size_t end, std::vector<FromSurface>& list) {
         for (std::size_t t = begin; t < end; ++t) {
           const std::array<Vec3, 3> corners = surface.triangle(static_cast<Index>(t));
@@ -121,6 +132,13 @@ BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad
     distance.largest.fromSurface = std::max(distance.largest.fromSurface, sample.distance);
   }
   return distance;
+}
+
+double innerDistance(const Array<Vec3>& points, std::span<const Quad> quads,
+                     const ReferenceSurface& surface, double diagonal, Stage& stage) {
+  if (quads.empty() || surface.boundaryCount() == surface.triangleCount()) return 0;
+  const TriangleTree tree = treeOf(surface, surface.boundaryCount(), surface.triangleCount());
+  return largestOf(distancesOf(points, quads, tree, diagonal, stage));
 }
 
 }  // namespace hexhex

@@ -24,9 +24,9 @@ struct BoundaryDistance {
   [[nodiscard]] std::vector<Index> quadsBeyond(double limit) const;
 };
 
-/// Quads are four triangles around their centres.
-/// @param quads     of the mesh
-/// @param tree      of the surface's triangles
+/// Between two boundaries, whatever is inside. Quads are four triangles around their centres.
+/// @param quads     of the boundary of the mesh
+/// @param tree      of the surface's boundary
 /// @param diagonal  by which distances are divided
 [[nodiscard]] BoundaryDistance distanceBetween(const Array<Vec3>& points,
                                                std::span<const Quad> quads,
@@ -34,6 +34,13 @@ struct BoundaryDistance {
                                                const TriangleTree& tree, double diagonal,
                                                Stage& stage);
 
+/// Of its boundary.
 [[nodiscard]] TriangleTree treeOf(const ReferenceSurface& surface);
+
+/// The largest distance of quads inside from the surface's triangles inside, in diagonals; 0 if
+/// there are none of either. Not the other way: triangles that are not aligned with the map have no
+/// quads.
+[[nodiscard]] double innerDistance(const Array<Vec3>& points, std::span<const Quad> quads,
+                                   const ReferenceSurface& surface, double diagonal, Stage& stage);
 
 }  // namespace hexhex

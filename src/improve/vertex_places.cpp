@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <adjacency/corner_range.hpp>
 #include <adjacency/hex_topology.hpp>
@@ -25,8 +27,8 @@ std::array<Index, n> sorted(std::array<Index, n> vertices) {
   return vertices;
 }
 
-/// Triangles of the boundary and between regions, with tags if they have some.
-std::vector<FeatureFace> trianglesOf(const TetMapView& map, Stage& stage) {
+/// Triangles of the boundary, then tagged ones inside and those between regions.
+void addTriangles(const TetMapView& map, Stage& stage, SurfaceParts& parts) {
   TetTopology topology;
   topology.tets = map.tets;
   topology.pointCount = map.points.size();
@@ -35,16 +37,15 @@ std::vector<FeatureFace> trianglesOf(const TetMapView& map, Stage& stage) {
                 "The tets of the map are no manifold: a triangle belongs to more than two of them, "
                 "or to two on the same side. `hexhex check` tells where.");
   }
-  std::vector<FeatureFace> triangles;
+  std::vector<FeatureFace> tagged;
   for (const FeatureFace& face : map.features.faces) {
-    if (face.tag != 0) triangles.push_back({sorted(face.vertices), face.tag});
+    if (face.tag != 0) tagged.push_back({sorted(face.vertices), face.tag});
   }
   const auto byVertices = [](const FeatureFace& a, const FeatureFace& b) {
     return a.vertices < b.vertices;
   };
-  std::sort(triangles.begin(), triangles.end(), byVertices);
-  const std::vector<FeatureFace> tagged = triangles;
-  triangles.clear();
+  std::sort(tagged.begin(), tagged.end(), byVertices);
+  std::vector<FeatureFace> inner;
   for (HalfFace face = 0; face < 4 * map.tets.size(); ++face) {
     const HalfFace mate = topology.mate[face];
     if (mate != kNone && mate < face) continue;
@@ -57,9 +58,10 @@ std::vector<FeatureFace> trianglesOf(const TetMapView& map, Stage& stage) {
                                 map.regions[tetOf(face)] != map.regions[tetOf(mate)];
     if (mate != kNone && triangle.tag == 0 && !betweenRegions) continue;
     triangle.vertices = {vertices[0], vertices[2], vertices[1]};  // facing outwards
-    triangles.push_back(triangle);
+    (mate == kNone ? parts.triangles : inner).push_back(triangle);
   }
-  return triangles;
+  parts.boundaryTriangles = parts.triangles.size();
+  parts.triangles.insert(parts.triangles.end(), inner.begin(), inner.end());
 }
 
 void requireGenerators(const HexMesh& mesh, const TetMapView& map, Stage& stage) {
@@ -105,14 +107,43 @@ void addQuad(const Array<Vec3>& points, Quad quad, std::int32_t tag, SurfacePart
   parts.groups.insert(parts.groups.end(), 2, group);
 }
 
-/// Boundary quads and tagged ones inside.
-void addQuads(const HexMesh& mesh, Stage& stage, SurfaceParts& parts) {
+bool byVertices(const FeatureQuad& a, const FeatureQuad& b) {
+  return sorted(a.vertices) < sorted(b.vertices);
+}
+
+/// Found by their vertices.
+std::vector<FeatureQuad> taggedQuads(const HexMesh& mesh) {
   std::vector<FeatureQuad> tagged = mesh.features.quads;
   std::erase_if(tagged, [](const FeatureQuad& quad) { return quad.tag == 0; });
-  const auto byVertices = [](const FeatureQuad& a, const FeatureQuad& b) {
-    return sorted(a.vertices) < sorted(b.vertices);
-  };
   std::sort(tagged.begin(), tagged.end(), byVertices);
+  return tagged;
+}
+
+/// Faces of several cells that are tagged or, where regions count, lie between them.
+std::vector<Quad> innerQuads(const HexMesh& mesh, bool regionsCount, Stage& stage) {
+  const std::vector<FeatureQuad> tagged = taggedQuads(mesh);
+  const bool byRegion = regionsCount && mesh.regions.size() == mesh.cells.size();
+  if (tagged.empty() && !byRegion) return {};
+  const VertexCells around = cellsAroundVertices(mesh, stage);
+  return collectFromBlocks<Quad>(
+      stage, mesh.points.size(), kGrain,
+      [&](std::size_t begin, std::size_t end, std::vector<Quad>& quads) {
+        forEachFace(std::span<const Hex>(mesh.cells), begin, end, around, [&](const auto& sides) {
+          if (sides.size() < 2) return;
+          const Quad quad = faceVertices(mesh.cells[sides[0].cell], sides[0].face);
+          const bool betweenRegions =
+              byRegion && mesh.regions[sides[0].cell] != mesh.regions[sides[1].cell];
+          if (betweenRegions ||
+              std::binary_search(tagged.begin(), tagged.end(), FeatureQuad{quad, 1}, byVertices)) {
+            quads.push_back(quad);
+          }
+        });
+      });
+}
+
+/// Boundary quads, then tagged ones inside.
+void addQuads(const HexMesh& mesh, Stage& stage, SurfaceParts& parts) {
+  const std::vector<FeatureQuad> tagged = taggedQuads(mesh);
   std::vector<bool> isAdded(tagged.size());
   for (const Quad& quad : quadsAt(mesh, boundaryPlaces(mesh, stage))) {
     const auto found =
@@ -121,6 +152,7 @@ void addQuads(const HexMesh& mesh, Stage& stage, SurfaceParts& parts) {
     if (isTagged) isAdded[static_cast<std::size_t>(found - tagged.begin())] = true;
     addQuad(mesh.points, quad, isTagged ? found->tag : 0, parts);
   }
+  parts.boundaryTriangles = parts.triangles.size();
   for (std::size_t i = 0; i < tagged.size(); ++i) {
     if (!isAdded[i]) addQuad(mesh.points, tagged[i].vertices, tagged[i].tag, parts);
   }
@@ -171,7 +203,7 @@ VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angl
   SurfaceParts parts;
   parts.angle = angle;
   parts.points.assign(map.points.begin(), map.points.end());
-  parts.triangles = trianglesOf(map, stage);
+  addTriangles(map, stage, parts);
   addCurves(map.features, structure.singularEdges, parts);
   VertexPlaces places;
   places.surface = ReferenceSurface(std::move(parts), stage);
@@ -187,6 +219,7 @@ VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angl
         return count;
       },
       places, stage);
+  places.innerQuads = innerQuads(mesh, !map.regions.empty(), stage);
   return places;
 }
 
@@ -208,6 +241,7 @@ VertexPlaces placesOnMesh(const HexMesh& mesh, double angle, Stage& stage) {
         return std::size_t{1};
       },
       places, stage);
+  places.innerQuads = innerQuads(mesh, false, stage);
   return places;
 }
 

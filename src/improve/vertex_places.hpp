@@ -1,6 +1,8 @@
 // How each vertex of a mesh may move: freely, on a patch of the surface, on a curve, or not at all.
 #pragma once
 
+#include <vector>
+
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
@@ -10,8 +12,9 @@ namespace hexhex {
 
 struct VertexPlaces {
   ReferenceSurface surface;
-  Array<Freedom> freedom;  ///< per vertex
-  Array<Index> simplex;    ///< per vertex: the triangle or segment that holds it, or kNone
+  Array<Freedom> freedom;        ///< per vertex
+  Array<Index> simplex;          ///< per vertex: the triangle or segment that holds it, or kNone
+  std::vector<Quad> innerQuads;  ///< of the mesh, on triangles of the surface that are inside
 
   /// The place nearest to a point that a vertex may move to.
   [[nodiscard]] SurfacePlace nearest(Index vertex, const Vec3& point) const {

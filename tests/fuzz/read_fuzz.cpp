@@ -102,6 +102,10 @@ auto parse(std::string_view text, const std::string& fileName, Context& context)
   return readInput(Input(text, fileName), context);
 }
 
+TetMap parseHexex(std::string_view text, const std::string& fileName, Context& context) {
+  return readHexex({text, fileName}, {.keepWalls = true}, context);
+}
+
 // Maps in arrays of the usual name.
 TetMap parseVtkLegacyMap(std::string_view text, const std::string& fileName, Context& context) {
   return readVtkLegacyMap({text, fileName}, {}, context);
@@ -138,7 +142,7 @@ struct Reader {
 };
 
 constexpr std::array kReaders = {
-    Reader{"hexex", read<parse<readHexex>>},
+    Reader{"hexex", read<parseHexex>},
     Reader{"mesh", read<parse<readMedit>>},
     Reader{"mesh-tets", read<parse<readMeditTets>>},
     Reader{"meshb", read<parse<readMeshb>>, fuzz::changeMeshb},

@@ -15,6 +15,7 @@
 
 #include "mesh/grid_meshes.hpp"
 #include "support/error_of.hpp"
+#include "support/sampled_distance.hpp"
 
 namespace hexhex::test {
 
@@ -247,6 +248,32 @@ TEST(Improve, KeepsTaggedQuadsInsideWhereTheyAre) {
     moved += mesh.points[v] == before.points[v] ? 0 : 1;
   }
   EXPECT_GT(moved, 10U);
+  // The wall is no part of the boundary: distances do not know it.
+  EXPECT_LT(report.distanceBefore.hausdorff(), 1e-12);
+  EXPECT_LT(report.distanceAfter.hausdorff(), 1e-12);
+  EXPECT_LT(report.innerDistanceAfter, 1e-12);
+}
+
+/// A sheet that is not flat, and regions: by known radii, and by points sampled on both boundaries.
+TEST(Improve, MeasuresTheBoundaryAndWhatIsInsideByThemselves) {
+  for (const SampleKind kind : {SampleKind::Sphere, SampleKind::Shell, SampleKind::Torus}) {
+    SCOPED_TRACE(static_cast<int>(kind));
+    const TetMap map = generateSample(kind, {.cells = 2, .jitter = 0.3, .features = true}).map;
+    TetMap plain = map;
+    plain.regions.clear();
+    HexMesh mesh = extracted(map, 2);
+    HexMesh rough = mesh;
+    const ImproveReport report = improvedOn(mesh, map);
+    for (const auto& [reported, made] :
+         {std::pair(report.distanceBefore, &rough), std::pair(report.distanceAfter, &mesh)}) {
+      const SampledDistance sampled = sampledDistance(*made, map);
+      EXPECT_NEAR(reported.fromMesh, sampled.fromMesh, 0.1 * sampled.fromMesh + 1e-12);
+      EXPECT_NEAR(reported.fromSurface, sampled.fromObject, 0.1 * sampled.fromObject + 1e-12);
+    }
+    // Without the blocks' regions, nothing is inside.
+    EXPECT_GT(report.innerDistanceAfter, 0);
+    EXPECT_EQ(improvedOn(rough, plain).innerDistanceBefore, 0);
+  }
 }
 
 TEST(Improve, MendsSamplesOfAllKinds) {

@@ -17,9 +17,9 @@ const std::string kPoints = "4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
 const std::string kTet = "0 1 2 3  0 0 0  1 0 0  0 1 0  0 0 1\n";
 const std::string kOneTet = kPoints + "1\n" + kTet;
 
-TetMap parse(const std::string& text) {
+TetMap parse(const std::string& text, const ReadOptions& options = {}) {
   Context context;
-  return readHexex({text, "m.hexex"}, context);
+  return readHexex({text, "m.hexex"}, options, context);
 }
 
 void expectSame(const TetMap& a, const TetMap& b) {
@@ -90,14 +90,49 @@ TEST(Hexex, TrailingSectionsBecomeFeatures) {
   const TetMap map = parse(kOneTet + "2\n2 0 1 0.5\n1 2 3 1/2\n1 2 1\n3\n0 1\n1 2\n0 1 2\n");
   EXPECT_EQ(map.features.vertices, (std::vector<FeatureVertex>{{3, 1}}));
   EXPECT_EQ(map.features.edges, (std::vector<FeatureEdge>{{{0, 1}, 1}, {{1, 2}, 1}}));
-  // The first wall is a feature, too.
-  EXPECT_EQ(map.features.faces, (std::vector<FeatureFace>{{{0, 1, 2}, 1}, {{1, 2, 3}, 2}}));
+  // Walls are none, but the first wall is a feature, too.
+  EXPECT_EQ(map.features.faces, (std::vector<FeatureFace>{{{0, 1, 2}, 1}}));
   EXPECT_TRUE(parse(kOneTet + "0\n0 0 0\n").features.empty());
   // What is listed twice is kept once.
   const Features once = parse(kOneTet + "2 2 2\n3\n3\n0 1\n1 0\n0 1 2\n1 2 0\n").features;
   EXPECT_EQ(once.vertices.size(), 1U);
   EXPECT_EQ(once.edges, (std::vector<FeatureEdge>{{{0, 1}, 1}}));
   EXPECT_EQ(once.faces.size(), 1U);
+}
+
+// Two tets; the triangle between them is 1 2 3.
+const std::string kTwoTets =
+    "5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n2\n" + kTet + "1 2 3 4  1 0 0  0 1 0  0 0 1  1 1 1\n";
+const std::string kBoundary = "0 1 2\n0 3 1\n2 3 0\n4 1 2\n1 3 4\n2 4 3\n";
+
+TEST(Hexex, WallsAreNoFeaturesUnlessTheyAreKept) {
+  std::string walls = "7\n3 1 2 0.5\n";
+  for (std::size_t i = 0; i < kBoundary.size(); i += 6) walls += kBoundary.substr(i, 5) + " 0\n";
+  EXPECT_TRUE(parse(kTwoTets + walls).features.empty());
+  const auto kept = [&](const std::string& features) {
+    return parse(kTwoTets + walls + features, {.keepWalls = true}).features.faces;
+  };
+  // Only that inside.
+  EXPECT_EQ(kept(""), (std::vector<FeatureFace>{{{3, 1, 2}, 2}}));
+  // Features come first.
+  EXPECT_EQ(kept("0 0 2\n0 1 2\n1 2 3\n"),
+            (std::vector<FeatureFace>{{{0, 1, 2}, 1}, {{1, 2, 3}, 1}}));
+  EXPECT_EQ(kept("0 0 1\n0 1 2\n"), (std::vector<FeatureFace>{{{0, 1, 2}, 1}, {{3, 1, 2}, 2}}));
+}
+
+TEST(Hexex, AListOfAllOfTheBoundarySaysNothing) {
+  const auto facesOf = [](const std::string& features) {
+    return parse(kTwoTets + features).features.faces;
+  };
+  EXPECT_TRUE(facesOf("0 0 6\n" + kBoundary).empty());
+  EXPECT_TRUE(facesOf("0 0 7\n" + kBoundary + "2 1 0\n").empty());
+  // What is inside stays, and so does a part of the boundary.
+  EXPECT_EQ(facesOf("0 0 7\n1 2 3\n" + kBoundary), (std::vector<FeatureFace>{{{1, 2, 3}, 1}}));
+  EXPECT_EQ(facesOf("0 0 5\n" + kBoundary.substr(0, 30)).size(), 5U);
+  EXPECT_EQ(facesOf("0 0 6\n" + kBoundary.substr(0, 30) + "1 2 3\n").size(), 6U);
+  const Features features = parse(kTwoTets + "1 1 6\n4\n0 1\n" + kBoundary).features;
+  EXPECT_EQ(features.vertices, (std::vector<FeatureVertex>{{4, 1}}));
+  EXPECT_EQ(features.edges, (std::vector<FeatureEdge>{{{0, 1}, 1}}));
 }
 
 TEST(Hexex, FeaturesAreWrittenWithoutTags) {
@@ -187,7 +222,7 @@ TEST(Hexex, CancellationEndsReading) {
   Context context;
   context.cancel();
   EXPECT_EQ(failureOf([&] {
-              static_cast<void>(readHexex({kOneTet, "m"}, context));
+              static_cast<void>(readHexex({kOneTet, "m"}, {}, context));
             }).code,
             ErrorCode::Cancelled);
 }

@@ -118,7 +118,10 @@ auto parse(std::string_view text, const std::string& fileName, Context& context)
 TEST(DamagedFiles, Hexex) {
   const TemporaryFolder folder;
   writeMap(smallMap(), folder / "a.hexex");
-  damage(contentOf(folder / "a.hexex") + "1\n0 1 2 1/3\n1 1 1\n0\n1 2\n1 2 3\n", parse<readHexex>);
+  damage(contentOf(folder / "a.hexex") + "1\n0 1 2 1/3\n1 1 1\n0\n1 2\n1 2 3\n",
+         [](std::string_view text, const std::string& fileName, Context& context) {
+           return readHexex({text, fileName}, {.keepWalls = true}, context);
+         });
 }
 
 TEST(DamagedFiles, Medit) {

@@ -66,7 +66,7 @@ std::string hexexText(std::size_t tets, char separator) {
 }
 
 TetMap parseMap(const std::string& text, const std::string& name, Context& context) {
-  return readHexex({text, name}, context);
+  return readHexex({text, name}, {}, context);
 }
 
 TEST(ParallelText, LinesMeanNothing) {

@@ -19,6 +19,7 @@
 #include <lattice/rotation.hpp>
 
 #include "extract/support.hpp"
+#include "quantize/real_maps.hpp"
 #include "support/error_of.hpp"
 #include "support/scaled_map.hpp"
 
@@ -106,7 +107,6 @@ TetMap withDigits(TetMap map, int digits) {
 QuantizeOptions cells(double number) {
   QuantizeOptions options;
   options.cells = number;
-  options.wallTag = 2;
   return options;
 }
 
@@ -328,20 +328,6 @@ TEST(MotorcycleComplex, ConsistsOfBoxes) {
       }
     }
   }
-}
-
-/// Seamless maps of real models.
-std::vector<std::filesystem::path> realMaps() {
-  const char* chosen = std::getenv("HEXHEX_DATA");
-  const auto folder =
-      std::filesystem::path(chosen != nullptr ? chosen : HEXHEX_DATA_DIR) / "seamless";
-  std::vector<std::filesystem::path> files;
-  if (!std::filesystem::exists(folder)) return files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  files.resize(std::min(files.size(), static_cast<std::size_t>(cases(13))));
-  return files;
 }
 
 TEST(QuantizeRealMaps, AtAllDensities) {

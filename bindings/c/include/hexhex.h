@@ -232,9 +232,10 @@ typedef struct hexhex_read_options {
   size_t size;
   const char* format; /**< by its name, see hexhex_get_format(); NULL: what the extension means */
   const char* map_array; /**< that holds the map in .vtu and .vtk files; NULL: "igm" */
+  int keep_walls;        /**< 1: walls inside, which .hexex files list, are features with tag 2 */
 } hexhex_read_options;
 #define HEXHEX_READ_OPTIONS_INIT \
-  { sizeof(hexhex_read_options), NULL, NULL }
+  { sizeof(hexhex_read_options), NULL, NULL, 0 }
 
 /** See WriteOptions in <hexhex/io.hpp>. */
 typedef struct hexhex_write_options {
@@ -1166,8 +1167,8 @@ typedef struct hexhex_improve_report {
   double mean_before;
   double mean_after;
   double diagonal;
-  double from_mesh_before;    /**< largest distance from the mesh to the surface, */
-  double from_surface_before; /**< and from the surface to the mesh */
+  double from_mesh_before;    /**< largest distance of the mesh's boundary from the object's, */
+  double from_surface_before; /**< and of the object's from the mesh's */
   double from_mesh_after;
   double from_surface_after;
   uint64_t far_cells_before; /**< cells whose boundary is more than 1e-3 from the surface */
@@ -1181,9 +1182,14 @@ typedef struct hexhex_improve_report {
   double mean_move;     /**< of those that moved */
   uint64_t off_surface; /**< vertices that used the slack */
   double seconds;
+  double inner_distance_before; /**< largest distance of faces inside, tagged or between regions, */
+  double inner_distance_after;  /**< from such triangles; 0 if there are none */
 } hexhex_improve_report;
-#define HEXHEX_IMPROVE_REPORT_INIT \
-  { sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+#define HEXHEX_IMPROVE_REPORT_INIT                                                                \
+  {                                                                                               \
+    sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
+        0, 0, 0                                                                                   \
+  }
 
 /** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>.
  * @param map          that the mesh was extracted from, or NULL: the surface is the mesh's boundary

@@ -9,9 +9,6 @@ declare const self: {
   postMessage(message: FromWorker, transfer?: Transferable[]): void;
 };
 
-/** What the reader of .hexex files gives walls of a motorcycle complex, as in `hexhex quantize`. */
-const kWallTag = 2;
-
 let library: Hexhex;
 let map: TetMap | null = null;
 let mapName = "";
@@ -84,10 +81,7 @@ function requireMap(): TetMap {
 }
 
 function quantizeMap(wanted: number): void {
-  const quantized = library.quantize(requireMap(), {
-    cells: wanted,
-    wallTag: mapName.toLowerCase().endsWith(".hexex") ? kWallTag : 0,
-  });
+  const quantized = library.quantize(requireMap(), { cells: wanted });
   map!.free();
   map = quantized.map;
 }

@@ -62,6 +62,8 @@ export interface ReadOptions {
   format?: string;
   /** The array that holds the map in .vtu and .vtk files; "igm" if it is not given. */
   mapArray?: string;
+  /** Walls of a motorcycle complex that .hexex files list, inside, are features with the tag 2. */
+  keepWalls?: boolean;
 }
 
 export interface WriteOptions {

@@ -559,7 +559,7 @@ def quantize(map: Map, *, cells: float | None = None, scale: float | None = None
         edge_length: of a hexahedron in space, on the average.
         densify: if no valid map is found so, takes the first denser one that works.
         wall_tag: tagged triangles inside of the object stay planes of the mesh, but for those with
-            this tag; 0 for none. In .hexex files, walls of a motorcycle complex have the tag 2.
+            this tag; 0 for none. Walls that read_map(keep_walls=True) has read have the tag 2.
         tolerance: share of its size by which the map may miss being seamless.
         threads, progress: as in extract().
 
@@ -713,18 +713,20 @@ def defect_kinds() -> list[str]:
 
 
 def read_map(file: Path, *, format: str | None = None, map_array: str = "igm",
-             threads: int | None = None, progress: Progress | None = None) -> Map:
+             keep_walls: bool = False, threads: int | None = None, progress: Progress | None = None) -> Map:
     """Reads a map: .hexex, .ovm, .ovmb, .vtu, .vtk, .npz. Raises FileError with the line as its
     place; of a missing file it is a FileNotFoundError, too.
 
     Args:
         format: whatever the extension is: see formats().
         map_array: the name of the array that holds the map in .vtu and .vtk files.
+        keep_walls: walls of a motorcycle complex that a .hexex file lists, inside of the object,
+            become features with the tag 2: faces between blocks.
     """
     if _npz.is_npz(os.fspath(file), format):
         return _read_npz(file, Map)  # type: ignore[no-any-return]
     return Map._from_handle(_hexhex.read_map(os.fspath(file), format or "", map_array,
-                                             _threads(threads), progress))
+                                             keep_walls, _threads(threads), progress))
 
 
 def _read_npz(file: Path, kind: type[Any]) -> Any:
@@ -842,7 +844,7 @@ def holds_curved(file: Path) -> bool:
 
 
 def read(file: Path, *, format: str | None = None, map_array: str = "igm",
-         threads: int | None = None, progress: Progress | None = None) -> Map | Mesh:
+         keep_walls: bool = False, threads: int | None = None, progress: Progress | None = None) -> Map | Mesh:
     """Reads what a file holds: a mesh or, where there are no hexahedra, a map. Arguments as of
     read_map().
 
@@ -857,7 +859,8 @@ def read(file: Path, *, format: str | None = None, map_array: str = "igm",
     """
     if _npz.is_npz(os.fspath(file), format):
         return _npz.read(os.fspath(file))
-    found = _hexhex.read(os.fspath(file), format or "", map_array, _threads(threads), progress)
+    found = _hexhex.read(os.fspath(file), format or "", map_array, keep_walls, _threads(threads),
+                         progress)
     return Map._from_handle(found) if isinstance(found, _hexhex.Map) else Mesh._from_handle(found)
 
 

@@ -837,10 +837,12 @@ class ImproveReport:
     far_cells: npt.NDArray[np.uint64]  #: whose boundary ends more than 1e-3 from the surface
     far_cells_before: int  #: how many were
     diagonal: float
-    from_mesh_before: float  #: largest distance from the mesh to the surface,
-    from_surface_before: float  #: and from the surface to the mesh
+    from_mesh_before: float  #: largest distance of the mesh's boundary from the object's,
+    from_surface_before: float  #: and of the object's from the mesh's
     from_mesh_after: float
     from_surface_after: float
+    inner_distance_before: float  #: of faces inside, tagged or between regions, from such triangles
+    inner_distance_after: float
     free_vertices: int
     patch_vertices: int  #: that slide on the surface,
     curve_vertices: int  #: on curves,

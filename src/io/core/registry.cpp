@@ -36,7 +36,7 @@ void writePlain(const TetMap& map, const std::filesystem::path& file,
 }
 
 TetCells readHexexTets(const Input& input, Context& context) {
-  const TetMap map = readHexex(input, context);
+  const TetMap map = readHexex(input, {}, context);
   TetCells tets;
   tets.points.assign(map.points.begin(), map.points.end());
   tets.cells.assign(map.tets.begin(), map.tets.end());
@@ -59,7 +59,7 @@ void writeExodusFile(const HexMesh& mesh, const std::filesystem::path& file,
 
 constexpr std::array kFormatTable = {
     Format{.label = {"hexex", ".hexex", "text of parametrized tets"},
-           .maps = {readPlain<readHexex>, writePlain<writeHexex>},
+           .maps = {readHexex, writePlain<writeHexex>},
            .readTets = readHexexTets},
     Format{.label = {"mesh", ".mesh", "MEDIT (Gamma Mesh Format), text"},
            .readTets = readMeditTets,

@@ -2,8 +2,12 @@
 #include <array>
 #include <cstdint>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
+
+#include <adjacency/cell_faces.hpp>
+#include <adjacency/vertex_lists.hpp>
 
 #include <hexhex/error.hpp>
 
@@ -47,13 +51,32 @@ void removeRepeated(std::vector<Feature>& features) {
   features.resize(kept);
 }
 
+/// The triangles of one tet alone, the vertices of each ascending, in lexicographic order.
+std::vector<std::array<Index, 3>> boundaryTriangles(const TetMap& map, Stage& stage) {
+  constexpr std::size_t kGrain = 4096;  // vertices per block: some tenths of a millisecond
+  const VertexLists<Index, std::uint64_t> tetsAt(map.points.size(), stage, [&map](const auto& add) {
+    for (std::size_t t = 0; t < map.tets.size(); ++t) {
+      for (const Index v : map.tets[t]) add(v, static_cast<Index>(t));
+    }
+  });
+  return collectFromBlocks<std::array<Index, 3>>(
+      stage, map.points.size(), kGrain,
+      [&](std::size_t begin, std::size_t end, std::vector<std::array<Index, 3>>& boundary) {
+        forEachFace(std::span<const Tet>(map.tets), begin, end, tetsAt, [&](const auto& tets) {
+          if (tets.size() > 1) return;
+          boundary.push_back(faceVertices(map.tets[tets[0].cell], tets[0].face));
+          std::sort(boundary.back().begin(), boundary.back().end());
+        });
+      });
+}
+
 /// Reads one file from top to bottom.
 class HexexReader {
  public:
   static constexpr std::string_view kFirst = "+0123456789";  // a number of vertices
 
-  HexexReader(std::string_view text, const std::string& fileName, Stage& stage)
-      : scanner_(text, fileName), index_(text, stage), stage_(stage) {}
+  HexexReader(std::string_view text, const std::string& fileName, Stage& stage, bool keepWalls)
+      : scanner_(text, fileName), index_(text, stage), stage_(stage), keepWalls_(keepWalls) {}
 
   TetMap read() {
     readPoints();
@@ -117,12 +140,28 @@ class HexexReader {
               ". After the last tet only walls (\"W\" and W lines \"v v v distance\") and "
               "features (\"vertices edges faces\" and their lines) may follow.");
     }
+    if (!keepWalls_) walls.clear();
+    removeRepeated(map_.features.vertices);
+    removeRepeated(map_.features.edges);
+    removeRepeated(map_.features.faces);
+    keepFacesThatSaySomething(std::move(walls));
+  }
+
+  /// All of the boundary, in a format without tags, says nothing about it, and would hide its
+  /// patches. Programs that trace motorcycle complexes list it, among walls and among features.
+  void keepFacesThatSaySomething(std::vector<FeatureFace> walls) {
+    std::vector<FeatureFace>& faces = map_.features.faces;
+    if (faces.empty() && walls.empty()) return;
+    const std::vector<std::array<Index, 3>> boundary = boundaryTriangles(map_, stage_);
+    const auto isOnBoundary = [&boundary](const FeatureFace& face) {
+      return std::binary_search(boundary.begin(), boundary.end(), keyOf(face));
+    };
+    const auto listed = std::count_if(faces.begin(), faces.end(), isOnBoundary);
+    if (static_cast<std::size_t>(listed) == boundary.size()) std::erase_if(faces, isOnBoundary);
+    std::erase_if(walls, isOnBoundary);
     // Features come first: a wall that is one as well is left out.
-    Features& features = map_.features;
-    features.faces.insert(features.faces.end(), walls.begin(), walls.end());
-    removeRepeated(features.vertices);
-    removeRepeated(features.edges);
-    removeRepeated(features.faces);
+    faces.insert(faces.end(), walls.begin(), walls.end());
+    removeRepeated(faces);
   }
 
   std::vector<FeatureFace> readWalls() {
@@ -171,6 +210,7 @@ class HexexReader {
   TextScanner scanner_;
   TokenIndex index_;
   Stage& stage_;
+  bool keepWalls_;
   TetMap map_;
 };
 
@@ -216,8 +256,8 @@ void writeFeatures(const Features& features, LineWriter& lines, OutputFile& outp
 
 }  // namespace
 
-TetMap readHexex(const Input& input, Context& context) {
-  return readWith<HexexReader>(input, "read map", context);
+TetMap readHexex(const Input& input, const ReadOptions& options, Context& context) {
+  return readWith<HexexReader>(input, "read map", context, options.keepWalls);
 }
 
 void writeHexex(const TetMap& map, const std::filesystem::path& file, Context& context) {
