@@ -107,7 +107,7 @@ struct WriteOptions {
   /// extension means.
   std::string_view format = {};
 
-  /// For formats with groups of boundary quads, if no quad of the mesh is tagged: the angle in
+  /// For formats with groups of boundary quads, if none of them is tagged: the angle in
   /// degrees, up to 180, by which the boundary may turn within a group; see boundaryPatches(). 0:
   /// one group.
   double patchAngle = 40;

@@ -918,6 +918,38 @@ class Repair(CommandTest):
         self.assertEqual((self.folder / "same.hexex").read_bytes(), (self.folder / "integer.hexex").read_bytes())
         self.assertEqual(list(self.folder.glob("bad*")), [])
 
+    def test_walls_of_published_maps(self):
+        # Walls in the middle of a box, and all of its boundary among walls and among features.
+        self.generate("box", "--features", name="box.hexex")
+        lines = (self.folder / "box.hexex").read_text().splitlines()
+        points = int(lines[0])
+        end = points + 2 + int(lines[points + 1])
+        at_tets = {}
+        for tet in lines[points + 2:end]:
+            corners = sorted(map(int, tet.split()[:4]))
+            for left in range(4):
+                face = tuple(corners[:left] + corners[left + 1:])
+                at_tets[face] = at_tets.get(face, 0) + 1
+        walls = [face for face, count in at_tets.items()
+                 if count == 1 or all(float(lines[1 + v].split()[0]) == 1 for v in face)]
+        text = [str(len(walls))] + [f"{a} {b} {c} 0.5" for a, b, c in walls]
+        published = self.write("published.hexex", "\n".join(lines[:end] + text + lines[end:]) + "\n")
+
+        def groups(*options):
+            run = self.run_command("extract", published, "-o", "box.inp", *options)
+            found = re.findall(r"\*SURFACE.*NAME=(\w+)", (self.folder / "box.inp").read_text())
+            return re.search(r"(\d+) quads", run.stdout)[1], found
+
+        patches = [f"S_PATCH_{i}" for i in range(1, 7)]
+        self.assertEqual(groups(), ("0", patches))
+        self.assertEqual(groups("--keep-walls"), ("64", patches))
+        self.run_command("convert", published, "kept.vtu", "--keep-walls", "--quiet")
+        self.assertIn(b"feature_triangles", (self.folder / "kept.vtu").read_bytes())
+        self.run_command("convert", published, "box.vtu", "--quiet")
+        self.assertNotIn(b"feature_triangles", (self.folder / "box.vtu").read_bytes())
+        self.run_command("extract", "--tets", "a.mesh", "--polycube", "b.mesh", "-o", "c.vtu", "--keep-walls",
+                         expect=BAD_USAGE)
+
     def test_improve(self):
         self.run_command("generate", "torus", "--jitter", "0.9", "--cells", "3", "--quiet", "-o", "map.hexex")
         self.run_command("extract", "map.hexex", "-o", "rough.vtu", "--scale", "2", "--quiet")

@@ -470,6 +470,7 @@ static void test_features(const char* folder) {
   read.map_array = "theirs";
   CHECK_OK(hexhex_map_read(file, &read, NULL, &bad, &error));
   hexhex_map_destroy(bad);
+  read.keep_walls = 1;  // there are none
   hexhex_mesh* none = NULL;
   CHECK_OK(hexhex_read(file, &read, NULL, &bad, &none, &error));
   CHECK(bad != NULL && none == NULL);
@@ -630,6 +631,7 @@ static void test_improve(void) {
   CHECK((report.far_cells_after > 0) == (report.from_mesh_after > 1e-3));
   CHECK(report.moved_vertices > 0 && report.largest_move >= report.mean_move);
   CHECK(report.patch_vertices > 0 && report.free_vertices > 0 && report.off_surface == 0);
+  CHECK(report.inner_distance_before == 0 && report.inner_distance_after == 0);
   hexhex_certificate proven = HEXHEX_CERTIFICATE_INIT;
   CHECK_OK(hexhex_mesh_certify(mesh, NULL, NULL, NULL, &proven, &error));
   CHECK(proven.refuted == 0 && proven.undecided == 0);

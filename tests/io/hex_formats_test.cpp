@@ -192,6 +192,15 @@ TEST(MeshGroups, PatchesNameABoundaryWithoutTags) {
   EXPECT_EQ(groupQuads(mesh, 100, stage).groups[0].name, "boundary");
   mesh.features.quads = {{{0, 4, 16, 12}, 3}};  // tagged quads are all that counts then
   EXPECT_EQ(groupQuads(mesh, 40, stage).groups.size(), 2U);
+  mesh.features.quads = {{{1, 5, 17, 13}, 3}};  // not if they are inside
+  const QuadGroups both = groupQuads(mesh, 40, stage);
+  ASSERT_EQ(both.groups.size(), 7U);
+  EXPECT_EQ(both.groups[0].name, "surface_3");
+  EXPECT_EQ(both.groups[1].name, "patch_1");
+  EXPECT_EQ(both.groups[1].number, 4U);
+  EXPECT_EQ(both.groups[6].name, "patch_6");
+  mesh.features.quads[0].tag = std::numeric_limits<std::int32_t>::max() - 3;  // no room for numbers
+  EXPECT_EQ(groupQuads(mesh, 40, stage).groups.back().name, "boundary");
   mesh.features.quads[0].tag = 0;
   EXPECT_EQ(groupQuads(mesh, 40, stage).groups.size(), 6U);
 }

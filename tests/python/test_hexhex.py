@@ -347,6 +347,16 @@ def needs_quantization():
         pytest.skip("without Eigen")
 
 
+def test_walls_are_features_if_they_are_kept(tmp_path):
+    # Two tets with the triangle 1 2 3 between them.
+    (tmp_path / "map.hexex").write_text(
+        "5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n2\n0 1 2 3 0 0 0 1 0 0 0 1 0 0 0 1\n"
+        "1 2 3 4 1 0 0 0 1 0 0 0 1 1 1 1\n2\n1 2 3 0.5\n0 1 2 0\n")
+    for read in hexhex.read_map, hexhex.read:
+        assert len(read(tmp_path / "map.hexex").features.faces) == 0
+        assert read(tmp_path / "map.hexex", keep_walls=True).features.faces.tolist() == [[1, 2, 3, 2]]
+
+
 def test_improve_moves_a_copy_until_cells_are_positive():
     map = hexhex.generate("torus", cells=3, jitter=0.9)
     mesh = hexhex.extract(map, scale=2)

@@ -11,6 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include <gtest/gtest.h>
+
+#include <hexhex/improve.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex::test {
@@ -132,8 +135,9 @@ inline Vec3 pointOf(const std::array<Vec3, 4>& quad, double s, double t) {
 
 }  // namespace sampled
 
-/// @param steps  quads and sides of triangles are divided into so many: corners, middles of sides
-///               and centres are among the points if it is even
+/// The reported distance looks at few points: vertices, centres and middles of edges of quads,
+/// which are those of two steps; vertices and centres of triangles, which are among those of three.
+/// @param steps  sides of quads and triangles are divided into so many
 inline SampledDistance sampledDistance(const HexMesh& mesh, const TetMap& map, int steps = 4) {
   using namespace sampled;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -178,6 +182,14 @@ inline SampledDistance sampledDistance(const HexMesh& mesh, const TetMap& map, i
   }
   const double diagonal = distance(low, high);
   return {found.fromMesh / diagonal, found.fromObject / diagonal};
+}
+
+/// Whether a reported distance is right, as far as it looks.
+inline void expectSampled(const SurfaceDistance& reported, const HexMesh& mesh, const TetMap& map) {
+  EXPECT_NEAR(reported.fromMesh, sampledDistance(mesh, map, 2).fromMesh, 1e-9);
+  const double fromObject = sampledDistance(mesh, map, 3).fromObject;
+  EXPECT_LE(reported.fromSurface, fromObject + 1e-9);
+  EXPECT_GE(reported.fromSurface, 0.5 * fromObject - 1e-9);
 }
 
 }  // namespace hexhex::test

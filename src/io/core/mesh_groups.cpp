@@ -112,17 +112,20 @@ struct TaggedQuads {
   Array<Quad> quads;
   std::vector<std::uint64_t> places;
   Array<Tag> tags;
-  const char* kind = "surface";
+  Tag lastTag = std::numeric_limits<Tag>::max();  ///< those beyond are of smooth patches
 };
 
-/// Tags boundary quads by smooth patch.
+/// Tags boundary quads by smooth patch, with numbers behind the tags that there are.
 void tagPatches(const HexMesh& mesh, double angle, TaggedQuads& found, Stage& stage) {
   const SmoothPatches patches =
       findSmoothPatches(mesh.points, found.quads, angle, mesh.features.edges, stage);
-  if (patches.count <= 1) return;
-  found.kind = "patch";
+  Tag last = 0;
+  for (const FeatureQuad& quad : mesh.features.quads) last = std::max(last, quad.tag);
+  const bool haveRoom = patches.count < static_cast<Index>(found.lastTag - last);
+  if (patches.count <= 1 || !haveRoom) return;
+  found.lastTag = last;
   for (std::size_t i = 0; i < found.quads.size(); ++i) {
-    found.tags[i] = static_cast<Tag>(patches.patchOf[i] + 1);
+    found.tags[i] = last + 1 + static_cast<Tag>(patches.patchOf[i]);
   }
 }
 
@@ -135,11 +138,6 @@ TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
   found.quads = quadsAt(mesh, found.places);
   found.tags.resize(found.quads.size());
   std::fill(found.tags.begin(), found.tags.end(), Tag{0});
-  const auto isTagged = [](const FeatureQuad& quad) { return quad.tag != 0; };
-  if (std::none_of(features.begin(), features.end(), isTagged)) {
-    if (patchAngle > 0) tagPatches(mesh, patchAngle, found, stage);
-    return found;
-  }
   std::vector<std::pair<Quad, std::size_t>> table;  // by vertices, in whatever order
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (features[i].tag != 0) table.emplace_back(sorted(features[i].vertices), i);
@@ -153,6 +151,9 @@ TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
     found.tags[i] = features[feature->second].tag;
     onBoundary[feature->second] = 1;  // no other boundary quad has these vertices
   });
+  const bool isBoundaryTagged =
+      std::find(onBoundary.begin(), onBoundary.end(), 1) != onBoundary.end();
+  if (!isBoundaryTagged && patchAngle > 0) tagPatches(mesh, patchAngle, found, stage);
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (onBoundary[i] != 0 || features[i].tag == 0) continue;
     found.quads.push_back(features[i].vertices);
@@ -201,7 +202,10 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
   }
   const TaggedQuads found = findQuads(mesh, patchAngle, stage, isInside);
   const Array<std::size_t> order = orderByTag(found.tags);
-  QuadGroups result{{groupsOf(found.tags, order, {found.kind}), {}}, {}};
+  QuadGroups result{{groupsOf(found.tags, order, {"surface"}), {}}, {}};
+  for (ElementGroup& group : result.groups) {
+    if (group.tag > found.lastTag) group.name = groupName({"patch"}, group.tag - found.lastTag);
+  }
   result.elements.resize(order.size());
   result.places.resize(order.size());
   parallelFor(stage, order.size(), kGrain, [&](std::size_t i) {

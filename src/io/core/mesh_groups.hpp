@@ -53,9 +53,9 @@ struct QuadGroups : ElementGroups<4> {
 [[nodiscard]] VertexGroups groupVertices(const HexMesh& mesh);
 [[nodiscard]] EdgeGroups groupEdges(const HexMesh& mesh);
 
-/// Names are "surface_TAG", and "boundary" for boundary quads without a tag. If no quad has a tag,
-/// the groups are the smooth patches of boundaryPatches(), "patch_1" and so on, unless there is
-/// only one. Groups are in order of their tags, quads of a group in order of (cell, face), then
+/// Names are "surface_TAG", and "boundary" for boundary quads without a tag. If no
+/// boundary quad has a tag, they are in the smooth patches of boundaryPatches(), "patch_1" and so
+/// on, unless there is only one; their numbers come behind the tags of quads inside. Groups are in order of their tags, quads of a group in order of (cell, face), then
 /// those inside as the features list them.
 /// @param patchAngle  in degrees; 0: no patches
 /// @throws Error InvalidArgument for a feature with a vertex that is none of the mesh
