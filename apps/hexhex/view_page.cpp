@@ -16,7 +16,6 @@
 #include "exit_codes.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
-#include "quantize_options.hpp"
 #include "repair_text.hpp"
 #include "serve_page.hpp"
 #include "verification.hpp"
