@@ -54,7 +54,7 @@ std::string classify(const Examination& found, const MapSource& input) {
   std::string text =
       fmt::format("The map is defective: {} of {}.", counted(found.report.defects.size(), "kind"),
                   found.report.defects.size() == 1 ? "defect" : "defects");
-  if (found.seamless) text += " Nor can it be quantized: " + found.seamless->problem;
+  if (found.seamless) text += "\nNor can it be quantized: " + found.seamless->problem;
   return text;
 }
 
