@@ -51,9 +51,11 @@ std::string classify(const Examination& found, const MapSource& input) {
   if (found.report.valid()) return "The map is valid.";
   std::string advice = found.seamless ? adviceFor(*found.seamless, input) : "";
   if (!advice.empty()) return advice;
-  return fmt::format("The map is defective: {} of {}.",
-                     counted(found.report.defects.size(), "kind"),
-                     found.report.defects.size() == 1 ? "defect" : "defects");
+  std::string text =
+      fmt::format("The map is defective: {} of {}.", counted(found.report.defects.size(), "kind"),
+                  found.report.defects.size() == 1 ? "defect" : "defects");
+  if (found.seamless) text += "\nNor can it be quantized: " + found.seamless->problem;
+  return text;
 }
 
 int run(const Arguments& arguments) {

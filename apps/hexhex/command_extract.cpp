@@ -215,8 +215,12 @@ int extractWhatIsValid(const ExtractArguments& arguments, const TetMap& map, con
 void adviseQuantization(const ExtractArguments& arguments, const TetMap& map, const Error& error,
                         Context& context) {
   if (arguments.quantize || !canQuantize() || !mayBeSeamless(error.code())) return;
-  const std::string advice = adviceFor(examineSeamless(map, context), arguments.input);
+  const SeamlessReport seamless = examineSeamless(map, context);
+  const std::string advice = adviceFor(seamless, arguments.input);
   if (!advice.empty()) throw Error(error.code(), advice);
+  throw Error(error.code(),
+              std::string(error.what()) + " Nor can it be quantized: " + seamless.problem,
+              error.place());
 }
 
 /// The functions of the library that a run calls; weights are their seconds for a mesh of seven

@@ -71,7 +71,7 @@ void ProgressDisplay::showBar(std::string_view stage, double share) {
   const auto done = static_cast<std::size_t>(share * kBarWidth);
   printToStderr("\r\033[K[{}{}] {:3.0f} %  {:>11}  {}", std::string(done, '#'),
                 std::string(kBarWidth - done, ' '), std::floor(share * 100),
-                timeLeft(elapsed.count(), share), stage);
+                timeLeft(elapsed.count(), share), stage.substr(0, stage.find(':')));
   std::fflush(stderr);
 }
 

@@ -71,7 +71,7 @@ struct SeamlessReport {
   double integerFactor = 0;  ///< smallest number with which all parameters have to be multiplied to
                              ///< be those of an integer-grid map, which needs no quantization; 0:
                              ///< there is none
-  std::string problem;       ///< why it is neither
+  std::string problem;       ///< why it is neither, and where
 };
 
 /// Whether quantize() can begin with a map: seamless to within the tolerance of QuantizeOptions, or

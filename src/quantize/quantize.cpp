@@ -64,6 +64,12 @@ constexpr std::array<double, 2> kGrowths = {1, 1.25};
 /// Steps of a search for a density that works, and how many there are at most.
 constexpr double kDenser = 1.3;
 constexpr int kMostDensities = 24;
+/// How often a map is bent while a density is searched.
+constexpr std::uint64_t kMostAttempts = 120;
+
+/// Planes so near to each other, as a share of the map's size, are taken as one if walls between
+/// them leave no room for tets: in turn. Cells are seldom smaller than the last.
+constexpr std::array<double, 6> kApart = {0, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
 
 double spaceVolume(const TetMapView& map) {
   double volume = 0;
@@ -111,11 +117,31 @@ double cellsWanted(const TetMapView& map, const SeamlessMap& seamless,
   return std::max(cells, 1.0);
 }
 
-SeamlessMap seamlessMap(const TetMapView& map, const QuantizeOptions& options, Context& context) {
+SeamlessMap seamlessMap(const TetMapView& map, const QuantizeOptions& options, double apart,
+                        Context& context) {
   SeamlessMap seamless =
-      makeSeamless(map, {options.tolerance, options.tolerance, options.wallTag}, context);
+      makeSeamless(map, {options.tolerance, options.tolerance, options.wallTag, apart}, context);
   requirePositiveTets(seamless);
   return seamless;
+}
+
+/// Puts the smallest vertex of a tet first, and the smallest of the others second.
+void sortCorners(Tet& tet, TetParameters& u) {
+  // Even permutations only: two swaps each.
+  const auto swap = [&](std::size_t a, std::size_t b) {
+    std::swap(tet[a], tet[b]);
+    std::swap(u[a], u[b]);
+  };
+  const auto first =
+      static_cast<std::size_t>(std::min_element(tet.begin(), tet.end()) - tet.begin());
+  if (first != 0) {
+    swap(0, first);
+    swap(first == 1 ? 2 : 1, first == 3 ? 2 : 3);
+  }
+  while (tet[1] > tet[2] || tet[1] > tet[3]) {
+    swap(1, 2);
+    swap(2, 3);
+  }
 }
 
 /// The same map with tets and corners in an order that depends on vertices alone: so that the
@@ -136,21 +162,7 @@ TetMap inCanonicalOrder(const TetMapView& map, std::vector<Index>& order) {
   for (const Index t : order) {
     Tet tet = map.tets[t];
     TetParameters u = map.parameters[t];
-    // Even permutations only: two swaps each.
-    const auto swap = [&](std::size_t a, std::size_t b) {
-      std::swap(tet[a], tet[b]);
-      std::swap(u[a], u[b]);
-    };
-    const auto first =
-        static_cast<std::size_t>(std::min_element(tet.begin(), tet.end()) - tet.begin());
-    if (first != 0) {
-      swap(0, first);
-      swap(first == 1 ? 2 : 1, first == 3 ? 2 : 3);
-    }
-    while (tet[1] > tet[2] || tet[1] > tet[3]) {
-      swap(1, 2);
-      swap(2, 3);
-    }
+    sortCorners(tet, u);
     sorted.tets.push_back(tet);
     sorted.parameters.push_back(u);
     if (!map.regions.empty()) sorted.regions.push_back(map.regions[t]);
@@ -169,12 +181,26 @@ bool areInRange(const TetMapView& map) {
   });
 }
 
-/// An error that names a tet, by the caller's number.
-Error inCallersTerms(const Error& error, const std::vector<Index>& order) {
+/// An error that names a tet of the sorted map, by the caller's number.
+Error inCallersTerms(const Error& error, const TetMapView& map, const std::vector<Index>& order) {
   Place place = error.place();
-  const bool isTet = place.kind == PlaceKind::Tet || place.kind == PlaceKind::Face;
-  if (isTet && place.index < order.size()) place.index = order[place.index];
-  return {error.code(), error.what(), place};
+  const bool isFace = place.kind == PlaceKind::Face;
+  if (!(isFace || place.kind == PlaceKind::Tet) || place.index >= order.size()) return error;
+  place.index = order[place.index];
+  if (isFace) {
+    const Tet& callers = map.tets[place.index];
+    Tet sorted = callers;
+    TetParameters unused{};
+    sortCorners(sorted, unused);
+    const auto corner = std::find(callers.begin(), callers.end(), sorted[place.second]);
+    place.second = static_cast<std::uint64_t>(corner - callers.begin());
+  }
+  std::string text = error.what();
+  const std::string said = " at " + toString(error.place());
+  if (const std::size_t at = text.find(said); at != std::string::npos) {
+    text.replace(at, said.size(), " at " + toString(place));
+  }
+  return {error.code(), text, place};
 }
 
 /// Gives tets the caller's numbers; parts that were split off come behind.
@@ -205,11 +231,12 @@ struct Choice {
 
 class Quantizer {
  public:
-  Quantizer(TetMap map, const QuantizeOptions& options, Context& context)
+  /// @param apart  as in SeamlessOptions
+  Quantizer(TetMap map, const QuantizeOptions& options, double apart, Context& context)
       : options_(options),
         context_(context),
         map_(std::move(map)),
-        seamless_(seamlessMap(map_, options, context)) {
+        seamless_(seamlessMap(map_, options, apart, context)) {
     std::vector<TetParameters>().swap(map_.parameters);  // which are large
     report_.cellsWanted = cellsWanted(map_, seamless_, options);
     report_.displacement = seamless_.maxDisplacement;
@@ -222,6 +249,7 @@ class Quantizer {
       const double cells = report_.cellsWanted * density;
       for (const double growth : kGrowths) {
         for (const Attempt& attempt : kAttempts) {
+          if (report_.attempts == mostAttempts()) fail();
           cutIntoBlocks(attempt.reduced);
           std::optional<QuantizedMap> result = tryCells(cells * attempt.density, growth);
           if (result) return std::move(*result);
@@ -234,6 +262,20 @@ class Quantizer {
   }
 
  private:
+  [[nodiscard]] std::uint64_t mostAttempts() const {
+    return options_.densify ? kMostAttempts : kGrowths.size() * kAttempts.size();
+  }
+
+  /// Says which attempt this is.
+  void announce(double cells, double growth) {
+    context_.report("bending " + std::to_string(report_.attempts) + " of at most " +
+                        std::to_string(mostAttempts()) + ": " +
+                        std::to_string(std::llround(cells)) + " cells in " +
+                        std::to_string(report_.blocks) + " blocks" +
+                        (growth > 1 ? ", with split tets" : ""),
+                    0);
+  }
+
   /// @param reduced  whether walls that nothing needs are taken away
   void cutIntoBlocks(bool reduced) {
     if (complex_ && isReduced_ == reduced) return;
@@ -264,12 +306,15 @@ class Quantizer {
     complex_.reset();
     returnFreeMemory();
     Stage stage(context_, "bending");
+    announce(choice->cells, growth);
     BentMap bent = bend(std::move(problem), {.maxGrowth = growth}, stage);
     if (!bent.isValid()) {
       failed_.insert({growth, report_.blocks, choice->integers});
       if (!bent.flippedTets.empty()) {
         flippedTet_ = bent.parentTet[bent.flippedTets.front()];
-        flippedBlock_ = blockOf[flippedTet_];
+        flippedBlock_ = "block " + std::to_string(blockOf[flippedTet_] + 1) + " of " +
+                        std::to_string(report_.blocks) + " with " +
+                        std::to_string(std::llround(choice->cells)) + " cells";
       }
       return std::nullopt;
     }
@@ -331,9 +376,9 @@ class Quantizer {
                   message + ": they leave no position for a vertex. Ask for more cells.");
     }
     throw Error(ErrorCode::FlippedTet,
-                message + ": tets stay flipped in block " + std::to_string(flippedBlock_) + " of " +
-                    std::to_string(report_.blocks) +
-                    ". Ask for more cells, or let it choose a density that works (densify).",
+                message + ": tets stay flipped in " + flippedBlock_ + ", after " +
+                    std::to_string(report_.attempts) + " attempts. Ask for more cells" +
+                    (options_.densify ? "." : ", or let it choose a density that works (densify)."),
                 {PlaceKind::Tet, flippedTet_});
   }
 
@@ -350,8 +395,24 @@ class Quantizer {
   /// complex with so many blocks. Those of the next density are often the same.
   std::set<std::tuple<double, std::uint64_t, std::vector<std::int64_t>>> failed_;
   Index flippedTet_ = kNone;
-  Index flippedBlock_ = kNone;
+  std::string flippedBlock_;  ///< of the same attempt, in words
 };
+
+/// Takes more and more planes as one until walls leave room between them.
+QuantizedMap quantizeSorted(TetMap map, const QuantizeOptions& options, Context& context) {
+  std::optional<Error> tooThin;
+  for (const double apart : kApart) {
+    try {
+      return Quantizer(map, options, apart, context).run();
+    } catch (const TooThinForWalls& error) {
+      if (!tooThin) tooThin = error;
+    } catch (const Error& error) {
+      // Tets may have been flipped when planes became one.
+      if (!tooThin || error.code() != ErrorCode::FlippedTet) throw;
+    }
+  }
+  throw Error(*tooThin);
+}
 
 }  // namespace
 
@@ -368,12 +429,16 @@ SeamlessReport examineSeamless(const TetMapView& map, Context& context) {
     report.kind = report.displacement <= QuantizeOptions{}.tolerance * seamless.size
                       ? SeamlessKind::Seamless
                       : SeamlessKind::AlmostSeamless;
-    if (report.kind == SeamlessKind::Seamless) requirePositiveTets(seamless);
+    if (report.kind == SeamlessKind::Seamless || !seamless.flippedAsGiven.empty()) {
+      requirePositiveTets(seamless);
+    }
     report.integerFactor = integerFactor(map, seamless, context);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::Cancelled) throw;
     report.kind = SeamlessKind::Neither;
     report.problem = error.what();
+    const std::string where = toString(error.place());
+    if (!where.empty()) report.problem += " [" + where + "]";
   }
   steps.finish();
   return report;
@@ -396,9 +461,9 @@ QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options, Con
     std::vector<Index> order;
     TetMap sorted = inCanonicalOrder(map, order);
     try {
-      result = Quantizer(std::move(sorted), options, context).run();
+      result = quantizeSorted(std::move(sorted), options, context);
     } catch (const Error& error) {
-      throw inCallersTerms(error, order);
+      throw inCallersTerms(error, map, order);
     }
     restoreOrder(order, result.map);
   });

@@ -66,9 +66,6 @@ void eliminate(std::vector<Row>& rows, VertexConditions& vertex,
   for (std::size_t column = 0; column < 3; ++column) {
     if (pivotOf[column] == kNone) continue;
     const Row& row = rows[pivotOf[column]];
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (k != column && row.coefficients[k] != 0) vertex.isAxisParallel = false;
-    }
     vertex.fixed[column] = {row.coefficients[column], row.rest};
   }
   for (std::size_t r = done; r < rows.size(); ++r) equations.push_back(std::move(rows[r].rest));

@@ -71,9 +71,9 @@ struct VertexConditions {
   };
   std::vector<Sector> sectors;
   std::array<Fixed, 3> fixed;
-  bool isAxisParallel = true;  ///< otherwise a singular curve is not
 };
 
+/// @pre around each edge inside, charts turn about an axis, or agree
 /// @param equations  receives what must hold between shared unknowns
 [[nodiscard]] VertexConditions conditionsOf(Index vertex, const TetTopology& topology,
                                             const CutGraph& graph, const SharedUnknowns& unknowns,

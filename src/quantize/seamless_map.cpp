@@ -32,14 +32,20 @@ constexpr double kChainedNoise = 16;
 /// Planes that come together may bring others near to each other; nearly all are found at once.
 constexpr int kRoundsOfWishes = 3;
 
-/// The axis to which a triangle is perpendicular.
+/// The axis to which a triangle is perpendicular: along which it extends least. The normal of a
+/// thin one may be noise.
 std::uint8_t normalAxis(const CutGraph& graph, HalfFace h) {
   const TetParameters& u = graph.parameters[tetOf(h)];
   const auto corner = [&](std::size_t k) {
     return u[static_cast<std::size_t>(kFaceCorners[h % 4][k])];
   };
-  return static_cast<std::uint8_t>(
-      dominantAxis(cross(minus(corner(1), corner(0)), minus(corner(2), corner(0)))));
+  std::array<double, 3> extents{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [least, most] = std::minmax({corner(0)[axis], corner(1)[axis], corner(2)[axis]});
+    extents[axis] = most - least;
+  }
+  return static_cast<std::uint8_t>(std::min_element(extents.begin(), extents.end()) -
+                                   extents.begin());
 }
 
 bool areLevel(const TetParameters& u, std::size_t a, std::size_t b, std::size_t axis,
@@ -214,7 +220,37 @@ class VertexSolver {
   std::vector<LatticePoint> bySector_;
 };
 
-[[noreturn]] void notSeamless(const std::string& what, Place place) {
+std::vector<Index> flippedTets(std::span<const LatticeTet> corners) {
+  std::vector<Index> flipped;
+  for (Index t = 0; t < corners.size(); ++t) {
+    const LatticeTet& u = corners[t];
+    if (orientation(u[0], u[1], u[2], u[3]) <= 0) flipped.push_back(t);
+  }
+  return flipped;
+}
+
+/// On the lattice, which is finer than what doubles have of the largest coordinates.
+std::vector<Index> flippedAsGiven(const CutGraph& graph, double unit) {
+  std::vector<LatticeTet> corners(graph.parameters.size());
+  for (std::size_t t = 0; t < corners.size(); ++t) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        corners[t][i][k] = std::llround(graph.parameters[t][i][k] * unit);
+      }
+    }
+  }
+  return flippedTets(corners);
+}
+
+void throwFlipped(std::span<const Index> flipped) {
+  DefectCollector defects;
+  for (const Index t : flipped) defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, 0);
+  defects.throwIfAny();
+}
+
+/// What flipped tets bring about is not told before them.
+[[noreturn]] void notSeamless(const SeamlessMap& map, const std::string& what, Place place) {
+  throwFlipped(map.flippedAsGiven);
   throw Error(
       ErrorCode::TransitionResidual,
       "The map is not seamless: " + what +
@@ -233,7 +269,8 @@ void requireSize(double size) {
 
 /// No corner may move by more than the tolerance: so transitions of a triangle's corners differ by
 /// four of them at most. Asked early, as what is far from seamless has no end of conditions.
-void requireTransitions(const TetTopology& topology, const CutGraph& graph, double tolerance) {
+void requireTransitions(const SeamlessMap& map, const CutGraph& graph, double tolerance) {
+  const TetTopology& topology = map.topology;
   for (HalfFace h = 0; h < topology.mate.size(); ++h) {
     const HalfFace mate = topology.mate[h];
     if (mate == kNone || mate < h) continue;
@@ -252,8 +289,45 @@ void requireTransitions(const TetTopology& topology, const CutGraph& graph, doub
       std::ostringstream what;
       what << "a triangle differs by " << most - least
            << " between its two tets, more than four times the tolerance of " << tolerance << '.';
-      notSeamless(what.str(), {PlaceKind::Face, tetOf(h), h % 4});
+      const auto corner = static_cast<std::uint64_t>(map.input.callersCorner(localOf(h)));
+      notSeamless(map, what.str(), {PlaceKind::Face, tetOf(h), corner});
     }
+  }
+}
+
+/// Whether charts turn about an axis around an inner edge, and the edge is parallel to it; or
+/// agree.
+bool turnsAboutItsAxis(const TetTopology& topology, const CutGraph& graph, const EdgeCorner& at,
+                       double tolerance) {
+  const auto ends = static_cast<CornerMask>(cornerBit(at.corner0) | cornerBit(at.corner1));
+  EdgeTurn turn(topology, at.tet, ends, otherFaceAtEdge(ends, -1));
+  Rotation around;
+  do {
+    around = graph.rotations[turn.out()] * around;
+    turn.step();
+  } while (turn.tet() != at.tet);
+  if (around.isIdentity()) return true;
+  const TetParameters& u = graph.parameters[at.tet];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Direction along = direction(static_cast<int>(axis), 1);
+    if (around(along) != along) continue;
+    // Each end moves by the tolerance at most.
+    return areLevel(u, at.corner0, at.corner1, (axis + 1) % 3, 2 * tolerance) &&
+           areLevel(u, at.corner0, at.corner1, (axis + 2) % 3, 2 * tolerance);
+  }
+  return false;
+}
+
+/// Around any other edge, no hexahedra fit; and all that charts demand of a vertex are coordinates.
+void requireAxesOfCurves(const SeamlessMap& map, const EdgeFans& edges, const CutGraph& graph,
+                         double tolerance) {
+  const TetTopology& topology = map.topology;
+  for (std::size_t edge = 0; edge < edges.size(); ++edge) {
+    const EdgeCorner& at = edges(edge).front();
+    if (edges.isBoundary(edge) || turnsAboutItsAxis(topology, graph, at, tolerance)) continue;
+    const Tet& tet = topology.tets[at.tet];
+    notSeamless(map, "a singular curve is parallel to no axis.",
+                {PlaceKind::Edge, tet[at.corner0], tet[at.corner1]});
   }
 }
 
@@ -265,7 +339,7 @@ void solveVertices(SeamlessMap& map, const CutGraph& graph,
   for (Index v = 0; v < map.topology.pointCount; ++v) {
     if (map.topology.isIsolated(v)) continue;
     if (!solver.solve(v, conditions[v])) {
-      notSeamless("transitions around a vertex have no common fixed point.",
+      notSeamless(map, "transitions around a vertex have no common fixed point.",
                   {PlaceKind::Vertex, v});
     }
   }
@@ -316,7 +390,7 @@ void requireDisplacement(const SeamlessMap& map, double tolerance) {
   std::ostringstream what;
   what << "the nearest seamless map is " << map.maxDisplacement
        << " off, more than the tolerance of " << tolerance << '.';
-  notSeamless(what.str(), {PlaceKind::Tet, map.mostDisplaced});
+  notSeamless(map, what.str(), {PlaceKind::Tet, map.mostDisplaced});
 }
 
 /// Values of shared unknowns for the seamless map that is nearest under all equations.
@@ -348,15 +422,10 @@ double volumeOf(const SeamlessMap& map) {
 }
 
 void requirePositiveTets(const SeamlessMap& map) {
-  DefectCollector defects;
-  defects.setCornersReversed(map.input.cornersReversed);
-  for (Index t = 0; t < map.corners.size(); ++t) {
-    const LatticeTet& u = map.corners[t];
-    if (orientation(u[0], u[1], u[2], u[3]) <= 0) {
-      defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, 0);
-    }
-  }
-  defects.throwIfAny();
+  const std::vector<Index> flipped = flippedTets(map.corners);
+  if (flipped.empty()) return;
+  throwFlipped(map.flippedAsGiven);
+  throwFlipped(flipped);
 }
 
 SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, Context& context) {
@@ -376,7 +445,10 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   const CutGraph graph = cutOpen(topology, edges, parameters, fitRotations(topology, parameters));
   result.size = largestCoordinate(graph);
   requireSize(result.size);
-  requireTransitions(topology, graph, options.tolerance * result.size);
+  result.unit = std::exp2(std::floor(std::log2(kLargest / result.size)));
+  requireTransitions(result, graph, options.tolerance * result.size);
+  result.flippedAsGiven = flippedAsGiven(graph, result.unit);
+  requireAxesOfCurves(result, edges, graph, options.tolerance * result.size);
   const SharedUnknowns unknowns(topology, edges, graph,
                                 findAlignment(result, edges, graph, options));
   std::vector<IntegerForm> equations = unknowns.equations();
@@ -384,22 +456,21 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   for (Index v = 0; v < topology.pointCount; ++v) {
     if (topology.isIsolated(v)) continue;
     conditions[v] = conditionsOf(v, topology, graph, unknowns, equations);
-    if (!conditions[v].isAxisParallel) {
-      notSeamless("a singular curve is not parallel to an axis.", {PlaceKind::Vertex, v});
-    }
   }
-  result.unit = std::exp2(std::floor(std::log2(kLargest / result.size)));
   const std::vector<std::int64_t> values = nearestValues(unknowns, result.unit, equations);
   if (values.empty() && unknowns.size() > 0) {
-    notSeamless("conditions of singular curves have no solution on the lattice.", {});
+    notSeamless(result, "conditions of singular curves have no solution on the lattice.", {});
   }
   const auto take = [&](std::span<const std::int64_t> chosen) {
     solveVertices(result, graph, conditions, chosen);
     measureDisplacement(result, graph);
   };
   take(values);
+  if (flippedTets(result.corners).empty()) result.flippedAsGiven.clear();
+  requireDisplacement(result, options.tolerance * result.size);
   // Once more with all planes as one that noise alone keeps apart: walls between them were a mess.
-  const double noise = std::max(kNoise * result.size, result.maxDisplacement);
+  const double noise =
+      std::max(std::max(kNoise, options.apart) * result.size, result.maxDisplacement);
   std::vector<IntegerForm> wishes;
   std::vector<std::int64_t> best = values;
   for (int round = 0; round < kRoundsOfWishes; ++round) {
@@ -413,7 +484,7 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   // Chains of near coincidences may lead far away.
   if (result.maxDisplacement > kChainedNoise * noise) take(values);
   findChanges(result, graph);
-  requireDisplacement(result, options.tolerance * result.size);
+  requireDisplacement(result, std::max(options.tolerance * result.size, kChainedNoise * noise));
   result.input.view.parameters = {};
   result.input.parameters = {};
   return result;

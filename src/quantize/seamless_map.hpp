@@ -28,22 +28,27 @@ struct SeamlessMap {
   std::vector<EdgeCorner> featureEdges;
   std::vector<HalfFace> featureFaces;
   double unit = 1;
-  double size = 0;             ///< extent from a corner, along the axis where it is longest
-  double maxDisplacement = 0;  ///< of a parameter from that given, along an axis
-  Index mostDisplaced = 0;     ///< a tet
+  double size = 0;                    ///< extent from a corner, along the axis where it is longest
+  double maxDisplacement = 0;         ///< of a parameter from that given, along an axis
+  Index mostDisplaced = 0;            ///< a tet
+  std::vector<Index> flippedAsGiven;  ///< tets; none if they were so by noise alone, which is gone
 };
 
 struct SeamlessOptions {
   double tolerance = 0;         ///< for displacements, as a share of the map's size
   double featureTolerance = 0;  ///< features that are aligned so well, too, become it exactly
   std::int32_t wallTag = 0;     ///< as in QuantizeOptions
+  /// Planes that are less apart than this share of the map's size become one, where that makes no
+  /// fractions; the map may move so far for that beyond the tolerance. Those that noise keeps apart
+  /// always do.
+  double apart = 0;
 };
 
 /// @throws Error where the mesh is not a manifold, or the map is not even nearly seamless
 [[nodiscard]] SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options,
                                        Context& context);
 
-/// @throws Error FlippedTet if a tet is not positive
+/// @throws Error FlippedTet if a tet is not positive; those that were not as given are named first
 void requirePositiveTets(const SeamlessMap& map);
 
 /// In unit cubes.

@@ -135,14 +135,29 @@ Index WallMesh::split(const TetEdge& edge, std::size_t axis, std::int64_t value)
 void WallMesh::requirePositive(Index tet) const {
   const LatticeTet& u = corners[tet];
   if (orientation(u[0], u[1], u[2], u[3]) > 0) return;
-  throw Error(
+  throw TooThinForWalls(
       ErrorCode::FlippedTet,
       "A tet is too thin in the map to be cut by a wall of its motorcycle complex. Make tets "
       "of the map thicker, by moving vertices in it.",
       {PlaceKind::Tet, original[tet]});
 }
 
+bool WallMesh::leavesKeptEdge(const MovedCorner& moved) const {
+  const Tet& tet = tets[moved.tet];
+  if (!isHeld[tet[moved.corner]]) return false;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (i == moved.corner || !featureEdges.contains(pairOf(tet[i], tet[moved.corner]))) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Along an axis, an edge has one coordinate that differs.
+      const bool isAlong = at(moved.tet, i)[k] != at(moved.tet, moved.corner)[k];
+      if (moved.by[k] != 0 && !isAlong) return true;
+    }
+  }
+  return false;
+}
+
 bool WallMesh::mayMove(const MovedCorner& moved) const {
+  if (leavesKeptEdge(moved)) return false;
   LatticeTet u = corners[moved.tet];
   const Int192 before = orientationDeterminant(u[0], u[1], u[2], u[3]);
   u[moved.corner] = u[moved.corner] + moved.by;
@@ -165,7 +180,6 @@ bool WallMesh::mayMove(const MovedCorner& moved) const {
 }
 
 bool WallMesh::moveInto(Index tet, std::uint8_t corner, std::size_t axis, std::int64_t value) {
-  if (isHeld[tets[tet][corner]]) return false;
   std::vector<MovedCorner> star = {{tet, corner, {}}};
   star[0].by[axis] = value - at(tet, corner)[axis];
   moved_[tet] = 0;

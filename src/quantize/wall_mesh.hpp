@@ -9,6 +9,8 @@
 
 #include <quantize/seamless_map.hpp>
 
+#include <hexhex/error.hpp>
+
 namespace hexhex {
 
 /// An edge of the mesh as seen from a tet: two of its corners.
@@ -30,6 +32,12 @@ using VertexPair = std::array<Index, 2>;
 
 /// Not on a face of the tet that it is a part of.
 inline constexpr std::uint8_t kInside = 4;
+
+/// Walls that pass very near to each other leave nothing of a tet between them.
+class TooThinForWalls : public Error {
+ public:
+  using Error::Error;
+};
 
 /// Grows as edges are split; tets that were there before keep their numbers, as one of the parts
 /// into which they were split, and their charts.
@@ -61,12 +69,12 @@ class WallMesh {
   /// Splits an edge, and all tets around it, where a coordinate of its tet's chart has a value that
   /// lies between those at its ends. The other coordinates are rounded to the lattice.
   /// @return the new vertex
-  /// @throws Error FlippedTet if rounding leaves nothing of a part
+  /// @throws TooThinForWalls if rounding leaves nothing of a part
   Index split(const TetEdge& edge, std::size_t axis, std::int64_t value);
 
   /// Moves a vertex along an axis of its tet's chart, into a plane close by, so that no flat tets
   /// arise where a wall passes it.
-  /// @return false, and nothing is moved, if a wall or a singular curve holds the vertex, or a tet
+  /// @return false, and nothing is moved, if a wall, a curve or a kept edge would be left, or a tet
   ///         became much smaller
   bool moveInto(Index tet, std::uint8_t corner, std::size_t axis, std::int64_t value);
 
@@ -121,6 +129,7 @@ class WallMesh {
     std::uint8_t corner;
     LatticePoint by;
   };
+  [[nodiscard]] bool leavesKeptEdge(const MovedCorner& moved) const;
   [[nodiscard]] bool mayMove(const MovedCorner& moved) const;
   void requirePositive(Index tet) const;
   void appendCopy(Index tet);

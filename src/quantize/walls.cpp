@@ -131,7 +131,15 @@ void WallTracer::split(const TetEdge& edge, const AxisPlane& plane) {
   mesh_.split(edge, plane.axis, plane.value);
   for (const Crossed& other : others) {
     const WallMesh::Found found = mesh_.find(other.vertices[0], other.vertices[1], other.tet);
-    if (found.edge) mesh_.split(*found.edge, other.plane.axis, other.plane.value);
+    if (!found.edge) continue;
+    const auto side = [&](std::size_t corner) {
+      return other.plane.sideOf(mesh_.at(found.edge->tet, corner));
+    };
+    // An end may have been moved into the plane.
+    if (side(found.edge->corner0) >= 0 || side(found.edge->corner1) <= 0) continue;
+    if (moveEnd(*found.edge, other.plane) < 0) {
+      mesh_.split(*found.edge, other.plane.axis, other.plane.value);
+    }
   }
 }
 

@@ -1,5 +1,6 @@
 // Quantization of maps and with options at the ends of what numbers can hold; docs/limits.md lists
 // them.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -83,6 +84,30 @@ TEST(QuantizeLimits, NothingAtRandomIsSeamless) {
             ErrorCode::TransitionResidual);
 }
 
+/// A vertex whose coordinates are none of those of the boundary.
+Index innerVertex(const TetMap& map) {
+  const auto [low, high] = std::minmax_element(map.parameters[0].begin(), map.parameters[0].end());
+  Vec3 least = *low;
+  Vec3 most = *high;
+  for (const TetParameters& tet : map.parameters) {
+    for (const Vec3& u : tet) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        least[k] = std::min(least[k], u[k]);
+        most[k] = std::max(most[k], u[k]);
+      }
+    }
+  }
+  for (std::size_t t = 0; t < map.tets.size(); ++t) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Vec3& u = map.parameters[t][i];
+      bool isInner = true;
+      for (std::size_t k = 0; k < 3; ++k) isInner = isInner && least[k] < u[k] && u[k] < most[k];
+      if (isInner) return map.tets[t][i];
+    }
+  }
+  throw Error(ErrorCode::InvalidArgument, "The map has no vertex inside.");
+}
+
 /// Around a curve from (0, 0, 0) to (1, 1, 1), the grid turns by a third.
 TetMap withADiagonalCurve() {
   const std::array<Vec3, 3> along = {{{0, 0, 0}, {0.5, 0.5, 0.5}, {1, 1, 1}}};
@@ -98,18 +123,44 @@ TetMap withADiagonalCurve() {
   return map;
 }
 
-TEST(QuantizeLimits, SingularCurvesThatAreNotParallelToAnAxisAreNamed) {
+TEST(QuantizeLimits, SingularCurvesThatAreParallelToNoAxisAreNamed) {
   const TetMap map = withADiagonalCurve();
-  try {
-    static_cast<void>(quantize(map, scale(1)));
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::TransitionResidual);
-    EXPECT_NE(std::string(error.what()).find("a singular curve is not parallel to an axis"),
-              std::string::npos)
-        << error.what();
-    EXPECT_EQ(error.place().kind, PlaceKind::Vertex);
+  const std::string sentence = "a singular curve is parallel to no axis";
+  const Error error = errorOf([&] { static_cast<void>(quantize(map, scale(1))); });
+  EXPECT_EQ(error.code(), ErrorCode::TransitionResidual);
+  EXPECT_NE(std::string(error.what()).find(sentence), std::string::npos) << error.what();
+  EXPECT_EQ(toString(error.place()), "edge 0-1");
+  Context context;
+  const SeamlessReport report = examineSeamless(map, context);
+  EXPECT_EQ(report.kind, SeamlessKind::Neither);
+  EXPECT_NE(report.problem.find(sentence), std::string::npos) << report.problem;
+  EXPECT_NE(report.problem.find("edge 0-1"), std::string::npos) << report.problem;
+}
+
+/// Far from the nearest map without them: what they turn is not what the error is about.
+TEST(QuantizeLimits, FlippedTetsAreNamedBeforeWhatFollowsFromThem) {
+  TetMap map =
+      generateSample(SampleKind::Box, {.cells = 2, .refine = 2, .charts = ChartStyle::Aligned}).map;
+  for (std::size_t t = 0; t < map.tets.size(); ++t) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (double& x : map.parameters[t][i]) x *= 1.3;
+    }
   }
+  // One vertex far away, in all its tets: the map stays seamless.
+  const Index v = innerVertex(map);
+  for (std::size_t t = 0; t < map.tets.size(); ++t) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (map.tets[t][i] == v) map.parameters[t][i][0] += 2.9;
+    }
+  }
+  const Error error = errorOf([&] { static_cast<void>(quantize(map, scale(1))); });
+  EXPECT_EQ(error.code(), ErrorCode::FlippedTet) << error.what();
+  EXPECT_NE(std::string(error.what()).find(toString(error.place())), std::string::npos)
+      << error.what();
+  Context context;
+  const SeamlessReport report = examineSeamless(map, context);
+  EXPECT_EQ(report.kind, SeamlessKind::Neither);
+  EXPECT_NE(report.problem.find("flipped"), std::string::npos) << report.problem;
 }
 
 /// Arcs are as long as edges of tets, which are flat if these have no length.

@@ -2,12 +2,14 @@
 // integer-grid map whose mesh is right.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include <gtest/gtest.h>
 #include <quantize/motorcycle_complex.hpp>
@@ -330,6 +332,71 @@ TEST(MotorcycleComplex, ConsistsOfBoxes) {
   }
 }
 
+<<<<<<< HEAD
+=======
+TEST(Quantize, NamesEachAttempt) {
+  std::vector<std::string> stages;
+  Context context(
+      1, [&stages](std::string_view stage, double /*share*/) { stages.emplace_back(stage); });
+  const TetMap map = generateSample(SampleKind::Sphere, {.stretch = 0.5}).map;
+  const QuantizeReport report = quantize(map, sameScale(), context).report;
+  const std::string first = "bending 1 of at most 20: " + std::to_string(report.cells) +
+                            " cells in " + std::to_string(report.blocks) + " blocks";
+  EXPECT_NE(std::find(stages.begin(), stages.end(), first), stages.end()) << first;
+}
+
+std::filesystem::path dataFolder() {
+  const char* chosen = std::getenv("HEXHEX_DATA");
+  return chosen != nullptr ? chosen : HEXHEX_DATA_DIR;
+}
+
+TEST(QuantizeRealMaps, ThatHaveFaultsAreRefusedForThese) {
+  const std::filesystem::path folder = dataFolder() / "seamless-faults";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no real maps";
+  const auto error = [&](const std::string& name, double number) {
+    const TetMap map = readMap(folder / (name + ".hexex"));
+    return errorOf([&] { static_cast<void>(quantize(map, cells(number))); });
+  };
+  for (const std::string name :
+       {"compound_s10c_cyl_cutsphere", "compound_s14c_cube_corner_sub_sphere"}) {
+    const Error diagonal = error(name, 1000);
+    EXPECT_EQ(diagonal.place().kind, PlaceKind::Edge);
+    EXPECT_NE(std::string(diagonal.what()).find("parallel to no axis"), std::string::npos)
+        << diagonal.what();
+  }
+  const Error flipped = error("notch_12_flips", 1000);
+  EXPECT_EQ(flipped.code(), ErrorCode::FlippedTet);
+  EXPECT_NE(std::string(flipped.what()).find("Found 12 times"), std::string::npos)
+      << flipped.what();
+  const std::string bent = error("two_components_flipped_block", 4.32).what();
+  unsigned block = 0;
+  unsigned blocks = 0;
+  const std::size_t at = bent.find("in block ");
+  ASSERT_NE(at, std::string::npos) << bent;
+  ASSERT_EQ(std::sscanf(bent.c_str() + at, "in block %u of %u", &block, &blocks), 2) << bent;
+  EXPECT_GE(block, 1U);
+  EXPECT_LE(block, blocks);
+}
+
+TEST(QuantizeRealMaps, WithWallsNearVertices) {
+  const std::filesystem::path file = dataFolder() / "seamless-faults" / "hand.hexex";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real maps";
+  for (const double number : {1000, 5000}) expectRightMesh(readMap(file), cells(number));
+}
+
+/// Seamless maps of real models.
+std::vector<std::filesystem::path> realMaps() {
+  const std::filesystem::path folder = dataFolder() / "seamless";
+  std::vector<std::filesystem::path> files;
+  if (!std::filesystem::exists(folder)) return files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  files.resize(std::min(files.size(), static_cast<std::size_t>(cases(13))));
+  return files;
+}
+
+>>>>>>> helper-d
 TEST(QuantizeRealMaps, AtAllDensities) {
   if (realMaps().empty()) GTEST_SKIP() << "no real maps";
   for (const std::filesystem::path& file : realMaps()) {
