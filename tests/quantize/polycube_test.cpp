@@ -148,13 +148,13 @@ TEST(Polycube, RefusesLabelsThatMakeNoSense) {
   std::size_t inner = 0;
   while (good.flags[inner / 4][inner % 4] >= 0) ++inner;
   EXPECT_EQ(codeWith(set(inner, 2)), ErrorCode::InvalidArgument);
-  // All the same way: everything is to lie in one plane.
+  // All the same way.
   EXPECT_EQ(codeWith([](Labelled& bad) {
               for (FaceFlags& flags : bad.flags) {
                 for (std::int8_t& flag : flags) flag = flag < 0 ? flag : 0;
               }
             }),
-            ErrorCode::FlippedTet);
+            ErrorCode::InvalidArgument);
   EXPECT_EQ(codeWith([](Labelled& bad) { bad.tets.points[0] = bad.tets.points[1]; }),
             ErrorCode::FlippedTet);
   EXPECT_EQ(codeWith([](Labelled& bad) { bad.tets.tets[0][0] = 1'000'000; }),
