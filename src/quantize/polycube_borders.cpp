@@ -132,14 +132,16 @@ void PolycubeBorders::requireFourEdges() const {
 
 /// Of the same loop, from the head on.
 PolycubeBorders::Side PolycubeBorders::nextBorder(Side border) const {
-  Side side = sides_.next(border);
-  while (!isBorder(side)) side = sides_.next(sides_.twin(side));
+  Side side = BoundarySides::next(border);
+  while (!isBorder(side)) side = BoundarySides::next(sides_.twin(side));
   return side;
 }
 
 /// Counterclockwise, from the same tail.
 PolycubeBorders::Side PolycubeBorders::nextBorderAtTail(Side border) const {
-  const auto turned = [this](Side side) { return sides_.twin(sides_.next(sides_.next(side))); };
+  const auto turned = [this](Side side) {
+    return sides_.twin(BoundarySides::next(BoundarySides::next(side)));
+  };
   Side side = turned(border);
   while (!isBorder(side)) side = turned(side);
   return side;

@@ -29,7 +29,7 @@ class BoundarySides {
   [[nodiscard]] Index head(Side side) const noexcept { return corner(side, 0); }
   [[nodiscard]] Index tail(Side side) const noexcept { return corner(side, 1); }
   /// Of the same triangle, from the head on.
-  [[nodiscard]] Side next(Side side) const noexcept { return side / 3 * 3 + (side + 2) % 3; }
+  [[nodiscard]] static Side next(Side side) noexcept { return side / 3 * 3 + (side + 2) % 3; }
   /// Of the triangle beyond: from head to tail.
   [[nodiscard]] Side twin(Side side) const noexcept { return twins_[side]; }
 

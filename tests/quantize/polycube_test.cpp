@@ -15,17 +15,12 @@
 #include <io/io_test_support.hpp>
 
 #include "extract/support.hpp"
+#include "quantize/labelled_bodies.hpp"
 #include "support/error_of.hpp"
 
 namespace hexhex::test {
 
 namespace {
-
-/// A tet mesh and the labels of its boundary.
-struct Labelled {
-  TetMesh tets;
-  std::vector<FaceFlags> flags;
-};
 
 /// What a sample with one chart says.
 Labelled labelled(const TetMap& map) {
@@ -68,11 +63,6 @@ Labelled polycube(SampleKind kind, int refine) {
   options.cells = 2;
   options.refine = refine;
   return labelled(generateSample(kind, options).map);
-}
-
-TetMap mapOf(const Labelled& input) {
-  Context context;
-  return mapFromFlags(input.tets, input.flags, context);
 }
 
 RC_GTEST_PROP(Polycube, HasTheMeshThatItsLabelsImply, ()) {
