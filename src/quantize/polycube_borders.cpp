@@ -25,6 +25,8 @@ Place placeOf(const VertexPair& edge) { return {PlaceKind::Edge, edge[0], edge[1
               place);
 }
 
+Index triangleOf(BoundarySides::Side side) { return static_cast<Index>(side / 3); }
+
 }  // namespace
 
 BoundarySides::BoundarySides(const TetTopology& topology) : topology_(topology) {
@@ -195,11 +197,50 @@ void PolycubeBorders::requireRoom(Side first, const std::vector<Direction>& dire
                {PlaceKind::Vertex, sides_.tail(first)});
 }
 
+/// Quarter turns to the left around a flat face: four times its Euler characteristic.
+void PolycubeBorders::requireFlatFaces(const std::vector<Direction>& directions) const {
+  DisjointSets faces(sides_.size() / 3);
+  for (Side side = 0; side < sides_.size(); ++side) {
+    if (!isBorder(side)) faces.unite(triangleOf(side), triangleOf(sides_.twin(side)));
+  }
+  // Vertices and edges of borders are as many; others are left to count.
+  std::vector<int> twiceCharacteristic(sides_.size() / 3);
+  std::vector<int> turns(sides_.size() / 3);
+  std::vector<bool> isSeen(mesh_.topology.pointCount);
+  for (Side side = 0; side < sides_.size(); ++side) {
+    const Index face = faces.find(triangleOf(side));
+    if (side % 3 == 0) twiceCharacteristic[face] += 2;
+    if (isBorder(side)) {
+      const Direction next = directions[nextBorder(side)];
+      if (next != directions[side]) {
+        turns[face] += next == cross(label(side), directions[side]) ? 1 : -1;
+      }
+      continue;
+    }
+    --twiceCharacteristic[face];
+    const Index vertex = sides_.tail(side);
+    if (borderCount_[vertex] == 0 && !isSeen[vertex]) twiceCharacteristic[face] += 2;
+    isSeen[vertex] = true;
+  }
+  for (Side side = 0; side < sides_.size(); side += 3) {
+    const Index face = faces.find(triangleOf(side));
+    if (turns[face] == 2 * twiceCharacteristic[face]) continue;
+    refusePlanes("the border of a face with the label " + nameOf(label(side)) + " makes " +
+                     std::to_string(turns[face]) + " quarter turns to the left, and not " +
+                     std::to_string(2 * twiceCharacteristic[face]) +
+                     ", with planes where a map turned towards the labels puts them.",
+                 mesh_.placeOf(sides_.face(side)));
+  }
+}
+
 IrregularEdges PolycubeBorders::turns(const PlaneAt& planeAt) const {
   const std::vector<Direction> along = directions(planeAt);
-  IrregularEdges quarters;
   for (const Side border : borders_) {
     if (isCorner(sides_.tail(border))) requireRoom(border, along);
+  }
+  requireFlatFaces(along);
+  IrregularEdges quarters;
+  for (const Side border : borders_) {
     // From the edge, the face goes to the left.
     const bool isConvex = labelBeyond(border) == opposite(cross(label(border), along[border]));
     quarters[verticesOf(sides_, border)] = isConvex ? 1 : 3;

@@ -75,6 +75,7 @@ class PolycubeBorders {
   /// Per side of a border: where it runs.
   [[nodiscard]] std::vector<Direction> directions(const PlaneAt& planeAt) const;
   void requireRoom(Side first, const std::vector<Direction>& directions) const;
+  void requireFlatFaces(const std::vector<Direction>& directions) const;
 
   const LabelledMesh& mesh_;
   BoundarySides sides_;

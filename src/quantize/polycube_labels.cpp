@@ -68,9 +68,7 @@ void requireLabel(const LabelledMesh& mesh, HalfFace h) {
 }  // namespace
 
 void refuseFlag(const LabelledMesh& mesh, HalfFace h, const std::string& sentence) {
-  throw Error(ErrorCode::InvalidArgument, sentence,
-              {PlaceKind::Face, tetOf(h),
-               static_cast<std::uint64_t>(mesh.input.callersCorner(localOf(h)))});
+  throw Error(ErrorCode::InvalidArgument, sentence, mesh.placeOf(h));
 }
 
 LabelledMesh readLabels(const TetMesh& tets, std::span<const FaceFlags> flags, Stage& stage) {

@@ -26,6 +26,10 @@ struct LabelledMesh {
   [[nodiscard]] bool isLabelled(HalfFace h) const { return flags[h] >= 0; }
   /// Of a half-face that has one.
   [[nodiscard]] Direction label(HalfFace h) const { return static_cast<Direction>(flags[h]); }
+  /// In the caller's terms.
+  [[nodiscard]] Place placeOf(HalfFace h) const {
+    return {PlaceKind::Face, tetOf(h), static_cast<std::uint64_t>(input.callersCorner(localOf(h)))};
+  }
 };
 
 /// @throws Error as mapFromFlags() does, for what can be told of one tet or triangle at a time

@@ -242,7 +242,12 @@ TEST(PolycubeLabels, ThatAreMirroredAreRefused) {
   forEachTriangle(box, [](const Vec3&, std::int8_t& flag) {
     if (flag < 2) flag = static_cast<std::int8_t>(1 - flag);
   });
-  EXPECT_EQ(codeOf([&] { static_cast<void>(mapOf(box)); }), ErrorCode::FlippedTet);
+  const Error error = errorOf([&] { static_cast<void>(mapOf(box)); });
+  EXPECT_EQ(error.code(), ErrorCode::FlippedTet);
+  EXPECT_EQ(error.place().kind, PlaceKind::Face);
+  EXPECT_NE(std::string(error.what()).find("makes -4 quarter turns to the left, and not 4"),
+            std::string::npos)
+      << error.what();
 }
 
 TEST(PolycubeLabels, NeedTetsThatAreNotInsideOut) {
