@@ -133,7 +133,19 @@ std::int64_t asTheyAre(const Vec3& p, int axis) {
   return std::llround(2 * p[static_cast<std::size_t>(axis)]);
 }
 
-/// Around the middles of edges, the cubes tell.
+/// Of eight cubes around a point on an edge.
+int fullAround(const CubeBody& body, const Vec3& point) {
+  int full = 0;
+  for (int i = 0; i < 8; ++i) {
+    Cell cell{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      cell[k] = static_cast<int>(std::floor(point[k] + ((i >> k & 1) != 0 ? 0.1 : -0.1)));
+    }
+    full += body.isFull(cell) ? 1 : 0;
+  }
+  return full;
+}
+
 TEST(PolycubeBorders, TurnAsTheCubesDo) {
   for (const auto& body : {cube(), ring(), angle(), notched(), stairs()}) {
     const Labelled input = body.labelled(2, [](const Vec3& p) { return p; });
@@ -142,40 +154,31 @@ TEST(PolycubeBorders, TurnAsTheCubesDo) {
     for (const auto& [edge, quarters] : turns) {
       const Vec3& a = input.tets.points[edge[0]];
       const Vec3& b = input.tets.points[edge[1]];
-      int full = 0;
-      for (int i = 0; i < 8; ++i) {
-        Cell cell{};
-        for (std::size_t k = 0; k < 3; ++k) {
-          const double offset = (i >> k & 1) != 0 ? 0.1 : -0.1;
-          cell[k] = static_cast<int>(std::floor(0.5 * (a[k] + b[k]) + offset));
-        }
-        full += body.isFull(cell) ? 1 : 0;
-      }
-      EXPECT_EQ(2 * quarters, full);
+      const Vec3 middle = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
+      EXPECT_EQ(2 * quarters, fullAround(body, middle));
     }
   }
+}
+
+void expectError(const Error& error, ErrorCode code, PlaceKind place, const std::string& words) {
+  EXPECT_EQ(error.code(), code);
+  EXPECT_EQ(error.place().kind, place);
+  EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
 }
 
 TEST(PolycubeBorders, RefusePlanesThatLeaveNoRoom) {
   const auto errorWith = [](const auto& planes) {
     return errorOf([&] { static_cast<void>(turnsOf(notched(), planes)); });
   };
-  const Error mirrored = errorWith(
-      [](const Vec3& p, int axis) { return axis == 0 ? -asTheyAre(p, 0) : asTheyAre(p, axis); });
-  EXPECT_EQ(mirrored.code(), ErrorCode::FlippedTet);
-  EXPECT_EQ(mirrored.place().kind, PlaceKind::Vertex);
-  EXPECT_NE(std::string(mirrored.what()).find("faces overlap around a vertex"), std::string::npos);
   // The notch is deeper than the body.
   const Error deep = errorWith([](const Vec3& p, int axis) {
     const std::int64_t at = asTheyAre(p, axis);
     return axis == 2 && at == 2 ? -1 : at;
   });
-  EXPECT_EQ(deep.place().kind, PlaceKind::Vertex);
+  expectError(deep, ErrorCode::FlippedTet, PlaceKind::Vertex, "faces overlap around a vertex");
   const Error flat =
       errorWith([](const Vec3& p, int axis) { return axis == 1 ? 0 : asTheyAre(p, axis); });
-  EXPECT_EQ(flat.code(), ErrorCode::FlippedTet);
-  EXPECT_EQ(flat.place().kind, PlaceKind::Edge);
-  EXPECT_NE(std::string(flat.what()).find("has no length"), std::string::npos);
+  expectError(flat, ErrorCode::FlippedTet, PlaceKind::Edge, "has no length");
 }
 
 /// The boundary triangles of a box from 0 to 1, each with its middle.
@@ -206,9 +209,7 @@ Error errorOfBox(const Relabel& relabel) {
 }
 
 void expectRefusal(const Error& error, PlaceKind place, const std::string& words) {
-  EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
-  EXPECT_EQ(error.place().kind, place);
-  EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  expectError(error, ErrorCode::InvalidArgument, place, words);
 }
 
 TEST(PolycubeLabels, ThatFitNoPolycubeAreRefusedWhereTheyDoNot) {
@@ -242,12 +243,8 @@ TEST(PolycubeLabels, ThatAreMirroredAreRefused) {
   forEachTriangle(box, [](const Vec3&, std::int8_t& flag) {
     if (flag < 2) flag = static_cast<std::int8_t>(1 - flag);
   });
-  const Error error = errorOf([&] { static_cast<void>(mapOf(box)); });
-  EXPECT_EQ(error.code(), ErrorCode::FlippedTet);
-  EXPECT_EQ(error.place().kind, PlaceKind::Face);
-  EXPECT_NE(std::string(error.what()).find("makes -4 quarter turns to the left, and not 4"),
-            std::string::npos)
-      << error.what();
+  expectError(errorOf([&] { static_cast<void>(mapOf(box)); }), ErrorCode::FlippedTet,
+              PlaceKind::Face, "makes -4 quarter turns to the left, and not 4");
 }
 
 TEST(PolycubeLabels, NeedTetsThatAreNotInsideOut) {
