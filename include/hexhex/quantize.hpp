@@ -110,8 +110,8 @@ using FaceFlags = std::array<std::int8_t, 4>;
 /// makes of the map is the polycube's mesh.
 /// @param flags  per tet
 /// @throws Error InvalidArgument for other labels than these (with the face), or those of no
-///               polycube, or if canQuantize() is false; FlippedTet for tets that are not positive
-///               in space, or cannot be bent; those of broken meshes
+///               polycube (with the face, edge or vertex), or if canQuantize() is false; FlippedTet
+///               for tets that are not positive in space, or cannot be bent; those of broken meshes
 [[nodiscard]] TetMap mapFromFlags(const TetMesh& tets, std::span<const FaceFlags> flags,
                                   Context& context);
 

@@ -62,9 +62,12 @@ class Round {
     map.iterations += solve(energy, isFresh, polishing, x);
     map.flippedTets = round(energy, x);
     map.energy = energy.value({EnergyKind::Name::FoldoverFree, 0}, x, stage_);
+    map.isWound = false;
     if (!map.flippedTets.empty()) return false;
-    map.flippedTets = tetsAtOtherTurns(topology_, state_.problem.reference, state_.bent, stage_);
-    return !map.flippedTets.empty();
+    map.flippedTets =
+        tetsAtOtherTurns(topology_, state_.problem.irregularEdges, state_.bent, stage_);
+    map.isWound = !map.flippedTets.empty();
+    return map.isWound;
   }
 
  private:

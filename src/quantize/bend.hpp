@@ -24,6 +24,10 @@ struct BoundaryPlane {
   [[nodiscard]] bool operator==(const BoundaryPlane&) const = default;
 };
 
+/// Quarter turns that a map makes around edges, by their vertices in ascending order, where those
+/// are other than 4 inside or 2 on the boundary.
+using IrregularEdges = std::map<std::array<Index, 2>, int>;
+
 /// What is to be bent: a tet mesh with a seamless map, and the integers that it shall have.
 /// Half-face 4 * tet + f is the triangle opposite corner f.
 struct BendProblem {
@@ -40,6 +44,8 @@ struct BendProblem {
   std::map<std::uint32_t, std::vector<BoundaryPlane>> fixedCorners = {};
   /// Edges that must not be split, by their vertices in ascending order: of features.
   std::set<std::array<Index, 2>> keptEdges = {};
+  /// Those that the bent map is to have.
+  IrregularEdges irregularEdges = {};
 };
 
 struct BendOptions {
@@ -64,9 +70,10 @@ struct BentMap {
 
   /// Vertices whose planes and transitions contradict each other, or do not fix integers.
   std::vector<Index> contradictions;
-  /// Not positive in the end, or, if all are, around edges that the map winds otherwise than the
-  /// reference does; empty after success.
+  /// Not positive in the end, or, if all are, around edges that the map winds otherwise than it is
+  /// to; empty after success.
   std::vector<Index> flippedTets;
+  bool isWound = false;  ///< the latter
 
   double energy = 0;  ///< mean of the foldover-free energy, by volume; 5 where nothing is distorted
   int iterations = 0;  ///< Newton steps in all

@@ -2,6 +2,7 @@
 #include <bit>
 
 #include <quantize/bend_split.hpp>
+#include <quantize/edge_turns.hpp>
 
 #include <base/vector3.hpp>
 
@@ -168,6 +169,7 @@ bool splitEdges(BendState& state, std::span<const SplitEdge> edges, std::size_t 
         cutTet(state, stars, t, edge, vertex);
       }
     }
+    splitIrregular(edge, vertex, problem.irregularEdges);
     state.splitEdges.push_back(edge);
   }
   return problem.tets.size() <= mostTets;

@@ -22,13 +22,12 @@
 #include <Eigen/SVD>
 #include <quantize/bend.hpp>
 #include <quantize/bend_energy.hpp>
+#include <quantize/polycube_borders.hpp>
 
 #include <base/disjoint_sets.hpp>
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <base/vector3.hpp>
-#include <igm/defects.hpp>
-#include <igm/input.hpp>
 #endif
 
 namespace hexhex {
@@ -49,11 +48,6 @@ constexpr int kRounds = 6;
 /// the boundary with several faces.
 constexpr double kMostGrowth = 2;
 
-constexpr std::size_t axisOfFlag(std::int8_t flag) noexcept {
-  return static_cast<std::size_t>(flag) / 2;
-}
-constexpr int signOfFlag(std::int8_t flag) noexcept { return flag % 2 == 0 ? 1 : -1; }
-
 /// The rotation nearest to a matrix.
 Matrix33 nearestRotation(const Matrix33& matrix) {
   const Eigen::JacobiSVD<Matrix33> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -64,66 +58,6 @@ Matrix33 nearestRotation(const Matrix33& matrix) {
 
 Eigen::Vector3d asEigen(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
-/// A tet mesh with labels, positive in space.
-struct LabelledMesh {
-  OrientedMap input;  ///< whose parameters are positions
-  TetTopology topology;
-  std::vector<std::int8_t> flags;  ///< per half-face
-
-  [[nodiscard]] const Vec3& point(Index tet, int corner) const {
-    return input.view.points[topology.tets[tet][static_cast<std::size_t>(corner)]];
-  }
-};
-
-[[noreturn]] void refuseFlag(const LabelledMesh& mesh, HalfFace h, const std::string& sentence) {
-  throw Error(ErrorCode::InvalidArgument, sentence,
-              {PlaceKind::Face, tetOf(h),
-               static_cast<std::uint64_t>(mesh.input.callersCorner(static_cast<int>(h % 4)))});
-}
-
-LabelledMesh readLabels(const TetMesh& tets, std::span<const FaceFlags> flags, Stage& stage) {
-  if (flags.size() != tets.tets.size()) {
-    throw Error(ErrorCode::InvalidArgument, "There are " + std::to_string(flags.size()) +
-                                                " labels of four faces, but " +
-                                                std::to_string(tets.tets.size()) + " tets.");
-  }
-  std::vector<TetParameters> positions;
-  positions.reserve(tets.tets.size());
-  for (const Tet& tet : tets.tets) {
-    TetParameters& corners = positions.emplace_back();
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (tet[i] < tets.points.size()) corners[i] = tets.points[tet[i]];
-    }
-  }
-  DefectCollector defects;
-  LabelledMesh mesh;
-  mesh.input = readInput({tets.points, tets.tets, positions}, stage, defects);
-  defects.throwIfAny();
-  mesh.topology = buildTopology(mesh.input.view, stage, defects);
-  defects.throwIfAny();
-  addStars(mesh.topology, stage);
-  // The positions of the caller's tets, which readInput() may have copied.
-  mesh.input.view.parameters = {};
-  mesh.flags.resize(mesh.topology.mate.size());
-  for (HalfFace h = 0; h < mesh.flags.size(); ++h) {
-    const auto face = static_cast<std::size_t>(mesh.input.callersCorner(static_cast<int>(h % 4)));
-    const std::int8_t flag = mesh.flags[h] = flags[tetOf(h)][face];
-    const bool isBoundary = mesh.topology.isBoundary(h);
-    if (flag < -1 || flag > 5) {
-      refuseFlag(mesh, h,
-                 "A label is " + std::to_string(flag) +
-                     "; labels are 0 to 5 for +x -x +y -y +z -z, and -1 inside.");
-    }
-    if (isBoundary && flag < 0) {
-      refuseFlag(mesh, h, "A boundary triangle has no label; each needs one from 0 to 5.");
-    }
-    if (!isBoundary && flag >= 0) {
-      refuseFlag(mesh, h, "A triangle inside of the object has a label; only the boundary has.");
-    }
-  }
-  return mesh;
-}
-
 /// How the coordinates of a tet's points depend on its corners.
 struct TetShape {
   Eigen::Matrix<double, 4, 3> gradients;
@@ -132,22 +66,15 @@ struct TetShape {
 
 std::vector<TetShape> measureShapes(const LabelledMesh& mesh) {
   std::vector<TetShape> shapes(mesh.topology.tetCount());
-  DefectCollector defects;
-  defects.setCornersReversed(mesh.input.cornersReversed);
   for (Index t = 0; t < shapes.size(); ++t) {
     Matrix33 edges;
     for (int i = 0; i < 3; ++i) {
       edges.col(i) = asEigen(minus(mesh.point(t, i + 1), mesh.point(t, 0)));
     }
     shapes[t].volume = edges.determinant() / 6;
-    if (!(shapes[t].volume > 0)) {
-      defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, -shapes[t].volume);
-      continue;
-    }
     shapes[t].gradients.bottomRows<3>() = edges.inverse();
     shapes[t].gradients.row(0) = -shapes[t].gradients.bottomRows<3>().colwise().sum();
   }
-  defects.throwIfAny();
   return shapes;
 }
 
@@ -223,15 +150,13 @@ Rotations turnToLabels(const LabelledMesh& mesh, const std::vector<TetShape>& sh
   const TetTopology& topology = mesh.topology;
   Rotations ofVertices(topology.pointCount, Matrix33::Zero());
   for (HalfFace h = 0; h < mesh.flags.size(); ++h) {
-    const std::int8_t flag = mesh.flags[h];
-    if (flag < 0) continue;
+    if (!mesh.isLabelled(h)) continue;
+    const Direction label = mesh.label(h);
     const auto& face = kFaceCorners[h % 4];
     const auto corner = [&](std::size_t k) { return asEigen(mesh.point(tetOf(h), face[k])); };
     // Corners of a face are in the order that looks inwards.
     const Eigen::Vector3d normal = (corner(2) - corner(0)).cross(corner(1) - corner(0));
-    const Matrix33 fit = signOfFlag(flag) *
-                             Eigen::Vector3d::Unit(static_cast<int>(axisOfFlag(flag))) *
-                             normal.transpose() +
+    const Matrix33 fit = signOf(label) * Eigen::Vector3d::Unit(axisOf(label)) * normal.transpose() +
                          kInertia * normal.norm() * Matrix33::Identity();
     for (const int k : face)
       ofVertices[topology.tets[tetOf(h)][static_cast<std::size_t>(k)]] += fit;
@@ -272,10 +197,10 @@ class PlaneFinder {
   PlaneFinder(const LabelledMesh& mesh, const std::vector<TetShape>& shapes)
       : mesh_(mesh), shapes_(shapes) {
     const std::size_t n = mesh.topology.pointCount;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < 3; ++axis) {
       DisjointSets planes(n);
       for (HalfFace h = 0; h < mesh.flags.size(); ++h) {
-        if (mesh.flags[h] < 0 || axisOfFlag(mesh.flags[h]) != axis) continue;
+        if (!mesh.isLabelled(h) || axisOf(mesh.label(h)) != axis) continue;
         const Tet& tet = mesh.topology.tets[tetOf(h)];
         const auto& c = kFaceCorners[h % 4];
         for (std::size_t k = 1; k < 3; ++k) {
@@ -291,7 +216,8 @@ class PlaneFinder {
       }
       problems_.push_back(
           std::make_unique<PoissonProblem>(mesh.topology, shapes, unknownOf, count));
-      for (const Vec3& p : mesh.input.view.points) positions_[axis].push_back(p[axis]);
+      const auto k = static_cast<std::size_t>(axis);
+      for (const Vec3& p : mesh.input.view.points) positions_[k].push_back(p[k]);
     }
   }
 
@@ -308,10 +234,9 @@ class PlaneFinder {
     }
   }
 
-  /// Of the plane of a half-face with a label.
-  [[nodiscard]] double coordinate(HalfFace h) const {
-    const auto corner = static_cast<std::size_t>(kFaceCorners[h % 4][0]);
-    return positions_[axisOfFlag(mesh_.flags[h])][mesh_.topology.tets[tetOf(h)][corner]];
+  /// Along an axis: of the plane, if the vertex is in one.
+  [[nodiscard]] double coordinate(int axis, Index vertex) const {
+    return positions_[static_cast<std::size_t>(axis)][vertex];
   }
 
  private:
@@ -344,9 +269,13 @@ double gridScale(const TetMapView& view) {
   return std::exp2(std::ceil(std::log2(kGridLines / std::max(size, 1e-300))));
 }
 
-BendProblem problemOf(const LabelledMesh& mesh, const Rotations& rotations,
-                      const PlaneFinder& planes, double scale) {
+/// @throws Error FlippedTet if the planes leave no room for a polycube
+BendProblem problemOf(const LabelledMesh& mesh, const PolycubeBorders& borders,
+                      const Rotations& rotations, const PlaneFinder& planes, double scale) {
   const TetMapView& view = mesh.input.view;
+  const auto planeAt = [&](int axis, Index vertex) {
+    return static_cast<std::int32_t>(std::llround(scale * planes.coordinate(axis, vertex)));
+  };
   BendProblem problem;
   problem.points.assign(view.points.begin(), view.points.end());
   problem.tets.assign(view.tets.begin(), view.tets.end());
@@ -360,10 +289,13 @@ BendProblem problemOf(const LabelledMesh& mesh, const Rotations& rotations,
   problem.transitions.resize(mesh.flags.size());
   problem.planes.resize(mesh.flags.size());
   for (HalfFace h = 0; h < mesh.flags.size(); ++h) {
-    if (mesh.flags[h] < 0) continue;
-    problem.planes[h] = {static_cast<std::int8_t>(axisOfFlag(mesh.flags[h])),
-                         static_cast<std::int32_t>(std::llround(scale * planes.coordinate(h)))};
+    if (!mesh.isLabelled(h)) continue;
+    const int axis = axisOf(mesh.label(h));
+    const auto corner = static_cast<std::size_t>(kFaceCorners[h % 4][0]);
+    problem.planes[h] = {static_cast<std::int8_t>(axis),
+                         planeAt(axis, mesh.topology.tets[tetOf(h)][corner])};
   }
+  problem.irregularEdges = borders.turns(planeAt);
   return problem;
 }
 
@@ -373,13 +305,13 @@ void requireSigns(const LabelledMesh& mesh, const std::vector<BoundaryPlane>& pl
   for (std::size_t t = 0; t < bent.tets.size(); ++t) {
     for (std::size_t face = 0; face < 4; ++face) {
       const auto h = static_cast<HalfFace>(4 * bent.parentTet[t] + face);
-      if (mesh.flags[h] < 0) continue;
-      const std::size_t axis = axisOfFlag(mesh.flags[h]);
+      if (!mesh.isLabelled(h)) continue;
+      const auto axis = static_cast<std::size_t>(axisOf(mesh.label(h)));
       const double plane = planes[h].coordinate;
       const bool isWhole = std::all_of(
           kFaceCorners[face].begin(), kFaceCorners[face].end(),
           [&](int k) { return bent.parameters[t][static_cast<std::size_t>(k)][axis] == plane; });
-      if (!isWhole || signOfFlag(mesh.flags[h]) * (plane - bent.parameters[t][face][axis]) > 0)
+      if (!isWhole || signOf(mesh.label(h)) * (plane - bent.parameters[t][face][axis]) > 0)
         continue;
       refuseFlag(mesh, h,
                  "The labels are those of no polycube: in the only map that fits them, a boundary "
@@ -392,7 +324,9 @@ void requireSigns(const LabelledMesh& mesh, const std::vector<BoundaryPlane>& pl
   const bool isContradictory = !bent.contradictions.empty();
   const std::string what =
       isContradictory ? std::to_string(bent.contradictions.size()) + " vertices have no place."
-                      : std::to_string(bent.flippedTets.size()) + " tets stay flipped.";
+                      : std::to_string(bent.flippedTets.size()) +
+                            (bent.isWound ? " tets overlap around edges, though none is flipped."
+                                          : " tets stay flipped.");
   throw Error(ErrorCode::FlippedTet,
               "The tets cannot be bent to a polycube that fits the labels: " + what +
                   " Look at the labels there, or refine the tets where the object is thin.",
@@ -402,12 +336,13 @@ void requireSigns(const LabelledMesh& mesh, const std::vector<BoundaryPlane>& pl
 
 TetMap polycubeMap(const TetMesh& tets, std::span<const FaceFlags> flags, Stage& stage) {
   const LabelledMesh mesh = readLabels(tets, flags, stage);
+  const PolycubeBorders borders(mesh);
   const std::vector<TetShape> shapes = measureShapes(mesh);
   Rotations rotations = turnToLabels(mesh, shapes);
   PlaneFinder planes(mesh, shapes);
   planes.run(rotations, stage);
   const double scale = gridScale(mesh.input.view);
-  BendProblem problem = problemOf(mesh, rotations, planes, scale);
+  BendProblem problem = problemOf(mesh, borders, rotations, planes, scale);
   const std::vector<BoundaryPlane> wanted = problem.planes;
   BentMap bent = bend(std::move(problem), {.maxGrowth = kMostGrowth}, stage);
   if (!bent.isValid()) failToBend(bent);

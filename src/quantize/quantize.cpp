@@ -19,6 +19,7 @@
 #endif
 
 #include <quantize/bend_problem.hpp>
+#include <quantize/edge_turns.hpp>
 #include <quantize/integer_factor.hpp>
 #include <quantize/quantized_map.hpp>
 
@@ -238,6 +239,8 @@ class Quantizer {
         map_(std::move(map)),
         seamless_(seamlessMap(map_, options, apart, context)) {
     std::vector<TetParameters>().swap(map_.parameters);  // which are large
+    irregularEdges_ = irregularEdges(EdgeFans(seamless_.topology), seamless_.topology.tets,
+                                     std::span<const LatticeTet>(seamless_.corners));
     report_.cellsWanted = cellsWanted(map_, seamless_, options);
     report_.displacement = seamless_.maxDisplacement;
     report_.integersBy = solver_.name;
@@ -301,6 +304,7 @@ class Quantizer {
     ++report_.attempts;
     BendProblem problem = bendProblem(seamless_, *complex_,
                                       BlockIntegers(*complex_, choice->integers), choice->scale);
+    problem.irregularEdges = irregularEdges_;
     // Bending needs the memory, and rarely fails.
     const std::vector<Index> blockOf = std::move(complex_->blockOf);
     complex_.reset();
@@ -327,8 +331,9 @@ class Quantizer {
     report_.splitEdges = bent.splitEdges.size();
     report_.addedTets = bent.tets.size() - seamless_.corners.size();
     stage.finish();
+    seamless_ = SeamlessMap();  // checks need its memory
     returnFreeMemory();
-    return finishQuantization(std::move(seamless_), map_, std::move(bent), report_, context_);
+    return finishQuantization(std::move(irregularEdges_), map_, std::move(bent), report_, context_);
   }
 
   /// Integers whose number of cells is near to what is wanted.
@@ -386,6 +391,7 @@ class Quantizer {
   Context& context_;
   TetMap map_;  ///< without parameters
   SeamlessMap seamless_;
+  IrregularEdges irregularEdges_;
   std::optional<MotorcycleComplex> complex_;
   bool isReduced_ = false;
   IntegerSolver solver_ = integerSolver();

@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <utility>
 
+#include <quantize/edge_turns.hpp>
 #include <quantize/quantized_map.hpp>
-#include <quantize/walls.hpp>
 
 #include <hexhex/check.hpp>
 
@@ -81,35 +80,6 @@ Features splitFeatures(const FeaturesView& given, std::size_t pointCount,
   return features;
 }
 
-/// Quarter turns around edges that are not regular.
-using IrregularEdges = std::map<VertexPair, int>;
-
-template <class Corners>
-IrregularEdges irregularEdges(const TetTopology& topology, std::span<const Corners> corners) {
-  const EdgeFans edges(topology);
-  const std::vector<int> quarters = quartersAround(edges, corners);
-  IrregularEdges irregular;
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (quarters[e] == regularQuarters(edges, e)) continue;
-    const EdgeCorner& at = edges(e).front();
-    const Tet& tet = topology.tets[at.tet];
-    irregular[pairOf(tet[at.corner0], tet[at.corner1])] = quarters[e];
-  }
-  return irregular;
-}
-
-/// What becomes of singular edges when edges are split.
-void splitIrregular(const std::vector<SplitEdge>& splits, std::size_t pointCount,
-                    IrregularEdges& irregular) {
-  for (std::size_t s = 0; s < splits.size(); ++s) {
-    const auto found = irregular.find(pairOf(splits[s][0], splits[s][1]));
-    if (found == irregular.end()) continue;
-    const auto middle = static_cast<Index>(pointCount + s);
-    for (const Index end : splits[s]) irregular[pairOf(end, middle)] = found->second;
-    irregular.erase(pairOf(splits[s][0], splits[s][1]));
-  }
-}
-
 /// Singular curves must be what they were.
 void requireSingularities(const IrregularEdges& expected, const TetMap& map, Context& context) {
   Stage stage(context, "singular curves");
@@ -120,7 +90,9 @@ void requireSingularities(const IrregularEdges& expected, const TetMap& map, Con
     throw Error(ErrorCode::Internal, "Quantization has made a mesh that is no manifold.");
   }
   addStars(topology, stage);
-  if (irregularEdges(topology, std::span<const TetParameters>(map.parameters)) != expected) {
+  const EdgeFans edges(topology);
+  const std::span<const TetParameters> parameters = map.parameters;
+  if (irregularEdges(edges, topology.tets, parameters) != expected) {
     throw Error(ErrorCode::Internal,
                 "Quantization has changed singular curves of the map. This is a bug.");
   }
@@ -128,17 +100,16 @@ void requireSingularities(const IrregularEdges& expected, const TetMap& map, Con
 
 }  // namespace
 
-QuantizedMap finishQuantization(SeamlessMap seamless, const TetMapView& given, BentMap bent,
+QuantizedMap finishQuantization(IrregularEdges singular, const TetMapView& given, BentMap bent,
                                 const QuantizeReport& report, Context& context) {
   QuantizedMap result;
   result.report = report;
   result.report.distortionAfter = distortionOf(bent.points, bent.tets, bent.parameters);
   result.report.distortionBefore = distortionOf(bent.points, bent.tets, bent.reference);
   std::vector<TetParameters>().swap(bent.reference);
-  IrregularEdges singular =
-      irregularEdges(seamless.topology, std::span<const LatticeTet>(seamless.corners));
-  splitIrregular(bent.splitEdges, given.points.size(), singular);
-  seamless = SeamlessMap();
+  for (std::size_t s = 0; s < bent.splitEdges.size(); ++s) {
+    splitIrregular(bent.splitEdges[s], static_cast<Index>(given.points.size() + s), singular);
+  }
   TetMap& map = result.map;
   map.features = splitFeatures(given.features, given.points.size(), bent.splitEdges);
   if (!given.regions.empty()) {

@@ -7,6 +7,8 @@
 //     r tx ty tz  r tx ty tz  r tx ty tz  r tx ty tz    per half-face: Rotation::index(),
 //     translation axis c  axis c  axis c  axis c            per half-face: BoundaryPlane (axis -1:
 //     none)
+//     irregular COUNT, then v w quarters        per edge with other than 4 inside, 2 on the
+//     boundary
 //
 // Doubles have 17 digits. What is unused (transitions on the boundary) is 0 0 0 0.
 #pragma once
@@ -44,6 +46,10 @@ inline void writeBendProblem(const std::string& path, const BendProblem& problem
     }
     out << '\n';
   }
+  out << "irregular " << problem.irregularEdges.size() << '\n';
+  for (const auto& [edge, quarters] : problem.irregularEdges) {
+    out << edge[0] << ' ' << edge[1] << ' ' << quarters << '\n';
+  }
   if (!out.flush()) throw std::runtime_error("cannot write " + path);
 }
 
@@ -77,7 +83,13 @@ inline BendProblem readBendProblem(const std::string& path) {
       problem.planes[h].axis = static_cast<std::int8_t>(axis);
     }
   }
-  if (!in) throw std::runtime_error(path + " ends too early");
+  std::size_t edges = 0;
+  in >> word >> edges;
+  for (std::array<Index, 2> edge{}; edges > 0; --edges) {
+    in >> edge[0] >> edge[1];
+    in >> problem.irregularEdges[edge];
+  }
+  if (!in || word != "irregular") throw std::runtime_error(path + " ends too early");
   return problem;
 }
 

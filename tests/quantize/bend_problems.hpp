@@ -9,6 +9,7 @@
 
 #include <adjacency/tet_topology.hpp>
 #include <quantize/bend.hpp>
+#include <quantize/edge_turns.hpp>
 
 #include <hexhex/types.hpp>
 
@@ -85,6 +86,9 @@ inline BendProblem problemFrom(const TetMap& target, const TetMap& reference) {
   topology.tets = problem.tets;
   topology.pointCount = problem.points.size();
   if (!matchFaces(topology, stage)) throw std::runtime_error("no manifold");
+  addStars(topology, stage);
+  problem.irregularEdges = irregularEdges(EdgeFans(topology), topology.tets,
+                                          std::span<const TetParameters>(reference.parameters));
   for (HalfFace h = 0; h < problem.transitions.size(); ++h) {
     std::array<Vec3, 3> here{};
     std::array<Vec3, 3> there{};

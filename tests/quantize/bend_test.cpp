@@ -131,14 +131,18 @@ TEST(Bend, FindsEdgesThatAreWoundTwice) {
   topology.pointCount = map.points.size();
   ASSERT_TRUE(matchFaces(topology, stage));
   addStars(topology, stage);
-  EXPECT_TRUE(tetsAtOtherTurns(topology, map.parameters, map.parameters, stage).empty());
+  const IrregularEdges irregular = irregularEdges(EdgeFans(topology), topology.tets,
+                                                  std::span<const TetParameters>(map.parameters));
+  EXPECT_EQ(irregular.begin()->second, 8);
+  EXPECT_TRUE(tetsAtOtherTurns(topology, irregular, map.parameters, stage).empty());
+  EXPECT_FALSE(tetsAtOtherTurns(topology, {}, map.parameters, stage).empty());
   // In space, the angles around the axis add up to 360 degrees only.
   std::vector<TetParameters> inSpace;
   for (const Tet& tet : map.tets) {
     inSpace.push_back(
         {map.points[tet[0]], map.points[tet[1]], map.points[tet[2]], map.points[tet[3]]});
   }
-  EXPECT_FALSE(tetsAtOtherTurns(topology, map.parameters, inSpace, stage).empty());
+  EXPECT_FALSE(tetsAtOtherTurns(topology, irregular, inSpace, stage).empty());
 }
 
 /// Every seventh tet's first edge, more or less.
@@ -167,6 +171,7 @@ void expectSameMapAfterSplits(const TetMap& map) {
   const BendProblem again = problemFrom(split, split);
   EXPECT_EQ(again.planes, state.problem.planes);
   EXPECT_EQ(again.transitions, state.problem.transitions);
+  EXPECT_EQ(again.irregularEdges, state.problem.irregularEdges);
 }
 
 TEST(BendSplit, KeepsTheMap) {
@@ -187,6 +192,7 @@ TEST(BendProblemFile, KeepsEverything) {
   EXPECT_EQ(read.reference, problem.reference);
   EXPECT_EQ(read.transitions, problem.transitions);
   EXPECT_EQ(read.planes, problem.planes);
+  EXPECT_EQ(read.irregularEdges, problem.irregularEdges);
   std::filesystem::remove(path);
 }
 

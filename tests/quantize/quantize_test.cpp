@@ -12,8 +12,10 @@
 #include <string_view>
 
 #include <gtest/gtest.h>
+#include <quantize/edge_turns.hpp>
 #include <quantize/motorcycle_complex.hpp>
 #include <quantize/quantized_map.hpp>
+#include <quantize/seamless_map.hpp>
 #include <rapidcheck/gtest.h>
 
 #include <hexhex/hexhex.hpp>
@@ -250,8 +252,11 @@ TEST(Quantize, TagsAndSingularEdgesGoToBothHalvesOfASplitEdge) {
   for (const SplitEdge edge :
        {map.features.edges.front().vertices, firstSingularEdge(map, context)}) {
     BentMap bent = splitAt(map, edge);
-    SeamlessMap seamless = makeSeamless(map, {1e-5, 1e-5}, context);
-    const QuantizedMap result = finishQuantization(std::move(seamless), map, bent, {}, context);
+    const SeamlessMap seamless = makeSeamless(map, {1e-5, 1e-5}, context);
+    const IrregularEdges irregular =
+        irregularEdges(EdgeFans(seamless.topology), seamless.topology.tets,
+                       std::span<const LatticeTet>(seamless.corners));
+    const QuantizedMap result = finishQuantization(irregular, map, bent, {}, context);
     const Expectation after = check(result.map).expected;
     EXPECT_EQ(after.cells, before.expected.cells);
     EXPECT_EQ(after.innerSingularEdges, before.expected.innerSingularEdges);
