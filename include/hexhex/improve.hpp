@@ -71,9 +71,11 @@ struct ImproveReport {
 ///
 /// @param mesh  with generators in the map: what extract() returns, or what was read from `.vtu`,
 ///              `.ovm` or `.ovmb`
-/// @throws Error InvalidArgument for options out of range, vertices that do not exist, and
-///         generators that are not in the map; NotFinite for a coordinate; TooLarge unless the mesh
-///         extends over 1e-10 to 1e30; Orientation if the cells are inside out; EmptyMesh; those of
+/// @throws Error InvalidArgument for options out of range, vertices that do not exist, generators
+///         that are not in the map, and a map that is elsewhere than the mesh; NotFinite for a
+///         coordinate; TooLarge unless the mesh extends over 1e-10 to 1e30; RepeatedVertex for a
+///         cell that names a vertex twice; NonManifoldFace for a face of more than two cells;
+///         Orientation for cells that list their corners the other way round; EmptyMesh; those of
 ///         broken maps
 ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions& options,
                       Context& context);

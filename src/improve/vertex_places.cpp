@@ -11,6 +11,7 @@
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
+#include <improve/sound_input.hpp>
 #include <improve/vertex_places.hpp>
 
 namespace hexhex {
@@ -166,6 +167,7 @@ VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angl
                          Stage& stage) {
   requireGenerators(mesh, map, stage);
   requireCornersInRange(map, stage);  // flipped tets do not matter
+  requireSameObject(mesh, map, stage);
   // Looks whether features are there, too.
   const MapStructure structure = findMapStructure(map, ExtractOptions{}.tolerance, context);
   SurfaceParts parts;
