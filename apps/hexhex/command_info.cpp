@@ -9,7 +9,6 @@
 #include <variant>
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
@@ -148,9 +147,9 @@ void printFaults(const CellFaults& faults, std::uint64_t cells) {
   }
   const auto printFaces = [](const char* label, std::uint64_t count, const FaceConflict& first) {
     if (count == 0) return;
-    printLine(label,
-              fmt::format("{}; the first is ({}), of cells {} and {}", counted(count, "face"),
-                          fmt::join(first.vertices, ", "), first.cell, first.other));
+    const auto& [a, b, c, d] = first.vertices;
+    printLine(label, fmt::format("{}; the first is ({}, {}, {}, {}), of cells {} and {}",
+                                 counted(count, "face"), a, b, c, d, first.cell, first.other));
   };
   printFaces("in the same direction", faults.sameDirectionFaces, faults.firstSameDirection);
   printFaces("of more than two cells", faults.overfullFaces, faults.firstOverfull);

@@ -29,7 +29,9 @@ hexhex_improve_report reportOf(const hexhex::ImproveReport& r) {
           .largest_move = r.largestMove,
           .mean_move = r.meanMove,
           .off_surface = r.offSurface,
-          .seconds = r.seconds};
+          .seconds = r.seconds,
+          .tagged_vertices = r.taggedVertices,
+          .boundary_vertices = r.boundaryVertices};
 }
 
 /// @param meshOf  the mesh of a handle

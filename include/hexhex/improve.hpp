@@ -54,6 +54,9 @@ struct ImproveReport {
   std::uint64_t farCellsBefore = 0;         ///< whose boundary is beyond kSurfaceTolerance
   Array<std::uint64_t> farCells;            ///< those of the end, ascending
   std::array<std::uint64_t, 4> vertices{};  ///< that move freely, on patches, on curves, not at all
+  // Why vertices do not move at all: these, and the rest are corners, where curves meet or turn.
+  std::uint64_t taggedVertices = 0;    ///< that have a tag
+  std::uint64_t boundaryVertices = 0;  ///< that only ImproveOptions::fixBoundary holds
   std::uint64_t movedVertices = 0;
   double largestMove = 0;        ///< in diagonals
   double meanMove = 0;           ///< of those that moved

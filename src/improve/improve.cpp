@@ -101,10 +101,15 @@ void reportOff(const Array<Vec3>& points, const VertexPlaces& places, ImproveRep
   }
 }
 
-void fixBoundary(VertexPlaces& places) {
+/// @return how many vertices could have moved
+std::uint64_t fixBoundary(VertexPlaces& places) {
+  std::uint64_t count = 0;
   for (Freedom& freedom : places.freedom) {
-    if (freedom != Freedom::Free) freedom = Freedom::Fixed;
+    if (freedom == Freedom::Free || freedom == Freedom::Fixed) continue;
+    freedom = Freedom::Fixed;
+    ++count;
   }
+  return count;
 }
 
 /// Cells that lost their certificate, or whose scaled Jacobian fell below the least there was.
@@ -238,7 +243,8 @@ ImproveReport improveOn(const ImproveOptions& options, Context& context, const S
     boundary.faces = boundaryPlaces(mesh, stage);
     boundary.quads = quadsAt(mesh, boundary.faces);
     VertexPlaces places = placesOf(mesh, stage);
-    if (options.fixBoundary) fixBoundary(places);
+    report.taggedVertices = places.tagged;
+    if (options.fixBoundary) report.boundaryVertices = fixBoundary(places);
     for (const Freedom freedom : places.freedom) {
       ++report.vertices[static_cast<std::size_t>(freedom)];
     }

@@ -1,6 +1,8 @@
 // How each vertex of a mesh may move: freely, on a patch of the surface, on a curve, or not at all.
 #pragma once
 
+#include <cstdint>
+
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
@@ -10,8 +12,9 @@ namespace hexhex {
 
 struct VertexPlaces {
   ReferenceSurface surface;
-  Array<Freedom> freedom;  ///< per vertex
-  Array<Index> simplex;    ///< per vertex: the triangle or segment that holds it, or kNone
+  Array<Freedom> freedom;    ///< per vertex
+  Array<Index> simplex;      ///< per vertex: the triangle or segment that holds it, or kNone
+  std::uint64_t tagged = 0;  ///< vertices that are Fixed because they have a tag
 
   /// The place nearest to a point that a vertex may move to.
   [[nodiscard]] SurfacePlace nearest(Index vertex, const Vec3& point) const {

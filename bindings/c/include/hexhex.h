@@ -1181,11 +1181,13 @@ typedef struct hexhex_improve_report {
   double mean_move;     /**< of those that moved */
   uint64_t off_surface; /**< vertices that used the slack */
   double seconds;
+  uint64_t tagged_vertices;   /**< of fixed_vertices: that have a tag, */
+  uint64_t boundary_vertices; /**< and that only fix_boundary holds; the rest are corners */
 } hexhex_improve_report;
 #define HEXHEX_IMPROVE_REPORT_INIT                                                                \
   {                                                                                               \
     sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0                                                                                         \
+        0, 0, 0                                                                                   \
   }
 
 /** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>.
