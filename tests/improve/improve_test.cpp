@@ -392,7 +392,6 @@ TEST(Improve, RefusesSizesThatItCannotCompute) {
     other.points = scaled(factor, map.points);
     mesh = ball;
     mesh.points = scaled(factor, ball.points);
-    mesh.points = scaled(factor, ball.points);
     EXPECT_EQ(codeOf([&] { improvedOn(mesh, other); }), ErrorCode::TooLarge) << factor;
   }
   HexMesh distorted = grid;
