@@ -8,6 +8,7 @@
 
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/structure.hpp>
 
 #include "command.hpp"
 #include "exit_codes.hpp"
@@ -25,6 +26,7 @@ struct Arguments {
   RunOptions run;
   double patchAngle = WriteOptions{}.patchAngle;
   bool stream = false;
+  bool reorient = false;
 };
 
 /// That neither maps nor hex meshes can be written is known before anything is read.
@@ -56,23 +58,30 @@ std::variant<TetMap, HexMesh> readInput(const Arguments& arguments, Context& con
 
 /// What was converted.
 std::string convertWhole(const Arguments& arguments, Context& context) {
-  const auto content = readInput(arguments, context);
+  auto content = readInput(arguments, context);
   WriteOptions writing = arguments.choice.options();
   writing.mapArray = arguments.input.mapArray;
   writing.patchAngle = arguments.patchAngle;
   if (const auto* const map = std::get_if<TetMap>(&content)) {
     requireFor(arguments, "a map", requireMapFormat);
+    if (arguments.reorient) {
+      throw Error(ErrorCode::InvalidArgument,
+                  arguments.input.description() +
+                      " holds a map, but --reorient turns cells of hexahedral meshes.");
+    }
     writeMap(*map, arguments.output, writing, context);
     return fmt::format("a map of {}, {}", counted(map->tets.size(), "tet"),
                        counted(map->points.size(), "point"));
   }
-  const auto& mesh = std::get<HexMesh>(content);
+  auto& mesh = std::get<HexMesh>(content);
   requireFor(arguments, "a hexahedral mesh",
              [](const std::filesystem::path& file, const WriteOptions& options) {
                requireHexMeshFormat(file, options);
              });
+  const std::string turned =
+      arguments.reorient ? fmt::format(", of which {} turned", reorient(mesh, context)) : "";
   writeHexMesh(mesh, arguments.output, writing, context);
-  return fmt::format("a mesh of {}, {} vertices", counted(mesh.cells.size(), "cell"),
+  return fmt::format("a mesh of {}{}, {} vertices", counted(mesh.cells.size(), "cell"), turned,
                      mesh.points.size());
 }
 
@@ -91,9 +100,17 @@ int run(const Arguments& arguments) {
     throw Error(ErrorCode::InvalidArgument,
                 "--stream converts hexahedral meshes, but --tets and --polycube are a map.");
   }
+  if (arguments.stream && arguments.reorient) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--reorient compares neighbouring cells, which --stream does not keep in memory. "
+                "Leave out one of them.");
+  }
   requireAnyFormat(arguments);
-  const std::vector<WorkStep> whole = {
-      {"readMapPair", 1}, {"readMapOrHexMesh", 1}, {"writeMap", 1}, {"writeHexMesh", 1}};
+  const std::vector<WorkStep> whole = {{"readMapPair", 1},
+                                       {"readMapOrHexMesh", 1},
+                                       {"findCellFaults", 0.3},
+                                       {"writeMap", 1},
+                                       {"writeHexMesh", 1}};
   LongRun longRun(arguments.run,
                   arguments.stream ? std::vector<WorkStep>{{"readHexMeshTo", 1}} : whole);
   Context& context = longRun.context();
@@ -129,6 +146,9 @@ Command addConvert(CLI::App& app) {
                    "than the memory, from .vtu to " +
                        extensionsThat(&FileFormat::streams) +
                        ";\nwithout boundary quads and quality");
+  parser->add_flag("--reorient", arguments->reorient,
+                   "Turn cells round that list their corners mirrored, so that\n"
+                   "neighbours agree and the volume is positive");
   addRunOptions(*parser, arguments->run);
   parser->footer(
       "Maps become maps, and hexahedral meshes become hexahedral meshes: the input's content "

@@ -13,6 +13,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/quality.hpp>
+#include <hexhex/structure.hpp>
 #include <hexhex/survey.hpp>
 
 #include "command.hpp"
@@ -57,6 +58,7 @@ struct FileContent {
   std::optional<Box> box;
   double largestParameter = 0;
   std::optional<Certificate> certificate;
+  CellFaults faults;
   std::optional<MeshSurvey> survey;
   bool isMap = false;
 };
@@ -83,6 +85,7 @@ FileContent contentOf(const HexMesh& mesh, Context& context) {
   content.points = mesh.points.size();
   content.box = boxOf(mesh.points);
   if (!mesh.cells.empty()) content.certificate = certify(mesh, context);
+  content.faults = findCellFaults(mesh, context);
   return content;
 }
 
@@ -120,6 +123,38 @@ void printHistogram(const QualitySummary& quality) {
   }
 }
 
+/// "; the first is cell 13"
+std::string firstOf(std::uint64_t cell) { return fmt::format("; the first is cell {}", cell); }
+
+/// What is wrong with the lists of corners, if anything.
+void printFaults(const CellFaults& faults, std::uint64_t cells) {
+  if (!faults.repeated.empty()) {
+    printLine("repeated corners", counted(faults.repeated.size(), "cell") +
+                                      (faults.repeated.size() == 1 ? " names" : " name") +
+                                      " a vertex twice" + firstOf(faults.repeated.front()));
+  }
+  constexpr const char* kHow = "`hexhex convert --reorient`";
+  if (!faults.mirrored.empty() && faults.mirrored.size() == cells) {
+    printLine("orientation", fmt::format("the mesh is mirrored; {} turns it round", kHow));
+  } else if (!faults.mirrored.empty()) {
+    printLine("orientation", fmt::format("{} mirrored{}; {} turns such cells round",
+                                         counted(faults.mirrored.size(), "cell"),
+                                         firstOf(faults.mirrored.front()), kHow));
+  }
+  if (faults.notOrientable != kNone) {
+    printLine("not orientable",
+              fmt::format("cells around cell {}, as along a Moebius band", faults.notOrientable));
+  }
+  const auto printFaces = [](const char* label, std::uint64_t count, const FaceConflict& first) {
+    if (count == 0) return;
+    const auto& [a, b, c, d] = first.vertices;
+    printLine(label, fmt::format("{}; the first is ({}, {}, {}, {}), of cells {} and {}",
+                                 counted(count, "face"), a, b, c, d, first.cell, first.other));
+  };
+  printFaces("in the same direction", faults.sameDirectionFaces, faults.firstSameDirection);
+  printFaces("of more than two cells", faults.overfullFaces, faults.firstOverfull);
+}
+
 void print(const FileContent& content) {
   fmt::print("{}\n",
              content.isMap ? "a tetrahedral mesh with an integer-grid map" : "a hexahedral mesh");
@@ -139,12 +174,22 @@ void print(const FileContent& content) {
     printLine("checksum of cells", checksumAsText(content.survey->cellChecksum));
     printLine("checksum of vertices", checksumAsText(content.survey->pointChecksum));
   }
+  printFaults(content.faults, content.cells);
   if (!content.certificate) return;
   printQuality(*content.certificate);
   if (content.certificate->refuted > 0) {
     printLine("refuted", refutationAsText(*content.certificate));
   }
   printHistogram(content.certificate->quality);
+}
+
+Json faultsAsJson(const CellFaults& faults) {
+  const Json none(nullptr);
+  return {{"repeated_corners", faults.repeated},
+          {"mirrored", faults.mirrored},
+          {"not_orientable", faults.notOrientable == kNone ? none : Json(faults.notOrientable)},
+          {"faces_in_the_same_direction", faults.sameDirectionFaces},
+          {"overfull_faces", faults.overfullFaces}};
 }
 
 Json asJson(const FileContent& content, const std::string& file) {
@@ -158,13 +203,17 @@ Json asJson(const FileContent& content, const std::string& file) {
   if (content.certificate) {
     json["quality"] = qualityAsJson(*content.certificate);
     json["validity"] = validityAsJson(*content.certificate);
+    json["faults"] = faultsAsJson(content.faults);
   }
   return json;
 }
 
 int run(const Arguments& arguments) {
-  LongRun longRun(
-      {}, {{"readMapPair", 1}, {"readMapOrHexMesh", 2}, {"readHexMeshTo", 2}, {"certify", 0.5}});
+  LongRun longRun({}, {{"readMapPair", 1},
+                       {"readMapOrHexMesh", 2},
+                       {"readHexMeshTo", 2},
+                       {"certify", 0.5},
+                       {"findCellFaults", 0.3}});
   const FileContent content = read(arguments, longRun.context());
   longRun.finish();
   const std::string name = arguments.source.description();

@@ -1,6 +1,7 @@
 #include "improve_options.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include <fmt/core.h>
 
@@ -36,6 +37,24 @@ std::vector<CLI::Option*> addImproveOptions(CLI::App& parser, ImproveOptions& op
               ->option_text("NUMBER [1e-3]")};
 }
 
+namespace {
+
+/// "8 at corners, 2 with a tag", of vertices that do not move at all.
+std::string heldAsText(const ImproveReport& report) {
+  const std::uint64_t corners =
+      report.vertices[3] - report.taggedVertices - report.boundaryVertices;
+  std::string text;
+  const auto add = [&](std::uint64_t count, const char* why) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, why);
+  };
+  add(corners, "at corners");
+  add(report.taggedVertices, "with a tag");
+  add(report.boundaryVertices, "on the boundary");
+  return text;
+}
+
+}  // namespace
+
 void printImprovement(const ImproveReport& report) {
   const std::uint64_t bad = report.before.refuted + report.before.undecided;
   const std::uint64_t left = report.notPositive.size();
@@ -49,6 +68,10 @@ void printImprovement(const ImproveReport& report) {
   printLine("moved",
             fmt::format("{} vertices, by {:.2g} of the diagonal on average, at most {:.2g}",
                         report.movedVertices, report.meanMove, report.largestMove));
+  const auto& [free, onPatches, onCurves, held] = report.vertices;
+  printLine("vertices", fmt::format("{} free, {} on the surface, {} on curves, {} held", free,
+                                    onPatches, onCurves, held) +
+                            (held > 0 ? ": " + heldAsText(report) : ""));
   printLine(
       "distance to the surface",
       fmt::format("{:.2g} of the diagonal ({:.2g} from it to the mesh); before {:.2g} ({:.2g})",
@@ -100,7 +123,9 @@ Json improvementAsJson(const ImproveReport& report) {
        {{"free", report.vertices[0]},
         {"on_patches", report.vertices[1]},
         {"on_curves", report.vertices[2]},
-        {"fixed", report.vertices[3]}}},
+        {"fixed", report.vertices[3]},
+        {"fixed_by_tags", report.taggedVertices},
+        {"fixed_by_option", report.boundaryVertices}}},
       {"moved_vertices", report.movedVertices},
       {"largest_move", report.largestMove},
       {"mean_move", report.meanMove},

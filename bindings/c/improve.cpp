@@ -31,7 +31,9 @@ hexhex_improve_report reportOf(const hexhex::ImproveReport& r) {
           .off_surface = r.offSurface,
           .seconds = r.seconds,
           .inner_distance_before = r.innerDistanceBefore,
-          .inner_distance_after = r.innerDistanceAfter};
+          .inner_distance_after = r.innerDistanceAfter,
+          .tagged_vertices = r.taggedVertices,
+          .boundary_vertices = r.boundaryVertices};
 }
 
 /// @param meshOf  the mesh of a handle

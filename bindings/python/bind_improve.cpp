@@ -45,6 +45,8 @@ nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, double target, i
   d["patch_vertices"] = report.vertices[1];
   d["curve_vertices"] = report.vertices[2];
   d["fixed_vertices"] = report.vertices[3];
+  d["tagged_vertices"] = report.taggedVertices;
+  d["boundary_vertices"] = report.boundaryVertices;
   d["moved_vertices"] = report.movedVertices;
   d["largest_move"] = report.largestMove;
   d["mean_move"] = report.meanMove;

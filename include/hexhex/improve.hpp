@@ -59,6 +59,9 @@ struct ImproveReport {
   std::uint64_t farCellsBefore = 0;         ///< whose boundary is beyond kSurfaceTolerance
   Array<std::uint64_t> farCells;            ///< those of the end, ascending
   std::array<std::uint64_t, 4> vertices{};  ///< that move freely, on patches, on curves, not at all
+  // Why vertices do not move at all: these, and the rest are corners, where curves meet or turn.
+  std::uint64_t taggedVertices = 0;    ///< that have a tag
+  std::uint64_t boundaryVertices = 0;  ///< that only ImproveOptions::fixBoundary holds
   std::uint64_t movedVertices = 0;
   double largestMove = 0;        ///< in diagonals
   double meanMove = 0;           ///< of those that moved
@@ -76,9 +79,11 @@ struct ImproveReport {
 ///
 /// @param mesh  with generators in the map: what extract() returns, or what was read from `.vtu`,
 ///              `.ovm` or `.ovmb`
-/// @throws Error InvalidArgument for options out of range, vertices that do not exist, and
-///         generators that are not in the map; NotFinite for a coordinate; TooLarge unless the mesh
-///         extends over 1e-10 to 1e30; Orientation if the cells are inside out; EmptyMesh; those of
+/// @throws Error InvalidArgument for options out of range, vertices that do not exist, generators
+///         that are not in the map, and a map that is elsewhere than the mesh; NotFinite for a
+///         coordinate; TooLarge unless the mesh extends over 1e-10 to 1e30; RepeatedVertex for a
+///         cell that names a vertex twice; NonManifoldFace for a face of more than two cells;
+///         Orientation for cells that list their corners the other way round; EmptyMesh; those of
 ///         broken maps
 ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions& options,
                       Context& context);

@@ -17,6 +17,7 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <improve/curved_cells.hpp>
+#include <improve/sound_input.hpp>
 #include <improve/surface_distance.hpp>
 #include <improve/sweeps.hpp>
 #include <improve/untangling.hpp>
@@ -74,21 +75,6 @@ void requireCells(const HexMesh& mesh, Context& context) {
   requirePositions(mesh.points, "the mesh", stage);
 }
 
-/// Whatever is wrong inside, the boundary encloses a positive volume, unless cells list their
-/// corners the other way round.
-void requireOrientation(const Array<Vec3>& points, std::span<const Quad> quads) {
-  double volume = 0;
-  for (const Quad& quad : quads) {
-    const Vec3& origin = points[quads[0][0]];
-    const auto at = [&](std::size_t i) { return minus(points[quad[i]], origin); };
-    volume += tripleProduct(at(0), at(1), at(2)) + tripleProduct(at(0), at(2), at(3));
-  }
-  if (volume >= 0) return;
-  throw Error(ErrorCode::Orientation,
-              "The mesh is inside out: corners of its cells are not in the order of "
-              "VTK_HEXAHEDRON, or mirrored. List corners 4 to 7 before 0 to 3.");
-}
-
 void reportMoves(const Array<Vec3>& before, const Array<Vec3>& points, ImproveReport& report) {
   for (std::size_t v = 0; v < before.size(); ++v) {
     const double move = length(minus(points[v], before[v])) / report.diagonal;
@@ -120,10 +106,15 @@ double distanceInside(const VertexPlaces& places, const HexMesh& mesh, const Imp
   return innerDistance(mesh.points, places.innerQuads, places.surface, report.diagonal, stage);
 }
 
-void fixBoundary(VertexPlaces& places) {
+/// @return how many vertices could have moved
+std::uint64_t fixBoundary(VertexPlaces& places) {
+  std::uint64_t count = 0;
   for (Freedom& freedom : places.freedom) {
-    if (freedom != Freedom::Free) freedom = Freedom::Fixed;
+    if (freedom == Freedom::Free || freedom == Freedom::Fixed) continue;
+    freedom = Freedom::Fixed;
+    ++count;
   }
+  return count;
 }
 
 /// Cells that lost their certificate, or whose scaled Jacobian fell below the least there was.
@@ -145,6 +136,12 @@ struct Subject {
   HexMesh& mesh;
   LagrangeMesh* curved = nullptr;
 
+  /// Cells of the mesh for each that counts.
+  [[nodiscard]] std::size_t parts() const {
+    if (curved == nullptr) return 1;
+    const auto order = static_cast<std::size_t>(curved->order);
+    return order * order * order;
+  }
   [[nodiscard]] Certificate certifyNow(Context& context) const {
     if (curved == nullptr) return certify(mesh, context);
     std::copy(mesh.points.begin(), mesh.points.end(), curved->points.begin());
@@ -234,28 +231,32 @@ ImproveReport improveOn(const ImproveOptions& options, Context& context, const S
                         const PlacesOf& placesOf) {
   requireOptions(options);
   const auto begin = std::chrono::steady_clock::now();
-  constexpr std::array<WorkStep, 4> kSteps = {
-      {{"input", 0.1}, {"certify", 0.4}, {"findMapStructure", 0.1}, {"moving", 10}}};
+  constexpr std::array<WorkStep, 5> kSteps = {{{"input", 0.1},
+                                               {"findCellFaults", 0.2},
+                                               {"certify", 0.4},
+                                               {"findMapStructure", 0.1},
+                                               {"moving", 10}}};
   WorkSteps steps(context, "improve", kSteps);
   ImproveReport report;
   withThreads(context.threads(), [&] {
     const Subject subject = subjectOf(context);
     HexMesh& mesh = subject.mesh;
+    requireSoundCells(mesh, subject.parts(), context);
     report.before = subject.certifyNow(context);
     Stage stage(context, "moving");
     Boundary boundary;
     boundary.faces = boundaryPlaces(mesh, stage);
     boundary.quads = quadsAt(mesh, boundary.faces);
-    requireOrientation(mesh.points, boundary.quads);
     VertexPlaces places = placesOf(mesh, stage);
-    if (options.fixBoundary) fixBoundary(places);
+    report.taggedVertices = places.tagged;
+    if (options.fixBoundary) report.boundaryVertices = fixBoundary(places);
     for (const Freedom freedom : places.freedom) {
       ++report.vertices[static_cast<std::size_t>(freedom)];
     }
     report.diagonal = diagonalOf(places.surface);
     if (report.diagonal < kSmallest) refuseSize("The surface is smaller than 1e-10");
     boundary.surface = treeOf(places.surface);
-    const std::size_t parts = mesh.cells.size() / report.before.validity.size();
+    const std::size_t parts = subject.parts();
     {
       const BoundaryDistance distance =
           boundary.distanceTo(places, mesh.points, report.diagonal, stage);

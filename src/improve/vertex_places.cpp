@@ -13,6 +13,7 @@
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
+#include <improve/sound_input.hpp>
 #include <improve/vertex_places.hpp>
 
 namespace hexhex {
@@ -173,10 +174,11 @@ void requireFeatures(const HexFeatures& features, std::size_t points) {
                   "). Correct the features, or leave them out.");
 }
 
+/// @param features     of the map or the mesh, in whose vertices generators are given
 /// @param generatorOf  (vertex, list): the points whose simplex holds a vertex, or held it once
-template <class GeneratorOf>
-void place(const Array<Vec3>& points, const GeneratorOf& generatorOf, VertexPlaces& places,
-           Stage& stage) {
+template <class Features, class GeneratorOf>
+void place(const Array<Vec3>& points, const Features& features, const GeneratorOf& generatorOf,
+           VertexPlaces& places, Stage& stage) {
   const std::size_t n = points.size();
   places.freedom.resize(n);
   places.simplex.resize(n);
@@ -190,6 +192,16 @@ void place(const Array<Vec3>& points, const GeneratorOf& generatorOf, VertexPlac
     const auto vertex = static_cast<Index>(v);
     places.simplex[v] = places.nearest(vertex, points[v]).simplex;
   });
+  std::vector<Index> tagged;
+  for (const FeatureVertex& vertex : features.vertices) {
+    if (vertex.tag != 0) tagged.push_back(vertex.vertex);
+  }
+  std::sort(tagged.begin(), tagged.end());
+  for (std::size_t v = 0; v < n && !tagged.empty(); ++v) {
+    std::array<Index, 4> corners{};
+    if (places.freedom[v] != Freedom::Fixed || generatorOf(v, corners) != 1) continue;
+    if (std::binary_search(tagged.begin(), tagged.end(), corners[0])) ++places.tagged;
+  }
 }
 
 }  // namespace
@@ -198,6 +210,7 @@ VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angl
                          Stage& stage) {
   requireGenerators(mesh, map, stage);
   requireCornersInRange(map, stage);  // flipped tets do not matter
+  requireSameObject(mesh, map, stage);
   // Looks whether features are there, too.
   const MapStructure structure = findMapStructure(map, ExtractOptions{}.tolerance, context);
   SurfaceParts parts;
@@ -208,7 +221,7 @@ VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angl
   VertexPlaces places;
   places.surface = ReferenceSurface(std::move(parts), stage);
   place(
-      mesh.points,
+      mesh.points, map.features,
       [&](std::size_t v, std::array<Index, 4>& corners) {
         std::size_t count = 0;
         for (std::size_t i = 0; i < 4; ++i) {
@@ -235,7 +248,7 @@ VertexPlaces placesOnMesh(const HexMesh& mesh, double angle, Stage& stage) {
   VertexPlaces places;
   places.surface = ReferenceSurface(std::move(parts), stage);
   place(
-      mesh.points,
+      mesh.points, mesh.features,
       [](std::size_t v, std::array<Index, 4>& corners) {
         corners[0] = static_cast<Index>(v);
         return std::size_t{1};

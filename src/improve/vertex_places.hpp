@@ -1,6 +1,7 @@
 // How each vertex of a mesh may move: freely, on a patch of the surface, on a curve, or not at all.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <hexhex/types.hpp>
@@ -15,6 +16,7 @@ struct VertexPlaces {
   Array<Freedom> freedom;        ///< per vertex
   Array<Index> simplex;          ///< per vertex: the triangle or segment that holds it, or kNone
   std::vector<Quad> innerQuads;  ///< of the mesh, on triangles of the surface that are inside
+  std::uint64_t tagged = 0;      ///< vertices that are Fixed because they have a tag
 
   /// The place nearest to a point that a vertex may move to.
   [[nodiscard]] SurfacePlace nearest(Index vertex, const Vec3& point) const {

@@ -950,6 +950,59 @@ class Repair(CommandTest):
         self.run_command("extract", "--tets", "a.mesh", "--polycube", "b.mesh", "-o", "c.vtu", "--keep-walls",
                          expect=BAD_USAGE)
 
+    @staticmethod
+    def bar(vertex_references, cells, corners=""):
+        """Unit cubes in a row, as text of a `.mesh` file."""
+        points = [(x, y, z) for x in range(5) for y in (0, 1) for z in (0, 1)]
+        return ("MeshVersionFormatted 1\nDimension 3\nVertices\n20\n"
+                + "".join(f"{x} {y} {z} {r}\n" for (x, y, z), r in zip(points, vertex_references))
+                + f"Hexahedra\n{len(cells)}\n"
+                + "".join(" ".join(str(v + 1) for v in cell) + " 0\n" for cell in cells) + corners + "End\n")
+
+    def test_cells_that_list_their_corners_wrongly(self):
+        sound = [[4 * i + k for k in (0, 4, 6, 2, 1, 5, 7, 3)] for i in range(4)]
+        one = [*sound[:2], sound[2][4:] + sound[2][:4], sound[3]]
+        every = [cell[4:] + cell[:4] for cell in sound]
+        prism = [*sound[:3], [12, 16, 16, 14, 13, 17, 17, 15]]
+        for name, cells in [("sound", sound), ("one", one), ("all", every), ("prism", prism)]:
+            self.write(f"{name}.mesh", self.bar([0] * 20, cells))
+        told = {name: self.run_command("info", f"{name}.mesh").stdout for name in ("sound", "one", "all", "prism")}
+        for word in ("orientation", "repeated", "direction"):
+            self.assertNotIn(word, told["sound"])
+        self.assertIn("1 cell mirrored; the first is cell 2;", told["one"])
+        self.assertRegex(told["one"], r"in the same direction +2 faces; the first is \(8, 10, 11, 9\), of cells 1 and 2")
+        self.assertRegex(told["all"], r"orientation +the mesh is mirrored; `hexhex convert --reorient` turns it round")
+        self.assertIn("1 cell names a vertex twice; the first is cell 3", told["prism"])
+        faults = json.loads(self.run_command("info", "one.mesh", "--json").stdout)["faults"]
+        self.assertEqual(faults, {"repeated_corners": [], "mirrored": [2], "not_orientable": None,
+                                  "faces_in_the_same_direction": 2, "overfull_faces": 0})
+        for name, code in [("one", "Orientation"), ("all", "Orientation"), ("prism", "RepeatedVertex")]:
+            self.assert_fails("improve", f"{name}.mesh", "-o", "bad.vtu", expect=INVALID_MAP, code=code)
+        for name in ("one", "all"):
+            run = self.run_command("convert", f"{name}.mesh", f"{name}.vtu", "--reorient")
+            self.assertIn("of which 1 turned" if name == "one" else "of which 4 turned", run.stdout)
+            self.assertIn("certified positive everywhere", self.run_command("info", f"{name}.vtu").stdout)
+            self.run_command("improve", f"{name}.vtu", "-o", "good.vtu", "--quiet")
+        self.assert_fails("convert", "one.mesh", "bad.vtu", "--reorient", "--stream", expect=BAD_USAGE,
+                          code="InvalidArgument")
+        self.run_command("generate", "box", "--quiet", "-o", "map.hexex")
+        self.assert_fails("convert", "map.hexex", "bad.vtu", "--reorient", expect=BAD_USAGE,
+                          code="InvalidArgument")
+        self.assertFalse((self.folder / "bad.vtu").exists())
+
+    def test_improve_says_which_vertices_it_holds(self):
+        cells = [[4 * i + k for k in (0, 4, 6, 2, 1, 5, 7, 3)] for i in range(4)]
+        for references, corners, line in [
+                ([-1] * 20, "", "0 free, 0 on the surface, 12 on curves, 8 held: 8 at corners"),
+                ([0] * 8 + [5] + [0] * 11, "", "0 free, 0 on the surface, 11 on curves, 9 held: 8 at corners, 1 with a tag"),
+                ([7] * 20, "Corners\n2\n9 10\n",
+                 "0 free, 0 on the surface, 10 on curves, 10 held: 8 at corners, 2 with a tag")]:
+            self.write("bar.mesh", self.bar(references, cells, corners))
+            run = self.run_command("improve", "bar.mesh", "-o", "better.vtu")
+            self.assertIn(f"{line}\n", run.stdout)
+        run = self.run_command("improve", "bar.mesh", "-o", "better.vtu", "--fix-boundary")
+        self.assertIn("20 held: 8 at corners, 2 with a tag, 10 on the boundary\n", run.stdout)
+
     def test_improve(self):
         self.run_command("generate", "torus", "--jitter", "0.9", "--cells", "3", "--quiet", "-o", "map.hexex")
         self.run_command("extract", "map.hexex", "-o", "rough.vtu", "--scale", "2", "--quiet")
@@ -966,6 +1019,11 @@ class Repair(CommandTest):
         self.assertEqual(extraction["improvement"]["moved_vertices"], report["moved_vertices"])
         self.assertEqual(extraction["quality"], report["after"]["quality"])
         self.run_command("improve", "two.vtu", "-o", "own.mesh", "--fix-boundary", "--passes", "0", "--quiet")
+        # The map of another object.
+        self.run_command("generate", "sphere", "--cells", "3", "--quiet", "-o", "sphere.hexex")
+        self.run_command("extract", "sphere.hexex", "-o", "sphere.vtu", "--quiet")
+        self.assert_fails("improve", "sphere.vtu", "--map", "map.hexex", "-o", "bad.vtu", expect=BAD_USAGE,
+                          code="InvalidArgument", words=["is not where the map is"])
         # Formats that do not tell generators, options out of range, names that are the same.
         self.run_command("convert", "rough.vtu", "rough.mesh", "--quiet")
         self.assert_fails("improve", "rough.mesh", "--map", "map.hexex", "-o", "bad.vtu", expect=BAD_USAGE,

@@ -640,6 +640,8 @@ static void test_improve(void) {
   options.fix_boundary = 1;
   CHECK_OK(hexhex_mesh_improve(mesh, NULL, &options, NULL, &report, &error));
   CHECK(report.patch_vertices == 0 && report.curve_vertices == 0 && report.fixed_vertices > 0);
+  CHECK(report.tagged_vertices == 0 && report.boundary_vertices > 0);
+  CHECK(report.boundary_vertices <= report.fixed_vertices);
   hexhex_mesh_destroy(mesh);
   hexhex_map_destroy(map);
 }

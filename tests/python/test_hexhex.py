@@ -373,8 +373,11 @@ def test_improve_moves_a_copy_until_cells_are_positive():
     assert np.isclose(report.largest_move * report.diagonal, moved)
     fixed, report = hexhex.improve(mesh, fix_boundary=True, passes=0)
     assert report.patch_vertices == 0 < report.fixed_vertices
+    assert report.tagged_vertices == 0 < report.boundary_vertices <= report.fixed_vertices
     with pytest.raises(hexhex.ArgumentError):
         hexhex.improve(mesh, target=2)
+    with pytest.raises(hexhex.ArgumentError, match="is not where the map is|not in the map"):
+        hexhex.improve(mesh, hexhex.generate("box", cells=3))
 
 
 def test_improve_moves_nodes_of_curved_cells():

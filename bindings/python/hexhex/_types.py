@@ -846,7 +846,9 @@ class ImproveReport:
     free_vertices: int
     patch_vertices: int  #: that slide on the surface,
     curve_vertices: int  #: on curves,
-    fixed_vertices: int  #: and not at all
+    fixed_vertices: int  #: and not at all:
+    tagged_vertices: int  #: of these, that have a tag,
+    boundary_vertices: int  #: and that only fix_boundary holds; the rest are corners
     moved_vertices: int
     largest_move: float
     mean_move: float  #: of those that moved

@@ -4,7 +4,8 @@
 // This library writes the numbers of groups (mesh_groups.hpp) as references, 0 where there is no
 // tag beside others; and 1 for all quads of a boundary and all cells if none of them has a tag.
 // Other programs do likewise. What is read with references that are not all 0 or all 1 has these
-// as tags and regions.
+// as tags and regions; vertices have tags where the file says that they are corners
+// (vertex_tags.hpp).
 #pragma once
 
 #include <array>
@@ -24,7 +25,8 @@
 
 namespace hexhex {
 
-/// Reads vertices, hexahedra, edges and quads; other sections and comments ('#') are ignored.
+/// Reads vertices, hexahedra, edges, quads and corners; other sections and comments ('#') are
+/// ignored.
 /// @throws Error FileNotFound, FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite, TooLarge
 [[nodiscard]] HexMesh readMedit(const Input& input, Context& context);
 /// The same of a binary file of version 1 to 4, of which no more than a few kilobytes are in
@@ -75,17 +77,21 @@ enum class MeditSection : std::uint32_t {
   Quadrilaterals = 7,
   Tetrahedra = 8,
   Hexahedra = 10,
+  Corners = 13,
+  RequiredVertices = 15,
   End = 54
 };
 
 /// What sections are called in text.
-inline constexpr std::array<std::pair<MeditSection, std::string_view>, 7> kMeditKeywords = {
+inline constexpr std::array<std::pair<MeditSection, std::string_view>, 9> kMeditKeywords = {
     {{MeditSection::Dimension, "Dimension"},
      {MeditSection::Vertices, "Vertices"},
      {MeditSection::Edges, "Edges"},
      {MeditSection::Quadrilaterals, "Quadrilaterals"},
      {MeditSection::Tetrahedra, "Tetrahedra"},
      {MeditSection::Hexahedra, "Hexahedra"},
+     {MeditSection::Corners, "Corners"},
+     {MeditSection::RequiredVertices, "RequiredVertices"},
      {MeditSection::End, "End"}}};
 
 }  // namespace hexhex

@@ -14,6 +14,7 @@
 
 #include <io/core/number_source.hpp>
 #include <io/medit/medit.hpp>
+#include <io/medit/vertex_tags.hpp>
 
 namespace hexhex {
 namespace {
@@ -21,6 +22,7 @@ namespace {
 constexpr CellKind kMeditEdges = {.corners = 2, .singular = "edge", .plural = "edges"};
 constexpr CellKind kMeditQuads = {
     .corners = 4, .singular = "quadrilateral", .plural = "quadrilaterals"};
+constexpr CellKind kMeditCorners = {.corners = 1, .singular = "corner", .plural = "corners"};
 
 /// `.mesh`: keywords and numbers between white space.
 class MeditText {
@@ -222,6 +224,9 @@ class MeditReader {
   CellMesh<corners> read() {
     encoding_.readHead();
     while (const auto section = encoding_.nextSection()) readSection(*section);
+    if constexpr (corners == 8) {
+      mesh_.features.vertices = vertexTags(std::move(corners_), references_, mesh_.cells);
+    }
     if (hasCells_) return std::move(mesh_);
     throw Error(ErrorCode::FileUnsupported, fileName_ + ": the file holds no " +
                                                 std::string(kKind.plural) + ": it has no section " +
@@ -242,6 +247,8 @@ class MeditReader {
     } else if (section == MeditSection::Quadrilaterals) {
       // Those of a boundary without tags are no features.
       if (!readFeatures(mesh_.features.quads, kMeditQuads)) mesh_.features.quads.clear();
+    } else if (section == MeditSection::Corners || section == MeditSection::RequiredVertices) {
+      readCorners();
     }
   }
 
@@ -261,12 +268,18 @@ class MeditReader {
       encoding_.beginElement(record, i, mesh_.points.size(), "vertices");
       for (double& coordinate : mesh_.points[i]) coordinate = encoding_.coordinate(record, i);
     };
-    const Array<std::int32_t> references =
-        readReferenced(mesh_.points.size(), 0, 3, "the reference of a vertex", read);
-    for (std::size_t i = 0; i < references.size(); ++i) {
-      if (references[i] == 0) continue;
-      mesh_.features.vertices.push_back({static_cast<Index>(i), references[i]});
-    }
+    references_ = readReferenced(mesh_.points.size(), 0, 3, "the reference of a vertex", read);
+  }
+
+  void readCorners() {
+    const std::size_t known = corners_.size();
+    const RecordShape shape = encoding_.shape(1);
+    corners_.resize(known + encoding_.readCount(kMeditCorners.plural, shape));
+    encoding_.source().records(corners_.size() - known, shape, [&](auto& record, std::size_t i) {
+      const std::size_t begin = record.position();
+      encoding_.beginElement(record, i, corners_.size() - known, kMeditCorners.plural);
+      corners_[known + i] = readVertex(record, kMeditCorners, i, begin);
+    });
   }
 
   void readCells() {
@@ -388,6 +401,8 @@ class MeditReader {
   const std::string& fileName_;
   bool hasVertices_ = false;
   bool hasCells_ = false;
+  std::vector<Index> corners_;           ///< of the sections Corners and RequiredVertices
+  Array<std::int32_t> references_ = {};  ///< of vertices, if they say something
   CellMesh<corners> mesh_;
 };
 
