@@ -17,6 +17,7 @@ ReadOptions readOptions(const hexhex_read_options* options) {
   ReadOptions result;
   if (given.format != nullptr) result.format = given.format;
   if (given.map_array != nullptr) result.mapArray = given.map_array;
+  result.hexesOnly = given.hexes_only != 0;
   return result;
 }
 

@@ -133,6 +133,7 @@ ReadOptions readOptions(const Json& request) {
   };
   text("format", options.format);
   text("mapArray", options.mapArray);
+  options.hexesOnly = request.value("hexesOnly", false);
   return options;
 }
 

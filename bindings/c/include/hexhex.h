@@ -232,9 +232,10 @@ typedef struct hexhex_read_options {
   size_t size;
   const char* format; /**< by its name, see hexhex_get_format(); NULL: what the extension means */
   const char* map_array; /**< that holds the map in .vtu and .vtk files; NULL: "igm" */
+  int hexes_only; /**< 1: leaves out other volume cells of a mesh, which are an error otherwise */
 } hexhex_read_options;
 #define HEXHEX_READ_OPTIONS_INIT \
-  { sizeof(hexhex_read_options), NULL, NULL }
+  { sizeof(hexhex_read_options), NULL, NULL, 0 }
 
 /** See WriteOptions in <hexhex/io.hpp>. */
 typedef struct hexhex_write_options {
@@ -1182,8 +1183,11 @@ typedef struct hexhex_improve_report {
   uint64_t off_surface; /**< vertices that used the slack */
   double seconds;
 } hexhex_improve_report;
-#define HEXHEX_IMPROVE_REPORT_INIT \
-  { sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+#define HEXHEX_IMPROVE_REPORT_INIT                                                                \
+  {                                                                                               \
+    sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
+        0                                                                                         \
+  }
 
 /** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>.
  * @param map          that the mesh was extracted from, or NULL: the surface is the mesh's boundary

@@ -62,6 +62,8 @@ export interface ReadOptions {
   format?: string;
   /** The array that holds the map in .vtu and .vtk files; "igm" if it is not given. */
   mapArray?: string;
+  /** Leaves out other volume cells of a mesh, which are an error otherwise. */
+  hexesOnly?: boolean;
 }
 
 export interface WriteOptions {

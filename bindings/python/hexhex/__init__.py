@@ -807,14 +807,14 @@ def map_from_flags(points: npt.ArrayLike, tets: npt.ArrayLike, flags: npt.ArrayL
         np.ascontiguousarray(labels, dtype=np.int8), _threads(threads), progress))
 
 
-def read_mesh(file: Path, *, format: str | None = None, threads: int | None = None,
-              progress: Progress | None = None) -> Mesh:
+def read_mesh(file: Path, *, format: str | None = None, hexes_only: bool = False,
+              threads: int | None = None, progress: Progress | None = None) -> Mesh:
     """Reads a hexahedral mesh: .mesh, .meshb, .vtu, .vtk, .msh, .ovm, .ovmb, .npz. Raises
-    FileError."""
+    FileError, also for a file with other volume cells; with hexes_only, these are left out."""
     if _npz.is_npz(os.fspath(file), format):
         return _read_npz(file, Mesh)  # type: ignore[no-any-return]
-    return Mesh._from_handle(_hexhex.read_mesh(os.fspath(file), format or "", _threads(threads),
-                                               progress))
+    return Mesh._from_handle(_hexhex.read_mesh(os.fspath(file), format or "", hexes_only,
+                                               _threads(threads), progress))
 
 
 def read_curved(file: Path, *, threads: int | None = None,
@@ -842,9 +842,10 @@ def holds_curved(file: Path) -> bool:
 
 
 def read(file: Path, *, format: str | None = None, map_array: str = "igm",
-         threads: int | None = None, progress: Progress | None = None) -> Map | Mesh:
+         hexes_only: bool = False, threads: int | None = None,
+         progress: Progress | None = None) -> Map | Mesh:
     """Reads what a file holds: a mesh or, where there are no hexahedra, a map. Arguments as of
-    read_map().
+    read_map() and read_mesh().
 
     Raises:
         FileError: if it can be read as neither; place and index tell the line.
@@ -857,7 +858,8 @@ def read(file: Path, *, format: str | None = None, map_array: str = "igm",
     """
     if _npz.is_npz(os.fspath(file), format):
         return _npz.read(os.fspath(file))
-    found = _hexhex.read(os.fspath(file), format or "", map_array, _threads(threads), progress)
+    found = _hexhex.read(os.fspath(file), format or "", map_array, hexes_only, _threads(threads),
+                         progress)
     return Map._from_handle(found) if isinstance(found, _hexhex.Map) else Mesh._from_handle(found)
 
 

@@ -14,6 +14,7 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/core/cell_counts.hpp>
 
 namespace hexhex {
 
@@ -86,6 +87,8 @@ class Input {
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   [[nodiscard]] const std::optional<std::string_view>& bytes() const noexcept { return bytes_; }
+  /// What readers of this input count.
+  [[nodiscard]] const std::shared_ptr<CellCounts>& counts() const noexcept { return counts_; }
   /// All bytes but a byte-order mark. Those of a file go to `room`; what `first` is says
   /// readWholeFile().
   [[nodiscard]] std::string_view text(Array<char>& room, Stage& stage,
@@ -99,6 +102,7 @@ class Input {
   std::string name_;
   std::filesystem::path path_;
   std::optional<std::string_view> bytes_;
+  std::shared_ptr<CellCounts> counts_ = std::make_shared<CellCounts>();
 };
 
 /// What work(stage) returns, with the context's threads.
