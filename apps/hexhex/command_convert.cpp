@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -27,6 +28,7 @@ struct Arguments {
   double patchAngle = WriteOptions{}.patchAngle;
   bool stream = false;
   bool reorient = false;
+  bool hexesOnly = false;
 };
 
 /// That neither maps nor hex meshes can be written is known before anything is read.
@@ -51,14 +53,24 @@ void requireFor(const Arguments& arguments, const char* content, const F& requir
   }
 }
 
-std::variant<TetMap, HexMesh> readInput(const Arguments& arguments, Context& context) {
+/// How a file is read.
+ReadOptions readingOf(const Arguments& arguments, std::vector<CellCount>& counts) {
+  ReadOptions options = arguments.input.options();
+  options.hexesOnly = arguments.hexesOnly;
+  options.cellCounts = &counts;
+  return options;
+}
+
+std::variant<TetMap, HexMesh> readInput(const Arguments& arguments, std::vector<CellCount>& counts,
+                                        Context& context) {
   if (arguments.input.isPair()) return readMap(arguments.input, context);
-  return readMapOrHexMesh(arguments.input.file, arguments.input.options(), context);
+  return readMapOrHexMesh(arguments.input.file, readingOf(arguments, counts), context);
 }
 
 /// What was converted.
-std::string convertWhole(const Arguments& arguments, Context& context) {
-  auto content = readInput(arguments, context);
+std::string convertWhole(const Arguments& arguments, std::vector<CellCount>& counts,
+                         Context& context) {
+  auto content = readInput(arguments, counts, context);
   WriteOptions writing = arguments.choice.options();
   writing.mapArray = arguments.input.mapArray;
   writing.patchAngle = arguments.patchAngle;
@@ -85,10 +97,11 @@ std::string convertWhole(const Arguments& arguments, Context& context) {
                      mesh.points.size());
 }
 
-std::string convertInPieces(const Arguments& arguments, Context& context) {
+std::string convertInPieces(const Arguments& arguments, std::vector<CellCount>& counts,
+                            Context& context) {
   const std::unique_ptr<MeshSink> sink =
       openMeshSink(arguments.output, arguments.choice.options(), context);
-  readHexMeshTo(*sink, arguments.input.file, arguments.input.options(), context);
+  readHexMeshTo(*sink, arguments.input.file, readingOf(arguments, counts), context);
   return "a mesh, piece by piece";
 }
 
@@ -115,8 +128,11 @@ int run(const Arguments& arguments) {
                   arguments.stream ? std::vector<WorkStep>{{"readHexMeshTo", 1}} : whole);
   Context& context = longRun.context();
   requireWritable(arguments.output);
-  const std::string what = (arguments.stream ? convertInPieces : convertWhole)(arguments, context);
+  std::vector<CellCount> counts;
+  const std::string what =
+      (arguments.stream ? convertInPieces : convertWhole)(arguments, counts, context);
   longRun.finish();
+  if (arguments.hexesOnly) warnOfOtherCells(counts);
   if (arguments.run.quiet) return kSuccess;
   std::error_code unknown;  // the size of a pipe
   const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
@@ -140,6 +156,7 @@ Command addConvert(CLI::App& app) {
                    "Read this format, whatever the extension")
       ->check(formatName())
       ->option_text("NAME");
+  addHexesOnly(*parser, arguments->hexesOnly);
   addPatchAngle(*parser, arguments->patchAngle);
   parser->add_flag("--stream", arguments->stream,
                    "Read and write a mesh piece by piece, for meshes larger\n"

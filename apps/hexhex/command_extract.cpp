@@ -1,9 +1,12 @@
 // `hexhex extract`: from a map to a verified hexahedral mesh.
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
@@ -320,7 +323,24 @@ int extractMesh(const ExtractArguments& arguments) {
   return kSuccess;
 }
 
-int run(const ExtractArguments& given) {
+/// What processes of a team must have in common of a command line: all but what each has for
+/// itself, or the first alone.
+std::string commonOptions(const CLI::App& parser) {
+  constexpr std::array<std::string_view, 5> kOwn = {"--threads", "--verbose", "--quiet", "--report",
+                                                    "--mpi"};
+  std::string text;
+  for (const CLI::Option* const option : parser.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || std::find(kOwn.begin(), kOwn.end(), name) != kOwn.end()) continue;
+    if (name.starts_with('-')) text += name + ' ';
+    if (option->get_expected_max() == 0) continue;  // a flag
+    for (const std::string& value : option->results()) text += value + ' ';
+  }
+  text.pop_back();  // there is a map, and an output
+  return text;
+}
+
+int run(const ExtractArguments& given, const CLI::App& parser) {
   if (!isInTeam(given.parts.mpi)) return extractMesh(given);
   const StartedTeam started;
   ExtractArguments arguments = given;
@@ -333,7 +353,10 @@ int run(const ExtractArguments& given) {
     arguments.run.quiet = true;
   }
   try {
-    arguments.team->run([&arguments] { static_cast<void>(extractMesh(arguments)); });
+    arguments.team->run([&] {
+      arguments.team->requireSame(commonOptions(parser), "command line");
+      static_cast<void>(extractMesh(arguments));
+    });
   } catch (const Error& error) {
     // Here, where all are still there: when one has ended so, mpirun stops the others.
     if (speaks) printError(error);
@@ -348,7 +371,7 @@ Command addExtract(CLI::App& app) {
   const auto arguments = std::make_shared<ExtractArguments>();
   CLI::App* const parser = app.add_subcommand("extract", "Extract the hexahedral mesh of a map");
   addExtractOptions(*parser, *arguments);
-  return {parser, [arguments] { return run(*arguments); }};
+  return {parser, [arguments, parser] { return run(*arguments, *parser); }};
 }
 
 }  // namespace hexhex::command

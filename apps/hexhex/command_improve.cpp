@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -31,6 +32,7 @@ struct Arguments {
   double patchAngle = WriteOptions{}.patchAngle;
   ImproveOptions options;
   RunOptions run;
+  bool hexesOnly = false;
 };
 
 void requireAllDifferent(const Arguments& arguments) {
@@ -78,7 +80,12 @@ ImproveReport improveMesh(const Arguments& arguments, auto& mesh, LongRun& longR
 
 ImproveReport improveStraight(const Arguments& arguments, LongRun& longRun) {
   Context& context = longRun.context();
-  HexMesh mesh = longRun.part("reading", [&] { return readHexMesh(arguments.mesh, context); });
+  std::vector<CellCount> counts;
+  HexMesh mesh = longRun.part("reading", [&] {
+    return readHexMesh(arguments.mesh, {.hexesOnly = arguments.hexesOnly, .cellCounts = &counts},
+                       context);
+  });
+  if (arguments.hexesOnly) warnOfOtherCells(counts);
   const Array<Vec3> before = pointsForPage(arguments, mesh.points);
   ImproveReport report = improveMesh(arguments, mesh, longRun);
   WriteOptions writing = arguments.choice.options();
@@ -163,6 +170,7 @@ Command addImprove(CLI::App& app) {
                    "tell where vertices lie. Else: the boundary of the mesh")
       ->option_text("FILE");
   addImproveOptions(*parser, arguments->options);
+  addHexesOnly(*parser, arguments->hexesOnly);
   addOutputChoice(*parser, arguments->choice);
   addPatchAngle(*parser, arguments->patchAngle);
   addReport(*parser, arguments->report,

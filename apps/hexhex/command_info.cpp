@@ -6,7 +6,9 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -61,6 +63,10 @@ struct FileContent {
   CellFaults faults;
   std::optional<MeshSurvey> survey;
   bool isMap = false;
+  std::vector<CellCount> types;  ///< of a mesh
+
+  /// Whether there are other cells than the hexahedra that all else is about.
+  [[nodiscard]] bool isMixed() const noexcept { return types.size() > 1; }
 };
 
 FileContent contentOf(const TetMap& map) {
@@ -99,17 +105,31 @@ FileContent contentOf(const MeshSurvey& survey) {
   return content;
 }
 
+/// What is in one file.
+FileContent readFile(const Arguments& arguments, Context& context) {
+  const MapSource& source = arguments.source;
+  std::vector<CellCount> types;
+  ReadOptions reading = source.options();
+  reading.hexesOnly = true;
+  reading.cellCounts = &types;
+  FileContent content = [&] {
+    if (arguments.pieces) return contentOf(surveyFile(source.file, reading, context));
+    const auto read = readMapOrHexMesh(source.file, reading, context);
+    if (const auto* const map = std::get_if<TetMap>(&read)) return contentOf(*map);
+    return contentOf(std::get<HexMesh>(read), context);
+  }();
+  if (!content.isMap) content.types = std::move(types);
+  return content;
+}
+
 FileContent read(const Arguments& arguments, Context& context) {
   const MapSource& source = arguments.source;
   if (arguments.pieces && source.isPair()) {
     throw Error(ErrorCode::InvalidArgument,
                 "--pieces reads hexahedral meshes, but --tets and --polycube are a map.");
   }
-  if (arguments.pieces) return contentOf(surveyFile(source.file, source.options(), context));
   if (source.isPair()) return contentOf(readMap(source, context));
-  const auto content = readMapOrHexMesh(source.file, source.options(), context);
-  if (const auto* const map = std::get_if<TetMap>(&content)) return contentOf(*map);
-  return contentOf(std::get<HexMesh>(content), context);
+  return readFile(arguments, context);
 }
 
 void printHistogram(const QualitySummary& quality) {
@@ -156,10 +176,16 @@ void printFaults(const CellFaults& faults, std::uint64_t cells) {
 }
 
 void print(const FileContent& content) {
-  fmt::print("{}\n",
-             content.isMap ? "a tetrahedral mesh with an integer-grid map" : "a hexahedral mesh");
-  printLine(content.isMap ? "tets" : "cells",
-            std::to_string(content.isMap ? content.tets : content.cells));
+  fmt::print("{}\n", content.isMap ? "a tetrahedral mesh with an integer-grid map"
+                     : content.isMixed()
+                         ? "a mesh of several types of cells; quality is that of the hexahedra"
+                         : "a hexahedral mesh");
+  if (content.isMixed()) {
+    for (const CellCount& type : content.types) printLine(type.name, std::to_string(type.count));
+  } else {
+    printLine(content.isMap ? "tets" : "cells",
+              std::to_string(content.isMap ? content.tets : content.cells));
+  }
   printLine(content.isMap ? "points" : "vertices", std::to_string(content.points));
   if (content.box) {
     const auto& [lower, upper] = *content.box;
@@ -198,6 +224,9 @@ Json asJson(const FileContent& content, const std::string& file) {
   json[content.isMap ? "points" : "vertices"] = content.points;
   json["lower"] = content.box ? Json(content.box->lower) : Json(nullptr);
   json["upper"] = content.box ? Json(content.box->upper) : Json(nullptr);
+  if (content.isMixed()) {
+    for (const CellCount& type : content.types) json["cell_types"][type.name] = type.count;
+  }
   if (content.isMap) json["largest_parameter"] = content.largestParameter;
   if (content.survey) json["checksums"] = checksumsAsJson(*content.survey);
   if (content.certificate) {

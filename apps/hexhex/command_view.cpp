@@ -28,6 +28,7 @@ Command addView(CLI::App& app) {
       ->add_option("--map", arguments->map,
                    "The map that the mesh came from: the page tells\nwhether they agree")
       ->option_text("FILE");
+  addHexesOnly(*parser, arguments->hexesOnly);
   addScale(*parser, arguments->options.scale,
            "The scale that the mesh was extracted with, or shall be");
   parser

@@ -199,6 +199,22 @@ void addOutputChoice(CLI::App& parser, OutputChoice& choice) {
   parser.add_flag("--compress", choice.compress, "Compress a .vtu file with zlib");
 }
 
+void addHexesOnly(CLI::App& parser, bool& hexesOnly) {
+  parser.add_flag(
+      "--hexes-only", hexesOnly,
+      "Leave out cells of other types (tets, prisms, pyramids,\ncurved ones), which are "
+      "an error otherwise; their vertices\nstay");
+}
+
+void warnOfOtherCells(const std::vector<CellCount>& counts) {
+  std::string others;
+  for (const CellCount& each : counts) {
+    if (each.name == "hexahedra") continue;
+    others += fmt::format("{}{} ({})", others.empty() ? "" : ", ", each.name, each.count);
+  }
+  if (!others.empty()) printWarning("Left out, for --hexes-only: " + others + ".");
+}
+
 void addPatchAngle(CLI::App& parser, double& angle) {
   parser
       .add_option("--patch-angle", angle,

@@ -75,6 +75,11 @@ struct OutputChoice {
 /// Adds --format and --compress.
 void addOutputChoice(CLI::App& parser, OutputChoice& choice);
 
+/// Adds --hexes-only.
+void addHexesOnly(CLI::App& parser, bool& hexesOnly);
+/// Names the cells that were left out for it, if there are any.
+void warnOfOtherCells(const std::vector<CellCount>& counts);
+
 /// Adds --patch-angle, from 0 to 180 degrees.
 void addPatchAngle(CLI::App& parser, double& angle);
 /// Adds --report. @param description  of what is in it

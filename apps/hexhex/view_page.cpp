@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
@@ -77,7 +78,10 @@ Subject readSubject(const ViewArguments& arguments, Context& context) {
   if (holdsLagrangeCells(arguments.mesh, context)) {
     subject.mesh = readLagrangeMesh(arguments.mesh, context);
   } else {
-    auto content = readMapOrHexMesh(arguments.mesh, {}, context);
+    std::vector<CellCount> counts;
+    auto content = readMapOrHexMesh(
+        arguments.mesh, {.hexesOnly = arguments.hexesOnly, .cellCounts = &counts}, context);
+    if (arguments.hexesOnly) warnOfOtherCells(counts);
     if (auto* const map = std::get_if<TetMap>(&content)) {
       return extractSubject(arguments, std::move(*map), context);
     }

@@ -24,6 +24,7 @@ struct ViewArguments {
   bool serve = false;
   int port = 0;  ///< 0: any free one
   RunOptions run;
+  bool hexesOnly = false;
 };
 
 /// Writes or serves the page; returns the exit code.

@@ -18,6 +18,7 @@ ReadOptions readOptions(const hexhex_read_options* options) {
   if (given.format != nullptr) result.format = given.format;
   if (given.map_array != nullptr) result.mapArray = given.map_array;
   result.keepWalls = given.keep_walls != 0;
+  result.hexesOnly = given.hexes_only != 0;
   return result;
 }
 

@@ -134,6 +134,7 @@ ReadOptions readOptions(const Json& request) {
   text("format", options.format);
   text("mapArray", options.mapArray);
   take(request, "keepWalls", options.keepWalls);
+  take(request, "hexesOnly", options.hexesOnly);
   return options;
 }
 

@@ -131,23 +131,28 @@ void bindFiles(nb::module_& module) {
       "tets"_a, "flags"_a, "surface"_a, "array"_a, "threads"_a, "progress"_a.none());
   module.def(
       "read_mesh",
-      [](const std::string& file, const std::string& format, int threads,
+      [](const std::string& file, const std::string& format, bool hexesOnly, int threads,
          const Progress& progress) {
         return run(threads, progress, [&](Context& context) {
-          return readHexMesh(file, {.format = format}, context);
+          return readHexMesh(file, {.format = format, .hexesOnly = hexesOnly}, context);
         });
       },
-      "file"_a, "format"_a, "threads"_a, "progress"_a.none());
+      "file"_a, "format"_a, "hexes_only"_a, "threads"_a, "progress"_a.none());
   module.def(
       "read",
       [](const std::string& file, const std::string& format, const std::string& mapArray,
-         bool keepWalls, int threads, const Progress& progress) {
+         bool keepWalls, bool hexesOnly, int threads, const Progress& progress) {
         return run(threads, progress, [&](Context& context) {
-          return readMapOrHexMesh(
-              file, {.format = format, .mapArray = mapArray, .keepWalls = keepWalls}, context);
+          return readMapOrHexMesh(file,
+                                  {.format = format,
+                                   .mapArray = mapArray,
+                                   .keepWalls = keepWalls,
+                                   .hexesOnly = hexesOnly},
+                                  context);
         });
       },
-      "file"_a, "format"_a, "map_array"_a, "keep_walls"_a, "threads"_a, "progress"_a.none());
+      "file"_a, "format"_a, "map_array"_a, "keep_walls"_a, "hexes_only"_a, "threads"_a,
+      "progress"_a.none());
   module.def(
       "write_mesh",
       [](const HexMesh& mesh, const std::string& file, const std::string& format, double patchAngle,

@@ -200,11 +200,12 @@ void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& fi
 [[nodiscard]] bool holdsLagrangeCells(const std::filesystem::path& file, Context& context);
 
 /// Reads the Lagrange hexahedra of a `.vtu` file, all of one order, with their nodes in the order
-/// of VTK 9; other cells are ignored. What writeLagrangeMesh() wrote comes back node by node, with
+/// of VTK 9. What writeLagrangeMesh() wrote comes back node by node, with
 /// its generators, tags and regions; of other files, nodes at corners get the first numbers, and
 /// what is tagged at other nodes is left out.
 /// @throws Error FileNotFound, FileSyntax, IndexOutOfRange, NotFinite; FileUnsupported without such
-///         cells, for orders that differ or exceed kMaxOrder, and for other extensions; TooLarge
+///         cells, for other volume cells beside them, for orders that differ or exceed kMaxOrder,
+///         and for other extensions; TooLarge
 [[nodiscard]] LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& context);
 
 /// Throw FileUnsupported unless the functions above know the extension: to fail before long work.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -21,6 +22,12 @@ class OutputFile;
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
+/// Volume cells of one type in a file.
+struct CellCount {
+  std::string name;  ///< "hexahedra", "prisms with 15 nodes"
+  std::uint64_t count = 0;
+};
+
 /// What a reader may be told.
 struct ReadOptions {
   /// A format by its name (see fileFormats()), whatever the file's extension. Empty: what the
@@ -33,6 +40,12 @@ struct ReadOptions {
   /// `.hexex` files of other programs list walls of a motorcycle complex, which are no features.
   /// Those inside of the object become features with the tag 2 all the same: faces between blocks.
   bool keepWalls = false;
+  /// Reads the hexahedra among other volume cells, which are left out; the vertices of these stay.
+  /// Otherwise a hex mesh with other cells is an error, as its hexahedra alone have holes.
+  bool hexesOnly = false;
+  /// If not null, receives what types of volume cells the file holds, by name. Of `.hexex`, `.ovm`,
+  /// `.ovmb` and `.pvtu` files, which hold one, nothing.
+  std::vector<CellCount>* cellCounts = nullptr;
 };
 
 /// Reads a tetrahedral mesh with an integer-grid map: `.hexex`, `.ovm`, `.ovmb`, `.vtu`, `.vtk`.
@@ -84,8 +97,10 @@ struct FlagsFile {
                                                                 Context& context);
 
 /// Reads a hexahedral mesh: `.mesh` and `.meshb` (MEDIT ASCII and binary), `.vtu`, `.vtk` (legacy
-/// VTK, ASCII and binary), `.msh` (Gmsh 4.1 and 2.x, ASCII and binary), `.ovm`, `.ovmb`. Other
-/// cells and sections are ignored; generators are restored from `.vtu`, `.ovm` and `.ovmb`.
+/// VTK, ASCII and binary), `.msh` (Gmsh 4.1 and 2.x, ASCII and binary), `.ovm`, `.ovmb`. Points,
+/// lines, triangles and other sections are ignored, quads may be features; generators are restored
+/// from `.vtu`, `.ovm` and `.ovmb`.
+/// @throws Error  as readMap(); FileUnsupported for other volume cells, see ReadOptions::hexesOnly
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file, const ReadOptions& options,
                                   Context& context);
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file, Context& context);

@@ -51,6 +51,10 @@ class ProcessTeam {
   void share(std::span<std::byte> bytes);
   /// The same for a text of any length. @return that of process 0
   [[nodiscard]] std::string shareText(const std::string& text);
+  /// Refuses a text that is another one in process 0.
+  /// @param what  it is: "file name"
+  /// @throws Error InvalidArgument, in all processes, with both texts
+  void requireSame(const std::string& text, const std::string& what);
   [[nodiscard]] GatheredNumbers gather(std::span<const std::uint64_t> mine);
   /// Shows all processes what each has, one after the other, by take(rank, numbers): where each
   /// needs little of what others have. It takes memory for the numbers of one process.

@@ -81,6 +81,17 @@ std::string ProcessTeam::shareText(const std::string& text) {
   return shared;
 }
 
+void ProcessTeam::requireSame(const std::string& text, const std::string& what) {
+  run([&] {
+    const std::string first = shareText(text);
+    if (first == text) return;
+    throw Error(ErrorCode::InvalidArgument, "the " + what + " here is \"" + text +
+                                                "\", that of process 0 \"" + first +
+                                                "\". Give all processes the same.");
+  });
+  agree();  // before anybody goes on
+}
+
 std::vector<std::uint64_t> ProcessTeam::gatherCounts(std::uint64_t count) {
   std::vector<std::uint64_t> counts(size());
   const std::vector<std::uint64_t> ones(size(), 1);

@@ -31,12 +31,12 @@ void countSingularities(const Singularities& singularities, CheckReport& report)
   }
 }
 
-using Matrix = std::array<std::array<std::int8_t, 3>, 3>;
+using RotationMatrix = std::array<std::array<std::int8_t, 3>, 3>;
 
 /// A rotation between charts of the pipeline, between those of the caller: all charts of the former
 /// have the first parameter negated if the map is mirrored.
-Matrix matrixOf(const Rotation& rotation, bool mirrored) {
-  Matrix matrix{};
+RotationMatrix matrixOf(const Rotation& rotation, bool mirrored) {
+  RotationMatrix matrix{};
   for (std::size_t column = 0; column < 3; ++column) {
     std::array<std::int8_t, 3> unit{};
     unit[column] = 1;
@@ -74,7 +74,7 @@ std::array<double, 3> translationOf(const TetMapView& map, const ChartJump& jump
 }
 
 bool isIdentity(const ChartJump& jump) {
-  constexpr Matrix kIdentity = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  constexpr RotationMatrix kIdentity = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   return jump.rotation == kIdentity && jump.translation == std::array<double, 3>{};
 }
 

@@ -61,7 +61,7 @@ class Round {
     Vector x = isFresh ? Vector(Vector::Zero(energy.unknownCount())) : unknownsOf(energy);
     map.iterations += solve(energy, isFresh, polishing, x);
     map.flippedTets = round(energy, x);
-    map.energy = energy.value({EnergyKind::Name::FoldoverFree, 0}, x, stage_);
+    map.energy = energy.value({BendEnergyKind::Name::FoldoverFree, 0}, x, stage_);
     map.isWound = false;
     if (!map.flippedTets.empty()) return false;
     map.flippedTets =

@@ -69,11 +69,11 @@ struct TetDerivatives {
   Eigen::Matrix<double, 12, 12> hessian;
 };
 
-TetDerivatives tetDerivatives(EnergyKind kind, const Corners& corners,
+TetDerivatives tetDerivatives(BendEnergyKind kind, const Corners& corners,
                               const Eigen::Matrix<double, 4, 3>& gradients) {
   const Matrix3 j = corners * gradients;
   const Matrix3 cofactors = cofactor(j);
-  const Density density = kind.name == EnergyKind::Name::Dirichlet
+  const Density density = kind.name == BendEnergyKind::Name::Dirichlet
                               ? dirichlet(j)
                               : foldoverFree(j, cofactors, kind.epsilon);
   const Corners along = j * gradients.transpose();
@@ -192,14 +192,14 @@ Folding BendEnergy::folding(const Vector& x, Stage& stage) const {
   return all;
 }
 
-double BendEnergy::value(EnergyKind kind, const Vector& x, Stage& stage) const {
+double BendEnergy::value(BendEnergyKind kind, const Vector& x, Stage& stage) const {
   std::vector<double> sums(blockCount(topology_.tetCount(), kGrain));
   parallelBlocks(stage, topology_.tetCount(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    for (auto t = static_cast<Index>(begin); t < end; ++t) {
                      const auto [gradients, weight] = shape(t);
                      const Matrix3 j = corners(t, x) * gradients;
-                     sums[block] += weight * (kind.name == EnergyKind::Name::Dirichlet
+                     sums[block] += weight * (kind.name == BendEnergyKind::Name::Dirichlet
                                                   ? dirichlet(j).value
                                                   : foldoverFree(j, kind.epsilon));
                    }
@@ -209,7 +209,7 @@ double BendEnergy::value(EnergyKind kind, const Vector& x, Stage& stage) const {
   return sum;
 }
 
-Matrix BendEnergy::emptyHessian() const {
+SparseMatrix BendEnergy::emptyHessian() const {
   std::vector<EdgeCorner> scratch;
   const auto forEachEntry = [&](const auto& visit) {
     const auto pair = [&](Index v, Index w) {
@@ -226,15 +226,15 @@ Matrix BendEnergy::emptyHessian() const {
   };
   std::vector<int> sizes(static_cast<std::size_t>(count_), 0);
   forEachEntry([&](int /*row*/, int column) { ++sizes[static_cast<std::size_t>(column)]; });
-  Matrix hessian(count_, count_);
+  SparseMatrix hessian(count_, count_);
   hessian.reserve(sizes);
   forEachEntry([&](int row, int column) { hessian.insert(row, column) = 0; });
   hessian.makeCompressed();
   return hessian;
 }
 
-void BendEnergy::derivatives(EnergyKind kind, const Vector& x, Vector& gradient,
-                             Matrix& hessian) const {
+void BendEnergy::derivatives(BendEnergyKind kind, const Vector& x, Vector& gradient,
+                             SparseMatrix& hessian) const {
   gradient.setZero(count_);
   hessian.coeffs().setZero();
   for (Index t = 0; t < topology_.tetCount(); ++t) {

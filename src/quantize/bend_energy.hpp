@@ -16,11 +16,11 @@
 
 namespace hexhex {
 
-using Matrix = Eigen::SparseMatrix<double>;  ///< the lower triangle of a symmetric one
+using SparseMatrix = Eigen::SparseMatrix<double>;  ///< the lower triangle of a symmetric one
 using Vector = Eigen::VectorXd;
 
 /// Which energy: of the Jacobian matrix J of a tet, from its reference to its bent shape.
-struct EnergyKind {
+struct BendEnergyKind {
   enum class Name : std::uint8_t {
     Dirichlet,    ///< |J - 1|^2: quadratic, blind to flipped tets
     FoldoverFree  ///< |J|^2 / chi^(2/3) + (det^2 + 1) / chi: angles, and volumes
@@ -62,15 +62,16 @@ class BendEnergy {
   void adaptScale(const Vector& x);
 
   /// Mean over the reference volume.
-  [[nodiscard]] double value(EnergyKind kind, const Vector& x, Stage& stage) const;
+  [[nodiscard]] double value(BendEnergyKind kind, const Vector& x, Stage& stage) const;
 
   /// All pairs of unknowns of one edge or vertex.
-  [[nodiscard]] Matrix emptyHessian() const;
+  [[nodiscard]] SparseMatrix emptyHessian() const;
 
   /// @param[out] gradient  by unknown
   /// @param[out] hessian   with the entries of emptyHessian(): without the terms that come from the
   ///                       curvature of determinants and of chi
-  void derivatives(EnergyKind kind, const Vector& x, Vector& gradient, Matrix& hessian) const;
+  void derivatives(BendEnergyKind kind, const Vector& x, Vector& gradient,
+                   SparseMatrix& hessian) const;
 
  private:
   struct Shape {

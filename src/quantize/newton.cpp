@@ -33,7 +33,7 @@ Vector NewtonSolver::direction() {
     cholesky_.factorize(hessian_);
     if (cholesky_.info() == Eigen::Success) return cholesky_.solve(-gradient_);
   }
-  Eigen::ConjugateGradient<Matrix, Eigen::Lower> gradients;
+  Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower> gradients;
   gradients.setTolerance(1e-3);
   gradients.setMaxIterations(1000);
   gradients.compute(hessian_);
@@ -41,7 +41,7 @@ Vector NewtonSolver::direction() {
   return direction.dot(gradient_) < 0 ? direction : Vector(-gradient_);
 }
 
-double NewtonSolver::step(EnergyKind kind, Vector& x) {
+double NewtonSolver::step(BendEnergyKind kind, Vector& x) {
   stage_.context().throwIfCancelled();
   ++iterations_;
   energy_.derivatives(kind, x, gradient_, hessian_);
@@ -60,7 +60,7 @@ double NewtonSolver::step(EnergyKind kind, Vector& x) {
 }
 
 void NewtonSolver::start(Vector& x) {
-  if (x.size() > 0) step({EnergyKind::Name::Dirichlet, 0}, x);
+  if (x.size() > 0) step({BendEnergyKind::Name::Dirichlet, 0}, x);
 }
 
 bool NewtonSolver::untangle(Vector& x, double epsilon) {
@@ -69,7 +69,7 @@ bool NewtonSolver::untangle(Vector& x, double epsilon) {
   Vector best = x;
   int idle = 0;
   for (int i = 0; i < kMostSteps && idle < kPatience && fewest > 0 && x.size() > 0; ++i) {
-    const double decrease = step({EnergyKind::Name::FoldoverFree, epsilon}, x);
+    const double decrease = step({BendEnergyKind::Name::FoldoverFree, epsilon}, x);
     folding = energy_.folding(x, stage_);
     idle = folding.flippedTets < fewest ? 0 : idle + 1;
     if (folding.flippedTets <= fewest) best = x;
@@ -88,7 +88,7 @@ void NewtonSolver::polish(Vector& x, int steps) {
   constexpr double kLeastDecrease = 1e-3;
   if (x.size() == 0) return;
   for (int i = 0; i < steps; ++i) {
-    if (step({EnergyKind::Name::FoldoverFree, 0}, x) < kLeastDecrease) break;
+    if (step({BendEnergyKind::Name::FoldoverFree, 0}, x) < kLeastDecrease) break;
   }
 }
 

@@ -28,14 +28,14 @@ class NewtonSolver {
 
  private:
   /// One step's share of the energy that is gone.
-  double step(EnergyKind kind, Vector& x);
+  double step(BendEnergyKind kind, Vector& x);
   [[nodiscard]] Vector direction();
 
   const BendEnergy& energy_;
   Stage& stage_;
-  Matrix hessian_;
+  SparseMatrix hessian_;
   Vector gradient_;
-  Eigen::SimplicialLLT<Matrix, Eigen::Lower> cholesky_;
+  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> cholesky_;
   int iterations_ = 0;
 };
 

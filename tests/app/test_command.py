@@ -71,6 +71,18 @@ REPORT_KEYS = {
 }
 
 
+def mixed_mesh():
+    """A cube with a pyramid on top, a tet inside of that, and a tagged quad, as legacy VTK."""
+    points = [(x, y, z) for z in range(2) for y in range(2) for x in range(2)] + [(0.5, 0.5, 2)]
+    cells = [[12, 0, 1, 3, 2, 4, 5, 7, 6], [14, 4, 5, 7, 6, 8], [10, 4, 5, 6, 8], [9, 0, 1, 3, 2]]
+    numbers = sum(len(cell) for cell in cells)
+    return ("# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+            f"POINTS {len(points)} double\n" + "\n".join("%g %g %g" % p for p in points) +
+            f"\nCELLS {len(cells)} {numbers}\n" +
+            "".join(" ".join(map(str, [len(c) - 1] + c[1:])) + "\n" for c in cells) +
+            f"CELL_TYPES {len(cells)}\n" + "".join(f"{c[0]}\n" for c in cells))
+
+
 class CommandTest(unittest.TestCase):
     """Runs the command in an empty folder."""
 
@@ -276,7 +288,7 @@ class FileProblems(CommandTest):
 
     def test_mesh_is_no_map(self):
         self.run_command("extract", self.generate("box", "--cells", "1", "--refine", "1"), "-o", "a.vtu", "--quiet")
-        self.assert_fails("check", "a.vtu", expect=FILE_PROBLEM, words=["it holds hexahedra"], code="FileUnsupported")
+        self.assert_fails("check", "a.vtu", expect=FILE_PROBLEM, words=["it holds 8 hexahedra"], code="FileUnsupported")
 
     def test_unknown_extensions(self):
         self.write("map.hexex", ONE_TET)
@@ -1156,6 +1168,38 @@ class Convert(CommandTest):
             self.assertRegex(run.stdout, rf"(?m)^{name} ")
 
 
+class MixedCells(CommandTest):
+    """Hexahedra among other volume cells."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("mixed.vtk", mixed_mesh())
+
+    def test_are_listed(self):
+        text = self.run_command("info", "mixed.vtk").stdout
+        self.assertIn("several types of cells", text)
+        for name in ("hexahedra", "pyramids", "tetrahedra"):
+            self.assertRegex(text, rf"\n  {name} +1\n")
+        for options in ((), ("--pieces",)):
+            listed = json.loads(self.run_command("info", "mixed.vtk", "--json", *options).stdout)
+            self.assertEqual(listed["cell_types"], {"hexahedra": 1, "pyramids": 1, "tetrahedra": 1})
+            self.assertEqual(listed["cells"], 1)
+
+    def test_are_refused_unless_the_others_shall_be_left_out(self):
+        commands = [("convert", "mixed.vtk", "a.vtu"), ("convert", "mixed.vtk", "a.vtu", "--stream"),
+                    ("improve", "mixed.vtk", "-o", "a.vtu")]
+        for command in commands:
+            self.assert_fails(*command, expect=FILE_PROBLEM, code="FileUnsupported",
+                              words=("1 hexahedron, 1 pyramid and 1 tetrahedron", "--hexes-only"))
+            result = self.run_command(*command, "--hexes-only")
+            self.assertIn("pyramids (1), tetrahedra (1)", result.stderr)
+        self.assertIn("a hexahedral mesh\n", self.run_command("info", "a.vtu").stdout)
+
+    def test_without_others_there_is_no_warning(self):
+        self.run_command("extract", self.generate("box"), "-o", "a.vtu", "--quiet")
+        self.assertEqual(self.run_command("convert", "a.vtu", "b.vtk", "--hexes-only").stderr, "")
+
+
 class Parts(CommandTest):
     """extract --parts"""
 
@@ -1395,6 +1439,13 @@ class View(CommandTest):
             self.skipTest("this hexhex was built without the viewer page")
         self.assertEqual(probe.returncode, SUCCESS, probe.stderr)
         (self.folder / "probe.html").unlink()
+
+    def test_of_hexahedra_among_other_cells(self):
+        self.write("mixed.vtk", mixed_mesh())
+        self.assert_fails("view", "mixed.vtk", "-o", "m.html", expect=FILE_PROBLEM,
+                          code="FileUnsupported", words=("1 pyramid", "--hexes-only"))
+        result = self.run_command("view", "mixed.vtk", "-o", "m.html", "--hexes-only")
+        self.assertIn("pyramids (1), tetrahedra (1)", result.stderr)
 
     @staticmethod
     def info(html):

@@ -359,6 +359,29 @@ static int on_progress(void* user, const char* stage, double share) {
   return ++p->calls > p->stop_after;
 }
 
+/* A hexahedron and a pyramid. */
+static void test_mixed_cells(const char* folder) {
+  hexhex_error error;
+  char name[512];
+  hexhex_mesh* mesh = NULL;
+  hexhex_read_options options = HEXHEX_READ_OPTIONS_INIT;
+  snprintf(name, sizeof name, "%s/mixed.mesh", folder);
+  FILE* out = fopen(name, "w");
+  fputs("MeshVersionFormatted 2 Dimension 3 Vertices 9 0 0 0 0 1 0 0 0 1 1 0 0 0 1 0 0\n"
+        "0 0 1 0 1 0 1 0 1 1 1 0 0 1 1 0 0 0 2 0 Hexahedra 1 1 2 3 4 5 6 7 8 0\n"
+        "Pyramids 1 5 6 7 8 9 0 End\n",
+        out);
+  fclose(out);
+  CHECK(hexhex_mesh_read(name, &options, NULL, &mesh, &error) == HEXHEX_FILE_UNSUPPORTED);
+  CHECK(strstr(error.message, "1 hexahedron and 1 pyramid") != NULL);
+  options.hexes_only = 1;
+  CHECK_OK(hexhex_mesh_read(name, &options, NULL, &mesh, &error));
+  hexhex_mesh_arrays arrays = HEXHEX_MESH_ARRAYS_INIT;
+  CHECK_OK(hexhex_mesh_get_arrays(mesh, &arrays, &error));
+  CHECK(arrays.cell_count == 1);
+  hexhex_mesh_destroy(mesh);
+}
+
 static void test_context(void) {
   hexhex_error error;
   hexhex_map* map = sphere(2);
@@ -1564,6 +1587,7 @@ int main(void) {
   test_verify_of_bad_meshes();
   test_everything_once(folder);
   test_errors(folder);
+  test_mixed_cells(folder);
   test_context();
   test_sink(folder);
   test_features(folder);

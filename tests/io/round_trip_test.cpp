@@ -8,6 +8,7 @@
 #include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/samples.hpp>
+#include <hexhex/survey.hpp>
 
 #include <io/io_test_support.hpp>
 
@@ -114,6 +115,44 @@ TEST(RoundTrips, MapsThroughEveryPairOfFormats) {
         expectSameMaps(through(second, between, folder / "b"), map);
       }
     }
+  }
+}
+
+/// Puts the mark in front that editors of Windows write.
+void addByteOrderMark(const std::filesystem::path& file) {
+  writeText(file, "\xef\xbb\xbf" + contentOf(file));
+}
+
+/// Whether files of a format are text, which the mark may precede.
+bool isText(const Way& way) {
+  return way.format != "meshb" && way.format != "ovmb" && way.format != "vtk-binary" &&
+         way.format != "msh";
+}
+
+TEST(RoundTrips, OfTextsWithAByteOrderMark) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "a";
+  Context context(2);
+  const TetMap map = maps()[0];
+  // More than the head by which large files of other kinds are told.
+  const HexMesh mesh = gridMesh(20, 20, 20);
+  for (const Way& way : mapWays()) {
+    if (!isText(way)) continue;
+    SCOPED_TRACE(way.format);
+    writeMap(map, file, way.writing(), context);
+    addByteOrderMark(file);
+    expectSameMaps(readMap(file, way.reading(), context), map);
+  }
+  for (const Way& way : meshWays()) {
+    if (!isText(way)) continue;
+    SCOPED_TRACE(way.format);
+    writeHexMesh(mesh, file, way.writing(), context);
+    addByteOrderMark(file);
+    ASSERT_GT(std::filesystem::file_size(file), 1U << 16);
+    expectSameMeshes(readHexMesh(file, way.reading(), context), mesh);
+    SurveySink sink(context);
+    readHexMeshTo(sink, file, way.reading(), context);
+    EXPECT_EQ(sink.result().cellChecksum, survey(mesh, context).cellChecksum);
   }
 }
 

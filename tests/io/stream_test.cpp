@@ -204,9 +204,10 @@ TEST(Stream, OtherCellsAreSkipped) {
   writeText(folder / "b.vtu", text);
   CollectingSink collector;
   Context context;
-  readHexMeshTo(collector, folder / "b.vtu", context);
+  const ReadOptions hexesOnly = {.hexesOnly = true};
+  readHexMeshTo(collector, folder / "b.vtu", hexesOnly, context);
   EXPECT_EQ(collector.mesh.cells.size(), 8U);
-  EXPECT_EQ(collector.mesh.cells, readHexMesh(folder / "b.vtu").cells);
+  EXPECT_EQ(collector.mesh.cells, readHexMesh(folder / "b.vtu", hexesOnly, context).cells);
   text.replace(place, 12, std::string(12, 11));
   writeText(folder / "c.vtu", text);
   EXPECT_EQ(failureOf([&] { readHexMeshTo(collector, folder / "c.vtu", context); }).code,
@@ -273,8 +274,9 @@ TEST(Stream, OtherFilesAreReadAsAWhole) {
     writeText(folder / "a.mesh", text);
     CollectingSink collector;
     Context context;
-    readHexMeshTo(collector, folder / "a.mesh", context);
-    EXPECT_EQ(collector.mesh.cells, readHexMesh(folder / "a.mesh").cells);
+    const ReadOptions hexesOnly = {.hexesOnly = true};
+    readHexMeshTo(collector, folder / "a.mesh", hexesOnly, context);
+    EXPECT_EQ(collector.mesh.cells, readHexMesh(folder / "a.mesh", hexesOnly, context).cells);
     EXPECT_EQ(collector.mesh.points.size(), 8U);
   }
 }

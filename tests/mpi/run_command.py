@@ -103,16 +103,23 @@ def check_files(folder, map_file):
 def check_failures(folder, map_file):
     def fails(arguments, text, code, command=(COMMAND,)):
         before = contents(folder)
-        result = run(MPIRUN, "-n", 3, *command, "extract", *arguments, folder=folder, fails=True)
+        words = [*command, "extract", *arguments] if arguments else command
+        result = run(MPIRUN, "-n", 3, *words, folder=folder, fails=True)
         require(result.stderr.count("hexhex: error:") == 1 and text in result.stderr,
-                f"{arguments}: one message with '{text}' is due, not\n{result.stderr}")
-        require(result.returncode == code, f"{arguments}: {result.returncode} is no {code}")
-        require(contents(folder) == before, f"{arguments}: something was written")
+                f"{words}: one message with '{text}' is due, not\n{result.stderr}")
+        require(result.returncode == code, f"{words}: {result.returncode} is no {code}")
+        require(contents(folder) == before, f"{words}: something was written")
 
     fails(["none.hexex", "-o", "x.pvtu"], "none.hexex", FILE_PROBLEM)
     fails([map_file, "-o", "x.cgns"], "several processes cannot write", FILE_PROBLEM)
     fails([map_file, "-o", "x.vtu"], "no format of meshes in parts", FILE_PROBLEM)
     fails([map_file, "-o", "x.pvtu", "--parts", "2"], "2 parts and 3 processes", BAD_USAGE)
+    # Each process has another name for the file, another format, or another map.
+    own = "rank=${OMPI_COMM_WORLD_RANK:-$PMI_RANK}; "
+    for words, text in [('"$1" extract "$2" -o x$rank.pvtu', "map.ovm --output x1.pvtu"),
+                        ('"$1" extract "$2" -o x.msh --format msh$(test $rank = 2 && echo -split)', "msh-split"),
+                        ('"$1" extract $rank.hexex -o x.pvtu', "1.hexex")]:
+        fails([], text, BAD_USAGE, ["bash", "-c", own + "exec " + words, "bash", COMMAND, map_file])
     # One process cannot write where the others can: it works in another folder.
     (folder / "there").mkdir()
     elsewhere = "test ${OMPI_COMM_WORLD_RANK:-$PMI_RANK} = 1 && cd /; exec \"$@\""

@@ -234,6 +234,25 @@ class TeamFiles : public testing::Test {
   TetMap map_;
 };
 
+TEST_F(TeamFiles, HaveOneNameAndFormat) {
+  const auto open = [&](const fs::path& file, const WriteOptions& other) {
+    return ThreadTeam(3).run([&](ProcessTeam& team) {
+      Context context(1);
+      const bool last = team.rank() == 2;
+      const auto sink = openPartSink(last ? file : folder_ / "x.pvtu",
+                                     last ? other : WriteOptions{}, context, &team);
+      extractPart(team, *sink, map_, {}, {}, context);
+    });
+  };
+  expectAll(open(folder_ / "y.pvtu", {}), ErrorCode::InvalidArgument, "y.pvtu");
+  expectAll(open(folder_ / "x.msh", {}), ErrorCode::InvalidArgument, "x.msh");
+  expectAll(open(folder_ / "x.pvtu", {.format = "pvtu"}), ErrorCode::InvalidArgument, "pvtu");
+  expectAll(open(folder_ / "x.pvtu", {.patchAngle = 30}), ErrorCode::InvalidArgument, "30");
+  EXPECT_TRUE(contentsOf(folder_).empty());
+  EXPECT_FALSE(open(folder_ / "x.pvtu", {})[0]);
+  EXPECT_FALSE(contentsOf(folder_).empty());
+}
+
 TEST_F(TeamFiles, AreThoseOfOneProcess) {
   for (const PartFormat& format : formatsOfTeams()) {
     for (const std::uint32_t size : {1U, 4U, 9U}) {

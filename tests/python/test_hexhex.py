@@ -191,6 +191,17 @@ def test_every_format_of_this_build(sphere, tmp_path):
             np.testing.assert_array_equal(hexhex.read(file, format=f.name).cells, mesh.cells)
 
 
+def test_hexahedra_among_other_cells(tmp_path):
+    file = tmp_path / "mixed.mesh"
+    points = [f"{x} {y} {z} 0" for z in range(2) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    file.write_text("MeshVersionFormatted 2 Dimension 3 Vertices 9 " + " ".join(points) + " 0 0 2 0 "
+                    "Hexahedra 1 1 2 3 4 5 6 7 8 0 Pyramids 1 5 6 7 8 9 0 End")
+    for read in (hexhex.read, hexhex.read_mesh):
+        with pytest.raises(hexhex.FileError, match="1 hexahedron and 1 pyramid"):
+            read(file)
+        assert len(read(file, hexes_only=True).cells) == 1
+
+
 def test_progress(sphere):
     seen = []
     hexhex.extract(sphere, progress=lambda stage, share: seen.append((stage, share)))

@@ -14,7 +14,7 @@ namespace hexhex::test {
 
 namespace {
 
-using Name = EnergyKind::Name;
+using Name = BendEnergyKind::Name;
 
 /// A small map with many transitions, and random unknowns of it.
 struct EnergyTest : testing::Test {
@@ -50,11 +50,12 @@ struct EnergyTest : testing::Test {
 TEST_F(EnergyTest, HasTheGradientOfItsDifferences) {
   const BendEnergy energy(topology, problem.reference, unknowns);
   ASSERT_GT(energy.unknownCount(), 10);
-  for (const EnergyKind kind : {EnergyKind{Name::Dirichlet, 0}, EnergyKind{Name::FoldoverFree, 1},
-                                EnergyKind{Name::FoldoverFree, 0.3}}) {
+  for (const BendEnergyKind kind :
+       {BendEnergyKind{Name::Dirichlet, 0}, BendEnergyKind{Name::FoldoverFree, 1},
+        BendEnergyKind{Name::FoldoverFree, 0.3}}) {
     const Vector x = randomUnknowns(energy);
     Vector gradient;
-    Matrix hessian = energy.emptyHessian();
+    SparseMatrix hessian = energy.emptyHessian();
     energy.derivatives(kind, x, gradient, hessian);
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       Vector more = x;
@@ -70,12 +71,12 @@ TEST_F(EnergyTest, HasTheGradientOfItsDifferences) {
 
 TEST_F(EnergyTest, HasTheHessianOfTheDirichletEnergy) {
   const BendEnergy energy(topology, problem.reference, unknowns);
-  const EnergyKind kind{Name::Dirichlet, 0};
+  const BendEnergyKind kind{Name::Dirichlet, 0};
   const Vector x = randomUnknowns(energy);
   const Vector step = randomUnknowns(energy);
   Vector before;
   Vector after;
-  Matrix hessian = energy.emptyHessian();
+  SparseMatrix hessian = energy.emptyHessian();
   energy.derivatives(kind, x, before, hessian);
   energy.derivatives(kind, x + step, after, hessian);
   const Vector change = hessian.selfadjointView<Eigen::Lower>() * step;
@@ -88,7 +89,7 @@ TEST_F(EnergyTest, HasAPositiveHessianEvenWhereTetsAreFlipped) {
     const Vector x = randomUnknowns(energy);
     EXPECT_GT(energy.folding(x, stage).flippedTets, 0U);
     Vector gradient;
-    Matrix hessian = energy.emptyHessian();
+    SparseMatrix hessian = energy.emptyHessian();
     energy.derivatives({Name::FoldoverFree, epsilon}, x, gradient, hessian);
     const Eigen::MatrixXd dense = Eigen::MatrixXd(hessian).selfadjointView<Eigen::Lower>();
     const Vector values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues();

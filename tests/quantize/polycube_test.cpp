@@ -258,6 +258,36 @@ TEST_F(FlagFiles, BelongToTheTrianglesOfASurface) {
   }
 }
 
+/// Programs of Windows put a mark in front of UTF-8, others count vertices from the last one.
+TEST_F(FlagFiles, BelongToSurfacesWithAMarkAndRelativeNumbers) {
+  const auto count = static_cast<std::int64_t>(input_.tets.points.size());
+  std::string obj = "\xef\xbb\xbf";
+  for (const Vec3& point : input_.tets.points) {
+    obj += "v";
+    for (const double x : point) obj += ' ' + std::to_string(x);
+    obj += '\n';
+  }
+  std::string labels = "\xef\xbb\xbf";
+  forEachLabelled([&](int label, const std::array<Index, 3>& vertices) {
+    labels += std::to_string(label) + '\n';
+    obj += "f";
+    for (const Index v : vertices) obj += ' ' + std::to_string(v - count) + "/1/-1";
+    obj += '\n';
+  });
+  const auto file = write("labels.txt", labels);
+  EXPECT_EQ(read({file, write("surface.obj", obj)}), input_.flags);
+  for (const std::string& corner :
+       {std::to_string(-count - 1), std::string("0"), std::string("-9223372036854775808"),
+        std::string("1x"), std::to_string(count + 1), std::string("-")}) {
+    const auto bad = write("bad.obj", obj + "f 1 2 " + corner + '\n');
+    EXPECT_EQ(codeOf([&] {
+                static_cast<void>(read({file, bad}));
+              }),
+              ErrorCode::FileSyntax)
+        << corner;
+  }
+}
+
 /// In whatever units, within those of positions.
 TEST_F(FlagFiles, BelongToSurfacesOfAnySize) {
   const auto original = input_.tets.points;

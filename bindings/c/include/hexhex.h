@@ -233,9 +233,10 @@ typedef struct hexhex_read_options {
   const char* format; /**< by its name, see hexhex_get_format(); NULL: what the extension means */
   const char* map_array; /**< that holds the map in .vtu and .vtk files; NULL: "igm" */
   int keep_walls;        /**< 1: walls inside, which .hexex files list, are features with tag 2 */
+  int hexes_only; /**< 1: leaves out other volume cells of a mesh, which are an error otherwise */
 } hexhex_read_options;
 #define HEXHEX_READ_OPTIONS_INIT \
-  { sizeof(hexhex_read_options), NULL, NULL, 0 }
+  { sizeof(hexhex_read_options), NULL, NULL, 0, 0 }
 
 /** See WriteOptions in <hexhex/io.hpp>. */
 typedef struct hexhex_write_options {

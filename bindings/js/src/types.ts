@@ -64,6 +64,8 @@ export interface ReadOptions {
   mapArray?: string;
   /** Walls of a motorcycle complex that .hexex files list, inside, are features with the tag 2. */
   keepWalls?: boolean;
+  /** Leaves out other volume cells of a mesh, which are an error otherwise. */
+  hexesOnly?: boolean;
 }
 
 export interface WriteOptions {

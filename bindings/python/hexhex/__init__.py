@@ -809,14 +809,14 @@ def map_from_flags(points: npt.ArrayLike, tets: npt.ArrayLike, flags: npt.ArrayL
         np.ascontiguousarray(labels, dtype=np.int8), _threads(threads), progress))
 
 
-def read_mesh(file: Path, *, format: str | None = None, threads: int | None = None,
-              progress: Progress | None = None) -> Mesh:
+def read_mesh(file: Path, *, format: str | None = None, hexes_only: bool = False,
+              threads: int | None = None, progress: Progress | None = None) -> Mesh:
     """Reads a hexahedral mesh: .mesh, .meshb, .vtu, .vtk, .msh, .ovm, .ovmb, .npz. Raises
-    FileError."""
+    FileError, also for a file with other volume cells; with hexes_only, these are left out."""
     if _npz.is_npz(os.fspath(file), format):
         return _read_npz(file, Mesh)  # type: ignore[no-any-return]
-    return Mesh._from_handle(_hexhex.read_mesh(os.fspath(file), format or "", _threads(threads),
-                                               progress))
+    return Mesh._from_handle(_hexhex.read_mesh(os.fspath(file), format or "", hexes_only,
+                                               _threads(threads), progress))
 
 
 def read_curved(file: Path, *, threads: int | None = None,
@@ -844,9 +844,10 @@ def holds_curved(file: Path) -> bool:
 
 
 def read(file: Path, *, format: str | None = None, map_array: str = "igm",
-         keep_walls: bool = False, threads: int | None = None, progress: Progress | None = None) -> Map | Mesh:
+         keep_walls: bool = False, hexes_only: bool = False, threads: int | None = None,
+         progress: Progress | None = None) -> Map | Mesh:
     """Reads what a file holds: a mesh or, where there are no hexahedra, a map. Arguments as of
-    read_map().
+    read_map() and read_mesh().
 
     Raises:
         FileError: if it can be read as neither; place and index tell the line.
@@ -859,7 +860,7 @@ def read(file: Path, *, format: str | None = None, map_array: str = "igm",
     """
     if _npz.is_npz(os.fspath(file), format):
         return _npz.read(os.fspath(file))
-    found = _hexhex.read(os.fspath(file), format or "", map_array, keep_walls, _threads(threads),
+    found = _hexhex.read(os.fspath(file), format or "", map_array, keep_walls, hexes_only, _threads(threads),
                          progress)
     return Map._from_handle(found) if isinstance(found, _hexhex.Map) else Mesh._from_handle(found)
 

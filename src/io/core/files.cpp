@@ -63,13 +63,65 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
   return format;
 }
 
+/// Tells what volume cells a reader has found, and refuses those that it has left out.
+/// @param allowed  whether they may be left out
+void settleCells(const Input& input, const CellKind& wanted, const ReadOptions& options,
+                 bool allowed) {
+  if (options.cellCounts != nullptr) *options.cellCounts = input.counts()->list();
+  if (allowed) return;
+  input.counts()->requireOnly(
+      wanted, input.name(),
+      wanted.corners == 8
+          ? "Hexahedra alone would have holes; to read them all the same, add --hexes-only "
+            "(ReadOptions::hexesOnly)."
+          : "Tetrahedra alone would have holes; split the others into tetrahedra.");
+}
+
+TetMap readMapOf(const Input& input, const Format& format, const ReadOptions& options,
+                 Context& context) {
+  TetMap map = format.maps.read(input, options, context);
+  settleCells(input, kCellKind<4>, options, false);
+  return map;
+}
+
+HexMesh readMeshOf(const Input& input, const Format& format, const ReadOptions& options,
+                   Context& context) {
+  HexMesh mesh = format.meshes.read(input, context);
+  settleCells(input, kCellKind<8>, options, options.hexesOnly);
+  return mesh;
+}
+
+/// Hands a mesh on when its cells are settled, which readers have counted by then.
+class SettledSink final : public MeshSink {
+ public:
+  SettledSink(MeshSink& sink, const Input& input, const ReadOptions& options)
+      : sink_(sink), input_(input), options_(options) {}
+  void begin(std::uint64_t pointCount, std::uint64_t cellCount) override {
+    settleCells(input_, kCellKind<8>, options_, options_.hexesOnly);
+    sink_.begin(pointCount, cellCount);
+  }
+  void points(const PointPiece& piece) override { sink_.points(piece); }
+  void cells(std::uint64_t first, std::span<const Hex> cells) override {
+    sink_.cells(first, cells);
+  }
+  void cells(std::uint64_t first, std::span<const Hex64> cells) override {
+    sink_.cells(first, cells);
+  }
+  void end() override { sink_.end(); }
+
+ private:
+  MeshSink& sink_;
+  const Input& input_;
+  const ReadOptions& options_;
+};
+
 }  // namespace
 
 TetMap readMap(const std::filesystem::path& file, const ReadOptions& options, Context& context) {
   const Format& format = findFormat(file, options.format, FileContent::Map);
   if (format.maps.read == nullptr) failToRead(file, format);
   return inSteps(context, "readMap", kReadMap,
-                 [&] { return format.maps.read(file, options, context); });
+                 [&] { return readMapOf(file, format, options, context); });
 }
 
 TetMap readMap(const std::filesystem::path& file, Context& context) {
@@ -85,7 +137,9 @@ TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& option
                     Context& context) {
   const Format& format = findFormat(file, options.format, FileContent::Tets);
   return inSteps(context, "readTetMesh", kReadTets, [&] {
-    const TetCells tets = format.readTets(file, context);
+    const Input input(file);
+    const TetCells tets = format.readTets(input, context);
+    settleCells(input, kCellKind<4>, options, false);
     TetMesh mesh;
     mesh.points.assign(tets.points.begin(), tets.points.end());
     mesh.tets.assign(tets.cells.begin(), tets.cells.end());
@@ -97,7 +151,7 @@ HexMesh readHexMesh(const std::filesystem::path& file, const ReadOptions& option
                     Context& context) {
   const Format& format = readableFormat(file, options.format);
   return inSteps(context, "readHexMesh", kReadMesh,
-                 [&] { return format.meshes.read(file, context); });
+                 [&] { return readMeshOf(file, format, options, context); });
 }
 
 HexMesh readHexMesh(const std::filesystem::path& file, Context& context) {
@@ -115,14 +169,20 @@ std::variant<TetMap, HexMesh> readMapOrHexMesh(const std::filesystem::path& file
   if (format.meshes.read == nullptr && format.maps.read == nullptr) failToRead(file, format);
   using Content = std::variant<TetMap, HexMesh>;
   return inSteps(context, "readMapOrHexMesh", kReadAny, [&]() -> Content {
-    if (format.meshes.read == nullptr) return format.maps.read(file, options, context);
-    if (format.maps.read == nullptr) return format.meshes.read(file, context);
+    if (format.meshes.read == nullptr) return readMapOf(file, format, options, context);
+    const Input input(file);
+    if (format.maps.read == nullptr) return readMeshOf(input, format, options, context);
     try {
-      return format.meshes.read(file, context);
+      return readMeshOf(input, format, options, context);
     } catch (const Error& error) {
       // That there are no hexahedra; what else is wrong, the other reader will find, too.
-      if (error.code() != ErrorCode::FileUnsupported) throw;
-      return format.maps.read(file, options, context);
+      const CellCounts& counts = *input.counts();
+      const bool hasOthers = !counts.list().empty();
+      if (error.code() != ErrorCode::FileUnsupported || counts.of(kCellKind<8>) > 0 ||
+          (hasOthers && counts.of(kCellKind<4>) == 0)) {
+        throw;
+      }
+      return readMapOf(file, format, options, context);
     }
   });
 }
@@ -132,8 +192,10 @@ void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, const Read
   const Format& format = readableFormat(file, options.format);
   inSteps(context, "readHexMeshTo", kReadMesh, [&] {
     withThreads(context.threads(), [&] {
-      if (format.pieces.read != nullptr) return format.pieces.read(sink, file, context);
-      sendTo(sink, format.meshes.read(file, context));
+      const Input input(file);
+      SettledSink settled(sink, input, options);
+      if (format.pieces.read != nullptr) return format.pieces.read(settled, input, context);
+      sendTo(settled, format.meshes.read(input, context));
     });
   });
 }

@@ -116,6 +116,24 @@ std::vector<std::int64_t> readLabelNumbers(const Input& input, Stage& stage) {
   return numbers;
 }
 
+/// A corner of a face, "7", "7/2", "7/2/3" or "7//3": the first number is the vertex, counted from
+/// 1, or from the last one before the face, which is -1.
+/// @param points  before the face
+Index readObjVertex(TextScanner& scanner, std::size_t points) {
+  const std::string_view token = scanner.readToken();
+  const std::string_view number = token.substr(0, token.find('/'));
+  const char* const end = number.data() + number.size();
+  std::int64_t vertex = 0;
+  const auto result = std::from_chars(number.data(), end, vertex);
+  const auto count = static_cast<std::int64_t>(points);
+  const std::int64_t place = vertex < 0 ? count + vertex : vertex - 1;
+  if (result.ec == std::errc{} && result.ptr == end && place >= 0 && place < count) {
+    return static_cast<Index>(place);
+  }
+  scanner.fail(ErrorCode::FileSyntax,
+               "a corner of a face is " + quoted(token) + ", which names no vertex before it.");
+}
+
 /// Vertices and triangles of an `.obj` file; other elements are passed over.
 struct ObjSurface {
   std::vector<Vec3> points;
@@ -133,18 +151,7 @@ ObjSurface readSurface(const Input& input, Stage& stage) {
       for (double& x : p) x = scanner.number("a coordinate");
     } else if (keyword == "f") {
       SurfaceTriangle& triangle = surface.triangles.emplace_back();
-      for (Index& v : triangle) {
-        // "7", "7/2", "7/2/3" or "7//3": the first number is the vertex, counted from 1.
-        const std::string_view token = scanner.readToken();
-        const std::string_view number = token.substr(0, token.find('/'));
-        const auto result = std::from_chars(number.data(), number.data() + number.size(), v);
-        if (result.ec == std::errc{} && v >= 1 && v <= surface.points.size()) {
-          --v;
-          continue;
-        }
-        scanner.fail(ErrorCode::FileSyntax, "a corner of a face is " + quoted(token) +
-                                                ", which names no vertex before it.");
-      }
+      for (Index& v : triangle) v = readObjVertex(scanner, surface.points.size());
       // More corners would stand on the same line.
       if (scanner.takeLine().find_first_not_of(" \t\r") != std::string_view::npos) {
         scanner.fail(ErrorCode::FileUnsupported, "a face has more than three corners.");

@@ -31,6 +31,7 @@ std::string reasonOf(int error) { return std::generic_category().message(error);
 /// zero bytes.
 bool mayBegin(std::string_view head, std::string_view first) {
   constexpr std::size_t kWord = 8;  // all formats begin with a word, or with numbers in digits
+  head = withoutByteOrderMark(head);
   head.remove_prefix(
       static_cast<std::size_t>(std::find_if_not(head.begin(), head.end(), isSpace) - head.begin()));
   return !head.empty() && first.find(head.front()) != std::string_view::npos &&

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,7 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/core/cell_counts.hpp>
 
 namespace hexhex {
 
@@ -67,6 +69,14 @@ class InputFile {
   return {bytes.data(), bytes.size()};
 }
 
+/// A text without the mark that some editors, mostly of Windows, put in front of UTF-8. No binary
+/// format begins with it.
+[[nodiscard]] constexpr std::string_view withoutByteOrderMark(std::string_view text) noexcept {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+  return text;
+}
+
 /// What is read: a file, or bytes in memory.
 class Input {
  public:
@@ -78,18 +88,22 @@ class Input {
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   [[nodiscard]] const std::optional<std::string_view>& bytes() const noexcept { return bytes_; }
-  /// All bytes. Those of a file go to `room`; what `first` is says readWholeFile().
+  /// What readers of this input count.
+  [[nodiscard]] const std::shared_ptr<CellCounts>& counts() const noexcept { return counts_; }
+  /// All bytes but a byte-order mark. Those of a file go to `room`; what `first` is says
+  /// readWholeFile().
   [[nodiscard]] std::string_view text(Array<char>& room, Stage& stage,
                                       std::string_view first) const {
-    if (bytes_) return *bytes_;
+    if (bytes_) return withoutByteOrderMark(*bytes_);
     room = readWholeFile(path_, stage, first);
-    return asText(room);
+    return withoutByteOrderMark(asText(room));
   }
 
  private:
   std::string name_;
   std::filesystem::path path_;
   std::optional<std::string_view> bytes_;
+  std::shared_ptr<CellCounts> counts_ = std::make_shared<CellCounts>();
 };
 
 /// What work(stage) returns, with the context's threads.

@@ -61,17 +61,19 @@ std::unique_ptr<PlainMesh> openPlain(const PlainFormat& format, const InputFile&
 
 }  // namespace
 
-void readPlainMesh(const PlainFormat& format, MeshSink& sink, const std::filesystem::path& file,
+void readPlainMesh(const PlainFormat& format, MeshSink& sink, const Input& input,
                    Context& context) {
-  const Input input(file);
   std::error_code unknown;
   // A pipe can be opened but once.
-  if (std::filesystem::is_regular_file(file, unknown)) {
-    const InputFile open(file);
+  if (std::filesystem::is_regular_file(input.path(), unknown)) {
+    const InputFile open(input.path());
     Stage stage(context, "read mesh");
     const std::unique_ptr<PlainMesh> mesh = openPlain(format, open, input.name(), context);
     try {
-      if (mesh) return sendPlain(*mesh, sink, stage);
+      if (mesh) {
+        input.counts()->add(kCellKind<8>, mesh->cells);
+        return sendPlain(*mesh, sink, stage);
+      }
     } catch (const WrongFile& wrong) {
       // Whatever is wrong: the other reader tells the line, and the first of several mistakes.
       static_cast<void>(format.readWhole(input, context));

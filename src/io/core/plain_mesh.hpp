@@ -54,8 +54,7 @@ struct PlainFormat {
 
 /// Reads a file into a sink: piece by piece if it has the form, or else as a whole.
 /// @throws Error  as the reader of whole files; what the sink throws
-void readPlainMesh(const PlainFormat& format, MeshSink& sink, const std::filesystem::path& file,
-                   Context& context);
+void readPlainMesh(const PlainFormat& format, MeshSink& sink, const Input& input, Context& context);
 
 /// What a file numbers from 1. @throws Error IndexOutOfRange
 [[nodiscard]] std::uint64_t vertexOfNumber(std::uint64_t number, std::uint64_t points);

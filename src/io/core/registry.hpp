@@ -47,7 +47,7 @@ struct Format {
   struct {
     std::unique_ptr<MeshSink> (*openSink)(const std::filesystem::path& file,
                                           Context& context) = nullptr;
-    void (*read)(MeshSink& sink, const std::filesystem::path& file, Context& context) = nullptr;
+    void (*read)(MeshSink& sink, const Input& input, Context& context) = nullptr;
   } pieces = {};
 
   bool compresses = false;  ///< heeds WriteOptions::compress

@@ -10,8 +10,8 @@ namespace hexhex {
 /// Whether a `.vtu` file has cells of type 72, which is VTK_LAGRANGE_HEXAHEDRON.
 [[nodiscard]] bool holdsLagrangeVtu(const std::filesystem::path& file, Context& context);
 
-/// Reads them, and generators, tags and regions as writeLagrangeVtu() writes them; other cells are
-/// ignored, and so are tags of nodes that are no corners.
+/// Reads them, and generators, tags and regions as writeLagrangeVtu() writes them; tags of nodes
+/// that are no corners are ignored. Other volume cells are an error.
 [[nodiscard]] LagrangeMesh readLagrangeVtu(const std::filesystem::path& file, Context& context);
 
 /// `.vtu`: cell type 72, with the arrays of straight meshes.

@@ -158,7 +158,7 @@ void putCornersFirst(LagrangeMesh& mesh) {
   renumberFeatures(isCorner, newNumber, mesh.features);
 }
 
-LagrangeMesh readLagrange(const VtkSource& source, Stage& stage) {
+LagrangeMesh readLagrange(const VtkSource& source, const std::string& fileName, Stage& stage) {
   source.requireIndexable();
   LagrangeMesh mesh;
   mesh.order = findOrder(source);
@@ -172,6 +172,7 @@ LagrangeMesh readLagrange(const VtkSource& source, Stage& stage) {
     return mesh.nodes.data();
   };
   readVtkCells(source, wanted, makeRoom, &numbers, stage);
+  source.counts->requireOnly(wanted, fileName, "Give the others a file of their own.");
   reorderNodes(mesh, stage);
   readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
   mesh.regions = readVtkRegions(source, numbers);
@@ -190,8 +191,9 @@ bool holdsLagrangeVtu(const std::filesystem::path& file, Context& context) {
 }
 
 LagrangeMesh readLagrangeVtu(const std::filesystem::path& file, Context& context) {
-  return inStage(context, "read mesh",
-                 [&file](Stage& stage) { return readLagrange(*openVtuFile(file, stage), stage); });
+  return inStage(context, "read mesh", [&file](Stage& stage) {
+    return readLagrange(*openVtuFile(file, stage), file.string(), stage);
+  });
 }
 
 void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& file,

@@ -22,7 +22,7 @@ namespace hexhex {
 [[nodiscard]] HexMesh readGmsh(const Input& input, Context& context);
 /// The same in pieces, of binary files of version 4.1 with one block of nodes, which are numbered
 /// from 1, and one of hexahedra; of other files as a whole.
-void readGmshTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
+void readGmshTo(MeshSink& sink, const Input& input, Context& context);
 /// The same for tetrahedra instead of hexahedra.
 [[nodiscard]] TetCells readGmshTets(const Input& input, Context& context);
 

@@ -14,6 +14,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
+#include <io/core/cell_counts.hpp>
 #include <io/core/cell_mesh.hpp>
 #include <io/core/number_source.hpp>
 #include <io/gmsh/gmsh.hpp>
@@ -63,8 +64,9 @@ template <std::size_t corners>
 class GmshElements {
  public:
   /// @param tags  of all groups and entities; outlive this, and so do the others
-  GmshElements(const GmshTags& tags, const NodeTags& nodes, CellMesh<corners>& mesh, Stage& stage)
-      : tags_(tags), nodes_(nodes), mesh_(mesh), stage_(stage) {}
+  GmshElements(const GmshTags& tags, const NodeTags& nodes, CellMesh<corners>& mesh,
+               CellCounts& counts, Stage& stage)
+      : tags_(tags), nodes_(nodes), mesh_(mesh), counts_(counts), stage_(stage) {}
 
   /// Reads the section of version 4.1 behind its name. Cells are read last, when it is known how
   /// many there are.
@@ -81,6 +83,7 @@ class GmshElements {
     for (std::uint64_t i = 0; i < blocks; ++i) {
       const GmshBlock block = readHead41(source);
       done += block.count;
+      counts_.addGmsh(block.type, block.count);
       if (isCell(block.type)) {
         ofCells.push_back(block);
         cells += block.count;
@@ -113,6 +116,7 @@ class GmshElements {
     for (std::size_t done = 0; done < count;) {
       const GmshBlock block = readHead22(source, count - done);
       done += block.count;
+      counts_.addGmsh(block.type, block.count);
       if (isCell(block.type)) {
         readCells(source, block, cells);
         cells += block.count;
@@ -133,6 +137,7 @@ class GmshElements {
       static_cast<void>(source.integer("the number of an element"));
       GmshBlock element{.type = source.integer("the type of an element"), .count = 1};
       element.nodes = readNodeCount(source, element.type);
+      counts_.addGmsh(element.type, 1);
       const std::int32_t tag = tagOf(element, readPhysical(source));
       if (isCell(element.type)) {
         setRegions(cells, 1, tag);
@@ -329,6 +334,7 @@ class GmshElements {
   const GmshTags& tags_;
   const NodeTags& nodes_;
   CellMesh<corners>& mesh_;
+  CellCounts& counts_;
   Stage& stage_;
   bool hasOthers_ = false;
 };

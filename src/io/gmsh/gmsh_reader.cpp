@@ -284,8 +284,9 @@ class GmshReader {
  public:
   static constexpr std::string_view kFirst = "$";
 
-  GmshReader(std::string_view text, const std::string& fileName, Stage& stage)
-      : file_(text, fileName, stage), fileName_(fileName) {}
+  GmshReader(std::string_view text, const std::string& fileName, Stage& stage,
+             const std::shared_ptr<CellCounts>& counts)
+      : file_(text, fileName, stage), fileName_(fileName), counts_(*counts) {}
 
   CellMesh<corners> read() {
     while (const std::optional<std::string_view> name = file_.nextSection()) readSection(*name);
@@ -333,7 +334,7 @@ class GmshReader {
           ErrorCode::FileUnsupported,
           "the section $Elements stands before the section $Nodes; exchange them.");
     }
-    GmshElements<corners> elements(tags_, nodes_, mesh_, file_.stage());
+    GmshElements<corners> elements(tags_, nodes_, mesh_, counts_, file_.stage());
     if (file_.version4()) {
       file_.withSource([&](auto& source) { elements.read41(source); });
     } else {
@@ -353,12 +354,13 @@ class GmshReader {
       throw Error(ErrorCode::FileUnsupported,
                   fileName_ + ": the file holds no " + std::string(kKind.plural) + " with " +
                       std::to_string(corners) + " nodes (type " + std::to_string(kKind.gmshType) +
-                      "), but other elements only.");
+                      "), but other elements only" + counts_.instead() + ".");
     }
   }
 
   GmshFile file_;
   const std::string& fileName_;
+  CellCounts& counts_;
   GmshTags tags_;
   NodeTags nodes_;
   bool hasNodes_ = false;
@@ -370,11 +372,11 @@ class GmshReader {
 }  // namespace
 
 HexMesh readGmsh(const Input& input, Context& context) {
-  return readWith<GmshReader<8>>(input, "read mesh", context);
+  return readWith<GmshReader<8>>(input, "read mesh", context, input.counts());
 }
 
 TetCells readGmshTets(const Input& input, Context& context) {
-  return readWith<GmshReader<4>>(input, "read tets", context);
+  return readWith<GmshReader<4>>(input, "read tets", context, input.counts());
 }
 
 }  // namespace hexhex

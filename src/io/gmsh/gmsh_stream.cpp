@@ -183,8 +183,8 @@ std::unique_ptr<PlainMesh> openGmsh(const InputFile& file, const std::string& na
 
 }  // namespace
 
-void readGmshTo(MeshSink& sink, const std::filesystem::path& file, Context& context) {
-  readPlainMesh({openGmsh, readGmsh}, sink, file, context);
+void readGmshTo(MeshSink& sink, const Input& input, Context& context) {
+  readPlainMesh({openGmsh, readGmsh}, sink, input, context);
 }
 
 }  // namespace hexhex

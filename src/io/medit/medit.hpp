@@ -37,8 +37,8 @@ namespace hexhex {
 
 /// The same in pieces, of files with one section Vertices in front of one section Hexahedra and
 /// without comments; of other files as a whole.
-void readMeditTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
-void readMeshbTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
+void readMeditTo(MeshSink& sink, const Input& input, Context& context);
+void readMeshbTo(MeshSink& sink, const Input& input, Context& context);
 
 /// The same for tetrahedra instead of hexahedra.
 [[nodiscard]] TetCells readMeditTets(const Input& input, Context& context);

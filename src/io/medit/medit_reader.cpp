@@ -56,6 +56,9 @@ class MeditText {
         if (section == MeditSection::End) return {};
         return section;
       }
+      for (const VolumeCells& type : kVolumeCells) {
+        if (keyword == type.meditKeyword) return static_cast<MeditSection>(type.meditCode);
+      }
     }
     return {};
   }
@@ -218,8 +221,9 @@ class MeditReader {
 
   template <class File>
   requires std::is_constructible_v<Encoding, const File&, const std::string&, Stage&> MeditReader(
-      const File& file, const std::string& fileName, Stage& stage)
-      : encoding_(file, fileName, stage), fileName_(fileName) {}
+      const File& file, const std::string& fileName, Stage& stage,
+      const std::shared_ptr<CellCounts>& counts)
+      : encoding_(file, fileName, stage), fileName_(fileName), counts_(*counts) {}
 
   CellMesh<corners> read() {
     encoding_.readHead();
@@ -230,7 +234,8 @@ class MeditReader {
     if (hasCells_) return std::move(mesh_);
     throw Error(ErrorCode::FileUnsupported, fileName_ + ": the file holds no " +
                                                 std::string(kKind.plural) + ": it has no section " +
-                                                std::string(kKind.meditKeyword) + ".");
+                                                std::string(kKind.meditKeyword) +
+                                                counts_.instead() + ".");
   }
 
  private:
@@ -239,7 +244,12 @@ class MeditReader {
   void readSection(MeditSection section) {
     if (section == MeditSection::Dimension) readDimension();
     if (section == MeditSection::Vertices) readVertices();
-    if (section == static_cast<MeditSection>(kKind.meshbKeyword)) readCells();
+    if (section == static_cast<MeditSection>(kKind.meshbKeyword)) return readCells();
+    for (const VolumeCells& type : kVolumeCells) {
+      if (type.meditVertices > 0 && section == static_cast<MeditSection>(type.meditCode)) {
+        return countCells(type);
+      }
+    }
     // What stands before the vertices cannot be checked, and no known program writes it there.
     if (corners != 8 || !hasVertices_) return;
     if (section == MeditSection::Edges) {
@@ -282,6 +292,11 @@ class MeditReader {
     });
   }
 
+  /// Counts those of a section, and leaves them where they are.
+  void countCells(const VolumeCells& type) {
+    counts_.add(type, encoding_.readCount(type.plural, encoding_.shape(type.meditVertices + 1)));
+  }
+
   void readCells() {
     failIfRepeated(hasCells_, kKind.meditKeyword);
     if (!hasVertices_) {
@@ -291,6 +306,7 @@ class MeditReader {
     }
     hasCells_ = true;
     mesh_.cells.resize(encoding_.readCount(kKind.plural, encoding_.shape(corners + 1)));
+    counts_.add(kKind, mesh_.cells.size());
     const auto read = [&](auto& record, std::size_t i) {
       encoding_.beginElement(record, i, mesh_.cells.size(), kKind.plural);
       for (Index& corner : mesh_.cells[i]) corner = readVertex(record, kKind, i, 0);
@@ -399,6 +415,7 @@ class MeditReader {
 
   Encoding encoding_;
   const std::string& fileName_;
+  CellCounts& counts_;
   bool hasVertices_ = false;
   bool hasCells_ = false;
   std::vector<Index> corners_;           ///< of the sections Corners and RequiredVertices
@@ -409,19 +426,19 @@ class MeditReader {
 }  // namespace
 
 HexMesh readMedit(const Input& input, Context& context) {
-  return readWith<MeditReader<MeditText, 8>>(input, "read mesh", context);
+  return readWith<MeditReader<MeditText, 8>>(input, "read mesh", context, input.counts());
 }
 
 HexMesh readMeshb(const Input& input, Context& context) {
-  return readWith<MeditReader<MeditBytes, 8>>(input, "read mesh", context);
+  return readWith<MeditReader<MeditBytes, 8>>(input, "read mesh", context, input.counts());
 }
 
 TetCells readMeditTets(const Input& input, Context& context) {
-  return readWith<MeditReader<MeditText, 4>>(input, "read tets", context);
+  return readWith<MeditReader<MeditText, 4>>(input, "read tets", context, input.counts());
 }
 
 TetCells readMeshbTets(const Input& input, Context& context) {
-  return readWith<MeditReader<MeditBytes, 4>>(input, "read tets", context);
+  return readWith<MeditReader<MeditBytes, 4>>(input, "read tets", context, input.counts());
 }
 
 }  // namespace hexhex

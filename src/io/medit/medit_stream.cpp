@@ -1,4 +1,5 @@
 // `.mesh` and `.meshb` piece by piece.
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
@@ -10,6 +11,14 @@
 
 namespace hexhex {
 namespace {
+
+/// Whether a section of cells that are no hexahedra is meant.
+template <class Fits>
+bool isOtherCells(const Fits& fits) {
+  return std::any_of(kVolumeCells.begin(), kVolumeCells.end(), [&](const VolumeCells& type) {
+    return type.meditVertices > 0 && type.meditKeyword != kCellKind<8>.meditKeyword && fits(type);
+  });
+}
 
 /// A text with one section of vertices, and one of hexahedra behind it.
 class MeditTextPieces final : public PlainMesh {
@@ -24,6 +33,9 @@ class MeditTextPieces final : public PlainMesh {
     for (std::string word = text_.token(); !word.empty() && word != "End"; word = text_.token()) {
       if (word == "Vertices" && !lookAt(points, 4, positionOfPoints_)) return false;
       if (word == "Hexahedra" && !lookAt(cells, 9, positionOfCells)) return false;
+      if (isOtherCells([&](const VolumeCells& type) { return word == type.meditKeyword; })) {
+        return false;
+      }
       if (word == "Dimension" && text_.count() != 3) return false;
     }
     positionOfCells_ = positionOfCells;
@@ -101,6 +113,11 @@ class MeditBytePieces final : public PlainMesh {
           (!hasDimension || !lookAt(points, point(), points_))) {
         return false;
       }
+      if (isOtherCells([&](const VolumeCells& type) {
+            return static_cast<std::uint32_t>(section) == type.meditCode;
+          })) {
+        return false;
+      }
       if (section == MeditSection::Hexahedra && !lookAt(cells, cell(), cells_)) return false;
     }
     return 0 < points_ && points_ < cells_;
@@ -162,12 +179,12 @@ std::unique_ptr<PlainMesh> openMedit(const InputFile& file, const std::string& n
 
 }  // namespace
 
-void readMeditTo(MeshSink& sink, const std::filesystem::path& file, Context& context) {
-  readPlainMesh({openMedit<MeditTextPieces>, readMedit}, sink, file, context);
+void readMeditTo(MeshSink& sink, const Input& input, Context& context) {
+  readPlainMesh({openMedit<MeditTextPieces>, readMedit}, sink, input, context);
 }
 
-void readMeshbTo(MeshSink& sink, const std::filesystem::path& file, Context& context) {
-  readPlainMesh({openMedit<MeditBytePieces>, readMeshb}, sink, file, context);
+void readMeshbTo(MeshSink& sink, const Input& input, Context& context) {
+  readPlainMesh({openMedit<MeditBytePieces>, readMeshb}, sink, input, context);
 }
 
 }  // namespace hexhex

@@ -67,6 +67,14 @@ void requireForTeams(const std::filesystem::path& file, std::size_t format) {
                                               "\" together. They can write: " + known + '.');
 }
 
+/// Files of other names, or in other formats, are no set that can be read.
+void requireSameOutput(ProcessTeam& team, const std::filesystem::path& file,
+                       const WriteOptions& options) {
+  team.requireSame(file.string(), "name of the file to write");
+  team.requireSame(std::string(options.format), "format to write");
+  team.requireSame(std::to_string(options.patchAngle), "patch angle");
+}
+
 bool isOverHdf5(std::size_t format) {
   return kPartFormats[format].name == "vtkhdf" || kPartFormats[format].name == "cgns";
 }
@@ -77,7 +85,10 @@ std::unique_ptr<PartSink> openPartSink(const std::filesystem::path& file,
                                        const WriteOptions& options, Context& context,
                                        ProcessTeam* team) {
   const std::size_t format = findFormat(file, options.format);
-  if (team != nullptr) requireForTeams(file, format);
+  if (team != nullptr) {
+    requireForTeams(file, format);
+    requireSameOutput(*team, file, options);
+  }
   if (isOverHdf5(format) && isFirst(team)) requireHdf5(file);
   return kOpen[format](file, options, context, team);
 }

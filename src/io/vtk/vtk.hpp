@@ -34,7 +34,7 @@ namespace hexhex {
 /// Reads the same as readVtu(), but hands it over in pieces; with little memory if the file's data
 /// are appended and it is no pipe. Then generators, as writeVtu() writes them, are handed over,
 /// too.
-void readVtuTo(MeshSink& sink, const std::filesystem::path& path, Context& context);
+void readVtuTo(MeshSink& sink, const Input& input, Context& context);
 
 /// Writes points (Float64), hexahedra, the cell array `scaled_jacobian` (Float64) and, if the mesh
 /// knows where its vertices came from, the point arrays `generator_kind` (UInt8: 0 vertex, 1 edge,
@@ -81,7 +81,7 @@ void writePatchesVtk(const PiecewiseLinearMesh& mesh, const std::filesystem::pat
 [[nodiscard]] HexMesh readVtkLegacy(const Input& input, Context& context);
 /// The same in pieces, of files up to version 4 with nothing but hexahedra; of other files as a
 /// whole.
-void readVtkLegacyTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
+void readVtkLegacyTo(MeshSink& sink, const Input& input, Context& context);
 
 /// The same for tetrahedra and for maps, as of `.vtu`.
 [[nodiscard]] TetCells readVtkLegacyTets(const Input& input, Context& context);

@@ -62,6 +62,7 @@ void sendPieces(const VtkSource& source, MeshSink& sink, Stage& stage) {
   forEachPiece(stage, source.cells, [&](std::uint64_t first, std::size_t count) {
     hexahedra += countVtkCells(source, kCellKind<8>, first, count);
   });
+  noteVtkCells(source, kCellKind<8>, hexahedra);
   if (source.cells > 0 && hexahedra == 0) failWithoutVtkCells(source, kCellKind<8>);
   sink.begin(source.points, hexahedra);
   sendPoints(source, sink, stage);
@@ -122,8 +123,7 @@ TetMap readVtkLegacyMap(const Input& input, const ReadOptions& options, Context&
   });
 }
 
-void readVtuTo(MeshSink& sink, const std::filesystem::path& path, Context& context) {
-  const Input input(path);
+void readVtuTo(MeshSink& sink, const Input& input, Context& context) {
   Stage stage(context, "read mesh");
   sendPieces(*openVtuFile(input, stage), sink, stage);
 }

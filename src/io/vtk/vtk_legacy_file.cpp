@@ -414,6 +414,7 @@ std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegion
   VtkFileBytes bytes;
   bytes.text = input.text(bytes.room, stage, "#");
   auto file = std::make_unique<VtkLegacyFile>(std::move(bytes), input.name(), stage);
+  file->counts = input.counts();
   if (withRegions) file->readRegions();
   return file;
 }

@@ -230,8 +230,8 @@ std::unique_ptr<PlainMesh> openVtkPieces(const InputFile& file, const std::strin
 
 }  // namespace
 
-void readVtkLegacyTo(MeshSink& sink, const std::filesystem::path& file, Context& context) {
-  readPlainMesh({openVtkPieces, readVtkLegacy}, sink, file, context);
+void readVtkLegacyTo(MeshSink& sink, const Input& input, Context& context) {
+  readPlainMesh({openVtkPieces, readVtkLegacy}, sink, input, context);
 }
 
 }  // namespace hexhex

@@ -299,6 +299,7 @@ void readVtkCells(const VtkSource& source, const CellKind& cells,
     begins[block] = countVtkCells(source, cells, begin, end - begin);
   });
   const std::size_t count = exclusiveScan(std::span(begins));
+  noteVtkCells(source, cells, count);
   if (all > 0 && count == 0) failWithoutVtkCells(source, cells);
   Index* const vertices = makeRoom(count);
   if (numbers != nullptr) numbers->resize(count);
@@ -308,15 +309,27 @@ void readVtkCells(const VtkSource& source, const CellKind& cells,
   });
 }
 
+void noteVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t count) {
+  if (count == source.cells) return source.counts->addVtk(cells.vtkType, count);
+  Array<std::int64_t> types;
+  for (std::uint64_t first = 0; first < source.cells; first += kGrain) {
+    types.resize(std::min<std::uint64_t>(kGrain, source.cells - first));
+    source.copy(source.types, first, types.size(), types.data());
+    // Cells of one type mostly follow each other.
+    for (std::size_t i = 0; i < types.size();) {
+      std::size_t end = i + 1;
+      while (end < types.size() && types[end] == types[i]) ++end;
+      source.counts->addVtk(types[i], end - i);
+      i = end;
+    }
+  }
+}
+
 void failWithoutVtkCells(const VtkSource& source, const CellKind& cells) {
-  const CellKind& others = cells.corners == 4 ? kCellKind<8> : kCellKind<4>;
-  const std::size_t found =
-      countVtkCells(source, others, 0, std::min<std::uint64_t>(source.cells, kGrain));
   source.fail(ErrorCode::FileUnsupported,
               "the file holds no " + std::string(cells.plural) + ": none of its " +
                   std::to_string(source.cells) + " cells has the type " +
-                  std::to_string(cells.vtkType) +
-                  (found > 0 ? "; it holds " + std::string(others.plural) : "") + ".");
+                  std::to_string(cells.vtkType) + source.counts->instead() + ".");
 }
 
 HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {

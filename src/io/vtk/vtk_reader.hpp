@@ -49,6 +49,10 @@ void readVtkCells(const VtkSource& source, const CellKind& cells,
                   const std::function<Index*(std::size_t)>& makeRoom, Array<std::size_t>* numbers,
                   Stage& stage);
 
+/// Notes what types of cells there are.
+/// @param count  of the wanted ones
+void noteVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t count);
+
 /// Throws the error of a file with cells, but no wanted ones.
 [[noreturn]] void failWithoutVtkCells(const VtkSource& source, const CellKind& cells);
 

@@ -109,6 +109,8 @@ class VtkSource {
   VtkColumn connectivity;
   std::size_t gap = 0;  ///< how many numbers stand in `connectivity` in front of a cell's corners
 
+  std::shared_ptr<CellCounts> counts;  ///< of the input
+
   std::vector<VtkSourceArray> arrays;
   /// Arrays of points and cells, for messages: the first of them, and how many more there are.
   std::vector<std::string> seen;

@@ -373,7 +373,9 @@ std::unique_ptr<VtkSource> openVtuFile(const Input& input, Stage& stage) {
     bytes.file.reset();
     bytes.text = input.text(bytes.room, stage, kXmlFirst);
   }
-  return std::make_unique<VtuFile>(std::move(bytes), input.name(), stage);
+  auto file = std::make_unique<VtuFile>(std::move(bytes), input.name(), stage);
+  file->counts = input.counts();
+  return file;
 }
 
 }  // namespace hexhex

@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <numeric>
+
+#include <hexhex/error.hpp>
+
+#include <io/core/cell_counts.hpp>
+
+namespace hexhex {
+namespace {
+
+/// The type with this number; null if there is none.
+const VolumeCells* find(std::int64_t VolumeCells::*number, std::int64_t value) {
+  const auto* const found =
+      std::find_if(kVolumeCells.begin(), kVolumeCells.end(),
+                   [&](const VolumeCells& type) { return value > 0 && type.*number == value; });
+  return found == kVolumeCells.end() ? nullptr : found;
+}
+
+/// Types of VTK that are points, lines and polygons, straight and curved, or nothing.
+bool isFlat(std::int64_t type) {
+  constexpr std::array<std::int64_t, 31> kFlat = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  21,
+                                                  22, 23, 28, 30, 34, 35, 36, 51, 52, 53, 54,
+                                                  60, 61, 62, 63, 68, 69, 70, 75, 76};
+  constexpr std::int64_t kBezierQuad = 77;
+  return type == kBezierQuad || std::find(kFlat.begin(), kFlat.end(), type) != kFlat.end();
+}
+
+/// "tetrahedron", "prism with 15 nodes".
+std::string singular(std::string_view plural) {
+  const std::size_t end = std::min(plural.find(" with "), plural.find(" of "));
+  std::string noun(plural.substr(0, end));
+  const bool greek = noun.ends_with("hedra");
+  noun.pop_back();
+  if (greek) noun += "on";
+  return noun + std::string(plural.substr(std::min(end, plural.size())));
+}
+
+}  // namespace
+
+void CellCounts::addVtk(std::int64_t type, std::uint64_t count) {
+  if (count == 0 || isFlat(type)) return;
+  if (const VolumeCells* const found = find(&VolumeCells::vtkType, type)) return add(*found, count);
+  unknown_[type] += count;
+}
+
+void CellCounts::addGmsh(std::int64_t type, std::uint64_t count) {
+  if (count == 0) return;
+  if (const VolumeCells* const found = find(&VolumeCells::gmshType, type)) add(*found, count);
+}
+
+std::uint64_t CellCounts::of(const CellKind& kind) const {
+  const auto found = counts_.find(find(&VolumeCells::vtkType, kind.vtkType)->plural);
+  return found == counts_.end() ? 0 : found->second;
+}
+
+std::vector<CellCount> CellCounts::list() const {
+  std::vector<CellCount> list;
+  for (const auto& [plural, count] : counts_) {
+    if (count > 0) list.push_back({std::string(plural), count});
+  }
+  for (const auto& [type, count] : unknown_) {
+    list.push_back({"cells of VTK's type " + std::to_string(type), count});
+  }
+  return list;
+}
+
+std::string CellCounts::text() const {
+  const std::vector<CellCount> all = list();
+  std::string text;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i > 0) text += i + 1 == all.size() ? " and " : ", ";
+    const auto& [name, count] = all[i];
+    text += std::to_string(count) + ' ' + (count == 1 ? singular(name) : name);
+  }
+  return text;
+}
+
+std::string CellCounts::instead() const {
+  const std::string held = text();
+  return held.empty() ? held : "; it holds " + held;
+}
+
+void CellCounts::requireOnly(const CellKind& kind, const std::string& fileName,
+                             std::string_view advice) const {
+  const std::vector<CellCount> all = list();
+  const std::uint64_t others =
+      std::accumulate(all.begin(), all.end(), std::uint64_t{0},
+                      [](std::uint64_t sum, const CellCount& each) { return sum + each.count; }) -
+      of(kind);
+  if (others == 0) return;
+  throw Error(ErrorCode::FileUnsupported,
+              fileName + ": the file holds " + text() + ", but all cells must be " +
+                  std::string(kind.plural) + ". " + std::string(advice));
+}
+
+}  // namespace hexhex

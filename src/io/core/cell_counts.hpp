@@ -1,0 +1,91 @@
+// The volume cells of a file, by type. A mesh without some of them has holes: readers count, and
+// files.cpp decides.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <hexhex/io.hpp>
+
+#include <io/core/cell_mesh.hpp>
+
+namespace hexhex {
+
+/// A type of volume cells, and what formats call it; 0 where they do not know it.
+struct VolumeCells {
+  std::string_view plural;
+  std::int64_t vtkType = 0;
+  std::int64_t gmshType = 0;
+  std::uint32_t meditCode = 0;         ///< of the section in `.meshb`
+  std::string_view meditKeyword = {};  ///< of the section in `.mesh`
+  std::size_t meditVertices = 0;       ///< of a cell
+};
+
+constexpr std::array<VolumeCells, 33> kVolumeCells = {
+    {{"hexahedra", 12, 5, 10, "Hexahedra", 8},
+     {"hexahedra with 20 nodes", 25, 17},
+     {"hexahedra with 24 nodes", 33},
+     {"hexahedra with 27 nodes", 29, 12, 33, "HexahedraQ2", 27},
+     {"hexahedra with 64 nodes", 0, 92},
+     {"hexahedra with 125 nodes", 0, 93},
+     {"hexahedra of higher order", 67},
+     {"Lagrange hexahedra", 72},
+     {"Bezier hexahedra", 79},
+     {"voxels", 11},
+     {"tetrahedra", 10, 4, 8, "Tetrahedra", 4},
+     {"tetrahedra with 10 nodes", 24, 11, 30, "TetrahedraP2", 10},
+     {"tetrahedra with 20 nodes", 0, 29},
+     {"tetrahedra with 35 nodes", 0, 30},
+     {"tetrahedra with 56 nodes", 0, 31},
+     {"tetrahedra of higher order", 64},
+     {"Lagrange tetrahedra", 71},
+     {"Bezier tetrahedra", 78},
+     {"prisms", 13, 6, 9, "Prisms", 6},
+     {"prisms with 12 nodes", 31},
+     {"prisms with 15 nodes", 26, 18},
+     {"prisms with 18 nodes", 32, 13, 86, "PrismsP2", 18},
+     {"prisms of higher order", 65},
+     {"Lagrange prisms", 73},
+     {"Bezier prisms", 80},
+     {"pyramids", 14, 7, 49, "Pyramids", 5},
+     {"pyramids with 13 nodes", 27, 19},
+     {"pyramids with 14 nodes", 0, 14, 87, "PyramidsP2", 14},
+     {"pyramids with 19 nodes", 37},
+     {"pyramids of higher order", 66},
+     {"Lagrange pyramids", 74},
+     {"Bezier pyramids", 81},
+     {"polyhedra", 42}}};
+
+class CellCounts {
+ public:
+  // Cells of a format's type. Points, lines and polygons do not count.
+  void addVtk(std::int64_t type, std::uint64_t count);
+  void addGmsh(std::int64_t type, std::uint64_t count);
+  void add(const VolumeCells& type, std::uint64_t count) { counts_[type.plural] += count; }
+  void add(const CellKind& kind, std::uint64_t count) { addVtk(kind.vtkType, count); }
+
+  [[nodiscard]] std::uint64_t of(const CellKind& kind) const;
+  /// Refuses a file that holds others, too.
+  /// @param advice  what helps
+  /// @throws Error FileUnsupported
+  void requireOnly(const CellKind& kind, const std::string& fileName,
+                   std::string_view advice) const;
+
+  [[nodiscard]] std::vector<CellCount> list() const;
+  /// "; it holds 1 prism and 8 hexahedra with 27 nodes", to end errors of files without cells of a
+  /// kind; empty for a file without any.
+  [[nodiscard]] std::string instead() const;
+
+ private:
+  [[nodiscard]] std::string text() const;
+
+  std::map<std::string_view, std::uint64_t> counts_;
+  std::map<std::int64_t, std::uint64_t> unknown_;  ///< of VTK, by type
+};
+
+}  // namespace hexhex
