@@ -337,8 +337,6 @@ TEST(MotorcycleComplex, ConsistsOfBoxes) {
   }
 }
 
-<<<<<<< HEAD
-=======
 TEST(Quantize, NamesEachAttempt) {
   std::vector<std::string> stages;
   Context context(
@@ -389,19 +387,6 @@ TEST(QuantizeRealMaps, WithWallsNearVertices) {
   for (const double number : {1000, 5000}) expectRightMesh(readMap(file), cells(number));
 }
 
-/// Seamless maps of real models.
-std::vector<std::filesystem::path> realMaps() {
-  const std::filesystem::path folder = dataFolder() / "seamless";
-  std::vector<std::filesystem::path> files;
-  if (!std::filesystem::exists(folder)) return files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  files.resize(std::min(files.size(), static_cast<std::size_t>(cases(13))));
-  return files;
-}
-
->>>>>>> helper-d
 TEST(QuantizeRealMaps, AtAllDensities) {
   if (realMaps().empty()) GTEST_SKIP() << "no real maps";
   for (const std::filesystem::path& file : realMaps()) {
