@@ -71,6 +71,13 @@ void printImprovement(const ImproveReport& report) {
         "The mesh came farther from the surface where cells could not be good nearer to it; "
         "--report lists what is far from it.");
   }
+  const double mean = report.before.quality.mean;
+  if (report.after.quality.mean < mean - 1e-6) {
+    printWarning(fmt::format(
+        "The mean scaled Jacobian fell from {:.4g} to {:.4g}: cells became worse, though not below "
+        "--target unless beside mended ones, so that those below it are better.",
+        mean, report.after.quality.mean));
+  }
   if (left > 0) printWarning(refutationAsText(report.after));
 }
 

@@ -35,10 +35,12 @@ class Sweeps {
   /// @param slack  so far may vertices without tags leave the surface if nothing else helps
   void untangle(double slack);
 
-  /// Moves vertices around cells whose scaled Jacobian is below the target.
+  /// Moves vertices around cells whose scaled Jacobian is below the target. Those at the target
+  /// stay there.
   void raiseWorst(double target);
 
-  /// Moves all vertices, so many times. Scaled Jacobians below the floor do not fall.
+  /// Moves all vertices, so many times. No scaled Jacobian falls below the floor, and of those that
+  /// are there, none below the least around.
   void smooth(int passes, double floor);
 
   /// Moves vertices of quads of the boundary towards where they were, as far as no cell becomes
@@ -60,6 +62,8 @@ class Sweeps {
   [[nodiscard]] std::vector<Index> cellsThat(const Wanted& isWanted) const;
   template <class Wanted>
   [[nodiscard]] std::vector<Index> cellsThat(std::vector<Index> list, const Wanted& isWanted) const;
+  /// Raises cells below the floor, which is the target.
+  void raise(const Exchange& exchange);
   template <class Move>
   void sweep(std::span<const Index> vertices, double slack, const Move& move);
 
