@@ -64,6 +64,10 @@ void printImprovement(const ImproveReport& report) {
     printLine("off the surface", fmt::format("{} vertices, where nothing else made cells positive",
                                              report.offSurface));
   }
+  if (report.offCreases > 0) {
+    printLine("off creases", fmt::format("{} vertices, where nothing else made cells positive",
+                                         report.offCreases));
+  }
   // Rounding is no distance.
   const double limit = 1.00001 * std::max(report.distanceBefore.hausdorff(), kSurfaceTolerance);
   if (report.distanceAfter.hausdorff() > limit) {
@@ -78,7 +82,14 @@ void printImprovement(const ImproveReport& report) {
         "--target unless beside mended ones, so that those below it are better.",
         mean, report.after.quality.mean));
   }
-  if (left > 0) printWarning(refutationAsText(report.after));
+  if (left == 0) return;
+  printWarning(refutationAsText(report.after));
+  if (report.vertices[2] + report.vertices[3] > 0) {
+    printWarning(
+        "Vertices stay on curves and at corners. Where these are no features of the object, "
+        "--feature-angle 180 leaves out those that are found by angle, and --slack lets vertices "
+        "come farther from the surface.");
+  }
 }
 
 Json improvementAsJson(const ImproveReport& report) {
@@ -106,6 +117,7 @@ Json improvementAsJson(const ImproveReport& report) {
       {"largest_move", report.largestMove},
       {"mean_move", report.meanMove},
       {"off_surface", report.offSurface},
+      {"off_creases", report.offCreases},
       {"seconds", report.seconds}};
 }
 

@@ -29,7 +29,8 @@ hexhex_improve_report reportOf(const hexhex::ImproveReport& r) {
           .largest_move = r.largestMove,
           .mean_move = r.meanMove,
           .off_surface = r.offSurface,
-          .seconds = r.seconds};
+          .seconds = r.seconds,
+          .off_creases = r.offCreases};
 }
 
 /// @param meshOf  the mesh of a handle

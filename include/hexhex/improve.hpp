@@ -59,6 +59,9 @@ struct ImproveReport {
   double meanMove = 0;           ///< of those that moved
   std::uint64_t offSurface = 0;  ///< vertices that used the slack
   double seconds = 0;
+  /// Vertices that left creases where nothing else made cells positive. Creases are curves that
+  /// have no tag, and on both sides of which the surface goes on.
+  std::uint64_t offCreases = 0;
 };
 
 /// Moves vertices. The surface is that of the map: its boundary, tagged triangles and those between

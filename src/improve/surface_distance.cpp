@@ -98,6 +98,7 @@ BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad
     distance.ofQuads[q] = distanceOf(points, quads[q], tree) / diagonal;
   });
   distance.largest.fromMesh = largestOf(distance.ofQuads);
+  distance.fromQuads = distance.ofQuads;
 
   struct FromSurface {
     std::size_t quad;

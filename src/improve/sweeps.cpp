@@ -4,6 +4,7 @@
 #include <base/vector3.hpp>
 #include <base/workspaces.hpp>
 #include <improve/cell_states.hpp>
+#include <improve/creases.hpp>
 #include <improve/sweeps.hpp>
 #include <improve/untangling.hpp>
 
@@ -26,6 +27,9 @@ constexpr std::size_t kMostVisits = 4;
 /// these can hardly be better, they would else pull all around them down: a mesh with a corner that
 /// nothing mends fell from 0.73 to 0.41 on average. Below 10, cells that could be good stay bad.
 constexpr double kPrice = 30;
+
+/// Vertices may leave creases at bad cells, then also within so many rings of cells around.
+constexpr std::array<int, 2> kLooseRings = {0, 2};
 
 /// A step smaller than this share of the cells' size does not wake the neighbours.
 constexpr double kStill = 1e-3;
@@ -144,6 +148,38 @@ void Sweeps::untangle(double slack) {
   if (bad.empty()) return;
   putBack(cellPoints(), bad, points, simplices, mesh_.points, places_);
   measureAll();
+}
+
+std::vector<Index> Sweeps::untangleAcrossCreases(double slack,
+                                                 const std::function<Array<Quad>()>& farQuads) {
+  std::vector<Index> left;
+  Neighbourhoods near(cellPoints());
+  for (const int rings : kLooseRings) {
+    std::vector<Index> cells = cellsThat(kIsBad);
+    if (cells.empty()) break;
+    const Array<Vec3> points = mesh_.points;
+    LooseVertices loose(places_, near.pointsOf(rings, cells), points);
+    if (loose.empty()) continue;
+    const Array<Index> simplices = places_.simplex;
+    untangle(slack);
+    Array<Quad> far = farQuads();
+    for (int i = 0; i < kReturns && !far.empty(); ++i) {
+      moveBack(far, points, simplices, 0);
+      far = farQuads();
+    }
+    std::vector<Index> back;
+    for (const Quad& quad : far) {
+      for (const Index v : quad) {
+        const auto around = cellPoints().around(v);
+        back.insert(back.end(), around.begin(), around.end());
+      }
+    }
+    putBack(cellPoints(), back, points, simplices, mesh_.points, places_);
+    measureAll();
+    const std::vector<Index> moved = loose.holdUnmoved(mesh_.points);
+    left.insert(left.end(), moved.begin(), moved.end());
+  }
+  return left;
 }
 
 void Sweeps::raiseWorst(double target) {

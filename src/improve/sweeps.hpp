@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -35,6 +36,13 @@ class Sweeps {
   /// @param slack  so far may vertices without tags leave the surface if nothing else helps
   void untangle(double slack);
 
+  /// The same where vertices around bad cells may leave creases. What takes the boundary too far
+  /// from the surface is put back.
+  /// @param farQuads  of the boundary, which are too far
+  /// @return vertices that left their creases, and may go on
+  std::vector<Index> untangleAcrossCreases(double slack,
+                                           const std::function<Array<Quad>()>& farQuads);
+
   /// Moves vertices around cells whose scaled Jacobian is below the target. Those at the target
   /// stay there.
   void raiseWorst(double target);
@@ -43,6 +51,8 @@ class Sweeps {
   /// are there, none below the least around.
   void smooth(int passes, double floor);
 
+  /// Rounds of moveBack() until it is given up.
+  static constexpr int kReturns = 8;
   /// Moves vertices of quads of the boundary towards where they were, as far as no cell becomes
   /// worse than smooth() would leave it.
   /// @param before, simplicesBefore  of all vertices

@@ -1,6 +1,9 @@
 // How each vertex of a mesh may move: freely, on a patch of the surface, on a curve, or not at all.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
@@ -11,11 +14,17 @@ namespace hexhex {
 struct VertexPlaces {
   ReferenceSurface surface;
   Array<Freedom> freedom;  ///< per vertex
-  Array<Index> simplex;    ///< per vertex: the triangle or segment that holds it, or kNone
+  /// Per vertex: the triangle or segment that holds it, the corner, or kNone.
+  Array<Index> simplex;
+  /// Per vertex on a patch: 1 if it may leave it across creases.
+  std::vector<std::uint8_t> isLoose;
 
   /// The place nearest to a point that a vertex may move to.
   [[nodiscard]] SurfacePlace nearest(Index vertex, const Vec3& point) const {
-    if (freedom[vertex] == Freedom::OnPatch) return surface.onPatch(point, simplex[vertex]);
+    if (freedom[vertex] == Freedom::OnPatch) {
+      return isLoose[vertex] != 0 ? surface.acrossCreases(point, simplex[vertex])
+                                  : surface.onPatch(point, simplex[vertex]);
+    }
     if (freedom[vertex] == Freedom::OnCurve) return surface.onCurve(point, simplex[vertex]);
     return {point, simplex[vertex]};
   }

@@ -1181,9 +1181,13 @@ typedef struct hexhex_improve_report {
   double mean_move;     /**< of those that moved */
   uint64_t off_surface; /**< vertices that used the slack */
   double seconds;
+  uint64_t off_creases; /**< vertices that left creases, where nothing else made cells positive */
 } hexhex_improve_report;
-#define HEXHEX_IMPROVE_REPORT_INIT \
-  { sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+#define HEXHEX_IMPROVE_REPORT_INIT                                                                \
+  {                                                                                               \
+    sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
+        0, 0                                                                                      \
+  }
 
 /** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>.
  * @param map          that the mesh was extracted from, or NULL: the surface is the mesh's boundary
