@@ -25,7 +25,8 @@ constexpr std::size_t kMostVisits = 4;
 
 /// With the high powers, cells above the target may lose so many times what those below gain. Where
 /// these can hardly be better, they would else pull all around them down: a mesh with a corner that
-/// nothing mends fell from 0.73 to 0.41 on average. Below 10, cells that could be good stay bad.
+/// nothing mends fell from 0.73 to 0.41 on average. With 10, some cells stay below the target that
+/// can reach it.
 constexpr double kPrice = 30;
 
 /// Vertices may leave creases at bad cells, then also within so many rings of cells around.
